@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/program.h"
+
+int main(int argument_count, char **arguments) {
+  return app_program_run(argument_count, arguments);
+}

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wall and processor time [s].
+#ifndef TETLAP_BASE_CLOCK_H
+#define TETLAP_BASE_CLOCK_H
+
+double clock_wall_s(void); // monotonic; only differences mean something
+double clock_cpu_s(void);  // user + system time of all threads of this process
+
+#endif

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/file.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+
+char *file_join(const char *directory, const char *name) {
+  if (name[0] == '/') return memory_copy(name, strlen(name) + 1, 1);
+  size_t size = strlen(directory) + strlen(name) + 2;
+  char *path = memory_zeroed(size, 1);
+  if (path) snprintf(path, size, "%s/%s", directory, name);
+  return path;
+}
+
+char *file_directory_of(const char *path) {
+  const char *slash = strrchr(path, '/');
+  if (!slash) return memory_copy(".", 2, 1);
+  size_t length = slash == path ? 1 : (size_t)(slash - path);
+  char *directory = memory_zeroed(length + 1, 1);
+  if (directory) memcpy(directory, path, length);
+  return directory;
+}
+
+int file_exists(const char *path) {
+  return access(path, F_OK) == 0;
+}
+
+Status file_begin(FileWriter *writer, const char *path) {
+  *writer = (FileWriter){0};
+  size_t size = strlen(path) + 32;
+  writer->path = memory_copy(path, strlen(path) + 1, 1);
+  writer->temporary = memory_zeroed(size, 1);
+  if (!writer->path || !writer->temporary) {
+    file_abandon(writer);
+    return status_no_memory("a file name");
+  }
+  snprintf(writer->temporary, size, "%s.%ld.part", path, (long)getpid());
+  writer->stream = fopen(writer->temporary, "wb");
+  if (!writer->stream) {
+    int reason = errno;
+    file_abandon(writer);
+    return status_fail(STATUS_IO, "%s: cannot be written: %s", path, strerror(reason));
+  }
+  return STATUS_OK;
+}
+
+Status file_commit(FileWriter *writer) {
+  errno = 0;
+  int failed = ferror(writer->stream) || fflush(writer->stream) != 0 || fsync(fileno(writer->stream)) != 0;
+  int reason = errno;
+  if (fclose(writer->stream) != 0 && !failed) failed = 1, reason = errno;
+  writer->stream = NULL;
+  if (!failed && rename(writer->temporary, writer->path) != 0) failed = 1, reason = errno;
+  Status status = STATUS_OK;
+  if (failed)
+    status = status_fail(STATUS_IO, "%s: writing failed: %s; nothing was left there", writer->path,
+                         reason ? strerror(reason) : "write error");
+  else
+    writer->temporary[0] = 0;
+  file_abandon(writer);
+  return status;
+}
+
+void file_abandon(FileWriter *writer) {
+  if (writer->stream) fclose(writer->stream);
+  if (writer->temporary && writer->temporary[0]) unlink(writer->temporary);
+  memory_free(writer->path);
+  memory_free(writer->temporary);
+  *writer = (FileWriter){0};
+}
+
+static Status make_one(const char *path) {
+  if (mkdir(path, 0777) == 0 || errno == EEXIST) return STATUS_OK;
+  return status_fail(STATUS_IO, "%s: the directory cannot be made: %s", path, strerror(errno));
+}
+
+Status file_make_directories(const char *path) {
+  char *copy = memory_copy(path, strlen(path) + 1, 1);
+  if (!copy) return status_no_memory("a directory name");
+  Status status = STATUS_OK;
+  for (char *slash = copy[0] ? strchr(copy + 1, '/') : NULL; slash && !status;
+       slash = strchr(slash + 1, '/')) {
+    *slash = 0;
+    status = make_one(copy);
+    *slash = '/';
+  }
+  if (!status) status = make_one(copy);
+  memory_free(copy);
+  struct stat info;
+  if (!status && (stat(path, &info) != 0 || !S_ISDIR(info.st_mode)))
+    return status_fail(STATUS_IO, "%s: is not a directory; name another with -o", path);
+  return status;
+}
+
+Status file_read(const char *path, char **text, size_t *size) {
+  *text = NULL;
+  *size = 0;
+  struct stat info;
+  FILE *stream = fopen(path, "rb");
+  if (!stream) return status_fail(STATUS_IO, "%s: cannot be opened: %s", path, strerror(errno));
+  Status status = STATUS_OK;
+  if (fstat(fileno(stream), &info) == 0 && S_ISDIR(info.st_mode))
+    status = status_fail(STATUS_IO, "%s: is a directory, a file was expected", path);
+  size_t capacity = 0, used = 0;
+  while (!status) {
+    if (!memory_reserve((void **)text, &capacity, used + 65536, 1)) {
+      status = status_no_memory(path);
+      break;
+    }
+    size_t got = fread(*text + used, 1, capacity - used - 1, stream);
+    used += got;
+    if (got == 0) break;
+  }
+  if (!status && ferror(stream))
+    status = status_fail(STATUS_IO, "%s: reading failed: %s", path, strerror(errno));
+  fclose(stream);
+  if (status) {
+    memory_free(*text);
+    *text = NULL;
+    return status;
+  }
+  (*text)[used] = 0;
+  *size = used;
+  return STATUS_OK;
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files that appear whole or not at all: written beside their final place under a temporary name, flushed,
+// renamed.
+#ifndef TETLAP_BASE_FILE_H
+#define TETLAP_BASE_FILE_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+#include "base/status.h"
+
+typedef struct FileWriter {
+  FILE *stream;    // write here; an error is found at commit
+  char *path;      // final place, owned
+  char *temporary; // where it grows, owned
+} FileWriter;
+
+// Opens a temporary file beside `path`. STATUS_IO names the path and the system's reason.
+Status file_begin(FileWriter *writer, const char *path);
+// Flushes, syncs and renames; on failure nothing is left at `path` that was not there before.
+Status file_commit(FileWriter *writer);
+// Drops what was written; allowed after a commit and on a zeroed writer.
+void file_abandon(FileWriter *writer);
+
+Status file_make_directories(const char *path); // like mkdir -p
+int file_exists(const char *path);
+// The whole file as text with a terminating 0; `*text` is owned by the caller (memory_free).
+Status file_read(const char *path, char **text, size_t *size);
+// "dir/name" or `name` itself if it is absolute; owned by the caller. NULL: no memory.
+char *file_join(const char *directory, const char *name);
+// The directory part of `path`, "." if none; owned by the caller. NULL: no memory.
+char *file_directory_of(const char *path);
+
+#endif

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/log.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+
+static LogLevel level = LOG_SILENT;
+static bool progress_is_shown;
+
+void log_set_level(LogLevel new_level) {
+  level = new_level;
+}
+
+LogLevel log_level(void) {
+  return level;
+}
+
+bool log_has_colour(void) {
+  const char *no_color = getenv("NO_COLOR");
+  return isatty(STDERR_FILENO) && !(no_color && no_color[0]);
+}
+
+static void write_line(LogLevel at, const char *label, const char *colour, const char *format, va_list args) {
+  if (level < at) return;
+  log_progress_end();
+  if (log_has_colour())
+    fprintf(stderr, "%s%s\033[0m", colour, label);
+  else
+    fputs(label, stderr);
+  vfprintf(stderr, format, args);
+  fputc('\n', stderr);
+}
+
+void log_error(const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  write_line(LOG_ERROR, "error: ", "\033[1;31m", format, args);
+  va_end(args);
+}
+
+void log_warning(const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  write_line(LOG_WARNING, "warning: ", "\033[1;33m", format, args);
+  va_end(args);
+}
+
+void log_info(const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  write_line(LOG_INFO, "", "", format, args);
+  va_end(args);
+}
+
+void log_debug(const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  write_line(LOG_DEBUG, "debug: ", "\033[2m", format, args);
+  va_end(args);
+}
+
+void log_progress(const char *format, ...) {
+  static double shown_at = -1;
+  if (level < LOG_INFO || !isatty(STDERR_FILENO)) return;
+  double now = clock_wall_s();
+  if (shown_at >= 0 && now - shown_at < 0.1) return;
+  shown_at = now;
+  va_list args;
+  va_start(args, format);
+  fputs("\r\033[K", stderr);
+  vfprintf(stderr, format, args);
+  va_end(args);
+  fflush(stderr);
+  progress_is_shown = true;
+}
+
+void log_progress_end(void) {
+  if (!progress_is_shown) return;
+  fputs("\r\033[K", stderr);
+  progress_is_shown = false;
+}

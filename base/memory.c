@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+
+#include <stdatomic.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+static atomic_long fail_countdown;
+
+static int fails_now(void) {
+  return atomic_load(&fail_countdown) > 0 && atomic_fetch_sub(&fail_countdown, 1) == 1;
+}
+
+void *memory_zeroed(size_t count, size_t size) {
+  if (fails_now()) return NULL;
+  return calloc(count ? count : 1, size);
+}
+
+void *memory_copy(const void *source, size_t count, size_t size) {
+  void *copy = memory_zeroed(count, size);
+  if (copy && count) memcpy(copy, source, count * size);
+  return copy;
+}
+
+int memory_reserve(void **array, size_t *capacity, size_t wanted, size_t size) {
+  if (wanted <= *capacity && *array) return 1;
+  size_t grown = *capacity + *capacity / 2 + 8;
+  if (grown < wanted) grown = wanted;
+  if (fails_now() || grown > SIZE_MAX / size) return 0;
+  char *larger = realloc(*array, grown * size);
+  if (!larger) return 0;
+  memset(larger + *capacity * size, 0, (grown - *capacity) * size);
+  *array = larger;
+  *capacity = grown;
+  return 1;
+}
+
+void memory_free(void *array) {
+  free(array);
+}
+
+void memory_fail_at(long k) {
+  atomic_store(&fail_countdown, k);
+}
+
+size_t memory_peak_bytes(void) {
+  struct rusage usage;
+  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+  return (size_t)usage.ru_maxrss * 1024;
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/record.h"
+
+#include <jansson.h>
+#include <math.h>
+
+#include "base/file.h"
+
+// jansson owns the tree; our handles are its nodes under another name.
+static json_t *node_of(Record *record) {
+  return (json_t *)record;
+}
+
+// jansson refuses NaN and infinity by returning NULL; null stands for them.
+static json_t *number_or_null(double value) {
+  return isfinite(value) ? json_real(value) : json_null();
+}
+
+Record *record_new(void) {
+  return (Record *)json_object();
+}
+
+void record_destroy(Record *root) {
+  json_decref(node_of(root));
+}
+
+void record_number(Record *record, const char *key, double value) {
+  json_object_set_new(node_of(record), key, number_or_null(value));
+}
+
+void record_integer(Record *record, const char *key, long long value) {
+  json_object_set_new(node_of(record), key, json_integer(value));
+}
+
+void record_text(Record *record, const char *key, const char *value) {
+  json_object_set_new(node_of(record), key, value ? json_string(value) : json_null());
+}
+
+void record_bool(Record *record, const char *key, bool value) {
+  json_object_set_new(node_of(record), key, json_boolean(value));
+}
+
+void record_numbers(Record *record, const char *key, const double *values, int count) {
+  RecordList *list = record_list(record, key);
+  for (int i = 0; i < count; i++) record_append_number(list, values[i]);
+}
+
+Record *record_child(Record *record, const char *key) {
+  json_t *child = json_object();
+  return json_object_set_new(node_of(record), key, child) == 0 ? (Record *)child : NULL;
+}
+
+RecordList *record_list(Record *record, const char *key) {
+  json_t *child = json_array();
+  return json_object_set_new(node_of(record), key, child) == 0 ? (RecordList *)child : NULL;
+}
+
+Record *record_append(RecordList *list) {
+  json_t *child = json_object();
+  return json_array_append_new((json_t *)list, child) == 0 ? (Record *)child : NULL;
+}
+
+void record_append_number(RecordList *list, double value) {
+  json_array_append_new((json_t *)list, number_or_null(value));
+}
+
+void record_append_text(RecordList *list, const char *value) {
+  json_array_append_new((json_t *)list, json_string(value));
+}
+
+Status record_print(const Record *root, FILE *stream) {
+  if (json_dumpf((const json_t *)root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0)
+    return status_fail(STATUS_IO, "writing JSON failed");
+  return fputc('\n', stream) == EOF ? status_fail(STATUS_IO, "writing JSON failed") : STATUS_OK;
+}
+
+Status record_write(const Record *root, const char *path) {
+  FileWriter writer;
+  TRY(file_begin(&writer, path));
+  Status status = record_print(root, writer.stream);
+  if (status) {
+    file_abandon(&writer);
+    return status_prefix(status, "%s", path);
+  }
+  return file_commit(&writer);
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A JSON document that is built up and written: the one place where jansson is used for output.
+// Numbers that are not finite become null. After a failed allocation the handles are NULL, which every call
+// accepts.
+#ifndef TETLAP_BASE_RECORD_H
+#define TETLAP_BASE_RECORD_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "base/status.h"
+
+typedef struct Record Record; // an object {…}; the root is owned by its creator, the rest by the root
+typedef struct RecordList RecordList; // an array […]; owned by the root
+
+Record *record_new(void); // NULL: no memory
+void record_destroy(Record *root);
+
+void record_number(Record *record, const char *key, double value);
+void record_integer(Record *record, const char *key, long long value);
+void record_text(Record *record, const char *key, const char *value);
+void record_bool(Record *record, const char *key, bool value);
+void record_numbers(Record *record, const char *key, const double *values, int count);
+Record *record_child(Record *record, const char *key);
+RecordList *record_list(Record *record, const char *key);
+Record *record_append(RecordList *list);
+void record_append_number(RecordList *list, double value);
+void record_append_text(RecordList *list, const char *value);
+
+// Indented, keys in the order of insertion, a newline at the end.
+Status record_print(const Record *root, FILE *stream);
+Status record_write(const Record *root, const char *path); // whole or not at all
+
+#endif

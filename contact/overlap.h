@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Overlap models: for pairs of tetrahedra the volume V of their intersection and its derivatives by the 24
+// coordinates. One interface, many answers; each gradient is the derivative of the same model's V.
+//
+//   pairs (n, 2, 4, 3) ──► model ──► V (n), ∇V (n, 2, 4, 3), ∇²V (n, 24, 24), flags (n)
+//
+// Either orientation of a tetrahedron is accepted and means the same set of points. With exact arithmetic
+// Σ ∇V = 0, Σ x × ∇V = 0, Σ x·∇V = 3V, and the sum of ∇V over one tetrahedron's vertices is minus the
+// integral of the other's outward normal over its part of the boundary: contact normal times area.
+#ifndef TETLAP_CONTACT_OVERLAP_H
+#define TETLAP_CONTACT_OVERLAP_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+
+enum { CONTACT_PAIR_SIZE = 24 }; // coordinates of a pair: 2 tetrahedra × 4 vertices × 3
+
+// What a model says of one pair besides its numbers; bits.
+typedef enum ContactOverlapFlag {
+  CONTACT_OVERLAP_DISJOINT = 1 << 0, // no common interior: V, ∇V, ∇²V are exactly 0
+  CONTACT_OVERLAP_FLAT = 1 << 1,     // a tetrahedron has no volume: V, ∇V, ∇²V are exactly 0
+  CONTACT_OVERLAP_FALLBACK = 1 << 2, // answered by a more careful model than the one asked
+  CONTACT_OVERLAP_ENCLOSED = 1 << 3, // one tetrahedron lies wholly inside the other: ∇V pushes nothing apart
+} ContactOverlapFlag;
+
+// A batch of pairs; all arrays are the caller's.
+typedef struct ContactOverlapBatch {
+  int pair_count;
+  const double *pairs; // vertices [m]                     (pair_count, 2, 4, 3)
+  double *volume;      // out: V [m³]                      (pair_count)
+  double *gradient;    // out, or NULL: dV/dx [m²]         (pair_count, 2, 4, 3)
+  double *hessian;     // out, or NULL: d²V/dx² [m]        (pair_count, 24, 24), symmetric
+  unsigned *flags;     // out, or NULL: ContactOverlapFlag (pair_count)
+} ContactOverlapBatch;
+
+// What a model implements. One per model, `static const`, listed in overlap.c.
+typedef struct ContactOverlapOps {
+  const char *name;
+  const char *help; // one line for lists and the manual
+  bool has_hessian;
+  double seconds_per_pair; // rough cost of V + ∇V on one core, to announce how long a run will take [s]
+  // Allocates what the model keeps; NULL where it keeps nothing.
+  Status (*create)(void **self);
+  // Evaluates one pair; must be safe to call from several threads. `gradient` and `hessian` may be NULL; all
+  // outputs are written. The coordinates are finite. RETRY is not used; fatal: message names the reason only.
+  Status (*eval_pair)(const void *self, const double pair[24], double *volume, double *gradient,
+                      double *hessian, unsigned *flags);
+  // Evaluates a batch at once; NULL: eval_pair over OpenMP threads.
+  Status (*eval_batch)(const void *self, const ContactOverlapBatch *batch);
+  void (*destroy)(void *self);
+} ContactOverlapOps;
+
+typedef struct ContactOverlapModel {
+  const ContactOverlapOps *ops;
+  void *self; // owned
+} ContactOverlapModel;
+
+// The models there are, and how many.
+const ContactOverlapOps *const *contact_overlap_list(int *count);
+
+// Makes the model of that name. STATUS_INPUT: unknown name; the message lists the known ones.
+Status contact_overlap_create(ContactOverlapModel *model, const char *name);
+
+// Evaluates all pairs of the batch with OpenMP. STATUS_INPUT: a coordinate is NaN or infinite; the message
+// names the pair. STATUS_INPUT: a Hessian is asked of a model that has none.
+Status contact_overlap_eval(const ContactOverlapModel *model, const ContactOverlapBatch *batch);
+
+void contact_overlap_destroy(ContactOverlapModel *model);
+
+#endif

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contact of many bodies by a penalty on overlap volumes: positions in; energy, forces, stiffness out. It
+// knows no mechanics: bodies are ranges of vertices and tetrahedra, obstacles are bodies without unknowns or
+// half-spaces.
+//
+//     candidates (broad.h, kept while motion < margin/2)
+//         │ gather (n, 2, 4, 3)
+//         ▼
+//     overlap model ──► V_ij, ∇V_ij ──► W_i = Σ_j V_ij, W_a = ¼ Σ_{i∋a} W_i ──► pressure p_ij ──► −Σ p_ij
+//     ∇V_ij
+//
+// W is kept per interface (unordered pair of bodies), so a third body does not change the pressure between
+// two. Evaluation changes no list: an integrator may try a step, reject it and try again.
+#ifndef TETLAP_CONTACT_SYSTEM_H
+#define TETLAP_CONTACT_SYSTEM_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+#include "contact/overlap.h"
+
+typedef struct ContactBody {
+  const char *name; // borrowed
+  int vertex_begin, vertex_end;
+  int tet_begin, tet_end;
+  bool is_obstacle; // carries no unknowns: static or driven
+} ContactBody;
+
+// The solid is { x : normal·(x − point(t)) ≤ 0 }, point(t) = point + t velocity.
+typedef struct ContactHalfspace {
+  const char *name;   // borrowed
+  double point[3];    // [m]
+  double normal[3];   // unit length
+  double velocity[3]; // [m/s]
+} ContactHalfspace;
+
+// The potentials, by the name a scene uses. W_i: what the other body covers of element i [m³]; V_i its rest
+// volume; W_a, V_a their shares of vertex a (a quarter of each adjacent element). κ: stiffness.
+// Between two bodies each side's sum gets a leading ½; against an obstacle only the body's side counts,
+// without ½.
+typedef enum ContactPotential {
+  CONTACT_POTENTIAL_NODAL,   // U = Σ_a ½ κ W_a²/V_a, κ [Pa]: even pressure, no false friction
+  CONTACT_POTENTIAL_ELEMENT, // U = Σ_i ½ κ W_i²/V_i, κ [Pa]
+  CONTACT_POTENTIAL_PAIR,    // U = Σ_ij ½ κ V_ij²/V_ref, V_ref the smaller of the two rest volumes (a
+                             // half-space: V_i), κ [Pa]
+  CONTACT_POTENTIAL_LINEAR,  // U = κ Σ_ij V_ij, κ [Pa]: constant pressure, the force jumps at touch
+  CONTACT_POTENTIAL_BODY,    // U = ½ κ (Σ_ij V_ij)² a pair of bodies, κ [Pa/m³]
+} ContactPotential;
+
+enum { CONTACT_POTENTIAL_COUNT = 5 };
+const char *contact_potential_name(ContactPotential potential); // "nodal", …
+const char *contact_potential_help(ContactPotential potential); // one line
+
+typedef struct ContactSystemDef {
+  int vertex_count;
+  const double *rest;   // rest positions [m], borrowed                    (vertex_count, 3)
+  const int (*tets)[4]; // borrowed; all bodies one after another          (tet_count)
+  int tet_count;
+  const ContactBody *bodies; // borrowed                                    (body_count)
+  int body_count;
+  const ContactHalfspace *halfspaces; // borrowed                           (halfspace_count)
+  int halfspace_count;
+  ContactPotential potential;
+  double stiffness;      // κ
+  double margin;         // skin margin while bodies are near [m]; 0: half the shortest mean edge of a body
+  bool use_full_hessian; // include p ∇²V where the model has it; else Gauss–Newton
+  const ContactOverlapModel *model; // borrowed
+} ContactSystemDef;
+
+// Where the stiffness ∂²U/∂x² goes. Each call adds a dense symmetric part over a short list of distinct
+// vertices.
+typedef struct ContactStiffnessSink {
+  void *self;
+  // S += scale · w wᵀ, w (count, 3).
+  void (*add_outer)(void *self, int count, const int *vertices, const double *w, double scale);
+  // S += matrix, (3 count, 3 count), symmetric.
+  void (*add_dense)(void *self, int count, const int *vertices, const double *matrix);
+} ContactStiffnessSink;
+
+// The force between two bodies, or a body and a half-space (b = body_count + number of the half-space).
+typedef struct ContactInterface {
+  int a, b;         // a < b
+  double force[3];  // on a [N]; the opposite acts on b
+  double volume;    // Σ V_ij [m³]
+  int active_count; // pairs with V > 0
+} ContactInterface;
+
+// What struck, since creation; for summary and warnings.
+typedef struct ContactCounters {
+  long long evaluations;              // of the whole system
+  long long pairs;                    // given to the overlap model
+  long long searches;                 // broad phases
+  long long enclosed;                 // pairs flagged CONTACT_OVERLAP_ENCLOSED
+  long long fallbacks;                // pairs flagged CONTACT_OVERLAP_FALLBACK
+  long long beyond_margin;            // evaluations refused because a vertex left the margin
+  double broad_s, overlap_s, force_s; // wall time by phase [s]
+} ContactCounters;
+
+typedef struct ContactSystem ContactSystem; // opaque: lists, scratch memory and the last evaluation
+
+Status contact_system_create(ContactSystem **system, const ContactSystemDef *def);
+void contact_system_destroy(ContactSystem *system);
+
+// After an accepted step: rebuilds the candidate lists where the motion asks for it. `velocities` (vertex, 3)
+// and `step` [s] (the next step's expected length) size the margin: generous while no pair is near, at most
+// def.margin otherwise, so that nothing passes through anything within one step. `*has_changed` may be NULL.
+Status contact_system_update(ContactSystem *system, double time, const double *positions,
+                             const double *velocities, double step, bool *has_changed);
+
+// Energy U [J] and, added to `force` (vertex_count, 3) unless NULL, −∂U/∂x [N].
+// STATUS_RETRY: a vertex moved beyond the margin since the last update. The result of the last positions is
+// kept.
+Status contact_system_eval(ContactSystem *system, double time, const double *positions, double *energy,
+                           double *force);
+
+// Adds ∂²U/∂x² at those positions to the sink (evaluates first if they are not the last ones).
+Status contact_system_stiffness(ContactSystem *system, double time, const double *positions,
+                                const ContactStiffnessSink *sink);
+
+// Calls `visit` for every clique of vertices that the stiffness may couple at the last evaluated positions,
+// pairs that are apart by less than `reach` [m] included, so that a matrix pattern can be laid out ahead.
+Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
+                             Status (*visit)(void *visitor, int count, const int *vertices));
+
+// The smallest separation of the candidate pairs that do not overlap at the last update [m]: negative once
+// one of them overlaps; +margin if there is none. Its root is the onset of a contact. Separation of two
+// tetrahedra is the largest over the 44 separating axes of their projections' distance (exactly the distance
+// for face contacts).
+Status contact_system_gap(ContactSystem *system, double time, const double *positions, double *gap);
+
+// Of the last evaluation. Pointers are the system's, valid until the next call.
+const ContactInterface *contact_system_interfaces(const ContactSystem *system, int *count);
+const double *contact_system_forces(const ContactSystem *system); // per vertex [N] (vertex_count, 3)
+const double *
+contact_system_covered(const ContactSystem *system); // Σ over interfaces of W_i [m³]    (tet_count)
+int contact_system_active_count(const ContactSystem *system); // pairs with V > 0
+// The pairs of the last evaluation with V > 0, as handed to the model; for audits and capture. Owned by the
+// caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).
+Status contact_system_active_pairs(const ContactSystem *system, int *count, double **pairs, int **tets);
+const ContactCounters *contact_system_counters(const ContactSystem *system);
+
+// Audit: the same configuration with another overlap model: relative differences against `reference`.
+// volume_error: Σ|ΔV| / ΣV over the union of pairs; force_error: ‖Δf‖₂/‖f‖₂ of the nodal forces.
+typedef struct ContactAudit {
+  double volume_error, force_error;
+  int pair_count;
+} ContactAudit;
+Status contact_system_audit(ContactSystem *system, double time, const double *positions,
+                            const ContactOverlapModel *candidate, const ContactOverlapModel *reference,
+                            ContactAudit *audit);
+
+#endif

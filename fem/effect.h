@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An effect: one module that a scene calls for (elasticity, damping, gravity, contact …). A scene pays for
+// what it names and for nothing else: an effect that is absent is never created. Each is one file with one
+// table of operations, and one line in effect.c.
+#ifndef TETLAP_FEM_EFFECT_H
+#define TETLAP_FEM_EFFECT_H
+
+#include <stdbool.h>
+
+#include "base/record.h"
+#include "fem/matrix.h"
+#include "fem/model.h"
+
+// Positions and velocities of all vertices at a time; borrowed.
+typedef struct FemState {
+  double time;              // [s]
+  const double *positions;  // [m]     (vertex_count, 3)
+  const double *velocities; // [m/s]   (vertex_count, 3)
+} FemState;
+
+// Energies by kind; what each effect adds to [J], powers [W].
+typedef struct FemEnergy {
+  double kinetic, elastic, gravity, contact;
+  double dissipated_power; // ≥ 0
+} FemEnergy;
+
+typedef struct FemEffectOps {
+  const char *name;
+  const char *help; // one line
+  bool (*is_wanted)(const FemSceneDef *scene);
+  Status (*create)(void **self, const FemModel *model);
+  // Tells the matrix pattern which vertices this effect couples. NULL: none (or only a vertex with itself).
+  Status (*couple)(void *self, FemPattern *pattern);
+  // After creation and after every accepted step; `step` [s] is the length expected next. The only place
+  // where an effect may change what it keeps. Sets *has_new_coupling where couple would say more than before.
+  // NULL: nothing.
+  Status (*prepare)(void *self, const FemState *state, double step, bool *has_new_coupling);
+  // Adds forces [N] to `force` (vertex_count, 3). RETRY: take a smaller step.
+  Status (*add_force)(void *self, const FemState *state, double *force);
+  // Adds stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, to the matrix. NULL: none.
+  Status (*add_jacobian)(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                         FemMatrix *matrix);
+  Status (*add_energy)(void *self, const FemState *state, FemEnergy *energy); // NULL: none
+  // Onset function whose root restarts the integrator (contact touching); NULL: none.
+  Status (*gap)(void *self, const FemState *state, double *gap);
+  void (*report)(void *self, Record *counters); // adds counters to summary.json; NULL: none
+  void (*destroy)(void *self);
+} FemEffectOps;
+
+typedef struct FemEffect {
+  const FemEffectOps *ops;
+  void *self;
+} FemEffect;
+
+// All effects there are.
+const FemEffectOps *const *fem_effect_list(int *count);
+
+// Those files (fem/effect_NAME.c) define these:
+extern const FemEffectOps fem_effect_elasticity;
+extern const FemEffectOps fem_effect_damping;
+extern const FemEffectOps fem_effect_gravity;
+extern const FemEffectOps fem_effect_contact;
+
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The linear tetrahedron: constant F, one quadrature point. Another element (quadratic, mixed, F-bar) is
+// another file with the same functions over its own node count; effects loop over elements and call these
+// only.
+#ifndef TETLAP_FEM_ELEMENT_H
+#define TETLAP_FEM_ELEMENT_H
+
+#include <stdbool.h>
+
+#include "fem/material.h"
+
+// What is constant in an element.
+typedef struct FemElement {
+  double gradient[4][3]; // ∂N_a/∂X [1/m]
+  double volume;         // at rest [m³]
+} FemElement;
+
+void fem_element_create(FemElement *element, const double rest[12]);
+
+// F = Σ_a x_a ⊗ ∂N_a/∂X.
+void fem_element_deformation(const FemElement *element, const double x[12], double F[9]);
+
+double fem_element_energy(const FemElement *element, const FemMaterial *material, const double x[12]); // [J]
+void fem_element_force(const FemElement *element, const FemMaterial *material, const double x[12],
+                       double force[12]); // −∂U/∂x [N]
+void fem_element_stiffness(const FemElement *element, const FemMaterial *material, const double x[12],
+                           double stiffness[144]); // ∂²U/∂x² [N/m]
+
+// Stiffness-proportional damping that no rigid motion feels: R = ½ β V Ė:C:Ė with the Green strain rate
+// Ė = sym(Fᵀ Ḟ) and the law's small-strain C; at rest it is β K. Force −∂R/∂v, matrix ∂²R/∂v² (symmetric, ≥
+// 0).
+void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,
+                               const double x[12], const double v[12], double force[12]);
+void fem_element_damping_matrix(const FemElement *element, const FemMaterial *material, double beta,
+                                const double x[12], double matrix[144]);
+// The symmetric part of −∂(damping force)/∂x that matters for Newton: Ḟ-stress as geometric stiffness.
+void fem_element_damping_stiffness(const FemElement *element, const FemMaterial *material, double beta,
+                                   const double x[12], const double v[12], double matrix[144]);
+
+// Cauchy stress [Pa], symmetric: xx, yy, zz, xy, yz, xz. Zero where det F = 0.
+void fem_element_cauchy(const FemElement *element, const FemMaterial *material, const double x[12],
+                        double stress[6]);
+
+#endif

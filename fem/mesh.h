@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A tetrahedral mesh in memory: positively oriented, every vertex used, every element of positive volume.
+#ifndef TETLAP_FEM_MESH_H
+#define TETLAP_FEM_MESH_H
+
+#include "base/status.h"
+
+// A named set of vertices: a physical group of the mesh file.
+typedef struct FemMeshGroup {
+  char *name;    // owned
+  int *vertices; // sorted, distinct, owned   (vertex_count)
+  int vertex_count;
+} FemMeshGroup;
+
+typedef struct FemMesh {
+  int vertex_count;
+  int tet_count;
+  double *rest;         // rest positions [m]              (vertex_count, 3)
+  int (*tets)[4];       // vertices, positively oriented   (tet_count)
+  FemMeshGroup *groups; //                                 (group_count)
+  int group_count;
+} FemMesh;
+
+// What reading mended, for `tetlap mesh` and the log.
+typedef struct FemMeshRepairs {
+  int reoriented_tets;
+  int dropped_vertices; // not used by any tetrahedron
+} FemMeshRepairs;
+
+// Where a mesh stands in a scene: x ↦ translate + R(scale · x).
+typedef struct FemPlacement {
+  double scale[3];
+  double axis[3]; // of the rotation; need not have unit length; zero: no rotation
+  double angle_degrees;
+  double translate[3]; // [m]
+} FemPlacement;
+
+FemPlacement fem_placement_identity(void);
+
+// Options of meshing surfaces (.stl, .geo) in place.
+typedef struct FemMeshOptions {
+  double size; // target edge length in the file's units; 0: gmsh's own choice
+} FemMeshOptions;
+
+// Reads by the ending: .msh (2.2, 4.1; ascii, binary), .mesh (MEDIT), .vtk (legacy), .stl and .geo (meshed in
+// place by gmsh), .node/.ele (TetGen; either name). Repairs orientation and drops unused vertices.
+// STATUS_INPUT with file, element and what to do: not tetrahedral (other volume elements), zero volume,
+// non-manifold (a face with more than two tetrahedra), duplicate elements, indices out of range, not finite.
+// `repairs` may be NULL.
+Status fem_mesh_read(FemMesh *mesh, const char *path, const FemMeshOptions *options, FemMeshRepairs *repairs);
+
+// Takes copies of raw arrays (0-based), repairs and validates as above. `origin` names the source in
+// messages.
+Status fem_mesh_from_arrays(FemMesh *mesh, const char *origin, int vertex_count, const double *positions,
+                            int tet_count, const int *tets, FemMeshRepairs *repairs);
+
+// Applies a placement; a mirroring scale keeps orientation positive. STATUS_INPUT: a zero or non-finite
+// scale.
+Status fem_mesh_place(FemMesh *mesh, const FemPlacement *placement);
+
+void fem_mesh_destroy(FemMesh *mesh);
+
+// Legacy-free writing for tests and tools: MEDIT .mesh.
+Status fem_mesh_write_medit(const FemMesh *mesh, const char *path);
+
+typedef struct FemMeshQuality {
+  double volume;                 // [m³]
+  double box_min[3], box_max[3]; // [m]
+  double min_dihedral_degrees, max_dihedral_degrees;
+  int min_dihedral_tet;
+  double min_det; // smallest 6 V / (longest edge)³; √2/2·… of a regular one is 0.707
+  int min_det_tet;
+  double min_edge, mean_edge, max_edge; // [m]
+  int surface_triangle_count;
+  int component_count; // connected parts
+} FemMeshQuality;
+
+Status fem_mesh_quality(const FemMesh *mesh, FemMeshQuality *quality);
+
+// Boundary triangles, outward oriented; `*triangles` is owned by the caller (memory_free).
+Status fem_mesh_surface(const FemMesh *mesh, int (**triangles)[3], int *triangle_count);
+
+// A box [0, size] cut into nx × ny × nz cubes of six (Kuhn) tetrahedra each; used by `mesh: {box: …}` and
+// tests.
+Status fem_mesh_box(FemMesh *mesh, const double size[3], const int cells[3]);
+
+#endif

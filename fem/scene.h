@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene as its file says it: the definition from which a model is built. Plain data with defaults; reading
+// the file is app/scene_read.c. Strings and arrays are owned by the scene.
+#ifndef TETLAP_FEM_SCENE_H
+#define TETLAP_FEM_SCENE_H
+
+#include <stdbool.h>
+
+#include "contact/system.h"
+#include "fem/material.h"
+#include "fem/mesh.h"
+
+// A place in the scene file, for messages; line 0: not from a file.
+typedef struct FemScenePlace {
+  int line, column;
+} FemScenePlace;
+
+// Which vertices: exactly one way.
+typedef enum FemSelectKind {
+  FEM_SELECT_ALL,
+  FEM_SELECT_BOX,       // inside box_min … box_max, faces included
+  FEM_SELECT_HALFSPACE, // normal·(x − point) ≤ 0
+  FEM_SELECT_GROUP,     // a named group of the mesh
+} FemSelectKind;
+
+typedef struct FemSelectDef {
+  FemSelectKind kind;
+  double box_min[3], box_max[3]; // [m], in the scene, at rest
+  double point[3], normal[3];
+  char *group;
+  FemScenePlace place;
+} FemSelectDef;
+
+// Fixed (all motion zero) or driven vertices. A driven vertex moves with the displacement
+// d(t) = velocity·t + amplitude·sin(2π frequency t), or along a table of (time, displacement), until `until`,
+// where it stops; and turns about `axis` through `centre` by spin·t [rad].
+typedef struct FemConstraintDef {
+  FemSelectDef select;
+  bool components[3];  // which of x, y, z are prescribed
+  double velocity[3];  // [m/s]
+  double amplitude[3]; // [m]
+  double frequency;    // [Hz]
+  double spin;         // [rad/s]
+  double axis[3], centre[3];
+  double *table; // time [s], displacement [m]    (table_count, 4), times increasing
+  int table_count;
+  double until; // [s]; INFINITY: for ever
+} FemConstraintDef;
+
+typedef struct FemBodyDef {
+  char *name;
+  char *mesh_path;    // as written, relative to the scene file; NULL: a box
+  double box_size[3]; // [m]
+  int box_cells[3];
+  FemMeshOptions mesh_options;
+  FemPlacement placement;
+  FemMaterial material;
+  double velocity[3];      // initial [m/s]
+  double spin[3];          // initial angular velocity about the centre of mass [rad/s]
+  FemConstraintDef *fixed; //                                 (fixed_count)
+  int fixed_count;
+  FemConstraintDef *driven; //                                (driven_count)
+  int driven_count;
+  FemScenePlace place;
+} FemBodyDef;
+
+// An obstacle carries no unknowns: a half-space, or a mesh that stands still or moves.
+typedef struct FemObstacleDef {
+  char *name;
+  bool is_halfspace;
+  double point[3], normal[3]; // half-space; the normal points out of the solid
+  char *mesh_path;            // else a mesh, or a box as in FemBodyDef
+  double box_size[3];
+  int box_cells[3];
+  FemMeshOptions mesh_options;
+  FemPlacement placement;
+  FemConstraintDef motion; // selection ignored; a half-space takes `velocity` only
+  FemScenePlace place;
+} FemObstacleDef;
+
+typedef struct FemContactDef {
+  bool is_on;
+  double stiffness; // κ; 0: chosen (the softest body's Young's modulus; `body`: that over its volume²…)
+  ContactPotential potential;
+  char *overlap; // name of the overlap model
+  double margin; // [m]; 0: chosen
+  bool use_full_hessian;
+} FemContactDef;
+
+typedef enum FemSolverKind {
+  FEM_SOLVER_AUTO,
+  FEM_SOLVER_CHOLMOD, // condensed, supernodal
+  FEM_SOLVER_KLU,     // full 2n system, to compare
+  FEM_SOLVER_PCG,     // condensed, block Jacobi
+} FemSolverKind;
+
+typedef struct FemSceneDef {
+  char *path; // of the scene file
+  char *title;
+  FemBodyDef *bodies; // (body_count)
+  int body_count;
+  FemObstacleDef *obstacles; // (obstacle_count)
+  int obstacle_count;
+  // effects
+  bool has_gravity;
+  double gravity[3];        // [m/s²]
+  double stiffness_damping; // β [s] of every body whose material gives none
+  FemContactDef contact;
+  // time
+  double end;                              // [s]
+  double tolerance;                        // error per step, as a share of the smallest body's size
+  double velocity_tolerance;               // [m/s]; 0: chosen
+  double max_step, initial_step, min_step; // [s]; 0: chosen
+  int max_order;                           // 1 or 2
+  // solver
+  FemSolverKind solver;
+  double solver_tolerance; // of PCG, relative
+  int threads;             // 0: all
+  // output
+  int frames; // written at i · end/frames, i = 0 … frames
+  bool write_vtu;
+  bool write_history;
+} FemSceneDef;
+
+// Frees everything that the scene owns and zeroes it.
+void fem_scene_destroy(FemSceneDef *scene);
+
+#endif

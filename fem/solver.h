@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Linear solvers behind one table. The condensed system S = K + c D + c² M is symmetric; a solver that works
+// on the full 2n system [c I, −I; K, c M + D] takes K and D apart (klu, to compare).
+#ifndef TETLAP_FEM_SOLVER_H
+#define TETLAP_FEM_SOLVER_H
+
+#include "fem/matrix.h"
+#include "fem/scene.h"
+
+typedef struct FemSolverStats {
+  long long analyses, factorisations, failed_factorisations, solves, iterations;
+  double analyse_s, factorise_s, solve_s; // wall [s]
+  double factor_entries;
+} FemSolverStats;
+
+typedef struct FemSolverOps {
+  const char *name;
+  const char *help;
+  bool is_condensed; // factorise is given S; else K and D
+  Status (*create)(void **self, int threads, double tolerance);
+  // The pattern is new (or has grown).
+  Status (*analyse)(void *self, const FemMatrix *pattern);
+  // RETRY: not positive definite or singular. Condensed: `damping` NULL, `mass` NULL.
+  Status (*factorise)(void *self, const FemMatrix *stiffness, const FemMatrix *damping,
+                      const double *mass_of_unknown, double c);
+  // Condensed: solves S x = b, size n. Full: size 2n.
+  Status (*solve)(void *self, const double *b, double *x);
+  void (*destroy)(void *self);
+  const FemSolverStats *(*stats)(const void *self);
+} FemSolverOps;
+
+extern const FemSolverOps fem_solver_cholmod;
+extern const FemSolverOps fem_solver_klu;
+extern const FemSolverOps fem_solver_pcg;
+
+const char *fem_solver_name(FemSolverKind kind); // "auto", "cholmod", "klu", "pcg"
+const char *fem_solver_help(FemSolverKind kind);
+const FemSolverOps *fem_solver_ops(FemSolverKind kind); // not for FEM_SOLVER_AUTO
+
+#endif

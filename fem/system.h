@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The mechanical system of a run: model + the effects that its scene calls for. Evaluates forces, the
+// condensed or split Jacobian, energies; owns the matrix pattern.
+#ifndef TETLAP_FEM_SYSTEM_H
+#define TETLAP_FEM_SYSTEM_H
+
+#include "fem/effect.h"
+#include "fem/model.h"
+
+enum { FEM_MAX_EFFECTS = 32 };
+
+// Wall time and calls of one effect.
+typedef struct FemEffectCost {
+  double force_s, jacobian_s, prepare_s;
+  long long force_calls, jacobian_calls;
+} FemEffectCost;
+
+typedef struct FemSystem {
+  const FemModel *model; // borrowed
+  FemEffect effects[FEM_MAX_EFFECTS];
+  FemEffectCost costs[FEM_MAX_EFFECTS];
+  int effect_count;
+  FemPattern *pattern;
+  FemMatrix matrix;                        // S, or K for split use
+  long long pattern_version;               // grows whenever matrix has been laid out anew
+  double *positions, *velocities, *forces; // scratch, all vertices   (vertex_count, 3)
+} FemSystem;
+
+Status fem_system_create(FemSystem *system, const FemModel *model);
+void fem_system_destroy(FemSystem *system);
+
+// Unknowns (displacement u = x − X, velocity v; size n each) to full arrays in system->positions, velocities.
+void fem_system_scatter(FemSystem *system, double time, const double *u, const double *v);
+
+// Forces on all vertices into system->forces at the scattered state. RETRY as the effects say.
+Status fem_system_forces(FemSystem *system, double time);
+
+// matrix = k·K + d·D + m·M at the scattered state; lays the pattern out anew first if an effect has new
+// couplings.
+Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix);
+
+// After an accepted step (scatters it itself): lets effects renew what they keep.
+Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step);
+
+Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy); // at the scattered state
+// Smallest onset function of all effects; +INFINITY if there is none.
+Status fem_system_gap(FemSystem *system, double time, double *gap);
+bool fem_system_has_gap(const FemSystem *system);
+
+// Power of the forces that move prescribed coordinates [W]: Σ (m a − f)·v; for driven vertices' work.
+double fem_system_drive_power(const FemSystem *system, double time);
+
+// The effect of that name, NULL if the scene has none.
+void *fem_system_effect(const FemSystem *system, const char *name);
+
+#endif

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every test program shares: how a suite is run, a comparison that NaN fails, a Status that must be ok.
+#ifndef TETLAP_TESTS_SUITE_H
+#define TETLAP_TESTS_SUITE_H
+
+#include <check.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/status.h"
+
+#define ck_assert_ok(call)                                                                                   \
+  do {                                                                                                       \
+    Status ck_status_ = (call);                                                                              \
+    ck_assert_msg(ck_status_ == STATUS_OK, "%s: %d: %s", #call, (int)ck_status_, status_message());          \
+  } while (0)
+
+// |a − b| ≤ tolerance; NaN fails.
+#define ck_assert_near(a, b, tolerance)                                                                      \
+  do {                                                                                                       \
+    double ck_a_ = (a), ck_b_ = (b), ck_t_ = (tolerance);                                                    \
+    ck_assert_msg(fabs(ck_a_ - ck_b_) <= ck_t_, "%s = %.17g, %s = %.17g, differ by %.3g > %.3g", #a, ck_a_,  \
+                  #b, ck_b_, fabs(ck_a_ - ck_b_), ck_t_);                                                    \
+  } while (0)
+
+// Runs one test case under its name; to be returned from main.
+static inline int suite_run(const char *name, TCase *test_case, double timeout_s) {
+  Suite *suite = suite_create(name);
+  tcase_set_timeout(test_case, timeout_s);
+  suite_add_tcase(suite, test_case);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+#endif
