@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One frame of a run as a VTK XML unstructured grid (.vtu): appended raw data, zlib-compressed in blocks,
+// readable by ParaView and vtkXMLUnstructuredGridReader. The format is that of "VTK XML Formats" in the VTK
+// documentation; zlib is included by vtu.c only.
+#ifndef TETLAP_FEM_VTU_H
+#define TETLAP_FEM_VTU_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+
+// One named array over the vertices or the tetrahedra; exactly one of `reals` and `integers` is given.
+// Borrowed.
+typedef struct FemVtuArray {
+  const char *name;    // as ParaView will show it
+  bool is_cell;        // one tuple a tetrahedron, else one a vertex
+  int components;      // 1; 3: x, y, z; 6: a symmetric tensor xx, yy, zz, xy, yz, xz; 9: row-major
+  const double *reals; // written as Float64    (vertex_count or tet_count, components)
+  const int *integers; // written as Int32      (vertex_count or tet_count, components)
+} FemVtuArray;
+
+typedef struct FemVtuFrame {
+  double time; // [s]; the field TimeValue
+  int vertex_count;
+  const double *positions; // current [m]          (vertex_count, 3)
+  int tet_count;
+  const int (*tets)[4];      //                      (tet_count)
+  const FemVtuArray *arrays; //                      (array_count)
+  int array_count;
+} FemVtuFrame;
+
+// Writes the frame whole or not at all. STATUS_IO names the path and the system's reason; STATUS_MEMORY.
+// Blocks are compressed in parallel; the bytes do not depend on the number of threads.
+Status fem_vtu_write(const char *path, const FemVtuFrame *frame);
+
+#endif
