@@ -18,10 +18,12 @@ typedef struct FemState {
   const double *velocities; // [m/s]   (vertex_count, 3)
 } FemState;
 
-// Energies by kind; what each effect adds to [J], powers [W].
+// Energies by kind [J] and powers [W]; each effect adds its own.
 typedef struct FemEnergy {
-  double kinetic, elastic, gravity, contact;
+  double kinetic; // of the unknown coordinates
+  double elastic, gravity, contact;
   double dissipated_power; // ≥ 0
+  double driven_power;     // of whatever moves prescribed coordinates and obstacles
 } FemEnergy;
 
 typedef struct FemEffectOps {

@@ -42,13 +42,11 @@ Status fem_system_assemble(FemSystem *system, double time, double k, double d, d
 // After an accepted step (scatters it itself): lets effects renew what they keep.
 Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step);
 
-Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy); // at the scattered state
+// Energies and powers at the scattered state; evaluates the forces too.
+Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy);
 // Smallest onset function of all effects; +INFINITY if there is none.
 Status fem_system_gap(FemSystem *system, double time, double *gap);
 bool fem_system_has_gap(const FemSystem *system);
-
-// Power of the forces that move prescribed coordinates [W]: Σ (m a − f)·v; for driven vertices' work.
-double fem_system_drive_power(const FemSystem *system, double time);
 
 // The effect of that name, NULL if the scene has none.
 void *fem_system_effect(const FemSystem *system, const char *name);
