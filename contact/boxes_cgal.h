@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which boxes of one sequence meet which of another: CGAL's box_intersection_d (hybrid of segment trees and
+// scanning, Zomorodian and Edelsbrunner 2002) as a C function. Time O(n log³ n + pairs), memory O(n + pairs).
+#ifndef TETLAP_CONTACT_BOXES_CGAL_H
+#define TETLAP_CONTACT_BOXES_CGAL_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+
+// A growing array of index pairs. A zeroed one is empty; set count to 0 to use its memory again.
+typedef struct ContactBoxPairs {
+  size_t count;
+  size_t capacity;
+  int (*pairs)[2]; // index into boxes_a, index into boxes_b; owned       (count)
+} ContactBoxPairs;
+
+// Appends every pair of a box of `a` and a box of `b` that have a point in common; the boxes are closed, so
+// touching counts. A box is { min x, min y, min z, max x, max y, max z }, finite, min ≤ max. Each pair comes
+// once, in no promised order. The arrays are read only during the call; safe to call from several threads
+// with different outputs. STATUS_MEMORY: `out` holds no part of this call's pairs.
+Status contact_boxes_intersect(const double (*boxes_a)[6], int count_a, const double (*boxes_b)[6],
+                               int count_b, ContactBoxPairs *out);
+
+void contact_boxes_destroy(ContactBoxPairs *pairs);
+
+#endif
