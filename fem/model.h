@@ -5,6 +5,7 @@
 #define TETLAP_FEM_MODEL_H
 
 #include "contact/system.h"
+#include "fem/colouring.h"
 #include "fem/element.h"
 #include "fem/scene.h"
 
@@ -18,20 +19,13 @@ typedef struct FemModelBody {
   bool is_obstacle;
 } FemModelBody;
 
-// Vertices whose motion is prescribed, by one constraint.
+// Coordinates whose motion is prescribed by one constraint.
 typedef struct FemModelDriver {
-  const FemConstraintDef *def; // borrowed from the scene; fixed ones have zero motion
+  const FemConstraintDef *def; // borrowed from the scene
+  bool is_fixed;               // no motion at all
   int *dofs;                   // 3·vertex + component   (dof_count)
   int dof_count;
 } FemModelDriver;
-
-// Tetrahedra in groups within which no two share a vertex: a group's contributions can be added in parallel,
-// and the order of summation does not depend on the number of threads.
-typedef struct FemColouring {
-  int colour_count;
-  int *begin; // of each colour in `tets`        (colour_count + 1)
-  int *tets;  // elastic tetrahedra by colour
-} FemColouring;
 
 typedef struct FemModel {
   const FemSceneDef *scene;                // borrowed
@@ -48,9 +42,9 @@ typedef struct FemModel {
   int *dof_of_unknown;                     //                                           (unknown_count)
   FemModelDriver *drivers;                 //                                           (driver_count)
   int driver_count;
-  FemColouring colouring;
-  double length; // the smallest body's bounding box diagonal [m]
-  double edge;   // the smallest mean edge of a body [m]
+  FemColouring colouring; // of the tetrahedra of bodies, which come first
+  double length;          // the smallest body's bounding box diagonal [m]
+  double edge;            // the smallest mean edge of a body [m]
 } FemModel;
 
 // Reads the meshes (relative to the scene file), places, checks and numbers. STATUS_INPUT names the body and
@@ -61,6 +55,14 @@ void fem_model_destroy(FemModel *model);
 
 // Positions and velocities of all prescribed coordinates at time t; the others are left alone.
 void fem_model_drive(const FemModel *model, double time, double *positions, double *velocities);
+
+// κ as the scene says, or as chosen for it: the softest body's Young's modulus E; for the `body` potential E
+// over the smallest mean element volume, which gives a comparable pressure.
+double fem_model_contact_stiffness(const FemModel *model);
+
+// Error per step of a velocity [m/s]: the scene's, or its tolerance times the slowest body's wave speed
+// √(E/ρ).
+double fem_model_velocity_tolerance(const FemModel *model);
 
 // The memory that a run of this model will take, roughly [bytes].
 double fem_model_memory_estimate(const FemModel *model);

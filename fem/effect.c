@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/effect.h"
+
+// One line an effect; forces are summed in this order.
+static const FemEffectOps *const effects[] = {
+    &fem_effect_elasticity,
+    &fem_effect_damping,
+    &fem_effect_gravity,
+    &fem_effect_contact,
+};
+
+const FemEffectOps *const *fem_effect_list(int *count) {
+  *count = (int)(sizeof effects / sizeof *effects);
+  return effects;
+}
