@@ -31,12 +31,13 @@ typedef struct FemEffectOps {
   const char *help; // one line
   bool (*is_wanted)(const FemSceneDef *scene);
   Status (*create)(void **self, const FemModel *model);
-  // Tells the matrix pattern which vertices this effect couples. NULL: none (or only a vertex with itself).
-  Status (*couple)(void *self, FemPattern *pattern);
+  // Tells the matrix pattern which vertices this effect couples at that state; *has_grown (may be NULL) as in
+  // matrix.h. Called once, and before every assembly for effects that have `prepare`. NULL: none, or only a
+  // vertex with itself.
+  Status (*couple)(void *self, const FemState *state, FemPattern *pattern, int *has_grown);
   // After creation and after every accepted step; `step` [s] is the length expected next. The only place
-  // where an effect may change what it keeps. Sets *has_new_coupling where couple would say more than before.
-  // NULL: nothing.
-  Status (*prepare)(void *self, const FemState *state, double step, bool *has_new_coupling);
+  // where an effect may change what it keeps. NULL: nothing to keep.
+  Status (*prepare)(void *self, const FemState *state, double step);
   // Adds forces [N] to `force` (vertex_count, 3). RETRY: take a smaller step.
   Status (*add_force)(void *self, const FemState *state, double *force);
   // Adds stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, to the matrix. NULL: none.

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contact by overlap volumes, as an effect: hands positions to contact/system.h, and its stiffness to the
+// matrix.
+#include "fem/effect_contact.h"
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect.h"
+
+typedef struct Contact {
+  const FemModel *model; // borrowed
+  ContactOverlapModel overlap;
+  ContactBody *bodies;          // (model->body_count)
+  ContactHalfspace *halfspaces; // (halfspace_count)
+  int halfspace_count;
+  ContactSystem *system;
+  double reach; // pairs closer than this are laid out in the matrix ahead [m]
+} Contact;
+
+// A pair this close, as a share of the mean edge, is expected to touch soon.
+static const double COUPLING_REACH = 0.1;
+
+static bool is_wanted(const FemSceneDef *scene) {
+  return scene->contact.is_on;
+}
+
+static void destroy(void *self) {
+  Contact *contact = self;
+  contact_system_destroy(contact->system);
+  contact_overlap_destroy(&contact->overlap);
+  memory_free(contact->bodies);
+  memory_free(contact->halfspaces);
+  memory_free(contact);
+}
+
+static void list_sides(Contact *contact) {
+  const FemModel *model = contact->model;
+  for (int b = 0; b < model->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    contact->bodies[b] = (ContactBody){.name = body->name,
+                                       .vertex_begin = body->vertex_begin,
+                                       .vertex_end = body->vertex_end,
+                                       .tet_begin = body->tet_begin,
+                                       .tet_end = body->tet_end,
+                                       .is_obstacle = body->is_obstacle};
+  }
+  for (int o = 0; o < model->scene->obstacle_count; o++) {
+    const FemObstacleDef *def = &model->scene->obstacles[o];
+    if (!def->is_halfspace) continue;
+    ContactHalfspace *halfspace = &contact->halfspaces[contact->halfspace_count++];
+    halfspace->name = def->name;
+    vec3_store(halfspace->point, vec3_at(def->point));
+    Vec3 normal = vec3_at(def->normal);
+    vec3_store(halfspace->normal, vec3_scale(1 / vec3_length(normal), normal));
+    vec3_store(halfspace->velocity, vec3_at(def->motion.velocity));
+  }
+}
+
+static Status build(Contact *contact) {
+  const FemModel *model = contact->model;
+  const FemContactDef *def = &model->scene->contact;
+  TRY(contact_overlap_create(&contact->overlap, def->overlap));
+  contact->bodies = memory_zeroed((size_t)model->body_count, sizeof *contact->bodies);
+  contact->halfspaces = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->halfspaces);
+  if (!contact->bodies || !contact->halfspaces) return status_no_memory("the contact bodies");
+  list_sides(contact);
+  ContactSystemDef system = {.vertex_count = model->vertex_count,
+                             .rest = model->rest,
+                             .tets = (const int(*)[4])model->tets,
+                             .tet_count = model->tet_count,
+                             .bodies = contact->bodies,
+                             .body_count = model->body_count,
+                             .halfspaces = contact->halfspaces,
+                             .halfspace_count = contact->halfspace_count,
+                             .potential = def->potential,
+                             .stiffness = fem_model_contact_stiffness(model),
+                             .margin = def->margin,
+                             .use_full_hessian = def->use_full_hessian,
+                             .model = &contact->overlap};
+  return contact_system_create(&contact->system, &system);
+}
+
+static Status create(void **self, const FemModel *model) {
+  Contact *contact = memory_zeroed(1, sizeof *contact);
+  if (!contact) return status_no_memory("contact");
+  contact->model = model;
+  contact->reach = COUPLING_REACH * model->edge;
+  Status status = build(contact);
+  if (status)
+    destroy(contact);
+  else
+    *self = contact;
+  return status;
+}
+
+static Status prepare(void *self, const FemState *state, double step) {
+  Contact *contact = self;
+  return contact_system_update(contact->system, state->time, state->positions, state->velocities, step, NULL);
+}
+
+typedef struct Coupling {
+  FemPattern *pattern;
+  int *has_grown;
+} Coupling;
+
+static Status add_clique(void *visitor, int count, const int *vertices) {
+  Coupling *coupling = visitor;
+  return fem_pattern_add_clique(coupling->pattern, count, vertices, coupling->has_grown);
+}
+
+static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
+  Contact *contact = self;
+  double energy;
+  TRY(contact_system_eval(contact->system, state->time, state->positions, &energy, NULL));
+  Coupling coupling = {.pattern = pattern, .has_grown = has_grown};
+  return contact_system_couple(contact->system, contact->reach, &coupling, add_clique);
+}
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  Contact *contact = self;
+  double energy;
+  return contact_system_eval(contact->system, state->time, state->positions, &energy, force);
+}
+
+typedef struct MatrixSink {
+  FemMatrix *matrix;
+  double scale;
+} MatrixSink;
+
+static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
+  MatrixSink *sink = self;
+  fem_matrix_add_outer(sink->matrix, count, vertices, w, sink->scale * scale);
+}
+
+static void add_dense(void *self, int count, const int *vertices, const double *matrix) {
+  MatrixSink *sink = self;
+  fem_matrix_add(sink->matrix, count, vertices, matrix, sink->scale);
+}
+
+static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                           FemMatrix *matrix) {
+  (void)damping_scale; // contact does not damp
+  Contact *contact = self;
+  if (stiffness_scale == 0) return STATUS_OK;
+  MatrixSink sink = {.matrix = matrix, .scale = stiffness_scale};
+  return contact_system_stiffness(
+      contact->system, state->time, state->positions,
+      &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer, .add_dense = add_dense});
+}
+
+// The power that a moving half-space puts in is the force on the body times its velocity; mesh obstacles are
+// prescribed coordinates, which the system counts.
+static double halfspace_power(const Contact *contact) {
+  int count;
+  const ContactInterface *interfaces = contact_system_interfaces(contact->system, &count);
+  double power = 0;
+  for (int i = 0; i < count; i++) {
+    int halfspace = interfaces[i].b - contact->model->body_count;
+    if (halfspace < 0) continue;
+    power += vec3_dot(vec3_at(interfaces[i].force), vec3_at(contact->halfspaces[halfspace].velocity));
+  }
+  return power;
+}
+
+static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
+  Contact *contact = self;
+  double contact_energy;
+  TRY(contact_system_eval(contact->system, state->time, state->positions, &contact_energy, NULL));
+  energy->contact += contact_energy;
+  energy->driven_power += halfspace_power(contact);
+  return STATUS_OK;
+}
+
+static Status gap(void *self, const FemState *state, double *smallest) {
+  Contact *contact = self;
+  return contact_system_gap(contact->system, state->time, state->positions, smallest);
+}
+
+static void report(void *self, Record *counters) {
+  Contact *contact = self;
+  const ContactCounters *count = contact_system_counters(contact->system);
+  record_integer(counters, "contact_evaluations", count->evaluations);
+  record_integer(counters, "contact_pairs", count->pairs);
+  record_integer(counters, "contact_searches", count->searches);
+  record_integer(counters, "enclosed_pairs", count->enclosed);
+  record_integer(counters, "overlap_fallbacks", count->fallbacks);
+  record_integer(counters, "beyond_margin", count->beyond_margin);
+}
+
+const FemEffectOps fem_effect_contact = {
+    .name = "contact",
+    .help = "bodies and obstacles that overlap are pushed apart by a penalty on the overlap volume",
+    .is_wanted = is_wanted,
+    .create = create,
+    .couple = couple,
+    .prepare = prepare,
+    .add_force = add_force,
+    .add_jacobian = add_jacobian,
+    .add_energy = add_energy,
+    .gap = gap,
+    .report = report,
+    .destroy = destroy,
+};
+
+ContactSystem *fem_effect_contact_system(void *effect) {
+  return ((Contact *)effect)->system;
+}
+
+const char *fem_effect_contact_name(const void *effect, int number) {
+  const Contact *contact = effect;
+  int bodies = contact->model->body_count;
+  return number < bodies ? contact->bodies[number].name : contact->halfspaces[number - bodies].name;
+}

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/system.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+
+static FemState state_of(const FemSystem *system, double time) {
+  return (FemState){.time = time, .positions = system->positions, .velocities = system->velocities};
+}
+
+static Status create_effects(FemSystem *system) {
+  int count;
+  const FemEffectOps *const *list = fem_effect_list(&count);
+  for (int i = 0; i < count; i++) {
+    if (!list[i]->is_wanted(system->model->scene)) continue;
+    FemEffect *effect = &system->effects[system->effect_count];
+    effect->ops = list[i];
+    Status status = list[i]->create(&effect->self, system->model);
+    if (status) return status_prefix(status, "effect '%s'", list[i]->name);
+    system->effect_count++;
+  }
+  return STATUS_OK;
+}
+
+// Every unknown couples at least with those of its own vertex.
+static Status couple_vertices(FemSystem *system) {
+  for (int a = 0; a < system->model->vertex_count; a++)
+    TRY(fem_pattern_add_clique(system->pattern, 1, &a, NULL));
+  return STATUS_OK;
+}
+
+// Lets effects tell their couplings: all of them, or only those that may have changed.
+static Status couple_effects(FemSystem *system, double time, bool only_changing, int *has_grown) {
+  FemState state = state_of(system, time);
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffectOps *ops = system->effects[i].ops;
+    if (!ops->couple || (only_changing && !ops->prepare)) continue;
+    TRY(ops->couple(system->effects[i].self, &state, system->pattern, has_grown));
+  }
+  return STATUS_OK;
+}
+
+static Status lay_out(FemSystem *system) {
+  fem_matrix_destroy(&system->matrix);
+  TRY(fem_matrix_create(&system->matrix, system->pattern, system->model->unknown_of_dof));
+  system->pattern_version++;
+  return STATUS_OK;
+}
+
+static Status create(FemSystem *system) {
+  size_t values = 3 * (size_t)system->model->vertex_count;
+  system->positions = memory_copy(system->model->rest, values, sizeof *system->positions);
+  system->velocities = memory_copy(system->model->initial_velocity, values, sizeof *system->velocities);
+  system->forces = memory_zeroed(values, sizeof *system->forces);
+  if (!system->positions || !system->velocities || !system->forces) return status_no_memory("the state");
+  fem_model_drive(system->model, 0, system->positions, system->velocities);
+  TRY(create_effects(system));
+  TRY(fem_pattern_create(&system->pattern, system->model->vertex_count));
+  TRY(couple_vertices(system));
+  FemState state = state_of(system, 0);
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops->prepare)
+      TRY(system->effects[i].ops->prepare(system->effects[i].self, &state, 0));
+  TRY(couple_effects(system, 0, false, NULL));
+  return lay_out(system);
+}
+
+Status fem_system_create(FemSystem *system, const FemModel *model) {
+  *system = (FemSystem){.model = model};
+  if (model->unknown_count == 0)
+    return status_fail(STATUS_INPUT,
+                       "every vertex is fixed or driven: nothing is left to solve; free some vertices");
+  Status status = create(system);
+  if (status) fem_system_destroy(system);
+  return status;
+}
+
+void fem_system_destroy(FemSystem *system) {
+  for (int i = 0; i < system->effect_count; i++) system->effects[i].ops->destroy(system->effects[i].self);
+  fem_matrix_destroy(&system->matrix);
+  fem_pattern_destroy(system->pattern);
+  memory_free(system->positions);
+  memory_free(system->velocities);
+  memory_free(system->forces);
+  *system = (FemSystem){0};
+}
+
+void fem_system_scatter(FemSystem *system, double time, const double *u, const double *v) {
+  const FemModel *model = system->model;
+  for (int i = 0; i < model->unknown_count; i++) {
+    int dof = model->dof_of_unknown[i];
+    system->positions[dof] = model->rest[dof] + u[i];
+    system->velocities[dof] = v[i];
+  }
+  fem_model_drive(model, time, system->positions, system->velocities);
+}
+
+Status fem_system_forces(FemSystem *system, double time) {
+  memset(system->forces, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->forces);
+  FemState state = state_of(system, time);
+  for (int i = 0; i < system->effect_count; i++) {
+    double began = clock_wall_s();
+    TRY(system->effects[i].ops->add_force(system->effects[i].self, &state, system->forces));
+    system->costs[i].force_s += clock_wall_s() - began;
+    system->costs[i].force_calls++;
+  }
+  return STATUS_OK;
+}
+
+Status fem_system_couple(FemSystem *system, double time) {
+  int has_grown = 0;
+  TRY(couple_effects(system, time, true, &has_grown));
+  return has_grown ? lay_out(system) : STATUS_OK;
+}
+
+Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix) {
+  fem_matrix_zero(matrix);
+  FemState state = state_of(system, time);
+  for (int i = 0; i < system->effect_count; i++) {
+    if (!system->effects[i].ops->add_jacobian) continue;
+    double began = clock_wall_s();
+    TRY(system->effects[i].ops->add_jacobian(system->effects[i].self, &state, k, d, matrix));
+    system->costs[i].jacobian_s += clock_wall_s() - began;
+    system->costs[i].jacobian_calls++;
+  }
+  if (m != 0) fem_matrix_add_mass(matrix, system->model->mass, m);
+  return STATUS_OK;
+}
+
+Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
+  fem_system_scatter(system, time, u, v);
+  FemState state = state_of(system, time);
+  for (int i = 0; i < system->effect_count; i++) {
+    if (!system->effects[i].ops->prepare) continue;
+    double began = clock_wall_s();
+    TRY(system->effects[i].ops->prepare(system->effects[i].self, &state, next_step));
+    system->costs[i].prepare_s += clock_wall_s() - began;
+  }
+  return STATUS_OK;
+}
+
+static double kinetic_energy(const FemSystem *system) {
+  const FemModel *model = system->model;
+  double sum = 0;
+  for (int i = 0; i < model->unknown_count; i++) {
+    int dof = model->dof_of_unknown[i];
+    sum += 0.5 * model->mass[dof / 3] * system->velocities[dof] * system->velocities[dof];
+  }
+  return sum;
+}
+
+// Whoever moves a prescribed coordinate gives it minus the force that acts on it.
+static double driven_power(const FemSystem *system) {
+  const FemModel *model = system->model;
+  double sum = 0;
+  for (int d = 0; d < model->driver_count; d++) {
+    const FemModelDriver *driver = &model->drivers[d];
+    if (driver->is_fixed) continue;
+    for (int i = 0; i < driver->dof_count; i++)
+      sum -= system->forces[driver->dofs[i]] * system->velocities[driver->dofs[i]];
+  }
+  return sum;
+}
+
+Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
+  TRY(fem_system_forces(system, time));
+  *energy = (FemEnergy){.kinetic = kinetic_energy(system), .driven_power = driven_power(system)};
+  FemState state = state_of(system, time);
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops->add_energy)
+      TRY(system->effects[i].ops->add_energy(system->effects[i].self, &state, energy));
+  return STATUS_OK;
+}
+
+Status fem_system_gap(FemSystem *system, double time, double *gap) {
+  *gap = INFINITY;
+  FemState state = state_of(system, time);
+  for (int i = 0; i < system->effect_count; i++) {
+    if (!system->effects[i].ops->gap) continue;
+    double one;
+    TRY(system->effects[i].ops->gap(system->effects[i].self, &state, &one));
+    *gap = fmin(*gap, one);
+  }
+  return STATUS_OK;
+}
+
+bool fem_system_has_gap(const FemSystem *system) {
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops->gap) return true;
+  return false;
+}
+
+void *fem_system_effect(const FemSystem *system, const char *name) {
+  for (int i = 0; i < system->effect_count; i++)
+    if (strcmp(system->effects[i].ops->name, name) == 0) return system->effects[i].self;
+  return NULL;
+}
