@@ -35,8 +35,11 @@ void fem_system_scatter(FemSystem *system, double time, const double *u, const d
 // Forces on all vertices into system->forces at the scattered state. RETRY as the effects say.
 Status fem_system_forces(FemSystem *system, double time);
 
-// matrix = k·K + d·D + m·M at the scattered state; lays the pattern out anew first if an effect has new
-// couplings.
+// Lays system->matrix out anew if an effect couples more at the scattered state than the pattern has; then
+// pattern_version has grown. Call it before assembling into system->matrix or a copy of its layout.
+Status fem_system_couple(FemSystem *system, double time);
+
+// matrix = k·K + d·D + m·M at the scattered state.
 Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix);
 
 // After an accepted step (scatters it itself): lets effects renew what they keep.
