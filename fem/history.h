@@ -3,16 +3,14 @@
 // back to the same double). The columns are the run's to name; docs/output.md lists them.
 //
 // The file is whole at every moment: lines are kept in memory and the file is replaced by a longer one, at
-// the first row, at most once in FEM_HISTORY_PERIOD_S after that, and at the end. A run that is killed
-// leaves whole lines and lacks the rows of the last period at most.
+// the first row, at most once a second after that, and when fem_history_write is called. A run that is
+// killed leaves whole lines and lacks the rows of the last second at most.
 #ifndef TETLAP_FEM_HISTORY_H
 #define TETLAP_FEM_HISTORY_H
 
 #include <stddef.h>
 
 #include "base/status.h"
-
-static const double FEM_HISTORY_PERIOD_S = 1; // wall time between two replacements [s]
 
 typedef struct FemHistory {
   char *path;    // owned

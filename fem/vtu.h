@@ -24,7 +24,7 @@ typedef struct FemVtuFrame {
   int vertex_count;
   const double *positions; // current [m]          (vertex_count, 3)
   int tet_count;
-  const int (*tets)[4];      //                      (tet_count)
+  const int *tets;           // vertices                (tet_count, 4)
   const FemVtuArray *arrays; //                      (array_count)
   int array_count;
 } FemVtuFrame;

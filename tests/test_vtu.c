@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// fem/vtu, fem/pvd: a frame is taken apart again by a small reader of the format's documentation, and every
+// byte of every array must be back.
+#include "suite.h"
+
+#include <omp.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/random.h"
+#include "fem/pvd.h"
+#include "fem/vtu.h"
+
+static char path[64];
+
+static void name_path(void) {
+  snprintf(path, sizeof path, "/tmp/tetlap_vtu_%ld.vtu", (long)getpid());
+}
+
+static void remove_path(void) {
+  unlink(path);
+}
+
+// ---- a reader -------------------------------------------------------------------------------------------
+
+// The DataArray element of that name, up to its closing bracket, and the value of one of its attributes.
+static const char *find_array(const char *text, const char *name) {
+  char key[128];
+  snprintf(key, sizeof key, " Name=\"%s\"", name);
+  const char *place = strstr(text, key);
+  ck_assert_msg(place != NULL, "the frame has no array %s", name);
+  while (*place != '<') place--;
+  return place;
+}
+
+static void copy_attribute(const char *element, const char *name, char value[64]) {
+  char key[64];
+  snprintf(key, sizeof key, " %s=\"", name);
+  const char *begin = strstr(element, key), *close = strchr(element, '>');
+  ck_assert_msg(begin && begin < close, "no attribute %s", name);
+  begin += strlen(key);
+  size_t length = strcspn(begin, "\"");
+  ck_assert_uint_lt(length, 64);
+  memcpy(value, begin, length);
+  value[length] = 0;
+}
+
+// The array's bytes, inflated block by block; owned by the caller.
+static unsigned char *read_array(const char *text, size_t size, const char *name, size_t *byte_count) {
+  char offset[64];
+  copy_attribute(find_array(text, name), "offset", offset);
+  const char *appended = strstr(text, "<AppendedData encoding=\"raw\">");
+  ck_assert_ptr_nonnull(appended);
+  const char *place = strchr(appended, '_') + 1 + strtoull(offset, NULL, 10);
+  uint64_t header[3];
+  memcpy(header, place, sizeof header);
+  const uint64_t block_count = header[0];
+  if (block_count) ck_assert_uint_eq(header[1], 32768);
+  uint64_t *lengths = memory_zeroed(block_count, sizeof *lengths);
+  memcpy(lengths, place + sizeof header, block_count * sizeof *lengths);
+  const char *block = place + (3 + block_count) * 8;
+  unsigned char *bytes = memory_zeroed(block_count + 1, 32768);
+  *byte_count = 0;
+  for (uint64_t k = 0; k < block_count; k++, block += lengths[k - 1]) {
+    uLongf length = 32768;
+    ck_assert(block + lengths[k] <= text + size);
+    ck_assert_int_eq(uncompress(bytes + *byte_count, &length, (const Bytef *)block, lengths[k]), Z_OK);
+    ck_assert_uint_eq(length, k + 1 < block_count || !header[2] ? 32768 : header[2]);
+    *byte_count += length;
+  }
+  memory_free(lengths);
+  return bytes;
+}
+
+static void assert_array(const char *name, const char *type, int components, const void *expected,
+                         size_t expected_bytes) {
+  char *text, value[64];
+  size_t size, byte_count;
+  ck_assert_ok(file_read(path, &text, &size));
+  const char *element = find_array(text, name);
+  copy_attribute(element, "type", value);
+  ck_assert_str_eq(value, type);
+  copy_attribute(element, "NumberOfComponents", value);
+  ck_assert_int_eq(atoi(value), components);
+  unsigned char *bytes = read_array(text, size, name, &byte_count);
+  ck_assert_uint_eq(byte_count, expected_bytes);
+  ck_assert_mem_eq(bytes, expected, expected_bytes);
+  memory_free(bytes);
+  memory_free(text);
+}
+
+// ---- frames ---------------------------------------------------------------------------------------------
+
+static const double corner[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+static const int one_tet[4] = {0, 1, 2, 3};
+
+static FemVtuFrame single_tetrahedron(void) {
+  return (FemVtuFrame){
+      .time = 0.1, .vertex_count = 4, .positions = corner[0], .tet_count = 1, .tets = one_tet};
+}
+
+// Random numbers in arrays of every kind, over many blocks.
+typedef struct Large {
+  int vertex_count, tet_count;
+  double *positions, *vectors, *stress;
+  int (*tets)[4], *body;
+  FemVtuArray arrays[3];
+  FemVtuFrame frame;
+} Large;
+
+static double *random_reals(Random *random, int count) {
+  double *reals = memory_zeroed((size_t)count, sizeof *reals);
+  for (int k = 0; k < count; k++) reals[k] = random_normal(random);
+  return reals;
+}
+
+static void create_large(Large *large, int vertex_count, int tet_count) {
+  Random random = random_seeded(11, 0);
+  *large = (Large){.vertex_count = vertex_count, .tet_count = tet_count};
+  large->positions = random_reals(&random, 3 * vertex_count);
+  large->vectors = random_reals(&random, 3 * vertex_count);
+  large->stress = random_reals(&random, 6 * tet_count);
+  large->tets = memory_zeroed((size_t)tet_count, sizeof *large->tets);
+  large->body = memory_zeroed((size_t)tet_count, sizeof *large->body);
+  for (int i = 0; i < tet_count; i++) {
+    for (int a = 0; a < 4; a++) large->tets[i][a] = random_below(&random, vertex_count);
+    large->body[i] = random_below(&random, 3);
+  }
+  large->arrays[0] = (FemVtuArray){"velocity", false, 3, large->vectors, NULL};
+  large->arrays[1] = (FemVtuArray){"stress", true, 6, large->stress, NULL};
+  large->arrays[2] = (FemVtuArray){"body", true, 1, NULL, large->body};
+  large->frame =
+      (FemVtuFrame){1, vertex_count, large->positions, tet_count, large->tets[0], large->arrays, 3};
+}
+
+static void destroy_large(Large *large) {
+  memory_free(large->positions), memory_free(large->vectors), memory_free(large->stress);
+  memory_free(large->tets), memory_free(large->body);
+}
+
+// ---- behaviour ------------------------------------------------------------------------------------------
+
+START_TEST(a_single_tetrahedron_reads_back) {
+  FemVtuFrame frame = single_tetrahedron();
+  ck_assert_ok(fem_vtu_write(path, &frame));
+  const int64_t end = 4;
+  const uint8_t tetra = 10;
+  assert_array("Points", "Float64", 3, corner, sizeof corner);
+  assert_array("connectivity", "Int32", 1, one_tet, sizeof one_tet);
+  assert_array("offsets", "Int64", 1, &end, sizeof end);
+  assert_array("types", "UInt8", 1, &tetra, sizeof tetra);
+}
+END_TEST
+
+START_TEST(the_time_stands_in_the_frame) {
+  FemVtuFrame frame = single_tetrahedron();
+  ck_assert_ok(fem_vtu_write(path, &frame));
+  char *text;
+  size_t size;
+  ck_assert_ok(file_read(path, &text, &size));
+  const char *value = strchr(find_array(text, "TimeValue"), '>') + 1;
+  ck_assert(strtod(value, NULL) == frame.time);
+  memory_free(text);
+}
+END_TEST
+
+START_TEST(arrays_of_many_blocks_read_back_bit_for_bit) {
+  Large large;
+  create_large(&large, 5000, 7001);
+  ck_assert_ok(fem_vtu_write(path, &large.frame));
+  const size_t vectors = 3 * 5000 * sizeof(double);
+  ck_assert_uint_gt(vectors, 3 * 32768);
+  assert_array("Points", "Float64", 3, large.positions, vectors);
+  assert_array("velocity", "Float64", 3, large.vectors, vectors);
+  assert_array("stress", "Float64", 6, large.stress, 6 * 7001 * sizeof(double));
+  assert_array("body", "Int32", 1, large.body, 7001 * sizeof(int));
+  assert_array("connectivity", "Int32", 1, large.tets, 4 * 7001 * sizeof(int));
+  destroy_large(&large);
+}
+END_TEST
+
+START_TEST(an_array_that_ends_with_a_block_reads_back) {
+  Large large;
+  create_large(&large, 4096, 4096); // scalars of 4096 doubles fill one block, integers half of one
+  const FemVtuArray exact[] = {{"full", false, 1, large.positions, NULL},
+                               {"half", true, 1, NULL, large.body}};
+  large.frame.arrays = exact, large.frame.array_count = 2;
+  ck_assert_ok(fem_vtu_write(path, &large.frame));
+  assert_array("full", "Float64", 1, large.positions, 32768);
+  assert_array("half", "Int32", 1, large.body, 16384);
+  destroy_large(&large);
+}
+END_TEST
+
+START_TEST(numbers_that_are_not_finite_survive) {
+  const double odd[4] = {NAN, INFINITY, -INFINITY, -0.0};
+  const FemVtuArray array = {"odd", false, 1, odd, NULL};
+  FemVtuFrame frame = single_tetrahedron();
+  frame.arrays = &array, frame.array_count = 1;
+  ck_assert_ok(fem_vtu_write(path, &frame));
+  assert_array("odd", "Float64", 1, odd, sizeof odd);
+}
+END_TEST
+
+START_TEST(components_have_their_names) {
+  const double nine[9] = {0};
+  const FemVtuArray arrays[] = {{"stress", true, 6, nine, NULL}, {"F", true, 9, nine, NULL}};
+  FemVtuFrame frame = single_tetrahedron();
+  frame.arrays = arrays, frame.array_count = 2;
+  ck_assert_ok(fem_vtu_write(path, &frame));
+  char *text, value[64];
+  size_t size;
+  ck_assert_ok(file_read(path, &text, &size));
+  const char *const symmetric[] = {"xx", "yy", "zz", "xy", "yz", "xz"};
+  for (int c = 0; c < 6; c++) {
+    char key[32];
+    snprintf(key, sizeof key, "ComponentName%d", c);
+    copy_attribute(find_array(text, "stress"), key, value);
+    ck_assert_str_eq(value, symmetric[c]);
+  }
+  copy_attribute(find_array(text, "F"), "ComponentName5", value);
+  ck_assert_str_eq(value, "yz");
+  memory_free(text);
+}
+END_TEST
+
+START_TEST(a_name_cannot_break_the_xml) {
+  const double four[4] = {1, 2, 3, 4};
+  const FemVtuArray array = {"a<b & \"c\">", false, 1, four, NULL};
+  FemVtuFrame frame = single_tetrahedron();
+  frame.arrays = &array, frame.array_count = 1;
+  ck_assert_ok(fem_vtu_write(path, &frame));
+  assert_array("a&lt;b &amp; &quot;c&quot;&gt;", "Float64", 1, four, sizeof four);
+}
+END_TEST
+
+START_TEST(the_bytes_do_not_depend_on_the_number_of_threads) {
+  Large large;
+  create_large(&large, 5000, 5000);
+  char *texts[2];
+  size_t sizes[2];
+  for (int k = 0; k < 2; k++) {
+    omp_set_num_threads(k ? 4 : 1);
+    ck_assert_ok(fem_vtu_write(path, &large.frame));
+    ck_assert_ok(file_read(path, &texts[k], &sizes[k]));
+  }
+  ck_assert_uint_eq(sizes[0], sizes[1]);
+  ck_assert_mem_eq(texts[0], texts[1], sizes[0]);
+  memory_free(texts[0]), memory_free(texts[1]);
+  destroy_large(&large);
+}
+END_TEST
+
+START_TEST(every_failed_allocation_is_an_error_that_leaves_the_old_frame) {
+  const double four[4] = {1, 2, 3, 4};
+  const FemVtuArray array = {"a", false, 1, four, NULL};
+  FemVtuFrame frame = single_tetrahedron(), later = frame;
+  ck_assert_ok(fem_vtu_write(path, &frame));
+  char *old;
+  size_t old_size;
+  ck_assert_ok(file_read(path, &old, &old_size));
+  later.arrays = &array, later.array_count = 1;
+  long k = 1;
+  for (Status status = STATUS_MEMORY; status; k++) {
+    memory_fail_at(k);
+    status = fem_vtu_write(path, &later);
+    memory_fail_at(0);
+    ck_assert(status == STATUS_OK || status == STATUS_MEMORY);
+    char *text;
+    size_t size;
+    ck_assert_ok(file_read(path, &text, &size));
+    if (status) {
+      ck_assert_uint_eq(size, old_size);
+      ck_assert_mem_eq(text, old, size);
+    } else
+      ck_assert_uint_gt(size, old_size);
+    memory_free(text);
+    ck_assert_int_lt(k, 1000);
+  }
+  ck_assert_int_gt(k, 10); // it did fail
+  memory_free(old);
+}
+END_TEST
+
+START_TEST(a_place_that_cannot_be_written_is_named) {
+  FemVtuFrame frame = single_tetrahedron();
+  ck_assert_int_eq(fem_vtu_write("/tmp/no_such_directory/frame.vtu", &frame), STATUS_IO);
+  ck_assert_ptr_nonnull(strstr(status_message(), "/tmp/no_such_directory/frame.vtu"));
+}
+END_TEST
+
+START_TEST(a_full_disk_is_an_error) {
+  // /dev/full accepts nothing: a file there under the name that file_begin chooses.
+  char temporary[96];
+  snprintf(temporary, sizeof temporary, "%s.%ld.part", path, (long)getpid());
+  ck_assert_int_eq(symlink("/dev/full", temporary), 0);
+  FemVtuFrame frame = single_tetrahedron();
+  ck_assert_int_eq(fem_vtu_write(path, &frame), STATUS_IO);
+  ck_assert_ptr_nonnull(strstr(status_message(), path));
+  ck_assert(!file_exists(path));
+  struct stat info;
+  ck_assert_int_ne(lstat(temporary, &info), 0); // nothing is left beside it
+}
+END_TEST
+
+START_TEST(the_list_of_frames_names_each_with_its_time) {
+  const double times[] = {0, 0.1, 1.0 / 3};
+  const char *const files[] = {"frames/0.vtu", "frames/1.vtu", "frames/a&b.vtu"};
+  ck_assert_ok(fem_pvd_write(path, times, files, 3));
+  char *text;
+  size_t size;
+  ck_assert_ok(file_read(path, &text, &size));
+  const char *place = text;
+  for (int k = 0; k < 3; k++) {
+    place = strstr(place, "<DataSet timestep=\"");
+    ck_assert_ptr_nonnull(place);
+    place += strlen("<DataSet timestep=\"");
+    ck_assert(strtod(place, NULL) == times[k]);
+  }
+  ck_assert_ptr_null(strstr(place, "<DataSet"));
+  ck_assert_ptr_nonnull(strstr(place, "file=\"frames/a&amp;b.vtu\""));
+  memory_free(text);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("vtu");
+  tcase_add_checked_fixture(cases, name_path, remove_path);
+  tcase_add_test(cases, a_single_tetrahedron_reads_back);
+  tcase_add_test(cases, the_time_stands_in_the_frame);
+  tcase_add_test(cases, arrays_of_many_blocks_read_back_bit_for_bit);
+  tcase_add_test(cases, an_array_that_ends_with_a_block_reads_back);
+  tcase_add_test(cases, numbers_that_are_not_finite_survive);
+  tcase_add_test(cases, components_have_their_names);
+  tcase_add_test(cases, a_name_cannot_break_the_xml);
+  tcase_add_test(cases, the_bytes_do_not_depend_on_the_number_of_threads);
+  tcase_add_test(cases, every_failed_allocation_is_an_error_that_leaves_the_old_frame);
+  tcase_add_test(cases, a_place_that_cannot_be_written_is_named);
+  tcase_add_test(cases, a_full_disk_is_an_error);
+  tcase_add_test(cases, the_list_of_frames_names_each_with_its_time);
+  return suite_run("vtu", cases, 30);
+}
