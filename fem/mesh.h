@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tetrahedral mesh in memory: positively oriented, every vertex used, every element of positive volume.
+// A tetrahedral mesh in memory: positively oriented, every vertex used, every element of positive volume, no
+// triangle with more than two tetrahedra. Whatever makes a FemMesh establishes this (fem/mesh_validate.h).
 #ifndef TETLAP_FEM_MESH_H
 #define TETLAP_FEM_MESH_H
 
@@ -39,28 +40,32 @@ FemPlacement fem_placement_identity(void);
 
 // Options of meshing surfaces (.stl, .geo) in place.
 typedef struct FemMeshOptions {
-  double size; // target edge length in the file's units; 0: gmsh's own choice
+  double size; // target edge length in the file's units; 0: a .stl keeps its triangles, a .geo its own sizes
 } FemMeshOptions;
 
 // Reads by the ending: .msh (2.2, 4.1; ascii, binary), .mesh (MEDIT), .vtk (legacy), .stl and .geo (meshed in
 // place by gmsh), .node/.ele (TetGen; either name). Repairs orientation and drops unused vertices.
+// Groups are the file's physical groups; one without a name is called point_7, curve_7, surface_7 or volume_7
+// by its number. A file that has no physical groups (MEDIT never has) gives its entities (MEDIT references)
+// under such names instead; TetGen's boundary markers become marker_7. A .stl has none.
+// STATUS_IO: no such file, or not readable.
 // STATUS_INPUT with file, element and what to do: not tetrahedral (other volume elements), zero volume,
 // non-manifold (a face with more than two tetrahedra), duplicate elements, indices out of range, not finite.
-// `repairs` may be NULL.
+// `options` and `repairs` may be NULL.
 Status fem_mesh_read(FemMesh *mesh, const char *path, const FemMeshOptions *options, FemMeshRepairs *repairs);
 
 // Takes copies of raw arrays (0-based), repairs and validates as above. `origin` names the source in
-// messages.
+// messages. `repairs` may be NULL.
 Status fem_mesh_from_arrays(FemMesh *mesh, const char *origin, int vertex_count, const double *positions,
                             int tet_count, const int *tets, FemMeshRepairs *repairs);
 
-// Applies a placement; a mirroring scale keeps orientation positive. STATUS_INPUT: a zero or non-finite
-// scale.
+// Applies a placement; a mirroring scale keeps orientation positive. Quarter turns are exact. STATUS_INPUT,
+// the mesh unchanged: a zero or non-finite scale, an angle about no axis, a result that is not finite.
 Status fem_mesh_place(FemMesh *mesh, const FemPlacement *placement);
 
 void fem_mesh_destroy(FemMesh *mesh);
 
-// Legacy-free writing for tests and tools: MEDIT .mesh.
+// For tests and tools: MEDIT .mesh, without groups.
 Status fem_mesh_write_medit(const FemMesh *mesh, const char *path);
 
 typedef struct FemMeshQuality {
@@ -68,11 +73,15 @@ typedef struct FemMeshQuality {
   double box_min[3], box_max[3]; // [m]
   double min_dihedral_degrees, max_dihedral_degrees;
   int min_dihedral_tet;
-  double min_det; // smallest 6 V / (longest edge)³; √2/2·… of a regular one is 0.707
+  double min_det; // smallest 6 V / (longest edge)³; of a regular tetrahedron √½ = 0.707
   int min_det_tet;
-  double min_edge, mean_edge, max_edge; // [m]
+  double min_edge, mean_edge, max_edge; // [m]; the mean over distinct edges
   int surface_triangle_count;
-  int component_count; // connected parts
+  double surface_area;         // [m²]
+  int component_count;         // parts that share no vertex
+  int pinch_edge_count;        // surface edges with more than two surface triangles
+  int pinch_vertex_count;      // vertices where the surface touches itself, on no pinch edge
+  int coincident_vertex_count; // vertices whose coordinates another, earlier one has exactly: an open seam
 } FemMeshQuality;
 
 Status fem_mesh_quality(const FemMesh *mesh, FemMeshQuality *quality);
@@ -81,7 +90,7 @@ Status fem_mesh_quality(const FemMesh *mesh, FemMeshQuality *quality);
 Status fem_mesh_surface(const FemMesh *mesh, int (**triangles)[3], int *triangle_count);
 
 // A box [0, size] cut into nx × ny × nz cubes of six (Kuhn) tetrahedra each; used by `mesh: {box: …}` and
-// tests.
+// tests. Its faces are the groups x_min, x_max, y_min, y_max, z_min, z_max.
 Status fem_mesh_box(FemMesh *mesh, const double size[3], const int cells[3]);
 
 #endif
