@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Names that people mistype: how far two words are apart, and which of the known ones was meant.
+#ifndef TETLAP_BASE_TEXT_H
+#define TETLAP_BASE_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { TEXT_MAX_WORD = 64 };
+
+// How many letters must be inserted, removed, replaced or swapped with their neighbour to turn a into b
+// (optimal string alignment; Damerau 1964), the case of letters ignored. TEXT_MAX_WORD if one of them is longer
+// than that.
+int text_distance(const char *a, const char *b);
+
+// The best guess so far while candidates are offered one by one; starts as text_guess_of(word).
+typedef struct TextGuess {
+  const char *word; // borrowed
+  const char *best; // the nearest candidate, borrowed; NULL: none is near enough to be what was meant
+  int distance;     // of `best`; without one: the largest distance that counts as near, plus 1
+} TextGuess;
+
+TextGuess text_guess_of(const char *word);
+void text_guess_offer(TextGuess *guess, const char *candidate);
+
+// Whether `word` is one of the words of `list`, which are separated by single spaces. NULL: an empty list.
+bool text_lists(const char *list, const char *word);
+
+// The next word of such a list, copied to `word`; returns what follows it, NULL at the end:
+// `for (const char *rest = text_next(list, word); rest; rest = text_next(rest, word))`.
+const char *text_next(const char *list, char word[TEXT_MAX_WORD]);
+
+// Writes like snprintf after the first `*used` characters and moves `*used`; what does not fit is cut.
+void text_append(char *buffer, size_t size, size_t *used, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+// The line and the column (both from 1, columns in characters of UTF-8) of a byte of a text.
+void text_place(const char *text, size_t offset, int *line, int *column);
+
+// The offset of the first byte that is not UTF-8 (RFC 3629), `size` if all are.
+size_t text_utf8_valid(const char *text, size_t size);
+
+#endif

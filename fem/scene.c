@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/scene.h"
+
+#include "base/memory.h"
+
+static void free_constraints(FemConstraintDef *constraints, int count) {
+  for (int i = 0; i < count; i++) {
+    memory_free(constraints[i].select.group);
+    memory_free(constraints[i].table);
+  }
+  memory_free(constraints);
+}
+
+static void free_body(FemBodyDef *body) {
+  memory_free(body->name);
+  memory_free(body->mesh_path);
+  free_constraints(body->fixed, body->fixed_count);
+  free_constraints(body->driven, body->driven_count);
+}
+
+static void free_obstacle(FemObstacleDef *obstacle) {
+  memory_free(obstacle->name);
+  memory_free(obstacle->mesh_path);
+  memory_free(obstacle->motion.select.group);
+  memory_free(obstacle->motion.table);
+}
+
+void fem_scene_destroy(FemSceneDef *scene) {
+  for (int i = 0; i < scene->body_count; i++) free_body(&scene->bodies[i]);
+  for (int i = 0; i < scene->obstacle_count; i++) free_obstacle(&scene->obstacles[i]);
+  memory_free(scene->bodies);
+  memory_free(scene->obstacles);
+  memory_free(scene->contact.overlap);
+  memory_free(scene->path);
+  memory_free(scene->title);
+  *scene = (FemSceneDef){0};
+}
