@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/broad.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "contact/boxes_cgal.h"
+
+// Boxes are min x, y, z, max x, y, z, as contact/boxes_cgal.h wants them.
+static void box_of_tet(const int tet[4], const double *positions, double grow, double box[6]) {
+  for (int c = 0; c < 3; c++) {
+    double low = INFINITY, high = -INFINITY;
+    for (int v = 0; v < 4; v++) {
+      double x = positions[3 * (size_t)tet[v] + (size_t)c];
+      low = fmin(low, x), high = fmax(high, x);
+    }
+    box[c] = low - grow, box[c + 3] = high + grow;
+  }
+}
+
+static void bounds_of_side(const ContactBroadSide *side, const double *positions, double grow,
+                           double bounds[6]) {
+  for (int c = 0; c < 3; c++) bounds[c] = INFINITY, bounds[c + 3] = -INFINITY;
+  for (int i = 0; i < side->tet_count; i++) {
+    double box[6];
+    box_of_tet(side->tets[i], positions, grow, box);
+    for (int c = 0; c < 3; c++) {
+      bounds[c] = fmin(bounds[c], box[c]);
+      bounds[c + 3] = fmax(bounds[c + 3], box[c + 3]);
+    }
+  }
+}
+
+static bool boxes_meet(const double a[6], const double b[6]) {
+  for (int c = 0; c < 3; c++)
+    if (!(a[c] <= b[c + 3] && b[c] <= a[c + 3])) return false;
+  return true;
+}
+
+// The tetrahedra of one side whose boxes reach into what the other side occupies.
+typedef struct Selection {
+  int count;
+  int *tets;          // index into the side                    (count)
+  double (*boxes)[6]; //                                       (count)
+} Selection;
+
+static Status select_within(Selection *selection, const ContactBroadSide *side, const double *positions,
+                            double grow, const double bounds[6]) {
+  selection->tets = memory_zeroed((size_t)side->tet_count, sizeof *selection->tets);
+  selection->boxes = memory_zeroed((size_t)side->tet_count, sizeof *selection->boxes);
+  if (!selection->tets || !selection->boxes) return status_no_memory("boxes of the broad phase");
+  for (int i = 0; i < side->tet_count; i++) {
+    double *box = selection->boxes[selection->count];
+    box_of_tet(side->tets[i], positions, grow, box);
+    if (boxes_meet(box, bounds)) selection->tets[selection->count++] = i;
+  }
+  return STATUS_OK;
+}
+
+static void drop(Selection *selection) {
+  memory_free(selection->tets);
+  memory_free(selection->boxes);
+}
+
+static int compare_pairs(const void *left, const void *right) {
+  const int *a = left, *b = right;
+  if (a[0] != b[0]) return a[0] < b[0] ? -1 : 1;
+  return (a[1] > b[1]) - (a[1] < b[1]);
+}
+
+static Status take(ContactPairList *list, const ContactBoxPairs *found, const Selection *in_a,
+                   const Selection *in_b, int offset_a, int offset_b) {
+  size_t wanted = (size_t)list->count + found->count;
+  if (wanted > INT_MAX ||
+      !memory_reserve((void **)&list->pairs, &list->capacity, wanted, sizeof *list->pairs))
+    return status_no_memory("candidate pairs");
+  int(*pairs)[2] = list->pairs + list->count;
+  for (size_t k = 0; k < found->count; k++) {
+    pairs[k][0] = offset_a + in_a->tets[found->pairs[k][0]];
+    pairs[k][1] = offset_b + in_b->tets[found->pairs[k][1]];
+  }
+  qsort(pairs, found->count, sizeof *pairs, compare_pairs);
+  list->count += (int)found->count;
+  return STATUS_OK;
+}
+
+Status contact_broad_append(ContactPairList *list, const ContactBroadSide *a, const ContactBroadSide *b,
+                            const double *positions, double margin) {
+  double bounds_a[6], bounds_b[6];
+  bounds_of_side(a, positions, margin / 2, bounds_a);
+  bounds_of_side(b, positions, margin / 2, bounds_b);
+  if (!boxes_meet(bounds_a, bounds_b)) return STATUS_OK;
+
+  Selection in_a = {0}, in_b = {0};
+  ContactBoxPairs found = {0};
+  Status status = select_within(&in_a, a, positions, margin / 2, bounds_b);
+  if (!status) status = select_within(&in_b, b, positions, margin / 2, bounds_a);
+  if (!status)
+    status = contact_boxes_intersect((const double(*)[6])in_a.boxes, in_a.count,
+                                     (const double(*)[6])in_b.boxes, in_b.count, &found);
+  if (!status) status = take(list, &found, &in_a, &in_b, a->tet_offset, b->tet_offset);
+  contact_boxes_destroy(&found);
+  drop(&in_a);
+  drop(&in_b);
+  return status;
+}
+
+void contact_broad_destroy(ContactPairList *list) {
+  memory_free(list->pairs);
+  *list = (ContactPairList){0};
+}

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/candidates.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "contact/separation.h"
+
+// Where the boxes of two bodies meet but the bodies may not, a margin of several steps of free motion is
+// tried, bounded so that the trial costs little more than a search.
+enum { STEPS_AHEAD = 4, WIDEST_TRIAL = 4 };
+
+static Status create_list(ContactCandidateList *list, int facing_count) {
+  list->begin = memory_zeroed((size_t)facing_count + 1, sizeof(int));
+  list->margins = memory_zeroed((size_t)facing_count, sizeof(double));
+  return list->begin && list->margins ? STATUS_OK : status_no_memory("the candidate lists");
+}
+
+static void destroy_list(ContactCandidateList *list) {
+  memory_free(list->pairs);
+  memory_free(list->begin);
+  memory_free(list->margins);
+}
+
+Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout) {
+  *candidates = (ContactCandidates){0};
+  TRY(create_list(&candidates->list, layout->facing_count));
+  TRY(create_list(&candidates->next, layout->facing_count));
+  candidates->reference = memory_zeroed(3 * (size_t)layout->def.vertex_count, sizeof(double));
+  candidates->boxes = memory_zeroed((size_t)layout->def.body_count, sizeof *candidates->boxes);
+  candidates->motions = memory_zeroed((size_t)layout->party_count, sizeof(double));
+  candidates->expected = memory_zeroed((size_t)layout->party_count, sizeof(double));
+  bool fits = candidates->reference && candidates->boxes && candidates->motions && candidates->expected;
+  return fits ? STATUS_OK : status_no_memory("the candidate lists");
+}
+
+void contact_candidates_destroy(ContactCandidates *candidates) {
+  destroy_list(&candidates->list);
+  destroy_list(&candidates->next);
+  contact_broad_destroy(&candidates->found);
+  memory_free(candidates->reference);
+  memory_free(candidates->boxes);
+  memory_free(candidates->motions);
+  memory_free(candidates->expected);
+  *candidates = (ContactCandidates){0};
+}
+
+// The longest of the vectors to − from over vertices begin … end (from NULL: 0); NaN counts as infinite.
+static double longest(const double *to, const double *from, int begin, int end) {
+  double largest = 0;
+  for (size_t v = (size_t)begin; v < (size_t)end; v++) {
+    Vec3 d = from ? vec3_sub(vec3_at(to + 3 * v), vec3_at(from + 3 * v)) : vec3_at(to + 3 * v);
+    double square = vec3_dot(d, d);
+    if (!(square <= largest)) largest = isnan(square) ? INFINITY : square;
+  }
+  return sqrt(largest);
+}
+
+static void measure_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                            const double *positions) {
+  const ContactSystemDef *def = &layout->def;
+  for (int b = 0; b < def->body_count; b++)
+    candidates->motions[b] =
+        longest(positions, candidates->reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+  for (int h = 0; h < def->halfspace_count; h++) {
+    const ContactHalfspace *space = &def->halfspaces[h];
+    double speed = fabs(vec3_dot(vec3_at(space->velocity), vec3_at(space->normal)));
+    candidates->motions[def->body_count + h] = speed * fabs(time - candidates->reference_time);
+  }
+}
+
+static void expect_motions(ContactCandidates *candidates, const ContactLayout *layout,
+                           const double *velocities, double step) {
+  const ContactSystemDef *def = &layout->def;
+  for (int b = 0; b < def->body_count; b++)
+    candidates->expected[b] =
+        step * longest(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+  for (int h = 0; h < def->halfspace_count; h++) {
+    const ContactHalfspace *space = &def->halfspaces[h];
+    candidates->expected[def->body_count + h] =
+        step * fabs(vec3_dot(vec3_at(space->velocity), vec3_at(space->normal)));
+  }
+}
+
+static double sum_of(const double *by_party, const ContactFacing *facing) {
+  return by_party[facing->a] + by_party[facing->b];
+}
+
+bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                              const double *positions) {
+  if (!candidates->is_made) return false;
+  measure_motions(candidates, layout, time, positions);
+  for (int f = 0; f < layout->facing_count; f++)
+    if (!(sum_of(candidates->motions, &layout->facings[f]) <= candidates->list.margins[f])) return false;
+  return true;
+}
+
+// Half of the margin is used up, or the next step might use up the rest. The latter cannot be helped by a
+// search right after the last one, unless nothing was near and the margin may grow.
+static bool wants_search(const ContactCandidates *candidates, const ContactLayout *layout) {
+  if (!candidates->is_made) return true;
+  for (int f = 0; f < layout->facing_count; f++) {
+    double margin = candidates->list.margins[f], moved = sum_of(candidates->motions, &layout->facings[f]);
+    bool is_empty = candidates->list.begin[f] == candidates->list.begin[f + 1];
+    bool may_leave = moved + sum_of(candidates->expected, &layout->facings[f]) > margin;
+    if (!(moved <= margin / 2) || (may_leave && (is_empty || moved > margin / 4))) return true;
+  }
+  return false;
+}
+
+static void bound_bodies(ContactCandidates *candidates, const ContactLayout *layout,
+                         const double *positions) {
+  for (int b = 0; b < layout->def.body_count; b++) {
+    double *box = candidates->boxes[b];
+    for (int c = 0; c < 3; c++) box[c] = INFINITY, box[c + 3] = -INFINITY;
+    for (int v = layout->def.bodies[b].vertex_begin; v < layout->def.bodies[b].vertex_end; v++)
+      for (int c = 0; c < 3; c++) {
+        double x = positions[3 * (size_t)v + (size_t)c];
+        box[c] = fmin(box[c], x), box[c + 3] = fmax(box[c + 3], x);
+      }
+  }
+}
+
+static double distance_of_boxes(const double a[6], const double b[6]) {
+  double distance = -INFINITY;
+  for (int c = 0; c < 3; c++) distance = fmax(distance, fmax(a[c] - b[c + 3], b[c] - a[c + 3]));
+  return distance;
+}
+
+static double height_of_body(const ContactLayout *layout, const ContactFacing *facing, double time,
+                             const double *positions) {
+  const ContactBody *body = &layout->def.bodies[facing->a];
+  double point[3], lowest = INFINITY;
+  contact_layout_plane(layout, facing->halfspace, time, point);
+  Vec3 normal = vec3_at(layout->def.halfspaces[facing->halfspace].normal);
+  for (int v = body->vertex_begin; v < body->vertex_end; v++)
+    lowest = fmin(lowest, vec3_dot(vec3_sub(vec3_at(positions + 3 * (size_t)v), vec3_at(point)), normal));
+  return lowest;
+}
+
+// A lower bound of the distance of the two parties: nothing meets until they have moved that far.
+static double clearance(const ContactCandidates *candidates, const ContactLayout *layout,
+                        const ContactFacing *facing, double time, const double *positions) {
+  if (facing->halfspace >= 0) return height_of_body(layout, facing, time, positions);
+  return distance_of_boxes(candidates->boxes[facing->a], candidates->boxes[facing->b]);
+}
+
+static Status push(ContactCandidateList *list, ContactPair pair) {
+  if (!memory_reserve((void **)&list->pairs, &list->capacity, (size_t)list->count + 1, sizeof *list->pairs))
+    return status_no_memory("candidate pairs");
+  list->pairs[list->count++] = pair;
+  return STATUS_OK;
+}
+
+static ContactBroadSide side_of(const ContactLayout *layout, int body) {
+  const ContactBody *b = &layout->def.bodies[body];
+  return (ContactBroadSide){layout->def.tets + b->tet_begin, b->tet_end - b->tet_begin, b->tet_begin};
+}
+
+static Status search_bodies(ContactCandidates *candidates, const ContactLayout *layout, int f,
+                            const double *positions, double margin) {
+  const ContactFacing *facing = &layout->facings[f];
+  ContactBroadSide a = side_of(layout, facing->a), b = side_of(layout, facing->b);
+  candidates->found.count = 0;
+  TRY(contact_broad_append(&candidates->found, &a, &b, positions, margin));
+  for (int k = 0; k < candidates->found.count; k++) {
+    const int *tets = candidates->found.pairs[k];
+    TRY(push(&candidates->next, (ContactPair){f, {tets[0], tets[1]}}));
+  }
+  return STATUS_OK;
+}
+
+static Status search_halfspace(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
+                               const double *positions, double margin) {
+  const ContactFacing *facing = &layout->facings[f];
+  const ContactBody *body = &layout->def.bodies[facing->a];
+  const double *normal = layout->def.halfspaces[facing->halfspace].normal;
+  double point[3];
+  contact_layout_plane(layout, facing->halfspace, time, point);
+  for (int i = body->tet_begin; i < body->tet_end; i++) {
+    double x[12];
+    contact_layout_gather(layout, i, positions, x);
+    if (contact_separation_halfspace(x, point, normal) <= margin)
+      TRY(push(&candidates->next, (ContactPair){f, {i, -1}}));
+  }
+  return STATUS_OK;
+}
+
+static Status search_with(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
+                          const double *positions, double margin) {
+  candidates->next.margins[f] = margin;
+  if (layout->facings[f].halfspace < 0) return search_bodies(candidates, layout, f, positions, margin);
+  return search_halfspace(candidates, layout, f, time, positions, margin);
+}
+
+// A margin wider than the layout's is kept only where it holds no pair.
+static Status search_facing(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
+                            const double *positions) {
+  const ContactFacing *facing = &layout->facings[f];
+  ContactCandidateList *next = &candidates->next;
+  int begin = next->begin[f] = next->count;
+  double distance = clearance(candidates, layout, facing, time, positions);
+  if (distance > layout->margin && isfinite(distance)) {
+    next->margins[f] = distance;
+    return STATUS_OK;
+  }
+  double wide = fmin(STEPS_AHEAD * sum_of(candidates->expected, facing), WIDEST_TRIAL * layout->margin);
+  if (wide > layout->margin) {
+    TRY(search_with(candidates, layout, f, time, positions, wide));
+    if (next->count == begin) return STATUS_OK;
+    next->count = begin;
+  }
+  return search_with(candidates, layout, f, time, positions, layout->margin);
+}
+
+// Fills `next`.
+static Status search_all(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                         const double *positions) {
+  candidates->next.count = 0;
+  bound_bodies(candidates, layout, positions);
+  for (int f = 0; f < layout->facing_count; f++) TRY(search_facing(candidates, layout, f, time, positions));
+  candidates->next.begin[layout->facing_count] = candidates->next.count;
+  return STATUS_OK;
+}
+
+static bool lists_are_equal(const ContactCandidateList *a, const ContactCandidateList *b) {
+  return a->count == b->count &&
+         (a->count == 0 || memcmp(a->pairs, b->pairs, (size_t)a->count * sizeof *a->pairs) == 0);
+}
+
+Status contact_candidates_update(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                                 const double *positions, const double *velocities, double step,
+                                 bool *has_changed) {
+  *has_changed = false;
+  measure_motions(candidates, layout, time, positions);
+  expect_motions(candidates, layout, velocities, step);
+  if (!wants_search(candidates, layout)) return STATUS_OK;
+
+  double start = clock_wall_s();
+  TRY(search_all(candidates, layout, time, positions));
+  *has_changed = !candidates->is_made || !lists_are_equal(&candidates->list, &candidates->next);
+  ContactCandidateList previous = candidates->list;
+  candidates->list = candidates->next;
+  candidates->next = previous;
+  memcpy(candidates->reference, positions, 3 * (size_t)layout->def.vertex_count * sizeof(double));
+  candidates->reference_time = time;
+  candidates->is_made = true;
+  candidates->searches++;
+  candidates->search_s += clock_wall_s() - start;
+  return STATUS_OK;
+}

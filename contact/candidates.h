@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which pairs may overlap until the next search, for every two that can meet, and how far the parties may
+// move until then: as far as they are apart while no pair is near, half an element once one is, so that
+// nothing can pass through anything unseen.
+#ifndef TETLAP_CONTACT_CANDIDATES_H
+#define TETLAP_CONTACT_CANDIDATES_H
+
+#include "contact/broad.h"
+#include "contact/layout.h"
+
+// Valid while the two parties of a facing have together moved by no more than its margin.
+typedef struct ContactCandidateList {
+  int count;
+  size_t capacity;
+  ContactPair *pairs; // by facing, then by tets                      (count)
+  int *begin;         // of each facing                               (facing_count + 1)
+  double *margins;    // of each facing [m]                           (facing_count)
+} ContactCandidateList;
+
+typedef struct ContactCandidates {
+  ContactCandidateList list;
+  bool is_made;
+  long long searches;
+  double search_s;
+  // Where everything was when the list was made.
+  double *reference; // [m]                                           (vertex_count, 3)
+  double reference_time;
+  // Scratch memory.
+  ContactCandidateList next;
+  ContactPairList found;
+  double (*boxes)[6]; // of each body                                 (body_count)
+  double *motions;    // of each party since the search [m]           (party_count)
+  double *expected;   // of each party in the next step [m]           (party_count)
+} ContactCandidates;
+
+Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout);
+void contact_candidates_destroy(ContactCandidates *candidates);
+
+// Searches anew if the motion asks for it; `*has_changed`: the list differs from the one before.
+Status contact_candidates_update(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                                 const double *positions, const double *velocities, double step,
+                                 bool *has_changed);
+
+// Whether the list still holds every overlapping pair; NaN: false.
+bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                              const double *positions);
+
+#endif

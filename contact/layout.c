@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/layout.h"
+
+#include "base/memory.h"
+#include "base/vec3.h"
+
+// Rest volumes of tetrahedra, and their quarters summed at the vertices.
+static Status measure_volumes(ContactLayout *layout) {
+  const ContactSystemDef *def = &layout->def;
+  for (int i = 0; i < def->tet_count; i++) {
+    double x[12];
+    contact_layout_gather(layout, i, def->rest, x);
+    double volume = fabs(vec3_det4(vec3_at(x), vec3_at(x + 3), vec3_at(x + 6), vec3_at(x + 9))) / 6;
+    if (!(volume > 0 && isfinite(volume)))
+      return status_fail(STATUS_INPUT, "contact: tetrahedron %d has rest volume %g; it must be positive", i,
+                         volume);
+    layout->tet_volumes[i] = volume;
+    for (int v = 0; v < 4; v++) layout->vertex_volumes[def->tets[i][v]] += volume / 4;
+  }
+  return STATUS_OK;
+}
+
+static double mean_edge(const ContactSystemDef *def, const ContactBody *body) {
+  double sum = 0;
+  for (int i = body->tet_begin; i < body->tet_end; i++)
+    for (int v = 0; v < 4; v++)
+      for (int w = 0; w < v; w++)
+        sum += vec3_length(vec3_sub(vec3_at(def->rest + 3 * (size_t)def->tets[i][v]),
+                                    vec3_at(def->rest + 3 * (size_t)def->tets[i][w])));
+  return sum / (6.0 * (body->tet_end - body->tet_begin));
+}
+
+static double default_margin(const ContactSystemDef *def) {
+  double shortest = INFINITY;
+  for (int b = 0; b < def->body_count; b++)
+    if (def->bodies[b].tet_end > def->bodies[b].tet_begin)
+      shortest = fmin(shortest, mean_edge(def, &def->bodies[b]));
+  return isfinite(shortest) ? shortest / 2 : 1;
+}
+
+static ContactFacing facing_of_bodies(const ContactSystemDef *def, int a, int b) {
+  bool one_sided = def->bodies[a].is_obstacle || def->bodies[b].is_obstacle;
+  return (ContactFacing){.a = a,
+                         .b = b,
+                         .halfspace = -1,
+                         .weight = {one_sided ? !def->bodies[a].is_obstacle : 0.5,
+                                    one_sided ? !def->bodies[b].is_obstacle : 0.5}};
+}
+
+static void list_facings(ContactLayout *layout) {
+  const ContactSystemDef *def = &layout->def;
+  int count = 0;
+  for (int a = 0; a < def->body_count; a++)
+    for (int b = a + 1; b < def->body_count; b++)
+      if (!def->bodies[a].is_obstacle || !def->bodies[b].is_obstacle)
+        layout->facings[count++] = facing_of_bodies(def, a, b);
+  for (int a = 0; a < def->body_count; a++)
+    for (int h = 0; h < def->halfspace_count; h++)
+      if (!def->bodies[a].is_obstacle)
+        layout->facings[count++] =
+            (ContactFacing){.a = a, .b = def->body_count + h, .halfspace = h, .weight = {1, 0}};
+  layout->facing_count = count;
+}
+
+static Status check(const ContactSystemDef *def) {
+  if (!(def->stiffness > 0 && isfinite(def->stiffness)))
+    return status_fail(STATUS_INPUT, "contact: stiffness is %g; it must be positive", def->stiffness);
+  if (!(def->margin >= 0 && isfinite(def->margin)))
+    return status_fail(STATUS_INPUT, "contact: margin is %g m; it must be positive, or 0 for the default",
+                       def->margin);
+  for (int h = 0; h < def->halfspace_count; h++) {
+    double length = vec3_length(vec3_at(def->halfspaces[h].normal));
+    if (!(fabs(length - 1) <= 1e-9))
+      return status_fail(STATUS_INPUT, "contact: the normal of half-space %s has length %g instead of 1",
+                         def->halfspaces[h].name, length);
+  }
+  return STATUS_OK;
+}
+
+Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def) {
+  *layout = (ContactLayout){.def = *def, .party_count = def->body_count + def->halfspace_count};
+  TRY(check(def));
+  size_t most_facings = (size_t)def->body_count * (size_t)layout->party_count;
+  layout->tet_volumes = memory_zeroed((size_t)def->tet_count, sizeof(double));
+  layout->vertex_volumes = memory_zeroed((size_t)def->vertex_count, sizeof(double));
+  layout->facings = memory_zeroed(most_facings, sizeof(ContactFacing));
+  if (!layout->tet_volumes || !layout->vertex_volumes || !layout->facings)
+    return status_no_memory("the contact system's volumes");
+  list_facings(layout);
+  layout->margin = def->margin > 0 ? def->margin : default_margin(def);
+  return measure_volumes(layout);
+}
+
+void contact_layout_destroy(ContactLayout *layout) {
+  memory_free(layout->tet_volumes);
+  memory_free(layout->vertex_volumes);
+  memory_free(layout->facings);
+  *layout = (ContactLayout){0};
+}
+
+void contact_layout_plane(const ContactLayout *layout, int h, double time, double point[3]) {
+  const ContactHalfspace *space = &layout->def.halfspaces[h];
+  for (int c = 0; c < 3; c++) point[c] = space->point[c] + time * space->velocity[c];
+}

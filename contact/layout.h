@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What stays constant of a contact system: the definition, rest volumes, and who can meet whom.
+#ifndef TETLAP_CONTACT_LAYOUT_H
+#define TETLAP_CONTACT_LAYOUT_H
+
+#include <stddef.h>
+
+#include "contact/system.h"
+
+// Two that can meet: bodies a < b, or body a and a half-space. Side 0 is a, side 1 is b.
+typedef struct ContactFacing {
+  int a, b;         // b = body_count + half-space, as in ContactInterface
+  int halfspace;    // −1: two bodies
+  double weight[2]; // of each side's sum in U: ½ and ½ between bodies; 1 and 0 against an obstacle, so that
+                    // > 0 also says that the side carries unknowns
+} ContactFacing;
+
+// A tetrahedron of side 0 and one of side 1 (−1: the half-space).
+typedef struct ContactPair {
+  int facing;
+  int tets[2];
+} ContactPair;
+
+typedef struct ContactLayout {
+  ContactSystemDef def;   // its arrays are borrowed
+  double *tet_volumes;    // V_i, rest [m³]                                   (tet_count)
+  double *vertex_volumes; // V_a = ¼ Σ_{i∋a} V_i [m³]                         (vertex_count)
+  ContactFacing *facings; // bodies with bodies first, then with half-spaces  (facing_count)
+  int facing_count;
+  int party_count; // bodies, then half-spaces
+  double margin;   // def.margin, or its default [m]
+} ContactLayout;
+
+// STATUS_INPUT: κ or margin not positive, a rest tetrahedron without volume, a normal that is no unit vector.
+Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def);
+void contact_layout_destroy(ContactLayout *layout);
+
+// A point of the plane of half-space h at time t.
+void contact_layout_plane(const ContactLayout *layout, int h, double time, double point[3]);
+
+// The 12 coordinates of a tetrahedron.
+static inline void contact_layout_gather(const ContactLayout *layout, int tet, const double *positions,
+                                         double coordinates[12]) {
+  for (int v = 0; v < 4; v++)
+    for (int c = 0; c < 3; c++)
+      coordinates[3 * v + c] = positions[3 * (size_t)layout->def.tets[tet][v] + (size_t)c];
+}
+
+#endif
