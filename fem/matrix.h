@@ -3,21 +3,14 @@
 // cliques, filled many times. Coordinates that are prescribed have no row; adding to them does nothing.
 //
 //   FemPattern: vertex cliques ──► FemMatrix: col_begin, row, value (scalar, lower, sorted rows)
+//
+// The unknowns of a vertex stand side by side, so a column is the vertex's own rows followed by runs of one
+// to three rows a neighbour: an entry is found by searching the neighbour, not the row.
 #ifndef TETLAP_FEM_MATRIX_H
 #define TETLAP_FEM_MATRIX_H
 
-#include <stddef.h>
-
 #include "base/status.h"
-
-// Sorted neighbour lists of vertices, both directions, the vertex itself included; grows, never shrinks.
-typedef struct FemPattern FemPattern;
-
-Status fem_pattern_create(FemPattern **pattern, int vertex_count);
-void fem_pattern_destroy(FemPattern *pattern);
-// All of these vertices may couple. `*has_grown` (may be NULL) is set to 1 if a coupling is new, else left
-// alone.
-Status fem_pattern_add_clique(FemPattern *pattern, int count, const int *vertices, int *has_grown);
+#include "fem/pattern.h"
 
 typedef struct FemMatrix {
   int size;       // unknowns n
@@ -26,24 +19,34 @@ typedef struct FemMatrix {
   double *value;  //                                                          (entry_count)
   int entry_count;
   int vertex_count;
-  const int *unknown_of_dof;      // borrowed                                              (3·vertex_count)
-  struct FemMatrixBlocks *blocks; // vertex-pair lookup
+  // Stamp of the layout, never 0: two matrices with the same stamp have the same rows and slots, so whatever
+  // was looked up in one (slots, an analysis) holds for the other.
+  long long layout;
+  const int *unknown_of_dof;      // borrowed                                 (3·vertex_count)
+  struct FemMatrixBlocks *blocks; // vertex-pair lookup; owns col_begin and row, shared among copies
 } FemMatrix;
 
+// Lays out all couplings of the pattern, zeroed. Unknowns must be numbered in the order of their dofs.
+// STATUS_INPUT: more entries than an int can number. A zeroed matrix can be destroyed.
 Status fem_matrix_create(FemMatrix *matrix, const FemPattern *pattern, const int *unknown_of_dof);
+// The same layout, shared, with values of its own, zeroed. Not from two threads at once.
+Status fem_matrix_copy_layout(FemMatrix *copy, const FemMatrix *from);
 void fem_matrix_destroy(FemMatrix *matrix);
 void fem_matrix_zero(FemMatrix *matrix);
 
-// matrix += scale · dense over the vertices' coordinates; dense (3 count, 3 count) row-major, symmetric.
-// Entries that the pattern lacks are a bug (assert). Calls on disjoint vertex sets may run in parallel.
+// matrix += scale · dense over the vertices' coordinates; dense (3 count, 3 count) row-major, symmetric; the
+// vertices distinct. Entries that the pattern lacks are a bug (assert). Calls on disjoint vertex sets may run
+// in parallel.
 void fem_matrix_add(FemMatrix *matrix, int count, const int *vertices, const double *dense, double scale);
-// The same with `slots` looked up once by fem_matrix_slots for a tetrahedron: (12 × 12), −1: no entry (upper
-// or prescribed).
+// matrix += scale · w wᵀ, w (count, 3), without forming the dense matrix; else as fem_matrix_add.
+void fem_matrix_add_outer(FemMatrix *matrix, int count, const int *vertices, const double *w, double scale);
+// The same with `slots` looked up once for a tetrahedron: value[slots[12 i + j]] is entry (i, j) of the
+// (12 × 12) element matrix, −1: no entry (upper or prescribed).
 void fem_matrix_slots(const FemMatrix *matrix, const int tet[4], int slots[144]);
 // matrix += scale · diag(m) over all unknowns, m by vertex (vertex_count).
 void fem_matrix_add_mass(FemMatrix *matrix, const double *mass, double scale);
 
-// y = A x over the unknowns, deterministic for any number of threads.
+// y = A x over the unknowns, deterministic for any number of threads. x and y must not overlap.
 void fem_matrix_multiply(const FemMatrix *matrix, const double *x, double *y);
 
 #endif
