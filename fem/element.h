@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The linear tetrahedron: constant F, one quadrature point. Another element (quadratic, mixed, F-bar) is
 // another file with the same functions over its own node count; effects loop over elements and call these
-// only.
+// only. Nodes are given as (4, 3) arrays; matrices (12, 12) are symmetric to the last bit. Nothing depends on
+// where the origin is, beyond the rounding of the given positions. Inverted elements are evaluated like
+// others.
 #ifndef TETLAP_FEM_ELEMENT_H
 #define TETLAP_FEM_ELEMENT_H
-
-#include <stdbool.h>
 
 #include "fem/material.h"
 
@@ -15,9 +15,10 @@ typedef struct FemElement {
   double volume;         // at rest [m³]
 } FemElement;
 
+// `rest` must be positively oriented and of positive volume, as every FemMesh is.
 void fem_element_create(FemElement *element, const double rest[12]);
 
-// F = Σ_a x_a ⊗ ∂N_a/∂X.
+// F = Σ_a x_a ⊗ ∂N_a/∂X; Ḟ from velocities in the same way.
 void fem_element_deformation(const FemElement *element, const double x[12], double F[9]);
 
 double fem_element_energy(const FemElement *element, const FemMaterial *material, const double x[12]); // [J]
@@ -27,17 +28,21 @@ void fem_element_stiffness(const FemElement *element, const FemMaterial *materia
                            double stiffness[144]); // ∂²U/∂x² [N/m]
 
 // Stiffness-proportional damping that no rigid motion feels: R = ½ β V Ė:C:Ė with the Green strain rate
-// Ė = sym(Fᵀ Ḟ) and the law's small-strain C; at rest it is β K. Force −∂R/∂v, matrix ∂²R/∂v² (symmetric, ≥
-// 0).
+// Ė = sym(Fᵀ Ḟ) and the law's small-strain C; at rest it is β K. Force −∂R/∂v, power 2R = −v · force ≥ 0,
+// matrix ∂²R/∂v² (≥ 0).
 void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,
-                               const double x[12], const double v[12], double force[12]);
+                               const double x[12], const double v[12], double force[12]); // [N]
+double fem_element_damping_power(const FemElement *element, const FemMaterial *material, double beta,
+                                 const double x[12], const double v[12]); // [W]
 void fem_element_damping_matrix(const FemElement *element, const FemMaterial *material, double beta,
-                                const double x[12], double matrix[144]);
-// The symmetric part of −∂(damping force)/∂x that matters for Newton: Ḟ-stress as geometric stiffness.
+                                const double x[12], double matrix[144]); // [N s/m]
+// The symmetric part of −∂(damping force)/∂x: the geometric stiffness of the viscous stress Σ = β C : Ė, and
+// half the rate of change of the damping matrix. May be indefinite.
 void fem_element_damping_stiffness(const FemElement *element, const FemMaterial *material, double beta,
-                                   const double x[12], const double v[12], double matrix[144]);
+                                   const double x[12], const double v[12], double matrix[144]); // [N/m]
 
-// Cauchy stress [Pa], symmetric: xx, yy, zz, xy, yz, xz. Zero where det F = 0.
+// Cauchy stress σ = P Fᵀ / J [Pa]: xx, yy, zz, xy, yz, xz. Zero where |J| ≤ 1e-12. The linear law does not
+// tell the two configurations apart: its σ is P.
 void fem_element_cauchy(const FemElement *element, const FemMaterial *material, const double x[12],
                         double stress[6]);
 

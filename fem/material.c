@@ -1,2 +1,323 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/material.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "fem/svd3.h"
+
+static const struct {
+  const char *name, *help;
+} laws[FEM_MATERIAL_LAW_COUNT] = {
+    [FEM_MATERIAL_LINEAR] = {"linear", "Hooke's law in fixed axes: small strains and small rotations"},
+    [FEM_MATERIAL_COROTATIONAL] = {"corotational",
+                                   "small strains, large rotations: linear in the polar stretch"},
+    [FEM_MATERIAL_STVK] = {"stvk",
+                           "St. Venant-Kirchhoff: large rotations; collapses under strong compression"},
+    [FEM_MATERIAL_NEO_HOOKEAN] = {"neo_hookean",
+                                  "stable neo-Hookean: large strains, recovers from inversion"},
+};
+
+const char *fem_material_name(FemMaterialLaw law) {
+  return laws[law].name;
+}
+const char *fem_material_help(FemMaterialLaw law) {
+  return laws[law].help;
+}
+
+FemLame fem_material_lame(const FemMaterial *material) {
+  double E = material->young, nu = material->poisson;
+  return (FemLame){.lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), .mu = E / (2 * (1 + nu))};
+}
+
+static inline double dot9(const double A[9], const double B[9]) {
+  double sum = 0;
+  for (int r = 0; r < 9; r++) sum += A[r] * B[r];
+  return sum;
+}
+
+// Linear: ε = sym F − I, P = 2μ ε + λ tr ε I.
+
+static void find_small_strain(const double F[9], double strain[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) strain[3 * i + j] = 0.5 * (F[3 * i + j] + F[3 * j + i]) - (i == j);
+}
+
+static double quadratic_energy(FemLame lame, const double strain[9]) {
+  double trace = strain[0] + strain[4] + strain[8];
+  return lame.mu * dot9(strain, strain) + 0.5 * lame.lambda * trace * trace;
+}
+
+// 2μ e + λ tr e I.
+static void apply_hooke(FemLame lame, const double strain[9], double stress[9]) {
+  double pressure = lame.lambda * (strain[0] + strain[4] + strain[8]);
+  for (int r = 0; r < 9; r++) stress[r] = 2 * lame.mu * strain[r];
+  stress[0] += pressure, stress[4] += pressure, stress[8] += pressure;
+}
+
+static void linear_stress(FemLame lame, const double F[9], double P[9]) {
+  double strain[9];
+  find_small_strain(F, strain);
+  apply_hooke(lame, strain, P);
+}
+
+static void linear_tangent(FemLame lame, double dP[81]) {
+  memset(dP, 0, 81 * sizeof *dP);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int r = 3 * i + j;
+      dP[9 * r + r] += lame.mu;
+      dP[9 * r + 3 * j + i] += lame.mu;
+      dP[9 * 4 * i + 4 * j] += lame.lambda;
+    }
+}
+
+// Corotational: P = 2μ (F − R) + λ tr(S − I) R.
+
+static double corotational_energy(FemLame lame, const double F[9]) {
+  FemSvd3 svd;
+  fem_svd3_factor(&svd, F);
+  double squares = 0, trace = 0;
+  for (int k = 0; k < 3; k++) {
+    double stretch = svd.sigma[k] - 1;
+    squares += stretch * stretch;
+    trace += stretch;
+  }
+  return lame.mu * squares + 0.5 * lame.lambda * trace * trace;
+}
+
+static double stretch_trace(const FemSvd3 *svd) {
+  return (svd->sigma[0] - 1) + (svd->sigma[1] - 1) + (svd->sigma[2] - 1);
+}
+
+static void corotational_stress(FemLame lame, const double F[9], double P[9]) {
+  FemSvd3 svd;
+  double R[9];
+  fem_svd3_factor(&svd, F);
+  fem_svd3_rotation(&svd, R);
+  double pressure = lame.lambda * stretch_trace(&svd);
+  for (int r = 0; r < 9; r++) P[r] = 2 * lame.mu * (F[r] - R[r]) + pressure * R[r];
+}
+
+// u_i v_jᵀ − u_j v_iᵀ: how R moves where F is twisted in the plane (i, j).
+static inline void find_twist(const FemSvd3 *svd, int i, int j, double twist[9]) {
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++)
+      twist[3 * r + c] = svd->U[3 * r + i] * svd->V[3 * c + j] - svd->U[3 * r + j] * svd->V[3 * c + i];
+}
+
+// dP = 2μ dF + λ (R : dF) R + (λ tr(S − I) − 2μ) dR. With twists Q_ij = u_i v_jᵀ − u_j v_iᵀ,
+// dR = Σ_{i<j} (Q_ij : dF) Q_ij / (σ_i + σ_j)   (Smith, de Goes, Kim 2019, "Analytic eigensystems for
+// isotropic distortion energies").
+static void corotational_tangent(FemLame lame, const double F[9], double dP[81]) {
+  static const double smallest_sum = 1e-6;
+  static const int pairs[3][2] = {{0, 1}, {1, 2}, {0, 2}};
+  FemSvd3 svd;
+  double modes[4][9], weights[4];
+  fem_svd3_factor(&svd, F);
+  fem_svd3_rotation(&svd, modes[3]);
+  weights[3] = lame.lambda;
+  double turning = lame.lambda * stretch_trace(&svd) - 2 * lame.mu;
+  for (int k = 0; k < 3; k++) {
+    double sum = svd.sigma[pairs[k][0]] + svd.sigma[pairs[k][1]];
+    find_twist(&svd, pairs[k][0], pairs[k][1], modes[k]);
+    weights[k] = turning / (sum < smallest_sum ? smallest_sum : sum);
+  }
+  for (int r = 0; r < 9; r++) {
+    double scaled[4];
+    for (int k = 0; k < 4; k++) scaled[k] = weights[k] * modes[k][r];
+    for (int c = r; c < 9; c++)
+      dP[9 * r + c] = dP[9 * c + r] = scaled[0] * modes[0][c] + scaled[1] * modes[1][c] +
+                                      scaled[2] * modes[2][c] + scaled[3] * modes[3][c];
+    dP[10 * r] += 2 * lame.mu;
+  }
+}
+
+// St. Venant–Kirchhoff: P = F S, S = 2μ E + λ tr E I.
+
+// E = ½ (G + Gᵀ + Gᵀ G) with G = F − I, which keeps small strains' digits.
+static void find_green_strain(const double F[9], double strain[9]) {
+  double G[9];
+  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) {
+      double product = G[i] * G[j] + G[3 + i] * G[3 + j] + G[6 + i] * G[6 + j];
+      strain[3 * i + j] = strain[3 * j + i] = 0.5 * (G[3 * i + j] + G[3 * j + i] + product);
+    }
+}
+
+static void second_stress(FemLame lame, const double F[9], double S[9]) {
+  double strain[9];
+  find_green_strain(F, strain);
+  apply_hooke(lame, strain, S);
+}
+
+static void stvk_stress(FemLame lame, const double F[9], double P[9]) {
+  double S[9];
+  second_stress(lame, F, S);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      P[3 * i + j] = F[3 * i] * S[j] + F[3 * i + 1] * S[3 + j] + F[3 * i + 2] * S[6 + j];
+}
+
+// ∂P_ij/∂F_kl = μ ((F Fᵀ)_ik δ_jl + F_il F_kj) + λ F_ij F_kl.
+static void push_stiffness(FemLame lame, const double F[9], double dP[81]) {
+  double left[9]; // F Fᵀ
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++)
+      left[3 * i + k] = F[3 * i] * F[3 * k] + F[3 * i + 1] * F[3 * k + 1] + F[3 * i + 2] * F[3 * k + 2];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) {
+        double *row = dP + 9 * (3 * i + j) + 3 * k;
+        for (int l = 0; l < 3; l++)
+          row[l] = lame.mu * (F[3 * i + l] * F[3 * k + j]) + lame.lambda * (F[3 * i + j] * F[3 * k + l]);
+        row[j] += lame.mu * left[3 * i + k];
+      }
+}
+
+// … + δ_ik S_jl.
+static void stvk_tangent(FemLame lame, const double F[9], double dP[81]) {
+  double S[9];
+  second_stress(lame, F, S);
+  push_stiffness(lame, F, dP);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int l = 0; l < 3; l++) dP[9 * (3 * i + j) + 3 * i + l] += S[3 * j + l];
+}
+
+// Stable neo-Hookean. Its own parameters, such that the given λ, μ are the small-strain ones.
+static FemLame neo_hookean_parameters(FemLame lame) {
+  return (FemLame){.lambda = lame.lambda + 5.0 / 6.0 * lame.mu, .mu = 4.0 / 3.0 * lame.mu};
+}
+
+static inline void find_cofactor(const double F[9], double C[9]) {
+  C[0] = F[4] * F[8] - F[5] * F[7], C[1] = F[5] * F[6] - F[3] * F[8], C[2] = F[3] * F[7] - F[4] * F[6];
+  C[3] = F[2] * F[7] - F[1] * F[8], C[4] = F[0] * F[8] - F[2] * F[6], C[5] = F[1] * F[6] - F[0] * F[7];
+  C[6] = F[1] * F[5] - F[2] * F[4], C[7] = F[2] * F[3] - F[0] * F[5], C[8] = F[0] * F[4] - F[1] * F[3];
+}
+
+// The factor of cof F in P: λ' (J − α) = λ' (J − 1) − ¾ μ'.
+static inline double cofactor_weight(FemLame own, const double F[9], const double C[9]) {
+  double J = F[0] * C[0] + F[1] * C[1] + F[2] * C[2];
+  return own.lambda * (J - 1) - 0.75 * own.mu;
+}
+
+static double neo_hookean_energy(FemLame lame, const double F[9]) {
+  FemLame own = neo_hookean_parameters(lame);
+  double G[9], C[9];
+  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
+  find_cofactor(G, C);
+  // I_C − 3 and J − 1 from the displacement gradient: no cancellation at small strain.
+  double trace = G[0] + G[4] + G[8];
+  double stretch = 2 * trace + dot9(G, G);
+  double swelling = trace + (C[0] + C[4] + C[8]) + (G[0] * C[0] + G[1] * C[1] + G[2] * C[2]);
+  return 0.5 * own.mu * (stretch - log1p(0.25 * stretch) - 1.5 * swelling) +
+         0.5 * own.lambda * swelling * swelling;
+}
+
+// P = μ' (1 − 1/(I_C + 1)) F + λ' (J − α) cof F.
+static void neo_hookean_stress(FemLame lame, const double F[9], double P[9]) {
+  FemLame own = neo_hookean_parameters(lame);
+  double C[9], square = dot9(F, F);
+  find_cofactor(F, C);
+  double a = own.mu * (square / (square + 1)), b = cofactor_weight(own, F, C);
+  for (int r = 0; r < 9; r++) P[r] = a * F[r] + b * C[r];
+}
+
+// ∂P/∂F = μ' (1 − 1/(I_C + 1)) I + 2 μ'/(I_C + 1)² F ⊗ F + λ' cof F ⊗ cof F + λ' (J − α) ∂cof F/∂F.
+static void neo_hookean_tangent(FemLame lame, const double F[9], double dP[81]) {
+  FemLame own = neo_hookean_parameters(lame);
+  double C[9], square = dot9(F, F);
+  find_cofactor(F, C);
+  double a = own.mu * (square / (square + 1)), b = cofactor_weight(own, F, C);
+  double f = 2 * own.mu / ((square + 1) * (square + 1));
+  for (int r = 0; r < 9; r++) {
+    for (int c = 0; c < 9; c++) dP[9 * r + c] = f * (F[r] * F[c]) + own.lambda * (C[r] * C[c]);
+    dP[10 * r] += a;
+  }
+  // ∂cof_kl/∂F_mn = ± F_ij for the index triples (i, k, m) and (j, l, n) that are permutations.
+  static const int next[3] = {1, 2, 0}, last[3] = {2, 0, 1};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int nn = 3 * next[i] + next[j], ll = 3 * last[i] + last[j];
+      int nl = 3 * next[i] + last[j], ln = 3 * last[i] + next[j];
+      double entry = b * F[3 * i + j];
+      dP[9 * nn + ll] += entry, dP[9 * ll + nn] += entry;
+      dP[9 * nl + ln] -= entry, dP[9 * ln + nl] -= entry;
+    }
+}
+
+double fem_material_energy(const FemMaterial *material, const double F[9]) {
+  FemLame lame = fem_material_lame(material);
+  double strain[9];
+  switch (material->law) {
+  case FEM_MATERIAL_LINEAR:
+    find_small_strain(F, strain);
+    return quadratic_energy(lame, strain);
+  case FEM_MATERIAL_COROTATIONAL:
+    return corotational_energy(lame, F);
+  case FEM_MATERIAL_STVK:
+    find_green_strain(F, strain);
+    return quadratic_energy(lame, strain);
+  case FEM_MATERIAL_NEO_HOOKEAN:
+    return neo_hookean_energy(lame, F);
+  }
+  return NAN;
+}
+
+void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]) {
+  FemLame lame = fem_material_lame(material);
+  switch (material->law) {
+  case FEM_MATERIAL_LINEAR:
+    linear_stress(lame, F, P);
+    break;
+  case FEM_MATERIAL_COROTATIONAL:
+    corotational_stress(lame, F, P);
+    break;
+  case FEM_MATERIAL_STVK:
+    stvk_stress(lame, F, P);
+    break;
+  case FEM_MATERIAL_NEO_HOOKEAN:
+    neo_hookean_stress(lame, F, P);
+    break;
+  }
+}
+
+void fem_material_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
+  FemLame lame = fem_material_lame(material);
+  switch (material->law) {
+  case FEM_MATERIAL_LINEAR:
+    linear_tangent(lame, dP);
+    break;
+  case FEM_MATERIAL_COROTATIONAL:
+    corotational_tangent(lame, F, dP);
+    break;
+  case FEM_MATERIAL_STVK:
+    stvk_tangent(lame, F, dP);
+    break;
+  case FEM_MATERIAL_NEO_HOOKEAN:
+    neo_hookean_tangent(lame, F, dP);
+    break;
+  }
+}
+
+void fem_material_pushed_stiffness(const FemMaterial *material, const double F[9], double dP[81]) {
+  push_stiffness(fem_material_lame(material), F, dP);
+}
+
+void fem_material_pushed_stiffness_rate(const FemMaterial *material, const double F[9], const double rate[9],
+                                        double dP[81]) {
+  FemLame lame = fem_material_lame(material);
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) {
+      double left = 0; // of the rate of F Fᵀ
+      for (int m = 0; m < 3; m++) left += rate[3 * i + m] * F[3 * k + m] + F[3 * i + m] * rate[3 * k + m];
+      for (int j = 0; j < 3; j++)
+        for (int l = 0; l < 3; l++) {
+          int ij = 3 * i + j, kl = 3 * k + l, il = 3 * i + l, kj = 3 * k + j;
+          dP[9 * ij + kl] = lame.mu * (rate[il] * F[kj] + F[il] * rate[kj] + (j == l ? left : 0)) +
+                            lame.lambda * (rate[ij] * F[kl] + F[ij] * rate[kl]);
+        }
+    }
+}
