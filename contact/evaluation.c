@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/evaluation.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "contact/halfspace.h"
+#include "contact/potential.h"
+#include "contact/separation.h"
+
+Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout) {
+  *evaluation = (ContactEvaluation){0};
+  size_t coordinate_count = 3 * (size_t)layout->def.vertex_count;
+  evaluation->positions = memory_zeroed(coordinate_count, sizeof(double));
+  evaluation->forces = memory_zeroed(coordinate_count, sizeof(double));
+  evaluation->covered = memory_zeroed((size_t)layout->def.tet_count, sizeof(double));
+  evaluation->interfaces = memory_zeroed((size_t)layout->facing_count, sizeof(ContactInterface));
+  if (!evaluation->positions || !evaluation->forces || !evaluation->covered || !evaluation->interfaces)
+    return status_no_memory("contact forces");
+  return contact_patches_create(&evaluation->patches, layout);
+}
+
+void contact_evaluation_destroy(ContactEvaluation *evaluation) {
+  contact_patches_destroy(&evaluation->patches);
+  memory_free(evaluation->positions);
+  memory_free(evaluation->pairs);
+  memory_free(evaluation->coordinates);
+  memory_free(evaluation->volumes);
+  memory_free(evaluation->gradients);
+  memory_free(evaluation->pressures);
+  memory_free(evaluation->forces);
+  memory_free(evaluation->covered);
+  memory_free(evaluation->interfaces);
+  memory_free(evaluation->is_kept);
+  memory_free(evaluation->flags);
+  *evaluation = (ContactEvaluation){0};
+}
+
+static Status reserve(ContactEvaluation *evaluation, int count) {
+  size_t n = (size_t)count, size = sizeof(double);
+  bool fits =
+      memory_reserve((void **)&evaluation->pairs, &evaluation->pair_capacity, n, sizeof(ContactPair)) &&
+      memory_reserve((void **)&evaluation->coordinates, &evaluation->coordinate_capacity, 24 * n, size) &&
+      memory_reserve((void **)&evaluation->volumes, &evaluation->volume_capacity, n, size) &&
+      memory_reserve((void **)&evaluation->gradients, &evaluation->gradient_capacity, 24 * n, size) &&
+      memory_reserve((void **)&evaluation->pressures, &evaluation->pressure_capacity, n, size) &&
+      memory_reserve((void **)&evaluation->flags, &evaluation->flag_capacity, n, sizeof(unsigned));
+  return fits ? STATUS_OK : status_no_memory("overlapping pairs");
+}
+
+// Forgets the last result at a cost of its own size.
+static void clear(ContactEvaluation *evaluation) {
+  const ContactPatches *patches = &evaluation->patches;
+  for (int n = 0; n < patches->node_count; n++)
+    for (size_t c = 0; c < 3; c++) evaluation->forces[3 * (size_t)patches->nodes[n].vertex + c] = 0;
+  for (int e = 0; e < patches->element_count; e++) evaluation->covered[patches->elements[e].tet] = 0;
+  evaluation->is_valid = false;
+  evaluation->energy = 0;
+  evaluation->tried = evaluation->enclosed = evaluation->fallbacks = 0;
+}
+
+// Coordinates of a pair; a half-space has none.
+static void gather(const ContactLayout *layout, const ContactPair *pair, const double *positions,
+                   double coordinates[24]) {
+  contact_layout_gather(layout, pair->tets[0], positions, coordinates);
+  if (pair->tets[1] >= 0) contact_layout_gather(layout, pair->tets[1], positions, coordinates + 12);
+}
+
+// The candidates that are not apart beyond doubt, in their order: pairs and coordinates.
+static Status sift(ContactEvaluation *evaluation, const ContactLayout *layout,
+                   const ContactCandidateList *candidates, bool with_halfspaces, const double *positions) {
+  int count = candidates->count, kept = 0;
+  if (!memory_reserve((void **)&evaluation->is_kept, &evaluation->kept_capacity, (size_t)count, 1))
+    return status_no_memory("candidate pairs");
+#pragma omp parallel for schedule(static) if (count > 512)
+  for (int k = 0; k < count; k++) {
+    double x[24];
+    const ContactPair *pair = &candidates->pairs[k];
+    bool is_mesh_pair = pair->tets[1] >= 0;
+    if (is_mesh_pair) gather(layout, pair, positions, x);
+    evaluation->is_kept[k] = is_mesh_pair ? !contact_separation_is_certain(x) : with_halfspaces;
+  }
+  for (int k = 0; k < count; k++) kept += evaluation->is_kept[k];
+  TRY(reserve(evaluation, kept));
+  evaluation->pair_count = evaluation->mesh_pair_count = 0;
+  for (int k = 0; k < count; k++) {
+    if (!evaluation->is_kept[k]) continue;
+    evaluation->pairs[evaluation->pair_count++] = candidates->pairs[k];
+    evaluation->mesh_pair_count += candidates->pairs[k].tets[1] >= 0;
+  }
+#pragma omp parallel for schedule(static) if (kept > 512)
+  for (int k = 0; k < kept; k++)
+    gather(layout, &evaluation->pairs[k], positions, evaluation->coordinates + 24 * (size_t)k);
+  return STATUS_OK;
+}
+
+// Names the bodies' tetrahedra of a pair that the model refused or answered badly.
+static Status blame(const ContactLayout *layout, const ContactPair *pair, double volume) {
+  const ContactFacing *facing = &layout->facings[pair->facing];
+  const ContactBody *a = &layout->def.bodies[facing->a], *b = &layout->def.bodies[facing->b];
+  return status_fail(STATUS_SOLVER,
+                     "contact: the overlap model gave volume %g for element %d of %s and element %d of %s",
+                     volume, pair->tets[0] - a->tet_begin, a->name, pair->tets[1] - b->tet_begin, b->name);
+}
+
+static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout *layout,
+                             const ContactOverlapModel *model) {
+  int count = evaluation->mesh_pair_count;
+  if (count == 0) return STATUS_OK;
+  ContactOverlapBatch batch = {.pair_count = count,
+                               .pairs = evaluation->coordinates,
+                               .volume = evaluation->volumes,
+                               .gradient = evaluation->gradients,
+                               .flags = evaluation->flags};
+  TRY(contact_overlap_eval(model, &batch));
+  evaluation->tried = count;
+  for (int k = 0; k < count; k++) {
+    if (!(evaluation->volumes[k] >= 0 && evaluation->volumes[k] < INFINITY))
+      return blame(layout, &evaluation->pairs[k], evaluation->volumes[k]);
+    evaluation->enclosed += (evaluation->flags[k] & CONTACT_OVERLAP_ENCLOSED) != 0;
+    evaluation->fallbacks += (evaluation->flags[k] & CONTACT_OVERLAP_FALLBACK) != 0;
+  }
+  return STATUS_OK;
+}
+
+static void overlap_halfspaces(ContactEvaluation *evaluation, const ContactLayout *layout, double time) {
+#pragma omp parallel for schedule(static) if (evaluation->pair_count - evaluation->mesh_pair_count > 512)
+  for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
+    int h = layout->facings[evaluation->pairs[k].facing].halfspace;
+    double point[3], *gradient = evaluation->gradients + 24 * (size_t)k;
+    contact_layout_plane(layout, h, time, point);
+    contact_halfspace_overlap(evaluation->coordinates + 24 * (size_t)k, point,
+                              layout->def.halfspaces[h].normal, &evaluation->volumes[k], gradient, NULL);
+    memset(gradient + 12, 0, 12 * sizeof(double));
+  }
+}
+
+// Drops the pairs without overlap, keeping the order.
+static void keep_overlapping(ContactEvaluation *evaluation) {
+  size_t kept = 0, mesh_kept = 0, row = 24 * sizeof(double);
+  for (size_t k = 0; k < (size_t)evaluation->pair_count; k++) {
+    if (!(evaluation->volumes[k] > 0)) continue;
+    evaluation->pairs[kept] = evaluation->pairs[k];
+    evaluation->volumes[kept] = evaluation->volumes[k];
+    if (kept != k) {
+      memcpy(evaluation->coordinates + 24 * kept, evaluation->coordinates + 24 * k, row);
+      memcpy(evaluation->gradients + 24 * kept, evaluation->gradients + 24 * k, row);
+    }
+    kept++;
+    mesh_kept += k < (size_t)evaluation->mesh_pair_count;
+  }
+  evaluation->pair_count = (int)kept;
+  evaluation->mesh_pair_count = (int)mesh_kept;
+}
+
+// W_i = Σ_j V_ij, W_a = ¼ Σ_{i∋a} W_i.
+static void cover(ContactEvaluation *evaluation) {
+  ContactPatches *patches = &evaluation->patches;
+  for (int k = 0; k < evaluation->pair_count; k++)
+    for (int side = 0; side < 2; side++) {
+      int e = patches->pair_elements[k][side];
+      if (e >= 0) patches->elements[e].covered += evaluation->volumes[k];
+    }
+  for (int e = 0; e < patches->element_count; e++) {
+    const ContactElement *element = &patches->elements[e];
+    for (int v = 0; v < 4; v++) patches->nodes[element->nodes[v]].covered += element->covered / 4;
+    evaluation->covered[element->tet] += element->covered;
+  }
+}
+
+// −p_ij ∇V_ij onto the nodes.
+static void push_apart(ContactEvaluation *evaluation) {
+  ContactPatches *patches = &evaluation->patches;
+  for (int k = 0; k < evaluation->pair_count; k++)
+    for (int side = 0; side < 2; side++) {
+      int e = patches->pair_elements[k][side];
+      if (e < 0) continue;
+      const double *gradient = evaluation->gradients + 24 * (size_t)k + 12 * side;
+      for (int v = 0; v < 4; v++) {
+        double *force = patches->nodes[patches->elements[e].nodes[v]].force;
+        for (int c = 0; c < 3; c++) force[c] -= evaluation->pressures[k] * gradient[3 * v + c];
+      }
+    }
+  for (int n = 0; n < patches->node_count; n++) {
+    const ContactNode *node = &patches->nodes[n];
+    for (size_t c = 0; c < 3; c++) evaluation->forces[3 * (size_t)node->vertex + c] += node->force[c];
+  }
+}
+
+static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout) {
+  const ContactPatches *patches = &evaluation->patches;
+  for (int f = 0; f < layout->facing_count; f++)
+    evaluation->interfaces[f] = (ContactInterface){.a = layout->facings[f].a, .b = layout->facings[f].b};
+  for (int p = 0; p < patches->patch_count; p++) {
+    const ContactPatch *patch = &patches->patches[p];
+    ContactInterface *interface = &evaluation->interfaces[patch->facing];
+    interface->active_count = patch->pair_end - patch->pair_begin;
+    for (int k = patch->pair_begin; k < patch->pair_end; k++) interface->volume += evaluation->volumes[k];
+    for (int n = patch->node_begin; n < patch->node_end; n++)
+      for (int c = 0; c < 3 && patches->nodes[n].side == 0; c++)
+        interface->force[c] += patches->nodes[n].force[c];
+  }
+}
+
+static Status apply_potential(ContactEvaluation *evaluation, const ContactLayout *layout) {
+  ContactPatches *patches = &evaluation->patches;
+  TRY(contact_patches_build(patches, layout, evaluation->pair_count, evaluation->pairs));
+  cover(evaluation);
+  for (int p = 0; p < patches->patch_count; p++)
+    evaluation->energy += contact_potential_apply(layout, patches, &patches->patches[p], evaluation->pairs,
+                                                  evaluation->volumes, evaluation->pressures);
+  push_apart(evaluation);
+  summarise(evaluation, layout);
+  return STATUS_OK;
+}
+
+Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout *layout,
+                              const ContactCandidateList *candidates, const ContactOverlapModel *model,
+                              bool with_halfspaces, double time, const double *positions) {
+  double start = clock_wall_s();
+  clear(evaluation);
+  TRY(sift(evaluation, layout, candidates, with_halfspaces, positions));
+  TRY(overlap_meshes(evaluation, layout, model));
+  overlap_halfspaces(evaluation, layout, time);
+  keep_overlapping(evaluation);
+  double overlapped = clock_wall_s();
+  TRY(apply_potential(evaluation, layout));
+  memcpy(evaluation->positions, positions, 3 * (size_t)layout->def.vertex_count * sizeof(double));
+  evaluation->time = time;
+  evaluation->is_valid = true;
+  evaluation->overlap_s = overlapped - start;
+  evaluation->force_s = clock_wall_s() - overlapped;
+  return STATUS_OK;
+}
+
+bool contact_evaluation_is_at(const ContactEvaluation *evaluation, const ContactLayout *layout, double time,
+                              const double *positions) {
+  size_t size = 3 * (size_t)layout->def.vertex_count * sizeof(double);
+  return evaluation->is_valid && evaluation->time == time &&
+         memcmp(evaluation->positions, positions, size) == 0;
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One evaluation of the contact potential: which candidates overlap, by how much, and what follows. The
+// result is a pure function of positions, time and overlap model, as long as the candidates cover the
+// positions; sums run in the order of the candidates, so it is the same for any number of threads.
+#ifndef TETLAP_CONTACT_EVALUATION_H
+#define TETLAP_CONTACT_EVALUATION_H
+
+#include "contact/candidates.h"
+#include "contact/patches.h"
+
+typedef struct ContactEvaluation {
+  bool is_valid;
+  double time;       // of this result [s]
+  double *positions; // of this result [m]                                (vertex_count, 3)
+  double energy;     // U [J]
+  // Pairs with V > 0 in the candidates' order, so those with half-spaces last.
+  int pair_count, mesh_pair_count;
+  ContactPair *pairs;            //                                       (pair_count)
+  double *coordinates;           // as given to the model [m]             (mesh_pair_count, 2, 4, 3)
+  double *volumes;               // V_ij [m³]                             (pair_count)
+  double *gradients;             // ∇V_ij [m²]; half-space's part: zeros  (pair_count, 2, 4, 3)
+  double *pressures;             // p_ij [Pa]                             (pair_count)
+  ContactPatches patches;        // with W_i, W_a and forces per node
+  double *forces;                // −∂U/∂x [N]                            (vertex_count, 3)
+  double *covered;               // Σ over facings of W_i [m³]            (tet_count)
+  ContactInterface *interfaces;  //                                       (facing_count)
+  long long tried;               // pairs given to the model
+  long long enclosed, fallbacks; // how many of them the model flagged so
+  double overlap_s, force_s;     // wall time [s]
+  // Scratch memory.
+  unsigned char *is_kept; // of each candidate
+  unsigned *flags;
+  size_t kept_capacity, pair_capacity, coordinate_capacity, volume_capacity, gradient_capacity;
+  size_t pressure_capacity, flag_capacity;
+} ContactEvaluation;
+
+Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout);
+void contact_evaluation_destroy(ContactEvaluation *evaluation);
+
+// Half-spaces only where asked: no overlap model takes part in them. STATUS_SOLVER: the model gave a volume
+// that is not a number ≥ 0.
+Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout *layout,
+                              const ContactCandidateList *candidates, const ContactOverlapModel *model,
+                              bool with_halfspaces, double time, const double *positions);
+
+// Whether the result is that of these positions.
+bool contact_evaluation_is_at(const ContactEvaluation *evaluation, const ContactLayout *layout, double time,
+                              const double *positions);
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/onset.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "contact/separation.h"
+
+Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout) {
+  *onset = (ContactOnset){0};
+  onset->is_marked = memory_zeroed((size_t)layout->def.vertex_count, 1);
+  return onset->is_marked ? STATUS_OK : status_no_memory("watched pairs");
+}
+
+void contact_onset_destroy(ContactOnset *onset) {
+  memory_free(onset->watched);
+  memory_free(onset->is_engaged);
+  memory_free(onset->is_marked);
+  *onset = (ContactOnset){0};
+}
+
+static double separation_of(const ContactLayout *layout, const ContactPair *pair, double time,
+                            const double *positions, double enough) {
+  double x[24], point[3];
+  contact_layout_gather(layout, pair->tets[0], positions, x);
+  if (pair->tets[1] >= 0) {
+    contact_layout_gather(layout, pair->tets[1], positions, x + 12);
+    return contact_separation_pair(x, enough);
+  }
+  int h = layout->facings[pair->facing].halfspace;
+  contact_layout_plane(layout, h, time, point);
+  return contact_separation_halfspace(x, point, layout->def.halfspaces[h].normal);
+}
+
+static void find_engaged(ContactOnset *onset, const ContactLayout *layout,
+                         const ContactCandidateList *candidates, const ContactEvaluation *evaluation) {
+  double touch = 1e-6 * layout->margin;
+#pragma omp parallel for schedule(static) if (candidates->count > 512)
+  for (int k = 0; k < candidates->count; k++)
+    onset->is_engaged[k] = !(
+        separation_of(layout, &candidates->pairs[k], evaluation->time, evaluation->positions, touch) > touch);
+}
+
+static void mark(ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,
+                 unsigned char value) {
+  for (int side = 0; side < 2 && pair->tets[side] >= 0; side++)
+    for (int v = 0; v < 4; v++) onset->is_marked[layout->def.tets[pair->tets[side]][v]] = value;
+}
+
+static bool is_near_patch(const ContactOnset *onset, const ContactLayout *layout, int tet) {
+  if (tet < 0) return true;
+  const int *v = layout->def.tets[tet];
+  return onset->is_marked[v[0]] || onset->is_marked[v[1]] || onset->is_marked[v[2]] || onset->is_marked[v[3]];
+}
+
+// Rule 2 for the candidates begin … end of one facing.
+static void watch_facing(ContactOnset *onset, const ContactLayout *layout, const ContactPair *pairs,
+                         int begin, int end) {
+  for (int k = begin; k < end; k++)
+    if (onset->is_engaged[k]) mark(onset, layout, &pairs[k], 1);
+  for (int k = begin; k < end; k++) {
+    bool widens =
+        is_near_patch(onset, layout, pairs[k].tets[0]) && is_near_patch(onset, layout, pairs[k].tets[1]);
+    if (!onset->is_engaged[k] && !widens) onset->watched[onset->count++] = pairs[k];
+  }
+  for (int k = begin; k < end; k++)
+    if (onset->is_engaged[k]) mark(onset, layout, &pairs[k], 0);
+}
+
+Status contact_onset_choose(ContactOnset *onset, const ContactLayout *layout,
+                            const ContactCandidateList *candidates, const ContactEvaluation *evaluation) {
+  size_t most = (size_t)candidates->count;
+  if (!memory_reserve((void **)&onset->watched, &onset->capacity, most, sizeof(ContactPair)) ||
+      !memory_reserve((void **)&onset->is_engaged, &onset->engaged_capacity, most, 1))
+    return status_no_memory("watched pairs");
+  onset->count = 0;
+  find_engaged(onset, layout, candidates, evaluation);
+  for (int f = 0; f < layout->facing_count; f++)
+    watch_facing(onset, layout, candidates->pairs, candidates->begin[f], candidates->begin[f + 1]);
+  return STATUS_OK;
+}
+
+double contact_onset_gap(const ContactOnset *onset, const ContactLayout *layout, double time,
+                         const double *positions) {
+  double gap = layout->margin;
+#pragma omp parallel for schedule(static) reduction(min : gap) if (onset->count > 512)
+  for (int k = 0; k < onset->count; k++)
+    gap = fmin(gap, separation_of(layout, &onset->watched[k], time, positions, gap));
+  return gap;
+}
