@@ -45,6 +45,10 @@ void record_numbers(Record *record, const char *key, const double *values, int c
   for (int i = 0; i < count; i++) record_append_number(list, values[i]);
 }
 
+void record_merge(Record *record, const Record *other) {
+  json_object_update(node_of(record), (json_t *)other);
+}
+
 Record *record_child(Record *record, const char *key) {
   json_t *child = json_object();
   return json_object_set_new(node_of(record), key, child) == 0 ? (Record *)child : NULL;
@@ -68,19 +72,43 @@ void record_append_text(RecordList *list, const char *value) {
   json_array_append_new((json_t *)list, json_string(value));
 }
 
-Status record_print(const Record *root, FILE *stream) {
-  if (json_dumpf((const json_t *)root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0)
-    return status_fail(STATUS_IO, "writing JSON failed");
-  return fputc('\n', stream) == EOF ? status_fail(STATUS_IO, "writing JSON failed") : STATUS_OK;
+RecordList *record_list_new(void) {
+  return (RecordList *)json_array();
 }
 
-Status record_write(const Record *root, const char *path) {
+void record_list_destroy(RecordList *root) {
+  json_decref((json_t *)root);
+}
+
+static Status print_tree(const json_t *root, FILE *stream) {
+  if (json_dumpf(root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0 || fputc('\n', stream) == EOF)
+    return status_fail(STATUS_IO, "writing JSON failed");
+  return STATUS_OK;
+}
+
+static Status write_tree(const json_t *root, const char *path) {
   FileWriter writer;
   TRY(file_begin(&writer, path));
-  Status status = record_print(root, writer.stream);
+  Status status = print_tree(root, writer.stream);
   if (status) {
     file_abandon(&writer);
     return status_prefix(status, "%s", path);
   }
   return file_commit(&writer);
+}
+
+Status record_print(const Record *root, FILE *stream) {
+  return print_tree((const json_t *)root, stream);
+}
+
+Status record_write(const Record *root, const char *path) {
+  return write_tree((const json_t *)root, path);
+}
+
+Status record_list_print(const RecordList *root, FILE *stream) {
+  return print_tree((const json_t *)root, stream);
+}
+
+Status record_list_write(const RecordList *root, const char *path) {
+  return write_tree((const json_t *)root, path);
 }

@@ -21,14 +21,20 @@ void record_integer(Record *record, const char *key, long long value);
 void record_text(Record *record, const char *key, const char *value);
 void record_bool(Record *record, const char *key, bool value);
 void record_numbers(Record *record, const char *key, const double *values, int count);
+void record_merge(Record *record,
+                  const Record *other); // copies what `other` has into `record`; NULL: nothing
 Record *record_child(Record *record, const char *key);
 RecordList *record_list(Record *record, const char *key);
 Record *record_append(RecordList *list);
+RecordList *record_list_new(void); // a list as the root; NULL: no memory
+void record_list_destroy(RecordList *root);
 void record_append_number(RecordList *list, double value);
 void record_append_text(RecordList *list, const char *value);
 
 // Indented, keys in the order of insertion, a newline at the end.
 Status record_print(const Record *root, FILE *stream);
 Status record_write(const Record *root, const char *path); // whole or not at all
+Status record_list_print(const RecordList *root, FILE *stream);
+Status record_list_write(const RecordList *root, const char *path);
 
 #endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The energy audit of a run. The audited total
+//     A = kinetic + elastic + gravity + contact + dissipated − work of driven vertices and obstacles
+// is constant in exact mechanics and falls by the integrator's own damping; a rise is an error. Powers are
+// integrated by the trapezoidal rule over accepted steps.
+#ifndef TETLAP_FEM_AUDIT_H
+#define TETLAP_FEM_AUDIT_H
+
+#include "fem/effect.h"
+
+typedef struct FemAudit {
+  double time;             // of the last accepted state [s]
+  double dissipated, work; // so far [J]
+  double total;            // A [J]
+  double lowest;           // smallest A so far [J]
+  double gain;             // largest rise of A above an earlier value [J]
+  double scale;            // the scene's energy: largest of its parts so far, gravity from its start [J]
+  double gravity_at_start;
+  double dissipated_power, driven_power; // at `time` [W]
+} FemAudit;
+
+// `floor` [J]: what the scale is at least, so that a scene at rest is not judged by rounding.
+void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, double floor);
+
+// The audit as it would be after accepting this state.
+FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy);
+
+#endif

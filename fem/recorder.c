@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/recorder.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect_contact.h"
+#include "fem/pvd.h"
+#include "fem/vtu.h"
+
+// The fixed columns of the history; those of bodies and interfaces follow.
+static const char *const columns[] = {
+    "time_s",       "kinetic_J",  "elastic_J",       "gravity_J",  "contact_J", "work_J",    "dissipated_J",
+    "total_J",      "momentum_x", "momentum_y",      "momentum_z", "angular_x", "angular_y", "angular_z",
+    "active_pairs", "overlap_m3", "deepest_overlap", "min_det_F",  "step_s",    "steps",
+};
+enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
+
+static ContactSystem *contact_of(const FemSystem *system) {
+  void *effect = fem_system_effect(system, "contact");
+  return effect ? fem_effect_contact_system(effect) : NULL;
+}
+
+static const ContactInterface *interfaces_of(const FemSystem *system, int *count) {
+  ContactSystem *contact = contact_of(system);
+  *count = 0;
+  return contact ? contact_system_interfaces(contact, count) : NULL;
+}
+
+static Status add_columns(FemRecorder *recorder) {
+  const FemModel *model = recorder->system->model;
+  FemHistory *history = &recorder->history;
+  for (int i = 0; i < COLUMN_COUNT; i++) TRY(fem_history_add_column(history, "%s", columns[i]));
+  for (int b = 0; b < model->scene->body_count; b++)
+    for (int c = 0; c < 3; c++)
+      TRY(fem_history_add_column(history, "centre_%s_%c_m", model->bodies[b].name, "xyz"[c]));
+  int count;
+  const ContactInterface *interfaces = interfaces_of(recorder->system, &count);
+  const void *effect = fem_system_effect(recorder->system, "contact");
+  for (int i = 0; i < count; i++)
+    for (int c = 0; c < 3; c++)
+      TRY(fem_history_add_column(history, "force_%s_%s_%c_N",
+                                 fem_effect_contact_name(effect, interfaces[i].a),
+                                 fem_effect_contact_name(effect, interfaces[i].b), "xyz"[c]));
+  recorder->row = memory_zeroed((size_t)history->column_count, sizeof *recorder->row);
+  return recorder->row ? STATUS_OK : status_no_memory("the history");
+}
+
+static Status create(FemRecorder *recorder, const char *directory) {
+  const FemModel *model = recorder->system->model;
+  size_t vertices = (size_t)model->vertex_count, tets = (size_t)model->tet_count;
+  recorder->det_F = memory_zeroed(tets, sizeof *recorder->det_F);
+  recorder->overlap = memory_zeroed(tets, sizeof *recorder->overlap);
+  if (!recorder->det_F || !recorder->overlap) return status_no_memory("the measures");
+  if (!directory) return STATUS_OK;
+  recorder->writes_vtu = model->scene->write_vtu;
+  recorder->writes_history = model->scene->write_history;
+  size_t frames = (size_t)recorder->frame_capacity;
+  recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
+  recorder->frame_times = memory_zeroed(frames, sizeof *recorder->frame_times);
+  recorder->frame_files = memory_zeroed(frames, sizeof *recorder->frame_files);
+  recorder->displacement = memory_zeroed(3 * vertices, sizeof *recorder->displacement);
+  recorder->contact_force = memory_zeroed(3 * vertices, sizeof *recorder->contact_force);
+  recorder->stress = memory_zeroed(6 * tets, sizeof *recorder->stress);
+  recorder->von_mises = memory_zeroed(tets, sizeof *recorder->von_mises);
+  if (!recorder->directory || !recorder->frame_times || !recorder->frame_files || !recorder->displacement ||
+      !recorder->contact_force || !recorder->stress || !recorder->von_mises)
+    return status_no_memory("the output arrays");
+  TRY(file_make_directories(directory));
+  if (!recorder->writes_history) return STATUS_OK;
+  char *path = file_join(directory, "history.csv");
+  if (!path) return status_no_memory("a file name");
+  Status status = fem_history_create(&recorder->history, path);
+  memory_free(path);
+  return status ? status : add_columns(recorder);
+}
+
+Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char *directory,
+                           int frame_capacity) {
+  *recorder = (FemRecorder){.system = system, .frame_capacity = frame_capacity};
+  Status status = create(recorder, directory);
+  if (status) fem_recorder_destroy(recorder);
+  return status;
+}
+
+void fem_recorder_destroy(FemRecorder *recorder) {
+  fem_history_destroy(&recorder->history);
+  for (int f = 0; f < recorder->frame_count; f++) memory_free(recorder->frame_files[f]);
+  memory_free(recorder->frame_files);
+  memory_free(recorder->frame_times);
+  memory_free(recorder->directory);
+  memory_free(recorder->row);
+  memory_free(recorder->displacement);
+  memory_free(recorder->contact_force);
+  memory_free(recorder->stress);
+  memory_free(recorder->von_mises);
+  memory_free(recorder->det_F);
+  memory_free(recorder->overlap);
+  *recorder = (FemRecorder){0};
+}
+
+static double det3(const double F[9]) {
+  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+         F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+static void gather(const FemSystem *system, int tet, double corners[12]) {
+  for (int k = 0; k < 4; k++)
+    memcpy(corners + 3 * k, system->positions + 3 * system->model->tets[tet][k], 3 * sizeof *corners);
+}
+
+static void measure_elements(FemRecorder *recorder, FemMeasures *measures) {
+  const FemSystem *system = recorder->system;
+  ContactSystem *contact = contact_of(system);
+  const double *covered = contact ? contact_system_covered(contact) : NULL;
+  measures->min_det_F = INFINITY;
+  for (int e = 0; e < system->model->tet_count; e++) {
+    double corners[12], F[9];
+    gather(system, e, corners);
+    fem_element_deformation(&system->model->elements[e], corners, F);
+    recorder->det_F[e] = det3(F);
+    recorder->overlap[e] = covered ? covered[e] / system->model->elements[e].volume : 0;
+    if (system->model->bodies[system->model->tet_body[e]].is_obstacle) continue;
+    measures->min_det_F = fmin(measures->min_det_F, recorder->det_F[e]);
+    measures->deepest_overlap = fmax(measures->deepest_overlap, recorder->overlap[e]);
+  }
+}
+
+static void measure_motion(const FemSystem *system, FemMeasures *measures) {
+  Vec3 momentum = {0, 0, 0}, angular = {0, 0, 0};
+  for (int a = 0; a < system->model->vertex_count; a++) {
+    Vec3 p = vec3_scale(system->model->mass[a], vec3_at(system->velocities + 3 * a));
+    momentum = vec3_add(momentum, p);
+    angular = vec3_add(angular, vec3_cross(vec3_at(system->positions + 3 * a), p));
+  }
+  vec3_store(measures->momentum, momentum);
+  vec3_store(measures->angular_momentum, angular);
+}
+
+static void measure_contact(const FemSystem *system, FemMeasures *measures) {
+  ContactSystem *contact = contact_of(system);
+  if (!contact) return;
+  int count;
+  const ContactInterface *interfaces = contact_system_interfaces(contact, &count);
+  for (int i = 0; i < count; i++) {
+    measures->overlap_volume += interfaces[i].volume;
+    measures->contact_force = fmax(measures->contact_force, vec3_length(vec3_at(interfaces[i].force)));
+  }
+  measures->active_pairs = contact_system_active_count(contact);
+}
+
+Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures) {
+  *measures = (FemMeasures){0};
+  TRY(fem_system_energy(recorder->system, time, &measures->energy));
+  measure_elements(recorder, measures);
+  measure_motion(recorder->system, measures);
+  measure_contact(recorder->system, measures);
+  return STATUS_OK;
+}
+
+static double von_mises(const double s[6]) {
+  double normal =
+      (s[0] - s[1]) * (s[0] - s[1]) + (s[1] - s[2]) * (s[1] - s[2]) + (s[2] - s[0]) * (s[2] - s[0]);
+  return sqrt(0.5 * normal + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+static void fill_arrays(FemRecorder *recorder) {
+  const FemSystem *system = recorder->system;
+  const FemModel *model = system->model;
+  ContactSystem *contact = contact_of(system);
+  for (int i = 0; i < 3 * model->vertex_count; i++)
+    recorder->displacement[i] = system->positions[i] - model->rest[i];
+  if (contact)
+    memcpy(recorder->contact_force, contact_system_forces(contact),
+           3 * (size_t)model->vertex_count * sizeof *recorder->contact_force);
+  for (int e = 0; e < model->tet_count; e++) {
+    const FemModelBody *body = &model->bodies[model->tet_body[e]];
+    if (body->is_obstacle) continue;
+    double corners[12];
+    gather(system, e, corners);
+    fem_element_cauchy(&model->elements[e], &body->material, corners, recorder->stress + 6 * e);
+    recorder->von_mises[e] = von_mises(recorder->stress + 6 * e);
+  }
+}
+
+static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
+  const FemSystem *system = recorder->system;
+  const FemModel *model = system->model;
+  fill_arrays(recorder);
+  const FemVtuArray arrays[] = {
+      {.name = "displacement", .components = 3, .reals = recorder->displacement},
+      {.name = "velocity", .components = 3, .reals = system->velocities},
+      {.name = "contact_force", .components = 3, .reals = recorder->contact_force},
+      {.name = "body", .is_cell = true, .components = 1, .integers = model->tet_body},
+      {.name = "overlap_fraction", .is_cell = true, .components = 1, .reals = recorder->overlap},
+      {.name = "det_F", .is_cell = true, .components = 1, .reals = recorder->det_F},
+      {.name = "stress", .is_cell = true, .components = 6, .reals = recorder->stress},
+      {.name = "von_mises", .is_cell = true, .components = 1, .reals = recorder->von_mises},
+  };
+  const FemVtuFrame frame = {.time = time,
+                             .vertex_count = model->vertex_count,
+                             .positions = system->positions,
+                             .tet_count = model->tet_count,
+                             .tets = (const int *)model->tets,
+                             .arrays = arrays,
+                             .array_count = (int)(sizeof arrays / sizeof *arrays)};
+  return fem_vtu_write(path, &frame);
+}
+
+static Status write_frame(FemRecorder *recorder, double time) {
+  enum { NAME_SIZE = 32 };
+  int number = recorder->frame_count;
+  char *name = memory_zeroed(NAME_SIZE, 1);
+  if (!name) return status_no_memory("a file name");
+  snprintf(name, NAME_SIZE, "frame_%05d.vtu", number);
+  recorder->frame_files[number] = name;
+  recorder->frame_times[number] = time;
+  recorder->frame_count++;
+  char *path = file_join(recorder->directory, name), *list = file_join(recorder->directory, "frames.pvd");
+  Status status = path && list ? write_vtu(recorder, path, time) : status_no_memory("a file name");
+  if (!status)
+    status = fem_pvd_write(list, recorder->frame_times, (const char *const *)recorder->frame_files,
+                           recorder->frame_count);
+  memory_free(path);
+  memory_free(list);
+  return status;
+}
+
+static double *append_centres(const FemSystem *system, double *row) {
+  const FemModel *model = system->model;
+  for (int b = 0; b < model->scene->body_count; b++) {
+    Vec3 centre = {0, 0, 0};
+    for (int a = model->bodies[b].vertex_begin; a < model->bodies[b].vertex_end; a++)
+      centre = vec3_add(
+          centre, vec3_scale(model->mass[a] / model->bodies[b].mass, vec3_at(system->positions + 3 * a)));
+    vec3_store(row, centre);
+    row += 3;
+  }
+  return row;
+}
+
+static Status write_history(FemRecorder *recorder, double time, const FemMeasures *m, const FemAudit *audit,
+                            double step, long long step_count) {
+  const double fixed[COLUMN_COUNT] = {time,
+                                      m->energy.kinetic,
+                                      m->energy.elastic,
+                                      m->energy.gravity,
+                                      m->energy.contact,
+                                      audit->work,
+                                      audit->dissipated,
+                                      audit->total,
+                                      m->momentum[0],
+                                      m->momentum[1],
+                                      m->momentum[2],
+                                      m->angular_momentum[0],
+                                      m->angular_momentum[1],
+                                      m->angular_momentum[2],
+                                      (double)m->active_pairs,
+                                      m->overlap_volume,
+                                      m->deepest_overlap,
+                                      m->min_det_F,
+                                      step,
+                                      (double)step_count};
+  memcpy(recorder->row, fixed, sizeof fixed);
+  double *row = append_centres(recorder->system, recorder->row + COLUMN_COUNT);
+  int count;
+  const ContactInterface *interfaces = interfaces_of(recorder->system, &count);
+  for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(interfaces[i].force));
+  return fem_history_add_row(&recorder->history, recorder->row);
+}
+
+Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
+                          const FemAudit *audit, double step, long long step_count) {
+  if (!recorder->directory) return STATUS_OK;
+  double began = clock_wall_s();
+  if (recorder->writes_vtu) TRY(write_frame(recorder, time));
+  if (recorder->writes_history) TRY(write_history(recorder, time, measures, audit, step, step_count));
+  recorder->seconds += clock_wall_s() - began;
+  return STATUS_OK;
+}
+
+Status fem_recorder_finish(FemRecorder *recorder) {
+  return recorder->directory && recorder->writes_history ? fem_history_write(&recorder->history) : STATUS_OK;
+}

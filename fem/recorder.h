@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run writes frame by frame: frame_NNNN.vtu with frames.pvd, and history.csv; and the measures that go
+// with a frame. docs/output.md describes every array and column.
+#ifndef TETLAP_FEM_RECORDER_H
+#define TETLAP_FEM_RECORDER_H
+
+#include "fem/audit.h"
+#include "fem/history.h"
+#include "fem/system.h"
+
+// The measures of one state.
+typedef struct FemMeasures {
+  FemEnergy energy;
+  double momentum[3], angular_momentum[3]; // [kg m/s], about the origin [kg m²/s]
+  double deepest_overlap;                  // largest share of an element that is covered
+  double min_det_F;
+  double overlap_volume; // [m³]
+  int active_pairs;
+  double contact_force; // largest norm over interfaces [N]
+} FemMeasures;
+
+typedef struct FemRecorder {
+  FemSystem *system; // borrowed
+  char *directory;   // owned; NULL: nothing is written
+  bool writes_vtu, writes_history;
+  FemHistory history;
+  double *row; // one line of the history
+  int row_capacity;
+  double *frame_times; // (frame_count)
+  char **frame_files;  // (frame_count)
+  int frame_count, frame_capacity;
+  double *displacement, *contact_force;         // scratch             (vertex_count, 3)
+  double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
+  double seconds;                               // spent writing
+} FemRecorder;
+
+// `directory` NULL: measures only. `frame_capacity`: how many frames will come.
+Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char *directory,
+                           int frame_capacity);
+void fem_recorder_destroy(FemRecorder *recorder);
+
+// The measures at the system's scattered state.
+Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures);
+
+// Writes one frame of the scattered state. `step` [s] and `step_count` are the integrator's.
+Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
+                          const FemAudit *audit, double step, long long step_count);
+
+// Makes the history whole on disk.
+Status fem_recorder_finish(FemRecorder *recorder);
+
+#endif

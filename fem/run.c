@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect_contact.h"
+
+// A step that lifts the audited energy by more than this share of the scene's energy above its lowest value,
+// and by more than the second in one go, is taken back and tried again with a smaller step; at most so many
+// times in a row.
+static const double ENERGY_RISE_ALLOWED = 3e-4, ENERGY_RISE_OF_STEP = 1e-5, ENERGY_RETRY_FACTOR = 0.2;
+enum { ENERGY_RETRIES_IN_A_ROW = 8 };
+
+typedef struct Run {
+  const FemModel *model;        // borrowed
+  const FemRunOptions *options; // borrowed
+  FemRunResult *result;         // borrowed
+  FemSystem system;
+  FemIntegrator *integrator;
+  FemRecorder recorder;
+  FemAudit audit;
+  double time;           // of the last accepted state
+  double *u, *v;         // the last accepted state         (unknown_count)
+  double *u_new, *v_new; // the state under judgement  (unknown_count)
+  int next_frame;
+  int retries; // in a row
+} Run;
+
+FemSolverKind fem_run_solver(const FemModel *model) {
+  FemSolverKind kind = model->scene->solver;
+  return kind == FEM_SOLVER_AUTO ? FEM_SOLVER_CHOLMOD : kind;
+}
+
+static double frame_time(const Run *run, int frame) {
+  const FemSceneDef *scene = run->model->scene;
+  return frame == scene->frames ? scene->end : scene->end * frame / scene->frames;
+}
+
+static void keep_frame(Run *run, double time) {
+  FemRunResult *result = run->result;
+  if (!result->trajectory) return;
+  int frame = result->frame_count++;
+  size_t values = 3 * (size_t)result->vertex_count;
+  result->frame_times[frame] = time;
+  memcpy(result->trajectory + (size_t)frame * values, run->system.positions, values * sizeof(double));
+  void *effect = fem_system_effect(&run->system, "contact");
+  if (!effect) return;
+  int count;
+  const ContactInterface *interfaces = contact_system_interfaces(fem_effect_contact_system(effect), &count);
+  for (int i = 0; i < count; i++)
+    vec3_store(result->interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i),
+               vec3_at(interfaces[i].force));
+}
+
+static void keep_extremes(FemRunResult *result, const FemMeasures *measures) {
+  result->pairs_max = measures->active_pairs > result->pairs_max ? measures->active_pairs : result->pairs_max;
+  result->overlap_volume_max = fmax(result->overlap_volume_max, measures->overlap_volume);
+  result->contact_force_max = fmax(result->contact_force_max, measures->contact_force);
+  result->deepest_overlap_max = fmax(result->deepest_overlap_max, measures->deepest_overlap);
+  result->min_det_F = fmin(result->min_det_F, measures->min_det_F);
+}
+
+// Writes the frame of the scattered state.
+static Status write_frame(Run *run, double time, const FemMeasures *measures) {
+  FemIntegratorStats stats = fem_integrator_stats(run->integrator);
+  FemAudit audit = time > run->audit.time ? fem_audit_next(&run->audit, time, &measures->energy) : run->audit;
+  TRY(fem_recorder_write(&run->recorder, time, measures, &audit, stats.last_step, stats.steps));
+  run->result->last_contact_force = measures->contact_force;
+  keep_frame(run, time);
+  run->next_frame++;
+  return STATUS_OK;
+}
+
+// Measures at a frame within the last step; the contact lists are renewed there if it lies beyond their
+// margin.
+static Status measure_within_step(Run *run, double time, FemMeasures *measures) {
+  const double *u, *v;
+  TRY(fem_integrator_at(run->integrator, time, &u, &v));
+  fem_system_scatter(&run->system, time, u, v);
+  Status status = fem_recorder_measure(&run->recorder, time, measures);
+  if (status != STATUS_RETRY) return status;
+  TRY(fem_system_accept(&run->system, time, u, v, 0));
+  return fem_recorder_measure(&run->recorder, time, measures);
+}
+
+static Status write_frames_until(Run *run, double time) {
+  double slack = 1e-12 * run->model->scene->end;
+  while (run->next_frame <= run->model->scene->frames && frame_time(run, run->next_frame) <= time + slack) {
+    double at = fmin(frame_time(run, run->next_frame), time);
+    FemMeasures measures;
+    TRY(measure_within_step(run, at, &measures));
+    TRY(write_frame(run, at, &measures));
+  }
+  return STATUS_OK;
+}
+
+static bool gains_energy(const FemAudit *before, const FemAudit *after) {
+  double rise = after->total - before->lowest;
+  return rise > ENERGY_RISE_ALLOWED * after->scale &&
+         after->total - before->total > ENERGY_RISE_OF_STEP * after->scale;
+}
+
+// Back to the last accepted state with a smaller step.
+static Status take_back(Run *run, double step) {
+  run->retries++;
+  run->result->energy_retries++;
+  return fem_integrator_restart(run->integrator, run->time, run->u, run->v, ENERGY_RETRY_FACTOR * step);
+}
+
+static Status observe(Run *run, const FemMeasures *measures) {
+  if (run->options->stop && *run->options->stop)
+    return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
+                       run->time);
+  if (!run->options->observe) return STATUS_OK;
+  FemIntegratorStats stats = fem_integrator_stats(run->integrator);
+  FemRunProgress progress = {.system = &run->system,
+                             .time = run->time,
+                             .end = run->model->scene->end,
+                             .step = stats.last_step,
+                             .step_count = stats.steps,
+                             .active_pairs = measures->active_pairs};
+  return run->options->observe(run->options->observer, &progress);
+}
+
+static void keep_state(Run *run, double time) {
+  double *u = run->u, *v = run->v;
+  run->u = run->u_new, run->v = run->v_new;
+  run->u_new = u, run->v_new = v;
+  run->time = time;
+  run->retries = 0;
+}
+
+// One step: taken, judged, shown, accepted.
+static Status advance(Run *run) {
+  double time;
+  bool is_onset;
+  TRY(fem_integrator_step(run->integrator, &time, &is_onset));
+  const double *u, *v;
+  TRY(fem_integrator_at(run->integrator, time, &u, &v));
+  size_t bytes = (size_t)run->model->unknown_count * sizeof(double);
+  memcpy(run->u_new, u, bytes);
+  memcpy(run->v_new, v, bytes);
+  fem_system_scatter(&run->system, time, run->u_new, run->v_new);
+  FemMeasures measures;
+  TRY(fem_recorder_measure(&run->recorder, time, &measures));
+  FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
+  if (gains_energy(&run->audit, &next) && run->retries < ENERGY_RETRIES_IN_A_ROW)
+    return take_back(run, time - run->time);
+
+  TRY(write_frames_until(run, time));
+  run->audit = next;
+  keep_state(run, time);
+  keep_extremes(run->result, &measures);
+  FemIntegratorStats stats = fem_integrator_stats(run->integrator);
+  TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
+  TRY(observe(run, &measures));
+  return is_onset ? fem_integrator_restart(run->integrator, time, run->u, run->v, 0) : STATUS_OK;
+}
+
+// "a, b" for each interface.
+static Status keep_names(FemRunResult *result, void *effect) {
+  enum { NAME_SIZE = 256 };
+  int count;
+  const ContactInterface *interfaces = contact_system_interfaces(fem_effect_contact_system(effect), &count);
+  result->interface_names = memory_zeroed((size_t)count, sizeof *result->interface_names);
+  if (!result->interface_names) return status_no_memory("the names of interfaces");
+  result->interface_count = count;
+  for (int i = 0; i < count; i++) {
+    result->interface_names[i] = memory_zeroed(NAME_SIZE, 1);
+    if (!result->interface_names[i]) return status_no_memory("the names of interfaces");
+    snprintf(result->interface_names[i], NAME_SIZE, "%s, %s",
+             fem_effect_contact_name(effect, interfaces[i].a),
+             fem_effect_contact_name(effect, interfaces[i].b));
+  }
+  return STATUS_OK;
+}
+
+static Status keep_trajectory(Run *run) {
+  FemRunResult *result = run->result;
+  void *effect = fem_system_effect(&run->system, "contact");
+  if (effect) TRY(keep_names(result, effect));
+  size_t frames = (size_t)run->model->scene->frames + 1;
+  result->vertex_count = run->model->vertex_count;
+  result->frame_times = memory_zeroed(frames, sizeof(double));
+  result->trajectory = memory_zeroed(frames * 3 * (size_t)result->vertex_count, sizeof(double));
+  result->interface_forces = memory_zeroed(frames * 3 * (size_t)result->interface_count, sizeof(double));
+  bool ok = result->frame_times && result->trajectory && result->interface_forces;
+  return ok ? STATUS_OK : status_no_memory("the kept trajectory");
+}
+
+// A rest state is not judged by rounding: a millionth of the bodies' E·V counts as the scene's energy at
+// least, less where gravity or motion is smaller.
+static double energy_floor(const FemModel *model) {
+  double floor = 0;
+  for (int b = 0; b < model->scene->body_count; b++)
+    floor +=
+        1e-12 * model->bodies[b].material.young * model->bodies[b].mass / model->bodies[b].material.density;
+  return floor;
+}
+
+static Status begin(Run *run) {
+  const FemModel *model = run->model;
+  const FemSceneDef *scene = model->scene;
+  size_t n = (size_t)model->unknown_count;
+  double **states[] = {&run->u, &run->v, &run->u_new, &run->v_new};
+  for (int i = 0; i < 4; i++)
+    if (!(*states[i] = memory_zeroed(n, sizeof(double)))) return status_no_memory("the state");
+  TRY(fem_system_create(&run->system, model));
+  for (size_t i = 0; i < n; i++) run->v[i] = model->initial_velocity[model->dof_of_unknown[i]];
+  FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
+                          .velocity_tolerance = fem_model_velocity_tolerance(model),
+                          .initial_step = scene->initial_step,
+                          .min_step = scene->min_step,
+                          .max_step = scene->max_step,
+                          .max_order = scene->max_order,
+                          .end = scene->end};
+  const FemSolverOps *solver = fem_solver_ops(fem_run_solver(model));
+  run->result->solver_name = solver->name;
+  TRY(fem_integrator_create(&run->integrator, &run->system, solver, &def));
+  TRY(fem_recorder_create(&run->recorder, &run->system, run->options->directory, scene->frames + 1));
+  if (run->options->keep_trajectory) TRY(keep_trajectory(run));
+  fem_system_scatter(&run->system, 0, run->u, run->v);
+  FemMeasures measures;
+  TRY(fem_recorder_measure(&run->recorder, 0, &measures));
+  fem_audit_begin(&run->audit, 0, &measures.energy, energy_floor(model));
+  keep_extremes(run->result, &measures);
+  return write_frame(run, 0, &measures);
+}
+
+static Status march(Run *run) {
+  TRY(begin(run));
+  while (run->time < run->model->scene->end) TRY(advance(run));
+  return STATUS_OK;
+}
+
+static void sum_phases(Run *run) {
+  FemRunPhases *phases = &run->result->phases;
+  const FemSystem *system = &run->system;
+  void *contact = fem_system_effect(system, "contact");
+  for (int i = 0; i < system->effect_count; i++) {
+    if (system->effects[i].self != contact) phases->forces += system->costs[i].force_s;
+    phases->assembly += system->costs[i].jacobian_s;
+  }
+  if (contact) {
+    const ContactCounters *counters = contact_system_counters(fem_effect_contact_system(contact));
+    phases->broad_phase = counters->broad_s;
+    phases->overlap = counters->overlap_s;
+    phases->contact = counters->force_s;
+    run->result->overlap_pairs = counters->pairs;
+  }
+  phases->analysis = run->result->solver.analyse_s;
+  phases->factorisation = run->result->solver.factorise_s;
+  phases->solve = run->result->solver.solve_s;
+  phases->output = run->recorder.seconds;
+}
+
+static Status collect(Run *run) {
+  FemRunResult *result = run->result;
+  result->audit = run->audit;
+  result->end_time = run->time;
+  result->peak_rss_bytes = memory_peak_bytes();
+  if (run->integrator) {
+    result->integrator = fem_integrator_stats(run->integrator);
+    result->solver = *fem_integrator_solver_stats(run->integrator);
+  }
+  result->pattern_layouts = run->system.pattern_version;
+  sum_phases(run);
+  result->counters = record_new();
+  for (int i = 0; i < run->system.effect_count; i++)
+    if (run->system.effects[i].ops->report)
+      run->system.effects[i].ops->report(run->system.effects[i].self, result->counters);
+  return run->recorder.system ? fem_recorder_finish(&run->recorder) : STATUS_OK;
+}
+
+Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult *result) {
+  *result = (FemRunResult){.min_det_F = INFINITY};
+  double wall = clock_wall_s(), cpu = clock_cpu_s();
+  Run run = {.model = model, .options = options, .result = result};
+  Status status = march(&run);
+  if (status == STATUS_RETRY)
+    status = status_fail(STATUS_SOLVER, "at t = %g s: %s", run.time, status_message());
+  Status collected = collect(&run);
+  result->wall_s = result->phases.total = clock_wall_s() - wall;
+  result->cpu_s = clock_cpu_s() - cpu;
+  fem_recorder_destroy(&run.recorder);
+  fem_integrator_destroy(run.integrator);
+  fem_system_destroy(&run.system);
+  double *states[] = {run.u, run.v, run.u_new, run.v_new};
+  for (int i = 0; i < 4; i++) memory_free(states[i]);
+  return status ? status : collected;
+}
+
+void fem_run_result_destroy(FemRunResult *result) {
+  if (result->counters) record_destroy(result->counters);
+  for (int i = 0; i < result->interface_count; i++) memory_free(result->interface_names[i]);
+  memory_free(result->interface_names);
+  memory_free(result->frame_times);
+  memory_free(result->trajectory);
+  memory_free(result->interface_forces);
+  *result = (FemRunResult){0};
+}
+
+static void summarise_phases(const FemRunPhases *phases, Record *record) {
+  record_number(record, "broad_phase", phases->broad_phase);
+  record_number(record, "overlap", phases->overlap);
+  record_number(record, "contact", phases->contact);
+  record_number(record, "forces", phases->forces);
+  record_number(record, "assembly", phases->assembly);
+  record_number(record, "analysis", phases->analysis);
+  record_number(record, "factorisation", phases->factorisation);
+  record_number(record, "solve", phases->solve);
+  record_number(record, "output", phases->output);
+  double named = phases->broad_phase + phases->overlap + phases->contact + phases->forces + phases->assembly +
+                 phases->analysis + phases->factorisation + phases->solve + phases->output;
+  record_number(record, "other", phases->total - named);
+}
+
+static void summarise_counters(const FemRunResult *result, Record *record) {
+  const FemIntegratorStats *stats = &result->integrator;
+  record_integer(record, "setups", stats->setups);
+  record_integer(record, "newton_iterations", stats->newton_iterations);
+  record_integer(record, "newton_failures", stats->newton_failures);
+  record_integer(record, "error_test_failures", stats->error_test_failures);
+  record_integer(record, "residuals", stats->residuals);
+  record_integer(record, "onsets", stats->roots);
+  record_integer(record, "restarts", stats->restarts);
+  record_integer(record, "energy_retries", result->energy_retries);
+  record_integer(record, "pattern_layouts", result->pattern_layouts);
+  record_integer(record, "analyses", result->solver.analyses);
+  record_integer(record, "factorisations", result->solver.factorisations);
+  record_integer(record, "failed_factorisations", result->solver.failed_factorisations);
+  record_integer(record, "linear_solves", result->solver.solves);
+  record_integer(record, "linear_iterations", result->solver.iterations);
+  record_number(record, "factor_entries", result->solver.factor_entries);
+}
+
+void fem_run_summarise(const FemRunResult *result, Record *summary) {
+  record_number(summary, "end_time", result->end_time);
+  record_number(summary, "wall_s", result->wall_s);
+  record_number(summary, "cpu_s", result->cpu_s);
+  record_integer(summary, "steps", result->integrator.steps);
+  record_text(summary, "solver", result->solver_name);
+  summarise_phases(&result->phases, record_child(summary, "phases"));
+  record_integer(summary, "pairs_max", result->pairs_max);
+  record_number(summary, "overlap_volume_max", result->overlap_volume_max);
+  record_number(summary, "deepest_overlap_max", result->deepest_overlap_max);
+  record_number(summary, "contact_force_max", result->contact_force_max);
+  record_number(summary, "contact_force_last", result->last_contact_force);
+  record_number(summary, "energy_gain_relative", result->audit.gain / result->audit.scale);
+  record_number(summary, "energy_scale", result->audit.scale);
+  record_number(summary, "min_det_F", result->min_det_F);
+  record_integer(summary, "peak_rss_bytes", (long long)result->peak_rss_bytes);
+  Record *counters = record_child(summary, "counters");
+  summarise_counters(result, counters);
+  record_merge(counters, result->counters);
+}
