@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sums over elements: what an effect that lives on tetrahedra (elasticity, damping) shares. The effect gives
+// a kernel for one element; here is the gathering, the adding by colours, and where entries of the matrix
+// lie. Every sum has a fixed order: results are the same to the last bit for any number of threads.
+#ifndef TETLAP_FEM_ASSEMBLY_H
+#define TETLAP_FEM_ASSEMBLY_H
+
+#include <stdbool.h>
+
+#include "fem/effect.h"
+
+// One element as a kernel sees it.
+typedef struct FemAssemblyElement {
+  const FemElement *element;
+  const FemModelBody *body;
+  double x[12], v[12]; // positions [m] and velocities [m/s] of its vertices (4, 3)
+} FemAssemblyElement;
+
+typedef double FemAssemblyScalar(const FemAssemblyElement *e);
+typedef void FemAssemblyForce(const FemAssemblyElement *e, double force[12]);
+// matrix = stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric.
+typedef void FemAssemblyMatrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
+                               double matrix[144]);
+
+typedef struct FemAssembly {
+  const FemModel *model;  // borrowed
+  FemColouring colouring; // the model's, without the bodies that take no part
+  int tet_count;
+  double *partial;  // sums of chunks of elements                                    (chunk_count)
+  int *slots;       // of the lower half of each element matrix, by rows; −1: none    (tet_count, 78)
+  long long layout; // of the matrix that `slots` belong to; 0: not looked up
+} FemAssembly;
+
+// All elements of bodies, obstacles apart, that `takes` accepts (NULL: all). A zeroed assembly, and one whose
+// creation failed, can be destroyed.
+Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
+                           bool (*takes)(const FemModelBody *body));
+void fem_assembly_destroy(FemAssembly *assembly);
+
+// Each element couples its four vertices.
+Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown);
+void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state, FemAssemblyForce *kernel,
+                             double *force);
+// Looks up the slots first if the matrix has been laid out anew (the first time allocates them).
+Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state, FemAssemblyMatrix *kernel,
+                                 double stiffness_scale, double damping_scale, FemMatrix *matrix);
+double fem_assembly_sum(FemAssembly *assembly, const FemState *state, FemAssemblyScalar *kernel);
+
+#endif

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stiffness-proportional damping of the strain rate; rigid motion goes undamped (fem/element.h). Only bodies
+// with β > 0 take part.
+#include "base/memory.h"
+#include "fem/assembly.h"
+
+static bool is_wanted(const FemSceneDef *scene) {
+  for (int b = 0; b < scene->body_count; b++) {
+    double own = scene->bodies[b].material.damping;
+    if ((own >= 0 ? own : scene->stiffness_damping) > 0) return true;
+  }
+  return false;
+}
+
+static bool is_damped(const FemModelBody *body) {
+  return body->damping > 0;
+}
+
+static void destroy(void *self) {
+  fem_assembly_destroy(self);
+  memory_free(self);
+}
+
+static Status create(void **self, const FemModel *model) {
+  FemAssembly *assembly = memory_zeroed(1, sizeof *assembly);
+  if (!assembly) return status_no_memory("damping");
+  Status status = fem_assembly_create(assembly, model, is_damped);
+  if (status) {
+    destroy(assembly);
+    return status;
+  }
+  *self = assembly;
+  return STATUS_OK;
+}
+
+static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
+  (void)state;
+  return fem_assembly_couple(self, pattern, has_grown);
+}
+
+static void element_force(const FemAssemblyElement *e, double force[12]) {
+  fem_element_damping_force(e->element, &e->body->material, e->body->damping, e->x, e->v, force);
+}
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  fem_assembly_add_forces(self, state, element_force, force);
+  return STATUS_OK;
+}
+
+static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
+                           double matrix[144]) {
+  const FemMaterial *material = &e->body->material;
+  double geometric[144] = {0};
+  if (stiffness_scale != 0)
+    fem_element_damping_stiffness(e->element, material, e->body->damping, e->x, e->v, geometric);
+  fem_element_damping_matrix(e->element, material, e->body->damping, e->x, matrix);
+  for (int k = 0; k < 144; k++) matrix[k] = damping_scale * matrix[k] + stiffness_scale * geometric[k];
+}
+
+static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                           FemMatrix *matrix) {
+  if (stiffness_scale == 0 && damping_scale == 0) return STATUS_OK;
+  return fem_assembly_add_matrices(self, state, element_matrix, stiffness_scale, damping_scale, matrix);
+}
+
+static double element_power(const FemAssemblyElement *e) {
+  return fem_element_damping_power(e->element, &e->body->material, e->body->damping, e->x, e->v);
+}
+
+static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
+  energy->dissipated_power += fem_assembly_sum(self, state, element_power);
+  return STATUS_OK;
+}
+
+const FemEffectOps fem_effect_damping = {
+    .name = "damping",
+    .help = "stiffness-proportional damping of the strain rate",
+    .is_wanted = is_wanted,
+    .create = create,
+    .couple = couple,
+    .add_force = add_force,
+    .add_jacobian = add_jacobian,
+    .add_energy = add_energy,
+    .destroy = destroy,
+};
