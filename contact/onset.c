@@ -33,12 +33,11 @@ static double separation_of(const ContactLayout *layout, const ContactPair *pair
 }
 
 static void find_engaged(ContactOnset *onset, const ContactLayout *layout,
-                         const ContactCandidateList *candidates, const ContactEvaluation *evaluation) {
+                         const ContactCandidateList *candidates, double time, const double *positions) {
   double touch = 1e-6 * layout->margin;
 #pragma omp parallel for schedule(static) if (candidates->count > 512)
   for (int k = 0; k < candidates->count; k++)
-    onset->is_engaged[k] = !(
-        separation_of(layout, &candidates->pairs[k], evaluation->time, evaluation->positions, touch) > touch);
+    onset->is_engaged[k] = !(separation_of(layout, &candidates->pairs[k], time, positions, touch) > touch);
 }
 
 static void mark(ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,
@@ -68,13 +67,13 @@ static void watch_facing(ContactOnset *onset, const ContactLayout *layout, const
 }
 
 Status contact_onset_choose(ContactOnset *onset, const ContactLayout *layout,
-                            const ContactCandidateList *candidates, const ContactEvaluation *evaluation) {
+                            const ContactCandidateList *candidates, double time, const double *positions) {
   size_t most = (size_t)candidates->count;
   if (!memory_reserve((void **)&onset->watched, &onset->capacity, most, sizeof(ContactPair)) ||
       !memory_reserve((void **)&onset->is_engaged, &onset->engaged_capacity, most, 1))
     return status_no_memory("watched pairs");
   onset->count = 0;
-  find_engaged(onset, layout, candidates, evaluation);
+  find_engaged(onset, layout, candidates, time, positions);
   for (int f = 0; f < layout->facing_count; f++)
     watch_facing(onset, layout, candidates->pairs, candidates->begin[f], candidates->begin[f + 1]);
   return STATUS_OK;

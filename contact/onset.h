@@ -10,7 +10,7 @@
 #ifndef TETLAP_CONTACT_ONSET_H
 #define TETLAP_CONTACT_ONSET_H
 
-#include "contact/evaluation.h"
+#include "contact/candidates.h"
 
 typedef struct ContactOnset {
   int count;
@@ -24,9 +24,9 @@ typedef struct ContactOnset {
 Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout);
 void contact_onset_destroy(ContactOnset *onset);
 
-// Chooses the watched pairs among the candidates at the evaluation's positions.
+// Chooses the watched pairs among the candidates.
 Status contact_onset_choose(ContactOnset *onset, const ContactLayout *layout,
-                            const ContactCandidateList *candidates, const ContactEvaluation *evaluation);
+                            const ContactCandidateList *candidates, double time, const double *positions);
 
 // The smallest separation of a watched pair [m], at most the margin.
 double contact_onset_gap(const ContactOnset *onset, const ContactLayout *layout, double time,

@@ -68,7 +68,7 @@ typedef struct ContactSystemDef {
 } ContactSystemDef;
 
 // Where the stiffness ∂²U/∂x² goes. Each call adds a dense symmetric part over a short list of distinct
-// vertices.
+// vertices; those of obstacles carry no unknowns and are left out.
 typedef struct ContactStiffnessSink {
   void *self;
   // S += scale · w wᵀ, w (count, 3).
@@ -101,11 +101,16 @@ typedef struct ContactSystem ContactSystem; // opaque: lists, scratch memory and
 Status contact_system_create(ContactSystem **system, const ContactSystemDef *def);
 void contact_system_destroy(ContactSystem *system);
 
-// After an accepted step: rebuilds the candidate lists where the motion asks for it. `velocities` (vertex, 3)
-// and `step` [s] (the next step's expected length) size the margin: generous while no pair is near, at most
-// def.margin otherwise, so that nothing passes through anything within one step. `*has_changed` may be NULL.
+// After an accepted step (and once before the first evaluation): rebuilds the candidate lists where the
+// motion asks for it and chooses the pairs whose onset is watched. `velocities` (vertex, 3) and `step` [s]
+// (the next step's expected length) size the margin: as wide as two bodies are apart while no pair is near,
+// at most def.margin otherwise, so that nothing passes through anything within one step. `*has_changed` (may
+// be NULL): the list of candidates differs from the one before.
 Status contact_system_update(ContactSystem *system, double time, const double *positions,
                              const double *velocities, double step, bool *has_changed);
+
+// The next update searches anew: what a run does at its checkpoints, so that nothing depends on older ones.
+void contact_system_forget(ContactSystem *system);
 
 // Energy U [J] and, added to `force` (vertex_count, 3) unless NULL, −∂U/∂x [N].
 // STATUS_RETRY: a vertex moved beyond the margin since the last update. The result of the last positions is
@@ -122,10 +127,11 @@ Status contact_system_stiffness(ContactSystem *system, double time, const double
 Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
                              Status (*visit)(void *visitor, int count, const int *vertices));
 
-// The smallest separation of the candidate pairs that do not overlap at the last update [m]: negative once
-// one of them overlaps; +margin if there is none. Its root is the onset of a contact. Separation of two
-// tetrahedra is the largest over the 44 separating axes of their projections' distance (exactly the distance
-// for face contacts).
+// The smallest separation of the pairs watched since the last update [m]: negative once one of them overlaps;
+// at most, and without any pair, +margin. Its root is the onset of a new contact; contact/onset.h says which
+// pairs are watched (after a root, the next update leaves that pair out). Separation of two tetrahedra is the
+// largest over the 44 separating axes of their projections' distance (exactly the distance for face
+// contacts).
 Status contact_system_gap(ContactSystem *system, double time, const double *positions, double *gap);
 
 // Of the last evaluation. Pointers are the system's, valid until the next call.
@@ -140,7 +146,8 @@ Status contact_system_active_pairs(const ContactSystem *system, int *count, doub
 const ContactCounters *contact_system_counters(const ContactSystem *system);
 
 // Audit: the same configuration with another overlap model: relative differences against `reference`.
-// volume_error: Σ|ΔV| / ΣV over the union of pairs; force_error: ‖Δf‖₂/‖f‖₂ of the nodal forces.
+// volume_error: Σ|ΔV| / ΣV over the union of pairs; force_error: ‖Δf‖₂/‖f‖₂ of the nodal forces. Half-spaces
+// are left out: no model takes part in them. Changes nothing but scratch memory.
 typedef struct ContactAudit {
   double volume_error, force_error;
   int pair_count;

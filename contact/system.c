@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/system.h"
+
+#include <assert.h>
+
+#include "base/memory.h"
+#include "contact/audit.h"
+#include "contact/onset.h"
+#include "contact/stiffness.h"
+
+struct ContactSystem {
+  ContactLayout layout;
+  ContactCandidates candidates;
+  ContactOnset onset;
+  ContactEvaluation evaluation; // the last one
+  ContactStiffness stiffness;
+  ContactEvaluation audits[2]; // candidate, reference; made by the first audit
+  bool has_audits;
+  ContactCounters counters;
+};
+
+static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
+  TRY(contact_layout_create(&system->layout, def));
+  TRY(contact_candidates_create(&system->candidates, &system->layout));
+  TRY(contact_onset_create(&system->onset, &system->layout));
+  TRY(contact_evaluation_create(&system->evaluation, &system->layout));
+  return contact_stiffness_create(&system->stiffness, &system->layout);
+}
+
+Status contact_system_create(ContactSystem **system, const ContactSystemDef *def) {
+  *system = memory_zeroed(1, sizeof **system);
+  if (!*system) return status_no_memory("a contact system");
+  Status status = create_parts(*system, def);
+  if (status) {
+    contact_system_destroy(*system);
+    *system = NULL;
+  }
+  return status;
+}
+
+void contact_system_destroy(ContactSystem *system) {
+  if (!system) return;
+  contact_layout_destroy(&system->layout);
+  contact_candidates_destroy(&system->candidates);
+  contact_onset_destroy(&system->onset);
+  contact_evaluation_destroy(&system->evaluation);
+  contact_stiffness_destroy(&system->stiffness);
+  for (int k = 0; k < 2; k++) contact_evaluation_destroy(&system->audits[k]);
+  memory_free(system);
+}
+
+Status contact_system_update(ContactSystem *system, double time, const double *positions,
+                             const double *velocities, double step, bool *has_changed) {
+  bool changed;
+  TRY(contact_candidates_update(&system->candidates, &system->layout, time, positions, velocities, step,
+                                &changed));
+  system->counters.searches = system->candidates.searches;
+  system->counters.broad_s = system->candidates.search_s;
+  if (has_changed) *has_changed = changed;
+  return contact_onset_choose(&system->onset, &system->layout, &system->candidates.list, time, positions);
+}
+
+void contact_system_forget(ContactSystem *system) {
+  system->candidates.is_made = false;
+}
+
+static Status check_margin(ContactSystem *system, double time, const double *positions) {
+  if (contact_candidates_cover(&system->candidates, &system->layout, time, positions)) return STATUS_OK;
+  system->counters.beyond_margin++;
+  return status_fail(STATUS_RETRY,
+                     "contact: a vertex moved beyond the margin (%g m) of the last search within one "
+                     "step; take a smaller one",
+                     system->layout.margin);
+}
+
+static void count(ContactCounters *counters, const ContactEvaluation *evaluation) {
+  counters->evaluations++;
+  counters->pairs += evaluation->tried;
+  counters->enclosed += evaluation->enclosed;
+  counters->fallbacks += evaluation->fallbacks;
+  counters->overlap_s += evaluation->overlap_s;
+  counters->force_s += evaluation->force_s;
+}
+
+static Status evaluate(ContactSystem *system, double time, const double *positions) {
+  ContactEvaluation *evaluation = &system->evaluation;
+  if (contact_evaluation_is_at(evaluation, &system->layout, time, positions)) return STATUS_OK;
+  TRY(check_margin(system, time, positions));
+  TRY(contact_evaluation_run(evaluation, &system->layout, &system->candidates.list, system->layout.def.model,
+                             true, time, positions));
+  count(&system->counters, evaluation);
+  return STATUS_OK;
+}
+
+Status contact_system_eval(ContactSystem *system, double time, const double *positions, double *energy,
+                           double *force) {
+  TRY(evaluate(system, time, positions));
+  const ContactEvaluation *evaluation = &system->evaluation;
+  *energy = evaluation->energy;
+  for (int n = 0; force && n < evaluation->patches.node_count; n++) {
+    const ContactNode *node = &evaluation->patches.nodes[n];
+    for (size_t c = 0; c < 3; c++) force[3 * (size_t)node->vertex + c] += node->force[c];
+  }
+  return STATUS_OK;
+}
+
+Status contact_system_stiffness(ContactSystem *system, double time, const double *positions,
+                                const ContactStiffnessSink *sink) {
+  TRY(evaluate(system, time, positions));
+  return contact_stiffness_add(&system->stiffness, &system->layout, &system->evaluation,
+                               system->layout.def.model, sink);
+}
+
+Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
+                             Status (*visit)(void *visitor, int count, const int *vertices)) {
+  const ContactEvaluation *evaluation = &system->evaluation;
+  assert(evaluation->is_valid);
+  return contact_stiffness_couple(&system->stiffness, &system->layout, &system->candidates.list,
+                                  evaluation->time, evaluation->positions, reach, visitor, visit);
+}
+
+Status contact_system_gap(ContactSystem *system, double time, const double *positions, double *gap) {
+  *gap = contact_onset_gap(&system->onset, &system->layout, time, positions);
+  return STATUS_OK;
+}
+
+const ContactInterface *contact_system_interfaces(const ContactSystem *system, int *interface_count) {
+  *interface_count = system->layout.facing_count;
+  return system->evaluation.interfaces;
+}
+
+const double *contact_system_forces(const ContactSystem *system) {
+  return system->evaluation.forces;
+}
+
+const double *contact_system_covered(const ContactSystem *system) {
+  return system->evaluation.covered;
+}
+
+int contact_system_active_count(const ContactSystem *system) {
+  return system->evaluation.pair_count;
+}
+
+Status contact_system_active_pairs(const ContactSystem *system, int *pair_count, double **pairs, int **tets) {
+  const ContactEvaluation *evaluation = &system->evaluation;
+  size_t active = (size_t)evaluation->mesh_pair_count;
+  *pair_count = evaluation->mesh_pair_count;
+  *pairs = memory_copy(evaluation->coordinates, active, CONTACT_PAIR_SIZE * sizeof(double));
+  *tets = memory_zeroed(active, 2 * sizeof(int));
+  if (!*pairs || !*tets) {
+    memory_free(*pairs), memory_free(*tets);
+    *pairs = NULL, *tets = NULL;
+    return status_no_memory("overlapping pairs");
+  }
+  for (size_t k = 0; k < active; k++)
+    for (int side = 0; side < 2; side++) (*tets)[2 * k + (size_t)side] = evaluation->pairs[k].tets[side];
+  return STATUS_OK;
+}
+
+const ContactCounters *contact_system_counters(const ContactSystem *system) {
+  return &system->counters;
+}
+
+static Status create_audits(ContactSystem *system) {
+  if (system->has_audits) return STATUS_OK;
+  for (int k = 0; k < 2; k++) {
+    contact_evaluation_destroy(&system->audits[k]);
+    TRY(contact_evaluation_create(&system->audits[k], &system->layout));
+  }
+  system->has_audits = true;
+  return STATUS_OK;
+}
+
+Status contact_system_audit(ContactSystem *system, double time, const double *positions,
+                            const ContactOverlapModel *candidate, const ContactOverlapModel *reference,
+                            ContactAudit *audit) {
+  TRY(check_margin(system, time, positions));
+  TRY(create_audits(system));
+  const ContactOverlapModel *models[2] = {candidate, reference};
+  for (int k = 0; k < 2; k++)
+    TRY(contact_evaluation_run(&system->audits[k], &system->layout, &system->candidates.list, models[k],
+                               false, time, positions));
+  *audit = contact_audit_compare(&system->layout, &system->audits[0], &system->audits[1]);
+  return STATUS_OK;
+}
