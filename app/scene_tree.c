@@ -17,7 +17,7 @@
 static Status fail_at(const char *origin, int line, int column, const char *format, va_list args) {
   char message[1024];
   vsnprintf(message, sizeof message, format, args);
-  if (line == 0) return status_fail(STATUS_USAGE, "%s: %s", origin, message);
+  if (line == 0) return status_fail(STATUS_USAGE, "--set %s: %s", origin, message);
   return status_fail(STATUS_INPUT, "%s:%d:%d: %s", origin, line, column, message);
 }
 
@@ -60,12 +60,24 @@ void app_scene_tree_path(const SceneNode *node, char *path, size_t size) {
 
 void app_scene_tree_describe(const SceneNode *node, char *text, size_t size) {
   switch (node->kind) {
-  case SCENE_NODE_NULL: snprintf(text, size, "nothing"); break;
-  case SCENE_NODE_SWITCH: snprintf(text, size, "%s", node->text); break;
-  case SCENE_NODE_NUMBER: snprintf(text, size, "the number %.40s", node->text); break;
-  case SCENE_NODE_TEXT: snprintf(text, size, "the text '%.60s'", node->text); break;
-  case SCENE_NODE_LIST: snprintf(text, size, "a list of %d", node->count); break;
-  case SCENE_NODE_MAP: snprintf(text, size, "a mapping {key: value}"); break;
+  case SCENE_NODE_NULL:
+    snprintf(text, size, "nothing");
+    break;
+  case SCENE_NODE_SWITCH:
+    snprintf(text, size, "%s", node->text);
+    break;
+  case SCENE_NODE_NUMBER:
+    snprintf(text, size, "the number %.40s", node->text);
+    break;
+  case SCENE_NODE_TEXT:
+    snprintf(text, size, "the text '%.60s'", node->text);
+    break;
+  case SCENE_NODE_LIST:
+    snprintf(text, size, "a list of %d", node->count);
+    break;
+  case SCENE_NODE_MAP:
+    snprintf(text, size, "a mapping {key: value}");
+    break;
   }
 }
 
@@ -117,20 +129,11 @@ SceneNode *app_scene_tree_add(SceneNode *parent, const char *key, SceneNodeKind 
     memory_free(copy);
     return NULL;
   }
-  *child = (SceneNode){.kind = kind, .origin = parent->origin, .line = parent->line, .column = parent->column};
+  *child =
+      (SceneNode){.kind = kind, .origin = parent->origin, .line = parent->line, .column = parent->column};
   child->key = copy;
   attach(parent, child);
   return child;
-}
-
-void app_scene_tree_remove(SceneNode *child) {
-  SceneNode *parent = child->parent, *before = NULL;
-  for (SceneNode *node = parent->first; node != child; node = node->next) before = node;
-  *(before ? &before->next : &parent->first) = child->next;
-  if (parent->last == child) parent->last = before;
-  parent->count--;
-  child->next = NULL;
-  destroy_chain(child);
 }
 
 void app_scene_tree_replace(SceneNode *node, SceneNode *source) {
@@ -250,16 +253,20 @@ static Status refuse_features(const Parser *parser, const yaml_event_t *event) {
   const yaml_char_t *anchor = NULL, *tag = NULL;
   switch (event->type) {
   case YAML_ALIAS_EVENT:
-    return fail_mark(parser, event->start_mark, "the alias '*%s'; aliases are not supported: write the value out",
+    return fail_mark(parser, event->start_mark,
+                     "the alias '*%s'; aliases are not supported: write the value out",
                      (const char *)event->data.alias.anchor);
-  case YAML_SCALAR_EVENT: anchor = event->data.scalar.anchor, tag = event->data.scalar.tag; break;
+  case YAML_SCALAR_EVENT:
+    anchor = event->data.scalar.anchor, tag = event->data.scalar.tag;
+    break;
   case YAML_SEQUENCE_START_EVENT:
     anchor = event->data.sequence_start.anchor, tag = event->data.sequence_start.tag;
     break;
   case YAML_MAPPING_START_EVENT:
     anchor = event->data.mapping_start.anchor, tag = event->data.mapping_start.tag;
     break;
-  default: break;
+  default:
+    break;
   }
   if (anchor)
     return fail_mark(parser, event->start_mark, "the anchor '&%s'; anchors are not supported: take it away",
@@ -290,12 +297,15 @@ static Status parse_item(Parser *parser, const yaml_event_t *event, SceneNode *l
 static Status parse_entry(Parser *parser, const yaml_event_t *event, SceneNode *map) {
   yaml_mark_t mark = event->start_mark;
   TRY(refuse_features(parser, event));
-  if (event->type != YAML_SCALAR_EVENT) return fail_mark(parser, mark, "a key must be a word, found a structure");
+  if (event->type != YAML_SCALAR_EVENT)
+    return fail_mark(parser, mark, "a key must be a word, found a structure");
   const char *key = (const char *)event->data.scalar.value;
   const SceneNode *earlier = app_scene_tree_find(map, key);
   if (earlier)
     return fail_mark(parser, mark, "duplicate key '%.60s'; it stands at line %d, column %d already", key,
                      earlier->key_line, earlier->key_column);
+  if (map->count >= SCENE_TREE_MAX_KEYS)
+    return fail_mark(parser, mark, "more than %d keys in one mapping", (int)SCENE_TREE_MAX_KEYS);
   SceneNode *entry;
   TRY(add_child(parser, map, key, &entry));
   entry->key_line = (int)mark.line + 1, entry->key_column = (int)mark.column + 1;
@@ -350,15 +360,19 @@ static Status parse_stream(Parser *parser, SceneNode *root) {
     TRY(next_event(parser, &event));
     Status status = STATUS_OK;
     switch (event.type) {
-    case YAML_STREAM_END_EVENT: is_end = true; break;
+    case YAML_STREAM_END_EVENT:
+      is_end = true;
+      break;
     case YAML_STREAM_START_EVENT:
-    case YAML_DOCUMENT_END_EVENT: break;
+    case YAML_DOCUMENT_END_EVENT:
+      break;
     case YAML_DOCUMENT_START_EVENT:
       if (has_document)
         status = fail_mark(parser, event.start_mark, "a second document ('---'); one scene a file");
       has_document = true;
       break;
-    default: status = parse_value(parser, &event, root);
+    default:
+      status = parse_value(parser, &event, root);
     }
     yaml_event_delete(&event);
     TRY(status);
@@ -368,8 +382,8 @@ static Status parse_stream(Parser *parser, SceneNode *root) {
 
 static Status check_text(const Parser *parser) {
   if (parser->size > SCENE_TREE_MAX_BYTES)
-    return status_fail(STATUS_INPUT, "%s: %zu bytes; a scene file has at most %d", parser->origin, parser->size,
-                       (int)SCENE_TREE_MAX_BYTES);
+    return status_fail(STATUS_INPUT, "%s: %zu bytes; a scene file has at most %d", parser->origin,
+                       parser->size, (int)SCENE_TREE_MAX_BYTES);
   size_t valid = text_utf8_valid(parser->text, parser->size);
   if (valid < parser->size)
     return fail_offset(parser, valid, "the byte 0x%02x is not UTF-8; save the file as UTF-8 text",

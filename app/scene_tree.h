@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A YAML or JSON text as a tree of nodes, each of which knows where it stands. Nothing here knows what a scene
-// is.
+// A YAML or JSON text as a tree of nodes, each of which knows where it stands. Nothing here knows what a
+// scene is.
 //
-// YAML is read as its core schema (1.2): null, true and false, numbers, text; `1e6` is a number, `yes` is text,
-// what stands in quotes is text. Refused, by name and place: anchors and aliases, tags, keys that are not
-// text, duplicate keys, a second document, nesting beyond SCENE_TREE_MAX_DEPTH, more nodes or bytes than the
-// limits below, what is not UTF-8.
+// YAML is read as its core schema (1.2): null, true and false, numbers, text; `1e6` is a number, `yes` is
+// text, what stands in quotes is text. Refused, by name and place: anchors and aliases, tags, keys that are
+// not text, duplicate keys, a second document, nesting beyond SCENE_TREE_MAX_DEPTH, more nodes or bytes than
+// the limits below, what is not UTF-8.
 #ifndef TETLAP_APP_SCENE_TREE_H
 #define TETLAP_APP_SCENE_TREE_H
 
@@ -17,6 +17,7 @@
 enum {
   SCENE_TREE_MAX_DEPTH = 32,
   SCENE_TREE_MAX_NODES = 1000000,
+  SCENE_TREE_MAX_KEYS = 1000, // of one map
   SCENE_TREE_MAX_BYTES = 16 << 20,
 };
 
@@ -32,17 +33,17 @@ typedef enum SceneNodeKind {
 typedef struct SceneNode SceneNode;
 struct SceneNode {
   SceneNodeKind kind;
-  const char *origin;         // the file's path, or the override; borrowed
-  int line, column;           // of the value, from 1; line 0: an override
-  int key_line, key_column;   // of the key
-  char *key;                  // of an entry of a map, owned; NULL: an item of a list, the root
-  char *text;                 // a scalar as it was written, owned
-  double number;              // may be NaN or infinite: `.nan`, `.inf`
+  const char *origin;       // the file's path, or the override "key=value"; borrowed
+  int line, column;         // of the value, from 1; line 0: an override
+  int key_line, key_column; // of the key
+  char *key;                // of an entry of a map, owned; NULL: an item of a list, the root
+  char *text;               // a scalar as it was written, owned
+  double number;            // may be NaN or infinite: `.nan`, `.inf`
   bool is_true;
-  int count;                  // children
-  SceneNode *parent;          // NULL: the root
-  SceneNode *first, *last;    // children, owned
-  SceneNode *next;            // the next child of the parent
+  int count;               // children
+  SceneNode *parent;       // NULL: the root
+  SceneNode *first, *last; // children, owned
+  SceneNode *next;         // the next child of the parent
 };
 
 // Parses a text; `origin` is kept, not copied. STATUS_INPUT with origin:line:column and what to do.
@@ -60,8 +61,6 @@ SceneNode *app_scene_tree_at(const SceneNode *node, int index);
 // A new empty node of that kind, as the last child of `parent` under a copy of `key` (NULL in a list), at the
 // parent's place. NULL: no memory.
 SceneNode *app_scene_tree_add(SceneNode *parent, const char *key, SceneNodeKind kind);
-// Takes a child out of its parent and destroys it.
-void app_scene_tree_remove(SceneNode *child);
 // Puts the value of `source` (a root) in the place of the value of `node`; `source` is used up.
 void app_scene_tree_replace(SceneNode *node, SceneNode *source);
 // Every node of the tree is from the command line: line 0.

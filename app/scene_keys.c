@@ -1,0 +1,483 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene_keys.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/overlap.h"
+#include "fem/solver.h"
+
+// A field of a struct: offset and size.
+#define AT(Type, field) offsetof(Type, field), sizeof(((Type *)0)->field)
+// What a key marks when it is given.
+#define MARK(Type, field, to) .mark = {AT(Type, field), to}
+#define PLACE(Type, field) .has_place = true, .place_offset = offsetof(Type, field)
+
+// The names that other layers own.
+
+static const char *law_name(int i) {
+  return i < FEM_MATERIAL_LAW_COUNT ? fem_material_name((FemMaterialLaw)i) : NULL;
+}
+static const char *law_help(int i) {
+  return fem_material_help((FemMaterialLaw)i);
+}
+static const char *potential_name(int i) {
+  return i < CONTACT_POTENTIAL_COUNT ? contact_potential_name((ContactPotential)i) : NULL;
+}
+static const char *potential_help(int i) {
+  return contact_potential_help((ContactPotential)i);
+}
+static const char *solver_name(int i) {
+  return i <= FEM_SOLVER_PCG ? fem_solver_name((FemSolverKind)i) : NULL;
+}
+static const char *solver_help(int i) {
+  return fem_solver_help((FemSolverKind)i);
+}
+static const char *overlap_name(int i) {
+  int count;
+  const ContactOverlapOps *const *models = contact_overlap_list(&count);
+  return i < count ? models[i]->name : NULL;
+}
+static const char *overlap_help(int i) {
+  int count;
+  return contact_overlap_list(&count)[i]->help;
+}
+static const char *hessian_name(int i) { // the number is FemContactDef.use_full_hessian
+  static const char *const names[] = {"gauss_newton", "full"};
+  return i < 2 ? names[i] : NULL;
+}
+static const char *hessian_help(int i) {
+  return i == 0 ? "products of the first derivatives only: cheaper, more iterations"
+                : "the second derivatives of the overlap volumes as well, where the model has them";
+}
+
+static const SceneChoices laws = {law_name, law_help};
+static const SceneChoices potentials = {potential_name, potential_help};
+static const SceneChoices solvers = {solver_name, solver_help};
+static const SceneChoices overlaps = {overlap_name, overlap_help};
+static const SceneChoices hessians = {hessian_name, hessian_help};
+
+// What no single key says.
+
+static const char *finish_select_box(void *self, const char **key) {
+  const FemConstraintDef *def = self;
+  *key = "max";
+  for (int c = 0; c < 3; c++)
+    if (!(def->select.box_min[c] <= def->select.box_max[c])) return "max must not be below min";
+  return NULL;
+}
+
+static const char *finish_fixed(void *self, const char **key) {
+  (void)key;
+  ((FemConstraintDef *)self)->until = INFINITY;
+  return NULL;
+}
+
+static const char *finish_obstacle(void *self, const char **key) {
+  (void)key;
+  FemConstraintDef *motion = &((FemObstacleDef *)self)->motion;
+  for (int c = 0; c < 3; c++) motion->components[c] = true;
+  return NULL;
+}
+
+static const char *finish_time(void *self, const char **key) {
+  const FemSceneDef *scene = self;
+  *key = "min_step";
+  if (scene->max_step > 0 && scene->min_step > scene->max_step) return "min_step must not exceed max_step";
+  *key = "initial_step";
+  if (scene->max_step > 0 && scene->initial_step > scene->max_step)
+    return "initial_step must not exceed max_step";
+  if (scene->initial_step > 0 && scene->min_step > scene->initial_step)
+    return "initial_step must not be below min_step";
+  return NULL;
+}
+
+// The tables: name, type, where the value goes, and what there is to say of it. A section without a place of
+// its own has its keys in the same struct.
+
+// Bodies and obstacles keep these fields in the same order, so one table serves both.
+#define IN_MESH(field)                                                                                       \
+  offsetof(FemBodyDef, field) - offsetof(FemBodyDef, mesh_path), sizeof(((FemBodyDef *)0)->field)
+#define SAME_IN_MESH(field)                                                                                  \
+  _Static_assert(offsetof(FemBodyDef, field) - offsetof(FemBodyDef, mesh_path) ==                            \
+                     offsetof(FemObstacleDef, field) - offsetof(FemObstacleDef, mesh_path),                  \
+                 "bodies and obstacles must lay out their meshes alike")
+SAME_IN_MESH(box_size);
+SAME_IN_MESH(box_cells);
+SAME_IN_MESH(mesh_options);
+
+static const SceneKey mesh_box_keys[] = {
+    {"size", SCENE_VECTOR, IN_MESH(box_size), .unit = "m", .range = "(0, inf)", .required = "[0.2, 0.2, 0.2]",
+     .help = "edges; the box is [0, size] before it is placed"},
+    {"cells", SCENE_COUNTS, IN_MESH(box_cells), .range = "[1, 10000]", .required = "[4, 4, 4]",
+     .help = "cubes along each edge, of six tetrahedra each; one number stands for three"},
+    {0},
+};
+static const SceneSection mesh_box = {.help = "a box cut into tetrahedra", .keys = mesh_box_keys};
+
+static const SceneKey mesh_keys[] = {
+    {"file", SCENE_TEXT, IN_MESH(mesh_path),
+     .help = "path from the scene file: .msh, .mesh, .vtk, .node/.ele; .stl and .geo are meshed in place"},
+    {"size", SCENE_NUMBER, IN_MESH(mesh_options.size), .range = "(0, inf)", .absent_help = "gmsh's choice",
+     .needs = "file", .help = "edge length for meshing .stl and .geo, in the file's units"},
+    {"box", SCENE_SECTION, .section = &mesh_box, .help = "a box in place of a file"},
+    {0},
+};
+static const SceneSection mesh = {
+    .help = "tetrahedra: a file, or a box", .keys = mesh_keys, .shorthand = "file", .one_of = "file box"};
+
+static const SceneKey rotate_keys[] = {
+    {"axis", SCENE_DIRECTION, AT(FemPlacement, axis), .required = "[0, 0, 1]", .help = "through the origin"},
+    {"degrees", SCENE_NUMBER, AT(FemPlacement, angle_degrees), .unit = "°", .required = "30",
+     .help = "counter-clockwise seen against the axis"},
+    {0},
+};
+static const SceneSection rotate = {.help = "a turn about an axis", .keys = rotate_keys};
+
+static const SceneKey place_keys[] = {
+    {"scale", SCENE_FACTORS, AT(FemPlacement, scale), .fallback = "1",
+     .help = "first: a factor, or one for each axis; negative ones mirror"},
+    {"rotate", SCENE_SECTION, .absent_help = "no turn", .section = &rotate, .help = "then"},
+    {"translate", SCENE_VECTOR, AT(FemPlacement, translate), .unit = "m", .fallback = "[0, 0, 0]",
+     .help = "last"},
+    {0},
+};
+static const SceneSection place = {.help = "scaled, then turned, then moved", .keys = place_keys};
+
+static const SceneKey material_keys[] = {
+    {"law", SCENE_CHOICE, AT(FemMaterial, law), .fallback = "neo_hookean", .choices = &laws,
+     .help = "constitutive law"},
+    {"young", SCENE_NUMBER, AT(FemMaterial, young), .unit = "Pa", .range = "(0, inf)", .required = "1e6",
+     .help = "Young's modulus E"},
+    {"poisson", SCENE_NUMBER, AT(FemMaterial, poisson), .range = "(-1, 0.5)", .required = "0.4",
+     .help = "Poisson's ratio ν; linear tetrahedra lock from about 0.45"},
+    {"density", SCENE_NUMBER, AT(FemMaterial, density), .unit = "kg/m³", .range = "(0, inf)",
+     .required = "1000", .help = "ρ at rest"},
+    {"damping", SCENE_NUMBER, AT(FemMaterial, damping), .unit = "s", .range = "[0, inf)", .absent = -1,
+     .absent_help = "`effects.damping`", .help = "stiffness-proportional damping β"},
+    {0},
+};
+static const SceneSection material = {.help = "an isotropic elastic solid", .keys = material_keys};
+
+static const SceneKey select_box_keys[] = {
+    {"min", SCENE_VECTOR, AT(FemConstraintDef, select.box_min), .unit = "m", .required = "[0, 0, 0]",
+     .help = "lower corner"},
+    {"max", SCENE_VECTOR, AT(FemConstraintDef, select.box_max), .unit = "m", .required = "[1, 1, 0]",
+     .help = "upper corner; the faces count as inside"},
+    {0},
+};
+static const SceneSection select_box = {
+    .help = "vertices in a box", .keys = select_box_keys, .finish = finish_select_box};
+
+static const SceneKey select_halfspace_keys[] = {
+    {"point", SCENE_VECTOR, AT(FemConstraintDef, select.point), .unit = "m", .required = "[0, 0, 0]",
+     .help = "on the plane"},
+    {"normal", SCENE_DIRECTION, AT(FemConstraintDef, select.normal), .required = "[0, 0, 1]",
+     .help = "points away from the selected side"},
+    {0},
+};
+static const SceneSection select_halfspace = {.help = "vertices on one side of a plane",
+                                              .keys = select_halfspace_keys};
+
+static const SceneKey select_keys[] = {
+    {"box", SCENE_SECTION, .section = &select_box, MARK(FemConstraintDef, select.kind, FEM_SELECT_BOX),
+     .help = "the vertices in a box, as placed, at rest"},
+    {"halfspace", SCENE_SECTION, .section = &select_halfspace,
+     MARK(FemConstraintDef, select.kind, FEM_SELECT_HALFSPACE),
+     .help = "the vertices x with normal·(x − point) ≤ 0"},
+    {"group", SCENE_TEXT, AT(FemConstraintDef, select.group),
+     MARK(FemConstraintDef, select.kind, FEM_SELECT_GROUP),
+     .help = "a named group of the mesh (`tetlap mesh FILE` lists them)"},
+    {"all", SCENE_TRUE, MARK(FemConstraintDef, select.kind, FEM_SELECT_ALL),
+     .help = "every vertex of the body"},
+    {"components", SCENE_AXES, AT(FemConstraintDef, components), .fallback = "[x, y, z]",
+     .help = "the coordinates that are prescribed; the others stay free"},
+    {0},
+};
+static const SceneSection fixed = {.help = "vertices that do not move",
+                                   .size = sizeof(FemConstraintDef),
+                                   .keys = select_keys,
+                                   .one_of = "box halfspace group all",
+                                   .finish = finish_fixed,
+                                   PLACE(FemConstraintDef, select.place)};
+
+static const SceneKey motion_keys[] = {
+    {"velocity", SCENE_VECTOR, AT(FemConstraintDef, velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
+     .excludes = "table", .help = "steady motion"},
+    {"amplitude", SCENE_VECTOR, AT(FemConstraintDef, amplitude), .unit = "m", .fallback = "[0, 0, 0]",
+     .needs = "frequency", .excludes = "table", .help = "of a swing amplitude · sin(2π frequency t)"},
+    {"frequency", SCENE_NUMBER, AT(FemConstraintDef, frequency), .unit = "Hz", .range = "(0, inf)",
+     .needs = "amplitude", .excludes = "table", .help = "of the swing"},
+    {"table", SCENE_ROWS, AT(FemConstraintDef, table), .unit = "s, m",
+     .count_offset = offsetof(FemConstraintDef, table_count),
+     .help = "rows [t, dx, dy, dz] of time and displacement, linear between them"},
+    {"spin", SCENE_NUMBER, AT(FemConstraintDef, spin), .unit = "rad/s", .fallback = "0", .needs = "axis",
+     .help = "turning about an axis"},
+    {"axis", SCENE_DIRECTION, AT(FemConstraintDef, axis), .needs = "spin", .help = "of the spin"},
+    {"centre", SCENE_VECTOR, AT(FemConstraintDef, centre), .unit = "m", .fallback = "[0, 0, 0]",
+     .needs = "spin", .help = "a point on the axis"},
+    {"until", SCENE_NUMBER, AT(FemConstraintDef, until), .unit = "s", .range = "(0, inf]", .fallback = ".inf",
+     .help = "when the motion stops; what was reached is held"},
+    {0},
+};
+static const SceneSection motion = {.help = "a prescribed motion, from t = 0",
+                                    .keys = motion_keys,
+                                    .some_of = "velocity amplitude table spin"};
+
+static const SceneSection select_more = {.keys = select_keys};
+static const SceneSection driven = {.help = "vertices that move as told",
+                                    .size = sizeof(FemConstraintDef),
+                                    .keys = motion_keys,
+                                    .more = &select_more,
+                                    .one_of = "box halfspace group all",
+                                    .some_of = "velocity amplitude table spin",
+                                    PLACE(FemConstraintDef, select.place)};
+
+static const SceneKey body_keys[] = {
+    {"name", SCENE_LABEL, AT(FemBodyDef, name), .required = "block",
+     .help = "how messages and outputs call it"},
+    {"mesh", SCENE_SECTION, .offset = offsetof(FemBodyDef, mesh_path), .required = "block.msh",
+     .section = &mesh, .help = "its tetrahedra: a file's path, or more in a mapping"},
+    {"place", SCENE_SECTION, AT(FemBodyDef, placement), .section = &place, .help = "where the mesh stands"},
+    {"material", SCENE_SECTION, AT(FemBodyDef, material),
+     .required = "{young: 1e6, poisson: 0.4, density: 1000}", .section = &material,
+     .help = "what it is made of"},
+    {"velocity", SCENE_VECTOR, AT(FemBodyDef, velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
+     .help = "at t = 0"},
+    {"spin", SCENE_VECTOR, AT(FemBodyDef, spin), .unit = "rad/s", .fallback = "[0, 0, 0]",
+     .help = "angular velocity about the centre of mass at t = 0"},
+    {"fixed", SCENE_LIST, AT(FemBodyDef, fixed), .section = &fixed,
+     .count_offset = offsetof(FemBodyDef, fixed_count), .help = "vertices that do not move"},
+    {"driven", SCENE_LIST, AT(FemBodyDef, driven), .section = &driven,
+     .count_offset = offsetof(FemBodyDef, driven_count), .help = "vertices that move as told"},
+    {0},
+};
+static const SceneSection body = {
+    .help = "an elastic body", .size = sizeof(FemBodyDef), .keys = body_keys, PLACE(FemBodyDef, place)};
+
+static const SceneKey halfspace_keys[] = {
+    {"point", SCENE_VECTOR, AT(FemObstacleDef, point), .unit = "m", .required = "[0, 0, 0]",
+     .help = "on its surface"},
+    {"normal", SCENE_DIRECTION, AT(FemObstacleDef, normal), .required = "[0, 0, 1]",
+     .help = "points out of the solid"},
+    {0},
+};
+static const SceneSection halfspace = {.help = "everything below a plane", .keys = halfspace_keys};
+
+static const SceneKey obstacle_keys[] = {
+    {"name", SCENE_LABEL, AT(FemObstacleDef, name), .required = "ground",
+     .help = "how messages and outputs call it"},
+    {"halfspace", SCENE_SECTION, .section = &halfspace, MARK(FemObstacleDef, is_halfspace, true),
+     .help = "a solid with a flat surface, without end"},
+    {"velocity", SCENE_VECTOR, AT(FemObstacleDef, motion.velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
+     .needs = "halfspace", .help = "of the half-space"},
+    {"mesh", SCENE_SECTION, .offset = offsetof(FemObstacleDef, mesh_path), .section = &mesh,
+     .help = "or a solid of tetrahedra"},
+    {"place", SCENE_SECTION, AT(FemObstacleDef, placement), .section = &place, .needs = "mesh",
+     .help = "where the mesh stands"},
+    {"motion", SCENE_SECTION, AT(FemObstacleDef, motion), .absent_help = "it stands still",
+     .section = &motion, .needs = "mesh", .help = "how the mesh moves"},
+    {0},
+};
+static const SceneSection obstacle = {.help = "a rigid solid that bodies run into",
+                                      .size = sizeof(FemObstacleDef),
+                                      .keys = obstacle_keys,
+                                      .one_of = "halfspace mesh",
+                                      .finish = finish_obstacle,
+                                      PLACE(FemObstacleDef, place)};
+
+static const SceneKey time_keys[] = {
+    {"end", SCENE_NUMBER, AT(FemSceneDef, end), .unit = "s", .range = "(0, inf)", .required = "0.5",
+     .help = "the run goes from 0 to here"},
+    {"tolerance", SCENE_NUMBER, AT(FemSceneDef, tolerance), .range = "(0, 1)", .fallback = "1e-4",
+     .help = "error of the positions per step, as a share of the smallest body's size"},
+    {"velocity_tolerance", SCENE_NUMBER, AT(FemSceneDef, velocity_tolerance), .unit = "m/s",
+     .range = "(0, inf)", .absent_help = "`tolerance` times the slowest body's speed of sound",
+     .help = "error of the velocities per step"},
+    {"max_step", SCENE_NUMBER, AT(FemSceneDef, max_step), .unit = "s", .range = "(0, inf)",
+     .absent_help = "a share of `end`", .help = "longest step"},
+    {"initial_step", SCENE_NUMBER, AT(FemSceneDef, initial_step), .unit = "s", .range = "(0, inf)",
+     .absent_help = "the integrator's choice", .help = "first step"},
+    {"min_step", SCENE_NUMBER, AT(FemSceneDef, min_step), .unit = "s", .range = "(0, inf)",
+     .absent_help = "a tiny share of `end`", .help = "a run that needs shorter steps gives up"},
+    {"max_order", SCENE_INTEGER, AT(FemSceneDef, max_order), .range = "[1, 2]", .fallback = "2",
+     .help = "of the backward differentiation formula; 1 damps more"},
+    {0},
+};
+static const SceneSection time_section = {
+    .help = "how long, and how exactly", .keys = time_keys, .finish = finish_time};
+
+static const SceneKey effect_keys[] = {
+    {"gravity", SCENE_VECTOR, AT(FemSceneDef, gravity), .unit = "m/s²", .absent_help = "no gravity",
+     MARK(FemSceneDef, has_gravity, true), .help = "acceleration of free fall"},
+    {"damping", SCENE_NUMBER, AT(FemSceneDef, stiffness_damping), .unit = "s", .range = "[0, inf)",
+     .fallback = "0", .help = "stiffness-proportional damping β of the bodies whose material gives none"},
+    {0},
+};
+static const SceneSection effects = {.help = "what acts on all bodies", .keys = effect_keys};
+
+static const SceneKey contact_keys[] = {
+    {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa", .range = "(0, inf)",
+     .absent_help = "the softest body's Young's modulus",
+     .help = "penalty κ; higher: less overlap, shorter steps (Pa/m³ with the potential `body`)"},
+    {"potential", SCENE_CHOICE, AT(FemContactDef, potential), .fallback = "nodal", .choices = &potentials,
+     .help = "how overlap volumes become pressure"},
+    {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip", .choices = &overlaps,
+     .help = "the model that gives the overlap volume of two tetrahedra"},
+    {"margin", SCENE_NUMBER, AT(FemContactDef, margin), .unit = "m", .range = "(0, inf)",
+     .absent_help = "half the shortest mean edge of a body", .help = "pairs nearer than this are watched"},
+    {"hessian", SCENE_CHOICE, AT(FemContactDef, use_full_hessian), .fallback = "full", .choices = &hessians,
+     .help = "derivatives of the contact force for Newton's method"},
+    {0},
+};
+static const SceneSection contact = {.help = "bodies push each other apart", .keys = contact_keys};
+
+static const SceneKey solver_keys[] = {
+    {"linear", SCENE_CHOICE, AT(FemSceneDef, solver), .fallback = "auto", .choices = &solvers,
+     .help = "of the linear systems"},
+    {"tolerance", SCENE_NUMBER, AT(FemSceneDef, solver_tolerance), .range = "(0, 1)", .fallback = "1e-8",
+     .help = "relative residual of `pcg`"},
+    {"threads", SCENE_INTEGER, AT(FemSceneDef, threads), .range = "[0, 4096]", .fallback = "0",
+     .help = "0: one for each core"},
+    {0},
+};
+static const SceneSection solver = {.help = "linear algebra", .keys = solver_keys};
+
+static const SceneKey output_keys[] = {
+    {"frames", SCENE_INTEGER, AT(FemSceneDef, frames), .range = "[1, 1000000]", .fallback = "50",
+     .help = "written at i · end/frames, i = 0 … frames"},
+    {"vtu", SCENE_SWITCH, AT(FemSceneDef, write_vtu), .fallback = "true",
+     .help = "a VTU file a frame, for ParaView"},
+    {"history", SCENE_SWITCH, AT(FemSceneDef, write_history), .fallback = "true",
+     .help = "history.csv: energies, momentum, contact forces per frame"},
+    {0},
+};
+static const SceneSection output = {.help = "what is written", .keys = output_keys};
+
+static const SceneKey scene_keys[] = {
+    {"title", SCENE_TEXT, AT(FemSceneDef, title), .help = "a line for people"},
+    {"time", SCENE_SECTION, .required = "{end: 0.5}", .section = &time_section,
+     .help = "how long, and how exactly"},
+    {"effects", SCENE_SECTION, .section = &effects, .help = "what acts on all bodies"},
+    {"bodies", SCENE_LIST, AT(FemSceneDef, bodies),
+     .required = "[{name: block, mesh: block.msh, material: {young: 1e6, poisson: 0.4, density: 1000}}]",
+     .section = &body, .count_offset = offsetof(FemSceneDef, body_count),
+     .help = "the elastic bodies, one at least"},
+    {"obstacles", SCENE_LIST, AT(FemSceneDef, obstacles), .section = &obstacle,
+     .count_offset = offsetof(FemSceneDef, obstacle_count), .help = "rigid solids that bodies run into"},
+    {"contact", SCENE_SECTION, AT(FemSceneDef, contact), .absent_help = "no contact", .section = &contact,
+     MARK(FemSceneDef, contact.is_on, true), .help = "bodies push each other apart; `{}` for the defaults"},
+    {"solver", SCENE_SECTION, .section = &solver, .help = "linear algebra"},
+    {"output", SCENE_SECTION, .section = &output, .help = "what is written"},
+    {0},
+};
+const SceneSection app_scene_keys_root = {
+    .help = "A scene.", .size = sizeof(FemSceneDef), .keys = scene_keys};
+
+// Looking things up.
+
+const SceneKey *app_scene_keys_at(const SceneSection *section, int index) {
+  int count = 0;
+  while (section->keys[count].name) {
+    if (count == index) return &section->keys[index];
+    count++;
+  }
+  return section->more ? app_scene_keys_at(section->more, index - count) : NULL;
+}
+
+const SceneKey *app_scene_keys_find(const SceneSection *section, const char *name) {
+  const SceneKey *key;
+  for (int i = 0; (key = app_scene_keys_at(section, i)); i++)
+    if (strcmp(key->name, name) == 0) return key;
+  return NULL;
+}
+
+bool app_scene_keys_locate(const SceneSection *section, const char *name, char *path, size_t size) {
+  if (app_scene_keys_find(section, name)) {
+    snprintf(path, size, "%s", name);
+    return true;
+  }
+  const SceneKey *key;
+  for (int i = 0; (key = app_scene_keys_at(section, i)); i++) {
+    char below[128];
+    if (!key->section || !app_scene_keys_locate(key->section, name, below, sizeof below)) continue;
+    snprintf(path, size, "%s%s.%s", key->name, key->type == SCENE_LIST ? "[]" : "", below);
+    return true;
+  }
+  return false;
+}
+
+SceneRange app_scene_keys_range(const SceneKey *key) {
+  if (!key->range) return (SceneRange){-INFINITY, INFINITY, true, true};
+  char *end;
+  SceneRange range = {.is_min_open = key->range[0] == '('};
+  range.min = strtod(key->range + 1, &end);
+  range.max = strtod(end + 1, &end);
+  range.is_max_open = end[0] == ')';
+  return range;
+}
+
+bool app_scene_keys_allows(const SceneKey *key, double number) {
+  SceneRange range = app_scene_keys_range(key);
+  bool is_above = range.is_min_open ? number > range.min : number >= range.min;
+  bool is_below = range.is_max_open ? number < range.max : number <= range.max;
+  return is_above && is_below;
+}
+
+int app_scene_keys_choice(const SceneKey *key, const char *name) {
+  const char *known;
+  for (int i = 0; (known = key->choices->name(i)); i++)
+    if (strcmp(known, name) == 0) return i;
+  return -1;
+}
+
+static const char *type_text(SceneType type) {
+  switch (type) {
+  case SCENE_NUMBER:
+    return "a number";
+  case SCENE_INTEGER:
+    return "a whole number";
+  case SCENE_SWITCH:
+    return "true or false";
+  case SCENE_TRUE:
+    return "true";
+  case SCENE_TEXT:
+    return "text";
+  case SCENE_LABEL:
+    return "a name of letters, digits, '_' and '-'";
+  case SCENE_NAME:
+  case SCENE_CHOICE:
+    return "one of ";
+  case SCENE_VECTOR:
+    return "three numbers [x, y, z]";
+  case SCENE_DIRECTION:
+    return "a direction [x, y, z], not zero";
+  case SCENE_FACTORS:
+    return "a number or three [x, y, z], none zero";
+  case SCENE_COUNTS:
+    return "a whole number or three [x, y, z]";
+  case SCENE_AXES:
+    return "a list of some of x, y, z";
+  case SCENE_ROWS:
+    return "rows [t, x, y, z] of four numbers, t increasing";
+  case SCENE_SECTION:
+    return "a mapping {key: value}";
+  case SCENE_LIST:
+    return "a list of mappings";
+  }
+  return "";
+}
+
+void app_scene_keys_expect(const SceneKey *key, char *text, size_t size) {
+  size_t used = 0;
+  text_append(text, size, &used, "%s", type_text(key->type));
+  const char *name;
+  for (int i = 0; key->choices && (name = key->choices->name(i)); i++)
+    text_append(text, size, &used, "%s%s", i ? ", " : "", name);
+  if (key->section && key->section->shorthand)
+    text_append(text, size, &used, " or text (its '%s')", key->section->shorthand);
+  if (key->range) text_append(text, size, &used, " in %s", key->range);
+  if (key->unit) text_append(text, size, &used, " [%s]", key->unit);
+}

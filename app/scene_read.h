@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a scene file to the definition of a scene: the tree of scene_tree.h is read by the table of
+// scene_keys.h.
+#ifndef TETLAP_APP_SCENE_READ_H
+#define TETLAP_APP_SCENE_READ_H
+
+#include "app/scene_keys.h"
+#include "app/scene_tree.h"
+#include "fem/scene.h"
+
+// Reads a scene, YAML or JSON, after putting `overrides` ("contact.stiffness=1e6", "bodies.lower.place=…",
+// see scene_override.h) into it. On failure `scene` is zeroed. STATUS_INPUT: file:line:column, the key, what
+// was expected and found, and the nearest valid name; STATUS_USAGE: the same of an override; STATUS_IO.
+Status app_scene_read(const char *path, const char *const *overrides, int override_count, FemSceneDef *scene);
+
+// The same of a text in memory; mesh paths count from the directory of `path`.
+Status app_scene_read_text(const char *path, const char *text, size_t size, FemSceneDef *scene);
+
+// Fills the struct that a section describes, zeroed before, with the defaults of its keys.
+Status app_scene_read_defaults(const SceneSection *section, void *self);
+
+#endif
