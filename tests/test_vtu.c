@@ -27,7 +27,7 @@ static void remove_path(void) {
   unlink(path);
 }
 
-// ---- a reader -------------------------------------------------------------------------------------------
+// A reader.
 
 // The DataArray element of that name, up to its closing bracket, and the value of one of its attributes.
 static const char *find_array(const char *text, const char *name) {
@@ -95,8 +95,6 @@ static void assert_array(const char *name, const char *type, int components, con
   memory_free(text);
 }
 
-// ---- frames ---------------------------------------------------------------------------------------------
-
 static const double corner[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 static const int one_tet[4] = {0, 1, 2, 3};
 
@@ -143,8 +141,6 @@ static void destroy_large(Large *large) {
   memory_free(large->positions), memory_free(large->vectors), memory_free(large->stress);
   memory_free(large->tets), memory_free(large->body);
 }
-
-// ---- behaviour ------------------------------------------------------------------------------------------
 
 START_TEST(a_single_tetrahedron_reads_back) {
   FemVtuFrame frame = single_tetrahedron();
