@@ -1,2 +1,111 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/overlap.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "contact/clip.h"
+#include "contact/exact.h"
+#include "contact/overlap_cgal.h"
+
+// The fastest first: what a person reads when asking for the models.
+static const ContactOverlapOps *const models[] = {
+    &contact_overlap_clip,
+    &contact_overlap_exact,
+    &contact_overlap_cgal,
+};
+enum { MODEL_COUNT = sizeof models / sizeof *models };
+
+const ContactOverlapOps *const *contact_overlap_list(int *count) {
+  *count = MODEL_COUNT;
+  return models;
+}
+
+static Status fail_unknown(const char *name) {
+  char known[256] = "";
+  size_t used = 0;
+  TextGuess guess = text_guess_of(name);
+  for (int m = 0; m < MODEL_COUNT; m++) {
+    text_append(known, sizeof known, &used, "%s%s", m ? ", " : "", models[m]->name);
+    text_guess_offer(&guess, models[m]->name);
+  }
+  if (guess.best)
+    return status_fail(STATUS_INPUT, "there is no overlap model '%s': did you mean '%s'? Known are %s", name,
+                       guess.best, known);
+  return status_fail(STATUS_INPUT, "there is no overlap model '%s': known are %s", name, known);
+}
+
+Status contact_overlap_create(ContactOverlapModel *model, const char *name) {
+  *model = (ContactOverlapModel){0};
+  const ContactOverlapOps *ops = NULL;
+  for (int m = 0; m < MODEL_COUNT; m++)
+    if (strcmp(models[m]->name, name) == 0) ops = models[m];
+  if (!ops) return fail_unknown(name);
+  if (ops->create) TRY(ops->create(&model->self));
+  model->ops = ops;
+  return STATUS_OK;
+}
+
+void contact_overlap_destroy(ContactOverlapModel *model) {
+  if (model->ops && model->ops->destroy) model->ops->destroy(model->self);
+  *model = (ContactOverlapModel){0};
+}
+
+// x − x is 0 for finite x, else NaN; the sum has no branch.
+static bool is_finite(const double pair[CONTACT_PAIR_SIZE]) {
+  double sum = 0;
+  for (int i = 0; i < CONTACT_PAIR_SIZE; i++) sum += pair[i] - pair[i];
+  return sum == 0;
+}
+
+static Status fail_not_finite(int pair_index, const double pair[CONTACT_PAIR_SIZE]) {
+  int i = 0;
+  while (isfinite(pair[i])) i++;
+  return status_fail(STATUS_INPUT,
+                     "pair %d, tetrahedron %d, vertex %d: coordinate %c is %g, it must be a finite number",
+                     pair_index, i / 12, i / 3 % 4, "xyz"[i % 3], pair[i]);
+}
+
+static Status eval_one(const ContactOverlapModel *model, const ContactOverlapBatch *batch, int i) {
+  const double *pair = batch->pairs + (size_t)i * CONTACT_PAIR_SIZE;
+  double *gradient = batch->gradient ? batch->gradient + (size_t)i * CONTACT_PAIR_SIZE : NULL;
+  double *hessian =
+      batch->hessian ? batch->hessian + (size_t)i * CONTACT_PAIR_SIZE * CONTACT_PAIR_SIZE : NULL;
+  unsigned flags = 0;
+  Status status = model->ops->eval_pair(model->self, pair, batch->volume + i, gradient, hessian, &flags);
+  if (batch->flags) batch->flags[i] = flags;
+  return status;
+}
+
+// The first pair with a coordinate that is not finite, pair_count if there is none.
+static int first_not_finite(const ContactOverlapBatch *batch) {
+  for (int i = 0; i < batch->pair_count; i++)
+    if (!is_finite(batch->pairs + (size_t)i * CONTACT_PAIR_SIZE)) return i;
+  return batch->pair_count;
+}
+
+// Each pair has its own place in the outputs, so the threads' order does not show. Costs differ from pair to
+// pair by a hundred and more: chunks are handed out as threads get free.
+static Status eval_each(const ContactOverlapModel *model, const ContactOverlapBatch *batch) {
+  int first_failed = INT_MAX;
+#pragma omp parallel for schedule(dynamic, 64) reduction(min : first_failed) if (batch->pair_count > 64)
+  for (int i = 0; i < batch->pair_count; i++)
+    if (eval_one(model, batch, i) != STATUS_OK && i < first_failed) first_failed = i;
+  if (first_failed == INT_MAX) return STATUS_OK;
+  // the message belongs to the thread that failed: let this one see it too
+  Status status = eval_one(model, batch, first_failed);
+  if (status == STATUS_OK)
+    return status_fail(STATUS_SOLVER, "overlap model '%s': pair %d failed once and not again",
+                       model->ops->name, first_failed);
+  return status_prefix(status, "overlap model '%s': pair %d", model->ops->name, first_failed);
+}
+
+Status contact_overlap_eval(const ContactOverlapModel *model, const ContactOverlapBatch *batch) {
+  if (batch->hessian && !model->ops->has_hessian)
+    return status_fail(STATUS_INPUT, "overlap model '%s' has no Hessian", model->ops->name);
+  int bad = first_not_finite(batch);
+  if (bad < batch->pair_count) return fail_not_finite(bad, batch->pairs + (size_t)bad * CONTACT_PAIR_SIZE);
+  return model->ops->eval_batch ? model->ops->eval_batch(model->self, batch) : eval_each(model, batch);
+}

@@ -59,7 +59,7 @@ typedef struct ContactOverlapModel {
 // The models there are, and how many.
 const ContactOverlapOps *const *contact_overlap_list(int *count);
 
-// Makes the model of that name. STATUS_INPUT: unknown name; the message lists the known ones.
+// Makes the model of that name. STATUS_INPUT: unknown name; the message lists the known ones and the nearest.
 Status contact_overlap_create(ContactOverlapModel *model, const char *name);
 
 // Evaluates all pairs of the batch with OpenMP. STATUS_INPUT: a coordinate is NaN or infinite; the message

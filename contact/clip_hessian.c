@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Hessian of clip.h: what turns with the faces, then one segment after another.
+#include <math.h>
+#include <string.h>
+
+#include "contact/clip.h"
+
+enum { SIZE = CONTACT_PAIR_SIZE };
+
+// Σ_f Σ_a δx_a m_fa dS_f of one face: with d the edge opposite to vertex v, δS = ½ δx_v × d.
+static void add_turning(const double tet[12], int face, bool is_mirrored, const double moment[4],
+                        double *block) {
+  int corner[3] = {contact_clip_t[face], contact_clip_u[face], contact_clip_v[face]};
+  for (int v = 0; v < 3; v++) {
+    Vec3 d = vec3_sub(vec3_at(tet + 3 * corner[(v + 1) % 3]), vec3_at(tet + 3 * corner[(v + 2) % 3]));
+    d = vec3_scale(is_mirrored ? -0.5 : 0.5, d);
+    const double turn[3][3] = {{0, d.z, -d.y}, {-d.z, 0, d.x}, {d.y, -d.x, 0}}; // turn δ = δ × d
+    for (int a = 0; a < 3; a++)
+      for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+          block[(3 * corner[a] + r) * SIZE + 3 * corner[v] + c] += moment[corner[a]] * turn[r][c];
+  }
+}
+
+static Vec3 outward_normal(const ContactClipFrame *frame, int face) {
+  Vec3 n = frame->normal[face];
+  return vec3_scale((frame->det < 0 ? 1 : -1) / vec3_length(n), n);
+}
+
+// A point's step in space, from the change of its coordinates in A; these sum to zero.
+static Vec3 step_of(const double tet[12], const double lanes[4]) {
+  Vec3 step = {0, 0, 0};
+  for (int i = 1; i < 4; i++)
+    step = vec3_add(step, vec3_scale(lanes[i], vec3_sub(vec3_at(tet + 3 * i), vec3_at(tet))));
+  return step;
+}
+
+// −1/sin θ ∫ ψ_z ψ_w ds (± n_f n_gᵀ) in the rows of A, transposed in those of B, minus where z and w belong
+// to different tetrahedra. `from` and `to` are the segment's ends in the eight coordinates ψ.
+static void add_segment(const double from[8], const double to[8], double length, Vec3 normal_a, Vec3 normal_b,
+                        double *hessian) {
+  double sine = fmax(vec3_length(vec3_cross(normal_a, normal_b)), CONTACT_CLIP_LEAST_SINE);
+  const double p[3] = {normal_a.x, normal_a.y, normal_a.z}, q[3] = {normal_b.x, normal_b.y, normal_b.z};
+  for (int z = 0; z < 8; z++) {
+    const double *left = z < 4 ? p : q, *right = z < 4 ? q : p;
+    for (int w = 0; w < 8; w++) {
+      double product =
+          (2 * (from[z] * from[w] + to[z] * to[w]) + from[z] * to[w] + to[z] * from[w]) * length / 6;
+      double weight = ((z < 4) == (w < 4) ? -product : product) / sine;
+      if (weight == 0) continue; // a third of them: ψ is zero for the vertices opposite to f and g
+      double *block = hessian + 3 * z * SIZE + 3 * w;
+      for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) block[r * SIZE + c] += weight * left[r] * right[c];
+    }
+  }
+}
+
+// The two parts are symmetric only together, and that but for rounding: the mean is exactly.
+static void symmetrise(double *hessian) {
+  for (int i = 0; i < SIZE; i++)
+    for (int j = 0; j < i; j++) {
+      double mean = (hessian[i * SIZE + j] + hessian[j * SIZE + i]) / 2;
+      hessian[i * SIZE + j] = hessian[j * SIZE + i] = mean;
+    }
+}
+
+void contact_clip_hessian(const ContactClipPolytope *polytope, const ContactClipMoments *moments,
+                          const double pair[24], double *hessian) {
+  memset(hessian, 0, SIZE * SIZE * sizeof *hessian);
+  const ContactClipFrame *frame = polytope->frame;
+  Vec3 normal[8];
+  for (int f = 0; f < 8; f++) {
+    int t = f / 4;
+    normal[f] = outward_normal(&frame[t], f % 4);
+    if (moments->fraction[f] != 0)
+      add_turning(pair + 12 * t, f % 4, frame[t].det < 0, moments->moment[f], hessian + 12 * t * (SIZE + 1));
+  }
+  for (int e = 0; e < polytope->edge_count; e++) {
+    ContactClipEdge edge = polytope->edge[e];
+    if ((edge.left < 4) == (edge.right < 4)) continue; // an edge of A or of B does not move within its faces
+    const double *p = polytope->vertex[edge.from], *q = polytope->vertex[edge.to];
+    double from[8], to[8], change[8];
+    for (int lane = 0; lane < 8; lane++) {
+      from[lane] = polytope->origin[lane] + p[lane];
+      to[lane] = polytope->origin[lane] + q[lane];
+      change[lane] = q[lane] - p[lane];
+    }
+    int f = edge.left < 4 ? edge.left : edge.right, g = edge.left < 4 ? edge.right : edge.left;
+    add_segment(from, to, vec3_length(step_of(pair, change)), normal[f], normal[g], hessian);
+  }
+  symmetrise(hessian);
+}
