@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a mesh measures: its surface, sizes, angles, parts, and what an analyst should know before using it.
-#include <float.h>
-#include <stdbool.h>
+#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/mesh.h"
 #include "fem/mesh_faces.h"
+#include "fem/mesh_sets.h"
 
 Status fem_mesh_surface(const FemMesh *mesh, int (**triangles)[3], int *triangle_count) {
   FemMeshFace *faces;
@@ -103,36 +102,18 @@ static Status measure_edges(const FemMesh *mesh, FemMeshQuality *quality) {
   return STATUS_OK;
 }
 
-// Disjoint sets in an array of parents; a root is its own parent.
-static int find(int *parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-static bool join(int *parent, int i, int j) {
-  int a = find(parent, i), b = find(parent, j);
-  parent[a > b ? a : b] = a > b ? b : a;
-  return a != b;
-}
-
-static int *new_sets(int count) {
-  int *parent = memory_zeroed((size_t)count, sizeof *parent);
-  for (int i = 0; parent && i < count; i++) parent[i] = i;
-  return parent;
-}
-
 static Status count_components(const FemMesh *mesh, FemMeshQuality *quality) {
-  int *parent = new_sets(mesh->vertex_count);
+  int *parent = fem_mesh_sets_new(mesh->vertex_count);
   if (!parent) return status_no_memory("the parts of a mesh");
   quality->component_count = mesh->vertex_count;
   for (int t = 0; t < mesh->tet_count; t++)
     for (int k = 1; k < 4; k++)
-      if (join(parent, mesh->tets[t][0], mesh->tets[t][k])) quality->component_count--;
+      if (fem_mesh_sets_join(parent, mesh->tets[t][0], mesh->tets[t][k])) quality->component_count--;
   memory_free(parent);
   return STATUS_OK;
 }
 
-// Three numbers of doubles in lexicographic order; −0 equals 0.
+// Positions in lexicographic order; −0 equals 0.
 static int compare_position(const void *left, const void *right) {
   const double *a = left, *b = right;
   for (int c = 0; c < 3; c++)
@@ -177,14 +158,14 @@ static void count_pinches(const SurfaceEdge *edges, int edge_count, int (*triang
                           int *first, FemMeshQuality *quality) {
   for (int begin = 0, end; begin < edge_count; begin = end) {
     for (end = begin + 1; end < edge_count && compare_edge(&edges[begin], &edges[end]) == 0; end++) {
-      join(fans, edges[begin].low_corner, edges[end].low_corner);
-      join(fans, edges[begin].high_corner, edges[end].high_corner);
+      fem_mesh_sets_join(fans, edges[begin].low_corner, edges[end].low_corner);
+      fem_mesh_sets_join(fans, edges[begin].high_corner, edges[end].high_corner);
     }
     if (end - begin > 2) quality->pinch_edge_count++;
   }
   // first[v]: 1 + the fan that v was first seen in, −1 once it is counted.
   for (int corner = 0; corner < edge_count; corner++) {
-    int v = triangles[corner / 3][corner % 3], fan = 1 + find(fans, corner);
+    int v = triangles[corner / 3][corner % 3], fan = 1 + fem_mesh_sets_find(fans, corner);
     if (first[v] == 0) first[v] = fan;
     if (first[v] < 0 || first[v] == fan) continue;
     first[v] = -1;
@@ -196,7 +177,7 @@ static Status measure_surface(const FemMesh *mesh, FemMeshQuality *quality) {
   int(*triangles)[3], count;
   TRY(fem_mesh_surface(mesh, &triangles, &count));
   SurfaceEdge *edges = memory_zeroed(3 * (size_t)count, sizeof *edges);
-  int *fans = new_sets(3 * count), *first = memory_zeroed((size_t)mesh->vertex_count, sizeof *first);
+  int *fans = fem_mesh_sets_new(3 * count), *first = memory_zeroed((size_t)mesh->vertex_count, sizeof *first);
   Status status = STATUS_OK;
   if (edges && fans && first) {
     quality->surface_triangle_count = count;
