@@ -25,7 +25,7 @@ static void select_tets(FemAssembly *assembly, bool (*takes)(const FemModelBody 
     own->begin[colour] = assembly->tet_count;
     for (int i = all->begin[colour]; i < all->begin[colour + 1]; i++) {
       const FemModelBody *body = &model->bodies[model->tet_body[all->tets[i]]];
-      if (body->is_obstacle || (takes && !takes(body))) continue;
+      if (takes && !takes(body)) continue;
       own->tets[assembly->tet_count++] = all->tets[i];
     }
   }

@@ -31,8 +31,8 @@ typedef struct FemAssembly {
   long long layout; // of the matrix that `slots` belong to; 0: not looked up
 } FemAssembly;
 
-// All elements of bodies, obstacles apart, that `takes` accepts (NULL: all). A zeroed assembly, and one whose
-// creation failed, can be destroyed.
+// All elements of the model's colouring, which leaves out obstacles, whose body `takes` accepts (NULL: all).
+// A zeroed assembly, and one whose creation failed, can be destroyed.
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
                            bool (*takes)(const FemModelBody *body));
 void fem_assembly_destroy(FemAssembly *assembly);

@@ -121,6 +121,14 @@ START_TEST(exactly_rank_deficient_matrices_are_restored) {
 }
 END_TEST
 
+// Columns so far apart in length that the square of their product underflows.
+START_TEST(columns_of_vanishing_length_still_give_rotations) {
+  FemSvd3 svd;
+  check_factors((const double[9]){1, 3e-163, 0, 0, 1e-161, 0, 0, 0, 0}, &svd);
+  check_factors((const double[9]){1, 1e-200, 1e-300, 0, 1e-200, 1e-300, 0, 0, 1e-300}, &svd);
+}
+END_TEST
+
 // Powers of two change no rounding: the factors must be the same at every scale, subnormal numbers excepted.
 START_TEST(scale_does_not_matter) {
   static const int exponents[] = {-1060, -1000, -700, -300, -30, 30, 300, 700, 1020};
@@ -194,6 +202,7 @@ int main(void) {
   tcase_add_test(cases, known_singular_values_come_back);
   tcase_add_test(cases, the_zero_matrix_has_rotations_too);
   tcase_add_test(cases, exactly_rank_deficient_matrices_are_restored);
+  tcase_add_test(cases, columns_of_vanishing_length_still_give_rotations);
   tcase_add_test(cases, scale_does_not_matter);
   tcase_add_test(cases, the_rotation_is_the_nearest_one);
   tcase_add_test(cases, a_rotation_near_the_identity_is_itself);
