@@ -2,11 +2,110 @@
 #include "app/program.h"
 
 #include <stdio.h>
+#include <string.h>
 
+#include "app/check_command.h"
+#include "app/compare_command.h"
+#include "app/effects_command.h"
+#include "app/run_command.h"
+#include "app/schema_command.h"
+#include "app/versions.h"
+#include "base/log.h"
+#include "base/record.h"
 #include "base/status.h"
+#include "base/text.h"
+
+typedef struct Command {
+  const char *name;
+  const char *help;
+  int (*run)(int argument_count, char **arguments); // arguments[0] is "tetlap NAME"
+} Command;
+
+static int run_help(int argument_count, char **arguments);
+static int run_version(int argument_count, char **arguments);
+
+static const Command commands[] = {
+    {"run", "run a scene and write frames, history and summary", app_run_run},
+    {"compare", "run a scene with several overlap models and compare", app_compare_run},
+    {"check", "say what a run would do, without running", app_check_run},
+    {"schema", "print the scene file's JSON Schema, or its manual page", app_schema_run},
+    {"effects", "list effects, materials, potentials, models and solvers", app_effects_run},
+    {"version", "print the versions of the program and its libraries", run_version},
+    {"help", "print this; `tetlap COMMAND --help` tells more", run_help},
+};
+enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+static const Command *find(const char *name) {
+  for (int i = 0; i < COMMAND_COUNT; i++)
+    if (strcmp(commands[i].name, name) == 0) return &commands[i];
+  return NULL;
+}
+
+static int fail_unknown(const char *name) {
+  TextGuess guess = text_guess_of(name);
+  for (int i = 0; i < COMMAND_COUNT; i++) text_guess_offer(&guess, commands[i].name);
+  if (guess.best)
+    log_error("unknown command '%s'; did you mean '%s'?", name, guess.best);
+  else
+    log_error("unknown command '%s'; `tetlap help` lists the commands", name);
+  return status_exit_code(STATUS_USAGE);
+}
+
+static void print_commands(FILE *stream) {
+  fputs("usage: tetlap COMMAND [OPTION…]\n\nDeformable bodies in contact: finite elements, overlap "
+        "volumes.\n\n",
+        stream);
+  for (int i = 0; i < COMMAND_COUNT; i++) fprintf(stream, "  %-9s %s\n", commands[i].name, commands[i].help);
+  fputs("\nFirst: tetlap run examples/01_drop.yaml\n", stream);
+}
+
+// Runs a command as `tetlap NAME`: that is how its usage lines call it.
+static int run(const Command *command, int argument_count, char **arguments) {
+  char name[64];
+  snprintf(name, sizeof name, "tetlap %s", command->name);
+  arguments[0] = name;
+  return command->run(argument_count, arguments);
+}
+
+static int run_help(int argument_count, char **arguments) {
+  if (argument_count < 2 || arguments[1][0] == '-') {
+    print_commands(stdout);
+    return 0;
+  }
+  const Command *command = find(arguments[1]);
+  if (!command) return fail_unknown(arguments[1]);
+  if (command->run == run_help || command->run == run_version) {
+    print_commands(stdout);
+    return 0;
+  }
+  char option[] = "--help";
+  char *asking[] = {NULL, option, NULL};
+  return run(command, 2, asking);
+}
+
+static int run_version(int argument_count, char **arguments) {
+  (void)argument_count, (void)arguments;
+  Record *versions = record_new();
+  Status status = versions ? STATUS_OK : status_no_memory("the versions");
+  if (!status) {
+    app_versions_record(versions);
+    status = record_print(versions, stdout);
+  }
+  record_destroy(versions);
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
 
 int app_program_run(int argument_count, char **arguments) {
-  (void)arguments;
-  fprintf(stderr, "usage: tetlap COMMAND …\n");
-  return argument_count > 1 ? 0 : status_exit_code(STATUS_USAGE);
+  log_set_level(LOG_INFO);
+  app_versions_set_command(argument_count, arguments);
+  if (argument_count < 2) {
+    print_commands(stderr);
+    return status_exit_code(STATUS_USAGE);
+  }
+  const char *name = arguments[1];
+  if (text_lists("-h -? --help", name)) name = "help";
+  if (text_lists("-V --version", name)) name = "version";
+  const Command *command = find(name);
+  return command ? run(command, argument_count - 1, arguments + 1) : fail_unknown(name);
 }

@@ -399,6 +399,32 @@ Status app_scene_read_defaults(const SceneSection *section, void *self) {
   return STATUS_OK;
 }
 
+// Defaults own no more than texts.
+static void free_texts(const SceneSection *section, void *self) {
+  const SceneKey *key;
+  for (int i = 0; (key = app_scene_keys_at(section, i)); i++) {
+    void *field = field_of(self, key->offset);
+    if (key->type == SCENE_SECTION) free_texts(key->section, field);
+    if (key->type == SCENE_TEXT || key->type == SCENE_LABEL || key->type == SCENE_NAME)
+      memory_free(*(char **)field);
+  }
+}
+
+void app_scene_read_destroy_defaults(const SceneSection *section, void *defaults) {
+  if (defaults) free_texts(section, defaults);
+  memory_free(defaults);
+}
+
+Status app_scene_read_create_defaults(const SceneSection *section, void **defaults) {
+  *defaults = memory_zeroed(1, section->size);
+  if (!*defaults) return status_no_memory("the defaults of a scene");
+  Status status = app_scene_read_defaults(section, *defaults);
+  if (!status) return STATUS_OK;
+  app_scene_read_destroy_defaults(section, *defaults);
+  *defaults = NULL;
+  return status;
+}
+
 // Bodies and obstacles share one set of names.
 static Status check_names(const SceneNode *root) {
   static const char *const lists[] = {"bodies", "obstacles"};

@@ -25,31 +25,6 @@ static int choice_at(const void *field, size_t size) {
   return value;
 }
 
-// A struct filled with defaults, to compare with.
-
-static void free_texts(const SceneSection *section, void *self) {
-  const SceneKey *key;
-  for (int i = 0; (key = app_scene_keys_at(section, i)); i++) {
-    void *field = (char *)self + key->offset;
-    if (key->type == SCENE_SECTION) free_texts(key->section, field);
-    if (key->type == SCENE_TEXT || key->type == SCENE_LABEL || key->type == SCENE_NAME)
-      memory_free(*(char **)field);
-  }
-}
-
-static void destroy_defaults(const SceneSection *section, void *defaults) {
-  free_texts(section, defaults);
-  memory_free(defaults);
-}
-
-static Status create_defaults(const SceneSection *section, void **defaults) {
-  *defaults = memory_zeroed(1, section->size);
-  if (!*defaults) return status_no_memory("the resolved scene");
-  Status status = app_scene_read_defaults(section, *defaults);
-  if (status) destroy_defaults(section, *defaults);
-  return status;
-}
-
 // Which keys are written.
 
 // Whether a key says anything that its absence would not.
@@ -99,15 +74,15 @@ static bool is_empty_allowed(const SceneSection *section) {
   return !section->one_of;
 }
 
-// A key is written if it says something; else with its default, where reading would accept that: the keys it
-// needs are given, those that it excludes are not.
+// A key is written if it says something, else with its default, where reading would accept it: the keys that
+// it needs are given, those that it excludes are not. (Keys that share a field exclude each other.)
 static bool is_written(const SceneSection *section, const SceneKey *key, const void *self,
                        const void *defaults) {
+  if (is_any_given(section, key->excludes, self, defaults)) return false;
   if (key->required || is_given(key, self, defaults)) return true;
   if (key->mark.size > 0) return false;
   bool has_default = key->type == SCENE_SECTION ? is_empty_allowed(key->section) : key->fallback != NULL;
-  return has_default && are_all_given(section, key->needs, self, defaults) &&
-         !is_any_given(section, key->excludes, self, defaults);
+  return has_default && are_all_given(section, key->needs, self, defaults);
 }
 
 // Values.
@@ -143,11 +118,11 @@ static Status write_list(const SceneKey *key, const void *self, Record *record, 
   const char *items = *(char *const *)field_of(self, key->offset);
   RecordList *list = record_list(record, name);
   void *defaults;
-  TRY(create_defaults(section, &defaults));
+  TRY(app_scene_read_create_defaults(section, &defaults));
   Status status = STATUS_OK;
   for (int i = 0; i < count_of(key, self) && !status; i++)
     status = write_keys(section, items + (size_t)i * section->size, defaults, record_append(list));
-  destroy_defaults(section, defaults);
+  app_scene_read_destroy_defaults(section, defaults);
   return status;
 }
 
@@ -198,8 +173,8 @@ Status app_scene_write_value(const SceneKey *key, const void *self, Record *reco
 
 Status app_scene_write_resolved(const FemSceneDef *scene, Record *parent, const char *name) {
   void *defaults;
-  TRY(create_defaults(&app_scene_keys_root, &defaults));
+  TRY(app_scene_read_create_defaults(&app_scene_keys_root, &defaults));
   Status status = write_keys(&app_scene_keys_root, scene, defaults, record_child(parent, name));
-  destroy_defaults(&app_scene_keys_root, defaults);
+  app_scene_read_destroy_defaults(&app_scene_keys_root, defaults);
   return status;
 }

@@ -12,7 +12,8 @@
 // scene->path.
 Status app_scene_write_resolved(const FemSceneDef *scene, Record *parent, const char *name);
 
-// Writes one key's value, as it stands in the struct that the key's section describes, under `name`.
+// Writes the value of one key other than a section, as it stands in the struct that the key's section
+// describes, under `name`.
 Status app_scene_write_value(const SceneKey *key, const void *self, Record *record, const char *name);
 
 #endif

@@ -90,7 +90,9 @@ static size_t character_length(const unsigned char *text, size_t size) {
   size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
   if (first < 0xc2 || first > 0xf4 || size < length) return 0;
   unsigned char low = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80; // neither overlong
-  unsigned char high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf; // nor surrogate, nor beyond U+10FFFF
+  unsigned char high = first == 0xed   ? 0x9f
+                       : first == 0xf4 ? 0x8f
+                                       : 0xbf; // nor surrogate, nor beyond U+10FFFF
   if (text[1] < low || text[1] > high) return 0;
   for (size_t i = 2; i < length; i++)
     if ((text[i] & 0xc0) != 0x80) return 0;

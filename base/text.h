@@ -9,8 +9,8 @@
 enum { TEXT_MAX_WORD = 64 };
 
 // How many letters must be inserted, removed, replaced or swapped with their neighbour to turn a into b
-// (optimal string alignment; Damerau 1964), the case of letters ignored. TEXT_MAX_WORD if one of them is longer
-// than that.
+// (optimal string alignment; Damerau 1964), the case of letters ignored. TEXT_MAX_WORD if one of them is
+// longer than that.
 int text_distance(const char *a, const char *b);
 
 // The best guess so far while candidates are offered one by one; starts as text_guess_of(word).
