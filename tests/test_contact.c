@@ -18,6 +18,13 @@ static void start(Fixture *f, const ContactSystemDef *def) {
   ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01, NULL));
 }
 
+// Blocks are added to an empty fixture; systems borrow from it, so that it stays where it is.
+static Fixture *empty_fixture(void) {
+  Fixture *f = calloc(1, sizeof *f);
+  ck_assert_ptr_nonnull(f);
+  return f;
+}
+
 static void prepare(Fixture *f) {
   f->rest = blocks_copy(&f->blocks);
   f->still = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
@@ -26,23 +33,23 @@ static void prepare(Fixture *f) {
 }
 
 // Two irregular blocks, the upper one pressed 0.3 elements into the lower.
-static Fixture pressed_blocks(bool is_obstacle_below) {
-  Fixture f = {0};
+static Fixture *pressed_blocks(bool is_obstacle_below) {
+  Fixture *f = empty_fixture();
   blocks_add(
-      &f.blocks,
+      &f->blocks,
       &(BlockDef){.cell = {1, 1, 1}, .cells = {3, 3, 2}, .jitter = 0.15, .is_obstacle = is_obstacle_below});
   blocks_add(
-      &f.blocks,
+      &f->blocks,
       &(BlockDef){.corner = {0.63, 0.41, 1.7}, .cell = {0.83, 0.9, 0.8}, .cells = {2, 2, 2}, .jitter = 0.15});
-  prepare(&f);
+  prepare(f);
   return f;
 }
 
-static Fixture pressed_system(ContactPotential potential, bool is_obstacle_below) {
-  Fixture f = pressed_blocks(is_obstacle_below);
-  ContactSystemDef def = blocks_def(&f.blocks, f.rest, &f.model);
+static Fixture *pressed_system(ContactPotential potential, bool is_obstacle_below) {
+  Fixture *f = pressed_blocks(is_obstacle_below);
+  ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
   def.potential = potential;
-  start(&f, &def);
+  start(f, &def);
   return f;
 }
 
@@ -50,7 +57,7 @@ static void destroy(Fixture *f) {
   contact_system_destroy(f->system);
   contact_overlap_destroy(&f->model);
   blocks_destroy(&f->blocks);
-  free(f->rest), free(f->still);
+  free(f->rest), free(f->still), free(f);
 }
 
 static double energy_at(const Fixture *f, const double *x) {
@@ -121,121 +128,121 @@ static Product multiply(const Fixture *f, const double *d) {
 }
 
 // _i: potential, + 5 with an obstacle below.
-static Fixture fixture_of(int i) {
+static Fixture *fixture_of(int i) {
   return pressed_system((ContactPotential)(i % CONTACT_POTENTIAL_COUNT), i >= CONTACT_POTENTIAL_COUNT);
 }
 
 START_TEST(forces_are_minus_the_gradient_of_the_energy) {
-  Fixture f = fixture_of(_i);
-  double *x = blocks_copy(&f.blocks), *force = forces_at(&f, f.blocks.x);
-  ck_assert_int_gt(contact_system_active_count(f.system), 20);
-  ck_assert(energy_at(&f, f.blocks.x) > 0);
+  Fixture *f = fixture_of(_i);
+  double *x = blocks_copy(&f->blocks), *force = forces_at(f, f->blocks.x);
+  ck_assert_int_gt(contact_system_active_count(f->system), 20);
+  ck_assert(energy_at(f, f->blocks.x) > 0);
   for (uint64_t k = 0; k < 10; k++) {
-    double h = 1e-6, *d = random_motion(&f, k, true);
-    step_to(&f, h, d, x);
-    double above = energy_at(&f, x);
-    step_to(&f, -h, d, x);
-    double below = energy_at(&f, x), power = dot(force, d, 3 * f.blocks.vertex_count);
-    double size = sqrt(dot(force, force, 3 * f.blocks.vertex_count));
+    double h = 1e-6, *d = random_motion(f, k, true);
+    step_to(f, h, d, x);
+    double above = energy_at(f, x);
+    step_to(f, -h, d, x);
+    double below = energy_at(f, x), power = dot(force, d, 3 * f->blocks.vertex_count);
+    double size = sqrt(dot(force, force, 3 * f->blocks.vertex_count));
     ck_assert_near((above - below) / (2 * h), -power, 1e-7 * size);
     free(d);
   }
-  free(x), free(force), destroy(&f);
+  free(x), free(force), destroy(f);
 }
 END_TEST
 
 START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
-  Fixture f = fixture_of(_i);
-  int n = 3 * f.blocks.vertex_count;
-  double *x = blocks_copy(&f.blocks);
+  Fixture *f = fixture_of(_i);
+  int n = 3 * f->blocks.vertex_count;
+  double *x = blocks_copy(&f->blocks);
   for (uint64_t k = 0; k < 5; k++) {
-    double h = 1e-6, *d = random_motion(&f, k, false);
-    step_to(&f, h, d, x);
-    double *above = forces_at(&f, x);
-    step_to(&f, -h, d, x);
-    double *below = forces_at(&f, x);
-    Product product = multiply(&f, d);
+    double h = 1e-6, *d = random_motion(f, k, false);
+    step_to(f, h, d, x);
+    double *above = forces_at(f, x);
+    step_to(f, -h, d, x);
+    double *below = forces_at(f, x);
+    Product product = multiply(f, d);
     double size = sqrt(dot(product.y, product.y, n));
     ck_assert(size > 0);
     ck_assert_int_gt(product.dense_count, 0);
-    for (int b = 0; b < f.blocks.body_count; b++)
-      for (int v = 3 * f.blocks.bodies[b].vertex_begin; v < 3 * f.blocks.bodies[b].vertex_end; v++)
-        if (!f.blocks.bodies[b].is_obstacle)
+    for (int b = 0; b < f->blocks.body_count; b++)
+      for (int v = 3 * f->blocks.bodies[b].vertex_begin; v < 3 * f->blocks.bodies[b].vertex_end; v++)
+        if (!f->blocks.bodies[b].is_obstacle)
           ck_assert_near(-(above[v] - below[v]) / (2 * h), product.y[v], 1e-6 * size);
         else
           ck_assert_near(product.y[v], 0, 0);
     free(d), free(above), free(below), free(product.y);
   }
-  free(x), destroy(&f);
+  free(x), destroy(f);
 }
 END_TEST
 
 START_TEST(without_the_geometric_part_stiffness_is_not_negative) {
-  Fixture f = pressed_blocks(false);
-  ContactSystemDef def = blocks_def(&f.blocks, f.rest, &f.model);
+  Fixture *f = pressed_blocks(false);
+  ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
   def.potential = (ContactPotential)_i;
   def.use_full_hessian = false;
-  start(&f, &def);
+  start(f, &def);
   for (uint64_t k = 0; k < 20; k++) {
-    double *d = random_motion(&f, k, true);
-    Product product = multiply(&f, d);
+    double *d = random_motion(f, k, true);
+    Product product = multiply(f, d);
     ck_assert_int_eq(product.dense_count, 0);
     ck_assert_int_eq(product.outer_count > 0, _i != CONTACT_POTENTIAL_LINEAR);
-    ck_assert(dot(product.y, d, 3 * f.blocks.vertex_count) >= 0);
+    ck_assert(dot(product.y, d, 3 * f->blocks.vertex_count) >= 0);
     free(d), free(product.y);
   }
-  destroy(&f);
+  destroy(f);
 }
 END_TEST
 
 START_TEST(two_bodies_keep_momentum_and_angular_momentum) {
-  Fixture f = fixture_of(_i);
-  double *force = forces_at(&f, f.blocks.x), sum[3] = {0}, torque[3] = {0}, on_a[3] = {0}, size = 0;
-  for (int v = 0; v < f.blocks.vertex_count; v++) {
+  Fixture *f = fixture_of(_i);
+  double *force = forces_at(f, f->blocks.x), sum[3] = {0}, torque[3] = {0}, on_a[3] = {0}, size = 0;
+  for (int v = 0; v < f->blocks.vertex_count; v++) {
     Vec3 on_v = vec3_at(force + 3 * v);
     vec3_accumulate(sum, on_v);
-    vec3_accumulate(torque, vec3_cross(vec3_at(f.blocks.x + 3 * v), on_v));
-    if (v < f.blocks.bodies[0].vertex_end) vec3_accumulate(on_a, on_v);
+    vec3_accumulate(torque, vec3_cross(vec3_at(f->blocks.x + 3 * v), on_v));
+    if (v < f->blocks.bodies[0].vertex_end) vec3_accumulate(on_a, on_v);
     size += vec3_length(on_v);
   }
   ck_assert(size > 0);
   ck_assert_near(vec3_length(vec3_at(sum)), 0, 1e-13 * size);
   ck_assert_near(vec3_length(vec3_at(torque)), 0, 1e-12 * size);
   int count;
-  const ContactInterface *interfaces = contact_system_interfaces(f.system, &count);
+  const ContactInterface *interfaces = contact_system_interfaces(f->system, &count);
   ck_assert_int_eq(count, 1);
   ck_assert_int_eq(interfaces[0].a, 0);
   ck_assert_int_eq(interfaces[0].b, 1);
-  ck_assert_int_eq(interfaces[0].active_count, contact_system_active_count(f.system));
+  ck_assert_int_eq(interfaces[0].active_count, contact_system_active_count(f->system));
   for (int c = 0; c < 3; c++) ck_assert_near(interfaces[0].force[c], on_a[c], 1e-13 * size);
   ck_assert(on_a[2] < 0); // the lower body is pushed down
-  const double *forces = contact_system_forces(f.system);
-  for (int k = 0; k < 3 * f.blocks.vertex_count; k++) ck_assert_near(forces[k], force[k], 0);
-  free(force), destroy(&f);
+  const double *forces = contact_system_forces(f->system);
+  for (int k = 0; k < 3 * f->blocks.vertex_count; k++) ck_assert_near(forces[k], force[k], 0);
+  free(force), destroy(f);
 }
 END_TEST
 
 START_TEST(covered_volumes_sum_to_the_overlap) {
-  Fixture f = pressed_system(CONTACT_POTENTIAL_NODAL, false);
-  energy_at(&f, f.blocks.x);
-  const double *covered = contact_system_covered(f.system);
+  Fixture *f = pressed_system(CONTACT_POTENTIAL_NODAL, false);
+  energy_at(f, f->blocks.x);
+  const double *covered = contact_system_covered(f->system);
   double sum[2] = {0};
   for (int b = 0; b < 2; b++)
-    for (int i = f.blocks.bodies[b].tet_begin; i < f.blocks.bodies[b].tet_end; i++) sum[b] += covered[i];
+    for (int i = f->blocks.bodies[b].tet_begin; i < f->blocks.bodies[b].tet_end; i++) sum[b] += covered[i];
   int count, active, *tets;
   double *pairs;
-  const ContactInterface *interface = contact_system_interfaces(f.system, &count);
+  const ContactInterface *interface = contact_system_interfaces(f->system, &count);
   ck_assert(interface->volume > 0);
   ck_assert_near(sum[0], interface->volume, 1e-13 * interface->volume);
   ck_assert_near(sum[1], interface->volume, 1e-13 * interface->volume);
-  ck_assert_ok(contact_system_active_pairs(f.system, &active, &pairs, &tets));
+  ck_assert_ok(contact_system_active_pairs(f->system, &active, &pairs, &tets));
   ck_assert_int_eq(active, interface->active_count);
   for (int k = 0; k < active; k++)
     for (int s = 0; s < 2; s++)
       for (int v = 0; v < 12; v++)
         ck_assert_near(pairs[24 * k + 12 * s + v],
-                       f.blocks.x[3 * f.blocks.tets[tets[2 * k + s]][v / 3] + v % 3], 0);
-  memory_free(pairs), memory_free(tets), destroy(&f);
+                       f->blocks.x[3 * f->blocks.tets[tets[2 * k + s]][v / 3] + v % 3], 0);
+  memory_free(pairs), memory_free(tets), destroy(f);
 }
 END_TEST
 
@@ -244,24 +251,24 @@ END_TEST
 
 static const double TIP_DOWN[12] = {0, 0, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1};
 
-static Fixture single_tet(double depth, ContactPotential potential, const double velocity[3]) {
+static Fixture *single_tet(double depth, ContactPotential potential, const double velocity[3]) {
   static const double UP[3] = {0, 0, 1};
   static ContactHalfspace ground;
-  Fixture f = {0};
-  f.blocks.vertex_count = 4, f.blocks.tet_count = 1, f.blocks.body_count = 1;
-  f.blocks.x = malloc(sizeof TIP_DOWN);
-  f.blocks.tets = malloc(sizeof *f.blocks.tets);
-  memcpy(f.blocks.x, TIP_DOWN, sizeof TIP_DOWN);
-  memcpy(f.blocks.tets[0], (int[]){0, 1, 2, 3}, sizeof *f.blocks.tets);
-  f.blocks.bodies[0] = (ContactBody){.name = "tip", .vertex_end = 4, .tet_end = 1};
-  prepare(&f);
+  Fixture *f = empty_fixture();
+  f->blocks.vertex_count = 4, f->blocks.tet_count = 1, f->blocks.body_count = 1;
+  f->blocks.x = malloc(sizeof TIP_DOWN);
+  f->blocks.tets = malloc(sizeof *f->blocks.tets);
+  memcpy(f->blocks.x, TIP_DOWN, sizeof TIP_DOWN);
+  memcpy(f->blocks.tets[0], (int[]){0, 1, 2, 3}, sizeof *f->blocks.tets);
+  f->blocks.bodies[0] = (ContactBody){.name = "tip", .vertex_end = 4, .tet_end = 1};
+  prepare(f);
   ground = (ContactHalfspace){.name = "ground", .point = {3, 1, depth}};
   memcpy(ground.normal, UP, sizeof UP);
   if (velocity) memcpy(ground.velocity, velocity, sizeof UP);
-  ContactSystemDef def = blocks_def(&f.blocks, f.rest, &f.model);
+  ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
   def.halfspaces = &ground, def.halfspace_count = 1;
   def.potential = potential;
-  start(&f, &def);
+  start(f, &def);
   return f;
 }
 
@@ -277,109 +284,109 @@ START_TEST(a_tip_in_a_halfspace_is_as_by_hand) {
                         [CONTACT_POTENTIAL_PAIR] = kappa * W / V,
                         [CONTACT_POTENTIAL_LINEAR] = kappa,
                         [CONTACT_POTENTIAL_BODY] = kappa * W};
-  Fixture f = single_tet(s, (ContactPotential)_i, NULL);
-  ck_assert_near(energy_at(&f, f.blocks.x), energies[_i], 1e-13 * energies[_i]);
+  Fixture *f = single_tet(s, (ContactPotential)_i, NULL);
+  ck_assert_near(energy_at(f, f->blocks.x), energies[_i], 1e-13 * energies[_i]);
   int count;
-  const ContactInterface *interface = contact_system_interfaces(f.system, &count);
+  const ContactInterface *interface = contact_system_interfaces(f->system, &count);
   ck_assert_int_eq(count, 1);
   ck_assert_int_eq(interface->b, 1); // body_count + 0
   ck_assert_near(interface->volume, W, 1e-15);
   ck_assert_near(interface->force[2], pressures[_i] * dW, 1e-12 * pressures[_i]);
   ck_assert_near(interface->force[0], 0, 1e-13 * pressures[_i]);
   ck_assert_near(interface->force[1], 0, 1e-13 * pressures[_i]);
-  destroy(&f);
+  destroy(f);
 }
 END_TEST
 
 START_TEST(a_halfspace_moves_with_its_velocity) {
-  Fixture moving = single_tet(0.2, CONTACT_POTENTIAL_NODAL, (double[]){7, 0, 0.5});
-  Fixture still = single_tet(0.25, CONTACT_POTENTIAL_NODAL, NULL);
+  Fixture *moving = single_tet(0.2, CONTACT_POTENTIAL_NODAL, (double[]){7, 0, 0.5});
+  Fixture *still = single_tet(0.25, CONTACT_POTENTIAL_NODAL, NULL);
   double energy;
-  ck_assert_ok(contact_system_eval(moving.system, 0.1, moving.blocks.x, &energy, NULL));
-  ck_assert_near(energy, energy_at(&still, still.blocks.x), 1e-12 * energy);
-  destroy(&moving), destroy(&still);
+  ck_assert_ok(contact_system_eval(moving->system, 0.1, moving->blocks.x, &energy, NULL));
+  ck_assert_near(energy, energy_at(still, still->blocks.x), 1e-12 * energy);
+  destroy(moving), destroy(still);
 }
 END_TEST
 
 START_TEST(stiffness_against_a_halfspace_is_the_derivative) {
-  Fixture f = single_tet(0.4, (ContactPotential)_i, NULL);
-  double h = 1e-6, x[12], *d = random_motion(&f, 3, true);
-  step_to(&f, h, d, x);
-  double *above = forces_at(&f, x);
-  step_to(&f, -h, d, x);
-  double *below = forces_at(&f, x);
-  Product product = multiply(&f, d);
+  Fixture *f = single_tet(0.4, (ContactPotential)_i, NULL);
+  double h = 1e-6, x[12], *d = random_motion(f, 3, true);
+  step_to(f, h, d, x);
+  double *above = forces_at(f, x);
+  step_to(f, -h, d, x);
+  double *below = forces_at(f, x);
+  Product product = multiply(f, d);
   double size = sqrt(dot(product.y, product.y, 12));
   ck_assert(size > 0);
   for (int k = 0; k < 12; k++) ck_assert_near(-(above[k] - below[k]) / (2 * h), product.y[k], 1e-7 * size);
-  free(d), free(above), free(below), free(product.y), destroy(&f);
+  free(d), free(above), free(below), free(product.y), destroy(f);
 }
 END_TEST
 
 // A block 0.3 into flat ground: a half-space, or a coarse block of tetrahedra wide enough.
-static Fixture block_on_ground(ContactPotential potential, bool is_mesh) {
+static Fixture *block_on_ground(ContactPotential potential, bool is_mesh) {
   static ContactHalfspace ground = {.name = "ground", .normal = {0, 0, 1}};
-  Fixture f = {0};
+  Fixture *f = empty_fixture();
   blocks_add(
-      &f.blocks,
+      &f->blocks,
       &(BlockDef){.corner = {0.1, 0.2, -0.3}, .cell = {1, 0.9, 0.8}, .cells = {2, 2, 2}, .jitter = 0.1});
   if (is_mesh)
-    blocks_add(&f.blocks, &(BlockDef){.corner = {-3.07, -2.9, -4},
-                                      .cell = {2.3, 2.1, 2},
-                                      .cells = {4, 4, 2},
-                                      .is_obstacle = true});
-  prepare(&f);
-  ContactSystemDef def = blocks_def(&f.blocks, f.rest, &f.model);
+    blocks_add(&f->blocks, &(BlockDef){.corner = {-3.07, -2.9, -4},
+                                       .cell = {2.3, 2.1, 2},
+                                       .cells = {4, 4, 2},
+                                       .is_obstacle = true});
+  prepare(f);
+  ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
   def.potential = potential;
   if (!is_mesh) def.halfspaces = &ground, def.halfspace_count = 1;
-  start(&f, &def);
+  start(f, &def);
   return f;
 }
 
 START_TEST(ground_of_tetrahedra_pushes_like_a_halfspace) {
   static const ContactPotential SAME[] = {CONTACT_POTENTIAL_NODAL, CONTACT_POTENTIAL_ELEMENT,
                                           CONTACT_POTENTIAL_LINEAR, CONTACT_POTENTIAL_BODY};
-  Fixture mesh = block_on_ground(SAME[_i], true), plane = block_on_ground(SAME[_i], false);
-  double energy = energy_at(&plane, plane.blocks.x);
+  Fixture *mesh = block_on_ground(SAME[_i], true), *plane = block_on_ground(SAME[_i], false);
+  double energy = energy_at(plane, plane->blocks.x);
   ck_assert(energy > 0);
-  ck_assert_near(energy_at(&mesh, mesh.blocks.x), energy, 1e-12 * energy);
-  double *on_mesh = forces_at(&mesh, mesh.blocks.x), *on_plane = forces_at(&plane, plane.blocks.x);
-  double size = sqrt(dot(on_plane, on_plane, 3 * plane.blocks.vertex_count));
-  for (int k = 0; k < 3 * plane.blocks.vertex_count; k++)
+  ck_assert_near(energy_at(mesh, mesh->blocks.x), energy, 1e-12 * energy);
+  double *on_mesh = forces_at(mesh, mesh->blocks.x), *on_plane = forces_at(plane, plane->blocks.x);
+  double size = sqrt(dot(on_plane, on_plane, 3 * plane->blocks.vertex_count));
+  for (int k = 0; k < 3 * plane->blocks.vertex_count; k++)
     ck_assert_near(on_mesh[k], on_plane[k], 1e-11 * size);
-  free(on_mesh), free(on_plane), destroy(&mesh), destroy(&plane);
+  free(on_mesh), free(on_plane), destroy(mesh), destroy(plane);
 }
 END_TEST
 
 START_TEST(a_third_body_does_not_change_the_force_between_two) {
-  Fixture two = pressed_system(CONTACT_POTENTIAL_NODAL, false);
-  Fixture three = pressed_blocks(false);
+  Fixture *two = pressed_system(CONTACT_POTENTIAL_NODAL, false);
+  Fixture *three = pressed_blocks(false);
   // Covers some of the same elements of the lower block, from beside.
-  blocks_add(&three.blocks, &(BlockDef){.corner = {2.4, 0.2, 1.6}, .cell = {1, 1, 1}, .cells = {1, 2, 1}});
-  free(three.rest), free(three.still), contact_overlap_destroy(&three.model);
-  prepare(&three);
-  ContactSystemDef def = blocks_def(&three.blocks, three.rest, &three.model);
-  start(&three, &def);
-  energy_at(&two, two.blocks.x), energy_at(&three, three.blocks.x);
+  blocks_add(&three->blocks, &(BlockDef){.corner = {2.4, 0.2, 1.6}, .cell = {1, 1, 1}, .cells = {1, 2, 1}});
+  free(three->rest), free(three->still), contact_overlap_destroy(&three->model);
+  prepare(three);
+  ContactSystemDef def = blocks_def(&three->blocks, three->rest, &three->model);
+  start(three, &def);
+  energy_at(two, two->blocks.x), energy_at(three, three->blocks.x);
   int count;
-  const ContactInterface *alone = contact_system_interfaces(two.system, &count);
-  const ContactInterface *with = contact_system_interfaces(three.system, &count);
+  const ContactInterface *alone = contact_system_interfaces(two->system, &count);
+  const ContactInterface *with = contact_system_interfaces(three->system, &count);
   ck_assert_int_eq(count, 3);
   ck_assert_int_gt(with[1].active_count, 0);
   for (int c = 0; c < 3; c++) ck_assert_near(with[0].force[c], alone[0].force[c], 0);
-  destroy(&two), destroy(&three);
+  destroy(two), destroy(three);
 }
 END_TEST
 
 START_TEST(bodies_apart_have_no_energy_and_no_force) {
-  Fixture f = pressed_system(CONTACT_POTENTIAL_NODAL, false);
-  blocks_shift(&f.blocks, f.blocks.x, 1, (double[]){0, 0, 5});
-  ck_assert_ok(contact_system_update(f.system, 0, f.blocks.x, f.still, 0.01, NULL));
-  double *force = forces_at(&f, f.blocks.x);
-  ck_assert_near(energy_at(&f, f.blocks.x), 0, 0);
-  for (int k = 0; k < 3 * f.blocks.vertex_count; k++) ck_assert_near(force[k], 0, 0);
-  ck_assert_int_eq(contact_system_active_count(f.system), 0);
-  free(force), destroy(&f);
+  Fixture *f = pressed_system(CONTACT_POTENTIAL_NODAL, false);
+  blocks_shift(&f->blocks, f->blocks.x, 1, (double[]){0, 0, 5});
+  ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01, NULL));
+  double *force = forces_at(f, f->blocks.x);
+  ck_assert_near(energy_at(f, f->blocks.x), 0, 0);
+  for (int k = 0; k < 3 * f->blocks.vertex_count; k++) ck_assert_near(force[k], 0, 0);
+  ck_assert_int_eq(contact_system_active_count(f->system), 0);
+  free(force), destroy(f);
 }
 END_TEST
 
@@ -396,31 +403,31 @@ static Status eval_scaled(const void *self, const double pair[24], double *volum
 
 START_TEST(an_audit_measures_a_known_error_and_changes_nothing) {
   static const ContactOverlapOps SCALED = {.name = "scaled", .eval_pair = eval_scaled};
-  Fixture f = pressed_system(CONTACT_POTENTIAL_NODAL, false);
-  double energy = energy_at(&f, f.blocks.x), *moved = blocks_copy(&f.blocks);
-  blocks_shift(&f.blocks, moved, 1, (double[]){0, 0, 0.05});
-  ContactCounters before = *contact_system_counters(f.system);
-  ContactOverlapModel scaled = {&SCALED, &f.model};
+  Fixture *f = pressed_system(CONTACT_POTENTIAL_NODAL, false);
+  double energy = energy_at(f, f->blocks.x), *moved = blocks_copy(&f->blocks);
+  blocks_shift(&f->blocks, moved, 1, (double[]){0, 0, 0.05});
+  ContactCounters before = *contact_system_counters(f->system);
+  ContactOverlapModel scaled = {&SCALED, &f->model};
   ContactAudit audit;
-  ck_assert_ok(contact_system_audit(f.system, 0, moved, &scaled, &f.model, &audit));
+  ck_assert_ok(contact_system_audit(f->system, 0, moved, &scaled, &f->model, &audit));
   ck_assert_near(audit.volume_error, 1e-3, 1e-12);
   ck_assert_near(audit.force_error, 1.001 * 1.001 - 1, 1e-12);
   ck_assert_int_gt(audit.pair_count, 20);
-  ck_assert_ok(contact_system_audit(f.system, 0, moved, &f.model, &f.model, &audit));
+  ck_assert_ok(contact_system_audit(f->system, 0, moved, &f->model, &f->model, &audit));
   ck_assert_near(audit.volume_error, 0, 0);
   ck_assert_near(audit.force_error, 0, 0);
-  ck_assert_near(energy_at(&f, f.blocks.x), energy, 0);
-  ck_assert_int_eq(contact_system_counters(f.system)->evaluations, before.evaluations);
-  free(moved), destroy(&f);
+  ck_assert_near(energy_at(f, f->blocks.x), energy, 0);
+  ck_assert_int_eq(contact_system_counters(f->system)->evaluations, before.evaluations);
+  free(moved), destroy(f);
 }
 END_TEST
 
 // ---- What is refused
 
 START_TEST(a_definition_that_cannot_be_is_refused) {
-  Fixture f = pressed_blocks(false);
+  Fixture *f = pressed_blocks(false);
   ContactSystem *system;
-  ContactSystemDef def = blocks_def(&f.blocks, f.rest, &f.model), wrong = def;
+  ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model), wrong = def;
   wrong.stiffness = NAN;
   ck_assert_int_eq(contact_system_create(&system, &wrong), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "stiffness"));
@@ -431,10 +438,10 @@ START_TEST(a_definition_that_cannot_be_is_refused) {
   wrong = def, wrong.halfspaces = &skew, wrong.halfspace_count = 1;
   ck_assert_int_eq(contact_system_create(&system, &wrong), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "skew"));
-  memcpy(f.rest + 3 * f.blocks.tets[5][1], f.rest + 3 * f.blocks.tets[5][0], 3 * sizeof(double));
+  memcpy(f->rest + 3 * f->blocks.tets[5][1], f->rest + 3 * f->blocks.tets[5][0], 3 * sizeof(double));
   ck_assert_int_eq(contact_system_create(&system, &def), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "volume"));
-  destroy(&f);
+  destroy(f);
 }
 END_TEST
 
@@ -447,14 +454,14 @@ static Status eval_nan(const void *self, const double pair[24], double *volume, 
 
 START_TEST(a_model_that_answers_nan_is_named) {
   static const ContactOverlapOps BROKEN = {.name = "broken", .eval_pair = eval_nan};
-  Fixture f = pressed_blocks(false);
-  ContactOverlapModel broken = {&BROKEN, &f.model};
-  ContactSystemDef def = blocks_def(&f.blocks, f.rest, &broken);
-  start(&f, &def);
+  Fixture *f = pressed_blocks(false);
+  ContactOverlapModel broken = {&BROKEN, &f->model};
+  ContactSystemDef def = blocks_def(&f->blocks, f->rest, &broken);
+  start(f, &def);
   double energy;
-  ck_assert_int_eq(contact_system_eval(f.system, 0, f.blocks.x, &energy, NULL), STATUS_SOLVER);
+  ck_assert_int_eq(contact_system_eval(f->system, 0, f->blocks.x, &energy, NULL), STATUS_SOLVER);
   ck_assert_ptr_nonnull(strstr(status_message(), "element"));
-  destroy(&f);
+  destroy(f);
 }
 END_TEST
 
@@ -488,17 +495,17 @@ static Status whole_life(const Fixture *f) {
 }
 
 START_TEST(every_failed_allocation_is_reported) {
-  Fixture f = pressed_blocks(false);
+  Fixture *f = pressed_blocks(false);
   Status status = STATUS_MEMORY;
   int k = 1;
   for (; status == STATUS_MEMORY && k < 1000; k++) {
     memory_fail_at(k);
-    status = whole_life(&f);
+    status = whole_life(f);
     memory_fail_at(0);
   }
   ck_assert_ok(status);
   ck_assert_int_gt(k, 50);
-  destroy(&f);
+  destroy(f);
 }
 END_TEST
 
