@@ -61,31 +61,32 @@ static void pick_perpendicular(const double u[3], double w[3]) {
   w[last] = -u[next] / length;
 }
 
-// The left vectors. The second is orthogonalised once more, for columns that are rounding noise of a
-// rank-deficient F; the third completes a right-handed frame and takes the sign of det F into σ₃.
+// A column this short beside the longest, in squares, counts as zero: products of such lengths underflow.
+static const double negligible = 1e-160;
+
+// The left vectors. The third completes a right-handed frame and takes the sign of det F into σ₃; where F has
+// not rank two, any frame around the first will do.
 static void complete_frame(double a[3][3], double u[3][3], double sigma[3]) {
-  sigma[0] = sqrt(dot(a[0], a[0]));
-  for (int i = 0; i < 3; i++) u[0][i] = sigma[0] == 0 ? i == 0 : a[0][i] / sigma[0];
-  sigma[1] = sqrt(dot(a[1], a[1]));
-  double rest = 0;
-  if (sigma[1] != 0) {
-    for (int i = 0; i < 3; i++) u[1][i] = a[1][i] / sigma[1];
-    double along = dot(u[0], u[1]);
-    for (int i = 0; i < 3; i++) u[1][i] -= along * u[0][i];
-    rest = sqrt(dot(u[1], u[1]));
-    for (int i = 0; i < 3; i++) u[1][i] /= rest;
+  double square[3] = {dot(a[0], a[0]), dot(a[1], a[1]), dot(a[2], a[2])};
+  double bound = negligible * square[0];
+  bool has_rank_two = !(square[1] <= bound && square[2] <= bound); // NaN in any column must get through
+  sigma[0] = sqrt(square[0]);
+  sigma[1] = has_rank_two ? sqrt(square[1]) : 0;
+  for (int i = 0; i < 3; i++) {
+    u[0][i] = sigma[0] == 0 ? i == 0 : a[0][i] / sigma[0];
+    if (has_rank_two) u[1][i] = a[1][i] / sigma[1];
   }
-  if (rest == 0) pick_perpendicular(u[0], u[1]);
+  if (!has_rank_two) pick_perpendicular(u[0], u[1]);
   u[2][0] = u[0][1] * u[1][2] - u[0][2] * u[1][1];
   u[2][1] = u[0][2] * u[1][0] - u[0][0] * u[1][2];
   u[2][2] = u[0][0] * u[1][1] - u[0][1] * u[1][0];
-  sigma[2] = dot(u[2], a[2]);
+  sigma[2] = has_rank_two ? dot(u[2], a[2]) : 0;
 }
 
 // 0 for every usual F; else the power of two that brings the largest entry into [½, 1), so that products of
-// four entries neither overflow nor vanish.
+// four lengths neither overflow nor vanish.
 static int find_exponent(const double F[9]) {
-  static const double usual = 1e60;
+  static const double usual = 1e10;
   double largest = 0;
   for (int i = 0; i < 9; i++) largest = fmax(largest, fabs(F[i]));
   if ((largest < usual && largest > 1 / usual) || largest == 0 || !isfinite(largest)) return 0;

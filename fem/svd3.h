@@ -12,7 +12,8 @@ typedef struct FemSvd3 {
 } FemSvd3;
 
 // One-sided Jacobi (Hestenes 1958), to rounding for every finite F: zero, rank-deficient, any scale. Where
-// singular values coincide or vanish the factors are one valid choice. NaN or infinity in F give NaN.
+// singular values coincide or vanish the factors are one valid choice. NaN or infinity in F make a
+// singular value NaN or infinite.
 void fem_svd3_factor(FemSvd3 *svd, const double F[9]);
 
 // R = U Vᵀ.
