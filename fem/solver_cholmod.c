@@ -2,8 +2,14 @@
 // Condensed system by CHOLMOD's supernodal Cholesky factorisation. Unknowns of one vertex have the same
 // neighbours, so the ordering is found on the graph of vertices (a third of the nodes, a ninth of the edges)
 // and carried over.
+//
+// Threads: CHOLMOD opens teams of four for its own loops whatever OpenMP is set to, between calls of OpenBLAS
+// that open teams of another size. Teams that change size thousands of times a factorisation cost more than
+// they give: two to three times at 5,000 vertices, a hundred times on a machine with other work. A host
+// `teams` region with a thread limit gives both the same size, one below LARGE_WORK.
 #include "fem/solver.h"
 
+#include <omp.h>
 #include <stdint.h>
 #include <suitesparse/cholmod.h>
 
@@ -12,9 +18,13 @@
 
 // Smaller graphs are ordered by minimum degree: nested dissection gains nothing there.
 enum { SMALL_GRAPH = 300 };
+// Below this many floating-point operations (some seconds of one core) one thread factorises.
+static const double LARGE_WORK = 1e11;
+enum { CHOLMOD_TEAM = 4 };
 
 typedef struct CholmodSolver {
   int threads;
+  int team; // threads that factorise
   cholmod_common common;
   cholmod_factor *factor;   // of the analysed layout; NULL before
   cholmod_dense *x, *y, *e; // kept between solves
@@ -200,6 +210,8 @@ static Status analyse(void *self, const FemMatrix *pattern) {
   solver->size = pattern->size;
   solver->layout = pattern->layout;
   TRY(analyse_matrix(solver, pattern));
+  int threads = solver->threads > 0 ? solver->threads : omp_get_max_threads();
+  solver->team = solver->common.fl < LARGE_WORK ? 1 : threads < CHOLMOD_TEAM ? threads : CHOLMOD_TEAM;
   solver->stats.analyses++;
   solver->stats.factor_entries = solver->common.lnz;
   solver->stats.analyse_s += clock_wall_s() - began;
@@ -211,8 +223,9 @@ static Status refactor(CholmodSolver *solver, const FemMatrix *matrix) {
   if (!fem_solver_is_finite(matrix->value, matrix->entry_count))
     return status_fail(STATUS_RETRY, "the condensed matrix is not finite");
   cholmod_sparse symmetric = view(matrix);
-  int before = fem_solver_use_threads(solver->threads);
-  int is_ok = cholmod_factorize(&symmetric, solver->factor, common);
+  int before = fem_solver_use_threads(solver->team), is_ok = 0;
+#pragma omp teams num_teams(1) thread_limit(solver->team)
+  is_ok = cholmod_factorize(&symmetric, solver->factor, common);
   fem_solver_use_threads(before);
   if (common->status == CHOLMOD_NOT_POSDEF || (is_ok && solver->factor->minor < (size_t)solver->size))
     return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
@@ -248,8 +261,10 @@ static Status solve(void *self, const double *b, double *x) {
                          .x = (void *)(uintptr_t)b, // only read
                          .xtype = CHOLMOD_REAL,
                          .dtype = CHOLMOD_DOUBLE};
+  int before = fem_solver_use_threads(1); // bound by memory, not by arithmetic
   int is_ok = cholmod_solve2(CHOLMOD_A, solver->factor, &right, NULL, &solver->x, NULL, &solver->y,
                              &solver->e, &solver->common);
+  fem_solver_use_threads(before);
   if (!is_ok) return fail_in(solver, "solution");
   const double *solution = solver->x->x;
   for (size_t i = 0; i < size; i++) x[i] = solution[i];
