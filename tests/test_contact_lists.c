@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// contact/system over a run: which candidates are kept, how far bodies may move, when a contact begins, what
+// the stiffness may couple; evaluation changes nothing.
+#include "blocks.h"
+
+#include <omp.h>
+
+#include "base/vec3.h"
+
+typedef struct Fixture {
+  Blocks blocks;
+  double *rest, *velocities;
+  ContactOverlapModel model;
+  ContactSystemDef def;
+  ContactSystem *system;
+} Fixture;
+
+static void update(Fixture *f, double time, const double *x) {
+  ck_assert_ok(contact_system_update(f->system, time, x, f->velocities, 0.01, NULL));
+}
+
+// Takes the blocks as they are.
+static void start(Fixture *f) {
+  f->rest = blocks_copy(&f->blocks);
+  f->velocities = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
+  ck_assert_ptr_nonnull(f->velocities);
+  ck_assert_ok(contact_overlap_create(&f->model, "clip"));
+  f->def = blocks_def(&f->blocks, f->rest, &f->model);
+  ck_assert_ok(contact_system_create(&f->system, &f->def));
+  update(f, 0, f->blocks.x);
+}
+
+// Lower block with its surface at z = 2, the upper one `gap` above it.
+static Fixture *two_blocks(double gap, double jitter) {
+  Fixture *f = calloc(1, sizeof *f);
+  ck_assert_ptr_nonnull(f);
+  blocks_add(&f->blocks, &(BlockDef){.cell = {1, 1, 1}, .cells = {4, 4, 2}, .jitter = jitter});
+  blocks_add(&f->blocks, &(BlockDef){.corner = {0.63, 0.41, 2 + gap},
+                                     .cell = {0.9, 0.9, 0.9},
+                                     .cells = {3, 3, 2},
+                                     .jitter = jitter});
+  start(f);
+  return f;
+}
+
+static void destroy(Fixture *f) {
+  contact_system_destroy(f->system);
+  contact_overlap_destroy(&f->model);
+  blocks_destroy(&f->blocks);
+  free(f->rest), free(f->velocities), free(f);
+}
+
+// Half the mean edge of the finer block: the margin while bodies are near.
+static double default_margin(const Fixture *f) {
+  double sum = 0;
+  int count = 0;
+  for (int i = f->blocks.bodies[1].tet_begin; i < f->blocks.bodies[1].tet_end; i++)
+    for (int v = 0; v < 4; v++)
+      for (int w = 0; w < v; w++, count++)
+        sum += vec3_length(vec3_sub(vec3_at(f->rest + 3 * f->blocks.tets[i][v]),
+                                    vec3_at(f->rest + 3 * f->blocks.tets[i][w])));
+  return sum / count / 2;
+}
+
+// Everything that an evaluation gives, to compare bit by bit.
+typedef struct Result {
+  Status status;
+  double energy;
+  int active_count;
+  ContactInterface interface;
+  double *force; // owned
+} Result;
+
+static Result result_at(const Fixture *f, ContactSystem *system, double time, const double *x) {
+  Result result = {.force = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double))};
+  ck_assert_ptr_nonnull(result.force);
+  result.status = contact_system_eval(system, time, x, &result.energy, result.force);
+  int count;
+  result.interface = *contact_system_interfaces(system, &count);
+  result.active_count = contact_system_active_count(system);
+  return result;
+}
+
+// Consumes both.
+static void check_same(const Fixture *f, Result a, Result b) {
+  ck_assert_ok(a.status);
+  ck_assert_ok(b.status);
+  ck_assert_int_eq(a.active_count, b.active_count);
+  ck_assert_mem_eq(&a.energy, &b.energy, sizeof a.energy);
+  ck_assert_mem_eq(&a.interface.force, &b.interface.force, sizeof a.interface.force);
+  ck_assert_mem_eq(a.force, b.force, 3 * sizeof(double) * (size_t)f->blocks.vertex_count);
+  free(a.force), free(b.force);
+}
+
+static double *moved(const Fixture *f, double x, double y, double z) {
+  double *positions = blocks_copy(&f->blocks);
+  blocks_shift(&f->blocks, positions, 1, (double[]){x, y, z});
+  return positions;
+}
+
+START_TEST(an_old_list_gives_what_a_new_one_gives) {
+  Fixture *f = two_blocks(-0.2, 0.1);
+  double m = default_margin(f), *x = moved(f, 0.3 * m, -0.2 * m, -0.9 * m);
+  Result old = result_at(f, f->system, 0, x);
+  ck_assert_int_gt(old.active_count, 50);
+  ck_assert_int_eq(contact_system_counters(f->system)->searches, 1);
+  update(f, 0, x);
+  ck_assert_int_eq(contact_system_counters(f->system)->searches, 2);
+  ContactSystem *fresh;
+  ck_assert_ok(contact_system_create(&fresh, &f->def));
+  ck_assert_ok(contact_system_update(fresh, 0, x, f->velocities, 0.01, NULL));
+  check_same(f, old, result_at(f, fresh, 0, x));
+  contact_system_destroy(fresh);
+  free(x), destroy(f);
+}
+END_TEST
+
+START_TEST(small_motion_keeps_the_list) {
+  Fixture *f = two_blocks(-0.2, 0.1);
+  double m = default_margin(f), *x = moved(f, 0, 0, 0.45 * m);
+  bool has_changed = true;
+  ck_assert_ok(contact_system_update(f->system, 0, x, f->velocities, 0.01, &has_changed));
+  ck_assert(!has_changed);
+  ck_assert_int_eq(contact_system_counters(f->system)->searches, 1);
+  contact_system_forget(f->system);
+  ck_assert_ok(contact_system_update(f->system, 0, x, f->velocities, 0.01, &has_changed));
+  ck_assert(has_changed);
+  ck_assert_int_eq(contact_system_counters(f->system)->searches, 2);
+  free(x), destroy(f);
+}
+END_TEST
+
+START_TEST(motion_beyond_the_margin_is_refused_and_changes_nothing) {
+  Fixture *f = two_blocks(-0.2, 0.1);
+  double m = default_margin(f), *x = moved(f, 0, 0, -1.01 * m);
+  Result before = result_at(f, f->system, 0, f->blocks.x);
+  ContactInterface at_rest = before.interface;
+  Result refused = result_at(f, f->system, 0, x);
+  ck_assert_int_eq(refused.status, STATUS_RETRY);
+  ck_assert_int_eq(contact_system_counters(f->system)->beyond_margin, 1);
+  ck_assert_mem_eq(&refused.interface, &at_rest, sizeof at_rest);
+  for (int k = 0; k < 3 * f->blocks.vertex_count; k++) ck_assert_near(refused.force[k], 0, 0);
+  ck_assert_mem_eq(contact_system_forces(f->system), before.force,
+                   3 * sizeof(double) * (size_t)f->blocks.vertex_count);
+  x[3 * f->blocks.bodies[1].vertex_begin] = NAN;
+  Result nan = result_at(f, f->system, 0, x);
+  ck_assert_int_eq(nan.status, STATUS_RETRY);
+  check_same(f, before, result_at(f, f->system, 0, f->blocks.x));
+  free(refused.force), free(nan.force), free(x), destroy(f);
+}
+END_TEST
+
+START_TEST(a_rejected_trial_leaves_no_trace) {
+  Fixture *f = two_blocks(-0.2, 0.1);
+  double *x = moved(f, 0.1, 0.05, -0.1), *y = moved(f, -0.1, 0, 0.3);
+  Result first = result_at(f, f->system, 0, x), other = result_at(f, f->system, 0, y);
+  ck_assert_int_ne(first.active_count, other.active_count);
+  check_same(f, first, result_at(f, f->system, 0, x));
+  free(other.force), free(x), free(y), destroy(f);
+}
+END_TEST
+
+START_TEST(one_thread_and_two_give_the_same_bits) {
+  Fixture *f = two_blocks(-0.2, 0.1);
+  double *x = moved(f, 0.01, 0, 0), gaps[2];
+  omp_set_num_threads(1);
+  Result one = result_at(f, f->system, 0, f->blocks.x);
+  ck_assert_ok(contact_system_gap(f->system, 0, x, &gaps[0]));
+  free(result_at(f, f->system, 0, x).force); // leaves the cached result
+  omp_set_num_threads(2);
+  ck_assert_ok(contact_system_gap(f->system, 0, x, &gaps[1]));
+  ck_assert_mem_eq(&gaps[0], &gaps[1], sizeof gaps[0]);
+  check_same(f, one, result_at(f, f->system, 0, f->blocks.x));
+  free(x), destroy(f);
+}
+END_TEST
+
+START_TEST(the_same_positions_are_evaluated_once) {
+  Fixture *f = two_blocks(-0.2, 0.1);
+  free(result_at(f, f->system, 0, f->blocks.x).force);
+  long long evaluations = contact_system_counters(f->system)->evaluations;
+  free(result_at(f, f->system, 0, f->blocks.x).force);
+  ck_assert_int_eq(contact_system_counters(f->system)->evaluations, evaluations);
+  free(result_at(f, f->system, 1, f->blocks.x).force); // another time
+  ck_assert_int_eq(contact_system_counters(f->system)->evaluations, evaluations + 1);
+  destroy(f);
+}
+END_TEST
+
+START_TEST(bodies_far_apart_may_move_as_far_as_they_are_apart) {
+  Fixture *f = two_blocks(50, 0);
+  double *x = moved(f, 0, 0, -49), *y = moved(f, 0, 0, -50.1);
+  Result near = result_at(f, f->system, 0, x), through = result_at(f, f->system, 0, y);
+  ck_assert_ok(near.status);
+  ck_assert_int_eq(near.active_count, 0);
+  ck_assert_int_eq(through.status, STATUS_RETRY);
+  free(near.force), free(through.force), free(x), free(y), destroy(f);
+}
+END_TEST
+
+// Falls with steps that are far longer than an element wherever the system lets it.
+START_TEST(a_fast_body_is_stopped_at_the_surface_and_not_behind_it) {
+  Fixture *f = two_blocks(30, 0.1);
+  for (int v = f->blocks.bodies[1].vertex_begin; v < f->blocks.bodies[1].vertex_end; v++)
+    f->velocities[3 * v + 2] = -1000;
+  double height = 30, step = 0.01, m = default_margin(f); // 10 m a step
+  int steps = 0, active = 0;
+  for (; steps < 200 && !active; steps++) {
+    double *x = moved(f, 0, 0, height - 1000 * step - 30);
+    Result tried = result_at(f, f->system, 0, x);
+    active = tried.status ? 0 : tried.active_count;
+    if (tried.status) {
+      ck_assert_int_eq(tried.status, STATUS_RETRY);
+      step /= 2;
+    } else {
+      height -= 1000 * step;
+      ck_assert_ok(contact_system_update(f->system, 0, x, f->velocities, step, NULL));
+      step *= 1.5;
+    }
+    free(tried.force), free(x);
+  }
+  ck_assert_int_gt(active, 0);
+  ck_assert(height > -m - 0.4); // jitter of the surfaces: 0.19
+  ck_assert_int_lt(steps, 60);
+  destroy(f);
+}
+END_TEST
+
+START_TEST(a_halfspace_that_rises_beyond_the_margin_is_refused) {
+  static ContactHalfspace ground = {
+      .name = "ground", .normal = {0, 0, 1}, .point = {0, 0, -1}, .velocity = {0, 0, 2}};
+  Fixture *f = calloc(1, sizeof *f);
+  blocks_add(&f->blocks, &(BlockDef){.cell = {1, 1, 1}, .cells = {2, 2, 2}});
+  start(f);
+  contact_system_destroy(f->system);
+  f->def.halfspaces = &ground, f->def.halfspace_count = 1;
+  ck_assert_ok(contact_system_create(&f->system, &f->def));
+  update(f, 0, f->blocks.x);
+  Result below = result_at(f, f->system, 0.49, f->blocks.x),
+         above = result_at(f, f->system, 0.51, f->blocks.x);
+  ck_assert_ok(below.status);
+  ck_assert_int_eq(above.status, STATUS_RETRY);
+  update(f, 0.51, f->blocks.x);
+  Result after = result_at(f, f->system, 0.51, f->blocks.x);
+  ck_assert_int_gt(after.active_count, 0);
+  ck_assert_near(after.interface.volume, 4 * 0.02, 1e-12);
+  free(below.force), free(above.force), free(after.force), destroy(f);
+}
+END_TEST
+
+// ---- Onset
+
+static double gap_at(const Fixture *f, const double *x) {
+  double gap;
+  ck_assert_ok(contact_system_gap(f->system, 0, x, &gap));
+  return gap;
+}
+
+START_TEST(the_gap_is_the_distance_of_two_flat_faces_and_changes_sign) {
+  Fixture *f = two_blocks(0.25, 0);
+  ck_assert_near(gap_at(f, f->blocks.x), 0.25, 1e-14);
+  for (int k = 0; k < 9; k++) {
+    double *x = moved(f, 0, 0, -0.05 * k);
+    ck_assert_near(gap_at(f, x), 0.25 - 0.05 * k, 1e-13);
+    free(x);
+  }
+  destroy(f);
+}
+END_TEST
+
+START_TEST(without_a_near_pair_the_gap_is_the_margin) {
+  Fixture *f = two_blocks(50, 0);
+  ck_assert_near(gap_at(f, f->blocks.x), default_margin(f), 1e-14);
+  destroy(f);
+}
+END_TEST
+
+START_TEST(what_touches_has_begun) {
+  Fixture *f = two_blocks(0, 0);
+  double *x = moved(f, 0, 0, -0.01);
+  ck_assert(gap_at(f, f->blocks.x) > 0);
+  ck_assert(gap_at(f, x) > 0); // all of the surface touched: no pair of it is watched
+  free(x), destroy(f);
+}
+END_TEST
+
+// A table with two legs of different length above the ground: the second leg is a new patch, the rest of the
+// first leg is not.
+START_TEST(a_new_patch_is_an_onset_and_a_growing_one_is_not) {
+  static ContactHalfspace ground = {.name = "ground", .normal = {0, 0, 1}};
+  Fixture *f = calloc(1, sizeof *f);
+  blocks_add(&f->blocks, &(BlockDef){.corner = {0, 0, -0.1}, .cell = {1, 1, 1}, .cells = {6, 1, 1}});
+  // The bottom rises from −0.1 at x = 0 to 0.2 at x = 3 and falls to 0.05 at x = 6.
+  for (int v = 0; v < f->blocks.vertex_count; v++) {
+    double *x = f->blocks.x + 3 * v;
+    if (x[2] < 0.5) x[2] = x[0] <= 3 ? -0.1 + 0.1 * x[0] : 0.2 - 0.05 * (x[0] - 3);
+  }
+  start(f);
+  contact_system_destroy(f->system);
+  f->def.halfspaces = &ground, f->def.halfspace_count = 1;
+  ck_assert_ok(contact_system_create(&f->system, &f->def));
+  update(f, 0, f->blocks.x);
+  ck_assert_near(gap_at(f, f->blocks.x), 0.05, 1e-14); // x = 1 at height 0 belongs to the first leg
+  double *x = blocks_copy(&f->blocks);
+  blocks_shift(&f->blocks, x, 0, (double[]){0, 0, -0.06});
+  ck_assert_near(gap_at(f, x), -0.01, 1e-14);
+  update(f, 0, x);
+  ck_assert(gap_at(f, x) > 0);
+  free(x), destroy(f);
+}
+END_TEST
+
+// ---- Couplings
+
+typedef struct Couplings {
+  int vertex_count;
+  unsigned char *may; // (vertex_count, vertex_count)
+  int clique_count, missing;
+} Couplings;
+
+static Status allow_clique(void *visitor, int count, const int *vertices) {
+  Couplings *couplings = visitor;
+  couplings->clique_count++;
+  for (int i = 0; i < count; i++)
+    for (int j = 0; j < count; j++) {
+      if (i != j) ck_assert_int_ne(vertices[i], vertices[j]);
+      couplings->may[vertices[i] * couplings->vertex_count + vertices[j]] = 1;
+    }
+  return STATUS_OK;
+}
+
+static void look_up(Couplings *couplings, int count, const int *vertices) {
+  for (int i = 0; i < count; i++)
+    for (int j = 0; j < count; j++)
+      couplings->missing += !couplings->may[vertices[i] * couplings->vertex_count + vertices[j]];
+}
+
+static void look_up_outer(void *self, int count, const int *vertices, const double *w, double scale) {
+  (void)w, (void)scale;
+  look_up(self, count, vertices);
+}
+
+static void look_up_dense(void *self, int count, const int *vertices, const double *matrix) {
+  (void)matrix;
+  look_up(self, count, vertices);
+}
+
+static int missing_at(Couplings *couplings, ContactSystem *system, const double *x) {
+  couplings->missing = 0;
+  ck_assert_ok(contact_system_stiffness(system, 0, x,
+                                        &(ContactStiffnessSink){couplings, look_up_outer, look_up_dense}));
+  return couplings->missing;
+}
+
+START_TEST(couplings_hold_the_stiffness_here_and_within_reach) {
+  Fixture *f = two_blocks(0.1, 0.1);
+  contact_system_destroy(f->system);
+  f->def.potential = (ContactPotential)_i;
+  ck_assert_ok(contact_system_create(&f->system, &f->def));
+  update(f, 0, f->blocks.x);
+  size_t n = (size_t)f->blocks.vertex_count;
+  Couplings here = {.vertex_count = (int)n, .may = calloc(n * n, 1)};
+  Couplings near = {.vertex_count = (int)n, .may = calloc(n * n, 1)};
+  free(result_at(f, f->system, 0, f->blocks.x).force);
+  ck_assert_ok(contact_system_couple(f->system, 0, &here, allow_clique));
+  ck_assert_ok(contact_system_couple(f->system, 0.3, &near, allow_clique));
+  ck_assert_int_gt(here.clique_count, 0);
+  ck_assert_int_eq(missing_at(&here, f->system, f->blocks.x), 0);
+  ck_assert_int_eq(missing_at(&near, f->system, f->blocks.x), 0);
+  double *x = moved(f, 0.05, 0, -0.28);
+  ck_assert_int_eq(missing_at(&near, f->system, x), 0);
+  if (_i != CONTACT_POTENTIAL_BODY) ck_assert_int_gt(missing_at(&here, f->system, x), 0);
+  free(x), free(here.may), free(near.may), destroy(f);
+}
+END_TEST
+
+static Status refuse_clique(void *visitor, int count, const int *vertices) {
+  (void)visitor, (void)count, (void)vertices;
+  return status_fail(STATUS_MEMORY, "no room");
+}
+
+START_TEST(a_visitor_that_fails_ends_the_visit) {
+  Fixture *f = two_blocks(-0.2, 0.1);
+  free(result_at(f, f->system, 0, f->blocks.x).force);
+  ck_assert_int_eq(contact_system_couple(f->system, 0, NULL, refuse_clique), STATUS_MEMORY);
+  Couplings all = {.vertex_count = f->blocks.vertex_count};
+  all.may = calloc((size_t)all.vertex_count * (size_t)all.vertex_count, 1);
+  ck_assert_ok(contact_system_couple(f->system, 0, &all, allow_clique)); // and leaves nothing behind
+  ck_assert_int_eq(missing_at(&all, f->system, f->blocks.x), 0);
+  free(all.may), destroy(f);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("contact_lists");
+  tcase_add_test(cases, an_old_list_gives_what_a_new_one_gives);
+  tcase_add_test(cases, small_motion_keeps_the_list);
+  tcase_add_test(cases, motion_beyond_the_margin_is_refused_and_changes_nothing);
+  tcase_add_test(cases, a_rejected_trial_leaves_no_trace);
+  tcase_add_test(cases, one_thread_and_two_give_the_same_bits);
+  tcase_add_test(cases, the_same_positions_are_evaluated_once);
+  tcase_add_test(cases, bodies_far_apart_may_move_as_far_as_they_are_apart);
+  tcase_add_test(cases, a_fast_body_is_stopped_at_the_surface_and_not_behind_it);
+  tcase_add_test(cases, a_halfspace_that_rises_beyond_the_margin_is_refused);
+  tcase_add_test(cases, the_gap_is_the_distance_of_two_flat_faces_and_changes_sign);
+  tcase_add_test(cases, without_a_near_pair_the_gap_is_the_margin);
+  tcase_add_test(cases, what_touches_has_begun);
+  tcase_add_test(cases, a_new_patch_is_an_onset_and_a_growing_one_is_not);
+  tcase_add_loop_test(cases, couplings_hold_the_stiffness_here_and_within_reach, 0, CONTACT_POTENTIAL_COUNT);
+  tcase_add_test(cases, a_visitor_that_fails_ends_the_visit);
+  return suite_run("contact_lists", cases, 60);
+}
