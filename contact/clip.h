@@ -24,11 +24,14 @@
 //
 //   ∂²V/∂x_a∂x_v −= 1/sin θ ∫_s β_a β_v ds n_f n_gᵀ,    ∂²V/∂x_a∂y_b += 1/sin θ ∫_s β_a γ_b ds n_f n_gᵀ.
 //
-// The integrands are quadratic along s: Simpson's rule is exact. The two parts are symmetric only together.
+// The integrands are quadratic along s: Simpson's rule is exact. dS_f and the segments are symmetric only
+// together; what is not symmetric of a segment, n_f n_gᵀ − n_g n_fᵀ = −sin θ [t]× with t its direction, knows
+// no sin θ.
 //
 // Where faces f and g coincide V has one-sided derivatives only: ∇V is that of one side, and 1/sin θ grows
-// without bound as they get parallel. sin θ is taken as at least CONTACT_CLIP_LEAST_SINE: up to there ∇²V is
-// exact, beyond it is bounded and understates how fast ∇V turns.
+// without bound as they get parallel. In the symmetric part of n_f n_gᵀ, sin θ is taken as at least
+// CONTACT_CLIP_LEAST_SINE: up to there ∇²V is exact, beyond it is bounded and understates how fast ∇V turns.
+// Symmetric and unchanged by a translation it is in any case.
 //
 // Accuracy: |δV| ≤ 1e-9 V, or 1e-12 of the smaller tetrahedron where V is less than 1e-6 of that. The
 // rounding of the planes bounds |δV| by noise/2 · Σ φ; pairs for which this bound does not do (slivers,

@@ -35,22 +35,33 @@ static Vec3 step_of(const double tet[12], const double lanes[4]) {
   return step;
 }
 
-// −1/sin θ ∫ ψ_z ψ_w ds (± n_f n_gᵀ) in the rows of A, transposed in those of B, minus where z and w belong
-// to different tetrahedra. `from` and `to` are the segment's ends in the eight coordinates ψ.
-static void add_segment(const double from[8], const double to[8], double length, Vec3 normal_a, Vec3 normal_b,
-                        double *hessian) {
+// n_f n_gᵀ ds / sin θ of a segment s = `step`, walked with f, the face of A, on the left. Its antisymmetric
+// part, −½ [n_f × n_g]× ds / sin θ, is −½ [s]× without any division: bounding 1/sin θ touches the symmetric
+// part alone.
+static void couple(Vec3 normal_a, Vec3 normal_b, Vec3 step, double coupling[3][3]) {
   double sine = fmax(vec3_length(vec3_cross(normal_a, normal_b)), CONTACT_CLIP_LEAST_SINE);
+  double half = vec3_length(step) / (2 * sine);
   const double p[3] = {normal_a.x, normal_a.y, normal_a.z}, q[3] = {normal_b.x, normal_b.y, normal_b.z};
+  const double turn[3][3] = {{0, step.z, -step.y}, {-step.z, 0, step.x}, {step.y, -step.x, 0}}; // −[s]×
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++) coupling[r][c] = half * (p[r] * q[c] + q[r] * p[c]) + turn[r][c] / 2;
+}
+
+// Adds −∫ ψ_z ψ_w times the coupling in the rows of A, its transpose in those of B, and plus where z and w
+// belong to different tetrahedra. `from` and `to` are the segment's ends in the eight coordinates ψ.
+static void add_segment(const double from[8], const double to[8], double coupling[3][3], double *hessian) {
+  double transposed[3][3];
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++) transposed[r][c] = coupling[c][r];
   for (int z = 0; z < 8; z++) {
-    const double *left = z < 4 ? p : q, *right = z < 4 ? q : p;
+    double(*block)[3] = z < 4 ? coupling : transposed;
     for (int w = 0; w < 8; w++) {
-      double product =
-          (2 * (from[z] * from[w] + to[z] * to[w]) + from[z] * to[w] + to[z] * from[w]) * length / 6;
-      double weight = ((z < 4) == (w < 4) ? -product : product) / sine;
-      if (weight == 0) continue; // a third of them: ψ is zero for the vertices opposite to f and g
-      double *block = hessian + 3 * z * SIZE + 3 * w;
+      double mean = (2 * (from[z] * from[w] + to[z] * to[w]) + from[z] * to[w] + to[z] * from[w]) / 6;
+      if (mean == 0) continue; // ψ is zero for the vertices opposite to f and g
+      double weight = (z < 4) == (w < 4) ? -mean : mean;
+      double *target = hessian + 3 * z * SIZE + 3 * w;
       for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) block[r * SIZE + c] += weight * left[r] * right[c];
+        for (int c = 0; c < 3; c++) target[r * SIZE + c] += weight * block[r][c];
     }
   }
 }
@@ -85,8 +96,13 @@ void contact_clip_hessian(const ContactClipPolytope *polytope, const ContactClip
       to[lane] = polytope->origin[lane] + q[lane];
       change[lane] = q[lane] - p[lane];
     }
-    int f = edge.left < 4 ? edge.left : edge.right, g = edge.left < 4 ? edge.right : edge.left;
-    add_segment(from, to, vec3_length(step_of(pair, change)), normal[f], normal[g], hessian);
+    Vec3 step = step_of(pair, change);
+    bool is_mirrored = frame[polytope->subject].det < 0, has_a_left = edge.left < 4;
+    if (is_mirrored == has_a_left) step = vec3_scale(-1, step);
+    double coupling[3][3];
+    couple(normal[has_a_left ? edge.left : edge.right], normal[has_a_left ? edge.right : edge.left], step,
+           coupling);
+    add_segment(from, to, coupling, hessian);
   }
   symmetrise(hessian);
 }

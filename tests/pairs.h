@@ -34,8 +34,17 @@ typedef struct PairClass {
 // --- measures
 // -----------------------------------------------------------------------------------------------
 
+// In long double: of a sliver of volume 1e-12 double would leave four digits.
+static inline long double pairs_tet_volume_long(const double tet[12]) {
+  long double d[9];
+  for (int i = 0; i < 9; i++) d[i] = (long double)tet[3 + i] - tet[i % 3];
+  return fabsl(d[0] * (d[4] * d[8] - d[5] * d[7]) + d[1] * (d[5] * d[6] - d[3] * d[8]) +
+               d[2] * (d[3] * d[7] - d[4] * d[6])) /
+         6;
+}
+
 static inline double pairs_tet_volume(const double tet[12]) {
-  return fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
+  return (double)pairs_tet_volume_long(tet);
 }
 
 static inline double pairs_smaller_volume(const double x[24]) {
@@ -51,11 +60,13 @@ static inline double pairs_extent(const double x[24]) {
   return longest;
 }
 
-// How far V leaves [0, smaller volume], relative to the smaller volume.
+// How far V leaves [0, smaller volume], relative to the smaller volume, but for the rounding of that.
 static inline double pairs_bounds_residual(const double x[24], double volume) {
-  double smaller = pairs_smaller_volume(x);
+  long double a = pairs_tet_volume_long(x), b = pairs_tet_volume_long(x + 12), smaller = a < b ? a : b;
+  long double beyond = fabsl((long double)volume - smaller / 2) - smaller / 2;
+  long double rounding = 4 * LDBL_EPSILON * powl(pairs_extent(x), 3);
   if (!isfinite(volume)) return NAN;
-  return fmax(0, fmax(-volume, volume - smaller)) / fmax(smaller, DBL_MIN);
+  return beyond > rounding ? (double)(beyond / smaller) : 0;
 }
 
 // |Σ ∇V| / L²: a translation of both changes nothing.
@@ -82,13 +93,16 @@ static inline double pairs_scaling_residual(const double x[24], double volume, c
   return fabs(sum) / pow(pairs_extent(x), 3);
 }
 
-// The demand on every double-precision model: |V − reference| over what is allowed, ≤ 1 is right. Allowed is
-// 1e-9 of V above a millionth of the smaller volume, else 1e-12 of the smaller volume.
-static inline double pairs_volume_misfit(const double x[24], double volume, double reference) {
+// How far from the true V a double-precision model may be: 1e-9 of V above a millionth of the smaller volume,
+// else 1e-12 of the smaller volume.
+static inline double pairs_allowed(const double x[24], double reference) {
   double smaller = pairs_smaller_volume(x);
-  double allowed = reference > 1e-6 * smaller ? 1e-9 * reference : 1e-12 * smaller;
-  if (volume == reference) return 0;
-  return fabs(volume - reference) / allowed;
+  return reference > 1e-6 * smaller ? 1e-9 * reference : 1e-12 * smaller;
+}
+
+// |V − reference| over what is allowed: ≤ 1 is right.
+static inline double pairs_volume_misfit(const double x[24], double volume, double reference) {
+  return volume == reference ? 0 : fabs(volume - reference) / pairs_allowed(x, reference);
 }
 
 // --- transformations

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every overlap model must obey, on every class of pairs (pairs.h). The volume's oracle is `exact`,
+// whose own oracles are cases with a known volume and `cgal`.
+#include "suite.h"
+
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "contact/exact.h"
+#include "contact/overlap.h"
+#include "pairs.h"
+
+// What is asked of a model. Volumes in units of pairs_allowed, the rest relative to powers of the pair's
+// extent.
+typedef struct Demand {
+  const char *name;
+  int members;              // of each class; fewer where a pair takes milliseconds
+  double misfit;            // of V against exact
+  double invariant;         // Σ∇V, Σ x×∇V, Σ x·∇V − 3V
+  double gradient, hessian; // against central differences
+} Demand;
+
+static const Demand demands[] = {
+    {"clip", 100, 1, 1e-14, 1e-7, 1e-5},
+    {"exact", 100, 1e-6, 1e-14, 1e-7, 0},
+    {"cgal", 3, 1e-5, 1e-14, 1e-7, 0},
+};
+
+static const ContactOverlapOps *model_at(int index) {
+  int count;
+  const ContactOverlapOps *const *models = contact_overlap_list(&count);
+  ck_assert_int_lt(index, count);
+  return models[index];
+}
+
+static const Demand *demand_of(const char *name) {
+  for (size_t d = 0; d < sizeof demands / sizeof *demands; d++)
+    if (strcmp(demands[d].name, name) == 0) return &demands[d];
+  ck_abort_msg("the overlap model '%s' has no row in the table of demands", name);
+}
+
+typedef struct Answer {
+  double volume, gradient[24];
+  unsigned flags;
+} Answer;
+
+static Answer ask(const ContactOverlapModel *model, const double x[24]) {
+  Answer answer;
+  ContactOverlapBatch batch = {.pair_count = 1,
+                               .pairs = x,
+                               .volume = &answer.volume,
+                               .gradient = answer.gradient,
+                               .flags = &answer.flags};
+  ck_assert_ok(contact_overlap_eval(model, &batch));
+  return answer;
+}
+
+static double ask_volume(const ContactOverlapModel *model, const double x[24]) {
+  double volume;
+  ContactOverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume};
+  ck_assert_ok(contact_overlap_eval(model, &batch));
+  return volume;
+}
+
+static double exact_volume(const double x[24]) {
+  double volume;
+  unsigned flags;
+  ck_assert_ok(contact_overlap_exact.eval_pair(NULL, x, &volume, NULL, NULL, &flags));
+  return volume;
+}
+
+// Calls `check` for every member of every class.
+static void for_each_pair(int model_index,
+                          void (*check)(const ContactOverlapModel *model, const Demand *demand,
+                                        const PairCase *pair, const char *where)) {
+  ContactOverlapModel model;
+  const Demand *demand = demand_of(model_at(model_index)->name);
+  ck_assert_ok(contact_overlap_create(&model, demand->name));
+  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
+    for (int member = 0; member < demand->members; member++) {
+      char where[96];
+      snprintf(where, sizeof where, "%s: %s, member %d", demand->name, pairs_classes[c].name, member);
+      PairCase pair = pairs_make(c, member);
+      check(&model, demand, &pair, where);
+    }
+  contact_overlap_destroy(&model);
+}
+
+#define ck_assert_at_most(what, value, bound)                                                                \
+  do {                                                                                                       \
+    double ck_value_ = (value), ck_bound_ = (bound);                                                         \
+    ck_assert_msg(ck_value_ <= ck_bound_, "%s: %s = %.3g > %.3g", what, #value, ck_value_, ck_bound_);       \
+  } while (0)
+
+static void check_volume(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+                         const char *where) {
+  Answer answer = ask(model, pair->x);
+  double reference = exact_volume(pair->x);
+  ck_assert_at_most(where, pairs_volume_misfit(pair->x, answer.volume, reference), demand->misfit);
+  if (!isnan(pair->volume))
+    ck_assert_at_most(where, fabs(answer.volume - pair->volume),
+                      pair->slack + demand->misfit * pairs_allowed(pair->x, pair->volume));
+}
+
+START_TEST(volumes_are_right_in_every_class) {
+  for_each_pair(_i, check_volume);
+}
+END_TEST
+
+static void check_flags(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+                        const char *where) {
+  (void)demand;
+  Answer answer = ask(model, pair->x);
+  bool is_flat = (answer.flags & CONTACT_OVERLAP_FLAT) != 0;
+  bool is_nothing = is_flat || (answer.flags & CONTACT_OVERLAP_DISJOINT);
+  ck_assert_msg(is_flat == pair->is_flat, "%s: FLAT is %d", where, is_flat);
+  ck_assert_msg(is_nothing == (answer.volume == 0), "%s: flags %u with V = %g", where, answer.flags,
+                answer.volume);
+  for (int i = 0; i < 24 && is_nothing; i++)
+    ck_assert_msg(answer.gradient[i] == 0, "%s: no common interior and a gradient", where);
+}
+
+START_TEST(flags_say_what_the_numbers_are) {
+  for_each_pair(_i, check_flags);
+}
+END_TEST
+
+static void check_invariants(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+                             const char *where) {
+  Answer answer = ask(model, pair->x);
+  ck_assert_at_most(where, pairs_bounds_residual(pair->x, answer.volume), 4e-16);
+  ck_assert_at_most(where, pairs_translation_residual(pair->x, answer.gradient), demand->invariant);
+  ck_assert_at_most(where, pairs_rotation_residual(pair->x, answer.gradient), demand->invariant);
+  ck_assert_at_most(where, pairs_scaling_residual(pair->x, answer.volume, answer.gradient),
+                    demand->invariant);
+}
+
+START_TEST(volumes_are_bounded_and_gradients_balance) {
+  for_each_pair(_i, check_invariants);
+}
+END_TEST
+
+static void check_exchange(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+                           const char *where) {
+  double volume = ask_volume(model, pair->x), swapped[24], permuted[24];
+  pairs_swap(pair->x, swapped);
+  ck_assert_at_most(where, pairs_volume_misfit(pair->x, ask_volume(model, swapped), volume),
+                    2 * demand->misfit);
+  for (int k = 1; k < 24; k += demand->members < 10 ? 11 : 1) {
+    pairs_permute(pair->x, k, permuted);
+    pairs_permute(pair->x + 12, (5 * k + 3) % 24, permuted + 12);
+    ck_assert_at_most(where, pairs_volume_misfit(pair->x, ask_volume(model, permuted), volume),
+                      2 * demand->misfit);
+  }
+}
+
+START_TEST(nothing_depends_on_the_order_of_tetrahedra_and_vertices) {
+  for_each_pair(_i, check_exchange);
+}
+END_TEST
+
+// The largest coordinate times the extent squared: what rounding of coordinates may change, over ε.
+static double rounding_scale(const double x[24]) {
+  double largest = 0, extent = pairs_extent(x);
+  for (int i = 0; i < 24; i++) largest = fmax(largest, fabs(x[i]));
+  return largest * extent * extent;
+}
+
+static void check_motion(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+                         const char *where) {
+  double moved[24], volume = ask_volume(model, pair->x), extent = pairs_extent(pair->x);
+  double rotation[9];
+  Random random = random_seeded(77, 0);
+  random_rotation(&random, rotation);
+  memcpy(moved, pair->x, sizeof moved);
+  pairs_transform(moved, 8, rotation, 1, (Vec3){extent, -2 * extent, extent});
+  double slack = 8 * DBL_EPSILON * (rounding_scale(pair->x) + rounding_scale(moved));
+  ck_assert_at_most(where, fabs(ask_volume(model, moved) - volume),
+                    slack + demand->misfit * pairs_allowed(pair->x, volume));
+  for (int i = 0; i < 24; i++) moved[i] = 0x1p20 * pair->x[i];
+  ck_assert_at_most(where, pairs_volume_misfit(pair->x, 0x1p-60 * ask_volume(model, moved), volume), 1e-6);
+}
+
+START_TEST(a_rigid_motion_changes_nothing_and_scaling_gives_the_cube) {
+  for_each_pair(_i, check_motion);
+}
+END_TEST
+
+static void check_subdivision(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+                              const char *where) {
+  const double weights[4] = {0.125, 0.25, 0.25, 0.375};
+  double parts[4][12], whole = pairs_tet_volume(pair->x + 12), sum_of_parts = 0;
+  pairs_subdivide(pair->x + 12, weights, parts);
+  for (int k = 0; k < 4; k++) sum_of_parts += pairs_tet_volume(parts[k]);
+  if (!(fabs(sum_of_parts - whole) <= 1e-13 * whole) || pair->is_flat) return; // rounded out of a sliver
+  double volume = ask_volume(model, pair->x), sum = 0, allowed = 1e-14 * volume;
+  for (int k = 0; k < 4; k++) {
+    double x[24];
+    memcpy(x, pair->x, 12 * sizeof *x), memcpy(x + 12, parts[k], 12 * sizeof *x);
+    double part = ask_volume(model, x);
+    sum += part;
+    allowed += demand->misfit * pairs_allowed(x, part);
+  }
+  ck_assert_at_most(where, fabs(sum - volume), allowed + demand->misfit * pairs_allowed(pair->x, volume));
+}
+
+START_TEST(the_parts_of_a_tetrahedron_sum_to_the_whole) {
+  for_each_pair(_i, check_subdivision);
+}
+END_TEST
+
+static void check_gradient(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+                           const char *where) {
+  if (!pair->is_smooth) return;
+  Answer answer = ask(model, pair->x);
+  double extent = pairs_extent(pair->x), h = 1e-6 * extent;
+  for (int i = 0; i < 24; i += demand->members < 10 ? 7 : 1) {
+    double up[24], down[24];
+    memcpy(up, pair->x, sizeof up), memcpy(down, pair->x, sizeof down);
+    up[i] += h, down[i] -= h;
+    double difference = (ask_volume(model, up) - ask_volume(model, down)) / (up[i] - down[i]);
+    ck_assert_at_most(where, fabs(difference - answer.gradient[i]) / (extent * extent), demand->gradient);
+  }
+}
+
+START_TEST(the_gradient_is_the_derivative_of_the_volume) {
+  for_each_pair(_i, check_gradient);
+}
+END_TEST
+
+static void ask_hessian(const ContactOverlapModel *model, const double x[24], double hessian[576]) {
+  double volume;
+  ContactOverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume, .hessian = hessian};
+  ck_assert_ok(contact_overlap_eval(model, &batch));
+}
+
+static void check_hessian(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+                          const char *where) {
+  double extent = pairs_extent(pair->x), h = 1e-6 * extent, hessian[576];
+  ask_hessian(model, pair->x, hessian);
+  for (int i = 0; i < 24; i++)
+    for (int c = 0; c < 3; c++) {
+      double sum = 0, size = 0; // translation of both
+      for (int j = c; j < 24; j += 3) sum += hessian[24 * i + j], size += fabs(hessian[24 * i + j]);
+      ck_assert_at_most(where, fabs(sum), 1e-11 * (size + extent));
+    }
+  if (!pair->is_smooth) return;
+  for (int i = 0; i < 24; i++) {
+    double up[24], down[24];
+    memcpy(up, pair->x, sizeof up), memcpy(down, pair->x, sizeof down);
+    up[i] += h, down[i] -= h;
+    Answer plus = ask(model, up), minus = ask(model, down);
+    for (int j = 0; j < 24; j++) {
+      double difference = (plus.gradient[j] - minus.gradient[j]) / (up[i] - down[i]);
+      ck_assert_at_most(where, fabs(hessian[24 * i + j] - hessian[24 * j + i]), 0);
+      ck_assert_at_most(where, fabs(difference - hessian[24 * i + j]) / extent, demand->hessian);
+    }
+  }
+}
+
+START_TEST(the_hessian_is_symmetric_and_the_derivative_of_the_gradient) {
+  if (model_at(_i)->has_hessian) {
+    for_each_pair(_i, check_hessian);
+    return;
+  }
+  ContactOverlapModel model;
+  double volume, hessian[576];
+  PairCase pair = pairs_make(2, 0);
+  ck_assert_ok(contact_overlap_create(&model, model_at(_i)->name));
+  ContactOverlapBatch batch = {.pair_count = 1, .pairs = pair.x, .volume = &volume, .hessian = hessian};
+  ck_assert_int_eq(contact_overlap_eval(&model, &batch), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "Hessian"));
+  contact_overlap_destroy(&model);
+}
+END_TEST
+
+START_TEST(a_tetrahedron_inside_another_is_flagged) {
+  ContactOverlapModel model;
+  ck_assert_ok(contact_overlap_create(&model, model_at(_i)->name));
+  int seen = 0;
+  for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
+    bool is_inside = strcmp(pairs_classes[c].name, "inside") == 0;
+    if (!is_inside && strcmp(pairs_classes[c].name, "shallow") != 0) continue;
+    for (int member = 0; member < 5; member++) {
+      PairCase pair = pairs_make(c, member);
+      double swapped[24];
+      pairs_swap(pair.x, swapped);
+      ck_assert_int_eq(is_inside, (ask(&model, pair.x).flags & CONTACT_OVERLAP_ENCLOSED) != 0);
+      ck_assert_int_eq(is_inside, (ask(&model, swapped).flags & CONTACT_OVERLAP_ENCLOSED) != 0);
+      seen++;
+    }
+  }
+  ck_assert_int_eq(seen, 10);
+  contact_overlap_destroy(&model);
+}
+END_TEST
+
+START_TEST(a_coordinate_that_is_no_number_is_an_error_that_names_the_pair) {
+  const double bad[3] = {NAN, INFINITY, -INFINITY};
+  ContactOverlapModel model;
+  ck_assert_ok(contact_overlap_create(&model, model_at(_i)->name));
+  double x[5 * 24], volume[5];
+  for (int k = 0; k < 5; k++) memcpy(x + 24 * k, pairs_make(0, k).x, 24 * sizeof *x);
+  ContactOverlapBatch batch = {.pair_count = 5, .pairs = x, .volume = volume};
+  for (int kind = 0; kind < 3; kind++)
+    for (int i = 0; i < 24; i++) {
+      double good = x[3 * 24 + i];
+      x[3 * 24 + i] = bad[kind];
+      ck_assert_int_eq(contact_overlap_eval(&model, &batch), STATUS_INPUT);
+      ck_assert_ptr_nonnull(strstr(status_message(), "pair 3,"));
+      x[3 * 24 + i] = good;
+    }
+  ck_assert_ok(contact_overlap_eval(&model, &batch));
+  contact_overlap_destroy(&model);
+}
+END_TEST
+
+enum { BATCH = 200 };
+
+START_TEST(results_do_not_depend_on_the_number_of_threads) {
+  ContactOverlapModel model;
+  ck_assert_ok(contact_overlap_create(&model, model_at(_i)->name));
+  static double x[BATCH * 24], volume[2][BATCH], gradient[2][BATCH * 24];
+  static unsigned flags[2][BATCH];
+  for (int k = 0; k < BATCH; k++) memcpy(x + 24 * k, pairs_make(k % PAIRS_CLASS_COUNT, k).x, 24 * sizeof *x);
+  int threads = omp_get_max_threads();
+  for (int run = 0; run < 2; run++) {
+    omp_set_num_threads(run ? 4 : 1);
+    ContactOverlapBatch batch = {.pair_count = BATCH,
+                                 .pairs = x,
+                                 .volume = volume[run],
+                                 .gradient = gradient[run],
+                                 .flags = flags[run]};
+    ck_assert_ok(contact_overlap_eval(&model, &batch));
+  }
+  omp_set_num_threads(threads);
+  ck_assert_mem_eq(volume[0], volume[1], sizeof volume[0]);
+  ck_assert_mem_eq(gradient[0], gradient[1], sizeof gradient[0]);
+  ck_assert_mem_eq(flags[0], flags[1], sizeof flags[0]);
+  contact_overlap_destroy(&model);
+}
+END_TEST
+
+START_TEST(an_empty_batch_is_fine) {
+  ContactOverlapModel model;
+  ck_assert_ok(contact_overlap_create(&model, model_at(_i)->name));
+  ck_assert_ok(contact_overlap_eval(&model, &(ContactOverlapBatch){0}));
+  contact_overlap_destroy(&model);
+}
+END_TEST
+
+START_TEST(an_unknown_name_is_an_error_that_lists_the_known_ones) {
+  ContactOverlapModel model;
+  ck_assert_int_eq(contact_overlap_create(&model, "clipp"), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "did you mean 'clip'"));
+  int count;
+  const ContactOverlapOps *const *models = contact_overlap_list(&count);
+  for (int m = 0; m < count; m++) ck_assert_ptr_nonnull(strstr(status_message(), models[m]->name));
+  contact_overlap_destroy(&model); // also of one that was never made
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("overlap_models");
+  int count;
+  contact_overlap_list(&count);
+  tcase_add_loop_test(cases, volumes_are_right_in_every_class, 0, count);
+  tcase_add_loop_test(cases, flags_say_what_the_numbers_are, 0, count);
+  tcase_add_loop_test(cases, volumes_are_bounded_and_gradients_balance, 0, count);
+  tcase_add_loop_test(cases, nothing_depends_on_the_order_of_tetrahedra_and_vertices, 0, count);
+  tcase_add_loop_test(cases, a_rigid_motion_changes_nothing_and_scaling_gives_the_cube, 0, count);
+  tcase_add_loop_test(cases, the_parts_of_a_tetrahedron_sum_to_the_whole, 0, count);
+  tcase_add_loop_test(cases, the_gradient_is_the_derivative_of_the_volume, 0, count);
+  tcase_add_loop_test(cases, the_hessian_is_symmetric_and_the_derivative_of_the_gradient, 0, count);
+  tcase_add_loop_test(cases, a_tetrahedron_inside_another_is_flagged, 0, count);
+  tcase_add_loop_test(cases, a_coordinate_that_is_no_number_is_an_error_that_names_the_pair, 0, count);
+  tcase_add_loop_test(cases, results_do_not_depend_on_the_number_of_threads, 0, count);
+  tcase_add_loop_test(cases, an_empty_batch_is_fine, 0, count);
+  tcase_add_test(cases, an_unknown_name_is_an_error_that_lists_the_known_ones);
+  return suite_run("overlap models", cases, 60);
+}
