@@ -17,7 +17,7 @@ enum { GMSH_TRIANGLE = 2, GMSH_TETRAHEDRON = 4 };
 
 // Fails with what gmsh logged as its first error; later ones only repeat that it failed.
 static Status fail(const char *doing) {
-  char **lines = NULL, reason[512] = "it does not say why";
+  char **lines = NULL, reason[512] = "it gives no reason; perhaps a count in the file is wrong";
   size_t count = 0;
   int error = 0;
   gmshLoggerGet(&lines, &count, &error);
@@ -153,13 +153,11 @@ static Status refuse_type(int type) {
     gmshFree(name);
     return status;
   }
-  bool is_tet = !error && strncmp(name, "Tetrahedron", 11) == 0;
   status_fail(
       STATUS_INPUT,
-      "element %zu and %zu more are of type '%s' (%d nodes); only linear tetrahedra of 4 nodes are known: %s",
-      elements.count ? elements.tags[0] : 0, elements.count ? elements.count - 1 : 0,
-      error ? "unknown" : name, node_count,
-      is_tet ? "mesh or save it with element order 1" : "mesh it with tetrahedra");
+      "has %zu elements of type '%s' (%d nodes), the first is element %zu; only linear tetrahedra of 4 nodes "
+      "are known: mesh it anew with those (element order 1, no recombination)",
+      elements.count, error ? "unknown" : name, node_count, elements.count ? elements.tags[0] : 0);
   free_elements(&elements);
   gmshFree(name);
   return STATUS_INPUT;
@@ -411,10 +409,10 @@ static Status read_all(FemMeshSource *source, const char *path, double size) {
   int error = 0;
   TRY(start());
   gmshOpen(path, &error);
-  if (error) return fail("read it (is the file complete?)");
-  bool is_stl = ends_in(path, ".stl");
+  bool is_stl = ends_in(path, ".stl"), is_geo = ends_in(path, ".geo");
+  if (error) return fail(is_geo ? "run it" : "read it (is the file complete?)");
   if (is_stl) TRY(mesh_stl(size));
-  if (ends_in(path, ".geo")) TRY(mesh_geo(size));
+  if (is_geo) TRY(mesh_geo(size));
   return take_mesh(source, !is_stl);
 }
 

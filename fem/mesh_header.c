@@ -2,7 +2,6 @@
 #include "fem/mesh_header.h"
 
 #include <ctype.h>
-#include <limits.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,6 +48,14 @@ static Status check_msh(const char *text) {
   return status_fail(STATUS_INPUT, "does not begin with $MeshFormat and so is no gmsh mesh; export it again");
 }
 
+// An item of `bytes` at least: what a count beyond the file's size says is not true, and gmsh would allocate
+// it.
+static Status check_announced(const char *what, int what_length, long long count, size_t bytes, size_t size) {
+  if (count >= 0 && (unsigned long long)count <= size / bytes) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "announces %lld %.*s in a file of %zu bytes; is it complete?", count,
+                     what_length, what, size);
+}
+
 // The kinds of volume elements that MEDIT knows and we do not.
 static Status refuse_medit_kind(const char *word, size_t length, long long count) {
   static const char *const kinds[] = {"Hexahedra",    "Prisms",      "Pentahedra", "Pyramids",
@@ -56,14 +63,14 @@ static Status refuse_medit_kind(const char *word, size_t length, long long count
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
     if (count > 0 && length == strlen(kinds[k]) && strncasecmp(word, kinds[k], length) == 0)
       return status_fail(STATUS_INPUT,
-                         "has %lld %s; only linear tetrahedra of 4 nodes are known: mesh it with tetrahedra",
+                         "has %lld %s; only linear tetrahedra of 4 nodes are known: mesh it anew with those",
                          count, kinds[k]);
   return STATUS_OK;
 }
 
 // MEDIT: words, each followed by a count and so many lines (Frey 2001, "MEDIT: an interactive mesh
 // visualization software", INRIA RT-0253).
-static Status check_medit(const char *text, long long *tet_count) {
+static Status check_medit(const char *text, size_t size, long long *tet_count) {
   const char *at = skip_space(text);
   if (!begins_with(at, "MeshVersionFormatted"))
     return status_fail(STATUS_INPUT,
@@ -76,9 +83,9 @@ static Status check_medit(const char *text, long long *tet_count) {
     if (*word == '#') at += strcspn(at, "\n");
     if (!isalpha((unsigned char)*word)) continue;
     long long count = strtoll(at, NULL, 10);
+    TRY(check_announced(word, (int)(at - word), count, 2, size));
     TRY(refuse_medit_kind(word, (size_t)(at - word), count));
-    // Beyond what can be read the count only has to differ.
-    if (at - word == 10 && begins_with(word, "Tetrahedra")) *tet_count += count > INT_MAX ? INT_MAX : count;
+    if (at - word == 10 && begins_with(word, "Tetrahedra")) *tet_count += count;
   }
   return STATUS_OK;
 }
@@ -110,6 +117,29 @@ static long vtk_type(const char **at, const char *end, bool is_binary) {
   return (long)b[0] << 24 | (long)b[1] << 16 | (long)b[2] << 8 | (long)b[3];
 }
 
+static const char *vtk_type_name(long type) {
+  switch (type) {
+  case 11:
+    return "voxel";
+  case 12:
+    return "hexahedron";
+  case 13:
+    return "wedge";
+  case 14:
+    return "pyramid";
+  case 24:
+    return "quadratic tetrahedron";
+  case 25:
+    return "quadratic hexahedron";
+  case 26:
+    return "quadratic wedge";
+  case 27:
+    return "quadratic pyramid";
+  default:
+    return "volume cell";
+  }
+}
+
 static Status count_vtk_types(const char *at, const char *end, bool is_binary, long long *tet_count) {
   char *list;
   long long count = strtoll(at, &list, 10);
@@ -126,11 +156,10 @@ static Status count_vtk_types(const char *at, const char *end, bool is_binary, l
     bool is_volume = (type >= 11 && type <= 16) || (type >= 24 && type <= 27) || type == 29 ||
                      (type >= 31 && type <= 33) || type >= 41;
     if (is_volume)
-      return status_fail(
-          STATUS_INPUT,
-          "cell %lld has the VTK type %ld; only linear tetrahedra (type 10) are known: mesh it with "
-          "linear tetrahedra",
-          k, type);
+      return status_fail(STATUS_INPUT,
+                         "cell %lld is a %s (VTK type %ld); only linear tetrahedra (type 10) are known: mesh "
+                         "it anew with those",
+                         k, vtk_type_name(type), type);
   }
   return STATUS_OK;
 }
@@ -145,6 +174,9 @@ static Status check_vtk(const char *text, size_t size, long long *tet_count) {
   if (!find_line(text, size, "DATASET UNSTRUCTURED_GRID"))
     return status_fail(STATUS_INPUT, "is no 'DATASET UNSTRUCTURED_GRID'; save its tetrahedra as one");
   *tet_count = 0;
+  const char *points = find_line(text, size, "POINTS"), *cells = find_line(text, size, "CELLS");
+  if (points) TRY(check_announced("points", 6, strtoll(points, NULL, 10), 6, size));
+  if (cells) TRY(check_announced("cells", 5, strtoll(cells, NULL, 10), 4, size));
   const char *types = find_line(text, size, "CELL_TYPES");
   if (!types) return status_fail(STATUS_INPUT, "has no CELL_TYPES; is it complete?");
   return count_vtk_types(types, text + size, find_line(text, size, "BINARY") != NULL, tet_count);
@@ -157,7 +189,7 @@ static Status check_text(const char *text, size_t size, FemMeshFormat format, lo
   case FEM_MESH_FORMAT_MSH:
     return check_msh(text);
   case FEM_MESH_FORMAT_MEDIT:
-    return check_medit(text, tet_count);
+    return check_medit(text, size, tet_count);
   case FEM_MESH_FORMAT_VTK:
     return check_vtk(text, size, tet_count);
   case FEM_MESH_FORMAT_STL:
@@ -169,12 +201,13 @@ static Status check_text(const char *text, size_t size, FemMeshFormat format, lo
   return STATUS_OK;
 }
 
-Status fem_mesh_header_check(const char *path, FemMeshFormat format, long long *tet_count) {
+Status fem_mesh_header_check(const char *path, FemMeshFormat format, FemMeshHeader *header) {
   char *text;
   size_t size;
-  *tet_count = -1;
+  *header = (FemMeshHeader){.tet_count = -1};
   TRY(file_read(path, &text, &size));
-  Status status = check_text(text, size, format, tet_count);
+  header->size = size;
+  Status status = check_text(text, size, format, &header->tet_count);
   memory_free(text);
   return status == STATUS_OK ? STATUS_OK : status_prefix(status, "%s", path);
 }

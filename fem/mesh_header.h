@@ -5,6 +5,8 @@
 #ifndef TETLAP_FEM_MESH_HEADER_H
 #define TETLAP_FEM_MESH_HEADER_H
 
+#include <stddef.h>
+
 #include "base/status.h"
 
 typedef enum FemMeshFormat {
@@ -19,9 +21,14 @@ typedef enum FemMeshFormat {
 // By the ending, upper or lower case. STATUS_INPUT: an ending that is not known; the message lists them.
 Status fem_mesh_header_format(const char *path, FemMeshFormat *format);
 
-// Checks that the file begins as its format does and holds what its header announces. `*tet_count`: the
-// number of tetrahedra it announces; −1: the format does not say, or gmsh checks it itself. STATUS_IO: not
-// there, not a file, not readable. STATUS_INPUT: empty, or not this format, or other elements.
-Status fem_mesh_header_check(const char *path, FemMeshFormat format, long long *tet_count);
+// What is known of a file before it is read.
+typedef struct FemMeshHeader {
+  size_t size;         // of the file [bytes]
+  long long tet_count; // that it announces; −1: the format does not say, or gmsh checks it itself
+} FemMeshHeader;
+
+// Checks that the file begins as its format does and can hold what it announces.
+// STATUS_IO: not there, not a file, not readable. STATUS_INPUT: empty, or not this format, or other elements.
+Status fem_mesh_header_check(const char *path, FemMeshFormat format, FemMeshHeader *header);
 
 #endif

@@ -8,13 +8,16 @@
 #include "fem/mesh_tetgen.h"
 #include "fem/mesh_worker.h"
 
+static bool is_meshed_here(FemMeshFormat format) {
+  return format == FEM_MESH_FORMAT_STL || format == FEM_MESH_FORMAT_GEO;
+}
+
 static Status check_options(const char *path, FemMeshFormat format, const FemMeshOptions *options) {
-  bool is_meshed = format == FEM_MESH_FORMAT_STL || format == FEM_MESH_FORMAT_GEO;
   if (!(options->size >= 0 && isfinite(options->size)))
     return status_fail(STATUS_INPUT,
                        "%s: size is %g; give a positive length in the units of the file, or leave it out",
                        path, options->size);
-  if (options->size > 0 && !is_meshed)
+  if (options->size > 0 && !is_meshed_here(format))
     return status_fail(STATUS_INPUT,
                        "%s: is meshed already, so size has no effect; leave size out, or give a .stl or .geo",
                        path);
@@ -23,8 +26,9 @@ static Status check_options(const char *path, FemMeshFormat format, const FemMes
 
 // gmsh in a process of its own, and a check that it left nothing out.
 static Status read_by_gmsh(FemMeshSource *source, const char *path, const FemMeshOptions *options,
-                           long long announced) {
-  Status status = fem_mesh_worker_run(fem_mesh_gmsh_read, source, path, options);
+                           const FemMeshHeader *header, size_t memory_limit) {
+  Status status = fem_mesh_worker_run(fem_mesh_gmsh_read, source, path, options, memory_limit);
+  long long announced = header->tet_count;
   if (status == STATUS_OK && announced >= 0 && announced != source->tet_count)
     status = status_fail(STATUS_INPUT, "announces %lld tetrahedra, but %d can be read; is it complete?",
                          announced, source->tet_count);
@@ -33,12 +37,15 @@ static Status read_by_gmsh(FemMeshSource *source, const char *path, const FemMes
 
 static Status read_source(FemMeshSource *source, const char *path, const FemMeshOptions *options) {
   FemMeshFormat format;
-  long long announced;
+  FemMeshHeader header;
   TRY(fem_mesh_header_format(path, &format));
   TRY(check_options(path, format, options));
   if (format == FEM_MESH_FORMAT_TETGEN) return fem_mesh_tetgen_read(source, path);
-  TRY(fem_mesh_header_check(path, format, &announced));
-  return read_by_gmsh(source, path, options, announced);
+  TRY(fem_mesh_header_check(path, format, &header));
+  // Reading takes memory in proportion to the file (a 4-byte integer makes a pointer or two); meshing does
+  // not.
+  size_t limit = is_meshed_here(format) ? 0 : ((size_t)1 << 30) + 64 * header.size;
+  return read_by_gmsh(source, path, options, &header, limit);
 }
 
 Status fem_mesh_read(FemMesh *mesh, const char *path, const FemMeshOptions *options,

@@ -29,12 +29,12 @@ static Status explain(const Faults *faults, const double *positions) {
   if (faults->open_count)
     return status_fail(
         STATUS_INPUT,
-        "the surface is open: %d edges have only one triangle, the first from (%g, %g, %g) to (%g, %g, "
+        "the surface is open: edges with only one triangle: %d, the first from (%g, %g, %g) to (%g, %g, "
         "%g); close the holes",
         faults->open_count, a[0], a[1], a[2], b[0], b[1], b[2]);
   return status_fail(
       STATUS_INPUT,
-      "the surface is not manifold: %d edges have more than two triangles, the first from (%g, %g, %g) "
+      "the surface is not manifold: edges with more than two triangles: %d, the first from (%g, %g, %g) "
       "to (%g, %g, %g); separate what touches there",
       faults->crowded_count, a[0], a[1], a[2], b[0], b[1], b[2]);
 }

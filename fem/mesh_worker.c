@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -50,14 +51,29 @@ static bool send_source(int pipe, const FemMeshSource *source) {
   return ok;
 }
 
+// The kernel counts private writable pages, those of this process already included: statm's sixth number.
+// Where it cannot be read there is no limit.
+static void limit_memory(size_t limit) {
+  unsigned long pages = 0;
+  FILE *statm = limit ? fopen("/proc/self/statm", "r") : NULL;
+  if (!statm) return;
+  if (fscanf(statm, "%*u %*u %*u %*u %*u %lu", &pages) == 1) {
+    rlim_t bytes = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + limit;
+    setrlimit(RLIMIT_DATA, &(struct rlimit){bytes, bytes});
+  }
+  fclose(statm);
+}
+
 // The child: silent, mortal by the usual signals, without a core file.
-static void be_child(int pipe, FemMeshReader reader, const char *path, const FemMeshOptions *options) {
+static void be_child(int pipe, FemMeshReader reader, const char *path, const FemMeshOptions *options,
+                     size_t memory_limit) {
   static const int signals[] = {SIGINT,  SIGTERM, SIGHUP, SIGPIPE, SIGALRM,
                                 SIGSEGV, SIGABRT, SIGBUS, SIGFPE,  SIGILL};
   for (size_t k = 0; k < sizeof signals / sizeof *signals; k++) signal(signals[k], SIG_DFL);
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
   int nowhere = open("/dev/null", O_RDWR);
   if (nowhere >= 0) dup2(nowhere, STDIN_FILENO), dup2(nowhere, STDOUT_FILENO), dup2(nowhere, STDERR_FILENO);
+  limit_memory(memory_limit);
   FemMeshSource source = {0};
   Status status = reader(&source, path, options);
   Head head = {.status = status};
@@ -143,7 +159,7 @@ static Status explain_end(int end) {
   if (!WIFSIGNALED(end))
     return status_fail(STATUS_INPUT,
                        "the reader ended without an answer (exit code %d); the file is probably damaged: "
-                       "write it anew",
+                       "export it again",
                        WEXITSTATUS(end));
   int cause = WTERMSIG(end);
   if (cause == SIGINT || cause == SIGTERM || cause == SIGHUP)
@@ -152,7 +168,7 @@ static Status explain_end(int end) {
     return status_fail(STATUS_MEMORY,
                        "the reader was killed, probably for lack of memory; give a coarser mesh");
   return status_fail(STATUS_INPUT,
-                     "the reader crashed on it (%s); the file is probably damaged: write it anew",
+                     "the reader crashed on it (%s); the file is probably damaged: export it again",
                      strsignal(cause));
 }
 
@@ -175,14 +191,14 @@ static Status finish(pid_t child, Receipt receipt, Status reader_status) {
 }
 
 Status fem_mesh_worker_run(FemMeshReader reader, FemMeshSource *source, const char *path,
-                           const FemMeshOptions *options) {
+                           const FemMeshOptions *options, size_t memory_limit) {
   int ends[2];
   *source = (FemMeshSource){0};
   if (pipe(ends) != 0) return status_fail(STATUS_IO, "no pipe to the reading process: %s", strerror(errno));
   pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
-    be_child(ends[1], reader, path, options);
+    be_child(ends[1], reader, path, options, memory_limit);
   }
   int reason = errno;
   close(ends[1]);

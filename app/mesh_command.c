@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/mesh_command.h"
+
+#include <argp.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/log.h"
+#include "base/record.h"
+#include "fem/mesh.h"
+
+// Angles below this make the stiffness matrix worse conditioned than its size alone would.
+static const double POOR_DIHEDRAL_DEGREES = 5;
+
+typedef struct Options {
+  const char *path;
+  double size;
+  bool is_json;
+} Options;
+
+static const struct argp_option option_table[] = {
+    {"size", 's', "LENGTH", 0, "Target edge length of a .stl or .geo, in its units", 0},
+    {"json", 'j', NULL, 0, "Print JSON", 0},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  char *end;
+  switch (key) {
+  case 's':
+    options->size = strtod(text, &end);
+    if (end == text || *end || !(options->size > 0 && isfinite(options->size)))
+      argp_error(state, "--size is '%s'; give a positive length, as --size 0.01", text);
+    return 0;
+  case 'j':
+    options->is_json = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (options->path) argp_error(state, "'%s' is one too many: give one mesh file", text);
+    options->path = text;
+    return 0;
+  case ARGP_KEY_NO_ARGS:
+    argp_error(state, "which mesh? give a file, as tetlap mesh meshes/block.msh");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+// What an analyst should know before using the mesh, one sentence each.
+enum { MAX_REMARKS = 6, REMARK_SIZE = 200 };
+
+typedef struct Remarks {
+  char lines[MAX_REMARKS][REMARK_SIZE];
+  int count;
+} Remarks;
+
+static void remark(Remarks *remarks, const char *format, double number) {
+  snprintf(remarks->lines[remarks->count++], REMARK_SIZE, format, number);
+}
+
+static Remarks judge(const FemMeshQuality *quality, const FemMeshRepairs *repairs) {
+  Remarks remarks = {0};
+  if (repairs->reoriented_tets)
+    remark(&remarks, "%.0f tetrahedra were inside out and have been turned", repairs->reoriented_tets);
+  if (repairs->dropped_vertices)
+    remark(&remarks, "%.0f vertices belong to no tetrahedron and have been left out",
+           repairs->dropped_vertices);
+  if (quality->coincident_vertex_count)
+    remark(&remarks,
+           "%.0f vertices lie exactly on another: the mesh is open there; merge them unless it is meant",
+           quality->coincident_vertex_count);
+  if (quality->component_count > 1)
+    remark(&remarks, "%.0f parts are not connected: they move apart freely", quality->component_count);
+  if (quality->pinch_edge_count || quality->pinch_vertex_count)
+    remark(&remarks, "the surface touches itself at %.0f edges or vertices: a hinge, not a joint",
+           quality->pinch_edge_count + quality->pinch_vertex_count);
+  if (!(quality->min_dihedral_degrees >= POOR_DIHEDRAL_DEGREES))
+    remark(&remarks, "the smallest dihedral angle is %.2g°: expect slow solves and small steps; mesh it anew",
+           quality->min_dihedral_degrees);
+  return remarks;
+}
+
+static void print_text(const char *path, const FemMesh *mesh, const FemMeshQuality *q,
+                       const Remarks *remarks) {
+  printf("%s\n", path);
+  printf("  vertices     %d\n  tetrahedra   %d\n", mesh->vertex_count, mesh->tet_count);
+  printf("  surface      %d triangles, %.6g m²\n", q->surface_triangle_count, q->surface_area);
+  printf("  volume       %.6g m³\n  parts        %d\n", q->volume, q->component_count);
+  printf("  box          (%g, %g, %g) … (%g, %g, %g) m\n", q->box_min[0], q->box_min[1], q->box_min[2],
+         q->box_max[0], q->box_max[1], q->box_max[2]);
+  printf("  edges        %.3g … %.3g m, mean %.3g m\n", q->min_edge, q->max_edge, q->mean_edge);
+  printf("  dihedral     %.3g° … %.3g°, the smallest in tetrahedron %d\n", q->min_dihedral_degrees,
+         q->max_dihedral_degrees, q->min_dihedral_tet);
+  printf("  min det      %.3g in tetrahedron %d (6 V over longest edge cubed; regular: 0.707)\n", q->min_det,
+         q->min_det_tet);
+  printf("  groups      ");
+  for (int g = 0; g < mesh->group_count; g++)
+    printf("%s %s (%d)", g ? "," : "", mesh->groups[g].name, mesh->groups[g].vertex_count);
+  printf("%s\n", mesh->group_count ? "" : " none");
+  for (int k = 0; k < remarks->count; k++)
+    printf("  %s %s\n", k ? "            " : "remarks     ", remarks->lines[k]);
+  if (!remarks->count) printf("  remarks      none: nothing is wrong\n");
+}
+
+static Status print_json(const char *path, const FemMesh *mesh, const FemMeshQuality *q,
+                         const FemMeshRepairs *repairs, const Remarks *remarks) {
+  Record *root = record_new();
+  record_text(root, "file", path);
+  record_integer(root, "vertices", mesh->vertex_count);
+  record_integer(root, "tetrahedra", mesh->tet_count);
+  record_integer(root, "surface_triangles", q->surface_triangle_count);
+  record_number(root, "surface_area", q->surface_area);
+  record_number(root, "volume", q->volume);
+  record_integer(root, "parts", q->component_count);
+  record_numbers(root, "box_min", q->box_min, 3);
+  record_numbers(root, "box_max", q->box_max, 3);
+  record_number(root, "min_edge", q->min_edge);
+  record_number(root, "mean_edge", q->mean_edge);
+  record_number(root, "max_edge", q->max_edge);
+  record_number(root, "min_dihedral_degrees", q->min_dihedral_degrees);
+  record_number(root, "max_dihedral_degrees", q->max_dihedral_degrees);
+  record_integer(root, "min_dihedral_tetrahedron", q->min_dihedral_tet);
+  record_number(root, "min_det", q->min_det);
+  record_integer(root, "min_det_tetrahedron", q->min_det_tet);
+  record_integer(root, "coincident_vertices", q->coincident_vertex_count);
+  record_integer(root, "pinch_edges", q->pinch_edge_count);
+  record_integer(root, "pinch_vertices", q->pinch_vertex_count);
+  record_integer(root, "reoriented_tetrahedra", repairs->reoriented_tets);
+  record_integer(root, "dropped_vertices", repairs->dropped_vertices);
+  RecordList *groups = record_list(root, "groups");
+  for (int g = 0; g < mesh->group_count; g++) {
+    Record *group = record_append(groups);
+    record_text(group, "name", mesh->groups[g].name);
+    record_integer(group, "vertices", mesh->groups[g].vertex_count);
+  }
+  RecordList *lines = record_list(root, "remarks");
+  for (int k = 0; k < remarks->count; k++) record_append_text(lines, remarks->lines[k]);
+  Status status = root ? record_print(root, stdout) : status_no_memory("the report");
+  record_destroy(root);
+  return status;
+}
+
+static Status report(const Options *options) {
+  FemMesh mesh;
+  FemMeshRepairs repairs;
+  FemMeshQuality quality;
+  // The remarks repeat what reading would log.
+  LogLevel level = log_level();
+  log_set_level(LOG_WARNING);
+  Status status = fem_mesh_read(&mesh, options->path, &(FemMeshOptions){.size = options->size}, &repairs);
+  log_set_level(level);
+  if (status == STATUS_OK) status = fem_mesh_quality(&mesh, &quality);
+  if (status == STATUS_OK) {
+    Remarks remarks = judge(&quality, &repairs);
+    if (options->is_json)
+      status = print_json(options->path, &mesh, &quality, &repairs, &remarks);
+    else
+      print_text(options->path, &mesh, &quality, &remarks);
+    if (status == STATUS_OK && fflush(stdout) != 0)
+      status = status_fail(STATUS_IO, "standard output cannot be written");
+  }
+  fem_mesh_destroy(&mesh);
+  return status;
+}
+
+int app_mesh_run(int argument_count, char **arguments) {
+  static const struct argp argp = {
+      .options = option_table,
+      .parser = parse,
+      .args_doc = "FILE",
+      .doc =
+          "Say what a mesh holds and what is wrong with it: .msh, .mesh, .vtk, .node/.ele; a .stl or .geo is "
+          "meshed first. Lengths are taken as metres."};
+  Options options = {0};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  Status status = report(&options);
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
