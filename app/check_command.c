@@ -252,7 +252,7 @@ static Status check(const AppJobOptions *options) {
 int app_check_run(int argument_count, char **arguments) {
   static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
   static const struct argp argp = {
-      .args_doc = "SCENE", .doc = "Say what a run of SCENE would do, without running.", .children = children};
+      .doc = "Say what a run of SCENE would do, without running.", .children = children};
   AppJobOptions options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/scene_override.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,6 +82,14 @@ static Status step_into(const char *override, SceneNode *node, const char *word,
                      found, word, path);
 }
 
+// The parser's message without its place, which counts from the value: "override:line:column: …".
+static Status fail_value(const char *override) {
+  char message[MESSAGE_SIZE];
+  const char *reason = strstr(status_message() + strlen(override), ": ");
+  snprintf(message, sizeof message, "%s", reason ? reason + 2 : status_message());
+  return status_fail(STATUS_USAGE, "--set %s: %s", override, message);
+}
+
 Status app_scene_override_apply(SceneNode *root, const char *override) {
   const char *equals = strchr(override, '=');
   if (!equals) return fail(override, "no '='");
@@ -96,8 +105,8 @@ Status app_scene_override_apply(SceneNode *root, const char *override) {
     TRY(step_into(override, node, word, is_number, &node));
   }
   Status status = app_scene_tree_parse(override, equals + 1, strlen(equals + 1), &value);
-  if (status == STATUS_INPUT) return status_prefix(STATUS_USAGE, "--set");
-  if (status) return status;
+  if (status == STATUS_INPUT) return fail_value(override);
+  TRY(status);
   app_scene_tree_mark_override(value);
   app_scene_tree_replace(node, value);
   return STATUS_OK;

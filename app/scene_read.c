@@ -336,9 +336,8 @@ static Status check_alternatives(const SceneSection *section, const SceneNode *m
   char path[MESSAGE_SIZE], word[TEXT_MAX_WORD];
   app_scene_tree_path(map, path, sizeof path);
   const SceneNode *chosen = NULL;
-  for (const char *rest = text_next(section->one_of, word); rest; rest = text_next(rest, word)) {
-    if (!is_given(map, word)) continue;
-    const SceneNode *entry = app_scene_tree_find(map, word);
+  for (const SceneNode *entry = map->first; entry; entry = entry->next) {
+    if (entry->kind == SCENE_NODE_NULL || !text_lists(section->one_of, entry->key)) continue;
     if (chosen)
       return app_scene_tree_fail_key(entry, "'%s' and '%s' in %s contradict each other; keep one of them",
                                      chosen->key, entry->key, path);
