@@ -7,22 +7,24 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "fem/base64.h"
 #include "fem/xml.h"
 
 enum {
   BLOCK_BYTES = 32768,  // uncompressed size of a block, VTK's own default
   LEVEL = Z_BEST_SPEED, // doubles of a simulation hardly shrink further at higher levels
   VTK_TETRA = 10,       // cell type
-  STRUCTURE_PIECES = 4, // positions, connectivity, offsets, types
 };
 
-// The appended section as it grows: all arrays compressed one after another.
-typedef struct Appendix {
-  unsigned char *bytes;
-  size_t size, capacity;
-} Appendix;
+// One DataArray element.
+typedef struct Piece {
+  const char *type, *name;
+  int components;
+  const void *source;
+  size_t byte_count;
+} Piece;
 
-// One array on its way into the appendix: block k compressed into slots + k · slot_bytes, and VTK's header
+// A piece on its way to the file: block k compressed into slots + k · slot_bytes, and VTK's header
 // [number of blocks, size of a block, size of the last one if it is shorter, compressed size of each].
 typedef struct Packing {
   unsigned char *slots;
@@ -37,6 +39,11 @@ static bool create(Packing *packing, size_t byte_count) {
   packing->slots = memory_zeroed((size_t)packing->block_count, packing->slot_bytes);
   packing->header = memory_zeroed((size_t)packing->block_count + 3, sizeof *packing->header);
   return packing->slots && packing->header;
+}
+
+static void destroy(Packing *packing) {
+  memory_free(packing->slots);
+  memory_free(packing->header);
 }
 
 // False if zlib found no memory, the only way in which it can fail here.
@@ -58,73 +65,14 @@ static bool compress_blocks(Packing *packing, const unsigned char *source, size_
   return verdict == Z_OK;
 }
 
-static bool reserve(Appendix *appendix, const Packing *packing) {
-  size_t wanted = appendix->size + ((size_t)packing->block_count + 3) * sizeof *packing->header;
-  for (uint64_t k = 0; k < packing->block_count; k++) wanted += packing->header[3 + k];
-  return memory_reserve((void **)&appendix->bytes, &appendix->capacity, wanted, 1);
-}
-
-static void put(Appendix *appendix, const void *source, size_t size) {
-  memcpy(appendix->bytes + appendix->size, source, size);
-  appendix->size += size;
-}
-
-static void put_packed(Appendix *appendix, const Packing *packing) {
-  put(appendix, packing->header, ((size_t)packing->block_count + 3) * sizeof *packing->header);
+// The header and the blocks, each a base64 text of its own.
+static void print_packed(FILE *stream, const Packing *packing) {
+  FemBase64 text = {.stream = stream};
+  fem_base64_write(&text, packing->header, ((size_t)packing->block_count + 3) * sizeof *packing->header);
+  fem_base64_end(&text);
   for (uint64_t k = 0; k < packing->block_count; k++)
-    put(appendix, packing->slots + k * packing->slot_bytes, packing->header[3 + k]);
-}
-
-static Status append(Appendix *appendix, const void *source, size_t byte_count) {
-  Packing packing;
-  bool ok = create(&packing, byte_count) && compress_blocks(&packing, source, byte_count) &&
-            reserve(appendix, &packing);
-  if (ok) put_packed(appendix, &packing);
-  memory_free(packing.slots);
-  memory_free(packing.header);
-  return ok ? STATUS_OK : status_no_memory("the compressed arrays of a frame");
-}
-
-// The grid's structure: positions, connectivity, where each cell ends, the cells' types.
-static Status append_structure(Appendix *appendix, const FemVtuFrame *frame, size_t *offsets) {
-  const size_t count = (size_t)frame->tet_count;
-  int64_t *ends = memory_zeroed(count, sizeof *ends);
-  uint8_t *types = memory_zeroed(count, sizeof *types);
-  Status status = ends && types ? STATUS_OK : status_no_memory("the cells of a frame");
-  for (size_t i = 0; !status && i < count; i++) {
-    ends[i] = 4 * ((int64_t)i + 1);
-    types[i] = VTK_TETRA;
-  }
-  const struct {
-    const void *source;
-    size_t byte_count;
-  } pieces[STRUCTURE_PIECES] = {
-      {frame->positions, (size_t)frame->vertex_count * 3 * sizeof(double)},
-      {frame->tets, count * 4 * sizeof(int)},
-      {ends, count * sizeof *ends},
-      {types, count * sizeof *types},
-  };
-  for (int p = 0; !status && p < STRUCTURE_PIECES; p++) {
-    offsets[p] = appendix->size;
-    status = append(appendix, pieces[p].source, pieces[p].byte_count);
-  }
-  memory_free(ends);
-  memory_free(types);
-  return status;
-}
-
-static Status append_arrays(Appendix *appendix, const FemVtuFrame *frame, size_t *offsets) {
-  for (int k = 0; k < frame->array_count; k++) {
-    const FemVtuArray *array = &frame->arrays[k];
-    size_t tuples = (size_t)(array->is_cell ? frame->tet_count : frame->vertex_count);
-    size_t numbers = tuples * (size_t)array->components;
-    offsets[k] = appendix->size;
-    if (array->reals)
-      TRY(append(appendix, array->reals, numbers * sizeof(double)));
-    else
-      TRY(append(appendix, array->integers, numbers * sizeof(int)));
-  }
-  return STATUS_OK;
+    fem_base64_write(&text, packing->slots + k * packing->slot_bytes, packing->header[3 + k]);
+  fem_base64_end(&text);
 }
 
 // The names under which ParaView lists the components; NULL for a single one.
@@ -144,27 +92,75 @@ static const char *component_name(int components, int component) {
   }
 }
 
-static void print_array(FILE *stream, const char *type, const char *name, int components, size_t offset) {
-  fprintf(stream, "        <DataArray type=\"%s\" Name=\"", type);
-  fem_xml_print(stream, name);
-  fprintf(stream, "\" NumberOfComponents=\"%d\"", components);
-  for (int c = 0; c < components && component_name(components, c); c++)
-    fprintf(stream, " ComponentName%d=\"%s\"", c, component_name(components, c));
-  fprintf(stream, " format=\"appended\" offset=\"%zu\"/>\n", offset);
+static void print_opening(FILE *stream, const Piece *piece) {
+  fprintf(stream, "        <DataArray type=\"%s\" Name=\"", piece->type);
+  fem_xml_print(stream, piece->name);
+  fprintf(stream, "\" NumberOfComponents=\"%d\"", piece->components);
+  for (int c = 0; c < piece->components && component_name(piece->components, c); c++)
+    fprintf(stream, " ComponentName%d=\"%s\"", c, component_name(piece->components, c));
+  fprintf(stream, " format=\"binary\">\n");
 }
 
-static void print_arrays(FILE *stream, const FemVtuFrame *frame, bool is_cell, const size_t *offsets) {
+static Status print_piece(FILE *stream, const Piece *piece) {
+  Packing packing;
+  bool ok =
+      create(&packing, piece->byte_count) && compress_blocks(&packing, piece->source, piece->byte_count);
+  if (ok) {
+    print_opening(stream, piece);
+    print_packed(stream, &packing);
+    fprintf(stream, "\n        </DataArray>\n");
+  }
+  destroy(&packing);
+  return ok ? STATUS_OK : status_no_memory("the compressed arrays of a frame");
+}
+
+static Status print_arrays(FILE *stream, const FemVtuFrame *frame, bool is_cell) {
   const char *section = is_cell ? "CellData" : "PointData";
+  const size_t tuples = (size_t)(is_cell ? frame->tet_count : frame->vertex_count);
   fprintf(stream, "      <%s>\n", section);
   for (int k = 0; k < frame->array_count; k++) {
     const FemVtuArray *array = &frame->arrays[k];
-    if (array->is_cell == is_cell)
-      print_array(stream, array->reals ? "Float64" : "Int32", array->name, array->components, offsets[k]);
+    if (array->is_cell != is_cell) continue;
+    const size_t numbers = tuples * (size_t)array->components;
+    const Piece reals = {"Float64", array->name, array->components, array->reals, numbers * sizeof(double)},
+                integers = {"Int32", array->name, array->components, array->integers, numbers * sizeof(int)};
+    TRY(print_piece(stream, array->reals ? &reals : &integers));
   }
   fprintf(stream, "      </%s>\n", section);
+  return STATUS_OK;
 }
 
-static void print_head(FILE *stream, const FemVtuFrame *frame, const size_t *offsets) {
+static Status print_points(FILE *stream, const FemVtuFrame *frame) {
+  const Piece points = {"Float64", "Points", 3, frame->positions,
+                        (size_t)frame->vertex_count * 3 * sizeof(double)};
+  fprintf(stream, "      <Points>\n");
+  TRY(print_piece(stream, &points));
+  fprintf(stream, "      </Points>\n");
+  return STATUS_OK;
+}
+
+// Vertices of the cells, where each cell ends in that list, and the cells' types.
+static Status print_cells(FILE *stream, const FemVtuFrame *frame) {
+  const size_t count = (size_t)frame->tet_count;
+  int64_t *ends = memory_zeroed(count, sizeof *ends);
+  uint8_t *types = memory_zeroed(count, sizeof *types);
+  Status status = ends && types ? STATUS_OK : status_no_memory("the cells of a frame");
+  for (size_t i = 0; !status && i < count; i++) {
+    ends[i] = 4 * ((int64_t)i + 1);
+    types[i] = VTK_TETRA;
+  }
+  const Piece pieces[] = {{"Int32", "connectivity", 1, frame->tets, count * 4 * sizeof(int)},
+                          {"Int64", "offsets", 1, ends, count * sizeof *ends},
+                          {"UInt8", "types", 1, types, count * sizeof *types}};
+  fprintf(stream, "      <Cells>\n");
+  for (int p = 0; !status && p < 3; p++) status = print_piece(stream, &pieces[p]);
+  fprintf(stream, "      </Cells>\n");
+  memory_free(ends);
+  memory_free(types);
+  return status;
+}
+
+static Status print_frame(FILE *stream, const FemVtuFrame *frame) {
   const bool is_little = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
   fprintf(stream,
           "<?xml version=\"1.0\"?>\n"
@@ -177,36 +173,19 @@ static void print_head(FILE *stream, const FemVtuFrame *frame, const size_t *off
           "    </FieldData>\n"
           "    <Piece NumberOfPoints=\"%d\" NumberOfCells=\"%d\">\n",
           is_little ? "LittleEndian" : "BigEndian", frame->time, frame->vertex_count, frame->tet_count);
-  print_arrays(stream, frame, false, offsets + STRUCTURE_PIECES);
-  print_arrays(stream, frame, true, offsets + STRUCTURE_PIECES);
-  fprintf(stream, "      <Points>\n");
-  print_array(stream, "Float64", "Points", 3, offsets[0]);
-  fprintf(stream, "      </Points>\n      <Cells>\n");
-  print_array(stream, "Int32", "connectivity", 1, offsets[1]);
-  print_array(stream, "Int64", "offsets", 1, offsets[2]);
-  print_array(stream, "UInt8", "types", 1, offsets[3]);
-  fprintf(stream,
-          "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_");
-}
-
-static Status write_file(const char *path, const FemVtuFrame *frame, const Appendix *appendix,
-                         const size_t *offsets) {
-  FileWriter writer;
-  TRY(file_begin(&writer, path));
-  print_head(writer.stream, frame, offsets);
-  fwrite(appendix->bytes, 1, appendix->size, writer.stream);
-  fprintf(writer.stream, "\n  </AppendedData>\n</VTKFile>\n");
-  return file_commit(&writer);
+  TRY(print_arrays(stream, frame, false));
+  TRY(print_arrays(stream, frame, true));
+  TRY(print_points(stream, frame));
+  TRY(print_cells(stream, frame));
+  fprintf(stream, "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n");
+  return STATUS_OK;
 }
 
 Status fem_vtu_write(const char *path, const FemVtuFrame *frame) {
-  Appendix appendix = {0};
-  size_t *offsets = memory_zeroed((size_t)(STRUCTURE_PIECES + frame->array_count), sizeof *offsets);
-  Status status = offsets ? STATUS_OK : status_no_memory("the arrays of a frame");
-  if (!status) status = append_structure(&appendix, frame, offsets);
-  if (!status) status = append_arrays(&appendix, frame, offsets + STRUCTURE_PIECES);
-  if (!status) status = write_file(path, frame, &appendix, offsets);
-  memory_free(appendix.bytes);
-  memory_free(offsets);
+  FileWriter writer;
+  TRY(file_begin(&writer, path));
+  Status status = print_frame(writer.stream, frame);
+  if (!status) return file_commit(&writer);
+  file_abandon(&writer);
   return status;
 }

@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"
+#include "fem/base64.h"
 #include "fem/pvd.h"
 #include "fem/vtu.h"
 
@@ -51,30 +52,53 @@ static void copy_attribute(const char *element, const char *name, char value[64]
   value[length] = 0;
 }
 
-// The array's bytes, inflated block by block; owned by the caller.
-static unsigned char *read_array(const char *text, size_t size, const char *name, size_t *byte_count) {
-  char offset[64];
-  copy_attribute(find_array(text, name), "offset", offset);
-  const char *appended = strstr(text, "<AppendedData encoding=\"raw\">");
-  ck_assert_ptr_nonnull(appended);
-  const char *place = strchr(appended, '_') + 1 + strtoull(offset, NULL, 10);
-  uint64_t header[3];
-  memcpy(header, place, sizeof header);
-  const uint64_t block_count = header[0];
-  if (block_count) ck_assert_uint_eq(header[1], 32768);
-  uint64_t *lengths = memory_zeroed(block_count, sizeof *lengths);
-  memcpy(lengths, place + sizeof header, block_count * sizeof *lengths);
-  const char *block = place + (3 + block_count) * 8;
+static int value_of(char c) {
+  const char *alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/", *place;
+  place = c ? strchr(alphabet, c) : NULL;
+  return place ? (int)(place - alphabet) : -1;
+}
+
+// Decodes one base64 text of `byte_count` bytes; returns where it ends.
+static const char *decode(const char *text, unsigned char *bytes, size_t byte_count) {
+  for (size_t done = 0; done < byte_count; text += 4) {
+    unsigned group = 0;
+    for (int k = 0; k < 4; k++) {
+      int value = value_of(text[k]);
+      size_t rest = byte_count - done;
+      ck_assert_msg(value >= 0 || (text[k] == '=' && (size_t)k > rest), "not base64: %.8s", text);
+      group = group << 6 | (unsigned)(value < 0 ? 0 : value);
+    }
+    for (int k = 0; k < 3 && done < byte_count; k++) bytes[done++] = (unsigned char)(group >> (16 - 8 * k));
+  }
+  return text;
+}
+
+// The array's bytes, decoded and inflated block by block; owned by the caller.
+static unsigned char *read_array(const char *text, const char *name, size_t *byte_count) {
+  const char *place = strchr(find_array(text, name), '>') + 1;
+  while (*place == '\n') place++;
+  uint64_t counts[3];
+  decode(place, (unsigned char *)counts, sizeof counts);
+  const uint64_t block_count = counts[0];
+  if (block_count) ck_assert_uint_eq(counts[1], 32768);
+  uint64_t *header = memory_zeroed(block_count + 3, sizeof *header);
+  place = decode(place, (unsigned char *)header, (block_count + 3) * sizeof *header);
+  const uint64_t *lengths = header + 3;
+  size_t compressed_bytes = 0;
+  for (uint64_t k = 0; k < block_count; k++) compressed_bytes += lengths[k];
+  unsigned char *compressed = memory_zeroed(compressed_bytes, 1), *block = compressed;
+  place = decode(place, compressed, compressed_bytes);
+  ck_assert_int_eq(*place, '\n');
   unsigned char *bytes = memory_zeroed(block_count + 1, 32768);
   *byte_count = 0;
-  for (uint64_t k = 0; k < block_count; k++, block += lengths[k - 1]) {
+  for (uint64_t k = 0; k < block_count; block += lengths[k++]) {
     uLongf length = 32768;
-    ck_assert(block + lengths[k] <= text + size);
-    ck_assert_int_eq(uncompress(bytes + *byte_count, &length, (const Bytef *)block, lengths[k]), Z_OK);
-    ck_assert_uint_eq(length, k + 1 < block_count || !header[2] ? 32768 : header[2]);
+    ck_assert_int_eq(uncompress(bytes + *byte_count, &length, block, lengths[k]), Z_OK);
+    ck_assert_uint_eq(length, k + 1 < block_count || !counts[2] ? 32768 : counts[2]);
     *byte_count += length;
   }
-  memory_free(lengths);
+  memory_free(header);
+  memory_free(compressed);
   return bytes;
 }
 
@@ -88,7 +112,7 @@ static void assert_array(const char *name, const char *type, int components, con
   ck_assert_str_eq(value, type);
   copy_attribute(element, "NumberOfComponents", value);
   ck_assert_int_eq(atoi(value), components);
-  unsigned char *bytes = read_array(text, size, name, &byte_count);
+  unsigned char *bytes = read_array(text, name, &byte_count);
   ck_assert_uint_eq(byte_count, expected_bytes);
   ck_assert_mem_eq(bytes, expected, expected_bytes);
   memory_free(bytes);
@@ -151,6 +175,24 @@ START_TEST(a_single_tetrahedron_reads_back) {
   assert_array("connectivity", "Int32", 1, one_tet, sizeof one_tet);
   assert_array("offsets", "Int64", 1, &end, sizeof end);
   assert_array("types", "UInt8", 1, &tetra, sizeof tetra);
+}
+END_TEST
+
+START_TEST(base64_does_not_depend_on_how_bytes_are_cut) {
+  // The test vectors of RFC 4648, section 10, in one piece and byte by byte.
+  const char *const texts[] = {"", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
+  for (size_t length = 0; length <= 6; length++)
+    for (size_t piece = 1; piece <= 6; piece++) {
+      char *text;
+      size_t size;
+      FemBase64 base64 = {.stream = open_memstream(&text, &size)};
+      for (size_t k = 0; k < length; k += piece)
+        fem_base64_write(&base64, "foobar" + k, length - k < piece ? length - k : piece);
+      fem_base64_end(&base64);
+      fclose(base64.stream);
+      ck_assert_str_eq(text, texts[length]);
+      free(text);
+    }
 }
 END_TEST
 
@@ -328,6 +370,7 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("vtu");
   tcase_add_checked_fixture(cases, name_path, remove_path);
+  tcase_add_test(cases, base64_does_not_depend_on_how_bytes_are_cut);
   tcase_add_test(cases, a_single_tetrahedron_reads_back);
   tcase_add_test(cases, the_time_stands_in_the_frame);
   tcase_add_test(cases, arrays_of_many_blocks_read_back_bit_for_bit);
