@@ -97,8 +97,18 @@ static Status write_tree(const json_t *root, const char *path) {
   return file_commit(&writer);
 }
 
+static Status print(const Record *root, FILE *stream, size_t flags) {
+  if (json_dumpf((const json_t *)root, stream, flags | JSON_REAL_PRECISION(17)) != 0)
+    return status_fail(STATUS_IO, "writing JSON failed");
+  return fputc('\n', stream) == EOF ? status_fail(STATUS_IO, "writing JSON failed") : STATUS_OK;
+}
+
 Status record_print(const Record *root, FILE *stream) {
-  return print_tree((const json_t *)root, stream);
+  return print(root, stream, JSON_INDENT(2));
+}
+
+Status record_print_line(const Record *root, FILE *stream) {
+  return print(root, stream, JSON_COMPACT);
 }
 
 Status record_write(const Record *root, const char *path) {

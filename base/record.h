@@ -33,6 +33,8 @@ void record_append_text(RecordList *list, const char *value);
 
 // Indented, keys in the order of insertion, a newline at the end.
 Status record_print(const Record *root, FILE *stream);
+// The same on one line, for files with one object a line.
+Status record_print_line(const Record *root, FILE *stream);
 Status record_write(const Record *root, const char *path); // whole or not at all
 Status record_list_print(const RecordList *root, FILE *stream);
 Status record_list_write(const RecordList *root, const char *path);
