@@ -211,7 +211,11 @@ static Status begin(Run *run) {
   for (int i = 0; i < 4; i++)
     if (!(*states[i] = memory_zeroed(n, sizeof(double)))) return status_no_memory("the state");
   TRY(fem_system_create(&run->system, model));
-  for (size_t i = 0; i < n; i++) run->v[i] = model->initial_velocity[model->dof_of_unknown[i]];
+  for (size_t i = 0; i < n; i++) {
+    int dof = model->dof_of_unknown[i];
+    run->v[i] = model->initial_velocity[dof];
+    if (run->options->initial_displacement) run->u[i] = run->options->initial_displacement[dof];
+  }
   FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
                           .velocity_tolerance = fem_model_velocity_tolerance(model),
                           .initial_step = scene->initial_step,
@@ -222,6 +226,7 @@ static Status begin(Run *run) {
   const FemSolverOps *solver = fem_solver_ops(fem_run_solver(model));
   run->result->solver_name = solver->name;
   TRY(fem_integrator_create(&run->integrator, &run->system, solver, &def));
+  TRY(fem_integrator_restart(run->integrator, 0, run->u, run->v, scene->initial_step));
   TRY(fem_recorder_create(&run->recorder, &run->system, run->options->directory, scene->frames + 1));
   if (run->options->keep_trajectory) TRY(keep_trajectory(run));
   fem_system_scatter(&run->system, 0, run->u, run->v);

@@ -29,7 +29,8 @@ typedef struct FemRunOptions {
       *stop; // becomes non-zero: finish the step, then STATUS_INTERRUPTED; may be NULL
   Status (*observe)(void *observer, const FemRunProgress *progress); // may be NULL
   void *observer;
-  bool keep_trajectory; // keep positions and interface forces of every frame in the result
+  const double *initial_displacement; // from rest [m], or NULL: none    (vertex_count, 3)
+  bool keep_trajectory;               // keep positions and interface forces of every frame in the result
 } FemRunOptions;
 
 typedef struct FemRunPhases {

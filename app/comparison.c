@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/comparison.h"
+
+#include <math.h>
+
+#include "base/vec3.h"
+#include "fem/effect_contact.h"
+
+static int common_frames(const FemRunResult *a, const FemRunResult *b) {
+  return a->frame_count < b->frame_count ? a->frame_count : b->frame_count;
+}
+
+// Over the interfaces from `first` to before `last`.
+static AppForceError force_error(const FemRunResult *result, const FemRunResult *reference, int first,
+                                 int last) {
+  double difference = 0, size = 0, largest_difference = 0, largest = 0;
+  for (int f = 0; f < common_frames(result, reference); f++)
+    for (int i = first; i < last; i++) {
+      size_t at = 3 * ((size_t)f * (size_t)reference->interface_count + (size_t)i);
+      Vec3 force = vec3_at(reference->interface_forces + at);
+      Vec3 change = vec3_sub(vec3_at(result->interface_forces + at), force);
+      difference += vec3_dot(change, change);
+      size += vec3_dot(force, force);
+      largest_difference = fmax(largest_difference, vec3_length(change));
+      largest = fmax(largest, vec3_length(force));
+    }
+  AppForceError error = {0, 0};
+  if (difference > 0) error = (AppForceError){sqrt(difference / size), largest_difference / largest};
+  return error;
+}
+
+AppForceError app_comparison_force_error(const FemRunResult *result, const FemRunResult *reference) {
+  return force_error(result, reference, 0, reference->interface_count);
+}
+
+AppForceError app_comparison_interface_error(const FemRunResult *result, const FemRunResult *reference,
+                                             int interface) {
+  return force_error(result, reference, interface, interface + 1);
+}
+
+double app_comparison_trajectory_error(const FemRunResult *result, const FemRunResult *reference) {
+  int frames = common_frames(result, reference);
+  size_t count = (size_t)frames * (size_t)reference->vertex_count;
+  double sum = 0;
+  for (size_t i = 0; i < 3 * count; i++) {
+    double change = result->trajectory[i] - reference->trajectory[i];
+    sum += change * change;
+  }
+  return count > 0 ? sqrt(sum / (double)count) : 0;
+}
+
+static void add_audit(AppAuditSums *sums, const ContactAudit *audit) {
+  sums->volume_error += audit->volume_error;
+  sums->force_error += audit->force_error;
+  sums->volume_error_max = fmax(sums->volume_error_max, audit->volume_error);
+  sums->force_error_max = fmax(sums->force_error_max, audit->force_error);
+  sums->count++;
+}
+
+Status app_comparison_audit(AppComparison *comparison, const FemRunProgress *progress,
+                            long long *step_in_contact) {
+  if (comparison->audit_every == 0 || progress->active_pairs == 0) return STATUS_OK;
+  if ((*step_in_contact)++ % comparison->audit_every != 0) return STATUS_OK;
+  void *effect = fem_system_effect(progress->system, "contact");
+  if (!effect) return STATUS_OK;
+  for (int m = 0; m < comparison->model_count; m++) {
+    if (m == comparison->reference) continue;
+    ContactAudit audit;
+    TRY(contact_system_audit(fem_effect_contact_system(effect), progress->time, progress->system->positions,
+                             &comparison->models[m].overlap,
+                             &comparison->models[comparison->reference].overlap, &audit));
+    add_audit(&comparison->models[m].audit, &audit);
+  }
+  return STATUS_OK;
+}
+
+// What is said of one model, NaN where it does not apply.
+typedef struct Row {
+  const char *model, *reference, *outcome;
+  double volume_error, force_error, volume_error_max, force_error_max; // audit
+  AppForceError force;
+  double trajectory; // relative to the scene's length
+  double energy_gain, wall_s, overlap_s;
+} Row;
+
+static Row row_of(const AppComparison *comparison, int m) {
+  const AppComparisonModel *model = &comparison->models[m],
+                           *reference = &comparison->models[comparison->reference];
+  int audits = model->audit.count;
+  bool is_reference = m == comparison->reference;
+  Row row = {.model = model->name,
+             .reference = reference->name,
+             .outcome = !model->is_driven ? "audit only"
+                        : model->status   ? "failed"
+                                          : "finished",
+             .volume_error = audits         ? model->audit.volume_error / audits
+                             : is_reference ? 0
+                                            : NAN,
+             .force_error = audits         ? model->audit.force_error / audits
+                            : is_reference ? 0
+                                           : NAN,
+             .volume_error_max = audits         ? model->audit.volume_error_max
+                                 : is_reference ? 0
+                                                : NAN,
+             .force_error_max = audits         ? model->audit.force_error_max
+                                : is_reference ? 0
+                                               : NAN,
+             .force = {NAN, NAN},
+             .trajectory = NAN,
+             .energy_gain = NAN,
+             .wall_s = NAN,
+             .overlap_s = NAN};
+  if (!model->has_run) return row;
+  row.force = app_comparison_force_error(&model->result, &reference->result);
+  row.trajectory = app_comparison_trajectory_error(&model->result, &reference->result) / comparison->length;
+  row.energy_gain = model->result.audit.gain / model->result.audit.scale;
+  row.wall_s = model->result.wall_s;
+  row.overlap_s = model->result.phases.overlap;
+  return row;
+}
+
+static void record_interfaces(const AppComparison *comparison, int m, Record *record) {
+  const FemRunResult *result = &comparison->models[m].result,
+                     *reference = &comparison->models[comparison->reference].result;
+  RecordList *list = record_list(record, "interfaces");
+  for (int i = 0; i < reference->interface_count; i++) {
+    AppForceError error = app_comparison_interface_error(result, reference, i);
+    Record *one = record_append(list);
+    record_text(one, "name", reference->interface_names[i]);
+    record_number(one, "force_error_l2", error.l2);
+    record_number(one, "force_error_max", error.max);
+  }
+}
+
+void app_comparison_record(const AppComparison *comparison, const char *scene_path, RecordList *list) {
+  for (int m = 0; m < comparison->model_count; m++) {
+    const AppComparisonModel *model = &comparison->models[m];
+    Row row = row_of(comparison, m);
+    Record *record = record_append(list);
+    record_text(record, "model", row.model);
+    record_text(record, "reference", row.reference);
+    record_text(record, "scene", scene_path);
+    record_text(record, "outcome", row.outcome);
+    if (model->status) record_text(record, "message", model->message);
+    record_integer(record, "audits", model->audit.count);
+    record_number(record, "audit_volume_error", row.volume_error);
+    record_number(record, "audit_volume_error_max", row.volume_error_max);
+    record_number(record, "audit_force_error", row.force_error);
+    record_number(record, "audit_force_error_max", row.force_error_max);
+    record_number(record, "force_error_l2", row.force.l2);
+    record_number(record, "force_error_max", row.force.max);
+    record_number(record, "trajectory_error", row.trajectory);
+    record_number(record, "energy_gain_relative", row.energy_gain);
+    record_number(record, "wall_s", row.wall_s);
+    if (!model->has_run) continue;
+    record_interfaces(comparison, m, record);
+    Record *summary = record_child(record, "summary");
+    fem_run_summarise(&model->result, summary);
+  }
+}
+
+void app_comparison_print_csv(const AppComparison *comparison, FILE *stream) {
+  fputs("model,reference,outcome,audits,audit_volume_error,audit_volume_error_max,audit_force_error,"
+        "audit_force_error_max,force_error_l2,force_error_max,trajectory_error,energy_gain_relative,wall_s,"
+        "overlap_s\n",
+        stream);
+  for (int m = 0; m < comparison->model_count; m++) {
+    Row row = row_of(comparison, m);
+    fprintf(stream, "%s,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", row.model,
+            row.reference, row.outcome, comparison->models[m].audit.count, row.volume_error,
+            row.volume_error_max, row.force_error, row.force_error_max, row.force.l2, row.force.max,
+            row.trajectory, row.energy_gain, row.wall_s, row.overlap_s);
+  }
+}
+
+// A figure in eight columns, "–" where there is none.
+static void print_figure(FILE *stream, const char *format, double value) {
+  char text[32];
+  snprintf(text, sizeof text, format, value);
+  fprintf(stream, isnan(value) ? "  %10s" : "  %8s", isnan(value) ? "–" : text); // the dash has three bytes
+}
+
+void app_comparison_print_table(const AppComparison *comparison, FILE *stream) {
+  fprintf(stream, "reference: %s\n", comparison->models[comparison->reference].name);
+  fprintf(stream, "%-12s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "", "audit", "audit", "force",
+          "force", "path", "energy", "wall", "overlap", "");
+  fprintf(stream, "%-12s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "model", "ΔV/V ", "Δf/f ", "L2",
+          "max", "RMS/L", "gain", "s", "s", "");
+  for (int m = 0; m < comparison->model_count; m++) {
+    Row row = row_of(comparison, m);
+    fprintf(stream, "%-12s", row.model);
+    print_figure(stream, "%.1e", row.volume_error);
+    print_figure(stream, "%.1e", row.force_error);
+    print_figure(stream, "%.1e", row.force.l2);
+    print_figure(stream, "%.1e", row.force.max);
+    print_figure(stream, "%.1e", row.trajectory);
+    print_figure(stream, "%.1e", row.energy_gain);
+    print_figure(stream, "%.2f", row.wall_s);
+    print_figure(stream, "%.2f", row.overlap_s);
+    fprintf(stream, "  %s\n", row.outcome);
+  }
+}
+
+void app_comparison_destroy(AppComparison *comparison) {
+  for (int m = 0; m < comparison->model_count; m++) {
+    contact_overlap_destroy(&comparison->models[m].overlap);
+    fem_run_result_destroy(&comparison->models[m].result);
+  }
+  *comparison = (AppComparison){0};
+}

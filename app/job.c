@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/job.h"
+
+#include <errno.h>
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/scene_read.h"
+#include "app/scene_write.h"
+#include "app/versions.h"
+#include "base/clock.h"
+#include "base/cpu.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+
+static volatile sig_atomic_t stop_flag;
+
+static void raise_flag(int signal_number) {
+  (void)signal_number;
+  stop_flag = 1;
+}
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "DIR", 0, "Write into DIR (default: out/ and the scene's name)", 1},
+    {"set", 's', "KEY=VALUE", 0, "Replace a value of the scene, as in contact.stiffness=1e6; may be repeated",
+     1},
+    {"threads", 't', "N", 0, "Use N threads (default: the scene's, else all)", 1},
+    {"json", 'j', NULL, 0, "Print the result as JSON on standard output", 2},
+    {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
+    {"verbose", 'v', NULL, 0, "Say more", 2},
+    {0},
+};
+
+static void take_threads(AppJobOptions *options, const char *text, struct argp_state *state) {
+  char *end;
+  errno = 0;
+  long threads = strtol(text, &end, 10);
+  if (errno || *end || end == text || threads < 1 || threads > 1024)
+    argp_error(state, "--threads takes a whole number from 1 to 1024, not '%s'", text);
+  options->threads = (int)threads;
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  AppJobOptions *options = state->input;
+  switch (key) {
+  case 'o':
+    options->directory = text;
+    break;
+  case 't':
+    take_threads(options, text, state);
+    break;
+  case 'j':
+    options->is_json = true;
+    break;
+  case 'q':
+    options->is_quiet = true;
+    break;
+  case 'v':
+    options->is_verbose = true;
+    break;
+  case 's':
+    if (options->override_count == APP_MAX_OVERRIDES)
+      argp_error(state, "at most %d --set", APP_MAX_OVERRIDES);
+    options->overrides[options->override_count++] = text;
+    break;
+  case ARGP_KEY_ARG:
+    if (options->scene_path) argp_error(state, "one scene at a time; '%s' is the second", text);
+    options->scene_path = text;
+    break;
+  case ARGP_KEY_END:
+    if (!options->scene_path) argp_error(state, "name a scene file, as in examples/01_drop.yaml");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+const struct argp app_job_argp = {.options = option_table, .parser = parse, .args_doc = "SCENE"};
+
+void app_job_prepare(const AppJobOptions *options) {
+  log_set_level(options->is_quiet ? LOG_ERROR : options->is_verbose ? LOG_DEBUG : LOG_INFO);
+  struct sigaction action = {.sa_handler = raise_flag};
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+}
+
+const volatile sig_atomic_t *app_job_stop_flag(void) {
+  return &stop_flag;
+}
+
+// out/NAME for …/NAME.yaml.
+static char *default_directory(const char *scene_path) {
+  const char *slash = strrchr(scene_path, '/');
+  const char *name = slash ? slash + 1 : scene_path;
+  const char *dot = strrchr(name, '.');
+  int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
+  char *directory = memory_zeroed((size_t)length + 8, 1);
+  if (directory) sprintf(directory, "out/%.*s", length, name);
+  return directory;
+}
+
+static Status choose_directory(AppJob *job, const AppJobOptions *options, const char *subdirectory) {
+  const char *given = options->directory;
+  job->directory = given ? memory_copy(given, strlen(given) + 1, 1) : default_directory(options->scene_path);
+  if (job->directory && subdirectory) {
+    char *below = file_join(job->directory, subdirectory);
+    memory_free(job->directory);
+    job->directory = below;
+  }
+  return job->directory ? STATUS_OK : status_no_memory("a directory name");
+}
+
+static Status open_scene(AppJob *job, const AppJobOptions *options, const char *overlap) {
+  const char *overrides[APP_MAX_OVERRIDES + 1];
+  int count = 0;
+  for (; count < options->override_count; count++) overrides[count] = options->overrides[count];
+  char choice[256];
+  if (overlap) {
+    snprintf(choice, sizeof choice, "contact.overlap=%s", overlap);
+    overrides[count++] = choice;
+  }
+  return app_scene_read(options->scene_path, overrides, count, &job->scene);
+}
+
+Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overlap,
+                    const char *subdirectory) {
+  *job = (AppJob){0};
+  Status status = open_scene(job, options, overlap);
+  if (!status) status = choose_directory(job, options, subdirectory);
+  if (!status) {
+    if (options->threads) job->scene.threads = options->threads;
+    if (job->scene.threads) omp_set_num_threads(job->scene.threads);
+    status = fem_model_create(&job->model, &job->scene);
+  }
+  if (status) app_job_close(job);
+  return status;
+}
+
+void app_job_close(AppJob *job) {
+  fem_model_destroy(&job->model);
+  fem_scene_destroy(&job->scene);
+  memory_free(job->directory);
+  *job = (AppJob){0};
+}
+
+Status app_job_show_progress(void *self, const FemRunProgress *state) {
+  AppProgress *progress = self;
+  double share = state->time / state->end;
+  double left = share > 0 ? (clock_wall_s() - progress->began_s) * (1 - share) / share : 0;
+  log_progress("%s%3.0f %%  t %.4g of %.4g s  step %lld  h %.1e s  pairs %d  left %d:%02d", progress->label,
+               100 * share, state->time, state->end, state->step_count, state->step, state->active_pairs,
+               (int)(left / 60), (int)fmod(left, 60));
+  return STATUS_OK;
+}
+
+static const char *word_of(Status status) {
+  if (status == STATUS_OK) return "finished";
+  return status == STATUS_INTERRUPTED ? "interrupted" : "failed";
+}
+
+Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status status) {
+  Record *summary = record_new();
+  if (!summary) return NULL;
+  record_text(summary, "scene", job->scene.path);
+  record_text(summary, "title", job->scene.title);
+  record_text(summary, "overlap", job->scene.contact.is_on ? job->scene.contact.overlap : NULL);
+  record_text(summary, "outcome", word_of(status));
+  if (status) record_text(summary, "message", status_message());
+  record_integer(summary, "bodies", job->scene.body_count);
+  record_integer(summary, "vertices", job->model.vertex_count);
+  record_integer(summary, "tetrahedra", job->model.tet_count);
+  record_integer(summary, "unknowns", job->model.unknown_count);
+  record_integer(summary, "threads", cpu_thread_count());
+  fem_run_summarise(result, summary);
+  return summary;
+}
+
+static Status write_record(const char *directory, const char *name, const Record *record) {
+  char *path = file_join(directory, name);
+  if (!path) return status_no_memory("a file name");
+  Status status = record_write(record, path);
+  memory_free(path);
+  return status;
+}
+
+// What it takes to run the same again: the scene with every default filled in, versions, processor, command.
+static Status write_manifest(const AppJob *job) {
+  Record *manifest = record_new();
+  if (!manifest) return status_no_memory("the manifest");
+  app_versions_record(record_child(manifest, "versions"));
+  record_text(manifest, "processor", cpu_name());
+  record_integer(manifest, "threads", cpu_thread_count());
+  record_text(manifest, "command", app_versions_command());
+  Status status = app_scene_write_resolved(&job->scene, manifest, "scene");
+  if (!status) status = write_record(job->directory, "manifest.json", manifest);
+  record_destroy(manifest);
+  return status;
+}
+
+Status app_job_write_summary(const AppJob *job, const FemRunResult *result, Status status) {
+  TRY(file_make_directories(job->directory));
+  Record *summary = app_job_summary(job, result, status);
+  if (!summary) return status_no_memory("the summary");
+  Status written = write_record(job->directory, "summary.json", summary);
+  record_destroy(summary);
+  return written ? written : write_manifest(job);
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene that is ready to run: read, overridden, its model built; and the options that `run` and `compare`
+// share.
+#ifndef TETLAP_APP_JOB_H
+#define TETLAP_APP_JOB_H
+
+#include <argp.h>
+#include <stdbool.h>
+
+#include "fem/model.h"
+#include "fem/run.h"
+
+enum { APP_MAX_OVERRIDES = 64 };
+
+// What the command line said.
+typedef struct AppJobOptions {
+  const char *scene_path;
+  const char *directory; // -o; NULL: out/NAME of the scene
+  const char *overrides[APP_MAX_OVERRIDES];
+  int override_count;
+  int threads; // 0: the scene's, else all
+  bool is_quiet, is_verbose, is_json;
+} AppJobOptions;
+
+// The options -o, --set, --threads, -q, -v, --json and the argument SCENE, as an argp child; its input is
+// AppJobOptions.
+extern const struct argp app_job_argp;
+
+typedef struct AppJob {
+  FemSceneDef scene;
+  FemModel model;
+  char *directory; // where to write, owned
+} AppJob;
+
+// Reads and builds. `overlap` (may be NULL) replaces the scene's overlap model; `subdirectory` (may be NULL)
+// is appended to the output directory.
+Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overlap, const char *subdirectory);
+void app_job_close(AppJob *job);
+
+// Sets the log level from -q and -v, and the flag that Ctrl-C and SIGTERM raise.
+void app_job_prepare(const AppJobOptions *options);
+const volatile sig_atomic_t *app_job_stop_flag(void);
+
+// An observer of fem_run that draws the progress line: time, step, step size, pairs, time left.
+typedef struct AppProgress {
+  double began_s;
+  const char *label; // in front; "" for none
+} AppProgress;
+Status app_job_show_progress(void *progress, const FemRunProgress *state);
+
+// Writes summary.json and manifest.json (the resolved scene, versions, processor, command) of a run that
+// ended with `status`.
+Status app_job_write_summary(const AppJob *job, const FemRunResult *result, Status status);
+// The same summary as a new record, owned by the caller; NULL: no memory.
+Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status status);
+
+#endif

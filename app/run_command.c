@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/run_command.h"
+
+#include <stdio.h>
+
+#include "app/job.h"
+#include "base/clock.h"
+#include "base/log.h"
+
+typedef struct RunOptions {
+  AppJobOptions job;
+  const char *overlap;
+} RunOptions;
+
+static const struct argp_option option_table[] = {
+    {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  RunOptions *options = state->input;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &options->job;
+    break;
+  case 'm':
+    options->overlap = text;
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static void announce(const AppJob *job) {
+  log_info("%s: %d bodies, %d vertices, %d tetrahedra, %d unknowns, solver %s%s%s", job->scene.path,
+           job->scene.body_count, job->model.vertex_count, job->model.tet_count, job->model.unknown_count,
+           fem_solver_name(fem_run_solver(&job->model)), job->scene.contact.is_on ? ", overlap " : "",
+           job->scene.contact.is_on ? job->scene.contact.overlap : "");
+}
+
+static void conclude(const AppJob *job, const FemRunResult *result) {
+  log_info("t = %g s reached in %.2f s: %lld steps, %lld factorisations, up to %d overlapping pairs",
+           result->end_time, result->wall_s, result->integrator.steps, result->solver.factorisations,
+           result->pairs_max);
+  log_info("energy gain %.1e of the scene's energy, smallest det F %.3f, %lld onsets, %lld steps taken back",
+           result->audit.gain / result->audit.scale, result->min_det_F, result->integrator.roots,
+           result->energy_retries);
+  log_info("wrote %s: frames.pvd (ParaView), history.csv, summary.json, manifest.json", job->directory);
+}
+
+static Status print_summary(const AppJob *job, const FemRunResult *result, Status status) {
+  Record *summary = app_job_summary(job, result, status);
+  if (!summary) return status_no_memory("the summary");
+  Status printed = record_print(summary, stdout);
+  record_destroy(summary);
+  return printed;
+}
+
+static Status run(const RunOptions *options) {
+  AppJob job;
+  Status opened = app_job_open(&job, &options->job, options->overlap, NULL);
+  if (opened) {
+    log_error("%s", status_message());
+    return opened;
+  }
+  announce(&job);
+  AppProgress progress = {.began_s = clock_wall_s(), .label = ""};
+  FemRunOptions run_options = {.directory = job.directory,
+                               .stop = app_job_stop_flag(),
+                               .observe = app_job_show_progress,
+                               .observer = &progress};
+  FemRunResult result;
+  Status status = fem_run(&job.model, &run_options, &result);
+  log_progress_end();
+  // The summary tells of a run that failed, too; its own failure must not hide why.
+  if (status) log_error("%s", status_message());
+  Status written = app_job_write_summary(&job, &result, status);
+  if (!status && !written) conclude(&job, &result);
+  if (options->job.is_json && !written) written = print_summary(&job, &result, status);
+  fem_run_result_destroy(&result);
+  app_job_close(&job);
+  if (written) log_error("%s", status_message());
+  return status ? status : written;
+}
+
+int app_run_run(int argument_count, char **arguments) {
+  static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
+  static const struct argp argp = {
+      .options = option_table,
+      .parser = parse,
+      .args_doc = "SCENE",
+      .doc = "Run a scene: frames for ParaView, a history and a summary are written.",
+      .children = children};
+  RunOptions options = {0};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_job_prepare(&options.job);
+  Status status = run(&options);
+  return status_exit_code(status);
+}
