@@ -23,13 +23,8 @@ static ExactInteger finish(ExactArena *arena, mp_limb_t *limbs, int size, int si
   return (ExactInteger){limbs, sign < 0 ? -size : size};
 }
 
-// Gives back everything made since `mark` but `a`. A number that lies below the mark (a sum with 0 is its
-// other term) stays where it is.
+// Gives back everything made since `mark` but `a`, which moves down to there.
 static ExactInteger keep(ExactArena *arena, mp_limb_t *mark, ExactInteger a) {
-  if (a.limbs < mark || a.limbs >= arena->end) {
-    arena->next = mark;
-    return a;
-  }
   const int size = abs(a.size);
   for (int k = 0; k < size; k++) mark[k] = a.limbs[k];
   arena->next = mark + size;

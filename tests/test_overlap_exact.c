@@ -8,7 +8,6 @@
 #include <omp.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "contact/exact.h"
 #include "contact/exact_integer.h"
 #include "contact/overlap.h"
