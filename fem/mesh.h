@@ -84,6 +84,9 @@ typedef struct FemMeshQuality {
   int coincident_vertex_count; // vertices whose coordinates another, earlier one has exactly: an open seam
 } FemMeshQuality;
 
+// The smallest of all dihedral angles [degrees].
+double fem_mesh_min_dihedral(const FemMesh *mesh);
+
 Status fem_mesh_quality(const FemMesh *mesh, FemMeshQuality *quality);
 
 // Boundary triangles, outward oriented; `*triangles` is owned by the caller (memory_free).

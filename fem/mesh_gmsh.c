@@ -49,7 +49,7 @@ static Status start(void) {
     double value;
   } options[] = {
       {"General.Terminal", 0},     {"General.NumThreads", 1},   {"Mesh.MaxNumThreads1D", 1},
-      {"Mesh.MaxNumThreads2D", 1}, {"Mesh.MaxNumThreads3D", 1}, {"Mesh.RandomSeed", 1},
+      {"Mesh.MaxNumThreads2D", 1}, {"Mesh.MaxNumThreads3D", 1},
   };
   for (size_t k = 0; k < sizeof options / sizeof *options; k++)
     TRY(set_option(options[k].name, options[k].value));
@@ -346,10 +346,49 @@ static Status set_size(double size) {
   return set_option("Mesh.MeshSizeMax", size);
 }
 
-static Status generate(void) {
+static Status generate(int seed) {
   int error = 0;
+  TRY(set_option("Mesh.RandomSeed", seed));
   gmshModelMeshGenerate(3, &error);
   return error ? fail("mesh it") : STATUS_OK;
+}
+
+static Status clear_mesh(void) {
+  int error = 0;
+  gmshModelMeshClear(NULL, 0, &error);
+  return error ? fail("mesh it again") : STATUS_OK;
+}
+
+static Status measure(double *dihedral) {
+  FemMeshSource source = {0};
+  Status status = take_mesh(&source, false);
+  if (status == STATUS_OK)
+    *dihedral = fem_mesh_min_dihedral(&(FemMesh){.vertex_count = source.vertex_count,
+                                                 .tet_count = source.tet_count,
+                                                 .rest = source.positions,
+                                                 .tets = source.tets});
+  fem_mesh_source_destroy(&source);
+  return status;
+}
+
+// gmsh now and then leaves a sliver: of six sizes of a slab three had an angle below 1°. Its HXT algorithm
+// does not, but gives another mesh each time. Another seed is the remedy; the best of SEED_COUNT if none is
+// good enough.
+static Status generate_well(void) {
+  enum { SEED_COUNT = 8 };
+  const double good_degrees = 8;
+  double best = -1, dihedral = 0;
+  int best_seed = 0;
+  for (int seed = 1; seed <= SEED_COUNT; seed++) {
+    if (seed > 1) TRY(clear_mesh());
+    TRY(generate(seed));
+    TRY(measure(&dihedral));
+    if (dihedral >= good_degrees) return STATUS_OK;
+    if (dihedral > best) best = dihedral, best_seed = seed;
+  }
+  if (best_seed == SEED_COUNT) return STATUS_OK;
+  TRY(clear_mesh());
+  return generate(best_seed);
 }
 
 // Makes one volume of all surfaces of the model.
@@ -385,7 +424,8 @@ static Status mesh_stl(double size) {
     TRY(remesh_surface());
   }
   TRY(add_volume());
-  return generate();
+  // Without a geometry the triangles are all there is: nothing may be cleared.
+  return size > 0 ? generate_well() : generate(1);
 }
 
 static Status mesh_geo(double size) {
@@ -397,7 +437,7 @@ static Status mesh_geo(double size) {
   // The script has meshed itself.
   if (count > 0) return STATUS_OK;
   if (size > 0) TRY(set_size(size));
-  return generate();
+  return generate_well();
 }
 
 static bool ends_in(const char *path, const char *ending) {

@@ -61,6 +61,12 @@ static void measure_tet(const FemMesh *mesh, int t, FemMeshQuality *quality) {
   if (shape < quality->min_det) quality->min_det = shape, quality->min_det_tet = t;
 }
 
+double fem_mesh_min_dihedral(const FemMesh *mesh) {
+  FemMeshQuality quality = {.min_dihedral_degrees = INFINITY, .min_det = INFINITY};
+  for (int t = 0; t < mesh->tet_count; t++) measure_tet(mesh, t, &quality);
+  return quality.min_dihedral_degrees;
+}
+
 static void measure_box(const FemMesh *mesh, FemMeshQuality *quality) {
   for (int c = 0; c < 3; c++) quality->box_min[c] = INFINITY, quality->box_max[c] = -INFINITY;
   for (int v = 0; v < mesh->vertex_count; v++)
