@@ -61,11 +61,18 @@ static void clear(ContactEvaluation *evaluation) {
   evaluation->tried = evaluation->enclosed = evaluation->fallbacks = 0;
 }
 
-// Coordinates of a pair; a half-space has none.
+static void shift(double tet[12], const double by[3]) {
+  for (int k = 0; k < 12; k++) tet[k] += by[k % 3];
+}
+
+// Coordinates of a pair as the model shall see them, in general position; a half-space has none.
 static void gather(const ContactLayout *layout, const ContactPair *pair, const double *positions,
                    double coordinates[24]) {
   contact_layout_gather(layout, pair->tets[0], positions, coordinates);
-  if (pair->tets[1] >= 0) contact_layout_gather(layout, pair->tets[1], positions, coordinates + 12);
+  if (pair->tets[1] < 0) return;
+  contact_layout_gather(layout, pair->tets[1], positions, coordinates + 12);
+  shift(coordinates, layout->nudges[layout->facings[pair->facing].a]);
+  shift(coordinates + 12, layout->nudges[layout->facings[pair->facing].b]);
 }
 
 // The candidates that are not apart beyond doubt, in their order: pairs and coordinates.

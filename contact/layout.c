@@ -2,6 +2,7 @@
 #include "contact/layout.h"
 
 #include "base/memory.h"
+#include "base/random.h"
 #include "base/vec3.h"
 
 // Rest volumes of tetrahedra, and their quarters summed at the vertices.
@@ -62,6 +63,17 @@ static void list_facings(ContactLayout *layout) {
   layout->facing_count = count;
 }
 
+static const double NUDGE = 1e-9; // of the margin
+static const uint64_t NUDGE_SEED = 20240229;
+
+static void nudge_bodies(ContactLayout *layout) {
+  for (int b = 0; b < layout->def.body_count; b++) {
+    Random random = random_seeded(NUDGE_SEED, (uint64_t)b);
+    random_direction(&random, layout->nudges[b]);
+    for (int c = 0; c < 3; c++) layout->nudges[b][c] *= NUDGE * layout->margin;
+  }
+}
+
 static Status check(const ContactSystemDef *def) {
   if (!(def->stiffness > 0 && isfinite(def->stiffness)))
     return status_fail(STATUS_INPUT, "contact: stiffness is %g; it must be positive", def->stiffness);
@@ -84,10 +96,12 @@ Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def)
   layout->tet_volumes = memory_zeroed((size_t)def->tet_count, sizeof(double));
   layout->vertex_volumes = memory_zeroed((size_t)def->vertex_count, sizeof(double));
   layout->facings = memory_zeroed(most_facings, sizeof(ContactFacing));
-  if (!layout->tet_volumes || !layout->vertex_volumes || !layout->facings)
+  layout->nudges = memory_zeroed((size_t)def->body_count, sizeof *layout->nudges);
+  if (!layout->tet_volumes || !layout->vertex_volumes || !layout->facings || !layout->nudges)
     return status_no_memory("the contact system's volumes");
   list_facings(layout);
   layout->margin = def->margin > 0 ? def->margin : default_margin(def);
+  nudge_bodies(layout);
   return measure_volumes(layout);
 }
 
@@ -95,6 +109,7 @@ void contact_layout_destroy(ContactLayout *layout) {
   memory_free(layout->tet_volumes);
   memory_free(layout->vertex_volumes);
   memory_free(layout->facings);
+  memory_free(layout->nudges);
   *layout = (ContactLayout){0};
 }
 

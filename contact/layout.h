@@ -21,14 +21,21 @@ typedef struct ContactPair {
   int tets[2];
 } ContactPair;
 
+// General position. The overlap models see each body shifted as a whole by a fixed random nudge of a
+// billionth of the margin. Without it regular meshes meet in planes that coincide, also inside of the bodies,
+// where each pair's ∇V is one-sided and the sides of neighbouring pairs do not fit together: measured on
+// aligned flat slabs, false friction of 5 % (exact) to 15 % (clip) of the normal force; with it 1e-11, and
+// the models agree. U stays an exact function of the positions, only that of bodies that stand a little
+// elsewhere.
 typedef struct ContactLayout {
   ContactSystemDef def;   // its arrays are borrowed
   double *tet_volumes;    // V_i, rest [m³]                                   (tet_count)
   double *vertex_volumes; // V_a = ¼ Σ_{i∋a} V_i [m³]                         (vertex_count)
   ContactFacing *facings; // bodies with bodies first, then with half-spaces  (facing_count)
   int facing_count;
-  int party_count; // bodies, then half-spaces
-  double margin;   // def.margin, or its default [m]
+  double (*nudges)[3]; // of each body, see above [m]                       (body_count)
+  int party_count;     // bodies, then half-spaces
+  double margin;       // def.margin, or its default [m]
 } ContactLayout;
 
 // STATUS_INPUT: κ or margin not positive, a rest tetrahedron without volume, a normal that is no unit vector.

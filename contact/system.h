@@ -10,7 +10,8 @@
 //     ∇V_ij
 //
 // W is kept per interface (unordered pair of bodies), so a third body does not change the pressure between
-// two. Evaluation changes no list: an integrator may try a step, reject it and try again.
+// two. The overlap models see bodies in general position (contact/layout.h), so that planes of regular meshes
+// do not coincide. Evaluation changes no list: an integrator may try a step, reject it and try again.
 #ifndef TETLAP_CONTACT_SYSTEM_H
 #define TETLAP_CONTACT_SYSTEM_H
 
@@ -140,8 +141,8 @@ const double *contact_system_forces(const ContactSystem *system); // per vertex 
 const double *
 contact_system_covered(const ContactSystem *system); // Σ over interfaces of W_i [m³]    (tet_count)
 int contact_system_active_count(const ContactSystem *system); // pairs with V > 0
-// The pairs of the last evaluation with V > 0, as handed to the model; for audits and capture. Owned by the
-// caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).
+// The pairs of the last evaluation with V > 0, as handed to the model (in general position); for audits and
+// capture. Owned by the caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).
 Status contact_system_active_pairs(const ContactSystem *system, int *count, double **pairs, int **tets);
 const ContactCounters *contact_system_counters(const ContactSystem *system);
 

@@ -5,6 +5,9 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 
+// Overlap models see bodies shifted by less than this (contact/layout.h) [m].
+static const double NUDGE = 2e-9;
+
 typedef struct Fixture {
   Blocks blocks;
   double *rest, *still; // positions at rest, zero velocities
@@ -207,7 +210,7 @@ START_TEST(two_bodies_keep_momentum_and_angular_momentum) {
   }
   ck_assert(size > 0);
   ck_assert_near(vec3_length(vec3_at(sum)), 0, 1e-13 * size);
-  ck_assert_near(vec3_length(vec3_at(torque)), 0, 1e-12 * size);
+  ck_assert_near(vec3_length(vec3_at(torque)), 0, NUDGE * size);
   int count;
   const ContactInterface *interfaces = contact_system_interfaces(f->system, &count);
   ck_assert_int_eq(count, 1);
@@ -241,7 +244,7 @@ START_TEST(covered_volumes_sum_to_the_overlap) {
     for (int s = 0; s < 2; s++)
       for (int v = 0; v < 12; v++)
         ck_assert_near(pairs[24 * k + 12 * s + v],
-                       f->blocks.x[3 * f->blocks.tets[tets[2 * k + s]][v / 3] + v % 3], 0);
+                       f->blocks.x[3 * f->blocks.tets[tets[2 * k + s]][v / 3] + v % 3], NUDGE);
   memory_free(pairs), memory_free(tets), destroy(f);
 }
 END_TEST
@@ -349,11 +352,11 @@ START_TEST(ground_of_tetrahedra_pushes_like_a_halfspace) {
   Fixture *mesh = block_on_ground(SAME[_i], true), *plane = block_on_ground(SAME[_i], false);
   double energy = energy_at(plane, plane->blocks.x);
   ck_assert(energy > 0);
-  ck_assert_near(energy_at(mesh, mesh->blocks.x), energy, 1e-12 * energy);
+  ck_assert_near(energy_at(mesh, mesh->blocks.x), energy, 10 * NUDGE * energy);
   double *on_mesh = forces_at(mesh, mesh->blocks.x), *on_plane = forces_at(plane, plane->blocks.x);
   double size = sqrt(dot(on_plane, on_plane, 3 * plane->blocks.vertex_count));
   for (int k = 0; k < 3 * plane->blocks.vertex_count; k++)
-    ck_assert_near(on_mesh[k], on_plane[k], 1e-11 * size);
+    ck_assert_near(on_mesh[k], on_plane[k], 10 * NUDGE * size);
   free(on_mesh), free(on_plane), destroy(mesh), destroy(plane);
 }
 END_TEST
