@@ -4,9 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/bench.h"
 #include "app/check_command.h"
 #include "app/compare_command.h"
 #include "app/effects_command.h"
+#include "app/mesh_command.h"
 #include "app/run_command.h"
 #include "app/schema_command.h"
 #include "app/versions.h"
@@ -28,8 +30,10 @@ static const Command commands[] = {
     {"run", "run a scene and write frames, history and summary", app_run_run},
     {"compare", "run a scene with several overlap models and compare", app_compare_run},
     {"check", "say what a run would do, without running", app_check_run},
+    {"mesh", "say what a mesh holds: counts, volume, quality, what is wrong", app_mesh_run},
     {"schema", "print the scene file's JSON Schema, or its manual page", app_schema_run},
     {"effects", "list effects, materials, potentials, models and solvers", app_effects_run},
+    {"bench", "measure overlap models and solvers", app_bench_run},
     {"version", "print the versions of the program and its libraries", run_version},
     {"help", "print this; `tetlap COMMAND --help` tells more", run_help},
 };
