@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The model `clip`: overlaps that a hand can compute, and how often it needs the exact model's help.
+#include "suite.h"
+
+#include <string.h>
+
+#include "app/bench_pairs.h"
+#include "base/memory.h"
+#include "contact/clip.h"
+#include "contact/exact.h"
+#include "pairs.h"
+
+static const double corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+typedef struct Answer {
+  double volume, gradient[24], hessian[576];
+  unsigned flags;
+} Answer;
+
+static Answer ask(const double x[24]) {
+  Answer answer;
+  ck_assert_ok(contact_overlap_clip.eval_pair(NULL, x, &answer.volume, answer.gradient, answer.hessian,
+                                              &answer.flags));
+  return answer;
+}
+
+// dV and d²V per unit of translation of tetrahedron t along `direction`.
+static void ask_along(const Answer *answer, int t, const double direction[3], double *first, double *second) {
+  *first = *second = 0;
+  for (int i = 12 * t; i < 12 * t + 12; i++) {
+    *first += answer->gradient[i] * direction[i % 3];
+    for (int j = 12 * t; j < 12 * t + 12; j++)
+      *second += direction[i % 3] * answer->hessian[24 * i + j] * direction[j % 3];
+  }
+}
+
+START_TEST(two_regular_tetrahedra_in_a_cube_share_its_octahedron) {
+  const double x[24] = {0, 0, 0, 1, 1, 0, 1, 0, 1, 0, 1, 1, 1, 1, 1, 0, 0, 1, 0, 1, 0, 1, 0, 0};
+  Answer answer = ask(x);
+  ck_assert_near(answer.volume, 1.0 / 6, 1e-16);
+  ck_assert_uint_eq(answer.flags, 0);
+  // by symmetry every vertex is pushed along its own diagonal: x·∇V about the centre, 3V over eight vertices
+  for (int v = 0; v < 8; v++) {
+    double radial = 0;
+    for (int c = 0; c < 3; c++) {
+      radial += answer.gradient[3 * v + c] * (x[3 * v + c] - 0.5);
+      ck_assert_near(fabs(answer.gradient[3 * v + c]), 1.0 / 24, 1e-15);
+    }
+    ck_assert_near(radial, 3.0 / 6 / 8, 1e-15);
+  }
+}
+END_TEST
+
+START_TEST(a_corner_moved_along_an_axis_leaves_a_smaller_corner) {
+  for (int k = 0; k < 8; k++) {
+    double x[24], d = k / 8.0, first, second;
+    const double axis[3] = {1, 0, 0};
+    memcpy(x, corner, sizeof corner), memcpy(x + 12, corner, sizeof corner);
+    for (int v = 4; v < 8; v++) x[3 * v] += d;
+    Answer answer = ask(x);
+    ck_assert_near(answer.volume, (1 - d) * (1 - d) * (1 - d) / 6, 1e-16);
+    if (k == 0) continue; // identical: one-sided
+    ask_along(&answer, 1, axis, &first, &second);
+    ck_assert_near(first, -(1 - d) * (1 - d) / 2, 1e-15);
+  }
+}
+END_TEST
+
+// A tip at depth d under a large face: V = V_B d³ / height³, all along the motion known.
+START_TEST(a_tip_under_a_face_has_the_cube_of_its_depth) {
+  const double up[3] = {0, 0, 1}, down[3] = {0, 0, -1};
+  for (int decade = 0; decade <= 8; decade++) {
+    double d = 0.5 * pow(10, -decade), first, second;
+    const double x[24] = {-8, -8, 0,  16, -8, 0,     -8, 16, 0,     0,  0,  -16, // ground, its face z = 0
+                          0,  0,  -d, 1,  0,  1 - d, 0,  1,  1 - d, -1, -1, 1 - d};
+    Answer answer = ask(x);
+    double whole = pairs_tet_volume(x + 12), depth = 0 - x[14];
+    ck_assert_near(answer.volume, whole * depth * depth * depth,
+                   1e-9 * whole * depth * depth * depth + 1e-15);
+    if (answer.flags & CONTACT_OVERLAP_FALLBACK) continue;
+    ask_along(&answer, 0, up, &first, &second);
+    ck_assert_near(first, 3 * whole * depth * depth, 1e-14);
+    ck_assert_near(second, 6 * whole * depth, 1e-13);
+    ask_along(&answer, 1, down, &first, &second);
+    ck_assert_near(second, 6 * whole * depth, 1e-13);
+  }
+}
+END_TEST
+
+START_TEST(one_inside_the_other_moves_freely_and_grows_by_itself) {
+  const double x[24] = {-8, -8, -8, 40, -8, -8, -8, 40, -8, -8, -8, 40, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  Answer answer = ask(x);
+  ck_assert_near(answer.volume, 1.0 / 6, 1e-16);
+  ck_assert_uint_eq(answer.flags, CONTACT_OVERLAP_ENCLOSED);
+  for (int i = 0; i < 12; i++) ck_assert_near(answer.gradient[i], 0, 1e-15);
+  for (int c = 0; c < 3; c++) ck_assert_near(answer.gradient[15 + 4 * c], 1.0 / 6, 1e-15);
+}
+END_TEST
+
+// Faces parallel, nearly parallel, or coplanar: the bound of sin θ holds.
+START_TEST(the_hessian_is_bounded_where_faces_are_parallel) {
+  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
+    for (int member = 0; member < 50; member++) {
+      PairCase pair = pairs_make(c, member);
+      Answer answer = ask(pair.x);
+      double bound = 12 * pairs_extent(pair.x) / CONTACT_CLIP_LEAST_SINE;
+      for (int i = 0; i < 576; i++)
+        ck_assert_msg(fabs(answer.hessian[i]) <= bound, "%s, member %d: %g", pairs_classes[c].name, member,
+                      answer.hessian[i]);
+    }
+}
+END_TEST
+
+// Clip against exact on what a run meets: every volume within the demand, help for less than one in a
+// thousand.
+static void check_set(const char *set, int count) {
+  double *pairs = memory_zeroed((size_t)count * 24, sizeof *pairs);
+  ck_assert_ptr_nonnull(pairs);
+  ck_assert_ok(app_bench_pairs_make(set, count, 7, pairs));
+  int helped = 0;
+  for (int i = 0; i < count; i++) {
+    double volume, expected;
+    unsigned flags;
+    ck_assert_ok(contact_overlap_clip.eval_pair(NULL, pairs + 24 * i, &volume, NULL, NULL, &flags));
+    helped += (flags & CONTACT_OVERLAP_FALLBACK) != 0;
+    ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pairs + 24 * i, &expected, NULL, NULL, &flags));
+    ck_assert_msg(pairs_volume_misfit(pairs + 24 * i, volume, expected) <= 1, "%s: pair %d", set, i);
+    ck_assert_int_eq(strcmp(set, "disjoint") == 0, expected == 0);
+  }
+  memory_free(pairs);
+  ck_assert_int_lt(helped, count / 1000);
+}
+
+START_TEST(ordinary_pairs_are_right_and_hardly_ever_need_help) {
+  check_set(app_bench_sets[_i], 10000);
+}
+END_TEST
+
+START_TEST(help_is_asked_for_slivers_and_the_shallowest_only) {
+  for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
+    const char *name = pairs_classes[c].name;
+    int helped = 0;
+    for (int member = 0; member < 200; member++)
+      helped += (ask(pairs_make(c, member).x).flags & CONTACT_OVERLAP_FALLBACK) != 0;
+    bool is_extreme = strncmp(name, "sliver", 6) == 0 || strcmp(name, "flat") == 0;
+    int allowed = is_extreme ? 200 : strcmp(name, "shallow") == 0 ? 50 : 4;
+    ck_assert_msg(helped <= allowed, "%s: %d of 200", name, helped);
+    if (is_extreme) ck_assert_int_gt(helped, 50);
+  }
+}
+END_TEST
+
+// Flattened step by step from fat to exactly flat: the demand holds all the way, with help where it must.
+START_TEST(accuracy_holds_from_fat_to_flat) {
+  int helped = 0, alone = 0;
+  for (int decade = 0; decade <= 20; decade++)
+    for (int member = 0; member < 20; member++) {
+      PairCase pair = pairs_make(4, member);
+      Vec3 face =
+          vec3_scale(1.0 / 3, vec3_add(vec3_at(pair.x), vec3_add(vec3_at(pair.x + 3), vec3_at(pair.x + 6))));
+      Vec3 apex = vec3_sub(vec3_at(pair.x + 9), face);
+      vec3_store(pair.x + 9, vec3_add(face, vec3_scale(pow(10, -decade), apex)));
+      double expected;
+      unsigned flags;
+      Answer answer = ask(pair.x);
+      ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &expected, NULL, NULL, &flags));
+      ck_assert_msg(pairs_volume_misfit(pair.x, answer.volume, expected) <= 1, "decade %d: %g, exact %g",
+                    decade, answer.volume, expected);
+      if (answer.flags & CONTACT_OVERLAP_FALLBACK)
+        helped++;
+      else
+        alone++;
+    }
+  ck_assert_int_gt(helped, 50);
+  ck_assert_int_gt(alone, 50);
+}
+END_TEST
+
+START_TEST(numbers_too_large_or_small_for_double_products_get_help) {
+  for (int power = -340; power <= 340; power += 680) {
+    PairCase pair = pairs_make(2, 1);
+    double unit = ask(pair.x).volume;
+    for (int i = 0; i < 24; i++) pair.x[i] = ldexp(pair.x[i], power);
+    Answer answer = ask(pair.x);
+    ck_assert_uint_ne(answer.flags & CONTACT_OVERLAP_FALLBACK, 0);
+    if (power < 0)
+      ck_assert_near(answer.volume, ldexp(unit, 3 * power), 1e-9 * ldexp(unit, 3 * power) + 0x1p-1074);
+  }
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("overlap_clip");
+  tcase_add_test(cases, two_regular_tetrahedra_in_a_cube_share_its_octahedron);
+  tcase_add_test(cases, a_corner_moved_along_an_axis_leaves_a_smaller_corner);
+  tcase_add_test(cases, a_tip_under_a_face_has_the_cube_of_its_depth);
+  tcase_add_test(cases, one_inside_the_other_moves_freely_and_grows_by_itself);
+  tcase_add_test(cases, the_hessian_is_bounded_where_faces_are_parallel);
+  tcase_add_loop_test(cases, ordinary_pairs_are_right_and_hardly_ever_need_help, 0, APP_BENCH_SET_COUNT);
+  tcase_add_test(cases, help_is_asked_for_slivers_and_the_shallowest_only);
+  tcase_add_test(cases, accuracy_holds_from_fat_to_flat);
+  tcase_add_test(cases, numbers_too_large_or_small_for_double_products_get_help);
+  return suite_run("overlap clip", cases, 30);
+}
