@@ -37,9 +37,10 @@ typedef struct CholmodSolver {
 static Status fail_in(const CholmodSolver *solver, const char *what) {
   int status = solver->common.status;
   if (status == CHOLMOD_OUT_OF_MEMORY)
-    return status_no_memory("the factor of the condensed system (try solver pcg)");
+    return status_no_memory("the factor of the condensed system (try solver.linear: pcg)");
   if (status == CHOLMOD_TOO_LARGE)
-    return status_fail(STATUS_SOLVER, "cholmod: the factor is too large to be numbered: use solver pcg");
+    return status_fail(STATUS_SOLVER,
+                       "cholmod: the factor is too large to be numbered: use solver.linear: pcg");
   return status_fail(STATUS_SOLVER, "cholmod: %s failed with status %d", what, status);
 }
 

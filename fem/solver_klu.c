@@ -38,7 +38,8 @@ typedef struct KluSolver {
 static Status fail_in(const KluSolver *solver, const char *what) {
   if (solver->common.status == KLU_OUT_OF_MEMORY) return status_no_memory("the factor of the full system");
   if (solver->common.status == KLU_TOO_LARGE)
-    return status_fail(STATUS_SOLVER, "klu: the full system is too large to be numbered: use solver cholmod");
+    return status_fail(STATUS_SOLVER,
+                       "klu: the full system is too large to be numbered: use solver.linear: cholmod");
   return status_fail(STATUS_SOLVER, "klu: %s failed with status %d", what, solver->common.status);
 }
 
@@ -107,8 +108,8 @@ static void place_entries(KluSolver *solver, const FemMatrix *K, bool has_dampin
 static Status lay_out(KluSolver *solver, const FemMatrix *K, bool has_damping) {
   size_t columns = 2 * (size_t)K->size, entries = (size_t)K->entry_count;
   if (columns >= INT_MAX / 8 || 4 * entries + 2 * columns > INT_MAX)
-    return status_fail(STATUS_INPUT,
-                       "klu: the full system has too many entries to be numbered: use solver cholmod");
+    return status_fail(
+        STATUS_INPUT, "klu: the full system has too many entries to be numbered: use solver.linear: cholmod");
   solver->begin = memory_zeroed(columns + 1, sizeof *solver->begin);
   solver->lower = memory_zeroed(entries, sizeof *solver->lower);
   solver->upper = memory_zeroed(entries, sizeof *solver->upper);

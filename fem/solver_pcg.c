@@ -209,7 +209,8 @@ static Status iterate(PcgSolver *solver, const double *b, double *x) {
     rz = rz_next;
   }
   return status_fail(
-      STATUS_RETRY, "pcg did not converge in %d iterations: use solver cholmod, or a larger solver.tolerance",
+      STATUS_RETRY,
+      "pcg did not converge in %d iterations: use solver.linear: cholmod, or a larger solver.tolerance",
       limit);
 }
 

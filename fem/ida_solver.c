@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/ida_solver.h"
+
+#include <stdio.h>
+
+#include "base/memory.h"
+
+struct FemIdaSolver {
+  FemSystem *system; // borrowed
+  const FemSolverOps *ops;
+  void *solver;           // of ops
+  FemIdaFailure *failure; // borrowed
+  SUNLinearSolver linear;
+  SUNMatrix matrix;
+  double *masses; // of the unknowns [kg]                      (unknown_count)
+  double *right;  // right-hand side of the condensed system   (unknown_count)
+  bool has_damping;
+  FemMatrix damping; // D, in the layout of the system's matrix; zeroed without damping
+  long long layout;  // that was analysed; 0: none
+  double c;          // of the assembled matrix [1/s]
+};
+
+int fem_ida_answer(FemIdaFailure *failure, Status status) {
+  if (status == STATUS_OK) return 0;
+  if (status > 0) {
+    snprintf(failure->retry_message, sizeof failure->retry_message, "%s", status_message());
+    return 1;
+  }
+  failure->fatal = status;
+  snprintf(failure->fatal_message, sizeof failure->fatal_message, "%s", status_message());
+  return -1;
+}
+
+static SUNLinearSolver_Type type_of(SUNLinearSolver linear) {
+  (void)linear;
+  return SUNLINEARSOLVER_DIRECT;
+}
+
+static SUNLinearSolver_ID id_of(SUNLinearSolver linear) {
+  (void)linear;
+  return SUNLINEARSOLVER_CUSTOM;
+}
+
+static SUNMatrix_ID matrix_id_of(SUNMatrix matrix) {
+  (void)matrix;
+  return SUNMATRIX_CUSTOM;
+}
+
+// Assembly zeroes its matrices itself.
+static int zero_matrix(SUNMatrix matrix) {
+  (void)matrix;
+  return SUNMAT_SUCCESS;
+}
+
+static Status factorise(FemIdaSolver *solver) {
+  const FemMatrix *matrix = &solver->system->matrix;
+  if (solver->layout != matrix->layout) {
+    TRY(solver->ops->analyse(solver->solver, matrix));
+    solver->layout = matrix->layout;
+  }
+  if (solver->ops->is_condensed) return solver->ops->factorise(solver->solver, matrix, NULL, NULL, solver->c);
+  return solver->ops->factorise(solver->solver, matrix, solver->has_damping ? &solver->damping : NULL,
+                                solver->masses, solver->c);
+}
+
+// r₂ + (c M + D) r₁ for b = (r₁; r₂)
+static void condense(FemIdaSolver *solver, const double *b) {
+  int n = solver->system->model->unknown_count;
+  double *right = solver->right;
+  if (solver->has_damping)
+    fem_matrix_multiply(&solver->damping, b, right);
+  else
+    for (int i = 0; i < n; i++) right[i] = 0;
+  for (int i = 0; i < n; i++) right[i] += b[n + i] + solver->c * solver->masses[i] * b[i];
+}
+
+static Status solve(FemIdaSolver *solver, const double *b, double *x) {
+  if (!solver->ops->is_condensed) return solver->ops->solve(solver->solver, b, x);
+  int n = solver->system->model->unknown_count;
+  condense(solver, b);
+  TRY(solver->ops->solve(solver->solver, solver->right, x));
+  for (int i = 0; i < n; i++) x[n + i] = solver->c * x[i] - b[i];
+  return STATUS_OK;
+}
+
+static int set_up_callback(SUNLinearSolver linear, SUNMatrix matrix) {
+  (void)matrix;
+  FemIdaSolver *solver = linear->content;
+  int answer = fem_ida_answer(solver->failure, factorise(solver));
+  return answer == 0 ? SUNLS_SUCCESS : answer > 0 ? SUNLS_PACKAGE_FAIL_REC : SUNLS_PACKAGE_FAIL_UNREC;
+}
+
+static int solve_callback(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b,
+                          realtype tolerance) {
+  (void)matrix, (void)tolerance;
+  FemIdaSolver *solver = linear->content;
+  Status status = solve(solver, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+  int answer = fem_ida_answer(solver->failure, status);
+  return answer == 0 ? SUNLS_SUCCESS : answer > 0 ? SUNLS_PACKAGE_FAIL_REC : SUNLS_PACKAGE_FAIL_UNREC;
+}
+
+static Status create(FemIdaSolver *solver, SUNContext context) {
+  const FemModel *model = solver->system->model;
+  TRY(solver->ops->create(&solver->solver, model->scene->threads, model->scene->solver_tolerance));
+  size_t n = (size_t)model->unknown_count;
+  solver->masses = memory_zeroed(n, sizeof *solver->masses);
+  solver->right = memory_zeroed(n, sizeof *solver->right);
+  solver->linear = SUNLinSolNewEmpty(context);
+  solver->matrix = SUNMatNewEmpty(context);
+  if (!solver->masses || !solver->right || !solver->linear || !solver->matrix)
+    return status_no_memory("the linear solver");
+  for (size_t i = 0; i < n; i++) solver->masses[i] = model->mass[model->dof_of_unknown[i] / 3];
+  solver->linear->content = solver;
+  solver->linear->ops->gettype = type_of;
+  solver->linear->ops->getid = id_of;
+  solver->linear->ops->setup = set_up_callback;
+  solver->linear->ops->solve = solve_callback;
+  solver->matrix->ops->getid = matrix_id_of;
+  solver->matrix->ops->zero = zero_matrix;
+  return STATUS_OK;
+}
+
+Status fem_ida_solver_create(FemIdaSolver **solver, FemSystem *system, const FemSolverOps *ops,
+                             FemIdaFailure *failure, SUNContext context) {
+  *solver = memory_zeroed(1, sizeof **solver);
+  if (!*solver) return status_no_memory("the linear solver");
+  **solver = (FemIdaSolver){.system = system,
+                            .ops = ops,
+                            .failure = failure,
+                            .has_damping = fem_system_effect(system, "damping") != NULL};
+  Status status = create(*solver, context);
+  if (status == STATUS_OK) return STATUS_OK;
+  fem_ida_solver_destroy(*solver);
+  *solver = NULL;
+  return status;
+}
+
+void fem_ida_solver_destroy(FemIdaSolver *solver) {
+  if (!solver) return;
+  if (solver->solver) solver->ops->destroy(solver->solver);
+  if (solver->linear) SUNLinSolFreeEmpty(solver->linear);
+  if (solver->matrix) SUNMatFreeEmpty(solver->matrix);
+  fem_matrix_destroy(&solver->damping);
+  memory_free(solver->masses);
+  memory_free(solver->right);
+  memory_free(solver);
+}
+
+SUNLinearSolver fem_ida_solver_linear(FemIdaSolver *solver) {
+  return solver->linear;
+}
+
+SUNMatrix fem_ida_solver_matrix(FemIdaSolver *solver) {
+  return solver->matrix;
+}
+
+static Status assemble_damping(FemIdaSolver *solver, double time) {
+  const FemMatrix *matrix = &solver->system->matrix;
+  if (solver->damping.layout != matrix->layout) {
+    fem_matrix_destroy(&solver->damping);
+    TRY(fem_matrix_copy_layout(&solver->damping, matrix));
+  }
+  return fem_system_assemble(solver->system, time, 0, 1, 0, &solver->damping);
+}
+
+Status fem_ida_solver_assemble(FemIdaSolver *solver, double time, double c, const double *u,
+                               const double *v) {
+  FemSystem *system = solver->system;
+  fem_system_scatter(system, time, u, v);
+  TRY(fem_system_couple(system, time));
+  solver->c = c;
+  if (solver->has_damping) TRY(assemble_damping(solver, time));
+  if (solver->ops->is_condensed) return fem_system_assemble(system, time, 1, c, c * c, &system->matrix);
+  return fem_system_assemble(system, time, 1, 0, 0, &system->matrix);
+}
+
+const double *fem_ida_solver_masses(const FemIdaSolver *solver) {
+  return solver->masses;
+}
+
+const FemSolverStats *fem_ida_solver_stats(const FemIdaSolver *solver) {
+  return solver->ops->stats(solver->solver);
+}
