@@ -134,6 +134,6 @@ const ContactOverlapOps contact_overlap_clip = {
     .name = "clip",
     .help = "clipping in double precision, with exact gradient and Hessian",
     .has_hessian = true,
-    .seconds_per_pair = 7e-7,
+    .seconds_per_pair = 5e-7,
     .eval_pair = eval_pair,
 };

@@ -157,40 +157,56 @@ static double top_above(const ContactClipPolytope *polytope, int k) {
   return top;
 }
 
-ContactClipOutcome contact_clip_polytope_make(ContactClipPolytope *polytope, const double pair[24]) {
-  const double *a = pair, *b = pair + 12;
-  ContactClipFrame *frame_a = &polytope->frame[0], *frame_b = &polytope->frame[1];
-  *frame_a = frame_of(a), *frame_b = frame_of(b);
-  double size_a = fabs(frame_a->det), size_b = fabs(frame_b->det);
+// What clipping starts from.
+typedef struct Start {
+  Sides a_in_b, b_in_a;
+  double size_a, size_b; // |det|
+  bool is_flat;          // rounding of the planes alone may exceed 1e-12 of the smaller volume
+} Start;
+
+// Sets the polytope's frames and noise. OVERLAP: no plane of either separates them.
+static inline ContactClipOutcome separate(ContactClipPolytope *polytope, const double *a, const double *b,
+                                          Start *it) {
+  polytope->frame[0] = frame_of(a), polytope->frame[1] = frame_of(b);
+  it->size_a = fabs(polytope->frame[0].det), it->size_b = fabs(polytope->frame[1].det);
   double squared_a = edges_squared(a), squared_b = edges_squared(b);
-  if (!(has_volume(size_a, squared_a) && has_volume(size_b, squared_b))) return CONTACT_CLIP_UNCERTAIN;
+  if (!(has_volume(it->size_a, squared_a) && has_volume(it->size_b, squared_b)))
+    return CONTACT_CLIP_UNCERTAIN;
 
   // No difference of coordinates is much longer than the root of `squared`. Over the classes of the tests the
   // error of V, as noise/2 · Σ φ, asked for at most 0.065 where this has 0.25.
   double squared = squared_a + squared_b + distance_squared(a, b);
   double noise = polytope->noise = 0.25 * DBL_EPSILON * squared * sqrt(squared) + DBL_MIN;
-  Sides b_in_a = sides_of(frame_a, a, b);
-  double top_a = lowest_top(&b_in_a);
-  if (top_a * size_a < -noise) return CONTACT_CLIP_DISJOINT;
-  Sides a_in_b = sides_of(frame_b, b, a);
-  double top_b = lowest_top(&a_in_b);
-  if (top_b * size_b < -noise) return CONTACT_CLIP_DISJOINT;
+  it->b_in_a = sides_of(&polytope->frame[0], a, b);
+  double top_a = lowest_top(&it->b_in_a);
+  if (top_a * it->size_a < -noise) return CONTACT_CLIP_DISJOINT;
+  it->a_in_b = sides_of(&polytope->frame[1], b, a);
+  double top_b = lowest_top(&it->a_in_b);
+  if (top_b * it->size_b < -noise) return CONTACT_CLIP_DISJOINT;
 
-  // An error of det · λ of `noise` moves a face by a volume of at most half of that.
-  double size = smallest(size_a, size_b);
-  bool is_flat = !(noise / 2 <= 1e-12 * size / 6);
-  if (top_a <= 0 || top_b <= 0) return is_flat ? CONTACT_CLIP_UNCERTAIN : CONTACT_CLIP_DISJOINT;
-  if (!(noise <= CONTACT_CLIP_FLATTEST * size)) return CONTACT_CLIP_UNCERTAIN;
+  // an error of det · λ of `noise` moves a face by a volume of at most half of that
+  double size = smallest(it->size_a, it->size_b);
+  it->is_flat = !(noise / 2 <= 1e-12 * size / 6);
+  if (top_a <= 0 || top_b <= 0) return it->is_flat ? CONTACT_CLIP_UNCERTAIN : CONTACT_CLIP_DISJOINT;
+  return noise <= CONTACT_CLIP_FLATTEST * size ? CONTACT_CLIP_OVERLAP : CONTACT_CLIP_UNCERTAIN;
+}
 
-  unsigned cuts_b = cutting_planes(&b_in_a), cuts_a = cutting_planes(&a_in_b);
+// The tetrahedron that fewer of the other's planes cut is clipped by those.
+ContactClipOutcome contact_clip_polytope_make(ContactClipPolytope *polytope, const double pair[24]) {
+  Start it;
+  ContactClipOutcome outcome = separate(polytope, pair, pair + 12, &it);
+  if (outcome != CONTACT_CLIP_OVERLAP) return outcome;
+
+  unsigned cuts_a = cutting_planes(&it.a_in_b), cuts_b = cutting_planes(&it.b_in_a);
   bool takes_b = __builtin_popcount(cuts_b) < __builtin_popcount(cuts_a);
-  start(polytope, takes_b, takes_b ? &b_in_a : &a_in_b);
   unsigned cutting = takes_b ? cuts_b : cuts_a;
+  double size = takes_b ? it.size_a : it.size_b; // of the tetrahedron whose planes cut
+  start(polytope, takes_b, takes_b ? &it.b_in_a : &it.a_in_b);
   if (!cutting) return CONTACT_CLIP_ENCLOSED;
   for (int k = 0; k < 4; k++) {
     if (!(cutting >> k & 1)) continue;
     int plane = takes_b ? k : k + 4;
-    bool is_surely_empty = !is_flat || top_above(polytope, plane) * (takes_b ? size_a : size_b) < -noise;
+    bool is_surely_empty = !it.is_flat || top_above(polytope, plane) * size < -polytope->noise;
     cut(polytope, plane);
     if (polytope->edge_count == 0) return is_surely_empty ? CONTACT_CLIP_DISJOINT : CONTACT_CLIP_UNCERTAIN;
   }

@@ -119,12 +119,16 @@ static void check_set(const char *set, int count) {
   ck_assert_ok(app_bench_pairs_make(set, count, 7, pairs));
   int helped = 0;
   for (int i = 0; i < count; i++) {
-    double volume, expected;
+    const double *x = pairs + 24 * i;
+    double volume, gradient[24], expected, expected_gradient[24], extent = pairs_extent(x);
     unsigned flags;
-    ck_assert_ok(contact_overlap_clip.eval_pair(NULL, pairs + 24 * i, &volume, NULL, NULL, &flags));
+    ck_assert_ok(contact_overlap_clip.eval_pair(NULL, x, &volume, gradient, NULL, &flags));
     helped += (flags & CONTACT_OVERLAP_FALLBACK) != 0;
-    ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pairs + 24 * i, &expected, NULL, NULL, &flags));
-    ck_assert_msg(pairs_volume_misfit(pairs + 24 * i, volume, expected) <= 1, "%s: pair %d", set, i);
+    ck_assert_ok(contact_overlap_exact.eval_pair(NULL, x, &expected, expected_gradient, NULL, &flags));
+    ck_assert_msg(pairs_volume_misfit(x, volume, expected) <= 1, "%s: pair %d", set, i);
+    for (int c = 0; c < 24; c++)
+      ck_assert_msg(fabs(gradient[c] - expected_gradient[c]) <= 1e-12 * extent * extent,
+                    "%s: pair %d, gradient %d is %g, exact %g", set, i, c, gradient[c], expected_gradient[c]);
     ck_assert_int_eq(strcmp(set, "disjoint") == 0, expected == 0);
   }
   memory_free(pairs);
