@@ -50,7 +50,9 @@ Status file_begin(FileWriter *writer, const char *path) {
 
 Status file_commit(FileWriter *writer) {
   errno = 0;
-  int failed = ferror(writer->stream) || fflush(writer->stream) != 0 || fsync(fileno(writer->stream)) != 0;
+  // Renaming makes the file whole for whoever looks, and after a kill. Against a power cut it would have to be
+  // synced as well, which costs more than a step of a small scene.
+  int failed = ferror(writer->stream) || fflush(writer->stream) != 0;
   int reason = errno;
   if (fclose(writer->stream) != 0 && !failed) failed = 1, reason = errno;
   writer->stream = NULL;

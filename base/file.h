@@ -17,7 +17,7 @@ typedef struct FileWriter {
 
 // Opens a temporary file beside `path`. STATUS_IO names the path and the system's reason.
 Status file_begin(FileWriter *writer, const char *path);
-// Flushes, syncs and renames; on failure nothing is left at `path` that was not there before.
+// Flushes and renames; on failure nothing is left at `path` that was not there before.
 Status file_commit(FileWriter *writer);
 // Drops what was written; allowed after a commit and on a zeroed writer.
 void file_abandon(FileWriter *writer);

@@ -10,8 +10,9 @@
 enum { CHUNK = 256 };
 // Entries of a symmetric (12 × 12) matrix.
 enum { HALF = 78 };
-// Below this many elements, waking threads takes longer than the work.
-enum { FEW = 128 };
+// Below this many elements one thread does it all: a colour is a barrier, and some thirty of them, on a
+// machine that others use too, take longer than the millisecond of work that a second thread would save.
+enum { FEW_FORCES = 20000, FEW_MATRICES = 4000 };
 
 static int chunk_count(const FemAssembly *assembly) {
   return (assembly->tet_count + CHUNK - 1) / CHUNK;
@@ -78,7 +79,7 @@ static inline void gather(const FemAssembly *assembly, const FemState *state, in
 void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state, FemAssemblyForce *kernel,
                              double *force) {
   const FemColouring *colouring = &assembly->colouring;
-#pragma omp parallel if (assembly->tet_count > FEW)
+#pragma omp parallel if (assembly->tet_count > FEW_FORCES)
   for (int colour = 0; colour < colouring->colour_count; colour++) {
 #pragma omp for schedule(static)
     for (int i = colouring->begin[colour]; i < colouring->begin[colour + 1]; i++) {
@@ -104,7 +105,7 @@ static Status find_slots(FemAssembly *assembly, const FemMatrix *matrix) {
   if (!assembly->slots)
     assembly->slots = memory_zeroed((size_t)assembly->tet_count, HALF * sizeof *assembly->slots);
   if (!assembly->slots) return status_no_memory("the elements' places in the matrix");
-#pragma omp parallel for schedule(static) if (assembly->tet_count > FEW)
+#pragma omp parallel for schedule(static) if (assembly->tet_count > FEW_MATRICES)
   for (int i = 0; i < assembly->tet_count; i++) {
     int slots[144];
     fem_matrix_slots(matrix, assembly->model->tets[assembly->colouring.tets[i]], slots);
@@ -124,7 +125,7 @@ Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state, F
                                  double stiffness_scale, double damping_scale, FemMatrix *matrix) {
   TRY(find_slots(assembly, matrix));
   const FemColouring *colouring = &assembly->colouring;
-#pragma omp parallel if (assembly->tet_count > FEW)
+#pragma omp parallel if (assembly->tet_count > FEW_MATRICES)
   for (int colour = 0; colour < colouring->colour_count; colour++) {
 #pragma omp for schedule(static)
     for (int i = colouring->begin[colour]; i < colouring->begin[colour + 1]; i++) {
@@ -140,7 +141,7 @@ Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state, F
 
 double fem_assembly_sum(FemAssembly *assembly, const FemState *state, FemAssemblyScalar *kernel) {
   int chunks = chunk_count(assembly);
-#pragma omp parallel for schedule(static) if (assembly->tet_count > FEW)
+#pragma omp parallel for schedule(static) if (assembly->tet_count > FEW_FORCES)
   for (int chunk = 0; chunk < chunks; chunk++) {
     int begin = chunk * CHUNK;
     int end = begin + CHUNK < assembly->tet_count ? begin + CHUNK : assembly->tet_count;
