@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernel for every processor: products by OpenBLAS, of which this is the only file that knows.
+#include "net/kernel.h"
+
+#include <cblas.h>
+#include <stdint.h>
+#include <string.h>
+
+int net_kernel_enter(NetKernelKind kind) {
+  if (kind != NET_KERNEL_BLAS) return 0;
+  int had = openblas_get_num_threads();
+  openblas_set_num_threads(1);
+  return had;
+}
+
+void net_kernel_leave(NetKernelKind kind, int had) {
+  if (kind == NET_KERNEL_BLAS) openblas_set_num_threads(had);
+}
+
+#include "net/real_f32.h"
+#define KERNEL_NAME(name) name##_blas_f32
+#define KERNEL_GEMM cblas_sgemm
+
+#include "net/kernel_blas.inc"
+
+#include "net/real_f64.h"
+#undef KERNEL_NAME
+#undef KERNEL_GEMM
+#define KERNEL_NAME(name) name##_blas_f64
+#define KERNEL_GEMM cblas_dgemm
+
+#include "net/kernel_blas.inc"

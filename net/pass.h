@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// One chunk of samples through the steps of a plan, forward and backward. Private to net/: forward.h,
+// gradient.h and tangent.h drive it over all chunks.
+#ifndef NET_PASS_H
+#define NET_PASS_H
+
+#include "net/kernel.h"
+#include "net/plan.h"
+#include "net/work.h"
+
+// Samples of a chunk and chunks of `count` samples, for a number of tangents.
+int net_pass_chunk(int tangents);
+int net_pass_chunk_count(int count, int tangents);
+
+#include "net/real_f32.h"
+
+#include "net/pass_template.h"
+
+#include "net/real_f64.h"
+
+#include "net/pass_template.h"
+
+#endif

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "net/tangent.h"
+
+#include <assert.h>
+
+#include "net/drive.h"
+#include "net/pass.h"
+
+#include "net/real_f32.h"
+
+#include "net/tangent.inc"
+
+#include "net/real_f64.h"
+
+#include "net/tangent.inc"
