@@ -80,7 +80,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-const struct argp app_job_argp = {.options = option_table, .parser = parse, .args_doc = "SCENE"};
+const struct argp app_job_argp = {.options = option_table, .parser = parse};
 
 void app_job_prepare(const AppJobOptions *options) {
   log_set_level(options->is_quiet ? LOG_ERROR : options->is_verbose ? LOG_DEBUG : LOG_INFO);
