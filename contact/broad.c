@@ -3,22 +3,15 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "contact/bounds.h"
 #include "contact/boxes_cgal.h"
 
-// Boxes are min x, y, z, max x, y, z, as contact/boxes_cgal.h wants them.
-static void box_of_tet(const int tet[4], const double *positions, double grow, double box[6]) {
-  for (int c = 0; c < 3; c++) {
-    double low = INFINITY, high = -INFINITY;
-    for (int v = 0; v < 4; v++) {
-      double x = positions[3 * (size_t)tet[v] + (size_t)c];
-      low = fmin(low, x), high = fmax(high, x);
-    }
-    box[c] = low - grow, box[c + 3] = high + grow;
-  }
+static void grown_box(const int tet[4], const double *positions, double grow, double box[6]) {
+  contact_bounds_of_tet(tet, positions, box);
+  for (int c = 0; c < 3; c++) box[c] -= grow, box[c + 3] += grow;
 }
 
 static void bounds_of_side(const ContactBroadSide *side, const double *positions, double grow,
@@ -26,18 +19,12 @@ static void bounds_of_side(const ContactBroadSide *side, const double *positions
   for (int c = 0; c < 3; c++) bounds[c] = INFINITY, bounds[c + 3] = -INFINITY;
   for (int i = 0; i < side->tet_count; i++) {
     double box[6];
-    box_of_tet(side->tets[i], positions, grow, box);
+    grown_box(side->tets[i], positions, grow, box);
     for (int c = 0; c < 3; c++) {
       bounds[c] = fmin(bounds[c], box[c]);
       bounds[c + 3] = fmax(bounds[c + 3], box[c + 3]);
     }
   }
-}
-
-static bool boxes_meet(const double a[6], const double b[6]) {
-  for (int c = 0; c < 3; c++)
-    if (!(a[c] <= b[c + 3] && b[c] <= a[c + 3])) return false;
-  return true;
 }
 
 // The tetrahedra of one side whose boxes reach into what the other side occupies.
@@ -54,8 +41,8 @@ static Status select_within(Selection *selection, const ContactBroadSide *side, 
   if (!selection->tets || !selection->boxes) return status_no_memory("boxes of the broad phase");
   for (int i = 0; i < side->tet_count; i++) {
     double *box = selection->boxes[selection->count];
-    box_of_tet(side->tets[i], positions, grow, box);
-    if (boxes_meet(box, bounds)) selection->tets[selection->count++] = i;
+    grown_box(side->tets[i], positions, grow, box);
+    if (contact_bounds_distance(box, bounds) <= 0) selection->tets[selection->count++] = i;
   }
   return STATUS_OK;
 }
@@ -92,7 +79,7 @@ Status contact_broad_append(ContactPairList *list, const ContactBroadSide *a, co
   double bounds_a[6], bounds_b[6];
   bounds_of_side(a, positions, margin / 2, bounds_a);
   bounds_of_side(b, positions, margin / 2, bounds_b);
-  if (!boxes_meet(bounds_a, bounds_b)) return STATUS_OK;
+  if (!(contact_bounds_distance(bounds_a, bounds_b) <= 0)) return STATUS_OK;
 
   Selection in_a = {0}, in_b = {0};
   ContactBoxPairs found = {0};

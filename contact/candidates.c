@@ -7,33 +7,38 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "contact/bounds.h"
 #include "contact/separation.h"
 
 // Where the boxes of two bodies meet but the bodies may not, a margin of several steps of free motion is
 // tried, bounded so that the trial costs little more than a search.
 enum { STEPS_AHEAD = 4, WIDEST_TRIAL = 4 };
 
-static Status create_list(ContactCandidateList *list, int facing_count) {
-  list->begin = memory_zeroed((size_t)facing_count + 1, sizeof(int));
-  list->margins = memory_zeroed((size_t)facing_count, sizeof(double));
-  return list->begin && list->margins ? STATUS_OK : status_no_memory("the candidate lists");
+static Status create_list(ContactCandidateList *list, const ContactLayout *layout) {
+  list->begin = memory_zeroed((size_t)layout->facing_count + 1, sizeof(int));
+  list->margins = memory_zeroed((size_t)layout->facing_count, sizeof(double));
+  list->tets = memory_zeroed((size_t)layout->def.tet_count, sizeof(int));
+  return list->begin && list->margins && list->tets ? STATUS_OK : status_no_memory("the candidate lists");
 }
 
 static void destroy_list(ContactCandidateList *list) {
   memory_free(list->pairs);
   memory_free(list->begin);
   memory_free(list->margins);
+  memory_free(list->tets);
 }
 
 Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout) {
   *candidates = (ContactCandidates){0};
-  TRY(create_list(&candidates->list, layout->facing_count));
-  TRY(create_list(&candidates->next, layout->facing_count));
+  TRY(create_list(&candidates->list, layout));
+  TRY(create_list(&candidates->next, layout));
   candidates->reference = memory_zeroed(3 * (size_t)layout->def.vertex_count, sizeof(double));
+  candidates->is_listed = memory_zeroed((size_t)layout->def.tet_count, 1);
   candidates->boxes = memory_zeroed((size_t)layout->def.body_count, sizeof *candidates->boxes);
   candidates->motions = memory_zeroed((size_t)layout->party_count, sizeof(double));
   candidates->expected = memory_zeroed((size_t)layout->party_count, sizeof(double));
-  bool fits = candidates->reference && candidates->boxes && candidates->motions && candidates->expected;
+  bool fits = candidates->reference && candidates->is_listed && candidates->boxes && candidates->motions &&
+              candidates->expected;
   return fits ? STATUS_OK : status_no_memory("the candidate lists");
 }
 
@@ -42,6 +47,7 @@ void contact_candidates_destroy(ContactCandidates *candidates) {
   destroy_list(&candidates->next);
   contact_broad_destroy(&candidates->found);
   memory_free(candidates->reference);
+  memory_free(candidates->is_listed);
   memory_free(candidates->boxes);
   memory_free(candidates->motions);
   memory_free(candidates->expected);
@@ -89,6 +95,13 @@ static double sum_of(const double *by_party, const ContactFacing *facing) {
   return by_party[facing->a] + by_party[facing->b];
 }
 
+void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
+                              const double *positions, double (*boxes)[6]) {
+#pragma omp parallel for schedule(static) if (list->tet_count > 512)
+  for (int k = 0; k < list->tet_count; k++)
+    contact_bounds_of_tet(layout->def.tets[list->tets[k]], positions, boxes[list->tets[k]]);
+}
+
 bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
                               const double *positions) {
   if (!candidates->is_made) return false;
@@ -124,12 +137,6 @@ static void bound_bodies(ContactCandidates *candidates, const ContactLayout *lay
   }
 }
 
-static double distance_of_boxes(const double a[6], const double b[6]) {
-  double distance = -INFINITY;
-  for (int c = 0; c < 3; c++) distance = fmax(distance, fmax(a[c] - b[c + 3], b[c] - a[c + 3]));
-  return distance;
-}
-
 static double height_of_body(const ContactLayout *layout, const ContactFacing *facing, double time,
                              const double *positions) {
   const ContactBody *body = &layout->def.bodies[facing->a];
@@ -145,7 +152,7 @@ static double height_of_body(const ContactLayout *layout, const ContactFacing *f
 static double clearance(const ContactCandidates *candidates, const ContactLayout *layout,
                         const ContactFacing *facing, double time, const double *positions) {
   if (facing->halfspace >= 0) return height_of_body(layout, facing, time, positions);
-  return distance_of_boxes(candidates->boxes[facing->a], candidates->boxes[facing->b]);
+  return contact_bounds_distance(candidates->boxes[facing->a], candidates->boxes[facing->b]);
 }
 
 static Status push(ContactCandidateList *list, ContactPair pair) {
@@ -216,6 +223,18 @@ static Status search_facing(ContactCandidates *candidates, const ContactLayout *
   return search_with(candidates, layout, f, time, positions, layout->margin);
 }
 
+static void list_tets(ContactCandidates *candidates) {
+  ContactCandidateList *next = &candidates->next;
+  next->tet_count = 0;
+  for (int k = 0; k < next->count; k++)
+    for (int side = 0; side < 2 && next->pairs[k].tets[1] >= 0; side++) {
+      int tet = next->pairs[k].tets[side];
+      if (!candidates->is_listed[tet]) next->tets[next->tet_count++] = tet;
+      candidates->is_listed[tet] = 1;
+    }
+  for (int k = 0; k < next->tet_count; k++) candidates->is_listed[next->tets[k]] = 0;
+}
+
 // Fills `next`.
 static Status search_all(ContactCandidates *candidates, const ContactLayout *layout, double time,
                          const double *positions) {
@@ -223,6 +242,7 @@ static Status search_all(ContactCandidates *candidates, const ContactLayout *lay
   bound_bodies(candidates, layout, positions);
   for (int f = 0; f < layout->facing_count; f++) TRY(search_facing(candidates, layout, f, time, positions));
   candidates->next.begin[layout->facing_count] = candidates->next.count;
+  list_tets(candidates);
   return STATUS_OK;
 }
 

@@ -15,6 +15,8 @@ typedef struct ContactCandidateList {
   ContactPair *pairs; // by facing, then by tets                      (count)
   int *begin;         // of each facing                               (facing_count + 1)
   double *margins;    // of each facing [m]                           (facing_count)
+  int *tets;          // those of mesh pairs, distinct                (tet_count)
+  int tet_count;
 } ContactCandidateList;
 
 typedef struct ContactCandidates {
@@ -28,9 +30,10 @@ typedef struct ContactCandidates {
   // Scratch memory.
   ContactCandidateList next;
   ContactPairList found;
-  double (*boxes)[6]; // of each body                                 (body_count)
-  double *motions;    // of each party since the search [m]           (party_count)
-  double *expected;   // of each party in the next step [m]           (party_count)
+  unsigned char *is_listed; // 0 between calls                        (tet_count)
+  double (*boxes)[6];       // of each body                                 (body_count)
+  double *motions;          // of each party since the search [m]           (party_count)
+  double *expected;         // of each party in the next step [m]           (party_count)
 } ContactCandidates;
 
 Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout);
@@ -44,5 +47,10 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
 // Whether the list still holds every overlapping pair; NaN: false.
 bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
                               const double *positions);
+
+// The boxes of the list's tetrahedra at these positions, into boxes (tet_count of the layout); others are
+// left alone.
+void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
+                              const double *positions, double (*boxes)[6]);
 
 #endif

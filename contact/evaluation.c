@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "contact/bounds.h"
 #include "contact/halfspace.h"
 #include "contact/potential.h"
 #include "contact/separation.h"
@@ -17,7 +18,9 @@ Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLay
   evaluation->forces = memory_zeroed(coordinate_count, sizeof(double));
   evaluation->covered = memory_zeroed((size_t)layout->def.tet_count, sizeof(double));
   evaluation->interfaces = memory_zeroed((size_t)layout->facing_count, sizeof(ContactInterface));
-  if (!evaluation->positions || !evaluation->forces || !evaluation->covered || !evaluation->interfaces)
+  evaluation->boxes = memory_zeroed((size_t)layout->def.tet_count, sizeof *evaluation->boxes);
+  if (!evaluation->boxes || !evaluation->positions || !evaluation->forces || !evaluation->covered ||
+      !evaluation->interfaces)
     return status_no_memory("contact forces");
   return contact_patches_create(&evaluation->patches, layout);
 }
@@ -34,6 +37,7 @@ void contact_evaluation_destroy(ContactEvaluation *evaluation) {
   memory_free(evaluation->covered);
   memory_free(evaluation->interfaces);
   memory_free(evaluation->is_kept);
+  memory_free(evaluation->boxes);
   memory_free(evaluation->flags);
   *evaluation = (ContactEvaluation){0};
 }
@@ -75,32 +79,59 @@ static void gather(const ContactLayout *layout, const ContactPair *pair, const d
   shift(coordinates + 12, layout->nudges[layout->facings[pair->facing].b]);
 }
 
-// The candidates that are not apart beyond doubt, in their order: pairs and coordinates.
-static Status sift(ContactEvaluation *evaluation, const ContactLayout *layout,
-                   const ContactCandidateList *candidates, bool with_halfspaces, const double *positions) {
+// Lists the candidates whose boxes meet, nudges allowed for.
+static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *layout,
+                            const ContactCandidateList *candidates, bool with_halfspaces,
+                            const double *positions) {
   int count = candidates->count, kept = 0;
+  double apart = 3 * layout->nudge;
   if (!memory_reserve((void **)&evaluation->is_kept, &evaluation->kept_capacity, (size_t)count, 1))
     return status_no_memory("candidate pairs");
+  contact_candidates_bound(candidates, layout, positions, evaluation->boxes);
+#pragma omp parallel for schedule(static) reduction(+ : kept) if (count > 512)
+  for (int k = 0; k < count; k++) {
+    const int *tets = candidates->pairs[k].tets;
+    evaluation->is_kept[k] =
+        tets[1] < 0
+            ? with_halfspaces
+            : !(contact_bounds_distance(evaluation->boxes[tets[0]], evaluation->boxes[tets[1]]) > apart);
+    kept += evaluation->is_kept[k];
+  }
+  TRY(reserve(evaluation, kept));
+  evaluation->pair_count = 0;
+  for (int k = 0; k < count; k++)
+    if (evaluation->is_kept[k]) evaluation->pairs[evaluation->pair_count++] = candidates->pairs[k];
+  return STATUS_OK;
+}
+
+// Moves pair `from` and what belongs to it to the earlier place `to`.
+static void move_pair(ContactEvaluation *evaluation, int from, int to) {
+  size_t row = 24 * sizeof(double), source = 24 * (size_t)from, target = 24 * (size_t)to;
+  if (from == to) return;
+  evaluation->pairs[to] = evaluation->pairs[from];
+  evaluation->volumes[to] = evaluation->volumes[from];
+  memcpy(evaluation->coordinates + target, evaluation->coordinates + source, row);
+  memcpy(evaluation->gradients + target, evaluation->gradients + source, row);
+}
+
+// Gathers the listed pairs and drops those that a face separates for certain. `clip` would find that out as
+// fast by itself; `exact` takes half the time with it.
+static void sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *layout,
+                          const double *positions) {
+  int count = evaluation->pair_count, kept = 0;
 #pragma omp parallel for schedule(static) if (count > 512)
   for (int k = 0; k < count; k++) {
-    double x[24];
-    const ContactPair *pair = &candidates->pairs[k];
-    bool is_mesh_pair = pair->tets[1] >= 0;
-    if (is_mesh_pair) gather(layout, pair, positions, x);
-    evaluation->is_kept[k] = is_mesh_pair ? !contact_separation_is_certain(x) : with_halfspaces;
+    double *coordinates = evaluation->coordinates + 24 * (size_t)k;
+    gather(layout, &evaluation->pairs[k], positions, coordinates);
+    evaluation->is_kept[k] = evaluation->pairs[k].tets[1] < 0 || !contact_separation_is_certain(coordinates);
   }
-  for (int k = 0; k < count; k++) kept += evaluation->is_kept[k];
-  TRY(reserve(evaluation, kept));
-  evaluation->pair_count = evaluation->mesh_pair_count = 0;
+  evaluation->mesh_pair_count = 0;
   for (int k = 0; k < count; k++) {
     if (!evaluation->is_kept[k]) continue;
-    evaluation->pairs[evaluation->pair_count++] = candidates->pairs[k];
-    evaluation->mesh_pair_count += candidates->pairs[k].tets[1] >= 0;
+    evaluation->mesh_pair_count += evaluation->pairs[k].tets[1] >= 0;
+    move_pair(evaluation, k, kept++);
   }
-#pragma omp parallel for schedule(static) if (kept > 512)
-  for (int k = 0; k < kept; k++)
-    gather(layout, &evaluation->pairs[k], positions, evaluation->coordinates + 24 * (size_t)k);
-  return STATUS_OK;
+  evaluation->pair_count = kept;
 }
 
 // Names the bodies' tetrahedra of a pair that the model refused or answered badly.
@@ -146,20 +177,14 @@ static void overlap_halfspaces(ContactEvaluation *evaluation, const ContactLayou
 
 // Drops the pairs without overlap, keeping the order.
 static void keep_overlapping(ContactEvaluation *evaluation) {
-  size_t kept = 0, mesh_kept = 0, row = 24 * sizeof(double);
-  for (size_t k = 0; k < (size_t)evaluation->pair_count; k++) {
+  int kept = 0, mesh_kept = 0;
+  for (int k = 0; k < evaluation->pair_count; k++) {
     if (!(evaluation->volumes[k] > 0)) continue;
-    evaluation->pairs[kept] = evaluation->pairs[k];
-    evaluation->volumes[kept] = evaluation->volumes[k];
-    if (kept != k) {
-      memcpy(evaluation->coordinates + 24 * kept, evaluation->coordinates + 24 * k, row);
-      memcpy(evaluation->gradients + 24 * kept, evaluation->gradients + 24 * k, row);
-    }
-    kept++;
-    mesh_kept += k < (size_t)evaluation->mesh_pair_count;
+    mesh_kept += k < evaluation->mesh_pair_count;
+    move_pair(evaluation, k, kept++);
   }
-  evaluation->pair_count = (int)kept;
-  evaluation->mesh_pair_count = (int)mesh_kept;
+  evaluation->pair_count = kept;
+  evaluation->mesh_pair_count = mesh_kept;
 }
 
 // W_i = Σ_j V_ij, W_a = ¼ Σ_{i∋a} W_i.
@@ -228,7 +253,8 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
                               bool with_halfspaces, double time, const double *positions) {
   double start = clock_wall_s();
   clear(evaluation);
-  TRY(sift(evaluation, layout, candidates, with_halfspaces, positions));
+  TRY(sift_by_boxes(evaluation, layout, candidates, with_halfspaces, positions));
+  sift_by_faces(evaluation, layout, positions);
   TRY(overlap_meshes(evaluation, layout, model));
   overlap_halfspaces(evaluation, layout, time);
   keep_overlapping(evaluation);

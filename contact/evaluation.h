@@ -29,6 +29,7 @@ typedef struct ContactEvaluation {
   double overlap_s, force_s;     // wall time [s]
   // Scratch memory.
   unsigned char *is_kept; // of each candidate
+  double (*boxes)[6];     // of the candidates' tetrahedra            (tet_count)
   unsigned *flags;
   size_t kept_capacity, pair_capacity, coordinate_capacity, volume_capacity, gradient_capacity;
   size_t pressure_capacity, flag_capacity;

@@ -67,10 +67,11 @@ static const double NUDGE = 1e-9; // of the margin
 static const uint64_t NUDGE_SEED = 20240229;
 
 static void nudge_bodies(ContactLayout *layout) {
+  layout->nudge = NUDGE * layout->margin;
   for (int b = 0; b < layout->def.body_count; b++) {
     Random random = random_seeded(NUDGE_SEED, (uint64_t)b);
     random_direction(&random, layout->nudges[b]);
-    for (int c = 0; c < 3; c++) layout->nudges[b][c] *= NUDGE * layout->margin;
+    for (int c = 0; c < 3; c++) layout->nudges[b][c] *= layout->nudge;
   }
 }
 

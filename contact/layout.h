@@ -33,6 +33,7 @@ typedef struct ContactLayout {
   double *vertex_volumes; // V_a = ¼ Σ_{i∋a} V_i [m³]                         (vertex_count)
   ContactFacing *facings; // bodies with bodies first, then with half-spaces  (facing_count)
   int facing_count;
+  double nudge;        // length of a nudge [m]
   double (*nudges)[3]; // of each body, see above [m]                       (body_count)
   int party_count;     // bodies, then half-spaces
   double margin;       // def.margin, or its default [m]

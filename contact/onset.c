@@ -4,18 +4,21 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "contact/bounds.h"
 #include "contact/separation.h"
 
 Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout) {
   *onset = (ContactOnset){0};
   onset->is_marked = memory_zeroed((size_t)layout->def.vertex_count, 1);
-  return onset->is_marked ? STATUS_OK : status_no_memory("watched pairs");
+  onset->boxes = memory_zeroed((size_t)layout->def.tet_count, sizeof *onset->boxes);
+  return onset->is_marked && onset->boxes ? STATUS_OK : status_no_memory("watched pairs");
 }
 
 void contact_onset_destroy(ContactOnset *onset) {
   memory_free(onset->watched);
   memory_free(onset->is_engaged);
   memory_free(onset->is_marked);
+  memory_free(onset->boxes);
   *onset = (ContactOnset){0};
 }
 
@@ -32,12 +35,21 @@ static double separation_of(const ContactLayout *layout, const ContactPair *pair
   return contact_separation_halfspace(x, point, layout->def.halfspaces[h].normal);
 }
 
+static bool is_engaged(const ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,
+                       double time, const double *positions, double touch) {
+  if (pair->tets[1] >= 0 &&
+      contact_bounds_distance(onset->boxes[pair->tets[0]], onset->boxes[pair->tets[1]]) > touch)
+    return false;
+  return !(separation_of(layout, pair, time, positions, touch) > touch);
+}
+
 static void find_engaged(ContactOnset *onset, const ContactLayout *layout,
                          const ContactCandidateList *candidates, double time, const double *positions) {
   double touch = 1e-6 * layout->margin;
+  contact_candidates_bound(candidates, layout, positions, onset->boxes);
 #pragma omp parallel for schedule(static) if (candidates->count > 512)
   for (int k = 0; k < candidates->count; k++)
-    onset->is_engaged[k] = !(separation_of(layout, &candidates->pairs[k], time, positions, touch) > touch);
+    onset->is_engaged[k] = is_engaged(onset, layout, &candidates->pairs[k], time, positions, touch);
 }
 
 static void mark(ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,

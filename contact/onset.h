@@ -18,6 +18,7 @@ typedef struct ContactOnset {
   size_t capacity;
   unsigned char *is_engaged; // scratch, of each candidate
   size_t engaged_capacity;
+  double (*boxes)[6];       // scratch, of the candidates' tetrahedra   (tet_count)
   unsigned char *is_marked; // scratch, 0 between calls      (vertex_count)
 } ContactOnset;
 

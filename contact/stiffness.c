@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "contact/bounds.h"
 #include "contact/halfspace.h"
 #include "contact/potential.h"
 #include "contact/separation.h"
@@ -239,28 +240,19 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
 
 // ---- What may couple.
 
-static bool boxes_are_within(const double *a, const double *b, double reach) {
-  for (int c = 0; c < 3; c++) {
-    double low_a = fmin(fmin(a[c], a[c + 3]), fmin(a[c + 6], a[c + 9]));
-    double high_a = fmax(fmax(a[c], a[c + 3]), fmax(a[c + 6], a[c + 9]));
-    double low_b = fmin(fmin(b[c], b[c + 3]), fmin(b[c + 6], b[c + 9]));
-    double high_b = fmax(fmax(b[c], b[c + 3]), fmax(b[c + 6], b[c + 9]));
-    if (low_a > high_b + reach || low_b > high_a + reach) return false;
-  }
-  return true;
-}
-
 static bool is_within(const ContactLayout *layout, const ContactPair *pair, double time,
                       const double *positions, double reach) {
-  double a[12], b[12], point[3];
-  contact_layout_gather(layout, pair->tets[0], positions, a);
   if (pair->tets[1] >= 0) {
-    contact_layout_gather(layout, pair->tets[1], positions, b);
-    return boxes_are_within(a, b, reach);
+    double box_a[6], box_b[6];
+    contact_bounds_of_tet(layout->def.tets[pair->tets[0]], positions, box_a);
+    contact_bounds_of_tet(layout->def.tets[pair->tets[1]], positions, box_b);
+    return contact_bounds_distance(box_a, box_b) <= reach + 3 * layout->nudge;
   }
+  double x[12], point[3];
+  contact_layout_gather(layout, pair->tets[0], positions, x);
   int h = layout->facings[pair->facing].halfspace;
   contact_layout_plane(layout, h, time, point);
-  return contact_separation_halfspace(a, point, layout->def.halfspaces[h].normal) <= reach;
+  return contact_separation_halfspace(x, point, layout->def.halfspaces[h].normal) <= reach;
 }
 
 typedef struct Visit {
