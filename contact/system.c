@@ -68,9 +68,9 @@ static Status check_margin(ContactSystem *system, double time, const double *pos
   if (contact_candidates_cover(&system->candidates, &system->layout, time, positions)) return STATUS_OK;
   system->counters.beyond_margin++;
   return status_fail(STATUS_RETRY,
-                     "contact: a vertex moved beyond the margin (%g m) of the last search within one "
-                     "step; take a smaller one",
-                     system->layout.margin);
+                     "contact: at t = %g s bodies have moved farther than the last search allows for; "
+                     "take a smaller step",
+                     time);
 }
 
 static void count(ContactCounters *counters, const ContactEvaluation *evaluation) {
