@@ -25,7 +25,7 @@ typedef struct FemMesh {
 // What reading mended, for `tetlap mesh` and the log.
 typedef struct FemMeshRepairs {
   int reoriented_tets;
-  int dropped_vertices; // not used by any tetrahedron
+  int dropped_vertices; // not used by any tetrahedron (gmsh drops some itself, uncounted, as in .msh 2.2)
 } FemMeshRepairs;
 
 // Where a mesh stands in a scene: x ↦ translate + R(scale · x).

@@ -307,7 +307,7 @@ static Status take_mesh(FemMeshSource *source, bool has_groups) {
 }
 
 // A surface must enclose a volume before gmsh is asked to fill it.
-static Status check_shell(void) {
+static Status check_shell(size_t *triangle_count) {
   Nodes nodes = {0};
   Elements elements = {0};
   int *triangles = NULL;
@@ -321,6 +321,7 @@ static Status check_shell(void) {
     status = status_fail(STATUS_INPUT, "%zu triangles are more than can be numbered", elements.count);
   if (status == STATUS_OK)
     status = fem_mesh_shell_check(nodes.positions, (int)elements.count, (const int(*)[3])triangles);
+  *triangle_count = elements.count;
   memory_free(triangles);
   free_elements(&elements);
   free_nodes(&nodes);
@@ -408,8 +409,15 @@ static Status add_volume(void) {
 }
 
 // Patches that bend by less than 40° become smooth surfaces that can be meshed anew.
-static Status remesh_surface(void) {
+static Status remesh_surface(size_t triangle_count) {
   int error = 0;
+  // gmsh splits the surface in parts that can be laid flat, and never ends where there are too few triangles
+  // to split (a tetrahedron has four): cut each into four, which changes no shape.
+  enum { ENOUGH_TRIANGLES = 256 };
+  for (size_t count = triangle_count; count < ENOUGH_TRIANGLES; count *= 4) {
+    gmshModelMeshRefine(&error);
+    if (error) return fail("refine the surface");
+  }
   const double degree = acos(-1) / 180;
   gmshModelMeshClassifySurfaces(40 * degree, 1, 1, 180 * degree, 1, &error);
   if (error) return fail("divide the surface into smooth patches");
@@ -418,10 +426,11 @@ static Status remesh_surface(void) {
 }
 
 static Status mesh_stl(double size) {
-  TRY(check_shell());
+  size_t triangle_count;
+  TRY(check_shell(&triangle_count));
   if (size > 0) {
     TRY(set_size(size));
-    TRY(remesh_surface());
+    TRY(remesh_surface(triangle_count));
   }
   TRY(add_volume());
   // Without a geometry the triangles are all there is: nothing may be cleared.

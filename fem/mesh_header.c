@@ -48,14 +48,6 @@ static Status check_msh(const char *text) {
   return status_fail(STATUS_INPUT, "does not begin with $MeshFormat and so is no gmsh mesh; export it again");
 }
 
-// An item of `bytes` at least: what a count beyond the file's size says is not true, and gmsh would allocate
-// it.
-static Status check_announced(const char *what, int what_length, long long count, size_t bytes, size_t size) {
-  if (count >= 0 && (unsigned long long)count <= size / bytes) return STATUS_OK;
-  return status_fail(STATUS_INPUT, "announces %lld %.*s in a file of %zu bytes; is it complete?", count,
-                     what_length, what, size);
-}
-
 // The kinds of volume elements that MEDIT knows and we do not.
 static Status refuse_medit_kind(const char *word, size_t length, long long count) {
   static const char *const kinds[] = {"Hexahedra",    "Prisms",      "Pentahedra", "Pyramids",
@@ -68,24 +60,61 @@ static Status refuse_medit_kind(const char *word, size_t length, long long count
   return STATUS_OK;
 }
 
+static const char *skip_word(const char *at) {
+  while (*at && !isspace((unsigned char)*at)) at++;
+  return at;
+}
+
+// How many numbers follow until something else does; `*end` is left there.
+static long long count_numbers(const char *at, const char **end) {
+  for (long long count = 0;; count++) {
+    at = skip_space(at);
+    char *after;
+    (void)strtod(at, &after);
+    if (after == at || (*after && !isspace((unsigned char)*after))) {
+      *end = at;
+      return count;
+    }
+    at = after;
+  }
+}
+
+// A MEDIT word, its count, and so many items of `size` numbers. gmsh makes up what is missing at the end.
+typedef struct MeditWord {
+  const char *name;
+  int size;
+} MeditWord;
+
+static Status check_medit_items(const MeditWord *word, long long count, long long number_count) {
+  if (count >= 0 && number_count % word->size == 0 && number_count / word->size == count) return STATUS_OK;
+  return status_fail(STATUS_INPUT,
+                     "announces %lld %s, but %lld numbers follow instead of %d for each; is it complete?",
+                     count, word->name, number_count, word->size);
+}
+
 // MEDIT: words, each followed by a count and so many lines (Frey 2001, "MEDIT: an interactive mesh
 // visualization software", INRIA RT-0253).
-static Status check_medit(const char *text, size_t size, long long *tet_count) {
+static Status check_medit(const char *text, long long *tet_count) {
+  static const MeditWord words[] = {{"Vertices", 4}, {"Tetrahedra", 5}};
   const char *at = skip_space(text);
   if (!begins_with(at, "MeshVersionFormatted"))
     return status_fail(STATUS_INPUT,
                        "does not begin with MeshVersionFormatted and so is no ascii MEDIT mesh; export it "
                        "again as .mesh or .msh");
   *tet_count = 0;
-  for (; *at; at = skip_space(at)) {
+  while (*(at = skip_space(at))) {
     const char *word = at;
-    while (*at && !isspace((unsigned char)*at)) at++;
-    if (*word == '#') at += strcspn(at, "\n");
+    at = *word == '#' ? word + strcspn(word, "\n") : skip_word(word);
     if (!isalpha((unsigned char)*word)) continue;
-    long long count = strtoll(at, NULL, 10);
-    TRY(check_announced(word, (int)(at - word), count, 2, size));
-    TRY(refuse_medit_kind(word, (size_t)(at - word), count));
-    if (at - word == 10 && begins_with(word, "Tetrahedra")) *tet_count += count;
+    size_t length = (size_t)(at - word);
+    char *after;
+    long long count = strtoll(at, &after, 10);
+    TRY(refuse_medit_kind(word, length, count));
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+      if (length == strlen(words[k].name) && begins_with(word, words[k].name)) {
+        TRY(check_medit_items(&words[k], count, count_numbers(after, &at)));
+        if (words[k].size == 5) *tet_count += count;
+      }
   }
   return STATUS_OK;
 }
@@ -164,6 +193,14 @@ static Status count_vtk_types(const char *at, const char *end, bool is_binary, l
   return STATUS_OK;
 }
 
+// An item of `bytes` at least: what a count beyond the file's size says is not true, and gmsh would allocate
+// it.
+static Status check_announced(const char *what, long long count, size_t bytes, size_t size) {
+  if (count >= 0 && (unsigned long long)count <= size / bytes) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "announces %lld %s in a file of %zu bytes; is it complete?", count, what,
+                     size);
+}
+
 // Legacy VTK (Kitware, "VTK File Formats"), up to version 4.2.
 static Status check_vtk(const char *text, size_t size, long long *tet_count) {
   if (!begins_with(text, "# vtk DataFile Version"))
@@ -175,8 +212,8 @@ static Status check_vtk(const char *text, size_t size, long long *tet_count) {
     return status_fail(STATUS_INPUT, "is no 'DATASET UNSTRUCTURED_GRID'; save its tetrahedra as one");
   *tet_count = 0;
   const char *points = find_line(text, size, "POINTS"), *cells = find_line(text, size, "CELLS");
-  if (points) TRY(check_announced("points", 6, strtoll(points, NULL, 10), 6, size));
-  if (cells) TRY(check_announced("cells", 5, strtoll(cells, NULL, 10), 4, size));
+  if (points) TRY(check_announced("points", strtoll(points, NULL, 10), 6, size));
+  if (cells) TRY(check_announced("cells", strtoll(cells, NULL, 10), 4, size));
   const char *types = find_line(text, size, "CELL_TYPES");
   if (!types) return status_fail(STATUS_INPUT, "has no CELL_TYPES; is it complete?");
   return count_vtk_types(types, text + size, find_line(text, size, "BINARY") != NULL, tet_count);
@@ -189,7 +226,7 @@ static Status check_text(const char *text, size_t size, FemMeshFormat format, lo
   case FEM_MESH_FORMAT_MSH:
     return check_msh(text);
   case FEM_MESH_FORMAT_MEDIT:
-    return check_medit(text, size, tet_count);
+    return check_medit(text, tet_count);
   case FEM_MESH_FORMAT_VTK:
     return check_vtk(text, size, tet_count);
   case FEM_MESH_FORMAT_STL:

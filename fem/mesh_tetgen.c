@@ -86,19 +86,14 @@ static Status open_reader(Reader *reader, const char *path) {
   return STATUS_OK;
 }
 
-// The first line's count. A line of n numbers takes 2n characters at least, so a count beyond that is a lie,
-// found before it is allocated for.
-static Status read_count(Reader *reader, const char *what, int limit, int numbers, int *count) {
-  long long value = 0;
-  int line = reader->line;
-  TRY(read_integer(reader, what, 1, limit, &value));
+// A line of n numbers takes 2n characters at least, so a count beyond that is a lie, found before it is
+// allocated for.
+static Status check_room(const Reader *reader, const char *what, long long count, size_t number_count) {
   size_t rest = strlen(reader->at);
-  if ((size_t)value > rest / (2 * (size_t)numbers) + 1)
-    return status_fail(STATUS_INPUT,
-                       "%s:%d: %s is %lld, but the file holds only %zu more characters; is it complete?",
-                       reader->path, line, what, value, rest);
-  *count = (int)value;
-  return STATUS_OK;
+  if ((size_t)count <= rest / (2 * number_count) + 1) return STATUS_OK;
+  return status_fail(STATUS_INPUT,
+                     "%s:%d: %lld %s are announced, but only %zu more characters follow; is it complete?",
+                     reader->path, reader->line, count, what, rest);
 }
 
 // What the first line of a .node file says beyond the count.
@@ -108,12 +103,14 @@ typedef struct NodeHead {
 } NodeHead;
 
 static Status read_node_head(Reader *reader, FemMeshSource *source, NodeHead *head) {
-  long long dimension = 3, marker_count = 0;
-  TRY(read_count(reader, "the number of nodes", FEM_MESH_MAX_VERTICES, 4, &source->vertex_count));
+  long long count = 0, dimension = 3, marker_count = 0;
+  TRY(read_integer(reader, "the number of nodes", 1, FEM_MESH_MAX_VERTICES, &count));
   TRY(read_integer(reader, "the dimension", 3, 3, &dimension));
   TRY(read_integer(reader, "the number of attributes", 0, 1000, &head->attribute_count));
   TRY(read_integer(reader, "the number of boundary markers", 0, 1, &marker_count));
+  TRY(check_room(reader, "nodes", count, 4));
   head->has_markers = marker_count > 0;
+  source->vertex_count = (int)count;
   source->positions = memory_zeroed((size_t)source->vertex_count, sizeof(double[3]));
   source->vertex_tags = memory_zeroed((size_t)source->vertex_count, sizeof *source->vertex_tags);
   if (!source->positions || !source->vertex_tags) return status_no_memory("the nodes of a mesh");
@@ -189,9 +186,9 @@ static Status read_nodes(Reader *reader, FemMeshSource *source) {
 }
 
 static Status read_tets(Reader *reader, FemMeshSource *source) {
-  long long corner_count = 4, attribute_count = 0, value = 0;
+  long long count = 0, corner_count = 4, attribute_count = 0, value = 0;
   double attribute;
-  TRY(read_count(reader, "the number of tetrahedra", FEM_MESH_MAX_TETS, 5, &source->tet_count));
+  TRY(read_integer(reader, "the number of tetrahedra", 1, FEM_MESH_MAX_TETS, &count));
   TRY(read_integer(reader, "the number of nodes of a tetrahedron", 4, 10, &corner_count));
   if (corner_count != 4)
     return status_fail(
@@ -199,6 +196,8 @@ static Status read_tets(Reader *reader, FemMeshSource *source) {
         "%s:%d: tetrahedra of %lld nodes; only linear ones of 4 nodes are known: run tetgen without -o2",
         reader->path, reader->line, corner_count);
   TRY(read_integer(reader, "the number of attributes", 0, 1000, &attribute_count));
+  TRY(check_room(reader, "tetrahedra", count, 5));
+  source->tet_count = (int)count;
   source->tets = memory_zeroed((size_t)source->tet_count, sizeof(int[4]));
   source->tet_tags = memory_zeroed((size_t)source->tet_count, sizeof *source->tet_tags);
   if (!source->tets || !source->tet_tags) return status_no_memory("the tetrahedra of a mesh");

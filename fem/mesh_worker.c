@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,12 +65,14 @@ static void limit_memory(size_t limit) {
   fclose(statm);
 }
 
-// The child: silent, mortal by the usual signals, without a core file.
+// The child: silent, mortal by the usual signals and with its parent, without a core file.
 static void be_child(int pipe, FemMeshReader reader, const char *path, const FemMeshOptions *options,
                      size_t memory_limit) {
   static const int signals[] = {SIGINT,  SIGTERM, SIGHUP, SIGPIPE, SIGALRM,
                                 SIGSEGV, SIGABRT, SIGBUS, SIGFPE,  SIGILL};
   for (size_t k = 0; k < sizeof signals / sizeof *signals; k++) signal(signals[k], SIG_DFL);
+  // A reader that outlives this program would run on unseen.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
   int nowhere = open("/dev/null", O_RDWR);
   if (nowhere >= 0) dup2(nowhere, STDIN_FILENO), dup2(nowhere, STDOUT_FILENO), dup2(nowhere, STDERR_FILENO);
