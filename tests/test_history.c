@@ -23,11 +23,10 @@ static void remove_path(void) {
   unlink(path);
 }
 
-static char *read_path(void) {
-  char *text;
+// The whole file; owned by the caller.
+static void read_path(char **text) {
   size_t size;
-  ck_assert_ok(file_read(path, &text, &size));
-  return text;
+  ck_assert_ok(file_read(path, text, &size));
 }
 
 static void create_two_columns(FemHistory *history) {
@@ -40,7 +39,8 @@ START_TEST(the_first_line_names_the_columns) {
   FemHistory history;
   create_two_columns(&history);
   ck_assert_ok(fem_history_add_row(&history, (double[]){0, 2.5}));
-  char *text = read_path();
+  char *text;
+  read_path(&text);
   ck_assert_str_eq(text, "time_s,force_top_bottom_x_N\n0,2.5\n");
   memory_free(text);
   fem_history_destroy(&history);
@@ -59,7 +59,9 @@ START_TEST(numbers_read_back_to_the_same_double) {
     ck_assert_ok(fem_history_add_row(&history, rows[r]));
   }
   ck_assert_ok(fem_history_write(&history));
-  char *text = read_path(), *place = strchr(text, '\n') + 1;
+  char *text, *place;
+  read_path(&text);
+  place = strchr(text, '\n') + 1;
   for (int r = 0; r < ROWS; r++)
     for (int c = 0; c < 2; c++, place++) {
       ck_assert(strtod(place, &place) == rows[r][c]);
@@ -76,7 +78,8 @@ START_TEST(numbers_that_are_not_finite_have_a_spelling) {
   create_two_columns(&history);
   ck_assert_ok(fem_history_add_column(&history, "third"));
   ck_assert_ok(fem_history_add_row(&history, (double[]){-NAN, INFINITY, -INFINITY}));
-  char *text = read_path();
+  char *text;
+  read_path(&text);
   ck_assert_str_eq(strchr(text, '\n') + 1, "nan,inf,-inf\n");
   memory_free(text);
   fem_history_destroy(&history);
@@ -89,7 +92,8 @@ START_TEST(a_title_with_a_comma_is_quoted) {
   ck_assert_ok(fem_history_add_column(&history, "a"));
   ck_assert_ok(fem_history_add_column(&history, "the \"big\", red one"));
   ck_assert_ok(fem_history_add_row(&history, (double[]){1, 2}));
-  char *text = read_path();
+  char *text;
+  read_path(&text);
   ck_assert_str_eq(text, "a,\"the \"\"big\"\", red one\"\n1,2\n");
   memory_free(text);
   fem_history_destroy(&history);
@@ -113,7 +117,8 @@ START_TEST(rows_reach_the_file_at_once_when_asked_and_never_in_part) {
   for (int r = 0; r < 3; r++) {
     ck_assert_ok(fem_history_add_row(&history, (double[]){r, r}));
     ck_assert_ok(fem_history_write(&history));
-    char *text = read_path();
+    char *text;
+    read_path(&text);
     int lines = 0;
     for (const char *c = text; *c; c++) lines += *c == '\n';
     ck_assert_int_eq(lines, r + 2);
@@ -140,7 +145,9 @@ START_TEST(a_failed_allocation_adds_no_half_row) {
   }
   ck_assert_int_gt(failures, 0);
   ck_assert_ok(fem_history_write(&history));
-  char *text = read_path(), *place = strchr(text, '\n') + 1;
+  char *text, *place;
+  read_path(&text);
+  place = strchr(text, '\n') + 1;
   for (int r = 0; r < 200; r++) {
     char line[32];
     int length = snprintf(line, sizeof line, "%d,%d\n", r, r);
@@ -175,7 +182,9 @@ START_TEST(a_killed_writer_leaves_whole_lines) {
   int exit_status;
   waitpid(child, &exit_status, 0);
   ck_assert(WIFSIGNALED(exit_status));
-  char *text = read_path(), *place = strchr(text, '\n') + 1;
+  char *text, *place;
+  read_path(&text);
+  place = strchr(text, '\n') + 1;
   int rows = 0;
   for (; *place; rows++, place++) {
     ck_assert(strtod(place, &place) == rows);
