@@ -45,7 +45,7 @@ typedef struct NET_NAME(NetKernel) {
                       ptrdiff_t ga_row, NET_REAL *second);
 
   // out[j] = max or sum over parts of in[part, j], tangents follow the value that won (the first of equals).
-  // `n` columns of the output's group, `parts` times as many in the input's.
+  // `n` columns of the output's group, `parts` (2 or 4) times as many in the input's.
   void (*pool)(NetPool pool, int rows, int n, int parts, int tangents, const NET_REAL *in, NET_REAL *out);
 
   // Adds the derivative with respect to in, whose rows are `in_row` apart.
