@@ -8,6 +8,7 @@
 #include "app/comparison.h"
 #include "app/job.h"
 #include "base/clock.h"
+#include "base/cpu.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -160,16 +161,15 @@ static int cheapest_waiting(const AppComparison *comparison) {
   return best;
 }
 
-// What the first run took tells what the others will: all but the overlap costs the same, and the overlap in
-// proportion to the models' cost of a pair.
+// What the first run took tells what the others will: all but the overlap costs the same, and the overlap the
+// model's cost of a pair for each pair that was asked for.
 static void announce_times(const AppComparison *comparison, int first) {
-  const AppComparisonModel *pilot = &comparison->models[first];
-  double overlap = pilot->result.phases.overlap, rest = pilot->result.wall_s - overlap;
+  const FemRunResult *pilot = &comparison->models[first].result;
   for (int m = 0; m < comparison->model_count; m++) {
     const AppComparisonModel *model = &comparison->models[m];
     if (!model->is_driven || model->has_run) continue;
-    double ratio = model->overlap.ops->seconds_per_pair / pilot->overlap.ops->seconds_per_pair;
-    double seconds = rest + overlap * ratio;
+    double overlap = (double)pilot->overlap_pairs * model->overlap.ops->seconds_per_pair / cpu_thread_count();
+    double seconds = pilot->wall_s - pilot->phases.overlap + overlap;
     log_info("%s will take about %.3g %s", model->name, seconds < 120 ? seconds : seconds / 60,
              seconds < 120 ? "s" : "minutes");
   }

@@ -13,8 +13,12 @@
 // A step that lifts the audited energy by more than this share of the scene's energy above its lowest value,
 // and by more than the second in one go, is taken back and tried again with a smaller step; at most so many
 // times in a row.
-static const double ENERGY_RISE_ALLOWED = 3e-4, ENERGY_RISE_OF_STEP = 1e-5, ENERGY_RETRY_FACTOR = 0.2;
-enum { ENERGY_RETRIES_IN_A_ROW = 8 };
+static const double ENERGY_RISE_ALLOWED = 3e-4, ENERGY_RISE_OF_STEP = 1e-5, RETRY_FACTOR = 0.2;
+enum { RETRIES_IN_A_ROW = 8 };
+
+// `auto` factorises up to this many unknowns. Beyond, a factor takes gigabytes and PCG, poor as it is for
+// slow and nearly incompressible scenes, is what fits.
+enum { MOST_UNKNOWNS_TO_FACTORISE = 200000 };
 
 typedef struct Run {
   const FemModel *model;        // borrowed
@@ -33,7 +37,8 @@ typedef struct Run {
 
 FemSolverKind fem_run_solver(const FemModel *model) {
   FemSolverKind kind = model->scene->solver;
-  return kind == FEM_SOLVER_AUTO ? FEM_SOLVER_CHOLMOD : kind;
+  if (kind != FEM_SOLVER_AUTO) return kind;
+  return model->unknown_count > MOST_UNKNOWNS_TO_FACTORISE ? FEM_SOLVER_PCG : FEM_SOLVER_CHOLMOD;
 }
 
 static double frame_time(const Run *run, int frame) {
@@ -106,10 +111,10 @@ static bool gains_energy(const FemAudit *before, const FemAudit *after) {
 }
 
 // Back to the last accepted state with a smaller step.
-static Status take_back(Run *run, double step) {
+static Status take_back(Run *run) {
   run->retries++;
-  run->result->energy_retries++;
-  return fem_integrator_restart(run->integrator, run->time, run->u, run->v, ENERGY_RETRY_FACTOR * step);
+  double step = RETRY_FACTOR * fem_integrator_stats(run->integrator).last_step;
+  return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
 }
 
 static Status observe(Run *run, const FemMeasures *measures) {
@@ -135,23 +140,33 @@ static void keep_state(Run *run, double time) {
   run->retries = 0;
 }
 
-// One step: taken, judged, shown, accepted.
-static Status advance(Run *run) {
-  double time;
-  bool is_onset;
-  TRY(fem_integrator_step(run->integrator, &time, &is_onset));
+// Steps, and measures the state that the step leads to, kept in u_new, v_new. RETRY: too far for the contact
+// lists.
+static Status step(Run *run, double *time, bool *is_onset, FemMeasures *measures) {
+  TRY(fem_integrator_step(run->integrator, time, is_onset));
   const double *u, *v;
-  TRY(fem_integrator_at(run->integrator, time, &u, &v));
+  TRY(fem_integrator_at(run->integrator, *time, &u, &v));
   size_t bytes = (size_t)run->model->unknown_count * sizeof(double);
   memcpy(run->u_new, u, bytes);
   memcpy(run->v_new, v, bytes);
-  fem_system_scatter(&run->system, time, run->u_new, run->v_new);
-  FemMeasures measures;
-  TRY(fem_recorder_measure(&run->recorder, time, &measures));
-  FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
-  if (gains_energy(&run->audit, &next) && run->retries < ENERGY_RETRIES_IN_A_ROW)
-    return take_back(run, time - run->time);
+  fem_system_scatter(&run->system, *time, run->u_new, run->v_new);
+  return fem_recorder_measure(&run->recorder, *time, measures);
+}
 
+// One step: taken, judged, shown, accepted.
+static Status advance(Run *run) {
+  double time = run->time;
+  bool is_onset;
+  FemMeasures measures;
+  Status status = step(run, &time, &is_onset, &measures);
+  bool may_retry = run->retries < RETRIES_IN_A_ROW;
+  if (status == STATUS_RETRY && may_retry) return take_back(run);
+  TRY(status);
+  FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
+  if (gains_energy(&run->audit, &next) && may_retry) {
+    run->result->energy_retries++;
+    return take_back(run);
+  }
   TRY(write_frames_until(run, time));
   run->audit = next;
   keep_state(run, time);
