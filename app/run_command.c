@@ -73,9 +73,9 @@ static Status run(const RunOptions *options) {
   FemRunResult result;
   Status status = fem_run(&job.model, &run_options, &result);
   log_progress_end();
-  // The summary tells of a run that failed, too; its own failure must not hide why.
   if (status) log_error("%s", status_message());
-  Status written = app_job_write_summary(&job, &result, status);
+  // The summary tells of a run that failed, too, unless nothing can be written.
+  Status written = status == STATUS_IO ? STATUS_OK : app_job_write_summary(&job, &result, status);
   if (!status && !written) conclude(&job, &result);
   if (options->job.is_json && !written) written = print_summary(&job, &result, status);
   fem_run_result_destroy(&result);
