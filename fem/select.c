@@ -15,11 +15,14 @@ static bool is_inside_box(const double p[3], const double low[3], const double h
 
 static bool is_selected(const FemSelectDef *select, const double p[3]) {
   switch (select->kind) {
-  case FEM_SELECT_ALL: return true;
-  case FEM_SELECT_BOX: return is_inside_box(p, select->box_min, select->box_max);
+  case FEM_SELECT_ALL:
+    return true;
+  case FEM_SELECT_BOX:
+    return is_inside_box(p, select->box_min, select->box_max);
   case FEM_SELECT_HALFSPACE:
     return vec3_dot(vec3_at(select->normal), vec3_sub(vec3_at(p), vec3_at(select->point))) <= 0;
-  case FEM_SELECT_GROUP: break;
+  case FEM_SELECT_GROUP:
+    break;
   }
   return false;
 }
@@ -37,7 +40,8 @@ static Status refuse_group(const FemSelectDef *select, const FemMesh *mesh) {
     snprintf(known + used, sizeof known - used, "%s%s", g ? ", " : "", mesh->groups[g].name);
   }
   return status_fail(STATUS_INPUT, "the mesh has no group '%s'; %s%s", select->group,
-                     mesh->group_count ? "it has " : "it has no named groups: select by box or halfspace", known);
+                     mesh->group_count ? "it has " : "it has no named groups: select by box or halfspace",
+                     known);
 }
 
 static Status refuse_empty(const FemMesh *mesh) {
@@ -46,12 +50,14 @@ static Status refuse_empty(const FemMesh *mesh) {
     low[i % 3] = fmin(low[i % 3], mesh->rest[i]);
     high[i % 3] = fmax(high[i % 3], mesh->rest[i]);
   }
-  return status_fail(STATUS_INPUT,
-                     "the selection holds no vertex; in the scene the mesh lies in [%g, %g, %g] … [%g, %g, %g]",
-                     low[0], low[1], low[2], high[0], high[1], high[2]);
+  return status_fail(
+      STATUS_INPUT,
+      "the selection holds no vertex; in the scene the mesh lies in [%g, %g, %g] … [%g, %g, %g]", low[0],
+      low[1], low[2], high[0], high[1], high[2]);
 }
 
-Status fem_select_vertices(const FemSelectDef *select, const FemMesh *mesh, int **vertices, int *vertex_count) {
+Status fem_select_vertices(const FemSelectDef *select, const FemMesh *mesh, int **vertices,
+                           int *vertex_count) {
   *vertices = NULL;
   *vertex_count = 0;
   if (select->kind == FEM_SELECT_GROUP) {

@@ -5,8 +5,9 @@
 
 #include "fem/scene.h"
 
-// The vertices of `mesh` (placed, at rest) that the selection holds, ascending; owned by the caller (memory_free).
-// STATUS_INPUT: it holds none, or the mesh has no such group; the message says what there is.
-Status fem_select_vertices(const FemSelectDef *select, const FemMesh *mesh, int **vertices, int *vertex_count);
+// The vertices of `mesh` (placed, at rest) that the selection holds, ascending; owned by the caller
+// (memory_free). STATUS_INPUT: it holds none, or the mesh has no such group; the message says what there is.
+Status fem_select_vertices(const FemSelectDef *select, const FemMesh *mesh, int **vertices,
+                           int *vertex_count);
 
 #endif
