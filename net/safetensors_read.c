@@ -170,7 +170,7 @@ static NetStatus read_entries(const Source *source, NetTensorFile *file) {
 
 NetStatus net_safetensors_read(const char *path, NetTensorFile *file) {
   *file = (NetTensorFile){0};
-  size_t size;
+  size_t size = 0;
   Source source = {0};
   NetStatus status = read_bytes(path, &file->bytes, &size);
   if (status == NET_OK) status = read_header(path, file, size, &source);

@@ -4,13 +4,13 @@
 //
 //   tpn  TetrahedronPairNet. Input: two tetrahedra, (2, 4, 3) coordinates; output: (status logit, volume).
 //
-//        vertex (3) ──► vertex layers ─(+ skip)─► [features | xyz] ─ pool over 4 ─► tetrahedron layers ─(+
-//        skip of the tetrahedron's 12)─► pool over 2 ─► combiner layers ─(+ skip of all 24)─► backbone layers
-//        ─► two heads
+//          vertex layers (+ skip) ──► [features | xyz] ──► pool over 4
+//            ──► tetrahedron layers (+ skip of its 12 coordinates) ──► pool over 2
+//            ──► combiner layers (+ skip of all 24) ──► backbone layers ──► status head, volume head
 //
 //        With the Unit normalisation the first tetrahedron is constant (the unit simplex); it is fed all the
 //        same, so that the input is 24 numbers whatever the normalisation.
-//   mlp  Dense layers: `input_count` → hidden → `output_count`, the last linear.
+//   mlp  Dense layers: input_count → hidden → output_count, the last linear.
 //
 // Every layer is linear followed by the activation; a skip is a linear map of the block's raw input, added
 // after the block's last activation; a head ends in a linear layer of width 1.
