@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "net/memory.h"
 
@@ -25,11 +26,11 @@ static NetStatus read_bytes(const char *path, char **bytes, size_t *size) {
   errno = 0;
   FILE *stream = fopen(path, "rb");
   if (!stream) return net_status_fail(NET_BAD_IO, "%s: cannot be opened: %s", path, strerror(errno));
-  long end = fseek(stream, 0, SEEK_END) == 0 ? ftell(stream) : -1;
+  struct stat about;
   NetStatus status = NET_OK;
-  if (end < 0 || fseek(stream, 0, SEEK_SET) != 0)
+  if (fstat(fileno(stream), &about) != 0 || !S_ISREG(about.st_mode))
     status = net_status_fail(NET_BAD_IO, "%s: cannot be read: no plain file", path);
-  *size = end < 0 ? 0 : (size_t)end;
+  *size = status == NET_OK ? (size_t)about.st_size : 0;
   *bytes = status == NET_OK ? net_memory_zeroed(*size, 1) : NULL;
   if (status == NET_OK && !*bytes) status = net_status_no_memory(path);
   if (status == NET_OK && fread(*bytes, 1, *size, stream) != *size)

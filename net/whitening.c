@@ -21,20 +21,26 @@ void net_whitening_destroy(NetWhitening *whitening) {
   *whitening = (NetWhitening){0};
 }
 
-// Standardised samples' correlations (n, n); deviation (n) is 1 where a feature does not vary.
+// Standardised samples' correlations (n, n). A feature that does not vary beyond the rounding of its mean has
+// deviation 1 and no correlation with anything, itself included.
 static void correlate(int n, int sample_count, const double *samples, const double *mean, double *deviation,
                       double *correlation) {
   for (int s = 0; s < sample_count; s++) {
     const double *x = samples + (size_t)s * (size_t)n;
     for (int i = 0; i < n; i++) {
-      double d = x[i] - mean[i];
-      for (int j = 0; j <= i; j++) correlation[i * n + j] += d * (x[j] - mean[j]) / sample_count;
+      double d = (x[i] - mean[i]) / sample_count;
+      for (int j = 0; j <= i; j++) correlation[i * n + j] += d * (x[j] - mean[j]);
     }
   }
-  for (int i = 0; i < n; i++) deviation[i] = correlation[i * n + i] > 0 ? sqrt(correlation[i * n + i]) : 1;
+  for (int i = 0; i < n; i++) deviation[i] = sqrt(correlation[i * n + i]);
   for (int i = 0; i < n; i++)
-    for (int j = 0; j <= i; j++)
-      correlation[j * n + i] = correlation[i * n + j] /= deviation[i] * deviation[j];
+    for (int j = 0; j <= i; j++) {
+      bool vary = deviation[i] > 1e-12 * fabs(mean[i]) && deviation[j] > 1e-12 * fabs(mean[j]);
+      double value = vary ? correlation[i * n + j] / (deviation[i] * deviation[j]) : 0;
+      correlation[j * n + i] = correlation[i * n + j] = value;
+    }
+  for (int i = 0; i < n; i++)
+    if (!(deviation[i] > 1e-12 * fabs(mean[i]))) deviation[i] = 1;
 }
 
 // One Jacobi rotation of rows and columns p, q of the symmetric a; the rows of v become the eigenvectors.
