@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap bench overlap`: how many pairs of tetrahedra a second the overlap models answer.
-//
-// All models take turns in every round, so that a machine that changes its pace changes it for all. A row's
-// figure is the median over the rounds; a round of a row takes about 50 ms, a call at most a quarter of a
-// second: slow models get smaller batches, and the row says how large.
+// `tetlap bench NAME`: what is measured, one file a NAME (app/bench_NAME.c).
 #ifndef TETLAP_APP_BENCH_H
 #define TETLAP_APP_BENCH_H
 

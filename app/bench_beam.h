@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap bench beam`: the same run of a beam with each linear solver, whole: forces, assembly,
+// factorisations, solutions, and all that the integrator does between them, up to a number of steps. A row's
+// ratio is its wall time over that of the first row.
+#ifndef TETLAP_APP_BENCH_BEAM_H
+#define TETLAP_APP_BENCH_BEAM_H
+
+// Runs the bench; arguments[0] is what the usage line begins with. Returns the exit code.
+int app_bench_beam_run(int argument_count, char **arguments);
+
+#endif

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/bench_builtin.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "app/scene_read.h"
+
+enum { TEXT_SIZE = 2048 };
+
+Status app_bench_builtin_beam(int nodes, FemSceneDef *scene) {
+  int side = (int)fmax(2, round(cbrt(nodes / 5.0)));               // vertices across
+  int length = (int)fmax(2, round(nodes / ((double)side * side))); // vertices along
+  double edge = 0.1 / (side - 1);
+  char text[TEXT_SIZE];
+  snprintf(text, sizeof text,
+           "title: A clamped beam falls under its weight\n"
+           "bodies:\n"
+           "  - name: beam\n"
+           "    mesh: {box: {size: [%.17g, 0.1, 0.1], cells: [%d, %d, %d]}}\n"
+           "    material: {law: neo_hookean, young: 1e6, poisson: 0.4, density: 1000, damping: 1e-3}\n"
+           "    fixed: [{box: {min: [-1e-9, -1, -1], max: [1e-9, 1, 1]}}]\n"
+           "effects: {gravity: [0, 0, -9.81]}\n"
+           "time: {end: 1}\n"
+           "output: {frames: 1, vtu: false}\n",
+           edge * (length - 1), length - 1, side - 1, side - 1);
+  return app_scene_read_text("(beam)", text, strlen(text), scene);
+}
+
+Status app_bench_builtin_drop(double stiffness, double tolerance, FemSceneDef *scene) {
+  char text[TEXT_SIZE];
+  snprintf(text, sizeof text,
+           "title: A block falls onto the ground\n"
+           "bodies:\n"
+           "  - name: block\n"
+           "    mesh: {box: {size: [0.2, 0.2, 0.2], cells: [4, 4, 4]}}\n"
+           "    place: {translate: [0, 0, 0.05]}\n"
+           "    material: {law: neo_hookean, young: 1e6, poisson: 0.4, density: 1000}\n"
+           "obstacles:\n"
+           "  - {name: ground, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}}\n"
+           "effects: {gravity: [0, 0, -9.81]}\n"
+           "contact: {stiffness: %.17g}\n"
+           "time: {end: 0.3, tolerance: %.17g}\n"
+           "output: {frames: 30, vtu: false}\n",
+           stiffness, tolerance);
+  return app_scene_read_text("(drop)", text, strlen(text), scene);
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scenes that benches bring along, so that they need no file.
+#ifndef TETLAP_APP_BENCH_BUILTIN_H
+#define TETLAP_APP_BENCH_BUILTIN_H
+
+#include "fem/scene.h"
+
+// A beam of about `nodes` (≥ 24) vertices, five times as long as thick (0.1 m), of cubes cut into
+// tetrahedra, clamped at one end, that falls under gravity: neo-Hookean, E 1 MPa, ν 0.4, 1000 kg/m³, damped;
+// 1 s. The caller destroys the scene.
+Status app_bench_builtin_beam(int nodes, FemSceneDef *scene);
+
+// A block of 0.2 m, 4³ cells, that falls 5 cm flat onto the ground and is not damped: neo-Hookean, E 1 MPa,
+// ν 0.4, 1000 kg/m³; 0.3 s. `stiffness` κ [Pa], `tolerance` of the time integration as in a scene file.
+Status app_bench_builtin_drop(double stiffness, double tolerance, FemSceneDef *scene);
+
+#endif

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap bench drop`: a block that falls onto the ground, for every contact stiffness and tolerance of a
+// list: how much energy the run gains at most, and what keeping it low costs.
+#ifndef TETLAP_APP_BENCH_DROP_H
+#define TETLAP_APP_BENCH_DROP_H
+
+// Runs the bench; arguments[0] is what the usage line begins with. Returns the exit code.
+int app_bench_drop_run(int argument_count, char **arguments);
+
+#endif

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/bench_options.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+
+static const struct argp_option option_table[] = {
+    {"threads", 't', "N", 0, "Threads (default: 1)", 2},
+    {"repeat", 'r', "N", 0, "Rounds; the median is reported", 2},
+    {"json", 'j', NULL, 0, "Print one JSON object a row", 3},
+    {"csv", 'c', NULL, 0, "Print comma-separated values", 3},
+    {"markdown", 'M', NULL, 0, "Print a Markdown table", 3},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  AppBenchOptions *options = state->input;
+  switch (key) {
+  case 't':
+    options->threads = app_bench_options_count(state, "threads", text, 1024);
+    return 0;
+  case 'r':
+    options->repeats = app_bench_options_count(state, "repeat", text, APP_BENCH_MAX_REPEATS);
+    return 0;
+  case 'j':
+    options->format = APP_BENCH_FORMAT_JSON;
+    return 0;
+  case 'c':
+    options->format = APP_BENCH_FORMAT_CSV;
+    return 0;
+  case 'M':
+    options->format = APP_BENCH_FORMAT_MARKDOWN;
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+const struct argp app_bench_options_argp = {.options = option_table, .parser = parse};
+
+static int find(const char *word, size_t length, const char *const *names, int count) {
+  int found = 0;
+  while (found < count && !(strlen(names[found]) == length && strncmp(names[found], word, length) == 0))
+    found++;
+  return found;
+}
+
+void app_bench_options_choose(struct argp_state *state, const char *option, const char *text,
+                              const char *const *names, int count, bool *wanted) {
+  char known[256] = "";
+  size_t used = 0;
+  for (int i = 0; i < count; i++) {
+    text_append(known, sizeof known, &used, "%s%s", i ? ", " : "", names[i]);
+    wanted[i] = false;
+  }
+  for (const char *rest = text;; rest++) {
+    size_t length = strcspn(rest, ",");
+    int found = find(rest, length, names, count);
+    if (found == count) {
+      argp_error(state, "--%s has '%.*s'; give some of: %s", option, (int)length, rest, known);
+      return;
+    }
+    wanted[found] = true;
+    rest += length;
+    if (!*rest) return;
+  }
+}
+
+int app_bench_options_count(struct argp_state *state, const char *option, const char *text, int largest) {
+  char *end;
+  long value = strtol(text, &end, 10);
+  if (end == text || *end || value < 1 || value > largest)
+    argp_error(state, "--%s is '%s'; give a whole number from 1 to %d", option, text, largest);
+  return (int)value;
+}
+
+int app_bench_options_numbers(struct argp_state *state, const char *option, const char *text, double smallest,
+                              double largest, double *numbers) {
+  const char *rest = text;
+  for (int count = 0; count < APP_BENCH_MAX_LIST; rest++) {
+    char *end;
+    double value = strtod(rest, &end);
+    if (end == rest || (*end && *end != ',') || !(value >= smallest && value <= largest)) break;
+    numbers[count++] = value;
+    rest = end;
+    if (!*rest) return count;
+  }
+  argp_error(state, "--%s is '%s'; give up to %d numbers from %g to %g, separated by commas", option, text,
+             APP_BENCH_MAX_LIST, smallest, largest);
+  return 0;
+}

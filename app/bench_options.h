@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all benches take on the command line, and how they read lists.
+#ifndef TETLAP_APP_BENCH_OPTIONS_H
+#define TETLAP_APP_BENCH_OPTIONS_H
+
+#include <argp.h>
+#include <stdbool.h>
+
+enum { APP_BENCH_MAX_REPEATS = 1000, APP_BENCH_MAX_LIST = 16 };
+
+typedef enum AppBenchFormat {
+  APP_BENCH_FORMAT_TABLE,
+  APP_BENCH_FORMAT_JSON,
+  APP_BENCH_FORMAT_CSV,
+  APP_BENCH_FORMAT_MARKDOWN,
+} AppBenchFormat;
+
+typedef struct AppBenchOptions {
+  int threads; // of OpenMP and the solvers
+  int repeats; // rounds
+  AppBenchFormat format;
+} AppBenchOptions;
+
+// --threads, --repeat, --json, --csv and --markdown as an argp child; its input is AppBenchOptions, which
+// holds the bench's own defaults before.
+extern const struct argp app_bench_options_argp;
+
+// Readers of an option's text. Each ends the program with what would be right (argp_error) if it is wrong.
+// Marks each name of a comma-separated list in `wanted` (count), the others not.
+void app_bench_options_choose(struct argp_state *state, const char *option, const char *text,
+                              const char *const *names, int count, bool *wanted);
+int app_bench_options_count(struct argp_state *state, const char *option, const char *text, int largest);
+// Fills `numbers` (APP_BENCH_MAX_LIST) from a comma-separated list; returns how many.
+int app_bench_options_numbers(struct argp_state *state, const char *option, const char *text, double smallest,
+                              double largest, double *numbers);
+
+#endif

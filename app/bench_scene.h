@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap bench scene SCENE…`: whole runs of scenes, with each of several overlap models: wall and processor
+// time, steps, and the time by phases (of the round whose wall time is the median, so that they add up).
+// Nothing is written.
+#ifndef TETLAP_APP_BENCH_SCENE_H
+#define TETLAP_APP_BENCH_SCENE_H
+
+// Runs the bench; arguments[0] is what the usage line begins with. Returns the exit code.
+int app_bench_scene_run(int argument_count, char **arguments);
+
+#endif

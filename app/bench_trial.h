@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene that is run over and over, without writing anything.
+#ifndef TETLAP_APP_BENCH_TRIAL_H
+#define TETLAP_APP_BENCH_TRIAL_H
+
+#include "app/bench_timer.h"
+#include "fem/model.h"
+#include "fem/run.h"
+
+// Must not be moved once it is begun: the model points at the scene.
+typedef struct AppBenchTrial {
+  FemSceneDef scene;    // owned
+  FemModel model;       // owned
+  long long step_limit; // a run ends after so many steps; 0: at the scene's end
+  AppBenchTimer timer;
+  FemRunPhases *phases; // by round                     (repeats)
+  FemRunResult result;  // of the last round, owned
+} AppBenchTrial;
+
+// `trial->scene` has been read (a failed reading leaves it zeroed); builds the model. A zeroed trial, and one
+// whose beginning failed, can be ended.
+Status app_bench_trial_begin(AppBenchTrial *trial, const AppBenchOptions *options, long long step_limit);
+void app_bench_trial_end(AppBenchTrial *trial);
+
+// One run; an AppBenchAct.
+Status app_bench_trial_run(void *trial, int round);
+
+// The phases of the round whose wall time is the median.
+FemRunPhases app_bench_trial_phases(const AppBenchTrial *trial, int rounds);
+
+// The phases by name; `other` is what the named ones leave of the total [s].
+enum { APP_BENCH_PHASE_COUNT = 10 };
+extern const char *const app_bench_phases[APP_BENCH_PHASE_COUNT];
+void app_bench_trial_split(const FemRunPhases *phases, double seconds[APP_BENCH_PHASE_COUNT]);
+
+#endif
