@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Learned overlap volumes that can be trusted with forces:
+//
+//     pair ─ gate ─► empty: V = 0
+//              └──► centre ──► frame P, V₀ ──► features f ──► ρ(f) ──► V = V₀ exp φ
+//
+// φ = ln 1.28 + ρ(f) − ρ(f*) with f* the features of the onset P*: whatever the network ρ has learned, V and
+// the true volume become equal as the overlap vanishes. V has all derivatives wherever it is positive; what
+// the exact model has by symmetry (order of vertices and of tetrahedra, rigid motion, scale, net force and
+// torque of a pair) it has to rounding.
+//
+// The network is anything with the two operations below; without one φ = ln 1.28. Pairs too flat for the
+// frame, or whose centre Newton's method does not find, are answered by the exact model and flagged FALLBACK
+// (their Hessian by clipping).
+#ifndef TETLAP_CONTACT_GEO_H
+#define TETLAP_CONTACT_GEO_H
+
+#include "contact/geo_features.h"
+#include "contact/geo_frame.h"
+#include "contact/overlap.h"
+
+enum { CONTACT_GEO_CHUNK = 16 }; // a network is given at most so many pairs at once
+
+// ρ. All functions may be called from several threads at once.
+typedef struct ContactGeoNetwork {
+  const void *self;  // borrowed
+  int feature_count; // must have a feature set
+  // ρ (count) and, unless NULL, dρ/df (count, feature_count) of features (count, feature_count).
+  Status (*eval)(const void *self, int count, const double *features, double *value, double *gradient);
+  // second (n, n) = Dᵀ ρ″ D: second derivatives of ρ at one f along all pairs of n directions in feature
+  // space (n, feature_count); n at most 12. NULL: the model has no Hessian.
+  Status (*curve)(const void *self, const double *features, int direction_count, const double *directions,
+                  double *second);
+} ContactGeoNetwork;
+
+typedef struct ContactGeoModel {
+  const ContactGeoFeatureSet *set; // NULL: no network, φ = ln 1.28
+  ContactGeoNetwork network;
+  double offset; // ln 1.28 − ρ(f*)
+} ContactGeoModel;
+
+// `network` NULL: the constant. STATUS_INPUT: there is no feature set of that size; else what ρ(f*) fails
+// with.
+Status contact_geo_model_create(ContactGeoModel *model, const ContactGeoNetwork *network);
+
+// Evaluates the batch in this thread; a failure is the network's.
+Status contact_geo_eval(const ContactGeoModel *model, const ContactOverlapBatch *batch);
+
+// What training needs of one pair: features (set->count), ln V₀, and their changes along each of `count`
+// directions (count, 24) in the coordinates: (count, set->count) and (count). Only with INSIDE anything is
+// written.
+ContactGeoOutcome contact_geo_features_tangent(const ContactGeoFeatureSet *set, const double pair[24],
+                                               int count, const double *directions, double *features,
+                                               double *feature_changes, double *log_volume,
+                                               double *log_volume_changes);
+
+#endif

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The analytic centre of eight half-spaces, c = argmax Σ_k log s_k, by Newton's method.
+//
+// With m_k = ∇s_k / s_k the gradient is Σ m_k and the Hessian −Σ m_k m_kᵀ. A step moves slack k to
+// s_k (1 + α r_k), r = P 1 with P the projector onto the columns of m: slacks are scaled, never subtracted,
+// and the point itself is not needed.
+#ifndef TETLAP_CONTACT_GEO_CENTRE_H
+#define TETLAP_CONTACT_GEO_CENTRE_H
+
+#include <stdbool.h>
+
+#include "contact/geo_lanes.h"
+
+enum { CONTACT_GEO_MAX_STEPS = 40 };
+
+// Moves `slack`, all positive at the start, to the centre. Returns the number of steps, 0 if it did not
+// converge.
+int contact_geo_centre(const GeoColumns *normal, double slack[GEO_LANES]);
+
+// The columns of m are replaced by an orthonormal basis of their span (Gram–Schmidt, each column
+// orthogonalised `passes` times); `length` gets the diagonal of R in m = Q R.
+void contact_geo_orthonormalise(GeoColumns *m, int passes, double length[3]);
+
+#endif

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/geo_gate.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/vec3.h"
+
+// Barycentric coordinates carry errors of some ε: what is no farther out than this counts as on the plane.
+#define NOISE 1e-13
+// A point this close to a plane is on it.
+#define LEAST_SLACK 1e-15
+
+// The planes of one tetrahedron before the division by det: exact where the coordinates are on a grid.
+typedef struct Planes {
+  Vec3 origin;
+  Vec3 normal[4]; // det · ∇λ_k [m²]
+  double det;     // [m³]
+} Planes;
+
+static Planes planes_of(const double tet[12]) {
+  Planes planes = {.origin = vec3_at(tet)};
+  Vec3 edge[4];
+  for (int v = 1; v < 4; v++) edge[v] = vec3_sub(vec3_at(tet + 3 * v), planes.origin);
+  planes.normal[1] = vec3_cross(edge[2], edge[3]);
+  planes.normal[2] = vec3_cross(edge[3], edge[1]);
+  planes.normal[3] = vec3_cross(edge[1], edge[2]);
+  planes.normal[0] = vec3_scale(-1, vec3_add(vec3_add(planes.normal[1], planes.normal[2]), planes.normal[3]));
+  planes.det = vec3_dot(edge[1], planes.normal[1]);
+  return planes;
+}
+
+static bool is_flat(const double tet[12], double det) {
+  double longest = 0; // squared
+  for (int v = 1; v < 4; v++)
+    for (int w = 0; w < v; w++) {
+      Vec3 edge = vec3_sub(vec3_at(tet + 3 * v), vec3_at(tet + 3 * w));
+      longest = fmax(longest, vec3_dot(edge, edge));
+    }
+  return !(fabs(det) > CONTACT_GEO_FLATTEST * longest * sqrt(longest));
+}
+
+// The coordinates, in the tetrahedron of `planes`, of four points. Heights are summed before they are
+// divided, so that a point that is exactly in a plane gets an exact zero.
+static void locate(const Planes *planes, const double points[12], double across[4][4]) {
+  double inverse = 1 / planes->det;
+  for (int v = 0; v < 4; v++) {
+    Vec3 p = vec3_sub(vec3_at(points + 3 * v), planes->origin);
+    double height[4];
+    height[0] = planes->det;
+    for (int k = 1; k < 4; k++) height[0] -= height[k] = vec3_dot(planes->normal[k], p);
+    for (int k = 0; k < 4; k++) across[v][k] = height[k] * inverse;
+  }
+}
+
+// One plane has all four points on it or beyond.
+static bool is_beyond_a_plane(double across[4][4]) {
+  double highest[4];
+  for (int k = 0; k < 4; k++)
+    highest[k] = fmax(fmax(across[0][k], across[1][k]), fmax(across[2][k], across[3][k]));
+  return fmin(fmin(highest[0], highest[1]), fmin(highest[2], highest[3])) <= 0;
+}
+
+static bool is_inside(double across[4][4]) {
+  double lowest = 0;
+  for (int v = 0; v < 4; v++)
+    for (int k = 0; k < 4; k++) lowest = fmin(lowest, across[v][k]);
+  return lowest >= -NOISE;
+}
+
+// The part of an edge that is inside or on the boundary, as two parameters between 0 and 1; false if there is
+// none. An end on a plane stays when the rest of the edge is beyond: it may be a vertex of the intersection,
+// as where two tetrahedra share a vertex. An edge within a plane is not cut by it.
+static bool clip(const double p[4], const double q[4], double range[2]) {
+  bool is_out = false;
+  double from = 0, to = 1;
+  for (int k = 0; k < 4; k++) {
+    double at = p[k] / (p[k] - q[k]);
+    is_out |= p[k] < -NOISE && q[k] < -NOISE;
+    bool enters = p[k] < -NOISE || (p[k] < 0 && q[k] > NOISE);
+    bool leaves = q[k] < -NOISE || (q[k] < 0 && p[k] > NOISE);
+    from = enters ? fmax(from, q[k] > 0 ? at : 1) : from;
+    to = leaves ? fmin(to, p[k] > 0 ? at : 0) : to;
+  }
+  range[0] = from, range[1] = to;
+  return !is_out && from <= to + NOISE;
+}
+
+// Adds the ends of what is left of one tetrahedron's six edges to the slacks `own` and `other`; how many.
+static int add_ends(double across[4][4], double own[4], double other[4]) {
+  int count = 0;
+  for (int v = 1; v < 4; v++)
+    for (int w = 0; w < v; w++) {
+      double range[2];
+      if (!clip(across[v], across[w], range)) continue;
+      double at = range[0] + range[1];
+      own[v] += 2 - at, own[w] += at;
+      for (int k = 0; k < 4; k++) other[k] += 2 * across[v][k] + at * (across[w][k] - across[v][k]);
+      count += 2;
+    }
+  return count;
+}
+
+static void write_normals(const Planes planes[2], GeoColumns *normal) {
+  for (int t = 0; t < 2; t++)
+    for (int k = 0; k < 4; k++) {
+      Vec3 n = vec3_scale(1 / planes[t].det, planes[t].normal[k]);
+      int l = 4 * t + k;
+      normal->column[0][l] = n.x, normal->column[1][l] = n.y, normal->column[2][l] = n.z;
+    }
+}
+
+ContactGeoOutcome contact_geo_gate(ContactGeoGate *gate, const double pair[24]) {
+  Planes planes[2] = {planes_of(pair), planes_of(pair + 12)};
+  for (int t = 0; t < 2; t++)
+    if (is_flat(pair + 12 * t, planes[t].det)) return CONTACT_GEO_UNFIT;
+  write_normals(planes, &gate->normal);
+  locate(&planes[1], pair, gate->across[0]);
+  locate(&planes[0], pair + 12, gate->across[1]);
+  if (is_beyond_a_plane(gate->across[0]) || is_beyond_a_plane(gate->across[1])) return CONTACT_GEO_EMPTY;
+  gate->is_enclosed = is_inside(gate->across[0]) || is_inside(gate->across[1]);
+
+  memset(gate->slack, 0, sizeof gate->slack);
+  int count = add_ends(gate->across[0], gate->slack, gate->slack + 4);
+  count += add_ends(gate->across[1], gate->slack + 4, gate->slack);
+  if (count == 0) return CONTACT_GEO_EMPTY;
+  bool is_inside_all = true;
+  for (int k = 0; k < GEO_LANES; k++) is_inside_all &= (gate->slack[k] /= count) > LEAST_SLACK;
+  return is_inside_all ? CONTACT_GEO_INSIDE : CONTACT_GEO_EMPTY;
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether two tetrahedra intersect, and a point inside the intersection if they do: the first step of the
+// overlap model `geo`.
+//
+// Plane k of a pair is where one barycentric coordinate vanishes, of the first tetrahedron for k = 0 … 3, of
+// the second for k = 4 … 7; its slack s_k at a point is that coordinate. The twelve edges are clipped with
+// the other tetrahedron's planes. Every vertex of the intersection is an end of a clipped edge, so the mean
+// of all ends lies strictly inside; and a point on an edge is a combination of slacks at the edge's ends,
+// which loses no digits where the intersection is small.
+#ifndef TETLAP_CONTACT_GEO_GATE_H
+#define TETLAP_CONTACT_GEO_GATE_H
+
+#include <stdbool.h>
+
+#include "contact/geo_lanes.h"
+
+// A tetrahedron with det < CONTACT_GEO_FLATTEST · (longest edge)³ is left to the exact model.
+#define CONTACT_GEO_FLATTEST 1e-5
+
+typedef enum ContactGeoOutcome {
+  CONTACT_GEO_INSIDE, // they intersect, everything asked for is there
+  CONTACT_GEO_EMPTY,  // no common interior, down to rounding: V = 0
+  CONTACT_GEO_UNFIT,  // to be answered by the exact model: too flat, or numbers that cannot be trusted
+} ContactGeoOutcome;
+
+typedef struct ContactGeoGate {
+  GeoColumns normal;       // ∇ of the slacks [1/m]
+  double slack[GEO_LANES]; // at a point inside; each tetrahedron's four sum to 1
+  double across[2][4][4];  // [t][v][k]: barycentric coordinate k, in the other, of vertex v of t
+  bool is_enclosed;        // all vertices of one are in the other, but for rounding
+} ContactGeoGate;
+
+// With EMPTY only normal and across, with UNFIT nothing is valid.
+ContactGeoOutcome contact_geo_gate(ContactGeoGate *gate, const double pair[24]);
+
+#endif

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The overlap model `geo` before any network: the gate, the analytic centre, the frame, the features, and how
+// each of them changes with the coordinates.
+#include "suite.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "contact/exact.h"
+#include "contact/geo_centre.h"
+#include "contact/geo_features.h"
+#include "contact/geo_frame.h"
+#include "pairs.h"
+
+static const double corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+static const int set_sizes[] = {36, 70, 100};
+
+// The frame of the first members of a class that have one; false at the end of the class.
+static bool next_frame(int class_index, int *member, PairCase *pair, ContactGeoFrame *frame) {
+  for (; *member < 200; (*member)++) {
+    *pair = pairs_make(class_index, *member);
+    if (contact_geo_frame(frame, pair->x) != CONTACT_GEO_INSIDE) continue;
+    (*member)++;
+    return true;
+  }
+  return false;
+}
+
+static int class_named(const char *name) {
+  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
+    if (strcmp(pairs_classes[c].name, name) == 0) return c;
+  ck_abort_msg("no class '%s'", name);
+}
+
+START_TEST(the_gate_agrees_with_exact_in_every_class) {
+  int inside = 0, empty = 0;
+  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
+    for (int member = 0; member < 300; member++) {
+      PairCase pair = pairs_make(c, member);
+      ContactGeoGate gate;
+      ContactGeoOutcome outcome = contact_geo_gate(&gate, pair.x);
+      double volume;
+      unsigned flags;
+      ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &volume, NULL, NULL, &flags));
+      // what the gate leaves to exact is right; overlaps thinner than rounding may be missed, none invented
+      if (outcome == CONTACT_GEO_UNFIT) continue;
+      bool is_missed = outcome == CONTACT_GEO_EMPTY && volume <= 1e-15 * pairs_smaller_volume(pair.x);
+      ck_assert_msg((volume > 0) == (outcome == CONTACT_GEO_INSIDE) || is_missed,
+                    "%s, member %d: the gate says %d, V = %g", pairs_classes[c].name, member, outcome,
+                    volume);
+      if (outcome == CONTACT_GEO_INSIDE) ck_assert(gate.is_enclosed || !(flags & CONTACT_OVERLAP_ENCLOSED));
+      *(outcome == CONTACT_GEO_INSIDE ? &inside : &empty) += 1;
+    }
+  ck_assert_int_gt(inside, 3000);
+  ck_assert_int_gt(empty, 3000);
+}
+END_TEST
+
+START_TEST(only_flat_and_sliver_shaped_tetrahedra_are_left_to_exact) {
+  for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
+    bool is_flat = strstr(pairs_classes[c].name, "sliver") || strcmp(pairs_classes[c].name, "flat") == 0;
+    for (int member = 0; member < 300; member++) {
+      PairCase pair = pairs_make(c, member);
+      ContactGeoFrame frame;
+      bool is_unfit = contact_geo_frame(&frame, pair.x) == CONTACT_GEO_UNFIT;
+      ck_assert_msg(!is_unfit || is_flat, "%s, member %d", pairs_classes[c].name, member);
+      ck_assert_msg(is_unfit || !strstr(pairs_classes[c].name, "sliver"), "member %d", member);
+    }
+  }
+}
+END_TEST
+
+START_TEST(a_simplex_has_its_centroid_in_the_middle) {
+  double x[24];
+  memcpy(x, corner, sizeof corner);
+  for (int i = 0; i < 12; i++)
+    x[12 + i] = 0.25 + 1e4 * (corner[i] - 0.25); // the planes of the other far away
+  ContactGeoFrame frame;
+  ck_assert_int_eq(contact_geo_frame(&frame, x), CONTACT_GEO_INSIDE);
+  GeoMatrix onset;
+  contact_geo_onset(&onset);
+  ck_assert(frame.is_enclosed);
+  ck_assert_near(frame.volume * 1.28, 1.0 / 6, 1e-7);
+  for (int k = 0; k < 8; k++) {
+    ck_assert_near(frame.slack[k], 0.25, 1e-7);
+    for (int l = 0; l < 8; l++) ck_assert_near(frame.projector.row[k][l], onset.row[k][l], 2e-4);
+  }
+}
+END_TEST
+
+START_TEST(of_two_equal_tetrahedra_every_plane_counts_half) {
+  double x[24];
+  memcpy(x, corner, sizeof corner), memcpy(x + 12, corner, sizeof corner);
+  ContactGeoFrame frame;
+  ck_assert_int_eq(contact_geo_frame(&frame, x), CONTACT_GEO_INSIDE);
+  for (int k = 0; k < 8; k++) {
+    ck_assert_near(frame.slack[k], 0.25, 1e-15);
+    for (int l = 0; l < 8; l++)
+      ck_assert_near(frame.projector.row[k][l], ((k % 4 == l % 4) - 0.25) / 2, 1e-15);
+  }
+  ck_assert_near(frame.volume, 100.0 / 6 / (128 * sqrt(8)), 1e-15);
+}
+END_TEST
+
+// Scaled planes sum to zero, slacks are barycentric coordinates of one point, P is a projector of rank 3.
+START_TEST(at_the_centre_the_logarithms_of_the_slacks_are_stationary) {
+  int seen = 0;
+  for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
+    PairCase pair;
+    ContactGeoFrame frame;
+    for (int member = 0; next_frame(c, &member, &pair, &frame); seen++) {
+      double least = INFINITY, trace = 0;
+      for (int k = 0; k < 8; k++) least = fmin(least, frame.slack[k]);
+      Vec3 point[2] = {{0, 0, 0}, {0, 0, 0}};
+      for (int k = 0; k < 8; k++) {
+        trace += frame.projector.row[k][k];
+        point[k / 4] = vec3_add(
+            point[k / 4], vec3_scale(frame.slack[k], vec3_sub(vec3_at(pair.x + 3 * k), vec3_at(pair.x))));
+        double row = 0, square = 0;
+        for (int l = 0; l < 8; l++) {
+          row += frame.projector.row[k][l];
+          square += frame.projector.row[k][l] * frame.projector.row[k][l];
+        }
+        ck_assert_near(row, 0, 1e-15 / least + 1e-13);
+        ck_assert_near(square, frame.projector.row[k][k], 1e-14);
+      }
+      ck_assert_msg(least > 0, "%s: a slack of %g", pairs_classes[c].name, least);
+      ck_assert_near(trace, 3, 1e-14);
+      ck_assert_int_le(frame.step_count, 12);
+      ck_assert_near(vec3_length(vec3_sub(point[0], point[1])) / pairs_extent(pair.x), 0, 1e-12);
+    }
+  }
+  ck_assert_int_gt(seen, 2000);
+}
+END_TEST
+
+// A thin or tiny overlap, down to V/v of 1e-18.
+START_TEST(newton_finds_the_centre_of_the_smallest_overlaps) {
+  Random random = random_seeded(5, 0);
+  int most = 0, total = 0;
+  for (int trial = 0; trial < 2000; trial++) {
+    PairCase pair = pairs_make(class_named("vertex on face"), trial);
+    Vec3 n = pairs_face_normal(&pair, 0);
+    double depth = pow(10, random_between(&random, -6, -1));
+    for (int i = 4; i < 8; i++)
+      pairs_set(&pair, i, vec3_sub(pairs_vertex(&pair, i), vec3_scale(depth / vec3_length(n), n)));
+    ContactGeoFrame frame;
+    ck_assert_int_eq(contact_geo_frame(&frame, pair.x), CONTACT_GEO_INSIDE);
+    if (frame.step_count > most) most = frame.step_count;
+    total += frame.step_count;
+  }
+  ck_assert_int_le(most, 10);
+  ck_assert_int_le(total, 6 * 2000);
+}
+END_TEST
+
+static void map_affinely(const double map[12], const double x[24], double image[24]) {
+  for (int i = 0; i < 24; i++) {
+    const double *row = map + 4 * (i % 3), *p = x + i - i % 3;
+    image[i] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
+  }
+}
+
+START_TEST(an_affine_map_changes_neither_slacks_nor_projector) {
+  Random random = random_seeded(6, 0);
+  PairCase pair;
+  ContactGeoFrame frame, image;
+  int seen = 0;
+  for (int member = 0; next_frame(class_named("uniform"), &member, &pair, &frame); seen++) {
+    double map[12], x[24];
+    for (int i = 0; i < 12; i++) map[i] = random_between(&random, -1, 1) + 2 * (i % 5 == 0);
+    map_affinely(map, pair.x, x);
+    double det = vec3_det4((Vec3){0, 0, 0}, (Vec3){map[0], map[4], map[8]}, (Vec3){map[1], map[5], map[9]},
+                           (Vec3){map[2], map[6], map[10]});
+    if (fabs(det) < 0.5) continue;
+    ck_assert_int_eq(contact_geo_frame(&image, x), CONTACT_GEO_INSIDE);
+    double allowed = 1e-11 * frame.step_count;
+    for (int k = 0; k < 8; k++) ck_assert_near(frame.slack[k], image.slack[k], allowed);
+    for (int k = 0; k < 64; k++)
+      ck_assert_near((&frame.projector.row[0][0])[k], (&image.projector.row[0][0])[k], allowed);
+    ck_assert_near(image.volume / frame.volume / fabs(det), 1, allowed);
+  }
+  ck_assert_int_gt(seen, 50);
+}
+END_TEST
+
+static void features_of(int count, const double x[24], double *features) {
+  ContactGeoFrame frame;
+  ContactGeoInvariants invariants;
+  ck_assert_int_eq(contact_geo_frame(&frame, x), CONTACT_GEO_INSIDE);
+  contact_geo_features(contact_geo_feature_set(count), &frame.projector, &invariants, features);
+}
+
+// The features of the header's definition, by plain loops in their order.
+static int define_features(const ContactGeoFeatureSet *set, const GeoMatrix *p, double *f) {
+  int n_features = 0;
+  for (int k = 2; k <= 5; k++) {
+    f[n_features] = 0;
+    for (int i = 0; i < 8; i++) f[n_features] += pow(p->row[i][i], k);
+    n_features++;
+  }
+  for (int n = 1; n <= set->power_count; n++)
+    for (int a = n <= 2 ? 1 : 0; a <= 3; a++)
+      for (int b = a; b <= 3; b++, n_features++) {
+        f[n_features] = 0;
+        for (int i = 0; i < 8; i++)
+          for (int j = 0; j < 8; j++)
+            f[n_features] += pow(p->row[i][i], a) * pow(p->row[j][j], b) * pow(p->row[i][j], n);
+      }
+  double link[4][8][8];
+  for (int e = 0; e < set->link_count; e++)
+    for (int i = 0; i < 8; i++)
+      for (int j = 0; j < 8; j++) {
+        link[e][i][j] = 0;
+        for (int k = 0; k < 8; k++)
+          link[e][i][j] +=
+              pow(p->row[k][k], set->links[e].degree) * pow(p->row[i][k] * p->row[j][k], set->links[e].power);
+      }
+  for (int e = 0; e < set->link_count; e++)
+    for (int a = 1; a <= 3; a++)
+      for (int rs = e == 0 || e == 2 ? a == 1 : 0; rs < 3; rs++, n_features++) { // links 0 and 2 have b = 1
+        f[n_features] = 0;
+        for (int i = 0; i < 8; i++)
+          for (int j = 0; j < 8; j++)
+            f[n_features] +=
+                pow(p->row[i][i], rs == 2) * pow(p->row[j][j], rs > 0) * link[e][i][j] * pow(p->row[i][j], a);
+      }
+  for (int e = 0; e < set->link_count && set->square_power >= 0; e++)
+    for (int g = 0; g <= e; g++)
+      for (int a = 0; a <= 2; a++, n_features++) {
+        f[n_features] = 0;
+        for (int i = 0; i < 8; i++)
+          for (int j = 0; j < 8; j++) f[n_features] += link[e][i][j] * link[g][i][j] * pow(p->row[i][j], a);
+      }
+  return n_features;
+}
+
+START_TEST(features_are_what_the_header_says) {
+  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i]);
+  ck_assert_ptr_nonnull(set);
+  ck_assert_ptr_null(contact_geo_feature_set(37));
+  PairCase pair;
+  ContactGeoFrame frame;
+  int seen = 0;
+  for (int member = 0; next_frame(class_named("uniform"), &member, &pair, &frame); seen++) {
+    double expected[CONTACT_GEO_MAX_FEATURES], features[CONTACT_GEO_MAX_FEATURES];
+    ContactGeoInvariants invariants;
+    ck_assert_int_eq(define_features(set, &frame.projector, expected), set->count);
+    contact_geo_features(set, &frame.projector, &invariants, features);
+    for (int f = 0; f < set->count; f++) ck_assert_near(features[f], expected[f], 1e-14 * (1 + expected[f]));
+  }
+  ck_assert_int_gt(seen, 50);
+}
+END_TEST
+
+START_TEST(no_order_of_vertices_or_tetrahedra_changes_a_feature) {
+  PairCase pair;
+  ContactGeoFrame frame;
+  int count = set_sizes[_i], seen = 0;
+  for (int member = 0; next_frame(class_named("uniform"), &member, &pair, &frame) && seen < 40; seen++)
+    for (int k = 0; k < 24; k++) {
+      double permuted[24], swapped[24], one[CONTACT_GEO_MAX_FEATURES], other[CONTACT_GEO_MAX_FEATURES];
+      pairs_permute(pair.x, k, permuted);
+      pairs_permute(pair.x + 12, (7 * k + 5) % 24, permuted + 12);
+      pairs_swap(permuted, swapped);
+      features_of(count, pair.x, one);
+      features_of(count, swapped, other);
+      for (int f = 0; f < count; f++) ck_assert_near(one[f], other[f], 1e-12);
+    }
+}
+END_TEST
+
+// Along random directions, against central differences.
+START_TEST(the_changes_of_frame_and_features_are_their_derivatives) {
+  Random random = random_seeded(8, 0);
+  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i]);
+  PairCase pair;
+  ContactGeoFrame frame, up, down;
+  for (int member = 0, seen = 0; next_frame(class_named("uniform"), &member, &pair, &frame); seen++) {
+    double h = 1e-6 * cbrt(frame.volume), direction[24], x[24];
+    for (int i = 0; i < 24; i++) x[i] = pair.x[i] + h * (direction[i] = random_normal(&random));
+    ck_assert_int_eq(contact_geo_frame(&up, x), CONTACT_GEO_INSIDE);
+    for (int i = 0; i < 24; i++) x[i] = pair.x[i] - h * direction[i];
+    ck_assert_int_eq(contact_geo_frame(&down, x), CONTACT_GEO_INSIDE);
+    ContactGeoTangent tangent;
+    contact_geo_frame_push(&frame, direction, &tangent);
+    double scale = 1 / cbrt(frame.volume), allowed = 1e-6 * scale;
+    ck_assert_near((log(up.volume) - log(down.volume)) / (2 * h), tangent.log_volume, allowed);
+    for (int k = 0; k < 8; k++)
+      ck_assert_near(log(up.slack[k] / down.slack[k]) / (2 * h), tangent.rate[k], allowed);
+    for (int k = 0; k < 64; k++)
+      ck_assert_near(((&up.projector.row[0][0])[k] - (&down.projector.row[0][0])[k]) / (2 * h),
+                     (&tangent.projector.row[0][0])[k], allowed);
+
+    double f[CONTACT_GEO_MAX_FEATURES], plus[CONTACT_GEO_MAX_FEATURES], minus[CONTACT_GEO_MAX_FEATURES];
+    double change[CONTACT_GEO_MAX_FEATURES];
+    ContactGeoInvariants invariants, other;
+    contact_geo_features(set, &up.projector, &other, plus);
+    contact_geo_features(set, &down.projector, &other, minus);
+    contact_geo_features(set, &frame.projector, &invariants, f);
+    contact_geo_features_push(set, &invariants, &tangent.projector, &other, change);
+    for (int i = 0; i < set->count; i++)
+      ck_assert_near((plus[i] - minus[i]) / (2 * h), change[i], 5e-6 * scale * (1 + fabs(f[i])));
+  }
+}
+END_TEST
+
+static void random_matrix(Random *random, GeoMatrix *matrix) {
+  for (int i = 0; i < 8; i++)
+    for (int j = 0; j <= i; j++) matrix->row[i][j] = matrix->row[j][i] = random_normal(random);
+}
+
+static double inner_product(const GeoMatrix *a, const GeoMatrix *b) {
+  double sum = 0;
+  for (int i = 0; i < 64; i++) sum += (&a->row[0][0])[i] * (&b->row[0][0])[i];
+  return sum;
+}
+
+// w·δf = Φ : δP for any symmetric δP, and the change of that: with δ'P, δ'Φ : δP = δ'δ(w·f), which is
+// symmetric in δ and δ'. Holds for any P, not only for projectors.
+START_TEST(the_backward_sweep_is_the_transpose_and_its_change_is_symmetric) {
+  Random random = random_seeded(9, 0);
+  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i]);
+  for (int trial = 0; trial < 50; trial++) {
+    GeoMatrix p, direction[2], slope, bent[2];
+    double f[CONTACT_GEO_MAX_FEATURES], w[CONTACT_GEO_MAX_FEATURES], df[CONTACT_GEO_MAX_FEATURES];
+    random_matrix(&random, &p);
+    for (int i = 0; i < 64; i++) (&p.row[0][0])[i] *= 0.3;
+    for (int i = 0; i < set->count; i++) w[i] = random_normal(&random);
+    ContactGeoInvariants invariants, change;
+    ContactGeoSweep sweep;
+    contact_geo_features(set, &p, &invariants, f);
+    contact_geo_features_pull(set, &invariants, w, &sweep, &slope);
+    for (int d = 0; d < 2; d++) {
+      random_matrix(&random, &direction[d]);
+      contact_geo_features_push(set, &invariants, &direction[d], &change, df);
+      contact_geo_features_bend(set, &invariants, w, &sweep, &change, &bent[d]);
+      double sum = 0, size = 0;
+      for (int i = 0; i < set->count; i++) sum += w[i] * df[i], size += fabs(w[i] * df[i]);
+      ck_assert_near(inner_product(&slope, &direction[d]), sum, 1e-13 * size);
+    }
+    double one = inner_product(&bent[0], &direction[1]), other = inner_product(&bent[1], &direction[0]);
+    ck_assert_near(one, other, 1e-11 * (1 + fabs(one)));
+    // against differences of the sweep
+    double h = 1e-5;
+    GeoMatrix moved = p, plus, minus;
+    ContactGeoSweep unused;
+    for (int i = 0; i < 64; i++) (&moved.row[0][0])[i] += h * (&direction[0].row[0][0])[i];
+    contact_geo_features(set, &moved, &change, f);
+    contact_geo_features_pull(set, &change, w, &unused, &plus);
+    for (int i = 0; i < 64; i++) (&moved.row[0][0])[i] -= 2 * h * (&direction[0].row[0][0])[i];
+    contact_geo_features(set, &moved, &change, f);
+    contact_geo_features_pull(set, &change, w, &unused, &minus);
+    double largest = sqrt(inner_product(&bent[0], &bent[0]));
+    for (int i = 0; i < 64; i++)
+      ck_assert_near(((&plus.row[0][0])[i] - (&minus.row[0][0])[i]) / (2 * h), (&bent[0].row[0][0])[i],
+                     1e-7 * largest);
+  }
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("geo");
+  tcase_add_test(cases, the_gate_agrees_with_exact_in_every_class);
+  tcase_add_test(cases, only_flat_and_sliver_shaped_tetrahedra_are_left_to_exact);
+  tcase_add_test(cases, a_simplex_has_its_centroid_in_the_middle);
+  tcase_add_test(cases, of_two_equal_tetrahedra_every_plane_counts_half);
+  tcase_add_test(cases, at_the_centre_the_logarithms_of_the_slacks_are_stationary);
+  tcase_add_test(cases, newton_finds_the_centre_of_the_smallest_overlaps);
+  tcase_add_test(cases, an_affine_map_changes_neither_slacks_nor_projector);
+  tcase_add_loop_test(cases, features_are_what_the_header_says, 0, 3);
+  tcase_add_loop_test(cases, no_order_of_vertices_or_tetrahedra_changes_a_feature, 0, 3);
+  tcase_add_loop_test(cases, the_changes_of_frame_and_features_are_their_derivatives, 0, 3);
+  tcase_add_loop_test(cases, the_backward_sweep_is_the_transpose_and_its_change_is_symmetric, 0, 3);
+  return suite_run("geo", cases, 60);
+}
