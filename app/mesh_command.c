@@ -65,18 +65,19 @@ static void remark(Remarks *remarks, const char *format, double number) {
 static Remarks judge(const FemMeshQuality *quality, const FemMeshRepairs *repairs) {
   Remarks remarks = {0};
   if (repairs->reoriented_tets)
-    remark(&remarks, "%.0f tetrahedra were inside out and have been turned", repairs->reoriented_tets);
+    remark(&remarks, "tetrahedra that were inside out and have been turned: %.0f", repairs->reoriented_tets);
   if (repairs->dropped_vertices)
-    remark(&remarks, "%.0f vertices belong to no tetrahedron and have been left out",
+    remark(&remarks, "vertices that belong to no tetrahedron and have been left out: %.0f",
            repairs->dropped_vertices);
   if (quality->coincident_vertex_count)
-    remark(&remarks,
-           "%.0f vertices lie exactly on another: the mesh is open there; merge them unless it is meant",
-           quality->coincident_vertex_count);
+    remark(
+        &remarks,
+        "vertices that lie exactly on another: %.0f; the mesh is open there: merge them unless it is meant",
+        quality->coincident_vertex_count);
   if (quality->component_count > 1)
-    remark(&remarks, "%.0f parts are not connected: they move apart freely", quality->component_count);
+    remark(&remarks, "parts that are not connected: %.0f; they move apart freely", quality->component_count);
   if (quality->pinch_edge_count || quality->pinch_vertex_count)
-    remark(&remarks, "the surface touches itself at %.0f edges or vertices: a hinge, not a joint",
+    remark(&remarks, "edges or vertices where the surface touches itself: %.0f; they act as hinges",
            quality->pinch_edge_count + quality->pinch_vertex_count);
   if (!(quality->min_dihedral_degrees >= POOR_DIHEDRAL_DEGREES))
     remark(&remarks, "the smallest dihedral angle is %.2g°: expect slow solves and small steps; mesh it anew",

@@ -10,8 +10,8 @@
 #include "fem/mesh_validate.h"
 
 // Opens what gmsh can open; a .stl surface is closed into a volume and filled, a .geo is meshed unless it
-// meshes itself. Fixed seed and one thread: the same file gives the same mesh. STATUS_INPUT: the message does
-// not name the file.
+// meshes itself. Fixed seeds and one thread: the same file gives the same mesh. STATUS_INPUT: the message
+// does not name the file.
 Status fem_mesh_gmsh_read(FemMeshSource *source, const char *path, const FemMeshOptions *options);
 
 #endif
