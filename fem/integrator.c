@@ -14,9 +14,9 @@
 // Chosen bounds of the step, as shares of the run's end.
 static const double LONGEST_STEP = 0.1, SHORTEST_STEP = 1e-11;
 // A run stalls when so many steps together come no further than this share of the end: the whole of it would
-// take 10⁹ steps.
-enum { STALL_STEPS = 1000 };
-static const double STALL_ADVANCE = 1e-6;
+// take a million steps. A force that jumps makes a run creep like that.
+enum { STALL_STEPS = 2000 };
+static const double STALL_ADVANCE = 2e-3;
 // A step is given up after so many failures in a row; each cuts it to a quarter at least.
 enum { MAX_FAILURES = 15 };
 // Roots are found to this share of their step.
@@ -390,8 +390,9 @@ static Status check_stall(FemIntegrator *integrator, double advance) {
   integrator->stall_advance = 0;
   if (!is_stalled) return STATUS_OK;
   double step = fem_integrator_stats(integrator).last_step;
-  Reason reason = {"the run stalls: a thousand steps came less than a millionth of it further",
-                   "a smaller contact.stiffness, another contact.potential, or some effects.damping"};
+  Reason reason = {"the run stalls: 2000 steps came less than 0.2 % of it further",
+                   "a smaller contact.stiffness, a contact.potential other than linear, whose force jumps, "
+                   "or some effects.damping"};
   return say_why(integrator, integrator->time, step, find_worst(integrator, IDA_ERR_FAIL), reason);
 }
 

@@ -13,13 +13,37 @@
 #include "fem/pvd.h"
 #include "fem/vtu.h"
 
-// The fixed columns of the history; those of bodies and interfaces follow.
-static const char *const columns[] = {
-    "time_s",       "kinetic_J",  "elastic_J",       "gravity_J",  "contact_J", "work_J",    "dissipated_J",
-    "total_J",      "momentum_x", "momentum_y",      "momentum_z", "angular_x", "angular_y", "angular_z",
-    "active_pairs", "overlap_m3", "deepest_overlap", "min_det_F",  "step_s",    "steps",
+// The first columns of the history, each with the effect that it takes (NULL: none); those of bodies and
+// interfaces follow. The values are listed in this order by write_history.
+static const struct {
+  const char *title, *effect;
+} columns[] = {
+    {"time_s", NULL},
+    {"kinetic_J", NULL},
+    {"elastic_J", NULL},
+    {"gravity_J", "gravity"},
+    {"contact_J", "contact"},
+    {"work_J", NULL},
+    {"dissipated_J", "damping"},
+    {"total_J", NULL},
+    {"momentum_x", NULL},
+    {"momentum_y", NULL},
+    {"momentum_z", NULL},
+    {"angular_x", NULL},
+    {"angular_y", NULL},
+    {"angular_z", NULL},
+    {"active_pairs", "contact"},
+    {"overlap_m3", "contact"},
+    {"deepest_overlap", "contact"},
+    {"min_det_F", NULL},
+    {"step_s", NULL},
+    {"steps", NULL},
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
+
+static bool has_column(const FemRecorder *recorder, int column) {
+  return !columns[column].effect || fem_system_effect(recorder->system, columns[column].effect);
+}
 
 static ContactSystem *contact_of(const FemSystem *system) {
   void *effect = fem_system_effect(system, "contact");
@@ -35,7 +59,8 @@ static const ContactInterface *interfaces_of(const FemSystem *system, int *count
 static Status add_columns(FemRecorder *recorder) {
   const FemModel *model = recorder->system->model;
   FemHistory *history = &recorder->history;
-  for (int i = 0; i < COLUMN_COUNT; i++) TRY(fem_history_add_column(history, "%s", columns[i]));
+  for (int i = 0; i < COLUMN_COUNT; i++)
+    if (has_column(recorder, i)) TRY(fem_history_add_column(history, "%s", columns[i].title));
   for (int b = 0; b < model->scene->body_count; b++)
     for (int c = 0; c < 3; c++)
       TRY(fem_history_add_column(history, "centre_%s_%c_m", model->bodies[b].name, "xyz"[c]));
@@ -192,23 +217,25 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
   fill_arrays(recorder);
+  // The last two only with contact.
   const FemVtuArray arrays[] = {
       {.name = "displacement", .components = 3, .reals = recorder->displacement},
       {.name = "velocity", .components = 3, .reals = system->velocities},
-      {.name = "contact_force", .components = 3, .reals = recorder->contact_force},
       {.name = "body", .is_cell = true, .components = 1, .integers = model->tet_body},
-      {.name = "overlap_fraction", .is_cell = true, .components = 1, .reals = recorder->overlap},
       {.name = "det_F", .is_cell = true, .components = 1, .reals = recorder->det_F},
       {.name = "stress", .is_cell = true, .components = 6, .reals = recorder->stress},
       {.name = "von_mises", .is_cell = true, .components = 1, .reals = recorder->von_mises},
+      {.name = "contact_force", .components = 3, .reals = recorder->contact_force},
+      {.name = "overlap_fraction", .is_cell = true, .components = 1, .reals = recorder->overlap},
   };
+  int array_count = (int)(sizeof arrays / sizeof *arrays);
   const FemVtuFrame frame = {.time = time,
                              .vertex_count = model->vertex_count,
                              .positions = system->positions,
                              .tet_count = model->tet_count,
-                             .tets = (const int *)model->tets,
+                             .tets = model->tets[0],
                              .arrays = arrays,
-                             .array_count = (int)(sizeof arrays / sizeof *arrays)};
+                             .array_count = contact_of(system) ? array_count : array_count - 2};
   return fem_vtu_write(path, &frame);
 }
 
@@ -266,8 +293,10 @@ static Status write_history(FemRecorder *recorder, double time, const FemMeasure
                                       m->min_det_F,
                                       step,
                                       (double)step_count};
-  memcpy(recorder->row, fixed, sizeof fixed);
-  double *row = append_centres(recorder->system, recorder->row + COLUMN_COUNT);
+  double *row = recorder->row;
+  for (int i = 0; i < COLUMN_COUNT; i++)
+    if (has_column(recorder, i)) *row++ = fixed[i];
+  row = append_centres(recorder->system, row);
   int count;
   const ContactInterface *interfaces = interfaces_of(recorder->system, &count);
   for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(interfaces[i].force));
