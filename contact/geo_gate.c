@@ -8,6 +8,7 @@
 
 // Barycentric coordinates carry errors of some ε: what is no farther out than this counts as on the plane.
 #define NOISE 1e-13
+#define LEAST_DET 1e-280 // [m³]
 // A point this close to a plane is on it.
 #define LEAST_SLACK 1e-15
 
@@ -37,7 +38,8 @@ static bool is_flat(const double tet[12], double det) {
       Vec3 edge = vec3_sub(vec3_at(tet + 3 * v), vec3_at(tet + 3 * w));
       longest = fmax(longest, vec3_dot(edge, edge));
     }
-  return !(fabs(det) > CONTACT_GEO_FLATTEST * longest * sqrt(longest));
+  // below LEAST_DET dividing by it may overflow
+  return !(fabs(det) > fmax(CONTACT_GEO_FLATTEST * longest * sqrt(longest), LEAST_DET));
 }
 
 // The coordinates, in the tetrahedron of `planes`, of four points. Heights are summed before they are
