@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "datagen/generate.h"
+
+#include <limits.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "contact/clip.h"
+#include "contact/exact.h"
+#include "datagen/sampler.h"
+
+Status datagen_label_pair(DatagenLabel label, const double pair[24], int dimension, double *volume,
+                          double *gradient) {
+  unsigned flags;
+  *volume = 0;
+  if (gradient) memset(gradient, 0, CONTACT_PAIR_SIZE * sizeof *gradient);
+  if (dimension < 3) return STATUS_OK;
+  if (label == DATAGEN_LABEL_CLIP) {
+    TRY(contact_overlap_clip.eval_pair(NULL, pair, volume, gradient, NULL, &flags));
+    if (*volume > 0) return STATUS_OK;
+  }
+  return contact_overlap_exact.eval_pair(NULL, pair, volume, gradient, NULL, &flags);
+}
+
+// One pair, into its place in the arrays.
+static Status make_pair(const DatagenPlan *plan, long long index, const DatagenPairs *pairs, int place,
+                        long long *attempts) {
+  Random random = random_seeded(plan->seed, (uint64_t)index);
+  DatagenKind kind = datagen_plan_kind(plan, index);
+  DatagenSample sample = datagen_sample(kind, &plan->sieve, plan->law.swap_share, &random);
+  const size_t offset = (size_t)place * CONTACT_PAIR_SIZE;
+  memcpy(pairs->coordinates + offset, sample.pair, sizeof sample.pair);
+  pairs->status[place] = sample.proof.dimension >= 0;
+  pairs->kind[place] = (uint8_t)kind;
+  attempts[kind] += sample.attempts;
+  return datagen_label_pair(plan->label, sample.pair, sample.proof.dimension, pairs->volume + place,
+                            pairs->gradient ? pairs->gradient + offset : NULL);
+}
+
+// Kinds cost differently, by a thousand times: indices are handed out in small lots.
+Status datagen_generate(const DatagenPlan *plan, long long first, int count, const DatagenPairs *pairs,
+                        long long attempts[DATAGEN_KIND_COUNT]) {
+  int first_failed = INT_MAX;
+#pragma omp parallel for schedule(dynamic, 16) reduction(min : first_failed)                                 \
+    reduction(+ : attempts[ : DATAGEN_KIND_COUNT])
+  for (int i = 0; i < count; i++)
+    if (make_pair(plan, first + i, pairs, i, attempts) != STATUS_OK && i < first_failed) first_failed = i;
+  if (first_failed == INT_MAX) return STATUS_OK;
+  // the message belongs to the thread that failed: let this one see it too
+  long long ignored[DATAGEN_KIND_COUNT] = {0};
+  Status status = make_pair(plan, first + first_failed, pairs, first_failed, ignored);
+  if (status == STATUS_OK) return status_fail(STATUS_SOLVER, "pair %lld failed once and not again", first);
+  return status_prefix(status, "pair %lld", first + first_failed);
+}
