@@ -4,14 +4,14 @@
 // only the constant's figures are held.
 #include "suite.h"
 
+#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "app/bench_pairs.h"
-#include "base/memory.h"
 #include "contact/clip.h"
 #include "contact/exact.h"
-#include "contact/geo.h"
+#include "contact/geo_overlap.h"
 #include "geo_network.h"
 #include "pairs.h"
 
@@ -41,13 +41,8 @@ typedef struct Answer {
 
 static Answer ask(const Subject *subject, const double x[24], bool wants_hessian) {
   Answer answer;
-  ContactOverlapBatch batch = {.pair_count = 1,
-                               .pairs = x,
-                               .volume = &answer.volume,
-                               .gradient = answer.gradient,
-                               .hessian = wants_hessian ? answer.hessian : NULL,
-                               .flags = &answer.flags};
-  ck_assert_ok(contact_geo_eval(&subject->model, &batch));
+  ck_assert_ok(contact_geo_overlap_eval_pair(&subject->model, x, &answer.volume, answer.gradient,
+                                             wants_hessian ? answer.hessian : NULL, &answer.flags));
   return answer;
 }
 
@@ -436,10 +431,16 @@ START_TEST(what_training_is_given_is_what_the_model_computes) {
 }
 END_TEST
 
+static Status fail_eval(const void *self, int count, const double *features, double *value,
+                        double *gradient) {
+  (void)self, (void)count, (void)features, (void)value, (void)gradient;
+  return status_fail(STATUS_SOLVER, "no");
+}
+
 START_TEST(a_batch_gives_what_its_pairs_give_alone) {
-  enum { COUNT = 3 * CONTACT_GEO_CHUNK + 5 };
+  enum { COUNT = 12 * CONTACT_GEO_CHUNK + 5 };
   static double pairs[COUNT * 24], volumes[COUNT], gradients[COUNT * 24], hessians[COUNT * 576];
-  unsigned flags[COUNT];
+  static unsigned flags[COUNT];
   Subject subject;
   make_subject(3, &subject);
   for (int n = 0; n < COUNT; n++)
@@ -450,7 +451,10 @@ START_TEST(a_batch_gives_what_its_pairs_give_alone) {
                                .gradient = gradients,
                                .hessian = hessians,
                                .flags = flags};
-  ck_assert_ok(contact_geo_eval(&subject.model, &batch));
+  int threads = omp_get_max_threads();
+  omp_set_num_threads(3);
+  ck_assert_ok(contact_geo_overlap_eval_batch(&subject.model, &batch));
+  omp_set_num_threads(threads);
   for (int n = 0; n < COUNT; n++) {
     Answer answer = ask(&subject, pairs + 24 * n, true);
     ck_assert_mem_eq(&answer.volume, volumes + n, sizeof *volumes);
@@ -458,14 +462,12 @@ START_TEST(a_batch_gives_what_its_pairs_give_alone) {
     ck_assert_mem_eq(answer.hessian, hessians + 576 * n, sizeof answer.hessian);
     ck_assert_uint_eq(answer.flags, flags[n]);
   }
+  // and what a network fails with comes through
+  subject.model.network.eval = fail_eval;
+  ck_assert_int_eq(contact_geo_overlap_eval_batch(&subject.model, &batch), STATUS_SOLVER);
+  ck_assert_ptr_nonnull(strstr(status_message(), "pairs 0 to 63: no"));
 }
 END_TEST
-
-static Status fail_eval(const void *self, int count, const double *features, double *value,
-                        double *gradient) {
-  (void)self, (void)count, (void)features, (void)value, (void)gradient;
-  return status_fail(STATUS_SOLVER, "no");
-}
 
 static Status answer_nan(const void *self, int count, const double *features, double *value,
                          double *gradient) {
