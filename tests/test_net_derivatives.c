@@ -130,6 +130,54 @@ START_TEST(tangents_are_the_input_gradients_times_the_directions) {
 }
 END_TEST
 
+// Equal vertices and equal tetrahedra: every pool compares equals. Which of them wins must be the same
+// forward and backward.
+START_TEST(at_ties_of_a_maximum_tangents_and_gradients_follow_the_same_winner) {
+  NetShape shape = net_shape_tpn_a();
+  NetModel_f64 model = net_suite_model(&shape, 8);
+  NetWork_f64 work = net_suite_work(&model, 1, 1, 0);
+  NetRandom random = net_random_seeded(15, 0);
+  double x[24], *xt = net_suite_array(&random, 24, 1), c[2] = {0.3, 1}, y[2], yt[2], gx[24];
+  for (int k = 0; k < 24; k++) x[k] = k % 3 - 0.4;
+  net_forward_gradient_f64(&work, &model, 1, x, c, y, gx);
+  net_tangent_eval_f64(&work, &model, 1, 1, x, xt, y, yt);
+  double forward = dot(2, c, yt), backward = dot(24, gx, xt);
+  ck_assert_double_gt(fabs(forward), 1e-3);
+  ck_assert_near(forward, backward, 1e-12 * (1 + fabs(forward)));
+  net_memory_free(xt);
+  net_work_destroy_f64(&work);
+  net_model_destroy_f64(&model);
+}
+END_TEST
+
+START_TEST(every_evaluation_gives_the_same_bits_for_any_number_of_threads) {
+  enum { MANY = 400, INPUTS = 12 };
+  NetShape shape = net_shape_mlp(INPUTS, 9, 2, 1);
+  NetModel_f64 model = net_suite_model(&shape, 8);
+  NetRandom random = net_random_seeded(16, 0);
+  double *x = net_suite_array(&random, MANY * INPUTS, 1),
+         *xt = net_suite_array(&random, MANY * 2 * INPUTS, 1);
+  double *c = net_suite_array(&random, MANY, 1);
+  static double y[2][MANY], gx[2][MANY * INPUTS], yt[2][MANY * 2], dual[2][MANY * 2], second[2][MANY * 4];
+  for (int run = 0; run < 2; run++) {
+    NetWork_f64 work = net_suite_work(&model, 1 + 3 * run, 2, 0);
+    net_forward_gradient_f64(&work, &model, MANY, x, c, NULL, gx[run]);
+    net_tangent_eval_f64(&work, &model, MANY, 2, x, xt, NULL, yt[run]);
+    net_tangent_second_f64(&work, &model, MANY, 2, x, xt, c, NULL, dual[run], NULL, second[run]);
+    net_forward_eval_f64(&work, &model, MANY, x, y[run]);
+    net_work_destroy_f64(&work);
+  }
+  ck_assert_int_eq(memcmp(y[0], y[1], sizeof y[0]), 0);
+  ck_assert_int_eq(memcmp(gx[0], gx[1], sizeof gx[0]), 0);
+  ck_assert_int_eq(memcmp(yt[0], yt[1], sizeof yt[0]), 0);
+  ck_assert_int_eq(memcmp(dual[0], dual[1], sizeof dual[0]), 0);
+  ck_assert_int_eq(memcmp(second[0], second[1], sizeof second[0]), 0);
+  ck_assert_double_ne(second[0][4 * MANY - 1], 0);
+  net_memory_free(x), net_memory_free(xt), net_memory_free(c);
+  net_model_destroy_f64(&model);
+}
+END_TEST
+
 // L = Σ c y + ½ y² + c_t yt + ½ yt², a loss in which values and tangents are bent.
 static double loss_of(Case *used, int tangents, double *gy, double *gyt) {
   int n = SAMPLES * used->outputs, m = n * tangents;
@@ -280,6 +328,8 @@ int main(void) {
   tcase_add_test(test_case, one_silu_has_the_derivatives_that_a_hand_computes);
   tcase_add_test(test_case, the_input_gradient_is_the_derivative_of_any_combination_of_outputs);
   tcase_add_test(test_case, tangents_are_the_input_gradients_times_the_directions);
+  tcase_add_test(test_case, at_ties_of_a_maximum_tangents_and_gradients_follow_the_same_winner);
+  tcase_add_test(test_case, every_evaluation_gives_the_same_bits_for_any_number_of_threads);
   tcase_add_test(test_case, the_parameter_gradient_is_the_derivative_of_a_loss_of_values);
   tcase_add_test(test_case, the_parameter_gradient_is_the_derivative_of_a_loss_that_contains_tangents);
   tcase_add_test(test_case, second_derivatives_are_derivatives_of_tangents_and_symmetric);

@@ -270,6 +270,34 @@ START_TEST(a_large_batch_of_the_papers_network_is_the_same_for_any_number_of_thr
 }
 END_TEST
 
+// More chunks than lanes: nothing is left out and nothing counted twice.
+START_TEST(the_gradient_of_a_large_batch_is_the_sum_of_its_parts) {
+  enum { COUNT = 2500, PART = 100 };
+  NetShape shape = net_shape_tpn_b();
+  NetModel_f64 model = net_suite_model(&shape, 5);
+  NetWork_f64 work = net_suite_work(&model, 2, 0, COUNT);
+  int size = (int)model.plan->parameter_count;
+  NetRandom random = net_random_seeded(23, 0);
+  double *x = net_suite_array(&random, COUNT * 24, 1), *gy = net_suite_array(&random, COUNT * 2, 1);
+  double *y = net_suite_array(&random, COUNT * 2, 0), *whole = net_suite_array(&random, size, 0);
+  double *part = net_suite_array(&random, size, 0), *sum = net_suite_array(&random, size, 0);
+  net_gradient_forward_f64(&work, &model, COUNT, 0, x, NULL, y, NULL);
+  net_gradient_backward_f64(&work, &model, COUNT, 0, gy, NULL, whole);
+  for (int first = 0; first < COUNT; first += PART) {
+    net_gradient_forward_f64(&work, &model, PART, 0, x + first * 24, NULL, y, NULL);
+    net_gradient_backward_f64(&work, &model, PART, 0, gy + first * 2, NULL, part);
+    for (int k = 0; k < size; k++) sum[k] += part[k];
+  }
+  double scale = 0;
+  for (int k = 0; k < size; k++) scale = fmax(scale, fabs(whole[k]));
+  for (int k = 0; k < size; k++) ck_assert_near(whole[k], sum[k], 1e-13 * COUNT * scale);
+  double *arrays[] = {x, gy, y, whole, part, sum};
+  for (int k = 0; k < 6; k++) net_memory_free(arrays[k]);
+  net_work_destroy_f64(&work);
+  net_model_destroy_f64(&model);
+}
+END_TEST
+
 static NetCheckpoint_f32 describe(Task *task) {
   return (NetCheckpoint_f32){.model = &task->model,
                              .adam = &task->adam,
@@ -285,6 +313,9 @@ START_TEST(a_resumed_training_continues_to_the_bit) {
   Task whole = make_task(1), stopped = make_task(1), resumed = make_task(2);
   for (int k = 0; k < 40; k++) step_task(&whole);
   for (int k = 0; k < 25; k++) step_task(&stopped);
+  // Nothing of the resumed task's own may be left.
+  resumed.schedule = (NetSchedule){0}, resumed.random = (NetRandom){{0}}, resumed.best_score = 0;
+  resumed.adam.def = (NetAdamDef){0};
   NetCheckpoint_f32 written = describe(&stopped), read = describe(&resumed);
   written.note = "epoch 3 — {\"seen\": 7500}";
   ck_net_ok(net_whitening_create(3, &written.whitening));
@@ -300,6 +331,7 @@ START_TEST(a_resumed_training_continues_to_the_bit) {
   resumed.random = read.random, resumed.schedule = read.schedule, resumed.best_score = read.best_score;
   for (int k = 0; k < 15; k++) step_task(&resumed);
   ck_assert(equal_parameters(&whole, &resumed));
+  ck_assert_double_eq(resumed.schedule.final, whole.schedule.final);
   ck_assert_double_eq(whole.best_score, resumed.best_score);
   net_whitening_destroy(&written.whitening);
   net_checkpoint_release_f32(&read);
@@ -391,6 +423,7 @@ int main(void) {
   tcase_add_test(test_case, sobolev_training_learns_values_and_gradients);
   tcase_add_test(test_case, the_number_of_threads_does_not_change_a_bit);
   tcase_add_test(test_case, a_large_batch_of_the_papers_network_is_the_same_for_any_number_of_threads);
+  tcase_add_test(test_case, the_gradient_of_a_large_batch_is_the_sum_of_its_parts);
   tcase_add_test(test_case, a_resumed_training_continues_to_the_bit);
   tcase_add_test(test_case, a_checkpoint_of_another_shape_or_precision_is_refused);
   tcase_add_test(test_case, whitened_samples_are_uncorrelated_and_folding_changes_nothing);
