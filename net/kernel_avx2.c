@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernel for processors with AVX2 and FMA: tiles of 6 × 2 vectors, 12 of the 16 registers accumulate.
 #if defined(__x86_64__)
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#else
 #pragma GCC target("avx2,fma")
+#endif
 #include <immintrin.h>
 #include <stdint.h>
 
@@ -61,5 +65,8 @@ static inline double vector_sum_avx2_f64(__m256d a) {
 #include "net/kernel_tiles.inc"
 
 const NetKernel_f64 net_kernel_avx2_f64 = KERNEL_TABLE;
+#ifdef __clang__
+#pragma clang attribute pop
+#endif
 #endif
 typedef int net_kernel_avx2_is_not_empty;

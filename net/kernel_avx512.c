@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernel for processors with AVX-512: tiles of 8 × 2 vectors, 16 of the 32 registers accumulate.
 #if defined(__x86_64__)
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2,fma"))),         \
+                             apply_to = function)
+#else
 #pragma GCC target("avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,prefer-vector-width=512")
+#endif
 #include <immintrin.h>
 #include <stdint.h>
 
@@ -58,5 +63,8 @@ static inline double vector_sum_avx512_f64(__m512d a) {
 #include "net/kernel_tiles.inc"
 
 const NetKernel_f64 net_kernel_avx512_f64 = KERNEL_TABLE;
+#ifdef __clang__
+#pragma clang attribute pop
+#endif
 #endif
 typedef int net_kernel_avx512_is_not_empty;
