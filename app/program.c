@@ -7,6 +7,8 @@
 #include "app/bench.h"
 #include "app/check_command.h"
 #include "app/compare_command.h"
+#include "app/datagen_command.h"
+#include "app/dataset_command.h"
 #include "app/effects_command.h"
 #include "app/mesh_command.h"
 #include "app/run_command.h"
@@ -34,6 +36,8 @@ static const Command commands[] = {
     {"schema", "print the scene file's JSON Schema, or its manual page", app_schema_run},
     {"effects", "list effects, materials, potentials, models and solvers", app_effects_run},
     {"bench", "measure overlap models and solvers", app_bench_run},
+    {"datagen", "make labelled pairs of tetrahedra for learned overlap models", app_datagen_run},
+    {"dataset", "tell, join or draw data sets of such pairs", app_dataset_run},
     {"version", "print the versions of the program and its libraries", run_version},
     {"help", "print this; `tetlap COMMAND --help` tells more", run_help},
 };
