@@ -15,11 +15,13 @@ typedef struct Options {
   AppBenchOptions common;
   bool wants_solver[SOLVER_COUNT];
   int nodes, steps;
+  double slenderness;
 } Options;
 
 static const struct argp_option option_table[] = {
     {"solver", 's', "NAME,…", 0, "Solvers to measure (default: all)", 1},
     {"nodes", 'n', "N", 0, "Vertices of the beam (default: 5000)", 1},
+    {"slenderness", 'l', "RATIO", 0, "Length over thickness (default: 5)", 1},
     {"steps", 'k', "N", 0, "Steps of a run (default: 20)", 1},
     {0},
 };
@@ -28,7 +30,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   const char *names[SOLVER_COUNT];
   for (int s = 0; s < SOLVER_COUNT; s++) names[s] = fem_solver_name(kinds[s]);
-  double nodes[APP_BENCH_MAX_LIST];
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &options->common;
@@ -37,9 +38,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     app_bench_options_choose(state, "solver", text, names, SOLVER_COUNT, options->wants_solver);
     return 0;
   case 'n':
-    if (app_bench_options_numbers(state, "nodes", text, 24, 1e7, nodes) > 1)
-      argp_error(state, "--nodes is '%s'; give one number", text);
-    options->nodes = (int)nodes[0];
+    options->nodes = (int)app_bench_options_number(state, "nodes", text, 24, 1e7);
+    return 0;
+  case 'l':
+    options->slenderness = app_bench_options_number(state, "slenderness", text, 1, 1000);
     return 0;
   case 'k':
     options->steps = app_bench_options_count(state, "steps", text, 1000000000);
@@ -52,13 +54,14 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 typedef struct Row {
   const char *solver;
   long long vertices, unknowns, steps, newton_iterations, factorisations, linear_solves, linear_iterations;
-  double wall, cpu, spread, ratio, end_time;
+  double slenderness, wall, cpu, spread, ratio, end_time;
   double forces, assembly, analysis, factorisation, solve;
 } Row;
 
 static const AppBenchColumn columns[] = {
     {"solver", APP_BENCH_TEXT, offsetof(Row, solver), "solver", "linear solver"},
     {"vertices", APP_BENCH_INTEGER, offsetof(Row, vertices), "vertices", "vertices of the beam"},
+    {"slenderness", APP_BENCH_NUMBER, offsetof(Row, slenderness), "L/d", "length over thickness of the beam"},
     {"unknowns", APP_BENCH_INTEGER, offsetof(Row, unknowns), NULL, "degrees of freedom that are not fixed"},
     {"steps", APP_BENCH_INTEGER, offsetof(Row, steps), "steps", "accepted steps"},
     {"newton_iterations", APP_BENCH_INTEGER, offsetof(Row, newton_iterations), "Newton", "Newton iterations"},
@@ -81,12 +84,14 @@ static const AppBenchColumn columns[] = {
 };
 static const AppBenchReport report = {"beam", columns, sizeof columns / sizeof *columns, sizeof(Row)};
 
-static Row row_of(const AppBenchTrial *trial, int rounds) {
+static Row row_of(const AppBenchTrial *trial, const Options *options) {
+  int rounds = options->common.repeats;
   AppBenchTime time = app_bench_timer_time(&trial->timer, rounds);
   FemRunPhases phases = app_bench_trial_phases(trial, rounds);
   const FemRunResult *result = &trial->result;
   return (Row){.solver = result->solver_name,
                .vertices = trial->model.vertex_count,
+               .slenderness = options->slenderness,
                .unknowns = trial->model.unknown_count,
                .steps = result->integrator.steps,
                .newton_iterations = result->integrator.newton_iterations,
@@ -109,14 +114,14 @@ static Status measure(AppBenchTrial *trials, const Options *options) {
   for (int s = 0; s < SOLVER_COUNT; s++) {
     if (!options->wants_solver[s]) continue;
     AppBenchTrial *trial = &trials[count++];
-    TRY(app_bench_builtin_beam(options->nodes, &trial->scene));
+    TRY(app_bench_builtin_beam(options->nodes, options->slenderness, &trial->scene));
     trial->scene.solver = kinds[s];
     TRY(app_bench_trial_begin(trial, &options->common, options->steps));
   }
   TRY(app_bench_timer_take_turns(trials, sizeof *trials, count, rounds, false, app_bench_trial_run));
   Row rows[SOLVER_COUNT];
   for (int t = 0; t < count; t++) {
-    rows[t] = row_of(&trials[t], rounds);
+    rows[t] = row_of(&trials[t], options);
     rows[t].ratio = rows[t].wall / rows[0].wall;
   }
   return app_bench_report_print(&report, &options->common, rows, count);
@@ -143,8 +148,11 @@ int app_bench_beam_run(int argument_count, char **arguments) {
                                    .doc = "Measure the same run of a clamped beam with each linear solver.",
                                    .children = children,
                                    .help_filter = help};
-  Options options = {
-      .common = {.threads = 1, .repeats = 1}, .wants_solver = {true, true, true}, .nodes = 5000, .steps = 20};
+  Options options = {.common = {.threads = 1, .repeats = 1},
+                     .wants_solver = {true, true, true},
+                     .nodes = 5000,
+                     .slenderness = 5,
+                     .steps = 20};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   Status status = run(&options);
   if (status != STATUS_OK) log_error("%s", status_message());

@@ -9,8 +9,8 @@
 
 enum { TEXT_SIZE = 2048 };
 
-Status app_bench_builtin_beam(int nodes, FemSceneDef *scene) {
-  int side = (int)fmax(2, round(cbrt(nodes / 5.0)));               // vertices across
+Status app_bench_builtin_beam(int nodes, double slenderness, FemSceneDef *scene) {
+  int side = (int)fmax(2, round(cbrt(nodes / slenderness)));       // vertices across
   int length = (int)fmax(2, round(nodes / ((double)side * side))); // vertices along
   double edge = 0.1 / (side - 1);
   char text[TEXT_SIZE];

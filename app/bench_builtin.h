@@ -5,10 +5,10 @@
 
 #include "fem/scene.h"
 
-// A beam of about `nodes` (≥ 24) vertices, five times as long as thick (0.1 m), of cubes cut into
+// A beam of about `nodes` (≥ 24) vertices, `slenderness` times as long as thick (0.1 m), of cubes cut into
 // tetrahedra, clamped at one end, that falls under gravity: neo-Hookean, E 1 MPa, ν 0.4, 1000 kg/m³, damped;
-// 1 s. The caller destroys the scene.
-Status app_bench_builtin_beam(int nodes, FemSceneDef *scene);
+// 1 s. The more slender, the sparser are the factors. The caller destroys the scene.
+Status app_bench_builtin_beam(int nodes, double slenderness, FemSceneDef *scene);
 
 // A block of 0.2 m, 4³ cells, that falls 5 cm flat onto the ground and is not damped: neo-Hookean, E 1 MPa,
 // ν 0.4, 1000 kg/m³; 0.3 s. `stiffness` κ [Pa], `tolerance` of the time integration as in a scene file.

@@ -92,3 +92,12 @@ int app_bench_options_numbers(struct argp_state *state, const char *option, cons
              APP_BENCH_MAX_LIST, smallest, largest);
   return 0;
 }
+
+double app_bench_options_number(struct argp_state *state, const char *option, const char *text,
+                                double smallest, double largest) {
+  char *end;
+  double value = strtod(text, &end);
+  if (end == text || *end || !(value >= smallest && value <= largest))
+    argp_error(state, "--%s is '%s'; give a number from %g to %g", option, text, smallest, largest);
+  return value;
+}

@@ -33,5 +33,7 @@ int app_bench_options_count(struct argp_state *state, const char *option, const 
 // Fills `numbers` (APP_BENCH_MAX_LIST) from a comma-separated list; returns how many.
 int app_bench_options_numbers(struct argp_state *state, const char *option, const char *text, double smallest,
                               double largest, double *numbers);
+double app_bench_options_number(struct argp_state *state, const char *option, const char *text,
+                                double smallest, double largest);
 
 #endif

@@ -26,12 +26,14 @@ typedef struct Options {
   bool has_solvers, wants_solver[SOLVER_COUNT];
   double nodes[APP_BENCH_MAX_LIST];
   int node_count;
+  double slenderness;
   double step; // h [s]
 } Options;
 
 static const struct argp_option option_table[] = {
     {"solver", 's', "NAME,…", 0, "Solvers to measure (default: all; klu up to 6000 vertices)", 1},
     {"nodes", 'n', "N,…", 0, "Vertices of the beams (default: 5000,20000)", 1},
+    {"slenderness", 'l', "RATIO", 0, "Length over thickness (default: 5)", 1},
     {"step", 'h', "SECONDS", 0, "Time step that the matrix belongs to (default: 0.005)", 1},
     {0},
 };
@@ -40,7 +42,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   const char *names[SOLVER_COUNT];
   for (int s = 0; s < SOLVER_COUNT; s++) names[s] = fem_solver_name(kinds[s]);
-  double steps[APP_BENCH_MAX_LIST];
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &options->common;
@@ -53,9 +54,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->node_count = app_bench_options_numbers(state, "nodes", text, 24, 1e7, options->nodes);
     return 0;
   case 'h':
-    if (app_bench_options_numbers(state, "step", text, 1e-9, 1e9, steps) > 1)
-      argp_error(state, "--step is '%s'; give one number", text);
-    options->step = steps[0];
+    options->step = app_bench_options_number(state, "step", text, 1e-9, 1e9);
+    return 0;
+  case 'l':
+    options->slenderness = app_bench_options_number(state, "slenderness", text, 1, 1000);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -116,7 +118,7 @@ static Status fill_beam(Beam *beam) {
 }
 
 static Status make_beam(Beam *beam, int nodes, const Options *options) {
-  TRY(app_bench_builtin_beam(nodes, &beam->scene));
+  TRY(app_bench_builtin_beam(nodes, options->slenderness, &beam->scene));
   beam->c = 1.5 / options->step;
   TRY(fem_model_create(&beam->model, &beam->scene));
   TRY(fem_system_create(&beam->system, &beam->model));
@@ -194,13 +196,15 @@ static Status take_turn(void *self, int round) {
 typedef struct Row {
   const char *solver;
   long long vertices, unknowns, iterations;
-  double step, assembly, analysis, factorisation, solve, set_up_and_solve, set_up_and_solve_cpu, spread;
+  double slenderness, step, assembly, analysis, factorisation, solve, set_up_and_solve, set_up_and_solve_cpu,
+      spread;
   double factor_entries, residual;
 } Row;
 
 static const AppBenchColumn columns[] = {
     {"solver", APP_BENCH_TEXT, offsetof(Row, solver), "solver", "linear solver"},
     {"vertices", APP_BENCH_INTEGER, offsetof(Row, vertices), "vertices", "vertices of the beam"},
+    {"slenderness", APP_BENCH_NUMBER, offsetof(Row, slenderness), "L/d", "length over thickness of the beam"},
     {"unknowns", APP_BENCH_INTEGER, offsetof(Row, unknowns), "unknowns",
      "n; the condensed system has n rows, the full one 2n"},
     {"step", APP_BENCH_NUMBER, offsetof(Row, step), NULL, "time step that the matrix belongs to [s]"},
@@ -229,6 +233,7 @@ static Row row_of(const Contestant *contestant, const Options *options) {
   const FemSolverStats *stats = contestant->ops->stats(contestant->solver);
   return (Row){.solver = contestant->ops->name,
                .vertices = contestant->beam->model.vertex_count,
+               .slenderness = options->slenderness,
                .unknowns = contestant->beam->model.unknown_count,
                .iterations = stats->iterations / stats->solves,
                .step = options->step,
@@ -313,8 +318,11 @@ int app_bench_solver_run(int argument_count, char **arguments) {
       .doc = "Measure what the linear solvers take for a Newton set-up and a solution of a clamped beam.",
       .children = children,
       .help_filter = help};
-  Options options = {
-      .common = {.threads = 1, .repeats = 5}, .nodes = {5000, 20000}, .node_count = 2, .step = 0.005};
+  Options options = {.common = {.threads = 1, .repeats = 5},
+                     .nodes = {5000, 20000},
+                     .node_count = 2,
+                     .slenderness = 5,
+                     .step = 0.005};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   Status status = run(&options);
   if (status != STATUS_OK) log_error("%s", status_message());

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sets of pairs that benchmarks use, and the rows that scripts read.
+// The benches: the sets of pairs that they use, their timer, and the rows that scripts read.
 #include "suite.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 
+#include "app/bench_builtin.h"
 #include "app/bench_pairs.h"
+#include "app/bench_timer.h"
+#include "app/bench_trial.h"
+#include "base/text.h"
 
-enum { COUNT = 50 };
+enum { COUNT = 50, OUTPUT_SIZE = 1 << 16 };
 
 START_TEST(the_same_seed_gives_the_same_pairs) {
   static double first[COUNT * 24], again[COUNT * 24], other[COUNT * 24];
@@ -28,42 +33,228 @@ START_TEST(an_unknown_set_is_an_error_that_names_the_known_ones) {
 }
 END_TEST
 
+START_TEST(the_median_of_rounds_counts) {
+  static AppBenchTimer timer = {.wall = {5, 1, 4, 2}, .cpu = {8, 8, 3, 3}};
+  AppBenchTime odd = app_bench_timer_time(&timer, 3), even = app_bench_timer_time(&timer, 4);
+  ck_assert_double_eq(odd.wall, 4);
+  ck_assert_double_eq(odd.cpu, 8);
+  ck_assert_double_eq(even.wall, 3);
+  ck_assert_double_eq(even.cpu, 5.5);
+  ck_assert_double_eq(even.wall_min, 1);
+  ck_assert_double_eq(even.wall_max, 5);
+  ck_assert_int_eq(app_bench_timer_median_round(&timer, 3), 2);
+  ck_assert_int_eq(app_bench_timer_median_round(&timer, 4), 3); // 2, the lower of 2 and 4
+}
+END_TEST
+
+typedef struct Contestant {
+  char name;
+  char *diary; // of all
+} Contestant;
+
+static Status note_turn(void *self, int round) {
+  const Contestant *contestant = self;
+  size_t length = strlen(contestant->diary);
+  contestant->diary[length] = contestant->name;
+  contestant->diary[length + 1] = (char)('0' + round);
+  return contestant->name == 'x' ? STATUS_SOLVER : STATUS_OK;
+}
+
+START_TEST(contestants_take_turns_to_and_fro_after_a_warm_up) {
+  char diary[64] = "";
+  Contestant contestants[] = {{'a', diary}, {'b', diary}, {'c', diary}};
+  ck_assert_ok(app_bench_timer_take_turns(contestants, sizeof *contestants, 3, 3, true, note_turn));
+  ck_assert_str_eq(diary, "a0b0c0"
+                          "a0b0c0"
+                          "c1b1a1"
+                          "a2b2c2");
+}
+END_TEST
+
+START_TEST(a_failure_ends_the_turns) {
+  char diary[64] = "";
+  Contestant contestants[] = {{'a', diary}, {'x', diary}, {'c', diary}};
+  ck_assert_int_eq(app_bench_timer_take_turns(contestants, sizeof *contestants, 3, 2, false, note_turn),
+                   STATUS_SOLVER);
+  ck_assert_str_eq(diary, "a0x0");
+}
+END_TEST
+
+START_TEST(the_beam_has_about_the_vertices_that_were_asked_for) {
+  const int wanted[] = {24, 1000, 5000};
+  for (int i = 0; i < 3; i++) {
+    FemSceneDef scene;
+    FemModel model;
+    ck_assert_ok(app_bench_builtin_beam(wanted[i], 5, &scene));
+    ck_assert_ok(fem_model_create(&model, &scene));
+    ck_assert_int_ge(model.vertex_count, wanted[i] * 9 / 10);
+    ck_assert_int_le(model.vertex_count, wanted[i] * 11 / 10);
+    ck_assert_int_gt(model.unknown_count, 0);
+    ck_assert_int_lt(model.unknown_count, 3 * model.vertex_count); // one end is clamped
+    fem_model_destroy(&model);
+    fem_scene_destroy(&scene);
+  }
+}
+END_TEST
+
+START_TEST(a_trial_stops_after_its_steps_and_its_phases_sum_to_the_whole) {
+  static AppBenchTrial trial;
+  AppBenchOptions options = {.threads = 1, .repeats = 2};
+  ck_assert_ok(app_bench_builtin_beam(100, 5, &trial.scene));
+  ck_assert_ok(app_bench_trial_begin(&trial, &options, 4));
+  ck_assert_ok(app_bench_timer_take_turns(&trial, sizeof trial, 1, 2, false, app_bench_trial_run));
+  ck_assert_int_eq((int)trial.result.integrator.steps, 4);
+  ck_assert_double_gt(trial.result.end_time, 0);
+  ck_assert_double_lt(trial.result.end_time, trial.scene.end);
+  FemRunPhases phases = app_bench_trial_phases(&trial, 2);
+  double seconds[APP_BENCH_PHASE_COUNT], sum = 0;
+  app_bench_trial_split(&phases, seconds);
+  for (int p = 0; p < APP_BENCH_PHASE_COUNT; p++) {
+    // no phase is counted twice: what remains for `other` would be negative
+    ck_assert_msg(seconds[p] >= 0, "%s takes %g s", app_bench_phases[p], seconds[p]);
+    sum += seconds[p];
+  }
+  ck_assert_near(sum, phases.total, 1e-12);
+  app_bench_trial_end(&trial);
+}
+END_TEST
+
 // What `tetlap bench` with these arguments prints; its exit code.
-static int run_bench(const char *arguments, char *output, size_t size) {
-  char command[512];
-  snprintf(command, sizeof command, "'%s' bench %s 2>/dev/null", TETLAP_PROGRAM, arguments);
+static int run_bench(const char *arguments, char output[OUTPUT_SIZE]) {
+  char command[1024];
+  snprintf(command, sizeof command, "cd '%s' && '%s' bench 2>/dev/null %s", TETLAP_SOURCE_DIR, TETLAP_PROGRAM,
+           arguments);
   FILE *pipe = popen(command, "r");
   ck_assert_ptr_nonnull(pipe);
-  output[fread(output, 1, size - 1, pipe)] = 0;
+  output[fread(output, 1, OUTPUT_SIZE - 1, pipe)] = 0;
   int ended = pclose(pipe);
   return WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
 }
 
-START_TEST(json_rows_carry_the_promised_keys) {
-  static char output[1 << 16];
-  ck_assert_int_eq(run_bench("overlap --model clip,exact --set near,uniform --quantity V+grad --batch 100 "
-                             "--repeat 1 --threads 2 --json",
-                             output, sizeof output),
-                   0);
-  const char *keys[] = {
-      "bench", "model", "set", "quantity", "threads", "batch", "pairs_per_second", "pairs_per_cpu_second"};
+// Where the value of a key begins in a row of JSON; fails if the row lacks it.
+static const char *value_of(const char *row, const char *key) {
+  char quoted[TEXT_MAX_WORD + 8];
+  snprintf(quoted, sizeof quoted, "\"%s\":", key);
+  const char *found = strstr(row, quoted);
+  ck_assert_msg(found != NULL, "no %s in %s", quoted, row);
+  return found + strlen(quoted);
+}
+
+static double number_of(const char *row, const char *key) {
+  char *end;
+  const char *value = value_of(row, key);
+  double number = strtod(value, &end);
+  ck_assert_msg(end != value, "%s is no number in %s", key, row);
+  return number;
+}
+
+// A bench at a tiny size, the keys that BENCHMARKS.md promises, and those of them that must be positive.
+typedef struct Promise {
+  const char *arguments;
+  int rows;
+  const char *keys, *positive; // separated by spaces
+} Promise;
+
+static const Promise promises[] = {
+    {"overlap --model clip,exact --set near,uniform --quantity V+grad --batch 100 --repeat 1 --threads 2", 4,
+     "bench model set quantity spread", "pairs_per_second pairs_per_cpu_second batch threads"},
+    {"solver --nodes 60,100 --repeat 2", 6, "bench solver iterations spread factor_entries",
+     "vertices unknowns step slenderness assembly_s factorisation_s solve_s setup_solve_s residual"},
+    {"beam --nodes 60 --steps 3", 3, "bench solver linear_iterations spread",
+     "vertices unknowns steps newton_iterations factorisations linear_solves end_time wall_s forces_s "
+     "assembly_s factorisation_s solve_s ratio slenderness"},
+    {"scene tests/scenes/onset.yaml examples/01_drop.yaml --set time.end=0.02 --overlap clip,exact --repeat "
+     "1",
+     4,
+     "bench scene overlap solver factorisations energy_gain_relative spread broad_phase_s overlap_s "
+     "contact_s forces_s assembly_s analysis_s factorisation_s solve_s output_s other_s",
+     "vertices tetrahedra unknowns steps wall_s"},
+    {"step tests/scenes/cantilever.yaml --set time.end=0.01 --steps 5 --repeat 1", 11,
+     "bench scene overlap phase wall_s wall_s_per_step share", "steps"},
+    {"drop --stiffness 1e5,1e6 --tolerance 1e-3", 2,
+     "bench scene outcome onsets restarts energy_retries newton_failures energy_gain_relative",
+     "stiffness tolerance steps pairs_max contact_force_max deepest_overlap_max min_det_F wall_s"},
+};
+enum { PROMISE_COUNT = sizeof promises / sizeof *promises };
+
+static void check_row(const char *row, const Promise *promise) {
+  char key[TEXT_MAX_WORD];
+  ck_assert_int_eq(row[0], '{');
+  ck_assert_int_eq(row[strlen(row) - 1], '}');
+  for (const char *rest = text_next(promise->keys, key); rest; rest = text_next(rest, key))
+    value_of(row, key);
+  for (const char *rest = text_next(promise->positive, key); rest; rest = text_next(rest, key))
+    ck_assert_msg(number_of(row, key) > 0, "%s is not positive in %s", key, row);
+  value_of(row, "processor");
+  ck_assert_double_ge(number_of(row, "repeats"), 1);
+}
+
+START_TEST(rows_carry_the_promised_keys) {
+  static char output[OUTPUT_SIZE];
+  const Promise *promise = &promises[_i];
+  char arguments[512];
+  snprintf(arguments, sizeof arguments, "%s --json", promise->arguments);
+  ck_assert_int_eq(run_bench(arguments, output), 0);
   int rows = 0;
-  for (char *line = strtok(output, "\n"); line; line = strtok(NULL, "\n"), rows++) {
-    ck_assert_int_eq(line[0], '{');
-    ck_assert_int_eq(line[strlen(line) - 1], '}');
-    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
-      char quoted[64];
-      snprintf(quoted, sizeof quoted, "\"%s\":", keys[k]);
-      ck_assert_msg(strstr(line, quoted), "no %s in %s", quoted, line);
-    }
-    ck_assert_ptr_nonnull(strstr(line, "\"threads\":2,\"batch\":100,"));
+  for (char *row = strtok(output, "\n"); row; row = strtok(NULL, "\n"), rows++) check_row(row, promise);
+  ck_assert_int_eq(rows, promise->rows);
+}
+END_TEST
+
+static int count(const char *text, char letter) {
+  int found = 0;
+  for (; *text; text++) found += *text == letter;
+  return found;
+}
+
+START_TEST(csv_and_markdown_have_as_many_cells_in_every_line) {
+  static char output[OUTPUT_SIZE];
+  ck_assert_int_eq(run_bench("solver --nodes 60 --solver cholmod,klu --repeat 1 --csv", output), 0);
+  char *head = strtok(output, "\n"), *row = strtok(NULL, "\n");
+  ck_assert_int_eq(strncmp(head, "bench,solver,", 13), 0);
+  ck_assert_int_eq(strncmp(row, "solver,cholmod,", 15), 0);
+  ck_assert_int_eq(count(row, ','), count(head, ','));
+  ck_assert_int_eq(run_bench("solver --nodes 60 --solver cholmod,klu --repeat 1 --markdown", output), 0);
+  int lines = 0, cells = 0;
+  for (const char *line = strtok(output, "\n"); line; line = strtok(NULL, "\n"), lines++) {
+    if (lines == 0) cells = count(line, '|');
+    ck_assert_int_eq(count(line, '|'), cells);
   }
-  ck_assert_int_eq(rows, 4);
+  ck_assert_int_eq(lines, 4); // heads, rule, two rows
+}
+END_TEST
+
+START_TEST(direct_solvers_solve_to_rounding_and_agree_on_the_run) {
+  static char output[OUTPUT_SIZE];
+  ck_assert_int_eq(run_bench("solver --nodes 200 --solver cholmod,klu --repeat 1 --json", output), 0);
+  for (char *row = strtok(output, "\n"); row; row = strtok(NULL, "\n"))
+    ck_assert_msg(number_of(row, "residual") < 1e-10, "%s", row);
+  ck_assert_int_eq(run_bench("beam --nodes 200 --solver cholmod,klu --steps 10 --json", output), 0);
+  const char *cholmod = strtok(output, "\n"), *klu = strtok(NULL, "\n");
+  ck_assert_double_eq(number_of(cholmod, "steps"), 10);
+  ck_assert_double_eq(number_of(cholmod, "ratio"), 1);
+  const char *same[] = {"steps", "newton_iterations", "factorisations"};
+  for (int k = 0; k < 3; k++) ck_assert_double_eq(number_of(klu, same[k]), number_of(cholmod, same[k]));
+  ck_assert_near(number_of(klu, "end_time"), number_of(cholmod, "end_time"),
+                 1e-6 * number_of(cholmod, "end_time"));
+}
+END_TEST
+
+START_TEST(shares_of_a_run_sum_to_one) {
+  static char output[OUTPUT_SIZE];
+  ck_assert_int_eq(run_bench("step examples/01_drop.yaml --set time.end=0.02 --repeat 1 --json", output), 0);
+  double sum = 0, total = 0;
+  for (char *row = strtok(output, "\n"); row; row = strtok(NULL, "\n")) {
+    bool is_total = strncmp(value_of(row, "phase"), "\"total\"", 7) == 0;
+    *(is_total ? &total : &sum) += number_of(row, "share");
+  }
+  ck_assert_double_eq(total, 1);
+  ck_assert_near(sum, 1, 1e-9);
 }
 END_TEST
 
 START_TEST(wrong_arguments_are_usage_errors) {
-  char output[256];
+  static char output[OUTPUT_SIZE];
   const char *wrong[] = {"",
                          "everything",
                          "overlap --model clap",
@@ -71,9 +262,30 @@ START_TEST(wrong_arguments_are_usage_errors) {
                          "overlap --quantity W",
                          "overlap --batch 0",
                          "overlap --repeat many",
-                         "overlap --model exact --quantity V+grad+hess"};
+                         "overlap --model exact --quantity V+grad+hess",
+                         "solver --nodes 5000,x",
+                         "solver --solver umfpack",
+                         "beam --nodes 5000,6000",
+                         "beam --slenderness nan",
+                         "drop --stiffness -1",
+                         "drop --tolerance ''",
+                         "scene",
+                         "scene examples/01_drop.yaml --set contact.stifness=1",
+                         "step",
+                         "step a.yaml b.yaml"};
   for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
-    ck_assert_msg(run_bench(wrong[k], output, sizeof output) == 64, "%s", wrong[k]);
+    ck_assert_msg(run_bench(wrong[k], output) == 64, "%s", wrong[k]);
+  ck_assert_int_eq(run_bench("step no_such_scene.yaml", output), 74);
+}
+END_TEST
+
+START_TEST(an_unknown_bench_gets_the_nearest_name) {
+  static char output[OUTPUT_SIZE];
+  ck_assert_int_eq(run_bench("slover 2>&1", output), 64);
+  ck_assert_msg(strstr(output, "'solver'") != NULL, "%s", output);
+  ck_assert_int_eq(run_bench("--help", output), 0);
+  ck_assert_ptr_nonnull(strstr(output, "overlap"));
+  ck_assert_ptr_nonnull(strstr(output, "drop"));
 }
 END_TEST
 
@@ -81,7 +293,16 @@ int main(void) {
   TCase *cases = tcase_create("bench");
   tcase_add_loop_test(cases, the_same_seed_gives_the_same_pairs, 0, APP_BENCH_SET_COUNT);
   tcase_add_test(cases, an_unknown_set_is_an_error_that_names_the_known_ones);
-  tcase_add_test(cases, json_rows_carry_the_promised_keys);
+  tcase_add_test(cases, the_median_of_rounds_counts);
+  tcase_add_test(cases, contestants_take_turns_to_and_fro_after_a_warm_up);
+  tcase_add_test(cases, a_failure_ends_the_turns);
+  tcase_add_test(cases, the_beam_has_about_the_vertices_that_were_asked_for);
+  tcase_add_test(cases, a_trial_stops_after_its_steps_and_its_phases_sum_to_the_whole);
+  tcase_add_loop_test(cases, rows_carry_the_promised_keys, 0, PROMISE_COUNT);
+  tcase_add_test(cases, csv_and_markdown_have_as_many_cells_in_every_line);
+  tcase_add_test(cases, direct_solvers_solve_to_rounding_and_agree_on_the_run);
+  tcase_add_test(cases, shares_of_a_run_sum_to_one);
   tcase_add_test(cases, wrong_arguments_are_usage_errors);
-  return suite_run("bench", cases, 30);
+  tcase_add_test(cases, an_unknown_bench_gets_the_nearest_name);
+  return suite_run("bench", cases, 60);
 }
