@@ -4,6 +4,35 @@
 #include <limits.h>
 #include <stddef.h>
 
+#include "base/memory.h"
+
+static Status load(ContactGeoOverlap *overlap, const char *path) {
+  if (!path) return contact_geo_model_create(&overlap->model, NULL);
+  TRY(contact_geo_net_create(&overlap->net, path));
+  ContactGeoNetwork network = contact_geo_net_interface(overlap->net);
+  Status status = contact_geo_model_create(&overlap->model, &network);
+  return status == STATUS_OK ? STATUS_OK : status_prefix(status, "%s", path);
+}
+
+Status contact_geo_overlap_create(void **self, const char *path) {
+  ContactGeoOverlap *overlap = memory_zeroed(1, sizeof *overlap);
+  if (!overlap) return status_no_memory("an overlap model");
+  Status status = load(overlap, path);
+  if (status != STATUS_OK) {
+    contact_geo_overlap_destroy(overlap);
+    return status;
+  }
+  *self = overlap;
+  return STATUS_OK;
+}
+
+void contact_geo_overlap_destroy(void *self) {
+  ContactGeoOverlap *overlap = self;
+  if (!overlap) return;
+  contact_geo_net_destroy(overlap->net);
+  memory_free(overlap);
+}
+
 Status contact_geo_overlap_eval_pair(const void *self, const double pair[24], double *volume,
                                      double *gradient, double *hessian, unsigned *flags) {
   ContactOverlapBatch batch = {.pair_count = 1,
@@ -12,7 +41,8 @@ Status contact_geo_overlap_eval_pair(const void *self, const double pair[24], do
                                .gradient = gradient,
                                .hessian = hessian,
                                .flags = flags};
-  return contact_geo_eval(self, &batch);
+  const ContactGeoOverlap *overlap = self;
+  return contact_geo_eval(&overlap->model, &batch);
 }
 
 // What one thread takes at a time; the cut does not depend on the number of threads.
@@ -30,16 +60,17 @@ static ContactOverlapBatch portion_of(const ContactOverlapBatch *batch, int numb
 }
 
 Status contact_geo_overlap_eval_batch(const void *self, const ContactOverlapBatch *batch) {
+  const ContactGeoModel *model = &((const ContactGeoOverlap *)self)->model;
   int count = (batch->pair_count + PORTION - 1) / PORTION, first_failed = INT_MAX;
 #pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (count > 1)
   for (int p = 0; p < count; p++) {
     ContactOverlapBatch portion = portion_of(batch, p);
-    if (contact_geo_eval(self, &portion) != STATUS_OK && p < first_failed) first_failed = p;
+    if (contact_geo_eval(model, &portion) != STATUS_OK && p < first_failed) first_failed = p;
   }
   if (first_failed == INT_MAX) return STATUS_OK;
   // the message belongs to the thread that failed: let this one see it too
   ContactOverlapBatch portion = portion_of(batch, first_failed);
-  Status status = contact_geo_eval(self, &portion);
+  Status status = contact_geo_eval(model, &portion);
   if (status == STATUS_OK)
     return status_fail(STATUS_SOLVER, "pairs %d to %d failed once and not again", first_failed * PORTION,
                        first_failed * PORTION + portion.pair_count - 1);

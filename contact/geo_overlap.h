@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `geo` behind the interface of the overlap models: what an operations table of theirs points to, with a
-// ContactGeoModel as `self`.
+// `geo` behind the interface of the overlap models: what an operations table of theirs points to.
 #ifndef TETLAP_CONTACT_GEO_OVERLAP_H
 #define TETLAP_CONTACT_GEO_OVERLAP_H
 
 #include "contact/geo.h"
+#include "contact/geo_net.h"
+
+typedef struct ContactGeoOverlap {
+  ContactGeoModel model;
+  ContactGeoNet *net; // owned; NULL: no network, φ = ln 1.28
+} ContactGeoOverlap;
+
+// From a weights file; `path` NULL: without a network. `*self` is a ContactGeoOverlap.
+Status contact_geo_overlap_create(void **self, const char *path);
+void contact_geo_overlap_destroy(void *self);
 
 // As ContactOverlapOps.eval_pair.
 Status contact_geo_overlap_eval_pair(const void *self, const double pair[24], double *volume,

@@ -19,19 +19,19 @@ enum { MODEL_COUNT = 4 };
 
 typedef struct Subject {
   GeoNetwork network;
-  ContactGeoModel model;
+  ContactGeoOverlap overlap;
 } Subject;
 
 // The constant, then a network for each feature set.
 static void make_subject(int index, Subject *subject) {
   const int sizes[MODEL_COUNT] = {0, 36, 70, 100};
   if (index == 0) {
-    ck_assert_ok(contact_geo_model_create(&subject->model, NULL));
+    ck_assert_ok(contact_geo_model_create(&subject->overlap.model, NULL));
     return;
   }
   subject->network = geo_network_random(sizes[index], 3);
   ContactGeoNetwork interface = geo_network_interface(&subject->network);
-  ck_assert_ok(contact_geo_model_create(&subject->model, &interface));
+  ck_assert_ok(contact_geo_model_create(&subject->overlap.model, &interface));
 }
 
 typedef struct Answer {
@@ -41,7 +41,7 @@ typedef struct Answer {
 
 static Answer ask(const Subject *subject, const double x[24], bool wants_hessian) {
   Answer answer;
-  ck_assert_ok(contact_geo_overlap_eval_pair(&subject->model, x, &answer.volume, answer.gradient,
+  ck_assert_ok(contact_geo_overlap_eval_pair(&subject->overlap, x, &answer.volume, answer.gradient,
                                              wants_hessian ? answer.hessian : NULL, &answer.flags));
   return answer;
 }
@@ -347,10 +347,10 @@ START_TEST(without_a_network_the_error_on_the_uniform_law_is_the_known_one) {
   static double pairs[COUNT * 24], exact[COUNT], volumes[COUNT];
   Subject subject;
   make_subject(0, &subject);
-  subject.model.offset = mean_phi;
+  subject.overlap.model.offset = mean_phi;
   ck_assert_int_eq(draw_test_law(PER_BIN, pairs, exact), COUNT);
   ContactOverlapBatch batch = {.pair_count = COUNT, .pairs = pairs, .volume = volumes};
-  ck_assert_ok(contact_geo_eval(&subject.model, &batch));
+  ck_assert_ok(contact_geo_eval(&subject.overlap.model, &batch));
   double sum = 0;
   for (int i = 0; i < COUNT; i++) sum += fabs(volumes[i] - exact[i]);
   ck_assert_near(sum / COUNT, 2.21e-3, 0.3e-3);
@@ -367,7 +367,7 @@ START_TEST(without_a_network_forces_of_pressed_meshes_are_off_by_a_few_degrees) 
   static double pairs[COUNT * 24], angles[COUNT];
   Subject subject;
   make_subject(0, &subject);
-  subject.model.offset = mean_phi;
+  subject.overlap.model.offset = mean_phi;
   ck_assert_ok(app_bench_pairs_make("near", COUNT, 1, pairs));
   double volume_error = 0, volume_sum = 0, gradient_error = 0, gradient_sum = 0;
   for (int n = 0; n < COUNT; n++) {
@@ -402,7 +402,7 @@ END_TEST
 START_TEST(what_training_is_given_is_what_the_model_computes) {
   Subject subject;
   make_subject(3, &subject);
-  const ContactGeoFeatureSet *set = subject.model.set;
+  const ContactGeoFeatureSet *set = subject.overlap.model.set;
   Random random = random_seeded(51, 0);
   int seen = 0;
   for (int member = 0; member < 60; member++) {
@@ -416,7 +416,8 @@ START_TEST(what_training_is_given_is_what_the_model_computes) {
     if (outcome != CONTACT_GEO_INSIDE) continue;
     seen++;
     ck_assert_ok(geo_network_eval(&subject.network, 1, features, &rho, slope));
-    ck_assert_near(log_volume + subject.model.offset + rho, log(answer.volume), 1e-13 * fabs(log_volume));
+    ck_assert_near(log_volume + subject.overlap.model.offset + rho, log(answer.volume),
+                   1e-13 * fabs(log_volume));
     for (int d = 0; d < 2; d++) {
       double change = log_changes[d], along = 0, size = 0;
       for (int f = 0; f < 100; f++) change += slope[f] * changes[100 * d + f];
@@ -453,7 +454,7 @@ START_TEST(a_batch_gives_what_its_pairs_give_alone) {
                                .flags = flags};
   int threads = omp_get_max_threads();
   omp_set_num_threads(3);
-  ck_assert_ok(contact_geo_overlap_eval_batch(&subject.model, &batch));
+  ck_assert_ok(contact_geo_overlap_eval_batch(&subject.overlap, &batch));
   omp_set_num_threads(threads);
   for (int n = 0; n < COUNT; n++) {
     Answer answer = ask(&subject, pairs + 24 * n, true);
@@ -463,8 +464,8 @@ START_TEST(a_batch_gives_what_its_pairs_give_alone) {
     ck_assert_uint_eq(answer.flags, flags[n]);
   }
   // and what a network fails with comes through
-  subject.model.network.eval = fail_eval;
-  ck_assert_int_eq(contact_geo_overlap_eval_batch(&subject.model, &batch), STATUS_SOLVER);
+  subject.overlap.model.network.eval = fail_eval;
+  ck_assert_int_eq(contact_geo_overlap_eval_batch(&subject.overlap, &batch), STATUS_SOLVER);
   ck_assert_ptr_nonnull(strstr(status_message(), "pairs 0 to 63: no"));
 }
 END_TEST

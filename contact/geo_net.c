@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/geo_net.h"
+
+#include <omp.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "net/forward.h"
+#include "net/tangent.h"
+#include "net/work.h"
+
+enum { DIRECTIONS = 12 };
+
+// Memory of evaluation, used by one caller at a time.
+typedef struct Desk {
+  atomic_flag is_taken;
+  NetWork_f64 work;
+} Desk;
+
+struct ContactGeoNet {
+  NetModel_f64 model;
+  NetCard card;
+  int desk_count;
+  Desk *desks; // (desk_count)
+};
+
+static Status fail_as_net(NetStatus status) {
+  Status code = status == NET_NO_MEMORY ? STATUS_MEMORY : status == NET_BAD_IO ? STATUS_IO : STATUS_INPUT;
+  return status_fail(code, "%s", net_status_message());
+}
+
+// A thread's own desk as a rule; another one if threads that OpenMP does not count are about.
+static Desk *take(const ContactGeoNet *net) {
+  for (int d = omp_get_thread_num();; d++) {
+    Desk *desk = &net->desks[d % net->desk_count];
+    if (!atomic_flag_test_and_set_explicit(&desk->is_taken, memory_order_acquire)) return desk;
+  }
+}
+
+static void leave(Desk *desk) {
+  atomic_flag_clear_explicit(&desk->is_taken, memory_order_release);
+}
+
+static Status eval(const void *self, int count, const double *features, double *value, double *gradient) {
+  double ones[CONTACT_GEO_CHUNK];
+  for (int n = 0; n < CONTACT_GEO_CHUNK; n++) ones[n] = 1;
+  const ContactGeoNet *net = self;
+  Desk *desk = take(net);
+  if (gradient)
+    net_forward_gradient_f64(&desk->work, &net->model, count, features, ones, value, gradient);
+  else
+    net_forward_eval_f64(&desk->work, &net->model, count, features, value);
+  leave(desk);
+  return STATUS_OK;
+}
+
+static Status curve(const void *self, const double *features, int direction_count, const double *directions,
+                    double *second) {
+  const ContactGeoNet *net = self;
+  const double one = 1;
+  Desk *desk = take(net);
+  net_tangent_second_f64(&desk->work, &net->model, 1, direction_count, features, directions, &one, NULL, NULL,
+                         NULL, second);
+  leave(desk);
+  return STATUS_OK;
+}
+
+static Status check(const ContactGeoNet *net, const char *path) {
+  const NetShape *shape = &net->model.plan->shape;
+  if (shape->kind != NET_MLP || shape->activation != NET_SILU || shape->output_count != 1)
+    return status_fail(STATUS_INPUT, "%s: geo needs a dense SiLU network with one output, this is another",
+                       path);
+  if (!contact_geo_feature_set(shape->input_count))
+    return status_fail(STATUS_INPUT,
+                       "%s: the network has %d inputs, the features of a pair are 36, 70 or 100", path,
+                       shape->input_count);
+  if (strcmp(net->card.normalisation, CONTACT_GEO_NORMALISATION) != 0)
+    return status_fail(STATUS_INPUT, "%s: made for the normalisation '%s', geo has '%s'", path,
+                       net->card.normalisation, CONTACT_GEO_NORMALISATION);
+  return STATUS_OK;
+}
+
+static Status furnish(ContactGeoNet *net) {
+  net->desk_count = omp_get_max_threads();
+  net->desks = memory_zeroed((size_t)net->desk_count, sizeof *net->desks);
+  if (!net->desks) return status_no_memory("the network's memory of evaluation");
+  NetWorkDef def = net_work_default();
+  def.tangent_count = DIRECTIONS;
+  for (int d = 0; d < net->desk_count; d++) {
+    atomic_flag_clear(&net->desks[d].is_taken);
+    NetStatus status = net_work_create_f64(net->model.plan, &def, &net->desks[d].work);
+    if (status != NET_OK) return fail_as_net(status);
+  }
+  return STATUS_OK;
+}
+
+static Status load(ContactGeoNet *net, const char *path) {
+  NetStatus status = net_weights_read_f64(path, &net->model, &net->card);
+  if (status != NET_OK) return fail_as_net(status);
+  TRY(check(net, path));
+  return furnish(net);
+}
+
+Status contact_geo_net_create(ContactGeoNet **net, const char *path) {
+  *net = memory_zeroed(1, sizeof **net);
+  if (!*net) return status_no_memory("a network");
+  Status status = load(*net, path);
+  if (status == STATUS_OK) return STATUS_OK;
+  contact_geo_net_destroy(*net);
+  *net = NULL;
+  return status;
+}
+
+void contact_geo_net_destroy(ContactGeoNet *net) {
+  if (!net) return;
+  for (int d = 0; d < net->desk_count && net->desks; d++) net_work_destroy_f64(&net->desks[d].work);
+  memory_free(net->desks);
+  net_card_destroy(&net->card);
+  net_model_destroy_f64(&net->model);
+  memory_free(net);
+}
+
+ContactGeoNetwork contact_geo_net_interface(const ContactGeoNet *net) {
+  return (ContactGeoNetwork){
+      .self = net, .feature_count = net->model.plan->shape.input_count, .eval = eval, .curve = curve};
+}
+
+const NetCard *contact_geo_net_card(const ContactGeoNet *net) {
+  return &net->card;
+}
