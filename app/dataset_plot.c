@@ -77,6 +77,16 @@ static bool has_volumes(const AppDatasetSummary *summary) {
   return false;
 }
 
+// Between labels of the axis of V, as a factor: about eight labels whatever the range.
+static double label_step(const AppDatasetSummary *summary) {
+  double low = INFINITY, high = 0;
+  for (int k = 0; k < DATAGEN_KIND_COUNT; k++) {
+    const AppDatasetKind *kind = &summary->kinds[k];
+    if (kind->with_volume) low = fmin(low, kind->volume_min), high = fmax(high, kind->volume_max);
+  }
+  return pow(10, fmax(1, ceil(log10(high / low) / 8)));
+}
+
 static void write_script(FILE *stream, const AppDatasetSummary *summary, const char *title,
                          const char *picture) {
   fputs("# gnuplot script; run it again with: gnuplot THIS_FILE\n", stream);
@@ -91,12 +101,12 @@ static void write_script(FILE *stream, const AppDatasetSummary *summary, const c
         "set ylabel 'pairs'\nset yrange [0:*]\nplot $counts using 0:2:xtic(1) with boxes notitle\n",
         stream);
   if (has_volumes(summary)) {
-    fputs("set xtics norotate autofreq\nset logscale x\nset format x '10^{%T}'\nset xlabel 'V'\n"
-          "set ylabel 'density of log_{10} V'\nset key top left\n",
-          stream);
+    fprintf(stream, "set xtics norotate %g\nset logscale x\nset format x '10^{%%T}'\nset xlabel 'V'\n",
+            label_step(summary));
+    fputs("set ylabel 'density of log_{10} V'\nset key above\n", stream);
     write_curves(stream, summary, "1:2");
     fputs("set ylabel 'density of V'\nset logscale y\nset format y '10^{%T}'\nset yrange [*:*]\n"
-          "set key top right\n",
+          "unset key\n",
           stream);
     write_curves(stream, summary, "1:3");
   }

@@ -197,6 +197,34 @@ static bool is_wanted(const DatagenInfo *info, int column) {
   return column != GRADIENT || info->has_gradient;
 }
 
+// x − x is 0 for finite x, else NaN; the sum has no branch.
+static bool are_finite(const double *values, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) sum += values[i] - values[i];
+  return sum == 0;
+}
+
+// What is impossible about pair i, of the arrays that are there; NULL: nothing.
+static const char *find_fault(const DatagenPairs *pairs, size_t i) {
+  if (pairs->coordinates && !are_finite(pairs->coordinates + 24 * i, 24)) return "a coordinate is not finite";
+  if (pairs->gradient && !are_finite(pairs->gradient + 24 * i, 24)) return "a derivative is not finite";
+  if (pairs->status && pairs->status[i] > 1) return "its status is neither 0 nor 1";
+  if (pairs->kind && !datagen_kind_info(pairs->kind[i])) return "its kind has no name";
+  if (pairs->volume && !(pairs->volume[i] >= 0 && isfinite(pairs->volume[i])))
+    return "its volume is negative or not finite";
+  if (pairs->volume && pairs->status && pairs->volume[i] > 0 && !pairs->status[i])
+    return "it has a volume, and its status says disjoint";
+  return NULL;
+}
+
+static Status check_pairs(const char *path, long long first, size_t count, const DatagenPairs *pairs) {
+  for (size_t i = 0; i < count; i++) {
+    const char *fault = find_fault(pairs, i);
+    if (fault) return status_fail(STATUS_INPUT, "%s: pair %lld: %s", path, first + (long long)i, fault);
+  }
+  return STATUS_OK;
+}
+
 // Times are left out: the same pairs make the same file.
 static hid_t create_file(const char *path) {
   hid_t options = H5Pcreate(H5P_FILE_CREATE);
@@ -258,6 +286,7 @@ Status datagen_writer_append(DatagenWriter *writer, const DatagenPairs *pairs, s
   DatagenInfo *info = &writer->info;
   const hsize_t first = (hsize_t)info->count;
   bool works = true;
+  TRY(check_pairs(writer->place.path, info->count, count, pairs));
   for (int c = 0; c < COLUMN_COUNT && works; c++) {
     if (!is_wanted(info, c)) continue;
     hsize_t shape[4];
@@ -290,7 +319,9 @@ static bool close_contents(DatagenWriter *writer) {
 }
 
 Status datagen_writer_commit(DatagenWriter *writer) {
-  bool works = write_fields(writer->file, &writer->info);
+  DatagenInfo *info = &writer->info;
+  if (!info->planned) info->planned = info->total = info->count;
+  bool works = write_fields(writer->file, info);
   works = close_contents(writer) && works;
   Status status = works ? STATUS_OK : fail_hdf5(STATUS_IO, writer->place.path, "writing failed");
   if (!status) status = file_commit(&writer->place);
@@ -492,26 +523,6 @@ const DatagenInfo *datagen_dataset_info(const DatagenDataset *dataset) {
   return &dataset->info;
 }
 
-// x − x is 0 for finite x, else NaN; the sum has no branch.
-static bool are_finite(const double *values, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++) sum += values[i] - values[i];
-  return sum == 0;
-}
-
-// What is impossible about pair i of those read; NULL: nothing.
-static const char *find_fault(const DatagenPairs *pairs, size_t i) {
-  if (pairs->coordinates && !are_finite(pairs->coordinates + 24 * i, 24)) return "a coordinate is not finite";
-  if (pairs->gradient && !are_finite(pairs->gradient + 24 * i, 24)) return "a derivative is not finite";
-  if (pairs->status && pairs->status[i] > 1) return "its status is neither 0 nor 1";
-  if (pairs->kind && !datagen_kind_info(pairs->kind[i])) return "its kind has no name";
-  if (pairs->volume && !(pairs->volume[i] >= 0 && isfinite(pairs->volume[i])))
-    return "its volume is negative or not finite";
-  if (pairs->volume && pairs->status && pairs->volume[i] > 0 && !pairs->status[i])
-    return "it has a volume, and its status says disjoint";
-  return NULL;
-}
-
 Status datagen_dataset_read(DatagenDataset *dataset, long long first, size_t count,
                             const DatagenPairs *pairs) {
   const DatagenInfo *info = &dataset->info;
@@ -529,12 +540,7 @@ Status datagen_dataset_read(DatagenDataset *dataset, long long first, size_t cou
       return fail_hdf5(STATUS_INPUT, dataset->path, what);
     }
   }
-  for (size_t i = 0; i < count; i++) {
-    const char *fault = find_fault(pairs, i);
-    if (fault)
-      return status_fail(STATUS_INPUT, "%s: pair %lld: %s", dataset->path, first + (long long)i, fault);
-  }
-  return STATUS_OK;
+  return check_pairs(dataset->path, first, count, pairs);
 }
 
 void datagen_dataset_close(DatagenDataset *dataset) {

@@ -46,10 +46,11 @@ DatagenInfo datagen_info_of_plan(const DatagenPlan *plan, const char *program, l
 typedef struct DatagenWriter DatagenWriter; // opaque: HDF5 hides behind it
 
 // Begins a file beside `path`. STATUS_IO: the reason. Of `info`, count, kind_counts and attempts are counted
-// anew.
+// anew; planned 0: as many as will be appended, which are the whole.
 Status datagen_writer_begin(DatagenWriter **writer, const char *path, const DatagenInfo *info);
 // Appends `count` pairs; all arrays (gradient only if the file has it) are read. `attempts` by kind, may be
-// NULL. Flushed when it returns.
+// NULL. Flushed when it returns. STATUS_INPUT: a pair is impossible (see datagen_dataset_read), nothing of
+// the batch is kept.
 Status datagen_writer_append(DatagenWriter *writer, const DatagenPairs *pairs, size_t count,
                              const long long *attempts);
 long long datagen_writer_count(const DatagenWriter *writer); // pairs appended so far

@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include "base/vec3.h"
+#include "datagen/cube.h"
 
 static const double JITTER = 0.15, TILT = 0.2;
 static const double LEAST_RATIO = 0.5, LARGEST_RATIO = 2;
@@ -54,47 +55,38 @@ static void draw_rotation(Random *random, double r[9]) {
   for (int i = 0; i < 9; i++) r[i] = matrix[i];
 }
 
-static void find_box(const double *points, int count, double low[3], double high[3]) {
-  for (int c = 0; c < 3; c++) {
-    low[c] = high[c] = points[c];
-    for (int i = 1; i < count; i++) {
-      low[c] = fmin(low[c], points[3 * i + c]);
-      high[c] = fmax(high[c], points[3 * i + c]);
-    }
-  }
-}
-
 static bool boxes_overlap(const double pair[24]) {
   double low[2][3], high[2][3];
-  for (int t = 0; t < 2; t++) find_box(pair + 12 * t, 4, low[t], high[t]);
+  for (int t = 0; t < 2; t++) datagen_cube_box(pair + 12 * t, 4, low[t], high[t]);
   for (int c = 0; c < 3; c++)
     if (!(low[0][c] < high[1][c] && low[1][c] < high[0][c])) return false;
   return true;
 }
 
-static void fit_into_cube(Random *random, double pair[24]) {
-  double rotation[9], low[3], high[3], size = 0;
+static void turn(Random *random, double pair[24]) {
+  double rotation[9];
   random_rotation(random, rotation);
   for (int i = 0; i < 8; i++) vec3_store(pair + 3 * i, turned(rotation, vec3_at(pair + 3 * i)));
-  find_box(pair, 8, low, high);
-  for (int c = 0; c < 3; c++) size = fmax(size, high[c] - low[c]);
-  for (int c = 0; c < 3; c++) {
-    double room = 1 - (high[c] - low[c]) / size, place = room * random_uniform(random);
-    for (int i = c; i < 24; i += 3) pair[i] = fmin(fmax((pair[i] - low[c]) / size + place, 0), 1);
-  }
 }
 
 bool datagen_scene_try(Random *random, double pair[24]) {
-  Lattice lower = {.seed = random_bits(random), .edge = 1, .rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  Lattice upper = {.seed = random_bits(random), .edge = log_uniform(random, LEAST_RATIO, LARGEST_RATIO)};
+  Lattice lower = {.edge = 1, .rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}}, upper = {0};
+  lower.seed = random_bits(random);
+  upper.seed = random_bits(random);
+  upper.edge = log_uniform(random, LEAST_RATIO, LARGEST_RATIO);
   draw_rotation(random, upper.rotation);
-  double depth = log_uniform(random, LEAST_DEPTH, LARGEST_DEPTH) * fmin(1, upper.edge);
   // a point of the upper surface's cell (0, 0) comes to lie over the lower surface's cell (0, 0) or beside it
-  upper.pivot = (Vec3){upper.edge * random_uniform(random), upper.edge * random_uniform(random), 0};
-  upper.place = (Vec3){random_between(random, -0.5, 1.5), random_between(random, -0.5, 1.5), -depth};
+  upper.pivot.x = upper.edge * random_uniform(random);
+  upper.pivot.y = upper.edge * random_uniform(random);
+  upper.place.x = random_between(random, -0.5, 1.5);
+  upper.place.y = random_between(random, -0.5, 1.5);
+  upper.place.z = -log_uniform(random, LEAST_DEPTH, LARGEST_DEPTH) * fmin(1, upper.edge);
   place_tet(&lower, (int[]){0, 0, -1}, random_below(random, 6), pair);
   place_tet(&upper, (int[]){0, 0, 0}, random_below(random, 6), pair + 12);
   if (!boxes_overlap(pair)) return false;
-  fit_into_cube(random, pair);
+  turn(random, pair);
+  double place[3];
+  for (int c = 0; c < 3; c++) place[c] = random_uniform(random);
+  datagen_cube_fit(pair, place);
   return true;
 }

@@ -134,8 +134,9 @@ static bool try_vertex_face(const GridTet *tet, Random *random, double *second) 
 // vertices, for which the plane holds it exactly; false: it is not in the cube.
 static bool draw_plane_point(const GridTet *tet, const int v[3], Random *random, double *position) {
   Vec3 origin = to_vector(tet->vertex[v[0]]);
-  Vec3 x = {random_uniform(random), random_uniform(random), random_uniform(random)};
-  Vec3 offset = vec3_sub(vec3_scale((double)GRID, x), origin);
+  double x[3];
+  for (int c = 0; c < 3; c++) x[c] = random_uniform(random);
+  Vec3 offset = vec3_sub(vec3_scale((double)GRID, vec3_at(x)), origin);
   Vec3 e = to_vector(difference(tet->vertex[v[1]], tet->vertex[v[0]]));
   Vec3 f = to_vector(difference(tet->vertex[v[2]], tet->vertex[v[0]]));
   Vec3 n = vec3_cross(e, f);
