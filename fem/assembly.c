@@ -27,6 +27,7 @@ static void select_tets(FemAssembly *assembly, bool (*takes)(const FemModelBody 
     for (int i = all->begin[colour]; i < all->begin[colour + 1]; i++) {
       const FemModelBody *body = &model->bodies[model->tet_body[all->tets[i]]];
       if (takes && !takes(body)) continue;
+      assembly->elements[assembly->tet_count] = model->elements[all->tets[i]];
       own->tets[assembly->tet_count++] = all->tets[i];
     }
   }
@@ -41,7 +42,8 @@ Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
   FemColouring *own = &assembly->colouring;
   own->begin = memory_zeroed((size_t)all->colour_count + 1, sizeof *own->begin);
   own->tets = memory_zeroed((size_t)model->tet_count, sizeof *own->tets);
-  if (!own->begin || !own->tets) return status_no_memory("the list of elements");
+  assembly->elements = memory_zeroed((size_t)model->tet_count, sizeof *assembly->elements);
+  if (!own->begin || !own->tets || !assembly->elements) return status_no_memory("the list of elements");
   select_tets(assembly, takes);
   assembly->partial = memory_zeroed((size_t)chunk_count(assembly), sizeof *assembly->partial);
   if (!assembly->partial) return status_no_memory("partial sums over elements");
@@ -51,6 +53,7 @@ Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
 void fem_assembly_destroy(FemAssembly *assembly) {
   memory_free(assembly->colouring.begin);
   memory_free(assembly->colouring.tets);
+  memory_free(assembly->elements);
   memory_free(assembly->partial);
   memory_free(assembly->slots);
   *assembly = (FemAssembly){0};
@@ -62,16 +65,17 @@ Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int
   return STATUS_OK;
 }
 
-static inline void gather(const FemAssembly *assembly, const FemState *state, int tet,
-                          FemAssemblyElement *e) {
+// The i-th element of the colouring.
+static inline void gather(const FemAssembly *assembly, const FemState *state, int i, FemAssemblyElement *e) {
   const FemModel *model = assembly->model;
-  e->element = &model->elements[tet];
+  int tet = assembly->colouring.tets[i];
+  e->element = &assembly->elements[i];
   e->body = &model->bodies[model->tet_body[tet]];
   for (int a = 0; a < 4; a++) {
     size_t dof = 3 * (size_t)model->tets[tet][a];
-    for (int i = 0; i < 3; i++) {
-      e->x[3 * a + i] = state->positions[dof + (size_t)i];
-      e->v[3 * a + i] = state->velocities[dof + (size_t)i];
+    for (int c = 0; c < 3; c++) {
+      e->x[3 * a + c] = state->positions[dof + (size_t)c];
+      e->v[3 * a + c] = state->velocities[dof + (size_t)c];
     }
   }
 }
@@ -85,7 +89,7 @@ void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state,
     for (int i = colouring->begin[colour]; i < colouring->begin[colour + 1]; i++) {
       FemAssemblyElement e;
       double own[12];
-      gather(assembly, state, colouring->tets[i], &e);
+      gather(assembly, state, i, &e);
       kernel(&e, own);
       const int *vertices = assembly->model->tets[colouring->tets[i]];
       for (int r = 0; r < 12; r++) force[3 * (size_t)vertices[r / 3] + (size_t)(r % 3)] += own[r];
@@ -131,7 +135,7 @@ Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state, F
     for (int i = colouring->begin[colour]; i < colouring->begin[colour + 1]; i++) {
       FemAssemblyElement e;
       double own[144];
-      gather(assembly, state, colouring->tets[i], &e);
+      gather(assembly, state, i, &e);
       kernel(&e, stiffness_scale, damping_scale, own);
       scatter_matrix(own, assembly->slots + HALF * (size_t)i, matrix->value);
     }
@@ -148,7 +152,7 @@ double fem_assembly_sum(FemAssembly *assembly, const FemState *state, FemAssembl
     double sum = 0;
     for (int i = begin; i < end; i++) {
       FemAssemblyElement e;
-      gather(assembly, state, assembly->colouring.tets[i], &e);
+      gather(assembly, state, i, &e);
       sum += kernel(&e);
     }
     assembly->partial[chunk] = sum;

@@ -26,9 +26,10 @@ typedef struct FemAssembly {
   const FemModel *model;  // borrowed
   FemColouring colouring; // the model's, without the bodies that take no part
   int tet_count;
-  double *partial;  // sums of chunks of elements                                    (chunk_count)
-  int *slots;       // of the lower half of each element matrix, by rows; −1: none    (tet_count, 78)
-  long long layout; // of the matrix that `slots` belong to; 0: not looked up
+  FemElement *elements; // copies in the order of the colouring, in which they are read  (tet_count)
+  double *partial;      // sums of chunks of elements                                    (chunk_count)
+  int *slots;           // of the lower half of each element matrix, by rows; −1: none    (tet_count, 78)
+  long long layout;     // of the matrix that `slots` belong to; 0: not looked up
 } FemAssembly;
 
 // All elements of the model's colouring, which leaves out obstacles, whose body `takes` accepts (NULL: all).

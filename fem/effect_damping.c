@@ -50,11 +50,16 @@ static Status add_force(void *self, const FemState *state, double *force) {
 static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
                            double matrix[144]) {
   const FemMaterial *material = &e->body->material;
-  double geometric[144] = {0};
-  if (stiffness_scale != 0)
-    fem_element_damping_stiffness(e->element, material, e->body->damping, e->x, e->v, geometric);
-  fem_element_damping_matrix(e->element, material, e->body->damping, e->x, matrix);
-  for (int k = 0; k < 144; k++) matrix[k] = damping_scale * matrix[k] + stiffness_scale * geometric[k];
+  double part[144];
+  for (int k = 0; k < 144; k++) matrix[k] = 0;
+  if (stiffness_scale != 0) {
+    fem_element_damping_stiffness(e->element, material, e->body->damping, e->x, e->v, part);
+    for (int k = 0; k < 144; k++) matrix[k] += stiffness_scale * part[k];
+  }
+  if (damping_scale != 0) {
+    fem_element_damping_matrix(e->element, material, e->body->damping, e->x, part);
+    for (int k = 0; k < 144; k++) matrix[k] += damping_scale * part[k];
+  }
 }
 
 static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,

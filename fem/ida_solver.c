@@ -170,8 +170,13 @@ Status fem_ida_solver_assemble(FemIdaSolver *solver, double time, double c, cons
   TRY(fem_system_couple(system, time));
   solver->c = c;
   if (solver->has_damping) TRY(assemble_damping(solver, time));
-  if (solver->ops->is_condensed) return fem_system_assemble(system, time, 1, c, c * c, &system->matrix);
-  return fem_system_assemble(system, time, 1, 0, 0, &system->matrix);
+  bool is_condensed = solver->ops->is_condensed;
+  TRY(fem_system_assemble(system, time, 1, 0, is_condensed ? c * c : 0, &system->matrix));
+  // D is there already: its elements are not visited again for S.
+  if (is_condensed && solver->has_damping)
+    for (int i = 0; i < system->matrix.entry_count; i++)
+      system->matrix.value[i] += c * solver->damping.value[i];
+  return STATUS_OK;
 }
 
 const double *fem_ida_solver_masses(const FemIdaSolver *solver) {
