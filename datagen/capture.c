@@ -28,7 +28,8 @@ Status datagen_capture_begin(DatagenCapture *capture, const char *path, const ch
   return status;
 }
 
-// Into its place in the block; a flat pair gets the status FLAT.
+// Into its place in the block; a pair that is flat, before rounding in the move or after, gets the status
+// FLAT.
 static Status add_pair(const DatagenCapture *capture, const double *source, int place) {
   static const double middle[3] = {0.5, 0.5, 0.5};
   const DatagenPairs *pairs = &capture->pairs;
@@ -36,7 +37,7 @@ static Status add_pair(const DatagenCapture *capture, const double *source, int 
   memcpy(pair, source, 24 * sizeof *pair);
   datagen_cube_fit(pair, middle);
   DatagenProof proof = datagen_proof_of(pair);
-  pairs->status[place] = proof.is_flat ? FLAT : proof.dimension >= 0;
+  pairs->status[place] = proof.is_flat || datagen_proof_of(source).is_flat ? FLAT : proof.dimension >= 0;
   pairs->kind[place] = DATAGEN_CAPTURED;
   return datagen_label_pair(capture->label, pair, proof.dimension, pairs->volume + place,
                             pairs->gradient + 24 * (size_t)place);
