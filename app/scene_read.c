@@ -477,6 +477,26 @@ Status app_scene_read(const char *path, const char *const *overrides, int overri
   return read_and_destroy(path, root, overrides, override_count, scene);
 }
 
+static Status read_root(const SceneNode *root, const SceneSection *section, void *self) {
+  if (root->kind != SCENE_NODE_MAP) {
+    SceneKey expected = {.type = SCENE_SECTION};
+    return fail_expected(&expected, root, "");
+  }
+  TRY(app_scene_read_defaults(section, self));
+  return read_section(section, root, self);
+}
+
+Status app_scene_read_section(const char *path, const char *const *overrides, int override_count,
+                              const SceneSection *section, void *self) {
+  SceneNode *root;
+  TRY(app_scene_tree_read(path, &root));
+  Status status = STATUS_OK;
+  for (int i = 0; i < override_count && !status; i++) status = app_scene_override_apply(root, overrides[i]);
+  if (!status) status = read_root(root, section, self);
+  app_scene_tree_destroy(root);
+  return status;
+}
+
 Status app_scene_read_text(const char *path, const char *text, size_t size, FemSceneDef *scene) {
   *scene = (FemSceneDef){0};
   SceneNode *root;

@@ -16,6 +16,11 @@ Status app_scene_read(const char *path, const char *const *overrides, int overri
 // The same of a text in memory; mesh paths count from the directory of `path`.
 Status app_scene_read_text(const char *path, const char *text, size_t size, FemSceneDef *scene);
 
+// Reads a file by a table of its own: the struct that `section` describes, zeroed before, is filled with the
+// defaults and then with what the file and the overrides say. What it owns after a failure is the caller's.
+Status app_scene_read_section(const char *path, const char *const *overrides, int override_count,
+                              const SceneSection *section, void *self);
+
 // Fills the struct that a section describes, zeroed before, with the defaults of its keys.
 Status app_scene_read_defaults(const SceneSection *section, void *self);
 
