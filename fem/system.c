@@ -166,9 +166,18 @@ static double driven_power(const FemSystem *system) {
   return sum;
 }
 
+static bool has_moving_driver(const FemModel *model) {
+  for (int d = 0; d < model->driver_count; d++)
+    if (!model->drivers[d].is_fixed) return true;
+  return false;
+}
+
 Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
-  TRY(fem_system_forces(system, time));
-  *energy = (FemEnergy){.kinetic = kinetic_energy(system), .driven_power = driven_power(system)};
+  *energy = (FemEnergy){.kinetic = kinetic_energy(system)};
+  if (has_moving_driver(system->model)) {
+    TRY(fem_system_forces(system, time));
+    energy->driven_power = driven_power(system);
+  }
   FemState state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++)
     if (system->effects[i].ops->add_energy)

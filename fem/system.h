@@ -45,7 +45,7 @@ Status fem_system_assemble(FemSystem *system, double time, double k, double d, d
 // After an accepted step (scatters it itself): lets effects renew what they keep.
 Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step);
 
-// Energies and powers at the scattered state; evaluates the forces too.
+// Energies and powers at the scattered state; evaluates the forces where driven vertices need them.
 Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy);
 // Smallest onset function of all effects; +INFINITY if there is none.
 Status fem_system_gap(FemSystem *system, double time, double *gap);
