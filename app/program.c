@@ -10,6 +10,7 @@
 #include "app/datagen_command.h"
 #include "app/dataset_command.h"
 #include "app/effects_command.h"
+#include "app/eval_command.h"
 #include "app/mesh_command.h"
 #include "app/run_command.h"
 #include "app/schema_command.h"
@@ -38,6 +39,7 @@ static const Command commands[] = {
     {"bench", "measure overlap models and solvers", app_bench_run},
     {"datagen", "make labelled pairs of tetrahedra for learned overlap models", app_datagen_run},
     {"dataset", "tell, join or draw data sets of such pairs", app_dataset_run},
+    {"eval", "measure an overlap model against labelled pairs", app_eval_run},
     {"version", "print the versions of the program and its libraries", run_version},
     {"help", "print this; `tetlap COMMAND --help` tells more", run_help},
 };

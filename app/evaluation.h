@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How well an overlap model answers labelled pairs: the paper's Table 4, and what it does not ask, the
+// derivatives, ghosts on disjoint pairs, and symmetries that the true volume has.
+//
+//   begin ─► add, block by block ─► finish ─► AppEvaluation
+//
+// V is in cubes of the unit cube's edge, ∇V in its squares. Results do not depend on the number of threads
+// nor on how pairs are cut into blocks.
+#ifndef TETLAP_APP_EVALUATION_H
+#define TETLAP_APP_EVALUATION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "contact/overlap.h"
+#include "datagen/kind.h"
+#include "datagen/pairs.h"
+
+enum { APP_EVALUATION_BINS = 3, APP_EVALUATION_SYMMETRY_PAIRS = 10000 };
+
+// Upper ends of the paper's bins of V: small, medium, large.
+extern const double app_evaluation_bin_ends[APP_EVALUATION_BINS];
+
+// What a set of pairs without anything to measure gives is NaN.
+typedef struct AppEvaluationKind {
+  long long count;
+  double accuracy;   // share of pairs whose status is right
+  double volume_mae; // mean |ΔV|
+} AppEvaluationKind;
+
+typedef struct AppEvaluation {
+  long long count;  // pairs
+  long long inside; // with V > 0: what mae … angle_p90_deg are taken over
+  long long fallbacks;
+  AppEvaluationKind kinds[DATAGEN_KIND_COUNT];
+  double accuracy_mean;                             // mean over the kinds that there are
+  double mae;                                       // mean |ΔV|
+  double bin_mae[APP_EVALUATION_BINS];              // by the true V; beyond the last end belongs to the last
+  double bin_share[APP_EVALUATION_BINS];            // of pairs in each bin
+  double bin_accuracy[APP_EVALUATION_BINS];         // share whose V falls into the right bin
+  double volume_error_sum;                          // Σ|ΔV| / ΣV
+  double gradient_error;                            // Σ‖Δ∇V‖ / Σ‖∇V‖
+  double gradient_error_median, gradient_error_p90; // of ‖Δ∇V‖ / ‖∇V‖
+  double angle_median_deg, angle_p90_deg; // between the forces Σ ∇V over the first tetrahedron, true and told
+  double ghost_volume;                    // mean V told of pairs that share no volume
+  double ghost_gradient;                  // mean ‖∇V‖ told of them
+  // Σ|V(changed pair) − V| / ΣV over the first APP_EVALUATION_SYMMETRY_PAIRS pairs with V > 0: another order
+  // of either's vertices, the two exchanged, a rotation about the cube's centre
+  double defect_vertex_order, defect_swap, defect_rotation;
+} AppEvaluation;
+
+typedef struct AppEvaluationRun {
+  const ContactOverlapModel *model; // borrowed
+  AppEvaluation sums;               // not yet divided
+  long long bins[APP_EVALUATION_BINS];
+  double true_volume, true_gradient; // Σ
+  double symmetry_volume;            // Σ V told of the pairs that symmetries are tried on
+  long long symmetry_count;
+  long long outside;                // pairs that share no volume
+  double *gradient_errors, *angles; // (inside), (angle_count), owned
+  size_t gradient_capacity, angle_capacity;
+  size_t angle_count;
+} AppEvaluationRun;
+
+// Borrows the model. End it, whatever happens.
+void app_evaluation_begin(AppEvaluationRun *run, const ContactOverlapModel *model);
+// Evaluates `count` pairs. Without `pairs->gradient` the true ∇V is that of clipping, checked as data sets
+// check it. A model says of a pair's status no more than V: a pair counts as intersecting if V > 0, and is
+// right if the two share volume.
+Status app_evaluation_add(AppEvaluationRun *run, const DatagenPairs *pairs, size_t count);
+void app_evaluation_finish(AppEvaluationRun *run, AppEvaluation *result);
+void app_evaluation_end(AppEvaluationRun *run); // a zeroed one is accepted
+
+#endif
