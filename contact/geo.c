@@ -10,8 +10,18 @@
 
 enum { SIZE = CONTACT_PAIR_SIZE, HESSIAN_SIZE = SIZE * SIZE };
 
+// Of one P: in a pack of its own.
+static void find_features(const ContactGeoModel *model, const GeoMatrix *projector, double *features) {
+  GeoSymmetric packed = {{{0}}};
+  ContactGeoInvariants invariants;
+  GeoPack packs[CONTACT_GEO_MAX_FEATURES];
+  geo_pack_matrix(projector, 0, &packed);
+  model->kernel->features(model->set, &packed, &invariants, packs);
+  geo_unpack_numbers(packs, model->set->count, 0, features);
+}
+
 Status contact_geo_model_create(ContactGeoModel *model, const ContactGeoNetwork *network) {
-  *model = (ContactGeoModel){.offset = log(1.28)};
+  *model = (ContactGeoModel){.kernel = contact_geo_kernel(), .offset = log(1.28)};
   if (!network) return STATUS_OK;
   model->set = contact_geo_feature_set(network->feature_count);
   if (!model->set)
@@ -19,10 +29,9 @@ Status contact_geo_model_create(ContactGeoModel *model, const ContactGeoNetwork 
                        network->feature_count);
   model->network = *network;
   GeoMatrix onset;
-  ContactGeoInvariants invariants;
   double features[CONTACT_GEO_MAX_FEATURES], value;
   contact_geo_onset(&onset);
-  contact_geo_features(model->set, &onset, &invariants, features);
+  find_features(model, &onset, features);
   TRY(network->eval(network->self, 1, features, &value, NULL));
   if (!isfinite(value))
     return status_fail(STATUS_INPUT, "the network's value at the onset of an overlap is %g", value);
@@ -30,16 +39,27 @@ Status contact_geo_model_create(ContactGeoModel *model, const ContactGeoNetwork 
   return STATUS_OK;
 }
 
+enum { PACKS = CONTACT_GEO_CHUNK / GEO_PACK };
+
 // The pairs of a chunk that have a frame, and what is known of them.
 typedef struct Chunk {
   int count;
   int pair[CONTACT_GEO_CHUNK]; // index in the batch
   ContactGeoFrame frame[CONTACT_GEO_CHUNK];
-  ContactGeoInvariants invariants[CONTACT_GEO_CHUNK];
+  ContactGeoInvariants invariants[PACKS];
   double features[CONTACT_GEO_CHUNK * CONTACT_GEO_MAX_FEATURES]; // (count, set->count)
   double value[CONTACT_GEO_CHUNK];                               // ρ
-  double weights[CONTACT_GEO_CHUNK * CONTACT_GEO_MAX_FEATURES];  // dρ/df (count, set->count)
+  GeoMatrix slope[CONTACT_GEO_CHUNK];                            // Φ
+  ContactGeoAdjoint adjoint[CONTACT_GEO_CHUNK];
+  bool is_abandoned[CONTACT_GEO_CHUNK];                         // answered by the exact model
+  double weights[CONTACT_GEO_CHUNK * CONTACT_GEO_MAX_FEATURES]; // dρ/df (count, set->count)
 } Chunk;
+
+// How many pairs are in pack `pack` of the chunk.
+static int lanes_of(const Chunk *chunk, int pack) {
+  int left = chunk->count - pack * GEO_PACK;
+  return left < GEO_PACK ? left : GEO_PACK;
+}
 
 // The places of pair i's results; NULL where they are not wanted.
 typedef struct Place {
@@ -73,8 +93,7 @@ static Status fall_back(Place place) {
   return STATUS_OK;
 }
 
-static Status find_frames(const ContactGeoModel *model, const ContactOverlapBatch *batch, int begin, int end,
-                          Chunk *chunk) {
+static Status find_frames(const ContactOverlapBatch *batch, int begin, int end, Chunk *chunk) {
   chunk->count = 0;
   for (int i = begin; i < end; i++) {
     Place place = place_of(batch, i);
@@ -89,56 +108,111 @@ static Status find_frames(const ContactGeoModel *model, const ContactOverlapBatc
     case CONTACT_GEO_INSIDE:
       break;
     }
-    if (model->set)
-      contact_geo_features(model->set, &frame->projector, &chunk->invariants[chunk->count],
-                           chunk->features + chunk->count * model->set->count);
     chunk->pair[chunk->count++] = i;
   }
   return STATUS_OK;
 }
 
-static Status write_derivatives(const ContactGeoModel *model, const Chunk *chunk, int at, Place place) {
-  const ContactGeoFrame *frame = &chunk->frame[at];
-  const ContactGeoInvariants *invariants = &chunk->invariants[at];
-  int first = model->set ? at * model->set->count : 0;
-  const double *weights = chunk->weights + first, *features = chunk->features + first;
-  ContactGeoSweep sweep;
-  ContactGeoAdjoint adjoint;
-  GeoMatrix slope = {{{0}}};
-  if (model->set) contact_geo_features_pull(model->set, invariants, weights, &sweep, &slope);
-  contact_geo_frame_pull(frame, &slope, &adjoint);
-  double volume = *place.volume;
-  if (place.gradient)
-    for (int i = 0; i < SIZE; i++) place.gradient[i] = volume * adjoint.gradient[i];
-  if (!place.hessian) return STATUS_OK;
-  TRY(contact_geo_hessian(model, frame, invariants, features, weights, &sweep, &slope, &adjoint,
-                          place.hessian));
+static void fill_features(const ContactGeoModel *model, Chunk *chunk) {
+  int size = model->set->count;
+  for (int pack = 0; pack * GEO_PACK < chunk->count; pack++) {
+    GeoSymmetric projector = {{{0}}};
+    GeoPack features[CONTACT_GEO_MAX_FEATURES];
+    for (int lane = 0; lane < lanes_of(chunk, pack); lane++)
+      geo_pack_matrix(&chunk->frame[pack * GEO_PACK + lane].projector, lane, &projector);
+    model->kernel->features(model->set, &projector, &chunk->invariants[pack], features);
+    for (int lane = 0; lane < lanes_of(chunk, pack); lane++)
+      geo_unpack_numbers(features, size, lane, chunk->features + (pack * GEO_PACK + lane) * size);
+  }
+}
+
+// From one backward sweep of a pack: Φ and ∂ log V/∂x of its pairs.
+static void sweep_pack(const ContactGeoModel *model, Chunk *chunk, int pack) {
+  int size = model->set ? model->set->count : 0;
+  GeoSymmetric slopes = {{{0}}};
+  if (model->set) {
+    ContactGeoSweep sweep;
+    GeoPack weights[CONTACT_GEO_MAX_FEATURES] = {{0}};
+    for (int lane = 0; lane < lanes_of(chunk, pack); lane++)
+      geo_pack_numbers(chunk->weights + (pack * GEO_PACK + lane) * size, size, lane, weights);
+    model->kernel->pull(model->set, &chunk->invariants[pack], weights, &sweep, &slopes);
+  }
+  for (int lane = 0; lane < lanes_of(chunk, pack); lane++) {
+    int at = pack * GEO_PACK + lane;
+    geo_unpack_matrix(&slopes, lane, &chunk->slope[at]);
+    contact_geo_frame_pull(&chunk->frame[at], &chunk->slope[at], &chunk->adjoint[at]);
+  }
+}
+
+static void write_gradients(const ContactOverlapBatch *batch, const Chunk *chunk) {
+  for (int at = 0; at < chunk->count; at++) {
+    Place place = place_of(batch, chunk->pair[at]);
+    if (chunk->is_abandoned[at]) continue;
+    for (int i = 0; i < SIZE; i++) place.gradient[i] = *place.volume * chunk->adjoint[at].gradient[i];
+  }
+}
+
+// ∇²V = V (∇² log V + ∇ log V ∇ log Vᵀ)
+static void scale_hessian(const double *gradient, double volume, double *hessian) {
   for (int i = 0; i < SIZE; i++)
-    for (int j = 0; j < SIZE; j++) {
-      double *second = place.hessian + i * SIZE + j;
-      *second = volume * (*second + adjoint.gradient[i] * adjoint.gradient[j]);
-    }
+    for (int j = 0; j < SIZE; j++)
+      hessian[i * SIZE + j] = volume * (hessian[i * SIZE + j] + gradient[i] * gradient[j]);
+}
+
+static Status write_hessians(const ContactGeoModel *model, const ContactOverlapBatch *batch,
+                             const Chunk *chunk) {
+  enum { COUNT = CONTACT_GEO_DIRECTIONS };
+  int size = model->set ? model->set->count : 0, moved[CONTACT_GEO_CHUNK];
+  double changes[CONTACT_GEO_CHUNK * COUNT * CONTACT_GEO_MAX_FEATURES];
+  double curvature[CONTACT_GEO_CHUNK * COUNT * COUNT];
+  double spare[HESSIAN_SIZE]; // for the pairs that the exact model answered
+  for (int at = 0; at < chunk->count; at++) {
+    double *hessian = chunk->is_abandoned[at] ? spare : place_of(batch, chunk->pair[at]).hessian;
+    moved[at] =
+        contact_geo_hessian_begin(model, &chunk->frame[at], chunk->weights + at * size, &chunk->slope[at],
+                                  &chunk->adjoint[at], changes + at * COUNT * size, hessian);
+  }
+  if (model->set)
+    TRY(model->network.curve(model->network.self, chunk->count, chunk->features, COUNT, changes, curvature));
+  for (int at = 0; at < chunk->count; at++) {
+    Place place = place_of(batch, chunk->pair[at]);
+    if (chunk->is_abandoned[at]) continue;
+    const double *gradient = chunk->adjoint[at].gradient;
+    contact_geo_hessian_end(&chunk->frame[at], moved[at], model->set ? curvature + at * COUNT * COUNT : NULL,
+                            gradient, place.hessian);
+    scale_hessian(gradient, *place.volume, place.hessian);
+  }
+  return STATUS_OK;
+}
+
+// V and the flags of all; where V is no positive number the exact model answers.
+static Status write_volumes(const ContactGeoModel *model, const ContactOverlapBatch *batch, Chunk *chunk) {
+  for (int at = 0; at < chunk->count; at++) {
+    Place place = place_of(batch, chunk->pair[at]);
+    double phi = model->offset + (model->set ? chunk->value[at] : 0);
+    *place.volume = chunk->frame[at].volume * exp(phi);
+    if (place.flags) *place.flags = chunk->frame[at].is_enclosed ? CONTACT_OVERLAP_ENCLOSED : 0;
+    chunk->is_abandoned[at] = !(*place.volume > 0 && *place.volume < INFINITY);
+    if (chunk->is_abandoned[at]) TRY(fall_back(place));
+  }
   return STATUS_OK;
 }
 
 static Status eval_chunk(const ContactGeoModel *model, const ContactOverlapBatch *batch, int begin, int end,
                          Chunk *chunk) {
-  TRY(find_frames(model, batch, begin, end, chunk));
+  TRY(find_frames(batch, begin, end, chunk));
+  if (chunk->count == 0) return STATUS_OK;
   bool wants_derivatives = batch->gradient || batch->hessian;
-  if (model->set && chunk->count > 0)
+  if (model->set) {
+    fill_features(model, chunk);
     TRY(model->network.eval(model->network.self, chunk->count, chunk->features, chunk->value,
                             wants_derivatives ? chunk->weights : NULL));
-  for (int at = 0; at < chunk->count; at++) {
-    Place place = place_of(batch, chunk->pair[at]);
-    double phi = model->offset + (model->set ? chunk->value[at] : 0);
-    *place.volume = chunk->frame[at].volume * exp(phi);
-    if (!(*place.volume > 0 && *place.volume < INFINITY)) {
-      TRY(fall_back(place));
-      continue;
-    }
-    if (place.flags) *place.flags = chunk->frame[at].is_enclosed ? CONTACT_OVERLAP_ENCLOSED : 0;
-    if (wants_derivatives) TRY(write_derivatives(model, chunk, at, place));
   }
+  TRY(write_volumes(model, batch, chunk));
+  if (!wants_derivatives) return STATUS_OK;
+  for (int pack = 0; pack * GEO_PACK < chunk->count; pack++) sweep_pack(model, chunk, pack);
+  if (batch->gradient) write_gradients(batch, chunk);
+  if (batch->hessian) TRY(write_hessians(model, batch, chunk));
   return STATUS_OK;
 }
 
@@ -155,18 +229,28 @@ ContactGeoOutcome contact_geo_features_tangent(const ContactGeoFeatureSet *set, 
                                                int count, const double *directions, double *features,
                                                double *feature_changes, double *log_volume,
                                                double *log_volume_changes) {
+  const ContactGeoKernel *kernel = contact_geo_kernel();
   ContactGeoFrame frame;
   ContactGeoOutcome outcome = contact_geo_frame(&frame, pair);
   if (outcome != CONTACT_GEO_INSIDE) return outcome;
-  ContactGeoInvariants invariants, change;
-  contact_geo_features(set, &frame.projector, &invariants, features);
   *log_volume = log(frame.volume);
+  GeoSymmetric projector, projector_change;
+  ContactGeoInvariants invariants, change;
+  GeoPack packs[CONTACT_GEO_MAX_FEATURES];
+  for (int lane = 0; lane < GEO_PACK; lane++) geo_pack_matrix(&frame.projector, lane, &projector);
+  kernel->features(set, &projector, &invariants, packs);
+  geo_unpack_numbers(packs, set->count, 0, features);
   for (int d = 0; d < count; d++) {
+    int lane = d % GEO_PACK;
+    if (lane == 0) memset(&projector_change, 0, sizeof projector_change);
     ContactGeoTangent tangent;
     contact_geo_frame_push(&frame, directions + (size_t)d * SIZE, &tangent);
-    contact_geo_features_push(set, &invariants, &tangent.projector, &change,
-                              feature_changes + (size_t)d * (size_t)set->count);
     log_volume_changes[d] = tangent.log_volume;
+    geo_pack_matrix(&tangent.projector, lane, &projector_change);
+    if (lane < GEO_PACK - 1 && d < count - 1) continue;
+    kernel->push(set, &invariants, &projector_change, &change, packs);
+    for (int l = 0; l <= lane; l++)
+      geo_unpack_numbers(packs, set->count, l, feature_changes + (size_t)(d - lane + l) * (size_t)set->count);
   }
   return outcome;
 }

@@ -19,7 +19,7 @@
 #include "contact/geo_frame.h"
 #include "contact/overlap.h"
 
-enum { CONTACT_GEO_CHUNK = 16 }; // a network is given at most so many pairs at once
+enum { CONTACT_GEO_CHUNK = 2 * GEO_PACK }; // a network is given at most so many pairs at once
 
 // ρ. All functions may be called from several threads at once.
 typedef struct ContactGeoNetwork {
@@ -27,15 +27,16 @@ typedef struct ContactGeoNetwork {
   int feature_count; // must have a feature set
   // ρ (count) and, unless NULL, dρ/df (count, feature_count) of features (count, feature_count).
   Status (*eval)(const void *self, int count, const double *features, double *value, double *gradient);
-  // second (n, n) = Dᵀ ρ″ D: second derivatives of ρ at one f along all pairs of n directions in feature
-  // space (n, feature_count); n at most 12. NULL: the model has no Hessian.
-  Status (*curve)(const void *self, const double *features, int direction_count, const double *directions,
-                  double *second);
+  // second (count, n, n): second derivatives of ρ at each of features (count, feature_count) along all pairs
+  // of its n directions in feature space (count, n, feature_count); n at most 12. NULL: no Hessian.
+  Status (*curve)(const void *self, int count, const double *features, int direction_count,
+                  const double *directions, double *second);
 } ContactGeoNetwork;
 
 typedef struct ContactGeoModel {
   const ContactGeoFeatureSet *set; // NULL: no network, φ = ln 1.28
   ContactGeoNetwork network;
+  const ContactGeoKernel *kernel;
   double offset; // ln 1.28 − ρ(f*)
 } ContactGeoModel;
 

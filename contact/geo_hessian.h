@@ -8,11 +8,18 @@
 
 #include "contact/geo.h"
 
-// hessian (24, 24), symmetric [1/m²]. `invariants`, `features`, `weights` and `sweep` are ignored if the
-// model is constant.
-Status contact_geo_hessian(const ContactGeoModel *model, const ContactGeoFrame *frame,
-                           const ContactGeoInvariants *invariants, const double *features,
-                           const double *weights, const ContactGeoSweep *sweep, const GeoMatrix *slope,
-                           const ContactGeoAdjoint *adjoint, double *hessian);
+enum { CONTACT_GEO_DIRECTIONS = 12 };
+
+// The changes of the frame along the twelve directions, in their columns of hessian (24, 24) all but the
+// network's curvature, and the changes of the features (12, count). `weights` are the network's gradient
+// (count); both are ignored if the model is constant. Returns the tetrahedron that is moved.
+int contact_geo_hessian_begin(const ContactGeoModel *model, const ContactGeoFrame *frame,
+                              const double *weights, const GeoMatrix *slope, const ContactGeoAdjoint *adjoint,
+                              double *feature_changes, double *hessian);
+
+// The rest, given the curvature (12, 12) along those changes, NULL if the model is constant. `gradient` (24)
+// is that of log V. Leaves hessian symmetric [1/m²].
+void contact_geo_hessian_end(const ContactGeoFrame *frame, int moved, const double *curvature,
+                             const double *gradient, double *hessian);
 
 #endif

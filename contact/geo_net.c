@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/geo_net.h"
 
+#include <assert.h>
 #include <omp.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -11,6 +12,10 @@
 #include "net/work.h"
 
 enum { DIRECTIONS = 12 };
+
+// What the derivative of ρ itself weighs its one output with, for each pair.
+static const double ones[] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+static_assert(sizeof ones / sizeof *ones == CONTACT_GEO_CHUNK, "one for each pair of a chunk");
 
 // Memory of evaluation, used by one caller at a time.
 typedef struct Desk {
@@ -43,8 +48,6 @@ static void leave(Desk *desk) {
 }
 
 static Status eval(const void *self, int count, const double *features, double *value, double *gradient) {
-  double ones[CONTACT_GEO_CHUNK];
-  for (int n = 0; n < CONTACT_GEO_CHUNK; n++) ones[n] = 1;
   const ContactGeoNet *net = self;
   Desk *desk = take(net);
   if (gradient)
@@ -55,13 +58,12 @@ static Status eval(const void *self, int count, const double *features, double *
   return STATUS_OK;
 }
 
-static Status curve(const void *self, const double *features, int direction_count, const double *directions,
-                    double *second) {
+static Status curve(const void *self, int count, const double *features, int direction_count,
+                    const double *directions, double *second) {
   const ContactGeoNet *net = self;
-  const double one = 1;
   Desk *desk = take(net);
-  net_tangent_second_f64(&desk->work, &net->model, 1, direction_count, features, directions, &one, NULL, NULL,
-                         NULL, second);
+  net_tangent_second_f64(&desk->work, &net->model, count, direction_count, features, directions, ones, NULL,
+                         NULL, NULL, second);
   leave(desk);
   return STATUS_OK;
 }

@@ -86,9 +86,8 @@ static inline Status geo_network_eval(const void *self, int count, const double 
   return STATUS_OK;
 }
 
-static inline Status geo_network_curve(const void *self, const double *features, int direction_count,
-                                       const double *directions, double *second) {
-  const GeoNetwork *network = self;
+static inline void geo_network_curve_one(const GeoNetwork *network, const double *features,
+                                         int direction_count, const double *directions, double *second) {
   int size = network->feature_count;
   GeoNetworkPass pass;
   double inner[12][GEO_NETWORK_WIDTH], outer[12][GEO_NETWORK_WIDTH]; // changes of the layers' inputs
@@ -113,6 +112,16 @@ static inline Status geo_network_curve(const void *self, const double *features,
       }
       second[d * direction_count + e] = sum;
     }
+}
+
+static inline Status geo_network_curve(const void *self, int count, const double *features,
+                                       int direction_count, const double *directions, double *second) {
+  const GeoNetwork *network = self;
+  int size = network->feature_count;
+  for (int n = 0; n < count; n++)
+    geo_network_curve_one(network, features + n * size, direction_count,
+                          directions + n * direction_count * size,
+                          second + n * direction_count * direction_count);
   return STATUS_OK;
 }
 

@@ -184,11 +184,55 @@ START_TEST(an_affine_map_changes_neither_slacks_nor_projector) {
 }
 END_TEST
 
+// One P, alone in the last lane of a pack.
+enum { LANE = GEO_PACK - 1 };
+
+static void find_features(const ContactGeoKernel *kernel, const ContactGeoFeatureSet *set, const GeoMatrix *p,
+                          ContactGeoInvariants *invariants, double *features) {
+  GeoSymmetric packed = {{{0}}};
+  GeoPack packs[CONTACT_GEO_MAX_FEATURES];
+  geo_pack_matrix(p, LANE, &packed);
+  kernel->features(set, &packed, invariants, packs);
+  geo_unpack_numbers(packs, set->count, LANE, features);
+}
+
+static void push_features(const ContactGeoKernel *kernel, const ContactGeoFeatureSet *set,
+                          const ContactGeoInvariants *invariants, const GeoMatrix *projector_change,
+                          ContactGeoInvariants *change, double *features_change) {
+  GeoSymmetric packed = {{{0}}};
+  GeoPack packs[CONTACT_GEO_MAX_FEATURES];
+  geo_pack_matrix(projector_change, LANE, &packed);
+  kernel->push(set, invariants, &packed, change, packs);
+  geo_unpack_numbers(packs, set->count, LANE, features_change);
+}
+
+static void pull_features(const ContactGeoKernel *kernel, const ContactGeoFeatureSet *set,
+                          const ContactGeoInvariants *invariants, const double *weights,
+                          ContactGeoSweep *sweep, GeoMatrix *slope) {
+  GeoSymmetric packed;
+  GeoPack packs[CONTACT_GEO_MAX_FEATURES] = {{0}};
+  geo_pack_numbers(weights, set->count, LANE, packs);
+  kernel->pull(set, invariants, packs, sweep, &packed);
+  geo_unpack_matrix(&packed, LANE, slope);
+}
+
+static void bend_features(const ContactGeoKernel *kernel, const ContactGeoFeatureSet *set,
+                          const ContactGeoInvariants *invariants, const double *weights,
+                          const ContactGeoSweep *sweep, const ContactGeoInvariants *change,
+                          GeoMatrix *slope_change) {
+  GeoSymmetric packed;
+  GeoPack packs[CONTACT_GEO_MAX_FEATURES] = {{0}};
+  geo_pack_numbers(weights, set->count, LANE, packs);
+  kernel->bend(set, invariants, packs, sweep, change, &packed);
+  geo_unpack_matrix(&packed, LANE, slope_change);
+}
+
 static void features_of(int count, const double x[24], double *features) {
   ContactGeoFrame frame;
   ContactGeoInvariants invariants;
   ck_assert_int_eq(contact_geo_frame(&frame, x), CONTACT_GEO_INSIDE);
-  contact_geo_features(contact_geo_feature_set(count), &frame.projector, &invariants, features);
+  find_features(contact_geo_kernel(), contact_geo_feature_set(count), &frame.projector, &invariants,
+                features);
 }
 
 // The features of the header's definition, by plain loops in their order.
@@ -225,7 +269,7 @@ static int define_features(const ContactGeoFeatureSet *set, const GeoMatrix *p, 
             f[n_features] +=
                 pow(p->row[i][i], rs == 2) * pow(p->row[j][j], rs > 0) * link[e][i][j] * pow(p->row[i][j], a);
       }
-  for (int e = 0; e < set->link_count && set->square_power >= 0; e++)
+  for (int e = 0; e < set->link_count && set->has_squares; e++)
     for (int g = 0; g <= e; g++)
       for (int a = 0; a <= 2; a++, n_features++) {
         f[n_features] = 0;
@@ -246,7 +290,7 @@ START_TEST(features_are_what_the_header_says) {
     double expected[CONTACT_GEO_MAX_FEATURES], features[CONTACT_GEO_MAX_FEATURES];
     ContactGeoInvariants invariants;
     ck_assert_int_eq(define_features(set, &frame.projector, expected), set->count);
-    contact_geo_features(set, &frame.projector, &invariants, features);
+    find_features(contact_geo_kernel(), set, &frame.projector, &invariants, features);
     for (int f = 0; f < set->count; f++) ck_assert_near(features[f], expected[f], 1e-14 * (1 + expected[f]));
   }
   ck_assert_int_gt(seen, 50);
@@ -295,10 +339,10 @@ START_TEST(the_changes_of_frame_and_features_are_their_derivatives) {
     double f[CONTACT_GEO_MAX_FEATURES], plus[CONTACT_GEO_MAX_FEATURES], minus[CONTACT_GEO_MAX_FEATURES];
     double change[CONTACT_GEO_MAX_FEATURES];
     ContactGeoInvariants invariants, other;
-    contact_geo_features(set, &up.projector, &other, plus);
-    contact_geo_features(set, &down.projector, &other, minus);
-    contact_geo_features(set, &frame.projector, &invariants, f);
-    contact_geo_features_push(set, &invariants, &tangent.projector, &other, change);
+    find_features(contact_geo_kernel(), set, &up.projector, &other, plus);
+    find_features(contact_geo_kernel(), set, &down.projector, &other, minus);
+    find_features(contact_geo_kernel(), set, &frame.projector, &invariants, f);
+    push_features(contact_geo_kernel(), set, &invariants, &tangent.projector, &other, change);
     for (int i = 0; i < set->count; i++)
       ck_assert_near((plus[i] - minus[i]) / (2 * h), change[i], 5e-6 * scale * (1 + fabs(f[i])));
   }
@@ -329,12 +373,12 @@ START_TEST(the_backward_sweep_is_the_transpose_and_its_change_is_symmetric) {
     for (int i = 0; i < set->count; i++) w[i] = random_normal(&random);
     ContactGeoInvariants invariants, change;
     ContactGeoSweep sweep;
-    contact_geo_features(set, &p, &invariants, f);
-    contact_geo_features_pull(set, &invariants, w, &sweep, &slope);
+    find_features(contact_geo_kernel(), set, &p, &invariants, f);
+    pull_features(contact_geo_kernel(), set, &invariants, w, &sweep, &slope);
     for (int d = 0; d < 2; d++) {
       random_matrix(&random, &direction[d]);
-      contact_geo_features_push(set, &invariants, &direction[d], &change, df);
-      contact_geo_features_bend(set, &invariants, w, &sweep, &change, &bent[d]);
+      push_features(contact_geo_kernel(), set, &invariants, &direction[d], &change, df);
+      bend_features(contact_geo_kernel(), set, &invariants, w, &sweep, &change, &bent[d]);
       double sum = 0, size = 0;
       for (int i = 0; i < set->count; i++) sum += w[i] * df[i], size += fabs(w[i] * df[i]);
       ck_assert_near(inner_product(&slope, &direction[d]), sum, 1e-13 * size);
@@ -346,15 +390,51 @@ START_TEST(the_backward_sweep_is_the_transpose_and_its_change_is_symmetric) {
     GeoMatrix moved = p, plus, minus;
     ContactGeoSweep unused;
     for (int i = 0; i < 64; i++) (&moved.row[0][0])[i] += h * (&direction[0].row[0][0])[i];
-    contact_geo_features(set, &moved, &change, f);
-    contact_geo_features_pull(set, &change, w, &unused, &plus);
+    find_features(contact_geo_kernel(), set, &moved, &change, f);
+    pull_features(contact_geo_kernel(), set, &change, w, &unused, &plus);
     for (int i = 0; i < 64; i++) (&moved.row[0][0])[i] -= 2 * h * (&direction[0].row[0][0])[i];
-    contact_geo_features(set, &moved, &change, f);
-    contact_geo_features_pull(set, &change, w, &unused, &minus);
+    find_features(contact_geo_kernel(), set, &moved, &change, f);
+    pull_features(contact_geo_kernel(), set, &change, w, &unused, &minus);
     double largest = sqrt(inner_product(&bent[0], &bent[0]));
     for (int i = 0; i < 64; i++)
       ck_assert_near(((&plus.row[0][0])[i] - (&minus.row[0][0])[i]) / (2 * h), (&bent[0].row[0][0])[i],
                      1e-7 * largest);
+  }
+}
+END_TEST
+
+// Lanes of eight different pairs, in all operations.
+START_TEST(every_kernel_gives_the_same_bits) {
+  int kernel_count;
+  const ContactGeoKernel *const *kernels = contact_geo_kernels(&kernel_count);
+  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i]);
+  Random random = random_seeded(10, 0);
+  for (int trial = 0; trial < 20; trial++) {
+    GeoSymmetric p, dp, slope[2], bent[2];
+    GeoPack weights[CONTACT_GEO_MAX_FEATURES], f[2][CONTACT_GEO_MAX_FEATURES],
+        df[2][CONTACT_GEO_MAX_FEATURES];
+    for (int lane = 0; lane < GEO_PACK; lane++) {
+      GeoMatrix matrix;
+      random_matrix(&random, &matrix);
+      geo_pack_matrix(&matrix, lane, &p);
+      random_matrix(&random, &matrix);
+      geo_pack_matrix(&matrix, lane, &dp);
+      for (int i = 0; i < set->count; i++) weights[i][lane] = random_normal(&random);
+    }
+    for (int k = 0; k < kernel_count; k++) {
+      ContactGeoInvariants invariants, change;
+      ContactGeoSweep sweep;
+      int at = k > 0;
+      kernels[k]->features(set, &p, &invariants, f[at]);
+      kernels[k]->push(set, &invariants, &dp, &change, df[at]);
+      kernels[k]->pull(set, &invariants, weights, &sweep, &slope[at]);
+      kernels[k]->bend(set, &invariants, weights, &sweep, &change, &bent[at]);
+      if (k == 0) continue;
+      ck_assert_mem_eq(f[0], f[1], sizeof *f[0] * (size_t)set->count);
+      ck_assert_mem_eq(df[0], df[1], sizeof *df[0] * (size_t)set->count);
+      ck_assert_mem_eq(&slope[0], &slope[1], sizeof slope[0]);
+      ck_assert_mem_eq(&bent[0], &bent[1], sizeof bent[0]);
+    }
   }
 }
 END_TEST
@@ -372,5 +452,6 @@ int main(void) {
   tcase_add_loop_test(cases, no_order_of_vertices_or_tetrahedra_changes_a_feature, 0, 3);
   tcase_add_loop_test(cases, the_changes_of_frame_and_features_are_their_derivatives, 0, 3);
   tcase_add_loop_test(cases, the_backward_sweep_is_the_transpose_and_its_change_is_symmetric, 0, 3);
+  tcase_add_loop_test(cases, every_kernel_gives_the_same_bits, 0, 3);
   return suite_run("geo", cases, 60);
 }
