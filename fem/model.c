@@ -312,6 +312,6 @@ double fem_model_memory_estimate(const FemModel *model) {
   double arrays = vertices * 30 * sizeof(double) + tets * (sizeof(FemElement) + 600);
   double matrix = unknowns * 23 * (sizeof(double) + sizeof(int));
   // Nested dissection in three dimensions: O(n^{4/3}) factor entries (George 1973); the constant is measured.
-  double factor = 10 * pow(unknowns, 4.0 / 3.0) * sizeof(double);
+  double factor = 12 * pow(unknowns, 4.0 / 3.0) * sizeof(double);
   return 3e7 + arrays + matrix + factor;
 }
