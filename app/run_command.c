@@ -4,16 +4,24 @@
 #include <stdio.h>
 
 #include "app/job.h"
+#include "app/versions.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/memory.h"
+#include "datagen/capture.h"
+#include "fem/effect_contact.h"
 
 typedef struct RunOptions {
   AppJobOptions job;
-  const char *overlap;
+  const char *overlap, *capture;
 } RunOptions;
+
+enum { KEY_CAPTURE = 256 };
 
 static const struct argp_option option_table[] = {
     {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
+    {"capture", KEY_CAPTURE, "FILE", 0, "Keep the overlapping pairs of every step, labelled, as a data set",
+     1},
     {0},
 };
 
@@ -25,6 +33,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     break;
   case 'm':
     options->overlap = text;
+    break;
+  case KEY_CAPTURE:
+    options->capture = text;
     break;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -57,6 +68,47 @@ static Status print_summary(const AppJob *job, const FemRunResult *result, Statu
   return printed;
 }
 
+// What watches the run: the progress line, and the capture if one was asked for.
+typedef struct Observer {
+  AppProgress progress;
+  DatagenCapture *capture; // NULL: none
+} Observer;
+
+static Status capture_pairs(DatagenCapture *capture, FemSystem *system) {
+  void *effect = fem_system_effect(system, "contact");
+  if (!effect) return STATUS_OK;
+  int count, *tets;
+  double *pairs;
+  TRY(contact_system_active_pairs(fem_effect_contact_system(effect), &count, &pairs, &tets));
+  Status status = count > 0 ? datagen_capture_append(capture, pairs, count) : STATUS_OK;
+  memory_free(pairs);
+  memory_free(tets);
+  return status;
+}
+
+static Status observe(void *self, const FemRunProgress *progress) {
+  Observer *observer = self;
+  TRY(app_job_show_progress(&observer->progress, progress));
+  return observer->capture ? capture_pairs(observer->capture, progress->system) : STATUS_OK;
+}
+
+// Runs, and puts the capture into its place, if only of a run that was cut short.
+static Status run_captured(const RunOptions *options, const AppJob *job, FemRunResult *result) {
+  DatagenCapture capture = {0};
+  if (options->capture)
+    TRY(datagen_capture_begin(&capture, options->capture, app_versions_program(), DATAGEN_LABEL_EXACT));
+  Observer observer = {.progress = {.began_s = clock_wall_s(), .label = ""},
+                       .capture = options->capture ? &capture : NULL};
+  FemRunOptions run_options = {
+      .directory = job->directory, .stop = app_job_stop_flag(), .observe = observe, .observer = &observer};
+  Status status = fem_run(&job->model, &run_options, result);
+  log_progress_end();
+  if (status) log_error("%s", status_message());
+  Status kept = options->capture ? datagen_capture_commit(&capture) : STATUS_OK;
+  if (kept) log_error("%s", status_message());
+  return status ? status : kept;
+}
+
 static Status run(const RunOptions *options) {
   AppJob job;
   Status opened = app_job_open(&job, &options->job, options->overlap, NULL);
@@ -65,15 +117,8 @@ static Status run(const RunOptions *options) {
     return opened;
   }
   announce(&job);
-  AppProgress progress = {.began_s = clock_wall_s(), .label = ""};
-  FemRunOptions run_options = {.directory = job.directory,
-                               .stop = app_job_stop_flag(),
-                               .observe = app_job_show_progress,
-                               .observer = &progress};
-  FemRunResult result;
-  Status status = fem_run(&job.model, &run_options, &result);
-  log_progress_end();
-  if (status) log_error("%s", status_message());
+  FemRunResult result = {0};
+  Status status = run_captured(options, &job, &result);
   // The summary tells of a run that failed, too, unless nothing can be written.
   Status written = status == STATUS_IO ? STATUS_OK : app_job_write_summary(&job, &result, status);
   if (!status && !written) conclude(&job, &result);

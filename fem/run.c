@@ -265,12 +265,13 @@ static void sum_phases(Run *run) {
   for (int i = 0; i < system->effect_count; i++) {
     if (system->effects[i].self != contact) phases->forces += system->costs[i].force_s;
     phases->assembly += system->costs[i].jacobian_s;
+    phases->contact += system->costs[i].prepare_s; // the broad phase is taken off below
   }
   if (contact) {
     const ContactCounters *counters = contact_system_counters(fem_effect_contact_system(contact));
     phases->broad_phase = counters->broad_s;
     phases->overlap = counters->overlap_s;
-    phases->contact = counters->force_s;
+    phases->contact += counters->force_s - counters->broad_s;
     run->result->overlap_pairs = counters->pairs;
   }
   phases->analysis = run->result->solver.analyse_s;

@@ -33,6 +33,8 @@ typedef struct FemRunOptions {
   bool keep_trajectory;               // keep positions and interface forces of every frame in the result
 } FemRunOptions;
 
+// `contact`: candidate lists, watched onsets, pressures and forces, without broad phase and overlap volumes.
+// What no phase names (the energy audit, the integrator's vectors) is the difference to the total.
 typedef struct FemRunPhases {
   double broad_phase, overlap, contact, forces, assembly, analysis, factorisation, solve, output,
       total; // wall [s]
