@@ -26,16 +26,17 @@ const ContactGeoFeatureSet *contact_geo_feature_set(int count) {
   return NULL;
 }
 
+// With AVX2, gcc 12 makes slower code of packs that are two registers wide than with four of SSE2: no kernel
+// of its own.
 static const ContactGeoKernel *const kernels[] = {
     &contact_geo_kernel_portable,
 #if defined(__x86_64__)
-    &contact_geo_kernel_avx2,
     &contact_geo_kernel_avx512,
 #endif
 };
 
 const ContactGeoKernel *const *contact_geo_kernels(int *count) {
-  *count = 1 + cpu_has_avx2() + (cpu_has_avx2() && cpu_has_avx512());
+  *count = 1 + cpu_has_avx512();
   return kernels;
 }
 

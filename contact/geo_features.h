@@ -90,7 +90,7 @@ const ContactGeoKernel *const *contact_geo_kernels(int *count);
 
 extern const ContactGeoKernel contact_geo_kernel_portable;
 #if defined(__x86_64__)
-extern const ContactGeoKernel contact_geo_kernel_avx2, contact_geo_kernel_avx512;
+extern const ContactGeoKernel contact_geo_kernel_avx512;
 #endif
 
 #endif
