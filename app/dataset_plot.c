@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/dataset_plot.h"
 
-#include <errno.h>
 #include <math.h>
-#include <spawn.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "app/dataset_summary.h"
+#include "app/gnuplot.h"
 #include "base/file.h"
-
-extern char **environ;
 
 enum { BINS_A_STEP = APP_DATASET_BINS_A_DECADE / 5 }; // five steps of the curves a decade
 
@@ -113,20 +108,6 @@ static void write_script(FILE *stream, const AppDatasetSummary *summary, const c
   fputs("unset multiplot\n", stream);
 }
 
-static Status run_gnuplot(char *script) {
-  char program[] = "gnuplot";
-  char *arguments[] = {program, script, NULL};
-  pid_t child;
-  int failed = posix_spawnp(&child, program, NULL, NULL, arguments, environ), ended;
-  if (failed)
-    return status_fail(STATUS_IO, "gnuplot cannot be run: %s; the script is %s", strerror(failed), script);
-  while (waitpid(child, &ended, 0) < 0)
-    if (errno != EINTR) return status_fail(STATUS_IO, "gnuplot was lost: %s", strerror(errno));
-  if (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0)
-    return status_fail(STATUS_IO, "gnuplot failed on %s", script);
-  return STATUS_OK;
-}
-
 Status app_dataset_plot(DatagenDataset *dataset, const char *title, const char *picture) {
   static AppDatasetSummary summary; // large; commands run once
   char script[4096 + 8];
@@ -137,5 +118,5 @@ Status app_dataset_plot(DatagenDataset *dataset, const char *title, const char *
   TRY(file_begin(&writer, script));
   write_script(writer.stream, &summary, title, picture);
   TRY(file_commit(&writer));
-  return run_gnuplot(script);
+  return app_gnuplot_run(script);
 }

@@ -14,6 +14,7 @@
 #include "app/mesh_command.h"
 #include "app/run_command.h"
 #include "app/schema_command.h"
+#include "app/train_command.h"
 #include "app/versions.h"
 #include "base/log.h"
 #include "base/record.h"
@@ -39,6 +40,7 @@ static const Command commands[] = {
     {"bench", "measure overlap models and solvers", app_bench_run},
     {"datagen", "make labelled pairs of tetrahedra for learned overlap models", app_datagen_run},
     {"dataset", "tell, join or draw data sets of such pairs", app_dataset_run},
+    {"train", "train a learned overlap model", app_train_run},
     {"eval", "measure an overlap model against labelled pairs", app_eval_run},
     {"version", "print the versions of the program and its libraries", run_version},
     {"help", "print this; `tetlap COMMAND --help` tells more", run_help},
