@@ -176,24 +176,31 @@ START_TEST(an_inverted_start_recovers) {
 }
 END_TEST
 
-// Where the upper tetrahedron starts, so that the named features meet first.
+// Where the two regular tetrahedra start, so that the named features meet first. Both fall straight down
+// until then. "On edge": turned so that one edge lies along y at the bottom and the opposite one along x on
+// top, 0.0707 m above.
+#define ON_EDGE "rotate: {axis: [0, 1, 0], degrees: -54.7356103}, "
+#define ON_EDGE_TURNED                                                                                       \
+  "rotate: {axis: [0.417681254, -0.417681254, 0.806898222], degrees: 102.200004}, " // and by 90° about z
 static const struct {
-  const char *name;
-  const char *placement;
+  const char *name, *lower, *upper;
 } meetings[] = {
-    {"vertex on face",
-     "bodies.upper.place={rotate: {axis: [1, 0, 0], degrees: 180}, translate: [0.02, 0.03, 0.2]}"},
-    {"vertex on vertex",
-     "bodies.upper.place={rotate: {axis: [1, 0, 0], degrees: 180}, translate: [0, 0.0577, 0.18]}"},
-    {"edge on edge, crossed",
-     "bodies.upper.place={rotate: {axis: [1, 0, 0], degrees: 125}, translate: [0, 0.06, 0.2]}"},
-    {"face on vertex", "bodies.upper.place={translate: [0, 0, 0.1]}"},
+    {"vertex on face", "bodies.lower.place={translate: [0, 0, 0]}",
+     "bodies.upper.place={rotate: {axis: [1, 0, 0], degrees: 180}, translate: [0.0096, 0.0167, 0.15]}"},
+    {"face on vertex", "bodies.lower.place={translate: [0, 0, 0]}",
+     "bodies.upper.place={translate: [0.004, 0.003, 0.1]}"},
+    {"vertex on vertex", "bodies.lower.place={translate: [0, 0, 0]}",
+     "bodies.upper.place={rotate: {axis: [1, 0, 0], degrees: 180}, translate: [0, 0, 0.18]}"},
+    {"edge on edge, crossed", "bodies.lower.place={" ON_EDGE "translate: [0.0166667, 0, 0.0235702]}",
+     "bodies.upper.place={" ON_EDGE "translate: [0.0166667, 0, 0.11]}"},
+    {"edge on edge, parallel", "bodies.lower.place={" ON_EDGE "translate: [0.0166667, 0, 0.0235702]}",
+     "bodies.upper.place={" ON_EDGE_TURNED "translate: [0, 0.0166667, 0.11]}"},
 };
 
 START_TEST(single_tetrahedra_meet_and_stay_sound) {
   for (size_t m = 0; m < sizeof meetings / sizeof *meetings; m++) {
     SceneRun run;
-    scene_run(&run, "single_tets", (const char *const[]){meetings[m].placement, NULL});
+    scene_run(&run, "single_tets", (const char *const[]){meetings[m].lower, meetings[m].upper, NULL});
     ck_assert_msg(run.result.pairs_max > 0, "%s: no contact", meetings[m].name);
     ck_assert_msg(run.result.min_det_F > 0, "%s: det F = %g", meetings[m].name, run.result.min_det_F);
     ck_assert_msg(scene_gain(&run) <= 1e-3, "%s: the energy rises by %.2g", meetings[m].name,
