@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Normalisations of a pair before a network sees it (TetrahedronPairNet, table 2), and the way back of a
+// gradient through them.
+//
+//   pca   rigid: the first tetrahedron's centroid becomes the origin, its principal axes the coordinate axes,
+//         the largest principal value first. Along the first two axes the sum of the vertices' cubed
+//         coordinates is not negative, the third completes a right-handed system. V' = V.
+//   unit  affine: the first tetrahedron becomes the unit simplex (its vertices in their order the origin and
+//         the unit vectors). V' = V / |det E|, E the matrix of its edges from the first vertex.
+//
+// Both are functions of the pair: a network's V = factor · V'(normalised) has a gradient that goes through
+// them, including the turning of the axes. A principal axis turns by D_ij / (λ_j − λ_i), D the change of the
+// second moment in the axes' frame, which has no bound as values get equal, and there the axes jump: that is
+// the normalisation's own defect. 1/Δ is replaced by Δ/(Δ² + (1e-6 tr λ)²): the exact derivative while the
+// values differ, and with equal values the axes within their plane count as fixed.
+#ifndef TETLAP_CONTACT_NORMALISE_H
+#define TETLAP_CONTACT_NORMALISE_H
+
+#include <stdbool.h>
+
+typedef enum ContactNormalisation { CONTACT_NORMALISE_UNIT, CONTACT_NORMALISE_PCA } ContactNormalisation;
+
+typedef struct ContactNormalised {
+  ContactNormalisation kind;
+  double pair[24];  // the normalised pair
+  double factor;    // V = factor · V'
+  double matrix[9]; // normalised = matrix · (x − origin), row-major
+  double origin[3];
+  double principal[3]; // pca: principal values, falling
+} ContactNormalised;
+
+// False: the first tetrahedron is too flat for it (unit: |det E| below 1e-14 of the edges' product).
+bool contact_normalise(ContactNormalisation kind, const double pair[24], ContactNormalised *normalised);
+
+// ∇ of factor · V' with respect to the pair, from V' and ∇V' with respect to the normalised pair.
+void contact_normalise_pull(const ContactNormalised *normalised, double volume, const double inner[24],
+                            double gradient[24]);
+
+const char *contact_normalise_name(ContactNormalisation kind); // "unit", "pca"
+
+#endif

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <string.h>
+
+#include "base/random.h"
+#include "base/vec3.h"
+#include "contact/clip.h"
+#include "contact/normalise.h"
+#include "suite.h"
+
+static const ContactNormalisation kinds[] = {CONTACT_NORMALISE_UNIT, CONTACT_NORMALISE_PCA};
+
+static void draw_pair(Random *random, double pair[24]) {
+  for (int i = 0; i < 24; i++) pair[i] = random_uniform(random);
+}
+
+static double volume_of(const double pair[24]) {
+  double volume;
+  unsigned flags;
+  ck_assert_ok(contact_overlap_clip.eval_pair(NULL, pair, &volume, NULL, NULL, &flags));
+  return volume;
+}
+
+START_TEST(first_tetrahedron_becomes_the_unit_simplex) {
+  const double pair[24] = {1, 1, 1, 3, 1, 1, 1, 4, 1, 1, 1, 5, 1, 1, 1, 2, 1, 1, 1, 2.5, 1, 3, 4, 5};
+  ContactNormalised normalised;
+  ck_assert(contact_normalise(CONTACT_NORMALISE_UNIT, pair, &normalised));
+  ck_assert_near(normalised.factor, 24, 1e-14);
+  const double expected[12] = {0, 0, 0, 0.5, 0, 0, 0, 0.5, 0, 1, 1, 1};
+  for (int i = 0; i < 12; i++) ck_assert_near(normalised.pair[12 + i], expected[i], 1e-15);
+}
+END_TEST
+
+START_TEST(principal_axes_of_a_long_tetrahedron_are_its_own) {
+  // long along z, then y, then x; centroid (0, 0, 0) by construction
+  const double pair[24] = {-1, 0, -3, 1, 0, -3, 0, -2, 3, 0, 2, 3, 0, 0, 1, 1, 0, 1, 0, 1, 1, 0, 0, 2};
+  ContactNormalised normalised;
+  ck_assert(contact_normalise(CONTACT_NORMALISE_PCA, pair, &normalised));
+  ck_assert_near(normalised.principal[0], 9, 1e-14);
+  ck_assert_near(normalised.principal[1], 2, 1e-14);
+  ck_assert_near(normalised.principal[2], 0.5, 1e-14);
+  for (int v = 0; v < 8; v++) {
+    ck_assert_near(fabs(normalised.pair[3 * v]), fabs(pair[3 * v + 2]), 1e-14);
+    ck_assert_near(fabs(normalised.pair[3 * v + 1]), fabs(pair[3 * v + 1]), 1e-14);
+  }
+}
+END_TEST
+
+START_TEST(volume_is_the_factor_times_the_normalised_volume) {
+  Random random = random_seeded(1, 0);
+  double pair[24];
+  int with_volume = 0;
+  for (int n = 0; n < 400; n++)
+    for (int k = 0; k < 2; k++) {
+      ContactNormalised normalised;
+      draw_pair(&random, pair);
+      ck_assert(contact_normalise(kinds[k], pair, &normalised));
+      double volume = volume_of(pair);
+      ck_assert_near(normalised.factor * volume_of(normalised.pair), volume, 1e-9 * volume + 1e-15);
+      with_volume += volume > 0;
+    }
+  ck_assert_int_gt(with_volume, 200);
+}
+END_TEST
+
+START_TEST(rigid_motion_leaves_both_normalised_pairs_unchanged) {
+  Random random = random_seeded(2, 0);
+  double pair[24], moved[24], r[9];
+  for (int n = 0; n < 200; n++)
+    for (int k = 0; k < 2; k++) {
+      ContactNormalised before, after;
+      draw_pair(&random, pair);
+      random_rotation(&random, r);
+      for (int v = 0; v < 8; v++)
+        for (int i = 0; i < 3; i++) {
+          moved[3 * v + i] = 5;
+          for (int j = 0; j < 3; j++) moved[3 * v + i] += r[3 * i + j] * pair[3 * v + j];
+        }
+      ck_assert(contact_normalise(kinds[k], pair, &before));
+      ck_assert(contact_normalise(kinds[k], moved, &after));
+      double size = 1;
+      for (int i = 0; i < 24; i++) size = fmax(size, fabs(before.pair[i]));
+      for (int i = 0; i < 24; i++) ck_assert_near(after.pair[i], before.pair[i], 1e-9 * size * size);
+    }
+}
+END_TEST
+
+// A smooth function of the normalised pair, in place of a network.
+static double function_of(const double x[24], double gradient[24]) {
+  double value = 1;
+  for (int i = 0; i < 24; i++) {
+    value += sin(x[i] + 0.3 * i) + 0.1 * x[i] * x[(i + 7) % 24];
+    gradient[i] = cos(x[i] + 0.3 * i) + 0.1 * (x[(i + 7) % 24] + x[(i + 17) % 24]);
+  }
+  return value;
+}
+
+static double chain(ContactNormalisation kind, const double pair[24]) {
+  ContactNormalised normalised;
+  double unused[24];
+  ck_assert(contact_normalise(kind, pair, &normalised));
+  return normalised.factor * function_of(normalised.pair, unused);
+}
+
+START_TEST(gradient_is_that_of_the_whole_chain) {
+  Random random = random_seeded(3, 0);
+  double pair[24], inner[24], gradient[24];
+  for (int n = 0; n < 50; n++)
+    for (int k = 0; k < 2; k++) {
+      ContactNormalised normalised;
+      do draw_pair(&random, pair);
+      while (!contact_normalise(kinds[k], pair, &normalised) || !(normalised.matrix[0] < 10) ||
+             fabs(vec3_det4(vec3_at(pair), vec3_at(pair + 3), vec3_at(pair + 6), vec3_at(pair + 9))) < 0.1);
+      double value = function_of(normalised.pair, inner), size = 0;
+      contact_normalise_pull(&normalised, value, inner, gradient);
+      for (int i = 0; i < 24; i++) size = fmax(size, fabs(gradient[i]));
+      for (int i = 0; i < 24; i++) {
+        double step = 1e-6, kept = pair[i];
+        pair[i] = kept + step;
+        double above = chain(kinds[k], pair);
+        pair[i] = kept - step;
+        double below = chain(kinds[k], pair);
+        pair[i] = kept;
+        ck_assert_near(gradient[i], (above - below) / (2 * step), 1e-5 * size);
+      }
+    }
+}
+END_TEST
+
+START_TEST(gradient_is_bounded_where_principal_values_are_equal) {
+  // a regular tetrahedron: all three values are equal
+  const double pair[24] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  ContactNormalised normalised;
+  double inner[24], gradient[24], total[3] = {0};
+  ck_assert(contact_normalise(CONTACT_NORMALISE_PCA, pair, &normalised));
+  ck_assert_near(normalised.principal[0], normalised.principal[2], 1e-15);
+  double value = function_of(normalised.pair, inner);
+  contact_normalise_pull(&normalised, value, inner, gradient);
+  for (int i = 0; i < 24; i++) {
+    ck_assert(fabs(gradient[i]) < 10);
+    total[i % 3] += gradient[i];
+  }
+  for (int c = 0; c < 3; c++) ck_assert_near(total[c], 0, 1e-13);
+}
+END_TEST
+
+START_TEST(flat_first_tetrahedron_has_no_unit_frame) {
+  double pair[24] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  ContactNormalised normalised;
+  ck_assert(!contact_normalise(CONTACT_NORMALISE_UNIT, pair, &normalised));
+  ck_assert(contact_normalise(CONTACT_NORMALISE_PCA, pair, &normalised));
+  memset(pair, 0, 12 * sizeof(double));
+  ck_assert(!contact_normalise(CONTACT_NORMALISE_PCA, pair, &normalised));
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("normalise");
+  tcase_add_test(test_case, first_tetrahedron_becomes_the_unit_simplex);
+  tcase_add_test(test_case, principal_axes_of_a_long_tetrahedron_are_its_own);
+  tcase_add_test(test_case, volume_is_the_factor_times_the_normalised_volume);
+  tcase_add_test(test_case, rigid_motion_leaves_both_normalised_pairs_unchanged);
+  tcase_add_test(test_case, gradient_is_that_of_the_whole_chain);
+  tcase_add_test(test_case, gradient_is_bounded_where_principal_values_are_equal);
+  tcase_add_test(test_case, flat_first_tetrahedron_has_no_unit_frame);
+  return suite_run("normalise", test_case, 20);
+}
