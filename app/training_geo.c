@@ -9,6 +9,7 @@
 #include "app/evaluation.h"
 #include "app/evaluation_model.h"
 #include "app/training_pool.h"
+#include "app/training_start.h"
 #include "app/training_task.h"
 #include "base/memory.h"
 #include "contact/geo_net.h"
@@ -228,6 +229,11 @@ static Status validate(AppTrainingTask *task, const NetModel_f32 *model, const c
   return status;
 }
 
+static Status start(AppTrainingTask *task, NetModel_f32 *model) {
+  const Geo *geo = task->self;
+  return app_training_start_read(task->config->start, CONTACT_GEO_NORMALISATION, &geo->pool.whitening, model);
+}
+
 static const NetWhitening *whitening_of(const AppTrainingTask *task) {
   return &((const Geo *)task->self)->pool.whitening;
 }
@@ -235,6 +241,7 @@ static const NetWhitening *whitening_of(const AppTrainingTask *task) {
 const AppTrainingTaskOps app_training_geo = {
     .shape = shape,
     .create = create,
+    .start = start,
     .rows = 1,
     .tangents = -1,
     .step = step,

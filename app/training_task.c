@@ -6,7 +6,7 @@
 #include "base/memory.h"
 
 const AppTrainingTaskOps *app_training_task_find(AppModelKind kind) {
-  return kind == APP_MODEL_GEO ? &app_training_geo : NULL;
+  return kind == APP_MODEL_GEO ? &app_training_geo : &app_training_tpn;
 }
 
 void app_training_scores_add(AppTrainingScores *scores, const char *set, const char *name, double value) {

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Training of the paper's TetrahedronPairNet: ½ cross-entropy of the status + ½ RMSLE of 1000 V, from
+// normalised pairs. The network tells V of the normalised pair; before the loss it is multiplied by the
+// normalisation's factor, so that the loss is about V whatever the normalisation.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "app/training_start.h"
+#include "app/training_task.h"
+#include "base/memory.h"
+#include "contact/normalise.h"
+
+enum { SIZE = 24, BLOCK = 16384, MAX_SETS = 6 };
+
+// Samples as the network sees them.
+typedef struct Samples {
+  char name[APP_TRAINING_SCORE_NAME];
+  int count, left_out;
+  float *x;      // normalised pairs        (count, 24)
+  float *factor; // V = factor · V'         (count)
+  float *label;  // 1: the pair intersects  (count)
+  float *target; // scale · V               (count)
+  uint8_t *kind; // DatagenKind             (count)
+} Samples;
+
+typedef struct Tpn {
+  Samples training;
+  Samples sets[MAX_SETS];
+  int set_count;
+  AppTrainingOrder order;
+  NetWork_f32 work;               // of validation
+  int *samples;                   // (batch)
+  float *x, *y, *gy;              // (batch, 24), (batch, 2), (batch, 2)
+  float *factor, *label, *target; // (batch)
+} Tpn;
+
+static ContactNormalisation normalisation_of(const AppTrainingConfig *config) {
+  return config->model.normalisation == APP_NORMALISATION_UNIT ? CONTACT_NORMALISE_UNIT
+                                                               : CONTACT_NORMALISE_PCA;
+}
+
+static NetShape shape(const AppTrainingConfig *config) {
+  NetShape made = config->model.reading == APP_READING_A   ? net_shape_tpn_a()
+                  : config->model.reading == APP_READING_B ? net_shape_tpn_b()
+                                                           : net_shape_tpn_backbone();
+  made.activation = config->model.activation == APP_ACTIVATION_RELU ? NET_RELU : NET_SILU;
+  return made;
+}
+
+static void samples_destroy(Samples *samples) {
+  memory_free(samples->x), memory_free(samples->factor), memory_free(samples->label);
+  memory_free(samples->target), memory_free(samples->kind);
+  *samples = (Samples){0};
+}
+
+static void destroy(AppTrainingTask *task) {
+  Tpn *tpn = task->self;
+  if (!tpn) return;
+  samples_destroy(&tpn->training);
+  for (int s = 0; s < tpn->set_count; s++) samples_destroy(&tpn->sets[s]);
+  app_training_order_destroy(&tpn->order);
+  net_work_destroy_f32(&tpn->work);
+  memory_free(tpn->samples), memory_free(tpn->x), memory_free(tpn->y), memory_free(tpn->gy);
+  memory_free(tpn->factor), memory_free(tpn->label), memory_free(tpn->target), memory_free(tpn);
+  task->self = NULL;
+}
+
+static Status samples_create(Samples *samples, size_t count) {
+  samples->x = memory_zeroed(count * SIZE, sizeof(float));
+  samples->factor = memory_zeroed(count, sizeof(float));
+  samples->label = memory_zeroed(count, sizeof(float));
+  samples->target = memory_zeroed(count, sizeof(float));
+  samples->kind = memory_zeroed(count, 1);
+  bool fits = samples->x && samples->factor && samples->label && samples->target && samples->kind;
+  return fits ? STATUS_OK : status_no_memory("the training's samples");
+}
+
+static void samples_add(Samples *samples, const AppTrainingConfig *config, const DatagenPairs *pairs,
+                        size_t i) {
+  ContactNormalised normalised;
+  if (!contact_normalise(normalisation_of(config), pairs->coordinates + i * SIZE, &normalised)) {
+    samples->left_out++;
+    return;
+  }
+  int at = samples->count++;
+  for (int c = 0; c < SIZE; c++) samples->x[at * (ptrdiff_t)SIZE + c] = (float)normalised.pair[c];
+  samples->factor[at] = (float)normalised.factor;
+  samples->label[at] = pairs->status[i];
+  samples->target[at] = (float)(config->loss.volume_scale * pairs->volume[i]);
+  samples->kind[at] = pairs->kind[i];
+}
+
+static Status fill(Samples *samples, const AppTrainingConfig *config, AppSource *source,
+                   const DatagenPairs *block) {
+  for (long long first = 0; first < source->count; first += BLOCK) {
+    long long left = source->count - first;
+    size_t count = (size_t)(left < BLOCK ? left : BLOCK);
+    TRY(app_training_source_read(source, first, count, block));
+    for (size_t i = 0; i < count; i++) samples_add(samples, config, block, i);
+  }
+  return STATUS_OK;
+}
+
+// All sources, one after another, block by block.
+static Status load(Samples *samples, const AppTrainingConfig *config, const AppTrainingSourceDef *defs,
+                   int count) {
+  AppSource source;
+  long long total = 0;
+  for (int s = 0; s < count; s++) {
+    AppSourceDef def = app_training_config_source(&defs[s]);
+    TRY(app_training_source_open(&source, &def, false));
+    total += source.count;
+    app_training_source_close(&source);
+  }
+  TRY(samples_create(samples, (size_t)total));
+  DatagenPairs block;
+  TRY(datagen_pairs_create(&block, BLOCK, false));
+  Status status = STATUS_OK;
+  for (int s = 0; s < count && !status; s++) {
+    AppSourceDef def = app_training_config_source(&defs[s]);
+    status = app_training_source_open(&source, &def, false);
+    if (!status) status = fill(samples, config, &source, &block);
+    app_training_source_close(&source);
+  }
+  datagen_pairs_destroy(&block);
+  return status;
+}
+
+static Status load_sets(Tpn *tpn, const AppTrainingConfig *config) {
+  if (config->validation_count > MAX_SETS)
+    return status_fail(STATUS_INPUT, "%s: %d validation sets; at most %d", config->path,
+                       config->validation_count, MAX_SETS);
+  for (int s = 0; s < config->validation_count; s++) {
+    Samples *set = &tpn->sets[tpn->set_count++];
+    TRY(load(set, config, &config->validation[s], 1));
+    snprintf(set->name, sizeof set->name, "set%d", s + 1);
+    if (config->validation[s].name) snprintf(set->name, sizeof set->name, "%s", config->validation[s].name);
+  }
+  return STATUS_OK;
+}
+
+static Status create_batch(Tpn *tpn, const AppTrainingConfig *config) {
+  size_t batch = (size_t)config->optimiser.batch;
+  tpn->samples = memory_zeroed(batch, sizeof(int));
+  tpn->x = memory_zeroed(batch * SIZE, sizeof(float));
+  tpn->y = memory_zeroed(batch * 2, sizeof(float)), tpn->gy = memory_zeroed(batch * 2, sizeof(float));
+  tpn->factor = memory_zeroed(batch, sizeof(float)), tpn->label = memory_zeroed(batch, sizeof(float));
+  tpn->target = memory_zeroed(batch, sizeof(float));
+  bool fits = tpn->samples && tpn->x && tpn->y && tpn->gy && tpn->factor && tpn->label && tpn->target;
+  return fits ? STATUS_OK : status_no_memory("a batch");
+}
+
+static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
+  (void)whitening;
+  Tpn *tpn = task->self = memory_zeroed(1, sizeof *tpn);
+  if (!tpn) return status_no_memory("a training");
+  TRY(load(&tpn->training, task->config, task->config->training, task->config->training_count));
+  if (tpn->training.count == 0) return status_fail(STATUS_INPUT, "there is no pair to train on");
+  TRY(load_sets(tpn, task->config));
+  TRY(app_training_order_create(&tpn->order, tpn->training.count));
+  task->sample_count = tpn->training.count;
+  snprintf(task->summary, sizeof task->summary, "%d pairs to train on, %d left out", tpn->training.count,
+           tpn->training.left_out);
+  return create_batch(tpn, task->config);
+}
+
+static void gather(Tpn *tpn, const int *samples, int count) {
+  const Samples *from = &tpn->training;
+  for (int k = 0; k < count; k++) {
+    int at = samples[k];
+    memcpy(tpn->x + (ptrdiff_t)k * SIZE, from->x + (ptrdiff_t)at * SIZE, SIZE * sizeof(float));
+    tpn->factor[k] = from->factor[at];
+    tpn->label[k] = from->label[at];
+    tpn->target[k] = from->target[at];
+  }
+}
+
+static double step(AppTrainingTask *task, const NetModel_f32 *model, NetWork_f32 *work, long long number,
+                   float *gradient) {
+  Tpn *tpn = task->self;
+  int batch = task->config->optimiser.batch;
+  app_training_order_take(&tpn->order, task->config->seed, number, batch, tpn->samples);
+  gather(tpn, tpn->samples, batch);
+  net_gradient_forward_f32(work, model, batch, 0, tpn->x, NULL, tpn->y, NULL);
+  for (int k = 0; k < batch; k++) tpn->y[2 * k + 1] *= tpn->factor[k];
+  NetLossPaper loss = net_loss_paper_f32(batch, tpn->y, tpn->label, tpn->target, tpn->gy);
+  for (int k = 0; k < batch; k++) tpn->gy[2 * k + 1] *= tpn->factor[k];
+  net_gradient_backward_f32(work, model, batch, 0, tpn->gy, NULL, gradient);
+  return loss.total;
+}
+
+// Sums over a validation set.
+typedef struct Sums {
+  double loss; // Σ over batches of loss · samples
+  long long right[DATAGEN_KIND_COUNT], count[DATAGEN_KIND_COUNT];
+  double error; // Σ |ΔV| of pairs that share volume
+  long long inside;
+} Sums;
+
+static void add_batch(Sums *sums, const Tpn *tpn, const Samples *set, int first, int count, double scale) {
+  for (int k = 0; k < count; k++) {
+    int kind = set->kind[first + k];
+    sums->count[kind]++;
+    sums->right[kind] += (tpn->y[2 * k] > 0) == (set->label[first + k] > 0.5f);
+    if (!(set->target[first + k] > 0)) continue;
+    sums->inside++;
+    sums->error += fabs(fmax(0, (double)tpn->y[2 * k + 1]) - (double)set->target[first + k]) / scale;
+  }
+}
+
+static void score(const Sums *sums, const Samples *set, AppTrainingScores *scores) {
+  double accuracy = 0, kinds = 0;
+  for (int k = 0; k < DATAGEN_KIND_COUNT; k++)
+    if (sums->count[k]) kinds++, accuracy += (double)sums->right[k] / (double)sums->count[k];
+  app_training_scores_add(scores, set->name, "loss", sums->loss / set->count);
+  app_training_scores_add(scores, set->name, "inaccuracy", 1 - accuracy / kinds);
+  app_training_scores_add(scores, set->name, "mae", sums->inside ? sums->error / (double)sums->inside : NAN);
+  scores->score += sums->loss / set->count;
+}
+
+static void measure(Tpn *tpn, const AppTrainingConfig *config, const NetModel_f32 *model, const Samples *set,
+                    AppTrainingScores *scores) {
+  Sums sums = {0};
+  int batch = config->optimiser.batch;
+  for (int first = 0; first < set->count; first += batch) {
+    int count = set->count - first < batch ? set->count - first : batch;
+    net_forward_eval_f32(&tpn->work, model, count, set->x + (ptrdiff_t)first * SIZE, tpn->y);
+    for (int k = 0; k < count; k++) tpn->y[2 * k + 1] *= set->factor[first + k];
+    sums.loss +=
+        count * net_loss_paper_f32(count, tpn->y, set->label + first, set->target + first, tpn->gy).total;
+    add_batch(&sums, tpn, set, first, count, config->loss.volume_scale);
+  }
+  score(&sums, set, scores);
+}
+
+static Status validate(AppTrainingTask *task, const NetModel_f32 *model, const char *path,
+                       AppTrainingScores *scores) {
+  Tpn *tpn = task->self;
+  (void)path;
+  if (!tpn->work.plan) {
+    NetWorkDef def = net_work_default();
+    TRY(app_training_task_fail(net_work_create_f32(model->plan, &def, &tpn->work)));
+  }
+  for (int s = 0; s < tpn->set_count; s++)
+    if (tpn->sets[s].count > 0) measure(tpn, task->config, model, &tpn->sets[s], scores);
+  return STATUS_OK;
+}
+
+static Status start(AppTrainingTask *task, NetModel_f32 *model) {
+  const char *name = contact_normalise_name(normalisation_of(task->config));
+  return app_training_start_read(task->config->start, name, NULL, model);
+}
+
+// The box of the training's normalised coordinates.
+static void print_range(const Samples *samples, char *text, size_t size) {
+  double low = INFINITY, high = -INFINITY;
+  for (ptrdiff_t i = 0; i < (ptrdiff_t)samples->count * SIZE; i++) {
+    low = fmin(low, (double)samples->x[i]);
+    high = fmax(high, (double)samples->x[i]);
+  }
+  snprintf(text, size, "normalised coordinates in [%.9g, %.9g]", low, high);
+}
+
+static Status write(const AppTrainingTask *task, const NetModel_f32 *model, const char *provenance,
+                    const char *path) {
+  const Tpn *tpn = task->self;
+  char range[128], normalisation[16], *story;
+  print_range(&tpn->training, range, sizeof range);
+  snprintf(normalisation, sizeof normalisation, "%s", contact_normalise_name(normalisation_of(task->config)));
+  size_t size = strlen(provenance) + 64;
+  story = memory_zeroed(size, 1);
+  if (!story) return status_no_memory("the weights' provenance");
+  snprintf(story, size, "%soutput: V times %.17g\n", provenance, task->config->loss.volume_scale);
+  NetCard card = {.normalisation = normalisation, .range = range, .provenance = story};
+  Status status = app_training_task_fail(net_weights_write_f32(path, model, &card));
+  memory_free(story);
+  return status;
+}
+
+static const NetWhitening *whitening_of(const AppTrainingTask *task) {
+  (void)task;
+  return NULL;
+}
+
+const AppTrainingTaskOps app_training_tpn = {
+    .shape = shape,
+    .create = create,
+    .start = start,
+    .rows = 0,
+    .tangents = 0,
+    .step = step,
+    .validate = validate,
+    .write = write,
+    .whitening = whitening_of,
+    .destroy = destroy,
+};

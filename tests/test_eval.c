@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `tetlap eval` measures: on a model whose errors are known by construction, and on exact ones.
+#include <string.h>
+
+#include "app/evaluation.h"
+#include "app/evaluation_model.h"
+#include "app/training_source.h"
+#include "contact/clip.h"
+#include "suite.h"
+
+// V and ∇V of clipping, ten per cent too large; disjoint pairs get a ghost of 1e-3.
+static Status inflate(const void *self, const double pair[24], double *volume, double *gradient,
+                      double *hessian, unsigned *flags) {
+  (void)self;
+  Status status = contact_overlap_clip.eval_pair(NULL, pair, volume, gradient, hessian, flags);
+  if (!(*volume > 0)) {
+    *volume = 1e-3;
+    if (gradient) gradient[5] = 2;
+    return status;
+  }
+  *volume *= 1.1;
+  for (int i = 0; gradient && i < 24; i++) gradient[i] *= 1.1;
+  return status;
+}
+static const ContactOverlapOps inflated = {.name = "inflated", .eval_pair = inflate};
+
+// The x coordinate of the first vertex in place of a volume: no symmetry at all.
+static Status lopsided_eval(const void *self, const double pair[24], double *volume, double *gradient,
+                            double *hessian, unsigned *flags) {
+  (void)self, (void)hessian;
+  *volume = pair[0];
+  *flags = 0;
+  for (int i = 0; gradient && i < 24; i++) gradient[i] = i == 0;
+  return STATUS_OK;
+}
+static const ContactOverlapOps lopsided = {.name = "lopsided", .eval_pair = lopsided_eval};
+
+static void load(const char *law, const char *mix, int count, DatagenPairs *pairs) {
+  AppSourceDef def = {.law = law, .mix = mix, .count = count, .seed = 5};
+  size_t loaded;
+  ck_assert_ok(app_training_source_load(&def, pairs, &loaded));
+  ck_assert_uint_eq(loaded, (size_t)count);
+}
+
+static AppEvaluation evaluate(const ContactOverlapModel *model, const DatagenPairs *pairs, size_t count) {
+  AppEvaluationRun run;
+  AppEvaluation result;
+  app_evaluation_begin(&run, model);
+  ck_assert_ok(app_evaluation_add(&run, pairs, count));
+  app_evaluation_finish(&run, &result);
+  app_evaluation_end(&run);
+  return result;
+}
+
+START_TEST(errors_known_by_construction_are_found) {
+  DatagenPairs pairs;
+  load("paper-test", "none=1,volumetric=3", 800, &pairs);
+  ContactOverlapModel model = {.ops = &inflated};
+  AppEvaluation found = evaluate(&model, &pairs, 800);
+  double sum = 0;
+  for (int i = 0; i < 800; i++) sum += pairs.volume[i];
+  ck_assert_int_eq(found.count, 800);
+  ck_assert_int_eq(found.inside, 600);
+  ck_assert_near(found.volume_error_sum, 0.1, 1e-12);
+  ck_assert_near(found.mae, 0.1 * sum / 600, 1e-12);
+  ck_assert_near(found.gradient_error, 0.1, 1e-12);
+  ck_assert_near(found.gradient_error_median, 0.1, 1e-12);
+  ck_assert_near(found.gradient_error_p90, 0.1, 1e-12);
+  ck_assert_near(found.angle_p90_deg, 0, 1e-5);
+  ck_assert_near(found.ghost_volume, 1e-3, 1e-12);
+  ck_assert_near(found.ghost_gradient, 2, 1e-12);
+  ck_assert_near(found.kinds[DATAGEN_NONE].accuracy, 0, 0);
+  ck_assert_near(found.kinds[DATAGEN_VOLUMETRIC].accuracy, 1, 0);
+  ck_assert_near(found.accuracy_mean, 0.5, 1e-15);
+  double bins = 0, in_bins = 0;
+  for (int b = 0; b < APP_EVALUATION_BINS; b++) {
+    bins += found.bin_share[b];
+    in_bins += found.bin_share[b] * found.bin_mae[b];
+    ck_assert(found.bin_accuracy[b] > 0.5 && found.bin_accuracy[b] <= 1);
+  }
+  ck_assert_near(bins, 1, 1e-12);
+  ck_assert_near(in_bins, found.mae, 1e-12);
+  ck_assert(found.bin_accuracy[0] < 1 && found.bin_accuracy[2] == 1);
+  datagen_pairs_destroy(&pairs);
+}
+END_TEST
+
+START_TEST(symmetries_are_missed_where_they_are_missing) {
+  DatagenPairs pairs;
+  load("scene", "scene=1", 200, &pairs);
+  ContactOverlapModel crooked = {.ops = &lopsided}, exact;
+  AppEvaluation found = evaluate(&crooked, &pairs, 200);
+  ck_assert(found.defect_vertex_order > 0.05 && found.defect_swap > 0.05 && found.defect_rotation > 0.05);
+  ck_assert_ok(app_evaluation_model_open(&exact, "exact"));
+  found = evaluate(&exact, &pairs, 200);
+  ck_assert(found.defect_vertex_order < 1e-12 && found.defect_swap < 1e-12 && found.defect_rotation < 1e-12);
+  ck_assert_near(found.volume_error_sum, 0, 1e-9);
+  ck_assert_near(found.gradient_error, 0, 1e-9);
+  ck_assert_near(found.angle_p90_deg, 0, 1e-5);
+  contact_overlap_destroy(&exact);
+  datagen_pairs_destroy(&pairs);
+}
+END_TEST
+
+START_TEST(the_frame_without_network_has_no_ghosts_and_ten_per_cent_errors) {
+  DatagenPairs pairs;
+  load("scene", NULL, 1000, &pairs);
+  ContactOverlapModel model;
+  ck_assert_ok(app_evaluation_model_open(&model, "geo-constant"));
+  AppEvaluation found = evaluate(&model, &pairs, 1000);
+  ck_assert(found.volume_error_sum > 0.05 && found.volume_error_sum < 0.5);
+  ck_assert(found.ghost_volume == 0 && found.ghost_gradient == 0);
+  ck_assert_near(found.accuracy_mean, 1, 0);
+  contact_overlap_destroy(&model);
+  datagen_pairs_destroy(&pairs);
+}
+END_TEST
+
+START_TEST(blocks_do_not_change_what_is_found) {
+  DatagenPairs pairs;
+  load("scene", NULL, 300, &pairs);
+  ContactOverlapModel model = {.ops = &inflated};
+  AppEvaluation whole = evaluate(&model, &pairs, 300), parts;
+  AppEvaluationRun run;
+  app_evaluation_begin(&run, &model);
+  for (size_t first = 0; first < 300; first += 100) {
+    DatagenPairs part = {.coordinates = pairs.coordinates + 24 * first,
+                         .status = pairs.status + first,
+                         .kind = pairs.kind + first,
+                         .volume = pairs.volume + first,
+                         .gradient = NULL}; // found by clipping again
+    ck_assert_ok(app_evaluation_add(&run, &part, 100));
+  }
+  app_evaluation_finish(&run, &parts);
+  app_evaluation_end(&run);
+  ck_assert_near(parts.gradient_error, whole.gradient_error, 1e-13);
+  ck_assert_near(parts.mae, whole.mae, 1e-15);
+  ck_assert_near(parts.defect_rotation, whole.defect_rotation, 0);
+  datagen_pairs_destroy(&pairs);
+}
+END_TEST
+
+START_TEST(without_pairs_there_is_nothing_to_tell) {
+  ContactOverlapModel model = {.ops = &inflated};
+  DatagenPairs none = {0};
+  AppEvaluation found = evaluate(&model, &none, 0);
+  ck_assert_int_eq(found.count, 0);
+  ck_assert(isnan(found.mae) && isnan(found.gradient_error_median) && isnan(found.accuracy_mean));
+}
+END_TEST
+
+START_TEST(unknown_models_are_named) {
+  ContactOverlapModel model;
+  ck_assert(app_evaluation_model_open(&model, "clap") != STATUS_OK);
+  ck_assert(strstr(status_message(), "clip"));
+  ck_assert(app_evaluation_model_open(&model, "/nowhere/geo.safetensors") != STATUS_OK);
+  ck_assert(strstr(status_message(), "/nowhere/geo.safetensors"));
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("eval");
+  tcase_add_test(test_case, errors_known_by_construction_are_found);
+  tcase_add_test(test_case, symmetries_are_missed_where_they_are_missing);
+  tcase_add_test(test_case, the_frame_without_network_has_no_ghosts_and_ten_per_cent_errors);
+  tcase_add_test(test_case, blocks_do_not_change_what_is_found);
+  tcase_add_test(test_case, without_pairs_there_is_nothing_to_tell);
+  tcase_add_test(test_case, unknown_models_are_named);
+  return suite_run("eval", test_case, 30);
+}

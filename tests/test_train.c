@@ -1,0 +1,419 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Training: what the pool of samples holds, that a loss has the gradient it claims, that a resumed training
+// ends with the same bits, and that what was trained is better than what was not.
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "app/evaluation.h"
+#include "app/evaluation_model.h"
+#include "app/training.h"
+#include "app/training_pool.h"
+#include "app/training_start.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/random.h"
+#include "contact/geo.h"
+#include "contact/geo_net.h"
+#include "suite.h"
+
+static char directory[64];
+
+static void make_directory(void) {
+  snprintf(directory, sizeof directory, "/tmp/test_train_XXXXXX");
+  ck_assert_ptr_nonnull(mkdtemp(directory));
+}
+
+static void remove_directory(void) {
+  char command[128];
+  snprintf(command, sizeof command, "rm -r '%s'", directory);
+  ck_assert_int_eq(system(command), 0);
+}
+
+static const char *path_in(const char *name) {
+  static char paths[4][128];
+  static int next;
+  char *path = paths[next++ % 4];
+  snprintf(path, sizeof paths[0], "%s/%s", directory, name);
+  return path;
+}
+
+static void write_text(const char *path, const char *text) {
+  FileWriter writer;
+  ck_assert_ok(file_begin(&writer, path));
+  fputs(text, writer.stream);
+  ck_assert_ok(file_commit(&writer));
+}
+
+static const char geo_config[] =
+    "name: t\n"
+    "model: {kind: geo, features: 36, width: 8, depth: 1}\n"
+    "data:\n"
+    "  training: [{law: scene, mix: scene=1, count: 2000, seed: 11}]\n"
+    "  validation: [{name: scene, law: scene, mix: scene=1, count: 300, seed: 12}]\n"
+    "optimiser: {rate: 1e-2, batch: 100, samples: 40000}\n"
+    "validations: 4\n";
+
+static const char tpn_config[] = "name: t\n"
+                                 "model: {kind: tpn, normalisation: pca}\n"
+                                 "data:\n"
+                                 "  training: [{law: paper-train, count: 2000, seed: 11}]\n"
+                                 "  validation: [{name: paper, law: paper-test, count: 500, seed: 12}]\n"
+                                 "optimiser: {rate: 1e-3, batch: 200, samples: 12000}\n"
+                                 "validations: 3\n";
+
+static AppTrainingConfig read_config(const char *text) {
+  AppTrainingConfig config;
+  write_text(path_in("train.yaml"), text);
+  ck_assert_ok(app_training_config_read(path_in("train.yaml"), NULL, 0, &config));
+  return config;
+}
+
+static DatagenPairs load_pairs(int count, size_t *loaded) {
+  AppSourceDef def = {.law = "scene", .mix = "scene=1", .count = count, .seed = 3};
+  DatagenPairs pairs;
+  ck_assert_ok(app_training_source_load(&def, &pairs, loaded));
+  return pairs;
+}
+
+START_TEST(basis_is_orthonormal_and_of_no_affine_map) {
+  Random random = random_seeded(1, 0);
+  double pair[24], basis[12 * 24];
+  for (int n = 0; n < 50; n++) {
+    for (int i = 0; i < 24; i++) pair[i] = random_uniform(&random);
+    app_training_pool_basis(pair, basis);
+    for (int p = 0; p < 12; p++) {
+      for (int q = 0; q < 12; q++) {
+        double dot = 0;
+        for (int i = 0; i < 24; i++) dot += basis[24 * p + i] * basis[24 * q + i];
+        ck_assert_near(dot, p == q, 1e-13);
+      }
+      for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 4; column++) {
+          double dot = 0;
+          for (int v = 0; v < 8; v++)
+            dot += basis[24 * p + 3 * v + row] * (column < 3 ? pair[3 * v + column] : 1);
+          ck_assert_near(dot, 0, 1e-13);
+        }
+    }
+  }
+}
+END_TEST
+
+START_TEST(affine_directions_change_neither_features_nor_target) {
+  size_t count;
+  DatagenPairs pairs = load_pairs(40, &count);
+  const ContactGeoFeatureSet *set = contact_geo_feature_set(36);
+  Random random = random_seeded(2, 0);
+  int used = 0;
+  for (size_t n = 0; n < count; n++) {
+    const double *pair = pairs.coordinates + 24 * n, *gradient = pairs.gradient + 24 * n;
+    double matrix[12], direction[24], features[36], changes[36], guess, guess_change, along = 0;
+    for (int i = 0; i < 12; i++) matrix[i] = random_normal(&random);
+    for (int v = 0; v < 8; v++)
+      for (int r = 0; r < 3; r++) {
+        direction[3 * v + r] = matrix[9 + r];
+        for (int c = 0; c < 3; c++) direction[3 * v + r] += matrix[3 * r + c] * pair[3 * v + c];
+      }
+    if (contact_geo_features_tangent(set, pair, 1, direction, features, changes, &guess, &guess_change) !=
+        CONTACT_GEO_INSIDE)
+      continue;
+    used++;
+    for (int f = 0; f < 36; f++) ck_assert_near(changes[f], 0, 1e-7);
+    for (int i = 0; i < 24; i++) along += gradient[i] * direction[i];
+    ck_assert_near(along / pairs.volume[n], guess_change, 1e-6);
+  }
+  ck_assert_int_ge(used, 35);
+  datagen_pairs_destroy(&pairs);
+}
+END_TEST
+
+START_TEST(pool_holds_whitened_inputs) {
+  size_t count;
+  DatagenPairs pairs = load_pairs(600, &count);
+  AppTrainingPool pool;
+  NetWhitening none = {0};
+  ck_assert_ok(app_training_pool_create(&pool, contact_geo_feature_set(36), &pairs, count, &none));
+  ck_assert_int_eq((long long)pool.count + pool.left_out, 600);
+  for (int i = 0; i < 36; i++) {
+    double mean = 0, square = 0;
+    for (int k = 0; k < pool.count; k++) {
+      double w = (double)pool.inputs[k * 36 + i];
+      mean += w / pool.count, square += w * w / pool.count;
+    }
+    ck_assert_near(mean, 0, 1e-4);
+    ck_assert(square > 1e-6 && square < 1.001);
+  }
+  app_training_pool_destroy(&pool);
+  datagen_pairs_destroy(&pairs);
+}
+END_TEST
+
+// Parameters are moved by ±1e-2 of their norm along a random direction; float carries six digits or so.
+static void check_gradient(const char *text) {
+  make_directory();
+  AppTrainingConfig config = read_config(text);
+  AppTrainingTask task = {.ops = app_training_task_find(config.model.kind), .config = &config};
+  NetWhitening none = {0};
+  ck_assert_ok(task.ops->create(&task, &none));
+  NetShape shape = task.ops->shape(&config);
+  NetModel_f32 model;
+  NetWork_f32 work;
+  NetWorkDef def = net_work_default();
+  def.tangent_count = task.ops->tangents < 0 ? config.loss.tangents : 0;
+  def.batch = config.optimiser.batch + task.ops->rows;
+  ck_assert_int_eq(net_model_create_f32(&shape, &model), NET_OK);
+  ck_assert_int_eq(net_work_create_f32(model.plan, &def, &work), NET_OK);
+  net_model_initialise_f32(&model, 7);
+  size_t count = model.plan->parameter_count;
+  float *gradient = memory_zeroed(count, sizeof(float)), *other = memory_zeroed(count, sizeof(float)),
+        *kept = memory_copy(model.parameters, count, sizeof(float));
+  double loss = task.ops->step(&task, &model, &work, 3, gradient), size = 0, expected = 0;
+  ck_assert(loss > 0);
+  // along the gradient itself: the loss falls as fast as the gradient is long
+  for (size_t i = 0; i < count; i++) size += (double)gradient[i] * (double)gradient[i];
+  size = sqrt(size);
+  double step = 2e-3 * loss / size, above, below;
+  for (size_t i = 0; i < count; i++) model.parameters[i] = kept[i] + (float)(step / size) * gradient[i];
+  above = task.ops->step(&task, &model, &work, 3, other);
+  for (size_t i = 0; i < count; i++) model.parameters[i] = kept[i] - (float)(step / size) * gradient[i];
+  below = task.ops->step(&task, &model, &work, 3, other);
+  expected = (above - below) / (2 * step);
+  ck_assert_near(size, expected, 0.01 * expected);
+  memory_free(gradient), memory_free(other), memory_free(kept);
+  net_work_destroy_f32(&work);
+  net_model_destroy_f32(&model);
+  task.ops->destroy(&task);
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+
+START_TEST(gradient_of_the_geo_loss_is_that_of_the_loss) {
+  check_gradient(geo_config);
+}
+END_TEST
+
+START_TEST(gradient_of_the_tpn_loss_is_that_of_the_loss) {
+  check_gradient(tpn_config);
+}
+END_TEST
+
+START_TEST(each_epoch_takes_each_sample_once) {
+  AppTrainingOrder order;
+  int samples[7], seen[21] = {0};
+  ck_assert_ok(app_training_order_create(&order, 21));
+  for (int step = 0; step < 3; step++) {
+    app_training_order_take(&order, 5, step, 7, samples);
+    for (int k = 0; k < 7; k++) seen[samples[k]]++;
+  }
+  for (int i = 0; i < 21; i++) ck_assert_int_eq(seen[i], 1);
+  int again[7];
+  app_training_order_take(&order, 5, 4, 7, samples);
+  app_training_order_take(&order, 5, 0, 7, again); // back and forth
+  app_training_order_take(&order, 5, 4, 7, again);
+  ck_assert_mem_eq(samples, again, sizeof again);
+  app_training_order_destroy(&order);
+}
+END_TEST
+
+// Stops a training from its observer.
+typedef struct Stopper {
+  long long step;
+  volatile sig_atomic_t flag;
+} Stopper;
+
+static void observe(void *observer, const AppTrainingProgress *progress) {
+  Stopper *stopper = observer;
+  if (progress->step == stopper->step) stopper->flag = 1;
+}
+
+static void read_parameters(const char *path, NetModel_f64 *model) {
+  NetCard card;
+  ck_assert_int_eq(net_weights_read_f64(path, model, &card), NET_OK);
+  net_card_destroy(&card);
+}
+
+static void check_same_weights(const char *a, const char *b) {
+  NetModel_f64 first, second;
+  read_parameters(a, &first);
+  read_parameters(b, &second);
+  ck_assert_mem_eq(first.parameters, second.parameters, first.plan->parameter_count * sizeof(double));
+  net_model_destroy_f64(&first);
+  net_model_destroy_f64(&second);
+}
+
+static Status train(const AppTrainingConfig *config, const char *where, int threads, bool resumes,
+                    Stopper *stopper, AppTrainingResult *result) {
+  AppTrainingOptions options = {.directory = where, .threads = threads, .resumes = resumes};
+  if (stopper) options.stop = &stopper->flag, options.observe = observe, options.observer = stopper;
+  return app_training_run(config, &options, result);
+}
+
+static void check_resume(const char *text) {
+  make_directory();
+  char whole[80], parts[80], weights[2][96];
+  snprintf(whole, sizeof whole, "%s/whole", directory);
+  snprintf(parts, sizeof parts, "%s/parts", directory);
+  snprintf(weights[0], sizeof weights[0], "%s/t.safetensors", whole);
+  snprintf(weights[1], sizeof weights[1], "%s/t.safetensors", parts);
+  AppTrainingConfig config = read_config(text);
+  AppTrainingResult result;
+  Stopper stopper = {.step = 37};
+  ck_assert_ok(train(&config, whole, 1, false, NULL, &result));
+  ck_assert_int_eq(train(&config, parts, 2, false, &stopper, &result), STATUS_INTERRUPTED);
+  ck_assert_int_eq(result.step, 37);
+  ck_assert_ok(train(&config, parts, 2, true, NULL, &result));
+  ck_assert(result.best_step > 37);
+  check_same_weights(weights[0], weights[1]);
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+
+START_TEST(resumed_geo_training_ends_with_the_same_bits) {
+  check_resume(geo_config);
+}
+END_TEST
+
+START_TEST(resumed_tpn_training_ends_with_the_same_bits) {
+  check_resume(tpn_config);
+}
+END_TEST
+
+START_TEST(checkpoint_of_another_configuration_is_refused) {
+  make_directory();
+  AppTrainingConfig config = read_config(geo_config);
+  AppTrainingResult result;
+  Stopper stopper = {.step = 5};
+  ck_assert_int_eq(train(&config, directory, 1, false, &stopper, &result), STATUS_INTERRUPTED);
+  config.loss.huber = 0.2;
+  ck_assert_int_eq(train(&config, directory, 1, true, NULL, &result), STATUS_INPUT);
+  ck_assert(strstr(status_message(), "huber 0.1"));
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+END_TEST
+
+static AppEvaluation evaluate(const char *model_name) {
+  AppSourceDef def = {.law = "scene", .count = 1000, .seed = 77};
+  DatagenPairs pairs;
+  size_t count;
+  ContactOverlapModel model;
+  AppEvaluationRun run;
+  AppEvaluation result;
+  ck_assert_ok(app_training_source_load(&def, &pairs, &count));
+  ck_assert_ok(app_evaluation_model_open(&model, model_name));
+  app_evaluation_begin(&run, &model);
+  ck_assert_ok(app_evaluation_add(&run, &pairs, count));
+  app_evaluation_finish(&run, &result);
+  app_evaluation_end(&run);
+  contact_overlap_destroy(&model);
+  datagen_pairs_destroy(&pairs);
+  return result;
+}
+
+START_TEST(trained_network_is_far_better_than_none) {
+  make_directory();
+  AppTrainingConfig config = read_config(geo_config);
+  AppTrainingResult result;
+  ck_assert_ok(train(&config, directory, 2, false, NULL, &result));
+  AppEvaluation none = evaluate("geo-constant"), trained = evaluate(path_in("t.safetensors"));
+  ck_assert(trained.volume_error_sum < 0.2 * none.volume_error_sum);
+  ck_assert(trained.gradient_error < 0.5 * none.gradient_error);
+  ck_assert(trained.ghost_volume == 0 && trained.ghost_gradient == 0);
+  ck_assert(trained.defect_vertex_order < 1e-9 && trained.defect_swap < 1e-9);
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+END_TEST
+
+START_TEST(weights_brought_over_to_another_whitening_are_the_same_function) {
+  make_directory();
+  AppTrainingConfig config = read_config(geo_config);
+  AppTrainingResult result;
+  config.optimiser.samples = 2000;
+  ck_assert_ok(train(&config, directory, 1, false, NULL, &result));
+  size_t count;
+  DatagenPairs pairs = load_pairs(300, &count);
+  AppTrainingPool pool;
+  NetWhitening none = {0};
+  ck_assert_ok(app_training_pool_create(&pool, contact_geo_feature_set(36), &pairs, count, &none));
+  NetShape shape = app_training_geo.shape(&config);
+  NetModel_f32 model;
+  NetModel_f64 folded, file;
+  ck_assert_int_eq(net_model_create_f32(&shape, &model), NET_OK);
+  ck_assert_int_eq(net_model_create_f64(&shape, &folded), NET_OK);
+  ck_assert_ok(
+      app_training_start_read(path_in("t.safetensors"), CONTACT_GEO_NORMALISATION, &pool.whitening, &model));
+  net_model_widen(&model, &folded);
+  ck_assert_int_eq(net_whitening_fold(&pool.whitening, &folded), NET_OK);
+  read_parameters(path_in("t.safetensors"), &file);
+  NetWork_f64 work;
+  NetWorkDef def = net_work_default();
+  ck_assert_int_eq(net_work_create_f64(file.plan, &def, &work), NET_OK);
+  for (size_t n = 0; n < count; n++) {
+    double features[36], unused, expected, found;
+    if (contact_geo_features_tangent(pool.set, pairs.coordinates + 24 * n, 0, NULL, features, NULL, &unused,
+                                     NULL) != CONTACT_GEO_INSIDE)
+      continue;
+    net_forward_eval_f64(&work, &file, 1, features, &expected);
+    net_forward_eval_f64(&work, &folded, 1, features, &found);
+    ck_assert_near(found, expected, 1e-4);
+  }
+  net_work_destroy_f64(&work);
+  net_model_destroy_f64(&file), net_model_destroy_f64(&folded), net_model_destroy_f32(&model);
+  app_training_pool_destroy(&pool);
+  datagen_pairs_destroy(&pairs);
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+END_TEST
+
+static void check_refusal(const char *text, const char *word) {
+  AppTrainingConfig config;
+  write_text(path_in("bad.yaml"), text);
+  ck_assert_int_eq(app_training_config_read(path_in("bad.yaml"), NULL, 0, &config), STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), word) != NULL, "'%s' does not say '%s'", status_message(), word);
+}
+
+START_TEST(wrong_configurations_are_refused_by_name) {
+  make_directory();
+  check_refusal("name: t\n", "model");
+  check_refusal("name: t\nmodel: {kind: gio}\n", "geo");
+  check_refusal("name: t\nmodel: {kind: geo, features: 37}\n", "36, 70, 100");
+  check_refusal("name: t\nmodel: {kind: geo, width: 0}\n", "width");
+  check_refusal("name: t\nmodel: {kind: geo}\ndata: {training: [{law: scene, file: x}]}\n", "file");
+  check_refusal("name: t\nmodle: {kind: geo}\n", "model");
+  remove_directory();
+}
+END_TEST
+
+START_TEST(shipped_configurations_are_read) {
+  static const char *const names[] = {"geo", "geo-small", "smoke", "tpn"};
+  for (int n = 0; n < 4; n++) {
+    char path[256];
+    AppTrainingConfig config;
+    snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/examples/train/%s.yaml", names[n]);
+    ck_assert_ok(app_training_config_read(path, NULL, 0, &config));
+    ck_assert_str_eq(config.name, names[n]);
+    app_training_config_destroy(&config);
+  }
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("train");
+  tcase_add_test(test_case, basis_is_orthonormal_and_of_no_affine_map);
+  tcase_add_test(test_case, affine_directions_change_neither_features_nor_target);
+  tcase_add_test(test_case, pool_holds_whitened_inputs);
+  tcase_add_test(test_case, gradient_of_the_geo_loss_is_that_of_the_loss);
+  tcase_add_test(test_case, gradient_of_the_tpn_loss_is_that_of_the_loss);
+  tcase_add_test(test_case, each_epoch_takes_each_sample_once);
+  tcase_add_test(test_case, resumed_geo_training_ends_with_the_same_bits);
+  tcase_add_test(test_case, resumed_tpn_training_ends_with_the_same_bits);
+  tcase_add_test(test_case, checkpoint_of_another_configuration_is_refused);
+  tcase_add_test(test_case, trained_network_is_far_better_than_none);
+  tcase_add_test(test_case, weights_brought_over_to_another_whitening_are_the_same_function);
+  tcase_add_test(test_case, wrong_configurations_are_refused_by_name);
+  tcase_add_test(test_case, shipped_configurations_are_read);
+  return suite_run("train", test_case, 60);
+}
