@@ -98,6 +98,7 @@ static Status create_network(Training *training) {
   net_model_initialise_f32(&training->model, (uint64_t)training->config->seed);
   size_t count = training->model.plan->parameter_count;
   NetAdamDef adam = net_adam_default();
+  adam.beta1 = def->beta1;
   adam.beta2 = def->beta2;
   adam.weight_decay = def->weight_decay;
   TRY(app_training_task_fail(net_adam_create_f32(count, &adam, &training->adam)));

@@ -130,6 +130,8 @@ static const SceneKey optimiser_keys[] = {
      .help = "at the end of half a cosine"},
     {"warmup", SCENE_NUMBER, AT(AppTrainingOptimiserDef, warmup), .range = "[0, 1)", .fallback = "0.01",
      .help = "share of the steps before the peak"},
+    {"beta1", SCENE_NUMBER, AT(AppTrainingOptimiserDef, beta1), .range = "[0, 1)", .fallback = "0.9",
+     .help = "decay of the first moment"},
     {"beta2", SCENE_NUMBER, AT(AppTrainingOptimiserDef, beta2), .range = "[0, 1)", .fallback = "0.999",
      .help = "decay of the second moment"},
     {"weight_decay", SCENE_NUMBER, AT(AppTrainingOptimiserDef, weight_decay), .range = "[0, inf)",
@@ -248,11 +250,12 @@ char *app_training_config_print(const AppTrainingConfig *config) {
   print_sources("validation", config->validation, config->validation_count, text, size, &used);
   text_append(text, size, &used, "loss: tangents %d, huber %.17g, tangent_scale %.17g, volume_scale %.17g\n",
               def->tangents, def->huber, def->tangent_scale, def->volume_scale);
-  text_append(text, size, &used,
-              "AdamW: rate %.17g to %.17g, warmup %.17g, beta2 %.17g, decay %.17g, clip %.17g, batch %d, "
-              "samples %.17g\n",
-              adam->rate, adam->final_rate, adam->warmup, adam->beta2, adam->weight_decay, adam->clip,
-              adam->batch, adam->samples);
+  text_append(
+      text, size, &used,
+      "AdamW: rate %.17g to %.17g, warmup %.17g, betas %.17g %.17g, decay %.17g, clip %.17g, batch %d, "
+      "samples %.17g\n",
+      adam->rate, adam->final_rate, adam->warmup, adam->beta1, adam->beta2, adam->weight_decay, adam->clip,
+      adam->batch, adam->samples);
   text_append(text, size, &used, "seed: %d, start: %s, validations %d, patience %d\n", config->seed,
               text_of(config->start), config->validations, config->patience);
   return text;

@@ -39,7 +39,7 @@ typedef struct AppTrainingLossDef {
 typedef struct AppTrainingOptimiserDef {
   double rate, final_rate; // of AdamW, at the peak and at the end
   double warmup;           // share of the steps until the peak
-  double beta2, weight_decay;
+  double beta1, beta2, weight_decay;
   double clip; // largest norm of a gradient
   int batch;
   double samples; // seen in all

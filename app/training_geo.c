@@ -210,7 +210,9 @@ static Status measure(const ContactOverlapModel *model, const ValidationSet *set
     app_training_scores_add(scores, set->name, "volume_error", result.volume_error_sum);
     app_training_scores_add(scores, set->name, "gradient_error", result.gradient_error);
     app_training_scores_add(scores, set->name, "angle_p90", result.angle_p90_deg);
-    scores->score += result.volume_error_sum + result.gradient_error;
+    // what the network did not answer is no merit of its
+    double share = (double)result.fallbacks / (double)result.count;
+    scores->score += result.volume_error_sum + result.gradient_error + share;
   }
   app_evaluation_end(&run);
   return status;
