@@ -136,7 +136,7 @@ static Status evaluate(const Options *options, AppSource *source, const ContactO
   AppEvaluationRun run;
   AppEvaluation evaluation;
   TRY(datagen_pairs_create(&buffer, BLOCK, true));
-  app_evaluation_begin(&run, model);
+  app_evaluation_begin(&run, model, app_evaluation_model_logits(model));
   Status status = add_blocks(source, &buffer, &run);
   log_progress_end();
   if (!status) {

@@ -25,10 +25,12 @@ typedef struct Block {
   double *volume;        // (count), owned
   double *gradient;      // (count, 24), owned
   unsigned *flags;       // (count), owned
+  double *logits;        // (count), owned; NULL: the model tells none
 } Block;
 
-void app_evaluation_begin(AppEvaluationRun *run, const ContactOverlapModel *model) {
-  *run = (AppEvaluationRun){.model = model};
+void app_evaluation_begin(AppEvaluationRun *run, const ContactOverlapModel *model,
+                          AppEvaluationLogits logits) {
+  *run = (AppEvaluationRun){.model = model, .logits = logits, .sums.has_status = logits != NULL};
 }
 
 void app_evaluation_end(AppEvaluationRun *run) {
@@ -70,7 +72,15 @@ static Status differentiate(const DatagenPairs *pairs, size_t count, double *gra
 
 static void block_destroy(Block *block) {
   if (block->true_gradient != block->pairs->gradient) memory_free(block->true_gradient);
-  memory_free(block->volume), memory_free(block->gradient), memory_free(block->flags);
+  memory_free(block->volume), memory_free(block->gradient);
+  memory_free(block->flags), memory_free(block->logits);
+}
+
+static Status block_tell_status(Block *block, const AppEvaluationRun *run) {
+  if (!run->logits) return STATUS_OK;
+  block->logits = memory_zeroed(block->count, sizeof *block->logits);
+  if (!block->logits) return status_no_memory("an evaluation");
+  return run->logits(run->model->self, (int)block->count, block->pairs->coordinates, block->logits);
 }
 
 static Status block_evaluate(Block *block, const ContactOverlapModel *model) {
@@ -128,11 +138,25 @@ static void add_outside(AppEvaluationRun *run, const Block *block, size_t i) {
   run->sums.ghost_gradient += length_of(block->gradient + i * SIZE, SIZE);
 }
 
+static void add_confidence(AppEvaluationRun *run, double logit, bool intersects) {
+  double probability = 1 / (1 + exp(-logit));
+  int bin = (int)fmin(APP_EVALUATION_CONFIDENCES * probability, APP_EVALUATION_CONFIDENCES - 1);
+  run->probability[bin] += probability;
+  run->confident[bin]++;
+  run->intersecting[bin] += intersects;
+}
+
+static bool is_right(const Block *block, size_t i) {
+  if (block->logits) return (block->logits[i] > 0) == (block->pairs->status[i] != 0);
+  return (block->volume[i] > 0) == (block->pairs->volume[i] > 0);
+}
+
 static void add_pair(AppEvaluationRun *run, const Block *block, size_t i) {
   AppEvaluationKind *kind = &run->sums.kinds[block->pairs->kind[i]];
   double volume = block->pairs->volume[i];
   kind->count++;
-  kind->accuracy += (block->volume[i] > 0) == (volume > 0);
+  kind->accuracy += is_right(block, i);
+  if (block->logits) add_confidence(run, block->logits[i], block->pairs->status[i] != 0);
   kind->volume_mae += fabs(block->volume[i] - volume);
   run->sums.count++;
   run->sums.fallbacks += (block->flags[i] & CONTACT_OVERLAP_FALLBACK) != 0;
@@ -183,6 +207,7 @@ static Status add_defects(AppEvaluationRun *run, const double pair[SIZE], double
 
 static Status add_block(AppEvaluationRun *run, Block *block) {
   TRY(block_evaluate(block, run->model));
+  TRY(block_tell_status(block, run));
   size_t wanted = (size_t)run->sums.inside + block->count;
   if (!memory_reserve((void **)&run->gradient_errors, &run->gradient_capacity, wanted, sizeof(double)) ||
       !memory_reserve((void **)&run->angles, &run->angle_capacity, wanted, sizeof(double)))
@@ -239,9 +264,17 @@ static void finish_kinds(AppEvaluation *result) {
   result->accuracy_mean = divide(result->accuracy_mean, present);
 }
 
+static double calibration_of(const AppEvaluationRun *run) {
+  double sum = 0;
+  for (int b = 0; b < APP_EVALUATION_CONFIDENCES; b++)
+    sum += fabs(run->probability[b] - (double)run->intersecting[b]);
+  return run->logits ? divide(sum, (double)run->sums.count) : NAN;
+}
+
 void app_evaluation_finish(AppEvaluationRun *run, AppEvaluation *result) {
   *result = run->sums;
   finish_kinds(result);
+  result->calibration_error = calibration_of(run);
   double inside = (double)result->inside, outside = (double)run->outside;
   for (int b = 0; b < APP_EVALUATION_BINS; b++) {
     double count = (double)run->bins[b];

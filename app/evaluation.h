@@ -16,7 +16,11 @@
 #include "datagen/kind.h"
 #include "datagen/pairs.h"
 
-enum { APP_EVALUATION_BINS = 3, APP_EVALUATION_SYMMETRY_PAIRS = 10000 };
+enum {
+  APP_EVALUATION_BINS = 3,
+  APP_EVALUATION_SYMMETRY_PAIRS = 10000,
+  APP_EVALUATION_CONFIDENCES = 10, // bins of the predicted probability
+};
 
 // Upper ends of the paper's bins of V: small, medium, large.
 extern const double app_evaluation_bin_ends[APP_EVALUATION_BINS];
@@ -47,10 +51,16 @@ typedef struct AppEvaluation {
   // Σ|V(changed pair) − V| / ΣV over the first APP_EVALUATION_SYMMETRY_PAIRS pairs with V > 0: another order
   // of either's vertices, the two exchanged, a rotation about the cube's centre
   double defect_vertex_order, defect_swap, defect_rotation;
+  bool has_status;          // the model tells a status of its own, a logit
+  double calibration_error; // Σ over bins of share · |predicted probability − frequency| (Naeini et al. 2015)
 } AppEvaluation;
+
+// Logits of the status, positive: the pair intersects; as contact_net_overlap_logits.
+typedef Status (*AppEvaluationLogits)(const void *self, int count, const double *pairs, double *logits);
 
 typedef struct AppEvaluationRun {
   const ContactOverlapModel *model; // borrowed
+  AppEvaluationLogits logits;       // NULL: the model tells no status
   AppEvaluation sums;               // not yet divided
   long long bins[APP_EVALUATION_BINS];
   double true_volume, true_gradient; // Σ
@@ -60,13 +70,16 @@ typedef struct AppEvaluationRun {
   double *gradient_errors, *angles; // (inside), (angle_count), owned
   size_t gradient_capacity, angle_capacity;
   size_t angle_count;
+  double probability[APP_EVALUATION_CONFIDENCES]; // Σ of those in the bin
+  long long confident[APP_EVALUATION_CONFIDENCES], intersecting[APP_EVALUATION_CONFIDENCES];
 } AppEvaluationRun;
 
-// Borrows the model. End it, whatever happens.
-void app_evaluation_begin(AppEvaluationRun *run, const ContactOverlapModel *model);
+// Borrows the model. `logits` may be NULL. End it, whatever happens.
+void app_evaluation_begin(AppEvaluationRun *run, const ContactOverlapModel *model,
+                          AppEvaluationLogits logits);
 // Evaluates `count` pairs. Without `pairs->gradient` the true ∇V is that of clipping, checked as data sets
-// check it. A model says of a pair's status no more than V: a pair counts as intersecting if V > 0, and is
-// right if the two share volume.
+// check it. A model with logits is right about a pair if their sign tells whether the closed tetrahedra meet;
+// one without says no more than V, and is right if V > 0 just where the two share volume.
 Status app_evaluation_add(AppEvaluationRun *run, const DatagenPairs *pairs, size_t count);
 void app_evaluation_finish(AppEvaluationRun *run, AppEvaluation *result);
 void app_evaluation_end(AppEvaluationRun *run); // a zeroed one is accepted

@@ -4,9 +4,12 @@
 #ifndef TETLAP_APP_EVALUATION_MODEL_H
 #define TETLAP_APP_EVALUATION_MODEL_H
 
-#include "contact/overlap.h"
+#include "app/evaluation.h"
 
 // Destroy it with contact_overlap_destroy. STATUS_INPUT: neither a known name nor a file that holds a model.
 Status app_evaluation_model_open(ContactOverlapModel *model, const char *name);
+
+// What the model tells of a pair's status, if it does; NULL: it does not.
+AppEvaluationLogits app_evaluation_model_logits(const ContactOverlapModel *model);
 
 #endif

@@ -84,7 +84,11 @@ void app_evaluation_print(const AppEvaluation *evaluation, const char *model, co
   print_row(stream, "defect, vertex order", "%.3g", evaluation->defect_vertex_order, NAN);
   print_row(stream, "defect, swap", "%.3g", evaluation->defect_swap, NAN);
   print_row(stream, "defect, rotation", "%.3g", evaluation->defect_rotation, NAN);
-  fputs("\nstatus: V > 0, right if the pair shares volume; a touch counts as none\n", stream);
+  if (evaluation->has_status)
+    print_row(stream, "calibration of status", "%.3g", evaluation->calibration_error, NAN);
+  fputs(evaluation->has_status ? "\nstatus: the sign of the logit, right if the closed tetrahedra meet\n"
+                               : "\nstatus: V > 0, right if the pair shares volume; a touch counts as none\n",
+        stream);
 }
 
 static void record_bins(const AppEvaluation *evaluation, Record *record) {
@@ -123,4 +127,6 @@ void app_evaluation_record(const AppEvaluation *evaluation, Record *record) {
   record_number(record, "defect_vertex_order", evaluation->defect_vertex_order);
   record_number(record, "defect_swap", evaluation->defect_swap);
   record_number(record, "defect_rotation", evaluation->defect_rotation);
+  record_bool(record, "has_status", evaluation->has_status);
+  record_number(record, "calibration_error", evaluation->calibration_error);
 }

@@ -202,7 +202,7 @@ static Status write(const AppTrainingTask *task, const NetModel_f32 *model, cons
 static Status measure(const ContactOverlapModel *model, const ValidationSet *set, AppTrainingScores *scores) {
   AppEvaluationRun run;
   AppEvaluation result;
-  app_evaluation_begin(&run, model);
+  app_evaluation_begin(&run, model, NULL);
   Status status = app_evaluation_add(&run, &set->pairs, set->count);
   if (!status) {
     app_evaluation_finish(&run, &result);

@@ -9,7 +9,7 @@
 #include "app/training_start.h"
 #include "app/training_task.h"
 #include "base/memory.h"
-#include "contact/normalise.h"
+#include "contact/net_overlap.h"
 
 enum { SIZE = 24, BLOCK = 16384, MAX_SETS = 6 };
 
@@ -247,9 +247,14 @@ static Status validate(AppTrainingTask *task, const NetModel_f32 *model, const c
   return STATUS_OK;
 }
 
+static void print_normalisation(const AppTrainingTask *task, char text[CONTACT_NET_NORMALISATION_TEXT]) {
+  contact_net_overlap_print(normalisation_of(task->config), task->config->loss.volume_scale, text);
+}
+
 static Status start(AppTrainingTask *task, NetModel_f32 *model) {
-  const char *name = contact_normalise_name(normalisation_of(task->config));
-  return app_training_start_read(task->config->start, name, NULL, model);
+  char normalisation[CONTACT_NET_NORMALISATION_TEXT];
+  print_normalisation(task, normalisation);
+  return app_training_start_read(task->config->start, normalisation, NULL, model);
 }
 
 // The box of the training's normalised coordinates.
@@ -265,13 +270,11 @@ static void print_range(const Samples *samples, char *text, size_t size) {
 static Status write(const AppTrainingTask *task, const NetModel_f32 *model, const char *provenance,
                     const char *path) {
   const Tpn *tpn = task->self;
-  char range[128], normalisation[16], *story;
+  char range[128], normalisation[CONTACT_NET_NORMALISATION_TEXT], *story;
   print_range(&tpn->training, range, sizeof range);
-  snprintf(normalisation, sizeof normalisation, "%s", contact_normalise_name(normalisation_of(task->config)));
-  size_t size = strlen(provenance) + 64;
-  story = memory_zeroed(size, 1);
+  print_normalisation(task, normalisation);
+  story = memory_copy(provenance, strlen(provenance) + 1, 1);
   if (!story) return status_no_memory("the weights' provenance");
-  snprintf(story, size, "%soutput: V times %.17g\n", provenance, task->config->loss.volume_scale);
   NetCard card = {.normalisation = normalisation, .range = range, .provenance = story};
   Status status = app_training_task_fail(net_weights_write_f32(path, model, &card));
   memory_free(story);

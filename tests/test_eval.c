@@ -45,7 +45,7 @@ static void load(const char *law, const char *mix, int count, DatagenPairs *pair
 static AppEvaluation evaluate(const ContactOverlapModel *model, const DatagenPairs *pairs, size_t count) {
   AppEvaluationRun run;
   AppEvaluation result;
-  app_evaluation_begin(&run, model);
+  app_evaluation_begin(&run, model, NULL);
   ck_assert_ok(app_evaluation_add(&run, pairs, count));
   app_evaluation_finish(&run, &result);
   app_evaluation_end(&run);
@@ -122,7 +122,7 @@ START_TEST(blocks_do_not_change_what_is_found) {
   ContactOverlapModel model = {.ops = &inflated};
   AppEvaluation whole = evaluate(&model, &pairs, 300), parts;
   AppEvaluationRun run;
-  app_evaluation_begin(&run, &model);
+  app_evaluation_begin(&run, &model, NULL);
   for (size_t first = 0; first < 300; first += 100) {
     DatagenPairs part = {.coordinates = pairs.coordinates + 24 * first,
                          .status = pairs.status + first,

@@ -302,7 +302,7 @@ static AppEvaluation evaluate(const char *model_name) {
   AppEvaluation result;
   ck_assert_ok(app_training_source_load(&def, &pairs, &count));
   ck_assert_ok(app_evaluation_model_open(&model, model_name));
-  app_evaluation_begin(&run, &model);
+  app_evaluation_begin(&run, &model, NULL);
   ck_assert_ok(app_evaluation_add(&run, &pairs, count));
   app_evaluation_finish(&run, &result);
   app_evaluation_end(&run);
