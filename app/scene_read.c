@@ -488,9 +488,11 @@ static Status read_root(const SceneNode *root, const SceneSection *section, void
 
 Status app_scene_read_section(const char *path, const char *const *overrides, int override_count,
                               const SceneSection *section, void *self) {
+  static const char title[] = "the configuration";
   SceneNode *root;
   TRY(app_scene_tree_read(path, &root));
-  Status status = STATUS_OK;
+  root->key = memory_copy(title, sizeof title, 1);
+  Status status = root->key ? STATUS_OK : status_no_memory(title);
   for (int i = 0; i < override_count && !status; i++) status = app_scene_override_apply(root, overrides[i]);
   if (!status) status = read_root(root, section, self);
   app_scene_tree_destroy(root);

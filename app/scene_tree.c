@@ -55,7 +55,8 @@ static void append_path(const SceneNode *node, char *path, size_t size, size_t *
 void app_scene_tree_path(const SceneNode *node, char *path, size_t size) {
   size_t used = 0;
   append_path(node, path, size, &used);
-  if (used == 0) snprintf(path, size, "the scene");
+  if (node->parent) return;
+  snprintf(path, size, "%s", node->key ? node->key : "the scene");
 }
 
 void app_scene_tree_describe(const SceneNode *node, char *text, size_t size) {

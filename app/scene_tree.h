@@ -66,7 +66,7 @@ void app_scene_tree_replace(SceneNode *node, SceneNode *source);
 // Every node of the tree is from the command line: line 0.
 void app_scene_tree_mark_override(SceneNode *root);
 
-// "bodies[0].material.young"; "the scene" for the root.
+// "bodies[0].material.young"; for the root its key, "the scene" without one.
 void app_scene_tree_path(const SceneNode *node, char *path, size_t size);
 // "the number 3", "the text 'soft'", "a list of 2", …
 void app_scene_tree_describe(const SceneNode *node, char *text, size_t size);

@@ -248,12 +248,12 @@ char *app_training_config_print(const AppTrainingConfig *config) {
   print_model(&config->model, text, size, &used);
   print_sources("training", config->training, config->training_count, text, size, &used);
   print_sources("validation", config->validation, config->validation_count, text, size, &used);
-  text_append(text, size, &used, "loss: tangents %d, huber %.17g, tangent_scale %.17g, volume_scale %.17g\n",
+  text_append(text, size, &used, "loss: tangents %d, huber %.15g, tangent_scale %.15g, volume_scale %.15g\n",
               def->tangents, def->huber, def->tangent_scale, def->volume_scale);
   text_append(
       text, size, &used,
-      "AdamW: rate %.17g to %.17g, warmup %.17g, betas %.17g %.17g, decay %.17g, clip %.17g, batch %d, "
-      "samples %.17g\n",
+      "AdamW: rate %.15g to %.15g, warmup %.15g, betas %.15g %.15g, decay %.15g, clip %.15g, batch %d, "
+      "samples %.15g\n",
       adam->rate, adam->final_rate, adam->warmup, adam->beta1, adam->beta2, adam->weight_decay, adam->clip,
       adam->batch, adam->samples);
   text_append(text, size, &used, "seed: %d, start: %s, validations %d, patience %d\n", config->seed,
