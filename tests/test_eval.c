@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `tetlap eval` measures: on a model whose errors are known by construction, and on exact ones.
+#include <stdio.h>
 #include <string.h>
 
 #include "app/evaluation.h"
@@ -149,6 +150,37 @@ START_TEST(without_pairs_there_is_nothing_to_tell) {
 }
 END_TEST
 
+// On pairs that no training saw; bounds are what docs/training.md promises, with room for a small sample.
+static void check_weights(const char *name, double mae, double gradient_error, double angle_p90_deg) {
+  AppSourceDef scene = {.law = "scene", .count = 4000, .seed = 9101},
+               large = {.law = "paper-test", .mix = "volumetric=1", .count = 3000, .seed = 9102};
+  const AppSourceDef *const sets[2] = {&scene, &large};
+  AppEvaluation found[2];
+  char path[256];
+  snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/net/weights/%s.safetensors", name);
+  for (int s = 0; s < 2; s++) {
+    DatagenPairs pairs;
+    size_t count;
+    ContactOverlapModel model;
+    ck_assert_ok(app_training_source_load(sets[s], &pairs, &count));
+    ck_assert_ok(app_evaluation_model_open(&model, path));
+    found[s] = evaluate(&model, &pairs, count);
+    contact_overlap_destroy(&model);
+    datagen_pairs_destroy(&pairs);
+  }
+  ck_assert(found[0].gradient_error < gradient_error);
+  ck_assert(found[0].angle_p90_deg < angle_p90_deg);
+  ck_assert(found[1].mae < mae);
+  ck_assert(found[0].ghost_volume == 0 && found[0].ghost_gradient == 0 && found[0].fallbacks == 0);
+  ck_assert(found[0].defect_vertex_order < 1e-11 && found[0].defect_rotation < 1e-11);
+}
+
+START_TEST(shipped_weights_keep_their_promise) {
+  check_weights("geo", 4.5e-5, 0.025, 0.7);
+  check_weights("geo-small", 8e-5, 0.04, 1.3);
+}
+END_TEST
+
 START_TEST(unknown_models_are_named) {
   ContactOverlapModel model;
   ck_assert(app_evaluation_model_open(&model, "clap") != STATUS_OK);
@@ -165,6 +197,7 @@ int main(void) {
   tcase_add_test(test_case, the_frame_without_network_has_no_ghosts_and_ten_per_cent_errors);
   tcase_add_test(test_case, blocks_do_not_change_what_is_found);
   tcase_add_test(test_case, without_pairs_there_is_nothing_to_tell);
+  tcase_add_test(test_case, shipped_weights_keep_their_promise);
   tcase_add_test(test_case, unknown_models_are_named);
   return suite_run("eval", test_case, 30);
 }
