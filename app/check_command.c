@@ -138,7 +138,7 @@ static void print_contact(const AppJob *job) {
   printf("contact       potential %s, κ = %g %s%s, overlap model %s\n",
          contact_potential_name(contact->potential), fem_model_contact_stiffness(&job->model),
          contact->potential == CONTACT_POTENTIAL_BODY ? "Pa/m³" : "Pa",
-         contact->stiffness > 0 ? "" : " (chosen)", contact->overlap);
+         contact->stiffness > 0 ? "" : " (chosen)", contact->net ? contact->net : contact->overlap);
 }
 
 static void print_memory(double bytes) {
@@ -199,7 +199,7 @@ static void record_contact(const AppJob *job, Record *record) {
   record_text(record, "potential", contact_potential_name(contact->potential));
   record_number(record, "stiffness", fem_model_contact_stiffness(&job->model));
   record_bool(record, "is_stiffness_chosen", !(contact->stiffness > 0));
-  record_text(record, "overlap", contact->overlap);
+  record_text(record, "overlap", contact->net ? contact->net : contact->overlap);
 }
 
 static void record_job(const AppJob *job, const Notes *notes, Record *record) {
@@ -251,8 +251,8 @@ static Status check(const AppJobOptions *options) {
 
 int app_check_run(int argument_count, char **arguments) {
   static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
-  static const struct argp argp = {
-      .doc = "Say what a run of SCENE would do, without running.", .children = children};
+  static const struct argp argp = {.doc = "Say what a run of SCENE would do, without running.",
+                                   .children = children};
   AppJobOptions options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&options);

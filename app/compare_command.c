@@ -71,8 +71,8 @@ static Status add_model(AppComparison *comparison, const char *name, bool is_dri
     return status_fail(STATUS_USAGE, "at most %d models can be compared", APP_MAX_MODELS);
   AppComparisonModel *model = &comparison->models[comparison->model_count];
   Status status = contact_overlap_create(&model->overlap, name);
-  if (status) return status < 0 && status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "--overlap") : status;
-  model->name = model->overlap.ops->name;
+  if (status) return status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "--overlap") : status;
+  model->name = name;
   model->is_driven = is_driven;
   comparison->model_count++;
   return STATUS_OK;
@@ -113,12 +113,18 @@ static Status observe(void *self, const FemRunProgress *progress) {
              : STATUS_OK;
 }
 
+// The folder of a model's run below the output directory: its name, or that of its weights file.
+static const char *folder_of(const char *name) {
+  const char *slash = strrchr(name, '/');
+  return slash ? slash + 1 : name;
+}
+
 // A run of one model. What stops the whole comparison is returned; a solver that gave up is kept as this
 // model's result.
 static Status run_model(AppComparison *comparison, int m, const CompareOptions *options) {
   AppComparisonModel *model = &comparison->models[m];
   AppJob job;
-  TRY(app_job_open(&job, &options->job, model->name, model->name));
+  TRY(app_job_open(&job, &options->job, model->name, folder_of(model->name)));
   if (!job.scene.contact.is_on) {
     app_job_close(&job);
     return status_fail(STATUS_INPUT,

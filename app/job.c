@@ -2,6 +2,7 @@
 #include "app/job.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -16,6 +17,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "contact/weights.h"
 
 static volatile sig_atomic_t stop_flag;
 
@@ -119,9 +121,12 @@ static Status open_scene(AppJob *job, const AppJobOptions *options, const char *
   const char *overrides[APP_MAX_OVERRIDES + 1];
   int count = 0;
   for (; count < options->override_count; count++) overrides[count] = options->overrides[count];
-  char choice[256];
+  char choice[PATH_MAX + 32], path[PATH_MAX];
   if (overlap) {
-    snprintf(choice, sizeof choice, "contact.overlap=%s", overlap);
+    // A weights file is named from where the program was called, in a scene from where the scene is.
+    bool is_path = contact_weights_is_path(overlap) && realpath(overlap, path);
+    snprintf(choice, sizeof choice, is_path ? "contact.net=%s" : "contact.overlap=%s",
+             is_path ? path : overlap);
     overrides[count++] = choice;
   }
   return app_scene_read(options->scene_path, overrides, count, &job->scene);
@@ -158,6 +163,12 @@ Status app_job_show_progress(void *self, const FemRunProgress *state) {
   return STATUS_OK;
 }
 
+const char *app_job_overlap(const AppJob *job) {
+  const FemContactDef *contact = &job->scene.contact;
+  if (!contact->is_on) return NULL;
+  return contact->net ? contact->net : contact->overlap;
+}
+
 static const char *word_of(Status status) {
   if (status == STATUS_OK) return "finished";
   return status == STATUS_INTERRUPTED ? "interrupted" : "failed";
@@ -168,7 +179,7 @@ Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status st
   if (!summary) return NULL;
   record_text(summary, "scene", job->scene.path);
   record_text(summary, "title", job->scene.title);
-  record_text(summary, "overlap", job->scene.contact.is_on ? job->scene.contact.overlap : NULL);
+  record_text(summary, "overlap", app_job_overlap(job));
   record_text(summary, "outcome", word_of(status));
   if (status) record_text(summary, "message", status_message());
   record_integer(summary, "bodies", job->scene.body_count);

@@ -41,6 +41,9 @@ void app_job_close(AppJob *job);
 void app_job_prepare(const AppJobOptions *options);
 const volatile sig_atomic_t *app_job_stop_flag(void);
 
+// The overlap model's name or weights file; NULL: the scene has no contact.
+const char *app_job_overlap(const AppJob *job);
+
 // An observer of fem_run that draws the progress line: time, step, step size, pairs, time left.
 typedef struct AppProgress {
   double began_s;

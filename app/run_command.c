@@ -44,10 +44,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 static void announce(const AppJob *job) {
+  const char *overlap = app_job_overlap(job);
   log_info("%s: %d bodies, %d vertices, %d tetrahedra, %d unknowns, solver %s%s%s", job->scene.path,
            job->scene.body_count, job->model.vertex_count, job->model.tet_count, job->model.unknown_count,
-           fem_solver_name(fem_run_solver(&job->model)), job->scene.contact.is_on ? ", overlap " : "",
-           job->scene.contact.is_on ? job->scene.contact.overlap : "");
+           fem_solver_name(fem_run_solver(&job->model)), overlap ? ", overlap " : "", overlap ? overlap : "");
 }
 
 static void conclude(const AppJob *job, const FemRunResult *result) {

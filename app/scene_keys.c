@@ -326,6 +326,9 @@ static const SceneKey contact_keys[] = {
      .help = "how overlap volumes become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip", .choices = &overlaps,
      .help = "the model that gives the overlap volume of two tetrahedra"},
+    {"net", SCENE_TEXT, AT(FemContactDef, net), .absent_help = "none",
+     .help = "weights of a learned model, a .safetensors file, path from the scene file; taken in place of "
+             "`overlap`"},
     {"margin", SCENE_NUMBER, AT(FemContactDef, margin), .unit = "m", .range = "(0, inf)",
      .absent_help = "half the shortest mean edge of a body",
      .help = "pairs nearer than this are listed; a step that moves farther is tried again smaller"},

@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "base/memory.h"
+#include "contact/weights.h"
 
 static Status load(ContactGeoOverlap *overlap, const char *path) {
   if (!path) return contact_geo_model_create(&overlap->model, NULL);
@@ -77,3 +78,42 @@ Status contact_geo_overlap_eval_batch(const void *self, const ContactOverlapBatc
   return status_prefix(status, "pairs %d to %d", first_failed * PORTION,
                        first_failed * PORTION + portion.pair_count - 1);
 }
+
+static Status create_shipped(void **self, const char *name, const char *weights) {
+  char path[4096];
+  if (!weights) {
+    TRY(contact_weights_find(name, path, sizeof path));
+    weights = path;
+  }
+  return contact_geo_overlap_create(self, weights);
+}
+
+static Status create_geo(void **self, const char *weights) {
+  return create_shipped(self, "geo", weights);
+}
+
+static Status create_geo_small(void **self, const char *weights) {
+  return create_shipped(self, "geo-small", weights);
+}
+
+const ContactOverlapOps contact_overlap_geo = {
+    .name = "geo",
+    .help = "learned: analytic-centre frame and 100 symmetric features; smooth, no ghost forces",
+    .has_hessian = true,
+    .seconds_per_pair = 4e-6,
+    .create = create_geo,
+    .eval_pair = contact_geo_overlap_eval_pair,
+    .eval_batch = contact_geo_overlap_eval_batch,
+    .destroy = contact_geo_overlap_destroy,
+};
+
+const ContactOverlapOps contact_overlap_geo_small = {
+    .name = "geo-small",
+    .help = "learned: as geo, with 36 features and a smaller network",
+    .has_hessian = true,
+    .seconds_per_pair = 2e-6,
+    .create = create_geo_small,
+    .eval_pair = contact_geo_overlap_eval_pair,
+    .eval_batch = contact_geo_overlap_eval_batch,
+    .destroy = contact_geo_overlap_destroy,
+};

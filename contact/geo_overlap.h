@@ -11,6 +11,10 @@ typedef struct ContactGeoOverlap {
   ContactGeoNet *net; // owned; NULL: no network, φ = ln 1.28
 } ContactGeoOverlap;
 
+// The shipped models: `geo` (100 features, 32 × 3), `geo-small` (36 features, 16 × 2).
+extern const ContactOverlapOps contact_overlap_geo;
+extern const ContactOverlapOps contact_overlap_geo_small;
+
 // From a weights file; `path` NULL: without a network. `*self` is a ContactGeoOverlap.
 Status contact_geo_overlap_create(void **self, const char *path);
 void contact_geo_overlap_destroy(void *self);

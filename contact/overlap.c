@@ -8,13 +8,14 @@
 #include "base/text.h"
 #include "contact/clip.h"
 #include "contact/exact.h"
+#include "contact/geo_overlap.h"
 #include "contact/overlap_cgal.h"
+#include "contact/weights.h"
 
 // The fastest first: what a person reads when asking for the models.
 static const ContactOverlapOps *const models[] = {
-    &contact_overlap_clip,
-    &contact_overlap_exact,
-    &contact_overlap_cgal,
+    &contact_overlap_clip,  &contact_overlap_geo_small, &contact_overlap_geo,
+    &contact_overlap_exact, &contact_overlap_cgal,
 };
 enum { MODEL_COUNT = sizeof models / sizeof *models };
 
@@ -39,11 +40,12 @@ static Status fail_unknown(const char *name) {
 
 Status contact_overlap_create(ContactOverlapModel *model, const char *name) {
   *model = (ContactOverlapModel){0};
-  const ContactOverlapOps *ops = NULL;
+  bool is_path = contact_weights_is_path(name);
+  const ContactOverlapOps *ops = is_path ? &contact_overlap_geo : NULL;
   for (int m = 0; m < MODEL_COUNT; m++)
     if (strcmp(models[m]->name, name) == 0) ops = models[m];
   if (!ops) return fail_unknown(name);
-  if (ops->create) TRY(ops->create(&model->self));
+  if (ops->create) TRY(ops->create(&model->self, is_path ? name : NULL));
   model->ops = ops;
   return STATUS_OK;
 }
@@ -86,11 +88,15 @@ static int first_not_finite(const ContactOverlapBatch *batch) {
   return batch->pair_count;
 }
 
+// Less work than this [s] is not worth waking threads for.
+static const double WORTH_THREADS = 2e-4;
+
 // Each pair has its own place in the outputs, so the threads' order does not show. Costs differ from pair to
 // pair by a hundred and more: chunks are handed out as threads get free.
 static Status eval_each(const ContactOverlapModel *model, const ContactOverlapBatch *batch) {
   int first_failed = INT_MAX;
-#pragma omp parallel for schedule(dynamic, 64) reduction(min : first_failed) if (batch->pair_count > 64)
+  bool is_much = batch->pair_count * model->ops->seconds_per_pair > WORTH_THREADS;
+#pragma omp parallel for schedule(dynamic, 64) reduction(min : first_failed) if (is_much)
   for (int i = 0; i < batch->pair_count; i++)
     if (eval_one(model, batch, i) != STATUS_OK && i < first_failed) first_failed = i;
   if (first_failed == INT_MAX) return STATUS_OK;

@@ -40,8 +40,9 @@ typedef struct ContactOverlapOps {
   const char *help; // one line for lists and the manual
   bool has_hessian;
   double seconds_per_pair; // rough cost of V + ∇V on one core, to announce how long a run will take [s]
-  // Allocates what the model keeps; NULL where it keeps nothing.
-  Status (*create)(void **self);
+  // Allocates what the model keeps; NULL where it keeps nothing. `weights`: the path of a weights file; NULL:
+  // those that ship under the model's name.
+  Status (*create)(void **self, const char *weights);
   // Evaluates one pair; must be safe to call from several threads. `gradient` and `hessian` may be NULL; all
   // outputs are written. The coordinates are finite. RETRY is not used; fatal: message names the reason only.
   Status (*eval_pair)(const void *self, const double pair[24], double *volume, double *gradient,

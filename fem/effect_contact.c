@@ -3,6 +3,7 @@
 // matrix.
 #include "fem/effect_contact.h"
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect.h"
@@ -56,10 +57,21 @@ static void list_sides(Contact *contact) {
   }
 }
 
+static Status create_overlap(Contact *contact) {
+  const FemSceneDef *scene = contact->model->scene;
+  if (!scene->contact.net) return contact_overlap_create(&contact->overlap, scene->contact.overlap);
+  char *directory = file_directory_of(scene->path ? scene->path : ".");
+  char *path = directory ? file_join(directory, scene->contact.net) : NULL;
+  Status status = path ? contact_overlap_create(&contact->overlap, path) : status_no_memory("a file name");
+  memory_free(directory);
+  memory_free(path);
+  return status;
+}
+
 static Status build(Contact *contact) {
   const FemModel *model = contact->model;
   const FemContactDef *def = &model->scene->contact;
-  TRY(contact_overlap_create(&contact->overlap, def->overlap));
+  TRY(create_overlap(contact));
   contact->bodies = memory_zeroed((size_t)model->body_count, sizeof *contact->bodies);
   contact->halfspaces = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->halfspaces);
   if (!contact->bodies || !contact->halfspaces) return status_no_memory("the contact bodies");

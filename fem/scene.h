@@ -83,6 +83,7 @@ typedef struct FemContactDef {
   double stiffness; // κ; 0: chosen (the softest body's Young's modulus; `body`: that over its volume²…)
   ContactPotential potential;
   char *overlap; // name of the overlap model
+  char *net;     // weights file in its place, relative to the scene file; NULL: none
   double margin; // [m]; 0: chosen
   bool use_full_hessian;
 } FemContactDef;

@@ -16,15 +16,16 @@
 typedef struct Demand {
   const char *name;
   int members;              // of each class; fewer where a pair takes milliseconds
-  double misfit;            // of V against exact
+  double misfit;            // of V against exact, and of V against itself in another order or place
+  double learned;           // share of V that a learned model may be off besides, as measured; 0: none
   double invariant;         // Σ∇V, Σ x×∇V, Σ x·∇V − 3V
   double gradient, hessian; // against central differences
 } Demand;
 
 static const Demand demands[] = {
-    {"clip", 100, 1, 1e-14, 1e-7, 1e-5},
-    {"exact", 100, 1e-6, 1e-14, 1e-7, 0},
-    {"cgal", 3, 1e-5, 1e-14, 1e-7, 0},
+    {"clip", 100, 1, 0, 1e-14, 1e-7, 1e-5},  {"geo-small", 100, 1, 0.25, 1e-12, 1e-6, 1e-4},
+    {"geo", 100, 1, 0.2, 1e-12, 1e-6, 1e-4}, {"exact", 100, 1e-6, 0, 1e-14, 1e-7, 0},
+    {"cgal", 3, 1e-5, 0, 1e-14, 1e-7, 0},
 };
 
 static const ContactOverlapOps *model_at(int index) {
@@ -93,14 +94,19 @@ static void for_each_pair(int model_index,
     ck_assert_msg(ck_value_ <= ck_bound_, "%s: %s = %.3g > %.3g", what, #value, ck_value_, ck_bound_);       \
   } while (0)
 
+// How far V may be off where it should be `volume` [m³].
+static double error_allowed(const Demand *demand, const double x[24], double volume) {
+  return demand->misfit * pairs_allowed(x, volume) + demand->learned * volume;
+}
+
 static void check_volume(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
                          const char *where) {
   Answer answer = ask(model, pair->x);
   double reference = exact_volume(pair->x);
-  ck_assert_at_most(where, pairs_volume_misfit(pair->x, answer.volume, reference), demand->misfit);
+  ck_assert_at_most(where, fabs(answer.volume - reference), error_allowed(demand, pair->x, reference));
   if (!isnan(pair->volume))
     ck_assert_at_most(where, fabs(answer.volume - pair->volume),
-                      pair->slack + demand->misfit * pairs_allowed(pair->x, pair->volume));
+                      pair->slack + error_allowed(demand, pair->x, pair->volume));
 }
 
 START_TEST(volumes_are_right_in_every_class) {
@@ -129,7 +135,7 @@ END_TEST
 static void check_invariants(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
                              const char *where) {
   Answer answer = ask(model, pair->x);
-  ck_assert_at_most(where, pairs_bounds_residual(pair->x, answer.volume), 4e-16);
+  ck_assert_at_most(where, pairs_bounds_residual(pair->x, answer.volume), 4e-16 + demand->learned);
   ck_assert_at_most(where, pairs_translation_residual(pair->x, answer.gradient), demand->invariant);
   ck_assert_at_most(where, pairs_rotation_residual(pair->x, answer.gradient), demand->invariant);
   ck_assert_at_most(where, pairs_scaling_residual(pair->x, answer.volume, answer.gradient),
@@ -200,9 +206,9 @@ static void check_subdivision(const ContactOverlapModel *model, const Demand *de
     memcpy(x, pair->x, 12 * sizeof *x), memcpy(x + 12, parts[k], 12 * sizeof *x);
     double part = ask_volume(model, x);
     sum += part;
-    allowed += demand->misfit * pairs_allowed(x, part);
+    allowed += error_allowed(demand, x, part);
   }
-  ck_assert_at_most(where, fabs(sum - volume), allowed + demand->misfit * pairs_allowed(pair->x, volume));
+  ck_assert_at_most(where, fabs(sum - volume), allowed + error_allowed(demand, pair->x, volume));
 }
 
 START_TEST(the_parts_of_a_tetrahedron_sum_to_the_whole) {
@@ -243,7 +249,7 @@ static void check_hessian(const ContactOverlapModel *model, const Demand *demand
     for (int c = 0; c < 3; c++) {
       double sum = 0, size = 0; // translation of both
       for (int j = c; j < 24; j += 3) sum += hessian[24 * i + j], size += fabs(hessian[24 * i + j]);
-      ck_assert_at_most(where, fabs(sum), 1e-11 * (size + extent));
+      ck_assert_at_most(where, fabs(sum), (1e-11 + 1e3 * demand->invariant) * (size + extent));
     }
   if (!pair->is_smooth) return;
   for (int i = 0; i < 24; i++) {

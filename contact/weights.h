@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the weights of learned models are.
+#ifndef TETLAP_CONTACT_WEIGHTS_H
+#define TETLAP_CONTACT_WEIGHTS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+
+// Whether a model's name is rather a path to a weights file: it ends in .safetensors.
+bool contact_weights_is_path(const char *name);
+
+// The file of a shipped model, NAME.safetensors in $TETLAP_WEIGHTS, or else in the source tree that the program was
+// built from. STATUS_IO: it is not there, with what to do; STATUS_INPUT: the path has `size` characters or more.
+Status contact_weights_find(const char *name, char *path, size_t size);
+
+#endif
