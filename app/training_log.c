@@ -76,8 +76,9 @@ static Status write_script(const char *path, const char *directory, const char *
           "set terminal pngcairo size 900,540\nset output directory.\"/learning.png\"\n"
           "set datafile separator ','\nset title \"%s\" noenhanced\nset key above noenhanced\nset grid\n"
           "set logscale y\nset format y '10^{%%T}'\nset xlabel 'samples seen'\n"
-          "log = directory.\"/log.csv\"\nstats log skip 1 nooutput\n"
-          "plot log using 'samples':'loss' with lines lw 2, log using 'samples':'score' with lines lw 2, \\\n"
+          "log = directory.\"/log.csv\"\nstats log using 1 skip 1 nooutput\n"
+          "plot log using 'samples':'loss' with lines lw 2 title 'loss', log using 'samples':'score' with "
+          "lines lw 2 title 'score', \\\n"
           "  for [c=8:STATS_columns] log using 'samples':c with lines dashtype 2 title columnheader(c)\n",
           directory, name);
   return file_commit(&writer);
