@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "contact/exact.h"
+#include "contact/weights.h"
 #include "net/forward.h"
 #include "net/weights.h"
 
@@ -215,3 +216,20 @@ Status contact_net_overlap_logits(const void *self, int count, const double *pai
   leave(desk);
   return STATUS_OK;
 }
+
+static Status create_shipped(void **self, const char *weights) {
+  char path[4096];
+  if (!weights) TRY(contact_weights_find("tpn", path, sizeof path));
+  return contact_net_overlap_create(self, weights ? weights : path);
+}
+
+const ContactOverlapOps contact_overlap_tpn = {
+    .name = "tpn",
+    .help = "learned: the paper's TetrahedronPairNet; its gradient jumps, disjoint pairs feel ghosts",
+    .has_hessian = false,
+    .seconds_per_pair = 5e-6,
+    .create = create_shipped,
+    .eval_pair = contact_net_overlap_eval_pair,
+    .eval_batch = contact_net_overlap_eval_batch,
+    .destroy = contact_net_overlap_destroy,
+};

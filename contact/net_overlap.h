@@ -19,6 +19,9 @@ void contact_net_overlap_print(ContactNormalisation kind, double scale,
                                char text[CONTACT_NET_NORMALISATION_TEXT]);
 bool contact_net_overlap_parse(const char *text, ContactNormalisation *kind, double *scale);
 
+// The shipped weights of that name, tpn.safetensors.
+extern const ContactOverlapOps contact_overlap_tpn;
+
 // From a weights file. STATUS_INPUT: another kind of network; the message names the file.
 Status contact_net_overlap_create(void **self, const char *path);
 void contact_net_overlap_destroy(void *self);
