@@ -16,6 +16,7 @@
 #include "app/schema_command.h"
 #include "app/train_command.h"
 #include "app/versions.h"
+#include "app/weights_command.h"
 #include "base/log.h"
 #include "base/record.h"
 #include "base/status.h"
@@ -42,6 +43,7 @@ static const Command commands[] = {
     {"dataset", "tell, join or draw data sets of such pairs", app_dataset_run},
     {"train", "train a learned overlap model", app_train_run},
     {"eval", "measure an overlap model against labelled pairs", app_eval_run},
+    {"weights", "say what a weights file holds", app_weights_run},
     {"version", "print the versions of the program and its libraries", run_version},
     {"help", "print this; `tetlap COMMAND --help` tells more", run_help},
 };

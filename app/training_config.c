@@ -20,6 +20,9 @@ static const char *const reading_helps[] = {"coordinates concatenated, biased sk
                                             "reading a with a layer of 1024; 410,266 parameters"};
 static const char *const activations[] = {"relu", "silu", NULL};
 static const char *const activation_helps[] = {"as published; its gradient is piecewise constant", "smooth"};
+static const char *const pools[] = {"max", "sum", NULL};
+static const char *const pool_helps[] = {"as published; the gradient jumps where another vertex takes over",
+                                         "smooth"};
 static const char *const normalisations[] = {"unit", "pca", NULL};
 static const char *const normalisation_helps[] = {"the first tetrahedron becomes the unit simplex",
                                                   "the first tetrahedron's principal axes become the axes"};
@@ -42,6 +45,12 @@ static const char *activation_name(int i) {
 static const char *activation_help(int i) {
   return activation_helps[i];
 }
+static const char *pool_name(int i) {
+  return pools[i];
+}
+static const char *pool_help(int i) {
+  return pool_helps[i];
+}
 static const char *normalisation_name(int i) {
   return normalisations[i];
 }
@@ -52,6 +61,7 @@ static const char *normalisation_help(int i) {
 static const SceneChoices kind_choices = {kind_name, kind_help};
 static const SceneChoices reading_choices = {reading_name, reading_help};
 static const SceneChoices activation_choices = {activation_name, activation_help};
+static const SceneChoices pool_choices = {pool_name, pool_help};
 static const SceneChoices normalisation_choices = {normalisation_name, normalisation_help};
 
 static const char *finish_model(void *self, const char **key) {
@@ -93,6 +103,8 @@ static const SceneKey model_keys[] = {
      .help = "tpn: of the paper's table of layers"},
     {"activation", SCENE_CHOICE, AT(AppTrainingModelDef, activation), .choices = &activation_choices,
      .fallback = "relu", .help = "tpn"},
+    {"pool", SCENE_CHOICE, AT(AppTrainingModelDef, pool), .choices = &pool_choices, .fallback = "max",
+     .help = "tpn: over vertices and over tetrahedra"},
     {"normalisation", SCENE_CHOICE, AT(AppTrainingModelDef, normalisation), .choices = &normalisation_choices,
      .fallback = "unit", .help = "tpn: of the input"},
     {0},
@@ -235,8 +247,9 @@ static void print_model(const AppTrainingModelDef *def, char *text, size_t size,
   if (def->kind == APP_MODEL_GEO)
     text_append(text, size, used, ", %d features, %d x %d\n", def->features, def->width, def->depth);
   else
-    text_append(text, size, used, ", reading %s, %s, %s\n", readings[def->reading],
-                activations[def->activation], normalisations[def->normalisation]);
+    text_append(text, size, used, ", reading %s, %s%s, %s\n", readings[def->reading],
+                activations[def->activation], def->pool == APP_POOL_SUM ? ", sum pools" : "",
+                normalisations[def->normalisation]);
 }
 
 char *app_training_config_print(const AppTrainingConfig *config) {

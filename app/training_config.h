@@ -12,6 +12,7 @@
 typedef enum AppModelKind { APP_MODEL_GEO, APP_MODEL_TPN } AppModelKind;
 typedef enum AppNormalisation { APP_NORMALISATION_UNIT, APP_NORMALISATION_PCA } AppNormalisation;
 typedef enum AppReading { APP_READING_A, APP_READING_B, APP_READING_BACKBONE } AppReading;
+typedef enum AppPool { APP_POOL_MAX, APP_POOL_SUM } AppPool;
 typedef enum AppActivation { APP_ACTIVATION_RELU, APP_ACTIVATION_SILU } AppActivation;
 
 // A source of pairs as the file has it.
@@ -26,6 +27,7 @@ typedef struct AppTrainingModelDef {
   int features, width, depth;     // geo
   AppReading reading;             // tpn
   AppActivation activation;       // tpn
+  AppPool pool;                   // tpn
   AppNormalisation normalisation; // tpn
 } AppTrainingModelDef;
 

@@ -6,12 +6,15 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/training_tpn.h"
+
 #include "app/training_start.h"
 #include "app/training_task.h"
 #include "base/memory.h"
 #include "contact/net_overlap.h"
+#include "contact/net_range.h"
 
-enum { SIZE = 24, BLOCK = 16384, MAX_SETS = 6 };
+enum { SIZE = 24, BLOCK = 16384, MAX_SETS = 6, MEASURED = 1 << 18 };
 
 // Samples as the network sees them.
 typedef struct Samples {
@@ -29,6 +32,7 @@ typedef struct Tpn {
   Samples sets[MAX_SETS];
   int set_count;
   AppTrainingOrder order;
+  ContactNetRange range;          // of the training's pairs
   NetWork_f32 work;               // of validation
   int *samples;                   // (batch)
   float *x, *y, *gy;              // (batch, 24), (batch, 2), (batch, 2)
@@ -45,6 +49,7 @@ static NetShape shape(const AppTrainingConfig *config) {
                   : config->model.reading == APP_READING_B ? net_shape_tpn_b()
                                                            : net_shape_tpn_backbone();
   made.activation = config->model.activation == APP_ACTIVATION_RELU ? NET_RELU : NET_SILU;
+  made.pool = config->model.pool == APP_POOL_MAX ? NET_MAX : NET_SUM;
   return made;
 }
 
@@ -151,12 +156,45 @@ static Status create_batch(Tpn *tpn, const AppTrainingConfig *config) {
   return fits ? STATUS_OK : status_no_memory("a batch");
 }
 
+static void measure_range(const Samples *samples, double scale, int count, ContactNetMeasures *measures,
+                          double *overlaps, double *values, ContactNetRange *range) {
+  for (int i = 0; i < count; i++) {
+    ptrdiff_t at = (ptrdiff_t)i * samples->count / count; // evenly from all of them
+    double pair[SIZE];
+    for (int c = 0; c < SIZE; c++) pair[c] = (double)samples->x[at * SIZE + c];
+    measures[i] = contact_net_range_measure(pair);
+    overlaps[i] = (double)samples->target[at] / (scale * (double)samples->factor[at]);
+  }
+  *range = contact_net_range_of(count, measures, overlaps, values);
+}
+
+static Status find_range(const Samples *samples, double scale, ContactNetRange *range) {
+  int count = samples->count < MEASURED ? samples->count : MEASURED;
+  ContactNetMeasures *measures = memory_zeroed((size_t)count, sizeof *measures);
+  double *overlaps = memory_zeroed((size_t)count, sizeof *overlaps);
+  double *values = memory_zeroed((size_t)count, sizeof *values);
+  bool fits = measures && overlaps && values;
+  if (fits) measure_range(samples, scale, count, measures, overlaps, values, range);
+  memory_free(measures), memory_free(overlaps), memory_free(values);
+  return fits ? STATUS_OK : status_no_memory("the range of the training's pairs");
+}
+
+Status app_training_tpn_range(const AppTrainingConfig *config, ContactNetRange *range) {
+  Samples samples = {0};
+  Status status = load(&samples, config, config->training, config->training_count);
+  if (!status && samples.count == 0) status = status_fail(STATUS_INPUT, "there is no pair to train on");
+  if (!status) status = find_range(&samples, config->loss.volume_scale, range);
+  samples_destroy(&samples);
+  return status;
+}
+
 static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   (void)whitening;
   Tpn *tpn = task->self = memory_zeroed(1, sizeof *tpn);
   if (!tpn) return status_no_memory("a training");
   TRY(load(&tpn->training, task->config, task->config->training, task->config->training_count));
   if (tpn->training.count == 0) return status_fail(STATUS_INPUT, "there is no pair to train on");
+  TRY(find_range(&tpn->training, task->config->loss.volume_scale, &tpn->range));
   TRY(load_sets(tpn, task->config));
   TRY(app_training_order_create(&tpn->order, tpn->training.count));
   task->sample_count = tpn->training.count;
@@ -257,21 +295,11 @@ static Status start(AppTrainingTask *task, NetModel_f32 *model) {
   return app_training_start_read(task->config->start, normalisation, NULL, model);
 }
 
-// The box of the training's normalised coordinates.
-static void print_range(const Samples *samples, char *text, size_t size) {
-  double low = INFINITY, high = -INFINITY;
-  for (ptrdiff_t i = 0; i < (ptrdiff_t)samples->count * SIZE; i++) {
-    low = fmin(low, (double)samples->x[i]);
-    high = fmax(high, (double)samples->x[i]);
-  }
-  snprintf(text, size, "normalised coordinates in [%.9g, %.9g]", low, high);
-}
-
 static Status write(const AppTrainingTask *task, const NetModel_f32 *model, const char *provenance,
                     const char *path) {
   const Tpn *tpn = task->self;
-  char range[128], normalisation[CONTACT_NET_NORMALISATION_TEXT], *story;
-  print_range(&tpn->training, range, sizeof range);
+  char range[CONTACT_NET_RANGE_TEXT], normalisation[CONTACT_NET_NORMALISATION_TEXT], *story;
+  contact_net_range_print(&tpn->range, range);
   print_normalisation(task, normalisation);
   story = memory_copy(provenance, strlen(provenance) + 1, 1);
   if (!story) return status_no_memory("the weights' provenance");

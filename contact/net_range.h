@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What pairs a network of net_overlap.h was trained on, in three measures of a normalised pair (normalise.h):
+//
+//   radius   root mean square distance of the eight vertices from the first tetrahedron's centroid
+//   volume   of each of the two tetrahedra (with Unit the first is 1/6 always)
+//   overlap  V'
+//
+// Each measure's range leaves out the rarest pairs at either end: the normalised coordinates of random pairs
+// have heavy tails, and a box around all of them would refuse nothing. The measures do not depend on the
+// order of vertices, and have derivatives wherever a tetrahedron has a volume.
+#ifndef TETLAP_CONTACT_NET_RANGE_H
+#define TETLAP_CONTACT_NET_RANGE_H
+
+#include <stdbool.h>
+
+enum { CONTACT_NET_RANGE_TEXT = 256 };
+
+typedef struct ContactNetRange {
+  double radius[2];    // least, most
+  double volume[2][2]; // of the first and of the second tetrahedron: least, most
+  double overlap;      // most
+} ContactNetRange;
+
+// The measures of one normalised pair.
+typedef struct ContactNetMeasures {
+  double radius, volume[2];
+} ContactNetMeasures;
+
+ContactNetMeasures contact_net_range_measure(const double pair[24]);
+
+// The share of pairs at each end of each measure that a range leaves out.
+extern const double contact_net_range_tail;
+
+// The range of `count` > 0 pairs by their measures, and of their overlaps where these are > 0. Sorts `values`
+// (count), which is scratch memory.
+ContactNetRange contact_net_range_of(int count, const ContactNetMeasures *measures, const double *overlaps,
+                                     double *values);
+
+// As a weights file's card has it.
+void contact_net_range_print(const ContactNetRange *range, char text[CONTACT_NET_RANGE_TEXT]);
+bool contact_net_range_parse(const char *text, ContactNetRange *range);
+
+// 1 within the range, 0 beyond by the factor contact_net_range_band in any measure, continuously
+// differentiable in between; NaN: 0. `gradient` (may be NULL) is by the normalised pair.
+double contact_net_range_weight(const ContactNetRange *range, const double pair[24], double gradient[24]);
+// The same of the overlap V' ≥ 0 alone, and its derivative.
+double contact_net_range_overlap_weight(const ContactNetRange *range, double overlap, double *derivative);
+
+extern const double contact_net_range_band;
+
+#endif
