@@ -82,7 +82,7 @@ static const AppBenchColumn columns[] = {
     {"solve_s", APP_BENCH_NUMBER, offsetof(Row, solve), "solve s", "wall time of solution"},
     {"ratio", APP_BENCH_NUMBER, offsetof(Row, ratio), "ratio", "wall time over that of the first row"},
 };
-static const AppBenchReport report = {"beam", columns, sizeof columns / sizeof *columns, sizeof(Row)};
+static const AppBenchReport report = {"beam", columns, sizeof columns / sizeof *columns, sizeof(Row), false};
 
 static Row row_of(const AppBenchTrial *trial, const Options *options) {
   int rounds = options->common.repeats;

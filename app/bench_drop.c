@@ -75,7 +75,7 @@ static const AppBenchColumn columns[] = {
     {"wall_s", APP_BENCH_NUMBER, offsetof(Row, wall), "wall s", "whole run"},
     {"cpu_s", APP_BENCH_NUMBER, offsetof(Row, cpu), "cpu s", "whole run"},
 };
-static const AppBenchReport report = {"drop", columns, sizeof columns / sizeof *columns, sizeof(Row)};
+static const AppBenchReport report = {"drop", columns, sizeof columns / sizeof *columns, sizeof(Row), false};
 
 static Status read_scene(const Options *options, double stiffness, double tolerance, FemSceneDef *scene) {
   if (!options->scene_path) return app_bench_builtin_drop(stiffness, tolerance, scene);

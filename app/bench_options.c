@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench_options.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
 
+AppBenchOptions app_bench_options_default(int repeats) {
+  return (AppBenchOptions){.threads = 1, .repeats = repeats, .thread_list = {1}, .thread_list_count = 1};
+}
+
 static const struct argp_option option_table[] = {
-    {"threads", 't', "N", 0, "Threads (default: 1)", 2},
+    {"threads", 't', "N", 0, "Threads (default: 1); some benches take a list, as in 1,2", 2},
     {"repeat", 'r', "N", 0, "Rounds; the median is reported", 2},
     {"json", 'j', NULL, 0, "Print one JSON object a row", 3},
     {"csv", 'c', NULL, 0, "Print comma-separated values", 3},
@@ -20,7 +25,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   AppBenchOptions *options = state->input;
   switch (key) {
   case 't':
-    options->threads = app_bench_options_count(state, "threads", text, 1024);
+    options->thread_list_count = app_bench_options_counts(state, "threads", text, 1024, options->thread_list);
+    if (options->thread_list_count > 1 && !options->takes_thread_list)
+      argp_error(state, "--threads is '%s'; this bench takes one number", text);
+    options->threads = options->thread_list[0];
     return 0;
   case 'r':
     options->repeats = app_bench_options_count(state, "repeat", text, APP_BENCH_MAX_REPEATS);
@@ -91,6 +99,18 @@ int app_bench_options_numbers(struct argp_state *state, const char *option, cons
   argp_error(state, "--%s is '%s'; give up to %d numbers from %g to %g, separated by commas", option, text,
              APP_BENCH_MAX_LIST, smallest, largest);
   return 0;
+}
+
+int app_bench_options_counts(struct argp_state *state, const char *option, const char *text, int largest,
+                             int *counts) {
+  double numbers[APP_BENCH_MAX_LIST];
+  int count = app_bench_options_numbers(state, option, text, 1, largest, numbers);
+  for (int i = 0; i < count; i++) {
+    if (numbers[i] != floor(numbers[i]))
+      argp_error(state, "--%s has %g; give whole numbers from 1 to %d", option, numbers[i], largest);
+    counts[i] = (int)numbers[i];
+  }
+  return count;
 }
 
 double app_bench_options_number(struct argp_state *state, const char *option, const char *text,

@@ -16,10 +16,16 @@ typedef enum AppBenchFormat {
 } AppBenchFormat;
 
 typedef struct AppBenchOptions {
-  int threads; // of OpenMP and the solvers
-  int repeats; // rounds
+  int threads;            // of OpenMP and the solvers; the first, where a bench takes a list of them
+  int repeats;            // rounds
+  bool takes_thread_list; // the bench measures several numbers of threads
+  int thread_list[APP_BENCH_MAX_LIST]; // (thread_list_count)
+  int thread_list_count;
   AppBenchFormat format;
 } AppBenchOptions;
+
+// One thread, `repeats` rounds, a table.
+AppBenchOptions app_bench_options_default(int repeats);
 
 // --threads, --repeat, --json, --csv and --markdown as an argp child; its input is AppBenchOptions, which
 // holds the bench's own defaults before.
@@ -30,6 +36,10 @@ extern const struct argp app_bench_options_argp;
 void app_bench_options_choose(struct argp_state *state, const char *option, const char *text,
                               const char *const *names, int count, bool *wanted);
 int app_bench_options_count(struct argp_state *state, const char *option, const char *text, int largest);
+// The same of a comma-separated list, into `counts` (APP_BENCH_MAX_LIST); returns how many. 1e6 is a whole
+// number.
+int app_bench_options_counts(struct argp_state *state, const char *option, const char *text, int largest,
+                             int *counts);
 // Fills `numbers` (APP_BENCH_MAX_LIST) from a comma-separated list; returns how many.
 int app_bench_options_numbers(struct argp_state *state, const char *option, const char *text, double smallest,
                               double largest, double *numbers);

@@ -1,36 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench_overlap.h"
 
-#include <limits.h>
+#include <math.h>
 #include <omp.h>
 #include <stdbool.h>
 
-#include "app/bench_options.h"
+#include "app/bench_contestant.h"
 #include "app/bench_pairs.h"
+#include "app/bench_peak.h"
 #include "app/bench_report.h"
-#include "app/bench_timer.h"
+#include "app/model_card.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "contact/overlap.h"
 
-enum { MAX_MODELS = 16, QUANTITY_COUNT = 3 };
+enum { MAX_MODELS = 32, QUANTITY_COUNT = 3 };
 static const char *const quantities[QUANTITY_COUNT] = {"V", "V+grad", "V+grad+hess"};
 
-static const double ROUND_S = 0.05,
-                    CALL_S = 0.25; // what a round and a call may take, by the model's own guess
 static const uint64_t SEED = 1;
 
 typedef struct Options {
   AppBenchOptions common;
   bool wants_model[MAX_MODELS], wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
-  int batch;
+  int batches[APP_BENCH_MAX_LIST], batch_count;
 } Options;
 
 static const struct argp_option option_table[] = {
     {"model", 'm', "NAME,…", 0, "Overlap models to measure (default: all)", 1},
     {"set", 's', "NAME,…", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
     {"quantity", 'Q', "NAME,…", 0, "V, V+grad, V+grad+hess (default: all that a model has)", 1},
-    {"batch", 'b', "N", 0, "Pairs a call (default: 4096, fewer for slow models)", 1},
+    {"batch", 'b', "N,…", 0, "Pairs a call (default: 4096); slow models get fewer", 1},
     {0},
 };
 
@@ -59,103 +57,122 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     app_bench_options_choose(state, "quantity", text, quantities, QUANTITY_COUNT, options->wants_quantity);
     return 0;
   case 'b':
-    options->batch = app_bench_options_count(state, "batch", text, 10000000);
+    options->batch_count = app_bench_options_counts(state, "batch", text, 10000000, options->batches);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
   }
 }
 
-// A model on a set, for a quantity.
-typedef struct Contestant {
-  ContactOverlapModel model; // owned
-  const char *set, *quantity;
-  ContactOverlapBatch batch; // volume, gradient and hessian are shared by all contestants
-  int calls;                 // a round
-  AppBenchTimer timer;       // a pair
-} Contestant;
+// What tells contestants apart.
+typedef struct Case {
+  int model, set, quantity, batch, threads; // threads: their number
+} Case;
 
 typedef struct Bench {
   const Options *options;
-  double *pairs[APP_BENCH_SET_COUNT]; // NULL: not wanted
+  int model_count;
+  ContactOverlapModel models[MAX_MODELS]; // owned; ops NULL: not wanted, or not to be had
+  AppModelCard cards[MAX_MODELS];
+  double *pairs[APP_BENCH_SET_COUNT]; // (largest batch, 24), owned; NULL: not wanted
   double *volume, *gradient, *hessian;
-  Contestant *contestants;
-  int contestant_count;
+  AppBenchContestant *contestants;
+  Case *cases; // of the contestants
+  int count, capacity;
 } Bench;
 
-static int limited(double value, int largest) {
-  return value < 1 ? 1 : value < largest ? (int)value : largest;
-}
-
-// Sizes the batch and the number of calls by what the model says that a pair costs.
-static Status add_contestant(Bench *bench, const ContactOverlapOps *ops, int set, int quantity) {
-  Contestant *contestant = &bench->contestants[bench->contestant_count];
-  TRY(contact_overlap_create(&contestant->model, ops->name));
-  bench->contestant_count++;
-  double per_pair = ops->seconds_per_pair * (quantity == 2 ? 4 : 1);
-  int batch = limited(CALL_S * bench->options->common.threads / per_pair, bench->options->batch);
-  contestant->set = app_bench_sets[set], contestant->quantity = quantities[quantity];
-  contestant->calls = limited(ROUND_S * bench->options->common.threads / (per_pair * batch), INT_MAX);
-  contestant->batch = (ContactOverlapBatch){.pair_count = batch,
-                                            .pairs = bench->pairs[set],
-                                            .volume = bench->volume,
-                                            .gradient = quantity >= 1 ? bench->gradient : NULL,
-                                            .hessian = quantity >= 2 ? bench->hessian : NULL};
+// Models whose weights are not there are left out, by name.
+static Status open_models(Bench *bench) {
+  const ContactOverlapOps *const *list = contact_overlap_list(&bench->model_count);
+  if (bench->model_count > MAX_MODELS) bench->model_count = MAX_MODELS;
+  for (int m = 0; m < bench->model_count; m++) {
+    if (!bench->options->wants_model[m]) continue;
+    Status status = contact_overlap_create(&bench->models[m], list[m]->name);
+    if (status == STATUS_IO) {
+      log_warning("left out: %s", status_message());
+      continue;
+    }
+    TRY(status);
+    TRY(app_model_card_read(&bench->models[m], list[m]->name, &bench->cards[m]));
+  }
   return STATUS_OK;
 }
 
+static void add(Bench *bench, const Case *what) {
+  const ContactOverlapModel *model = &bench->models[what->model];
+  int quantity = what->quantity, batch = bench->options->batches[what->batch];
+  bench->cases[bench->count] = *what;
+  bench->contestants[bench->count++] = (AppBenchContestant){
+      .model = model,
+      .threads = what->threads,
+      .batch = {.pair_count = app_bench_contestant_batch(model, quantity == 2, what->threads, batch),
+                .pairs = bench->pairs[what->set],
+                .volume = bench->volume,
+                .gradient = quantity >= 1 ? bench->gradient : NULL,
+                .hessian = quantity >= 2 ? bench->hessian : NULL}};
+}
+
+static void add_models(Bench *bench, Case what) {
+  for (what.model = 0; what.model < bench->model_count; what.model++) {
+    const ContactOverlapOps *ops = bench->models[what.model].ops;
+    if (ops && (what.quantity < 2 || ops->has_hessian)) add(bench, &what);
+  }
+}
+
 static Status add_contestants(Bench *bench) {
-  int model_count;
-  const ContactOverlapOps *const *models = contact_overlap_list(&model_count);
-  for (int set = 0; set < APP_BENCH_SET_COUNT; set++)
-    for (int quantity = 0; quantity < QUANTITY_COUNT; quantity++)
-      for (int m = 0; m < model_count && m < MAX_MODELS; m++) {
-        const Options *options = bench->options;
-        if (!options->wants_set[set] || !options->wants_quantity[quantity] || !options->wants_model[m])
-          continue;
-        if (quantity == 2 && !models[m]->has_hessian) continue;
-        TRY(add_contestant(bench, models[m], set, quantity));
-      }
-  if (bench->contestant_count == 0)
+  const Options *options = bench->options;
+  Case what;
+  for (what.set = 0; what.set < APP_BENCH_SET_COUNT; what.set++)
+    for (what.quantity = 0; what.quantity < QUANTITY_COUNT; what.quantity++) {
+      if (!options->wants_set[what.set] || !options->wants_quantity[what.quantity]) continue;
+      for (what.batch = 0; what.batch < options->batch_count; what.batch++)
+        for (int t = 0; t < options->common.thread_list_count; t++) {
+          what.threads = options->common.thread_list[t];
+          add_models(bench, what);
+        }
+    }
+  if (bench->count == 0)
     return status_fail(STATUS_USAGE, "none of the chosen models has a Hessian: nothing to measure");
   return STATUS_OK;
 }
 
+static int largest_of(const int *numbers, int count) {
+  int largest = numbers[0];
+  for (int i = 1; i < count; i++) largest = numbers[i] > largest ? numbers[i] : largest;
+  return largest;
+}
+
 static Status make_inputs(Bench *bench) {
   const Options *options = bench->options;
-  size_t batch = (size_t)options->batch, pair = CONTACT_PAIR_SIZE;
-  bench->contestants =
-      memory_zeroed((size_t)APP_BENCH_SET_COUNT * QUANTITY_COUNT * MAX_MODELS, sizeof *bench->contestants);
+  int most = largest_of(options->batches, options->batch_count);
+  size_t batch = (size_t)most, pair = CONTACT_PAIR_SIZE;
+  bench->capacity = APP_BENCH_SET_COUNT * QUANTITY_COUNT * MAX_MODELS * options->batch_count *
+                    options->common.thread_list_count;
+  bench->contestants = memory_zeroed((size_t)bench->capacity, sizeof *bench->contestants);
+  bench->cases = memory_zeroed((size_t)bench->capacity, sizeof *bench->cases);
   bench->volume = memory_zeroed(batch, sizeof *bench->volume);
   bench->gradient = memory_zeroed(batch * pair, sizeof *bench->gradient);
   bench->hessian =
       memory_zeroed(options->wants_quantity[2] ? batch * pair * pair : 0, sizeof *bench->hessian);
-  if (!bench->contestants || !bench->volume || !bench->gradient || !bench->hessian)
+  if (!bench->contestants || !bench->cases || !bench->volume || !bench->gradient || !bench->hessian)
     return status_no_memory("the batch (--batch)");
   for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
     if (!options->wants_set[set]) continue;
     if (!(bench->pairs[set] = memory_zeroed(batch * pair, sizeof *bench->pairs[set])))
       return status_no_memory("the batch (--batch)");
-    TRY(app_bench_pairs_make(app_bench_sets[set], options->batch, SEED, bench->pairs[set]));
+    TRY(app_bench_pairs_fill(app_bench_sets[set], most, SEED, bench->pairs[set]));
   }
   return STATUS_OK;
 }
 
-// Fills no memory that others do not fill too: the contestants share what a batch returns.
-static Status take_turn(void *self, int round) {
-  Contestant *contestant = self;
-  app_bench_timer_start(&contestant->timer);
-  for (int call = 0; call < contestant->calls; call++)
-    TRY(contact_overlap_eval(&contestant->model, &contestant->batch));
-  app_bench_timer_stop(&contestant->timer, round, (double)contestant->calls * contestant->batch.pair_count);
-  return STATUS_OK;
-}
-
 typedef struct Row {
-  const char *model, *set, *quantity;
-  long long batch;
+  const char *model, *set, *quantity, *reference;
+  long long batch, threads;
   double rate, cpu_rate, rate_min, rate_max; // pairs a second
   double spread;
+  double ratio, ratio_min, ratio_max; // speed over the reference's
+  double thread_gain;                 // speed over that on the first number of threads
+  double flops, share;
 } Row;
 
 static const AppBenchColumn columns[] = {
@@ -163,54 +180,119 @@ static const AppBenchColumn columns[] = {
     {"set", APP_BENCH_TEXT, offsetof(Row, set), "set", "set of pairs: near, uniform, disjoint"},
     {"quantity", APP_BENCH_TEXT, offsetof(Row, quantity), "quantity", "V, V+grad or V+grad+hess"},
     {"batch", APP_BENCH_INTEGER, offsetof(Row, batch), "batch", "pairs a call"},
+    {"threads", APP_BENCH_INTEGER, offsetof(Row, threads), "threads", "threads"},
     {"pairs_per_second", APP_BENCH_NUMBER, offsetof(Row, rate), "pairs/s", "of wall time"},
     {"pairs_per_cpu_second", APP_BENCH_NUMBER, offsetof(Row, cpu_rate), "pairs/cpu s", "of processor time"},
     {"pairs_per_second_min", APP_BENCH_NUMBER, offsetof(Row, rate_min), NULL, "slowest round"},
     {"pairs_per_second_max", APP_BENCH_NUMBER, offsetof(Row, rate_max), NULL, "fastest round"},
     {"spread", APP_BENCH_NUMBER, offsetof(Row, spread), "spread", "(max − min) / median"},
+    {"ratio", APP_BENCH_NUMBER, offsetof(Row, ratio), "ratio",
+     "speed over that of `reference` in the same round, median of the rounds"},
+    {"ratio_min", APP_BENCH_NUMBER, offsetof(Row, ratio_min), NULL, "smallest of the rounds"},
+    {"ratio_max", APP_BENCH_NUMBER, offsetof(Row, ratio_max), NULL, "largest of the rounds"},
+    {"reference", APP_BENCH_TEXT, offsetof(Row, reference), NULL,
+     "the first model, same set, quantity, threads"},
+    {"thread_gain", APP_BENCH_NUMBER, offsetof(Row, thread_gain), "× threads",
+     "speed over that of the same row on the first number of threads, median of the rounds"},
+    {"flops_per_pair", APP_BENCH_NUMBER, offsetof(Row, flops), NULL,
+     "of a network's matrix products: multiplications and additions"},
+    {"peak_share", APP_BENCH_NUMBER, offsetof(Row, share), "of peak",
+     "those a second and thread over what one core can do (measured before)"},
 };
-static const AppBenchReport report = {"overlap", columns, sizeof columns / sizeof *columns, sizeof(Row)};
+static const AppBenchReport report = {"overlap", columns, sizeof columns / sizeof *columns, sizeof(Row),
+                                      .has_own_threads = true};
 
-static Row row_of(const Contestant *contestant, int rounds) {
+// The contestant that differs in the one thing: −1 if there is none.
+static int find(const Bench *bench, Case what) {
+  for (int c = 0; c < bench->count; c++) {
+    const Case *other = &bench->cases[c];
+    if (other->model == what.model && other->set == what.set && other->quantity == what.quantity &&
+        other->batch == what.batch && other->threads == what.threads)
+      return c;
+  }
+  return -1;
+}
+
+static int find_reference(const Bench *bench, Case what) {
+  int found = -1;
+  for (what.model = 0; what.model < bench->model_count && found < 0; what.model++) found = find(bench, what);
+  return found;
+}
+
+// A gradient by the input takes the products once more, transposed.
+static double flops_of(const Bench *bench, const Case *what) {
+  const AppModelCard *card = &bench->cards[what->model];
+  if (!card->is_learned || what->quantity > 1) return NAN;
+  return card->flops * (what->quantity == 0 ? 1 : 2);
+}
+
+static Row row_of(const Bench *bench, int c, const double peaks[2]) {
+  const AppBenchContestant *contestant = &bench->contestants[c];
+  const Case *what = &bench->cases[c];
+  int rounds = bench->options->common.repeats;
+  Case single = *what;
+  single.threads = bench->options->common.thread_list[0];
+  const AppBenchContestant *reference = &bench->contestants[find_reference(bench, *what)],
+                           *narrow = &bench->contestants[find(bench, single)];
   AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
-  return (Row){.model = contestant->model.ops->name,
-               .set = contestant->set,
-               .quantity = contestant->quantity,
+  AppBenchRatio ratio = app_bench_timer_ratio(&contestant->timer, &reference->timer, rounds);
+  double flops = flops_of(bench, what);
+  return (Row){.model = contestant->model->ops->name,
+               .set = app_bench_sets[what->set],
+               .quantity = quantities[what->quantity],
+               .reference = reference->model->ops->name,
                .batch = contestant->batch.pair_count,
+               .threads = what->threads,
                .rate = 1 / time.wall,
                .cpu_rate = 1 / time.cpu,
                .rate_min = 1 / time.wall_max,
                .rate_max = 1 / time.wall_min,
-               .spread = time.wall / time.wall_min - time.wall / time.wall_max};
+               .spread = time.wall / time.wall_min - time.wall / time.wall_max,
+               .ratio = ratio.median,
+               .ratio_min = ratio.min,
+               .ratio_max = ratio.max,
+               .thread_gain = app_bench_timer_ratio(&contestant->timer, &narrow->timer, rounds).median,
+               .flops = flops,
+               .share = flops / time.wall / what->threads / peaks[bench->cards[what->model].is_float]};
 }
 
 static Status print(const Bench *bench) {
-  Row *rows = memory_zeroed((size_t)bench->contestant_count, sizeof *rows);
+  Row *rows = memory_zeroed((size_t)bench->count, sizeof *rows);
   if (!rows) return status_no_memory("the rows");
   const AppBenchOptions *common = &bench->options->common;
-  for (int c = 0; c < bench->contestant_count; c++) rows[c] = row_of(&bench->contestants[c], common->repeats);
-  Status status = app_bench_report_print(&report, common, rows, bench->contestant_count);
+  const double peaks[2] = {app_bench_peak_measure(false), app_bench_peak_measure(true)};
+  for (int c = 0; c < bench->count; c++) rows[c] = row_of(bench, c, peaks);
+  Status status = app_bench_report_print(&report, common, rows, bench->count);
   memory_free(rows);
   return status;
 }
 
 static void destroy(Bench *bench) {
-  for (int c = 0; c < bench->contestant_count; c++) contact_overlap_destroy(&bench->contestants[c].model);
+  for (int m = 0; m < bench->model_count; m++) contact_overlap_destroy(&bench->models[m]);
   for (int set = 0; set < APP_BENCH_SET_COUNT; set++) memory_free(bench->pairs[set]);
-  memory_free(bench->contestants), memory_free(bench->volume);
+  memory_free(bench->contestants), memory_free(bench->cases), memory_free(bench->volume);
   memory_free(bench->gradient), memory_free(bench->hessian);
+  memory_free(bench);
+}
+
+static Status measure(Bench *bench) {
+  const AppBenchOptions *common = &bench->options->common;
+  // what models keep for every thread is made for the largest number of them
+  omp_set_num_threads(largest_of(common->thread_list, common->thread_list_count));
+  TRY(open_models(bench));
+  TRY(make_inputs(bench));
+  TRY(add_contestants(bench));
+  TRY(app_bench_timer_take_turns(bench->contestants, sizeof *bench->contestants, bench->count,
+                                 common->repeats, true, app_bench_contestant_take_turn));
+  return print(bench);
 }
 
 static Status run(const Options *options) {
-  Bench bench = {.options = options};
-  omp_set_num_threads(options->common.threads);
-  Status status = make_inputs(&bench);
-  if (status == STATUS_OK) status = add_contestants(&bench);
-  if (status == STATUS_OK)
-    status = app_bench_timer_take_turns(bench.contestants, sizeof *bench.contestants, bench.contestant_count,
-                                        options->common.repeats, true, take_turn);
-  if (status == STATUS_OK) status = print(&bench);
-  destroy(&bench);
+  Bench *bench = memory_zeroed(1, sizeof *bench);
+  if (!bench) return status_no_memory("the bench");
+  bench->options = options;
+  Status status = measure(bench);
+  destroy(bench);
   return status;
 }
 
@@ -227,7 +309,8 @@ int app_bench_overlap_run(int argument_count, char **arguments) {
       .doc = "Measure how many pairs of tetrahedra a second the overlap models answer.",
       .children = children,
       .help_filter = help};
-  Options options = {.common = {.threads = 1, .repeats = 9}, .batch = 4096};
+  Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
+  options.common.takes_thread_list = true;
   for (int i = 0; i < MAX_MODELS; i++) options.wants_model[i] = true;
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;

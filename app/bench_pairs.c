@@ -96,3 +96,12 @@ Status app_bench_pairs_make(const char *set, int count, uint64_t seed, double *p
   }
   return STATUS_OK;
 }
+
+Status app_bench_pairs_fill(const char *set, int count, uint64_t seed, double *pairs) {
+  int made = count < APP_BENCH_DIFFERENT_PAIRS ? count : APP_BENCH_DIFFERENT_PAIRS;
+  TRY(app_bench_pairs_make(set, made, seed, pairs));
+  for (size_t i = (size_t)made; i < (size_t)count; i++)
+    memcpy(pairs + i * CONTACT_PAIR_SIZE, pairs + i % (size_t)made * CONTACT_PAIR_SIZE,
+           CONTACT_PAIR_SIZE * sizeof *pairs);
+  return STATUS_OK;
+}

@@ -20,4 +20,9 @@ extern const char *const app_bench_sets[APP_BENCH_SET_COUNT]; // "near", "unifor
 // Fills `pairs` (count, 2, 4, 3), the caller's. STATUS_USAGE: no set has that name.
 Status app_bench_pairs_make(const char *set, int count, uint64_t seed, double *pairs);
 
+// The same, but only the first APP_BENCH_DIFFERENT_PAIRS are made, and repeated: for sizes that no other way
+// would be ready in time, and still more different pairs than a processor remembers.
+enum { APP_BENCH_DIFFERENT_PAIRS = 1 << 16 };
+Status app_bench_pairs_fill(const char *set, int count, uint64_t seed, double *pairs);
+
 #endif

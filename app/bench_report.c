@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/versions.h"
 #include "base/cpu.h"
 #include "base/record.h"
 
@@ -13,33 +14,38 @@ enum { CELL_SIZE = 512 };
 
 // What every row tells.
 typedef struct Common {
-  const char *bench, *processor;
+  const char *bench, *processor, *simd, *versions;
   long long threads, repeats;
 } Common;
 
 static const AppBenchColumn first_columns[] = {
     {"bench", APP_BENCH_TEXT, offsetof(Common, bench), NULL, "the bench's name"},
 };
-static const AppBenchColumn last_columns[] = {
+static const AppBenchColumn thread_columns[] = {
     {"threads", APP_BENCH_INTEGER, offsetof(Common, threads), NULL, "threads"},
+};
+static const AppBenchColumn last_columns[] = {
     {"repeats", APP_BENCH_INTEGER, offsetof(Common, repeats), NULL, "rounds of which the median is told"},
     {"processor", APP_BENCH_TEXT, offsetof(Common, processor), NULL, "the processor's model name"},
+    {"simd", APP_BENCH_TEXT, offsetof(Common, simd), NULL, "widest vectors that kernels can use here"},
+    {"versions", APP_BENCH_TEXT, offsetof(Common, versions), NULL, "of the program, compiler and libraries"},
 };
 
-// A row's cells in three groups: common, own, common.
+// A row's cells in four groups: common, own, common.
 typedef struct Group {
   const AppBenchColumn *columns;
   int count;
   const void *row;
 } Group;
 
-enum { GROUP_COUNT = 3 };
+enum { GROUP_COUNT = 4 };
 
 static void group(const AppBenchReport *report, const Common *common, const void *row,
                   Group groups[GROUP_COUNT]) {
   groups[0] = (Group){first_columns, sizeof first_columns / sizeof *first_columns, common};
   groups[1] = (Group){report->columns, report->column_count, row};
-  groups[2] = (Group){last_columns, sizeof last_columns / sizeof *last_columns, common};
+  groups[2] = (Group){thread_columns, report->has_own_threads ? 0 : 1, common};
+  groups[3] = (Group){last_columns, sizeof last_columns / sizeof *last_columns, common};
 }
 
 static const char *text_at(const AppBenchColumn *column, const void *row) {
@@ -157,15 +163,19 @@ static void print_rule(const AppBenchReport *report) {
   putchar('\n');
 }
 
+static void print_head(const AppBenchReport *report, const Common *common) {
+  printf("%s: %s, %s, ", common->bench, common->processor, common->simd);
+  if (!report->has_own_threads) printf("threads: %lld, ", common->threads);
+  printf("rounds: %lld\n%s\n", common->repeats, common->versions);
+}
+
 static void print_table(const AppBenchReport *report, const Common *common, bool is_markdown,
                         const char *rows, int row_count) {
   enum { MAX_COLUMNS = 64 };
   int widths[MAX_COLUMNS];
   for (int c = 0; c < report->column_count; c++)
     widths[c] = report->columns[c].head ? width_of(report, &report->columns[c], rows, row_count) : 0;
-  if (!is_markdown)
-    printf("%s: %s, threads: %lld, rounds: %lld\n", common->bench, common->processor, common->threads,
-           common->repeats);
+  if (!is_markdown) print_head(report, common);
   print_line(report, widths, is_markdown, NULL);
   if (is_markdown) print_rule(report);
   for (int r = 0; r < row_count; r++)
@@ -195,6 +205,8 @@ Status app_bench_report_print(const AppBenchReport *report, const AppBenchOption
                               int row_count) {
   Common common = {.bench = report->bench,
                    .processor = cpu_name(),
+                   .simd = app_versions_simd(),
+                   .versions = app_versions_line(),
                    .threads = options->threads,
                    .repeats = options->repeats};
   TRY(print_rows(report, &common, options->format, rows, row_count));

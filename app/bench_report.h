@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rows that a bench prints: a struct a row, a table of columns that tells their keys, in one of four
-// formats. Every row also tells `bench` (first), `threads`, `repeats` and `processor` (last).
+// formats. Every row also tells `bench` (first), `threads`, `repeats`, `processor`, `simd` and
+// `versions` (last).
 #ifndef TETLAP_APP_BENCH_REPORT_H
 #define TETLAP_APP_BENCH_REPORT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "app/bench_options.h"
@@ -27,7 +29,8 @@ typedef struct AppBenchReport {
   const char *bench;
   const AppBenchColumn *columns; // (column_count)
   int column_count;
-  size_t row_size; // of the row's struct
+  size_t row_size;      // of the row's struct
+  bool has_own_threads; // a column of its own tells `threads`
 } AppBenchReport;
 
 // Prints rows, elements of row_size bytes, to standard output. STATUS_IO, STATUS_MEMORY.

@@ -105,7 +105,7 @@ static const AppBenchColumn columns[] = {
     PHASE("output", 8, NULL),
     PHASE("other", 9, NULL),
 };
-static const AppBenchReport report = {"scene", columns, sizeof columns / sizeof *columns, sizeof(Row)};
+static const AppBenchReport report = {"scene", columns, sizeof columns / sizeof *columns, sizeof(Row), false};
 
 static Row row_of(const AppBenchTrial *trial, int rounds) {
   AppBenchTime time = app_bench_timer_time(&trial->timer, rounds);

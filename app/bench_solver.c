@@ -225,7 +225,8 @@ static const AppBenchColumn columns[] = {
     {"residual", APP_BENCH_NUMBER, offsetof(Row, residual), "residual",
      "‖S x − b‖ / ‖b‖ of the condensed system"},
 };
-static const AppBenchReport report = {"solver", columns, sizeof columns / sizeof *columns, sizeof(Row)};
+static const AppBenchReport report = {"solver", columns, sizeof columns / sizeof *columns, sizeof(Row),
+                                      false};
 
 static Row row_of(const Contestant *contestant, const Options *options) {
   int rounds = options->common.repeats;

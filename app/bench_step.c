@@ -64,7 +64,7 @@ static const AppBenchColumn columns[] = {
     {"wall_s_per_step", APP_BENCH_NUMBER, offsetof(Row, per_step), "s a step", "wall time over steps"},
     {"share", APP_BENCH_NUMBER, offsetof(Row, share), "share", "of the run's wall time"},
 };
-static const AppBenchReport report = {"step", columns, sizeof columns / sizeof *columns, sizeof(Row)};
+static const AppBenchReport report = {"step", columns, sizeof columns / sizeof *columns, sizeof(Row), false};
 
 static Row row_of(const AppBenchTrial *trial, const char *phase, double seconds, double total) {
   long long steps = trial->result.integrator.steps;

@@ -40,6 +40,13 @@ AppBenchTime app_bench_timer_time(const AppBenchTimer *timer, int rounds) {
       .wall = median_of(sorted, rounds), .wall_min = sorted[0], .wall_max = sorted[rounds - 1], .cpu = cpu};
 }
 
+AppBenchRatio app_bench_timer_ratio(const AppBenchTimer *timer, const AppBenchTimer *reference, int rounds) {
+  double ratios[APP_BENCH_MAX_REPEATS], sorted[APP_BENCH_MAX_REPEATS];
+  for (int r = 0; r < rounds; r++) ratios[r] = reference->wall[r] / timer->wall[r];
+  sort(ratios, rounds, sorted);
+  return (AppBenchRatio){median_of(sorted, rounds), sorted[0], sorted[rounds - 1]};
+}
+
 int app_bench_timer_median_round(const AppBenchTimer *timer, int rounds) {
   double sorted[APP_BENCH_MAX_REPEATS];
   sort(timer->wall, rounds, sorted);

@@ -26,6 +26,12 @@ typedef struct AppBenchTime {
 } AppBenchTime;
 
 AppBenchTime app_bench_timer_time(const AppBenchTimer *timer, int rounds);
+// How often the reference's time holds this one's [1]: the median over rounds of the ratio of the two times
+// that were taken in the same round, and the least and the largest ratio.
+typedef struct AppBenchRatio {
+  double median, min, max;
+} AppBenchRatio;
+AppBenchRatio app_bench_timer_ratio(const AppBenchTimer *timer, const AppBenchTimer *reference, int rounds);
 // The round whose wall time is the median (the lower of the two middle ones).
 int app_bench_timer_median_round(const AppBenchTimer *timer, int rounds);
 

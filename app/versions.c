@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/cpu.h"
+
 static char command[4096];
 
 const char *app_versions_program(void) {
@@ -17,6 +19,15 @@ void app_versions_record(Record *record) {
   record_text(record, "suitesparse", TETLAP_SUITESPARSE_VERSION);
   record_text(record, "cgal", TETLAP_CGAL_VERSION);
   record_text(record, "gmsh", TETLAP_GMSH_VERSION);
+}
+
+const char *app_versions_line(void) {
+  return "tetlap " TETLAP_VERSION "; " TETLAP_COMPILER "; SUNDIALS " TETLAP_SUNDIALS_VERSION
+         "; SuiteSparse " TETLAP_SUITESPARSE_VERSION "; CGAL " TETLAP_CGAL_VERSION "; gmsh " TETLAP_GMSH_VERSION;
+}
+
+const char *app_versions_simd(void) {
+  return cpu_has_avx512() ? "avx512" : cpu_has_avx2() ? "avx2" : "none";
 }
 
 void app_versions_set_command(int argument_count, char **arguments) {

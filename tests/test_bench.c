@@ -9,8 +9,11 @@
 
 #include "app/bench_builtin.h"
 #include "app/bench_pairs.h"
+#include "app/bench_peak.h"
 #include "app/bench_timer.h"
 #include "app/bench_trial.h"
+#include "app/model_card.h"
+#include "base/memory.h"
 #include "base/text.h"
 
 enum { COUNT = 50, OUTPUT_SIZE = 1 << 16 };
@@ -44,6 +47,54 @@ START_TEST(the_median_of_rounds_counts) {
   ck_assert_double_eq(even.wall_max, 5);
   ck_assert_int_eq(app_bench_timer_median_round(&timer, 3), 2);
   ck_assert_int_eq(app_bench_timer_median_round(&timer, 4), 3); // 2, the lower of 2 and 4
+}
+END_TEST
+
+START_TEST(ratios_are_taken_within_a_round) {
+  // the machine slowed down threefold in the third round, for both
+  static AppBenchTimer timer = {.wall = {1, 2, 3, 1}}, reference = {.wall = {2, 2, 6, 3}};
+  AppBenchRatio ratio = app_bench_timer_ratio(&timer, &reference, 4);
+  ck_assert_double_eq(ratio.median, 2);
+  ck_assert_double_eq(ratio.min, 1);
+  ck_assert_double_eq(ratio.max, 3);
+}
+END_TEST
+
+START_TEST(more_pairs_than_are_made_repeat_the_first) {
+  enum { MANY = APP_BENCH_DIFFERENT_PAIRS + 10 };
+  double *pairs = memory_zeroed((size_t)MANY * 24, sizeof *pairs), few[COUNT * 24];
+  ck_assert_ok(app_bench_pairs_fill("uniform", MANY, 3, pairs));
+  ck_assert_ok(app_bench_pairs_make("uniform", COUNT, 3, few));
+  ck_assert_mem_eq(pairs, few, sizeof few);
+  ck_assert_mem_eq(pairs + (size_t)APP_BENCH_DIFFERENT_PAIRS * 24, pairs, 10 * 24 * sizeof *pairs);
+  memory_free(pairs);
+}
+END_TEST
+
+START_TEST(the_peak_is_a_number) {
+  double single = app_bench_peak_measure(true), twice = app_bench_peak_measure(false);
+  ck_assert_double_gt(twice, 0);
+  ck_assert_double_gt(single, 0);
+  ck_assert(isfinite(single) && isfinite(twice));
+}
+END_TEST
+
+START_TEST(a_card_tells_a_networks_size) {
+  ContactOverlapModel model;
+  AppModelCard card;
+  ck_assert_ok(contact_overlap_create(&model, "geo-small"));
+  ck_assert_ok(app_model_card_read(&model, "geo-small", &card));
+  ck_assert_str_eq(card.family, "geo");
+  ck_assert(card.is_learned && !card.is_float);
+  ck_assert_int_eq(card.features, 36);
+  ck_assert_int_eq((int)card.parameters, 36 * 16 + 16 + 16 * 16 + 16 + 16 + 1);
+  ck_assert_double_eq(card.flops, 2 * (36 * 16 + 16 * 16 + 16)); // a multiplication and an addition a weight
+  contact_overlap_destroy(&model);
+  ck_assert_ok(contact_overlap_create(&model, "clip"));
+  ck_assert_ok(app_model_card_read(&model, "clip", &card));
+  ck_assert_str_eq(card.family, "clip");
+  ck_assert(!card.is_learned);
+  contact_overlap_destroy(&model);
 }
 END_TEST
 
@@ -156,8 +207,12 @@ typedef struct Promise {
 } Promise;
 
 static const Promise promises[] = {
-    {"overlap --model clip,exact --set near,uniform --quantity V+grad --batch 100 --repeat 1 --threads 2", 4,
-     "bench model set quantity spread", "pairs_per_second pairs_per_cpu_second batch threads"},
+    {"overlap --model clip,exact --set near,uniform --quantity V+grad --batch 100,200 --repeat 1 --threads "
+     "1,2",
+     16, "bench model set quantity spread reference flops_per_pair peak_share",
+     "pairs_per_second pairs_per_cpu_second batch threads ratio ratio_min ratio_max thread_gain"},
+    {"overlap --model geo --set near --quantity V --batch 100 --repeat 1", 1, "bench",
+     "flops_per_pair peak_share"},
     {"solver --nodes 60,100 --repeat 2", 6, "bench solver iterations spread factor_entries",
      "vertices unknowns step slenderness assembly_s factorisation_s solve_s setup_solve_s residual"},
     {"beam --nodes 60 --steps 3", 3, "bench solver linear_iterations spread",
@@ -186,6 +241,8 @@ static void check_row(const char *row, const Promise *promise) {
   for (const char *rest = text_next(promise->positive, key); rest; rest = text_next(rest, key))
     ck_assert_msg(number_of(row, key) > 0, "%s is not positive in %s", key, row);
   value_of(row, "processor");
+  value_of(row, "simd");
+  value_of(row, "versions");
   ck_assert_double_ge(number_of(row, "repeats"), 1);
 }
 
@@ -261,6 +318,9 @@ START_TEST(wrong_arguments_are_usage_errors) {
                          "overlap --set far",
                          "overlap --quantity W",
                          "overlap --batch 0",
+                         "overlap --batch 1.5",
+                         "overlap --threads 1,none",
+                         "solver --threads 1,2",
                          "overlap --repeat many",
                          "overlap --model exact --quantity V+grad+hess",
                          "solver --nodes 5000,x",
@@ -294,6 +354,10 @@ int main(void) {
   tcase_add_loop_test(cases, the_same_seed_gives_the_same_pairs, 0, APP_BENCH_SET_COUNT);
   tcase_add_test(cases, an_unknown_set_is_an_error_that_names_the_known_ones);
   tcase_add_test(cases, the_median_of_rounds_counts);
+  tcase_add_test(cases, ratios_are_taken_within_a_round);
+  tcase_add_test(cases, more_pairs_than_are_made_repeat_the_first);
+  tcase_add_test(cases, the_peak_is_a_number);
+  tcase_add_test(cases, a_card_tells_a_networks_size);
   tcase_add_test(cases, contestants_take_turns_to_and_fro_after_a_warm_up);
   tcase_add_test(cases, a_failure_ends_the_turns);
   tcase_add_test(cases, the_beam_has_about_the_vertices_that_were_asked_for);

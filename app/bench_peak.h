@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The roof of the roofline (Williams, Waterman, Patterson 2009): what one core of this machine computes at
+// most.
+#ifndef TETLAP_APP_BENCH_PEAK_H
+#define TETLAP_APP_BENCH_PEAK_H
+
+#include <stdbool.h>
+
+// Multiplications and additions a second [1/s] of independent fused multiply-adds in the widest vectors that
+// the processor has, on one core, in float or double; the best of several rounds of milliseconds.
+double app_bench_peak_measure(bool is_float);
+
+#endif
