@@ -7,6 +7,7 @@
 #include "app/bench_beam.h"
 #include "app/bench_drop.h"
 #include "app/bench_overlap.h"
+#include "app/bench_precision.h"
 #include "app/bench_scene.h"
 #include "app/bench_solver.h"
 #include "app/bench_step.h"
@@ -26,13 +27,15 @@ static const Bench benches[] = {
     {"beam", "linear solvers: a whole run of a beam", app_bench_beam_run},
     {"scene", "whole runs of scenes", app_bench_scene_run},
     {"step", "where the time of a run goes", app_bench_step_run},
+    {"precision", "error of whole runs against their time, over tolerances and mesh levels",
+     app_bench_precision_run},
     {"drop", "energy gain of a drop, over contact stiffness", app_bench_drop_run},
 };
 enum { BENCH_COUNT = sizeof benches / sizeof *benches };
 
 static void print_benches(FILE *stream) {
   fputs("usage: tetlap bench NAME [OPTION…]\n\n", stream);
-  for (int i = 0; i < BENCH_COUNT; i++) fprintf(stream, "  %-8s %s\n", benches[i].name, benches[i].help);
+  for (int i = 0; i < BENCH_COUNT; i++) fprintf(stream, "  %-9s %s\n", benches[i].name, benches[i].help);
   fputs("\n`tetlap bench NAME --help` tells the options and what a row holds.\n", stream);
 }
 

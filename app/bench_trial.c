@@ -2,7 +2,9 @@
 #include "app/bench_trial.h"
 
 #include <omp.h>
+#include <stdio.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 
 Status app_bench_trial_begin(AppBenchTrial *trial, const AppBenchOptions *options, long long step_limit) {
@@ -21,22 +23,43 @@ void app_bench_trial_end(AppBenchTrial *trial) {
   memory_free(trial->phases);
 }
 
-// Ends the run as Ctrl-C would, once it has made its steps.
+// Ends the run as Ctrl-C would, once it has made its steps or used its time.
 static Status stop_at_limit(void *self, const FemRunProgress *progress) {
-  const AppBenchTrial *trial = self;
-  if (trial->step_limit == 0 || progress->step_count < trial->step_limit) return STATUS_OK;
-  return status_fail(STATUS_INTERRUPTED, "the trial's last step was made");
+  AppBenchTrial *trial = self;
+  if (trial->watch) TRY(trial->watch(trial->watcher, progress));
+  if (trial->step_limit > 0 && progress->step_count >= trial->step_limit)
+    return status_fail(STATUS_INTERRUPTED, "the trial's last step was made");
+  if (trial->wall_limit_s > 0 && clock_wall_s() - trial->run_began_s > trial->wall_limit_s) {
+    trial->outcome = STATUS_INTERRUPTED;
+    return status_fail(STATUS_INTERRUPTED, "t = %g s of %g s was reached in %g s", progress->time,
+                       progress->end, trial->wall_limit_s);
+  }
+  return STATUS_OK;
 }
 
 Status app_bench_trial_run(void *self, int round) {
   AppBenchTrial *trial = self;
-  FemRunOptions options = {.observe = stop_at_limit, .observer = trial};
+  FemRunOptions options = {
+      .observe = stop_at_limit, .observer = trial, .keep_trajectory = trial->keeps_trajectory};
   fem_run_result_destroy(&trial->result);
+  omp_set_num_threads(trial->scene.threads);
+  trial->outcome = STATUS_OK;
+  trial->message[0] = 0;
+  trial->run_began_s = clock_wall_s();
   app_bench_timer_start(&trial->timer);
   Status status = fem_run(&trial->model, &options, &trial->result);
   app_bench_timer_stop(&trial->timer, round, 1);
   trial->phases[round] = trial->result.phases;
-  return status == STATUS_INTERRUPTED ? STATUS_OK : status;
+  if (status == STATUS_SOLVER) trial->outcome = STATUS_SOLVER;
+  if (trial->outcome != STATUS_OK) snprintf(trial->message, sizeof trial->message, "%s", status_message());
+  bool is_result = status == STATUS_INTERRUPTED || (status == STATUS_SOLVER && trial->accepts_failure);
+  return is_result ? STATUS_OK : status;
+}
+
+const char *app_bench_trial_outcome(const AppBenchTrial *trial) {
+  return trial->outcome == STATUS_OK            ? "finished"
+         : trial->outcome == STATUS_INTERRUPTED ? "cut short"
+                                                : "failed";
 }
 
 FemRunPhases app_bench_trial_phases(const AppBenchTrial *trial, int rounds) {

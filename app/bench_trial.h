@@ -11,11 +11,22 @@
 typedef struct AppBenchTrial {
   FemSceneDef scene;    // owned
   FemModel model;       // owned
-  long long step_limit; // a run ends after so many steps; 0: at the scene's end
+  long long step_limit;  // a run ends after so many steps; 0: at the scene's end
+  double wall_limit_s;   // a run ends after so long; 0: at the scene's end
+  bool keeps_trajectory; // in the result
+  bool accepts_failure;  // a run that the solver gives up is a result too: see `outcome`
+  Status (*watch)(void *watcher, const FemRunProgress *progress); // after each accepted step; may be NULL
+  void *watcher;
   AppBenchTimer timer;
   FemRunPhases *phases; // by round                     (repeats)
   FemRunResult result;  // of the last round, owned
+  Status outcome;       // of the last round: OK, also at the step limit; INTERRUPTED at the wall limit; SOLVER
+  char message[256];    // why it was not OK
+  double run_began_s;
 } AppBenchTrial;
+
+// "finished", "cut short" (the wall limit) or "failed" (the solver gave up).
+const char *app_bench_trial_outcome(const AppBenchTrial *trial);
 
 // `trial->scene` has been read (a failed reading leaves it zeroed); builds the model. A zeroed trial, and one
 // whose beginning failed, can be ended.
