@@ -33,12 +33,13 @@ static bool is_at_rest(const FemSceneDef *scene) {
   bool moves = scene->has_gravity && !is_zero(scene->gravity);
   for (int b = 0; b < scene->body_count; b++) {
     const FemBodyDef *body = &scene->bodies[b];
-    moves = moves || body->driven_count > 0 || !is_zero(body->velocity) || !is_zero(body->spin);
+    moves = moves || body->driven_count > 0 || body->load_count > 0 || !is_zero(body->velocity) ||
+            !is_zero(body->spin);
   }
   for (int o = 0; o < scene->obstacle_count; o++) {
     const FemConstraintDef *motion = &scene->obstacles[o].motion;
     moves = moves || motion->table_count > 0 || motion->spin != 0 || !is_zero(motion->velocity) ||
-            !is_zero(motion->amplitude);
+            !is_zero(motion->amplitude) || motion->formula[0] || motion->formula[1] || motion->formula[2];
   }
   return !moves;
 }

@@ -53,6 +53,16 @@ static const char *hessian_help(int i) {
                 : "the second derivatives of the overlap volumes as well, where the model has them";
 }
 
+static const char *following_name(int i) { // the number is FemLoadDef.is_dead
+  static const char *const names[] = {"surface", "nothing"};
+  return i < 2 ? names[i] : NULL;
+}
+static const char *following_help(int i) {
+  return i == 0 ? "the surface as it is now: direction and area change with it"
+                : "the surface as it was at rest: a dead load";
+}
+
+static const SceneChoices followings = {following_name, following_help};
 static const SceneChoices laws = {law_name, law_help};
 static const SceneChoices potentials = {potential_name, potential_help};
 static const SceneChoices solvers = {solver_name, solver_help};
@@ -62,16 +72,24 @@ static const SceneChoices hessians = {hessian_name, hessian_help};
 // What no single key says.
 
 static const char *finish_select_box(void *self, const char **key) {
-  const FemConstraintDef *def = self;
+  const FemSelectDef *select = self;
   *key = "max";
   for (int c = 0; c < 3; c++)
-    if (!(def->select.box_min[c] <= def->select.box_max[c])) return "max must not be below min";
+    if (!(select->box_min[c] <= select->box_max[c])) return "max must not be below min";
   return NULL;
 }
 
 static const char *finish_fixed(void *self, const char **key) {
   (void)key;
   ((FemConstraintDef *)self)->until = INFINITY;
+  return NULL;
+}
+
+static const char *finish_driven(void *self, const char **key) {
+  const FemConstraintDef *def = self;
+  *key = "release";
+  if (def->release > 0 && isfinite(def->until) && def->release < def->until)
+    return "the vertices are released before their motion ends; take away `until`, or release them later";
   return NULL;
 }
 
@@ -161,10 +179,14 @@ static const SceneKey material_keys[] = {
 };
 static const SceneSection material = {.help = "an isotropic elastic solid", .keys = material_keys};
 
+// Whatever selects vertices has its selection first, so one table serves all.
+_Static_assert(offsetof(FemConstraintDef, select) == 0 && offsetof(FemLoadDef, select) == 0,
+               "a selection must be the first member");
+
 static const SceneKey select_box_keys[] = {
-    {"min", SCENE_VECTOR, AT(FemConstraintDef, select.box_min), .unit = "m", .required = "[0, 0, 0]",
+    {"min", SCENE_VECTOR, AT(FemSelectDef, box_min), .unit = "m", .required = "[0, 0, 0]",
      .help = "lower corner"},
-    {"max", SCENE_VECTOR, AT(FemConstraintDef, select.box_max), .unit = "m", .required = "[1, 1, 0]",
+    {"max", SCENE_VECTOR, AT(FemSelectDef, box_max), .unit = "m", .required = "[1, 1, 0]",
      .help = "upper corner; the faces count as inside"},
     {0},
 };
@@ -172,9 +194,9 @@ static const SceneSection select_box = {
     .help = "vertices in a box", .keys = select_box_keys, .finish = finish_select_box};
 
 static const SceneKey select_halfspace_keys[] = {
-    {"point", SCENE_VECTOR, AT(FemConstraintDef, select.point), .unit = "m", .required = "[0, 0, 0]",
+    {"point", SCENE_VECTOR, AT(FemSelectDef, point), .unit = "m", .required = "[0, 0, 0]",
      .help = "on the plane"},
-    {"normal", SCENE_DIRECTION, AT(FemConstraintDef, select.normal), .required = "[0, 0, 1]",
+    {"normal", SCENE_DIRECTION, AT(FemSelectDef, normal), .required = "[0, 0, 1]",
      .help = "points away from the selected side"},
     {0},
 };
@@ -182,26 +204,45 @@ static const SceneSection select_halfspace = {.help = "vertices on one side of a
                                               .keys = select_halfspace_keys};
 
 static const SceneKey select_keys[] = {
-    {"box", SCENE_SECTION, .section = &select_box, MARK(FemConstraintDef, select.kind, FEM_SELECT_BOX),
+    {"box", SCENE_SECTION, .section = &select_box, MARK(FemSelectDef, kind, FEM_SELECT_BOX),
      .help = "the vertices in a box, as placed, at rest"},
-    {"halfspace", SCENE_SECTION, .section = &select_halfspace,
-     MARK(FemConstraintDef, select.kind, FEM_SELECT_HALFSPACE),
+    {"halfspace", SCENE_SECTION, .section = &select_halfspace, MARK(FemSelectDef, kind, FEM_SELECT_HALFSPACE),
      .help = "the vertices x with normal·(x − point) ≤ 0"},
-    {"group", SCENE_TEXT, AT(FemConstraintDef, select.group),
-     MARK(FemConstraintDef, select.kind, FEM_SELECT_GROUP),
+    {"group", SCENE_TEXT, AT(FemSelectDef, group), MARK(FemSelectDef, kind, FEM_SELECT_GROUP),
      .help = "a named group of the mesh (`tetlap mesh FILE` lists them)"},
-    {"all", SCENE_TRUE, MARK(FemConstraintDef, select.kind, FEM_SELECT_ALL),
-     .help = "every vertex of the body"},
-    {"components", SCENE_AXES, AT(FemConstraintDef, components), .fallback = "[x, y, z]",
-     .help = "the coordinates that are prescribed; the others stay free"},
+    {"all", SCENE_TRUE, MARK(FemSelectDef, kind, FEM_SELECT_ALL), .help = "every vertex of the body"},
     {0},
 };
+static const SceneSection select_more = {.keys = select_keys};
+
+static const SceneKey prescribed_keys[] = {
+    {"components", SCENE_AXES, AT(FemConstraintDef, components), .fallback = "[x, y, z]",
+     .help = "the coordinates that are prescribed; the others stay free"},
+    {"release", SCENE_NUMBER, AT(FemConstraintDef, release), .unit = "s", .range = "(0, inf)",
+     .absent_help = "never", .help = "from then on the vertices are free, with the velocity that they have"},
+    {0},
+};
+static const SceneSection prescribed_more = {.keys = prescribed_keys, .more = &select_more};
 static const SceneSection fixed = {.help = "vertices that do not move",
                                    .size = sizeof(FemConstraintDef),
-                                   .keys = select_keys,
+                                   .keys = prescribed_keys,
+                                   .more = &select_more,
                                    .one_of = "box halfspace group all",
                                    .finish = finish_fixed,
                                    PLACE(FemConstraintDef, select.place)};
+
+static const SceneKey formula_keys[] = {
+    {"x", SCENE_FORMULA, AT(FemConstraintDef, formula[0]), .absent_help = "0",
+     .help = "displacement along x"},
+    {"y", SCENE_FORMULA, AT(FemConstraintDef, formula[1]), .absent_help = "0", .help = "along y"},
+    {"z", SCENE_FORMULA, AT(FemConstraintDef, formula[2]), .absent_help = "0", .help = "along z"},
+    {0},
+};
+static const SceneSection formula = {
+    .help = "displacements [m] as functions of t [s]: + - * / ^, pi, sin cos tan exp log sqrt abs floor step "
+            "smooth min max",
+    .keys = formula_keys,
+    .some_of = "x y z"};
 
 static const SceneKey motion_keys[] = {
     {"velocity", SCENE_VECTOR, AT(FemConstraintDef, velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
@@ -213,6 +254,8 @@ static const SceneKey motion_keys[] = {
     {"table", SCENE_ROWS, AT(FemConstraintDef, table), .unit = "s, m",
      .count_offset = offsetof(FemConstraintDef, table_count),
      .help = "rows [t, dx, dy, dz] of time and displacement, linear between them"},
+    {"formula", SCENE_SECTION, .section = &formula, .excludes = "table",
+     .help = "displacements by formulas, added to velocity and amplitude"},
     {"spin", SCENE_NUMBER, AT(FemConstraintDef, spin), .unit = "rad/s", .fallback = "0", .needs = "axis",
      .help = "turning about an axis"},
     {"axis", SCENE_DIRECTION, AT(FemConstraintDef, axis), .needs = "spin", .help = "of the spin"},
@@ -224,16 +267,45 @@ static const SceneKey motion_keys[] = {
 };
 static const SceneSection motion = {.help = "a prescribed motion, from t = 0",
                                     .keys = motion_keys,
-                                    .some_of = "velocity amplitude table spin"};
+                                    .some_of = "velocity amplitude table formula spin"};
 
-static const SceneSection select_more = {.keys = select_keys};
 static const SceneSection driven = {.help = "vertices that move as told",
                                     .size = sizeof(FemConstraintDef),
                                     .keys = motion_keys,
-                                    .more = &select_more,
+                                    .more = &prescribed_more,
                                     .one_of = "box halfspace group all",
-                                    .some_of = "velocity amplitude table spin",
+                                    .some_of = "velocity amplitude table formula spin",
+                                    .finish = finish_driven,
                                     PLACE(FemConstraintDef, select.place)};
+
+static const SceneKey load_keys[] = {
+    {"force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "body_force traction pressure", .unit = "N",
+     MARK(FemLoadDef, kind, FEM_LOAD_FORCE), .help = "in all, shared evenly by the selected vertices"},
+    {"body_force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force traction pressure",
+     .unit = "N/m³", MARK(FemLoadDef, kind, FEM_LOAD_BODY_FORCE),
+     .help = "on the volume (at rest) around the selected vertices"},
+    {"traction", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force body_force pressure",
+     .unit = "N/m²", MARK(FemLoadDef, kind, FEM_LOAD_TRACTION),
+     .help = "on the area (at rest) of the surface triangles whose three corners are selected"},
+    {"pressure", SCENE_NUMBER, AT(FemLoadDef, pressure), .unit = "Pa",
+     MARK(FemLoadDef, kind, FEM_LOAD_PRESSURE),
+     .help = "on the same triangles, against their outward normal"},
+    {"follows", SCENE_CHOICE, AT(FemLoadDef, is_dead), .fallback = "surface", .choices = &followings,
+     .needs = "pressure", .help = "what a pressure acts on"},
+    {"factor", SCENE_FORMULA, AT(FemLoadDef, factor), .absent_help = "1", .excludes = "table",
+     .help = "the load is this function of t [s] times the value above"},
+    {"table", SCENE_PROFILE, AT(FemLoadDef, table), .count_offset = offsetof(FemLoadDef, table_count),
+     .absent_help = "1", .excludes = "factor",
+     .help = "or rows [t, factor], linear between them, constant before and after"},
+    {0},
+};
+static const SceneSection load = {.help = "a load from outside",
+                                  .size = sizeof(FemLoadDef),
+                                  .keys = load_keys,
+                                  .more = &select_more,
+                                  .one_of = "box halfspace group all",
+                                  .some_of = "force body_force traction pressure",
+                                  PLACE(FemLoadDef, select.place)};
 
 static const SceneKey body_keys[] = {
     {"name", SCENE_LABEL, AT(FemBodyDef, name), .required = "block",
@@ -252,6 +324,8 @@ static const SceneKey body_keys[] = {
      .count_offset = offsetof(FemBodyDef, fixed_count), .help = "vertices that do not move"},
     {"driven", SCENE_LIST, AT(FemBodyDef, driven), .section = &driven,
      .count_offset = offsetof(FemBodyDef, driven_count), .help = "vertices that move as told"},
+    {"loads", SCENE_LIST, AT(FemBodyDef, loads), .section = &load,
+     .count_offset = offsetof(FemBodyDef, load_count), .help = "forces and pressures from outside"},
     {0},
 };
 static const SceneSection body = {
@@ -413,6 +487,10 @@ bool app_scene_keys_locate(const SceneSection *section, const char *name, char *
   return false;
 }
 
+int app_scene_keys_row_width(const SceneKey *key) {
+  return key->type == SCENE_PROFILE ? 2 : 4;
+}
+
 SceneRange app_scene_keys_range(const SceneKey *key) {
   if (!key->range) return (SceneRange){-INFINITY, INFINITY, true, true};
   char *end;
@@ -466,6 +544,10 @@ static const char *type_text(SceneType type) {
     return "a list of some of x, y, z";
   case SCENE_ROWS:
     return "rows [t, x, y, z] of four numbers, t increasing";
+  case SCENE_PROFILE:
+    return "rows [t, value] of two numbers, t increasing";
+  case SCENE_FORMULA:
+    return "a number or a formula of t, like 'sin(2*pi*t)'";
   case SCENE_SECTION:
     return "a mapping {key: value}";
   case SCENE_LIST:

@@ -26,6 +26,8 @@ typedef enum SceneType {
   SCENE_COUNTS,    // int[3]; one number stands for three
   SCENE_AXES,      // bool[3]: some of x, y, z
   SCENE_ROWS,      // double *, owned, (count, 4): rows [t, x, y, z], t increasing
+  SCENE_PROFILE,   // double *, owned, (count, 2): rows [t, value], t increasing
+  SCENE_FORMULA,   // Expression *, owned: a function of t; a number is one, too
   SCENE_SECTION,   // keys of its own; their offsets count from the key's
   SCENE_LIST,      // an array of structs, owned, (count); each a section
 } SceneType;
@@ -57,7 +59,7 @@ typedef struct SceneKey {
   const char *absent_help;     // what holds without the key, where no default says it
   const SceneChoices *choices; // of NAME and CHOICE
   const SceneSection *section; // of SECTION and LIST
-  size_t count_offset;         // of ROWS and LIST: an int in the same struct
+  size_t count_offset;         // of ROWS, PROFILE and LIST: an int in the same struct
   SceneMark mark;
   const char *needs;    // keys of the section that must stand beside this one, separated by spaces
   const char *excludes; // keys that must not
@@ -76,6 +78,9 @@ struct SceneSection {
   // Sees to what no single key says; returns what is wrong and the key to blame, else NULL. May be NULL.
   const char *(*finish)(void *self, const char **key);
 };
+
+// How many numbers a row of ROWS or PROFILE has.
+int app_scene_keys_row_width(const SceneKey *key);
 
 // The numbers between two ends, each of which may be excluded.
 typedef struct SceneRange {

@@ -93,6 +93,10 @@ static const char *type_of(const SceneKey *key) {
     return "list of x, y, z";
   case SCENE_ROWS:
     return "list of [t, x, y, z]";
+  case SCENE_PROFILE:
+    return "list of [t, value]";
+  case SCENE_FORMULA:
+    return "formula of t";
   case SCENE_SECTION:
     return key->section->shorthand ? "text or mapping" : "mapping";
   case SCENE_LIST:

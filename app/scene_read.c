@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "app/scene_override.h"
+#include "base/expression.h"
 #include "base/memory.h"
 
 enum { MESSAGE_SIZE = 512, MAX_ITEMS = 10000 };
@@ -170,35 +171,49 @@ static Status read_axes(const SceneKey *key, const SceneNode *node, bool field[3
 
 // Rows one after another; the rows may also stand in one flat list, as the resolved scene is written.
 static Status read_rows(const SceneKey *key, const SceneNode *node, void *self) {
+  int width = app_scene_keys_row_width(key);
   bool is_flat = node->kind == SCENE_NODE_LIST && node->count > 0 && node->first->kind == SCENE_NODE_NUMBER;
-  int count = is_flat ? node->count / 4 : node->count;
-  if (node->kind != SCENE_NODE_LIST || count == 0 || (is_flat && node->count % 4 != 0))
+  int count = is_flat ? node->count / width : node->count;
+  if (node->kind != SCENE_NODE_LIST || count == 0 || (is_flat && node->count % width != 0))
     return fail_expected(key, node, "");
-  double *rows = memory_zeroed((size_t)count, 4 * sizeof *rows);
+  double *rows = memory_zeroed((size_t)count, (size_t)width * sizeof *rows);
   if (!rows) return status_no_memory("the scene");
   memory_free(*(double **)field_of(self, key->offset));
   *(double **)field_of(self, key->offset) = rows;
   *(int *)field_of(self, key->count_offset) = count;
-  if (is_flat) return read_numbers(key, node, 4 * count, rows);
-  for (const SceneNode *row = node->first; row; row = row->next, rows += 4)
-    TRY(read_numbers(key, row, 4, rows));
+  if (is_flat) return read_numbers(key, node, width * count, rows);
+  for (const SceneNode *row = node->first; row; row = row->next, rows += width)
+    TRY(read_numbers(key, row, width, rows));
   return STATUS_OK;
 }
 
 static Status read_increasing_rows(const SceneKey *key, const SceneNode *node, void *self) {
   TRY(read_rows(key, node, self));
   const double *rows = *(double **)field_of(self, key->offset);
-  int count = *(int *)field_of(self, key->count_offset);
+  int count = *(int *)field_of(self, key->count_offset), width = app_scene_keys_row_width(key);
   for (int i = 1; i < count; i++) {
-    if (rows[4 * i] > rows[4 * (i - 1)]) continue;
+    if (rows[width * i] > rows[width * (i - 1)]) continue;
     char path[MESSAGE_SIZE];
     app_scene_tree_path(node, path, sizeof path);
     bool is_flat = node->first->kind == SCENE_NODE_NUMBER;
-    const SceneNode *row = app_scene_tree_at(node, is_flat ? 4 * i : i);
+    const SceneNode *row = app_scene_tree_at(node, is_flat ? width * i : i);
     return app_scene_tree_fail(row, "%s: the time %g of row %d does not follow %g; times must increase", path,
-                               rows[4 * i], i, rows[4 * (i - 1)]);
+                               rows[width * i], i, rows[width * (i - 1)]);
   }
   return STATUS_OK;
+}
+
+static Status read_formula(const SceneKey *key, const SceneNode *node, Expression **field) {
+  if (node->kind != SCENE_NODE_NUMBER && node->kind != SCENE_NODE_TEXT) return fail_expected(key, node, "");
+  Expression *expression = memory_zeroed(1, sizeof *expression);
+  if (!expression) return status_no_memory("the scene");
+  memory_free(*field);
+  *field = expression;
+  if (expression_parse(expression, node->text) == STATUS_OK) return STATUS_OK;
+  char path[MESSAGE_SIZE], wrong[MESSAGE_SIZE];
+  app_scene_tree_path(node, path, sizeof path);
+  snprintf(wrong, sizeof wrong, "%s", status_message());
+  return app_scene_tree_fail(node, "%s: %s", path, wrong);
 }
 
 // Sections.
@@ -263,7 +278,10 @@ static Status read_value(const SceneKey *key, const SceneNode *node, void *self)
   case SCENE_AXES:
     return read_axes(key, node, field);
   case SCENE_ROWS:
+  case SCENE_PROFILE:
     return read_increasing_rows(key, node, self);
+  case SCENE_FORMULA:
+    return read_formula(key, node, field);
   case SCENE_SECTION:
     return read_subsection(key, node, field);
   case SCENE_LIST:

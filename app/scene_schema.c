@@ -75,15 +75,23 @@ static void put_axes(bool is_nullable, Record *record) {
   record_bool(record, "uniqueItems", true);
 }
 
+// A formula, or a number.
+static void put_formula(bool is_nullable, Record *record) {
+  RecordList *any = record_list(record, "anyOf");
+  put_type(record_append(any), "string", is_nullable);
+  put_type(record_append(any), "number", false);
+}
+
 static void put_rows(const SceneKey *key, bool is_nullable, Record *record) {
   RecordList *any = record_list(record, "anyOf");
   Record *rows = record_append(any), *flat = record_append(any);
   put_type(rows, "array", is_nullable);
-  put_array(key, "number", 4, false, record_child(rows, "items"));
+  int width = app_scene_keys_row_width(key);
+  put_array(key, "number", width, false, record_child(rows, "items"));
   record_integer(rows, "minItems", 1);
   put_type(flat, "array", false);
   put_type(record_child(flat, "items"), "number", false);
-  record_integer(flat, "minItems", 4);
+  record_integer(flat, "minItems", width);
 }
 
 // Sections.
@@ -186,7 +194,11 @@ static Status put_key(const SceneKey *key, const void *defaults, Record *record)
     put_axes(is_nullable, record);
     break;
   case SCENE_ROWS:
+  case SCENE_PROFILE:
     put_rows(key, is_nullable, record);
+    break;
+  case SCENE_FORMULA:
+    put_formula(is_nullable, record);
     break;
   case SCENE_SECTION:
     return put_subsection(key, defaults, is_nullable, record);

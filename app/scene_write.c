@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/scene_read.h"
+#include "base/expression.h"
 #include "base/memory.h"
 
 static const void *field_of(const void *self, size_t offset) {
@@ -38,7 +39,10 @@ static bool is_given(const SceneKey *key, const void *self, const void *defaults
   case SCENE_LABEL:
   case SCENE_NAME:
     return text_of(key, self) != NULL;
+  case SCENE_FORMULA:
+    return *(Expression *const *)field != NULL;
   case SCENE_ROWS:
+  case SCENE_PROFILE:
   case SCENE_LIST:
     return count_of(key, self) > 0;
   case SCENE_SECTION:
@@ -71,7 +75,7 @@ static bool is_empty_allowed(const SceneSection *section) {
   const SceneKey *key;
   for (int i = 0; (key = app_scene_keys_at(section, i)); i++)
     if (key->required) return false;
-  return !section->one_of;
+  return !section->one_of && !section->some_of;
 }
 
 // A key is written if it says something, else with its default, where reading would accept it: the keys that
@@ -161,7 +165,12 @@ Status app_scene_write_value(const SceneKey *key, const void *self, Record *reco
     write_axes(field, record, name);
     break;
   case SCENE_ROWS:
-    record_numbers(record, name, *(double *const *)field, 4 * count_of(key, self));
+  case SCENE_PROFILE:
+    record_numbers(record, name, *(double *const *)field,
+                   app_scene_keys_row_width(key) * count_of(key, self));
+    break;
+  case SCENE_FORMULA:
+    record_text(record, name, (*(Expression *const *)field)->text);
     break;
   case SCENE_SECTION:
     return write_keys(key->section, field, field, record_child(record, name));

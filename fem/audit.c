@@ -14,8 +14,9 @@ static double largest_part(const FemAudit *audit, const FemEnergy *energy) {
 }
 
 void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, double floor) {
-  double total = stored(energy);
+  double total = stored(energy) - energy->applied_work;
   *audit = (FemAudit){.time = time,
+                      .work = energy->applied_work,
                       .total = total,
                       .lowest = total,
                       .scale = floor,
@@ -30,7 +31,8 @@ FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *ene
   double half_step = 0.5 * (time - audit->time);
   next.time = time;
   next.dissipated += half_step * (audit->dissipated_power + energy->dissipated_power);
-  next.work += half_step * (audit->driven_power + energy->driven_power);
+  next.driven_work += half_step * (audit->driven_power + energy->driven_power);
+  next.work = next.driven_work + energy->applied_work;
   next.dissipated_power = energy->dissipated_power;
   next.driven_power = energy->driven_power;
   next.total = stored(energy) + next.dissipated - next.work;
@@ -38,4 +40,9 @@ FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *ene
   next.lowest = fmin(audit->lowest, next.total);
   next.scale = fmax(audit->scale, largest_part(&next, energy));
   return next;
+}
+
+void fem_audit_release(FemAudit *audit, double kinetic_energy) {
+  audit->driven_work += kinetic_energy;
+  audit->work += kinetic_energy;
 }

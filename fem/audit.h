@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The energy audit of a run. The audited total
-//     A = kinetic + elastic + gravity + contact + dissipated − work of driven vertices and obstacles
+//     A = kinetic + elastic + gravity + contact + dissipated − work of driven vertices, obstacles and loads
 // is constant in exact mechanics and falls by the integrator's own damping; a rise is an error. Powers are
 // integrated by the trapezoidal rule over accepted steps.
 #ifndef TETLAP_FEM_AUDIT_H
@@ -9,12 +9,14 @@
 #include "fem/effect.h"
 
 typedef struct FemAudit {
-  double time;             // of the last accepted state [s]
-  double dissipated, work; // so far [J]
-  double total;            // A [J]
-  double lowest;           // smallest A so far [J]
-  double gain;             // largest rise of A above an earlier value [J]
-  double scale;            // the scene's energy: largest of its parts so far, gravity from its start [J]
+  double time;        // of the last accepted state [s]
+  double dissipated;  // so far [J]
+  double driven_work; // of driven vertices and obstacles [J]
+  double work;        // driven_work and the loads' [J]
+  double total;       // A [J]
+  double lowest;      // smallest A so far [J]
+  double gain;        // largest rise of A above an earlier value [J]
+  double scale;       // the scene's energy: largest of its parts so far, gravity from its start [J]
   double gravity_at_start;
   double dissipated_power, driven_power; // at `time` [W]
 } FemAudit;
@@ -24,5 +26,9 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
 
 // The audit as it would be after accepting this state.
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy);
+
+// Coordinates that were driven have been set free: from now on their kinetic energy counts, and whoever drove
+// them has given it to them.
+void fem_audit_release(FemAudit *audit, double kinetic_energy);
 
 #endif

@@ -48,6 +48,12 @@ void fem_drive_point(const FemConstraintDef *def, double time, const double rest
     follow_table(def, t, displacement, velocity);
     for (int c = 0; c < 3; c++) position[c] += displacement[c];
   }
+  for (int c = 0; c < 3; c++) {
+    if (!def->formula[c]) continue;
+    ExpressionValue displacement = expression_eval(def->formula[c], t);
+    position[c] += displacement.value;
+    velocity[c] += displacement.rate;
+  }
   if (is_frozen)
     for (int c = 0; c < 3; c++) velocity[c] = 0;
 }

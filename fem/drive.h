@@ -5,8 +5,8 @@
 
 #include "fem/scene.h"
 
-// x(t) = centre + R(spin t)(rest − centre) + velocity t + amplitude sin(2π frequency t) + table(t), all
-// frozen from `until` on. Position [m] and velocity [m/s] of the point that rests at `rest`.
+// x(t) = centre + R(spin t)(rest − centre) + velocity t + amplitude sin(2π frequency t) + table(t) +
+// formula(t), all frozen from `until` on. Position [m] and velocity [m/s] of the point that rests at `rest`.
 void fem_drive_point(const FemConstraintDef *def, double time, const double rest[3], double position[3],
                      double velocity[3]);
 

@@ -6,6 +6,7 @@ static const FemEffectOps *const effects[] = {
     &fem_effect_elasticity,
     &fem_effect_damping,
     &fem_effect_gravity,
+    &fem_effect_loads,
     &fem_effect_contact,
 };
 

@@ -24,6 +24,7 @@ typedef struct FemEnergy {
   double elastic, gravity, contact;
   double dissipated_power; // ≥ 0
   double driven_power;     // of whatever moves prescribed coordinates and obstacles
+  double applied_work;     // of loads since the start [J]
 } FemEnergy;
 
 typedef struct FemEffectOps {
@@ -62,6 +63,7 @@ const FemEffectOps *const *fem_effect_list(int *count);
 extern const FemEffectOps fem_effect_elasticity;
 extern const FemEffectOps fem_effect_damping;
 extern const FemEffectOps fem_effect_gravity;
+extern const FemEffectOps fem_effect_loads;
 extern const FemEffectOps fem_effect_contact;
 
 #endif

@@ -130,7 +130,8 @@ static void append_bodies(FemModel *model, const FemMesh *meshes) {
 
 static bool is_at_rest(const FemConstraintDef *def) {
   bool moves = def->spin != 0 || def->table_count > 0;
-  for (int c = 0; c < 3; c++) moves = moves || def->velocity[c] != 0 || def->amplitude[c] != 0;
+  for (int c = 0; c < 3; c++)
+    moves = moves || def->velocity[c] != 0 || def->amplitude[c] != 0 || def->formula[c] != NULL;
   return !moves;
 }
 
@@ -148,7 +149,7 @@ static Status add_driver(FemModel *model, const FemConstraintDef *def, const Fem
       if (!def->components[c]) continue;
       int dof = 3 * (body->vertex_begin + vertices[i]) + c;
       const FemModelDriver *other = owner[dof] ? &model->drivers[owner[dof] - 1] : NULL;
-      if (other && !(other->is_fixed && driver->is_fixed)) {
+      if (other && !(other->is_fixed && driver->is_fixed && other->def->release == def->release)) {
         const double *p = model->rest + (dof - c);
         status =
             status_fail(STATUS_INPUT,
@@ -200,9 +201,29 @@ static Status add_drivers(FemModel *model, const FemMesh *meshes) {
   return status;
 }
 
+static Status add_loads(FemModel *model, const FemMesh *meshes) {
+  const FemSceneDef *scene = model->scene;
+  size_t most = 0;
+  for (int b = 0; b < scene->body_count; b++) most += (size_t)scene->bodies[b].load_count;
+  model->loads = memory_zeroed(most, sizeof *model->loads);
+  if (!model->loads) return status_no_memory("the loads");
+  for (int b = 0; b < scene->body_count; b++)
+    for (int i = 0; i < scene->bodies[b].load_count; i++) {
+      const FemLoadDef *def = &scene->bodies[b].loads[i];
+      Status status =
+          fem_load_create(&model->loads[model->load_count], def, &meshes[b], model->bodies[b].vertex_begin);
+      if (status)
+        return status_prefix(status, "%s:%d:%d: body '%s', loads[%d]", scene->path ? scene->path : "scene",
+                             def->select.place.line, def->select.place.column, scene->bodies[b].name, i);
+      model->load_count++;
+    }
+  return STATUS_OK;
+}
+
 static void number_unknowns(FemModel *model) {
+  for (int dof = 0; dof < 3 * model->vertex_count; dof++) model->unknown_of_dof[dof] = 0;
   for (int d = 0; d < model->driver_count; d++)
-    for (int i = 0; i < model->drivers[d].dof_count; i++)
+    for (int i = 0; i < model->drivers[d].dof_count && !model->drivers[d].is_released; i++)
       model->unknown_of_dof[model->drivers[d].dofs[i]] = -1;
   int n = 0;
   for (int dof = 0; dof < 3 * model->vertex_count; dof++) {
@@ -229,6 +250,7 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(allocate(model, meshes, mesh_count));
   append_bodies(model, meshes);
   TRY(add_drivers(model, meshes));
+  TRY(add_loads(model, meshes));
   number_unknowns(model);
   int elastic_tets = model->bodies[model->scene->body_count - 1].tet_end;
   TRY(fem_colouring_create(&model->colouring, model->vertex_count, (const int(*)[4])model->tets,
@@ -254,6 +276,8 @@ Status fem_model_create(FemModel *model, const FemSceneDef *scene) {
 void fem_model_destroy(FemModel *model) {
   for (int d = 0; d < model->driver_count; d++) memory_free(model->drivers[d].dofs);
   memory_free(model->drivers);
+  for (int i = 0; i < model->load_count; i++) fem_load_destroy(&model->loads[i]);
+  memory_free(model->loads);
   memory_free(model->rest);
   memory_free(model->tets);
   memory_free(model->tet_body);
@@ -267,10 +291,45 @@ void fem_model_destroy(FemModel *model) {
   *model = (FemModel){0};
 }
 
+Status fem_model_copy_numbering(FemModel *copy, const FemModel *model) {
+  size_t dofs = 3 * (size_t)model->vertex_count;
+  *copy = *model;
+  copy->drivers = memory_copy(model->drivers, (size_t)model->driver_count, sizeof *model->drivers);
+  copy->unknown_of_dof = memory_copy(model->unknown_of_dof, dofs, sizeof *model->unknown_of_dof);
+  copy->dof_of_unknown = memory_copy(model->dof_of_unknown, dofs, sizeof *model->dof_of_unknown);
+  if (copy->drivers && copy->unknown_of_dof && copy->dof_of_unknown) return STATUS_OK;
+  fem_model_destroy_copy(copy);
+  return status_no_memory("the numbering of the unknowns");
+}
+
+void fem_model_destroy_copy(FemModel *copy) {
+  memory_free(copy->drivers);
+  memory_free(copy->unknown_of_dof);
+  memory_free(copy->dof_of_unknown);
+  *copy = (FemModel){0};
+}
+
+double fem_model_next_release(const FemModel *model, double time) {
+  double next = INFINITY;
+  for (int d = 0; d < model->driver_count; d++) {
+    double release = model->drivers[d].def->release;
+    if (release > time) next = fmin(next, release);
+  }
+  return next;
+}
+
+void fem_model_release(FemModel *model, double time) {
+  for (int d = 0; d < model->driver_count; d++) {
+    double release = model->drivers[d].def->release;
+    if (release > 0 && release <= time) model->drivers[d].is_released = true;
+  }
+  number_unknowns(model);
+}
+
 void fem_model_drive(const FemModel *model, double time, double *positions, double *velocities) {
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
-    for (int i = 0; i < driver->dof_count; i++) {
+    for (int i = 0; i < driver->dof_count && !driver->is_released; i++) {
       int dof = driver->dofs[i];
       double position[3], velocity[3];
       if (driver->is_fixed) {

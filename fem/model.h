@@ -7,6 +7,7 @@
 #include "contact/system.h"
 #include "fem/colouring.h"
 #include "fem/element.h"
+#include "fem/load.h"
 #include "fem/scene.h"
 
 typedef struct FemModelBody {
@@ -23,6 +24,7 @@ typedef struct FemModelBody {
 typedef struct FemModelDriver {
   const FemConstraintDef *def; // borrowed from the scene
   bool is_fixed;               // no motion at all
+  bool is_released;            // the coordinates are unknowns now
   int *dofs;                   // 3·vertex + component   (dof_count)
   int dof_count;
 } FemModelDriver;
@@ -42,6 +44,8 @@ typedef struct FemModel {
   int *dof_of_unknown;                     //                                           (unknown_count)
   FemModelDriver *drivers;                 //                                           (driver_count)
   int driver_count;
+  FemLoad *loads; //                                                                    (load_count)
+  int load_count;
   FemColouring colouring; // of the tetrahedra of bodies, which come first
   double length;          // the smallest body's bounding box diagonal [m]
   double edge;            // the smallest mean edge of a body [m]
@@ -52,6 +56,16 @@ typedef struct FemModel {
 // group.
 Status fem_model_create(FemModel *model, const FemSceneDef *scene);
 void fem_model_destroy(FemModel *model);
+
+// A copy whose vertices can be released while the run goes on: drivers and numbering are its own, all else is
+// borrowed from `model`, which must outlive it.
+Status fem_model_copy_numbering(FemModel *copy, const FemModel *model);
+void fem_model_destroy_copy(FemModel *copy);
+
+// The next time after `time` at which vertices are released; INFINITY: none.
+double fem_model_next_release(const FemModel *model, double time);
+// Releases what is due at `time` and numbers the unknowns anew.
+void fem_model_release(FemModel *model, double time);
 
 // Positions and velocities of all prescribed coordinates at time t; the others are left alone.
 void fem_model_drive(const FemModel *model, double time, double *positions, double *velocities);

@@ -21,7 +21,8 @@ enum { RETRIES_IN_A_ROW = 8 };
 enum { MOST_UNKNOWNS_TO_FACTORISE = 200000 };
 
 typedef struct Run {
-  const FemModel *model;        // borrowed
+  const FemModel *model;        // borrowed, or `own`
+  FemModel own;                 // where vertices are released while the run goes on
   const FemRunOptions *options; // borrowed
   FemRunResult *result;         // borrowed
   FemSystem system;
@@ -32,13 +33,36 @@ typedef struct Run {
   double *u, *v;         // the last accepted state         (unknown_count)
   double *u_new, *v_new; // the state under judgement  (unknown_count)
   int next_frame;
-  int retries; // in a row
+  int retries;               // in a row
+  double stage_end;          // the next release of vertices, or the end [s]
+  FemIntegratorStats before; // counted in earlier stages
+  FemSolverStats solver_before;
 } Run;
 
 FemSolverKind fem_run_solver(const FemModel *model) {
   FemSolverKind kind = model->scene->solver;
   if (kind != FEM_SOLVER_AUTO) return kind;
   return model->unknown_count > MOST_UNKNOWNS_TO_FACTORISE ? FEM_SOLVER_PCG : FEM_SOLVER_CHOLMOD;
+}
+
+// Counted over all stages.
+static FemIntegratorStats stats_of(const Run *run) {
+  FemIntegratorStats stats = fem_integrator_stats(run->integrator), before = run->before;
+  stats.steps += before.steps, stats.setups += before.setups, stats.residuals += before.residuals;
+  stats.newton_iterations += before.newton_iterations, stats.newton_failures += before.newton_failures;
+  stats.error_test_failures += before.error_test_failures;
+  stats.restarts += before.restarts, stats.roots += before.roots;
+  return stats;
+}
+
+static FemSolverStats solver_stats_of(const Run *run) {
+  FemSolverStats stats = *fem_integrator_solver_stats(run->integrator), before = run->solver_before;
+  stats.analyses += before.analyses, stats.factorisations += before.factorisations;
+  stats.failed_factorisations += before.failed_factorisations;
+  stats.solves += before.solves, stats.iterations += before.iterations;
+  stats.analyse_s += before.analyse_s, stats.factorise_s += before.factorise_s;
+  stats.solve_s += before.solve_s;
+  return stats;
 }
 
 static double frame_time(const Run *run, int frame) {
@@ -72,7 +96,7 @@ static void keep_extremes(FemRunResult *result, const FemMeasures *measures) {
 
 // Writes the frame of the scattered state.
 static Status write_frame(Run *run, double time, const FemMeasures *measures) {
-  FemIntegratorStats stats = fem_integrator_stats(run->integrator);
+  FemIntegratorStats stats = stats_of(run);
   FemAudit audit = time > run->audit.time ? fem_audit_next(&run->audit, time, &measures->energy) : run->audit;
   TRY(fem_recorder_write(&run->recorder, time, measures, &audit, stats.last_step, stats.steps));
   run->result->last_contact_force = measures->contact_force;
@@ -122,7 +146,7 @@ static Status observe(Run *run, const FemMeasures *measures) {
     return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
                        run->time);
   if (!run->options->observe) return STATUS_OK;
-  FemIntegratorStats stats = fem_integrator_stats(run->integrator);
+  FemIntegratorStats stats = stats_of(run);
   FemRunProgress progress = {.system = &run->system,
                              .time = run->time,
                              .end = run->model->scene->end,
@@ -171,7 +195,7 @@ static Status advance(Run *run) {
   run->audit = next;
   keep_state(run, time);
   keep_extremes(run->result, &measures);
-  FemIntegratorStats stats = fem_integrator_stats(run->integrator);
+  FemIntegratorStats stats = stats_of(run);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
   TRY(observe(run, &measures));
   return is_onset ? fem_integrator_restart(run->integrator, time, run->u, run->v, 0) : STATUS_OK;
@@ -218,30 +242,75 @@ static double energy_floor(const FemModel *model) {
   return floor;
 }
 
-static Status begin(Run *run) {
+// The integrator of the stage that begins at the run's time; its states are u and v.
+static Status begin_stage(Run *run, double step) {
   const FemModel *model = run->model;
   const FemSceneDef *scene = model->scene;
-  size_t n = (size_t)model->unknown_count;
+  run->stage_end = fmin(scene->end, fem_model_next_release(model, run->time));
+  FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
+                          .velocity_tolerance = fem_model_velocity_tolerance(model),
+                          .initial_step = step,
+                          .min_step = scene->min_step,
+                          .max_step = scene->max_step,
+                          .max_order = scene->max_order,
+                          .end = run->stage_end};
+  const FemSolverOps *solver = fem_solver_ops(fem_run_solver(model));
+  run->result->solver_name = solver->name;
+  TRY(fem_integrator_create(&run->integrator, &run->system, solver, &def));
+  return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
+}
+
+// The unknowns of the scattered state.
+static void gather(const Run *run, double *u, double *v) {
+  const FemModel *model = run->model;
+  for (int i = 0; i < model->unknown_count; i++) {
+    int dof = model->dof_of_unknown[i];
+    u[i] = run->system.positions[dof] - model->rest[dof];
+    v[i] = run->system.velocities[dof];
+  }
+}
+
+// Vertices come free with the place and the velocity that they were driven to.
+static Status release(Run *run) {
+  FemEnergy before, after;
+  fem_system_scatter(&run->system, run->time, run->u, run->v);
+  TRY(fem_system_energy(&run->system, run->time, &before));
+  run->before = stats_of(run);
+  run->solver_before = solver_stats_of(run);
+  fem_integrator_destroy(run->integrator);
+  run->integrator = NULL;
+  fem_model_release(&run->own, run->time);
+  TRY(fem_system_renumber(&run->system));
+  gather(run, run->u, run->v);
+  TRY(fem_system_energy(&run->system, run->time, &after));
+  fem_audit_release(&run->audit, after.kinetic - before.kinetic);
+  return begin_stage(run, 0);
+}
+
+static Status allocate_states(Run *run) {
+  size_t n =
+      run->model == &run->own ? 3 * (size_t)run->model->vertex_count : (size_t)run->model->unknown_count;
   double **states[] = {&run->u, &run->v, &run->u_new, &run->v_new};
   for (int i = 0; i < 4; i++)
     if (!(*states[i] = memory_zeroed(n, sizeof(double)))) return status_no_memory("the state");
+  return STATUS_OK;
+}
+
+static Status begin(Run *run) {
+  if (isfinite(fem_model_next_release(run->model, 0))) {
+    TRY(fem_model_copy_numbering(&run->own, run->model));
+    run->model = &run->own;
+  }
+  const FemModel *model = run->model;
+  const FemSceneDef *scene = model->scene;
+  TRY(allocate_states(run));
   TRY(fem_system_create(&run->system, model));
-  for (size_t i = 0; i < n; i++) {
+  for (int i = 0; i < model->unknown_count; i++) {
     int dof = model->dof_of_unknown[i];
     run->v[i] = model->initial_velocity[dof];
     if (run->options->initial_displacement) run->u[i] = run->options->initial_displacement[dof];
   }
-  FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
-                          .velocity_tolerance = fem_model_velocity_tolerance(model),
-                          .initial_step = scene->initial_step,
-                          .min_step = scene->min_step,
-                          .max_step = scene->max_step,
-                          .max_order = scene->max_order,
-                          .end = scene->end};
-  const FemSolverOps *solver = fem_solver_ops(fem_run_solver(model));
-  run->result->solver_name = solver->name;
-  TRY(fem_integrator_create(&run->integrator, &run->system, solver, &def));
-  TRY(fem_integrator_restart(run->integrator, 0, run->u, run->v, scene->initial_step));
+  TRY(begin_stage(run, scene->initial_step));
   TRY(fem_recorder_create(&run->recorder, &run->system, run->options->directory, scene->frames + 1));
   if (run->options->keep_trajectory) TRY(keep_trajectory(run));
   fem_system_scatter(&run->system, 0, run->u, run->v);
@@ -254,7 +323,10 @@ static Status begin(Run *run) {
 
 static Status march(Run *run) {
   TRY(begin(run));
-  while (run->time < run->model->scene->end) TRY(advance(run));
+  while (run->time < run->model->scene->end) {
+    if (run->time >= run->stage_end) TRY(release(run));
+    TRY(advance(run));
+  }
   return STATUS_OK;
 }
 
@@ -286,8 +358,8 @@ static Status collect(Run *run) {
   result->end_time = run->time;
   result->peak_rss_bytes = memory_peak_bytes();
   if (run->integrator) {
-    result->integrator = fem_integrator_stats(run->integrator);
-    result->solver = *fem_integrator_solver_stats(run->integrator);
+    result->integrator = stats_of(run);
+    result->solver = solver_stats_of(run);
   }
   result->pattern_layouts = run->system.pattern_version;
   sum_phases(run);
@@ -313,6 +385,7 @@ Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult
   fem_system_destroy(&run.system);
   double *states[] = {run.u, run.v, run.u_new, run.v_new};
   for (int i = 0; i < 4; i++) memory_free(states[i]);
+  fem_model_destroy_copy(&run.own);
   return status ? status : collected;
 }
 

@@ -7,8 +7,18 @@ static void free_constraints(FemConstraintDef *constraints, int count) {
   for (int i = 0; i < count; i++) {
     memory_free(constraints[i].select.group);
     memory_free(constraints[i].table);
+    for (int c = 0; c < 3; c++) memory_free(constraints[i].formula[c]);
   }
   memory_free(constraints);
+}
+
+static void free_loads(FemLoadDef *loads, int count) {
+  for (int i = 0; i < count; i++) {
+    memory_free(loads[i].select.group);
+    memory_free(loads[i].factor);
+    memory_free(loads[i].table);
+  }
+  memory_free(loads);
 }
 
 static void free_body(FemBodyDef *body) {
@@ -16,6 +26,7 @@ static void free_body(FemBodyDef *body) {
   memory_free(body->mesh_path);
   free_constraints(body->fixed, body->fixed_count);
   free_constraints(body->driven, body->driven_count);
+  free_loads(body->loads, body->load_count);
 }
 
 static void free_obstacle(FemObstacleDef *obstacle) {
@@ -23,6 +34,7 @@ static void free_obstacle(FemObstacleDef *obstacle) {
   memory_free(obstacle->mesh_path);
   memory_free(obstacle->motion.select.group);
   memory_free(obstacle->motion.table);
+  for (int c = 0; c < 3; c++) memory_free(obstacle->motion.formula[c]);
 }
 
 void fem_scene_destroy(FemSceneDef *scene) {

@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 
+#include "base/expression.h"
 #include "contact/system.h"
 #include "fem/material.h"
 #include "fem/mesh.h"
@@ -32,8 +33,9 @@ typedef struct FemSelectDef {
 } FemSelectDef;
 
 // Fixed (all motion zero) or driven vertices. A driven vertex moves with the displacement
-// d(t) = velocity·t + amplitude·sin(2π frequency t), or along a table of (time, displacement), until `until`,
-// where it stops; and turns about `axis` through `centre` by spin·t [rad].
+// d(t) = velocity·t + amplitude·sin(2π frequency t), or along a table of (time, displacement), or by a
+// formula for each coordinate, until `until`, where it stops; and turns about `axis` through `centre` by
+// spin·t [rad]. From `release` on the vertices are free, with the velocity that they had.
 typedef struct FemConstraintDef {
   FemSelectDef select;
   bool components[3];  // which of x, y, z are prescribed
@@ -44,8 +46,29 @@ typedef struct FemConstraintDef {
   double axis[3], centre[3];
   double *table; // time [s], displacement [m]    (table_count, 4), times increasing
   int table_count;
-  double until; // [s]; INFINITY: for ever
+  Expression *formula[3]; // displacement [m] of t [s], owned; NULL: none
+  double until;           // [s]; INFINITY: for ever
+  double release;         // [s]; 0: never
 } FemConstraintDef;
+
+// A load on the surface or the vertices of a body: its value times a factor that may depend on time.
+typedef enum FemLoadKind {
+  FEM_LOAD_FORCE,      // in all, shared evenly by the selected vertices [N]
+  FEM_LOAD_BODY_FORCE, // by rest volume [N/m³]
+  FEM_LOAD_TRACTION,   // by rest area of the surface triangles whose corners are all selected [N/m²]
+  FEM_LOAD_PRESSURE,   // on the same triangles, against their outward normal [Pa]
+} FemLoadKind;
+
+typedef struct FemLoadDef {
+  FemSelectDef select; // the first member, as in FemConstraintDef
+  FemLoadKind kind;
+  double vector[3]; // of all kinds but pressure
+  double pressure;
+  bool is_dead;       // a pressure that keeps its direction and area at rest; else it follows the surface
+  Expression *factor; // of t [s], owned; NULL: none
+  double *table;      // time [s], factor; linear between, constant outside    (table_count, 2)
+  int table_count;
+} FemLoadDef;
 
 typedef struct FemBodyDef {
   char *name;
@@ -61,6 +84,8 @@ typedef struct FemBodyDef {
   int fixed_count;
   FemConstraintDef *driven; //                                (driven_count)
   int driven_count;
+  FemLoadDef *loads; //                                       (load_count)
+  int load_count;
   FemScenePlace place;
 } FemBodyDef;
 

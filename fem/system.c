@@ -117,6 +117,10 @@ Status fem_system_couple(FemSystem *system, double time) {
   return has_grown ? lay_out(system) : STATUS_OK;
 }
 
+Status fem_system_renumber(FemSystem *system) {
+  return lay_out(system);
+}
+
 Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix) {
   fem_matrix_zero(matrix);
   FemState state = state_of(system, time);
@@ -159,7 +163,7 @@ static double driven_power(const FemSystem *system) {
   double sum = 0;
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
-    if (driver->is_fixed) continue;
+    if (driver->is_fixed || driver->is_released) continue;
     for (int i = 0; i < driver->dof_count; i++)
       sum -= system->forces[driver->dofs[i]] * system->velocities[driver->dofs[i]];
   }
@@ -168,7 +172,7 @@ static double driven_power(const FemSystem *system) {
 
 static bool has_moving_driver(const FemModel *model) {
   for (int d = 0; d < model->driver_count; d++)
-    if (!model->drivers[d].is_fixed) return true;
+    if (!model->drivers[d].is_fixed && !model->drivers[d].is_released) return true;
   return false;
 }
 

@@ -20,8 +20,8 @@
 static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.yaml";
 static const char *const full_json = TETLAP_SOURCE_DIR "/tests/data/scene/full.json";
 
-static const char *const examples[] = {"01_drop",       "02_two_blocks", "03_spheres",
-                                       "04_cantilever", "05_press",      "06_bunny_like"};
+static const char *const examples[] = {"01_drop",  "02_two_blocks", "03_spheres", "04_cantilever",
+                                       "05_press", "06_bunny_like", "20_loads",   "21_release"};
 enum { EXAMPLE_COUNT = sizeof examples / sizeof *examples };
 
 // What is printed to the stream that `print` is given; owned by the caller (free).
@@ -86,7 +86,9 @@ static void check_constraints(const FemBodyDef *body) {
   ck_vector(body->fixed[1].select.point, 0, 0, 1);
   ck_vector(body->fixed[1].select.normal, 0, 0, -2);
   ck_assert(body->fixed[1].components[0] && !body->fixed[1].components[1] && body->fixed[1].components[2]);
-  ck_assert_int_eq(body->driven_count, 4);
+  ck_assert_double_eq(body->fixed[0].release, 0);
+  ck_assert_double_eq(body->fixed[1].release, 1.5);
+  ck_assert_int_eq(body->driven_count, 5);
   const FemConstraintDef *driven = body->driven;
   ck_assert_int_eq(driven[0].select.kind, FEM_SELECT_GROUP);
   ck_assert_str_eq(driven[0].select.group, "top");
@@ -104,6 +106,29 @@ static void check_constraints(const FemBodyDef *body) {
   ck_assert_double_eq(driven[3].table[4], 0.5);
   ck_assert_double_eq(driven[3].table[7], 0.1);
   ck_assert_double_eq(driven[3].table[11], 0.2);
+  ck_assert_str_eq(driven[4].formula[0]->text, "0.1*sin(2*pi*t)");
+  ck_assert_double_eq(expression_eval(driven[4].formula[1], 3).value, 2);
+  ck_assert_double_eq(expression_eval(driven[4].formula[2], 3).value, 9);
+  ck_assert_double_eq(driven[4].release, 1.75);
+}
+
+static void check_loads(const FemBodyDef *body) {
+  const FemLoadDef *loads = body->loads;
+  ck_assert_int_eq(body->load_count, 5);
+  ck_assert_int_eq(loads[0].kind, FEM_LOAD_PRESSURE);
+  ck_assert_str_eq(loads[0].select.group, "top");
+  ck_assert_double_eq(loads[0].pressure, 5e4);
+  ck_assert(loads[0].is_dead && !loads[1].is_dead);
+  ck_assert_int_eq(loads[0].table_count, 3);
+  ck_assert_double_eq(loads[0].table[5], 0.25);
+  ck_assert_int_eq(loads[2].kind, FEM_LOAD_TRACTION);
+  ck_vector(loads[2].vector, 1, 0, 2);
+  ck_assert_str_eq(loads[2].factor->text, "smooth(t)");
+  ck_assert_int_eq(loads[3].kind, FEM_LOAD_BODY_FORCE);
+  ck_assert_ptr_null(loads[3].factor);
+  ck_vector(loads[3].vector, 0, 0, -3);
+  ck_assert_int_eq(loads[4].kind, FEM_LOAD_FORCE);
+  ck_assert_double_eq(expression_eval(loads[4].factor, 9).value, 0.5);
 }
 
 static void check_upper(const FemBodyDef *body) {
@@ -162,6 +187,7 @@ static void check_full(const FemSceneDef *scene) {
   ck_assert_int_eq(scene->body_count, 2);
   check_lower(&scene->bodies[0]);
   check_constraints(&scene->bodies[0]);
+  check_loads(&scene->bodies[0]);
   check_upper(&scene->bodies[1]);
   check_obstacles(scene);
   check_settings(scene);
@@ -172,7 +198,7 @@ START_TEST(a_scene_with_every_key_is_read) {
   ck_assert_ok(app_scene_read(full_yaml, NULL, 0, &scene));
   check_full(&scene);
   ck_assert_str_eq(scene.path, full_yaml);
-  ck_assert_int_eq(scene.bodies[1].place.line, 20);
+  ck_assert_int_eq(scene.bodies[1].place.line, 27);
   ck_assert_int_eq(scene.bodies[0].driven[1].select.place.line, 17);
   ck_assert_int_eq(scene.bodies[0].driven[1].select.place.column, 9);
   fem_scene_destroy(&scene);
@@ -439,8 +465,8 @@ static const Wrong wrong[] = {
      "s.yaml:6:13: bodies[0].fixed[0] needs one of these keys: box halfspace group all"},
     {TIME BODY_WITH("fixed: [{all: true, group: top}]"),
      "s.yaml:6:25: 'all' and 'group' in bodies[0].fixed[0] contradict each other"},
-    {TIME BODY_WITH("driven: [{all: true}]"),
-     "s.yaml:6:14: bodies[0].driven[0] needs at least one of these keys: velocity amplitude table spin"},
+    {TIME BODY_WITH("driven: [{all: true}]"), "s.yaml:6:14: bodies[0].driven[0] needs at least one of these "
+                                              "keys: velocity amplitude table formula spin"},
     {TIME BODY_WITH("driven: [{all: true, velocity: [0, 0, 1], table: [[0, 0, 0, 0]]}]"),
      "s.yaml:6:26: 'velocity' in bodies[0].driven[0] contradicts 'table'; keep one of them"},
     {TIME BODY_WITH("driven: [{all: true, amplitude: [0, 0, 1]}]"),

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/expression.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+
+enum {
+  CONSTANT,
+  TIME,
+  ADD,
+  SUBTRACT,
+  MULTIPLY,
+  DIVIDE,
+  POWER,
+  NEGATE,
+  FIRST_FUNCTION, // from here on as in `functions`
+};
+
+// One line a function; `apply1` or `apply2` gives value and rate.
+static ExpressionValue do_sin(ExpressionValue a) {
+  return (ExpressionValue){sin(a.value), cos(a.value) * a.rate};
+}
+static ExpressionValue do_cos(ExpressionValue a) {
+  return (ExpressionValue){cos(a.value), -sin(a.value) * a.rate};
+}
+static ExpressionValue do_tan(ExpressionValue a) {
+  double cosine = cos(a.value);
+  return (ExpressionValue){tan(a.value), a.rate / (cosine * cosine)};
+}
+static ExpressionValue do_exp(ExpressionValue a) {
+  return (ExpressionValue){exp(a.value), exp(a.value) * a.rate};
+}
+static ExpressionValue do_log(ExpressionValue a) {
+  return (ExpressionValue){log(a.value), a.rate / a.value};
+}
+static ExpressionValue do_sqrt(ExpressionValue a) {
+  double root = sqrt(a.value);
+  return (ExpressionValue){root, a.rate == 0 ? 0 : a.rate / (2 * root)};
+}
+static ExpressionValue do_abs(ExpressionValue a) {
+  bool is_falling = a.value < 0 || (a.value == 0 && a.rate < 0);
+  return (ExpressionValue){fabs(a.value), is_falling ? -a.rate : a.rate};
+}
+static ExpressionValue do_floor(ExpressionValue a) {
+  return (ExpressionValue){floor(a.value), 0};
+}
+static ExpressionValue do_step(ExpressionValue a) {
+  return (ExpressionValue){a.value < 0 ? 0 : 1, 0};
+}
+static ExpressionValue do_smooth(ExpressionValue a) {
+  double x = fmin(fmax(a.value, 0), 1);
+  return (ExpressionValue){x * x * (3 - 2 * x), 6 * x * (1 - x) * a.rate};
+}
+static ExpressionValue do_min(ExpressionValue a, ExpressionValue b) {
+  bool is_first = a.value < b.value || (a.value == b.value && a.rate < b.rate);
+  return is_first ? a : b;
+}
+static ExpressionValue do_max(ExpressionValue a, ExpressionValue b) {
+  bool is_first = a.value > b.value || (a.value == b.value && a.rate > b.rate);
+  return is_first ? a : b;
+}
+
+static const struct {
+  const char *name;
+  ExpressionValue (*apply1)(ExpressionValue a);
+  ExpressionValue (*apply2)(ExpressionValue a, ExpressionValue b);
+} functions[] = {
+    {"sin", do_sin, NULL},   {"cos", do_cos, NULL},       {"tan", do_tan, NULL}, {"exp", do_exp, NULL},
+    {"log", do_log, NULL},   {"sqrt", do_sqrt, NULL},     {"abs", do_abs, NULL}, {"floor", do_floor, NULL},
+    {"step", do_step, NULL}, {"smooth", do_smooth, NULL}, {"min", NULL, do_min}, {"max", NULL, do_max},
+};
+enum { FUNCTION_COUNT = sizeof functions / sizeof *functions };
+
+// Recursive descent; each level of precedence is a function below.
+typedef struct Parser {
+  Expression *expression;
+  const char *next;
+  int nesting, stack, deepest;
+} Parser;
+
+static Status fail_at(const Parser *parser, const char *at, const char *expected) {
+  int column = (int)(at - parser->expression->text) + 1;
+  if (*at == 0)
+    return status_fail(STATUS_INPUT, "'%s': expected %s at the end", parser->expression->text, expected);
+  return status_fail(STATUS_INPUT, "'%s': expected %s at character %d, found '%.8s'",
+                     parser->expression->text, expected, column, at);
+}
+
+static Status emit(Parser *parser, int operation, double number, int growth) {
+  Expression *expression = parser->expression;
+  parser->stack += growth;
+  if (expression->count == EXPRESSION_MAX_CODES || parser->stack > EXPRESSION_MAX_DEPTH)
+    return status_fail(STATUS_INPUT, "'%s': the formula is too long; give a table", expression->text);
+  expression->codes[expression->count++] = (ExpressionCode){operation, number};
+  return STATUS_OK;
+}
+
+static bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+static bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+static char peek(Parser *parser) {
+  while (*parser->next == ' ') parser->next++;
+  return *parser->next;
+}
+
+static bool accept(Parser *parser, char c) {
+  if (peek(parser) != c) return false;
+  parser->next++;
+  return true;
+}
+
+static Status parse_sum(Parser *parser);
+
+// Decimal numbers only: no hexadecimal, no `inf`.
+static Status parse_number(Parser *parser) {
+  const char *begin = parser->next, *end = begin;
+  while (is_digit(*end) || *end == '.') end++;
+  if ((*end == 'e' || *end == 'E') &&
+      (is_digit(end[1]) || ((end[1] == '-' || end[1] == '+') && is_digit(end[2])))) {
+    end += 2;
+    while (is_digit(*end)) end++;
+  }
+  char *read;
+  double number = strtod(begin, &read);
+  if (read != end || !isfinite(number)) return fail_at(parser, begin, "a number");
+  parser->next = end;
+  return emit(parser, CONSTANT, number, 1);
+}
+
+static Status fail_name(const Parser *parser, const char *begin, const char *name) {
+  TextGuess guess = text_guess_of(name);
+  text_guess_offer(&guess, "t");
+  text_guess_offer(&guess, "pi");
+  for (int f = 0; f < FUNCTION_COUNT; f++) text_guess_offer(&guess, functions[f].name);
+  char expected[160];
+  size_t used = 0;
+  text_append(expected, sizeof expected, &used, "t, pi");
+  for (int f = 0; f < FUNCTION_COUNT; f++)
+    text_append(expected, sizeof expected, &used, ", %s", functions[f].name);
+  if (guess.best) text_append(expected, sizeof expected, &used, " (did you mean %s?)", guess.best);
+  return fail_at(parser, begin, expected);
+}
+
+static Status parse_call(Parser *parser, int f) {
+  if (!accept(parser, '(')) return fail_at(parser, parser->next, "'('");
+  TRY(parse_sum(parser));
+  if (functions[f].apply2) {
+    if (!accept(parser, ',')) return fail_at(parser, parser->next, "',' and a second value");
+    TRY(parse_sum(parser));
+  }
+  if (!accept(parser, ')')) return fail_at(parser, parser->next, "')'");
+  return emit(parser, FIRST_FUNCTION + f, 0, functions[f].apply2 ? -1 : 0);
+}
+
+static Status parse_name(Parser *parser) {
+  const char *begin = parser->next;
+  char name[16] = "";
+  for (size_t i = 0; is_letter(*parser->next) || is_digit(*parser->next); i++, parser->next++)
+    if (i < sizeof name - 1) name[i] = *parser->next;
+  if (strcmp(name, "t") == 0) return emit(parser, TIME, 0, 1);
+  if (strcmp(name, "pi") == 0) return emit(parser, CONSTANT, M_PI, 1);
+  for (int f = 0; f < FUNCTION_COUNT; f++)
+    if (strcmp(name, functions[f].name) == 0) return parse_call(parser, f);
+  return fail_name(parser, begin, name);
+}
+
+static Status parse_primary(Parser *parser) {
+  char c = peek(parser);
+  if (is_digit(c) || c == '.') return parse_number(parser);
+  if (is_letter(c)) return parse_name(parser);
+  if (!accept(parser, '(')) return fail_at(parser, parser->next, "a number, t, a function or '('");
+  TRY(parse_sum(parser));
+  return accept(parser, ')') ? STATUS_OK : fail_at(parser, parser->next, "')' or an operator");
+}
+
+// A sign and a power: −2^−t. Every recursion comes through here, so here it is bounded.
+static Status parse_power(Parser *parser) {
+  if (++parser->nesting > EXPRESSION_MAX_DEPTH)
+    return status_fail(STATUS_INPUT, "'%s': nested too deeply; give a table", parser->expression->text);
+  bool is_negative = false;
+  for (;;) {
+    if (accept(parser, '-'))
+      is_negative = !is_negative;
+    else if (!accept(parser, '+'))
+      break;
+  }
+  TRY(parse_primary(parser));
+  if (accept(parser, '^')) {
+    TRY(parse_power(parser));
+    TRY(emit(parser, POWER, 0, -1));
+  }
+  parser->nesting--;
+  return is_negative ? emit(parser, NEGATE, 0, 0) : STATUS_OK;
+}
+
+static Status parse_product(Parser *parser) {
+  TRY(parse_power(parser));
+  for (;;) {
+    int operation = accept(parser, '*') ? MULTIPLY : accept(parser, '/') ? DIVIDE : -1;
+    if (operation < 0) return STATUS_OK;
+    TRY(parse_power(parser));
+    TRY(emit(parser, operation, 0, -1));
+  }
+}
+
+static Status parse_sum(Parser *parser) {
+  TRY(parse_product(parser));
+  for (;;) {
+    int operation = accept(parser, '+') ? ADD : accept(parser, '-') ? SUBTRACT : -1;
+    if (operation < 0) return STATUS_OK;
+    TRY(parse_product(parser));
+    TRY(emit(parser, operation, 0, -1));
+  }
+}
+
+Status expression_parse(Expression *expression, const char *text) {
+  *expression = (Expression){.count = 0};
+  if (strlen(text) >= sizeof expression->text)
+    return status_fail(STATUS_INPUT, "a formula may have %d characters at most; give a table",
+                       EXPRESSION_MAX_TEXT - 1);
+  memcpy(expression->text, text, strlen(text) + 1);
+  Parser parser = {.expression = expression, .next = expression->text};
+  TRY(parse_sum(&parser));
+  return peek(&parser) == 0 ? STATUS_OK : fail_at(&parser, parser.next, "an operator");
+}
+
+// (aᵇ)′ = b aᵇ⁻¹ a′ + aᵇ log a b′; the second term only where the exponent moves, so that t^2 is fine at
+// t ≤ 0.
+static ExpressionValue raise(ExpressionValue a, ExpressionValue b) {
+  double value = pow(a.value, b.value), rate = 0;
+  if (a.rate != 0 && b.value != 0) rate += b.value * pow(a.value, b.value - 1) * a.rate;
+  if (b.rate != 0) rate += value * log(a.value) * b.rate;
+  return (ExpressionValue){value, rate};
+}
+
+static ExpressionValue apply(int operation, ExpressionValue a, ExpressionValue b) {
+  switch (operation) {
+  case ADD:
+    return (ExpressionValue){a.value + b.value, a.rate + b.rate};
+  case SUBTRACT:
+    return (ExpressionValue){a.value - b.value, a.rate - b.rate};
+  case MULTIPLY:
+    return (ExpressionValue){a.value * b.value, a.rate * b.value + a.value * b.rate};
+  case DIVIDE:
+    return (ExpressionValue){a.value / b.value, (a.rate - a.value / b.value * b.rate) / b.value};
+  case POWER:
+    return raise(a, b);
+  default:
+    return functions[operation - FIRST_FUNCTION].apply2(a, b);
+  }
+}
+
+static bool is_binary(int operation) {
+  if (operation >= FIRST_FUNCTION) return functions[operation - FIRST_FUNCTION].apply2 != NULL;
+  return operation != NEGATE;
+}
+
+ExpressionValue expression_eval(const Expression *expression, double t) {
+  ExpressionValue stack[EXPRESSION_MAX_DEPTH + 1] = {{0, 0}};
+  int top = -1;
+  for (int i = 0; i < expression->count; i++) {
+    const ExpressionCode *code = &expression->codes[i];
+    if (code->operation == CONSTANT) {
+      stack[++top] = (ExpressionValue){code->number, 0};
+    } else if (code->operation == TIME) {
+      stack[++top] = (ExpressionValue){t, 1};
+    } else if (is_binary(code->operation)) {
+      top--;
+      stack[top] = apply(code->operation, stack[top], stack[top + 1]);
+    } else if (code->operation == NEGATE) {
+      stack[top] = (ExpressionValue){-stack[top].value, -stack[top].rate};
+    } else {
+      stack[top] = functions[code->operation - FIRST_FUNCTION].apply1(stack[top]);
+    }
+  }
+  return stack[0];
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Functions of time written as formulas, "0.1*sin(2*pi*t)": parsed once into a short list of instructions for
+// a stack, then evaluated together with the exact derivative (forward differentiation). Nothing else can be
+// said in one: no names but these, no loops, no files; parsing and evaluation are bounded in time and memory.
+//
+//   numbers, t, pi          + - * / ^ (right to left, before a sign: −t^2 = −(t^2)), ( )
+//   sin cos tan exp log sqrt abs floor
+//   step(x)    0 for x < 0, else 1
+//   smooth(x)  0 for x < 0, 3x² − 2x³, 1 for x > 1: a rise without a kink
+//   min(a, b)  max(a, b)
+#ifndef TETLAP_BASE_EXPRESSION_H
+#define TETLAP_BASE_EXPRESSION_H
+
+#include "base/status.h"
+
+enum { EXPRESSION_MAX_CODES = 64, EXPRESSION_MAX_DEPTH = 24, EXPRESSION_MAX_TEXT = 200 };
+
+typedef struct ExpressionCode {
+  int operation;
+  double number; // of a constant
+} ExpressionCode;
+
+typedef struct Expression {
+  char text[EXPRESSION_MAX_TEXT]; // as it was written
+  int count;
+  ExpressionCode codes[EXPRESSION_MAX_CODES]; // in the order of evaluation  (count)
+} Expression;
+
+typedef struct ExpressionValue {
+  double value, rate; // f(t), df/dt; at a jump or a kink the rate from above
+} ExpressionValue;
+
+// STATUS_INPUT: the message says at which character (from 1) and what was expected there.
+Status expression_parse(Expression *expression, const char *text);
+
+// NaN or infinite where the formula is: log(0), 1/0.
+ExpressionValue expression_eval(const Expression *expression, double t);
+
+#endif

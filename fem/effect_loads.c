@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Loads from outside: forces, body forces, tractions, pressures, each a function of time. Their work goes
+// into the energy audit: step by step, mean force times way, which is exact for a constant dead load.
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect.h"
+
+typedef struct Loads {
+  const FemModel *model; // borrowed
+  double *kept_force;    // at the last accepted state [N]     (vertex_count, 3)
+  double *kept_position; // [m]                                (vertex_count, 3)
+  double *force;         // scratch                            (vertex_count, 3)
+  double kept_work;      // until then [J]
+  bool is_started;
+} Loads;
+
+static bool is_wanted(const FemSceneDef *scene) {
+  for (int b = 0; b < scene->body_count; b++)
+    if (scene->bodies[b].load_count > 0) return true;
+  return false;
+}
+
+static void destroy(void *self) {
+  Loads *loads = self;
+  memory_free(loads->kept_force);
+  memory_free(loads->kept_position);
+  memory_free(loads->force);
+  memory_free(loads);
+}
+
+static Status create(void **self, const FemModel *model) {
+  Loads *loads = memory_zeroed(1, sizeof *loads);
+  if (!loads) return status_no_memory("loads");
+  size_t values = 3 * (size_t)model->vertex_count;
+  loads->model = model;
+  loads->kept_force = memory_zeroed(values, sizeof(double));
+  loads->kept_position = memory_zeroed(values, sizeof(double));
+  loads->force = memory_zeroed(values, sizeof(double));
+  if (!loads->kept_force || !loads->kept_position || !loads->force) {
+    destroy(loads);
+    return status_no_memory("loads");
+  }
+  *self = loads;
+  return STATUS_OK;
+}
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  const FemModel *model = ((const Loads *)self)->model;
+  for (int i = 0; i < model->load_count; i++) {
+    double factor;
+    TRY(fem_load_factor(model->loads[i].def, state->time, &factor));
+    fem_load_add_force(&model->loads[i], factor, state->positions, force);
+  }
+  return STATUS_OK;
+}
+
+static Status find_forces(Loads *loads, const FemState *state) {
+  memset(loads->force, 0, 3 * (size_t)loads->model->vertex_count * sizeof *loads->force);
+  return add_force(loads, state, loads->force);
+}
+
+// Work until `state`, whose forces are in `force`.
+static double work_until(const Loads *loads, const FemState *state) {
+  double work = loads->kept_work;
+  for (int i = 0; loads->is_started && i < 3 * loads->model->vertex_count; i++)
+    work += 0.5 * (loads->kept_force[i] + loads->force[i]) * (state->positions[i] - loads->kept_position[i]);
+  return work;
+}
+
+static Status prepare(void *self, const FemState *state, double step) {
+  (void)step;
+  Loads *loads = self;
+  size_t bytes = 3 * (size_t)loads->model->vertex_count * sizeof(double);
+  TRY(find_forces(loads, state));
+  loads->kept_work = work_until(loads, state);
+  memcpy(loads->kept_force, loads->force, bytes);
+  memcpy(loads->kept_position, state->positions, bytes);
+  loads->is_started = true;
+  return STATUS_OK;
+}
+
+static bool follows(const FemLoad *load) {
+  return load->triangle_count > 0;
+}
+
+static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
+  (void)state;
+  const FemModel *model = ((const Loads *)self)->model;
+  for (int i = 0; i < model->load_count; i++)
+    for (int k = 0; k < model->loads[i].triangle_count; k++)
+      TRY(fem_pattern_add_clique(pattern, 3, model->loads[i].triangles[k], has_grown));
+  return STATUS_OK;
+}
+
+static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                           FemMatrix *matrix) {
+  (void)damping_scale;
+  const FemModel *model = ((const Loads *)self)->model;
+  for (int i = 0; i < model->load_count && stiffness_scale != 0; i++) {
+    const FemLoad *load = &model->loads[i];
+    if (!follows(load)) continue;
+    double factor, stiffness[81];
+    TRY(fem_load_factor(load->def, state->time, &factor));
+    for (int k = 0; k < load->triangle_count; k++) {
+      const int *t = load->triangles[k];
+      fem_load_triangle_stiffness(factor * load->def->pressure, state->positions + 3 * (size_t)t[0],
+                                  state->positions + 3 * (size_t)t[1], state->positions + 3 * (size_t)t[2],
+                                  stiffness);
+      fem_matrix_add(matrix, 3, t, stiffness, stiffness_scale);
+    }
+  }
+  return STATUS_OK;
+}
+
+static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
+  Loads *loads = self;
+  TRY(find_forces(loads, state));
+  energy->applied_work += work_until(loads, state);
+  return STATUS_OK;
+}
+
+static void report(void *self, Record *counters) {
+  record_number(counters, "load_work_J", ((const Loads *)self)->kept_work);
+}
+
+const FemEffectOps fem_effect_loads = {
+    .name = "loads",
+    .help = "forces, body forces, tractions and pressures from outside, by functions of time",
+    .is_wanted = is_wanted,
+    .create = create,
+    .couple = couple,
+    .prepare = prepare,
+    .add_force = add_force,
+    .add_jacobian = add_jacobian,
+    .add_energy = add_energy,
+    .report = report,
+    .destroy = destroy,
+};

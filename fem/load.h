@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A load of the scene on a body's vertices. All kinds but a pressure that follows its surface are dead: fixed
+// nodal forces times the factor of time. The following pressure p on a triangle with the area vector A = ½
+// (b − a) × (c − a), outward, gives each corner −p A/3; it is −p ∂V/∂x of the volume that the surface bounds.
+#ifndef TETLAP_FEM_LOAD_H
+#define TETLAP_FEM_LOAD_H
+
+#include "fem/mesh.h"
+#include "fem/scene.h"
+
+typedef struct FemLoad {
+  const FemLoadDef *def; // borrowed from the scene
+  int *vertices;         // of the model, that carry a dead load                      (vertex_count)
+  double *force;         // on each at factor 1 [N]                                   (vertex_count, 3)
+  int vertex_count;
+  int (*triangles)[3]; // of the model, outward, that carry a following pressure      (triangle_count)
+  int triangle_count;
+} FemLoad;
+
+// Finds vertices and triangles in `mesh`, whose first vertex has the number `vertex_begin` in the model.
+// STATUS_INPUT: a selection without a vertex, or for a surface load without a triangle.
+Status fem_load_create(FemLoad *load, const FemLoadDef *def, const FemMesh *mesh, int vertex_begin);
+void fem_load_destroy(FemLoad *load); // also of a zeroed one
+
+// What the load's values are multiplied with at a time. STATUS_INPUT: not a number.
+Status fem_load_factor(const FemLoadDef *def, double time, double *factor);
+
+// Adds factor × load at these positions to `force` (vertex_count, 3) [N].
+void fem_load_add_force(const FemLoad *load, double factor, const double *positions, double *force);
+
+// −∂f/∂x of one triangle of a following pressure p, the symmetric part, (9, 9): over a surface that is closed
+// or held at its rim the parts left out cancel.
+void fem_load_triangle_stiffness(double pressure, const double a[3], const double b[3], const double c[3],
+                                 double stiffness[81]);
+
+#endif
