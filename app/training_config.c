@@ -23,9 +23,10 @@ static const char *const activation_helps[] = {"as published; its gradient is pi
 static const char *const pools[] = {"max", "sum", NULL};
 static const char *const pool_helps[] = {"as published; the gradient jumps where another vertex takes over",
                                          "smooth"};
-static const char *const normalisations[] = {"unit", "pca", NULL};
+static const char *const normalisations[] = {"unit", "pca", "sorted", NULL};
 static const char *const normalisation_helps[] = {"the first tetrahedron becomes the unit simplex",
-                                                  "the first tetrahedron's principal axes become the axes"};
+                                                  "the first tetrahedron's principal axes become the axes",
+                                                  "unit, vertices in an order of their own"};
 
 static const char *kind_name(int i) {
   return kinds[i];
@@ -107,6 +108,8 @@ static const SceneKey model_keys[] = {
      .help = "tpn: over vertices and over tetrahedra"},
     {"normalisation", SCENE_CHOICE, AT(AppTrainingModelDef, normalisation), .choices = &normalisation_choices,
      .fallback = "unit", .help = "tpn: of the input"},
+    {"output_scale", SCENE_NUMBER, AT(AppTrainingModelDef, output_scale), .range = "(0, inf)",
+     .fallback = "1000", .help = "tpn: the network tells this times V of the normalised pair"},
     {0},
 };
 static const SceneSection model = {.help = "what is trained", .keys = model_keys, .finish = finish_model};
@@ -247,9 +250,9 @@ static void print_model(const AppTrainingModelDef *def, char *text, size_t size,
   if (def->kind == APP_MODEL_GEO)
     text_append(text, size, used, ", %d features, %d x %d\n", def->features, def->width, def->depth);
   else
-    text_append(text, size, used, ", reading %s, %s%s, %s\n", readings[def->reading],
+    text_append(text, size, used, ", reading %s, %s%s, %s, output_scale %.15g\n", readings[def->reading],
                 activations[def->activation], def->pool == APP_POOL_SUM ? ", sum pools" : "",
-                normalisations[def->normalisation]);
+                normalisations[def->normalisation], def->output_scale);
 }
 
 char *app_training_config_print(const AppTrainingConfig *config) {

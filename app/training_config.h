@@ -10,7 +10,11 @@
 #include "app/training_source.h"
 
 typedef enum AppModelKind { APP_MODEL_GEO, APP_MODEL_TPN } AppModelKind;
-typedef enum AppNormalisation { APP_NORMALISATION_UNIT, APP_NORMALISATION_PCA } AppNormalisation;
+typedef enum AppNormalisation {
+  APP_NORMALISATION_UNIT,
+  APP_NORMALISATION_PCA,
+  APP_NORMALISATION_SORTED,
+} AppNormalisation;
 typedef enum AppReading { APP_READING_A, APP_READING_B, APP_READING_BACKBONE } AppReading;
 typedef enum AppPool { APP_POOL_MAX, APP_POOL_SUM } AppPool;
 typedef enum AppActivation { APP_ACTIVATION_RELU, APP_ACTIVATION_SILU } AppActivation;
@@ -29,6 +33,7 @@ typedef struct AppTrainingModelDef {
   AppActivation activation;       // tpn
   AppPool pool;                   // tpn
   AppNormalisation normalisation; // tpn
+  double output_scale;            // tpn: the network tells this times V of the normalised pair
 } AppTrainingModelDef;
 
 typedef struct AppTrainingLossDef {

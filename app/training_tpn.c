@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Training of the paper's TetrahedronPairNet: ½ cross-entropy of the status + ½ RMSLE of 1000 V, from
-// normalised pairs. The network tells V of the normalised pair; before the loss it is multiplied by the
-// normalisation's factor, so that the loss is about V whatever the normalisation.
+// normalised pairs. The network tells V of the normalised pair in a unit of its own (output_scale); before
+// the loss it is brought to 1000 V, so that the loss is about V whatever the normalisation.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,7 +21,7 @@ typedef struct Samples {
   char name[APP_TRAINING_SCORE_NAME];
   int count, left_out;
   float *x;      // normalised pairs        (count, 24)
-  float *factor; // V = factor · V'         (count)
+  float *factor; // scale · V = factor · y  (count)
   float *label;  // 1: the pair intersects  (count)
   float *target; // scale · V               (count)
   uint8_t *kind; // DatagenKind             (count)
@@ -40,8 +40,10 @@ typedef struct Tpn {
 } Tpn;
 
 static ContactNormalisation normalisation_of(const AppTrainingConfig *config) {
-  return config->model.normalisation == APP_NORMALISATION_UNIT ? CONTACT_NORMALISE_UNIT
-                                                               : CONTACT_NORMALISE_PCA;
+  static const ContactNormalisation kinds[] = {[APP_NORMALISATION_UNIT] = CONTACT_NORMALISE_UNIT,
+                                               [APP_NORMALISATION_PCA] = CONTACT_NORMALISE_PCA,
+                                               [APP_NORMALISATION_SORTED] = CONTACT_NORMALISE_SORTED};
+  return kinds[config->model.normalisation];
 }
 
 static NetShape shape(const AppTrainingConfig *config) {
@@ -90,7 +92,7 @@ static void samples_add(Samples *samples, const AppTrainingConfig *config, const
   }
   int at = samples->count++;
   for (int c = 0; c < SIZE; c++) samples->x[at * (ptrdiff_t)SIZE + c] = (float)normalised.pair[c];
-  samples->factor[at] = (float)normalised.factor;
+  samples->factor[at] = (float)(normalised.factor * config->loss.volume_scale / config->model.output_scale);
   samples->label[at] = pairs->status[i];
   samples->target[at] = (float)(config->loss.volume_scale * pairs->volume[i]);
   samples->kind[at] = pairs->kind[i];
@@ -183,7 +185,7 @@ Status app_training_tpn_range(const AppTrainingConfig *config, ContactNetRange *
   Samples samples = {0};
   Status status = load(&samples, config, config->training, config->training_count);
   if (!status && samples.count == 0) status = status_fail(STATUS_INPUT, "there is no pair to train on");
-  if (!status) status = find_range(&samples, config->loss.volume_scale, range);
+  if (!status) status = find_range(&samples, config->model.output_scale, range);
   samples_destroy(&samples);
   return status;
 }
@@ -194,7 +196,7 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   if (!tpn) return status_no_memory("a training");
   TRY(load(&tpn->training, task->config, task->config->training, task->config->training_count));
   if (tpn->training.count == 0) return status_fail(STATUS_INPUT, "there is no pair to train on");
-  TRY(find_range(&tpn->training, task->config->loss.volume_scale, &tpn->range));
+  TRY(find_range(&tpn->training, task->config->model.output_scale, &tpn->range));
   TRY(load_sets(tpn, task->config));
   TRY(app_training_order_create(&tpn->order, tpn->training.count));
   task->sample_count = tpn->training.count;
@@ -214,6 +216,15 @@ static void gather(Tpn *tpn, const int *samples, int count) {
   }
 }
 
+// ReLU gives a volume below 0 no derivative. Of a pair that shares volume it gets the one from the right:
+// else a network whose volumes have all fallen below 0 stays there.
+static void lift_clamped(const Tpn *tpn, int batch, double rmsle) {
+  for (int k = 0; k < batch; k++) {
+    if (tpn->y[2 * k + 1] > 0 || !(tpn->target[k] > 0) || !(rmsle > 0)) continue;
+    tpn->gy[2 * k + 1] = (float)(-0.5 * log1p((double)tpn->target[k]) / (batch * rmsle));
+  }
+}
+
 static double step(AppTrainingTask *task, const NetModel_f32 *model, NetWork_f32 *work, long long number,
                    float *gradient) {
   Tpn *tpn = task->self;
@@ -223,6 +234,7 @@ static double step(AppTrainingTask *task, const NetModel_f32 *model, NetWork_f32
   net_gradient_forward_f32(work, model, batch, 0, tpn->x, NULL, tpn->y, NULL);
   for (int k = 0; k < batch; k++) tpn->y[2 * k + 1] *= tpn->factor[k];
   NetLossPaper loss = net_loss_paper_f32(batch, tpn->y, tpn->label, tpn->target, tpn->gy);
+  lift_clamped(tpn, batch, loss.rmsle);
   for (int k = 0; k < batch; k++) tpn->gy[2 * k + 1] *= tpn->factor[k];
   net_gradient_backward_f32(work, model, batch, 0, tpn->gy, NULL, gradient);
   return loss.total;
@@ -286,7 +298,7 @@ static Status validate(AppTrainingTask *task, const NetModel_f32 *model, const c
 }
 
 static void print_normalisation(const AppTrainingTask *task, char text[CONTACT_NET_NORMALISATION_TEXT]) {
-  contact_net_overlap_print(normalisation_of(task->config), task->config->loss.volume_scale, text);
+  contact_net_overlap_print(normalisation_of(task->config), task->config->model.output_scale, text);
 }
 
 static Status start(AppTrainingTask *task, NetModel_f32 *model) {

@@ -44,8 +44,12 @@ bool contact_net_overlap_parse(const char *text, ContactNormalisation *kind, dou
   char name[8];
   int used = 0;
   if (sscanf(text, "%7[a-z], V times %lf%n", name, scale, &used) != 2 || text[used]) return false;
-  *kind = strcmp(name, "unit") == 0 ? CONTACT_NORMALISE_UNIT : CONTACT_NORMALISE_PCA;
-  return strcmp(name, contact_normalise_name(*kind)) == 0 && *scale > 0 && isfinite(*scale);
+  int found = 0;
+  while (found < CONTACT_NORMALISE_COUNT &&
+         strcmp(name, contact_normalise_name((ContactNormalisation)found)) != 0)
+    found++;
+  *kind = (ContactNormalisation)found;
+  return found<CONTACT_NORMALISE_COUNT && * scale> 0 && isfinite(*scale);
 }
 
 static Status fail_as_net(NetStatus status) {
@@ -85,9 +89,10 @@ static Status load(NetOverlap *overlap, const char *path) {
   if (overlap->model.plan->shape.kind != NET_TPN)
     return status_fail(STATUS_INPUT, "%s: a TetrahedronPairNet is needed, this is another network", path);
   if (!contact_net_overlap_parse(overlap->card.normalisation, &overlap->kind, &overlap->scale))
-    return status_fail(STATUS_INPUT,
-                       "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER' or 'pca, …'",
-                       path, overlap->card.normalisation);
+    return status_fail(
+        STATUS_INPUT,
+        "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER', 'pca, …' or 'sorted, …'", path,
+        overlap->card.normalisation);
   return furnish(overlap);
 }
 

@@ -6,10 +6,11 @@
 
 #include "base/vec3.h"
 
-static const double FLATTEST = 1e-14, SOFTEST = 1e-6;
+static const double FLATTEST = 1e-14, SOFTEST = 1e-6, LINEAR = 3;
 
 const char *contact_normalise_name(ContactNormalisation kind) {
-  return kind == CONTACT_NORMALISE_UNIT ? "unit" : "pca";
+  static const char *const names[CONTACT_NORMALISE_COUNT] = {"unit", "pca", "sorted"};
+  return names[kind];
 }
 
 // y = M x
@@ -31,9 +32,10 @@ static void map_vertices(const double pair[24], ContactNormalised *normalised) {
   }
 }
 
+static const double simplex[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+
 // The rows of E⁻¹ are cross products of edges over det E.
 static bool find_unit(const double pair[24], ContactNormalised *normalised) {
-  static const double simplex[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   Vec3 origin = vec3_at(pair), edge[3];
   for (int k = 0; k < 3; k++) edge[k] = vec3_sub(vec3_at(pair + 3 + 3 * k), origin);
   Vec3 normal = vec3_cross(edge[1], edge[2]);
@@ -47,6 +49,62 @@ static bool find_unit(const double pair[24], ContactNormalised *normalised) {
   normalised->factor = fabs(det);
   map_vertices(pair, normalised);
   memcpy(normalised->pair, simplex, sizeof simplex);
+  return true;
+}
+
+// The place's numbers and the vertices that go with them, the largest first; ties stay as they came.
+static void sort_places(double value[4], int order[4]) {
+  for (int i = 1; i < 4; i++)
+    for (int j = i; j > 0 && value[j] > value[j - 1]; j--) {
+      double kept = value[j];
+      int vertex = order[j];
+      value[j] = value[j - 1], value[j - 1] = kept;
+      order[j] = order[j - 1], order[j - 1] = vertex;
+    }
+}
+
+static void arrange(const double pair[24], const int order[8], double arranged[24]) {
+  for (int v = 0; v < 8; v++) memcpy(arranged + 3 * v, pair + 3 * order[v], 3 * sizeof(double));
+}
+
+// By the second's centroid (times four) in the first, which is in the unit frame.
+static void order_first(const double unit[24], int order[4]) {
+  double value[4] = {4, 0, 0, 0};
+  for (int b = 4; b < 8; b++)
+    for (int k = 0; k < 3; k++) value[k + 1] += unit[3 * b + k], value[0] -= unit[3 * b + k];
+  sort_places(value, order);
+}
+
+static void order_second(const double unit[24], int order[4]) {
+  double value[4];
+  for (int b = 0; b < 4; b++) {
+    const double *y = unit + 12 + 3 * b;
+    value[b] = 1 - y[0] - y[1] - y[2];
+  }
+  sort_places(value, order);
+}
+
+static double compress(double y) {
+  return fabs(y) <= LINEAR ? y : copysign(LINEAR * (1 + log(fabs(y) / LINEAR)), y);
+}
+
+static double expand(double c) {
+  return fabs(c) <= LINEAR ? c : copysign(LINEAR * exp(fabs(c) / LINEAR - 1), c);
+}
+
+static bool find_sorted(const double pair[24], ContactNormalised *normalised) {
+  double arranged[24];
+  int *order = normalised->order;
+  for (int v = 0; v < 8; v++) order[v] = v;
+  if (!find_unit(pair, normalised)) return false;
+  order_first(normalised->pair, order);
+  arrange(pair, order, arranged);
+  if (!find_unit(arranged, normalised)) return false;
+  order_second(normalised->pair, order + 4);
+  arrange(pair, order, arranged);
+  map_vertices(arranged, normalised);
+  memcpy(normalised->pair, simplex, sizeof simplex);
+  for (int i = 12; i < 24; i++) normalised->pair[i] = compress(normalised->pair[i]);
   return true;
 }
 
@@ -120,7 +178,16 @@ static bool find_pca(const double pair[24], ContactNormalised *normalised) {
 
 bool contact_normalise(ContactNormalisation kind, const double pair[24], ContactNormalised *normalised) {
   normalised->kind = kind;
-  return kind == CONTACT_NORMALISE_UNIT ? find_unit(pair, normalised) : find_pca(pair, normalised);
+  switch (kind) {
+  case CONTACT_NORMALISE_UNIT:
+    return find_unit(pair, normalised);
+  case CONTACT_NORMALISE_PCA:
+    return find_pca(pair, normalised);
+  case CONTACT_NORMALISE_SORTED:
+    return find_sorted(pair, normalised);
+  default:
+    return false;
+  }
 }
 
 // With λ_k(b) the barycentric coordinates of vertex b of the second tetrahedron in the first,
@@ -141,6 +208,19 @@ static void pull_unit(const ContactNormalised *normalised, double volume, const 
     vec3_store(gradient + 12 + 3 * b, pull);
     for (int k = 0; k < 4; k++) vec3_accumulate(gradient + 3 * k, vec3_scale(-lambda[k], pull));
   }
+}
+
+static void pull_sorted(const ContactNormalised *normalised, double volume, const double inner[24],
+                        double gradient[24]) {
+  ContactNormalised unit = *normalised;
+  double slopes[24] = {0}, arranged[24];
+  for (int i = 12; i < 24; i++) {
+    double y = unit.pair[i] = expand(normalised->pair[i]);
+    slopes[i] = inner[i] * (fabs(y) <= LINEAR ? 1 : LINEAR / fabs(y));
+  }
+  pull_unit(&unit, volume, slopes, arranged);
+  for (int v = 0; v < 8; v++)
+    memcpy(gradient + 3 * normalised->order[v], arranged + 3 * v, 3 * sizeof(double));
 }
 
 // 1/Δ, bounded.
@@ -178,6 +258,8 @@ void contact_normalise_pull(const ContactNormalised *normalised, double volume, 
                             double gradient[24]) {
   if (normalised->kind == CONTACT_NORMALISE_UNIT)
     pull_unit(normalised, volume, inner, gradient);
+  else if (normalised->kind == CONTACT_NORMALISE_SORTED)
+    pull_sorted(normalised, volume, inner, gradient);
   else
     pull_pca(normalised, inner, gradient);
 }

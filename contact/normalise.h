@@ -7,8 +7,15 @@
 //         coordinates is not negative, the third completes a right-handed system. V' = V.
 //   unit  affine: the first tetrahedron becomes the unit simplex (its vertices in their order the origin and
 //         the unit vectors). V' = V / |det E|, E the matrix of its edges from the first vertex.
+//   sorted  unit, with the vertices of both in an order that does not depend on how they came: the first's
+//         by its barycentric coordinates of the other's centroid, the largest first; then the other's by
+//         their barycentric coordinate of the first's first vertex. Coordinates beyond 3 are compressed: ±3
+//         (1 + ln(|x|/3)), so that a flat first tetrahedron gives no huge numbers.
 //
-// Both are functions of the pair: a network's V = factor · V'(normalised) has a gradient that goes through
+// The paper has the first two. The third is ours: a network on it cannot tell the order of vertices, and
+// learns one twenty-fourth of the cases twice over; where two coordinates tie, its value jumps.
+//
+// All are functions of the pair: a network's V = factor · V'(normalised) has a gradient that goes through
 // them, including the turning of the axes. A principal axis turns by D_ij / (λ_j − λ_i), D the change of the
 // second moment in the axes' frame, which has no bound as values get equal, and there the axes jump: that is
 // the normalisation's own defect. 1/Δ is replaced by Δ/(Δ² + (1e-6 tr λ)²): the exact derivative while the
@@ -18,7 +25,12 @@
 
 #include <stdbool.h>
 
-typedef enum ContactNormalisation { CONTACT_NORMALISE_UNIT, CONTACT_NORMALISE_PCA } ContactNormalisation;
+typedef enum ContactNormalisation {
+  CONTACT_NORMALISE_UNIT,
+  CONTACT_NORMALISE_PCA,
+  CONTACT_NORMALISE_SORTED,
+  CONTACT_NORMALISE_COUNT,
+} ContactNormalisation;
 
 typedef struct ContactNormalised {
   ContactNormalisation kind;
@@ -27,15 +39,17 @@ typedef struct ContactNormalised {
   double matrix[9]; // normalised = matrix · (x − origin), row-major
   double origin[3];
   double principal[3]; // pca: principal values, falling
+  int order[8];        // sorted: which of the pair's eight vertices stands in each place
 } ContactNormalised;
 
-// False: the first tetrahedron is too flat for it (unit: |det E| below 1e-14 of the edges' product).
+// False: the first tetrahedron is too flat for it (unit and sorted: |det E| below 1e-14 of the edges'
+// product).
 bool contact_normalise(ContactNormalisation kind, const double pair[24], ContactNormalised *normalised);
 
 // ∇ of factor · V' with respect to the pair, from V' and ∇V' with respect to the normalised pair.
 void contact_normalise_pull(const ContactNormalised *normalised, double volume, const double inner[24],
                             double gradient[24]);
 
-const char *contact_normalise_name(ContactNormalisation kind); // "unit", "pca"
+const char *contact_normalise_name(ContactNormalisation kind); // "unit", "pca", "sorted"
 
 #endif
