@@ -158,25 +158,26 @@ static Status create_batch(Tpn *tpn, const AppTrainingConfig *config) {
   return fits ? STATUS_OK : status_no_memory("a batch");
 }
 
-static void measure_range(const Samples *samples, double scale, int count, ContactNetMeasures *measures,
-                          double *overlaps, double *values, ContactNetRange *range) {
+static void measure_range(const Samples *samples, double output_scale, int count,
+                          ContactNetMeasures *measures, double *overlaps, double *values,
+                          ContactNetRange *range) {
   for (int i = 0; i < count; i++) {
     ptrdiff_t at = (ptrdiff_t)i * samples->count / count; // evenly from all of them
     double pair[SIZE];
     for (int c = 0; c < SIZE; c++) pair[c] = (double)samples->x[at * SIZE + c];
     measures[i] = contact_net_range_measure(pair);
-    overlaps[i] = (double)samples->target[at] / (scale * (double)samples->factor[at]);
+    overlaps[i] = (double)samples->target[at] / (output_scale * (double)samples->factor[at]);
   }
   *range = contact_net_range_of(count, measures, overlaps, values);
 }
 
-static Status find_range(const Samples *samples, double scale, ContactNetRange *range) {
+static Status find_range(const Samples *samples, double output_scale, ContactNetRange *range) {
   int count = samples->count < MEASURED ? samples->count : MEASURED;
   ContactNetMeasures *measures = memory_zeroed((size_t)count, sizeof *measures);
   double *overlaps = memory_zeroed((size_t)count, sizeof *overlaps);
   double *values = memory_zeroed((size_t)count, sizeof *values);
   bool fits = measures && overlaps && values;
-  if (fits) measure_range(samples, scale, count, measures, overlaps, values, range);
+  if (fits) measure_range(samples, output_scale, count, measures, overlaps, values, range);
   memory_free(measures), memory_free(overlaps), memory_free(values);
   return fits ? STATUS_OK : status_no_memory("the range of the training's pairs");
 }

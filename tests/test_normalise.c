@@ -7,7 +7,9 @@
 #include "contact/normalise.h"
 #include "suite.h"
 
-static const ContactNormalisation kinds[] = {CONTACT_NORMALISE_UNIT, CONTACT_NORMALISE_PCA};
+// The two that are maps of space come first.
+static const ContactNormalisation kinds[] = {CONTACT_NORMALISE_UNIT, CONTACT_NORMALISE_PCA,
+                                             CONTACT_NORMALISE_SORTED};
 
 static void draw_pair(Random *random, double pair[24]) {
   for (int i = 0; i < 24; i++) pair[i] = random_uniform(random);
@@ -62,11 +64,11 @@ START_TEST(volume_is_the_factor_times_the_normalised_volume) {
 }
 END_TEST
 
-START_TEST(rigid_motion_leaves_both_normalised_pairs_unchanged) {
+START_TEST(rigid_motion_leaves_all_normalised_pairs_unchanged) {
   Random random = random_seeded(2, 0);
   double pair[24], moved[24], r[9];
   for (int n = 0; n < 200; n++)
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 3; k++) {
       ContactNormalised before, after;
       draw_pair(&random, pair);
       random_rotation(&random, r);
@@ -81,6 +83,42 @@ START_TEST(rigid_motion_leaves_both_normalised_pairs_unchanged) {
       for (int i = 0; i < 24; i++) size = fmax(size, fabs(before.pair[i]));
       for (int i = 0; i < 24; i++) ck_assert_near(after.pair[i], before.pair[i], 1e-9 * size * size);
     }
+}
+END_TEST
+
+START_TEST(sorted_pair_does_not_depend_on_the_order_of_vertices) {
+  static const int orders[4][4] = {{1, 2, 3, 0}, {2, 0, 3, 1}, {3, 2, 1, 0}, {0, 2, 1, 3}};
+  Random random = random_seeded(6, 0);
+  double pair[24], shuffled[24];
+  for (int n = 0; n < 200; n++) {
+    ContactNormalised before, after;
+    draw_pair(&random, pair);
+    const int *first = orders[random_below(&random, 4)], *second = orders[random_below(&random, 4)];
+    for (int v = 0; v < 4; v++) {
+      memcpy(shuffled + 3 * v, pair + 3 * first[v], 3 * sizeof(double));
+      memcpy(shuffled + 12 + 3 * v, pair + 12 + 3 * second[v], 3 * sizeof(double));
+    }
+    ck_assert(contact_normalise(CONTACT_NORMALISE_SORTED, pair, &before));
+    ck_assert(contact_normalise(CONTACT_NORMALISE_SORTED, shuffled, &after));
+    for (int i = 0; i < 24; i++) ck_assert_near(after.pair[i], before.pair[i], 1e-9);
+  }
+}
+END_TEST
+
+START_TEST(sorted_pair_by_hand) {
+  // the other's centroid, (0, 0, 1.25), is nearest to the fourth vertex, and equally far from the first
+  // three; z is 10, 1, −3 and −3 in the frame's barycentric coordinate of that vertex
+  const double pair[24] = {1, 0, 0, -1, 1, 0, -1, -1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 10, 1, 0, -3, -1, 0, -3};
+  ContactNormalised normalised;
+  ck_assert(contact_normalise(CONTACT_NORMALISE_SORTED, pair, &normalised));
+  ck_assert_int_eq(normalised.order[0], 3);
+  ck_assert_int_eq(normalised.order[4], 5);
+  ck_assert_int_eq(normalised.order[5], 4);
+  for (int i = 0; i < 3; i++) ck_assert(normalised.pair[15 + i] == 0); // the first's first vertex is its own
+  // (0, 0, 10) has the coordinates −9 · (1/2, 1/4, 1/4) in the other three
+  double first = 0;
+  for (int i = 12; i < 15; i++) first = fmin(first, normalised.pair[i]);
+  ck_assert_near(first, -3 * (1 + log(1.5)), 1e-14);
 }
 END_TEST
 
@@ -105,7 +143,7 @@ START_TEST(gradient_is_that_of_the_whole_chain) {
   Random random = random_seeded(3, 0);
   double pair[24], inner[24], gradient[24];
   for (int n = 0; n < 50; n++)
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 3; k++) {
       ContactNormalised normalised;
       do draw_pair(&random, pair);
       while (!contact_normalise(kinds[k], pair, &normalised) || !(normalised.matrix[0] < 10) ||
@@ -158,7 +196,9 @@ int main(void) {
   tcase_add_test(test_case, first_tetrahedron_becomes_the_unit_simplex);
   tcase_add_test(test_case, principal_axes_of_a_long_tetrahedron_are_its_own);
   tcase_add_test(test_case, volume_is_the_factor_times_the_normalised_volume);
-  tcase_add_test(test_case, rigid_motion_leaves_both_normalised_pairs_unchanged);
+  tcase_add_test(test_case, sorted_pair_does_not_depend_on_the_order_of_vertices);
+  tcase_add_test(test_case, sorted_pair_by_hand);
+  tcase_add_test(test_case, rigid_motion_leaves_all_normalised_pairs_unchanged);
   tcase_add_test(test_case, gradient_is_that_of_the_whole_chain);
   tcase_add_test(test_case, gradient_is_bounded_where_principal_values_are_equal);
   tcase_add_test(test_case, flat_first_tetrahedron_has_no_unit_frame);
