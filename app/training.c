@@ -106,9 +106,8 @@ static Status create_network(Training *training) {
   training->best = memory_copy(training->model.parameters, count, sizeof(float));
   if (!training->gradient || !training->best) return status_no_memory("a training");
   NetWorkDef work = net_work_default();
-  int tangents = training->task.ops->tangents;
   work.thread_count = training->options->threads;
-  work.tangent_count = tangents < 0 ? training->config->loss.tangents : tangents;
+  work.tangent_count = training->task.ops->tangents(training->config);
   work.batch = def->batch + training->task.ops->rows;
   return app_training_task_fail(net_work_create_f32(training->model.plan, &work, &training->work));
 }

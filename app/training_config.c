@@ -73,6 +73,14 @@ static const char *finish_model(void *self, const char **key) {
   return NULL;
 }
 
+static const char *finish_root(void *self, const char **key) {
+  const AppTrainingConfig *config = self;
+  *key = "loss";
+  if (config->loss.sobolev > 0 && config->model.normalisation != APP_NORMALISATION_UNIT)
+    return "sobolev needs model.normalisation: unit";
+  return NULL;
+}
+
 // clang-format off
 static const SceneKey source_keys[] = {
     {"name", SCENE_LABEL, AT(AppTrainingSourceDef, name), .help = "in logs and plots"},
@@ -127,13 +135,15 @@ static const SceneSection data = {.help = "pairs", .keys = data_keys};
 
 static const SceneKey loss_keys[] = {
     {"tangents", SCENE_INTEGER, AT(AppTrainingLossDef, tangents), .range = "[1, 12]", .fallback = "2",
-     .help = "geo: random directions of each sample along which the derivative is learned"},
+     .help = "random directions of each sample along which derivatives are learned"},
     {"huber", SCENE_NUMBER, AT(AppTrainingLossDef, huber), .range = "(0, inf)", .fallback = "0.1",
-     .help = "geo: where the loss turns from quadratic to linear"},
+     .help = "where the loss of derivatives, and of geo's V, turns from quadratic to linear"},
     {"tangent_scale", SCENE_NUMBER, AT(AppTrainingLossDef, tangent_scale), .range = "[0, inf)", .fallback = "1",
      .help = "geo: factor of errors of derivatives"},
     {"volume_scale", SCENE_NUMBER, AT(AppTrainingLossDef, volume_scale), .range = "(0, inf)", .fallback = "1000",
      .help = "tpn: factor of V"},
+    {"sobolev", SCENE_NUMBER, AT(AppTrainingLossDef, sobolev), .range = "[0, inf)", .fallback = "0",
+     .help = "tpn: weight of errors of derivatives of V; 0: the paper's loss"},
     {0},
 };
 static const SceneSection loss = {.help = "what is minimised", .keys = loss_keys};
@@ -182,7 +192,7 @@ static const SceneKey root_keys[] = {
 };
 // clang-format on
 const SceneSection app_training_keys = {
-    .help = "a training", .size = sizeof(AppTrainingConfig), .keys = root_keys};
+    .help = "a training", .size = sizeof(AppTrainingConfig), .keys = root_keys, .finish = finish_root};
 
 static void destroy_sources(AppTrainingSourceDef *sources, int count) {
   for (int s = 0; s < count; s++) {
@@ -266,6 +276,7 @@ char *app_training_config_print(const AppTrainingConfig *config) {
   print_sources("validation", config->validation, config->validation_count, text, size, &used);
   text_append(text, size, &used, "loss: tangents %d, huber %.15g, tangent_scale %.15g, volume_scale %.15g\n",
               def->tangents, def->huber, def->tangent_scale, def->volume_scale);
+  if (def->sobolev > 0) text_append(text, size, &used, "sobolev: %.15g\n", def->sobolev);
   text_append(
       text, size, &used,
       "AdamW: rate %.15g to %.15g, warmup %.15g, betas %.15g %.15g, decay %.15g, clip %.15g, batch %d, "

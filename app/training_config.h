@@ -41,6 +41,7 @@ typedef struct AppTrainingLossDef {
   double huber;         // geo: where Huber's function turns linear
   double tangent_scale; // geo: factor of the tangents' term inside Huber's function
   double volume_scale;  // tpn: V is multiplied by it
+  double sobolev;       // tpn: weight of errors of ∇V; 0: the paper's loss
 } AppTrainingLossDef;
 
 typedef struct AppTrainingOptimiserDef {

@@ -33,6 +33,10 @@ typedef struct Geo {
   float *target, *target_t, *one; // (batch), (batch, tangents), (batch)
 } Geo;
 
+static int tangents_of(const AppTrainingConfig *config) {
+  return config->loss.tangents;
+}
+
 static NetShape shape(const AppTrainingConfig *config) {
   return net_shape_mlp(config->model.features, config->model.width, config->model.depth, 1);
 }
@@ -245,7 +249,7 @@ const AppTrainingTaskOps app_training_geo = {
     .create = create,
     .start = start,
     .rows = 1,
-    .tangents = -1,
+    .tangents = tangents_of,
     .step = step,
     .validate = validate,
     .write = write,

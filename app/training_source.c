@@ -41,17 +41,11 @@ void app_training_source_close(AppSource *source) {
   *source = (AppSource){0};
 }
 
-Status app_training_source_read(AppSource *source, long long first, size_t count, const DatagenPairs *pairs) {
-  long long attempts[DATAGEN_KIND_COUNT] = {0};
-  if (source->dataset) return datagen_dataset_read(source->dataset, first, count, pairs);
-  return datagen_generate(&source->plan, first, (int)count, pairs, attempts);
-}
-
-// ∇V of pairs first … first + count − 1 of the arrays.
-static Status differentiate(const DatagenPairs *pairs, size_t first, size_t count) {
+// ∇V of the pairs by clipping.
+static Status differentiate(const DatagenPairs *pairs, size_t count) {
   bool has_failed = false;
 #pragma omp parallel for schedule(dynamic, 64) reduction(|| : has_failed)
-  for (size_t i = first; i < first + count; i++) {
+  for (size_t i = 0; i < count; i++) {
     double volume;
     if (datagen_label_pair(DATAGEN_LABEL_CLIP, pairs->coordinates + i * SIZE, pairs->volume[i] > 0 ? 3 : -1,
                            &volume, pairs->gradient + i * SIZE) != STATUS_OK)
@@ -60,14 +54,22 @@ static Status differentiate(const DatagenPairs *pairs, size_t first, size_t coun
   return has_failed ? status_fail(STATUS_SOLVER, "clipping gave no derivatives of a pair") : STATUS_OK;
 }
 
+Status app_training_source_read(AppSource *source, long long first, size_t count, const DatagenPairs *pairs) {
+  long long attempts[DATAGEN_KIND_COUNT] = {0};
+  DatagenPairs read = *pairs;
+  if (!source->has_gradient) read.gradient = NULL;
+  TRY(source->dataset ? datagen_dataset_read(source->dataset, first, count, &read)
+                      : datagen_generate(&source->plan, first, (int)count, &read, attempts));
+  return pairs->gradient && !source->has_gradient ? differentiate(pairs, count) : STATUS_OK;
+}
+
 static Status load_block(AppSource *source, const DatagenPairs *pairs, size_t first, size_t count) {
   DatagenPairs block = {.coordinates = pairs->coordinates + first * SIZE,
                         .status = pairs->status + first,
                         .kind = pairs->kind + first,
                         .volume = pairs->volume + first,
-                        .gradient = source->has_gradient ? pairs->gradient + first * SIZE : NULL};
-  TRY(app_training_source_read(source, (long long)first, count, &block));
-  return source->has_gradient ? STATUS_OK : differentiate(pairs, first, count);
+                        .gradient = pairs->gradient + first * SIZE};
+  return app_training_source_read(source, (long long)first, count, &block);
 }
 
 static Status load(AppSource *source, DatagenPairs *pairs, size_t *count) {

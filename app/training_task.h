@@ -30,7 +30,8 @@ typedef struct AppTrainingTaskOps {
   Status (*create)(AppTrainingTask *task, const NetWhitening *whitening);
   // First weights from `config->start`, for the task's inputs.
   Status (*start)(AppTrainingTask *task, NetModel_f32 *model);
-  int rows, tangents; // of a batch, beyond its samples; tangents −1: as configured
+  int rows;                                         // of a batch, beyond its samples
+  int (*tangents)(const AppTrainingConfig *config); // of each sample
   // The loss of a batch and its gradient by the parameters.
   double (*step)(AppTrainingTask *task, const NetModel_f32 *model, NetWork_f32 *work, long long step,
                  float *gradient);

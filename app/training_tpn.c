@@ -2,12 +2,15 @@
 // Training of the paper's TetrahedronPairNet: ½ cross-entropy of the status + ½ RMSLE of 1000 V, from
 // normalised pairs. The network tells V of the normalised pair in a unit of its own (output_scale); before
 // the loss it is brought to 1000 V, so that the loss is about V whatever the normalisation.
+//
+// With loss.sobolev > 0 the loss has a term that the paper has not, of ∇V (training_rates.h).
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "app/training_tpn.h"
 
+#include "app/training_rates.h"
 #include "app/training_start.h"
 #include "app/training_task.h"
 #include "base/memory.h"
@@ -20,11 +23,12 @@ enum { SIZE = 24, BLOCK = 16384, MAX_SETS = 6, MEASURED = 1 << 18 };
 typedef struct Samples {
   char name[APP_TRAINING_SCORE_NAME];
   int count, left_out;
-  float *x;      // normalised pairs        (count, 24)
-  float *factor; // scale · V = factor · y  (count)
-  float *label;  // 1: the pair intersects  (count)
-  float *target; // scale · V               (count)
-  uint8_t *kind; // DatagenKind             (count)
+  float *x;               // normalised pairs        (count, 24)
+  float *factor;          // scale · V = factor · y  (count)
+  float *label;           // 1: the pair intersects  (count)
+  float *target;          // scale · V               (count)
+  uint8_t *kind;          // DatagenKind             (count)
+  AppTrainingRates rates; // zeroed unless ∇V is learned
 } Samples;
 
 typedef struct Tpn {
@@ -37,6 +41,7 @@ typedef struct Tpn {
   int *samples;                   // (batch)
   float *x, *y, *gy;              // (batch, 24), (batch, 2), (batch, 2)
   float *factor, *label, *target; // (batch)
+  float *xt, *yt, *gyt, *rate;    // (batch, tangents, 24), twice (…, 2), (batch, tangents); NULL: none
 } Tpn;
 
 static ContactNormalisation normalisation_of(const AppTrainingConfig *config) {
@@ -44,6 +49,14 @@ static ContactNormalisation normalisation_of(const AppTrainingConfig *config) {
                                                [APP_NORMALISATION_PCA] = CONTACT_NORMALISE_PCA,
                                                [APP_NORMALISATION_SORTED] = CONTACT_NORMALISE_SORTED};
   return kinds[config->model.normalisation];
+}
+
+static bool learns_gradients(const AppTrainingConfig *config) {
+  return config->loss.sobolev > 0;
+}
+
+static int tangents_of(const AppTrainingConfig *config) {
+  return learns_gradients(config) ? config->loss.tangents : 0;
 }
 
 static NetShape shape(const AppTrainingConfig *config) {
@@ -58,6 +71,7 @@ static NetShape shape(const AppTrainingConfig *config) {
 static void samples_destroy(Samples *samples) {
   memory_free(samples->x), memory_free(samples->factor), memory_free(samples->label);
   memory_free(samples->target), memory_free(samples->kind);
+  app_training_rates_destroy(&samples->rates);
   *samples = (Samples){0};
 }
 
@@ -69,7 +83,9 @@ static void destroy(AppTrainingTask *task) {
   app_training_order_destroy(&tpn->order);
   net_work_destroy_f32(&tpn->work);
   memory_free(tpn->samples), memory_free(tpn->x), memory_free(tpn->y), memory_free(tpn->gy);
-  memory_free(tpn->factor), memory_free(tpn->label), memory_free(tpn->target), memory_free(tpn);
+  memory_free(tpn->factor), memory_free(tpn->label), memory_free(tpn->target);
+  memory_free(tpn->xt), memory_free(tpn->yt), memory_free(tpn->gyt), memory_free(tpn->rate);
+  memory_free(tpn);
   task->self = NULL;
 }
 
@@ -96,6 +112,9 @@ static void samples_add(Samples *samples, const AppTrainingConfig *config, const
   samples->label[at] = pairs->status[i];
   samples->target[at] = (float)(config->loss.volume_scale * pairs->volume[i]);
   samples->kind[at] = pairs->kind[i];
+  if (samples->rates.rate)
+    app_training_rates_set(&samples->rates, at, &normalised, pairs->gradient + i * SIZE,
+                           config->model.output_scale);
 }
 
 static Status fill(Samples *samples, const AppTrainingConfig *config, AppSource *source,
@@ -116,21 +135,23 @@ static Status load(Samples *samples, const AppTrainingConfig *config, const AppT
   long long total = 0;
   for (int s = 0; s < count; s++) {
     AppSourceDef def = app_training_config_source(&defs[s]);
-    TRY(app_training_source_open(&source, &def, false));
+    TRY(app_training_source_open(&source, &def, learns_gradients(config)));
     total += source.count;
     app_training_source_close(&source);
   }
   TRY(samples_create(samples, (size_t)total));
+  if (learns_gradients(config)) TRY(app_training_rates_create(&samples->rates, (size_t)total));
   DatagenPairs block;
-  TRY(datagen_pairs_create(&block, BLOCK, false));
+  TRY(datagen_pairs_create(&block, BLOCK, learns_gradients(config)));
   Status status = STATUS_OK;
   for (int s = 0; s < count && !status; s++) {
     AppSourceDef def = app_training_config_source(&defs[s]);
-    status = app_training_source_open(&source, &def, false);
+    status = app_training_source_open(&source, &def, learns_gradients(config));
     if (!status) status = fill(samples, config, &source, &block);
     app_training_source_close(&source);
   }
   datagen_pairs_destroy(&block);
+  if (learns_gradients(config)) app_training_rates_finish(&samples->rates, samples->count);
   return status;
 }
 
@@ -156,6 +177,15 @@ static Status create_batch(Tpn *tpn, const AppTrainingConfig *config) {
   tpn->target = memory_zeroed(batch, sizeof(float));
   bool fits = tpn->samples && tpn->x && tpn->y && tpn->gy && tpn->factor && tpn->label && tpn->target;
   return fits ? STATUS_OK : status_no_memory("a batch");
+}
+
+static Status create_tangents(Tpn *tpn, const AppTrainingConfig *config) {
+  size_t rows = (size_t)config->optimiser.batch * (size_t)tangents_of(config);
+  if (rows == 0) return STATUS_OK;
+  tpn->xt = memory_zeroed(rows * SIZE, sizeof(float));
+  tpn->yt = memory_zeroed(rows * 2, sizeof(float)), tpn->gyt = memory_zeroed(rows * 2, sizeof(float));
+  tpn->rate = memory_zeroed(rows, sizeof(float));
+  return tpn->xt && tpn->yt && tpn->gyt && tpn->rate ? STATUS_OK : status_no_memory("a batch's tangents");
 }
 
 static void measure_range(const Samples *samples, double output_scale, int count,
@@ -203,6 +233,7 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   task->sample_count = tpn->training.count;
   snprintf(task->summary, sizeof task->summary, "%d pairs to train on, %d left out", tpn->training.count,
            tpn->training.left_out);
+  TRY(create_tangents(tpn, task->config));
   return create_batch(tpn, task->config);
 }
 
@@ -226,19 +257,49 @@ static void lift_clamped(const Tpn *tpn, int batch, double rmsle) {
   }
 }
 
+// Movements of the batch's pairs, each from a stream of its own.
+static void draw_tangents(Tpn *tpn, const AppTrainingConfig *config, const Samples *from, const int *samples,
+                          int first, int count, uint64_t stream) {
+  int tangents = tangents_of(config);
+  for (int k = 0; k < count; k++) {
+    NetRandom random = net_random_seeded((uint64_t)config->seed, 2 * (stream + (uint64_t)k) + 1);
+    for (ptrdiff_t t = (ptrdiff_t)k * tangents; t < (ptrdiff_t)(k + 1) * tangents; t++)
+      tpn->rate[t] = app_training_rates_draw(&from->rates, samples ? samples[k] : first + k, &random,
+                                             tpn->xt + t * SIZE);
+  }
+}
+
+// weight · mean of Huber(v̇ − rate) over the batch's pairs that share volume, with its derivatives.
+static double sobolev_of(Tpn *tpn, const AppTrainingConfig *config, int batch) {
+  int tangents = tangents_of(config);
+  double sum = 0, weight = config->loss.sobolev / (batch * tangents);
+  memset(tpn->gyt, 0, (size_t)batch * (size_t)tangents * 2 * sizeof(float));
+  for (ptrdiff_t t = 0; t < (ptrdiff_t)batch * tangents; t++) {
+    if (!(tpn->target[t / tangents] > 0)) continue;
+    double derivative, error = (double)tpn->yt[2 * t + 1] - (double)tpn->rate[t];
+    sum += weight * net_loss_huber(error, config->loss.huber, &derivative);
+    tpn->gyt[2 * t + 1] = (float)(weight * derivative);
+  }
+  return sum;
+}
+
 static double step(AppTrainingTask *task, const NetModel_f32 *model, NetWork_f32 *work, long long number,
                    float *gradient) {
   Tpn *tpn = task->self;
-  int batch = task->config->optimiser.batch;
+  int batch = task->config->optimiser.batch, tangents = tangents_of(task->config);
   app_training_order_take(&tpn->order, task->config->seed, number, batch, tpn->samples);
   gather(tpn, tpn->samples, batch);
-  net_gradient_forward_f32(work, model, batch, 0, tpn->x, NULL, tpn->y, NULL);
+  if (tangents)
+    draw_tangents(tpn, task->config, &tpn->training, tpn->samples, 0, batch,
+                  (uint64_t)number * (uint64_t)batch);
+  net_gradient_forward_f32(work, model, batch, tangents, tpn->x, tpn->xt, tpn->y, tpn->yt);
   for (int k = 0; k < batch; k++) tpn->y[2 * k + 1] *= tpn->factor[k];
   NetLossPaper loss = net_loss_paper_f32(batch, tpn->y, tpn->label, tpn->target, tpn->gy);
   lift_clamped(tpn, batch, loss.rmsle);
   for (int k = 0; k < batch; k++) tpn->gy[2 * k + 1] *= tpn->factor[k];
-  net_gradient_backward_f32(work, model, batch, 0, tpn->gy, NULL, gradient);
-  return loss.total;
+  double sobolev = tangents ? sobolev_of(tpn, task->config, batch) : 0;
+  net_gradient_backward_f32(work, model, batch, tangents, tpn->gy, tpn->gyt, gradient);
+  return loss.total + sobolev;
 }
 
 // Sums over a validation set.
@@ -247,6 +308,7 @@ typedef struct Sums {
   long long right[DATAGEN_KIND_COUNT], count[DATAGEN_KIND_COUNT];
   double error; // Σ |ΔV| of pairs that share volume
   long long inside;
+  double rate_error, rate; // Σ |v̇ − rate| and Σ |rate|, both times ‖r‖ + soft, over such pairs
 } Sums;
 
 static void add_batch(Sums *sums, const Tpn *tpn, const Samples *set, int first, int count, double scale) {
@@ -260,6 +322,21 @@ static void add_batch(Sums *sums, const Tpn *tpn, const Samples *set, int first,
   }
 }
 
+static void add_rates(Sums *sums, Tpn *tpn, const AppTrainingConfig *config, const NetModel_f32 *model,
+                      const Samples *set, int first, int count) {
+  int tangents = tangents_of(config);
+  draw_tangents(tpn, config, set, NULL, first, count, (uint64_t)first);
+  net_tangent_eval_f32(&tpn->work, model, count, tangents, set->x + (ptrdiff_t)first * SIZE, tpn->xt, tpn->y,
+                       tpn->yt);
+  for (ptrdiff_t t = 0; t < (ptrdiff_t)count * tangents; t++) {
+    ptrdiff_t at = first + t / tangents;
+    double size = (double)set->rates.size[at] + set->rates.soft;
+    if (!(set->target[at] > 0)) continue;
+    sums->rate_error += size * fabs((double)tpn->yt[2 * t + 1] - (double)tpn->rate[t]);
+    sums->rate += size * fabs((double)tpn->rate[t]);
+  }
+}
+
 static void score(const Sums *sums, const Samples *set, AppTrainingScores *scores) {
   double accuracy = 0, kinds = 0;
   for (int k = 0; k < DATAGEN_KIND_COUNT; k++)
@@ -268,6 +345,9 @@ static void score(const Sums *sums, const Samples *set, AppTrainingScores *score
   app_training_scores_add(scores, set->name, "inaccuracy", 1 - accuracy / kinds);
   app_training_scores_add(scores, set->name, "mae", sums->inside ? sums->error / (double)sums->inside : NAN);
   scores->score += sums->loss / set->count;
+  if (!(sums->rate > 0)) return;
+  app_training_scores_add(scores, set->name, "rate_error", sums->rate_error / sums->rate);
+  scores->score += sums->rate_error / sums->rate;
 }
 
 static void measure(Tpn *tpn, const AppTrainingConfig *config, const NetModel_f32 *model, const Samples *set,
@@ -281,6 +361,7 @@ static void measure(Tpn *tpn, const AppTrainingConfig *config, const NetModel_f3
     sums.loss +=
         count * net_loss_paper_f32(count, tpn->y, set->label + first, set->target + first, tpn->gy).total;
     add_batch(&sums, tpn, set, first, count, config->loss.volume_scale);
+    if (learns_gradients(config)) add_rates(&sums, tpn, config, model, set, first, count);
   }
   score(&sums, set, scores);
 }
@@ -291,6 +372,7 @@ static Status validate(AppTrainingTask *task, const NetModel_f32 *model, const c
   (void)path;
   if (!tpn->work.plan) {
     NetWorkDef def = net_work_default();
+    def.tangent_count = tangents_of(task->config);
     TRY(app_training_task_fail(net_work_create_f32(model->plan, &def, &tpn->work)));
   }
   for (int s = 0; s < tpn->set_count; s++)
@@ -332,7 +414,7 @@ const AppTrainingTaskOps app_training_tpn = {
     .create = create,
     .start = start,
     .rows = 0,
-    .tangents = 0,
+    .tangents = tangents_of,
     .step = step,
     .validate = validate,
     .write = write,

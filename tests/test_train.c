@@ -9,10 +9,12 @@
 #include "app/evaluation_model.h"
 #include "app/training.h"
 #include "app/training_pool.h"
+#include "app/training_rates.h"
 #include "app/training_start.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"
+#include "contact/clip.h"
 #include "contact/geo.h"
 #include "contact/geo_net.h"
 #include "suite.h"
@@ -61,6 +63,15 @@ static const char tpn_config[] = "name: t\n"
                                  "  validation: [{name: paper, law: paper-test, count: 500, seed: 12}]\n"
                                  "optimiser: {rate: 1e-3, batch: 200, samples: 12000}\n"
                                  "validations: 3\n";
+
+static const char sobolev_config[] = "name: t\n"
+                                     "model: {kind: tpn, activation: silu, pool: sum, output_scale: 30}\n"
+                                     "data:\n"
+                                     "  training: [{law: scene, count: 2000, seed: 11}]\n"
+                                     "  validation: [{name: scene, law: scene, count: 500, seed: 12}]\n"
+                                     "loss: {sobolev: 5}\n"
+                                     "optimiser: {rate: 1e-3, batch: 200, samples: 12000}\n"
+                                     "validations: 3\n";
 
 static AppTrainingConfig read_config(const char *text) {
   AppTrainingConfig config;
@@ -160,7 +171,7 @@ static void check_gradient(const char *text) {
   NetModel_f32 model;
   NetWork_f32 work;
   NetWorkDef def = net_work_default();
-  def.tangent_count = task.ops->tangents < 0 ? config.loss.tangents : 0;
+  def.tangent_count = task.ops->tangents(&config);
   def.batch = config.optimiser.batch + task.ops->rows;
   ck_assert_int_eq(net_model_create_f32(&shape, &model), NET_OK);
   ck_assert_int_eq(net_work_create_f32(model.plan, &def, &work), NET_OK);
@@ -195,6 +206,43 @@ END_TEST
 
 START_TEST(gradient_of_the_tpn_loss_is_that_of_the_loss) {
   check_gradient(tpn_config);
+}
+END_TEST
+
+START_TEST(gradient_of_the_tpn_loss_with_tangents_is_that_of_the_loss) {
+  check_gradient(sobolev_config);
+}
+END_TEST
+
+START_TEST(rates_are_the_changes_of_clipped_volumes) {
+  size_t count;
+  DatagenPairs pairs = load_pairs(60, &count);
+  AppTrainingRates rates;
+  NetRandom random = net_random_seeded(5, 0);
+  const double scale = 30, step = 1e-5;
+  int used = 0;
+  ck_assert_ok(app_training_rates_create(&rates, 1));
+  for (size_t n = 0; n < count; n++) {
+    ContactNormalised normalised;
+    float direction[24];
+    double moved[24], volume[2];
+    unsigned flags;
+    ck_assert(contact_normalise(CONTACT_NORMALISE_UNIT, pairs.coordinates + 24 * n, &normalised));
+    if (!(pairs.volume[n] > 1e-3 * normalised.factor)) continue;
+    app_training_rates_set(&rates, 0, &normalised, pairs.gradient + 24 * n, scale);
+    app_training_rates_finish(&rates, 1);
+    double rate = (double)app_training_rates_draw(&rates, 0, &random, direction);
+    for (int side = 0; side < 2; side++) {
+      for (int i = 0; i < 24; i++)
+        moved[i] = normalised.pair[i] + (side ? step : -step) * (double)direction[i];
+      ck_assert_ok(contact_overlap_clip.eval_pair(NULL, moved, &volume[side], NULL, NULL, &flags));
+    }
+    ck_assert_near(scale * (volume[1] - volume[0]) / (2 * step), rate, 1e-3);
+    used++;
+  }
+  ck_assert_int_ge(used, 20);
+  app_training_rates_destroy(&rates);
+  datagen_pairs_destroy(&pairs);
 }
 END_TEST
 
@@ -407,6 +455,8 @@ int main(void) {
   tcase_add_test(test_case, pool_holds_whitened_inputs);
   tcase_add_test(test_case, gradient_of_the_geo_loss_is_that_of_the_loss);
   tcase_add_test(test_case, gradient_of_the_tpn_loss_is_that_of_the_loss);
+  tcase_add_test(test_case, gradient_of_the_tpn_loss_with_tangents_is_that_of_the_loss);
+  tcase_add_test(test_case, rates_are_the_changes_of_clipped_volumes);
   tcase_add_test(test_case, each_epoch_takes_each_sample_once);
   tcase_add_test(test_case, resumed_geo_training_ends_with_the_same_bits);
   tcase_add_test(test_case, resumed_tpn_training_ends_with_the_same_bits);
