@@ -8,7 +8,6 @@
 
 #include "app/versions.h"
 #include "base/cpu.h"
-#include "base/record.h"
 
 enum { CELL_SIZE = 512 };
 
@@ -91,41 +90,41 @@ static void record_cell(Record *record, const AppBenchColumn *column, const void
   }
 }
 
-static Status print_json(const Group groups[GROUP_COUNT]) {
+static Status print_json(FILE *stream, const Group groups[GROUP_COUNT]) {
   Record *record = record_new();
   if (!record) return status_no_memory("a row");
   for (int g = 0; g < GROUP_COUNT; g++)
     for (int c = 0; c < groups[g].count; c++) record_cell(record, &groups[g].columns[c], groups[g].row);
-  Status status = record_print_line(record, stdout);
+  Status status = record_print_line(record, stream);
   record_destroy(record);
   return status;
 }
 
 // Quoted where RFC 4180 asks for it.
-static void print_field(const char *text) {
+static void print_field(FILE *stream, const char *text) {
   if (!strpbrk(text, ",\"\n")) {
-    fputs(text, stdout);
+    fputs(text, stream);
     return;
   }
-  putchar('"');
+  putc('"', stream);
   for (const char *letter = text; *letter; letter++) {
-    if (*letter == '"') putchar('"');
-    putchar(*letter);
+    if (*letter == '"') putc('"', stream);
+    putc(*letter, stream);
   }
-  putchar('"');
+  putc('"', stream);
 }
 
 // The keys if `is_head`, else the values.
-static void print_csv(const Group groups[GROUP_COUNT], bool is_head) {
+static void print_csv(FILE *stream, const Group groups[GROUP_COUNT], bool is_head) {
   bool is_first = true;
   for (int g = 0; g < GROUP_COUNT; g++)
     for (int c = 0; c < groups[g].count; c++, is_first = false) {
       char cell[CELL_SIZE];
-      if (!is_first) putchar(',');
+      if (!is_first) putc(',', stream);
       write_cell(&groups[g].columns[c], groups[g].row, 9, cell);
-      print_field(is_head ? groups[g].columns[c].key : cell);
+      print_field(stream, is_head ? groups[g].columns[c].key : cell);
     }
-  putchar('\n');
+  putc('\n', stream);
 }
 
 static int width_of(const AppBenchReport *report, const AppBenchColumn *column, const char *rows,
@@ -192,25 +191,45 @@ static Status print_rows(const AppBenchReport *report, const Common *common, App
     Group groups[GROUP_COUNT];
     group(report, common, rows + (size_t)r * report->row_size, groups);
     if (format == APP_BENCH_FORMAT_JSON) {
-      TRY(print_json(groups));
+      TRY(print_json(stdout, groups));
       continue;
     }
-    if (r == 0) print_csv(groups, true);
-    print_csv(groups, false);
+    if (r == 0) print_csv(stdout, groups, true);
+    print_csv(stdout, groups, false);
   }
   return STATUS_OK;
 }
 
+static Common common_of(const AppBenchReport *report, const AppBenchOptions *options) {
+  return (Common){.bench = report->bench,
+                  .processor = cpu_name(),
+                  .simd = app_versions_simd(),
+                  .versions = app_versions_line(),
+                  .threads = options->threads,
+                  .repeats = options->repeats};
+}
+
 Status app_bench_report_print(const AppBenchReport *report, const AppBenchOptions *options, const void *rows,
                               int row_count) {
-  Common common = {.bench = report->bench,
-                   .processor = cpu_name(),
-                   .simd = app_versions_simd(),
-                   .versions = app_versions_line(),
-                   .threads = options->threads,
-                   .repeats = options->repeats};
+  Common common = common_of(report, options);
   TRY(print_rows(report, &common, options->format, rows, row_count));
   return fflush(stdout) == 0 ? STATUS_OK : status_fail(STATUS_IO, "standard output cannot be written");
+}
+
+void app_bench_report_write_csv(const AppBenchReport *report, const AppBenchOptions *options,
+                                const void *rows, int row_count, FILE *stream) {
+  Common common = common_of(report, options);
+  Group groups[GROUP_COUNT];
+  group(report, &common, rows, groups);
+  print_csv(stream, groups, true);
+  for (int r = 0; r < row_count; r++) {
+    group(report, &common, (const char *)rows + (size_t)r * report->row_size, groups);
+    print_csv(stream, groups, false);
+  }
+}
+
+void app_bench_report_record(const AppBenchReport *report, const void *row, Record *record) {
+  for (int c = 0; c < report->column_count; c++) record_cell(record, &report->columns[c], row);
 }
 
 char *app_bench_report_help(const AppBenchReport *report, int argp_key, const char *text) {

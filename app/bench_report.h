@@ -7,8 +7,10 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include "app/bench_options.h"
+#include "base/record.h"
 #include "base/status.h"
 
 typedef enum AppBenchKind {
@@ -36,6 +38,13 @@ typedef struct AppBenchReport {
 // Prints rows, elements of row_size bytes, to standard output. STATUS_IO, STATUS_MEMORY.
 Status app_bench_report_print(const AppBenchReport *report, const AppBenchOptions *options, const void *rows,
                               int row_count);
+
+// The same rows as CSV; an error is found when the stream is closed.
+void app_bench_report_write_csv(const AppBenchReport *report, const AppBenchOptions *options,
+                                const void *rows, int row_count, FILE *stream);
+
+// A row's own columns as keys of a JSON object.
+void app_bench_report_record(const AppBenchReport *report, const void *row, Record *record);
 
 // Text for argp's help filter: after the options the keys of a row. Others are handed back as they are.
 char *app_bench_report_help(const AppBenchReport *report, int argp_key, const char *text);

@@ -12,6 +12,7 @@
 #include "app/effects_command.h"
 #include "app/eval_command.h"
 #include "app/mesh_command.h"
+#include "app/pareto_command.h"
 #include "app/run_command.h"
 #include "app/schema_command.h"
 #include "app/train_command.h"
@@ -44,6 +45,7 @@ static const Command commands[] = {
     {"train", "train a learned overlap model", app_train_run},
     {"eval", "measure an overlap model against labelled pairs", app_eval_run},
     {"weights", "say what a weights file holds", app_weights_run},
+    {"pareto", "measure error against time of all overlap models", app_pareto_run},
     {"version", "print the versions of the program and its libraries", run_version},
     {"help", "print this; `tetlap COMMAND --help` tells more", run_help},
 };

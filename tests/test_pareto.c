@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The frontier: which points are on it, what `tetlap pareto` measures and writes, sweeps of trainings.
+#include "suite.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "app/pareto_pairs.h"
+#include "app/pareto_scenes.h"
+#include "app/sweep.h"
+#include "base/file.h"
+#include "base/memory.h"
+
+static AppPareto small(void) {
+  return (AppPareto){.common = app_bench_options_default(1),
+                     .batch = 64,
+                     .error_pairs = 200,
+                     .scene_wall_s = 20,
+                     .scene_rounds = 1,
+                     .audit_every = 5};
+}
+
+static void add(AppPareto *pareto, const char *set, double seconds, double error) {
+  AppParetoPoint *point = app_pareto_add_point(pareto, 0, "V", set);
+  ck_assert_ptr_nonnull(point);
+  point->seconds = seconds, point->error = error;
+}
+
+START_TEST(the_frontier_is_what_nothing_beats) {
+  AppPareto pareto = small();
+  ck_assert_ok(app_pareto_create(&pareto));
+  ck_assert_ok(app_pareto_add_model(&pareto, "clip"));
+  add(&pareto, "near", 1, 1e-3);    // fastest
+  add(&pareto, "near", 2, 1e-3);    // slower and no better
+  add(&pareto, "near", 3, 0);       // most accurate
+  add(&pareto, "near", 3, 1e-9);    // as slow, worse
+  add(&pareto, "near", 2, 1e-4);    // between
+  add(&pareto, "near", 2, 1e-4);    // the same once more: neither beats the other
+  add(&pareto, "near", NAN, 1e-12); // not measured
+  add(&pareto, "uniform", 9, 1);    // alone in its set
+  app_pareto_finish(&pareto);
+  const bool expected[8] = {true, false, true, false, true, true, false, true};
+  for (int p = 0; p < 8; p++) ck_assert_msg(pareto.points[p].is_frontier == expected[p], "point %d", p);
+  app_pareto_destroy(&pareto);
+}
+END_TEST
+
+static const AppParetoPoint *find(const AppPareto *pareto, const char *model, const char *quantity) {
+  for (size_t p = 0; p < pareto->point_count; p++)
+    if (strcmp(pareto->points[p].model, model) == 0 && strcmp(pareto->points[p].quantity, quantity) == 0)
+      return &pareto->points[p];
+  ck_abort_msg("no point %s %s", model, quantity);
+  return NULL;
+}
+
+START_TEST(exact_has_no_error_clip_rounding_and_a_learned_model_its_own) {
+  AppPareto pareto = small();
+  ck_assert_ok(app_pareto_create(&pareto));
+  ck_assert_ok(app_pareto_add_model(&pareto, "clip"));
+  ck_assert_ok(app_pareto_add_model(&pareto, "exact"));
+  ck_assert_ok(app_pareto_add_model(&pareto, "geo-small"));
+  ck_assert_ok(app_pareto_pairs_measure(&pareto, "near"));
+  ck_assert_int_eq((int)pareto.point_count, 6);
+  static const char *const quantities[] = {"V", "V+grad"};
+  for (int q = 0; q < 2; q++) {
+    const AppParetoPoint *clip = find(&pareto, "clip", quantities[q]),
+                         *exact = find(&pareto, "exact", quantities[q]),
+                         *geo = find(&pareto, "geo-small", quantities[q]);
+    ck_assert_double_eq(exact->error, 0);
+    ck_assert_msg(clip->error > 0 && clip->error < 1e-9, "%g", clip->error);
+    ck_assert_msg(geo->error > 1e-4 && geo->error < 0.1, "%g", geo->error);
+    ck_assert_msg(geo->error_median > 0 && geo->error_median <= geo->error_p90, "%g", geo->error_median);
+    ck_assert_int_eq((int)geo->parameters, 881);
+    ck_assert_int_eq((int)geo->samples, 200);
+    ck_assert(clip->seconds > 0 && clip->seconds_min <= clip->seconds && clip->cpu_seconds > 0);
+    ck_assert(isnan(clip->step_s) && !clip->outcome);
+  }
+  app_pareto_destroy(&pareto);
+}
+END_TEST
+
+// Against a peer that is tried in the same rounds; the paper's comparison needs models that are not here.
+START_TEST(a_comparison_names_both_and_takes_its_ratio_within_a_round) {
+  AppPareto pareto = small();
+  ck_assert_ok(app_pareto_create(&pareto));
+  ck_assert_ok(app_pareto_add_model(&pareto, "clip"));
+  ck_assert_ok(app_pareto_add_model(&pareto, "geo"));
+  ck_assert_ok(app_pareto_pairs_measure(&pareto, "near"));
+  ck_assert_int_eq(pareto.comparison_count, 1);
+  const AppParetoComparison *comparison = &pareto.comparisons[0];
+  ck_assert_str_eq(comparison->slow, "clip");
+  ck_assert_str_eq(comparison->fast, "geo");
+  // one round: the ratio of the rates is the ratio of the round
+  ck_assert_near(comparison->ratio, comparison->fast_rate / comparison->slow_rate, 1e-9 * comparison->ratio);
+  ck_assert_double_eq(comparison->fast_error, find(&pareto, "geo", "V+grad")->error);
+  ck_assert(isnan(comparison->paper_ratio));
+  app_pareto_destroy(&pareto);
+}
+END_TEST
+
+START_TEST(models_of_one_name_are_refused) {
+  AppPareto pareto = small();
+  ck_assert_ok(app_pareto_create(&pareto));
+  ck_assert_ok(app_pareto_add_model(&pareto, "clip"));
+  ck_assert_int_eq(app_pareto_add_model(&pareto, "clip"), STATUS_USAGE);
+  ck_assert_int_eq(app_pareto_add_model(&pareto, "clap"), STATUS_INPUT);
+  ck_assert_int_eq(pareto.model_count, 1);
+  app_pareto_destroy(&pareto);
+}
+END_TEST
+
+START_TEST(a_scene_gives_forces_in_the_same_configurations_and_a_run_of_each_model) {
+  AppPareto pareto = small();
+  const char *overrides[] = {"time.end=0.04"};
+  ck_assert_ok(app_pareto_create(&pareto));
+  ck_assert_ok(app_pareto_add_model(&pareto, "clip"));
+  ck_assert_ok(app_pareto_add_model(&pareto, "geo-small"));
+  ck_assert_ok(app_pareto_scenes_measure(&pareto, TETLAP_SOURCE_DIR "/tests/scenes/collision.yaml", "clip",
+                                         overrides, 1));
+  const AppParetoPoint *clip = find(&pareto, "clip", "force"), *geo = find(&pareto, "geo-small", "force");
+  ck_assert_int_gt((int)clip->samples, 2);
+  ck_assert_int_eq((int)clip->samples, (int)geo->samples);
+  ck_assert_msg(clip->error < 1e-9, "%g", clip->error);
+  ck_assert_msg(geo->error > 1e-5 && geo->error < 0.2, "%g", geo->error);
+  ck_assert_str_eq(clip->outcome, "finished");
+  ck_assert_double_eq(clip->trajectory_error, 0); // the reference's run, run again
+  ck_assert_double_gt(geo->trajectory_error, 0);
+  ck_assert_msg(clip->share > 0 && clip->share < 1, "%g", clip->share);
+  ck_assert_near(clip->limit * (1 - clip->share), 1, 1e-12);
+  ck_assert(clip->step_s > 0 && clip->seconds > 0 && clip->steps > 0);
+  app_pareto_destroy(&pareto);
+}
+END_TEST
+
+START_TEST(a_run_that_takes_too_long_is_cut_short_and_still_a_point) {
+  AppPareto pareto = small();
+  pareto.scene_wall_s = 1e-6;
+  ck_assert_ok(app_pareto_create(&pareto));
+  ck_assert_ok(app_pareto_add_model(&pareto, "clip"));
+  const char *overrides[] = {"time.end=0.03"};
+  ck_assert_ok(app_pareto_scenes_measure(&pareto, TETLAP_SOURCE_DIR "/tests/scenes/collision.yaml", "clip",
+                                         overrides, 1));
+  const AppParetoPoint *point = find(&pareto, "clip", "force");
+  ck_assert_str_eq(point->outcome, "cut short");
+  ck_assert(isnan(point->trajectory_error) && isfinite(point->error));
+  app_pareto_destroy(&pareto);
+}
+END_TEST
+
+START_TEST(a_scene_without_contact_is_refused) {
+  AppPareto pareto = small();
+  ck_assert_ok(app_pareto_create(&pareto));
+  ck_assert_ok(app_pareto_add_model(&pareto, "clip"));
+  ck_assert_int_eq(
+      app_pareto_scenes_measure(&pareto, TETLAP_SOURCE_DIR "/tests/scenes/cantilever.yaml", "clip", NULL, 0),
+      STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "contact"));
+  app_pareto_destroy(&pareto);
+}
+END_TEST
+
+static char directory[64];
+
+static const char *place(const char *name) {
+  static char path[256];
+  snprintf(path, sizeof path, "%s/%s", directory, name);
+  return path;
+}
+
+static void write_file(const char *name, const char *text) {
+  FILE *file = fopen(place(name), "w");
+  ck_assert_ptr_nonnull(file);
+  fputs(text, file);
+  fclose(file);
+}
+
+static const char config[] = "name: base\n"
+                             "model: {kind: geo, features: 36, width: 4, depth: 1}\n"
+                             "data:\n"
+                             "  training: [{law: scene, mix: scene=1, count: 300, seed: 1}]\n"
+                             "  validation: [{law: scene, mix: scene=1, count: 100, seed: 2}]\n"
+                             "optimiser: {rate: 5e-3, batch: 64, samples: 2000}\n"
+                             "validations: 1\n";
+
+START_TEST(a_sweep_trains_what_is_missing_and_gives_networks_of_the_sizes) {
+  AppSweep sweep;
+  AppModelCard card;
+  ContactOverlapModel model = {.ops = NULL};
+  write_file("geo.yaml", config);
+  write_file("sizes",
+             "# two widths\ngeo.yaml name=one model.width=4\n\ngeo.yaml  name=two model.width=8 # wider\n");
+  ck_assert_ok(app_sweep_train(&sweep, directory, place("weights"), 1, NULL));
+  ck_assert_int_eq(sweep.count, 2);
+  const int widths[2] = {4, 8};
+  for (int w = 0; w < 2; w++) {
+    ck_assert_ok(contact_overlap_create(&model, sweep.weights[w]));
+    ck_assert_ok(app_model_card_read(&model, sweep.weights[w], &card));
+    ck_assert_int_eq(card.width, widths[w]);
+    contact_overlap_destroy(&model);
+  }
+  app_sweep_destroy(&sweep);
+  // what is there is not trained again: it would be refused
+  write_file("geo.yaml", "name: base\nmodel: {kind: geo, features: 36}\n"
+                         "data: {training: [{file: none.h5}], validation: [{file: none.h5}]}\n"
+                         "optimiser: {samples: 10}\n");
+  ck_assert_ok(app_sweep_train(&sweep, directory, place("weights"), 1, NULL));
+  ck_assert_int_eq(sweep.count, 2);
+  app_sweep_destroy(&sweep);
+}
+END_TEST
+
+START_TEST(a_sweep_names_the_line_that_is_wrong) {
+  AppSweep sweep;
+  write_file("geo.yaml", config);
+  write_file("sizes", "# one\n\ngeo.yaml name=one model.widht=4\n");
+  ck_assert_int_eq(app_sweep_train(&sweep, directory, place("weights"), 1, NULL), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "sizes:3"));
+  write_file("sizes", "# nothing\n");
+  ck_assert_int_eq(app_sweep_train(&sweep, directory, place("weights"), 1, NULL), STATUS_INPUT);
+}
+END_TEST
+
+static int run(const char *arguments) {
+  char command[1024];
+  snprintf(command, sizeof command, "cd '%s' && '%s' pareto %s >/dev/null 2>&1", TETLAP_SOURCE_DIR,
+           TETLAP_PROGRAM, arguments);
+  int ended = system(command);
+  return WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
+}
+
+START_TEST(the_command_writes_the_promised_keys) {
+  char arguments[512], *text;
+  size_t size;
+  snprintf(
+      arguments, sizeof arguments,
+      "tests/scenes/collision.yaml --set time.end=0.03 --model clip,geo-small --pairs near -n 100 --batch 50 "
+      "--repeat 1 --audit 5 -o %s",
+      place("out"));
+  ck_assert_int_eq(run(arguments), 0);
+  ck_assert_ok(file_read(place("out/pareto.json"), &text, &size));
+  static const char *const keys[] = {"format",
+                                     "command",
+                                     "versions",
+                                     "processor",
+                                     "simd",
+                                     "peak_double_flops",
+                                     "peak_float_flops",
+                                     "threads",
+                                     "repeats",
+                                     "batch",
+                                     "reference",
+                                     "points",
+                                     "comparisons",
+                                     "model",
+                                     "family",
+                                     "quantity",
+                                     "set",
+                                     "features",
+                                     "width",
+                                     "depth",
+                                     "parameters",
+                                     "seconds_per_pair",
+                                     "seconds_per_pair_min",
+                                     "seconds_per_pair_max",
+                                     "cpu_seconds_per_pair",
+                                     "error",
+                                     "error_median",
+                                     "error_p90",
+                                     "samples",
+                                     "fallback_share",
+                                     "frontier",
+                                     "outcome",
+                                     "seconds_per_step",
+                                     "overlap_share",
+                                     "amdahl_limit",
+                                     "trajectory_error",
+                                     "run_force_error",
+                                     "steps",
+                                     "rejected"};
+  for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+    char quoted[64];
+    snprintf(quoted, sizeof quoted, "\"%s\":", keys[k]);
+    ck_assert_msg(strstr(text, quoted) != NULL, "no %s", quoted);
+  }
+  memory_free(text);
+  ck_assert_ok(file_read(place("out/pareto.csv"), &text, &size));
+  int lines = 0;
+  for (size_t i = 0; i < size; i++) lines += text[i] == '\n';
+  ck_assert_int_eq(lines, 1 + 2 * 2 + 2); // names; two models, V and ∇V; two models, force
+  memory_free(text);
+  ck_assert_int_eq(access(place("out/pareto.gp"), R_OK), 0);
+}
+END_TEST
+
+START_TEST(wrong_arguments_are_usage_errors) {
+  ck_assert_int_eq(run("--model clap"), 64);
+  ck_assert_int_eq(run("--pairs disjoint"), 64);
+  ck_assert_int_eq(run("--count 0"), 64);
+  ck_assert_int_eq(run("--sweep /nowhere --model clip -o /tmp"), 74);
+}
+END_TEST
+
+int main(void) {
+  snprintf(directory, sizeof directory, "/tmp/tetlap_pareto_%ld", (long)getpid());
+  if (file_make_directories(directory) != STATUS_OK) return EXIT_FAILURE;
+  TCase *cases = tcase_create("pareto");
+  tcase_add_test(cases, the_frontier_is_what_nothing_beats);
+  tcase_add_test(cases, exact_has_no_error_clip_rounding_and_a_learned_model_its_own);
+  tcase_add_test(cases, a_comparison_names_both_and_takes_its_ratio_within_a_round);
+  tcase_add_test(cases, models_of_one_name_are_refused);
+  tcase_add_test(cases, a_scene_gives_forces_in_the_same_configurations_and_a_run_of_each_model);
+  tcase_add_test(cases, a_run_that_takes_too_long_is_cut_short_and_still_a_point);
+  tcase_add_test(cases, a_scene_without_contact_is_refused);
+  tcase_add_test(cases, a_sweep_trains_what_is_missing_and_gives_networks_of_the_sizes);
+  tcase_add_test(cases, a_sweep_names_the_line_that_is_wrong);
+  tcase_add_test(cases, the_command_writes_the_promised_keys);
+  tcase_add_test(cases, wrong_arguments_are_usage_errors);
+  int failed = suite_run("pareto", cases, 60);
+  char command[128];
+  snprintf(command, sizeof command, "rm -r '%s'", directory);
+  return system(command) == 0 ? failed : EXIT_FAILURE;
+}
