@@ -160,6 +160,7 @@ static void add_pair(AppEvaluationRun *run, const Block *block, size_t i) {
   kind->volume_mae += fabs(block->volume[i] - volume);
   run->sums.count++;
   run->sums.fallbacks += (block->flags[i] & CONTACT_OVERLAP_FALLBACK) != 0;
+  run->sums.blended += (block->flags[i] & CONTACT_OVERLAP_BLENDED) != 0;
   if (volume > 0)
     add_inside(run, block, i);
   else

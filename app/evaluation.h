@@ -35,7 +35,7 @@ typedef struct AppEvaluationKind {
 typedef struct AppEvaluation {
   long long count;  // pairs
   long long inside; // with V > 0: what mae … angle_p90_deg are taken over
-  long long fallbacks;
+  long long fallbacks, blended;
   AppEvaluationKind kinds[DATAGEN_KIND_COUNT];
   double accuracy_mean;                             // mean over the kinds that there are
   double mae;                                       // mean |ΔV|

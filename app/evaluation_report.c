@@ -65,8 +65,9 @@ static void print_bins(FILE *stream, const AppEvaluation *evaluation) {
 
 void app_evaluation_print(const AppEvaluation *evaluation, const char *model, const char *data,
                           FILE *stream) {
-  fprintf(stream, "%s on %s\n%lld pairs, %lld share volume, %lld answered by a more careful model\n", model,
-          data, evaluation->count, evaluation->inside, evaluation->fallbacks);
+  fprintf(stream,
+          "%s on %s\n%lld pairs, %lld share volume, %lld answered by a more careful model, %lld in part\n",
+          model, data, evaluation->count, evaluation->inside, evaluation->fallbacks, evaluation->blended);
   print_kinds(stream, evaluation);
   if (evaluation->inside) print_bins(stream, evaluation);
   fprintf(stream, "\n  %-26s  %12s %10s\n", "", "", "paper");
@@ -107,6 +108,7 @@ void app_evaluation_record(const AppEvaluation *evaluation, Record *record) {
   record_integer(record, "count", evaluation->count);
   record_integer(record, "count_with_volume", evaluation->inside);
   record_integer(record, "fallbacks", evaluation->fallbacks);
+  record_integer(record, "blended", evaluation->blended);
   Record *accuracy = record_child(record, "accuracy"), *mae = record_child(record, "mae_by_kind");
   for (int k = 0; k < DATAGEN_KIND_COUNT; k++) {
     if (!evaluation->kinds[k].count) continue;

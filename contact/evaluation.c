@@ -62,7 +62,7 @@ static void clear(ContactEvaluation *evaluation) {
   for (int e = 0; e < patches->element_count; e++) evaluation->covered[patches->elements[e].tet] = 0;
   evaluation->is_valid = false;
   evaluation->energy = 0;
-  evaluation->tried = evaluation->enclosed = evaluation->fallbacks = 0;
+  evaluation->tried = evaluation->enclosed = evaluation->fallbacks = evaluation->blended = 0;
 }
 
 static void shift(double tet[12], const double by[3]) {
@@ -159,6 +159,7 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
       return blame(layout, &evaluation->pairs[k], evaluation->volumes[k]);
     evaluation->enclosed += (evaluation->flags[k] & CONTACT_OVERLAP_ENCLOSED) != 0;
     evaluation->fallbacks += (evaluation->flags[k] & CONTACT_OVERLAP_FALLBACK) != 0;
+    evaluation->blended += (evaluation->flags[k] & CONTACT_OVERLAP_BLENDED) != 0;
   }
   return STATUS_OK;
 }

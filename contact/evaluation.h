@@ -25,7 +25,7 @@ typedef struct ContactEvaluation {
   double *covered;               // Σ over facings of W_i [m³]            (tet_count)
   ContactInterface *interfaces;  //                                       (facing_count)
   long long tried;               // pairs given to the model
-  long long enclosed, fallbacks; // how many of them the model flagged so
+  long long enclosed, fallbacks, blended; // how many of them the model flagged so
   double overlap_s, force_s;     // wall time [s]
   // Scratch memory.
   unsigned char *is_kept; // of each candidate

@@ -6,6 +6,7 @@
 
 #include "contact/clip.h"
 #include "contact/exact.h"
+#include "contact/geo_coplanar.h"
 #include "contact/geo_hessian.h"
 
 enum { SIZE = CONTACT_PAIR_SIZE, HESSIAN_SIZE = SIZE * SIZE };
@@ -198,6 +199,22 @@ static Status write_volumes(const ContactGeoModel *model, const ContactOverlapBa
   return STATUS_OK;
 }
 
+// Pairs with coplanar faces turn to the exact volume.
+static Status blend_coplanar(const ContactOverlapBatch *batch, const Chunk *chunk) {
+  for (int at = 0; at < chunk->count; at++) {
+    if (chunk->is_abandoned[at]) continue;
+    Place place = place_of(batch, chunk->pair[at]);
+    double spare[SIZE]; // the Hessian's blend needs the gradient
+    if (!place.gradient && place.hessian) {
+      for (int i = 0; i < SIZE; i++) spare[i] = *place.volume * chunk->adjoint[at].gradient[i];
+      place.gradient = spare;
+    }
+    TRY(contact_geo_coplanar_blend(&chunk->frame[at], place.pair, place.volume, place.gradient, place.hessian,
+                                   place.flags));
+  }
+  return STATUS_OK;
+}
+
 static Status eval_chunk(const ContactGeoModel *model, const ContactOverlapBatch *batch, int begin, int end,
                          Chunk *chunk) {
   TRY(find_frames(batch, begin, end, chunk));
@@ -209,11 +226,11 @@ static Status eval_chunk(const ContactGeoModel *model, const ContactOverlapBatch
                             wants_derivatives ? chunk->weights : NULL));
   }
   TRY(write_volumes(model, batch, chunk));
-  if (!wants_derivatives) return STATUS_OK;
+  if (!wants_derivatives) return blend_coplanar(batch, chunk);
   for (int pack = 0; pack * GEO_PACK < chunk->count; pack++) sweep_pack(model, chunk, pack);
   if (batch->gradient) write_gradients(batch, chunk);
   if (batch->hessian) TRY(write_hessians(model, batch, chunk));
-  return STATUS_OK;
+  return blend_coplanar(batch, chunk);
 }
 
 Status contact_geo_eval(const ContactGeoModel *model, const ContactOverlapBatch *batch) {

@@ -8,6 +8,8 @@
 
 // How far tr P, which is 3, may be off.
 #define TRACE_TOLERANCE 1e-6
+// An overlap this small beside a tetrahedron, 1e-13 wide all around, is the rounding of its coordinates.
+#define LEAST_SHARE 1e-39
 
 static void fill_projector(const GeoColumns *basis, GeoMatrix *projector) {
   const double(*q)[GEO_LANES] = basis->column;
@@ -41,8 +43,8 @@ ContactGeoOutcome contact_geo_frame(ContactGeoFrame *frame, const double pair[24
   contact_geo_orthonormalise(&frame->basis, 2, length);
   frame->volume = 100.0 / 6 / (length[0] * length[1] * length[2]);
   fill_projector(&frame->basis, &frame->projector);
-  return fabs(trace(&frame->projector) - 3) <= TRACE_TOLERANCE && frame->volume > 0 ? CONTACT_GEO_INSIDE
-                                                                                    : CONTACT_GEO_UNFIT;
+  if (!(fabs(trace(&frame->projector) - 3) <= TRACE_TOLERANCE && frame->volume > 0)) return CONTACT_GEO_UNFIT;
+  return frame->volume > LEAST_SHARE * gate.least_volume ? CONTACT_GEO_INSIDE : CONTACT_GEO_EMPTY;
 }
 
 void contact_geo_onset(GeoMatrix *projector) {

@@ -116,6 +116,7 @@ ContactGeoOutcome contact_geo_gate(ContactGeoGate *gate, const double pair[24]) 
   Planes planes[2] = {planes_of(pair), planes_of(pair + 12)};
   for (int t = 0; t < 2; t++)
     if (is_flat(pair + 12 * t, planes[t].det)) return CONTACT_GEO_UNFIT;
+  gate->least_volume = fmin(fabs(planes[0].det), fabs(planes[1].det)) / 6;
   write_normals(planes, &gate->normal);
   locate(&planes[1], pair, gate->across[0]);
   locate(&planes[0], pair + 12, gate->across[1]);

@@ -27,6 +27,7 @@ typedef struct ContactGeoGate {
   GeoColumns normal;       // ∇ of the slacks [1/m]
   double slack[GEO_LANES]; // at a point inside; each tetrahedron's four sum to 1
   double across[2][4][4];  // [t][v][k]: barycentric coordinate k, in the other, of vertex v of t
+  double least_volume;     // of the two tetrahedra [m³]
   bool is_enclosed;        // all vertices of one are in the other, but for rounding
 } ContactGeoGate;
 

@@ -22,6 +22,7 @@ typedef enum ContactOverlapFlag {
   CONTACT_OVERLAP_FLAT = 1 << 1,     // a tetrahedron has no volume: V, ∇V, ∇²V are exactly 0
   CONTACT_OVERLAP_FALLBACK = 1 << 2, // answered by a more careful model than the one asked
   CONTACT_OVERLAP_ENCLOSED = 1 << 3, // one tetrahedron lies wholly inside the other: ∇V pushes nothing apart
+  CONTACT_OVERLAP_BLENDED = 1 << 4,  // answered partly by a more careful model
 } ContactOverlapFlag;
 
 // A batch of pairs; all arrays are the caller's.

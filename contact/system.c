@@ -78,6 +78,7 @@ static void count(ContactCounters *counters, const ContactEvaluation *evaluation
   counters->pairs += evaluation->tried;
   counters->enclosed += evaluation->enclosed;
   counters->fallbacks += evaluation->fallbacks;
+  counters->blended += evaluation->blended;
   counters->overlap_s += evaluation->overlap_s;
   counters->force_s += evaluation->force_s;
 }

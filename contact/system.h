@@ -93,6 +93,7 @@ typedef struct ContactCounters {
   long long searches;                 // broad phases
   long long enclosed;                 // pairs flagged CONTACT_OVERLAP_ENCLOSED
   long long fallbacks;                // pairs flagged CONTACT_OVERLAP_FALLBACK
+  long long blended;                  // pairs flagged CONTACT_OVERLAP_BLENDED
   long long beyond_margin;            // evaluations refused because a vertex left the margin
   double broad_s, overlap_s, force_s; // wall time by phase [s]
 } ContactCounters;

@@ -196,6 +196,7 @@ static void report(void *self, Record *counters) {
   record_integer(counters, "contact_searches", count->searches);
   record_integer(counters, "enclosed_pairs", count->enclosed);
   record_integer(counters, "overlap_fallbacks", count->fallbacks);
+  record_integer(counters, "overlap_blended", count->blended);
   record_integer(counters, "beyond_margin", count->beyond_margin);
 }
 

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/geo_coplanar.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contact/clip.h"
+
+enum { SIZE = CONTACT_PAIR_SIZE, ACROSS = GEO_LANES / 2 };
+
+// r₀ of faces that look the same way, and of faces that look at each other. The network's error grows below
+// r ≈ 0.4 for the first; slices it tells well, all that they need is the right start.
+static const double REACH_SAME = 0.3, REACH_FACING = 0.03;
+
+static bool is_close(const GeoMatrix *projector, int k, int l, double side, ContactGeoClose *close) {
+  double reach = side < 0 ? REACH_SAME : REACH_FACING;
+  double kk = projector->row[k][k], ll = projector->row[l][l];
+  double apart = kk + ll + 2 * side * projector->row[k][l], measure = kk * ll;
+  if (!(apart < reach * measure)) return false;
+  double ratio = fmax(apart, 0) / measure, left = 1 - ratio / reach;
+  *close = (ContactGeoClose){.k = k,
+                             .l = l,
+                             .side = side,
+                             .ratio = ratio,
+                             .share = left * left * left,
+                             .slope = -3 * left * left / reach,
+                             .bending = 6 * left / (reach * reach)};
+  return true;
+}
+
+void contact_geo_coplanar_find(const GeoMatrix *projector, ContactGeoCoplanar *coplanar) {
+  coplanar->count = 0;
+  double kept = 1;
+  for (int k = 0; k < ACROSS; k++)
+    for (int l = ACROSS; l < GEO_LANES; l++)
+      for (int side = -1; side <= 1; side += 2) {
+        ContactGeoClose *close = &coplanar->close[coplanar->count];
+        if (!is_close(projector, k, l, side, close)) continue;
+        kept *= 1 - close->share;
+        coplanar->count++;
+      }
+  coplanar->share = 1 - kept;
+}
+
+// What the planes other than c and d leave to the network.
+static double left_by_others(const ContactGeoCoplanar *coplanar, int c, int d) {
+  double kept = 1;
+  for (int o = 0; o < coplanar->count; o++)
+    if (o != c && o != d) kept *= 1 - coplanar->close[o].share;
+  return kept;
+}
+
+// ∂r_kl/∂P, times `factor`.
+static void add_slope(const GeoMatrix *projector, const ContactGeoClose *close, double factor,
+                      GeoMatrix *slope) {
+  int k = close->k, l = close->l;
+  double kk = projector->row[k][k], ll = projector->row[l][l], inverse = 1 / (kk * ll);
+  slope->row[k][k] += factor * (inverse - close->ratio / kk);
+  slope->row[l][l] += factor * (inverse - close->ratio / ll);
+  slope->row[k][l] += factor * close->side * inverse;
+  slope->row[l][k] += factor * close->side * inverse;
+}
+
+// δr_kl
+static double change_ratio(const GeoMatrix *projector, const ContactGeoClose *close,
+                           const GeoMatrix *change) {
+  int k = close->k, l = close->l;
+  double kk = projector->row[k][k], ll = projector->row[l][l];
+  double dk = change->row[k][k], dl = change->row[l][l];
+  return (dk + dl + 2 * close->side * change->row[k][l]) / (kk * ll) - close->ratio * (dk / kk + dl / ll);
+}
+
+// The change of ∂r_kl/∂P, times `factor`.
+static void add_bend(const GeoMatrix *projector, const ContactGeoClose *close, const GeoMatrix *change,
+                     double ratio_change, double factor, GeoMatrix *bent) {
+  int k = close->k, l = close->l;
+  double kk = projector->row[k][k], ll = projector->row[l][l], inverse = 1 / (kk * ll);
+  double dk = change->row[k][k], dl = change->row[l][l];
+  double inverse_change = -inverse * (dk / kk + dl / ll);
+  bent->row[k][k] += factor * (inverse_change - ratio_change / kk + close->ratio * dk / (kk * kk));
+  bent->row[l][l] += factor * (inverse_change - ratio_change / ll + close->ratio * dl / (ll * ll));
+  bent->row[k][l] += factor * close->side * inverse_change;
+  bent->row[l][k] += factor * close->side * inverse_change;
+}
+
+void contact_geo_coplanar_slope(const ContactGeoCoplanar *coplanar, const GeoMatrix *projector,
+                                GeoMatrix *slope) {
+  memset(slope, 0, sizeof *slope);
+  for (int c = 0; c < coplanar->count; c++) {
+    const ContactGeoClose *close = &coplanar->close[c];
+    add_slope(projector, close, left_by_others(coplanar, c, c) * close->slope, slope);
+  }
+}
+
+void contact_geo_coplanar_bend(const ContactGeoCoplanar *coplanar, const GeoMatrix *projector,
+                               const GeoMatrix *change, GeoMatrix *slope_change) {
+  memset(slope_change, 0, sizeof *slope_change);
+  double ratio_change[CONTACT_GEO_MOST_CLOSE];
+  for (int c = 0; c < coplanar->count; c++)
+    ratio_change[c] = change_ratio(projector, &coplanar->close[c], change);
+  for (int c = 0; c < coplanar->count; c++) {
+    const ContactGeoClose *close = &coplanar->close[c];
+    double kept = left_by_others(coplanar, c, c), factor = kept * close->bending * ratio_change[c];
+    for (int o = 0; o < coplanar->count; o++)
+      if (o != c)
+        factor -= left_by_others(coplanar, c, o) * close->slope * coplanar->close[o].slope * ratio_change[o];
+    add_slope(projector, close, factor, slope_change);
+    add_bend(projector, close, change, ratio_change[c], kept * close->slope, slope_change);
+  }
+}
+
+// A pair between the two models: how their volumes and gradients differ, and the derivatives of w. The
+// frame's derivatives are those of w + log V₀: what they are without w is taken off.
+typedef struct Blend {
+  ContactGeoCoplanar coplanar;
+  GeoMatrix slope;                                          // ∂w/∂P
+  ContactGeoAdjoint with, without;                          // of w + log V₀, of log V₀
+  double volume, gradient[SIZE], hessian[SIZE * SIZE];      // of clip
+  double difference, gradient_difference[SIZE], pull[SIZE]; // clip − network; ∇w
+} Blend;
+
+static const GeoMatrix NO_SLOPE;
+
+static void pull_share(const ContactGeoFrame *frame, Blend *blend) {
+  contact_geo_coplanar_slope(&blend->coplanar, &frame->projector, &blend->slope);
+  contact_geo_frame_pull(frame, &blend->slope, &blend->with);
+  contact_geo_frame_pull(frame, &NO_SLOPE, &blend->without);
+  for (int i = 0; i < SIZE; i++) blend->pull[i] = blend->with.gradient[i] - blend->without.gradient[i];
+}
+
+static void blend_gradient(const Blend *blend, double *gradient) {
+  for (int i = 0; i < SIZE; i++)
+    gradient[i] += blend->coplanar.share * blend->gradient_difference[i] + blend->difference * blend->pull[i];
+}
+
+// Row i of ∇²w.
+static void bend_share(const ContactGeoFrame *frame, const Blend *blend, int i, double row[SIZE]) {
+  double direction[SIZE] = {0}, with[SIZE], without[SIZE];
+  direction[i] = 1;
+  ContactGeoTangent tangent;
+  GeoMatrix slope_change;
+  contact_geo_frame_push(frame, direction, &tangent);
+  contact_geo_coplanar_bend(&blend->coplanar, &frame->projector, &tangent.projector, &slope_change);
+  contact_geo_frame_bend(frame, &blend->with, &blend->slope, &tangent, &slope_change, with);
+  contact_geo_frame_bend(frame, &blend->without, &NO_SLOPE, &tangent, &NO_SLOPE, without);
+  for (int j = 0; j < SIZE; j++) row[j] = with[j] - without[j];
+}
+
+static void blend_hessian(const ContactGeoFrame *frame, const Blend *blend, double *hessian) {
+  double share = blend->coplanar.share, bent[SIZE][SIZE];
+  for (int i = 0; i < SIZE; i++) bend_share(frame, blend, i, bent[i]);
+  for (int i = 0; i < SIZE; i++)
+    for (int j = i; j < SIZE; j++) {
+      int at = i * SIZE + j;
+      hessian[at] += share * (blend->hessian[at] - hessian[at]) +
+                     blend->pull[i] * blend->gradient_difference[j] +
+                     blend->gradient_difference[i] * blend->pull[j] +
+                     blend->difference * 0.5 * (bent[i][j] + bent[j][i]);
+      hessian[j * SIZE + i] = hessian[at];
+    }
+}
+
+Status contact_geo_coplanar_blend(const ContactGeoFrame *frame, const double pair[24], double *volume,
+                                  double *gradient, double *hessian, unsigned *flags) {
+  Blend blend;
+  contact_geo_coplanar_find(&frame->projector, &blend.coplanar);
+  if (!(blend.coplanar.share > 0)) return STATUS_OK;
+  unsigned clip_flags;
+  TRY(contact_overlap_clip.eval_pair(NULL, pair, &blend.volume, gradient ? blend.gradient : NULL,
+                                     hessian ? blend.hessian : NULL, &clip_flags));
+  blend.difference = blend.volume - *volume;
+  *volume += blend.coplanar.share * blend.difference;
+  if (flags) *flags |= CONTACT_OVERLAP_BLENDED;
+  if (!gradient) return STATUS_OK;
+  for (int i = 0; i < SIZE; i++) blend.gradient_difference[i] = blend.gradient[i] - gradient[i];
+  pull_share(frame, &blend);
+  blend_gradient(&blend, gradient);
+  if (hessian) blend_hessian(frame, &blend, hessian);
+  return STATUS_OK;
+}
