@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "app/evaluation_model.h"
+#include "app/evaluation_paths.h"
 #include "app/evaluation_report.h"
 #include "app/job.h"
 #include "app/training_source.h"
@@ -15,12 +16,13 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-enum { KEY_MIX = 256, KEY_VOLUME, BLOCK = 16384 };
+enum { KEY_MIX = 256, KEY_VOLUME, KEY_PATHS, BLOCK = 16384 };
 
 typedef struct Options {
   const char *model;
   AppSourceDef source;
   int threads; // 0: all
+  int paths;   // to look for jumps along; 0: none
   bool is_json, is_quiet;
 } Options;
 
@@ -30,6 +32,7 @@ static const struct argp_option option_table[] = {
     {"seed", 's', "S", 0, "The law's seed (default: 1)", 0},
     {"mix", KEY_MIX, "KIND=SHARE,…", 0, "Shares of the kinds, instead of the law's", 0},
     {"volume", KEY_VOLUME, "LAW", 0, "Law of the volumetric pairs' V, instead of the law's", 0},
+    {"paths", KEY_PATHS, "N", 0, "Look for jumps of V and of its gradient along N paths; needs no data", 0},
     {"threads", 't', "N", 0, "Threads (default: all); the result does not depend on it", 0},
     {"json", 'j', NULL, 0, "Print the result as JSON", 0},
     {"quiet", 'q', NULL, 0, "Say errors only", 0},
@@ -48,7 +51,8 @@ static long long integer_of(struct argp_state *state, const char *option, const 
 static void check(struct argp_state *state, const Options *options) {
   if (!options->model)
     argp_error(state, "name a model (clip, exact, geo, …) or a weights file, then a data set or --law");
-  if (!options->source.file && !options->source.law) argp_error(state, "name a data set's file or a --law");
+  if (!options->source.file && !options->source.law && !options->paths)
+    argp_error(state, "name a data set's file, a --law, or a number of --paths");
   if (options->source.file && options->source.law)
     argp_error(state, "a file and --law contradict each other; give one of them");
 }
@@ -70,6 +74,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case KEY_VOLUME:
     options->source.volume = text;
+    return 0;
+  case KEY_PATHS:
+    options->paths = (int)integer_of(state, "paths", text, 1);
     return 0;
   case 't':
     options->threads = (int)integer_of(state, "threads", text, 1);
@@ -113,48 +120,72 @@ static Status add_blocks(AppSource *source, const DatagenPairs *buffer, AppEvalu
   return STATUS_OK;
 }
 
-static Status report(const Options *options, const AppSource *source, const AppEvaluation *evaluation) {
+// What was found; either part may be absent.
+typedef struct Findings {
+  bool has_evaluation, has_paths;
   char data[768];
-  app_training_source_describe(&options->source, source, data, sizeof data);
-  if (!options->is_json) {
-    app_evaluation_print(evaluation, options->model, data, stdout);
-    return STATUS_OK;
-  }
+  AppEvaluation evaluation;
+  AppEvaluationPaths paths;
+} Findings;
+
+static void print(const Options *options, const Findings *findings) {
+  if (findings->has_evaluation)
+    app_evaluation_print(&findings->evaluation, options->model, findings->data, stdout);
+  if (findings->has_paths) app_evaluation_print_paths(&findings->paths, options->model, stdout);
+}
+
+static Status record(const Options *options, const Findings *findings) {
   Record *record = record_new();
   if (!record) return status_no_memory("the result");
   record_text(record, "model", options->model);
-  record_text(record, "data", data);
   record_text(record, "program", app_versions_program());
-  app_evaluation_record(evaluation, record);
+  if (findings->has_evaluation) {
+    record_text(record, "data", findings->data);
+    app_evaluation_record(&findings->evaluation, record);
+  }
+  if (findings->has_paths) app_evaluation_record_paths(&findings->paths, record_child(record, "paths"));
   Status status = record_print(record, stdout);
   record_destroy(record);
   return status;
 }
 
-static Status evaluate(const Options *options, AppSource *source, const ContactOverlapModel *model) {
+static Status evaluate(AppSource *source, const ContactOverlapModel *model, AppEvaluation *evaluation) {
   DatagenPairs buffer;
   AppEvaluationRun run;
-  AppEvaluation evaluation;
   TRY(datagen_pairs_create(&buffer, BLOCK, true));
   app_evaluation_begin(&run, model, app_evaluation_model_logits(model));
   Status status = add_blocks(source, &buffer, &run);
   log_progress_end();
-  if (!status) {
-    app_evaluation_finish(&run, &evaluation);
-    status = report(options, source, &evaluation);
-  }
+  if (!status) app_evaluation_finish(&run, evaluation);
   app_evaluation_end(&run);
   datagen_pairs_destroy(&buffer);
   return status;
 }
 
+static Status evaluate_data(const Options *options, const ContactOverlapModel *model, Findings *findings) {
+  AppSource source;
+  Status status = app_training_source_open(&source, &options->source, true);
+  if (!status) status = evaluate(&source, model, &findings->evaluation);
+  if (!status) app_training_source_describe(&options->source, &source, findings->data, sizeof findings->data);
+  app_training_source_close(&source);
+  return status;
+}
+
+static Status evaluate_all(const Options *options, const ContactOverlapModel *model) {
+  Findings findings = {.has_evaluation = options->source.file || options->source.law,
+                       .has_paths = options->paths > 0};
+  if (findings.has_evaluation) TRY(evaluate_data(options, model, &findings));
+  if (findings.has_paths)
+    TRY(app_evaluation_paths(model, options->paths, options->source.seed, &findings.paths));
+  if (options->is_json) return record(options, &findings);
+  print(options, &findings);
+  return STATUS_OK;
+}
+
 static Status open_and_evaluate(const Options *options) {
   ContactOverlapModel model;
-  AppSource source;
   TRY(app_evaluation_model_open(&model, options->model));
-  Status status = app_training_source_open(&source, &options->source, true);
-  if (!status) status = evaluate(options, &source, &model);
-  app_training_source_close(&source);
+  Status status = evaluate_all(options, &model);
   contact_overlap_destroy(&model);
   return status;
 }

@@ -132,3 +132,21 @@ void app_evaluation_record(const AppEvaluation *evaluation, Record *record) {
   record_bool(record, "has_status", evaluation->has_status);
   record_number(record, "calibration_error", evaluation->calibration_error);
 }
+
+void app_evaluation_print_paths(const AppEvaluationPaths *paths, const char *model, FILE *stream) {
+  fprintf(stream,
+          "%s along %d paths (%d more were drawn that flatten a tetrahedron or touch nothing)\n"
+          "  largest jump of V          %.3g of the path's largest V\n"
+          "  largest jump of the gradient %.3g of the path's largest\n"
+          "  paths with a jump above %.0e or %.0e: %d\n",
+          model, paths->count, paths->replaced, paths->volume_jump, paths->gradient_jump,
+          app_evaluation_volume_jump, app_evaluation_gradient_jump, paths->jumping);
+}
+
+void app_evaluation_record_paths(const AppEvaluationPaths *paths, Record *record) {
+  record_integer(record, "count", paths->count);
+  record_integer(record, "replaced", paths->replaced);
+  record_integer(record, "jumping", paths->jumping);
+  record_number(record, "volume_jump", paths->volume_jump);
+  record_number(record, "gradient_jump", paths->gradient_jump);
+}

@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "app/evaluation.h"
+#include "app/evaluation_paths.h"
 #include "base/record.h"
 
 void app_evaluation_print(const AppEvaluation *evaluation, const char *model, const char *data, FILE *stream);
@@ -13,5 +14,9 @@ void app_evaluation_print(const AppEvaluation *evaluation, const char *model, co
 // The keys that others script against: accuracy (kind → share), accuracy_mean, mae, mae_small, … ; what could
 // not be measured is null.
 void app_evaluation_record(const AppEvaluation *evaluation, Record *record);
+
+void app_evaluation_print_paths(const AppEvaluationPaths *paths, const char *model, FILE *stream);
+// The keys count, replaced, jumping, volume_jump, gradient_jump.
+void app_evaluation_record_paths(const AppEvaluationPaths *paths, Record *record);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "app/evaluation.h"
 #include "app/evaluation_model.h"
+#include "app/evaluation_paths.h"
 #include "app/training_source.h"
 #include "contact/clip.h"
 #include "suite.h"
@@ -181,6 +182,55 @@ START_TEST(shipped_weights_keep_their_promise) {
 }
 END_TEST
 
+// Clipping, with a step in V or in ∇V that depends on a coordinate alone.
+static double volume_step, gradient_step;
+static Status step_up(const void *self, const double pair[24], double *volume, double *gradient,
+                      double *hessian, unsigned *flags) {
+  (void)self;
+  Status status = contact_overlap_clip.eval_pair(NULL, pair, volume, gradient, hessian, flags);
+  if (!(*volume > 0) || pair[0] < pair[12]) return status;
+  *volume *= 1 + volume_step;
+  for (int i = 0; gradient && i < 24; i++) gradient[i] *= 1 + volume_step + gradient_step;
+  return status;
+}
+static const ContactOverlapOps stepped = {.name = "stepped", .eval_pair = step_up};
+
+START_TEST(jumps_along_paths_are_found_and_measured) {
+  ContactOverlapModel model = {.ops = &stepped};
+  AppEvaluationPaths found, again;
+  volume_step = 0.01, gradient_step = 0;
+  ck_assert_ok(app_evaluation_paths(&model, 12, 5, &found));
+  ck_assert_int_eq(found.count, 12);
+  ck_assert_int_ge(found.jumping, 2);
+  ck_assert(found.volume_jump > 2e-3 && found.volume_jump <= 0.0101);
+  ck_assert_ok(app_evaluation_paths(&model, 12, 5, &again));
+  ck_assert(again.volume_jump == found.volume_jump && again.gradient_jump == found.gradient_jump);
+  volume_step = 0, gradient_step = 0.01;
+  ck_assert_ok(app_evaluation_paths(&model, 12, 5, &found));
+  ck_assert(found.volume_jump < app_evaluation_volume_jump);
+  ck_assert(found.gradient_jump > 2e-3 && found.gradient_jump <= 0.0101);
+  gradient_step = 0;
+  ck_assert_ok(app_evaluation_paths(&model, 12, 5, &found));
+  ck_assert_int_eq(found.jumping, 0);
+}
+END_TEST
+
+START_TEST(shipped_weights_do_not_jump) {
+  static const char *const names[] = {"geo", "geo-small"};
+  for (int n = 0; n < 2; n++) {
+    ContactOverlapModel model;
+    AppEvaluationPaths found;
+    char path[256];
+    snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/net/weights/%s.safetensors", names[n]);
+    ck_assert_ok(app_evaluation_model_open(&model, path));
+    ck_assert_ok(app_evaluation_paths(&model, 18, 9003, &found));
+    contact_overlap_destroy(&model);
+    ck_assert(found.volume_jump < app_evaluation_volume_jump);
+    ck_assert(found.gradient_jump < app_evaluation_gradient_jump);
+  }
+}
+END_TEST
+
 START_TEST(unknown_models_are_named) {
   ContactOverlapModel model;
   ck_assert(app_evaluation_model_open(&model, "clap") != STATUS_OK);
@@ -198,6 +248,8 @@ int main(void) {
   tcase_add_test(test_case, blocks_do_not_change_what_is_found);
   tcase_add_test(test_case, without_pairs_there_is_nothing_to_tell);
   tcase_add_test(test_case, shipped_weights_keep_their_promise);
+  tcase_add_test(test_case, jumps_along_paths_are_found_and_measured);
+  tcase_add_test(test_case, shipped_weights_do_not_jump);
   tcase_add_test(test_case, unknown_models_are_named);
   return suite_run("eval", test_case, 30);
 }
