@@ -46,7 +46,9 @@ static bool is_at_rest(const FemSceneDef *scene) {
 
 static bool is_locking(const FemSceneDef *scene) {
   bool locks = false;
-  for (int b = 0; b < scene->body_count; b++) locks = locks || scene->bodies[b].material.poisson >= 0.45;
+  for (int b = 0; b < scene->body_count; b++)
+    locks = locks ||
+            (scene->bodies[b].material.poisson >= 0.45 && scene->bodies[b].element == FEM_ELEMENT_LINEAR);
   return locks;
 }
 
@@ -65,7 +67,8 @@ static Notes take_notes(const AppJob *job) {
   note(&notes, is_at_rest(scene),
        "nothing moves: no gravity, no initial velocity, no driven vertices, no moving obstacle");
   note(&notes, is_locking(scene),
-       "linear tetrahedra are too stiff at a Poisson's ratio of 0.45 and above: bending is underestimated");
+       "linear tetrahedra are too stiff at a Poisson's ratio of 0.45 and above: bending is underestimated; "
+       "try element: nodal");
   note(&notes, job->model.unknown_count == 0, "every vertex is prescribed: there is nothing to solve");
   note(&notes, fem_model_memory_estimate(&job->model) > machine_memory(),
        "the run needs more memory than this machine has");

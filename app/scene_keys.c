@@ -53,6 +53,15 @@ static const char *hessian_help(int i) {
                 : "the second derivatives of the overlap volumes as well, where the model has them";
 }
 
+static const char *element_name(int i) {
+  static const char *const names[] = {"linear", "nodal"};
+  return i < 2 ? names[i] : NULL;
+}
+static const char *element_help(int i) {
+  return i == 0 ? "constant strain; too stiff from about ν = 0.45"
+                : "linear, the volume change averaged at the vertices: for ν up to 0.499";
+}
+
 static const char *following_name(int i) { // the number is FemLoadDef.is_dead
   static const char *const names[] = {"surface", "nothing"};
   return i < 2 ? names[i] : NULL;
@@ -63,6 +72,7 @@ static const char *following_help(int i) {
 }
 
 static const SceneChoices followings = {following_name, following_help};
+static const SceneChoices elements = {element_name, element_help};
 static const SceneChoices laws = {law_name, law_help};
 static const SceneChoices potentials = {potential_name, potential_help};
 static const SceneChoices solvers = {solver_name, solver_help};
@@ -170,7 +180,7 @@ static const SceneKey material_keys[] = {
     {"young", SCENE_NUMBER, AT(FemMaterial, young), .unit = "Pa", .range = "(0, inf)", .required = "1e6",
      .help = "Young's modulus E"},
     {"poisson", SCENE_NUMBER, AT(FemMaterial, poisson), .range = "(-1, 0.5)", .required = "0.4",
-     .help = "Poisson's ratio ν; linear tetrahedra lock from about 0.45"},
+     .help = "Poisson's ratio ν; linear tetrahedra lock from about 0.45, `element: nodal` does not"},
     {"density", SCENE_NUMBER, AT(FemMaterial, density), .unit = "kg/m³", .range = "(0, inf)",
      .required = "1000", .help = "ρ at rest"},
     {"damping", SCENE_NUMBER, AT(FemMaterial, damping), .unit = "s", .range = "[0, inf)", .absent = -1,
@@ -316,6 +326,8 @@ static const SceneKey body_keys[] = {
     {"material", SCENE_SECTION, AT(FemBodyDef, material),
      .required = "{young: 1e6, poisson: 0.4, density: 1000}", .section = &material,
      .help = "what it is made of"},
+    {"element", SCENE_CHOICE, AT(FemBodyDef, element), .fallback = "linear", .choices = &elements,
+     .help = "how its tetrahedra resist"},
     {"velocity", SCENE_VECTOR, AT(FemBodyDef, velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
      .help = "at t = 0"},
     {"spin", SCENE_VECTOR, AT(FemBodyDef, spin), .unit = "rad/s", .fallback = "[0, 0, 0]",

@@ -4,6 +4,7 @@
 // One line an effect; forces are summed in this order.
 static const FemEffectOps *const effects[] = {
     &fem_effect_elasticity,
+    &fem_effect_volume,
     &fem_effect_damping,
     &fem_effect_gravity,
     &fem_effect_loads,

@@ -61,6 +61,7 @@ const FemEffectOps *const *fem_effect_list(int *count);
 
 // Those files (fem/effect_NAME.c) define these:
 extern const FemEffectOps fem_effect_elasticity;
+extern const FemEffectOps fem_effect_volume;
 extern const FemEffectOps fem_effect_damping;
 extern const FemEffectOps fem_effect_gravity;
 extern const FemEffectOps fem_effect_loads;

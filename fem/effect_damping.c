@@ -39,7 +39,7 @@ static Status couple(void *self, const FemState *state, FemPattern *pattern, int
 }
 
 static void element_force(const FemAssemblyElement *e, double force[12]) {
-  fem_element_damping_force(e->element, &e->body->material, e->body->damping, e->x, e->v, force);
+  fem_element_damping_force(e->element, &e->body->local, e->body->damping, e->x, e->v, force);
 }
 
 static Status add_force(void *self, const FemState *state, double *force) {
@@ -49,7 +49,7 @@ static Status add_force(void *self, const FemState *state, double *force) {
 
 static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
                            double matrix[144]) {
-  const FemMaterial *material = &e->body->material;
+  const FemMaterial *material = &e->body->local;
   double part[144];
   for (int k = 0; k < 144; k++) matrix[k] = 0;
   if (stiffness_scale != 0) {
@@ -69,7 +69,7 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
 }
 
 static double element_power(const FemAssemblyElement *e) {
-  return fem_element_damping_power(e->element, &e->body->material, e->body->damping, e->x, e->v);
+  return fem_element_damping_power(e->element, &e->body->local, e->body->damping, e->x, e->v);
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {

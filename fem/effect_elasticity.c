@@ -30,7 +30,7 @@ static Status couple(void *self, const FemState *state, FemPattern *pattern, int
 }
 
 static void element_force(const FemAssemblyElement *e, double force[12]) {
-  fem_element_force(e->element, &e->body->material, e->x, force);
+  fem_element_force(e->element, &e->body->local, e->x, force);
 }
 
 static Status add_force(void *self, const FemState *state, double *force) {
@@ -41,7 +41,7 @@ static Status add_force(void *self, const FemState *state, double *force) {
 static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
                            double matrix[144]) {
   (void)damping_scale;
-  fem_element_stiffness(e->element, &e->body->material, e->x, matrix);
+  fem_element_stiffness(e->element, &e->body->local, e->x, matrix);
   for (int k = 0; k < 144; k++) matrix[k] *= stiffness_scale;
 }
 
@@ -52,7 +52,7 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
 }
 
 static double element_energy(const FemAssemblyElement *e) {
-  return fem_element_energy(e->element, &e->body->material, e->x);
+  return fem_element_energy(e->element, &e->body->local, e->x);
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {

@@ -75,7 +75,7 @@ static void complete_matrix(double matrix[144]) {
 }
 
 // K_ai,bk = V Σ_jl ∂N_a/∂X_j ∂P_ij/∂F_kl ∂N_b/∂X_l, for symmetric dP.
-static void spread_tangent(const FemElement *element, const double dP[81], double matrix[144]) {
+void fem_element_spread_tangent(const FemElement *element, const double dP[81], double matrix[144]) {
   double products[3][9][3];
   contract_columns(element, dP, products);
   for (int a = 0; a < 3; a++) {
@@ -112,7 +112,7 @@ void fem_element_stiffness(const FemElement *element, const FemMaterial *materia
   double F[9], dP[81];
   fem_element_deformation(element, x, F);
   fem_material_tangent(material, F, dP);
-  spread_tangent(element, dP, stiffness);
+  fem_element_spread_tangent(element, dP, stiffness);
 }
 
 // Ė = sym(Fᵀ Ḟ) and the viscous second Piola–Kirchhoff stress Σ = β (2μ Ė + λ tr Ė I).
@@ -157,7 +157,7 @@ void fem_element_damping_matrix(const FemElement *element, const FemMaterial *ma
   fem_element_deformation(element, x, F);
   fem_material_pushed_stiffness(material, F, dP);
   for (int r = 0; r < 81; r++) dP[r] *= beta;
-  spread_tangent(element, dP, matrix);
+  fem_element_spread_tangent(element, dP, matrix);
 }
 
 // P_v = F Σ(F, Ḟ), so ∂P_v = ∂F Σ + β F C : sym(Ḟᵀ ∂F). The first term is symmetric; the second is, with
@@ -173,7 +173,7 @@ void fem_element_damping_stiffness(const FemElement *element, const FemMaterial 
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       for (int l = 0; l < 3; l++) dP[9 * (3 * i + j) + 3 * i + l] += stress[3 * j + l];
-  spread_tangent(element, dP, matrix);
+  fem_element_spread_tangent(element, dP, matrix);
 }
 
 void fem_element_cauchy(const FemElement *element, const FemMaterial *material, const double x[12],

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "fem/cofactor.h"
 #include "fem/svd3.h"
 
 static const struct {
@@ -28,6 +29,14 @@ const char *fem_material_help(FemMaterialLaw law) {
 FemLame fem_material_lame(const FemMaterial *material) {
   double E = material->young, nu = material->poisson;
   return (FemLame){.lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), .mu = E / (2 * (1 + nu))};
+}
+
+FemMaterial fem_material_with_lambda(const FemMaterial *material, double lambda) {
+  FemMaterial other = *material;
+  double mu = fem_material_lame(material).mu;
+  other.young = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+  other.poisson = lambda / (2 * (lambda + mu));
+  return other;
 }
 
 static inline double dot9(const double A[9], const double B[9]) {
@@ -99,6 +108,9 @@ static void corotational_stress(FemLame lame, const double F[9], double P[9]) {
   for (int r = 0; r < 9; r++) P[r] = 2 * lame.mu * (F[r] - R[r]) + pressure * R[r];
 }
 
+// Sums of stretches below count as this (material.h).
+static const double SMALLEST_SUM = 1e-6;
+
 // u_i v_jᵀ − u_j v_iᵀ: how R moves where F is twisted in the plane (i, j).
 static inline void find_twist(const FemSvd3 *svd, int i, int j, double twist[9]) {
   for (int r = 0; r < 3; r++)
@@ -106,11 +118,24 @@ static inline void find_twist(const FemSvd3 *svd, int i, int j, double twist[9])
       twist[3 * r + c] = svd->U[3 * r + i] * svd->V[3 * c + j] - svd->U[3 * r + j] * svd->V[3 * c + i];
 }
 
+// dP += scale · ∂R/∂F, as below.
+static void add_rotation_derivative(const double F[9], double scale, double dP[81]) {
+  static const int pairs[3][2] = {{0, 1}, {1, 2}, {0, 2}};
+  FemSvd3 svd;
+  fem_svd3_factor(&svd, F);
+  for (int k = 0; k < 3; k++) {
+    double twist[9], sum = svd.sigma[pairs[k][0]] + svd.sigma[pairs[k][1]];
+    find_twist(&svd, pairs[k][0], pairs[k][1], twist);
+    double weight = scale / fmax(sum, SMALLEST_SUM);
+    for (int r = 0; r < 9; r++)
+      for (int c = 0; c < 9; c++) dP[9 * r + c] += weight * twist[r] * twist[c];
+  }
+}
+
 // dP = 2μ dF + λ (R : dF) R + (λ tr(S − I) − 2μ) dR. With twists Q_ij = u_i v_jᵀ − u_j v_iᵀ,
 // dR = Σ_{i<j} (Q_ij : dF) Q_ij / (σ_i + σ_j)   (Smith, de Goes, Kim 2019, "Analytic eigensystems for
 // isotropic distortion energies").
 static void corotational_tangent(FemLame lame, const double F[9], double dP[81]) {
-  static const double smallest_sum = 1e-6;
   static const int pairs[3][2] = {{0, 1}, {1, 2}, {0, 2}};
   FemSvd3 svd;
   double modes[4][9], weights[4];
@@ -121,7 +146,7 @@ static void corotational_tangent(FemLame lame, const double F[9], double dP[81])
   for (int k = 0; k < 3; k++) {
     double sum = svd.sigma[pairs[k][0]] + svd.sigma[pairs[k][1]];
     find_twist(&svd, pairs[k][0], pairs[k][1], modes[k]);
-    weights[k] = turning / (sum < smallest_sum ? smallest_sum : sum);
+    weights[k] = turning / (sum < SMALLEST_SUM ? SMALLEST_SUM : sum);
   }
   for (int r = 0; r < 9; r++) {
     double scaled[4];
@@ -191,12 +216,6 @@ static FemLame neo_hookean_parameters(FemLame lame) {
   return (FemLame){.lambda = lame.lambda + 5.0 / 6.0 * lame.mu, .mu = 4.0 / 3.0 * lame.mu};
 }
 
-static inline void find_cofactor(const double F[9], double C[9]) {
-  C[0] = F[4] * F[8] - F[5] * F[7], C[1] = F[5] * F[6] - F[3] * F[8], C[2] = F[3] * F[7] - F[4] * F[6];
-  C[3] = F[2] * F[7] - F[1] * F[8], C[4] = F[0] * F[8] - F[2] * F[6], C[5] = F[1] * F[6] - F[0] * F[7];
-  C[6] = F[1] * F[5] - F[2] * F[4], C[7] = F[2] * F[3] - F[0] * F[5], C[8] = F[0] * F[4] - F[1] * F[3];
-}
-
 // The factor of cof F in P: λ' (J − α) = λ' (J − 1) − ¾ μ'.
 static inline double cofactor_weight(FemLame own, const double F[9], const double C[9]) {
   double J = F[0] * C[0] + F[1] * C[1] + F[2] * C[2];
@@ -205,13 +224,10 @@ static inline double cofactor_weight(FemLame own, const double F[9], const doubl
 
 static double neo_hookean_energy(FemLame lame, const double F[9]) {
   FemLame own = neo_hookean_parameters(lame);
-  double G[9], C[9];
+  double G[9];
   for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
-  find_cofactor(G, C);
-  // I_C − 3 and J − 1 from the displacement gradient: no cancellation at small strain.
-  double trace = G[0] + G[4] + G[8];
-  double stretch = 2 * trace + dot9(G, G);
-  double swelling = trace + (C[0] + C[4] + C[8]) + (G[0] * C[0] + G[1] * C[1] + G[2] * C[2]);
+  // I_C − 3 from the displacement gradient: no cancellation at small strain.
+  double stretch = 2 * (G[0] + G[4] + G[8]) + dot9(G, G), swelling = fem_cofactor_swelling(F);
   return 0.5 * own.mu * (stretch - log1p(0.25 * stretch) - 1.5 * swelling) +
          0.5 * own.lambda * swelling * swelling;
 }
@@ -220,7 +236,7 @@ static double neo_hookean_energy(FemLame lame, const double F[9]) {
 static void neo_hookean_stress(FemLame lame, const double F[9], double P[9]) {
   FemLame own = neo_hookean_parameters(lame);
   double C[9], square = dot9(F, F);
-  find_cofactor(F, C);
+  fem_cofactor_find(F, C);
   double a = own.mu * (square / (square + 1)), b = cofactor_weight(own, F, C);
   for (int r = 0; r < 9; r++) P[r] = a * F[r] + b * C[r];
 }
@@ -229,23 +245,14 @@ static void neo_hookean_stress(FemLame lame, const double F[9], double P[9]) {
 static void neo_hookean_tangent(FemLame lame, const double F[9], double dP[81]) {
   FemLame own = neo_hookean_parameters(lame);
   double C[9], square = dot9(F, F);
-  find_cofactor(F, C);
+  fem_cofactor_find(F, C);
   double a = own.mu * (square / (square + 1)), b = cofactor_weight(own, F, C);
   double f = 2 * own.mu / ((square + 1) * (square + 1));
   for (int r = 0; r < 9; r++) {
     for (int c = 0; c < 9; c++) dP[9 * r + c] = f * (F[r] * F[c]) + own.lambda * (C[r] * C[c]);
     dP[10 * r] += a;
   }
-  // ∂cof_kl/∂F_mn = ± F_ij for the index triples (i, k, m) and (j, l, n) that are permutations.
-  static const int next[3] = {1, 2, 0}, last[3] = {2, 0, 1};
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      int nn = 3 * next[i] + next[j], ll = 3 * last[i] + last[j];
-      int nl = 3 * next[i] + last[j], ln = 3 * last[i] + next[j];
-      double entry = b * F[3 * i + j];
-      dP[9 * nn + ll] += entry, dP[9 * ll + nn] += entry;
-      dP[9 * nl + ln] -= entry, dP[9 * ln + nl] -= entry;
-    }
+  fem_cofactor_add_derivative(F, b, dP);
 }
 
 double fem_material_energy(const FemMaterial *material, const double F[9]) {
@@ -320,4 +327,54 @@ void fem_material_pushed_stiffness_rate(const FemMaterial *material, const doubl
                             lame.lambda * (rate[ij] * F[kl] + F[ij] * rate[kl]);
         }
     }
+}
+
+// θ by law.
+
+static void volume_rotation(const double F[9], FemSvd3 *svd, double R[9]) {
+  fem_svd3_factor(svd, F);
+  fem_svd3_rotation(svd, R);
+}
+
+static double green_trace(const double F[9]) {
+  double strain[9];
+  find_green_strain(F, strain);
+  return strain[0] + strain[4] + strain[8];
+}
+
+double fem_material_volume(FemMaterialLaw law, const double F[9], double gradient[9]) {
+  static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  FemSvd3 svd;
+  switch (law) {
+  case FEM_MATERIAL_LINEAR:
+    memcpy(gradient, identity, sizeof identity);
+    return (F[0] - 1) + (F[4] - 1) + (F[8] - 1);
+  case FEM_MATERIAL_COROTATIONAL:
+    volume_rotation(F, &svd, gradient);
+    return stretch_trace(&svd);
+  case FEM_MATERIAL_STVK:
+    memcpy(gradient, F, 9 * sizeof *gradient);
+    return green_trace(F);
+  case FEM_MATERIAL_NEO_HOOKEAN:
+    break;
+  }
+  fem_cofactor_find(F, gradient);
+  return fem_cofactor_swelling(F);
+}
+
+void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double curvature[81]) {
+  memset(curvature, 0, 81 * sizeof *curvature);
+  switch (law) {
+  case FEM_MATERIAL_LINEAR:
+    return;
+  case FEM_MATERIAL_COROTATIONAL:
+    add_rotation_derivative(F, 1, curvature);
+    return;
+  case FEM_MATERIAL_STVK:
+    for (int r = 0; r < 9; r++) curvature[10 * r] = 1;
+    return;
+  case FEM_MATERIAL_NEO_HOOKEAN:
+    break;
+  }
+  fem_cofactor_add_derivative(F, 1, curvature);
 }

@@ -56,6 +56,14 @@ double fem_material_energy(const FemMaterial *material, const double F[9]);     
 void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]);    // [Pa]
 void fem_material_tangent(const FemMaterial *material, const double F[9], double dP[81]); // [Pa]
 
+// The law's measure of volume change θ(F), of which every law has the term λ/2 θ²: tr ε, tr(S − I), tr E, J −
+// 1. Returns θ; gradient ∂θ/∂F (9) and curvature ∂²θ/∂F² (9, 9).
+double fem_material_volume(FemMaterialLaw law, const double F[9], double gradient[9]);
+void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double curvature[81]);
+
+// The same material with another first Lamé parameter λ and the same μ.
+FemMaterial fem_material_with_lambda(const FemMaterial *material, double lambda);
+
 // F C Fᵀ with the small-strain C of the law: what a strain dE = sym(Fᵀ dF) answers with, dP = F (C : dE).
 // The material part of stvk's tangent, and the matrix of damping.
 void fem_material_pushed_stiffness(const FemMaterial *material, const double F[9], double dP[81]);

@@ -9,6 +9,7 @@
 #include "base/vec3.h"
 #include "fem/drive.h"
 #include "fem/select.h"
+#include "fem/volume.h"
 
 // Reads or makes the mesh of a body or an obstacle and puts it in its place.
 static Status load_mesh(FemMesh *mesh, const FemSceneDef *scene, const char *path, const double box_size[3],
@@ -116,7 +117,9 @@ static void append_bodies(FemModel *model, const FemMesh *meshes) {
     if (b < scene->body_count) {
       const FemBodyDef *def = &scene->bodies[b];
       body->name = def->name;
-      body->material = def->material;
+      body->material = body->local = def->material;
+      body->element = def->element;
+      if (def->element == FEM_ELEMENT_NODAL) body->local = fem_volume_local_material(&def->material);
       body->damping = def->material.damping >= 0 ? def->material.damping : scene->stiffness_damping;
       lump_mass(model, body);
       set_velocity(model, body, def);

@@ -15,8 +15,10 @@ typedef struct FemModelBody {
   int vertex_begin, vertex_end;
   int tet_begin, tet_end;
   FemMaterial material; // obstacles: zeroed
-  double damping;       // β [s]
-  double mass;          // [kg]
+  FemMaterial local; // what an element resists with by itself; the rest of λ is the vertices' (fem/volume.h)
+  FemElementKind element;
+  double damping; // β [s]
+  double mass;    // [kg]
   bool is_obstacle;
 } FemModelBody;
 

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect_contact.h"
+#include "fem/effect_volume.h"
 #include "fem/pvd.h"
 #include "fem/vtu.h"
 
@@ -208,7 +209,9 @@ static void fill_arrays(FemRecorder *recorder) {
     if (body->is_obstacle) continue;
     double corners[12];
     gather(system, e, corners);
-    fem_element_cauchy(&model->elements[e], &body->material, corners, recorder->stress + 6 * e);
+    fem_element_cauchy(&model->elements[e], &body->local, corners, recorder->stress + 6 * e);
+    void *volume = body->element == FEM_ELEMENT_NODAL ? fem_system_effect(system, "volume") : NULL;
+    if (volume) fem_effect_volume_add_stress(volume, e, corners, recorder->stress + 6 * e);
     recorder->von_mises[e] = von_mises(recorder->stress + 6 * e);
   }
 }

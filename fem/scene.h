@@ -70,6 +70,12 @@ typedef struct FemLoadDef {
   int table_count;
 } FemLoadDef;
 
+// How a body's tetrahedra resist. `nodal` and `quadratic` do not lock as ν → ½.
+typedef enum FemElementKind {
+  FEM_ELEMENT_LINEAR,
+  FEM_ELEMENT_NODAL, // linear, the volume change averaged at the vertices (fem/volume.h)
+} FemElementKind;
+
 typedef struct FemBodyDef {
   char *name;
   char *mesh_path;    // as written, relative to the scene file; NULL: a box
@@ -78,6 +84,7 @@ typedef struct FemBodyDef {
   FemMeshOptions mesh_options;
   FemPlacement placement;
   FemMaterial material;
+  FemElementKind element;
   double velocity[3];      // initial [m/s]
   double spin[3];          // initial angular velocity about the centre of mass [rad/s]
   FemConstraintDef *fixed; //                                 (fixed_count)

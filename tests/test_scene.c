@@ -20,8 +20,9 @@
 static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.yaml";
 static const char *const full_json = TETLAP_SOURCE_DIR "/tests/data/scene/full.json";
 
-static const char *const examples[] = {"01_drop",  "02_two_blocks", "03_spheres", "04_cantilever",
-                                       "05_press", "06_bunny_like", "20_loads",   "21_release"};
+static const char *const examples[] = {"01_drop",       "02_two_blocks", "03_spheres",
+                                       "04_cantilever", "05_press",      "06_bunny_like",
+                                       "20_loads",      "21_release",    "22_rubber_beam"};
 enum { EXAMPLE_COUNT = sizeof examples / sizeof *examples };
 
 // What is printed to the stream that `print` is given; owned by the caller (free).
@@ -73,6 +74,7 @@ static void check_lower(const FemBodyDef *body) {
   ck_assert_double_eq(body->material.damping, 1e-3);
   ck_vector(body->velocity, 0, 0, -1);
   ck_vector(body->spin, 0.1, 0.2, 0.3);
+  ck_assert_int_eq(body->element, FEM_ELEMENT_NODAL);
 }
 
 static void check_constraints(const FemBodyDef *body) {
@@ -198,8 +200,8 @@ START_TEST(a_scene_with_every_key_is_read) {
   ck_assert_ok(app_scene_read(full_yaml, NULL, 0, &scene));
   check_full(&scene);
   ck_assert_str_eq(scene.path, full_yaml);
-  ck_assert_int_eq(scene.bodies[1].place.line, 27);
-  ck_assert_int_eq(scene.bodies[0].driven[1].select.place.line, 17);
+  ck_assert_int_eq(scene.bodies[1].place.line, 28);
+  ck_assert_int_eq(scene.bodies[0].driven[1].select.place.line, 18);
   ck_assert_int_eq(scene.bodies[0].driven[1].select.place.column, 9);
   fem_scene_destroy(&scene);
 }
