@@ -380,7 +380,9 @@ static const SceneKey time_keys[] = {
     {"tolerance", SCENE_NUMBER, AT(FemSceneDef, tolerance), .range = "(0, 1)", .fallback = "1e-4",
      .help = "error of the positions per step, as a share of the smallest body's size"},
     {"velocity_tolerance", SCENE_NUMBER, AT(FemSceneDef, velocity_tolerance), .unit = "m/s",
-     .range = "(0, inf)", .absent_help = "`tolerance` times √(E/ρ) of the slowest body",
+     .range = "(0, inf)",
+     .absent_help =
+         "`tolerance` times √(E/ρ) of the slowest body, with friction at most 5 of its slip speeds",
      .help = "error of the velocities per step"},
     {"max_step", SCENE_NUMBER, AT(FemSceneDef, max_step), .unit = "s", .range = "(0, inf)",
      .absent_help = "0.1 of `end`", .help = "longest step"},
@@ -404,6 +406,17 @@ static const SceneKey effect_keys[] = {
 };
 static const SceneSection effects = {.help = "what acts on all bodies", .keys = effect_keys};
 
+static const SceneKey friction_keys[] = {
+    {"coefficient", SCENE_NUMBER, AT(FemContactDef, friction), .range = "[0, inf)", .required = "0.3",
+     .help = "Coulomb's μ: sliding resists with μ times the normal force"},
+    {"slip_speed", SCENE_NUMBER, AT(FemContactDef, slip_speed), .unit = "m/s", .range = "(0, inf)",
+     .absent_help = "1e-3 of the smallest body's size over `end`",
+     .help = "slower slip counts as sticking: what sticks creeps, more slowly than this"},
+    {0},
+};
+static const SceneSection friction = {
+    .help = "Coulomb friction", .keys = friction_keys, .shorthand = "coefficient"};
+
 static const SceneKey contact_keys[] = {
     {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa", .range = "(0, inf)",
      .absent_help = "E of the softest body (with `body` over its smallest mean element volume)",
@@ -420,6 +433,8 @@ static const SceneKey contact_keys[] = {
      .help = "pairs nearer than this are listed; a step that moves farther is tried again smaller"},
     {"hessian", SCENE_CHOICE, AT(FemContactDef, use_full_hessian), .fallback = "full", .choices = &hessians,
      .help = "derivatives of the contact force for Newton's method"},
+    {"friction", SCENE_SECTION, .section = &friction, .absent_help = "no friction",
+     .help = "what touches resists sliding; a number alone is its coefficient"},
     {0},
 };
 static const SceneSection contact = {.help = "bodies push each other apart", .keys = contact_keys};
@@ -575,7 +590,9 @@ void app_scene_keys_expect(const SceneKey *key, char *text, size_t size) {
   for (int i = 0; key->choices && (name = key->choices->name(i)); i++)
     text_append(text, size, &used, "%s%s", i ? ", " : "", name);
   if (key->section && key->section->shorthand)
-    text_append(text, size, &used, " or text (its '%s')", key->section->shorthand);
+    text_append(text, size, &used, " or %s (its '%s')",
+                type_text(app_scene_keys_find(key->section, key->section->shorthand)->type),
+                key->section->shorthand);
   if (key->range) text_append(text, size, &used, " in %s", key->range);
   if (key->unit) text_append(text, size, &used, " [%s]", key->unit);
 }

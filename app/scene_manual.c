@@ -64,6 +64,10 @@ static void print_cell(FILE *stream, const char *text) {
   }
 }
 
+static bool stands_for_number(const SceneSection *section) {
+  return app_scene_keys_find(section, section->shorthand)->type == SCENE_NUMBER;
+}
+
 static const char *type_of(const SceneKey *key) {
   switch (key->type) {
   case SCENE_NUMBER:
@@ -98,7 +102,8 @@ static const char *type_of(const SceneKey *key) {
   case SCENE_FORMULA:
     return "formula of t";
   case SCENE_SECTION:
-    return key->section->shorthand ? "text or mapping" : "mapping";
+    if (!key->section->shorthand) return "mapping";
+    return stands_for_number(key->section) ? "number or mapping" : "text or mapping";
   case SCENE_LIST:
     return "list of mappings";
   }
@@ -168,7 +173,8 @@ static void print_rules(FILE *stream, const SceneSection *section) {
     fputs(" must be given.\n", stream);
   }
   if (section->shorthand)
-    fprintf(stream, "\nA text in the place of the mapping stands for its `%s`.\n", section->shorthand);
+    fprintf(stream, "\nA %s in the place of the mapping stands for its `%s`.\n",
+            stands_for_number(section) ? "number" : "text", section->shorthand);
 }
 
 // The table of one section, its choices and rules, then the sections below it.

@@ -239,13 +239,15 @@ static Status read_list(const SceneKey *key, const SceneNode *node, void *self) 
   return STATUS_OK;
 }
 
+static Status read_value(const SceneKey *key, const SceneNode *node, void *self);
+
 // A section in its place, which a scalar may stand for.
 static Status read_subsection(const SceneKey *key, const SceneNode *node, void *field) {
   const SceneSection *section = key->section;
   if (node->kind == SCENE_NODE_MAP) return read_section(section, node, field);
-  if (node->kind != SCENE_NODE_TEXT || !section->shorthand) return fail_expected(key, node, "");
-  const SceneKey *meant = app_scene_keys_find(section, section->shorthand);
-  return read_text(meant, node, field_of(field, meant->offset));
+  const SceneKey *meant = section->shorthand ? app_scene_keys_find(section, section->shorthand) : NULL;
+  bool is_meant = meant && node->kind == (meant->type == SCENE_NUMBER ? SCENE_NODE_NUMBER : SCENE_NODE_TEXT);
+  return is_meant ? read_value(meant, node, field) : fail_expected(key, node, "");
 }
 
 static Status read_value(const SceneKey *key, const SceneNode *node, void *self) {

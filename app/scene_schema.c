@@ -136,8 +136,12 @@ static void put_rules(const SceneSection *section, Record *record) {
 static Status put_subsection(const SceneKey *key, const void *defaults, bool is_nullable, Record *record) {
   const void *below = (const char *)defaults + key->offset;
   if (!key->section->shorthand) return put_section(key->section, below, is_nullable, record);
+  const SceneKey *meant = app_scene_keys_find(key->section, key->section->shorthand);
   RecordList *any = record_list(record, "anyOf");
-  put_type(record_append(any), "string", is_nullable);
+  if (meant->type == SCENE_NUMBER)
+    put_number(meant, "number", is_nullable, record_append(any));
+  else
+    put_type(record_append(any), "string", is_nullable);
   return put_section(key->section, below, false, record_append(any));
 }
 

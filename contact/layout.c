@@ -114,6 +114,10 @@ void contact_layout_destroy(ContactLayout *layout) {
   *layout = (ContactLayout){0};
 }
 
+void contact_layout_obstacle_velocity(const ContactLayout *layout, int h, double velocity[3]) {
+  for (int c = 0; c < 3; c++) velocity[c] = layout->def.halfspaces[h].velocity[c];
+}
+
 void contact_layout_plane(const ContactLayout *layout, int h, double time, double point[3]) {
   const ContactHalfspace *space = &layout->def.halfspaces[h];
   for (int c = 0; c < 3; c++) point[c] = space->point[c] + time * space->velocity[c];

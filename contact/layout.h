@@ -46,6 +46,9 @@ void contact_layout_destroy(ContactLayout *layout);
 // A point of the plane of half-space h at time t.
 void contact_layout_plane(const ContactLayout *layout, int h, double time, double point[3]);
 
+// The velocity of half-space h.
+void contact_layout_obstacle_velocity(const ContactLayout *layout, int h, double velocity[3]);
+
 // The 12 coordinates of a tetrahedron.
 static inline void contact_layout_gather(const ContactLayout *layout, int tet, const double *positions,
                                          double coordinates[12]) {

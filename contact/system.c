@@ -162,6 +162,15 @@ const ContactCounters *contact_system_counters(const ContactSystem *system) {
   return &system->counters;
 }
 
+Status contact_system_look(ContactSystem *system, const ContactEvaluation **evaluation) {
+  *evaluation = &system->evaluation;
+  return contact_patches_index(&system->evaluation.patches);
+}
+
+const ContactLayout *contact_system_layout(const ContactSystem *system) {
+  return &system->layout;
+}
+
 static Status create_audits(ContactSystem *system) {
   if (system->has_audits) return STATUS_OK;
   for (int k = 0; k < 2; k++) {

@@ -98,6 +98,8 @@ typedef struct ContactCounters {
   double broad_s, overlap_s, force_s; // wall time by phase [s]
 } ContactCounters;
 
+struct ContactEvaluation;
+struct ContactLayout;
 typedef struct ContactSystem ContactSystem; // opaque: lists, scratch memory and the last evaluation
 
 Status contact_system_create(ContactSystem **system, const ContactSystemDef *def);
@@ -146,6 +148,10 @@ int contact_system_active_count(const ContactSystem *system); // pairs with V > 
 // capture. Owned by the caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).
 Status contact_system_active_pairs(const ContactSystem *system, int *count, double **pairs, int **tets);
 const ContactCounters *contact_system_counters(const ContactSystem *system);
+// What laws that build on the potential (friction.h) look at: contact/evaluation.h, contact/layout.h.
+// `look` indexes the last evaluation's patches; the result is the system's, valid until the next evaluation.
+Status contact_system_look(ContactSystem *system, const struct ContactEvaluation **evaluation);
+const struct ContactLayout *contact_system_layout(const ContactSystem *system);
 
 // Audit: the same configuration with another overlap model: relative differences against `reference`.
 // volume_error: Σ|ΔV| / ΣV over the union of pairs; force_error: ‖Δf‖₂/‖f‖₂ of the nodal forces. Half-spaces

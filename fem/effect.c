@@ -9,6 +9,7 @@ static const FemEffectOps *const effects[] = {
     &fem_effect_gravity,
     &fem_effect_loads,
     &fem_effect_contact,
+    &fem_effect_friction,
 };
 
 const FemEffectOps *const *fem_effect_list(int *count) {

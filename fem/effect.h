@@ -11,6 +11,8 @@
 #include "fem/matrix.h"
 #include "fem/model.h"
 
+struct FemSystem;
+
 // Positions and velocities of all vertices at a time; borrowed.
 typedef struct FemState {
   double time;              // [s]
@@ -30,8 +32,12 @@ typedef struct FemEnergy {
 typedef struct FemEffectOps {
   const char *name;
   const char *help; // one line
+  bool dissipates;  // its forces depend on velocities: D is assembled for Newton's matrix
+  bool lags;        // `prepare` changes its forces: the powers are measured anew after it
   bool (*is_wanted)(const FemSceneDef *scene);
   Status (*create)(void **self, const FemModel *model);
+  // Once all effects are there: to find one that this effect builds on, by fem_system_effect. NULL: none.
+  Status (*connect)(void *self, const struct FemSystem *system);
   // Tells the matrix pattern which vertices this effect couples at that state; *has_grown (may be NULL) as in
   // matrix.h. Called once, and before every assembly for effects that have `prepare`. NULL: none, or only a
   // vertex with itself.
@@ -66,5 +72,6 @@ extern const FemEffectOps fem_effect_damping;
 extern const FemEffectOps fem_effect_gravity;
 extern const FemEffectOps fem_effect_loads;
 extern const FemEffectOps fem_effect_contact;
+extern const FemEffectOps fem_effect_friction;
 
 #endif

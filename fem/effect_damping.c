@@ -80,6 +80,7 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
 const FemEffectOps fem_effect_damping = {
     .name = "damping",
     .help = "stiffness-proportional damping of the strain rate",
+    .dissipates = true,
     .is_wanted = is_wanted,
     .create = create,
     .couple = couple,

@@ -124,10 +124,8 @@ Status fem_ida_solver_create(FemIdaSolver **solver, FemSystem *system, const Fem
                              FemIdaFailure *failure, SUNContext context) {
   *solver = memory_zeroed(1, sizeof **solver);
   if (!*solver) return status_no_memory("the linear solver");
-  **solver = (FemIdaSolver){.system = system,
-                            .ops = ops,
-                            .failure = failure,
-                            .has_damping = fem_system_effect(system, "damping") != NULL};
+  **solver = (FemIdaSolver){
+      .system = system, .ops = ops, .failure = failure, .has_damping = fem_system_dissipates(system)};
   Status status = create(*solver, context);
   if (status == STATUS_OK) return STATUS_OK;
   fem_ida_solver_destroy(*solver);

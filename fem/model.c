@@ -360,13 +360,27 @@ double fem_model_contact_stiffness(const FemModel *model) {
   return contact->potential == CONTACT_POTENTIAL_BODY ? softest / smallest_element : softest;
 }
 
+// What sticks moves by less than ε, which an integrator that tolerates more than a few ε does not see.
+// Measured on a block that slides on a block: at 1, 2 and 7 ε as good, at 23 ε four times the steps.
+static const double FRICTION_RESOLUTION = 5;
+
+// How far what sticks may creep in a whole run, as a share of the smallest body.
+static const double CREEP = 1e-3;
+
+double fem_model_slip_speed(const FemModel *model) {
+  double given = model->scene->contact.slip_speed;
+  return given > 0 ? given : CREEP * model->length / model->scene->end;
+}
+
 double fem_model_velocity_tolerance(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
   if (scene->velocity_tolerance > 0) return scene->velocity_tolerance;
   double slowest = INFINITY;
   for (int b = 0; b < scene->body_count; b++)
     slowest = fmin(slowest, sqrt(scene->bodies[b].material.young / scene->bodies[b].material.density));
-  return scene->tolerance * slowest;
+  double chosen = scene->tolerance * slowest;
+  return scene->contact.friction > 0 ? fmin(chosen, FRICTION_RESOLUTION * fem_model_slip_speed(model))
+                                     : chosen;
 }
 
 double fem_model_memory_estimate(const FemModel *model) {

@@ -77,8 +77,12 @@ void fem_model_drive(const FemModel *model, double time, double *positions, doub
 double fem_model_contact_stiffness(const FemModel *model);
 
 // Error per step of a velocity [m/s]: the scene's, or its tolerance times the slowest body's wave speed
-// √(E/ρ).
+// √(E/ρ), with friction at most 5 ε.
 double fem_model_velocity_tolerance(const FemModel *model);
+
+// ε of friction [m/s]: the scene's, or such that nothing creeps by more than a thousandth of the smallest
+// body in the whole run.
+double fem_model_slip_speed(const FemModel *model);
 
 // The memory that a run of this model will take, roughly [bytes].
 double fem_model_memory_estimate(const FemModel *model);

@@ -10,12 +10,14 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect_contact.h"
+#include "fem/effect_friction.h"
 #include "fem/effect_volume.h"
 #include "fem/pvd.h"
 #include "fem/vtu.h"
 
 // The first columns of the history, each with the effect that it takes (NULL: none); those of bodies and
 // interfaces follow. The values are listed in this order by write_history.
+static const char DISSIPATION[] = "any that dissipates";
 static const struct {
   const char *title, *effect;
 } columns[] = {
@@ -25,7 +27,7 @@ static const struct {
     {"gravity_J", "gravity"},
     {"contact_J", "contact"},
     {"work_J", NULL},
-    {"dissipated_J", "damping"},
+    {"dissipated_J", DISSIPATION},
     {"total_J", NULL},
     {"momentum_x", NULL},
     {"momentum_y", NULL},
@@ -43,6 +45,7 @@ static const struct {
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
 static bool has_column(const FemRecorder *recorder, int column) {
+  if (columns[column].effect == DISSIPATION) return fem_system_dissipates(recorder->system);
   return !columns[column].effect || fem_system_effect(recorder->system, columns[column].effect);
 }
 
@@ -55,6 +58,13 @@ static const ContactInterface *interfaces_of(const FemSystem *system, int *count
   ContactSystem *contact = contact_of(system);
   *count = 0;
   return contact ? contact_system_interfaces(contact, count) : NULL;
+}
+
+void fem_recorder_interface_force(const FemSystem *system, int interface, double force[3]) {
+  int count;
+  vec3_store(force, vec3_at(interfaces_of(system, &count)[interface].force));
+  void *friction = fem_system_effect(system, "friction");
+  if (friction) vec3_accumulate(force, vec3_at(fem_effect_friction_of(friction)->forces[interface]));
 }
 
 static Status add_columns(FemRecorder *recorder) {
@@ -175,7 +185,9 @@ static void measure_contact(const FemSystem *system, FemMeasures *measures) {
   const ContactInterface *interfaces = contact_system_interfaces(contact, &count);
   for (int i = 0; i < count; i++) {
     measures->overlap_volume += interfaces[i].volume;
-    measures->contact_force = fmax(measures->contact_force, vec3_length(vec3_at(interfaces[i].force)));
+    double force[3];
+    fem_recorder_interface_force(system, i, force);
+    measures->contact_force = fmax(measures->contact_force, vec3_length(vec3_at(force)));
   }
   measures->active_pairs = contact_system_active_count(contact);
 }
@@ -301,8 +313,8 @@ static Status write_history(FemRecorder *recorder, double time, const FemMeasure
     if (has_column(recorder, i)) *row++ = fixed[i];
   row = append_centres(recorder->system, row);
   int count;
-  const ContactInterface *interfaces = interfaces_of(recorder->system, &count);
-  for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(interfaces[i].force));
+  interfaces_of(recorder->system, &count);
+  for (int i = 0; i < count; i++, row += 3) fem_recorder_interface_force(recorder->system, i, row);
   return fem_history_add_row(&recorder->history, recorder->row);
 }
 

@@ -46,6 +46,10 @@ Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *mea
 Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
                           const FemAudit *audit, double step, long long step_count);
 
+// The force on the first side of an interface at the state that was measured last [N]: of the potential and,
+// where there is friction, of friction.
+void fem_recorder_interface_force(const FemSystem *system, int interface, double force[3]);
+
 // Makes the history whole on disk.
 Status fem_recorder_finish(FemRecorder *recorder);
 

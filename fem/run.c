@@ -80,10 +80,10 @@ static void keep_frame(Run *run, double time) {
   void *effect = fem_system_effect(&run->system, "contact");
   if (!effect) return;
   int count;
-  const ContactInterface *interfaces = contact_system_interfaces(fem_effect_contact_system(effect), &count);
+  contact_system_interfaces(fem_effect_contact_system(effect), &count);
   for (int i = 0; i < count; i++)
-    vec3_store(result->interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i),
-               vec3_at(interfaces[i].force));
+    fem_recorder_interface_force(&run->system, i,
+                                 result->interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i));
 }
 
 static void keep_extremes(FemRunResult *result, const FemMeasures *measures) {
@@ -177,6 +177,15 @@ static Status step(Run *run, double *time, bool *is_onset, FemMeasures *measures
   return fem_recorder_measure(&run->recorder, *time, measures);
 }
 
+// The powers with which the next step begins, where they are not those with which the last one ended.
+static Status renew_powers(Run *run) {
+  FemEnergy energy;
+  TRY(fem_system_energy(&run->system, run->time, &energy));
+  run->audit.dissipated_power = energy.dissipated_power;
+  run->audit.driven_power = energy.driven_power;
+  return STATUS_OK;
+}
+
 // One step: taken, judged, shown, accepted.
 static Status advance(Run *run) {
   double time = run->time;
@@ -197,6 +206,7 @@ static Status advance(Run *run) {
   keep_extremes(run->result, &measures);
   FemIntegratorStats stats = stats_of(run);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
+  if (fem_system_lags(&run->system)) TRY(renew_powers(run));
   TRY(observe(run, &measures));
   return is_onset ? fem_integrator_restart(run->integrator, time, run->u, run->v, 0) : STATUS_OK;
 }

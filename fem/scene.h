@@ -118,6 +118,8 @@ typedef struct FemContactDef {
   char *net;     // weights file in its place, relative to the scene file; NULL: none
   double margin; // [m]; 0: chosen
   bool use_full_hessian;
+  double friction;   // coefficient μ between any two; 0: none
+  double slip_speed; // ε: slower slip counts as sticking [m/s]; 0: chosen
 } FemContactDef;
 
 typedef enum FemSolverKind {

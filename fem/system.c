@@ -23,6 +23,11 @@ static Status create_effects(FemSystem *system) {
     if (status) return status_prefix(status, "effect '%s'", list[i]->name);
     system->effect_count++;
   }
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffectOps *ops = system->effects[i].ops;
+    Status status = ops->connect ? ops->connect(system->effects[i].self, system) : STATUS_OK;
+    if (status) return status_prefix(status, "effect '%s'", ops->name);
+  }
   return STATUS_OK;
 }
 
@@ -204,6 +209,18 @@ Status fem_system_gap(FemSystem *system, double time, double *gap) {
 bool fem_system_has_gap(const FemSystem *system) {
   for (int i = 0; i < system->effect_count; i++)
     if (system->effects[i].ops->gap) return true;
+  return false;
+}
+
+bool fem_system_dissipates(const FemSystem *system) {
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops->dissipates) return true;
+  return false;
+}
+
+bool fem_system_lags(const FemSystem *system) {
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops->lags) return true;
   return false;
 }
 

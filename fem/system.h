@@ -54,6 +54,11 @@ Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy);
 Status fem_system_gap(FemSystem *system, double time, double *gap);
 bool fem_system_has_gap(const FemSystem *system);
 
+// Whether an effect's forces depend on velocities.
+bool fem_system_dissipates(const FemSystem *system);
+// Whether an effect's forces change when it is prepared.
+bool fem_system_lags(const FemSystem *system);
+
 // The effect of that name, NULL if the scene has none.
 void *fem_system_effect(const FemSystem *system, const char *name);
 

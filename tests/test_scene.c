@@ -398,6 +398,15 @@ static const Wrong wrong[] = {
     {TIME "bodies: [{mesh: 3}]\n",
      "s.yaml:2:17: bodies[0].mesh: expected a mapping {key: value} or text (its 'file'), found the number 3"},
     {TIME "bodies: [{name: 'a b'}]\n", "s.yaml:2:17: bodies[0].name: expected a name of letters, digits"},
+    {TIME BODY "effects: {friction: 0.3}\n",
+     "s.yaml:3:11: unknown key 'friction' in effects; there is contact.friction"},
+    {TIME BODY "contact: {friction: -1}\n",
+     "s.yaml:3:21: contact.friction: expected a number in [0, inf), found the number -1"},
+    {TIME BODY "contact: {friction: much}\n",
+     "s.yaml:3:21: contact.friction: expected a mapping {key: value} or a number (its 'coefficient'), found"},
+    {TIME BODY "contact: {friction: {slip_speed: 1}}\n", "s.yaml:3:21: contact.friction needs 'coefficient'"},
+    {TIME BODY "contact: {friction: 1}\ncontact: {}\n",
+     "s.yaml:4:1: duplicate key 'contact'; it stands at line 3, column 1 already"},
     {TIME BODY "contact: {potential: nodel}\n", "s.yaml:3:22: contact.potential: expected one of nodal, "
                                                 "element, pair, linear, body, found the text 'nodel'; "
                                                 "did you mean 'nodal'?"},
