@@ -178,6 +178,8 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_int_eq(scene->contact.potential, CONTACT_POTENTIAL_ELEMENT);
   ck_assert_str_eq(scene->contact.overlap, "exact");
   ck_assert_double_eq(scene->contact.margin, 0.02);
+  ck_assert_double_eq(scene->contact.friction, 0.3);
+  ck_assert_double_eq(scene->contact.slip_speed, 1e-4);
   ck_assert_int_eq(scene->solver, FEM_SOLVER_PCG);
   ck_assert_double_eq(scene->solver_tolerance, 1e-6);
   ck_assert_int_eq(scene->threads, 3);
