@@ -423,7 +423,7 @@ static const SceneKey contact_keys[] = {
      .help = "penalty κ; higher: less overlap, shorter steps (Pa/m³ with the potential `body`)"},
     {"potential", SCENE_CHOICE, AT(FemContactDef, potential), .fallback = "nodal", .choices = &potentials,
      .help = "how overlap volumes become pressure"},
-    {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip", .choices = &overlaps,
+    {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "geo", .choices = &overlaps,
      .help = "the model that gives the overlap volume of two tetrahedra"},
     {"net", SCENE_TEXT, AT(FemContactDef, net), .absent_help = "none",
      .help = "weights of a learned model, a .safetensors file, path from the scene file; taken in place of "

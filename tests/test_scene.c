@@ -277,7 +277,7 @@ START_TEST(an_empty_contact_section_turns_contact_on) {
   ck_assert(scene.contact.is_on && scene.contact.use_full_hessian);
   ck_assert_double_eq(scene.contact.stiffness, 0);
   ck_assert_int_eq(scene.contact.potential, CONTACT_POTENTIAL_NODAL);
-  ck_assert_str_eq(scene.contact.overlap, "clip");
+  ck_assert_str_eq(scene.contact.overlap, "geo");
   fem_scene_destroy(&scene);
 }
 END_TEST
@@ -710,7 +710,7 @@ START_TEST(an_override_turns_contact_off_and_on) {
   ck_assert_ok(app_scene_read(full_yaml, on, 2, &scene));
   ck_assert(scene.contact.is_on);
   ck_assert_int_eq(scene.contact.potential, CONTACT_POTENTIAL_PAIR);
-  ck_assert_str_eq(scene.contact.overlap, "clip");
+  ck_assert_str_eq(scene.contact.overlap, "geo");
   fem_scene_destroy(&scene);
 }
 END_TEST
