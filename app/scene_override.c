@@ -47,6 +47,9 @@ static Status step_into_list(const char *override, SceneNode *list, const char *
   char path[MESSAGE_SIZE], names[MESSAGE_SIZE] = "";
   size_t used = 0;
   app_scene_tree_path(list, path, sizeof path);
+  if (!is_number && strspn(word, "0123456789") == strlen(word))
+    return status_fail(STATUS_USAGE, "--set %s: an item's number stands in brackets, from 0: %s[%s]",
+                       override, path, word);
   for (const SceneNode *item = list->first; item; item = item->next) {
     const SceneNode *name = app_scene_tree_find(item, "name");
     if (name && name->text) text_append(names, sizeof names, &used, "%s%s", used ? ", " : ": ", name->text);

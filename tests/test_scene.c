@@ -731,6 +731,8 @@ static const Wrong wrong_overrides[] = {
     {"contact.stiffness=[1", "--set contact.stiffness=[1: not valid YAML: did not find expected ',' or ']'"},
     {"bodies.middle.velocity=[0, 0, 0]",
      "--set bodies.middle.velocity=[0, 0, 0]: bodies has no item 'middle'; there are 2: lower, upper-2"},
+    {"bodies.1.velocity=[0, 0, 0]",
+     "--set bodies.1.velocity=[0, 0, 0]: an item's number stands in brackets, from 0: bodies[1]"},
     {"bodies[2].velocity=[0, 0, 0]",
      "--set bodies[2].velocity=[0, 0, 0]: bodies has no item '2'; there are 2"},
     {"bodies.lower.mesh.size=1",
