@@ -177,7 +177,7 @@ static const SceneKey root_keys[] = {
     {"seed", SCENE_INTEGER, AT(AppTrainingConfig, seed), .range = "[0, inf)", .fallback = "1",
      .help = "of the first weights and of the order of samples"},
     {"start", SCENE_TEXT, AT(AppTrainingConfig, start), .absent_help = "random weights",
-     .help = "weights to begin with, to fine-tune them"},
+     .help = "weights to begin with, to fine-tune them: a file, or the name of a model whose weights ship"},
     {"model", SCENE_SECTION, AT(AppTrainingConfig, model), .section = &model, .required = "{kind: geo}",
      .help = "what is trained"},
     {"data", SCENE_SECTION, .section = &data, .required = "{…}", .help = "pairs"},

@@ -2,10 +2,12 @@
 #include "app/training_start.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "app/training_task.h"
 #include "base/memory.h"
+#include "contact/weights.h"
 #include "net/weights.h"
 
 // Solves X A = B for X, rows of B in place; A (n, n) is destroyed. Aᵀ is eliminated with pivots by size, that
@@ -65,8 +67,13 @@ static Status bring_over(const char *path, const char *normalisation, const NetW
   return whitening ? unfold(whitening, from) : STATUS_OK;
 }
 
-Status app_training_start_read(const char *path, const char *normalisation, const NetWhitening *whitening,
+Status app_training_start_read(const char *name, const char *normalisation, const NetWhitening *whitening,
                                NetModel_f32 *model) {
+  char path[4096];
+  if (contact_weights_is_path(name))
+    snprintf(path, sizeof path, "%s", name);
+  else
+    TRY(contact_weights_find(name, path, sizeof path));
   NetModel_f64 from = {0};
   NetCard card = {0};
   TRY(app_training_task_fail(net_weights_read_f64(path, &from, &card)));

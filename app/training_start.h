@@ -7,10 +7,11 @@
 #include "net/model.h"
 #include "net/whitening.h"
 
-// Reads the parameters of a file with the model's shape and the card's normalisation. With a whitening
+// Reads the parameters of a file, or of a model whose weights ship, with the model's shape and the card's
+// normalisation. With a whitening
 // (may be NULL) the file's network takes features f and the model takes w = M (f − mean): the first layer is
 // brought over, W ← W M⁻¹, b ← b + W mean. STATUS_INPUT: another shape or normalisation.
-Status app_training_start_read(const char *path, const char *normalisation, const NetWhitening *whitening,
+Status app_training_start_read(const char *name, const char *normalisation, const NetWhitening *whitening,
                                NetModel_f32 *model);
 
 #endif

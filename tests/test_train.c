@@ -374,6 +374,45 @@ START_TEST(trained_network_is_far_better_than_none) {
 }
 END_TEST
 
+START_TEST(fine_tuning_begins_where_shipped_weights_ended) {
+  make_directory();
+  AppTrainingConfig config = read_config("name: t\n"
+                                         "start: geo-small\n"
+                                         "model: {kind: geo, features: 36, width: 16, depth: 2}\n"
+                                         "data:\n"
+                                         "  training: [{law: scene, mix: scene=1, count: 2000, seed: 11}]\n"
+                                         "  validation: [{law: scene, mix: scene=1, count: 300, seed: 12}]\n"
+                                         "optimiser: {rate: 1e-5, batch: 100, samples: 2000}\n"
+                                         "validations: 1\n");
+  AppTrainingResult result;
+  ck_assert_ok(train(&config, directory, 1, false, NULL, &result));
+  AppEvaluation shipped = evaluate("geo-small"), tuned = evaluate(path_in("t.safetensors"));
+  ck_assert_near(tuned.gradient_error, shipped.gradient_error, 0.05 * shipped.gradient_error);
+  memory_free(config.start);
+  config.start = memory_copy("goe", 4, 1);
+  ck_assert(train(&config, directory, 1, false, NULL, &result) != STATUS_OK);
+  ck_assert(strstr(status_message(), "goe"));
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+END_TEST
+
+START_TEST(training_stops_when_it_gets_no_better) {
+  make_directory();
+  AppTrainingConfig config = read_config(geo_config);
+  AppTrainingResult result;
+  config.optimiser.rate = 1e-30; // nothing changes, so no score is better than the first
+  config.validations = 40;
+  config.patience = 3;
+  ck_assert_ok(train(&config, directory, 1, false, NULL, &result));
+  ck_assert(result.has_stopped_early);
+  ck_assert_int_eq(result.best_step, 10);
+  ck_assert_int_eq(result.step, 40);
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+END_TEST
+
 START_TEST(weights_brought_over_to_another_whitening_are_the_same_function) {
   make_directory();
   AppTrainingConfig config = read_config(geo_config);
@@ -430,14 +469,18 @@ START_TEST(wrong_configurations_are_refused_by_name) {
   check_refusal("name: t\nmodel: {kind: geo, features: 37}\n", "36, 70, 100");
   check_refusal("name: t\nmodel: {kind: geo, width: 0}\n", "width");
   check_refusal("name: t\nmodel: {kind: geo}\ndata: {training: [{law: scene, file: x}]}\n", "file");
+  check_refusal("name: t\nmodel: {kind: tpn, normalisation: pca}\n"
+                "data: {training: [{law: scene}], validation: [{law: scene}]}\n"
+                "loss: {sobolev: 1}\noptimiser: {samples: 1}\n",
+                "normalisation: unit");
   check_refusal("name: t\nmodle: {kind: geo}\n", "model");
   remove_directory();
 }
 END_TEST
 
 START_TEST(shipped_configurations_are_read) {
-  static const char *const names[] = {"geo", "geo-small", "smoke", "tpn"};
-  for (int n = 0; n < 4; n++) {
+  static const char *const names[] = {"geo", "geo-small", "smoke", "tpn", "tpn-scene"};
+  for (int n = 0; n < 5; n++) {
     char path[256];
     AppTrainingConfig config;
     snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/examples/train/%s.yaml", names[n]);
@@ -462,6 +505,8 @@ int main(void) {
   tcase_add_test(test_case, resumed_tpn_training_ends_with_the_same_bits);
   tcase_add_test(test_case, checkpoint_of_another_configuration_is_refused);
   tcase_add_test(test_case, trained_network_is_far_better_than_none);
+  tcase_add_test(test_case, fine_tuning_begins_where_shipped_weights_ended);
+  tcase_add_test(test_case, training_stops_when_it_gets_no_better);
   tcase_add_test(test_case, weights_brought_over_to_another_whitening_are_the_same_function);
   tcase_add_test(test_case, wrong_configurations_are_refused_by_name);
   tcase_add_test(test_case, shipped_configurations_are_read);
