@@ -22,7 +22,8 @@ static void find_features(const ContactGeoModel *model, const GeoMatrix *project
 }
 
 Status contact_geo_model_create(ContactGeoModel *model, const ContactGeoNetwork *network) {
-  *model = (ContactGeoModel){.kernel = contact_geo_kernel(), .offset = log(1.28)};
+  *model = (ContactGeoModel){
+      .kernel = contact_geo_kernel(), .bundle_kernel = contact_geo_bundle_kernel(), .offset = log(1.28)};
   if (!network) return STATUS_OK;
   model->set = contact_geo_feature_set(network->feature_count);
   if (!model->set)
@@ -205,7 +206,7 @@ static Status blend_coplanar(const ContactOverlapBatch *batch, const Chunk *chun
     if (chunk->is_abandoned[at]) continue;
     Place place = place_of(batch, chunk->pair[at]);
     double spare[SIZE]; // the Hessian's blend needs the gradient
-    if (!place.gradient && place.hessian) {
+    if (!place.gradient) {
       for (int i = 0; i < SIZE; i++) spare[i] = *place.volume * chunk->adjoint[at].gradient[i];
       place.gradient = spare;
     }
@@ -215,29 +216,112 @@ static Status blend_coplanar(const ContactOverlapBatch *batch, const Chunk *chun
   return STATUS_OK;
 }
 
+// V, ∇V and ∇²V.
 static Status eval_chunk(const ContactGeoModel *model, const ContactOverlapBatch *batch, int begin, int end,
                          Chunk *chunk) {
   TRY(find_frames(batch, begin, end, chunk));
   if (chunk->count == 0) return STATUS_OK;
-  bool wants_derivatives = batch->gradient || batch->hessian;
   if (model->set) {
     fill_features(model, chunk);
     TRY(model->network.eval(model->network.self, chunk->count, chunk->features, chunk->value,
-                            wants_derivatives ? chunk->weights : NULL));
+                            chunk->weights));
   }
   TRY(write_volumes(model, batch, chunk));
-  if (!wants_derivatives) return blend_coplanar(batch, chunk);
   for (int pack = 0; pack * GEO_PACK < chunk->count; pack++) sweep_pack(model, chunk, pack);
   if (batch->gradient) write_gradients(batch, chunk);
-  if (batch->hessian) TRY(write_hessians(model, batch, chunk));
+  TRY(write_hessians(model, batch, chunk));
   return blend_coplanar(batch, chunk);
 }
 
-Status contact_geo_eval(const ContactGeoModel *model, const ContactOverlapBatch *batch) {
+static Status eval_with_hessians(const ContactGeoModel *model, const ContactOverlapBatch *batch) {
   Chunk chunk;
   for (int begin = 0; begin < batch->pair_count; begin += CONTACT_GEO_CHUNK) {
     int end = begin + CONTACT_GEO_CHUNK;
     TRY(eval_chunk(model, batch, begin, end < batch->pair_count ? end : batch->pair_count, &chunk));
+  }
+  return STATUS_OK;
+}
+
+// ρ of a block's columns by a network that takes rows.
+static Status eval_rows(const ContactGeoNetwork *network, ContactGeoBlock *block, double *value,
+                        bool wants_gradient) {
+  int size = network->feature_count;
+  double rows[CONTACT_GEO_BLOCK * CONTACT_GEO_MAX_FEATURES],
+      slopes[CONTACT_GEO_BLOCK * CONTACT_GEO_MAX_FEATURES];
+  for (int at = 0; at < CONTACT_GEO_BLOCK; at++)
+    for (int f = 0; f < size; f++) rows[at * size + f] = block->features[f][at];
+  TRY(network->eval(network->self, CONTACT_GEO_BLOCK, rows, value, wants_gradient ? slopes : NULL));
+  for (int at = 0; at < CONTACT_GEO_BLOCK && wants_gradient; at++)
+    for (int f = 0; f < size; f++) block->weights[f][at] = slopes[at * size + f];
+  return STATUS_OK;
+}
+
+static Status eval_network(const ContactGeoNetwork *network, ContactGeoBlock *block, double *value,
+                           bool wants_gradient) {
+  if (!network->eval_columns) return eval_rows(network, block, value, wants_gradient);
+  return network->eval_columns(network->self, block->features[0], value,
+                               wants_gradient ? block->weights[0] : NULL);
+}
+
+// What the lanes leave to the scalar form, when V and ∇V are the network's.
+static Status finish_apart(Place place) {
+  ContactGeoFrame frame;
+  switch (contact_geo_frame(&frame, place.pair)) {
+  case CONTACT_GEO_EMPTY:
+    write_empty(place);
+    return STATUS_OK;
+  case CONTACT_GEO_UNFIT:
+    return fall_back(place);
+  case CONTACT_GEO_INSIDE:
+    break;
+  }
+  return contact_geo_coplanar_blend(&frame, place.pair, place.volume, place.gradient, NULL, place.flags);
+}
+
+static Status write_column(const ContactGeoBlock *block, int at, bool is_enclosed, Place place) {
+  *place.volume = block->factor[at];
+  if (place.gradient) memcpy(place.gradient, block->gradient[at], sizeof block->gradient[at]);
+  if (place.flags) *place.flags = is_enclosed ? CONTACT_OVERLAP_ENCLOSED : 0;
+  if (!(*place.volume > 0 && *place.volume < INFINITY)) return fall_back(place);
+  return block->is_plain[at] > 0 ? STATUS_OK : finish_apart(place);
+}
+
+// The pairs of the bundle from `first` on.
+static Status eval_block(const ContactGeoModel *model, const ContactOverlapBatch *batch,
+                         ContactGeoBundle *bundle, int first, ContactGeoBlock *block) {
+  _Alignas(64) double value[CONTACT_GEO_BLOCK] = {0};
+  model->bundle_kernel->frame(bundle, first, block);
+  if (model->set) {
+    model->bundle_kernel->features(model->set, block);
+    TRY(eval_network(&model->network, block, value, batch->gradient != NULL));
+  }
+  for (int at = 0; at < CONTACT_GEO_BLOCK; at++)
+    block->factor[at] = block->volume[at] * exp(model->offset + value[at]);
+  if (batch->gradient) model->bundle_kernel->pull(model->set, block);
+  for (int at = 0; at < CONTACT_GEO_BLOCK && first + at < bundle->count; at++)
+    TRY(write_column(block, at, bundle->is_enclosed[first + at], place_of(batch, bundle->pair[first + at])));
+  return STATUS_OK;
+}
+
+static Status eval_bundle(const ContactGeoModel *model, const ContactOverlapBatch *batch,
+                          ContactGeoBundle *bundle, ContactGeoBlock *block) {
+  model->bundle_kernel->gate(batch->pair_count, batch->pairs, bundle);
+  for (int i = 0; i < batch->pair_count; i++) {
+    if (bundle->outcome[i] == CONTACT_GEO_EMPTY) write_empty(place_of(batch, i));
+    if (bundle->outcome[i] == CONTACT_GEO_UNFIT) TRY(fall_back(place_of(batch, i)));
+  }
+  for (int first = 0; first < bundle->count; first += CONTACT_GEO_BLOCK)
+    TRY(eval_block(model, batch, bundle, first, block));
+  return STATUS_OK;
+}
+
+Status contact_geo_eval(const ContactGeoModel *model, const ContactOverlapBatch *batch) {
+  if (batch->hessian) return eval_with_hessians(model, batch);
+  ContactGeoBundle bundle;
+  ContactGeoBlock block;
+  for (int begin = 0; begin < batch->pair_count; begin += CONTACT_GEO_BUNDLE) {
+    ContactOverlapBatch part = contact_overlap_part(batch, begin, CONTACT_GEO_BUNDLE);
+    TRY(eval_bundle(model, &part, &bundle, &block));
   }
   return STATUS_OK;
 }

@@ -15,11 +15,12 @@
 #ifndef TETLAP_CONTACT_GEO_H
 #define TETLAP_CONTACT_GEO_H
 
+#include "contact/geo_bundle.h"
 #include "contact/geo_features.h"
 #include "contact/geo_frame.h"
 #include "contact/overlap.h"
 
-enum { CONTACT_GEO_CHUNK = 2 * GEO_PACK }; // a network is given at most so many pairs at once
+enum { CONTACT_GEO_CHUNK = CONTACT_GEO_BLOCK }; // a network is given at most so many pairs at once
 
 // ρ. All functions may be called from several threads at once.
 typedef struct ContactGeoNetwork {
@@ -27,6 +28,9 @@ typedef struct ContactGeoNetwork {
   int feature_count; // must have a feature set
   // ρ (count) and, unless NULL, dρ/df (count, feature_count) of features (count, feature_count).
   Status (*eval)(const void *self, int count, const double *features, double *value, double *gradient);
+  // The same of CONTACT_GEO_CHUNK pairs side by side: features and gradient (feature_count, chunk), value
+  // (chunk), on cache lines. NULL: eval is used.
+  Status (*eval_columns)(const void *self, const double *features, double *value, double *gradient);
   // second (count, n, n): second derivatives of ρ at each of features (count, feature_count) along all pairs
   // of its n directions in feature space (count, n, feature_count); n at most 12. NULL: no Hessian.
   Status (*curve)(const void *self, int count, const double *features, int direction_count,
@@ -36,8 +40,9 @@ typedef struct ContactGeoNetwork {
 typedef struct ContactGeoModel {
   const ContactGeoFeatureSet *set; // NULL: no network, φ = ln 1.28
   ContactGeoNetwork network;
-  const ContactGeoKernel *kernel;
-  double offset; // ln 1.28 − ρ(f*)
+  const ContactGeoKernel *kernel;              // of Hessians
+  const ContactGeoBundleKernel *bundle_kernel; // of V and ∇V
+  double offset;                               // ln 1.28 − ρ(f*)
 } ContactGeoModel;
 
 // `network` NULL: the constant. STATUS_INPUT: there is no feature set of that size; else what ρ(f*) fails

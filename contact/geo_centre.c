@@ -3,13 +3,6 @@
 
 #include <math.h>
 
-// Newton's decrement δ = (gᵀ H⁻¹ g)^½: up to FULL_STEP the whole step is taken, and the step from a point
-// with δ < CONVERGED ends at δ² or so.
-#define FULL_STEP 0.2
-#define CONVERGED 1e-7
-// Of the way to the nearest plane.
-#define LONGEST_STEP 0.99
-
 void contact_geo_orthonormalise(GeoColumns *m, int passes, double length[3]) {
   for (int c = 0; c < 3; c++) {
     double *column = m->column[c];
@@ -43,7 +36,7 @@ static double find_step(const GeoColumns *normal, const double slack[GEO_LANES],
 static double search(const double r[GEO_LANES], double decrement) {
   double lowest = 0;
   for (int l = 0; l < GEO_LANES; l++) lowest = fmin(lowest, r[l]);
-  double longest = lowest < 0 ? LONGEST_STEP / -lowest : INFINITY;
+  double longest = lowest < 0 ? CONTACT_GEO_LONGEST_STEP / -lowest : INFINITY;
   double alpha = 1 / (1 + decrement);
   for (int step = 0; step < 3; step++) {
     double term[GEO_LANES], square[GEO_LANES];
@@ -60,9 +53,9 @@ int contact_geo_centre(const GeoColumns *normal, double slack[GEO_LANES]) {
   for (int step = 1; step <= CONTACT_GEO_MAX_STEPS; step++) {
     double r[GEO_LANES];
     double decrement = find_step(normal, slack, r);
-    double alpha = decrement <= FULL_STEP ? 1 : search(r, decrement);
+    double alpha = decrement <= CONTACT_GEO_FULL_STEP ? 1 : search(r, decrement);
     for (int l = 0; l < GEO_LANES; l++) slack[l] += alpha * r[l] * slack[l];
-    if (decrement < CONVERGED) return step;
+    if (decrement < CONTACT_GEO_CONVERGED) return step;
   }
   return 0;
 }

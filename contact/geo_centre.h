@@ -13,6 +13,13 @@
 
 enum { CONTACT_GEO_MAX_STEPS = 40 };
 
+// Newton's decrement δ = (gᵀ H⁻¹ g)^½: up to FULL_STEP the whole step is taken, and the step from a point
+// with δ < CONVERGED ends at δ² or so.
+#define CONTACT_GEO_FULL_STEP 0.2
+#define CONTACT_GEO_CONVERGED 1e-7
+// Of the way to the nearest plane.
+#define CONTACT_GEO_LONGEST_STEP 0.99
+
 // Moves `slack`, all positive at the start, to the centre. Returns the number of steps, 0 if it did not
 // converge.
 int contact_geo_centre(const GeoColumns *normal, double slack[GEO_LANES]);

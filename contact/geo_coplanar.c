@@ -8,12 +8,8 @@
 
 enum { SIZE = CONTACT_PAIR_SIZE, ACROSS = GEO_LANES / 2 };
 
-// r₀ of faces that look the same way, and of faces that look at each other. The network's error grows below
-// r ≈ 0.4 for the first; slices it tells well, all that they need is the right start.
-static const double REACH_SAME = 0.3, REACH_FACING = 0.03;
-
 static bool is_close(const GeoMatrix *projector, int k, int l, double side, ContactGeoClose *close) {
-  double reach = side < 0 ? REACH_SAME : REACH_FACING;
+  double reach = side < 0 ? CONTACT_GEO_REACH_SAME : CONTACT_GEO_REACH_FACING;
   double kk = projector->row[k][k], ll = projector->row[l][l];
   double apart = kk + ll + 2 * side * projector->row[k][l], measure = kk * ll;
   if (!(apart < reach * measure)) return false;

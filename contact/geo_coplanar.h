@@ -20,6 +20,11 @@
 #include "base/status.h"
 #include "contact/geo_frame.h"
 
+// r₀ of faces that look the same way, and of faces that look at each other. The network's error grows below
+// r ≈ 0.4 for the first; slices it tells well, all that they need is the right start.
+#define CONTACT_GEO_REACH_SAME 0.3
+#define CONTACT_GEO_REACH_FACING 0.03
+
 enum { CONTACT_GEO_MOST_CLOSE = GEO_LANES * GEO_LANES / 2 };
 
 // Two planes that nearly coincide.

@@ -6,11 +6,6 @@
 
 #include "contact/geo_centre.h"
 
-// How far tr P, which is 3, may be off.
-#define TRACE_TOLERANCE 1e-6
-// An overlap this small beside a tetrahedron, 1e-13 wide all around, is the rounding of its coordinates.
-#define LEAST_SHARE 1e-39
-
 static void fill_projector(const GeoColumns *basis, GeoMatrix *projector) {
   const double(*q)[GEO_LANES] = basis->column;
   for (int k = 0; k < GEO_LANES; k++)
@@ -43,8 +38,9 @@ ContactGeoOutcome contact_geo_frame(ContactGeoFrame *frame, const double pair[24
   contact_geo_orthonormalise(&frame->basis, 2, length);
   frame->volume = 100.0 / 6 / (length[0] * length[1] * length[2]);
   fill_projector(&frame->basis, &frame->projector);
-  if (!(fabs(trace(&frame->projector) - 3) <= TRACE_TOLERANCE && frame->volume > 0)) return CONTACT_GEO_UNFIT;
-  return frame->volume > LEAST_SHARE * gate.least_volume ? CONTACT_GEO_INSIDE : CONTACT_GEO_EMPTY;
+  if (!(fabs(trace(&frame->projector) - 3) <= CONTACT_GEO_TRACE_TOLERANCE && frame->volume > 0))
+    return CONTACT_GEO_UNFIT;
+  return frame->volume > CONTACT_GEO_LEAST_SHARE * gate.least_volume ? CONTACT_GEO_INSIDE : CONTACT_GEO_EMPTY;
 }
 
 void contact_geo_onset(GeoMatrix *projector) {

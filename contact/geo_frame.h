@@ -32,6 +32,11 @@
 
 #include "contact/geo_gate.h"
 
+// How far tr P, which is 3, may be off.
+#define CONTACT_GEO_TRACE_TOLERANCE 1e-6
+// An overlap this small beside a tetrahedron, 1e-13 wide all around, is the rounding of its coordinates.
+#define CONTACT_GEO_LEAST_SHARE 1e-39
+
 typedef struct ContactGeoFrame {
   GeoColumns normal;       // ∇s_k [1/m], by component
   double slack[GEO_LANES]; // s_k at the centre

@@ -6,12 +6,6 @@
 
 #include "base/vec3.h"
 
-// Barycentric coordinates carry errors of some ε: what is no farther out than this counts as on the plane.
-#define NOISE 1e-13
-#define LEAST_DET 1e-280 // [m³]
-// A point this close to a plane is on it.
-#define LEAST_SLACK 1e-15
-
 // The planes of one tetrahedron before the division by det: exact where the coordinates are on a grid.
 typedef struct Planes {
   Vec3 origin;
@@ -38,8 +32,8 @@ static bool is_flat(const double tet[12], double det) {
       Vec3 edge = vec3_sub(vec3_at(tet + 3 * v), vec3_at(tet + 3 * w));
       longest = fmax(longest, vec3_dot(edge, edge));
     }
-  // below LEAST_DET dividing by it may overflow
-  return !(fabs(det) > fmax(CONTACT_GEO_FLATTEST * longest * sqrt(longest), LEAST_DET));
+  // below CONTACT_GEO_LEAST_DET dividing by it may overflow
+  return !(fabs(det) > fmax(CONTACT_GEO_FLATTEST * longest * sqrt(longest), CONTACT_GEO_LEAST_DET));
 }
 
 // The coordinates, in the tetrahedron of `planes`, of four points. Heights are summed before they are
@@ -67,7 +61,7 @@ static bool is_inside(double across[4][4]) {
   double lowest = 0;
   for (int v = 0; v < 4; v++)
     for (int k = 0; k < 4; k++) lowest = fmin(lowest, across[v][k]);
-  return lowest >= -NOISE;
+  return lowest >= -CONTACT_GEO_NOISE;
 }
 
 // The part of an edge that is inside or on the boundary, as two parameters between 0 and 1; false if there is
@@ -78,14 +72,14 @@ static bool clip(const double p[4], const double q[4], double range[2]) {
   double from = 0, to = 1;
   for (int k = 0; k < 4; k++) {
     double at = p[k] / (p[k] - q[k]);
-    is_out |= p[k] < -NOISE && q[k] < -NOISE;
-    bool enters = p[k] < -NOISE || (p[k] < 0 && q[k] > NOISE);
-    bool leaves = q[k] < -NOISE || (q[k] < 0 && p[k] > NOISE);
+    is_out |= p[k] < -CONTACT_GEO_NOISE && q[k] < -CONTACT_GEO_NOISE;
+    bool enters = p[k] < -CONTACT_GEO_NOISE || (p[k] < 0 && q[k] > CONTACT_GEO_NOISE);
+    bool leaves = q[k] < -CONTACT_GEO_NOISE || (q[k] < 0 && p[k] > CONTACT_GEO_NOISE);
     from = enters ? fmax(from, q[k] > 0 ? at : 1) : from;
     to = leaves ? fmin(to, p[k] > 0 ? at : 0) : to;
   }
   range[0] = from, range[1] = to;
-  return !is_out && from <= to + NOISE;
+  return !is_out && from <= to + CONTACT_GEO_NOISE;
 }
 
 // Adds the ends of what is left of one tetrahedron's six edges to the slacks `own` and `other`; how many.
@@ -128,6 +122,6 @@ ContactGeoOutcome contact_geo_gate(ContactGeoGate *gate, const double pair[24]) 
   count += add_ends(gate->across[1], gate->slack + 4, gate->slack);
   if (count == 0) return CONTACT_GEO_EMPTY;
   bool is_inside_all = true;
-  for (int k = 0; k < GEO_LANES; k++) is_inside_all &= (gate->slack[k] /= count) > LEAST_SLACK;
+  for (int k = 0; k < GEO_LANES; k++) is_inside_all &= (gate->slack[k] /= count) > CONTACT_GEO_LEAST_SLACK;
   return is_inside_all ? CONTACT_GEO_INSIDE : CONTACT_GEO_EMPTY;
 }

@@ -16,6 +16,11 @@
 
 // A tetrahedron with det < CONTACT_GEO_FLATTEST · (longest edge)³ is left to the exact model.
 #define CONTACT_GEO_FLATTEST 1e-5
+#define CONTACT_GEO_LEAST_DET 1e-280 // [m³]; below it dividing may overflow
+// Barycentric coordinates carry errors of some ε: what is no farther out than this counts as on the plane.
+#define CONTACT_GEO_NOISE 1e-13
+// A point this close to a plane is on it.
+#define CONTACT_GEO_LEAST_SLACK 1e-15
 
 typedef enum ContactGeoOutcome {
   CONTACT_GEO_INSIDE, // they intersect, everything asked for is there

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "net/dense.h"
 #include "net/forward.h"
 #include "net/tangent.h"
 #include "net/work.h"
@@ -16,6 +17,7 @@ enum { DIRECTIONS = 12 };
 // What the derivative of ρ itself weighs its one output with, for each pair.
 static const double ones[] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
 static_assert(sizeof ones / sizeof *ones == CONTACT_GEO_CHUNK, "one for each pair of a chunk");
+static_assert((int)NET_COLUMN_UNIT == (int)CONTACT_GEO_CHUNK, "a chunk is what net/ takes side by side");
 
 // Memory of evaluation, used by one caller at a time.
 typedef struct Desk {
@@ -58,6 +60,14 @@ static Status eval(const void *self, int count, const double *features, double *
   return STATUS_OK;
 }
 
+static Status eval_columns(const void *self, const double *features, double *value, double *gradient) {
+  const ContactGeoNet *net = self;
+  Desk *desk = take(net);
+  net_dense_eval_f64(&desk->work, &net->model, features, value, gradient);
+  leave(desk);
+  return STATUS_OK;
+}
+
 static Status curve(const void *self, int count, const double *features, int direction_count,
                     const double *directions, double *second) {
   const ContactGeoNet *net = self;
@@ -70,7 +80,7 @@ static Status curve(const void *self, int count, const double *features, int dir
 
 static Status check(const ContactGeoNet *net, const char *path) {
   const NetShape *shape = &net->model.plan->shape;
-  if (shape->kind != NET_MLP || shape->activation != NET_SILU || shape->output_count != 1)
+  if (!net_dense_is_possible(shape))
     return status_fail(STATUS_INPUT, "%s: geo needs a dense SiLU network with one output, this is another",
                        path);
   if (!contact_geo_feature_set(shape->input_count))
@@ -124,8 +134,11 @@ void contact_geo_net_destroy(ContactGeoNet *net) {
 }
 
 ContactGeoNetwork contact_geo_net_interface(const ContactGeoNet *net) {
-  return (ContactGeoNetwork){
-      .self = net, .feature_count = net->model.plan->shape.input_count, .eval = eval, .curve = curve};
+  return (ContactGeoNetwork){.self = net,
+                             .feature_count = net->model.plan->shape.input_count,
+                             .eval = eval,
+                             .eval_columns = eval_columns,
+                             .curve = curve};
 }
 
 const NetCard *contact_geo_net_card(const ContactGeoNet *net) {

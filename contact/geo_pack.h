@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Eight numbers side by side, computed with as one (a vector type of gcc and clang: on a processor without
+// GEO_PACK numbers side by side, computed with as one (a vector type of gcc and clang: on a processor without
 // such registers the compiler splits it). The lanes of a pack are different pairs, or different directions of
-// one.
+// one. Eight, unless the including file says otherwise first; packs of another size stay within that file.
 #ifndef TETLAP_CONTACT_GEO_PACK_H
 #define TETLAP_CONTACT_GEO_PACK_H
 
 #include "contact/geo_lanes.h"
 
-enum { GEO_PACK = 8, GEO_ENTRIES = 36 };
+#ifndef GEO_PACK
+#define GEO_PACK 8
+#endif
+
+enum { GEO_ENTRIES = 36 };
 
 typedef double GeoPack __attribute__((vector_size(GEO_PACK * sizeof(double))));
 

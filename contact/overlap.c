@@ -55,11 +55,24 @@ void contact_overlap_destroy(ContactOverlapModel *model) {
   *model = (ContactOverlapModel){0};
 }
 
-// x − x is 0 for finite x, else NaN; the sum has no branch.
+ContactOverlapBatch contact_overlap_part(const ContactOverlapBatch *batch, int begin, int count) {
+  enum { SIZE = CONTACT_PAIR_SIZE };
+  size_t at = (size_t)begin * SIZE;
+  int left = batch->pair_count - begin;
+  return (ContactOverlapBatch){.pair_count = left < count ? left : count,
+                               .pairs = batch->pairs + at,
+                               .volume = batch->volume + begin,
+                               .gradient = batch->gradient ? batch->gradient + at : NULL,
+                               .hessian = batch->hessian ? batch->hessian + at * SIZE : NULL,
+                               .flags = batch->flags ? batch->flags + begin : NULL};
+}
+
+// x − x is 0 for finite x, else NaN; the sums have no branch and do not wait for each other.
 static bool is_finite(const double pair[CONTACT_PAIR_SIZE]) {
-  double sum = 0;
-  for (int i = 0; i < CONTACT_PAIR_SIZE; i++) sum += pair[i] - pair[i];
-  return sum == 0;
+  double sums[8] = {0};
+  for (int i = 0; i < CONTACT_PAIR_SIZE; i += 8)
+    for (int l = 0; l < 8; l++) sums[l] += pair[i + l] - pair[i + l];
+  return ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7])) == 0;
 }
 
 static Status fail_not_finite(int pair_index, const double pair[CONTACT_PAIR_SIZE]) {
@@ -83,9 +96,12 @@ static Status eval_one(const ContactOverlapModel *model, const ContactOverlapBat
 
 // The first pair with a coordinate that is not finite, pair_count if there is none.
 static int first_not_finite(const ContactOverlapBatch *batch) {
+  enum { WORTH_THREADS_PAIRS = 10000 };
+  int first = batch->pair_count;
+#pragma omp parallel for reduction(min : first) if (batch->pair_count > WORTH_THREADS_PAIRS)
   for (int i = 0; i < batch->pair_count; i++)
-    if (!is_finite(batch->pairs + (size_t)i * CONTACT_PAIR_SIZE)) return i;
-  return batch->pair_count;
+    if (!is_finite(batch->pairs + (size_t)i * CONTACT_PAIR_SIZE) && i < first) first = i;
+  return first;
 }
 
 // Less work than this [s] is not worth waking threads for.

@@ -35,6 +35,9 @@ typedef struct ContactOverlapBatch {
   unsigned *flags;     // out, or NULL: ContactOverlapFlag (pair_count)
 } ContactOverlapBatch;
 
+// The batch of its pairs from `begin` on, at most `count`.
+ContactOverlapBatch contact_overlap_part(const ContactOverlapBatch *batch, int begin, int count);
+
 // What a model implements. One per model, `static const`, listed in overlap.c.
 typedef struct ContactOverlapOps {
   const char *name;

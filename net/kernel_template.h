@@ -31,6 +31,12 @@ typedef struct NET_NAME(NetKernel) {
   // a = SiLU(z), ȧ = SiLU′(z) ż.
   void (*silu)(int rows, int n, int tangents, const NET_REAL *z, NET_REAL *a);
 
+  // a = SiLU(z) and, unless NULL, slope = SiLU′(z), of `count` numbers, a multiple of NET_COLUMN_UNIT.
+  void (*silu_slope)(int count, const NET_REAL *z, NET_REAL *a, NET_REAL *slope);
+
+  // b = a b, of as many.
+  void (*scale)(int count, const NET_REAL *a, NET_REAL *b);
+
   // Tangents where the value was rectified to 0 become 0. In place; the values already are max(0, ·).
   void (*relu_tangents)(int rows, int n, int tangents, NET_REAL *a);
 

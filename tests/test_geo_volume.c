@@ -466,7 +466,7 @@ START_TEST(a_batch_gives_what_its_pairs_give_alone) {
   // and what a network fails with comes through
   subject.overlap.model.network.eval = fail_eval;
   ck_assert_int_eq(contact_geo_overlap_eval_batch(&subject.overlap, &batch), STATUS_SOLVER);
-  ck_assert_ptr_nonnull(strstr(status_message(), "pairs 0 to 63: no"));
+  ck_assert_ptr_nonnull(strstr(status_message(), "pairs 0 to 127: no"));
 }
 END_TEST
 

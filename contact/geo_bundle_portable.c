@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Centre to gradient of a bundle of pairs for any processor.
+#include "contact/geo_pack_portable.h"
+
+#pragma GCC diagnostic ignored "-Wunused-function" // second derivatives have their own kernels
+
+#include "contact/geo_features_forward.inc"
+
+#include "contact/geo_features_backward.inc"
+
+#include "contact/geo_bundle_frame.inc"
