@@ -263,27 +263,34 @@ static Status eval_network(const ContactGeoNetwork *network, ContactGeoBlock *bl
                                wants_gradient ? block->weights[0] : NULL);
 }
 
-// What the lanes leave to the scalar form, when V and ∇V are the network's.
-static Status finish_apart(Place place) {
+// What lanes could not find a frame of.
+static Status answer_unfit(Place place) {
   ContactGeoFrame frame;
-  switch (contact_geo_frame(&frame, place.pair)) {
-  case CONTACT_GEO_EMPTY:
-    write_empty(place);
-    return STATUS_OK;
-  case CONTACT_GEO_UNFIT:
-    return fall_back(place);
-  case CONTACT_GEO_INSIDE:
-    break;
+  if (contact_geo_frame(&frame, place.pair) != CONTACT_GEO_EMPTY) return fall_back(place);
+  write_empty(place);
+  return STATUS_OK;
+}
+
+static Status blend_column(const ContactGeoBlock *block, int at, Place place) {
+  ContactGeoFrame frame;
+  for (int k = 0; k < GEO_LANES; k++) {
+    frame.slack[k] = block->slack[k][at];
+    for (int c = 0; c < 3; c++) {
+      frame.scaled.column[c][k] = block->scaled[c * GEO_LANES + k][at];
+      frame.basis.column[c][k] = block->basis[c * GEO_LANES + k][at];
+    }
+    for (int l = 0; l < GEO_LANES; l++) frame.projector.row[k][l] = block->projector[geo_entry(k, l)][at];
   }
   return contact_geo_coplanar_blend(&frame, place.pair, place.volume, place.gradient, NULL, place.flags);
 }
 
 static Status write_column(const ContactGeoBlock *block, int at, bool is_enclosed, Place place) {
   *place.volume = block->factor[at];
+  if (!(block->is_fit[at] > 0)) return answer_unfit(place);
+  if (!(*place.volume > 0 && *place.volume < INFINITY)) return fall_back(place);
   if (place.gradient) memcpy(place.gradient, block->gradient[at], sizeof block->gradient[at]);
   if (place.flags) *place.flags = is_enclosed ? CONTACT_OVERLAP_ENCLOSED : 0;
-  if (!(*place.volume > 0 && *place.volume < INFINITY)) return fall_back(place);
-  return block->is_plain[at] > 0 ? STATUS_OK : finish_apart(place);
+  return block->is_close[at] > 0 ? blend_column(block, at, place) : STATUS_OK;
 }
 
 // The pairs of the bundle from `first` on.

@@ -44,7 +44,8 @@ typedef struct ContactGeoBlock {
   ContactGeoColumn
       invariants[sizeof(ContactGeoInvariants) / sizeof(GeoPack)]; // in packs of the kernel's width
   ContactGeoColumn volume;                                        // V₀ [m³]
-  ContactGeoColumn is_plain; // 0: the scalar form must look at it: no frame, no overlap, or coplanar faces
+  ContactGeoColumn is_fit;   // 1; or 0: the scalar form must say what is wrong
+  ContactGeoColumn is_close; // 1: coplanar faces give the exact volume a share (geo_coplanar.h)
   ContactGeoColumn features[CONTACT_GEO_MAX_FEATURES];
   ContactGeoColumn weights[CONTACT_GEO_MAX_FEATURES]; // dρ/df, from the network
   ContactGeoColumn factor;                            // what `pull` multiplies with
