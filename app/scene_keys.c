@@ -95,6 +95,27 @@ static const char *finish_fixed(void *self, const char **key) {
   return NULL;
 }
 
+static const char *finish_ogden(void *self, const char **key) {
+  const FemMaterial *material = self;
+  double sum = 0;
+  *key = "exponents";
+  for (int p = 0; p < 3; p++) {
+    if (material->shares[p] > 0 && material->exponents[p] == 0)
+      return "an exponent with a share must not be 0";
+    sum += material->shares[p];
+  }
+  *key = "shares";
+  return sum > 0 ? NULL : "one share at least must be positive";
+}
+
+static const char *finish_material(void *self, const char **key) {
+  const FemMaterial *material = self;
+  *key = "fibre";
+  if (material->fibre_stiffness > 0 && material->law == FEM_MATERIAL_LINEAR)
+    return "fibres turn with the body, which the law linear cannot; write law: corotational, or another";
+  return NULL;
+}
+
 static const char *finish_driven(void *self, const char **key) {
   const FemConstraintDef *def = self;
   *key = "release";
@@ -174,6 +195,27 @@ static const SceneKey place_keys[] = {
 };
 static const SceneSection place = {.help = "scaled, then turned, then moved", .keys = place_keys};
 
+static const SceneKey ogden_keys[] = {
+    {"exponents", SCENE_VECTOR, AT(FemMaterial, exponents), .fallback = "[2, -2, 4]",
+     .help = "α of three terms; one with a share may not be 0"},
+    {"shares", SCENE_VECTOR, AT(FemMaterial, shares), .range = "[0, inf)", .fallback = "[1, 0, 0]",
+     .help = "of μ that the terms carry, taken by their sum"},
+    {0},
+};
+static const SceneSection ogden = {
+    .help = "powers of the principal stretches", .keys = ogden_keys, .finish = finish_ogden};
+
+static const SceneKey fibre_keys[] = {
+    {"modulus", SCENE_NUMBER, AT(FemMaterial, fibre_stiffness), .unit = "Pa", .range = "(0, inf)",
+     .required = "1e6", .help = "k of the energy k/2 E² with E the Green strain along the fibres"},
+    {"direction", SCENE_DIRECTION, AT(FemMaterial, fibre_direction), .required = "[1, 0, 0]",
+     .help = "at rest, as placed"},
+    {"buckle", SCENE_SWITCH, AT(FemMaterial, fibres_buckle), .fallback = "false",
+     .help = "they resist tension only"},
+    {0},
+};
+static const SceneSection fibre = {.help = "transverse isotropy", .keys = fibre_keys};
+
 static const SceneKey material_keys[] = {
     {"law", SCENE_CHOICE, AT(FemMaterial, law), .fallback = "neo_hookean", .choices = &laws,
      .help = "constitutive law"},
@@ -185,9 +227,20 @@ static const SceneKey material_keys[] = {
      .required = "1000", .help = "ρ at rest"},
     {"damping", SCENE_NUMBER, AT(FemMaterial, damping), .unit = "s", .range = "[0, inf)", .absent = -1,
      .absent_help = "`effects.damping`", .help = "stiffness-proportional damping β"},
+    {"viscosity", SCENE_NUMBER, AT(FemMaterial, viscosity), .unit = "Pa s", .range = "[0, inf)",
+     .fallback = "0",
+     .help = "η of a Kelvin-Voigt solid: viscous stress 2η times the strain rate's deviator"},
+    {"bulk_viscosity", SCENE_NUMBER, AT(FemMaterial, bulk_viscosity), .unit = "Pa s", .range = "[0, inf)",
+     .fallback = "0", .help = "ζ: viscous pressure by the rate of volume change"},
+    {"mooney", SCENE_NUMBER, AT(FemMaterial, mooney), .range = "[0, 1]", .fallback = "0.2",
+     .help = "of mooney_rivlin: the second invariant's share c2/(c1 + c2) of μ"},
+    {"ogden", SCENE_SECTION, .section = &ogden, .help = "terms of the law ogden"},
+    {"fibre", SCENE_SECTION, .section = &fibre, .absent_help = "no fibres",
+     .help = "fibres along one direction"},
     {0},
 };
-static const SceneSection material = {.help = "an isotropic elastic solid", .keys = material_keys};
+static const SceneSection material = {
+    .help = "an elastic solid", .keys = material_keys, .finish = finish_material};
 
 // Whatever selects vertices has its selection first, so one table serves all.
 _Static_assert(offsetof(FemConstraintDef, select) == 0 && offsetof(FemLoadDef, select) == 0,

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stiffness-proportional damping of the strain rate; rigid motion goes undamped (fem/element.h). Only bodies
-// with β > 0 take part.
+// with β > 0 or a viscosity take part.
 #include "base/memory.h"
 #include "fem/assembly.h"
 
 static bool is_wanted(const FemSceneDef *scene) {
   for (int b = 0; b < scene->body_count; b++) {
-    double own = scene->bodies[b].material.damping;
-    if ((own >= 0 ? own : scene->stiffness_damping) > 0) return true;
+    const FemMaterial *material = &scene->bodies[b].material;
+    double beta = material->damping >= 0 ? material->damping : scene->stiffness_damping;
+    if (beta > 0 || material->viscosity > 0 || material->bulk_viscosity > 0) return true;
   }
   return false;
 }
 
 static bool is_damped(const FemModelBody *body) {
-  return body->damping > 0;
+  return body->damping > 0 || body->material.viscosity > 0 || body->material.bulk_viscosity > 0;
 }
 
 static void destroy(void *self) {
@@ -79,7 +80,7 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
 
 const FemEffectOps fem_effect_damping = {
     .name = "damping",
-    .help = "stiffness-proportional damping of the strain rate",
+    .help = "stiffness-proportional damping and viscosity, by the strain rate",
     .dissipates = true,
     .is_wanted = is_wanted,
     .create = create,

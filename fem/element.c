@@ -115,18 +115,18 @@ void fem_element_stiffness(const FemElement *element, const FemMaterial *materia
   fem_element_spread_tangent(element, dP, stiffness);
 }
 
-// Ė = sym(Fᵀ Ḟ) and the viscous second Piola–Kirchhoff stress Σ = β (2μ Ė + λ tr Ė I).
+// Ė = sym(Fᵀ Ḟ) and the viscous second Piola–Kirchhoff stress Σ = 2μ_v Ė + λ_v tr Ė I.
 static void find_viscous_stress(const FemMaterial *material, double beta, const double F[9],
                                 const double rate[9], double strain_rate[9], double stress[9]) {
-  FemLame lame = fem_material_lame(material);
+  FemLame lame = fem_material_viscous(material, beta);
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
       double sum = 0;
       for (int m = 0; m < 9; m += 3) sum += F[m + i] * rate[m + j] + rate[m + i] * F[m + j];
       strain_rate[3 * i + j] = strain_rate[3 * j + i] = 0.5 * sum;
     }
-  double pressure = beta * lame.lambda * (strain_rate[0] + strain_rate[4] + strain_rate[8]);
-  for (int r = 0; r < 9; r++) stress[r] = 2 * beta * lame.mu * strain_rate[r] + (r % 4 == 0 ? pressure : 0);
+  double pressure = lame.lambda * (strain_rate[0] + strain_rate[4] + strain_rate[8]);
+  for (int r = 0; r < 9; r++) stress[r] = 2 * lame.mu * strain_rate[r] + (r % 4 == 0 ? pressure : 0);
 }
 
 void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,
@@ -155,21 +155,20 @@ void fem_element_damping_matrix(const FemElement *element, const FemMaterial *ma
                                 const double x[12], double matrix[144]) {
   double F[9], dP[81];
   fem_element_deformation(element, x, F);
-  fem_material_pushed_stiffness(material, F, dP);
-  for (int r = 0; r < 81; r++) dP[r] *= beta;
+  fem_material_pushed_stiffness(fem_material_viscous(material, beta), F, dP);
   fem_element_spread_tangent(element, dP, matrix);
 }
 
-// P_v = F Σ(F, Ḟ), so ∂P_v = ∂F Σ + β F C : sym(Ḟᵀ ∂F). The first term is symmetric; the second is, with
-// D(F) = F C Fᵀ, the mixed product of F and Ḟ, whose symmetric part is ½ Ḋ.
+// P_v = F Σ(F, Ḟ), so ∂P_v = ∂F Σ + F C_v : sym(Ḟᵀ ∂F). The first term is symmetric; the second is, with
+// D(F) = F C_v Fᵀ, the mixed product of F and Ḟ, whose symmetric part is ½ Ḋ.
 void fem_element_damping_stiffness(const FemElement *element, const FemMaterial *material, double beta,
                                    const double x[12], const double v[12], double matrix[144]) {
   double F[9], rate[9], strain_rate[9], stress[9], dP[81];
   fem_element_deformation(element, x, F);
   fem_element_deformation(element, v, rate);
   find_viscous_stress(material, beta, F, rate, strain_rate, stress);
-  fem_material_pushed_stiffness_rate(material, F, rate, dP);
-  for (int r = 0; r < 81; r++) dP[r] *= 0.5 * beta;
+  fem_material_pushed_stiffness_rate(fem_material_viscous(material, beta), F, rate, dP);
+  for (int r = 0; r < 81; r++) dP[r] *= 0.5;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       for (int l = 0; l < 3; l++) dP[9 * (3 * i + j) + 3 * i + l] += stress[3 * j + l];

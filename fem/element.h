@@ -31,8 +31,8 @@ void fem_element_stiffness(const FemElement *element, const FemMaterial *materia
 void fem_element_spread_tangent(const FemElement *element, const double dP[81], double matrix[144]);
 
 // Stiffness-proportional damping that no rigid motion feels: R = ½ β V Ė:C:Ė with the Green strain rate
-// Ė = sym(Fᵀ Ḟ) and the law's small-strain C; at rest it is β K. Force −∂R/∂v, power 2R = −v · force ≥ 0,
-// matrix ∂²R/∂v² (≥ 0).
+// Ė = sym(Fᵀ Ḟ) and the law's small-strain C; at rest it is β K. A viscosity of the material is added to β C.
+// Force −∂R/∂v, power 2R = −v · force ≥ 0, matrix ∂²R/∂v² (≥ 0).
 void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,
                                const double x[12], const double v[12], double force[12]); // [N]
 double fem_element_damping_power(const FemElement *element, const FemMaterial *material, double beta,

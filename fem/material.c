@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fem/cofactor.h"
+#include "fem/material_rubber.h"
 #include "fem/svd3.h"
 
 static const struct {
@@ -17,6 +18,9 @@ static const struct {
                            "St. Venant-Kirchhoff: large rotations; collapses under strong compression"},
     [FEM_MATERIAL_NEO_HOOKEAN] = {"neo_hookean",
                                   "stable neo-Hookean: large strains, recovers from inversion"},
+    [FEM_MATERIAL_MOONEY_RIVLIN] = {"mooney_rivlin",
+                                    "Mooney-Rivlin rubber: two invariants, `mooney` shares them out"},
+    [FEM_MATERIAL_OGDEN] = {"ogden", "Ogden rubber: up to three powers of the principal stretches"},
 };
 
 const char *fem_material_name(FemMaterialLaw law) {
@@ -255,7 +259,46 @@ static void neo_hookean_tangent(FemLame lame, const double F[9], double dP[81]) 
   fem_cofactor_add_derivative(F, b, dP);
 }
 
-double fem_material_energy(const FemMaterial *material, const double F[9]) {
+// Fibres along a: E_f, F a, and k, which is 0 where they buckle.
+typedef struct Fibre {
+  double stiffness, strain, direction[3], pushed[3];
+} Fibre;
+
+static Fibre fibre_of(const FemMaterial *material, const double F[9]) {
+  const double *a = material->fibre_direction;
+  double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]), G[9];
+  Fibre fibre = {.stiffness = material->fibre_stiffness};
+  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
+  for (int c = 0; c < 3; c++) fibre.direction[c] = a[c] / length;
+  for (int i = 0; i < 3; i++) { // E_f = a·G a + ½ |G a|²
+    const double *d = fibre.direction;
+    double stretch = G[3 * i] * d[0] + G[3 * i + 1] * d[1] + G[3 * i + 2] * d[2];
+    fibre.pushed[i] = d[i] + stretch;
+    fibre.strain += stretch * (d[i] + 0.5 * stretch);
+  }
+  if (material->fibres_buckle && fibre.strain < 0) fibre.stiffness = 0;
+  return fibre;
+}
+
+// P_f = k E_f (F a) ⊗ a.
+static void add_fibre_stress(const FemMaterial *material, const double F[9], double P[9]) {
+  Fibre fibre = fibre_of(material, F);
+  for (int r = 0; r < 9; r++)
+    P[r] += fibre.stiffness * fibre.strain * fibre.pushed[r / 3] * fibre.direction[r % 3];
+}
+
+// ∂P_f/∂F = k (Fa ⊗ a)(Fa ⊗ a) + k E_f δ_ik a_j a_l.
+static void add_fibre_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
+  Fibre fibre = fibre_of(material, F);
+  const double *a = fibre.direction, *b = fibre.pushed;
+  for (int r = 0; r < 9; r++)
+    for (int c = 0; c < 9; c++) {
+      double along = a[r % 3] * a[c % 3];
+      dP[9 * r + c] += fibre.stiffness * along * (b[r / 3] * b[c / 3] + (r / 3 == c / 3 ? fibre.strain : 0));
+    }
+}
+
+static double law_energy(const FemMaterial *material, const double F[9]) {
   FemLame lame = fem_material_lame(material);
   double strain[9];
   switch (material->law) {
@@ -269,8 +312,19 @@ double fem_material_energy(const FemMaterial *material, const double F[9]) {
     return quadratic_energy(lame, strain);
   case FEM_MATERIAL_NEO_HOOKEAN:
     return neo_hookean_energy(lame, F);
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+    return fem_material_mooney_energy(material, F);
+  case FEM_MATERIAL_OGDEN:
+    return fem_material_ogden_energy(material, F);
   }
   return NAN;
+}
+
+double fem_material_energy(const FemMaterial *material, const double F[9]) {
+  double own = law_energy(material, F);
+  if (!(material->fibre_stiffness > 0)) return own;
+  Fibre fibre = fibre_of(material, F);
+  return own + 0.5 * fibre.stiffness * fibre.strain * fibre.strain;
 }
 
 void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]) {
@@ -288,7 +342,14 @@ void fem_material_stress(const FemMaterial *material, const double F[9], double 
   case FEM_MATERIAL_NEO_HOOKEAN:
     neo_hookean_stress(lame, F, P);
     break;
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+    fem_material_mooney_stress(material, F, P);
+    break;
+  case FEM_MATERIAL_OGDEN:
+    fem_material_ogden_stress(material, F, P);
+    break;
   }
+  if (material->fibre_stiffness > 0) add_fibre_stress(material, F, P);
 }
 
 void fem_material_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
@@ -306,16 +367,28 @@ void fem_material_tangent(const FemMaterial *material, const double F[9], double
   case FEM_MATERIAL_NEO_HOOKEAN:
     neo_hookean_tangent(lame, F, dP);
     break;
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+    fem_material_mooney_tangent(material, F, dP);
+    break;
+  case FEM_MATERIAL_OGDEN:
+    fem_material_ogden_tangent(material, F, dP);
+    break;
   }
+  if (material->fibre_stiffness > 0) add_fibre_tangent(material, F, dP);
 }
 
-void fem_material_pushed_stiffness(const FemMaterial *material, const double F[9], double dP[81]) {
-  push_stiffness(fem_material_lame(material), F, dP);
-}
-
-void fem_material_pushed_stiffness_rate(const FemMaterial *material, const double F[9], const double rate[9],
-                                        double dP[81]) {
+FemLame fem_material_viscous(const FemMaterial *material, double beta) {
   FemLame lame = fem_material_lame(material);
+  return (FemLame){.lambda = beta * lame.lambda + material->bulk_viscosity - 2.0 / 3.0 * material->viscosity,
+                   .mu = beta * lame.mu + material->viscosity};
+}
+
+void fem_material_pushed_stiffness(FemLame lame, const double F[9], double dP[81]) {
+  push_stiffness(lame, F, dP);
+}
+
+void fem_material_pushed_stiffness_rate(FemLame lame, const double F[9], const double rate[9],
+                                        double dP[81]) {
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) {
       double left = 0; // of the rate of F Fᵀ
@@ -356,6 +429,8 @@ double fem_material_volume(FemMaterialLaw law, const double F[9], double gradien
     memcpy(gradient, F, 9 * sizeof *gradient);
     return green_trace(F);
   case FEM_MATERIAL_NEO_HOOKEAN:
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+  case FEM_MATERIAL_OGDEN:
     break;
   }
   fem_cofactor_find(F, gradient);
@@ -374,6 +449,8 @@ void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double
     for (int r = 0; r < 9; r++) curvature[10 * r] = 1;
     return;
   case FEM_MATERIAL_NEO_HOOKEAN:
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+  case FEM_MATERIAL_OGDEN:
     break;
   }
   fem_cofactor_add_derivative(F, 1, curvature);

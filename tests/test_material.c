@@ -11,7 +11,13 @@
 static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
 static FemMaterial make_material(FemMaterialLaw law) {
-  return (FemMaterial){.law = law, .young = 1.3, .poisson = 0.37, .density = 1000};
+  return (FemMaterial){.law = law,
+                       .young = 1.3,
+                       .poisson = 0.37,
+                       .density = 1000,
+                       .mooney = 0.3,
+                       .exponents = {1.8, -2.3, 5},
+                       .shares = {0.6, 0.3, 0.1}};
 }
 
 static void multiply(const double A[9], const double B[9], double AB[9]) {
@@ -111,8 +117,66 @@ static void check_tangent_at(const FemMaterial *material, const double F[9], dou
   }
 }
 
+// Uniaxial tension of incompressible Mooney–Rivlin: P = 2 (c₁ + c₂/λ)(λ − 1/λ²) (Treloar, The Physics of
+// Rubber Elasticity); at ν = 0.4999 the sides are found by bisection of their stress.
+START_TEST(mooney_rivlin_and_ogden_pull_as_rubber_does) {
+  FemMaterial mooney = make_material(FEM_MATERIAL_MOONEY_RIVLIN), ogden = make_material(FEM_MATERIAL_OGDEN);
+  mooney.young = ogden.young = 3, mooney.poisson = ogden.poisson = 0.49999; // μ = 1
+  for (double stretch = 0.6; stretch < 3; stretch += 0.4) {
+    double expected[2] = {(0.7 + 0.3 / stretch) * (stretch - 1 / (stretch * stretch)), 0};
+    for (int p = 0; p < 3; p++) { // Σ μ_p (λ^{α−1} − λ^{−α/2−1})
+      double alpha = ogden.exponents[p], mu = 2 * ogden.shares[p] / alpha;
+      expected[1] += mu * (pow(stretch, alpha - 1) - pow(stretch, -0.5 * alpha - 1));
+    }
+    const FemMaterial *materials[2] = {&mooney, &ogden};
+    for (int m = 0; m < 2; m++) {
+      double low = 0.5 / sqrt(stretch), high = 2 / sqrt(stretch), P[9];
+      for (int k = 0; k < 60; k++) {
+        double side = 0.5 * (low + high), F[9] = {stretch, 0, 0, 0, side, 0, 0, 0, side};
+        fem_material_stress(materials[m], F, P);
+        *(P[4] > 0 ? &high : &low) = side;
+      }
+      ck_assert_near(P[0], expected[m], 1e-3 * (1 + fabs(expected[m])));
+    }
+  }
+}
+END_TEST
+
+START_TEST(fibres_resist_along_their_direction_only) {
+  FemMaterial material = make_material(FEM_MATERIAL_NEO_HOOKEAN), plain = material;
+  material.fibre_stiffness = 7, material.fibre_direction[2] = 2;
+  const double along[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1.2}, across[9] = {1.2, 0, 0, 0, 1, 0, 0, 0, 1};
+  double P[9], Q[9], strain = 0.5 * (1.44 - 1);
+  fem_material_stress(&material, along, P);
+  fem_material_stress(&plain, along, Q);
+  ck_assert_near(P[8] - Q[8], 7 * strain * 1.2, 1e-14);
+  ck_assert_near(fem_material_energy(&material, along) - fem_material_energy(&plain, along),
+                 3.5 * strain * strain, 1e-14);
+  fem_material_stress(&material, across, P);
+  fem_material_stress(&plain, across, Q);
+  for (int r = 0; r < 9; r++) ck_assert_near(P[r], Q[r], 0);
+  material.fibres_buckle = true;
+  const double shorter[9] = {1, 0, 0, 0, 1, 0, 0, 0, 0.8};
+  ck_assert_near(fem_material_energy(&material, shorter), fem_material_energy(&plain, shorter), 0);
+}
+END_TEST
+
+START_TEST(fibres_have_consistent_derivatives) {
+  FemMaterial material = make_material(FEM_MATERIAL_STVK);
+  material.fibre_stiffness = 2, material.fibre_direction[0] = 1, material.fibre_direction[1] = -2;
+  Random random = random_seeded(5, 0);
+  for (int k = 0; k < 20; k++) {
+    double sigma[3], F[9];
+    draw_stretches(&random, k % 6, sigma);
+    compose(&random, sigma, F);
+    check_tangent_at(&material, F, 1e-3);
+  }
+}
+END_TEST
+
 START_TEST(names_are_the_ones_that_scenes_use) {
-  static const char *const names[] = {"linear", "corotational", "stvk", "neo_hookean"};
+  static const char *const names[] = {"linear",      "corotational",  "stvk",
+                                      "neo_hookean", "mooney_rivlin", "ogden"};
   for (int law = 0; law < FEM_MATERIAL_LAW_COUNT; law++) {
     ck_assert_str_eq(fem_material_name((FemMaterialLaw)law), names[law]);
     ck_assert_uint_gt(strlen(fem_material_help((FemMaterialLaw)law)), 10);
@@ -240,7 +304,8 @@ END_TEST
 START_TEST(at_rest_every_law_has_the_given_isotropic_stiffness) {
   static const double ratios[] = {-0.5, 0, 0.2, 0.3, 0.45, 0.499};
   for (size_t n = 0; n < sizeof ratios / sizeof *ratios; n++) {
-    FemMaterial material = {.law = (FemMaterialLaw)_i, .young = 2e6, .poisson = ratios[n]};
+    FemMaterial material = make_material((FemMaterialLaw)_i);
+    material.young = 2e6, material.poisson = ratios[n];
     double mu = 2e6 / (2 * (1 + ratios[n])), lambda = 2 * mu * ratios[n] / (1 - 2 * ratios[n]), dP[81];
     fem_material_tangent(&material, identity, dP);
     for (int r = 0; r < 9; r++)
@@ -420,7 +485,7 @@ START_TEST(pushed_stiffness_and_its_rate_agree_with_differences) {
       F[r] = random_normal(&random), rate[r] = random_normal(&random);
       plus[r] = F[r] + h * rate[r], minus[r] = F[r] - h * rate[r];
     }
-    fem_material_pushed_stiffness(&material, F, here);
+    fem_material_pushed_stiffness(fem_material_lame(&material), F, here);
     fem_material_tangent(&material, F, dP);
     for (int r = 0; r < 9; r++)
       for (int c = 0; c < 9; c++) {
@@ -429,9 +494,9 @@ START_TEST(pushed_stiffness_and_its_rate_agree_with_differences) {
         if (r / 3 == c / 3)
           ck_assert_near(dP[9 * r + c] - here[9 * r + c], dP[shifted] - here[shifted], 1e-12);
       }
-    fem_material_pushed_stiffness(&material, plus, ahead);
-    fem_material_pushed_stiffness(&material, minus, behind);
-    fem_material_pushed_stiffness_rate(&material, F, rate, dP);
+    fem_material_pushed_stiffness(fem_material_lame(&material), plus, ahead);
+    fem_material_pushed_stiffness(fem_material_lame(&material), minus, behind);
+    fem_material_pushed_stiffness_rate(fem_material_lame(&material), F, rate, dP);
     for (int r = 0; r < 81; r++) ck_assert_near(dP[r], (ahead[r] - behind[r]) / (2 * h), 1e-9);
   }
 }
@@ -459,6 +524,9 @@ int main(void) {
   tcase_add_test(cases, a_mirrored_state_is_pushed_back_by_neo_hookean_and_corotational);
   tcase_add_loop_test(cases, degenerate_states_have_finite_values, 0, FEM_MATERIAL_LAW_COUNT);
   tcase_add_test(cases, smooth_laws_are_differentiable_at_collapse);
+  tcase_add_test(cases, mooney_rivlin_and_ogden_pull_as_rubber_does);
+  tcase_add_test(cases, fibres_resist_along_their_direction_only);
+  tcase_add_test(cases, fibres_have_consistent_derivatives);
   tcase_add_test(cases, pushed_stiffness_and_its_rate_agree_with_differences);
   return suite_run("material", cases, 20);
 }

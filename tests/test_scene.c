@@ -22,7 +22,8 @@ static const char *const full_json = TETLAP_SOURCE_DIR "/tests/data/scene/full.j
 
 static const char *const examples[] = {"01_drop",       "02_two_blocks", "03_spheres",
                                        "04_cantilever", "05_press",      "06_bunny_like",
-                                       "20_loads",      "21_release",    "22_rubber_beam"};
+                                       "20_loads",      "21_release",    "22_rubber_beam",
+                                       "23_fibres"};
 enum { EXAMPLE_COUNT = sizeof examples / sizeof *examples };
 
 // What is printed to the stream that `print` is given; owned by the caller (free).
@@ -140,7 +141,15 @@ static void check_upper(const FemBodyDef *body) {
   for (int c = 0; c < 3; c++) ck_assert_int_eq(body->box_cells[c], c + 1);
   ck_vector(body->placement.scale, 1, -1, 2);
   ck_assert_int_eq(body->material.law, FEM_MATERIAL_NEO_HOOKEAN); // the default
-  ck_assert_double_lt(body->material.damping, 0);                 // the scene's
+  ck_vector(body->material.exponents, 1.5, -2, 3);
+  ck_vector(body->material.shares, 3, 1, 0);
+  ck_assert_double_eq(body->material.mooney, 0.4);
+  ck_assert_double_eq(body->material.viscosity, 12);
+  ck_assert_double_eq(body->material.bulk_viscosity, 5);
+  ck_assert_double_eq(body->material.fibre_stiffness, 7e5);
+  ck_vector(body->material.fibre_direction, 0, 1, 1);
+  ck_assert(body->material.fibres_buckle);
+  ck_assert_double_lt(body->material.damping, 0); // the scene's
 }
 
 static void check_obstacles(const FemSceneDef *scene) {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole solids against theory: what a material does in a scene.
+#include "static_solve.h"
+
+#include <stdio.h>
+
+// A block of 0.1 m pulled along x by a traction; its sides are free, three faces are planes of symmetry.
+static void pull(SceneRun *run, const char *material, const char *load, const char *time,
+                 const char *element) {
+  char text[2048];
+  snprintf(text, sizeof text,
+           "time: %s\n"
+           "bodies:\n"
+           "  - name: block\n"
+           "    element: %s\n"
+           "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 2}}\n"
+           "    material: %s\n"
+           "    fixed: [{group: x_min, components: [x]}, {group: y_min, components: [y]}, {group: z_min, "
+           "components: "
+           "[z]}]\n"
+           "    loads: [{group: x_max, %s}]\n"
+           "output: {frames: 4}\n",
+           time, element, material, load);
+  scene_open_text(run, text);
+  scene_run_from(run, NULL);
+  ck_assert_msg(run->status == STATUS_OK, "%s", status_message());
+}
+
+// Strain along an axis of the corner that no symmetry holds.
+static double strain(const SceneRun *run, int frame, int c) {
+  int corner = run->model.vertex_count - 1;
+  return (scene_position(run, frame, corner)[c] - run->model.rest[3 * corner + c]) / 0.1;
+}
+
+// Kelvin–Voigt with η = τ μ, ζ = τ K: τ ε̇ + ε = σ/E, so ε = σ/E (1 − exp(−t/τ)). Inertia moves the start by
+// the time of a wave, 3 ms of τ = 0.1 s at most; the strain is 1e-3, so finite strain changes 1e-3 of it.
+START_TEST(a_kelvin_voigt_solid_creeps) {
+  SceneRun run;
+  double mu = 1e5 / 2.6, K = 1e5 / (3 * 0.4);
+  char material[256];
+  snprintf(material, sizeof material,
+           "{young: 1e5, poisson: 0.3, density: 0.1, viscosity: %.9g, bulk_viscosity: %.9g}", 0.1 * mu,
+           0.1 * K);
+  pull(&run, material, "traction: [100, 0, 0]", "{end: 0.2, tolerance: 1e-7}", "linear");
+  for (int frame = 1; frame <= 4; frame++) {
+    double t = run.result.frame_times[frame], expected = 1e-3 * (1 - exp(-t / 0.1));
+    ck_assert_near(strain(&run, frame, 0), expected, 5e-3 * expected);
+    ck_assert_near(strain(&run, frame, 1), -0.3 * expected, 5e-3 * expected);
+  }
+  // The load's work is stored and dissipated.
+  double work = run.result.audit.work, volume = 1e-3;
+  ck_assert_near(work, volume * 100 * strain(&run, 4, 0), 1e-6 * work);
+  ck_assert_near(run.result.audit.total, 0, 5e-3 * work);
+  ck_assert(run.result.audit.dissipated > 0.3 * work);
+  scene_close(&run);
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("solids");
+  tcase_add_test(test_case, a_kelvin_voigt_solid_creeps);
+  return suite_run("solids", test_case, 60);
+}
