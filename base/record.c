@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/file.h"
+#include "base/memory.h"
 
 // jansson owns the tree; our handles are its nodes under another name.
 static json_t *node_of(Record *record) {
@@ -121,4 +122,47 @@ Status record_list_print(const RecordList *root, FILE *stream) {
 
 Status record_list_write(const RecordList *root, const char *path) {
   return write_tree((const json_t *)root, path);
+}
+
+Status record_read(Record **root, const char *path) {
+  char *text;
+  size_t size;
+  json_error_t error;
+  *root = NULL;
+  TRY(file_read(path, &text, &size));
+  json_t *tree = json_loadb(text, size, JSON_REJECT_DUPLICATES, &error);
+  memory_free(text);
+  if (!tree)
+    return status_fail(STATUS_INPUT, "%s:%d:%d: is not JSON: %s", path, error.line, error.column, error.text);
+  *root = (Record *)tree;
+  return STATUS_OK;
+}
+
+void record_adopt(Record *record, const char *key, Record *child) {
+  if (child) json_object_set_new(node_of(record), key, node_of(child));
+}
+
+const Record *record_find(const Record *record, const char *key) {
+  return (const Record *)json_object_get((const json_t *)record, key);
+}
+
+const Record *record_at(const Record *list, int index) {
+  return index < 0 ? NULL : (const Record *)json_array_get((const json_t *)list, (size_t)index);
+}
+
+int record_count(const Record *list) {
+  return (int)json_array_size((const json_t *)list);
+}
+
+const char *record_find_text(const Record *record, const char *key) {
+  return json_string_value((const json_t *)record_find(record, key));
+}
+
+double record_find_number(const Record *record, const char *key) {
+  const json_t *value = (const json_t *)record_find(record, key);
+  return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+bool record_find_bool(const Record *record, const char *key) {
+  return json_is_true((const json_t *)record_find(record, key));
 }

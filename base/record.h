@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A JSON document that is built up and written: the one place where jansson is used for output.
+// A JSON document that is built up and written, or read: the one place where jansson is used outside net/.
 // Numbers that are not finite become null. After a failed allocation the handles are NULL, which every call
 // accepts.
 #ifndef TETLAP_BASE_RECORD_H
@@ -38,5 +38,19 @@ Status record_print_line(const Record *root, FILE *stream);
 Status record_write(const Record *root, const char *path); // whole or not at all
 Status record_list_print(const RecordList *root, FILE *stream);
 Status record_list_write(const RecordList *root, const char *path);
+
+// Reads a file that holds one object or one list. STATUS_INPUT names file, line and column; STATUS_IO. After
+// a failure `*root` is NULL.
+Status record_read(Record **root, const char *path);
+// Puts `child`, which `record` owns from now on, under `key`; NULL: nothing.
+void record_adopt(Record *record, const char *key, Record *child);
+
+// What a record holds under `key`; of a list, what it holds at a place. Borrowed; NULL where there is none.
+const Record *record_find(const Record *record, const char *key);
+const Record *record_at(const Record *list, int index);
+int record_count(const Record *list);                                // elements of a list; 0: not a list
+const char *record_find_text(const Record *record, const char *key); // NULL: no text there
+double record_find_number(const Record *record, const char *key);    // NaN: no number there
+bool record_find_bool(const Record *record, const char *key);        // false: nothing there
 
 #endif

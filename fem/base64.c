@@ -49,3 +49,27 @@ void fem_base64_end(FemBase64 *text) {
   fwrite(group, 1, 4, text->stream);
   text->waiting_count = 0;
 }
+
+static int value_of(char letter) {
+  if (letter >= 'A' && letter <= 'Z') return letter - 'A';
+  if (letter >= 'a' && letter <= 'z') return letter - 'a' + 26;
+  if (letter >= '0' && letter <= '9') return letter - '0' + 52;
+  return letter == '+' ? 62 : letter == '/' ? 63 : -1;
+}
+
+const char *fem_base64_read(const char *text, const char *end, void *bytes, size_t count) {
+  unsigned char *next = bytes;
+  if ((size_t)(end - text) / 4 < count / 3 + (count % 3 != 0)) return NULL;
+  for (; count > 0; text += 4) {
+    size_t part = count < 3 ? count : 3;
+    int group = 0;
+    for (size_t k = 0; k < 4; k++) {
+      int value = k <= part ? value_of(text[k]) : 0;
+      if (value < 0) return NULL;
+      group = group << 6 | value;
+    }
+    for (size_t k = 0; k < part; k++) *next++ = (unsigned char)(group >> (16 - 8 * k));
+    count -= part;
+  }
+  return text;
+}

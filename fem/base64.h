@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bytes as text in the base64 alphabet of RFC 4648, written to a stream piece by piece.
+// Bytes as text in the base64 alphabet of RFC 4648: written to a stream piece by piece, and read back.
 #ifndef TETLAP_FEM_BASE64_H
 #define TETLAP_FEM_BASE64_H
 
@@ -17,5 +17,9 @@ typedef struct FemBase64 {
 void fem_base64_write(FemBase64 *text, const void *bytes, size_t count);
 // Pads the last group; the next write begins a text of its own.
 void fem_base64_end(FemBase64 *text);
+
+// Reads `count` bytes from the beginning of a text that ends at `end`. Returns the place after the group of
+// four that the last byte is in, NULL if there is no such text.
+const char *fem_base64_read(const char *text, const char *end, void *bytes, size_t count);
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One frame of a run as a VTK XML unstructured grid (.vtu): arrays compressed by zlib in blocks, as base64
-// text in their elements ("VTK XML Formats" in the VTK documentation). zlib is included by vtu.c only.
+// text in their elements ("VTK XML Formats" in the VTK documentation).
 //
 // Not as appended data, which would be a quarter smaller: the ParaView 5.11 of Debian 12 cannot read those
 // together with Debian's expat, whose security update (CVE-2023-52425) reports tokens later than its VTK
