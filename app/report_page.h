@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The web page without its data, report/page.html, which is part of the program: a binary that was moved
+// still has it.
+#ifndef TETLAP_APP_REPORT_PAGE_H
+#define TETLAP_APP_REPORT_PAGE_H
+
+// Where in the page the data belongs.
+#define APP_REPORT_PAGE_MARK "<!--tetlap:data-->"
+
+// The whole page; borrowed.
+const char *app_report_page_text(void);
+
+#endif

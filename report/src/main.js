@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import "./style.css";
+import { buildBenches } from "./bench.js";
+import { listFields } from "./colour.js";
+import { readData, unionTimes } from "./data.js";
+import { h } from "./dom.js";
+import { buildFrontier } from "./frontier.js";
+import { buildManifest } from "./manifest.js";
+import { buildHeader, buildOverview } from "./overview.js";
+import { buildPhases } from "./phases.js";
+import { TimePlot, listPlots } from "./plots.js";
+import { Stage } from "./stage.js";
+import { createState } from "./state.js";
+import { Transport } from "./transport.js";
+
+const KEYS = [
+  ["Space", "play, pause"],
+  ["← →", "a frame back, forward"],
+  ["Home End", "first, last frame"],
+  ["C", "field to colour by"],
+  ["X Y Z", "cut along an axis; again: whole"],
+  ["[ ]", "move the cut"],
+  ["E", "edges"],
+  ["T", "light, dark"],
+  ["arrows, + −", "turn and approach the scene that has the focus; or drag, Ctrl and wheel"],
+];
+
+const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
+
+function themeOf() {
+  const asked = new URLSearchParams(location.hash.slice(1)).get("theme");
+  return asked === "dark" || asked === "light" ? asked : prefersDark.matches ? "dark" : "light";
+}
+
+function buildBar(state, version) {
+  const toggle = h("button.plain", { type: "button", click: () => state.set({ theme: state.theme === "dark" ? "light" : "dark" }) });
+  const show = () => {
+    document.documentElement.dataset.theme = state.theme;
+    toggle.textContent = state.theme === "dark" ? "Light" : "Dark";
+    toggle.setAttribute("aria-label", `Switch to ${toggle.textContent.toLowerCase()} colours`);
+  };
+  state.on(["theme"], show);
+  show();
+  const keys = h("dialog.keys", { "aria-label": "Keys", click: (event) => event.target === keys && keys.close() }, h("h2", "Keys"), h("dl", KEYS.flatMap(([key, what]) => [h("dt", key), h("dd", what)])), h("form", { method: "dialog" }, h("button", "Close")));
+  const ask = h("button.plain", { type: "button", click: () => keys.showModal() }, "Keys");
+  return h("header.bar-top", h("span.mark", "tetlap", version && h("span.version", version)), h("span.space"), ask, toggle, keys);
+}
+
+// Keys work wherever the focus is, but in what takes them itself.
+function listenToKeys(state, transport, stage) {
+  const fields = listFields(stage?.runs ?? []);
+  const cut = (axis) => state.set({ cut: state.cut === axis ? -1 : axis });
+  const actions = {
+    " ": () => transport?.toggle(),
+    ArrowLeft: () => transport?.step(-1),
+    ArrowRight: () => transport?.step(1),
+    Home: () => transport?.step(-Infinity),
+    End: () => transport?.step(Infinity),
+    c: () => fields.length && state.set({ field: fields[(fields.indexOf(state.field) + 1) % fields.length] }),
+    x: () => cut(0),
+    y: () => cut(1),
+    z: () => cut(2),
+    "[": () => state.set({ cutShare: Math.max(0, state.cutShare - 0.02) }),
+    "]": () => state.set({ cutShare: Math.min(1, state.cutShare + 0.02) }),
+    e: () => state.set({ edges: !state.edges }),
+    t: () => state.set({ theme: state.theme === "dark" ? "light" : "dark" }),
+  };
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+    const own = event.target.closest?.("select, input, button, summary, pre");
+    if (own && !(own.matches(".scrub") && event.key === " ") && !/^[a-z[\]]$/i.test(event.key)) return;
+    if (own?.matches("select")) return;
+    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  });
+}
+
+function worldSize(runs) {
+  const framed = runs.filter((run) => run.frames);
+  if (framed.length === 0) return 0;
+  const { low, high } = framed[0].frames;
+  return Math.hypot(...high.map((value, k) => value - low[k]));
+}
+
+const licences = () => document.getElementById("tetlap-licences")?.textContent.trim() ?? "";
+
+async function start() {
+  const data = readData();
+  const { runs } = data;
+  const framed = runs.filter((run) => run.frames);
+  const times = unionTimes(runs);
+  const fields = listFields(framed);
+  const state = createState({
+    theme: themeOf(),
+    time: times[0] ?? 0,
+    isPlaying: false,
+    field: fields[0],
+    cut: -1,
+    cutShare: 0.5,
+    edges: true,
+  });
+  prefersDark.addEventListener("change", () => state.set({ theme: themeOf() }));
+  const title = runs[0]?.summary?.title || runs[0]?.manifest?.scene?.title || runs[0]?.name || "Overlap models";
+  document.title = `${title} · tetlap`;
+
+  const transport = times.length > 1 ? new Transport(runs, times, state) : null;
+  const stage = framed.length > 0 ? new Stage(framed, state) : null;
+  const seek = (time) => {
+    transport.pause();
+    let best = 0;
+    times.forEach((one, i) => Math.abs(one - time) < Math.abs(times[best] - time) && (best = i));
+    transport.seek(best);
+  };
+  const plots = transport ? listPlots(data, worldSize(runs)).map((plot) => new TimePlot(plot, runs, state, seek)) : [];
+  const page = h(
+    "main",
+    buildHeader(runs, title),
+    buildOverview(runs),
+    stage?.element,
+    transport?.element,
+    plots.length > 0 && h("section.block", { id: "plots" }, h("h2", "Over time"), h(".plots", plots.map((plot) => plot.element))),
+    data.pareto && buildFrontier(data.pareto, state),
+    buildPhases(runs),
+    data.benches && buildBenches(data.benches),
+    buildManifest(runs),
+  );
+  const text = licences();
+  const footer = h("footer", h("p", "Made by tetlap report. This page is one file and asks for nothing from any network."), text && h("details.more", h("summary", "Licences of what is inside this page"), h("pre", { tabindex: 0 }, text)));
+  document.body.replaceChildren(...document.querySelectorAll("body > script"), buildBar(state, data.version), page, footer);
+  listenToKeys(state, transport, stage);
+  await stage?.load();
+  for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame); // plots draw when they know their size
+  window.tetlap = { state, transport, stage, plots, data };
+}
+
+start().then(
+  () => (document.documentElement.dataset.ready = "yes"),
+  (error) => {
+    document.documentElement.dataset.ready = "failed";
+    document.body.prepend(h("p.warning", `This page could not be shown: ${error.message}`));
+    throw error;
+  },
+);

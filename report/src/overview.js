@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The figures that one looks for first, of one run or of both.
+
+import { count, format, h } from "./dom.js";
+
+const FIGURES = [
+  ["Wall time", (s) => format(s.wall_s, "s")],
+  ["Steps", (s) => count(s.steps)],
+  ["Largest contact force", (s) => s.overlap && format(s.contact_force_max, "N")],
+  ["Deepest overlap", (s) => s.overlap && format(100 * s.deepest_overlap_max, "%"), "largest share of an element that another body covers"],
+  ["Overlapping pairs, most", (s) => s.overlap && count(s.pairs_max)],
+  ["Energy gained", (s) => format(s.energy_gain_relative), "largest rise of the audited total energy, over the scene’s energy"],
+];
+
+export function buildOverview(runs) {
+  const known = runs.filter((run) => run.summary);
+  if (known.length === 0) return null;
+  const tiles = FIGURES.map(([label, value, help]) => {
+    const values = known.map((run) => value(run.summary));
+    if (!values.some(Boolean)) return null;
+    return h(
+      ".figure",
+      { title: help },
+      h("dt", label),
+      known.map((run, k) => h("dd", known.length > 1 && h(`span.swatch.run-${run.letter}`), values[k] || "–")),
+    );
+  });
+  return h("dl.figures", tiles);
+}
+
+export function buildHeader(runs, title) {
+  const { summary } = runs[0] ?? {};
+  const models = [...new Set(runs.map((run) => run.summary?.overlap).filter(Boolean))];
+  const facts = summary
+    ? [summary.scene, `${count(summary.tetrahedra)} tetrahedra`, `${count(summary.vertices)} vertices`, models.length && `overlap: ${models.join(" and ")}`]
+    : [];
+  const trouble = runs
+    .filter((run) => run.summary && run.summary.outcome !== "finished")
+    .map((run) => h("p.warning", { role: "note" }, `${runs.length > 1 ? `${run.label}: ` : ""}${run.summary.outcome}. ${run.summary.message ?? ""}`));
+  return h(".title", h("h1", title), facts.length > 0 && h("p.facts", facts.filter(Boolean).map((fact) => h("span", fact))), trouble);
+}

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One run in 3-D: the surface, the section where it is cut, its outline, the half-spaces.
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  CircleGeometry,
+  Color,
+  DataTexture,
+  DoubleSide,
+  DynamicDrawUsage,
+  GLSL3,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  NearestFilter,
+  LinearFilter,
+  Quaternion,
+  Raycaster,
+  Scene,
+  ShaderMaterial,
+  Sphere,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { createRoom, outlineOf, sectionOf } from "./cut.js";
+import { LEVELS, NO_CODE, decode } from "./codes.js";
+
+const VERTEX = `
+  in float code;
+  in vec3 weight;
+  out float vCode;
+  out vec3 vWeight, vView, vPlace;
+  void main() {
+    vCode = code;
+    vWeight = weight;
+    vPlace = position;
+    vec4 view = modelViewMatrix * vec4(position, 1.0);
+    vView = view.xyz;
+    gl_Position = projectionMatrix * view;
+  }`;
+
+// Flat shading from the derivatives of the position; edges where a weight is near 0, faded where they would
+// be denser than the pixels.
+const FRAGMENT = `
+  precision highp float;
+  uniform sampler2D ramp;
+  uniform vec2 range;
+  uniform float classes, edges, noCode;
+  uniform vec3 neutral, ink;
+  uniform vec4 plane;
+  uniform bool isCut, isFlat;
+  in float vCode;
+  in vec3 vWeight, vView, vPlace;
+  out vec4 colour;
+  void main() {
+    if (isCut && dot(plane.xyz, vPlace) > plane.w) discard; // the side that is taken away
+    float share = (vCode - range.x) / max(range.y - range.x, 1e-6);
+    if (classes > 0.0) share = (floor(vCode + 0.5) + 0.5) / classes;
+    vec3 base = vCode > noCode - 0.5 ? neutral : texture(ramp, vec2(clamp(share, 0.002, 0.998), 0.5)).rgb;
+    vec3 normal = normalize(cross(dFdx(vView), dFdy(vView)));
+    float key = max(dot(normal, normalize(vec3(0.35, 0.75, 0.65))), 0.0);
+    float head = abs(normal.z);
+    vec3 lit = isFlat ? base : base * (0.76 + 0.08 * head + 0.22 * key);
+    vec3 width = fwidth(vWeight);
+    vec3 line = smoothstep(width * 0.1, width * 0.8, vWeight);
+    float edge = 1.0 - min(min(line.x, line.y), line.z);
+    float fade = 1.0 - smoothstep(0.12, 0.5, max(max(width.x, width.y), width.z));
+    colour = vec4(mix(lit, ink, edge * edges * fade), 1.0);
+  }`;
+
+const GRID_VERTEX = `
+  out vec2 vPlace;
+  void main() {
+    vPlace = position.xy;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  }`;
+
+const GRID_FRAGMENT = `
+  precision highp float;
+  uniform vec3 ink;
+  uniform float spacing, radius;
+  in vec2 vPlace;
+  out vec4 colour;
+  float lines(float step, vec2 width) {
+    vec2 apart = abs(fract(vPlace / step - 0.5) - 0.5) * step;
+    vec2 line = 1.0 - smoothstep(width * 0.4, width * 1.3, apart);
+    return max(line.x, line.y) * (1.0 - smoothstep(0.2, 0.6, max(width.x, width.y) / step));
+  }
+  void main() {
+    vec2 width = fwidth(vPlace);
+    float strength = max(lines(spacing, width) * 0.4, lines(5.0 * spacing, width));
+    float fade = 1.0 - smoothstep(0.15, 1.0, length(vPlace) / radius);
+    colour = vec4(ink, (0.04 + 0.22 * strength) * fade);
+  }`;
+
+export const PALETTE = {
+  light: { ink: "#1c2126", grid: "#4a5560", edges: 0.3 },
+  dark: { ink: "#07090b", grid: "#aeb8c2", edges: 0.55 },
+};
+
+// A round distance, about a tenth of `size`.
+function spacingOf(size) {
+  const power = 10 ** Math.floor(Math.log10(size / 10));
+  const share = size / 10 / power;
+  return power * (share < 2 ? 1 : share < 5 ? 2 : 5);
+}
+
+export class View {
+  constructor(run, frames, world, canvas) {
+    Object.assign(this, { run, frames, world, canvas });
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "low-power" });
+    this.scene = new Scene();
+    this.uniforms = {
+      ramp: { value: null },
+      range: { value: new Vector2(0, LEVELS) },
+      classes: { value: 0 },
+      edges: { value: 0.3 },
+      noCode: { value: NO_CODE },
+      neutral: { value: new Color() },
+      ink: { value: new Color() },
+      plane: { value: [1, 0, 0, 0] },
+      isCut: { value: false },
+    };
+    this.places = new Float32Array(3 * frames.vertices); // of the vertices in this frame, from the world's origin
+    this.frame = -1;
+    this.cut = null;
+    this.field = null;
+    this.room = createRoom();
+    this.body = null; // the field `body`, where it was read
+    this.surface = this.addMesh(frames.triangles.length / 4);
+    this.surface.geometry.getAttribute("weight").array.forEach((_, i, all) => (all[i] = i % 9 % 4 === 0 ? 255 : 0));
+    this.section = this.addMesh(0, false);
+    this.outline = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ depthTest: true }));
+    this.outline.frustumCulled = false;
+    this.outline.renderOrder = 2;
+    this.scene.add(this.outline);
+    this.grids = run.solids.halfspaces.map((halfspace) => this.addGrid(halfspace));
+  }
+
+  // The surface is clipped by the plane, the section lies in it.
+  addMesh(triangleCount, isClipped = true) {
+    const uniforms = { ...this.uniforms };
+    uniforms.isFlat = { value: !isClipped }; // a section shows the legend's own colours
+    if (!isClipped) uniforms.isCut = { value: false };
+    const material = new ShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms,
+      side: DoubleSide,
+    });
+    const mesh = new Mesh(new BufferGeometry(), material);
+    this.reserve(mesh.geometry, triangleCount);
+    mesh.frustumCulled = false;
+    this.scene.add(mesh);
+    return mesh;
+  }
+
+  reserve(geometry, triangleCount) {
+    const add = (name, array, size, isNormalized) =>
+      geometry.setAttribute(name, new BufferAttribute(array, size, isNormalized).setUsage(DynamicDrawUsage));
+    add("position", new Float32Array(9 * triangleCount), 3, false);
+    add("code", new Float32Array(3 * triangleCount), 1, false);
+    add("weight", new Uint8Array(9 * triangleCount), 3, true);
+    geometry.boundingSphere = new Sphere(new Vector3(), Infinity);
+  }
+
+  addGrid({ point = [0, 0, 0], normal = [0, 0, 1] }) {
+    const { origin, size } = this.world;
+    const up = new Vector3(...normal).normalize();
+    const foot = new Vector3(...point.map((p, k) => p - origin[k]));
+    const centre = up.clone().multiplyScalar(foot.dot(up)); // below the middle of the scene
+    const radius = 1.6 * size;
+    const material = new ShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: GRID_VERTEX,
+      fragmentShader: GRID_FRAGMENT,
+      uniforms: { ink: { value: new Color() }, spacing: { value: spacingOf(size) }, radius: { value: radius } },
+      transparent: true,
+      depthWrite: false,
+      side: DoubleSide,
+    });
+    const grid = new Mesh(new CircleGeometry(radius, 96), material);
+    grid.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), up));
+    grid.position.copy(centre);
+    grid.renderOrder = 3;
+    this.scene.add(grid);
+    return grid;
+  }
+
+  // Calls with vertices of the surface in up to a dozen frames.
+  visit(call) {
+    const { positions, vertices, low, high, time_s } = this.frames;
+    const stride = Math.max(1, Math.floor(time_s.length / 11));
+    const place = new Vector3();
+    for (let frame = 0; frame < time_s.length; frame += stride)
+      for (let v = 0; v < vertices; v++) {
+        const at = (k) => low[k] + ((high[k] - low[k]) * positions[3 * (vertices * frame + v) + k]) / LEVELS - this.world.origin[k];
+        call(place.set(at(0), at(1), at(2)));
+      }
+  }
+
+  resize(width, height) {
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    this.renderer.setSize(width, height, false);
+  }
+
+  setTheme(theme) {
+    const { ink, grid, edges } = PALETTE[theme];
+    this.edgeStrength = edges;
+    const raw = (target, colour) => target.setStyle(colour, "srgb-linear"); // shown as given
+    raw(this.uniforms.ink.value, ink);
+    raw(this.outline.material.color, theme === "light" ? "#000000" : "#ffffff");
+    for (const one of this.grids) raw(one.material.uniforms.ink.value, grid);
+  }
+
+  setEdges(isOn) {
+    this.uniforms.edges.value = isOn ? this.edgeStrength : 0;
+  }
+
+  // `scale` {low, high} in the field's unit; `bytes` are the ramp's colours; with `classes` a colour each value.
+  setField(field, scale, bytes, classes, neutral) {
+    this.field = field;
+    const { uniforms } = this;
+    uniforms.ramp.value?.dispose();
+    const texture = new DataTexture(bytes, bytes.length / 4, 1);
+    texture.minFilter = texture.magFilter = classes ? NearestFilter : LinearFilter;
+    texture.needsUpdate = true;
+    uniforms.ramp.value = texture;
+    uniforms.classes.value = classes;
+    uniforms.neutral.value.setStyle(neutral, "srgb-linear");
+    if (field && !classes) {
+      const width = field.high - field.low;
+      const code = (value) => (width > 0 ? ((value - field.low) / width) * LEVELS : 0);
+      uniforms.range.value.set(code(scale.low), Math.max(code(scale.high), code(scale.low) + 1e-3));
+    }
+    this.classLow = scale.low;
+    this.classes = classes;
+    this.update();
+  }
+
+  setFrame(frame) {
+    if (frame === this.frame) return;
+    this.frame = frame;
+    const { positions, vertices, low, high } = this.frames;
+    const begin = 3 * vertices * frame;
+    for (let axis = 0; axis < 3; axis++) {
+      const step = (high[axis] - low[axis]) / LEVELS;
+      const offset = low[axis] - this.world.origin[axis];
+      for (let i = axis; i < 3 * vertices; i += 3) this.places[i] = offset + step * positions[begin + i];
+    }
+    this.update();
+  }
+
+  // {axis, place, side} from the world's origin: what lies on that side (1 or −1) is taken away. null: whole.
+  setCut(cut) {
+    this.cut = cut;
+    this.uniforms.isCut.value = cut !== null;
+    if (cut) {
+      const plane = [0, 0, 0, cut.side * cut.place];
+      plane[cut.axis] = cut.side;
+      this.uniforms.plane.value = plane;
+    }
+    this.updateSection();
+  }
+
+  // The code of a vertex or tetrahedron in this frame; of a class its number.
+  codeAt(i) {
+    const { field } = this;
+    if (!field) return NO_CODE;
+    const code = field.codes[field.size * this.frame + i];
+    if (!this.classes || code === NO_CODE) return code;
+    return Math.round(decode(field.low, field.high, code)) - this.classLow;
+  }
+
+  update() {
+    if (this.frame < 0) return;
+    const { triangles } = this.frames;
+    const place = this.surface.geometry.getAttribute("position");
+    const code = this.surface.geometry.getAttribute("code");
+    const isCell = this.field?.on === "tetrahedra";
+    for (let t = 0, corner = 0; t < triangles.length; t += 4) {
+      const owner = isCell || !this.field ? this.codeAt(triangles[t + 3]) : 0;
+      for (let k = 0; k < 3; k++, corner++) {
+        const v = triangles[t + k];
+        place.array.set(this.places.subarray(3 * v, 3 * v + 3), 3 * corner);
+        code.array[corner] = isCell || !this.field ? owner : this.codeAt(v);
+      }
+    }
+    place.needsUpdate = code.needsUpdate = true;
+    this.updateSection();
+  }
+
+  updateSection() {
+    const { cut, frames, places, room } = this;
+    const isShown = cut !== null && frames.has_inside;
+    this.section.visible = isShown;
+    this.outline.visible = cut !== null;
+    if (cut === null || this.frame < 0) return;
+    this.outline.geometry.dispose();
+    this.outline.geometry = new BufferGeometry();
+    const points = outlineOf(frames.triangles, places, cut.axis, cut.place);
+    const lift = 1e-3 * this.world.size * cut.side; // towards the side that was taken away
+    for (let i = cut.axis; i < points.length; i += 3) points[i] += lift;
+    this.outline.geometry.setAttribute("position", new BufferAttribute(points, 3));
+    if (!isShown) return;
+    sectionOf(frames.tetrahedra, places, cut.axis, cut.place, room);
+    this.fillSection();
+  }
+
+  fillSection() {
+    const { room, places } = this;
+    const geometry = this.section.geometry;
+    if (geometry.getAttribute("position").count < 3 * room.triangleCount) {
+      geometry.dispose();
+      this.reserve(geometry, room.owners.length);
+    }
+    const place = geometry.getAttribute("position");
+    const code = geometry.getAttribute("code");
+    const isCell = this.field?.on === "tetrahedra";
+    for (let corner = 0; corner < 3 * room.triangleCount; corner++) {
+      const [a, b, share] = [room.ends[2 * corner], room.ends[2 * corner + 1], room.shares[corner]];
+      for (let c = 0; c < 3; c++)
+        place.array[3 * corner + c] = places[3 * a + c] + share * (places[3 * b + c] - places[3 * a + c]);
+      const owner = room.owners[(corner / 3) | 0];
+      code.array[corner] = isCell || !this.field ? this.codeAt(owner) : this.codeAt(a) * (1 - share) + this.codeAt(b) * share;
+    }
+    this.layBodies(place.array);
+    const weight = geometry.getAttribute("weight");
+    weight.array.set(room.weights.subarray(0, 9 * room.triangleCount));
+    place.needsUpdate = code.needsUpdate = weight.needsUpdate = true;
+    geometry.setDrawRange(0, 3 * room.triangleCount);
+  }
+
+  // Where two bodies overlap their sections lie in one plane: the later body is laid on top.
+  layBodies(places) {
+    const { room, cut, body } = this;
+    if (!body || body.high === body.low) return;
+    const step = (5e-4 * this.world.size * cut.side) / LEVELS;
+    for (let t = 0; t < room.triangleCount; t++) {
+      const lift = step * body.codes[room.owners[t]];
+      for (let k = 0; k < 3; k++) places[9 * t + 3 * k + cut.axis] += lift;
+    }
+  }
+
+  // What lies under a point of the canvas (−1 … 1 each way): {tetrahedron, vertex, value} or null.
+  pick(x, y, camera) {
+    const caster = new Raycaster();
+    caster.setFromCamera(new Vector2(x, y), camera);
+    const { cut } = this;
+    const isKept = (hit) => hit.object === this.section || !cut || (hit.point.getComponent(cut.axis) - cut.place) * cut.side <= 0;
+    const meshes = this.section.visible ? [this.surface, this.section] : [this.surface];
+    const hit = caster.intersectObjects(meshes, false).find(isKept);
+    if (!hit) return null;
+    const t = Math.floor(hit.face.a / 3);
+    const tetrahedron = hit.object === this.section ? this.room.owners[t] : this.frames.triangles[4 * t + 3];
+    const { field } = this;
+    let value = NaN;
+    if (field?.on === "tetrahedra") value = decode(field.low, field.high, field.codes[field.size * this.frame + tetrahedron]);
+    else if (field && hit.object === this.surface) {
+      const corners = [0, 1, 2].map((k) => this.frames.triangles[4 * t + k]);
+      const apart = corners.map((v) => hit.point.distanceTo(new Vector3(...this.places.subarray(3 * v, 3 * v + 3))));
+      const vertex = corners[apart.indexOf(Math.min(...apart))];
+      value = decode(field.low, field.high, field.codes[field.size * this.frame + vertex]);
+    }
+    return { tetrahedron, value };
+  }
+
+  render(camera) {
+    this.renderer.render(this.scene, camera);
+  }
+}

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page in a browser. `node page.test.mjs CHROMIUM TETLAP SCENE OUT` runs a scene with two overlap models,
+// makes the page, uses it, and leaves screenshots in OUT.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { launch } from "./browser.mjs";
+
+const [chromium, tetlap, scene, out] = process.argv.slice(2);
+mkdirSync(out, { recursive: true });
+
+// Points of a frontier: what is tested is the page, so any will do.
+const PARETO = {
+  format: "tetlap-pareto 1",
+  points: ["V", "V+grad"].flatMap((quantity) =>
+    [
+      ["clip", "clip", 1e-7, 1e-15],
+      ["exact", "exact", 1e-5, 0],
+      ["geo", "geo", 1e-6, 3e-3],
+      ["slow", "geo", 2e-6, 4e-3],
+    ].map(([model, family, seconds_per_pair, error]) => ({ model, family, quantity, set: "near", seconds_per_pair, error })),
+  ),
+};
+
+function makePages() {
+  const run = (...args) => execFileSync(tetlap, args, { stdio: ["ignore", "inherit", "inherit"] });
+  const runs = ["clip", "geo"].map((model) => join(out, model));
+  for (const [k, model] of ["clip", "geo"].entries()) run("run", scene, "-q", "-m", model, "-o", runs[k], "-s", "time.end=0.2", "-s", "output.frames=20");
+  writeFileSync(join(out, "pareto.json"), JSON.stringify(PARETO));
+  run("report", "-q", ...runs, "--pareto", join(out, "pareto.json"), "-o", join(out, "two.html"));
+  run("report", "-q", runs[0], "--surface", "-o", join(out, "one.html"));
+  return { two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
+}
+
+// Different colours in each canvas, read right after it was drawn: 1 is an empty one.
+const COLOURS = `(() => {
+  tetlap.stage.renderNow();
+  return tetlap.stage.views.map(({ canvas }) => {
+    const gl = canvas.getContext("webgl2");
+    const bytes = new Uint8Array(4 * canvas.width * canvas.height);
+    gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return new Set(new Uint32Array(bytes.buffer)).size;
+  });
+})()`;
+
+// A number that changes with what the canvases show.
+const PICTURE = `(tetlap.stage.renderNow(), tetlap.stage.views.map(({ canvas }) => canvas.toDataURL()).join())`;
+
+const tests = {
+  async "loads without a complaint and asks for nothing but itself"(page) {
+    assert.equal(await page.eval("document.documentElement.dataset.ready"), "yes");
+    assert.deepEqual(page.problems, []);
+    assert.deepEqual(page.requests.filter((url) => !url.startsWith("data:")).length, 1);
+    assert.equal(await page.eval("document.title"), "Two blocks · tetlap");
+  },
+
+  async "draws both runs"(page) {
+    const colours = await page.eval(COLOURS);
+    assert.equal(colours.length, 2);
+    for (const count of colours) assert.ok(count > 50, `${count} colours`);
+  },
+
+  async "decodes positions to within the step of their scale"(page, { runs }) {
+    // The first body's lowest vertex rests on the ground z = 0 at the start.
+    const places = await page.eval("(tetlap.transport.seek(0), Array.from(tetlap.stage.views[0].places))");
+    const { low, high, size } = await page.eval("(({ low, high, size }) => ({ low, high, size }))(tetlap.stage.world)");
+    const summary = JSON.parse(readFileSync(join(runs[0], "summary.json"), "utf8"));
+    assert.equal(places.length, 3 * summary.vertices);
+    const middle = low.map((value, k) => (value + high[k]) / 2);
+    const least = Math.min(...places.filter((_, i) => i % 3 === 2)) + middle[2];
+    assert.ok(Math.abs(least) < (size / 65534) * 2, `lowest z is ${least}`);
+  },
+
+  async "scrubs: time, picture and readings follow"(page) {
+    const before = await page.eval(PICTURE);
+    await page.eval(`(() => { const range = document.querySelector(".scrub"); range.value = 10; range.dispatchEvent(new Event("input")); })()`);
+    assert.equal(await page.eval("tetlap.state.time"), 0.1);
+    assert.equal(await page.eval(`document.querySelector(".time").value`), "0.100 s");
+    assert.notEqual(await page.eval(PICTURE), before);
+    const shown = await page.eval(`document.querySelector("#plot-force output").value`);
+    const row = await page.eval("tetlap.data.runs[0].forces[0].values[10]");
+    assert.ok(Math.abs(parseFloat(shown) - row) <= 0.01 * row, `${shown} for ${row} N`);
+  },
+
+  async "plays to the end and stops"(page) {
+    await page.eval(`(tetlap.transport.seek(15), tetlap.transport.speed = 8, document.querySelector(".play").click())`);
+    assert.equal(await page.eval("tetlap.state.isPlaying"), true);
+    await page.until("!tetlap.state.isPlaying");
+    assert.equal(await page.eval("tetlap.transport.index"), 20);
+  },
+
+  async "is worked by keys"(page) {
+    await page.eval("(tetlap.transport.seek(5), document.activeElement.blur())");
+    await page.key("ArrowRight");
+    assert.equal(await page.eval("tetlap.transport.index"), 6);
+    await page.key("Home");
+    assert.equal(await page.eval("tetlap.transport.index"), 0);
+    await page.key("x", "KeyX");
+    assert.equal(await page.eval("tetlap.state.cut"), 0);
+    await page.key("x", "KeyX");
+    assert.equal(await page.eval("tetlap.state.cut"), -1);
+    const theme = await page.eval("tetlap.state.theme");
+    await page.key("t", "KeyT");
+    assert.notEqual(await page.eval("document.documentElement.dataset.theme"), theme);
+    await page.key("t", "KeyT");
+    const before = await page.eval(PICTURE);
+    await page.eval("tetlap.stage.views[1].canvas.focus()");
+    await page.key("ArrowLeft");
+    assert.equal(await page.eval("tetlap.transport.index"), 0); // the camera turned, time did not
+    assert.notEqual(await page.eval(PICTURE), before);
+  },
+
+  async "turns both views with one camera"(page) {
+    const box = await page.eval("(({ left, top, width, height }) => ({ left, top, width, height }))(tetlap.stage.views[0].canvas.getBoundingClientRect())");
+    const before = await page.eval("tetlap.stage.views.map(({ canvas }) => (tetlap.stage.renderNow(), canvas.toDataURL()))");
+    const [x, y] = [box.left + box.width / 2, box.top + box.height / 2];
+    await page.mouse("mousePressed", x, y, 1);
+    await page.mouse("mouseMoved", x + 60, y + 10, 1);
+    await page.mouse("mouseReleased", x + 60, y + 10, 0);
+    const after = await page.eval("tetlap.stage.views.map(({ canvas }) => (tetlap.stage.renderNow(), canvas.toDataURL()))");
+    assert.notEqual(after[0], before[0]);
+    assert.notEqual(after[1], before[1]);
+  },
+
+  async "cuts the bodies open: the section lies in the plane and its area is the body's"(page) {
+    await page.eval("(tetlap.transport.seek(0), tetlap.state.set({ cut: 2, cutShare: 0.3 }))");
+    const [area, depth] = await page.eval(`(() => {
+      const view = tetlap.stage.views[0];
+      const p = view.section.geometry.getAttribute("position").array;
+      let area = 0, depth = 0;
+      for (let t = 0; t < view.room.triangleCount; t++) {
+        const [x0, y0, z0, x1, y1, z1, x2, y2, z2] = p.subarray(9 * t, 9 * t + 9);
+        area += Math.abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)) / 2;
+        for (const z of [z0, z1, z2]) depth = Math.max(depth, Math.abs(z - view.cut.place));
+      }
+      return [area, depth / tetlap.stage.world.size];
+    })()`);
+    assert.ok(Math.abs(area - 0.04) < 1e-5, `the lower block's section is ${area}, not 0.2 × 0.2`); // at rest
+    assert.ok(depth < 1e-3, `${depth}`);
+    assert.ok((await page.eval(COLOURS)).every((count) => count > 50));
+    await page.eval("tetlap.state.set({ cut: -1 })");
+  },
+
+  async "colours by every field"(page) {
+    const names = await page.eval(`[...document.querySelectorAll("#field option")].map((option) => option.value)`);
+    for (const wanted of ["von_mises", "contact_force", "overlap_fraction", "det_F", "body"]) assert.ok(names.includes(wanted), wanted);
+    await page.eval("tetlap.transport.seek(14)");
+    const pictures = new Set();
+    for (const name of names) {
+      await page.eval(`tetlap.state.set({ field: ${JSON.stringify(name)} })`);
+      await page.until(`tetlap.stage.fields.some((field) => field?.name === ${JSON.stringify(name)})`);
+      pictures.add(await page.eval(PICTURE));
+    }
+    assert.equal(pictures.size, names.length);
+    await page.eval(`tetlap.state.set({ field: "von_mises" })`);
+  },
+
+  async "plots have a line for each quantity and all its points"(page) {
+    const plots = await page.eval(`tetlap.plots.map(({ plot, element }) => ({ id: plot.id, series: plot.series.length,
+      lines: element.querySelectorAll("g[aria-label=line] path").length, dots: element.querySelectorAll(".dot").length,
+      points: [...element.querySelectorAll("g[aria-label=line] path")].map((path) => path.getAttribute("d").split(/[ML]/).length - 1),
+      finite: plot.series.map(({ values }) => values.filter(Number.isFinite).length) }))`);
+    assert.deepEqual(plots.map(({ id }) => id), ["force", "energy", "error", "step"]);
+    for (const plot of plots) {
+      assert.equal(plot.lines, plot.series, plot.id);
+      assert.equal(plot.dots, plot.series, plot.id);
+      plot.points.forEach((count, k) => assert.ok(count >= plot.finite[k], `${plot.id}: ${count} of ${plot.finite[k]} points`));
+    }
+  },
+
+  async "a plot sets the time where it is pressed"(page) {
+    const place = await page.eval(`(() => { const plot = tetlap.plots[0]; plot.area.scrollIntoView({ block: "center" });
+      const box = plot.area.querySelector("svg").getBoundingClientRect(); return [box.left + plot.x.apply(0.05), box.top + box.height / 2]; })()`);
+    await page.mouse("mousePressed", ...place, 1);
+    await page.mouse("mouseReleased", ...place, 0);
+    assert.equal(await page.eval("tetlap.state.time"), 0.05);
+  },
+
+  async "the frontier has every point, labelled, and tells about it"(page) {
+    const [points, labels] = await page.eval(`[".point", ".label"].map((name) => document.querySelectorAll("#frontier " + name).length)`);
+    assert.equal(points, PARETO.points.length);
+    assert.equal(labels, PARETO.points.length);
+    const filled = await page.eval(`[...document.querySelectorAll("#frontier .plot:first-child .point")].map((point) => point.getAttribute("r") === "5")`);
+    assert.deepEqual(filled, [true, true, false, false]); // clip, exact; geo and slow are beaten by clip
+    await page.eval(`document.querySelector("#frontier .point").focus()`);
+    assert.match(await page.eval(`document.querySelector("#frontier .tip:not([hidden])").textContent`), /clip.*100\u2009ns/);
+    await page.eval("document.activeElement.blur()");
+  },
+
+  async "says where the time went, in full"(page, { runs }) {
+    const { phases } = JSON.parse(readFileSync(join(runs[0], "summary.json"), "utf8"));
+    assert.equal(await page.eval(`document.querySelectorAll("#phases .row:first-child .piece").length`), Object.keys(phases).length);
+    assert.match(await page.eval(`document.querySelector("#manifest").textContent`), /tetlap run/);
+  },
+};
+
+async function shoot(browser, url, name, view, script) {
+  const page = await browser.open(url, view);
+  await page.eval(script);
+  await new Promise((wake) => setTimeout(wake, 300));
+  writeFileSync(join(out, `${name}.png`), await page.screenshot(true));
+  const wide = await page.eval("document.documentElement.scrollWidth");
+  assert.ok(wide <= view.width, `${name}: the page is ${wide} pixels wide`);
+  assert.deepEqual(page.problems, []);
+  await page.close();
+}
+
+const pages = makePages();
+const browser = await launch(chromium);
+let failed = 0;
+const attempt = async (name, test) => {
+  try {
+    await test();
+    console.log(`ok      ${name}`);
+  } catch (error) {
+    failed++;
+    console.log(`FAILED  ${name}\n${error.stack}`);
+  }
+};
+try {
+  const page = await browser.open(pages.two, { width: 1280, height: 900 });
+  for (const [name, test] of Object.entries(tests)) await attempt(name, () => test(page, pages));
+  await attempt("no complaint after all of it", () => assert.deepEqual(page.problems, []));
+  await page.close();
+  const seek = "tetlap.transport.seek(10)";
+  await attempt("fits 1600 pixels, light", () => shoot(browser, pages.two, "light-1600", { width: 1600, height: 1000 }, seek));
+  await attempt("fits 1600 pixels, dark", () => shoot(browser, pages.two, "dark-1600", { width: 1600, height: 1000, theme: "dark" }, `${seek}, tetlap.state.set({ cut: 1 })`));
+  await attempt("fits 400 pixels, light", () => shoot(browser, pages.two, "light-400", { width: 400, height: 5200, isMobile: true }, seek));
+  await attempt("fits 400 pixels, dark; surfaces only", () => shoot(browser, pages.one, "dark-400", { width: 400, height: 3600, theme: "dark", isMobile: true }, seek));
+} finally {
+  await browser.close();
+}
+console.log(failed ? `${failed} failed` : "all passed");
+process.exit(failed ? 1 : 0);
