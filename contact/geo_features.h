@@ -23,7 +23,7 @@
 enum {
   CONTACT_GEO_MAX_FEATURES = 128,
   CONTACT_GEO_MAX_POWER = 6, // of P
-  CONTACT_GEO_MAX_LINKS = 6,
+  CONTACT_GEO_MAX_LINKS = 4,
   CONTACT_GEO_DEGREES = 6,      // d⁰ … d⁵
   CONTACT_GEO_MIXED = 4,        // d⁰ … d³
   CONTACT_GEO_WEDGE_POWER = 3,  // of P in wedges
@@ -34,7 +34,7 @@ typedef struct ContactGeoFeatureSet {
   const char *name;
   int count;       // of features
   int power_count; // highest n of the pairs, at least 3
-  int link_count;  // 0: neither wedges nor squares
+  int link_count;  // CONTACT_GEO_MAX_LINKS; 0: neither wedges nor squares
   struct {
     int power;  // b: 1 or 2
     int degree; // q: 0 … 3

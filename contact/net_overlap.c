@@ -16,6 +16,9 @@
 
 enum { SIZE = CONTACT_PAIR_SIZE, PORTION = 224 }; // two chunks of the network's passes
 
+// The network's outputs, of which only those asked for are computed.
+enum { STATUS = 1 << 0, VOLUME = 1 << 1 };
+
 // A portion's pairs as the network sees them; used by one caller at a time.
 typedef struct Desk {
   atomic_flag is_taken;
@@ -79,6 +82,7 @@ static Status furnish(NetOverlap *overlap) {
     for (int k = 0; k < PORTION; k++) desk->c[2 * k + 1] = 1;
     NetStatus status = net_work_create_f32(overlap->model.plan, &def, &desk->work);
     if (status != NET_OK) return fail_as_net(status);
+    desk->work.outputs = VOLUME;
   }
   return STATUS_OK;
 }
@@ -215,9 +219,11 @@ Status contact_net_overlap_logits(const void *self, int count, const double *pai
     int size = count - first < PORTION ? count - first : PORTION;
     for (int i = 0; i < size; i++) logits[first + i] = -INFINITY;
     lay_out(overlap, desk, size, pairs + (ptrdiff_t)first * SIZE);
+    desk->work.outputs = STATUS;
     net_forward_eval_f32(&desk->work, &overlap->model, desk->count, desk->x, desk->y);
     for (int at = 0; at < desk->count; at++) logits[first + desk->pair[at]] = (double)desk->y[2 * at];
   }
+  desk->work.outputs = VOLUME;
   leave(desk);
   return STATUS_OK;
 }

@@ -111,7 +111,8 @@ static bool find_sorted(const double pair[24], ContactNormalised *normalised) {
 // One Jacobi rotation of the symmetric a in the plane (p, q); the rows of v become eigenvectors.
 static void rotate(double a[9], double v[9], int p, int q) {
   double apq = a[3 * p + q];
-  if (apq == 0) return;
+  // below the rounding of the values a rotation turns nothing
+  if (fabs(apq) <= 1e-18 * (fabs(a[0]) + fabs(a[4]) + fabs(a[8]))) return;
   double theta = (a[4 * q] - a[4 * p]) / (2 * apq);
   double t = copysign(1, theta) / (fabs(theta) + sqrt(theta * theta + 1));
   double c = 1 / sqrt(t * t + 1), s = t * c;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outputs of any number of samples, and their derivatives with respect to the input.
+// Outputs of any number of samples, and their derivatives with respect to the input. Only the outputs that
+// work->outputs names are computed, with what they need; the others are 0.
 #ifndef NET_FORWARD_H
 #define NET_FORWARD_H
 

@@ -24,6 +24,7 @@
 
 #include "net/adam.h"
 #include "net/checkpoint.h"
+#include "net/dense.h"
 #include "net/forward.h"
 #include "net/gradient.h"
 #include "net/kernel.h"

@@ -12,6 +12,7 @@ typedef struct NET_NAME(NetPass) {
   NET_REAL *values;      // slots
   NET_REAL *gradients;   // derivatives of slots
   NET_REAL *parameter_gradient; // added to; NULL: not wanted
+  uint64_t outputs;             // those to be computed, a bit for each; the others are 0
   bool wants_input;             // backward down to the input
 } NET_NAME(NetPass);
 

@@ -59,6 +59,19 @@ static void mark_readers(NetPlan *plan) {
         plan->steps[k].reads_input = true;
 }
 
+// From the last step back: what reads a slot is reached by what reads its own output.
+static void mark_outputs(NetPlan *plan) {
+  uint64_t reached[NET_MAX_SLOTS] = {0};
+  for (int k = plan->step_count - 1; k >= 0; k--) {
+    NetStep *step = &plan->steps[k];
+    step->outputs = reached[step->output];
+    for (int r = 0; r < step->output_rows && step->output == plan->output_slot; r++)
+      step->outputs |= (uint64_t)1 << (step->output_row + r);
+    reached[step->input] |= step->outputs;
+    if (step->base >= 0) reached[step->base] |= step->outputs;
+  }
+}
+
 static void count_flops(NetPlan *plan) {
   for (int k = 0; k < plan->step_count; k++) {
     const NetStep *step = &plan->steps[k];
@@ -241,6 +254,7 @@ NetStatus net_plan_create(const NetShape *shape, NetPlan *plan) {
   else
     plan_mlp(plan);
   mark_readers(plan);
+  mark_outputs(plan);
   count_flops(plan);
   return NET_OK;
 }

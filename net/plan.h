@@ -14,6 +14,7 @@
 #define NET_PLAN_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "net/shape.h"
 
@@ -57,6 +58,7 @@ typedef struct NetStep {
   int weight, bias; // tensors; bias −1: none
   int part, part_count;
   bool has_relu;
+  uint64_t outputs; // a bit for each output of the network that depends on the step's
   bool reads_input; // nothing of ours made the input: its derivative is wanted only as dV/dinput
 } NetStep;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 typedef struct NET_NAME(NetWork) {
   NetWorkDef def;
+  uint64_t outputs;                   // those that net_forward_* computes, a bit for each; all to begin with
   const NetPlan *plan;                // borrowed; the model of every call has an equal one
   const NET_NAME(NetKernel) * kernel; // static
   size_t value_size, gradient_size;   // elements of one chunk

@@ -323,6 +323,61 @@ START_TEST(one_silu_has_the_derivatives_that_a_hand_computes) {
 }
 END_TEST
 
+// What is not asked for is not computed, and what is asked for is the same to the bit.
+START_TEST(an_output_alone_is_what_it_is_among_all) {
+  for (int index = 0; index < SHAPES; index++) {
+    Case all = make_case(index, NET_TPN, -1);
+    double y[SAMPLES * 2], gx[SAMPLES * 24], alone[SAMPLES * 24];
+    for (int wanted = 0; wanted < 2; wanted++) {
+      for (int k = 0; k < SAMPLES * 2; k++) all.c[k] = k % 2 == wanted;
+      all.work.outputs = UINT64_MAX;
+      net_forward_gradient_f64(&all.work, &all.model, SAMPLES, all.x, all.c, all.y, gx);
+      all.work.outputs = (uint64_t)1 << wanted;
+      net_forward_gradient_f64(&all.work, &all.model, SAMPLES, all.x, all.c, y, alone);
+      ck_assert_mem_eq(gx, alone, sizeof gx);
+      for (int k = 0; k < SAMPLES * 2; k++) ck_assert(y[k] == (k % 2 == wanted ? all.y[k] : 0));
+    }
+    destroy_case(&all);
+  }
+}
+END_TEST
+
+// A dense network on columns against the same on rows, by every kernel.
+START_TEST(a_dense_network_takes_columns) {
+  NetShape shape = net_shape_mlp(36, 19, 2, 1);
+  ck_assert(net_dense_is_possible(&shape));
+  NetModel_f64 model = net_suite_model(&shape, 5);
+  for (int kind = 0; kind < NET_KERNEL_COUNT; kind++) {
+    if (!net_kernel_is_available((NetKernelKind)kind)) continue;
+    NetWork_f64 work;
+    NetWorkDef def = net_work_default();
+    def.kernel = (NetKernelKind)kind;
+    ck_net_ok(net_work_create_f64(model.plan, &def, &work));
+    NetRandom random = net_random_seeded(15, 0);
+    enum { COUNT = NET_COLUMN_UNIT, INPUTS = 36 };
+    double *x = net_suite_array(&random, COUNT * INPUTS, 2),
+           *rows = net_suite_array(&random, COUNT * INPUTS, 0);
+    double *gx = net_suite_array(&random, COUNT * INPUTS, 0), by_rows[COUNT * INPUTS], ones[COUNT], y[COUNT];
+    double *columns = net_suite_array(&random, COUNT, 0);
+    for (int j = 0; j < COUNT; j++) {
+      ones[j] = 1;
+      for (int f = 0; f < INPUTS; f++) rows[j * INPUTS + f] = x[f * COUNT + j];
+    }
+    net_forward_gradient_f64(&work, &model, COUNT, rows, ones, y, by_rows);
+    net_dense_eval_f64(&work, &model, x, columns, gx);
+    for (int j = 0; j < COUNT; j++) {
+      ck_assert_near(columns[j], y[j], 1e-14 * (1 + fabs(y[j])));
+      for (int f = 0; f < INPUTS; f++) ck_assert_near(gx[f * COUNT + j], by_rows[j * INPUTS + f], 1e-14);
+    }
+    net_dense_eval_f64(&work, &model, x, y, NULL);
+    ck_assert_mem_eq(y, columns, sizeof y);
+    net_memory_free(x), net_memory_free(rows), net_memory_free(gx), net_memory_free(columns);
+    net_work_destroy_f64(&work);
+  }
+  net_model_destroy_f64(&model);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("net_derivatives");
   tcase_add_test(test_case, one_silu_has_the_derivatives_that_a_hand_computes);
@@ -334,5 +389,7 @@ int main(void) {
   tcase_add_test(test_case, the_parameter_gradient_is_the_derivative_of_a_loss_that_contains_tangents);
   tcase_add_test(test_case, second_derivatives_are_derivatives_of_tangents_and_symmetric);
   tcase_add_test(test_case, the_hessian_of_a_rectified_network_is_zero);
+  tcase_add_test(test_case, an_output_alone_is_what_it_is_among_all);
+  tcase_add_test(test_case, a_dense_network_takes_columns);
   return suite_run("net_derivatives", test_case, 60);
 }
