@@ -12,16 +12,6 @@
 
 enum { BINS_A_STEP = APP_DATASET_BINS_A_DECADE / 5 }; // five steps of the curves a decade
 
-// In gnuplot's double quotes, with its markup off.
-static void write_quoted(FILE *stream, const char *text) {
-  fputc('"', stream);
-  for (; *text; text++) {
-    if (*text == '"' || *text == '\\') fputc('\\', stream);
-    fputc(*text == '\n' ? ' ' : *text, stream);
-  }
-  fputc('"', stream);
-}
-
 static bool ends_with(const char *text, const char *end) {
   size_t length = strlen(text), wanted = strlen(end);
   return length >= wanted && strcmp(text + length - wanted, end) == 0;
@@ -89,9 +79,9 @@ static void write_script(FILE *stream, const AppDatasetSummary *summary, const c
   for (int k = 0; k < DATAGEN_KIND_COUNT; k++)
     if (summary->kinds[k].with_volume) write_volumes(stream, k, &summary->kinds[k]);
   fprintf(stream, "set terminal %s\nset output ", terminal_of(picture));
-  write_quoted(stream, picture);
+  app_gnuplot_quote(stream, picture);
   fprintf(stream, "\nset multiplot layout 1,%d title ", has_volumes(summary) ? 3 : 1);
-  write_quoted(stream, title);
+  app_gnuplot_quote(stream, title);
   fputs(" noenhanced\nset style fill solid 0.5\nset boxwidth 0.8\nset grid y\nset xtics rotate by 35 right\n"
         "set ylabel 'pairs'\nset yrange [0:*]\nplot $counts using 0:2:xtic(1) with boxes notitle\n",
         stream);

@@ -13,6 +13,7 @@
 #include "app/eval_command.h"
 #include "app/mesh_command.h"
 #include "app/pareto_command.h"
+#include "app/plot_command.h"
 #include "app/report_command.h"
 #include "app/run_command.h"
 #include "app/schema_command.h"
@@ -37,6 +38,7 @@ static const Command commands[] = {
     {"run", "run a scene and write frames, history and summary", app_run_run},
     {"compare", "run a scene with several overlap models and compare", app_compare_run},
     {"report", "write a web page about one run or two, side by side", app_report_command_run},
+    {"plot", "draw a run or two, or a frontier, for a paper", app_plot_command_run},
     {"check", "say what a run would do, without running", app_check_run},
     {"mesh", "say what a mesh holds: counts, volume, quality, what is wrong", app_mesh_run},
     {"schema", "print the scene file's JSON Schema, or its manual page", app_schema_run},
