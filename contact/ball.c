@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/ball.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "base/vec3.h"
+
+// The faces, their vertices counter-clockwise from outside if the tetrahedron is positively oriented.
+static const int FACES[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+// What the edges of a face add up to, about the foot of the centre on its plane.
+typedef struct Section {
+  double area;      // of the face's part inside the ball
+  double moment[2]; // ∫ (x, y) over it
+  double outer;     // sgn(d) R³ Ω of its part outside
+} Section;
+
+// The plane of a face and the circle that the sphere cuts out of it.
+typedef struct Plane {
+  double distance;            // d
+  double radius, circle;      // R, √(R² − d²) or 0
+  double reach;               // sgn(d) min(|d|, R)
+  Vec3 foot, normal, axis[2]; // of the centre; unit vectors
+} Plane;
+
+static Plane plane_of(Vec3 a, Vec3 b, Vec3 doubled, double radius) {
+  Plane plane = {.radius = radius, .normal = vec3_scale(1 / vec3_length(doubled), doubled)};
+  plane.distance = vec3_dot(plane.normal, a);
+  double square = (radius - plane.distance) * (radius + plane.distance);
+  plane.circle = square > 0 ? sqrt(square) : 0;
+  plane.reach = fmax(-radius, fmin(plane.distance, radius));
+  plane.foot = vec3_scale(plane.distance, plane.normal);
+  Vec3 along = vec3_sub(b, a);
+  plane.axis[0] = vec3_scale(1 / vec3_length(along), along);
+  plane.axis[1] = vec3_cross(plane.normal, plane.axis[0]);
+  return plane;
+}
+
+// An edge of a face in the plane's coordinates: the points foot + t · direction, |foot| = |height|.
+typedef struct Edge {
+  double foot[2], direction[2];
+  double height; // signed: positive if the face lies to the left as the centre does
+} Edge;
+
+static void add_inside(const Edge *edge, double from, double to, Section *section) {
+  double area = 0.5 * edge->height * (to - from);
+  section->area += area;
+  for (int c = 0; c < 2; c++)
+    section->moment[c] += area / 3 * (2 * edge->foot[c] + (from + to) * edge->direction[c]);
+}
+
+// θ(t): the angle from the edge's foot to the point t.
+static double angle(const Edge *edge, double t) {
+  return copysign(1, edge->height) * atan2(t, fabs(edge->height));
+}
+
+// θ(t) less the solid angle of the triangle centre's foot – edge's foot – t, as seen from the centre; odd in
+// d.
+static double excess(const Edge *edge, const Plane *plane, double t) {
+  double d = plane->distance, length = sqrt(edge->height * edge->height + t * t + d * d);
+  return copysign(1, edge->height) * atan2(t * d, fabs(edge->height) * length);
+}
+
+static void unit_at(const Edge *edge, double t, double unit[2]) {
+  double x = edge->foot[0] + t * edge->direction[0], y = edge->foot[1] + t * edge->direction[1];
+  double length = hypot(x, y);
+  unit[0] = length > 0 ? x / length : 0, unit[1] = length > 0 ? y / length : 0;
+}
+
+static void add_outside(const Edge *edge, const Plane *plane, double from, double to, Section *section) {
+  double turned = angle(edge, to) - angle(edge, from), R = plane->radius, r = plane->circle;
+  section->outer +=
+      R * R * plane->reach * turned - R * R * R * (excess(edge, plane, to) - excess(edge, plane, from));
+  if (!(r > 0)) return;
+  double begin[2], end[2];
+  unit_at(edge, from, begin);
+  unit_at(edge, to, end);
+  section->area += 0.5 * r * r * turned;
+  section->moment[0] += r * r * r / 3 * (end[1] - begin[1]);
+  section->moment[1] -= r * r * r / 3 * (end[0] - begin[0]);
+}
+
+// One edge from p to q: outside the circle, inside, outside again.
+static void add_edge(const Plane *plane, const double p[2], const double q[2], Section *section) {
+  double length = hypot(q[0] - p[0], q[1] - p[1]);
+  if (!(length > 0)) return;
+  Edge edge = {.direction = {(q[0] - p[0]) / length, (q[1] - p[1]) / length}};
+  double from = p[0] * edge.direction[0] + p[1] * edge.direction[1], to = from + length;
+  edge.height = p[0] * edge.direction[1] - p[1] * edge.direction[0];
+  edge.foot[0] = edge.height * edge.direction[1], edge.foot[1] = -edge.height * edge.direction[0];
+  double square = (plane->circle - edge.height) * (plane->circle + edge.height);
+  double half = square > 0 ? sqrt(square) : 0;
+  double enter = fmin(fmax(-half, from), to), leave = fmin(fmax(half, from), to);
+  if (!(square > 0)) {
+    add_outside(&edge, plane, from, to, section);
+    return;
+  }
+  if (enter > from) add_outside(&edge, plane, from, enter, section);
+  if (leave > enter) add_inside(&edge, enter, leave, section);
+  if (to > leave) add_outside(&edge, plane, leave, to, section);
+}
+
+static Section section_of(const Plane *plane, const Vec3 corners[3]) {
+  Section section = {.area = 0};
+  double flat[3][2];
+  for (int v = 0; v < 3; v++)
+    for (int c = 0; c < 2; c++) flat[v][c] = vec3_dot(vec3_sub(corners[v], plane->foot), plane->axis[c]);
+  for (int v = 0; v < 3; v++) add_edge(plane, flat[v], flat[(v + 1) % 3], &section);
+  return section;
+}
+
+// ∫ N n dA of the three corners, by N_v = (doubled · ((next − x) × (after − x))) / |doubled|².
+static void add_gradient(const Plane *plane, const Section *section, const Vec3 corners[3], Vec3 doubled,
+                         Vec3 gradient[3]) {
+  double twice = vec3_length(doubled);
+  Vec3 moment = vec3_add(vec3_scale(section->moment[0], plane->axis[0]),
+                         vec3_scale(section->moment[1], plane->axis[1]));
+  for (int v = 0; v < 3; v++) {
+    Vec3 next = corners[(v + 1) % 3], edge = vec3_sub(corners[(v + 2) % 3], next);
+    Vec3 slope = vec3_scale(1 / twice, vec3_cross(plane->normal, edge)); // ∇N_v
+    double at_foot = vec3_dot(slope, vec3_sub(plane->foot, next));
+    gradient[v] =
+        vec3_add(gradient[v], vec3_scale(at_foot * section->area + vec3_dot(slope, moment), plane->normal));
+  }
+}
+
+static double overlap_with_gradient(const double tet[12], const double centre[3], double radius,
+                                    double gradient[12]) {
+  Vec3 x[4], sums[4] = {{0, 0, 0}};
+  for (int v = 0; v < 4; v++) x[v] = vec3_sub(vec3_at(tet + 3 * v), vec3_at(centre));
+  bool is_flipped = vec3_det4(x[0], x[1], x[2], x[3]) < 0;
+  double volume = 0;
+  for (int f = 0; f < 4; f++) {
+    int order[3] = {FACES[f][0], FACES[f][1 + is_flipped], FACES[f][2 - is_flipped]};
+    Vec3 corners[3] = {x[order[0]], x[order[1]], x[order[2]]}, own[3] = {{0, 0, 0}};
+    Vec3 doubled = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
+    if (!(vec3_length(doubled) > 0)) continue;
+    Plane plane = plane_of(corners[0], corners[1], doubled, radius);
+    Section section = section_of(&plane, corners);
+    volume += (plane.distance * section.area + section.outer) / 3;
+    add_gradient(&plane, &section, corners, doubled, own);
+    for (int v = 0; v < 3; v++) sums[order[v]] = vec3_add(sums[order[v]], own[v]);
+  }
+  for (int v = 0; v < 4; v++) vec3_store(gradient + 3 * v, sums[v]);
+  return fmax(volume, 0);
+}
+
+static double longest_edge(const double tet[12]) {
+  double longest = 0;
+  for (int v = 0; v < 4; v++)
+    for (int w = 0; w < v; w++)
+      longest = fmax(longest, vec3_length(vec3_sub(vec3_at(tet + 3 * v), vec3_at(tet + 3 * w))));
+  return longest;
+}
+
+static void differentiate(const double tet[12], const double centre[3], double radius, double hessian[144]) {
+  static const double STEP = 1e-5; // of the longest edge
+  double step = STEP * longest_edge(tet), moved[12], high[12], low[12];
+  for (int c = 0; c < 12; c++) {
+    memcpy(moved, tet, sizeof moved);
+    moved[c] = tet[c] + step;
+    overlap_with_gradient(moved, centre, radius, high);
+    moved[c] = tet[c] - step;
+    overlap_with_gradient(moved, centre, radius, low);
+    for (int r = 0; r < 12; r++) hessian[12 * r + c] = (high[r] - low[r]) / (2 * step);
+  }
+  for (int r = 0; r < 12; r++)
+    for (int c = 0; c < r; c++)
+      hessian[12 * r + c] = hessian[12 * c + r] = 0.5 * (hessian[12 * r + c] + hessian[12 * c + r]);
+}
+
+void contact_ball_overlap(const double tet[12], const double centre[3], double radius, double *volume,
+                          double gradient[12], double hessian[144]) {
+  double own[12];
+  *volume = 0;
+  if (gradient) memset(gradient, 0, 12 * sizeof *gradient);
+  if (hessian) memset(hessian, 0, 144 * sizeof *hessian);
+  if (contact_ball_separation(tet, centre, radius) >= 0) return;
+  *volume = overlap_with_gradient(tet, centre, radius, gradient ? gradient : own);
+  if (hessian) differentiate(tet, centre, radius, hessian);
+}
+
+// The square of the distance of the origin from the segment a b.
+static double square_to_segment(Vec3 a, Vec3 b) {
+  Vec3 edge = vec3_sub(b, a);
+  double square = vec3_dot(edge, edge), share = square > 0 ? -vec3_dot(a, edge) / square : 0;
+  Vec3 nearest = vec3_add(a, vec3_scale(fmin(fmax(share, 0), 1), edge));
+  return vec3_dot(nearest, nearest);
+}
+
+// The same from a triangle: from the plane if the foot lies inside, else from an edge.
+static double square_to_triangle(const Vec3 corners[3]) {
+  Vec3 normal = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
+  bool is_inside = vec3_dot(normal, normal) > 0;
+  double nearest = INFINITY;
+  for (int v = 0; v < 3; v++) {
+    Vec3 a = corners[v], b = corners[(v + 1) % 3];
+    is_inside = is_inside && vec3_dot(vec3_cross(normal, vec3_sub(b, a)), a) <= 0;
+    nearest = fmin(nearest, square_to_segment(a, b));
+  }
+  if (!is_inside) return nearest;
+  double height = vec3_dot(normal, corners[0]);
+  return height * height / vec3_dot(normal, normal);
+}
+
+double contact_ball_separation(const double tet[12], const double centre[3], double radius) {
+  Vec3 x[4];
+  for (int v = 0; v < 4; v++) x[v] = vec3_sub(vec3_at(tet + 3 * v), vec3_at(centre));
+  double orientation = vec3_det4(x[0], x[1], x[2], x[3]), nearest = INFINITY;
+  bool is_inside = orientation != 0;
+  for (int f = 0; f < 4; f++) {
+    Vec3 corners[3] = {x[FACES[f][0]], x[FACES[f][1]], x[FACES[f][2]]};
+    Vec3 normal = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
+    is_inside = is_inside && vec3_dot(normal, corners[0]) * orientation >= 0;
+    nearest = fmin(nearest, square_to_triangle(corners));
+  }
+  return is_inside ? -radius : sqrt(nearest) - radius;
+}
