@@ -119,7 +119,8 @@ static void print_body(const AppJob *job, int b) {
 static void print_obstacle(const AppJob *job, int o) {
   const FemObstacleDef *def = &job->scene.obstacles[o];
   char mesh[512] = "half-space";
-  if (!def->is_halfspace) describe_mesh(def->mesh_path, def->box_cells, mesh, sizeof mesh);
+  if (def->kind == FEM_OBSTACLE_BALL) snprintf(mesh, sizeof mesh, "sphere of radius %g m", def->radius);
+  if (def->kind == FEM_OBSTACLE_MESH) describe_mesh(def->mesh_path, def->box_cells, mesh, sizeof mesh);
   printf("  %-12s %s\n", def->name, mesh);
 }
 

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/bounds.h"
-#include "contact/separation.h"
+#include "contact/shape.h"
 
 // Where the boxes of two bodies meet but the bodies may not, a margin of several steps of free motion is
 // tried, bounded so that the trial costs little more than a search.
@@ -71,23 +71,20 @@ static void measure_motions(ContactCandidates *candidates, const ContactLayout *
   for (int b = 0; b < def->body_count; b++)
     candidates->motions[b] =
         longest(positions, candidates->reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
-  for (int h = 0; h < def->halfspace_count; h++) {
-    const ContactHalfspace *space = &def->halfspaces[h];
-    double speed = fabs(vec3_dot(vec3_at(space->velocity), vec3_at(space->normal)));
-    candidates->motions[def->body_count + h] = speed * fabs(time - candidates->reference_time);
+  for (int h = 0; h < def->shape_count; h++) {
+    candidates->motions[def->body_count + h] =
+        contact_shape_motion(&def->shapes[h], candidates->reference_time, time);
   }
 }
 
-static void expect_motions(ContactCandidates *candidates, const ContactLayout *layout,
+static void expect_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
                            const double *velocities, double step) {
   const ContactSystemDef *def = &layout->def;
   for (int b = 0; b < def->body_count; b++)
     candidates->expected[b] =
         step * longest(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
-  for (int h = 0; h < def->halfspace_count; h++) {
-    const ContactHalfspace *space = &def->halfspaces[h];
-    candidates->expected[def->body_count + h] =
-        step * fabs(vec3_dot(vec3_at(space->velocity), vec3_at(space->normal)));
+  for (int h = 0; h < def->shape_count; h++) {
+    candidates->expected[def->body_count + h] = step * contact_shape_speed(&def->shapes[h], time);
   }
 }
 
@@ -137,21 +134,13 @@ static void bound_bodies(ContactCandidates *candidates, const ContactLayout *lay
   }
 }
 
-static double height_of_body(const ContactLayout *layout, const ContactFacing *facing, double time,
-                             const double *positions) {
-  const ContactBody *body = &layout->def.bodies[facing->a];
-  double point[3], lowest = INFINITY;
-  contact_layout_plane(layout, facing->halfspace, time, point);
-  Vec3 normal = vec3_at(layout->def.halfspaces[facing->halfspace].normal);
-  for (int v = body->vertex_begin; v < body->vertex_end; v++)
-    lowest = fmin(lowest, vec3_dot(vec3_sub(vec3_at(positions + 3 * (size_t)v), vec3_at(point)), normal));
-  return lowest;
-}
-
 // A lower bound of the distance of the two parties: nothing meets until they have moved that far.
 static double clearance(const ContactCandidates *candidates, const ContactLayout *layout,
                         const ContactFacing *facing, double time, const double *positions) {
-  if (facing->halfspace >= 0) return height_of_body(layout, facing, time, positions);
+  const ContactBody *a = &layout->def.bodies[facing->a];
+  if (facing->shape >= 0)
+    return contact_shape_clearance(&layout->def.shapes[facing->shape], time, positions, a->vertex_begin,
+                                   a->vertex_end);
   return contact_bounds_distance(candidates->boxes[facing->a], candidates->boxes[facing->b]);
 }
 
@@ -180,17 +169,15 @@ static Status search_bodies(ContactCandidates *candidates, const ContactLayout *
   return STATUS_OK;
 }
 
-static Status search_halfspace(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
-                               const double *positions, double margin) {
+static Status search_shape(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
+                           const double *positions, double margin) {
   const ContactFacing *facing = &layout->facings[f];
   const ContactBody *body = &layout->def.bodies[facing->a];
-  const double *normal = layout->def.halfspaces[facing->halfspace].normal;
-  double point[3];
-  contact_layout_plane(layout, facing->halfspace, time, point);
+  const ContactShape *shape = &layout->def.shapes[facing->shape];
   for (int i = body->tet_begin; i < body->tet_end; i++) {
     double x[12];
     contact_layout_gather(layout, i, positions, x);
-    if (contact_separation_halfspace(x, point, normal) <= margin)
+    if (contact_shape_separation(shape, time, x) <= margin)
       TRY(push(&candidates->next, (ContactPair){f, {i, -1}}));
   }
   return STATUS_OK;
@@ -199,8 +186,8 @@ static Status search_halfspace(ContactCandidates *candidates, const ContactLayou
 static Status search_with(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
                           const double *positions, double margin) {
   candidates->next.margins[f] = margin;
-  if (layout->facings[f].halfspace < 0) return search_bodies(candidates, layout, f, positions, margin);
-  return search_halfspace(candidates, layout, f, time, positions, margin);
+  if (layout->facings[f].shape < 0) return search_bodies(candidates, layout, f, positions, margin);
+  return search_shape(candidates, layout, f, time, positions, margin);
 }
 
 // A margin wider than the layout's is kept only where it holds no pair.
@@ -256,7 +243,7 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
                                  bool *has_changed) {
   *has_changed = false;
   measure_motions(candidates, layout, time, positions);
-  expect_motions(candidates, layout, velocities, step);
+  expect_motions(candidates, layout, time, velocities, step);
   if (!wants_search(candidates, layout)) return STATUS_OK;
 
   double start = clock_wall_s();

@@ -7,9 +7,9 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "contact/bounds.h"
-#include "contact/halfspace.h"
 #include "contact/potential.h"
 #include "contact/separation.h"
+#include "contact/shape.h"
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout) {
   *evaluation = (ContactEvaluation){0};
@@ -81,7 +81,7 @@ static void gather(const ContactLayout *layout, const ContactPair *pair, const d
 
 // Lists the candidates whose boxes meet, nudges allowed for.
 static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *layout,
-                            const ContactCandidateList *candidates, bool with_halfspaces,
+                            const ContactCandidateList *candidates, bool with_shapes,
                             const double *positions) {
   int count = candidates->count, kept = 0;
   double apart = 3 * layout->nudge;
@@ -93,7 +93,7 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
     const int *tets = candidates->pairs[k].tets;
     evaluation->is_kept[k] =
         tets[1] < 0
-            ? with_halfspaces
+            ? with_shapes
             : !(contact_bounds_distance(evaluation->boxes[tets[0]], evaluation->boxes[tets[1]]) > apart);
     kept += evaluation->is_kept[k];
   }
@@ -164,14 +164,13 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
   return STATUS_OK;
 }
 
-static void overlap_halfspaces(ContactEvaluation *evaluation, const ContactLayout *layout, double time) {
+static void overlap_shapes(ContactEvaluation *evaluation, const ContactLayout *layout, double time) {
 #pragma omp parallel for schedule(static) if (evaluation->pair_count - evaluation->mesh_pair_count > 512)
   for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
-    int h = layout->facings[evaluation->pairs[k].facing].halfspace;
-    double point[3], *gradient = evaluation->gradients + 24 * (size_t)k;
-    contact_layout_plane(layout, h, time, point);
-    contact_halfspace_overlap(evaluation->coordinates + 24 * (size_t)k, point,
-                              layout->def.halfspaces[h].normal, &evaluation->volumes[k], gradient, NULL);
+    const ContactShape *shape = &layout->def.shapes[layout->facings[evaluation->pairs[k].facing].shape];
+    double *gradient = evaluation->gradients + 24 * (size_t)k;
+    contact_shape_overlap(shape, time, evaluation->coordinates + 24 * (size_t)k, &evaluation->volumes[k],
+                          gradient, NULL);
     memset(gradient + 12, 0, 12 * sizeof(double));
   }
 }
@@ -251,13 +250,13 @@ static Status apply_potential(ContactEvaluation *evaluation, const ContactLayout
 
 Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout *layout,
                               const ContactCandidateList *candidates, const ContactOverlapModel *model,
-                              bool with_halfspaces, double time, const double *positions) {
+                              bool with_shapes, double time, const double *positions) {
   double start = clock_wall_s();
   clear(evaluation);
-  TRY(sift_by_boxes(evaluation, layout, candidates, with_halfspaces, positions));
+  TRY(sift_by_boxes(evaluation, layout, candidates, with_shapes, positions));
   sift_by_faces(evaluation, layout, positions);
   TRY(overlap_meshes(evaluation, layout, model));
-  overlap_halfspaces(evaluation, layout, time);
+  overlap_shapes(evaluation, layout, time);
   keep_overlapping(evaluation);
   double overlapped = clock_wall_s();
   TRY(apply_potential(evaluation, layout));

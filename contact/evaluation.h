@@ -15,18 +15,18 @@ typedef struct ContactEvaluation {
   double energy;     // U [J]
   // Pairs with V > 0 in the candidates' order, so those with half-spaces last.
   int pair_count, mesh_pair_count;
-  ContactPair *pairs;            //                                       (pair_count)
-  double *coordinates;           // as given to the model [m]             (mesh_pair_count, 2, 4, 3)
-  double *volumes;               // V_ij [m³]                             (pair_count)
-  double *gradients;             // ∇V_ij [m²]; half-space's part: zeros  (pair_count, 2, 4, 3)
-  double *pressures;             // p_ij [Pa]                             (pair_count)
-  ContactPatches patches;        // with W_i, W_a and forces per node
-  double *forces;                // −∂U/∂x [N]                            (vertex_count, 3)
-  double *covered;               // Σ over facings of W_i [m³]            (tet_count)
-  ContactInterface *interfaces;  //                                       (facing_count)
-  long long tried;               // pairs given to the model
+  ContactPair *pairs;                     //                                       (pair_count)
+  double *coordinates;                    // as given to the model [m]             (mesh_pair_count, 2, 4, 3)
+  double *volumes;                        // V_ij [m³]                             (pair_count)
+  double *gradients;                      // ∇V_ij [m²]; half-space's part: zeros  (pair_count, 2, 4, 3)
+  double *pressures;                      // p_ij [Pa]                             (pair_count)
+  ContactPatches patches;                 // with W_i, W_a and forces per node
+  double *forces;                         // −∂U/∂x [N]                            (vertex_count, 3)
+  double *covered;                        // Σ over facings of W_i [m³]            (tet_count)
+  ContactInterface *interfaces;           //                                       (facing_count)
+  long long tried;                        // pairs given to the model
   long long enclosed, fallbacks, blended; // how many of them the model flagged so
-  double overlap_s, force_s;     // wall time [s]
+  double overlap_s, force_s;              // wall time [s]
   // Scratch memory.
   unsigned char *is_kept; // of each candidate
   double (*boxes)[6];     // of the candidates' tetrahedra            (tet_count)
@@ -42,7 +42,7 @@ void contact_evaluation_destroy(ContactEvaluation *evaluation);
 // that is not a number ≥ 0.
 Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout *layout,
                               const ContactCandidateList *candidates, const ContactOverlapModel *model,
-                              bool with_halfspaces, double time, const double *positions);
+                              bool with_shapes, double time, const double *positions);
 
 // Whether the result is that of these positions.
 bool contact_evaluation_is_at(const ContactEvaluation *evaluation, const ContactLayout *layout, double time,

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/evaluation.h"
+#include "contact/shape.h"
 
 // An element that is pressed with less than this share of the norms of its forces is not pressed along its
 // normal: it lies nearly inside the other body.
@@ -166,6 +167,19 @@ static double coefficient_of(const ContactFriction *friction, const ContactLayou
   return friction->coefficients[facing] * layout->facings[facing].weight[side];
 }
 
+// The velocity of a shape where it is pressed.
+static void set_obstacle(const ContactFriction *friction, const Meeting *meeting, ContactGrip *grip) {
+  int s = meeting->layout->facings[grip->interface].shape;
+  if (s < 0) return;
+  Vec3 x = {0, 0, 0};
+  for (int n = grip->begin; n < grip->begin + grip->count; n++) {
+    Vec3 vertex = vec3_at(meeting->evaluation->positions + 3 * (size_t)friction->vertices[n]);
+    x = vec3_add(x, vec3_scale(friction->weights[n], vertex));
+  }
+  vec3_store(grip->obstacle,
+             contact_shape_velocity(&meeting->layout->def.shapes[s], meeting->evaluation->time, x));
+}
+
 static Status take_element(ContactFriction *friction, const Meeting *meeting, int element) {
   int facing = meeting->evaluation->pairs[meeting->pairs[0]].facing, side = meeting->element->side;
   double coefficient = coefficient_of(friction, meeting->layout, facing, side);
@@ -179,8 +193,7 @@ static Status take_element(ContactFriction *friction, const Meeting *meeting, in
       .interface = facing, .side = side, .begin = friction->entry_count, .limit = coefficient * press.force};
   vec3_store(grip->normal, press.normal);
   fill_weights(friction, meeting, press, grip);
-  int halfspace = meeting->layout->facings[facing].halfspace;
-  if (halfspace >= 0) contact_layout_obstacle_velocity(meeting->layout, halfspace, grip->obstacle);
+  set_obstacle(friction, meeting, grip);
   friction->entry_count += grip->count;
   friction->taken++;
   return STATUS_OK;

@@ -13,11 +13,12 @@
 // kept to rounding, angular momentum up to the friction times the depth of the overlap. What "sticks" creeps,
 // slower than ε.
 //
-// Why not pair by pair: the boundary of a pair's overlap has parts of faces between elements of one body, where
-// nothing touches. Those of A cancel in F, those of B in F up to differences of pressure, and nearly so in the sum
-// over neighbours. Measured on two blocks at a depth of .3 elements, friction pair by pair is twice what it should
-// be; as above it is right to 1 % inside of a flat patch up to a depth of .5. Between two bodies the elements of A
-// against B and those of B against A give half each; against an obstacle only the body's count.
+// Why not pair by pair: the boundary of a pair's overlap has parts of faces between elements of one body,
+// where nothing touches. Those of A cancel in F, those of B in F up to differences of pressure, and nearly so
+// in the sum over neighbours. Measured on two blocks at a depth of .3 elements, friction pair by pair is
+// twice what it should be; as above it is right to 1 % inside of a flat patch up to a depth of .5. Between
+// two bodies the elements of A against B and those of B against A give half each; against an obstacle only
+// the body's count.
 //
 // n, N and w are those of the last accepted state: they are taken by `update` and kept while the integrator
 // tries steps, so a force depends on velocities only and its derivative is symmetric and dissipative.

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
+#include "contact/shape.h"
 
 // Rest volumes of tetrahedra, and their quarters summed at the vertices.
 static Status measure_volumes(ContactLayout *layout) {
@@ -43,7 +44,7 @@ static ContactFacing facing_of_bodies(const ContactSystemDef *def, int a, int b)
   bool one_sided = def->bodies[a].is_obstacle || def->bodies[b].is_obstacle;
   return (ContactFacing){.a = a,
                          .b = b,
-                         .halfspace = -1,
+                         .shape = -1,
                          .weight = {one_sided ? !def->bodies[a].is_obstacle : 0.5,
                                     one_sided ? !def->bodies[b].is_obstacle : 0.5}};
 }
@@ -56,10 +57,10 @@ static void list_facings(ContactLayout *layout) {
       if (!def->bodies[a].is_obstacle || !def->bodies[b].is_obstacle)
         layout->facings[count++] = facing_of_bodies(def, a, b);
   for (int a = 0; a < def->body_count; a++)
-    for (int h = 0; h < def->halfspace_count; h++)
+    for (int h = 0; h < def->shape_count; h++)
       if (!def->bodies[a].is_obstacle)
         layout->facings[count++] =
-            (ContactFacing){.a = a, .b = def->body_count + h, .halfspace = h, .weight = {1, 0}};
+            (ContactFacing){.a = a, .b = def->body_count + h, .shape = h, .weight = {1, 0}};
   layout->facing_count = count;
 }
 
@@ -81,17 +82,12 @@ static Status check(const ContactSystemDef *def) {
   if (!(def->margin >= 0 && isfinite(def->margin)))
     return status_fail(STATUS_INPUT, "contact: margin is %g m; it must be positive, or 0 for the default",
                        def->margin);
-  for (int h = 0; h < def->halfspace_count; h++) {
-    double length = vec3_length(vec3_at(def->halfspaces[h].normal));
-    if (!(fabs(length - 1) <= 1e-9))
-      return status_fail(STATUS_INPUT, "contact: the normal of half-space %s has length %g instead of 1",
-                         def->halfspaces[h].name, length);
-  }
+  for (int h = 0; h < def->shape_count; h++) TRY(contact_shape_check(&def->shapes[h]));
   return STATUS_OK;
 }
 
 Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def) {
-  *layout = (ContactLayout){.def = *def, .party_count = def->body_count + def->halfspace_count};
+  *layout = (ContactLayout){.def = *def, .party_count = def->body_count + def->shape_count};
   TRY(check(def));
   size_t most_facings = (size_t)def->body_count * (size_t)layout->party_count;
   layout->tet_volumes = memory_zeroed((size_t)def->tet_count, sizeof(double));
@@ -112,13 +108,4 @@ void contact_layout_destroy(ContactLayout *layout) {
   memory_free(layout->facings);
   memory_free(layout->nudges);
   *layout = (ContactLayout){0};
-}
-
-void contact_layout_obstacle_velocity(const ContactLayout *layout, int h, double velocity[3]) {
-  for (int c = 0; c < 3; c++) velocity[c] = layout->def.halfspaces[h].velocity[c];
-}
-
-void contact_layout_plane(const ContactLayout *layout, int h, double time, double point[3]) {
-  const ContactHalfspace *space = &layout->def.halfspaces[h];
-  for (int c = 0; c < 3; c++) point[c] = space->point[c] + time * space->velocity[c];
 }

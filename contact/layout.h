@@ -10,7 +10,7 @@
 // Two that can meet: bodies a < b, or body a and a half-space. Side 0 is a, side 1 is b.
 typedef struct ContactFacing {
   int a, b;         // b = body_count + half-space, as in ContactInterface
-  int halfspace;    // −1: two bodies
+  int shape;        // −1: two bodies
   double weight[2]; // of each side's sum in U: ½ and ½ between bodies; 1 and 0 against an obstacle, so that
                     // > 0 also says that the side carries unknowns
 } ContactFacing;
@@ -42,12 +42,6 @@ typedef struct ContactLayout {
 // STATUS_INPUT: κ or margin not positive, a rest tetrahedron without volume, a normal that is no unit vector.
 Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def);
 void contact_layout_destroy(ContactLayout *layout);
-
-// A point of the plane of half-space h at time t.
-void contact_layout_plane(const ContactLayout *layout, int h, double time, double point[3]);
-
-// The velocity of half-space h.
-void contact_layout_obstacle_velocity(const ContactLayout *layout, int h, double velocity[3]);
 
 // The 12 coordinates of a tetrahedron.
 static inline void contact_layout_gather(const ContactLayout *layout, int tet, const double *positions,

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "contact/bounds.h"
 #include "contact/separation.h"
+#include "contact/shape.h"
 
 Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout) {
   *onset = (ContactOnset){0};
@@ -24,15 +25,13 @@ void contact_onset_destroy(ContactOnset *onset) {
 
 static double separation_of(const ContactLayout *layout, const ContactPair *pair, double time,
                             const double *positions, double enough) {
-  double x[24], point[3];
+  double x[24];
   contact_layout_gather(layout, pair->tets[0], positions, x);
   if (pair->tets[1] >= 0) {
     contact_layout_gather(layout, pair->tets[1], positions, x + 12);
     return contact_separation_pair(x, enough);
   }
-  int h = layout->facings[pair->facing].halfspace;
-  contact_layout_plane(layout, h, time, point);
-  return contact_separation_halfspace(x, point, layout->def.halfspaces[h].normal);
+  return contact_shape_separation(&layout->def.shapes[layout->facings[pair->facing].shape], time, x);
 }
 
 static bool is_engaged(const ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,

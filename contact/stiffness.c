@@ -5,9 +5,8 @@
 
 #include "base/memory.h"
 #include "contact/bounds.h"
-#include "contact/halfspace.h"
 #include "contact/potential.h"
-#include "contact/separation.h"
+#include "contact/shape.h"
 
 enum { PAIRS_AT_ONCE = 256 }; // Hessians held in memory: 1.2 MB
 
@@ -204,15 +203,14 @@ static Status add_mesh_pairs(ContactStiffness *stiffness, const ContactLayout *l
   return STATUS_OK;
 }
 
-static void add_halfspace_pairs(const ContactLayout *layout, const ContactEvaluation *evaluation,
-                                const ContactStiffnessSink *sink) {
+static void add_shape_pairs(const ContactLayout *layout, const ContactEvaluation *evaluation,
+                            const ContactStiffnessSink *sink) {
   for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
     const ContactPair *pair = &evaluation->pairs[k];
-    int h = layout->facings[pair->facing].halfspace;
-    double x[12], point[3], volume, gradient[12], hessian[144];
+    const ContactShape *shape = &layout->def.shapes[layout->facings[pair->facing].shape];
+    double x[12], volume, gradient[12], hessian[144];
     contact_layout_gather(layout, pair->tets[0], evaluation->positions, x);
-    contact_layout_plane(layout, h, evaluation->time, point);
-    contact_halfspace_overlap(x, point, layout->def.halfspaces[h].normal, &volume, gradient, hessian);
+    contact_shape_overlap(shape, evaluation->time, x, &volume, gradient, hessian);
     for (int e = 0; e < 144; e++) hessian[e] *= evaluation->pressures[k];
     sink->add_dense(sink->self, 4, layout->def.tets[pair->tets[0]], hessian);
   }
@@ -234,7 +232,7 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
                  give_outer));
   }
   if (!layout->def.use_full_hessian) return STATUS_OK;
-  add_halfspace_pairs(layout, evaluation, sink);
+  add_shape_pairs(layout, evaluation, sink);
   return model->ops->has_hessian ? add_mesh_pairs(stiffness, layout, evaluation, model, sink) : STATUS_OK;
 }
 
@@ -248,11 +246,10 @@ static bool is_within(const ContactLayout *layout, const ContactPair *pair, doub
     contact_bounds_of_tet(layout->def.tets[pair->tets[1]], positions, box_b);
     return contact_bounds_distance(box_a, box_b) <= reach + 3 * layout->nudge;
   }
-  double x[12], point[3];
+  double x[12];
   contact_layout_gather(layout, pair->tets[0], positions, x);
-  int h = layout->facings[pair->facing].halfspace;
-  contact_layout_plane(layout, h, time, point);
-  return contact_separation_halfspace(x, point, layout->def.halfspaces[h].normal) <= reach;
+  const ContactShape *shape = &layout->def.shapes[layout->facings[pair->facing].shape];
+  return contact_shape_separation(shape, time, x) <= reach;
 }
 
 typedef struct Visit {

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "contact/audit.h"
 #include "contact/onset.h"
+#include "contact/shape.h"
 #include "contact/stiffness.h"
 
 struct ContactSystem {
@@ -156,6 +157,24 @@ Status contact_system_active_pairs(const ContactSystem *system, int *pair_count,
   for (size_t k = 0; k < active; k++)
     for (int side = 0; side < 2; side++) (*tets)[2 * k + (size_t)side] = evaluation->pairs[k].tets[side];
   return STATUS_OK;
+}
+
+// A shape that moves by v(x) changes V as vertices that moved by −v would.
+double contact_system_shape_power(const ContactSystem *system) {
+  const ContactLayout *layout = &system->layout;
+  const ContactPatches *patches = &system->evaluation.patches;
+  double power = 0;
+  for (int p = 0; p < patches->patch_count; p++) {
+    int s = layout->facings[patches->patches[p].facing].shape;
+    if (s < 0) continue;
+    for (int n = patches->patches[p].node_begin; n < patches->patches[p].node_end; n++) {
+      const ContactNode *node = &patches->nodes[n];
+      Vec3 x = vec3_at(system->evaluation.positions + 3 * (size_t)node->vertex);
+      Vec3 velocity = contact_shape_velocity(&layout->def.shapes[s], system->evaluation.time, x);
+      power += vec3_dot(vec3_at(node->force), velocity);
+    }
+  }
+  return power;
 }
 
 const ContactCounters *contact_system_counters(const ContactSystem *system) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact of many bodies by a penalty on overlap volumes: positions in; energy, forces, stiffness out. It
 // knows no mechanics: bodies are ranges of vertices and tetrahedra, obstacles are bodies without unknowns or
-// half-spaces.
+// shapes without elements.
 //
 //     candidates (broad.h, kept while motion < margin/2)
 //         │ gather (n, 2, 4, 3)
@@ -27,13 +27,26 @@ typedef struct ContactBody {
   bool is_obstacle; // carries no unknowns: static or driven
 } ContactBody;
 
-// The solid is { x : normal·(x − point(t)) ≤ 0 }, point(t) = point + t velocity.
-typedef struct ContactHalfspace {
-  const char *name;   // borrowed
+// Obstacles without elements.
+typedef enum ContactShapeKind {
+  CONTACT_SHAPE_HALFSPACE, // { x : normal·(x − point) ≤ 0 }
+  CONTACT_SHAPE_BALL,      // { x : |x − point| ≤ radius }
+} ContactShapeKind;
+
+// `point` moves by point(t) = point + t velocity, or as `move` says, which returns position and velocity at a
+// time of what rests at `rest`, by a rigid motion; a half-space must not turn. `move` may be called from
+// several threads.
+typedef struct ContactShape {
+  const char *name; // borrowed
+  ContactShapeKind kind;
   double point[3];    // [m]
-  double normal[3];   // unit length
+  double normal[3];   // of a half-space, unit length
+  double radius;      // of a ball [m]
   double velocity[3]; // [m/s]
-} ContactHalfspace;
+  const void *motion; // handed to `move`; borrowed
+  void (*move)(const void *motion, double time, const double rest[3], double position[3],
+               double velocity[3]); // NULL: by `velocity`
+} ContactShape;
 
 // The potentials, by the name a scene uses. W_i: what the other body covers of element i [m³]; V_i its rest
 // volume; W_a, V_a their shares of vertex a (a quarter of each adjacent element). κ: stiffness.
@@ -59,8 +72,8 @@ typedef struct ContactSystemDef {
   int tet_count;
   const ContactBody *bodies; // borrowed                                    (body_count)
   int body_count;
-  const ContactHalfspace *halfspaces; // borrowed                           (halfspace_count)
-  int halfspace_count;
+  const ContactShape *shapes; // borrowed                           (shape_count)
+  int shape_count;
   ContactPotential potential;
   double stiffness;      // κ
   double margin;         // skin margin while bodies are near [m]; 0: half the shortest mean edge of a body
@@ -78,7 +91,7 @@ typedef struct ContactStiffnessSink {
   void (*add_dense)(void *self, int count, const int *vertices, const double *matrix);
 } ContactStiffnessSink;
 
-// The force between two bodies, or a body and a half-space (b = body_count + number of the half-space).
+// The force between two bodies, or a body and a shape (b = body_count + number of the shape).
 typedef struct ContactInterface {
   int a, b;         // a < b
   double force[3];  // on a [N]; the opposite acts on b
@@ -147,6 +160,8 @@ int contact_system_active_count(const ContactSystem *system); // pairs with V > 
 // The pairs of the last evaluation with V > 0, as handed to the model (in general position); for audits and
 // capture. Owned by the caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).
 Status contact_system_active_pairs(const ContactSystem *system, int *count, double **pairs, int **tets);
+// The power that moving shapes put in at the last evaluation [W]: ∂U/∂t at fixed positions.
+double contact_system_shape_power(const ContactSystem *system);
 const ContactCounters *contact_system_counters(const ContactSystem *system);
 // What laws that build on the potential (friction.h) look at: contact/evaluation.h, contact/layout.h.
 // `look` indexes the last evaluation's patches; the result is the system's, valid until the next evaluation.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/drive.h"
 
+#include <stddef.h>
+
 #include "base/vec3.h"
 
 // Linear between the rows (time, displacement); constant before the first and after the last.
@@ -56,4 +58,11 @@ void fem_drive_point(const FemConstraintDef *def, double time, const double rest
   }
   if (is_frozen)
     for (int c = 0; c < 3; c++) velocity[c] = 0;
+}
+
+bool fem_drive_is_still(const FemConstraintDef *def) {
+  bool moves = def->spin != 0 || def->table_count > 0;
+  for (int c = 0; c < 3; c++)
+    moves = moves || def->velocity[c] != 0 || def->amplitude[c] != 0 || def->formula[c] != NULL;
+  return !moves;
 }

@@ -10,4 +10,7 @@
 void fem_drive_point(const FemConstraintDef *def, double time, const double rest[3], double position[3],
                      double velocity[3]);
 
+// Whether nothing ever moves.
+bool fem_drive_is_still(const FemConstraintDef *def);
+
 #endif

@@ -6,14 +6,15 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fem/drive.h"
 #include "fem/effect.h"
 
 typedef struct Contact {
   const FemModel *model; // borrowed
   ContactOverlapModel overlap;
-  ContactBody *bodies;          // (model->body_count)
-  ContactHalfspace *halfspaces; // (halfspace_count)
-  int halfspace_count;
+  ContactBody *bodies;  // (model->body_count)
+  ContactShape *shapes; // (shape_count)
+  int shape_count;
   ContactSystem *system;
   double reach; // pairs closer than this are laid out in the matrix ahead [m]
 } Contact;
@@ -30,8 +31,13 @@ static void destroy(void *self) {
   contact_system_destroy(contact->system);
   contact_overlap_destroy(&contact->overlap);
   memory_free(contact->bodies);
-  memory_free(contact->halfspaces);
+  memory_free(contact->shapes);
   memory_free(contact);
+}
+
+static void move_shape(const void *motion, double time, const double rest[3], double position[3],
+                       double velocity[3]) {
+  fem_drive_point(motion, time, rest, position, velocity);
 }
 
 static void list_sides(Contact *contact) {
@@ -47,13 +53,17 @@ static void list_sides(Contact *contact) {
   }
   for (int o = 0; o < model->scene->obstacle_count; o++) {
     const FemObstacleDef *def = &model->scene->obstacles[o];
-    if (!def->is_halfspace) continue;
-    ContactHalfspace *halfspace = &contact->halfspaces[contact->halfspace_count++];
-    halfspace->name = def->name;
-    vec3_store(halfspace->point, vec3_at(def->point));
+    if (def->kind == FEM_OBSTACLE_MESH) continue;
+    ContactShape *shape = &contact->shapes[contact->shape_count++];
+    bool is_ball = def->kind == FEM_OBSTACLE_BALL;
+    *shape = (ContactShape){.name = def->name,
+                            .kind = is_ball ? CONTACT_SHAPE_BALL : CONTACT_SHAPE_HALFSPACE,
+                            .radius = def->radius,
+                            .motion = &def->motion,
+                            .move = fem_drive_is_still(&def->motion) ? NULL : move_shape};
+    vec3_store(shape->point, vec3_at(def->point));
     Vec3 normal = vec3_at(def->normal);
-    vec3_store(halfspace->normal, vec3_scale(1 / vec3_length(normal), normal));
-    vec3_store(halfspace->velocity, vec3_at(def->motion.velocity));
+    if (!is_ball) vec3_store(shape->normal, vec3_scale(1 / vec3_length(normal), normal));
   }
 }
 
@@ -73,8 +83,8 @@ static Status build(Contact *contact) {
   const FemContactDef *def = &model->scene->contact;
   TRY(create_overlap(contact));
   contact->bodies = memory_zeroed((size_t)model->body_count, sizeof *contact->bodies);
-  contact->halfspaces = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->halfspaces);
-  if (!contact->bodies || !contact->halfspaces) return status_no_memory("the contact bodies");
+  contact->shapes = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->shapes);
+  if (!contact->bodies || !contact->shapes) return status_no_memory("the contact bodies");
   list_sides(contact);
   ContactSystemDef system = {.vertex_count = model->vertex_count,
                              .rest = model->rest,
@@ -82,8 +92,8 @@ static Status build(Contact *contact) {
                              .tet_count = model->tet_count,
                              .bodies = contact->bodies,
                              .body_count = model->body_count,
-                             .halfspaces = contact->halfspaces,
-                             .halfspace_count = contact->halfspace_count,
+                             .shapes = contact->shapes,
+                             .shape_count = contact->shape_count,
                              .potential = def->potential,
                              .stiffness = fem_model_contact_stiffness(model),
                              .margin = def->margin,
@@ -160,26 +170,13 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
       &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer, .add_dense = add_dense});
 }
 
-// The power that a moving half-space puts in is the force on the body times its velocity; mesh obstacles are
-// prescribed coordinates, which the system counts.
-static double halfspace_power(const Contact *contact) {
-  int count;
-  const ContactInterface *interfaces = contact_system_interfaces(contact->system, &count);
-  double power = 0;
-  for (int i = 0; i < count; i++) {
-    int halfspace = interfaces[i].b - contact->model->body_count;
-    if (halfspace < 0) continue;
-    power += vec3_dot(vec3_at(interfaces[i].force), vec3_at(contact->halfspaces[halfspace].velocity));
-  }
-  return power;
-}
-
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   Contact *contact = self;
   double contact_energy;
   TRY(contact_system_eval(contact->system, state->time, state->positions, &contact_energy, NULL));
   energy->contact += contact_energy;
-  energy->driven_power += halfspace_power(contact);
+  // Mesh obstacles are prescribed coordinates, which the system counts.
+  energy->driven_power += contact_system_shape_power(contact->system);
   return STATUS_OK;
 }
 
@@ -222,5 +219,5 @@ ContactSystem *fem_effect_contact_system(void *effect) {
 const char *fem_effect_contact_name(const void *effect, int number) {
   const Contact *contact = effect;
   int bodies = contact->model->body_count;
-  return number < bodies ? contact->bodies[number].name : contact->halfspaces[number - bodies].name;
+  return number < bodies ? contact->bodies[number].name : contact->shapes[number - bodies].name;
 }

@@ -39,7 +39,7 @@ static Status load_meshes(const FemSceneDef *scene, FemMesh *meshes) {
   int next = scene->body_count;
   for (int o = 0; o < scene->obstacle_count; o++) {
     const FemObstacleDef *def = &scene->obstacles[o];
-    if (def->is_halfspace) continue;
+    if (def->kind != FEM_OBSTACLE_MESH) continue;
     Status status = load_mesh(&meshes[next++], scene, def->mesh_path, def->box_size, def->box_cells,
                               &def->mesh_options, &def->placement);
     if (status) return status_prefix(status, "obstacle '%s'", def->name);
@@ -124,18 +124,11 @@ static void append_bodies(FemModel *model, const FemMesh *meshes) {
       lump_mass(model, body);
       set_velocity(model, body, def);
     } else {
-      while (scene->obstacles[obstacle].is_halfspace) obstacle++;
+      while (scene->obstacles[obstacle].kind != FEM_OBSTACLE_MESH) obstacle++;
       body->name = scene->obstacles[obstacle++].name;
       body->is_obstacle = true;
     }
   }
-}
-
-static bool is_at_rest(const FemConstraintDef *def) {
-  bool moves = def->spin != 0 || def->table_count > 0;
-  for (int c = 0; c < 3; c++)
-    moves = moves || def->velocity[c] != 0 || def->amplitude[c] != 0 || def->formula[c] != NULL;
-  return !moves;
 }
 
 // Makes the driver of one constraint and marks its coordinates by the driver's number + 1 in `owner`.
@@ -144,7 +137,7 @@ static Status add_driver(FemModel *model, const FemConstraintDef *def, const Fem
   int *vertices, count;
   TRY(fem_select_vertices(&def->select, mesh, &vertices, &count));
   FemModelDriver *driver = &model->drivers[model->driver_count++];
-  *driver = (FemModelDriver){.def = def, .is_fixed = is_at_rest(def)};
+  *driver = (FemModelDriver){.def = def, .is_fixed = fem_drive_is_still(def)};
   driver->dofs = memory_zeroed(3 * (size_t)count, sizeof *driver->dofs);
   Status status = driver->dofs ? STATUS_OK : status_no_memory("the prescribed vertices");
   for (int i = 0; i < count && !status; i++)
@@ -196,7 +189,7 @@ static Status add_drivers(FemModel *model, const FemMesh *meshes) {
     status = add_drivers_of_body(model, b, &meshes[b], owner);
   int body = scene->body_count;
   for (int o = 0; o < scene->obstacle_count && !status; o++) {
-    if (scene->obstacles[o].is_halfspace) continue;
+    if (scene->obstacles[o].kind != FEM_OBSTACLE_MESH) continue;
     status = add_driver(model, &scene->obstacles[o].motion, &meshes[body], &model->bodies[body], owner);
     body++;
   }
@@ -265,7 +258,7 @@ Status fem_model_create(FemModel *model, const FemSceneDef *scene) {
   *model = (FemModel){.scene = scene};
   if (scene->body_count < 1) return status_fail(STATUS_INPUT, "the scene has no bodies; give at least one");
   int mesh_count = scene->body_count;
-  for (int o = 0; o < scene->obstacle_count; o++) mesh_count += !scene->obstacles[o].is_halfspace;
+  for (int o = 0; o < scene->obstacle_count; o++) mesh_count += scene->obstacles[o].kind == FEM_OBSTACLE_MESH;
   FemMesh *meshes = memory_zeroed((size_t)mesh_count, sizeof *meshes);
   if (!meshes) return status_no_memory("the meshes");
   Status status = load_meshes(scene, meshes);

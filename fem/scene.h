@@ -96,17 +96,25 @@ typedef struct FemBodyDef {
   FemScenePlace place;
 } FemBodyDef;
 
-// An obstacle carries no unknowns: a half-space, or a mesh that stands still or moves.
+typedef enum FemObstacleKind {
+  FEM_OBSTACLE_MESH,
+  FEM_OBSTACLE_HALFSPACE,
+  FEM_OBSTACLE_BALL,
+} FemObstacleKind;
+
+// An obstacle carries no unknowns; it stands still or moves.
 typedef struct FemObstacleDef {
   char *name;
-  bool is_halfspace;
-  double point[3], normal[3]; // half-space; the normal points out of the solid
-  char *mesh_path;            // else a mesh, or a box as in FemBodyDef
+  FemObstacleKind kind;
+  double point[3];  // on a half-space's surface; a ball's centre
+  double normal[3]; // out of a half-space
+  double radius;    // of a ball
+  char *mesh_path;  // else a mesh, or a box as in FemBodyDef
   double box_size[3];
   int box_cells[3];
   FemMeshOptions mesh_options;
   FemPlacement placement;
-  FemConstraintDef motion; // selection ignored; a half-space takes `velocity` only
+  FemConstraintDef motion; // selection ignored; a half-space must not spin
   FemScenePlace place;
 } FemObstacleDef;
 

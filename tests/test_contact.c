@@ -256,7 +256,7 @@ static const double TIP_DOWN[12] = {0, 0, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1};
 
 static Fixture *single_tet(double depth, ContactPotential potential, const double velocity[3]) {
   static const double UP[3] = {0, 0, 1};
-  static ContactHalfspace ground;
+  static ContactShape ground;
   Fixture *f = empty_fixture();
   f->blocks.vertex_count = 4, f->blocks.tet_count = 1, f->blocks.body_count = 1;
   f->blocks.x = malloc(sizeof TIP_DOWN);
@@ -265,11 +265,11 @@ static Fixture *single_tet(double depth, ContactPotential potential, const doubl
   memcpy(f->blocks.tets[0], (int[]){0, 1, 2, 3}, sizeof *f->blocks.tets);
   f->blocks.bodies[0] = (ContactBody){.name = "tip", .vertex_end = 4, .tet_end = 1};
   prepare(f);
-  ground = (ContactHalfspace){.name = "ground", .point = {3, 1, depth}};
+  ground = (ContactShape){.name = "ground", .point = {3, 1, depth}};
   memcpy(ground.normal, UP, sizeof UP);
   if (velocity) memcpy(ground.velocity, velocity, sizeof UP);
   ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
-  def.halfspaces = &ground, def.halfspace_count = 1;
+  def.shapes = &ground, def.shape_count = 1;
   def.potential = potential;
   start(f, &def);
   return f;
@@ -328,7 +328,7 @@ END_TEST
 
 // A block 0.3 into flat ground: a half-space, or a coarse block of tetrahedra wide enough.
 static Fixture *block_on_ground(ContactPotential potential, bool is_mesh) {
-  static ContactHalfspace ground = {.name = "ground", .normal = {0, 0, 1}};
+  static ContactShape ground = {.name = "ground", .normal = {0, 0, 1}};
   Fixture *f = empty_fixture();
   blocks_add(
       &f->blocks,
@@ -341,7 +341,7 @@ static Fixture *block_on_ground(ContactPotential potential, bool is_mesh) {
   prepare(f);
   ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
   def.potential = potential;
-  if (!is_mesh) def.halfspaces = &ground, def.halfspace_count = 1;
+  if (!is_mesh) def.shapes = &ground, def.shape_count = 1;
   start(f, &def);
   return f;
 }
@@ -437,8 +437,8 @@ START_TEST(a_definition_that_cannot_be_is_refused) {
   wrong = def, wrong.margin = -1;
   ck_assert_int_eq(contact_system_create(&system, &wrong), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "margin"));
-  ContactHalfspace skew = {.name = "skew", .normal = {0, 0, 2}};
-  wrong = def, wrong.halfspaces = &skew, wrong.halfspace_count = 1;
+  ContactShape skew = {.name = "skew", .normal = {0, 0, 2}};
+  wrong = def, wrong.shapes = &skew, wrong.shape_count = 1;
   ck_assert_int_eq(contact_system_create(&system, &wrong), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "skew"));
   memcpy(f->rest + 3 * f->blocks.tets[5][1], f->rest + 3 * f->blocks.tets[5][0], 3 * sizeof(double));

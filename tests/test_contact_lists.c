@@ -227,13 +227,13 @@ START_TEST(a_fast_body_is_stopped_at_the_surface_and_not_behind_it) {
 END_TEST
 
 START_TEST(a_halfspace_that_rises_beyond_the_margin_is_refused) {
-  static ContactHalfspace ground = {
+  static ContactShape ground = {
       .name = "ground", .normal = {0, 0, 1}, .point = {0, 0, -1}, .velocity = {0, 0, 2}};
   Fixture *f = calloc(1, sizeof *f);
   blocks_add(&f->blocks, &(BlockDef){.cell = {1, 1, 1}, .cells = {2, 2, 2}});
   start(f);
   contact_system_destroy(f->system);
-  f->def.halfspaces = &ground, f->def.halfspace_count = 1;
+  f->def.shapes = &ground, f->def.shape_count = 1;
   ck_assert_ok(contact_system_create(&f->system, &f->def));
   update(f, 0, f->blocks.x);
   Result below = result_at(f, f->system, 0.49, f->blocks.x),
@@ -287,7 +287,7 @@ END_TEST
 // A table with two legs of different length above the ground: the second leg is a new patch, the rest of the
 // first leg is not.
 START_TEST(a_new_patch_is_an_onset_and_a_growing_one_is_not) {
-  static ContactHalfspace ground = {.name = "ground", .normal = {0, 0, 1}};
+  static ContactShape ground = {.name = "ground", .normal = {0, 0, 1}};
   Fixture *f = calloc(1, sizeof *f);
   blocks_add(&f->blocks, &(BlockDef){.corner = {0, 0, -0.1}, .cell = {1, 1, 1}, .cells = {6, 1, 1}});
   // The bottom rises from −0.1 at x = 0 to 0.2 at x = 3 and falls to 0.05 at x = 6.
@@ -297,7 +297,7 @@ START_TEST(a_new_patch_is_an_onset_and_a_growing_one_is_not) {
   }
   start(f);
   contact_system_destroy(f->system);
-  f->def.halfspaces = &ground, f->def.halfspace_count = 1;
+  f->def.shapes = &ground, f->def.shape_count = 1;
   ck_assert_ok(contact_system_create(&f->system, &f->def));
   update(f, 0, f->blocks.x);
   ck_assert_near(gap_at(f, f->blocks.x), 0.05, 1e-14); // x = 1 at height 0 belongs to the first leg

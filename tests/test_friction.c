@@ -12,7 +12,7 @@ static const double MU = 0.4, SLIP_SPEED = 1e-3;
 typedef struct Fixture {
   Blocks blocks;
   double *rest, *velocities;
-  ContactHalfspace ground;
+  ContactShape ground;
   ContactOverlapModel model;
   ContactSystem *system;
   ContactFriction friction;
@@ -33,7 +33,7 @@ static void start(Fixture *f, const char *model, bool has_ground) {
   f->velocities = zeros(f);
   ck_assert_ok(contact_overlap_create(&f->model, model));
   ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
-  if (has_ground) def.halfspaces = &f->ground, def.halfspace_count = 1;
+  if (has_ground) def.shapes = &f->ground, def.shape_count = 1;
   ck_assert_ok(contact_system_create(&f->system, &def));
   ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->velocities, 0.01, NULL));
   double energy;
@@ -48,7 +48,7 @@ static Fixture *block_on_ground(void) {
   Fixture *f = calloc(1, sizeof *f);
   ck_assert_ptr_nonnull(f);
   blocks_add(&f->blocks, &(BlockDef){.corner = {0, 0, -0.1}, .cell = {1, 1, 1}, .cells = {3, 3, 2}});
-  f->ground = (ContactHalfspace){.name = "ground", .normal = {0, 0, 1}, .velocity = {0.3, -0.2, 0}};
+  f->ground = (ContactShape){.name = "ground", .normal = {0, 0, 1}, .velocity = {0.3, -0.2, 0}};
   start(f, "clip", true);
   return f;
 }

@@ -20,10 +20,9 @@
 static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.yaml";
 static const char *const full_json = TETLAP_SOURCE_DIR "/tests/data/scene/full.json";
 
-static const char *const examples[] = {"01_drop",       "02_two_blocks", "03_spheres",
-                                       "04_cantilever", "05_press",      "06_bunny_like",
-                                       "20_loads",      "21_release",    "22_rubber_beam",
-                                       "23_fibres"};
+static const char *const examples[] = {"01_drop",        "02_two_blocks", "03_spheres", "04_cantilever",
+                                       "05_press",       "06_bunny_like", "20_loads",   "21_release",
+                                       "22_rubber_beam", "23_fibres"};
 enum { EXAMPLE_COUNT = sizeof examples / sizeof *examples };
 
 // What is printed to the stream that `print` is given; owned by the caller (free).
@@ -153,9 +152,10 @@ static void check_upper(const FemBodyDef *body) {
 }
 
 static void check_obstacles(const FemSceneDef *scene) {
-  ck_assert_int_eq(scene->obstacle_count, 4);
+  ck_assert_int_eq(scene->obstacle_count, 5);
   const FemObstacleDef *ground = &scene->obstacles[0], *tool = ground + 1, *block = ground + 2;
-  ck_assert(ground->is_halfspace && !tool->is_halfspace && !block->is_halfspace);
+  ck_assert_int_eq(ground->kind, FEM_OBSTACLE_HALFSPACE);
+  ck_assert(tool->kind == FEM_OBSTACLE_MESH && block->kind == FEM_OBSTACLE_MESH);
   ck_vector(ground->point, 0, 0, -1);
   ck_vector(ground->normal, 0, 0, 1);
   ck_vector(ground->motion.velocity, 0, 0, 0.5);
@@ -167,6 +167,9 @@ static void check_obstacles(const FemSceneDef *scene) {
   ck_assert(tool->motion.components[0] && tool->motion.components[1] && tool->motion.components[2]);
   ck_assert_int_eq(block->box_cells[2], 2);
   ck_assert_str_eq(scene->obstacles[3].mesh_path, "wall.msh");
+  ck_assert_int_eq(scene->obstacles[4].kind, FEM_OBSTACLE_BALL);
+  ck_vector(scene->obstacles[4].point, 1, 2, 3);
+  ck_assert_double_eq(scene->obstacles[4].radius, 0.5);
   ck_vector(block->motion.velocity, 0, 0, 0);
 }
 
@@ -409,6 +412,16 @@ static const Wrong wrong[] = {
     {TIME "bodies: [{mesh: 3}]\n",
      "s.yaml:2:17: bodies[0].mesh: expected a mapping {key: value} or text (its 'file'), found the number 3"},
     {TIME "bodies: [{name: 'a b'}]\n", "s.yaml:2:17: bodies[0].name: expected a name of letters, digits"},
+    {TIME BODY
+     "obstacles: [{name: o, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}, motion: {spin: 1, axis: "
+     "[1, 0, 0]}}]\n",
+     "s.yaml:3:81: obstacles[0]: a half-space does not turn; use a mesh, a box for example"},
+    {TIME BODY "obstacles: [{name: o, sphere: {centre: [0, 0, 0], radius: 0}}]\n",
+     "s.yaml:3:59: obstacles[0].sphere.radius: expected a number in (0, inf) [m], found the number 0"},
+    {TIME BODY
+     "obstacles: [{name: o, sphere: {centre: [0, 0, 0], radius: 1}, velocity: [1, 0, 0], motion: {velocity: "
+     "[1, 0, 0]}}]\n",
+     "s.yaml:3:"},
     {TIME BODY "effects: {friction: 0.3}\n",
      "s.yaml:3:11: unknown key 'friction' in effects; there is contact.friction"},
     {TIME BODY "contact: {friction: -1}\n",
@@ -502,9 +515,9 @@ static const Wrong wrong[] = {
     {TIME "bodies: [{name: a, mesh: {size: 1, box: {size: [1, 1, 1], cells: 1}}, " MATERIAL "}]\n",
      "s.yaml:2:27: 'size' in bodies[0].mesh needs 'file' beside it"},
     {TIME BODY "obstacles: [{name: g}]\n",
-     "s.yaml:3:13: obstacles[0] needs one of these keys: halfspace mesh"},
+     "s.yaml:3:13: obstacles[0] needs one of these keys: halfspace sphere mesh"},
     {TIME BODY "obstacles: [{name: g, mesh: g.msh, velocity: [0, 0, 1]}]\n",
-     "s.yaml:3:36: 'velocity' in obstacles[0] needs 'halfspace' beside it"},
+     "s.yaml:3:36: 'velocity' in obstacles[0] contradicts 'mesh'; keep one of them"},
     {TIME BODY "obstacles:\n  - name: a\n    mesh: g.msh\n",
      "s.yaml:4:11: the name 'a' is taken by another of the bodies"},
 };

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// contact/shape: half-spaces and balls that move, as obstacles of a contact system and of scenes.
+#include "blocks.h"
+#include "scene.h"
+
+#include "base/vec3.h"
+#include "contact/friction.h"
+#include "contact/shape.h"
+
+typedef struct Fixture {
+  Blocks blocks;
+  double *rest, *still;
+  ContactShape shape;
+  ContactOverlapModel model;
+  ContactSystem *system;
+} Fixture;
+
+// A block of 3 × 3 × 2 cells from the origin, jittered, with a shape below.
+static Fixture *block_on(ContactShape shape) {
+  Fixture *f = calloc(1, sizeof *f);
+  ck_assert_ptr_nonnull(f);
+  blocks_add(&f->blocks, &(BlockDef){.cell = {1, 1, 1}, .cells = {3, 3, 2}, .jitter = 0.1});
+  f->shape = shape;
+  f->rest = blocks_copy(&f->blocks);
+  f->still = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
+  ck_assert_ptr_nonnull(f->still);
+  ck_assert_ok(contact_overlap_create(&f->model, "clip"));
+  ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
+  def.shapes = &f->shape, def.shape_count = 1, def.margin = 0.5;
+  ck_assert_ok(contact_system_create(&f->system, &def));
+  ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01, NULL));
+  return f;
+}
+
+static void destroy(Fixture *f) {
+  contact_system_destroy(f->system);
+  contact_overlap_destroy(&f->model);
+  blocks_destroy(&f->blocks);
+  free(f->rest), free(f->still), free(f);
+}
+
+// A swing along (1, 2, 0.5) and a turn about z through (1, 1, 0) at ½ rad/s.
+static void swing(const void *motion, double time, const double rest[3], double position[3],
+                  double velocity[3]) {
+  ck_assert_ptr_null(motion);
+  double c = cos(0.5 * time), s = sin(0.5 * time), x = rest[0] - 1, y = rest[1] - 1,
+         way = 0.1 * sin(3 * time);
+  double speed = 0.3 * cos(3 * time);
+  vec3_store(position, (Vec3){1 + c * x - s * y + way, 1 + s * x + c * y + 2 * way, rest[2] + way / 2});
+  vec3_store(velocity, (Vec3){0.5 * (-s * x - c * y) + speed, 0.5 * (c * x - s * y) + 2 * speed, speed / 2});
+}
+
+static ContactShape ball_below(void) {
+  return (ContactShape){
+      .name = "ball", .kind = CONTACT_SHAPE_BALL, .point = {1.7, 1.2, -1.6}, .radius = 2, .move = swing};
+}
+
+static ContactShape plane_below(void) {
+  return (ContactShape){
+      .name = "plane", .normal = {0, 0.6, 0.8}, .point = {1, 0.5, 0}, .velocity = {0, 1, -0.3}};
+}
+
+static double energy_at(Fixture *f, double time, const double *x) {
+  double energy;
+  ck_assert_ok(contact_system_eval(f->system, time, x, &energy, NULL));
+  return energy;
+}
+
+// _i: which shape.
+static Fixture *fixture_of(int i) {
+  return block_on(i == 0 ? ball_below() : plane_below());
+}
+
+START_TEST(forces_are_minus_the_gradient_of_the_energy) {
+  Fixture *f = fixture_of(_i);
+  double energy, largest = 0, h = 1e-6, *x = blocks_copy(&f->blocks);
+  double *force = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
+  ck_assert_ok(contact_system_eval(f->system, 0.1, x, &energy, force));
+  ck_assert_double_gt(energy, 0);
+  for (int k = 0; k < 3 * f->blocks.vertex_count; k++) largest = fmax(largest, fabs(force[k]));
+  for (int k = 0; k < 3 * f->blocks.vertex_count; k++) {
+    double kept = x[k];
+    x[k] = kept + h;
+    double high = energy_at(f, 0.1, x);
+    x[k] = kept - h;
+    double low = energy_at(f, 0.1, x);
+    x[k] = kept;
+    ck_assert_near(force[k], (low - high) / (2 * h), 1e-6 * largest);
+  }
+  free(x), free(force), destroy(f);
+}
+END_TEST
+
+START_TEST(the_power_of_a_moving_shape_is_the_rate_of_the_energy) {
+  Fixture *f = fixture_of(_i);
+  for (int k = 0; k < 5; k++) {
+    double time = 0.02 * k, h = 1e-6;
+    double rate = (energy_at(f, time + h, f->blocks.x) - energy_at(f, time - h, f->blocks.x)) / (2 * h);
+    energy_at(f, time, f->blocks.x);
+    ck_assert(fabs(rate) > 1);
+    ck_assert_near(contact_system_shape_power(f->system), rate, 1e-5 * fabs(rate));
+  }
+  destroy(f);
+}
+END_TEST
+
+START_TEST(material_of_a_turning_ball_moves_with_it) {
+  ContactShape ball = ball_below();
+  // A point carried along: its velocity by the motion, and by the shape where it is now.
+  double rest[3] = {1.9, 0.4, -0.3}, x[3], velocity[3];
+  swing(NULL, 0.7, rest, x, velocity);
+  Vec3 by_shape = contact_shape_velocity(&ball, 0.7, vec3_at(x));
+  ck_assert_near(vec3_length(vec3_sub(by_shape, vec3_at(velocity))), 0, 1e-13);
+}
+END_TEST
+
+START_TEST(a_spinning_ball_drags_what_rests_on_it) {
+  Fixture *f = block_on(ball_below());
+  ContactFriction friction;
+  double *force = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
+  energy_at(f, 0, f->blocks.x);
+  ck_assert_ok(contact_friction_create(&friction, f->system, 0.5, 1e-3));
+  ck_assert_ok(contact_friction_update(&friction));
+  contact_friction_add_force(&friction, f->still, force);
+  Vec3 sum = {0, 0, 0};
+  for (int v = 0; v < f->blocks.vertex_count; v++) sum = vec3_add(sum, vec3_at(force + 3 * v));
+  // At t = 0 the ball swings along (1, 2, 0.5) and turns slowly: the block is dragged that way.
+  ck_assert_double_gt(vec3_dot(sum, (Vec3){1, 2, 0.5}),
+                      0.9 * vec3_length(sum) * vec3_length((Vec3){1, 2, 0.5}));
+  ContactFrictionPower power = contact_friction_power(&friction, f->still);
+  ck_assert_near(power.driven, power.dissipated, 1e-12 * power.dissipated); // nothing else moves
+  contact_friction_destroy(&friction);
+  free(force), destroy(f);
+}
+END_TEST
+
+START_TEST(a_wrong_shape_is_refused) {
+  ContactShape ball = ball_below(), plane = plane_below();
+  ck_assert_ok(contact_shape_check(&ball));
+  ck_assert_ok(contact_shape_check(&plane));
+  ball.radius = 0, plane.normal[0] = 1;
+  ck_assert_int_eq(contact_shape_check(&ball), STATUS_INPUT);
+  ck_assert_int_eq(contact_shape_check(&plane), STATUS_INPUT);
+  ball.radius = NAN;
+  ck_assert_int_eq(contact_shape_check(&ball), STATUS_INPUT);
+}
+END_TEST
+
+START_TEST(a_block_rests_between_balls) {
+  SceneRun run;
+  scene_run(&run, "balls", NULL);
+  int last = run.result.frame_count - 1;
+  double weight = run.model.bodies[0].mass * 9.81;
+  Vec3 sum = {0, 0, 0};
+  for (int i = 0; i < run.result.interface_count; i++) {
+    ck_assert_double_gt(scene_force(&run, last, i)[2], 0.1 * weight);
+    sum = vec3_add(sum, vec3_at(scene_force(&run, last, i)));
+  }
+  ck_assert_int_eq(run.result.interface_count, 3);
+  ck_assert_near(vec3_length(vec3_sub(sum, (Vec3){0, 0, weight})), 0, 2e-3 * weight);
+  ck_assert_double_le(scene_gain(&run), 1e-3);
+  scene_close(&run);
+}
+END_TEST
+
+// The ball comes down along a table, presses 2 cm in, and goes up again: the work done comes back but for
+// what damping takes.
+START_TEST(a_driven_ball_presses_and_leaves) {
+  SceneRun run;
+  scene_run(&run, "indent", NULL);
+  int last = run.result.frame_count - 1, middle = last / 2;
+  ck_assert_double_lt(scene_force(&run, middle, 0)[2], -5);
+  ck_assert_double_eq(scene_force(&run, last, 0)[2], 0);
+  ck_assert_double_gt(run.result.audit.work, 0);
+  ck_assert_double_le(run.result.audit.dissipated, run.result.audit.work * 1.02);
+  ck_assert_double_le(scene_gain(&run), 1e-3);
+  scene_close(&run);
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("shape");
+  tcase_add_loop_test(test_case, forces_are_minus_the_gradient_of_the_energy, 0, 2);
+  tcase_add_loop_test(test_case, the_power_of_a_moving_shape_is_the_rate_of_the_energy, 0, 2);
+  tcase_add_test(test_case, material_of_a_turning_ball_moves_with_it);
+  tcase_add_test(test_case, a_spinning_ball_drags_what_rests_on_it);
+  tcase_add_test(test_case, a_wrong_shape_is_refused);
+  tcase_add_test(test_case, a_block_rests_between_balls);
+  tcase_add_test(test_case, a_driven_ball_presses_and_leaves);
+  return suite_run("shape", test_case, 120);
+}
