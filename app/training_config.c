@@ -110,6 +110,10 @@ static const SceneKey model_keys[] = {
      .help = "geo: number of hidden layers"},
     {"reading", SCENE_CHOICE, AT(AppTrainingModelDef, reading), .choices = &reading_choices, .fallback = "a",
      .help = "tpn: of the paper's table of layers"},
+    {"scale", SCENE_NUMBER, AT(AppTrainingModelDef, scale), .range = "(0, 16]", .fallback = "1",
+     .help = "tpn: factor of the published widths, rounded to multiples of 4"},
+    {"layers", SCENE_INTEGER, AT(AppTrainingModelDef, layers), .range = "[1, 8]", .fallback = "2",
+     .help = "tpn: of each block, vertex, tetrahedron, combiner"},
     {"activation", SCENE_CHOICE, AT(AppTrainingModelDef, activation), .choices = &activation_choices,
      .fallback = "relu", .help = "tpn"},
     {"pool", SCENE_CHOICE, AT(AppTrainingModelDef, pool), .choices = &pool_choices, .fallback = "max",
@@ -263,6 +267,8 @@ static void print_model(const AppTrainingModelDef *def, char *text, size_t size,
     text_append(text, size, used, ", reading %s, %s%s, %s, output_scale %.15g\n", readings[def->reading],
                 activations[def->activation], def->pool == APP_POOL_SUM ? ", sum pools" : "",
                 normalisations[def->normalisation], def->output_scale);
+  if (def->kind == APP_MODEL_TPN && (def->scale != 1 || def->layers != 2))
+    text_append(text, size, used, "size: widths times %.15g, %d layers a block\n", def->scale, def->layers);
 }
 
 char *app_training_config_print(const AppTrainingConfig *config) {

@@ -33,6 +33,8 @@ typedef struct AppTrainingModelDef {
   AppActivation activation;       // tpn
   AppPool pool;                   // tpn
   AppNormalisation normalisation; // tpn
+  double scale;                   // tpn: factor of all published widths
+  int layers;                     // tpn: of the vertex, the tetrahedron and the combiner block
   double output_scale;            // tpn: the network tells this times V of the normalised pair
 } AppTrainingModelDef;
 

@@ -59,12 +59,32 @@ static int tangents_of(const AppTrainingConfig *config) {
   return learns_gradients(config) ? config->loss.tangents : 0;
 }
 
+static void scale_widths(NetWidths *widths, double scale) {
+  for (int k = 0; k < widths->count; k++)
+    widths->width[k] = (int)fmax(4, 4 * round(widths->width[k] * scale / 4));
+}
+
+static void set_layers(NetWidths *widths, int layers) {
+  for (int k = 1; k < layers; k++) widths->width[k] = widths->width[0];
+  widths->count = layers;
+}
+
+// The published shape, wider or deeper; scale 1 and two layers change nothing.
+static void resize(NetShape *shape, double scale, int layers) {
+  NetWidths *blocks[3] = {&shape->vertex, &shape->tetrahedron, &shape->combiner};
+  NetWidths *all[6] = {blocks[0],        blocks[1],           blocks[2],
+                       &shape->backbone, &shape->status_head, &shape->volume_head};
+  for (int b = 0; b < 6; b++) scale_widths(all[b], scale);
+  for (int b = 0; b < 3; b++) set_layers(blocks[b], layers);
+}
+
 static NetShape shape(const AppTrainingConfig *config) {
   NetShape made = config->model.reading == APP_READING_A   ? net_shape_tpn_a()
                   : config->model.reading == APP_READING_B ? net_shape_tpn_b()
                                                            : net_shape_tpn_backbone();
   made.activation = config->model.activation == APP_ACTIVATION_RELU ? NET_RELU : NET_SILU;
   made.pool = config->model.pool == APP_POOL_MAX ? NET_MAX : NET_SUM;
+  resize(&made, config->model.scale, config->model.layers);
   return made;
 }
 

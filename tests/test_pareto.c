@@ -211,6 +211,38 @@ START_TEST(a_sweep_trains_what_is_missing_and_gives_networks_of_the_sizes) {
 }
 END_TEST
 
+START_TEST(tpn_can_be_wider_and_deeper_than_published) {
+  static const char tpn[] = "name: base\n"
+                            "model: {kind: tpn}\n"
+                            "data:\n"
+                            "  training: [{law: paper-train, mix: volumetric=1, count: 200, seed: 1}]\n"
+                            "  validation: [{law: paper-test, mix: volumetric=1, count: 50, seed: 2}]\n"
+                            "optimiser: {batch: 64, samples: 200}\n"
+                            "validations: 1\n";
+  AppSweep sweep;
+  AppModelCard cards[3];
+  write_file("tpn.yaml", tpn);
+  write_file("sizes", "tpn.yaml name=published\ntpn.yaml name=half model.scale=0.5 model.layers=1\n"
+                      "tpn.yaml name=deep model.layers=3\n");
+  ck_assert_ok(app_sweep_train(&sweep, directory, place("weights"), 1, NULL));
+  for (int w = 0; w < 3; w++) {
+    AppPareto pareto = small();
+    ck_assert_ok(app_pareto_create(&pareto));
+    ck_assert_ok(app_pareto_add_model(&pareto, sweep.weights[w]));
+    cards[w] = pareto.models[0].card;
+    ck_assert_str_eq(cards[w].family, "tpn");
+    app_pareto_destroy(&pareto);
+  }
+  ck_assert_int_eq((int)cards[0].parameters, 73370);
+  ck_assert_int_eq(cards[0].width, 96);
+  ck_assert_int_eq(cards[1].width, 48);
+  ck_assert_int_eq(cards[1].depth, 1);
+  // a layer more in each block: 24 + 1, 48 + 1 and 96 + 1 numbers a neuron
+  ck_assert_int_eq((int)cards[2].parameters, 73370 + 24 * 25 + 48 * 49 + 96 * 97);
+  app_sweep_destroy(&sweep);
+}
+END_TEST
+
 START_TEST(a_sweep_names_the_line_that_is_wrong) {
   AppSweep sweep;
   write_file("geo.yaml", config);
@@ -314,6 +346,7 @@ int main(void) {
   tcase_add_test(cases, a_run_that_takes_too_long_is_cut_short_and_still_a_point);
   tcase_add_test(cases, a_scene_without_contact_is_refused);
   tcase_add_test(cases, a_sweep_trains_what_is_missing_and_gives_networks_of_the_sizes);
+  tcase_add_test(cases, tpn_can_be_wider_and_deeper_than_published);
   tcase_add_test(cases, a_sweep_names_the_line_that_is_wrong);
   tcase_add_test(cases, the_command_writes_the_promised_keys);
   tcase_add_test(cases, wrong_arguments_are_usage_errors);
