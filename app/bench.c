@@ -6,6 +6,7 @@
 
 #include "app/bench_beam.h"
 #include "app/bench_drop.h"
+#include "app/bench_net.h"
 #include "app/bench_overlap.h"
 #include "app/bench_precision.h"
 #include "app/bench_scene.h"
@@ -23,6 +24,7 @@ typedef struct Bench {
 
 static const Bench benches[] = {
     {"overlap", "overlap models: pairs of tetrahedra a second", app_bench_overlap_run},
+    {"net", "networks alone, beside PyTorch: samples a second", app_bench_net_run},
     {"solver", "linear solvers: set-up and solution of a beam", app_bench_solver_run},
     {"beam", "linear solvers: a whole run of a beam", app_bench_beam_run},
     {"scene", "whole runs of scenes", app_bench_scene_run},

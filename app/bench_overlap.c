@@ -197,7 +197,7 @@ static const AppBenchColumn columns[] = {
     {"flops_per_pair", APP_BENCH_NUMBER, offsetof(Row, flops), NULL,
      "of a network's matrix products: multiplications and additions"},
     {"peak_share", APP_BENCH_NUMBER, offsetof(Row, share), "of peak",
-     "those a second and thread over what one core can do (measured before)"},
+     "those a processor second over what one core can do (measured in this run)"},
 };
 static const AppBenchReport report = {"overlap", columns, sizeof columns / sizeof *columns, sizeof(Row),
                                       .has_own_threads = true};
@@ -253,7 +253,7 @@ static Row row_of(const Bench *bench, int c, const double peaks[2]) {
                .ratio_max = ratio.max,
                .thread_gain = app_bench_timer_ratio(&contestant->timer, &narrow->timer, rounds).median,
                .flops = flops,
-               .share = flops / time.wall / what->threads / peaks[bench->cards[what->model].is_float]};
+               .share = flops / time.cpu / peaks[bench->cards[what->model].is_float]};
 }
 
 static Status print(const Bench *bench) {

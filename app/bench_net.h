@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap bench net`: networks alone, without geometry: our kernels beside PyTorch with the same weights and inputs,
+// in the same run, and how near each comes to what a core can do.
+#ifndef TETLAP_APP_BENCH_NET_H
+#define TETLAP_APP_BENCH_NET_H
+
+// Runs the bench; arguments[0] is what the usage line begins with. Returns the exit code.
+int app_bench_net_run(int argument_count, char **arguments);
+
+#endif

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""PyTorch as a peer of `tetlap bench net` and `tetlap bench train`: the same weights, the same inputs, timed in turns.
+
+    torch_bench.py WEIGHTS PRECISION INPUTS THREADS
+
+WEIGHTS is a weights file of net/, PRECISION `float` or `double`, INPUTS raw numbers of it, a sample after another. The first line
+that it writes is PyTorch's version. Each line read is then `WHAT BATCH CALLS`; WHAT is `V` (outputs), `V+grad` (and the
+last output's derivative by the inputs) or `train` (a step of AdamW on the paper's loss); the answer is `WALL CPU CHECK`:
+seconds of all calls, and the mean of the absolute outputs (`V+grad`: of the derivatives; `train`: the loss). Exit status
+77: PyTorch is not installed.
+"""
+import pathlib
+import sys
+import time
+
+try:
+    import torch
+except ImportError:
+    print("python3-torch cannot be imported", file=sys.stderr)
+    sys.exit(77)
+
+sys.dont_write_bytecode = True
+from torch_network import Network, paper_loss, read  # noqa: E402
+
+
+def main():
+    weights, precision, inputs, threads = sys.argv[1:]
+    dtype = {"float": torch.float32, "double": torch.float64}[precision]
+    torch.set_num_threads(int(threads))
+    tensors, metadata = read(pathlib.Path(weights))
+    network = Network({name: tensor.to(dtype) for name, tensor in tensors.items()}, metadata)
+    columns = 24 if network.shape["kind"] == "tpn" else network.weights["layer.0.weight"].shape[1]
+    numbers = bytearray(pathlib.Path(inputs).read_bytes())
+    samples = torch.frombuffer(numbers, dtype=dtype).reshape(-1, columns)
+    parameters = list(network.weights.values())
+    optimiser = torch.optim.AdamW(parameters, lr=1e-4, weight_decay=0.01)
+    labels = (samples[:, 0] > samples[:, 1]).to(dtype)
+    targets = samples[:, 2].abs()
+
+    def outputs(x):
+        with torch.inference_mode():
+            return network(x)
+
+    def gradient(x):
+        x = x.detach().requires_grad_()
+        (gx,) = torch.autograd.grad(network(x)[:, -1].sum(), x)
+        return gx
+
+    def train(x):
+        optimiser.zero_grad()
+        loss = paper_loss(network(x), labels[: len(x)], targets[: len(x)])
+        loss.backward()
+        optimiser.step()
+        return loss.detach()
+
+    acts = {"V": outputs, "V+grad": gradient, "train": train}
+    print(torch.__version__, flush=True)
+    for line in sys.stdin:
+        what, batch, calls = line.split()
+        for parameter in parameters:  # as PyTorch's users do who do not train
+            parameter.requires_grad_(what == "train")
+        x = samples[: int(batch)]
+        wall, cpu = time.perf_counter(), time.process_time()
+        for _ in range(int(calls)):
+            result = acts[what](x)
+        wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+        print(f"{wall:.9g} {cpu:.9g} {result.abs().mean().item():.9g}", flush=True)
+
+
+main()
