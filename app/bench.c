@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "app/bench_beam.h"
+#include "app/bench_datagen.h"
 #include "app/bench_drop.h"
 #include "app/bench_net.h"
 #include "app/bench_overlap.h"
@@ -12,6 +13,7 @@
 #include "app/bench_scene.h"
 #include "app/bench_solver.h"
 #include "app/bench_step.h"
+#include "app/bench_train.h"
 #include "base/log.h"
 #include "base/status.h"
 #include "base/text.h"
@@ -25,6 +27,8 @@ typedef struct Bench {
 static const Bench benches[] = {
     {"overlap", "overlap models: pairs of tetrahedra a second", app_bench_overlap_run},
     {"net", "networks alone, beside PyTorch: samples a second", app_bench_net_run},
+    {"datagen", "labelled pairs a second", app_bench_datagen_run},
+    {"train", "training, beside PyTorch: samples a second", app_bench_train_run},
     {"solver", "linear solvers: set-up and solution of a beam", app_bench_solver_run},
     {"beam", "linear solvers: a whole run of a beam", app_bench_beam_run},
     {"scene", "whole runs of scenes", app_bench_scene_run},

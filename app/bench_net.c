@@ -379,8 +379,9 @@ static Row row_of(const Bench *bench, const Contestant *c, const double peaks[2]
   double flops = c->net->plan->flops * (c->quantity == 0 ? 1 : 2), gflops = 1e-9 * flops / time.wall,
          peak = peaks[c->net->is_float];
   return (Row){.net = c->net->name,
-               .implementation =
-                   c->implementation == TORCH ? "PyTorch" : net_kernel_name((NetKernelKind)c->implementation),
+               .implementation = c->implementation == TORCH
+                                     ? c->torch->name
+                                     : net_kernel_name((NetKernelKind)c->implementation),
                .precision = c->net->is_float ? "float" : "double",
                .parameters = (long long)c->net->plan->parameter_count,
                .quantity = quantities[c->quantity],
@@ -402,13 +403,7 @@ static Status print(const Bench *bench) {
   const double peaks[2] = {app_bench_peak_measure(false), app_bench_peak_measure(true)};
   Row *rows = memory_zeroed((size_t)bench->count, sizeof *rows);
   if (!rows) return status_no_memory("the rows");
-  char version[80] = "PyTorch";
-  for (int c = 0; c < bench->count; c++) {
-    rows[c] = row_of(bench, &bench->contestants[c], peaks);
-    if (bench->contestants[c].implementation != TORCH) continue;
-    snprintf(version, sizeof version, "PyTorch %s", bench->contestants[c].torch->version);
-    rows[c].implementation = version;
-  }
+  for (int c = 0; c < bench->count; c++) rows[c] = row_of(bench, &bench->contestants[c], peaks);
   Status status = app_bench_report_print(&report, &bench->options->common, rows, bench->count);
   memory_free(rows);
   return status;

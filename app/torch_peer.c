@@ -75,8 +75,9 @@ static Status launch(AppTorchPeer *peer, const char *weights, bool is_float, int
 
 static Status read_version(AppTorchPeer *peer) {
   int ended;
-  if (fgets(peer->version, sizeof peer->version, peer->from)) {
-    peer->version[strcspn(peer->version, "\n")] = 0;
+  char line[48];
+  if (fgets(line, sizeof line, peer->from)) {
+    snprintf(peer->name, sizeof peer->name, "PyTorch %.*s", (int)strcspn(line, "\n"), line);
     return STATUS_OK;
   }
   if (waitpid(peer->child, &ended, 0) == peer->child) peer->child = 0;

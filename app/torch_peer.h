@@ -14,8 +14,8 @@
 typedef struct AppTorchPeer {
   pid_t child; // 0: none
   FILE *to, *from;
-  char version[64]; // of PyTorch
-  char inputs[64];  // temporary file
+  char name[64];   // "PyTorch 1.13.1"
+  char inputs[64]; // temporary file
 } AppTorchPeer;
 
 // `inputs`: `size` bytes, samples in float or double, in which the child computes, whatever the file has.
