@@ -10,6 +10,7 @@
 #include "app/bench_net.h"
 #include "app/bench_overlap.h"
 #include "app/bench_precision.h"
+#include "app/bench_scaling.h"
 #include "app/bench_scene.h"
 #include "app/bench_solver.h"
 #include "app/bench_step.h"
@@ -35,6 +36,7 @@ static const Bench benches[] = {
     {"step", "where the time of a run goes", app_bench_step_run},
     {"precision", "error of whole runs against their time, over tolerances and mesh levels",
      app_bench_precision_run},
+    {"scaling", "how time grows with pairs and with vertices", app_bench_scaling_run},
     {"drop", "energy gain of a drop, over contact stiffness", app_bench_drop_run},
 };
 enum { BENCH_COUNT = sizeof benches / sizeof *benches };

@@ -14,4 +14,9 @@ Status app_bench_builtin_beam(int nodes, double slenderness, FemSceneDef *scene)
 // ν 0.4, 1000 kg/m³; 0.3 s. `stiffness` κ [Pa], `tolerance` of the time integration as in a scene file.
 Status app_bench_builtin_drop(double stiffness, double tolerance, FemSceneDef *scene);
 
+// Two blocks of 0.1 m whose meshes do not match, about `nodes` (≥ 60) vertices together, the upper one turned
+// about the vertical and pressed 2 % of an edge into the lower one, which stands on the ground: contact from
+// the first step. E 0.1 and 0.2 MPa, damped, gravity; 0.1 s.
+Status app_bench_builtin_blocks(int nodes, FemSceneDef *scene);
+
 #endif
