@@ -329,7 +329,7 @@ static Status take_turn(void *self, int round) {
 typedef struct Row {
   const char *net, *implementation, *precision, *quantity;
   long long batch, threads, parameters;
-  double rate, cpu_rate, spread, ratio, ratio_min, ratio_max, flops, gflops, share, difference;
+  double rate, cpu_rate, spread, ratio, ratio_min, ratio_max, cpu_ratio, flops, gflops, share, difference;
 } Row;
 
 static const AppBenchColumn columns[] = {
@@ -350,6 +350,8 @@ static const AppBenchColumn columns[] = {
      "speed over PyTorch's in the same round, median of the rounds"},
     {"ratio_to_torch_min", APP_BENCH_NUMBER, offsetof(Row, ratio_min), NULL, "smallest of the rounds"},
     {"ratio_to_torch_max", APP_BENCH_NUMBER, offsetof(Row, ratio_max), NULL, "largest of the rounds"},
+    {"cpu_ratio_to_torch", APP_BENCH_NUMBER, offsetof(Row, cpu_ratio), NULL,
+     "the same of processor times, median of the rounds"},
     {"flops", APP_BENCH_NUMBER, offsetof(Row, flops), NULL,
      "of a sample's matrix products: multiplications and additions"},
     {"gflops", APP_BENCH_NUMBER, offsetof(Row, gflops), "Gflop/s", "those a second"},
@@ -375,7 +377,9 @@ static Row row_of(const Bench *bench, const Contestant *c, const double peaks[2]
   AppBenchTime time = app_bench_timer_time(&c->timer, rounds);
   const Contestant *torch = find_torch(bench, c);
   AppBenchRatio ratio = {NAN, NAN, NAN};
+  double cpu_ratio = NAN;
   if (torch) ratio = app_bench_timer_ratio(&c->timer, &torch->timer, rounds);
+  if (torch) cpu_ratio = app_bench_timer_cpu_ratio(&c->timer, &torch->timer, rounds).median;
   double flops = c->net->plan->flops * (c->quantity == 0 ? 1 : 2), gflops = 1e-9 * flops / time.wall,
          peak = peaks[c->net->is_float];
   return (Row){.net = c->net->name,
@@ -393,6 +397,7 @@ static Row row_of(const Bench *bench, const Contestant *c, const double peaks[2]
                .ratio = ratio.median,
                .ratio_min = ratio.min,
                .ratio_max = ratio.max,
+               .cpu_ratio = cpu_ratio,
                .flops = flops,
                .gflops = gflops,
                .share = flops / time.cpu / peak,

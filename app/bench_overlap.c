@@ -170,8 +170,8 @@ typedef struct Row {
   long long batch, threads;
   double rate, cpu_rate, rate_min, rate_max; // pairs a second
   double spread;
-  double ratio, ratio_min, ratio_max; // speed over the reference's
-  double thread_gain;                 // speed over that on the first number of threads
+  double ratio, ratio_min, ratio_max, cpu_ratio; // speed over the reference's
+  double thread_gain;                            // speed over that on the first number of threads
   double flops, share;
 } Row;
 
@@ -190,6 +190,8 @@ static const AppBenchColumn columns[] = {
      "speed over that of `reference` in the same round, median of the rounds"},
     {"ratio_min", APP_BENCH_NUMBER, offsetof(Row, ratio_min), NULL, "smallest of the rounds"},
     {"ratio_max", APP_BENCH_NUMBER, offsetof(Row, ratio_max), NULL, "largest of the rounds"},
+    {"cpu_ratio", APP_BENCH_NUMBER, offsetof(Row, cpu_ratio), NULL,
+     "the same of processor times, median of the rounds"},
     {"reference", APP_BENCH_TEXT, offsetof(Row, reference), NULL,
      "the first model, same set, quantity, threads"},
     {"thread_gain", APP_BENCH_NUMBER, offsetof(Row, thread_gain), "× threads",
@@ -236,6 +238,7 @@ static Row row_of(const Bench *bench, int c, const double peaks[2]) {
                            *narrow = &bench->contestants[find(bench, single)];
   AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
   AppBenchRatio ratio = app_bench_timer_ratio(&contestant->timer, &reference->timer, rounds);
+  double cpu_ratio = app_bench_timer_cpu_ratio(&contestant->timer, &reference->timer, rounds).median;
   double flops = flops_of(bench, what);
   return (Row){.model = contestant->model->ops->name,
                .set = app_bench_sets[what->set],
@@ -251,6 +254,7 @@ static Row row_of(const Bench *bench, int c, const double peaks[2]) {
                .ratio = ratio.median,
                .ratio_min = ratio.min,
                .ratio_max = ratio.max,
+               .cpu_ratio = cpu_ratio,
                .thread_gain = app_bench_timer_ratio(&contestant->timer, &narrow->timer, rounds).median,
                .flops = flops,
                .share = flops / time.cpu / peaks[bench->cards[what->model].is_float]};

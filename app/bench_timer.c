@@ -40,11 +40,20 @@ AppBenchTime app_bench_timer_time(const AppBenchTimer *timer, int rounds) {
       .wall = median_of(sorted, rounds), .wall_min = sorted[0], .wall_max = sorted[rounds - 1], .cpu = cpu};
 }
 
-AppBenchRatio app_bench_timer_ratio(const AppBenchTimer *timer, const AppBenchTimer *reference, int rounds) {
+static AppBenchRatio ratio_of(const double *times, const double *reference, int rounds) {
   double ratios[APP_BENCH_MAX_REPEATS], sorted[APP_BENCH_MAX_REPEATS];
-  for (int r = 0; r < rounds; r++) ratios[r] = reference->wall[r] / timer->wall[r];
+  for (int r = 0; r < rounds; r++) ratios[r] = reference[r] / times[r];
   sort(ratios, rounds, sorted);
   return (AppBenchRatio){median_of(sorted, rounds), sorted[0], sorted[rounds - 1]};
+}
+
+AppBenchRatio app_bench_timer_ratio(const AppBenchTimer *timer, const AppBenchTimer *reference, int rounds) {
+  return ratio_of(timer->wall, reference->wall, rounds);
+}
+
+AppBenchRatio app_bench_timer_cpu_ratio(const AppBenchTimer *timer, const AppBenchTimer *reference,
+                                        int rounds) {
+  return ratio_of(timer->cpu, reference->cpu, rounds);
 }
 
 int app_bench_timer_median_round(const AppBenchTimer *timer, int rounds) {

@@ -32,6 +32,9 @@ typedef struct AppBenchRatio {
   double median, min, max;
 } AppBenchRatio;
 AppBenchRatio app_bench_timer_ratio(const AppBenchTimer *timer, const AppBenchTimer *reference, int rounds);
+// The same of processor times.
+AppBenchRatio app_bench_timer_cpu_ratio(const AppBenchTimer *timer, const AppBenchTimer *reference,
+                                        int rounds);
 // The round whose wall time is the median (the lower of the two middle ones).
 int app_bench_timer_median_round(const AppBenchTimer *timer, int rounds);
 

@@ -204,7 +204,7 @@ static Status take_turn(void *self, int round) {
 typedef struct Row {
   const char *config, *model, *implementation;
   long long batch, threads, parameters;
-  double rate, cpu_rate, spread, ratio, ratio_min, ratio_max;
+  double rate, cpu_rate, spread, ratio, ratio_min, ratio_max, cpu_ratio;
 } Row;
 
 static const AppBenchColumn columns[] = {
@@ -225,6 +225,8 @@ static const AppBenchColumn columns[] = {
      "(forward, loss, backward, AdamW); ours also gathers each batch from all pairs and clips the gradient"},
     {"ratio_to_torch_min", APP_BENCH_NUMBER, offsetof(Row, ratio_min), NULL, "smallest of the rounds"},
     {"ratio_to_torch_max", APP_BENCH_NUMBER, offsetof(Row, ratio_max), NULL, "largest of the rounds"},
+    {"cpu_ratio_to_torch", APP_BENCH_NUMBER, offsetof(Row, cpu_ratio), NULL,
+     "the same of processor times, median of the rounds"},
 };
 static const AppBenchReport report = {"train", columns, sizeof columns / sizeof *columns, sizeof(Row), true};
 
@@ -241,7 +243,9 @@ static Row row_of(const Trainer *trainers, int count, const Trainer *trainer, in
   AppBenchTime time = app_bench_timer_time(&trainer->timer, rounds);
   const Trainer *torch = find_torch(trainers, count, trainer);
   AppBenchRatio ratio = {NAN, NAN, NAN};
+  double cpu_ratio = NAN;
   if (torch) ratio = app_bench_timer_ratio(&trainer->timer, &torch->timer, rounds);
+  if (torch) cpu_ratio = app_bench_timer_cpu_ratio(&trainer->timer, &torch->timer, rounds).median;
   return (Row){.config = trainer->config.path,
                .model = trainer->config.model.kind == APP_MODEL_GEO ? "geo" : "tpn",
                .implementation = trainer->is_torch ? trainer->torch.name : "tetlap",
@@ -253,7 +257,8 @@ static Row row_of(const Trainer *trainers, int count, const Trainer *trainer, in
                .spread = (time.wall_max - time.wall_min) / time.wall,
                .ratio = ratio.median,
                .ratio_min = ratio.min,
-               .ratio_max = ratio.max};
+               .ratio_max = ratio.max,
+               .cpu_ratio = cpu_ratio};
 }
 
 // PyTorch takes part where the loss is the paper's; where it is not installed, it is left out.

@@ -44,7 +44,7 @@ static const AppBenchColumn columns[] = {
     {"fallback_share", APP_BENCH_NUMBER, offsetof(AppParetoPoint, fallbacks), NULL,
      "of pairs that a more careful model answered"},
     {"frontier", APP_BENCH_INTEGER, offsetof(AppParetoPoint, frontier), "frontier",
-     "1: no other is as fast and as accurate"},
+     "1: no other is as fast and as accurate; by processor time with one thread, by wall time else"},
     {"outcome", APP_BENCH_TEXT, offsetof(AppParetoPoint, outcome), "run", "finished, failed or cut short"},
     {"seconds_per_step", APP_BENCH_NUMBER, offsetof(AppParetoPoint, step_s), "s a step",
      "end to end: wall time of the model's own run over its steps [s]"},
@@ -135,6 +135,7 @@ AppParetoPoint *app_pareto_add_point(AppPareto *pareto, int model, const char *q
                             .seconds = NAN,
                             .seconds_min = NAN,
                             .seconds_max = NAN,
+                            .cost = NAN,
                             .cpu_seconds = NAN,
                             .error = NAN,
                             .error_median = NAN,
@@ -152,16 +153,22 @@ static bool is_peer(const AppParetoPoint *a, const AppParetoPoint *b) {
   return strcmp(a->quantity, b->quantity) == 0 && strcmp(a->set, b->set) == 0;
 }
 
-static bool beats(const AppParetoPoint *a, const AppParetoPoint *b) {
-  return a->seconds <= b->seconds && a->error <= b->error && (a->seconds < b->seconds || a->error < b->error);
+bool app_pareto_beats(const AppParetoPoint *a, const AppParetoPoint *b) {
+  return a->cost <= b->cost && a->error <= b->error && (a->cost < b->cost || a->error < b->error);
 }
 
 void app_pareto_finish(AppPareto *pareto) {
   for (size_t p = 0; p < pareto->point_count; p++) {
     AppParetoPoint *point = &pareto->points[p];
-    point->is_frontier = isfinite(point->seconds) && isfinite(point->error);
+    bool has_cpu = pareto->common.threads == 1 && isfinite(point->cpu_seconds);
+    point->cost = has_cpu ? point->cpu_seconds : point->seconds;
+  }
+  for (size_t p = 0; p < pareto->point_count; p++) {
+    AppParetoPoint *point = &pareto->points[p];
+    point->is_frontier = isfinite(point->cost) && isfinite(point->error);
     for (size_t q = 0; q < pareto->point_count && point->is_frontier; q++)
-      if (is_peer(&pareto->points[q], point) && beats(&pareto->points[q], point)) point->is_frontier = false;
+      if (is_peer(&pareto->points[q], point) && app_pareto_beats(&pareto->points[q], point))
+        point->is_frontier = false;
     point->frontier = point->is_frontier;
   }
 }

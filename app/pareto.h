@@ -28,6 +28,7 @@ typedef struct AppParetoPoint {
       *set; // borrowed; quantity: V, V+grad, force; set: near, uniform or a scene
   long long features, width, depth, parameters; // 0 where nothing is learned
   double seconds, seconds_min, seconds_max;     // kernel: wall time of the overlap model for a pair [s]
+  double cost;                                  // what the frontier goes by [s], see app_pareto_finish
   double cpu_seconds;                           // processor time of all threads for a pair, median [s]
   double error, error_median, error_p90; // of V or of ∇V over pairs; of the forces over configurations
   double fallbacks;                      // share of pairs that a more careful model answered
@@ -79,8 +80,12 @@ Status app_pareto_add_model(AppPareto *pareto, const char *source);
 // Room for one more point, with the model's own columns filled and all figures NaN; NULL: no memory.
 AppParetoPoint *app_pareto_add_point(AppPareto *pareto, int model, const char *quantity, const char *set);
 
-// Marks the frontier of each set and quantity. A point is on it unless another one is at least as fast and at
-// least as accurate, and better in one of both.
+// At least as cheap and as accurate, and better in one of both; of points of one set and quantity.
+bool app_pareto_beats(const AppParetoPoint *a, const AppParetoPoint *b);
+
+// Marks the frontier of each set and quantity. Of one thread processor time counts, which other work on the
+// machine hardly changes; of several, and in scenes, wall time. A point is on it unless another one is at
+// least as fast and at least as accurate, and better in one of both.
 void app_pareto_finish(AppPareto *pareto);
 
 extern const AppBenchReport app_pareto_report, app_pareto_comparison_report;

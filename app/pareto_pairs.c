@@ -151,12 +151,15 @@ static Status add_points(Bench *bench, int m) {
   return STATUS_OK;
 }
 
-// The named model, else the first of that family: −1 if there is none.
+enum { PUBLISHED = 73370 }; // parameters of the paper's network
+
+// The named model, else that of its family with the published size: −1 if there is none.
 static int find_model(const AppPareto *pareto, const char *name) {
   for (int m = 0; m < pareto->model_count; m++)
     if (strcmp(pareto->models[m].name, name) == 0) return m;
   for (int m = 0; m < pareto->model_count; m++)
-    if (strcmp(pareto->models[m].card.family, name) == 0) return m;
+    if (strcmp(pareto->models[m].card.family, name) == 0 && pareto->models[m].card.parameters == PUBLISHED)
+      return m;
   return -1;
 }
 
@@ -179,15 +182,20 @@ static void add_comparison(Bench *bench, const char *name, const char *slow, con
   const char *what = quantity == 0 ? "V" : "V+grad";
   const AppBenchTimer *slow_timer = &bench->contestants[quantity][s].timer,
                       *fast_timer = &bench->contestants[quantity][f].timer;
-  AppBenchRatio ratio = app_bench_timer_ratio(fast_timer, slow_timer, rounds);
+  // as the frontier: processor time of one thread, wall time of several
+  bool is_single = pareto->common.threads == 1;
+  AppBenchTime slow_time = app_bench_timer_time(slow_timer, rounds),
+               fast_time = app_bench_timer_time(fast_timer, rounds);
+  AppBenchRatio ratio = is_single ? app_bench_timer_cpu_ratio(fast_timer, slow_timer, rounds)
+                                  : app_bench_timer_ratio(fast_timer, slow_timer, rounds);
   pareto->comparisons[pareto->comparison_count++] =
       (AppParetoComparison){.name = name,
                             .set = bench->set,
                             .quantity = what,
                             .slow = pareto->models[s].name,
                             .fast = pareto->models[f].name,
-                            .slow_rate = 1 / app_bench_timer_time(slow_timer, rounds).wall,
-                            .fast_rate = 1 / app_bench_timer_time(fast_timer, rounds).wall,
+                            .slow_rate = 1 / (is_single ? slow_time.cpu : slow_time.wall),
+                            .fast_rate = 1 / (is_single ? fast_time.cpu : fast_time.wall),
                             .ratio = ratio.median,
                             .ratio_min = ratio.min,
                             .ratio_max = ratio.max,

@@ -9,13 +9,15 @@
 #include "base/file.h"
 #include "base/memory.h"
 
-enum { MAX_PANELS = 16, MAX_FAMILIES = 32, COLUMNS = 2 };
+enum { MAX_PANELS = 32, MAX_FAMILIES = 32, COLUMNS = 2 };
 
 // Errors of exact arithmetic are drawn here.
 static const double FLOOR = 1e-17;
 
+// Learned models lie ten decades above the others: they have a second panel, by themselves.
 typedef struct Panel {
   const char *quantity, *set; // borrowed
+  bool is_learned;            // shows learned models only
 } Panel;
 
 typedef struct Plot {
@@ -26,25 +28,36 @@ typedef struct Plot {
 } Plot;
 
 static bool can_be_drawn(const AppParetoPoint *point) {
-  return isfinite(point->seconds) && isfinite(point->error);
+  return isfinite(point->cost) && isfinite(point->error);
 }
 
 static bool is_on(const Panel *panel, const AppParetoPoint *point) {
-  return can_be_drawn(point) && strcmp(panel->quantity, point->quantity) == 0 &&
-         strcmp(panel->set, point->set) == 0;
+  return can_be_drawn(point) && (point->parameters > 0 || !panel->is_learned) &&
+         strcmp(panel->quantity, point->quantity) == 0 && strcmp(panel->set, point->set) == 0;
 }
 
 static void note(Plot *plot, const AppParetoPoint *point) {
   int p = 0, f = 0;
   while (p < plot->panel_count && !is_on(&plot->panels[p], point)) p++;
-  if (p == plot->panel_count && p < MAX_PANELS)
-    plot->panels[plot->panel_count++] = (Panel){point->quantity, point->set};
+  if (p == plot->panel_count && p + COLUMNS <= MAX_PANELS)
+    for (int column = 0; column < COLUMNS; column++)
+      plot->panels[plot->panel_count++] = (Panel){point->quantity, point->set, column > 0};
   while (f < plot->family_count && strcmp(plot->families[f], point->family) != 0) f++;
   if (f == plot->family_count && f < MAX_FAMILIES) plot->families[plot->family_count++] = point->family;
 }
 
 static double drawn_error(const AppParetoPoint *point) {
   return fmax(point->error, FLOOR);
+}
+
+// Of many sizes of one family only those are labelled that no other size beats.
+static bool has_label(const AppPareto *pareto, const Panel *panel, const AppParetoPoint *point) {
+  for (size_t i = 0; i < pareto->point_count; i++) {
+    const AppParetoPoint *other = &pareto->points[i];
+    if (is_on(panel, other) && strcmp(other->family, point->family) == 0 && app_pareto_beats(other, point))
+      return false;
+  }
+  return true;
 }
 
 // The points of one family in one panel, with labels: "$d0_1".
@@ -54,7 +67,8 @@ static int write_family(FILE *stream, const AppPareto *pareto, const Plot *plot,
     const AppParetoPoint *point = &pareto->points[i];
     if (!is_on(&plot->panels[p], point) || strcmp(plot->families[f], point->family) != 0) continue;
     if (count++ == 0) fprintf(stream, "$d%d_%d << END\n", p, f);
-    fprintf(stream, "%.6g %.6g \"%s\"\n", point->seconds, drawn_error(point), point->model);
+    fprintf(stream, "%.6g %.6g \"%s\"\n", point->cost, drawn_error(point),
+            has_label(pareto, &plot->panels[p], point) ? point->model : "");
   }
   if (count > 0) fputs("END\n", stream);
   return count;
@@ -62,20 +76,26 @@ static int write_family(FILE *stream, const AppPareto *pareto, const Plot *plot,
 
 static int compare(const void *a, const void *b) {
   const AppParetoPoint *x = *(const AppParetoPoint *const *)a, *y = *(const AppParetoPoint *const *)b;
-  return (x->seconds > y->seconds) - (x->seconds < y->seconds);
+  return (x->cost > y->cost) - (x->cost < y->cost);
 }
 
-// The frontier as steps: nothing is known that lies below and left of it.
+static bool is_best(const AppPareto *pareto, const Panel *panel, const AppParetoPoint *point) {
+  for (size_t i = 0; i < pareto->point_count; i++)
+    if (is_on(panel, &pareto->points[i]) && app_pareto_beats(&pareto->points[i], point)) return false;
+  return true;
+}
+
+// The frontier of a panel as steps: nothing is known that lies below and left of it.
 static Status write_frontier(FILE *stream, const AppPareto *pareto, const Plot *plot, int p) {
   const AppParetoPoint **front = memory_zeroed(pareto->point_count, sizeof *front);
   size_t count = 0;
   if (!front) return status_no_memory("the frontier");
   for (size_t i = 0; i < pareto->point_count; i++)
-    if (is_on(&plot->panels[p], &pareto->points[i]) && pareto->points[i].is_frontier)
+    if (is_on(&plot->panels[p], &pareto->points[i]) && is_best(pareto, &plot->panels[p], &pareto->points[i]))
       front[count++] = &pareto->points[i];
   qsort(front, count, sizeof *front, compare);
   fprintf(stream, "$f%d << END\n", p);
-  for (size_t i = 0; i < count; i++) fprintf(stream, "%.6g %.6g\n", front[i]->seconds, drawn_error(front[i]));
+  for (size_t i = 0; i < count; i++) fprintf(stream, "%.6g %.6g\n", front[i]->cost, drawn_error(front[i]));
   fputs("END\n", stream);
   memory_free(front);
   return STATUS_OK;
@@ -88,9 +108,12 @@ static const char *words_of(const char *quantity) {
 }
 
 static void write_panel(FILE *stream, const Plot *plot, int p, const bool *has_points) {
-  fprintf(stream, "  set title \"%s, %s\" noenhanced\n  set ylabel \"%s\" noenhanced\n  plot ",
-          plot->panels[p].quantity, plot->panels[p].set, words_of(plot->panels[p].quantity));
-  fprintf(stream, "$f%d using 1:2 with fsteps lc rgb '#999999' dt 2 notitle", p);
+  const char *range = plot->panels[p].is_learned ? "[*:*]" : "[1e-18:10]",
+             *which = plot->panels[p].is_learned ? ", learned models" : "";
+  fprintf(stream,
+          "  set yrange %s\n  set title \"%s, %s%s\" noenhanced\n  set ylabel \"%s\" noenhanced\n  plot ",
+          range, plot->panels[p].quantity, plot->panels[p].set, which, words_of(plot->panels[p].quantity));
+  fprintf(stream, "$f%d using 1:2 with steps lc rgb '#999999' dt 2 notitle", p);
   for (int f = 0; f < plot->family_count; f++) {
     if (!has_points[f]) continue;
     fprintf(stream,
@@ -116,7 +139,7 @@ static Status write_script(FILE *stream, const AppPareto *pareto, const char *di
   fprintf(stream,
           "directory = \"%s\"\n"
           "set logscale xy\nset format '10^{%%T}'\nset grid\nset xlabel 'seconds a pair'\n"
-          "set key below noenhanced font ',8'\nset yrange [1e-18:10]\nset xrange [*:*] noextend\n"
+          "set key outside right top noenhanced font ',8'\nset xrange [*:*] noextend\n"
           "set offsets graph 0.05, graph 0.15, 0, 0\n"
           "do for [kind in 'svg png'] {\n"
           "  if (kind eq 'svg') { set terminal svg size 1200,%d dynamic }\n"
@@ -124,7 +147,14 @@ static Status write_script(FILE *stream, const AppPareto *pareto, const char *di
           "  set output directory.'/pareto.'.kind\n"
           "  set multiplot layout %d,%d\n",
           directory, 480 * rows, 480 * rows, rows, COLUMNS);
-  for (int p = 0; p < plot.panel_count; p++) write_panel(stream, &plot, p, has_points[p]);
+  for (int p = 0; p < plot.panel_count; p++) {
+    bool is_empty = true;
+    for (int f = 0; f < plot.family_count; f++) is_empty = is_empty && !has_points[p][f];
+    if (is_empty)
+      fputs("  set multiplot next\n", stream);
+    else
+      write_panel(stream, &plot, p, has_points[p]);
+  }
   fputs("  unset multiplot\n  unset output\n}\n", stream);
   return STATUS_OK;
 }

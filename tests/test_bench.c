@@ -53,11 +53,13 @@ END_TEST
 
 START_TEST(ratios_are_taken_within_a_round) {
   // the machine slowed down threefold in the third round, for both
-  static AppBenchTimer timer = {.wall = {1, 2, 3, 1}}, reference = {.wall = {2, 2, 6, 3}};
+  static AppBenchTimer timer = {.wall = {1, 2, 3, 1}, .cpu = {1, 1, 1, 1}},
+                       reference = {.wall = {2, 2, 6, 3}, .cpu = {4, 4, 5, 5}};
   AppBenchRatio ratio = app_bench_timer_ratio(&timer, &reference, 4);
   ck_assert_double_eq(ratio.median, 2);
   ck_assert_double_eq(ratio.min, 1);
   ck_assert_double_eq(ratio.max, 3);
+  ck_assert_double_eq(app_bench_timer_cpu_ratio(&timer, &reference, 4).median, 4.5);
 }
 END_TEST
 

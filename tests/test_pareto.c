@@ -92,7 +92,7 @@ START_TEST(a_comparison_names_both_and_takes_its_ratio_within_a_round) {
   const AppParetoComparison *comparison = &pareto.comparisons[0];
   ck_assert_str_eq(comparison->slow, "clip");
   ck_assert_str_eq(comparison->fast, "geo");
-  // one round: the ratio of the rates is the ratio of the round
+  // one round of one thread: the ratio of the rates is that of the round
   ck_assert_near(comparison->ratio, comparison->fast_rate / comparison->slow_rate, 1e-9 * comparison->ratio);
   ck_assert_double_eq(comparison->fast_error, find(&pareto, "geo", "V+grad")->error);
   ck_assert(isnan(comparison->paper_ratio));
