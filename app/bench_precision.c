@@ -304,6 +304,7 @@ static Status summarise(const Options *options, const Table *table) {
                                 .newton_iterations = (double)row->newton_iterations,
                                 .setups = (double)row->setups,
                                 .cpu_s = row->cpu,
+                                .wall_s = row->wall,
                                 .overlap_s = row->overlap_s,
                                 .force_error = row->force,
                                 .trajectory_error = row->trajectory};

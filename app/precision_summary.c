@@ -35,8 +35,8 @@ static const AppBenchColumn columns[] = {
     {"rejected_share_base", APP_BENCH_NUMBER, offsetof(AppPrecisionSummary, rejected_share_base), NULL,
      "of the base"},
     {"cpu_ratio", APP_BENCH_NUMBER, offsetof(AppPrecisionSummary, cpu), "cpu", "time over the base's"},
-    {"cpu_ratio_without_overlap", APP_BENCH_NUMBER, offsetof(AppPrecisionSummary, cpu_rest), "cpu, rest",
-     "the same without the overlap models' own time"},
+    {"wall_ratio_without_overlap", APP_BENCH_NUMBER, offsetof(AppPrecisionSummary, wall_rest), "wall, rest",
+     "wall time over the base's, both without the overlap models' own"},
     {"force_error_ratio", APP_BENCH_NUMBER, offsetof(AppPrecisionSummary, force_error), "force error",
      "error of the forces over the base's, geometric mean"},
 };
@@ -65,7 +65,7 @@ static void add(AppPrecisionSummary *sums, const AppPrecisionRun *run, const App
   sums->rejected += run->rejected, sums->rejected_base += base->rejected;
   *accepted += run->steps, *accepted_base += base->steps;
   sums->cpu += log(run->cpu_s / base->cpu_s);
-  sums->cpu_rest += log((run->cpu_s - run->overlap_s) / (base->cpu_s - base->overlap_s));
+  sums->wall_rest += log((run->wall_s - run->overlap_s) / (base->wall_s - base->overlap_s));
   sums->force_error += log(run->force_error / base->force_error);
 }
 
@@ -89,7 +89,7 @@ AppPrecisionSummary app_precision_summary_make(const char *overlap, const char *
   sums.steps = exp(mean);
   sums.steps_deviation = sqrt(fmax(0, sums.steps_deviation / n - mean * mean));
   sums.newton = exp(sums.newton / n), sums.setups = exp(sums.setups / n);
-  sums.cpu = exp(sums.cpu / n), sums.cpu_rest = exp(sums.cpu_rest / n);
+  sums.cpu = exp(sums.cpu / n), sums.wall_rest = exp(sums.wall_rest / n);
   sums.force_error = exp(sums.force_error / n);
   sums.rejected_share = sums.rejected / accepted,
   sums.rejected_share_base = sums.rejected_base / accepted_base;

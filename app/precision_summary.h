@@ -13,7 +13,7 @@ typedef struct AppPrecisionRun {
   const char *scene, *overlap; // borrowed
   double level, tolerance;
   bool is_finished;
-  double steps, rejected, newton_iterations, setups, cpu_s, overlap_s, force_error, trajectory_error;
+  double steps, rejected, newton_iterations, setups, cpu_s, wall_s, overlap_s, force_error, trajectory_error;
 } AppPrecisionRun;
 
 // Over the pairs of runs of which both finished. A ratio is model over base: 0.9 is a tenth saved.
@@ -26,7 +26,7 @@ typedef struct AppPrecisionSummary {
   double setups;
   double rejected, rejected_base;             // sums
   double rejected_share, rejected_share_base; // over the accepted steps
-  double cpu, cpu_rest;                       // processor time, whole and without the overlap model
+  double cpu, wall_rest;                      // processor time; wall time without the overlap model
   double force_error;                         // geometric mean of the ratio of errors
 } AppPrecisionSummary;
 

@@ -94,12 +94,12 @@ END_TEST
 
 START_TEST(a_summary_takes_ratios_within_a_scene_and_a_tolerance) {
   const AppPrecisionRun runs[] = {
-      {"a", "clip", 1, 1e-3, true, 100, 10, 200, 20, 2, 0.5, 0.1, 0.1},
-      {"a", "clip", 1, 1e-4, true, 400, 10, 800, 20, 8, 0.5, 0.01, 0.01},
-      {"b", "clip", 1, 1e-3, true, 1000, 80, 10, 20, 1, 0.5, 0.1, 0.1},
-      {"a", "geo", 1, 1e-3, true, 50, 0, 100, 10, 5, 2, 0.2, 0.1},
-      {"a", "geo", 1, 1e-4, true, 800, 30, 3200, 40, 20, 5, 0.04, 0.01},
-      {"b", "geo", 1, 1e-3, false, 7, 7, 7, 7, 7, 7, NAN, NAN}, // counts as unfinished and nothing else
+      {"a", "clip", 1, 1e-3, true, 100, 10, 200, 20, 2, 2, 0.5, 0.1, 0.1},
+      {"a", "clip", 1, 1e-4, true, 400, 10, 800, 20, 8, 8, 0.5, 0.01, 0.01},
+      {"b", "clip", 1, 1e-3, true, 1000, 80, 10, 20, 1, 1, 0.5, 0.1, 0.1},
+      {"a", "geo", 1, 1e-3, true, 50, 0, 100, 10, 5, 5, 2, 0.2, 0.1},
+      {"a", "geo", 1, 1e-4, true, 800, 30, 3200, 40, 20, 20, 5, 0.04, 0.01},
+      {"b", "geo", 1, 1e-3, false, 7, 7, 7, 7, 7, 7, 7, NAN, NAN}, // counts as unfinished and nothing else
   };
   AppPrecisionSummary summary = app_precision_summary_make("geo", "clip", runs, 6);
   ck_assert_int_eq((int)summary.pairs, 2);
@@ -112,7 +112,7 @@ START_TEST(a_summary_takes_ratios_within_a_scene_and_a_tolerance) {
   ck_assert_near(summary.rejected, 30, 1e-12);
   ck_assert_near(summary.rejected_base, 20, 1e-12);
   ck_assert_near(summary.rejected_share, 30.0 / 850, 1e-12);
-  ck_assert_near(summary.cpu_rest, sqrt(3 / 1.5 * 15 / 7.5), 1e-12);
+  ck_assert_near(summary.wall_rest, sqrt(3 / 1.5 * 15 / 7.5), 1e-12);
   ck_assert_near(summary.force_error, sqrt(2 * 4), 1e-12);
 }
 END_TEST
