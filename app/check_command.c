@@ -143,7 +143,7 @@ static void print_contact(const AppJob *job) {
   printf("contact       potential %s, κ = %g %s%s, overlap model %s\n",
          contact_potential_name(contact->potential), fem_model_contact_stiffness(&job->model),
          contact->potential == CONTACT_POTENTIAL_BODY ? "Pa/m³" : "Pa",
-         contact->stiffness > 0 ? "" : " (chosen)", contact->net ? contact->net : contact->overlap);
+         contact->stiffness > 0 ? "" : " (chosen)", app_job_overlap(job));
 }
 
 static void print_memory(double bytes) {
@@ -204,7 +204,7 @@ static void record_contact(const AppJob *job, Record *record) {
   record_text(record, "potential", contact_potential_name(contact->potential));
   record_number(record, "stiffness", fem_model_contact_stiffness(&job->model));
   record_bool(record, "is_stiffness_chosen", !(contact->stiffness > 0));
-  record_text(record, "overlap", contact->net ? contact->net : contact->overlap);
+  record_text(record, "overlap", app_job_overlap(job));
 }
 
 static void record_job(const AppJob *job, const Notes *notes, Record *record) {

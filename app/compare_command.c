@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "fem/effect_contact.h"
 
 typedef struct CompareOptions {
   AppJobOptions job;
@@ -63,14 +64,15 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-static Status add_model(AppComparison *comparison, const char *name, bool is_driven) {
+static Status add_model(AppComparison *comparison, const FemSceneDef *scene, const char *name,
+                        bool is_driven) {
   for (int m = 0; m < comparison->model_count; m++)
     if (strcmp(comparison->models[m].name, name) == 0)
       return status_fail(STATUS_USAGE, "the model '%s' is named twice; name it once", name);
   if (comparison->model_count == APP_MAX_MODELS)
     return status_fail(STATUS_USAGE, "at most %d models can be compared", APP_MAX_MODELS);
   AppComparisonModel *model = &comparison->models[comparison->model_count];
-  Status status = contact_overlap_create(&model->overlap, name);
+  Status status = fem_effect_contact_create_overlap(scene, name, &model->overlap);
   if (status) return status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "--overlap") : status;
   model->name = name;
   model->is_driven = is_driven;
@@ -78,16 +80,17 @@ static Status add_model(AppComparison *comparison, const char *name, bool is_dri
   return STATUS_OK;
 }
 
-static Status add_models(AppComparison *comparison, char *names, bool is_driven) {
+static Status add_models(AppComparison *comparison, const FemSceneDef *scene, char *names, bool is_driven) {
   char *rest = NULL;
   for (char *name = strtok_r(names, ",", &rest); name; name = strtok_r(NULL, ",", &rest))
-    TRY(add_model(comparison, name, is_driven));
+    TRY(add_model(comparison, scene, name, is_driven));
   return STATUS_OK;
 }
 
-static Status choose_models(AppComparison *comparison, const CompareOptions *options) {
-  TRY(add_models(comparison, options->overlaps, true));
-  if (options->audit_only) TRY(add_models(comparison, options->audit_only, false));
+static Status choose_models(AppComparison *comparison, const FemSceneDef *scene,
+                            const CompareOptions *options) {
+  TRY(add_models(comparison, scene, options->overlaps, true));
+  if (options->audit_only) TRY(add_models(comparison, scene, options->audit_only, false));
   comparison->audit_every = options->audit_every;
   if (!options->reference) return STATUS_OK;
   for (int m = 0; m < comparison->model_count; m++)
@@ -174,7 +177,7 @@ static void announce_times(const AppComparison *comparison, int first) {
   for (int m = 0; m < comparison->model_count; m++) {
     const AppComparisonModel *model = &comparison->models[m];
     if (!model->is_driven || model->has_run) continue;
-    double overlap = (double)pilot->overlap_pairs * model->overlap.ops->seconds_per_pair / cpu_thread_count();
+    double overlap = (double)pilot->pairs.tried * model->overlap.ops->seconds_per_pair / cpu_thread_count();
     double seconds = pilot->wall_s - pilot->phases.overlap + overlap;
     log_info("%s will take about %.3g %s", model->name, seconds < 120 ? seconds : seconds / 60,
              seconds < 120 ? "s" : "minutes");
@@ -209,8 +212,17 @@ static Status write_results(const AppComparison *comparison, const CompareOption
   return status;
 }
 
+// The models are made as the scene wants them.
+static Status prepare(AppComparison *comparison, const CompareOptions *options) {
+  AppJob job;
+  TRY(app_job_open(&job, &options->job, NULL, NULL));
+  Status status = choose_models(comparison, &job.scene, options);
+  app_job_close(&job);
+  return status;
+}
+
 static Status compare(AppComparison *comparison, const CompareOptions *options) {
-  TRY(choose_models(comparison, options));
+  TRY(prepare(comparison, options));
   int first = cheapest_waiting(comparison);
   log_info("%s runs first: its time tells how long the others will take", comparison->models[first].name);
   for (int m = first; m >= 0; m = cheapest_waiting(comparison)) {

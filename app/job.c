@@ -18,6 +18,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "contact/weights.h"
+#include "fem/effect_contact.h"
 
 static volatile sig_atomic_t stop_flag;
 
@@ -117,19 +118,27 @@ static Status choose_directory(AppJob *job, const AppJobOptions *options, const 
   return job->directory ? STATUS_OK : status_no_memory("a directory name");
 }
 
+// Puts a weights file that the command line named in the place of the scene's, or none.
+static Status replace_net(FemSceneDef *scene, const char *path) {
+  memory_free(scene->contact.net);
+  scene->contact.net = path ? memory_copy(path, strlen(path) + 1, 1) : NULL;
+  return path && !scene->contact.net ? status_no_memory("a file name") : STATUS_OK;
+}
+
 static Status open_scene(AppJob *job, const AppJobOptions *options, const char *overlap) {
   const char *overrides[APP_MAX_OVERRIDES + 1];
   int count = 0;
   for (; count < options->override_count; count++) overrides[count] = options->overrides[count];
+  // A weights file is named from where the program was called, in a scene from where the scene is.
   char choice[PATH_MAX + 32], path[PATH_MAX];
+  bool is_path = overlap && contact_weights_is_path(overlap) && realpath(overlap, path);
   if (overlap) {
-    // A weights file is named from where the program was called, in a scene from where the scene is.
-    bool is_path = contact_weights_is_path(overlap) && realpath(overlap, path);
-    snprintf(choice, sizeof choice, is_path ? "contact.net=%s" : "contact.overlap=%s",
-             is_path ? path : overlap);
+    snprintf(choice, sizeof choice, "contact.overlap=%s", is_path ? "geo" : overlap);
     overrides[count++] = choice;
   }
-  return app_scene_read(options->scene_path, overrides, count, &job->scene);
+  TRY(app_scene_read(options->scene_path, overrides, count, &job->scene));
+  if (!overlap || strcmp(overlap, "hybrid") == 0) return STATUS_OK;
+  return replace_net(&job->scene, is_path ? path : NULL);
 }
 
 Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overlap,
@@ -164,9 +173,7 @@ Status app_job_show_progress(void *self, const FemRunProgress *state) {
 }
 
 const char *app_job_overlap(const AppJob *job) {
-  const FemContactDef *contact = &job->scene.contact;
-  if (!contact->is_on) return NULL;
-  return contact->net ? contact->net : contact->overlap;
+  return fem_effect_contact_overlap(&job->scene);
 }
 
 static const char *word_of(Status status) {

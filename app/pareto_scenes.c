@@ -118,11 +118,11 @@ static void fill_run(const AppBenchTrial *trial, int rounds, const AppBenchTrial
   point->steps = result->integrator.steps;
   point->rejected =
       result->integrator.error_test_failures + result->integrator.newton_failures + result->energy_retries;
-  if (result->overlap_pairs == 0 || point->steps == 0) return;
+  if (result->pairs.tried == 0 || point->steps == 0) return;
   FemRunPhases phases = app_bench_trial_phases(trial, rounds);
-  point->seconds = point->seconds_min = point->seconds_max = phases.overlap / (double)result->overlap_pairs;
+  point->seconds = point->seconds_min = point->seconds_max = phases.overlap / (double)result->pairs.tried;
   for (int r = 0; r < rounds; r++) {
-    double seconds = trial->phases[r].overlap / (double)result->overlap_pairs;
+    double seconds = trial->phases[r].overlap / (double)result->pairs.tried;
     point->seconds_min = fmin(point->seconds_min, seconds);
     point->seconds_max = fmax(point->seconds_max, seconds);
   }

@@ -50,6 +50,17 @@ static void announce(const AppJob *job) {
            fem_solver_name(fem_run_solver(&job->model)), overlap ? ", overlap " : "", overlap ? overlap : "");
 }
 
+// Who answered the pairs, where a network took part.
+static void conclude_network(const ContactPairCounts *pairs) {
+  if (pairs->by_net == 0 && pairs->beyond == 0) return;
+  double share = 100.0 / (double)pairs->tried;
+  log_info(
+      "of %lld pairs the network answered %.1f %%, the exact model %.1f %%, both together %.1f %%; %lld are "
+      "beyond the range of its training",
+      pairs->tried, share * (double)(pairs->by_net - pairs->blended), share * (double)pairs->fallbacks,
+      share * (double)pairs->blended, pairs->beyond);
+}
+
 static void conclude(const AppJob *job, const FemRunResult *result) {
   log_info("t = %g s reached in %.2f s: %lld steps, %lld factorisations, up to %d overlapping pairs",
            result->end_time, result->wall_s, result->integrator.steps, result->solver.factorisations,
@@ -57,6 +68,7 @@ static void conclude(const AppJob *job, const FemRunResult *result) {
   log_info("energy gain %.1e of the scene's energy, smallest det F %.3f, %lld onsets, %lld steps taken back",
            result->audit.gain / result->audit.scale, result->min_det_F, result->integrator.roots,
            result->energy_retries);
+  conclude_network(&result->pairs);
   log_info("wrote %s: frames.pvd (ParaView), history.csv, summary.json, manifest.json", job->directory);
 }
 

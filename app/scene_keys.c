@@ -73,11 +73,58 @@ static const char *following_help(int i) {
 
 static const SceneChoices followings = {following_name, following_help};
 static const SceneChoices elements = {element_name, element_help};
+// The numbers are those of contact/net_options.h.
+static const char *ghosts_name(int i) {
+  static const char *const names[] = {"auto", "keep", "cut", "fade"};
+  return i < 4 ? names[i] : NULL;
+}
+static const char *ghosts_help(int i) {
+  static const char *const helps[] = {
+      "as the model has it: tpn keep, tpn-scene fade", "pairs that share no volume get what the network says",
+      "an exact test finds them: they get none, and V jumps where a pair begins to touch",
+      "they get none, and V is faded in over the first overlap"};
+  return helps[i];
+}
+static const char *gate_name(int i) {
+  static const char *const names[] = {"auto", "none", "status"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *gate_help(int i) {
+  static const char *const helps[] = {"as the model has it: tpn-scene status, others none",
+                                      "V is what the volume head says",
+                                      "V is multiplied by the probability that the status head says"};
+  return helps[i];
+}
+static const char *orders_name(int i) {
+  static const char *const names[] = {"auto", "one", "both"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *orders_help(int i) {
+  static const char *const helps[] = {"as the model has it: tpn one, others both",
+                                      "V(A, B) and V(B, A) differ",
+                                      "the mean of V(A, B) and V(B, A), at twice the cost"};
+  return helps[i];
+}
+static const char *beyond_name(int i) {
+  static const char *const names[] = {"auto", "count", "exact"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *beyond_help(int i) {
+  static const char *const helps[] = {"as the model has it: hybrid exact, others count",
+                                      "they are counted in summary.json",
+                                      "and answered by the exact model, blended over a band"};
+  return helps[i];
+}
+
 static const SceneChoices laws = {law_name, law_help};
 static const SceneChoices potentials = {potential_name, potential_help};
 static const SceneChoices solvers = {solver_name, solver_help};
 static const SceneChoices overlaps = {overlap_name, overlap_help};
 static const SceneChoices hessians = {hessian_name, hessian_help};
+static const SceneChoices ghosts = {ghosts_name, ghosts_help};
+static const SceneChoices gates = {gate_name, gate_help};
+static const SceneChoices orders = {orders_name, orders_help};
+static const SceneChoices beyond = {beyond_name, beyond_help};
 
 // What no single key says.
 
@@ -482,6 +529,33 @@ static const SceneKey friction_keys[] = {
 static const SceneSection friction = {
     .help = "Coulomb friction", .keys = friction_keys, .shorthand = "coefficient"};
 
+static const SceneKey net_keys[] = {
+    {"weights", SCENE_TEXT, AT(FemContactDef, net), .absent_help = "those that ship with the model",
+     .help =
+         "of a learned model: a .safetensors file, path from the scene file, or a name; taken in place of "
+         "`overlap`, or by `hybrid` as its network"},
+    {"ghosts", SCENE_CHOICE, AT(FemContactDef, net_options.ghosts), .fallback = "auto", .choices = &ghosts,
+     .help = "tpn: volumes of pairs that share none"},
+    {"gate", SCENE_CHOICE, AT(FemContactDef, net_options.gate), .fallback = "auto", .choices = &gates,
+     .help = "tpn: whether the status head has a say in V"},
+    {"orders", SCENE_CHOICE, AT(FemContactDef, net_options.orders), .fallback = "auto", .choices = &orders,
+     .help = "tpn, hybrid: in which order the two tetrahedra are shown to the network"},
+    {"out_of_range", SCENE_CHOICE, AT(FemContactDef, net_options.beyond), .fallback = "auto",
+     .choices = &beyond, .help = "tpn: pairs unlike those of the network's training"},
+    {"touch", SCENE_NUMBER, AT(FemContactDef, net_options.touch), .range = "(0, 1)", .fallback = "0.02",
+     .help = "share of overlap up to which V is faded in; `hybrid` takes exact up to there, the network from "
+             "twice "
+             "that"},
+    {"deep", SCENE_NUMBER, AT(FemContactDef, net_options.deep), .range = "(0, 2]", .fallback = "0.3",
+     .help =
+         "hybrid: share of overlap up to which the network is taken, exact from one and a half times that"},
+    {"confidence", SCENE_NUMBER, AT(FemContactDef, net_options.confidence), .range = "(0.5, 1)",
+     .fallback = "0.95", .help = "hybrid: probability of the status head from which the network is taken"},
+    {0},
+};
+static const SceneSection net = {
+    .help = "how networks that follow the paper are used", .keys = net_keys, .shorthand = "weights"};
+
 static const SceneKey contact_keys[] = {
     {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa", .range = "(0, inf)",
      .absent_help = "E of the softest body (with `body` over its smallest mean element volume)",
@@ -490,9 +564,7 @@ static const SceneKey contact_keys[] = {
      .help = "how overlap volumes become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "geo", .choices = &overlaps,
      .help = "the model that gives the overlap volume of two tetrahedra"},
-    {"net", SCENE_TEXT, AT(FemContactDef, net), .absent_help = "none",
-     .help = "weights of a learned model, a .safetensors file, path from the scene file; taken in place of "
-             "`overlap`"},
+    {"net", SCENE_SECTION, .section = &net, .help = "of a learned model: its weights, or more in a mapping"},
     {"margin", SCENE_NUMBER, AT(FemContactDef, margin), .unit = "m", .range = "(0, inf)",
      .absent_help = "half the shortest mean edge of a body",
      .help = "pairs nearer than this are listed; a step that moves farther is tried again smaller"},

@@ -14,7 +14,7 @@
 #include "app/training_start.h"
 #include "app/training_task.h"
 #include "base/memory.h"
-#include "contact/net_overlap.h"
+#include "contact/net_model.h"
 #include "contact/net_range.h"
 
 enum { SIZE = 24, BLOCK = 16384, MAX_SETS = 6, MEASURED = 1 << 18 };
@@ -401,7 +401,7 @@ static Status validate(AppTrainingTask *task, const NetModel_f32 *model, const c
 }
 
 static void print_normalisation(const AppTrainingTask *task, char text[CONTACT_NET_NORMALISATION_TEXT]) {
-  contact_net_overlap_print(normalisation_of(task->config), task->config->model.output_scale, text);
+  contact_net_model_print(normalisation_of(task->config), task->config->model.output_scale, text);
 }
 
 static Status start(AppTrainingTask *task, NetModel_f32 *model) {

@@ -62,7 +62,7 @@ static void clear(ContactEvaluation *evaluation) {
   for (int e = 0; e < patches->element_count; e++) evaluation->covered[patches->elements[e].tet] = 0;
   evaluation->is_valid = false;
   evaluation->energy = 0;
-  evaluation->tried = evaluation->enclosed = evaluation->fallbacks = evaluation->blended = 0;
+  evaluation->counts = (ContactPairCounts){0};
 }
 
 static void shift(double tet[12], const double by[3]) {
@@ -114,16 +114,17 @@ static void move_pair(ContactEvaluation *evaluation, int from, int to) {
   memcpy(evaluation->gradients + target, evaluation->gradients + source, row);
 }
 
-// Gathers the listed pairs and drops those that a face separates for certain. `clip` would find that out as
-// fast by itself; `exact` takes half the time with it.
-static void sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *layout,
+// Gathers the listed pairs and drops those that a face separates for certain, unless the model sees ghosts.
+// `clip` would find that out as fast by itself; `exact` takes half the time with it.
+static void sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *layout, bool keeps_all,
                           const double *positions) {
   int count = evaluation->pair_count, kept = 0;
 #pragma omp parallel for schedule(static) if (count > 512)
   for (int k = 0; k < count; k++) {
     double *coordinates = evaluation->coordinates + 24 * (size_t)k;
     gather(layout, &evaluation->pairs[k], positions, coordinates);
-    evaluation->is_kept[k] = evaluation->pairs[k].tets[1] < 0 || !contact_separation_is_certain(coordinates);
+    evaluation->is_kept[k] =
+        keeps_all || evaluation->pairs[k].tets[1] < 0 || !contact_separation_is_certain(coordinates);
   }
   evaluation->mesh_pair_count = 0;
   for (int k = 0; k < count; k++) {
@@ -143,6 +144,14 @@ static Status blame(const ContactLayout *layout, const ContactPair *pair, double
                      volume, pair->tets[0] - a->tet_begin, a->name, pair->tets[1] - b->tet_begin, b->name);
 }
 
+static void count_pair(ContactPairCounts *counts, unsigned flags) {
+  counts->enclosed += (flags & CONTACT_OVERLAP_ENCLOSED) != 0;
+  counts->fallbacks += (flags & CONTACT_OVERLAP_FALLBACK) != 0;
+  counts->blended += (flags & CONTACT_OVERLAP_BLENDED) != 0;
+  counts->by_net += (flags & CONTACT_OVERLAP_NET) != 0;
+  counts->beyond += (flags & CONTACT_OVERLAP_BEYOND) != 0;
+}
+
 static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout *layout,
                              const ContactOverlapModel *model) {
   int count = evaluation->mesh_pair_count;
@@ -153,13 +162,11 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
                                .gradient = evaluation->gradients,
                                .flags = evaluation->flags};
   TRY(contact_overlap_eval(model, &batch));
-  evaluation->tried = count;
+  evaluation->counts.tried = count;
   for (int k = 0; k < count; k++) {
     if (!(evaluation->volumes[k] >= 0 && evaluation->volumes[k] < INFINITY))
       return blame(layout, &evaluation->pairs[k], evaluation->volumes[k]);
-    evaluation->enclosed += (evaluation->flags[k] & CONTACT_OVERLAP_ENCLOSED) != 0;
-    evaluation->fallbacks += (evaluation->flags[k] & CONTACT_OVERLAP_FALLBACK) != 0;
-    evaluation->blended += (evaluation->flags[k] & CONTACT_OVERLAP_BLENDED) != 0;
+    count_pair(&evaluation->counts, evaluation->flags[k]);
   }
   return STATUS_OK;
 }
@@ -254,7 +261,7 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   double start = clock_wall_s();
   clear(evaluation);
   TRY(sift_by_boxes(evaluation, layout, candidates, with_shapes, positions));
-  sift_by_faces(evaluation, layout, positions);
+  sift_by_faces(evaluation, layout, contact_overlap_has_ghosts(model), positions);
   TRY(overlap_meshes(evaluation, layout, model));
   overlap_shapes(evaluation, layout, time);
   keep_overlapping(evaluation);

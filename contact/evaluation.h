@@ -15,18 +15,17 @@ typedef struct ContactEvaluation {
   double energy;     // U [J]
   // Pairs with V > 0 in the candidates' order, so those with half-spaces last.
   int pair_count, mesh_pair_count;
-  ContactPair *pairs;                     //                                       (pair_count)
-  double *coordinates;                    // as given to the model [m]             (mesh_pair_count, 2, 4, 3)
-  double *volumes;                        // V_ij [m³]                             (pair_count)
-  double *gradients;                      // ∇V_ij [m²]; half-space's part: zeros  (pair_count, 2, 4, 3)
-  double *pressures;                      // p_ij [Pa]                             (pair_count)
-  ContactPatches patches;                 // with W_i, W_a and forces per node
-  double *forces;                         // −∂U/∂x [N]                            (vertex_count, 3)
-  double *covered;                        // Σ over facings of W_i [m³]            (tet_count)
-  ContactInterface *interfaces;           //                                       (facing_count)
-  long long tried;                        // pairs given to the model
-  long long enclosed, fallbacks, blended; // how many of them the model flagged so
-  double overlap_s, force_s;              // wall time [s]
+  ContactPair *pairs;           //                                       (pair_count)
+  double *coordinates;          // as given to the model [m]             (mesh_pair_count, 2, 4, 3)
+  double *volumes;              // V_ij [m³]                             (pair_count)
+  double *gradients;            // ∇V_ij [m²]; half-space's part: zeros  (pair_count, 2, 4, 3)
+  double *pressures;            // p_ij [Pa]                             (pair_count)
+  ContactPatches patches;       // with W_i, W_a and forces per node
+  double *forces;               // −∂U/∂x [N]                            (vertex_count, 3)
+  double *covered;              // Σ over facings of W_i [m³]            (tet_count)
+  ContactInterface *interfaces; //                                       (facing_count)
+  ContactPairCounts counts;     // of the pairs given to the model
+  double overlap_s, force_s;    // wall time [s]
   // Scratch memory.
   unsigned char *is_kept; // of each candidate
   double (*boxes)[6];     // of the candidates' tetrahedra            (tet_count)

@@ -68,21 +68,23 @@ Status contact_geo_overlap_eval_batch(const void *self, const ContactOverlapBatc
                        first_failed * PORTION + portion.pair_count - 1);
 }
 
-static Status create_shipped(void **self, const char *name, const char *weights) {
+// `weights`: a file, or the name of one that ships; NULL: `own`.
+static Status create_named(void **self, const char *own, const char *weights) {
   char path[4096];
-  if (!weights) {
-    TRY(contact_weights_find(name, path, sizeof path));
-    weights = path;
-  }
-  return contact_geo_overlap_create(self, weights);
+  if (!weights) weights = own;
+  if (contact_weights_is_path(weights)) return contact_geo_overlap_create(self, weights);
+  TRY(contact_weights_find(weights, path, sizeof path));
+  return contact_geo_overlap_create(self, path);
 }
 
-static Status create_geo(void **self, const char *weights) {
-  return create_shipped(self, "geo", weights);
+static Status create_geo(void **self, const char *weights, const ContactNetOptions *options) {
+  (void)options;
+  return create_named(self, "geo", weights);
 }
 
-static Status create_geo_small(void **self, const char *weights) {
-  return create_shipped(self, "geo-small", weights);
+static Status create_geo_small(void **self, const char *weights, const ContactNetOptions *options) {
+  (void)options;
+  return create_named(self, "geo-small", weights);
 }
 
 const ContactOverlapOps contact_overlap_geo = {

@@ -1,29 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// TetrahedronPairNet as an overlap model, as it was published: the pair is normalised (normalise.h), a
-// network of net/ tells a status logit z and v, and
+// TetrahedronPairNet as an overlap model: `tpn` as it was published, `tpn-scene` made fit for scenes, and
+// `hybrid`, the paper's section 5.
 //
-//     V = factor · max(0, v) / scale,   ∇V through the normalisation.
+//   pair ─ disjoint, by an exact test? ─► V = 0                                       (ghosts: cut, fade)
+//     └─► normalised (normalise.h), in one order or both ─► network ─► z, v ─┐
+//     ├─► overlap share of the closed form (geo.h), where it fades or blends ─┼─► V, ∇V  (net_blend.h)
+//     └─► exact, where the blend wants it ───────────────────────────────────┘
 //
-// ∇V is that of this V: piecewise constant in the normalised pair with ReLU. The logit changes nothing here.
+// ∇V is the derivative of this very V, through normalisation, gate, fading and blend. How smooth V is depends
+// on the network: with ReLU or max pools ∇V jumps, with SiLU and sums it is continuous. With the
+// normalisation Unit V is the same however the pair is moved, turned or stretched, and net force and torque
+// of a pair vanish, as far as float32 goes; the order of a tetrahedron's vertices matters in any case.
+//
+//              ghosts  gate    orders  beyond the range of the training
+//   tpn        keep    none    one     counted
+//   tpn-scene  fade    status  both    counted
+//   hybrid     –       none    both    exact
+//
+// `hybrid`: the network's V where the exact test finds an overlap, the status head is confident, the overlap
+// share is neither tiny nor deep and the pair is in the training's range; `exact` elsewhere; blended over
+// bands in between. The paper lets the network dismiss pairs; here an exact test does, which costs less than
+// the network. Flags NET, BLENDED and FALLBACK tell the shares.
+//
 // Pairs that the normalisation cannot take are answered by the exact model and flagged FALLBACK.
 #ifndef TETLAP_CONTACT_NET_OVERLAP_H
 #define TETLAP_CONTACT_NET_OVERLAP_H
 
-#include "contact/normalise.h"
+#include "contact/net_model.h"
 #include "contact/overlap.h"
 
-enum { CONTACT_NET_NORMALISATION_TEXT = 64 };
+// The weights that ship under these names; hybrid takes those of tpn-scene unless others are named.
+extern const ContactOverlapOps contact_overlap_tpn, contact_overlap_tpn_scene, contact_overlap_hybrid;
 
-// What a weights file's card says of the input and the output: "unit, V times 1000".
-void contact_net_overlap_print(ContactNormalisation kind, double scale,
-                               char text[CONTACT_NET_NORMALISATION_TEXT]);
-bool contact_net_overlap_parse(const char *text, ContactNormalisation *kind, double *scale);
-
-// The shipped weights of that name, tpn.safetensors.
-extern const ContactOverlapOps contact_overlap_tpn;
-
-// From a weights file. STATUS_INPUT: another kind of network; the message names the file.
-Status contact_net_overlap_create(void **self, const char *path);
+// `path` as tpn; options NULL: its own. STATUS_INPUT: another kind of network; the message names the file.
+Status contact_net_overlap_create(void **self, const char *path, const ContactNetOptions *options);
 void contact_net_overlap_destroy(void *self);
 
 // As ContactOverlapOps; `hessian` is not offered.
@@ -31,8 +41,8 @@ Status contact_net_overlap_eval_pair(const void *self, const double pair[24], do
                                      double *gradient, double *hessian, unsigned *flags);
 Status contact_net_overlap_eval_batch(const void *self, const ContactOverlapBatch *batch);
 
-// The status logits of pairs (count, 24): positive where the network says that they intersect; of pairs that
-// the normalisation cannot take −∞.
+// The status logits of pairs (count, 24): positive where the network says that they intersect; with both
+// orders the mean; of pairs that the normalisation cannot take −∞.
 Status contact_net_overlap_logits(const void *self, int count, const double *pairs, double *logits);
 
 #endif

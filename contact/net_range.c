@@ -100,11 +100,14 @@ static double fall(double x, double *derivative) {
   return x < 1 ? 1 - x * x * (3 - 2 * x) : 0;
 }
 
+// Beyond an end by less than this is still within: the text of a range has nine digits.
+static const double WITHIN = 1e-6;
+
 // The weight of a measure between two ends, in its logarithm; `derivative` by the logarithm.
 static double weigh(double value, const double ends[2], double *derivative) {
   double band = log(contact_net_range_band), slope[2];
-  double below = fall(log(ends[0] / value) / band, &slope[0]);
-  double above = fall(log(value / ends[1]) / band, &slope[1]);
+  double below = fall((log(ends[0] / value) - WITHIN) / band, &slope[0]);
+  double above = fall((log(value / ends[1]) - WITHIN) / band, &slope[1]);
   *derivative = (above * -slope[0] + below * slope[1]) / band;
   return below * above;
 }

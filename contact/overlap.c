@@ -9,13 +9,14 @@
 #include "contact/clip.h"
 #include "contact/exact.h"
 #include "contact/geo_overlap.h"
+#include "contact/net_overlap.h"
 #include "contact/overlap_cgal.h"
 #include "contact/weights.h"
 
 // The fastest first: what a person reads when asking for the models.
 static const ContactOverlapOps *const models[] = {
-    &contact_overlap_clip,  &contact_overlap_geo_small, &contact_overlap_geo,
-    &contact_overlap_exact, &contact_overlap_cgal,
+    &contact_overlap_clip,      &contact_overlap_geo_small, &contact_overlap_geo,   &contact_overlap_tpn,
+    &contact_overlap_tpn_scene, &contact_overlap_hybrid,    &contact_overlap_exact, &contact_overlap_cgal,
 };
 enum { MODEL_COUNT = sizeof models / sizeof *models };
 
@@ -38,16 +39,36 @@ static Status fail_unknown(const char *name) {
   return status_fail(STATUS_INPUT, "there is no overlap model '%s': known are %s", name, known);
 }
 
-Status contact_overlap_create(ContactOverlapModel *model, const char *name) {
+// The model that a weights file holds.
+static Status find_by_file(const char *path, const ContactOverlapOps **ops) {
+  ContactWeightsKind kind;
+  TRY(contact_weights_kind(path, &kind));
+  *ops = kind == CONTACT_WEIGHTS_TPN ? &contact_overlap_tpn : &contact_overlap_geo;
+  return STATUS_OK;
+}
+
+Status contact_overlap_create_with(ContactOverlapModel *model, const char *name, const char *weights,
+                                   const ContactNetOptions *options) {
   *model = (ContactOverlapModel){0};
-  bool is_path = contact_weights_is_path(name);
-  const ContactOverlapOps *ops = is_path ? &contact_overlap_geo : NULL;
+  const ContactOverlapOps *ops = NULL;
   for (int m = 0; m < MODEL_COUNT; m++)
     if (strcmp(models[m]->name, name) == 0) ops = models[m];
+  if (!ops && contact_weights_is_path(name)) {
+    TRY(find_by_file(name, &ops));
+    weights = name;
+  }
   if (!ops) return fail_unknown(name);
-  if (ops->create) TRY(ops->create(&model->self, is_path ? name : NULL));
+  if (ops->create) TRY(ops->create(&model->self, weights, options));
   model->ops = ops;
   return STATUS_OK;
+}
+
+Status contact_overlap_create(ContactOverlapModel *model, const char *name) {
+  return contact_overlap_create_with(model, name, NULL, NULL);
+}
+
+bool contact_overlap_has_ghosts(const ContactOverlapModel *model) {
+  return model->ops->has_ghosts && model->ops->has_ghosts(model->self);
 }
 
 void contact_overlap_destroy(ContactOverlapModel *model) {

@@ -13,6 +13,7 @@
 #include <stdbool.h>
 
 #include "base/status.h"
+#include "contact/net_options.h"
 
 enum { CONTACT_PAIR_SIZE = 24 }; // coordinates of a pair: 2 tetrahedra × 4 vertices × 3
 
@@ -23,6 +24,8 @@ typedef enum ContactOverlapFlag {
   CONTACT_OVERLAP_FALLBACK = 1 << 2, // answered by a more careful model than the one asked
   CONTACT_OVERLAP_ENCLOSED = 1 << 3, // one tetrahedron lies wholly inside the other: ∇V pushes nothing apart
   CONTACT_OVERLAP_BLENDED = 1 << 4,  // answered partly by a more careful model
+  CONTACT_OVERLAP_NET = 1 << 5,      // a TetrahedronPairNet's volume is part of the answer
+  CONTACT_OVERLAP_BEYOND = 1 << 6,   // the pair is unlike those that network was trained on
 } ContactOverlapFlag;
 
 // A batch of pairs; all arrays are the caller's.
@@ -44,9 +47,9 @@ typedef struct ContactOverlapOps {
   const char *help; // one line for lists and the manual
   bool has_hessian;
   double seconds_per_pair; // rough cost of V + ∇V on one core, to announce how long a run will take [s]
-  // Allocates what the model keeps; NULL where it keeps nothing. `weights`: the path of a weights file; NULL:
-  // those that ship under the model's name.
-  Status (*create)(void **self, const char *weights);
+  // Allocates what the model keeps; NULL where it keeps nothing. `weights`: the path of a weights file, or
+  // the name of one that ships; NULL: the model's own. `options`, NULL: the model's own, matter to some.
+  Status (*create)(void **self, const char *weights, const ContactNetOptions *options);
   // Evaluates one pair; must be safe to call from several threads. `gradient` and `hessian` may be NULL; all
   // outputs are written. The coordinates are finite. RETRY is not used; fatal: message names the reason only.
   Status (*eval_pair)(const void *self, const double pair[24], double *volume, double *gradient,
@@ -54,6 +57,8 @@ typedef struct ContactOverlapOps {
   // Evaluates a batch at once; NULL: eval_pair over OpenMP threads.
   Status (*eval_batch)(const void *self, const ContactOverlapBatch *batch);
   void (*destroy)(void *self);
+  // Whether pairs that share no volume may get one, and want to be asked for; NULL: never.
+  bool (*has_ghosts)(const void *self);
 } ContactOverlapOps;
 
 typedef struct ContactOverlapModel {
@@ -64,8 +69,16 @@ typedef struct ContactOverlapModel {
 // The models there are, and how many.
 const ContactOverlapOps *const *contact_overlap_list(int *count);
 
-// Makes the model of that name. STATUS_INPUT: unknown name; the message lists the known ones and the nearest.
+// Makes the model of that name, or of that weights file (….safetensors), which says what it is. STATUS_INPUT:
+// unknown name; the message lists the known ones and the nearest.
 Status contact_overlap_create(ContactOverlapModel *model, const char *name);
+
+// The same with options for networks, and for `hybrid` the name or file of its network; both may be NULL.
+Status contact_overlap_create_with(ContactOverlapModel *model, const char *name, const char *weights,
+                                   const ContactNetOptions *options);
+
+// Whether pairs without common interior may get a volume.
+bool contact_overlap_has_ghosts(const ContactOverlapModel *model);
 
 // Evaluates all pairs of the batch with OpenMP. STATUS_INPUT: a coordinate is NaN or infinite; the message
 // names the pair. STATUS_INPUT: a Hessian is asked of a model that has none.

@@ -76,10 +76,13 @@ static Status check_margin(ContactSystem *system, double time, const double *pos
 
 static void count(ContactCounters *counters, const ContactEvaluation *evaluation) {
   counters->evaluations++;
-  counters->pairs += evaluation->tried;
-  counters->enclosed += evaluation->enclosed;
-  counters->fallbacks += evaluation->fallbacks;
-  counters->blended += evaluation->blended;
+  const ContactPairCounts *counts = &evaluation->counts;
+  counters->pairs.tried += counts->tried;
+  counters->pairs.enclosed += counts->enclosed;
+  counters->pairs.fallbacks += counts->fallbacks;
+  counters->pairs.by_net += counts->by_net;
+  counters->pairs.blended += counts->blended;
+  counters->pairs.beyond += counts->beyond;
   counters->overlap_s += evaluation->overlap_s;
   counters->force_s += evaluation->force_s;
 }

@@ -99,14 +99,21 @@ typedef struct ContactInterface {
   int active_count; // pairs with V > 0
 } ContactInterface;
 
+// Pairs of meshes by how they were answered.
+typedef struct ContactPairCounts {
+  long long tried;     // given to the overlap model
+  long long enclosed;  // flagged CONTACT_OVERLAP_ENCLOSED
+  long long fallbacks; // flagged FALLBACK
+  long long by_net;    // flagged NET
+  long long blended;   // flagged BLENDED
+  long long beyond;    // flagged BEYOND
+} ContactPairCounts;
+
 // What struck, since creation; for summary and warnings.
 typedef struct ContactCounters {
-  long long evaluations;              // of the whole system
-  long long pairs;                    // given to the overlap model
+  long long evaluations; // of the whole system
+  ContactPairCounts pairs;
   long long searches;                 // broad phases
-  long long enclosed;                 // pairs flagged CONTACT_OVERLAP_ENCLOSED
-  long long fallbacks;                // pairs flagged CONTACT_OVERLAP_FALLBACK
-  long long blended;                  // pairs flagged CONTACT_OVERLAP_BLENDED
   long long beyond_margin;            // evaluations refused because a vertex left the margin
   double broad_s, overlap_s, force_s; // wall time by phase [s]
 } ContactCounters;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "net/weights.h"
 
 static const char ENDING[] = ".safetensors";
 
@@ -25,4 +26,16 @@ Status contact_weights_find(const char *name, char *path, size_t size) {
                      "the weights of '%s' are not at %s; set TETLAP_WEIGHTS to the folder that holds them, "
                      "or name a weights file",
                      name, path);
+}
+
+Status contact_weights_kind(const char *path, ContactWeightsKind *kind) {
+  NetModel_f32 network;
+  NetCard card;
+  NetStatus status = net_weights_read_f32(path, &network, &card);
+  if (status != NET_OK) // names the path
+    return status_fail(status == NET_BAD_IO ? STATUS_IO : STATUS_INPUT, "%s", net_status_message());
+  *kind = network.plan->shape.kind == NET_TPN ? CONTACT_WEIGHTS_TPN : CONTACT_WEIGHTS_GEO;
+  net_card_destroy(&card);
+  net_model_destroy_f32(&network);
+  return STATUS_OK;
 }

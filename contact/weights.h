@@ -11,8 +11,13 @@
 // Whether a model's name is rather a path to a weights file: it ends in .safetensors.
 bool contact_weights_is_path(const char *name);
 
-// The file of a shipped model, NAME.safetensors in $TETLAP_WEIGHTS, or else in the source tree that the program was
-// built from. STATUS_IO: it is not there, with what to do; STATUS_INPUT: the path has `size` characters or more.
+// What a weights file's network is for, by its shape. STATUS_INPUT, STATUS_IO: it cannot be read.
+typedef enum ContactWeightsKind { CONTACT_WEIGHTS_GEO, CONTACT_WEIGHTS_TPN } ContactWeightsKind;
+Status contact_weights_kind(const char *path, ContactWeightsKind *kind);
+
+// The file of a shipped model, NAME.safetensors in $TETLAP_WEIGHTS, or else in the source tree that the
+// program was built from. STATUS_IO: it is not there, with what to do; STATUS_INPUT: the path has `size`
+// characters or more.
 Status contact_weights_find(const char *name, char *path, size_t size);
 
 #endif

@@ -3,9 +3,12 @@
 // matrix.
 #include "fem/effect_contact.h"
 
+#include <string.h>
+
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "contact/weights.h"
 #include "fem/drive.h"
 #include "fem/effect.h"
 
@@ -67,21 +70,49 @@ static void list_sides(Contact *contact) {
   }
 }
 
-static Status create_overlap(Contact *contact) {
-  const FemSceneDef *scene = contact->model->scene;
-  if (!scene->contact.net) return contact_overlap_create(&contact->overlap, scene->contact.overlap);
+// The model of that name or weights file; hybrid's network is the scene's.
+static Status create_named(const FemSceneDef *scene, const char *name, const char *weights,
+                           ContactOverlapModel *overlap) {
+  const ContactNetOptions *options = scene->contact.is_on ? &scene->contact.net_options : NULL;
+  return contact_overlap_create_with(overlap, name, strcmp(name, "hybrid") == 0 ? weights : NULL, options);
+}
+
+// What `contact.net` says, a file's path seen from here; owned. NULL: no memory.
+static char *locate_net(const FemSceneDef *scene) {
+  const char *net = scene->contact.net;
+  if (!contact_weights_is_path(net)) return memory_copy(net, strlen(net) + 1, 1);
   char *directory = file_directory_of(scene->path ? scene->path : ".");
-  char *path = directory ? file_join(directory, scene->contact.net) : NULL;
-  Status status = path ? contact_overlap_create(&contact->overlap, path) : status_no_memory("a file name");
+  char *path = directory ? file_join(directory, net) : NULL;
   memory_free(directory);
-  memory_free(path);
+  return path;
+}
+
+const char *fem_effect_contact_overlap(const FemSceneDef *scene) {
+  const FemContactDef *contact = &scene->contact;
+  if (!contact->is_on) return NULL;
+  return contact->net && strcmp(contact->overlap, "hybrid") != 0 ? contact->net : contact->overlap;
+}
+
+Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *name,
+                                         ContactOverlapModel *overlap) {
+  *overlap = (ContactOverlapModel){0};
+  if (!scene->contact.net) return create_named(scene, name ? name : scene->contact.overlap, NULL, overlap);
+  char *net = locate_net(scene);
+  if (!net) return status_no_memory("a file name");
+  bool is_scenes = name == NULL, is_hybrid = strcmp(scene->contact.overlap, "hybrid") == 0;
+  Status status = create_named(scene,
+                               !is_scenes  ? name
+                               : is_hybrid ? scene->contact.overlap
+                                           : net,
+                               is_hybrid ? net : NULL, overlap);
+  memory_free(net);
   return status;
 }
 
 static Status build(Contact *contact) {
   const FemModel *model = contact->model;
   const FemContactDef *def = &model->scene->contact;
-  TRY(create_overlap(contact));
+  TRY(fem_effect_contact_create_overlap(model->scene, NULL, &contact->overlap));
   contact->bodies = memory_zeroed((size_t)model->body_count, sizeof *contact->bodies);
   contact->shapes = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->shapes);
   if (!contact->bodies || !contact->shapes) return status_no_memory("the contact bodies");
@@ -189,11 +220,13 @@ static void report(void *self, Record *counters) {
   Contact *contact = self;
   const ContactCounters *count = contact_system_counters(contact->system);
   record_integer(counters, "contact_evaluations", count->evaluations);
-  record_integer(counters, "contact_pairs", count->pairs);
+  record_integer(counters, "contact_pairs", count->pairs.tried);
   record_integer(counters, "contact_searches", count->searches);
-  record_integer(counters, "enclosed_pairs", count->enclosed);
-  record_integer(counters, "overlap_fallbacks", count->fallbacks);
-  record_integer(counters, "overlap_blended", count->blended);
+  record_integer(counters, "enclosed_pairs", count->pairs.enclosed);
+  record_integer(counters, "overlap_fallbacks", count->pairs.fallbacks);
+  record_integer(counters, "net_pairs", count->pairs.by_net);
+  record_integer(counters, "overlap_blended", count->pairs.blended);
+  record_integer(counters, "beyond_range_pairs", count->pairs.beyond);
   record_integer(counters, "beyond_margin", count->beyond_margin);
 }
 

@@ -354,7 +354,7 @@ static void sum_phases(Run *run) {
     phases->broad_phase = counters->broad_s;
     phases->overlap = counters->overlap_s;
     phases->contact += counters->force_s - counters->broad_s;
-    run->result->overlap_pairs = counters->pairs;
+    run->result->pairs = counters->pairs;
   }
   phases->analysis = run->result->solver.analyse_s;
   phases->factorisation = run->result->solver.factorise_s;

@@ -50,7 +50,7 @@ typedef struct FemRunResult {
   long long energy_retries;  // steps taken back because they gained energy
   FemAudit audit;
   double end_time;         // reached [s]
-  long long overlap_pairs; // handed to the overlap model over the whole run
+  ContactPairCounts pairs; // handed to the overlap model over the whole run
   int pairs_max;
   double overlap_volume_max, contact_force_max, min_det_F, deepest_overlap_max;
   double last_contact_force; // largest interface force at the last frame [N]

@@ -123,7 +123,8 @@ typedef struct FemContactDef {
   double stiffness; // κ; 0: chosen (the softest body's Young's modulus; `body`: that over its volume²…)
   ContactPotential potential;
   char *overlap; // name of the overlap model
-  char *net;     // weights file in its place, relative to the scene file; NULL: none
+  char *net;     // weights in its place, or hybrid's: a file, relative to the scene's, or a name; NULL: none
+  ContactNetOptions net_options;
   double margin; // [m]; 0: chosen
   bool use_full_hessian;
   double friction;   // coefficient μ between any two; 0: none

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/forward.h"
 
+#include <assert.h>
+
 #include "net/drive.h"
 #include "net/pass.h"
 

@@ -12,27 +12,47 @@
 
 static char path[64];
 
-static void write_network(const char *normalisation, NetActivation activation) {
-  NetShape shape = net_shape_tpn_a();
+static const char RANGE[] =
+    "radius 0.5 to 2, first volume 0.1 to 0.2, second volume 0.01 to 1, overlap to 0.15";
+
+// Random weights. `volume`: what the volume head says, about; `logit`: likewise.
+static void write_shape(const NetShape *shape, const char *normalisation, const char *range, float volume,
+                        float logit) {
   NetModel_f32 model;
-  char input[64], range[] = "anything", provenance[] = "random weights";
+  char input[64], covered[160], provenance[] = "random weights";
   snprintf(input, sizeof input, "%s", normalisation);
-  NetCard card = {.normalisation = input, .range = range, .provenance = provenance};
-  shape.activation = activation;
+  snprintf(covered, sizeof covered, "%s", range);
+  NetCard card = {.normalisation = input, .range = covered, .provenance = provenance};
   snprintf(path, sizeof path, "/tmp/test_net_overlap_%d.safetensors", (int)getpid());
-  ck_assert_int_eq(net_model_create_f32(&shape, &model), NET_OK);
+  ck_assert_int_eq(net_model_create_f32(shape, &model), NET_OK);
   net_model_initialise_f32(&model, 3);
-  float *bias = NULL;
+  float *volume_bias = NULL, *logit_bias = NULL;
   for (int k = 0; k < model.plan->tensor_count; k++) {
     const NetTensor *tensor = &model.plan->tensors[k];
-    if (strncmp(tensor->name, "volume", 6) == 0 && tensor->rows == 1 && tensor->columns == 0)
-      bias = model.parameters + tensor->offset;
+    if (tensor->rows != 1 || tensor->columns != 0) continue;
+    if (strncmp(tensor->name, "volume", 6) == 0) volume_bias = model.parameters + tensor->offset;
+    if (strncmp(tensor->name, "status", 6) == 0) logit_bias = model.parameters + tensor->offset;
   }
-  ck_assert_ptr_nonnull(bias);
-  // V > 0 whatever the input; not larger than needed, for float's rounding
-  *bias = normalisation[0] == 'p' ? 2 : 40;
+  ck_assert(volume_bias && logit_bias);
+  *volume_bias = volume;
+  *logit_bias = logit;
   ck_assert_int_eq(net_weights_write_f32(path, &model, &card), NET_OK);
   net_model_destroy_f32(&model);
+}
+
+static void write_network(const char *normalisation, NetActivation activation) {
+  NetShape shape = net_shape_tpn_a();
+  shape.activation = activation;
+  // V > 0 whatever the input; not larger than needed, for float's rounding
+  write_shape(&shape, normalisation, RANGE, normalisation[0] == 'p' ? 2 : 40, 0);
+}
+
+// A network whose V has a continuous gradient.
+static void write_smooth(float volume, float logit) {
+  NetShape shape = net_shape_tpn_a();
+  shape.activation = NET_SILU;
+  shape.pool = NET_SUM;
+  write_shape(&shape, "unit, V times 1000", RANGE, volume, logit);
 }
 
 static void draw_pairs(uint64_t seed, int count, double *pairs) {
@@ -52,7 +72,7 @@ static void check_gradient(const char *normalisation) {
   double pairs[24 * 40], volume, gradient[24];
   unsigned flags;
   write_network(normalisation, NET_SILU);
-  ck_assert_ok(contact_net_overlap_create(&self, path));
+  ck_assert_ok(contact_net_overlap_create(&self, path, NULL));
   draw_pairs(1, 40, pairs);
   int checked = 0;
   for (int n = 0; n < 40; n++) {
@@ -91,7 +111,7 @@ START_TEST(batches_give_what_single_pairs_give) {
   static double pairs[24 * COUNT], volume[COUNT], gradient[24 * COUNT], logits[COUNT];
   void *self;
   write_network("pca, V times 1000", NET_RELU);
-  ck_assert_ok(contact_net_overlap_create(&self, path));
+  ck_assert_ok(contact_net_overlap_create(&self, path, NULL));
   draw_pairs(2, COUNT, pairs);
   ContactOverlapBatch batch = {.pair_count = COUNT, .pairs = pairs, .volume = volume, .gradient = gradient};
   ck_assert_ok(contact_net_overlap_eval_batch(self, &batch));
@@ -114,7 +134,7 @@ START_TEST(flat_first_tetrahedron_is_answered_by_exact) {
   unsigned flags = 0;
   void *self;
   write_network("unit, V times 1000", NET_RELU);
-  ck_assert_ok(contact_net_overlap_create(&self, path));
+  ck_assert_ok(contact_net_overlap_create(&self, path, NULL));
   ck_assert_ok(contact_net_overlap_eval_pair(self, pair, &volume, gradient, NULL, &flags));
   ck_assert(volume == 0 && (flags & CONTACT_OVERLAP_FALLBACK));
   ck_assert_ok(contact_net_overlap_logits(self, 1, pair, &logit));
@@ -128,21 +148,278 @@ START_TEST(normalisation_text_is_read_as_it_is_written) {
   char text[CONTACT_NET_NORMALISATION_TEXT];
   ContactNormalisation kind;
   double scale;
-  contact_net_overlap_print(CONTACT_NORMALISE_PCA, 1234.5, text);
-  ck_assert(contact_net_overlap_parse(text, &kind, &scale));
+  contact_net_model_print(CONTACT_NORMALISE_PCA, 1234.5, text);
+  ck_assert(contact_net_model_parse(text, &kind, &scale));
   ck_assert(kind == CONTACT_NORMALISE_PCA && scale == 1234.5);
-  ck_assert(!contact_net_overlap_parse("unit", &kind, &scale));
-  ck_assert(!contact_net_overlap_parse("box, V times 10", &kind, &scale));
-  ck_assert(!contact_net_overlap_parse("pca, V times -1", &kind, &scale));
-  ck_assert(!contact_net_overlap_parse("pca, V times 10 or so", &kind, &scale));
+  ck_assert(!contact_net_model_parse("unit", &kind, &scale));
+  ck_assert(!contact_net_model_parse("box, V times 10", &kind, &scale));
+  ck_assert(!contact_net_model_parse("pca, V times -1", &kind, &scale));
+  ck_assert(!contact_net_model_parse("pca, V times 10 or so", &kind, &scale));
 }
 END_TEST
 
 START_TEST(weights_of_another_normalisation_are_refused_by_name) {
   void *self;
   write_network("analytic-centre frame", NET_RELU);
-  ck_assert_int_eq(contact_net_overlap_create(&self, path), STATUS_INPUT);
+  ck_assert_int_eq(contact_net_overlap_create(&self, path, NULL), STATUS_INPUT);
   ck_assert(strstr(status_message(), "analytic-centre frame") && strstr(status_message(), path));
+  unlink(path);
+}
+END_TEST
+
+static ContactOverlapModel open_with(const char *name, ContactNetOptions options) {
+  ContactOverlapModel model;
+  ck_assert_ok(contact_overlap_create_with(&model, name, path, &options));
+  return model;
+}
+
+typedef struct Answer {
+  double volume, gradient[24];
+  unsigned flags;
+} Answer;
+
+static Answer ask(const ContactOverlapModel *model, const double pair[24]) {
+  Answer answer;
+  ContactOverlapBatch batch = {.pair_count = 1,
+                               .pairs = pair,
+                               .volume = &answer.volume,
+                               .gradient = answer.gradient,
+                               .flags = &answer.flags};
+  ck_assert_ok(contact_overlap_eval(model, &batch));
+  return answer;
+}
+
+// The unit simplex, and the same moved along the diagonal: they touch where `by` is 1/3, share 1/6 where it
+// is 0.
+static void slide(double by, double pair[24]) {
+  static const double simplex[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  for (int i = 0; i < 12; i++) pair[i] = simplex[i], pair[12 + i] = simplex[i] + by;
+}
+
+START_TEST(a_file_says_which_model_it_is) {
+  ContactOverlapModel model;
+  write_network("unit, V times 1000", NET_RELU);
+  ck_assert_ok(contact_overlap_create(&model, path));
+  ck_assert(model.ops == &contact_overlap_tpn && contact_overlap_has_ghosts(&model));
+  contact_overlap_destroy(&model);
+  ck_assert_ok(contact_overlap_create(&model, TETLAP_SOURCE_DIR "/net/weights/geo-small.safetensors"));
+  ck_assert(strcmp(model.ops->name, "geo") == 0 && !contact_overlap_has_ghosts(&model));
+  contact_overlap_destroy(&model);
+  unlink(path);
+  ck_assert_int_eq(contact_overlap_create(&model, path), STATUS_IO);
+  ck_assert_ptr_nonnull(strstr(status_message(), path));
+}
+END_TEST
+
+START_TEST(ghosts_are_kept_cut_or_faded_as_asked) {
+  double apart[24], touching[24], deep[24];
+  write_smooth(40, 5);
+  slide(0.4, apart), slide(0.3333, touching), slide(0.1, deep);
+  ContactNetOptions options = contact_net_options_default();
+  options.gate = CONTACT_NET_GATE_NONE;
+  options.orders = CONTACT_NET_ORDERS_ONE;
+  options.ghosts = CONTACT_NET_GHOSTS_KEEP;
+  ContactOverlapModel keep = open_with("tpn", options);
+  options.ghosts = CONTACT_NET_GHOSTS_CUT;
+  ContactOverlapModel cut = open_with("tpn", options);
+  options.ghosts = CONTACT_NET_GHOSTS_FADE;
+  ContactOverlapModel fade = open_with("tpn", options);
+  ck_assert(contact_overlap_has_ghosts(&keep) && !contact_overlap_has_ghosts(&cut));
+  ck_assert(ask(&keep, apart).volume > 0.01);
+  Answer nothing = ask(&cut, apart);
+  ck_assert(nothing.volume == 0 && (nothing.flags & CONTACT_OVERLAP_DISJOINT));
+  for (int i = 0; i < 24; i++) ck_assert(nothing.gradient[i] == 0);
+  ck_assert(ask(&fade, apart).volume == 0);
+  ck_assert(ask(&cut, touching).volume == ask(&keep, touching).volume); // the jump
+  ck_assert(ask(&fade, touching).volume < 1e-6);
+  ck_assert(ask(&fade, deep).volume == ask(&keep, deep).volume);
+  contact_overlap_destroy(&keep), contact_overlap_destroy(&cut), contact_overlap_destroy(&fade);
+  unlink(path);
+}
+END_TEST
+
+START_TEST(the_gate_multiplies_by_the_probability) {
+  double pair[24], logit;
+  write_smooth(40, 0.5f);
+  slide(0.1, pair);
+  ContactNetOptions options = contact_net_options_default();
+  ContactOverlapModel plain = open_with("tpn", options);
+  options.gate = CONTACT_NET_GATE_STATUS;
+  ContactOverlapModel gated = open_with("tpn", options);
+  ck_assert_ok(contact_net_overlap_logits(gated.self, 1, pair, &logit));
+  double expected = ask(&plain, pair).volume / (1 + exp(-logit));
+  ck_assert(fabs(logit) < 3);
+  ck_assert_near(ask(&gated, pair).volume, expected, 1e-12 * expected);
+  contact_overlap_destroy(&plain), contact_overlap_destroy(&gated);
+  unlink(path);
+}
+END_TEST
+
+START_TEST(both_orders_make_it_symmetric) {
+  double pairs[24 * 20], swapped[24];
+  write_smooth(40, 5);
+  draw_pairs(4, 20, pairs);
+  ContactNetOptions options = contact_net_options_default();
+  ContactOverlapModel one = open_with("tpn", options);
+  options.orders = CONTACT_NET_ORDERS_BOTH;
+  ContactOverlapModel both = open_with("tpn", options);
+  int unequal = 0;
+  for (int n = 0; n < 20; n++) {
+    const double *pair = pairs + 24 * n;
+    memcpy(swapped, pair + 12, 12 * sizeof *pair), memcpy(swapped + 12, pair, 12 * sizeof *pair);
+    Answer mean = ask(&both, pair), exchanged = ask(&both, swapped);
+    double v = ask(&one, pair).volume, w = ask(&one, swapped).volume;
+    unequal += fabs(v - w) > 0.1 * v;
+    ck_assert_near(mean.volume, 0.5 * (v + w), 1e-12 * (v + w));
+    ck_assert_near(exchanged.volume, mean.volume, 1e-12 * mean.volume);
+    for (int i = 0; i < 24; i++)
+      ck_assert_near(exchanged.gradient[i], mean.gradient[(i + 12) % 24], 1e-9 * mean.volume);
+  }
+  ck_assert_int_ge(unequal, 10);
+  contact_overlap_destroy(&one), contact_overlap_destroy(&both);
+  unlink(path);
+}
+END_TEST
+
+static double exact_volume(const double pair[24]) {
+  double volume;
+  unsigned flags;
+  ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair, &volume, NULL, NULL, &flags));
+  return volume;
+}
+
+START_TEST(pairs_beyond_the_range_are_counted_or_sent_to_exact) {
+  double inside[24], beyond[24];
+  write_smooth(40, 5);
+  slide(0.1, inside), slide(0.1, beyond);
+  for (int v = 1; v < 4; v++) // four times as long: radius and volume leave the range
+    for (int c = 0; c < 3; c++) beyond[12 + 3 * v + c] = 0.1 + 4 * (beyond[12 + 3 * v + c] - 0.1);
+  ContactNetOptions options = contact_net_options_default();
+  ContactOverlapModel count = open_with("tpn", options);
+  options.beyond = CONTACT_NET_BEYOND_EXACT;
+  ContactOverlapModel exact = open_with("tpn", options);
+  ck_assert(ask(&count, inside).flags == CONTACT_OVERLAP_NET &&
+            ask(&exact, inside).flags == CONTACT_OVERLAP_NET);
+  ck_assert(ask(&count, beyond).flags == (CONTACT_OVERLAP_NET | CONTACT_OVERLAP_BEYOND));
+  Answer answer = ask(&exact, beyond);
+  ck_assert((answer.flags & CONTACT_OVERLAP_BEYOND) && (answer.flags & CONTACT_OVERLAP_FALLBACK));
+  ck_assert(!(answer.flags & CONTACT_OVERLAP_NET) && answer.volume == exact_volume(beyond));
+  contact_overlap_destroy(&count), contact_overlap_destroy(&exact);
+  unlink(path);
+}
+END_TEST
+
+START_TEST(a_range_that_is_not_known_cannot_send_pairs_to_exact) {
+  NetShape shape = net_shape_tpn_a();
+  write_shape(&shape, "unit, V times 1000", "anything", 40, 5);
+  ContactOverlapModel model;
+  ContactNetOptions options = contact_net_options_default();
+  ck_assert_ok(contact_overlap_create_with(&model, "tpn", path, &options));
+  contact_overlap_destroy(&model);
+  options.beyond = CONTACT_NET_BEYOND_EXACT;
+  ck_assert_int_eq(contact_overlap_create_with(&model, "tpn", path, &options), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "tetlap weights --range"));
+  unlink(path);
+}
+END_TEST
+
+START_TEST(hybrid_is_exact_where_shallow_deep_or_unsure_and_the_network_between) {
+  double shallow[24], middle[24], deep[24];
+  write_smooth(40, 8); // sure of everything
+  slide(0.3, shallow), slide(0.15, middle), slide(0.01, deep);
+  ContactNetOptions options = contact_net_options_default();
+  ContactOverlapModel sure = open_with("hybrid", options);
+  ck_assert(ask(&sure, shallow).volume == exact_volume(shallow));
+  ck_assert(ask(&sure, deep).volume == exact_volume(deep));
+  ck_assert(ask(&sure, middle).flags == CONTACT_OVERLAP_NET);
+  ck_assert(fabs(ask(&sure, middle).volume - exact_volume(middle)) > 0.01); // a network that learned nothing
+  contact_overlap_destroy(&sure);
+  write_smooth(40, -8); // sure that nothing meets
+  ContactOverlapModel unsure = open_with("hybrid", options);
+  Answer answer = ask(&unsure, middle);
+  ck_assert(answer.volume == exact_volume(middle) && answer.flags == CONTACT_OVERLAP_FALLBACK);
+  contact_overlap_destroy(&unsure);
+  unlink(path);
+}
+END_TEST
+
+// Along the whole path from apart to coincident, in steps that blends can be seen in, V and ∇V change no more
+// than in proportion to the step; and ∇V is the slope of V.
+static void check_path(const char *name, ContactNetOptions options, int *blended) {
+  enum { STEPS = 4000 };
+  ContactOverlapModel model = open_with(name, options);
+  Answer before = {0};
+  double jump_volume = 0, jump_gradient = 0, slope_error = 0, largest = 0, top = 0.37,
+         h = (top - 0.005) / STEPS;
+  *blended = 0;
+  for (int k = 0; k <= STEPS; k++) {
+    double pair[24], difference = 0, slope = 0;
+    slide(top - h * k, pair);
+    pair[3] += 0.05, pair[19] -= 0.04; // nothing parallel
+    Answer now = ask(&model, pair);
+    for (int i = 0; i < 24; i++) difference += pow(now.gradient[i] - before.gradient[i], 2);
+    for (int i = 12; i < 24; i++) slope -= 0.5 * (now.gradient[i] + before.gradient[i]);
+    jump_volume = fmax(jump_volume, fabs(now.volume - before.volume));
+    jump_gradient = fmax(jump_gradient, sqrt(difference));
+    largest = fmax(largest, fabs(slope));
+    slope_error = fmax(slope_error, fabs((now.volume - before.volume) / h - slope));
+    *blended += (now.flags & CONTACT_OVERLAP_BLENDED) != 0;
+    before = now;
+  }
+  ck_assert_msg(jump_volume < 5 * h * largest, "%s: V jumps by %g, slope %g", name, jump_volume, largest);
+  ck_assert_msg(jump_gradient < 0.05 * largest, "%s: the gradient jumps by %g of %g", name, jump_gradient,
+                largest);
+  ck_assert_msg(slope_error < 0.02 * largest, "%s: slope off by %g of %g", name, slope_error, largest);
+  contact_overlap_destroy(&model);
+}
+
+START_TEST(volume_and_gradient_are_continuous_along_a_path) {
+  int blended;
+  ContactNetOptions options = contact_net_options_default();
+  write_smooth(40, 1.5f);
+  check_path("tpn-scene", options, &blended);
+  options.beyond = CONTACT_NET_BEYOND_EXACT;
+  check_path("tpn-scene", options, &blended);
+  check_path("hybrid", options, &blended);
+  ck_assert_int_ge(blended, 100);
+  unlink(path);
+}
+END_TEST
+
+// ∇V against differences, where gate, fading, range and confidence all vary.
+START_TEST(gradient_holds_through_gate_fading_range_and_blend) {
+  static const char *const names[] = {"tpn-scene", "hybrid"};
+  write_smooth(40, 1.5f);
+  for (int m = 0; m < 2; m++) {
+    ContactNetOptions options = contact_net_options_default();
+    options.beyond = CONTACT_NET_BEYOND_EXACT;
+    options.touch = 0.2; // most pairs lie in the bands
+    options.deep = 0.6;
+    ContactOverlapModel model = open_with(names[m], options);
+    Random random = random_seeded(9, 0);
+    int mixed = 0, right = 0;
+    for (int n = 0; n < 60; n++) {
+      double pair[24], worst = 0, size = 0;
+      slide(0.1 + 0.1 * random_uniform(&random), pair);
+      for (int i = 0; i < 24; i++) pair[i] += 0.2 * (random_uniform(&random) - 0.5);
+      Answer answer = ask(&model, pair);
+      for (int i = 0; i < 24; i++) size = fmax(size, fabs(answer.gradient[i]));
+      for (int i = 0; i < 24; i++) {
+        double step = 3e-4, kept = pair[i];
+        pair[i] = kept + step;
+        double above = ask(&model, pair).volume;
+        pair[i] = kept - step;
+        double below = ask(&model, pair).volume;
+        pair[i] = kept;
+        worst = fmax(worst, fabs((above - below) / (2 * step) - answer.gradient[i]));
+      }
+      mixed += (answer.flags & CONTACT_OVERLAP_NET) != 0;
+      right += worst < 0.01 * size;
+    }
+    ck_assert_int_ge(mixed, 30);
+    ck_assert_msg(right >= 58, "%s: %d of 60 right", names[m], right);
+    contact_overlap_destroy(&model);
+  }
   unlink(path);
 }
 END_TEST
@@ -155,5 +432,14 @@ int main(void) {
   tcase_add_test(test_case, flat_first_tetrahedron_is_answered_by_exact);
   tcase_add_test(test_case, normalisation_text_is_read_as_it_is_written);
   tcase_add_test(test_case, weights_of_another_normalisation_are_refused_by_name);
+  tcase_add_test(test_case, a_file_says_which_model_it_is);
+  tcase_add_test(test_case, ghosts_are_kept_cut_or_faded_as_asked);
+  tcase_add_test(test_case, the_gate_multiplies_by_the_probability);
+  tcase_add_test(test_case, both_orders_make_it_symmetric);
+  tcase_add_test(test_case, pairs_beyond_the_range_are_counted_or_sent_to_exact);
+  tcase_add_test(test_case, a_range_that_is_not_known_cannot_send_pairs_to_exact);
+  tcase_add_test(test_case, hybrid_is_exact_where_shallow_deep_or_unsure_and_the_network_between);
+  tcase_add_test(test_case, volume_and_gradient_are_continuous_along_a_path);
+  tcase_add_test(test_case, gradient_holds_through_gate_fading_range_and_blend);
   return suite_run("net_overlap", test_case, 30);
 }

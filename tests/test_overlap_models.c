@@ -11,6 +11,16 @@
 #include "contact/overlap.h"
 #include "pairs.h"
 
+// What a model may lack. Networks that follow the paper see vertices in an order, know volumes roughly and
+// compute in float32.
+enum {
+  LACKS_ACCURACY = 1 << 0, // V near the true one: of pairs, of parts
+  LACKS_ORDER = 1 << 1,    // indifference to the order of vertices and tetrahedra
+  LACKS_DIGITS = 1 << 2,   // differences of V, V after a motion to many digits
+  LACKS_STATUS = 1 << 3,   // knowing which pairs are flat, disjoint, enclosed
+  LACKS_ALL_BUT_BALANCE = LACKS_ACCURACY | LACKS_ORDER | LACKS_DIGITS,
+};
+
 // What is asked of a model. Volumes in units of pairs_allowed, the rest relative to powers of the pair's
 // extent.
 typedef struct Demand {
@@ -20,12 +30,18 @@ typedef struct Demand {
   double learned;           // share of V that a learned model may be off besides, as measured; 0: none
   double invariant;         // Σ∇V, Σ x×∇V, Σ x·∇V − 3V
   double gradient, hessian; // against central differences
+  unsigned lacks;
 } Demand;
 
 static const Demand demands[] = {
-    {"clip", 100, 1, 0, 1e-14, 1e-7, 1e-5},  {"geo-small", 100, 1, 0.25, 1e-12, 1e-6, 1e-4},
-    {"geo", 100, 1, 0.2, 1e-12, 1e-6, 1e-4}, {"exact", 100, 1e-6, 0, 1e-14, 1e-7, 0},
-    {"cgal", 3, 1e-5, 0, 1e-14, 1e-7, 0},
+    {"clip", 100, 1, 0, 1e-14, 1e-7, 1e-5, 0},
+    {"geo-small", 100, 1, 0.25, 1e-12, 1e-6, 1e-4, 0},
+    {"geo", 100, 1, 0.2, 1e-12, 1e-6, 1e-4, 0},
+    {"tpn", 100, 1, 0, 1e-7, 0, 0, LACKS_ALL_BUT_BALANCE | LACKS_STATUS},
+    {"tpn-scene", 100, 1, 0, 1e-7, 0, 0, LACKS_ALL_BUT_BALANCE},
+    {"hybrid", 50, 1, 0, 1e-7, 0, 0, LACKS_ALL_BUT_BALANCE},
+    {"exact", 100, 1e-6, 0, 1e-14, 1e-7, 0, 0},
+    {"cgal", 3, 1e-5, 0, 1e-14, 1e-7, 0, 0},
 };
 
 static const ContactOverlapOps *model_at(int index) {
@@ -71,13 +87,22 @@ static double exact_volume(const double x[24]) {
   return volume;
 }
 
-// Calls `check` for every member of every class.
-static void for_each_pair(int model_index,
+// The model, if its weights are there: a network in training has none yet, which is said.
+static bool open_model(int index, ContactOverlapModel *model) {
+  const char *name = model_at(index)->name;
+  Status status = contact_overlap_create(model, name);
+  if (status == STATUS_IO) printf("skipped: %s\n", status_message());
+  ck_assert(status == STATUS_OK || status == STATUS_IO);
+  return status == STATUS_OK;
+}
+
+// Calls `check` for every member of every class, unless the model lacks what it asks for.
+static void for_each_pair(int model_index, unsigned asked,
                           void (*check)(const ContactOverlapModel *model, const Demand *demand,
                                         const PairCase *pair, const char *where)) {
   ContactOverlapModel model;
   const Demand *demand = demand_of(model_at(model_index)->name);
-  ck_assert_ok(contact_overlap_create(&model, demand->name));
+  if ((demand->lacks & asked) || !open_model(model_index, &model)) return;
   for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
     for (int member = 0; member < demand->members; member++) {
       char where[96];
@@ -110,7 +135,7 @@ static void check_volume(const ContactOverlapModel *model, const Demand *demand,
 }
 
 START_TEST(volumes_are_right_in_every_class) {
-  for_each_pair(_i, check_volume);
+  for_each_pair(_i, LACKS_ACCURACY, check_volume);
 }
 END_TEST
 
@@ -128,14 +153,17 @@ static void check_flags(const ContactOverlapModel *model, const Demand *demand, 
 }
 
 START_TEST(flags_say_what_the_numbers_are) {
-  for_each_pair(_i, check_flags);
+  for_each_pair(_i, LACKS_STATUS, check_flags);
 }
 END_TEST
 
 static void check_invariants(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
                              const char *where) {
   Answer answer = ask(model, pair->x);
-  ck_assert_at_most(where, pairs_bounds_residual(pair->x, answer.volume), 4e-16 + demand->learned);
+  if (!(demand->lacks & LACKS_ACCURACY))
+    ck_assert_at_most(where, pairs_bounds_residual(pair->x, answer.volume), 4e-16 + demand->learned);
+  else
+    ck_assert_msg(answer.volume >= 0, "%s: V = %g", where, answer.volume);
   ck_assert_at_most(where, pairs_translation_residual(pair->x, answer.gradient), demand->invariant);
   ck_assert_at_most(where, pairs_rotation_residual(pair->x, answer.gradient), demand->invariant);
   ck_assert_at_most(where, pairs_scaling_residual(pair->x, answer.volume, answer.gradient),
@@ -143,7 +171,7 @@ static void check_invariants(const ContactOverlapModel *model, const Demand *dem
 }
 
 START_TEST(volumes_are_bounded_and_gradients_balance) {
-  for_each_pair(_i, check_invariants);
+  for_each_pair(_i, 0, check_invariants);
 }
 END_TEST
 
@@ -162,7 +190,7 @@ static void check_exchange(const ContactOverlapModel *model, const Demand *deman
 }
 
 START_TEST(nothing_depends_on_the_order_of_tetrahedra_and_vertices) {
-  for_each_pair(_i, check_exchange);
+  for_each_pair(_i, LACKS_ORDER, check_exchange);
 }
 END_TEST
 
@@ -189,7 +217,7 @@ static void check_motion(const ContactOverlapModel *model, const Demand *demand,
 }
 
 START_TEST(a_rigid_motion_changes_nothing_and_scaling_gives_the_cube) {
-  for_each_pair(_i, check_motion);
+  for_each_pair(_i, LACKS_DIGITS, check_motion);
 }
 END_TEST
 
@@ -212,7 +240,7 @@ static void check_subdivision(const ContactOverlapModel *model, const Demand *de
 }
 
 START_TEST(the_parts_of_a_tetrahedron_sum_to_the_whole) {
-  for_each_pair(_i, check_subdivision);
+  for_each_pair(_i, LACKS_ACCURACY, check_subdivision);
 }
 END_TEST
 
@@ -231,7 +259,7 @@ static void check_gradient(const ContactOverlapModel *model, const Demand *deman
 }
 
 START_TEST(the_gradient_is_the_derivative_of_the_volume) {
-  for_each_pair(_i, check_gradient);
+  for_each_pair(_i, LACKS_DIGITS, check_gradient);
 }
 END_TEST
 
@@ -267,13 +295,13 @@ static void check_hessian(const ContactOverlapModel *model, const Demand *demand
 
 START_TEST(the_hessian_is_symmetric_and_the_derivative_of_the_gradient) {
   if (model_at(_i)->has_hessian) {
-    for_each_pair(_i, check_hessian);
+    for_each_pair(_i, 0, check_hessian);
     return;
   }
   ContactOverlapModel model;
   double volume, hessian[576];
   PairCase pair = pairs_make(2, 0);
-  ck_assert_ok(contact_overlap_create(&model, model_at(_i)->name));
+  if (!open_model(_i, &model)) return;
   ContactOverlapBatch batch = {.pair_count = 1, .pairs = pair.x, .volume = &volume, .hessian = hessian};
   ck_assert_int_eq(contact_overlap_eval(&model, &batch), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "Hessian"));
@@ -283,7 +311,8 @@ END_TEST
 
 START_TEST(a_tetrahedron_inside_another_is_flagged) {
   ContactOverlapModel model;
-  ck_assert_ok(contact_overlap_create(&model, model_at(_i)->name));
+  if (demand_of(model_at(_i)->name)->lacks & LACKS_STATUS) return;
+  if (!open_model(_i, &model)) return;
   int seen = 0;
   for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
     bool is_inside = strcmp(pairs_classes[c].name, "inside") == 0;
@@ -305,7 +334,7 @@ END_TEST
 START_TEST(a_coordinate_that_is_no_number_is_an_error_that_names_the_pair) {
   const double bad[3] = {NAN, INFINITY, -INFINITY};
   ContactOverlapModel model;
-  ck_assert_ok(contact_overlap_create(&model, model_at(_i)->name));
+  if (!open_model(_i, &model)) return;
   double x[5 * 24], volume[5];
   for (int k = 0; k < 5; k++) memcpy(x + 24 * k, pairs_make(0, k).x, 24 * sizeof *x);
   ContactOverlapBatch batch = {.pair_count = 5, .pairs = x, .volume = volume};
@@ -326,7 +355,7 @@ enum { BATCH = 200 };
 
 START_TEST(results_do_not_depend_on_the_number_of_threads) {
   ContactOverlapModel model;
-  ck_assert_ok(contact_overlap_create(&model, model_at(_i)->name));
+  if (!open_model(_i, &model)) return;
   static double x[BATCH * 24], volume[2][BATCH], gradient[2][BATCH * 24];
   static unsigned flags[2][BATCH];
   for (int k = 0; k < BATCH; k++) memcpy(x + 24 * k, pairs_make(k % PAIRS_CLASS_COUNT, k).x, 24 * sizeof *x);
@@ -350,7 +379,7 @@ END_TEST
 
 START_TEST(an_empty_batch_is_fine) {
   ContactOverlapModel model;
-  ck_assert_ok(contact_overlap_create(&model, model_at(_i)->name));
+  if (!open_model(_i, &model)) return;
   ck_assert_ok(contact_overlap_eval(&model, &(ContactOverlapBatch){0}));
   contact_overlap_destroy(&model);
 }

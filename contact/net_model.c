@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/net_model.h"
+
+#include <assert.h>
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+void contact_net_model_print(ContactNormalisation kind, double scale,
+                             char text[CONTACT_NET_NORMALISATION_TEXT]) {
+  snprintf(text, CONTACT_NET_NORMALISATION_TEXT, "%s, V times %.17g", contact_normalise_name(kind), scale);
+}
+
+bool contact_net_model_parse(const char *text, ContactNormalisation *kind, double *scale) {
+  char name[8];
+  int used = 0;
+  if (sscanf(text, "%7[a-z], V times %lf%n", name, scale, &used) != 2 || text[used]) return false;
+  for (int k = 0; k < CONTACT_NORMALISE_COUNT; k++) {
+    *kind = (ContactNormalisation)k;
+    if (strcmp(name, contact_normalise_name(*kind)) == 0) return *scale > 0 && isfinite(*scale);
+  }
+  return false;
+}
+
+static Status fail_as_net(NetStatus status) {
+  Status code = status == NET_NO_MEMORY ? STATUS_MEMORY : status == NET_BAD_IO ? STATUS_IO : STATUS_INPUT;
+  return status_fail(code, "%s", net_status_message());
+}
+
+void contact_net_model_destroy(ContactNetModel *model) {
+  for (int d = 0; model->desks && d < model->desk_count; d++) {
+    net_work_destroy_f32(&model->desks[d].work);
+    memory_free(model->desks[d].more);
+  }
+  memory_free(model->desks);
+  net_card_destroy(&model->card);
+  net_model_destroy_f32(&model->network);
+  *model = (ContactNetModel){0};
+}
+
+static Status furnish(ContactNetModel *model, size_t more) {
+  model->desk_count = omp_get_max_threads();
+  model->desks = memory_zeroed((size_t)model->desk_count, sizeof *model->desks);
+  if (!model->desks) return status_no_memory("the network's memory of evaluation");
+  NetWorkDef def = net_work_default();
+  for (int d = 0; d < model->desk_count; d++) {
+    ContactNetDesk *desk = &model->desks[d];
+    atomic_flag_clear(&desk->is_taken);
+    desk->more = memory_zeroed(1, more);
+    if (!desk->more) return status_no_memory("the network's memory of evaluation");
+    NetStatus status = net_work_create_f32(model->network.plan, &def, &desk->work);
+    if (status != NET_OK) return fail_as_net(status);
+  }
+  return STATUS_OK;
+}
+
+static Status load(ContactNetModel *model, const char *path, size_t more) {
+  NetStatus status = net_weights_read_f32(path, &model->network, &model->card);
+  if (status != NET_OK) return fail_as_net(status);
+  if (model->network.plan->shape.kind != NET_TPN)
+    return status_fail(STATUS_INPUT, "%s: a TetrahedronPairNet is needed, this is another network", path);
+  if (!contact_net_model_parse(model->card.normalisation, &model->kind, &model->scale))
+    return status_fail(
+        STATUS_INPUT,
+        "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER', 'pca, …' or 'sorted, …'", path,
+        model->card.normalisation);
+  model->has_range = contact_net_range_parse(model->card.range, &model->range);
+  return furnish(model, more);
+}
+
+Status contact_net_model_create(ContactNetModel *model, const char *path, size_t more) {
+  *model = (ContactNetModel){0};
+  Status status = load(model, path, more);
+  if (status != STATUS_OK) contact_net_model_destroy(model);
+  return status;
+}
+
+ContactNetDesk *contact_net_model_take(const ContactNetModel *model) {
+  for (int d = omp_get_thread_num();; d++) {
+    ContactNetDesk *desk = &model->desks[d % model->desk_count];
+    if (atomic_flag_test_and_set_explicit(&desk->is_taken, memory_order_acquire)) continue;
+    desk->row_count = 0;
+    return desk;
+  }
+}
+
+void contact_net_model_leave(ContactNetDesk *desk) {
+  atomic_flag_clear_explicit(&desk->is_taken, memory_order_release);
+}
+
+void contact_net_model_lay(ContactNetDesk *desk, const double pair[24]) {
+  assert(desk->row_count < CONTACT_NET_ROWS);
+  float *row = desk->x + 24 * (ptrdiff_t)desk->row_count++;
+  for (int c = 0; c < 24; c++) row[c] = (float)pair[c];
+}
