@@ -48,7 +48,7 @@ typedef struct Papers {
 } Papers;
 
 ContactNetOptions contact_net_options_default(void) {
-  return (ContactNetOptions){.touch = 0.02, .deep = 0.5, .confidence = 0.95};
+  return (ContactNetOptions){.touch = 0.02, .deep = 0.3, .confidence = 0.95};
 }
 
 void contact_net_overlap_destroy(void *self) {
