@@ -20,12 +20,13 @@ enum {
   BOTTOM = 50,
   LETTER_WIDTH = 6, // of a label
   LETTER_HEIGHT = 12,
+  MAX_REACH = 16, // of a label from its point, in steps
 };
 
 typedef struct Point {
   const char *name, *family; // borrowed
   double x, y;               // time [s] and error; an error of 0 stands below the others
-  bool is_exact, is_frontier;
+  bool is_exact, is_frontier, is_placed;
   double px, py; // on the picture, from the panel's lower left corner [pixels]
   double lx, ly; // where its label begins, and the label's middle [pixels]
 } Point;
@@ -132,39 +133,42 @@ static double width_of(const Point *point) {
   return LETTER_WIDTH * (double)strlen(point->name) + (point->is_exact ? LETTER_WIDTH * 11 : 0);
 }
 
-// Whether the label of point i, put at (x, y), meets a point or a label that is there already.
-static bool is_free(const Panel *panel, int i, double x, double y) {
-  double width = width_of(&panel->points[i]);
+// Whether the label of a point, put at (x, y), meets a point or a label that is there already.
+static bool is_free(const Panel *panel, const Point *point, double x, double y) {
+  double width = width_of(point);
   if (x < LEFT || x + width > PANEL_WIDTH - 2 || y < BOTTOM + 6 || y > PANEL_HEIGHT - TOP - 6) return false;
   for (int j = 0; j < panel->count; j++) {
     const Point *other = &panel->points[j];
     if (other->px > x - 5 && other->px < x + width + 5 && fabs(other->py - y) < LETTER_HEIGHT / 2 + 4)
       return false;
-    if (j < i && other->lx < x + width && x < other->lx + width_of(other) &&
+    if (other->is_placed && other->lx < x + width && x < other->lx + width_of(other) &&
         fabs(other->ly - y) < LETTER_HEIGHT)
       return false;
   }
   return true;
 }
 
-// Each label at the nearest free place around its point.
-static void place_labels(Panel *panel) {
+// Tries the eight places at that distance from the point.
+static void try_places(const Panel *panel, Point *point, int reach) {
   static const int ways[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
+  for (int k = 0; k < 8 && !point->is_placed; k++) {
+    const int *way = ways[k];
+    double back = way[0] < 0 ? width_of(point) : way[0] == 0 ? width_of(point) / 2 : 0;
+    double x = point->px + way[0] * (1 + 7 * reach) - back;
+    double y = point->py + way[1] * (way[0] ? 9 : 14) * reach;
+    point->is_placed = is_free(panel, point, x, y);
+    if (point->is_placed) point->lx = x, point->ly = y;
+  }
+}
+
+// First all labels that fit close to their points, then the others farther and farther away.
+static void place_labels(Panel *panel) {
+  for (int reach = 1; reach <= MAX_REACH; reach++)
+    for (int i = 0; i < panel->count; i++)
+      if (!panel->points[i].is_placed) try_places(panel, &panel->points[i], reach);
   for (int i = 0; i < panel->count; i++) {
     Point *point = &panel->points[i];
-    point->lx = point->px + 8, point->ly = point->py;
-    bool is_placed = false;
-    for (int k = 0; k < 8 * 16 && !is_placed; k++) {
-      int reach = k / 8 + 1;
-      const int *way = ways[k % 8];
-      double x = point->px + way[0] * (1 + 7 * reach) -
-                 (way[0] < 0    ? width_of(point)
-                  : way[0] == 0 ? width_of(point) / 2
-                                : 0);
-      double y = point->py + way[1] * (way[0] ? 9 : 14) * reach;
-      is_placed = is_free(panel, i, x, y);
-      if (is_placed) point->lx = x, point->ly = y;
-    }
+    if (!point->is_placed) point->lx = point->px + 8, point->ly = point->py; // no room at all
   }
 }
 

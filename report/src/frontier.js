@@ -21,7 +21,8 @@ export function frontOf(points) {
 const WAYS = [[1, 0], [-1, 0], [0, -1], [0, 1], [1, -1], [1, 1], [-1, -1], [-1, 1]];
 const overlaps = (a, b) => a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
 
-// A place for each label: the nearest around its point that meets no other label and no point.
+// A place for each label, where it meets no other label and no point: first for all that fit close to their
+// points, then for the others farther and farther away.
 function placeLabels(points, bounds) {
   const taken = points.map(({ px, py }) => ({ x0: px - 5, x1: px + 5, y0: py - 5, y1: py + 5 }));
   const boxAt = (point, width, [dx, dy], reach) => {
@@ -31,13 +32,15 @@ function placeLabels(points, bounds) {
   };
   const isInside = (box) => box.x0 >= bounds.x0 && box.x1 <= bounds.x1 && box.y0 >= bounds.y0 && box.y1 <= bounds.y1;
   const isFree = (box) => isInside(box) && !taken.some((other) => overlaps(box, other));
-  return points.map((point) => {
-    const width = (point.name.length + (point.isZero ? 11 : 0)) * FONT * 0.58;
-    const boxes = [1, 2, 3, 4, 5, 6].flatMap((reach) => WAYS.map((way) => boxAt(point, width, way, reach)));
-    const box = boxes.find(isFree) ?? boxes.find(isInside) ?? boxes[0];
-    taken.push(box);
-    return box;
-  });
+  const widthOf = (point) => (point.name.length + (point.isZero ? 11 : 0)) * FONT * 0.58;
+  const places = points.map(() => null);
+  for (let reach = 1; reach <= 12; reach++)
+    points.forEach((point, k) => {
+      if (places[k]) return;
+      places[k] = WAYS.map((way) => boxAt(point, widthOf(point), way, reach)).find(isFree) ?? null;
+      if (places[k]) taken.push(places[k]);
+    });
+  return places.map((box, k) => box ?? boxAt(points[k], widthOf(points[k]), WAYS[0], 1));
 }
 
 // A logarithmic axis with some air at both ends, and at most six powers of ten on it.
