@@ -162,7 +162,8 @@ static void print_text(const AppJob *job, const Notes *notes) {
   for (int o = 0; o < scene->obstacle_count; o++) print_obstacle(job, o);
   print_effects(scene);
   print_contact(job);
-  printf("unknowns      %d displacements, and as many velocities\n", model->unknown_count);
+  printf("unknowns      %d displacements, %s velocities\n", model->unknown_count,
+         scene->is_static ? "no" : "and as many");
   printf("time          0 to %g s, error per step %g m and %g m/s\n", scene->end,
          scene->tolerance * model->length, fem_model_velocity_tolerance(model));
   printf("solver        %s%s, %d threads\n", fem_solver_name(fem_run_solver(model)),

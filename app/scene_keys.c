@@ -489,6 +489,9 @@ static const SceneSection obstacle = {.help = "a rigid solid that bodies run int
 static const SceneKey time_keys[] = {
     {"end", SCENE_NUMBER, AT(FemSceneDef, end), .unit = "s", .range = "(0, inf)", .required = "0.5",
      .help = "the run goes from 0 to here"},
+    {"static", SCENE_SWITCH, AT(FemSceneDef, is_static), .fallback = "false",
+     .help =
+         "equilibria at the times of the frames: no velocities, no mass; time is a parameter of the loads"},
     {"tolerance", SCENE_NUMBER, AT(FemSceneDef, tolerance), .range = "(0, 1)", .fallback = "1e-4",
      .help = "error of the positions per step, as a share of the smallest body's size"},
     {"velocity_tolerance", SCENE_NUMBER, AT(FemSceneDef, velocity_tolerance), .unit = "m/s",

@@ -9,11 +9,14 @@ enum { STATUS_MESSAGE_SIZE = 2048 };
 
 static _Thread_local char message[STATUS_MESSAGE_SIZE];
 
+// The last message may be among the arguments.
 Status status_fail(Status code, const char *format, ...) {
+  char text[STATUS_MESSAGE_SIZE];
   va_list args;
   va_start(args, format);
-  vsnprintf(message, sizeof message, format, args);
+  vsnprintf(text, sizeof text, format, args);
   va_end(args);
+  memcpy(message, text, strlen(text) + 1);
   return code;
 }
 

@@ -3,13 +3,8 @@
 
 // One line an effect; forces are summed in this order.
 static const FemEffectOps *const effects[] = {
-    &fem_effect_elasticity,
-    &fem_effect_volume,
-    &fem_effect_damping,
-    &fem_effect_gravity,
-    &fem_effect_loads,
-    &fem_effect_contact,
-    &fem_effect_friction,
+    &fem_effect_elasticity, &fem_effect_volume,  &fem_effect_damping,  &fem_effect_gravity,
+    &fem_effect_loads,      &fem_effect_contact, &fem_effect_friction,
 };
 
 const FemEffectOps *const *fem_effect_list(int *count) {

@@ -51,6 +51,8 @@ typedef struct FemEffectOps {
   Status (*add_jacobian)(void *self, const FemState *state, double stiffness_scale, double damping_scale,
                          FemMatrix *matrix);
   Status (*add_energy)(void *self, const FemState *state, FemEnergy *energy); // NULL: none
+  // Forces are linear in positions and velocities: one Jacobian for the whole run. NULL: they are not.
+  bool (*is_linear)(void *self);
   // Onset function whose root restarts the integrator (contact touching); NULL: none.
   Status (*gap)(void *self, const FemState *state, double *gap);
   void (*report)(void *self, Record *counters); // adds counters to summary.json; NULL: none

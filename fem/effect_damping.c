@@ -5,6 +5,7 @@
 #include "fem/assembly.h"
 
 static bool is_wanted(const FemSceneDef *scene) {
+  if (scene->is_static) return false;
   for (int b = 0; b < scene->body_count; b++) {
     const FemMaterial *material = &scene->bodies[b].material;
     double beta = material->damping >= 0 ? material->damping : scene->stiffness_damping;
@@ -78,6 +79,14 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
+// Every body's law is linear, without fibres.
+static bool is_linear(void *self) {
+  const FemModel *model = ((const FemAssembly *)self)->model;
+  for (int b = 0; b < model->scene->body_count; b++)
+    if (!fem_material_is_linear(&model->bodies[b].material)) return false;
+  return true;
+}
+
 const FemEffectOps fem_effect_damping = {
     .name = "damping",
     .help = "stiffness-proportional damping and viscosity, by the strain rate",
@@ -88,5 +97,6 @@ const FemEffectOps fem_effect_damping = {
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
+    .is_linear = is_linear,
     .destroy = destroy,
 };

@@ -60,6 +60,14 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
+// Every body's law is linear, without fibres.
+static bool is_linear(void *self) {
+  const FemModel *model = ((const FemAssembly *)self)->model;
+  for (int b = 0; b < model->scene->body_count; b++)
+    if (!fem_material_is_linear(&model->bodies[b].material)) return false;
+  return true;
+}
+
 const FemEffectOps fem_effect_elasticity = {
     .name = "elasticity",
     .help = "the elements' elastic forces, by each body's material",
@@ -69,5 +77,6 @@ const FemEffectOps fem_effect_elasticity = {
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
+    .is_linear = is_linear,
     .destroy = destroy,
 };

@@ -38,6 +38,11 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
+static bool is_linear(void *self) {
+  (void)self;
+  return true;
+}
+
 const FemEffectOps fem_effect_gravity = {
     .name = "gravity",
     .help = "the bodies' weight",
@@ -45,5 +50,6 @@ const FemEffectOps fem_effect_gravity = {
     .create = create,
     .add_force = add_force,
     .add_energy = add_energy,
+    .is_linear = is_linear,
     .destroy = memory_free,
 };

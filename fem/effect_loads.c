@@ -125,6 +125,14 @@ static void report(void *self, Record *counters) {
   record_number(counters, "load_work_J", ((const Loads *)self)->kept_work);
 }
 
+// A pressure that follows its surface has a stiffness.
+static bool is_linear(void *self) {
+  const FemModel *model = ((const Loads *)self)->model;
+  for (int i = 0; i < model->load_count; i++)
+    if (follows(&model->loads[i])) return false;
+  return true;
+}
+
 const FemEffectOps fem_effect_loads = {
     .name = "loads",
     .help = "forces, body forces, tractions and pressures from outside, by functions of time",
@@ -136,5 +144,6 @@ const FemEffectOps fem_effect_loads = {
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .report = report,
+    .is_linear = is_linear,
     .destroy = destroy,
 };

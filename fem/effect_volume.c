@@ -76,6 +76,14 @@ void fem_effect_volume_add_stress(const void *self, int tet, const double x[12],
   }
 }
 
+// Every body's law is linear, without fibres.
+static bool is_linear(void *self) {
+  const FemModel *model = ((const FemVolume *)self)->model;
+  for (int b = 0; b < model->scene->body_count; b++)
+    if (!fem_material_is_linear(&model->bodies[b].material)) return false;
+  return true;
+}
+
 const FemEffectOps fem_effect_volume = {
     .name = "volume",
     .help = "volume changes averaged at the vertices, for bodies with element: nodal",
@@ -85,5 +93,6 @@ const FemEffectOps fem_effect_volume = {
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
+    .is_linear = is_linear,
     .destroy = destroy,
 };

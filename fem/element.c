@@ -2,6 +2,7 @@
 #include "fem/element.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/vec3.h"
 
@@ -129,10 +130,20 @@ static void find_viscous_stress(const FemMaterial *material, double beta, const 
   for (int r = 0; r < 9; r++) stress[r] = 2 * lame.mu * strain_rate[r] + (r % 4 == 0 ? pressure : 0);
 }
 
+// The law linear does not tell the two configurations apart: its strain rate is sym Ḟ.
+static void find_damped_deformation(const FemElement *element, const FemMaterial *material,
+                                    const double x[12], double F[9]) {
+  static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  if (fem_material_is_linear(material))
+    memcpy(F, identity, sizeof identity);
+  else
+    fem_element_deformation(element, x, F);
+}
+
 void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,
                                const double x[12], const double v[12], double force[12]) {
   double F[9], rate[9], strain_rate[9], stress[9], P[9];
-  fem_element_deformation(element, x, F);
+  find_damped_deformation(element, material, x, F);
   fem_element_deformation(element, v, rate);
   find_viscous_stress(material, beta, F, rate, strain_rate, stress);
   for (int i = 0; i < 3; i++)
@@ -144,7 +155,7 @@ void fem_element_damping_force(const FemElement *element, const FemMaterial *mat
 double fem_element_damping_power(const FemElement *element, const FemMaterial *material, double beta,
                                  const double x[12], const double v[12]) {
   double F[9], rate[9], strain_rate[9], stress[9], power = 0;
-  fem_element_deformation(element, x, F);
+  find_damped_deformation(element, material, x, F);
   fem_element_deformation(element, v, rate);
   find_viscous_stress(material, beta, F, rate, strain_rate, stress);
   for (int r = 0; r < 9; r++) power += strain_rate[r] * stress[r];
@@ -154,7 +165,7 @@ double fem_element_damping_power(const FemElement *element, const FemMaterial *m
 void fem_element_damping_matrix(const FemElement *element, const FemMaterial *material, double beta,
                                 const double x[12], double matrix[144]) {
   double F[9], dP[81];
-  fem_element_deformation(element, x, F);
+  find_damped_deformation(element, material, x, F);
   fem_material_pushed_stiffness(fem_material_viscous(material, beta), F, dP);
   fem_element_spread_tangent(element, dP, matrix);
 }
@@ -164,7 +175,11 @@ void fem_element_damping_matrix(const FemElement *element, const FemMaterial *ma
 void fem_element_damping_stiffness(const FemElement *element, const FemMaterial *material, double beta,
                                    const double x[12], const double v[12], double matrix[144]) {
   double F[9], rate[9], strain_rate[9], stress[9], dP[81];
-  fem_element_deformation(element, x, F);
+  if (fem_material_is_linear(material)) {
+    memset(matrix, 0, 144 * sizeof *matrix);
+    return;
+  }
+  find_damped_deformation(element, material, x, F);
   fem_element_deformation(element, v, rate);
   find_viscous_stress(material, beta, F, rate, strain_rate, stress);
   fem_material_pushed_stiffness_rate(fem_material_viscous(material, beta), F, rate, dP);

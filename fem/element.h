@@ -30,7 +30,7 @@ void fem_element_stiffness(const FemElement *element, const FemMaterial *materia
 // K_ai,bk = V Σ_jl ∂N_a/∂X_j ∂P_ij/∂F_kl ∂N_b/∂X_l for any symmetric ∂P/∂F.
 void fem_element_spread_tangent(const FemElement *element, const double dP[81], double matrix[144]);
 
-// Stiffness-proportional damping that no rigid motion feels: R = ½ β V Ė:C:Ė with the Green strain rate
+// Stiffness-proportional damping that no rigid motion feels (but by the law linear, whose rate is sym Ḟ): R = ½ β V Ė:C:Ė with the Green strain rate
 // Ė = sym(Fᵀ Ḟ) and the law's small-strain C; at rest it is β K. A viscosity of the material is added to β C.
 // Force −∂R/∂v, power 2R = −v · force ≥ 0, matrix ∂²R/∂v² (≥ 0).
 void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,

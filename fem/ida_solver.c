@@ -14,6 +14,10 @@ struct FemIdaSolver {
   SUNMatrix matrix;
   double *masses; // of the unknowns [kg]                      (unknown_count)
   double *right;  // right-hand side of the condensed system   (unknown_count)
+  // Of a linear system: K once, and the c that was factorised; assembling adds c D + c² M.
+  bool is_linear, is_factorised;
+  FemMatrix stiffness;
+  double factorised_c;
   bool has_damping;
   FemMatrix damping; // D, in the layout of the system's matrix; zeroed without damping
   long long layout;  // that was analysed; 0: none
@@ -57,8 +61,16 @@ static Status factorise(FemIdaSolver *solver) {
   if (solver->layout != matrix->layout) {
     TRY(solver->ops->analyse(solver->solver, matrix));
     solver->layout = matrix->layout;
+    solver->is_factorised = false;
   }
-  if (solver->ops->is_condensed) return solver->ops->factorise(solver->solver, matrix, NULL, NULL, solver->c);
+  if (solver->ops->is_condensed) {
+    if (solver->is_linear && solver->is_factorised && solver->factorised_c == solver->c) return STATUS_OK;
+    solver->is_factorised = false;
+    TRY(solver->ops->factorise(solver->solver, matrix, NULL, NULL, solver->c));
+    solver->is_factorised = true;
+    solver->factorised_c = solver->c;
+    return STATUS_OK;
+  }
   return solver->ops->factorise(solver->solver, matrix, solver->has_damping ? &solver->damping : NULL,
                                 solver->masses, solver->c);
 }
@@ -124,8 +136,11 @@ Status fem_ida_solver_create(FemIdaSolver **solver, FemSystem *system, const Fem
                              FemIdaFailure *failure, SUNContext context) {
   *solver = memory_zeroed(1, sizeof **solver);
   if (!*solver) return status_no_memory("the linear solver");
-  **solver = (FemIdaSolver){
-      .system = system, .ops = ops, .failure = failure, .has_damping = fem_system_dissipates(system)};
+  **solver = (FemIdaSolver){.system = system,
+                            .ops = ops,
+                            .failure = failure,
+                            .has_damping = fem_system_dissipates(system),
+                            .is_linear = ops->is_condensed && fem_system_is_linear(system)};
   Status status = create(*solver, context);
   if (status == STATUS_OK) return STATUS_OK;
   fem_ida_solver_destroy(*solver);
@@ -139,6 +154,7 @@ void fem_ida_solver_destroy(FemIdaSolver *solver) {
   if (solver->linear) SUNLinSolFreeEmpty(solver->linear);
   if (solver->matrix) SUNMatFreeEmpty(solver->matrix);
   fem_matrix_destroy(&solver->damping);
+  fem_matrix_destroy(&solver->stiffness);
   memory_free(solver->masses);
   memory_free(solver->right);
   memory_free(solver);
@@ -161,12 +177,31 @@ static Status assemble_damping(FemIdaSolver *solver, double time) {
   return fem_system_assemble(solver->system, time, 0, 1, 0, &solver->damping);
 }
 
+// S = K + c D + c² M from K and D, which are assembled once.
+static Status combine(FemIdaSolver *solver, double time) {
+  FemSystem *system = solver->system;
+  FemMatrix *matrix = &system->matrix;
+  if (solver->stiffness.layout != matrix->layout) {
+    fem_matrix_destroy(&solver->stiffness);
+    TRY(fem_matrix_copy_layout(&solver->stiffness, matrix));
+    TRY(fem_system_assemble(system, time, 1, 0, 0, &solver->stiffness));
+    if (solver->has_damping) TRY(assemble_damping(solver, time));
+  }
+  for (int i = 0; i < matrix->entry_count; i++) {
+    matrix->value[i] = solver->stiffness.value[i];
+    if (solver->has_damping) matrix->value[i] += solver->c * solver->damping.value[i];
+  }
+  fem_matrix_add_mass(matrix, system->model->mass, solver->c * solver->c);
+  return STATUS_OK;
+}
+
 Status fem_ida_solver_assemble(FemIdaSolver *solver, double time, double c, const double *u,
                                const double *v) {
   FemSystem *system = solver->system;
   fem_system_scatter(system, time, u, v);
   TRY(fem_system_couple(system, time));
   solver->c = c;
+  if (solver->is_linear) return combine(solver, time);
   if (solver->has_damping) TRY(assemble_damping(solver, time));
   bool is_condensed = solver->ops->is_condensed;
   TRY(fem_system_assemble(system, time, 1, 0, is_condensed ? c * c : 0, &system->matrix));

@@ -6,6 +6,9 @@
 //        set-up                ──► analyse if the layout is new, factorise
 //        solve J x = b         ──► S du = r₂ + (c M + D) r₁, dv = c du − r₁
 //
+// Of a linear system K and D are assembled once, and S is factorised only where c is new: once for each step
+// size and order.
+//
 // Not matrix-embedded: IDA would then factorise in every Newton iteration.
 #ifndef TETLAP_FEM_IDA_SOLVER_H
 #define TETLAP_FEM_IDA_SOLVER_H

@@ -377,6 +377,10 @@ void fem_material_tangent(const FemMaterial *material, const double F[9], double
   if (material->fibre_stiffness > 0) add_fibre_tangent(material, F, dP);
 }
 
+bool fem_material_is_linear(const FemMaterial *material) {
+  return material->law == FEM_MATERIAL_LINEAR && !(material->fibre_stiffness > 0);
+}
+
 FemLame fem_material_viscous(const FemMaterial *material, double beta) {
   FemLame lame = fem_material_lame(material);
   return (FemLame){.lambda = beta * lame.lambda + material->bulk_viscosity - 2.0 / 3.0 * material->viscosity,

@@ -86,6 +86,9 @@ void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double
 // The same material with another first Lamé parameter λ and the same μ.
 FemMaterial fem_material_with_lambda(const FemMaterial *material, double lambda);
 
+// The stress is linear in F: the law linear.
+bool fem_material_is_linear(const FemMaterial *material);
+
 // β C and the viscosities as a pair of Lamé parameters [Pa s].
 FemLame fem_material_viscous(const FemMaterial *material, double beta);
 

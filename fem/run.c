@@ -9,12 +9,15 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect_contact.h"
+#include "fem/statics.h"
 
 // A step that lifts the audited energy by more than this share of the scene's energy above its lowest value,
 // and by more than the second in one go, is taken back and tried again with a smaller step; at most so many
 // times in a row.
 static const double ENERGY_RISE_ALLOWED = 3e-4, ENERGY_RISE_OF_STEP = 1e-5, RETRY_FACTOR = 0.2;
 enum { RETRIES_IN_A_ROW = 8 };
+// A static run gives up where a step of load becomes shorter than this share of the time between two frames.
+static const double SHORTEST_LOAD_STEP = 1e-4;
 
 // `auto` factorises up to this many unknowns. Beyond, a factor takes gigabytes and PCG, poor as it is for
 // slow and nearly incompressible scenes, is what fits.
@@ -26,7 +29,8 @@ typedef struct Run {
   const FemRunOptions *options; // borrowed
   FemRunResult *result;         // borrowed
   FemSystem system;
-  FemIntegrator *integrator;
+  FemIntegrator *integrator; // NULL in a static scene
+  FemStatics statics;        // of a static scene
   FemRecorder recorder;
   FemAudit audit;
   double time;           // of the last accepted state
@@ -47,7 +51,8 @@ FemSolverKind fem_run_solver(const FemModel *model) {
 
 // Counted over all stages.
 static FemIntegratorStats stats_of(const Run *run) {
-  FemIntegratorStats stats = fem_integrator_stats(run->integrator), before = run->before;
+  FemIntegratorStats stats = {0}, before = run->before;
+  if (run->integrator) stats = fem_integrator_stats(run->integrator);
   stats.steps += before.steps, stats.setups += before.setups, stats.residuals += before.residuals;
   stats.newton_iterations += before.newton_iterations, stats.newton_failures += before.newton_failures;
   stats.error_test_failures += before.error_test_failures;
@@ -306,6 +311,20 @@ static Status allocate_states(Run *run) {
   return STATUS_OK;
 }
 
+// The recorder, the audit and the first frame, from the state u, v at the run's time.
+static Status begin_record(Run *run) {
+  const FemModel *model = run->model;
+  const FemSceneDef *scene = model->scene;
+  TRY(fem_recorder_create(&run->recorder, &run->system, run->options->directory, scene->frames + 1));
+  if (run->options->keep_trajectory) TRY(keep_trajectory(run));
+  fem_system_scatter(&run->system, 0, run->u, run->v);
+  FemMeasures measures;
+  TRY(fem_recorder_measure(&run->recorder, 0, &measures));
+  fem_audit_begin(&run->audit, 0, &measures.energy, energy_floor(model));
+  keep_extremes(run->result, &measures);
+  return write_frame(run, 0, &measures);
+}
+
 static Status begin(Run *run) {
   if (isfinite(fem_model_next_release(run->model, 0))) {
     TRY(fem_model_copy_numbering(&run->own, run->model));
@@ -321,17 +340,56 @@ static Status begin(Run *run) {
     if (run->options->initial_displacement) run->u[i] = run->options->initial_displacement[dof];
   }
   TRY(begin_stage(run, scene->initial_step));
-  TRY(fem_recorder_create(&run->recorder, &run->system, run->options->directory, scene->frames + 1));
-  if (run->options->keep_trajectory) TRY(keep_trajectory(run));
-  fem_system_scatter(&run->system, 0, run->u, run->v);
+  return begin_record(run);
+}
+
+// One step of load, halved where there is no equilibrium; `*step` is what to try next.
+static Status advance_static(Run *run, double target, double *step) {
+  double to = fmin(run->time + *step, target);
+  Status status = fem_statics_step(&run->statics, run->time, to, run->u);
+  if (status == STATUS_RETRY) {
+    *step = 0.5 * (to - run->time);
+    bool is_too_short = *step < SHORTEST_LOAD_STEP * run->model->scene->end / run->model->scene->frames;
+    return is_too_short ? status_fail(STATUS_SOLVER, "%s", status_message()) : STATUS_OK;
+  }
+  TRY(status);
+  run->time = to;
+  *step *= 2;
   FemMeasures measures;
-  TRY(fem_recorder_measure(&run->recorder, 0, &measures));
-  fem_audit_begin(&run->audit, 0, &measures.energy, energy_floor(model));
+  run->audit.driven_work = run->statics.driven_work;
+  fem_equilibrium_scatter(&run->statics.equilibrium, run->time, run->u);
+  TRY(fem_recorder_measure(&run->recorder, run->time, &measures));
+  FemAudit next = fem_audit_next(&run->audit, run->time, &measures.energy);
+  run->audit = next;
   keep_extremes(run->result, &measures);
-  return write_frame(run, 0, &measures);
+  run->before.steps = run->statics.steps;
+  run->before.newton_iterations = run->statics.newton_iterations;
+  if (run->time >= target) TRY(write_frame(run, run->time, &measures));
+  return observe(run, &measures);
+}
+
+// From equilibrium to equilibrium, frame by frame.
+static Status march_static(Run *run) {
+  const FemSceneDef *scene = run->model->scene;
+  FemSolverKind kind = fem_run_solver(run->model);
+  run->result->solver_name = fem_solver_name(kind);
+  TRY(allocate_states(run));
+  TRY(fem_system_create(&run->system, run->model));
+  TRY(fem_statics_create(&run->statics, &run->system, fem_solver_ops(kind)));
+  if (run->options->initial_displacement)
+    for (int i = 0; i < run->model->unknown_count; i++)
+      run->u[i] = run->options->initial_displacement[run->model->dof_of_unknown[i]];
+  TRY(begin_record(run));
+  double step = scene->max_step > 0 ? scene->max_step : scene->end / scene->frames;
+  while (run->next_frame <= scene->frames) {
+    step = fmin(step, scene->max_step > 0 ? scene->max_step : scene->end / scene->frames);
+    TRY(advance_static(run, frame_time(run, run->next_frame), &step));
+  }
+  return STATUS_OK;
 }
 
 static Status march(Run *run) {
+  if (run->model->scene->is_static) return march_static(run);
   TRY(begin(run));
   while (run->time < run->model->scene->end) {
     if (run->time >= run->stage_end) TRY(release(run));
@@ -370,8 +428,21 @@ static Status collect(Run *run) {
   if (run->integrator) {
     result->integrator = stats_of(run);
     result->solver = solver_stats_of(run);
+  } else if (run->statics.equilibrium.solver) {
+    const FemEquilibrium *equilibrium = &run->statics.equilibrium;
+    result->integrator = stats_of(run);
+    result->solver = *equilibrium->ops->stats(equilibrium->solver);
+    result->is_static = true;
+    result->residual = run->statics.residual;
+    result->residual_allowed = run->statics.tolerance * run->statics.force_scale;
+    result->relaxation_steps = run->statics.relaxation_steps;
+    result->halvings = run->statics.halvings;
   }
+  result->state_unknowns = (result->is_static ? 1 : 2) * run->model->unknown_count;
   result->pattern_layouts = run->system.pattern_version;
+  for (int i = 0; i < run->system.effect_count; i++)
+    if (run->system.costs[i].jacobian_calls > result->assemblies)
+      result->assemblies = run->system.costs[i].jacobian_calls;
   sum_phases(run);
   result->counters = record_new();
   for (int i = 0; i < run->system.effect_count; i++)
@@ -392,6 +463,7 @@ Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult
   result->cpu_s = clock_cpu_s() - cpu;
   fem_recorder_destroy(&run.recorder);
   fem_integrator_destroy(run.integrator);
+  fem_statics_destroy(&run.statics);
   fem_system_destroy(&run.system);
   double *states[] = {run.u, run.v, run.u_new, run.v_new};
   for (int i = 0; i < 4; i++) memory_free(states[i]);
@@ -433,8 +505,10 @@ static void summarise_counters(const FemRunResult *result, Record *record) {
   record_integer(record, "residuals", stats->residuals);
   record_integer(record, "onsets", stats->roots);
   record_integer(record, "restarts", stats->restarts);
+  record_integer(record, "state_unknowns", result->state_unknowns);
   record_integer(record, "energy_retries", result->energy_retries);
   record_integer(record, "pattern_layouts", result->pattern_layouts);
+  record_integer(record, "matrix_assemblies", result->assemblies);
   record_integer(record, "analyses", result->solver.analyses);
   record_integer(record, "factorisations", result->solver.factorisations);
   record_integer(record, "failed_factorisations", result->solver.failed_factorisations);
@@ -458,6 +532,13 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_number(summary, "energy_gain_relative", result->audit.gain / result->audit.scale);
   record_number(summary, "energy_scale", result->audit.scale);
   record_number(summary, "min_det_F", result->min_det_F);
+  if (result->is_static) {
+    Record *equilibrium = record_child(summary, "equilibrium");
+    record_number(equilibrium, "residual_N", result->residual);
+    record_number(equilibrium, "residual_allowed_N", result->residual_allowed);
+    record_integer(equilibrium, "relaxation_steps", result->relaxation_steps);
+    record_integer(equilibrium, "halvings", result->halvings);
+  }
   record_integer(summary, "peak_rss_bytes", (long long)result->peak_rss_bytes);
   Record *counters = record_child(summary, "counters");
   summarise_counters(result, counters);

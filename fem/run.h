@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole run of a scene: model → system → integrator → frames.
+// A whole run of a scene: model → system → integrator (or, in a static scene, fem/statics.h) → frames.
 //
 //     step ──► energy audit ──► frames up to its time (interpolated) ──► accept: effects renew their lists
 //      ▲            │ gains too much: back to the last accepted state, smaller step, order 1        │
@@ -46,11 +46,16 @@ typedef struct FemRunResult {
   FemIntegratorStats integrator;
   FemSolverStats solver;
   const char *solver_name;
+  long long assemblies;      // of K, or K and D apart: how often the elements' matrices were added up
   long long pattern_layouts; // how often the matrix pattern was laid out
   long long energy_retries;  // steps taken back because they gained energy
   FemAudit audit;
   double end_time;         // reached [s]
   ContactPairCounts pairs; // handed to the overlap model over the whole run
+  int state_unknowns;      // displacements, and in a motion as many velocities
+  bool is_static;
+  double residual, residual_allowed; // of the last equilibrium: largest force on an unknown [N]
+  long long relaxation_steps, halvings;
   int pairs_max;
   double overlap_volume_max, contact_force_max, min_det_F, deepest_overlap_max;
   double last_contact_force; // largest interface force at the last frame [N]

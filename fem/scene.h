@@ -152,6 +152,7 @@ typedef struct FemSceneDef {
   FemContactDef contact;
   // time
   double end;                              // [s]
+  bool is_static;                          // equilibria only: time is the parameter of loads and motions
   double tolerance;                        // error per step, as a share of the smallest body's size
   double velocity_tolerance;               // [m/s]; 0: chosen
   double max_step, initial_step, min_step; // [s]; 0: chosen

@@ -122,6 +122,14 @@ Status fem_system_couple(FemSystem *system, double time) {
   return has_grown ? lay_out(system) : STATUS_OK;
 }
 
+bool fem_system_is_linear(const FemSystem *system) {
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffectOps *ops = system->effects[i].ops;
+    if (!ops->is_linear || !ops->is_linear(system->effects[i].self)) return false;
+  }
+  return true;
+}
+
 Status fem_system_renumber(FemSystem *system) {
   return lay_out(system);
 }

@@ -39,6 +39,9 @@ Status fem_system_forces(FemSystem *system, double time);
 // pattern_version has grown. Call it before assembling into system->matrix or a copy of its layout.
 Status fem_system_couple(FemSystem *system, double time);
 
+// Every effect is linear: K and D are constant.
+bool fem_system_is_linear(const FemSystem *system);
+
 // After unknowns of the model were numbered anew (vertices released): lays the matrix out again.
 Status fem_system_renumber(FemSystem *system);
 

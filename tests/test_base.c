@@ -9,6 +9,13 @@
 #include "base/memory.h"
 #include "base/random.h"
 
+START_TEST(a_failure_may_quote_the_one_before) {
+  ck_assert_int_eq(status_fail(STATUS_RETRY, "inner %d", 3), STATUS_RETRY);
+  ck_assert_int_eq(status_fail(STATUS_SOLVER, "outer: %s", status_message()), STATUS_SOLVER);
+  ck_assert_str_eq(status_message(), "outer: inner 3");
+}
+END_TEST
+
 START_TEST(a_failure_carries_its_message_and_code) {
   ck_assert_int_eq(status_fail(STATUS_INPUT, "line %d: bad", 7), STATUS_INPUT);
   ck_assert_str_eq(status_message(), "line 7: bad");
@@ -86,5 +93,6 @@ int main(void) {
   tcase_add_test(cases, a_full_disk_is_an_error_with_the_path);
   tcase_add_test(cases, random_rotations_are_rotations);
   tcase_add_test(cases, random_streams_repeat_and_differ);
+  tcase_add_test(cases, a_failure_may_quote_the_one_before);
   return suite_run("base", cases, 10);
 }

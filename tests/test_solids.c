@@ -56,8 +56,74 @@ START_TEST(a_kelvin_voigt_solid_creeps) {
 }
 END_TEST
 
+// A beam that swings under its weight and a load.
+static void swing(SceneRun *run, const char *law, const char *element, const char *damping) {
+  char text[1024];
+  snprintf(text, sizeof text,
+           "time: {end: 0.128, tolerance: 1e-5}\n"
+           "effects: {gravity: [0, 0, -1], damping: %s}\n"
+           "bodies:\n"
+           "  - name: beam\n"
+           "    element: %s\n"
+           "    mesh: {box: {size: [0.5, 0.1, 0.1], cells: [10, 2, 2]}}\n"
+           "    material: {law: %s, young: 1e6, poisson: 0.45, density: 1000}\n"
+           "    fixed: [{group: x_min}]\n"
+           "    loads: [{group: x_max, traction: [0, 0, -10], factor: sin(40*t)}]\n"
+           "output: {frames: 1}\n",
+           damping, element, law);
+  scene_open_text(run, text);
+  scene_run_from(run, NULL);
+  ck_assert_msg(run->status == STATUS_OK, "%s", status_message());
+}
+
+// At a constant step a linear scene needs one factorisation: IDA keeps it while c changes by less than a
+// quarter, and what it asks for beyond that is done only for a new c. K and D are assembled once whatever the
+// steps.
+START_TEST(a_linear_scene_is_assembled_once) {
+  static const char *const elements[] = {"linear", "nodal"}, *const dampings[] = {"0", "1e-3"};
+  SceneRun linear, other;
+  swing(&linear, "linear", elements[_i % 2], dampings[_i / 2]);
+  swing(&other, "corotational", elements[_i % 2], dampings[_i / 2]);
+  bool is_damped = _i / 2;
+  const FemRunResult *once = &linear.result, *often = &other.result;
+  ck_assert_int_gt(once->integrator.setups, 2); // the step did change
+  ck_assert_int_eq(once->assemblies, is_damped ? 2 : 1);
+  ck_assert_int_le(once->solver.factorisations, once->integrator.setups);
+  ck_assert_int_eq(often->solver.factorisations, often->integrator.setups);
+  ck_assert_int_eq(often->assemblies, (is_damped ? 2 : 1) * often->integrator.setups);
+  // It did swing, and as the other law does.
+  int last = linear.result.frame_count - 1, tip = linear.model.vertex_count - 1;
+  double way = scene_position(&linear, last, tip)[2] - 0.1;
+  ck_assert(way < -1e-3);
+  ck_assert_near(scene_position(&other, last, tip)[2] - 0.1, way, 0.02 * fabs(way));
+  scene_close(&linear);
+  scene_close(&other);
+}
+END_TEST
+
+START_TEST(a_linear_scene_with_one_step_size_is_factorised_once) {
+  SceneRun run;
+  scene_open_text(&run,
+                  "time: {end: 0.2, initial_step: 0.002, min_step: 0.002, max_step: 0.002, tolerance: 0.1}\n"
+                  "effects: {gravity: [0, 0, -1], damping: 1e-3}\n"
+                  "bodies:\n"
+                  "  - name: beam\n"
+                  "    mesh: {box: {size: [0.5, 0.1, 0.1], cells: [10, 2, 2]}}\n"
+                  "    material: {law: linear, young: 1e6, poisson: 0.3, density: 1000}\n"
+                  "    fixed: [{group: x_min}]\n");
+  scene_run_from(&run, NULL);
+  ck_assert_int_eq(run.status, STATUS_OK);
+  ck_assert_int_eq(run.result.integrator.steps, 100);
+  ck_assert_int_eq(run.result.solver.factorisations, 1);
+  ck_assert_int_eq(run.result.solver.analyses, 1);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("solids");
   tcase_add_test(test_case, a_kelvin_voigt_solid_creeps);
+  tcase_add_loop_test(test_case, a_linear_scene_is_assembled_once, 0, 4);
+  tcase_add_test(test_case, a_linear_scene_with_one_step_size_is_factorised_once);
   return suite_run("solids", test_case, 60);
 }

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/kinsol.h"
+
+#include <kinsol/kinsol.h>
+#include <nvector/nvector_serial.h>
+#include <stdio.h>
+
+#include "base/memory.h"
+
+enum { MAX_ITERATIONS = 40, MESSAGE_SIZE = 512 };
+
+// One call: KINSOL, and what it is told.
+typedef struct Newton {
+  FemEquilibrium *equilibrium;
+  double time;
+  int n;
+  SUNContext context;
+  void *kinsol;
+  N_Vector u, u_scale, f_scale;
+  SUNLinearSolver linear;
+  SUNMatrix matrix;
+  Status fatal;               // of a callback; STATUS_OK: none
+  char message[MESSAGE_SIZE]; // of the last failure of a callback, "" if none
+} Newton;
+
+static int answer(Newton *newton, Status status) {
+  if (status == STATUS_OK) return 0;
+  snprintf(newton->message, sizeof newton->message, "%s", status_message());
+  if (status < 0) newton->fatal = status;
+  return status > 0 ? 1 : -1;
+}
+
+// F = −f, so that its Jacobian is K.
+static int residual(N_Vector u, N_Vector r, void *self) {
+  Newton *newton = self;
+  double *force = N_VGetArrayPointer(r);
+  int flag =
+      answer(newton, fem_equilibrium_forces(newton->equilibrium, newton->time, N_VGetArrayPointer(u), force));
+  for (int i = 0; i < newton->n && flag == 0; i++) force[i] = -force[i];
+  return flag;
+}
+
+static int jacobian(N_Vector u, N_Vector r, SUNMatrix matrix, void *self, N_Vector scratch1,
+                    N_Vector scratch2) {
+  (void)r, (void)matrix, (void)scratch1, (void)scratch2;
+  Newton *newton = self;
+  return answer(newton,
+                fem_equilibrium_factorise(newton->equilibrium, newton->time, N_VGetArrayPointer(u), 0));
+}
+
+static SUNLinearSolver_Type type_of(SUNLinearSolver linear) {
+  (void)linear;
+  return SUNLINEARSOLVER_DIRECT;
+}
+static SUNLinearSolver_ID id_of(SUNLinearSolver linear) {
+  (void)linear;
+  return SUNLINEARSOLVER_CUSTOM;
+}
+static SUNMatrix_ID matrix_id_of(SUNMatrix matrix) {
+  (void)matrix;
+  return SUNMATRIX_CUSTOM;
+}
+static int zero_matrix(SUNMatrix matrix) {
+  (void)matrix;
+  return SUNMAT_SUCCESS;
+}
+// Factorised when the Jacobian was asked for.
+static int set_up(SUNLinearSolver linear, SUNMatrix matrix) {
+  (void)linear, (void)matrix;
+  return SUNLS_SUCCESS;
+}
+static int solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b, realtype tolerance) {
+  (void)matrix, (void)tolerance;
+  Newton *newton = linear->content;
+  int flag = answer(newton,
+                    fem_equilibrium_solve(newton->equilibrium, N_VGetArrayPointer(b), N_VGetArrayPointer(x)));
+  return flag == 0 ? SUNLS_SUCCESS : flag > 0 ? SUNLS_PACKAGE_FAIL_REC : SUNLS_PACKAGE_FAIL_UNREC;
+}
+
+// KINSOL would print.
+static void be_silent(int code, const char *module, const char *function, char *message, void *self) {
+  (void)code, (void)module, (void)function, (void)message, (void)self;
+}
+
+static Status create(Newton *newton, double tolerance, double length) {
+  if (SUNContext_Create(NULL, &newton->context) != 0) return status_no_memory("KINSOL");
+  N_Vector *vectors[] = {&newton->u, &newton->u_scale, &newton->f_scale};
+  for (int i = 0; i < 3; i++)
+    if (!(*vectors[i] = N_VNew_Serial(newton->n, newton->context))) return status_no_memory("KINSOL");
+  N_VConst(1 / length, newton->u_scale);
+  N_VConst(1 / tolerance, newton->f_scale);
+  newton->linear = SUNLinSolNewEmpty(newton->context);
+  newton->matrix = SUNMatNewEmpty(newton->context);
+  newton->kinsol = KINCreate(newton->context);
+  if (!newton->linear || !newton->matrix || !newton->kinsol) return status_no_memory("KINSOL");
+  newton->linear->content = newton;
+  newton->linear->ops->gettype = type_of;
+  newton->linear->ops->getid = id_of;
+  newton->linear->ops->setup = set_up;
+  newton->linear->ops->solve = solve;
+  newton->matrix->ops->getid = matrix_id_of;
+  newton->matrix->ops->zero = zero_matrix;
+  void *kinsol = newton->kinsol;
+  bool is_ok =
+      KINSetErrHandlerFn(kinsol, be_silent, NULL) == KIN_SUCCESS &&
+      KINInit(kinsol, residual, newton->u) == KIN_SUCCESS && KINSetUserData(kinsol, newton) == KIN_SUCCESS &&
+      KINSetLinearSolver(kinsol, newton->linear, newton->matrix) == KIN_SUCCESS &&
+      KINSetJacFn(kinsol, jacobian) == KIN_SUCCESS && KINSetMaxSetupCalls(kinsol, 1) == KIN_SUCCESS &&
+      KINSetNumMaxIters(kinsol, MAX_ITERATIONS) == KIN_SUCCESS &&
+      KINSetFuncNormTol(kinsol, 1) == KIN_SUCCESS && // of the force over `tolerance`
+      KINSetScaledStepTol(kinsol, 1e-14) == KIN_SUCCESS;
+  return is_ok ? STATUS_OK : status_fail(STATUS_SOLVER, "KINSOL could not be set up");
+}
+
+static void destroy(Newton *newton) {
+  if (newton->kinsol) KINFree(&newton->kinsol);
+  if (newton->linear) SUNLinSolFreeEmpty(newton->linear);
+  if (newton->matrix) SUNMatFreeEmpty(newton->matrix);
+  N_Vector vectors[] = {newton->u, newton->u_scale, newton->f_scale};
+  for (int i = 0; i < 3; i++)
+    if (vectors[i]) N_VDestroy(vectors[i]);
+  if (newton->context) SUNContext_Free(&newton->context);
+}
+
+static Status run(Newton *newton, double *u, long long *iterations) {
+  double *own = N_VGetArrayPointer(newton->u), norm = 0;
+  for (int i = 0; i < newton->n; i++) own[i] = u[i];
+  int flag = KINSol(newton->kinsol, newton->u, KIN_LINESEARCH, newton->u_scale, newton->f_scale);
+  long taken = 0;
+  KINGetNumNonlinSolvIters(newton->kinsol, &taken);
+  KINGetFuncNorm(newton->kinsol, &norm);
+  *iterations += taken;
+  if (newton->fatal != STATUS_OK) return status_fail(newton->fatal, "%s", newton->message);
+  for (int i = 0; i < newton->n; i++) u[i] = own[i];
+  if (flag == KIN_SUCCESS || flag == KIN_INITIAL_GUESS_OK) return STATUS_OK;
+  const char *name = flag == KIN_MAXITER_REACHED ? "too many iterations" : newton->message;
+  return status_fail(STATUS_RETRY,
+                     "Newton's method left a force of %.3g times the tolerance after %ld iterations%s%s",
+                     norm, taken, name[0] ? ": " : "", name);
+}
+
+Status fem_kinsol_solve(FemEquilibrium *equilibrium, double time, double tolerance, double length, double *u,
+                        long long *iterations) {
+  Newton newton = {.equilibrium = equilibrium, .time = time, .n = equilibrium->system->model->unknown_count};
+  Status status = create(&newton, tolerance, length);
+  if (!status) status = run(&newton, u, iterations);
+  destroy(&newton);
+  return status;
+}

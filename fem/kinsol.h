@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// SUNDIALS KINSOL: Newton's method with a line search on f(u, t) = 0, a fresh factorisation in every
+// iteration. It converges from near an equilibrium; fem/statics.h brings it there.
+#ifndef TETLAP_FEM_KINSOL_H
+#define TETLAP_FEM_KINSOL_H
+
+#include "fem/equilibrium.h"
+
+// Moves u (unknown_count) until the largest force on an unknown is below `tolerance` [N]; `length` [m] is the
+// scale of displacements. `*iterations` grows by those taken. RETRY: not reached, u is then undefined; the
+// message says why.
+Status fem_kinsol_solve(FemEquilibrium *equilibrium, double time, double tolerance, double length, double *u,
+                        long long *iterations);
+
+#endif

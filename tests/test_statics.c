@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Static scenes: equilibria against theory, half the unknowns of a motion, and what is said where there is no
+// equilibrium.
+#include "static_solve.h"
+
+#include <stdio.h>
+
+#include "fem/statics.h"
+
+static void run_text(SceneRun *run, const char *text) {
+  scene_open_text(run, text);
+  scene_run_from(run, NULL);
+}
+
+static void run_well(SceneRun *run, const char *text) {
+  run_text(run, text);
+  ck_assert_msg(run->status == STATUS_OK, "%s", status_message());
+  ck_assert(run->result.residual <= run->result.residual_allowed);
+}
+
+static const char *const BEAM = "bodies:\n"
+                                "  - name: beam\n"
+                                "    mesh: {box: {size: [0.5, 0.1, 0.1], cells: [10, 2, 2]}}\n"
+                                "    material: {law: linear, young: 3e6, poisson: 0.3, density: 1000}\n"
+                                "    fixed: [{group: x_min}]\n"
+                                "    loads: [{group: x_max, force: [0, 0, -5]}]\n"
+                                "output: {frames: 1}\n";
+
+START_TEST(a_static_scene_has_half_the_unknowns) {
+  SceneRun still, moving;
+  char text[1024];
+  snprintf(text, sizeof text, "time: {end: 1e-3, static: true}\n%s", BEAM);
+  run_well(&still, text);
+  snprintf(text, sizeof text, "time: {end: 1e-3}\n%s", BEAM);
+  run_text(&moving, text);
+  ck_assert_int_eq(moving.status, STATUS_OK);
+  ck_assert_int_eq(still.result.state_unknowns, still.model.unknown_count);
+  ck_assert_int_eq(moving.result.state_unknowns, 2 * still.result.state_unknowns);
+  scene_close(&still);
+  scene_close(&moving);
+}
+END_TEST
+
+START_TEST(a_linear_body_is_in_equilibrium_after_one_solve) {
+  SceneRun run;
+  char text[1024];
+  snprintf(text, sizeof text, "time: {end: 1, static: true}\n%s", BEAM);
+  run_well(&run, text);
+  double *u = solve_linear_static(&run.model);
+  for (int a = 0; a < run.model.vertex_count; a++)
+    for (int c = 0; c < 3; c++)
+      ck_assert_near(scene_position(&run, 1, a)[c] - run.model.rest[3 * a + c], u[3 * a + c], 1e-9);
+  ck_assert_int_le(run.result.integrator.newton_iterations, 2);
+  ck_assert_int_eq(run.result.relaxation_steps, 0);
+  // The load was there at once: its work is mean force times way, all of F u, of which half is stored.
+  ck_assert(run.result.audit.work > 0);
+  free(u);
+  scene_close(&run);
+}
+END_TEST
+
+// Rubber pulled to twice its length: P = 2 (c₁ + c₂/λ)(λ − 1/λ²) at ν → ½; the reaction is P A.
+START_TEST(rubber_pulled_to_twice_its_length_pulls_back_as_theory_says) {
+  SceneRun run;
+  run_well(&run,
+           "time: {end: 1, static: true}\n"
+           "bodies:\n"
+           "  - name: block\n"
+           "    element: nodal\n"
+           "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 2}}\n"
+           "    material: {law: mooney_rivlin, mooney: 0.3, young: 3, poisson: 0.4999, density: 1}\n"
+           "    fixed: [{group: x_min, components: [x]}, {group: y_min, components: [y]}, {group: z_min, "
+           "components: [z]}]\n"
+           "    driven: [{group: x_max, components: [x], formula: {x: 0.1*t}}]\n"
+           "output: {frames: 20}\n");
+  // The driven side's work is the stored energy, to the trapezoidal rule over 20 steps: 1/1200 of it.
+  double expected =
+      1e-3 * (0.35 * (4 + 2.0 / 2 - 3) + 0.15 * (2 * 2 + 0.25 - 3)); // c₁ (I₁ − 3) + c₂ (I₂ − 3)
+  ck_assert_near(run.result.audit.work, expected, 3e-3 * expected);
+  ck_assert_near(run.result.audit.total, 0, 3e-3 * expected);
+  const double *corner = scene_position(&run, 20, run.model.vertex_count - 1);
+  ck_assert_near(corner[1], 0.1 / sqrt(2), 1e-4 * 0.1);
+  scene_close(&run);
+}
+END_TEST
+
+// Nothing holds the block but the ground: relaxation lets it sink until the contact carries it, Σ F = m g.
+START_TEST(a_block_comes_to_rest_on_the_ground) {
+  SceneRun run;
+  run_well(&run, "time: {end: 1, static: true}\n"
+                 "effects: {gravity: [0, 0, -9.81]}\n"
+                 "bodies:\n"
+                 "  - name: block\n"
+                 "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 3}}\n"
+                 "    place: {translate: [0, 0, 0.01]}\n"
+                 "    fixed: [{box: {min: [0, 0, 0], max: [0.1, 0.1, 1]}, components: [x, y]}]\n"
+                 "    material: {young: 1e5, poisson: 0.3, density: 1000}\n"
+                 "obstacles: [{name: ground, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+                 "contact: {}\n"
+                 "output: {frames: 1}\n");
+  ck_assert_int_gt(run.result.relaxation_steps, 0);
+  ck_assert_int_gt(run.result.pairs_max, 0);
+  ck_assert_near(fabs(scene_force(&run, 1, 0)[2]), 9.81, 9.81e-6);
+  scene_close(&run);
+}
+END_TEST
+
+// Lamé, plane strain: u(a) = p a (1 + ν) ((1 − 2ν) a² + b²)/(E (b² − a²)). Small strain, 1e-3.
+static double widening(const char *about, double nu) {
+  char text[1024];
+  snprintf(text, sizeof text,
+           "time: {end: 1, static: true}\n"
+           "bodies:\n"
+           "  - name: pipe\n"
+           "    %s\n"
+           "    mesh: {file: " TETLAP_SOURCE_DIR "/meshes/vessel.geo}\n"
+           "    material: {law: linear, young: 1e8, poisson: %g, density: 1000}\n"
+           "    fixed: [{group: x_min, components: [x]}, {group: y_min, components: [y]}, {group: z_min, "
+           "components: "
+           "[z]}, {group: z_max, components: [z]}]\n"
+           "    loads: [{group: inner, pressure: 1e5}]\n"
+           "output: {frames: 1}\n",
+           about, nu);
+  SceneRun run;
+  run_well(&run, text);
+  double sum = 0, expected = 1e5 * 0.1 * (1 + nu) * ((1 - 2 * nu) * 0.01 + 0.04) / (1e8 * 0.03);
+  int count = 0;
+  for (int a = 0; a < run.model.vertex_count; a++) {
+    const double *X = run.model.rest + 3 * a, *x = scene_position(&run, 1, a);
+    if (fabs(hypot(X[0], X[1]) - 0.1) > 1e-9) continue;
+    sum += hypot(x[0], x[1]) - hypot(X[0], X[1]);
+    count++;
+  }
+  scene_close(&run);
+  return sum / count / expected;
+}
+
+START_TEST(a_pressure_vessel_widens_as_lame_says) {
+  double ordinary = widening("element: linear", 0.3), rubber = widening("element: nodal", 0.499);
+  double locked = widening("element: linear", 0.499);
+  printf("inner radius over Lame's: linear at 0.3 %.4f; at 0.499 nodal %.4f, linear %.4f\n", ordinary, rubber,
+         locked);
+  ck_assert_near(ordinary, 1, 0.03);
+  ck_assert_near(rubber, 1, 0.03);
+  ck_assert(locked < 0.97);
+}
+END_TEST
+
+START_TEST(without_an_equilibrium_the_run_ends_and_says_why) {
+  SceneRun run;
+  run_text(&run, "time: {end: 1, static: true}\n"
+                 "bodies:\n"
+                 "  - name: block\n"
+                 "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 1}}\n"
+                 "    material: {young: 1e5, poisson: 0.3, density: 1000}\n"
+                 "    loads: [{group: x_max, force: [1, 0, 0]}]\n"
+                 "output: {frames: 1}\n");
+  ck_assert_int_eq(run.status, STATUS_SOLVER);
+  ck_assert_msg(strstr(status_message(), "no equilibrium at t") &&
+                    strstr(status_message(), "of body 'block'") && strstr(status_message(), "smallest det F"),
+                "%s", status_message());
+  scene_close(&run);
+}
+END_TEST
+
+static void refuse(const char *about_body, const char *about_scene, const char *expected) {
+  char text[1024];
+  snprintf(text, sizeof text,
+           "time: {end: 1, static: true}\n%s"
+           "bodies:\n"
+           "  - name: block\n"
+           "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 1}}\n"
+           "    material: {young: 1e5, poisson: 0.3, density: 1000}\n%s",
+           about_scene, about_body);
+  SceneRun run;
+  run_text(&run, text);
+  ck_assert_int_eq(run.status, STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), expected), "expected '%s' in: %s", expected, status_message());
+  scene_close(&run);
+}
+
+START_TEST(what_only_a_motion_has_is_refused) {
+  refuse("    velocity: [1, 0, 0]\n", "", "body 'block' has a velocity");
+  refuse("    fixed: [{group: x_min, release: 0.5}]\n", "", "cannot release");
+  refuse("", "contact: {friction: 0.5}\n", "friction is a force of motion");
+  refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "cholmod or pcg");
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("statics");
+  tcase_add_test(test_case, a_static_scene_has_half_the_unknowns);
+  tcase_add_test(test_case, a_linear_body_is_in_equilibrium_after_one_solve);
+  tcase_add_test(test_case, rubber_pulled_to_twice_its_length_pulls_back_as_theory_says);
+  tcase_add_test(test_case, a_block_comes_to_rest_on_the_ground);
+  tcase_add_test(test_case, a_pressure_vessel_widens_as_lame_says);
+  tcase_add_test(test_case, without_an_equilibrium_the_run_ends_and_says_why);
+  tcase_add_test(test_case, what_only_a_motion_has_is_refused);
+  return suite_run("statics", test_case, 60);
+}
