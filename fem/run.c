@@ -445,6 +445,11 @@ static Status collect(Run *run) {
       result->assemblies = run->system.costs[i].jacobian_calls;
   sum_phases(run);
   result->counters = record_new();
+  result->effect_count = run->system.effect_count;
+  for (int i = 0; i < run->system.effect_count; i++) {
+    result->effects[i].name = run->system.effects[i].ops->name;
+    result->effects[i].cost = run->system.costs[i];
+  }
   for (int i = 0; i < run->system.effect_count; i++)
     if (run->system.effects[i].ops->report)
       run->system.effects[i].ops->report(run->system.effects[i].self, result->counters);
@@ -517,6 +522,20 @@ static void summarise_counters(const FemRunResult *result, Record *record) {
   record_number(record, "factor_entries", result->solver.factor_entries);
 }
 
+// A row for each effect that there was.
+static void summarise_effects(const FemRunResult *result, Record *record) {
+  for (int i = 0; i < result->effect_count; i++) {
+    const FemEffectCost *cost = &result->effects[i].cost;
+    Record *row = record_child(record, result->effects[i].name);
+    record_number(row, "force_s", cost->force_s);
+    record_integer(row, "force_calls", cost->force_calls);
+    record_number(row, "jacobian_s", cost->jacobian_s);
+    record_integer(row, "jacobian_calls", cost->jacobian_calls);
+    record_number(row, "prepare_s", cost->prepare_s);
+    record_integer(row, "prepare_calls", cost->prepare_calls);
+  }
+}
+
 void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_number(summary, "end_time", result->end_time);
   record_number(summary, "wall_s", result->wall_s);
@@ -524,6 +543,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_integer(summary, "steps", result->integrator.steps);
   record_text(summary, "solver", result->solver_name);
   summarise_phases(&result->phases, record_child(summary, "phases"));
+  summarise_effects(result, record_child(summary, "effects"));
   record_integer(summary, "pairs_max", result->pairs_max);
   record_number(summary, "overlap_volume_max", result->overlap_volume_max);
   record_number(summary, "deepest_overlap_max", result->deepest_overlap_max);

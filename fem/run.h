@@ -61,6 +61,11 @@ typedef struct FemRunResult {
   double last_contact_force; // largest interface force at the last frame [N]
   size_t peak_rss_bytes;
   Record *counters; // owned
+  int effect_count; // those that the scene called for
+  struct {
+    const char *name; // borrowed
+    FemEffectCost cost;
+  } effects[FEM_MAX_EFFECTS]; //                                  (effect_count)
   // With keep_trajectory:
   int frame_count, vertex_count, interface_count;
   char **interface_names;   // "a, b", owned                       (interface_count)

@@ -156,6 +156,7 @@ Status fem_system_accept(FemSystem *system, double time, const double *u, const 
     double began = clock_wall_s();
     TRY(system->effects[i].ops->prepare(system->effects[i].self, &state, next_step));
     system->costs[i].prepare_s += clock_wall_s() - began;
+    system->costs[i].prepare_calls++;
   }
   return STATUS_OK;
 }

@@ -12,7 +12,7 @@ enum { FEM_MAX_EFFECTS = 32 };
 // Wall time and calls of one effect.
 typedef struct FemEffectCost {
   double force_s, jacobian_s, prepare_s;
-  long long force_calls, jacobian_calls;
+  long long force_calls, jacobian_calls, prepare_calls;
 } FemEffectCost;
 
 typedef struct FemSystem {
