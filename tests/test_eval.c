@@ -151,30 +151,50 @@ START_TEST(without_pairs_there_is_nothing_to_tell) {
 }
 END_TEST
 
+static AppEvaluation evaluate_file(const char *name, const AppSourceDef *source) {
+  DatagenPairs pairs;
+  size_t count;
+  ContactOverlapModel model;
+  AppEvaluationRun run;
+  AppEvaluation found;
+  char path[256];
+  snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/net/weights/%s.safetensors", name);
+  ck_assert_ok(app_training_source_load(source, &pairs, &count));
+  ck_assert_ok(app_evaluation_model_open(&model, path));
+  app_evaluation_begin(&run, &model, app_evaluation_model_logits(&model));
+  ck_assert_ok(app_evaluation_add(&run, &pairs, count));
+  app_evaluation_finish(&run, &found);
+  app_evaluation_end(&run);
+  contact_overlap_destroy(&model);
+  datagen_pairs_destroy(&pairs);
+  return found;
+}
+
 // On pairs that no training saw; bounds are what docs/training.md promises, with room for a small sample.
 static void check_weights(const char *name, double mae, double gradient_error, double angle_p90_deg) {
   AppSourceDef scene = {.law = "scene", .count = 4000, .seed = 9101},
                large = {.law = "paper-test", .mix = "volumetric=1", .count = 3000, .seed = 9102};
-  const AppSourceDef *const sets[2] = {&scene, &large};
-  AppEvaluation found[2];
-  char path[256];
-  snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/net/weights/%s.safetensors", name);
-  for (int s = 0; s < 2; s++) {
-    DatagenPairs pairs;
-    size_t count;
-    ContactOverlapModel model;
-    ck_assert_ok(app_training_source_load(sets[s], &pairs, &count));
-    ck_assert_ok(app_evaluation_model_open(&model, path));
-    found[s] = evaluate(&model, &pairs, count);
-    contact_overlap_destroy(&model);
-    datagen_pairs_destroy(&pairs);
-  }
+  AppEvaluation found[2] = {evaluate_file(name, &scene), evaluate_file(name, &large)};
   ck_assert(found[0].gradient_error < gradient_error);
   ck_assert(found[0].angle_p90_deg < angle_p90_deg);
   ck_assert(found[1].mae < mae);
   ck_assert(found[0].ghost_volume == 0 && found[0].ghost_gradient == 0 && found[0].fallbacks == 0);
   ck_assert(found[0].defect_vertex_order < 1e-11 && found[0].defect_rotation < 1e-11);
 }
+
+START_TEST(shipped_tpn_detects_and_measures_as_the_paper_has_it) {
+  AppSourceDef source = {.law = "paper-test", .count = 10000, .seed = 9106};
+  AppEvaluation found = evaluate_file("tpn", &source);
+  ck_assert(found.has_status);
+  ck_assert(found.accuracy_mean > 0.9937);
+  for (int k = DATAGEN_NONE; k <= DATAGEN_VOLUMETRIC; k++) ck_assert(found.kinds[k].accuracy > 0.975);
+  ck_assert(found.mae < 1e-3);
+  ck_assert(found.bin_accuracy[0] > 0.9 && found.bin_accuracy[1] > 0.8 && found.bin_accuracy[2] > 0.85);
+  ck_assert(found.calibration_error < 0.02);
+  ck_assert(found.defect_vertex_order < 1e-6 && found.defect_rotation < 1e-3);
+  ck_assert(found.gradient_error > 0.1); // no forces: were they good, docs/training.md would be wrong
+}
+END_TEST
 
 START_TEST(shipped_weights_keep_their_promise) {
   check_weights("geo", 4.5e-5, 0.025, 0.7);
@@ -247,6 +267,7 @@ int main(void) {
   tcase_add_test(test_case, the_frame_without_network_has_no_ghosts_and_ten_per_cent_errors);
   tcase_add_test(test_case, blocks_do_not_change_what_is_found);
   tcase_add_test(test_case, without_pairs_there_is_nothing_to_tell);
+  tcase_add_test(test_case, shipped_tpn_detects_and_measures_as_the_paper_has_it);
   tcase_add_test(test_case, shipped_weights_keep_their_promise);
   tcase_add_test(test_case, jumps_along_paths_are_found_and_measured);
   tcase_add_test(test_case, shipped_weights_do_not_jump);
