@@ -45,14 +45,16 @@ START_TEST(without_an_effect_results_are_those_of_a_program_without_it) {
   char whole[64], few_only[64], command[1024];
   make_folder(whole), make_folder(few_only);
   snprintf(command, sizeof command,
-           "%s run %s/tests/scenes/%s.yaml -o %s --set output.frames=4 --set output.vtu=true --set "
+           "%s run %s/tests/scenes/%s.yaml -o %s --set time.end=0.1 --set output.frames=4 --set "
+           "output.vtu=true --set "
            "solver.threads=1 "
            ">/dev/null 2>&1",
            TETLAP_PROGRAM, TETLAP_SOURCE_DIR, scenes[_i], whole);
   ck_assert_msg(system(command) == 0, "%s", command);
   SceneRun run;
-  scene_open(&run, scenes[_i],
-             (const char *const[]){"output.frames=4", "output.vtu=true", "solver.threads=1", NULL});
+  scene_open(
+      &run, scenes[_i],
+      (const char *const[]){"time.end=0.1", "output.frames=4", "output.vtu=true", "solver.threads=1", NULL});
   FemRunOptions options = {.directory = few_only};
   ck_assert_ok(fem_run(&run.model, &options, &run.result));
   const char *const files[] = {"history.csv", "frame_00000.vtu", "frame_00004.vtu"};
