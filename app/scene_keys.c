@@ -157,6 +157,9 @@ static const char *finish_ogden(void *self, const char **key) {
 
 static const char *finish_material(void *self, const char **key) {
   const FemMaterial *material = self;
+  *key = "plasticity";
+  if (material->yield_stress > 0 && material->law != FEM_MATERIAL_STVK)
+    return "plasticity is in the Green strain; write law: stvk beside it";
   *key = "fibre";
   if (material->fibre_stiffness > 0 && material->law == FEM_MATERIAL_LINEAR)
     return "fibres turn with the body, which the law linear cannot; write law: corotational, or another";
@@ -264,6 +267,15 @@ static const SceneKey fibre_keys[] = {
 };
 static const SceneSection fibre = {.help = "transverse isotropy", .keys = fibre_keys};
 
+static const SceneKey plasticity_keys[] = {
+    {"yield", SCENE_NUMBER, AT(FemMaterial, yield_stress), .unit = "Pa", .range = "(0, inf)",
+     .required = "2e5", .help = "yield stress in tension"},
+    {"hardening", SCENE_NUMBER, AT(FemMaterial, hardening), .unit = "Pa", .range = "[0, inf)",
+     .fallback = "0", .help = "isotropic: rise of the yield stress by plastic strain"},
+    {0},
+};
+static const SceneSection plasticity = {.help = "J2 plasticity (von Mises)", .keys = plasticity_keys};
+
 static const SceneKey material_keys[] = {
     {"law", SCENE_CHOICE, AT(FemMaterial, law), .fallback = "neo_hookean", .choices = &laws,
      .help = "constitutive law"},
@@ -283,6 +295,8 @@ static const SceneKey material_keys[] = {
     {"mooney", SCENE_NUMBER, AT(FemMaterial, mooney), .range = "[0, 1]", .fallback = "0.2",
      .help = "of mooney_rivlin: the second invariant's share c2/(c1 + c2) of μ"},
     {"ogden", SCENE_SECTION, .section = &ogden, .help = "terms of the law ogden"},
+    {"plasticity", SCENE_SECTION, .section = &plasticity, .absent_help = "elastic",
+     .help = "beside the law stvk"},
     {"fibre", SCENE_SECTION, .section = &fibre, .absent_help = "no fibres",
      .help = "fibres along one direction"},
     {0},

@@ -10,7 +10,8 @@
 
 typedef struct FemAudit {
   double time;        // of the last accepted state [s]
-  double dissipated;  // so far [J]
+  double damped;      // by dissipated_power so far [J]
+  double dissipated;  // damped and plastic work [J]
   double driven_work; // of driven vertices and obstacles [J]
   double work;        // driven_work and the loads' [J]
   double total;       // A [J]

@@ -27,6 +27,7 @@ typedef struct FemEnergy {
   double dissipated_power; // ≥ 0
   double driven_power;     // of whatever moves prescribed coordinates and obstacles
   double applied_work;     // of loads since the start [J]
+  double plastic_work;     // dissipated by plasticity since the start [J]
 } FemEnergy;
 
 typedef struct FemEffectOps {
@@ -70,6 +71,7 @@ const FemEffectOps *const *fem_effect_list(int *count);
 // Those files (fem/effect_NAME.c) define these:
 extern const FemEffectOps fem_effect_elasticity;
 extern const FemEffectOps fem_effect_volume;
+extern const FemEffectOps fem_effect_plasticity;
 extern const FemEffectOps fem_effect_damping;
 extern const FemEffectOps fem_effect_gravity;
 extern const FemEffectOps fem_effect_loads;

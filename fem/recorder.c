@@ -11,6 +11,7 @@
 #include "base/vec3.h"
 #include "fem/effect_contact.h"
 #include "fem/effect_friction.h"
+#include "fem/effect_plasticity.h"
 #include "fem/effect_volume.h"
 #include "fem/pvd.h"
 #include "fem/vtu.h"
@@ -45,7 +46,8 @@ static const struct {
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
 static bool has_column(const FemRecorder *recorder, int column) {
-  if (columns[column].effect == DISSIPATION) return fem_system_dissipates(recorder->system);
+  if (columns[column].effect == DISSIPATION)
+    return fem_system_dissipates(recorder->system) || fem_system_effect(recorder->system, "plasticity");
   return !columns[column].effect || fem_system_effect(recorder->system, columns[column].effect);
 }
 
@@ -224,6 +226,8 @@ static void fill_arrays(FemRecorder *recorder) {
     fem_element_cauchy(&model->elements[e], &body->local, corners, recorder->stress + 6 * e);
     void *volume = body->element == FEM_ELEMENT_NODAL ? fem_system_effect(system, "volume") : NULL;
     if (volume) fem_effect_volume_add_stress(volume, e, corners, recorder->stress + 6 * e);
+    void *plasticity = fem_system_effect(system, "plasticity");
+    if (plasticity) fem_effect_plasticity_add_stress(plasticity, e, corners, recorder->stress + 6 * e);
     recorder->von_mises[e] = von_mises(recorder->stress + 6 * e);
   }
 }

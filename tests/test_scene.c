@@ -21,8 +21,8 @@ static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.y
 static const char *const full_json = TETLAP_SOURCE_DIR "/tests/data/scene/full.json";
 
 static const char *const examples[] = {
-    "01_drop",  "02_two_blocks", "03_spheres",     "04_cantilever", "05_press",          "06_bunny_like",
-    "20_loads", "21_release",    "22_rubber_beam", "23_fibres",     "24_pressure_vessel"};
+    "01_drop",  "02_two_blocks", "03_spheres",     "04_cantilever", "05_press",           "06_bunny_like",
+    "20_loads", "21_release",    "22_rubber_beam", "23_fibres",     "24_pressure_vessel", "25_plastic_bar"};
 enum { EXAMPLE_COUNT = sizeof examples / sizeof *examples };
 
 // What is printed to the stream that `print` is given; owned by the caller (free).
@@ -72,6 +72,8 @@ static void check_lower(const FemBodyDef *body) {
   ck_assert_double_eq(body->material.poisson, 0.25);
   ck_assert_double_eq(body->material.density, 1200);
   ck_assert_double_eq(body->material.damping, 1e-3);
+  ck_assert_double_eq(body->material.yield_stress, 2e4);
+  ck_assert_double_eq(body->material.hardening, 300);
   ck_vector(body->velocity, 0, 0, -1);
   ck_vector(body->spin, 0.1, 0.2, 0.3);
   ck_assert_int_eq(body->element, FEM_ELEMENT_NODAL);

@@ -4,6 +4,8 @@
 
 #include <stdio.h>
 
+#include "base/random.h"
+
 // A block of 0.1 m pulled along x by a traction; its sides are free, three faces are planes of symmetry.
 static void pull(SceneRun *run, const char *material, const char *load, const char *time,
                  const char *element) {
@@ -120,10 +122,82 @@ START_TEST(a_linear_scene_with_one_step_size_is_factorised_once) {
 }
 END_TEST
 
+// Uniaxial tension beyond yield and back: ε = σ/E + (σ − σ_y)/H while it grows, (σ_max − σ_y)/H stays.
+// Strains are below 1 %, and the Green strain and its stress differ from the small ones by as much.
+START_TEST(a_j2_bar_yields_hardens_and_keeps_its_plastic_strain) {
+  const double E = 1e8, yield = 1e5, H = 1e7, most = 1.5e5;
+  SceneRun run;
+  pull(&run, "{law: stvk, young: 1e8, poisson: 0.3, density: 1000, plasticity: {yield: 1e5, hardening: 1e7}}",
+       "traction: [1.5e5, 0, 0], table: [[0, 0], [0.5, 1], [1, 0]]", "{end: 1, static: true, max_step: 0.05}",
+       _i ? "nodal" : "linear");
+  // The traction is by rest area, so S = T/(1 + e); the Green strain e + e²/2 follows S.
+  double e = 0, alpha = 0;
+  for (int k = 0; k < 50; k++) {
+    double stress = most / (1 + e);
+    alpha = (stress - yield) / H;
+    e = sqrt(1 + 2 * (stress / E + alpha)) - 1;
+  }
+  double plastic = sqrt(1 + 2 * alpha) - 1;
+  ck_assert_near(strain(&run, 1, 0), 0.5 * most / E, 2e-3 * 0.5 * most / E); // elastic still
+  ck_assert_near(strain(&run, 2, 0), e, 1e-3 * e);
+  ck_assert_near(strain(&run, 4, 0), plastic, 1e-3 * plastic);
+  // Plastic flow keeps the volume, elastic strain is gone: the sides are half of it.
+  ck_assert_near(strain(&run, 4, 1), -0.5 * plastic, 0.02 * plastic);
+  // σ_y α V is dissipated, ½ H α² V is stored: all of it the load's work, to the rule over steps of a
+  // twentieth.
+  double volume = 1e-3, dissipated = run.result.audit.dissipated, work = run.result.audit.work;
+  ck_assert_near(dissipated, yield * alpha * volume, 1e-3 * yield * alpha * volume);
+  ck_assert_near(work, dissipated + 0.5 * H * alpha * alpha * volume, 0.02 * work);
+  ck_assert_near(run.result.audit.total, 0, 0.02 * work);
+  scene_close(&run);
+}
+END_TEST
+
+// Two plastic blocks' worth of noise: the matrix against central differences of the force, from a history
+// that is not zero, in states that flow; forces from inside the flow are smooth.
+START_TEST(the_tangent_of_plastic_flow_is_consistent) {
+  SceneRun run;
+  scene_open_text(&run,
+                  "time: {end: 1}\n"
+                  "bodies:\n"
+                  "  - name: block\n"
+                  "    mesh: {box: {size: [1, 1, 1], cells: 1}}\n"
+                  "    material: {law: stvk, young: 1, poisson: 0.3, density: 1, plasticity: {yield: 0.01, "
+                  "hardening: 0.1}}\n");
+  FemSystem system;
+  ck_assert_ok(fem_system_create(&system, &run.model));
+  int n = run.model.unknown_count;
+  double *u = calloc((size_t)n, sizeof *u), *v = calloc((size_t)n, sizeof *v),
+         *d = calloc((size_t)n, sizeof *d);
+  double *Kd = calloc((size_t)n, sizeof *d), *above = calloc((size_t)n, sizeof *d), h = 1e-6;
+  Random random = random_seeded(21, 0);
+  for (int i = 0; i < n; i++) u[i] = 0.05 * random_normal(&random);
+  ck_assert_ok(fem_system_accept(&system, 0, u, v, 0));
+  for (int i = 0; i < n; i++) u[i] += 0.1 * random_normal(&random), d[i] = random_normal(&random);
+  fem_system_scatter(&system, 0, u, v);
+  ck_assert_ok(fem_system_assemble(&system, 0, 1, 0, 0, &system.matrix));
+  fem_matrix_multiply(&system.matrix, d, Kd);
+  for (int i = 0; i < n; i++) u[i] += h * d[i];
+  fem_system_scatter(&system, 0, u, v);
+  ck_assert_ok(fem_system_forces(&system, 0));
+  memcpy(above, system.forces, (size_t)n * sizeof *above); // nothing is fixed: unknowns are coordinates
+  for (int i = 0; i < n; i++) u[i] -= 2 * h * d[i];
+  fem_system_scatter(&system, 0, u, v);
+  ck_assert_ok(fem_system_forces(&system, 0));
+  for (int i = 0; i < n; i++) ck_assert_near(Kd[i], -(above[i] - system.forces[i]) / (2 * h), 1e-7);
+  double *all[] = {u, v, d, Kd, above};
+  for (int i = 0; i < 5; i++) free(all[i]);
+  fem_system_destroy(&system);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("solids");
   tcase_add_test(test_case, a_kelvin_voigt_solid_creeps);
   tcase_add_loop_test(test_case, a_linear_scene_is_assembled_once, 0, 4);
   tcase_add_test(test_case, a_linear_scene_with_one_step_size_is_factorised_once);
+  tcase_add_loop_test(test_case, a_j2_bar_yields_hardens_and_keeps_its_plastic_strain, 0, 2);
+  tcase_add_test(test_case, the_tangent_of_plastic_flow_is_consistent);
   return suite_run("solids", test_case, 60);
 }

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Isotropic J2 plasticity with linear hardening, beside the law stvk: S = C : (E − E_p) in the Green strain,
+// so that rotations may be large; strains should stay within some percent. Elasticity gives C : E; here is
+// the rest,
+//
+//   S_p = −2μ E_p,   yield: q = √(3/2) |s| ≤ σ_y + H α,   s = 2μ dev(E − E_p)
+//
+// by radial return (Simo and Hughes, Computational Inelasticity, 3.3) from the history at the last accepted
+// state: Δα = (q_trial − σ_y − H α)/(3μ + H), ΔE_p = √(3/2) Δα s/|s|. It is the gradient of an incremental
+// energy, ½ (E − E_p):C:(E − E_p) + ½ H α² + σ_y α, whose last part is dissipated. E_p has no trace, so
+// `nodal` volume changes are not concerned.
+#include "fem/effect_plasticity.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect.h"
+
+// The history of an element.
+typedef struct Plastic {
+  double strain[9]; // E_p
+  double alpha;     // accumulated plastic strain
+} Plastic;
+
+typedef struct Plasticity {
+  const FemModel *model; // borrowed
+  int *tets;             // of plastic bodies                        (tet_count)
+  int tet_count;
+  Plastic *history; // at the last accepted state                    (tet_count)
+  int *place;       // of a tetrahedron in `tets`, −1: not plastic   (model->tet_count)
+} Plasticity;
+
+// A return from the history to E: the new plastic state, and its derivative ∂E_p/∂E = along n ⊗ n + across
+// (I_dev − n ⊗ n).
+typedef struct Return {
+  Plastic plastic;
+  double n[9], along, across;
+} Return;
+
+static bool is_wanted(const FemSceneDef *scene) {
+  for (int b = 0; b < scene->body_count; b++)
+    if (scene->bodies[b].material.yield_stress > 0) return true;
+  return false;
+}
+
+static void destroy(void *self) {
+  Plasticity *plasticity = self;
+  memory_free(plasticity->tets);
+  memory_free(plasticity->history);
+  memory_free(plasticity->place);
+  memory_free(plasticity);
+}
+
+static Status create(void **self, const FemModel *model) {
+  Plasticity *plasticity = memory_zeroed(1, sizeof *plasticity);
+  if (!plasticity) return status_no_memory("plasticity");
+  size_t tets = (size_t)model->tet_count;
+  plasticity->model = model;
+  plasticity->tets = memory_zeroed(tets, sizeof *plasticity->tets);
+  plasticity->history = memory_zeroed(tets, sizeof *plasticity->history);
+  plasticity->place = memory_zeroed(tets, sizeof *plasticity->place);
+  if (!plasticity->tets || !plasticity->history || !plasticity->place) {
+    destroy(plasticity);
+    return status_no_memory("plasticity");
+  }
+  for (int e = 0; e < model->tet_count; e++) {
+    bool is_plastic = model->bodies[model->tet_body[e]].material.yield_stress > 0;
+    plasticity->place[e] = is_plastic ? plasticity->tet_count : -1;
+    if (is_plastic) plasticity->tets[plasticity->tet_count++] = e;
+  }
+  *self = plasticity;
+  return STATUS_OK;
+}
+
+static const FemMaterial *material_of(const Plasticity *plasticity, int tet) {
+  return &plasticity->model->bodies[plasticity->model->tet_body[tet]].material;
+}
+
+// F and E = ½ (G + Gᵀ + Gᵀ G), G = F − I.
+static void find_strain(const Plasticity *plasticity, int tet, const double *positions, double F[9],
+                        double E[9]) {
+  double x[12], G[9];
+  for (int k = 0; k < 4; k++)
+    memcpy(x + 3 * k, positions + 3 * (size_t)plasticity->model->tets[tet][k], 3 * sizeof *x);
+  fem_element_deformation(&plasticity->model->elements[tet], x, F);
+  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      double product = G[i] * G[j] + G[3 + i] * G[3 + j] + G[6 + i] * G[6 + j];
+      E[3 * i + j] = 0.5 * (G[3 * i + j] + G[3 * j + i] + product);
+    }
+}
+
+static Return return_to(const FemMaterial *material, const Plastic *history, const double E[9]) {
+  Return r = {.plastic = *history};
+  double mu = fem_material_lame(material).mu, trace = (E[0] + E[4] + E[8]) / 3, square = 0;
+  for (int k = 0; k < 9; k++) {
+    r.n[k] = 2 * mu * (E[k] - history->strain[k] - (k % 4 == 0 ? trace : 0));
+    square += r.n[k] * r.n[k];
+  }
+  double size = sqrt(square),
+         beyond = sqrt(1.5) * size - material->yield_stress - material->hardening * history->alpha;
+  if (!(beyond > 0)) return r;
+  double growth = beyond / (3 * mu + material->hardening);
+  for (int k = 0; k < 9; k++) {
+    r.n[k] /= size;
+    r.plastic.strain[k] += sqrt(1.5) * growth * r.n[k];
+  }
+  r.plastic.alpha += growth;
+  r.along = 3 * mu / (3 * mu + material->hardening);
+  r.across = sqrt(1.5) * growth * 2 * mu / size;
+  return r;
+}
+
+static Return evaluate(const Plasticity *plasticity, int i, const double *positions, double F[9],
+                       double E[9]) {
+  int tet = plasticity->tets[i];
+  find_strain(plasticity, tet, positions, F, E);
+  return return_to(material_of(plasticity, tet), &plasticity->history[i], E);
+}
+
+static Status prepare(void *self, const FemState *state, double step) {
+  (void)step;
+  Plasticity *plasticity = self;
+  for (int i = 0; i < plasticity->tet_count; i++) {
+    double F[9], E[9];
+    plasticity->history[i] = evaluate(plasticity, i, state->positions, F, E).plastic;
+  }
+  return STATUS_OK;
+}
+
+// P_p = −2μ F E_p.
+static void find_stress(double mu, const double F[9], const Plastic *plastic, double P[9]) {
+  const double *S = plastic->strain;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      P[3 * i + j] = -2 * mu * (F[3 * i] * S[j] + F[3 * i + 1] * S[3 + j] + F[3 * i + 2] * S[6 + j]);
+}
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  const Plasticity *plasticity = self;
+  for (int i = 0; i < plasticity->tet_count; i++) {
+    int tet = plasticity->tets[i];
+    const FemElement *element = &plasticity->model->elements[tet];
+    double F[9], E[9], P[9];
+    Return r = evaluate(plasticity, i, state->positions, F, E);
+    find_stress(fem_material_lame(material_of(plasticity, tet)).mu, F, &r.plastic, P);
+    for (int a = 0; a < 4; a++) {
+      double *f = force + 3 * (size_t)plasticity->model->tets[tet][a];
+      const double *g = element->gradient[a];
+      for (int c = 0; c < 3; c++)
+        f[c] -= element->volume * (P[3 * c] * g[0] + P[3 * c + 1] * g[1] + P[3 * c + 2] * g[2]);
+    }
+  }
+  return STATUS_OK;
+}
+
+// ∂P_p,ij/∂F_kl = δ_ik S_p,jl + F_im A_mjnl F_kn, A = −2μ ∂E_p/∂E.
+static void find_tangent(double mu, const double F[9], const Return *r, double dP[81]) {
+  double A[81], half[81];
+  for (int p = 0; p < 9; p++)
+    for (int q = 0; q < 9; q++) {
+      int m = p / 3, j = p % 3, k = q / 3, l = q % 3;
+      double symmetric = 0.5 * ((m == k && j == l) + (m == l && j == k)),
+             deviatoric = (m == j && k == l) / 3.0;
+      double outer = r->n[p] * r->n[q];
+      A[9 * p + q] = -2 * mu * (r->along * outer + r->across * (symmetric - deviatoric - outer));
+    }
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int q = 0; q < 9; q++)
+        half[9 * (3 * i + j) + q] =
+            F[3 * i] * A[9 * j + q] + F[3 * i + 1] * A[9 * (3 + j) + q] + F[3 * i + 2] * A[9 * (6 + j) + q];
+  for (int p = 0; p < 9; p++)
+    for (int k = 0; k < 3; k++)
+      for (int l = 0; l < 3; l++) {
+        const double *row = half + 9 * p;
+        dP[9 * p + 3 * k + l] = F[3 * k] * row[l] + F[3 * k + 1] * row[3 + l] + F[3 * k + 2] * row[6 + l] -
+                                (p / 3 == k ? 2 * mu * r->plastic.strain[3 * (p % 3) + l] : 0);
+      }
+}
+
+static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                           FemMatrix *matrix) {
+  (void)damping_scale;
+  const Plasticity *plasticity = self;
+  for (int i = 0; i < plasticity->tet_count && stiffness_scale != 0; i++) {
+    int tet = plasticity->tets[i];
+    double F[9], E[9], dP[81], dense[144];
+    Return r = evaluate(plasticity, i, state->positions, F, E);
+    find_tangent(fem_material_lame(material_of(plasticity, tet)).mu, F, &r, dP);
+    fem_element_spread_tangent(&plasticity->model->elements[tet], dP, dense);
+    fem_matrix_add(matrix, 4, plasticity->model->tets[tet], dense, stiffness_scale);
+  }
+  return STATUS_OK;
+}
+
+// Elasticity has counted ½ E:C:E: −2μ E:E_p + μ E_p:E_p + ½ H α² is missing.
+static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
+  const Plasticity *plasticity = self;
+  for (int i = 0; i < plasticity->tet_count; i++) {
+    int tet = plasticity->tets[i];
+    const FemMaterial *material = material_of(plasticity, tet);
+    double F[9], E[9], product = 0, volume = plasticity->model->elements[tet].volume;
+    Plastic plastic = evaluate(plasticity, i, state->positions, F, E).plastic;
+    for (int k = 0; k < 9; k++) product += plastic.strain[k] * (plastic.strain[k] - 2 * E[k]);
+    energy->elastic += volume * (fem_material_lame(material).mu * product +
+                                 0.5 * material->hardening * plastic.alpha * plastic.alpha);
+    energy->plastic_work += volume * material->yield_stress * plastic.alpha;
+  }
+  return STATUS_OK;
+}
+
+static void report(void *self, Record *counters) {
+  const Plasticity *plasticity = self;
+  double most = 0;
+  int yielded = 0;
+  for (int i = 0; i < plasticity->tet_count; i++) {
+    most = fmax(most, plasticity->history[i].alpha);
+    yielded += plasticity->history[i].alpha > 0;
+  }
+  record_number(counters, "plastic_strain_max", most);
+  record_integer(counters, "yielded_elements", yielded);
+}
+
+void fem_effect_plasticity_add_stress(const void *self, int tet, const double x[12], double stress[6]) {
+  static const int rows[6] = {0, 1, 2, 0, 1, 0}, columns[6] = {0, 1, 2, 1, 2, 2};
+  const Plasticity *plasticity = self;
+  if (plasticity->place[tet] < 0) return;
+  double F[9], P[9];
+  fem_element_deformation(&plasticity->model->elements[tet], x, F);
+  find_stress(fem_material_lame(material_of(plasticity, tet)).mu, F,
+              &plasticity->history[plasticity->place[tet]], P);
+  double J = vec3_dot(vec3_at(F), vec3_cross(vec3_at(F + 3), vec3_at(F + 6)));
+  for (int s = 0; s < 6 && fabs(J) > 1e-12; s++)
+    stress[s] += vec3_dot(vec3_at(P + 3 * rows[s]), vec3_at(F + 3 * columns[s])) / J;
+}
+
+const FemEffectOps fem_effect_plasticity = {
+    .name = "plasticity",
+    .help = "isotropic J2 plasticity with linear hardening, beside the law stvk",
+    .is_wanted = is_wanted,
+    .create = create,
+    .prepare = prepare,
+    .add_force = add_force,
+    .add_jacobian = add_jacobian,
+    .add_energy = add_energy,
+    .report = report,
+    .destroy = destroy,
+};
