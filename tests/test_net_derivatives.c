@@ -357,7 +357,8 @@ START_TEST(a_dense_network_takes_columns) {
     enum { COUNT = NET_COLUMN_UNIT, INPUTS = 36 };
     double *x = net_suite_array(&random, COUNT * INPUTS, 2),
            *rows = net_suite_array(&random, COUNT * INPUTS, 0);
-    double *gx = net_suite_array(&random, COUNT * INPUTS, 0), by_rows[COUNT * INPUTS], ones[COUNT], y[COUNT];
+    double *gx = net_suite_array(&random, COUNT * INPUTS, 0), by_rows[COUNT * INPUTS], ones[COUNT];
+    _Alignas(64) double y[COUNT];
     double *columns = net_suite_array(&random, COUNT, 0);
     for (int j = 0; j < COUNT; j++) {
       ones[j] = 1;
