@@ -151,7 +151,8 @@ START_TEST(without_pairs_there_is_nothing_to_tell) {
 }
 END_TEST
 
-static AppEvaluation evaluate_file(const char *name, const AppSourceDef *source) {
+// The weights of that name in this repository; `as_model`: as the overlap model of the same name uses them.
+static AppEvaluation evaluate_shipped(const char *name, bool as_model, const AppSourceDef *source) {
   DatagenPairs pairs;
   size_t count;
   ContactOverlapModel model;
@@ -160,7 +161,7 @@ static AppEvaluation evaluate_file(const char *name, const AppSourceDef *source)
   char path[256];
   snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/net/weights/%s.safetensors", name);
   ck_assert_ok(app_training_source_load(source, &pairs, &count));
-  ck_assert_ok(app_evaluation_model_open(&model, path));
+  ck_assert_ok(app_evaluation_model_open(&model, as_model ? name : path));
   app_evaluation_begin(&run, &model, app_evaluation_model_logits(&model));
   ck_assert_ok(app_evaluation_add(&run, &pairs, count));
   app_evaluation_finish(&run, &found);
@@ -174,7 +175,7 @@ static AppEvaluation evaluate_file(const char *name, const AppSourceDef *source)
 static void check_weights(const char *name, double mae, double gradient_error, double angle_p90_deg) {
   AppSourceDef scene = {.law = "scene", .count = 4000, .seed = 9101},
                large = {.law = "paper-test", .mix = "volumetric=1", .count = 3000, .seed = 9102};
-  AppEvaluation found[2] = {evaluate_file(name, &scene), evaluate_file(name, &large)};
+  AppEvaluation found[2] = {evaluate_shipped(name, false, &scene), evaluate_shipped(name, false, &large)};
   ck_assert(found[0].gradient_error < gradient_error);
   ck_assert(found[0].angle_p90_deg < angle_p90_deg);
   ck_assert(found[1].mae < mae);
@@ -184,7 +185,7 @@ static void check_weights(const char *name, double mae, double gradient_error, d
 
 START_TEST(shipped_tpn_detects_and_measures_as_the_paper_has_it) {
   AppSourceDef source = {.law = "paper-test", .count = 10000, .seed = 9106};
-  AppEvaluation found = evaluate_file("tpn", &source);
+  AppEvaluation found = evaluate_shipped("tpn", false, &source);
   ck_assert(found.has_status);
   ck_assert(found.accuracy_mean > 0.9937);
   for (int k = DATAGEN_NONE; k <= DATAGEN_VOLUMETRIC; k++) ck_assert(found.kinds[k].accuracy > 0.975);
@@ -193,6 +194,16 @@ START_TEST(shipped_tpn_detects_and_measures_as_the_paper_has_it) {
   ck_assert(found.calibration_error < 0.02);
   ck_assert(found.defect_vertex_order < 1e-6 && found.defect_rotation < 1e-3);
   ck_assert(found.gradient_error > 0.1); // no forces: were they good, docs/training.md would be wrong
+}
+END_TEST
+
+START_TEST(shipped_tpn_scene_has_forces_in_the_right_direction) {
+  AppSourceDef source = {.law = "scene", .count = 4000, .seed = 9107};
+  AppEvaluation found = evaluate_shipped("tpn-scene", true, &source);
+  ck_assert(found.gradient_error < 0.33);
+  ck_assert(found.angle_median_deg < 4 && found.angle_p90_deg < 14);
+  ck_assert(found.ghost_volume == 0 && found.ghost_gradient == 0); // the separation test comes first
+  ck_assert(found.defect_swap < 1e-9 && found.defect_rotation < 1e-3);
 }
 END_TEST
 
@@ -268,6 +279,7 @@ int main(void) {
   tcase_add_test(test_case, blocks_do_not_change_what_is_found);
   tcase_add_test(test_case, without_pairs_there_is_nothing_to_tell);
   tcase_add_test(test_case, shipped_tpn_detects_and_measures_as_the_paper_has_it);
+  tcase_add_test(test_case, shipped_tpn_scene_has_forces_in_the_right_direction);
   tcase_add_test(test_case, shipped_weights_keep_their_promise);
   tcase_add_test(test_case, jumps_along_paths_are_found_and_measured);
   tcase_add_test(test_case, shipped_weights_do_not_jump);
