@@ -130,9 +130,9 @@ static Status eval_pair(const void *self, const double pair[24], double *volume,
   return falls_back ? fall_back(pair, volume, gradient, flags) : STATUS_OK;
 }
 
-const ContactOverlapOps contact_overlap_clip = {
-    .name = "clip",
-    .help = "clipping in double precision, with exact gradient and Hessian",
+const ContactOverlapOps contact_overlap_clip_scalar = {
+    .name = "clip-scalar",
+    .help = "as clip, one pair at a time: the portable form and the referee of the other",
     .has_hessian = true,
     .seconds_per_pair = 5e-7,
     .eval_pair = eval_pair,

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The overlap model `clip`: clipping in double precision, with the exact gradient and Hessian of V.
+// The overlap models `clip`, `clip-scalar` and `clip32`: clipping in double precision, with the exact
+// gradient and Hessian of V; `clip32` in single.
+//
+// `clip-scalar` takes one pair at a time (clip_polytope.h) and has the Hessian. `clip` takes as many pairs at
+// once as the processor's vectors have lanes (clip_lanes.h, clip_batch.c) and hands doubtful ones, all where
+// a Hessian is asked, and all on a processor without such vectors, to `clip-scalar`; that hands on to
+// `exact`. What one pair gets does not depend on which others come with it.
 //
 // Let A and B intersect in a polyhedron P (clip_polytope.h), o one of its vertices. For face f of A or B with
 // outward area vector S_f, outward unit normal n_f and barycentric coordinates β, let P_f be the part of P's
@@ -36,14 +42,15 @@
 // Accuracy: |δV| ≤ 1e-9 V, or 1e-12 of the smaller tetrahedron where V is less than 1e-6 of that. The
 // rounding of the planes bounds |δV| by noise/2 · Σ φ; pairs for which this bound does not do (slivers,
 // mostly) are answered by contact_overlap_exact and flagged FALLBACK; their ∇²V is still from clipping, zero
-// if a tetrahedron is too flat for it.
+// if a tetrahedron is too flat for it. In single precision: |δV| ≤ 1e-3 V, or 1e-4 of the smaller
+// tetrahedron where V is less than a tenth of that.
 #ifndef TETLAP_CONTACT_CLIP_H
 #define TETLAP_CONTACT_CLIP_H
 
 #include "contact/clip_polytope.h"
 #include "contact/overlap.h"
 
-extern const ContactOverlapOps contact_overlap_clip;
+extern const ContactOverlapOps contact_overlap_clip, contact_overlap_clip_scalar, contact_overlap_clip32;
 
 #define CONTACT_CLIP_LEAST_SINE 1e-6
 

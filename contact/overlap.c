@@ -15,8 +15,9 @@
 
 // The fastest first: what a person reads when asking for the models.
 static const ContactOverlapOps *const models[] = {
-    &contact_overlap_clip,      &contact_overlap_geo_small, &contact_overlap_geo,   &contact_overlap_tpn,
-    &contact_overlap_tpn_scene, &contact_overlap_hybrid,    &contact_overlap_exact, &contact_overlap_cgal,
+    &contact_overlap_clip,  &contact_overlap_clip32, &contact_overlap_clip_scalar, &contact_overlap_geo_small,
+    &contact_overlap_geo,   &contact_overlap_tpn,    &contact_overlap_tpn_scene,   &contact_overlap_hybrid,
+    &contact_overlap_exact, &contact_overlap_cgal,
 };
 enum { MODEL_COUNT = sizeof models / sizeof *models };
 
@@ -88,12 +89,12 @@ ContactOverlapBatch contact_overlap_part(const ContactOverlapBatch *batch, int b
                                .flags = batch->flags ? batch->flags + begin : NULL};
 }
 
-// x − x is 0 for finite x, else NaN; the sums have no branch and do not wait for each other.
-static bool is_finite(const double pair[CONTACT_PAIR_SIZE]) {
-  double sums[8] = {0};
-  for (int i = 0; i < CONTACT_PAIR_SIZE; i += 8)
-    for (int l = 0; l < 8; l++) sums[l] += pair[i + l] - pair[i + l];
-  return ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7])) == 0;
+// x − x is 0 for finite x, else NaN. Eight sums that a compiler keeps side by side.
+static inline bool is_finite(const double pair[CONTACT_PAIR_SIZE]) {
+  double sum[8] = {0};
+  for (int i = 0; i < CONTACT_PAIR_SIZE; i++) sum[i % 8] += pair[i] - pair[i];
+  for (int i = 0; i < 4; i++) sum[i] += sum[i + 4];
+  return sum[0] + sum[1] + sum[2] + sum[3] == 0;
 }
 
 static Status fail_not_finite(int pair_index, const double pair[CONTACT_PAIR_SIZE]) {
@@ -117,9 +118,8 @@ static Status eval_one(const ContactOverlapModel *model, const ContactOverlapBat
 
 // The first pair with a coordinate that is not finite, pair_count if there is none.
 static int first_not_finite(const ContactOverlapBatch *batch) {
-  enum { WORTH_THREADS_PAIRS = 10000 };
   int first = batch->pair_count;
-#pragma omp parallel for reduction(min : first) if (batch->pair_count > WORTH_THREADS_PAIRS)
+#pragma omp parallel for schedule(static) reduction(min : first) if (batch->pair_count > 20000)
   for (int i = 0; i < batch->pair_count; i++)
     if (!is_finite(batch->pairs + (size_t)i * CONTACT_PAIR_SIZE) && i < first) first = i;
   return first;

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Clipping on vectors: every kernel that this processor has against `exact`, and against each other bit by
+// bit. Without any (no AVX2) only the batches are tested, which then go to `clip-scalar`.
+#include "suite.h"
+
+#include <string.h>
+
+#include "app/bench_pairs.h"
+#include "base/memory.h"
+#include "contact/clip.h"
+#include "contact/clip_lanes.h"
+#include "contact/exact.h"
+#include "pairs.h"
+
+enum { WIDEST = CONTACT_CLIP_MAX_LANES, MEMBERS = 192 };
+
+static const ContactClipLanes *const *kernels;
+static int kernel_count;
+
+static bool is_single(const ContactClipLanes *kernel) {
+  return strstr(kernel->name, "single") != NULL;
+}
+
+static double volume_allowed(const ContactClipLanes *kernel, const double x[24], double expected) {
+  if (!is_single(kernel)) return pairs_allowed(x, expected);
+  double smaller = pairs_smaller_volume(x);
+  return expected > 0.1 * smaller ? 1e-3 * expected : 1e-4 * smaller;
+}
+
+typedef struct Group {
+  double x[WIDEST][24], volume[WIDEST], gradient[WIDEST][24];
+  ContactClipLanesOutcome outcome;
+} Group;
+
+static void run(const ContactClipLanes *kernel, Group *group) {
+  group->outcome = kernel->differentiate(group->x[0], 0, group->volume, group->gradient[0]);
+}
+
+// The lanes that are not doubtful; how many they are.
+static int check_group(const ContactClipLanes *kernel, const Group *group, const char *what) {
+  int sure = 0;
+  for (int k = 0; k < kernel->width; k++) {
+    double expected, expected_gradient[24], extent = pairs_extent(group->x[k]);
+    unsigned flags;
+    if (group->outcome.doubtful >> k & 1) continue;
+    ck_assert_ok(
+        contact_overlap_exact.eval_pair(NULL, group->x[k], &expected, expected_gradient, NULL, &flags));
+    ck_assert_msg(!(flags & CONTACT_OVERLAP_FLAT), "%s, %s: flat and not doubtful", kernel->name, what);
+    ck_assert_msg(fabs(group->volume[k] - expected) <= volume_allowed(kernel, group->x[k], expected),
+                  "%s, %s: V = %.17g, exact %.17g", kernel->name, what, group->volume[k], expected);
+    double tolerance = (is_single(kernel) ? 2e-5 : 1e-12) * extent * extent;
+    bool is_smooth = strncmp(what, "coplanar", 8) != 0 && strcmp(what, "identical but a few ulp") != 0;
+    for (int c = 0; c < 24 && is_smooth; c++)
+      ck_assert_msg(fabs(group->gradient[k][c] - expected_gradient[c]) <= tolerance,
+                    "%s, %s: gradient %d is %g, exact %g", kernel->name, what, c, group->gradient[k][c],
+                    expected_gradient[c]);
+    bool is_disjoint = group->outcome.disjoint >> k & 1;
+    ck_assert_int_eq(is_disjoint, group->volume[k] == 0);
+    if (expected > 1e-3 * pairs_smaller_volume(group->x[k]))
+      ck_assert_int_eq(group->outcome.enclosed >> k & 1, (flags & CONTACT_OVERLAP_ENCLOSED) != 0);
+    sure++;
+  }
+  return sure;
+}
+
+START_TEST(lanes_that_are_not_doubtful_are_right_in_every_class) {
+  const ContactClipLanes *kernel = kernels[_i];
+  for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
+    int sure = 0;
+    for (int member = 0; member < MEMBERS; member += kernel->width) {
+      Group group;
+      for (int k = 0; k < kernel->width; k++)
+        memcpy(group.x[k], pairs_make(c, member + k).x, sizeof group.x[k]);
+      run(kernel, &group);
+      sure += check_group(kernel, &group, pairs_classes[c].name);
+    }
+    const char *name = pairs_classes[c].name;
+    bool is_ordinary = strcmp(name, "far") == 0 || strcmp(name, "boxes") == 0 ||
+                       strcmp(name, "uniform") == 0 || strcmp(name, "inside") == 0 ||
+                       strcmp(name, "inverted") == 0;
+    // in single precision a small one inside a large one is lost in the noise of that
+    if (is_ordinary && !(is_single(kernel) && strcmp(name, "inside") == 0))
+      ck_assert_msg(sure >= MEMBERS * (is_single(kernel) ? 5 : 9) / 10, "%s: %d of %d", name, sure, MEMBERS);
+    if (strcmp(name, "flat") == 0 || strcmp(name, "identical") == 0) ck_assert_int_eq(sure, 0);
+  }
+}
+END_TEST
+
+START_TEST(ordinary_pairs_are_hardly_ever_doubtful) {
+  const ContactClipLanes *kernel = kernels[_i];
+  if (is_single(kernel)) return;
+  enum { COUNT = 4096 };
+  double *pairs = memory_zeroed(COUNT * 24, sizeof *pairs);
+  for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
+    int sure = 0;
+    ck_assert_ok(app_bench_pairs_make(app_bench_sets[set], COUNT, 11, pairs));
+    for (int i = 0; i < COUNT; i += kernel->width) {
+      Group group;
+      memcpy(group.x[0], pairs + 24 * i, (size_t)kernel->width * sizeof group.x[0]);
+      run(kernel, &group);
+      sure += check_group(kernel, &group, app_bench_sets[set]);
+      // the plane test alone never calls a pair apart that is not, and sees most of those that are
+      ck_assert_uint_eq(kernel->separate(group.x[0]) & ~group.outcome.disjoint, 0);
+    }
+    // flat ones that only an edge keeps apart have to ask
+    ck_assert_int_ge(sure, COUNT - COUNT / (strcmp(app_bench_sets[set], "disjoint") == 0 ? 100 : 1000));
+  }
+  memory_free(pairs);
+}
+END_TEST
+
+static void draw_any(int number, double x[24]) {
+  memcpy(x, pairs_make(number % PAIRS_CLASS_COUNT, number).x, 24 * sizeof *x);
+}
+
+START_TEST(a_lane_knows_nothing_of_the_others) {
+  const ContactClipLanes *kernel = kernels[_i];
+  for (int number = 0; number < 300; number++) {
+    Group alone, among;
+    for (int k = 0; k < WIDEST; k++) {
+      draw_any(number, alone.x[k]);
+      draw_any(7 * number + 13 * k + 1, among.x[k]);
+    }
+    int lane = number % kernel->width;
+    memcpy(among.x[lane], alone.x[0], sizeof alone.x[0]);
+    run(kernel, &alone), run(kernel, &among);
+    ck_assert_uint_eq(alone.outcome.doubtful & 1, among.outcome.doubtful >> lane & 1);
+    if (alone.outcome.doubtful & 1) continue;
+    ck_assert_mem_eq(&alone.volume[0], &among.volume[lane], sizeof(double));
+    ck_assert_mem_eq(alone.gradient[0], among.gradient[lane], sizeof alone.gradient[0]);
+  }
+}
+END_TEST
+
+// Also: V alone is the V that comes with ∇V.
+START_TEST(every_instruction_set_gives_the_same_bits) {
+  for (int m = 1; m < kernel_count; m++) {
+    if (is_single(kernels[m]) != is_single(kernels[m - 1])) continue;
+    for (int number = 0; number < 3000; number += WIDEST) {
+      Group groups[2];
+      for (int side = 0; side < 2; side++) {
+        const ContactClipLanes *kernel = kernels[m - side];
+        Group *group = &groups[side];
+        for (int k = 0; k < WIDEST; k++) draw_any(number + k, group->x[k]);
+        group->outcome.doubtful = 0;
+        for (int first = 0; first < WIDEST; first += kernel->width) {
+          double volume[WIDEST];
+          ContactClipLanesOutcome outcome =
+              kernel->differentiate(group->x[first], 0, group->volume + first, group->gradient[first]);
+          group->outcome.doubtful |= outcome.doubtful << first;
+          outcome = kernel->measure(group->x[first], 0, volume);
+          for (int k = 0; k < kernel->width; k++)
+            if (!(outcome.doubtful >> k & 1))
+              ck_assert_mem_eq(&volume[k], &group->volume[first + k], sizeof *volume);
+        }
+      }
+      ck_assert_uint_eq(groups[0].outcome.doubtful, groups[1].outcome.doubtful);
+      for (int k = 0; k < WIDEST; k++) {
+        if (groups[0].outcome.doubtful >> k & 1) continue;
+        ck_assert_mem_eq(&groups[0].volume[k], &groups[1].volume[k], sizeof(double));
+        ck_assert_mem_eq(groups[0].gradient[k], groups[1].gradient[k], sizeof groups[0].gradient[k]);
+      }
+    }
+  }
+}
+END_TEST
+
+static const ContactOverlapOps *const batched[2] = {&contact_overlap_clip, &contact_overlap_clip32};
+
+// Sizes around the width of a vector and a portion; pairs of all classes and mostly disjoint ones, so that
+// groups are full, half full, and wait.
+START_TEST(a_batch_answers_each_pair_as_if_it_were_alone) {
+  static const int sizes[] = {1, 3, 7, 8, 9, 17, 33, 511, 513, 1100};
+  enum { MOST = 1100 };
+  const ContactOverlapOps *ops = batched[_i / 2];
+  double *x = memory_zeroed(MOST * 24, sizeof *x), *gradient = memory_zeroed(MOST * 24, sizeof *gradient);
+  static double volume[MOST];
+  static unsigned flags[MOST];
+  for (int i = 0; i < MOST; i++) {
+    draw_any(i, x + 24 * i);
+    if (_i % 2 && i % 5)
+      for (int c = 12; c < 24; c++) x[24 * i + c] += 3 * pairs_extent(x + 24 * i);
+  }
+  for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+    ContactOverlapBatch batch = {
+        .pair_count = sizes[s], .pairs = x, .volume = volume, .gradient = gradient, .flags = flags};
+    memset(volume, 0xff, sizeof volume), memset(gradient, 0xff, MOST * 24 * sizeof *gradient);
+    ck_assert_ok(ops->eval_batch(NULL, &batch));
+    for (int i = 0; i < sizes[s]; i++) {
+      double alone, slope[24];
+      unsigned flag;
+      ck_assert_ok(ops->eval_pair(NULL, x + 24 * i, &alone, slope, NULL, &flag));
+      ck_assert_msg(alone == volume[i] && flag == flags[i], "pair %d of %d: %g, alone %g", i, sizes[s],
+                    volume[i], alone);
+      ck_assert_mem_eq(slope, gradient + 24 * i, sizeof slope);
+      ck_assert_int_eq((flag & (CONTACT_OVERLAP_DISJOINT | CONTACT_OVERLAP_FLAT)) != 0, alone == 0);
+    }
+  }
+  memory_free(x), memory_free(gradient);
+}
+END_TEST
+
+START_TEST(the_scalar_form_gives_the_same_up_to_rounding) {
+  for (int number = 0; number < 3000; number++) {
+    double x[24], volume[2], gradient[24];
+    unsigned flags[2];
+    draw_any(number, x);
+    ck_assert_ok(contact_overlap_clip.eval_pair(NULL, x, &volume[0], gradient, NULL, &flags[0]));
+    ck_assert_ok(contact_overlap_clip_scalar.eval_pair(NULL, x, &volume[1], gradient, NULL, &flags[1]));
+    ck_assert_msg(fabs(volume[0] - volume[1]) <= 2 * pairs_allowed(x, volume[1]), "pair %d: %g, scalar %g",
+                  number, volume[0], volume[1]);
+  }
+}
+END_TEST
+
+int main(void) {
+  kernels = contact_clip_lanes_list(&kernel_count);
+  TCase *cases = tcase_create("clip_lanes");
+  tcase_add_loop_test(cases, lanes_that_are_not_doubtful_are_right_in_every_class, 0, kernel_count);
+  tcase_add_loop_test(cases, ordinary_pairs_are_hardly_ever_doubtful, 0, kernel_count);
+  tcase_add_loop_test(cases, a_lane_knows_nothing_of_the_others, 0, kernel_count);
+  tcase_add_test(cases, every_instruction_set_gives_the_same_bits);
+  tcase_add_loop_test(cases, a_batch_answers_each_pair_as_if_it_were_alone, 0, 4);
+  tcase_add_test(cases, the_scalar_form_gives_the_same_up_to_rounding);
+  return suite_run("clip lanes", cases, 60);
+}
