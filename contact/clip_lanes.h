@@ -16,10 +16,10 @@
 //
 // Every number of a corner is a convex combination with the same weights, so wrong decisions on what is only
 // rounding move the corner by no more than rounding does. What they may spoil is that polygons close; that is
-// counted: a segment has one start and one end, or none. Where it has not, where a vertex lies in a plane of
-// the other but for rounding (identical tetrahedra would each count as inside the other), where rounding may
-// spoil V (clip.c) or where a tetrahedron is too flat, the lane is doubtful and its pair goes to careful
-// clipping.
+// counted: a segment has one start and one end, or none. Doubtful, and left to careful clipping, is a lane
+// where it has not; where a vertex is closer to a plane of the other than about 1e-9 (identical tetrahedra
+// would each count as inside the other); where edges meet and V is not positive; where rounding may spoil V
+// (clip.c); where a tetrahedron is too flat.
 //
 // A lane's result depends on its pair alone, and is the same for every instruction set.
 #ifndef TETLAP_CONTACT_CLIP_LANES_H

@@ -158,7 +158,8 @@ START_TEST(friction_keeps_momentum_with_every_overlap_model) {
     Vec3 a = sum_over(force, 0, middle), b = sum_over(force, middle, f->blocks.vertex_count);
     ck_assert_double_gt(vec3_length(a), 1);
     // The weights of a side sum to 1 as well as Σ ∇V of the pair is 0.
-    ck_assert_near(vec3_length(vec3_add(a, b)), 0, 1e-9 * vec3_length(a));
+    bool is_single = strcmp(models[_i]->name, "clip32") == 0;
+    ck_assert_near(vec3_length(vec3_add(a, b)), 0, (is_single ? 1e-6 : 1e-9) * vec3_length(a));
     free(force);
   }
   // Slid as a whole, the upper block feels μ times what presses it, and somewhat more: its sides, which dip
