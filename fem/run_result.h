@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run comes to: times, counts, extremes, and on demand its trajectory.
+#ifndef TETLAP_FEM_RUN_RESULT_H
+#define TETLAP_FEM_RUN_RESULT_H
+
+#include "base/record.h"
+#include "fem/audit.h"
+#include "fem/integrator.h"
+
+// `contact`: candidate lists, watched onsets, pressures and forces, without broad phase and overlap volumes.
+// What no phase names (the energy audit, the integrator's vectors) is the difference to the total.
+typedef struct FemRunPhases {
+  double broad_phase, overlap, contact, forces, assembly, analysis, factorisation, solve, output,
+      total; // wall [s]
+} FemRunPhases;
+
+typedef struct FemRunResult {
+  double wall_s, cpu_s;
+  FemRunPhases phases;
+  FemIntegratorStats integrator;
+  FemSolverStats solver;
+  const char *solver_name;
+  long long assemblies;      // of K, or K and D apart: how often the elements' matrices were added up
+  long long pattern_layouts; // how often the matrix pattern was laid out
+  long long energy_retries;  // steps taken back because they gained energy
+  FemAudit audit;
+  double end_time;         // reached [s]
+  ContactPairCounts pairs; // handed to the overlap model over the whole run
+  int state_unknowns;      // displacements, and in a motion as many velocities
+  bool is_static;
+  double residual, residual_allowed; // of the last equilibrium: largest force on an unknown [N]
+  long long relaxation_steps, halvings;
+  int pairs_max;
+  double overlap_volume_max, contact_force_max, min_det_F, deepest_overlap_max;
+  double last_contact_force; // largest interface force at the last frame [N]
+  size_t peak_rss_bytes;
+  Record *counters; // owned
+  int effect_count; // those that the scene called for
+  struct {
+    const char *name; // borrowed
+    FemEffectCost cost;
+  } effects[FEM_MAX_EFFECTS]; //                                  (effect_count)
+  // With keep_trajectory:
+  int frame_count, vertex_count, interface_count;
+  char **interface_names;   // "a, b", owned                       (interface_count)
+  double *frame_times;      //                                     (frame_count)
+  double *trajectory;       // positions [m]                       (frame_count, vertex_count, 3)
+  double *interface_forces; // on the first side [N]               (frame_count, interface_count, 3)
+} FemRunResult;
+
+void fem_run_result_destroy(FemRunResult *result);
+
+// summary.json of a run.
+void fem_run_summarise(const FemRunResult *result, Record *summary);
+
+#endif
