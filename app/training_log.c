@@ -75,6 +75,7 @@ static Status write_script(const char *path, const char *directory, const char *
           "directory = \"%s\"\n"
           "set terminal pngcairo size 900,540\nset output directory.\"/learning.png\"\n"
           "set datafile separator ','\nset title \"%s\" noenhanced\nset key above noenhanced\nset grid\n"
+          "set linetype 5 linecolor rgb '#7f6000'\n" // the default is a yellow that white swallows
           "set logscale y\nset format y '10^{%%T}'\nset xlabel 'samples seen'\n"
           "log = directory.\"/log.csv\"\nstats log using 1 skip 1 nooutput\n"
           "plot log using 'samples':'loss' with lines lw 2 title 'loss', log using 'samples':'score' with "
