@@ -14,13 +14,16 @@
 typedef struct RunOptions {
   AppJobOptions job;
   const char *overlap, *capture;
+  bool is_strict;
 } RunOptions;
 
-enum { KEY_CAPTURE = 256 };
+enum { KEY_CAPTURE = 256, KEY_STRICT };
 
 static const struct argp_option option_table[] = {
     {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
     {"capture", KEY_CAPTURE, "FILE", 0, "Keep the overlapping pairs of every step, labelled, as a data set",
+     1},
+    {"strict", KEY_STRICT, NULL, 0, "A gain of energy beyond 0.1 % of the scene's is an error, not a warning",
      1},
     {0},
 };
@@ -36,6 +39,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     break;
   case KEY_CAPTURE:
     options->capture = text;
+    break;
+  case KEY_STRICT:
+    options->is_strict = true;
     break;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -69,7 +75,10 @@ static void conclude(const AppJob *job, const FemRunResult *result) {
            result->audit.gain / result->audit.scale, result->min_det_F, result->integrator.roots,
            result->energy_retries);
   conclude_network(&result->pairs);
+  char trouble[1024];
+  fem_run_tell_trouble(result, &job->model, trouble, sizeof trouble);
   log_info("wrote %s: frames.pvd (ParaView), history.csv, summary.json, manifest.json", job->directory);
+  log_info("trouble: %s", trouble);
 }
 
 static Status print_summary(const AppJob *job, const FemRunResult *result, Status status) {
@@ -84,6 +93,7 @@ static Status print_summary(const AppJob *job, const FemRunResult *result, Statu
 typedef struct Observer {
   AppProgress progress;
   DatagenCapture *capture; // NULL: none
+  FemTrouble told;         // what the log has been told of
 } Observer;
 
 static Status capture_pairs(DatagenCapture *capture, FemSystem *system) {
@@ -98,9 +108,28 @@ static Status capture_pairs(DatagenCapture *capture, FemSystem *system) {
   return status;
 }
 
+// The first time that a kind of trouble strikes, and every event of energy.
+static void warn(Observer *observer, const FemRunProgress *progress) {
+  const FemTrouble *trouble = progress->trouble;
+  for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) {
+    char text[256];
+    if (trouble->of[k].events == observer->told.of[k].events) continue;
+    if (k == FEM_TROUBLE_ENERGY && trouble->of[k].events > observer->told.of[k].events)
+      log_warning("t = %.6g s: the energy has risen by %.2g of the scene's, the bound is %g", progress->time,
+                  (progress->audit->total - progress->audit->lowest) / progress->audit->scale,
+                  FEM_TROUBLE_ENERGY_BOUND);
+    else if (observer->told.of[k].events == 0) {
+      fem_trouble_tell(trouble, progress->system->model, (FemTroubleKind)k, text, sizeof text);
+      log_warning("%s", text);
+    }
+  }
+  observer->told = *trouble;
+}
+
 static Status observe(void *self, const FemRunProgress *progress) {
   Observer *observer = self;
   TRY(app_job_show_progress(&observer->progress, progress));
+  if (progress->has_trouble_begun) warn(observer, progress);
   return observer->capture ? capture_pairs(observer->capture, progress->system) : STATUS_OK;
 }
 
@@ -111,8 +140,11 @@ static Status run_captured(const RunOptions *options, const AppJob *job, FemRunR
     TRY(datagen_capture_begin(&capture, options->capture, app_versions_program(), DATAGEN_LABEL_EXACT));
   Observer observer = {.progress = {.began_s = clock_wall_s(), .label = ""},
                        .capture = options->capture ? &capture : NULL};
-  FemRunOptions run_options = {
-      .directory = job->directory, .stop = app_job_stop_flag(), .observe = observe, .observer = &observer};
+  FemRunOptions run_options = {.directory = job->directory,
+                               .stop = app_job_stop_flag(),
+                               .observe = observe,
+                               .observer = &observer,
+                               .is_strict = options->is_strict};
   Status status = fem_run(&job->model, &run_options, result);
   log_progress_end();
   if (status) log_error("%s", status_message());

@@ -42,6 +42,11 @@ static const struct {
     {"min_det_F", NULL},
     {"step_s", NULL},
     {"steps", NULL},
+    {"energy_gain", NULL},
+    {"energy_events", NULL},
+    {"inverted", NULL},
+    {"enclosed", "contact"},
+    {"wrong_way", "contact"},
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
@@ -95,6 +100,7 @@ static Status create(FemRecorder *recorder, const char *directory) {
   recorder->det_F = memory_zeroed(tets, sizeof *recorder->det_F);
   recorder->overlap = memory_zeroed(tets, sizeof *recorder->overlap);
   if (!recorder->det_F || !recorder->overlap) return status_no_memory("the measures");
+  TRY(fem_trouble_watch_create(&recorder->watch, model));
   if (!directory) return STATUS_OK;
   recorder->writes_vtu = model->scene->write_vtu;
   recorder->writes_history = model->scene->write_history;
@@ -139,6 +145,7 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   memory_free(recorder->von_mises);
   memory_free(recorder->det_F);
   memory_free(recorder->overlap);
+  fem_trouble_watch_destroy(&recorder->watch);
   *recorder = (FemRecorder){0};
 }
 
@@ -200,6 +207,10 @@ Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *mea
   measure_elements(recorder, measures);
   measure_motion(recorder->system, measures);
   measure_contact(recorder->system, measures);
+  ContactSystem *contact = contact_of(recorder->system);
+  fem_trouble_look(&recorder->watch, recorder->system->positions,
+                   contact ? contact_system_forces(contact) : NULL, recorder->det_F, recorder->overlap,
+                   &measures->trouble);
   return STATUS_OK;
 }
 
@@ -236,7 +247,7 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
   fill_arrays(recorder);
-  // The last two only with contact.
+  // The last three only with contact.
   const FemVtuArray arrays[] = {
       {.name = "displacement", .components = 3, .reals = recorder->displacement},
       {.name = "velocity", .components = 3, .reals = system->velocities},
@@ -244,8 +255,10 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
       {.name = "det_F", .is_cell = true, .components = 1, .reals = recorder->det_F},
       {.name = "stress", .is_cell = true, .components = 6, .reals = recorder->stress},
       {.name = "von_mises", .is_cell = true, .components = 1, .reals = recorder->von_mises},
+      {.name = "trouble", .is_cell = true, .components = 1, .integers = recorder->watch.marks},
       {.name = "contact_force", .components = 3, .reals = recorder->contact_force},
       {.name = "overlap_fraction", .is_cell = true, .components = 1, .reals = recorder->overlap},
+      {.name = "wrong_way", .components = 1, .integers = recorder->watch.is_wrongway},
   };
   int array_count = (int)(sizeof arrays / sizeof *arrays);
   const FemVtuFrame frame = {.time = time,
@@ -254,7 +267,7 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
                              .tet_count = model->tet_count,
                              .tets = model->tets[0],
                              .arrays = arrays,
-                             .array_count = contact_of(system) ? array_count : array_count - 2};
+                             .array_count = contact_of(system) ? array_count : array_count - 3};
   return fem_vtu_write(path, &frame);
 }
 
@@ -291,7 +304,7 @@ static double *append_centres(const FemSystem *system, double *row) {
 }
 
 static Status write_history(FemRecorder *recorder, double time, const FemMeasures *m, const FemAudit *audit,
-                            double step, long long step_count) {
+                            double step, long long step_count, long long energy_events) {
   const double fixed[COLUMN_COUNT] = {time,
                                       m->energy.kinetic,
                                       m->energy.elastic,
@@ -311,7 +324,12 @@ static Status write_history(FemRecorder *recorder, double time, const FemMeasure
                                       m->deepest_overlap,
                                       m->min_det_F,
                                       step,
-                                      (double)step_count};
+                                      (double)step_count,
+                                      audit->gain / audit->scale,
+                                      (double)energy_events,
+                                      m->trouble.count[FEM_TROUBLE_INVERTED],
+                                      m->trouble.count[FEM_TROUBLE_ENCLOSED],
+                                      m->trouble.count[FEM_TROUBLE_WRONG_WAY]};
   double *row = recorder->row;
   for (int i = 0; i < COLUMN_COUNT; i++)
     if (has_column(recorder, i)) *row++ = fixed[i];
@@ -323,11 +341,12 @@ static Status write_history(FemRecorder *recorder, double time, const FemMeasure
 }
 
 Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
-                          const FemAudit *audit, double step, long long step_count) {
+                          const FemAudit *audit, double step, long long step_count, long long energy_events) {
   if (!recorder->directory) return STATUS_OK;
   double began = clock_wall_s();
   if (recorder->writes_vtu) TRY(write_frame(recorder, time));
-  if (recorder->writes_history) TRY(write_history(recorder, time, measures, audit, step, step_count));
+  if (recorder->writes_history)
+    TRY(write_history(recorder, time, measures, audit, step, step_count, energy_events));
   recorder->seconds += clock_wall_s() - began;
   return STATUS_OK;
 }

@@ -7,6 +7,7 @@
 #include "fem/audit.h"
 #include "fem/history.h"
 #include "fem/system.h"
+#include "fem/trouble.h"
 
 // The measures of one state.
 typedef struct FemMeasures {
@@ -17,6 +18,7 @@ typedef struct FemMeasures {
   double overlap_volume; // [m³]
   int active_pairs;
   double contact_force; // largest norm over interfaces [N]
+  FemTroubleState trouble;
 } FemMeasures;
 
 typedef struct FemRecorder {
@@ -31,7 +33,8 @@ typedef struct FemRecorder {
   int frame_count, frame_capacity;
   double *displacement, *contact_force;         // scratch             (vertex_count, 3)
   double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
-  double seconds;                               // spent writing
+  FemTroubleWatch watch;
+  double seconds; // spent writing
 } FemRecorder;
 
 // `directory` NULL: measures only. `frame_capacity`: how many frames will come.
@@ -42,9 +45,10 @@ void fem_recorder_destroy(FemRecorder *recorder);
 // The measures at the system's scattered state.
 Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures);
 
-// Writes one frame of the scattered state. `step` [s] and `step_count` are the integrator's.
+// Writes one frame of the scattered state. `step` [s] and `step_count` are the integrator's, `energy_events`
+// those so far (fem/trouble.h).
 Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
-                          const FemAudit *audit, double step, long long step_count);
+                          const FemAudit *audit, double step, long long step_count, long long energy_events);
 
 // The force on the first side of an interface at the state that was measured last [N]: of the potential and,
 // where there is friction, of friction.

@@ -103,7 +103,8 @@ static void keep_extremes(FemRunResult *result, const FemMeasures *measures) {
 static Status write_frame(Run *run, double time, const FemMeasures *measures) {
   FemIntegratorStats stats = stats_of(run);
   FemAudit audit = time > run->audit.time ? fem_audit_next(&run->audit, time, &measures->energy) : run->audit;
-  TRY(fem_recorder_write(&run->recorder, time, measures, &audit, stats.last_step, stats.steps));
+  TRY(fem_recorder_write(&run->recorder, time, measures, &audit, stats.last_step, stats.steps,
+                         run->result->trouble.of[FEM_TROUBLE_ENERGY].events));
   run->result->last_contact_force = measures->contact_force;
   keep_frame(run, time);
   run->next_frame++;
@@ -146,7 +147,23 @@ static Status take_back(Run *run) {
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
 }
 
-static Status observe(Run *run, const FemMeasures *measures) {
+// Counts what struck in the accepted state; `*has_begun`: something that had not in the state before.
+static Status judge(Run *run, FemMeasures *measures, bool *has_begun) {
+  FemTrouble *trouble = &run->result->trouble;
+  double rise = (run->audit.total - run->audit.lowest) / run->audit.scale;
+  measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= FEM_TROUBLE_ENERGY_BOUND);
+  *has_begun = fem_trouble_add(trouble, run->time, &measures->trouble);
+  if (!run->options->is_strict || !measures->trouble.count[FEM_TROUBLE_ENERGY]) return STATUS_OK;
+  return status_fail(
+      STATUS_SOLVER,
+      "at t = %.9g s: the energy has risen by %.2g of the scene's, the bound is %g (--strict). Try "
+      "a smaller time.tolerance or time.max_step, or a smaller contact.stiffness",
+      run->time, rise, FEM_TROUBLE_ENERGY_BOUND);
+}
+
+static Status observe(Run *run, FemMeasures *measures) {
+  bool has_begun;
+  TRY(judge(run, measures, &has_begun));
   if (run->options->stop && *run->options->stop)
     return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
                        run->time);
@@ -157,7 +174,11 @@ static Status observe(Run *run, const FemMeasures *measures) {
                              .end = run->model->scene->end,
                              .step = stats.last_step,
                              .step_count = stats.steps,
-                             .active_pairs = measures->active_pairs};
+                             .active_pairs = measures->active_pairs,
+                             .measures = measures,
+                             .audit = &run->audit,
+                             .trouble = &run->result->trouble,
+                             .has_trouble_begun = has_begun};
   return run->options->observe(run->options->observer, &progress);
 }
 
@@ -210,6 +231,8 @@ static Status advance(Run *run) {
   keep_state(run, time);
   keep_extremes(run->result, &measures);
   FemIntegratorStats stats = stats_of(run);
+  if (!is_onset)
+    run->result->trouble.smallest_step = fmin(run->result->trouble.smallest_step, stats.last_step);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
   if (fem_system_lags(&run->system)) TRY(renew_powers(run));
   TRY(observe(run, &measures));
@@ -322,6 +345,7 @@ static Status begin_record(Run *run) {
   TRY(fem_recorder_measure(&run->recorder, 0, &measures));
   fem_audit_begin(&run->audit, 0, &measures.energy, energy_floor(model));
   keep_extremes(run->result, &measures);
+  fem_trouble_add(&run->result->trouble, 0, &measures.trouble);
   return write_frame(run, 0, &measures);
 }
 
@@ -457,7 +481,7 @@ static Status collect(Run *run) {
 }
 
 Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult *result) {
-  *result = (FemRunResult){.min_det_F = INFINITY};
+  *result = (FemRunResult){.min_det_F = INFINITY, .trouble = fem_trouble_begin(model)};
   double wall = clock_wall_s(), cpu = clock_cpu_s();
   Run run = {.model = model, .options = options, .result = result};
   Status status = march(&run);

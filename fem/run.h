@@ -19,6 +19,10 @@ typedef struct FemRunProgress {
   double step;       // last step size [s]
   long long step_count;
   int active_pairs;
+  const FemMeasures *measures; // of this state; borrowed
+  const FemAudit *audit;       // borrowed
+  const FemTrouble *trouble;   // so far; borrowed
+  bool has_trouble_begun;      // in this step
 } FemRunProgress;
 
 typedef struct FemRunOptions {
@@ -28,7 +32,8 @@ typedef struct FemRunOptions {
   Status (*observe)(void *observer, const FemRunProgress *progress); // may be NULL
   void *observer;
   const double *initial_displacement; // from rest [m], or NULL: none    (vertex_count, 3)
-  bool keep_trajectory;               // keep positions and interface forces of every frame in the result
+  bool is_strict;       // an energy gain beyond FEM_TROUBLE_ENERGY_BOUND ends the run: STATUS_SOLVER
+  bool keep_trajectory; // keep positions and interface forces of every frame in the result
 } FemRunOptions;
 
 // The solver that a model gets: the scene's, or by size for `auto`.

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/run_result.h"
 
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
 #include "base/memory.h"
+#include "base/text.h"
 
 void fem_run_result_destroy(FemRunResult *result) {
   if (result->counters) record_destroy(result->counters);
@@ -11,6 +16,47 @@ void fem_run_result_destroy(FemRunResult *result) {
   memory_free(result->trajectory);
   memory_free(result->interface_forces);
   *result = (FemRunResult){0};
+}
+
+// Appends "; text" to what was told.
+static void tell(char *text, size_t size, size_t *used, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+static void tell(char *text, size_t size, size_t *used, const char *format, ...) {
+  char piece[256];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(piece, sizeof piece, format, arguments);
+  va_end(arguments);
+  text_append(text, size, used, "%s%s", *used > 0 ? "; " : "", piece);
+}
+
+void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size) {
+  const FemTrouble *trouble = &result->trouble;
+  size_t used = 0;
+  text[0] = 0;
+  for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) {
+    char piece[256];
+    if (trouble->of[k].steps == 0) continue;
+    fem_trouble_tell(trouble, model, (FemTroubleKind)k, piece, sizeof piece);
+    tell(text, size, &used, "%s", piece);
+  }
+  if (trouble->sliver_count > 0)
+    tell(text, size, &used, "slivers: %d elements, the worst %d", trouble->sliver_count,
+         trouble->worst_sliver);
+  if (result->pairs.enclosed > 0) tell(text, size, &used, "enclosed pairs: %lld", result->pairs.enclosed);
+  if (result->pairs.beyond > 0)
+    tell(text, size, &used, "pairs beyond the network's training: %lld", result->pairs.beyond);
+  if (result->pairs.fallbacks > 0)
+    tell(text, size, &used, "pairs answered by a more careful model: %lld", result->pairs.fallbacks);
+  if (result->energy_retries > 0)
+    tell(text, size, &used, "steps taken back for their energy: %lld", result->energy_retries);
+  if (result->solver.failed_factorisations > 0)
+    tell(text, size, &used, "failed factorisations: %lld", result->solver.failed_factorisations);
+  if (result->integrator.newton_failures > 0)
+    tell(text, size, &used, "steps without convergence: %lld", result->integrator.newton_failures);
+  if (used == 0) tell(text, size, &used, "none");
+  if (isfinite(trouble->smallest_step))
+    tell(text, size, &used, "smallest step %.1e s", trouble->smallest_step);
 }
 
 static void summarise_phases(const FemRunPhases *phases, Record *record) {
@@ -79,6 +125,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_number(summary, "energy_gain_relative", result->audit.gain / result->audit.scale);
   record_number(summary, "energy_scale", result->audit.scale);
   record_number(summary, "min_det_F", result->min_det_F);
+  fem_trouble_record(&result->trouble, record_child(summary, "trouble"));
   if (result->is_static) {
     Record *equilibrium = record_child(summary, "equilibrium");
     record_number(equilibrium, "residual_N", result->residual);

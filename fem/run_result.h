@@ -6,6 +6,7 @@
 #include "base/record.h"
 #include "fem/audit.h"
 #include "fem/integrator.h"
+#include "fem/trouble.h"
 
 // `contact`: candidate lists, watched onsets, pressures and forces, without broad phase and overlap volumes.
 // What no phase names (the energy audit, the integrator's vectors) is the difference to the total.
@@ -24,6 +25,7 @@ typedef struct FemRunResult {
   long long pattern_layouts; // how often the matrix pattern was laid out
   long long energy_retries;  // steps taken back because they gained energy
   FemAudit audit;
+  FemTrouble trouble;
   double end_time;         // reached [s]
   ContactPairCounts pairs; // handed to the overlap model over the whole run
   int state_unknowns;      // displacements, and in a motion as many velocities
@@ -49,6 +51,9 @@ typedef struct FemRunResult {
 } FemRunResult;
 
 void fem_run_result_destroy(FemRunResult *result);
+
+// The run's last line: what trouble struck, or that none did. `model`: the one that ran.
+void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);
 
 // summary.json of a run.
 void fem_run_summarise(const FemRunResult *result, Record *summary);
