@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 
-enum { MAX_ITERATIONS = 40, MESSAGE_SIZE = 512 };
+enum { MAX_FULL_STEPS = 12, MAX_ITERATIONS = 40, MESSAGE_SIZE = 512 };
 
 // One call: KINSOL, and what it is told.
 typedef struct Newton {
@@ -106,7 +106,6 @@ static Status create(Newton *newton, double tolerance, double length) {
       KINInit(kinsol, residual, newton->u) == KIN_SUCCESS && KINSetUserData(kinsol, newton) == KIN_SUCCESS &&
       KINSetLinearSolver(kinsol, newton->linear, newton->matrix) == KIN_SUCCESS &&
       KINSetJacFn(kinsol, jacobian) == KIN_SUCCESS && KINSetMaxSetupCalls(kinsol, 1) == KIN_SUCCESS &&
-      KINSetNumMaxIters(kinsol, MAX_ITERATIONS) == KIN_SUCCESS &&
       KINSetFuncNormTol(kinsol, 1) == KIN_SUCCESS && // of the force over `tolerance`
       KINSetScaledStepTol(kinsol, 1e-14) == KIN_SUCCESS;
   return is_ok ? STATUS_OK : status_fail(STATUS_SOLVER, "KINSOL could not be set up");
@@ -122,10 +121,14 @@ static void destroy(Newton *newton) {
   if (newton->context) SUNContext_Free(&newton->context);
 }
 
-static Status run(Newton *newton, double *u, long long *iterations) {
+// From the start u by one strategy of KINSOL; u is what it ended in, also of a failure.
+static Status run(Newton *newton, int strategy, int most, const double *start, double *u,
+                  long long *iterations) {
   double *own = N_VGetArrayPointer(newton->u), norm = 0;
-  for (int i = 0; i < newton->n; i++) own[i] = u[i];
-  int flag = KINSol(newton->kinsol, newton->u, KIN_LINESEARCH, newton->u_scale, newton->f_scale);
+  for (int i = 0; i < newton->n; i++) own[i] = start[i];
+  newton->message[0] = 0;
+  KINSetNumMaxIters(newton->kinsol, most);
+  int flag = KINSol(newton->kinsol, newton->u, strategy, newton->u_scale, newton->f_scale);
   long taken = 0;
   KINGetNumNonlinSolvIters(newton->kinsol, &taken);
   KINGetFuncNorm(newton->kinsol, &norm);
@@ -142,8 +145,11 @@ static Status run(Newton *newton, double *u, long long *iterations) {
 Status fem_kinsol_solve(FemEquilibrium *equilibrium, double time, double tolerance, double length, double *u,
                         long long *iterations) {
   Newton newton = {.equilibrium = equilibrium, .time = time, .n = equilibrium->system->model->unknown_count};
-  Status status = create(&newton, tolerance, length);
-  if (!status) status = run(&newton, u, iterations);
+  double *start = memory_copy(u, (size_t)newton.n, sizeof *u);
+  Status status = start ? create(&newton, tolerance, length) : status_no_memory("KINSOL");
+  if (!status) status = run(&newton, KIN_NONE, MAX_FULL_STEPS, start, u, iterations);
+  if (status == STATUS_RETRY) status = run(&newton, KIN_LINESEARCH, MAX_ITERATIONS, start, u, iterations);
+  memory_free(start);
   destroy(&newton);
   return status;
 }

@@ -15,6 +15,9 @@ static const double TOLERANCE = 1e-8, SMALLEST_SCALE = 1e-9;
 static const double LONGEST_WAY = 0.25;
 // Relaxation hands over to Newton once the force has fallen to this share.
 static const double HAND_OVER = 1e-3;
+// By this the shift falls while the force stays: large elements are heavy beside soft, and a shift that only
+// follows the force waits for them forever.
+static const double SHIFT_FALL = 0.5;
 enum { MAX_RELAXATIONS = 400, MAX_REFUSALS = 40, WORST_COUNT = 3 };
 
 static Status check_scene(const FemSceneDef *scene) {
@@ -133,7 +136,7 @@ static Status relax(FemStatics *statics, double time, double *u) {
     }
     statics->relaxation_steps++;
     double now = largest_of(statics->force, n);
-    shift *= fmin(fmax(now / before, 0.2), 2);
+    shift *= SHIFT_FALL * fmin(fmax(now / before, 0.4), 4);
     before = now;
   }
   return STATUS_OK;
