@@ -34,8 +34,8 @@
 
 // How far tr P, which is 3, may be off.
 #define CONTACT_GEO_TRACE_TOLERANCE 1e-6
-// An overlap this small beside a tetrahedron, 1e-13 wide all around, is the rounding of its coordinates.
-#define CONTACT_GEO_LEAST_SHARE 1e-39
+// An overlap this small beside a tetrahedron, 1e-12 wide all around, is the rounding of its coordinates.
+#define CONTACT_GEO_LEAST_SHARE 1e-36
 
 typedef struct ContactGeoFrame {
   GeoColumns normal;       // ∇s_k [1/m], by component
