@@ -12,6 +12,7 @@
 #include <math.h>
 
 #include "contact/exact_polygon.h"
+#include "contact/separation.h"
 
 // All four vertices of one on the outer side of a face of the other, or in it.
 static bool is_beyond_a_face(const ExactPair *pair) {
@@ -56,12 +57,12 @@ static void halve(ExactMoments *part) {
   for (int i = 0; i < 4; i++) part->moment[i] /= 2;
 }
 
-static void find_boundary(Boundary *boundary, const ExactPair *pair, ExactArena *arena) {
+static void find_boundary(Boundary *boundary, const ExactPair *pair, ExactArena *arena, bool with_moments) {
   ExactPolygon polygon;
   for (int t = 0; t < 2; t++)
     for (int k = 0; k < 4; k++) {
-      exact_polygon_cut(&polygon, arena, pair, t, k);
-      boundary->parts[t][k] = exact_polygon_measure(&polygon, arena);
+      exact_polygon_cut(&polygon, pair, t, k);
+      boundary->parts[t][k] = exact_polygon_measure(&polygon, arena, with_moments);
       if (polygon.count < 3) continue;
       if (!boundary->has_area) exact_polygon_lift(&polygon, arena, 0, boundary->apex);
       boundary->has_area = true;
@@ -94,6 +95,7 @@ static void sum_gradient(const Boundary *boundary, const ExactPair *pair, double
 }
 
 static unsigned intersect(const double coordinates[24], double *volume, double *gradient) {
+  if (contact_separation_is_certain(coordinates)) return CONTACT_OVERLAP_DISJOINT;
   mp_limb_t limbs[EXACT_PAIR_LIMBS];
   ExactArena arena = {limbs, limbs + EXACT_PAIR_LIMBS};
   ExactPair pair;
@@ -103,7 +105,7 @@ static unsigned intersect(const double coordinates[24], double *volume, double *
   if (is_beyond_a_face(&pair)) return CONTACT_OVERLAP_DISJOINT;
   exact_pair_find_crossings(&pair, &arena);
   Boundary boundary = {.has_area = false};
-  find_boundary(&boundary, &pair, &arena);
+  find_boundary(&boundary, &pair, &arena, gradient != NULL);
   if (!boundary.has_area) return CONTACT_OVERLAP_DISJOINT;
   *volume = sum_volume(&boundary, pair.exponent);
   if (gradient) sum_gradient(&boundary, &pair, gradient);
@@ -124,6 +126,6 @@ const ContactOverlapOps contact_overlap_exact = {
     .name = "exact",
     .help = "exact rational arithmetic; every input, signs always right, values rounded once",
     .has_hessian = false,
-    .seconds_per_pair = 15e-6,
+    .seconds_per_pair = 8e-6,
     .eval_pair = eval_pair,
 };

@@ -21,7 +21,11 @@
 // Flags: FLAT alone if one has no volume (exactly coplanar vertices), else DISJOINT if no common interior,
 // else ENCLOSED if every vertex of one is in the other (its boundary included).
 //
-// Cost: about 12 µs a pair; 208 kB of stack of which ordinary pairs touch a few, no other memory, no state:
+// How it is fast. A face that separates the two beyond doubt in double precision ends it at once. Numbers of
+// few limbs, which ordinary coordinates give, are added and multiplied without GMP (exact_integer.h), and a
+// triangle's area is taken to 127 bits where that is certain to suffice (exact_fixed.h), else to all digits.
+//
+// Cost: 6 to 9 µs a pair that overlaps, 0.1 µs one that a face separates; 208 kB of stack of which ordinary pairs touch a few, no other memory, no state:
 // threads share nothing.
 #ifndef TETLAP_CONTACT_EXACT_H
 #define TETLAP_CONTACT_EXACT_H

@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +32,105 @@ static ExactInteger keep(ExactArena *arena, mp_limb_t *mark, ExactInteger a) {
   return (ExactInteger){mark, a.size};
 }
 
-ExactInteger exact_add(ExactArena *arena, ExactInteger a, ExactInteger b) {
+// --- short numbers
+//
+// Ordinary coordinates have one or two limbs, so that a call of mpn costs more than its arithmetic: sums and
+// products of few limbs are taken here in two's complement, each of lengths that the compiler knows.
+
+#define INLINED static inline __attribute__((always_inline))
+
+__extension__ typedef unsigned __int128 Double;
+
+INLINED bool is_short(ExactInteger a, int limbs) {
+  return a.size <= limbs && -a.size <= limbs;
+}
+
+INLINED mp_limb_t limb_of(ExactInteger a, int k) {
+  return k < abs(a.size) ? a.limbs[k] : 0;
+}
+
+// sum ± term, `count` limbs each.
+INLINED void accumulate(mp_limb_t *sum, const mp_limb_t *term, int count, bool is_negative) {
+  const mp_limb_t flip = is_negative ? ~(mp_limb_t)0 : 0;
+  Double carry = is_negative;
+  for (int k = 0; k < count; k++) {
+    carry += (Double)sum[k] + (term[k] ^ flip);
+    sum[k] = (mp_limb_t)carry;
+    carry >>= 64;
+  }
+}
+
+// |a| |b| of `rows` and `columns` limbs.
+INLINED void multiply(mp_limb_t *product, ExactInteger a, int rows, ExactInteger b, int columns) {
+  for (int k = 0; k < columns; k++) product[k] = 0;
+  for (int i = 0; i < rows; i++) {
+    const mp_limb_t limb = limb_of(a, i);
+    Double carry = 0;
+    for (int k = 0; k < columns; k++) {
+      carry += (Double)limb * limb_of(b, k) + product[i + k];
+      product[i + k] = (mp_limb_t)carry;
+      carry >>= 64;
+    }
+    product[i + columns] = (mp_limb_t)carry;
+  }
+}
+
+// The number that `sum` is in two's complement.
+INLINED ExactInteger write_number(ExactArena *arena, const mp_limb_t *sum, int count) {
+  const bool is_negative = sum[count - 1] >> 63;
+  mp_limb_t *limbs = take(arena, count);
+  for (int k = 0; k < count; k++) limbs[k] = 0;
+  accumulate(limbs, sum, count, is_negative);
+  return finish(arena, limbs, count, is_negative ? -1 : 1);
+}
+
+enum { MOST = 8 };
+
+INLINED ExactInteger sum_short(ExactArena *arena, const ExactInteger *terms, int count, int limbs) {
+  mp_limb_t sum[MOST] = {0};
+  for (int t = 0; t < count; t++) {
+    mp_limb_t term[MOST];
+    for (int k = 0; k < limbs; k++) term[k] = limb_of(terms[t], k);
+    term[limbs] = 0;
+    accumulate(sum, term, limbs + 1, terms[t].size < 0);
+  }
+  return write_number(arena, sum, limbs + 1);
+}
+
+INLINED void add_product(mp_limb_t *sum, ExactInteger a, int rows, ExactInteger b, int columns,
+                         bool is_minus) {
+  mp_limb_t product[MOST];
+  multiply(product, a, rows, b, columns);
+  product[rows + columns] = 0;
+  accumulate(sum, product, rows + columns + 1, ((a.size < 0) != (b.size < 0)) != is_minus);
+}
+
+INLINED ExactInteger minor_short(ExactArena *arena, ExactInteger a, ExactInteger b, ExactInteger c,
+                                 ExactInteger d, int limbs) {
+  mp_limb_t sum[MOST] = {0};
+  add_product(sum, a, limbs, b, limbs, false);
+  add_product(sum, c, limbs, d, limbs, true);
+  return write_number(arena, sum, 2 * limbs + 1);
+}
+
+INLINED ExactInteger dot_short(ExactArena *arena, const ExactInteger x[3], const ExactInteger y[3], int rows,
+                               int columns) {
+  mp_limb_t sum[MOST] = {0};
+  for (int c = 0; c < 3; c++) add_product(sum, x[c], rows, y[c], columns, false);
+  return write_number(arena, sum, rows + columns + 1);
+}
+
+// The limbs that the longest of them has.
+INLINED int longest(const ExactInteger *numbers, int count) {
+  int size = 0;
+  for (int k = 0; k < count; k++)
+    if (!is_short(numbers[k], size)) size = abs(numbers[k].size);
+  return size;
+}
+
+// --- of any length
+
+static ExactInteger add_long(ExactArena *arena, ExactInteger a, ExactInteger b) {
   if (abs(a.size) < abs(b.size)) {
     const ExactInteger t = a;
     a = b, b = t;
@@ -52,8 +151,32 @@ ExactInteger exact_add(ExactArena *arena, ExactInteger a, ExactInteger b) {
   return finish(arena, sum, size_a, a.size);
 }
 
+ExactInteger exact_add(ExactArena *arena, ExactInteger a, ExactInteger b) {
+  const ExactInteger terms[2] = {a, b};
+  const int limbs = longest(terms, 2);
+  if (limbs <= 1) return sum_short(arena, terms, 2, 1);
+  return limbs <= 4 ? sum_short(arena, terms, 2, 4) : add_long(arena, a, b);
+}
+
 ExactInteger exact_sub(ExactArena *arena, ExactInteger a, ExactInteger b) {
   return exact_add(arena, a, exact_negated(b));
+}
+
+ExactInteger exact_sum(ExactArena *arena, const ExactInteger terms[4]) {
+  const int limbs = longest(terms, 4);
+  if (limbs <= 3) return sum_short(arena, terms, 4, 3);
+  if (limbs <= 6) return sum_short(arena, terms, 4, 6);
+  mp_limb_t *mark = arena->next;
+  ExactInteger sum = exact_add(arena, terms[0], terms[1]);
+  sum = exact_add(arena, sum, terms[2]);
+  sum = exact_add(arena, sum, terms[3]);
+  return keep(arena, mark, sum);
+}
+
+int exact_compare(ExactInteger a, ExactInteger b) {
+  if (a.size != b.size) return a.size < b.size ? -1 : 1;
+  const int order = a.size == 0 ? 0 : mpn_cmp(a.limbs, b.limbs, abs(a.size));
+  return a.size < 0 ? -order : order;
 }
 
 ExactInteger exact_mul(ExactArena *arena, ExactInteger a, ExactInteger b) {
@@ -72,12 +195,18 @@ ExactInteger exact_mul(ExactArena *arena, ExactInteger a, ExactInteger b) {
 }
 
 ExactInteger exact_minor(ExactArena *arena, ExactInteger a, ExactInteger b, ExactInteger c, ExactInteger d) {
+  const int limbs = longest((const ExactInteger[]){a, b, c, d}, 4);
+  if (limbs <= 1) return minor_short(arena, a, b, c, d, 1);
+  if (limbs <= 2) return minor_short(arena, a, b, c, d, 2);
   mp_limb_t *mark = arena->next;
   const ExactInteger ab = exact_mul(arena, a, b), cd = exact_mul(arena, c, d);
   return keep(arena, mark, exact_sub(arena, ab, cd));
 }
 
 ExactInteger exact_dot(ExactArena *arena, const ExactInteger x[3], const ExactInteger y[3]) {
+  const int rows = longest(x, 3), columns = longest(y, 3);
+  if (rows <= 1 && columns <= 2) return dot_short(arena, x, y, 1, 2);
+  if (rows <= 2 && columns <= 4) return dot_short(arena, x, y, 2, 4);
   mp_limb_t *mark = arena->next;
   ExactInteger sum = exact_mul(arena, x[0], y[0]);
   sum = exact_add(arena, sum, exact_mul(arena, x[1], y[1]));
@@ -128,6 +257,9 @@ long double exact_value(ExactInteger a, int dropped) {
   const int size = abs(a.size), low = size > 3 ? size - 3 : 0;
   long double value = 0;
   for (int k = size - 1; k >= low; k--) value = value * 0x1p64L + (long double)a.limbs[k];
-  if (low != dropped) value = ldexpl(value, 64 * (low - dropped));
+  if (low == dropped + 1)
+    value *= 0x1p64L;
+  else if (low != dropped)
+    value = ldexpl(value, 64 * (low - dropped));
   return a.size < 0 ? -value : value;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Integers of any size for short straight-line computations: immutable values whose limbs lie one after
-// another in memory that the caller lends (an arena). No allocation, no clean-up, no shared state. The
-// arithmetic is GMP's mpn layer; this is the only place that knows GMP.
+// another in memory that the caller lends (an arena). No allocation, no clean-up, no shared state. Of few
+// limbs the arithmetic is our own, else GMP's mpn layer; this is the only place that knows GMP.
 #ifndef TETLAP_CONTACT_EXACT_INTEGER_H
 #define TETLAP_CONTACT_EXACT_INTEGER_H
 
@@ -33,6 +33,11 @@ static inline ExactInteger exact_signed(ExactInteger a, int sign) {
 ExactInteger exact_add(ExactArena *arena, ExactInteger a, ExactInteger b);
 ExactInteger exact_sub(ExactArena *arena, ExactInteger a, ExactInteger b);
 ExactInteger exact_mul(ExactArena *arena, ExactInteger a, ExactInteger b);
+
+ExactInteger exact_sum(ExactArena *arena, const ExactInteger terms[4]);
+
+// The sign of a − b, or any number of that sign.
+int exact_compare(ExactInteger a, ExactInteger b);
 
 // a b − c d
 ExactInteger exact_minor(ExactArena *arena, ExactInteger a, ExactInteger b, ExactInteger c, ExactInteger d);

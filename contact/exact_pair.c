@@ -29,10 +29,9 @@ static void find_normals(ExactTet *tet, ExactArena *arena) {
   exact_cross(arena, edge[2], edge[3], tet->normal[1]);
   exact_cross(arena, edge[3], edge[1], tet->normal[2]);
   exact_cross(arena, edge[1], edge[2], tet->normal[3]);
-  for (int c = 0; c < 3; c++) {
-    const ExactInteger sum = exact_add(arena, tet->normal[1][c], tet->normal[2][c]);
-    tet->normal[0][c] = exact_negated(exact_add(arena, sum, tet->normal[3][c]));
-  }
+  for (int c = 0; c < 3; c++)
+    tet->normal[0][c] = exact_negated(exact_sum(
+        arena, (const ExactInteger[]){tet->normal[1][c], tet->normal[2][c], tet->normal[3][c], {0}}));
   tet->det = exact_dot(arena, edge[1], tet->normal[1]);
 }
 
@@ -73,12 +72,9 @@ static void find_heights_of(const ExactTet *tet, ExactArena *arena, const ExactI
                             ExactInteger height[4]) {
   ExactInteger offset[3];
   subtract(arena, point, tet->vertex[0], offset);
-  ExactInteger rest = tet->det;
-  for (int k = 1; k < 4; k++) {
-    height[k] = exact_dot(arena, offset, tet->normal[k]);
-    rest = exact_sub(arena, rest, height[k]);
-  }
-  height[0] = rest;
+  for (int k = 1; k < 4; k++) height[k] = exact_dot(arena, offset, tet->normal[k]);
+  height[0] = exact_sum(arena, (const ExactInteger[]){tet->det, exact_negated(height[1]),
+                                                      exact_negated(height[2]), exact_negated(height[3])});
 }
 
 void exact_pair_find_heights(ExactPair *pair, ExactArena *arena) {
@@ -96,18 +92,18 @@ static ExactInteger close_first(const ExactPair *pair, ExactArena *arena, int i,
   const int k = 6 - i - j, p = exact_pair_edge_ends[f][0], q = exact_pair_edge_ends[f][1];
   const ExactTet *a = &pair->tets[0];
   const int sign = k % 2 ? 1 : -1; // a_k goes from the last place to its own
-  const ExactInteger edges = exact_sub(arena, pair->cross[j - 1][f], pair->cross[i - 1][f]);
-  const ExactInteger faces = exact_sub(arena, a->height[q][k], a->height[p][k]);
-  return exact_add(arena, edges, exact_signed(faces, sign));
+  return exact_sum(arena, (const ExactInteger[]){pair->cross[j - 1][f], exact_negated(pair->cross[i - 1][f]),
+                                                 exact_signed(a->height[q][k], sign),
+                                                 exact_signed(a->height[p][k], -sign)});
 }
 
 static ExactInteger close_second(const ExactPair *pair, ExactArena *arena, int e, int p, int q) {
   const int l = 6 - p - q, i = exact_pair_edge_ends[e][0], j = exact_pair_edge_ends[e][1];
   const ExactTet *b = &pair->tets[1];
   const int sign = l % 2 ? -1 : 1; // b_l goes from the first place to its own
-  const ExactInteger edges = exact_sub(arena, pair->cross[e][q - 1], pair->cross[e][p - 1]);
-  const ExactInteger faces = exact_sub(arena, b->height[i][l], b->height[j][l]);
-  return exact_add(arena, edges, exact_signed(faces, sign));
+  return exact_sum(arena, (const ExactInteger[]){pair->cross[e][q - 1], exact_negated(pair->cross[e][p - 1]),
+                                                 exact_signed(b->height[i][l], sign),
+                                                 exact_signed(b->height[j][l], -sign)});
 }
 
 void exact_pair_find_crossings(ExactPair *pair, ExactArena *arena) {

@@ -4,6 +4,8 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "contact/exact_fixed.h"
+
 static const mp_limb_t one_limb = 1;
 static const ExactInteger one = {&one_limb, 1}, zero = {&one_limb, 0};
 
@@ -96,7 +98,7 @@ static ExactInteger coordinate(const ExactPolygon *polygon, const ExactCorner *c
 }
 
 // The point of line `line` in plane m. The line has points strictly on both sides of m, so there is one.
-static ExactCorner cross_line(const ExactPolygon *polygon, ExactArena *arena, int line, int m) {
+static ExactCorner cross_line(const ExactPolygon *polygon, int line, int m) {
   ExactCorner corner = {.kind = EXACT_CORNER_OWN_EDGE, .plane = m};
   ExactInteger first, second;
   if (line >= 4) {
@@ -109,9 +111,8 @@ static ExactCorner cross_line(const ExactPolygon *polygon, ExactArena *arena, in
     first = above_own(polygon, exact_pair_edge_ends[corner.edge][0], polygon->face);
     second = above_own(polygon, exact_pair_edge_ends[corner.edge][1], polygon->face);
   }
-  mp_limb_t *mark = arena->next;
-  corner.turn = exact_sign(exact_sub(arena, second, first));
-  arena->next = mark;
+  const int order = exact_compare(second, first);
+  corner.turn = (order > 0) - (order < 0);
   assert(corner.turn != 0);
   return corner;
 }
@@ -123,23 +124,23 @@ static void append(ExactPolygon *polygon, ExactCorner corner, int line) {
 }
 
 // Keeps the part with β_m ≥ 0.
-static void cut_by(ExactPolygon *polygon, ExactArena *arena, int m) {
+static void cut_by(ExactPolygon *polygon, int m) {
   int side[EXACT_POLYGON_CORNERS], lowest = 0;
-  const ExactPolygon whole = *polygon;
-  for (int t = 0; t < whole.count; t++) {
-    side[t] = exact_sign(height_over(&whole, &whole.corners[t], m));
+  for (int t = 0; t < polygon->count; t++) {
+    side[t] = exact_sign(height_over(polygon, &polygon->corners[t], m));
     if (side[t] < lowest) lowest = side[t];
   }
   if (lowest == 0) return;
+  const ExactPolygon whole = *polygon;
   polygon->count = 0;
   for (int t = 0; t < whole.count; t++) {
     const int here = side[t], there = side[(t + 1) % whole.count], line = whole.lines[t];
     if (here >= 0) append(polygon, whole.corners[t], here == 0 && there < 0 ? m : line);
-    if (here * there < 0) append(polygon, cross_line(&whole, arena, line, m), there < 0 ? m : line);
+    if (here * there < 0) append(polygon, cross_line(&whole, line, m), there < 0 ? m : line);
   }
 }
 
-void exact_polygon_cut(ExactPolygon *polygon, ExactArena *arena, const ExactPair *pair, int own, int face) {
+void exact_polygon_cut(ExactPolygon *polygon, const ExactPair *pair, int own, int face) {
   *polygon = (ExactPolygon){.pair = pair, .own = own, .face = face};
   int ends[3], count = 0;
   for (int i = 0; i < 4; i++)
@@ -147,54 +148,66 @@ void exact_polygon_cut(ExactPolygon *polygon, ExactArena *arena, const ExactPair
   for (int t = 0; t < 3; t++)
     append(polygon, (ExactCorner){.kind = EXACT_CORNER_VERTEX, .vertex = ends[t]},
            4 + exact_pair_edge_of[ends[t]][ends[(t + 1) % 3]]);
-  for (int m = 0; m < 4 && polygon->count >= 3; m++) cut_by(polygon, arena, m);
+  for (int m = 0; m < 4 && polygon->count >= 3; m++) cut_by(polygon, m);
 }
 
 // A corner in homogeneous barycentric coordinates of its face, and as numbers.
 typedef struct Placed {
   ExactInteger coordinate[3]; // ≥ 0, sum = weight
   int dropped;                // limbs of the weight left out below
-  long double weight;
-  long double share[3]; // coordinate / weight
+  ExactFixed fixed;           // the same
+  long double inverse;        // 2^bits / weight, bits as in `fixed`
+  long double weight;         // without the limbs dropped
+  long double share[3];       // coordinate / weight, where moments are wanted
 } Placed;
 
-static Placed place(const ExactPolygon *polygon, ExactArena *arena, const ExactCorner *corner) {
+static long double share_of(const Placed *placed, int c) {
+  long double value;
+  if (placed->coordinate[c].size == 0) return 0;
+  if (exact_fixed_value(&placed->fixed, c, &value)) return value * placed->inverse;
+  return exact_value(placed->coordinate[c], placed->dropped) / placed->weight;
+}
+
+static Placed place(const ExactPolygon *polygon, ExactArena *arena, const ExactCorner *corner,
+                    bool with_shares) {
   Placed placed;
   const ExactInteger w = weight(polygon, arena, corner);
   placed.dropped = w.size > 3 ? w.size - 3 : 0;
+  for (int i = 0, c = 0; i < 4; i++)
+    if (i != polygon->face) placed.coordinate[c++] = coordinate(polygon, corner, i);
+  placed.fixed = exact_fixed_from(placed.coordinate, w);
+  placed.inverse = 1 / exact_fixed_weight(w);
   placed.weight = exact_value(w, placed.dropped);
-  for (int i = 0, c = 0; i < 4; i++) {
-    if (i == polygon->face) continue;
-    placed.coordinate[c] = coordinate(polygon, corner, i);
-    placed.share[c] = exact_value(placed.coordinate[c], placed.dropped) / placed.weight;
-    c++;
-  }
+  for (int c = 0; c < 3 && with_shares; c++) placed.share[c] = share_of(&placed, c);
   return placed;
 }
 
 // The area of the triangle p q r relative to the face: det(p, q, r) / (w_p w_q w_r), ≥ 0 as the corners go
-// round with the face's vertices in increasing order.
+// round with the face's vertices in increasing order. All digits are computed where 127 may not do.
 static long double triangle(ExactArena *arena, const Placed *p, const Placed *q, const Placed *r) {
+  long double value;
+  if (exact_fixed_determinant(&p->fixed, &q->fixed, &r->fixed, &value))
+    return value * (p->inverse * q->inverse * r->inverse);
   mp_limb_t *mark = arena->next;
   ExactInteger qr[3];
   exact_cross(arena, q->coordinate, r->coordinate, qr);
   const ExactInteger det = exact_dot(arena, p->coordinate, qr);
-  const long double value = exact_value(det, p->dropped + q->dropped + r->dropped);
+  value = exact_value(det, p->dropped + q->dropped + r->dropped);
   arena->next = mark;
   return value / (p->weight * q->weight * r->weight);
 }
 
-ExactMoments exact_polygon_measure(const ExactPolygon *polygon, ExactArena *arena) {
+ExactMoments exact_polygon_measure(const ExactPolygon *polygon, ExactArena *arena, bool with_moments) {
   ExactMoments moments = {0};
   if (polygon->count < 3) return moments;
   mp_limb_t *mark = arena->next;
-  const Placed apex = place(polygon, arena, &polygon->corners[0]);
-  Placed last = place(polygon, arena, &polygon->corners[1]);
+  const Placed apex = place(polygon, arena, &polygon->corners[0], with_moments);
+  Placed last = place(polygon, arena, &polygon->corners[1], with_moments);
   for (int t = 2; t < polygon->count; t++) {
-    const Placed next = place(polygon, arena, &polygon->corners[t]);
+    const Placed next = place(polygon, arena, &polygon->corners[t], with_moments);
     const long double area = triangle(arena, &apex, &last, &next);
     moments.area += area;
-    for (int i = 0, c = 0; i < 4; i++) {
+    for (int i = 0, c = 0; i < 4 && with_moments; i++) {
       if (i == polygon->face) continue;
       moments.moment[i] += area * (apex.share[c] + last.share[c] + next.share[c]) / 3;
       c++;

@@ -7,6 +7,8 @@
 #ifndef TETLAP_CONTACT_EXACT_POLYGON_H
 #define TETLAP_CONTACT_EXACT_POLYGON_H
 
+#include <stdbool.h>
+
 #include "contact/exact_pair.h"
 
 typedef enum ExactCornerKind {
@@ -42,10 +44,10 @@ typedef struct ExactMoments {
   long double moment[4];
 } ExactMoments;
 
-void exact_polygon_cut(ExactPolygon *polygon, ExactArena *arena, const ExactPair *pair, int own, int face);
+void exact_polygon_cut(ExactPolygon *polygon, const ExactPair *pair, int own, int face);
 
-// All terms are non-negative integer quotients: relative error of a few 2^-63.
-ExactMoments exact_polygon_measure(const ExactPolygon *polygon, ExactArena *arena);
+// All terms are non-negative integer quotients: relative error of a few 2^-62. Without moments those stay 0.
+ExactMoments exact_polygon_measure(const ExactPolygon *polygon, ExactArena *arena, bool with_moments);
 
 // How high corner t lies over the planes, as α of exact_pair.h: height[own or other][plane], all ≥ 0 [unit³].
 void exact_polygon_lift(const ExactPolygon *polygon, ExactArena *arena, int t, long double height[2][4]);

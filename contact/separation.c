@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/separation.h"
 
+#include <float.h>
+
 #include "base/vec3.h"
 
 // fmin and fmax without their care for NaN, which costs a call each.
@@ -83,23 +85,54 @@ double contact_separation_halfspace(const double tet[12], const double point[3],
   return lowest;
 }
 
-// Whether all of tetrahedron 1 − t lies beyond face f of t. The heights are products of three lengths; their
-// rounding error is below 1e-14 of the largest such product, so 1e-12 of it is beyond doubt.
-static bool face_separates(const Pair *pair, int t, int f) {
-  const Vec3 *x = pair->x[t], *y = pair->x[1 - t];
-  Vec3 corner = x[FACES[f][0]], e = vec3_sub(x[FACES[f][1]], corner), g = vec3_sub(x[FACES[f][2]], corner);
-  Vec3 normal = vec3_cross(e, g);
-  double outwards = vec3_dot(vec3_sub(x[f], corner), normal) > 0 ? -1 : 1, lowest = INFINITY, reach = 0;
-  for (int v = 0; v < 4; v++) lowest = smaller(lowest, outwards * vec3_dot(vec3_sub(y[v], corner), normal));
+// Products of three lengths have a rounding error below 1e-14 of the largest such product, so 1e-12 of it is
+// beyond doubt. Overflow gives no certainty, nor does underflow: what is compared must be a normal number.
+static inline bool exceeds_rounding(double product, double square) {
+  const double allowed = 1e-24 * square;
+  return product * product > allowed && allowed > DBL_MIN && allowed < DBL_MAX;
+}
+
+// A face's area vector, twice, turned outwards, and how high the vertex opposite lies over it.
+typedef struct Side {
+  Vec3 corner, e, g, normal;
+  double top; // ≥ 0
+} Side;
+
+static inline Side side_of(const Vec3 x[4], int f) {
+  Side side = {.corner = x[FACES[f][0]]};
+  side.e = vec3_sub(x[FACES[f][1]], side.corner), side.g = vec3_sub(x[FACES[f][2]], side.corner);
+  side.normal = vec3_cross(side.e, side.g);
+  side.top = -vec3_dot(vec3_sub(x[f], side.corner), side.normal);
+  if (side.top < 0) side.normal = vec3_scale(-1, side.normal), side.top = -side.top;
+  return side;
+}
+
+static inline double square_of(Vec3 a) {
+  return vec3_dot(a, a);
+}
+
+static bool has_volume(const Vec3 x[4]) {
+  const Side side = side_of(x, 3);
+  return exceeds_rounding(side.top,
+                          square_of(side.e) * square_of(side.g) * square_of(vec3_sub(x[3], side.corner)));
+}
+
+// Whether all of y lies beyond face f of x.
+static bool face_separates(const Vec3 x[4], const Vec3 y[4], int f) {
+  const Side side = side_of(x, f);
+  double lowest = INFINITY, reach = 0;
+  for (int v = 0; v < 4; v++) lowest = smaller(lowest, vec3_dot(vec3_sub(y[v], side.corner), side.normal));
   if (!(lowest > 0)) return false;
-  for (int v = 0; v < 4; v++) reach = larger(reach, vec3_dot(vec3_sub(y[v], corner), vec3_sub(y[v], corner)));
-  return lowest * lowest > 1e-24 * reach * vec3_dot(e, e) * vec3_dot(g, g);
+  for (int v = 0; v < 4; v++) reach = larger(reach, square_of(vec3_sub(y[v], side.corner)));
+  return exceeds_rounding(lowest, reach * square_of(side.e) * square_of(side.g));
 }
 
 bool contact_separation_is_certain(const double coordinates[24]) {
-  Pair pair = shifted(coordinates);
+  Vec3 x[2][4]; // as given: differences of these are right to the last place
+  for (int k = 0; k < 8; k++) x[k / 4][k % 4] = vec3_at(coordinates + 3 * k);
+  if (!has_volume(x[0]) || !has_volume(x[1])) return false;
   for (int t = 0; t < 2; t++)
     for (int f = 0; f < 4; f++)
-      if (face_separates(&pair, t, f)) return true;
+      if (face_separates(x[t], x[1 - t], f)) return true;
   return false;
 }

@@ -15,8 +15,8 @@ double contact_separation_pair(const double pair[24], double enough);
 // The lowest height of a tetrahedron above a half-space [m]; negative: some of it lies below.
 double contact_separation_halfspace(const double tet[12], const double point[3], const double normal[3]);
 
-// Whether a face certainly separates the two: all of one lies beyond a face plane of the other by more than
-// rounding. Cheaper than any overlap model; false says nothing.
+// Whether both certainly have volume and a face certainly separates them: all of one lies beyond a face plane
+// of the other by more than rounding. Cheaper than any overlap model; false says nothing.
 bool contact_separation_is_certain(const double pair[24]);
 
 #endif

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "contact/exact.h"
+#include "contact/exact_fixed.h"
 #include "contact/exact_integer.h"
 #include "contact/overlap.h"
 #include "contact/overlap_cgal.h"
@@ -414,6 +415,116 @@ START_TEST(integers_are_exact) {
 }
 END_TEST
 
+// A number of up to that many limbs, or 0.
+static ExactInteger draw(ExactArena *arena, Random *random, int limbs) {
+  ExactInteger number = {arena->next, 0};
+  for (int k = 0; k < limbs; k++) {
+    const double part = ldexp(random_between(random, -1, 1), 64 * k + random_below(random, 64));
+    number = exact_add(arena, number, exact_from_double(arena, trunc(part), 0));
+  }
+  return random_below(random, 20) ? number : (ExactInteger){arena->next, 0};
+}
+
+static bool are_equal(ExactInteger a, ExactInteger b) {
+  return exact_compare(a, b) == 0 && exact_compare(b, a) == 0 && exact_sign(a) == exact_sign(b);
+}
+
+// Times 2^640 every number is long.
+START_TEST(short_numbers_follow_the_rules_of_long_ones) {
+  static mp_limb_t limbs[4000];
+  Random random = random_seeded(19, (uint64_t)_i);
+  for (int round = 0; round < 3000; round++) {
+    ExactArena arena = {limbs, limbs + 4000};
+    ExactInteger x[4], y[4], far_x[4], far_y[4];
+    const ExactInteger far = exact_from_double(&arena, 1, -640), twice = exact_mul(&arena, far, far);
+    for (int k = 0; k < 4; k++) {
+      x[k] = draw(&arena, &random, 1 + random_below(&random, 1 + _i));
+      y[k] = draw(&arena, &random, 1 + random_below(&random, 1 + 2 * _i));
+      far_x[k] = exact_mul(&arena, x[k], far), far_y[k] = exact_mul(&arena, y[k], far);
+    }
+    ck_assert(are_equal(exact_mul(&arena, exact_add(&arena, x[0], x[1]), far),
+                        exact_add(&arena, far_x[0], far_x[1])));
+    ck_assert(are_equal(exact_mul(&arena, exact_sum(&arena, y), far), exact_sum(&arena, far_y)));
+    ck_assert(are_equal(exact_mul(&arena, exact_minor(&arena, x[0], x[1], x[2], x[3]), twice),
+                        exact_minor(&arena, far_x[0], far_x[1], far_x[2], far_x[3])));
+    ck_assert(are_equal(exact_mul(&arena, exact_dot(&arena, x, y), twice), exact_dot(&arena, far_x, far_y)));
+    const int order = exact_compare(x[0], y[0]), sign = exact_sign(exact_sub(&arena, x[0], y[0]));
+    ck_assert_int_eq((order > 0) - (order < 0), sign);
+  }
+}
+END_TEST
+
+typedef struct Corner {
+  ExactInteger coordinate[3], weight;
+} Corner;
+
+static Corner draw_corner(ExactArena *arena, Random *random, int limbs) {
+  Corner corner = {.weight = {arena->next, 0}};
+  for (int c = 0; c < 3; c++) {
+    const ExactInteger number = draw(arena, random, limbs);
+    corner.coordinate[c] = exact_signed(number, exact_sign(number));
+    corner.weight = exact_add(arena, corner.weight, corner.coordinate[c]);
+  }
+  return corner;
+}
+
+// The second corner moved towards the first until the triangle is as thin as 2^−depth.
+static void approach(ExactArena *arena, const Corner *first, Corner *second, int depth) {
+  const ExactInteger large = exact_from_double(arena, 1, -depth);
+  for (int c = 0; c < 3; c++)
+    second->coordinate[c] =
+        exact_add(arena, exact_mul(arena, first->coordinate[c], large), second->coordinate[c]);
+  second->weight = exact_add(arena, exact_mul(arena, first->weight, large), second->weight);
+}
+
+START_TEST(fixed_points_are_right_wherever_they_say_so) {
+  static mp_limb_t limbs[4000];
+  Random random = random_seeded(23, (uint64_t)_i);
+  const int depth = 10 * _i;
+  int certain = 0, tried = 0;
+  for (int round = 0; round < 1000; round++) {
+    ExactArena arena = {limbs, limbs + 4000};
+    Corner corners[3];
+    ExactFixed fixed[3];
+    ExactInteger cross[3];
+    for (int k = 0; k < 3; k++)
+      corners[k] = draw_corner(&arena, &random, k == 1 ? 1 : 1 + random_below(&random, 5));
+    approach(&arena, &corners[0], &corners[1], depth);
+    bool is_corner = true;
+    for (int k = 0; k < 3; k++) is_corner = is_corner && exact_sign(corners[k].weight) > 0;
+    if (!is_corner) continue;
+    long double weights = 1, found, value;
+    for (int k = 0; k < 3; k++) {
+      fixed[k] = exact_fixed_from(corners[k].coordinate, corners[k].weight);
+      const long double weight = exact_fixed_weight(corners[k].weight);
+      const long double ratio = ldexpl(1, fixed[k].bits);
+      ck_assert(weight >= 0.5L && weight <= 1);
+      ck_assert(fabsl(exact_value(corners[k].weight, 0) / ratio - weight) <= 0x1p-62L);
+      weights *= ratio;
+      for (int c = 0; c < 3; c++) {
+        const long double coordinate = exact_value(corners[k].coordinate[c], 0) / ratio;
+        if (exact_fixed_value(&fixed[k], c, &value))
+          ck_assert(fabsl(value - coordinate) <= 0x1p-61L * coordinate);
+        else
+          ck_assert(coordinate < 0x1p-63L);
+      }
+    }
+    exact_cross(&arena, corners[1].coordinate, corners[2].coordinate, cross);
+    const long double wanted = exact_value(exact_dot(&arena, corners[0].coordinate, cross), 0) / weights;
+    tried++;
+    if (exact_fixed_determinant(&fixed[0], &fixed[1], &fixed[2], &found)) {
+      ck_assert(fabsl(found - wanted) <= 0x1p-61L * wanted);
+      certain++;
+    } else {
+      ck_assert(wanted < 0x1p-60L); // a turn the wrong way round is not certain either
+    }
+  }
+  ck_assert_int_ge(tried, 800);
+  if (_i == 0) ck_assert_int_ge(certain, 50);
+  if (depth >= 130) ck_assert_int_eq(certain, 0);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("overlap_exact");
   tcase_add_loop_test(cases, a_simplex_moved_along_an_edge_leaves_a_smaller_simplex, 0, MODEL_COUNT);
@@ -434,5 +545,7 @@ int main(void) {
   tcase_add_loop_test(cases, threads_give_identical_results, 0, MODEL_COUNT);
   tcase_add_loop_test(cases, volume_alone_is_the_same_volume, 0, MODEL_COUNT);
   tcase_add_test(cases, integers_are_exact);
+  tcase_add_loop_test(cases, short_numbers_follow_the_rules_of_long_ones, 0, 4);
+  tcase_add_loop_test(cases, fixed_points_are_right_wherever_they_say_so, 0, 16);
   return suite_run("overlap_exact", cases, 60);
 }

@@ -94,6 +94,48 @@ START_TEST(nothing_is_certain_about_overlap) {
 }
 END_TEST
 
+// A small one just inside or outside of a corner of one that is up to 2^40 times larger, far from its first
+// vertex: what is certain must be so although differences over the pair's extent lose the small one's digits.
+START_TEST(certainty_holds_at_any_ratio_of_sizes) {
+  ContactOverlapModel exact;
+  ck_assert_ok(contact_overlap_create(&exact, "exact"));
+  Random random = random_seeded(15, 0);
+  int certain = 0, overlapping = 0;
+  for (int k = 0; k < 4000; k++) {
+    double pair[24], volume, size = ldexp(1, -k % 40), corner[3];
+    unsigned flags;
+    random_pair(&random, 0, pair);
+    for (int c = 0; c < 3; c++) corner[c] = pair[9 + c] + size * random_between(&random, -1, 1);
+    for (int v = 12; v < 24; v++) pair[v] = corner[v % 3] + size * random_between(&random, -1, 1);
+    double shrunk[24]; // exact decides without a look at the faces
+    memcpy(shrunk, pair, sizeof shrunk);
+    for (int v = 0; v < 24; v++) shrunk[v] *= 0x1p-300;
+    ck_assert_ok(exact.ops->eval_pair(exact.self, shrunk, &volume, NULL, NULL, &flags));
+    bool is_disjoint = flags == CONTACT_OVERLAP_DISJOINT;
+    ck_assert(!contact_separation_is_certain(shrunk));
+    if (contact_separation_is_certain(pair)) ck_assert(is_disjoint), certain++;
+    overlapping += !is_disjoint;
+  }
+  ck_assert_int_gt(certain, 500);
+  ck_assert_int_gt(overlapping, 500);
+  contact_overlap_destroy(&exact);
+}
+END_TEST
+
+START_TEST(a_flat_one_is_never_certainly_apart) {
+  double pair[24];
+  place(pair, (double[]){5, 5, 5, 6, 5, 5, 5, 6, 5, 5, 5, 6});
+  ck_assert(contact_separation_is_certain(pair));
+  for (int t = 0; t < 2; t++)
+    for (int c = 0; c < 3; c++) {
+      double flat[24];
+      memcpy(flat, pair, sizeof flat);
+      for (int v = 0; v < 4; v++) flat[12 * t + 3 * v + c] = 7;
+      ck_assert(!contact_separation_is_certain(flat));
+    }
+}
+END_TEST
+
 // No axis separates by more than the distance: of no two points.
 START_TEST(never_more_than_the_distance_of_two_points) {
   Random random = random_seeded(13, 0);
@@ -160,6 +202,8 @@ int main(void) {
   tcase_add_test(cases, crossed_edges_are_their_distance);
   tcase_add_test(cases, the_sign_says_whether_the_interiors_meet);
   tcase_add_test(cases, nothing_is_certain_about_overlap);
+  tcase_add_test(cases, certainty_holds_at_any_ratio_of_sizes);
+  tcase_add_test(cases, a_flat_one_is_never_certainly_apart);
   tcase_add_test(cases, never_more_than_the_distance_of_two_points);
   tcase_add_test(cases, swapping_and_moving_change_nothing);
   tcase_add_test(cases, an_early_end_is_a_lower_bound_above_what_was_enough);
