@@ -52,6 +52,12 @@ static bool is_locking(const FemSceneDef *scene) {
   return locks;
 }
 
+static bool meets_itself(const FemSceneDef *scene) {
+  bool meets = false;
+  for (int b = 0; b < scene->body_count; b++) meets = meets || scene->bodies[b].self_contact;
+  return meets;
+}
+
 static double machine_memory(void) {
   return (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
 }
@@ -62,8 +68,8 @@ static Notes take_notes(const AppJob *job) {
   Notes notes = {.count = 0};
   note(&notes, solids > 1 && !scene->contact.is_on,
        "there is no 'contact' section: the bodies will pass through each other and through obstacles");
-  note(&notes, solids == 1 && scene->contact.is_on,
-       "contact is on, but there is only one body and no obstacle to touch");
+  note(&notes, solids == 1 && scene->contact.is_on && !meets_itself(scene),
+       "contact is on, but there is only one body, without self_contact, and no obstacle to touch");
   note(&notes, is_at_rest(scene),
        "nothing moves: no gravity, no initial velocity, no driven vertices, no moving obstacle");
   note(&notes, is_locking(scene),

@@ -443,6 +443,10 @@ static const SceneKey body_keys[] = {
      .help = "what it is made of"},
     {"element", SCENE_CHOICE, AT(FemBodyDef, element), .fallback = "linear", .choices = &elements,
      .help = "how its tetrahedra resist"},
+    {"self_contact", SCENE_SWITCH, AT(FemBodyDef, self_contact), .fallback = "false",
+     .help =
+         "its parts may touch each other; needs `contact`. Elements that share a vertex or overlap at rest "
+         "never touch"},
     {"velocity", SCENE_VECTOR, AT(FemBodyDef, velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
      .help = "at t = 0"},
     {"spin", SCENE_VECTOR, AT(FemBodyDef, spin), .unit = "rad/s", .fallback = "[0, 0, 0]",

@@ -464,6 +464,16 @@ static Status check_names(const SceneNode *root) {
   return STATUS_OK;
 }
 
+// Self-contact is a part of contact.
+static Status check_self_contact(const SceneNode *root, const FemSceneDef *scene) {
+  const SceneNode *bodies = app_scene_tree_find(root, "bodies"), *body = bodies->first;
+  for (int b = 0; b < scene->body_count; b++, body = body->next)
+    if (scene->bodies[b].self_contact && !scene->contact.is_on)
+      return app_scene_tree_fail_key(app_scene_tree_find(body, "self_contact"),
+                                     "'self_contact' needs contact; write 'contact: {}' for its defaults");
+  return STATUS_OK;
+}
+
 static Status read_tree(const char *path, const SceneNode *root, FemSceneDef *scene) {
   if (root->kind == SCENE_NODE_NULL)
     return app_scene_tree_fail(root, "the scene is empty; it needs at least 'time' and 'bodies'");
@@ -475,7 +485,8 @@ static Status read_tree(const char *path, const SceneNode *root, FemSceneDef *sc
   if (!scene->path) return status_no_memory("the scene");
   TRY(app_scene_read_defaults(&app_scene_keys_root, scene));
   TRY(read_section(&app_scene_keys_root, root, scene));
-  return check_names(root);
+  TRY(check_names(root));
+  return check_self_contact(root, scene);
 }
 
 // Takes the tree over.

@@ -14,6 +14,9 @@
 // tried, bounded so that the trial costs little more than a search.
 enum { STEPS_AHEAD = 4, WIDEST_TRIAL = 4 };
 
+// Of the margin, for a body with itself: elements that are neighbours but one are always near.
+static const double SELF_MARGIN = 0.5;
+
 static Status create_list(ContactCandidateList *list, const ContactLayout *layout) {
   list->begin = memory_zeroed((size_t)layout->facing_count + 1, sizeof(int));
   list->margins = memory_zeroed((size_t)layout->facing_count, sizeof(double));
@@ -35,8 +38,9 @@ Status contact_candidates_create(ContactCandidates *candidates, const ContactLay
   candidates->reference = memory_zeroed(3 * (size_t)layout->def.vertex_count, sizeof(double));
   candidates->is_listed = memory_zeroed((size_t)layout->def.tet_count, 1);
   candidates->boxes = memory_zeroed((size_t)layout->def.body_count, sizeof *candidates->boxes);
-  candidates->motions = memory_zeroed((size_t)layout->party_count, sizeof(double));
-  candidates->expected = memory_zeroed((size_t)layout->party_count, sizeof(double));
+  size_t motions = (size_t)layout->party_count + (size_t)layout->def.body_count;
+  candidates->motions = memory_zeroed(motions, sizeof(double));
+  candidates->expected = memory_zeroed(motions, sizeof(double));
   bool fits = candidates->reference && candidates->is_listed && candidates->boxes && candidates->motions &&
               candidates->expected;
   return fits ? STATUS_OK : status_no_memory("the candidate lists");
@@ -65,12 +69,30 @@ static double longest(const double *to, const double *from, int begin, int end) 
   return sqrt(largest);
 }
 
+// Twice the longest of to − from, less their mean: no two vertices come nearer to each other by more.
+static double approach(const double *to, const double *from, int begin, int end) {
+  Vec3 mean = {0, 0, 0};
+  double largest = 0, share = 1.0 / (end - begin);
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t v = (size_t)begin; v < (size_t)end; v++) {
+      Vec3 d = from ? vec3_sub(vec3_at(to + 3 * v), vec3_at(from + 3 * v)) : vec3_at(to + 3 * v);
+      if (pass == 0) mean = vec3_add(mean, vec3_scale(share, d));
+      double distance = pass == 0 ? 0 : vec3_length(vec3_sub(d, mean));
+      if (!(distance <= largest)) largest = isnan(distance) ? INFINITY : distance;
+    }
+  return 2 * largest;
+}
+
 static void measure_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
                             const double *positions) {
   const ContactSystemDef *def = &layout->def;
   for (int b = 0; b < def->body_count; b++)
     candidates->motions[b] =
         longest(positions, candidates->reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+  for (int b = 0; b < def->body_count; b++)
+    if (def->bodies[b].meets_itself)
+      candidates->motions[layout->party_count + b] =
+          approach(positions, candidates->reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
   for (int h = 0; h < def->shape_count; h++) {
     candidates->motions[def->body_count + h] =
         contact_shape_motion(&def->shapes[h], candidates->reference_time, time);
@@ -83,13 +105,19 @@ static void expect_motions(ContactCandidates *candidates, const ContactLayout *l
   for (int b = 0; b < def->body_count; b++)
     candidates->expected[b] =
         step * longest(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+  for (int b = 0; b < def->body_count; b++)
+    if (def->bodies[b].meets_itself)
+      candidates->expected[layout->party_count + b] =
+          step * approach(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
   for (int h = 0; h < def->shape_count; h++) {
     candidates->expected[def->body_count + h] = step * contact_shape_speed(&def->shapes[h], time);
   }
 }
 
-static double sum_of(const double *by_party, const ContactFacing *facing) {
-  return by_party[facing->a] + by_party[facing->b];
+// By how much the two of a facing may come nearer, of motions laid out like `motions`.
+static double sum_of(const double *motions, const ContactLayout *layout, const ContactFacing *facing) {
+  if (facing->a == facing->b) return motions[layout->party_count + facing->a];
+  return motions[facing->a] + motions[facing->b];
 }
 
 void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
@@ -104,7 +132,8 @@ bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout
   if (!candidates->is_made) return false;
   measure_motions(candidates, layout, time, positions);
   for (int f = 0; f < layout->facing_count; f++)
-    if (!(sum_of(candidates->motions, &layout->facings[f]) <= candidates->list.margins[f])) return false;
+    if (!(sum_of(candidates->motions, layout, &layout->facings[f]) <= candidates->list.margins[f]))
+      return false;
   return true;
 }
 
@@ -113,9 +142,10 @@ bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout
 static bool wants_search(const ContactCandidates *candidates, const ContactLayout *layout) {
   if (!candidates->is_made) return true;
   for (int f = 0; f < layout->facing_count; f++) {
-    double margin = candidates->list.margins[f], moved = sum_of(candidates->motions, &layout->facings[f]);
-    bool is_empty = candidates->list.begin[f] == candidates->list.begin[f + 1];
-    bool may_leave = moved + sum_of(candidates->expected, &layout->facings[f]) > margin;
+    const ContactFacing *facing = &layout->facings[f];
+    double margin = candidates->list.margins[f], moved = sum_of(candidates->motions, layout, facing);
+    bool is_empty = candidates->list.begin[f] == candidates->list.begin[f + 1] && facing->a != facing->b;
+    bool may_leave = moved + sum_of(candidates->expected, layout, facing) > margin;
     if (!(moved <= margin / 2) || (may_leave && (is_empty || moved > margin / 4))) return true;
   }
   return false;
@@ -161,7 +191,10 @@ static Status search_bodies(ContactCandidates *candidates, const ContactLayout *
   const ContactFacing *facing = &layout->facings[f];
   ContactBroadSide a = side_of(layout, facing->a), b = side_of(layout, facing->b);
   candidates->found.count = 0;
-  TRY(contact_broad_append(&candidates->found, &a, &b, positions, margin));
+  if (facing->a == facing->b)
+    TRY(contact_self_append(&layout->self, &layout->def, facing->a, positions, margin, &candidates->found));
+  else
+    TRY(contact_broad_append(&candidates->found, &a, &b, positions, margin));
   for (int k = 0; k < candidates->found.count; k++) {
     const int *tets = candidates->found.pairs[k];
     TRY(push(&candidates->next, (ContactPair){f, {tets[0], tets[1]}}));
@@ -196,12 +229,15 @@ static Status search_facing(ContactCandidates *candidates, const ContactLayout *
   const ContactFacing *facing = &layout->facings[f];
   ContactCandidateList *next = &candidates->next;
   int begin = next->begin[f] = next->count;
+  if (facing->a == facing->b)
+    return search_with(candidates, layout, f, time, positions, SELF_MARGIN * layout->margin);
   double distance = clearance(candidates, layout, facing, time, positions);
   if (distance > layout->margin && isfinite(distance)) {
     next->margins[f] = distance;
     return STATUS_OK;
   }
-  double wide = fmin(STEPS_AHEAD * sum_of(candidates->expected, facing), WIDEST_TRIAL * layout->margin);
+  double wide =
+      fmin(STEPS_AHEAD * sum_of(candidates->expected, layout, facing), WIDEST_TRIAL * layout->margin);
   if (wide > layout->margin) {
     TRY(search_with(candidates, layout, f, time, positions, wide));
     if (next->count == begin) return STATUS_OK;

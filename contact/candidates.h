@@ -32,8 +32,9 @@ typedef struct ContactCandidates {
   ContactPairList found;
   unsigned char *is_listed; // 0 between calls                        (tet_count)
   double (*boxes)[6];       // of each body                                 (body_count)
-  double *motions;          // of each party since the search [m]           (party_count)
-  double *expected;         // of each party in the next step [m]           (party_count)
+  double *motions;          // of each party since the search [m]; then by how much two points of a body that
+                            // meets itself may have come nearer      (party_count + body_count)
+  double *expected;         // the same in the next step [m]          (party_count + body_count)
 } ContactCandidates;
 
 Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout);

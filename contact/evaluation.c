@@ -69,14 +69,26 @@ static void shift(double tet[12], const double by[3]) {
   for (int k = 0; k < 12; k++) tet[k] += by[k % 3];
 }
 
+static void warp(const ContactLayout *layout, int tet, double coordinates[12]) {
+  for (int v = 0; v < 4; v++)
+    for (int c = 0; c < 3; c++)
+      coordinates[3 * v + c] += layout->shifts[3 * (size_t)layout->def.tets[tet][v] + (size_t)c];
+}
+
 // Coordinates of a pair as the model shall see them, in general position; a half-space has none.
 static void gather(const ContactLayout *layout, const ContactPair *pair, const double *positions,
                    double coordinates[24]) {
   contact_layout_gather(layout, pair->tets[0], positions, coordinates);
   if (pair->tets[1] < 0) return;
   contact_layout_gather(layout, pair->tets[1], positions, coordinates + 12);
-  shift(coordinates, layout->nudges[layout->facings[pair->facing].a]);
-  shift(coordinates + 12, layout->nudges[layout->facings[pair->facing].b]);
+  const ContactFacing *facing = &layout->facings[pair->facing];
+  if (facing->a == facing->b) {
+    warp(layout, pair->tets[0], coordinates);
+    warp(layout, pair->tets[1], coordinates + 12);
+    return;
+  }
+  shift(coordinates, layout->nudges[facing->a]);
+  shift(coordinates + 12, layout->nudges[facing->b]);
 }
 
 // Lists the candidates whose boxes meet, nudges allowed for.
@@ -228,6 +240,13 @@ static void push_apart(ContactEvaluation *evaluation) {
   }
 }
 
+// The force on tets[0] of each pair of a patch.
+static void sum_lower(const ContactEvaluation *evaluation, const ContactPatch *patch, double force[3]) {
+  for (int k = patch->pair_begin; k < patch->pair_end; k++)
+    for (int v = 0; v < 12; v++)
+      force[v % 3] -= evaluation->pressures[k] * evaluation->gradients[24 * (size_t)k + (size_t)v];
+}
+
 static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout) {
   const ContactPatches *patches = &evaluation->patches;
   for (int f = 0; f < layout->facing_count; f++)
@@ -237,6 +256,10 @@ static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout
     ContactInterface *interface = &evaluation->interfaces[patch->facing];
     interface->active_count = patch->pair_end - patch->pair_begin;
     for (int k = patch->pair_begin; k < patch->pair_end; k++) interface->volume += evaluation->volumes[k];
+    if (interface->a == interface->b) {
+      sum_lower(evaluation, patch, interface->force);
+      continue;
+    }
     for (int n = patch->node_begin; n < patch->node_end; n++)
       for (int c = 0; c < 3 && patches->nodes[n].side == 0; c++)
         interface->force[c] += patches->nodes[n].force[c];

@@ -49,12 +49,19 @@ typedef struct Meeting {
   int pair_count;
 } Meeting;
 
+// Which of the pair's tetrahedra the element is.
+static int side_in(const Meeting *meeting, int pair) {
+  const ContactPatches *patches = &meeting->evaluation->patches;
+  int first = patches->pair_elements[pair][0];
+  return first >= 0 && &patches->elements[first] == meeting->element ? 0 : 1;
+}
+
 // F of an element.
 static Vec3 force_on(const Meeting *meeting) {
   Vec3 sum = {0, 0, 0};
   for (int r = 0; r < meeting->pair_count; r++) {
     int k = meeting->pairs[r];
-    const double *gradient = meeting->evaluation->gradients + 24 * (size_t)k + 12 * meeting->element->side;
+    const double *gradient = meeting->evaluation->gradients + 24 * (size_t)k + 12 * side_in(meeting, k);
     for (int v = 0; v < 4; v++)
       sum = vec3_sub(sum, vec3_scale(meeting->evaluation->pressures[k], vec3_at(gradient + 3 * v)));
   }
@@ -66,7 +73,7 @@ static double norms_on(const Meeting *meeting) {
   double sum = 0;
   for (int r = 0; r < meeting->pair_count; r++) {
     int k = meeting->pairs[r];
-    const double *gradient = meeting->evaluation->gradients + 24 * (size_t)k + 12 * meeting->element->side;
+    const double *gradient = meeting->evaluation->gradients + 24 * (size_t)k + 12 * side_in(meeting, k);
     for (int v = 0; v < 4; v++)
       sum += meeting->evaluation->pressures[k] * vec3_length(vec3_at(gradient + 3 * v));
   }

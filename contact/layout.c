@@ -53,8 +53,9 @@ static void list_facings(ContactLayout *layout) {
   const ContactSystemDef *def = &layout->def;
   int count = 0;
   for (int a = 0; a < def->body_count; a++)
-    for (int b = a + 1; b < def->body_count; b++)
-      if (!def->bodies[a].is_obstacle || !def->bodies[b].is_obstacle)
+    for (int b = a; b < def->body_count; b++)
+      if (a == b ? def->bodies[a].meets_itself && !def->bodies[a].is_obstacle
+                 : !def->bodies[a].is_obstacle || !def->bodies[b].is_obstacle)
         layout->facings[count++] = facing_of_bodies(def, a, b);
   for (int a = 0; a < def->body_count; a++)
     for (int h = 0; h < def->shape_count; h++)
@@ -74,6 +75,37 @@ static void nudge_bodies(ContactLayout *layout) {
     random_direction(&random, layout->nudges[b]);
     for (int c = 0; c < 3; c++) layout->nudges[b][c] *= layout->nudge;
   }
+}
+
+// x ↦ nudge · R (x − centre)/radius over each body that meets itself, the rows of R random directions / √3.
+static void warp_body(ContactLayout *layout, int b) {
+  const ContactBody *body = &layout->def.bodies[b];
+  const double *rest = layout->def.rest;
+  Random random = random_seeded(NUDGE_SEED, (uint64_t)(layout->def.body_count + b));
+  double rows[3][3], radius = 0;
+  for (int c = 0; c < 3; c++) random_direction(&random, rows[c]);
+  Vec3 centre = {0, 0, 0};
+  for (size_t v = (size_t)body->vertex_begin; v < (size_t)body->vertex_end; v++)
+    centre =
+        vec3_add(centre, vec3_scale(1.0 / (body->vertex_end - body->vertex_begin), vec3_at(rest + 3 * v)));
+  for (size_t v = (size_t)body->vertex_begin; v < (size_t)body->vertex_end; v++)
+    radius = fmax(radius, vec3_length(vec3_sub(vec3_at(rest + 3 * v), centre)));
+  for (size_t v = (size_t)body->vertex_begin; v < (size_t)body->vertex_end; v++)
+    for (size_t c = 0; c < 3; c++)
+      layout->shifts[3 * v + c] = layout->nudge / (sqrt(3) * radius) *
+                                  vec3_dot(vec3_at(rows[c]), vec3_sub(vec3_at(rest + 3 * v), centre));
+}
+
+static const double REST_DEPTH = 1e-9; // of the margin: rounding
+
+static Status prepare_self(ContactLayout *layout) {
+  TRY(contact_self_create(&layout->self, &layout->def, REST_DEPTH * layout->margin));
+  if (!layout->self.outer) return STATUS_OK;
+  layout->shifts = memory_zeroed((size_t)layout->def.vertex_count, 3 * sizeof(double));
+  if (!layout->shifts) return status_no_memory("the contact system's volumes");
+  for (int b = 0; b < layout->def.body_count; b++)
+    if (layout->def.bodies[b].meets_itself) warp_body(layout, b);
+  return STATUS_OK;
 }
 
 static Status check(const ContactSystemDef *def) {
@@ -99,7 +131,8 @@ Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def)
   list_facings(layout);
   layout->margin = def->margin > 0 ? def->margin : default_margin(def);
   nudge_bodies(layout);
-  return measure_volumes(layout);
+  TRY(measure_volumes(layout));
+  return prepare_self(layout);
 }
 
 void contact_layout_destroy(ContactLayout *layout) {
@@ -107,5 +140,7 @@ void contact_layout_destroy(ContactLayout *layout) {
   memory_free(layout->vertex_volumes);
   memory_free(layout->facings);
   memory_free(layout->nudges);
+  memory_free(layout->shifts);
+  contact_self_destroy(&layout->self);
   *layout = (ContactLayout){0};
 }

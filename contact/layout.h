@@ -5,9 +5,11 @@
 
 #include <stddef.h>
 
+#include "contact/self.h"
 #include "contact/system.h"
 
-// Two that can meet: bodies a < b, or body a and a half-space. Side 0 is a, side 1 is b.
+// Two that can meet: bodies a < b, a body and itself, or body a and a half-space. Side 0 is a, side 1 is b.
+// Of a body and itself an element may be tets[0] of one pair and tets[1] of another; both weights are ½ then.
 typedef struct ContactFacing {
   int a, b;         // b = body_count + half-space, as in ContactInterface
   int shape;        // −1: two bodies
@@ -26,17 +28,20 @@ typedef struct ContactPair {
 // where each pair's ∇V is one-sided and the sides of neighbouring pairs do not fit together: measured on
 // aligned flat slabs, false friction of 5 % (exact) to 15 % (clip) of the normal force; with it 1e-11, and
 // the models agree. U stays an exact function of the positions, only that of bodies that stand a little
-// elsewhere.
+// elsewhere. A body that meets itself is shifted by an affine function of the rest positions, no longer than
+// a nudge, so that its parts move against each other and neighbours stay together.
 typedef struct ContactLayout {
   ContactSystemDef def;   // its arrays are borrowed
   double *tet_volumes;    // V_i, rest [m³]                                   (tet_count)
   double *vertex_volumes; // V_a = ¼ Σ_{i∋a} V_i [m³]                         (vertex_count)
-  ContactFacing *facings; // bodies with bodies first, then with half-spaces  (facing_count)
+  ContactFacing *facings; // bodies with bodies and themselves first, then with half-spaces  (facing_count)
   int facing_count;
   double nudge;        // length of a nudge [m]
   double (*nudges)[3]; // of each body, see above [m]                       (body_count)
-  int party_count;     // bodies, then half-spaces
-  double margin;       // def.margin, or its default [m]
+  double *shifts; // of each vertex in pairs of a body with itself; NULL: there are none [m] (vertex_count, 3)
+  ContactSelf self;
+  int party_count; // bodies, then half-spaces
+  double margin;   // def.margin, or its default [m]
 } ContactLayout;
 
 // STATUS_INPUT: κ or margin not positive, a rest tetrahedron without volume, a normal that is no unit vector.

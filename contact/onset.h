@@ -5,8 +5,8 @@
 //   1. It is apart by more than a millionth of the margin. What touches has begun already: a root that has
 //      just been found does not come again.
 //   2. It does not merely widen a patch that is there: not both of its tetrahedra are, or share a vertex
-//      with, members of engaged pairs (overlapping or touching) of the same two bodies. A patch that grows
-//      by its neighbours begins without a jump of the pressure; a new patch does not.
+//      with, members of engaged pairs (overlapping or touching) of the same two bodies, or the same body. A
+//      patch that grows by its neighbours begins without a jump of the pressure; a new patch does not.
 #ifndef TETLAP_CONTACT_ONSET_H
 #define TETLAP_CONTACT_ONSET_H
 

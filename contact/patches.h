@@ -13,7 +13,7 @@
 
 typedef struct ContactElement {
   int tet;
-  int side;       // of the facing: 0 or 1
+  int side;       // of the facing: 0 or 1; of a body and itself: in the first of its pairs
   int nodes[4];   // of its vertices
   double covered; // W_i [m³]; the user's
 } ContactElement;

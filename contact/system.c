@@ -25,6 +25,7 @@ static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
   TRY(contact_candidates_create(&system->candidates, &system->layout));
   TRY(contact_onset_create(&system->onset, &system->layout));
   TRY(contact_evaluation_create(&system->evaluation, &system->layout));
+  system->counters.resting = system->layout.self.left_out.count;
   return contact_stiffness_create(&system->stiffness, &system->layout);
 }
 

@@ -10,8 +10,11 @@
 //     ∇V_ij
 //
 // W is kept per interface (unordered pair of bodies), so a third body does not change the pressure between
-// two. The overlap models see bodies in general position (contact/layout.h), so that planes of regular meshes
-// do not coincide. Evaluation changes no list: an integrator may try a step, reject it and try again.
+// two. A body that meets itself is an interface of its own, with the same potential: W_i is what other
+// elements of the body cover of i, each pair counts once for either of its elements, and the leading ½ is
+// that between two bodies; two halves of a body that are not connected press each other as two bodies would.
+// The overlap models see bodies in general position (contact/layout.h), so that planes of regular meshes do
+// not coincide. Evaluation changes no list: an integrator may try a step, reject it and try again.
 #ifndef TETLAP_CONTACT_SYSTEM_H
 #define TETLAP_CONTACT_SYSTEM_H
 
@@ -24,7 +27,8 @@ typedef struct ContactBody {
   const char *name; // borrowed
   int vertex_begin, vertex_end;
   int tet_begin, tet_end;
-  bool is_obstacle; // carries no unknowns: static or driven
+  bool is_obstacle;  // carries no unknowns: static or driven
+  bool meets_itself; // parts of it may touch each other (contact/self.h)
 } ContactBody;
 
 // Obstacles without elements.
@@ -91,9 +95,10 @@ typedef struct ContactStiffnessSink {
   void (*add_dense)(void *self, int count, const int *vertices, const double *matrix);
 } ContactStiffnessSink;
 
-// The force between two bodies, or a body and a shape (b = body_count + number of the shape).
+// The force between two bodies, or a body and a shape (b = body_count + number of the shape). A body with
+// itself (a = b): the force on the element of lower number of each pair; in all it is none.
 typedef struct ContactInterface {
-  int a, b;         // a < b
+  int a, b;         // a < b, or a = b
   double force[3];  // on a [N]; the opposite acts on b
   double volume;    // Σ V_ij [m³]
   int active_count; // pairs with V > 0
@@ -114,6 +119,7 @@ typedef struct ContactCounters {
   long long evaluations; // of the whole system
   ContactPairCounts pairs;
   long long searches;                 // broad phases
+  long long resting;                  // pairs within a body left out because they overlap at rest
   long long beyond_margin;            // evaluations refused because a vertex left the margin
   double broad_s, overlap_s, force_s; // wall time by phase [s]
 } ContactCounters;

@@ -18,6 +18,7 @@ typedef struct Contact {
   ContactBody *bodies;  // (model->body_count)
   ContactShape *shapes; // (shape_count)
   int shape_count;
+  bool has_self; // a body meets itself
   ContactSystem *system;
   double reach; // pairs closer than this are laid out in the matrix ahead [m]
 } Contact;
@@ -47,13 +48,17 @@ static void list_sides(Contact *contact) {
   const FemModel *model = contact->model;
   for (int b = 0; b < model->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
-    contact->bodies[b] = (ContactBody){.name = body->name,
-                                       .vertex_begin = body->vertex_begin,
-                                       .vertex_end = body->vertex_end,
-                                       .tet_begin = body->tet_begin,
-                                       .tet_end = body->tet_end,
-                                       .is_obstacle = body->is_obstacle};
+    contact->bodies[b] =
+        (ContactBody){.name = body->name,
+                      .vertex_begin = body->vertex_begin,
+                      .vertex_end = body->vertex_end,
+                      .tet_begin = body->tet_begin,
+                      .tet_end = body->tet_end,
+                      .is_obstacle = body->is_obstacle,
+                      .meets_itself = b < model->scene->body_count && model->scene->bodies[b].self_contact};
   }
+  for (int b = 0; b < model->body_count; b++)
+    contact->has_self = contact->has_self || contact->bodies[b].meets_itself;
   for (int o = 0; o < model->scene->obstacle_count; o++) {
     const FemObstacleDef *def = &model->scene->obstacles[o];
     if (def->kind == FEM_OBSTACLE_MESH) continue;
@@ -228,6 +233,7 @@ static void report(void *self, Record *counters) {
   record_integer(counters, "overlap_blended", count->pairs.blended);
   record_integer(counters, "beyond_range_pairs", count->pairs.beyond);
   record_integer(counters, "beyond_margin", count->beyond_margin);
+  if (contact->has_self) record_integer(counters, "self_pairs_left_out", count->resting);
 }
 
 const FemEffectOps fem_effect_contact = {

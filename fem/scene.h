@@ -85,6 +85,7 @@ typedef struct FemBodyDef {
   FemPlacement placement;
   FemMaterial material;
   FemElementKind element;
+  bool self_contact;       // its parts may touch each other
   double velocity[3];      // initial [m/s]
   double spin[3];          // initial angular velocity about the centre of mass [rad/s]
   FemConstraintDef *fixed; //                                 (fixed_count)
