@@ -593,9 +593,22 @@ static const SceneKey contact_keys[] = {
      .help = "derivatives of the contact force for Newton's method"},
     {"friction", SCENE_SECTION, .section = &friction, .absent_help = "no friction",
      .help = "what touches resists sliding; a number alone is its coefficient"},
+    {"viscosity", SCENE_NUMBER, AT(FemContactDef, viscosity), .unit = "Pa s", .range = "(0, inf)",
+     .absent_help = "none",
+     .help =
+         "η: a pressure η w dw/dt beside κ w, w the covered share of a vertex; takes energy out of impacts"},
     {0},
 };
-static const SceneSection contact = {.help = "bodies push each other apart", .keys = contact_keys};
+static const char *finish_contact(void *self, const char **key) {
+  const FemContactDef *contact = self;
+  if (contact->viscosity > 0 && contact->potential != CONTACT_POTENTIAL_NODAL) {
+    *key = "viscosity";
+    return "viscosity builds on the potential nodal; take one of the two keys away";
+  }
+  return NULL;
+}
+static const SceneSection contact = {
+    .help = "bodies push each other apart", .keys = contact_keys, .finish = finish_contact};
 
 static const SceneKey solver_keys[] = {
     {"linear", SCENE_CHOICE, AT(FemSceneDef, solver), .fallback = "auto", .choices = &solvers,

@@ -236,6 +236,28 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
   return model->ops->has_hessian ? add_mesh_pairs(stiffness, layout, evaluation, model, sink) : STATUS_OK;
 }
 
+Status contact_stiffness_add_nodes(ContactStiffness *stiffness, const ContactLayout *layout,
+                                   ContactEvaluation *evaluation, const double *coefficients,
+                                   const ContactStiffnessSink *sink) {
+  const ContactPatches *patches = &evaluation->patches;
+  TRY(contact_patches_index(&evaluation->patches));
+  TRY(reserve(stiffness, patches->node_count));
+  for (int p = 0; p < patches->patch_count; p++) {
+    const ContactPatch *patch = &patches->patches[p];
+    const ContactFacing *facing = &layout->facings[patch->facing];
+    Walk walk = {layout, patches, facing, evaluation->pairs, evaluation->gradients};
+    for (int n = patch->node_begin; n < patch->node_end; n++) {
+      if (!(facing->weight[patches->nodes[n].side] > 0)) continue;
+      empty(stiffness);
+      collect_node(stiffness, &walk, n);
+      sink->add_outer(sink->self, stiffness->count, stiffness->vertices, stiffness->gradient,
+                      coefficients[n]);
+    }
+  }
+  empty(stiffness);
+  return STATUS_OK;
+}
+
 // ---- What may couple.
 
 static bool is_within(const ContactLayout *layout, const ContactPair *pair, double time,

@@ -34,6 +34,12 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
                              ContactEvaluation *evaluation, const ContactOverlapModel *model,
                              const ContactStiffnessSink *sink);
 
+// S += Σ_a coefficient_a ∇W_a ∇W_aᵀ over the nodes of the evaluation's patches whose sides carry unknowns;
+// `coefficients` (node_count).
+Status contact_stiffness_add_nodes(ContactStiffness *stiffness, const ContactLayout *layout,
+                                   ContactEvaluation *evaluation, const double *coefficients,
+                                   const ContactStiffnessSink *sink);
+
 // Visits cliques that contain every list the sink would be given if all candidates whose boxes are within
 // `reach` of each other (a half-space: that are within `reach` of it) overlapped.
 Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout *layout,

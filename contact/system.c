@@ -194,6 +194,12 @@ const ContactLayout *contact_system_layout(const ContactSystem *system) {
   return &system->layout;
 }
 
+Status contact_system_add_nodes(ContactSystem *system, const double *coefficients,
+                                const ContactStiffnessSink *sink) {
+  return contact_stiffness_add_nodes(&system->stiffness, &system->layout, &system->evaluation, coefficients,
+                                     sink);
+}
+
 static Status create_audits(ContactSystem *system) {
   if (system->has_audits) return STATUS_OK;
   for (int k = 0; k < 2; k++) {

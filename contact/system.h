@@ -180,6 +180,9 @@ const ContactCounters *contact_system_counters(const ContactSystem *system);
 // `look` indexes the last evaluation's patches; the result is the system's, valid until the next evaluation.
 Status contact_system_look(ContactSystem *system, const struct ContactEvaluation **evaluation);
 const struct ContactLayout *contact_system_layout(const ContactSystem *system);
+// Σ_a coefficient_a ∇W_a ∇W_aᵀ of the last evaluation to the sink; coefficients by its patches' nodes.
+Status contact_system_add_nodes(ContactSystem *system, const double *coefficients,
+                                const ContactStiffnessSink *sink);
 
 // Audit: the same configuration with another overlap model: relative differences against `reference`.
 // volume_error: Σ|ΔV| / ΣV over the union of pairs; force_error: ‖Δf‖₂/‖f‖₂ of the nodal forces. Half-spaces

@@ -77,5 +77,6 @@ extern const FemEffectOps fem_effect_gravity;
 extern const FemEffectOps fem_effect_loads;
 extern const FemEffectOps fem_effect_contact;
 extern const FemEffectOps fem_effect_friction;
+extern const FemEffectOps fem_effect_viscosity;
 
 #endif

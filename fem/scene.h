@@ -129,6 +129,7 @@ typedef struct FemContactDef {
   double margin; // [m]; 0: chosen
   bool use_full_hessian;
   double friction;   // coefficient μ between any two; 0: none
+  double viscosity;  // η [Pa s]; 0: none
   double slip_speed; // ε: slower slip counts as sticking [m/s]; 0: chosen
 } FemContactDef;
 

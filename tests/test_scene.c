@@ -189,11 +189,12 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_int_eq(scene->max_order, 1);
   ck_assert(scene->contact.is_on && !scene->contact.use_full_hessian);
   ck_assert_double_eq(scene->contact.stiffness, 3e6);
-  ck_assert_int_eq(scene->contact.potential, CONTACT_POTENTIAL_ELEMENT);
+  ck_assert_int_eq(scene->contact.potential, CONTACT_POTENTIAL_NODAL);
   ck_assert_str_eq(scene->contact.overlap, "exact");
   ck_assert_double_eq(scene->contact.margin, 0.02);
   ck_assert_double_eq(scene->contact.friction, 0.3);
   ck_assert_double_eq(scene->contact.slip_speed, 1e-4);
+  ck_assert_double_eq(scene->contact.viscosity, 11);
   ck_assert_int_eq(scene->solver, FEM_SOLVER_PCG);
   ck_assert_double_eq(scene->solver_tolerance, 1e-6);
   ck_assert_int_eq(scene->threads, 3);
@@ -430,6 +431,8 @@ static const Wrong wrong[] = {
      "s.yaml:3:21: contact.friction: expected a number in [0, inf), found the number -1"},
     {TIME BODY "contact: {friction: much}\n",
      "s.yaml:3:21: contact.friction: expected a mapping {key: value} or a number (its 'coefficient'), found"},
+    {TIME BODY "contact: {potential: pair, viscosity: 1}\n",
+     "s.yaml:3:39: contact: viscosity builds on the potential nodal"},
     {TIME BODY "contact: {friction: {slip_speed: 1}}\n", "s.yaml:3:21: contact.friction needs 'coefficient'"},
     {TIME BODY "contact: {friction: 1}\ncontact: {}\n",
      "s.yaml:4:1: duplicate key 'contact'; it stands at line 3, column 1 already"},
