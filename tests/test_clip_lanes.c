@@ -10,7 +10,8 @@
 #include "contact/clip.h"
 #include "contact/clip_lanes.h"
 #include "contact/exact.h"
-#include "pairs.h"
+#include "contact/invariant.h"
+#include "datagen/hard.h"
 
 enum { WIDEST = CONTACT_CLIP_MAX_LANES, MEMBERS = 192 };
 
@@ -22,8 +23,8 @@ static bool is_single(const ContactClipLanes *kernel) {
 }
 
 static double volume_allowed(const ContactClipLanes *kernel, const double x[24], double expected) {
-  if (!is_single(kernel)) return pairs_allowed(x, expected);
-  double smaller = pairs_smaller_volume(x);
+  if (!is_single(kernel)) return contact_invariant_allowed(x, expected);
+  double smaller = contact_invariant_smaller_volume(x);
   return expected > 0.1 * smaller ? 1e-3 * expected : 1e-4 * smaller;
 }
 
@@ -40,7 +41,7 @@ static void run(const ContactClipLanes *kernel, Group *group) {
 static int check_group(const ContactClipLanes *kernel, const Group *group, const char *what) {
   int sure = 0;
   for (int k = 0; k < kernel->width; k++) {
-    double expected, expected_gradient[24], extent = pairs_extent(group->x[k]);
+    double expected, expected_gradient[24], extent = contact_invariant_extent(group->x[k]);
     unsigned flags;
     if (group->outcome.doubtful >> k & 1) continue;
     ck_assert_ok(
@@ -56,7 +57,7 @@ static int check_group(const ContactClipLanes *kernel, const Group *group, const
                     expected_gradient[c]);
     bool is_disjoint = group->outcome.disjoint >> k & 1;
     ck_assert_int_eq(is_disjoint, group->volume[k] == 0);
-    if (expected > 1e-3 * pairs_smaller_volume(group->x[k]))
+    if (expected > 1e-3 * contact_invariant_smaller_volume(group->x[k]))
       ck_assert_int_eq(group->outcome.enclosed >> k & 1, (flags & CONTACT_OVERLAP_ENCLOSED) != 0);
     sure++;
   }
@@ -65,16 +66,16 @@ static int check_group(const ContactClipLanes *kernel, const Group *group, const
 
 START_TEST(lanes_that_are_not_doubtful_are_right_in_every_class) {
   const ContactClipLanes *kernel = kernels[_i];
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++) {
     int sure = 0;
     for (int member = 0; member < MEMBERS; member += kernel->width) {
       Group group;
       for (int k = 0; k < kernel->width; k++)
-        memcpy(group.x[k], pairs_make(c, member + k).x, sizeof group.x[k]);
+        memcpy(group.x[k], datagen_hard_make(c, member + k).x, sizeof group.x[k]);
       run(kernel, &group);
-      sure += check_group(kernel, &group, pairs_classes[c].name);
+      sure += check_group(kernel, &group, datagen_hard_classes[c].name);
     }
-    const char *name = pairs_classes[c].name;
+    const char *name = datagen_hard_classes[c].name;
     bool is_ordinary = strcmp(name, "far") == 0 || strcmp(name, "boxes") == 0 ||
                        strcmp(name, "uniform") == 0 || strcmp(name, "inside") == 0 ||
                        strcmp(name, "inverted") == 0;
@@ -110,7 +111,7 @@ START_TEST(ordinary_pairs_are_hardly_ever_doubtful) {
 END_TEST
 
 static void draw_any(int number, double x[24]) {
-  memcpy(x, pairs_make(number % PAIRS_CLASS_COUNT, number).x, 24 * sizeof *x);
+  memcpy(x, datagen_hard_make(number % DATAGEN_HARD_CLASS_COUNT, number).x, 24 * sizeof *x);
 }
 
 START_TEST(a_lane_knows_nothing_of_the_others) {
@@ -179,7 +180,7 @@ START_TEST(a_batch_answers_each_pair_as_if_it_were_alone) {
   for (int i = 0; i < MOST; i++) {
     draw_any(i, x + 24 * i);
     if (_i % 2 && i % 5)
-      for (int c = 12; c < 24; c++) x[24 * i + c] += 3 * pairs_extent(x + 24 * i);
+      for (int c = 12; c < 24; c++) x[24 * i + c] += 3 * contact_invariant_extent(x + 24 * i);
   }
   for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
     ContactOverlapBatch batch = {
@@ -207,8 +208,8 @@ START_TEST(the_scalar_form_gives_the_same_up_to_rounding) {
     draw_any(number, x);
     ck_assert_ok(contact_overlap_clip.eval_pair(NULL, x, &volume[0], gradient, NULL, &flags[0]));
     ck_assert_ok(contact_overlap_clip_scalar.eval_pair(NULL, x, &volume[1], gradient, NULL, &flags[1]));
-    ck_assert_msg(fabs(volume[0] - volume[1]) <= 2 * pairs_allowed(x, volume[1]), "pair %d: %g, scalar %g",
-                  number, volume[0], volume[1]);
+    ck_assert_msg(fabs(volume[0] - volume[1]) <= 2 * contact_invariant_allowed(x, volume[1]),
+                  "pair %d: %g, scalar %g", number, volume[0], volume[1]);
   }
 }
 END_TEST

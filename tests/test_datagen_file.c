@@ -12,12 +12,13 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "contact/invariant.h"
 #include "datagen/capture.h"
 #include "datagen/dataset.h"
 #include "datagen/generate.h"
+#include "datagen/hard.h"
 #include "datagen/merge.h"
 #include "datagen/run.h"
-#include "pairs.h"
 
 enum { COUNT = 9000, BLOCK = 1024 }; // more than two chunks
 
@@ -369,11 +370,11 @@ END_TEST
 
 // Pairs in any unit, of every class that overlap models are tested on: those with volume are kept, scaled.
 START_TEST(captured_pairs_are_scaled_proven_and_labelled) {
-  enum { MEMBERS = 30, ALL = MEMBERS * PAIRS_CLASS_COUNT };
+  enum { MEMBERS = 30, ALL = MEMBERS * DATAGEN_HARD_CLASS_COUNT };
   static double pairs[ALL * 24];
   int flat = 0;
   for (int i = 0; i < ALL; i++) {
-    PairCase c = pairs_make(i / MEMBERS, i % MEMBERS);
+    DatagenHardPair c = datagen_hard_make(i / MEMBERS, i % MEMBERS);
     memcpy(pairs + 24 * i, c.x, sizeof c.x);
     flat += c.is_flat;
   }
@@ -401,8 +402,10 @@ END_TEST
 // V scales with the cube of lengths: what was captured in millimetres or far away has the same label.
 START_TEST(a_capture_does_not_depend_on_the_unit) {
   static double pairs[2 * 24];
-  PairCase c;
-  for (int member = 0; c = pairs_make(2, member), !(pairs_smaller_volume(c.x) > 0.03); member++) continue;
+  DatagenHardPair c;
+  for (int member = 0; c = datagen_hard_make(2, member), !(contact_invariant_smaller_volume(c.x) > 0.03);
+       member++)
+    continue;
   for (int i = 0; i < 24; i++) pairs[i] = c.x[i], pairs[24 + i] = 0x1p-10 * c.x[i] + 1;
   DatagenCapture capture;
   ck_assert_ok(datagen_capture_begin(&capture, path_of("a.h5"), "test 1", DATAGEN_LABEL_EXACT));

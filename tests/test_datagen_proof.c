@@ -6,9 +6,10 @@
 #include <string.h>
 
 #include "contact/exact.h"
+#include "contact/invariant.h"
 #include "contact/separation.h"
+#include "datagen/hard.h"
 #include "datagen/proof.h"
-#include "pairs.h"
 
 // Against the unit simplex 0, e₁, e₂, e₃.
 typedef struct Hand {
@@ -113,7 +114,7 @@ END_TEST
 // Dimension 3 is what the exact model calls a common interior; beyond a separating axis there is nothing.
 START_TEST(the_exact_model_and_the_separating_axes_agree) {
   for (int member = 0; member < 150; member++) {
-    PairCase c = pairs_make(_i, member);
+    DatagenHardPair c = datagen_hard_make(_i, member);
     double volume;
     unsigned flags;
     ck_assert_ok(contact_overlap_exact.eval_pair(NULL, c.x, &volume, NULL, NULL, &flags));
@@ -121,8 +122,8 @@ START_TEST(the_exact_model_and_the_separating_axes_agree) {
     ck_assert_int_eq(proof.is_flat, (flags & CONTACT_OVERLAP_FLAT) != 0);
     if (proof.is_flat) continue;
     ck_assert_msg((proof.dimension < 3) == ((flags & CONTACT_OVERLAP_DISJOINT) != 0), "%s %d: dimension %d",
-                  pairs_classes[_i].name, member, proof.dimension);
-    double gap = contact_separation_pair(c.x, INFINITY), extent = pairs_extent(c.x);
+                  datagen_hard_classes[_i].name, member, proof.dimension);
+    double gap = contact_separation_pair(c.x, INFINITY), extent = contact_invariant_extent(c.x);
     if (gap > 1e-9 * extent) ck_assert_int_eq(proof.dimension, -1);
     if (gap < -1e-9 * extent) ck_assert_int_eq(proof.dimension, 3);
     if (contact_separation_is_certain(c.x)) ck_assert_int_eq(proof.dimension, -1);
@@ -139,9 +140,9 @@ START_TEST(the_touching_classes_of_the_overlap_tests_have_the_dimensions_of_thei
                   {"vertex on vertex", 0, 0, 0}, {"vertex on edge", 0, 1, 0}, {"edge on edge", 0, 1, 1},
                   {"shared edge", 1, 1, 1},      {"shared face", 2, 2, 2},    {"identical", 3, 3, 3}};
   int class_index = 0;
-  while (strcmp(pairs_classes[class_index].name, expected[_i].name) != 0) class_index++;
+  while (strcmp(datagen_hard_classes[class_index].name, expected[_i].name) != 0) class_index++;
   for (int member = 0; member < 300; member++) {
-    PairCase c = pairs_make(class_index, member);
+    DatagenHardPair c = datagen_hard_make(class_index, member);
     DatagenProof proof = datagen_proof_of(c.x);
     ck_assert_msg(proof.dimension == expected[_i].dimension && proof.carrier[0] == expected[_i].first &&
                       proof.carrier[1] == expected[_i].second,
@@ -157,7 +158,7 @@ int main(void) {
   tcase_add_loop_test(cases, neither_the_order_of_vertices_nor_of_tetrahedra_matters, 0, HAND_COUNT);
   tcase_add_loop_test(cases, size_and_place_do_not_matter, 0, HAND_COUNT);
   tcase_add_test(cases, a_tetrahedron_without_volume_is_said_to_be_flat);
-  tcase_add_loop_test(cases, the_exact_model_and_the_separating_axes_agree, 0, PAIRS_CLASS_COUNT);
+  tcase_add_loop_test(cases, the_exact_model_and_the_separating_axes_agree, 0, DATAGEN_HARD_CLASS_COUNT);
   tcase_add_loop_test(cases, the_touching_classes_of_the_overlap_tests_have_the_dimensions_of_their_names, 0,
                       9);
   return suite_run("datagen_proof", cases, 60);

@@ -10,15 +10,16 @@
 #include "contact/geo_centre.h"
 #include "contact/geo_features.h"
 #include "contact/geo_frame.h"
-#include "pairs.h"
+#include "contact/invariant.h"
+#include "datagen/hard.h"
 
 static const double corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 static const int set_sizes[] = {36, 70, 100};
 
 // The frame of the first members of a class that have one; false at the end of the class.
-static bool next_frame(int class_index, int *member, PairCase *pair, ContactGeoFrame *frame) {
+static bool next_frame(int class_index, int *member, DatagenHardPair *pair, ContactGeoFrame *frame) {
   for (; *member < 200; (*member)++) {
-    *pair = pairs_make(class_index, *member);
+    *pair = datagen_hard_make(class_index, *member);
     if (contact_geo_frame(frame, pair->x) != CONTACT_GEO_INSIDE) continue;
     (*member)++;
     return true;
@@ -27,16 +28,16 @@ static bool next_frame(int class_index, int *member, PairCase *pair, ContactGeoF
 }
 
 static int class_named(const char *name) {
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
-    if (strcmp(pairs_classes[c].name, name) == 0) return c;
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
+    if (strcmp(datagen_hard_classes[c].name, name) == 0) return c;
   ck_abort_msg("no class '%s'", name);
 }
 
 START_TEST(the_gate_agrees_with_exact_in_every_class) {
   int inside = 0, empty = 0;
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
     for (int member = 0; member < 300; member++) {
-      PairCase pair = pairs_make(c, member);
+      DatagenHardPair pair = datagen_hard_make(c, member);
       ContactGeoGate gate;
       ContactGeoOutcome outcome = contact_geo_gate(&gate, pair.x);
       double volume;
@@ -44,9 +45,10 @@ START_TEST(the_gate_agrees_with_exact_in_every_class) {
       ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &volume, NULL, NULL, &flags));
       // what the gate leaves to exact is right; overlaps thinner than rounding may be missed, none invented
       if (outcome == CONTACT_GEO_UNFIT) continue;
-      bool is_missed = outcome == CONTACT_GEO_EMPTY && volume <= 1e-15 * pairs_smaller_volume(pair.x);
+      bool is_missed =
+          outcome == CONTACT_GEO_EMPTY && volume <= 1e-15 * contact_invariant_smaller_volume(pair.x);
       ck_assert_msg((volume > 0) == (outcome == CONTACT_GEO_INSIDE) || is_missed,
-                    "%s, member %d: the gate says %d, V = %g", pairs_classes[c].name, member, outcome,
+                    "%s, member %d: the gate says %d, V = %g", datagen_hard_classes[c].name, member, outcome,
                     volume);
       if (outcome == CONTACT_GEO_INSIDE) ck_assert(gate.is_enclosed || !(flags & CONTACT_OVERLAP_ENCLOSED));
       *(outcome == CONTACT_GEO_INSIDE ? &inside : &empty) += 1;
@@ -57,14 +59,15 @@ START_TEST(the_gate_agrees_with_exact_in_every_class) {
 END_TEST
 
 START_TEST(only_flat_and_sliver_shaped_tetrahedra_are_left_to_exact) {
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
-    bool is_flat = strstr(pairs_classes[c].name, "sliver") || strcmp(pairs_classes[c].name, "flat") == 0;
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++) {
+    bool is_flat =
+        strstr(datagen_hard_classes[c].name, "sliver") || strcmp(datagen_hard_classes[c].name, "flat") == 0;
     for (int member = 0; member < 300; member++) {
-      PairCase pair = pairs_make(c, member);
+      DatagenHardPair pair = datagen_hard_make(c, member);
       ContactGeoFrame frame;
       bool is_unfit = contact_geo_frame(&frame, pair.x) == CONTACT_GEO_UNFIT;
-      ck_assert_msg(!is_unfit || is_flat, "%s, member %d", pairs_classes[c].name, member);
-      ck_assert_msg(is_unfit || !strstr(pairs_classes[c].name, "sliver"), "member %d", member);
+      ck_assert_msg(!is_unfit || is_flat, "%s, member %d", datagen_hard_classes[c].name, member);
+      ck_assert_msg(is_unfit || !strstr(datagen_hard_classes[c].name, "sliver"), "member %d", member);
     }
   }
 }
@@ -105,8 +108,8 @@ END_TEST
 // Scaled planes sum to zero, slacks are barycentric coordinates of one point, P is a projector of rank 3.
 START_TEST(at_the_centre_the_logarithms_of_the_slacks_are_stationary) {
   int seen = 0;
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
-    PairCase pair;
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++) {
+    DatagenHardPair pair;
     ContactGeoFrame frame;
     for (int member = 0; next_frame(c, &member, &pair, &frame); seen++) {
       double least = INFINITY, trace = 0;
@@ -124,10 +127,10 @@ START_TEST(at_the_centre_the_logarithms_of_the_slacks_are_stationary) {
         ck_assert_near(row, 0, 1e-15 / least + 1e-13);
         ck_assert_near(square, frame.projector.row[k][k], 1e-14);
       }
-      ck_assert_msg(least > 0, "%s: a slack of %g", pairs_classes[c].name, least);
+      ck_assert_msg(least > 0, "%s: a slack of %g", datagen_hard_classes[c].name, least);
       ck_assert_near(trace, 3, 1e-14);
       ck_assert_int_le(frame.step_count, 12);
-      ck_assert_near(vec3_length(vec3_sub(point[0], point[1])) / pairs_extent(pair.x), 0, 1e-12);
+      ck_assert_near(vec3_length(vec3_sub(point[0], point[1])) / contact_invariant_extent(pair.x), 0, 1e-12);
     }
   }
   ck_assert_int_gt(seen, 2000);
@@ -139,11 +142,12 @@ START_TEST(newton_finds_the_centre_of_the_smallest_overlaps) {
   Random random = random_seeded(5, 0);
   int most = 0, total = 0;
   for (int trial = 0; trial < 2000; trial++) {
-    PairCase pair = pairs_make(class_named("vertex on face"), trial);
-    Vec3 n = pairs_face_normal(&pair, 0);
+    DatagenHardPair pair = datagen_hard_make(class_named("vertex on face"), trial);
+    Vec3 n = datagen_hard_face_normal(&pair, 0);
     double depth = pow(10, random_between(&random, -6, -1));
     for (int i = 4; i < 8; i++)
-      pairs_set(&pair, i, vec3_sub(pairs_vertex(&pair, i), vec3_scale(depth / vec3_length(n), n)));
+      datagen_hard_set(&pair, i,
+                       vec3_sub(datagen_hard_vertex(&pair, i), vec3_scale(depth / vec3_length(n), n)));
     ContactGeoFrame frame;
     ck_assert_int_eq(contact_geo_frame(&frame, pair.x), CONTACT_GEO_INSIDE);
     if (frame.step_count > most) most = frame.step_count;
@@ -163,7 +167,7 @@ static void map_affinely(const double map[12], const double x[24], double image[
 
 START_TEST(an_affine_map_changes_neither_slacks_nor_projector) {
   Random random = random_seeded(6, 0);
-  PairCase pair;
+  DatagenHardPair pair;
   ContactGeoFrame frame, image;
   int seen = 0;
   for (int member = 0; next_frame(class_named("uniform"), &member, &pair, &frame); seen++) {
@@ -283,7 +287,7 @@ START_TEST(features_are_what_the_header_says) {
   const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i]);
   ck_assert_ptr_nonnull(set);
   ck_assert_ptr_null(contact_geo_feature_set(37));
-  PairCase pair;
+  DatagenHardPair pair;
   ContactGeoFrame frame;
   int seen = 0;
   for (int member = 0; next_frame(class_named("uniform"), &member, &pair, &frame); seen++) {
@@ -298,15 +302,15 @@ START_TEST(features_are_what_the_header_says) {
 END_TEST
 
 START_TEST(no_order_of_vertices_or_tetrahedra_changes_a_feature) {
-  PairCase pair;
+  DatagenHardPair pair;
   ContactGeoFrame frame;
   int count = set_sizes[_i], seen = 0;
   for (int member = 0; next_frame(class_named("uniform"), &member, &pair, &frame) && seen < 40; seen++)
     for (int k = 0; k < 24; k++) {
       double permuted[24], swapped[24], one[CONTACT_GEO_MAX_FEATURES], other[CONTACT_GEO_MAX_FEATURES];
-      pairs_permute(pair.x, k, permuted);
-      pairs_permute(pair.x + 12, (7 * k + 5) % 24, permuted + 12);
-      pairs_swap(permuted, swapped);
+      datagen_hard_permute(pair.x, k, permuted);
+      datagen_hard_permute(pair.x + 12, (7 * k + 5) % 24, permuted + 12);
+      datagen_hard_swap(permuted, swapped);
       features_of(count, pair.x, one);
       features_of(count, swapped, other);
       for (int f = 0; f < count; f++) ck_assert_near(one[f], other[f], 1e-12);
@@ -318,7 +322,7 @@ END_TEST
 START_TEST(the_changes_of_frame_and_features_are_their_derivatives) {
   Random random = random_seeded(8, 0);
   const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i]);
-  PairCase pair;
+  DatagenHardPair pair;
   ContactGeoFrame frame, up, down;
   for (int member = 0, seen = 0; next_frame(class_named("uniform"), &member, &pair, &frame); seen++) {
     double h = 1e-6 * cbrt(frame.volume), direction[24], x[24];

@@ -7,14 +7,16 @@
 #include "contact/geo_bundle.h"
 #include "contact/geo_coplanar.h"
 #include "contact/geo_frame.h"
-#include "pairs.h"
+#include "contact/invariant.h"
+#include "datagen/hard.h"
 
 enum { COUNT = CONTACT_GEO_BUNDLE - 3 };
 
 // Pairs of one class after another, from the member that is given.
 static void draw_pairs(int member, double *pairs) {
   for (int i = 0; i < COUNT; i++) {
-    PairCase pair = pairs_make((i + member) % PAIRS_CLASS_COUNT, member + i / PAIRS_CLASS_COUNT);
+    DatagenHardPair pair =
+        datagen_hard_make((i + member) % DATAGEN_HARD_CLASS_COUNT, member + i / DATAGEN_HARD_CLASS_COUNT);
     memcpy(pairs + 24 * i, pair.x, sizeof pair.x);
   }
 }

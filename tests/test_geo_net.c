@@ -10,9 +10,10 @@
 #include "base/memory.h"
 #include "contact/exact.h"
 #include "contact/geo_overlap.h"
+#include "contact/invariant.h"
+#include "datagen/hard.h"
 #include "net/model.h"
 #include "net/weights.h"
-#include "pairs.h"
 
 static const char *weights_path(void) {
   static char path[64];
@@ -50,7 +51,7 @@ START_TEST(gradient_and_hessian_of_a_loaded_network_are_derivatives) {
   void *self = create(inputs[_i]);
   int seen = 0;
   for (int member = 0; member < 40; member++) {
-    PairCase pair = pairs_make(2, member);
+    DatagenHardPair pair = datagen_hard_make(2, member);
     double volume, gradient[24], hessian[576];
     unsigned flags;
     ck_assert_ok(contact_geo_overlap_eval_pair(self, pair.x, &volume, gradient, hessian, &flags));
@@ -79,10 +80,11 @@ END_TEST
 START_TEST(a_vanishing_overlap_is_true_with_any_weights) {
   void *self = create(100);
   for (int member = 0; member < 40; member++) {
-    PairCase pair = pairs_make(5, member); // a vertex on a face
-    Vec3 n = pairs_face_normal(&pair, 0);
+    DatagenHardPair pair = datagen_hard_make(5, member); // a vertex on a face
+    Vec3 n = datagen_hard_face_normal(&pair, 0);
     for (int i = 4; i < 8; i++)
-      pairs_set(&pair, i, vec3_sub(pairs_vertex(&pair, i), vec3_scale(1e-5 / vec3_length(n), n)));
+      datagen_hard_set(&pair, i,
+                       vec3_sub(datagen_hard_vertex(&pair, i), vec3_scale(1e-5 / vec3_length(n), n)));
     double volume, exact;
     unsigned flags;
     ck_assert_ok(contact_geo_overlap_eval_pair(self, pair.x, &volume, NULL, NULL, &flags));
@@ -98,7 +100,7 @@ START_TEST(any_number_of_threads_gives_the_same_bits) {
   enum { COUNT = 300 };
   static double pairs[COUNT * 24], volume[2][COUNT], gradient[2][COUNT * 24];
   int threads = omp_get_max_threads();
-  for (int n = 0; n < COUNT; n++) memcpy(pairs + 24 * n, pairs_make(2, n).x, 24 * sizeof *pairs);
+  for (int n = 0; n < COUNT; n++) memcpy(pairs + 24 * n, datagen_hard_make(2, n).x, 24 * sizeof *pairs);
   for (int run = 0; run < 2; run++) {
     void *self = create(100);
     omp_set_num_threads(run ? 4 : 1);
@@ -140,9 +142,9 @@ START_TEST(without_a_file_there_is_the_constant) {
   void *self = NULL;
   ck_assert_ok(contact_geo_overlap_create(&self, NULL));
   ContactGeoFrame frame;
-  PairCase pair = pairs_make(2, 1);
+  DatagenHardPair pair = datagen_hard_make(2, 1);
   for (int member = 1; contact_geo_frame(&frame, pair.x) != CONTACT_GEO_INSIDE; member++)
-    pair = pairs_make(2, member);
+    pair = datagen_hard_make(2, member);
   double volume;
   unsigned flags;
   ck_assert_ok(contact_geo_overlap_eval_pair(self, pair.x, &volume, NULL, NULL, &flags));

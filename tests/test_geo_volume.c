@@ -12,8 +12,9 @@
 #include "contact/clip.h"
 #include "contact/exact.h"
 #include "contact/geo_overlap.h"
+#include "contact/invariant.h"
+#include "datagen/hard.h"
 #include "geo_network.h"
-#include "pairs.h"
 
 enum { MODEL_COUNT = 4 };
 
@@ -47,8 +48,8 @@ static Answer ask(const Subject *subject, const double x[24], bool wants_hessian
 }
 
 static int class_named(const char *name) {
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
-    if (strcmp(pairs_classes[c].name, name) == 0) return c;
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
+    if (strcmp(datagen_hard_classes[c].name, name) == 0) return c;
   ck_abort_msg("no class '%s'", name);
 }
 
@@ -61,17 +62,17 @@ static double largest_of(const double *values, int count) {
 #define ck_assert_at_most(value, bound)                                                                      \
   do {                                                                                                       \
     double ck_value_ = (value), ck_bound_ = (bound);                                                         \
-    ck_assert_msg(ck_value_ <= ck_bound_, "%s, member %d: %s = %.3g > %.3g", pairs_classes[c].name, member,  \
-                  #value, ck_value_, ck_bound_);                                                             \
+    ck_assert_msg(ck_value_ <= ck_bound_, "%s, member %d: %s = %.3g > %.3g", datagen_hard_classes[c].name,   \
+                  member, #value, ck_value_, ck_bound_);                                                     \
   } while (0)
 
 START_TEST(numbers_and_flags_fit_in_every_class) {
   Subject subject;
   make_subject(_i, &subject);
   int fallbacks = 0, positive = 0;
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
     for (int member = 0; member < 100; member++) {
-      PairCase pair = pairs_make(c, member);
+      DatagenHardPair pair = datagen_hard_make(c, member);
       Answer answer = ask(&subject, pair.x, true);
       bool is_nothing = (answer.flags & (CONTACT_OVERLAP_DISJOINT | CONTACT_OVERLAP_FLAT)) != 0;
       ck_assert_int_eq(is_nothing, answer.volume == 0);
@@ -100,15 +101,15 @@ END_TEST
 START_TEST(gradients_balance_to_rounding) {
   Subject subject;
   make_subject(_i, &subject);
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
     for (int member = 0; member < 100; member++) {
-      PairCase pair = pairs_make(c, member);
+      DatagenHardPair pair = datagen_hard_make(c, member);
       Answer answer = ask(&subject, pair.x, false);
       if (answer.volume == 0 || (answer.flags & CONTACT_OVERLAP_FALLBACK)) continue;
-      double extent = pairs_extent(pair.x), size = largest_of(answer.gradient, 24);
-      double forces = pairs_translation_residual(pair.x, answer.gradient) * pow(extent, 2);
-      double torques = pairs_rotation_residual(pair.x, answer.gradient) * pow(extent, 3);
-      double degree = pairs_scaling_residual(pair.x, answer.volume, answer.gradient) * pow(extent, 3);
+      double extent = contact_invariant_extent(pair.x), size = largest_of(answer.gradient, 24);
+      double forces = contact_invariant_translation(pair.x, answer.gradient) * pow(extent, 2);
+      double torques = contact_invariant_rotation(pair.x, answer.gradient) * pow(extent, 3);
+      double degree = contact_invariant_scaling(pair.x, answer.volume, answer.gradient) * pow(extent, 3);
       ck_assert_at_most(forces, 1e-12 * size);
       ck_assert_at_most(torques, 1e-12 * size * extent);
       ck_assert_at_most(degree, 1e-12 * size * extent);
@@ -124,18 +125,18 @@ START_TEST(volumes_have_the_symmetries_of_the_true_one) {
   const char *names[] = {"uniform", "shared vertex, overlapping", "inside", "inverted"};
   for (int n = 0; n < 4; n++)
     for (int c = class_named(names[n]), member = 0; member < 50; member++) {
-      PairCase pair = pairs_make(c, member);
+      DatagenHardPair pair = datagen_hard_make(c, member);
       double volume = ask(&subject, pair.x, false).volume, x[24], swapped[24], rotation[9];
       if (volume == 0) continue;
       for (int k = 1; k < 24; k++) {
-        pairs_permute(pair.x, k, x);
-        pairs_permute(pair.x + 12, (5 * k + 3) % 24, x + 12);
-        pairs_swap(x, swapped);
+        datagen_hard_permute(pair.x, k, x);
+        datagen_hard_permute(pair.x + 12, (5 * k + 3) % 24, x + 12);
+        datagen_hard_swap(x, swapped);
         ck_assert_at_most(fabs(ask(&subject, swapped, false).volume / volume - 1), 1e-12);
       }
       memcpy(x, pair.x, sizeof x);
       random_rotation(&random, rotation);
-      pairs_transform(x, 8, rotation, 1, (Vec3){1, -2, 1});
+      datagen_hard_transform(x, 8, rotation, 1, (Vec3){1, -2, 1});
       ck_assert_at_most(fabs(ask(&subject, x, false).volume / volume - 1), 1e-12 / cbrt(volume));
       const double scales[] = {1e-9, 3, 1e9};
       for (int s = 0; s < 3; s++) {
@@ -154,7 +155,7 @@ START_TEST(gradient_and_hessian_are_derivatives) {
   int seen = 0;
   for (int n = 0; n < 5; n++)
     for (int c = class_named(names[n]), member = 0; member < 15; member++) {
-      PairCase pair = pairs_make(c, member);
+      DatagenHardPair pair = datagen_hard_make(c, member);
       ContactGeoFrame frame;
       Answer answer = ask(&subject, pair.x, true);
       if (contact_geo_frame(&frame, pair.x) != CONTACT_GEO_INSIDE) continue;
@@ -162,7 +163,7 @@ START_TEST(gradient_and_hessian_are_derivatives) {
       for (int k = 0; k < 8; k++) least = fmin(least, frame.slack[k]);
       if (least < 1e-5) continue; // no step is small beside it and large beside rounding
       seen++;
-      double h = 3e-5 * least * pairs_extent(pair.x), size = largest_of(answer.gradient, 24);
+      double h = 3e-5 * least * contact_invariant_extent(pair.x), size = largest_of(answer.gradient, 24);
       double bend = largest_of(answer.hessian, 576);
       for (int i = 0; i < 24; i++) {
         double x[24];
@@ -191,16 +192,16 @@ START_TEST(a_vanishing_overlap_has_the_true_volume) {
   for (int n = 0; n < 2; n++)
     for (int c = class_named(names[n]), member = 0; member < 40; member++)
       for (int level = 0; level < 2; level++) {
-        PairCase pair = pairs_make(c, member);
-        Vec3 push = n == 0 ? pairs_face_normal(&pair, 0) : (Vec3){0, 0, 0};
+        DatagenHardPair pair = datagen_hard_make(c, member);
+        Vec3 push = n == 0 ? datagen_hard_face_normal(&pair, 0) : (Vec3){0, 0, 0};
         if (n == 1) { // towards the other's centroid
           for (int i = 0; i < 4; i++)
-            push = vec3_add(push, vec3_sub(pairs_vertex(&pair, 4 + i), pairs_vertex(&pair, i)));
+            push = vec3_add(push, vec3_sub(datagen_hard_vertex(&pair, 4 + i), datagen_hard_vertex(&pair, i)));
         }
         double depth = level ? 1e-4 : 1e-3, exact;
         unsigned flags;
         push = vec3_scale(depth / vec3_length(push), push);
-        for (int i = 4; i < 8; i++) pairs_set(&pair, i, vec3_sub(pairs_vertex(&pair, i), push));
+        for (int i = 4; i < 8; i++) datagen_hard_set(&pair, i, vec3_sub(datagen_hard_vertex(&pair, i), push));
         ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &exact, NULL, NULL, &flags));
         Answer answer = ask(&subject, pair.x, false);
         if (answer.flags & CONTACT_OVERLAP_FALLBACK) continue;
@@ -243,7 +244,7 @@ static double shape_of(const double from[24], const double x[24]) {
     double is = vec3_det4(vec3_at(x + t), vec3_at(x + t + 3), vec3_at(x + t + 6), vec3_at(x + t + 9));
     least = fmin(least, was > 0 ? is : -is);
   }
-  return least / pow(pairs_extent(x), 3);
+  return least / pow(contact_invariant_extent(x), 3);
 }
 
 static Point point_at(const Subject *subject, const Path *path, double tau) {
@@ -256,10 +257,10 @@ static Point point_at(const Subject *subject, const Path *path, double tau) {
 }
 
 static Path make_path(Random *random, int kind) {
-  PairCase pair = pairs_make(class_named("uniform"), random_below(random, 10000)), other;
+  DatagenHardPair pair = datagen_hard_make(class_named("uniform"), random_below(random, 10000)), other;
   Path path = {.turn = kind == 1 ? 2 : 0};
   memcpy(path.from, pair.x, sizeof path.from), memcpy(path.to, pair.x, sizeof path.to);
-  other = pairs_make(class_named("uniform"), random_below(random, 10000));
+  other = datagen_hard_make(class_named("uniform"), random_below(random, 10000));
   for (int i = 0; i < 24 && kind == 2; i++) path.to[i] += 0.5 * (other.x[i] - pair.x[i]); // deformation
   if (kind == 0) { // approach and beyond
     double d[3];
@@ -406,7 +407,7 @@ START_TEST(what_training_is_given_is_what_the_model_computes) {
   Random random = random_seeded(51, 0);
   int seen = 0;
   for (int member = 0; member < 60; member++) {
-    PairCase pair = pairs_make(class_named("uniform"), member);
+    DatagenHardPair pair = datagen_hard_make(class_named("uniform"), member);
     double directions[2 * 24], features[100], changes[2 * 100], log_volume, log_changes[2], rho, slope[100];
     for (int i = 0; i < 48; i++) directions[i] = random_normal(&random);
     Answer answer = ask(&subject, pair.x, false);
@@ -445,7 +446,7 @@ START_TEST(a_batch_gives_what_its_pairs_give_alone) {
   Subject subject;
   make_subject(3, &subject);
   for (int n = 0; n < COUNT; n++)
-    memcpy(pairs + 24 * n, pairs_make(n % PAIRS_CLASS_COUNT, n).x, 24 * sizeof *pairs);
+    memcpy(pairs + 24 * n, datagen_hard_make(n % DATAGEN_HARD_CLASS_COUNT, n).x, 24 * sizeof *pairs);
   ContactOverlapBatch batch = {.pair_count = COUNT,
                                .pairs = pairs,
                                .volume = volumes,

@@ -8,7 +8,8 @@
 #include "base/memory.h"
 #include "contact/clip.h"
 #include "contact/exact.h"
-#include "pairs.h"
+#include "contact/invariant.h"
+#include "datagen/hard.h"
 
 static const double corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 
@@ -74,7 +75,7 @@ START_TEST(a_tip_under_a_face_has_the_cube_of_its_depth) {
     const double x[24] = {-8, -8, 0,  16, -8, 0,     -8, 16, 0,     0,  0,  -16, // ground, its face z = 0
                           0,  0,  -d, 1,  0,  1 - d, 0,  1,  1 - d, -1, -1, 1 - d};
     Answer answer = ask(x);
-    double whole = pairs_tet_volume(x + 12), depth = 0 - x[14];
+    double whole = contact_invariant_tet_volume(x + 12), depth = 0 - x[14];
     ck_assert_near(answer.volume, whole * depth * depth * depth,
                    1e-9 * whole * depth * depth * depth + 1e-15);
     if (answer.flags & CONTACT_OVERLAP_FALLBACK) continue;
@@ -99,14 +100,14 @@ END_TEST
 
 // Faces parallel, nearly parallel, or coplanar: the bound of sin θ holds.
 START_TEST(the_hessian_is_bounded_where_faces_are_parallel) {
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
     for (int member = 0; member < 50; member++) {
-      PairCase pair = pairs_make(c, member);
+      DatagenHardPair pair = datagen_hard_make(c, member);
       Answer answer = ask(pair.x);
-      double bound = 12 * pairs_extent(pair.x) / CONTACT_CLIP_LEAST_SINE;
+      double bound = 12 * contact_invariant_extent(pair.x) / CONTACT_CLIP_LEAST_SINE;
       for (int i = 0; i < 576; i++)
-        ck_assert_msg(fabs(answer.hessian[i]) <= bound, "%s, member %d: %g", pairs_classes[c].name, member,
-                      answer.hessian[i]);
+        ck_assert_msg(fabs(answer.hessian[i]) <= bound, "%s, member %d: %g", datagen_hard_classes[c].name,
+                      member, answer.hessian[i]);
     }
 }
 END_TEST
@@ -120,12 +121,12 @@ static void check_set(const char *set, int count) {
   int helped = 0;
   for (int i = 0; i < count; i++) {
     const double *x = pairs + 24 * i;
-    double volume, gradient[24], expected, expected_gradient[24], extent = pairs_extent(x);
+    double volume, gradient[24], expected, expected_gradient[24], extent = contact_invariant_extent(x);
     unsigned flags;
     ck_assert_ok(contact_overlap_clip.eval_pair(NULL, x, &volume, gradient, NULL, &flags));
     helped += (flags & CONTACT_OVERLAP_FALLBACK) != 0;
     ck_assert_ok(contact_overlap_exact.eval_pair(NULL, x, &expected, expected_gradient, NULL, &flags));
-    ck_assert_msg(pairs_volume_misfit(x, volume, expected) <= 1, "%s: pair %d", set, i);
+    ck_assert_msg(contact_invariant_misfit(x, volume, expected) <= 1, "%s: pair %d", set, i);
     for (int c = 0; c < 24; c++)
       ck_assert_msg(fabs(gradient[c] - expected_gradient[c]) <= 1e-12 * extent * extent,
                     "%s: pair %d, gradient %d is %g, exact %g", set, i, c, gradient[c], expected_gradient[c]);
@@ -141,11 +142,11 @@ START_TEST(ordinary_pairs_are_right_and_hardly_ever_need_help) {
 END_TEST
 
 START_TEST(help_is_asked_for_slivers_and_the_shallowest_only) {
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
-    const char *name = pairs_classes[c].name;
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++) {
+    const char *name = datagen_hard_classes[c].name;
     int helped = 0;
     for (int member = 0; member < 200; member++)
-      helped += (ask(pairs_make(c, member).x).flags & CONTACT_OVERLAP_FALLBACK) != 0;
+      helped += (ask(datagen_hard_make(c, member).x).flags & CONTACT_OVERLAP_FALLBACK) != 0;
     bool is_extreme = strncmp(name, "sliver", 6) == 0 || strcmp(name, "flat") == 0;
     int allowed = is_extreme ? 200 : strcmp(name, "shallow") == 0 ? 50 : 4;
     ck_assert_msg(helped <= allowed, "%s: %d of 200", name, helped);
@@ -159,7 +160,7 @@ START_TEST(accuracy_holds_from_fat_to_flat) {
   int helped = 0, alone = 0;
   for (int decade = 0; decade <= 20; decade++)
     for (int member = 0; member < 20; member++) {
-      PairCase pair = pairs_make(4, member);
+      DatagenHardPair pair = datagen_hard_make(4, member);
       Vec3 face =
           vec3_scale(1.0 / 3, vec3_add(vec3_at(pair.x), vec3_add(vec3_at(pair.x + 3), vec3_at(pair.x + 6))));
       Vec3 apex = vec3_sub(vec3_at(pair.x + 9), face);
@@ -168,7 +169,7 @@ START_TEST(accuracy_holds_from_fat_to_flat) {
       unsigned flags;
       Answer answer = ask(pair.x);
       ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &expected, NULL, NULL, &flags));
-      ck_assert_msg(pairs_volume_misfit(pair.x, answer.volume, expected) <= 1, "decade %d: %g, exact %g",
+      ck_assert_msg(contact_invariant_misfit(pair.x, answer.volume, expected) <= 1, "decade %d: %g, exact %g",
                     decade, answer.volume, expected);
       if (answer.flags & CONTACT_OVERLAP_FALLBACK)
         helped++;
@@ -182,7 +183,7 @@ END_TEST
 
 START_TEST(numbers_too_large_or_small_for_double_products_get_help) {
   for (int power = -340; power <= 340; power += 680) {
-    PairCase pair = pairs_make(2, 1);
+    DatagenHardPair pair = datagen_hard_make(2, 1);
     double unit = ask(pair.x).volume;
     for (int i = 0; i < 24; i++) pair.x[i] = ldexp(pair.x[i], power);
     Answer answer = ask(pair.x);

@@ -11,9 +11,10 @@
 #include "contact/exact.h"
 #include "contact/exact_fixed.h"
 #include "contact/exact_integer.h"
+#include "contact/invariant.h"
 #include "contact/overlap.h"
 #include "contact/overlap_cgal.h"
-#include "pairs.h"
+#include "datagen/hard.h"
 
 static const ContactOverlapOps *const models[] = {&contact_overlap_exact, &contact_overlap_cgal};
 enum { MODEL_COUNT = 2 };
@@ -136,7 +137,7 @@ START_TEST(identical_tetrahedra_share_the_gradient_half_and_half) {
   for (int k = 0; k < 3; k++) {
     double x[24], own[12];
     memcpy(x, simplex, sizeof simplex);
-    pairs_permute(simplex, order[k], x + 12);
+    datagen_hard_permute(simplex, order[k], x + 12);
     const Answer answer = ask(models[_i], x);
     ck_assert(ulps_apart(answer.volume, 1 / 6.0) <= 1);
     ck_assert_uint_eq(answer.flags, CONTACT_OVERLAP_ENCLOSED);
@@ -162,7 +163,7 @@ START_TEST(touching_is_disjoint) {
   for (size_t k = 0; k < sizeof other / sizeof *other; k++) {
     double x[24], swapped[24];
     memcpy(x, simplex, sizeof simplex), memcpy(x + 12, other[k], sizeof other[k]);
-    pairs_swap(x, swapped);
+    datagen_hard_swap(x, swapped);
     Answer answer = ask(models[_i], x);
     assert_nothing(&answer, CONTACT_OVERLAP_DISJOINT, "touching");
     answer = ask(models[_i], swapped);
@@ -204,38 +205,38 @@ END_TEST
 START_TEST(every_class_obeys_the_invariants) {
   int overlapping = 0;
   for (int m = 0; m < 100; m++) {
-    const PairCase pair = pairs_make(_i, m);
-    const double *x = pair.x, smaller = pairs_smaller_volume(x);
+    const DatagenHardPair pair = datagen_hard_make(_i, m);
+    const double *x = pair.x, smaller = contact_invariant_smaller_volume(x);
     const Answer answer = ask(&contact_overlap_exact, x);
     overlapping += answer.volume > 0;
-    ck_assert_msg(pairs_bounds_residual(x, answer.volume) <= 1e-3 * (smaller < 1e-9) + 1e-13, "%d: V = %g", m,
-                  answer.volume);
-    ck_assert_near(pairs_translation_residual(x, answer.gradient), 0, 2e-15);
-    ck_assert_near(pairs_rotation_residual(x, answer.gradient), 0, 4e-15);
-    ck_assert_near(pairs_scaling_residual(x, answer.volume, answer.gradient), 0, 4e-15);
+    ck_assert_msg(contact_invariant_bounds(x, answer.volume) <= 1e-3 * (smaller < 1e-9) + 1e-13, "%d: V = %g",
+                  m, answer.volume);
+    ck_assert_near(contact_invariant_translation(x, answer.gradient), 0, 2e-15);
+    ck_assert_near(contact_invariant_rotation(x, answer.gradient), 0, 4e-15);
+    ck_assert_near(contact_invariant_scaling(x, answer.volume, answer.gradient), 0, 4e-15);
     if (!isnan(pair.volume)) ck_assert_near(answer.volume, pair.volume, pair.slack);
-    if (pair.is_flat) assert_nothing(&answer, CONTACT_OVERLAP_FLAT, pairs_classes[_i].name);
+    if (pair.is_flat) assert_nothing(&answer, CONTACT_OVERLAP_FLAT, datagen_hard_classes[_i].name);
     if (!pair.is_flat && answer.volume == 0)
-      assert_nothing(&answer, CONTACT_OVERLAP_DISJOINT, pairs_classes[_i].name);
+      assert_nothing(&answer, CONTACT_OVERLAP_DISJOINT, datagen_hard_classes[_i].name);
     if (pair.volume > 0) ck_assert(answer.volume > 0);
   }
-  if (strcmp(pairs_classes[_i].name, "uniform") == 0) ck_assert_int_ge(overlapping, 30);
+  if (strcmp(datagen_hard_classes[_i].name, "uniform") == 0) ck_assert_int_ge(overlapping, 30);
 }
 END_TEST
 
 START_TEST(order_of_tetrahedra_and_vertices_does_not_matter) {
   for (int m = 0; m < 24; m++) {
-    const PairCase pair = pairs_make(_i, m);
+    const DatagenHardPair pair = datagen_hard_make(_i, m);
     const Answer answer = ask(&contact_overlap_exact, pair.x);
     double swapped[24], moved[24], expected[24];
-    pairs_swap(pair.x, swapped);
-    pairs_permute(swapped, m, moved);
-    pairs_permute(swapped + 12, 23 - m, moved + 12);
-    pairs_swap(answer.gradient, swapped);
-    pairs_permute(swapped, m, expected);
-    pairs_permute(swapped + 12, 23 - m, expected + 12);
+    datagen_hard_swap(pair.x, swapped);
+    datagen_hard_permute(swapped, m, moved);
+    datagen_hard_permute(swapped + 12, 23 - m, moved + 12);
+    datagen_hard_swap(answer.gradient, swapped);
+    datagen_hard_permute(swapped, m, expected);
+    datagen_hard_permute(swapped + 12, 23 - m, expected + 12);
     const Answer again = ask(&contact_overlap_exact, moved);
-    const double extent = pairs_extent(pair.x);
+    const double extent = contact_invariant_extent(pair.x);
     ck_assert(ulps_apart(again.volume, answer.volume) <= 1);
     ck_assert_uint_eq(again.flags, answer.flags);
     ck_assert_near(furthest(again.gradient, expected, 24), 0, 2e-16 * extent * extent);
@@ -247,23 +248,23 @@ END_TEST
 START_TEST(scaling_by_powers_of_two_and_grid_shifts_change_no_bit) {
   const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   for (int m = 0; m < 20; m++) {
-    const PairCase pair = pairs_make(_i, m);
+    const DatagenHardPair pair = datagen_hard_make(_i, m);
     const Answer answer = ask(&contact_overlap_exact, pair.x);
     for (int power = -200; power <= 200; power += 100) {
       double x[24];
       memcpy(x, pair.x, sizeof x);
-      pairs_transform(x, 8, identity, ldexp(1, power), (Vec3){0, 0, 0});
+      datagen_hard_transform(x, 8, identity, ldexp(1, power), (Vec3){0, 0, 0});
       const Answer scaled = ask(&contact_overlap_exact, x);
       ck_assert(scaled.volume == ldexp(answer.volume, 3 * power));
       for (int c = 0; c < 24; c++) ck_assert(scaled.gradient[c] == ldexp(answer.gradient[c], 2 * power));
     }
   }
   for (int m = 0; m < 20; m++) {
-    PairCase pair = {.volume = NAN};
+    DatagenHardPair pair = {.volume = NAN};
     Random random = random_seeded(7, (uint64_t)m);
-    pairs_fat(&random, &pair, 0), pairs_fat(&random, &pair, 1);
+    datagen_hard_fat(&random, &pair, 0), datagen_hard_fat(&random, &pair, 1);
     const Answer answer = ask(&contact_overlap_exact, pair.x);
-    pairs_transform(pair.x, 8, identity, 1, (Vec3){1e6, -3e6, 12345678});
+    datagen_hard_transform(pair.x, 8, identity, 1, (Vec3){1e6, -3e6, 12345678});
     const Answer shifted = ask(&contact_overlap_exact, pair.x);
     ck_assert(shifted.volume == answer.volume);
     ck_assert(memcmp(shifted.gradient, answer.gradient, sizeof answer.gradient) == 0);
@@ -275,12 +276,12 @@ START_TEST(parts_add_up_to_the_whole) {
   const double weights[4] = {0.125, 0.375, 0.25, 0.25}; // exact on the grid
   int overlapping = 0;
   for (int m = 0; m < 200; m++) {
-    PairCase pair = {.volume = NAN};
+    DatagenHardPair pair = {.volume = NAN};
     Random random = random_seeded(11, (uint64_t)m);
-    pairs_fat(&random, &pair, 0), pairs_fat(&random, &pair, 1);
+    datagen_hard_fat(&random, &pair, 0), datagen_hard_fat(&random, &pair, 1);
     const double whole = ask(&contact_overlap_exact, pair.x).volume;
     double parts[4][12], sum = 0;
-    pairs_subdivide(pair.x + 12, weights, parts);
+    datagen_hard_subdivide(pair.x + 12, weights, parts);
     for (int part = 0; part < 4; part++) {
       memcpy(pair.x + 12, parts[part], sizeof parts[part]);
       sum += ask(&contact_overlap_exact, pair.x).volume;
@@ -294,10 +295,10 @@ END_TEST
 
 START_TEST(gradient_is_the_derivative_of_the_volume) {
   int compared = 0;
-  for (int k = 0; k < PAIRS_CLASS_COUNT; k++)
+  for (int k = 0; k < DATAGEN_HARD_CLASS_COUNT; k++)
     for (int m = 0; m < 20; m++) {
-      const PairCase pair = pairs_make(k, m);
-      const double extent = pairs_extent(pair.x), step = extent * 0x1p-20;
+      const DatagenHardPair pair = datagen_hard_make(k, m);
+      const double extent = contact_invariant_extent(pair.x), step = extent * 0x1p-20;
       if (!pair.is_smooth) continue;
       const Answer answer = ask(&contact_overlap_exact, pair.x);
       for (int c = 0; c < 24; c++) {
@@ -336,9 +337,9 @@ END_TEST
 
 START_TEST(exact_equals_cgal_in_every_class) {
   for (int m = 0; m < 12; m++) {
-    const PairCase pair = pairs_make(_i, m);
+    const DatagenHardPair pair = datagen_hard_make(_i, m);
     const Answer ours = ask(&contact_overlap_exact, pair.x), theirs = ask(&contact_overlap_cgal, pair.x);
-    const double extent = pairs_extent(pair.x);
+    const double extent = contact_invariant_extent(pair.x);
     ck_assert_msg(ulps_apart(ours.volume, theirs.volume) <= 1, "member %d: %.17g, %.17g", m, ours.volume,
                   theirs.volume);
     ck_assert_uint_eq(ours.flags, theirs.flags);
@@ -350,13 +351,14 @@ END_TEST
 // --- threads, memory, integers
 
 START_TEST(threads_give_identical_results) {
-  enum { MEMBERS = 6, PAIRS = MEMBERS * PAIRS_CLASS_COUNT };
+  enum { MEMBERS = 6, PAIRS = MEMBERS * DATAGEN_HARD_CLASS_COUNT };
   static double x[PAIRS][24], volume[2][PAIRS], gradient[2][PAIRS][24];
   static unsigned flags[2][PAIRS];
   ContactOverlapModel model;
   ck_assert_ok(contact_overlap_create(&model, models[_i]->name));
   for (int k = 0; k < PAIRS; k++) {
-    const PairCase pair = pairs_make(k % PAIRS_CLASS_COUNT, k / PAIRS_CLASS_COUNT);
+    const DatagenHardPair pair =
+        datagen_hard_make(k % DATAGEN_HARD_CLASS_COUNT, k / DATAGEN_HARD_CLASS_COUNT);
     memcpy(x[k], pair.x, sizeof x[k]);
   }
   for (int round = 0; round < 2; round++) {
@@ -376,8 +378,8 @@ START_TEST(threads_give_identical_results) {
 END_TEST
 
 START_TEST(volume_alone_is_the_same_volume) {
-  for (int k = 0; k < PAIRS_CLASS_COUNT; k++) {
-    const PairCase pair = pairs_make(k, 3);
+  for (int k = 0; k < DATAGEN_HARD_CLASS_COUNT; k++) {
+    const DatagenHardPair pair = datagen_hard_make(k, 3);
     const Answer answer = ask(models[_i], pair.x);
     double volume;
     unsigned flags;
@@ -535,13 +537,14 @@ int main(void) {
   tcase_add_loop_test(cases, touching_is_disjoint, 0, MODEL_COUNT);
   tcase_add_loop_test(cases, no_volume_is_flat, 0, MODEL_COUNT);
   tcase_add_test(cases, sizes_may_differ_by_two_hundred_decades);
-  tcase_add_loop_test(cases, every_class_obeys_the_invariants, 0, PAIRS_CLASS_COUNT);
-  tcase_add_loop_test(cases, order_of_tetrahedra_and_vertices_does_not_matter, 0, PAIRS_CLASS_COUNT);
-  tcase_add_loop_test(cases, scaling_by_powers_of_two_and_grid_shifts_change_no_bit, 0, PAIRS_CLASS_COUNT);
+  tcase_add_loop_test(cases, every_class_obeys_the_invariants, 0, DATAGEN_HARD_CLASS_COUNT);
+  tcase_add_loop_test(cases, order_of_tetrahedra_and_vertices_does_not_matter, 0, DATAGEN_HARD_CLASS_COUNT);
+  tcase_add_loop_test(cases, scaling_by_powers_of_two_and_grid_shifts_change_no_bit, 0,
+                      DATAGEN_HARD_CLASS_COUNT);
   tcase_add_test(cases, parts_add_up_to_the_whole);
   tcase_add_test(cases, gradient_is_the_derivative_of_the_volume);
   tcase_add_test(cases, scattered_magnitudes_give_numbers);
-  tcase_add_loop_test(cases, exact_equals_cgal_in_every_class, 0, PAIRS_CLASS_COUNT);
+  tcase_add_loop_test(cases, exact_equals_cgal_in_every_class, 0, DATAGEN_HARD_CLASS_COUNT);
   tcase_add_loop_test(cases, threads_give_identical_results, 0, MODEL_COUNT);
   tcase_add_loop_test(cases, volume_alone_is_the_same_volume, 0, MODEL_COUNT);
   tcase_add_test(cases, integers_are_exact);

@@ -8,8 +8,9 @@
 #include <string.h>
 
 #include "contact/exact.h"
+#include "contact/invariant.h"
 #include "contact/overlap.h"
-#include "pairs.h"
+#include "datagen/hard.h"
 
 // What a model may lack. Networks that follow the paper see vertices in an order, know volumes roughly and
 // compute in float32.
@@ -21,8 +22,8 @@ enum {
   LACKS_ALL_BUT_BALANCE = LACKS_ACCURACY | LACKS_ORDER | LACKS_DIGITS,
 };
 
-// What is asked of a model. Volumes in units of pairs_allowed, the rest relative to powers of the pair's
-// extent.
+// What is asked of a model. Volumes in units of contact_invariant_allowed, the rest relative to powers of the
+// pair's extent.
 typedef struct Demand {
   const char *name;
   int members;              // of each class; fewer where a pair takes milliseconds
@@ -107,15 +108,15 @@ static bool open_model(int index, ContactOverlapModel *model) {
 // Calls `check` for every member of every class, unless the model lacks what it asks for.
 static void for_each_pair(int model_index, unsigned asked,
                           void (*check)(const ContactOverlapModel *model, const Demand *demand,
-                                        const PairCase *pair, const char *where)) {
+                                        const DatagenHardPair *pair, const char *where)) {
   ContactOverlapModel model;
   const Demand *demand = demand_of(model_at(model_index)->name);
   if ((demand->lacks & asked) || !open_model(model_index, &model)) return;
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++)
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
     for (int member = 0; member < demand->members; member++) {
       char where[96];
-      snprintf(where, sizeof where, "%s: %s, member %d", demand->name, pairs_classes[c].name, member);
-      PairCase pair = pairs_make(c, member);
+      snprintf(where, sizeof where, "%s: %s, member %d", demand->name, datagen_hard_classes[c].name, member);
+      DatagenHardPair pair = datagen_hard_make(c, member);
       check(&model, demand, &pair, where);
     }
   contact_overlap_destroy(&model);
@@ -129,8 +130,8 @@ static void for_each_pair(int model_index, unsigned asked,
 
 // How far V may differ from that of the same pair in another order or place [m³].
 static double difference_allowed(const Demand *demand, const double x[24], double volume) {
-  return demand->misfit * pairs_allowed(x, volume) + demand->rounding[0] * volume +
-         demand->rounding[1] * pairs_smaller_volume(x);
+  return demand->misfit * contact_invariant_allowed(x, volume) + demand->rounding[0] * volume +
+         demand->rounding[1] * contact_invariant_smaller_volume(x);
 }
 
 // How far V may be off where it should be `volume` [m³].
@@ -138,7 +139,7 @@ static double error_allowed(const Demand *demand, const double x[24], double vol
   return difference_allowed(demand, x, volume) + demand->learned * volume;
 }
 
-static void check_volume(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+static void check_volume(const ContactOverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
                          const char *where) {
   Answer answer = ask(model, pair->x);
   double reference = exact_volume(pair->x);
@@ -153,7 +154,7 @@ START_TEST(volumes_are_right_in_every_class) {
 }
 END_TEST
 
-static void check_flags(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+static void check_flags(const ContactOverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
                         const char *where) {
   (void)demand;
   Answer answer = ask(model, pair->x);
@@ -171,17 +172,17 @@ START_TEST(flags_say_what_the_numbers_are) {
 }
 END_TEST
 
-static void check_invariants(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
-                             const char *where) {
+static void check_invariants(const ContactOverlapModel *model, const Demand *demand,
+                             const DatagenHardPair *pair, const char *where) {
   Answer answer = ask(model, pair->x);
   if (!(demand->lacks & LACKS_ACCURACY))
-    ck_assert_at_most(where, pairs_bounds_residual(pair->x, answer.volume),
+    ck_assert_at_most(where, contact_invariant_bounds(pair->x, answer.volume),
                       4e-16 + demand->learned + demand->rounding[1]);
   else
     ck_assert_msg(answer.volume >= 0, "%s: V = %g", where, answer.volume);
-  ck_assert_at_most(where, pairs_translation_residual(pair->x, answer.gradient), demand->invariant);
-  ck_assert_at_most(where, pairs_rotation_residual(pair->x, answer.gradient), demand->invariant);
-  ck_assert_at_most(where, pairs_scaling_residual(pair->x, answer.volume, answer.gradient),
+  ck_assert_at_most(where, contact_invariant_translation(pair->x, answer.gradient), demand->invariant);
+  ck_assert_at_most(where, contact_invariant_rotation(pair->x, answer.gradient), demand->invariant);
+  ck_assert_at_most(where, contact_invariant_scaling(pair->x, answer.volume, answer.gradient),
                     demand->invariant);
 }
 
@@ -190,15 +191,15 @@ START_TEST(volumes_are_bounded_and_gradients_balance) {
 }
 END_TEST
 
-static void check_exchange(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
-                           const char *where) {
+static void check_exchange(const ContactOverlapModel *model, const Demand *demand,
+                           const DatagenHardPair *pair, const char *where) {
   double volume = ask_volume(model, pair->x), swapped[24], permuted[24];
-  pairs_swap(pair->x, swapped);
+  datagen_hard_swap(pair->x, swapped);
   double allowed = 2 * difference_allowed(demand, pair->x, volume);
   ck_assert_at_most(where, fabs(ask_volume(model, swapped) - volume), allowed);
   for (int k = 1; k < 24; k += demand->members < 10 ? 11 : 1) {
-    pairs_permute(pair->x, k, permuted);
-    pairs_permute(pair->x + 12, (5 * k + 3) % 24, permuted + 12);
+    datagen_hard_permute(pair->x, k, permuted);
+    datagen_hard_permute(pair->x + 12, (5 * k + 3) % 24, permuted + 12);
     ck_assert_at_most(where, fabs(ask_volume(model, permuted) - volume), allowed);
   }
 }
@@ -210,24 +211,24 @@ END_TEST
 
 // The largest coordinate times the extent squared: what rounding of coordinates may change, over ε.
 static double rounding_scale(const double x[24]) {
-  double largest = 0, extent = pairs_extent(x);
+  double largest = 0, extent = contact_invariant_extent(x);
   for (int i = 0; i < 24; i++) largest = fmax(largest, fabs(x[i]));
   return largest * extent * extent;
 }
 
-static void check_motion(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+static void check_motion(const ContactOverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
                          const char *where) {
-  double moved[24], volume = ask_volume(model, pair->x), extent = pairs_extent(pair->x);
+  double moved[24], volume = ask_volume(model, pair->x), extent = contact_invariant_extent(pair->x);
   double rotation[9];
   Random random = random_seeded(77, 0);
   random_rotation(&random, rotation);
   memcpy(moved, pair->x, sizeof moved);
-  pairs_transform(moved, 8, rotation, 1, (Vec3){extent, -2 * extent, extent});
+  datagen_hard_transform(moved, 8, rotation, 1, (Vec3){extent, -2 * extent, extent});
   double slack = 8 * DBL_EPSILON * (rounding_scale(pair->x) + rounding_scale(moved));
   ck_assert_at_most(where, fabs(ask_volume(model, moved) - volume),
                     slack + difference_allowed(demand, pair->x, volume));
   for (int i = 0; i < 24; i++) moved[i] = 0x1p20 * pair->x[i];
-  double scaled = 1e-6 * pairs_allowed(pair->x, volume);
+  double scaled = 1e-6 * contact_invariant_allowed(pair->x, volume);
   if (demand->rounding[0] > 0) scaled = difference_allowed(demand, pair->x, volume);
   ck_assert_at_most(where, fabs(0x1p-60 * ask_volume(model, moved) - volume), scaled);
 }
@@ -237,12 +238,12 @@ START_TEST(a_rigid_motion_changes_nothing_and_scaling_gives_the_cube) {
 }
 END_TEST
 
-static void check_subdivision(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
-                              const char *where) {
+static void check_subdivision(const ContactOverlapModel *model, const Demand *demand,
+                              const DatagenHardPair *pair, const char *where) {
   const double weights[4] = {0.125, 0.25, 0.25, 0.375};
-  double parts[4][12], whole = pairs_tet_volume(pair->x + 12), sum_of_parts = 0;
-  pairs_subdivide(pair->x + 12, weights, parts);
-  for (int k = 0; k < 4; k++) sum_of_parts += pairs_tet_volume(parts[k]);
+  double parts[4][12], whole = contact_invariant_tet_volume(pair->x + 12), sum_of_parts = 0;
+  datagen_hard_subdivide(pair->x + 12, weights, parts);
+  for (int k = 0; k < 4; k++) sum_of_parts += contact_invariant_tet_volume(parts[k]);
   if (!(fabs(sum_of_parts - whole) <= 1e-13 * whole) || pair->is_flat) return; // rounded out of a sliver
   double volume = ask_volume(model, pair->x), sum = 0, allowed = 1e-14 * volume;
   for (int k = 0; k < 4; k++) {
@@ -260,11 +261,11 @@ START_TEST(the_parts_of_a_tetrahedron_sum_to_the_whole) {
 }
 END_TEST
 
-static void check_gradient(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
-                           const char *where) {
+static void check_gradient(const ContactOverlapModel *model, const Demand *demand,
+                           const DatagenHardPair *pair, const char *where) {
   if (!pair->is_smooth) return;
   Answer answer = ask(model, pair->x);
-  double extent = pairs_extent(pair->x), h = step_of(demand) * extent;
+  double extent = contact_invariant_extent(pair->x), h = step_of(demand) * extent;
   for (int i = 0; i < 24; i += demand->members < 10 ? 7 : 1) {
     double up[24], down[24];
     memcpy(up, pair->x, sizeof up), memcpy(down, pair->x, sizeof down);
@@ -285,9 +286,9 @@ static void ask_hessian(const ContactOverlapModel *model, const double x[24], do
   ck_assert_ok(contact_overlap_eval(model, &batch));
 }
 
-static void check_hessian(const ContactOverlapModel *model, const Demand *demand, const PairCase *pair,
+static void check_hessian(const ContactOverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
                           const char *where) {
-  double extent = pairs_extent(pair->x), h = step_of(demand) * extent, hessian[576];
+  double extent = contact_invariant_extent(pair->x), h = step_of(demand) * extent, hessian[576];
   ask_hessian(model, pair->x, hessian);
   for (int i = 0; i < 24; i++)
     for (int c = 0; c < 3; c++) {
@@ -316,7 +317,7 @@ START_TEST(the_hessian_is_symmetric_and_the_derivative_of_the_gradient) {
   }
   ContactOverlapModel model;
   double volume, hessian[576];
-  PairCase pair = pairs_make(2, 0);
+  DatagenHardPair pair = datagen_hard_make(2, 0);
   if (!open_model(_i, &model)) return;
   ContactOverlapBatch batch = {.pair_count = 1, .pairs = pair.x, .volume = &volume, .hessian = hessian};
   ck_assert_int_eq(contact_overlap_eval(&model, &batch), STATUS_INPUT);
@@ -330,13 +331,13 @@ START_TEST(a_tetrahedron_inside_another_is_flagged) {
   if (demand_of(model_at(_i)->name)->lacks & LACKS_STATUS) return;
   if (!open_model(_i, &model)) return;
   int seen = 0;
-  for (int c = 0; c < PAIRS_CLASS_COUNT; c++) {
-    bool is_inside = strcmp(pairs_classes[c].name, "inside") == 0;
-    if (!is_inside && strcmp(pairs_classes[c].name, "shallow") != 0) continue;
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++) {
+    bool is_inside = strcmp(datagen_hard_classes[c].name, "inside") == 0;
+    if (!is_inside && strcmp(datagen_hard_classes[c].name, "shallow") != 0) continue;
     for (int member = 0; member < 5; member++) {
-      PairCase pair = pairs_make(c, member);
+      DatagenHardPair pair = datagen_hard_make(c, member);
       double swapped[24];
-      pairs_swap(pair.x, swapped);
+      datagen_hard_swap(pair.x, swapped);
       ck_assert_int_eq(is_inside, (ask(&model, pair.x).flags & CONTACT_OVERLAP_ENCLOSED) != 0);
       ck_assert_int_eq(is_inside, (ask(&model, swapped).flags & CONTACT_OVERLAP_ENCLOSED) != 0);
       seen++;
@@ -352,7 +353,7 @@ START_TEST(a_coordinate_that_is_no_number_is_an_error_that_names_the_pair) {
   ContactOverlapModel model;
   if (!open_model(_i, &model)) return;
   double x[5 * 24], volume[5];
-  for (int k = 0; k < 5; k++) memcpy(x + 24 * k, pairs_make(0, k).x, 24 * sizeof *x);
+  for (int k = 0; k < 5; k++) memcpy(x + 24 * k, datagen_hard_make(0, k).x, 24 * sizeof *x);
   ContactOverlapBatch batch = {.pair_count = 5, .pairs = x, .volume = volume};
   for (int kind = 0; kind < 3; kind++)
     for (int i = 0; i < 24; i++) {
@@ -374,7 +375,8 @@ START_TEST(results_do_not_depend_on_the_number_of_threads) {
   if (!open_model(_i, &model)) return;
   static double x[BATCH * 24], volume[2][BATCH], gradient[2][BATCH * 24];
   static unsigned flags[2][BATCH];
-  for (int k = 0; k < BATCH; k++) memcpy(x + 24 * k, pairs_make(k % PAIRS_CLASS_COUNT, k).x, 24 * sizeof *x);
+  for (int k = 0; k < BATCH; k++)
+    memcpy(x + 24 * k, datagen_hard_make(k % DATAGEN_HARD_CLASS_COUNT, k).x, 24 * sizeof *x);
   int threads = omp_get_max_threads();
   for (int run = 0; run < 2; run++) {
     omp_set_num_threads(run ? 4 : 1);
