@@ -369,7 +369,7 @@ static Status begin(Run *run) {
 
 // One step of load, halved where there is no equilibrium; `*step` is what to try next.
 static Status advance_static(Run *run, double target, double *step) {
-  double to = fmin(run->time + *step, target);
+  double to = fmin(run->time + *step, target), work_before = run->statics.driven_work;
   Status status = fem_statics_step(&run->statics, run->time, to, run->u);
   if (status == STATUS_RETRY) {
     *step = 0.5 * (to - run->time);
@@ -380,7 +380,7 @@ static Status advance_static(Run *run, double target, double *step) {
   run->time = to;
   *step *= 2;
   FemMeasures measures;
-  run->audit.driven_work = run->statics.driven_work;
+  run->audit.driven_work += run->statics.driven_work - work_before;
   fem_equilibrium_scatter(&run->statics.equilibrium, run->time, run->u);
   TRY(fem_recorder_measure(&run->recorder, run->time, &measures));
   FemAudit next = fem_audit_next(&run->audit, run->time, &measures.energy);

@@ -163,6 +163,47 @@ START_TEST(without_an_equilibrium_the_run_ends_and_says_why) {
 }
 END_TEST
 
+// A moving obstacle's work is all stored: it adds up over the steps, by the trapezoidal rule.
+START_TEST(the_work_of_an_obstacle_is_stored) {
+  SceneRun run;
+  run_well(&run,
+           "time: {end: 1, static: true}\n"
+           "bodies:\n"
+           "  - name: block\n"
+           "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 2}}\n"
+           "    fixed: [{group: z_min}]\n"
+           "    material: {young: 1e5, poisson: 0.3, density: 1000}\n"
+           "obstacles:\n"
+           "  - {name: plate, halfspace: {point: [0, 0, 0.1], normal: [0, 0, -1]}, motion: {velocity: [0, "
+           "0, -0.002]}}\n"
+           "contact: {stiffness: 1e6}\n"
+           "output: {frames: 10}\n");
+  double force = fabs(scene_force(&run, 10, 0)[2]), work = run.result.audit.work;
+  ck_assert_near(work, 0.5 * force * 0.002, 0.05 * work);
+  ck_assert_near(run.result.audit.total, 0, 5e-3 * work);
+  scene_close(&run);
+}
+END_TEST
+
+// A slender beam turns by far more than it strains; every step is a few full Newton steps, though the first
+// of them raises |f| tenfold.
+START_TEST(a_beam_that_turns_far_takes_few_iterations) {
+  SceneRun run;
+  run_well(&run, "time: {end: 1, static: true}\n"
+                 "bodies:\n"
+                 "  - name: beam\n"
+                 "    mesh: {box: {size: [0.5, 0.05, 0.05], cells: [20, 2, 2]}}\n"
+                 "    material: {law: stvk, young: 1e8, poisson: 0.3, density: 1000}\n"
+                 "    fixed: [{group: x_min}]\n"
+                 "    loads: [{group: x_max, force: [0, 0, -120], factor: t}]\n"
+                 "output: {frames: 10}\n");
+  ck_assert_int_eq(run.result.relaxation_steps, 0);
+  ck_assert_int_le(run.result.solver.factorisations, 60);
+  ck_assert(scene_position(&run, 10, run.model.vertex_count - 1)[2] < 0.03);
+  scene_close(&run);
+}
+END_TEST
+
 static void refuse(const char *about_body, const char *about_scene, const char *expected) {
   char text[1024];
   snprintf(text, sizeof text,
@@ -193,6 +234,8 @@ int main(void) {
   tcase_add_test(test_case, a_linear_body_is_in_equilibrium_after_one_solve);
   tcase_add_test(test_case, rubber_pulled_to_twice_its_length_pulls_back_as_theory_says);
   tcase_add_test(test_case, a_block_comes_to_rest_on_the_ground);
+  tcase_add_test(test_case, the_work_of_an_obstacle_is_stored);
+  tcase_add_test(test_case, a_beam_that_turns_far_takes_few_iterations);
   tcase_add_test(test_case, a_pressure_vessel_widens_as_lame_says);
   tcase_add_test(test_case, without_an_equilibrium_the_run_ends_and_says_why);
   tcase_add_test(test_case, what_only_a_motion_has_is_refused);
