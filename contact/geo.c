@@ -7,7 +7,6 @@
 #include "contact/clip.h"
 #include "contact/exact.h"
 #include "contact/geo_coplanar.h"
-#include "contact/geo_hessian.h"
 
 enum { SIZE = CONTACT_PAIR_SIZE, HESSIAN_SIZE = SIZE * SIZE };
 
@@ -17,13 +16,12 @@ static void find_features(const ContactGeoModel *model, const GeoMatrix *project
   ContactGeoInvariants invariants;
   GeoPack packs[CONTACT_GEO_MAX_FEATURES];
   geo_pack_matrix(projector, 0, &packed);
-  model->kernel->features(model->set, &packed, &invariants, packs);
+  contact_geo_kernel()->features(model->set, &packed, &invariants, packs);
   geo_unpack_numbers(packs, model->set->count, 0, features);
 }
 
 Status contact_geo_model_create(ContactGeoModel *model, const ContactGeoNetwork *network) {
-  *model = (ContactGeoModel){
-      .kernel = contact_geo_kernel(), .bundle_kernel = contact_geo_bundle_kernel(), .offset = log(1.28)};
+  *model = (ContactGeoModel){.kernel = contact_geo_bundle_kernel(), .offset = log(1.28)};
   if (!network) return STATUS_OK;
   model->set = contact_geo_feature_set(network->feature_count);
   if (!model->set)
@@ -39,28 +37,6 @@ Status contact_geo_model_create(ContactGeoModel *model, const ContactGeoNetwork 
     return status_fail(STATUS_INPUT, "the network's value at the onset of an overlap is %g", value);
   model->offset -= value;
   return STATUS_OK;
-}
-
-enum { PACKS = CONTACT_GEO_CHUNK / GEO_PACK };
-
-// The pairs of a chunk that have a frame, and what is known of them.
-typedef struct Chunk {
-  int count;
-  int pair[CONTACT_GEO_CHUNK]; // index in the batch
-  ContactGeoFrame frame[CONTACT_GEO_CHUNK];
-  ContactGeoInvariants invariants[PACKS];
-  double features[CONTACT_GEO_CHUNK * CONTACT_GEO_MAX_FEATURES]; // (count, set->count)
-  double value[CONTACT_GEO_CHUNK];                               // ρ
-  GeoMatrix slope[CONTACT_GEO_CHUNK];                            // Φ
-  ContactGeoAdjoint adjoint[CONTACT_GEO_CHUNK];
-  bool is_abandoned[CONTACT_GEO_CHUNK];                         // answered by the exact model
-  double weights[CONTACT_GEO_CHUNK * CONTACT_GEO_MAX_FEATURES]; // dρ/df (count, set->count)
-} Chunk;
-
-// How many pairs are in pack `pack` of the chunk.
-static int lanes_of(const Chunk *chunk, int pack) {
-  int left = chunk->count - pack * GEO_PACK;
-  return left < GEO_PACK ? left : GEO_PACK;
 }
 
 // The places of pair i's results; NULL where they are not wanted.
@@ -95,153 +71,6 @@ static Status fall_back(Place place) {
   return STATUS_OK;
 }
 
-static Status find_frames(const ContactOverlapBatch *batch, int begin, int end, Chunk *chunk) {
-  chunk->count = 0;
-  for (int i = begin; i < end; i++) {
-    Place place = place_of(batch, i);
-    ContactGeoFrame *frame = &chunk->frame[chunk->count];
-    switch (contact_geo_frame(frame, place.pair)) {
-    case CONTACT_GEO_EMPTY:
-      write_empty(place);
-      continue;
-    case CONTACT_GEO_UNFIT:
-      TRY(fall_back(place));
-      continue;
-    case CONTACT_GEO_INSIDE:
-      break;
-    }
-    chunk->pair[chunk->count++] = i;
-  }
-  return STATUS_OK;
-}
-
-static void fill_features(const ContactGeoModel *model, Chunk *chunk) {
-  int size = model->set->count;
-  for (int pack = 0; pack * GEO_PACK < chunk->count; pack++) {
-    GeoSymmetric projector = {{{0}}};
-    GeoPack features[CONTACT_GEO_MAX_FEATURES];
-    for (int lane = 0; lane < lanes_of(chunk, pack); lane++)
-      geo_pack_matrix(&chunk->frame[pack * GEO_PACK + lane].projector, lane, &projector);
-    model->kernel->features(model->set, &projector, &chunk->invariants[pack], features);
-    for (int lane = 0; lane < lanes_of(chunk, pack); lane++)
-      geo_unpack_numbers(features, size, lane, chunk->features + (pack * GEO_PACK + lane) * size);
-  }
-}
-
-// From one backward sweep of a pack: Φ and ∂ log V/∂x of its pairs.
-static void sweep_pack(const ContactGeoModel *model, Chunk *chunk, int pack) {
-  int size = model->set ? model->set->count : 0;
-  GeoSymmetric slopes = {{{0}}};
-  if (model->set) {
-    ContactGeoSweep sweep;
-    GeoPack weights[CONTACT_GEO_MAX_FEATURES] = {{0}};
-    for (int lane = 0; lane < lanes_of(chunk, pack); lane++)
-      geo_pack_numbers(chunk->weights + (pack * GEO_PACK + lane) * size, size, lane, weights);
-    model->kernel->pull(model->set, &chunk->invariants[pack], weights, &sweep, &slopes);
-  }
-  for (int lane = 0; lane < lanes_of(chunk, pack); lane++) {
-    int at = pack * GEO_PACK + lane;
-    geo_unpack_matrix(&slopes, lane, &chunk->slope[at]);
-    contact_geo_frame_pull(&chunk->frame[at], &chunk->slope[at], &chunk->adjoint[at]);
-  }
-}
-
-static void write_gradients(const ContactOverlapBatch *batch, const Chunk *chunk) {
-  for (int at = 0; at < chunk->count; at++) {
-    Place place = place_of(batch, chunk->pair[at]);
-    if (chunk->is_abandoned[at]) continue;
-    for (int i = 0; i < SIZE; i++) place.gradient[i] = *place.volume * chunk->adjoint[at].gradient[i];
-  }
-}
-
-// ∇²V = V (∇² log V + ∇ log V ∇ log Vᵀ)
-static void scale_hessian(const double *gradient, double volume, double *hessian) {
-  for (int i = 0; i < SIZE; i++)
-    for (int j = 0; j < SIZE; j++)
-      hessian[i * SIZE + j] = volume * (hessian[i * SIZE + j] + gradient[i] * gradient[j]);
-}
-
-static Status write_hessians(const ContactGeoModel *model, const ContactOverlapBatch *batch,
-                             const Chunk *chunk) {
-  enum { COUNT = CONTACT_GEO_DIRECTIONS };
-  int size = model->set ? model->set->count : 0, moved[CONTACT_GEO_CHUNK];
-  double changes[CONTACT_GEO_CHUNK * COUNT * CONTACT_GEO_MAX_FEATURES];
-  double curvature[CONTACT_GEO_CHUNK * COUNT * COUNT];
-  double spare[HESSIAN_SIZE]; // for the pairs that the exact model answered
-  for (int at = 0; at < chunk->count; at++) {
-    double *hessian = chunk->is_abandoned[at] ? spare : place_of(batch, chunk->pair[at]).hessian;
-    moved[at] =
-        contact_geo_hessian_begin(model, &chunk->frame[at], chunk->weights + at * size, &chunk->slope[at],
-                                  &chunk->adjoint[at], changes + at * COUNT * size, hessian);
-  }
-  if (model->set)
-    TRY(model->network.curve(model->network.self, chunk->count, chunk->features, COUNT, changes, curvature));
-  for (int at = 0; at < chunk->count; at++) {
-    Place place = place_of(batch, chunk->pair[at]);
-    if (chunk->is_abandoned[at]) continue;
-    const double *gradient = chunk->adjoint[at].gradient;
-    contact_geo_hessian_end(&chunk->frame[at], moved[at], model->set ? curvature + at * COUNT * COUNT : NULL,
-                            gradient, place.hessian);
-    scale_hessian(gradient, *place.volume, place.hessian);
-  }
-  return STATUS_OK;
-}
-
-// V and the flags of all; where V is no positive number the exact model answers.
-static Status write_volumes(const ContactGeoModel *model, const ContactOverlapBatch *batch, Chunk *chunk) {
-  for (int at = 0; at < chunk->count; at++) {
-    Place place = place_of(batch, chunk->pair[at]);
-    double phi = model->offset + (model->set ? chunk->value[at] : 0);
-    *place.volume = chunk->frame[at].volume * exp(phi);
-    if (place.flags) *place.flags = chunk->frame[at].is_enclosed ? CONTACT_OVERLAP_ENCLOSED : 0;
-    chunk->is_abandoned[at] = !(*place.volume > 0 && *place.volume < INFINITY);
-    if (chunk->is_abandoned[at]) TRY(fall_back(place));
-  }
-  return STATUS_OK;
-}
-
-// Pairs with coplanar faces turn to the exact volume.
-static Status blend_coplanar(const ContactOverlapBatch *batch, const Chunk *chunk) {
-  for (int at = 0; at < chunk->count; at++) {
-    if (chunk->is_abandoned[at]) continue;
-    Place place = place_of(batch, chunk->pair[at]);
-    double spare[SIZE]; // the Hessian's blend needs the gradient
-    if (!place.gradient) {
-      for (int i = 0; i < SIZE; i++) spare[i] = *place.volume * chunk->adjoint[at].gradient[i];
-      place.gradient = spare;
-    }
-    TRY(contact_geo_coplanar_blend(&chunk->frame[at], place.pair, place.volume, place.gradient, place.hessian,
-                                   place.flags));
-  }
-  return STATUS_OK;
-}
-
-// V, ∇V and ∇²V.
-static Status eval_chunk(const ContactGeoModel *model, const ContactOverlapBatch *batch, int begin, int end,
-                         Chunk *chunk) {
-  TRY(find_frames(batch, begin, end, chunk));
-  if (chunk->count == 0) return STATUS_OK;
-  if (model->set) {
-    fill_features(model, chunk);
-    TRY(model->network.eval(model->network.self, chunk->count, chunk->features, chunk->value,
-                            chunk->weights));
-  }
-  TRY(write_volumes(model, batch, chunk));
-  for (int pack = 0; pack * GEO_PACK < chunk->count; pack++) sweep_pack(model, chunk, pack);
-  if (batch->gradient) write_gradients(batch, chunk);
-  TRY(write_hessians(model, batch, chunk));
-  return blend_coplanar(batch, chunk);
-}
-
-static Status eval_with_hessians(const ContactGeoModel *model, const ContactOverlapBatch *batch) {
-  Chunk chunk;
-  for (int begin = 0; begin < batch->pair_count; begin += CONTACT_GEO_CHUNK) {
-    int end = begin + CONTACT_GEO_CHUNK;
-    TRY(eval_chunk(model, batch, begin, end < batch->pair_count ? end : batch->pair_count, &chunk));
-  }
-  return STATUS_OK;
-}
-
 // ρ of a block's columns by a network that takes rows.
 static Status eval_rows(const ContactGeoNetwork *network, ContactGeoBlock *block, double *value,
                         bool wants_gradient) {
@@ -263,6 +92,35 @@ static Status eval_network(const ContactGeoNetwork *network, ContactGeoBlock *bl
                                wants_gradient ? block->weights[0] : NULL);
 }
 
+// The same of the second derivatives, added to the curvature.
+static Status curve_rows(const ContactGeoNetwork *network, const ContactGeoBends *bends,
+                         ContactGeoColumn *second) {
+  enum { COUNT = CONTACT_GEO_DIRECTIONS, MOST = CONTACT_GEO_MAX_FEATURES };
+  int size = network->feature_count;
+  double rows[MOST], changes[COUNT * MOST], square[COUNT * COUNT];
+  for (int at = 0; at < CONTACT_GEO_BLOCK; at++) {
+    for (int f = 0; f < size; f++) {
+      rows[f] = bends->features[f][0][at];
+      for (int j = 0; j < COUNT; j++) changes[j * size + f] = bends->features[f][1 + j][at];
+    }
+    TRY(network->curve(network->self, 1, rows, COUNT, changes, square));
+    for (int i = 0, pair = 0; i < COUNT; i++)
+      for (int j = 0; j <= i; j++, pair++) second[pair][at] = square[i * COUNT + j];
+  }
+  return STATUS_OK;
+}
+
+static Status add_network_curvature(const ContactGeoNetwork *network, ContactGeoBends *bends) {
+  _Alignas(64) ContactGeoColumn second[CONTACT_GEO_DIRECTION_PAIRS];
+  if (network->curve_columns)
+    TRY(network->curve_columns(network->self, bends->features[0][0], second[0]));
+  else
+    TRY(curve_rows(network, bends, second));
+  for (int pair = 0; pair < CONTACT_GEO_DIRECTION_PAIRS; pair++)
+    for (int at = 0; at < CONTACT_GEO_BLOCK; at++) bends->curvature[pair][at] += second[pair][at];
+  return STATUS_OK;
+}
+
 // What lanes could not find a frame of.
 static Status answer_unfit(Place place) {
   ContactGeoFrame frame;
@@ -271,66 +129,110 @@ static Status answer_unfit(Place place) {
   return STATUS_OK;
 }
 
-static Status blend_column(const ContactGeoBlock *block, int at, Place place) {
+static Status blend_column(const ContactGeoBundle *bundle, int first, const ContactGeoBlock *block, int at,
+                           Place place) {
   ContactGeoFrame frame;
   for (int k = 0; k < GEO_LANES; k++) {
     frame.slack[k] = block->slack[k][at];
     for (int c = 0; c < 3; c++) {
+      frame.normal.column[c][k] = bundle->normal[c * GEO_LANES + k][first + at];
       frame.scaled.column[c][k] = block->scaled[c * GEO_LANES + k][at];
       frame.basis.column[c][k] = block->basis[c * GEO_LANES + k][at];
     }
     for (int l = 0; l < GEO_LANES; l++) frame.projector.row[k][l] = block->projector[geo_entry(k, l)][at];
   }
-  return contact_geo_coplanar_blend(&frame, place.pair, place.volume, place.gradient, NULL, place.flags);
+  for (int i = 0; i < 32; i++) frame.across[i / 16][i / 4 % 4][i % 4] = bundle->across[i][first + at];
+  double gradient[SIZE]; // the Hessian's blend needs it
+  memcpy(gradient, block->gradient[at], sizeof gradient);
+  return contact_geo_coplanar_blend(&frame, place.pair, place.volume,
+                                    place.gradient  ? place.gradient
+                                    : place.hessian ? gradient
+                                                    : NULL,
+                                    place.hessian, place.flags);
 }
 
-static Status write_column(const ContactGeoBlock *block, int at, bool is_enclosed, Place place) {
+// The tetrahedron that was moved comes first in bends.
+static void write_hessian(const ContactGeoBends *bends, int at, double *hessian) {
+  int moved = bends->is_second[at] > 0;
+  for (int i = 0; i < SIZE; i++) {
+    const double *row = bends->hessian[at] + SIZE * (moved ? (i + SIZE / 2) % SIZE : i);
+    memcpy(hessian + SIZE * i + moved * SIZE / 2, row, SIZE / 2 * sizeof(double));
+    memcpy(hessian + SIZE * i + !moved * SIZE / 2, row + SIZE / 2, SIZE / 2 * sizeof(double));
+  }
+}
+
+static Status write_column(const ContactGeoBundle *bundle, int first, const ContactGeoBlock *block,
+                           const ContactGeoBends *bends, int at, Place place) {
   *place.volume = block->factor[at];
   if (!(block->is_fit[at] > 0)) return answer_unfit(place);
   if (!(*place.volume > 0 && *place.volume < INFINITY)) return fall_back(place);
   if (place.gradient) memcpy(place.gradient, block->gradient[at], sizeof block->gradient[at]);
-  if (place.flags) *place.flags = is_enclosed ? CONTACT_OVERLAP_ENCLOSED : 0;
-  return block->is_close[at] > 0 ? blend_column(block, at, place) : STATUS_OK;
+  if (place.hessian) write_hessian(bends, at, place.hessian);
+  if (place.flags) *place.flags = bundle->is_enclosed[first + at] ? CONTACT_OVERLAP_ENCLOSED : 0;
+  return block->is_close[at] > 0 ? blend_column(bundle, first, block, at, place) : STATUS_OK;
+}
+
+// V, ∇V and ∇²V of a block, as far as they are wanted, in block and bends.
+static Status compute_block(const ContactGeoModel *model, const ContactOverlapBatch *batch,
+                            ContactGeoBundle *bundle, int first, ContactGeoBlock *block,
+                            ContactGeoBends *bends) {
+  _Alignas(64) double value[CONTACT_GEO_BLOCK] = {0};
+  bool wants_gradient = batch->gradient || batch->hessian;
+  model->kernel->frame(bundle, first, block);
+  if (model->set) {
+    model->kernel->features(model->set, block);
+    TRY(eval_network(&model->network, block, value, wants_gradient));
+  }
+  for (int at = 0; at < CONTACT_GEO_BLOCK; at++)
+    block->factor[at] = block->volume[at] * exp(model->offset + value[at]);
+  if (wants_gradient) model->kernel->pull(model->set, block);
+  if (!batch->hessian) return STATUS_OK;
+  model->kernel->bend(model->set, bundle, first, block, bends);
+  if (model->set) TRY(add_network_curvature(&model->network, bends));
+  model->kernel->finish(model->set != NULL, block, bends);
+  return STATUS_OK;
 }
 
 // The pairs of the bundle from `first` on.
 static Status eval_block(const ContactGeoModel *model, const ContactOverlapBatch *batch,
-                         ContactGeoBundle *bundle, int first, ContactGeoBlock *block) {
-  _Alignas(64) double value[CONTACT_GEO_BLOCK] = {0};
-  model->bundle_kernel->frame(bundle, first, block);
-  if (model->set) {
-    model->bundle_kernel->features(model->set, block);
-    TRY(eval_network(&model->network, block, value, batch->gradient != NULL));
-  }
-  for (int at = 0; at < CONTACT_GEO_BLOCK; at++)
-    block->factor[at] = block->volume[at] * exp(model->offset + value[at]);
-  if (batch->gradient) model->bundle_kernel->pull(model->set, block);
+                         ContactGeoBundle *bundle, int first, ContactGeoBlock *block,
+                         ContactGeoBends *bends) {
+  TRY(compute_block(model, batch, bundle, first, block, bends));
   for (int at = 0; at < CONTACT_GEO_BLOCK && first + at < bundle->count; at++)
-    TRY(write_column(block, at, bundle->is_enclosed[first + at], place_of(batch, bundle->pair[first + at])));
+    TRY(write_column(bundle, first, block, bends, at, place_of(batch, bundle->pair[first + at])));
   return STATUS_OK;
 }
 
 static Status eval_bundle(const ContactGeoModel *model, const ContactOverlapBatch *batch,
-                          ContactGeoBundle *bundle, ContactGeoBlock *block) {
-  model->bundle_kernel->gate(batch->pair_count, batch->pairs, bundle);
+                          ContactGeoBundle *bundle, ContactGeoBlock *block, ContactGeoBends *bends) {
+  model->kernel->gate(batch->pair_count, batch->pairs, bundle);
   for (int i = 0; i < batch->pair_count; i++) {
     if (bundle->outcome[i] == CONTACT_GEO_EMPTY) write_empty(place_of(batch, i));
     if (bundle->outcome[i] == CONTACT_GEO_UNFIT) TRY(fall_back(place_of(batch, i)));
   }
   for (int first = 0; first < bundle->count; first += CONTACT_GEO_BLOCK)
-    TRY(eval_block(model, batch, bundle, first, block));
+    TRY(eval_block(model, batch, bundle, first, block, bends));
   return STATUS_OK;
 }
 
-Status contact_geo_eval(const ContactGeoModel *model, const ContactOverlapBatch *batch) {
-  if (batch->hessian) return eval_with_hessians(model, batch);
+static Status eval_bundles(const ContactGeoModel *model, const ContactOverlapBatch *batch,
+                           ContactGeoBends *bends) {
   ContactGeoBundle bundle;
   ContactGeoBlock block;
   for (int begin = 0; begin < batch->pair_count; begin += CONTACT_GEO_BUNDLE) {
     ContactOverlapBatch part = contact_overlap_part(batch, begin, CONTACT_GEO_BUNDLE);
-    TRY(eval_bundle(model, &part, &bundle, &block));
+    TRY(eval_bundle(model, &part, &bundle, &block, bends));
   }
   return STATUS_OK;
+}
+
+static Status eval_with_hessians(const ContactGeoModel *model, const ContactOverlapBatch *batch) {
+  ContactGeoBends bends;
+  return eval_bundles(model, batch, &bends);
+}
+
+Status contact_geo_eval(const ContactGeoModel *model, const ContactOverlapBatch *batch) {
+  return batch->hessian ? eval_with_hessians(model, batch) : eval_bundles(model, batch, NULL);
 }
 
 ContactGeoOutcome contact_geo_features_tangent(const ContactGeoFeatureSet *set, const double pair[24],

@@ -35,14 +35,16 @@ typedef struct ContactGeoNetwork {
   // of its n directions in feature space (count, n, feature_count); n at most 12. NULL: no Hessian.
   Status (*curve)(const void *self, int count, const double *features, int direction_count,
                   const double *directions, double *second);
+  // The same of CONTACT_GEO_CHUNK pairs side by side, as ContactGeoBends has them: features with their
+  // changes (feature_count, 1 + 12, chunk), second (78, chunk), on cache lines. NULL: curve is used.
+  Status (*curve_columns)(const void *self, const double *features, double *second);
 } ContactGeoNetwork;
 
 typedef struct ContactGeoModel {
   const ContactGeoFeatureSet *set; // NULL: no network, φ = ln 1.28
   ContactGeoNetwork network;
-  const ContactGeoKernel *kernel;              // of Hessians
-  const ContactGeoBundleKernel *bundle_kernel; // of V and ∇V
-  double offset;                               // ln 1.28 − ρ(f*)
+  const ContactGeoBundleKernel *kernel;
+  double offset; // ln 1.28 − ρ(f*)
 } ContactGeoModel;
 
 // `network` NULL: the constant. STATUS_INPUT: there is no feature set of that size; else what ρ(f*) fails

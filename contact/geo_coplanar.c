@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "contact/clip.h"
+#include "contact/geo_hessian.h"
 
 enum { SIZE = CONTACT_PAIR_SIZE, ACROSS = GEO_LANES / 2 };
 
@@ -129,29 +130,30 @@ static void blend_gradient(const Blend *blend, double *gradient) {
     gradient[i] += blend->coplanar.share * blend->gradient_difference[i] + blend->difference * blend->pull[i];
 }
 
-// Row i of ∇²w.
-static void bend_share(const ContactGeoFrame *frame, const Blend *blend, int i, double row[SIZE]) {
+// Column j of ∇²w.
+static void bend_share(const ContactGeoFrame *frame, const Blend *blend, int j, double *hessian) {
   double direction[SIZE] = {0}, with[SIZE], without[SIZE];
-  direction[i] = 1;
+  direction[j] = 1;
   ContactGeoTangent tangent;
   GeoMatrix slope_change;
   contact_geo_frame_push(frame, direction, &tangent);
   contact_geo_coplanar_bend(&blend->coplanar, &frame->projector, &tangent.projector, &slope_change);
   contact_geo_frame_bend(frame, &blend->with, &blend->slope, &tangent, &slope_change, with);
   contact_geo_frame_bend(frame, &blend->without, &NO_SLOPE, &tangent, &NO_SLOPE, without);
-  for (int j = 0; j < SIZE; j++) row[j] = with[j] - without[j];
+  for (int i = 0; i < SIZE; i++) hessian[i * SIZE + j] = with[i] - without[i];
 }
 
 static void blend_hessian(const ContactGeoFrame *frame, const Blend *blend, double *hessian) {
-  double share = blend->coplanar.share, bent[SIZE][SIZE];
-  for (int i = 0; i < SIZE; i++) bend_share(frame, blend, i, bent[i]);
+  double share = blend->coplanar.share, bent[SIZE * SIZE];
+  int moved = contact_geo_hessian_moved(frame), first = moved * SIZE / 2;
+  for (int j = first; j < first + SIZE / 2; j++) bend_share(frame, blend, j, bent);
+  contact_geo_hessian_complete(frame, moved, blend->pull, bent);
   for (int i = 0; i < SIZE; i++)
     for (int j = i; j < SIZE; j++) {
       int at = i * SIZE + j;
       hessian[at] += share * (blend->hessian[at] - hessian[at]) +
                      blend->pull[i] * blend->gradient_difference[j] +
-                     blend->gradient_difference[i] * blend->pull[j] +
-                     blend->difference * 0.5 * (bent[i][j] + bent[j][i]);
+                     blend->gradient_difference[i] * blend->pull[j] + blend->difference * bent[at];
       hessian[j * SIZE + i] = hessian[at];
     }
 }

@@ -78,6 +78,14 @@ static Status curve(const void *self, int count, const double *features, int dir
   return STATUS_OK;
 }
 
+static Status curve_columns(const void *self, const double *features, double *second) {
+  const ContactGeoNet *net = self;
+  Desk *desk = take(net);
+  net_dense_second_f64(&desk->work, &net->model, DIRECTIONS, features, second);
+  leave(desk);
+  return STATUS_OK;
+}
+
 static Status check(const ContactGeoNet *net, const char *path) {
   const NetShape *shape = &net->model.plan->shape;
   if (!net_dense_is_possible(shape))
@@ -138,7 +146,8 @@ ContactGeoNetwork contact_geo_net_interface(const ContactGeoNet *net) {
                              .feature_count = net->model.plan->shape.input_count,
                              .eval = eval,
                              .eval_columns = eval_columns,
-                             .curve = curve};
+                             .curve = curve,
+                             .curve_columns = curve_columns};
 }
 
 const NetCard *contact_geo_net_card(const ContactGeoNet *net) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/dense.h"
 
+#include <assert.h>
+#include <string.h>
+
 bool net_dense_is_possible(const NetShape *shape) {
   return shape->kind == NET_MLP && shape->activation == NET_SILU && shape->output_count == 1;
 }
