@@ -147,6 +147,102 @@ START_TEST(features_and_their_gradients_are_the_scalar_ones) {
 }
 END_TEST
 
+// ∇² log V at fixed weights along all 24 directions, one at a time.
+static void bend_alone(const ContactGeoFeatureSet *set, const ContactGeoFrame *frame, const double *weights,
+                       double *gradient, double feature_changes[24][CONTACT_GEO_MAX_FEATURES],
+                       double *hessian) {
+  const ContactGeoKernel *one = &contact_geo_kernel_portable;
+  ContactGeoInvariants invariants, change;
+  ContactGeoSweep sweep;
+  ContactGeoAdjoint adjoint;
+  GeoSymmetric projector = {{{0}}}, packed;
+  GeoPack packs[CONTACT_GEO_MAX_FEATURES], weight_packs[CONTACT_GEO_MAX_FEATURES] = {{0}};
+  GeoMatrix slope;
+  geo_pack_matrix(&frame->projector, 0, &projector);
+  geo_pack_numbers(weights, set->count, 0, weight_packs);
+  one->features(set, &projector, &invariants, packs);
+  one->pull(set, &invariants, weight_packs, &sweep, &packed);
+  geo_unpack_matrix(&packed, 0, &slope);
+  contact_geo_frame_pull(frame, &slope, &adjoint);
+  memcpy(gradient, adjoint.gradient, sizeof adjoint.gradient);
+  for (int j = 0; j < 24; j++) {
+    double direction[24] = {0}, column[24];
+    ContactGeoTangent tangent;
+    GeoMatrix slope_change;
+    direction[j] = 1;
+    contact_geo_frame_push(frame, direction, &tangent);
+    geo_pack_matrix(&tangent.projector, 0, &projector);
+    one->push(set, &invariants, &projector, &change, packs);
+    geo_unpack_numbers(packs, set->count, 0, feature_changes[j]);
+    one->bend(set, &invariants, weight_packs, &sweep, &change, &packed);
+    geo_unpack_matrix(&packed, 0, &slope_change);
+    contact_geo_frame_bend(frame, &adjoint, &slope, &tangent, &slope_change, column);
+    for (int i = 0; i < 24; i++) hessian[24 * i + j] = column[i];
+  }
+}
+
+static void check_bends(const ContactGeoFeatureSet *set, const ContactGeoBlock *block,
+                        const ContactGeoBends *bends, int at, const ContactGeoFrame *frame) {
+  double weights[CONTACT_GEO_MAX_FEATURES], gradient[24], hessian[576];
+  double changes[24][CONTACT_GEO_MAX_FEATURES], largest = 0;
+  for (int f = 0; f < set->count; f++) weights[f] = block->weights[f][at];
+  bend_alone(set, frame, weights, gradient, changes, hessian);
+  for (int k = 0; k < 576; k++) {
+    hessian[k] = block->factor[at] * (hessian[k] + gradient[k / 24] * gradient[k % 24]);
+    largest = fmax(largest, fabs(hessian[k]));
+  }
+  int own = bends->is_second[at] > 0 ? 12 : 0;
+  for (int k = 0; k < 24; k++)
+    ck_assert_near(bends->gradient[k][at], gradient[(k + own) % 24], 1e-10 * sqrt(largest));
+  for (int k = 0; k < 576; k++)
+    ck_assert_near(bends->hessian[at][k], hessian[(k / 24 + own) % 24 * 24 + (k % 24 + own) % 24],
+                   1e-10 * largest);
+  for (int j = 0; j < 12; j++) {
+    double most = 1e-3 * sqrt(largest / block->factor[at]);
+    for (int f = 0; f < set->count; f++) most = fmax(most, fabs(changes[own + j][f]));
+    for (int f = 0; f < set->count; f++)
+      ck_assert_near(bends->features[f][1 + j][at], changes[own + j][f], 1e-10 * most);
+  }
+}
+
+// The changes of features and, with random weights, the Hessian of V. Thin overlaps, where rounding counts by
+// their thickness, are left out.
+START_TEST(second_derivatives_are_the_scalar_ones) {
+  const ContactGeoBundleKernel *kernel = kernel_number(_i / 3);
+  if (!kernel) return;
+  static const int set_sizes[] = {36, 70, 100};
+  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i % 3]);
+  Random random = random_seeded(22, 0);
+  double pairs[24 * COUNT];
+  ContactGeoBundle bundle;
+  ContactGeoBlock block;
+  ContactGeoBends bends;
+  int seen[2] = {0};
+  for (int round = 0; round < 10; round++) {
+    draw_pairs(5 + 9 * round, pairs);
+    kernel->gate(COUNT, pairs, &bundle);
+    kernel->frame(&bundle, 0, &block);
+    kernel->features(set, &block);
+    for (int f = 0; f < set->count; f++)
+      for (int j = 0; j < CONTACT_GEO_BLOCK; j++) block.weights[f][j] = random_normal(&random);
+    for (int j = 0; j < CONTACT_GEO_BLOCK; j++) block.factor[j] = 1 + j;
+    kernel->bend(set, &bundle, 0, &block, &bends);
+    kernel->finish(true, &block, &bends);
+    for (int at = 0; at < CONTACT_GEO_BLOCK; at++) {
+      ContactGeoFrame frame;
+      ck_assert_int_eq(contact_geo_frame(&frame, pairs + 24 * bundle.pair[at]), CONTACT_GEO_INSIDE);
+      double least = 1;
+      for (int k = 0; k < 8; k++) least = fmin(least, frame.slack[k]);
+      if (least < 1e-3) continue;
+      check_bends(set, &block, &bends, at, &frame);
+      seen[bends.is_second[at] > 0]++;
+    }
+  }
+  ck_assert_int_gt(seen[0], 20);
+  ck_assert_int_gt(seen[1], 20);
+}
+END_TEST
+
 // The same pairs from another one on, so that each is in another lane beside others.
 START_TEST(a_pair_gives_the_same_bits_in_every_lane) {
   const ContactGeoBundleKernel *kernel = kernel_number(_i);
@@ -156,6 +252,7 @@ START_TEST(a_pair_gives_the_same_bits_in_every_lane) {
   double pairs[24 * COUNT];
   ContactGeoBundle bundle[2];
   ContactGeoBlock block[2];
+  ContactGeoBends bends[2];
   draw_pairs(3, pairs);
   for (int b = 0; b < 2; b++) kernel->gate(COUNT - b * SKIPPED, pairs + b * SKIPPED * 24, &bundle[b]);
   int skipped = bundle[0].count - bundle[1].count;
@@ -167,6 +264,8 @@ START_TEST(a_pair_gives_the_same_bits_in_every_lane) {
     for (int f = 0; f < set->count; f++)
       for (int j = 0; j < CONTACT_GEO_BLOCK; j++) block[b].weights[f][j] = f % 7 - 3;
     kernel->pull(set, &block[b]);
+    kernel->bend(set, &bundle[b], 0, &block[b], &bends[b]);
+    kernel->finish(true, &block[b], &bends[b]);
   }
   for (int j = 0; j < CONTACT_GEO_BLOCK - skipped; j++) {
     ck_assert_int_eq(bundle[0].pair[j + skipped], bundle[1].pair[j] + SKIPPED);
@@ -174,6 +273,7 @@ START_TEST(a_pair_gives_the_same_bits_in_every_lane) {
     for (int f = 0; f < set->count; f++)
       ck_assert(block[0].features[f][j + skipped] == block[1].features[f][j]);
     ck_assert_mem_eq(block[0].gradient[j + skipped], block[1].gradient[j], sizeof block[0].gradient[j]);
+    ck_assert_mem_eq(bends[0].hessian[j + skipped], bends[1].hessian[j], sizeof bends[0].hessian[j]);
   }
 }
 END_TEST
@@ -183,6 +283,7 @@ int main(void) {
   tcase_add_loop_test(cases, the_gate_decides_as_the_scalar_one_to_the_bit, 0, 3);
   tcase_add_loop_test(cases, frames_and_gradients_are_the_scalar_ones, 0, 3);
   tcase_add_loop_test(cases, features_and_their_gradients_are_the_scalar_ones, 0, 9);
+  tcase_add_loop_test(cases, second_derivatives_are_the_scalar_ones, 0, 9);
   tcase_add_loop_test(cases, a_pair_gives_the_same_bits_in_every_lane, 0, 3);
   return suite_run("geo_bundle", cases, 60);
 }

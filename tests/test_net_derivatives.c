@@ -379,6 +379,43 @@ START_TEST(a_dense_network_takes_columns) {
 }
 END_TEST
 
+// Second derivatives on columns against those on rows.
+START_TEST(a_dense_network_bends_columns) {
+  enum { COUNT = NET_COLUMN_UNIT, INPUTS = 9, WAYS = 5, PAIRS = WAYS * (WAYS + 1) / 2 };
+  NetShape shape = net_shape_mlp(INPUTS, 19, 3, 1);
+  NetModel_f64 model = net_suite_model(&shape, 6);
+  for (int kind = 0; kind < NET_KERNEL_COUNT; kind++) {
+    if (!net_kernel_is_available((NetKernelKind)kind)) continue;
+    NetWork_f64 work;
+    NetWorkDef def = net_work_default();
+    def.kernel = (NetKernelKind)kind;
+    def.tangent_count = WAYS;
+    ck_net_ok(net_work_create_f64(model.plan, &def, &work));
+    NetRandom random = net_random_seeded(16, 0);
+    double *columns = net_suite_array(&random, INPUTS * (1 + WAYS) * COUNT, 1);
+    double *second = net_suite_array(&random, PAIRS * COUNT, 1);
+    double x[COUNT * INPUTS], xt[COUNT * WAYS * INPUTS], ones[COUNT], whole[COUNT * WAYS * WAYS];
+    for (int j = 0; j < COUNT; j++) {
+      ones[j] = 1;
+      for (int f = 0; f < INPUTS; f++) {
+        const double *row = columns + f * (1 + WAYS) * COUNT + j;
+        x[j * INPUTS + f] = row[0];
+        for (int t = 0; t < WAYS; t++) xt[(j * WAYS + t) * INPUTS + f] = row[(1 + t) * COUNT];
+      }
+    }
+    net_tangent_second_f64(&work, &model, COUNT, WAYS, x, xt, ones, NULL, NULL, NULL, whole);
+    net_dense_second_f64(&work, &model, WAYS, columns, second);
+    for (int j = 0; j < COUNT; j++)
+      for (int t = 0, pair = 0; t < WAYS; t++)
+        for (int u = 0; u <= t; u++, pair++)
+          ck_assert_near(second[pair * COUNT + j], whole[(j * WAYS + t) * WAYS + u], 1e-13);
+    net_memory_free(columns), net_memory_free(second);
+    net_work_destroy_f64(&work);
+  }
+  net_model_destroy_f64(&model);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("net_derivatives");
   tcase_add_test(test_case, one_silu_has_the_derivatives_that_a_hand_computes);
@@ -392,5 +429,6 @@ int main(void) {
   tcase_add_test(test_case, the_hessian_of_a_rectified_network_is_zero);
   tcase_add_test(test_case, an_output_alone_is_what_it_is_among_all);
   tcase_add_test(test_case, a_dense_network_takes_columns);
+  tcase_add_test(test_case, a_dense_network_bends_columns);
   return suite_run("net_derivatives", test_case, 60);
 }
