@@ -106,54 +106,50 @@ void contact_geo_coplanar_bend(const ContactGeoCoplanar *coplanar, const GeoMatr
   }
 }
 
-// A pair between the two models: how their volumes and gradients differ, and the derivatives of w. The
-// frame's derivatives are those of w + log V₀: what they are without w is taken off.
+// A pair between the two models: how their volumes and gradients differ, and the derivatives of w.
 typedef struct Blend {
   ContactGeoCoplanar coplanar;
-  GeoMatrix slope;                                          // ∂w/∂P
-  ContactGeoAdjoint with, without;                          // of w + log V₀, of log V₀
-  double volume, gradient[SIZE], hessian[SIZE * SIZE];      // of clip
-  double difference, gradient_difference[SIZE], pull[SIZE]; // clip − network; ∇w
+  GeoMatrix slope;                                     // ∂w/∂P
+  ContactGeoAdjoint adjoint;                           // of w
+  double volume, gradient[SIZE], hessian[SIZE * SIZE]; // of clip
+  double difference, gradient_difference[SIZE];        // clip − network
 } Blend;
-
-static const GeoMatrix NO_SLOPE;
 
 static void pull_share(const ContactGeoFrame *frame, Blend *blend) {
   contact_geo_coplanar_slope(&blend->coplanar, &frame->projector, &blend->slope);
-  contact_geo_frame_pull(frame, &blend->slope, &blend->with);
-  contact_geo_frame_pull(frame, &NO_SLOPE, &blend->without);
-  for (int i = 0; i < SIZE; i++) blend->pull[i] = blend->with.gradient[i] - blend->without.gradient[i];
+  contact_geo_frame_pull_phi(frame, &blend->slope, &blend->adjoint);
 }
 
 static void blend_gradient(const Blend *blend, double *gradient) {
   for (int i = 0; i < SIZE; i++)
-    gradient[i] += blend->coplanar.share * blend->gradient_difference[i] + blend->difference * blend->pull[i];
+    gradient[i] += blend->coplanar.share * blend->gradient_difference[i] +
+                   blend->difference * blend->adjoint.gradient[i];
 }
 
 // Column j of ∇²w.
 static void bend_share(const ContactGeoFrame *frame, const Blend *blend, int j, double *hessian) {
-  double direction[SIZE] = {0}, with[SIZE], without[SIZE];
+  double direction[SIZE] = {0}, column[SIZE];
   direction[j] = 1;
   ContactGeoTangent tangent;
   GeoMatrix slope_change;
   contact_geo_frame_push(frame, direction, &tangent);
   contact_geo_coplanar_bend(&blend->coplanar, &frame->projector, &tangent.projector, &slope_change);
-  contact_geo_frame_bend(frame, &blend->with, &blend->slope, &tangent, &slope_change, with);
-  contact_geo_frame_bend(frame, &blend->without, &NO_SLOPE, &tangent, &NO_SLOPE, without);
-  for (int i = 0; i < SIZE; i++) hessian[i * SIZE + j] = with[i] - without[i];
+  contact_geo_frame_bend(frame, &blend->adjoint, &blend->slope, &tangent, &slope_change, column);
+  for (int i = 0; i < SIZE; i++) hessian[i * SIZE + j] = column[i];
 }
 
 static void blend_hessian(const ContactGeoFrame *frame, const Blend *blend, double *hessian) {
   double share = blend->coplanar.share, bent[SIZE * SIZE];
   int moved = contact_geo_hessian_moved(frame), first = moved * SIZE / 2;
   for (int j = first; j < first + SIZE / 2; j++) bend_share(frame, blend, j, bent);
-  contact_geo_hessian_complete(frame, moved, blend->pull, bent);
+  contact_geo_hessian_complete(frame, moved, blend->adjoint.gradient, bent);
   for (int i = 0; i < SIZE; i++)
     for (int j = i; j < SIZE; j++) {
       int at = i * SIZE + j;
       hessian[at] += share * (blend->hessian[at] - hessian[at]) +
-                     blend->pull[i] * blend->gradient_difference[j] +
-                     blend->gradient_difference[i] * blend->pull[j] + blend->difference * bent[at];
+                     blend->adjoint.gradient[i] * blend->gradient_difference[j] +
+                     blend->gradient_difference[i] * blend->adjoint.gradient[j] +
+                     blend->difference * bent[at];
       hessian[j * SIZE + i] = hessian[at];
     }
 }

@@ -48,11 +48,12 @@ void contact_geo_onset(GeoMatrix *projector) {
     for (int l = 0; l < GEO_LANES; l++) projector->row[k][l] = k < 4 && l < 4 ? (k == l) - 0.25 : 0;
 }
 
-// c = a b
+// c = a b; a may be sparse.
 static void multiply(const GeoMatrix *a, const GeoMatrix *b, GeoMatrix *c) {
   for (int i = 0; i < GEO_LANES; i++) {
     double row[GEO_LANES] = {0};
-    for (int k = 0; k < GEO_LANES; k++) geo_add(row, a->row[i][k], b->row[k]);
+    for (int k = 0; k < GEO_LANES; k++)
+      if (a->row[i][k] != 0) geo_add(row, a->row[i][k], b->row[k]);
     memcpy(c->row[i], row, sizeof row);
   }
 }
@@ -79,14 +80,15 @@ static inline double coupling(const GeoMatrix *response, const double shift[GEO_
   return (response->row[k][k] - response->row[k][a]) - (shift[k] - shift[a]);
 }
 
-void contact_geo_frame_pull(const ContactGeoFrame *frame, const GeoMatrix *slope,
-                            ContactGeoAdjoint *adjoint) {
+static void pull(const ContactGeoFrame *frame, const GeoMatrix *slope, double own,
+                 ContactGeoAdjoint *adjoint) {
+  adjoint->own = own;
   multiply(slope, &frame->projector, &adjoint->slope);
   project_out(frame, &adjoint->slope, &adjoint->response);
   double diagonal[GEO_LANES];
   for (int k = 0; k < GEO_LANES; k++) {
     for (int l = 0; l < GEO_LANES; l++)
-      adjoint->response.row[k][l] = 2 * adjoint->response.row[k][l] - frame->projector.row[k][l];
+      adjoint->response.row[k][l] = 2 * adjoint->response.row[k][l] - own * frame->projector.row[k][l];
     diagonal[k] = adjoint->response.row[k][k];
   }
   project(frame, diagonal, adjoint->shift);
@@ -98,6 +100,16 @@ void contact_geo_frame_pull(const ContactGeoFrame *frame, const GeoMatrix *slope
     }
     for (int c = 0; c < 3; c++) adjoint->gradient[3 * a + c] = frame->slack[a] * sum[c];
   }
+}
+
+void contact_geo_frame_pull(const ContactGeoFrame *frame, const GeoMatrix *slope,
+                            ContactGeoAdjoint *adjoint) {
+  pull(frame, slope, 1, adjoint);
+}
+
+void contact_geo_frame_pull_phi(const ContactGeoFrame *frame, const GeoMatrix *slope,
+                                ContactGeoAdjoint *adjoint) {
+  pull(frame, slope, 0, adjoint);
 }
 
 // y = Θ x, with Θ = −diag(rate) − τ.
@@ -154,7 +166,7 @@ void contact_geo_frame_push(const ContactGeoFrame *frame, const double direction
     }
 }
 
-// δA = 2 (1 − P)(δΦ P + Φ δP) − 2 δP Φ P − δP
+// δA = 2 (1 − P)(δΦ P + Φ δP) − 2 δP Φ P − δP, the last for log V alone
 static void change_response(const ContactGeoFrame *frame, const ContactGeoAdjoint *adjoint,
                             const GeoMatrix *slope, const ContactGeoTangent *tangent,
                             const GeoMatrix *slope_change, GeoMatrix *change) {
@@ -166,7 +178,8 @@ static void change_response(const ContactGeoFrame *frame, const ContactGeoAdjoin
   multiply(&tangent->projector, &adjoint->slope, &part);
   for (int k = 0; k < GEO_LANES; k++)
     for (int l = 0; l < GEO_LANES; l++)
-      change->row[k][l] = 2 * (change->row[k][l] - part.row[k][l]) - tangent->projector.row[k][l];
+      change->row[k][l] =
+          2 * (change->row[k][l] - part.row[k][l]) - adjoint->own * tangent->projector.row[k][l];
 }
 
 void contact_geo_frame_bend(const ContactGeoFrame *frame, const ContactGeoAdjoint *adjoint,

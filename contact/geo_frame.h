@@ -61,9 +61,13 @@ typedef struct ContactGeoAdjoint {
   GeoMatrix response;      // A
   double shift[GEO_LANES]; // w
   double gradient[24];     // ∂ log V/∂x [1/m]
+  double own;              // 1; 0: of φ alone, and A without its −P
 } ContactGeoAdjoint;
 
 void contact_geo_frame_pull(const ContactGeoFrame *frame, const GeoMatrix *slope, ContactGeoAdjoint *adjoint);
+// The same of φ alone, with the bend that follows.
+void contact_geo_frame_pull_phi(const ContactGeoFrame *frame, const GeoMatrix *slope,
+                                ContactGeoAdjoint *adjoint);
 
 // The change of the frame along a direction in the 24 coordinates.
 typedef struct ContactGeoTangent {
@@ -76,7 +80,7 @@ typedef struct ContactGeoTangent {
 void contact_geo_frame_push(const ContactGeoFrame *frame, const double direction[24],
                             ContactGeoTangent *tangent);
 
-// The change of ∂ log V/∂x along a direction, given that of Φ.
+// The change of the gradient along a direction, given that of Φ.
 void contact_geo_frame_bend(const ContactGeoFrame *frame, const ContactGeoAdjoint *adjoint,
                             const GeoMatrix *slope, const ContactGeoTangent *tangent,
                             const GeoMatrix *slope_change, double change[24]);
