@@ -474,6 +474,40 @@ static Status check_self_contact(const SceneNode *root, const FemSceneDef *scene
   return STATUS_OK;
 }
 
+// Whether a number, or any of a list of them, is not zero.
+static bool is_nonzero(const SceneNode *node) {
+  for (const SceneNode *item = node ? node->first : NULL; item; item = item->next)
+    if (is_nonzero(item)) return true;
+  return node && node->kind == SCENE_NODE_NUMBER && node->number != 0;
+}
+
+// What only a motion can have.
+static Status check_static(const SceneNode *root, const FemSceneDef *scene) {
+  static const char *const initial[] = {"velocity", "spin"}, *const lists[] = {"fixed", "driven"};
+  if (!scene->is_static) return STATUS_OK;
+  if (scene->contact.friction > 0)
+    return app_scene_tree_fail_key(app_scene_tree_find(app_scene_tree_find(root, "contact"), "friction"),
+                                   "friction is a force of motion; take it or time.static away");
+  const SceneNode *bodies = app_scene_tree_find(root, "bodies");
+  for (const SceneNode *body = bodies->first; body; body = body->next)
+    for (int k = 0; k < 2; k++) {
+      const SceneNode *motion = app_scene_tree_find(body, initial[k]);
+      const SceneNode *list = app_scene_tree_find(body, lists[k]);
+      if (is_nonzero(motion))
+        return app_scene_tree_fail_key(
+            motion, "a static scene has no initial '%s'; take it or time.static away", initial[k]);
+      for (const SceneNode *item = list ? list->first : NULL; item; item = item->next)
+        if (app_scene_tree_find(item, "release"))
+          return app_scene_tree_fail_key(app_scene_tree_find(item, "release"),
+                                         "a static scene cannot release vertices; take 'release' or "
+                                         "time.static away");
+    }
+  if (scene->solver == FEM_SOLVER_KLU)
+    return app_scene_tree_fail(app_scene_tree_find(app_scene_tree_find(root, "solver"), "linear"),
+                               "klu solves motions only; write cholmod or pcg for a static scene");
+  return STATUS_OK;
+}
+
 static Status read_tree(const char *path, const SceneNode *root, FemSceneDef *scene) {
   if (root->kind == SCENE_NODE_NULL)
     return app_scene_tree_fail(root, "the scene is empty; it needs at least 'time' and 'bodies'");
@@ -486,7 +520,8 @@ static Status read_tree(const char *path, const SceneNode *root, FemSceneDef *sc
   TRY(app_scene_read_defaults(&app_scene_keys_root, scene));
   TRY(read_section(&app_scene_keys_root, root, scene));
   TRY(check_names(root));
-  return check_self_contact(root, scene);
+  TRY(check_self_contact(root, scene));
+  return check_static(root, scene);
 }
 
 // Takes the tree over.

@@ -206,6 +206,7 @@ END_TEST
 
 static void refuse(const char *about_body, const char *about_scene, const char *expected) {
   char text[1024];
+  FemSceneDef scene;
   snprintf(text, sizeof text,
            "time: {end: 1, static: true}\n%s"
            "bodies:\n"
@@ -213,17 +214,19 @@ static void refuse(const char *about_body, const char *about_scene, const char *
            "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 1}}\n"
            "    material: {young: 1e5, poisson: 0.3, density: 1000}\n%s",
            about_scene, about_body);
-  SceneRun run;
-  run_text(&run, text);
-  ck_assert_int_eq(run.status, STATUS_INPUT);
+  ck_assert_int_eq(app_scene_read_text("test.yaml", text, strlen(text), &scene), STATUS_INPUT);
   ck_assert_msg(strstr(status_message(), expected), "expected '%s' in: %s", expected, status_message());
-  scene_close(&run);
 }
 
-START_TEST(what_only_a_motion_has_is_refused) {
-  refuse("    velocity: [1, 0, 0]\n", "", "body 'block' has a velocity");
-  refuse("    fixed: [{group: x_min, release: 0.5}]\n", "", "cannot release");
-  refuse("", "contact: {friction: 0.5}\n", "friction is a force of motion");
+START_TEST(what_only_a_motion_has_is_refused_with_its_place) {
+  refuse("    velocity: [0, 0, 1]\n", "", "test.yaml:6:5: ");
+  refuse("    velocity: [0, 0, 1]\n", "", "no initial 'velocity'");
+  refuse("    fixed: [{group: x_min, release: 0.5}]\n", "", "test.yaml:6:28: ");
+  refuse("    fixed: [{group: x_min}]\n    driven: [{group: x_max, velocity: [1, 0, 0], release: 0.5}]\n", "",
+         "cannot release");
+  refuse("", "contact: {friction: 0.5}\n", "test.yaml:2:11: ");
+  refuse("", "contact: {friction: {coefficient: 0.5}}\n", "friction is a force of motion");
+  refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "test.yaml:2:18: ");
   refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "cholmod or pcg");
 }
 END_TEST
@@ -238,6 +241,6 @@ int main(void) {
   tcase_add_test(test_case, a_beam_that_turns_far_takes_few_iterations);
   tcase_add_test(test_case, a_pressure_vessel_widens_as_lame_says);
   tcase_add_test(test_case, without_an_equilibrium_the_run_ends_and_says_why);
-  tcase_add_test(test_case, what_only_a_motion_has_is_refused);
+  tcase_add_test(test_case, what_only_a_motion_has_is_refused_with_its_place);
   return suite_run("statics", test_case, 60);
 }
