@@ -110,10 +110,13 @@ static Status create(FemRecorder *recorder, const char *directory) {
   recorder->frame_files = memory_zeroed(frames, sizeof *recorder->frame_files);
   recorder->displacement = memory_zeroed(3 * vertices, sizeof *recorder->displacement);
   recorder->contact_force = memory_zeroed(3 * vertices, sizeof *recorder->contact_force);
+  bool has_friction = fem_system_effect(recorder->system, "friction") != NULL;
+  if (has_friction) recorder->friction_force = memory_zeroed(3 * vertices, sizeof(double));
   recorder->stress = memory_zeroed(6 * tets, sizeof *recorder->stress);
   recorder->von_mises = memory_zeroed(tets, sizeof *recorder->von_mises);
   if (!recorder->directory || !recorder->frame_times || !recorder->frame_files || !recorder->displacement ||
-      !recorder->contact_force || !recorder->stress || !recorder->von_mises)
+      !recorder->contact_force || !recorder->stress || !recorder->von_mises ||
+      (has_friction && !recorder->friction_force))
     return status_no_memory("the output arrays");
   TRY(file_make_directories(directory));
   if (!recorder->writes_history) return STATUS_OK;
@@ -141,6 +144,7 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   memory_free(recorder->row);
   memory_free(recorder->displacement);
   memory_free(recorder->contact_force);
+  memory_free(recorder->friction_force);
   memory_free(recorder->stress);
   memory_free(recorder->von_mises);
   memory_free(recorder->det_F);
@@ -229,6 +233,11 @@ static void fill_arrays(FemRecorder *recorder) {
   if (contact)
     memcpy(recorder->contact_force, contact_system_forces(contact),
            3 * (size_t)model->vertex_count * sizeof *recorder->contact_force);
+  if (recorder->friction_force) {
+    memset(recorder->friction_force, 0, 3 * (size_t)model->vertex_count * sizeof(double));
+    contact_friction_add_force(fem_effect_friction_of(fem_system_effect(system, "friction")),
+                               system->velocities, recorder->friction_force);
+  }
   for (int e = 0; e < model->tet_count; e++) {
     const FemModelBody *body = &model->bodies[model->tet_body[e]];
     if (body->is_obstacle) continue;
@@ -247,7 +256,7 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
   fill_arrays(recorder);
-  // The last three only with contact.
+  // The last only with friction, the three before it only with contact.
   const FemVtuArray arrays[] = {
       {.name = "displacement", .components = 3, .reals = recorder->displacement},
       {.name = "velocity", .components = 3, .reals = system->velocities},
@@ -259,15 +268,18 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
       {.name = "contact_force", .components = 3, .reals = recorder->contact_force},
       {.name = "overlap_fraction", .is_cell = true, .components = 1, .reals = recorder->overlap},
       {.name = "wrong_way", .components = 1, .integers = recorder->watch.is_wrongway},
+      {.name = "friction_force", .components = 3, .reals = recorder->friction_force},
   };
-  int array_count = (int)(sizeof arrays / sizeof *arrays);
+  int most = (int)(sizeof arrays / sizeof *arrays);
   const FemVtuFrame frame = {.time = time,
                              .vertex_count = model->vertex_count,
                              .positions = system->positions,
                              .tet_count = model->tet_count,
                              .tets = model->tets[0],
                              .arrays = arrays,
-                             .array_count = contact_of(system) ? array_count : array_count - 3};
+                             .array_count = recorder->friction_force ? most
+                                            : contact_of(system)     ? most - 1
+                                                                     : most - 4};
   return fem_vtu_write(path, &frame);
 }
 

@@ -32,6 +32,7 @@ typedef struct FemRecorder {
   char **frame_files;  // (frame_count)
   int frame_count, frame_capacity;
   double *displacement, *contact_force;         // scratch             (vertex_count, 3)
+  double *friction_force;                       // scratch; NULL: no friction   (vertex_count, 3)
   double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
   FemTroubleWatch watch;
   double seconds; // spent writing

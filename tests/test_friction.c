@@ -4,8 +4,12 @@
 #include "blocks.h"
 #include "scene.h"
 
+#include <string.h>
+#include <unistd.h>
+
 #include "base/vec3.h"
 #include "contact/friction.h"
+#include "fem/vtu_read.h"
 
 static const double MU = 0.4, SLIP_SPEED = 1e-3;
 
@@ -341,6 +345,44 @@ START_TEST(on_a_slope_of_15_degrees_the_forces_carry_the_weight) {
 }
 END_TEST
 
+// The sum over a frame's vertices of a field's x; NAN if the frame lacks it.
+static double sum_of_field(const char *folder, const char *name) {
+  char path[128];
+  FemVtuContent frame;
+  double sum = NAN;
+  snprintf(path, sizeof path, "%s/frame_00001.vtu", folder);
+  ck_assert_ok(fem_vtu_read(path, &frame));
+  for (int f = 0; f < frame.field_count; f++) {
+    if (strcmp(frame.fields[f].name, name) != 0) continue;
+    sum = 0;
+    for (int v = 0; v < frame.vertex_count; v++) sum += frame.fields[f].values[3 * v];
+  }
+  fem_vtu_read_destroy(&frame);
+  return sum;
+}
+
+START_TEST(frames_show_friction_apart_from_pressure) {
+  for (int k = 0; k < 2; k++) {
+    SceneRun run;
+    char folder[] = "/tmp/tetlap_friction_XXXXXX", command[64];
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    scene_open(&run, "incline",
+               (const char *const[]){"time.end=0.2", "output.frames=1", "output.vtu=true",
+                                     k ? "contact.friction=0" : "contact.friction=0.3", NULL});
+    ck_assert_ok(fem_run(&run.model, &(FemRunOptions){.directory = folder}, &run.result));
+    // The slope is level: what the frame calls contact force has no part along it, friction has no other.
+    double weight = run.model.bodies[0].mass * 9.81;
+    ck_assert_near(sum_of_field(folder, "contact_force"), 0, 1e-9 * weight);
+    double rubbed = sum_of_field(folder, "friction_force");
+    if (k == 0) ck_assert_near(rubbed, -0.3 * weight * cos(atan(0.5)), 0.02 * weight); // it slides
+    if (k == 1) ck_assert(isnan(rubbed));
+    scene_close(&run);
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    ck_assert_int_eq(system(command), 0);
+  }
+}
+END_TEST
+
 START_TEST(without_friction_no_friction_is_created) {
   SceneRun run;
   scene_open(&run, "incline", (const char *const[]){"contact.friction=0", NULL});
@@ -395,6 +437,7 @@ int main(void) {
   tcase_add_test(test_case, a_block_on_a_slope_of_one_half_sticks_at_0_51);
   tcase_add_test(test_case, a_block_on_a_slope_of_one_half_slides_at_0_49);
   tcase_add_test(test_case, on_a_slope_of_15_degrees_the_forces_carry_the_weight);
+  tcase_add_test(test_case, frames_show_friction_apart_from_pressure);
   tcase_add_test(test_case, without_friction_no_friction_is_created);
   tcase_add_test(test_case, a_cube_slides_over_coplanar_tiles_without_a_kick);
   return suite_run("friction", test_case, 120);
