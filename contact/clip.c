@@ -134,6 +134,7 @@ const ContactOverlapOps contact_overlap_clip_scalar = {
     .name = "clip-scalar",
     .help = "as clip, one pair at a time: the portable form and the referee of the other",
     .has_hessian = true,
+    .rejects = true,
     .seconds_per_pair = 5e-7,
     .eval_pair = eval_pair,
 };

@@ -127,21 +127,26 @@ static void move_pair(ContactEvaluation *evaluation, int from, int to) {
 }
 
 // Gathers the listed pairs and drops those that a face separates for certain, unless the model sees ghosts.
-// `clip` would find that out as fast by itself; `exact` takes half the time with it.
 static void sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *layout, bool keeps_all,
                           const double *positions) {
-  int count = evaluation->pair_count, kept = 0;
+  enum { PORTION = 64 };
+  int count = evaluation->pair_count, mesh_count = count, kept = 0;
+  while (mesh_count > 0 && evaluation->pairs[mesh_count - 1].tets[1] < 0) mesh_count--;
 #pragma omp parallel for schedule(static) if (count > 512)
-  for (int k = 0; k < count; k++) {
-    double *coordinates = evaluation->coordinates + 24 * (size_t)k;
-    gather(layout, &evaluation->pairs[k], positions, coordinates);
-    evaluation->is_kept[k] =
-        keeps_all || evaluation->pairs[k].tets[1] < 0 || !contact_separation_is_certain(coordinates);
+  for (int begin = 0; begin < count; begin += PORTION) {
+    bool is_apart[PORTION] = {false};
+    int end = begin + PORTION < count ? begin + PORTION : count;
+    int mesh_end = end < mesh_count ? end : mesh_count;
+    double *coordinates = evaluation->coordinates + 24 * (size_t)begin;
+    for (int k = begin; k < end; k++)
+      gather(layout, &evaluation->pairs[k], positions, coordinates + 24 * (size_t)(k - begin));
+    if (!keeps_all && mesh_end > begin) contact_separation_find(mesh_end - begin, coordinates, is_apart);
+    for (int k = begin; k < end; k++) evaluation->is_kept[k] = !is_apart[k - begin];
   }
   evaluation->mesh_pair_count = 0;
   for (int k = 0; k < count; k++) {
     if (!evaluation->is_kept[k]) continue;
-    evaluation->mesh_pair_count += evaluation->pairs[k].tets[1] >= 0;
+    evaluation->mesh_pair_count += k < mesh_count;
     move_pair(evaluation, k, kept++);
   }
   evaluation->pair_count = kept;

@@ -11,6 +11,7 @@
 #include "contact/geo_overlap.h"
 #include "contact/net_overlap.h"
 #include "contact/overlap_cgal.h"
+#include "contact/separation.h"
 #include "contact/weights.h"
 
 // The fastest first: what a person reads when asking for the models.
@@ -116,6 +117,14 @@ static Status eval_one(const ContactOverlapModel *model, const ContactOverlapBat
   return status;
 }
 
+static void write_disjoint(const ContactOverlapBatch *batch, int i) {
+  enum { SIZE = CONTACT_PAIR_SIZE };
+  batch->volume[i] = 0;
+  if (batch->gradient) memset(batch->gradient + (size_t)i * SIZE, 0, SIZE * sizeof(double));
+  if (batch->hessian) memset(batch->hessian + (size_t)i * SIZE * SIZE, 0, SIZE * SIZE * sizeof(double));
+  if (batch->flags) batch->flags[i] = CONTACT_OVERLAP_DISJOINT;
+}
+
 // The first pair with a coordinate that is not finite, pair_count if there is none.
 static int first_not_finite(const ContactOverlapBatch *batch) {
   int first = batch->pair_count;
@@ -128,14 +137,34 @@ static int first_not_finite(const ContactOverlapBatch *batch) {
 // Less work than this [s] is not worth waking threads for.
 static const double WORTH_THREADS = 2e-4;
 
+enum { PORTION = 64 }; // pairs that a thread takes at a time
+
+// Pairs begin … end, but for those that a face separates: what these are is known without the model. The
+// first that failed, or INT_MAX.
+static int eval_portion(const ContactOverlapModel *model, const ContactOverlapBatch *batch, int begin,
+                        int end) {
+  bool is_apart[PORTION] = {false};
+  if (!model->ops->rejects && !contact_overlap_has_ghosts(model))
+    contact_separation_find(end - begin, batch->pairs + (size_t)begin * CONTACT_PAIR_SIZE, is_apart);
+  for (int i = begin; i < end; i++)
+    if (is_apart[i - begin])
+      write_disjoint(batch, i);
+    else if (eval_one(model, batch, i) != STATUS_OK)
+      return i;
+  return INT_MAX;
+}
+
 // Each pair has its own place in the outputs, so the threads' order does not show. Costs differ from pair to
-// pair by a hundred and more: chunks are handed out as threads get free.
+// pair by a hundred and more: portions are handed out as threads get free.
 static Status eval_each(const ContactOverlapModel *model, const ContactOverlapBatch *batch) {
-  int first_failed = INT_MAX;
-  bool is_much = batch->pair_count * model->ops->seconds_per_pair > WORTH_THREADS;
-#pragma omp parallel for schedule(dynamic, 64) reduction(min : first_failed) if (is_much)
-  for (int i = 0; i < batch->pair_count; i++)
-    if (eval_one(model, batch, i) != STATUS_OK && i < first_failed) first_failed = i;
+  int first_failed = INT_MAX, count = batch->pair_count, portions = count / PORTION + (count % PORTION > 0);
+  bool is_much = count * model->ops->seconds_per_pair > WORTH_THREADS;
+#pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (is_much)
+  for (int p = 0; p < portions; p++) {
+    int begin = p * PORTION, end = count - begin < PORTION ? count : begin + PORTION;
+    int failed = eval_portion(model, batch, begin, end);
+    if (failed < first_failed) first_failed = failed;
+  }
   if (first_failed == INT_MAX) return STATUS_OK;
   // the message belongs to the thread that failed: let this one see it too
   Status status = eval_one(model, batch, first_failed);

@@ -54,11 +54,14 @@ typedef struct ContactOverlapOps {
   // outputs are written. The coordinates are finite. RETRY is not used; fatal: message names the reason only.
   Status (*eval_pair)(const void *self, const double pair[24], double *volume, double *gradient,
                       double *hessian, unsigned *flags);
-  // Evaluates a batch at once; NULL: eval_pair over OpenMP threads.
+  // Evaluates a batch at once; NULL: eval_pair over OpenMP threads, of pairs that no face separates for
+  // certain. The others are DISJOINT unasked, unless the model sees ghosts or `rejects` them itself.
   Status (*eval_batch)(const void *self, const ContactOverlapBatch *batch);
   void (*destroy)(void *self);
   // Whether pairs that share no volume may get one, and want to be asked for; NULL: never.
   bool (*has_ghosts)(const void *self);
+  // Begins each pair by asking whether a face separates the two.
+  bool rejects;
 } ContactOverlapOps;
 
 typedef struct ContactOverlapModel {

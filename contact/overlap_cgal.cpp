@@ -187,5 +187,5 @@ extern "C" const ContactOverlapOps contact_overlap_cgal = {
     false,   2.5e-3,
     nullptr, eval_pair,
     nullptr, nullptr,
-    nullptr,
+    nullptr, false,
 };

@@ -2,8 +2,10 @@
 #include "contact/separation.h"
 
 #include <float.h>
+#include <stddef.h>
 
 #include "base/vec3.h"
+#include "contact/clip_lanes.h"
 
 // fmin and fmax without their care for NaN, which costs a call each.
 static inline double smaller(double a, double b) {
@@ -135,4 +137,14 @@ bool contact_separation_is_certain(const double coordinates[24]) {
     for (int f = 0; f < 4; f++)
       if (face_separates(x[t], x[1 - t], f)) return true;
   return false;
+}
+
+void contact_separation_find(int count, const double *pairs, bool *is_apart) {
+  const ContactClipLanes *lanes = contact_clip_lanes();
+  int k = 0;
+  for (; lanes && k + lanes->width <= count; k += lanes->width) {
+    const uint32_t apart = lanes->separate(pairs + 24 * (size_t)k);
+    for (int lane = 0; lane < lanes->width; lane++) is_apart[k + lane] = apart >> lane & 1;
+  }
+  for (; k < count; k++) is_apart[k] = contact_separation_is_certain(pairs + 24 * (size_t)k);
 }

@@ -19,4 +19,8 @@ double contact_separation_halfspace(const double tet[12], const double point[3],
 // of the other by more than rounding. Cheaper than any overlap model; false says nothing.
 bool contact_separation_is_certain(const double pair[24]);
 
+// The same of `count` pairs (count, 2, 4, 3), several at once where the processor can: is_apart (count). What
+// is beyond doubt may differ in the last places.
+void contact_separation_find(int count, const double *pairs, bool *is_apart);
+
 #endif

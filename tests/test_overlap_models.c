@@ -163,8 +163,9 @@ static void check_flags(const ContactOverlapModel *model, const Demand *demand, 
   ck_assert_msg(is_flat == pair->is_flat, "%s: FLAT is %d", where, is_flat);
   ck_assert_msg(is_nothing == (answer.volume == 0), "%s: flags %u with V = %g", where, answer.flags,
                 answer.volume);
-  for (int i = 0; i < 24 && is_nothing; i++)
-    ck_assert_msg(answer.gradient[i] == 0, "%s: no common interior and a gradient", where);
+  bool has_gradient = false;
+  for (int i = 0; i < 24; i++) has_gradient = has_gradient || answer.gradient[i] != 0;
+  ck_assert_msg(!is_nothing || !has_gradient, "%s: no common interior and a gradient", where);
 }
 
 START_TEST(flags_say_what_the_numbers_are) {
@@ -280,6 +281,11 @@ START_TEST(the_gradient_is_the_derivative_of_the_volume) {
 }
 END_TEST
 
+// The larger one; NaN stays.
+static double larger(double a, double b) {
+  return isnan(a) || a >= b ? a : b;
+}
+
 static void ask_hessian(const ContactOverlapModel *model, const double x[24], double hessian[576]) {
   double volume;
   ContactOverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume, .hessian = hessian};
@@ -290,23 +296,29 @@ static void check_hessian(const ContactOverlapModel *model, const Demand *demand
                           const char *where) {
   double extent = contact_invariant_extent(pair->x), h = step_of(demand) * extent, hessian[576];
   ask_hessian(model, pair->x, hessian);
+  double shift = 0; // what translation of both changes
   for (int i = 0; i < 24; i++)
     for (int c = 0; c < 3; c++) {
-      double sum = 0, size = 0; // translation of both
+      double sum = 0, size = 0;
       for (int j = c; j < 24; j += 3) sum += hessian[24 * i + j], size += fabs(hessian[24 * i + j]);
-      ck_assert_at_most(where, fabs(sum), (1e-11 + 1e3 * demand->invariant) * (size + extent));
+      shift = larger(shift, fabs(sum) / (size + extent));
     }
+  ck_assert_at_most(where, shift, 1e-11 + 1e3 * demand->invariant);
   if (!pair->is_smooth) return;
   for (int i = 0; i < 24; i++) {
     double up[24], down[24];
     memcpy(up, pair->x, sizeof up), memcpy(down, pair->x, sizeof down);
     up[i] += h, down[i] -= h;
     Answer plus = ask(model, up), minus = ask(model, down);
+    double error = 0; // one assertion a row: each costs a system call
+    bool is_symmetric = true;
     for (int j = 0; j < 24; j++) {
       double difference = (plus.gradient[j] - minus.gradient[j]) / (up[i] - down[i]);
-      ck_assert_at_most(where, fabs(hessian[24 * i + j] - hessian[24 * j + i]), 0);
-      ck_assert_at_most(where, fabs(difference - hessian[24 * i + j]) / extent, demand->hessian);
+      is_symmetric = is_symmetric && hessian[24 * i + j] == hessian[24 * j + i];
+      error = larger(error, fabs(difference - hessian[24 * i + j]) / extent);
     }
+    ck_assert_msg(is_symmetric, "%s: row %d of the Hessian differs from the column", where, i);
+    ck_assert_at_most(where, error, demand->hessian);
   }
 }
 
@@ -395,6 +407,37 @@ START_TEST(results_do_not_depend_on_the_number_of_threads) {
 }
 END_TEST
 
+// What a batch leaves out beforehand must be what the model says of the pair.
+START_TEST(a_batch_says_what_each_pair_says) {
+  ContactOverlapModel model;
+  const ContactOverlapOps *ops = model_at(_i);
+  if (ops->eval_batch || !open_model(_i, &model)) return; // batches of their own: tested with them
+  static double x[BATCH * 24], volume[BATCH], gradient[BATCH * 24];
+  static unsigned flags[BATCH];
+  int disjoint = 0, flat = 0;
+  for (int k = 0; k < BATCH; k++) {
+    memcpy(x + 24 * k, datagen_hard_make(k % DATAGEN_HARD_CLASS_COUNT, k).x, 24 * sizeof *x);
+    for (int c = 12; k % 5 == 0 && c < 24; c++) x[24 * k + c] += 2 * contact_invariant_extent(x + 24 * k);
+  }
+  ContactOverlapBatch batch = {
+      .pair_count = BATCH, .pairs = x, .volume = volume, .gradient = gradient, .flags = flags};
+  memset(volume, -1, sizeof volume), memset(gradient, -1, sizeof gradient);
+  ck_assert_ok(contact_overlap_eval(&model, &batch));
+  for (int k = 0; k < BATCH; k += demand_of(ops->name)->members < 10 && k % 5 ? 7 : 1) {
+    Answer answer;
+    ck_assert_ok(
+        ops->eval_pair(model.self, x + 24 * k, &answer.volume, answer.gradient, NULL, &answer.flags));
+    ck_assert(answer.volume == volume[k]);
+    ck_assert_uint_eq(answer.flags, flags[k]);
+    ck_assert_mem_eq(answer.gradient, gradient + 24 * k, sizeof answer.gradient);
+    disjoint += (flags[k] & CONTACT_OVERLAP_DISJOINT) != 0, flat += (flags[k] & CONTACT_OVERLAP_FLAT) != 0;
+  }
+  ck_assert_int_ge(disjoint, 20);
+  ck_assert_int_ge(flat, 1);
+  contact_overlap_destroy(&model);
+}
+END_TEST
+
 START_TEST(an_empty_batch_is_fine) {
   ContactOverlapModel model;
   if (!open_model(_i, &model)) return;
@@ -429,6 +472,7 @@ int main(void) {
   tcase_add_loop_test(cases, a_tetrahedron_inside_another_is_flagged, 0, count);
   tcase_add_loop_test(cases, a_coordinate_that_is_no_number_is_an_error_that_names_the_pair, 0, count);
   tcase_add_loop_test(cases, results_do_not_depend_on_the_number_of_threads, 0, count);
+  tcase_add_loop_test(cases, a_batch_says_what_each_pair_says, 0, count);
   tcase_add_loop_test(cases, an_empty_batch_is_fine, 0, count);
   tcase_add_test(cases, an_unknown_name_is_an_error_that_lists_the_known_ones);
   return suite_run("overlap models", cases, 60);

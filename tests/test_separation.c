@@ -122,6 +122,33 @@ START_TEST(certainty_holds_at_any_ratio_of_sizes) {
 }
 END_TEST
 
+// Of any number of pairs, and never where one pair at a time would see an overlap or a flat one.
+START_TEST(many_at_once_are_found_as_one_by_one) {
+  enum { COUNT = 1000 };
+  static double pairs[COUNT][24];
+  static bool is_apart[COUNT + 1];
+  Random random = random_seeded(16, 0);
+  int found = 0, different = 0;
+  for (int k = 0; k < COUNT; k++) {
+    random_pair(&random, random_between(&random, 0, 3), pairs[k]);
+    if (k % 7 == 0) memcpy(pairs[k] + 15, pairs[k] + 12, 3 * sizeof **pairs); // flat
+  }
+  for (int count = COUNT; count >= COUNT - 20; count--) {
+    for (int k = 0; k <= COUNT; k++) is_apart[k] = false;
+    contact_separation_find(count, pairs[0], is_apart);
+    found = different = 0;
+    for (int k = 0; k < count; k++) {
+      if (k % 7 == 0) ck_assert(!is_apart[k]);
+      if (is_apart[k]) ck_assert(contact_separation_pair(pairs[k], INFINITY) > 0);
+      found += is_apart[k], different += is_apart[k] != contact_separation_is_certain(pairs[k]);
+    }
+    ck_assert(!is_apart[count]);
+  }
+  ck_assert_int_gt(found, COUNT / 4);
+  ck_assert_int_le(different, 5);
+}
+END_TEST
+
 START_TEST(a_flat_one_is_never_certainly_apart) {
   double pair[24];
   place(pair, (double[]){5, 5, 5, 6, 5, 5, 5, 6, 5, 5, 5, 6});
@@ -203,6 +230,7 @@ int main(void) {
   tcase_add_test(cases, the_sign_says_whether_the_interiors_meet);
   tcase_add_test(cases, nothing_is_certain_about_overlap);
   tcase_add_test(cases, certainty_holds_at_any_ratio_of_sizes);
+  tcase_add_test(cases, many_at_once_are_found_as_one_by_one);
   tcase_add_test(cases, a_flat_one_is_never_certainly_apart);
   tcase_add_test(cases, never_more_than_the_distance_of_two_points);
   tcase_add_test(cases, swapping_and_moving_change_nothing);
