@@ -17,6 +17,7 @@
 #include "app/report_command.h"
 #include "app/run_command.h"
 #include "app/schema_command.h"
+#include "app/stress_command.h"
 #include "app/train_command.h"
 #include "app/versions.h"
 #include "app/weights_command.h"
@@ -50,6 +51,7 @@ static const Command commands[] = {
     {"eval", "measure an overlap model against labelled pairs", app_eval_run},
     {"weights", "say what a weights file holds", app_weights_run},
     {"pareto", "measure error against time of all overlap models", app_pareto_run},
+    {"stress", "hold every hard case against physics, with every overlap model", app_stress_command_run},
     {"version", "print the versions of the program and its libraries", run_version},
     {"help", "print this; `tetlap COMMAND --help` tells more", run_help},
 };

@@ -363,6 +363,8 @@ static Status begin(Run *run) {
     run->v[i] = model->initial_velocity[dof];
     if (run->options->initial_displacement) run->u[i] = run->options->initial_displacement[dof];
   }
+  // What effects keep, they chose at rest.
+  if (run->options->initial_displacement) TRY(fem_system_accept(&run->system, 0, run->u, run->v, 0));
   TRY(begin_stage(run, scene->initial_step));
   return begin_record(run);
 }

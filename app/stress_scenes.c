@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/stress_scenes.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contact/overlap.h"
+
+static const double LIMIT_S = 60;
+static const char ANY[] = "any";
+// A scene whose pairs would take a model longer than this [s] is not run with it.
+static const double LONGEST_S = 30;
+
+static void ask_common(const AppStressScene *scene, const AppStressRun *run, AppStressRow *row) {
+  const FemRunResult *result = &run->result;
+  if (scene->asked & APP_STRESS_TOUCHES)
+    app_stress_ask_occurred(row, "overlapping pairs", result->pairs_max, 1);
+  if (scene->asked & APP_STRESS_ENDS)
+    app_stress_ask_least(row, "time reached", result->end_time / run->scene.end, 1);
+  app_stress_ask_least(row, "all positions are numbers", app_stress_run_is_finite(run), 1);
+  if (scene->asked & APP_STRESS_ENERGY)
+    app_stress_ask_most(row, "energy gain", result->audit.gain / result->audit.scale, 1e-3);
+  if (scene->asked & APP_STRESS_UPRIGHT) app_stress_ask_least(row, "det F", result->min_det_F, 1e-12);
+}
+
+// A case with a model, in `run`.
+static Status run_open(const AppStressScene *scene, const AppStressOptions *options, AppStressRun *run,
+                       AppStressRow *row) {
+  run->limit_s = scene->limit_s > 0 ? scene->limit_s : LIMIT_S;
+  run->asked_to_stop = options->stop;
+  TRY(scene->run ? scene->run(run) : app_stress_run_scene(run));
+  if (options->stop && *options->stop) return status_fail(STATUS_INTERRUPTED, "interrupted");
+  row->cpu_s = run->cpu_s;
+  ask_common(scene, run, row);
+  bool is_measurable = run->result.frame_count > 0;
+  if (is_measurable) scene->judge(run, row);
+  app_stress_judge(row);
+  if (row->outcome == APP_STRESS_FAILED && run->message[0])
+    snprintf(row->remark, sizeof row->remark, "%s", run->message);
+  return STATUS_OK;
+}
+
+static Status run_case(const AppStressScene *scene, const AppStressOptions *options, const char *model,
+                       AppStressRow *row) {
+  const char *overrides[APP_STRESS_MAX_OVERRIDES + 1];
+  char overlap[64];
+  int count = 0;
+  while (count < APP_STRESS_MAX_OVERRIDES && scene->overrides[count]) {
+    overrides[count] = scene->overrides[count];
+    count++;
+  }
+  snprintf(overlap, sizeof overlap, "contact.overlap=%s", model);
+  if (model != ANY) overrides[count++] = overlap;
+  AppStressRun run;
+  TRY(app_stress_run_open(&run, scene->file, overrides, count));
+  Status status = run_open(scene, options, &run, row);
+  app_stress_run_close(&run);
+  return status;
+}
+
+// Pairs that the scene asked of the model that ran it first; later models are judged by them.
+typedef struct Load {
+  long long pairs;
+} Load;
+
+static long long pairs_of(const AppStressScene *scene) {
+  const char *overrides[APP_STRESS_MAX_OVERRIDES + 1];
+  int count = 0;
+  for (; count < APP_STRESS_MAX_OVERRIDES && scene->overrides[count]; count++)
+    overrides[count] = scene->overrides[count];
+  overrides[count++] = "contact.overlap=clip";
+  AppStressRun run;
+  if (app_stress_run_open(&run, scene->file, overrides, count)) return 0;
+  run.limit_s = LIMIT_S;
+  long long pairs = app_stress_run_scene(&run) ? 0 : run.result.pairs.tried;
+  app_stress_run_close(&run);
+  return pairs;
+}
+
+// Whether the model can be asked at all; the row says why not.
+static bool is_able(const AppStressScene *scene, const ContactOverlapOps *ops, Load *load,
+                    AppStressRow *row) {
+  ContactOverlapModel model;
+  Status created = contact_overlap_create(&model, ops->name);
+  contact_overlap_destroy(&model);
+  if (created) {
+    app_stress_excuse(row, "%s", status_message());
+    return false;
+  }
+  if (ops->seconds_per_pair < 1e-4) return true;
+  if (load->pairs < 0) load->pairs = pairs_of(scene);
+  double needed = (double)load->pairs * ops->seconds_per_pair;
+  if (needed <= LONGEST_S) return true;
+  app_stress_excuse(row, "%lld pairs would take this model about %.2g s", load->pairs, needed);
+  return false;
+}
+
+static Status run_row(const AppStressScene *scene, const AppStressOptions *options, AppStress *stress,
+                      const ContactOverlapOps *ops, Load *load) {
+  if (options->stop && *options->stop) return status_fail(STATUS_INTERRUPTED, "interrupted");
+  AppStressRow *row = app_stress_add(stress, "scenes", scene->name, ops ? ops->name : ANY);
+  if (!row) return status_no_memory("the table of hard cases");
+  if (scene->waits)
+    app_stress_excuse(row, "waits for %s", scene->waits);
+  else if (!ops || is_able(scene, ops, load, row)) {
+    Status status = run_case(scene, options, row->model, row);
+    if (status) {
+      stress->count--; // nothing is known of it
+      return status_prefix(status, "%s, %s", scene->name, ops ? ops->name : ANY);
+    }
+  }
+  if (options->observe) options->observe(options->observer, row);
+  return STATUS_OK;
+}
+
+static Status run_scene(const AppStressScene *scene, const AppStressOptions *options, AppStress *stress) {
+  int count;
+  const ContactOverlapOps *const *models = contact_overlap_list(&count);
+  Load load = {.pairs = -1};
+  if (scene->is_any) return run_row(scene, options, stress, NULL, &load);
+  for (int m = 0; m < count; m++)
+    if (app_stress_wants_model(options, models[m]->name))
+      TRY(run_row(scene, options, stress, models[m], &load));
+  return STATUS_OK;
+}
+
+Status app_stress_scenes_run(const AppStressOptions *options, AppStress *stress) {
+  int count;
+  const AppStressScene *scenes = app_stress_cases(&count);
+  for (int s = 0; s < count; s++) {
+    if (options->is_quick && !scenes[s].is_quick && !options->only) continue;
+    if (app_stress_wants(options, scenes[s].name)) TRY(run_scene(&scenes[s], options, stress));
+  }
+  return STATUS_OK;
+}

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap stress`: the quick part of the hard cases holds, and the table says what is not so.
+#include "suite.h"
+
+#include <string.h>
+
+#include "app/stress.h"
+#include "app/stress_limits.h"
+#include "app/stress_scenes.h"
+#include "base/memory.h"
+#include "contact/overlap.h"
+#include "datagen/hard.h"
+
+static void run(AppStress *stress, const AppStressOptions *options) {
+  Status status = app_stress_run(options, stress);
+  ck_assert_msg(status == STATUS_OK, "%s", status_message());
+}
+
+// No row fails, and every row asserts that its case did occur.
+static void expect_no_failure(const AppStress *stress) {
+  for (int r = 0; r < stress->count; r++) {
+    const AppStressRow *row = &stress->rows[r];
+    bool has_occurred = row->outcome == APP_STRESS_ABSENT;
+    for (int m = 0; m < row->measure_count; m++)
+      if (row->measures[m].is_occurrence) has_occurred = row->measures[m].is_met;
+    ck_assert_msg(has_occurred, "%s, %s: did not occur", row->name, row->model);
+    if (row->outcome == APP_STRESS_FAILED) app_stress_print(stress, stdout);
+    ck_assert_msg(row->outcome != APP_STRESS_FAILED, "%s, %s failed: %s", row->name, row->model, row->remark);
+  }
+}
+
+START_TEST(every_class_of_pairs_holds_with_every_model) {
+  AppStress stress;
+  int count;
+  contact_overlap_list(&count);
+  char all[512] = "";
+  for (int m = 0; m < count; m++) {
+    const char *name = contact_overlap_list(&count)[m]->name;
+    if (strcmp(name, "cgal") == 0) continue; // milliseconds a pair: the long run has it
+    strcat(strcat(all, all[0] ? "," : ""), name);
+  }
+  run(&stress, &(AppStressOptions){.has_pairs = true, .is_quick = true, .models = all});
+  ck_assert_int_eq(stress.count, (count - 1) * (DATAGEN_HARD_CLASS_COUNT + 1));
+  expect_no_failure(&stress);
+  app_stress_destroy(&stress);
+}
+END_TEST
+
+START_TEST(the_quick_scenes_hold) {
+  AppStress stress;
+  run(&stress, &(AppStressOptions){.has_scenes = true, .is_quick = true});
+  ck_assert_int_ge(stress.count, 20);
+  ck_assert_int_eq(app_stress_count(&stress, APP_STRESS_ABSENT), 0);
+  expect_no_failure(&stress);
+  app_stress_destroy(&stress);
+}
+END_TEST
+
+START_TEST(a_name_picks_cases_and_an_unknown_one_is_an_error) {
+  AppStress stress;
+  run(&stress, &(AppStressOptions){.has_pairs = true, .is_quick = true, .only = "sliver", .models = "exact"});
+  ck_assert_int_eq(stress.count, 2);
+  app_stress_destroy(&stress);
+  ck_assert_int_eq(app_stress_run(&(AppStressOptions){.has_pairs = true, .only = "no such"}, &stress),
+                   STATUS_USAGE);
+  app_stress_destroy(&stress);
+}
+END_TEST
+
+START_TEST(a_verdict_follows_from_the_measures) {
+  AppStressRow row = {.group = "scenes", .name = "nameless", .model = "clip"};
+  app_stress_ask_most(&row, "small", 1, 2);
+  app_stress_judge(&row);
+  ck_assert_int_eq(row.outcome, APP_STRESS_HELD);
+  app_stress_ask_least(&row, "large", NAN, 2);
+  app_stress_judge(&row);
+  ck_assert_int_eq(row.outcome, APP_STRESS_FAILED);
+  const AppStressLimit *limit = app_stress_limits_find("two spheres", "clip", "change of angular momentum");
+  ck_assert_ptr_nonnull(limit);
+  row = (AppStressRow){.group = "scenes", .name = limit->name, .model = "clip"};
+  app_stress_ask_most(&row, limit->measure, 1, 0);
+  app_stress_judge(&row);
+  ck_assert_int_eq(row.outcome, APP_STRESS_LIMIT);
+  ck_assert_str_eq(row.remark, limit->reason);
+  row.measures[0].is_met = true;
+  app_stress_judge(&row);
+  ck_assert_int_eq(row.outcome, APP_STRESS_BETTER);
+  app_stress_ask_occurred(&row, "contact", 0, 1); // a limit excuses no case that did not occur
+  app_stress_judge(&row);
+  ck_assert_int_eq(row.outcome, APP_STRESS_FAILED);
+}
+END_TEST
+
+START_TEST(every_measure_is_in_the_record) {
+  AppStress stress;
+  run(&stress, &(AppStressOptions){.has_pairs = true, .is_quick = true, .only = "inside", .models = "clip"});
+  Record *record = record_new();
+  ck_assert_ok(app_stress_record(&stress, record));
+  const Record *rows = record_find(record, "rows");
+  ck_assert_int_eq(record_count(rows), stress.count);
+  const Record *first = record_at(rows, 0);
+  ck_assert_str_eq(record_find_text(first, "case"), "inside");
+  ck_assert_int_eq(record_count(record_find(first, "measures")), stress.rows[0].measure_count);
+  record_destroy(record);
+  app_stress_destroy(&stress);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("stress");
+  tcase_add_test(cases, every_class_of_pairs_holds_with_every_model);
+  tcase_add_test(cases, the_quick_scenes_hold);
+  tcase_add_test(cases, a_name_picks_cases_and_an_unknown_one_is_an_error);
+  tcase_add_test(cases, a_verdict_follows_from_the_measures);
+  tcase_add_test(cases, every_measure_is_in_the_record);
+  return suite_run("stress", cases, 600);
+}
