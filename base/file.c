@@ -49,11 +49,12 @@ Status file_begin(FileWriter *writer, const char *path) {
 }
 
 Status file_commit(FileWriter *writer) {
-  errno = 0;
-  // Renaming makes the file whole for whoever looks, and after a kill. Against a power cut it would have to be
-  // synced as well, which costs more than a step of a small scene.
-  int failed = ferror(writer->stream) || fflush(writer->stream) != 0;
-  int reason = errno;
+  // Of a write that failed before, the reason is still there, unless it shows again.
+  int reason = ferror(writer->stream) ? errno : 0;
+  // Renaming makes the file whole for whoever looks, and after a kill. Against a power cut it would have to
+  // be synced as well, which costs more than a step of a small scene.
+  int failed = ferror(writer->stream);
+  if (fflush(writer->stream) != 0) failed = 1, reason = errno;
   if (fclose(writer->stream) != 0 && !failed) failed = 1, reason = errno;
   writer->stream = NULL;
   if (!failed && rename(writer->temporary, writer->path) != 0) failed = 1, reason = errno;

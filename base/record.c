@@ -3,9 +3,12 @@
 
 #include <jansson.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 // jansson owns the tree; our handles are its nodes under another name.
 static json_t *node_of(Record *record) {
@@ -48,6 +51,19 @@ void record_numbers(Record *record, const char *key, const double *values, int c
 
 void record_merge(Record *record, const Record *other) {
   json_object_update(node_of(record), (json_t *)other);
+}
+
+void record_accumulate(Record *total, const Record *part) {
+  const char *key;
+  json_t *value;
+  json_object_foreach((json_t *)part, key, value) {
+    json_t *before = json_object_get(node_of(total), key);
+    if (json_is_integer(before) && json_is_integer(value))
+      json_object_set_new(node_of(total), key,
+                          json_integer(json_integer_value(before) + json_integer_value(value)));
+    else
+      json_object_set(node_of(total), key, value);
+  }
 }
 
 Record *record_child(Record *record, const char *key) {
@@ -124,18 +140,28 @@ Status record_list_write(const RecordList *root, const char *path) {
   return write_tree((const json_t *)root, path);
 }
 
+Status record_parse(Record **root, const char *text, size_t size, const char *name) {
+  json_error_t error;
+  *root = (Record *)json_loadb(text, size, JSON_REJECT_DUPLICATES, &error);
+  if (*root) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "%s:%d:%d: is not JSON: %s", name, error.line, error.column, error.text);
+}
+
 Status record_read(Record **root, const char *path) {
   char *text;
   size_t size;
-  json_error_t error;
   *root = NULL;
   TRY(file_read(path, &text, &size));
-  json_t *tree = json_loadb(text, size, JSON_REJECT_DUPLICATES, &error);
+  Status status = record_parse(root, text, size, path);
   memory_free(text);
-  if (!tree)
-    return status_fail(STATUS_INPUT, "%s:%d:%d: is not JSON: %s", path, error.line, error.column, error.text);
-  *root = (Record *)tree;
-  return STATUS_OK;
+  return status;
+}
+
+char *record_text_of(const Record *root) {
+  char *dumped = json_dumps((const json_t *)root, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+  char *text = dumped ? memory_copy(dumped, strlen(dumped) + 1, 1) : NULL;
+  free(dumped);
+  return text;
 }
 
 void record_adopt(Record *record, const char *key, Record *child) {
@@ -165,4 +191,53 @@ double record_find_number(const Record *record, const char *key) {
 
 bool record_find_bool(const Record *record, const char *key) {
   return json_is_true((const json_t *)record_find(record, key));
+}
+
+static void print_value(const json_t *value, char text[RECORD_VALUE]) {
+  char *dumped = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
+  snprintf(text, RECORD_VALUE, "%s", dumped ? dumped : "nothing");
+  free(dumped);
+}
+
+static bool differ(const json_t *a, const json_t *b, size_t used, RecordDifference *difference);
+
+static bool objects_differ(json_t *a, json_t *b, size_t used, RecordDifference *difference) {
+  const char *key;
+  json_t *value;
+  json_object_foreach(a, key, value) {
+    size_t end = used;
+    text_append(difference->place, RECORD_PLACE, &end, "%s%s", used ? "." : "", key);
+    if (differ(value, json_object_get(b, key), end, difference)) return true;
+  }
+  json_object_foreach(b, key, value) {
+    size_t end = used;
+    text_append(difference->place, RECORD_PLACE, &end, "%s%s", used ? "." : "", key);
+    if (!json_object_get(a, key) && differ(NULL, value, end, difference)) return true;
+  }
+  return false;
+}
+
+static bool lists_differ(json_t *a, json_t *b, size_t used, RecordDifference *difference) {
+  size_t most = json_array_size(a) > json_array_size(b) ? json_array_size(a) : json_array_size(b);
+  for (size_t i = 0; i < most; i++) {
+    size_t end = used;
+    text_append(difference->place, RECORD_PLACE, &end, "[%zu]", i);
+    if (differ(json_array_get(a, i), json_array_get(b, i), end, difference)) return true;
+  }
+  return false;
+}
+
+// `used`: how much of the place is the way to a and b.
+static bool differ(const json_t *a, const json_t *b, size_t used, RecordDifference *difference) {
+  if (json_is_object(a) && json_is_object(b))
+    return objects_differ((json_t *)a, (json_t *)b, used, difference);
+  if (json_is_array(a) && json_is_array(b)) return lists_differ((json_t *)a, (json_t *)b, used, difference);
+  print_value(a, difference->a);
+  print_value(b, difference->b);
+  return a && b ? !json_equal(a, b) : a != b;
+}
+
+bool record_differ(const Record *a, const Record *b, RecordDifference *difference) {
+  *difference = (RecordDifference){{0}, {0}, {0}};
+  return differ((const json_t *)a, (const json_t *)b, 0, difference);
 }

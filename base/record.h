@@ -6,6 +6,7 @@
 #define TETLAP_BASE_RECORD_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 
 #include "base/status.h"
@@ -23,6 +24,8 @@ void record_bool(Record *record, const char *key, bool value);
 void record_numbers(Record *record, const char *key, const double *values, int count);
 void record_merge(Record *record,
                   const Record *other); // copies what `other` has into `record`; NULL: nothing
+// Adds the whole numbers of `part` to those of `total`; everything else in `part` replaces what was there.
+void record_accumulate(Record *total, const Record *part);
 Record *record_child(Record *record, const char *key);
 RecordList *record_list(Record *record, const char *key);
 Record *record_append(RecordList *list);
@@ -42,6 +45,10 @@ Status record_list_write(const RecordList *root, const char *path);
 // Reads a file that holds one object or one list. STATUS_INPUT names file, line and column; STATUS_IO. After
 // a failure `*root` is NULL.
 Status record_read(Record **root, const char *path);
+// Reads the same from a text in memory; `name` stands for it in messages.
+Status record_parse(Record **root, const char *text, size_t size, const char *name);
+// The text that record_print writes, owned by the caller (memory_free); NULL: no memory.
+char *record_text_of(const Record *root);
 // Puts `child`, which `record` owns from now on, under `key`; NULL: nothing.
 void record_adopt(Record *record, const char *key, Record *child);
 
@@ -51,6 +58,13 @@ const Record *record_at(const Record *list, int index);
 int record_count(const Record *list);                                // elements of a list; 0: not a list
 const char *record_find_text(const Record *record, const char *key); // NULL: no text there
 double record_find_number(const Record *record, const char *key);    // NaN: no number there
-bool record_find_bool(const Record *record, const char *key);        // false: nothing there
+// The first place where two records differ, as "scene.contact.stiffness", and its values there, cut to what
+// fits, "nothing" where one has none; false: they are equal. Numbers are compared as they are written.
+enum { RECORD_PLACE = 256, RECORD_VALUE = 128 };
+typedef struct RecordDifference {
+  char place[RECORD_PLACE], a[RECORD_VALUE], b[RECORD_VALUE];
+} RecordDifference;
+bool record_differ(const Record *a, const Record *b, RecordDifference *difference);
+bool record_find_bool(const Record *record, const char *key); // false: nothing there
 
 #endif
