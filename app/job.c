@@ -38,7 +38,7 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static void take_threads(AppJobOptions *options, const char *text, struct argp_state *state) {
+void app_job_take_threads(AppJobOptions *options, const char *text, struct argp_state *state) {
   char *end;
   errno = 0;
   long threads = strtol(text, &end, 10);
@@ -54,7 +54,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->directory = text;
     break;
   case 't':
-    take_threads(options, text, state);
+    app_job_take_threads(options, text, state);
     break;
   case 'j':
     options->is_json = true;

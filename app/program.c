@@ -15,6 +15,7 @@
 #include "app/pareto_command.h"
 #include "app/plot_command.h"
 #include "app/report_command.h"
+#include "app/resume_command.h"
 #include "app/run_command.h"
 #include "app/schema_command.h"
 #include "app/stress_command.h"
@@ -37,6 +38,7 @@ static int run_version(int argument_count, char **arguments);
 
 static const Command commands[] = {
     {"run", "run a scene and write frames, history and summary", app_run_run},
+    {"resume", "go on with a run that was stopped or killed", app_resume_run},
     {"compare", "run a scene with several overlap models and compare", app_compare_run},
     {"report", "write a web page about one run or two, side by side", app_report_command_run},
     {"plot", "draw a run or two, or a frontier, for a paper", app_plot_command_run},

@@ -3,19 +3,15 @@
 
 #include <stdio.h>
 
-#include "app/job.h"
+#include "app/origin.h"
 #include "app/versions.h"
 #include "base/clock.h"
+#include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "datagen/capture.h"
+#include "fem/checkpoint.h"
 #include "fem/effect_contact.h"
-
-typedef struct RunOptions {
-  AppJobOptions job;
-  const char *overlap, *capture;
-  bool is_strict;
-} RunOptions;
 
 enum { KEY_CAPTURE = 256, KEY_STRICT };
 
@@ -29,7 +25,7 @@ static const struct argp_option option_table[] = {
 };
 
 static error_t parse(int key, char *text, struct argp_state *state) {
-  RunOptions *options = state->input;
+  AppRunOptions *options = state->input;
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &options->job;
@@ -134,7 +130,8 @@ static Status observe(void *self, const FemRunProgress *progress) {
 }
 
 // Runs, and puts the capture into its place, if only of a run that was cut short.
-static Status run_captured(const RunOptions *options, const AppJob *job, FemRunResult *result) {
+static Status run_captured(const AppRunOptions *options, const AppJob *job, const char *origin,
+                           FemRunResult *result) {
   DatagenCapture capture = {0};
   if (options->capture)
     TRY(datagen_capture_begin(&capture, options->capture, app_versions_program(), DATAGEN_LABEL_EXACT));
@@ -144,6 +141,8 @@ static Status run_captured(const RunOptions *options, const AppJob *job, FemRunR
                                .stop = app_job_stop_flag(),
                                .observe = observe,
                                .observer = &observer,
+                               .from = options->from,
+                               .origin = origin,
                                .is_strict = options->is_strict};
   Status status = fem_run(&job->model, &run_options, result);
   log_progress_end();
@@ -153,24 +152,51 @@ static Status run_captured(const RunOptions *options, const AppJob *job, FemRunR
   return status ? status : kept;
 }
 
-static Status run(const RunOptions *options) {
-  AppJob job;
-  Status opened = app_job_open(&job, &options->job, options->overlap, NULL);
-  if (opened) {
-    log_error("%s", status_message());
-    return opened;
-  }
-  announce(&job);
+// Where a run that did not reach its end can be taken up.
+static void tell_of_checkpoint(const AppJob *job) {
+  char *path = file_join(job->directory, FEM_CHECKPOINT_FILE);
+  if (path && file_exists(path))
+    log_info("`tetlap resume %s` goes on from the last checkpoint", job->directory);
+  memory_free(path);
+}
+
+// What the run is started with, as text; owned by the caller. A run that goes on must be the one that began.
+static Status make_origin(const AppRunOptions *options, const AppJob *job, char **text) {
+  Record *origin;
+  TRY(app_origin_make(job, &options->job, options->overlap, &origin));
+  Status status =
+      options->origin ? app_origin_compare(options->origin, origin, options->from_path) : STATUS_OK;
+  *text = status ? NULL : record_text_of(origin);
+  record_destroy(origin);
+  return status || *text ? status : status_no_memory("the run's origin");
+}
+
+static Status run_opened(const AppRunOptions *options, const AppJob *job, const char *origin) {
+  announce(job);
   FemRunResult result = {0};
-  Status status = run_captured(options, &job, &result);
+  Status status = run_captured(options, job, origin, &result);
+  if (status) tell_of_checkpoint(job);
   // The summary tells of a run that failed, too, unless nothing can be written.
-  Status written = status == STATUS_IO ? STATUS_OK : app_job_write_summary(&job, &result, status);
-  if (!status && !written) conclude(&job, &result);
-  if (options->job.is_json && !written) written = print_summary(&job, &result, status);
+  Status written = status == STATUS_IO ? STATUS_OK : app_job_write_summary(job, &result, status);
+  if (!status && !written) conclude(job, &result);
+  if (options->job.is_json && !written) written = print_summary(job, &result, status);
   fem_run_result_destroy(&result);
-  app_job_close(&job);
   if (written) log_error("%s", status_message());
   return status ? status : written;
+}
+
+Status app_run_execute(const AppRunOptions *options) {
+  AppJob job;
+  char *origin = NULL;
+  Status status = app_job_open(&job, &options->job, options->overlap, NULL);
+  if (!status) status = make_origin(options, &job, &origin);
+  if (status)
+    log_error("%s", status_message());
+  else
+    status = run_opened(options, &job, origin);
+  memory_free(origin);
+  app_job_close(&job);
+  return status;
 }
 
 int app_run_run(int argument_count, char **arguments) {
@@ -181,9 +207,9 @@ int app_run_run(int argument_count, char **arguments) {
       .args_doc = "SCENE",
       .doc = "Run a scene: frames for ParaView, a history and a summary are written.",
       .children = children};
-  RunOptions options = {0};
+  AppRunOptions options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&options.job);
-  Status status = run(&options);
+  Status status = app_run_execute(&options);
   return status_exit_code(status);
 }

@@ -621,9 +621,23 @@ static const SceneKey solver_keys[] = {
 };
 static const SceneSection solver = {.help = "linear algebra", .keys = solver_keys};
 
+static const SceneKey checkpoint_keys[] = {
+    {"frames", SCENE_INTEGER, AT(FemSceneDef, checkpoint_frames), .range = "[0, 1000000]", .absent = -1,
+     .absent_help =
+         "a checkpoint after so many steps that it is not felt: 1e6 over the unknowns, 200 at least",
+     .help = "so many frames lie between two checkpoints, at each of which the integrator begins anew; 0: "
+             "none"},
+    {"seconds", SCENE_NUMBER, AT(FemSceneDef, checkpoint_seconds), .unit = "s", .range = "[0, inf)",
+     .fallback = "30", .help = "wall time: a checkpoint is written to the disk when the last one is so old"},
+    {0},
+};
+static const SceneSection checkpoint = {
+    .help = "what `tetlap resume` goes on from", .keys = checkpoint_keys, .shorthand = "frames"};
+
 static const SceneKey output_keys[] = {
     {"frames", SCENE_INTEGER, AT(FemSceneDef, frames), .range = "[1, 1000000]", .fallback = "50",
      .help = "written at i · end/frames, i = 0 … frames"},
+    {"checkpoint", SCENE_SECTION, .section = &checkpoint, .help = "what `tetlap resume` goes on from"},
     {"vtu", SCENE_SWITCH, AT(FemSceneDef, write_vtu), .fallback = "true",
      .help = "a VTU file a frame, for ParaView"},
     {"history", SCENE_SWITCH, AT(FemSceneDef, write_history), .fallback = "true",

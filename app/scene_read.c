@@ -414,6 +414,8 @@ Status app_scene_read_defaults(const SceneSection *section, void *self) {
       TRY(read_default(key, self));
     else if (key->type == SCENE_NUMBER)
       *(double *)field_of(self, key->offset) = key->absent;
+    else if (key->type == SCENE_INTEGER)
+      *(int *)field_of(self, key->offset) = (int)key->absent;
   }
   return STATUS_OK;
 }

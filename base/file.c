@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/file.h"
 
+#include <ctype.h>
+#include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -74,6 +80,26 @@ void file_abandon(FileWriter *writer) {
   memory_free(writer->path);
   memory_free(writer->temporary);
   *writer = (FileWriter){0};
+}
+
+// Whether the name is that of a temporary file, and its writer is no more.
+static bool is_left_over(const char *name) {
+  const char *end = strrchr(name, '.');
+  if (!end || strcmp(end, ".part") != 0) return false;
+  const char *number = end;
+  while (number > name && isdigit((unsigned char)number[-1])) number--;
+  if (number == end || number == name || number[-1] != '.') return false;
+  long process = strtol(number, NULL, 10);
+  return process > 0 && process != getpid() && kill((pid_t)process, 0) != 0 && errno == ESRCH;
+}
+
+void file_remove_parts(const char *directory) {
+  DIR *folder = opendir(directory);
+  if (!folder) return;
+  const struct dirent *entry;
+  while ((entry = readdir(folder)))
+    if (is_left_over(entry->d_name)) unlinkat(dirfd(folder), entry->d_name, 0);
+  closedir(folder);
 }
 
 static Status make_one(const char *path) {

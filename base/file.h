@@ -22,6 +22,10 @@ Status file_commit(FileWriter *writer);
 // Drops what was written; allowed after a commit and on a zeroed writer.
 void file_abandon(FileWriter *writer);
 
+// Removes what writers left in a folder that were killed: files named as file_begin names them whose process
+// is gone.
+void file_remove_parts(const char *directory);
+
 Status file_make_directories(const char *path); // like mkdir -p
 int file_exists(const char *path);
 // The whole file as text with a terminating 0; `*text` is owned by the caller (memory_free).

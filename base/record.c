@@ -180,6 +180,10 @@ int record_count(const Record *list) {
   return (int)json_array_size((const json_t *)list);
 }
 
+const char *record_text_value(const Record *text) {
+  return json_string_value((const json_t *)text);
+}
+
 const char *record_find_text(const Record *record, const char *key) {
   return json_string_value((const json_t *)record_find(record, key));
 }

@@ -16,6 +16,7 @@
 #include "fem/run_result.h"
 
 enum { FEM_CHECKPOINT_NAME = 32 };
+static const char FEM_CHECKPOINT_FILE[] = "checkpoint.h5"; // in the run's folder
 
 // What an effect keeps that is no function of time, positions and velocities.
 typedef struct FemCheckpointEffect {

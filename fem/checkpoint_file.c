@@ -28,6 +28,16 @@ typedef struct Field {
 } Field;
 
 #define AT(member) offsetof(FemCheckpoint, member)
+// What a kind of trouble has done so far, and where it stood in the last state.
+#define TROUBLE(kind, name)                                                                                  \
+  {"so_far/trouble/" name "/steps", LONG, AT(so_far.trouble.of[kind].steps), "1"},                           \
+      {"so_far/trouble/" name "/events", LONG, AT(so_far.trouble.of[kind].events), "1"},                     \
+      {"so_far/trouble/" name "/most", INTEGER, AT(so_far.trouble.of[kind].most), "1"},                      \
+      {"so_far/trouble/" name "/first_time", REAL, AT(so_far.trouble.of[kind].first_time), "s"},             \
+      {"so_far/trouble/" name "/first", INTEGER, AT(so_far.trouble.of[kind].first), "1"},                    \
+      {"so_far/trouble/" name "/last_count", INTEGER, AT(so_far.trouble.last.count[kind]), "1"}, {           \
+    "so_far/trouble/" name "/last_first", INTEGER, AT(so_far.trouble.last.first[kind]), "1"                  \
+  }
 static const Field fields[] = {
     {"time", REAL, AT(time), "s"},
     {"step", REAL, AT(step), "s"},
@@ -94,8 +104,14 @@ static const Field fields[] = {
     {"so_far/contact_force_max", REAL, AT(so_far.contact_force_max), "N"},
     {"so_far/contact_force_last", REAL, AT(so_far.last_contact_force), "N"},
     {"so_far/min_det_F", REAL, AT(so_far.min_det_F), "1"},
+    {"so_far/trouble/smallest_step", REAL, AT(so_far.trouble.smallest_step), "s"},
+    TROUBLE(FEM_TROUBLE_INVERTED, "inverted"),
+    TROUBLE(FEM_TROUBLE_ENCLOSED, "enclosed"),
+    TROUBLE(FEM_TROUBLE_WRONG_WAY, "wrong_way"),
+    TROUBLE(FEM_TROUBLE_ENERGY, "energy"),
     {"so_far/deepest_overlap_max", REAL, AT(so_far.deepest_overlap_max), "1"},
 };
+#undef TROUBLE
 #undef AT
 enum { FIELD_COUNT = sizeof fields / sizeof *fields };
 
@@ -105,6 +121,8 @@ static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "fields[] lists every
 static_assert(sizeof(FemIntegratorStats) == 11 * sizeof(double), "fields[] lists the integrator's counts");
 static_assert(sizeof(FemSolverStats) == 9 * sizeof(double), "fields[] lists the solver's counts");
 static_assert(sizeof(ContactPairCounts) == 6 * sizeof(long long), "fields[] lists the counts of pairs");
+
+static_assert(FEM_TROUBLE_KIND_COUNT == 4, "fields[] lists every kind of trouble");
 
 // An effect's cost, one array.
 enum { COST_COUNT = 6 };

@@ -37,6 +37,9 @@ typedef struct FemEffectOps {
   bool lags;        // `prepare` changes its forces: the powers are measured anew after it
   bool (*is_wanted)(const FemSceneDef *scene);
   Status (*create)(void **self, const FemModel *model);
+  // The same as create for a run that begins anew: takes over from `old`, which is destroyed next, what never
+  // changes and is dear to make or lies in a file (weights). NULL: create.
+  Status (*create_again)(void **self, const FemModel *model, void *old);
   // Once all effects are there: to find one that this effect builds on, by fem_system_effect. NULL: none.
   Status (*connect)(void *self, const struct FemSystem *system);
   // Tells the matrix pattern which vertices this effect couples at that state; *has_grown (may be NULL) as in
@@ -56,7 +59,14 @@ typedef struct FemEffectOps {
   bool (*is_linear)(void *self);
   // Onset function whose root restarts the integrator (contact touching); NULL: none.
   Status (*gap)(void *self, const FemState *state, double *gap);
-  void (*report)(void *self, Record *counters); // adds counters to summary.json; NULL: none
+  // Adds counters to summary.json; NULL: none. Whole numbers count what happened since creation and are summed
+  // over the parts of a run between two checkpoints; of other numbers the last stands.
+  void (*report)(void *self, Record *counters);
+  // History: what the effect keeps that is no function of time, positions and velocities (lists that
+  // `prepare` renews are none). `save` makes a new array, the caller's; `load` comes before the first
+  // `prepare` at the checkpoint's state. STATUS_INPUT: it does not fit. NULL: no history.
+  Status (*save)(const void *self, double **values, size_t *count);
+  Status (*load)(void *self, const double *values, size_t count);
   void (*destroy)(void *self);
 } FemEffectOps;
 

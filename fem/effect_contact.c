@@ -114,10 +114,15 @@ Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *n
   return status;
 }
 
-static Status build(Contact *contact) {
+static Status build(Contact *contact, Contact *old) {
   const FemModel *model = contact->model;
   const FemContactDef *def = &model->scene->contact;
-  TRY(fem_effect_contact_create_overlap(model->scene, NULL, &contact->overlap));
+  if (old) {
+    contact->overlap = old->overlap;
+    old->overlap = (ContactOverlapModel){0};
+  } else {
+    TRY(fem_effect_contact_create_overlap(model->scene, NULL, &contact->overlap));
+  }
   contact->bodies = memory_zeroed((size_t)model->body_count, sizeof *contact->bodies);
   contact->shapes = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->shapes);
   if (!contact->bodies || !contact->shapes) return status_no_memory("the contact bodies");
@@ -138,17 +143,22 @@ static Status build(Contact *contact) {
   return contact_system_create(&contact->system, &system);
 }
 
-static Status create(void **self, const FemModel *model) {
+// The overlap model, whose weights may have been replaced on the disk, goes on from `old`; NULL: it is made.
+static Status create_again(void **self, const FemModel *model, void *old) {
   Contact *contact = memory_zeroed(1, sizeof *contact);
   if (!contact) return status_no_memory("contact");
   contact->model = model;
   contact->reach = COUPLING_REACH * model->edge;
-  Status status = build(contact);
+  Status status = build(contact, old);
   if (status)
     destroy(contact);
   else
     *self = contact;
   return status;
+}
+
+static Status create(void **self, const FemModel *model) {
+  return create_again(self, model, NULL);
 }
 
 static Status prepare(void *self, const FemState *state, double step) {
@@ -241,6 +251,7 @@ const FemEffectOps fem_effect_contact = {
     .help = "bodies and obstacles that overlap are pushed apart by a penalty on the overlap volume",
     .is_wanted = is_wanted,
     .create = create,
+    .create_again = create_again,
     .couple = couple,
     .prepare = prepare,
     .add_force = add_force,

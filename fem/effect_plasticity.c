@@ -213,6 +213,22 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
+static Status save(const void *self, double **values, size_t *count) {
+  const Plasticity *plasticity = self;
+  *count = (size_t)plasticity->tet_count * sizeof *plasticity->history / sizeof **values;
+  *values = memory_copy(plasticity->history, *count, sizeof **values);
+  return *values ? STATUS_OK : status_no_memory("the plastic strains");
+}
+
+static Status load(void *self, const double *values, size_t count) {
+  Plasticity *plasticity = self;
+  if (count * sizeof *values != (size_t)plasticity->tet_count * sizeof *plasticity->history)
+    return status_fail(STATUS_INPUT, "plasticity: there are %zu numbers of history for %d plastic elements",
+                       count, plasticity->tet_count);
+  memcpy(plasticity->history, values, count * sizeof *values);
+  return STATUS_OK;
+}
+
 static void report(void *self, Record *counters) {
   const Plasticity *plasticity = self;
   double most = 0;
@@ -222,7 +238,7 @@ static void report(void *self, Record *counters) {
     yielded += plasticity->history[i].alpha > 0;
   }
   record_number(counters, "plastic_strain_max", most);
-  record_integer(counters, "yielded_elements", yielded);
+  record_number(counters, "yielded_elements", yielded);
 }
 
 void fem_effect_plasticity_add_stress(const void *self, int tet, const double x[12], double stress[6]) {
@@ -248,5 +264,7 @@ const FemEffectOps fem_effect_plasticity = {
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .report = report,
+    .save = save,
+    .load = load,
     .destroy = destroy,
 };

@@ -130,6 +130,12 @@ Status fem_history_add_row(FemHistory *history, const double *values) {
   return fem_history_write(history);
 }
 
+Status fem_history_continue(FemHistory *history, const char *text, int row_count) {
+  TRY(append(history, text));
+  history->row_count = row_count;
+  return STATUS_OK;
+}
+
 Status fem_history_write(FemHistory *history) {
   if (history->written_rows == history->row_count) return STATUS_OK;
   FileWriter writer;

@@ -37,6 +37,9 @@ Status fem_history_add_column(FemHistory *history, const char *format, ...)
 // finite is written as nan, inf or -inf.
 Status fem_history_add_row(FemHistory *history, const double *values);
 
+// Goes on after `row_count` rows that were written by a history of these columns; only before the first row.
+Status fem_history_continue(FemHistory *history, const char *text, int row_count);
+
 // Replaces the file now: at the end, and before anything that may take long.
 Status fem_history_write(FemHistory *history);
 

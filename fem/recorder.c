@@ -283,7 +283,8 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
   return fem_vtu_write(path, &frame);
 }
 
-static Status write_frame(FemRecorder *recorder, double time) {
+// Enters the next frame in the list; its name is borrowed from there.
+static Status list_frame(FemRecorder *recorder, double time, const char **file) {
   enum { NAME_SIZE = 32 };
   int number = recorder->frame_count;
   char *name = memory_zeroed(NAME_SIZE, 1);
@@ -292,6 +293,23 @@ static Status write_frame(FemRecorder *recorder, double time) {
   recorder->frame_files[number] = name;
   recorder->frame_times[number] = time;
   recorder->frame_count++;
+  *file = name;
+  return STATUS_OK;
+}
+
+Status fem_recorder_continue(FemRecorder *recorder, const char *history, int history_rows,
+                             const double *frame_times, int frame_count) {
+  const char *file;
+  if (!recorder->directory) return STATUS_OK;
+  for (int f = 0; f < frame_count && recorder->writes_vtu && f < recorder->frame_capacity; f++)
+    TRY(list_frame(recorder, frame_times[f], &file));
+  return recorder->writes_history ? fem_history_continue(&recorder->history, history, history_rows)
+                                  : STATUS_OK;
+}
+
+static Status write_frame(FemRecorder *recorder, double time) {
+  const char *name = NULL;
+  TRY(list_frame(recorder, time, &name));
   char *path = file_join(recorder->directory, name), *list = file_join(recorder->directory, "frames.pvd");
   Status status = path && list ? write_vtu(recorder, path, time) : status_no_memory("a file name");
   if (!status)

@@ -41,6 +41,10 @@ typedef struct FemRecorder {
 // `directory` NULL: measures only. `frame_capacity`: how many frames will come.
 Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char *directory,
                            int frame_capacity);
+// Goes on from the frames and the history of an earlier run: `history` as of FemHistory, `frame_times` of the
+// VTU files there are.
+Status fem_recorder_continue(FemRecorder *recorder, const char *history, int history_rows,
+                             const double *frame_times, int frame_count);
 void fem_recorder_destroy(FemRecorder *recorder);
 
 // The measures at the system's scattered state.

@@ -7,6 +7,68 @@
 
 #include "base/memory.h"
 #include "base/text.h"
+#include "fem/effect_contact.h"
+
+// Steps and order are those of the part.
+void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegratorStats *part) {
+  total->steps += part->steps, total->setups += part->setups, total->residuals += part->residuals;
+  total->newton_iterations += part->newton_iterations, total->newton_failures += part->newton_failures;
+  total->error_test_failures += part->error_test_failures;
+  total->restarts += part->restarts, total->roots += part->roots;
+  total->last_step = part->last_step, total->current_step = part->current_step;
+  total->last_order = part->last_order;
+}
+
+void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part) {
+  total->analyses += part->analyses, total->factorisations += part->factorisations;
+  total->failed_factorisations += part->failed_factorisations;
+  total->solves += part->solves, total->iterations += part->iterations;
+  total->analyse_s += part->analyse_s, total->factorise_s += part->factorise_s;
+  total->solve_s += part->solve_s;
+  total->factor_entries = part->factor_entries;
+}
+
+static void add_cost(FemEffectCost *total, const FemEffectCost *part) {
+  total->force_s += part->force_s, total->jacobian_s += part->jacobian_s;
+  total->prepare_s += part->prepare_s;
+  total->force_calls += part->force_calls, total->jacobian_calls += part->jacobian_calls;
+  total->prepare_calls += part->prepare_calls;
+}
+
+static void add_pairs(ContactPairCounts *total, const ContactPairCounts *part) {
+  total->tried += part->tried, total->enclosed += part->enclosed;
+  total->fallbacks += part->fallbacks, total->by_net += part->by_net;
+  total->blended += part->blended, total->beyond += part->beyond;
+}
+
+static void add_contact(FemRunResult *result, const ContactCounters *counters) {
+  result->phases.broad_phase += counters->broad_s;
+  result->phases.overlap += counters->overlap_s;
+  result->phases.contact += counters->force_s - counters->broad_s;
+  add_pairs(&result->pairs, &counters->pairs);
+}
+
+void fem_run_result_add_system(FemRunResult *result, const FemSystem *system) {
+  void *contact = fem_system_effect(system, "contact");
+  if (contact) add_contact(result, contact_system_counters(fem_effect_contact_system(contact)));
+  result->pattern_layouts += system->pattern_version;
+  result->effect_count = system->effect_count;
+  result->assemblies = 0;
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffect *effect = &system->effects[i];
+    if (effect->self != contact) result->phases.forces += system->costs[i].force_s;
+    result->phases.assembly += system->costs[i].jacobian_s;
+    result->phases.contact += system->costs[i].prepare_s;
+    result->effects[i].name = effect->ops->name;
+    add_cost(&result->effects[i].cost, &system->costs[i]);
+    if (result->effects[i].cost.jacobian_calls > result->assemblies)
+      result->assemblies = result->effects[i].cost.jacobian_calls;
+    Record *counters = effect->ops->report ? record_new() : NULL;
+    if (counters) effect->ops->report(effect->self, counters);
+    if (counters) record_accumulate(result->counters, counters);
+    if (counters) record_destroy(counters);
+  }
+}
 
 void fem_run_result_destroy(FemRunResult *result) {
   if (result->counters) record_destroy(result->counters);

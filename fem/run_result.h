@@ -15,6 +15,8 @@ typedef struct FemRunPhases {
       total; // wall [s]
 } FemRunPhases;
 
+// Counts of a part of the run between two checkpoints are added to those before. Whoever adds a number adds
+// it to fields[] in checkpoint_file.c and to fem_run_result_add as well.
 typedef struct FemRunResult {
   double wall_s, cpu_s;
   FemRunPhases phases;
@@ -50,6 +52,11 @@ typedef struct FemRunResult {
   double *interface_forces; // on the first side [N]               (frame_count, interface_count, 3)
 } FemRunResult;
 
+// Adds what a system and a solver have counted since they were made. `contact` of the phases is what effects
+// took to prepare, without the broad phase.
+void fem_run_result_add_system(FemRunResult *result, const FemSystem *system);
+void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegratorStats *part);
+void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part);
 void fem_run_result_destroy(FemRunResult *result);
 
 // The run's last line: what trouble struck, or that none did. `model`: the one that ran.

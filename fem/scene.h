@@ -164,7 +164,9 @@ typedef struct FemSceneDef {
   double solver_tolerance; // of PCG, relative
   int threads;             // 0: all
   // output
-  int frames; // written at i · end/frames, i = 0 … frames
+  int frames;                // written at i · end/frames, i = 0 … frames
+  int checkpoint_frames;     // between two checkpoints; 0: none; −1: chosen
+  double checkpoint_seconds; // wall time between two that are written [s]
   bool write_vtu;
   bool write_history;
 } FemSceneDef;

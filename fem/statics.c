@@ -214,6 +214,16 @@ static Status find_equilibrium(FemStatics *statics, double time, double *u) {
   return status;
 }
 
+Status fem_statics_continue(FemStatics *statics, double time, const double *u, double force_scale,
+                            double driven_work) {
+  statics->force_scale = force_scale;
+  TRY(evaluate(statics, time, u));
+  statics->residual = largest_of(statics->force, statics->equilibrium.system->model->unknown_count);
+  keep_work(statics);
+  statics->driven_work = driven_work;
+  return STATUS_OK;
+}
+
 Status fem_statics_step(FemStatics *statics, double from, double to, double *u) {
   FemEquilibrium *equilibrium = &statics->equilibrium;
   int n = equilibrium->system->model->unknown_count;

@@ -29,6 +29,9 @@ typedef struct FemStatics {
 
 // STATUS_INPUT: what only a motion can have (friction, release, an initial velocity).
 Status fem_statics_create(FemStatics *statics, FemSystem *system, const FemSolverOps *ops);
+// Goes on from an equilibrium u at `time`, with the largest force met and the work done until then.
+Status fem_statics_continue(FemStatics *statics, double time, const double *u, double force_scale,
+                            double driven_work);
 void fem_statics_destroy(FemStatics *statics); // also of a zeroed one
 
 // From the equilibrium u at `from` to the one at `to`; u is as before if that fails. RETRY: try a smaller

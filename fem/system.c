@@ -12,15 +12,22 @@ static FemState state_of(const FemSystem *system, double time) {
   return (FemState){.time = time, .positions = system->positions, .velocities = system->velocities};
 }
 
-static Status create_effects(FemSystem *system) {
+// An effect of `old` (NULL: there is none) gives what it can to the new one of that place.
+static Status create_effect(FemEffect *effect, const FemModel *model, const FemSystem *old, int place) {
+  bool takes_over = old && effect->ops->create_again;
+  Status status = takes_over ? effect->ops->create_again(&effect->self, model, old->effects[place].self)
+                             : effect->ops->create(&effect->self, model);
+  return status ? status_prefix(status, "effect '%s'", effect->ops->name) : STATUS_OK;
+}
+
+static Status create_effects(FemSystem *system, const FemSystem *old) {
   int count;
   const FemEffectOps *const *list = fem_effect_list(&count);
   for (int i = 0; i < count; i++) {
     if (!list[i]->is_wanted(system->model->scene)) continue;
     FemEffect *effect = &system->effects[system->effect_count];
     effect->ops = list[i];
-    Status status = list[i]->create(&effect->self, system->model);
-    if (status) return status_prefix(status, "effect '%s'", list[i]->name);
+    TRY(create_effect(effect, system->model, old, system->effect_count));
     system->effect_count++;
   }
   for (int i = 0; i < system->effect_count; i++) {
@@ -56,14 +63,14 @@ static Status lay_out(FemSystem *system) {
   return STATUS_OK;
 }
 
-static Status create(FemSystem *system) {
+static Status create(FemSystem *system, const FemSystem *old) {
   size_t values = 3 * (size_t)system->model->vertex_count;
   system->positions = memory_copy(system->model->rest, values, sizeof *system->positions);
   system->velocities = memory_copy(system->model->initial_velocity, values, sizeof *system->velocities);
   system->forces = memory_zeroed(values, sizeof *system->forces);
   if (!system->positions || !system->velocities || !system->forces) return status_no_memory("the state");
   fem_model_drive(system->model, 0, system->positions, system->velocities);
-  TRY(create_effects(system));
+  TRY(create_effects(system, old));
   TRY(fem_pattern_create(&system->pattern, system->model->vertex_count));
   TRY(couple_vertices(system));
   FemState state = state_of(system, 0);
@@ -74,13 +81,27 @@ static Status create(FemSystem *system) {
   return lay_out(system);
 }
 
-Status fem_system_create(FemSystem *system, const FemModel *model) {
+static Status create_from(FemSystem *system, const FemModel *model, const FemSystem *old) {
   *system = (FemSystem){.model = model};
   if (model->unknown_count == 0)
     return status_fail(STATUS_INPUT,
                        "every vertex is fixed or driven: nothing is left to solve; free some vertices");
-  Status status = create(system);
+  Status status = create(system, old);
   if (status) fem_system_destroy(system);
+  return status;
+}
+
+Status fem_system_create(FemSystem *system, const FemModel *model) {
+  return create_from(system, model, NULL);
+}
+
+Status fem_system_create_again(FemSystem *system, const FemModel *model) {
+  FemSystem old = *system;
+  fem_matrix_destroy(&old.matrix); // the largest part, which nobody takes over
+  fem_pattern_destroy(old.pattern);
+  old.pattern = NULL;
+  Status status = create_from(system, model, &old);
+  fem_system_destroy(&old);
   return status;
 }
 

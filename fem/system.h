@@ -27,6 +27,9 @@ typedef struct FemSystem {
 } FemSystem;
 
 Status fem_system_create(FemSystem *system, const FemModel *model);
+// The same anew in place: everything that depends on what has happened is forgotten. After a failure there is
+// nothing to destroy.
+Status fem_system_create_again(FemSystem *system, const FemModel *model);
 void fem_system_destroy(FemSystem *system);
 
 // Unknowns (displacement u = x − X, velocity v; size n each) to full arrays in system->positions, velocities.

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/origin.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/scene_write.h"
+#include "app/versions.h"
+#include "base/digest.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "contact/weights.h"
+
+static void record_digest(Record *record, const char *key, uint64_t digest) {
+  char text[DIGEST_TEXT];
+  digest_print(digest, text);
+  record_text(record, key, text);
+}
+
+// The absolute path, or as it is if that cannot be found.
+static void record_path(Record *record, const char *key, const char *path) {
+  char absolute[PATH_MAX];
+  record_text(record, key, realpath(path, absolute) ? absolute : path);
+}
+
+// Places, elements and which coordinates are unknown, of each body or obstacle with a mesh.
+static void record_meshes(const FemModel *model, Record *record) {
+  for (int b = 0; b < model->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    size_t first = 3 * (size_t)body->vertex_begin,
+           values = 3 * (size_t)(body->vertex_end - body->vertex_begin);
+    uint64_t digest = digest_bytes(DIGEST_START, model->rest + first, values * sizeof *model->rest);
+    digest = digest_bytes(digest, model->tets[body->tet_begin],
+                          (size_t)(body->tet_end - body->tet_begin) * sizeof *model->tets);
+    digest = digest_bytes(digest, model->unknown_of_dof + first, values * sizeof *model->unknown_of_dof);
+    record_digest(record, body->name ? body->name : "?", digest);
+  }
+}
+
+// The file with the weights of the scene's overlap model; "": it has none.
+static void find_weights(const FemSceneDef *scene, char path[PATH_MAX]) {
+  const FemContactDef *contact = &scene->contact;
+  path[0] = 0;
+  if (!contact->is_on) return;
+  if (contact->net && contact_weights_is_path(contact->net)) {
+    char *directory = file_directory_of(scene->path),
+         *file = directory ? file_join(directory, contact->net) : NULL;
+    if (file) snprintf(path, PATH_MAX, "%s", file);
+    memory_free(directory), memory_free(file);
+    return;
+  }
+  const char *name = contact->net ? contact->net : contact->overlap;
+  if (!contact->net && strcmp(name, "hybrid") == 0) name = "tpn-scene";
+  if (contact_weights_find(name, path, PATH_MAX) != STATUS_OK) path[0] = 0;
+}
+
+static Status record_weights(const FemSceneDef *scene, Record *origin) {
+  char path[PATH_MAX], *content;
+  size_t size;
+  find_weights(scene, path);
+  record_text(origin, "weights_file", path);
+  record_text(origin, "weights", "none");
+  if (!path[0]) return STATUS_OK;
+  TRY(file_read(path, &content, &size));
+  record_digest(origin, "weights", digest_bytes(DIGEST_START, content, size));
+  memory_free(content);
+  return STATUS_OK;
+}
+
+// The scene but for what changes no result.
+static Status record_scene(const FemSceneDef *scene, Record *origin) {
+  FemSceneDef same = *scene; // borrows all that it points to
+  same.threads = 0;
+  same.checkpoint_seconds = 0;
+  return app_scene_write_resolved(&same, origin, "scene");
+}
+
+Status app_origin_make(const AppJob *job, const AppJobOptions *options, const char *overlap,
+                       Record **origin) {
+  Record *record = *origin = record_new();
+  if (!record) return status_no_memory("the run's origin");
+  record_text(record, "program", app_versions_line());
+  record_text(record, "instructions", app_versions_simd());
+  record_text(record, "command", app_versions_command());
+  record_path(record, "scene_file", options->scene_path);
+  RecordList *overrides = record_list(record, "set");
+  for (int i = 0; i < options->override_count; i++) record_append_text(overrides, options->overrides[i]);
+  if (overlap && contact_weights_is_path(overlap))
+    record_path(record, "overlap", overlap);
+  else
+    record_text(record, "overlap", overlap);
+  record_meshes(&job->model, record_child(record, "meshes"));
+  Status status = record_weights(&job->scene, record);
+  if (!status) status = record_scene(&job->scene, record);
+  if (!status) return STATUS_OK;
+  record_destroy(record);
+  *origin = NULL;
+  return status;
+}
+
+Status app_origin_compare(const Record *was, const Record *is, const char *path) {
+  static const char *const keys[] = {"program", "scene", "meshes", "weights"};
+  RecordDifference d = {{0}, {0}, {0}};
+  int k = 0;
+  while (k < 4 && !record_differ(record_find(was, keys[k]), record_find(is, keys[k]), &d)) k++;
+  static const char advice[] = "put it back, or begin anew with `tetlap run`";
+  switch (k) {
+  case 0:
+    return status_fail(STATUS_INPUT, "%s: was written by %s; this is %s: resume with that, or begin anew",
+                       path, d.a, d.b);
+  case 1:
+    return status_fail(STATUS_INPUT, "%s: the scene is another: %s was %s and is now %s; %s", path, d.place,
+                       d.a, d.b, advice);
+  case 2:
+    return status_fail(STATUS_INPUT, "%s: the mesh of '%s' is another than it was; %s", path, d.place,
+                       advice);
+  case 3:
+    return status_fail(STATUS_INPUT, "%s: the weights in %s are others than they were; %s", path,
+                       record_find_text(is, "weights_file"), advice);
+  default:
+    return STATUS_OK;
+  }
+}
+
+Status app_origin_read(const Record *origin, const char *path, AppJobOptions *options, const char **overlap) {
+  options->scene_path = record_find_text(origin, "scene_file");
+  *overlap = record_find_text(origin, "overlap");
+  const Record *overrides = record_find(origin, "set");
+  if (!options->scene_path || !overrides || record_count(overrides) > APP_MAX_OVERRIDES)
+    return status_fail(STATUS_INPUT, "%s: does not say which scene it belongs to", path);
+  for (int i = 0; i < record_count(overrides); i++) {
+    const char *text = record_text_value(record_at(overrides, i));
+    if (!text) return status_fail(STATUS_INPUT, "%s: does not say which scene it belongs to", path);
+    options->overrides[options->override_count++] = text;
+  }
+  return STATUS_OK;
+}
