@@ -642,6 +642,9 @@ static const SceneKey output_keys[] = {
      .help = "a VTU file a frame, for ParaView"},
     {"history", SCENE_SWITCH, AT(FemSceneDef, write_history), .fallback = "true",
      .help = "history.csv: energies, momentum, contact forces per frame"},
+    {"status", SCENE_NAME, AT(FemSceneDef, status_reference), .choices = &overlaps,
+     .absent_help = "not asked",
+     .help = "which elements overlap by the scene's overlap model and by this one, at every frame"},
     {0},
 };
 static const SceneSection output = {.help = "what is written", .keys = output_keys};

@@ -65,32 +65,6 @@ static void clear(ContactEvaluation *evaluation) {
   evaluation->counts = (ContactPairCounts){0};
 }
 
-static void shift(double tet[12], const double by[3]) {
-  for (int k = 0; k < 12; k++) tet[k] += by[k % 3];
-}
-
-static void warp(const ContactLayout *layout, int tet, double coordinates[12]) {
-  for (int v = 0; v < 4; v++)
-    for (int c = 0; c < 3; c++)
-      coordinates[3 * v + c] += layout->shifts[3 * (size_t)layout->def.tets[tet][v] + (size_t)c];
-}
-
-// Coordinates of a pair as the model shall see them, in general position; a half-space has none.
-static void gather(const ContactLayout *layout, const ContactPair *pair, const double *positions,
-                   double coordinates[24]) {
-  contact_layout_gather(layout, pair->tets[0], positions, coordinates);
-  if (pair->tets[1] < 0) return;
-  contact_layout_gather(layout, pair->tets[1], positions, coordinates + 12);
-  const ContactFacing *facing = &layout->facings[pair->facing];
-  if (facing->a == facing->b) {
-    warp(layout, pair->tets[0], coordinates);
-    warp(layout, pair->tets[1], coordinates + 12);
-    return;
-  }
-  shift(coordinates, layout->nudges[facing->a]);
-  shift(coordinates + 12, layout->nudges[facing->b]);
-}
-
 // Lists the candidates whose boxes meet, nudges allowed for.
 static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *layout,
                             const ContactCandidateList *candidates, bool with_shapes,
@@ -139,7 +113,8 @@ static void sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *la
     int mesh_end = end < mesh_count ? end : mesh_count;
     double *coordinates = evaluation->coordinates + 24 * (size_t)begin;
     for (int k = begin; k < end; k++)
-      gather(layout, &evaluation->pairs[k], positions, coordinates + 24 * (size_t)(k - begin));
+      contact_layout_gather_pair(layout, &evaluation->pairs[k], positions,
+                                 coordinates + 24 * (size_t)(k - begin));
     if (!keeps_all && mesh_end > begin) contact_separation_find(mesh_end - begin, coordinates, is_apart);
     for (int k = begin; k < end; k++) evaluation->is_kept[k] = !is_apart[k - begin];
   }

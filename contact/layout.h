@@ -56,4 +56,30 @@ static inline void contact_layout_gather(const ContactLayout *layout, int tet, c
       coordinates[3 * v + c] = positions[3 * (size_t)layout->def.tets[tet][v] + (size_t)c];
 }
 
+// Shifts a tetrahedron's vertices as self-contact wants them.
+static inline void contact_layout_warp(const ContactLayout *layout, int tet, double coordinates[12]) {
+  for (int v = 0; v < 4; v++)
+    for (int c = 0; c < 3; c++)
+      coordinates[3 * v + c] += layout->shifts[3 * (size_t)layout->def.tets[tet][v] + (size_t)c];
+}
+
+// The 24 coordinates of a pair as the overlap models see them, in general position; a half-space has none:
+// 12.
+static inline void contact_layout_gather_pair(const ContactLayout *layout, const ContactPair *pair,
+                                              const double *positions, double coordinates[24]) {
+  contact_layout_gather(layout, pair->tets[0], positions, coordinates);
+  if (pair->tets[1] < 0) return;
+  contact_layout_gather(layout, pair->tets[1], positions, coordinates + 12);
+  const ContactFacing *facing = &layout->facings[pair->facing];
+  if (facing->a == facing->b) {
+    for (int side = 0; side < 2; side++)
+      contact_layout_warp(layout, pair->tets[side], coordinates + 12 * side);
+    return;
+  }
+  for (int k = 0; k < 12; k++) {
+    coordinates[k] += layout->nudges[facing->a][k % 3];
+    coordinates[12 + k] += layout->nudges[facing->b][k % 3];
+  }
+}
+
 #endif

@@ -62,6 +62,8 @@ typedef struct ContactOverlapOps {
   bool (*has_ghosts)(const void *self);
   // Begins each pair by asking whether a face separates the two.
   bool rejects;
+  // Logits of "the two intersect" of pairs (count, 24), where a model tells them apart from V; NULL: V > 0.
+  Status (*eval_logits)(const void *self, int count, const double *pairs, double *logits);
 } ContactOverlapOps;
 
 typedef struct ContactOverlapModel {

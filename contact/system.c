@@ -7,6 +7,7 @@
 #include "contact/audit.h"
 #include "contact/onset.h"
 #include "contact/shape.h"
+#include "contact/status.h"
 #include "contact/stiffness.h"
 
 struct ContactSystem {
@@ -17,6 +18,8 @@ struct ContactSystem {
   ContactStiffness stiffness;
   ContactEvaluation audits[2]; // candidate, reference; made by the first audit
   bool has_audits;
+  ContactStatus status; // made when it is first asked for
+  bool has_status;
   ContactCounters counters;
 };
 
@@ -48,6 +51,7 @@ void contact_system_destroy(ContactSystem *system) {
   contact_evaluation_destroy(&system->evaluation);
   contact_stiffness_destroy(&system->stiffness);
   for (int k = 0; k < 2; k++) contact_evaluation_destroy(&system->audits[k]);
+  contact_status_destroy(&system->status);
   memory_free(system);
 }
 
@@ -220,5 +224,16 @@ Status contact_system_audit(ContactSystem *system, double time, const double *po
     TRY(contact_evaluation_run(&system->audits[k], &system->layout, &system->candidates.list, models[k],
                                false, time, positions));
   *audit = contact_audit_compare(&system->layout, &system->audits[0], &system->audits[1]);
+  return STATUS_OK;
+}
+
+Status contact_system_status(ContactSystem *system, double time, const double *positions,
+                             const ContactOverlapModel *reference, const ContactStatus **status) {
+  TRY(check_margin(system, time, positions));
+  if (!system->has_status) TRY(contact_status_create(&system->status, &system->layout));
+  system->has_status = true;
+  TRY(contact_status_run(&system->status, &system->layout, &system->candidates.list, system->layout.def.model,
+                         reference, positions));
+  *status = &system->status;
   return STATUS_OK;
 }

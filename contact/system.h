@@ -126,6 +126,7 @@ typedef struct ContactCounters {
 
 struct ContactEvaluation;
 struct ContactLayout;
+struct ContactStatus;
 typedef struct ContactSystem ContactSystem; // opaque: lists, scratch memory and the last evaluation
 
 Status contact_system_create(ContactSystem **system, const ContactSystemDef *def);
@@ -194,5 +195,10 @@ typedef struct ContactAudit {
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,
                             const ContactOverlapModel *candidate, const ContactOverlapModel *reference,
                             ContactAudit *audit);
+
+// Which elements overlap, by the system's own model and by `reference` (contact/status.h), at positions that
+// the last update covers. The result is the system's, valid until the next call.
+Status contact_system_status(ContactSystem *system, double time, const double *positions,
+                             const ContactOverlapModel *reference, const struct ContactStatus **status);
 
 #endif

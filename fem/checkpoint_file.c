@@ -99,6 +99,10 @@ static const Field fields[] = {
     {"so_far/pairs/by_net", LONG, AT(so_far.pairs.by_net), "1"},
     {"so_far/pairs/blended", LONG, AT(so_far.pairs.blended), "1"},
     {"so_far/pairs/beyond", LONG, AT(so_far.pairs.beyond), "1"},
+    {"so_far/status/asked", LONG, AT(so_far.status_pairs.asked), "1"},
+    {"so_far/status/overlapping", LONG, AT(so_far.status_pairs.overlapping), "1"},
+    {"so_far/status/false_positives", LONG, AT(so_far.status_pairs.false_positives), "1"},
+    {"so_far/status/false_negatives", LONG, AT(so_far.status_pairs.false_negatives), "1"},
     {"so_far/pairs_max", INTEGER, AT(so_far.pairs_max), "1"},
     {"so_far/overlap_volume_max", REAL, AT(so_far.overlap_volume_max), "m3"},
     {"so_far/contact_force_max", REAL, AT(so_far.contact_force_max), "N"},
@@ -121,6 +125,7 @@ static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "fields[] lists every
 static_assert(sizeof(FemIntegratorStats) == 11 * sizeof(double), "fields[] lists the integrator's counts");
 static_assert(sizeof(FemSolverStats) == 9 * sizeof(double), "fields[] lists the solver's counts");
 static_assert(sizeof(ContactPairCounts) == 6 * sizeof(long long), "fields[] lists the counts of pairs");
+static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long), "fields[] lists the counts of the status");
 
 static_assert(FEM_TROUBLE_KIND_COUNT == 4, "fields[] lists every kind of trouble");
 

@@ -18,7 +18,7 @@
 
 // The first columns of the history, each with the effect that it takes (NULL: none); those of bodies and
 // interfaces follow. The values are listed in this order by write_history.
-static const char DISSIPATION[] = "any that dissipates";
+static const char DISSIPATION[] = "any that dissipates", STATUS_COLUMN[] = "contact, and output.status";
 static const struct {
   const char *title, *effect;
 } columns[] = {
@@ -47,12 +47,18 @@ static const struct {
     {"inverted", NULL},
     {"enclosed", "contact"},
     {"wrong_way", "contact"},
+    {"status_pairs", STATUS_COLUMN},
+    {"status_overlapping", STATUS_COLUMN},
+    {"status_false_positive", STATUS_COLUMN},
+    {"status_false_negative", STATUS_COLUMN},
+    {"status_wrong_elements", STATUS_COLUMN},
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
 static bool has_column(const FemRecorder *recorder, int column) {
   if (columns[column].effect == DISSIPATION)
     return fem_system_dissipates(recorder->system) || fem_system_effect(recorder->system, "plasticity");
+  if (columns[column].effect == STATUS_COLUMN) return recorder->has_status;
   return !columns[column].effect || fem_system_effect(recorder->system, columns[column].effect);
 }
 
@@ -127,10 +133,25 @@ static Status create(FemRecorder *recorder, const char *directory) {
   return status ? status : add_columns(recorder);
 }
 
+// The model that the elements' status is held against.
+static Status create_reference(FemRecorder *recorder) {
+  const FemSceneDef *scene = recorder->system->model->scene;
+  if (!scene->status_reference) return STATUS_OK;
+  if (!contact_of(recorder->system))
+    return status_fail(STATUS_INPUT,
+                       "%s: output.status asks which elements overlap, but the scene has no contact; add a "
+                       "'contact' section",
+                       scene->path);
+  TRY(fem_effect_contact_create_overlap(scene, scene->status_reference, &recorder->reference));
+  recorder->has_status = true;
+  return STATUS_OK;
+}
+
 Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char *directory,
                            int frame_capacity) {
   *recorder = (FemRecorder){.system = system, .frame_capacity = frame_capacity};
-  Status status = create(recorder, directory);
+  Status status = create_reference(recorder);
+  if (!status) status = create(recorder, directory);
   if (status) fem_recorder_destroy(recorder);
   return status;
 }
@@ -150,6 +171,7 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   memory_free(recorder->det_F);
   memory_free(recorder->overlap);
   fem_trouble_watch_destroy(&recorder->watch);
+  contact_overlap_destroy(&recorder->reference);
   *recorder = (FemRecorder){0};
 }
 
@@ -252,12 +274,24 @@ static void fill_arrays(FemRecorder *recorder) {
   }
 }
 
+// Moves the arrays that have values to the front; how many.
+static int keep_given(FemVtuArray *arrays, size_t count) {
+  int kept = 0;
+  for (size_t k = 0; k < count; k++)
+    if (arrays[k].reals || arrays[k].integers) arrays[kept++] = arrays[k];
+  return kept;
+}
+
 static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
   fill_arrays(recorder);
-  // The last only with friction, the three before it only with contact.
-  const FemVtuArray arrays[] = {
+  const ContactStatus *status = recorder->status;
+  const int *verdicts[] = {status ? status->predicted : NULL, status ? status->exact : NULL,
+                           status ? status->error : NULL, status ? status->wrong_pairs : NULL};
+  bool has_contact = contact_of(system) != NULL;
+  // Those without values are left out.
+  FemVtuArray arrays[] = {
       {.name = "displacement", .components = 3, .reals = recorder->displacement},
       {.name = "velocity", .components = 3, .reals = system->velocities},
       {.name = "body", .is_cell = true, .components = 1, .integers = model->tet_body},
@@ -265,21 +299,25 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
       {.name = "stress", .is_cell = true, .components = 6, .reals = recorder->stress},
       {.name = "von_mises", .is_cell = true, .components = 1, .reals = recorder->von_mises},
       {.name = "trouble", .is_cell = true, .components = 1, .integers = recorder->watch.marks},
-      {.name = "contact_force", .components = 3, .reals = recorder->contact_force},
-      {.name = "overlap_fraction", .is_cell = true, .components = 1, .reals = recorder->overlap},
-      {.name = "wrong_way", .components = 1, .integers = recorder->watch.is_wrongway},
+      {.name = "contact_force", .components = 3, .reals = has_contact ? recorder->contact_force : NULL},
+      {.name = "overlap_fraction",
+       .is_cell = true,
+       .components = 1,
+       .reals = has_contact ? recorder->overlap : NULL},
+      {.name = "wrong_way", .components = 1, .integers = has_contact ? recorder->watch.is_wrongway : NULL},
       {.name = "friction_force", .components = 3, .reals = recorder->friction_force},
+      {.name = "status_predicted", .is_cell = true, .components = 1, .integers = verdicts[0]},
+      {.name = "status_exact", .is_cell = true, .components = 1, .integers = verdicts[1]},
+      {.name = "status_error", .is_cell = true, .components = 1, .integers = verdicts[2]},
+      {.name = "status_wrong_pairs", .is_cell = true, .components = 1, .integers = verdicts[3]},
   };
-  int most = (int)(sizeof arrays / sizeof *arrays);
   const FemVtuFrame frame = {.time = time,
                              .vertex_count = model->vertex_count,
                              .positions = system->positions,
                              .tet_count = model->tet_count,
                              .tets = model->tets[0],
                              .arrays = arrays,
-                             .array_count = recorder->friction_force ? most
-                                            : contact_of(system)     ? most - 1
-                                                                     : most - 4};
+                             .array_count = keep_given(arrays, sizeof arrays / sizeof *arrays)};
   return fem_vtu_write(path, &frame);
 }
 
@@ -335,6 +373,12 @@ static double *append_centres(const FemSystem *system, double *row) {
 
 static Status write_history(FemRecorder *recorder, double time, const FemMeasures *m, const FemAudit *audit,
                             double step, long long step_count, long long energy_events) {
+  ContactStatusCounts status = {0};
+  long long wrong_elements = 0;
+  if (recorder->status) {
+    status = recorder->status->pairs;
+    wrong_elements = recorder->status->elements.false_positives + recorder->status->elements.false_negatives;
+  }
   const double fixed[COLUMN_COUNT] = {time,
                                       m->energy.kinetic,
                                       m->energy.elastic,
@@ -359,7 +403,12 @@ static Status write_history(FemRecorder *recorder, double time, const FemMeasure
                                       (double)energy_events,
                                       m->trouble.count[FEM_TROUBLE_INVERTED],
                                       m->trouble.count[FEM_TROUBLE_ENCLOSED],
-                                      m->trouble.count[FEM_TROUBLE_WRONG_WAY]};
+                                      m->trouble.count[FEM_TROUBLE_WRONG_WAY],
+                                      (double)status.asked,
+                                      (double)status.overlapping,
+                                      (double)status.false_positives,
+                                      (double)status.false_negatives,
+                                      (double)wrong_elements};
   double *row = recorder->row;
   for (int i = 0; i < COLUMN_COUNT; i++)
     if (has_column(recorder, i)) *row++ = fixed[i];
@@ -370,10 +419,18 @@ static Status write_history(FemRecorder *recorder, double time, const FemMeasure
   return fem_history_add_row(&recorder->history, recorder->row);
 }
 
+static Status find_status(FemRecorder *recorder, double time) {
+  if (!recorder->has_status) return STATUS_OK;
+  const FemSystem *system = recorder->system;
+  return contact_system_status(contact_of(system), time, system->positions, &recorder->reference,
+                               &recorder->status);
+}
+
 Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
                           const FemAudit *audit, double step, long long step_count, long long energy_events) {
-  if (!recorder->directory) return STATUS_OK;
   double began = clock_wall_s();
+  TRY(find_status(recorder, time));
+  if (!recorder->directory) return STATUS_OK;
   if (recorder->writes_vtu) TRY(write_frame(recorder, time));
   if (recorder->writes_history)
     TRY(write_history(recorder, time, measures, audit, step, step_count, energy_events));

@@ -4,6 +4,7 @@
 #ifndef TETLAP_FEM_RECORDER_H
 #define TETLAP_FEM_RECORDER_H
 
+#include "contact/status.h"
 #include "fem/audit.h"
 #include "fem/history.h"
 #include "fem/system.h"
@@ -35,7 +36,10 @@ typedef struct FemRecorder {
   double *friction_force;                       // scratch; NULL: no friction   (vertex_count, 3)
   double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
   FemTroubleWatch watch;
-  double seconds; // spent writing
+  bool has_status;               // the scene asks for the elements' status
+  ContactOverlapModel reference; // that it is held against
+  const ContactStatus *status;   // of the frame being written; borrowed
+  double seconds;                // spent writing
 } FemRecorder;
 
 // `directory` NULL: measures only. `frame_capacity`: how many frames will come.

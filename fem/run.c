@@ -94,6 +94,17 @@ static void keep_extremes(FemRunResult *result, const FemMeasures *measures) {
   result->min_det_F = fmin(result->min_det_F, measures->min_det_F);
 }
 
+static void keep_status(Run *run) {
+  FemRunResult *result = run->result;
+  result->has_status = run->recorder.has_status;
+  if (!result->has_status) return;
+  const ContactStatusCounts *pairs = &run->recorder.status->pairs;
+  result->status_pairs.asked += pairs->asked;
+  result->status_pairs.overlapping += pairs->overlapping;
+  result->status_pairs.false_positives += pairs->false_positives;
+  result->status_pairs.false_negatives += pairs->false_negatives;
+}
+
 // Writes the frame of the scattered state.
 static Status write_frame(Run *run, double time, const FemMeasures *measures) {
   FemIntegratorStats stats = stats_of(run);
@@ -101,6 +112,7 @@ static Status write_frame(Run *run, double time, const FemMeasures *measures) {
   TRY(fem_recorder_write(&run->recorder, time, measures, &audit, stats.last_step, stats.steps,
                          run->result->trouble.of[FEM_TROUBLE_ENERGY].events));
   run->result->last_contact_force = measures->contact_force;
+  keep_status(run);
   keep_frame(run, time);
   run->next_frame++;
   return STATUS_OK;

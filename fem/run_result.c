@@ -171,6 +171,13 @@ static void summarise_effects(const FemRunResult *result, Record *record) {
   }
 }
 
+static void summarise_status(const ContactStatusCounts *pairs, Record *record) {
+  record_integer(record, "pairs", pairs->asked);
+  record_integer(record, "overlapping", pairs->overlapping);
+  record_integer(record, "false_positive", pairs->false_positives);
+  record_integer(record, "false_negative", pairs->false_negatives);
+}
+
 void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_number(summary, "end_time", result->end_time);
   record_number(summary, "wall_s", result->wall_s);
@@ -195,6 +202,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
     record_integer(equilibrium, "relaxation_steps", result->relaxation_steps);
     record_integer(equilibrium, "halvings", result->halvings);
   }
+  if (result->has_status) summarise_status(&result->status_pairs, record_child(summary, "status"));
   record_integer(summary, "peak_rss_bytes", (long long)result->peak_rss_bytes);
   Record *counters = record_child(summary, "counters");
   summarise_counters(result, counters);

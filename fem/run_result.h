@@ -4,6 +4,7 @@
 #define TETLAP_FEM_RUN_RESULT_H
 
 #include "base/record.h"
+#include "contact/status.h"
 #include "fem/audit.h"
 #include "fem/integrator.h"
 #include "fem/trouble.h"
@@ -28,9 +29,11 @@ typedef struct FemRunResult {
   long long energy_retries;  // steps taken back because they gained energy
   FemAudit audit;
   FemTrouble trouble;
-  double end_time;         // reached [s]
-  ContactPairCounts pairs; // handed to the overlap model over the whole run
-  int state_unknowns;      // displacements, and in a motion as many velocities
+  double end_time;                  // reached [s]
+  bool has_status;                  // the scene asked who overlaps
+  ContactStatusCounts status_pairs; // summed over the frames
+  ContactPairCounts pairs;          // handed to the overlap model over the whole run
+  int state_unknowns;               // displacements, and in a motion as many velocities
   bool is_static;
   double residual, residual_allowed; // of the last equilibrium: largest force on an unknown [N]
   long long relaxation_steps, halvings;

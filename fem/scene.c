@@ -44,6 +44,7 @@ void fem_scene_destroy(FemSceneDef *scene) {
   memory_free(scene->obstacles);
   memory_free(scene->contact.overlap);
   memory_free(scene->contact.net);
+  memory_free(scene->status_reference);
   memory_free(scene->path);
   memory_free(scene->title);
   *scene = (FemSceneDef){0};

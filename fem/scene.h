@@ -169,6 +169,7 @@ typedef struct FemSceneDef {
   double checkpoint_seconds; // wall time between two that are written [s]
   bool write_vtu;
   bool write_history;
+  char *status_reference; // the overlap model that elements' status is held against; NULL: none
 } FemSceneDef;
 
 // Frees everything that the scene owns and zeroes it.

@@ -37,10 +37,14 @@ const FIELDS = {
   det_F: { label: "Volume ratio det F", unit: "", middle: 1 },
   velocity: { label: "Speed", unit: "m/s" },
   displacement: { label: "Displacement", unit: "m" },
+  status_predicted: { label: "Status by the overlap model", isClass: true, classes: ["apart", "overlaps"] },
+  status_exact: { label: "Status by the reference", isClass: true, classes: ["apart", "overlaps"] },
+  status_error: { label: "Errors of the status", isClass: true, classes: ["right", "false positive", "false negative"] },
+  status_wrong_pairs: { label: "Pairs told wrongly", isClass: false },
   body: { label: "Body", unit: "", isClass: true },
 };
 
-const ORDER = ["von_mises", "contact_force", "overlap_fraction", "overlap_status", "det_F", "pressure", "velocity", "displacement", "body"];
+const ORDER = ["von_mises", "contact_force", "overlap_fraction", "status_predicted", "status_exact", "status_error", "status_wrong_pairs", "det_F", "pressure", "velocity", "displacement", "body"];
 
 export function describe(field) {
   const known = FIELDS[field.name];

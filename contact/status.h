@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who overlaps, as a model tells it and as a reference does: the paper's first figure for two meshes in a
+// scene. Asked are all pairs of elements whose boxes meet; half-spaces and balls ask no model.
+//
+// A model's word is its status head's where it has one, else V > 0. Where a model has an exact test for
+// disjoint pairs, that has the last word.
+#ifndef TETLAP_CONTACT_STATUS_H
+#define TETLAP_CONTACT_STATUS_H
+
+#include "contact/candidates.h"
+
+typedef enum ContactVerdict {
+  CONTACT_VERDICT_RIGHT,
+  CONTACT_VERDICT_FALSE_POSITIVE, // said to overlap, and does not
+  CONTACT_VERDICT_FALSE_NEGATIVE, // overlaps, and is not said to
+} ContactVerdict;
+
+// Of pairs, or of elements.
+typedef struct ContactStatusCounts {
+  long long asked, overlapping; // overlapping by the reference
+  long long false_positives, false_negatives;
+} ContactStatusCounts;
+
+// An element's status: whether it overlaps any element of another body.
+typedef struct ContactStatus {
+  int *predicted, *exact; // 0 or 1                                       (tet_count)
+  int *error;             // ContactVerdict                               (tet_count)
+  int *wrong_pairs;       // of its pairs, how many are told wrongly      (tet_count)
+  ContactStatusCounts pairs, elements;
+  // Scratch memory for a portion of the pairs.
+  ContactPair *portion;
+  double *coordinates, *asked, *volumes;
+  int *places;            // of those asked in the portion
+  unsigned char *says[2]; // model, reference
+  double (*boxes)[6];     // of the candidates' tetrahedra                (tet_count)
+} ContactStatus;
+
+Status contact_status_create(ContactStatus *status, const ContactLayout *layout);
+void contact_status_destroy(ContactStatus *status);
+
+// Asks both at these positions, which the candidates must cover.
+Status contact_status_run(ContactStatus *status, const ContactLayout *layout,
+                          const ContactCandidateList *candidates, const ContactOverlapModel *model,
+                          const ContactOverlapModel *reference, const double *positions);
+
+#endif
