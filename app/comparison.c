@@ -50,10 +50,12 @@ double app_comparison_trajectory_error(const FemRunResult *result, const FemRunR
 }
 
 static void add_audit(AppAuditSums *sums, const ContactAudit *audit) {
-  sums->volume_error += audit->volume_error;
-  sums->force_error += audit->force_error;
-  sums->volume_error_max = fmax(sums->volume_error_max, audit->volume_error);
-  sums->force_error_max = fmax(sums->force_error_max, audit->force_error);
+  const double errors[APP_AUDIT_KIND_COUNT] = {audit->volume_error, audit->gradient_error, audit->force_error,
+                                               audit->total_error};
+  for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) {
+    sums->sum[k] += errors[k];
+    sums->max[k] = fmax(sums->max[k], errors[k]);
+  }
   sums->count++;
 }
 
@@ -74,10 +76,12 @@ Status app_comparison_audit(AppComparison *comparison, const FemRunProgress *pro
   return STATUS_OK;
 }
 
+static const char *const audit_words[APP_AUDIT_KIND_COUNT] = {"volume", "gradient", "force", "total_force"};
+
 // What is said of one model, NaN where it does not apply.
 typedef struct Row {
   const char *model, *reference, *outcome;
-  double volume_error, force_error, volume_error_max, force_error_max; // audit
+  double audit[APP_AUDIT_KIND_COUNT], audit_max[APP_AUDIT_KIND_COUNT]; // mean, largest
   AppForceError force;
   double trajectory; // relative to the scene's length
   double energy_gain, wall_s, overlap_s;
@@ -93,23 +97,15 @@ static Row row_of(const AppComparison *comparison, int m) {
              .outcome = !model->is_driven ? "audit only"
                         : model->status   ? "failed"
                                           : "finished",
-             .volume_error = audits         ? model->audit.volume_error / audits
-                             : is_reference ? 0
-                                            : NAN,
-             .force_error = audits         ? model->audit.force_error / audits
-                            : is_reference ? 0
-                                           : NAN,
-             .volume_error_max = audits         ? model->audit.volume_error_max
-                                 : is_reference ? 0
-                                                : NAN,
-             .force_error_max = audits         ? model->audit.force_error_max
-                                : is_reference ? 0
-                                               : NAN,
              .force = {NAN, NAN},
              .trajectory = NAN,
              .energy_gain = NAN,
              .wall_s = NAN,
              .overlap_s = NAN};
+  for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) {
+    row.audit[k] = audits ? model->audit.sum[k] / audits : is_reference ? 0 : NAN;
+    row.audit_max[k] = audits ? model->audit.max[k] : is_reference ? 0 : NAN;
+  }
   if (!model->has_run) return row;
   row.force = app_comparison_force_error(&model->result, &reference->result);
   row.trajectory = app_comparison_trajectory_error(&model->result, &reference->result) / comparison->length;
@@ -143,10 +139,13 @@ void app_comparison_record(const AppComparison *comparison, const char *scene_pa
     record_text(record, "outcome", row.outcome);
     if (model->status) record_text(record, "message", model->message);
     record_integer(record, "audits", model->audit.count);
-    record_number(record, "audit_volume_error", row.volume_error);
-    record_number(record, "audit_volume_error_max", row.volume_error_max);
-    record_number(record, "audit_force_error", row.force_error);
-    record_number(record, "audit_force_error_max", row.force_error_max);
+    for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) {
+      char key[64];
+      snprintf(key, sizeof key, "audit_%s_error", audit_words[k]);
+      record_number(record, key, row.audit[k]);
+      snprintf(key, sizeof key, "audit_%s_error_max", audit_words[k]);
+      record_number(record, key, row.audit_max[k]);
+    }
     record_number(record, "force_error_l2", row.force.l2);
     record_number(record, "force_error_max", row.force.max);
     record_number(record, "trajectory_error", row.trajectory);
@@ -160,16 +159,17 @@ void app_comparison_record(const AppComparison *comparison, const char *scene_pa
 }
 
 void app_comparison_print_csv(const AppComparison *comparison, FILE *stream) {
-  fputs("model,reference,outcome,audits,audit_volume_error,audit_volume_error_max,audit_force_error,"
-        "audit_force_error_max,force_error_l2,force_error_max,trajectory_error,energy_gain_relative,wall_s,"
-        "overlap_s\n",
-        stream);
+  fputs("model,reference,outcome,audits", stream);
+  for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++)
+    fprintf(stream, ",audit_%s_error,audit_%s_error_max", audit_words[k], audit_words[k]);
+  fputs(",force_error_l2,force_error_max,trajectory_error,energy_gain_relative,wall_s,overlap_s\n", stream);
   for (int m = 0; m < comparison->model_count; m++) {
     Row row = row_of(comparison, m);
-    fprintf(stream, "%s,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", row.model,
-            row.reference, row.outcome, comparison->models[m].audit.count, row.volume_error,
-            row.volume_error_max, row.force_error, row.force_error_max, row.force.l2, row.force.max,
-            row.trajectory, row.energy_gain, row.wall_s, row.overlap_s);
+    fprintf(stream, "%s,%s,%s,%d", row.model, row.reference, row.outcome, comparison->models[m].audit.count);
+    for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++)
+      fprintf(stream, ",%.9g,%.9g", row.audit[k], row.audit_max[k]);
+    fprintf(stream, ",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", row.force.l2, row.force.max, row.trajectory,
+            row.energy_gain, row.wall_s, row.overlap_s);
   }
 }
 
@@ -182,15 +182,15 @@ static void print_figure(FILE *stream, const char *format, double value) {
 
 void app_comparison_print_table(const AppComparison *comparison, FILE *stream) {
   fprintf(stream, "reference: %s\n", comparison->models[comparison->reference].name);
-  fprintf(stream, "%-12s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "", "audit", "audit", "force",
-          "force", "path", "energy", "wall", "overlap", "");
-  fprintf(stream, "%-12s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "model", "ΔV/V ", "Δf/f ", "L2",
-          "max", "RMS/L", "gain", "s", "s", "");
+  fprintf(stream, "%-12s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "", "audit", "audit",
+          "audit", "audit", "force", "force", "path", "energy", "wall", "overlap", "");
+  // Δ and ∇ have two and three bytes.
+  fprintf(stream, "%-12s  %9s  %11s  %9s  %9s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "model", "ΔV", "Δ∇V",
+          "Δf", "ΔF", "L2", "max", "RMS/L", "gain", "s", "s", "");
   for (int m = 0; m < comparison->model_count; m++) {
     Row row = row_of(comparison, m);
     fprintf(stream, "%-12s", row.model);
-    print_figure(stream, "%.1e", row.volume_error);
-    print_figure(stream, "%.1e", row.force_error);
+    for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) print_figure(stream, "%.1e", row.audit[k]);
     print_figure(stream, "%.1e", row.force.l2);
     print_figure(stream, "%.1e", row.force.max);
     print_figure(stream, "%.1e", row.trajectory);

@@ -7,10 +7,18 @@
 
 #include "app/job.h"
 
-// Sums of contact_system_audit over the audited configurations.
+// The errors that an audit measures, as in ContactAudit.
+typedef enum AppAuditKind {
+  APP_AUDIT_VOLUME,
+  APP_AUDIT_GRADIENT,
+  APP_AUDIT_FORCE, // nodal
+  APP_AUDIT_TOTAL, // of interfaces
+  APP_AUDIT_KIND_COUNT
+} AppAuditKind;
+
+// Of contact_system_audit over the audited configurations.
 typedef struct AppAuditSums {
-  double volume_error, volume_error_max; // sum, largest
-  double force_error, force_error_max;
+  double sum[APP_AUDIT_KIND_COUNT], max[APP_AUDIT_KIND_COUNT];
   int count;
 } AppAuditSums;
 

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "base/vec3.h"
+
 static int compare_pairs(const ContactPair *a, const ContactPair *b) {
   if (a->facing != b->facing) return a->facing < b->facing ? -1 : 1;
   if (a->tets[0] != b->tets[0]) return a->tets[0] < b->tets[0] ? -1 : 1;
@@ -14,17 +16,44 @@ static double relative(double difference, double size) {
   return size == 0 ? INFINITY : difference / size;
 }
 
-// Σ|ΔV| / ΣV over the union of two sorted lists.
-static double compare_volumes(const ContactEvaluation *a, const ContactEvaluation *b, int *pair_count) {
-  double difference = 0, total = 0;
-  *pair_count = 0;
-  for (int i = 0, j = 0; i < a->pair_count || j < b->pair_count; (*pair_count)++) {
-    int order = i == a->pair_count ? 1 : j == b->pair_count ? -1 : compare_pairs(&a->pairs[i], &b->pairs[j]);
-    double left = order <= 0 ? a->volumes[i++] : 0, right = order >= 0 ? b->volumes[j++] : 0;
-    difference += fabs(left - right);
-    total += right;
+// The length of the difference of two pairs' ∇V; NULL: zero.
+static double gradient_length(const double *gradient, const double *other) {
+  double sum = 0;
+  for (int c = 0; c < CONTACT_PAIR_SIZE; c++) {
+    double d = (gradient ? gradient[c] : 0) - (other ? other[c] : 0);
+    sum += d * d;
   }
-  return relative(difference, total);
+  return sqrt(sum);
+}
+
+// V and ∇V over the union of two sorted lists.
+static void compare_overlaps(const ContactEvaluation *a, const ContactEvaluation *b, ContactAudit *audit) {
+  double volume = 0, volume_difference = 0, gradient = 0, gradient_difference = 0;
+  audit->pair_count = 0;
+  for (int i = 0, j = 0; i < a->pair_count || j < b->pair_count; audit->pair_count++) {
+    int order = i == a->pair_count ? 1 : j == b->pair_count ? -1 : compare_pairs(&a->pairs[i], &b->pairs[j]);
+    const double *left = order <= 0 ? a->gradients + CONTACT_PAIR_SIZE * (size_t)i : NULL,
+                 *right = order >= 0 ? b->gradients + CONTACT_PAIR_SIZE * (size_t)j : NULL;
+    double left_volume = order <= 0 ? a->volumes[i++] : 0, right_volume = order >= 0 ? b->volumes[j++] : 0;
+    volume_difference += fabs(left_volume - right_volume);
+    volume += right_volume;
+    gradient_difference += gradient_length(left, right);
+    gradient += gradient_length(right, NULL);
+  }
+  audit->volume_error = relative(volume_difference, volume);
+  audit->gradient_error = relative(gradient_difference, gradient);
+}
+
+static double compare_totals(const ContactLayout *layout, const ContactEvaluation *a,
+                             const ContactEvaluation *b) {
+  double difference = 0, total = 0;
+  for (int f = 0; f < layout->facing_count; f++) {
+    Vec3 left = vec3_at(a->interfaces[f].force), right = vec3_at(b->interfaces[f].force);
+    Vec3 d = vec3_sub(left, right);
+    difference += vec3_dot(d, d);
+    total += vec3_dot(right, right);
+  }
+  return relative(sqrt(difference), sqrt(total));
 }
 
 static double compare_forces(const ContactLayout *layout, const ContactEvaluation *a,
@@ -41,7 +70,8 @@ static double compare_forces(const ContactLayout *layout, const ContactEvaluatio
 ContactAudit contact_audit_compare(const ContactLayout *layout, const ContactEvaluation *candidate,
                                    const ContactEvaluation *reference) {
   ContactAudit audit;
-  audit.volume_error = compare_volumes(candidate, reference, &audit.pair_count);
+  compare_overlaps(candidate, reference, &audit);
   audit.force_error = compare_forces(layout, candidate, reference);
+  audit.total_error = compare_totals(layout, candidate, reference);
   return audit;
 }

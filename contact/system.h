@@ -186,10 +186,12 @@ Status contact_system_add_nodes(ContactSystem *system, const double *coefficient
                                 const ContactStiffnessSink *sink);
 
 // Audit: the same configuration with another overlap model: relative differences against `reference`.
-// volume_error: Σ|ΔV| / ΣV over the union of pairs; force_error: ‖Δf‖₂/‖f‖₂ of the nodal forces. Half-spaces
-// are left out: no model takes part in them. Changes nothing but scratch memory.
+// Half-spaces are left out: no model takes part in them. Changes nothing but scratch memory.
 typedef struct ContactAudit {
-  double volume_error, force_error;
+  double volume_error;   // Σ|ΔV| / ΣV over the union of pairs
+  double gradient_error; // Σ|Δ∇V| / Σ|∇V|, lengths of all 24 components
+  double force_error;    // ‖Δf‖₂/‖f‖₂ of the nodal forces
+  double total_error;    // ‖ΔF‖₂/‖F‖₂ of the total forces of all interfaces
   int pair_count;
 } ContactAudit;
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,

@@ -414,11 +414,15 @@ START_TEST(an_audit_measures_a_known_error_and_changes_nothing) {
   ContactAudit audit;
   ck_assert_ok(contact_system_audit(f->system, 0, moved, &scaled, &f->model, &audit));
   ck_assert_near(audit.volume_error, 1e-3, 1e-12);
+  ck_assert_near(audit.gradient_error, 1e-3, 1e-12);
   ck_assert_near(audit.force_error, 1.001 * 1.001 - 1, 1e-12);
+  ck_assert_near(audit.total_error, 1.001 * 1.001 - 1, 1e-12);
   ck_assert_int_gt(audit.pair_count, 20);
   ck_assert_ok(contact_system_audit(f->system, 0, moved, &f->model, &f->model, &audit));
   ck_assert_near(audit.volume_error, 0, 0);
+  ck_assert_near(audit.gradient_error, 0, 0);
   ck_assert_near(audit.force_error, 0, 0);
+  ck_assert_near(audit.total_error, 0, 0);
   ck_assert_near(energy_at(f, f->blocks.x), energy, 0);
   ck_assert_int_eq(contact_system_counters(f->system)->evaluations, before.evaluations);
   free(moved), destroy(f);
