@@ -6,10 +6,11 @@
 #include <string.h>
 
 #include "app/bench_pairs.h"
+#include "app/gnuplot.h"
 #include "app/job.h"
 #include "app/pareto_pairs.h"
-#include "app/pareto_plot.h"
 #include "app/pareto_scenes.h"
+#include "app/plot.h"
 #include "app/sweep.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -164,13 +165,42 @@ static Status print(const AppPareto *pareto) {
                                 pareto->comparison_count);
 }
 
+static Status draw(const Record *points, const char *picture, const char *script) {
+  FileWriter writer;
+  TRY(file_begin(&writer, script));
+  Status status = app_plot_frontier(writer.stream, picture, points, NULL);
+  if (status) {
+    file_abandon(&writer);
+    return status;
+  }
+  TRY(file_commit(&writer));
+  return app_gnuplot_run(script);
+}
+
+// pareto.svg and pareto.png, with the scripts that drew them, as `tetlap plot` would.
+static Status draw_all(const char *directory) {
+  static const char *const pictures[] = {"pareto.svg", "pareto.png"}, *const scripts[] = {"pareto.svg.gp",
+                                                                                          "pareto.png.gp"};
+  char *path = file_join(directory, "pareto.json");
+  Record *points = NULL;
+  Status status = path ? record_read(&points, path) : status_no_memory("a file name");
+  for (int k = 0; k < 2 && !status; k++) {
+    char *picture = file_join(directory, pictures[k]), *script = file_join(directory, scripts[k]);
+    status = picture && script ? draw(points, picture, script) : status_no_memory("a file name");
+    memory_free(picture);
+    memory_free(script);
+  }
+  if (points) record_destroy(points);
+  memory_free(path);
+  return status;
+}
+
 static Status run(Options *options) {
   AppPareto *pareto = &options->pareto;
   omp_set_num_threads(pareto->common.threads);
   Status status = measure(pareto, options);
   if (!status) status = print(pareto);
-  if (!status && app_pareto_plot(pareto, options->directory) != STATUS_OK)
-    log_warning("no picture: %s", status_message());
+  if (!status && draw_all(options->directory) != STATUS_OK) log_warning("no picture: %s", status_message());
   if (!status) log_info("wrote %s: pareto.json, pareto.csv, pareto.svg, pareto.png", options->directory);
   app_pareto_destroy(pareto);
   return status;

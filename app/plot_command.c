@@ -87,9 +87,16 @@ static Status write_frontier(FILE *script, const Options *options) {
   return status == STATUS_INPUT ? status_prefix(status, "%s", options->sources[0]) : status;
 }
 
-static Status plot(const Options *options, const char *path) {
+// A directory, also one that is not there; a name that ends in .json is that of a frontier.
+static bool is_run_named(const char *source) {
   struct stat info;
-  bool is_run = stat(options->sources[0], &info) != 0 || S_ISDIR(info.st_mode);
+  if (stat(source, &info) == 0) return S_ISDIR(info.st_mode);
+  size_t length = strlen(source), ending = strlen(".json");
+  return length < ending || strcmp(source + length - ending, ".json") != 0;
+}
+
+static Status plot(const Options *options, const char *path) {
+  bool is_run = is_run_named(options->sources[0]);
   FileWriter writer;
   TRY(file_begin(&writer, path));
   Status status = is_run ? write_history(writer.stream, options) : write_frontier(writer.stream, options);

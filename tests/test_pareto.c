@@ -322,7 +322,7 @@ START_TEST(the_command_writes_the_promised_keys) {
   for (size_t i = 0; i < size; i++) lines += text[i] == '\n';
   ck_assert_int_eq(lines, 1 + 2 * 2 + 2); // names; two models, V and ∇V; two models, force
   memory_free(text);
-  ck_assert_int_eq(access(place("out/pareto.gp"), R_OK), 0);
+  ck_assert_int_eq(access(place("out/pareto.svg.gp"), R_OK), 0);
 }
 END_TEST
 
