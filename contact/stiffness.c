@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "contact/bounds.h"
+#include "contact/clip.h"
 #include "contact/potential.h"
 #include "contact/shape.h"
 
@@ -233,7 +234,9 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
   }
   if (!layout->def.use_full_hessian) return STATUS_OK;
   add_shape_pairs(layout, evaluation, sink);
-  return model->ops->has_hessian ? add_mesh_pairs(stiffness, layout, evaluation, model, sink) : STATUS_OK;
+  // Newton's matrix may be another model's: that changes how fast the method converges, not what it finds
+  static const ContactOverlapModel lender = {.ops = &contact_overlap_clip};
+  return add_mesh_pairs(stiffness, layout, evaluation, model->ops->has_hessian ? model : &lender, sink);
 }
 
 Status contact_stiffness_add_nodes(ContactStiffness *stiffness, const ContactLayout *layout,

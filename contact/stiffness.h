@@ -3,7 +3,8 @@
 //
 //   ∂²U/∂x² = Σ c ∇w ∇wᵀ  (curvatures of contact/potential.h)  +  Σ p_ij ∇²V_ij  (geometric, indefinite)
 //
-// Vertices of obstacles carry no unknowns and are left out of every list.
+// A model without second derivatives borrows those of clipping: exact for `exact` and `cgal`, near for
+// learned ones. Vertices of obstacles carry no unknowns and are left out of every list.
 #ifndef TETLAP_CONTACT_STIFFNESS_H
 #define TETLAP_CONTACT_STIFFNESS_H
 

@@ -81,7 +81,7 @@ typedef struct ContactSystemDef {
   ContactPotential potential;
   double stiffness;      // κ
   double margin;         // skin margin while bodies are near [m]; 0: half the shortest mean edge of a body
-  bool use_full_hessian; // include p ∇²V where the model has it; else Gauss–Newton
+  bool use_full_hessian; // include p ∇²V, of `clip` if the model has none; else Gauss–Newton
   const ContactOverlapModel *model; // borrowed
 } ContactSystemDef;
 

@@ -24,7 +24,7 @@ static Status inflate(const void *self, const double pair[24], double *volume, d
   for (int i = 0; gradient && i < 24; i++) gradient[i] *= 1.1;
   return status;
 }
-static const ContactOverlapOps inflated = {.name = "inflated", .eval_pair = inflate};
+static const ContactOverlapOps inflated = {.name = "inflated", .eval_pair = inflate, .rejects = true};
 
 // The x coordinate of the first vertex in place of a volume: no symmetry at all.
 static Status lopsided_eval(const void *self, const double pair[24], double *volume, double *gradient,
@@ -35,7 +35,7 @@ static Status lopsided_eval(const void *self, const double pair[24], double *vol
   for (int i = 0; gradient && i < 24; i++) gradient[i] = i == 0;
   return STATUS_OK;
 }
-static const ContactOverlapOps lopsided = {.name = "lopsided", .eval_pair = lopsided_eval};
+static const ContactOverlapOps lopsided = {.name = "lopsided", .eval_pair = lopsided_eval, .rejects = true};
 
 static void load(const char *law, const char *mix, int count, DatagenPairs *pairs) {
   AppSourceDef def = {.law = law, .mix = mix, .count = count, .seed = 5};
