@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of every key of a scene file: its type, unit, range, default, help, and where its value goes in
 // FemSceneDef. From it come reading (scene_read), writing (scene_write), the JSON Schema and the manual's
-// reference page (scene_schema), so a new key is one line in scene_keys.c.
+// reference page (scene_schema), so a new key is one line in the scene_keys_*.c of its section.
 #ifndef TETLAP_APP_SCENE_KEYS_H
 #define TETLAP_APP_SCENE_KEYS_H
 

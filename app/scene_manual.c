@@ -18,7 +18,7 @@ typedef struct Manual {
 static const char *const introduction =
     "# The scene file\n"
     "\n"
-    "<!-- Made by `tetlap schema --markdown` from the table in app/scene_keys.c: change that, not this. -->\n"
+    "<!-- Made by `tetlap schema --markdown` from the tables in app/scene_keys*.c: change those, not this. -->\n"
     "\n"
     "A scene is a YAML or JSON file that says which bodies there are, what acts on them, and what is "
     "written. "
