@@ -57,6 +57,19 @@ static Status furnish(ContactNetModel *model, size_t more) {
   return STATUS_OK;
 }
 
+// What the normalisation makes of every first tetrahedron, the network need not be shown.
+static Status fold(ContactNetModel *model) {
+  const double *first = contact_normalise_first(model->kind);
+  if (!first) return STATUS_OK;
+  float coordinates[12];
+  for (int c = 0; c < 12; c++) coordinates[c] = (float)first[c];
+  NetModel_f32 whole = model->network;
+  NetStatus status = net_fold_create_f32(&whole, coordinates, &model->network);
+  net_model_destroy_f32(&whole);
+  model->input_first = 12;
+  return status == NET_OK ? STATUS_OK : fail_as_net(status);
+}
+
 static Status load(ContactNetModel *model, const char *path, size_t more) {
   NetStatus status = net_weights_read_f32(path, &model->network, &model->card);
   if (status != NET_OK) return fail_as_net(status);
@@ -68,6 +81,7 @@ static Status load(ContactNetModel *model, const char *path, size_t more) {
         "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER', 'pca, …' or 'sorted, …'", path,
         model->card.normalisation);
   model->has_range = contact_net_range_parse(model->card.range, &model->range);
+  TRY(fold(model));
   return furnish(model, more);
 }
 
@@ -91,8 +105,16 @@ void contact_net_model_leave(ContactNetDesk *desk) {
   atomic_flag_clear_explicit(&desk->is_taken, memory_order_release);
 }
 
-void contact_net_model_lay(ContactNetDesk *desk, const double pair[24]) {
+void contact_net_model_lay(const ContactNetModel *model, ContactNetDesk *desk, const double pair[24]) {
   assert(desk->row_count < CONTACT_NET_ROWS);
-  float *row = desk->x + 24 * (ptrdiff_t)desk->row_count++;
-  for (int c = 0; c < 24; c++) row[c] = (float)pair[c];
+  int first = model->input_first, width = 24 - first;
+  float *row = desk->x + (ptrdiff_t)width * desk->row_count++;
+  for (int c = 0; c < width; c++) row[c] = (float)pair[first + c];
+}
+
+void contact_net_model_lift(const ContactNetModel *model, const ContactNetDesk *desk, int row,
+                            double gradient[24]) {
+  int first = model->input_first, width = 24 - first;
+  for (int c = 0; c < first; c++) gradient[c] = 0;
+  for (int c = 0; c < width; c++) gradient[first + c] = (double)desk->gx[(ptrdiff_t)width * row + c];
 }

@@ -9,6 +9,7 @@
 #include "base/status.h"
 #include "contact/net_range.h"
 #include "contact/normalise.h"
+#include "net/fold.h"
 #include "net/forward.h"
 #include "net/weights.h"
 
@@ -19,7 +20,7 @@ void contact_net_model_print(ContactNormalisation kind, double scale,
                              char text[CONTACT_NET_NORMALISATION_TEXT]);
 bool contact_net_model_parse(const char *text, ContactNormalisation *kind, double *scale);
 
-// Rows of the network's input and output.
+// Rows of the network's input and output, one after another.
 typedef struct ContactNetDesk {
   atomic_flag is_taken;
   NetWork_f32 work;
@@ -30,7 +31,8 @@ typedef struct ContactNetDesk {
 } ContactNetDesk;
 
 typedef struct ContactNetModel {
-  NetModel_f32 network;
+  NetModel_f32 network; // folded where the normalisation makes the first tetrahedron the same for all pairs
+  int input_first;      // it is shown the pair's numbers from here on: 0, or 12 where it is folded
   NetCard card;
   ContactNormalisation kind;
   double scale; // the network tells scale · V' of the normalised pair
@@ -50,6 +52,10 @@ ContactNetDesk *contact_net_model_take(const ContactNetModel *model);
 void contact_net_model_leave(ContactNetDesk *desk);
 
 // Adds a row, the normalised pair as the network sees it.
-void contact_net_model_lay(ContactNetDesk *desk, const double pair[24]);
+void contact_net_model_lay(const ContactNetModel *model, ContactNetDesk *desk, const double pair[24]);
+
+// Row `row` of gx as a derivative by the normalised pair: 0 for what the network is not shown.
+void contact_net_model_lift(const ContactNetModel *model, const ContactNetDesk *desk, int row,
+                            double gradient[24]);
 
 #endif

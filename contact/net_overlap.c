@@ -222,7 +222,8 @@ static Status seat_pairs(Papers *papers, ContactNetDesk *desk) {
     }
     bool is_prepared = prepare(papers, seat);
     if (is_prepared && !contact_net_blend_is_exact(rule, &seat->prior)) {
-      for (int o = 0; o < rule->order_count; o++) contact_net_model_lay(desk, seat->normalised[o].pair);
+      for (int o = 0; o < rule->order_count; o++)
+        contact_net_model_lay(&papers->overlap->model, desk, seat->normalised[o].pair);
       papers->seat_count++;
       continue;
     }
@@ -279,25 +280,24 @@ static void weigh(void *self, const float *y, float *c) {
   }
 }
 
-static void add_order(const Papers *papers, const Seat *seat, int o, const float *gx, double *gradient) {
+static void add_order(const Papers *papers, const Seat *seat, int o, const ContactNetDesk *desk, int row,
+                      double *gradient) {
   double inner[SIZE], pulled[SIZE];
   const ContactNormalised *normalised = &seat->normalised[o];
   double by_range = papers->overlap->rule.keeps_to_range ? seat->blend.by_range[o] / normalised->factor : 0;
-  for (int i = 0; i < SIZE; i++) {
-    inner[i] = (double)gx[i];
-    if (by_range != 0) inner[i] += by_range * seat->inside_gradient[o][i];
-  }
+  contact_net_model_lift(&papers->overlap->model, desk, row, inner);
+  for (int i = 0; i < SIZE && by_range != 0; i++) inner[i] += by_range * seat->inside_gradient[o][i];
   contact_normalise_pull(normalised, seat->blend.inner[o], inner, pulled);
   for (int i = 0; i < SIZE; i++) gradient[i] += pulled[o ? (i + 12) % SIZE : i];
 }
 
-static void differentiate(const Papers *papers, const Seat *seat, const float *gx) {
+static void differentiate(const Papers *papers, const Seat *seat, const ContactNetDesk *desk, int row) {
   double *gradient = papers->batch->gradient + (size_t)seat->pair * SIZE;
   int n = papers->overlap->rule.order_count;
   double left = 1 - seat->blend.weight;
   for (int i = 0; i < SIZE; i++) gradient[i] = left > 0 ? left * seat->exact_gradient[i] : 0;
   if (!(seat->blend.weight > 0)) return;
-  for (int o = 0; o < n; o++) add_order(papers, seat, o, gx + SIZE * o, gradient);
+  for (int o = 0; o < n; o++) add_order(papers, seat, o, desk, row + o, gradient);
   if (seat->blend.by_share != 0) add_share_gradient(papers, seat, seat->blend.by_share, gradient);
 }
 
@@ -320,7 +320,7 @@ static Status eval_seated(const NetOverlap *overlap, const ContactOverlapBatch *
   net_forward_pull_f32(&desk->work, &overlap->model.network, desk->row_count, desk->x, weigh, papers, desk->y,
                        desk->c, desk->gx);
   for (int s = 0; s < papers->seat_count && !papers->status; s++)
-    differentiate(papers, &papers->seats[s], desk->gx + SIZE * (ptrdiff_t)n * s);
+    differentiate(papers, &papers->seats[s], desk, n * s);
   return papers->status;
 }
 
@@ -374,7 +374,8 @@ static bool lay_pair(const NetOverlap *overlap, ContactNetDesk *desk, const doub
   swap_order(pair, swapped);
   for (int o = 0; o < overlap->rule.order_count; o++)
     if (!contact_normalise(overlap->model.kind, o ? swapped : pair, &normalised[o])) return false;
-  for (int o = 0; o < overlap->rule.order_count; o++) contact_net_model_lay(desk, normalised[o].pair);
+  for (int o = 0; o < overlap->rule.order_count; o++)
+    contact_net_model_lay(&overlap->model, desk, normalised[o].pair);
   return true;
 }
 

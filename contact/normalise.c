@@ -34,6 +34,10 @@ static void map_vertices(const double pair[24], ContactNormalised *normalised) {
 
 static const double simplex[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 
+const double *contact_normalise_first(ContactNormalisation kind) {
+  return kind == CONTACT_NORMALISE_PCA ? NULL : simplex;
+}
+
 // The rows of E⁻¹ are cross products of edges over det E.
 static bool find_unit(const double pair[24], ContactNormalised *normalised) {
   Vec3 origin = vec3_at(pair), edge[3];

@@ -50,6 +50,9 @@ bool contact_normalise(ContactNormalisation kind, const double pair[24], Contact
 void contact_normalise_pull(const ContactNormalised *normalised, double volume, const double inner[24],
                             double gradient[24]);
 
+// The first tetrahedron of all normalised pairs (12), NULL where it depends on the pair.
+const double *contact_normalise_first(ContactNormalisation kind);
+
 const char *contact_normalise_name(ContactNormalisation kind); // "unit", "pca", "sorted"
 
 #endif

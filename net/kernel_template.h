@@ -57,6 +57,12 @@ typedef struct NET_NAME(NetKernel) {
   // Adds the derivative with respect to in, whose rows are `in_row` apart.
   void (*pool_backward)(NetPool pool, int rows, int n, int parts, int tangents, const NET_REAL *in,
                         ptrdiff_t in_row, const NET_REAL *gout, NET_REAL *gin);
+
+  // The same of two parts, of which the first is a constant for each row.
+  void (*pool_with)(NetPool pool, int rows, int n, int tangents, const NET_REAL *in, const NET_REAL *constant,
+                    NET_REAL *out);
+  void (*pool_with_backward)(NetPool pool, int rows, int n, int tangents, const NET_REAL *in,
+                             ptrdiff_t in_row, const NET_REAL *constant, const NET_REAL *gout, NET_REAL *gin);
 } NET_NAME(NetKernel);
 
 // NULL where this processor cannot run it.

@@ -25,6 +25,7 @@
 #include "net/adam.h"
 #include "net/checkpoint.h"
 #include "net/dense.h"
+#include "net/fold.h"
 #include "net/forward.h"
 #include "net/gradient.h"
 #include "net/kernel.h"

@@ -34,6 +34,9 @@ void NET_NAME(net_pass_backward)(const NET_NAME(NetPass) * pass, const NET_REAL 
 // The derivative with respect to the inputs, after a backward pass that wants it.
 void NET_NAME(net_pass_input_gradient)(const NET_NAME(NetPass) * pass, NET_REAL *gx);
 
+// After a forward pass: of the first sample, a slot's rows of part 0.
+void NET_NAME(net_pass_features)(const NET_NAME(NetPass) * pass, int slot, NET_REAL *features);
+
 // After a backward pass of values: Σ over activations f″ ā ż_t ż_u, (count, tangents, tangents). `sums` is
 // scratch.
 void NET_NAME(net_pass_second)(const NET_NAME(NetPass) * pass, NET_REAL *sums, NET_REAL *second);

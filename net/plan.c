@@ -163,6 +163,11 @@ static int add_pool(NetPlan *plan, int input, int spread) {
   return output;
 }
 
+static void pool_with_constant(NetPlan *plan, NetStep *step) {
+  step->kind = NET_STEP_POOL_WITH;
+  step->bias = add_tensor(plan, "first", "features", step->input_rows, 0, 0);
+}
+
 static NetView *add_view(NetPlan *plan, Rows rows) {
   NetView *view = &plan->views[plan->view_count++];
   *view = (NetView){.slot = rows.slot, .first_row = rows.first, .rows = rows.count};
@@ -177,32 +182,32 @@ static void add_head(NetPlan *plan, const char *block, Rows in, const NetWidths 
   add_linear(plan, name, hidden, (Rows){plan->output_slot, output_row, 1}, true, false);
 }
 
-// The three ways the input is looked at: input element 12 t + 3 a + c is coordinate c of vertex a of
-// tetrahedron t.
-static Rows add_vertex_view(NetPlan *plan, Rows rows) {
+// The three ways the input is looked at, n tetrahedra of it: input element 12 t + 3 a + c is coordinate c of
+// vertex a of tetrahedron t.
+static void add_vertex_view(NetPlan *plan, int n, Rows rows) {
   NetView *view = add_view(plan, rows);
   for (int c = 0; c < 3; c++)
     for (int a = 0; a < 4; a++)
-      for (int t = 0; t < 2; t++) view->index[c * 8 + a * 2 + t] = 12 * t + 3 * a + c;
-  return rows;
+      for (int t = 0; t < n; t++) view->index[(c * 4 + a) * n + t] = 12 * t + 3 * a + c;
 }
 
-static Rows add_tetrahedron_view(NetPlan *plan) {
-  Rows rows = {add_slot(plan, 12, 2), 0, 12};
+static Rows add_tetrahedron_view(NetPlan *plan, int n) {
+  Rows rows = {add_slot(plan, 12, n), 0, 12};
   NetView *view = add_view(plan, rows);
   for (int k = 0; k < 12; k++)
-    for (int t = 0; t < 2; t++) view->index[k * 2 + t] = 12 * t + k;
+    for (int t = 0; t < n; t++) view->index[k * n + t] = 12 * t + k;
   return rows;
 }
 
-static Rows add_pair_view(NetPlan *plan) {
-  Rows rows = {add_slot(plan, 24, 1), 0, 24};
+static Rows add_pair_view(NetPlan *plan, int n) {
+  Rows rows = {add_slot(plan, 12 * n, 1), 0, 12 * n};
   NetView *view = add_view(plan, rows);
-  for (int k = 0; k < 24; k++) view->index[k] = k;
+  for (int k = 0; k < 12 * n; k++) view->index[k] = k;
   return rows;
 }
 
-static void plan_tpn(NetPlan *plan) {
+// n = 2 tetrahedra, or 1 where the first one is folded into constants.
+static void plan_tpn(NetPlan *plan, int n) {
   const NetShape *shape = &plan->shape;
   Rows nothing = {-1, 0, 0};
   plan->output_slot = add_slot(plan, 2, 1);
@@ -210,22 +215,23 @@ static void plan_tpn(NetPlan *plan) {
   // Vertices. Coordinates that are joined to the features lie below them in the same slot, where the layers
   // read them.
   int width = shape->vertex.width[shape->vertex.count - 1];
-  int vertex_slot = add_slot(plan, width + (shape->has_coordinates ? 3 : 0), 8);
-  Rows xyz = add_vertex_view(plan, shape->has_coordinates ? (Rows){vertex_slot, width, 3}
-                                                          : (Rows){add_slot(plan, 3, 8), 0, 3});
+  int vertex_slot = add_slot(plan, width + (shape->has_coordinates ? 3 : 0), 4 * n);
+  Rows xyz = shape->has_coordinates ? (Rows){vertex_slot, width, 3} : (Rows){add_slot(plan, 3, 4 * n), 0, 3};
+  add_vertex_view(plan, n, xyz);
   add_block(plan, "vertex", xyz, &shape->vertex, shape->vertex_skip, xyz, (Rows){vertex_slot, 0, width});
 
   // Tetrahedra.
-  int pooled = add_pool(plan, vertex_slot, 2);
-  Rows raw = shape->tetrahedron_skip == NET_SKIP_NONE ? nothing : add_tetrahedron_view(plan);
+  int pooled = add_pool(plan, vertex_slot, n);
+  Rows raw = shape->tetrahedron_skip == NET_SKIP_NONE ? nothing : add_tetrahedron_view(plan, n);
   width = shape->tetrahedron.width[shape->tetrahedron.count - 1];
-  Rows tetrahedron = {add_slot(plan, width, 2), 0, width};
+  Rows tetrahedron = {add_slot(plan, width, n), 0, width};
   add_block(plan, "tetrahedron", (Rows){pooled, 0, plan->slots[pooled].rows}, &shape->tetrahedron,
             shape->tetrahedron_skip, raw, tetrahedron);
 
   // The pair.
   pooled = add_pool(plan, tetrahedron.slot, 1);
-  raw = shape->combiner_skip == NET_SKIP_NONE ? nothing : add_pair_view(plan);
+  if (n == 1) pool_with_constant(plan, &plan->steps[plan->step_count - 1]);
+  raw = shape->combiner_skip == NET_SKIP_NONE ? nothing : add_pair_view(plan, n);
   width = shape->combiner.width[shape->combiner.count - 1];
   Rows pair = {add_slot(plan, width, 1), 0, width};
   add_block(plan, "combiner", (Rows){pooled, 0, plan->slots[pooled].rows}, &shape->combiner,
@@ -246,16 +252,33 @@ static void plan_mlp(NetPlan *plan) {
   add_linear(plan, name, hidden, (Rows){plan->output_slot, 0, shape->output_count}, true, false);
 }
 
+static void complete(NetPlan *plan) {
+  mark_readers(plan);
+  mark_outputs(plan);
+  count_flops(plan);
+}
+
 NetStatus net_plan_create(const NetShape *shape, NetPlan *plan) {
   NET_TRY(net_shape_check(shape));
   *plan = (NetPlan){.shape = *shape};
   if (shape->kind == NET_TPN)
-    plan_tpn(plan);
+    plan_tpn(plan, 2);
   else
     plan_mlp(plan);
-  mark_readers(plan);
-  mark_outputs(plan);
-  count_flops(plan);
+  complete(plan);
+  return NET_OK;
+}
+
+NetStatus net_plan_create_folded(const NetShape *shape, NetPlan *plan) {
+  NET_TRY(net_shape_check(shape));
+  if (shape->kind != NET_TPN)
+    return net_status_fail(NET_BAD_ARGUMENT,
+                           "a network to fold must be a tpn: others have no first tetrahedron");
+  *plan = (NetPlan){.shape = *shape};
+  plan->shape.input_count = 12;
+  if (shape->combiner_skip != NET_SKIP_NONE) plan->shape.combiner_skip = NET_SKIP_BIASED;
+  plan_tpn(plan, 1);
+  complete(plan);
   return NET_OK;
 }
 

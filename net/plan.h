@@ -8,8 +8,8 @@
 //
 //     (1 + T) groups: the values, then each tangent  ×  p parts  ×  n samples
 //
-// and parts are (vertex a, tetrahedron t) with spread 8, (tetrahedron t) with 2, nothing with 1. A pool over
-// the outermost part index therefore leaves the next layout.
+// and parts are (vertex a, tetrahedron t) with spread 8, (tetrahedron t) with 2, nothing with 1; where a tpn
+// is folded, (vertex a) with 4. A pool over the outermost part index therefore leaves the next layout.
 #ifndef NET_PLAN_H
 #define NET_PLAN_H
 
@@ -46,6 +46,7 @@ typedef enum NetStepKind {
   NET_STEP_LINEAR,   // output = [base +] W input + b; then ReLU where `has_relu`
   NET_STEP_ACTIVATE, // output = SiLU(input)
   NET_STEP_POOL,     // output = max or sum over the outermost parts of input
+  NET_STEP_POOL_WITH // output = max or sum of input and a constant, the tensor `bias`, that comes first
 } NetStepKind;
 
 // Rows input_row … of slot `input` to rows output_row … of slot `output`, on parts part … part + part_count
@@ -85,6 +86,11 @@ typedef struct NetPlan {
 
 // NET_BAD_ARGUMENT where the shape is wrong.
 NetStatus net_plan_create(const NetShape *shape, NetPlan *plan);
+
+// A tpn whose first tetrahedron is the same in all samples (fold.h): the input is the second one's 12
+// coordinates, what the first one gives is a constant of the pool over tetrahedra and in the bias of the
+// combiner's skip. Its shape is the given one but for the input's width and that bias.
+NetStatus net_plan_create_folded(const NetShape *shape, NetPlan *plan);
 
 // The tensor's index, −1 if there is none of that name.
 int net_plan_find(const NetPlan *plan, const char *name);
