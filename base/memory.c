@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
 
+#include <malloc.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -39,6 +40,16 @@ int memory_reserve(void **array, size_t *capacity, size_t wanted, size_t size) {
 
 void memory_free(void *array) {
   free(array);
+}
+
+size_t memory_held(const void *array) {
+  return malloc_usable_size((void *)(uintptr_t)array);
+}
+
+size_t memory_held_by(size_t count, const void *const *arrays) {
+  size_t sum = 0;
+  for (size_t k = 0; k < count; k++) sum += memory_held(arrays[k]);
+  return sum;
 }
 
 void memory_fail_at(long k) {

@@ -18,6 +18,10 @@ int memory_reserve(void **array, size_t *capacity, size_t wanted, size_t size);
 
 void memory_free(void *array);
 
+// What an array of the above takes of the heap, rounding included [bytes]; 0 for NULL.
+size_t memory_held(const void *array);
+size_t memory_held_by(size_t count, const void *const *arrays); // of several
+
 // Tests: the k-th allocation from now on (1 = the next) fails once; 0 switches it off.
 void memory_fail_at(long k);
 

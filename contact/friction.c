@@ -40,6 +40,13 @@ void contact_friction_destroy(ContactFriction *friction) {
   *friction = (ContactFriction){0};
 }
 
+size_t contact_friction_bytes(const ContactFriction *friction) {
+  const void *const arrays[] = {friction->coefficients, friction->grips, friction->vertices,
+                                friction->weights,      friction->outer, friction->forces_around,
+                                friction->place,        friction->forces};
+  return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
+}
+
 // Where an element is met: its place in the evaluation's lists.
 typedef struct Meeting {
   const ContactLayout *layout;

@@ -63,6 +63,7 @@ typedef struct ContactFriction {
 Status contact_friction_create(ContactFriction *friction, ContactSystem *system, double coefficient,
                                double slip_speed);
 void contact_friction_destroy(ContactFriction *friction);
+size_t contact_friction_bytes(const ContactFriction *friction); // on the heap
 
 // Takes normals, normal forces and weights from the system's last evaluation.
 Status contact_friction_update(ContactFriction *friction);

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "contact/audit.h"
+#include "contact/footprint.h"
 #include "contact/onset.h"
 #include "contact/shape.h"
 #include "contact/status.h"
@@ -187,6 +188,14 @@ double contact_system_shape_power(const ContactSystem *system) {
 
 const ContactCounters *contact_system_counters(const ContactSystem *system) {
   return &system->counters;
+}
+
+size_t contact_system_bytes(const ContactSystem *system) {
+  size_t sum = memory_held(system) + contact_footprint_layout(&system->layout) +
+               contact_footprint_candidates(&system->candidates) + contact_footprint_onset(&system->onset) +
+               contact_footprint_stiffness(&system->stiffness) + contact_footprint_status(&system->status);
+  for (int k = 0; k < 2; k++) sum += contact_footprint_evaluation(&system->audits[k]);
+  return sum + contact_footprint_evaluation(&system->evaluation);
 }
 
 Status contact_system_look(ContactSystem *system, const ContactEvaluation **evaluation) {

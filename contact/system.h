@@ -19,6 +19,7 @@
 #define TETLAP_CONTACT_SYSTEM_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "base/status.h"
 #include "contact/overlap.h"
@@ -177,6 +178,8 @@ Status contact_system_active_pairs(const ContactSystem *system, int *count, doub
 // The power that moving shapes put in at the last evaluation [W]: ∂U/∂t at fixed positions.
 double contact_system_shape_power(const ContactSystem *system);
 const ContactCounters *contact_system_counters(const ContactSystem *system);
+// What it holds on the heap [bytes], the overlap model left out.
+size_t contact_system_bytes(const ContactSystem *system);
 // What laws that build on the potential (friction.h) look at: contact/evaluation.h, contact/layout.h.
 // `look` indexes the last evaluation's patches; the result is the system's, valid until the next evaluation.
 Status contact_system_look(ContactSystem *system, const struct ContactEvaluation **evaluation);

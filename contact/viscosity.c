@@ -23,6 +23,10 @@ void contact_viscosity_destroy(ContactViscosity *viscosity) {
   *viscosity = (ContactViscosity){0};
 }
 
+size_t contact_viscosity_bytes(const ContactViscosity *viscosity) {
+  return memory_held(viscosity->rates);
+}
+
 // What all of this looks at.
 typedef struct View {
   const ContactLayout *layout;

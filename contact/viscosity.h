@@ -28,6 +28,7 @@ typedef struct ContactViscosity {
 // STATUS_INPUT: η ≤ 0, or the system's potential is not nodal. A zeroed one can be destroyed.
 Status contact_viscosity_create(ContactViscosity *viscosity, ContactSystem *system, double coefficient);
 void contact_viscosity_destroy(ContactViscosity *viscosity);
+size_t contact_viscosity_bytes(const ContactViscosity *viscosity); // on the heap
 
 // All three below look at the system's last evaluation.
 

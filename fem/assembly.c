@@ -59,6 +59,11 @@ void fem_assembly_destroy(FemAssembly *assembly) {
   *assembly = (FemAssembly){0};
 }
 
+size_t fem_assembly_bytes(const FemAssembly *assembly) {
+  return memory_held(assembly->colouring.begin) + memory_held(assembly->colouring.tets) +
+         memory_held(assembly->elements) + memory_held(assembly->partial) + memory_held(assembly->slots);
+}
+
 Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown) {
   for (int i = 0; i < assembly->tet_count; i++)
     TRY(fem_pattern_add_clique(pattern, 4, assembly->model->tets[assembly->colouring.tets[i]], has_grown));

@@ -6,6 +6,7 @@
 #define TETLAP_FEM_ASSEMBLY_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "fem/effect.h"
 
@@ -37,6 +38,7 @@ typedef struct FemAssembly {
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
                            bool (*takes)(const FemModelBody *body));
 void fem_assembly_destroy(FemAssembly *assembly);
+size_t fem_assembly_bytes(const FemAssembly *assembly); // on the heap
 
 // Each element couples its four vertices.
 Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown);

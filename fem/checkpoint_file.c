@@ -14,7 +14,7 @@
 #include "fem/checkpoint.h"
 
 // HDF5 looks for its own beginning at 0, 512, 1024 …
-enum { HEAD_SIZE = 512, FORMAT_VERSION = 1, PATH_SIZE = 96 };
+enum { HEAD_SIZE = 512, FORMAT_VERSION = 2, PATH_SIZE = 96 };
 static const char MAGIC[] = "tetlap checkpoint";
 
 typedef enum FieldType { INTEGER, LONG, REAL } FieldType;
@@ -125,12 +125,13 @@ static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "fields[] lists every
 static_assert(sizeof(FemIntegratorStats) == 11 * sizeof(double), "fields[] lists the integrator's counts");
 static_assert(sizeof(FemSolverStats) == 9 * sizeof(double), "fields[] lists the solver's counts");
 static_assert(sizeof(ContactPairCounts) == 6 * sizeof(long long), "fields[] lists the counts of pairs");
-static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long), "fields[] lists the counts of the status");
+static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long),
+              "fields[] lists the counts of the status");
 
 static_assert(FEM_TROUBLE_KIND_COUNT == 4, "fields[] lists every kind of trouble");
 
 // An effect's cost, one array.
-enum { COST_COUNT = 6 };
+enum { COST_COUNT = 7 };
 static_assert(sizeof(FemEffectCost) == COST_COUNT * sizeof(double), "costs_of lists every number");
 
 static hid_t memory_type(FieldType type) {
@@ -229,7 +230,8 @@ static void costs_of(const FemEffectCost *cost, double values[COST_COUNT]) {
                                   cost->prepare_s,
                                   (double)cost->force_calls,
                                   (double)cost->jacobian_calls,
-                                  (double)cost->prepare_calls};
+                                  (double)cost->prepare_calls,
+                                  (double)cost->bytes_max};
   memcpy(values, all, sizeof all);
 }
 
@@ -239,7 +241,8 @@ static FemEffectCost cost_of(const double values[COST_COUNT]) {
                          .prepare_s = values[2],
                          .force_calls = (long long)values[3],
                          .jacobian_calls = (long long)values[4],
-                         .prepare_calls = (long long)values[5]};
+                         .prepare_calls = (long long)values[5],
+                         .bytes_max = (long long)values[6]};
 }
 
 static bool write_effects(hid_t file, const FemCheckpoint *checkpoint) {

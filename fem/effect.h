@@ -67,6 +67,8 @@ typedef struct FemEffectOps {
   // `prepare` at the checkpoint's state. STATUS_INPUT: it does not fit. NULL: no history.
   Status (*save)(const void *self, double **values, size_t *count);
   Status (*load)(void *self, const double *values, size_t count);
+  // What it holds on the heap beside `self` [bytes], by memory_held; NULL: nothing.
+  size_t (*bytes)(const void *self);
   void (*destroy)(void *self);
 } FemEffectOps;
 

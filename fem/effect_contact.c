@@ -246,6 +246,11 @@ static void report(void *self, Record *counters) {
   if (contact->has_self) record_integer(counters, "self_pairs_left_out", count->resting);
 }
 
+static size_t bytes(const void *self) {
+  const Contact *contact = self;
+  return memory_held(contact->bodies) + memory_held(contact->shapes) + contact_system_bytes(contact->system);
+}
+
 const FemEffectOps fem_effect_contact = {
     .name = "contact",
     .help = "bodies and obstacles that overlap are pushed apart by a penalty on the overlap volume",
@@ -259,6 +264,7 @@ const FemEffectOps fem_effect_contact = {
     .add_energy = add_energy,
     .gap = gap,
     .report = report,
+    .bytes = bytes,
     .destroy = destroy,
 };
 

@@ -87,6 +87,10 @@ static bool is_linear(void *self) {
   return true;
 }
 
+static size_t bytes(const void *self) {
+  return fem_assembly_bytes(self);
+}
+
 const FemEffectOps fem_effect_damping = {
     .name = "damping",
     .help = "stiffness-proportional damping and viscosity, by the strain rate",
@@ -98,5 +102,6 @@ const FemEffectOps fem_effect_damping = {
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .is_linear = is_linear,
+    .bytes = bytes,
     .destroy = destroy,
 };

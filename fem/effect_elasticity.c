@@ -68,6 +68,10 @@ static bool is_linear(void *self) {
   return true;
 }
 
+static size_t bytes(const void *self) {
+  return fem_assembly_bytes(self);
+}
+
 const FemEffectOps fem_effect_elasticity = {
     .name = "elasticity",
     .help = "the elements' elastic forces, by each body's material",
@@ -78,5 +82,6 @@ const FemEffectOps fem_effect_elasticity = {
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .is_linear = is_linear,
+    .bytes = bytes,
     .destroy = destroy,
 };

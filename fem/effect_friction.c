@@ -92,6 +92,10 @@ static void report(void *self, Record *counters) {
   record_integer(counters, "friction_pairs_dropped", law->dropped);
 }
 
+static size_t bytes(const void *self) {
+  return contact_friction_bytes(&((const Friction *)self)->law);
+}
+
 const FemEffectOps fem_effect_friction = {
     .name = "friction",
     .help = "what touches resists sliding with up to μ times the normal force",
@@ -106,6 +110,7 @@ const FemEffectOps fem_effect_friction = {
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .report = report,
+    .bytes = bytes,
     .destroy = destroy,
 };
 

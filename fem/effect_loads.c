@@ -133,6 +133,11 @@ static bool is_linear(void *self) {
   return true;
 }
 
+static size_t bytes(const void *self) {
+  const Loads *loads = self;
+  return memory_held(loads->kept_force) + memory_held(loads->kept_position) + memory_held(loads->force);
+}
+
 const FemEffectOps fem_effect_loads = {
     .name = "loads",
     .help = "forces, body forces, tractions and pressures from outside, by functions of time",
@@ -145,5 +150,6 @@ const FemEffectOps fem_effect_loads = {
     .add_energy = add_energy,
     .report = report,
     .is_linear = is_linear,
+    .bytes = bytes,
     .destroy = destroy,
 };

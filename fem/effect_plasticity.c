@@ -254,6 +254,11 @@ void fem_effect_plasticity_add_stress(const void *self, int tet, const double x[
     stress[s] += vec3_dot(vec3_at(P + 3 * rows[s]), vec3_at(F + 3 * columns[s])) / J;
 }
 
+static size_t bytes(const void *self) {
+  const Plasticity *plasticity = self;
+  return memory_held(plasticity->tets) + memory_held(plasticity->history) + memory_held(plasticity->place);
+}
+
 const FemEffectOps fem_effect_plasticity = {
     .name = "plasticity",
     .help = "isotropic J2 plasticity with linear hardening, beside the law stvk",
@@ -266,5 +271,6 @@ const FemEffectOps fem_effect_plasticity = {
     .report = report,
     .save = save,
     .load = load,
+    .bytes = bytes,
     .destroy = destroy,
 };

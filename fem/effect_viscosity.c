@@ -76,6 +76,10 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
+static size_t bytes(const void *self) {
+  return contact_viscosity_bytes(&((const Viscosity *)self)->law);
+}
+
 const FemEffectOps fem_effect_viscosity = {
     .name = "contact_viscosity",
     .help = "what goes into another body is resisted in proportion to its speed",
@@ -86,5 +90,6 @@ const FemEffectOps fem_effect_viscosity = {
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
+    .bytes = bytes,
     .destroy = destroy,
 };

@@ -84,6 +84,10 @@ static bool is_linear(void *self) {
   return true;
 }
 
+static size_t bytes(const void *self) {
+  return fem_volume_bytes(self);
+}
+
 const FemEffectOps fem_effect_volume = {
     .name = "volume",
     .help = "volume changes averaged at the vertices, for bodies with element: nodal",
@@ -94,5 +98,6 @@ const FemEffectOps fem_effect_volume = {
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .is_linear = is_linear,
+    .bytes = bytes,
     .destroy = destroy,
 };

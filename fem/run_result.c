@@ -33,6 +33,7 @@ static void add_cost(FemEffectCost *total, const FemEffectCost *part) {
   total->prepare_s += part->prepare_s;
   total->force_calls += part->force_calls, total->jacobian_calls += part->jacobian_calls;
   total->prepare_calls += part->prepare_calls;
+  if (part->bytes_max > total->bytes_max) total->bytes_max = part->bytes_max;
 }
 
 static void add_pairs(ContactPairCounts *total, const ContactPairCounts *part) {
@@ -168,6 +169,7 @@ static void summarise_effects(const FemRunResult *result, Record *record) {
     record_integer(row, "jacobian_calls", cost->jacobian_calls);
     record_number(row, "prepare_s", cost->prepare_s);
     record_integer(row, "prepare_calls", cost->prepare_calls);
+    record_integer(row, "bytes_max", cost->bytes_max);
   }
 }
 

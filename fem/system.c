@@ -38,6 +38,15 @@ static Status create_effects(FemSystem *system, const FemSystem *old) {
   return STATUS_OK;
 }
 
+static void weigh_effects(FemSystem *system) {
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffect *effect = &system->effects[i];
+    size_t bytes = memory_held(effect->self) + (effect->ops->bytes ? effect->ops->bytes(effect->self) : 0);
+    FemEffectCost *cost = &system->costs[i];
+    if ((long long)bytes > cost->bytes_max) cost->bytes_max = (long long)bytes;
+  }
+}
+
 // Every unknown couples at least with those of its own vertex.
 static Status couple_vertices(FemSystem *system) {
   for (int a = 0; a < system->model->vertex_count; a++)
@@ -78,6 +87,7 @@ static Status create(FemSystem *system, const FemSystem *old) {
     if (system->effects[i].ops->prepare)
       TRY(system->effects[i].ops->prepare(system->effects[i].self, &state, 0));
   TRY(couple_effects(system, 0, false, NULL));
+  weigh_effects(system);
   return lay_out(system);
 }
 
@@ -179,6 +189,7 @@ Status fem_system_accept(FemSystem *system, double time, const double *u, const 
     system->costs[i].prepare_s += clock_wall_s() - began;
     system->costs[i].prepare_calls++;
   }
+  weigh_effects(system);
   return STATUS_OK;
 }
 

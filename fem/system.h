@@ -9,10 +9,11 @@
 
 enum { FEM_MAX_EFFECTS = 32 };
 
-// Wall time and calls of one effect.
+// Wall time, calls and memory of one effect.
 typedef struct FemEffectCost {
   double force_s, jacobian_s, prepare_s;
   long long force_calls, jacobian_calls, prepare_calls;
+  long long bytes_max; // the most that it held after creation or an accepted step [bytes]
 } FemEffectCost;
 
 typedef struct FemSystem {

@@ -37,6 +37,7 @@ typedef struct FemVolume {
 
 Status fem_volume_create(FemVolume *volume, const FemModel *model);
 void fem_volume_destroy(FemVolume *volume); // also of a zeroed one
+size_t fem_volume_bytes(const FemVolume *volume); // on the heap
 
 Status fem_volume_couple(const FemVolume *volume, FemPattern *pattern, int *has_grown);
 // θ_e, θ_a and gradients at these positions (model->vertex_count, 3); what follows uses them.

@@ -62,7 +62,7 @@ static FemCheckpoint example(void) {
   const double history[] = {0.3, -1e-17};
   checkpoint.effects[0] = (FemCheckpointEffect){"plasticity", memory_copy(history, 2, sizeof(double)), 2};
   checkpoint.effects[1] = (FemCheckpointEffect){"gravity", memory_zeroed(0, 1), 0};
-  checkpoint.so_far.effects[1].cost = (FemEffectCost){.force_s = 0.5, .force_calls = 9};
+  checkpoint.so_far.effects[1].cost = (FemEffectCost){.force_s = 0.5, .force_calls = 9, .bytes_max = 4096};
   return checkpoint;
 }
 
@@ -208,9 +208,9 @@ END_TEST
 START_TEST(a_right_head_does_not_make_a_checkpoint) {
   char file[560], digest[DIGEST_TEXT];
   static const char *const heads[] = {
-      "tetlap checkpoint 1\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
-      "tetlap checkpoint 2\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n"};
-  static const char *const words[] = {"is damaged", "version 2"};
+      "tetlap checkpoint 2\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
+      "tetlap checkpoint 3\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n"};
+  static const char *const words[] = {"is damaged", "version 3"};
   for (int k = 0; k < 2; k++) {
     memset(file, ' ', sizeof file);
     digest_print(digest_bytes(DIGEST_START, file + 512, 48), digest);

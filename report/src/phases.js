@@ -2,6 +2,7 @@
 // Where a run's time went: a bar of phases, and the seconds beside their names.
 
 import { format, h } from "./dom.js";
+import { buildEffects } from "./effects.js";
 
 const PHASES = [
   ["overlap", "Overlap volumes", "contact"],
@@ -69,5 +70,6 @@ export function buildPhases(runs) {
       known.map((run) => h(".row", known.length > 1 && h(".name", h(`span.swatch.run-${run.letter}`), run.label), bar(run, most))),
     ),
     h("details.more", { open: true }, h("summary", "In numbers"), h(".scroll", h("table", h("thead", header), h("tbody", keys.map(row), sum)))),
+    buildEffects(known),
   );
 }

@@ -194,6 +194,11 @@ const tests = {
   async "says where the time went, in full"(page, { runs }) {
     const { phases } = JSON.parse(readFileSync(join(runs[0], "summary.json"), "utf8"));
     assert.equal(await page.eval(`document.querySelectorAll("#phases .row:first-child .piece").length`), Object.keys(phases).length);
+    const { effects } = JSON.parse(readFileSync(join(runs[0], "summary.json"), "utf8"));
+    assert.deepEqual(
+      [...new Set(await page.eval(`[...document.querySelectorAll("#phases tr[data-effect]")].map((row) => row.dataset.effect)`))],
+      Object.keys(effects),
+    );
     assert.match(await page.eval(`document.querySelector("#manifest").textContent`), /tetlap run/);
   },
 };

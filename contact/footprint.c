@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/footprint.h"
+
+#include "base/memory.h"
+
+#define HELD(...)                                                                                            \
+  memory_held_by(sizeof((const void *[]){__VA_ARGS__}) / sizeof(void *), (const void *const[]){__VA_ARGS__})
+
+size_t contact_footprint_layout(const ContactLayout *layout) {
+  const ContactSelf *self = &layout->self;
+  return HELD(layout->tet_volumes, layout->vertex_volumes, layout->facings, layout->nudges, layout->shifts,
+              self->outer, self->is_outer, self->left_out.pairs);
+}
+
+static size_t of_list(const ContactCandidateList *list) {
+  return HELD(list->pairs, list->begin, list->margins, list->tets);
+}
+
+size_t contact_footprint_candidates(const ContactCandidates *candidates) {
+  return of_list(&candidates->list) + of_list(&candidates->next) +
+         HELD(candidates->reference, candidates->found.pairs, candidates->is_listed, candidates->boxes,
+              candidates->motions, candidates->expected);
+}
+
+size_t contact_footprint_onset(const ContactOnset *onset) {
+  return HELD(onset->watched, onset->is_engaged, onset->boxes, onset->is_marked);
+}
+
+static size_t of_patches(const ContactPatches *patches) {
+  return HELD(patches->patches, patches->elements, patches->nodes, patches->pair_elements,
+              patches->element_pairs.begin, patches->element_pairs.items, patches->node_elements.begin,
+              patches->node_elements.items, patches->element_of_tet, patches->node_of_vertex);
+}
+
+size_t contact_footprint_evaluation(const ContactEvaluation *evaluation) {
+  return of_patches(&evaluation->patches) +
+         HELD(evaluation->positions, evaluation->pairs, evaluation->coordinates, evaluation->volumes,
+              evaluation->gradients, evaluation->pressures, evaluation->forces, evaluation->covered,
+              evaluation->interfaces, evaluation->is_kept, evaluation->boxes, evaluation->flags);
+}
+
+size_t contact_footprint_stiffness(const ContactStiffness *stiffness) {
+  return of_patches(&stiffness->near) + HELD(stiffness->near_pairs, stiffness->nodes, stiffness->vertices,
+                                             stiffness->gradient, stiffness->place, stiffness->hessians,
+                                             stiffness->volumes);
+}
+
+size_t contact_footprint_status(const ContactStatus *status) {
+  return HELD(status->predicted, status->exact, status->error, status->wrong_pairs, status->portion,
+              status->coordinates, status->asked, status->volumes, status->places, status->says[0],
+              status->says[1], status->boxes);
+}

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the parts of a contact system hold on the heap [bytes]: the lists grow with what is near, the rest
+// with the meshes. An overlap model's own data (weights) are not among them.
+#ifndef TETLAP_CONTACT_FOOTPRINT_H
+#define TETLAP_CONTACT_FOOTPRINT_H
+
+#include "contact/evaluation.h"
+#include "contact/onset.h"
+#include "contact/status.h"
+#include "contact/stiffness.h"
+
+size_t contact_footprint_layout(const ContactLayout *layout);
+size_t contact_footprint_candidates(const ContactCandidates *candidates);
+size_t contact_footprint_onset(const ContactOnset *onset);
+size_t contact_footprint_evaluation(const ContactEvaluation *evaluation);
+size_t contact_footprint_stiffness(const ContactStiffness *stiffness);
+size_t contact_footprint_status(const ContactStatus *status);
+
+#endif
