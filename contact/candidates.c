@@ -210,7 +210,7 @@ static Status search_shape(ContactCandidates *candidates, const ContactLayout *l
   for (int i = body->tet_begin; i < body->tet_end; i++) {
     double x[12];
     contact_layout_gather(layout, i, positions, x);
-    if (contact_shape_separation(shape, time, x) <= margin)
+    if (contact_shape_separation(shape, time, x, margin) <= margin)
       TRY(push(&candidates->next, (ContactPair){f, {i, -1}}));
   }
   return STATUS_OK;

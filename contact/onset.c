@@ -31,7 +31,7 @@ static double separation_of(const ContactLayout *layout, const ContactPair *pair
     contact_layout_gather(layout, pair->tets[1], positions, x + 12);
     return contact_separation_pair(x, enough);
   }
-  return contact_shape_separation(&layout->def.shapes[layout->facings[pair->facing].shape], time, x);
+  return contact_shape_separation(&layout->def.shapes[layout->facings[pair->facing].shape], time, x, enough);
 }
 
 static bool is_engaged(const ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Obstacles without elements: what the rest of contact asks of a half-space or a ball that stands or moves. A
-// kind is one `case` in each of these functions.
+// Obstacles without elements: what the rest of contact asks of a half-space, a ball or a convex solid that
+// stands or moves. A kind is one `case` in each of these functions.
 #ifndef TETLAP_CONTACT_SHAPE_H
 #define TETLAP_CONTACT_SHAPE_H
 
@@ -9,14 +9,15 @@
 
 // Where the shape's point is at a time [m].
 Vec3 contact_shape_point(const ContactShape *shape, double time);
-// How fast the shape's material moves at x [m/s]; of a ball with its spin.
+// How fast the shape's material moves at x [m/s]; with its spin.
 Vec3 contact_shape_velocity(const ContactShape *shape, double time, Vec3 x);
 
 // V [m³], ∂V/∂x [m²] and ∂²V/∂x² [m] of a tetrahedron (4, 3) in the shape; the last two may be NULL.
 void contact_shape_overlap(const ContactShape *shape, double time, const double tet[12], double *volume,
                            double gradient[12], double hessian[144]);
-// Distance of a tetrahedron from the shape [m], negative once they overlap.
-double contact_shape_separation(const ContactShape *shape, double time, const double tet[12]);
+// Distance of a tetrahedron from the shape [m], negative once they overlap; of a convex solid as in
+// contact/separation.h, ending early with a lower bound once it exceeds `enough`.
+double contact_shape_separation(const ContactShape *shape, double time, const double tet[12], double enough);
 
 // A lower bound of the distance of vertices begin … end, and of all between them, from the shape [m].
 double contact_shape_clearance(const ContactShape *shape, double time, const double *positions, int begin,
@@ -25,7 +26,7 @@ double contact_shape_clearance(const ContactShape *shape, double time, const dou
 double contact_shape_motion(const ContactShape *shape, double from, double to);
 double contact_shape_speed(const ContactShape *shape, double time);
 
-// STATUS_INPUT: a normal that is no unit vector, a radius that is not positive.
+// STATUS_INPUT: a normal that is no unit vector, a radius that is not positive, axes that are no frame.
 Status contact_shape_check(const ContactShape *shape);
 
 #endif

@@ -274,7 +274,7 @@ static bool is_within(const ContactLayout *layout, const ContactPair *pair, doub
   double x[12];
   contact_layout_gather(layout, pair->tets[0], positions, x);
   const ContactShape *shape = &layout->def.shapes[layout->facings[pair->facing].shape];
-  return contact_shape_separation(shape, time, x) <= reach;
+  return contact_shape_separation(shape, time, x, reach) <= reach;
 }
 
 typedef struct Visit {

@@ -36,6 +36,7 @@ typedef struct ContactBody {
 typedef enum ContactShapeKind {
   CONTACT_SHAPE_HALFSPACE, // { x : normal·(x − point) ≤ 0 }
   CONTACT_SHAPE_BALL,      // { x : |x − point| ≤ radius }
+  CONTACT_SHAPE_CONVEX,    // `convex` about `point`, along `axes`
 } ContactShapeKind;
 
 // `point` moves by point(t) = point + t velocity, or as `move` says, which returns position and velocity at a
@@ -44,11 +45,13 @@ typedef enum ContactShapeKind {
 typedef struct ContactShape {
   const char *name; // borrowed
   ContactShapeKind kind;
-  double point[3];    // [m]
-  double normal[3];   // of a half-space, unit length
-  double radius;      // of a ball [m]
-  double velocity[3]; // [m/s]
-  const void *motion; // handed to `move`; borrowed
+  double point[3];                    // [m]
+  double normal[3];                   // of a half-space, unit length
+  double radius;                      // of a ball [m]
+  const struct ContactConvex *convex; // of that kind; borrowed
+  double axes[3][3];                  // its own axes at rest, in space, orthonormal and right-handed
+  double velocity[3];                 // [m/s]
+  const void *motion;                 // handed to `move`; borrowed
   void (*move)(const void *motion, double time, const double rest[3], double position[3],
                double velocity[3]); // NULL: by `velocity`
 } ContactShape;

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "contact/convex.h"
 #include "contact/weights.h"
 #include "fem/drive.h"
 #include "fem/effect.h"
@@ -15,8 +16,9 @@
 typedef struct Contact {
   const FemModel *model; // borrowed
   ContactOverlapModel overlap;
-  ContactBody *bodies;  // (model->body_count)
-  ContactShape *shapes; // (shape_count)
+  ContactBody *bodies;   // (model->body_count)
+  ContactShape *shapes;  // (shape_count)
+  ContactConvex *solids; // of shapes                              (shape_count)
   int shape_count;
   bool has_self; // a body meets itself
   ContactSystem *system;
@@ -36,12 +38,50 @@ static void destroy(void *self) {
   contact_overlap_destroy(&contact->overlap);
   memory_free(contact->bodies);
   memory_free(contact->shapes);
+  memory_free(contact->solids);
   memory_free(contact);
 }
 
 static void move_shape(const void *motion, double time, const double rest[3], double position[3],
                        double velocity[3]) {
   fem_drive_point(motion, time, rest, position, velocity);
+}
+
+static void make_box(const FemObstacleDef *def, ContactShape *shape, ContactConvex *solid) {
+  double half[3];
+  for (int c = 0; c < 3; c++) half[c] = def->size[c] / 2;
+  contact_convex_make_box(solid, half);
+  fem_placement_axes(&def->turn, shape->axes);
+}
+
+// About the axis any two directions will do.
+static void make_cylinder(const FemObstacleDef *def, ContactShape *shape, ContactConvex *solid) {
+  Vec3 axis = vec3_at(def->axis);
+  axis = vec3_scale(1 / vec3_length(axis), axis);
+  Vec3 aside = fabs(axis.x) < 0.6 ? (Vec3){1, 0, 0} : (Vec3){0, 1, 0};
+  Vec3 first = vec3_sub(aside, vec3_scale(vec3_dot(aside, axis), axis));
+  first = vec3_scale(1 / vec3_length(first), first);
+  contact_convex_make_prism(solid, def->radius, def->length / 2, def->faces);
+  vec3_store(shape->axes[0], first);
+  vec3_store(shape->axes[1], vec3_cross(axis, first));
+  vec3_store(shape->axes[2], axis);
+}
+
+static void make_shape(const FemObstacleDef *def, ContactShape *shape, ContactConvex *solid) {
+  *shape = (ContactShape){.name = def->name,
+                          .kind = CONTACT_SHAPE_CONVEX,
+                          .radius = def->radius,
+                          .convex = solid,
+                          .motion = &def->motion,
+                          .move = fem_drive_is_still(&def->motion) ? NULL : move_shape};
+  vec3_store(shape->point, vec3_at(def->point));
+  if (def->kind == FEM_OBSTACLE_BOX) make_box(def, shape, solid);
+  if (def->kind == FEM_OBSTACLE_CYLINDER) make_cylinder(def, shape, solid);
+  if (def->kind == FEM_OBSTACLE_BALL) shape->kind = CONTACT_SHAPE_BALL;
+  if (def->kind != FEM_OBSTACLE_HALFSPACE) return;
+  Vec3 normal = vec3_at(def->normal);
+  shape->kind = CONTACT_SHAPE_HALFSPACE;
+  vec3_store(shape->normal, vec3_scale(1 / vec3_length(normal), normal));
 }
 
 static void list_sides(Contact *contact) {
@@ -62,16 +102,8 @@ static void list_sides(Contact *contact) {
   for (int o = 0; o < model->scene->obstacle_count; o++) {
     const FemObstacleDef *def = &model->scene->obstacles[o];
     if (def->kind == FEM_OBSTACLE_MESH) continue;
-    ContactShape *shape = &contact->shapes[contact->shape_count++];
-    bool is_ball = def->kind == FEM_OBSTACLE_BALL;
-    *shape = (ContactShape){.name = def->name,
-                            .kind = is_ball ? CONTACT_SHAPE_BALL : CONTACT_SHAPE_HALFSPACE,
-                            .radius = def->radius,
-                            .motion = &def->motion,
-                            .move = fem_drive_is_still(&def->motion) ? NULL : move_shape};
-    vec3_store(shape->point, vec3_at(def->point));
-    Vec3 normal = vec3_at(def->normal);
-    if (!is_ball) vec3_store(shape->normal, vec3_scale(1 / vec3_length(normal), normal));
+    make_shape(def, &contact->shapes[contact->shape_count], &contact->solids[contact->shape_count]);
+    contact->shape_count++;
   }
 }
 
@@ -125,7 +157,8 @@ static Status build(Contact *contact, Contact *old) {
   }
   contact->bodies = memory_zeroed((size_t)model->body_count, sizeof *contact->bodies);
   contact->shapes = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->shapes);
-  if (!contact->bodies || !contact->shapes) return status_no_memory("the contact bodies");
+  contact->solids = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->solids);
+  if (!contact->bodies || !contact->shapes || !contact->solids) return status_no_memory("the contact bodies");
   list_sides(contact);
   ContactSystemDef system = {.vertex_count = model->vertex_count,
                              .rest = model->rest,
@@ -248,7 +281,8 @@ static void report(void *self, Record *counters) {
 
 static size_t bytes(const void *self) {
   const Contact *contact = self;
-  return memory_held(contact->bodies) + memory_held(contact->shapes) + contact_system_bytes(contact->system);
+  return memory_held(contact->bodies) + memory_held(contact->shapes) + memory_held(contact->solids) +
+         contact_system_bytes(contact->system);
 }
 
 const FemEffectOps fem_effect_contact = {

@@ -75,6 +75,13 @@ static void rotation_of(const FemPlacement *placement, double R[9]) {
          9 * sizeof *R);
 }
 
+void fem_placement_axes(const FemPlacement *placement, double axes[3][3]) {
+  double R[9];
+  rotation_of(placement, R);
+  for (int k = 0; k < 3; k++)
+    for (int c = 0; c < 3; c++) axes[k][c] = R[3 * c + k];
+}
+
 static bool is_finite3(const double v[3]) {
   return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }

@@ -37,6 +37,8 @@ typedef struct FemPlacement {
 } FemPlacement;
 
 FemPlacement fem_placement_identity(void);
+// Where the turn takes the three axes of space: row k is that of axis k.
+void fem_placement_axes(const FemPlacement *placement, double axes[3][3]);
 
 // Options of meshing surfaces (.stl, .geo) in place.
 typedef struct FemMeshOptions {

@@ -101,16 +101,23 @@ typedef enum FemObstacleKind {
   FEM_OBSTACLE_MESH,
   FEM_OBSTACLE_HALFSPACE,
   FEM_OBSTACLE_BALL,
+  FEM_OBSTACLE_BOX,
+  FEM_OBSTACLE_CYLINDER,
 } FemObstacleKind;
 
 // An obstacle carries no unknowns; it stands still or moves.
 typedef struct FemObstacleDef {
   char *name;
   FemObstacleKind kind;
-  double point[3];  // on a half-space's surface; a ball's centre
-  double normal[3]; // out of a half-space
-  double radius;    // of a ball
-  char *mesh_path;  // else a mesh, or a box as in FemBodyDef
+  double point[3];   // on a half-space's surface; the centre of a ball, a box, a cylinder
+  double normal[3];  // out of a half-space
+  double radius;     // of a ball, a cylinder [m]
+  double size[3];    // edges of a box [m]
+  FemPlacement turn; // of a box about its centre; only axis and angle
+  double axis[3];    // of a cylinder
+  double length;     // along it [m]
+  int faces;         // of the prism that stands for it
+  char *mesh_path;   // else a mesh, or a box as in FemBodyDef
   double box_size[3];
   int box_cells[3];
   FemMeshOptions mesh_options;

@@ -155,7 +155,7 @@ static void check_upper(const FemBodyDef *body) {
 }
 
 static void check_obstacles(const FemSceneDef *scene) {
-  ck_assert_int_eq(scene->obstacle_count, 5);
+  ck_assert_int_eq(scene->obstacle_count, 7);
   const FemObstacleDef *ground = &scene->obstacles[0], *tool = ground + 1, *block = ground + 2;
   ck_assert_int_eq(ground->kind, FEM_OBSTACLE_HALFSPACE);
   ck_assert(tool->kind == FEM_OBSTACLE_MESH && block->kind == FEM_OBSTACLE_MESH);
@@ -174,6 +174,16 @@ static void check_obstacles(const FemSceneDef *scene) {
   ck_vector(scene->obstacles[4].point, 1, 2, 3);
   ck_assert_double_eq(scene->obstacles[4].radius, 0.5);
   ck_vector(block->motion.velocity, 0, 0, 0);
+  const FemObstacleDef *step = &scene->obstacles[5], *rod = step + 1;
+  ck_assert(step->kind == FEM_OBSTACLE_BOX && rod->kind == FEM_OBSTACLE_CYLINDER);
+  ck_vector(step->point, 1, 0, -1);
+  ck_vector(step->size, 2, 3, 4);
+  ck_vector(step->turn.axis, 1, 0, 0);
+  ck_assert_double_eq(step->turn.angle_degrees, 15);
+  ck_vector(rod->axis, 1, 1, 0);
+  ck_assert_double_eq(rod->radius, 0.25);
+  ck_assert_double_eq(rod->length, 3);
+  ck_assert_int_eq(rod->faces, 32);
 }
 
 static void check_settings(const FemSceneDef *scene) {
@@ -419,7 +429,7 @@ static const Wrong wrong[] = {
     {TIME BODY
      "obstacles: [{name: o, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}, motion: {spin: 1, axis: "
      "[1, 0, 0]}}]\n",
-     "s.yaml:3:81: obstacles[0]: a half-space does not turn; use a mesh, a box for example"},
+     "s.yaml:3:81: obstacles[0]: a half-space does not turn; use a box"},
     {TIME BODY "obstacles: [{name: o, sphere: {centre: [0, 0, 0], radius: 0}}]\n",
      "s.yaml:3:59: obstacles[0].sphere.radius: expected a number in (0, inf) [m], found the number 0"},
     {TIME BODY
@@ -520,8 +530,11 @@ static const Wrong wrong[] = {
      "s.yaml:2:26: bodies[0].mesh needs one of these keys: file box"},
     {TIME "bodies: [{name: a, mesh: {size: 1, box: {size: [1, 1, 1], cells: 1}}, " MATERIAL "}]\n",
      "s.yaml:2:27: 'size' in bodies[0].mesh needs 'file' beside it"},
+    {TIME BODY "obstacles: [{name: g, cylinder: {centre: [0, 0, 0], axis: [0, 0, 1], radius: 1, length: 1, "
+               "faces: 9}}]\n",
+     "s.yaml:3:99: obstacles[0].cylinder: the number of faces must be even"},
     {TIME BODY "obstacles: [{name: g}]\n",
-     "s.yaml:3:13: obstacles[0] needs one of these keys: halfspace sphere mesh"},
+     "s.yaml:3:13: obstacles[0] needs one of these keys: halfspace sphere box cylinder mesh"},
     {TIME BODY "obstacles: [{name: g, mesh: g.msh, velocity: [0, 0, 1]}]\n",
      "s.yaml:3:36: 'velocity' in obstacles[0] contradicts 'mesh'; keep one of them"},
     {TIME BODY_WITH("self_contact: true"), "s.yaml:6:5: 'self_contact' needs contact"},

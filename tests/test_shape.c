@@ -4,6 +4,7 @@
 #include "scene.h"
 
 #include "base/vec3.h"
+#include "contact/convex.h"
 #include "contact/friction.h"
 #include "contact/shape.h"
 
@@ -60,6 +61,30 @@ static ContactShape plane_below(void) {
       .name = "plane", .normal = {0, 0.6, 0.8}, .point = {1, 0.5, 0}, .velocity = {0, 1, -0.3}};
 }
 
+// A box and a cylinder, turned and moving; what they are made of outlives every test.
+static ContactShape box_below(void) {
+  static ContactConvex box;
+  const FemPlacement turn = {.axis = {1, 2, 0.5}, .angle_degrees = 25};
+  contact_convex_make_box(&box, (double[3]){0.9, 1.1, 0.8});
+  ContactShape shape = {
+      .name = "box", .kind = CONTACT_SHAPE_CONVEX, .convex = &box, .point = {1.7, 1.2, -0.4}, .move = swing};
+  fem_placement_axes(&turn, shape.axes);
+  return shape;
+}
+
+static ContactShape cylinder_below(void) {
+  static ContactConvex prism;
+  const FemPlacement turn = {.axis = {2, -1, 0}, .angle_degrees = 70};
+  contact_convex_make_prism(&prism, 0.8, 1.2, 32);
+  ContactShape shape = {.name = "cylinder",
+                        .kind = CONTACT_SHAPE_CONVEX,
+                        .convex = &prism,
+                        .point = {1.7, 1.2, -0.4},
+                        .move = swing};
+  fem_placement_axes(&turn, shape.axes);
+  return shape;
+}
+
 static double energy_at(Fixture *f, double time, const double *x) {
   double energy;
   ck_assert_ok(contact_system_eval(f->system, time, x, &energy, NULL));
@@ -68,7 +93,16 @@ static double energy_at(Fixture *f, double time, const double *x) {
 
 // _i: which shape.
 static Fixture *fixture_of(int i) {
-  return block_on(i == 0 ? ball_below() : plane_below());
+  switch (i) {
+  case 0:
+    return block_on(ball_below());
+  case 1:
+    return block_on(plane_below());
+  case 2:
+    return block_on(box_below());
+  default:
+    return block_on(cylinder_below());
+  }
 }
 
 START_TEST(forces_are_minus_the_gradient_of_the_energy) {
@@ -134,6 +168,72 @@ START_TEST(a_spinning_ball_drags_what_rests_on_it) {
 }
 END_TEST
 
+// _i: 2, the box; 3, the cylinder.
+START_TEST(a_turned_solid_has_the_derivatives_of_its_volume) {
+  ContactShape shape = _i == 2 ? box_below() : cylinder_below();
+  double tet[12] = {1.5, 1.1, 0.2, 2.4, 1.3, 0.4, 1.6, 2, 0.3, 1.8, 1.3, 0.9}, h = 1e-6;
+  double volume, gradient[12], hessian[144], high, low, slope_high[12], slope_low[12];
+  contact_shape_overlap(&shape, 0.4, tet, &volume, gradient, hessian);
+  ck_assert_double_gt(volume, 1e-3);
+  ck_assert_double_lt(contact_shape_separation(&shape, 0.4, tet, INFINITY), 0);
+  for (int k = 0; k < 12; k++) {
+    double kept = tet[k];
+    tet[k] = kept + h;
+    contact_shape_overlap(&shape, 0.4, tet, &high, slope_high, NULL);
+    tet[k] = kept - h;
+    contact_shape_overlap(&shape, 0.4, tet, &low, slope_low, NULL);
+    tet[k] = kept;
+    ck_assert_near(gradient[k], (high - low) / (2 * h), 1e-8);
+    for (int r = 0; r < 12; r++)
+      ck_assert_near(hessian[12 * r + k], (slope_high[r] - slope_low[r]) / (2 * h), 1e-6);
+  }
+}
+END_TEST
+
+START_TEST(no_corner_of_a_turning_solid_moves_farther_than_it_says) {
+  ContactShape shape = _i == 2 ? box_below() : cylinder_below();
+  double most = 0, fastest = 0;
+  for (int k = 0; k < shape.convex->corner_count; k++)
+    for (int sign = -1; sign <= 1; sign += 2) {
+      const Vec3 corner = vec3_scale(sign, shape.convex->corners[k]);
+      const double own[3] = {corner.x, corner.y, corner.z};
+      double rest[3], from[3], to[3], velocity[3];
+      for (int c = 0; c < 3; c++) {
+        rest[c] = shape.point[c];
+        for (int a = 0; a < 3; a++) rest[c] += own[a] * shape.axes[a][c];
+      }
+      swing(NULL, 0.9, rest, to, velocity);
+      swing(NULL, 0.2, rest, from, velocity);
+      most = fmax(most, vec3_length(vec3_sub(vec3_at(to), vec3_at(from))));
+      fastest = fmax(fastest, vec3_length(vec3_at(velocity)));
+    }
+  ck_assert_double_ge(contact_shape_motion(&shape, 0.2, 0.9), most);
+  ck_assert_double_le(contact_shape_motion(&shape, 0.2, 0.9), 2.5 * most);
+  ck_assert_double_ge(contact_shape_speed(&shape, 0.2), fastest);
+  ck_assert_double_le(contact_shape_speed(&shape, 0.2), 2.5 * fastest);
+}
+END_TEST
+
+START_TEST(clearance_is_never_more_than_the_distance_of_any_element) {
+  Fixture *f = fixture_of(_i);
+  const ContactSystemDef *def = &contact_system_layout(f->system)->def;
+  for (int step = 0; step < 20; step++) {
+    double lift = 0.2 * step, nearest = INFINITY, *x = blocks_copy(&f->blocks);
+    for (int v = 0; v < f->blocks.vertex_count; v++) x[3 * v] += 0.5 * lift, x[3 * v + 2] += lift;
+    for (int i = 0; i < def->tet_count; i++) {
+      double tet[12];
+      contact_layout_gather(contact_system_layout(f->system), i, x, tet);
+      nearest = fmin(nearest, contact_shape_separation(&f->shape, 0.3, tet, INFINITY));
+    }
+    double clearance = contact_shape_clearance(&f->shape, 0.3, x, 0, f->blocks.vertex_count);
+    ck_assert(clearance <= fmax(nearest, 0) + 1e-12 || clearance <= 0);
+    if (step == 19) ck_assert_double_gt(clearance, 0.3 * nearest);
+    free(x);
+  }
+  destroy(f);
+}
+END_TEST
+
 START_TEST(a_wrong_shape_is_refused) {
   ContactShape ball = ball_below(), plane = plane_below();
   ck_assert_ok(contact_shape_check(&ball));
@@ -141,6 +241,10 @@ START_TEST(a_wrong_shape_is_refused) {
   ball.radius = 0, plane.normal[0] = 1;
   ck_assert_int_eq(contact_shape_check(&ball), STATUS_INPUT);
   ck_assert_int_eq(contact_shape_check(&plane), STATUS_INPUT);
+  ContactShape box = box_below();
+  ck_assert_ok(contact_shape_check(&box));
+  box.axes[1][0] += 0.1;
+  ck_assert_int_eq(contact_shape_check(&box), STATUS_INPUT);
   ball.radius = NAN;
   ck_assert_int_eq(contact_shape_check(&ball), STATUS_INPUT);
 }
@@ -163,6 +267,44 @@ START_TEST(a_block_rests_between_balls) {
 }
 END_TEST
 
+// On a box's edge on one side, on a cylinder on the other: both as strong, as its middle is between them.
+START_TEST(a_block_rests_on_a_box_and_a_cylinder) {
+  SceneRun run;
+  scene_run(&run, "trestle", NULL);
+  int last = run.result.frame_count - 1;
+  double weight = run.model.bodies[0].mass * 9.81;
+  ck_assert_int_eq(run.result.interface_count, 2);
+  ck_assert_int_eq(run.model.unknown_count, 3 * (run.model.bodies[0].vertex_end));
+  Vec3 sum = {0, 0, 0};
+  for (int i = 0; i < 2; i++) {
+    ck_assert_near(scene_force(&run, last, i)[2], weight / 2, 0.02 * weight);
+    sum = vec3_add(sum, vec3_at(scene_force(&run, last, i)));
+  }
+  ck_assert_near(sum.z, weight, 2e-3 * weight);
+  ck_assert_double_le(scene_gain(&run), 1e-3);
+  scene_close(&run);
+}
+END_TEST
+
+// A paddle turns at a steady rate and throws a ball: the power that it puts in is the energy that it gave.
+START_TEST(a_turning_box_throws_a_block) {
+  SceneRun run;
+  scene_run(&run, "paddle", NULL);
+  ck_assert_double_gt(run.result.contact_force_max, 1);
+  ck_assert_double_gt(run.result.audit.work, 0);
+  const double *x =
+      run.result.trajectory + (size_t)(run.result.frame_count - 1) * 3 * (size_t)run.result.vertex_count;
+  Vec3 mean = {0, 0, 0};
+  for (int v = 0; v < run.result.vertex_count; v++)
+    mean = vec3_add(mean, vec3_scale(1.0 / run.result.vertex_count, vec3_at(x + 3 * v)));
+  ck_assert_double_gt(mean.y, 0.2); // it was thrown along y
+  ck_assert_double_le(scene_gain(&run), 1e-3);
+  // what was put in is there: as motion, or taken by the integrator's damping, never more
+  ck_assert_double_le(fabs(run.result.audit.total - run.result.audit.lowest), 1e-3 * run.result.audit.scale);
+  scene_close(&run);
+}
+END_TEST
+
 // The ball comes down along a table, presses 2 cm in, and goes up again: the work done comes back but for
 // what damping takes.
 START_TEST(a_driven_ball_presses_and_leaves) {
@@ -180,12 +322,17 @@ END_TEST
 
 int main(void) {
   TCase *test_case = tcase_create("shape");
-  tcase_add_loop_test(test_case, forces_are_minus_the_gradient_of_the_energy, 0, 2);
-  tcase_add_loop_test(test_case, the_power_of_a_moving_shape_is_the_rate_of_the_energy, 0, 2);
+  tcase_add_loop_test(test_case, forces_are_minus_the_gradient_of_the_energy, 0, 4);
+  tcase_add_loop_test(test_case, the_power_of_a_moving_shape_is_the_rate_of_the_energy, 0, 4);
   tcase_add_test(test_case, material_of_a_turning_ball_moves_with_it);
   tcase_add_test(test_case, a_spinning_ball_drags_what_rests_on_it);
+  tcase_add_loop_test(test_case, a_turned_solid_has_the_derivatives_of_its_volume, 2, 4);
+  tcase_add_loop_test(test_case, no_corner_of_a_turning_solid_moves_farther_than_it_says, 2, 4);
+  tcase_add_loop_test(test_case, clearance_is_never_more_than_the_distance_of_any_element, 0, 4);
   tcase_add_test(test_case, a_wrong_shape_is_refused);
   tcase_add_test(test_case, a_block_rests_between_balls);
+  tcase_add_test(test_case, a_block_rests_on_a_box_and_a_cylinder);
+  tcase_add_test(test_case, a_turning_box_throws_a_block);
   tcase_add_test(test_case, a_driven_ball_presses_and_leaves);
   return suite_run("shape", test_case, 120);
 }

@@ -47,7 +47,7 @@ export function solidsOf(run) {
   return {
     bodies,
     names: [...bodies, ...obstacles.map((obstacle) => obstacle.name)],
-    meshed: [...bodies, ...obstacles.filter((o) => !o.halfspace).map((o) => o.name)], // as numbered in the frames
+    meshed: [...bodies, ...obstacles.filter((o) => o.mesh).map((o) => o.name)], // as numbered in the frames
     halfspaces: obstacles.filter((obstacle) => obstacle.halfspace).map((obstacle) => obstacle.halfspace),
   };
 }
