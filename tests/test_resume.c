@@ -107,7 +107,8 @@ static bool is_measured(const char *line) {
   static const char *const words[] = {
       "_s\":",         "phases",      "broad_phase",   "\"overlap\": 0", "\"overlap\": 1",
       "\"contact\": ", "\"forces\":", "\"assembly\":", "\"analysis\":",  "\"factorisation\":",
-      "\"solve\":",    "\"output\":", "\"other\":",    "peak_rss",       "\"threads\":"};
+      "\"solve\":",    "\"output\":", "\"other\":",    "peak_rss",       "bytes_max",
+      "\"threads\":"};
   for (size_t k = 0; k < sizeof words / sizeof *words; k++)
     if (strstr(line, words[k])) return true;
   return false;
@@ -180,7 +181,8 @@ START_TEST(a_run_that_is_killed_and_resumed_is_the_same_to_the_last_bit) {
 }
 END_TEST
 
-// _i: case; some of them, as the way is that of the kills. Stopped by a signal: exit code 130, a checkpoint, whole files.
+// _i: case; some of them, as the way is that of the kills. Stopped by a signal: exit code 130, a checkpoint,
+// whole files.
 START_TEST(a_run_that_is_stopped_and_resumed_is_the_same) {
   const Case *c = &cases[_i];
   char line[2300], run_line[2048];
