@@ -32,7 +32,7 @@ bool app_stress_wants(const AppStressOptions *options, const char *name) {
 
 bool app_stress_wants_model(const AppStressOptions *options, const char *model) {
   if (options->models) return lists(options->models, model);
-  return !options->is_quick || lists("clip,geo", model);
+  return !options->is_quick || lists("clip,geo,any", model);
 }
 
 Status app_stress_run(const AppStressOptions *options, AppStress *stress) {
@@ -76,15 +76,26 @@ void app_stress_ask_occurred(AppStressRow *row, const char *name, double value, 
                .name = name, .value = value, .bound = least, .is_least = true, .is_occurrence = true});
 }
 
+void app_stress_ask_end(AppStressRow *row, double time, double end) {
+  ask(row, (AppStressMeasure){
+               .name = "time reached", .value = time / end, .bound = 1, .is_least = true, .is_of_end = true});
+}
+
+// A run that was cut is a limit in itself; what did not come about by then is no failure.
+static AppStressOutcome verdict_of(const AppStressRow *row, const AppStressMeasure *measure,
+                                   const AppStressLimit *limit) {
+  if (measure->is_met) return limit ? APP_STRESS_BETTER : APP_STRESS_HELD;
+  bool is_excused = row->is_cut && (measure->is_occurrence || measure->is_of_end);
+  return limit || is_excused ? APP_STRESS_LIMIT : APP_STRESS_FAILED;
+}
+
 void app_stress_judge(AppStressRow *row) {
-  row->outcome = APP_STRESS_HELD;
+  row->outcome = row->is_cut ? APP_STRESS_LIMIT : APP_STRESS_HELD;
   for (int m = 0; m < row->measure_count; m++) {
     const AppStressMeasure *measure = &row->measures[m];
     const AppStressLimit *limit = app_stress_limits_find(row->name, row->model, measure->name);
-    AppStressOutcome outcome = measure->is_met ? limit ? APP_STRESS_BETTER : APP_STRESS_HELD
-                               : limit         ? APP_STRESS_LIMIT
-                                               : APP_STRESS_FAILED;
-    if (limit && !measure->is_met) {
+    AppStressOutcome outcome = verdict_of(row, measure, limit);
+    if (limit && !measure->is_met && !row->is_cut) {
       snprintf(row->remark, sizeof row->remark, "%s", limit->reason);
       row->counter = limit->counter;
     }
@@ -145,6 +156,8 @@ static void record_row(const AppStressRow *row, Record *record) {
   record_text(record, "remark", row->remark);
   record_text(record, "counter", row->counter);
   record_number(record, "cpu_s", row->cpu_s);
+  if (row->steps > 0) record_integer(record, "steps", row->steps);
+  if (row->pairs > 0) record_integer(record, "pairs", row->pairs);
   RecordList *list = record_list(record, "measures");
   for (int m = 0; m < row->measure_count; m++) {
     const AppStressMeasure *measure = &row->measures[m];

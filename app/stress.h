@@ -6,6 +6,7 @@
 //   all met ───────────────────────────────► held      (better: though app/stress_limits.c knows a limit)
 //   not met, within the model's tolerance ──► tolerance (pairs only, app/stress_tolerances.c)
 //   not met, a limit that is known ─────────► limit     (its reason and counter, app/stress_limits.c)
+//   cut: the processor time it was given is spent ► limit (what held until then is judged all the same)
 //   not met otherwise ──────────────────────► failed
 //   could not be asked, with a reason ──────► absent    (weights missing, too slow, waits for a feature)
 #ifndef TETLAP_APP_STRESS_H
@@ -35,6 +36,7 @@ typedef struct AppStressMeasure {
   double value, bound;
   bool is_least;      // value ≥ bound is asked, else value ≤ bound
   bool is_occurrence; // says that the case did occur
+  bool is_of_end;     // makes sense only of a run that came to its end
   bool is_met;
 } AppStressMeasure;
 
@@ -46,7 +48,9 @@ typedef struct AppStressRow {
   int measure_count;
   char remark[400];    // reason of a limit, an absence; a run's message
   const char *counter; // that makes a limit visible; NULL: none
+  bool is_cut;         // ran out of its processor time: what needs its end cannot be asked
   double cpu_s;
+  long long steps, pairs; // of a scene: steps accepted, pairs that the overlap model was asked
 } AppStressRow;
 
 typedef struct AppStress {
@@ -59,8 +63,9 @@ typedef struct AppStressOptions {
   bool has_pairs, has_scenes, is_quick;
   const char *only;   // part of a case's name; NULL: all
   const char *models; // comma-separated; NULL: all, with `is_quick` clip and geo
+  double limit_s;     // processor time of a scene with a model; 0: the case's own
   const volatile sig_atomic_t *stop;
-  void (*observe)(void *observer, const AppStressRow *row); // after each row; may be NULL
+  void (*observe)(void *observer, const AppStress *stress); // after each row, the last; may be NULL
   void *observer;
 } AppStressOptions;
 
@@ -75,10 +80,11 @@ void app_stress_destroy(AppStress *stress);
 
 // A new row at the end; NULL: no memory.
 AppStressRow *app_stress_add(AppStress *stress, const char *group, const char *name, const char *model);
-// value ≤ bound; value ≥ bound; that the case did occur. NaN is not met.
+// value ≤ bound; value ≥ bound; that the case did occur; that the run's time was reached. NaN is not met.
 void app_stress_ask_most(AppStressRow *row, const char *name, double value, double bound);
 void app_stress_ask_least(AppStressRow *row, const char *name, double value, double bound);
 void app_stress_ask_occurred(AppStressRow *row, const char *name, double value, double least);
+void app_stress_ask_end(AppStressRow *row, double time, double end);
 // The verdict, from the measures and the limits that are known.
 void app_stress_judge(AppStressRow *row);
 // The row says why it could not be asked.

@@ -2,6 +2,8 @@
 #include "app/stress_command.h"
 
 #include <argp.h>
+#include <math.h>
+#include <stdlib.h>
 
 #include "app/job.h"
 #include "app/stress.h"
@@ -9,7 +11,7 @@
 #include "base/cpu.h"
 #include "base/log.h"
 
-enum { KEY_ONLY = 256, KEY_PAIRS, KEY_SCENES, KEY_QUICK };
+enum { KEY_ONLY = 256, KEY_PAIRS, KEY_SCENES, KEY_QUICK, KEY_LIMIT };
 
 typedef struct Options {
   AppStressOptions stress;
@@ -19,14 +21,27 @@ typedef struct Options {
 
 static const struct argp_option option_table[] = {
     {"only", KEY_ONLY, "NAME", 0, "Only cases with NAME in their name", 0},
-    {"overlap", 'm', "NAME,…", 0, "Only these overlap models (default: all; with --quick clip and geo)", 0},
+    {"overlap", 'm', "NAME,…", 0,
+     "Only these overlap models; any: scenes in which none takes part (default: all; with --quick clip and "
+     "geo)",
+     0},
     {"pairs", KEY_PAIRS, NULL, 0, "Only classes of pairs", 0},
     {"scenes", KEY_SCENES, NULL, 0, "Only scenes", 0},
     {"quick", KEY_QUICK, NULL, 0, "Fewer members of each class, and only the scenes that take a moment", 0},
-    {"json", 'j', "FILE", 0, "Write the table and all that was measured to FILE", 0},
+    {"limit", KEY_LIMIT, "SECONDS", 0,
+     "Cut a scene with a model after so much processor time (default: the case's own, 60 or more)", 0},
+    {"json", 'j', "FILE", 0, "Write the table and all that was measured to FILE, anew after every row", 0},
     {"quiet", 'q', NULL, 0, "Say errors only", 0},
     {0},
 };
+
+static double limit_of(struct argp_state *state, const char *text) {
+  char *end;
+  double seconds = strtod(text, &end);
+  if (end == text || *end || !(seconds > 0) || isinf(seconds))
+    argp_error(state, "--limit is '%s'; give a number of seconds above 0", text);
+  return seconds;
+}
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
@@ -46,6 +61,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case KEY_QUICK:
     options->stress.is_quick = true;
     return 0;
+  case KEY_LIMIT:
+    options->stress.limit_s = limit_of(state, text);
+    return 0;
   case 'j':
     options->json = text;
     return 0;
@@ -60,11 +78,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-static void show(void *observer, const AppStressRow *row) {
-  (void)observer;
-  log_progress("%s, %s: %s", row->name, row->model, app_stress_outcome_name(row->outcome));
-}
-
 static Status write_json(const AppStress *stress, const char *path) {
   Record *record = record_new();
   if (!record) return status_no_memory("the table of hard cases");
@@ -76,6 +89,14 @@ static Status write_json(const AppStress *stress, const char *path) {
   if (!status) status = record_write(record, path);
   record_destroy(record);
   return status;
+}
+
+// What is known so far is on disk, should the machine go down.
+static void show(void *observer, const AppStress *stress) {
+  const Options *options = observer;
+  const AppStressRow *row = &stress->rows[stress->count - 1];
+  log_progress("%s, %s: %s", row->name, row->model, app_stress_outcome_name(row->outcome));
+  if (options->json && write_json(stress, options->json)) log_warning("%s", status_message());
 }
 
 // The table, also of a run that was interrupted; a case that failed is a failure of the command.
@@ -98,7 +119,7 @@ int app_stress_command_run(int argument_count, char **arguments) {
     options.stress.has_pairs = options.stress.has_scenes = true;
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
   options.stress.stop = app_job_stop_flag();
-  if (!options.is_quiet) options.stress.observe = show;
+  options.stress.observe = show, options.stress.observer = &options;
   AppStress stress;
   Status status = app_stress_run(&options.stress, &stress);
   log_progress_end();

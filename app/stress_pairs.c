@@ -267,7 +267,7 @@ static Status run_case(const AppStressOptions *options, AppStress *stress, const
     TRY(run_class(options, model, class_index, row));
   else
     run_not_numbers(model, row);
-  if (options->observe) options->observe(options->observer, row);
+  if (options->observe) options->observe(options->observer, stress);
   return STATUS_OK;
 }
 

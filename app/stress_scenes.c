@@ -15,25 +15,44 @@ static void ask_common(const AppStressScene *scene, const AppStressRun *run, App
   const FemRunResult *result = &run->result;
   if (scene->asked & APP_STRESS_TOUCHES)
     app_stress_ask_occurred(row, "overlapping pairs", result->pairs_max, 1);
-  if (scene->asked & APP_STRESS_ENDS)
-    app_stress_ask_least(row, "time reached", result->end_time / run->scene.end, 1);
+  if (scene->asked & APP_STRESS_ENDS) app_stress_ask_end(row, result->end_time, run->scene.end);
   app_stress_ask_least(row, "all positions are numbers", app_stress_run_is_finite(run), 1);
   if (scene->asked & APP_STRESS_ENERGY)
     app_stress_ask_most(row, "energy gain", result->audit.gain / result->audit.scale, 1e-3);
   if (scene->asked & APP_STRESS_UPRIGHT) app_stress_ask_least(row, "det F", result->min_det_F, 1e-12);
 }
 
+static double limit_of(const AppStressScene *scene, const AppStressOptions *options) {
+  if (options->limit_s > 0) return options->limit_s;
+  return scene->limit_s > 0 ? scene->limit_s : LIMIT_S;
+}
+
+static void tell_cut(const AppStressRun *run, AppStressRow *row) {
+  const FemRunResult *result = &run->result;
+  row->is_cut = true;
+  row->counter = "summary.json: end_time, cpu_s, steps, trouble";
+  snprintf(
+      row->remark, sizeof row->remark,
+      "did not end within %.0f s of processor time: t = %.4g of %g s after %lld steps (smallest %.2g s), "
+      "%lld pairs asked",
+      run->limit_s, result->end_time, run->scene.end, result->integrator.steps, result->trouble.smallest_step,
+      result->pairs.tried);
+}
+
 // A case with a model, in `run`.
 static Status run_open(const AppStressScene *scene, const AppStressOptions *options, AppStressRun *run,
                        AppStressRow *row) {
-  run->limit_s = scene->limit_s > 0 ? scene->limit_s : LIMIT_S;
+  run->limit_s = limit_of(scene, options);
   run->asked_to_stop = options->stop;
   TRY(scene->run ? scene->run(run) : app_stress_run_scene(run));
   if (options->stop && *options->stop) return status_fail(STATUS_INTERRUPTED, "interrupted");
   row->cpu_s = run->cpu_s;
+  row->steps = run->result.integrator.steps, row->pairs = run->result.pairs.tried;
   ask_common(scene, run, row);
-  bool is_measurable = run->result.frame_count > 0;
-  if (is_measurable) scene->judge(run, row);
+  if (run->is_cut)
+    tell_cut(run, row);
+  else if (run->result.frame_count > 0)
+    scene->judge(run, row);
   app_stress_judge(row);
   if (row->outcome == APP_STRESS_FAILED && run->message[0])
     snprintf(row->remark, sizeof row->remark, "%s", run->message);
@@ -109,7 +128,7 @@ static Status run_row(const AppStressScene *scene, const AppStressOptions *optio
       return status_prefix(status, "%s, %s", scene->name, ops ? ops->name : ANY);
     }
   }
-  if (options->observe) options->observe(options->observer, row);
+  if (options->observe) options->observe(options->observer, stress);
   return STATUS_OK;
 }
 
@@ -117,7 +136,8 @@ static Status run_scene(const AppStressScene *scene, const AppStressOptions *opt
   int count;
   const ContactOverlapOps *const *models = contact_overlap_list(&count);
   Load load = {.pairs = -1};
-  if (scene->is_any) return run_row(scene, options, stress, NULL, &load);
+  if (scene->is_any)
+    return app_stress_wants_model(options, ANY) ? run_row(scene, options, stress, NULL, &load) : STATUS_OK;
   for (int m = 0; m < count; m++)
     if (app_stress_wants_model(options, models[m]->name))
       TRY(run_row(scene, options, stress, models[m], &load));
