@@ -158,6 +158,7 @@ static void record_row(const AppStressRow *row, Record *record) {
   record_number(record, "cpu_s", row->cpu_s);
   if (row->steps > 0) record_integer(record, "steps", row->steps);
   if (row->pairs > 0) record_integer(record, "pairs", row->pairs);
+  if (row->fallbacks > 0) record_integer(record, "fallbacks", row->fallbacks);
   RecordList *list = record_list(record, "measures");
   for (int m = 0; m < row->measure_count; m++) {
     const AppStressMeasure *measure = &row->measures[m];

@@ -50,7 +50,9 @@ typedef struct AppStressRow {
   const char *counter; // that makes a limit visible; NULL: none
   bool is_cut;         // ran out of its processor time: what needs its end cannot be asked
   double cpu_s;
-  long long steps, pairs; // of a scene: steps accepted, pairs that the overlap model was asked
+  long long steps;     // of a scene: accepted
+  long long pairs;     // that the overlap model was asked; of a class: its members
+  long long fallbacks; // of a class: members that the model left to another (CONTACT_OVERLAP_FALLBACK)
 } AppStressRow;
 
 typedef struct AppStress {

@@ -4,7 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "app/stress_resume.h"
 #include "app/stress_scenes.h"
+#include "app/stress_slabs.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect_contact.h"
@@ -300,6 +302,14 @@ enum {
   "bodies.plate.place={translate: [" gap ", 0.021, 0.019]}", "time.initial_step=" step,                      \
       "time.max_step=" step, "time.end=" end
 
+// An upper slab of so many cubes of an edge of the lower one's times `ratio`.
+#define SLAB(width, height, count, corner)                                                                   \
+  "bodies.upper.mesh={box: {size: [" width ", " width ", " height "], cells: [" count ", " count ", 2]}}",   \
+      "bodies.upper.place={translate: [" corner ", 0]}"
+#define FLAT_SLABS "slabs", 0, .judge = app_stress_slabs_judge, .run = app_stress_slabs_run, .is_still = true
+
+#define DROP "drop", SOUND, .judge = judge_drop
+
 static const AppStressScene cases[] = {
     {"vertex on face", "tetrahedra", UPRIGHT, .judge = judge_nothing, .is_quick = true,
      .overrides = {"bodies.upper.place={rotate: {axis: [1, 0, 0], degrees: 180}, translate: [0.0096, 0.0167, "
@@ -325,6 +335,14 @@ static const AppStressScene cases[] = {
      .overrides = {MESH("lower", "hole"), HELD_AT_BOTTOM, DOWN_TO("0.032"), HELD_ABOVE("0.0319")}},
     {"cliff edge", "cliff", UPRIGHT, .judge = judge_cliff},
     {"internal edges", "tiles", UPRIGHT, .judge = judge_tiles},
+    {"flat slabs, edge ratio 1", FLAT_SLABS, .overrides = {SLAB("9", "2", "9", "-4.47, -4.19")}},
+    {"flat slabs, edge ratio 1/2", FLAT_SLABS, .overrides = {SLAB("9", "1", "18", "-4.47, -4.19")}},
+    {"flat slabs, edge ratio 0.77", FLAT_SLABS, .is_quick = true},
+    {"flat slabs, aligned", FLAT_SLABS, .overrides = {SLAB("9", "2", "9", "-5, -5")}},
+    {"flat slabs, potential element", FLAT_SLABS, .overrides = {"contact.potential=element"}},
+    {"flat slabs, potential pair", FLAT_SLABS, .overrides = {"contact.potential=pair"}},
+    {"flat slabs, potential linear", FLAT_SLABS, .overrides = {"contact.potential=linear"}},
+    {"flat slabs, potential body", FLAT_SLABS, .overrides = {"contact.potential=body"}},
     {"tight fit", "tight", UPRIGHT, .judge = judge_tight},
     {"stack of 5", "stack5", UPRIGHT, .judge = judge_stack, .limit_s = 120},
     {"stack of 10", "stack10", UPRIGHT, .judge = judge_stack, .limit_s = 300},
@@ -340,16 +358,23 @@ static const AppStressScene cases[] = {
      .limit_s = 300},
     {"ball on wall, 67 m/s", "ball", SOUND, .judge = judge_ball, .limit_s = 120},
     {"two spheres", "spheres", SOUND, .judge = judge_spheres, .limit_s = 120},
-    {"drop, stiffness 1e5", "drop", SOUND, .judge = judge_drop, .overrides = {"contact.stiffness=1e5"}},
-    {"drop, stiffness 1e6", "drop", SOUND, .judge = judge_drop, .is_quick = true,
-     .overrides = {"contact.stiffness=1e6"}},
-    {"drop, stiffness 1e7", "drop", SOUND, .judge = judge_drop, .overrides = {"contact.stiffness=1e7"}},
-    {"drop, stiffness 1e8", "drop", SOUND, .judge = judge_drop, .overrides = {"contact.stiffness=1e8"}},
-    {"drop, stiffness 1e9", "drop", SOUND, .judge = judge_drop, .overrides = {"contact.stiffness=1e9"}},
-    {"drop, tolerance 1e-2", "drop", SOUND, .judge = judge_drop, .is_quick = true,
-     .overrides = {"time.tolerance=1e-2"}},
-    {"drop, tolerance 1e-6", "drop", SOUND, .judge = judge_drop, .limit_s = 120,
-     .overrides = {"time.tolerance=1e-6"}},
+    {"drop, stiffness 1e5", DROP, .overrides = {"contact.stiffness=1e5"}},
+    {"drop, stiffness 1e6", DROP, .is_quick = true, .overrides = {"contact.stiffness=1e6"}},
+    {"drop, stiffness 1e7", DROP, .overrides = {"contact.stiffness=1e7"}},
+    {"drop, stiffness 1e8", DROP, .overrides = {"contact.stiffness=1e8"}},
+    {"drop, stiffness 1e9", DROP, .overrides = {"contact.stiffness=1e9"}},
+    {"drop, tolerance 1e-2", DROP, .is_quick = true, .overrides = {"time.tolerance=1e-2"}},
+    {"drop, tolerance 1e-3", DROP, .overrides = {"time.tolerance=1e-3"}},
+    {"drop, tolerance 1e-5", DROP, .overrides = {"time.tolerance=1e-5"}},
+    {"drop, tolerance 1e-6", DROP, .limit_s = 120, .overrides = {"time.tolerance=1e-6"}},
+    {"drop, stiffness 1e5, tolerance 1e-2", DROP,
+     .overrides = {"contact.stiffness=1e5", "time.tolerance=1e-2"}},
+    {"drop, stiffness 1e5, tolerance 1e-6", DROP, .limit_s = 120,
+     .overrides = {"contact.stiffness=1e5", "time.tolerance=1e-6"}},
+    {"drop, stiffness 1e9, tolerance 1e-2", DROP,
+     .overrides = {"contact.stiffness=1e9", "time.tolerance=1e-2"}},
+    {"drop, stiffness 1e9, tolerance 1e-6", DROP, .limit_s = 120,
+     .overrides = {"contact.stiffness=1e9", "time.tolerance=1e-6"}},
     {"simultaneous onset", "onset", SOUND, .judge = judge_onset},
     {"deep start", "deep", APP_STRESS_TOUCHES | APP_STRESS_ENERGY, .judge = judge_deep, .is_quick = true},
     {"tetrahedron inside", "inside", APP_STRESS_TOUCHES, .judge = judge_inside, .is_quick = true},
@@ -365,6 +390,8 @@ static const AppStressScene cases[] = {
      .overrides = {"contact.potential=linear"}},
     {"rejected step", "deep", APP_STRESS_TOUCHES, .judge = judge_rejected, .is_quick = true,
      .run = run_rejected},
+    {"resume", "cliff", UPRIGHT, .judge = app_stress_resume_judge, .is_quick = true,
+     .run = app_stress_resume_run, .overrides = {"output.checkpoint={frames: 1, seconds: 0}"}},
     {"tunnelling, 1 element a step", "tunnel", SOUND, .judge = judge_tunnel_1,
      .overrides = {FIRED("0.055", "0.02", "0.1")}},
     {"tunnelling, 10 elements a step", "tunnel", SOUND, .judge = judge_tunnel_10,

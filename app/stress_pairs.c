@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/stress_tolerances.h"
+#include "app/stress_traits.h"
 #include "base/clock.h"
 #include "contact/exact.h"
 #include "contact/invariant.h"
@@ -25,7 +26,8 @@ typedef struct Asked {
   AppStressPairErrors worst;
   double misfit;       // worst volume-like error over what the standard allows
   double gradient_max; // largest ∇V met, over the extent squared
-  long long member_count, wrong_flags;
+  long long member_count, true_count, wrong_flags;
+  long long fallbacks; // answers that the model left to another
 } Asked;
 
 typedef struct Answer {
@@ -148,6 +150,7 @@ static Status ask_member(Asked *asked, const DatagenHardPair *pair, bool is_slow
   TRY(ask(asked, x, &answer));
   TRY(contact_overlap_exact.eval_pair(NULL, x, &exact, NULL, NULL, &flags));
   asked->member_count++;
+  asked->fallbacks += (answer.flags & CONTACT_OVERLAP_FALLBACK) != 0;
   asked->wrong_flags += !flags_are_right(pair, &answer);
   if (!pair->is_flat) {
     compare(asked, &asked->worst.volume, x, answer.volume, exact, 1, 0);
@@ -194,7 +197,9 @@ static void judge(const Asked *asked, AppStressRow *row) {
   const AppStressTolerance *own = app_stress_tolerances_find(row->model);
   bool is_held = asked->misfit <= 1 && worst->bounds <= BOUNDS && worst->balance <= BALANCE &&
                  worst->gradient <= GRADIENT && worst->flags == 0;
-  app_stress_ask_occurred(row, "members", (double)asked->member_count, 1);
+  app_stress_ask_occurred(row, "members that are what the class says", (double)asked->true_count,
+                          (double)asked->member_count);
+  row->pairs = asked->member_count, row->fallbacks = asked->fallbacks;
   if (is_held || !own)
     ask_standard(asked, row);
   else
@@ -219,6 +224,7 @@ static Status run_class(const AppStressOptions *options, const ContactOverlapMod
   int members = members_of(options, model);
   for (int member = 0; member < members; member++) {
     DatagenHardPair pair = datagen_hard_make(class_index, member);
+    asked.true_count += app_stress_traits_hold(class_index, &pair);
     Status status = ask_member(&asked, &pair, members == MEMBERS_SLOW);
     if (status == STATUS_MEMORY) return status;
     if (status) {

@@ -22,7 +22,7 @@ typedef struct AppStressRun {
   double limit_s, began_s;
   bool is_cut; // it took longer than limit_s
   const double *initial_displacement;
-  double extra[4]; // what a case's own `run` measures
+  double extra[16]; // what a case's own `run` measures
 } AppStressRun;
 
 // Reads app/stress_scenes/FILE.yaml with overrides and builds its model.

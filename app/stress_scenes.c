@@ -16,7 +16,10 @@ static void ask_common(const AppStressScene *scene, const AppStressRun *run, App
   if (scene->asked & APP_STRESS_TOUCHES)
     app_stress_ask_occurred(row, "overlapping pairs", result->pairs_max, 1);
   if (scene->asked & APP_STRESS_ENDS) app_stress_ask_end(row, result->end_time, run->scene.end);
-  app_stress_ask_least(row, "all positions are numbers", app_stress_run_is_finite(run), 1);
+  if (scene->is_still)
+    app_stress_ask_least(row, "evaluated without an error", run->status == STATUS_OK, 1);
+  else
+    app_stress_ask_least(row, "all positions are numbers", app_stress_run_is_finite(run), 1);
   if (scene->asked & APP_STRESS_ENERGY)
     app_stress_ask_most(row, "energy gain", result->audit.gain / result->audit.scale, 1e-3);
   if (scene->asked & APP_STRESS_UPRIGHT) app_stress_ask_least(row, "det F", result->min_det_F, 1e-12);
@@ -51,7 +54,7 @@ static Status run_open(const AppStressScene *scene, const AppStressOptions *opti
   ask_common(scene, run, row);
   if (run->is_cut)
     tell_cut(run, row);
-  else if (run->result.frame_count > 0)
+  else if (scene->is_still || run->result.frame_count > 0)
     scene->judge(run, row);
   app_stress_judge(row);
   if (row->outcome == APP_STRESS_FAILED && run->message[0])
@@ -91,7 +94,8 @@ static long long pairs_of(const AppStressScene *scene) {
   AppStressRun run;
   if (app_stress_run_open(&run, scene->file, overrides, count)) return 0;
   run.limit_s = LIMIT_S;
-  long long pairs = app_stress_run_scene(&run) ? 0 : run.result.pairs.tried;
+  Status status = scene->run ? scene->run(&run) : app_stress_run_scene(&run);
+  long long pairs = status ? 0 : run.result.pairs.tried;
   app_stress_run_close(&run);
   return pairs;
 }
