@@ -118,10 +118,20 @@ static void record_run(AppReportRun *run, const AppReportSurface *surface, Recor
   record_frames(run, surface, record);
 }
 
+static void record_stresses(AppReport *report, Record *data) {
+  if (report->stress_count == 0) return;
+  RecordList *list = record_list(data, "stress");
+  for (int k = 0; k < report->stress_count; k++) {
+    record_adopt(record_append(list), "table", report->stresses[k]);
+    report->stresses[k] = NULL;
+  }
+}
+
 static void record_rest(AppReport *report, Record *data) {
   record_adopt(data, "comparison", report->comparison);
   record_adopt(data, "pareto", report->pareto);
   report->comparison = report->pareto = NULL;
+  record_stresses(report, data);
   if (report->bench_count == 0) return;
   RecordList *benches = record_list(data, "benches");
   for (int k = 0; k < report->bench_count; k++) {
@@ -271,6 +281,7 @@ Status app_report_write(AppReport *report, const char *path) {
 void app_report_destroy(AppReport *report) {
   for (int r = 0; r < report->run_count; r++) app_report_run_destroy(&report->runs[r]);
   for (int k = 0; k < report->bench_count; k++) record_destroy(report->benches[k]);
+  for (int k = 0; k < report->stress_count; k++) record_destroy(report->stresses[k]);
   record_destroy(report->comparison);
   record_destroy(report->pareto);
   *report = (AppReport){0};

@@ -8,7 +8,7 @@
 
 #include "app/report_run.h"
 
-enum { APP_REPORT_MAX_RUNS = 2, APP_REPORT_MAX_BENCHES = 8 };
+enum { APP_REPORT_MAX_RUNS = 2, APP_REPORT_MAX_BENCHES = 8, APP_REPORT_MAX_STRESSES = 16 };
 
 // What the page shall show; records may be NULL. All owned.
 typedef struct AppReport {
@@ -18,6 +18,8 @@ typedef struct AppReport {
   Record *pareto;     // pareto.json
   Record *benches[APP_REPORT_MAX_BENCHES];
   int bench_count;
+  Record *stresses[APP_REPORT_MAX_STRESSES]; // of `tetlap stress --json`
+  int stress_count;
   bool has_surface_only; // leaves out what lies inside the bodies
 } AppReport;
 

@@ -12,7 +12,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 
-enum { KEY_FRAMES = 256, KEY_SURFACE, KEY_PARETO, KEY_BENCH };
+enum { KEY_FRAMES = 256, KEY_SURFACE, KEY_PARETO, KEY_BENCH, KEY_STRESS };
 
 typedef struct Options {
   const char *directories[APP_REPORT_MAX_RUNS];
@@ -21,6 +21,8 @@ typedef struct Options {
   const char *pareto;
   const char *benches[APP_REPORT_MAX_BENCHES];
   int bench_count;
+  const char *stresses[APP_REPORT_MAX_STRESSES];
+  int stress_count;
   int max_frames;
   bool has_surface_only, is_quiet;
 } Options;
@@ -32,6 +34,10 @@ static const struct argp_option option_table[] = {
      "Take the bodies' surfaces only: a smaller page, which cannot cut bodies open", 0},
     {"pareto", KEY_PARETO, "FILE", 0, "Show this result of `tetlap pareto` as well", 0},
     {"bench", KEY_BENCH, "FILE", 0, "Show this result of `tetlap bench --json` as well; may be repeated", 0},
+    {"stress", KEY_STRESS, "FILE", 0,
+     "Show this table of `tetlap stress --json` as well; may be repeated: a later one replaces the same "
+     "cases",
+     0},
     {"quiet", 'q', NULL, 0, "Say errors only", 0},
     {0},
 };
@@ -65,6 +71,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "at most %d results of bench can be shown", APP_REPORT_MAX_BENCHES);
     options->benches[options->bench_count++] = text;
     return 0;
+  case KEY_STRESS:
+    if (options->stress_count == APP_REPORT_MAX_STRESSES)
+      argp_error(state, "at most %d tables of stress can be shown", APP_REPORT_MAX_STRESSES);
+    options->stresses[options->stress_count++] = text;
+    return 0;
   case 'q':
     options->is_quiet = true;
     return 0;
@@ -74,7 +85,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->directories[options->directory_count++] = text;
     return 0;
   case ARGP_KEY_END:
-    if (options->directory_count == 0 && !options->pareto && options->bench_count == 0)
+    if (options->directory_count == 0 && !options->pareto && options->bench_count == 0 &&
+        options->stress_count == 0)
       argp_error(state, "name the directory of a run, of two runs or of a comparison");
     return 0;
   default:
@@ -135,6 +147,16 @@ static Status add_directory(AppReport *report, const char *directory, const Opti
   return status;
 }
 
+static Status add_stress(AppReport *report, const char *path) {
+  Record **record = &report->stresses[report->stress_count];
+  TRY(record_read(record, path));
+  report->stress_count++;
+  const char *format = record_find_text(*record, "format");
+  if (format && strcmp(format, "tetlap-stress 1") == 0) return STATUS_OK;
+  return status_fail(STATUS_INPUT,
+                     "%s: is no table of hard cases; give what `tetlap stress --json FILE` wrote", path);
+}
+
 static Status collect(AppReport *report, const Options *options) {
   report->has_surface_only = options->has_surface_only;
   for (int k = 0; k < options->directory_count; k++)
@@ -144,6 +166,7 @@ static Status collect(AppReport *report, const Options *options) {
     TRY(record_read(&report->benches[k], options->benches[k]));
     report->bench_count++;
   }
+  for (int k = 0; k < options->stress_count; k++) TRY(add_stress(report, options->stresses[k]));
   return STATUS_OK;
 }
 

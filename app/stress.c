@@ -86,7 +86,9 @@ static AppStressOutcome verdict_of(const AppStressRow *row, const AppStressMeasu
                                    const AppStressLimit *limit) {
   if (measure->is_met) return limit ? APP_STRESS_BETTER : APP_STRESS_HELD;
   bool is_excused = row->is_cut && (measure->is_occurrence || measure->is_of_end);
-  return limit || is_excused ? APP_STRESS_LIMIT : APP_STRESS_FAILED;
+  if (limit && !is_excused)
+    is_excused = measure->is_least ? measure->value >= limit->worst : measure->value <= limit->worst;
+  return is_excused ? APP_STRESS_LIMIT : APP_STRESS_FAILED;
 }
 
 void app_stress_judge(AppStressRow *row) {
@@ -95,7 +97,7 @@ void app_stress_judge(AppStressRow *row) {
     const AppStressMeasure *measure = &row->measures[m];
     const AppStressLimit *limit = app_stress_limits_find(row->name, row->model, measure->name);
     AppStressOutcome outcome = verdict_of(row, measure, limit);
-    if (limit && !measure->is_met && !row->is_cut) {
+    if (limit && !measure->is_met && !row->remark[0]) {
       snprintf(row->remark, sizeof row->remark, "%s", limit->reason);
       row->counter = limit->counter;
     }

@@ -7,6 +7,7 @@
 #include "app/stress.h"
 #include "app/stress_limits.h"
 #include "app/stress_scenes.h"
+#include "app/stress_traits.h"
 #include "base/memory.h"
 #include "contact/overlap.h"
 #include "datagen/hard.h"
@@ -78,16 +79,60 @@ START_TEST(a_verdict_follows_from_the_measures) {
   const AppStressLimit *limit = app_stress_limits_find("two spheres", "clip", "change of angular momentum");
   ck_assert_ptr_nonnull(limit);
   row = (AppStressRow){.group = "scenes", .name = limit->name, .model = "clip"};
-  app_stress_ask_most(&row, limit->measure, 1, 0);
+  app_stress_ask_most(&row, limit->measure, limit->worst / 2, 0);
   app_stress_judge(&row);
   ck_assert_int_eq(row.outcome, APP_STRESS_LIMIT);
   ck_assert_str_eq(row.remark, limit->reason);
   row.measures[0].is_met = true;
   app_stress_judge(&row);
   ck_assert_int_eq(row.outcome, APP_STRESS_BETTER);
+  row.measure_count = 0;
+  app_stress_ask_most(&row, limit->measure, 2 * limit->worst, 0); // a limit is measured, too
+  app_stress_judge(&row);
+  ck_assert_int_eq(row.outcome, APP_STRESS_FAILED);
+  row.measure_count = 0;
   app_stress_ask_occurred(&row, "contact", 0, 1); // a limit excuses no case that did not occur
   app_stress_judge(&row);
   ck_assert_int_eq(row.outcome, APP_STRESS_FAILED);
+}
+END_TEST
+
+// What needs a run's end cannot be asked of one that was cut; all else can.
+START_TEST(a_run_that_was_cut_is_a_limit_but_still_judged_by_what_it_did) {
+  AppStressRow row = {.group = "scenes", .name = "nameless", .model = "clip", .is_cut = true};
+  app_stress_ask_occurred(&row, "contact", 0, 1);
+  app_stress_ask_end(&row, 1, 2);
+  app_stress_ask_most(&row, "energy gain", 1e-4, 1e-3);
+  app_stress_judge(&row);
+  ck_assert_int_eq(row.outcome, APP_STRESS_LIMIT);
+  app_stress_ask_most(&row, "energy gain", 1e-2, 1e-3);
+  app_stress_judge(&row);
+  ck_assert_int_eq(row.outcome, APP_STRESS_FAILED);
+}
+END_TEST
+
+START_TEST(a_limit_of_work_cuts_a_scene_and_says_how_far_it_came) {
+  AppStress stress;
+  run(&stress,
+      &(AppStressOptions){.has_scenes = true, .only = "stack of 10", .models = "clip", .limit_s = 1e-9});
+  ck_assert_int_eq(stress.count, 1);
+  ck_assert_int_eq(stress.rows[0].outcome, APP_STRESS_LIMIT);
+  ck_assert_ptr_nonnull(strstr(stress.rows[0].remark, "did not end within"));
+  ck_assert_ptr_nonnull(stress.rows[0].counter);
+  ck_assert_int_le(stress.rows[0].steps, 10);
+  app_stress_destroy(&stress);
+}
+END_TEST
+
+// Each class proves of its members what its name says; pairs of another class are not it.
+START_TEST(every_class_of_pairs_is_what_its_name_says) {
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
+    for (int member = 0; member < 100; member++) {
+      DatagenHardPair pair = datagen_hard_make(c, member);
+      ck_assert_msg(app_stress_traits_hold(c, &pair), "%s, member %d", datagen_hard_classes[c].name, member);
+      if (strcmp(datagen_hard_classes[c].name, "vertex on face") == 0)
+        ck_assert(!app_stress_traits_hold(c + 1, &pair));
+    }
 }
 END_TEST
 
@@ -112,6 +157,9 @@ int main(void) {
   tcase_add_test(cases, the_quick_scenes_hold);
   tcase_add_test(cases, a_name_picks_cases_and_an_unknown_one_is_an_error);
   tcase_add_test(cases, a_verdict_follows_from_the_measures);
+  tcase_add_test(cases, a_run_that_was_cut_is_a_limit_but_still_judged_by_what_it_did);
+  tcase_add_test(cases, a_limit_of_work_cuts_a_scene_and_says_how_far_it_came);
+  tcase_add_test(cases, every_class_of_pairs_is_what_its_name_says);
   tcase_add_test(cases, every_measure_is_in_the_record);
   return suite_run("stress", cases, 600);
 }

@@ -24,6 +24,26 @@ const PARETO = {
   ),
 };
 
+// A table of hard cases with every verdict in it; the last one is replaced by a second file.
+const measure = (value, most) => ({ name: "energy gain", value, most, met: value <= most });
+const STRESS = {
+  format: "tetlap-stress 1",
+  rows: [
+    ...["clip", "geo"].map((model) => ({ group: "pairs", case: "uniform", model, outcome: model === "clip" ? "held" : "tolerance", measures: [measure(0, 1)], remark: model === "geo" ? "a learned volume" : "" })),
+    ...[["held", "drop"], ["better", "crush"], ["limit", "mat twist"], ["absent", "stack"], ["failed", "spikes"]].map(([outcome, name]) => ({
+      group: "scenes",
+      case: name,
+      model: "clip",
+      outcome,
+      measures: [measure(outcome === "limit" ? 0.5 : 1e-4, 1e-3)],
+      remark: outcome === "limit" ? "it turns <inside> out" : "",
+      counter: outcome === "limit" ? "trouble.inverted" : undefined,
+      cpu_s: 2.5,
+    })),
+  ],
+};
+const STRESS_LATER = { format: "tetlap-stress 1", rows: [{ ...STRESS.rows[6], outcome: "held" }] };
+
 function makePages() {
   const run = (...args) => execFileSync(tetlap, args, { stdio: ["ignore", "inherit", "inherit"] });
   const runs = ["clip", "geo"].map((model) => join(out, model));
@@ -31,7 +51,10 @@ function makePages() {
   writeFileSync(join(out, "pareto.json"), JSON.stringify(PARETO));
   run("report", "-q", ...runs, "--pareto", join(out, "pareto.json"), "-o", join(out, "two.html"));
   run("report", "-q", runs[0], "--surface", "-o", join(out, "one.html"));
-  return { two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
+  writeFileSync(join(out, "stress.json"), JSON.stringify(STRESS));
+  writeFileSync(join(out, "later.json"), JSON.stringify(STRESS_LATER));
+  run("report", "-q", "--stress", join(out, "stress.json"), "--stress", join(out, "later.json"), "-o", join(out, "stress.html"));
+  return { stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
 }
 
 // Different colours in each canvas, read right after it was drawn: 1 is an empty one.
@@ -203,6 +226,57 @@ const tests = {
   },
 };
 
+const VERDICT = (name, model) => `#stress button[aria-label^="${name}, ${model}:"]`;
+
+const stressTests = {
+  async "the table of hard cases has a mark for every case and model, the later file's where both know one"(page) {
+    assert.equal(await page.eval("document.title"), "Stability · tetlap");
+    const labels = await page.eval(`[...document.querySelectorAll("#stress button.cell")].map((cell) => cell.getAttribute("aria-label"))`);
+    assert.equal(labels.length, STRESS.rows.length);
+    assert.ok(labels.includes("spikes, clip: held"), labels.join("; "));
+    assert.ok(labels.includes("mat twist, clip: known limit"));
+    assert.equal(await page.eval(`document.querySelectorAll("#stress table svg.failed").length`), 0);
+    assert.match(await page.eval(`document.querySelector("#stress .key-line").textContent`), /3 held.*1 within.*1 known limit/);
+  },
+
+  async "a mark that is pointed at tells its reason, as text"(page) {
+    const box = await page.eval(`(({ left, top, width, height }) => [left + width / 2, top + height / 2])(document.querySelector('${VERDICT("mat twist", "clip")}').getBoundingClientRect())`);
+    await page.mouse("mouseMoved", ...box);
+    const text = await page.eval(`document.querySelector("#stress .tip:not([hidden])").textContent`);
+    for (const wanted of ["mat twist · clip", "known limit", "it turns <inside> out", "trouble.inverted", "energy gain", "0.5", "2.5\u2009s"]) assert.ok(text.includes(wanted), `${wanted} in ${text}`);
+    await page.mouse("mouseMoved", 2, 2);
+    assert.equal(await page.eval(`document.querySelectorAll("#stress .tip:not([hidden])").length`), 0);
+  },
+
+  async "a tap tells it as well, and within the page"(page) {
+    for (const cell of [VERDICT("uniform", "geo"), VERDICT("crush", "clip")]) {
+      await page.eval(`document.querySelector('${cell}').click()`);
+      const [left, right, wide] = await page.eval(`(({ left, right }) => [left, right, document.documentElement.clientWidth])(document.querySelector("#stress .tip:not([hidden])").getBoundingClientRect())`);
+      assert.ok(left >= 0 && right <= wide, `${left} … ${right} of ${wide}`);
+    }
+  },
+
+  async "arrows go from mark to mark, one stop of the tab key"(page) {
+    assert.equal(await page.eval(`document.querySelectorAll("#stress button.cell[tabindex='0']").length`), 2);
+    await page.eval(`document.querySelector('${VERDICT("drop", "clip")}').focus()`);
+    await page.key("ArrowDown");
+    assert.match(await page.eval(`document.activeElement.getAttribute("aria-label")`), /^crush, clip/);
+    assert.match(await page.eval(`document.querySelector("#stress .tip:not([hidden])").textContent`), /though a limit is known/);
+    await page.key("Escape");
+    assert.equal(await page.eval(`document.querySelectorAll("#stress .tip:not([hidden])").length`), 0);
+    await page.eval("document.activeElement.blur()");
+  },
+
+  async "what was held can be left out"(page) {
+    const lines = `[...document.querySelectorAll("#stress tbody tr")].filter((line) => line.offsetParent).length`;
+    const before = await page.eval(lines);
+    await page.eval(`document.querySelector("#stress input").click()`);
+    assert.equal(await page.eval(lines), before - 2); // drop; spikes, as the later file knows it
+    await page.eval(`document.querySelector("#stress input").click()`);
+    assert.equal(await page.eval(lines), before);
+  },
+};
+
 async function shoot(browser, url, name, view, script) {
   const page = await browser.open(url, view);
   await page.eval(script);
@@ -231,6 +305,15 @@ try {
   for (const [name, test] of Object.entries(tests)) await attempt(name, () => test(page, pages));
   await attempt("no complaint after all of it", () => assert.deepEqual(page.problems, []));
   await page.close();
+  for (const width of [1280, 400]) {
+    const table = await browser.open(pages.stress, { width, height: 900, isMobile: width < 600 });
+    for (const [name, test] of Object.entries(stressTests)) await attempt(`${width} pixels: ${name}`, () => test(table));
+    await attempt("no complaint after all of it", () => assert.deepEqual(table.problems, []));
+    await table.close();
+  }
+  const point = `document.querySelector('${VERDICT("mat twist", "clip")}').focus()`;
+  for (const [width, height, theme] of [[1600, 1000, "light"], [1600, 1000, "dark"], [400, 1100, "light"], [400, 1100, "dark"]])
+    await attempt(`hard cases fit ${width} pixels, ${theme}`, () => shoot(browser, pages.stress, `stress-${theme}-${width}`, { width, height, theme, isMobile: width < 600 }, point));
   const seek = "tetlap.transport.seek(10)";
   await attempt("fits 1600 pixels, light", () => shoot(browser, pages.two, "light-1600", { width: 1600, height: 1000 }, seek));
   await attempt("fits 1600 pixels, dark", () => shoot(browser, pages.two, "dark-1600", { width: 1600, height: 1000, theme: "dark" }, `${seek}, tetlap.state.set({ cut: 1 })`));
