@@ -2,9 +2,9 @@
 #include "app/bench_beam.h"
 
 #include "app/bench_builtin.h"
+#include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_trial.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "fem/solver.h"
 
@@ -136,25 +136,17 @@ static Status run(const Options *options) {
   return status;
 }
 
-static char *help(int key, const char *text, void *input) {
-  (void)input;
-  return app_bench_report_help(&report, key, text);
-}
-
 int app_bench_beam_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {.options = option_table,
-                                   .parser = parse,
-                                   .doc = "Measure the same run of a clamped beam with each linear solver.",
-                                   .children = children,
-                                   .help_filter = help};
+  static const AppBenchCommand command = {
+      .report = &report,
+      .options = option_table,
+      .parse = parse,
+      .doc = "Measure the same run of a clamped beam with each linear solver."};
   Options options = {.common = {.threads = 1, .repeats = 1},
                      .wants_solver = {true, true, true},
                      .nodes = 5000,
                      .slenderness = 5,
                      .steps = 20};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  app_bench_command_read(&command, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
 }

@@ -7,9 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_timer.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "datagen/generate.h"
 #include "datagen/run.h"
@@ -189,25 +189,17 @@ static Status run(const Options *options) {
   return status;
 }
 
-static char *help(int key, const char *text, void *input) {
-  (void)input;
-  return app_bench_report_help(&report, key, text);
-}
-
 int app_bench_datagen_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {.options = option_table,
-                                   .parser = parse,
-                                   .doc = "Measure how many labelled pairs a second data sets are made of.",
-                                   .children = children,
-                                   .help_filter = help};
+  static const AppBenchCommand command = {
+      .report = &report,
+      .options = option_table,
+      .parse = parse,
+      .doc = "Measure how many labelled pairs a second data sets are made of."};
   Options options = {.common = app_bench_options_default(3), .count = 20000, .planned = 1.2e7};
   const char *names[MAX_LAWS];
   int laws = list_laws(names);
   for (int l = 0; l < laws; l++) options.wants_law[l] = strcmp(names[l], "paper-train") == 0;
   options.common.takes_thread_list = true;
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  app_bench_command_read(&command, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
 }

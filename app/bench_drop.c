@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "app/bench_builtin.h"
+#include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_trial.h"
 #include "app/scene_read.h"
@@ -146,26 +147,17 @@ static Status run(const Options *options) {
   return status ? status : app_bench_report_print(&report, &options->common, rows, row_count);
 }
 
-static char *help(int key, const char *text, void *input) {
-  (void)input;
-  return app_bench_report_help(&report, key, text);
-}
-
 int app_bench_drop_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {
+  static const AppBenchCommand command = {
+      .report = &report,
       .options = option_table,
-      .parser = parse,
-      .doc = "Measure how much energy a drop gains, over contact stiffness and tolerance.",
-      .children = children,
-      .help_filter = help};
+      .parse = parse,
+      .doc = "Measure how much energy a drop gains, over contact stiffness and tolerance."};
   Options options = {.common = {.threads = 1, .repeats = 1},
                      .stiffness = {1e5, 1e6, 1e7, 1e8, 1e9},
                      .stiffness_count = 5,
                      .tolerance = {1e-4},
                      .tolerance_count = 1};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  app_bench_command_read(&command, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
 }

@@ -5,6 +5,7 @@
 #include <omp.h>
 #include <string.h>
 
+#include "app/bench_command.h"
 #include "app/bench_peak.h"
 #include "app/bench_report.h"
 #include "app/bench_timer.h"
@@ -444,19 +445,12 @@ static Status run(const Options *options) {
   return status;
 }
 
-static char *help(int key, const char *text, void *input) {
-  (void)input;
-  return app_bench_report_help(&report, key, text);
-}
-
 int app_bench_net_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {
+  static const AppBenchCommand command = {
+      .report = &report,
       .options = option_table,
-      .parser = parse,
-      .doc = "Measure networks without their geometry, by our kernels and by PyTorch where it is installed.",
-      .children = children,
-      .help_filter = help};
+      .parse = parse,
+      .doc = "Measure networks without their geometry, by our kernels and by PyTorch where it is installed."};
   static char first[] = "tpn", second[] = "geo", third[] = "geo-small";
   Options options = {.common = app_bench_options_default(9),
                      .nets = {first, second, third},
@@ -466,8 +460,6 @@ int app_bench_net_run(int argument_count, char **arguments) {
                      .batches = {2048},
                      .batch_count = 1};
   options.common.takes_thread_list = true;
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  app_bench_command_read(&command, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
 }

@@ -22,6 +22,7 @@ typedef struct AppBenchOptions {
   int thread_list[APP_BENCH_MAX_LIST]; // (thread_list_count)
   int thread_list_count;
   AppBenchFormat format;
+  const struct AppBenchReport *report; // of the bench (app/bench_command.h)
 } AppBenchOptions;
 
 // One thread, `repeats` rounds, a table.

@@ -5,6 +5,7 @@
 #include <omp.h>
 #include <stdbool.h>
 
+#include "app/bench_command.h"
 #include "app/bench_contestant.h"
 #include "app/bench_pairs.h"
 #include "app/bench_peak.h"
@@ -300,26 +301,17 @@ static Status run(const Options *options) {
   return status;
 }
 
-static char *help(int key, const char *text, void *input) {
-  (void)input;
-  return app_bench_report_help(&report, key, text);
-}
-
 int app_bench_overlap_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {
+  static const AppBenchCommand command = {
+      .report = &report,
       .options = option_table,
-      .parser = parse,
-      .doc = "Measure how many pairs of tetrahedra a second the overlap models answer.",
-      .children = children,
-      .help_filter = help};
+      .parse = parse,
+      .doc = "Measure how many pairs of tetrahedra a second the overlap models answer."};
   Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
   options.common.takes_thread_list = true;
   for (int i = 0; i < MAX_MODELS; i++) options.wants_model[i] = true;
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  app_bench_command_read(&command, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
 }

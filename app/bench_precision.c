@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_trial.h"
 #include "app/comparison.h"
@@ -332,22 +333,15 @@ static Status run(Options *options) {
   return status;
 }
 
-static char *help(int key, const char *text, void *input) {
-  (void)input;
-  return app_bench_report_help(&report, key, text);
-}
-
 int app_bench_precision_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {
+  static const AppBenchCommand command = {
+      .report = &report,
       .options = option_table,
-      .parser = parse,
-      .args_doc = "SCENE…",
+      .parse = parse,
+      .arguments = "SCENE…",
       .doc =
           "Measure what precision costs: whole runs with every overlap model, at every tolerance, on every "
-          "mesh level, against a reference at a far smaller tolerance.",
-      .children = children,
-      .help_filter = help};
+          "mesh level, against a reference at a far smaller tolerance."};
   static char first[] = "clip", second[] = "geo", third[] = "geo-small";
   Options options = {.common = app_bench_options_default(1),
                      .overlaps = {first, second, third},
@@ -359,8 +353,6 @@ int app_bench_precision_run(int argument_count, char **arguments) {
                      .reference = "clip",
                      .reference_tolerance = 1e-6,
                      .wall_limit_s = 60};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  app_bench_command_read(&command, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/bench_builtin.h"
+#include "app/bench_command.h"
 #include "app/bench_contestant.h"
 #include "app/bench_pairs.h"
 #include "app/bench_report.h"
@@ -276,19 +277,12 @@ static Status run(Options *options) {
   return status;
 }
 
-static char *help(int key, const char *text, void *input) {
-  (void)input;
-  return app_bench_report_help(&report, key, text);
-}
-
 int app_bench_scaling_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {
+  static const AppBenchCommand command = {
+      .report = &report,
       .options = option_table,
-      .parser = parse,
-      .doc = "Measure how time grows with the number of pairs and with the number of vertices.",
-      .children = children,
-      .help_filter = help};
+      .parse = parse,
+      .doc = "Measure how time grows with the number of pairs and with the number of vertices."};
   Options options = {.common = app_bench_options_default(3),
                      .pairs = {1000, 10000, 100000, 1000000},
                      .pair_sizes = 4,
@@ -300,8 +294,6 @@ int app_bench_scaling_run(int argument_count, char **arguments) {
   const char *names[MAX_MODELS];
   int models = list_models(names);
   for (int m = 0; m < models; m++) options.wants_model[m] = text_lists("clip geo-small geo", names[m]);
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  app_bench_command_read(&command, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
 }

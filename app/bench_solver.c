@@ -5,10 +5,10 @@
 #include <omp.h>
 
 #include "app/bench_builtin.h"
+#include "app/bench_command.h"
 #include "app/bench_options.h"
 #include "app/bench_report.h"
 #include "app/bench_timer.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "fem/solver.h"
 #include "fem/system.h"
@@ -306,26 +306,17 @@ static Status run(const Options *options) {
   return status ? status : app_bench_report_print(&report, &options->common, rows, row_count);
 }
 
-static char *help(int key, const char *text, void *input) {
-  (void)input;
-  return app_bench_report_help(&report, key, text);
-}
-
 int app_bench_solver_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {
+  static const AppBenchCommand command = {
+      .report = &report,
       .options = option_table,
-      .parser = parse,
-      .doc = "Measure what the linear solvers take for a Newton set-up and a solution of a clamped beam.",
-      .children = children,
-      .help_filter = help};
+      .parse = parse,
+      .doc = "Measure what the linear solvers take for a Newton set-up and a solution of a clamped beam."};
   Options options = {.common = {.threads = 1, .repeats = 5},
                      .nodes = {5000, 20000},
                      .node_count = 2,
                      .slenderness = 5,
                      .step = 0.005};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  app_bench_command_read(&command, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench_step.h"
 
+#include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_trial.h"
 #include "app/scene_read.h"
-#include "base/log.h"
 #include "base/memory.h"
 
 enum { MAX_OVERRIDES = 64 };
@@ -105,23 +105,14 @@ static Status run(const Options *options) {
   return status;
 }
 
-static char *help(int key, const char *text, void *input) {
-  (void)input;
-  return app_bench_report_help(&report, key, text);
-}
-
 int app_bench_step_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {
+  static const AppBenchCommand command = {
+      .report = &report,
       .options = option_table,
-      .parser = parse,
-      .args_doc = "SCENE",
-      .doc = "Measure where the time of a run goes, one row a phase; nothing is written.",
-      .children = children,
-      .help_filter = help};
+      .parse = parse,
+      .arguments = "SCENE",
+      .doc = "Measure where the time of a run goes, one row a phase; nothing is written."};
   Options options = {.common = {.threads = 1, .repeats = 3}};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  app_bench_command_read(&command, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
 }

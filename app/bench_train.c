@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_timer.h"
 #include "app/torch_peer.h"
@@ -305,23 +306,15 @@ static Status run(const Options *options) {
   return status;
 }
 
-static char *help(int key, const char *text, void *input) {
-  (void)input;
-  return app_bench_report_help(&report, key, text);
-}
-
 int app_bench_train_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {.options = option_table,
-                                   .parser = parse,
-                                   .args_doc = "CONFIG…",
-                                   .doc = "Measure the steps of trainings, data and validation left out.",
-                                   .children = children,
-                                   .help_filter = help};
+  static const AppBenchCommand command = {
+      .report = &report,
+      .options = option_table,
+      .parse = parse,
+      .arguments = "CONFIG…",
+      .doc = "Measure the steps of trainings, data and validation left out."};
   Options options = {.common = app_bench_options_default(3), .pairs = 20000, .has_torch = true};
   options.common.takes_thread_list = true;
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  app_bench_command_read(&command, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
 }
