@@ -53,15 +53,17 @@ static const FuzzImage *template_image(void) {
 
 // The head of a file in the form that fem/checkpoint_file.c writes; a changed form is seen by what the good
 // file becomes without edits (seed 0).
-static const char *put_file(const FuzzImage *image) {
+static const char *put_file(const FuzzImage *good, const FuzzImage *image) {
   char digest[DIGEST_TEXT];
+  int version = 0;
   uint8_t *file = malloc(HEAD + image->size);
   FUZZ_CLAIM(file, "no memory");
   digest_print(digest_bytes(DIGEST_START, image->bytes, image->size), digest);
+  FUZZ_CLAIM(sscanf((const char *)good->bytes, "tetlap checkpoint %d", &version) == 1, "another head");
   memset(file, ' ', HEAD);
   int used = snprintf((char *)file, HEAD,
-                      "tetlap checkpoint 1\nbytes %zu\ndigest %s\nHDF5 follows: h5dump reads this file\n",
-                      image->size, digest);
+                      "tetlap checkpoint %d\nbytes %zu\ndigest %s\nHDF5 follows: h5dump reads this file\n",
+                      version, image->size, digest);
   file[used] = ' ', file[HEAD - 1] = '\n';
   memcpy(file + HEAD, image->bytes, image->size);
   const char *path = fuzz_target_file(file_name, file, HEAD + image->size);
@@ -105,7 +107,7 @@ static void run(const uint8_t *data, size_t size) {
   }
   if (fuzz_hdf5_has_damage(data, size) && !getenv("TETLAP_FUZZ_DAMAGE")) return;
   FuzzImage image = fuzz_hdf5_edit(good->bytes + HEAD, good->size - HEAD, data, size);
-  Status status = read_file(put_file(&image));
+  Status status = read_file(put_file(good, &image));
   if (size < FUZZ_HDF5_EDIT) FUZZ_CLAIM(!status, "the good file is refused: %s", status_message());
   free(image.bytes);
 }
