@@ -4,14 +4,14 @@
 #include <stdio.h>
 
 #include "base/memory.h"
+#include "fem/direct.h"
 
 struct FemIdaSolver {
   FemSystem *system; // borrowed
   const FemSolverOps *ops;
   void *solver;           // of ops
   FemIdaFailure *failure; // borrowed
-  SUNLinearSolver linear;
-  SUNMatrix matrix;
+  FemDirect direct;
   double *masses; // of the unknowns [kg]                      (unknown_count)
   double *right;  // right-hand side of the condensed system   (unknown_count)
   // Of a linear system: K once, and the c that was factorised; assembling adds c D + c² M.
@@ -33,27 +33,6 @@ int fem_ida_answer(FemIdaFailure *failure, Status status) {
   failure->fatal = status;
   snprintf(failure->fatal_message, sizeof failure->fatal_message, "%s", status_message());
   return -1;
-}
-
-static SUNLinearSolver_Type type_of(SUNLinearSolver linear) {
-  (void)linear;
-  return SUNLINEARSOLVER_DIRECT;
-}
-
-static SUNLinearSolver_ID id_of(SUNLinearSolver linear) {
-  (void)linear;
-  return SUNLINEARSOLVER_CUSTOM;
-}
-
-static SUNMatrix_ID matrix_id_of(SUNMatrix matrix) {
-  (void)matrix;
-  return SUNMATRIX_CUSTOM;
-}
-
-// Assembly zeroes its matrices itself.
-static int zero_matrix(SUNMatrix matrix) {
-  (void)matrix;
-  return SUNMAT_SUCCESS;
 }
 
 static Status factorise(FemIdaSolver *solver) {
@@ -98,8 +77,7 @@ static Status solve(FemIdaSolver *solver, const double *b, double *x) {
 static int set_up_callback(SUNLinearSolver linear, SUNMatrix matrix) {
   (void)matrix;
   FemIdaSolver *solver = linear->content;
-  int answer = fem_ida_answer(solver->failure, factorise(solver));
-  return answer == 0 ? SUNLS_SUCCESS : answer > 0 ? SUNLS_PACKAGE_FAIL_REC : SUNLS_PACKAGE_FAIL_UNREC;
+  return fem_direct_flag(fem_ida_answer(solver->failure, factorise(solver)));
 }
 
 static int solve_callback(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b,
@@ -107,8 +85,7 @@ static int solve_callback(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, 
   (void)matrix, (void)tolerance;
   FemIdaSolver *solver = linear->content;
   Status status = solve(solver, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
-  int answer = fem_ida_answer(solver->failure, status);
-  return answer == 0 ? SUNLS_SUCCESS : answer > 0 ? SUNLS_PACKAGE_FAIL_REC : SUNLS_PACKAGE_FAIL_UNREC;
+  return fem_direct_flag(fem_ida_answer(solver->failure, status));
 }
 
 static Status create(FemIdaSolver *solver, SUNContext context) {
@@ -117,19 +94,9 @@ static Status create(FemIdaSolver *solver, SUNContext context) {
   size_t n = (size_t)model->unknown_count;
   solver->masses = memory_zeroed(n, sizeof *solver->masses);
   solver->right = memory_zeroed(n, sizeof *solver->right);
-  solver->linear = SUNLinSolNewEmpty(context);
-  solver->matrix = SUNMatNewEmpty(context);
-  if (!solver->masses || !solver->right || !solver->linear || !solver->matrix)
-    return status_no_memory("the linear solver");
+  if (!solver->masses || !solver->right) return status_no_memory("the linear solver");
   for (size_t i = 0; i < n; i++) solver->masses[i] = model->mass[model->dof_of_unknown[i] / 3];
-  solver->linear->content = solver;
-  solver->linear->ops->gettype = type_of;
-  solver->linear->ops->getid = id_of;
-  solver->linear->ops->setup = set_up_callback;
-  solver->linear->ops->solve = solve_callback;
-  solver->matrix->ops->getid = matrix_id_of;
-  solver->matrix->ops->zero = zero_matrix;
-  return STATUS_OK;
+  return fem_direct_create(&solver->direct, context, solver, set_up_callback, solve_callback);
 }
 
 Status fem_ida_solver_create(FemIdaSolver **solver, FemSystem *system, const FemSolverOps *ops,
@@ -151,8 +118,7 @@ Status fem_ida_solver_create(FemIdaSolver **solver, FemSystem *system, const Fem
 void fem_ida_solver_destroy(FemIdaSolver *solver) {
   if (!solver) return;
   if (solver->solver) solver->ops->destroy(solver->solver);
-  if (solver->linear) SUNLinSolFreeEmpty(solver->linear);
-  if (solver->matrix) SUNMatFreeEmpty(solver->matrix);
+  fem_direct_destroy(&solver->direct);
   fem_matrix_destroy(&solver->damping);
   fem_matrix_destroy(&solver->stiffness);
   memory_free(solver->masses);
@@ -161,11 +127,11 @@ void fem_ida_solver_destroy(FemIdaSolver *solver) {
 }
 
 SUNLinearSolver fem_ida_solver_linear(FemIdaSolver *solver) {
-  return solver->linear;
+  return solver->direct.linear;
 }
 
 SUNMatrix fem_ida_solver_matrix(FemIdaSolver *solver) {
-  return solver->matrix;
+  return solver->direct.matrix;
 }
 
 static Status assemble_damping(FemIdaSolver *solver, double time) {

@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
+#include "fem/direct.h"
 
 enum { MAX_FULL_STEPS = 12, MAX_ITERATIONS = 40, MESSAGE_SIZE = 512 };
 
@@ -17,8 +18,7 @@ typedef struct Newton {
   SUNContext context;
   void *kinsol;
   N_Vector u, u_scale, f_scale;
-  SUNLinearSolver linear;
-  SUNMatrix matrix;
+  FemDirect direct;
   Status fatal;               // of a callback; STATUS_OK: none
   char message[MESSAGE_SIZE]; // of the last failure of a callback, "" if none
 } Newton;
@@ -48,22 +48,6 @@ static int jacobian(N_Vector u, N_Vector r, SUNMatrix matrix, void *self, N_Vect
                 fem_equilibrium_factorise(newton->equilibrium, newton->time, N_VGetArrayPointer(u), 0));
 }
 
-static SUNLinearSolver_Type type_of(SUNLinearSolver linear) {
-  (void)linear;
-  return SUNLINEARSOLVER_DIRECT;
-}
-static SUNLinearSolver_ID id_of(SUNLinearSolver linear) {
-  (void)linear;
-  return SUNLINEARSOLVER_CUSTOM;
-}
-static SUNMatrix_ID matrix_id_of(SUNMatrix matrix) {
-  (void)matrix;
-  return SUNMATRIX_CUSTOM;
-}
-static int zero_matrix(SUNMatrix matrix) {
-  (void)matrix;
-  return SUNMAT_SUCCESS;
-}
 // Factorised when the Jacobian was asked for.
 static int set_up(SUNLinearSolver linear, SUNMatrix matrix) {
   (void)linear, (void)matrix;
@@ -74,7 +58,7 @@ static int solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector 
   Newton *newton = linear->content;
   int flag = answer(newton,
                     fem_equilibrium_solve(newton->equilibrium, N_VGetArrayPointer(b), N_VGetArrayPointer(x)));
-  return flag == 0 ? SUNLS_SUCCESS : flag > 0 ? SUNLS_PACKAGE_FAIL_REC : SUNLS_PACKAGE_FAIL_UNREC;
+  return fem_direct_flag(flag);
 }
 
 // KINSOL would print.
@@ -89,22 +73,14 @@ static Status create(Newton *newton, double tolerance, double length) {
     if (!(*vectors[i] = N_VNew_Serial(newton->n, newton->context))) return status_no_memory("KINSOL");
   N_VConst(1 / length, newton->u_scale);
   N_VConst(1 / tolerance, newton->f_scale);
-  newton->linear = SUNLinSolNewEmpty(newton->context);
-  newton->matrix = SUNMatNewEmpty(newton->context);
+  TRY(fem_direct_create(&newton->direct, newton->context, newton, set_up, solve));
   newton->kinsol = KINCreate(newton->context);
-  if (!newton->linear || !newton->matrix || !newton->kinsol) return status_no_memory("KINSOL");
-  newton->linear->content = newton;
-  newton->linear->ops->gettype = type_of;
-  newton->linear->ops->getid = id_of;
-  newton->linear->ops->setup = set_up;
-  newton->linear->ops->solve = solve;
-  newton->matrix->ops->getid = matrix_id_of;
-  newton->matrix->ops->zero = zero_matrix;
+  if (!newton->kinsol) return status_no_memory("KINSOL");
   void *kinsol = newton->kinsol;
   bool is_ok =
       KINSetErrHandlerFn(kinsol, be_silent, NULL) == KIN_SUCCESS &&
       KINInit(kinsol, residual, newton->u) == KIN_SUCCESS && KINSetUserData(kinsol, newton) == KIN_SUCCESS &&
-      KINSetLinearSolver(kinsol, newton->linear, newton->matrix) == KIN_SUCCESS &&
+      KINSetLinearSolver(kinsol, newton->direct.linear, newton->direct.matrix) == KIN_SUCCESS &&
       KINSetJacFn(kinsol, jacobian) == KIN_SUCCESS && KINSetMaxSetupCalls(kinsol, 1) == KIN_SUCCESS &&
       KINSetFuncNormTol(kinsol, 1) == KIN_SUCCESS && // of the force over `tolerance`
       KINSetScaledStepTol(kinsol, 1e-14) == KIN_SUCCESS;
@@ -113,8 +89,7 @@ static Status create(Newton *newton, double tolerance, double length) {
 
 static void destroy(Newton *newton) {
   if (newton->kinsol) KINFree(&newton->kinsol);
-  if (newton->linear) SUNLinSolFreeEmpty(newton->linear);
-  if (newton->matrix) SUNMatFreeEmpty(newton->matrix);
+  fem_direct_destroy(&newton->direct);
   N_Vector vectors[] = {newton->u, newton->u_scale, newton->f_scale};
   for (int i = 0; i < 3; i++)
     if (vectors[i]) N_VDestroy(vectors[i]);
