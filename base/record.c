@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/record.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
@@ -97,10 +98,17 @@ void record_list_destroy(RecordList *root) {
   json_decref((json_t *)root);
 }
 
+// jansson fails for want of memory, or because the stream takes no more.
+static Status print(const void *root, FILE *stream, size_t flags) {
+  errno = 0;
+  if (json_dumpf(root, stream, flags | JSON_REAL_PRECISION(17)) == 0 && fputc('\n', stream) != EOF)
+    return STATUS_OK;
+  if (!ferror(stream)) return status_no_memory("JSON");
+  return status_fail(STATUS_IO, "writing JSON failed: %s", errno ? strerror(errno) : "write error");
+}
+
 static Status print_tree(const json_t *root, FILE *stream) {
-  if (json_dumpf(root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0 || fputc('\n', stream) == EOF)
-    return status_fail(STATUS_IO, "writing JSON failed");
-  return STATUS_OK;
+  return print(root, stream, JSON_INDENT(2));
 }
 
 static Status write_tree(const json_t *root, const char *path) {
@@ -112,12 +120,6 @@ static Status write_tree(const json_t *root, const char *path) {
     return status_prefix(status, "%s", path);
   }
   return file_commit(&writer);
-}
-
-static Status print(const Record *root, FILE *stream, size_t flags) {
-  if (json_dumpf((const json_t *)root, stream, flags | JSON_REAL_PRECISION(17)) != 0)
-    return status_fail(STATUS_IO, "writing JSON failed");
-  return fputc('\n', stream) == EOF ? status_fail(STATUS_IO, "writing JSON failed") : STATUS_OK;
 }
 
 Status record_print(const Record *root, FILE *stream) {

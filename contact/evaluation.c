@@ -2,6 +2,7 @@
 #include "contact/evaluation.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -127,13 +128,35 @@ static void sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *la
   evaluation->pair_count = kept;
 }
 
-// Names the bodies' tetrahedra of a pair that the model refused or answered badly.
-static Status blame(const ContactLayout *layout, const ContactPair *pair, double volume) {
+// Names the tetrahedra, as the frames number them, of a pair that the model refused or answered badly.
+static Status blame(const ContactLayout *layout, const ContactPair *pair, Status status, const char *why) {
   const ContactFacing *facing = &layout->facings[pair->facing];
-  const ContactBody *a = &layout->def.bodies[facing->a], *b = &layout->def.bodies[facing->b];
-  return status_fail(STATUS_SOLVER,
-                     "contact: the overlap model gave volume %g for element %d of %s and element %d of %s",
-                     volume, pair->tets[0] - a->tet_begin, a->name, pair->tets[1] - b->tet_begin, b->name);
+  return status_fail(status, "contact of element %d of '%s' and element %d of '%s': %s", pair->tets[0],
+                     layout->def.bodies[facing->a].name, pair->tets[1], layout->def.bodies[facing->b].name,
+                     why);
+}
+
+static Status blame_volume(const ContactLayout *layout, const ContactPair *pair, double volume) {
+  char why[64];
+  snprintf(why, sizeof why, "the overlap model gave the volume %g", volume);
+  return blame(layout, pair, STATUS_SOLVER, why);
+}
+
+// Of a batch that failed, finds the pair for which the model fails again.
+static Status blame_failure(const ContactEvaluation *evaluation, const ContactLayout *layout,
+                            const ContactOverlapModel *model, const ContactOverlapBatch *batch,
+                            Status failure) {
+  char why[1024];
+  snprintf(why, sizeof why, "%s", status_message());
+  for (int k = 0; k < batch->pair_count; k++) {
+    ContactOverlapBatch one = contact_overlap_part(batch, k, 1);
+    Status status = contact_overlap_eval(model, &one);
+    if (status) {
+      snprintf(why, sizeof why, "%s", status_message());
+      return blame(layout, &evaluation->pairs[k], status, why);
+    }
+  }
+  return status_fail(failure, "contact: %s", why);
 }
 
 static void count_pair(ContactPairCounts *counts, unsigned flags) {
@@ -153,11 +176,12 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
                                .volume = evaluation->volumes,
                                .gradient = evaluation->gradients,
                                .flags = evaluation->flags};
-  TRY(contact_overlap_eval(model, &batch));
+  Status status = contact_overlap_eval(model, &batch);
+  if (status) return blame_failure(evaluation, layout, model, &batch, status);
   evaluation->counts.tried = count;
   for (int k = 0; k < count; k++) {
     if (!(evaluation->volumes[k] >= 0 && evaluation->volumes[k] < INFINITY))
-      return blame(layout, &evaluation->pairs[k], evaluation->volumes[k]);
+      return blame_volume(layout, &evaluation->pairs[k], evaluation->volumes[k]);
     count_pair(&evaluation->counts, evaluation->flags[k]);
   }
   return STATUS_OK;

@@ -118,16 +118,34 @@ static Status write_frame(Run *run, double time, const FemMeasures *measures) {
   return STATUS_OK;
 }
 
+// Measures the scattered state. RETRY: it, or an energy, is not made of numbers, or it is too far for the
+// contact lists.
+static Status measure(Run *run, double time, FemMeasures *measures) {
+  TRY(fem_system_check_state(&run->system));
+  TRY(fem_recorder_measure(&run->recorder, time, measures));
+  const FemEnergy *energy = &measures->energy;
+  const double parts[] = {energy->kinetic,      energy->elastic,      energy->gravity,
+                          energy->contact,      energy->applied_work, energy->dissipated_power,
+                          energy->driven_power, energy->plastic_work};
+  static const char *const names[] = {"kinetic energy",    "elastic energy", "energy of gravity",
+                                      "energy of contact", "work of loads",  "dissipated power",
+                                      "driven power",      "plastic work"};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+    if (!isfinite(parts[k])) return status_fail(STATUS_RETRY, "the %s is not a number", names[k]);
+  return STATUS_OK;
+}
+
 // Measures at a frame within the last step; the contact lists are renewed there if it lies beyond their
 // margin.
 static Status measure_within_step(Run *run, double time, FemMeasures *measures) {
   const double *u, *v;
   TRY(fem_integrator_at(run->integrator, time, &u, &v));
   fem_system_scatter(&run->system, time, u, v);
-  Status status = fem_recorder_measure(&run->recorder, time, measures);
+  TRY(fem_system_check_state(&run->system));
+  Status status = measure(run, time, measures);
   if (status != STATUS_RETRY) return status;
   TRY(fem_system_accept(&run->system, time, u, v, 0));
-  return fem_recorder_measure(&run->recorder, time, measures);
+  return measure(run, time, measures);
 }
 
 static Status write_frames_until(Run *run, double time) {
@@ -143,8 +161,9 @@ static Status write_frames_until(Run *run, double time) {
 
 static bool gains_energy(const FemAudit *before, const FemAudit *after) {
   double rise = after->total - before->lowest;
-  return rise > ENERGY_RISE_ALLOWED * after->scale &&
-         after->total - before->total > ENERGY_RISE_OF_STEP * after->scale;
+  bool is_held = rise <= ENERGY_RISE_ALLOWED * after->scale ||
+                 after->total - before->total <= ENERGY_RISE_OF_STEP * after->scale;
+  return !is_held;
 }
 
 // Back to the last accepted state with a smaller step.
@@ -198,7 +217,7 @@ static void keep_state(Run *run, double time) {
 }
 
 // Steps, and measures the state that the step leads to, kept in u_new, v_new. RETRY: too far for the contact
-// lists.
+// lists, or no numbers.
 static Status step(Run *run, double *time, bool *is_onset, FemMeasures *measures) {
   TRY(fem_integrator_step(run->integrator, time, is_onset));
   const double *u, *v;
@@ -207,7 +226,7 @@ static Status step(Run *run, double *time, bool *is_onset, FemMeasures *measures
   memcpy(run->u_new, u, bytes);
   memcpy(run->v_new, v, bytes);
   fem_system_scatter(&run->system, *time, run->u_new, run->v_new);
-  return fem_recorder_measure(&run->recorder, *time, measures);
+  return measure(run, *time, measures);
 }
 
 // The powers with which the next step begins, where they are not those with which the last one ended.
@@ -233,7 +252,9 @@ static Status advance(Run *run) {
     run->result->energy_retries++;
     return take_back(run);
   }
-  TRY(write_frames_until(run, time));
+  status = write_frames_until(run, time);
+  if (status == STATUS_RETRY && may_retry) return take_back(run);
+  TRY(status);
   run->audit = next;
   keep_state(run, time);
   keep_extremes(run->result, &measures);
@@ -369,7 +390,7 @@ static Status number(Run *run) {
 // The first frame, and the audit from there on.
 static Status begin_record(Run *run) {
   FemMeasures measures;
-  TRY(fem_recorder_measure(&run->recorder, run->time, &measures));
+  TRY(measure(run, run->time, &measures));
   fem_audit_begin(&run->audit, run->time, &measures.energy, energy_floor(run->model));
   keep_extremes(run->result, &measures);
   fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
@@ -512,7 +533,7 @@ static Status advance_static(Run *run) {
   FemMeasures measures;
   run->audit.driven_work += run->statics.driven_work - work_before;
   fem_equilibrium_scatter(&run->statics.equilibrium, run->time, run->u);
-  TRY(fem_recorder_measure(&run->recorder, run->time, &measures));
+  TRY(measure(run, run->time, &measures));
   FemAudit next = fem_audit_next(&run->audit, run->time, &measures.energy);
   run->audit = next;
   keep_extremes(run->result, &measures);
@@ -615,6 +636,14 @@ long long fem_run_checkpoint_steps(int unknown_count) {
   return (long long)fmax(LEAST, WORK / unknown_count);
 }
 
+// Says when a run failed, unless whoever failed did. A retry that nobody took is the solver's failure.
+static Status say_when(const Run *run, Status status) {
+  if (status != STATUS_RETRY && status != STATUS_SOLVER) return status;
+  bool is_told = strstr(status_message(), "t = ");
+  if (is_told) return status_fail(STATUS_SOLVER, "%s", status_message());
+  return status_prefix(STATUS_SOLVER, "at t = %.9g s", run->time);
+}
+
 Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult *result) {
   *result = (FemRunResult){.min_det_F = INFINITY};
   Run run = {.model = model,
@@ -626,7 +655,5 @@ Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult
   run.written_s = run.began_s;
   Status status = prepare(&run);
   if (!status) status = march(&run);
-  if (status == STATUS_RETRY)
-    status = status_fail(STATUS_SOLVER, "at t = %g s: %s", run.time, status_message());
-  return close_run(&run, status);
+  return close_run(&run, say_when(&run, status));
 }

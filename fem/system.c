@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fem/solver.h"
 
 static FemState state_of(const FemSystem *system, double time) {
   return (FemState){.time = time, .positions = system->positions, .velocities = system->velocities};
@@ -135,8 +136,43 @@ void fem_system_scatter(FemSystem *system, double time, const double *u, const d
   fem_model_drive(model, time, system->positions, system->velocities);
 }
 
+static const char *body_of(const FemModel *model, int vertex) {
+  for (int b = 0; b < model->body_count; b++)
+    if (vertex >= model->bodies[b].vertex_begin && vertex < model->bodies[b].vertex_end)
+      return model->bodies[b].name;
+  return "?";
+}
+
+// `what`: of which array the first value that is no number is told. RETRY if there is one.
+static Status check_numbers(const FemSystem *system, const double *values, const char *what,
+                            const char *from) {
+  int count = 3 * system->model->vertex_count, i = 0;
+  if (fem_solver_is_finite(values, count)) return STATUS_OK;
+  while (isfinite(values[i])) i++;
+  return status_fail(STATUS_RETRY, "the %s vertex %d of body '%s' is not a number%s%s%s", what, i / 3,
+                     body_of(system->model, i / 3), from ? " (effect '" : "", from ? from : "",
+                     from ? "')" : "");
+}
+
+Status fem_system_check_state(const FemSystem *system) {
+  TRY(check_numbers(system, system->positions, "position of", NULL));
+  return check_numbers(system, system->velocities, "velocity of", NULL);
+}
+
+// Asks the effects one after the other for the force that is no number.
+static Status blame_effect(FemSystem *system, const FemState *state) {
+  memset(system->forces, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->forces);
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffect *effect = &system->effects[i];
+    TRY(effect->ops->add_force(effect->self, state, system->forces));
+    TRY(check_numbers(system, system->forces, "force on", effect->ops->name));
+  }
+  return status_fail(STATUS_RETRY, "a force was not a number once, and is one now");
+}
+
 Status fem_system_forces(FemSystem *system, double time) {
   memset(system->forces, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->forces);
+  TRY(fem_system_check_state(system));
   FemState state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {
     double began = clock_wall_s();
@@ -144,7 +180,8 @@ Status fem_system_forces(FemSystem *system, double time) {
     system->costs[i].force_s += clock_wall_s() - began;
     system->costs[i].force_calls++;
   }
-  return STATUS_OK;
+  bool is_finite = fem_solver_is_finite(system->forces, 3 * system->model->vertex_count);
+  return is_finite ? STATUS_OK : blame_effect(system, &state);
 }
 
 Status fem_system_couple(FemSystem *system, double time) {

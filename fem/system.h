@@ -36,7 +36,11 @@ void fem_system_destroy(FemSystem *system);
 // Unknowns (displacement u = x − X, velocity v; size n each) to full arrays in system->positions, velocities.
 void fem_system_scatter(FemSystem *system, double time, const double *u, const double *v);
 
-// Forces on all vertices into system->forces at the scattered state. RETRY as the effects say.
+// Whether the scattered state is made of numbers. RETRY: it is not; the message names the first vertex.
+Status fem_system_check_state(const FemSystem *system);
+
+// Forces on all vertices into system->forces at the scattered state. RETRY as the effects say, and where the
+// state or a force is no number: the message names the vertex, and the effect that the force is from.
 Status fem_system_forces(FemSystem *system, double time);
 
 // Lays system->matrix out anew if an effect couples more at the scattered state than the pattern has; then
