@@ -320,7 +320,7 @@ Status fem_checkpoint_write(const FemCheckpoint *checkpoint, const char *path) {
   if (!counters) return status_no_memory("a checkpoint");
   Status status = STATUS_OK;
   if (!print_image(checkpoint, counters, &image, &size))
-    status = fail_hdf5(STATUS_MEMORY, path, "the checkpoint could not be put together");
+    status = fail_hdf5(STATUS_MEMORY, path, "out of memory: the checkpoint could not be put together");
   if (!status) status = write_image(path, image, size);
   memory_free(image);
   memory_free(counters);
@@ -381,50 +381,55 @@ static bool read_number(hid_t file, const char *path, FieldType type, void *valu
   return works;
 }
 
-// A new array in the shape that it has: one number of `shape` a rank.
-static bool read_array(hid_t file, const char *path, int rank, hsize_t *shape, double **values) {
+// A new array in the shape that it has: one number of `shape` a rank. `name` is what the file lacks if not.
+static Status read_array(hid_t file, const char *path, const char *name, int rank, hsize_t *shape,
+                         double **values) {
   *values = NULL;
-  hid_t dataset = open_dataset(file, path, H5T_FLOAT, rank, shape);
-  if (dataset < 0) return false;
+  hid_t dataset = open_dataset(file, name, H5T_FLOAT, rank, shape);
+  if (dataset < 0) return fail_lacking(path, name);
   size_t count = shape[0] * (rank == 2 ? shape[1] : 1);
   *values = memory_zeroed(count, sizeof **values);
   bool works = *values && (count == 0 ||
                            H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values) >= 0);
   close_id(dataset);
-  return works;
+  if (!*values) return status_no_memory("a checkpoint");
+  return works ? STATUS_OK : fail_lacking(path, name);
 }
 
-static bool read_text(hid_t file, const char *path, char **text) {
+static Status read_text(hid_t file, const char *path, const char *name, char **text) {
   *text = NULL;
-  hid_t dataset = open_dataset(file, path, H5T_STRING, 0, NULL);
-  if (dataset < 0) return false;
+  hid_t dataset = open_dataset(file, name, H5T_STRING, 0, NULL);
+  if (dataset < 0) return fail_lacking(path, name);
   hid_t type = H5Dget_type(dataset);
   size_t size = H5Tget_size(type);
   *text = memory_zeroed(size + 1, 1);
   bool works = *text && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, *text) >= 0;
   close_id(type);
   close_id(dataset);
-  return works;
+  if (!*text) return status_no_memory("a checkpoint");
+  return works ? STATUS_OK : fail_lacking(path, name);
 }
 
-static bool read_effect(hid_t file, FemCheckpoint *checkpoint, int i) {
+static Status read_effect(hid_t file, FemCheckpoint *checkpoint, int i, const char *path) {
   FemCheckpointEffect *effect = &checkpoint->effects[i];
-  char path[PATH_SIZE], *name;
+  char place[PATH_SIZE], *name;
   hsize_t count = 0, cost_count = 0;
   double *costs;
-  snprintf(path, sizeof path, "effects/%02d/history", i);
-  bool works = read_array(file, path, 1, &count, &effect->values);
-  effect->count = (size_t)count;
+  snprintf(place, sizeof place, "effects/%02d/history", i);
   checkpoint->effect_count = i + 1; // from here on it is destroyed
-  snprintf(path, sizeof path, "effects/%02d/name", i);
-  works = read_text(file, path, &name) && works;
-  if (name) snprintf(effect->name, sizeof effect->name, "%s", name);
+  TRY(read_array(file, path, place, 1, &count, &effect->values));
+  effect->count = (size_t)count;
+  snprintf(place, sizeof place, "effects/%02d/name", i);
+  Status status = read_text(file, path, place, &name);
+  if (!status) snprintf(effect->name, sizeof effect->name, "%s", name);
   memory_free(name);
-  snprintf(path, sizeof path, "effects/%02d/cost", i);
-  works = read_array(file, path, 1, &cost_count, &costs) && works;
-  if (works && cost_count == COST_COUNT) checkpoint->so_far.effects[i].cost = cost_of(costs);
+  TRY(status);
+  snprintf(place, sizeof place, "effects/%02d/cost", i);
+  status = read_array(file, path, place, 1, &cost_count, &costs);
+  if (!status && cost_count != COST_COUNT) status = fail_lacking(path, place);
+  if (!status) checkpoint->so_far.effects[i].cost = cost_of(costs);
   memory_free(costs);
-  return works && cost_count == COST_COUNT;
+  return status;
 }
 
 static Status read_effects(hid_t file, FemCheckpoint *checkpoint, const char *path) {
@@ -433,33 +438,30 @@ static Status read_effects(hid_t file, FemCheckpoint *checkpoint, const char *pa
     char name[PATH_SIZE];
     snprintf(name, sizeof name, "effects/%02d", i);
     if (H5Lexists(file, name, H5P_DEFAULT) <= 0) return STATUS_OK;
-    if (!read_effect(file, checkpoint, i)) return fail_lacking(path, name);
+    TRY(read_effect(file, checkpoint, i, path));
   }
   return STATUS_OK;
 }
 
 static Status read_counters(hid_t file, FemCheckpoint *checkpoint, const char *path) {
   char *counters;
-  bool works = read_text(file, "counters", &counters);
-  Status status = works ? record_parse(&checkpoint->so_far.counters, counters, strlen(counters), path)
-                        : fail_lacking(path, "counters");
+  Status status = read_text(file, path, "counters", &counters);
+  if (!status) status = record_parse(&checkpoint->so_far.counters, counters, strlen(counters), path);
   memory_free(counters);
   return status;
 }
 
 static Status read_arrays(hid_t file, FemCheckpoint *checkpoint, const char *path) {
   hsize_t shape[2], again[2], frames;
-  if (!read_array(file, "displacement", 2, shape, &checkpoint->displacement) || shape[1] != 3)
-    return fail_lacking(path, "displacement");
-  if (!read_array(file, "velocity", 2, again, &checkpoint->velocity) || again[0] != shape[0] || again[1] != 3)
-    return fail_lacking(path, "velocity");
+  TRY(read_array(file, path, "displacement", 2, shape, &checkpoint->displacement));
+  if (shape[1] != 3) return fail_lacking(path, "displacement");
+  TRY(read_array(file, path, "velocity", 2, again, &checkpoint->velocity));
+  if (again[0] != shape[0] || again[1] != 3) return fail_lacking(path, "velocity");
   checkpoint->vertex_count = (int)shape[0];
-  if (!read_array(file, "frame_times", 1, &frames, &checkpoint->frame_times))
-    return fail_lacking(path, "frame_times");
+  TRY(read_array(file, path, "frame_times", 1, &frames, &checkpoint->frame_times));
   checkpoint->frame_count = (int)frames;
-  if (!read_text(file, "origin", &checkpoint->origin)) return fail_lacking(path, "origin");
-  if (!read_text(file, "history", &checkpoint->history)) return fail_lacking(path, "history");
-  return STATUS_OK;
+  TRY(read_text(file, path, "origin", &checkpoint->origin));
+  return read_text(file, path, "history", &checkpoint->history);
 }
 
 static Status check_numbers(const FemCheckpoint *checkpoint, const char *path) {

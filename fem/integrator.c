@@ -176,15 +176,16 @@ static Status find_derivatives(FemIntegrator *integrator, double time) {
   const double *u = values_of(integrator->y), *v = u + n;
   const double *masses = fem_ida_solver_masses(integrator->solver);
   double *u_dot = values_of(integrator->y_dot), *v_dot = u_dot + n;
+  if (!fem_solver_is_finite(u, 2 * n))
+    return status_fail(STATUS_SOLVER, "at t = %g s: a position or velocity is not a number", time);
   fem_system_scatter(system, time, u, v);
   TRY(fem_system_forces(system, time));
   for (int i = 0; i < n; i++) {
     u_dot[i] = v[i];
     v_dot[i] = system->forces[system->model->dof_of_unknown[i]] / masses[i];
   }
-  if (!fem_solver_is_finite(v_dot, n) || !fem_solver_is_finite(u, 2 * n))
-    return status_fail(STATUS_SOLVER, "at t = %g s: a position, velocity or force is not a number", time);
-  return STATUS_OK;
+  if (fem_solver_is_finite(v_dot, n)) return STATUS_OK;
+  return status_fail(STATUS_SOLVER, "at t = %g s: an acceleration is not a number", time);
 }
 
 Status fem_integrator_restart(FemIntegrator *integrator, double time, const double *u, const double *v,

@@ -475,10 +475,13 @@ static Status offer_checkpoint(Run *run) {
   return is_wanted && is_time ? write_checkpoint(run) : STATUS_OK;
 }
 
-static void remove_checkpoint(const Run *run) {
-  char *path = run->options->directory ? file_join(run->options->directory, FEM_CHECKPOINT_FILE) : NULL;
-  if (path) remove(path);
+static Status remove_checkpoint(const Run *run) {
+  if (!run->options->directory) return STATUS_OK;
+  char *path = file_join(run->options->directory, FEM_CHECKPOINT_FILE);
+  if (!path) return status_no_memory("a file name");
+  remove(path);
   memory_free(path);
+  return STATUS_OK;
 }
 
 static bool has_ended(const Run *run) {
@@ -544,7 +547,7 @@ static Status advance_static(Run *run) {
 static Status march(Run *run) {
   TRY(allocate_states(run));
   TRY(begin_part(run));
-  if (!run->options->from) remove_checkpoint(run); // of an earlier run in this folder
+  if (!run->options->from) TRY(remove_checkpoint(run)); // of an earlier run in this folder
   TRY(offer_checkpoint(run));
   while (!has_ended(run)) {
     if (run->model->scene->is_static) {
@@ -576,7 +579,7 @@ static Status collect(Run *run) {
 static Status leave_checkpoint(Run *run, Status status) {
   bool may_go_on = status == STATUS_INTERRUPTED || status == STATUS_IO || status == STATUS_MEMORY;
   if (!run->options->directory || !run->recorder.system) return STATUS_OK;
-  if (status == STATUS_OK) remove_checkpoint(run);
+  if (status == STATUS_OK) return remove_checkpoint(run);
   return may_go_on && run->given->scene->checkpoint_frames != 0 && !run->is_written ? write_checkpoint(run)
                                                                                     : STATUS_OK;
 }
@@ -615,18 +618,19 @@ static Status prepare(Run *run) {
   return begin_result(run);
 }
 
-// The first failure is the one to be told; what closes the run may fail as well.
+// The first failure gives the status; what closes the run may fail as well.
 static Status close_run(Run *run, Status status) {
-  char message[2048];
+  char message[2048], closing[1024] = "";
   snprintf(message, sizeof message, "%s", status_message());
   Status collected = collect(run), left = leave_checkpoint(run, status ? status : collected);
+  if (collected || left) snprintf(closing, sizeof closing, "; besides: %s", status_message());
   fem_recorder_destroy(&run->recorder);
   fem_system_destroy(&run->system);
   double *states[] = {run->u, run->v, run->u_new, run->v_new};
   for (int i = 0; i < 4; i++) memory_free(states[i]);
   fem_model_destroy_copy(&run->own);
   fem_checkpoint_destroy(&run->checkpoint);
-  if (status) return status_fail(status, "%s", message);
+  if (status) return status_fail(status, "%s%s", message, closing);
   return collected ? collected : left;
 }
 
