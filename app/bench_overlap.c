@@ -115,8 +115,8 @@ static void add(Bench *bench, const Case *what) {
 
 static void add_models(Bench *bench, Case what) {
   for (what.model = 0; what.model < bench->model_count; what.model++) {
-    const ContactOverlapOps *ops = bench->models[what.model].ops;
-    if (ops && (what.quantity < 2 || ops->has_hessian)) add(bench, &what);
+    const ContactOverlapModel *model = &bench->models[what.model];
+    if (model->ops && (what.quantity < 2 || contact_overlap_has_hessian(model))) add(bench, &what);
   }
 }
 

@@ -106,69 +106,74 @@ void contact_geo_coplanar_bend(const ContactGeoCoplanar *coplanar, const GeoMatr
   }
 }
 
-// A pair between the two models: how their volumes and gradients differ, and the derivatives of w.
-typedef struct Blend {
-  ContactGeoCoplanar coplanar;
-  GeoMatrix slope;                                     // ∂w/∂P
-  ContactGeoAdjoint adjoint;                           // of w
-  double volume, gradient[SIZE], hessian[SIZE * SIZE]; // of clip
-  double difference, gradient_difference[SIZE];        // clip − network
-} Blend;
-
-static void pull_share(const ContactGeoFrame *frame, Blend *blend) {
-  contact_geo_coplanar_slope(&blend->coplanar, &frame->projector, &blend->slope);
-  contact_geo_frame_pull_phi(frame, &blend->slope, &blend->adjoint);
-}
-
-static void blend_gradient(const Blend *blend, double *gradient) {
-  for (int i = 0; i < SIZE; i++)
-    gradient[i] += blend->coplanar.share * blend->gradient_difference[i] +
-                   blend->difference * blend->adjoint.gradient[i];
-}
-
 // Column j of ∇²w.
-static void bend_share(const ContactGeoFrame *frame, const Blend *blend, int j, double *hessian) {
+static void bend_share(const ContactGeoFrame *frame, const ContactGeoCoplanar *coplanar,
+                       const ContactGeoAdjoint *adjoint, const GeoMatrix *slope, int j, double *hessian) {
   double direction[SIZE] = {0}, column[SIZE];
   direction[j] = 1;
   ContactGeoTangent tangent;
   GeoMatrix slope_change;
   contact_geo_frame_push(frame, direction, &tangent);
-  contact_geo_coplanar_bend(&blend->coplanar, &frame->projector, &tangent.projector, &slope_change);
-  contact_geo_frame_bend(frame, &blend->adjoint, &blend->slope, &tangent, &slope_change, column);
+  contact_geo_coplanar_bend(coplanar, &frame->projector, &tangent.projector, &slope_change);
+  contact_geo_frame_bend(frame, adjoint, slope, &tangent, &slope_change, column);
   for (int i = 0; i < SIZE; i++) hessian[i * SIZE + j] = column[i];
 }
 
-static void blend_hessian(const ContactGeoFrame *frame, const Blend *blend, double *hessian) {
-  double share = blend->coplanar.share, bent[SIZE * SIZE];
+void contact_geo_coplanar_pull(const ContactGeoFrame *frame, const ContactGeoCoplanar *coplanar,
+                               double gradient[24], double *hessian) {
+  GeoMatrix slope; // ∂w/∂P
+  ContactGeoAdjoint adjoint;
+  contact_geo_coplanar_slope(coplanar, &frame->projector, &slope);
+  contact_geo_frame_pull_phi(frame, &slope, &adjoint);
+  memcpy(gradient, adjoint.gradient, sizeof adjoint.gradient);
+  if (!hessian) return;
   int moved = contact_geo_hessian_moved(frame), first = moved * SIZE / 2;
-  for (int j = first; j < first + SIZE / 2; j++) bend_share(frame, blend, j, bent);
-  contact_geo_hessian_complete(frame, moved, blend->adjoint.gradient, bent);
+  for (int j = first; j < first + SIZE / 2; j++) bend_share(frame, coplanar, &adjoint, &slope, j, hessian);
+  contact_geo_hessian_complete(frame, moved, gradient, hessian);
+}
+
+// A pair between the two models: how their volumes and gradients differ, and the derivatives of w.
+typedef struct Blend {
+  double share, share_gradient[SIZE], share_hessian[SIZE * SIZE];
+  double volume, gradient[SIZE], hessian[SIZE * SIZE]; // of clip
+  double difference, gradient_difference[SIZE];        // clip − network
+} Blend;
+
+static void blend_gradient(const Blend *blend, double *gradient) {
+  for (int i = 0; i < SIZE; i++)
+    gradient[i] +=
+        blend->share * blend->gradient_difference[i] + blend->difference * blend->share_gradient[i];
+}
+
+static void blend_hessian(const Blend *blend, double *hessian) {
   for (int i = 0; i < SIZE; i++)
     for (int j = i; j < SIZE; j++) {
       int at = i * SIZE + j;
-      hessian[at] += share * (blend->hessian[at] - hessian[at]) +
-                     blend->adjoint.gradient[i] * blend->gradient_difference[j] +
-                     blend->gradient_difference[i] * blend->adjoint.gradient[j] +
-                     blend->difference * bent[at];
+      hessian[at] += blend->share * (blend->hessian[at] - hessian[at]) +
+                     blend->share_gradient[i] * blend->gradient_difference[j] +
+                     blend->gradient_difference[i] * blend->share_gradient[j] +
+                     blend->difference * blend->share_hessian[at];
       hessian[j * SIZE + i] = hessian[at];
     }
 }
 
 Status contact_geo_coplanar_blend(const ContactGeoFrame *frame, const double pair[24], double *volume,
                                   double *gradient, double *hessian, unsigned *flags) {
+  ContactGeoCoplanar coplanar;
+  contact_geo_coplanar_find(&frame->projector, &coplanar);
+  if (!(coplanar.share > 0)) return STATUS_OK;
   Blend blend;
-  contact_geo_coplanar_find(&frame->projector, &blend.coplanar);
-  if (!(blend.coplanar.share > 0)) return STATUS_OK;
+  blend.share = coplanar.share;
   unsigned clip_flags;
   TRY(contact_overlap_clip.eval_pair(NULL, pair, &blend.volume, gradient ? blend.gradient : NULL,
                                      hessian ? blend.hessian : NULL, &clip_flags));
   blend.difference = blend.volume - *volume;
-  *volume += blend.coplanar.share * blend.difference;
+  *volume += blend.share * blend.difference;
   if (flags) *flags |= CONTACT_OVERLAP_BLENDED;
   if (!gradient) return STATUS_OK;
   for (int i = 0; i < SIZE; i++) blend.gradient_difference[i] = blend.gradient[i] - gradient[i];
-  pull_share(frame, &blend);
+  contact_geo_coplanar_pull(frame, &coplanar, blend.share_gradient, hessian ? blend.share_hessian : NULL);
   blend_gradient(&blend, gradient);
-  if (hessian) blend_hessian(frame, &blend, hessian);
+  if (hessian) blend_hessian(&blend, hessian);
   return STATUS_OK;
 }

@@ -49,6 +49,10 @@ void contact_geo_coplanar_slope(const ContactGeoCoplanar *coplanar, const GeoMat
 void contact_geo_coplanar_bend(const ContactGeoCoplanar *coplanar, const GeoMatrix *projector,
                                const GeoMatrix *change, GeoMatrix *slope_change);
 
+// ∇w (24) and, unless NULL, ∇²w (24, 24) by the vertices.
+void contact_geo_coplanar_pull(const ContactGeoFrame *frame, const ContactGeoCoplanar *coplanar,
+                               double gradient[24], double *hessian);
+
 // If the pair has a share, turns volume, gradient and hessian (24 × 24) of the network, the latter two NULL
 // if not wanted, to the blend and adds CONTACT_OVERLAP_BLENDED to the flags (may be NULL). A Hessian needs
 // the gradient.

@@ -6,127 +6,140 @@
 // Volumes of the network below this share of the unit simplex are rounded off.
 static const double SOFTEST = 1e-3 / 6;
 
-// From 0 for x ≤ 0 to 1 for x ≥ 1; NaN: 0.
-static double rise(double x, double *slope) {
-  *slope = x > 0 && x < 1 ? 6 * x * (1 - x) : 0;
-  if (x >= 1) return 1;
-  return x > 0 ? x * x * (3 - 2 * x) : 0;
+// From 0 for x ≤ 0 to 1 for x ≥ 1, x being a linear function of slope `rate`; NaN: 0.
+static ContactNetBend rise(double x, double rate) {
+  if (x >= 1) return (ContactNetBend){.value = 1};
+  if (!(x > 0)) return (ContactNetBend){.value = 0};
+  return (ContactNetBend){x * x * (3 - 2 * x), 6 * x * (1 - x) * rate, 6 * (1 - 2 * x) * rate * rate};
 }
 
-ContactNetPrior contact_net_blend_prior(const ContactNetRule *rule, double share,
-                                        const double inside[CONTACT_NET_MAX_ORDERS]) {
-  ContactNetPrior prior = {.fading = 1, .share = 1};
-  if (rule->fades) {
-    prior.fading = rise(share / rule->touch, &prior.fading_slope);
-    prior.fading_slope /= rule->touch;
-  }
-  if (rule->is_hybrid) {
-    double slope[2], enough = rise(share / rule->touch - 1, &slope[0]),
-                     much = rise(2 * share / rule->deep - 2, &slope[1]);
-    prior.share = enough * (1 - much);
-    prior.share_slope = slope[0] / rule->touch * (1 - much) - enough * slope[1] * 2 / rule->deep;
-  }
-  for (int o = 0; o < rule->order_count; o++) prior.range[o] = rule->keeps_to_range ? inside[o] : 1;
-  return prior;
+static ContactNetBend fall(double x, double rate) {
+  ContactNetBend up = rise(x, rate);
+  return (ContactNetBend){1 - up.value, -up.slope, -up.bend};
 }
 
-bool contact_net_blend_is_exact(const ContactNetRule *rule, const ContactNetPrior *prior) {
-  double weight = prior->share;
-  for (int o = 0; o < rule->order_count; o++) weight *= prior->range[o];
-  return !(weight > 0);
+static ContactNetBend itself(double x) {
+  return (ContactNetBend){.value = x, .slope = 1};
 }
 
-// max(0, v), with a parabola in place of the corner where that is asked for.
-static double clamp(const ContactNetRule *rule, double v, double *slope) {
+// max(0, v)/scale, with a parabola in place of the corner where that is asked for.
+static ContactNetBend clamp(const ContactNetRule *rule, double v) {
   double soft = SOFTEST * rule->scale;
-  if (rule->rounds && fabs(v) < soft) {
-    *slope = (v + soft) / (2 * soft);
-    return (v + soft) * (v + soft) / (4 * soft);
-  }
-  *slope = v > 0;
-  return v > 0 ? v : 0;
+  if (rule->rounds && fabs(v) < soft)
+    return (ContactNetBend){(v + soft) * (v + soft) / (4 * soft) / rule->scale,
+                            (v + soft) / (2 * soft) / rule->scale, 1 / (2 * soft) / rule->scale};
+  return v > 0 ? (ContactNetBend){.value = v / rule->scale, .slope = 1 / rule->scale}
+               : (ContactNetBend){.value = 0};
 }
 
-static double gate(const ContactNetRule *rule, double z, double *slope) {
-  *slope = 0;
-  if (!rule->gates) return 1;
-  double probability = 1 / (1 + exp(-z));
-  *slope = probability * (1 - probability);
-  return probability;
+static ContactNetBend probability(double z) {
+  double p = 1 / (1 + exp(-z));
+  return (ContactNetBend){p, p * (1 - p), p * (1 - p) * (1 - 2 * p)};
 }
 
-// The parts that w is made of, and the slopes of those that depend on the network.
-typedef struct Weights {
-  double confidence, confidence_slope;                                           // by the mean logit
-  double overlap[CONTACT_NET_MAX_ORDERS], overlap_slope[CONTACT_NET_MAX_ORDERS]; // by u/scale
-} Weights;
-
-static double product(const ContactNetRule *rule, const ContactNetPrior *prior, const Weights *weights) {
-  double weight = prior->share * weights->confidence;
-  for (int o = 0; o < rule->order_count; o++) weight *= prior->range[o] * weights->overlap[o];
-  return weight;
+// The part of w that the share decides.
+static void weigh_share(const ContactNetRule *rule, double share, int order, ContactNetJet *weight) {
+  contact_net_jet_constant(weight, order, 1);
+  if (!rule->is_hybrid) return;
+  ContactNetJet part;
+  contact_net_jet_of(weight, order, CONTACT_NET_SHARE, rise(share / rule->touch - 1, 1 / rule->touch));
+  contact_net_jet_of(&part, order, CONTACT_NET_SHARE, fall(2 * share / rule->deep - 2, 2 / rule->deep));
+  contact_net_jet_multiply(weight, &part);
 }
 
-static Weights weigh(const ContactNetRule *rule, const ContactNetTold *told, bool *is_beyond) {
-  Weights weights = {.confidence = 1};
-  double mean = 0, slope;
-  *is_beyond = false;
+static void weigh_confidence(const ContactNetRule *rule, const ContactNetSaid *said, ContactNetJet *weight) {
+  ContactNetJet mean, logit;
+  contact_net_jet_constant(&mean, weight->order, 0);
   for (int o = 0; o < rule->order_count; o++) {
-    mean += told->logit[o] / rule->order_count;
-    weights.overlap[o] = 1;
-    if (!rule->has_range) continue;
-    double volume = clamp(rule, told->volume[o], &slope) / rule->scale;
-    double weight = contact_net_range_overlap_weight(&rule->range, volume, &weights.overlap_slope[o]);
-    *is_beyond |= weight < 1;
-    if (rule->keeps_to_range)
-      weights.overlap[o] = weight;
-    else
-      weights.overlap_slope[o] = 0;
+    contact_net_jet_of(&logit, weight->order, CONTACT_NET_LOGIT + o, itself(said->of[CONTACT_NET_LOGIT + o]));
+    contact_net_jet_add(&mean, 1.0 / rule->order_count, &logit);
   }
-  if (rule->is_hybrid) {
-    weights.confidence = rise(mean / rule->logit, &weights.confidence_slope);
-    weights.confidence_slope /= rule->logit;
-  }
-  return weights;
+  contact_net_jet_apply(&mean, rise(mean.value / rule->logit, 1 / rule->logit));
+  contact_net_jet_multiply(weight, &mean);
 }
 
-ContactNetBlend contact_net_blend_weigh(const ContactNetRule *rule, const ContactNetPrior *prior,
-                                        const ContactNetTold *told) {
-  ContactNetBlend blend = {0};
-  Weights weights = weigh(rule, told, &blend.is_beyond);
-  blend.weight = product(rule, prior, &weights);
-  return blend;
+// The range's weights of order o: of the normalised pair, and of the volume that the network tells.
+static void weigh_range(const ContactNetRule *rule, const ContactNetSaid *said, int o,
+                        ContactNetJet *weight) {
+  ContactNetJet part;
+  contact_net_jet_of(&part, weight->order, CONTACT_NET_INSIDE + o, itself(said->of[CONTACT_NET_INSIDE + o]));
+  contact_net_jet_multiply(weight, &part);
+  contact_net_jet_of(&part, weight->order, CONTACT_NET_VOLUME + o,
+                     clamp(rule, said->of[CONTACT_NET_VOLUME + o]));
+  contact_net_jet_apply(&part, contact_net_range_overlap_weight(&rule->range, part.value));
+  contact_net_jet_multiply(weight, &part);
 }
 
-double contact_net_blend_settle(const ContactNetRule *rule, const ContactNetPrior *prior,
-                                const ContactNetTold *told, double exact, ContactNetBlend *blend) {
-  *blend = (ContactNetBlend){0};
-  Weights weights = weigh(rule, told, &blend->is_beyond);
-  int n = rule->order_count;
-  double u[CONTACT_NET_MAX_ORDERS], u_slope[CONTACT_NET_MAX_ORDERS], g[CONTACT_NET_MAX_ORDERS],
-      g_slope[CONTACT_NET_MAX_ORDERS], w = product(rule, prior, &weights);
-  for (int o = 0; o < n; o++) {
-    u[o] = clamp(rule, told->volume[o], &u_slope[o]) / rule->scale;
-    u_slope[o] /= rule->scale;
-    g[o] = gate(rule, told->logit[o], &g_slope[o]);
-    blend->net += told->factor[o] * u[o] * g[o] / n;
+static void weigh(const ContactNetRule *rule, const ContactNetSaid *said, int order, ContactNetJet *weight) {
+  weigh_share(rule, said->of[CONTACT_NET_SHARE], order, weight);
+  if (rule->is_hybrid) weigh_confidence(rule, said, weight);
+  for (int o = 0; o < rule->order_count && rule->keeps_to_range; o++) weigh_range(rule, said, o, weight);
+}
+
+bool contact_net_blend_is_exact(const ContactNetRule *rule, const ContactNetSaid *said) {
+  ContactNetJet weight;
+  weigh_share(rule, said->of[CONTACT_NET_SHARE], 0, &weight);
+  for (int o = 0; o < rule->order_count && rule->keeps_to_range; o++)
+    weight.value *= said->of[CONTACT_NET_INSIDE + o];
+  return !(weight.value > 0);
+}
+
+double contact_net_blend_weight(const ContactNetRule *rule, const ContactNetSaid *said) {
+  ContactNetJet weight;
+  weigh(rule, said, 0, &weight);
+  return weight.value;
+}
+
+bool contact_net_blend_is_beyond(const ContactNetRule *rule, const ContactNetSaid *said) {
+  bool is_beyond = false;
+  for (int o = 0; o < rule->order_count && rule->has_range; o++) {
+    double volume = clamp(rule, said->of[CONTACT_NET_VOLUME + o]).value;
+    is_beyond |= contact_net_range_overlap_weight(&rule->range, volume).value < 1;
   }
-  blend->weight = w;
-  blend->net_weight = w * prior->fading;
-  blend->excess = prior->fading * blend->net - (w < 1 ? exact : 0);
-  // w by one of its parts is the product of the others. Where w = 1 all slopes are 0.
-  double others = w > 0 ? w / weights.confidence : 0;
-  for (int o = 0; o < n; o++) {
-    blend->inner[o] = blend->net_weight / n * u[o] * g[o];
-    blend->by_logit[o] = blend->net_weight / n * told->factor[o] * u[o] * g_slope[o] +
-                         blend->excess * others * weights.confidence_slope / n;
-    blend->by_volume[o] = blend->net_weight / n * told->factor[o] * g[o] * u_slope[o];
-    if (!(w > 0)) continue;
-    blend->by_volume[o] += blend->excess * w / weights.overlap[o] * weights.overlap_slope[o] * u_slope[o];
-    blend->by_range[o] = rule->keeps_to_range ? blend->excess * w / prior->range[o] : 0;
+  return is_beyond;
+}
+
+// N: the mean of what the orders tell.
+static void tell(const ContactNetRule *rule, const ContactNetSaid *said, int order, ContactNetJet *net) {
+  ContactNetJet part, factor;
+  contact_net_jet_constant(net, order, 0);
+  for (int o = 0; o < rule->order_count; o++) {
+    contact_net_jet_of(&part, order, CONTACT_NET_VOLUME + o, clamp(rule, said->of[CONTACT_NET_VOLUME + o]));
+    contact_net_jet_of(&factor, order, CONTACT_NET_FACTOR + o, itself(said->of[CONTACT_NET_FACTOR + o]));
+    contact_net_jet_multiply(&part, &factor);
+    if (rule->gates) {
+      contact_net_jet_of(&factor, order, CONTACT_NET_LOGIT + o, probability(said->of[CONTACT_NET_LOGIT + o]));
+      contact_net_jet_multiply(&part, &factor);
+    }
+    contact_net_jet_add(net, 1.0 / rule->order_count, &part);
   }
-  if (w > 0)
-    blend->by_share =
-        w * blend->net * prior->fading_slope + blend->excess * w / prior->share * prior->share_slope;
-  return blend->net_weight * blend->net + (w < 1 ? (1 - w) * exact : 0);
+}
+
+// a = (1 − weight) a + weight · b
+static void mix(ContactNetJet *a, const ContactNetJet *weight, const ContactNetJet *b) {
+  ContactNetJet difference = *b;
+  contact_net_jet_add(&difference, -1, a);
+  contact_net_jet_multiply(&difference, weight);
+  contact_net_jet_add(a, 1, &difference);
+}
+
+void contact_net_blend_eval(const ContactNetRule *rule, const ContactNetSaid *said, int order,
+                            ContactNetJet *volume) {
+  ContactNetJet weight, other;
+  tell(rule, said, order, volume);
+  if (rule->fades) {
+    contact_net_jet_of(&other, order, CONTACT_NET_SHARE,
+                       rise(said->of[CONTACT_NET_SHARE] / rule->touch, 1 / rule->touch));
+    contact_net_jet_multiply(volume, &other);
+  }
+  weigh(rule, said, order, &weight);
+  if (weight.value < 1) {
+    ContactNetJet net = *volume;
+    contact_net_jet_of(volume, order, CONTACT_NET_EXACT, itself(said->of[CONTACT_NET_EXACT]));
+    mix(volume, &weight, &net);
+  }
+  if (!(said->of[CONTACT_NET_PLANE] > 0)) return;
+  contact_net_jet_of(&weight, order, CONTACT_NET_PLANE, itself(said->of[CONTACT_NET_PLANE]));
+  contact_net_jet_of(&other, order, CONTACT_NET_CLIP, itself(said->of[CONTACT_NET_CLIP]));
+  mix(volume, &weight, &other);
 }

@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the answer for one pair is made of what a network, the closed form and the exact model say of it, and
-// its derivatives by each of them.
+// How the answer for one pair is made of what a network, the closed form, the exact model and clipping say of
+// it, and its derivatives by each of them.
 //
 // The network tells, for each of n orders of the two tetrahedra, a status logit z_o and a volume v_o of the
 // normalised pair. With u the volume v clamped at 0, g the gate (the probability σ(z), or 1), f the
-// normalisation's factor, and V_e the exact volume,
+// normalisation's factor, V_e the exact volume and V_c that of clipping,
 //
-//     V = w r N + (1 − w) V_e,   N = 1/n Σ_o f_o u(v_o)/scale g(z_o).
+//     V = (1 − c) (w r N + (1 − w) V_e) + c V_c,   N = 1/n Σ_o f_o u(v_o)/scale g(z_o).
 //
-// Fading r(q) and weight w are functions of the pair. q is its overlap share: V₀ (1/V_A + 1/V_B), V₀ the
-// closed form of `geo` without a network, which is 0 where the pair is disjoint and has continuous
-// derivatives. With S the step x²(3 − 2x) between 0 and 1:
+// Fading r(q) and weight w are functions of the pair. q is its overlap share (net_share.h). With S the step
+// x²(3 − 2x) between 0 and 1:
 //
 //     r = S(q/touch)                                                         where it is asked for
 //     w = S(q/touch − 1) · (1 − S(2 q/deep − 2)) · S(z̄/z₁)                   hybrid; else 1
 //         · Π_o (weight in the training's range of the pair and of u/scale)  where it is asked for
 //
-// z̄ is the mean logit, z₁ that of the confidence that is asked for.
+// z̄ is the mean logit, z₁ that of the confidence that is asked for; c is the share of clipping of pairs whose
+// faces nearly lie in one plane (geo_coplanar.h), 0 where it is not asked for.
 #ifndef TETLAP_CONTACT_NET_BLEND_H
 #define TETLAP_CONTACT_NET_BLEND_H
 
 #include <stdbool.h>
 
+#include "contact/net_jet.h"
 #include "contact/net_range.h"
 
 enum { CONTACT_NET_MAX_ORDERS = 2 };
@@ -39,43 +40,33 @@ typedef struct ContactNetRule {
   double scale;       // the network tells scale · V'
 } ContactNetRule;
 
-// Of a pair, before the network is asked.
-typedef struct ContactNetPrior {
-  double fading, fading_slope;          // r, dr/dq
-  double share, share_slope;            // the part of w that q decides, and its slope
-  double range[CONTACT_NET_MAX_ORDERS]; // weights in range of the normalised pairs, 1 where they do not count
-} ContactNetPrior;
+// The quantities that V is made of; the first four have one place for each order.
+enum {
+  CONTACT_NET_LOGIT = 0,  // z
+  CONTACT_NET_VOLUME = 2, // v
+  CONTACT_NET_FACTOR = 4, // f
+  CONTACT_NET_INSIDE = 6, // the range's weight of the normalised pair
+  CONTACT_NET_SHARE = 8,  // q
+  CONTACT_NET_EXACT = 9,  // V_e, of no account where w = 1
+  CONTACT_NET_PLANE = 10, // c
+  CONTACT_NET_CLIP = 11,  // V_c, of no account where c = 0
+};
 
-// `inside`: the range's weight of each order's normalised pair.
-ContactNetPrior contact_net_blend_prior(const ContactNetRule *rule, double share,
-                                        const double inside[CONTACT_NET_MAX_ORDERS]);
-// Whether w = 0 whatever the network says.
-bool contact_net_blend_is_exact(const ContactNetRule *rule, const ContactNetPrior *prior);
+typedef struct ContactNetSaid {
+  double of[CONTACT_NET_QUANTITIES];
+} ContactNetSaid;
 
-// What the network says: per order z, v.
-typedef struct ContactNetTold {
-  double logit[CONTACT_NET_MAX_ORDERS], volume[CONTACT_NET_MAX_ORDERS];
-  double factor[CONTACT_NET_MAX_ORDERS];
-} ContactNetTold;
+// Whether w = 0 whatever the network says; reads the range's weights and the share.
+bool contact_net_blend_is_exact(const ContactNetRule *rule, const ContactNetSaid *said);
 
-typedef struct ContactNetBlend {
-  double weight;     // w
-  double net;        // N
-  double net_weight; // ∂V/∂N
-  double excess;     // ∂V/∂w = r N − V_e
-  bool is_beyond;    // a u/scale is beyond the range
-  // ∂V by the network's outputs, by each weight in range, by q.
-  double by_logit[CONTACT_NET_MAX_ORDERS], by_volume[CONTACT_NET_MAX_ORDERS],
-      by_range[CONTACT_NET_MAX_ORDERS];
-  double by_share;
-  double inner[CONTACT_NET_MAX_ORDERS]; // ∂V by the factors: what the normalisation multiplies
-} ContactNetBlend;
+// w from what the network says.
+double contact_net_blend_weight(const ContactNetRule *rule, const ContactNetSaid *said);
 
-// w alone, from what the network says.
-ContactNetBlend contact_net_blend_weigh(const ContactNetRule *rule, const ContactNetPrior *prior,
-                                        const ContactNetTold *told);
-// V, and all derivatives; `exact` is V_e, of no account where blend->weight = 1.
-double contact_net_blend_settle(const ContactNetRule *rule, const ContactNetPrior *prior,
-                                const ContactNetTold *told, double exact, ContactNetBlend *blend);
+// Whether a volume u/scale is beyond the training's range.
+bool contact_net_blend_is_beyond(const ContactNetRule *rule, const ContactNetSaid *said);
+
+// V with its derivatives up to `order` by all quantities.
+void contact_net_blend_eval(const ContactNetRule *rule, const ContactNetSaid *said, int order,
+                            ContactNetJet *volume);
 
 #endif

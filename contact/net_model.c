@@ -46,6 +46,7 @@ static Status furnish(ContactNetModel *model, size_t more) {
   model->desks = memory_zeroed((size_t)model->desk_count, sizeof *model->desks);
   if (!model->desks) return status_no_memory("the network's memory of evaluation");
   NetWorkDef def = net_work_default();
+  def.tangent_count = CONTACT_NET_TANGENTS;
   for (int d = 0; d < model->desk_count; d++) {
     ContactNetDesk *desk = &model->desks[d];
     atomic_flag_clear(&desk->is_taken);

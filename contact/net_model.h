@@ -11,9 +11,13 @@
 #include "contact/normalise.h"
 #include "net/fold.h"
 #include "net/forward.h"
+#include "net/tangent.h"
 #include "net/weights.h"
 
 enum { CONTACT_NET_NORMALISATION_TEXT = 64, CONTACT_NET_ROWS = NET_CHUNK_COLUMNS };
+
+// Directions of second derivatives: the coordinates of the second tetrahedron.
+enum { CONTACT_NET_TANGENTS = 12 };
 
 // What a weights file's card says of the input and the output: "unit, V times 1000".
 void contact_net_model_print(ContactNormalisation kind, double scale,

@@ -30,11 +30,19 @@ typedef enum ContactNetBeyond {
   CONTACT_NET_BEYOND_EXACT, // and answered by `exact`, blended over a band
 } ContactNetBeyond;
 
+// Pairs with faces that nearly lie in one plane (geo_coplanar.h).
+typedef enum ContactNetCoplanar {
+  CONTACT_NET_COPLANAR_AUTO,
+  CONTACT_NET_COPLANAR_KEEP, // are the network's as any other
+  CONTACT_NET_COPLANAR_CLIP, // turn to clipping, the more the nearer
+} ContactNetCoplanar;
+
 typedef struct ContactNetOptions {
   ContactNetGhosts ghosts;
   ContactNetGate gate;
   ContactNetOrders orders;
   ContactNetBeyond beyond;
+  ContactNetCoplanar coplanar;
   double touch;      // fading and `hybrid`: overlap share at which the network begins to count
   double deep;       // hybrid: overlap share beyond which it no longer does
   double confidence; // hybrid: probability of the status head from which it counts fully; at ½ not at all

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "base/vec3.h"
+#include "contact/simplex.h"
 
 const double contact_net_range_tail = 0.005;
 const double contact_net_range_band = 1.5;
@@ -26,18 +26,10 @@ static double square_radius(const double pair[24]) {
   return sum / 8;
 }
 
-// Six times the signed volume, and its derivatives by vertices 1 … 3.
-static double determinant(const double tet[12], Vec3 normal[3]) {
-  Vec3 origin = vec3_at(tet), edge[3];
-  for (int k = 0; k < 3; k++) edge[k] = vec3_sub(vec3_at(tet + 3 + 3 * k), origin);
-  for (int k = 0; k < 3; k++) normal[k] = vec3_cross(edge[(k + 1) % 3], edge[(k + 2) % 3]);
-  return vec3_dot(edge[0], normal[0]);
-}
-
 ContactNetMeasures contact_net_range_measure(const double pair[24]) {
-  Vec3 normal[3];
+  double lambda[12];
   ContactNetMeasures measures = {.radius = sqrt(square_radius(pair))};
-  for (int t = 0; t < 2; t++) measures.volume[t] = fabs(determinant(pair + 12 * t, normal)) / 6;
+  for (int t = 0; t < 2; t++) measures.volume[t] = contact_simplex_volume(pair + 12 * t, lambda);
   return measures;
 }
 
@@ -94,66 +86,114 @@ bool contact_net_range_parse(const char *text, ContactNetRange *range) {
 }
 
 // 1 for x ≤ 0, 0 for x ≥ 1 and for NaN.
-static double fall(double x, double *derivative) {
-  *derivative = x > 0 && x < 1 ? -6 * x * (1 - x) : 0;
-  if (x <= 0) return 1;
-  return x < 1 ? 1 - x * x * (3 - 2 * x) : 0;
+static ContactNetBend fall(double x) {
+  if (x <= 0) return (ContactNetBend){.value = 1};
+  if (!(x < 1)) return (ContactNetBend){.value = 0};
+  return (ContactNetBend){1 - x * x * (3 - 2 * x), -6 * x * (1 - x), -6 + 12 * x};
 }
 
 // Beyond an end by less than this is still within: the text of a range has nine digits.
 static const double WITHIN = 1e-6;
 
-// The weight of a measure between two ends, in its logarithm; `derivative` by the logarithm.
-static double weigh(double value, const double ends[2], double *derivative) {
-  double band = log(contact_net_range_band), slope[2];
-  double below = fall((log(ends[0] / value) - WITHIN) / band, &slope[0]);
-  double above = fall((log(value / ends[1]) - WITHIN) / band, &slope[1]);
-  *derivative = (above * -slope[0] + below * slope[1]) / band;
-  return below * above;
+// The weight of a measure between two ends, with its derivatives by the measure's logarithm.
+static ContactNetBend weigh(double value, const double ends[2]) {
+  double band = log(contact_net_range_band);
+  ContactNetBend below = fall((log(ends[0] / value) - WITHIN) / band),
+                 above = fall((log(value / ends[1]) - WITHIN) / band);
+  return (ContactNetBend){
+      below.value * above.value, (below.value * above.slope - below.slope * above.value) / band,
+      (below.value * above.bend - 2 * below.slope * above.slope + below.bend * above.value) / (band * band)};
 }
 
-// gradient += scale · ∇ ln radius
-static void add_radius(const double pair[24], double scale, double gradient[24]) {
+enum { SIZE = 24, MEASURES = 3 };
+
+// ∇ ln radius
+static void find_radius_slope(const double pair[24], double slope[24]) {
   Vec3 centre = centroid_of(pair), total = {0, 0, 0};
-  double factor = scale / (8 * square_radius(pair));
+  double factor = 1 / (8 * square_radius(pair));
   for (int v = 0; v < 8; v++) {
     Vec3 arm = vec3_sub(vec3_at(pair + 3 * v), centre);
     total = vec3_add(total, arm);
-    vec3_accumulate(gradient + 3 * v, vec3_scale(factor, arm));
+    vec3_store(slope + 3 * v, vec3_scale(factor, arm));
   }
-  for (int v = 0; v < 4; v++) vec3_accumulate(gradient + 3 * v, vec3_scale(-0.25 * factor, total));
+  for (int v = 0; v < 4; v++) vec3_accumulate(slope + 3 * v, vec3_scale(-0.25 * factor, total));
 }
 
-// gradient += scale · ∇ ln volume
-static void add_volume(const double tet[12], double scale, double gradient[12]) {
-  Vec3 normal[3], total = {0, 0, 0};
-  double factor = scale / determinant(tet, normal);
-  for (int k = 0; k < 3; k++) {
-    total = vec3_add(total, normal[k]);
-    vec3_accumulate(gradient + 3 + 3 * k, vec3_scale(factor, normal[k]));
-  }
-  vec3_accumulate(gradient, vec3_scale(-factor, total));
+// hessian += scale · ∇² ln radius, from ∇² of the square R of the radius, which is constant: ∇²R/2R − 2 ∇ln
+// ∇lnᵀ.
+static void add_radius_bend(const double pair[24], const double slope[24], double scale, double *hessian) {
+  double factor = scale / (16 * square_radius(pair));
+  for (int i = 0; i < SIZE; i++)
+    for (int j = 0; j < SIZE; j++) hessian[SIZE * i + j] -= 2 * scale * slope[i] * slope[j];
+  for (int v = 0; v < 8; v++)
+    for (int w = 0; w < 8; w++) {
+      int in_v = v < 4, in_w = w < 4; // of the first tetrahedron, whose centroid it is
+      double bend = 2 * (v == w) - 0.5 * (in_v + in_w) + in_v * in_w;
+      for (int c = 0; c < 3; c++) hessian[SIZE * (3 * v + c) + 3 * w + c] += factor * bend;
+    }
 }
 
-double contact_net_range_weight(const ContactNetRange *range, const double pair[24], double gradient[24]) {
+// The measures' weights, and the slopes of their logarithms.
+typedef struct Weights {
+  ContactNetBend of[MEASURES]; // radius, volumes
+  double slope[MEASURES][SIZE];
+} Weights;
+
+static Weights find_weights(const ContactNetRange *range, const double pair[24]) {
   ContactNetMeasures measures = contact_net_range_measure(pair);
-  double slope[3], weight[3] = {weigh(measures.radius, range->radius, &slope[0]),
-                                weigh(measures.volume[0], range->volume[0], &slope[1]),
-                                weigh(measures.volume[1], range->volume[1], &slope[2])};
-  if (gradient) {
-    for (int i = 0; i < 24; i++) gradient[i] = 0;
-    double share[3] = {slope[0] * weight[1] * weight[2], weight[0] * slope[1] * weight[2],
-                       weight[0] * weight[1] * slope[2]};
-    if (share[0] != 0) add_radius(pair, share[0], gradient);
-    for (int t = 0; t < 2; t++)
-      if (share[1 + t] != 0) add_volume(pair + 12 * t, share[1 + t], gradient + 12 * t);
-  }
-  return weight[0] * weight[1] * weight[2];
+  Weights weights = {.of = {weigh(measures.radius, range->radius),
+                            weigh(measures.volume[0], range->volume[0]),
+                            weigh(measures.volume[1], range->volume[1])}};
+  find_radius_slope(pair, weights.slope[0]);
+  for (int t = 0; t < 2; t++) contact_simplex_volume(pair + 12 * t, weights.slope[1 + t] + 12 * t);
+  return weights;
 }
 
-double contact_net_range_overlap_weight(const ContactNetRange *range, double overlap, double *derivative) {
+// The product of the weights other than m and n.
+static double others(const Weights *weights, int m, int n) {
+  double product = 1;
+  for (int k = 0; k < MEASURES; k++)
+    if (k != m && k != n) product *= weights->of[k].value;
+  return product;
+}
+
+static void bend(const double pair[24], const Weights *weights, double *hessian) {
+  for (int i = 0; i < SIZE * SIZE; i++) hessian[i] = 0;
+  for (int m = 0; m < MEASURES; m++)
+    for (int n = 0; n < MEASURES; n++) {
+      double factor = others(weights, m, n) *
+                      (m == n ? weights->of[m].bend : weights->of[m].slope * weights->of[n].slope);
+      if (factor == 0) continue;
+      for (int i = 0; i < SIZE; i++)
+        for (int j = 0; j < SIZE; j++)
+          hessian[SIZE * i + j] += factor * weights->slope[m][i] * weights->slope[n][j];
+    }
+  double by_radius = others(weights, 0, 0) * weights->of[0].slope;
+  if (by_radius != 0) add_radius_bend(pair, weights->slope[0], by_radius, hessian);
+  for (int t = 0; t < 2; t++) {
+    double by_volume = others(weights, 1 + t, 1 + t) * weights->of[1 + t].slope;
+    if (by_volume != 0)
+      contact_simplex_add_outer(weights->slope[1 + t] + 12 * t, 0, -by_volume, SIZE,
+                                hessian + (SIZE + 1) * 12 * t);
+  }
+}
+
+double contact_net_range_weight(const ContactNetRange *range, const double pair[24], double *gradient,
+                                double *hessian) {
+  Weights weights = find_weights(range, pair);
+  for (int i = 0; i < SIZE && gradient; i++) {
+    gradient[i] = 0;
+    for (int m = 0; m < MEASURES; m++) {
+      double factor = others(&weights, m, m) * weights.of[m].slope;
+      if (factor != 0) gradient[i] += factor * weights.slope[m][i]; // the slope of a flat one may be infinite
+    }
+  }
+  if (hessian) bend(pair, &weights, hessian);
+  return others(&weights, -1, -1);
+}
+
+ContactNetBend contact_net_range_overlap_weight(const ContactNetRange *range, double overlap) {
   double width = range->overlap * (contact_net_range_band - 1);
-  double weight = fall((overlap - range->overlap) / width, derivative);
-  *derivative /= width;
-  return weight;
+  ContactNetBend weight = fall((overlap - range->overlap) / width);
+  return (ContactNetBend){weight.value, weight.slope / width, weight.bend / (width * width)};
 }

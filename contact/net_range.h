@@ -13,6 +13,8 @@
 
 #include <stdbool.h>
 
+#include "contact/net_jet.h"
+
 enum { CONTACT_NET_RANGE_TEXT = 256 };
 
 typedef struct ContactNetRange {
@@ -41,10 +43,12 @@ void contact_net_range_print(const ContactNetRange *range, char text[CONTACT_NET
 bool contact_net_range_parse(const char *text, ContactNetRange *range);
 
 // 1 within the range, 0 beyond by the factor contact_net_range_band in any measure, continuously
-// differentiable in between; NaN: 0. `gradient` (may be NULL) is by the normalised pair.
-double contact_net_range_weight(const ContactNetRange *range, const double pair[24], double gradient[24]);
-// The same of the overlap V' ≥ 0 alone, and its derivative.
-double contact_net_range_overlap_weight(const ContactNetRange *range, double overlap, double *derivative);
+// differentiable in between; NaN: 0. `gradient` and `hessian` (24, 24) are by the normalised pair; the second
+// or both may be NULL.
+double contact_net_range_weight(const ContactNetRange *range, const double pair[24], double *gradient,
+                                double *hessian);
+// The same of the overlap V' ≥ 0 alone, with its derivatives by it.
+ContactNetBend contact_net_range_overlap_weight(const ContactNetRange *range, double overlap);
 
 extern const double contact_net_range_band;
 

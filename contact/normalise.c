@@ -215,6 +215,60 @@ static void pull_unit(const ContactNormalised *normalised, double volume, const 
   }
 }
 
+// An affine map of all space, which moves vertex k of the first tetrahedron by e_c and x by λ_k(x) e_c,
+// leaves s as it is and turns its gradient at x_i by −∇λ_k (g_i)_c. So, with i any vertex,
+//
+//     ∂²s/∂x_ir ∂x_kc = −(∇λ_k)_r g_ic − Σ_b λ_k(b) ∂²s/∂x_ir ∂x_bc,
+//
+// and what the second tetrahedron's vertices b know among themselves, M ∇²s Mᵀ, is all that is needed.
+static void bend_columns(const double normal[12], double lambda[4][4], const double gradient[24], int first,
+                         double hessian[576]) {
+  for (int i = first; i < first + 12; i++)
+    for (int j = 0; j < 12; j++) {
+      double sum = normal[j - j % 3 + i % 3] * gradient[i - i % 3 + j % 3];
+      for (int b = 0; b < 4; b++) sum += lambda[b][j / 3] * hessian[24 * i + 12 + 3 * b + j % 3];
+      hessian[24 * i + j] = -sum;
+    }
+}
+
+// The block of vertices b and d: Mᵀ S M.
+static void bend_block(const double m[9], const double inner_hessian[144], int b, int d,
+                       double hessian[576]) {
+  double half[9];
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++) {
+      half[3 * r + c] = 0;
+      for (int k = 0; k < 3; k++)
+        half[3 * r + c] += inner_hessian[12 * (3 * b + r) + 3 * d + k] * m[3 * k + c];
+    }
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++) {
+      double sum = 0;
+      for (int k = 0; k < 3; k++) sum += m[3 * k + r] * half[3 * k + c];
+      hessian[24 * (12 + 3 * b + r) + 12 + 3 * d + c] = sum;
+    }
+}
+
+void contact_normalise_bend_unit(const ContactNormalised *normalised, const double inner[24],
+                                 const double inner_hessian[144], double gradient[24], double hessian[576]) {
+  ContactNormalised plain = *normalised;
+  plain.factor = 1;
+  pull_unit(&plain, 0, inner, gradient);
+  double normal[12], lambda[4][4];
+  memcpy(normal + 3, normalised->matrix, 9 * sizeof(double));
+  for (int c = 0; c < 3; c++) normal[c] = -(normal[3 + c] + normal[6 + c] + normal[9 + c]);
+  for (int b = 0; b < 4; b++) {
+    const double *y = normalised->pair + 12 + 3 * b;
+    lambda[b][0] = 1 - y[0] - y[1] - y[2];
+    for (int k = 0; k < 3; k++) lambda[b][1 + k] = y[k];
+    for (int d = 0; d < 4; d++) bend_block(normalised->matrix, inner_hessian, b, d, hessian);
+  }
+  bend_columns(normal, lambda, gradient, 12, hessian);
+  for (int i = 0; i < 12; i++)
+    for (int j = 12; j < 24; j++) hessian[24 * i + j] = hessian[24 * j + i];
+  bend_columns(normal, lambda, gradient, 0, hessian);
+}
+
 static void pull_sorted(const ContactNormalised *normalised, double volume, const double inner[24],
                         double gradient[24]) {
   ContactNormalised unit = *normalised;

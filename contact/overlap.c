@@ -73,6 +73,10 @@ bool contact_overlap_has_ghosts(const ContactOverlapModel *model) {
   return model->ops->has_ghosts && model->ops->has_ghosts(model->self);
 }
 
+bool contact_overlap_has_hessian(const ContactOverlapModel *model) {
+  return model->ops->bends ? model->ops->bends(model->self) : model->ops->has_hessian;
+}
+
 void contact_overlap_destroy(ContactOverlapModel *model) {
   if (model->ops && model->ops->destroy) model->ops->destroy(model->self);
   *model = (ContactOverlapModel){0};
@@ -175,7 +179,7 @@ static Status eval_each(const ContactOverlapModel *model, const ContactOverlapBa
 }
 
 Status contact_overlap_eval(const ContactOverlapModel *model, const ContactOverlapBatch *batch) {
-  if (batch->hessian && !model->ops->has_hessian)
+  if (batch->hessian && !contact_overlap_has_hessian(model))
     return status_fail(STATUS_INPUT, "overlap model '%s' has no Hessian", model->ops->name);
   int bad = first_not_finite(batch);
   if (bad < batch->pair_count) return fail_not_finite(bad, batch->pairs + (size_t)bad * CONTACT_PAIR_SIZE);

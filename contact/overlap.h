@@ -44,8 +44,8 @@ ContactOverlapBatch contact_overlap_part(const ContactOverlapBatch *batch, int b
 // What a model implements. One per model, `static const`, listed in overlap.c.
 typedef struct ContactOverlapOps {
   const char *name;
-  const char *help; // one line for lists and the manual
-  bool has_hessian;
+  const char *help;        // one line for lists and the manual
+  bool has_hessian;        // or may have one: `bends`
   double seconds_per_pair; // rough cost of V + ∇V on one core, to announce how long a run will take [s]
   // Allocates what the model keeps; NULL where it keeps nothing. `weights`: the path of a weights file, or
   // the name of one that ships; NULL: the model's own. `options`, NULL: the model's own, matter to some.
@@ -64,6 +64,8 @@ typedef struct ContactOverlapOps {
   bool rejects;
   // Logits of "the two intersect" of pairs (count, 24), where a model tells them apart from V; NULL: V > 0.
   Status (*eval_logits)(const void *self, int count, const double *pairs, double *logits);
+  // Whether it has second derivatives as it was made; NULL: as has_hessian says.
+  bool (*bends)(const void *self);
 } ContactOverlapOps;
 
 typedef struct ContactOverlapModel {
@@ -84,6 +86,9 @@ Status contact_overlap_create_with(ContactOverlapModel *model, const char *name,
 
 // Whether pairs without common interior may get a volume.
 bool contact_overlap_has_ghosts(const ContactOverlapModel *model);
+
+// Whether it has second derivatives.
+bool contact_overlap_has_hessian(const ContactOverlapModel *model);
 
 // Evaluates all pairs of the batch with OpenMP. STATUS_INPUT: a coordinate is NaN or infinite; the message
 // names the pair. STATUS_INPUT: a Hessian is asked of a model that has none.

@@ -188,5 +188,5 @@ extern "C" const ContactOverlapOps contact_overlap_cgal = {
     nullptr, eval_pair,
     nullptr, nullptr,
     nullptr, false,
-    nullptr,
+    nullptr, nullptr,
 };

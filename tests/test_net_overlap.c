@@ -424,6 +424,89 @@ START_TEST(gradient_holds_through_gate_fading_range_and_blend) {
 }
 END_TEST
 
+// ∇²V against differences of ∇V, through the same, and where faces are nearly coplanar.
+static void check_bend(const char *name, ContactNetOptions options, double squeeze) {
+  enum { PAIRS = 60 };
+  ContactOverlapModel model = open_with(name, options);
+  Random random = random_seeded(11, 0);
+  int mixed = 0, right = 0;
+  for (int n = 0; n < PAIRS; n++) {
+    double pair[24], gradient[24], volume, hessian[576], worst = 0, size = 0;
+    unsigned flags;
+    slide(0.1 + 0.1 * random_uniform(&random), pair);
+    for (int i = 0; i < 24; i++) pair[i] += 0.2 * (random_uniform(&random) - 0.5);
+    if (squeeze > 0) // the faces at the bottom nearly in one plane
+      for (int v = 0; v < 8; v++)
+        if (v % 4 != 3) pair[3 * v + 2] = squeeze * random_uniform(&random);
+    ContactOverlapBatch batch = {.pair_count = 1,
+                                 .pairs = pair,
+                                 .volume = &volume,
+                                 .gradient = gradient,
+                                 .hessian = hessian,
+                                 .flags = &flags};
+    ck_assert_ok(contact_overlap_eval(&model, &batch));
+    Answer answer = ask(&model, pair);
+    ck_assert_near(volume, answer.volume, 1e-6 * volume);
+    ck_assert_int_eq(flags, answer.flags);
+    for (int i = 0; i < 576; i++) size = fmax(size, fabs(hessian[i]));
+    for (int i = 0; i < 24; i++) {
+      ck_assert_near(gradient[i], answer.gradient[i], 1e-4 * fabs(size));
+      double step = 1e-3, kept = pair[i];
+      pair[i] = kept + step;
+      Answer above = ask(&model, pair);
+      pair[i] = kept - step;
+      Answer below = ask(&model, pair);
+      pair[i] = kept;
+      for (int j = 0; j < 24; j++) {
+        double difference = (above.gradient[j] - below.gradient[j]) / (2 * step);
+        worst = fmax(worst, fabs(difference - hessian[24 * j + i]));
+        ck_assert_near(hessian[24 * j + i], hessian[24 * i + j], 1e-5 * size);
+      }
+    }
+    mixed += (flags & (squeeze > 0 ? CONTACT_OVERLAP_BLENDED : CONTACT_OVERLAP_NET)) != 0;
+    right += worst < 0.02 * size;
+  }
+  ck_assert_int_ge(mixed, PAIRS / 3);
+  // differences cross the ends of bands, where ∇²V jumps, and corners of the true volume
+  ck_assert_msg(right >= PAIRS * 8 / 10, "%s: %d of %d right", name, right, PAIRS);
+  contact_overlap_destroy(&model);
+}
+
+START_TEST(second_derivatives_hold_through_gate_fading_range_and_blend) {
+  write_smooth(40, 1.5f);
+  ContactNetOptions options = contact_net_options_default();
+  options.coplanar = CONTACT_NET_COPLANAR_KEEP;
+  check_bend("tpn", options, 0);
+  check_bend("tpn-scene", options, 0);
+  options.beyond = CONTACT_NET_BEYOND_EXACT;
+  options.touch = 0.2;
+  options.deep = 0.6;
+  check_bend("tpn-scene", options, 0);
+  check_bend("hybrid", options, 0);
+  options.coplanar = CONTACT_NET_COPLANAR_CLIP;
+  check_bend("tpn-scene", options, 0.1);
+  check_bend("hybrid", options, 0.1);
+  unlink(path);
+}
+END_TEST
+
+START_TEST(networks_that_do_not_bend_offer_no_second_derivatives) {
+  static const char *const normalisations[] = {"pca, V times 1000", "sorted, V times 1000",
+                                               "unit, V times 1000"};
+  for (int k = 0; k < 3; k++) {
+    write_network(normalisations[k], k == 2 ? NET_RELU : NET_SILU);
+    ContactOverlapModel model = open_with("tpn", contact_net_options_default());
+    ck_assert(!contact_overlap_has_hessian(&model));
+    contact_overlap_destroy(&model);
+  }
+  write_smooth(40, 0);
+  ContactOverlapModel model = open_with("tpn", contact_net_options_default());
+  ck_assert(contact_overlap_has_hessian(&model));
+  contact_overlap_destroy(&model);
+  unlink(path);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("net_overlap");
   tcase_add_test(test_case, gradient_is_that_of_the_volume_with_unit);
@@ -441,5 +524,7 @@ int main(void) {
   tcase_add_test(test_case, hybrid_is_exact_where_shallow_deep_or_unsure_and_the_network_between);
   tcase_add_test(test_case, volume_and_gradient_are_continuous_along_a_path);
   tcase_add_test(test_case, gradient_holds_through_gate_fading_range_and_blend);
+  tcase_add_test(test_case, second_derivatives_hold_through_gate_fading_range_and_blend);
+  tcase_add_test(test_case, networks_that_do_not_bend_offer_no_second_derivatives);
   return suite_run("net_overlap", test_case, 30);
 }

@@ -323,14 +323,15 @@ static void check_hessian(const ContactOverlapModel *model, const Demand *demand
 }
 
 START_TEST(the_hessian_is_symmetric_and_the_derivative_of_the_gradient) {
-  if (model_at(_i)->has_hessian) {
-    for_each_pair(_i, 0, check_hessian);
-    return;
-  }
   ContactOverlapModel model;
   double volume, hessian[576];
   DatagenHardPair pair = datagen_hard_make(2, 0);
   if (!open_model(_i, &model)) return;
+  if (contact_overlap_has_hessian(&model)) {
+    contact_overlap_destroy(&model);
+    for_each_pair(_i, 0, check_hessian);
+    return;
+  }
   ContactOverlapBatch batch = {.pair_count = 1, .pairs = pair.x, .volume = &volume, .hessian = hessian};
   ck_assert_int_eq(contact_overlap_eval(&model, &batch), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "Hessian"));
