@@ -127,3 +127,15 @@ static const char *beyond_help(int i) {
   return helps[i];
 }
 const SceneChoices app_scene_choices_beyond = {beyond_name, beyond_help};
+
+static const char *coplanar_name(int i) {
+  static const char *const names[] = {"auto", "keep", "clip"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *coplanar_help(int i) {
+  static const char *const helps[] = {"as the model has it: tpn keep, others clip",
+                                      "the network answers them as any other",
+                                      "they turn to clipping, the more the nearer the faces"};
+  return helps[i];
+}
+const SceneChoices app_scene_choices_coplanar = {coplanar_name, coplanar_help};

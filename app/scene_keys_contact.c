@@ -38,6 +38,9 @@ static const SceneKey net_keys[] = {
      .help = "tpn, hybrid: in which order the two tetrahedra are shown to the network"},
     {"out_of_range", SCENE_CHOICE, AT(FemContactDef, net_options.beyond), .fallback = "auto",
      .choices = &app_scene_choices_beyond, .help = "tpn: pairs unlike those of the network's training"},
+    {"coplanar", SCENE_CHOICE, AT(FemContactDef, net_options.coplanar), .fallback = "auto",
+     .choices = &app_scene_choices_coplanar,
+     .help = "tpn, hybrid: pairs with faces that nearly lie in one plane, whose V has kinks"},
     {"touch", SCENE_NUMBER, AT(FemContactDef, net_options.touch), .range = "(0, 1)", .fallback = "0.02",
      .help = "share of overlap up to which V is faded in; `hybrid` takes exact up to there, the network from "
              "twice "

@@ -52,6 +52,7 @@ void contact_normalise_pull(const ContactNormalised *normalised, double volume, 
 
 // The first tetrahedron of all normalised pairs (12), NULL where it depends on the pair.
 const double *contact_normalise_first(ContactNormalisation kind);
+
 // Of `unit`, whose V' is a function of the second tetrahedron's normalised coordinates alone: of an
 // s(normalised) with derivatives inner (24, of which the last 12 count) and inner_hessian (12, 12), those
 // with respect to the pair, (24) and (24, 24); without the factor.
