@@ -4,18 +4,20 @@
 //
 //   pair ─ disjoint, by an exact test? ─► V = 0                                       (ghosts: cut, fade)
 //     └─► normalised (normalise.h), in one order or both ─► network ─► z, v ─┐
-//     ├─► overlap share of the closed form (geo.h), where it fades or blends ─┼─► V, ∇V  (net_blend.h)
+//     ├─► overlap share of the closed form (geo.h), where it fades or blends ─┼─► V, ∇V, ∇²V  (net_blend.h)
+//     ├─► clip, where faces nearly lie in one plane (geo_coplanar.h) ─────────┤
 //     └─► exact, where the blend wants it ───────────────────────────────────┘
 //
 // ∇V is the derivative of this very V, through normalisation, gate, fading and blend. How smooth V is depends
 // on the network: with ReLU or max pools ∇V jumps, with SiLU and sums it is continuous. With the
 // normalisation Unit V is the same however the pair is moved, turned or stretched, and net force and torque
 // of a pair vanish, as far as float32 goes; the order of a tetrahedron's vertices matters in any case.
+// With SiLU, sums and Unit there is a ∇²V; it jumps where a band of a blend begins or ends.
 //
-//              ghosts  gate    orders  beyond the range of the training
-//   tpn        keep    none    one     counted
-//   tpn-scene  fade    status  both    counted
-//   hybrid     –       none    both    exact
+//              ghosts  gate    orders  coplanar  beyond the range of the training
+//   tpn        keep    none    one     keep      counted
+//   tpn-scene  fade    status  both    clip      counted
+//   hybrid     –       none    both    clip      exact
 //
 // `hybrid`: the network's V where the exact test finds an overlap, the status head is confident, the overlap
 // share is neither tiny nor deep and the pair is in the training's range; `exact` elsewhere; blended over
@@ -36,7 +38,7 @@ extern const ContactOverlapOps contact_overlap_tpn, contact_overlap_tpn_scene, c
 Status contact_net_overlap_create(void **self, const char *path, const ContactNetOptions *options);
 void contact_net_overlap_destroy(void *self);
 
-// As ContactOverlapOps; `hessian` is not offered.
+// As ContactOverlapOps.
 Status contact_net_overlap_eval_pair(const void *self, const double pair[24], double *volume,
                                      double *gradient, double *hessian, unsigned *flags);
 Status contact_net_overlap_eval_batch(const void *self, const ContactOverlapBatch *batch);
