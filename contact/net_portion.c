@@ -400,6 +400,9 @@ static void finish_chain(const Chain *chain, const ContactNetJet *volume, double
       if (chain->is_met[j] && volume->second[i][j] != 0) add(volume->second[i][j], chain->slope[j], row);
     for (int k = 0; k < SIZE; k++) add(chain->slope[i][k], row, hessian + SIZE * k);
   }
+  for (int i = 0; i < SIZE; i++)
+    for (int j = 0; j < i; j++)
+      hessian[SIZE * i + j] = hessian[SIZE * j + i] = (hessian[SIZE * i + j] + hessian[SIZE * j + i]) / 2;
 }
 
 static Status bend(const Papers *papers, int s) {

@@ -304,20 +304,22 @@ static void check_hessian(const ContactOverlapModel *model, const Demand *demand
       shift = larger(shift, fabs(sum) / (size + extent));
     }
   ck_assert_at_most(where, shift, 1e-11 + 1e3 * demand->invariant);
-  if (!pair->is_smooth) return;
+  bool is_symmetric = true;
+  for (int i = 0; i < 24; i++)
+    for (int j = 0; j < i; j++) is_symmetric = is_symmetric && hessian[24 * i + j] == hessian[24 * j + i];
+  ck_assert_msg(is_symmetric, "%s: the Hessian's rows differ from its columns", where);
+  // what floats let differences show: test_net_overlap.c
+  if (!pair->is_smooth || demand->lacks & LACKS_DIGITS) return;
   for (int i = 0; i < 24; i++) {
     double up[24], down[24];
     memcpy(up, pair->x, sizeof up), memcpy(down, pair->x, sizeof down);
     up[i] += h, down[i] -= h;
     Answer plus = ask(model, up), minus = ask(model, down);
     double error = 0; // one assertion a row: each costs a system call
-    bool is_symmetric = true;
     for (int j = 0; j < 24; j++) {
       double difference = (plus.gradient[j] - minus.gradient[j]) / (up[i] - down[i]);
-      is_symmetric = is_symmetric && hessian[24 * i + j] == hessian[24 * j + i];
       error = larger(error, fabs(difference - hessian[24 * i + j]) / extent);
     }
-    ck_assert_msg(is_symmetric, "%s: row %d of the Hessian differs from the column", where, i);
     ck_assert_at_most(where, error, demand->hessian);
   }
 }
