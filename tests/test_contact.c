@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // contact/system: energy, forces and stiffness of every potential, obstacles, audit.
 #include "blocks.h"
+#include "product.h"
 
 #include "base/memory.h"
 #include "base/vec3.h"
@@ -92,40 +93,9 @@ static double *random_motion(const Fixture *f, uint64_t stream, bool obstacles_m
   return d;
 }
 
-static double dot(const double *a, const double *b, int n) {
-  double sum = 0;
-  for (int k = 0; k < n; k++) sum += a[k] * b[k];
-  return sum;
-}
-
-// A sink that multiplies: y += S d.
-typedef struct Product {
-  const double *d;
-  double *y;
-  int outer_count, dense_count;
-} Product;
-
-static void multiply_outer(void *self, int count, const int *vertices, const double *w, double scale) {
-  Product *product = self;
-  double along = 0;
-  for (int k = 0; k < count; k++) along += dot(w + 3 * k, product->d + 3 * vertices[k], 3);
-  for (int k = 0; k < count; k++)
-    for (int c = 0; c < 3; c++) product->y[3 * vertices[k] + c] += scale * along * w[3 * k + c];
-  product->outer_count++;
-}
-
-static void multiply_dense(void *self, int count, const int *vertices, const double *matrix) {
-  Product *product = self;
-  for (int r = 0; r < 3 * count; r++)
-    for (int c = 0; c < 3 * count; c++)
-      product->y[3 * vertices[r / 3] + r % 3] +=
-          matrix[3 * count * r + c] * product->d[3 * vertices[c / 3] + c % 3];
-  product->dense_count++;
-}
-
 static Product multiply(const Fixture *f, const double *d) {
-  Product product = {.d = d, .y = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double))};
-  ContactStiffnessSink sink = {&product, multiply_outer, multiply_dense};
+  Product product = product_of(d, f->blocks.vertex_count);
+  ContactStiffnessSink sink = product_sink(&product);
   ck_assert_ok(contact_system_stiffness(f->system, 0, f->blocks.x, &sink));
   return product;
 }
@@ -145,8 +115,8 @@ START_TEST(forces_are_minus_the_gradient_of_the_energy) {
     step_to(f, h, d, x);
     double above = energy_at(f, x);
     step_to(f, -h, d, x);
-    double below = energy_at(f, x), power = dot(force, d, 3 * f->blocks.vertex_count);
-    double size = sqrt(dot(force, force, 3 * f->blocks.vertex_count));
+    double below = energy_at(f, x), power = product_dot(force, d, 3 * f->blocks.vertex_count);
+    double size = sqrt(product_dot(force, force, 3 * f->blocks.vertex_count));
     ck_assert_near((above - below) / (2 * h), -power, 1e-7 * size);
     free(d);
   }
@@ -165,7 +135,7 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
     step_to(f, -h, d, x);
     double *below = forces_at(f, x);
     Product product = multiply(f, d);
-    double size = sqrt(dot(product.y, product.y, n));
+    double size = sqrt(product_dot(product.y, product.y, n));
     ck_assert(size > 0);
     ck_assert_int_gt(product.dense_count, 0);
     for (int b = 0; b < f->blocks.body_count; b++)
@@ -191,7 +161,7 @@ START_TEST(without_the_geometric_part_stiffness_is_not_negative) {
     Product product = multiply(f, d);
     ck_assert_int_eq(product.dense_count, 0);
     ck_assert_int_eq(product.outer_count > 0, _i != CONTACT_POTENTIAL_LINEAR);
-    ck_assert(dot(product.y, d, 3 * f->blocks.vertex_count) >= 0);
+    ck_assert(product_dot(product.y, d, 3 * f->blocks.vertex_count) >= 0);
     free(d), free(product.y);
   }
   destroy(f);
@@ -319,7 +289,7 @@ START_TEST(stiffness_against_a_halfspace_is_the_derivative) {
   step_to(f, -h, d, x);
   double *below = forces_at(f, x);
   Product product = multiply(f, d);
-  double size = sqrt(dot(product.y, product.y, 12));
+  double size = sqrt(product_dot(product.y, product.y, 12));
   ck_assert(size > 0);
   for (int k = 0; k < 12; k++) ck_assert_near(-(above[k] - below[k]) / (2 * h), product.y[k], 1e-7 * size);
   free(d), free(above), free(below), free(product.y), destroy(f);
@@ -354,7 +324,7 @@ START_TEST(ground_of_tetrahedra_pushes_like_a_halfspace) {
   ck_assert(energy > 0);
   ck_assert_near(energy_at(mesh, mesh->blocks.x), energy, 10 * NUDGE * energy);
   double *on_mesh = forces_at(mesh, mesh->blocks.x), *on_plane = forces_at(plane, plane->blocks.x);
-  double size = sqrt(dot(on_plane, on_plane, 3 * plane->blocks.vertex_count));
+  double size = sqrt(product_dot(on_plane, on_plane, 3 * plane->blocks.vertex_count));
   for (int k = 0; k < 3 * plane->blocks.vertex_count; k++)
     ck_assert_near(on_mesh[k], on_plane[k], 10 * NUDGE * size);
   free(on_mesh), free(on_plane), destroy(mesh), destroy(plane);

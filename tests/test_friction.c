@@ -2,6 +2,7 @@
 // contact/friction: Coulomb's law on overlap volumes, its derivative and power, with every overlap model;
 // whole scenes against theory.
 #include "blocks.h"
+#include "product.h"
 #include "scene.h"
 
 #include <string.h>
@@ -206,18 +207,6 @@ START_TEST(inside_of_a_flat_patch_friction_is_mu_times_the_normal_force) {
 }
 END_TEST
 
-typedef struct Product {
-  const double *d;
-  double *y;
-} Product;
-
-static void multiply_outer(void *self, int count, const int *vertices, const double *w, double scale) {
-  Product *product = self;
-  double along = 0;
-  for (int k = 0; k < 3 * count; k++) along += w[k] * product->d[3 * vertices[k / 3] + k % 3];
-  for (int k = 0; k < 3 * count; k++) product->y[3 * vertices[k / 3] + k % 3] += scale * along * w[k];
-}
-
 // _i: a speed, in units of the slip speed: all stick, some slip, all slip.
 START_TEST(the_damping_matrix_is_the_derivative_of_the_force) {
   const double speeds[] = {0.1, 1, 100};
@@ -227,9 +216,9 @@ START_TEST(the_damping_matrix_is_the_derivative_of_the_force) {
   memcpy(still, f->velocities, value_count(f) * sizeof(double));
   Random random = random_seeded(6, 1);
   for (size_t k = 0; k < value_count(f); k++) d[k] = random_between(&random, -1, 1);
-  Product product = {.d = d, .y = zeros(f)};
-  contact_friction_add_damping(&f->friction, f->velocities,
-                               &(ContactStiffnessSink){.self = &product, .add_outer = multiply_outer});
+  Product product = product_of(d, f->blocks.vertex_count);
+  ContactStiffnessSink sink = product_sink(&product);
+  contact_friction_add_damping(&f->friction, f->velocities, &sink);
   double h = 1e-5 * SLIP_SPEED, largest = 0, *differences[2];
   for (int s = 0; s < 2; s++) {
     for (size_t k = 0; k < value_count(f); k++) f->velocities[k] = still[k] + (s ? h : -h) * d[k];
@@ -247,9 +236,9 @@ START_TEST(at_rest_the_damping_matrix_is_finite) {
   Fixture *f = pressed_blocks("clip", true);
   double *d = zeros(f);
   for (size_t k = 0; k < value_count(f); k++) d[k] = 1 + (double)(k % 7);
-  Product product = {.d = d, .y = zeros(f)};
-  contact_friction_add_damping(&f->friction, f->velocities,
-                               &(ContactStiffnessSink){.self = &product, .add_outer = multiply_outer});
+  Product product = product_of(d, f->blocks.vertex_count);
+  ContactStiffnessSink sink = product_sink(&product);
+  contact_friction_add_damping(&f->friction, f->velocities, &sink);
   double along = 0;
   for (size_t k = 0; k < value_count(f); k++) along += d[k] * product.y[k];
   ck_assert(isfinite(along) && along > 0);

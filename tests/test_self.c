@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // contact/self: a body that meets itself.
 #include "blocks.h"
+#include "product.h"
 
 #include "base/memory.h"
 #include "base/vec3.h"
@@ -99,38 +100,9 @@ static double *random_motion(const Fixture *f, uint64_t stream) {
   return d;
 }
 
-static double dot(const double *a, const double *b, int n) {
-  double sum = 0;
-  for (int k = 0; k < n; k++) sum += a[k] * b[k];
-  return sum;
-}
-
-// A sink that multiplies: y += S d.
-typedef struct Product {
-  const double *d;
-  double *y;
-} Product;
-
-static void multiply_outer(void *self, int count, const int *vertices, const double *w, double scale) {
-  Product *product = self;
-  double along = 0;
-  for (int k = 0; k < count; k++) along += dot(w + 3 * k, product->d + 3 * vertices[k], 3);
-  for (int k = 0; k < count; k++)
-    for (int c = 0; c < 3; c++) product->y[3 * vertices[k] + c] += scale * along * w[3 * k + c];
-}
-
-static void multiply_dense(void *self, int count, const int *vertices, const double *matrix) {
-  Product *product = self;
-  for (int r = 0; r < 3 * count; r++)
-    for (int c = 0; c < 3 * count; c++)
-      product->y[3 * vertices[r / 3] + r % 3] +=
-          matrix[3 * count * r + c] * product->d[3 * vertices[c / 3] + c % 3];
-}
-
 static double *multiply(Fixture *f, const double *d) {
-  Product product = {.d = d, .y = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double))};
-  ck_assert_ptr_nonnull(product.y);
-  ContactStiffnessSink sink = {&product, multiply_outer, multiply_dense};
+  Product product = product_of(d, f->blocks.vertex_count);
+  ContactStiffnessSink sink = product_sink(&product);
   ck_assert_ok(contact_system_stiffness(f->system, 0, f->x, &sink));
   return product.y;
 }
@@ -145,10 +117,10 @@ START_TEST(parts_of_a_body_press_each_other_as_two_bodies_would) {
   ck_assert_int_eq(contact_system_active_count(one->system), contact_system_active_count(two->system));
   // The nudges differ: heights by up to 2 NUDGE of an overlap 0.3 deep, sides by more of what is cut there.
   ck_assert_near(energy, energy_of_two, 100 * NUDGE * energy);
-  double size = sqrt(dot(expected, expected, n));
+  double size = sqrt(product_dot(expected, expected, n));
   for (int k = 0; k < n; k++) ck_assert_near(force[k], expected[k], 100 * NUDGE * size);
   double *product = multiply(one, d), *product_of_two = multiply(two, d);
-  double product_size = sqrt(dot(product_of_two, product_of_two, n));
+  double product_size = sqrt(product_dot(product_of_two, product_of_two, n));
   for (int k = 0; k < n; k++) ck_assert_near(product[k], product_of_two[k], 1e-5 * product_size);
   int count;
   const ContactInterface *own = contact_system_interfaces(one->system, &count);
@@ -177,11 +149,11 @@ START_TEST(friction_within_a_body_is_that_of_two_bodies) {
     power[as_one] = contact_friction_power(&friction, velocity).dissipated;
     if (as_one) {
       int n = 3 * f->blocks.vertex_count;
-      double size = sqrt(dot(force[0], force[0], n));
+      double size = sqrt(product_dot(force[0], force[0], n));
       ck_assert_double_gt(size, 0);
       for (int k = 0; k < n; k++) ck_assert_near(force[1][k], force[0][k], 1e-5 * size);
       ck_assert_near(power[1], power[0], 1e-5 * power[0]);
-      ck_assert_near(power[1], -dot(force[1], velocity, n), 1e-9 * power[0]);
+      ck_assert_near(power[1], -product_dot(force[1], velocity, n), 1e-9 * power[0]);
     }
     contact_friction_destroy(&friction);
     free(velocity), destroy(f);
@@ -196,7 +168,7 @@ START_TEST(forces_within_a_body_are_minus_the_gradient_and_balance) {
   double *force = random_motion(f, 0), *x = random_motion(f, 0);
   eval(f, f->x, force);
   ck_assert_int_gt(contact_system_active_count(f->system), 20);
-  double size = sqrt(dot(force, force, n));
+  double size = sqrt(product_dot(force, force, n));
   Vec3 sum = {0, 0, 0}, torque = {0, 0, 0};
   for (int v = 0; v < f->blocks.vertex_count; v++) {
     sum = vec3_add(sum, vec3_at(force + 3 * v));
@@ -209,7 +181,7 @@ START_TEST(forces_within_a_body_are_minus_the_gradient_and_balance) {
     for (int k = 0; k < n; k++) x[k] = f->x[k] + h * d[k];
     double above = eval(f, x, NULL);
     for (int k = 0; k < n; k++) x[k] = f->x[k] - h * d[k];
-    ck_assert_near((above - eval(f, x, NULL)) / (2 * h), -dot(force, d, n), 1e-6 * size);
+    ck_assert_near((above - eval(f, x, NULL)) / (2 * h), -product_dot(force, d, n), 1e-6 * size);
     free(d);
   }
   free(force), free(x), destroy(f);
@@ -226,7 +198,7 @@ START_TEST(stiffness_within_a_body_is_minus_the_derivative_of_the_forces) {
     eval(f, x, above);
     for (int k = 0; k < n; k++) x[k] = f->x[k] - h * d[k];
     eval(f, x, below);
-    double *product = multiply(f, d), size = sqrt(dot(product, product, n));
+    double *product = multiply(f, d), size = sqrt(product_dot(product, product, n));
     ck_assert_double_gt(size, 0);
     for (int k = 0; k < n; k++) ck_assert_near(-(above[k] - below[k]) / (2 * h), product[k], 2e-5 * size);
     free(d), free(product);

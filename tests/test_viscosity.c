@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // contact/viscosity: contact that takes energy out.
+#include "product.h"
 #include "scene.h"
 
 #include "base/vec3.h"
@@ -91,31 +92,10 @@ static ContactViscosityPower power_at(Fixture *f, const double *velocities) {
   return power;
 }
 
-static double dot(const double *a, const double *b, int n) {
-  double sum = 0;
-  for (int k = 0; k < n; k++) sum += a[k] * b[k];
-  return sum;
-}
-
-// y += S d
-typedef struct Product {
-  const double *d;
-  double *y;
-} Product;
-
-static void multiply_outer(void *self, int count, const int *vertices, const double *w, double scale) {
-  Product *product = self;
-  double along = 0;
-  for (int k = 0; k < count; k++) along += dot(w + 3 * k, product->d + 3 * vertices[k], 3);
-  for (int k = 0; k < count; k++)
-    for (int c = 0; c < 3; c++) product->y[3 * vertices[k] + c] += scale * along * w[3 * k + c];
-}
-
 static double *multiply(Fixture *f, const double *velocities, double stiffness, double damping,
                         const double *d) {
-  Product product = {.d = d, .y = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double))};
-  ck_assert_ptr_nonnull(product.y);
-  ContactStiffnessSink sink = {.self = &product, .add_outer = multiply_outer};
+  Product product = product_of(d, f->blocks.vertex_count);
+  ContactStiffnessSink sink = product_sink(&product);
   ck_assert_ok(contact_viscosity_add_jacobian(&f->law, velocities, stiffness, damping, &sink));
   return product.y;
 }
@@ -169,13 +149,13 @@ START_TEST(forces_balance_and_their_power_is_dissipated) {
   int n = 3 * f->blocks.vertex_count;
   for (uint64_t stream = 0; stream < 10; stream++) {
     double *velocities = random_motion(f, stream), *force = force_at(f, velocities);
-    double size = sqrt(dot(force, force, n)), dissipated = power_at(f, velocities).dissipated;
+    double size = sqrt(product_dot(force, force, n)), dissipated = power_at(f, velocities).dissipated;
     Vec3 sum = {0, 0, 0};
     for (int v = 0; v < n / 3; v++) sum = vec3_add(sum, vec3_at(force + 3 * v));
     ck_assert_double_gt(size, 1e-3);
     ck_assert_double_le(vec3_length(sum), 1e-12 * size);
     ck_assert_double_gt(dissipated, 0);
-    ck_assert_near(-dot(force, velocities, n), dissipated, 1e-12 * dissipated);
+    ck_assert_near(-product_dot(force, velocities, n), dissipated, 1e-12 * dissipated);
     free(velocities), free(force);
   }
   destroy(f);
@@ -204,12 +184,12 @@ START_TEST(the_damping_matrix_is_minus_the_derivative_by_velocities) {
       d[3 * v] = d[3 * v + 1] = d[3 * v + 2] = 0; // an obstacle has no unknowns
     for (int k = 0; k < n; k++) faster[k] += d[k];
     double *other = force_at(f, faster), *product = multiply(f, velocities, 0, 1, d);
-    double size = sqrt(dot(product, product, n));
+    double size = sqrt(product_dot(product, product, n));
     ck_assert_double_gt(size, 0);
     int first = _i ? 3 * f->blocks.bodies[0].vertex_end : 0;
     for (int k = first; k < n; k++) ck_assert_near(force[k] - other[k], product[k], 1e-12 * size);
     for (int k = 0; k < first; k++) ck_assert_near(product[k], 0, 0);
-    ck_assert_double_ge(dot(d, product, n), 0);
+    ck_assert_double_ge(product_dot(d, product, n), 0);
     free(d), free(faster), free(other), free(product);
   }
   free(velocities), free(force), destroy(f);
