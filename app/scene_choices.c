@@ -58,12 +58,15 @@ static const char *hessian_help(int i) {
 const SceneChoices app_scene_choices_hessians = {hessian_name, hessian_help};
 
 static const char *element_name(int i) {
-  static const char *const names[] = {"linear", "nodal"};
-  return i < 2 ? names[i] : NULL;
+  static const char *const names[] = {"linear", "nodal", "quadratic"};
+  return i < 3 ? names[i] : NULL;
 }
 static const char *element_help(int i) {
-  return i == 0 ? "constant strain; too stiff from about ν = 0.45"
-                : "linear, the volume change averaged at the vertices: for ν up to 0.499";
+  static const char *const helps[] = {
+      "constant strain; too stiff in bending, and from about ν = 0.45 in all",
+      "linear, the volume change averaged at the vertices: for ν up to 0.499",
+      "ten nodes, strain linear within: bending by few elements, for ν up to 0.499"};
+  return helps[i];
 }
 const SceneChoices app_scene_choices_elements = {element_name, element_help};
 

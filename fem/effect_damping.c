@@ -40,8 +40,11 @@ static Status couple(void *self, const FemState *state, FemPattern *pattern, int
   return fem_assembly_couple(self, pattern, has_grown);
 }
 
-static void element_force(const FemAssemblyElement *e, double force[12]) {
-  fem_element_damping_force(e->element, &e->body->local, e->body->damping, e->x, e->v, force);
+static void element_force(const FemAssemblyElement *e, double *force) {
+  if (e->element)
+    fem_element_damping_force(e->element, &e->body->local, e->body->damping, e->x, e->v, force);
+  else
+    fem_quadratic_damping_force(e->quadratic, &e->body->local, e->body->damping, e->x, e->v, force);
 }
 
 static Status add_force(void *self, const FemState *state, double *force) {
@@ -50,8 +53,13 @@ static Status add_force(void *self, const FemState *state, double *force) {
 }
 
 static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
-                           double matrix[144]) {
+                           double *matrix) {
   const FemMaterial *material = &e->body->local;
+  if (e->quadratic) {
+    fem_quadratic_damping_matrix(e->quadratic, material, e->body->damping, e->x, e->v, stiffness_scale,
+                                 damping_scale, matrix);
+    return;
+  }
   double part[144];
   for (int k = 0; k < 144; k++) matrix[k] = 0;
   if (stiffness_scale != 0) {
@@ -71,7 +79,9 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
 }
 
 static double element_power(const FemAssemblyElement *e) {
-  return fem_element_damping_power(e->element, &e->body->local, e->body->damping, e->x, e->v);
+  return e->element
+             ? fem_element_damping_power(e->element, &e->body->local, e->body->damping, e->x, e->v)
+             : fem_quadratic_damping_power(e->quadratic, &e->body->local, e->body->damping, e->x, e->v);
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {

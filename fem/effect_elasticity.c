@@ -29,8 +29,15 @@ static Status couple(void *self, const FemState *state, FemPattern *pattern, int
   return fem_assembly_couple(self, pattern, has_grown);
 }
 
-static void element_force(const FemAssemblyElement *e, double force[12]) {
-  fem_element_force(e->element, &e->body->local, e->x, force);
+static FemQuadraticLaw law_of(const FemModelBody *body) {
+  return (FemQuadraticLaw){&body->local, body->bulk};
+}
+
+static void element_force(const FemAssemblyElement *e, double *force) {
+  if (e->element)
+    fem_element_force(e->element, &e->body->local, e->x, force);
+  else
+    fem_quadratic_force(e->quadratic, law_of(e->body), e->x, force);
 }
 
 static Status add_force(void *self, const FemState *state, double *force) {
@@ -39,10 +46,13 @@ static Status add_force(void *self, const FemState *state, double *force) {
 }
 
 static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
-                           double matrix[144]) {
+                           double *matrix) {
   (void)damping_scale;
-  fem_element_stiffness(e->element, &e->body->local, e->x, matrix);
-  for (int k = 0; k < 144; k++) matrix[k] *= stiffness_scale;
+  if (e->element)
+    fem_element_stiffness(e->element, &e->body->local, e->x, matrix);
+  else
+    fem_quadratic_stiffness(e->quadratic, law_of(e->body), e->x, matrix);
+  for (int k = 0; k < (e->element ? 144 : 900); k++) matrix[k] *= stiffness_scale;
 }
 
 static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
@@ -52,7 +62,8 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
 }
 
 static double element_energy(const FemAssemblyElement *e) {
-  return fem_element_energy(e->element, &e->body->local, e->x);
+  return e->element ? fem_element_energy(e->element, &e->body->local, e->x)
+                    : fem_quadratic_energy(e->quadratic, law_of(e->body), e->x);
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect.h"
+#include "fem/quadratic_face.h"
 
 typedef struct Loads {
   const FemModel *model; // borrowed
@@ -82,16 +83,29 @@ static Status prepare(void *self, const FemState *state, double step) {
 }
 
 static bool follows(const FemLoad *load) {
-  return load->triangle_count > 0;
+  return load->triangle_count + load->face_count > 0;
 }
 
 static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
   (void)state;
   const FemModel *model = ((const Loads *)self)->model;
-  for (int i = 0; i < model->load_count; i++)
-    for (int k = 0; k < model->loads[i].triangle_count; k++)
-      TRY(fem_pattern_add_clique(pattern, 3, model->loads[i].triangles[k], has_grown));
+  for (int i = 0; i < model->load_count; i++) {
+    const FemLoad *load = &model->loads[i];
+    for (int k = 0; k < load->triangle_count; k++)
+      TRY(fem_pattern_add_clique(pattern, 3, load->triangles[k], has_grown));
+    for (int k = 0; k < load->face_count; k++)
+      TRY(fem_pattern_add_clique(pattern, FEM_QUADRATIC_FACE_NODES, load->faces[k], has_grown));
+  }
   return STATUS_OK;
+}
+
+static void add_face(const int face[6], const FemState *state, double pressure, double stiffness_scale,
+                     FemMatrix *matrix) {
+  double x[18], stiffness[324];
+  for (int k = 0; k < FEM_QUADRATIC_FACE_NODES; k++)
+    memcpy(x + 3 * k, state->positions + 3 * (size_t)face[k], 3 * sizeof *x);
+  fem_quadratic_face_stiffness(pressure, x, stiffness);
+  fem_matrix_add(matrix, FEM_QUADRATIC_FACE_NODES, face, stiffness, stiffness_scale);
 }
 
 static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
@@ -110,6 +124,8 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
                                   stiffness);
       fem_matrix_add(matrix, 3, t, stiffness, stiffness_scale);
     }
+    for (int k = 0; k < load->face_count; k++)
+      add_face(load->faces[k], state, factor * load->def->pressure, stiffness_scale, matrix);
   }
   return STATUS_OK;
 }

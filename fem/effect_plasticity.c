@@ -8,7 +8,7 @@
 // by radial return (Simo and Hughes, Computational Inelasticity, 3.3) from the history at the last accepted
 // state: Δα = (q_trial − σ_y − H α)/(3μ + H), ΔE_p = √(3/2) Δα s/|s|. It is the gradient of an incremental
 // energy, ½ (E − E_p):C:(E − E_p) + ½ H α² + σ_y α, whose last part is dissipated. E_p has no trace, so
-// `nodal` volume changes are not concerned.
+// `nodal` volume changes are not concerned, nor mean ones. Each quadrature point has a history of its own.
 #include "fem/effect_plasticity.h"
 
 #include <math.h>
@@ -18,18 +18,25 @@
 #include "base/vec3.h"
 #include "fem/effect.h"
 
-// The history of an element.
+// The history of a quadrature point.
 typedef struct Plastic {
   double strain[9]; // E_p
   double alpha;     // accumulated plastic strain
 } Plastic;
 
+// A quadrature point of a plastic body.
+typedef struct Site {
+  FemPoint point;
+  const int *nodes; // of its element, borrowed from the model       (point.node_count)
+  int tet;          // where its stress is told: of a quadratic element the part at its corner
+} Site;
+
 typedef struct Plasticity {
   const FemModel *model; // borrowed
-  int *tets;             // of plastic bodies                        (tet_count)
-  int tet_count;
-  Plastic *history; // at the last accepted state                    (tet_count)
-  int *place;       // of a tetrahedron in `tets`, −1: not plastic   (model->tet_count)
+  Site *sites;           //                                          (site_count)
+  int site_count;
+  Plastic *history; // at the last accepted state                    (site_count)
+  int *place;       // of a tetrahedron's first site, −1: not plastic   (model->tet_count)
 } Plasticity;
 
 // A return from the history to E: the new plastic state, and its derivative ∂E_p/∂E = along n ⊗ n + across
@@ -47,44 +54,71 @@ static bool is_wanted(const FemSceneDef *scene) {
 
 static void destroy(void *self) {
   Plasticity *plasticity = self;
-  memory_free(plasticity->tets);
+  memory_free(plasticity->sites);
   memory_free(plasticity->history);
   memory_free(plasticity->place);
   memory_free(plasticity);
 }
 
+static void add_site(Plasticity *plasticity, FemPoint point, const int *nodes, int tet) {
+  plasticity->sites[plasticity->site_count++] = (Site){point, nodes, tet};
+}
+
+static void add_tet(Plasticity *plasticity, int e) {
+  const FemElement *element = &plasticity->model->elements[e];
+  plasticity->place[e] = plasticity->site_count;
+  add_site(plasticity, (FemPoint){4, element->gradient, element->volume}, plasticity->model->tets[e], e);
+}
+
+static void add_quadratic(Plasticity *plasticity, int e, int tet) {
+  const FemModel *model = plasticity->model;
+  for (int part = 0; part < FEM_QUADRATIC_PARTS; part++)
+    plasticity->place[tet + part] = plasticity->site_count;
+  for (int p = 0; p < FEM_QUADRATIC_POINTS; p++)
+    add_site(plasticity, fem_quadratic_point(&model->quadratics[e], p), model->quadratic_nodes[e], tet + p);
+}
+
+static void list_sites(Plasticity *plasticity) {
+  const FemModel *model = plasticity->model;
+  for (int e = 0; e < model->tet_count; e++) plasticity->place[e] = -1;
+  for (int b = 0; b < model->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    if (!(body->material.yield_stress > 0)) continue;
+    bool is_quadratic = body->element == FEM_ELEMENT_QUADRATIC;
+    for (int e = body->tet_begin; e < body->tet_end && !is_quadratic; e++) add_tet(plasticity, e);
+    for (int e = body->quadratic_begin; e < body->quadratic_end; e++)
+      add_quadratic(plasticity, e, body->tet_begin + FEM_QUADRATIC_PARTS * (e - body->quadratic_begin));
+  }
+}
+
 static Status create(void **self, const FemModel *model) {
   Plasticity *plasticity = memory_zeroed(1, sizeof *plasticity);
   if (!plasticity) return status_no_memory("plasticity");
-  size_t tets = (size_t)model->tet_count;
+  size_t tets = (size_t)model->tet_count; // a quadratic element has four points and eight tetrahedra
   plasticity->model = model;
-  plasticity->tets = memory_zeroed(tets, sizeof *plasticity->tets);
+  plasticity->sites = memory_zeroed(tets, sizeof *plasticity->sites);
   plasticity->history = memory_zeroed(tets, sizeof *plasticity->history);
   plasticity->place = memory_zeroed(tets, sizeof *plasticity->place);
-  if (!plasticity->tets || !plasticity->history || !plasticity->place) {
+  if (!plasticity->sites || !plasticity->history || !plasticity->place) {
     destroy(plasticity);
     return status_no_memory("plasticity");
   }
-  for (int e = 0; e < model->tet_count; e++) {
-    bool is_plastic = model->bodies[model->tet_body[e]].material.yield_stress > 0;
-    plasticity->place[e] = is_plastic ? plasticity->tet_count : -1;
-    if (is_plastic) plasticity->tets[plasticity->tet_count++] = e;
-  }
+  list_sites(plasticity);
   *self = plasticity;
   return STATUS_OK;
 }
 
-static const FemMaterial *material_of(const Plasticity *plasticity, int tet) {
-  return &plasticity->model->bodies[plasticity->model->tet_body[tet]].material;
+static const FemMaterial *material_of(const Plasticity *plasticity, int site) {
+  const FemModel *model = plasticity->model;
+  return &model->bodies[model->tet_body[plasticity->sites[site].tet]].material;
 }
 
 // F and E = ½ (G + Gᵀ + Gᵀ G), G = F − I.
-static void find_strain(const Plasticity *plasticity, int tet, const double *positions, double F[9],
-                        double E[9]) {
-  double x[12], G[9];
-  for (int k = 0; k < 4; k++)
-    memcpy(x + 3 * k, positions + 3 * (size_t)plasticity->model->tets[tet][k], 3 * sizeof *x);
-  fem_element_deformation(&plasticity->model->elements[tet], x, F);
+static void find_strain(const Site *site, const double *positions, double F[9], double E[9]) {
+  double x[3 * FEM_QUADRATIC_NODES], G[9];
+  for (int k = 0; k < site->point.node_count; k++)
+    memcpy(x + 3 * k, positions + 3 * (size_t)site->nodes[k], 3 * sizeof *x);
+  fem_point_deformation(&site->point, x, F);
   for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
@@ -116,15 +150,14 @@ static Return return_to(const FemMaterial *material, const Plastic *history, con
 
 static Return evaluate(const Plasticity *plasticity, int i, const double *positions, double F[9],
                        double E[9]) {
-  int tet = plasticity->tets[i];
-  find_strain(plasticity, tet, positions, F, E);
-  return return_to(material_of(plasticity, tet), &plasticity->history[i], E);
+  find_strain(&plasticity->sites[i], positions, F, E);
+  return return_to(material_of(plasticity, i), &plasticity->history[i], E);
 }
 
 static Status prepare(void *self, const FemState *state, double step) {
   (void)step;
   Plasticity *plasticity = self;
-  for (int i = 0; i < plasticity->tet_count; i++) {
+  for (int i = 0; i < plasticity->site_count; i++) {
     double F[9], E[9];
     plasticity->history[i] = evaluate(plasticity, i, state->positions, F, E).plastic;
   }
@@ -141,18 +174,14 @@ static void find_stress(double mu, const double F[9], const Plastic *plastic, do
 
 static Status add_force(void *self, const FemState *state, double *force) {
   const Plasticity *plasticity = self;
-  for (int i = 0; i < plasticity->tet_count; i++) {
-    int tet = plasticity->tets[i];
-    const FemElement *element = &plasticity->model->elements[tet];
-    double F[9], E[9], P[9];
+  for (int i = 0; i < plasticity->site_count; i++) {
+    const Site *site = &plasticity->sites[i];
+    double F[9], E[9], P[9], own[3 * FEM_QUADRATIC_NODES] = {0};
     Return r = evaluate(plasticity, i, state->positions, F, E);
-    find_stress(fem_material_lame(material_of(plasticity, tet)).mu, F, &r.plastic, P);
-    for (int a = 0; a < 4; a++) {
-      double *f = force + 3 * (size_t)plasticity->model->tets[tet][a];
-      const double *g = element->gradient[a];
-      for (int c = 0; c < 3; c++)
-        f[c] -= element->volume * (P[3 * c] * g[0] + P[3 * c + 1] * g[1] + P[3 * c + 2] * g[2]);
-    }
+    find_stress(fem_material_lame(material_of(plasticity, i)).mu, F, &r.plastic, P);
+    fem_point_add_force(&site->point, P, own);
+    for (int a = 0; a < site->point.node_count; a++)
+      vec3_accumulate(force + 3 * (size_t)site->nodes[a], vec3_at(own + 3 * a));
   }
   return STATUS_OK;
 }
@@ -186,13 +215,15 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
                            FemMatrix *matrix) {
   (void)damping_scale;
   const Plasticity *plasticity = self;
-  for (int i = 0; i < plasticity->tet_count && stiffness_scale != 0; i++) {
-    int tet = plasticity->tets[i];
-    double F[9], E[9], dP[81], dense[144];
+  for (int i = 0; i < plasticity->site_count && stiffness_scale != 0; i++) {
+    const Site *site = &plasticity->sites[i];
+    int nodes = site->point.node_count;
+    double F[9], E[9], dP[81], dense[9 * FEM_QUADRATIC_NODES * FEM_QUADRATIC_NODES] = {0};
     Return r = evaluate(plasticity, i, state->positions, F, E);
-    find_tangent(fem_material_lame(material_of(plasticity, tet)).mu, F, &r, dP);
-    fem_element_spread_tangent(&plasticity->model->elements[tet], dP, dense);
-    fem_matrix_add(matrix, 4, plasticity->model->tets[tet], dense, stiffness_scale);
+    find_tangent(fem_material_lame(material_of(plasticity, i)).mu, F, &r, dP);
+    fem_point_add_tangent(&site->point, dP, dense);
+    fem_point_mirror(nodes, dense);
+    fem_matrix_add(matrix, nodes, site->nodes, dense, stiffness_scale);
   }
   return STATUS_OK;
 }
@@ -200,10 +231,9 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
 // Elasticity has counted ½ E:C:E: −2μ E:E_p + μ E_p:E_p + ½ H α² is missing.
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   const Plasticity *plasticity = self;
-  for (int i = 0; i < plasticity->tet_count; i++) {
-    int tet = plasticity->tets[i];
-    const FemMaterial *material = material_of(plasticity, tet);
-    double F[9], E[9], product = 0, volume = plasticity->model->elements[tet].volume;
+  for (int i = 0; i < plasticity->site_count; i++) {
+    const FemMaterial *material = material_of(plasticity, i);
+    double F[9], E[9], product = 0, volume = plasticity->sites[i].point.weight;
     Plastic plastic = evaluate(plasticity, i, state->positions, F, E).plastic;
     for (int k = 0; k < 9; k++) product += plastic.strain[k] * (plastic.strain[k] - 2 * E[k]);
     energy->elastic += volume * (fem_material_lame(material).mu * product +
@@ -215,16 +245,16 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
 
 static Status save(const void *self, double **values, size_t *count) {
   const Plasticity *plasticity = self;
-  *count = (size_t)plasticity->tet_count * sizeof *plasticity->history / sizeof **values;
+  *count = (size_t)plasticity->site_count * sizeof *plasticity->history / sizeof **values;
   *values = memory_copy(plasticity->history, *count, sizeof **values);
   return *values ? STATUS_OK : status_no_memory("the plastic strains");
 }
 
 static Status load(void *self, const double *values, size_t count) {
   Plasticity *plasticity = self;
-  if (count * sizeof *values != (size_t)plasticity->tet_count * sizeof *plasticity->history)
-    return status_fail(STATUS_INPUT, "plasticity: there are %zu numbers of history for %d plastic elements",
-                       count, plasticity->tet_count);
+  if (count * sizeof *values != (size_t)plasticity->site_count * sizeof *plasticity->history)
+    return status_fail(STATUS_INPUT, "plasticity: there are %zu numbers of history for %d plastic points",
+                       count, plasticity->site_count);
   memcpy(plasticity->history, values, count * sizeof *values);
   return STATUS_OK;
 }
@@ -232,31 +262,42 @@ static Status load(void *self, const double *values, size_t count) {
 static void report(void *self, Record *counters) {
   const Plasticity *plasticity = self;
   double most = 0;
-  int yielded = 0;
-  for (int i = 0; i < plasticity->tet_count; i++) {
+  int yielded = 0, last = -1;
+  for (int i = 0; i < plasticity->site_count; i++) {
+    int element = plasticity->place[plasticity->sites[i].tet];
     most = fmax(most, plasticity->history[i].alpha);
-    yielded += plasticity->history[i].alpha > 0;
+    if (!(plasticity->history[i].alpha > 0) || element == last) continue;
+    yielded++;
+    last = element;
   }
   record_number(counters, "plastic_strain_max", most);
   record_number(counters, "yielded_elements", yielded);
 }
 
-void fem_effect_plasticity_add_stress(const void *self, int tet, const double x[12], double stress[6]) {
-  static const int rows[6] = {0, 1, 2, 0, 1, 0}, columns[6] = {0, 1, 2, 1, 2, 2};
+void fem_effect_plasticity_add_stress(const void *self, int tet, const double *positions, double stress[6]) {
   const Plasticity *plasticity = self;
-  if (plasticity->place[tet] < 0) return;
-  double F[9], P[9];
-  fem_element_deformation(&plasticity->model->elements[tet], x, F);
-  find_stress(fem_material_lame(material_of(plasticity, tet)).mu, F,
-              &plasticity->history[plasticity->place[tet]], P);
-  double J = vec3_dot(vec3_at(F), vec3_cross(vec3_at(F + 3), vec3_at(F + 6)));
-  for (int s = 0; s < 6 && fabs(J) > 1e-12; s++)
-    stress[s] += vec3_dot(vec3_at(P + 3 * rows[s]), vec3_at(F + 3 * columns[s])) / J;
+  int begin = plasticity->place[tet], end = begin + 1;
+  if (begin < 0) return;
+  const Site *first = &plasticity->sites[begin];
+  if (first->point.node_count == FEM_QUADRATIC_NODES) {
+    int part = tet - first->tet;
+    if (part < FEM_QUADRATIC_POINTS)
+      begin += part, end = begin + 1;
+    else
+      end = begin + FEM_QUADRATIC_POINTS;
+  }
+  for (int i = begin; i < end; i++) {
+    double F[9], E[9], P[9], one[6];
+    find_strain(&plasticity->sites[i], positions, F, E);
+    find_stress(fem_material_lame(material_of(plasticity, i)).mu, F, &plasticity->history[i], P);
+    fem_material_cauchy(FEM_MATERIAL_STVK, F, P, one);
+    for (int s = 0; s < 6; s++) stress[s] += one[s] / (end - begin);
+  }
 }
 
 static size_t bytes(const void *self) {
   const Plasticity *plasticity = self;
-  return memory_held(plasticity->tets) + memory_held(plasticity->history) + memory_held(plasticity->place);
+  return memory_held(plasticity->sites) + memory_held(plasticity->history) + memory_held(plasticity->place);
 }
 
 const FemEffectOps fem_effect_plasticity = {

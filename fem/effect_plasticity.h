@@ -3,8 +3,8 @@
 #ifndef TETLAP_FEM_EFFECT_PLASTICITY_H
 #define TETLAP_FEM_EFFECT_PLASTICITY_H
 
-// Adds what the plastic strain of a tetrahedron at these corners (4, 3) takes off, to its Cauchy stress [Pa]
-// (xx, yy, zz, xy, yz, xz).
-void fem_effect_plasticity_add_stress(const void *self, int tet, const double x[12], double stress[6]);
+// Adds what the plastic strain of a tetrahedron takes off, at these positions of all vertices, to its Cauchy
+// stress [Pa] (xx, yy, zz, xy, yz, xz): at the point near its corner, or the mean, as in fem/quadratic.h.
+void fem_effect_plasticity_add_stress(const void *self, int tet, const double *positions, double stress[6]);
 
 #endif

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/element.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "base/vec3.h"
+#include "fem/viscous.h"
 
 // Everything below uses nodes 1, 2, 3 only, relative to node 0: the gradients add up to zero, so node 0 takes
 // minus the sum of the others.
@@ -116,94 +114,44 @@ void fem_element_stiffness(const FemElement *element, const FemMaterial *materia
   fem_element_spread_tangent(element, dP, stiffness);
 }
 
-// Ė = sym(Fᵀ Ḟ) and the viscous second Piola–Kirchhoff stress Σ = 2μ_v Ė + λ_v tr Ė I.
-static void find_viscous_stress(const FemMaterial *material, double beta, const double F[9],
-                                const double rate[9], double strain_rate[9], double stress[9]) {
-  FemLame lame = fem_material_viscous(material, beta);
-  for (int i = 0; i < 3; i++)
-    for (int j = i; j < 3; j++) {
-      double sum = 0;
-      for (int m = 0; m < 9; m += 3) sum += F[m + i] * rate[m + j] + rate[m + i] * F[m + j];
-      strain_rate[3 * i + j] = strain_rate[3 * j + i] = 0.5 * sum;
-    }
-  double pressure = lame.lambda * (strain_rate[0] + strain_rate[4] + strain_rate[8]);
-  for (int r = 0; r < 9; r++) stress[r] = 2 * lame.mu * strain_rate[r] + (r % 4 == 0 ? pressure : 0);
-}
-
-// The law linear does not tell the two configurations apart: its strain rate is sym Ḟ.
-static void find_damped_deformation(const FemElement *element, const FemMaterial *material,
-                                    const double x[12], double F[9]) {
-  static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  if (fem_material_is_linear(material))
-    memcpy(F, identity, sizeof identity);
-  else
-    fem_element_deformation(element, x, F);
-}
-
 void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,
                                const double x[12], const double v[12], double force[12]) {
-  double F[9], rate[9], strain_rate[9], stress[9], P[9];
-  find_damped_deformation(element, material, x, F);
+  double F[9], rate[9], P[9];
+  fem_element_deformation(element, x, F);
   fem_element_deformation(element, v, rate);
-  find_viscous_stress(material, beta, F, rate, strain_rate, stress);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      P[3 * i + j] = F[3 * i] * stress[j] + F[3 * i + 1] * stress[3 + j] + F[3 * i + 2] * stress[6 + j];
+  fem_viscous_stress(material, beta, F, rate, P);
   spread_stress(element, P, force);
 }
 
 double fem_element_damping_power(const FemElement *element, const FemMaterial *material, double beta,
                                  const double x[12], const double v[12]) {
-  double F[9], rate[9], strain_rate[9], stress[9], power = 0;
-  find_damped_deformation(element, material, x, F);
+  double F[9], rate[9];
+  fem_element_deformation(element, x, F);
   fem_element_deformation(element, v, rate);
-  find_viscous_stress(material, beta, F, rate, strain_rate, stress);
-  for (int r = 0; r < 9; r++) power += strain_rate[r] * stress[r];
-  return element->volume * power;
+  return element->volume * fem_viscous_power(material, beta, F, rate);
 }
 
 void fem_element_damping_matrix(const FemElement *element, const FemMaterial *material, double beta,
                                 const double x[12], double matrix[144]) {
   double F[9], dP[81];
-  find_damped_deformation(element, material, x, F);
-  fem_material_pushed_stiffness(fem_material_viscous(material, beta), F, dP);
+  fem_element_deformation(element, x, F);
+  fem_viscous_tangent(material, beta, F, dP);
   fem_element_spread_tangent(element, dP, matrix);
 }
 
-// P_v = F Σ(F, Ḟ), so ∂P_v = ∂F Σ + F C_v : sym(Ḟᵀ ∂F). The first term is symmetric; the second is, with
-// D(F) = F C_v Fᵀ, the mixed product of F and Ḟ, whose symmetric part is ½ Ḋ.
 void fem_element_damping_stiffness(const FemElement *element, const FemMaterial *material, double beta,
                                    const double x[12], const double v[12], double matrix[144]) {
-  double F[9], rate[9], strain_rate[9], stress[9], dP[81];
-  if (fem_material_is_linear(material)) {
-    memset(matrix, 0, 144 * sizeof *matrix);
-    return;
-  }
-  find_damped_deformation(element, material, x, F);
+  double F[9], rate[9], dP[81];
+  fem_element_deformation(element, x, F);
   fem_element_deformation(element, v, rate);
-  find_viscous_stress(material, beta, F, rate, strain_rate, stress);
-  fem_material_pushed_stiffness_rate(fem_material_viscous(material, beta), F, rate, dP);
-  for (int r = 0; r < 81; r++) dP[r] *= 0.5;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      for (int l = 0; l < 3; l++) dP[9 * (3 * i + j) + 3 * i + l] += stress[3 * j + l];
+  fem_viscous_stiffness(material, beta, F, rate, dP);
   fem_element_spread_tangent(element, dP, matrix);
 }
 
 void fem_element_cauchy(const FemElement *element, const FemMaterial *material, const double x[12],
                         double stress[6]) {
-  static const int rows[6] = {0, 1, 2, 0, 1, 0}, columns[6] = {0, 1, 2, 1, 2, 2};
-  static const double flat = 1e-12;
   double F[9], P[9];
   fem_element_deformation(element, x, F);
   fem_material_stress(material, F, P);
-  double J = vec3_dot(vec3_at(F), vec3_cross(vec3_at(F + 3), vec3_at(F + 6)));
-  for (int s = 0; s < 6; s++) {
-    const double *p = P + 3 * rows[s], *f = F + 3 * columns[s];
-    if (material->law == FEM_MATERIAL_LINEAR) {
-      stress[s] = p[columns[s]];
-    } else {
-      stress[s] = fabs(J) <= flat ? 0 : (p[0] * f[0] + p[1] * f[1] + p[2] * f[2]) / J;
-    }
-  }
+  fem_material_cauchy(material->law, F, P, stress);
 }

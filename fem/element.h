@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The linear tetrahedron: constant F, one quadrature point. Another element (quadratic, mixed, F-bar) is
-// another file with the same functions over its own node count; effects loop over elements and call these
-// only. Nodes are given as (4, 3) arrays; matrices (12, 12) are symmetric to the last bit. Nothing depends on
-// where the origin is, beyond the rounding of the given positions. Inverted elements are evaluated like
-// others.
+// The linear tetrahedron: constant F, one quadrature point. The quadratic one is fem/quadratic.h. Nodes are
+// given as (4, 3) arrays; matrices (12, 12) are symmetric to the last bit. Nothing depends on where the
+// origin is, beyond the rounding of the given positions. Inverted elements are evaluated like others.
 #ifndef TETLAP_FEM_ELEMENT_H
 #define TETLAP_FEM_ELEMENT_H
 
@@ -30,8 +28,7 @@ void fem_element_stiffness(const FemElement *element, const FemMaterial *materia
 // K_ai,bk = V Σ_jl ∂N_a/∂X_j ∂P_ij/∂F_kl ∂N_b/∂X_l for any symmetric ∂P/∂F.
 void fem_element_spread_tangent(const FemElement *element, const double dP[81], double matrix[144]);
 
-// Stiffness-proportional damping that no rigid motion feels (but by the law linear, whose rate is sym Ḟ): R = ½ β V Ė:C:Ė with the Green strain rate
-// Ė = sym(Fᵀ Ḟ) and the law's small-strain C; at rest it is β K. A viscosity of the material is added to β C.
+// Stiffness-proportional damping and viscosity (fem/viscous.h): R = ½ β V Ė:C:Ė; at rest the matrix is β K.
 // Force −∂R/∂v, power 2R = −v · force ≥ 0, matrix ∂²R/∂v² (≥ 0).
 void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,
                                const double x[12], const double v[12], double force[12]); // [N]
@@ -39,13 +36,11 @@ double fem_element_damping_power(const FemElement *element, const FemMaterial *m
                                  const double x[12], const double v[12]); // [W]
 void fem_element_damping_matrix(const FemElement *element, const FemMaterial *material, double beta,
                                 const double x[12], double matrix[144]); // [N s/m]
-// The symmetric part of −∂(damping force)/∂x: the geometric stiffness of the viscous stress Σ = β C : Ė, and
-// half the rate of change of the damping matrix. May be indefinite.
+// The symmetric part of −∂(damping force)/∂x. May be indefinite.
 void fem_element_damping_stiffness(const FemElement *element, const FemMaterial *material, double beta,
                                    const double x[12], const double v[12], double matrix[144]); // [N/m]
 
-// Cauchy stress σ = P Fᵀ / J [Pa]: xx, yy, zz, xy, yz, xz. Zero where |J| ≤ 1e-12. The linear law does not
-// tell the two configurations apart: its σ is P.
+// Cauchy stress [Pa] (fem_material_cauchy).
 void fem_element_cauchy(const FemElement *element, const FemMaterial *material, const double x[12],
                         double stress[6]);
 

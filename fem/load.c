@@ -6,6 +6,9 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fem/mesh_faces.h"
+#include "fem/quadratic.h"
+#include "fem/quadratic_face.h"
 #include "fem/select.h"
 
 static Vec3 corner(const double *positions, int vertex) {
@@ -29,6 +32,8 @@ typedef struct Builder {
   double *force;       //                         (mesh->vertex_count, 3)
   int (*triangles)[3]; // of the surface          (triangle_count)
   int triangle_count;
+  int (*faces)[6]; // of quadratic tetrahedra     (face_count)
+  int face_count;
 } Builder;
 
 static void destroy_builder(Builder *builder) {
@@ -36,6 +41,7 @@ static void destroy_builder(Builder *builder) {
   memory_free(builder->is_selected);
   memory_free(builder->force);
   memory_free(builder->triangles);
+  memory_free(builder->faces);
 }
 
 static Status select_all(Builder *builder) {
@@ -48,8 +54,62 @@ static Status select_all(Builder *builder) {
   return STATUS_OK;
 }
 
-// The surface triangles whose three corners are selected.
+static Status check_surface(const Builder *builder, int count) {
+  if (count > 0) return STATUS_OK;
+  return status_fail(
+      STATUS_INPUT,
+      "the selection holds %d vertices but no triangle of the surface; a traction or a pressure "
+      "needs all three corners of a triangle",
+      builder->selected_count);
+}
+
+// The middle of the edge between two corners of a quadratic tetrahedron.
+static int middle_of(const int nodes[10], int a, int b) {
+  for (int k = 0; k < 6; k++) {
+    int p = nodes[fem_quadratic_edges[k][0]], q = nodes[fem_quadratic_edges[k][1]];
+    if ((p == a && q == b) || (p == b && q == a)) return nodes[4 + k];
+  }
+  return -1;
+}
+
+// The surface's faces of quadratic tetrahedra whose six nodes are selected.
+static Status pick_faces(Builder *builder, const int (*corners)[4]) {
+  const FemMesh *mesh = builder->mesh;
+  FemMeshFace *faces;
+  int all = 4 * mesh->quadratic_count;
+  TRY(fem_mesh_faces_list(&faces, mesh->vertex_count, mesh->quadratic_count, corners));
+  builder->faces = memory_zeroed((size_t)all, sizeof *builder->faces);
+  for (int begin = 0, end; builder->faces && begin < all; begin = end) {
+    end = fem_mesh_faces_end(faces, all, begin);
+    if (end - begin > 1) continue;
+    const int *nodes = mesh->quadratic[faces[begin].tet], *order = fem_mesh_face_vertices[faces[begin].local];
+    int *face = builder->faces[builder->face_count];
+    bool is_whole = true;
+    for (int k = 0; k < 3; k++) {
+      face[k] = nodes[order[k]];
+      face[3 + k] = middle_of(nodes, nodes[order[k]], nodes[order[(k + 1) % 3]]);
+      is_whole = is_whole && builder->is_selected[face[k]] && builder->is_selected[face[3 + k]];
+    }
+    builder->face_count += is_whole;
+  }
+  memory_free(faces);
+  if (!builder->faces) return status_no_memory("a load");
+  return check_surface(builder, builder->face_count);
+}
+
+static Status select_faces(Builder *builder) {
+  const FemMesh *mesh = builder->mesh;
+  int(*corners)[4] = memory_zeroed((size_t)mesh->quadratic_count, sizeof *corners);
+  if (!corners) return status_no_memory("a load");
+  for (int e = 0; e < mesh->quadratic_count; e++) memcpy(corners[e], mesh->quadratic[e], sizeof corners[e]);
+  Status status = pick_faces(builder, (const int(*)[4])corners);
+  memory_free(corners);
+  return status;
+}
+
+// The surface triangles whose corners are all selected.
 static Status select_triangles(Builder *builder) {
+  if (builder->mesh->quadratic) return select_faces(builder);
   int count, kept = 0;
   TRY(fem_mesh_surface(builder->mesh, &builder->triangles, &count));
   for (int i = 0; i < count; i++) {
@@ -58,12 +118,7 @@ static Status select_triangles(Builder *builder) {
     memmove(builder->triangles[kept++], t, sizeof *builder->triangles);
   }
   builder->triangle_count = kept;
-  if (kept > 0) return STATUS_OK;
-  return status_fail(
-      STATUS_INPUT,
-      "the selection holds %d vertices but no triangle of the surface; a traction or a pressure "
-      "needs all three corners of a triangle",
-      builder->selected_count);
+  return check_surface(builder, kept);
 }
 
 static void share_force(Builder *builder) {
@@ -72,16 +127,44 @@ static void share_force(Builder *builder) {
                vec3_scale(1.0 / builder->selected_count, vec3_at(builder->def->vector)));
 }
 
+static double six_volumes_of(const FemMesh *mesh, const int tet[4]) {
+  return vec3_det4(corner(mesh->rest, tet[0]), corner(mesh->rest, tet[1]), corner(mesh->rest, tet[2]),
+                   corner(mesh->rest, tet[3]));
+}
+
+static void share_body_force_by_nodes(Builder *builder) {
+  const FemMesh *mesh = builder->mesh;
+  for (int e = 0; e < mesh->quadratic_count; e++) {
+    const int *nodes = mesh->quadratic[e];
+    double volume = six_volumes_of(mesh, nodes) / 6;
+    for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
+      if (builder->is_selected[nodes[k]])
+        vec3_accumulate(builder->force + 3 * (size_t)nodes[k],
+                        vec3_scale(volume * fem_quadratic_mass_share(k), vec3_at(builder->def->vector)));
+  }
+}
+
 static void share_body_force(Builder *builder) {
   const FemMesh *mesh = builder->mesh;
   for (int e = 0; e < mesh->tet_count; e++) {
     const int *tet = mesh->tets[e];
-    double six_volumes = vec3_det4(corner(mesh->rest, tet[0]), corner(mesh->rest, tet[1]),
-                                   corner(mesh->rest, tet[2]), corner(mesh->rest, tet[3]));
+    double six_volumes = six_volumes_of(mesh, tet);
     for (int k = 0; k < 4; k++)
       if (builder->is_selected[tet[k]])
         vec3_accumulate(builder->force + 3 * (size_t)tet[k],
                         vec3_scale(six_volumes / 24, vec3_at(builder->def->vector)));
+  }
+}
+
+static void share_over_faces(Builder *builder) {
+  const FemLoadDef *def = builder->def;
+  for (int i = 0; i < builder->face_count; i++) {
+    const int *face = builder->faces[i];
+    Vec3 area = area_of(builder->mesh->rest, face);
+    Vec3 whole = def->kind == FEM_LOAD_TRACTION ? vec3_scale(vec3_length(area), vec3_at(def->vector))
+                                                : vec3_scale(-def->pressure, area);
+    for (int k = 0; k < FEM_QUADRATIC_FACE_NODES; k++)
+      vec3_accumulate(builder->force + 3 * (size_t)face[k], vec3_scale(fem_quadratic_face_share(k), whole));
   }
 }
 
@@ -94,6 +177,7 @@ static void share_over_triangles(Builder *builder) {
                                                 : vec3_scale(-def->pressure / 3, area);
     for (int k = 0; k < 3; k++) vec3_accumulate(builder->force + 3 * (size_t)builder->triangles[i][k], third);
   }
+  share_over_faces(builder);
 }
 
 static Status keep_triangles(FemLoad *load, const Builder *builder, int vertex_begin) {
@@ -102,6 +186,11 @@ static Status keep_triangles(FemLoad *load, const Builder *builder, int vertex_b
   load->triangle_count = builder->triangle_count;
   for (int i = 0; i < load->triangle_count; i++)
     for (int k = 0; k < 3; k++) load->triangles[i][k] += vertex_begin;
+  load->faces = memory_copy(builder->faces, (size_t)builder->face_count, sizeof *load->faces);
+  if (!load->faces) return status_no_memory("a load");
+  load->face_count = builder->face_count;
+  for (int i = 0; i < load->face_count; i++)
+    for (int k = 0; k < FEM_QUADRATIC_FACE_NODES; k++) load->faces[i][k] += vertex_begin;
   return STATUS_OK;
 }
 
@@ -125,7 +214,10 @@ static Status build(FemLoad *load, Builder *builder, int vertex_begin) {
     share_force(builder);
     break;
   case FEM_LOAD_BODY_FORCE:
-    share_body_force(builder);
+    if (builder->mesh->quadratic)
+      share_body_force_by_nodes(builder);
+    else
+      share_body_force(builder);
     break;
   case FEM_LOAD_PRESSURE:
     TRY(select_triangles(builder));
@@ -153,6 +245,7 @@ void fem_load_destroy(FemLoad *load) {
   memory_free(load->vertices);
   memory_free(load->force);
   memory_free(load->triangles);
+  memory_free(load->faces);
   *load = (FemLoad){0};
 }
 
@@ -182,6 +275,15 @@ void fem_load_add_force(const FemLoad *load, double factor, const double *positi
   for (int i = 0; i < load->triangle_count; i++) {
     Vec3 third = vec3_scale(-factor * load->def->pressure / 3, area_of(positions, load->triangles[i]));
     for (int k = 0; k < 3; k++) vec3_accumulate(force + 3 * (size_t)load->triangles[i][k], third);
+  }
+  for (int i = 0; i < load->face_count; i++) {
+    double x[18], area[18];
+    for (int k = 0; k < FEM_QUADRATIC_FACE_NODES; k++)
+      memcpy(x + 3 * k, positions + 3 * (size_t)load->faces[i][k], 3 * sizeof *x);
+    fem_quadratic_face_area(x, area);
+    for (int k = 0; k < FEM_QUADRATIC_FACE_NODES; k++)
+      vec3_accumulate(force + 3 * (size_t)load->faces[i][k],
+                      vec3_scale(-factor * load->def->pressure, vec3_at(area + 3 * k)));
   }
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A load of the scene on a body's vertices. All kinds but a pressure that follows its surface are dead: fixed
-// nodal forces times the factor of time. The following pressure p on a triangle with the area vector A = ½
-// (b − a) × (c − a), outward, gives each corner −p A/3; it is −p ∂V/∂x of the volume that the surface bounds.
+// nodal forces times the factor of time; those of a surface are the integrals of the shape functions, also on
+// the faces of quadratic tetrahedra, where the corners take nothing; a body force is shared as the mass is.
+// The following pressure p on a triangle with the area vector A = ½ (b − a) × (c − a), outward, gives each
+// corner −p A/3; it is −p ∂V/∂x of the volume that the surface bounds.
 #ifndef TETLAP_FEM_LOAD_H
 #define TETLAP_FEM_LOAD_H
 
@@ -15,6 +17,8 @@ typedef struct FemLoad {
   int vertex_count;
   int (*triangles)[3]; // of the model, outward, that carry a following pressure      (triangle_count)
   int triangle_count;
+  int (*faces)[6]; // the same of quadratic tetrahedra (fem/quadratic_face.h)         (face_count)
+  int face_count;
 } FemLoad;
 
 // Finds vertices and triangles in `mesh`, whose first vertex has the number `vertex_begin` in the model.

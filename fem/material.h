@@ -79,6 +79,10 @@ double fem_material_energy(const FemMaterial *material, const double F[9]);     
 void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]);    // [Pa]
 void fem_material_tangent(const FemMaterial *material, const double F[9], double dP[81]); // [Pa]
 
+// Cauchy stress σ = P Fᵀ / J [Pa] of a stress P: xx, yy, zz, xy, yz, xz. Zero where |J| ≤ 1e-12. The linear
+// law does not tell the two configurations apart: its σ is P.
+void fem_material_cauchy(FemMaterialLaw law, const double F[9], const double P[9], double stress[6]);
+
 // The law's measure of volume change θ(F), of which every law has the term λ/2 θ²: tr ε, tr(S − I), tr E, J −
 // 1. Returns θ; gradient ∂θ/∂F (9) and curvature ∂²θ/∂F² (9, 9).
 double fem_material_volume(FemMaterialLaw law, const double F[9], double gradient[9]);

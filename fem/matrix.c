@@ -282,19 +282,20 @@ void fem_matrix_add_outer(FemMatrix *matrix, int count, const int *vertices, con
   }
 }
 
-void fem_matrix_slots(const FemMatrix *matrix, const int tet[4], int slots[144]) {
+void fem_matrix_slots(const FemMatrix *matrix, int count, const int *vertices, int *slots) {
   const FemMatrixBlocks *blocks = matrix->blocks;
-  for (int k = 0; k < 144; k++) slots[k] = -1;
-  for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++) {
-      int v = tet[i], w = tet[j];
+  int n = 3 * count;
+  for (int k = 0; k < n * n; k++) slots[k] = -1;
+  for (int i = 0; i < count; i++)
+    for (int j = 0; j < count; j++) {
+      int v = vertices[i], w = vertices[j];
       if (w < v || !blocks->active[v] || !blocks->active[w]) continue;
       int row_offset = w == v ? -blocks->active[v] : find_block(blocks, v, w);
       for (int c = 0; c < 3; c++)
         for (int r = w == v ? c : 0; r < 3; r++) {
           int column = matrix->unknown_of_dof[3 * v + c], row = matrix->unknown_of_dof[3 * w + r];
           if (column < 0 || row < 0) continue;
-          slots[12 * (3 * j + r) + 3 * i + c] =
+          slots[n * (3 * j + r) + 3 * i + c] =
               block_rows(blocks, v, column - blocks->first[v], row_offset) + row - blocks->first[w];
         }
     }

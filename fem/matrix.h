@@ -40,9 +40,9 @@ void fem_matrix_zero(FemMatrix *matrix);
 void fem_matrix_add(FemMatrix *matrix, int count, const int *vertices, const double *dense, double scale);
 // matrix += scale · w wᵀ, w (count, 3), without forming the dense matrix; else as fem_matrix_add.
 void fem_matrix_add_outer(FemMatrix *matrix, int count, const int *vertices, const double *w, double scale);
-// The same with `slots` looked up once for a tetrahedron: value[slots[12 i + j]] is entry (i, j) of the
-// (12 × 12) element matrix, −1: no entry (upper or prescribed).
-void fem_matrix_slots(const FemMatrix *matrix, const int tet[4], int slots[144]);
+// The same with `slots` looked up once for an element of n = 3 count coordinates: value[slots[n i + j]] is
+// entry (i, j) of the (n × n) element matrix, −1: no entry (upper or prescribed).
+void fem_matrix_slots(const FemMatrix *matrix, int count, const int *vertices, int *slots);
 // matrix += scale · diag(m) over all unknowns, m by vertex (vertex_count).
 void fem_matrix_add_mass(FemMatrix *matrix, const double *mass, double scale);
 

@@ -17,6 +17,7 @@ void fem_mesh_destroy(FemMesh *mesh) {
   memory_free(mesh->groups);
   memory_free(mesh->rest);
   memory_free(mesh->tets);
+  memory_free(mesh->quadratic);
   *mesh = (FemMesh){0};
 }
 

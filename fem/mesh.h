@@ -20,6 +20,10 @@ typedef struct FemMesh {
   int (*tets)[4];       // vertices, positively oriented   (tet_count)
   FemMeshGroup *groups; //                                 (group_count)
   int group_count;
+  // Of a mesh made quadratic, else none: the nodes of each quadratic tetrahedron (fem/quadratic.h). `tets`
+  // are their parts then, eight each in turn: 0 … 3 at the corners, 4 … 7 between them.
+  int (*quadratic)[10]; //                               (quadratic_count)
+  int quadratic_count;  // tet_count / 8
 } FemMesh;
 
 // What reading mended, for `tetlap mesh` and the log.
@@ -64,6 +68,11 @@ Status fem_mesh_from_arrays(FemMesh *mesh, const char *origin, int vertex_count,
 // Applies a placement; a mirroring scale keeps orientation positive. Quarter turns are exact. STATUS_INPUT,
 // the mesh unchanged: a zero or non-finite scale, an angle about no axis, a result that is not finite.
 Status fem_mesh_place(FemMesh *mesh, const FemPlacement *placement);
+
+// Makes a linear mesh quadratic: a vertex in the middle of every edge, after the others and in the order of
+// the edges' ends; groups take in the middles of their edges. STATUS_INPUT: too many or too flat tetrahedra.
+// After a failure the mesh is only to be destroyed.
+Status fem_mesh_make_quadratic(FemMesh *mesh);
 
 void fem_mesh_destroy(FemMesh *mesh);
 

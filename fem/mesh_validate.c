@@ -210,8 +210,12 @@ Status fem_mesh_validate(FemMesh *mesh, FemMeshSource *source, const char *origi
   *mesh = (FemMesh){0};
   Status status = check_and_mend(source, &mended);
   if (status != STATUS_OK) return status_prefix(status, "%s", origin);
-  *mesh = (FemMesh){source->vertex_count, source->tet_count, source->positions,
-                    source->tets,         source->groups,    source->group_count};
+  *mesh = (FemMesh){.vertex_count = source->vertex_count,
+                    .tet_count = source->tet_count,
+                    .rest = source->positions,
+                    .tets = source->tets,
+                    .groups = source->groups,
+                    .group_count = source->group_count};
   source->positions = NULL, source->tets = NULL, source->groups = NULL, source->group_count = 0;
   if (repairs) *repairs = mended;
   return STATUS_OK;

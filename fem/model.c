@@ -34,6 +34,7 @@ static Status load_meshes(const FemSceneDef *scene, FemMesh *meshes) {
     const FemBodyDef *def = &scene->bodies[b];
     Status status = load_mesh(&meshes[b], scene, def->mesh_path, def->box_size, def->box_cells,
                               &def->mesh_options, &def->placement);
+    if (!status && def->element == FEM_ELEMENT_QUADRATIC) status = fem_mesh_make_quadratic(&meshes[b]);
     if (status) return status_prefix(status, "body '%s'", def->name);
   }
   int next = scene->body_count;
@@ -48,14 +49,21 @@ static Status load_meshes(const FemSceneDef *scene, FemMesh *meshes) {
 }
 
 static Status allocate(FemModel *model, const FemMesh *meshes, int mesh_count) {
-  long long vertices = 0, tets = 0;
-  for (int m = 0; m < mesh_count; m++) vertices += meshes[m].vertex_count, tets += meshes[m].tet_count;
+  long long vertices = 0, tets = 0, quadratics = 0;
+  for (int m = 0; m < mesh_count; m++) {
+    vertices += meshes[m].vertex_count, tets += meshes[m].tet_count;
+    quadratics += meshes[m].quadratic_count;
+  }
   if (vertices > 100000000 || tets > 300000000)
     return status_fail(STATUS_INPUT,
                        "the scene has %lld vertices and %lld tetrahedra; at most 1e8 and 3e8 are possible",
                        vertices, tets);
-  size_t v = (size_t)vertices, t = (size_t)tets;
+  size_t v = (size_t)vertices, t = (size_t)tets, q = (size_t)quadratics;
   model->vertex_count = (int)vertices, model->tet_count = (int)tets, model->body_count = mesh_count;
+  model->quadratic_count = (int)quadratics;
+  model->quadratics = memory_zeroed(q, sizeof *model->quadratics);
+  model->quadratic_nodes = memory_zeroed(q, sizeof *model->quadratic_nodes);
+  model->quadratic_body = memory_zeroed(q, sizeof *model->quadratic_body);
   model->rest = memory_zeroed(3 * v, sizeof *model->rest);
   model->tets = memory_zeroed(t, sizeof *model->tets);
   model->tet_body = memory_zeroed(t, sizeof *model->tet_body);
@@ -65,8 +73,9 @@ static Status allocate(FemModel *model, const FemMesh *meshes, int mesh_count) {
   model->initial_velocity = memory_zeroed(3 * v, sizeof *model->initial_velocity);
   model->unknown_of_dof = memory_zeroed(3 * v, sizeof *model->unknown_of_dof);
   model->dof_of_unknown = memory_zeroed(3 * v, sizeof *model->dof_of_unknown);
-  bool ok = model->rest && model->tets && model->tet_body && model->elements && model->bodies &&
-            model->mass && model->initial_velocity && model->unknown_of_dof && model->dof_of_unknown;
+  bool ok = model->quadratics && model->quadratic_nodes && model->quadratic_body;
+  ok = ok && model->rest && model->tets && model->tet_body && model->elements && model->bodies &&
+       model->mass && model->initial_velocity && model->unknown_of_dof && model->dof_of_unknown;
   return ok ? STATUS_OK : status_no_memory("the model");
 }
 
@@ -84,9 +93,32 @@ static void append_mesh(FemModel *model, FemModelBody *body, const FemMesh *mesh
     model->tet_body[global] = body_number;
     fem_element_create(&model->elements[global], corners);
   }
+  for (int e = 0; e < mesh->quadratic_count; e++) {
+    double corners[12];
+    int global = body->quadratic_begin + e;
+    for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
+      model->quadratic_nodes[global][k] = mesh->quadratic[e][k] + body->vertex_begin;
+    for (int k = 0; k < 4; k++)
+      memcpy(corners + 3 * k, mesh->rest + 3 * mesh->quadratic[e][k], 3 * sizeof *corners);
+    model->quadratic_body[global] = body_number;
+    fem_quadratic_create(&model->quadratics[global], corners);
+  }
+}
+
+static void lump_quadratic_mass(FemModel *model, FemModelBody *body) {
+  for (int e = body->quadratic_begin; e < body->quadratic_end; e++) {
+    double mass = body->material.density * model->quadratics[e].volume;
+    for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
+      model->mass[model->quadratic_nodes[e][k]] += fem_quadratic_mass_share(k) * mass;
+    body->mass += mass;
+  }
 }
 
 static void lump_mass(FemModel *model, FemModelBody *body) {
+  if (body->element == FEM_ELEMENT_QUADRATIC) {
+    lump_quadratic_mass(model, body);
+    return;
+  }
   for (int e = body->tet_begin; e < body->tet_end; e++) {
     double share = 0.25 * body->material.density * model->elements[e].volume;
     for (int k = 0; k < 4; k++) model->mass[model->tets[e][k]] += share;
@@ -106,13 +138,28 @@ static void set_velocity(FemModel *model, const FemModelBody *body, const FemBod
   }
 }
 
+// λ_e / μ at most (fem/quadratic.h): that of ν = 1/3, so that materials up to there are integrated pointwise,
+// which converges with the third order. Measured, a cantilever with two elements through its thickness at ν =
+// 0.499, over the converged deflection: 0.94 with all of λ, 0.97 with 10, 0.98 with 4, 0.992 with 2, 1.001
+// with 1.
+static const double LARGEST_POINTWISE_RATIO = 2;
+
+static void split_volume(FemModelBody *body) {
+  FemLame lame = fem_material_lame(&body->material);
+  double most = LARGEST_POINTWISE_RATIO * lame.mu;
+  if (!(lame.lambda > most)) return;
+  body->local = fem_material_with_lambda(&body->material, most);
+  body->bulk = lame.lambda - fem_material_lame(&body->local).lambda;
+}
+
 static void append_bodies(FemModel *model, const FemMesh *meshes) {
   const FemSceneDef *scene = model->scene;
-  int vertex = 0, tet = 0, obstacle = 0;
+  int vertex = 0, tet = 0, quadratic = 0, obstacle = 0;
   for (int b = 0; b < model->body_count; b++) {
     FemModelBody *body = &model->bodies[b];
     body->vertex_begin = vertex, body->vertex_end = vertex += meshes[b].vertex_count;
     body->tet_begin = tet, body->tet_end = tet += meshes[b].tet_count;
+    body->quadratic_begin = quadratic, body->quadratic_end = quadratic += meshes[b].quadratic_count;
     append_mesh(model, body, &meshes[b], b);
     if (b < scene->body_count) {
       const FemBodyDef *def = &scene->bodies[b];
@@ -120,6 +167,7 @@ static void append_bodies(FemModel *model, const FemMesh *meshes) {
       body->material = body->local = def->material;
       body->element = def->element;
       if (def->element == FEM_ELEMENT_NODAL) body->local = fem_volume_local_material(&def->material);
+      if (def->element == FEM_ELEMENT_QUADRATIC) split_volume(body);
       body->damping = def->material.damping >= 0 ? def->material.damping : scene->stiffness_damping;
       lump_mass(model, body);
       set_velocity(model, body, def);
@@ -242,6 +290,18 @@ static Status measure(FemModel *model, const FemMesh *meshes) {
   return STATUS_OK;
 }
 
+// Those that share a middle share its edge's ends: their corners tell.
+static Status colour_quadratics(FemModel *model) {
+  int(*corners)[4] = memory_zeroed((size_t)model->quadratic_count, sizeof *corners);
+  if (!corners) return status_no_memory("the colouring of the mesh");
+  for (int e = 0; e < model->quadratic_count; e++)
+    memcpy(corners[e], model->quadratic_nodes[e], sizeof corners[e]);
+  Status status = fem_colouring_create(&model->quadratic_colouring, model->vertex_count,
+                                       (const int(*)[4])corners, model->quadratic_count);
+  memory_free(corners);
+  return status;
+}
+
 static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(allocate(model, meshes, mesh_count));
   append_bodies(model, meshes);
@@ -251,6 +311,7 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   int elastic_tets = model->bodies[model->scene->body_count - 1].tet_end;
   TRY(fem_colouring_create(&model->colouring, model->vertex_count, (const int(*)[4])model->tets,
                            elastic_tets));
+  TRY(colour_quadratics(model));
   return measure(model, meshes);
 }
 
@@ -278,6 +339,10 @@ void fem_model_destroy(FemModel *model) {
   memory_free(model->tets);
   memory_free(model->tet_body);
   memory_free(model->elements);
+  memory_free(model->quadratics);
+  memory_free(model->quadratic_nodes);
+  memory_free(model->quadratic_body);
+  fem_colouring_destroy(&model->quadratic_colouring);
   memory_free(model->bodies);
   memory_free(model->mass);
   memory_free(model->initial_velocity);
@@ -376,9 +441,53 @@ double fem_model_velocity_tolerance(const FemModel *model) {
                                      : chosen;
 }
 
+static const FemModelBody *body_of(const FemModel *model, int tet) {
+  return &model->bodies[model->tet_body[tet]];
+}
+
+static void gather(const int *nodes, int count, const double *positions, double *x) {
+  for (int k = 0; k < count; k++) memcpy(x + 3 * k, positions + 3 * (size_t)nodes[k], 3 * sizeof *x);
+}
+
+// The quadratic tetrahedron of which `tet` is a part.
+static int quadratic_of(const FemModel *model, int tet) {
+  const FemModelBody *body = body_of(model, tet);
+  return body->quadratic_begin + (tet - body->tet_begin) / FEM_QUADRATIC_PARTS;
+}
+
+double fem_model_det(const FemModel *model, int tet, const double *positions) {
+  const FemModelBody *body = body_of(model, tet);
+  int part = (tet - body->tet_begin) % FEM_QUADRATIC_PARTS;
+  double x[30], F[9];
+  gather(model->tets[tet], 4, positions, x);
+  fem_element_deformation(&model->elements[tet], x, F);
+  double own = vec3_dot(vec3_at(F), vec3_cross(vec3_at(F + 3), vec3_at(F + 6)));
+  if (body->element != FEM_ELEMENT_QUADRATIC || part >= FEM_QUADRATIC_POINTS) return own;
+  int quadratic = quadratic_of(model, tet);
+  gather(model->quadratic_nodes[quadratic], FEM_QUADRATIC_NODES, positions, x);
+  double at_point = fem_quadratic_det(&model->quadratics[quadratic], part, x);
+  return at_point < own ? at_point : own;
+}
+
+void fem_model_stress(const FemModel *model, int tet, const double *positions, double stress[6]) {
+  const FemModelBody *body = body_of(model, tet);
+  double x[30];
+  if (body->element != FEM_ELEMENT_QUADRATIC) {
+    gather(model->tets[tet], 4, positions, x);
+    fem_element_cauchy(&model->elements[tet], &body->local, x, stress);
+    return;
+  }
+  int quadratic = quadratic_of(model, tet);
+  FemQuadraticLaw law = {&body->local, body->bulk};
+  gather(model->quadratic_nodes[quadratic], FEM_QUADRATIC_NODES, positions, x);
+  fem_quadratic_cauchy(&model->quadratics[quadratic], law, x, (tet - body->tet_begin) % FEM_QUADRATIC_PARTS,
+                       stress);
+}
+
 double fem_model_memory_estimate(const FemModel *model) {
   double vertices = model->vertex_count, tets = model->tet_count, unknowns = model->unknown_count;
   double arrays = vertices * 30 * sizeof(double) + tets * (sizeof(FemElement) + 600);
+  arrays += model->quadratic_count * (double)(sizeof(FemQuadratic) + 465 * sizeof(int));
   double matrix = unknowns * 23 * (sizeof(double) + sizeof(int));
   // Nested dissection in three dimensions: O(n^{4/3}) factor entries (George 1973); the constant is measured.
   double factor = 12 * pow(unknowns, 4.0 / 3.0) * sizeof(double);

@@ -8,6 +8,7 @@
 #include "fem/colouring.h"
 #include "fem/element.h"
 #include "fem/load.h"
+#include "fem/quadratic.h"
 #include "fem/scene.h"
 
 typedef struct FemModelBody {
@@ -16,6 +17,9 @@ typedef struct FemModelBody {
   int tet_begin, tet_end;
   FemMaterial material; // obstacles: zeroed
   FemMaterial local; // what an element resists with by itself; the rest of λ is the vertices' (fem/volume.h)
+                     // or the mean's of a quadratic one (fem/quadratic.h)
+  double bulk;       // that rest, of quadratic ones; else 0 [Pa]
+  int quadratic_begin, quadratic_end;
   FemElementKind element;
   double damping; // β [s]
   double mass;    // [kg]
@@ -38,6 +42,10 @@ typedef struct FemModel {
   int (*tets)[4];                          //                                           (tet_count)
   int *tet_body;                           //                                           (tet_count)
   FemElement *elements;                    //                                           (tet_count)
+  int quadratic_count;                     // a body's tets are the eighths of its quadratic ones
+  FemQuadratic *quadratics;                //                                           (quadratic_count)
+  int (*quadratic_nodes)[10];              //                                           (quadratic_count)
+  int *quadratic_body;                     //                                           (quadratic_count)
   FemModelBody *bodies;                    //                                           (body_count)
   double *mass;                            // lumped, obstacles 0 [kg]                  (vertex_count)
   double *initial_velocity;                // [m/s]                                     (vertex_count, 3)
@@ -49,8 +57,9 @@ typedef struct FemModel {
   FemLoad *loads; //                                                                    (load_count)
   int load_count;
   FemColouring colouring; // of the tetrahedra of bodies, which come first
-  double length;          // the smallest body's bounding box diagonal [m]
-  double edge;            // the smallest mean edge of a body [m]
+  FemColouring quadratic_colouring;
+  double length; // the smallest body's bounding box diagonal [m]
+  double edge;   // the smallest mean edge of a body [m]
 } FemModel;
 
 // Reads the meshes (relative to the scene file), places, checks and numbers. STATUS_INPUT names the body and
@@ -83,6 +92,12 @@ double fem_model_velocity_tolerance(const FemModel *model);
 // ε of friction [m/s]: the scene's, or such that nothing creeps by more than a thousandth of the smallest
 // body in the whole run.
 double fem_model_slip_speed(const FemModel *model);
+
+// det F of a tetrahedron; of a part of a quadratic one the smaller of its own and that at the point near its
+// corner.
+double fem_model_det(const FemModel *model, int tet, const double *positions);
+// Cauchy stress [Pa] of a tetrahedron of a body by its law alone.
+void fem_model_stress(const FemModel *model, int tet, const double *positions, double stress[6]);
 
 // The memory that a run of this model will take, roughly [bytes].
 double fem_model_memory_estimate(const FemModel *model);

@@ -175,11 +175,6 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   *recorder = (FemRecorder){0};
 }
 
-static double det3(const double F[9]) {
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-         F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
-
 static void gather(const FemSystem *system, int tet, double corners[12]) {
   for (int k = 0; k < 4; k++)
     memcpy(corners + 3 * k, system->positions + 3 * system->model->tets[tet][k], 3 * sizeof *corners);
@@ -191,10 +186,7 @@ static void measure_elements(FemRecorder *recorder, FemMeasures *measures) {
   const double *covered = contact ? contact_system_covered(contact) : NULL;
   measures->min_det_F = INFINITY;
   for (int e = 0; e < system->model->tet_count; e++) {
-    double corners[12], F[9];
-    gather(system, e, corners);
-    fem_element_deformation(&system->model->elements[e], corners, F);
-    recorder->det_F[e] = det3(F);
+    recorder->det_F[e] = fem_model_det(system->model, e, system->positions);
     recorder->overlap[e] = covered ? covered[e] / system->model->elements[e].volume : 0;
     if (system->model->bodies[system->model->tet_body[e]].is_obstacle) continue;
     measures->min_det_F = fmin(measures->min_det_F, recorder->det_F[e]);
@@ -263,13 +255,16 @@ static void fill_arrays(FemRecorder *recorder) {
   for (int e = 0; e < model->tet_count; e++) {
     const FemModelBody *body = &model->bodies[model->tet_body[e]];
     if (body->is_obstacle) continue;
-    double corners[12];
-    gather(system, e, corners);
-    fem_element_cauchy(&model->elements[e], &body->local, corners, recorder->stress + 6 * e);
+    fem_model_stress(model, e, system->positions, recorder->stress + 6 * e);
     void *volume = body->element == FEM_ELEMENT_NODAL ? fem_system_effect(system, "volume") : NULL;
-    if (volume) fem_effect_volume_add_stress(volume, e, corners, recorder->stress + 6 * e);
+    if (volume) {
+      double corners[12];
+      gather(system, e, corners);
+      fem_effect_volume_add_stress(volume, e, corners, recorder->stress + 6 * e);
+    }
     void *plasticity = fem_system_effect(system, "plasticity");
-    if (plasticity) fem_effect_plasticity_add_stress(plasticity, e, corners, recorder->stress + 6 * e);
+    if (plasticity)
+      fem_effect_plasticity_add_stress(plasticity, e, system->positions, recorder->stress + 6 * e);
     recorder->von_mises[e] = von_mises(recorder->stress + 6 * e);
   }
 }

@@ -73,7 +73,8 @@ typedef struct FemLoadDef {
 // How a body's tetrahedra resist. `nodal` and `quadratic` do not lock as ν → ½.
 typedef enum FemElementKind {
   FEM_ELEMENT_LINEAR,
-  FEM_ELEMENT_NODAL, // linear, the volume change averaged at the vertices (fem/volume.h)
+  FEM_ELEMENT_NODAL,     // linear, the volume change averaged at the vertices (fem/volume.h)
+  FEM_ELEMENT_QUADRATIC, // ten nodes (fem/quadratic.h)
 } FemElementKind;
 
 typedef struct FemBodyDef {

@@ -172,12 +172,7 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
   int flattest = 0;
   double smallest = INFINITY;
   for (int e = 0; e < model->tet_count; e++) {
-    double corners[12], F[9];
-    for (int k = 0; k < 4; k++)
-      memcpy(corners + 3 * k, system->positions + 3 * (size_t)model->tets[e][k], 3 * sizeof *corners);
-    fem_element_deformation(&model->elements[e], corners, F);
-    double J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-               F[2] * (F[3] * F[7] - F[4] * F[6]);
+    double J = fem_model_det(model, e, system->positions);
     if (J < smallest) smallest = J, flattest = e;
   }
   text_append(text, sizeof text, &used, "; element %d has the smallest det F, %.3g", flattest, smallest);

@@ -198,7 +198,7 @@ START_TEST(slots_address_the_entries_that_add_fills) {
     double dense[144];
     int slots[144];
     draw_symmetric(&c.random, 4, dense);
-    fem_matrix_slots(&c.matrix, c.clique[k], slots);
+    fem_matrix_slots(&c.matrix, 4, c.clique[k], slots);
     fem_matrix_zero(&c.matrix);
     fem_matrix_add(&c.matrix, 4, c.clique[k], dense, 3);
     for (int s = 0; s < 144; s++)
