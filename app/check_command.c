@@ -74,7 +74,7 @@ static Notes take_notes(const AppJob *job) {
        "nothing moves: no gravity, no initial velocity, no driven vertices, no moving obstacle");
   note(&notes, is_locking(scene),
        "linear tetrahedra are too stiff at a Poisson's ratio of 0.45 and above: bending is underestimated; "
-       "try element: nodal");
+       "try element: quadratic or nodal");
   note(&notes, job->model.unknown_count == 0, "every vertex is prescribed: there is nothing to solve");
   note(&notes, fem_model_memory_estimate(&job->model) > machine_memory(),
        "the run needs more memory than this machine has");

@@ -45,6 +45,12 @@ static const Case cases[] = {
      "--set time.static=false --set time.end=0.02 --set 'bodies.bar.loads[0].force=[0,0,-2000]' --set "
      "'bodies.bar.loads[0].table=[[0,0],[0.01,1],[0.02,0]]' --set bodies.bar.mesh.box.cells=[8,2,2]",
      "\"yielded_elements\": "},
+    {"examples/25_plastic_bar.yaml",
+     "--set bodies.bar.element=quadratic --set time.static=false --set time.end=0.02 --set "
+     "'bodies.bar.loads[0].force=[0,0,-2000]' --set 'bodies.bar.loads[0].table=[[0,0],[0.01,1],[0.02,0]]' "
+     "--set "
+     "bodies.bar.mesh.box.cells=[4,1,1]",
+     "\"yielded_elements\": "},
     // An iterative solver, a network's volumes, several bodies.
     {"tests/scenes/stack.yaml", "--set solver.linear=pcg --set contact.overlap=clip --set time.end=0.05",
      "\"contact_pairs\": "},
