@@ -31,7 +31,7 @@ static const int *nodes_of(const FemAssemblyList *list, int i) {
 static Status select_elements(FemAssemblyList *list, const FemModel *model, const FemColouring *all,
                               bool is_quadratic, bool (*takes)(const FemModelBody *body)) {
   FemColouring *own = &list->colouring;
-  size_t most = (size_t)all->begin[all->colour_count];
+  size_t most = all->colour_count > 0 ? (size_t)all->begin[all->colour_count] : 0;
   own->begin = memory_zeroed((size_t)all->colour_count + 1, sizeof *own->begin);
   own->tets = memory_zeroed(most, sizeof *own->tets);
   list->elements = memory_zeroed(is_quadratic ? 0 : most, sizeof *list->elements);
@@ -54,10 +54,12 @@ static Status select_elements(FemAssemblyList *list, const FemModel *model, cons
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
                            bool (*takes)(const FemModelBody *body)) {
   *assembly = (FemAssembly){.model = model};
-  assembly->lists[0] = (FemAssemblyList){.node_count = 4, .nodes = model->tets[0], .body = model->tet_body};
+  assembly->lists[0] =
+      (FemAssemblyList){.node_count = 4, .nodes = (const int *)model->tets, .body = model->tet_body};
   TRY(select_elements(&assembly->lists[0], model, &model->colouring, false, takes));
-  assembly->lists[1] = (FemAssemblyList){
-      .node_count = FEM_QUADRATIC_NODES, .nodes = model->quadratic_nodes[0], .body = model->quadratic_body};
+  assembly->lists[1] = (FemAssemblyList){.node_count = FEM_QUADRATIC_NODES,
+                                         .nodes = (const int *)model->quadratic_nodes,
+                                         .body = model->quadratic_body};
   return select_elements(&assembly->lists[1], model, &model->quadratic_colouring, true, takes);
 }
 
