@@ -6,6 +6,7 @@
 
 #include "app/stress.h"
 #include "app/stress_limits.h"
+#include "app/stress_linking.h"
 #include "app/stress_scenes.h"
 #include "app/stress_traits.h"
 #include "base/memory.h"
@@ -136,6 +137,20 @@ START_TEST(every_class_of_pairs_is_what_its_name_says) {
 }
 END_TEST
 
+// Two long lines that cross at a distance wind by half a turn; passing through each other changes that by
+// one.
+START_TEST(linking_jumps_by_a_turn_where_lines_pass) {
+  const double along[6] = {-1e4, 0, 0, 1e4, 0, 0}, above[9] = {0, -1e4, 1, 0, 0, 1, 0, 1e4, 1},
+               below[9] = {0, -1e4, -1, 0, 0, -1, 0, 1e4, -1}, parallel[6] = {-1e4, 1, 0, 1e4, 1, 0};
+  ck_assert_double_eq_tol(fabs(app_stress_linking(along, 2, above, 3)), 0.5, 1e-3);
+  ck_assert_double_eq_tol(app_stress_linking(along, 2, above, 3), -app_stress_linking(along, 2, below, 3),
+                          1e-12);
+  ck_assert_double_eq_tol(app_stress_linking(along, 2, above, 3), app_stress_linking(above, 3, along, 2),
+                          1e-12);
+  ck_assert_double_eq_tol(app_stress_linking(along, 2, parallel, 2), 0, 1e-12);
+}
+END_TEST
+
 START_TEST(every_measure_is_in_the_record) {
   AppStress stress;
   run(&stress, &(AppStressOptions){.has_pairs = true, .is_quick = true, .only = "inside", .models = "clip"});
@@ -160,6 +175,7 @@ int main(void) {
   tcase_add_test(cases, a_run_that_was_cut_is_a_limit_but_still_judged_by_what_it_did);
   tcase_add_test(cases, a_limit_of_work_cuts_a_scene_and_says_how_far_it_came);
   tcase_add_test(cases, every_class_of_pairs_is_what_its_name_says);
+  tcase_add_test(cases, linking_jumps_by_a_turn_where_lines_pass);
   tcase_add_test(cases, every_measure_is_in_the_record);
   return suite_run("stress", cases, 600);
 }
