@@ -5,7 +5,7 @@
 //   pair ─ disjoint, by an exact test? ─► V = 0                                       (ghosts: cut, fade)
 //     └─► normalised (normalise.h), in one order or both ─► network ─► z, v ─┐
 //     ├─► overlap share of the closed form (geo.h), where it fades or blends ─┼─► V, ∇V, ∇²V  (net_blend.h)
-//     ├─► clip, where faces nearly lie in one plane (geo_coplanar.h) ─────────┤
+//     ├─► clip, where faces nearly lie in one plane, if asked ────────────────┤
 //     └─► exact, where the blend wants it ───────────────────────────────────┘
 //
 // ∇V is the derivative of this very V, through normalisation, gate, fading and blend. How smooth V is depends
@@ -16,8 +16,8 @@
 //
 //              ghosts  gate    orders  coplanar  beyond the range of the training
 //   tpn        keep    none    one     keep      counted
-//   tpn-scene  fade    status  both    clip      counted
-//   hybrid     –       none    both    clip      exact
+//   tpn-scene  fade    status  both    keep      counted
+//   hybrid     –       none    both    keep      exact
 //
 // `hybrid`: the network's V where the exact test finds an overlap, the status head is confident, the overlap
 // share is neither tiny nor deep and the pair is in the training's range; `exact` elsewhere; blended over

@@ -9,12 +9,13 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/vec3.h"
 #include "fem/ida_solver.h"
 
 // Chosen bounds of the step, as shares of the run's end.
 static const double LONGEST_STEP = 0.1, SHORTEST_STEP = 1e-11;
-// A run stalls when so many steps together come no further than this share of the end: the whole of it would
-// take a million steps. A force that jumps makes a run creep like that.
+// A run stalls when so many steps, with those that were tried in vain, come no further than this share of the
+// end: the whole of it would take a million. A force that jumps makes a run creep like that.
 enum { STALL_STEPS = 2000 };
 static const double STALL_ADVANCE = 2e-3;
 // A step is given up after so many failures in a row; each cuts it to a quarter at least.
@@ -40,8 +41,8 @@ struct FemIntegrator {
   double wanted_step;         // handed to the last restart [s]
   FemIntegratorStats before;  // counted before the last restart
   long long onset_count, restart_count;
-  int stall_steps;      // since stalling was last looked for
-  double stall_advance; // by those steps [s]
+  long long stall_tries; // steps taken and tried in vain when stalling was last looked for
+  double stall_time;     // and the time then [s]
 };
 
 static double *values_of(N_Vector vector) {
@@ -354,19 +355,39 @@ static const char *body_of(const FemModel *model, int vertex) {
   return "?";
 }
 
+// The element with this vertex that is squeezed most, as text; nothing where there are no elements.
+static void name_element(const FemModel *model, const double *positions, int vertex, char *text,
+                         size_t size) {
+  double least = INFINITY;
+  text[0] = 0;
+  for (int e = 0; e < model->tet_count; e++) {
+    const int *v = model->tets[e];
+    if (v[0] != vertex && v[1] != vertex && v[2] != vertex && v[3] != vertex) continue;
+    Vec3 rest[4], now[4];
+    for (int k = 0; k < 4; k++)
+      rest[k] = vec3_at(model->rest + 3 * v[k]), now[k] = vec3_at(positions + 3 * v[k]);
+    double share = vec3_det4(now[0], now[1], now[2], now[3]) / vec3_det4(rest[0], rest[1], rest[2], rest[3]);
+    if (!(share < least)) continue;
+    least = share;
+    snprintf(text, size, ", in element %d, which has %.3g of its rest volume", e, share);
+  }
+}
+
 static Status say_why(FemIntegrator *integrator, double time, double step, int worst, Reason reason) {
   const FemSystem *system = integrator->system;
   const FemModel *model = system->model;
   int dof = model->dof_of_unknown[worst % integrator->n], vertex = dof / 3;
   const double *x = system->positions + 3 * vertex;
   const char *retry = integrator->failure.retry_message;
+  char element[96];
+  name_element(model, system->positions, vertex, element, sizeof element);
   return status_fail(
       STATUS_SOLVER,
       "at t = %.9g s, step %.3g s: %s%s%s%s. Worst: %s of vertex %d of body '%s', now at (%.6g, %.6g, "
-      "%.6g) m, %c. Try %s",
+      "%.6g) m, %c%s. Try %s",
       time, step, reason.what, retry[0] ? " (last: " : "", retry, retry[0] ? ")" : "",
       worst < integrator->n ? "position" : "velocity", vertex, body_of(model, vertex), x[0], x[1], x[2],
-      "xyz"[dof % 3], reason.advice);
+      "xyz"[dof % 3], element, reason.advice);
 }
 
 static Status give_up(FemIntegrator *integrator, int flag) {
@@ -380,21 +401,22 @@ static Status give_up(FemIntegrator *integrator, int flag) {
   return say_why(integrator, time, step, find_worst(integrator, flag), reason_of(flag));
 }
 
-// Counts steps against the way that they made, back and forth.
-static Status check_stall(FemIntegrator *integrator, double advance) {
+// Counts steps, those tried in vain and those taken back later too, against the way that was made.
+static Status check_stall(FemIntegrator *integrator) {
   const FemIntegratorDef *def = &integrator->def;
-  integrator->stall_advance += advance;
-  if (++integrator->stall_steps < STALL_STEPS) return STATUS_OK;
-  double needed = fmin(STALL_ADVANCE * def->end, 0.1 * STALL_STEPS * integrator->max_step);
-  bool is_stalled = !(integrator->stall_advance >= needed) && integrator->time < def->end;
-  integrator->stall_steps = 0;
-  integrator->stall_advance = 0;
+  FemIntegratorStats stats = fem_integrator_stats(integrator);
+  long long tries = stats.steps + stats.error_test_failures + stats.newton_failures;
+  if (tries - integrator->stall_tries < STALL_STEPS) return STATUS_OK;
+  double needed = fmin(STALL_ADVANCE * def->end, 0.1 * STALL_STEPS * integrator->max_step),
+         advance = integrator->time - integrator->stall_time;
+  bool is_stalled = !(advance >= needed) && integrator->time < def->end;
+  integrator->stall_tries = tries;
+  integrator->stall_time = integrator->time;
   if (!is_stalled) return STATUS_OK;
-  double step = fem_integrator_stats(integrator).last_step;
-  Reason reason = {"the run stalls: 2000 steps came less than 0.2 % of it further",
+  Reason reason = {"the run stalls: 2000 steps, with those taken back, came less than 0.2 % of it further",
                    "a smaller contact.stiffness, a contact.potential other than linear, whose force jumps, "
-                   "or some effects.damping"};
-  return say_why(integrator, integrator->time, step, find_worst(integrator, IDA_ERR_FAIL), reason);
+                   "another contact.overlap than tpn, whose force jumps, too, or some effects.damping"};
+  return say_why(integrator, integrator->time, stats.last_step, find_worst(integrator, IDA_ERR_FAIL), reason);
 }
 
 static Status take_step(FemIntegrator *integrator) {
@@ -423,7 +445,7 @@ Status fem_integrator_step(FemIntegrator *integrator, double *time, bool *is_ons
   TRY(take_step(integrator));
   if (has_gap) TRY(look_for_onset(integrator, begin, gap, is_onset));
   *time = integrator->time;
-  return check_stall(integrator, integrator->time - begin);
+  return check_stall(integrator);
 }
 
 FemIntegratorStats fem_integrator_stats(const FemIntegrator *integrator) {
