@@ -21,9 +21,9 @@ static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.y
 static const char *const full_json = TETLAP_SOURCE_DIR "/tests/data/scene/full.json";
 
 static const char *const examples[] = {
-    "01_drop",  "02_two_blocks", "03_spheres",     "04_cantilever", "05_press",           "06_bunny_like",
-    "20_loads", "21_release",    "22_rubber_beam", "23_fibres",     "24_pressure_vessel", "25_plastic_bar",
-    "26_hertz"};
+    "01_drop",  "02_two_blocks",    "03_spheres",     "04_cantilever", "05_press",           "06_bunny_like",
+    "20_loads", "21_release",       "22_rubber_beam", "23_fibres",     "24_pressure_vessel", "25_plastic_bar",
+    "26_hertz", "27_quadratic_beam"};
 enum { EXAMPLE_COUNT = sizeof examples / sizeof *examples };
 
 // What is printed to the stream that `print` is given; owned by the caller (free).
