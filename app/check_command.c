@@ -113,8 +113,10 @@ static void print_body(const AppJob *job, int b) {
   Prescribed prescribed = count_prescribed(&job->model, body);
   char mesh[512];
   describe_mesh(def->mesh_path, def->box_cells, mesh, sizeof mesh);
-  printf("  %-12s %s: %d vertices, %d tetrahedra\n", body->name, mesh, body->vertex_end - body->vertex_begin,
-         body->tet_end - body->tet_begin);
+  int quadratic_count = body->quadratic_end - body->quadratic_begin;
+  printf("  %-12s %s: %d vertices, ", body->name, mesh, body->vertex_end - body->vertex_begin);
+  if (quadratic_count > 0) printf("%d quadratic tetrahedra, for contact in ", quadratic_count);
+  printf("%d tetrahedra\n", body->tet_end - body->tet_begin);
   printf("  %-12s %s, E %g Pa, ν %g, ρ %g kg/m³: %.4g kg\n", "", fem_material_name(body->material.law),
          body->material.young, body->material.poisson, body->material.density, body->mass);
   if (body->damping > 0) printf("  %-12s damping β %g s\n", "", body->damping);
@@ -197,6 +199,8 @@ static void record_body(const AppJob *job, int b, Record *record) {
   record_text(record, "mesh", mesh);
   record_integer(record, "vertices", body->vertex_end - body->vertex_begin);
   record_integer(record, "tetrahedra", body->tet_end - body->tet_begin);
+  if (body->quadratic_end > body->quadratic_begin)
+    record_integer(record, "quadratic_tetrahedra", body->quadratic_end - body->quadratic_begin);
   record_number(record, "mass", body->mass);
   record_text(record, "law", fem_material_name(body->material.law));
   record_number(record, "damping", body->damping);
