@@ -79,6 +79,18 @@ static NetStatus check_no_other(const NetTensorFile *file, const char *path, con
   return NET_OK;
 }
 
+// Before there is memory for its parameters: a shape is a line of text and may ask for any number of them.
+static NetStatus check_tensors(const NetTensorFile *file, const char *path, const NetShape *shape) {
+  NetPlan *plan = net_memory_zeroed(1, sizeof *plan);
+  NetStatus status = plan ? net_plan_create(shape, plan) : net_status_no_memory("a network's plan");
+  for (int k = 0; status == NET_OK && k < plan->tensor_count; k++) {
+    const NetEntry *entry;
+    status = find_entry(file, path, &plan->tensors[k], &entry);
+  }
+  net_memory_free(plan);
+  return status;
+}
+
 // Element k of what may lie on any byte.
 static double number_at(const NetEntry *entry, size_t k) {
   float single;

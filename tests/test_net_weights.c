@@ -4,6 +4,7 @@
 #include "net_suite.h"
 
 #include <stdint.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 static const char *temporary(void) {
@@ -246,6 +247,30 @@ START_TEST(no_cut_and_no_changed_byte_of_the_header_does_harm) {
 }
 END_TEST
 
+// Found by review for tools/fuzz weights: the shape is a line of text, and gigabytes were taken for it before
+// a tensor was looked for.
+START_TEST(a_shape_that_the_file_does_not_hold_takes_no_memory) {
+  static const char header[] =
+      "{\"__metadata__\":{\"format\":\"tetlap-net "
+      "1\",\"normalisation\":\"\",\"range\":\"\",\"provenance\":\"\","
+      "\"shape\":\"{\\\"kind\\\":\\\"mlp\\\",\\\"activation\\\":\\\"silu\\\",\\\"inputs\\\":8192,"
+      "\\\"hidden\\\":[8192,8192,8192,8192,8192,8192,8192,8192],\\\"outputs\\\":1}\"}}";
+  uint64_t length = sizeof header - 1;
+  FILE *stream = fopen(temporary(), "wb");
+  fwrite(&length, sizeof length, 1, stream);
+  fwrite(header, 1, sizeof header - 1, stream);
+  fclose(stream);
+  NetModel_f64 model;
+  NetCard card;
+  struct rusage before, after;
+  getrusage(RUSAGE_SELF, &before);
+  ck_net_fails(net_weights_read_f64(temporary(), &model, &card), NET_BAD_FILE, ": tensor ");
+  getrusage(RUSAGE_SELF, &after);
+  ck_assert_int_lt(after.ru_maxrss - before.ru_maxrss, 64 << 10); // [kB]
+  unlink(temporary());
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("net_weights");
   tcase_add_test(test_case, every_shape_survives_its_file_to_the_bit);
@@ -257,5 +282,6 @@ int main(void) {
   tcase_add_test(test_case, a_foreign_file_is_refused_by_what_is_wrong);
   tcase_add_test(test_case, what_is_no_safetensors_file_is_refused);
   tcase_add_test(test_case, no_cut_and_no_changed_byte_of_the_header_does_harm);
+  tcase_add_test(test_case, a_shape_that_the_file_does_not_hold_takes_no_memory);
   return suite_run("net_weights", test_case, 60);
 }

@@ -17,6 +17,7 @@
 #include "fem/base64.h"
 #include "fem/pvd.h"
 #include "fem/vtu.h"
+#include "fem/vtu_read.h"
 
 static char path[64];
 
@@ -268,6 +269,29 @@ START_TEST(components_have_their_names) {
 }
 END_TEST
 
+// Found by review for tools/fuzz mesh: gigabytes were taken for a count in a file of a kilobyte.
+START_TEST(a_frame_that_announces_more_than_it_can_hold_is_refused) {
+  FemVtuFrame frame = single_tetrahedron();
+  FemVtuContent content;
+  char *text, changed[8192];
+  size_t size, peak = memory_peak_bytes();
+  ck_assert_ok(fem_vtu_write(path, &frame));
+  ck_assert_ok(file_read(path, &text, &size));
+  char *count = strstr(text, "NumberOfPoints=\"4\"");
+  ck_assert_ptr_nonnull(count);
+  ck_assert_uint_lt(size, sizeof changed - 16);
+  snprintf(changed, sizeof changed, "%.*sNumberOfPoints=\"200000000\"%s", (int)(count - text), text,
+           count + strlen("NumberOfPoints=\"4\""));
+  FILE *stream = fopen(path, "wb");
+  fputs(changed, stream);
+  fclose(stream);
+  ck_assert_int_eq(fem_vtu_read(path, &content), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "than a file of its size can hold"));
+  ck_assert_uint_lt(memory_peak_bytes() - peak, 64 << 20);
+  memory_free(text);
+}
+END_TEST
+
 START_TEST(a_name_cannot_break_the_xml) {
   const double four[4] = {1, 2, 3, 4};
   const FemVtuArray array = {"a<b & \"c\">", false, 1, four, NULL};
@@ -377,6 +401,7 @@ int main(void) {
   tcase_add_test(cases, an_array_that_ends_with_a_block_reads_back);
   tcase_add_test(cases, numbers_that_are_not_finite_survive);
   tcase_add_test(cases, components_have_their_names);
+  tcase_add_test(cases, a_frame_that_announces_more_than_it_can_hold_is_refused);
   tcase_add_test(cases, a_name_cannot_break_the_xml);
   tcase_add_test(cases, the_bytes_do_not_depend_on_the_number_of_threads);
   tcase_add_test(cases, every_failed_allocation_is_an_error_that_leaves_the_old_frame);
