@@ -78,13 +78,20 @@ static void write_gradient(const ContactClipPolytope *polytope, const ContactCli
   }
 }
 
-// Whether rounding of the planes, which moves face f by a volume of noise/2 · φ_f, may spoil V.
+// What clip.h says that rounding may do to V.
+static double rounding_of(const ContactClipPolytope *polytope, const FaceSums *sums) {
+  double covered[2] = {0, 0}, noise = polytope->noise, slide = CONTACT_CLIP_SLIDE * noise;
+  for (int f = 0; f < 8; f++) covered[f >> 2] += fabs(sums->area[f]);
+  return noise / 2 *
+         (covered[0] * (1 + slide / fabs(polytope->frame[1].det)) +
+          covered[1] * (1 + slide / fabs(polytope->frame[0].det)));
+}
+
 static bool is_doubtful(const ContactClipPolytope *polytope, const FaceSums *sums, double volume) {
   double size = fmin(fabs(polytope->frame[0].det), fabs(polytope->frame[1].det)) / 6;
-  double allowed = volume > 0.999e-6 * size ? 1e-9 * volume : 1e-12 * size;
-  double covered = 0;
-  for (int f = 0; f < 8; f++) covered += fabs(sums->area[f]);
-  return !(polytope->noise / 2 * covered <= allowed);
+  bool is_small = !(volume > 0.999e-6 * size), is_flat = !(polytope->noise / 2 <= 1e-12 * size);
+  if (is_small && is_flat) return true;
+  return !(rounding_of(polytope, sums) <= (is_small ? 1e-12 * size : 1e-9 * volume));
 }
 
 static void write_zero(double *volume, double *gradient, double *hessian) {

@@ -39,11 +39,17 @@
 // CONTACT_CLIP_LEAST_SINE: up to there ∇²V is exact, beyond it is bounded and understates how fast ∇V turns.
 // Symmetric and unchanged by a translation it is in any case.
 //
-// Accuracy: |δV| ≤ 1e-9 V, or 1e-12 of the smaller tetrahedron where V is less than 1e-6 of that. The
-// rounding of the planes bounds |δV| by noise/2 · Σ φ; pairs for which this bound does not do (slivers,
-// mostly) are answered by contact_overlap_exact and flagged FALLBACK; their ∇²V is still from clipping, zero
-// if a tetrahedron is too flat for it. In single precision: |δV| ≤ 1e-3 V, or 1e-4 of the smaller
-// tetrahedron where V is less than a tenth of that.
+// Accuracy: |δV| ≤ 1e-9 V, or 1e-12 of the smaller tetrahedron where V is less than 1e-6 of that. With ν,
+// noise, what rounding may do to det · λ, and L the longest difference of coordinates (ν ∝ L³),
+//
+//   |δV| ≤ ν/2 Σ_{f of A} φ_f (1 + L³/(256 |det_B|)) + ν/2 Σ_{g of B} φ_g (1 + L³/(256 |det_A|)).
+//
+// The ones are planes that move along their normals. The rest: λ of a flat tetrahedron tell a point's place
+// along its faces to ν/det of L only, and by so much the other's planes seem to have moved, if they stand
+// across. Where V is small and a tetrahedron flat, φ may be as wrong as V, and nothing is concluded. Pairs
+// for which this bound does not do (slivers, mostly) are answered by contact_overlap_exact and flagged
+// FALLBACK; their ∇²V is still from clipping, zero if a tetrahedron is too flat for it. In single precision:
+// |δV| ≤ 1e-3 V, or 1e-4 of the smaller tetrahedron where V is less than a tenth of that.
 #ifndef TETLAP_CONTACT_CLIP_H
 #define TETLAP_CONTACT_CLIP_H
 

@@ -173,10 +173,9 @@ static inline ContactClipOutcome separate(ContactClipPolytope *polytope, const d
   if (!(has_volume(it->size_a, squared_a) && has_volume(it->size_b, squared_b)))
     return CONTACT_CLIP_UNCERTAIN;
 
-  // No difference of coordinates is much longer than the root of `squared`. Over the classes of the tests the
-  // error of V, as noise/2 · Σ φ, asked for at most 0.065 where this has 0.25.
+  // no difference of coordinates is much longer than the root of `squared`
   double squared = squared_a + squared_b + distance_squared(a, b);
-  double noise = polytope->noise = 0.25 * DBL_EPSILON * squared * sqrt(squared) + DBL_MIN;
+  double noise = polytope->noise = CONTACT_CLIP_NOISE * squared * sqrt(squared) + DBL_MIN;
   it->b_in_a = sides_of(&polytope->frame[0], a, b);
   double top_a = lowest_top(&it->b_in_a);
   if (top_a * it->size_a < -noise) return CONTACT_CLIP_DISJOINT;

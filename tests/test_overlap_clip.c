@@ -194,6 +194,39 @@ START_TEST(numbers_too_large_or_small_for_double_products_get_help) {
 }
 END_TEST
 
+// Found by tools/fuzz pairs. Two slivers that cross: the planes of the one tell places along it badly, across
+// the other's thickness; and the tip of a sliver at another's corner, so small that its faces are as wrong as
+// V.
+START_TEST(slivers_that_cross_are_as_exact_as_stated) {
+  static const double pairs[2][24] = {
+      {0x1.c9f2e2a334f5cp+10, 0x1.c3c5bf38ac6f0p+7,  0x1.fd10e8fdf4871p+11, 0x1.226c3dfdcfd26p+11,
+       0x1.31e0df5903749p+11, 0x1.770a404c96a5ap+5,  0x1.cbb38e4c2ab59p+11, 0x1.253f9507f7074p+10,
+       0x1.6358c4458120bp+11, 0x1.465dbf33e0429p+11, 0x1.407e03e02a40dp+10, 0x1.222768e54c5fap+11,
+       0x1.c9f2e2a334f5cp+10, 0x1.2441a7ec9f79ep+11, 0x1.fd10e8fdf4871p+11, 0x1.226c3dfdcfd26p+11,
+       0x1.d3a490e4d9880p+6,  0x1.770a404c96a5ap+5,  0x1.cbb38e4c2ab59p+11, 0x1.5bbc72b85d7a6p+10,
+       0x1.6358c4458120bp+11, 0x1.465dbf33e0429p+11, 0x1.407e03e02a40dp+10, 0x1.222768e54c5fap+11},
+      {0x1.defba36b6099ep+6, 0x1.be41d9f12a0a6p+5,  0x1.fd911da2f3e7dp+7, 0x1.f014aa92d27acp+6,
+       0x1.c5636959fd6fcp+4, -0x1.9b70a8e185b41p+5, 0x1.d637eeb040879p+7, 0x1.cc0175094e4afp+6,
+       0x1.63dddd0047b37p+7, 0x1.defc8ee559ef6p+6,  0x1.7795c276568a4p+7, 0x1.fdb2ebc26cc4fp+7,
+       0x1.50e21f97f6144p+7, 0x1.e72638f3995adp+6,  0x1.22a79d8a4bc71p+7, 0x1.2cf09e61e5a46p+7,
+       0x1.87c50a883cafcp+5, 0x1.9717698c6ed08p+1,  0x1.058f2f2da2978p+8, 0x1.32f6a94b18df9p+7,
+       0x1.d10fe96fdb548p+7, 0x1.defc8ee559ef6p+6,  0x1.7795c276568a4p+7, 0x1.fdb2ebc26cc4fp+7},
+  };
+  for (int k = 0; k < 2; k++)
+    for (int order = 0; order < 24; order++) {
+      double x[24], expected;
+      unsigned flags;
+      datagen_hard_permute(pairs[k], order, x);
+      datagen_hard_permute(pairs[k] + 12, (7 * order) % 24, x + 12);
+      Answer answer = ask(x);
+      ck_assert_ok(contact_overlap_exact.eval_pair(NULL, x, &expected, NULL, NULL, &flags));
+      ck_assert_double_gt(expected, 0);
+      ck_assert_msg(contact_invariant_misfit(x, answer.volume, expected) <= 1,
+                    "pair %d, order %d: %.17g, exact %.17g", k, order, answer.volume, expected);
+    }
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("overlap_clip");
   tcase_add_test(cases, two_regular_tetrahedra_in_a_cube_share_its_octahedron);
@@ -205,5 +238,6 @@ int main(void) {
   tcase_add_test(cases, help_is_asked_for_slivers_and_the_shallowest_only);
   tcase_add_test(cases, accuracy_holds_from_fat_to_flat);
   tcase_add_test(cases, numbers_too_large_or_small_for_double_products_get_help);
+  tcase_add_test(cases, slivers_that_cross_are_as_exact_as_stated);
   return suite_run("overlap clip", cases, 30);
 }
