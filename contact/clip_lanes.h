@@ -10,13 +10,14 @@
 //                 the last plane that it enters by to the first that it leaves by (Liang and Barsky 1984)
 //   3. segments   of face f of A and face g of B (16): both its ends are ends of edges found in 2, of one of
 //                 the three edges of f that crosses g or one of the three of g that crosses f. What enters
-//                 on the one side of the segment leaves on the other, which gives it a direction
+//                 on the one side of the segment leaves on the other, which gives it a direction. An end
+//                 is found in the parameters of the face whose edge it is on, and carried to the other's
 //   4. each segment p q adds p × q to the areas of the two polygons that it bounds, and (p × q)(p + q) to
 //                 their first moments; then clip.h's formulas for V and ∇V
 //
 // Every number of a corner is a convex combination with the same weights, so wrong decisions on what is only
 // rounding move the corner by no more than rounding does. What they may spoil is that polygons close; that is
-// counted: a segment has one start and one end, or none. Doubtful, and left to careful clipping, is a lane
+// seen: a segment has a start and an end, or neither. Doubtful, and left to careful clipping, is a lane
 // where it has not; where a vertex is closer to a plane of the other than about 1e-9 (identical tetrahedra
 // would each count as inside the other); where edges meet and V is not positive; where rounding may spoil V
 // (clip.c); where a tetrahedron is too flat.

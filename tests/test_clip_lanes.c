@@ -7,6 +7,7 @@
 
 #include "app/bench_pairs.h"
 #include "base/memory.h"
+#include "base/random.h"
 #include "contact/clip.h"
 #include "contact/clip_lanes.h"
 #include "contact/exact.h"
@@ -107,6 +108,48 @@ START_TEST(ordinary_pairs_are_hardly_ever_doubtful) {
     ck_assert_int_ge(sure, COUNT - COUNT / (strcmp(app_bench_sets[set], "disjoint") == 0 ? 100 : 1000));
   }
   memory_free(pairs);
+}
+END_TEST
+
+// Vertices on a grid, the second's between those of the first: edges that meet edges, planes through grid
+// lines, flat tetrahedra.
+START_TEST(edges_that_meet_leave_lanes_right_or_doubtful) {
+  const ContactClipLanes *kernel = kernels[_i];
+  Random random = random_seeded(57, 0);
+  int sure = 0;
+  for (int round = 0; round < 40000 / kernel->width; round++) {
+    Group group;
+    int steps = 1 + round % 8;
+    for (int k = 0; k < kernel->width; k++)
+      for (int c = 0; c < 24; c++)
+        group.x[k][c] = (double)random_below(&random, steps + 1) / steps + (c < 12 ? 0 : 0.5 / steps);
+    run(kernel, &group);
+    sure += check_group(kernel, &group, "grid");
+  }
+  ck_assert_int_gt(sure, 10000);
+}
+END_TEST
+
+// Many of these are flat but for rounding, and what is found of their intersection may be anything.
+START_TEST(flat_lanes_that_are_apart_have_no_volume) {
+  const ContactClipLanes *kernel = kernels[_i];
+  Random random = random_seeded(58, 0);
+  double rounding = is_single(kernel) ? 1e-5 : 1e-13;
+  int apart = 0;
+  for (int round = 0; round < 160000 / kernel->width; round++) {
+    Group group;
+    for (int k = 0; k < kernel->width; k++)
+      for (int c = 0; c < 24; c++)
+        group.x[k][c] = random_below(&random, 4) / 3.0 + (c < 12 ? 0 : 1.0 / 6) +
+                        rounding * random_between(&random, -1, 1);
+    run(kernel, &group);
+    for (int k = 0; k < kernel->width; k++) {
+      if (!(group.outcome.disjoint >> k & 1)) continue;
+      ck_assert_msg(group.volume[k] == 0, "%s: V = %g", kernel->name, group.volume[k]);
+      apart++;
+    }
+  }
+  ck_assert_int_gt(apart, 100);
 }
 END_TEST
 
@@ -219,6 +262,8 @@ int main(void) {
   TCase *cases = tcase_create("clip_lanes");
   tcase_add_loop_test(cases, lanes_that_are_not_doubtful_are_right_in_every_class, 0, kernel_count);
   tcase_add_loop_test(cases, ordinary_pairs_are_hardly_ever_doubtful, 0, kernel_count);
+  tcase_add_loop_test(cases, edges_that_meet_leave_lanes_right_or_doubtful, 0, kernel_count);
+  tcase_add_loop_test(cases, flat_lanes_that_are_apart_have_no_volume, 0, kernel_count);
   tcase_add_loop_test(cases, a_lane_knows_nothing_of_the_others, 0, kernel_count);
   tcase_add_test(cases, every_instruction_set_gives_the_same_bits);
   tcase_add_loop_test(cases, a_batch_answers_each_pair_as_if_it_were_alone, 0, 4);
