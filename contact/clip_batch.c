@@ -2,6 +2,7 @@
 // Batches of pairs on vectors. Groups in which few lanes may overlap wait until there are enough for a full
 // vector, so that disjoint pairs cost only the first part of clip_lanes.h.
 #include <limits.h>
+#include <math.h>
 #include <string.h>
 
 #include "contact/clip.h"
@@ -20,8 +21,11 @@ typedef struct Work {
   Queue queue;
 } Work;
 
+// Pairs that are not finite all come here, for their lanes are doubtful.
 static Status ask_carefully(const ContactOverlapBatch *batch, int i) {
   size_t begin = (size_t)i * CONTACT_PAIR_SIZE;
+  for (size_t c = begin; c < begin + CONTACT_PAIR_SIZE; c++)
+    if (!isfinite(batch->pairs[c])) return status_fail(STATUS_INPUT, "pair %d is not finite", i);
   double *hessian = batch->hessian ? batch->hessian + begin * CONTACT_PAIR_SIZE : NULL;
   unsigned flags = 0;
   Status status = contact_overlap_clip_scalar.eval_pair(NULL, batch->pairs + begin, batch->volume + i,
@@ -169,6 +173,7 @@ const ContactOverlapOps contact_overlap_clip = {
     .seconds_per_pair = 1e-7,
     .eval_pair = eval_pair,
     .eval_batch = eval_batch,
+    .minds_finite = true,
 };
 
 const ContactOverlapOps contact_overlap_clip32 = {
@@ -178,4 +183,5 @@ const ContactOverlapOps contact_overlap_clip32 = {
     .seconds_per_pair = 7e-8,
     .eval_pair = eval_pair_single,
     .eval_batch = eval_batch_single,
+    .minds_finite = true,
 };

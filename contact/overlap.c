@@ -110,6 +110,21 @@ static Status fail_not_finite(int pair_index, const double pair[CONTACT_PAIR_SIZ
                      pair_index, i / 12, i / 3 % 4, "xyz"[i % 3], pair[i]);
 }
 
+// The first pair with a coordinate that is not finite, pair_count if there is none.
+static int first_not_finite(const ContactOverlapBatch *batch) {
+  int first = batch->pair_count;
+#pragma omp parallel for schedule(static) reduction(min : first) if (batch->pair_count > 20000)
+  for (int i = 0; i < batch->pair_count; i++)
+    if (!is_finite(batch->pairs + (size_t)i * CONTACT_PAIR_SIZE) && i < first) first = i;
+  return first;
+}
+
+static Status check_finite(const ContactOverlapBatch *batch) {
+  int bad = first_not_finite(batch);
+  return bad == batch->pair_count ? STATUS_OK
+                                  : fail_not_finite(bad, batch->pairs + (size_t)bad * CONTACT_PAIR_SIZE);
+}
+
 static Status eval_one(const ContactOverlapModel *model, const ContactOverlapBatch *batch, int i) {
   const double *pair = batch->pairs + (size_t)i * CONTACT_PAIR_SIZE;
   double *gradient = batch->gradient ? batch->gradient + (size_t)i * CONTACT_PAIR_SIZE : NULL;
@@ -127,15 +142,6 @@ static void write_disjoint(const ContactOverlapBatch *batch, int i) {
   if (batch->gradient) memset(batch->gradient + (size_t)i * SIZE, 0, SIZE * sizeof(double));
   if (batch->hessian) memset(batch->hessian + (size_t)i * SIZE * SIZE, 0, SIZE * SIZE * sizeof(double));
   if (batch->flags) batch->flags[i] = CONTACT_OVERLAP_DISJOINT;
-}
-
-// The first pair with a coordinate that is not finite, pair_count if there is none.
-static int first_not_finite(const ContactOverlapBatch *batch) {
-  int first = batch->pair_count;
-#pragma omp parallel for schedule(static) reduction(min : first) if (batch->pair_count > 20000)
-  for (int i = 0; i < batch->pair_count; i++)
-    if (!is_finite(batch->pairs + (size_t)i * CONTACT_PAIR_SIZE) && i < first) first = i;
-  return first;
 }
 
 // Less work than this [s] is not worth waking threads for.
@@ -181,7 +187,9 @@ static Status eval_each(const ContactOverlapModel *model, const ContactOverlapBa
 Status contact_overlap_eval(const ContactOverlapModel *model, const ContactOverlapBatch *batch) {
   if (batch->hessian && !contact_overlap_has_hessian(model))
     return status_fail(STATUS_INPUT, "overlap model '%s' has no Hessian", model->ops->name);
-  int bad = first_not_finite(batch);
-  if (bad < batch->pair_count) return fail_not_finite(bad, batch->pairs + (size_t)bad * CONTACT_PAIR_SIZE);
-  return model->ops->eval_batch ? model->ops->eval_batch(model->self, batch) : eval_each(model, batch);
+  if (!model->ops->minds_finite) TRY(check_finite(batch));
+  Status status =
+      model->ops->eval_batch ? model->ops->eval_batch(model->self, batch) : eval_each(model, batch);
+  if (status != STATUS_OK && model->ops->minds_finite) TRY(check_finite(batch)); // which says more
+  return status;
 }

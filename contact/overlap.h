@@ -66,6 +66,8 @@ typedef struct ContactOverlapOps {
   Status (*eval_logits)(const void *self, int count, const double *pairs, double *logits);
   // Whether it has second derivatives as it was made; NULL: as has_hessian says.
   bool (*bends)(const void *self);
+  // eval_batch fails where a coordinate is not finite; without it, all are looked through before.
+  bool minds_finite;
 } ContactOverlapOps;
 
 typedef struct ContactOverlapModel {

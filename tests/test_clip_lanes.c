@@ -153,6 +153,23 @@ START_TEST(flat_lanes_that_are_apart_have_no_volume) {
 }
 END_TEST
 
+START_TEST(lanes_that_are_not_finite_are_doubtful) {
+  const ContactClipLanes *kernel = kernels[_i];
+  static const double values[] = {NAN, INFINITY, -INFINITY};
+  for (int number = 0; number < 24 * 3 * 8; number++) {
+    Group group;
+    for (int k = 0; k < kernel->width; k++)
+      memcpy(group.x[k], datagen_hard_make(number % DATAGEN_HARD_CLASS_COUNT, number + k).x,
+             sizeof group.x[k]);
+    int lane = number % kernel->width;
+    group.x[lane][number % 24] = values[number / 24 % 3];
+    run(kernel, &group);
+    ck_assert_msg(group.outcome.doubtful >> lane & 1, "%s: coordinate %d is %g and not doubtful",
+                  kernel->name, number % 24, values[number / 24 % 3]);
+  }
+}
+END_TEST
+
 static void draw_any(int number, double x[24]) {
   memcpy(x, datagen_hard_make(number % DATAGEN_HARD_CLASS_COUNT, number).x, 24 * sizeof *x);
 }
@@ -264,6 +281,7 @@ int main(void) {
   tcase_add_loop_test(cases, ordinary_pairs_are_hardly_ever_doubtful, 0, kernel_count);
   tcase_add_loop_test(cases, edges_that_meet_leave_lanes_right_or_doubtful, 0, kernel_count);
   tcase_add_loop_test(cases, flat_lanes_that_are_apart_have_no_volume, 0, kernel_count);
+  tcase_add_loop_test(cases, lanes_that_are_not_finite_are_doubtful, 0, kernel_count);
   tcase_add_loop_test(cases, a_lane_knows_nothing_of_the_others, 0, kernel_count);
   tcase_add_test(cases, every_instruction_set_gives_the_same_bits);
   tcase_add_loop_test(cases, a_batch_answers_each_pair_as_if_it_were_alone, 0, 4);
