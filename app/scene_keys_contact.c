@@ -55,6 +55,20 @@ static const SceneKey net_keys[] = {
 static const SceneSection net = {
     .help = "how networks that follow the paper are used", .keys = net_keys, .shorthand = "weights"};
 
+static const SceneKey rest_keys[] = {
+    {"speed", SCENE_NUMBER, AT(FemContactDef, rest_speed), .unit = "m/s", .range = "(0, inf)",
+     .absent_help = "`time.tolerance` times √(E/ρ) of the slowest body",
+     .help = "every vertex of a calm body is slower"},
+    {"acceleration", SCENE_NUMBER, AT(FemContactDef, rest_acceleration), .unit = "m/s²", .range = "(0, inf)",
+     .absent_help = "five times `speed` over `time`",
+     .help = "its centre of mass is accelerated by less in the step after which it falls asleep"},
+    {"time", SCENE_NUMBER, AT(FemContactDef, rest_time), .unit = "s", .range = "(0, inf)",
+     .absent_help = "twenty times what a wave takes through the largest body",
+     .help = "what touches falls asleep together once all of it has been calm for so long"},
+    {0},
+};
+static const SceneSection rest = {.help = "when bodies are at rest", .keys = rest_keys};
+
 static const SceneKey contact_keys[] = {
     {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa", .range = "(0, inf)",
      .absent_help = "E of the softest body (with `body` over its smallest mean element volume)",
@@ -76,6 +90,10 @@ static const SceneKey contact_keys[] = {
      .absent_help = "none",
      .help =
          "η: a pressure η w dw/dt beside κ w, w the covered share of a vertex; takes energy out of impacts"},
+    {"rest", SCENE_SECTION, .section = &rest, .absent_help = "no body sleeps",
+     MARK(FemContactDef, rest_is_on, true),
+     .help = "bodies at rest sleep, without unknowns and contact search, until something nears them; `{}` "
+             "for the defaults"},
     {0},
 };
 const SceneSection app_scene_keys_contact = {

@@ -490,6 +490,9 @@ static Status check_static(const SceneNode *root, const FemSceneDef *scene) {
   if (scene->contact.friction > 0)
     return app_scene_tree_fail_key(app_scene_tree_find(app_scene_tree_find(root, "contact"), "friction"),
                                    "friction is a force of motion; take it or time.static away");
+  if (scene->contact.rest_is_on)
+    return app_scene_tree_fail_key(app_scene_tree_find(app_scene_tree_find(root, "contact"), "rest"),
+                                   "a static scene is at rest always; take 'rest' or time.static away");
   const SceneNode *bodies = app_scene_tree_find(root, "bodies");
   for (const SceneNode *body = bodies->first; body; body = body->next)
     for (int k = 0; k < 2; k++) {

@@ -264,6 +264,12 @@ static bool is_binary(int operation) {
   return operation != NEGATE;
 }
 
+bool expression_is_constant(const Expression *expression) {
+  for (int i = 0; i < expression->count; i++)
+    if (expression->codes[i].operation == TIME) return false;
+  return true;
+}
+
 ExpressionValue expression_eval(const Expression *expression, double t) {
   ExpressionValue stack[EXPRESSION_MAX_DEPTH + 1] = {{0, 0}};
   int top = -1;

@@ -11,6 +11,8 @@
 #ifndef TETLAP_BASE_EXPRESSION_H
 #define TETLAP_BASE_EXPRESSION_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 
 enum { EXPRESSION_MAX_CODES = 64, EXPRESSION_MAX_DEPTH = 24, EXPRESSION_MAX_TEXT = 200 };
@@ -32,6 +34,9 @@ typedef struct ExpressionValue {
 
 // STATUS_INPUT: the message says at which character (from 1) and what was expected there.
 Status expression_parse(Expression *expression, const char *text);
+
+// Whether t does not occur in it.
+bool expression_is_constant(const Expression *expression);
 
 // NaN or infinite where the formula is: log(0), 1/0.
 ExpressionValue expression_eval(const Expression *expression, double t);

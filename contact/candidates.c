@@ -39,10 +39,11 @@ Status contact_candidates_create(ContactCandidates *candidates, const ContactLay
   candidates->is_listed = memory_zeroed((size_t)layout->def.tet_count, 1);
   candidates->boxes = memory_zeroed((size_t)layout->def.body_count, sizeof *candidates->boxes);
   size_t motions = (size_t)layout->party_count + (size_t)layout->def.body_count;
+  candidates->is_left_out = memory_zeroed((size_t)layout->facing_count, sizeof *candidates->is_left_out);
   candidates->motions = memory_zeroed(motions, sizeof(double));
   candidates->expected = memory_zeroed(motions, sizeof(double));
   bool fits = candidates->reference && candidates->is_listed && candidates->boxes && candidates->motions &&
-              candidates->expected;
+              candidates->expected && candidates->is_left_out;
   return fits ? STATUS_OK : status_no_memory("the candidate lists");
 }
 
@@ -54,6 +55,7 @@ void contact_candidates_destroy(ContactCandidates *candidates) {
   memory_free(candidates->is_listed);
   memory_free(candidates->boxes);
   memory_free(candidates->motions);
+  memory_free(candidates->is_left_out);
   memory_free(candidates->expected);
   *candidates = (ContactCandidates){0};
 }
@@ -132,7 +134,8 @@ bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout
   if (!candidates->is_made) return false;
   measure_motions(candidates, layout, time, positions);
   for (int f = 0; f < layout->facing_count; f++)
-    if (!(sum_of(candidates->motions, layout, &layout->facings[f]) <= candidates->list.margins[f]))
+    if (!candidates->is_left_out[f] &&
+        !(sum_of(candidates->motions, layout, &layout->facings[f]) <= candidates->list.margins[f]))
       return false;
   return true;
 }
@@ -142,6 +145,7 @@ bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout
 static bool wants_search(const ContactCandidates *candidates, const ContactLayout *layout) {
   if (!candidates->is_made) return true;
   for (int f = 0; f < layout->facing_count; f++) {
+    if (candidates->is_left_out[f]) continue;
     const ContactFacing *facing = &layout->facings[f];
     double margin = candidates->list.margins[f], moved = sum_of(candidates->motions, layout, facing);
     bool is_empty = candidates->list.begin[f] == candidates->list.begin[f + 1] && facing->a != facing->b;
@@ -229,6 +233,7 @@ static Status search_facing(ContactCandidates *candidates, const ContactLayout *
   const ContactFacing *facing = &layout->facings[f];
   ContactCandidateList *next = &candidates->next;
   int begin = next->begin[f] = next->count;
+  if (candidates->is_left_out[f]) return STATUS_OK;
   if (facing->a == facing->b)
     return search_with(candidates, layout, f, time, positions, SELF_MARGIN * layout->margin);
   double distance = clearance(candidates, layout, facing, time, positions);
@@ -267,6 +272,19 @@ static Status search_all(ContactCandidates *candidates, const ContactLayout *lay
   candidates->next.begin[layout->facing_count] = candidates->next.count;
   list_tets(candidates);
   return STATUS_OK;
+}
+
+void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLayout *layout,
+                                  const bool *is_left_out) {
+  ContactCandidateList *list = &candidates->list;
+  int kept = 0;
+  for (int f = 0; f < layout->facing_count; f++) {
+    int begin = list->begin[f], end = list->begin[f + 1];
+    candidates->is_left_out[f] = is_left_out && is_left_out[f];
+    list->begin[f] = kept;
+    for (int k = begin; k < end && !candidates->is_left_out[f]; k++) list->pairs[kept++] = list->pairs[k];
+  }
+  list->begin[layout->facing_count] = list->count = kept;
 }
 
 static bool lists_are_equal(const ContactCandidateList *a, const ContactCandidateList *b) {

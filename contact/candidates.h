@@ -22,6 +22,7 @@ typedef struct ContactCandidateList {
 typedef struct ContactCandidates {
   ContactCandidateList list;
   bool is_made;
+  bool *is_left_out; // facings that are not looked at: at rest (contact/rest.h)   (facing_count)
   long long searches;
   double search_s;
   // Where everything was when the list was made.
@@ -44,6 +45,11 @@ void contact_candidates_destroy(ContactCandidates *candidates);
 Status contact_candidates_update(ContactCandidates *candidates, const ContactLayout *layout, double time,
                                  const double *positions, const double *velocities, double step,
                                  bool *has_changed);
+
+// Which facings are not looked at from now on (facing_count), NULL: none. The list loses their pairs; for
+// those of facings that are looked at again it must be made anew.
+void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLayout *layout,
+                                  const bool *is_left_out);
 
 // Whether the list still holds every overlapping pair; NaN: false.
 bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,

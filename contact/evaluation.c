@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "contact/bounds.h"
 #include "contact/potential.h"
+#include "contact/rest.h"
 #include "contact/separation.h"
 #include "contact/shape.h"
 
@@ -55,15 +56,45 @@ static Status reserve(ContactEvaluation *evaluation, int count) {
   return fits ? STATUS_OK : status_no_memory("overlapping pairs");
 }
 
+// What stands at rest of an array; 0 without.
+static double resting(const double *values, size_t place) {
+  return values ? values[place] : 0;
+}
+
 // Forgets the last result at a cost of its own size.
 static void clear(ContactEvaluation *evaluation) {
   const ContactPatches *patches = &evaluation->patches;
+  const ContactRest *rest = evaluation->rest;
+  const double *forces = rest ? rest->forces : NULL, *covered = rest ? rest->covered : NULL;
   for (int n = 0; n < patches->node_count; n++)
-    for (size_t c = 0; c < 3; c++) evaluation->forces[3 * (size_t)patches->nodes[n].vertex + c] = 0;
-  for (int e = 0; e < patches->element_count; e++) evaluation->covered[patches->elements[e].tet] = 0;
+    for (size_t c = 0; c < 3; c++) {
+      size_t place = 3 * (size_t)patches->nodes[n].vertex + c;
+      evaluation->forces[place] = resting(forces, place);
+    }
+  for (int e = 0; e < patches->element_count; e++) {
+    size_t place = (size_t)patches->elements[e].tet;
+    evaluation->covered[place] = resting(covered, place);
+  }
   evaluation->is_valid = false;
-  evaluation->energy = 0;
+  evaluation->energy = rest ? rest->energy : 0;
   evaluation->counts = (ContactPairCounts){0};
+}
+
+void contact_evaluation_start_over(ContactEvaluation *evaluation, const ContactLayout *layout) {
+  const ContactRest *rest = evaluation->rest;
+  ContactPatches *patches = &evaluation->patches;
+  size_t forces = 3 * (size_t)layout->def.vertex_count * sizeof(double);
+  size_t covered = (size_t)layout->def.tet_count * sizeof(double);
+  patches->patch_count = patches->element_count = patches->node_count = patches->pair_count = 0;
+  evaluation->pair_count = evaluation->mesh_pair_count = 0;
+  if (rest) {
+    memcpy(evaluation->forces, rest->forces, forces);
+    memcpy(evaluation->covered, rest->covered, covered);
+  } else {
+    memset(evaluation->forces, 0, forces);
+    memset(evaluation->covered, 0, covered);
+  }
+  evaluation->is_valid = false;
 }
 
 // Lists the candidates whose boxes meet, nudges allowed for.
@@ -253,8 +284,11 @@ static void sum_lower(const ContactEvaluation *evaluation, const ContactPatch *p
 
 static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout) {
   const ContactPatches *patches = &evaluation->patches;
+  const ContactRest *rest = evaluation->rest;
   for (int f = 0; f < layout->facing_count; f++)
-    evaluation->interfaces[f] = (ContactInterface){.a = layout->facings[f].a, .b = layout->facings[f].b};
+    evaluation->interfaces[f] = rest && rest->is_resting[f] ? rest->interfaces[f]
+                                                            : (ContactInterface){.a = layout->facings[f].a,
+                                                                                 .b = layout->facings[f].b};
   for (int p = 0; p < patches->patch_count; p++) {
     const ContactPatch *patch = &patches->patches[p];
     ContactInterface *interface = &evaluation->interfaces[patch->facing];
@@ -274,9 +308,12 @@ static Status apply_potential(ContactEvaluation *evaluation, const ContactLayout
   ContactPatches *patches = &evaluation->patches;
   TRY(contact_patches_build(patches, layout, evaluation->pair_count, evaluation->pairs));
   cover(evaluation);
-  for (int p = 0; p < patches->patch_count; p++)
-    evaluation->energy += contact_potential_apply(layout, patches, &patches->patches[p], evaluation->pairs,
-                                                  evaluation->volumes, evaluation->pressures);
+  for (int p = 0; p < patches->patch_count; p++) {
+    ContactPatch *patch = &patches->patches[p];
+    patch->energy = contact_potential_apply(layout, patches, patch, evaluation->pairs, evaluation->volumes,
+                                            evaluation->pressures);
+    evaluation->energy += patch->energy;
+  }
   push_apart(evaluation);
   summarise(evaluation, layout);
   return STATUS_OK;

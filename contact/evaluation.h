@@ -8,7 +8,11 @@
 #include "contact/candidates.h"
 #include "contact/patches.h"
 
+struct ContactRest;
+
 typedef struct ContactEvaluation {
+  const struct ContactRest
+      *rest; // stands in the result beside the candidates (contact/rest.h); NULL: nothing
   bool is_valid;
   double time;       // of this result [s]
   double *positions; // of this result [m]                                (vertex_count, 3)
@@ -36,6 +40,9 @@ typedef struct ContactEvaluation {
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout);
 void contact_evaluation_destroy(ContactEvaluation *evaluation);
+
+// The last result is forgotten; `rest` has changed.
+void contact_evaluation_start_over(ContactEvaluation *evaluation, const ContactLayout *layout);
 
 // Half-spaces only where asked: no overlap model takes part in them. STATUS_SOLVER: the model gave a volume
 // that is not a number ≥ 0.

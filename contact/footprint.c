@@ -19,7 +19,11 @@ static size_t of_list(const ContactCandidateList *list) {
 size_t contact_footprint_candidates(const ContactCandidates *candidates) {
   return of_list(&candidates->list) + of_list(&candidates->next) +
          HELD(candidates->reference, candidates->found.pairs, candidates->is_listed, candidates->boxes,
-              candidates->motions, candidates->expected);
+              candidates->motions, candidates->expected, candidates->is_left_out);
+}
+
+size_t contact_footprint_rest(const ContactRest *rest) {
+  return HELD(rest->is_resting, rest->is_near, rest->forces, rest->covered, rest->interfaces);
 }
 
 size_t contact_footprint_onset(const ContactOnset *onset) {

@@ -6,11 +6,13 @@
 
 #include "contact/evaluation.h"
 #include "contact/onset.h"
+#include "contact/rest.h"
 #include "contact/status.h"
 #include "contact/stiffness.h"
 
 size_t contact_footprint_layout(const ContactLayout *layout);
 size_t contact_footprint_candidates(const ContactCandidates *candidates);
+size_t contact_footprint_rest(const ContactRest *rest);
 size_t contact_footprint_onset(const ContactOnset *onset);
 size_t contact_footprint_evaluation(const ContactEvaluation *evaluation);
 size_t contact_footprint_stiffness(const ContactStiffness *stiffness);

@@ -296,12 +296,14 @@ void contact_friction_add_damping(ContactFriction *friction, const double *veloc
 
 ContactFrictionPower contact_friction_power(ContactFriction *friction, const double *velocities) {
   ContactFrictionPower power = {0, 0};
-  for (int i = 0; i < friction->interface_count; i++) vec3_store(friction->forces[i], (Vec3){0, 0, 0});
+  for (int i = 0; i < friction->interface_count; i++)
+    if (!contact_system_is_resting(friction->system, i)) vec3_store(friction->forces[i], (Vec3){0, 0, 0});
   for (int g = 0; g < friction->grip_count; g++) {
     const ContactGrip *grip = &friction->grips[g];
     Vec3 slip = slip_of(friction, grip, velocities), pull = force_of(friction, grip, slip);
     power.dissipated -= vec3_dot(pull, slip);
     power.driven += vec3_dot(pull, vec3_at(grip->obstacle));
+    if (contact_system_is_resting(friction->system, grip->interface)) continue;
     vec3_accumulate(friction->forces[grip->interface], grip->side == 0 ? pull : vec3_scale(-1, pull));
   }
   return power;

@@ -53,8 +53,9 @@ typedef struct ContactFriction {
   double *outer;         // scratch of the damping matrix                           (entry_count, 3)
   double *forces_around; // scratch: F of each element, then Σ F around each node   (…, 3)
   size_t around_capacity;
-  int *place;                        // scratch: 1 + place of a node in the grip, 0 between calls
-  double (*forces)[3];               // of the last power, on side a [N]        (interface_count)
+  int *place;          // scratch: 1 + place of a node in the grip, 0 between calls
+  double (*forces)[3]; // of the last power, on side a [N]; of an interface at rest, as it was before
+                       // (interface_count)
   long long updates, taken, dropped; // elements taken so far, and left out: nothing presses them along n
 } ContactFriction;
 

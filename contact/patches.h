@@ -31,6 +31,7 @@ typedef struct ContactPatch {
   int pair_begin, pair_end;
   int element_begin, element_end;
   int node_begin, node_end;
+  double energy; // U of its pairs [J]; the user's
 } ContactPatch;
 
 // Rows of varying length, one after another.

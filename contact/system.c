@@ -7,6 +7,7 @@
 #include "contact/audit.h"
 #include "contact/footprint.h"
 #include "contact/onset.h"
+#include "contact/rest.h"
 #include "contact/shape.h"
 #include "contact/status.h"
 #include "contact/stiffness.h"
@@ -14,6 +15,8 @@
 struct ContactSystem {
   ContactLayout layout;
   ContactCandidates candidates;
+  ContactRest rest; // made by the first contact_system_hold
+  bool has_rest;
   ContactOnset onset;
   ContactEvaluation evaluation; // the last one
   ContactStiffness stiffness;
@@ -48,6 +51,7 @@ void contact_system_destroy(ContactSystem *system) {
   if (!system) return;
   contact_layout_destroy(&system->layout);
   contact_candidates_destroy(&system->candidates);
+  contact_rest_destroy(&system->rest);
   contact_onset_destroy(&system->onset);
   contact_evaluation_destroy(&system->evaluation);
   contact_stiffness_destroy(&system->stiffness);
@@ -100,7 +104,44 @@ static Status evaluate(ContactSystem *system, double time, const double *positio
   TRY(contact_evaluation_run(evaluation, &system->layout, &system->candidates.list, system->layout.def.model,
                              true, time, positions));
   count(&system->counters, evaluation);
+  if (system->has_rest) system->counters.left_at_rest += system->rest.candidate_count;
   return STATUS_OK;
+}
+
+static Status make_rest(ContactSystem *system) {
+  if (system->has_rest) return STATUS_OK;
+  contact_rest_destroy(&system->rest);
+  TRY(contact_rest_create(&system->rest, &system->layout));
+  system->evaluation.rest = &system->rest;
+  system->has_rest = true;
+  return STATUS_OK;
+}
+
+Status contact_system_hold(ContactSystem *system, double time, const double *positions,
+                           const double *velocities, double step, const bool *is_held) {
+  const ContactLayout *layout = &system->layout;
+  TRY(make_rest(system));
+  contact_rest_clear(&system->rest, layout);
+  contact_candidates_leave_out(&system->candidates, layout, NULL);
+  contact_evaluation_start_over(&system->evaluation, layout);
+  contact_system_forget(system);
+  TRY(contact_system_update(system, time, positions, velocities, step, NULL));
+  if (!is_held) return STATUS_OK;
+  TRY(evaluate(system, time, positions));
+  contact_rest_keep(&system->rest, layout, &system->candidates.list, &system->evaluation, is_held);
+  contact_candidates_leave_out(&system->candidates, layout, system->rest.is_resting);
+  contact_evaluation_start_over(&system->evaluation, layout);
+  return contact_onset_choose(&system->onset, layout, &system->candidates.list, time, positions);
+}
+
+bool contact_system_is_resting(const ContactSystem *system, int interface) {
+  return system->has_rest && system->rest.is_resting[interface];
+}
+
+bool contact_system_is_near(const ContactSystem *system, int interface) {
+  if (system->has_rest && system->rest.is_resting[interface]) return system->rest.is_near[interface];
+  const int *begin = system->candidates.list.begin;
+  return begin[interface + 1] > begin[interface];
 }
 
 Status contact_system_eval(ContactSystem *system, double time, const double *positions, double *energy,
@@ -149,7 +190,7 @@ const double *contact_system_covered(const ContactSystem *system) {
 }
 
 int contact_system_active_count(const ContactSystem *system) {
-  return system->evaluation.pair_count;
+  return system->evaluation.pair_count + (int)system->rest.pair_count;
 }
 
 Status contact_system_active_pairs(const ContactSystem *system, int *pair_count, double **pairs, int **tets) {
@@ -193,7 +234,8 @@ const ContactCounters *contact_system_counters(const ContactSystem *system) {
 size_t contact_system_bytes(const ContactSystem *system) {
   size_t sum = memory_held(system) + contact_footprint_layout(&system->layout) +
                contact_footprint_candidates(&system->candidates) + contact_footprint_onset(&system->onset) +
-               contact_footprint_stiffness(&system->stiffness) + contact_footprint_status(&system->status);
+               contact_footprint_stiffness(&system->stiffness) + contact_footprint_status(&system->status) +
+               contact_footprint_rest(&system->rest);
   for (int k = 0; k < 2; k++) sum += contact_footprint_evaluation(&system->audits[k]);
   return sum + contact_footprint_evaluation(&system->evaluation);
 }

@@ -124,6 +124,7 @@ typedef struct ContactCounters {
   ContactPairCounts pairs;
   long long searches;                 // broad phases
   long long resting;                  // pairs within a body left out because they overlap at rest
+  long long left_at_rest;             // candidate pairs that evaluations left out (contact_system_hold)
   long long beyond_margin;            // evaluations refused because a vertex left the margin
   double broad_s, overlap_s, force_s; // wall time by phase [s]
 } ContactCounters;
@@ -146,6 +147,17 @@ Status contact_system_update(ContactSystem *system, double time, const double *p
 
 // The next update searches anew: what a run does at its checkpoints, so that nothing depends on older ones.
 void contact_system_forget(ContactSystem *system);
+
+// Who is held where it is from now on (bodies, then shapes), NULL: nobody. Two that are held keep the forces,
+// covered volumes and energy that they have at these positions (those of the interfaces and of every vertex
+// and element stay in the results), and are neither searched nor evaluated; they must not move until the next
+// call. All is searched and evaluated anew, and as by an update the onsets to watch are chosen.
+Status contact_system_hold(ContactSystem *system, double time, const double *positions,
+                           const double *velocities, double step, const bool *is_held);
+bool contact_system_is_resting(const ContactSystem *system, int interface);
+// Whether any elements of an interface are within the margin of each other, by the last search or by that
+// before it was held.
+bool contact_system_is_near(const ContactSystem *system, int interface);
 
 // Energy U [J] and, added to `force` (vertex_count, 3) unless NULL, −∂U/∂x [N].
 // STATUS_RETRY: a vertex moved beyond the margin since the last update. The result of the last positions is
@@ -174,7 +186,7 @@ const ContactInterface *contact_system_interfaces(const ContactSystem *system, i
 const double *contact_system_forces(const ContactSystem *system); // per vertex [N] (vertex_count, 3)
 const double *
 contact_system_covered(const ContactSystem *system); // Σ over interfaces of W_i [m³]    (tet_count)
-int contact_system_active_count(const ContactSystem *system); // pairs with V > 0
+int contact_system_active_count(const ContactSystem *system); // pairs with V > 0, those at rest included
 // The pairs of the last evaluation with V > 0, as handed to the model (in general position); for audits and
 // capture. Owned by the caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).
 Status contact_system_active_pairs(const ContactSystem *system, int *count, double **pairs, int **tets);

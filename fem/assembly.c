@@ -123,6 +123,7 @@ static void add_forces(const FemAssembly *assembly, const FemAssemblyList *list,
       FemAssemblyElement e;
       double own[MOST];
       gather(assembly, list, state, i, &e);
+      if (e.body->is_held) continue;
       kernel(&e, own);
       const int *nodes = nodes_of(list, i);
       for (int a = 0; a < list->node_count; a++)
@@ -179,6 +180,7 @@ static void add_matrices(const FemAssembly *assembly, const FemAssemblyList *lis
       FemAssemblyElement e;
       double own[MOST * MOST];
       gather(assembly, list, state, i, &e);
+      if (e.body->is_held) continue;
       kernel(&e, stiffness_scale, damping_scale, own);
       scatter_matrix(3 * list->node_count, own, list->slots + half_of(list) * (size_t)i, matrix->value);
     }

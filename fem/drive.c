@@ -60,6 +60,33 @@ void fem_drive_point(const FemConstraintDef *def, double time, const double rest
     for (int c = 0; c < 3; c++) velocity[c] = 0;
 }
 
+static bool is_flat(const double *rows, int width, int k) {
+  for (int c = 1; c < width; c++)
+    if (rows[width * (k + 1) + c] != rows[width * k + c]) return false;
+  return true;
+}
+
+double fem_drive_table_next_change(const double *rows, int width, int count, double time) {
+  int last = count - 1, k = 0;
+  while (k < last && rows[width * (k + 1)] <= time) k++;
+  if (k >= last) return INFINITY;
+  if (time >= rows[0] && !is_flat(rows, width, k)) return time;
+  while (k < last && is_flat(rows, width, k)) k++;
+  return k < last ? rows[width * k] : INFINITY;
+}
+
+double fem_drive_next_change(const FemConstraintDef *def, double time) {
+  if (fem_drive_is_still(def) || time >= def->until) return INFINITY;
+  bool flows = def->spin != 0;
+  for (int c = 0; c < 3; c++)
+    flows = flows || def->velocity[c] != 0 || def->amplitude[c] != 0 ||
+            (def->formula[c] && !expression_is_constant(def->formula[c]));
+  if (flows) return time;
+  double next =
+      def->table_count > 0 ? fem_drive_table_next_change(def->table, 4, def->table_count, time) : INFINITY;
+  return next < def->until ? next : INFINITY;
+}
+
 bool fem_drive_is_still(const FemConstraintDef *def) {
   bool moves = def->spin != 0 || def->table_count > 0;
   for (int c = 0; c < 3; c++)

@@ -10,6 +10,12 @@
 void fem_drive_point(const FemConstraintDef *def, double time, const double rest[3], double position[3],
                      double velocity[3]);
 
+// From a time on, when the motion begins to differ from standing still: that time itself if it moves then,
+// INFINITY if it never will again.
+double fem_drive_next_change(const FemConstraintDef *def, double time);
+// The same of rows (time, values …) of that width, linear between them and constant outside.
+double fem_drive_table_next_change(const double *rows, int width, int count, double time);
+
 // Whether nothing ever moves.
 bool fem_drive_is_still(const FemConstraintDef *def);
 

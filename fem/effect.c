@@ -13,6 +13,7 @@ static const FemEffectOps *const effects[] = {
     &fem_effect_contact,
     &fem_effect_friction,
     &fem_effect_viscosity,
+    &fem_effect_rest,
 };
 // clang-format on
 

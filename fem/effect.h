@@ -49,7 +49,8 @@ typedef struct FemEffectOps {
   // After creation and after every accepted step; `step` [s] is the length expected next. The only place
   // where an effect may change what it keeps. NULL: nothing to keep.
   Status (*prepare)(void *self, const FemState *state, double step);
-  // Adds forces [N] to `force` (vertex_count, 3). RETRY: take a smaller step.
+  // Adds forces [N] to `force` (vertex_count, 3); those on bodies that are held may be left out. RETRY: take
+  // a smaller step. NULL: none.
   Status (*add_force)(void *self, const FemState *state, double *force);
   // Adds stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, to the matrix. NULL: none.
   Status (*add_jacobian)(void *self, const FemState *state, double stiffness_scale, double damping_scale,
@@ -59,15 +60,15 @@ typedef struct FemEffectOps {
   bool (*is_linear)(void *self);
   // Onset function whose root restarts the integrator (contact touching); NULL: none.
   Status (*gap)(void *self, const FemState *state, double *gap);
-  // Adds counters to summary.json; NULL: none. Whole numbers count what happened since creation and are summed
-  // over the parts of a run between two checkpoints; of other numbers the last stands.
+  // Adds counters to summary.json; NULL: none. Whole numbers count what happened since creation and are
+  // summed over the parts of a run between two checkpoints; of other numbers the last stands.
   void (*report)(void *self, Record *counters);
   // History: what the effect keeps that is no function of time, positions and velocities (lists that
   // `prepare` renews are none). `save` makes a new array, the caller's; `load` comes before the first
   // `prepare` at the checkpoint's state. STATUS_INPUT: it does not fit. NULL: no history.
   Status (*save)(const void *self, double **values, size_t *count);
   Status (*load)(void *self, const double *values, size_t count);
-  // What it holds on the heap beside `self` [bytes], by memory_held; NULL: nothing.
+  // What it holds on the heap, `self` included [bytes], by memory_held; NULL: not told.
   size_t (*bytes)(const void *self);
   void (*destroy)(void *self);
 } FemEffectOps;
@@ -90,5 +91,6 @@ extern const FemEffectOps fem_effect_loads;
 extern const FemEffectOps fem_effect_contact;
 extern const FemEffectOps fem_effect_friction;
 extern const FemEffectOps fem_effect_viscosity;
+extern const FemEffectOps fem_effect_rest;
 
 #endif

@@ -281,8 +281,8 @@ static void report(void *self, Record *counters) {
 
 static size_t bytes(const void *self) {
   const Contact *contact = self;
-  return memory_held(contact->bodies) + memory_held(contact->shapes) + memory_held(contact->solids) +
-         contact_system_bytes(contact->system);
+  return memory_held(self) + memory_held(contact->bodies) + memory_held(contact->shapes) +
+         memory_held(contact->solids) + contact_system_bytes(contact->system);
 }
 
 const FemEffectOps fem_effect_contact = {

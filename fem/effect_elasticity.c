@@ -80,7 +80,7 @@ static bool is_linear(void *self) {
 }
 
 static size_t bytes(const void *self) {
-  return fem_assembly_bytes(self);
+  return memory_held(self) + fem_assembly_bytes(self);
 }
 
 const FemEffectOps fem_effect_elasticity = {

@@ -2,6 +2,8 @@
 // Friction as an effect: contact/friction.h on the system of the contact effect.
 #include "fem/effect_friction.h"
 
+#include <string.h>
+
 #include "base/memory.h"
 #include "fem/effect_contact.h"
 #include "fem/system.h"
@@ -92,8 +94,25 @@ static void report(void *self, Record *counters) {
   record_integer(counters, "friction_pairs_dropped", law->dropped);
 }
 
+// The forces by interface, of which those at rest are still told.
+static Status save(const void *self, double **values, size_t *count) {
+  const ContactFriction *law = &((const Friction *)self)->law;
+  *count = 3 * (size_t)law->interface_count;
+  *values = memory_copy(law->forces, *count, sizeof **values);
+  return *values ? STATUS_OK : status_no_memory("a checkpoint");
+}
+
+static Status load(void *self, const double *values, size_t count) {
+  ContactFriction *law = &((Friction *)self)->law;
+  if (count != 3 * (size_t)law->interface_count)
+    return status_fail(STATUS_INPUT, "the checkpoint has friction of %zu interfaces, this scene has %d",
+                       count / 3, law->interface_count);
+  memcpy(law->forces, values, count * sizeof *values);
+  return STATUS_OK;
+}
+
 static size_t bytes(const void *self) {
-  return contact_friction_bytes(&((const Friction *)self)->law);
+  return memory_held(self) + contact_friction_bytes(&((const Friction *)self)->law);
 }
 
 const FemEffectOps fem_effect_friction = {
@@ -110,6 +129,8 @@ const FemEffectOps fem_effect_friction = {
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .report = report,
+    .save = save,
+    .load = load,
     .bytes = bytes,
     .destroy = destroy,
 };

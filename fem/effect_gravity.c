@@ -43,6 +43,10 @@ static bool is_linear(void *self) {
   return true;
 }
 
+static size_t bytes(const void *self) {
+  return memory_held(self);
+}
+
 const FemEffectOps fem_effect_gravity = {
     .name = "gravity",
     .help = "the bodies' weight",
@@ -51,5 +55,6 @@ const FemEffectOps fem_effect_gravity = {
     .add_force = add_force,
     .add_energy = add_energy,
     .is_linear = is_linear,
+    .bytes = bytes,
     .destroy = memory_free,
 };

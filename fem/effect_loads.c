@@ -151,7 +151,8 @@ static bool is_linear(void *self) {
 
 static size_t bytes(const void *self) {
   const Loads *loads = self;
-  return memory_held(loads->kept_force) + memory_held(loads->kept_position) + memory_held(loads->force);
+  return memory_held(self) + memory_held(loads->kept_force) + memory_held(loads->kept_position) +
+         memory_held(loads->force);
 }
 
 const FemEffectOps fem_effect_loads = {

@@ -297,7 +297,8 @@ void fem_effect_plasticity_add_stress(const void *self, int tet, const double *p
 
 static size_t bytes(const void *self) {
   const Plasticity *plasticity = self;
-  return memory_held(plasticity->sites) + memory_held(plasticity->history) + memory_held(plasticity->place);
+  return memory_held(self) + memory_held(plasticity->sites) + memory_held(plasticity->history) +
+         memory_held(plasticity->place);
 }
 
 const FemEffectOps fem_effect_plasticity = {

@@ -77,7 +77,7 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
 }
 
 static size_t bytes(const void *self) {
-  return contact_viscosity_bytes(&((const Viscosity *)self)->law);
+  return memory_held(self) + contact_viscosity_bytes(&((const Viscosity *)self)->law);
 }
 
 const FemEffectOps fem_effect_viscosity = {

@@ -85,7 +85,7 @@ static bool is_linear(void *self) {
 }
 
 static size_t bytes(const void *self) {
-  return fem_volume_bytes(self);
+  return memory_held(self) + fem_volume_bytes(self);
 }
 
 const FemEffectOps fem_effect_volume = {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/load.h"
 
+#include "fem/drive.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -266,6 +268,11 @@ Status fem_load_factor(const FemLoadDef *def, double time, double *factor) {
   if (isfinite(*factor)) return STATUS_OK;
   return status_fail(STATUS_INPUT, "a load's factor '%s' is not a number at t = %g s",
                      def->factor ? def->factor->text : "table", time);
+}
+
+double fem_load_next_change(const FemLoadDef *def, double time) {
+  if (def->factor && !expression_is_constant(def->factor)) return time;
+  return def->table_count > 0 ? fem_drive_table_next_change(def->table, 2, def->table_count, time) : INFINITY;
 }
 
 void fem_load_add_force(const FemLoad *load, double factor, const double *positions, double *force) {

@@ -29,6 +29,10 @@ void fem_load_destroy(FemLoad *load); // also of a zeroed one
 // What the load's values are multiplied with at a time. STATUS_INPUT: not a number.
 Status fem_load_factor(const FemLoadDef *def, double time, double *factor);
 
+// From a time on, when the load begins to change: that time itself if it is changing, INFINITY if never
+// again.
+double fem_load_next_change(const FemLoadDef *def, double time);
+
 // Adds factor × load at these positions to `force` (vertex_count, 3) [N].
 void fem_load_add_force(const FemLoad *load, double factor, const double *positions, double *force);
 

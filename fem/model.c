@@ -264,11 +264,15 @@ static Status add_loads(FemModel *model, const FemMesh *meshes) {
   return STATUS_OK;
 }
 
-static void number_unknowns(FemModel *model) {
+void fem_model_number(FemModel *model) {
   for (int dof = 0; dof < 3 * model->vertex_count; dof++) model->unknown_of_dof[dof] = 0;
   for (int d = 0; d < model->driver_count; d++)
     for (int i = 0; i < model->drivers[d].dof_count && !model->drivers[d].is_released; i++)
       model->unknown_of_dof[model->drivers[d].dofs[i]] = -1;
+  for (int b = 0; b < model->body_count; b++)
+    for (int v = model->bodies[b].vertex_begin; v < model->bodies[b].vertex_end && model->bodies[b].is_held;
+         v++)
+      for (int c = 0; c < 3; c++) model->unknown_of_dof[3 * v + c] = -1;
   int n = 0;
   for (int dof = 0; dof < 3 * model->vertex_count; dof++) {
     if (model->unknown_of_dof[dof] < 0) continue;
@@ -307,7 +311,7 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   append_bodies(model, meshes);
   TRY(add_drivers(model, meshes));
   TRY(add_loads(model, meshes));
-  number_unknowns(model);
+  fem_model_number(model);
   int elastic_tets = model->bodies[model->scene->body_count - 1].tet_end;
   TRY(fem_colouring_create(&model->colouring, model->vertex_count, (const int(*)[4])model->tets,
                            elastic_tets));
@@ -355,15 +359,17 @@ void fem_model_destroy(FemModel *model) {
 Status fem_model_copy_numbering(FemModel *copy, const FemModel *model) {
   size_t dofs = 3 * (size_t)model->vertex_count;
   *copy = *model;
+  copy->bodies = memory_copy(model->bodies, (size_t)model->body_count, sizeof *model->bodies);
   copy->drivers = memory_copy(model->drivers, (size_t)model->driver_count, sizeof *model->drivers);
   copy->unknown_of_dof = memory_copy(model->unknown_of_dof, dofs, sizeof *model->unknown_of_dof);
   copy->dof_of_unknown = memory_copy(model->dof_of_unknown, dofs, sizeof *model->dof_of_unknown);
-  if (copy->drivers && copy->unknown_of_dof && copy->dof_of_unknown) return STATUS_OK;
+  if (copy->bodies && copy->drivers && copy->unknown_of_dof && copy->dof_of_unknown) return STATUS_OK;
   fem_model_destroy_copy(copy);
   return status_no_memory("the numbering of the unknowns");
 }
 
 void fem_model_destroy_copy(FemModel *copy) {
+  memory_free(copy->bodies);
   memory_free(copy->drivers);
   memory_free(copy->unknown_of_dof);
   memory_free(copy->dof_of_unknown);
@@ -384,7 +390,7 @@ void fem_model_release(FemModel *model, double time) {
     double release = model->drivers[d].def->release;
     if (release > 0 && release <= time) model->drivers[d].is_released = true;
   }
-  number_unknowns(model);
+  fem_model_number(model);
 }
 
 void fem_model_drive(const FemModel *model, double time, double *positions, double *velocities) {
@@ -482,6 +488,40 @@ void fem_model_stress(const FemModel *model, int tet, const double *positions, d
   gather(model->quadratic_nodes[quadratic], FEM_QUADRATIC_NODES, positions, x);
   fem_quadratic_cauchy(&model->quadratics[quadratic], law, x, (tet - body->tet_begin) % FEM_QUADRATIC_PARTS,
                        stress);
+}
+
+// A body rings with periods of the time that a wave takes through it and back; some periods, and calm is no
+// turning point.
+static const double REST_CROSSINGS = 20;
+
+double fem_model_rest_time(const FemModel *model) {
+  double given = model->scene->contact.rest_time, longest = 0;
+  if (given > 0) return given;
+  for (int b = 0; b < model->scene->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    double diagonal = sqrt(3) * cbrt(body->mass / body->material.density);
+    longest = fmax(longest, diagonal / sqrt(body->material.young / body->material.density));
+  }
+  return REST_CROSSINGS * longest;
+}
+
+// A body that is wrong by the tolerance after a wave has run through it.
+double fem_model_rest_speed(const FemModel *model) {
+  double given = model->scene->contact.rest_speed;
+  double slowest = INFINITY;
+  if (given > 0) return given;
+  for (int b = 0; b < model->scene->body_count; b++)
+    slowest = fmin(slowest, sqrt(model->bodies[b].material.young / model->bodies[b].material.density));
+  return model->scene->tolerance * slowest;
+}
+
+// Less would be asked in vain: the integrator's own errors accelerate a body that lies still by some
+// hundredths of a tolerance's speed in the time of a crossing.
+static const double REST_ACCELERATION = 5; // speeds in the time it is watched
+
+double fem_model_rest_acceleration(const FemModel *model) {
+  double given = model->scene->contact.rest_acceleration;
+  return given > 0 ? given : REST_ACCELERATION * fem_model_rest_speed(model) / fem_model_rest_time(model);
 }
 
 double fem_model_memory_estimate(const FemModel *model) {

@@ -24,6 +24,7 @@ typedef struct FemModelBody {
   double damping; // β [s]
   double mass;    // [kg]
   bool is_obstacle;
+  bool is_held; // it sleeps: its vertices carry no unknowns for now
 } FemModelBody;
 
 // Coordinates whose motion is prescribed by one constraint.
@@ -68,8 +69,8 @@ typedef struct FemModel {
 Status fem_model_create(FemModel *model, const FemSceneDef *scene);
 void fem_model_destroy(FemModel *model);
 
-// A copy whose vertices can be released while the run goes on: drivers and numbering are its own, all else is
-// borrowed from `model`, which must outlive it.
+// A copy whose vertices can be released, and bodies held, while the run goes on: bodies, drivers and
+// numbering are its own, all else is borrowed from `model`, which must outlive it.
 Status fem_model_copy_numbering(FemModel *copy, const FemModel *model);
 void fem_model_destroy_copy(FemModel *copy);
 
@@ -77,6 +78,8 @@ void fem_model_destroy_copy(FemModel *copy);
 double fem_model_next_release(const FemModel *model, double time);
 // Releases what is due at `time` and numbers the unknowns anew.
 void fem_model_release(FemModel *model, double time);
+// Numbers the coordinates that are neither prescribed nor of a body that is held.
+void fem_model_number(FemModel *model);
 
 // Positions and velocities of all prescribed coordinates at time t; the others are left alone.
 void fem_model_drive(const FemModel *model, double time, double *positions, double *velocities);
@@ -98,6 +101,11 @@ double fem_model_slip_speed(const FemModel *model);
 double fem_model_det(const FemModel *model, int tet, const double *positions);
 // Cauchy stress [Pa] of a tetrahedron of a body by its law alone.
 void fem_model_stress(const FemModel *model, int tet, const double *positions, double stress[6]);
+
+// What counts as rest (fem/effect_rest.h) [m/s], [m/s²], [s]: the scene's, or chosen.
+double fem_model_rest_speed(const FemModel *model);
+double fem_model_rest_acceleration(const FemModel *model);
+double fem_model_rest_time(const FemModel *model);
 
 // The memory that a run of this model will take, roughly [bytes].
 double fem_model_memory_estimate(const FemModel *model);

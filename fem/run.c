@@ -10,6 +10,8 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect_contact.h"
+#include "fem/effect_rest.h"
+#include "fem/hold.h"
 #include "fem/restart.h"
 #include "fem/statics.h"
 
@@ -20,6 +22,9 @@ static const double ENERGY_RISE_ALLOWED = 3e-4, ENERGY_RISE_OF_STEP = 1e-5, RETR
 enum { RETRIES_IN_A_ROW = 8 };
 // A static run gives up where a step of load becomes shorter than this share of the time between two frames.
 static const double SHORTEST_LOAD_STEP = 1e-4;
+// While all bodies sleep time goes on by this share of the end at most, and by a shorter one where an
+// obstacle would move too far.
+static const double LONGEST_SLEEP = 0.1, SHORTER_SLEEP = 0.25, SHORTEST_SLEEP = 1e-9;
 
 // `auto` factorises up to this many unknowns. Beyond, a factor takes gigabytes and PCG, poor as it is for
 // slow and nearly incompressible scenes, is what fits.
@@ -40,12 +45,12 @@ typedef struct Run {
   double *u, *v;         // the last accepted state         (unknown_count)
   double *u_new, *v_new; // the state under judgement  (unknown_count)
   int next_frame;
-  int retries;                            // in a row
-  double next_step;                       // to be tried; 0: the integrator's choice [s]
-  double stage_end;                       // the next release of vertices, or the end [s]
-  FemCheckpoint checkpoint;               // where this part began
-  bool is_written;                        // is that in the file
-  int interval;                           // frames between two checkpoints; 0: none
+  int retries;              // in a row
+  double next_step;         // to be tried; 0: the integrator's choice [s]
+  double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]
+  FemCheckpoint checkpoint; // where this part began
+  bool is_written;          // is that in the file
+  int interval;             // frames between two checkpoints; 0: none
   double began_s, cpu_began_s, written_s; // clocks: of this part, and when a checkpoint was written
 } Run;
 
@@ -138,8 +143,8 @@ static Status measure(Run *run, double time, FemMeasures *measures) {
 // Measures at a frame within the last step; the contact lists are renewed there if it lies beyond their
 // margin.
 static Status measure_within_step(Run *run, double time, FemMeasures *measures) {
-  const double *u, *v;
-  TRY(fem_integrator_at(run->integrator, time, &u, &v));
+  const double *u = run->u, *v = run->v;
+  if (run->integrator) TRY(fem_integrator_at(run->integrator, time, &u, &v));
   fem_system_scatter(&run->system, time, u, v);
   TRY(fem_system_check_state(&run->system));
   Status status = measure(run, time, measures);
@@ -238,6 +243,51 @@ static Status renew_powers(Run *run) {
   return STATUS_OK;
 }
 
+// The integrator of the stage that begins at the run's time; its states are u and v.
+static Status begin_stage(Run *run, double step) {
+  const FemModel *model = run->model;
+  const FemSceneDef *scene = model->scene;
+  double next = fem_effect_rest_next_change(fem_system_effect(&run->system, "rest"));
+  run->stage_end = fmin(fmin(scene->end, next), fem_model_next_release(model, run->time));
+  if (model->unknown_count == 0) return STATUS_OK; // all sleep
+  FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
+                          .velocity_tolerance = fem_model_velocity_tolerance(model),
+                          .initial_step = step,
+                          .min_step = scene->min_step,
+                          .max_step = scene->max_step,
+                          .max_order = scene->max_order,
+                          .end = run->stage_end};
+  const FemSolverOps *solver = fem_solver_ops(fem_run_solver(model));
+  TRY(fem_integrator_create(&run->integrator, &run->system, solver, &def));
+  return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
+}
+
+// Counts what the integrator, or statics, has done, and lets it go.
+static void end_stage(Run *run) {
+  FemRunResult *result = run->result;
+  const FemStatics *statics = &run->statics;
+  result->integrator = stats_of(run);
+  if (run->integrator)
+    fem_run_result_add_solver(&result->solver, fem_integrator_solver_stats(run->integrator));
+  if (statics->equilibrium.solver) {
+    fem_run_result_add_solver(&result->solver, statics->equilibrium.ops->stats(statics->equilibrium.solver));
+    result->residual = statics->residual;
+    result->residual_allowed = statics->tolerance * statics->force_scale;
+    result->relaxation_steps += statics->relaxation_steps;
+    result->halvings += statics->halvings;
+  }
+  fem_integrator_destroy(run->integrator);
+  run->integrator = NULL;
+  fem_statics_destroy(&run->statics);
+}
+
+// Vertices come free, bodies fall asleep or awake: with other unknowns from here on.
+static Status renumber(Run *run) {
+  end_stage(run);
+  TRY(fem_hold_renumber(&run->own, &run->system, run->time, &run->audit, run->u, run->v));
+  return begin_stage(run, 0);
+}
+
 // One step: taken, judged, shown, accepted.
 static Status advance(Run *run) {
   double time = run->time;
@@ -264,7 +314,35 @@ static Status advance(Run *run) {
   TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
   if (fem_system_lags(&run->system)) TRY(renew_powers(run));
   TRY(observe(run, &measures));
+  if (fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"))) return renumber(run);
   return is_onset ? fem_integrator_restart(run->integrator, time, run->u, run->v, 0) : STATUS_OK;
+}
+
+// The next state while all bodies sleep: as late as the contact lists allow for obstacles that move.
+static Status look_ahead(Run *run, double *time, FemMeasures *measures) {
+  const FemSceneDef *scene = run->model->scene;
+  double longest = scene->max_step > 0 ? scene->max_step : LONGEST_SLEEP * scene->end;
+  for (double step = fmin(longest, run->stage_end - run->time);; step *= SHORTER_SLEEP) {
+    *time = step < run->stage_end - run->time ? run->time + step : run->stage_end;
+    fem_system_scatter(&run->system, *time, run->u, run->v);
+    Status status = fem_recorder_measure(&run->recorder, *time, measures);
+    if (status != STATUS_RETRY || step < SHORTEST_SLEEP * scene->end) return status;
+  }
+}
+
+static Status sleep_on(Run *run) {
+  double time, began = run->time;
+  FemMeasures measures;
+  TRY(look_ahead(run, &time, &measures));
+  FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
+  TRY(write_frames_until(run, time));
+  run->audit = next;
+  run->time = time;
+  keep_extremes(run->result, &measures);
+  TRY(fem_system_accept(&run->system, time, run->u, run->v, time - began));
+  TRY(observe(run, &measures));
+  bool has_changed = fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"));
+  return has_changed ? renumber(run) : STATUS_OK;
 }
 
 // "a, b" for each interface.
@@ -308,66 +386,6 @@ static double energy_floor(const FemModel *model) {
   return floor;
 }
 
-// The integrator of the stage that begins at the run's time; its states are u and v.
-static Status begin_stage(Run *run, double step) {
-  const FemModel *model = run->model;
-  const FemSceneDef *scene = model->scene;
-  run->stage_end = fmin(scene->end, fem_model_next_release(model, run->time));
-  FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
-                          .velocity_tolerance = fem_model_velocity_tolerance(model),
-                          .initial_step = step,
-                          .min_step = scene->min_step,
-                          .max_step = scene->max_step,
-                          .max_order = scene->max_order,
-                          .end = run->stage_end};
-  const FemSolverOps *solver = fem_solver_ops(fem_run_solver(model));
-  TRY(fem_integrator_create(&run->integrator, &run->system, solver, &def));
-  return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
-}
-
-// Counts what the integrator, or statics, has done, and lets it go.
-static void end_stage(Run *run) {
-  FemRunResult *result = run->result;
-  const FemStatics *statics = &run->statics;
-  result->integrator = stats_of(run);
-  if (run->integrator)
-    fem_run_result_add_solver(&result->solver, fem_integrator_solver_stats(run->integrator));
-  if (statics->equilibrium.solver) {
-    fem_run_result_add_solver(&result->solver, statics->equilibrium.ops->stats(statics->equilibrium.solver));
-    result->residual = statics->residual;
-    result->residual_allowed = statics->tolerance * statics->force_scale;
-    result->relaxation_steps += statics->relaxation_steps;
-    result->halvings += statics->halvings;
-  }
-  fem_integrator_destroy(run->integrator);
-  run->integrator = NULL;
-  fem_statics_destroy(&run->statics);
-}
-
-// The unknowns of the scattered state.
-static void gather(const Run *run, double *u, double *v) {
-  const FemModel *model = run->model;
-  for (int i = 0; i < model->unknown_count; i++) {
-    int dof = model->dof_of_unknown[i];
-    u[i] = run->system.positions[dof] - model->rest[dof];
-    v[i] = run->system.velocities[dof];
-  }
-}
-
-// Vertices come free with the place and the velocity that they were driven to.
-static Status release(Run *run) {
-  FemEnergy before, after;
-  fem_system_scatter(&run->system, run->time, run->u, run->v);
-  TRY(fem_system_energy(&run->system, run->time, &before));
-  end_stage(run);
-  fem_model_release(&run->own, run->time);
-  TRY(fem_system_renumber(&run->system));
-  gather(run, run->u, run->v);
-  TRY(fem_system_energy(&run->system, run->time, &after));
-  fem_audit_release(&run->audit, after.kinetic - before.kinetic);
-  return begin_stage(run, 0);
-}
-
 // Room for the unknowns, however many are released.
 static Status allocate_states(Run *run) {
   double **states[] = {&run->u, &run->v, &run->u_new, &run->v_new};
@@ -379,7 +397,8 @@ static Status allocate_states(Run *run) {
 
 // A numbering of our own where vertices are released, with what has been released until now.
 static Status number(Run *run) {
-  if (!isfinite(fem_model_next_release(run->given, 0))) return STATUS_OK;
+  bool may_rest = run->given->scene->contact.rest_is_on && !run->given->scene->is_static;
+  if (!may_rest && !isfinite(fem_model_next_release(run->given, 0))) return STATUS_OK;
   fem_model_destroy_copy(&run->own);
   TRY(fem_model_copy_numbering(&run->own, run->given));
   fem_model_release(&run->own, run->time);
@@ -437,6 +456,10 @@ static Status begin_part(Run *run) {
   TRY(is_first ? fem_system_create(&run->system, run->model)
                : fem_system_create_again(&run->system, run->model));
   TRY(fem_restart_load(from, &run->system, run->u, run->v));
+  if (fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"))) {
+    fem_system_scatter(&run->system, run->time, run->u, run->v);
+    TRY(fem_hold_sleepers(&run->own, &run->system, run->u, run->v));
+  }
   if (is_first) TRY(open_recorder(run));
   return run->model->scene->is_static ? begin_statics(run) : begin_motion(run);
 }
@@ -496,7 +519,7 @@ static bool is_checkpoint_due(const Run *run) {
     return scene->checkpoint_frames > 0 &&
            run->next_frame >= run->checkpoint.next_frame + scene->checkpoint_frames;
   long long steps = stats_of(run).steps - run->checkpoint.so_far.integrator.steps;
-  return steps >= fem_run_checkpoint_steps(run->model->unknown_count);
+  return steps >= fem_run_checkpoint_steps(run->given->unknown_count);
 }
 
 // Collects a checkpoint and begins anew from it.
@@ -553,8 +576,8 @@ static Status march(Run *run) {
     if (run->model->scene->is_static) {
       TRY(advance_static(run));
     } else {
-      if (run->time >= run->stage_end) TRY(release(run));
-      TRY(advance(run));
+      if (run->time >= run->stage_end) TRY(renumber(run));
+      TRY(run->integrator ? advance(run) : sleep_on(run));
     }
     if (is_checkpoint_due(run)) TRY(pass_checkpoint(run));
   }

@@ -136,9 +136,12 @@ typedef struct FemContactDef {
   ContactNetOptions net_options;
   double margin; // [m]; 0: chosen
   bool use_full_hessian;
-  double friction;   // coefficient μ between any two; 0: none
-  double viscosity;  // η [Pa s]; 0: none
-  double slip_speed; // ε: slower slip counts as sticking [m/s]; 0: chosen
+  double friction;                      // coefficient μ between any two; 0: none
+  double viscosity;                     // η [Pa s]; 0: none
+  double slip_speed;                    // ε: slower slip counts as sticking [m/s]; 0: chosen
+  bool rest_is_on;                      // bodies at rest are left out
+  double rest_speed, rest_acceleration; // below them a body is calm [m/s], [m/s²]; 0: chosen
+  double rest_time;                     // so long, and it is at rest [s]; 0: chosen
 } FemContactDef;
 
 typedef enum FemSolverKind {

@@ -42,9 +42,8 @@ static Status create_effects(FemSystem *system, const FemSystem *old) {
 static void weigh_effects(FemSystem *system) {
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffect *effect = &system->effects[i];
-    size_t bytes = memory_held(effect->self) + (effect->ops->bytes ? effect->ops->bytes(effect->self) : 0);
-    FemEffectCost *cost = &system->costs[i];
-    if ((long long)bytes > cost->bytes_max) cost->bytes_max = (long long)bytes;
+    long long bytes = effect->ops->bytes ? (long long)effect->ops->bytes(effect->self) : 0;
+    if (bytes > system->costs[i].bytes_max) system->costs[i].bytes_max = bytes;
   }
 }
 
@@ -175,6 +174,7 @@ Status fem_system_forces(FemSystem *system, double time) {
   TRY(fem_system_check_state(system));
   FemState state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {
+    if (!system->effects[i].ops->add_force) continue;
     double began = clock_wall_s();
     TRY(system->effects[i].ops->add_force(system->effects[i].self, &state, system->forces));
     system->costs[i].force_s += clock_wall_s() - began;

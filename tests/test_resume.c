@@ -39,6 +39,8 @@ static const Case cases[] = {
     {"tests/scenes/cantilever.yaml", "--set time.end=0.02", "\"steps\": "},
     // Unknowns that are numbered anew.
     {"examples/21_release.yaml", "", "\"steps\": "},
+    // Bodies that fall asleep and awake.
+    {"tests/scenes/asleep.yaml", "", "\"bodies_awakened\": "},
     // History, at rest and in motion.
     {"examples/25_plastic_bar.yaml", "--set bodies.bar.mesh.box.cells=[8,2,2]", "\"yielded_elements\": "},
     {"examples/25_plastic_bar.yaml",

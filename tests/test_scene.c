@@ -206,6 +206,10 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_double_eq(scene->contact.friction, 0.3);
   ck_assert_double_eq(scene->contact.slip_speed, 1e-4);
   ck_assert_double_eq(scene->contact.viscosity, 11);
+  ck_assert(scene->contact.rest_is_on);
+  ck_assert_double_eq(scene->contact.rest_speed, 1e-3);
+  ck_assert_double_eq(scene->contact.rest_acceleration, 0.02);
+  ck_assert_double_eq(scene->contact.rest_time, 0.25);
   ck_assert_int_eq(scene->solver, FEM_SOLVER_PCG);
   ck_assert_double_eq(scene->solver_tolerance, 1e-6);
   ck_assert_int_eq(scene->threads, 3);
@@ -533,6 +537,9 @@ static const Wrong wrong[] = {
     {TIME BODY "obstacles: [{name: g, cylinder: {centre: [0, 0, 0], axis: [0, 0, 1], radius: 1, length: 1, "
                "faces: 9}}]\n",
      "s.yaml:3:99: obstacles[0].cylinder: the number of faces must be even"},
+    {"bodies: [{name: b, mesh: m.msh, material: {young: 1, poisson: 0, density: 1}}]\ntime: {end: 1, static: "
+     "true}\ncontact: {rest: {}}\n",
+     "s.yaml:3:11: a static scene is at rest always; take 'rest' or time.static away"},
     {TIME BODY "obstacles: [{name: g}]\n",
      "s.yaml:3:13: obstacles[0] needs one of these keys: halfspace sphere box cylinder mesh"},
     {TIME BODY "obstacles: [{name: g, mesh: g.msh, velocity: [0, 0, 1]}]\n",

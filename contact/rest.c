@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/rest.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+
+Status contact_rest_create(ContactRest *rest, const ContactLayout *layout) {
+  size_t facings = (size_t)layout->facing_count;
+  *rest = (ContactRest){0};
+  rest->is_resting = memory_zeroed(facings, sizeof *rest->is_resting);
+  rest->is_near = memory_zeroed(facings, sizeof *rest->is_near);
+  rest->forces = memory_zeroed(3 * (size_t)layout->def.vertex_count, sizeof(double));
+  rest->covered = memory_zeroed((size_t)layout->def.tet_count, sizeof(double));
+  rest->interfaces = memory_zeroed(facings, sizeof *rest->interfaces);
+  bool fits = rest->is_resting && rest->is_near && rest->forces && rest->covered && rest->interfaces;
+  return fits ? STATUS_OK : status_no_memory("contact at rest");
+}
+
+void contact_rest_destroy(ContactRest *rest) {
+  memory_free(rest->is_resting);
+  memory_free(rest->is_near);
+  memory_free(rest->forces);
+  memory_free(rest->covered);
+  memory_free(rest->interfaces);
+  *rest = (ContactRest){0};
+}
+
+void contact_rest_clear(ContactRest *rest, const ContactLayout *layout) {
+  memset(rest->is_resting, 0, (size_t)layout->facing_count * sizeof *rest->is_resting);
+  memset(rest->is_near, 0, (size_t)layout->facing_count * sizeof *rest->is_near);
+  memset(rest->forces, 0, 3 * (size_t)layout->def.vertex_count * sizeof(double));
+  memset(rest->covered, 0, (size_t)layout->def.tet_count * sizeof(double));
+  rest->resting_count = 0;
+  rest->candidate_count = rest->pair_count = 0;
+  rest->energy = 0;
+}
+
+static void keep_patch(ContactRest *rest, const ContactEvaluation *evaluation, const ContactPatch *patch) {
+  const ContactPatches *patches = &evaluation->patches;
+  for (int n = patch->node_begin; n < patch->node_end; n++)
+    for (size_t c = 0; c < 3; c++)
+      rest->forces[3 * (size_t)patches->nodes[n].vertex + c] += patches->nodes[n].force[c];
+  for (int e = patch->element_begin; e < patch->element_end; e++)
+    rest->covered[patches->elements[e].tet] += patches->elements[e].covered;
+  rest->energy += patch->energy;
+  rest->pair_count += patch->pair_end - patch->pair_begin;
+}
+
+void contact_rest_keep(ContactRest *rest, const ContactLayout *layout, const ContactCandidateList *candidates,
+                       const ContactEvaluation *evaluation, const bool *is_held) {
+  contact_rest_clear(rest, layout);
+  for (int f = 0; f < layout->facing_count; f++) {
+    const ContactFacing *facing = &layout->facings[f];
+    int pairs = candidates->begin[f + 1] - candidates->begin[f];
+    rest->is_resting[f] = is_held[facing->a] && is_held[facing->b];
+    if (!rest->is_resting[f]) continue;
+    rest->resting_count++;
+    rest->is_near[f] = pairs > 0;
+    rest->candidate_count += pairs;
+    rest->interfaces[f] = evaluation->interfaces[f];
+  }
+  for (int p = 0; p < evaluation->patches.patch_count; p++)
+    if (rest->is_resting[evaluation->patches.patches[p].facing])
+      keep_patch(rest, evaluation, &evaluation->patches.patches[p]);
+}
