@@ -5,7 +5,7 @@
 //   'M', 'D', 'V'  what is asked of a .msh, a MEDIT .mesh, a legacy .vtk before gmsh gets it
 //   'F'  a frame (.vtu) that `tetlap report` reads back
 //
-// What gmsh itself reads it reads in a process of its own; `tools/fuzz gmsh` gives it damaged files.
+// What gmsh itself reads it reads in a process of its own, which is not fuzzed.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
