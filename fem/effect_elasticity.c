@@ -71,12 +71,8 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
-// Every body's law is linear, without fibres.
 static bool is_linear(void *self) {
-  const FemModel *model = ((const FemAssembly *)self)->model;
-  for (int b = 0; b < model->scene->body_count; b++)
-    if (!fem_material_is_linear(&model->bodies[b].material)) return false;
-  return true;
+  return fem_model_has_linear_materials(((const FemAssembly *)self)->model);
 }
 
 static size_t bytes(const void *self) {

@@ -76,12 +76,8 @@ void fem_effect_volume_add_stress(const void *self, int tet, const double x[12],
   }
 }
 
-// Every body's law is linear, without fibres.
 static bool is_linear(void *self) {
-  const FemModel *model = ((const FemVolume *)self)->model;
-  for (int b = 0; b < model->scene->body_count; b++)
-    if (!fem_material_is_linear(&model->bodies[b].material)) return false;
-  return true;
+  return fem_model_has_linear_materials(((const FemVolume *)self)->model);
 }
 
 static size_t bytes(const void *self) {

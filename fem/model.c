@@ -424,6 +424,12 @@ double fem_model_contact_stiffness(const FemModel *model) {
   return contact->potential == CONTACT_POTENTIAL_BODY ? softest / smallest_element : softest;
 }
 
+bool fem_model_has_linear_materials(const FemModel *model) {
+  for (int b = 0; b < model->scene->body_count; b++)
+    if (!fem_material_is_linear(&model->bodies[b].material)) return false;
+  return true;
+}
+
 // What sticks moves by less than ε, which an integrator that tolerates more than a few ε does not see.
 // Measured on a block that slides on a block: at 1, 2 and 7 ε as good, at 23 ε four times the steps.
 static const double FRICTION_RESOLUTION = 5;

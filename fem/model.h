@@ -92,6 +92,9 @@ double fem_model_contact_stiffness(const FemModel *model);
 // √(E/ρ), with friction at most 5 ε.
 double fem_model_velocity_tolerance(const FemModel *model);
 
+// Every body's law is linear, without fibres.
+bool fem_model_has_linear_materials(const FemModel *model);
+
 // ε of friction [m/s]: the scene's, or such that nothing creeps by more than a thousandth of the smallest
 // body in the whole run.
 double fem_model_slip_speed(const FemModel *model);
