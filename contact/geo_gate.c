@@ -11,7 +11,18 @@ typedef struct Planes {
   Vec3 origin;
   Vec3 normal[4]; // det · ∇λ_k [m²]
   double det;     // [m³]
+  double cube;    // of the longest edge [m³]
 } Planes;
+
+static double longest_edge_squared(const double tet[12]) {
+  double longest = 0;
+  for (int v = 1; v < 4; v++)
+    for (int w = 0; w < v; w++) {
+      Vec3 edge = vec3_sub(vec3_at(tet + 3 * v), vec3_at(tet + 3 * w));
+      longest = fmax(longest, vec3_dot(edge, edge));
+    }
+  return longest;
+}
 
 static Planes planes_of(const double tet[12]) {
   Planes planes = {.origin = vec3_at(tet)};
@@ -22,18 +33,19 @@ static Planes planes_of(const double tet[12]) {
   planes.normal[3] = vec3_cross(edge[1], edge[2]);
   planes.normal[0] = vec3_scale(-1, vec3_add(vec3_add(planes.normal[1], planes.normal[2]), planes.normal[3]));
   planes.det = vec3_dot(edge[1], planes.normal[1]);
+  double longest = longest_edge_squared(tet);
+  planes.cube = longest * sqrt(longest);
   return planes;
 }
 
-static bool is_flat(const double tet[12], double det) {
-  double longest = 0; // squared
-  for (int v = 1; v < 4; v++)
-    for (int w = 0; w < v; w++) {
-      Vec3 edge = vec3_sub(vec3_at(tet + 3 * v), vec3_at(tet + 3 * w));
-      longest = fmax(longest, vec3_dot(edge, edge));
-    }
-  // below CONTACT_GEO_LEAST_DET dividing by it may overflow
-  return !(fabs(det) > fmax(CONTACT_GEO_FLATTEST * longest * sqrt(longest), CONTACT_GEO_LEAST_DET));
+// Below CONTACT_GEO_LEAST_DET dividing by det may overflow.
+static bool is_flat(const Planes *planes) {
+  return !(fabs(planes->det) > fmax(CONTACT_GEO_FLATTEST * planes->cube, CONTACT_GEO_LEAST_DET));
+}
+
+// How far out a point on a plane may seem to be.
+static double noise_of(const Planes *planes) {
+  return fmax(CONTACT_GEO_NOISE, CONTACT_GEO_ROUNDING * planes->cube / fabs(planes->det));
 }
 
 // The coordinates, in the tetrahedron of `planes`, of four points. Heights are summed before they are
@@ -57,38 +69,38 @@ static bool is_beyond_a_plane(double across[4][4]) {
   return fmin(fmin(highest[0], highest[1]), fmin(highest[2], highest[3])) <= 0;
 }
 
-static bool is_inside(double across[4][4]) {
+static bool is_inside(double across[4][4], double noise) {
   double lowest = 0;
   for (int v = 0; v < 4; v++)
     for (int k = 0; k < 4; k++) lowest = fmin(lowest, across[v][k]);
-  return lowest >= -CONTACT_GEO_NOISE;
+  return lowest >= -noise;
 }
 
 // The part of an edge that is inside or on the boundary, as two parameters between 0 and 1; false if there is
 // none. An end on a plane stays when the rest of the edge is beyond: it may be a vertex of the intersection,
 // as where two tetrahedra share a vertex. An edge within a plane is not cut by it.
-static bool clip(const double p[4], const double q[4], double range[2]) {
+static bool clip(const double p[4], const double q[4], double noise, double range[2]) {
   bool is_out = false;
   double from = 0, to = 1;
   for (int k = 0; k < 4; k++) {
     double at = p[k] / (p[k] - q[k]);
-    is_out |= p[k] < -CONTACT_GEO_NOISE && q[k] < -CONTACT_GEO_NOISE;
-    bool enters = p[k] < -CONTACT_GEO_NOISE || (p[k] < 0 && q[k] > CONTACT_GEO_NOISE);
-    bool leaves = q[k] < -CONTACT_GEO_NOISE || (q[k] < 0 && p[k] > CONTACT_GEO_NOISE);
+    is_out |= p[k] < -noise && q[k] < -noise;
+    bool enters = p[k] < -noise || (p[k] < 0 && q[k] > noise);
+    bool leaves = q[k] < -noise || (q[k] < 0 && p[k] > noise);
     from = enters ? fmax(from, q[k] > 0 ? at : 1) : from;
     to = leaves ? fmin(to, p[k] > 0 ? at : 0) : to;
   }
   range[0] = from, range[1] = to;
-  return !is_out && from <= to + CONTACT_GEO_NOISE;
+  return !is_out && from <= to + noise;
 }
 
 // Adds the ends of what is left of one tetrahedron's six edges to the slacks `own` and `other`; how many.
-static int add_ends(double across[4][4], double own[4], double other[4]) {
+static int add_ends(double across[4][4], double noise, double own[4], double other[4]) {
   int count = 0;
   for (int v = 1; v < 4; v++)
     for (int w = 0; w < v; w++) {
       double range[2];
-      if (!clip(across[v], across[w], range)) continue;
+      if (!clip(across[v], across[w], noise, range)) continue;
       double at = range[0] + range[1];
       own[v] += 2 - at, own[w] += at;
       for (int k = 0; k < 4; k++) other[k] += 2 * across[v][k] + at * (across[w][k] - across[v][k]);
@@ -109,17 +121,18 @@ static void write_normals(const Planes planes[2], GeoColumns *normal) {
 ContactGeoOutcome contact_geo_gate(ContactGeoGate *gate, const double pair[24]) {
   Planes planes[2] = {planes_of(pair), planes_of(pair + 12)};
   for (int t = 0; t < 2; t++)
-    if (is_flat(pair + 12 * t, planes[t].det)) return CONTACT_GEO_UNFIT;
+    if (is_flat(&planes[t])) return CONTACT_GEO_UNFIT;
   gate->least_volume = fmin(fabs(planes[0].det), fabs(planes[1].det)) / 6;
   write_normals(planes, &gate->normal);
   locate(&planes[1], pair, gate->across[0]);
   locate(&planes[0], pair + 12, gate->across[1]);
   if (is_beyond_a_plane(gate->across[0]) || is_beyond_a_plane(gate->across[1])) return CONTACT_GEO_EMPTY;
-  gate->is_enclosed = is_inside(gate->across[0]) || is_inside(gate->across[1]);
+  double noise[2] = {noise_of(&planes[1]), noise_of(&planes[0])}; // of gate->across
+  gate->is_enclosed = is_inside(gate->across[0], noise[0]) || is_inside(gate->across[1], noise[1]);
 
   memset(gate->slack, 0, sizeof gate->slack);
-  int count = add_ends(gate->across[0], gate->slack, gate->slack + 4);
-  count += add_ends(gate->across[1], gate->slack + 4, gate->slack);
+  int count = add_ends(gate->across[0], noise[0], gate->slack, gate->slack + 4);
+  count += add_ends(gate->across[1], noise[1], gate->slack + 4, gate->slack);
   if (count == 0) return CONTACT_GEO_EMPTY;
   bool is_inside_all = true;
   for (int k = 0; k < GEO_LANES; k++) is_inside_all &= (gate->slack[k] /= count) > CONTACT_GEO_LEAST_SLACK;

@@ -17,8 +17,11 @@
 // A tetrahedron with det < CONTACT_GEO_FLATTEST · (longest edge)³ is left to the exact model.
 #define CONTACT_GEO_FLATTEST 1e-5
 #define CONTACT_GEO_LEAST_DET 1e-280 // [m³]; below it dividing may overflow
-// Barycentric coordinates carry errors of some ε: what is no farther out than this counts as on the plane.
+// Barycentric coordinates carry errors of some ε L³/det, L the tetrahedron's longest edge: the products of
+// three lengths that they are quotients of are rounded, and det is small beside them if it is flat. What is
+// no farther out than CONTACT_GEO_ROUNDING L³/det, and CONTACT_GEO_NOISE at least, counts as on the plane.
 #define CONTACT_GEO_NOISE 1e-13
+#define CONTACT_GEO_ROUNDING 0x1p-48 // 16 ε: about ten roundings in a height
 // A point this close to a plane is on it.
 #define CONTACT_GEO_LEAST_SLACK 1e-15
 
