@@ -14,10 +14,6 @@
 
 // Chosen bounds of the step, as shares of the run's end.
 static const double LONGEST_STEP = 0.1, SHORTEST_STEP = 1e-11;
-// A run stalls when so many steps, with those that were tried in vain, come no further than this share of the
-// end: the whole of it would take a million. A force that jumps makes a run creep like that.
-enum { STALL_STEPS = 2000 };
-static const double STALL_ADVANCE = 2e-3;
 // A step is given up after so many failures in a row; each cuts it to a quarter at least.
 enum { MAX_FAILURES = 15 };
 // Roots are found to this share of their step.
@@ -41,8 +37,8 @@ struct FemIntegrator {
   double wanted_step;         // handed to the last restart [s]
   FemIntegratorStats before;  // counted before the last restart
   long long onset_count, restart_count;
-  long long stall_tries; // steps taken and tried in vain when stalling was last looked for
-  double stall_time;     // and the time then [s]
+  FemStall own_stall;         // where the caller has none
+  long long failures_counted; // told to the stall
 };
 
 static double *values_of(N_Vector vector) {
@@ -151,6 +147,7 @@ Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, cons
   if (!*integrator) return status_no_memory("the integrator");
   (*integrator)->system = system;
   (*integrator)->def = *def;
+  (*integrator)->own_stall = fem_stall_begin(0, def->end);
   (*integrator)->n = system->model->unknown_count;
   Status status = create(*integrator, solver);
   if (status == STATUS_OK) return STATUS_OK;
@@ -168,6 +165,10 @@ void fem_integrator_destroy(FemIntegrator *integrator) {
     if (vectors[i]) N_VDestroy(vectors[i]);
   if (integrator->context) SUNContext_Free(&integrator->context);
   memory_free(integrator);
+}
+
+static FemStall *stall_of(FemIntegrator *integrator) {
+  return integrator->def.stall ? integrator->def.stall : &integrator->own_stall;
 }
 
 // v̇ = M⁻¹ f at (t, y), and ẏ = [v; v̇].
@@ -204,6 +205,7 @@ Status fem_integrator_restart(FemIntegrator *integrator, double time, const doub
                IDASetInitStep(ida, step) == IDA_SUCCESS;
   if (is_ok && time < integrator->def.end) is_ok = IDASetStopTime(ida, integrator->def.end) == IDA_SUCCESS;
   if (!is_ok) return status_fail(STATUS_SOLVER, "IDA could not be restarted at t = %g s", time);
+  if (integrator->has_steps && time < integrator->time) fem_stall_take_back(stall_of(integrator));
   integrator->before = stats;
   integrator->restart_count += integrator->is_started;
   integrator->time = integrator->step_end = time;
@@ -401,19 +403,20 @@ static Status give_up(FemIntegrator *integrator, int flag) {
   return say_why(integrator, time, step, find_worst(integrator, flag), reason_of(flag));
 }
 
-// Counts steps, those tried in vain and those taken back later too, against the way that was made.
+// Tells the step and what failed on the way to it.
 static Status check_stall(FemIntegrator *integrator) {
-  const FemIntegratorDef *def = &integrator->def;
   FemIntegratorStats stats = fem_integrator_stats(integrator);
-  long long tries = stats.steps + stats.error_test_failures + stats.newton_failures;
-  if (tries - integrator->stall_tries < STALL_STEPS) return STATUS_OK;
-  double needed = fmin(STALL_ADVANCE * def->end, 0.1 * STALL_STEPS * integrator->max_step),
-         advance = integrator->time - integrator->stall_time;
-  bool is_stalled = !(advance >= needed) && integrator->time < def->end;
-  integrator->stall_tries = tries;
-  integrator->stall_time = integrator->time;
-  if (!is_stalled) return STATUS_OK;
-  Reason reason = {"the run stalls: 2000 steps, with those taken back, came less than 0.2 % of it further",
+  long long failures = stats.error_test_failures + stats.newton_failures,
+            more = failures - integrator->failures_counted;
+  integrator->failures_counted = failures;
+  FemStall *stall = stall_of(integrator);
+  FemStallVerdict verdict = fem_stall_add(stall, 1 + more, more, integrator->time, integrator->max_step);
+  if (verdict == FEM_STALL_GOES_ON) return STATUS_OK;
+  char what[128];
+  snprintf(what, sizeof what,
+           "the run %s: at the pace of the last %d steps the rest of it would take %.2g more",
+           verdict == FEM_STALL_STANDS ? "stalls" : "creeps", FEM_STALL_WINDOW, stall->left);
+  Reason reason = {what,
                    "a smaller contact.stiffness, a contact.potential other than linear, whose force jumps, "
                    "another contact.overlap than tpn, whose force jumps, too, or some effects.damping"};
   return say_why(integrator, integrator->time, stats.last_step, find_worst(integrator, IDA_ERR_FAIL), reason);

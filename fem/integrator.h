@@ -16,6 +16,7 @@
 #define TETLAP_FEM_INTEGRATOR_H
 
 #include "fem/solver.h"
+#include "fem/stall.h"
 #include "fem/system.h"
 
 typedef struct FemIntegratorDef {
@@ -24,6 +25,7 @@ typedef struct FemIntegratorDef {
   double initial_step, min_step, max_step; // [s]; 0: chosen
   int max_order;                           // 1 or 2
   double end;                              // [s]
+  FemStall *stall;                         // of the run, borrowed; NULL: of this integrator alone, from t = 0
 } FemIntegratorDef;
 
 // Counted over all restarts.

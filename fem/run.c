@@ -47,6 +47,7 @@ typedef struct Run {
   int next_frame;
   int retries;              // in a row
   double next_step;         // to be tried; 0: the integrator's choice [s]
+  FemStall stall;           // over all stages
   double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]
   FemCheckpoint checkpoint; // where this part began
   bool is_written;          // is that in the file
@@ -256,7 +257,8 @@ static Status begin_stage(Run *run, double step) {
                           .min_step = scene->min_step,
                           .max_step = scene->max_step,
                           .max_order = scene->max_order,
-                          .end = run->stage_end};
+                          .end = run->stage_end,
+                          .stall = &run->stall};
   const FemSolverOps *solver = fem_solver_ops(fem_run_solver(model));
   TRY(fem_integrator_create(&run->integrator, &run->system, solver, &def));
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
@@ -570,6 +572,7 @@ static Status advance_static(Run *run) {
 static Status march(Run *run) {
   TRY(allocate_states(run));
   TRY(begin_part(run));
+  run->stall = fem_stall_begin(run->time, run->model->scene->end);
   if (!run->options->from) TRY(remove_checkpoint(run)); // of an earlier run in this folder
   TRY(offer_checkpoint(run));
   while (!has_ended(run)) {

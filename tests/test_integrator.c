@@ -422,6 +422,34 @@ START_TEST(a_run_whose_steps_are_taken_back_is_given_up) {
 }
 END_TEST
 
+// Checkpoints and stages begin a new integrator long before a window of the stall is over.
+START_TEST(a_crawl_through_many_integrators_is_given_up) {
+  Toy toy = {.count = 1, .mass = 1, .wall_stiffness = 1e8};
+  toy_open(&toy);
+  FemStall stall = fem_stall_begin(0.5, 1);
+  FemIntegratorDef def = def_of(1e-9, 1);
+  def.stall = &stall;
+  double u = 1, v = 0, time = 0.5;
+  Status status = STATUS_OK;
+  for (int part = 0; part < 20 && status == STATUS_OK; part++) {
+    FemIntegrator *integrator;
+    ck_assert_ok(fem_integrator_create(&integrator, &toy.system, &fem_solver_cholmod, &def));
+    ck_assert_ok(fem_integrator_restart(integrator, time, &u, &v, 0));
+    bool is_onset;
+    for (int k = 0; k < 300 && status == STATUS_OK; k++)
+      status = fem_integrator_step(integrator, &time, &is_onset);
+    const double *u_now, *v_now;
+    fem_integrator_state(integrator, &time, &u_now, &v_now);
+    u = *u_now, v = *v_now;
+    fem_integrator_destroy(integrator);
+  }
+  ck_assert_int_eq(status, STATUS_SOLVER);
+  ck_assert_msg(strstr(status_message(), "stalls") != NULL, "%s", status_message());
+  ck_assert(time < 0.6);
+  fem_system_destroy(&toy.system);
+}
+END_TEST
+
 // ẍ = 10⁴ x: S = −10⁴ + c² is positive definite only for steps shorter than a hundredth.
 START_TEST(a_matrix_that_is_not_positive_definite_shortens_the_step) {
   for (int s = 0; s < KIND_COUNT; s += 2) { // the condensed solvers
@@ -696,6 +724,7 @@ int main(void) {
   tcase_add_test(cases, a_jump_of_the_force_never_hangs);
   tcase_add_test(cases, a_run_that_crawls_is_given_up);
   tcase_add_test(cases, a_run_whose_steps_are_taken_back_is_given_up);
+  tcase_add_test(cases, a_crawl_through_many_integrators_is_given_up);
   tcase_add_test(cases, a_matrix_that_is_not_positive_definite_shortens_the_step);
   tcase_add_test(cases, interpolation_meets_the_steps_and_keeps_to_the_last_one);
   tcase_add_test(cases, a_restart_from_an_earlier_state_repeats_the_run);

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/stall.h"
+
+#include "suite.h"
+
+static const double LONG_STEP = 1; // no bound
+
+// So many steps of `step` seconds, of which every `vain_every`th (0: none) is tried twice; until the verdict
+// is another than to go on. `*time` goes on.
+static FemStallVerdict march(FemStall *stall, int count, double step, int vain_every, double *time,
+                             int *taken) {
+  FemStallVerdict verdict = FEM_STALL_GOES_ON;
+  for (*taken = 0; *taken < count && verdict == FEM_STALL_GOES_ON; ++*taken) {
+    int vain = vain_every > 0 && *taken % vain_every == 0;
+    verdict = fem_stall_add(stall, 1 + vain, vain, *time += step, LONG_STEP);
+  }
+  return verdict;
+}
+
+START_TEST(a_steady_run_goes_on_however_many_steps_it_takes_and_loses) {
+  FemStall stall = fem_stall_begin(0, 1);
+  double time = 0;
+  int taken;
+  ck_assert_int_eq(march(&stall, 300000, 1.0 / 300000, 1, &time, &taken), FEM_STALL_GOES_ON);
+  ck_assert_int_eq(taken, 300000);
+  ck_assert(stall.fastest > 0); // it was judged
+}
+END_TEST
+
+START_TEST(a_run_that_would_take_a_million_steps_is_given_up_after_one_window) {
+  FemStall stall = fem_stall_begin(0, 1);
+  double time = 0;
+  int taken;
+  ck_assert_int_eq(march(&stall, 10000, 0.9e-6, 0, &time, &taken), FEM_STALL_STANDS);
+  ck_assert_int_eq(taken, FEM_STALL_WINDOW);
+  ck_assert_near(stall.left, (1 - time) / 0.9e-6, 1);
+}
+END_TEST
+
+START_TEST(a_run_that_makes_no_way_at_all_is_given_up) {
+  FemStall stall = fem_stall_begin(0, 1);
+  FemStallVerdict verdict = FEM_STALL_GOES_ON;
+  int count = 0;
+  for (; count < 2 * FEM_STALL_WINDOW && verdict == FEM_STALL_GOES_ON; count++) {
+    verdict = fem_stall_add(&stall, 1, 0, 1e-3, LONG_STEP);
+    fem_stall_take_back(&stall);
+  }
+  // the first window came from 0 to 1e-3
+  ck_assert_int_eq(verdict, FEM_STALL_STANDS);
+  ck_assert_int_eq(count, FEM_STALL_WINDOW);
+}
+END_TEST
+
+START_TEST(steps_as_long_as_allowed_are_no_stall) {
+  FemStall stall = fem_stall_begin(0, 1);
+  for (int k = 1; k <= 10000; k++)
+    ck_assert_int_eq(fem_stall_add(&stall, 1, 0, k * 1e-8, 1e-8), FEM_STALL_GOES_ON);
+}
+END_TEST
+
+START_TEST(the_end_is_no_stall) {
+  FemStall stall = fem_stall_begin(1 - 1e-9, 1);
+  for (int k = 1; k < FEM_STALL_WINDOW; k++)
+    ck_assert_int_eq(fem_stall_add(&stall, 1, 0, 1 - 1e-9, LONG_STEP), FEM_STALL_GOES_ON);
+  ck_assert_int_eq(fem_stall_add(&stall, 1, 0, 1, LONG_STEP), FEM_STALL_GOES_ON);
+}
+END_TEST
+
+// Freely at first, then in contact: fast, with every `vain_every`th step tried twice, at `slow` a step.
+static FemStallVerdict meet(double fast, double slow, int vain_every, int *taken) {
+  FemStall stall = fem_stall_begin(0, 1);
+  double time = 0;
+  ck_assert_int_eq(march(&stall, FEM_STALL_WINDOW, fast, 0, &time, taken), FEM_STALL_GOES_ON);
+  return march(&stall, 20000, slow, vain_every, &time, taken);
+}
+
+START_TEST(a_run_creeps_that_slows_down_and_loses_steps_and_has_far_to_go) {
+  int taken;
+  ck_assert_int_eq(meet(1e-4, 4e-6, 2, &taken), FEM_STALL_CREEPS);
+  ck_assert_int_le(taken, 2 * FEM_STALL_WINDOW); // two windows of tries
+  ck_assert_int_gt(taken, FEM_STALL_WINDOW);
+}
+END_TEST
+
+START_TEST(each_of_the_three_alone_is_no_creep) {
+  int taken;
+  ck_assert_int_eq(meet(1e-4, 4e-6, 4, &taken), FEM_STALL_GOES_ON);   // a fifth in vain
+  ck_assert_int_eq(meet(2e-5, 4e-6, 2, &taken), FEM_STALL_GOES_ON);   // slower by seven, with what is lost
+  ck_assert_int_eq(meet(2e-4, 1.5e-5, 2, &taken), FEM_STALL_GOES_ON); // 60,000 left
+}
+END_TEST
+
+START_TEST(one_window_of_creeping_is_forgiven) {
+  FemStall stall = fem_stall_begin(0, 1);
+  double time = 0;
+  int taken;
+  for (int k = 0; k < 5; k++) {
+    ck_assert_int_eq(march(&stall, FEM_STALL_WINDOW, 3e-5, 0, &time, &taken), FEM_STALL_GOES_ON);
+    ck_assert_int_eq(march(&stall, 1334, 2e-6, 2, &time, &taken), FEM_STALL_GOES_ON);
+    ck_assert_int_eq(stall.strikes, 1);
+  }
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("stall");
+  tcase_add_test(cases, a_steady_run_goes_on_however_many_steps_it_takes_and_loses);
+  tcase_add_test(cases, a_run_that_would_take_a_million_steps_is_given_up_after_one_window);
+  tcase_add_test(cases, a_run_that_makes_no_way_at_all_is_given_up);
+  tcase_add_test(cases, steps_as_long_as_allowed_are_no_stall);
+  tcase_add_test(cases, the_end_is_no_stall);
+  tcase_add_test(cases, a_run_creeps_that_slows_down_and_loses_steps_and_has_far_to_go);
+  tcase_add_test(cases, each_of_the_three_alone_is_no_creep);
+  tcase_add_test(cases, one_window_of_creeping_is_forgiven);
+  return suite_run("stall", cases, 20);
+}
