@@ -42,13 +42,27 @@ static bool is_engaged(const ContactOnset *onset, const ContactLayout *layout, c
   return !(separation_of(layout, pair, time, positions, touch) > touch);
 }
 
+static bool are_same(const ContactPair *a, const ContactPair *b) {
+  return a->facing == b->facing && a->tets[0] == b->tets[0] && a->tets[1] == b->tets[1];
+}
+
+// The candidates that are among the known pairs, and only those, are engaged.
+static void take_known(ContactOnset *onset, const ContactCandidateList *candidates, const ContactPair *known,
+                       int known_count) {
+  for (int k = 0, next = 0; k < candidates->count; k++) {
+    onset->is_engaged[k] = next < known_count && are_same(&candidates->pairs[k], &known[next]);
+    next += onset->is_engaged[k];
+  }
+}
+
 static void find_engaged(ContactOnset *onset, const ContactLayout *layout,
                          const ContactCandidateList *candidates, double time, const double *positions) {
   double touch = 1e-6 * layout->margin;
   contact_candidates_bound(candidates, layout, positions, onset->boxes);
 #pragma omp parallel for schedule(static) if (candidates->count > 512)
   for (int k = 0; k < candidates->count; k++)
-    onset->is_engaged[k] = is_engaged(onset, layout, &candidates->pairs[k], time, positions, touch);
+    if (!onset->is_engaged[k])
+      onset->is_engaged[k] = is_engaged(onset, layout, &candidates->pairs[k], time, positions, touch);
 }
 
 static void mark(ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,
@@ -78,12 +92,14 @@ static void watch_facing(ContactOnset *onset, const ContactLayout *layout, const
 }
 
 Status contact_onset_choose(ContactOnset *onset, const ContactLayout *layout,
-                            const ContactCandidateList *candidates, double time, const double *positions) {
+                            const ContactCandidateList *candidates, const ContactPair *known, int known_count,
+                            double time, const double *positions) {
   size_t most = (size_t)candidates->count;
   if (!memory_reserve((void **)&onset->watched, &onset->capacity, most, sizeof(ContactPair)) ||
       !memory_reserve((void **)&onset->is_engaged, &onset->engaged_capacity, most, 1))
     return status_no_memory("watched pairs");
   onset->count = 0;
+  take_known(onset, candidates, known, known_count);
   find_engaged(onset, layout, candidates, time, positions);
   for (int f = 0; f < layout->facing_count; f++)
     watch_facing(onset, layout, candidates->pairs, candidates->begin[f], candidates->begin[f + 1]);

@@ -25,9 +25,11 @@ typedef struct ContactOnset {
 Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout);
 void contact_onset_destroy(ContactOnset *onset);
 
-// Chooses the watched pairs among the candidates.
+// Chooses the watched pairs among the candidates. The `known` ones (known_count), in the candidates' order,
+// are known to overlap at these positions; the answer is the same without them, but takes longer.
 Status contact_onset_choose(ContactOnset *onset, const ContactLayout *layout,
-                            const ContactCandidateList *candidates, double time, const double *positions);
+                            const ContactCandidateList *candidates, const ContactPair *known, int known_count,
+                            double time, const double *positions);
 
 // The smallest separation of a watched pair [m], at most the margin.
 double contact_onset_gap(const ContactOnset *onset, const ContactLayout *layout, double time,

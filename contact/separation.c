@@ -56,10 +56,10 @@ static double distance_across(const Pair *pair, Vec3 e, Vec3 f) {
 static const int FACES[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 static const int EDGES[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
-static double separation_by_faces(const Pair *pair) {
+static double separation_by_faces(const Pair *pair, double enough) {
   double best = -INFINITY;
   for (int t = 0; t < 2; t++)
-    for (int f = 0; f < 4; f++) {
+    for (int f = 0; f < 4 && !(best > enough); f++) {
       const Vec3 *x = pair->x[t];
       Vec3 corner = x[FACES[f][0]];
       best = larger(
@@ -70,7 +70,7 @@ static double separation_by_faces(const Pair *pair) {
 
 double contact_separation_pair(const double coordinates[24], double enough) {
   Pair pair = shifted(coordinates);
-  double best = separation_by_faces(&pair);
+  double best = separation_by_faces(&pair, enough);
   for (int e = 0; e < 6 && !(best > enough); e++) {
     Vec3 edge = vec3_sub(pair.x[0][EDGES[e][1]], pair.x[0][EDGES[e][0]]);
     for (int f = 0; f < 6; f++)

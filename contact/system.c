@@ -60,6 +60,15 @@ void contact_system_destroy(ContactSystem *system) {
   memory_free(system);
 }
 
+// What the last evaluation found to overlap need not be separated once more.
+static Status choose_watched(ContactSystem *system, double time, const double *positions) {
+  const ContactEvaluation *evaluation = &system->evaluation;
+  bool knows = contact_evaluation_is_at(evaluation, &system->layout, time, positions) &&
+               !contact_overlap_has_ghosts(system->layout.def.model);
+  return contact_onset_choose(&system->onset, &system->layout, &system->candidates.list, evaluation->pairs,
+                              knows ? evaluation->pair_count : 0, time, positions);
+}
+
 Status contact_system_update(ContactSystem *system, double time, const double *positions,
                              const double *velocities, double step, bool *has_changed) {
   bool changed;
@@ -68,7 +77,7 @@ Status contact_system_update(ContactSystem *system, double time, const double *p
   system->counters.searches = system->candidates.searches;
   system->counters.broad_s = system->candidates.search_s;
   if (has_changed) *has_changed = changed;
-  return contact_onset_choose(&system->onset, &system->layout, &system->candidates.list, time, positions);
+  return choose_watched(system, time, positions);
 }
 
 void contact_system_forget(ContactSystem *system) {
@@ -131,7 +140,7 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
   contact_rest_keep(&system->rest, layout, &system->candidates.list, &system->evaluation, is_held);
   contact_candidates_leave_out(&system->candidates, layout, system->rest.is_resting);
   contact_evaluation_start_over(&system->evaluation, layout);
-  return contact_onset_choose(&system->onset, layout, &system->candidates.list, time, positions);
+  return choose_watched(system, time, positions);
 }
 
 bool contact_system_is_resting(const ContactSystem *system, int interface) {
