@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/statics.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,6 +12,9 @@
 
 // Equilibrium: this share of the largest force met, and of E · edge² at least.
 static const double TOLERANCE = 1e-8, SMALLEST_SCALE = 1e-9;
+// Nor less than what rounding of a coordinate x makes of forces, ε x · edge · E / (1 − 2ν), this many times:
+// a body that nothing loads is in equilibrium.
+static const double ROUNDING = 2;
 // Relaxation moves no vertex further at once, as a share of the mean edge.
 static const double LONGEST_WAY = 0.25;
 // Relaxation hands over to Newton once the force has fallen to this share.
@@ -41,10 +45,23 @@ static Status check_scene(const FemSceneDef *scene) {
   return STATUS_OK;
 }
 
+static double largest_of(const double *values, int count) {
+  double largest = 0;
+  for (int i = 0; i < count; i++) largest = fmax(largest, fabs(values[i]));
+  return largest;
+}
+
 static double smallest_scale(const FemModel *model) {
-  double softest = INFINITY;
-  for (int b = 0; b < model->scene->body_count; b++) softest = fmin(softest, model->bodies[b].material.young);
-  return SMALLEST_SCALE * softest * model->edge * model->edge;
+  double softest = INFINITY, rounding = 0;
+  for (int b = 0; b < model->scene->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    double extent =
+        largest_of(model->rest + 3 * (size_t)body->vertex_begin, 3 * (body->vertex_end - body->vertex_begin));
+    double modulus = body->material.young / (1 - 2 * body->material.poisson);
+    softest = fmin(softest, body->material.young);
+    rounding = fmax(rounding, ROUNDING * DBL_EPSILON * modulus * model->edge * extent);
+  }
+  return fmax(SMALLEST_SCALE * softest * model->edge * model->edge, rounding / TOLERANCE);
 }
 
 Status fem_statics_create(FemStatics *statics, FemSystem *system, const FemSolverOps *ops) {
@@ -72,12 +89,6 @@ void fem_statics_destroy(FemStatics *statics) {
                       statics->kept_position};
   for (int i = 0; i < 5; i++) memory_free(arrays[i]);
   *statics = (FemStatics){0};
-}
-
-static double largest_of(const double *values, int count) {
-  double largest = 0;
-  for (int i = 0; i < count; i++) largest = fmax(largest, fabs(values[i]));
-  return largest;
 }
 
 // Forces at (time, u); the scale grows with the largest on any vertex, reactions included.

@@ -59,6 +59,24 @@ START_TEST(a_linear_body_is_in_equilibrium_after_one_solve) {
 }
 END_TEST
 
+// All that is left of its forces is rounding of coordinates of the size of 3 m.
+START_TEST(a_body_that_nothing_loads_is_in_equilibrium) {
+  SceneRun run;
+  run_well(&run, "time: {end: 1, static: true}\n"
+                 "bodies:\n"
+                 "  - name: block\n"
+                 "    mesh: {box: {size: [0.13, 0.11, 0.07], cells: 4}}\n"
+                 "    place: {rotate: {axis: [1, 2, 3], degrees: 37}, translate: [3, 1, 2]}\n"
+                 "    material: {young: 1e6, poisson: 0.3, density: 1000}\n"
+                 "    fixed: [{group: x_min}]\n"
+                 "output: {frames: 20}\n");
+  ck_assert_int_eq(run.result.halvings, 0);
+  for (int i = 0; i < 3 * run.model.vertex_count; i++)
+    ck_assert_near(scene_position(&run, 20, i / 3)[i % 3], run.model.rest[i], 1e-12);
+  scene_close(&run);
+}
+END_TEST
+
 // Rubber pulled to twice its length: P = 2 (c₁ + c₂/λ)(λ − 1/λ²) at ν → ½; the reaction is P A.
 START_TEST(rubber_pulled_to_twice_its_length_pulls_back_as_theory_says) {
   SceneRun run;
@@ -235,6 +253,7 @@ int main(void) {
   TCase *test_case = tcase_create("statics");
   tcase_add_test(test_case, a_static_scene_has_half_the_unknowns);
   tcase_add_test(test_case, a_linear_body_is_in_equilibrium_after_one_solve);
+  tcase_add_test(test_case, a_body_that_nothing_loads_is_in_equilibrium);
   tcase_add_test(test_case, rubber_pulled_to_twice_its_length_pulls_back_as_theory_says);
   tcase_add_test(test_case, a_block_comes_to_rest_on_the_ground);
   tcase_add_test(test_case, the_work_of_an_obstacle_is_stored);
