@@ -2,8 +2,10 @@
 // Runs in which a body meets itself.
 #include "scene.h"
 
+#include <math.h>
 #include <string.h>
 
+#include "base/vec3.h"
 #include "contact/bounds.h"
 #include "contact/overlap.h"
 
@@ -41,6 +43,24 @@ static double shared_volume(const SceneRun *run, int frame) {
   return sum;
 }
 
+// The mean of what the floor carries over the last part of the run [N].
+static double mean_on_floor(const SceneRun *run, double share) {
+  int last = run->result.frame_count - 1, first = (int)((1 - share) * last);
+  double sum = 0;
+  for (int frame = first; frame <= last; frame++) sum += scene_force(run, frame, 1)[2];
+  return sum / (last - first + 1);
+}
+
+// The fastest vertex over the same part [m/s].
+static double fastest(const SceneRun *run, double share) {
+  int last = run->result.frame_count - 1, first = (int)((1 - share) * last);
+  double span = run->result.frame_times[last] - run->result.frame_times[first], most = 0;
+  for (int v = 0; v < run->model.vertex_count; v++)
+    most = fmax(most, vec3_length(vec3_sub(vec3_at(scene_position(run, last, v)),
+                                           vec3_at(scene_position(run, first, v)))));
+  return most / span;
+}
+
 START_TEST(a_folded_mat_carries_its_own_upper_half) {
   SceneRun with, without;
   scene_run(&with, "fold", NULL);
@@ -50,8 +70,11 @@ START_TEST(a_folded_mat_carries_its_own_upper_half) {
   ck_assert_int_eq(without.result.interface_count, 1);
   ck_assert_str_eq(with.result.interface_names[0], "mat, mat");
   double weight = 9.81 * with.model.bodies[0].mass;
-  // Forces balance: what the mat does to itself does not show at the floor.
-  ck_assert_near(scene_force(&with, last, 1)[2], weight, 0.01 * weight);
+  // Forces balance: what the mat does to itself does not show at the floor. Its weight presses it in by 2e-5
+  // m (196 Pa of 1e5 Pa, of elements of 1 cm), less than the default tolerance lets a step be off, with which
+  // the force at rest is off by per cents; hence the scene's smaller one.
+  ck_assert_double_lt(fastest(&with, 0.2), 2e-3);
+  ck_assert_near(mean_on_floor(&with, 0.2), weight, 0.01 * weight);
   // Elements are numbered along the mat: those of the lower half are pressed down by the others.
   ck_assert_double_lt(scene_force(&with, last, 0)[2], -0.05 * weight);
   ck_assert_double_le(scene_gain(&with), 1e-3);
