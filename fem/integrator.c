@@ -147,7 +147,7 @@ Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, cons
   if (!*integrator) return status_no_memory("the integrator");
   (*integrator)->system = system;
   (*integrator)->def = *def;
-  (*integrator)->own_stall = fem_stall_begin(0, def->end);
+  (*integrator)->own_stall = fem_stall_begin(0, def->end, def->end);
   (*integrator)->n = system->model->unknown_count;
   Status status = create(*integrator, solver);
   if (status == STATUS_OK) return STATUS_OK;

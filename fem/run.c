@@ -340,6 +340,7 @@ static Status sleep_on(Run *run) {
   TRY(write_frames_until(run, time));
   run->audit = next;
   run->time = time;
+  fem_stall_pass(&run->stall, time - began);
   keep_extremes(run->result, &measures);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, time - began));
   TRY(observe(run, &measures));
@@ -572,7 +573,8 @@ static Status advance_static(Run *run) {
 static Status march(Run *run) {
   TRY(allocate_states(run));
   TRY(begin_part(run));
-  run->stall = fem_stall_begin(run->time, run->model->scene->end);
+  const FemSceneDef *scene = run->given->scene;
+  run->stall = fem_stall_begin(run->time, scene->end, scene->end / scene->frames);
   if (!run->options->from) TRY(remove_checkpoint(run)); // of an earlier run in this folder
   TRY(offer_checkpoint(run));
   while (!has_ended(run)) {

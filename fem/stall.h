@@ -7,7 +7,8 @@
 // run is given up
 //   standing: at the pace of one window the whole run would take a million tries;
 //   creeping: in two windows in a row a quarter of the tries was in vain, what is left of the run would take
-//             a hundred thousand more, and the pace was below a tenth of that of the fastest window before.
+//             a hundred thousand more, the pace was below a tenth of that of the fastest window before, and
+//             the window came less far than from one frame to the next.
 // A healthy run may be slow, may lose many tries, or may slow down; none known does all of it for 4000 tries
 // (docs/stability.md).
 #ifndef TETLAP_FEM_STALL_H
@@ -18,7 +19,7 @@ enum { FEM_STALL_WINDOW = 2000 };
 typedef enum FemStallVerdict { FEM_STALL_GOES_ON, FEM_STALL_STANDS, FEM_STALL_CREEPS } FemStallVerdict;
 
 typedef struct FemStall {
-  double end;            // of the run [s]
+  double end, frame;     // of the run; between two frames [s]
   double time;           // when the window began [s]
   long long tries, vain; // in the window
   double fastest;        // pace of a window so far [s per try]
@@ -27,11 +28,14 @@ typedef struct FemStall {
 } FemStall;
 
 // A run begins at `time`, or is taken up there.
-FemStall fem_stall_begin(double time, double end);
+FemStall fem_stall_begin(double time, double end, double frame);
 
 // After a step to `time` that took so many tries, `vain` of them before it; no step can be longer than
 // `max_step` [s].
 FemStallVerdict fem_stall_add(FemStall *stall, long long tries, long long vain, double time, double max_step);
+
+// Time went on by so much without the integrator: all bodies slept.
+void fem_stall_pass(FemStall *stall, double duration);
 
 // The last step was refused after all.
 void fem_stall_take_back(FemStall *stall);

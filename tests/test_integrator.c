@@ -426,7 +426,7 @@ END_TEST
 START_TEST(a_crawl_through_many_integrators_is_given_up) {
   Toy toy = {.count = 1, .mass = 1, .wall_stiffness = 1e8};
   toy_open(&toy);
-  FemStall stall = fem_stall_begin(0.5, 1);
+  FemStall stall = fem_stall_begin(0.5, 1, 1);
   FemIntegratorDef def = def_of(1e-9, 1);
   def.stall = &stall;
   double u = 1, v = 0, time = 0.5;

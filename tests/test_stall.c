@@ -18,7 +18,7 @@ static FemStallVerdict march(FemStall *stall, int count, double step, int vain_e
 }
 
 START_TEST(a_steady_run_goes_on_however_many_steps_it_takes_and_loses) {
-  FemStall stall = fem_stall_begin(0, 1);
+  FemStall stall = fem_stall_begin(0, 1, 0.1);
   double time = 0;
   int taken;
   ck_assert_int_eq(march(&stall, 300000, 1.0 / 300000, 1, &time, &taken), FEM_STALL_GOES_ON);
@@ -28,7 +28,7 @@ START_TEST(a_steady_run_goes_on_however_many_steps_it_takes_and_loses) {
 END_TEST
 
 START_TEST(a_run_that_would_take_a_million_steps_is_given_up_after_one_window) {
-  FemStall stall = fem_stall_begin(0, 1);
+  FemStall stall = fem_stall_begin(0, 1, 0.1);
   double time = 0;
   int taken;
   ck_assert_int_eq(march(&stall, 10000, 0.9e-6, 0, &time, &taken), FEM_STALL_STANDS);
@@ -38,7 +38,7 @@ START_TEST(a_run_that_would_take_a_million_steps_is_given_up_after_one_window) {
 END_TEST
 
 START_TEST(a_run_that_makes_no_way_at_all_is_given_up) {
-  FemStall stall = fem_stall_begin(0, 1);
+  FemStall stall = fem_stall_begin(0, 1, 0.1);
   FemStallVerdict verdict = FEM_STALL_GOES_ON;
   int count = 0;
   for (; count < 2 * FEM_STALL_WINDOW && verdict == FEM_STALL_GOES_ON; count++) {
@@ -52,14 +52,14 @@ START_TEST(a_run_that_makes_no_way_at_all_is_given_up) {
 END_TEST
 
 START_TEST(steps_as_long_as_allowed_are_no_stall) {
-  FemStall stall = fem_stall_begin(0, 1);
+  FemStall stall = fem_stall_begin(0, 1, 0.1);
   for (int k = 1; k <= 10000; k++)
     ck_assert_int_eq(fem_stall_add(&stall, 1, 0, k * 1e-8, 1e-8), FEM_STALL_GOES_ON);
 }
 END_TEST
 
 START_TEST(the_end_is_no_stall) {
-  FemStall stall = fem_stall_begin(1 - 1e-9, 1);
+  FemStall stall = fem_stall_begin(1 - 1e-9, 1, 0.1);
   for (int k = 1; k < FEM_STALL_WINDOW; k++)
     ck_assert_int_eq(fem_stall_add(&stall, 1, 0, 1 - 1e-9, LONG_STEP), FEM_STALL_GOES_ON);
   ck_assert_int_eq(fem_stall_add(&stall, 1, 0, 1, LONG_STEP), FEM_STALL_GOES_ON);
@@ -67,8 +67,8 @@ START_TEST(the_end_is_no_stall) {
 END_TEST
 
 // Freely at first, then in contact: fast, with every `vain_every`th step tried twice, at `slow` a step.
-static FemStallVerdict meet(double fast, double slow, int vain_every, int *taken) {
-  FemStall stall = fem_stall_begin(0, 1);
+static FemStallVerdict meet(double frame, double fast, double slow, int vain_every, int *taken) {
+  FemStall stall = fem_stall_begin(0, 1, frame);
   double time = 0;
   ck_assert_int_eq(march(&stall, FEM_STALL_WINDOW, fast, 0, &time, taken), FEM_STALL_GOES_ON);
   return march(&stall, 20000, slow, vain_every, &time, taken);
@@ -76,22 +76,36 @@ static FemStallVerdict meet(double fast, double slow, int vain_every, int *taken
 
 START_TEST(a_run_creeps_that_slows_down_and_loses_steps_and_has_far_to_go) {
   int taken;
-  ck_assert_int_eq(meet(1e-4, 4e-6, 2, &taken), FEM_STALL_CREEPS);
+  ck_assert_int_eq(meet(0.1, 1e-4, 4e-6, 2, &taken), FEM_STALL_CREEPS);
   ck_assert_int_le(taken, 2 * FEM_STALL_WINDOW); // two windows of tries
   ck_assert_int_gt(taken, FEM_STALL_WINDOW);
 }
 END_TEST
 
-START_TEST(each_of_the_three_alone_is_no_creep) {
+START_TEST(with_one_of_the_four_missing_it_is_no_creep) {
   int taken;
-  ck_assert_int_eq(meet(1e-4, 4e-6, 4, &taken), FEM_STALL_GOES_ON);   // a fifth in vain
-  ck_assert_int_eq(meet(2e-5, 4e-6, 2, &taken), FEM_STALL_GOES_ON);   // slower by seven, with what is lost
-  ck_assert_int_eq(meet(2e-4, 1.5e-5, 2, &taken), FEM_STALL_GOES_ON); // 60,000 left
+  ck_assert_int_eq(meet(0.1, 1e-4, 4e-6, 4, &taken), FEM_STALL_GOES_ON); // a fifth in vain
+  ck_assert_int_eq(meet(0.1, 2e-5, 4e-6, 2, &taken), FEM_STALL_GOES_ON); // slower by seven, with what is lost
+  ck_assert_int_eq(meet(0.1, 2e-4, 1.5e-5, 2, &taken), FEM_STALL_GOES_ON); // 60,000 left
+  ck_assert_int_eq(meet(1e-3, 1e-4, 4e-6, 2, &taken), FEM_STALL_GOES_ON);  // frame after frame
+}
+END_TEST
+
+// A tenth of the run asleep, then at the pace of before.
+START_TEST(sleep_is_no_pace_to_be_held) {
+  FemStall stall = fem_stall_begin(0, 1, 0.1);
+  double time = 0;
+  int taken;
+  ck_assert_int_eq(march(&stall, 1000, 4e-6, 2, &time, &taken), FEM_STALL_GOES_ON);
+  fem_stall_pass(&stall, 0.1);
+  time += 0.1;
+  ck_assert_int_eq(march(&stall, 20000, 4e-6, 2, &time, &taken), FEM_STALL_GOES_ON);
+  ck_assert_near(stall.fastest, 4e-6 / 1.5, 1e-8);
 }
 END_TEST
 
 START_TEST(one_window_of_creeping_is_forgiven) {
-  FemStall stall = fem_stall_begin(0, 1);
+  FemStall stall = fem_stall_begin(0, 1, 0.1);
   double time = 0;
   int taken;
   for (int k = 0; k < 5; k++) {
@@ -110,7 +124,8 @@ int main(void) {
   tcase_add_test(cases, steps_as_long_as_allowed_are_no_stall);
   tcase_add_test(cases, the_end_is_no_stall);
   tcase_add_test(cases, a_run_creeps_that_slows_down_and_loses_steps_and_has_far_to_go);
-  tcase_add_test(cases, each_of_the_three_alone_is_no_creep);
+  tcase_add_test(cases, with_one_of_the_four_missing_it_is_no_creep);
+  tcase_add_test(cases, sleep_is_no_pace_to_be_held);
   tcase_add_test(cases, one_window_of_creeping_is_forgiven);
   return suite_run("stall", cases, 20);
 }
