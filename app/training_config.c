@@ -84,7 +84,7 @@ static const char *finish_root(void *self, const char **key) {
 // clang-format off
 static const SceneKey source_keys[] = {
     {"name", SCENE_LABEL, AT(AppTrainingSourceDef, name), .help = "in logs and plots"},
-    {"file", SCENE_TEXT, AT(AppTrainingSourceDef, file), .excludes = "law mix volume seed",
+    {"file", SCENE_TEXT, AT(AppTrainingSourceDef, file), .excludes = "law mix volume seed swap",
      .help = "a data set of `tetlap datagen` or of a captured run"},
     {"law", SCENE_TEXT, AT(AppTrainingSourceDef, law), .help = "pairs made on the fly by this law"},
     {"mix", SCENE_TEXT, AT(AppTrainingSourceDef, mix), .needs = "law", .help = "shares of kinds, KIND=SHARE,…"},
@@ -94,6 +94,8 @@ static const SceneKey source_keys[] = {
      .absent_help = "all of the file, the law's", .help = "pairs"},
     {"seed", SCENE_INTEGER, AT(AppTrainingSourceDef, seed), .range = "[0, inf)", .needs = "law", .fallback = "1",
      .help = "of the law"},
+    {"swap", SCENE_NUMBER, AT(AppTrainingSourceDef, swap), .range = "[0, 1]", .needs = "law", .fallback = "0",
+     .help = "share of the pairs whose tetrahedra are exchanged: 0.5 shows both orders alike"},
     {0},
 };
 static const SceneSection source = {.help = "where pairs come from", .size = sizeof(AppTrainingSourceDef),
@@ -238,7 +240,8 @@ AppSourceDef app_training_config_source(const AppTrainingSourceDef *def) {
                         .mix = def->mix,
                         .volume = def->volume,
                         .count = def->count,
-                        .seed = (uint64_t)def->seed};
+                        .seed = (uint64_t)def->seed,
+                        .swap = def->swap};
 }
 
 static const char *text_of(const char *text) {
@@ -255,6 +258,7 @@ static void print_sources(const char *key, const AppTrainingSourceDef *sources, 
     else
       text_append(text, size, used, "law %s, mix %s, volume %s, seed %d", def->law, text_of(def->mix),
                   text_of(def->volume), def->seed);
+    if (def->swap > 0) text_append(text, size, used, ", swap %.15g", def->swap);
     text_append(text, size, used, ", count %d\n", def->count);
   }
 }

@@ -24,6 +24,7 @@ typedef struct AppTrainingSourceDef {
   char *name, *file, *law, *mix, *volume; // owned; NULL: not given
   int count;                              // 0: all
   int seed;
+  double swap; // share of a law's pairs whose tetrahedra are exchanged
 } AppTrainingSourceDef;
 
 typedef struct AppTrainingModelDef {

@@ -10,6 +10,7 @@ static Status open_law(AppSource *source, const AppSourceDef *def, bool wants_gr
   DatagenLaw law;
   TRY(datagen_law_find(def->law, &law));
   if (def->mix) TRY(datagen_law_parse_mix(law.mix, def->mix));
+  if (def->swap > 0) law.swap_share = def->swap;
   if (def->volume) TRY(datagen_volume_law_parse(&law.volume, def->volume));
   TRY(datagen_plan_make(&source->plan, &law, def->seed, def->count ? def->count : law.default_count));
   source->plan.label = DATAGEN_LABEL_CLIP;
@@ -102,4 +103,6 @@ void app_training_source_describe(const AppSourceDef *def, const AppSource *sour
   datagen_volume_law_print(&source->plan.law.volume, volume, sizeof volume);
   text_append(text, size, &used, "law %s (%s; V %s), seed %llu, %lld pairs", def->law, mix, volume,
               (unsigned long long)def->seed, source->count);
+  if (source->plan.law.swap_share > 0)
+    text_append(text, size, &used, ", %g of them exchanged", source->plan.law.swap_share);
 }

@@ -18,6 +18,7 @@ typedef struct AppSourceDef {
   const char *volume; // its law of volumes, if they are to be others
   long long count;    // pairs; 0: all of the file, the law's default
   uint64_t seed;      // of the law
+  double swap;        // share of the law's pairs whose tetrahedra are exchanged; 0: the law's own
 } AppSourceDef;
 
 typedef struct AppSource {

@@ -462,6 +462,46 @@ static void check_refusal(const char *text, const char *word) {
   ck_assert_msg(strstr(status_message(), word) != NULL, "'%s' does not say '%s'", status_message(), word);
 }
 
+// The same pairs, those that were exchanged marked in `is_exchanged`.
+static int count_exchanged(const DatagenPairs *given, const DatagenPairs *pairs, size_t count) {
+  int exchanged = 0;
+  for (size_t i = 0; i < count; i++) {
+    const double *a = given->coordinates + 24 * i, *b = pairs->coordinates + 24 * i;
+    bool is_same = memcmp(a, b, 24 * sizeof *a) == 0;
+    bool is_exchanged = memcmp(a, b + 12, 12 * sizeof *a) == 0 && memcmp(a + 12, b, 12 * sizeof *a) == 0;
+    ck_assert(is_same != is_exchanged);
+    ck_assert_int_eq(pairs->kind[i], given->kind[i]);
+    ck_assert_near(pairs->volume[i], given->volume[i], 1e-12);
+    exchanged += is_exchanged;
+  }
+  return exchanged;
+}
+
+START_TEST(a_source_exchanges_the_share_of_pairs_that_it_is_told) {
+  make_directory();
+  const char *path = path_in("swap.yaml");
+  write_text(path, "name: t\nmodel: {kind: tpn}\ndata:\n"
+                   "  training: [{law: paper-train, count: 400, swap: 0.5},\n"
+                   "             {law: paper-train, count: 400, swap: 1}, {law: paper-train, count: 400}]\n"
+                   "  validation: [{law: paper-test, count: 100}]\noptimiser: {samples: 1}\n");
+  AppTrainingConfig config;
+  ck_assert_ok(app_training_config_read(path, NULL, 0, &config));
+  DatagenPairs pairs[3];
+  size_t count;
+  for (int s = 0; s < 3; s++) {
+    AppSourceDef def = app_training_config_source(&config.training[s]);
+    ck_assert_ok(app_training_source_load(&def, &pairs[s], &count));
+    ck_assert_int_eq((int)count, 400);
+  }
+  int half = count_exchanged(&pairs[2], &pairs[0], count);
+  ck_assert(half > 160 && half < 240); // four standard deviations
+  ck_assert_int_eq(count_exchanged(&pairs[2], &pairs[1], count), 400);
+  for (int s = 0; s < 3; s++) datagen_pairs_destroy(&pairs[s]);
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+END_TEST
+
 START_TEST(wrong_configurations_are_refused_by_name) {
   make_directory();
   check_refusal("name: t\n", "model");
@@ -469,6 +509,8 @@ START_TEST(wrong_configurations_are_refused_by_name) {
   check_refusal("name: t\nmodel: {kind: geo, features: 37}\n", "36, 70, 100");
   check_refusal("name: t\nmodel: {kind: geo, width: 0}\n", "width");
   check_refusal("name: t\nmodel: {kind: geo}\ndata: {training: [{law: scene, file: x}]}\n", "file");
+  check_refusal("name: t\nmodel: {kind: geo}\ndata: {training: [{law: scene, swap: 2}]}\n", "swap");
+  check_refusal("name: t\nmodel: {kind: geo}\ndata: {training: [{file: x, swap: 1}]}\n", "swap");
   check_refusal("name: t\nmodel: {kind: tpn, normalisation: pca}\n"
                 "data: {training: [{law: scene}], validation: [{law: scene}]}\n"
                 "loss: {sobolev: 1}\noptimiser: {samples: 1}\n",
@@ -509,6 +551,7 @@ int main(void) {
   tcase_add_test(test_case, training_stops_when_it_gets_no_better);
   tcase_add_test(test_case, weights_brought_over_to_another_whitening_are_the_same_function);
   tcase_add_test(test_case, wrong_configurations_are_refused_by_name);
+  tcase_add_test(test_case, a_source_exchanges_the_share_of_pairs_that_it_is_told);
   tcase_add_test(test_case, shipped_configurations_are_read);
   return suite_run("train", test_case, 60);
 }
