@@ -234,11 +234,17 @@ static hid_t create_file(const char *path) {
   return file;
 }
 
-static hid_t create_column(hid_t file, int column) {
+// Rows of a chunk: a file that is known to stay small has no room for more.
+static hsize_t chunk_rows(const DatagenInfo *info) {
+  bool is_small = info->planned > 0 && info->planned < DATAGEN_DATASET_CHUNK;
+  return is_small ? (hsize_t)info->planned : DATAGEN_DATASET_CHUNK;
+}
+
+static hid_t create_column(hid_t file, int column, hsize_t rows) {
   hsize_t now[4], later[4], chunk[4];
   shape_of(column, 0, now);
   shape_of(column, H5S_UNLIMITED, later);
-  shape_of(column, DATAGEN_DATASET_CHUNK, chunk);
+  shape_of(column, rows, chunk);
   const int rank = layouts[column].rank;
   hid_t space = H5Screate_simple(rank, now, later), options = H5Pcreate(H5P_DATASET_CREATE), dataset = -1;
   hid_t type = layouts[column].is_real ? H5T_IEEE_F64LE : H5T_STD_U8LE;
@@ -256,7 +262,7 @@ static Status create_contents(DatagenWriter *writer) {
   if (writer->file < 0) return fail_hdf5(STATUS_IO, path, "cannot be written");
   for (int c = 0; c < COLUMN_COUNT; c++) {
     if (!is_wanted(&writer->info, c)) continue;
-    writer->datasets[c] = create_column(writer->file, c);
+    writer->datasets[c] = create_column(writer->file, c, chunk_rows(&writer->info));
     if (writer->datasets[c] < 0) return fail_hdf5(STATUS_IO, path, "cannot be written");
   }
   return STATUS_OK;

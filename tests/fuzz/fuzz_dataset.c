@@ -12,7 +12,7 @@
 #include "hdf5_edit.h"
 #include "target.h"
 
-enum { PAIR_COUNT = 5, ROOM = 1 << 22 };
+enum { PAIR_COUNT = 5, ROOM = 1 << 18 };
 
 static const char file_name[] = "fuzz.h5";
 
@@ -36,6 +36,8 @@ static const FuzzImage *template_image(void) {
                       .seed = 1,
                       .law = "mixed",
                       .label = "exact",
+                      .total = PAIR_COUNT,
+                      .planned = PAIR_COUNT, // small chunks: a small file
                       .has_gradient = true};
   DatagenWriter *writer;
   DatagenPairs pairs;
