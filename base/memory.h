@@ -22,6 +22,9 @@ void memory_free(void *array);
 size_t memory_held(const void *array);
 size_t memory_held_by(size_t count, const void *const *arrays); // of several
 
+// Hands what is free in the heap back to the system: after much was freed that is not soon needed again.
+void memory_trim(void);
+
 // Tests: the k-th allocation from now on (1 = the next) fails once; 0 switches it off.
 void memory_fail_at(long k);
 

@@ -35,7 +35,7 @@ typedef struct FemCheckpoint {
   int next_frame;       // number of the frame to come
   double *frame_times;  // of the VTU files so far [s], owned       (frame_count)
   int frame_count;
-  char *history; // history.csv so far, "" if none is written, owned
+  char *history; // history.csv so far, "" if none is written, owned; a run leaves it to its recorder
   int history_rows;
   FemAudit audit;
   double force_scale, driven_work; // of a static scene [N], [J]

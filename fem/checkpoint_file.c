@@ -152,6 +152,11 @@ static herr_t keep_description(unsigned level, const H5E_error2_t *error, void *
   return 0;
 }
 
+// HDF5 keeps a freed buffer for the next one of just that size, and the history has another size every time.
+static void forget_buffers(void) {
+  H5garbage_collect();
+}
+
 // A failure with the cause that HDF5 gives.
 static Status fail_hdf5(Status code, const char *path, const char *what) {
   char reason[160] = "no reason given";
@@ -324,6 +329,7 @@ Status fem_checkpoint_write(const FemCheckpoint *checkpoint, const char *path) {
   if (!status) status = write_image(path, image, size);
   memory_free(image);
   memory_free(counters);
+  forget_buffers();
   return status;
 }
 
@@ -491,6 +497,7 @@ Status fem_checkpoint_read(FemCheckpoint *checkpoint, const char *path) {
   if (!status && file < 0) status = fail_hdf5(STATUS_INPUT, path, "is damaged");
   if (!status) status = read_contents(file, checkpoint, path);
   close_id(file);
+  forget_buffers();
   memory_free(text);
   if (status) fem_checkpoint_destroy(checkpoint);
   return status;

@@ -44,14 +44,10 @@ static void save_state(FemCheckpoint *checkpoint, FemSystem *system, double time
 }
 
 static Status save_output(FemCheckpoint *checkpoint, const FemRecorder *recorder) {
-  const FemHistory *history = &recorder->history;
-  memory_free(checkpoint->history);
   memory_free(checkpoint->frame_times);
-  checkpoint->history = memory_zeroed(history->text_size + 1, 1);
   checkpoint->frame_times = memory_copy(recorder->frame_times, (size_t)recorder->frame_count, sizeof(double));
-  if (!checkpoint->history || !checkpoint->frame_times) return status_no_memory("a checkpoint");
-  if (history->text_size) memcpy(checkpoint->history, history->text, history->text_size);
-  checkpoint->history_rows = history->row_count;
+  if (!checkpoint->frame_times) return status_no_memory("a checkpoint");
+  checkpoint->history_rows = recorder->history.row_count;
   checkpoint->frame_count = recorder->frame_count;
   return STATUS_OK;
 }

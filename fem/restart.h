@@ -11,8 +11,8 @@
 Status fem_restart_begin(FemCheckpoint *checkpoint, const FemModel *model, const double *displacement);
 
 // Takes over the state (time; u, v of the unknowns), the effects' histories, what the recorder has written
-// and the counts so far, which include those of the system. `checkpoint` was made for this model; it is as it
-// was after a failure.
+// (but not its history, which is long and stays with it) and the counts so far, which include those of the
+// system. `checkpoint` was made for this model; it is as it was after a failure.
 Status fem_restart_collect(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
                            const double *v, const FemRecorder *recorder, const FemRunResult *so_far);
 

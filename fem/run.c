@@ -50,6 +50,7 @@ typedef struct Run {
   FemStall stall;           // over all stages
   double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]
   FemCheckpoint checkpoint; // where this part began
+  size_t history_size;      // bytes of the recorder's history that belong to it
   bool is_written;          // is that in the file
   int interval;             // frames between two checkpoints; 0: none
   double began_s, cpu_began_s, written_s; // clocks: of this part, and when a checkpoint was written
@@ -483,10 +484,28 @@ static void end_part(Run *run) {
   run->cpu_began_s = cpu;
 }
 
+static void forget_history(Run *run) {
+  memory_free(run->checkpoint.history);
+  run->checkpoint.history = NULL;
+}
+
+// The checkpoint's history is the beginning of what the recorder has; a copy is held only while it is
+// written.
+static Status copy_history(Run *run) {
+  forget_history(run);
+  char *text = memory_zeroed(run->history_size + 1, 1);
+  if (!text) return status_no_memory("a checkpoint");
+  if (run->history_size) memcpy(text, run->recorder.history.text, run->history_size);
+  run->checkpoint.history = text;
+  return STATUS_OK;
+}
+
 static Status write_checkpoint(Run *run) {
   char *path = file_join(run->options->directory, FEM_CHECKPOINT_FILE);
   if (!path) return status_no_memory("a file name");
-  Status status = fem_checkpoint_write(&run->checkpoint, path);
+  Status status = copy_history(run);
+  if (!status) status = fem_checkpoint_write(&run->checkpoint, path);
+  forget_history(run);
   memory_free(path);
   run->is_written = status == STATUS_OK;
   run->written_s = clock_wall_s();
@@ -539,8 +558,11 @@ static Status pass_checkpoint(Run *run) {
   checkpoint->force_scale = force_scale;
   checkpoint->driven_work = driven_work;
   run->is_written = false;
+  run->history_size = run->recorder.history.text_size;
   TRY(offer_checkpoint(run));
-  return begin_part(run);
+  TRY(begin_part(run));
+  memory_trim();
+  return STATUS_OK;
 }
 
 // One step of load, halved where there is no equilibrium; `next_step` is what to try next.
@@ -643,6 +665,7 @@ static Status prepare(Run *run) {
     if (!run->checkpoint.origin) return status_no_memory("a checkpoint");
   }
   run->is_written = options->from;
+  run->history_size = strlen(run->checkpoint.history);
   return begin_result(run);
 }
 
