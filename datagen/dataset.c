@@ -479,14 +479,21 @@ static Status open_column(DatagenDataset *dataset, int column) {
 
 static Status check_counts(const DatagenDataset *dataset) {
   const DatagenInfo *info = &dataset->info;
-  long long sum = 0;
-  for (int k = 0; k < DATAGEN_KIND_COUNT; k++) sum += info->kind_counts[k];
-  if (sum != info->count)
+  long long left = info->count;
+  for (int k = 0; k < DATAGEN_KIND_COUNT; k++) {
+    if (info->kind_counts[k] < 0 || info->kind_counts[k] > left)
+      return status_fail(STATUS_INPUT, "%s: holds %lld pairs, but counts %lld of a kind", dataset->path,
+                         info->count, info->kind_counts[k]);
+    left -= info->kind_counts[k];
+  }
+  if (left > 0)
     return status_fail(STATUS_INPUT, "%s: holds %lld pairs, but its counts of kinds sum to %lld",
-                       dataset->path, info->count, sum);
-  if (info->first < 0 || info->planned < info->count || info->total < info->first + info->planned)
-    return status_fail(STATUS_INPUT, "%s: claims pairs %lld to %lld of %lld, and holds %lld", dataset->path,
-                       info->first, info->first + info->planned, info->total, info->count);
+                       dataset->path, info->count, info->count - left);
+  // as differences: a sum might be more than fits
+  if (info->first < 0 || info->planned < info->count || info->total < info->planned ||
+      info->total - info->planned < info->first)
+    return status_fail(STATUS_INPUT, "%s: claims %lld pairs from %lld on of %lld, and holds %lld",
+                       dataset->path, info->planned, info->first, info->total, info->count);
   return STATUS_OK;
 }
 

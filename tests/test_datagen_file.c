@@ -3,6 +3,7 @@
 // with a file is said.
 #include "suite.h"
 
+#include <limits.h>
 #include <omp.h>
 #include <signal.h>
 #include <stdio.h>
@@ -321,6 +322,22 @@ START_TEST(foreign_and_damaged_files_are_refused_by_what_is_wrong) {
 }
 END_TEST
 
+// Found by tools/fuzz: first + planned overflows.
+START_TEST(a_range_beyond_what_an_integer_holds_is_refused) {
+  DatagenInfo info = {.generator_version = DATAGEN_GENERATOR_VERSION,
+                      .program = "test",
+                      .law = "mixed",
+                      .label = "exact",
+                      .first = LLONG_MAX - 2,
+                      .planned = 8,
+                      .total = 8};
+  DatagenWriter *writer;
+  ck_assert_ok(datagen_writer_begin(&writer, path_of("wrong.h5"), &info));
+  ck_assert_ok(datagen_writer_commit(writer));
+  assert_refused("claims 8 pairs from 9223372036854775805 on of 8");
+}
+END_TEST
+
 START_TEST(a_flipped_bit_among_the_numbers_is_found_when_it_is_read) {
   DatagenPlan plan = make_plan(COUNT, false);
   DatagenInfo info;
@@ -486,6 +503,7 @@ int main(void) {
   tcase_add_test(cases, a_place_that_cannot_be_written_is_an_error);
   tcase_add_test(cases, without_memory_it_fails_cleanly);
   tcase_add_test(cases, foreign_and_damaged_files_are_refused_by_what_is_wrong);
+  tcase_add_test(cases, a_range_beyond_what_an_integer_holds_is_refused);
   tcase_add_test(cases, a_flipped_bit_among_the_numbers_is_found_when_it_is_read);
   tcase_add_test(cases, impossible_pairs_are_not_written);
   tcase_add_test(cases, captured_pairs_are_scaled_proven_and_labelled);
