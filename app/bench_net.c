@@ -14,10 +14,13 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/random.h"
+#include "contact/net_model.h"
 #include "contact/weights.h"
 #include "net/net.h"
 
-enum { MAX_NETS = 16, QUANTITY_COUNT = 2, IMPLEMENTATIONS = NET_KERNEL_COUNT + 1, TORCH = NET_KERNEL_COUNT };
+// Of a TetrahedronPairNet each kernel also computes the folded network (net/fold.h): its normalisation makes
+// the first tetrahedron the same for all pairs, here as in its overlap model.
+enum { MAX_NETS = 16, QUANTITY_COUNT = 2, TORCH = 2 * NET_KERNEL_COUNT, IMPLEMENTATIONS };
 static const char *const quantities[QUANTITY_COUNT] = {"V", "V+grad"};
 static const double ROUND_S = 0.1; // what a round shall take
 static const uint64_t SEED = 5;
@@ -85,11 +88,14 @@ typedef struct Net {
   const NetPlan *plan; // of the one that is there, borrowed
   void *inputs;        // (largest batch, input_count), owned
   size_t input_bytes;
+  const double *first;  // the first tetrahedron of all inputs, NULL where they differ
+  NetModel_f32 folded;  // where there is one
+  float *second_inputs; // (largest batch, 12), the inputs without the first tetrahedron; owned
 } Net;
 
 typedef struct Contestant {
   const Net *net;
-  int implementation; // a NetKernelKind, or TORCH
+  int implementation; // a NetKernelKind, of the folded network NET_KERNEL_COUNT more, or TORCH
   int quantity, batch, threads, calls;
   NetWork_f32 narrow;
   NetWork_f64 wide;
@@ -128,12 +134,34 @@ static Status make_inputs(Net *net, int count) {
   Random random = random_seeded(SEED, 0);
   for (size_t i = 0; i < numbers; i++) {
     double x = random_between(&random, -1, 1);
+    if (net->first && i % 24 < 12) x = net->first[i % 24];
     if (net->is_float)
       ((float *)net->inputs)[i] = (float)x;
     else
       ((double *)net->inputs)[i] = x;
   }
   return STATUS_OK;
+}
+
+static Status fold(Net *net, int count) {
+  float first[12];
+  for (int i = 0; i < 12; i++) first[i] = (float)net->first[i];
+  TRY(fail_as_net(net_fold_create_f32(&net->narrow, first, &net->folded)));
+  net->second_inputs = memory_zeroed((size_t)count * 12, sizeof *net->second_inputs);
+  if (!net->second_inputs) return status_no_memory("the inputs (--batch)");
+  for (int s = 0; s < count; s++)
+    memcpy(net->second_inputs + (ptrdiff_t)s * 12, (const float *)net->inputs + (ptrdiff_t)s * 24 + 12,
+           12 * sizeof(float));
+  return STATUS_OK;
+}
+
+// What a TetrahedronPairNet's normalisation makes of every first tetrahedron.
+static const double *first_of(const Net *net, const NetCard *card) {
+  ContactNormalisation kind;
+  double scale;
+  if (net->narrow.plan->shape.kind != NET_TPN || !contact_net_model_parse(card->normalisation, &kind, &scale))
+    return NULL;
+  return contact_normalise_first(kind);
 }
 
 static Status read_net(Net *net, const char *name, int count) {
@@ -146,6 +174,7 @@ static Status read_net(Net *net, const char *name, int count) {
     TRY(contact_weights_find(name, net->path, sizeof net->path));
   }
   NetStatus status = net_weights_read_f32(net->path, &net->narrow, &card);
+  if (status == NET_OK) net->first = first_of(net, &card);
   net_card_destroy(&card);
   TRY(fail_as_net(status));
   net->is_float = net->narrow.plan->shape.kind == NET_TPN;
@@ -156,7 +185,8 @@ static Status read_net(Net *net, const char *name, int count) {
     TRY(fail_as_net(status));
   }
   net->plan = net->is_float ? net->narrow.plan : net->wide.plan;
-  return make_inputs(net, count);
+  TRY(make_inputs(net, count));
+  return net->first ? fold(net, count) : STATUS_OK;
 }
 
 // Networks whose weights are not there are left out, by name.
@@ -188,6 +218,18 @@ static Status start_torch(Bench *bench) {
   return STATUS_OK;
 }
 
+static bool is_folded(const Contestant *contestant) {
+  return contestant->implementation >= NET_KERNEL_COUNT && contestant->implementation != TORCH;
+}
+
+static const NetModel_f32 *narrow_of(const Contestant *contestant) {
+  return is_folded(contestant) ? &contestant->net->folded : &contestant->net->narrow;
+}
+
+static NetKernelKind kernel_of(const Contestant *contestant) {
+  return (NetKernelKind)(contestant->implementation % NET_KERNEL_COUNT);
+}
+
 // Whether this implementation has this network; its memory is made then.
 static Status begin(Contestant *contestant, bool *is_there) {
   const Net *net = contestant->net;
@@ -197,11 +239,12 @@ static Status begin(Contestant *contestant, bool *is_there) {
     return STATUS_OK;
   }
   NetWorkDef def = net_work_default();
-  def.kernel = (NetKernelKind)contestant->implementation;
+  def.kernel = kernel_of(contestant);
   def.thread_count = contestant->threads;
-  if (!net_kernel_is_available(def.kernel)) return STATUS_OK;
-  NetStatus status = net->is_float ? net_work_create_f32(net->plan, &def, &contestant->narrow)
-                                   : net_work_create_f64(net->plan, &def, &contestant->wide);
+  if (!net_kernel_is_available(def.kernel) || (is_folded(contestant) && !net->first)) return STATUS_OK;
+  NetStatus status = net->is_float
+                         ? net_work_create_f32(narrow_of(contestant)->plan, &def, &contestant->narrow)
+                         : net_work_create_f64(net->plan, &def, &contestant->wide);
   if (status == NET_BAD_ARGUMENT) return STATUS_OK; // a kernel that has not this precision
   TRY(fail_as_net(status));
   *is_there = true;
@@ -266,19 +309,19 @@ static Status make(Bench *bench) {
 
 static void call(Contestant *c) {
   const Net *net = c->net;
+  const float *x = is_folded(c) ? net->second_inputs : net->inputs; // read as float only where it is
   if (c->quantity == 0 && net->is_float)
-    net_forward_eval_f32(&c->narrow, &net->narrow, c->batch, net->inputs, c->outputs);
+    net_forward_eval_f32(&c->narrow, narrow_of(c), c->batch, x, c->outputs);
   else if (c->quantity == 0)
     net_forward_eval_f64(&c->wide, &net->wide, c->batch, net->inputs, c->outputs);
   else if (net->is_float)
-    net_forward_gradient_f32(&c->narrow, &net->narrow, c->batch, net->inputs, c->seeds, c->outputs,
-                             c->gradients);
+    net_forward_gradient_f32(&c->narrow, narrow_of(c), c->batch, x, c->seeds, c->outputs, c->gradients);
   else
     net_forward_gradient_f64(&c->wide, &net->wide, c->batch, net->inputs, c->seeds, c->outputs, c->gradients);
 }
 
 static double mean_of(const Contestant *c) {
-  const NetShape *shape = &c->net->plan->shape;
+  const NetShape *shape = is_folded(c) ? &c->net->folded.plan->shape : &c->net->plan->shape;
   size_t count = (size_t)c->batch * (size_t)(c->quantity == 0 ? shape->output_count : shape->input_count);
   const void *numbers = c->quantity == 0 ? c->outputs : c->gradients;
   double sum = 0;
@@ -336,8 +379,10 @@ typedef struct Row {
 static const AppBenchColumn columns[] = {
     {"net", APP_BENCH_TEXT, offsetof(Row, net), "net", "name or weights file"},
     {"implementation", APP_BENCH_TEXT, offsetof(Row, implementation), "by",
-     "a kernel of ours, or PyTorch and its version"},
-    {"precision", APP_BENCH_TEXT, offsetof(Row, precision), NULL, "float or double"},
+     "a kernel of ours, or PyTorch and its version; folded: the first tetrahedron, the same in all inputs, "
+     "once "
+     "for all"},
+    {"precision", APP_BENCH_TEXT, offsetof(Row, precision), NULL, "float, double or bf16"},
     {"parameters", APP_BENCH_INTEGER, offsetof(Row, parameters), NULL, "of the network"},
     {"quantity", APP_BENCH_TEXT, offsetof(Row, quantity), "quantity",
      "V: outputs; V+grad: and the last one's derivative by the inputs"},
@@ -373,6 +418,13 @@ static const Contestant *find_torch(const Bench *bench, const Contestant *like) 
   return NULL;
 }
 
+static const char *name_of(const Contestant *c) {
+  static const char *const folded[NET_KERNEL_COUNT] = {"blas, folded", "avx2, folded", "avx512, folded",
+                                                       "bf16, folded"};
+  if (c->implementation == TORCH) return c->torch->name;
+  return is_folded(c) ? folded[kernel_of(c)] : net_kernel_name(kernel_of(c));
+}
+
 static Row row_of(const Bench *bench, const Contestant *c, const double peaks[2]) {
   int rounds = bench->options->common.repeats;
   AppBenchTime time = app_bench_timer_time(&c->timer, rounds);
@@ -381,13 +433,16 @@ static Row row_of(const Bench *bench, const Contestant *c, const double peaks[2]
   double cpu_ratio = NAN;
   if (torch) ratio = app_bench_timer_ratio(&c->timer, &torch->timer, rounds);
   if (torch) cpu_ratio = app_bench_timer_cpu_ratio(&c->timer, &torch->timer, rounds).median;
-  double flops = c->net->plan->flops * (c->quantity == 0 ? 1 : 2), gflops = 1e-9 * flops / time.wall,
-         peak = peaks[c->net->is_float];
+  bool is_bf16 = c->implementation != TORCH && kernel_of(c) == NET_KERNEL_BF16;
+  bool is_comparable = torch && !(is_folded(c) && c->quantity == 1); // it has fewer derivatives
+  const NetPlan *plan = is_folded(c) ? c->net->folded.plan : c->net->plan;
+  double flops = plan->flops * (c->quantity == 0 ? 1 : 2), gflops = 1e-9 * flops / time.wall,
+         peak = is_bf16 ? NAN : peaks[c->net->is_float];
   return (Row){.net = c->net->name,
-               .implementation = c->implementation == TORCH
-                                     ? c->torch->name
-                                     : net_kernel_name((NetKernelKind)c->implementation),
-               .precision = c->net->is_float ? "float" : "double",
+               .implementation = name_of(c),
+               .precision = is_bf16            ? "bf16"
+                            : c->net->is_float ? "float"
+                                               : "double",
                .parameters = (long long)c->net->plan->parameter_count,
                .quantity = quantities[c->quantity],
                .batch = c->batch,
@@ -402,7 +457,7 @@ static Row row_of(const Bench *bench, const Contestant *c, const double peaks[2]
                .flops = flops,
                .gflops = gflops,
                .share = flops / time.cpu / peak,
-               .difference = torch ? fabs(c->check / torch->check - 1) : NAN};
+               .difference = is_comparable ? fabs(c->check / torch->check - 1) : NAN};
 }
 
 static Status print(const Bench *bench) {
@@ -423,7 +478,8 @@ static void destroy(Bench *bench) {
   for (int n = 0; n < MAX_NETS; n++) {
     for (int t = 0; t < APP_BENCH_MAX_LIST; t++) app_torch_peer_stop(&bench->torches[n][t]);
     net_model_destroy_f32(&bench->nets[n].narrow), net_model_destroy_f64(&bench->nets[n].wide);
-    memory_free(bench->nets[n].inputs);
+    net_model_destroy_f32(&bench->nets[n].folded);
+    memory_free(bench->nets[n].inputs), memory_free(bench->nets[n].second_inputs);
   }
   memory_free(bench->contestants), memory_free(bench->outputs), memory_free(bench->gradients);
   memory_free(bench->seeds[0]), memory_free(bench->seeds[1]), memory_free(bench);

@@ -10,7 +10,7 @@
 #include "app/scene_write.h"
 #include "base/memory.h"
 
-enum { TEXT_SIZE = 1024 };
+enum { TEXT_SIZE = 4096 };
 
 // The help, with what else a person would ask: unit, choices, what holds without the key.
 static void describe(const SceneKey *key, Record *record) {

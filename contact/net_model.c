@@ -41,12 +41,13 @@ void contact_net_model_destroy(ContactNetModel *model) {
   *model = (ContactNetModel){0};
 }
 
-static Status furnish(ContactNetModel *model, size_t more) {
+static Status furnish(ContactNetModel *model, NetKernelKind kernel, size_t more) {
   model->desk_count = omp_get_max_threads();
   model->desks = memory_zeroed((size_t)model->desk_count, sizeof *model->desks);
   if (!model->desks) return status_no_memory("the network's memory of evaluation");
   NetWorkDef def = net_work_default();
   def.tangent_count = CONTACT_NET_TANGENTS;
+  def.kernel = kernel;
   for (int d = 0; d < model->desk_count; d++) {
     ContactNetDesk *desk = &model->desks[d];
     atomic_flag_clear(&desk->is_taken);
@@ -71,7 +72,7 @@ static Status fold(ContactNetModel *model) {
   return status == NET_OK ? STATUS_OK : fail_as_net(status);
 }
 
-static Status load(ContactNetModel *model, const char *path, size_t more) {
+static Status load(ContactNetModel *model, const char *path, NetKernelKind kernel, size_t more) {
   NetStatus status = net_weights_read_f32(path, &model->network, &model->card);
   if (status != NET_OK) return fail_as_net(status);
   if (model->network.plan->shape.kind != NET_TPN)
@@ -83,12 +84,12 @@ static Status load(ContactNetModel *model, const char *path, size_t more) {
         model->card.normalisation);
   model->has_range = contact_net_range_parse(model->card.range, &model->range);
   TRY(fold(model));
-  return furnish(model, more);
+  return furnish(model, kernel, more);
 }
 
-Status contact_net_model_create(ContactNetModel *model, const char *path, size_t more) {
+Status contact_net_model_create(ContactNetModel *model, const char *path, NetKernelKind kernel, size_t more) {
   *model = (ContactNetModel){0};
-  Status status = load(model, path, more);
+  Status status = load(model, path, kernel, more);
   if (status != STATUS_OK) contact_net_model_destroy(model);
   return status;
 }

@@ -46,9 +46,9 @@ typedef struct ContactNetModel {
   ContactNetDesk *desks; // (desk_count), owned
 } ContactNetModel;
 
-// `more`: bytes of further memory at each desk. STATUS_INPUT: another kind of network, or another
-// normalisation; the message names the file.
-Status contact_net_model_create(ContactNetModel *model, const char *path, size_t more);
+// `kernel` evaluates. `more`: bytes of further memory at each desk. STATUS_INPUT: another kind of network, or
+// another normalisation; the message names the file.
+Status contact_net_model_create(ContactNetModel *model, const char *path, NetKernelKind kernel, size_t more);
 void contact_net_model_destroy(ContactNetModel *model); // a zeroed one is accepted
 
 // A thread's own desk as a rule; another one if threads that OpenMP does not count are about.

@@ -61,11 +61,11 @@ static Status set_rule(ContactNetOverlap *overlap, const ContactNetOptions *opti
 }
 
 static Status create(void **self, const char *path, const ContactNetOptions *given,
-                     const ContactNetOptions *own, bool is_hybrid) {
+                     const ContactNetOptions *own, bool is_hybrid, NetKernelKind kernel) {
   ContactNetOptions options = resolve(given, own);
   ContactNetOverlap *overlap = memory_zeroed(1, sizeof *overlap);
   if (!overlap) return status_no_memory("an overlap model");
-  Status status = contact_net_model_create(&overlap->model, path, contact_net_portion_size());
+  Status status = contact_net_model_create(&overlap->model, path, kernel, contact_net_portion_size());
   if (!status) status = set_rule(overlap, &options, is_hybrid, path);
   if (!status)
     *self = overlap;
@@ -117,7 +117,8 @@ static bool lay_pair(const ContactNetOverlap *overlap, ContactNetDesk *desk, con
   contact_net_portion_swap(pair, swapped);
   for (int o = 0; o < overlap->rule.order_count; o++)
     if (!contact_normalise(overlap->model.kind, o ? swapped : pair, &normalised[o])) return false;
-  for (int o = 0; o < overlap->rule.order_count; o++) contact_net_model_lay(&overlap->model, desk, normalised[o].pair);
+  for (int o = 0; o < overlap->rule.order_count; o++)
+    contact_net_model_lay(&overlap->model, desk, normalised[o].pair);
   return true;
 }
 
@@ -166,29 +167,33 @@ static const ContactNetOptions for_hybrid = {.ghosts = CONTACT_NET_GHOSTS_FADE,
                                              .coplanar = CONTACT_NET_COPLANAR_KEEP};
 
 Status contact_net_overlap_create(void **self, const char *path, const ContactNetOptions *options) {
-  return create(self, path, options, &as_published, false);
+  return create(self, path, options, &as_published, false, net_kernel_best());
 }
 
 // `weights`: a file, or the name of one that ships; NULL: `own`.
 static Status create_named(void **self, const char *weights, const char *own, const ContactNetOptions *given,
-                           const ContactNetOptions *standard, bool is_hybrid) {
+                           const ContactNetOptions *standard, bool is_hybrid, NetKernelKind kernel) {
   char path[4096];
   if (!weights) weights = own;
-  if (contact_weights_is_path(weights)) return create(self, weights, given, standard, is_hybrid);
+  if (contact_weights_is_path(weights)) return create(self, weights, given, standard, is_hybrid, kernel);
   TRY(contact_weights_find(weights, path, sizeof path));
-  return create(self, path, given, standard, is_hybrid);
+  return create(self, path, given, standard, is_hybrid, kernel);
 }
 
 static Status create_tpn(void **self, const char *weights, const ContactNetOptions *options) {
-  return create_named(self, weights, "tpn", options, &as_published, false);
+  return create_named(self, weights, "tpn", options, &as_published, false, net_kernel_best());
+}
+
+static Status create_tpn_bf16(void **self, const char *weights, const ContactNetOptions *options) {
+  return create_named(self, weights, "tpn", options, &as_published, false, NET_KERNEL_BF16);
 }
 
 static Status create_tpn_scene(void **self, const char *weights, const ContactNetOptions *options) {
-  return create_named(self, weights, "tpn-scene", options, &for_scenes, false);
+  return create_named(self, weights, "tpn-scene", options, &for_scenes, false, net_kernel_best());
 }
 
 static Status create_hybrid(void **self, const char *weights, const ContactNetOptions *options) {
-  return create_named(self, weights, "tpn-scene", options, &for_hybrid, true);
+  return create_named(self, weights, "tpn-scene", options, &for_hybrid, true, net_kernel_best());
 }
 
 static bool bends(const void *self) {
@@ -206,6 +211,20 @@ const ContactOverlapOps contact_overlap_tpn = {
     .bends = bends,
     .seconds_per_pair = 3e-6,
     .create = create_tpn,
+    .has_ghosts = has_ghosts,
+    .eval_logits = contact_net_overlap_logits,
+    .eval_pair = contact_net_overlap_eval_pair,
+    .eval_batch = contact_net_overlap_eval_batch,
+    .destroy = contact_net_overlap_destroy,
+};
+
+const ContactOverlapOps contact_overlap_tpn_bf16 = {
+    .name = "tpn-bf16",
+    .help = "learned: tpn with factors rounded to bf16: faster where the processor has AVX512_BF16",
+    .has_hessian = true,
+    .bends = bends,
+    .seconds_per_pair = 2e-6,
+    .create = create_tpn_bf16,
     .has_ghosts = has_ghosts,
     .eval_logits = contact_net_overlap_logits,
     .eval_pair = contact_net_overlap_eval_pair,

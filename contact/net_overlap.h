@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // TetrahedronPairNet as an overlap model: `tpn` as it was published, `tpn-scene` made fit for scenes, and
-// `hybrid`, the paper's section 5.
+// `hybrid`, the paper's section 5. `tpn-bf16` is tpn computed with less precision.
 //
 //   pair ─ disjoint, by an exact test? ─► V = 0                                       (ghosts: cut, fade)
 //     └─► normalised (normalise.h), in one order or both ─► network ─► z, v ─┐
@@ -19,6 +19,10 @@
 //   tpn-scene  fade    status  both    keep      counted
 //   hybrid     –       none    both    keep      exact
 //
+// `tpn-bf16`: the factors of the network's products are rounded to bf16 and summed in float32, but for
+// products with the coordinates. Its gradient is what backpropagation gives with factors rounded likewise:
+// the derivative of the network as if rounding were the identity, not of the stairs that rounding makes of V.
+//
 // `hybrid`: the network's V where the exact test finds an overlap, the status head is confident, the overlap
 // share is neither tiny nor deep and the pair is in the training's range; `exact` elsewhere; blended over
 // bands in between. The paper lets the network dismiss pairs; here an exact test does, which costs less than
@@ -32,7 +36,8 @@
 #include "contact/overlap.h"
 
 // The weights that ship under these names; hybrid takes those of tpn-scene unless others are named.
-extern const ContactOverlapOps contact_overlap_tpn, contact_overlap_tpn_scene, contact_overlap_hybrid;
+extern const ContactOverlapOps contact_overlap_tpn, contact_overlap_tpn_bf16, contact_overlap_tpn_scene,
+    contact_overlap_hybrid;
 
 // `path` as tpn; options NULL: its own. STATUS_INPUT: another kind of network; the message names the file.
 Status contact_net_overlap_create(void **self, const char *path, const ContactNetOptions *options);

@@ -25,8 +25,9 @@ static Vec3 apply_transposed(const double m[9], Vec3 x) {
                 m[2] * x.x + m[5] * x.y + m[8] * x.z};
 }
 
-static void map_vertices(const double pair[24], ContactNormalised *normalised) {
-  for (int v = 0; v < 8; v++) {
+// Vertices first … 7.
+static void map_vertices(const double pair[24], int first, ContactNormalised *normalised) {
+  for (int v = first; v < 8; v++) {
     Vec3 from_origin = vec3_sub(vec3_at(pair + 3 * v), vec3_at(normalised->origin));
     vec3_store(normalised->pair + 3 * v, apply(normalised->matrix, from_origin));
   }
@@ -51,24 +52,28 @@ static bool find_unit(const double pair[24], ContactNormalised *normalised) {
   vec3_store(normalised->matrix + 3, vec3_scale(1 / det, vec3_cross(edge[2], edge[0])));
   vec3_store(normalised->matrix + 6, vec3_scale(1 / det, vec3_cross(edge[0], edge[1])));
   normalised->factor = fabs(det);
-  map_vertices(pair, normalised);
+  map_vertices(pair, 4, normalised);
   memcpy(normalised->pair, simplex, sizeof simplex);
   return true;
 }
 
-// The place's numbers and the vertices that go with them, the largest first; ties stay as they came.
-static void sort_places(double value[4], int order[4]) {
-  for (int i = 1; i < 4; i++)
-    for (int j = i; j > 0 && value[j] > value[j - 1]; j--) {
-      double kept = value[j];
-      int vertex = order[j];
-      value[j] = value[j - 1], value[j - 1] = kept;
-      order[j] = order[j - 1], order[j - 1] = vertex;
+// Numbers the places of the largest value, the next, …; ties stay as they came. Every place counts those
+// before it, which takes no branches.
+static void sort_places(const double value[4], int order[4]) {
+  int before[4] = {0};
+  for (int i = 0; i < 4; i++) order[i] = i; // NaN has no order: whatever comes out is a vertex
+  for (int i = 0; i < 3; i++)
+    for (int j = i + 1; j < 4; j++) {
+      int is_larger = value[j] > value[i];
+      before[i] += is_larger, before[j] += !is_larger;
     }
+  for (int i = 0; i < 4; i++) order[before[i] & 3] = i;
 }
 
-static void arrange(const double pair[24], const int order[8], double arranged[24]) {
-  for (int v = 0; v < 8; v++) memcpy(arranged + 3 * v, pair + 3 * order[v], 3 * sizeof(double));
+// Vertices `order` of the first tetrahedron, those of the second as they are.
+static void arrange_first(const double pair[24], const int order[4], double arranged[24]) {
+  for (int v = 0; v < 4; v++) memcpy(arranged + 3 * v, pair + 3 * order[v], 3 * sizeof(double));
+  memcpy(arranged + 12, pair + 12, 12 * sizeof(double));
 }
 
 // By the second's centroid (times four) in the first, which is in the unit frame.
@@ -98,17 +103,17 @@ static double expand(double c) {
 
 static bool find_sorted(const double pair[24], ContactNormalised *normalised) {
   double arranged[24];
-  int *order = normalised->order;
-  for (int v = 0; v < 8; v++) order[v] = v;
+  int *order = normalised->order, second[4];
   if (!find_unit(pair, normalised)) return false;
   order_first(normalised->pair, order);
-  arrange(pair, order, arranged);
+  arrange_first(pair, order, arranged);
   if (!find_unit(arranged, normalised)) return false;
-  order_second(normalised->pair, order + 4);
-  arrange(pair, order, arranged);
-  map_vertices(arranged, normalised);
-  memcpy(normalised->pair, simplex, sizeof simplex);
-  for (int i = 12; i < 24; i++) normalised->pair[i] = compress(normalised->pair[i]);
+  order_second(normalised->pair, second);
+  memcpy(arranged + 12, normalised->pair + 12, 12 * sizeof(double));
+  for (int v = 0; v < 4; v++) {
+    order[4 + v] = 4 + second[v];
+    for (int k = 0; k < 3; k++) normalised->pair[12 + 3 * v + k] = compress(arranged[12 + 3 * second[v] + k]);
+  }
   return true;
 }
 
@@ -177,7 +182,7 @@ static bool find_pca(const double pair[24], ContactNormalised *normalised) {
   find_axes(moment, normalised->matrix, normalised->principal);
   direct_axes(pair, normalised->origin, normalised->matrix);
   normalised->factor = 1;
-  map_vertices(pair, normalised);
+  map_vertices(pair, 0, normalised);
   return normalised->principal[0] > 0;
 }
 

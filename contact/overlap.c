@@ -16,9 +16,10 @@
 
 // The fastest first: what a person reads when asking for the models.
 static const ContactOverlapOps *const models[] = {
-    &contact_overlap_clip,  &contact_overlap_clip32, &contact_overlap_clip_scalar, &contact_overlap_geo_small,
-    &contact_overlap_geo,   &contact_overlap_tpn,    &contact_overlap_tpn_scene,   &contact_overlap_hybrid,
-    &contact_overlap_exact, &contact_overlap_cgal,
+    &contact_overlap_clip,      &contact_overlap_clip32,    &contact_overlap_clip_scalar,
+    &contact_overlap_geo_small, &contact_overlap_geo,       &contact_overlap_tpn,
+    &contact_overlap_tpn_bf16,  &contact_overlap_tpn_scene, &contact_overlap_hybrid,
+    &contact_overlap_exact,     &contact_overlap_cgal,
 };
 enum { MODEL_COUNT = sizeof models / sizeof *models };
 

@@ -1,9 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/kernel.h"
 
+#include "net/kernel_bf16.h"
+
+static const NetKernel_f32 *bf16_kernel_f32(void) {
+#if defined(__x86_64__)
+  if (net_kernel_bf16_is_native()) return &net_kernel_bf16_native;
+#endif
+  return &net_kernel_bf16_emulated;
+}
+
+static const NetKernel_f64 *bf16_kernel_f64(void) {
+  return NULL;
+}
+
 bool net_kernel_is_available(NetKernelKind kind) {
   switch (kind) {
   case NET_KERNEL_BLAS:
+  case NET_KERNEL_BF16:
     return true;
 #if defined(__x86_64__)
   case NET_KERNEL_AVX2:
@@ -18,13 +32,13 @@ bool net_kernel_is_available(NetKernelKind kind) {
 }
 
 NetKernelKind net_kernel_best(void) {
-  int kind = NET_KERNEL_COUNT - 1;
+  int kind = NET_KERNEL_AVX512;
   while (kind > 0 && !net_kernel_is_available((NetKernelKind)kind)) kind--;
   return (NetKernelKind)kind;
 }
 
 const char *net_kernel_name(NetKernelKind kind) {
-  static const char *const names[NET_KERNEL_COUNT] = {"blas", "avx2", "avx512"};
+  static const char *const names[NET_KERNEL_COUNT] = {"blas", "avx2", "avx512", "bf16"};
   return names[kind];
 }
 

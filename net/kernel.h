@@ -3,7 +3,8 @@
 // activations, pools, with their derivatives. Three implementations behind one table: `blas` (OpenBLAS, every
 // processor), `avx2` and `avx512` (kernels of ours, for the small inner sizes that a BLAS packs at a loss).
 // They differ by rounding only; which one runs is chosen once from what the processor has, and a test holds
-// them together.
+// them together. A fourth, `bf16`, is another arithmetic: the factors of products are rounded to bf16 and
+// summed in float. It is twice as fast where the processor has the instruction, and emulated elsewhere.
 //
 // Column counts are multiples of NET_COLUMN_UNIT; matrices begin on a cache line.
 #ifndef NET_KERNEL_H
@@ -20,13 +21,14 @@ typedef enum NetKernelKind {
   NET_KERNEL_BLAS,
   NET_KERNEL_AVX2,
   NET_KERNEL_AVX512,
+  NET_KERNEL_BF16, // float alone, less exact: chosen by name only, there on every processor
   NET_KERNEL_COUNT
 } NetKernelKind;
 
 // Whether this processor can run it.
 bool net_kernel_is_available(NetKernelKind kind);
 
-// The fastest that is available.
+// The fastest that is available and rounds to the full precision.
 NetKernelKind net_kernel_best(void);
 
 const char *net_kernel_name(NetKernelKind kind);

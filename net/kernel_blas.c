@@ -6,15 +6,20 @@
 #include <stdint.h>
 #include <string.h>
 
+// bf16 rests on the fastest kernel where it is emulated.
+static bool uses_blas(NetKernelKind kind) {
+  return kind == NET_KERNEL_BLAS || (kind == NET_KERNEL_BF16 && net_kernel_best() == NET_KERNEL_BLAS);
+}
+
 int net_kernel_enter(NetKernelKind kind) {
-  if (kind != NET_KERNEL_BLAS) return 0;
+  if (!uses_blas(kind)) return 0;
   int had = openblas_get_num_threads();
   openblas_set_num_threads(1);
   return had;
 }
 
 void net_kernel_leave(NetKernelKind kind, int had) {
-  if (kind == NET_KERNEL_BLAS) openblas_set_num_threads(had);
+  if (uses_blas(kind)) openblas_set_num_threads(had);
 }
 
 #include "net/real_f32.h"

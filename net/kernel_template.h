@@ -2,7 +2,8 @@
 // The part of kernel.h that depends on the precision.
 
 // c = [ReLU] (base + bias + A B), with A (m, k), B (k, n), C (m, n). A's element (i, l) is a[i a_row + l
-// a_column], so a transposed A costs nothing. Base (m, n) and bias (m) may be NULL; base may be c.
+// a_column], one of which is 1, so a transposed A costs nothing. Base (m, n) and bias (m) may be NULL; base
+// may be c.
 typedef struct NET_NAME(NetProduct) {
   int m, n, k;
   const NET_REAL *a;
@@ -15,6 +16,8 @@ typedef struct NET_NAME(NetProduct) {
   NET_REAL *c;
   ptrdiff_t c_row;
   bool has_relu;
+  bool
+      is_raw; // a factor is the network's input, or what is wanted is a derivative by it: bf16 keeps to float
 } NET_NAME(NetProduct);
 
 // A matrix of values and tangents: `rows` rows, each 1 + tangents groups of n columns.
@@ -65,7 +68,7 @@ typedef struct NET_NAME(NetKernel) {
                              ptrdiff_t in_row, const NET_REAL *constant, const NET_REAL *gout, NET_REAL *gin);
 } NET_NAME(NetKernel);
 
-// NULL where this processor cannot run it.
+// NULL where this processor cannot run it, or not in this precision.
 const NET_NAME(NetKernel) * NET_NAME(net_kernel)(NetKernelKind kind);
 
 extern const NET_NAME(NetKernel) NET_NAME(net_kernel_blas);

@@ -348,7 +348,7 @@ START_TEST(a_dense_network_takes_columns) {
   ck_assert(net_dense_is_possible(&shape));
   NetModel_f64 model = net_suite_model(&shape, 5);
   for (int kind = 0; kind < NET_KERNEL_COUNT; kind++) {
-    if (!net_kernel_is_available((NetKernelKind)kind)) continue;
+    if (!net_kernel_f64((NetKernelKind)kind)) continue;
     NetWork_f64 work;
     NetWorkDef def = net_work_default();
     def.kernel = (NetKernelKind)kind;
@@ -385,7 +385,7 @@ START_TEST(a_dense_network_bends_columns) {
   NetShape shape = net_shape_mlp(INPUTS, 19, 3, 1);
   NetModel_f64 model = net_suite_model(&shape, 6);
   for (int kind = 0; kind < NET_KERNEL_COUNT; kind++) {
-    if (!net_kernel_is_available((NetKernelKind)kind)) continue;
+    if (!net_kernel_f64((NetKernelKind)kind)) continue;
     NetWork_f64 work;
     NetWorkDef def = net_work_default();
     def.kernel = (NetKernelKind)kind;

@@ -43,6 +43,7 @@ static const Demand demands[] = {
     {"geo-small", 100, 1, 0.25, 1e-12, 1e-6, 1e-4, 0, {0, 0}, 0},
     {"geo", 100, 1, 0.2, 1e-12, 1e-6, 1e-4, 0, {0, 0}, 0},
     {"tpn", 100, 1, 0, 1e-7, 0, 0, LACKS_ALL_BUT_BALANCE | LACKS_STATUS, {0, 0}, 0},
+    {"tpn-bf16", 100, 1, 0, 1e-7, 0, 0, LACKS_ALL_BUT_BALANCE | LACKS_STATUS, {0, 0}, 0},
     {"tpn-scene", 100, 1, 0, 1e-7, 0, 0, LACKS_ALL_BUT_BALANCE, {0, 0}, 0},
     {"hybrid", 50, 1, 0, 1e-7, 0, 0, LACKS_ALL_BUT_BALANCE, {0, 0}, 0},
     {"exact", 100, 1e-6, 0, 1e-14, 1e-7, 0, 0, {0, 0}, 0},
