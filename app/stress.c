@@ -84,11 +84,19 @@ void app_stress_ask_end(AppStressRow *row, double time, double end) {
 // A run that was cut is a limit in itself; what did not come about by then is no failure.
 static AppStressOutcome verdict_of(const AppStressRow *row, const AppStressMeasure *measure,
                                    const AppStressLimit *limit) {
-  if (measure->is_met) return limit ? APP_STRESS_BETTER : APP_STRESS_HELD;
+  if (measure->is_met) return limit && !measure->is_of_end ? APP_STRESS_BETTER : APP_STRESS_HELD;
   bool is_excused = row->is_cut && (measure->is_occurrence || measure->is_of_end);
   if (limit && !is_excused)
     is_excused = measure->is_least ? measure->value >= limit->worst : measure->value <= limit->worst;
   return is_excused ? APP_STRESS_LIMIT : APP_STRESS_FAILED;
+}
+
+// The first reason; one why it takes so long stands beside how far a run that was cut came.
+static void explain(AppStressRow *row, const AppStressMeasure *measure, const AppStressLimit *limit) {
+  size_t length = strlen(row->remark);
+  if (length > 0 && !(row->is_cut && measure->is_of_end)) return;
+  snprintf(row->remark + length, sizeof row->remark - length, "%s%s", length > 0 ? "; " : "", limit->reason);
+  row->counter = limit->counter;
 }
 
 void app_stress_judge(AppStressRow *row) {
@@ -97,10 +105,7 @@ void app_stress_judge(AppStressRow *row) {
     const AppStressMeasure *measure = &row->measures[m];
     const AppStressLimit *limit = app_stress_limits_find(row->name, row->model, measure->name);
     AppStressOutcome outcome = verdict_of(row, measure, limit);
-    if (limit && !measure->is_met && !row->remark[0]) {
-      snprintf(row->remark, sizeof row->remark, "%s", limit->reason);
-      row->counter = limit->counter;
-    }
+    if (limit && !measure->is_met) explain(row, measure, limit);
     if (outcome > row->outcome) row->outcome = outcome;
   }
 }
