@@ -59,6 +59,8 @@ static const AppStressLimit limits[] = {
     {"wedge*", "tpn tpn-bf16 tpn-scene", "asymmetry in y", 0.03, UNSYMMETRIC, AUDIT},
     {"tetrahedron inside", "tpn tpn-bf16 tpn-scene", "steps told of", 0, NESTED,
      "trouble.enclosed stays 0; tetlap compare --audit-only exact"},
+    {"tetrahedron inside", "tpn tpn-bf16", "enclosed pairs", 0, NESTED,
+     "trouble.enclosed stays 0; tetlap compare --audit-only exact"},
     {"tight fit", "clip32", "time reached", 0, ROUNDED, "summary.json: steps, trouble.smallest_step"},
     {"*", "tpn tpn-bf16", "energy gain", 1.5, LEAPING, "trouble.energy, history.csv: energy_gain"},
     {"*", NETWORKS, "time reached", 0, PIECEWISE, "newton_failures, restarts, beyond_range_pairs"},
