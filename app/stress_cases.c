@@ -270,6 +270,7 @@ static Status try_and_reject(void *self, const FemRunProgress *progress) {
 // difference.
 static Status run_rejected(AppStressRun *run) {
   TRY(app_stress_run_scene(run));
+  if (run->is_cut) return STATUS_OK;
   Rejection rejection = {0};
   rejection.trial = memory_zeroed(3 * (size_t)run->model.vertex_count, sizeof(double));
   if (!rejection.trial) return status_no_memory("a trial state");

@@ -51,6 +51,7 @@ Status app_stress_run_scene(AppStressRun *run) {
                            .keep_trajectory = true};
   run->status = fem_run(&run->model, &options, &run->result);
   run->cpu_s = clock_cpu_s() - run->began_s;
+  run->is_cut = run->is_cut && run->result.end_time < run->scene.end;
   if (run->status) snprintf(run->message, sizeof run->message, "%s", status_message());
   if (run->is_cut)
     snprintf(run->message, sizeof run->message, "cut after %.0f s of processor time at t = %.4g of %g s",
