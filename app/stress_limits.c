@@ -32,6 +32,8 @@ static const char UNSYMMETRIC[] =
 static const char LEAPING[] =
     "V itself leaps where the network changes its mind whether a pair overlaps: energy comes from nowhere, "
     "with clearances far below an element (tight fit) as much as the scene has";
+static const char COARSE[] = "elements of 12.5 mm along the beam: 17 % off with 20 mm, 11 to 12 % with "
+                             "these; it falls with refinement";
 static const char NESTED[] = "grad V of a network is not 0 where one tetrahedron is inside another: it is "
                              "pushed somewhere, and nothing "
                              "tells that from a force that means something";
@@ -71,9 +73,8 @@ static const AppStressLimit limits[] = {
     {"two spheres", NULL, "change of angular momentum", 4e-6,
      "BDF keeps linear momentum, not angular momentum, which is quadratic: it errs by the tolerance",
      "history.csv: angular_x, angular_y, angular_z"},
-    {"nearly incompressible, 0.499", NULL, "error of the deflection", 0.15,
-     "elements of 12.5 mm along the beam: 17 % off with 20 mm, 12 % with these; it falls with refinement",
-     NULL},
+    {"nearly incompressible, 0.49", NULL, "error of the deflection", 0.15, COARSE, NULL},
+    {"nearly incompressible, 0.499", NULL, "error of the deflection", 0.15, COARSE, NULL},
     {"wedges, parallel", NULL, "asymmetry in x", 0.06,
      "an edge balanced on an edge is an unstable equilibrium: rounding decides to which side it slides off",
      NULL},
