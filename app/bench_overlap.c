@@ -222,10 +222,12 @@ static int find_reference(const Bench *bench, Case what) {
   return found;
 }
 
-// A gradient by the input takes the products once more, transposed.
+// A gradient by the input takes the products once more, transposed. How many a network of the paper's kind
+// takes depends on what its normalisation lets it leave out; `bench net` tells that.
 static double flops_of(const Bench *bench, const Case *what) {
   const AppModelCard *card = &bench->cards[what->model];
-  if (!card->is_learned || what->quantity > 1) return NAN;
+  bool is_known = card->is_learned && !card->is_float && what->quantity <= 1;
+  if (!is_known) return NAN;
   return card->flops * (what->quantity == 0 ? 1 : 2);
 }
 

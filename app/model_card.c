@@ -24,6 +24,7 @@ static void describe(const NetPlan *plan, AppModelCard *card) {
 Status app_model_card_read(const ContactOverlapModel *model, const char *name, AppModelCard *card) {
   *card = (AppModelCard){.family = model->ops->name};
   bool is_path = contact_weights_is_path(name);
+  if (!is_path && model->ops->weights) name = model->ops->weights;
   if (is_path)
     snprintf(card->path, sizeof card->path, "%s", name);
   else if (contact_weights_find(name, card->path, sizeof card->path) != STATUS_OK) {

@@ -230,6 +230,7 @@ const ContactOverlapOps contact_overlap_tpn_bf16 = {
     .eval_pair = contact_net_overlap_eval_pair,
     .eval_batch = contact_net_overlap_eval_batch,
     .destroy = contact_net_overlap_destroy,
+    .weights = "tpn",
 };
 
 const ContactOverlapOps contact_overlap_tpn_scene = {

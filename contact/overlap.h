@@ -68,6 +68,8 @@ typedef struct ContactOverlapOps {
   bool (*bends)(const void *self);
   // eval_batch fails where a coordinate is not finite; without it, all are looked through before.
   bool minds_finite;
+  // The shipped weights that it takes, where they go by another name than its own; NULL: no others.
+  const char *weights;
 } ContactOverlapOps;
 
 typedef struct ContactOverlapModel {

@@ -189,5 +189,5 @@ extern "C" const ContactOverlapOps contact_overlap_cgal = {
     nullptr, nullptr,
     nullptr, false,
     nullptr, nullptr,
-    false,
+    false,   nullptr,
 };
