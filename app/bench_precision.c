@@ -11,7 +11,7 @@
 #include "app/comparison.h"
 #include "app/precision.h"
 #include "app/precision_summary.h"
-#include "app/scene_read.h"
+#include "app/scene_overlap.h"
 #include "app/scene_refine.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -165,14 +165,12 @@ typedef struct Table {
 
 static Status begin(AppBenchTrial *trial, const Stage *stage, const char *overlap, double tolerance) {
   const Options *options = stage->options;
-  const char *overrides[MAX_OVERRIDES + 2];
-  char model[1024], error[64];
-  snprintf(model, sizeof model, "contact.overlap=%s", overlap);
+  const char *overrides[MAX_OVERRIDES + 1];
+  char error[64];
   snprintf(error, sizeof error, "time.tolerance=%.17g", tolerance);
   for (int i = 0; i < options->override_count; i++) overrides[i] = options->overrides[i];
-  overrides[options->override_count] = model;
-  overrides[options->override_count + 1] = error;
-  TRY(app_scene_read(stage->scene, overrides, options->override_count + 2, &trial->scene));
+  overrides[options->override_count] = error;
+  TRY(app_scene_overlap_read(stage->scene, overrides, options->override_count + 1, overlap, &trial->scene));
   TRY(app_scene_refine(&trial->scene, stage->level));
   trial->keeps_trajectory = trial->accepts_failure = true;
   return app_bench_trial_begin(trial, &options->common, 0);

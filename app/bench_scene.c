@@ -6,7 +6,7 @@
 #include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_trial.h"
-#include "app/scene_read.h"
+#include "app/scene_overlap.h"
 #include "base/memory.h"
 #include "contact/overlap.h"
 
@@ -130,13 +130,7 @@ static Row row_of(const AppBenchTrial *trial, int rounds) {
 
 // `overlap` NULL: the scene's own.
 static Status begin(AppBenchTrial *trial, Options *options, const char *path, const char *overlap) {
-  char choice[256];
-  int count = options->override_count;
-  if (overlap) {
-    snprintf(choice, sizeof choice, "contact.overlap=%s", overlap);
-    options->overrides[count++] = choice;
-  }
-  TRY(app_scene_read(path, options->overrides, count, &trial->scene));
+  TRY(app_scene_overlap_read(path, options->overrides, options->override_count, overlap, &trial->scene));
   return app_bench_trial_begin(trial, &options->common, 0);
 }
 

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/scene_overlap.h"
 #include "app/scene_read.h"
 #include "app/scene_write.h"
 #include "app/versions.h"
@@ -118,33 +119,11 @@ static Status choose_directory(AppJob *job, const AppJobOptions *options, const 
   return job->directory ? STATUS_OK : status_no_memory("a directory name");
 }
 
-// Puts a weights file that the command line named in the place of the scene's, or none.
-static Status replace_net(FemSceneDef *scene, const char *path) {
-  memory_free(scene->contact.net);
-  scene->contact.net = path ? memory_copy(path, strlen(path) + 1, 1) : NULL;
-  return path && !scene->contact.net ? status_no_memory("a file name") : STATUS_OK;
-}
-
-static Status open_scene(AppJob *job, const AppJobOptions *options, const char *overlap) {
-  const char *overrides[APP_MAX_OVERRIDES + 1];
-  int count = 0;
-  for (; count < options->override_count; count++) overrides[count] = options->overrides[count];
-  // A weights file is named from where the program was called, in a scene from where the scene is.
-  char choice[PATH_MAX + 32], path[PATH_MAX];
-  bool is_path = overlap && contact_weights_is_path(overlap) && realpath(overlap, path);
-  if (overlap) {
-    snprintf(choice, sizeof choice, "contact.overlap=%s", is_path ? "geo" : overlap);
-    overrides[count++] = choice;
-  }
-  TRY(app_scene_read(options->scene_path, overrides, count, &job->scene));
-  if (!overlap || strcmp(overlap, "hybrid") == 0) return STATUS_OK;
-  return replace_net(&job->scene, is_path ? path : NULL);
-}
-
 Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overlap,
                     const char *subdirectory) {
   *job = (AppJob){0};
-  Status status = open_scene(job, options, overlap);
+  Status status = app_scene_overlap_read(options->scene_path, options->overrides, options->override_count,
+                                         overlap, &job->scene);
   if (!status) status = choose_directory(job, options, subdirectory);
   if (!status) {
     if (options->threads) job->scene.threads = options->threads;

@@ -7,7 +7,7 @@
 
 #include "app/bench_trial.h"
 #include "app/comparison.h"
-#include "app/scene_read.h"
+#include "app/scene_overlap.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "fem/effect_contact.h"
@@ -55,12 +55,7 @@ static Status watch(void *self, const FemRunProgress *progress) {
 }
 
 static Status begin(Bench *bench, AppBenchTrial *trial, const char *overlap) {
-  const char *overrides[MAX_OVERRIDES + 1];
-  char choice[640];
-  snprintf(choice, sizeof choice, "contact.overlap=%s", overlap);
-  for (int i = 0; i < bench->override_count; i++) overrides[i] = bench->overrides[i];
-  overrides[bench->override_count] = choice;
-  TRY(app_scene_read(bench->scene, overrides, bench->override_count + 1, &trial->scene));
+  TRY(app_scene_overlap_read(bench->scene, bench->overrides, bench->override_count, overlap, &trial->scene));
   if (!trial->scene.contact.is_on)
     return status_fail(STATUS_INPUT,
                        "%s: has no contact, so overlap models cannot differ; add a 'contact' section",

@@ -12,6 +12,7 @@
 #include "app/sweep.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "contact/weights.h"
 
 static AppPareto small(void) {
   return (AppPareto){.common = app_bench_options_default(1),
@@ -131,6 +132,28 @@ START_TEST(a_scene_gives_forces_in_the_same_configurations_and_a_run_of_each_mod
   ck_assert_near(clip->limit * (1 - clip->share), 1, 1e-12);
   ck_assert(clip->step_s > 0 && clip->seconds > 0 && clip->steps > 0);
   app_pareto_destroy(&pareto);
+}
+END_TEST
+
+// As those of a sweep are.
+START_TEST(a_weights_file_runs_a_scene_as_its_name_does) {
+  char path[1024];
+  ck_assert_ok(contact_weights_find("geo-small", path, sizeof path));
+  const char *sources[] = {"geo-small", path}, *overrides[] = {"time.end=0.03"};
+  double errors[2];
+  for (int k = 0; k < 2; k++) {
+    AppPareto pareto = small();
+    ck_assert_ok(app_pareto_create(&pareto));
+    ck_assert_ok(app_pareto_add_model(&pareto, sources[k]));
+    ck_assert_ok(app_pareto_scenes_measure(&pareto, TETLAP_SOURCE_DIR "/tests/scenes/collision.yaml", "clip",
+                                           overrides, 1));
+    const AppParetoPoint *point = find(&pareto, "geo-small", "force");
+    ck_assert_str_eq(point->outcome, "finished");
+    errors[k] = point->trajectory_error;
+    app_pareto_destroy(&pareto);
+  }
+  ck_assert_double_gt(errors[0], 0);
+  ck_assert_double_eq(errors[0], errors[1]);
 }
 END_TEST
 
@@ -343,6 +366,7 @@ int main(void) {
   tcase_add_test(cases, a_comparison_names_both_and_takes_its_ratio_within_a_round);
   tcase_add_test(cases, models_of_one_name_are_refused);
   tcase_add_test(cases, a_scene_gives_forces_in_the_same_configurations_and_a_run_of_each_model);
+  tcase_add_test(cases, a_weights_file_runs_a_scene_as_its_name_does);
   tcase_add_test(cases, a_run_that_takes_too_long_is_cut_short_and_still_a_point);
   tcase_add_test(cases, a_scene_without_contact_is_refused);
   tcase_add_test(cases, a_sweep_trains_what_is_missing_and_gives_networks_of_the_sizes);
