@@ -8,12 +8,11 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/vec3.h"
-#include "fem/effect_contact.h"
 #include "fem/effect_rest.h"
 #include "fem/hold.h"
 #include "fem/restart.h"
-#include "fem/statics.h"
+#include "fem/run_checkpoint.h"
+#include "fem/run_frames.h"
 
 // A step that lifts the audited energy by more than this share of the scene's energy above its lowest value,
 // and by more than the second in one go, is taken back and tried again with a smaller step; at most so many
@@ -30,140 +29,10 @@ static const double LONGEST_SLEEP = 0.1, SHORTER_SLEEP = 0.25, SHORTEST_SLEEP = 
 // slow and nearly incompressible scenes, is what fits.
 enum { MOST_UNKNOWNS_TO_FACTORISE = 200000 };
 
-typedef struct Run {
-  const FemModel *given;        // borrowed
-  const FemModel *model;        // that, or `own`
-  FemModel own;                 // where vertices are released while the run goes on
-  const FemRunOptions *options; // borrowed
-  FemRunResult *result;         // borrowed; counts of what is over: closed parts and stages
-  FemSystem system;
-  FemIntegrator *integrator; // NULL in a static scene
-  FemStatics statics;        // of a static scene
-  FemRecorder recorder;
-  FemAudit audit;
-  double time;           // of the last accepted state
-  double *u, *v;         // the last accepted state         (unknown_count)
-  double *u_new, *v_new; // the state under judgement  (unknown_count)
-  int next_frame;
-  int retries;              // in a row
-  double next_step;         // to be tried; 0: the integrator's choice [s]
-  FemStall stall;           // over all stages
-  double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]
-  FemCheckpoint checkpoint; // where this part began
-  size_t history_size;      // bytes of the recorder's history that belong to it
-  bool is_written;          // is that in the file
-  int interval;             // frames between two checkpoints; 0: none
-  double began_s, cpu_began_s, written_s; // clocks: of this part, and when a checkpoint was written
-} Run;
-
 FemSolverKind fem_run_solver(const FemModel *model) {
   FemSolverKind kind = model->scene->solver;
   if (kind != FEM_SOLVER_AUTO) return kind;
   return model->unknown_count > MOST_UNKNOWNS_TO_FACTORISE ? FEM_SOLVER_PCG : FEM_SOLVER_CHOLMOD;
-}
-
-// Counted over all parts and stages.
-static FemIntegratorStats stats_of(const Run *run) {
-  FemIntegratorStats stats = run->result->integrator, now = {0};
-  if (run->integrator) now = fem_integrator_stats(run->integrator);
-  now.steps += run->statics.steps;
-  now.newton_iterations += run->statics.newton_iterations;
-  fem_run_result_add_integrator(&stats, &now);
-  return stats;
-}
-
-static double frame_time(const Run *run, int frame) {
-  const FemSceneDef *scene = run->model->scene;
-  return frame == scene->frames ? scene->end : scene->end * frame / scene->frames;
-}
-
-static void keep_frame(Run *run, double time) {
-  FemRunResult *result = run->result;
-  if (!result->trajectory) return;
-  int frame = result->frame_count++;
-  size_t values = 3 * (size_t)result->vertex_count;
-  result->frame_times[frame] = time;
-  memcpy(result->trajectory + (size_t)frame * values, run->system.positions, values * sizeof(double));
-  void *effect = fem_system_effect(&run->system, "contact");
-  if (!effect) return;
-  int count;
-  contact_system_interfaces(fem_effect_contact_system(effect), &count);
-  for (int i = 0; i < count; i++)
-    fem_recorder_interface_force(&run->system, i,
-                                 result->interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i));
-}
-
-static void keep_extremes(FemRunResult *result, const FemMeasures *measures) {
-  result->pairs_max = measures->active_pairs > result->pairs_max ? measures->active_pairs : result->pairs_max;
-  result->overlap_volume_max = fmax(result->overlap_volume_max, measures->overlap_volume);
-  result->contact_force_max = fmax(result->contact_force_max, measures->contact_force);
-  result->deepest_overlap_max = fmax(result->deepest_overlap_max, measures->deepest_overlap);
-  result->min_det_F = fmin(result->min_det_F, measures->min_det_F);
-}
-
-static void keep_status(Run *run) {
-  FemRunResult *result = run->result;
-  result->has_status = run->recorder.has_status;
-  if (!result->has_status) return;
-  const ContactStatusCounts *pairs = &run->recorder.status->pairs;
-  result->status_pairs.asked += pairs->asked;
-  result->status_pairs.overlapping += pairs->overlapping;
-  result->status_pairs.false_positives += pairs->false_positives;
-  result->status_pairs.false_negatives += pairs->false_negatives;
-}
-
-// Writes the frame of the scattered state.
-static Status write_frame(Run *run, double time, const FemMeasures *measures) {
-  FemIntegratorStats stats = stats_of(run);
-  FemAudit audit = time > run->audit.time ? fem_audit_next(&run->audit, time, &measures->energy) : run->audit;
-  TRY(fem_recorder_write(&run->recorder, time, measures, &audit, stats.last_step, stats.steps,
-                         run->result->trouble.of[FEM_TROUBLE_ENERGY].events));
-  run->result->last_contact_force = measures->contact_force;
-  keep_status(run);
-  keep_frame(run, time);
-  run->next_frame++;
-  return STATUS_OK;
-}
-
-// Measures the scattered state. RETRY: it, or an energy, is not made of numbers, or it is too far for the
-// contact lists.
-static Status measure(Run *run, double time, FemMeasures *measures) {
-  TRY(fem_system_check_state(&run->system));
-  TRY(fem_recorder_measure(&run->recorder, time, measures));
-  const FemEnergy *energy = &measures->energy;
-  const double parts[] = {energy->kinetic,      energy->elastic,      energy->gravity,
-                          energy->contact,      energy->applied_work, energy->dissipated_power,
-                          energy->driven_power, energy->plastic_work};
-  static const char *const names[] = {"kinetic energy",    "elastic energy", "energy of gravity",
-                                      "energy of contact", "work of loads",  "dissipated power",
-                                      "driven power",      "plastic work"};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
-    if (!isfinite(parts[k])) return status_fail(STATUS_RETRY, "the %s is not a number", names[k]);
-  return STATUS_OK;
-}
-
-// Measures at a frame within the last step; the contact lists are renewed there if it lies beyond their
-// margin.
-static Status measure_within_step(Run *run, double time, FemMeasures *measures) {
-  const double *u = run->u, *v = run->v;
-  if (run->integrator) TRY(fem_integrator_at(run->integrator, time, &u, &v));
-  fem_system_scatter(&run->system, time, u, v);
-  TRY(fem_system_check_state(&run->system));
-  Status status = measure(run, time, measures);
-  if (status != STATUS_RETRY) return status;
-  TRY(fem_system_accept(&run->system, time, u, v, 0));
-  return measure(run, time, measures);
-}
-
-static Status write_frames_until(Run *run, double time) {
-  double slack = 1e-12 * run->model->scene->end;
-  while (run->next_frame <= run->model->scene->frames && frame_time(run, run->next_frame) <= time + slack) {
-    double at = fmin(frame_time(run, run->next_frame), time);
-    FemMeasures measures;
-    TRY(measure_within_step(run, at, &measures));
-    TRY(write_frame(run, at, &measures));
-  }
-  return STATUS_OK;
 }
 
 static bool gains_energy(const FemAudit *before, const FemAudit *after) {
@@ -174,14 +43,14 @@ static bool gains_energy(const FemAudit *before, const FemAudit *after) {
 }
 
 // Back to the last accepted state with a smaller step.
-static Status take_back(Run *run) {
+static Status take_back(FemRunState *run) {
   run->retries++;
   double step = RETRY_FACTOR * fem_integrator_stats(run->integrator).last_step;
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
 }
 
 // Counts what struck in the accepted state; `*has_begun`: something that had not in the state before.
-static Status judge(Run *run, FemMeasures *measures, bool *has_begun) {
+static Status judge(FemRunState *run, FemMeasures *measures, bool *has_begun) {
   FemTrouble *trouble = &run->result->trouble;
   double rise = (run->audit.total - run->audit.lowest) / run->audit.scale;
   measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= FEM_TROUBLE_ENERGY_BOUND);
@@ -194,14 +63,14 @@ static Status judge(Run *run, FemMeasures *measures, bool *has_begun) {
       run->time, rise, FEM_TROUBLE_ENERGY_BOUND);
 }
 
-static Status observe(Run *run, FemMeasures *measures) {
+static Status observe(FemRunState *run, FemMeasures *measures) {
   bool has_begun;
   TRY(judge(run, measures, &has_begun));
   if (run->options->stop && *run->options->stop)
     return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
                        run->time);
   if (!run->options->observe) return STATUS_OK;
-  FemIntegratorStats stats = stats_of(run);
+  FemIntegratorStats stats = fem_run_state_stats(run);
   FemRunProgress progress = {.system = &run->system,
                              .time = run->time,
                              .end = run->model->scene->end,
@@ -215,7 +84,7 @@ static Status observe(Run *run, FemMeasures *measures) {
   return run->options->observe(run->options->observer, &progress);
 }
 
-static void keep_state(Run *run, double time) {
+static void keep_state(FemRunState *run, double time) {
   double *u = run->u, *v = run->v;
   run->u = run->u_new, run->v = run->v_new;
   run->u_new = u, run->v_new = v;
@@ -225,7 +94,7 @@ static void keep_state(Run *run, double time) {
 
 // Steps, and measures the state that the step leads to, kept in u_new, v_new. RETRY: too far for the contact
 // lists, or no numbers.
-static Status step(Run *run, double *time, bool *is_onset, FemMeasures *measures) {
+static Status step(FemRunState *run, double *time, bool *is_onset, FemMeasures *measures) {
   TRY(fem_integrator_step(run->integrator, time, is_onset));
   const double *u, *v;
   TRY(fem_integrator_at(run->integrator, *time, &u, &v));
@@ -233,11 +102,11 @@ static Status step(Run *run, double *time, bool *is_onset, FemMeasures *measures
   memcpy(run->u_new, u, bytes);
   memcpy(run->v_new, v, bytes);
   fem_system_scatter(&run->system, *time, run->u_new, run->v_new);
-  return measure(run, *time, measures);
+  return fem_run_frames_measure(run, *time, measures);
 }
 
 // The powers with which the next step begins, where they are not those with which the last one ended.
-static Status renew_powers(Run *run) {
+static Status renew_powers(FemRunState *run) {
   FemEnergy energy;
   TRY(fem_system_energy(&run->system, run->time, &energy));
   run->audit.dissipated_power = energy.dissipated_power;
@@ -246,7 +115,7 @@ static Status renew_powers(Run *run) {
 }
 
 // The integrator of the stage that begins at the run's time; its states are u and v.
-static Status begin_stage(Run *run, double step) {
+static Status begin_stage(FemRunState *run, double step) {
   const FemModel *model = run->model;
   const FemSceneDef *scene = model->scene;
   double next = fem_effect_rest_next_change(fem_system_effect(&run->system, "rest"));
@@ -266,10 +135,10 @@ static Status begin_stage(Run *run, double step) {
 }
 
 // Counts what the integrator, or statics, has done, and lets it go.
-static void end_stage(Run *run) {
+static void end_stage(FemRunState *run) {
   FemRunResult *result = run->result;
   const FemStatics *statics = &run->statics;
-  result->integrator = stats_of(run);
+  result->integrator = fem_run_state_stats(run);
   if (run->integrator)
     fem_run_result_add_solver(&result->solver, fem_integrator_solver_stats(run->integrator));
   if (statics->equilibrium.solver) {
@@ -285,14 +154,14 @@ static void end_stage(Run *run) {
 }
 
 // Vertices come free, bodies fall asleep or awake: with other unknowns from here on.
-static Status renumber(Run *run) {
+static Status renumber(FemRunState *run) {
   end_stage(run);
   TRY(fem_hold_renumber(&run->own, &run->system, run->time, &run->audit, run->u, run->v));
   return begin_stage(run, 0);
 }
 
 // One step: taken, judged, shown, accepted.
-static Status advance(Run *run) {
+static Status advance(FemRunState *run) {
   double time = run->time;
   bool is_onset;
   FemMeasures measures;
@@ -305,13 +174,13 @@ static Status advance(Run *run) {
     run->result->energy_retries++;
     return take_back(run);
   }
-  status = write_frames_until(run, time);
+  status = fem_run_frames_write_until(run, time);
   if (status == STATUS_RETRY && may_retry) return take_back(run);
   TRY(status);
   run->audit = next;
   keep_state(run, time);
-  keep_extremes(run->result, &measures);
-  FemIntegratorStats stats = stats_of(run);
+  fem_run_frames_keep_extremes(run->result, &measures);
+  FemIntegratorStats stats = fem_run_state_stats(run);
   if (!is_onset)
     run->result->trouble.smallest_step = fmin(run->result->trouble.smallest_step, stats.last_step);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
@@ -322,62 +191,31 @@ static Status advance(Run *run) {
 }
 
 // The next state while all bodies sleep: as late as the contact lists allow for obstacles that move.
-static Status look_ahead(Run *run, double *time, FemMeasures *measures) {
+static Status look_ahead(FemRunState *run, double *time, FemMeasures *measures) {
   const FemSceneDef *scene = run->model->scene;
   double longest = scene->max_step > 0 ? scene->max_step : LONGEST_SLEEP * scene->end;
   for (double step = fmin(longest, run->stage_end - run->time);; step *= SHORTER_SLEEP) {
     *time = step < run->stage_end - run->time ? run->time + step : run->stage_end;
     fem_system_scatter(&run->system, *time, run->u, run->v);
-    Status status = fem_recorder_measure(&run->recorder, *time, measures);
+    Status status = fem_run_frames_measure(run, *time, measures);
     if (status != STATUS_RETRY || step < SHORTEST_SLEEP * scene->end) return status;
   }
 }
 
-static Status sleep_on(Run *run) {
+static Status sleep_on(FemRunState *run) {
   double time, began = run->time;
   FemMeasures measures;
   TRY(look_ahead(run, &time, &measures));
   FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
-  TRY(write_frames_until(run, time));
+  TRY(fem_run_frames_write_until(run, time));
   run->audit = next;
   run->time = time;
   fem_stall_pass(&run->stall, time - began);
-  keep_extremes(run->result, &measures);
+  fem_run_frames_keep_extremes(run->result, &measures);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, time - began));
   TRY(observe(run, &measures));
   bool has_changed = fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"));
   return has_changed ? renumber(run) : STATUS_OK;
-}
-
-// "a, b" for each interface.
-static Status keep_names(FemRunResult *result, void *effect) {
-  enum { NAME_SIZE = 256 };
-  int count;
-  const ContactInterface *interfaces = contact_system_interfaces(fem_effect_contact_system(effect), &count);
-  result->interface_names = memory_zeroed((size_t)count, sizeof *result->interface_names);
-  if (!result->interface_names) return status_no_memory("the names of interfaces");
-  result->interface_count = count;
-  for (int i = 0; i < count; i++) {
-    result->interface_names[i] = memory_zeroed(NAME_SIZE, 1);
-    if (!result->interface_names[i]) return status_no_memory("the names of interfaces");
-    snprintf(result->interface_names[i], NAME_SIZE, "%s, %s",
-             fem_effect_contact_name(effect, interfaces[i].a),
-             fem_effect_contact_name(effect, interfaces[i].b));
-  }
-  return STATUS_OK;
-}
-
-static Status keep_trajectory(Run *run) {
-  FemRunResult *result = run->result;
-  void *effect = fem_system_effect(&run->system, "contact");
-  if (effect) TRY(keep_names(result, effect));
-  size_t frames = (size_t)run->model->scene->frames + 1;
-  result->vertex_count = run->model->vertex_count;
-  result->frame_times = memory_zeroed(frames, sizeof(double));
-  result->trajectory = memory_zeroed(frames * 3 * (size_t)result->vertex_count, sizeof(double));
-  result->interface_forces = memory_zeroed(frames * 3 * (size_t)result->interface_count, sizeof(double));
-  bool ok = result->frame_times && result->trajectory && result->interface_forces;
-  return ok ? STATUS_OK : status_no_memory("the kept trajectory");
 }
 
 // A rest state is not judged by rounding: a millionth of the bodies' E·V counts as the scene's energy at
@@ -391,7 +229,7 @@ static double energy_floor(const FemModel *model) {
 }
 
 // Room for the unknowns, however many are released.
-static Status allocate_states(Run *run) {
+static Status allocate_states(FemRunState *run) {
   double **states[] = {&run->u, &run->v, &run->u_new, &run->v_new};
   for (int i = 0; i < 4; i++)
     if (!(*states[i] = memory_zeroed(3 * (size_t)run->model->vertex_count, sizeof(double))))
@@ -400,7 +238,7 @@ static Status allocate_states(Run *run) {
 }
 
 // A numbering of our own where vertices are released, with what has been released until now.
-static Status number(Run *run) {
+static Status number(FemRunState *run) {
   bool may_rest = run->given->scene->contact.rest_is_on && !run->given->scene->is_static;
   if (!may_rest && !isfinite(fem_model_next_release(run->given, 0))) return STATUS_OK;
   fem_model_destroy_copy(&run->own);
@@ -411,32 +249,23 @@ static Status number(Run *run) {
 }
 
 // The first frame, and the audit from there on.
-static Status begin_record(Run *run) {
+static Status begin_record(FemRunState *run) {
   FemMeasures measures;
-  TRY(measure(run, run->time, &measures));
+  TRY(fem_run_frames_measure(run, run->time, &measures));
   fem_audit_begin(&run->audit, run->time, &measures.energy, energy_floor(run->model));
-  keep_extremes(run->result, &measures);
+  fem_run_frames_keep_extremes(run->result, &measures);
   fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
-  return write_frame(run, run->time, &measures);
+  return fem_run_frames_write(run, run->time, &measures);
 }
 
-static Status open_recorder(Run *run) {
-  const FemCheckpoint *from = &run->checkpoint;
-  TRY(fem_recorder_create(&run->recorder, &run->system, run->options->directory,
-                          run->model->scene->frames + 1));
-  if (run->options->keep_trajectory) TRY(keep_trajectory(run));
-  return fem_recorder_continue(&run->recorder, from->history, from->history_rows, from->frame_times,
-                               from->frame_count);
-}
-
-static Status begin_motion(Run *run) {
+static Status begin_motion(FemRunState *run) {
   TRY(fem_system_accept(&run->system, run->time, run->u, run->v, run->next_step));
   if (run->next_frame == 0) TRY(begin_record(run));
   if (fem_system_lags(&run->system)) TRY(renew_powers(run));
   return begin_stage(run, run->next_step);
 }
 
-static Status begin_statics(Run *run) {
+static Status begin_statics(FemRunState *run) {
   const FemCheckpoint *from = &run->checkpoint;
   TRY(fem_statics_create(&run->statics, &run->system, fem_solver_ops(fem_run_solver(run->model))));
   if (run->next_frame == 0) {
@@ -448,7 +277,7 @@ static Status begin_statics(Run *run) {
 }
 
 // Everything anew from the checkpoint: the same whether the run goes on, is resumed, or begins.
-static Status begin_part(Run *run) {
+static Status begin_part(FemRunState *run) {
   const FemCheckpoint *from = &run->checkpoint;
   bool is_first = !run->system.model;
   run->time = from->time;
@@ -464,12 +293,12 @@ static Status begin_part(Run *run) {
     fem_system_scatter(&run->system, run->time, run->u, run->v);
     TRY(fem_hold_sleepers(&run->own, &run->system, run->u, run->v));
   }
-  if (is_first) TRY(open_recorder(run));
+  if (is_first) TRY(fem_run_frames_open(run));
   return run->model->scene->is_static ? begin_statics(run) : begin_motion(run);
 }
 
 // Counts what the part has done; the system stays, for the next to take over from.
-static void end_part(Run *run) {
+static void end_part(FemRunState *run) {
   FemRunResult *result = run->result;
   run->checkpoint.force_scale = run->statics.force_scale;
   run->checkpoint.driven_work = run->statics.driven_work;
@@ -484,93 +313,21 @@ static void end_part(Run *run) {
   run->cpu_began_s = cpu;
 }
 
-static void forget_history(Run *run) {
-  memory_free(run->checkpoint.history);
-  run->checkpoint.history = NULL;
-}
-
-// The checkpoint's history is the beginning of what the recorder has; a copy is held only while it is
-// written.
-static Status copy_history(Run *run) {
-  forget_history(run);
-  char *text = memory_zeroed(run->history_size + 1, 1);
-  if (!text) return status_no_memory("a checkpoint");
-  if (run->history_size) memcpy(text, run->recorder.history.text, run->history_size);
-  run->checkpoint.history = text;
-  return STATUS_OK;
-}
-
-static Status write_checkpoint(Run *run) {
-  char *path = file_join(run->options->directory, FEM_CHECKPOINT_FILE);
-  if (!path) return status_no_memory("a file name");
-  Status status = copy_history(run);
-  if (!status) status = fem_checkpoint_write(&run->checkpoint, path);
-  forget_history(run);
-  memory_free(path);
-  run->is_written = status == STATUS_OK;
-  run->written_s = clock_wall_s();
-  return status;
-}
-
-// Writes the checkpoint if the last one that was written is old enough.
-static Status offer_checkpoint(Run *run) {
-  const FemSceneDef *scene = run->model->scene;
-  bool is_wanted = run->options->directory && scene->checkpoint_frames != 0 && !run->is_written;
-  bool is_time = clock_wall_s() - run->written_s >= scene->checkpoint_seconds;
-  return is_wanted && is_time ? write_checkpoint(run) : STATUS_OK;
-}
-
-static Status remove_checkpoint(const Run *run) {
-  if (!run->options->directory) return STATUS_OK;
-  char *path = file_join(run->options->directory, FEM_CHECKPOINT_FILE);
-  if (!path) return status_no_memory("a file name");
-  remove(path);
-  memory_free(path);
-  return STATUS_OK;
-}
-
-static bool has_ended(const Run *run) {
-  const FemSceneDef *scene = run->model->scene;
-  return scene->is_static ? run->next_frame > scene->frames : !(run->time < scene->end);
-}
-
-static bool is_checkpoint_due(const Run *run) {
-  const FemSceneDef *scene = run->model->scene;
-  if (has_ended(run) || (!scene->is_static && run->time >= run->stage_end)) return false;
-  if (scene->checkpoint_frames >= 0)
-    return scene->checkpoint_frames > 0 &&
-           run->next_frame >= run->checkpoint.next_frame + scene->checkpoint_frames;
-  long long steps = stats_of(run).steps - run->checkpoint.so_far.integrator.steps;
-  return steps >= fem_run_checkpoint_steps(run->given->unknown_count);
-}
-
 // Collects a checkpoint and begins anew from it.
-static Status pass_checkpoint(Run *run) {
-  FemCheckpoint *checkpoint = &run->checkpoint;
+static Status pass_checkpoint(FemRunState *run) {
   end_part(run);
-  const double force_scale = checkpoint->force_scale, driven_work = checkpoint->driven_work;
-  TRY(fem_restart_collect(checkpoint, &run->system, run->time, run->u, run->v, &run->recorder, run->result));
-  // IDA's choice: a step as long as the last one, taken at order 1, let a block that sticks creep 2.6 times
-  // as fast; short ones lost nothing, for five to ten steps more.
-  checkpoint->step = run->model->scene->is_static ? run->next_step : 0;
-  checkpoint->next_frame = run->next_frame;
-  checkpoint->audit = run->audit;
-  checkpoint->force_scale = force_scale;
-  checkpoint->driven_work = driven_work;
-  run->is_written = false;
-  run->history_size = run->recorder.history.text_size;
-  TRY(offer_checkpoint(run));
+  TRY(fem_run_checkpoint_take(run));
   TRY(begin_part(run));
   memory_trim();
   return STATUS_OK;
 }
 
 // One step of load, halved where there is no equilibrium; `next_step` is what to try next.
-static Status advance_static(Run *run) {
+static Status advance_static(FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
   double longest = scene->max_step > 0 ? scene->max_step : scene->end / scene->frames;
   double step = run->next_step > 0 ? fmin(run->next_step, longest) : longest;
-  double target = frame_time(run, run->next_frame), to = fmin(run->time + step, target),
+  double target = fem_run_state_frame_time(run, run->next_frame), to = fmin(run->time + step, target),
          work_before = run->statics.driven_work;
   Status status = fem_statics_step(&run->statics, run->time, to, run->u);
   if (status == STATUS_RETRY) {
@@ -584,34 +341,33 @@ static Status advance_static(Run *run) {
   FemMeasures measures;
   run->audit.driven_work += run->statics.driven_work - work_before;
   fem_equilibrium_scatter(&run->statics.equilibrium, run->time, run->u);
-  TRY(measure(run, run->time, &measures));
-  FemAudit next = fem_audit_next(&run->audit, run->time, &measures.energy);
-  run->audit = next;
-  keep_extremes(run->result, &measures);
-  if (run->time >= target) TRY(write_frame(run, run->time, &measures));
+  TRY(fem_run_frames_measure(run, run->time, &measures));
+  run->audit = fem_audit_next(&run->audit, run->time, &measures.energy);
+  fem_run_frames_keep_extremes(run->result, &measures);
+  if (run->time >= target) TRY(fem_run_frames_write(run, run->time, &measures));
   return observe(run, &measures);
 }
 
-static Status march(Run *run) {
+static Status march(FemRunState *run) {
   TRY(allocate_states(run));
   TRY(begin_part(run));
   const FemSceneDef *scene = run->given->scene;
   run->stall = fem_stall_begin(run->time, scene->end, scene->end / scene->frames);
-  if (!run->options->from) TRY(remove_checkpoint(run)); // of an earlier run in this folder
-  TRY(offer_checkpoint(run));
-  while (!has_ended(run)) {
+  if (!run->options->from) TRY(fem_run_checkpoint_remove(run)); // of an earlier run in this folder
+  TRY(fem_run_checkpoint_offer(run));
+  while (!fem_run_state_has_ended(run)) {
     if (run->model->scene->is_static) {
       TRY(advance_static(run));
     } else {
       if (run->time >= run->stage_end) TRY(renumber(run));
       TRY(run->integrator ? advance(run) : sleep_on(run));
     }
-    if (is_checkpoint_due(run)) TRY(pass_checkpoint(run));
+    if (fem_run_checkpoint_is_due(run)) TRY(pass_checkpoint(run));
   }
   return STATUS_OK;
 }
 
-static Status collect(Run *run) {
+static Status collect(FemRunState *run) {
   FemRunResult *result = run->result;
   end_part(run);
   result->audit = run->audit;
@@ -625,17 +381,8 @@ static Status collect(Run *run) {
   return run->recorder.system ? fem_recorder_finish(&run->recorder) : STATUS_OK;
 }
 
-// A run that was stopped, or failed for want of room, may be taken up; one that has ended need not.
-static Status leave_checkpoint(Run *run, Status status) {
-  bool may_go_on = status == STATUS_INTERRUPTED || status == STATUS_IO || status == STATUS_MEMORY;
-  if (!run->options->directory || !run->recorder.system) return STATUS_OK;
-  if (status == STATUS_OK) return remove_checkpoint(run);
-  return may_go_on && run->given->scene->checkpoint_frames != 0 && !run->is_written ? write_checkpoint(run)
-                                                                                    : STATUS_OK;
-}
-
 // The counts to go on from.
-static Status begin_result(Run *run) {
+static Status begin_result(FemRunState *run) {
   FemRunResult *result = run->result;
   *result = run->checkpoint.so_far;
   result->counters = record_new();
@@ -651,7 +398,7 @@ static Status begin_result(Run *run) {
   return STATUS_OK;
 }
 
-static Status prepare(Run *run) {
+static Status prepare(FemRunState *run) {
   const FemRunOptions *options = run->options;
   if (options->from) {
     TRY(fem_restart_check(options->from, run->given));
@@ -670,10 +417,10 @@ static Status prepare(Run *run) {
 }
 
 // The first failure gives the status; what closes the run may fail as well.
-static Status close_run(Run *run, Status status) {
+static Status close_run(FemRunState *run, Status status) {
   char message[2048], closing[1024] = "";
   snprintf(message, sizeof message, "%s", status_message());
-  Status collected = collect(run), left = leave_checkpoint(run, status ? status : collected);
+  Status collected = collect(run), left = fem_run_checkpoint_leave(run, status ? status : collected);
   if (collected || left) snprintf(closing, sizeof closing, "; besides: %s", status_message());
   fem_recorder_destroy(&run->recorder);
   fem_system_destroy(&run->system);
@@ -685,14 +432,8 @@ static Status close_run(Run *run, Status status) {
   return collected ? collected : left;
 }
 
-long long fem_run_checkpoint_steps(int unknown_count) {
-  static const double WORK = 1e6; // steps times unknowns: some seconds to a minute
-  enum { LEAST = 200 };           // what a new beginning costs, some ten steps, shall not be felt
-  return (long long)fmax(LEAST, WORK / unknown_count);
-}
-
 // Says when a run failed, unless whoever failed did. A retry that nobody took is the solver's failure.
-static Status say_when(const Run *run, Status status) {
+static Status say_when(const FemRunState *run, Status status) {
   if (status != STATUS_RETRY && status != STATUS_SOLVER) return status;
   bool is_told = strstr(status_message(), "t = ");
   if (is_told) return status_fail(STATUS_SOLVER, "%s", status_message());
@@ -701,12 +442,12 @@ static Status say_when(const Run *run, Status status) {
 
 Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult *result) {
   *result = (FemRunResult){.min_det_F = INFINITY};
-  Run run = {.model = model,
-             .given = model,
-             .options = options,
-             .result = result,
-             .began_s = clock_wall_s(),
-             .cpu_began_s = clock_cpu_s()};
+  FemRunState run = {.model = model,
+                     .given = model,
+                     .options = options,
+                     .result = result,
+                     .began_s = clock_wall_s(),
+                     .cpu_began_s = clock_cpu_s()};
   run.written_s = run.began_s;
   Status status = prepare(&run);
   if (!status) status = march(&run);
