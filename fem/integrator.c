@@ -349,14 +349,6 @@ static int find_worst(FemIntegrator *integrator, int flag) {
   return 0;
 }
 
-static const char *body_of(const FemModel *model, int vertex) {
-  for (int b = 0; b < model->body_count; b++)
-    if (vertex >= model->bodies[b].vertex_begin && vertex < model->bodies[b].vertex_end &&
-        model->bodies[b].name)
-      return model->bodies[b].name;
-  return "?";
-}
-
 // The element with this vertex that is squeezed most, as text; nothing where there are no elements.
 static void name_element(const FemModel *model, const double *positions, int vertex, char *text,
                          size_t size) {
@@ -388,8 +380,8 @@ static Status say_why(FemIntegrator *integrator, double time, double step, int w
       "at t = %.9g s, step %.3g s: %s%s%s%s. Worst: %s of vertex %d of body '%s', now at (%.6g, %.6g, "
       "%.6g) m, %c%s. Try %s",
       time, step, reason.what, retry[0] ? " (last: " : "", retry, retry[0] ? ")" : "",
-      worst < integrator->n ? "position" : "velocity", vertex, body_of(model, vertex), x[0], x[1], x[2],
-      "xyz"[dof % 3], element, reason.advice);
+      worst < integrator->n ? "position" : "velocity", vertex, fem_model_body_name(model, vertex), x[0], x[1],
+      x[2], "xyz"[dof % 3], element, reason.advice);
 }
 
 static Status give_up(FemIntegrator *integrator, int flag) {

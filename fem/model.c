@@ -411,6 +411,12 @@ void fem_model_drive(const FemModel *model, double time, double *positions, doub
   }
 }
 
+const char *fem_model_body_name(const FemModel *model, int vertex) {
+  for (int b = 0; b < model->body_count; b++)
+    if (vertex < model->bodies[b].vertex_end) return model->bodies[b].name ? model->bodies[b].name : "?";
+  return "?";
+}
+
 double fem_model_contact_stiffness(const FemModel *model) {
   const FemContactDef *contact = &model->scene->contact;
   if (contact->stiffness > 0) return contact->stiffness;

@@ -84,6 +84,9 @@ void fem_model_number(FemModel *model);
 // Positions and velocities of all prescribed coordinates at time t; the others are left alone.
 void fem_model_drive(const FemModel *model, double time, double *positions, double *velocities);
 
+// For messages: the name of the body that a vertex is of, "?" if it has none; borrowed.
+const char *fem_model_body_name(const FemModel *model, int vertex);
+
 // κ as the scene says, or as chosen for it: the softest body's Young's modulus E; for the `body` potential E
 // over the smallest mean element volume, which gives a comparable pressure.
 double fem_model_contact_stiffness(const FemModel *model);

@@ -153,12 +153,6 @@ static Status relax(FemStatics *statics, double time, double *u) {
   return STATUS_OK;
 }
 
-static const char *body_of(const FemModel *model, int vertex) {
-  for (int b = 0; b < model->body_count; b++)
-    if (vertex < model->bodies[b].vertex_end) return model->bodies[b].name;
-  return "?";
-}
-
 // What is left at the state that Newton's method ended in: the vertices with the largest forces, the element
 // that is distorted most.
 static Status say_why(FemStatics *statics, double time, const double *u) {
@@ -177,7 +171,8 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
     const double *x = system->positions + 3 * (size_t)vertex;
     text_append(text, sizeof text, &used,
                 "%s %.3g N along %c on vertex %d of body '%s' at (%.4g, %.4g, %.4g)", k ? "," : ". Left are",
-                statics->force[worst], "xyz"[dof % 3], vertex, body_of(model, vertex), x[0], x[1], x[2]);
+                statics->force[worst], "xyz"[dof % 3], vertex, fem_model_body_name(model, vertex), x[0], x[1],
+                x[2]);
     statics->force[worst] = 0;
   }
   int flattest = 0;

@@ -135,13 +135,6 @@ void fem_system_scatter(FemSystem *system, double time, const double *u, const d
   fem_model_drive(model, time, system->positions, system->velocities);
 }
 
-static const char *body_of(const FemModel *model, int vertex) {
-  for (int b = 0; b < model->body_count; b++)
-    if (vertex >= model->bodies[b].vertex_begin && vertex < model->bodies[b].vertex_end)
-      return model->bodies[b].name;
-  return "?";
-}
-
 // `what`: of which array the first value that is no number is told. RETRY if there is one.
 static Status check_numbers(const FemSystem *system, const double *values, const char *what,
                             const char *from) {
@@ -149,7 +142,7 @@ static Status check_numbers(const FemSystem *system, const double *values, const
   if (fem_solver_is_finite(values, count)) return STATUS_OK;
   while (isfinite(values[i])) i++;
   return status_fail(STATUS_RETRY, "the %s vertex %d of body '%s' is not a number%s%s%s", what, i / 3,
-                     body_of(system->model, i / 3), from ? " (effect '" : "", from ? from : "",
+                     fem_model_body_name(system->model, i / 3), from ? " (effect '" : "", from ? from : "",
                      from ? "')" : "");
 }
 
@@ -163,6 +156,7 @@ static Status blame_effect(FemSystem *system, const FemState *state) {
   memset(system->forces, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->forces);
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffect *effect = &system->effects[i];
+    if (!effect->ops->add_force) continue;
     TRY(effect->ops->add_force(effect->self, state, system->forces));
     TRY(check_numbers(system, system->forces, "force on", effect->ops->name));
   }

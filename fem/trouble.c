@@ -169,12 +169,6 @@ static const char *body_of_element(const FemModel *model, int tet) {
   return model->bodies[model->tet_body[tet]].name;
 }
 
-static const char *body_of_vertex(const FemModel *model, int vertex) {
-  int b = 0;
-  while (b < model->body_count - 1 && vertex >= model->bodies[b].vertex_end) b++;
-  return model->bodies[b].name;
-}
-
 void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
                       size_t size) {
   int first = trouble->of[kind].first;
@@ -184,7 +178,7 @@ void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroub
     return;
   }
   const char *body =
-      kind == FEM_TROUBLE_WRONG_WAY ? body_of_vertex(model, first) : body_of_element(model, first);
+      kind == FEM_TROUBLE_WRONG_WAY ? fem_model_body_name(model, first) : body_of_element(model, first);
   snprintf(text, size, "%s: first at t = %.6g s, %s %d of body '%s'; %d at once at most, in %lld steps",
            kinds[kind].what, trouble->of[kind].first_time, kinds[kind].unit, first, body,
            trouble->of[kind].most, trouble->of[kind].steps);
