@@ -10,6 +10,11 @@ static inline void fem_cofactor_find(const double F[9], double C[9]) {
   C[6] = F[1] * F[5] - F[2] * F[4], C[7] = F[2] * F[3] - F[0] * F[5], C[8] = F[0] * F[4] - F[1] * F[3];
 }
 
+static inline double fem_cofactor_det(const double F[9]) {
+  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+         F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
 // J − 1 from the displacement gradient G = F − I: no cancellation at small strain.
 static inline double fem_cofactor_swelling(const double F[9]) {
   double G[9], C[9];

@@ -2,10 +2,7 @@
 // Nodal volume change of the bodies with `element: nodal`, as an effect: fem/volume.h.
 #include "fem/effect_volume.h"
 
-#include <math.h>
-
 #include "base/memory.h"
-#include "base/vec3.h"
 #include "fem/effect.h"
 #include "fem/volume.h"
 
@@ -57,23 +54,16 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
-// P = p ∂θ/∂F, σ = P Fᵀ / J.
+// The stress of P = p ∂θ/∂F.
 void fem_effect_volume_add_stress(const void *self, int tet, const double x[12], double stress[6]) {
-  static const int rows[6] = {0, 1, 2, 0, 1, 0}, columns[6] = {0, 1, 2, 1, 2, 2};
   const FemVolume *volume = self;
   const FemModel *model = volume->model;
   FemMaterialLaw law = model->bodies[model->tet_body[tet]].material.law;
-  double F[9], gradient[9], pressure = fem_volume_pressure(volume, tet);
+  double F[9], gradient[9], one[6], pressure = fem_volume_pressure(volume, tet);
   fem_element_deformation(&model->elements[tet], x, F);
   fem_material_volume(law, F, gradient);
-  double J = vec3_dot(vec3_at(F), vec3_cross(vec3_at(F + 3), vec3_at(F + 6)));
-  for (int s = 0; s < 6; s++) {
-    const double *p = gradient + 3 * rows[s], *f = F + 3 * columns[s];
-    if (law == FEM_MATERIAL_LINEAR)
-      stress[s] += pressure * p[columns[s]];
-    else if (fabs(J) > 1e-12)
-      stress[s] += pressure * (p[0] * f[0] + p[1] * f[1] + p[2] * f[2]) / J;
-  }
+  fem_material_cauchy(law, F, gradient, one);
+  for (int s = 0; s < 6; s++) stress[s] += pressure * one[s];
 }
 
 static bool is_linear(void *self) {

@@ -463,8 +463,7 @@ void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double
 void fem_material_cauchy(FemMaterialLaw law, const double F[9], const double P[9], double stress[6]) {
   static const int rows[6] = {0, 1, 2, 0, 1, 0}, columns[6] = {0, 1, 2, 1, 2, 2};
   static const double flat = 1e-12;
-  double J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-             F[2] * (F[3] * F[7] - F[4] * F[6]);
+  double J = fem_cofactor_det(F);
   for (int s = 0; s < 6; s++) {
     const double *p = P + 3 * rows[s], *f = F + 3 * columns[s];
     if (law == FEM_MATERIAL_LINEAR)

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fem/cofactor.h"
 #include "fem/drive.h"
 #include "fem/select.h"
 #include "fem/volume.h"
@@ -479,7 +480,7 @@ double fem_model_det(const FemModel *model, int tet, const double *positions) {
   double x[30], F[9];
   gather(model->tets[tet], 4, positions, x);
   fem_element_deformation(&model->elements[tet], x, F);
-  double own = vec3_dot(vec3_at(F), vec3_cross(vec3_at(F + 3), vec3_at(F + 6)));
+  double own = fem_cofactor_det(F);
   if (body->element != FEM_ELEMENT_QUADRATIC || part >= FEM_QUADRATIC_POINTS) return own;
   int quadratic = quadratic_of(model, tet);
   gather(model->quadratic_nodes[quadratic], FEM_QUADRATIC_NODES, positions, x);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "fem/cofactor.h"
 #include "fem/element.h"
 #include "fem/viscous.h"
 
@@ -42,8 +43,7 @@ double fem_quadratic_det(const FemQuadratic *element, int point, const double x[
   FemPoint at = fem_quadratic_point(element, point);
   double F[9];
   fem_point_deformation(&at, x, F);
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-         F[2] * (F[3] * F[7] - F[4] * F[6]);
+  return fem_cofactor_det(F);
 }
 
 // V times the mean volume change, V θ̄.
