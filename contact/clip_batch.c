@@ -179,7 +179,6 @@ const ContactOverlapOps contact_overlap_clip = {
 const ContactOverlapOps contact_overlap_clip32 = {
     .name = "clip32",
     .help = "as clip in single precision: V within a thousandth of itself",
-    .has_hessian = false,
     .seconds_per_pair = 7e-8,
     .eval_pair = eval_pair_single,
     .eval_batch = eval_batch_single,

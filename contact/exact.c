@@ -125,7 +125,6 @@ static Status eval_pair(const void *self, const double pair[24], double *volume,
 const ContactOverlapOps contact_overlap_exact = {
     .name = "exact",
     .help = "exact rational arithmetic; every input, signs always right, values rounded once",
-    .has_hessian = false,
     .seconds_per_pair = 8e-6,
     .eval_pair = eval_pair,
 };

@@ -45,7 +45,7 @@ ContactOverlapBatch contact_overlap_part(const ContactOverlapBatch *batch, int b
 typedef struct ContactOverlapOps {
   const char *name;
   const char *help;        // one line for lists and the manual
-  bool has_hessian;        // or may have one: `bends`
+  bool has_hessian;        // always; where that hangs on what it was made of: `bends`
   double seconds_per_pair; // rough cost of V + ∇V on one core, to announce how long a run will take [s]
   // Allocates what the model keeps; NULL where it keeps nothing. `weights`: the path of a weights file, or
   // the name of one that ships; NULL: the model's own. `options`, NULL: the model's own, matter to some.
@@ -64,7 +64,7 @@ typedef struct ContactOverlapOps {
   bool rejects;
   // Logits of "the two intersect" of pairs (count, 24), where a model tells them apart from V; NULL: V > 0.
   Status (*eval_logits)(const void *self, int count, const double *pairs, double *logits);
-  // Whether it has second derivatives as it was made; NULL: as has_hessian says.
+  // Whether it has second derivatives as it was made, asked in place of has_hessian; NULL: as that says.
   bool (*bends)(const void *self);
   // eval_batch fails where a coordinate is not finite; without it, all are looked through before.
   bool minds_finite;

@@ -236,7 +236,8 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
   add_shape_pairs(layout, evaluation, sink);
   // Newton's matrix may be another model's: that changes how fast the method converges, not what it finds
   static const ContactOverlapModel lender = {.ops = &contact_overlap_clip};
-  return add_mesh_pairs(stiffness, layout, evaluation, contact_overlap_has_hessian(model) ? model : &lender, sink);
+  return add_mesh_pairs(stiffness, layout, evaluation, contact_overlap_has_hessian(model) ? model : &lender,
+                        sink);
 }
 
 Status contact_stiffness_add_nodes(ContactStiffness *stiffness, const ContactLayout *layout,
