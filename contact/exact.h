@@ -26,8 +26,7 @@
 // triangle's area is taken to 127 bits where that is certain to suffice (exact_fixed.h), else to all digits.
 //
 // Cost: 6 to 9 µs a pair that overlaps, 0.1 µs one that a face separates; 208 kB of stack, of which ordinary
-// pairs touch a few; no other memory, no state:
-// threads share nothing.
+// pairs touch a few; no other memory, no state: threads share nothing.
 #ifndef TETLAP_CONTACT_EXACT_H
 #define TETLAP_CONTACT_EXACT_H
 

@@ -6,18 +6,6 @@
 // Volumes of the network below this share of the unit simplex are rounded off.
 static const double SOFTEST = 1e-3 / 6;
 
-// From 0 for x ≤ 0 to 1 for x ≥ 1, x being a linear function of slope `rate`; NaN: 0.
-static ContactNetBend rise(double x, double rate) {
-  if (x >= 1) return (ContactNetBend){.value = 1};
-  if (!(x > 0)) return (ContactNetBend){.value = 0};
-  return (ContactNetBend){x * x * (3 - 2 * x), 6 * x * (1 - x) * rate, 6 * (1 - 2 * x) * rate * rate};
-}
-
-static ContactNetBend fall(double x, double rate) {
-  ContactNetBend up = rise(x, rate);
-  return (ContactNetBend){1 - up.value, -up.slope, -up.bend};
-}
-
 static ContactNetBend itself(double x) {
   return (ContactNetBend){.value = x, .slope = 1};
 }
@@ -42,8 +30,10 @@ static void weigh_share(const ContactNetRule *rule, double share, int order, Con
   contact_net_jet_constant(weight, order, 1);
   if (!rule->is_hybrid) return;
   ContactNetJet part;
-  contact_net_jet_of(weight, order, CONTACT_NET_SHARE, rise(share / rule->touch - 1, 1 / rule->touch));
-  contact_net_jet_of(&part, order, CONTACT_NET_SHARE, fall(2 * share / rule->deep - 2, 2 / rule->deep));
+  contact_net_jet_of(weight, order, CONTACT_NET_SHARE,
+                     contact_net_bend_rise(share / rule->touch - 1, 1 / rule->touch));
+  contact_net_jet_of(&part, order, CONTACT_NET_SHARE,
+                     contact_net_bend_rise(3 - 2 * share / rule->deep, -2 / rule->deep));
   contact_net_jet_multiply(weight, &part);
 }
 
@@ -54,7 +44,7 @@ static void weigh_confidence(const ContactNetRule *rule, const ContactNetSaid *s
     contact_net_jet_of(&logit, weight->order, CONTACT_NET_LOGIT + o, itself(said->of[CONTACT_NET_LOGIT + o]));
     contact_net_jet_add(&mean, 1.0 / rule->order_count, &logit);
   }
-  contact_net_jet_apply(&mean, rise(mean.value / rule->logit, 1 / rule->logit));
+  contact_net_jet_apply(&mean, contact_net_bend_rise(mean.value / rule->logit, 1 / rule->logit));
   contact_net_jet_multiply(weight, &mean);
 }
 
@@ -129,7 +119,7 @@ void contact_net_blend_eval(const ContactNetRule *rule, const ContactNetSaid *sa
   tell(rule, said, order, volume);
   if (rule->fades) {
     contact_net_jet_of(&other, order, CONTACT_NET_SHARE,
-                       rise(said->of[CONTACT_NET_SHARE] / rule->touch, 1 / rule->touch));
+                       contact_net_bend_rise(said->of[CONTACT_NET_SHARE] / rule->touch, 1 / rule->touch));
     contact_net_jet_multiply(volume, &other);
   }
   weigh(rule, said, order, &weight);

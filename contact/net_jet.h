@@ -20,6 +20,14 @@ typedef struct ContactNetBend {
   double value, slope, bend;
 } ContactNetBend;
 
+// The step S: from 0 for x ≤ 0 to 1 for x ≥ 1, x being a linear function of slope `rate`; NaN: 0. As S(1 − x)
+// = 1 − S(x), it falls where x does.
+static inline ContactNetBend contact_net_bend_rise(double x, double rate) {
+  if (x >= 1) return (ContactNetBend){.value = 1};
+  if (!(x > 0)) return (ContactNetBend){.value = 0};
+  return (ContactNetBend){x * x * (3 - 2 * x), 6 * x * (1 - x) * rate, 6 * (1 - 2 * x) * rate * rate};
+}
+
 static inline void contact_net_jet_constant(ContactNetJet *a, int order, double value) {
   a->order = order;
   a->value = value;

@@ -85,24 +85,17 @@ bool contact_net_range_parse(const char *text, ContactNetRange *range) {
          is_range(range->volume[1]) && range->overlap > 0 && isfinite(range->overlap);
 }
 
-// 1 for x ≤ 0, 0 for x ≥ 1 and for NaN.
-static ContactNetBend fall(double x) {
-  if (x <= 0) return (ContactNetBend){.value = 1};
-  if (!(x < 1)) return (ContactNetBend){.value = 0};
-  return (ContactNetBend){1 - x * x * (3 - 2 * x), -6 * x * (1 - x), -6 + 12 * x};
-}
-
 // Beyond an end by less than this is still within: the text of a range has nine digits.
 static const double WITHIN = 1e-6;
 
 // The weight of a measure between two ends, with its derivatives by the measure's logarithm.
 static ContactNetBend weigh(double value, const double ends[2]) {
-  double band = log(contact_net_range_band);
-  ContactNetBend below = fall((log(ends[0] / value) - WITHIN) / band),
-                 above = fall((log(value / ends[1]) - WITHIN) / band);
-  return (ContactNetBend){
-      below.value * above.value, (below.value * above.slope - below.slope * above.value) / band,
-      (below.value * above.bend - 2 * below.slope * above.slope + below.bend * above.value) / (band * band)};
+  double rate = 1 / log(contact_net_range_band);
+  ContactNetBend below = contact_net_bend_rise(1 - (log(ends[0] / value) - WITHIN) * rate, rate),
+                 above = contact_net_bend_rise(1 - (log(value / ends[1]) - WITHIN) * rate, -rate);
+  return (ContactNetBend){below.value * above.value, below.value * above.slope + below.slope * above.value,
+                          below.value * above.bend + 2 * below.slope * above.slope +
+                              below.bend * above.value};
 }
 
 enum { SIZE = 24, MEASURES = 3 };
@@ -194,6 +187,5 @@ double contact_net_range_weight(const ContactNetRange *range, const double pair[
 
 ContactNetBend contact_net_range_overlap_weight(const ContactNetRange *range, double overlap) {
   double width = range->overlap * (contact_net_range_band - 1);
-  ContactNetBend weight = fall((overlap - range->overlap) / width);
-  return (ContactNetBend){weight.value, weight.slope / width, weight.bend / (width * width)};
+  return contact_net_bend_rise(1 - (overlap - range->overlap) / width, -1 / width);
 }
