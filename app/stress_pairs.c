@@ -66,7 +66,7 @@ static void compare(Asked *asked, double *worst, const double x[24], double volu
 
 static Status compare_orders(Asked *asked, const double x[24], double volume, int step) {
   double swapped[24], permuted[24], other;
-  datagen_hard_swap(x, swapped);
+  contact_overlap_swap(x, swapped);
   TRY(ask_volume(asked, swapped, &other));
   compare(asked, &asked->worst.order, x, other, volume, 2, 0);
   for (int k = 1; k < 24; k += step) {

@@ -114,7 +114,7 @@ Status contact_net_overlap_eval_pair(const void *self, const double pair[24], do
 static bool lay_pair(const ContactNetOverlap *overlap, ContactNetDesk *desk, const double pair[SIZE]) {
   ContactNormalised normalised[CONTACT_NET_MAX_ORDERS];
   double swapped[SIZE];
-  contact_net_portion_swap(pair, swapped);
+  contact_overlap_swap(pair, swapped);
   for (int o = 0; o < overlap->rule.order_count; o++)
     if (!contact_normalise(overlap->model.kind, o ? swapped : pair, &normalised[o])) return false;
   for (int o = 0; o < overlap->rule.order_count; o++)

@@ -77,11 +77,6 @@ static bool wants_slopes(const ContactOverlapBatch *batch) {
   return batch->gradient || batch->hessian;
 }
 
-void contact_net_portion_swap(const double pair[24], double swapped[24]) {
-  memcpy(swapped, pair + HALF, HALF * sizeof(double));
-  memcpy(swapped + HALF, pair, HALF * sizeof(double));
-}
-
 // ---- Before the network.
 
 static Status give_exact(const ContactOverlapBatch *batch, int i) {
@@ -147,7 +142,7 @@ static bool prepare(const Papers *papers, Seat *seat) {
   const ContactNetRule *rule = &overlap->rule;
   double orders[2][SIZE];
   memcpy(orders[0], pair_of(papers, seat), sizeof orders[0]);
-  contact_net_portion_swap(orders[0], orders[1]);
+  contact_overlap_swap(orders[0], orders[1]);
   for (int o = 0; o < rule->order_count; o++) {
     ContactNormalised *normalised = &seat->normalised[o];
     if (!contact_normalise(overlap->model.kind, orders[o], normalised)) return false;

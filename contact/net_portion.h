@@ -38,7 +38,4 @@ bool contact_net_portion_bends(const ContactNetModel *model);
 Status contact_net_portion_eval(const ContactNetOverlap *overlap, const ContactOverlapBatch *batch,
                                 ContactNetDesk *desk);
 
-// A pair's other order; the same function turns it back.
-void contact_net_portion_swap(const double pair[24], double swapped[24]);
-
 #endif

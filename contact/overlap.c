@@ -95,6 +95,12 @@ ContactOverlapBatch contact_overlap_part(const ContactOverlapBatch *batch, int b
                                .flags = batch->flags ? batch->flags + begin : NULL};
 }
 
+void contact_overlap_swap(const double pair[24], double swapped[24]) {
+  enum { HALF = CONTACT_PAIR_SIZE / 2 };
+  memcpy(swapped, pair + HALF, HALF * sizeof *pair);
+  memcpy(swapped + HALF, pair, HALF * sizeof *pair);
+}
+
 // x − x is 0 for finite x, else NaN. Eight sums that a compiler keeps side by side.
 static inline bool is_finite(const double pair[CONTACT_PAIR_SIZE]) {
   double sum[8] = {0};

@@ -41,6 +41,9 @@ typedef struct ContactOverlapBatch {
 // The batch of its pairs from `begin` on, at most `count`.
 ContactOverlapBatch contact_overlap_part(const ContactOverlapBatch *batch, int begin, int count);
 
+// A pair's other order; the same function turns it back.
+void contact_overlap_swap(const double pair[24], double swapped[24]);
+
 // What a model implements. One per model, `static const`, listed in overlap.c.
 typedef struct ContactOverlapOps {
   const char *name;

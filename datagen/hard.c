@@ -6,11 +6,6 @@
 
 #include "contact/invariant.h"
 
-void datagen_hard_swap(const double x[24], double swapped[24]) {
-  memcpy(swapped, x + 12, 12 * sizeof *x);
-  memcpy(swapped + 12, x, 12 * sizeof *x);
-}
-
 void datagen_hard_permute(const double tet[12], int k, double permuted[12]) {
   int left[4] = {0, 1, 2, 3};
   for (int i = 0, radix = 24; i < 4; i++) {

@@ -28,8 +28,6 @@ typedef struct DatagenHardClass {
 enum { DATAGEN_HARD_CLASS_COUNT = 33 };
 extern const DatagenHardClass datagen_hard_classes[DATAGEN_HARD_CLASS_COUNT];
 
-void datagen_hard_swap(const double x[24], double swapped[24]);
-
 // The k-th (0 … 23) order of a tetrahedron's vertices; every second one turns it inside out.
 void datagen_hard_permute(const double tet[12], int k, double permuted[12]);
 

@@ -356,7 +356,7 @@ START_TEST(no_order_of_vertices_or_tetrahedra_changes_a_feature) {
       double permuted[24], swapped[24], one[CONTACT_GEO_MAX_FEATURES], other[CONTACT_GEO_MAX_FEATURES];
       datagen_hard_permute(pair.x, k, permuted);
       datagen_hard_permute(pair.x + 12, (7 * k + 5) % 24, permuted + 12);
-      datagen_hard_swap(permuted, swapped);
+      contact_overlap_swap(permuted, swapped);
       features_of(count, pair.x, one);
       features_of(count, swapped, other);
       for (int f = 0; f < count; f++) ck_assert_near(one[f], other[f], 1e-12);

@@ -131,7 +131,7 @@ START_TEST(volumes_have_the_symmetries_of_the_true_one) {
       for (int k = 1; k < 24; k++) {
         datagen_hard_permute(pair.x, k, x);
         datagen_hard_permute(pair.x + 12, (5 * k + 3) % 24, x + 12);
-        datagen_hard_swap(x, swapped);
+        contact_overlap_swap(x, swapped);
         ck_assert_at_most(fabs(ask(&subject, swapped, false).volume / volume - 1), 1e-12);
       }
       memcpy(x, pair.x, sizeof x);

@@ -163,7 +163,7 @@ START_TEST(touching_is_disjoint) {
   for (size_t k = 0; k < sizeof other / sizeof *other; k++) {
     double x[24], swapped[24];
     memcpy(x, simplex, sizeof simplex), memcpy(x + 12, other[k], sizeof other[k]);
-    datagen_hard_swap(x, swapped);
+    contact_overlap_swap(x, swapped);
     Answer answer = ask(models[_i], x);
     assert_nothing(&answer, CONTACT_OVERLAP_DISJOINT, "touching");
     answer = ask(models[_i], swapped);
@@ -229,10 +229,10 @@ START_TEST(order_of_tetrahedra_and_vertices_does_not_matter) {
     const DatagenHardPair pair = datagen_hard_make(_i, m);
     const Answer answer = ask(&contact_overlap_exact, pair.x);
     double swapped[24], moved[24], expected[24];
-    datagen_hard_swap(pair.x, swapped);
+    contact_overlap_swap(pair.x, swapped);
     datagen_hard_permute(swapped, m, moved);
     datagen_hard_permute(swapped + 12, 23 - m, moved + 12);
-    datagen_hard_swap(answer.gradient, swapped);
+    contact_overlap_swap(answer.gradient, swapped);
     datagen_hard_permute(swapped, m, expected);
     datagen_hard_permute(swapped + 12, 23 - m, expected + 12);
     const Answer again = ask(&contact_overlap_exact, moved);

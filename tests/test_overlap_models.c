@@ -196,7 +196,7 @@ END_TEST
 static void check_exchange(const ContactOverlapModel *model, const Demand *demand,
                            const DatagenHardPair *pair, const char *where) {
   double volume = ask_volume(model, pair->x), swapped[24], permuted[24];
-  datagen_hard_swap(pair->x, swapped);
+  contact_overlap_swap(pair->x, swapped);
   double allowed = 2 * difference_allowed(demand, pair->x, volume);
   ck_assert_at_most(where, fabs(ask_volume(model, swapped) - volume), allowed);
   for (int k = 1; k < 24; k += demand->members < 10 ? 11 : 1) {
@@ -353,7 +353,7 @@ START_TEST(a_tetrahedron_inside_another_is_flagged) {
     for (int member = 0; member < 5; member++) {
       DatagenHardPair pair = datagen_hard_make(c, member);
       double swapped[24];
-      datagen_hard_swap(pair.x, swapped);
+      contact_overlap_swap(pair.x, swapped);
       ck_assert_int_eq(is_inside, (ask(&model, pair.x).flags & CONTACT_OVERLAP_ENCLOSED) != 0);
       ck_assert_int_eq(is_inside, (ask(&model, swapped).flags & CONTACT_OVERLAP_ENCLOSED) != 0);
       seen++;

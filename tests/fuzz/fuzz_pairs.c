@@ -79,7 +79,7 @@ static void fill_batch(const double x[SIZE], Batch *batch) {
   memcpy(batch->pairs[LAST], x, PAIR_BYTES);
   for (int k = 1; k < LAST; k++) {
     double swapped[SIZE];
-    datagen_hard_swap(x, swapped);
+    contact_overlap_swap(x, swapped);
     const double *from = k & 1 ? swapped : x;
     datagen_hard_permute(from, (5 * k) % 24, batch->pairs[k]);
     datagen_hard_permute(from + 12, (7 * k + 3) % 24, batch->pairs[k] + 12);
