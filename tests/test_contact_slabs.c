@@ -83,7 +83,7 @@ static Quality inspect(const Slabs *slabs, int body) {
     }
   }
   ck_assert_int_ge(count, 4);
-  double mean = sum / count, variance = fmax(0, squares / count - (mean - first) * (mean - first));
+  double mean = sum / count, variance = suite_larger(0, squares / count - (mean - first) * (mean - first));
   return (Quality){sqrt(variance) / mean, tangential / (sum + inner), inner / (sum + inner),
                    (sum + inner) / count / (edge * edge)};
 }
@@ -117,13 +117,13 @@ static Worst slide(ContactPotential potential, double ratio, double depth, bool 
     ck_assert_int_gt(contact_system_active_count(slabs.system), 100);
     for (int body = 0; body < 2; body++) {
       Quality q = inspect(&slabs, body), *w = &worst.of[body];
-      w->evenness = fmax(w->evenness, q.evenness);
-      w->tangential = fmax(w->tangential, q.tangential);
-      w->inner = fmax(w->inner, q.inner);
+      w->evenness = suite_larger(w->evenness, q.evenness);
+      w->tangential = suite_larger(w->tangential, q.tangential);
+      w->inner = suite_larger(w->inner, q.inner);
       w->pressure += q.pressure / SLIDES;
     }
     inspect_all(&slabs, &scattered, &net);
-    worst.scattered = fmax(worst.scattered, scattered), worst.net = fmax(worst.net, net);
+    worst.scattered = suite_larger(worst.scattered, scattered), worst.net = suite_larger(worst.net, net);
     blocks_shift(&slabs.blocks, slabs.blocks.x, 1, (double[]){0.1, 0, 0});
     slabs.centre[0] += 0.1;
   }

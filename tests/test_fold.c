@@ -56,8 +56,8 @@ static double fastest(const SceneRun *run, double share) {
   int last = run->result.frame_count - 1, first = (int)((1 - share) * last);
   double span = run->result.frame_times[last] - run->result.frame_times[first], most = 0;
   for (int v = 0; v < run->model.vertex_count; v++)
-    most = fmax(most, vec3_length(vec3_sub(vec3_at(scene_position(run, last, v)),
-                                           vec3_at(scene_position(run, first, v)))));
+    most = suite_larger(most, vec3_length(vec3_sub(vec3_at(scene_position(run, last, v)),
+                                                   vec3_at(scene_position(run, first, v)))));
   return most / span;
 }
 

@@ -139,22 +139,11 @@ START_TEST(slow_slip_is_held_by_a_part_of_the_friction) {
 }
 END_TEST
 
-// A network in training has no weights yet, which is said.
-static bool has_weights(const char *name) {
-  ContactOverlapModel model;
-  Status status = contact_overlap_create(&model, name);
-  if (status == STATUS_IO) printf("skipped: %s\n", status_message());
-  ck_assert(status == STATUS_OK || status == STATUS_IO);
-  if (!status) contact_overlap_destroy(&model);
-  return status == STATUS_OK;
-}
-
 // _i: overlap model.
 START_TEST(friction_keeps_momentum_with_every_overlap_model) {
   int count;
   const ContactOverlapOps *const *models = contact_overlap_list(&count);
   ck_assert_int_lt(_i, count);
-  if (!has_weights(models[_i]->name)) return;
   Fixture *f = pressed_blocks(models[_i]->name, false);
   int middle = f->blocks.bodies[1].vertex_begin;
   for (uint64_t stream = 0; stream < 5; stream++) {

@@ -86,7 +86,7 @@ static void check_gradient(const char *normalisation) {
       pair[i] = kept - step;
       double below = volume_of(self, pair);
       pair[i] = kept;
-      worst = fmax(worst, fabs((above - below) / (2 * step) - gradient[i]));
+      worst = suite_larger(worst, fabs((above - below) / (2 * step) - gradient[i]));
     }
     // max pools have kinks, thin first tetrahedra bend sharply: most, not all
     checked += worst < 0.02 * size && volume > 0;
@@ -359,10 +359,10 @@ static void check_path(const char *name, ContactNetOptions options, int *blended
     Answer now = ask(&model, pair);
     for (int i = 0; i < 24; i++) difference += pow(now.gradient[i] - before.gradient[i], 2);
     for (int i = 12; i < 24; i++) slope -= 0.5 * (now.gradient[i] + before.gradient[i]);
-    jump_volume = fmax(jump_volume, fabs(now.volume - before.volume));
-    jump_gradient = fmax(jump_gradient, sqrt(difference));
-    largest = fmax(largest, fabs(slope));
-    slope_error = fmax(slope_error, fabs((now.volume - before.volume) / h - slope));
+    jump_volume = suite_larger(jump_volume, fabs(now.volume - before.volume));
+    jump_gradient = suite_larger(jump_gradient, sqrt(difference));
+    largest = suite_larger(largest, fabs(slope));
+    slope_error = suite_larger(slope_error, fabs((now.volume - before.volume) / h - slope));
     *blended += (now.flags & CONTACT_OVERLAP_BLENDED) != 0;
     before = now;
   }
@@ -411,7 +411,7 @@ START_TEST(gradient_holds_through_gate_fading_range_and_blend) {
         pair[i] = kept - step;
         double below = ask(&model, pair).volume;
         pair[i] = kept;
-        worst = fmax(worst, fabs((above - below) / (2 * step) - answer.gradient[i]));
+        worst = suite_larger(worst, fabs((above - below) / (2 * step) - answer.gradient[i]));
       }
       mixed += (answer.flags & CONTACT_OVERLAP_NET) != 0;
       right += worst < 0.01 * size;
@@ -459,7 +459,7 @@ static void check_bend(const char *name, ContactNetOptions options, double squee
       pair[i] = kept;
       for (int j = 0; j < 24; j++) {
         double difference = (above.gradient[j] - below.gradient[j]) / (2 * step);
-        worst = fmax(worst, fabs(difference - hessian[24 * j + i]));
+        worst = suite_larger(worst, fabs(difference - hessian[24 * j + i]));
         ck_assert_near(hessian[24 * j + i], hessian[24 * i + j], 1e-5 * size);
       }
     }

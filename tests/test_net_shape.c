@@ -120,7 +120,7 @@ static double defect(NetShape shape, bool is_swap) {
       for (int a = 0; a < 4; a++) memcpy(z + 3 * a, x + 3 * order[a], 3 * sizeof *z);
     net_forward_eval_f64(&work, &model, 1, x, y);
     net_forward_eval_f64(&work, &model, 1, z, w);
-    for (int k = 0; k < 2; k++) worst = fmax(worst, fabs(y[k] - w[k]) / (1 + fabs(y[k])));
+    for (int k = 0; k < 2; k++) worst = suite_larger(worst, fabs(y[k] - w[k]) / (1 + fabs(y[k])));
     net_memory_free(x);
   }
   net_work_destroy_f64(&work);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every overlap model must obey, on every class of pairs (pairs.h). The volume's oracle is `exact`,
+// What every overlap model must obey, on every class of pairs (datagen/hard.h). The volume's oracle is `exact`,
 // whose own oracles are cases with a known volume and `cgal`.
 #include "suite.h"
 
@@ -97,22 +97,19 @@ static double exact_volume(const double x[24]) {
   return volume;
 }
 
-// The model, if its weights are there: a network in training has none yet, which is said.
-static bool open_model(int index, ContactOverlapModel *model) {
-  const char *name = model_at(index)->name;
-  Status status = contact_overlap_create(model, name);
-  if (status == STATUS_IO) printf("skipped: %s\n", status_message());
-  ck_assert(status == STATUS_OK || status == STATUS_IO);
-  return status == STATUS_OK;
+static ContactOverlapModel open_model(int index) {
+  ContactOverlapModel model;
+  ck_assert_ok(contact_overlap_create(&model, model_at(index)->name));
+  return model;
 }
 
 // Calls `check` for every member of every class, unless the model lacks what it asks for.
 static void for_each_pair(int model_index, unsigned asked,
                           void (*check)(const ContactOverlapModel *model, const Demand *demand,
                                         const DatagenHardPair *pair, const char *where)) {
-  ContactOverlapModel model;
   const Demand *demand = demand_of(model_at(model_index)->name);
-  if ((demand->lacks & asked) || !open_model(model_index, &model)) return;
+  if (demand->lacks & asked) return;
+  ContactOverlapModel model = open_model(model_index);
   for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
     for (int member = 0; member < demand->members; member++) {
       char where[96];
@@ -282,11 +279,6 @@ START_TEST(the_gradient_is_the_derivative_of_the_volume) {
 }
 END_TEST
 
-// The larger one; NaN stays.
-static double larger(double a, double b) {
-  return isnan(a) || a >= b ? a : b;
-}
-
 static void ask_hessian(const ContactOverlapModel *model, const double x[24], double hessian[576]) {
   double volume;
   ContactOverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume, .hessian = hessian};
@@ -302,7 +294,7 @@ static void check_hessian(const ContactOverlapModel *model, const Demand *demand
     for (int c = 0; c < 3; c++) {
       double sum = 0, size = 0;
       for (int j = c; j < 24; j += 3) sum += hessian[24 * i + j], size += fabs(hessian[24 * i + j]);
-      shift = larger(shift, fabs(sum) / (size + extent));
+      shift = suite_larger(shift, fabs(sum) / (size + extent));
     }
   ck_assert_at_most(where, shift, 1e-11 + 1e3 * demand->invariant);
   bool is_symmetric = true;
@@ -319,17 +311,16 @@ static void check_hessian(const ContactOverlapModel *model, const Demand *demand
     double error = 0; // one assertion a row: each costs a system call
     for (int j = 0; j < 24; j++) {
       double difference = (plus.gradient[j] - minus.gradient[j]) / (up[i] - down[i]);
-      error = larger(error, fabs(difference - hessian[24 * i + j]) / extent);
+      error = suite_larger(error, fabs(difference - hessian[24 * i + j]) / extent);
     }
     ck_assert_at_most(where, error, demand->hessian);
   }
 }
 
 START_TEST(the_hessian_is_symmetric_and_the_derivative_of_the_gradient) {
-  ContactOverlapModel model;
+  ContactOverlapModel model = open_model(_i);
   double volume, hessian[576];
   DatagenHardPair pair = datagen_hard_make(2, 0);
-  if (!open_model(_i, &model)) return;
   if (contact_overlap_has_hessian(&model)) {
     contact_overlap_destroy(&model);
     for_each_pair(_i, 0, check_hessian);
@@ -343,9 +334,8 @@ START_TEST(the_hessian_is_symmetric_and_the_derivative_of_the_gradient) {
 END_TEST
 
 START_TEST(a_tetrahedron_inside_another_is_flagged) {
-  ContactOverlapModel model;
   if (demand_of(model_at(_i)->name)->lacks & LACKS_STATUS) return;
-  if (!open_model(_i, &model)) return;
+  ContactOverlapModel model = open_model(_i);
   int seen = 0;
   for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++) {
     bool is_inside = strcmp(datagen_hard_classes[c].name, "inside") == 0;
@@ -366,8 +356,7 @@ END_TEST
 
 START_TEST(a_coordinate_that_is_no_number_is_an_error_that_names_the_pair) {
   const double bad[3] = {NAN, INFINITY, -INFINITY};
-  ContactOverlapModel model;
-  if (!open_model(_i, &model)) return;
+  ContactOverlapModel model = open_model(_i);
   double x[5 * 24], volume[5];
   for (int k = 0; k < 5; k++) memcpy(x + 24 * k, datagen_hard_make(0, k).x, 24 * sizeof *x);
   ContactOverlapBatch batch = {.pair_count = 5, .pairs = x, .volume = volume};
@@ -387,8 +376,7 @@ END_TEST
 enum { BATCH = 200 };
 
 START_TEST(results_do_not_depend_on_the_number_of_threads) {
-  ContactOverlapModel model;
-  if (!open_model(_i, &model)) return;
+  ContactOverlapModel model = open_model(_i);
   static double x[BATCH * 24], volume[2][BATCH], gradient[2][BATCH * 24];
   static unsigned flags[2][BATCH];
   for (int k = 0; k < BATCH; k++)
@@ -413,9 +401,9 @@ END_TEST
 
 // What a batch leaves out beforehand must be what the model says of the pair.
 START_TEST(a_batch_says_what_each_pair_says) {
-  ContactOverlapModel model;
   const ContactOverlapOps *ops = model_at(_i);
-  if (ops->eval_batch || !open_model(_i, &model)) return; // batches of their own: tested with them
+  if (ops->eval_batch) return; // batches of their own: tested with them
+  ContactOverlapModel model = open_model(_i);
   static double x[BATCH * 24], volume[BATCH], gradient[BATCH * 24];
   static unsigned flags[BATCH];
   int disjoint = 0, flat = 0;
@@ -443,8 +431,7 @@ START_TEST(a_batch_says_what_each_pair_says) {
 END_TEST
 
 START_TEST(an_empty_batch_is_fine) {
-  ContactOverlapModel model;
-  if (!open_model(_i, &model)) return;
+  ContactOverlapModel model = open_model(_i);
   ck_assert_ok(contact_overlap_eval(&model, &(ContactOverlapBatch){0}));
   contact_overlap_destroy(&model);
 }

@@ -204,8 +204,8 @@ START_TEST(no_corner_of_a_turning_solid_moves_farther_than_it_says) {
       }
       swing(NULL, 0.9, rest, to, velocity);
       swing(NULL, 0.2, rest, from, velocity);
-      most = fmax(most, vec3_length(vec3_sub(vec3_at(to), vec3_at(from))));
-      fastest = fmax(fastest, vec3_length(vec3_at(velocity)));
+      most = suite_larger(most, vec3_length(vec3_sub(vec3_at(to), vec3_at(from))));
+      fastest = suite_larger(fastest, vec3_length(vec3_at(velocity)));
     }
   ck_assert_double_ge(contact_shape_motion(&shape, 0.2, 0.9), most);
   ck_assert_double_le(contact_shape_motion(&shape, 0.2, 0.9), 2.5 * most);
