@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Linear statics for tests: one factorisation of K at rest, loads by the scene. And scenes from a text.
+// Linear statics for tests: one factorisation of K at rest, loads by the scene; the bending of a cantilever.
+// And scenes from a text.
 #ifndef TETLAP_TESTS_STATIC_SOLVE_H
 #define TETLAP_TESTS_STATIC_SOLVE_H
 
@@ -38,6 +39,33 @@ static inline double *solve_linear_static(const FemModel *model) {
   free(right);
   free(u);
   return all;
+}
+
+// Tip deflection of a cantilever over Timoshenko's P L³/(3 E I) + P L/(k G A), k = 10(1 + ν)/(12 + 11 ν)
+// (Cowper 1966), with `through` cubes through its thickness.
+static inline double cantilever_deflection(const char *element, double nu, int through) {
+  const double L = 5, P = 1e-4;
+  char text[1024];
+  snprintf(text, sizeof text,
+           "time: {end: 1}\n"
+           "bodies:\n"
+           "  - name: beam\n"
+           "    element: %s\n"
+           "    mesh: {box: {size: [5, 0.5, 1], cells: [%d, %d, %d]}}\n"
+           "    material: {law: linear, young: 1, poisson: %g, density: 1}\n"
+           "    fixed: [{group: x_min}]\n"
+           "    loads: [{group: x_max, traction: [0, 0, -2e-4]}]\n",
+           element, 5 * through, through / 2, through, nu);
+  SceneRun run;
+  scene_open_text(&run, text);
+  double *u = solve_linear_static(&run.model), tip = 0;
+  int count = 0;
+  for (int a = 0; a < run.model.vertex_count; a++)
+    if (run.model.rest[3 * a] == L) tip -= u[3 * a + 2], count++;
+  free(u);
+  scene_close(&run);
+  double I = 0.5 / 12, A = 0.5, k = 10 * (1 + nu) / (12 + 11 * nu), G = 1 / (2 * (1 + nu));
+  return tip / count / (P * L * L * L / (3 * I) + P * L / (k * G * A));
 }
 
 #endif

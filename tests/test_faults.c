@@ -251,6 +251,7 @@ static void check_recovery(const char *text, Strike *strike, int rounds) {
   Run whole;
   run(&whole, text);
   ck_assert_msg(whole.status == STATUS_OK, "%s", status_message());
+  ck_assert(whole.result.pairs_max > 0 || !whole.scene.contact.is_on); // what falls does land
   long calls = strike->calls;
   ck_assert_int_ge(calls, rounds);
   for (int k = 0; k < rounds; k++) {

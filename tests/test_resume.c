@@ -305,10 +305,9 @@ START_TEST(a_disk_that_is_full_is_an_error_after_which_the_run_goes_on) {
 }
 END_TEST
 
-START_TEST(a_folder_that_must_not_be_written_is_named) {
-  if (geteuid() == 0) return; // who may write everywhere
+START_TEST(a_folder_that_cannot_be_made_is_named) {
   char command[256];
-  snprintf(command, sizeof command, "mkdir %s/closed && chmod 500 %s/closed", folder, folder);
+  snprintf(command, sizeof command, "touch %s/closed", folder); // root, too, makes no folder in a file
   ck_assert_int_eq(system(command), 0);
   ck_assert_int_eq(run(&cases[0], "closed/run", ""), 74);
   check_log("closed");
@@ -334,7 +333,7 @@ int main(void) {
   tcase_add_test(test_case, what_differs_is_refused_by_name);
   tcase_add_test(test_case, weights_that_vanish_during_a_run_do_not_touch_it);
   tcase_add_test(test_case, a_disk_that_is_full_is_an_error_after_which_the_run_goes_on);
-  tcase_add_test(test_case, a_folder_that_must_not_be_written_is_named);
+  tcase_add_test(test_case, a_folder_that_cannot_be_made_is_named);
   tcase_add_test(test_case, a_folder_without_checkpoint_is_refused);
   return suite_run("resume", test_case, 120);
 }
