@@ -7,6 +7,7 @@
 
 #include "app/gnuplot.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 enum {
   MAX_PANELS = 12,
@@ -50,11 +51,7 @@ static const char *const hues[MAX_FAMILIES] = {"#2f6fc4", "#d2691e", "#2a8f78", 
                                                "#9e3324", "#417a6a", "#6f568a", "#7d7336"};
 
 static bool is_wanted(const char *quantities, const char *quantity) {
-  if (!quantities) return true;
-  size_t length = strlen(quantity);
-  for (const char *word = quantities; *word; word += strcspn(word, ","), word += *word == ',')
-    if (strcspn(word, ",") == length && strncmp(word, quantity, length) == 0) return true;
-  return false;
+  return !quantities || text_lists(quantities, quantity);
 }
 
 static Panel *find_panel(Frontier *frontier, const char *quantity, const char *set) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/stress.h"
 
-#include <math.h>
+#include <assert.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -18,21 +18,13 @@ const char *app_stress_outcome_name(AppStressOutcome outcome) {
   return outcome_names[outcome];
 }
 
-// Of a comma-separated list.
-static bool lists(const char *list, const char *word) {
-  size_t length = strlen(word);
-  for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL)
-    if (strncmp(at, word, length) == 0 && (at[length] == ',' || at[length] == 0)) return true;
-  return false;
-}
-
 bool app_stress_wants(const AppStressOptions *options, const char *name) {
   return !options->only || strstr(name, options->only);
 }
 
 bool app_stress_wants_model(const AppStressOptions *options, const char *model) {
-  if (options->models) return lists(options->models, model);
-  return !options->is_quick || lists("clip,geo,any", model);
+  if (options->models) return text_lists(options->models, model);
+  return !options->is_quick || text_lists("clip geo any", model);
 }
 
 Status app_stress_run(const AppStressOptions *options, AppStress *stress) {
@@ -60,7 +52,8 @@ AppStressRow *app_stress_add(AppStress *stress, const char *group, const char *n
 
 static void ask(AppStressRow *row, AppStressMeasure measure) {
   measure.is_met = measure.is_least ? measure.value >= measure.bound : measure.value <= measure.bound;
-  if (row->measure_count < APP_STRESS_MAX_MEASURES) row->measures[row->measure_count++] = measure;
+  assert(row->measure_count < APP_STRESS_MAX_MEASURES);
+  row->measures[row->measure_count++] = measure;
 }
 
 void app_stress_ask_most(AppStressRow *row, const char *name, double value, double bound) {
@@ -91,23 +84,24 @@ static AppStressOutcome verdict_of(const AppStressRow *row, const AppStressMeasu
   return is_excused ? APP_STRESS_LIMIT : APP_STRESS_FAILED;
 }
 
-// The first reason; one why it takes so long stands beside how far a run that was cut came.
-static void explain(AppStressRow *row, const AppStressMeasure *measure, const AppStressLimit *limit) {
+// Beside how far a run that was cut came stands why.
+static void explain(AppStressRow *row, const AppStressLimit *limit) {
   size_t length = strlen(row->remark);
-  if (length > 0 && !(row->is_cut && measure->is_of_end)) return;
   snprintf(row->remark + length, sizeof row->remark - length, "%s%s", length > 0 ? "; " : "", limit->reason);
   row->counter = limit->counter;
 }
 
 void app_stress_judge(AppStressRow *row) {
+  const AppStressLimit *first = NULL; // of those that explain what is not met
   row->outcome = row->is_cut ? APP_STRESS_LIMIT : APP_STRESS_HELD;
   for (int m = 0; m < row->measure_count; m++) {
     const AppStressMeasure *measure = &row->measures[m];
     const AppStressLimit *limit = app_stress_limits_find(row->name, row->model, measure->name);
     AppStressOutcome outcome = verdict_of(row, measure, limit);
-    if (limit && !measure->is_met) explain(row, measure, limit);
+    if (!measure->is_met && !first) first = limit;
     if (outcome > row->outcome) row->outcome = outcome;
   }
+  if (first) explain(row, first);
 }
 
 void app_stress_excuse(AppStressRow *row, const char *format, ...) {

@@ -8,7 +8,7 @@
 //   not met, a limit that is known ─────────► limit     (its reason and counter, app/stress_limits.c)
 //   cut: the processor time it was given is spent ► limit (what held until then is judged all the same)
 //   not met otherwise ──────────────────────► failed
-//   could not be asked, with a reason ──────► absent    (weights missing, too slow, waits for a feature)
+//   could not be asked, with a reason ──────► absent    (weights missing, too slow)
 #ifndef TETLAP_APP_STRESS_H
 #define TETLAP_APP_STRESS_H
 
@@ -64,7 +64,7 @@ typedef struct AppStress {
 typedef struct AppStressOptions {
   bool has_pairs, has_scenes, is_quick;
   const char *only;   // part of a case's name; NULL: all
-  const char *models; // comma-separated; NULL: all, with `is_quick` clip and geo
+  const char *models; // comma-separated; NULL: all, with `is_quick` clip, geo and any
   double limit_s;     // processor time of a scene with a model; 0: the case's own
   const volatile sig_atomic_t *stop;
   void (*observe)(void *observer, const AppStress *stress); // after each row, the last; may be NULL

@@ -12,7 +12,8 @@ static const char UNEVEN_LOWER[] = "unevenness, lower", UNEVEN_UPPER[] = "uneven
                   INSIDE_UPPER[] = "false friction inside, upper",
                   WHOLE_PATCH[] = "false friction, whole patch", BELOW[] = "force below the surface";
 
-static const char LEARNED[] = "geo geo-small", NETWORKS[] = "tpn tpn-bf16 tpn-scene hybrid";
+static const char LEARNED[] = "geo geo-small", PAPERS[] = "tpn tpn-bf16", INTEGRABLE[] = "tpn-scene hybrid",
+                  NETWORKS[] = "tpn tpn-bf16 tpn-scene";
 static const char FINER[] =
     "the finer slab is pressed deep in its own elements: by 1.2 of them at the last depth";
 static const char BY_ELEMENT[] = "pressure by element, which depends on how the other mesh covers it; "
@@ -23,9 +24,15 @@ static const char SIDEWAYS[] =
     "sideways parts of dV/dx cancel between neighbouring pairs; a learned one errs by some per cent in each, "
     "and what is left is 4 to 14 % of the normal force";
 static const char PIECEWISE[] =
-    "a network of ReLUs: its grad V errs by tens of per cent, is constant in pieces and jumps from one to "
-    "the "
-    "next; pairs that are apart are pushed by ghosts and some that overlap are missed";
+    "a network of ReLUs and maxima: its grad V errs by tens of per cent, is constant in pieces and jumps "
+    "from "
+    "one to the next; pairs that are apart are pushed by ghosts and some that overlap are missed";
+static const char ROUGH[] =
+    "the network's grad V is continuous but errs by tens of per cent, sideways too, and "
+    "what is wrong does not cancel between neighbouring pairs";
+static const char CREEPING[] = "point pressed on point: steps fall to 1e-8 s and the run is given up as "
+                               "creeping; the cause has not been "
+                               "found";
 static const char UNSYMMETRIC[] =
     "V of a network is not the same for mirror images, nor for another order of vertices: its forces err "
     "sideways, and what stands on a tip slides off";
@@ -48,24 +55,32 @@ static const char WOUND_TIGHT[] = "beyond 1.4 turns layers press with more than 
                                   "3.1 s: Newton fails at every second step of 1e-5 s";
 static const char TWIST_SEEN[] = "trouble.inverted, trouble.wrong_way, deepest_overlap_max, newton_failures";
 
+// All six measures of the flat slabs.
+#define SLABS(name, models, uneven_lower, uneven_upper, inside_lower, inside_upper, whole, below, reason,    \
+              counter)                                                                                       \
+  {name, models, UNEVEN_LOWER, uneven_lower, reason, counter},                                               \
+      {name, models, UNEVEN_UPPER, uneven_upper, reason, counter},                                           \
+      {name, models, INSIDE_LOWER, inside_lower, reason, counter},                                           \
+      {name, models, INSIDE_UPPER, inside_upper, reason, counter},                                           \
+      {name, models, WHOLE_PATCH, whole, reason, counter}, {                                                 \
+    name, models, BELOW, below, reason, counter                                                              \
+  }
+
 static const AppStressLimit limits[] = {
-    {"flat slabs*", NETWORKS, UNEVEN_LOWER, 0.7, PIECEWISE, AUDIT},
-    {"flat slabs*", NETWORKS, UNEVEN_UPPER, 0.7, PIECEWISE, AUDIT},
-    {"flat slabs*", NETWORKS, INSIDE_LOWER, 0.95, PIECEWISE, AUDIT},
-    {"flat slabs*", NETWORKS, INSIDE_UPPER, 1.1, PIECEWISE, AUDIT},
-    {"flat slabs*", NETWORKS, WHOLE_PATCH, 1.1, PIECEWISE, AUDIT},
-    {"flat slabs*", NETWORKS, BELOW, 0.25, PIECEWISE, AUDIT},
-    {"spike*", "tpn tpn-bf16 tpn-scene", "asymmetry in x", 0.06, UNSYMMETRIC, AUDIT},
-    {"spike*", "tpn tpn-bf16 tpn-scene", "asymmetry in y", 0.07, UNSYMMETRIC, AUDIT},
-    {"wedge*", "tpn tpn-bf16 tpn-scene", "asymmetry in x", 0.035, UNSYMMETRIC, AUDIT},
-    {"wedge*", "tpn tpn-bf16 tpn-scene", "asymmetry in y", 0.03, UNSYMMETRIC, AUDIT},
-    {"tetrahedron inside", "tpn tpn-bf16 tpn-scene", "steps told of", 0, NESTED,
+    SLABS("flat slabs*", PAPERS, 0.7, 0.7, 0.95, 1.1, 1.1, 0.25, PIECEWISE, AUDIT),
+    SLABS("flat slabs*", INTEGRABLE, 0.7, 0.7, 0.95, 1.1, 1.1, 0.25, ROUGH, AUDIT),
+    {"spike*", NETWORKS, "asymmetry in x", 0.06, UNSYMMETRIC, AUDIT},
+    {"spike*", NETWORKS, "asymmetry in y", 0.07, UNSYMMETRIC, AUDIT},
+    {"wedge*", NETWORKS, "asymmetry in x", 0.035, UNSYMMETRIC, AUDIT},
+    {"wedge*", NETWORKS, "asymmetry in y", 0.03, UNSYMMETRIC, AUDIT},
+    {"tetrahedron inside", NETWORKS, "steps told of", 0, NESTED,
      "trouble.enclosed stays 0; tetlap compare --audit-only exact"},
-    {"tetrahedron inside", "tpn tpn-bf16", "enclosed pairs", 0, NESTED,
+    {"tetrahedron inside", PAPERS, "enclosed pairs", 0, NESTED,
      "trouble.enclosed stays 0; tetlap compare --audit-only exact"},
-    {"tight fit", "clip32", "time reached", 0, ROUNDED, "summary.json: steps, trouble.smallest_step"},
-    {"*", "tpn tpn-bf16", "energy gain", 1.5, LEAPING, "trouble.energy, history.csv: energy_gain"},
-    {"*", NETWORKS, "time reached", 0, PIECEWISE, "newton_failures, restarts, beyond_range_pairs"},
+    {"tight fit", "clip32", "time reached", 4e-3, ROUNDED, "summary.json: steps, trouble.smallest_step"},
+    {"*", PAPERS, "energy gain", 1.5, LEAPING, "trouble.energy, history.csv: energy_gain"},
+    {"*", PAPERS, "time reached", 4e-5, PIECEWISE, "newton_failures, restarts, beyond_range_pairs"},
+    {"spikes", "hybrid", "time reached", 0.39, CREEPING, "summary.json: message, trouble.smallest_step"},
     {"mat twist, 3.2 turns", NULL, "det F", -2, WOUND_TIGHT, TWIST_SEEN},
     {"mat twist, 3.2 turns", NULL, "energy gain", 5e-3, WOUND_TIGHT, TWIST_SEEN},
     {"mat twist, 3.2 turns", NULL, "jump of their linking (a passage: 1)", 3, WOUND_TIGHT, TWIST_SEEN},
@@ -81,20 +96,10 @@ static const AppStressLimit limits[] = {
     {"flat slabs, potential element", NULL, UNEVEN_LOWER, 0.05, BY_ELEMENT, NULL},
     {"flat slabs, potential element", NULL, UNEVEN_UPPER, 0.07, BY_ELEMENT, NULL},
     {"flat slabs, potential element", NULL, BELOW, 0.15, BY_ELEMENT, NULL},
-    {"flat slabs, potential pair", NULL, UNEVEN_LOWER, 0.7, BY_PAIR, NULL},
-    {"flat slabs, potential pair", NULL, UNEVEN_UPPER, 0.7, BY_PAIR, NULL},
-    {"flat slabs, potential pair", NULL, INSIDE_LOWER, 0.95, BY_PAIR, NULL},
-    {"flat slabs, potential pair", NULL, INSIDE_UPPER, 1.1, BY_PAIR, NULL},
-    {"flat slabs, potential pair", NULL, WHOLE_PATCH, 0.45, BY_PAIR, NULL},
-    {"flat slabs, potential pair", NULL, BELOW, 0.22, BY_PAIR, NULL},
+    SLABS("flat slabs, potential pair", NULL, 0.7, 0.7, 0.95, 1.1, 0.45, 0.22, BY_PAIR, NULL),
     {"flat slabs, edge ratio 1/2", NULL, UNEVEN_UPPER, 0.065, FINER, NULL},
     {"flat slabs*", "clip32", "force and counter-force", 3e-7, "single precision", NULL},
-    {"flat slabs*", LEARNED, UNEVEN_LOWER, 0.045, SIDEWAYS, AUDIT},
-    {"flat slabs*", LEARNED, UNEVEN_UPPER, 0.06, SIDEWAYS, AUDIT},
-    {"flat slabs*", LEARNED, INSIDE_LOWER, 0.2, SIDEWAYS, AUDIT},
-    {"flat slabs*", LEARNED, INSIDE_UPPER, 0.2, SIDEWAYS, AUDIT},
-    {"flat slabs*", LEARNED, WHOLE_PATCH, 0.21, SIDEWAYS, AUDIT},
-    {"flat slabs*", LEARNED, BELOW, 0.09, SIDEWAYS, AUDIT},
+    SLABS("flat slabs*", LEARNED, 0.045, 0.06, 0.2, 0.2, 0.21, 0.09, SIDEWAYS, AUDIT),
 };
 
 static bool is_named(const char *pattern, const char *name) {

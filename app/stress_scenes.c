@@ -62,38 +62,32 @@ static Status run_open(const AppStressScene *scene, const AppStressOptions *opti
   return STATUS_OK;
 }
 
-static Status run_case(const AppStressScene *scene, const AppStressOptions *options, const char *model,
-                       AppStressRow *row) {
+static Status open_with(const AppStressScene *scene, const char *model, AppStressRun *run) {
   const char *overrides[APP_STRESS_MAX_OVERRIDES + 1];
   char overlap[64];
   int count = 0;
-  while (count < APP_STRESS_MAX_OVERRIDES && scene->overrides[count]) {
+  for (; count < APP_STRESS_MAX_OVERRIDES && scene->overrides[count]; count++)
     overrides[count] = scene->overrides[count];
-    count++;
-  }
   snprintf(overlap, sizeof overlap, "contact.overlap=%s", model);
   if (model != ANY) overrides[count++] = overlap;
+  return app_stress_run_open(run, scene->file, overrides, count);
+}
+
+static Status run_case(const AppStressScene *scene, const AppStressOptions *options, const char *model,
+                       AppStressRow *row) {
   AppStressRun run;
-  TRY(app_stress_run_open(&run, scene->file, overrides, count));
+  TRY(open_with(scene, model, &run));
   Status status = run_open(scene, options, &run, row);
   app_stress_run_close(&run);
   return status;
 }
 
-// Pairs that the scene asked of the model that ran it first; later models are judged by them.
-typedef struct Load {
-  long long pairs;
-} Load;
-
-static long long pairs_of(const AppStressScene *scene) {
-  const char *overrides[APP_STRESS_MAX_OVERRIDES + 1];
-  int count = 0;
-  for (; count < APP_STRESS_MAX_OVERRIDES && scene->overrides[count]; count++)
-    overrides[count] = scene->overrides[count];
-  overrides[count++] = "contact.overlap=clip";
+// Pairs that the scene asks of clip; 0: it could not be run.
+static long long pairs_of(const AppStressScene *scene, const AppStressOptions *options) {
   AppStressRun run;
-  if (app_stress_run_open(&run, scene->file, overrides, count)) return 0;
+  if (open_with(scene, "clip", &run)) return 0;
   run.limit_s = LIMIT_S;
+  run.asked_to_stop = options->stop;
   Status status = scene->run ? scene->run(&run) : app_stress_run_scene(&run);
   long long pairs = status ? 0 : run.result.pairs.tried;
   app_stress_run_close(&run);
@@ -101,8 +95,8 @@ static long long pairs_of(const AppStressScene *scene) {
 }
 
 // Whether the model can be asked at all; the row says why not.
-static bool is_able(const AppStressScene *scene, const ContactOverlapOps *ops, Load *load,
-                    AppStressRow *row) {
+static bool is_able(const AppStressScene *scene, const AppStressOptions *options,
+                    const ContactOverlapOps *ops, AppStressRow *row) {
   ContactOverlapModel model;
   Status created = contact_overlap_create(&model, ops->name);
   contact_overlap_destroy(&model);
@@ -111,21 +105,19 @@ static bool is_able(const AppStressScene *scene, const ContactOverlapOps *ops, L
     return false;
   }
   if (ops->seconds_per_pair < 1e-4) return true;
-  if (load->pairs < 0) load->pairs = pairs_of(scene);
-  double needed = (double)load->pairs * ops->seconds_per_pair;
+  long long pairs = pairs_of(scene, options);
+  double needed = (double)pairs * ops->seconds_per_pair;
   if (needed <= LONGEST_S) return true;
-  app_stress_excuse(row, "%lld pairs would take this model about %.2g s", load->pairs, needed);
+  app_stress_excuse(row, "%lld pairs would take this model about %.2g s", pairs, needed);
   return false;
 }
 
 static Status run_row(const AppStressScene *scene, const AppStressOptions *options, AppStress *stress,
-                      const ContactOverlapOps *ops, Load *load) {
+                      const ContactOverlapOps *ops) {
   if (options->stop && *options->stop) return status_fail(STATUS_INTERRUPTED, "interrupted");
   AppStressRow *row = app_stress_add(stress, "scenes", scene->name, ops ? ops->name : ANY);
   if (!row) return status_no_memory("the table of hard cases");
-  if (scene->waits)
-    app_stress_excuse(row, "waits for %s", scene->waits);
-  else if (!ops || is_able(scene, ops, load, row)) {
+  if (!ops || is_able(scene, options, ops, row)) {
     Status status = run_case(scene, options, row->model, row);
     if (status) {
       stress->count--; // nothing is known of it
@@ -139,12 +131,10 @@ static Status run_row(const AppStressScene *scene, const AppStressOptions *optio
 static Status run_scene(const AppStressScene *scene, const AppStressOptions *options, AppStress *stress) {
   int count;
   const ContactOverlapOps *const *models = contact_overlap_list(&count);
-  Load load = {.pairs = -1};
   if (scene->is_any)
-    return app_stress_wants_model(options, ANY) ? run_row(scene, options, stress, NULL, &load) : STATUS_OK;
+    return app_stress_wants_model(options, ANY) ? run_row(scene, options, stress, NULL) : STATUS_OK;
   for (int m = 0; m < count; m++)
-    if (app_stress_wants_model(options, models[m]->name))
-      TRY(run_row(scene, options, stress, models[m], &load));
+    if (app_stress_wants_model(options, models[m]->name)) TRY(run_row(scene, options, stress, models[m]));
   return STATUS_OK;
 }
 

@@ -25,7 +25,6 @@ typedef struct AppStressScene {
   bool is_any;       // no overlap model takes part
   bool is_still;     // evaluated at given positions, not run in time: has no frames
   double limit_s;    // of processor time; 0: 60 s
-  const char *waits; // for this feature; NULL: it is there
   // Runs it instead of app_stress_run_scene; may be NULL.
   Status (*run)(AppStressRun *run);
   const char *overrides[APP_STRESS_MAX_OVERRIDES];

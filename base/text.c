@@ -51,9 +51,9 @@ void text_guess_offer(TextGuess *guess, const char *candidate) {
 
 const char *text_next(const char *list, char word[TEXT_MAX_WORD]) {
   if (!list || !list[0]) return NULL;
-  size_t length = strcspn(list, " ");
+  size_t length = strcspn(list, " ,");
   snprintf(word, TEXT_MAX_WORD, "%.*s", (int)length, list);
-  return list + length + (list[length] == ' ');
+  return list + length + (list[length] != 0);
 }
 
 bool text_lists(const char *list, const char *word) {

@@ -23,7 +23,8 @@ typedef struct TextGuess {
 TextGuess text_guess_of(const char *word);
 void text_guess_offer(TextGuess *guess, const char *candidate);
 
-// Whether `word` is one of the words of `list`, which are separated by single spaces. NULL: an empty list.
+// Whether `word` is one of the words of `list`, separated by single spaces or
+// commas. NULL: an empty list.
 bool text_lists(const char *list, const char *word);
 
 // The next word of such a list, copied to `word`; returns what follows it, NULL at the end:
