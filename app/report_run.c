@@ -44,11 +44,13 @@ static size_t tuples_of(const AppReportRun *run, const AppReportField *field) {
 
 // Room for the frames, laid out by what the first one has.
 static Status lay_out(AppReportRun *run, const FemVtuContent *first) {
+  if (first->cell != FEM_VTU_TETRAHEDRA)
+    return status_fail(STATUS_INPUT, "has triangles; a frame of bodies has tetrahedra");
   run->vertex_count = first->vertex_count;
-  run->tet_count = first->tet_count;
+  run->tet_count = first->cell_count;
   const size_t frames = (size_t)run->frame_count;
   run->positions = memory_zeroed(frames, 3 * (size_t)run->vertex_count * sizeof *run->positions);
-  run->tets = memory_copy(first->tets, 4 * (size_t)run->tet_count, sizeof *run->tets);
+  run->tets = memory_copy(first->cells, 4 * (size_t)run->tet_count, sizeof *run->tets);
   bool ok = run->positions && run->tets;
   for (int k = 0; ok && k < first->field_count; k++) {
     const FemVtuField *source = &first->fields[k];
@@ -80,8 +82,8 @@ static Status take_field(AppReportRun *run, AppReportField *field, int frame, co
 static Status take_frame(AppReportRun *run, int frame, const FemVtuContent *content) {
   if (frame == 0) TRY(lay_out(run, content));
   const size_t numbers = 3 * (size_t)run->vertex_count;
-  if (content->vertex_count != run->vertex_count || content->tet_count != run->tet_count ||
-      memcmp(content->tets, run->tets, 4 * (size_t)run->tet_count * sizeof *run->tets) != 0)
+  if (content->vertex_count != run->vertex_count || content->cell_count != run->tet_count ||
+      memcmp(content->cells, run->tets, 4 * (size_t)run->tet_count * sizeof *run->tets) != 0)
     return status_fail(STATUS_INPUT,
                        "has another mesh than the first frame; frames of several runs are mixed");
   memcpy(run->positions + (size_t)frame * numbers, content->positions, numbers * sizeof *run->positions);

@@ -309,8 +309,8 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
   const FemVtuFrame frame = {.time = time,
                              .vertex_count = model->vertex_count,
                              .positions = system->positions,
-                             .tet_count = model->tet_count,
-                             .tets = model->tets[0],
+                             .cell_count = model->tet_count,
+                             .cells = model->tets[0],
                              .arrays = arrays,
                              .array_count = keep_given(arrays, sizeof arrays / sizeof *arrays)};
   return fem_vtu_write(path, &frame);

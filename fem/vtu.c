@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/vtu.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -12,8 +13,16 @@
 
 enum {
   BLOCK_BYTES = 32768, // uncompressed size of a block, VTK's own default
-  VTK_TETRA = 10,      // cell type
 };
+
+int fem_vtu_corner_count(FemVtuCell cell) {
+  return cell == FEM_VTU_TETRAHEDRA ? 4 : 3;
+}
+
+int fem_vtu_type(FemVtuCell cell) {
+  enum { VTK_TRIANGLE = 5, VTK_TETRA = 10 };
+  return cell == FEM_VTU_TETRAHEDRA ? VTK_TETRA : VTK_TRIANGLE;
+}
 
 // One DataArray element.
 typedef struct Piece {
@@ -115,7 +124,7 @@ static Status print_piece(FILE *stream, const Piece *piece) {
 
 static Status print_arrays(FILE *stream, const FemVtuFrame *frame, bool is_cell) {
   const char *section = is_cell ? "CellData" : "PointData";
-  const size_t tuples = (size_t)(is_cell ? frame->tet_count : frame->vertex_count);
+  const size_t tuples = (size_t)(is_cell ? frame->cell_count : frame->vertex_count);
   fprintf(stream, "      <%s>\n", section);
   for (int k = 0; k < frame->array_count; k++) {
     const FemVtuArray *array = &frame->arrays[k];
@@ -140,15 +149,15 @@ static Status print_points(FILE *stream, const FemVtuFrame *frame) {
 
 // Vertices of the cells, where each cell ends in that list, and the cells' types.
 static Status print_cells(FILE *stream, const FemVtuFrame *frame) {
-  const size_t count = (size_t)frame->tet_count;
+  const size_t count = (size_t)frame->cell_count, corners = (size_t)fem_vtu_corner_count(frame->cell);
   int64_t *ends = memory_zeroed(count, sizeof *ends);
   uint8_t *types = memory_zeroed(count, sizeof *types);
   Status status = ends && types ? STATUS_OK : status_no_memory("the cells of a frame");
   for (size_t i = 0; !status && i < count; i++) {
-    ends[i] = 4 * ((int64_t)i + 1);
-    types[i] = VTK_TETRA;
+    ends[i] = (int64_t)(corners * (i + 1));
+    types[i] = (uint8_t)fem_vtu_type(frame->cell);
   }
-  const Piece pieces[] = {{"Int32", "connectivity", 1, frame->tets, count * 4 * sizeof(int)},
+  const Piece pieces[] = {{"Int32", "connectivity", 1, frame->cells, count * corners * sizeof(int)},
                           {"Int64", "offsets", 1, ends, count * sizeof *ends},
                           {"UInt8", "types", 1, types, count * sizeof *types}};
   fprintf(stream, "      <Cells>\n");
@@ -165,13 +174,17 @@ static Status print_frame(FILE *stream, const FemVtuFrame *frame) {
           "<?xml version=\"1.0\"?>\n"
           "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\""
           " compressor=\"vtkZLibDataCompressor\">\n"
-          "  <UnstructuredGrid>\n"
-          "    <FieldData>\n"
-          "      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
-          "%.17g</DataArray>\n"
-          "    </FieldData>\n"
-          "    <Piece NumberOfPoints=\"%d\" NumberOfCells=\"%d\">\n",
-          is_little ? "LittleEndian" : "BigEndian", frame->time, frame->vertex_count, frame->tet_count);
+          "  <UnstructuredGrid>\n",
+          is_little ? "LittleEndian" : "BigEndian");
+  if (!isnan(frame->time))
+    fprintf(stream,
+            "    <FieldData>\n"
+            "      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
+            "%.17g</DataArray>\n"
+            "    </FieldData>\n",
+            frame->time);
+  fprintf(stream, "    <Piece NumberOfPoints=\"%d\" NumberOfCells=\"%d\">\n", frame->vertex_count,
+          frame->cell_count);
   TRY(print_arrays(stream, frame, false));
   TRY(print_arrays(stream, frame, true));
   TRY(print_points(stream, frame));

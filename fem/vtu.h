@@ -12,22 +12,28 @@
 
 #include "base/status.h"
 
-// One named array over the vertices or the tetrahedra; exactly one of `reals` and `integers` is given.
+// What the cells of a frame are: of a mesh, or of a surface.
+typedef enum FemVtuCell { FEM_VTU_TETRAHEDRA, FEM_VTU_TRIANGLES } FemVtuCell;
+int fem_vtu_corner_count(FemVtuCell cell);
+int fem_vtu_type(FemVtuCell cell); // VTK's number for it
+
+// One named array over the vertices or the cells; exactly one of `reals` and `integers` is given.
 // Borrowed.
 typedef struct FemVtuArray {
   const char *name;    // as ParaView will show it
-  bool is_cell;        // one tuple a tetrahedron, else one a vertex
+  bool is_cell;        // one tuple a cell, else one a vertex
   int components;      // 1; 3: x, y, z; 6: a symmetric tensor xx, yy, zz, xy, yz, xz; 9: row-major
-  const double *reals; // written as Float64    (vertex_count or tet_count, components)
-  const int *integers; // written as Int32      (vertex_count or tet_count, components)
+  const double *reals; // written as Float64    (vertex_count or cell_count, components)
+  const int *integers; // written as Int32      (vertex_count or cell_count, components)
 } FemVtuArray;
 
 typedef struct FemVtuFrame {
-  double time; // [s]; the field TimeValue
+  double time; // [s]; the field TimeValue; NaN: holds at all times and has no such field
   int vertex_count;
   const double *positions; // current [m]          (vertex_count, 3)
-  int tet_count;
-  const int *tets;           // vertices                (tet_count, 4)
+  FemVtuCell cell;
+  int cell_count;
+  const int *cells;          // vertices                (cell_count, 4 or 3)
   const FemVtuArray *arrays; //                      (array_count)
   int array_count;
 } FemVtuFrame;

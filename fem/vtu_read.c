@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/vtu_read.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -130,7 +131,7 @@ static Status read_field(const Element *element, bool is_cell, FemVtuContent *co
   FemVtuField *field = &content->fields[content->field_count++];
   *field = (FemVtuField){.is_cell = is_cell, .components = element->components};
   strcpy(field->name, element->name);
-  size_t count = (size_t)(is_cell ? content->tet_count : content->vertex_count) * (size_t)field->components;
+  size_t count = (size_t)(is_cell ? content->cell_count : content->vertex_count) * (size_t)field->components;
   if (strcmp(element->type, "Float64") == 0) return read_reals(element, &field->values, count);
   int *integers = NULL;
   Status status = read_integers(element, &integers, count);
@@ -169,15 +170,34 @@ static Status read_points(const char *text, FemVtuContent *content) {
   return read_reals(&element, &content->positions, 3 * (size_t)content->vertex_count);
 }
 
-static Status read_tets(const char *text, FemVtuContent *content) {
+// The kind of the cells, which is the same for all.
+static Status read_types(const Element *element, FemVtuContent *content) {
+  const size_t count = (size_t)content->cell_count;
+  if (strcmp(element->type, "UInt8") != 0) return refuse("the cells' types are not of the type UInt8");
+  uint8_t *types = memory_zeroed(count, sizeof *types);
+  if (!types) return status_no_memory("the cells of a frame");
+  Status status = read_bytes(element, types, count);
+  if (!status && count > 0 && types[0] == fem_vtu_type(FEM_VTU_TRIANGLES)) content->cell = FEM_VTU_TRIANGLES;
+  for (size_t i = 0; !status && i < count; i++)
+    if (types[i] != fem_vtu_type(content->cell))
+      status = refuse("the cells are neither all tetrahedra nor all triangles");
+  memory_free(types);
+  return status;
+}
+
+static Status read_cells(const char *text, FemVtuContent *content) {
   const char *limit;
-  Element element;
+  Element connectivity, offsets, types;
   TRY(find_section(&text, "Cells", &limit));
-  if (!next_element(text, limit, &element) || strcmp(element.name, "connectivity") != 0)
-    return refuse("the cells have no connectivity");
-  TRY(read_integers(&element, &content->tets, 4 * (size_t)content->tet_count));
-  for (size_t i = 0; i < 4 * (size_t)content->tet_count; i++)
-    if (content->tets[i] < 0 || content->tets[i] >= content->vertex_count)
+  if (!(text = next_element(text, limit, &connectivity)) || strcmp(connectivity.name, "connectivity") != 0 ||
+      !(text = next_element(text, limit, &offsets)) || !next_element(text, limit, &types) ||
+      strcmp(types.name, "types") != 0)
+    return refuse("the cells lack connectivity, offsets or types");
+  TRY(read_types(&types, content));
+  const size_t count = (size_t)content->cell_count * (size_t)fem_vtu_corner_count(content->cell);
+  TRY(read_integers(&connectivity, &content->cells, count));
+  for (size_t i = 0; i < count; i++)
+    if (content->cells[i] < 0 || content->cells[i] >= content->vertex_count)
       return refuse("a cell names a vertex that is not there");
   return STATUS_OK;
 }
@@ -202,12 +222,13 @@ static Status read_header(const char *text, FemVtuContent *content) {
       !find_attribute(file, "header_type", value) || strcmp(value, "UInt64") != 0)
     return refuse("is not compressed by zlib with headers of UInt64");
   content->vertex_count = piece ? count_of(piece, "NumberOfPoints") : -1;
-  content->tet_count = piece ? count_of(piece, "NumberOfCells") : -1;
-  if (content->vertex_count < 0 || content->tet_count < 0) return refuse("has no counts of points and cells");
+  content->cell_count = piece ? count_of(piece, "NumberOfCells") : -1;
+  if (content->vertex_count < 0 || content->cell_count < 0)
+    return refuse("has no counts of points and cells");
   if (!can_hold(text, content->vertex_count, sizeof(double[3])) ||
-      !can_hold(text, content->tet_count, sizeof(int[4])))
+      !can_hold(text, content->cell_count, sizeof(int[3])))
     return refuse("announces more points and cells than a file of its size can hold");
-  if (time && (time = strchr(time, '>'))) content->time = strtod(time + 1, NULL);
+  content->time = time && (time = strchr(time, '>')) ? strtod(time + 1, NULL) : NAN;
   return STATUS_OK;
 }
 
@@ -216,7 +237,7 @@ static Status read_content(const char *text, FemVtuContent *content) {
   TRY(read_fields(text, "PointData", false, content));
   TRY(read_fields(text, "CellData", true, content));
   TRY(read_points(text, content));
-  return read_tets(text, content);
+  return read_cells(text, content);
 }
 
 Status fem_vtu_read(const char *path, FemVtuContent *content) {
@@ -234,6 +255,6 @@ Status fem_vtu_read(const char *path, FemVtuContent *content) {
 void fem_vtu_read_destroy(FemVtuContent *content) {
   for (int k = 0; k < content->field_count; k++) memory_free(content->fields[k].values);
   memory_free(content->positions);
-  memory_free(content->tets);
+  memory_free(content->cells);
   *content = (FemVtuContent){0};
 }

@@ -7,23 +7,25 @@
 #include <stdbool.h>
 
 #include "base/status.h"
+#include "fem/vtu.h"
 
 enum { FEM_VTU_MAX_FIELDS = 48, FEM_VTU_MAX_NAME = 64 };
 
 typedef struct FemVtuField {
   char name[FEM_VTU_MAX_NAME];
-  bool is_cell;    // a tuple a tetrahedron, else one a vertex
+  bool is_cell;    // a tuple a cell, else one a vertex
   bool is_integer; // written as such
   int components;
-  double *values; // (tet_count or vertex_count, components)
+  double *values; // (cell_count or vertex_count, components)
 } FemVtuField;
 
 typedef struct FemVtuContent {
-  double time; // [s]
+  double time; // [s]; NaN: the frame has none
   int vertex_count;
   double *positions; // [m]                                (vertex_count, 3)
-  int tet_count;
-  int *tets;                              // vertices, each within vertex_count (tet_count, 4)
+  FemVtuCell cell;   // of all of them
+  int cell_count;
+  int *cells;                             // vertices, each within vertex_count (cell_count, 4 or 3)
   FemVtuField fields[FEM_VTU_MAX_FIELDS]; // in the order of the file          (field_count)
   int field_count;
 } FemVtuContent;

@@ -57,7 +57,13 @@ static void write_frame(const char *name, int k) {
   const FemVtuArray arrays[] = {{.name = "contact_force", .components = 3, .reals = force},
                                 {.name = "body", .is_cell = true, .components = 1, .integers = body},
                                 {.name = "stress", .is_cell = true, .components = 6, .reals = stress}};
-  const FemVtuFrame frame = {k, VERTICES, positions, TETS, &tets[0][0], arrays, 3};
+  const FemVtuFrame frame = {.time = k,
+                             .vertex_count = VERTICES,
+                             .positions = positions,
+                             .cell_count = TETS,
+                             .cells = &tets[0][0],
+                             .arrays = arrays,
+                             .array_count = 3};
   char *path = file_join(directory, name);
   ck_assert_ok(fem_vtu_write(path, &frame));
   memory_free(path);
@@ -349,7 +355,8 @@ START_TEST(frames_of_another_mesh_are_refused) {
   AppReportRun run;
   write_run();
   const double positions[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const FemVtuFrame frame = {1, 4, positions, 1, &tets[0][0], NULL, 0};
+  const FemVtuFrame frame = {
+      .time = 1, .vertex_count = 4, .positions = positions, .cell_count = 1, .cells = &tets[0][0]};
   char *path = file_join(directory, "f1.vtu");
   ck_assert_ok(fem_vtu_write(path, &frame));
   memory_free(path);

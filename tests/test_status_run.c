@@ -114,7 +114,7 @@ START_TEST(clipping_is_right_everywhere_and_overlap_is_where_volume_is_covered) 
     const double *predicted = field_of(&frame, "status_predicted"), *exact = field_of(&frame, "status_exact"),
                  *error = field_of(&frame, "status_error"), *wrong = field_of(&frame, "status_wrong_pairs"),
                  *covered = field_of(&frame, "overlap_fraction");
-    for (int e = 0; e < frame.tet_count; e++) {
+    for (int e = 0; e < frame.cell_count; e++) {
       ck_assert(exact[e] == (covered[e] > 0) && predicted[e] == exact[e]);
       ck_assert(error[e] == 0 && wrong[e] == 0);
       seen += exact[e] > 0;
@@ -142,7 +142,7 @@ START_TEST(a_network_s_errors_are_the_same_in_frames_history_and_result) {
     const double *predicted = field_of(&frame, "status_predicted"), *exact = field_of(&frame, "status_exact"),
                  *error = field_of(&frame, "status_error"), *wrong = field_of(&frame, "status_wrong_pairs");
     double wrong_pairs = 0, wrong_elements = 0;
-    for (int e = 0; e < frame.tet_count; e++) {
+    for (int e = 0; e < frame.cell_count; e++) {
       ck_assert(error[e] == (predicted[e] == exact[e] ? 0 : predicted[e] > exact[e] ? 1 : 2));
       wrong_pairs += wrong[e];
       wrong_elements += error[e] != 0;

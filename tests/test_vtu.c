@@ -120,12 +120,29 @@ static void assert_array(const char *name, const char *type, int components, con
   memory_free(text);
 }
 
+// One block as the writer would: VTK's header and the compressed bytes, each as base64 (free).
+static char *pack_bytes(const void *bytes, size_t byte_count) {
+  unsigned char packed[256];
+  uLongf length = sizeof packed;
+  ck_assert_int_eq(compress(packed, &length, bytes, byte_count), Z_OK);
+  const uint64_t header[] = {1, 32768, byte_count, length};
+  char *text = NULL;
+  size_t size;
+  FemBase64 base64 = {.stream = open_memstream(&text, &size)};
+  fem_base64_write(&base64, header, sizeof header);
+  fem_base64_end(&base64);
+  fem_base64_write(&base64, packed, length);
+  fem_base64_end(&base64);
+  fclose(base64.stream);
+  return text;
+}
+
 static const double corner[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 static const int one_tet[4] = {0, 1, 2, 3};
 
 static FemVtuFrame single_tetrahedron(void) {
   return (FemVtuFrame){
-      .time = 0.1, .vertex_count = 4, .positions = corner[0], .tet_count = 1, .tets = one_tet};
+      .time = 0.1, .vertex_count = 4, .positions = corner[0], .cell_count = 1, .cells = one_tet};
 }
 
 // Random numbers in arrays of every kind, over many blocks.
@@ -158,8 +175,13 @@ static void create_large(Large *large, int vertex_count, int tet_count) {
   large->arrays[0] = (FemVtuArray){"velocity", false, 3, large->vectors, NULL};
   large->arrays[1] = (FemVtuArray){"stress", true, 6, large->stress, NULL};
   large->arrays[2] = (FemVtuArray){"body", true, 1, NULL, large->body};
-  large->frame =
-      (FemVtuFrame){1, vertex_count, large->positions, tet_count, large->tets[0], large->arrays, 3};
+  large->frame = (FemVtuFrame){.time = 1,
+                               .vertex_count = vertex_count,
+                               .positions = large->positions,
+                               .cell_count = tet_count,
+                               .cells = large->tets[0],
+                               .arrays = large->arrays,
+                               .array_count = 3};
 }
 
 static void destroy_large(Large *large) {
@@ -292,6 +314,49 @@ START_TEST(a_frame_that_announces_more_than_it_can_hold_is_refused) {
 }
 END_TEST
 
+START_TEST(triangles_read_back_as_triangles_and_a_mixture_is_refused) {
+  static const int triangles[2][3] = {{0, 2, 1}, {0, 1, 3}}, marks[2] = {7, 8};
+  const FemVtuArray array = {"face", true, 1, NULL, marks};
+  const FemVtuFrame frame = {.time = NAN, // at all times
+                             .vertex_count = 4,
+                             .positions = corner[0],
+                             .cell = FEM_VTU_TRIANGLES,
+                             .cell_count = 2,
+                             .cells = triangles[0],
+                             .arrays = &array,
+                             .array_count = 1};
+  const int64_t ends[] = {3, 6};
+  const uint8_t types[] = {5, 5};
+  ck_assert_ok(fem_vtu_write(path, &frame));
+  assert_array("connectivity", "Int32", 1, triangles, sizeof triangles);
+  assert_array("offsets", "Int64", 1, ends, sizeof ends);
+  assert_array("types", "UInt8", 1, types, sizeof types);
+  FemVtuContent content;
+  ck_assert_ok(fem_vtu_read(path, &content));
+  ck_assert_int_eq(content.cell, FEM_VTU_TRIANGLES);
+  ck_assert_int_eq(content.cell_count, 2);
+  ck_assert_mem_eq(content.cells, triangles, sizeof triangles);
+  ck_assert(content.fields[0].values[1] == 8.0 && isnan(content.time));
+  fem_vtu_read_destroy(&content);
+
+  // Two tetrahedra have ends and types of their own; those types on the triangles' corners are a mixture.
+  char *text, *types_at;
+  size_t size;
+  ck_assert_ok(file_read(path, &text, &size));
+  types_at = strstr(text, "Name=\"types\"");
+  ck_assert_ptr_nonnull(types_at);
+  const uint8_t mixed[] = {5, 10};
+  char *packed = pack_bytes(mixed, sizeof mixed), *end = strstr(types_at, "\n        </DataArray>");
+  FILE *stream = fopen(path, "wb");
+  fprintf(stream, "%.*s\n%s%s", (int)(strchr(types_at, '>') + 1 - text), text, packed, end);
+  fclose(stream);
+  free(packed);
+  memory_free(text);
+  ck_assert_int_eq(fem_vtu_read(path, &content), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "neither all tetrahedra nor all triangles"));
+}
+END_TEST
+
 START_TEST(a_name_cannot_break_the_xml) {
   const double four[4] = {1, 2, 3, 4};
   const FemVtuArray array = {"a<b & \"c\">", false, 1, four, NULL};
@@ -402,6 +467,7 @@ int main(void) {
   tcase_add_test(cases, numbers_that_are_not_finite_survive);
   tcase_add_test(cases, components_have_their_names);
   tcase_add_test(cases, a_frame_that_announces_more_than_it_can_hold_is_refused);
+  tcase_add_test(cases, triangles_read_back_as_triangles_and_a_mixture_is_refused);
   tcase_add_test(cases, a_name_cannot_break_the_xml);
   tcase_add_test(cases, the_bytes_do_not_depend_on_the_number_of_threads);
   tcase_add_test(cases, every_failed_allocation_is_an_error_that_leaves_the_old_frame);

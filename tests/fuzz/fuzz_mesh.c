@@ -113,8 +113,8 @@ static void run_frame(const uint8_t *data, size_t size) {
     check_refusal(status);
     return;
   }
-  for (int i = 0; i < 4 * content.tet_count; i++)
-    FUZZ_CLAIM(content.tets[i] >= 0 && content.tets[i] < content.vertex_count, "corner %d", content.tets[i]);
+  for (int i = 0; i < fem_vtu_corner_count(content.cell) * content.cell_count; i++)
+    FUZZ_CLAIM(content.cells[i] >= 0 && content.cells[i] < content.vertex_count, "corner %d", content.cells[i]);
   fem_vtu_read_destroy(&content);
 }
 
@@ -184,8 +184,8 @@ static size_t seed_frame(uint8_t *data) {
   const FemVtuFrame frame = {.time = 0.5,
                              .vertex_count = 5,
                              .positions = points[0],
-                             .tet_count = 2,
-                             .tets = tets,
+                             .cell_count = 2,
+                             .cells = tets,
                              .arrays = arrays,
                              .array_count = 2};
   const char *path = fuzz_target_file("fuzz.vtu", "", 0);
