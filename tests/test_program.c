@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// app/program.h: exit codes.
+#include "suite.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "app/program.h"
+
+static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.yaml";
+
+static int run_program(const char *first, const char *second, const char *third) {
+  const char *texts[] = {"tetlap", first, second, third};
+  char *arguments[5] = {NULL};
+  int count = 0;
+  for (; count < 4 && texts[count]; count++) arguments[count] = strdup(texts[count]);
+  ck_assert_ptr_nonnull(freopen("/dev/null", "w", stdout));
+  ck_assert_ptr_nonnull(freopen("/dev/null", "w", stderr));
+  char *kept[4];
+  memcpy(kept, arguments, sizeof kept);
+  int code = app_program_run(count, arguments);
+  for (int i = 0; i < count; i++) free(kept[i]);
+  return code;
+}
+
+START_TEST(exit_codes_say_who_is_to_blame) {
+  ck_assert_int_eq(run_program(NULL, NULL, NULL), 64);
+  ck_assert_int_eq(run_program("rnu", NULL, NULL), 64);
+  ck_assert_int_eq(run_program("help", NULL, NULL), 0);
+  ck_assert_int_eq(run_program("version", NULL, NULL), 0);
+  ck_assert_int_eq(run_program("effects", NULL, NULL), 0);
+  ck_assert_int_eq(run_program("schema", NULL, NULL), 0);
+  ck_assert_int_eq(run_program("schema", "--markdown", NULL), 0);
+  ck_assert_int_eq(run_program("check", "/nowhere.yaml", NULL), 74);
+  ck_assert_int_eq(run_program("check", full_yaml, NULL), 74); // its meshes are not there
+  ck_assert_int_eq(run_program("check", TETLAP_SOURCE_DIR "/CMakeLists.txt", NULL), 65);
+  ck_assert_int_eq(run_program("check", TETLAP_SOURCE_DIR "/examples/01_drop.yaml", "--set=time.ende=3"), 64);
+  ck_assert_int_eq(run_program("check", TETLAP_SOURCE_DIR "/examples/01_drop.yaml", "--json"), 0);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("program");
+  tcase_add_test(cases, exit_codes_say_who_is_to_blame);
+  return suite_run("program", cases, 60);
+}

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// base/text.h: words that are nearly right, and bytes that are no text.
+#include "suite.h"
+
+#include <string.h>
+
+#include "base/text.h"
+
+START_TEST(distances_count_slips_of_the_finger) {
+  ck_assert_int_eq(text_distance("young", "young"), 0);
+  ck_assert_int_eq(text_distance("yong", "young"), 1);
+  ck_assert_int_eq(text_distance("tiem", "time"), 1); // neighbours swapped
+  ck_assert_int_eq(text_distance("kitten", "sitting"), 3);
+  ck_assert_int_eq(text_distance("End", "end"), 0);
+  ck_assert_int_eq(text_distance("", "abc"), 3);
+  char longer[TEXT_MAX_WORD + 2];
+  memset(longer, 'a', sizeof longer);
+  longer[sizeof longer - 1] = 0;
+  ck_assert_int_eq(text_distance(longer, "a"), TEXT_MAX_WORD);
+}
+END_TEST
+
+START_TEST(a_guess_is_near_or_none) {
+  TextGuess guess = text_guess_of("densty");
+  text_guess_offer(&guess, "young"), text_guess_offer(&guess, "density");
+  ck_assert_str_eq(guess.best, "density");
+  guess = text_guess_of("colour");
+  text_guess_offer(&guess, "young"), text_guess_offer(&guess, "density");
+  ck_assert_ptr_null(guess.best);
+}
+END_TEST
+
+START_TEST(utf8_is_told_from_what_is_not) {
+  static const char *const good[] = {"a", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xef\xbf\xbf"};
+  static const char *const bad[] = {
+      "\x80",    "\xc0\xaf", "\xc3", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf8\x88\x80\x80",
+      "\xe2\x82"};
+  for (int i = 0; i < 5; i++) ck_assert_uint_eq(text_utf8_valid(good[i], strlen(good[i])), strlen(good[i]));
+  for (int i = 0; i < 8; i++) ck_assert_uint_eq(text_utf8_valid(bad[i], strlen(bad[i])), 0);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("text");
+  tcase_add_test(cases, distances_count_slips_of_the_finger);
+  tcase_add_test(cases, a_guess_is_near_or_none);
+  tcase_add_test(cases, utf8_is_told_from_what_is_not);
+  return suite_run("text", cases, 60);
+}
