@@ -17,12 +17,15 @@ static Status read_record(Record **record, const char *directory, const char *na
   return status;
 }
 
+// Whole lines: of a run that goes on, or was killed, the last one may lack its end.
 static Status read_history(AppReportRun *run) {
   char *path = file_join(run->directory, "history.csv");
   size_t size;
   if (!path) return status_no_memory("a file name");
   Status status = file_exists(path) ? file_read(path, &run->history, &size) : STATUS_OK;
   memory_free(path);
+  char *end = run->history ? strrchr(run->history, '\n') : NULL;
+  if (end) end[1] = 0;
   return status;
 }
 

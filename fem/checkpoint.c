@@ -11,19 +11,15 @@ Status fem_checkpoint_create(FemCheckpoint *checkpoint, int vertex_count) {
   size_t values = 3 * (size_t)vertex_count;
   checkpoint->displacement = memory_zeroed(values, sizeof(double));
   checkpoint->velocity = memory_zeroed(values, sizeof(double));
-  checkpoint->frame_times = memory_zeroed(0, sizeof(double));
-  checkpoint->history = memory_zeroed(1, 1);
   checkpoint->so_far.counters = record_new();
-  if (checkpoint->displacement && checkpoint->velocity && checkpoint->frame_times && checkpoint->history &&
-      checkpoint->so_far.counters)
-    return STATUS_OK;
+  if (checkpoint->displacement && checkpoint->velocity && checkpoint->so_far.counters) return STATUS_OK;
   fem_checkpoint_destroy(checkpoint);
   return status_no_memory("a checkpoint");
 }
 
-static bool copy_text(char **copy, const char *text) {
-  *copy = text ? memory_copy(text, strlen(text) + 1, 1) : NULL;
-  return !text || *copy;
+static bool copy_origin(FemCheckpoint *copy, const char *origin) {
+  copy->origin = origin ? memory_copy(origin, strlen(origin) + 1, 1) : NULL;
+  return !origin || copy->origin;
 }
 
 static bool copy_effects(FemCheckpoint *copy, const FemCheckpoint *checkpoint) {
@@ -39,16 +35,14 @@ static bool copy_effects(FemCheckpoint *copy, const FemCheckpoint *checkpoint) {
 Status fem_checkpoint_copy(FemCheckpoint *copy, const FemCheckpoint *checkpoint) {
   size_t values = 3 * (size_t)checkpoint->vertex_count;
   *copy = *checkpoint;
-  copy->origin = copy->history = NULL;
+  copy->origin = NULL;
   copy->effect_count = 0;
   copy->displacement = memory_copy(checkpoint->displacement, values, sizeof(double));
   copy->velocity = memory_copy(checkpoint->velocity, values, sizeof(double));
-  copy->frame_times = memory_copy(checkpoint->frame_times, (size_t)checkpoint->frame_count, sizeof(double));
   copy->so_far.counters = record_new();
   record_merge(copy->so_far.counters, checkpoint->so_far.counters);
-  if (copy->displacement && copy->velocity && copy->frame_times && copy->so_far.counters &&
-      copy_text(&copy->origin, checkpoint->origin) && copy_text(&copy->history, checkpoint->history) &&
-      copy_effects(copy, checkpoint))
+  if (copy->displacement && copy->velocity && copy->so_far.counters &&
+      copy_origin(copy, checkpoint->origin) && copy_effects(copy, checkpoint))
     return STATUS_OK;
   fem_checkpoint_destroy(copy);
   return status_no_memory("a checkpoint");
@@ -58,8 +52,6 @@ void fem_checkpoint_destroy(FemCheckpoint *checkpoint) {
   memory_free(checkpoint->origin);
   memory_free(checkpoint->displacement);
   memory_free(checkpoint->velocity);
-  memory_free(checkpoint->frame_times);
-  memory_free(checkpoint->history);
   if (checkpoint->so_far.counters) record_destroy(checkpoint->so_far.counters);
   for (int i = 0; i < checkpoint->effect_count; i++) memory_free(checkpoint->effects[i].values);
   *checkpoint = (FemCheckpoint){0};

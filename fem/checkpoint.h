@@ -12,6 +12,7 @@
 
 #include <stddef.h>
 
+#include "base/journal.h"
 #include "fem/audit.h"
 #include "fem/run_result.h"
 
@@ -33,10 +34,7 @@ typedef struct FemCheckpoint {
   double *displacement; // from rest [m], owned                     (vertex_count, 3)
   double *velocity;     // [m/s], owned                             (vertex_count, 3)
   int next_frame;       // number of the frame to come
-  double *frame_times;  // of the VTU files so far [s], owned       (frame_count)
-  int frame_count;
-  char *history; // history.csv so far, "" if none is written, owned; a run leaves it to its recorder
-  int history_rows;
+  JournalMark history;  // what history.csv holds; its size is 0 if none is written
   FemAudit audit;
   double force_scale, driven_work; // of a static scene [N], [J]
   FemRunResult so_far; // numbers and counters; its names, trajectory and effects' names are not kept

@@ -11,135 +11,22 @@
 #include "base/digest.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "fem/checkpoint.h"
+#include "fem/checkpoint_numbers.h"
 
 // HDF5 looks for its own beginning at 0, 512, 1024 …
-enum { HEAD_SIZE = 512, FORMAT_VERSION = 2, PATH_SIZE = 96 };
+enum { HEAD_SIZE = 512, FORMAT_VERSION = 3, PATH_SIZE = 96 };
 static const char MAGIC[] = "tetlap checkpoint";
-
-typedef enum FieldType { INTEGER, LONG, REAL } FieldType;
-
-// Every number of a checkpoint that is not an array.
-typedef struct Field {
-  const char *path;
-  FieldType type;
-  size_t offset; // in FemCheckpoint
-  const char *unit;
-} Field;
-
-#define AT(member) offsetof(FemCheckpoint, member)
-// What a kind of trouble has done so far, and where it stood in the last state.
-#define TROUBLE(kind, name)                                                                                  \
-  {"so_far/trouble/" name "/steps", LONG, AT(so_far.trouble.of[kind].steps), "1"},                           \
-      {"so_far/trouble/" name "/events", LONG, AT(so_far.trouble.of[kind].events), "1"},                     \
-      {"so_far/trouble/" name "/most", INTEGER, AT(so_far.trouble.of[kind].most), "1"},                      \
-      {"so_far/trouble/" name "/first_time", REAL, AT(so_far.trouble.of[kind].first_time), "s"},             \
-      {"so_far/trouble/" name "/first", INTEGER, AT(so_far.trouble.of[kind].first), "1"},                    \
-      {"so_far/trouble/" name "/last_count", INTEGER, AT(so_far.trouble.last.count[kind]), "1"}, {           \
-    "so_far/trouble/" name "/last_first", INTEGER, AT(so_far.trouble.last.first[kind]), "1"                  \
-  }
-static const Field fields[] = {
-    {"time", REAL, AT(time), "s"},
-    {"step", REAL, AT(step), "s"},
-    {"next_frame", INTEGER, AT(next_frame), "1"},
-    {"history_rows", INTEGER, AT(history_rows), "1"},
-    {"static/force_scale", REAL, AT(force_scale), "N"},
-    {"static/driven_work", REAL, AT(driven_work), "J"},
-    {"audit/time", REAL, AT(audit.time), "s"},
-    {"audit/damped", REAL, AT(audit.damped), "J"},
-    {"audit/dissipated", REAL, AT(audit.dissipated), "J"},
-    {"audit/driven_work", REAL, AT(audit.driven_work), "J"},
-    {"audit/work", REAL, AT(audit.work), "J"},
-    {"audit/total", REAL, AT(audit.total), "J"},
-    {"audit/lowest", REAL, AT(audit.lowest), "J"},
-    {"audit/gain", REAL, AT(audit.gain), "J"},
-    {"audit/scale", REAL, AT(audit.scale), "J"},
-    {"audit/gravity_at_start", REAL, AT(audit.gravity_at_start), "J"},
-    {"audit/dissipated_power", REAL, AT(audit.dissipated_power), "W"},
-    {"audit/driven_power", REAL, AT(audit.driven_power), "W"},
-    {"so_far/wall", REAL, AT(so_far.wall_s), "s"},
-    {"so_far/cpu", REAL, AT(so_far.cpu_s), "s"},
-    {"so_far/phases/broad_phase", REAL, AT(so_far.phases.broad_phase), "s"},
-    {"so_far/phases/overlap", REAL, AT(so_far.phases.overlap), "s"},
-    {"so_far/phases/contact", REAL, AT(so_far.phases.contact), "s"},
-    {"so_far/phases/forces", REAL, AT(so_far.phases.forces), "s"},
-    {"so_far/phases/assembly", REAL, AT(so_far.phases.assembly), "s"},
-    {"so_far/phases/analysis", REAL, AT(so_far.phases.analysis), "s"},
-    {"so_far/phases/factorisation", REAL, AT(so_far.phases.factorisation), "s"},
-    {"so_far/phases/solve", REAL, AT(so_far.phases.solve), "s"},
-    {"so_far/phases/output", REAL, AT(so_far.phases.output), "s"},
-    {"so_far/phases/total", REAL, AT(so_far.phases.total), "s"},
-    {"so_far/integrator/steps", LONG, AT(so_far.integrator.steps), "1"},
-    {"so_far/integrator/setups", LONG, AT(so_far.integrator.setups), "1"},
-    {"so_far/integrator/newton_iterations", LONG, AT(so_far.integrator.newton_iterations), "1"},
-    {"so_far/integrator/error_test_failures", LONG, AT(so_far.integrator.error_test_failures), "1"},
-    {"so_far/integrator/newton_failures", LONG, AT(so_far.integrator.newton_failures), "1"},
-    {"so_far/integrator/residuals", LONG, AT(so_far.integrator.residuals), "1"},
-    {"so_far/integrator/restarts", LONG, AT(so_far.integrator.restarts), "1"},
-    {"so_far/integrator/roots", LONG, AT(so_far.integrator.roots), "1"},
-    {"so_far/solver/analyses", LONG, AT(so_far.solver.analyses), "1"},
-    {"so_far/solver/factorisations", LONG, AT(so_far.solver.factorisations), "1"},
-    {"so_far/solver/failed_factorisations", LONG, AT(so_far.solver.failed_factorisations), "1"},
-    {"so_far/solver/solves", LONG, AT(so_far.solver.solves), "1"},
-    {"so_far/solver/iterations", LONG, AT(so_far.solver.iterations), "1"},
-    {"so_far/solver/analyse", REAL, AT(so_far.solver.analyse_s), "s"},
-    {"so_far/solver/factorise", REAL, AT(so_far.solver.factorise_s), "s"},
-    {"so_far/solver/solve", REAL, AT(so_far.solver.solve_s), "s"},
-    {"so_far/solver/factor_entries", REAL, AT(so_far.solver.factor_entries), "1"},
-    {"so_far/assemblies", LONG, AT(so_far.assemblies), "1"},
-    {"so_far/pattern_layouts", LONG, AT(so_far.pattern_layouts), "1"},
-    {"so_far/energy_retries", LONG, AT(so_far.energy_retries), "1"},
-    {"so_far/relaxation_steps", LONG, AT(so_far.relaxation_steps), "1"},
-    {"so_far/halvings", LONG, AT(so_far.halvings), "1"},
-    {"so_far/residual", REAL, AT(so_far.residual), "N"},
-    {"so_far/residual_allowed", REAL, AT(so_far.residual_allowed), "N"},
-    {"so_far/pairs/tried", LONG, AT(so_far.pairs.tried), "1"},
-    {"so_far/pairs/enclosed", LONG, AT(so_far.pairs.enclosed), "1"},
-    {"so_far/pairs/fallbacks", LONG, AT(so_far.pairs.fallbacks), "1"},
-    {"so_far/pairs/by_net", LONG, AT(so_far.pairs.by_net), "1"},
-    {"so_far/pairs/blended", LONG, AT(so_far.pairs.blended), "1"},
-    {"so_far/pairs/beyond", LONG, AT(so_far.pairs.beyond), "1"},
-    {"so_far/status/asked", LONG, AT(so_far.status_pairs.asked), "1"},
-    {"so_far/status/overlapping", LONG, AT(so_far.status_pairs.overlapping), "1"},
-    {"so_far/status/false_positives", LONG, AT(so_far.status_pairs.false_positives), "1"},
-    {"so_far/status/false_negatives", LONG, AT(so_far.status_pairs.false_negatives), "1"},
-    {"so_far/pairs_max", INTEGER, AT(so_far.pairs_max), "1"},
-    {"so_far/overlap_volume_max", REAL, AT(so_far.overlap_volume_max), "m3"},
-    {"so_far/contact_force_max", REAL, AT(so_far.contact_force_max), "N"},
-    {"so_far/contact_force_last", REAL, AT(so_far.last_contact_force), "N"},
-    {"so_far/min_det_F", REAL, AT(so_far.min_det_F), "1"},
-    {"so_far/trouble/smallest_step", REAL, AT(so_far.trouble.smallest_step), "s"},
-    TROUBLE(FEM_TROUBLE_INVERTED, "inverted"),
-    TROUBLE(FEM_TROUBLE_ENCLOSED, "enclosed"),
-    TROUBLE(FEM_TROUBLE_WRONG_WAY, "wrong_way"),
-    TROUBLE(FEM_TROUBLE_ENERGY, "energy"),
-    {"so_far/deepest_overlap_max", REAL, AT(so_far.deepest_overlap_max), "1"},
-};
-#undef TROUBLE
-#undef AT
-enum { FIELD_COUNT = sizeof fields / sizeof *fields };
-
-// Whoever adds a number to one of these adds it to the list above.
-static_assert(sizeof(FemAudit) == 12 * sizeof(double), "fields[] lists every number of FemAudit");
-static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "fields[] lists every phase");
-static_assert(sizeof(FemIntegratorStats) == 11 * sizeof(double), "fields[] lists the integrator's counts");
-static_assert(sizeof(FemSolverStats) == 9 * sizeof(double), "fields[] lists the solver's counts");
-static_assert(sizeof(ContactPairCounts) == 6 * sizeof(long long), "fields[] lists the counts of pairs");
-static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long),
-              "fields[] lists the counts of the status");
-
-static_assert(FEM_TROUBLE_KIND_COUNT == 4, "fields[] lists every kind of trouble");
 
 // An effect's cost, one array.
 enum { COST_COUNT = 7 };
 static_assert(sizeof(FemEffectCost) == COST_COUNT * sizeof(double), "costs_of lists every number");
 
-static hid_t memory_type(FieldType type) {
-  return type == INTEGER ? H5T_NATIVE_INT : type == LONG ? H5T_NATIVE_LLONG : H5T_NATIVE_DOUBLE;
+static hid_t memory_type(FemCheckpointType type) {
+  return type == FEM_INTEGER ? H5T_NATIVE_INT : type == FEM_LONG ? H5T_NATIVE_LLONG : H5T_NATIVE_DOUBLE;
 }
 
-static hid_t file_type(FieldType type) {
-  return type == INTEGER ? H5T_STD_I32LE : type == LONG ? H5T_STD_I64LE : H5T_IEEE_F64LE;
+static hid_t file_type(FemCheckpointType type) {
+  return type == FEM_INTEGER ? H5T_STD_I32LE : type == FEM_LONG ? H5T_STD_I64LE : H5T_IEEE_F64LE;
 }
 
 static void close_id(hid_t id) {
@@ -207,7 +94,7 @@ static bool write_unit(hid_t dataset, const char *unit) {
 }
 
 // An array of that shape; rank 0: one number.
-static bool write_values(hid_t file, const char *path, FieldType type, int rank, const hsize_t *shape,
+static bool write_values(hid_t file, const char *path, FemCheckpointType type, int rank, const hsize_t *shape,
                          const void *values, const char *unit) {
   hid_t space = rank ? H5Screate_simple(rank, shape, NULL) : H5Screate(H5S_SCALAR);
   hid_t dataset = create_dataset(file, path, file_type(type), space);
@@ -261,9 +148,9 @@ static bool write_effects(hid_t file, const FemCheckpoint *checkpoint) {
     snprintf(path, sizeof path, "effects/%02d/name", i);
     works = write_text(file, path, effect->name);
     snprintf(path, sizeof path, "effects/%02d/history", i);
-    works = works && write_values(file, path, REAL, 1, &count, effect->values, "the effect's own");
+    works = works && write_values(file, path, FEM_REAL, 1, &count, effect->values, "the effect's own");
     snprintf(path, sizeof path, "effects/%02d/cost", i);
-    works = works && write_values(file, path, REAL, 1, &cost_count, costs,
+    works = works && write_values(file, path, FEM_REAL, 1, &cost_count, costs,
                                   "s, s, s, 1, 1, 1: force, jacobian, prepare; calls of each");
   }
   return works;
@@ -271,17 +158,17 @@ static bool write_effects(hid_t file, const FemCheckpoint *checkpoint) {
 
 static bool write_contents(hid_t file, const FemCheckpoint *checkpoint, const char *counters) {
   const hsize_t shape[2] = {(hsize_t)checkpoint->vertex_count, 3};
-  const hsize_t frames = (hsize_t)checkpoint->frame_count;
   const int version = FORMAT_VERSION;
-  bool works = write_values(file, "format_version", INTEGER, 0, NULL, &version, "1") &&
-               write_values(file, "displacement", REAL, 2, shape, checkpoint->displacement, "m") &&
-               write_values(file, "velocity", REAL, 2, shape, checkpoint->velocity, "m/s") &&
-               write_values(file, "frame_times", REAL, 1, &frames, checkpoint->frame_times, "s") &&
+  bool works = write_values(file, "format_version", FEM_INTEGER, 0, NULL, &version, "1") &&
+               write_values(file, "displacement", FEM_REAL, 2, shape, checkpoint->displacement, "m") &&
+               write_values(file, "velocity", FEM_REAL, 2, shape, checkpoint->velocity, "m/s") &&
                write_text(file, "origin", checkpoint->origin ? checkpoint->origin : "") &&
-               write_text(file, "history", checkpoint->history) && write_text(file, "counters", counters);
-  for (int f = 0; f < FIELD_COUNT && works; f++)
-    works = write_values(file, fields[f].path, fields[f].type, 0, NULL,
-                         (const char *)checkpoint + fields[f].offset, fields[f].unit);
+               write_text(file, "counters", counters);
+  int count;
+  const FemCheckpointNumber *numbers = fem_checkpoint_numbers(&count);
+  for (int k = 0; k < count && works; k++)
+    works = write_values(file, numbers[k].path, numbers[k].type, 0, NULL,
+                         (const char *)checkpoint + numbers[k].offset, numbers[k].unit);
   return works && write_effects(file, checkpoint);
 }
 
@@ -380,8 +267,8 @@ static hid_t open_dataset(hid_t file, const char *path, H5T_class_t class, int r
   return -1;
 }
 
-static bool read_number(hid_t file, const char *path, FieldType type, void *value) {
-  hid_t dataset = open_dataset(file, path, type == REAL ? H5T_FLOAT : H5T_INTEGER, 0, NULL);
+static bool read_number(hid_t file, const char *path, FemCheckpointType type, void *value) {
+  hid_t dataset = open_dataset(file, path, type == FEM_REAL ? H5T_FLOAT : H5T_INTEGER, 0, NULL);
   bool works = dataset >= 0 && H5Dread(dataset, memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
   close_id(dataset);
   return works;
@@ -458,30 +345,29 @@ static Status read_counters(hid_t file, FemCheckpoint *checkpoint, const char *p
 }
 
 static Status read_arrays(hid_t file, FemCheckpoint *checkpoint, const char *path) {
-  hsize_t shape[2], again[2], frames;
+  hsize_t shape[2], again[2];
   TRY(read_array(file, path, "displacement", 2, shape, &checkpoint->displacement));
   if (shape[1] != 3) return fail_lacking(path, "displacement");
   TRY(read_array(file, path, "velocity", 2, again, &checkpoint->velocity));
   if (again[0] != shape[0] || again[1] != 3) return fail_lacking(path, "velocity");
   checkpoint->vertex_count = (int)shape[0];
-  TRY(read_array(file, path, "frame_times", 1, &frames, &checkpoint->frame_times));
-  checkpoint->frame_count = (int)frames;
-  TRY(read_text(file, path, "origin", &checkpoint->origin));
-  return read_text(file, path, "history", &checkpoint->history);
+  return read_text(file, path, "origin", &checkpoint->origin);
 }
 
 static Status check_numbers(const FemCheckpoint *checkpoint, const char *path) {
   if (!(checkpoint->time >= 0) || !(checkpoint->step >= 0)) return fail_lacking(path, "time");
-  if (checkpoint->next_frame < 0 || checkpoint->frame_count > checkpoint->next_frame)
-    return fail_lacking(path, "next_frame");
+  if (checkpoint->next_frame < 0) return fail_lacking(path, "next_frame");
+  if (checkpoint->history.size < 0) return fail_lacking(path, "history/size");
   return STATUS_OK;
 }
 
 static Status read_contents(hid_t file, FemCheckpoint *checkpoint, const char *path) {
   TRY(read_arrays(file, checkpoint, path));
-  for (int f = 0; f < FIELD_COUNT; f++)
-    if (!read_number(file, fields[f].path, fields[f].type, (char *)checkpoint + fields[f].offset))
-      return fail_lacking(path, fields[f].path);
+  int count;
+  const FemCheckpointNumber *numbers = fem_checkpoint_numbers(&count);
+  for (int k = 0; k < count; k++)
+    if (!read_number(file, numbers[k].path, numbers[k].type, (char *)checkpoint + numbers[k].offset))
+      return fail_lacking(path, numbers[k].path);
   TRY(check_numbers(checkpoint, path));
   TRY(read_counters(file, checkpoint, path));
   return read_effects(file, checkpoint, path);

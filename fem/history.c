@@ -8,25 +8,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
-#include "base/file.h"
 #include "base/memory.h"
-
-static const double PERIOD_S = 1; // wall time between two replacements of the file [s]
 
 enum { NUMBER_BYTES = 32 }; // room for a double in 17 digits, its separator and a terminating 0
 
 Status fem_history_create(FemHistory *history, const char *path) {
-  *history = (FemHistory){.written_at_s = -INFINITY};
-  history->path = memory_copy(path, strlen(path) + 1, 1);
-  return history->path ? STATUS_OK : status_no_memory("the history's name");
+  *history = (FemHistory){0};
+  return journal_create(&history->file, path);
 }
 
 void fem_history_destroy(FemHistory *history) {
   for (int c = 0; c < history->column_count; c++) memory_free(history->titles[c]);
   memory_free(history->titles);
-  memory_free(history->text);
-  memory_free(history->path);
+  memory_free(history->line);
+  journal_destroy(&history->file);
   *history = (FemHistory){0};
 }
 
@@ -61,7 +56,7 @@ Status fem_history_add_column(FemHistory *history, const char *format, ...) {
   if (has_column(history, title))
     status =
         status_fail(STATUS_INPUT, "%s: two columns would be named %s; give one of the bodies another name",
-                    history->path, title);
+                    history->file.path, title);
   if (status)
     memory_free(title);
   else
@@ -71,10 +66,10 @@ Status fem_history_add_column(FemHistory *history, const char *format, ...) {
 
 static Status append(FemHistory *history, const char *text) {
   size_t length = strlen(text);
-  if (!memory_reserve((void **)&history->text, &history->text_capacity, history->text_size + length, 1))
+  if (!memory_reserve((void **)&history->line, &history->line_capacity, history->line_size + length, 1))
     return status_no_memory("a row of the history");
-  memcpy(history->text + history->text_size, text, length);
-  history->text_size += length;
+  memcpy(history->line + history->line_size, text, length);
+  history->line_size += length;
   return STATUS_OK;
 }
 
@@ -118,31 +113,12 @@ static Status append_row(FemHistory *history, const double *values) {
 }
 
 Status fem_history_add_row(FemHistory *history, const double *values) {
-  const size_t size = history->text_size;
-  Status status = history->row_count ? STATUS_OK : append_titles(history);
-  if (!status) status = append_row(history, values);
-  if (status) {
-    history->text_size = size; // half a row never reaches the file
-    return status;
-  }
-  history->row_count++;
-  if (clock_wall_s() - history->written_at_s < PERIOD_S) return STATUS_OK;
-  return fem_history_write(history);
+  history->line_size = 0;
+  if (history->file.end.size == 0) TRY(append_titles(history));
+  TRY(append_row(history, values));
+  return journal_append(&history->file, history->line, history->line_size);
 }
 
-Status fem_history_continue(FemHistory *history, const char *text, int row_count) {
-  TRY(append(history, text));
-  history->row_count = row_count;
-  return STATUS_OK;
-}
-
-Status fem_history_write(FemHistory *history) {
-  if (history->written_rows == history->row_count) return STATUS_OK;
-  FileWriter writer;
-  TRY(file_begin(&writer, history->path));
-  fwrite(history->text, 1, history->text_size, writer.stream);
-  TRY(file_commit(&writer));
-  history->written_rows = history->row_count;
-  history->written_at_s = clock_wall_s();
-  return STATUS_OK;
+Status fem_history_continue(FemHistory *history, JournalMark mark) {
+  return journal_continue(&history->file, mark);
 }

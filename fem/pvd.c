@@ -4,22 +4,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "base/memory.h"
 #include "fem/xml.h"
 
-Status fem_pvd_write(const char *path, const double *times, const char *const *files, int count) {
-  FileWriter writer;
-  TRY(file_begin(&writer, path));
-  fprintf(writer.stream, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n"
-                         "  <Collection>\n");
-  for (int k = 0; k < count; k++) {
-    fprintf(writer.stream, "    <DataSet timestep=\"%.17g\" part=\"0\" file=\"", times[k]);
-    fem_xml_print(writer.stream, files[k]);
-    fprintf(writer.stream, "\"/>\n");
-  }
-  fprintf(writer.stream, "  </Collection>\n</VTKFile>\n");
-  return file_commit(&writer);
+Status fem_pvd_begin(FileWriter *list, const char *path) {
+  TRY(file_begin(list, path));
+  fprintf(list->stream, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n"
+                        "  <Collection>\n");
+  return STATUS_OK;
+}
+
+void fem_pvd_add(FileWriter *list, double time, const char *file) {
+  fprintf(list->stream, "    <DataSet timestep=\"%.17g\" part=\"0\" file=\"", time);
+  fem_xml_print(list->stream, file);
+  fprintf(list->stream, "\"/>\n");
+}
+
+Status fem_pvd_commit(FileWriter *list) {
+  fprintf(list->stream, "  </Collection>\n</VTKFile>\n");
+  return file_commit(list);
 }
 
 // One entry `timestep="T" part="0" file="NAME"`, as printed above.

@@ -3,11 +3,14 @@
 #ifndef TETLAP_FEM_PVD_H
 #define TETLAP_FEM_PVD_H
 
+#include "base/file.h"
 #include "base/status.h"
 
-// Writes the list of `count` frames whole or not at all; called again after every frame, so that a run that
-// was stopped, or still runs, can be looked at. `files` are relative to the directory of `path`; times [s].
-Status fem_pvd_write(const char *path, const double *times, const char *const *files, int count);
+// Writes a list whole or not at all: begin, an entry a frame, commit (base/file.h, whose failures these are;
+// a list that is not committed is abandoned there). `file` is relative to the directory of `path`.
+Status fem_pvd_begin(FileWriter *list, const char *path);
+void fem_pvd_add(FileWriter *list, double time, const char *file); // [s]
+Status fem_pvd_commit(FileWriter *list);
 
 typedef struct FemPvdList {
   double *times; // [s]                                     (count)

@@ -110,19 +110,15 @@ static Status create(FemRecorder *recorder, const char *directory) {
   if (!directory) return STATUS_OK;
   recorder->writes_vtu = model->scene->write_vtu;
   recorder->writes_history = model->scene->write_history;
-  size_t frames = (size_t)recorder->frame_capacity;
   recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
-  recorder->frame_times = memory_zeroed(frames, sizeof *recorder->frame_times);
-  recorder->frame_files = memory_zeroed(frames, sizeof *recorder->frame_files);
   recorder->displacement = memory_zeroed(3 * vertices, sizeof *recorder->displacement);
   recorder->contact_force = memory_zeroed(3 * vertices, sizeof *recorder->contact_force);
   bool has_friction = fem_system_effect(recorder->system, "friction") != NULL;
   if (has_friction) recorder->friction_force = memory_zeroed(3 * vertices, sizeof(double));
   recorder->stress = memory_zeroed(6 * tets, sizeof *recorder->stress);
   recorder->von_mises = memory_zeroed(tets, sizeof *recorder->von_mises);
-  if (!recorder->directory || !recorder->frame_times || !recorder->frame_files || !recorder->displacement ||
-      !recorder->contact_force || !recorder->stress || !recorder->von_mises ||
-      (has_friction && !recorder->friction_force))
+  if (!recorder->directory || !recorder->displacement || !recorder->contact_force || !recorder->stress ||
+      !recorder->von_mises || (has_friction && !recorder->friction_force))
     return status_no_memory("the output arrays");
   TRY(file_make_directories(directory));
   if (!recorder->writes_history) return STATUS_OK;
@@ -147,9 +143,8 @@ static Status create_reference(FemRecorder *recorder) {
   return STATUS_OK;
 }
 
-Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char *directory,
-                           int frame_capacity) {
-  *recorder = (FemRecorder){.system = system, .frame_capacity = frame_capacity};
+Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char *directory) {
+  *recorder = (FemRecorder){.system = system};
   Status status = create_reference(recorder);
   if (!status) status = create(recorder, directory);
   if (status) fem_recorder_destroy(recorder);
@@ -158,9 +153,6 @@ Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char 
 
 void fem_recorder_destroy(FemRecorder *recorder) {
   fem_history_destroy(&recorder->history);
-  for (int f = 0; f < recorder->frame_count; f++) memory_free(recorder->frame_files[f]);
-  memory_free(recorder->frame_files);
-  memory_free(recorder->frame_times);
   memory_free(recorder->directory);
   memory_free(recorder->row);
   memory_free(recorder->displacement);
@@ -316,41 +308,54 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
   return fem_vtu_write(path, &frame);
 }
 
-// Enters the next frame in the list; its name is borrowed from there.
-static Status list_frame(FemRecorder *recorder, double time, const char **file) {
-  enum { NAME_SIZE = 32 };
-  int number = recorder->frame_count;
-  char *name = memory_zeroed(NAME_SIZE, 1);
-  if (!name) return status_no_memory("a file name");
-  snprintf(name, NAME_SIZE, "frame_%05d.vtu", number);
-  recorder->frame_files[number] = name;
-  recorder->frame_times[number] = time;
-  recorder->frame_count++;
-  *file = name;
+Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int frame_count) {
+  if (!recorder->directory) return STATUS_OK;
+  if (recorder->writes_history) TRY(fem_history_continue(&recorder->history, history));
+  recorder->frame_count = recorder->listed_count = recorder->writes_vtu ? frame_count : 0;
   return STATUS_OK;
 }
 
-Status fem_recorder_continue(FemRecorder *recorder, const char *history, int history_rows,
-                             const double *frame_times, int frame_count) {
-  const char *file;
-  if (!recorder->directory) return STATUS_OK;
-  for (int f = 0; f < frame_count && recorder->writes_vtu && f < recorder->frame_capacity; f++)
-    TRY(list_frame(recorder, frame_times[f], &file));
-  return recorder->writes_history ? fem_history_continue(&recorder->history, history, history_rows)
-                                  : STATUS_OK;
+enum { NAME_SIZE = 32 };
+
+static void name_frame(int frame, char name[NAME_SIZE]) {
+  snprintf(name, NAME_SIZE, "frame_%05d.vtu", frame);
 }
 
 static Status write_frame(FemRecorder *recorder, double time) {
-  const char *name = NULL;
-  TRY(list_frame(recorder, time, &name));
-  char *path = file_join(recorder->directory, name), *list = file_join(recorder->directory, "frames.pvd");
-  Status status = path && list ? write_vtu(recorder, path, time) : status_no_memory("a file name");
-  if (!status)
-    status = fem_pvd_write(list, recorder->frame_times, (const char *const *)recorder->frame_files,
-                           recorder->frame_count);
+  char name[NAME_SIZE];
+  name_frame(recorder->frame_count, name);
+  char *path = file_join(recorder->directory, name);
+  if (!path) return status_no_memory("a file name");
+  Status status = write_vtu(recorder, path, time);
   memory_free(path);
-  memory_free(list);
+  if (!status) recorder->frame_count++;
   return status;
+}
+
+// The list follows from how many frames there are, so none of it is kept.
+static Status write_list(FemRecorder *recorder) {
+  FileWriter list;
+  char *path = file_join(recorder->directory, "frames.pvd");
+  if (!path) return status_no_memory("a file name");
+  Status status = fem_pvd_begin(&list, path);
+  memory_free(path);
+  TRY(status);
+  for (int frame = 0; frame < recorder->frame_count; frame++) {
+    char name[NAME_SIZE];
+    name_frame(frame, name);
+    fem_pvd_add(&list, fem_scene_frame_time(recorder->system->model->scene, frame), name);
+  }
+  TRY(fem_pvd_commit(&list));
+  recorder->listed_count = recorder->frame_count;
+  recorder->listed_at_s = clock_wall_s();
+  return STATUS_OK;
+}
+
+// To write the whole list after every frame would take time that grows with the square of their number.
+static bool is_list_due(const FemRecorder *recorder) {
+  static const double PERIOD_S = 1;
+  enum { SHORT = 1000 };
+  return recorder->frame_count <= SHORT || clock_wall_s() - recorder->listed_at_s >= PERIOD_S;
 }
 
 static double *append_centres(const FemSystem *system, double *row) {
@@ -427,6 +432,7 @@ Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures 
   TRY(find_status(recorder, time));
   if (!recorder->directory) return STATUS_OK;
   if (recorder->writes_vtu) TRY(write_frame(recorder, time));
+  if (recorder->writes_vtu && is_list_due(recorder)) TRY(write_list(recorder));
   if (recorder->writes_history)
     TRY(write_history(recorder, time, measures, audit, step, step_count, energy_events));
   recorder->seconds += clock_wall_s() - began;
@@ -434,5 +440,5 @@ Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures 
 }
 
 Status fem_recorder_finish(FemRecorder *recorder) {
-  return recorder->directory && recorder->writes_history ? fem_history_write(&recorder->history) : STATUS_OK;
+  return recorder->listed_count < recorder->frame_count ? write_list(recorder) : STATUS_OK;
 }

@@ -29,9 +29,9 @@ typedef struct FemRecorder {
   FemHistory history;
   double *row; // one line of the history
   int row_capacity;
-  double *frame_times; // (frame_count)
-  char **frame_files;  // (frame_count)
-  int frame_count, frame_capacity;
+  int frame_count;                              // frames that are written
+  int listed_count;                             // of these in frames.pvd
+  double listed_at_s;                           // wall clock when it was written
   double *displacement, *contact_force;         // scratch             (vertex_count, 3)
   double *friction_force;                       // scratch; NULL: no friction   (vertex_count, 3)
   double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
@@ -42,13 +42,11 @@ typedef struct FemRecorder {
   double seconds;                // spent writing
 } FemRecorder;
 
-// `directory` NULL: measures only. `frame_capacity`: how many frames will come.
-Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char *directory,
-                           int frame_capacity);
-// Goes on from the frames and the history of an earlier run: `history` as of FemHistory, `frame_times` of the
-// VTU files there are.
-Status fem_recorder_continue(FemRecorder *recorder, const char *history, int history_rows,
-                             const double *frame_times, int frame_count);
+// `directory` NULL: measures only.
+Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char *directory);
+// Goes on from what an earlier run left in the directory: its history as of that mark, and so many frames.
+// Fails as journal_continue does.
+Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int frame_count);
 void fem_recorder_destroy(FemRecorder *recorder);
 
 // The measures at the system's scattered state.
@@ -63,7 +61,8 @@ Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures 
 // where there is friction, of friction.
 void fem_recorder_interface_force(const FemSystem *system, int interface, double force[3]);
 
-// Makes the history whole on disk.
+// Writes the list of frames if it lacks some: at the end, since in between long lists are written at most
+// once a second.
 Status fem_recorder_finish(FemRecorder *recorder);
 
 #endif

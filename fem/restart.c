@@ -43,15 +43,6 @@ static void save_state(FemCheckpoint *checkpoint, FemSystem *system, double time
   checkpoint->time = time;
 }
 
-static Status save_output(FemCheckpoint *checkpoint, const FemRecorder *recorder) {
-  memory_free(checkpoint->frame_times);
-  checkpoint->frame_times = memory_copy(recorder->frame_times, (size_t)recorder->frame_count, sizeof(double));
-  if (!checkpoint->frame_times) return status_no_memory("a checkpoint");
-  checkpoint->history_rows = recorder->history.row_count;
-  checkpoint->frame_count = recorder->frame_count;
-  return STATUS_OK;
-}
-
 // Numbers, and a copy of the counters.
 static Status save_counts(FemCheckpoint *checkpoint, const FemRunResult *so_far) {
   record_destroy(checkpoint->so_far.counters);
@@ -67,12 +58,11 @@ static Status save_counts(FemCheckpoint *checkpoint, const FemRunResult *so_far)
 }
 
 Status fem_restart_collect(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
-                           const double *v, const FemRecorder *recorder, const FemRunResult *so_far) {
+                           const double *v, const FemRunResult *so_far) {
   FemCheckpoint next;
   TRY(fem_checkpoint_create(&next, system->model->vertex_count));
   save_state(&next, system, time, u, v);
   Status status = save_effects(&next, system);
-  if (!status) status = save_output(&next, recorder);
   if (!status) status = save_counts(&next, so_far);
   if (status) {
     fem_checkpoint_destroy(&next);

@@ -4,17 +4,16 @@
 #define TETLAP_FEM_RESTART_H
 
 #include "fem/checkpoint.h"
-#include "fem/recorder.h"
+#include "fem/system.h"
 
 // The checkpoint with which a run begins that is not resumed: initial velocities, and displacements
 // (vertex_count, 3) unless NULL.
 Status fem_restart_begin(FemCheckpoint *checkpoint, const FemModel *model, const double *displacement);
 
-// Takes over the state (time; u, v of the unknowns), the effects' histories, what the recorder has written
-// (but not its history, which is long and stays with it) and the counts so far, which include those of the
-// system. `checkpoint` was made for this model; it is as it was after a failure.
+// Takes over the state (time; u, v of the unknowns), the effects' histories and the counts so far, which
+// include those of the system. `checkpoint` was made for this model; it is as it was after a failure.
 Status fem_restart_collect(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
-                           const double *v, const FemRecorder *recorder, const FemRunResult *so_far);
+                           const double *v, const FemRunResult *so_far);
 
 // Whether the checkpoint belongs to a run of that model. STATUS_INPUT says what does not fit.
 Status fem_restart_check(const FemCheckpoint *checkpoint, const FemModel *model);

@@ -255,6 +255,8 @@ static Status begin_record(FemRunState *run) {
   fem_audit_begin(&run->audit, run->time, &measures.energy, energy_floor(run->model));
   fem_run_frames_keep_extremes(run->result, &measures);
   fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
+  // The files of an earlier run in this folder are about to be replaced: its checkpoint goes with them.
+  if (!run->options->from) TRY(fem_run_checkpoint_remove(run));
   return fem_run_frames_write(run, run->time, &measures);
 }
 
@@ -327,7 +329,7 @@ static Status advance_static(FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
   double longest = scene->max_step > 0 ? scene->max_step : scene->end / scene->frames;
   double step = run->next_step > 0 ? fmin(run->next_step, longest) : longest;
-  double target = fem_run_state_frame_time(run, run->next_frame), to = fmin(run->time + step, target),
+  double target = fem_scene_frame_time(scene, run->next_frame), to = fmin(run->time + step, target),
          work_before = run->statics.driven_work;
   Status status = fem_statics_step(&run->statics, run->time, to, run->u);
   if (status == STATUS_RETRY) {
@@ -353,7 +355,6 @@ static Status march(FemRunState *run) {
   TRY(begin_part(run));
   const FemSceneDef *scene = run->given->scene;
   run->stall = fem_stall_begin(run->time, scene->end, scene->end / scene->frames);
-  if (!run->options->from) TRY(fem_run_checkpoint_remove(run)); // of an earlier run in this folder
   TRY(fem_run_checkpoint_offer(run));
   while (!fem_run_state_has_ended(run)) {
     if (run->model->scene->is_static) {
@@ -412,7 +413,6 @@ static Status prepare(FemRunState *run) {
     if (!run->checkpoint.origin) return status_no_memory("a checkpoint");
   }
   run->is_written = options->from;
-  run->history_size = strlen(run->checkpoint.history);
   return begin_result(run);
 }
 

@@ -84,10 +84,10 @@ static Status measure_within_step(FemRunState *run, double time, FemMeasures *me
 }
 
 Status fem_run_frames_write_until(FemRunState *run, double time) {
-  double slack = 1e-12 * run->model->scene->end;
-  while (run->next_frame <= run->model->scene->frames &&
-         fem_run_state_frame_time(run, run->next_frame) <= time + slack) {
-    double at = fmin(fem_run_state_frame_time(run, run->next_frame), time);
+  const FemSceneDef *scene = run->model->scene;
+  double slack = 1e-12 * scene->end;
+  while (run->next_frame <= scene->frames && fem_scene_frame_time(scene, run->next_frame) <= time + slack) {
+    double at = fmin(fem_scene_frame_time(scene, run->next_frame), time);
     FemMeasures measures;
     TRY(measure_within_step(run, at, &measures));
     TRY(fem_run_frames_write(run, at, &measures));
@@ -128,9 +128,7 @@ static Status keep_trajectory(FemRunState *run) {
 
 Status fem_run_frames_open(FemRunState *run) {
   const FemCheckpoint *from = &run->checkpoint;
-  TRY(fem_recorder_create(&run->recorder, &run->system, run->options->directory,
-                          run->model->scene->frames + 1));
+  TRY(fem_recorder_create(&run->recorder, &run->system, run->options->directory));
   if (run->options->keep_trajectory) TRY(keep_trajectory(run));
-  return fem_recorder_continue(&run->recorder, from->history, from->history_rows, from->frame_times,
-                               from->frame_count);
+  return fem_recorder_continue(&run->recorder, from->history, from->next_frame);
 }

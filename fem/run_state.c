@@ -10,11 +10,6 @@ FemIntegratorStats fem_run_state_stats(const FemRunState *run) {
   return stats;
 }
 
-double fem_run_state_frame_time(const FemRunState *run, int frame) {
-  const FemSceneDef *scene = run->model->scene;
-  return frame == scene->frames ? scene->end : scene->end * frame / scene->frames;
-}
-
 bool fem_run_state_has_ended(const FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
   return scene->is_static ? run->next_frame > scene->frames : !(run->time < scene->end);

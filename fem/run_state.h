@@ -31,7 +31,6 @@ typedef struct FemRunState {
   FemStall stall;           // over all stages
   double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]
   FemCheckpoint checkpoint; // where this part began
-  size_t history_size;      // bytes of the recorder's history that belong to it
   bool is_written;          // is that in the file
   int interval;             // frames between two checkpoints; 0: none
   double began_s, cpu_began_s, written_s; // clocks: of this part, and when a checkpoint was written
@@ -40,7 +39,6 @@ typedef struct FemRunState {
 // Counted over all parts and stages.
 FemIntegratorStats fem_run_state_stats(const FemRunState *run);
 
-double fem_run_state_frame_time(const FemRunState *run, int frame); // [s]
 bool fem_run_state_has_ended(const FemRunState *run);
 
 #endif

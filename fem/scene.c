@@ -49,3 +49,7 @@ void fem_scene_destroy(FemSceneDef *scene) {
   memory_free(scene->title);
   *scene = (FemSceneDef){0};
 }
+
+double fem_scene_frame_time(const FemSceneDef *scene, int frame) {
+  return frame == scene->frames ? scene->end : scene->end * frame / scene->frames;
+}

@@ -186,4 +186,7 @@ typedef struct FemSceneDef {
 // Frees everything that the scene owns and zeroes it.
 void fem_scene_destroy(FemSceneDef *scene);
 
+// When frame 0 … frames is due [s].
+double fem_scene_frame_time(const FemSceneDef *scene, int frame);
+
 #endif

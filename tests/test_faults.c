@@ -175,7 +175,8 @@ int __real_rename(const char *from, const char *to);
 int __wrap_rename(const char *from, const char *to);
 
 FILE *__wrap_fopen(const char *path, const char *mode) {
-  if (mode[0] != 'w' || !strikes(&fault.open)) return __real_fopen(path, mode);
+  bool writes = mode[0] == 'w' || strchr(mode, '+');
+  if (!writes || !strikes(&fault.open)) return __real_fopen(path, mode);
   if (fault.is_full_disk) return __real_fopen("/dev/full", mode);
   errno = EACCES;
   return NULL;
@@ -436,6 +437,19 @@ START_TEST(a_file_that_cannot_be_written_is_named_and_nothing_is_left_half) {
 }
 END_TEST
 
+// The checkpoint of a run whose files have been replaced would be resumed into the wrong ones. _i: the new
+// run fails before its first file, at its first, at a later one.
+START_TEST(a_new_run_takes_away_the_checkpoint_of_the_files_that_it_replaces) {
+  ck_assert_ok(run_command("again"));
+  ck_assert_int_eq(shell("echo of another run > %s/again/checkpoint.h5", folder), 0);
+  forget_faults();
+  if (_i == 0) fault.energy = (Strike){.first = 1, .count = FOR_GOOD};
+  if (_i > 0) fault.open = (Strike){.first = _i, .count = FOR_GOOD};
+  ck_assert_int_ne(run_command("again"), STATUS_OK);
+  ck_assert_int_eq(shell("test -e %s/again/checkpoint.h5", folder), _i == 0 ? 0 : 1);
+}
+END_TEST
+
 // What happens around a run.
 
 static void happen(long call, char *command, size_t size, const char *format) {
@@ -546,6 +560,7 @@ int main(void) {
   tcase_add_test(test_case, an_energy_that_stays_no_number_is_named);
   tcase_add_test(test_case, a_pair_that_the_model_refuses_is_named);
   tcase_add_loop_test(test_case, a_file_that_cannot_be_written_is_named_and_nothing_is_left_half, 0, 3);
+  tcase_add_loop_test(test_case, a_new_run_takes_away_the_checkpoint_of_the_files_that_it_replaces, 0, 3);
   tcase_add_test(test_case, a_folder_that_vanishes_during_a_run_is_named);
   tcase_add_loop_test(test_case, an_input_that_vanishes_before_the_run_is_named, 0, 3);
   tcase_add_loop_test(test_case, inputs_that_change_during_a_run_do_not_touch_it, 0, 3);

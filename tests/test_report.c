@@ -74,7 +74,10 @@ static void write_run(void) {
   const double times[FRAMES] = {0, 1, 2};
   for (int k = 0; k < FRAMES; k++) write_frame(names[k], k);
   char *path = file_join(directory, "frames.pvd");
-  ck_assert_ok(fem_pvd_write(path, times, names, FRAMES));
+  FileWriter list;
+  ck_assert_ok(fem_pvd_begin(&list, path));
+  for (int k = 0; k < FRAMES; k++) fem_pvd_add(&list, times[k], names[k]);
+  ck_assert_ok(fem_pvd_commit(&list));
   memory_free(path);
   write_text("summary.json", "{\"title\": \"</script><b>&\", \"wall_s\": 1.5}\n");
   write_text("history.csv", "time_s,kinetic_J\n0,0\n1,0.5\n2,1\n");
@@ -127,6 +130,17 @@ START_TEST(a_run_reads_back_as_it_was_written) {
   ck_assert(run.fields[1].is_integer && run.fields[1].values[1] == 1.0);
   ck_assert_str_eq(run.fields[2].name, "pressure");
   ck_assert(run.fields[2].values[0] == 7.0 && run.fields[2].values[1] == 0.0);
+  app_report_run_destroy(&run);
+}
+END_TEST
+
+// As of a run that is being written, or was killed.
+START_TEST(half_a_line_at_the_end_of_the_history_is_left_out) {
+  AppReportRun run;
+  write_run();
+  write_text("history.csv", "time_s,kinetic_J\n0,0\n1,0.");
+  ck_assert_ok(app_report_run_read(&run, directory, 0));
+  ck_assert_str_eq(run.history, "time_s,kinetic_J\n0,0\n");
   app_report_run_destroy(&run);
 }
 END_TEST
@@ -397,6 +411,7 @@ int main(void) {
   tcase_add_test(test_case, deflated_bytes_come_back_and_damaged_ones_are_refused);
   tcase_add_test(test_case, base64_of_the_rfc_reads_back);
   tcase_add_test(test_case, a_run_reads_back_as_it_was_written);
+  tcase_add_test(test_case, half_a_line_at_the_end_of_the_history_is_left_out);
   tcase_add_test(test_case, fewer_frames_keep_the_first_and_the_last);
   tcase_add_test(test_case, a_code_is_off_by_half_a_step_at_most);
   tcase_add_test(test_case, what_is_not_finite_has_a_code_of_its_own_and_no_part_in_the_scale);

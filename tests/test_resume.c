@@ -305,6 +305,64 @@ START_TEST(a_disk_that_is_full_is_an_error_after_which_the_run_goes_on) {
 }
 END_TEST
 
+// Killed once frame 5 is there, a row or two beyond the checkpoint after frame 4.
+static void leave_killed(const Case *c) {
+  char line[2048], command[256];
+  print_run(line, sizeof line, c, "killed", "");
+  int killed = 0;
+  for (int attempt = 0; attempt < 9 && killed == 0; attempt++)
+    killed += kill_at(line, "killed", 5) == -SIGKILL;
+  ck_assert_int_gt(killed, 0);
+  snprintf(command, sizeof command, "cp %s/killed/history.csv %s/history.csv", folder, folder);
+  ck_assert_int_eq(system(command), 0);
+}
+
+// In the folder of the runs.
+static void change(const char *what) {
+  char command[512];
+  snprintf(command, sizeof command, "cd %s && %s", folder, what);
+  ck_assert_int_eq(system(command), 0);
+}
+
+// A kill within a write leaves half a line.
+START_TEST(what_a_killed_run_wrote_after_its_checkpoint_is_written_again) {
+  run_whole(&cases[0]);
+  leave_killed(&cases[0]);
+  change("printf '0.03,1.2' >> killed/history.csv");
+  ck_assert_int_eq(resume("killed", ""), 0);
+  compare("whole", "killed");
+}
+END_TEST
+
+// The checkpoint names what the history held; with another one the run is refused, and goes on once the old
+// one is back.
+START_TEST(a_history_that_is_not_the_checkpoints_is_refused) {
+  static const char *const changes[] = {
+      "head -2 history.csv > killed/history.csv",        // lines are lost
+      "head -c 300 history.csv > killed/history.csv",    // within a line
+      ": > killed/history.csv",                          // all
+      "sed '3s/,/,1/' history.csv > killed/history.csv", // a number is another
+      "(echo time_s; cat history.csv) > killed/history.csv",
+      "rm killed/history.csv"};
+  static const char *const words[] = {"cut short",   "cut short",   "cut short",
+                                      "was changed", "was changed", "No such file"};
+  static const int codes[] = {65, 65, 65, 65, 65, 74};
+  run_whole(&cases[0]);
+  leave_killed(&cases[0]);
+  change("cp -r killed before");
+  for (size_t k = 0; k < sizeof changes / sizeof *changes; k++) {
+    change(changes[k]);
+    ck_assert_int_eq(resume("killed", ""), codes[k]);
+    check_log("history.csv");
+    check_log(words[k]);
+    change("diff -r -x '*.part' -x history.csv -x summary.json -x manifest.json before killed");
+  }
+  change("cp history.csv killed/history.csv");
+  ck_assert_int_eq(resume("killed", ""), 0);
+  compare("whole", "killed");
+}
+END_TEST
+
 START_TEST(a_folder_that_cannot_be_made_is_named) {
   char command[256];
   snprintf(command, sizeof command, "touch %s/closed", folder); // root, too, makes no folder in a file
@@ -333,6 +391,8 @@ int main(void) {
   tcase_add_test(test_case, what_differs_is_refused_by_name);
   tcase_add_test(test_case, weights_that_vanish_during_a_run_do_not_touch_it);
   tcase_add_test(test_case, a_disk_that_is_full_is_an_error_after_which_the_run_goes_on);
+  tcase_add_test(test_case, what_a_killed_run_wrote_after_its_checkpoint_is_written_again);
+  tcase_add_test(test_case, a_history_that_is_not_the_checkpoints_is_refused);
   tcase_add_test(test_case, a_folder_that_cannot_be_made_is_named);
   tcase_add_test(test_case, a_folder_without_checkpoint_is_refused);
   return suite_run("resume", test_case, 120);

@@ -439,7 +439,10 @@ END_TEST
 START_TEST(the_list_of_frames_names_each_with_its_time) {
   const double times[] = {0, 0.1, 1.0 / 3};
   const char *const files[] = {"frames/0.vtu", "frames/1.vtu", "frames/a&b.vtu"};
-  ck_assert_ok(fem_pvd_write(path, times, files, 3));
+  FileWriter list;
+  ck_assert_ok(fem_pvd_begin(&list, path));
+  for (int k = 0; k < 3; k++) fem_pvd_add(&list, times[k], files[k]);
+  ck_assert_ok(fem_pvd_commit(&list));
   char *text;
   size_t size;
   ck_assert_ok(file_read(path, &text, &size));
