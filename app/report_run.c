@@ -126,7 +126,7 @@ static Status read_frames(AppReportRun *run, int max_frames) {
   for (int frame = 0; !status && frame < run->frame_count; frame++) {
     int k = chosen(frame, run->frame_count, list.count);
     run->times[frame] = list.times[k];
-    status = read_frame(run, frame, list.files[k]);
+    status = read_frame(run, frame, list.files[k * list.part_count]);
   }
   fem_pvd_destroy(&list);
   return status;

@@ -8,10 +8,9 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "contact/convex.h"
 #include "contact/weights.h"
-#include "fem/drive.h"
 #include "fem/effect.h"
+#include "fem/obstacle.h"
 
 typedef struct Contact {
   const FemModel *model; // borrowed
@@ -42,48 +41,6 @@ static void destroy(void *self) {
   memory_free(contact);
 }
 
-static void move_shape(const void *motion, double time, const double rest[3], double position[3],
-                       double velocity[3]) {
-  fem_drive_point(motion, time, rest, position, velocity);
-}
-
-static void make_box(const FemObstacleDef *def, ContactShape *shape, ContactConvex *solid) {
-  double half[3];
-  for (int c = 0; c < 3; c++) half[c] = def->size[c] / 2;
-  contact_convex_make_box(solid, half);
-  fem_placement_axes(&def->turn, shape->axes);
-}
-
-// About the axis any two directions will do.
-static void make_cylinder(const FemObstacleDef *def, ContactShape *shape, ContactConvex *solid) {
-  Vec3 axis = vec3_at(def->axis);
-  axis = vec3_scale(1 / vec3_length(axis), axis);
-  Vec3 aside = fabs(axis.x) < 0.6 ? (Vec3){1, 0, 0} : (Vec3){0, 1, 0};
-  Vec3 first = vec3_sub(aside, vec3_scale(vec3_dot(aside, axis), axis));
-  first = vec3_scale(1 / vec3_length(first), first);
-  contact_convex_make_prism(solid, def->radius, def->length / 2, def->faces);
-  vec3_store(shape->axes[0], first);
-  vec3_store(shape->axes[1], vec3_cross(axis, first));
-  vec3_store(shape->axes[2], axis);
-}
-
-static void make_shape(const FemObstacleDef *def, ContactShape *shape, ContactConvex *solid) {
-  *shape = (ContactShape){.name = def->name,
-                          .kind = CONTACT_SHAPE_CONVEX,
-                          .radius = def->radius,
-                          .convex = solid,
-                          .motion = &def->motion,
-                          .move = fem_drive_is_still(&def->motion) ? NULL : move_shape};
-  vec3_store(shape->point, vec3_at(def->point));
-  if (def->kind == FEM_OBSTACLE_BOX) make_box(def, shape, solid);
-  if (def->kind == FEM_OBSTACLE_CYLINDER) make_cylinder(def, shape, solid);
-  if (def->kind == FEM_OBSTACLE_BALL) shape->kind = CONTACT_SHAPE_BALL;
-  if (def->kind != FEM_OBSTACLE_HALFSPACE) return;
-  Vec3 normal = vec3_at(def->normal);
-  shape->kind = CONTACT_SHAPE_HALFSPACE;
-  vec3_store(shape->normal, vec3_scale(1 / vec3_length(normal), normal));
-}
-
 static void list_sides(Contact *contact) {
   const FemModel *model = contact->model;
   for (int b = 0; b < model->body_count; b++) {
@@ -102,7 +59,7 @@ static void list_sides(Contact *contact) {
   for (int o = 0; o < model->scene->obstacle_count; o++) {
     const FemObstacleDef *def = &model->scene->obstacles[o];
     if (def->kind == FEM_OBSTACLE_MESH) continue;
-    make_shape(def, &contact->shapes[contact->shape_count], &contact->solids[contact->shape_count]);
+    fem_obstacle_shape(def, &contact->shapes[contact->shape_count], &contact->solids[contact->shape_count]);
     contact->shape_count++;
   }
 }

@@ -120,6 +120,7 @@ static Status create(FemRecorder *recorder, const char *directory) {
   if (!recorder->directory || !recorder->displacement || !recorder->contact_force || !recorder->stress ||
       !recorder->von_mises || (has_friction && !recorder->friction_force))
     return status_no_memory("the output arrays");
+  if (recorder->writes_vtu) TRY(fem_obstacle_frames_create(&recorder->obstacles, model));
   TRY(file_make_directories(directory));
   if (!recorder->writes_history) return STATUS_OK;
   char *path = file_join(directory, "history.csv");
@@ -153,6 +154,7 @@ Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char 
 
 void fem_recorder_destroy(FemRecorder *recorder) {
   fem_history_destroy(&recorder->history);
+  fem_obstacle_frames_destroy(&recorder->obstacles);
   memory_free(recorder->directory);
   memory_free(recorder->row);
   memory_free(recorder->displacement);
@@ -328,8 +330,10 @@ static Status write_frame(FemRecorder *recorder, double time) {
   if (!path) return status_no_memory("a file name");
   Status status = write_vtu(recorder, path, time);
   memory_free(path);
-  if (!status) recorder->frame_count++;
-  return status;
+  TRY(status);
+  TRY(fem_obstacle_frames_write(&recorder->obstacles, recorder->directory, recorder->frame_count, time));
+  recorder->frame_count++;
+  return STATUS_OK;
 }
 
 // The list follows from how many frames there are, so none of it is kept.
@@ -341,9 +345,11 @@ static Status write_list(FemRecorder *recorder) {
   memory_free(path);
   TRY(status);
   for (int frame = 0; frame < recorder->frame_count; frame++) {
-    char name[NAME_SIZE];
-    name_frame(frame, name);
-    fem_pvd_add(&list, fem_scene_frame_time(recorder->system->model->scene, frame), name);
+    char file[NAME_SIZE];
+    double time = fem_scene_frame_time(recorder->system->model->scene, frame);
+    name_frame(frame, file);
+    fem_pvd_add(&list, time, 0, fem_obstacle_frames_any(&recorder->obstacles) ? "bodies" : NULL, file);
+    fem_obstacle_frames_list(&recorder->obstacles, &list, frame, time);
   }
   TRY(fem_pvd_commit(&list));
   recorder->listed_count = recorder->frame_count;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run writes frame by frame: frame_NNNN.vtu with frames.pvd, and history.csv; and the measures that go
-// with a frame. docs/output.md describes every array and column.
+// What a run writes frame by frame: frame_NNNNN.vtu with frames.pvd, and history.csv; and the measures that
+// go with a frame. docs/output.md describes every array and column.
 #ifndef TETLAP_FEM_RECORDER_H
 #define TETLAP_FEM_RECORDER_H
 
 #include "contact/status.h"
 #include "fem/audit.h"
 #include "fem/history.h"
+#include "fem/obstacle_frames.h"
 #include "fem/system.h"
 #include "fem/trouble.h"
 
@@ -32,6 +33,7 @@ typedef struct FemRecorder {
   int frame_count;                              // frames that are written
   int listed_count;                             // of these in frames.pvd
   double listed_at_s;                           // wall clock when it was written
+  FemObstacleFrames obstacles;                  // those without a mesh, beside the frames
   double *displacement, *contact_force;         // scratch             (vertex_count, 3)
   double *friction_force;                       // scratch; NULL: no friction   (vertex_count, 3)
   double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)

@@ -76,7 +76,7 @@ static void write_run(void) {
   char *path = file_join(directory, "frames.pvd");
   FileWriter list;
   ck_assert_ok(fem_pvd_begin(&list, path));
-  for (int k = 0; k < FRAMES; k++) fem_pvd_add(&list, times[k], names[k]);
+  for (int k = 0; k < FRAMES; k++) fem_pvd_add(&list, times[k], 0, NULL, names[k]);
   ck_assert_ok(fem_pvd_commit(&list));
   memory_free(path);
   write_text("summary.json", "{\"title\": \"</script><b>&\", \"wall_s\": 1.5}\n");

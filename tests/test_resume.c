@@ -56,6 +56,8 @@ static const Case cases[] = {
     // An iterative solver, a network's volumes, several bodies.
     {"tests/scenes/stack.yaml", "--set solver.linear=pcg --set contact.overlap=clip --set time.end=0.05",
      "\"contact_pairs\": "},
+    // Obstacles that move, and are written with every frame.
+    {"tests/scenes/obstacle_shapes.yaml", "", "\"onsets\": "},
 };
 enum { CASE_COUNT = sizeof cases / sizeof *cases };
 

@@ -441,7 +441,7 @@ START_TEST(the_list_of_frames_names_each_with_its_time) {
   const char *const files[] = {"frames/0.vtu", "frames/1.vtu", "frames/a&b.vtu"};
   FileWriter list;
   ck_assert_ok(fem_pvd_begin(&list, path));
-  for (int k = 0; k < 3; k++) fem_pvd_add(&list, times[k], files[k]);
+  for (int k = 0; k < 3; k++) fem_pvd_add(&list, times[k], 0, NULL, files[k]);
   ck_assert_ok(fem_pvd_commit(&list));
   char *text;
   size_t size;
@@ -456,6 +456,54 @@ START_TEST(the_list_of_frames_names_each_with_its_time) {
   ck_assert_ptr_null(strstr(place, "<DataSet"));
   ck_assert_ptr_nonnull(strstr(place, "file=\"frames/a&amp;b.vtu\""));
   memory_free(text);
+}
+END_TEST
+
+// A list of `count` entries of these parts, each at its time.
+static void write_parts(int count, const double *times, const int *parts) {
+  FileWriter list;
+  ck_assert_ok(fem_pvd_begin(&list, path));
+  for (int k = 0; k < count; k++) {
+    char file[16];
+    snprintf(file, sizeof file, "%d.vtu", k);
+    fem_pvd_add(&list, times[k], parts[k], parts[k] ? "a \"floor\"" : NULL, file);
+  }
+  ck_assert_ok(fem_pvd_commit(&list));
+}
+
+START_TEST(a_list_reads_back_with_its_parts) {
+  FemPvdList list;
+  write_parts(6, (double[]){0, 0, 0, 0.1, 0.1, 0.1}, (int[]){0, 1, 2, 0, 1, 2});
+  ck_assert_ok(fem_pvd_read(path, &list));
+  ck_assert_int_eq(list.count, 2);
+  ck_assert_int_eq(list.part_count, 3);
+  ck_assert(list.times[0] == 0.0 && list.times[1] == 0.1);
+  ck_assert_str_eq(list.files[3 * 1 + 2], "5.vtu");
+  fem_pvd_destroy(&list);
+  write_parts(0, NULL, NULL);
+  ck_assert_ok(fem_pvd_read(path, &list));
+  ck_assert_int_eq(list.count, 0);
+  fem_pvd_destroy(&list);
+}
+END_TEST
+
+START_TEST(a_list_whose_times_have_other_parts_is_refused) {
+  static const struct {
+    int count, parts[4];
+    double times[4];
+  } lists[] = {
+      {3, {0, 1, 0}, {0, 0, 1}},       // the last lacks one
+      {4, {0, 0, 1, 0}, {0, 1, 1, 2}}, // the second has one more
+      {3, {0, 2, 1}, {0, 0, 0}},       // not in order
+      {2, {0, 1}, {0, 1}},             // of another time
+      {1, {1}, {0}},                   // without a first
+  };
+  for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
+    FemPvdList list;
+    write_parts(lists[k].count, lists[k].times, lists[k].parts);
+    ck_assert_int_eq(fem_pvd_read(path, &list), STATUS_INPUT);
+    ck_assert_ptr_nonnull(strstr(status_message(), path));
+  }
 }
 END_TEST
 
@@ -477,5 +525,7 @@ int main(void) {
   tcase_add_test(cases, a_place_that_cannot_be_written_is_named);
   tcase_add_test(cases, a_full_disk_is_an_error);
   tcase_add_test(cases, the_list_of_frames_names_each_with_its_time);
+  tcase_add_test(cases, a_list_reads_back_with_its_parts);
+  tcase_add_test(cases, a_list_whose_times_have_other_parts_is_refused);
   return suite_run("vtu", cases, 30);
 }
