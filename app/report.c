@@ -67,9 +67,33 @@ static void name_run(const AppReportRun *run, Record *record) {
   memory_free(name);
 }
 
-static AppReportScale position_scale(const AppReportRun *run, int axis) {
-  return app_report_codes_scale(run->positions + axis, (size_t)run->frame_count * (size_t)run->vertex_count,
-                                3);
+// Points in rows, as the frames or a surface have them.
+typedef struct Points {
+  const double *positions; // [m]                            (row_count, vertex_count, 3)
+  int row_count, vertex_count;
+} Points;
+
+static Points points_of(const AppReportRun *run) {
+  return (Points){run->positions, run->frame_count, run->vertex_count};
+}
+
+static Points points_of_obstacles(const AppReportObstacles *obstacles) {
+  return (Points){obstacles->positions, obstacles->row_count, obstacles->vertex_count};
+}
+
+static AppReportScale points_scale(Points points, int axis) {
+  return app_report_codes_scale(points.positions + axis,
+                                (size_t)points.row_count * (size_t)points.vertex_count, 3);
+}
+
+static void record_scales(Points points, Record *record) {
+  double low[3], high[3];
+  for (int axis = 0; axis < 3; axis++) {
+    AppReportScale scale = points_scale(points, axis);
+    low[axis] = scale.low, high[axis] = scale.high;
+  }
+  record_numbers(record, "low", low, 3);
+  record_numbers(record, "high", high, 3);
 }
 
 static size_t field_size(const AppReportRun *run, const AppReportField *field) {
@@ -78,6 +102,17 @@ static size_t field_size(const AppReportRun *run, const AppReportField *field) {
 
 static AppReportScale field_scale(const AppReportRun *run, const AppReportField *field) {
   return app_report_codes_scale(field->values, (size_t)run->frame_count * field_size(run, field), 1);
+}
+
+static void record_obstacles(const AppReportRun *run, Record *frames) {
+  if (run->obstacles_count == 0) return;
+  RecordList *list = record_list(frames, "obstacles");
+  for (int k = 0; k < run->obstacles_count; k++) {
+    Record *row = record_append(list);
+    record_integer(row, "vertices", run->obstacles[k].vertex_count);
+    record_integer(row, "triangles", run->obstacles[k].triangle_count);
+    record_scales(points_of_obstacles(&run->obstacles[k]), row);
+  }
 }
 
 // What the page must know of the frames to read their arrays.
@@ -89,13 +124,7 @@ static void record_frames(const AppReportRun *run, const AppReportSurface *surfa
   record_integer(frames, "tetrahedra", run->tet_count);
   record_integer(frames, "triangles", surface->triangle_count);
   record_bool(frames, "has_inside", run->tets != NULL);
-  double low[3], high[3];
-  for (int axis = 0; axis < 3; axis++) {
-    AppReportScale scale = position_scale(run, axis);
-    low[axis] = scale.low, high[axis] = scale.high;
-  }
-  record_numbers(frames, "low", low, 3);
-  record_numbers(frames, "high", high, 3);
+  record_scales(points_of(run), frames);
   RecordList *fields = record_list(frames, "fields");
   for (int k = 0; k < run->field_count; k++) {
     const AppReportField *field = &run->fields[k];
@@ -107,6 +136,7 @@ static void record_frames(const AppReportRun *run, const AppReportSurface *surfa
     record_number(row, "low", scale.low);
     record_number(row, "high", scale.high);
   }
+  record_obstacles(run, frames);
 }
 
 static void record_run(AppReportRun *run, const AppReportSurface *surface, Record *record) {
@@ -175,18 +205,16 @@ static void close_array(FILE *stream) {
   fputs("</script>\n", stream);
 }
 
-static Status print_positions(const AppReportRun *run, int index, FILE *stream) {
-  const size_t rows = (size_t)run->frame_count, row_size = 3 * (size_t)run->vertex_count;
+static Status print_points(Points points, FILE *stream) {
+  const size_t rows = (size_t)points.row_count, row_size = 3 * (size_t)points.vertex_count;
   uint16_t *codes = memory_zeroed(rows * row_size, sizeof *codes);
   if (!codes) return status_no_memory("the positions of a run");
   for (int axis = 0; axis < 3; axis++) {
-    AppReportScale scale = position_scale(run, axis);
+    AppReportScale scale = points_scale(points, axis);
     for (size_t i = (size_t)axis; i < rows * row_size; i += 3)
-      codes[i] = app_report_codes_encode(scale, run->positions[i]);
+      codes[i] = app_report_codes_encode(scale, points.positions[i]);
   }
-  open_array(stream, index, "positions", -1);
   Status status = app_report_codes_write(stream, codes, rows, row_size, 3);
-  close_array(stream);
   memory_free(codes);
   return status;
 }
@@ -205,6 +233,17 @@ static Status print_field(const AppReportRun *run, int index, int k, FILE *strea
   return status;
 }
 
+static Status print_obstacles(const AppReportObstacles *obstacles, int index, int k, FILE *stream) {
+  open_array(stream, index, "obstacle-triangles", k);
+  TRY(app_report_codes_write_integers(stream, obstacles->triangles, 5 * (size_t)obstacles->triangle_count,
+                                      5));
+  close_array(stream);
+  open_array(stream, index, "obstacle-positions", k);
+  TRY(print_points(points_of_obstacles(obstacles), stream));
+  close_array(stream);
+  return STATUS_OK;
+}
+
 static Status print_arrays(const AppReportRun *run, const AppReportSurface *surface, int index,
                            FILE *stream) {
   if (run->frame_count == 0) return STATUS_OK;
@@ -216,8 +255,11 @@ static Status print_arrays(const AppReportRun *run, const AppReportSurface *surf
     TRY(app_report_codes_write_integers(stream, run->tets, 4 * (size_t)run->tet_count, 4));
     close_array(stream);
   }
-  TRY(print_positions(run, index, stream));
+  open_array(stream, index, "positions", -1);
+  TRY(print_points(points_of(run), stream));
+  close_array(stream);
   for (int k = 0; k < run->field_count; k++) TRY(print_field(run, index, k, stream));
+  for (int k = 0; k < run->obstacles_count; k++) TRY(print_obstacles(&run->obstacles[k], index, k, stream));
   return STATUS_OK;
 }
 

@@ -113,6 +113,19 @@ static int chosen(int frame, int kept, int count) {
   return kept < 2 ? count - 1 : (int)((long long)frame * (count - 1) / (kept - 1));
 }
 
+// The obstacles without a mesh at those frames of the list.
+static Status read_obstacles(AppReportRun *run, const FemPvdList *list, const int *chosen_frames) {
+  if (list->part_count - 1 > APP_REPORT_MAX_OBSTACLES)
+    return status_fail(STATUS_INPUT, "%s: frames.pvd has %d parts, at most %d are known", run->directory,
+                       list->part_count, 1 + APP_REPORT_MAX_OBSTACLES);
+  for (int part = 1; part < list->part_count; part++) {
+    AppReportObstacles *obstacles = &run->obstacles[part - 1];
+    TRY(app_report_obstacles_read(obstacles, run->directory, list, part, chosen_frames, run->frame_count));
+    run->obstacles_count++;
+  }
+  return STATUS_OK;
+}
+
 static Status read_frames(AppReportRun *run, int max_frames) {
   char *path = file_join(run->directory, "frames.pvd");
   if (!path) return status_no_memory("a file name");
@@ -122,12 +135,16 @@ static Status read_frames(AppReportRun *run, int max_frames) {
   if (status) return status;
   run->frame_count = max_frames > 0 && max_frames < list.count ? max_frames : list.count;
   run->times = memory_zeroed((size_t)run->frame_count, sizeof *run->times);
-  if (!run->times) status = status_no_memory("the times of the frames");
+  int *chosen_frames = memory_zeroed((size_t)run->frame_count, sizeof *chosen_frames);
+  if (!run->times || !chosen_frames) status = status_no_memory("the times of the frames");
   for (int frame = 0; !status && frame < run->frame_count; frame++) {
     int k = chosen(frame, run->frame_count, list.count);
+    chosen_frames[frame] = k;
     run->times[frame] = list.times[k];
     status = read_frame(run, frame, list.files[k * list.part_count]);
   }
+  if (!status) status = read_obstacles(run, &list, chosen_frames);
+  memory_free(chosen_frames);
   fem_pvd_destroy(&list);
   return status;
 }
@@ -155,6 +172,7 @@ Status app_report_run_read(AppReportRun *run, const char *directory, int max_fra
 
 void app_report_run_destroy(AppReportRun *run) {
   for (int k = 0; k < run->field_count; k++) memory_free(run->fields[k].values);
+  for (int k = 0; k < run->obstacles_count; k++) app_report_obstacles_destroy(&run->obstacles[k]);
   record_destroy(run->summary);
   record_destroy(run->manifest);
   memory_free(run->history);

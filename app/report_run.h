@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 
+#include "app/report_obstacles.h"
 #include "base/record.h"
 #include "base/status.h"
 #include "fem/vtu_read.h"
@@ -17,6 +18,8 @@ typedef struct AppReportField {
   bool is_cell, is_integer;
   double *values; // (frame_count, tet_count or vertex_count)
 } AppReportField;
+
+enum { APP_REPORT_MAX_OBSTACLES = 4 };
 
 typedef struct AppReportRun {
   char *directory;  // owned
@@ -31,6 +34,8 @@ typedef struct AppReportRun {
   int *tets; // (tet_count, 4)
   AppReportField fields[FEM_VTU_MAX_FIELDS];
   int field_count;
+  AppReportObstacles obstacles[APP_REPORT_MAX_OBSTACLES]; // those without a mesh, by parts of the list
+  int obstacles_count;
 } AppReportRun;
 
 // Reads the directory, of its frames at most `max_frames` at even distances (the first and the last among

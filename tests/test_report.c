@@ -83,6 +83,58 @@ static void write_run(void) {
   write_text("history.csv", "time_s,kinetic_J\n0,0\n1,0.5\n2,1\n");
 }
 
+static char *write_page(AppReport *report) {
+  char *path = file_join(directory, "page.html"), *text;
+  size_t size;
+  ck_assert_ok(app_report_write(report, path));
+  ck_assert_ok(file_read(path, &text, &size));
+  memory_free(path);
+  return text;
+}
+
+enum { STANDING_VERTICES = 3, MOVING_VERTICES = 4 };
+static const int one_triangle[3] = {0, 1, 2}, two_triangles[6] = {0, 1, 2, 0, 2, 3};
+
+// A surface that has gone by `way` along y.
+static void write_surface(const char *name, int vertices, const int *triangles, int count, double way) {
+  double positions[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  const int bodies[] = {2, 3}, faces[] = {4, 5};
+  for (int i = 0; i < vertices; i++) positions[3 * i + 1] += way;
+  const FemVtuArray arrays[] = {{.name = "body", .is_cell = true, .components = 1, .integers = bodies},
+                                {.name = "face", .is_cell = true, .components = 1, .integers = faces}};
+  const FemVtuFrame frame = {.time = NAN,
+                             .vertex_count = vertices,
+                             .positions = positions,
+                             .cell = FEM_VTU_TRIANGLES,
+                             .cell_count = count,
+                             .cells = triangles,
+                             .arrays = arrays,
+                             .array_count = 2};
+  char *path = file_join(directory, name);
+  ck_assert_ok(fem_vtu_write(path, &frame));
+  memory_free(path);
+}
+
+// The run of write_run with an obstacle that stands and two that move.
+static void write_run_with_obstacles(void) {
+  char *path = file_join(directory, "frames.pvd");
+  FileWriter list;
+  write_run();
+  write_surface("o.vtu", STANDING_VERTICES, one_triangle, 1, 0);
+  ck_assert_ok(fem_pvd_begin(&list, path));
+  for (int k = 0; k < FRAMES; k++) {
+    char name[16], moving[16];
+    snprintf(name, sizeof name, "f%d.vtu", k);
+    snprintf(moving, sizeof moving, "o%d.vtu", k);
+    write_surface(moving, MOVING_VERTICES, two_triangles, 2, 10 * k);
+    fem_pvd_add(&list, k, 0, "bodies", name);
+    fem_pvd_add(&list, k, 1, "standing", "o.vtu");
+    fem_pvd_add(&list, k, 2, "moving", moving);
+  }
+  ck_assert_ok(fem_pvd_commit(&list));
+  memory_free(path);
+}
+
 static void read_run(AppReportRun *run) {
   write_run();
   ck_assert_ok(app_report_run_read(run, directory, 0));
@@ -142,6 +194,61 @@ START_TEST(half_a_line_at_the_end_of_the_history_is_left_out) {
   ck_assert_ok(app_report_run_read(&run, directory, 0));
   ck_assert_str_eq(run.history, "time_s,kinetic_J\n0,0\n");
   app_report_run_destroy(&run);
+}
+END_TEST
+
+START_TEST(obstacles_read_back_those_that_stand_once) {
+  AppReportRun run;
+  write_run_with_obstacles();
+  ck_assert_ok(app_report_run_read(&run, directory, 2)); // the first frame and the last
+  ck_assert_int_eq(run.frame_count, 2);
+  ck_assert_int_eq(run.obstacles_count, 2);
+  const AppReportObstacles *standing = &run.obstacles[0], *moving = &run.obstacles[1];
+  ck_assert_int_eq(standing->row_count, 1);
+  ck_assert_int_eq(standing->vertex_count, STANDING_VERTICES);
+  ck_assert_int_eq(standing->triangle_count, 1);
+  ck_assert_int_eq(moving->row_count, 2);
+  ck_assert_int_eq(moving->triangle_count, 2);
+  const int second[5] = {0, 2, 3, 3, 5}; // vertices, body, face
+  ck_assert_mem_eq(moving->triangles + 5, second, sizeof second);
+  ck_assert(moving->positions[3 * 2 + 1] == 1.0);                      // the third vertex's y, at first
+  ck_assert(moving->positions[3 * (MOVING_VERTICES + 2) + 1] == 21.0); // and in the last frame
+  app_report_run_destroy(&run);
+}
+END_TEST
+
+START_TEST(obstacles_of_another_kind_are_refused_by_name) {
+  AppReportRun run;
+  write_run_with_obstacles();
+  write_surface("o1.vtu", STANDING_VERTICES, one_triangle, 1, 0); // fewer than in the first frame
+  ck_assert_int_eq(app_report_run_read(&run, directory, 0), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "o1.vtu"));
+  write_frame("o0.vtu", 0); // tetrahedra
+  ck_assert_int_eq(app_report_run_read(&run, directory, 0), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "o0.vtu"));
+}
+END_TEST
+
+START_TEST(the_page_has_the_obstacles_beside_the_frames) {
+  AppReport report = {.run_count = 1};
+  write_run_with_obstacles();
+  ck_assert_ok(app_report_run_read(&report.runs[0], directory, 0));
+  char *page = write_page(&report);
+  ck_assert_ptr_nonnull(strstr(page, "\"obstacles\":[{\"vertices\":3,\"triangles\":1,"));
+  const char *moving = strstr(page, "{\"vertices\":4,\"triangles\":2,"), *high;
+  ck_assert_ptr_nonnull(moving);
+  high = strstr(moving, "\"high\":[");
+  ck_assert_ptr_nonnull(high);
+  ck_assert(strtod(strchr(high, ',') + 1, NULL) == 21.0);
+  for (int k = 0; k < 2; k++) {
+    char name[64];
+    snprintf(name, sizeof name, "id=\"run-0-obstacle-positions-%d\">", k);
+    ck_assert_ptr_nonnull(strstr(page, name));
+    snprintf(name, sizeof name, "id=\"run-0-obstacle-triangles-%d\">", k);
+    ck_assert_ptr_nonnull(strstr(page, name));
+  }
+  memory_free(page);
+  app_report_destroy(&report);
 }
 END_TEST
 
@@ -278,15 +385,6 @@ START_TEST(a_stripped_run_has_the_same_surface_and_no_inside) {
 }
 END_TEST
 
-static char *write_page(AppReport *report) {
-  char *path = file_join(directory, "page.html"), *text;
-  size_t size;
-  ck_assert_ok(app_report_write(report, path));
-  ck_assert_ok(file_read(path, &text, &size));
-  memory_free(path);
-  return text;
-}
-
 START_TEST(the_page_holds_the_data_and_asks_for_no_other_file) {
   AppReport report = {.run_count = 1};
   read_run(&report.runs[0]);
@@ -412,6 +510,9 @@ int main(void) {
   tcase_add_test(test_case, base64_of_the_rfc_reads_back);
   tcase_add_test(test_case, a_run_reads_back_as_it_was_written);
   tcase_add_test(test_case, half_a_line_at_the_end_of_the_history_is_left_out);
+  tcase_add_test(test_case, obstacles_read_back_those_that_stand_once);
+  tcase_add_test(test_case, obstacles_of_another_kind_are_refused_by_name);
+  tcase_add_test(test_case, the_page_has_the_obstacles_beside_the_frames);
   tcase_add_test(test_case, fewer_frames_keep_the_first_and_the_last);
   tcase_add_test(test_case, a_code_is_off_by_half_a_step_at_most);
   tcase_add_test(test_case, what_is_not_finite_has_a_code_of_its_own_and_no_part_in_the_scale);
