@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench_beam.h"
 
+#include "app/argument.h"
 #include "app/bench_builtin.h"
 #include "app/bench_command.h"
 #include "app/bench_report.h"
@@ -38,13 +39,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     app_bench_options_choose(state, "solver", text, names, SOLVER_COUNT, options->wants_solver);
     return 0;
   case 'n':
-    options->nodes = (int)app_bench_options_number(state, "nodes", text, 24, 1e7);
+    options->nodes = (int)app_argument_number(state, "nodes", text, 24, 1e7);
     return 0;
   case 'l':
-    options->slenderness = app_bench_options_number(state, "slenderness", text, 1, 1000);
+    options->slenderness = app_argument_number(state, "slenderness", text, 1, 1000);
     return 0;
   case 'k':
-    options->steps = app_bench_options_count(state, "steps", text, 1000000000);
+    options->steps = (int)app_argument_integer(state, "steps", text, 1, 1000000000);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

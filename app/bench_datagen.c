@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/argument.h"
 #include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_timer.h"
@@ -55,10 +56,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     app_bench_options_choose(state, "law", text, names, list_laws(names), options->wants_law);
     return 0;
   case 'n':
-    options->count = app_bench_options_count(state, "count", text, 100000000);
+    options->count = (int)app_argument_integer(state, "count", text, 1, 100000000);
     return 0;
   case KEY_PLANNED:
-    options->planned = app_bench_options_number(state, "planned", text, 1, 1e15);
+    options->planned = app_argument_number(state, "planned", text, 1, 1e15);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

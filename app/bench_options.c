@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/argument.h"
 #include "base/text.h"
 
 AppBenchOptions app_bench_options_default(int repeats) {
@@ -31,7 +32,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->threads = options->thread_list[0];
     return 0;
   case 'r':
-    options->repeats = app_bench_options_count(state, "repeat", text, APP_BENCH_MAX_REPEATS);
+    options->repeats = (int)app_argument_integer(state, "repeat", text, 1, APP_BENCH_MAX_REPEATS);
     return 0;
   case 'j':
     options->format = APP_BENCH_FORMAT_JSON;
@@ -77,14 +78,6 @@ void app_bench_options_choose(struct argp_state *state, const char *option, cons
   }
 }
 
-int app_bench_options_count(struct argp_state *state, const char *option, const char *text, int largest) {
-  char *end;
-  long value = strtol(text, &end, 10);
-  if (end == text || *end || value < 1 || value > largest)
-    argp_error(state, "--%s is '%s'; give a whole number from 1 to %d", option, text, largest);
-  return (int)value;
-}
-
 int app_bench_options_numbers(struct argp_state *state, const char *option, const char *text, double smallest,
                               double largest, double *numbers) {
   const char *rest = text;
@@ -111,13 +104,4 @@ int app_bench_options_counts(struct argp_state *state, const char *option, const
     counts[i] = (int)numbers[i];
   }
   return count;
-}
-
-double app_bench_options_number(struct argp_state *state, const char *option, const char *text,
-                                double smallest, double largest) {
-  char *end;
-  double value = strtod(text, &end);
-  if (end == text || *end || !(value >= smallest && value <= largest))
-    argp_error(state, "--%s is '%s'; give a number from %g to %g", option, text, smallest, largest);
-  return value;
 }

@@ -36,15 +36,12 @@ extern const struct argp app_bench_options_argp;
 // Marks each name of a comma-separated list in `wanted` (count), the others not.
 void app_bench_options_choose(struct argp_state *state, const char *option, const char *text,
                               const char *const *names, int count, bool *wanted);
-int app_bench_options_count(struct argp_state *state, const char *option, const char *text, int largest);
-// The same of a comma-separated list, into `counts` (APP_BENCH_MAX_LIST); returns how many. 1e6 is a whole
-// number.
+// Fills `counts` (APP_BENCH_MAX_LIST) with whole numbers from 1 from a comma-separated list; returns how
+// many. 1e6 is one.
 int app_bench_options_counts(struct argp_state *state, const char *option, const char *text, int largest,
                              int *counts);
-// Fills `numbers` (APP_BENCH_MAX_LIST) from a comma-separated list; returns how many.
+// The same of any numbers.
 int app_bench_options_numbers(struct argp_state *state, const char *option, const char *text, double smallest,
                               double largest, double *numbers);
-double app_bench_options_number(struct argp_state *state, const char *option, const char *text,
-                                double smallest, double largest);
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/argument.h"
 #include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_trial.h"
@@ -85,10 +86,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->reference = text;
     return 0;
   case KEY_REFERENCE_TOLERANCE:
-    options->reference_tolerance = app_bench_options_number(state, "reference-tolerance", text, 1e-12, 0.1);
+    options->reference_tolerance = app_argument_number(state, "reference-tolerance", text, 1e-12, 0.1);
     return 0;
   case KEY_WALL:
-    options->wall_limit_s = app_bench_options_number(state, "wall", text, 1e-3, 1e7);
+    options->wall_limit_s = app_argument_number(state, "wall", text, 1e-3, 1e7);
     return 0;
   case 's':
     if (options->override_count == MAX_OVERRIDES) argp_error(state, "at most %d --set", MAX_OVERRIDES);

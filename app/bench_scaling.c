@@ -5,6 +5,7 @@
 #include <omp.h>
 #include <string.h>
 
+#include "app/argument.h"
 #include "app/bench_builtin.h"
 #include "app/bench_command.h"
 #include "app/bench_contestant.h"
@@ -72,13 +73,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->node_sizes = read_sizes(state, "nodes", text, options->nodes);
     return 0;
   case 'k':
-    options->steps = app_bench_options_count(state, "steps", text, 1000000);
+    options->steps = (int)app_argument_integer(state, "steps", text, 1, 1000000);
     return 0;
   case KEY_MEMORY:
-    options->memory = app_bench_options_number(state, "memory", text, 1e-3, 1e6);
+    options->memory = app_argument_number(state, "memory", text, 1e-3, 1e6);
     return 0;
   case KEY_SECONDS:
-    options->seconds = app_bench_options_number(state, "seconds", text, 1e-3, 1e6);
+    options->seconds = app_argument_number(state, "seconds", text, 1e-3, 1e6);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <omp.h>
 
+#include "app/argument.h"
 #include "app/bench_builtin.h"
 #include "app/bench_command.h"
 #include "app/bench_options.h"
@@ -54,10 +55,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->node_count = app_bench_options_numbers(state, "nodes", text, 24, 1e7, options->nodes);
     return 0;
   case 'h':
-    options->step = app_bench_options_number(state, "step", text, 1e-9, 1e9);
+    options->step = app_argument_number(state, "step", text, 1e-9, 1e9);
     return 0;
   case 'l':
-    options->slenderness = app_bench_options_number(state, "slenderness", text, 1, 1000);
+    options->slenderness = app_argument_number(state, "slenderness", text, 1, 1000);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

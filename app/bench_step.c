@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench_step.h"
 
+#include "app/argument.h"
 #include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_trial.h"
@@ -35,7 +36,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->overrides[options->override_count++] = text;
     return 0;
   case 'k':
-    options->steps = app_bench_options_count(state, "steps", text, 1000000000);
+    options->steps = (int)app_argument_integer(state, "steps", text, 1, 1000000000);
     return 0;
   case ARGP_KEY_ARG:
     if (options->scene) argp_error(state, "one scene at a time; '%s' is the second", text);

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/argument.h"
 #include "app/bench_command.h"
 #include "app/bench_report.h"
 #include "app/bench_timer.h"
@@ -50,7 +51,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->batch_count = app_bench_options_counts(state, "batch", text, 65536, options->batches);
     return 0;
   case KEY_PAIRS:
-    options->pairs = app_bench_options_count(state, "pairs", text, 100000000);
+    options->pairs = (int)app_argument_integer(state, "pairs", text, 1, 100000000);
     return 0;
   case KEY_NO_TORCH:
     options->has_torch = false;

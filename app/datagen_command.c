@@ -2,14 +2,14 @@
 #include "app/datagen_command.h"
 
 #include <argp.h>
-#include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "app/argument.h"
 #include "app/job.h"
 #include "app/versions.h"
 #include "base/clock.h"
@@ -47,15 +47,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static long long integer_of(struct argp_state *state, const char *option, const char *text, long long least) {
-  char *end;
-  errno = 0;
-  long long value = strtoll(text, &end, 10);
-  if (end == text || *end || errno || value < least)
-    argp_error(state, "--%s is '%s'; give a whole number from %lld up", option, text, least);
-  return value;
-}
-
 static DatagenLabel model_of(struct argp_state *state, const char *option, const char *text) {
   if (strcmp(text, "exact") == 0) return DATAGEN_LABEL_EXACT;
   if (strcmp(text, "clip") == 0) return DATAGEN_LABEL_CLIP;
@@ -79,21 +70,6 @@ static void set_shard(struct argp_state *state, Options *options, const char *te
     argp_error(state, "--shard is '%s'; give I/N with I from 1 to N, as in 3/16", text);
 }
 
-static void set_swap(struct argp_state *state, Options *options, const char *text) {
-  char *end;
-  options->swap_share = strtod(text, &end);
-  if (end == text || *end || !(options->swap_share >= 0 && options->swap_share <= 1))
-    argp_error(state, "--swap is '%s'; give a share from 0 to 1", text);
-}
-
-static void set_seed(struct argp_state *state, Options *options, const char *text) {
-  char *end;
-  errno = 0;
-  options->seed = strtoull(text, &end, 10);
-  if (end == text || *end || errno || text[0] == '-')
-    argp_error(state, "--seed is '%s'; give a whole number from 0 up", text);
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   switch (key) {
@@ -101,16 +77,16 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (datagen_law_find(text, &options->law) != STATUS_OK) argp_error(state, "%s", status_message());
     return 0;
   case 'n':
-    options->count = integer_of(state, "count", text, 1);
+    options->count = app_argument_integer(state, "count", text, 1, LLONG_MAX);
     return 0;
   case 's':
-    set_seed(state, options, text);
+    options->seed = app_argument_seed(state, text);
     return 0;
   case 'o':
     options->output = text;
     return 0;
   case 't':
-    options->threads = (int)fmin((double)integer_of(state, "threads", text, 1), 4096);
+    options->threads = app_argument_threads(state, text);
     return 0;
   case 'q':
     options->is_quiet = true;
@@ -132,7 +108,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->volume = text;
     return 0;
   case KEY_SWAP:
-    set_swap(state, options, text);
+    options->swap_share = app_argument_number(state, "swap", text, 0, 1);
     return 0;
   case KEY_LIST:
     options->lists = true;

@@ -2,11 +2,11 @@
 #include "app/eval_command.h"
 
 #include <argp.h>
-#include <errno.h>
+#include <limits.h>
 #include <omp.h>
 #include <stdbool.h>
-#include <stdlib.h>
 
+#include "app/argument.h"
 #include "app/evaluation_model.h"
 #include "app/evaluation_paths.h"
 #include "app/evaluation_report.h"
@@ -39,15 +39,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static long long integer_of(struct argp_state *state, const char *option, const char *text, long long least) {
-  char *end;
-  errno = 0;
-  long long value = strtoll(text, &end, 10);
-  if (end == text || *end || errno || value < least)
-    argp_error(state, "--%s is '%s'; give a whole number from %lld up", option, text, least);
-  return value;
-}
-
 static void check(struct argp_state *state, const Options *options) {
   if (!options->model)
     argp_error(state, "name a model (clip, exact, geo, …) or a weights file, then a data set or --law");
@@ -64,10 +55,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->source.law = text;
     return 0;
   case 'n':
-    options->source.count = integer_of(state, "count", text, 1);
+    options->source.count = app_argument_integer(state, "count", text, 1, LLONG_MAX);
     return 0;
   case 's':
-    options->source.seed = (uint64_t)integer_of(state, "seed", text, 0);
+    options->source.seed = app_argument_seed(state, text);
     return 0;
   case KEY_MIX:
     options->source.mix = text;
@@ -76,10 +67,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->source.volume = text;
     return 0;
   case KEY_PATHS:
-    options->paths = (int)integer_of(state, "paths", text, 1);
+    options->paths = (int)app_argument_integer(state, "paths", text, 1, INT_MAX);
     return 0;
   case 't':
-    options->threads = (int)integer_of(state, "threads", text, 1);
+    options->threads = app_argument_threads(state, text);
     return 0;
   case 'j':
     options->is_json = true;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/job.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "app/argument.h"
 #include "app/scene_overlap.h"
 #include "app/scene_read.h"
 #include "app/scene_write.h"
@@ -39,15 +38,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-void app_job_take_threads(AppJobOptions *options, const char *text, struct argp_state *state) {
-  char *end;
-  errno = 0;
-  long threads = strtol(text, &end, 10);
-  if (errno || *end || end == text || threads < 1 || threads > 1024)
-    argp_error(state, "--threads takes a whole number from 1 to 1024, not '%s'", text);
-  options->threads = (int)threads;
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   AppJobOptions *options = state->input;
   switch (key) {
@@ -55,7 +45,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->directory = text;
     break;
   case 't':
-    app_job_take_threads(options, text, state);
+    options->threads = app_argument_threads(state, text);
     break;
   case 'j':
     options->is_json = true;

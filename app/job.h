@@ -37,9 +37,6 @@ typedef struct AppJob {
 Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overlap, const char *subdirectory);
 void app_job_close(AppJob *job);
 
-// -t of a command with a table of its own.
-void app_job_take_threads(AppJobOptions *options, const char *text, struct argp_state *state);
-
 // Sets the log level from -q and -v, and the flag that Ctrl-C and SIGTERM raise.
 void app_job_prepare(const AppJobOptions *options);
 const volatile sig_atomic_t *app_job_stop_flag(void);

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "app/argument.h"
 #include "base/log.h"
 #include "base/record.h"
 #include "fem/mesh.h"
@@ -28,12 +28,9 @@ static const struct argp_option option_table[] = {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
-  char *end;
   switch (key) {
   case 's':
-    options->size = strtod(text, &end);
-    if (end == text || *end || !(options->size > 0 && isfinite(options->size)))
-      argp_error(state, "--size is '%s'; give a positive length, as --size 0.01", text);
+    options->size = app_argument_positive(state, "size", text);
     return 0;
   case 'j':
     options->is_json = true;

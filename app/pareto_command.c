@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/argument.h"
 #include "app/bench_pairs.h"
 #include "app/gnuplot.h"
 #include "app/job.h"
@@ -53,19 +54,19 @@ static const struct argp_option option_table[] = {
 static error_t parse_number(int key, char *text, struct argp_state *state, AppPareto *pareto) {
   switch (key) {
   case 'n':
-    pareto->error_pairs = app_bench_options_count(state, "count", text, 10000000);
+    pareto->error_pairs = (int)app_argument_integer(state, "count", text, 1, 10000000);
     return 0;
   case 'b':
-    pareto->batch = app_bench_options_count(state, "batch", text, 10000000);
+    pareto->batch = (int)app_argument_integer(state, "batch", text, 1, 10000000);
     return 0;
   case KEY_WALL:
-    pareto->scene_wall_s = app_bench_options_number(state, "wall", text, 1e-3, 1e7);
+    pareto->scene_wall_s = app_argument_number(state, "wall", text, 1e-3, 1e7);
     return 0;
   case KEY_ROUNDS:
-    pareto->scene_rounds = app_bench_options_count(state, "rounds", text, APP_BENCH_MAX_REPEATS);
+    pareto->scene_rounds = (int)app_argument_integer(state, "rounds", text, 1, APP_BENCH_MAX_REPEATS);
     return 0;
   case KEY_AUDIT:
-    pareto->audit_every = app_bench_options_count(state, "audit", text, 1000000000);
+    pareto->audit_every = (int)app_argument_integer(state, "audit", text, 1, 1000000000);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

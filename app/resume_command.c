@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/argument.h"
 #include "app/origin.h"
 #include "app/run_command.h"
 #include "app/versions.h"
@@ -27,7 +28,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   AppRunOptions *options = state->input;
   switch (key) {
   case 't':
-    app_job_take_threads(&options->job, text, state);
+    options->job.threads = app_argument_threads(state, text);
     break;
   case KEY_STRICT:
     options->is_strict = true;

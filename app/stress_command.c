@@ -2,9 +2,8 @@
 #include "app/stress_command.h"
 
 #include <argp.h>
-#include <math.h>
-#include <stdlib.h>
 
+#include "app/argument.h"
 #include "app/job.h"
 #include "app/stress.h"
 #include "app/versions.h"
@@ -35,14 +34,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static double limit_of(struct argp_state *state, const char *text) {
-  char *end;
-  double seconds = strtod(text, &end);
-  if (end == text || *end || !(seconds > 0) || isinf(seconds))
-    argp_error(state, "--limit is '%s'; give a number of seconds above 0", text);
-  return seconds;
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   switch (key) {
@@ -62,7 +53,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->stress.is_quick = true;
     return 0;
   case KEY_LIMIT:
-    options->stress.limit_s = limit_of(state, text);
+    options->stress.limit_s = app_argument_positive(state, "limit", text);
     return 0;
   case 'j':
     options->json = text;

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "app/argument.h"
 #include "app/job.h"
 #include "app/training.h"
 #include "app/training_log.h"
@@ -42,9 +42,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->overrides[options->override_count++] = text;
     return 0;
   case 't':
-    options->threads = atoi(text);
-    if (options->threads < 1 || options->threads > 1024)
-      argp_error(state, "--threads takes a whole number from 1 to 1024, not '%s'", text);
+    options->threads = app_argument_threads(state, text);
     return 0;
   case KEY_RESUME:
     options->resumes = true;

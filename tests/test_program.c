@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// app/program.h: exit codes.
+// app/program.h, app/argument.h: exit codes.
 #include "suite.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "app/program.h"
@@ -39,8 +40,26 @@ START_TEST(exit_codes_say_who_is_to_blame) {
 }
 END_TEST
 
+static int exit_code_of(const char *arguments) {
+  char command[512];
+  snprintf(command, sizeof command, "%s %s > /dev/null 2>&1", TETLAP_PROGRAM, arguments);
+  return WEXITSTATUS(system(command));
+}
+
+START_TEST(an_option_that_is_no_number_in_its_range_is_a_usage_error) {
+  ck_assert_int_eq(exit_code_of("run scene.yaml --threads 2x"), 64);
+  ck_assert_int_eq(exit_code_of("train plan.yaml --threads 0"), 64);
+  ck_assert_int_eq(exit_code_of("eval clip --paths 99999999999"), 64);
+  ck_assert_int_eq(exit_code_of("datagen --list --swap nan"), 64);
+  ck_assert_int_eq(exit_code_of("datagen --list --seed -1"), 64);
+  ck_assert_int_eq(exit_code_of("datagen --list --seed 18446744073709551615"), 0);
+  ck_assert_int_eq(exit_code_of("stress --quick --limit inf"), 64);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("program");
   tcase_add_test(cases, exit_codes_say_who_is_to_blame);
+  tcase_add_test(cases, an_option_that_is_no_number_in_its_range_is_a_usage_error);
   return suite_run("program", cases, 60);
 }

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/argument.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { MOST_THREADS = 1024 };
+
+long long app_argument_integer(struct argp_state *state, const char *option, const char *text,
+                               long long least, long long most) {
+  char *end;
+  errno = 0;
+  long long value = strtoll(text, &end, 10);
+  if (end != text && !*end && !errno && value >= least && value <= most) return value;
+  if (most == LLONG_MAX)
+    argp_error(state, "--%s is '%s'; give a whole number from %lld up", option, text, least);
+  else
+    argp_error(state, "--%s is '%s'; give a whole number from %lld to %lld", option, text, least, most);
+  return least;
+}
+
+double app_argument_number(struct argp_state *state, const char *option, const char *text, double smallest,
+                           double largest) {
+  char *end;
+  double value = strtod(text, &end);
+  if (end == text || *end || !(value >= smallest && value <= largest))
+    argp_error(state, "--%s is '%s'; give a number from %g to %g", option, text, smallest, largest);
+  return value;
+}
+
+double app_argument_positive(struct argp_state *state, const char *option, const char *text) {
+  char *end;
+  double value = strtod(text, &end);
+  if (end == text || *end || !(value > 0) || isinf(value))
+    argp_error(state, "--%s is '%s'; give a number above 0", option, text);
+  return value;
+}
+
+uint64_t app_argument_seed(struct argp_state *state, const char *text) {
+  char *end;
+  errno = 0;
+  uint64_t seed = strtoull(text, &end, 10);
+  if (end == text || *end || errno || text[0] == '-')
+    argp_error(state, "--seed is '%s'; give a whole number from 0 up", text);
+  return seed;
+}
+
+int app_argument_threads(struct argp_state *state, const char *text) {
+  return (int)app_argument_integer(state, "threads", text, 1, MOST_THREADS);
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Readers of one option's text, for all commands. Each ends the program with what would be right (argp_error,
+// exit code 64) if the text is wrong; `option` is its long name.
+#ifndef TETLAP_APP_ARGUMENT_H
+#define TETLAP_APP_ARGUMENT_H
+
+#include <argp.h>
+#include <stdint.h>
+
+// A whole number from `least` to `most`; LLONG_MAX: without an upper end.
+long long app_argument_integer(struct argp_state *state, const char *option, const char *text,
+                               long long least, long long most);
+double app_argument_number(struct argp_state *state, const char *option, const char *text, double smallest,
+                           double largest);
+// Above 0 and finite.
+double app_argument_positive(struct argp_state *state, const char *option, const char *text);
+// Of --seed, of random numbers: any of 64 bits.
+uint64_t app_argument_seed(struct argp_state *state, const char *text);
+// Of --threads: 1 to 1024.
+int app_argument_threads(struct argp_state *state, const char *text);
+
+#endif
