@@ -136,7 +136,7 @@ static const char *coplanar_name(int i) {
   return i < 3 ? names[i] : NULL;
 }
 static const char *coplanar_help(int i) {
-  static const char *const helps[] = {"as the model has it: keep",
+  static const char *const helps[] = {"as the model has it: hybrid clip, others keep",
                                       "the network answers them as any other",
                                       "they turn to clipping, the more the nearer the faces"};
   return helps[i];

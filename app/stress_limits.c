@@ -30,9 +30,6 @@ static const char PIECEWISE[] =
 static const char ROUGH[] =
     "the network's grad V is continuous but errs by tens of per cent, sideways too, and "
     "what is wrong does not cancel between neighbouring pairs";
-static const char CREEPING[] = "point pressed on point: steps fall to 1e-8 s and the run is given up as "
-                               "creeping; the cause has not been "
-                               "found";
 static const char UNSYMMETRIC[] =
     "V of a network is not the same for mirror images, nor for another order of vertices: its forces err "
     "sideways, and what stands on a tip slides off";
@@ -80,7 +77,6 @@ static const AppStressLimit limits[] = {
     {"tight fit", "clip32", "time reached", 4e-3, ROUNDED, "summary.json: steps, trouble.smallest_step"},
     {"*", PAPERS, "energy gain", 1.5, LEAPING, "trouble.energy, history.csv: energy_gain"},
     {"*", PAPERS, "time reached", 4e-5, PIECEWISE, "newton_failures, restarts, beyond_range_pairs"},
-    {"spikes", "hybrid", "time reached", 0.39, CREEPING, "summary.json: message, trouble.smallest_step"},
     {"mat twist, 3.2 turns", NULL, "det F", -2, WOUND_TIGHT, TWIST_SEEN},
     {"mat twist, 3.2 turns", NULL, "energy gain", 5e-3, WOUND_TIGHT, TWIST_SEEN},
     {"mat twist, 3.2 turns", NULL, "jump of their linking (a passage: 1)", 3, WOUND_TIGHT, TWIST_SEEN},

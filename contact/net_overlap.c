@@ -164,7 +164,7 @@ static const ContactNetOptions for_hybrid = {.ghosts = CONTACT_NET_GHOSTS_FADE,
                                              .gate = CONTACT_NET_GATE_NONE,
                                              .orders = CONTACT_NET_ORDERS_BOTH,
                                              .beyond = CONTACT_NET_BEYOND_EXACT,
-                                             .coplanar = CONTACT_NET_COPLANAR_KEEP};
+                                             .coplanar = CONTACT_NET_COPLANAR_CLIP};
 
 Status contact_net_overlap_create(void **self, const char *path, const ContactNetOptions *options) {
   return create(self, path, options, &as_published, false, net_kernel_best());

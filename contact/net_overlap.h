@@ -17,7 +17,12 @@
 //              ghosts  gate    orders  coplanar  beyond the range of the training
 //   tpn        keep    none    one     keep      counted
 //   tpn-scene  fade    status  both    keep      counted
-//   hybrid     –       none    both    keep      exact
+//   hybrid     –       none    both    clip      exact
+//
+// Why hybrid turns to clipping where faces nearly lie in one plane: meshes whose inner planes coincide have
+// kinks in V there, which cancel between neighbouring pairs. The thin pairs among them are answered by the
+// exact model, kinks and all; a smooth V of their neighbours would leave a leap of the force, in which a run
+// creeps.
 //
 // `tpn-bf16`: the factors of the network's products are rounded to bf16 and summed in float32, but for
 // products with the coordinates. Its gradient is what backpropagation gives with factors rounded likewise:
