@@ -19,6 +19,9 @@ static const char *finish_ogden(void *self, const char **key) {
 
 static const char *finish_material(void *self, const char **key) {
   const FemMaterial *material = self;
+  *key = "poisson";
+  if (material->law == FEM_MATERIAL_NEO_HOOKEAN_LOG && material->poisson < 0)
+    return "neo_hookean_log needs ν ≥ 0, or it collapses; write law: neo_hookean beside it";
   *key = "plasticity";
   if (material->yield_stress > 0 && material->law != FEM_MATERIAL_STVK)
     return "plasticity is in the Green strain; write law: stvk beside it";

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fem/cofactor.h"
+#include "fem/material_log.h"
 #include "fem/material_rubber.h"
 #include "fem/svd3.h"
 
@@ -18,6 +19,8 @@ static const struct {
                            "St. Venant-Kirchhoff: large rotations; collapses under strong compression"},
     [FEM_MATERIAL_NEO_HOOKEAN] = {"neo_hookean",
                                   "stable neo-Hookean: large strains, recovers from inversion"},
+    [FEM_MATERIAL_NEO_HOOKEAN_LOG] =
+        {"neo_hookean_log", "neo-Hookean with the logarithm of the volume: no pressure flattens it"},
     [FEM_MATERIAL_MOONEY_RIVLIN] = {"mooney_rivlin",
                                     "Mooney-Rivlin rubber: two invariants, `mooney` shares them out"},
     [FEM_MATERIAL_OGDEN] = {"ogden", "Ogden rubber: up to three powers of the principal stretches"},
@@ -312,6 +315,8 @@ static double law_energy(const FemMaterial *material, const double F[9]) {
     return quadratic_energy(lame, strain);
   case FEM_MATERIAL_NEO_HOOKEAN:
     return neo_hookean_energy(lame, F);
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    return fem_material_log_energy(material, F);
   case FEM_MATERIAL_MOONEY_RIVLIN:
     return fem_material_mooney_energy(material, F);
   case FEM_MATERIAL_OGDEN:
@@ -342,6 +347,9 @@ void fem_material_stress(const FemMaterial *material, const double F[9], double 
   case FEM_MATERIAL_NEO_HOOKEAN:
     neo_hookean_stress(lame, F, P);
     break;
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    fem_material_log_stress(material, F, P);
+    break;
   case FEM_MATERIAL_MOONEY_RIVLIN:
     fem_material_mooney_stress(material, F, P);
     break;
@@ -366,6 +374,9 @@ void fem_material_tangent(const FemMaterial *material, const double F[9], double
     break;
   case FEM_MATERIAL_NEO_HOOKEAN:
     neo_hookean_tangent(lame, F, dP);
+    break;
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    fem_material_log_tangent(material, F, dP);
     break;
   case FEM_MATERIAL_MOONEY_RIVLIN:
     fem_material_mooney_tangent(material, F, dP);
@@ -422,6 +433,7 @@ static double green_trace(const double F[9]) {
 double fem_material_volume(FemMaterialLaw law, const double F[9], double gradient[9]) {
   static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   FemSvd3 svd;
+  FemMaterialLog theta;
   switch (law) {
   case FEM_MATERIAL_LINEAR:
     memcpy(gradient, identity, sizeof identity);
@@ -432,6 +444,11 @@ double fem_material_volume(FemMaterialLaw law, const double F[9], double gradien
   case FEM_MATERIAL_STVK:
     memcpy(gradient, F, 9 * sizeof *gradient);
     return green_trace(F);
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    theta = fem_material_log(fem_cofactor_swelling(F));
+    fem_cofactor_find(F, gradient);
+    for (int r = 0; r < 9; r++) gradient[r] *= theta.slope;
+    return theta.value;
   case FEM_MATERIAL_NEO_HOOKEAN:
   case FEM_MATERIAL_MOONEY_RIVLIN:
   case FEM_MATERIAL_OGDEN:
@@ -439,6 +456,16 @@ double fem_material_volume(FemMaterialLaw law, const double F[9], double gradien
   }
   fem_cofactor_find(F, gradient);
   return fem_cofactor_swelling(F);
+}
+
+// θ' ∂cof F/∂F + θ'' cof F ⊗ cof F.
+static void log_curvature(const double F[9], double curvature[81]) {
+  FemMaterialLog theta = fem_material_log(fem_cofactor_swelling(F));
+  double C[9];
+  fem_cofactor_find(F, C);
+  for (int r = 0; r < 9; r++)
+    for (int c = 0; c < 9; c++) curvature[9 * r + c] = theta.bend * (C[r] * C[c]);
+  fem_cofactor_add_derivative(F, theta.slope, curvature);
 }
 
 void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double curvature[81]) {
@@ -451,6 +478,9 @@ void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double
     return;
   case FEM_MATERIAL_STVK:
     for (int r = 0; r < 9; r++) curvature[10 * r] = 1;
+    return;
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    log_curvature(F, curvature);
     return;
   case FEM_MATERIAL_NEO_HOOKEAN:
   case FEM_MATERIAL_MOONEY_RIVLIN:

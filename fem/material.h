@@ -11,6 +11,7 @@
 //   stvk          Ψ = μ E:E + λ/2 tr²E                 E = ½ (FᵀF − I)
 //   neo_hookean   Ψ = μ'/2 (I_C − 3) − μ'/2 log((I_C + 1)/4) − ¾ μ' (J − 1) + λ'/2 (J − 1)²
 //                 μ' = 4/3 μ, λ' = λ + 5/6 μ, I_C = F:F, J = det F
+//   neo_hookean_log Ψ = μ/2 (I_C − 3) − μ ln J + λ/2 ln²J,  ν ≥ 0
 //   mooney_rivlin Ψ = c₁ (I_C − 3) + c₂ (‖cof F‖² − 3) − (2c₁ + 4c₂)(J − 1) + (λ + 2c₁)/2 (J − 1)²
 //                 c₁ = (1 − m) μ/2, c₂ = m μ/2
 //   ogden         Ψ = Σ_i Σ_p μ_p/α_p (σ_i^α_p − 1) − d (J − 1) + (λ + d)/2 (J − 1)²,  d = Σ μ_p
@@ -20,6 +21,11 @@
 // less its constant, and with their rest stability α = 1 + ¾ μ'/λ' multiplied out. The logarithm is kept:
 // without it a collapse to F = 0 would be a stable state. It and stvk are smooth for all F; stvk, though,
 // depends on FᵀF alone: under strong compression it softens, and a mirrored element is at rest.
+//
+// neo_hookean_log is the classical compressible form (Simo and Pister 1984; Bonet and Wood, eq. 6.27): its
+// pressure grows without bound as J → 0, where that of neo_hookean ends at about 2 E (ν = 0.4). From J =
+// 0.05 down ln J goes on as its parabola, with two continuous derivatives, so that inverted elements are
+// pushed back; λ < 0 would win over the barrier.
 //
 // corotational: R comes from singular values whose last carries the sign of det F (svd3.h). R, and with it P,
 // jumps where σ_i + σ_j = 0, which needs J ≤ 0; there one of the nearest rotations is taken, and the
@@ -40,15 +46,16 @@
 #include "base/status.h"
 
 typedef enum FemMaterialLaw {
-  FEM_MATERIAL_LINEAR,       // small strain: ε = sym(F) − I
-  FEM_MATERIAL_COROTATIONAL, // linear in the polar stretch
-  FEM_MATERIAL_STVK,         // St. Venant–Kirchhoff
-  FEM_MATERIAL_NEO_HOOKEAN,  // stable neo-Hookean (Smith, de Goes, Kim 2018)
+  FEM_MATERIAL_LINEAR,          // small strain: ε = sym(F) − I
+  FEM_MATERIAL_COROTATIONAL,    // linear in the polar stretch
+  FEM_MATERIAL_STVK,            // St. Venant–Kirchhoff
+  FEM_MATERIAL_NEO_HOOKEAN,     // stable neo-Hookean (Smith, de Goes, Kim 2018)
+  FEM_MATERIAL_NEO_HOOKEAN_LOG, // with ln J
   FEM_MATERIAL_MOONEY_RIVLIN,
   FEM_MATERIAL_OGDEN,
 } FemMaterialLaw;
 
-enum { FEM_MATERIAL_LAW_COUNT = 6 };
+enum { FEM_MATERIAL_LAW_COUNT = 7 };
 
 typedef struct FemMaterial {
   FemMaterialLaw law;
@@ -84,7 +91,7 @@ void fem_material_tangent(const FemMaterial *material, const double F[9], double
 void fem_material_cauchy(FemMaterialLaw law, const double F[9], const double P[9], double stress[6]);
 
 // The law's measure of volume change θ(F), of which every law has the term λ/2 θ²: tr ε, tr(S − I), tr E, J −
-// 1. Returns θ; gradient ∂θ/∂F (9) and curvature ∂²θ/∂F² (9, 9).
+// 1, ln J. Returns θ; gradient ∂θ/∂F (9) and curvature ∂²θ/∂F² (9, 9).
 double fem_material_volume(FemMaterialLaw law, const double F[9], double gradient[9]);
 void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double curvature[81]);
 

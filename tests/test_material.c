@@ -175,8 +175,8 @@ START_TEST(fibres_have_consistent_derivatives) {
 END_TEST
 
 START_TEST(names_are_the_ones_that_scenes_use) {
-  static const char *const names[] = {"linear",      "corotational",  "stvk",
-                                      "neo_hookean", "mooney_rivlin", "ogden"};
+  static const char *const names[] = {"linear",          "corotational",  "stvk", "neo_hookean",
+                                      "neo_hookean_log", "mooney_rivlin", "ogden"};
   for (int law = 0; law < FEM_MATERIAL_LAW_COUNT; law++) {
     ck_assert_str_eq(fem_material_name((FemMaterialLaw)law), names[law]);
     ck_assert_uint_gt(strlen(fem_material_help((FemMaterialLaw)law)), 10);
@@ -419,9 +419,10 @@ START_TEST(no_state_has_less_energy_than_rest) {
 }
 END_TEST
 
-START_TEST(a_mirrored_state_is_pushed_back_by_neo_hookean_and_corotational) {
-  static const FemMaterialLaw pushing[] = {FEM_MATERIAL_NEO_HOOKEAN, FEM_MATERIAL_COROTATIONAL};
-  for (int k = 0; k < 2; k++) {
+START_TEST(a_mirrored_state_is_pushed_back_by_the_laws_that_say_so) {
+  static const FemMaterialLaw pushing[] = {FEM_MATERIAL_NEO_HOOKEAN, FEM_MATERIAL_COROTATIONAL,
+                                           FEM_MATERIAL_NEO_HOOKEAN_LOG};
+  for (int k = 0; k < 3; k++) {
     FemMaterial material = make_material(pushing[k]);
     for (double height = -0.9; height < 1; height += 0.1) {
       double P[9];
@@ -429,6 +430,45 @@ START_TEST(a_mirrored_state_is_pushed_back_by_neo_hookean_and_corotational) {
       ck_assert(P[8] < 0);
     }
   }
+}
+END_TEST
+
+// F = s I: P = (μ s² + λ ln J − μ)/s I with J = s³. The pressure −P/s² of the stable law has an end as J → 0.
+START_TEST(the_logarithm_resists_any_pressure_and_the_stable_law_does_not) {
+  FemMaterial barrier = make_material(FEM_MATERIAL_NEO_HOOKEAN_LOG),
+              stable = make_material(FEM_MATERIAL_NEO_HOOKEAN);
+  FemLame lame = fem_material_lame(&barrier);
+  double P[9], highest = 0;
+  for (double J = 3; J > 0.051; J *= 0.97) {
+    double s = cbrt(J), F[9] = {s, 0, 0, 0, s, 0, 0, 0, s};
+    fem_material_stress(&barrier, F, P);
+    double expected = (lame.mu * s * s + lame.lambda * log(J) - lame.mu) / s;
+    for (int r = 0; r < 9; r++)
+      ck_assert_near(P[r], r % 4 == 0 ? expected : 0, 1e-13 * fmax(1, fabs(expected)));
+    fem_material_stress(&stable, F, P);
+    highest = fmax(highest, -P[0] / (s * s));
+  }
+  ck_assert(highest < 3 * stable.young);
+  ck_assert(-P[0] < 3 * stable.young);
+  fem_material_stress(&barrier, (const double[9]){0.38, 0, 0, 0, 0.38, 0, 0, 0, 0.38}, P); // J = 0.055
+  ck_assert(-P[0] / (0.38 * 0.38) > 30 * barrier.young);
+}
+END_TEST
+
+// Energy, stress and tangent on both sides of the J where the logarithm ends.
+START_TEST(the_logarithm_goes_on_with_two_continuous_derivatives) {
+  FemMaterial material = make_material(FEM_MATERIAL_NEO_HOOKEAN_LOG);
+  double F[2][9], energy[2], P[2][9], dP[2][81];
+  for (int side = 0; side < 2; side++) {
+    double J = 0.05 * (1 + (side ? 1e-10 : -1e-10));
+    memcpy(F[side], (const double[9]){1, 0.2, 0, 0, 0.5, 0, 0, -0.3, 2 * J}, sizeof F[side]);
+    energy[side] = fem_material_energy(&material, F[side]);
+    fem_material_stress(&material, F[side], P[side]);
+    fem_material_tangent(&material, F[side], dP[side]);
+  }
+  ck_assert_near(energy[0], energy[1], 1e-8 * energy[0]);
+  for (int r = 0; r < 9; r++) ck_assert_near(P[0][r], P[1][r], 1e-8 * largest_entry(P[0], 9));
+  for (int r = 0; r < 81; r++) ck_assert_near(dP[0][r], dP[1][r], 1e-8 * largest_entry(dP[0], 81));
 }
 END_TEST
 
@@ -520,8 +560,10 @@ int main(void) {
   tcase_add_test(cases, stvk_confined_and_sheared_has_its_closed_form);
   tcase_add_test(cases, corotational_stress_is_the_linear_one_turned);
   tcase_add_test(cases, neo_hookean_energy_is_the_published_one_less_its_rest_value);
+  tcase_add_test(cases, the_logarithm_resists_any_pressure_and_the_stable_law_does_not);
+  tcase_add_test(cases, the_logarithm_goes_on_with_two_continuous_derivatives);
   tcase_add_loop_test(cases, no_state_has_less_energy_than_rest, 0, FEM_MATERIAL_LAW_COUNT);
-  tcase_add_test(cases, a_mirrored_state_is_pushed_back_by_neo_hookean_and_corotational);
+  tcase_add_test(cases, a_mirrored_state_is_pushed_back_by_the_laws_that_say_so);
   tcase_add_loop_test(cases, degenerate_states_have_finite_values, 0, FEM_MATERIAL_LAW_COUNT);
   tcase_add_test(cases, smooth_laws_are_differentiable_at_collapse);
   tcase_add_test(cases, mooney_rivlin_and_ogden_pull_as_rubber_does);

@@ -205,6 +205,10 @@ static const Wrong wrong[] = {
      "s.yaml:3:13: obstacles[0] needs one of these keys: halfspace sphere box cylinder mesh"},
     {TIME BODY "obstacles: [{name: g, mesh: g.msh, velocity: [0, 0, 1]}]\n",
      "s.yaml:3:36: 'velocity' in obstacles[0] contradicts 'mesh'; keep one of them"},
+    {TIME
+     "bodies: [{name: a, mesh: a.msh, material: {law: neo_hookean_log, young: 1, poisson: -0.1, density: "
+     "1}}]\n",
+     "s.yaml:2:85: bodies[0].material: neo_hookean_log needs ν ≥ 0"},
     {TIME BODY_WITH("self_contact: true"), "s.yaml:6:5: 'self_contact' needs contact"},
     {TIME BODY "obstacles:\n  - name: a\n    mesh: g.msh\n",
      "s.yaml:4:11: the name 'a' is taken by another of the bodies"},
