@@ -109,37 +109,39 @@ static void judge_burden(const AppStressRun *run, AppStressRow *row) {
   app_stress_ask_least(row, "height over the soft one's", app_stress_run_lowest(run, -1, 1, 2) / 0.1, 0.9);
 }
 
-enum { MAT_CELLS = 20 };
+enum { MAT_CELLS = 20, MAT_LINES = 9 };
 
-// The vertices of the mat's underside at rest at this y, in the order of x, in a frame.
-static int mat_line(const AppStressRun *run, int frame, double y, double line[3 * (MAT_CELLS + 1)]) {
+// The line halfway through the mat at rest at this y, in the order of x, in a frame.
+static bool mat_line(const AppStressRun *run, int frame, double y, double line[3 * (MAT_CELLS + 1)]) {
   int count = 0;
+  memset(line, 0, 3 * (MAT_CELLS + 1) * sizeof *line);
   for (int a = 0; a < run->model.vertex_count; a++) {
-    const double *X = run->model.rest + 3 * a;
+    const double *X = run->model.rest + 3 * a, *x = app_stress_run_position(run, frame, a);
     int k = (int)lround(X[0] * MAT_CELLS);
-    if (fabs(X[1] - y) > 1e-9 || fabs(X[2]) > 1e-9 || k < 0 || k > MAT_CELLS) continue;
-    memcpy(line + 3 * (size_t)k, app_stress_run_position(run, frame, a), 3 * sizeof *line);
+    if (fabs(X[1] - y) > 1e-9 || k < 0 || k > MAT_CELLS) continue;
+    for (int c = 0; c < 3; c++) line[3 * k + c] += x[c] / 2;
     count++;
   }
-  return count;
+  return count == 2 * (MAT_CELLS + 1);
 }
 
-// Three lines along the mat wind around each other by what the ends are turned; where one passed through
-// another, their linking jumps by a turn from one frame to the next.
+// Lines along the mat wind around each other by what the ends are turned; where a layer passed through
+// another, their linking jumps by a turn from one frame to the next. They run halfway through the thickness
+// and inside of the rims: lines on the surface cross wherever two layers overlap at all.
 static void judge_mat(const AppStressRun *run, AppStressRow *row) {
-  static const double ys[3] = {0, 0.5, 1};
-  double lines[3][3 * (MAT_CELLS + 1)], before[3] = {0}, jump = 0, turns = 0;
+  double lines[MAT_LINES][3 * (MAT_CELLS + 1)], before[MAT_LINES][MAT_LINES] = {{0}}, jump = 0, turns = 0;
   for (int f = 0; f < app_stress_run_frames(run); f++) {
-    for (int k = 0; k < 3; k++)
-      if (mat_line(run, f, ys[k], lines[k]) != MAT_CELLS + 1) jump = NAN;
-    for (int k = 0; k < 3; k++) {
-      double linking = app_stress_linking(lines[k], MAT_CELLS + 1, lines[(k + 1) % 3], MAT_CELLS + 1);
-      if (f > 0 && !(fabs(linking - before[k]) <= jump)) jump = fabs(linking - before[k]);
-      before[k] = linking, turns = fmax(turns, fabs(linking));
-    }
+    for (int k = 0; k < MAT_LINES; k++)
+      if (!mat_line(run, f, 0.1 * (k + 1), lines[k])) jump = NAN;
+    for (int k = 0; k < MAT_LINES; k++)
+      for (int l = 0; l < k; l++) {
+        double linking = app_stress_linking(lines[k], MAT_CELLS + 1, lines[l], MAT_CELLS + 1);
+        if (f > 0 && !(fabs(linking - before[k][l]) <= jump)) jump = fabs(linking - before[k][l]);
+        before[k][l] = linking, turns = fmax(turns, fabs(linking));
+      }
   }
   app_stress_ask_occurred(row, "deepest overlap of an element", run->result.deepest_overlap_max, 0.05);
-  app_stress_ask_occurred(row, "turns that its edges wind around each other", turns, 1);
+  app_stress_ask_occurred(row, "turns that lines along it wind around each other", turns, 1);
   app_stress_ask_most(row, "jump of their linking (a passage: 1)", jump, 0.5);
   app_stress_ask_most(row, "covered share of an element", run->result.deepest_overlap_max, 0.9);
 }
