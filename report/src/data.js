@@ -2,6 +2,7 @@
 // What the page is about: runs with their histories and frames, and measurements.
 
 import { readCodes, readIntegers } from "./codes.js";
+import { Obstacles } from "./obstacles.js";
 
 const NAMES = ["A", "B"];
 
@@ -48,7 +49,7 @@ export function solidsOf(run) {
     bodies,
     names: [...bodies, ...obstacles.map((obstacle) => obstacle.name)],
     meshed: [...bodies, ...obstacles.filter((o) => o.mesh).map((o) => o.name)], // as numbered in the frames
-    halfspaces: obstacles.filter((obstacle) => obstacle.halfspace).map((obstacle) => obstacle.halfspace),
+    shapes: obstacles.filter((o) => !o.mesh), // numbered after those
   };
 }
 
@@ -85,6 +86,11 @@ export async function readFrames(run) {
     frames.has_inside ? readIntegers(id("tetrahedra"), 4) : null,
     readCodes(id("positions"), 3 * frames.vertices, 3),
   ]);
+  const parts = await Promise.all((frames.obstacles ?? []).map(async (part, k) => ({
+    ...part,
+    triangles: await readIntegers(id(`obstacle-triangles-${k}`), 5), // vertices, body, face
+    positions: await readCodes(id(`obstacle-positions-${k}`), 3 * part.vertices, 3),
+  })));
   const waiting = new Map();
   const field = (name) => {
     const k = frames.fields.findIndex((one) => one.name === name);
@@ -96,7 +102,7 @@ export async function readFrames(run) {
     }
     return waiting.get(k);
   };
-  return { ...frames, triangles, tetrahedra, positions, field };
+  return { ...frames, triangles, tetrahedra, positions, obstacles: new Obstacles(parts, run.solids), field };
 }
 
 // All times at which any run has a frame (or, without frames, a line of its history), in order.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One run in 3-D: the surface, the section where it is cut, its outline, the half-spaces.
+// One run in 3-D: the surface, the section where it is cut, its outline, the obstacles without a mesh.
 
 import {
   BufferAttribute,
@@ -9,6 +9,7 @@ import {
   DataTexture,
   DoubleSide,
   DynamicDrawUsage,
+  FrontSide,
   GLSL3,
   LineBasicMaterial,
   LineSegments,
@@ -42,12 +43,12 @@ const VERTEX = `
   }`;
 
 // Flat shading from the derivatives of the position; edges where a weight is near 0, faded where they would
-// be denser than the pixels.
+// be denser than the pixels. What is translucent has few of them.
 const FRAGMENT = `
   precision highp float;
   uniform sampler2D ramp;
   uniform vec2 range;
-  uniform float classes, edges, noCode;
+  uniform float classes, edges, noCode, opacity;
   uniform vec3 neutral, ink;
   uniform vec4 plane;
   uniform bool isCut, isFlat;
@@ -66,8 +67,9 @@ const FRAGMENT = `
     vec3 width = fwidth(vWeight);
     vec3 line = smoothstep(width * 0.1, width * 0.8, vWeight);
     float edge = 1.0 - min(min(line.x, line.y), line.z);
-    float fade = 1.0 - smoothstep(0.12, 0.5, max(max(width.x, width.y), width.z));
-    colour = vec4(mix(lit, ink, edge * edges * fade), 1.0);
+    float fade = opacity < 1.0 ? 1.0 : 1.0 - smoothstep(0.12, 0.5, max(max(width.x, width.y), width.z));
+    float strength = edge * edges * fade;
+    colour = vec4(mix(lit, ink, strength), mix(opacity, 1.0, strength));
   }`;
 
 const GRID_VERTEX = `
@@ -96,9 +98,11 @@ const GRID_FRAGMENT = `
   }`;
 
 export const PALETTE = {
-  light: { ink: "#1c2126", grid: "#4a5560", edges: 0.3 },
-  dark: { ink: "#07090b", grid: "#aeb8c2", edges: 0.55 },
+  light: { ink: "#1c2126", grid: "#4a5560", edges: 0.3, obstacle: "#7f8b95" },
+  dark: { ink: "#07090b", grid: "#aeb8c2", edges: 0.55, obstacle: "#9aa6b1" },
 };
+
+const OBSTACLE_OPACITY = 0.36;
 
 // A round distance, about a tenth of `size`.
 function spacingOf(size) {
@@ -131,17 +135,20 @@ export class View {
     this.body = null; // the field `body`, where it was read
     this.surface = this.addMesh(frames.triangles.length / 4);
     this.surface.geometry.getAttribute("weight").array.forEach((_, i, all) => (all[i] = i % 9 % 4 === 0 ? 255 : 0));
-    this.section = this.addMesh(0, false);
+    this.section = this.addMesh(0, { isClipped: false });
     this.outline = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ depthTest: true }));
     this.outline.frustumCulled = false;
     this.outline.renderOrder = 2;
     this.scene.add(this.outline);
-    this.grids = run.solids.halfspaces.map((halfspace) => this.addGrid(halfspace));
+    this.obstacles = frames.obstacles;
+    this.solids = this.addSolids();
+    this.grids = run.solids.shapes.filter((shape) => shape.halfspace).map((shape) => this.addGrid(shape));
   }
 
   // The surface is clipped by the plane, the section lies in it.
-  addMesh(triangleCount, isClipped = true) {
+  addMesh(triangleCount, { isClipped = true, opacity = 1 } = {}) {
     const uniforms = { ...this.uniforms };
+    uniforms.opacity = { value: opacity };
     uniforms.isFlat = { value: !isClipped }; // a section shows the legend's own colours
     if (!isClipped) uniforms.isCut = { value: false };
     const material = new ShaderMaterial({
@@ -149,7 +156,9 @@ export class View {
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       uniforms,
-      side: DoubleSide,
+      transparent: opacity < 1,
+      depthWrite: opacity === 1,
+      side: opacity < 1 ? FrontSide : DoubleSide,
     });
     const mesh = new Mesh(new BufferGeometry(), material);
     this.reserve(mesh.geometry, triangleCount);
@@ -167,11 +176,21 @@ export class View {
     geometry.boundingSphere = new Sphere(new Vector3(), Infinity);
   }
 
-  addGrid({ point = [0, 0, 0], normal = [0, 0, 1] }) {
-    const { origin, size } = this.world;
-    const up = new Vector3(...normal).normalize();
-    const foot = new Vector3(...point.map((p, k) => p - origin[k]));
-    const centre = up.clone().multiplyScalar(foot.dot(up)); // below the middle of the scene
+  // Obstacles that have an end: translucent, in one colour, with lines between their faces.
+  addSolids() {
+    const solids = this.addMesh(this.obstacles.triangles.length, { opacity: OBSTACLE_OPACITY });
+    const { uniforms } = solids.material;
+    uniforms.neutral = { value: new Color() };
+    uniforms.edges = { value: 0 };
+    solids.geometry.getAttribute("code").array.fill(NO_CODE);
+    solids.geometry.getAttribute("weight").array.set(this.obstacles.weights());
+    solids.renderOrder = 4;
+    return solids;
+  }
+
+  addGrid(shape) {
+    const { size } = this.world;
+    const up = new Vector3(...(shape.halfspace.normal ?? [0, 0, 1])).normalize();
     const radius = 1.6 * size;
     const material = new ShaderMaterial({
       glslVersion: GLSL3,
@@ -184,13 +203,19 @@ export class View {
     });
     const grid = new Mesh(new CircleGeometry(radius, 96), material);
     grid.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), up));
-    grid.position.copy(centre);
     grid.renderOrder = 3;
     this.scene.add(grid);
-    return grid;
+    return { grid, up, shape };
   }
 
-  // Calls with vertices of the surface in up to a dozen frames.
+  // Below the middle of the scene, at its height in this frame.
+  layGrid({ grid, up, shape }) {
+    const { origin } = this.world;
+    const point = this.obstacles.pointOf(shape, this.frame) ?? shape.halfspace.point ?? [0, 0, 0];
+    grid.position.copy(up).multiplyScalar(new Vector3(...point.map((p, k) => p - origin[k])).dot(up));
+  }
+
+  // Calls with vertices of the surface in up to a dozen frames, and of what is near of the obstacles.
   visit(call) {
     const { positions, vertices, low, high, time_s } = this.frames;
     const stride = Math.max(1, Math.floor(time_s.length / 11));
@@ -200,6 +225,8 @@ export class View {
         const at = (k) => low[k] + ((high[k] - low[k]) * positions[3 * (vertices * frame + v) + k]) / LEVELS - this.world.origin[k];
         call(place.set(at(0), at(1), at(2)));
       }
+    const { near, origin } = this.world;
+    this.obstacles.visit(time_s.length, stride, (at) => call(place.fromArray(at.map((p, k) => Math.min(Math.max(p, near.low[k]), near.high[k]) - origin[k]))));
   }
 
   resize(width, height) {
@@ -208,12 +235,15 @@ export class View {
   }
 
   setTheme(theme) {
-    const { ink, grid, edges } = PALETTE[theme];
+    const { ink, grid, edges, obstacle } = PALETTE[theme];
     this.edgeStrength = edges;
     const raw = (target, colour) => target.setStyle(colour, "srgb-linear"); // shown as given
     raw(this.uniforms.ink.value, ink);
     raw(this.outline.material.color, theme === "light" ? "#000000" : "#ffffff");
-    for (const one of this.grids) raw(one.material.uniforms.ink.value, grid);
+    for (const one of this.grids) raw(one.grid.material.uniforms.ink.value, grid);
+    const { uniforms } = this.solids.material;
+    raw(uniforms.neutral.value, obstacle);
+    uniforms.edges.value = edges; // they show how it turns, edges of elements or not
   }
 
   setEdges(isOn) {
@@ -251,6 +281,10 @@ export class View {
       const offset = low[axis] - this.world.origin[axis];
       for (let i = axis; i < 3 * vertices; i += 3) this.places[i] = offset + step * positions[begin + i];
     }
+    const corners = this.solids.geometry.getAttribute("position");
+    this.obstacles.fill(corners.array, frame, this.world.origin);
+    corners.needsUpdate = true;
+    this.grids.forEach((one) => this.layGrid(one));
     this.update();
   }
 
@@ -258,6 +292,7 @@ export class View {
   setCut(cut) {
     this.cut = cut;
     this.uniforms.isCut.value = cut !== null;
+    this.solids.material.side = cut === null ? FrontSide : DoubleSide;
     if (cut) {
       const plane = [0, 0, 0, cut.side * cut.place];
       plane[cut.axis] = cut.side;
@@ -345,7 +380,8 @@ export class View {
     }
   }
 
-  // What lies under a point of the canvas (−1 … 1 each way): {tetrahedron, vertex, value} or null.
+  // What lies under a point of the canvas (−1 … 1 each way): {tetrahedron, value}, {obstacle} through which
+  // nothing is seen, or null.
   pick(x, y, camera) {
     const caster = new Raycaster();
     caster.setFromCamera(new Vector2(x, y), camera);
@@ -353,7 +389,10 @@ export class View {
     const isKept = (hit) => hit.object === this.section || !cut || (hit.point.getComponent(cut.axis) - cut.place) * cut.side <= 0;
     const meshes = this.section.visible ? [this.surface, this.section] : [this.surface];
     const hit = caster.intersectObjects(meshes, false).find(isKept);
-    if (!hit) return null;
+    if (!hit) {
+      const face = caster.intersectObject(this.solids, false).find(isKept)?.face;
+      return face ? { obstacle: this.obstacles.triangles[Math.floor(face.a / 3)].shape?.name ?? "obstacle" } : null;
+    }
     const t = Math.floor(hit.face.a / 3);
     const tetrahedron = hit.object === this.section ? this.room.owners[t] : this.frames.triangles[4 * t + 3];
     const { field } = this;

@@ -7,17 +7,27 @@ import { NO_CODE, decode } from "./codes.js";
 import { bytesOf, describe, listFields, neutralOf, rampOf, tintsOf } from "./colour.js";
 import { indexAt, readFrames } from "./data.js";
 import { format, h } from "./dom.js";
-import { View } from "./scene.js";
+import { PALETTE, View } from "./scene.js";
 
 const AXES = ["x", "y", "z"];
 const STEPS = 256; // of a ramp
 
-// One box around all runs in all frames.
-function worldOf(runs) {
-  const low = [0, 1, 2].map((k) => Math.min(...runs.map((run) => run.frames.low[k])));
-  const high = [0, 1, 2].map((k) => Math.max(...runs.map((run) => run.frames.high[k])));
-  const origin = low.map((value, k) => (value + high[k]) / 2);
-  return { low, high, origin, size: Math.hypot(...high.map((value, k) => value - low[k])) || 1 };
+// A box around the bodies of all runs in all frames, one around them and what is `near` of the obstacles, and
+// the latter's middle and diagonal.
+function worldOf(all) {
+  const low = [0, 1, 2].map((k) => Math.min(...all.map((frames) => frames.low[k])));
+  const high = [0, 1, 2].map((k) => Math.max(...all.map((frames) => frames.high[k])));
+  const reach = Math.hypot(...high.map((value, k) => value - low[k])) / 2;
+  const near = { low: [...low], high: [...high] };
+  for (const { obstacles, time_s } of all)
+    obstacles.visit(time_s.length, 1, (at) =>
+      at.forEach((p, k) => {
+        near.low[k] = Math.max(Math.min(near.low[k], p), low[k] - reach);
+        near.high[k] = Math.min(Math.max(near.high[k], p), high[k] + reach);
+      }),
+    );
+  const origin = near.low.map((value, k) => (value + near.high[k]) / 2);
+  return { low, high, near, origin, size: Math.hypot(...near.high.map((value, k) => value - near.low[k])) || 1 };
 }
 
 // The ends of the colour scale over all runs: the top is where 99.9 % of what is not at rest lies below.
@@ -49,7 +59,6 @@ export class Stage {
   constructor(runs, state) {
     this.runs = runs;
     this.state = state;
-    this.world = worldOf(runs);
     this.fieldNames = listFields(runs);
     this.views = [];
     this.isDue = false;
@@ -92,6 +101,7 @@ export class Stage {
 
   async load() {
     const all = await Promise.all(this.runs.map(readFrames));
+    this.world = worldOf(all);
     this.runs.forEach((run, k) => this.addPane(run, all[k]));
     for (const view of this.views) view.body = await view.frames.field("body");
     this.addCamera();
@@ -222,7 +232,7 @@ export class Stage {
     const colours = classes ? tintsOf(theme, classes) : Array.from({ length: STEPS }, (_, k) => ramp(k / (STEPS - 1)));
     const bytes = bytesOf(colours);
     this.views.forEach((view, k) => view.setField(this.fields[k], scale, bytes, classes, neutralOf(theme)));
-    this.legend.replaceChildren(...(classes ? this.classLegend(colours) : this.rampLegend(colours)));
+    this.legend.replaceChildren(...(classes ? this.classLegend(colours) : this.rampLegend(colours)), ...this.obstacleLegend());
     this.request();
   }
 
@@ -245,6 +255,13 @@ export class Stage {
     ];
   }
 
+  obstacleLegend() {
+    const names = [...new Set(this.runs.flatMap((run) => run.solids.shapes.map((shape) => shape.name)))];
+    if (names.length === 0) return [];
+    const label = names.length > 2 ? `${names.length} obstacles` : names.join(", ");
+    return [h("span.class.obstacles", { title: names.join(", ") }, h("span.swatch", { style: `background:${PALETTE[this.state.theme].obstacle}` }), label)];
+  }
+
   // The side of a cut on which the reader is, so that the section is always in sight.
   sideOf(axis) {
     return this.camera.position.getComponent(axis) < this.controls.target.getComponent(axis) ? -1 : 1;
@@ -262,6 +279,13 @@ export class Stage {
     this.request();
   }
 
+  tell(view, hit) {
+    if (hit.obstacle) return [h("b", hit.obstacle), " obstacle"];
+    const names = this.state.field === "body" ? view.run.solids.meshed : (this.info?.classes ?? []);
+    const value = this.info?.isClass ? (names[Math.round(hit.value)] ?? String(Math.round(hit.value))) : format(hit.value, this.info?.unit);
+    return [h("b", value), ` tetrahedron ${hit.tetrahedron}`];
+  }
+
   hover(view, event) {
     if (event.buttons || this.state.isPlaying || event.pointerType === "touch") {
       this.tip.hidden = true;
@@ -273,9 +297,7 @@ export class Stage {
     const hit = view.pick(x, y, this.camera);
     this.tip.hidden = !hit;
     if (!hit) return;
-    const names = this.state.field === "body" ? view.run.solids.meshed : (this.info?.classes ?? []);
-    const value = this.info?.isClass ? (names[Math.round(hit.value)] ?? String(Math.round(hit.value))) : format(hit.value, this.info?.unit);
-    this.tip.replaceChildren(h("b", value), ` tetrahedron ${hit.tetrahedron}`);
+    this.tip.replaceChildren(...this.tell(view, hit));
     const frame = this.panes.getBoundingClientRect();
     const left = Math.min(event.clientX - frame.left + 14, frame.width - 170);
     this.tip.style.transform = `translate(${left}px, ${event.clientY - frame.top + 14}px)`;

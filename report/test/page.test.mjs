@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page in a browser. `node page.test.mjs CHROMIUM TETLAP SCENE OUT` runs a scene with two overlap models,
-// makes the page, uses it, and leaves screenshots in OUT.
+// The page in a browser. `node page.test.mjs CHROMIUM TETLAP SCENE OBSTACLES OUT` runs a scene with two overlap
+// models, and one with obstacles of every kind, makes the pages, uses them, and leaves screenshots in OUT.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -8,7 +8,7 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { launch } from "./browser.mjs";
 
-const [chromium, tetlap, scene, out] = process.argv.slice(2);
+const [chromium, tetlap, scene, obstacles, out] = process.argv.slice(2);
 mkdirSync(out, { recursive: true });
 
 // Points of a frontier: what is tested is the page, so any will do.
@@ -51,10 +51,12 @@ function makePages() {
   writeFileSync(join(out, "pareto.json"), JSON.stringify(PARETO));
   run("report", "-q", ...runs, "--pareto", join(out, "pareto.json"), "-o", join(out, "two.html"));
   run("report", "-q", runs[0], "--surface", "-o", join(out, "one.html"));
+  run("run", obstacles, "-q", "-o", join(out, "obstacles"), "-s", "time.end=1", "-s", "output.frames=10");
+  run("report", "-q", join(out, "obstacles"), "-o", join(out, "obstacles.html"));
   writeFileSync(join(out, "stress.json"), JSON.stringify(STRESS));
   writeFileSync(join(out, "later.json"), JSON.stringify(STRESS_LATER));
   run("report", "-q", "--stress", join(out, "stress.json"), "--stress", join(out, "later.json"), "-o", join(out, "stress.html"));
-  return { stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
+  return { obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
 }
 
 // Different colours in each canvas, read right after it was drawn: 1 is an empty one.
@@ -226,6 +228,100 @@ const tests = {
   },
 };
 
+// The corners of an obstacle in the frame that is shown, as drawn: [[x, y, z], …] in space.
+const CORNERS = (name) => `(() => {
+  const view = tetlap.stage.views[0];
+  const at = view.solids.geometry.getAttribute("position").array;
+  const corners = [];
+  view.obstacles.triangles.forEach(({ shape }, t) => {
+    if (shape.name !== "${name}") return;
+    for (let corner = 3 * t; corner < 3 * t + 3; corner++) corners.push([0, 1, 2].map((k) => at[3 * corner + k] + view.world.origin[k]));
+  });
+  return corners;
+})()`;
+
+const boxOf = (corners) => [0, 1, 2].map((k) => [Math.min(...corners.map((x) => x[k])), Math.max(...corners.map((x) => x[k]))]);
+
+// tests/scenes/obstacle_shapes.yaml over 1 s in 10 frames.
+const obstacleTests = {
+  async "obstacles without a mesh are where they stand or have moved to"(page) {
+    const boxes = {
+      0: { ball: [[0.75, 1.25], [-0.25, 0.25], [0.25, 0.75]], blade: [[2.8, 3.2], [0.95, 1.05], [0.4, 0.6]] },
+      10: { ball: [[0.75, 1.25], [-0.25, 0.25], [0.25, 0.75]], blade: [[2.95, 3.05], [0.8, 1.2], [0.9, 1.1]] }, // a quarter turn, 0.5 m up
+    };
+    for (const [frame, solids] of Object.entries(boxes)) {
+      await page.eval(`tetlap.transport.seek(${frame})`);
+      for (const [name, wanted] of Object.entries(solids)) {
+        const box = boxOf(await page.eval(CORNERS(name))).flat();
+        wanted.flat().forEach((value, k) => assert.ok(Math.abs(box[k] - value) < 1e-3, `${name} in frame ${frame}: ${box}`));
+      }
+    }
+  },
+
+  async "they turn: the lines between their faces go round"(page) {
+    await page.eval("tetlap.transport.seek(0)");
+    const [before, weights] = await page.eval(`[${CORNERS("roller")}, Array.from(tetlap.stage.views[0].obstacles.weights())]`);
+    assert.ok(weights.includes(0) && weights.filter((weight) => weight === 0).length < weights.length / 4);
+    await page.eval("tetlap.transport.seek(1)"); // by 1 rad about y, through (3, 2, 0.5), and 0.02 m up
+    const after = await page.eval(CORNERS("roller"));
+    before.forEach(([x, y, z], i) => {
+      const turned = [3 + (x - 3) * Math.cos(1) + (z - 0.5) * Math.sin(1), y, 0.52 - (x - 3) * Math.sin(1) + (z - 0.5) * Math.cos(1)];
+      turned.forEach((value, k) => assert.ok(Math.abs(after[i][k] - value) < 1e-3, `corner ${i}: ${after[i]} instead of ${turned}`));
+    });
+  },
+
+  async "half-spaces are grids at their height, and no part of the box around the scene"(page) {
+    const height = (frame) => `(tetlap.transport.seek(${frame}), tetlap.stage.views[0].grids.map(({ grid, up, shape }) => [shape.name, grid.position.clone().add({ x: tetlap.stage.world.origin[0], y: tetlap.stage.world.origin[1], z: tetlap.stage.world.origin[2] }).dot(up)]))`;
+    const [first, last] = [await page.eval(height(0)), await page.eval(height(10))];
+    assert.deepEqual(first.map(([name]) => name), ["ground", "slope"]);
+    const wanted = [[0, -2.4], [0, 0.6]]; // the slope rises by (1, 2, 3) · (0.6, 0, 0.8)
+    [first, last].forEach((heights, k) => heights.forEach(([name, value], i) => assert.ok(Math.abs(value - wanted[k][i]) < 2e-3, `${name}: ${value}`)));
+    const { near } = await page.eval("tetlap.stage.world");
+    assert.ok(near.low[2] > -1 && near.high[0] <= 3.5, JSON.stringify(near)); // the roller's side is at 3.3
+    assert.equal((await page.eval(CORNERS("ground"))).length, 0);
+  },
+
+  async "they are seen, and in the colour of no field"(page) {
+    const pictures = await page.eval(`(() => {
+      const { solids } = tetlap.stage.views[0];
+      const shown = ${PICTURE};
+      solids.visible = false;
+      const hidden = ${PICTURE};
+      solids.visible = true;
+      return [shown, hidden];
+    })()`);
+    assert.notEqual(pictures[0], pictures[1]);
+    const codes = await page.eval(`[...new Set(tetlap.stage.views[0].solids.geometry.getAttribute("code").array)]`);
+    assert.deepEqual(codes, [65535]);
+  },
+
+  async "the legend lists them, and pointing at one tells its name"(page) {
+    const [label, names] = await page.eval(`(({ textContent, title }) => [textContent, title])(document.querySelector(".legend .obstacles"))`);
+    assert.equal(label, "8 obstacles");
+    assert.equal(names, "ground, ball, crate, pipe, slope, planet, blade, roller");
+    const told = await page.eval(`(() => {
+      const [view] = tetlap.stage.views;
+      const { origin } = tetlap.stage.world;
+      const centre = view.grids[0].grid.position.clone().set(1 - origin[0], 0 - origin[1], 0.5 - origin[2]).project(tetlap.stage.camera);
+      return view.pick(centre.x, centre.y, tetlap.stage.camera);
+    })()`);
+    assert.deepEqual(told, { obstacle: "ball" });
+  },
+
+  async "a cut opens them, too"(page) {
+    const [whole, cut] = await page.eval(`(() => {
+      const { surface, section, outline } = tetlap.stage.views[0];
+      const picture = () => { for (const body of [surface, section, outline]) body.visible = false; return ${PICTURE}; };
+      const whole = (tetlap.state.set({ cut: -1 }), picture());
+      const cut = (tetlap.state.set({ cut: 0, cutShare: 0.5 }), picture());
+      surface.visible = true;
+      tetlap.state.set({ cut: -1 });
+      return [whole, cut];
+    })()`);
+    assert.notEqual(whole, cut);
+  },
+};
+
 const VERDICT = (name, model) => `#stress button[aria-label^="${name}, ${model}:"]`;
 
 const stressTests = {
@@ -305,6 +401,12 @@ try {
   for (const [name, test] of Object.entries(tests)) await attempt(name, () => test(page, pages));
   await attempt("no complaint after all of it", () => assert.deepEqual(page.problems, []));
   await page.close();
+  const shapes = await browser.open(pages.obstacles, { width: 1280, height: 900 });
+  for (const [name, test] of Object.entries(obstacleTests)) await attempt(name, () => test(shapes));
+  await attempt("no complaint after all of it", () => assert.deepEqual(shapes.problems, []));
+  await shapes.close();
+  for (const [width, theme] of [[1280, "light"], [1280, "dark"], [400, "light"]])
+    await attempt(`obstacles fit ${width} pixels, ${theme}`, () => shoot(browser, pages.obstacles, `obstacles-${theme}-${width}`, { width, height: 1000, theme, isMobile: width < 600 }, "tetlap.transport.seek(5)"));
   for (const width of [1280, 400]) {
     const table = await browser.open(pages.stress, { width, height: 900, isMobile: width < 600 });
     for (const [name, test] of Object.entries(stressTests)) await attempt(`${width} pixels: ${name}`, () => test(table));
