@@ -77,21 +77,24 @@ static bool is_inside(double across[4][4], double noise) {
 }
 
 // The part of an edge that is inside or on the boundary, as two parameters between 0 and 1; false if there is
-// none. An end on a plane stays when the rest of the edge is beyond: it may be a vertex of the intersection,
-// as where two tetrahedra share a vertex. An edge within a plane is not cut by it.
+// none, not even with planes moved out by noise, which are entered at `earliest` and left from `latest` on
+// (places along the edge are rounded, too).
+// The ends are on the planes as they are; where these leave nothing, no farther than the moved ones let them.
+// An edge within a plane is not cut by it.
 static bool clip(const double p[4], const double q[4], double noise, double range[2]) {
   bool is_out = false;
-  double from = 0, to = 1;
+  double from = 0, to = 1, earliest = 0, latest = 1;
   for (int k = 0; k < 4; k++) {
-    double at = p[k] / (p[k] - q[k]);
-    is_out |= p[k] < -noise && q[k] < -noise;
-    bool enters = p[k] < -noise || (p[k] < 0 && q[k] > noise);
-    bool leaves = q[k] < -noise || (q[k] < 0 && p[k] > noise);
-    from = enters ? fmax(from, q[k] > 0 ? at : 1) : from;
-    to = leaves ? fmin(to, p[k] > 0 ? at : 0) : to;
+    double slope = 1 / (p[k] - q[k]), at = p[k] * slope, moved = at + noise * slope;
+    bool is_p_out = p[k] < -noise, is_q_out = q[k] < -noise;
+    is_out |= is_p_out && is_q_out;
+    from = is_p_out || (p[k] < 0 && q[k] > noise) ? fmax(from, at) : from;
+    to = is_q_out || (q[k] < 0 && p[k] > noise) ? fmin(to, at) : to;
+    earliest = is_p_out ? fmax(earliest, moved) : earliest;
+    latest = is_q_out ? fmin(latest, moved) : latest;
   }
-  range[0] = from, range[1] = to;
-  return !is_out && from <= to + noise;
+  range[0] = fmin(from, latest), range[1] = fmax(to, earliest);
+  return !is_out && earliest <= latest + noise;
 }
 
 // Adds the ends of what is left of one tetrahedron's six edges to the slacks `own` and `other`; how many.

@@ -7,6 +7,12 @@
 // the other tetrahedron's planes. Every vertex of the intersection is an end of a clipped edge, so the mean
 // of all ends lies strictly inside; and a point on an edge is a combination of slacks at the edge's ends,
 // which loses no digits where the intersection is small.
+//
+// What counts is how far a point is from a plane, never its place along an edge: an edge as good as parallel
+// to a plane may cross it anywhere, by rounding alone. So an edge has ends if the planes, moved out by noise
+// (below), leave any of it. Then all vertices of the intersection, which rounding moves by less, are kept, up
+// to noise; and if the mean of the at most 24 ends is on a plane, none is farther above it than some 24 times
+// noise: so much of a tetrahedron's height is what an overlap that is called EMPTY may have.
 #ifndef TETLAP_CONTACT_GEO_GATE_H
 #define TETLAP_CONTACT_GEO_GATE_H
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The overlap model `geo` before any network: the gate, the analytic centre, the frame, the features, and how
-// each of them changes with the coordinates.
+// The overlap model `geo` before any network: the analytic centre, the frame, the features, and how each of
+// them changes with the coordinates.
 #include "suite.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "base/random.h"
-#include "contact/exact.h"
 #include "contact/geo_centre.h"
 #include "contact/geo_features.h"
 #include "contact/geo_frame.h"
 #include "contact/invariant.h"
+#include "contact/overlap.h"
 #include "datagen/hard.h"
 
 static const double corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -33,91 +33,6 @@ static int class_named(const char *name) {
     if (strcmp(datagen_hard_classes[c].name, name) == 0) return c;
   ck_abort_msg("no class '%s'", name);
 }
-
-START_TEST(the_gate_agrees_with_exact_in_every_class) {
-  int inside = 0, empty = 0;
-  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
-    for (int member = 0; member < 300; member++) {
-      DatagenHardPair pair = datagen_hard_make(c, member);
-      ContactGeoGate gate;
-      ContactGeoOutcome outcome = contact_geo_gate(&gate, pair.x);
-      double volume;
-      unsigned flags;
-      ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &volume, NULL, NULL, &flags));
-      // what the gate leaves to exact is right; overlaps thinner than rounding may be missed, none invented
-      if (outcome == CONTACT_GEO_UNFIT) continue;
-      bool is_missed =
-          outcome == CONTACT_GEO_EMPTY && volume <= 1e-15 * contact_invariant_smaller_volume(pair.x);
-      ck_assert_msg((volume > 0) == (outcome == CONTACT_GEO_INSIDE) || is_missed,
-                    "%s, member %d: the gate says %d, V = %g", datagen_hard_classes[c].name, member, outcome,
-                    volume);
-      if (outcome == CONTACT_GEO_INSIDE) ck_assert(gate.is_enclosed || !(flags & CONTACT_OVERLAP_ENCLOSED));
-      *(outcome == CONTACT_GEO_INSIDE ? &inside : &empty) += 1;
-    }
-  ck_assert_int_gt(inside, 3000);
-  ck_assert_int_gt(empty, 3000);
-}
-END_TEST
-
-START_TEST(only_flat_and_sliver_shaped_tetrahedra_are_left_to_exact) {
-  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++) {
-    bool is_flat =
-        strstr(datagen_hard_classes[c].name, "sliver") || strcmp(datagen_hard_classes[c].name, "flat") == 0;
-    for (int member = 0; member < 300; member++) {
-      DatagenHardPair pair = datagen_hard_make(c, member);
-      ContactGeoFrame frame;
-      bool is_unfit = contact_geo_frame(&frame, pair.x) == CONTACT_GEO_UNFIT;
-      ck_assert_msg(!is_unfit || is_flat, "%s, member %d", datagen_hard_classes[c].name, member);
-      ck_assert_msg(is_unfit || !strstr(datagen_hard_classes[c].name, "sliver"), "member %d", member);
-    }
-  }
-}
-END_TEST
-
-// Of two equal tetrahedra all planes coincide; `x` in one order of vertices of the second. The gate must find
-// the whole of one in the other.
-static void check_equal(const double tet[12], int order) {
-  double x[24];
-  memcpy(x, tet, 12 * sizeof *x);
-  datagen_hard_permute(tet, order, x + 12);
-  ContactGeoGate gate;
-  ContactGeoOutcome outcome = contact_geo_gate(&gate, x);
-  ck_assert_msg(outcome == CONTACT_GEO_INSIDE && gate.is_enclosed, "order %d: outcome %d, enclosed %d", order,
-                outcome, gate.is_enclosed);
-  for (int k = 0; k < 8; k++) ck_assert_near(gate.slack[k], 0.25, 1e-9);
-}
-
-// Found by tools/fuzz: det/L³ = 2e-5, so that a vertex on a plane seems to be 5e-12 beyond it.
-START_TEST(equal_slivers_overlap_whole_in_every_order) {
-  static const double sliver[12] = {0x1.6c8912a8b91eap+28, 0x1.0a394314fb5ecp+24, -0x1.2c83882049612p+24,
-                                    0x1.15d8a25f810b7p+24, 0x1.34ed8a02ad56fp+27, 0x1.1b3ce7fe14007p+28,
-                                    0x1.0dd000047eaacp+28, 0x1.b2106aefa6639p+25, 0x1.fd36bd116e788p+25,
-                                    0x1.3078aa1e494ccp+26, 0x1.1ae1ca5ccf563p+28, 0x1.88fe23e0a4fb7p+26};
-  for (int order = 0; order < 24; order++) check_equal(sliver, order);
-}
-END_TEST
-
-START_TEST(equal_tetrahedra_of_any_flatness_overlap_whole_in_every_order) {
-  Random random = random_seeded(61, 0);
-  int seen = 0;
-  for (int k = 0; k < 4000; k++) {
-    double tet[12] = {0}, axes[9], height = pow(10, -4 * random_uniform(&random));
-    random_rotation(&random, axes);
-    for (int v = 0; v < 4; v++)
-      for (int a = 0; a < 3; a++) {
-        double length = (a == 2 ? height : 1) * random_uniform(&random);
-        for (int c = 0; c < 3; c++) tet[3 * v + c] += length * axes[3 * a + c];
-      }
-    ContactGeoGate gate;
-    double twice[24];
-    memcpy(twice, tet, sizeof tet), memcpy(twice + 12, tet, sizeof tet);
-    if (contact_geo_gate(&gate, twice) == CONTACT_GEO_UNFIT) continue;
-    for (int order = 0; order < 24; order++) check_equal(tet, order);
-    seen++;
-  }
-  ck_assert_int_gt(seen, 3000);
-}
-END_TEST
 
 START_TEST(a_simplex_has_its_centroid_in_the_middle) {
   double x[24];
@@ -230,7 +145,7 @@ START_TEST(an_affine_map_changes_neither_slacks_nor_projector) {
       ck_assert_near((&frame.projector.row[0][0])[k], (&image.projector.row[0][0])[k], allowed);
     ck_assert_near(image.volume / frame.volume / fabs(det), 1, allowed);
   }
-  ck_assert_int_gt(seen, 50);
+  ck_assert_int_gt(seen, 30);
 }
 END_TEST
 
@@ -343,7 +258,7 @@ START_TEST(features_are_what_the_header_says) {
     find_features(contact_geo_kernel(), set, &frame.projector, &invariants, features);
     for (int f = 0; f < set->count; f++) ck_assert_near(features[f], expected[f], 1e-14 * (1 + expected[f]));
   }
-  ck_assert_int_gt(seen, 50);
+  ck_assert_int_gt(seen, 30);
 }
 END_TEST
 
@@ -491,10 +406,6 @@ END_TEST
 
 int main(void) {
   TCase *cases = tcase_create("geo");
-  tcase_add_test(cases, the_gate_agrees_with_exact_in_every_class);
-  tcase_add_test(cases, only_flat_and_sliver_shaped_tetrahedra_are_left_to_exact);
-  tcase_add_test(cases, equal_slivers_overlap_whole_in_every_order);
-  tcase_add_test(cases, equal_tetrahedra_of_any_flatness_overlap_whole_in_every_order);
   tcase_add_test(cases, a_simplex_has_its_centroid_in_the_middle);
   tcase_add_test(cases, of_two_equal_tetrahedra_every_plane_counts_half);
   tcase_add_test(cases, at_the_centre_the_logarithms_of_the_slacks_are_stationary);
