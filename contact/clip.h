@@ -46,10 +46,11 @@
 //
 // The ones are planes that move along their normals. The rest: λ of a flat tetrahedron tell a point's place
 // along its faces to ν/det of L only, and by so much the other's planes seem to have moved, if they stand
-// across. Where V is small and a tetrahedron flat, φ may be as wrong as V, and nothing is concluded. Pairs
-// for which this bound does not do (slivers, mostly) are answered by contact_overlap_exact and flagged
-// FALLBACK; their ∇²V is still from clipping, zero if a tetrahedron is too flat for it. In single precision:
-// |δV| ≤ 1e-3 V, or 1e-4 of the smaller tetrahedron where V is less than a tenth of that.
+// across. `clip`, which sums each face on its own, adds ν/8 λ_f(o) for each face that P has (clip_lanes.h).
+// Where V is small and a tetrahedron flat, φ may be as wrong as V, and nothing is concluded. Pairs for which
+// this bound does not do (slivers, mostly) are answered by contact_overlap_exact and flagged FALLBACK; their
+// ∇²V is still from clipping, zero if a tetrahedron is too flat for it. In single precision: |δV| ≤ 1e-3 V,
+// or 1e-4 of the smaller tetrahedron where V is less than a tenth of that.
 #ifndef TETLAP_CONTACT_CLIP_H
 #define TETLAP_CONTACT_CLIP_H
 

@@ -17,10 +17,12 @@
 //
 // Every number of a corner is a convex combination with the same weights, so wrong decisions on what is only
 // rounding move the corner by no more than rounding does. What they may spoil is that polygons close; that is
-// seen: a segment has a start and an end, or neither. Doubtful, and left to careful clipping, is a lane
-// where it has not; where a vertex is closer to a plane of the other than about 1e-9 (identical tetrahedra
-// would each count as inside the other); where edges meet and V is not positive; where rounding may spoil V
-// (clip.c); where a tetrahedron is too flat.
+// seen: a segment has one start and one end, or neither. Where an edge of A meets one of B, rounding may find
+// a part of each within the other though by the way the faces stand only one can be: a start then is found
+// twice, on either edge. Doubtful, and left to careful clipping, is a lane where it has not; where a vertex
+// is closer to a plane of the other than about 1e-9 (identical tetrahedra would each count as inside the
+// other); where edges meet and V is not positive; where rounding may spoil V (clip.h); where a tetrahedron is
+// too flat.
 //
 // A lane's result depends on its pair alone, and is the same for every instruction set.
 #ifndef TETLAP_CONTACT_CLIP_LANES_H

@@ -130,6 +130,50 @@ START_TEST(edges_that_meet_leave_lanes_right_or_doubtful) {
 }
 END_TEST
 
+// All orders of the vertices and tetrahedra of a pair must be right or doubtful; how many are doubtful.
+static int check_orders(const ContactClipLanes *kernel, const double x[24], const char *what) {
+  enum { ORDERS = 2 * 24 * 24 };
+  int sure = 0;
+  for (int order = 0; order < ORDERS; order += kernel->width) {
+    Group group;
+    for (int k = 0; k < kernel->width; k++) {
+      double swapped[24];
+      contact_overlap_swap(x, swapped);
+      const double *from = (order + k) & 1 ? swapped : x;
+      datagen_hard_permute(from, (order + k) / 2 % 24, group.x[k]);
+      datagen_hard_permute(from + 12, (order + k) / 48, group.x[k] + 12);
+    }
+    run(kernel, &group);
+    sure += check_group(kernel, &group, what);
+  }
+  return ORDERS - sure;
+}
+
+// Found by tools/fuzz: the tip of a sliver in a large tetrahedron, whose cut faces are a millionth of the
+// sliver's own.
+START_TEST(small_faces_that_rounding_keeps_open_are_doubted) {
+  static const double x[24] = {0x1.3p+11,    0x1.a8p+12,  0x1.46p+14, 0x1.327p+11,  0x1.6p+12,  0x1.ap+11,
+                               0x1.3168p+11, -0x1.ccp+13, 0x1.8p+13,  0x1.3124p+11, 0x1.5p+12,  0x1.dcp+14,
+                               0x1.3p+11,    0x1.dp+11,   0x1.46p+14, 0x1.f8p+14,   0x1.48p+12, 0x1.bcp+14,
+                               0x1.48p+13,   0x1.5p+11,   0x1.7p+12,  0x1.2p+13,    0x1.16p+14, 0x1.c8p+12};
+  ck_assert_int_gt(check_orders(kernels[_i], x, "tip of a sliver"), 0);
+}
+END_TEST
+
+// Found by tools/fuzz: an edge of the one seems to end within the other, and the other's edge that it meets
+// within the one, which cannot both be.
+START_TEST(segments_that_end_twice_are_doubted) {
+  static const double x[24] = {
+      0x1.3424061d02a49p+20, 0x1.f85ee039e87d1p+25, 0x1.00f42403f7563p+28, 0x1.34240755660f6p+20,
+      0x1.f85ee0408efe3p+25, 0x1.00f424036b502p+28, 0x1.34240382f7958p+20, 0x1.f85ee058fdf68p+25,
+      0x1.00f424078444bp+28, 0x1.3424022ce2a92p+20, 0x1.f85ee03c6e9dfp+25, 0x1.00f4240bae195p+28,
+      0x1.34240693f1b48p+20, 0x1.f85ee0426fbeap+25, 0x1.00f424053ebfcp+28, 0x1.34240382f8958p+20,
+      0x1.f85ee058fdf68p+25, 0x1.00f424078444bp+28, 0x1.342407555ea26p+20, 0x1.f85ee0408efe3p+25,
+      0x1.00f424036b502p+28, 0x1.3424022ce3a93p+20, 0x1.f85ee03c6e9dfp+25, 0x1.00f4240bae195p+28};
+  ck_assert_int_gt(check_orders(kernels[_i], x, "edges that meet"), 0);
+}
+END_TEST
+
 // Many of these are flat but for rounding, and what is found of their intersection may be anything.
 START_TEST(flat_lanes_that_are_apart_have_no_volume) {
   const ContactClipLanes *kernel = kernels[_i];
@@ -280,6 +324,8 @@ int main(void) {
   tcase_add_loop_test(cases, lanes_that_are_not_doubtful_are_right_in_every_class, 0, kernel_count);
   tcase_add_loop_test(cases, ordinary_pairs_are_hardly_ever_doubtful, 0, kernel_count);
   tcase_add_loop_test(cases, edges_that_meet_leave_lanes_right_or_doubtful, 0, kernel_count);
+  tcase_add_loop_test(cases, small_faces_that_rounding_keeps_open_are_doubted, 0, kernel_count);
+  tcase_add_loop_test(cases, segments_that_end_twice_are_doubted, 0, kernel_count);
   tcase_add_loop_test(cases, flat_lanes_that_are_apart_have_no_volume, 0, kernel_count);
   tcase_add_loop_test(cases, lanes_that_are_not_finite_are_doubtful, 0, kernel_count);
   tcase_add_loop_test(cases, a_lane_knows_nothing_of_the_others, 0, kernel_count);
