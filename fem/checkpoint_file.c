@@ -127,6 +127,13 @@ static void costs_of(const FemEffectCost *cost, double values[COST_COUNT]) {
   memcpy(values, all, sizeof all);
 }
 
+// Seconds and counts.
+static bool are_costs(const double values[COST_COUNT]) {
+  for (int k = 0; k < COST_COUNT; k++)
+    if (!(values[k] >= 0 && values[k] < 0x1p63)) return false;
+  return true;
+}
+
 static FemEffectCost cost_of(const double values[COST_COUNT]) {
   return (FemEffectCost){.force_s = values[0],
                          .jacobian_s = values[1],
@@ -319,7 +326,7 @@ static Status read_effect(hid_t file, FemCheckpoint *checkpoint, int i, const ch
   TRY(status);
   snprintf(place, sizeof place, "effects/%02d/cost", i);
   status = read_array(file, path, place, 1, &cost_count, &costs);
-  if (!status && cost_count != COST_COUNT) status = fail_lacking(path, place);
+  if (!status && !(cost_count == COST_COUNT && are_costs(costs))) status = fail_lacking(path, place);
   if (!status) checkpoint->so_far.effects[i].cost = cost_of(costs);
   memory_free(costs);
   return status;

@@ -214,6 +214,18 @@ START_TEST(a_right_head_does_not_make_a_checkpoint) {
 }
 END_TEST
 
+START_TEST(seconds_that_no_effect_can_have_taken_are_refused) {
+  static const double wrong[] = {-INFINITY, NAN, -1e-9, 0x1p63};
+  for (int k = 0; k < 4; k++) {
+    FemCheckpoint checkpoint = example();
+    checkpoint.so_far.effects[1].cost.force_s = wrong[k];
+    ck_assert_ok(fem_checkpoint_write(&checkpoint, path));
+    expect(STATUS_INPUT, "no fitting 'effects/01/cost'");
+    fem_checkpoint_destroy(&checkpoint);
+  }
+}
+END_TEST
+
 static int count_files(void) {
   char command[128], text[16] = "";
   snprintf(command, sizeof command, "ls -A %s | wc -l", folder);
@@ -313,6 +325,7 @@ int main(void) {
   tcase_add_test(test_case, a_flipped_bit_anywhere_is_refused);
   tcase_add_test(test_case, foreign_files_are_refused_by_name);
   tcase_add_test(test_case, a_right_head_does_not_make_a_checkpoint);
+  tcase_add_test(test_case, seconds_that_no_effect_can_have_taken_are_refused);
   tcase_add_test(test_case, a_disk_that_is_full_leaves_the_last_checkpoint_whole);
   tcase_add_test(test_case, a_folder_that_is_not_there_is_named);
   tcase_add_test(test_case, every_allocation_may_fail);
