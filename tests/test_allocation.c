@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Allocation k fails, for every k, while a scene, a mesh, weights, a data set or a checkpoint is read and
-// while a run is set up: out of memory is told, nothing leaks, nothing crashes.
+// while a run is set up: out of memory is told, nothing leaks, nothing crashes. And a run holds no more the
+// longer it lasts.
 //
 // Every allocation of our own code is counted and can fail, since the calls are replaced at link time (--wrap
 // in tests/CMakeLists.txt). Those inside shared libraries (SUNDIALS, SuiteSparse, HDF5, libyaml, jansson,
@@ -31,6 +32,7 @@ static struct {
   bool is_on, has_struck;
   long calls, fails; // fails: that call, counted from 1; 0: none
   int live_count;
+  size_t live_bytes;
   void *live[MOST_LIVE]; // by hash of the address; NULL: free place
 } watch;
 
@@ -45,6 +47,7 @@ static void remember(void *array) {
   if (watch.live_count > MOST_LIVE / 2) abort();
   watch.live[place_of(array)] = array;
   watch.live_count++;
+  watch.live_bytes += memory_held(array);
 }
 
 // Whatever stands behind in the same run of places moves up.
@@ -53,6 +56,7 @@ static void forget(void *array) {
   if (!array || !watch.live[at]) return; // it is older than the watch, or a library's
   watch.live[at] = NULL;
   watch.live_count--;
+  watch.live_bytes -= memory_held(array);
   for (size_t next = (at + 1) % MOST_LIVE; watch.live[next]; next = (next + 1) % MOST_LIVE) {
     void *moved = watch.live[next];
     watch.live[next] = NULL;
@@ -351,6 +355,45 @@ START_TEST(a_checkpoint_is_read_and_resumed) {
 }
 END_TEST
 
+// A falling block, two frames or more in every step.
+static const char falling[] = "bodies: [{name: block, mesh: {box: {size: [1, 1, 1], cells: 1}},\n"
+                              "  material: {young: 1e5, poisson: .3, density: 1000}}]\n"
+                              "effects: {gravity: [0, 0, -9.81]}\n"
+                              "time: {end: 1, max_step: 2e-3}\n"
+                              "output: {frames: 1200, checkpoint: {frames: 100, seconds: 0}}\n";
+
+typedef struct Holding {
+  size_t early, late; // bytes of ours after the step that reaches a sixth of the time, and after the last
+} Holding;
+
+static Status weigh(void *self, const FemRunProgress *progress) {
+  Holding *holding = self;
+  if (holding->early == 0 && progress->time > progress->end / 6) holding->early = watch.live_bytes;
+  holding->late = watch.live_bytes;
+  return STATUS_OK;
+}
+
+// A thousand frames, each with a line of the history, and ten checkpoints later: less than a byte a frame,
+// which is room for numbers that have become longer.
+START_TEST(a_run_holds_no_more_the_more_frames_it_has_written) {
+  ck_assert_ok(app_scene_read_text("falling.yaml", falling, strlen(falling), &job.scene));
+  ck_assert_ok(fem_model_create(&job.model, &job.scene));
+  Holding holding = {0};
+  FemRunOptions options = {.directory = folder, .observe = weigh, .observer = &holding};
+  FemRunResult result;
+  watch.is_on = true;
+  ck_assert_ok(fem_run(&job.model, &options, &result));
+  watch.is_on = false;
+  fem_run_result_destroy(&result);
+  char last[128];
+  snprintf(last, sizeof last, "%s/frame_01200.vtu", folder);
+  ck_assert_int_eq(access(last, F_OK), 0);
+  ck_assert_uint_gt(holding.early, 1000);
+  ck_assert_uint_lt(holding.late, holding.early + 1000);
+  close_job();
+}
+END_TEST
+
 int main(void) {
   log_set_level(LOG_SILENT);
   omp_set_num_threads(1);
@@ -364,5 +407,6 @@ int main(void) {
   tcase_add_loop_test(test_case, a_system_is_built, 0, 3);
   tcase_add_test(test_case, a_run_begins);
   tcase_add_test(test_case, a_checkpoint_is_read_and_resumed);
+  tcase_add_test(test_case, a_run_holds_no_more_the_more_frames_it_has_written);
   return suite_run("allocation", test_case, 60);
 }
