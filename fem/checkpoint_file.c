@@ -39,7 +39,7 @@ static herr_t keep_description(unsigned level, const H5E_error2_t *error, void *
   return 0;
 }
 
-// HDF5 keeps a freed buffer for the next one of just that size, and the history has another size every time.
+// HDF5 keeps a freed buffer for the next one of just that size, and texts have another size every time.
 static void forget_buffers(void) {
   H5garbage_collect();
 }
