@@ -42,7 +42,7 @@ static Status read_entry(const char *tag, FemPvdList *list, int *file_count) {
   if (number == 0) list->times[list->count++] = at;
   if (list->count == 1) list->part_count = *file_count + 1;
   if (list->count == 0 || at != list->times[list->count - 1] ||
-      *file_count != (list->count - 1) * list->part_count + number)
+      number != *file_count - (list->count - 1) * list->part_count)
     return status_fail(STATUS_INPUT, "the times have not the same parts, in order");
   file += strlen(" file=\"");
   size_t length = strcspn(file, "\"");

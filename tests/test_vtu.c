@@ -3,6 +3,7 @@
 // byte of every array must be back.
 #include "suite.h"
 
+#include <limits.h>
 #include <omp.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -492,6 +493,7 @@ START_TEST(a_list_whose_times_have_other_parts_is_refused) {
     int count, parts[4];
     double times[4];
   } lists[] = {
+      {2, {0, INT_MAX}, {0, 0}},       // far from in order
       {3, {0, 1, 0}, {0, 0, 1}},       // the last lacks one
       {4, {0, 0, 1, 0}, {0, 1, 1, 2}}, // the second has one more
       {3, {0, 2, 1}, {0, 0, 0}},       // not in order
