@@ -85,7 +85,7 @@ static bool clip(const double p[4], const double q[4], double noise, double rang
   bool is_out = false;
   double from = 0, to = 1, earliest = 0, latest = 1;
   for (int k = 0; k < 4; k++) {
-    double slope = 1 / (p[k] - q[k]), at = p[k] * slope, moved = at + noise * slope;
+    double inverse = 1 / (p[k] - q[k]), at = p[k] * inverse, moved = at + noise * inverse;
     bool is_p_out = p[k] < -noise, is_q_out = q[k] < -noise;
     is_out |= is_p_out && is_q_out;
     from = is_p_out || (p[k] < 0 && q[k] > noise) ? fmax(from, at) : from;

@@ -5,8 +5,9 @@
 //   exact, clip-scalar, clip, geo   finite numbers; 0 ≤ V ≤ the smaller volume; Σ∇V = 0, Σ x×∇V = 0,
 //                                   Σ x·∇V = 3V; disjoint means ∇V = 0; a flat tetrahedron is told as such
 //   clip-scalar, clip               V as exact within what clip.h states
-//   clip, geo                       what a pair gets does not depend on its lane nor on its neighbours: same
-//   bits all                             nothing depends on the order of vertices and tetrahedra
+//   clip, geo                       the same bits in whichever lane, beside whichever neighbours; nothing
+//                                   depends on the order of vertices and tetrahedra
+//   geo                             no overlap is missed, beyond what geo_gate.h calls noise
 //
 // Numbers that are not finite must be refused. Lengths beyond 2^±60 are evaluated, too, but V and ∇V may
 // overflow or underflow there and nothing is claimed of them.
@@ -145,6 +146,9 @@ static void check_against_exact(Model model, const double x[SIZE], const Answer 
   FUZZ_CLAIM(is_flat == is_truly_flat, "%s: flags %u, exact %u", name, answer->flags, exact->flags);
   if (model == GEO) {
     double error = fabs(answer->volume - exact->volume);
+    FUZZ_CLAIM(!(answer->flags & CONTACT_OVERLAP_DISJOINT) ||
+                   exact->volume <= 1e-9 * contact_invariant_smaller_volume(x) + doubt_of_geo(x),
+               "%s: disjoint, exact V = %.17g", name, exact->volume);
     FUZZ_CLAIM(is_truly_flat || error <= ERROR_GEO * contact_invariant_smaller_volume(x) + doubt_of_geo(x),
                "V = %.17g, exact %.17g, flags %u", answer->volume, exact->volume, answer->flags);
   } else if (!is_truly_flat) {
