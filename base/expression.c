@@ -64,14 +64,42 @@ static ExpressionValue do_max(ExpressionValue a, ExpressionValue b) {
   return is_first ? a : b;
 }
 
+// When a straight value reaches `target`, counted from now; INFINITY: it moves away, or is there.
+static double time_to(ExpressionValue a, double target) {
+  double time = (target - a.value) / a.rate;
+  return time > 0 ? time : INFINITY;
+}
+// The time to the kink that a function makes of straight arguments.
+static double to_whole(ExpressionValue a, ExpressionValue b) {
+  (void)b;
+  double below = floor(a.value);
+  if (a.rate > 0) return time_to(a, below + 1);
+  return time_to(a, below == a.value ? below - 1 : below);
+}
+static double to_zero(ExpressionValue a, ExpressionValue b) {
+  (void)b;
+  return time_to(a, 0);
+}
+static double to_zero_or_one(ExpressionValue a, ExpressionValue b) {
+  (void)b;
+  return fmin(time_to(a, 0), time_to(a, 1));
+}
+static double to_each_other(ExpressionValue a, ExpressionValue b) {
+  return time_to((ExpressionValue){a.value - b.value, a.rate - b.rate}, 0);
+}
+
 static const struct {
   const char *name;
   ExpressionValue (*apply1)(ExpressionValue a);
   ExpressionValue (*apply2)(ExpressionValue a, ExpressionValue b);
+  double (*kink)(ExpressionValue a, ExpressionValue b); // NULL: it makes none
 } functions[] = {
-    {"sin", do_sin, NULL},   {"cos", do_cos, NULL},       {"tan", do_tan, NULL}, {"exp", do_exp, NULL},
-    {"log", do_log, NULL},   {"sqrt", do_sqrt, NULL},     {"abs", do_abs, NULL}, {"floor", do_floor, NULL},
-    {"step", do_step, NULL}, {"smooth", do_smooth, NULL}, {"min", NULL, do_min}, {"max", NULL, do_max},
+    {"sin", do_sin, NULL, NULL},          {"cos", do_cos, NULL, NULL},
+    {"tan", do_tan, NULL, NULL},          {"exp", do_exp, NULL, NULL},
+    {"log", do_log, NULL, NULL},          {"sqrt", do_sqrt, NULL, NULL},
+    {"abs", do_abs, NULL, to_zero},       {"floor", do_floor, NULL, to_whole},
+    {"step", do_step, NULL, to_zero},     {"smooth", do_smooth, NULL, to_zero_or_one},
+    {"min", NULL, do_min, to_each_other}, {"max", NULL, do_max, to_each_other},
 };
 enum { FUNCTION_COUNT = sizeof functions / sizeof *functions };
 
@@ -270,23 +298,72 @@ bool expression_is_constant(const Expression *expression) {
   return true;
 }
 
-ExpressionValue expression_eval(const Expression *expression, double t) {
-  ExpressionValue stack[EXPRESSION_MAX_DEPTH + 1] = {{0, 0}};
+// A value on the stack, and whether it stays straight in t until the next kink.
+typedef struct Piece {
+  ExpressionValue now;
+  bool is_straight;
+} Piece;
+
+static bool stays(Piece piece) {
+  return piece.is_straight && piece.now.rate == 0;
+}
+
+static bool is_straight(int operation, Piece a, Piece b) {
+  bool both = a.is_straight && b.is_straight;
+  if (operation == ADD || operation == SUBTRACT) return both;
+  if (operation == MULTIPLY) return both && (stays(a) || stays(b));
+  if (operation == DIVIDE) return a.is_straight && stays(b);
+  if (operation == POWER) return stays(a) && stays(b);
+  if (operation == NEGATE) return a.is_straight;
+  if (functions[operation - FIRST_FUNCTION].apply2) return both;
+  if (!functions[operation - FIRST_FUNCTION].kink) return stays(a);
+  bool rises = functions[operation - FIRST_FUNCTION].apply1 == do_smooth && a.now.rate != 0 &&
+               (a.now.rate > 0 ? a.now.value >= 0 && a.now.value < 1 : a.now.value > 0 && a.now.value <= 1);
+  return a.is_straight && !rises;
+}
+
+// What the last one or two on the stack become; `b` is not used by what takes one.
+static Piece operate(int operation, Piece a, Piece b, double *next_kink) {
+  const int f = operation - FIRST_FUNCTION;
+  bool makes_kink = operation >= FIRST_FUNCTION && functions[f].kink && a.is_straight && b.is_straight;
+  if (makes_kink) *next_kink = fmin(*next_kink, functions[f].kink(a.now, b.now));
+  Piece result = {.is_straight = is_straight(operation, a, b)};
+  if (operation == NEGATE)
+    result.now = (ExpressionValue){-a.now.value, -a.now.rate};
+  else if (is_binary(operation))
+    result.now = apply(operation, a.now, b.now);
+  else
+    result.now = functions[f].apply1(a.now);
+  return result;
+}
+
+// Value and rate at t; `next_kink`: how long until one that is foreseen.
+static ExpressionValue run(const Expression *expression, double t, double *next_kink) {
+  const Piece none = {{0, 0}, true};
+  Piece stack[EXPRESSION_MAX_DEPTH + 1] = {{{0, 0}, true}};
   int top = -1;
+  *next_kink = INFINITY;
   for (int i = 0; i < expression->count; i++) {
     const ExpressionCode *code = &expression->codes[i];
-    if (code->operation == CONSTANT) {
-      stack[++top] = (ExpressionValue){code->number, 0};
-    } else if (code->operation == TIME) {
-      stack[++top] = (ExpressionValue){t, 1};
-    } else if (is_binary(code->operation)) {
-      top--;
-      stack[top] = apply(code->operation, stack[top], stack[top + 1]);
-    } else if (code->operation == NEGATE) {
-      stack[top] = (ExpressionValue){-stack[top].value, -stack[top].rate};
-    } else {
-      stack[top] = functions[code->operation - FIRST_FUNCTION].apply1(stack[top]);
+    if (code->operation == CONSTANT || code->operation == TIME) {
+      bool is_time = code->operation == TIME;
+      stack[++top] = (Piece){{is_time ? t : code->number, is_time}, true};
+      continue;
     }
+    bool takes_two = is_binary(code->operation);
+    top -= takes_two;
+    stack[top] = operate(code->operation, stack[top], takes_two ? stack[top + 1] : none, next_kink);
   }
-  return stack[0];
+  return stack[0].now;
+}
+
+ExpressionValue expression_eval(const Expression *expression, double t) {
+  double kink;
+  return run(expression, t, &kink);
+}
+
+double expression_next_kink(const Expression *expression, double t) {
+  double kink;
+  run(expression, t, &kink);
+  return t + kink > t ? t + kink : INFINITY;
 }

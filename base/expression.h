@@ -41,4 +41,8 @@ bool expression_is_constant(const Expression *expression);
 // NaN or infinite where the formula is: log(0), 1/0.
 ExpressionValue expression_eval(const Expression *expression, double t);
 
+// The next time after `t` at which floor, step, smooth, abs, min or max may make a jump or a kink. Only those
+// whose arguments are straight in t until then are foreseen, exactly up to rounding; INFINITY: none is.
+double expression_next_kink(const Expression *expression, double t);
+
 #endif

@@ -4,22 +4,7 @@
 #include <stddef.h>
 
 #include "base/vec3.h"
-
-// Linear between the rows (time, displacement); constant before the first and after the last.
-static void follow_table(const FemConstraintDef *def, double time, double displacement[3],
-                         double velocity[3]) {
-  const double *rows = def->table;
-  int last = def->table_count - 1, k = 0;
-  while (k < last && rows[4 * (k + 1)] <= time) k++;
-  bool is_between = k < last && time >= rows[0];
-  double span = is_between ? rows[4 * (k + 1)] - rows[4 * k] : 1;
-  double share = is_between ? (time - rows[4 * k]) / span : 0;
-  for (int c = 0; c < 3; c++) {
-    double from = rows[4 * k + 1 + c], to = is_between ? rows[4 * (k + 1) + 1 + c] : from;
-    displacement[c] += from + share * (to - from);
-    velocity[c] += (to - from) / span;
-  }
-}
+#include "fem/table.h"
 
 // Rodrigues' formula about the axis through the centre.
 static void turn(const FemConstraintDef *def, double time, double position[3], double velocity[3]) {
@@ -34,45 +19,38 @@ static void turn(const FemConstraintDef *def, double time, double position[3], d
   vec3_accumulate(velocity, vec3_scale(def->spin, vec3_cross(axis, turned)));
 }
 
+static FemTable table_of(const FemConstraintDef *def) {
+  return (FemTable){def->table, 4, def->table_count};
+}
+
+// Adds what moves all points alike.
+static void translate(const FemConstraintDef *def, double time, double position[3], double velocity[3]) {
+  double omega = 2 * M_PI * def->frequency;
+  for (int c = 0; c < 3; c++) {
+    position[c] += def->velocity[c] * time + def->amplitude[c] * sin(omega * time);
+    velocity[c] += def->velocity[c] + def->amplitude[c] * omega * cos(omega * time);
+  }
+  if (def->table_count > 0) {
+    double displacement[3], rate[3];
+    fem_table_eval(table_of(def), time, displacement, rate);
+    for (int c = 0; c < 3; c++) position[c] += displacement[c], velocity[c] += rate[c];
+  }
+  for (int c = 0; c < 3; c++) {
+    if (!def->formula[c]) continue;
+    ExpressionValue displacement = expression_eval(def->formula[c], time);
+    position[c] += displacement.value;
+    velocity[c] += displacement.rate;
+  }
+}
+
 void fem_drive_point(const FemConstraintDef *def, double time, const double rest[3], double position[3],
                      double velocity[3]) {
   bool is_frozen = time >= def->until;
   double t = is_frozen ? def->until : time;
   for (int c = 0; c < 3; c++) position[c] = rest[c], velocity[c] = 0;
   if (def->spin != 0) turn(def, t, position, velocity);
-  double omega = 2 * M_PI * def->frequency;
-  for (int c = 0; c < 3; c++) {
-    position[c] += def->velocity[c] * t + def->amplitude[c] * sin(omega * t);
-    velocity[c] += def->velocity[c] + def->amplitude[c] * omega * cos(omega * t);
-  }
-  if (def->table_count > 0) {
-    double displacement[3] = {0, 0, 0};
-    follow_table(def, t, displacement, velocity);
-    for (int c = 0; c < 3; c++) position[c] += displacement[c];
-  }
-  for (int c = 0; c < 3; c++) {
-    if (!def->formula[c]) continue;
-    ExpressionValue displacement = expression_eval(def->formula[c], t);
-    position[c] += displacement.value;
-    velocity[c] += displacement.rate;
-  }
-  if (is_frozen)
-    for (int c = 0; c < 3; c++) velocity[c] = 0;
-}
-
-static bool is_flat(const double *rows, int width, int k) {
-  for (int c = 1; c < width; c++)
-    if (rows[width * (k + 1) + c] != rows[width * k + c]) return false;
-  return true;
-}
-
-double fem_drive_table_next_change(const double *rows, int width, int count, double time) {
-  int last = count - 1, k = 0;
-  while (k < last && rows[width * (k + 1)] <= time) k++;
-  if (k >= last) return INFINITY;
-  if (time >= rows[0] && !is_flat(rows, width, k)) return time;
-  while (k < last && is_flat(rows, width, k)) k++;
-  return k < last ? rows[width * k] : INFINITY;
+  translate(def, t, position, velocity);
+  for (int c = 0; c < 3 && is_frozen; c++) velocity[c] = 0;
 }
 
 double fem_drive_next_change(const FemConstraintDef *def, double time) {
@@ -82,9 +60,37 @@ double fem_drive_next_change(const FemConstraintDef *def, double time) {
     flows = flows || def->velocity[c] != 0 || def->amplitude[c] != 0 ||
             (def->formula[c] && !expression_is_constant(def->formula[c]));
   if (flows) return time;
-  double next =
-      def->table_count > 0 ? fem_drive_table_next_change(def->table, 4, def->table_count, time) : INFINITY;
+  double next = fem_table_next_change(table_of(def), time);
   return next < def->until ? next : INFINITY;
+}
+
+// The motion of the centre of rotation: turning alone is smooth until it ends.
+static void eval_motion(const void *self, double time, double value[3], double rate[3]) {
+  const FemConstraintDef *def = self;
+  fem_drive_point(def, time, def->centre, value, rate);
+}
+
+static double next_knot(const void *self, double time) {
+  const FemConstraintDef *def = self;
+  double next = fem_table_next_row(table_of(def), time);
+  for (int c = 0; c < 3; c++)
+    if (def->formula[c]) next = fmin(next, expression_next_kink(def->formula[c], time));
+  if (time < def->until) return fmin(next, def->until);
+  return INFINITY;
+}
+
+double fem_drive_horizon(const FemConstraintDef *def, const FemForesight *foresight, double time,
+                         double farthest) {
+  FemSignal signal = {.def = def,
+                      .eval = eval_motion,
+                      .next_knot = next_knot,
+                      .deviation = foresight->displacement,
+                      .impulse = INFINITY};
+  for (int c = 0; c < 3; c++)
+    signal.is_curved = signal.is_curved || def->formula[c] || def->amplitude[c] != 0;
+  double horizon = fem_signal_horizon(&signal, foresight, time, farthest);
+  bool ends_turning = def->spin != 0 && def->until - time > foresight->resolution;
+  return ends_turning ? fmin(horizon, def->until) : horizon;
 }
 
 bool fem_drive_is_still(const FemConstraintDef *def) {

@@ -4,6 +4,7 @@
 #define TETLAP_FEM_DRIVE_H
 
 #include "fem/scene.h"
+#include "fem/signal.h"
 
 // x(t) = centre + R(spin t)(rest − centre) + velocity t + amplitude sin(2π frequency t) + table(t) +
 // formula(t), all frozen from `until` on. Position [m] and velocity [m/s] of the point that rests at `rest`.
@@ -13,8 +14,10 @@ void fem_drive_point(const FemConstraintDef *def, double time, const double rest
 // From a time on, when the motion begins to differ from standing still: that time itself if it moves then,
 // INFINITY if it never will again.
 double fem_drive_next_change(const FemConstraintDef *def, double time);
-// The same of rows (time, values …) of that width, linear between them and constant outside.
-double fem_drive_table_next_change(const double *rows, int width, int count, double time);
+
+// How far a step may go along the motion (signal.h).
+double fem_drive_horizon(const FemConstraintDef *def, const FemForesight *foresight, double time,
+                         double farthest);
 
 // Whether nothing ever moves.
 bool fem_drive_is_still(const FemConstraintDef *def);

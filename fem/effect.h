@@ -60,6 +60,9 @@ typedef struct FemEffectOps {
   bool (*is_linear)(void *self);
   // Onset function whose root restarts the integrator (contact touching); NULL: none.
   Status (*gap)(void *self, const FemState *state, double *gap);
+  // How far a step from `time` may go along what the effect prescribes by functions of time (signal.h): at
+  // most to `farthest`. NULL: that far.
+  double (*horizon)(const void *self, const FemForesight *foresight, double time, double farthest);
   // Adds counters to summary.json; NULL: none. Whole numbers count what happened since creation and are
   // summed over the parts of a run between two checkpoints; of other numbers the last stands.
   void (*report)(void *self, Record *counters);

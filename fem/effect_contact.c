@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/weights.h"
+#include "fem/drive.h"
 #include "fem/effect.h"
 #include "fem/obstacle.h"
 
@@ -39,6 +40,15 @@ static void destroy(void *self) {
   memory_free(contact->shapes);
   memory_free(contact->solids);
   memory_free(contact);
+}
+
+// Obstacles with elements are among the model's drivers.
+static double horizon(const void *self, const FemForesight *foresight, double time, double farthest) {
+  const FemSceneDef *scene = ((const Contact *)self)->model->scene;
+  for (int o = 0; o < scene->obstacle_count; o++)
+    if (scene->obstacles[o].kind != FEM_OBSTACLE_MESH)
+      farthest = fem_drive_horizon(&scene->obstacles[o].motion, foresight, time, farthest);
+  return farthest;
 }
 
 static void list_sides(Contact *contact) {
@@ -254,6 +264,7 @@ const FemEffectOps fem_effect_contact = {
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .gap = gap,
+    .horizon = horizon,
     .report = report,
     .bytes = bytes,
     .destroy = destroy,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loads from outside: forces, body forces, tractions, pressures, each a function of time. Their work goes
 // into the energy audit: step by step, mean force times way, which is exact for a constant dead load.
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -13,6 +14,7 @@ typedef struct Loads {
   double *kept_force;    // at the last accepted state [N]     (vertex_count, 3)
   double *kept_position; // [m]                                (vertex_count, 3)
   double *force;         // scratch                            (vertex_count, 3)
+  double *acceleration;  // the largest at factor 1, at rest [m/s²]    (model->load_count)
   double kept_work;      // until then [J]
   bool is_started;
 } Loads;
@@ -28,7 +30,19 @@ static void destroy(void *self) {
   memory_free(loads->kept_force);
   memory_free(loads->kept_position);
   memory_free(loads->force);
+  memory_free(loads->acceleration);
   memory_free(loads);
+}
+
+static double find_acceleration(const Loads *loads, const FemLoad *load) {
+  const FemModel *model = loads->model;
+  double largest = 0;
+  memset(loads->force, 0, 3 * (size_t)model->vertex_count * sizeof *loads->force);
+  fem_load_add_force(load, 1, model->rest, loads->force);
+  for (size_t v = 0; v < (size_t)model->vertex_count; v++)
+    if (model->mass[v] > 0)
+      largest = fmax(largest, vec3_length(vec3_at(loads->force + 3 * v)) / model->mass[v]);
+  return largest;
 }
 
 static Status create(void **self, const FemModel *model) {
@@ -39,10 +53,13 @@ static Status create(void **self, const FemModel *model) {
   loads->kept_force = memory_zeroed(values, sizeof(double));
   loads->kept_position = memory_zeroed(values, sizeof(double));
   loads->force = memory_zeroed(values, sizeof(double));
-  if (!loads->kept_force || !loads->kept_position || !loads->force) {
+  loads->acceleration = memory_zeroed((size_t)model->load_count, sizeof(double));
+  if (!loads->kept_force || !loads->kept_position || !loads->force || !loads->acceleration) {
     destroy(loads);
     return status_no_memory("loads");
   }
+  for (int i = 0; i < model->load_count; i++)
+    loads->acceleration[i] = find_acceleration(loads, &model->loads[i]);
   *self = loads;
   return STATUS_OK;
 }
@@ -80,6 +97,14 @@ static Status prepare(void *self, const FemState *state, double step) {
   memcpy(loads->kept_position, state->positions, bytes);
   loads->is_started = true;
   return STATUS_OK;
+}
+
+static double horizon(const void *self, const FemForesight *foresight, double time, double farthest) {
+  const Loads *loads = self;
+  for (int i = 0; i < loads->model->load_count; i++)
+    farthest =
+        fem_load_horizon(loads->model->loads[i].def, loads->acceleration[i], foresight, time, farthest);
+  return farthest;
 }
 
 static bool follows(const FemLoad *load) {
@@ -141,6 +166,25 @@ static void report(void *self, Record *counters) {
   record_number(counters, "load_work_J", ((const Loads *)self)->kept_work);
 }
 
+// The work until now.
+static Status save(const void *self, double **values, size_t *count) {
+  *count = 1;
+  *values = memory_zeroed(*count, sizeof **values);
+  if (!*values) return status_no_memory("a checkpoint");
+  (*values)[0] = ((const Loads *)self)->kept_work;
+  return STATUS_OK;
+}
+
+// The way from there on begins at the state that is prepared next.
+static Status load(void *self, const double *values, size_t count) {
+  Loads *loads = self;
+  if (count != 1)
+    return status_fail(STATUS_INPUT, "the checkpoint has %zu numbers of the loads' work, not one", count);
+  loads->kept_work = values[0];
+  loads->is_started = false;
+  return STATUS_OK;
+}
+
 // A pressure that follows its surface has a stiffness.
 static bool is_linear(void *self) {
   const FemModel *model = ((const Loads *)self)->model;
@@ -152,7 +196,7 @@ static bool is_linear(void *self) {
 static size_t bytes(const void *self) {
   const Loads *loads = self;
   return memory_held(self) + memory_held(loads->kept_force) + memory_held(loads->kept_position) +
-         memory_held(loads->force);
+         memory_held(loads->force) + memory_held(loads->acceleration);
 }
 
 const FemEffectOps fem_effect_loads = {
@@ -165,8 +209,11 @@ const FemEffectOps fem_effect_loads = {
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
+    .horizon = horizon,
     .report = report,
     .is_linear = is_linear,
+    .save = save,
+    .load = load,
     .bytes = bytes,
     .destroy = destroy,
 };

@@ -16,6 +16,9 @@
 static const double LONGEST_STEP = 0.1, SHORTEST_STEP = 1e-11;
 // A step is given up after so many failures in a row; each cuts it to a quarter at least.
 enum { MAX_FAILURES = 15 };
+// Knots of prescribed motions and loads closer than this share of the run's end count as one; IDA tells 2e-14
+// apart.
+static const double KNOT_RESOLUTION = 1e-12;
 // Roots are found to this share of their step.
 static const double ROOT_RESOLUTION = 1e-9;
 
@@ -34,6 +37,9 @@ struct FemIntegrator {
   double time;                // of y
   double step_end;            // where IDA stands: later than `time` after an onset
   bool is_started, has_steps; // there was a restart; a step since then
+  double stop;                // which the next step does not pass [s]
+  bool stops_at_knot;         // that is why
+  bool is_at_knot;            // the last step ended there
   double wanted_step;         // handed to the last restart [s]
   FemIntegratorStats before;  // counted before the last restart
   long long onset_count, restart_count;
@@ -203,14 +209,13 @@ Status fem_integrator_restart(FemIntegrator *integrator, double time, const doub
   void *ida = integrator->ida;
   bool is_ok = IDAReInit(ida, time, integrator->y, integrator->y_dot) == IDA_SUCCESS &&
                IDASetInitStep(ida, step) == IDA_SUCCESS;
-  if (is_ok && time < integrator->def.end) is_ok = IDASetStopTime(ida, integrator->def.end) == IDA_SUCCESS;
   if (!is_ok) return status_fail(STATUS_SOLVER, "IDA could not be restarted at t = %g s", time);
   if (integrator->has_steps && time < integrator->time) fem_stall_take_back(stall_of(integrator));
   integrator->before = stats;
   integrator->restart_count += integrator->is_started;
   integrator->time = integrator->step_end = time;
   integrator->is_started = true;
-  integrator->has_steps = false;
+  integrator->has_steps = integrator->is_at_knot = false;
   integrator->wanted_step = step;
   return STATUS_OK;
 }
@@ -414,14 +419,53 @@ static Status check_stall(FemIntegrator *integrator) {
   return say_why(integrator, integrator->time, stats.last_step, find_worst(integrator, IDA_ERR_FAIL), reason);
 }
 
+// The next step ends at def.end at the latest, or just before the knot that what is prescribed has to be
+// followed to. Where the step that is planned would leave less than itself to the knot, two equal ones go
+// there: one that is short would have to grow again.
+static Status choose_stop(FemIntegrator *integrator) {
+  double begin = integrator->step_end, end = integrator->def.end, step = integrator->max_step;
+  if (integrator->has_steps) IDAGetCurrentStep(integrator->ida, &step);
+  double least = fmax(integrator->min_step, KNOT_RESOLUTION * end);
+  FemForesight foresight = {.displacement = integrator->def.displacement_tolerance,
+                            .velocity = integrator->def.velocity_tolerance,
+                            .resolution = least};
+  double farthest = fmin(begin + 2 * step, end);
+  double knot = fem_system_horizon(integrator->system, &foresight, begin, farthest);
+  bool has_knot = knot < farthest && end - knot > least;
+  integrator->stop = has_knot ? fem_signal_before(knot) : end;
+  integrator->stops_at_knot = has_knot;
+  double half = 0.5 * (integrator->stop - begin);
+  if (has_knot && integrator->has_steps && 2 * half > step && half > least) {
+    integrator->stop = begin + half;
+    integrator->stops_at_knot = false;
+  }
+  if (IDASetStopTime(integrator->ida, integrator->stop) == IDA_SUCCESS) return STATUS_OK;
+  return status_fail(STATUS_SOLVER, "IDA cannot stop at t = %.17g s from t = %.17g s", integrator->stop,
+                     begin);
+}
+
+// Where a knot lies behind and the next is nearer than the last step was long, that step says nothing of what
+// comes: the method begins anew.
+static Status pass_knot(FemIntegrator *integrator) {
+  double last = fem_integrator_stats(integrator).last_step;
+  if (!integrator->stops_at_knot || integrator->stop - integrator->step_end >= last) return STATUS_OK;
+  const double *u = values_of(integrator->y);
+  double past = fem_signal_past(integrator->time);
+  TRY(fem_integrator_restart(integrator, past, u, u + integrator->n, 0));
+  return choose_stop(integrator);
+}
+
 static Status take_step(FemIntegrator *integrator) {
   double reached;
+  TRY(choose_stop(integrator));
+  if (fem_integrator_is_at_knot(integrator)) TRY(pass_knot(integrator));
   integrator->failure.retry_message[0] = 0;
   int flag = IDASolve(integrator->ida, integrator->def.end, &reached, integrator->y, integrator->y_dot,
                       IDA_ONE_STEP);
   if (flag < 0) return give_up(integrator, flag);
   integrator->time = integrator->step_end = reached;
   integrator->has_steps = true;
+  integrator->is_at_knot = integrator->stops_at_knot && reached == integrator->stop;
   return STATUS_OK;
 }
 
@@ -441,6 +485,10 @@ Status fem_integrator_step(FemIntegrator *integrator, double *time, bool *is_ons
   if (has_gap) TRY(look_for_onset(integrator, begin, gap, is_onset));
   *time = integrator->time;
   return check_stall(integrator);
+}
+
+bool fem_integrator_is_at_knot(const FemIntegrator *integrator) {
+  return integrator->is_at_knot && integrator->time == integrator->step_end;
 }
 
 FemIntegratorStats fem_integrator_stats(const FemIntegrator *integrator) {

@@ -2,7 +2,8 @@
 // Time: SUNDIALS IDA on y = [u; v], F = [u̇ − v; M v̇ − f(u, v, t)], BDF of order ≤ 2, rtol = 0.
 //
 // A custom direct linear solver condenses each Newton system to S du = r₂ + (c M + D) r₁, dv = c du − r₁ with
-// S = K + c D + c² M (ida_solver.h). Frames are interpolated, never stopped at; only the end is.
+// S = K + c D + c² M (ida_solver.h). Frames are interpolated, never stopped at. A step ends at the end and,
+// where what is prescribed could not be followed otherwise, just before a knot of it (signal.h).
 //
 // A contact onset is a root of the system's gap from + to −. It is searched here on the interpolant of each
 // step and not by IDA's root finder: after a step the system chooses anew which pairs it watches, so the gap
@@ -59,6 +60,10 @@ Status fem_integrator_restart(FemIntegrator *integrator, double time, const doub
 // of an effect or a solver comes out as it is. RETRY: the gap could not be evaluated; restart from an earlier
 // state with a smaller step.
 Status fem_integrator_step(FemIntegrator *integrator, double *time, bool *is_onset);
+
+// Whether that step ended just before a knot of what is prescribed (signal.h): velocities and forces may be
+// others from there on.
+bool fem_integrator_is_at_knot(const FemIntegrator *integrator);
 
 // The solution at a time within the last step; u, v of size n, borrowed until the next call.
 Status fem_integrator_at(FemIntegrator *integrator, double time, const double **u, const double **v);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/load.h"
 
-#include "fem/drive.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -12,6 +10,7 @@
 #include "fem/quadratic.h"
 #include "fem/quadratic_face.h"
 #include "fem/select.h"
+#include "fem/table.h"
 
 static Vec3 corner(const double *positions, int vertex) {
   return vec3_at(positions + 3 * (size_t)vertex);
@@ -251,20 +250,19 @@ void fem_load_destroy(FemLoad *load) {
   *load = (FemLoad){0};
 }
 
-static double follow_table(const FemLoadDef *def, double time) {
-  const double *rows = def->table;
-  int last = def->table_count - 1, k = 0;
-  if (time <= rows[0]) return rows[1];
-  while (k < last && rows[2 * (k + 1)] <= time) k++;
-  if (k == last) return rows[2 * last + 1];
-  double share = (time - rows[2 * k]) / (rows[2 * (k + 1)] - rows[2 * k]);
-  return rows[2 * k + 1] + share * (rows[2 * (k + 1) + 1] - rows[2 * k + 1]);
+static FemTable table_of(const FemLoadDef *def) {
+  return (FemTable){def->table, 2, def->table_count};
+}
+
+static ExpressionValue factor_at(const FemLoadDef *def, double time) {
+  ExpressionValue factor = {1, 0};
+  if (def->factor) factor = expression_eval(def->factor, time);
+  if (def->table_count > 0) fem_table_eval(table_of(def), time, &factor.value, &factor.rate);
+  return factor;
 }
 
 Status fem_load_factor(const FemLoadDef *def, double time, double *factor) {
-  *factor = 1;
-  if (def->factor) *factor = expression_eval(def->factor, time).value;
-  if (def->table_count > 0) *factor = follow_table(def, time);
+  *factor = factor_at(def, time).value;
   if (isfinite(*factor)) return STATUS_OK;
   return status_fail(STATUS_INPUT, "a load's factor '%s' is not a number at t = %g s",
                      def->factor ? def->factor->text : "table", time);
@@ -272,7 +270,32 @@ Status fem_load_factor(const FemLoadDef *def, double time, double *factor) {
 
 double fem_load_next_change(const FemLoadDef *def, double time) {
   if (def->factor && !expression_is_constant(def->factor)) return time;
-  return def->table_count > 0 ? fem_drive_table_next_change(def->table, 2, def->table_count, time) : INFINITY;
+  return fem_table_next_change(table_of(def), time);
+}
+
+static void eval_factor(const void *self, double time, double value[3], double rate[3]) {
+  ExpressionValue factor = factor_at(self, time);
+  value[0] = factor.value, rate[0] = factor.rate;
+  value[1] = value[2] = rate[1] = rate[2] = 0;
+}
+
+static double next_knot(const void *self, double time) {
+  const FemLoadDef *def = self;
+  double next = fem_table_next_row(table_of(def), time);
+  return def->factor ? fmin(next, expression_next_kink(def->factor, time)) : next;
+}
+
+double fem_load_horizon(const FemLoadDef *def, double acceleration, const FemForesight *foresight,
+                        double time, double farthest) {
+  bool is_constant = def->table_count == 0 && (!def->factor || expression_is_constant(def->factor));
+  if (is_constant) return farthest;
+  FemSignal signal = {.def = def,
+                      .eval = eval_factor,
+                      .next_knot = next_knot,
+                      .is_curved = def->factor != NULL,
+                      .deviation = foresight->static_share > 0 ? 0 : INFINITY,
+                      .impulse = foresight->static_share > 0 ? INFINITY : foresight->velocity / acceleration};
+  return fem_signal_horizon(&signal, foresight, time, farthest);
 }
 
 void fem_load_add_force(const FemLoad *load, double factor, const double *positions, double *force) {

@@ -9,6 +9,7 @@
 
 #include "fem/mesh.h"
 #include "fem/scene.h"
+#include "fem/signal.h"
 
 typedef struct FemLoad {
   const FemLoadDef *def; // borrowed from the scene
@@ -32,6 +33,11 @@ Status fem_load_factor(const FemLoadDef *def, double time, double *factor);
 // From a time on, when the load begins to change: that time itself if it is changing, INFINITY if never
 // again.
 double fem_load_next_change(const FemLoadDef *def, double time);
+
+// How far a step may go along the factor (signal.h); `acceleration` [m/s²]: the largest that the load at
+// factor 1 gives a vertex.
+double fem_load_horizon(const FemLoadDef *def, double acceleration, const FemForesight *foresight,
+                        double time, double farthest);
 
 // Adds factor × load at these positions to `force` (vertex_count, 3) [N].
 void fem_load_add_force(const FemLoad *load, double factor, const double *positions, double *force);

@@ -108,7 +108,10 @@ static Status step(FemRunState *run, double *time, bool *is_onset, FemMeasures *
 // The powers with which the next step begins, where they are not those with which the last one ended.
 static Status renew_powers(FemRunState *run) {
   FemEnergy energy;
-  TRY(fem_system_energy(&run->system, run->time, &energy));
+  bool is_at_knot = run->integrator && fem_integrator_is_at_knot(run->integrator);
+  double time = is_at_knot ? fem_signal_past(run->time) : run->time;
+  fem_system_scatter(&run->system, time, run->u, run->v);
+  TRY(fem_system_energy(&run->system, time, &energy));
   run->audit.dissipated_power = energy.dissipated_power;
   run->audit.driven_power = energy.driven_power;
   return STATUS_OK;
@@ -184,17 +187,23 @@ static Status advance(FemRunState *run) {
   if (!is_onset)
     run->result->trouble.smallest_step = fmin(run->result->trouble.smallest_step, stats.last_step);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
-  if (fem_system_lags(&run->system)) TRY(renew_powers(run));
+  if (fem_system_lags(&run->system) || fem_integrator_is_at_knot(run->integrator)) TRY(renew_powers(run));
   TRY(observe(run, &measures));
   if (fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"))) return renumber(run);
   return is_onset ? fem_integrator_restart(run->integrator, time, run->u, run->v, 0) : STATUS_OK;
 }
 
-// The next state while all bodies sleep: as late as the contact lists allow for obstacles that move.
+// The next state while all bodies sleep: as late as contact lists allow for obstacles that move, and not
+// beyond what these do in between.
 static Status look_ahead(FemRunState *run, double *time, FemMeasures *measures) {
   const FemSceneDef *scene = run->model->scene;
   double longest = scene->max_step > 0 ? scene->max_step : LONGEST_SLEEP * scene->end;
-  for (double step = fmin(longest, run->stage_end - run->time);; step *= SHORTER_SLEEP) {
+  FemForesight foresight = {.displacement = scene->tolerance * run->model->length,
+                            .velocity = fem_model_velocity_tolerance(run->model),
+                            .resolution = SHORTEST_SLEEP * scene->end};
+  double farthest = fmin(run->time + longest, run->stage_end);
+  farthest = fem_system_horizon(&run->system, &foresight, run->time, farthest);
+  for (double step = farthest - run->time;; step *= SHORTER_SLEEP) {
     *time = step < run->stage_end - run->time ? run->time + step : run->stage_end;
     fem_system_scatter(&run->system, *time, run->u, run->v);
     Status status = fem_run_frames_measure(run, *time, measures);
@@ -329,8 +338,12 @@ static Status advance_static(FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
   double longest = scene->max_step > 0 ? scene->max_step : scene->end / scene->frames;
   double step = run->next_step > 0 ? fmin(run->next_step, longest) : longest;
+  FemForesight foresight = {.displacement = scene->tolerance * run->model->length,
+                            .resolution = SHORTEST_LOAD_STEP * scene->end / scene->frames,
+                            .static_share = scene->tolerance};
   double target = fem_scene_frame_time(scene, run->next_frame), to = fmin(run->time + step, target),
          work_before = run->statics.driven_work;
+  to = fem_system_horizon(&run->system, &foresight, run->time, to);
   Status status = fem_statics_step(&run->statics, run->time, to, run->u);
   if (status == STATUS_RETRY) {
     run->next_step = 0.5 * (to - run->time);

@@ -86,11 +86,12 @@ static Status measure_within_step(FemRunState *run, double time, FemMeasures *me
 Status fem_run_frames_write_until(FemRunState *run, double time) {
   const FemSceneDef *scene = run->model->scene;
   double slack = 1e-12 * scene->end;
-  while (run->next_frame <= scene->frames && fem_scene_frame_time(scene, run->next_frame) <= time + slack) {
-    double at = fmin(fem_scene_frame_time(scene, run->next_frame), time);
+  while (run->next_frame <= scene->frames) {
+    double frame = fem_scene_frame_time(scene, run->next_frame);
+    if (frame > time + slack) break;
     FemMeasures measures;
-    TRY(measure_within_step(run, at, &measures));
-    TRY(fem_run_frames_write(run, at, &measures));
+    TRY(measure_within_step(run, fmin(frame, time), &measures));
+    TRY(fem_run_frames_write(run, frame, &measures));
   }
   return STATUS_OK;
 }

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fem/drive.h"
 #include "fem/solver.h"
 
 static FemState state_of(const FemSystem *system, double time) {
@@ -282,6 +283,19 @@ bool fem_system_has_gap(const FemSystem *system) {
   for (int i = 0; i < system->effect_count; i++)
     if (system->effects[i].ops->gap) return true;
   return false;
+}
+
+double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,
+                          double farthest) {
+  for (int d = 0; d < system->model->driver_count; d++) {
+    const FemModelDriver *driver = &system->model->drivers[d];
+    if (!driver->is_fixed && !driver->is_released)
+      farthest = fem_drive_horizon(driver->def, foresight, time, farthest);
+  }
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops->horizon)
+      farthest = system->effects[i].ops->horizon(system->effects[i].self, foresight, time, farthest);
+  return farthest;
 }
 
 bool fem_system_dissipates(const FemSystem *system) {

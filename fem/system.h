@@ -65,6 +65,11 @@ Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy);
 Status fem_system_gap(FemSystem *system, double time, double *gap);
 bool fem_system_has_gap(const FemSystem *system);
 
+// How far a step from `time` may go, at most to `farthest`, so that all that is prescribed by functions of
+// time is seen (signal.h).
+double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,
+                          double farthest);
+
 // Whether an effect's forces depend on velocities.
 bool fem_system_dissipates(const FemSystem *system);
 // Whether an effect's forces change when it is prepared.

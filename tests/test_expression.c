@@ -95,6 +95,38 @@ START_TEST(length_and_nesting_are_bounded) {
 }
 END_TEST
 
+static double kink(const char *text, double t) {
+  Expression expression;
+  ck_assert_ok(expression_parse(&expression, text));
+  return expression_next_kink(&expression, t);
+}
+
+START_TEST(kinks_of_straight_arguments_are_foreseen) {
+  ck_assert(isinf(kink("sin(t)+t^2", 0)));
+  ck_assert_double_eq(kink("step(t-2)", 0), 2);
+  ck_assert(isinf(kink("step(t-2)", 2)));
+  ck_assert_double_eq(kink("3*abs(1-t/4)", 0), 4);
+  ck_assert_double_eq(kink("floor(2*t)", 0.1), 0.5);
+  ck_assert_double_eq(kink("floor(0-2*t)", 0), 0.5); // falls from 0 at once
+  ck_assert_double_eq(kink("smooth((t-1)/2)", 0), 1);
+  ck_assert_double_eq(kink("smooth((t-1)/2)", 1), 3);
+  ck_assert(isinf(kink("smooth((t-1)/2)", 3)));
+  ck_assert_double_eq(kink("smooth((1-t)/2)", -5), -1);
+  ck_assert_double_eq(kink("min(t, 2-t)", 0), 1);
+  ck_assert_double_eq(kink("max(t, 5)*sin(t)", 0), 5);
+  ck_assert_double_eq(kink("abs(t-3)+step(t-2)", 0), 2);
+  ck_assert_double_eq(kink("max(0, abs(t-3)-1)", 0), 2); // of what has a kink itself
+  ck_assert_double_eq(kink("max(0, abs(t-3)-1)", 3), 4);
+  ck_assert(isinf(kink("step(sin(t))", 0))); // not straight
+  ck_assert(isinf(kink("step(t*t-2)", 0)));
+  ck_assert_double_eq(kink("step(2^3*t-4)", 0), 0.5);
+  ck_assert(isinf(kink("abs(pi)", 0)));
+  // A period of a second.
+  ck_assert_near(kink("smooth((t-floor(t)-0.25)/0.5)", 7.3), 7.75, 1e-14);
+  ck_assert_near(kink("smooth((t-floor(t)-0.25)/0.5)", 7.8), 8, 1e-14);
+}
+END_TEST
+
 START_TEST(what_cannot_be_computed_is_not_a_number) {
   ck_assert(!isfinite(at("1/t", 0).value));
   ck_assert(!isfinite(at("log(0 - t)", 1).value));
@@ -109,6 +141,7 @@ int main(void) {
   tcase_add_test(test_case, a_constant_power_is_differentiable_at_zero);
   tcase_add_test(test_case, what_is_no_formula_is_refused_with_its_place);
   tcase_add_test(test_case, length_and_nesting_are_bounded);
+  tcase_add_test(test_case, kinks_of_straight_arguments_are_foreseen);
   tcase_add_test(test_case, what_cannot_be_computed_is_not_a_number);
   return suite_run("expression", test_case, 30);
 }

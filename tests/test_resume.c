@@ -53,6 +53,10 @@ static const Case cases[] = {
      "--set "
      "bodies.bar.mesh.box.cells=[4,1,1]",
      "\"yielded_elements\": "},
+    // Steps that end at knots, a checkpoint at one, and loads whose work is summed.
+    {"tests/scenes/struck.yaml",
+     "--set 'bodies.cube.loads[0].table=[[0.2,0],[0.20005,1],[0.2001,0],[0.4,0],[0.40005,1],[0.4001,0]]'",
+     "\"load_work_J\": "},
     // An iterative solver, a network's volumes, several bodies.
     {"tests/scenes/stack.yaml", "--set solver.linear=pcg --set contact.overlap=clip --set time.end=0.05",
      "\"contact_pairs\": "},
