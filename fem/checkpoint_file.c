@@ -257,6 +257,14 @@ static Status fail_lacking(const char *path, const char *what) {
   return status_fail(STATUS_INPUT, "%s: is no whole checkpoint: it has no fitting '%s'", path, what);
 }
 
+// Whether the file holds all the values, of which there cannot be more than it has bytes.
+static bool is_whole(hid_t file, hid_t dataset, hid_t type, hid_t space) {
+  hsize_t bytes = 0, size = H5Tget_size(type);
+  hssize_t count = H5Sget_simple_extent_npoints(space);
+  return H5Fget_filesize(file, &bytes) >= 0 && size > 0 && count >= 0 && (hsize_t)count <= bytes / size &&
+         H5Dget_storage_size(dataset) == size * (hsize_t)count;
+}
+
 // Opens what is there in that class and rank, stored whole in the file; −1 otherwise.
 static hid_t open_dataset(hid_t file, const char *path, H5T_class_t class, int rank, hsize_t *shape) {
   hid_t dataset = H5Dopen2(file, path, H5P_DEFAULT);
@@ -265,8 +273,7 @@ static hid_t open_dataset(hid_t file, const char *path, H5T_class_t class, int r
   bool fits = H5Tget_class(type) == class && H5Tis_variable_str(type) <= 0 &&
               H5Sget_simple_extent_ndims(space) == rank &&
               H5Sget_simple_extent_dims(space, shape, NULL) == rank;
-  if (fits)
-    fits = H5Dget_storage_size(dataset) == H5Tget_size(type) * (hsize_t)H5Sget_simple_extent_npoints(space);
+  if (fits) fits = is_whole(file, dataset, type, space);
   close_id(type);
   close_id(space);
   if (fits) return dataset;
