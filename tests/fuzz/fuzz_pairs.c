@@ -100,6 +100,14 @@ static double flatness_of(const double x[SIZE]) {
   return extent / contact_invariant_smaller_volume(x) * extent * extent;
 }
 
+// `geo` knows a slice by the angle between its faces, which is rounded by some ε: of the slice's thickness,
+// and so of the forces on it, that is ε · smaller/V.
+static double slice_doubt(const double x[SIZE], const Answer *answer) {
+  double largest = 0, extent = contact_invariant_extent(x);
+  for (int i = 0; i < SIZE; i++) largest = fmax(largest, fabs(answer->gradient[i]));
+  return DBL_EPSILON * largest / (extent * extent) * contact_invariant_smaller_volume(x) / answer->volume;
+}
+
 static void check_answer(Model model, const double x[SIZE], const Answer *answer) {
   const char *name = names[model];
   bool is_flat = (answer->flags & CONTACT_OVERLAP_FLAT) != 0;
@@ -115,6 +123,7 @@ static void check_answer(Model model, const double x[SIZE], const Answer *answer
   double above = contact_invariant_bounds(x, answer->volume);
   FUZZ_CLAIM(above <= (model == GEO ? ERROR_GEO : 0) + BOUNDS * (1 + flatness),
              "%s: V = %.17g, smaller %.17g, beyond by %g", name, answer->volume, least, above);
+  if (model == GEO) balance += slice_doubt(x, answer);
   double residuals[3] = {contact_invariant_translation(x, answer->gradient),
                          contact_invariant_rotation(x, answer->gradient),
                          contact_invariant_scaling(x, answer->volume, answer->gradient)};
