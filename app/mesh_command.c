@@ -48,7 +48,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 // What an analyst should know before using the mesh, one sentence each.
-enum { MAX_REMARKS = 6, REMARK_SIZE = 200 };
+enum { MAX_REMARKS = 7, REMARK_SIZE = 200 };
 
 typedef struct Remarks {
   char lines[MAX_REMARKS][REMARK_SIZE];
@@ -59,7 +59,8 @@ static void remark(Remarks *remarks, const char *format, double number) {
   snprintf(remarks->lines[remarks->count++], REMARK_SIZE, format, number);
 }
 
-static Remarks judge(const FemMeshQuality *quality, const FemMeshRepairs *repairs) {
+static Remarks judge(const FemMeshQuality *quality, const FemMeshCurvature *curvature,
+                     const FemMeshRepairs *repairs) {
   Remarks remarks = {0};
   if (repairs->reoriented_tets)
     remark(&remarks, "tetrahedra that were inside out and have been turned: %.0f", repairs->reoriented_tets);
@@ -79,13 +80,30 @@ static Remarks judge(const FemMeshQuality *quality, const FemMeshRepairs *repair
   if (!(quality->min_dihedral_degrees >= POOR_DIHEDRAL_DEGREES))
     remark(&remarks, "the smallest dihedral angle is %.2g°: expect slow solves and small steps; mesh it anew",
            quality->min_dihedral_degrees);
+  if (!(curvature->min_jacobian > 0))
+    remark(&remarks,
+           "tetrahedron %.0f, as a curved one, is inside out: only its corners can be used (element: linear)",
+           curvature->min_jacobian_tet);
   return remarks;
 }
 
+static void print_order(const FemMesh *mesh, const FemMeshCurvature *curvature) {
+  if (!mesh->middles) {
+    printf("  order        1: four nodes a tetrahedron\n");
+    return;
+  }
+  printf("  order        2: ten nodes a tetrahedron, %d on edges; what follows is of the four corners\n",
+         mesh->edge_count);
+  printf("  curvature    nodes on edges up to %.2g of an edge from its middle, volume %.6g m³,\n"
+         "               smallest Jacobian %.3g in tetrahedron %d (straight: 1)\n",
+         curvature->deviation, curvature->volume, curvature->min_jacobian, curvature->min_jacobian_tet);
+}
+
 static void print_text(const char *path, const FemMesh *mesh, const FemMeshQuality *q,
-                       const Remarks *remarks) {
+                       const FemMeshCurvature *curvature, const Remarks *remarks) {
   printf("%s\n", path);
   printf("  vertices     %d\n  tetrahedra   %d\n", mesh->vertex_count, mesh->tet_count);
+  print_order(mesh, curvature);
   printf("  surface      %d triangles, %.6g m²\n", q->surface_triangle_count, q->surface_area);
   printf("  volume       %.6g m³\n  parts        %d\n", q->volume, q->component_count);
   printf("  box          (%g, %g, %g) … (%g, %g, %g) m\n", q->box_min[0], q->box_min[1], q->box_min[2],
@@ -104,12 +122,24 @@ static void print_text(const char *path, const FemMesh *mesh, const FemMeshQuali
   if (!remarks->count) printf("  remarks      none: nothing is wrong\n");
 }
 
+static void record_order(Record *root, const FemMesh *mesh, const FemMeshCurvature *curvature) {
+  record_integer(root, "order", mesh->middles ? 2 : 1);
+  if (!mesh->middles) return;
+  record_integer(root, "nodes_on_edges", mesh->edge_count);
+  record_number(root, "curvature_deviation", curvature->deviation);
+  record_number(root, "curvature_volume", curvature->volume);
+  record_number(root, "min_jacobian", curvature->min_jacobian);
+  record_integer(root, "min_jacobian_tetrahedron", curvature->min_jacobian_tet);
+}
+
 static Status print_json(const char *path, const FemMesh *mesh, const FemMeshQuality *q,
-                         const FemMeshRepairs *repairs, const Remarks *remarks) {
+                         const FemMeshCurvature *curvature, const FemMeshRepairs *repairs,
+                         const Remarks *remarks) {
   Record *root = record_new();
   record_text(root, "file", path);
   record_integer(root, "vertices", mesh->vertex_count);
   record_integer(root, "tetrahedra", mesh->tet_count);
+  record_order(root, mesh, curvature);
   record_integer(root, "surface_triangles", q->surface_triangle_count);
   record_number(root, "surface_area", q->surface_area);
   record_number(root, "volume", q->volume);
@@ -146,18 +176,20 @@ static Status report(const Options *options) {
   FemMesh mesh;
   FemMeshRepairs repairs;
   FemMeshQuality quality;
+  FemMeshCurvature curvature;
   // The remarks repeat what reading would log.
   LogLevel level = log_level();
   log_set_level(LOG_WARNING);
   Status status = fem_mesh_read(&mesh, options->path, &(FemMeshOptions){.size = options->size}, &repairs);
   log_set_level(level);
   if (status == STATUS_OK) status = fem_mesh_quality(&mesh, &quality);
+  if (status == STATUS_OK) status = fem_mesh_curvature(&mesh, &curvature);
   if (status == STATUS_OK) {
-    Remarks remarks = judge(&quality, &repairs);
+    Remarks remarks = judge(&quality, &curvature, &repairs);
     if (options->is_json)
-      status = print_json(options->path, &mesh, &quality, &repairs, &remarks);
+      status = print_json(options->path, &mesh, &quality, &curvature, &repairs, &remarks);
     else
-      print_text(options->path, &mesh, &quality, &remarks);
+      print_text(options->path, &mesh, &quality, &curvature, &remarks);
     if (status == STATUS_OK && fflush(stdout) != 0)
       status = status_fail(STATUS_IO, "standard output cannot be written");
   }

@@ -62,10 +62,11 @@ static const char *element_name(int i) {
   return i < 3 ? names[i] : NULL;
 }
 static const char *element_help(int i) {
-  static const char *const helps[] = {
-      "constant strain; too stiff in bending, and from about ν = 0.45 in all",
-      "linear, the volume change averaged at the vertices: for ν up to 0.499",
-      "ten nodes, strain linear within: bending by few elements, for ν up to 0.499"};
+  static const char *const helps[] = {"constant strain; too stiff in bending, and from about ν = 0.45 in all",
+                                      "linear, the volume change averaged at the vertices: for ν up to 0.499",
+                                      "ten nodes, strain linear within: bending by few elements, for ν up to "
+                                      "0.499; keeps the curved edges of "
+                                      "second-order files"};
   return helps[i];
 }
 const SceneChoices app_scene_choices_elements = {element_name, element_help};

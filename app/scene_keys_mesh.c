@@ -25,7 +25,9 @@ static const SceneSection mesh_box = {.help = "a box cut into tetrahedra", .keys
 
 static const SceneKey mesh_keys[] = {
     {"file", SCENE_TEXT, IN_MESH(mesh_path),
-     .help = "path from the scene file: .msh, .mesh, .vtk, .node/.ele; .stl and .geo are meshed in place"},
+     .help = "path from the scene file: .msh, .mesh, .vtk, .node/.ele, with tetrahedra of 4 or 10 nodes; "
+             ".stl and "
+             ".geo are meshed in place"},
     {"size", SCENE_NUMBER, IN_MESH(mesh_options.size), .range = "(0, inf)", .absent_help = "gmsh's choice",
      .needs = "file", .help = "edge length for meshing .stl and .geo, in the file's units"},
     {"box", SCENE_SECTION, .section = &mesh_box, .help = "a box in place of a file"},

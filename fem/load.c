@@ -137,11 +137,15 @@ static void share_body_force_by_nodes(Builder *builder) {
   const FemMesh *mesh = builder->mesh;
   for (int e = 0; e < mesh->quadratic_count; e++) {
     const int *nodes = mesh->quadratic[e];
-    double volume = six_volumes_of(mesh, nodes) / 6;
+    double x[3 * FEM_QUADRATIC_NODES];
+    FemQuadratic element;
+    for (int k = 0; k < FEM_QUADRATIC_NODES; k++) vec3_store(x + 3 * k, corner(mesh->rest, nodes[k]));
+    fem_quadratic_create_curved(&element, x);
     for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
       if (builder->is_selected[nodes[k]])
-        vec3_accumulate(builder->force + 3 * (size_t)nodes[k],
-                        vec3_scale(volume * fem_quadratic_mass_share(k), vec3_at(builder->def->vector)));
+        vec3_accumulate(
+            builder->force + 3 * (size_t)nodes[k],
+            vec3_scale(element.volume * fem_quadratic_mass_share(k), vec3_at(builder->def->vector)));
   }
 }
 
@@ -161,11 +165,16 @@ static void share_over_faces(Builder *builder) {
   const FemLoadDef *def = builder->def;
   for (int i = 0; i < builder->face_count; i++) {
     const int *face = builder->faces[i];
-    Vec3 area = area_of(builder->mesh->rest, face);
-    Vec3 whole = def->kind == FEM_LOAD_TRACTION ? vec3_scale(vec3_length(area), vec3_at(def->vector))
-                                                : vec3_scale(-def->pressure, area);
+    double x[3 * FEM_QUADRATIC_FACE_NODES], share[FEM_QUADRATIC_FACE_NODES],
+        area[3 * FEM_QUADRATIC_FACE_NODES];
     for (int k = 0; k < FEM_QUADRATIC_FACE_NODES; k++)
-      vec3_accumulate(builder->force + 3 * (size_t)face[k], vec3_scale(fem_quadratic_face_share(k), whole));
+      vec3_store(x + 3 * k, corner(builder->mesh->rest, face[k]));
+    fem_quadratic_face_share(x, share);
+    fem_quadratic_face_area(x, area);
+    for (int k = 0; k < FEM_QUADRATIC_FACE_NODES; k++)
+      vec3_accumulate(builder->force + 3 * (size_t)face[k],
+                      def->kind == FEM_LOAD_TRACTION ? vec3_scale(share[k], vec3_at(def->vector))
+                                                     : vec3_scale(-def->pressure, vec3_at(area + 3 * k)));
   }
 }
 

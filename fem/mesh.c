@@ -13,10 +13,12 @@
 
 void fem_mesh_destroy(FemMesh *mesh) {
   for (int g = 0; g < mesh->group_count; g++)
-    memory_free(mesh->groups[g].name), memory_free(mesh->groups[g].vertices);
+    memory_free(mesh->groups[g].name), memory_free(mesh->groups[g].vertices),
+        memory_free(mesh->groups[g].middles);
   memory_free(mesh->groups);
   memory_free(mesh->rest);
   memory_free(mesh->tets);
+  memory_free(mesh->middles), memory_free(mesh->tet_tags);
   memory_free(mesh->quadratic);
   *mesh = (FemMesh){0};
 }
@@ -104,22 +106,31 @@ static Status check_placement(const FemMesh *mesh, const FemPlacement *placement
   double reach = 0;
   for (size_t k = 0; k < 3 * (size_t)mesh->vertex_count; k++)
     reach = fmax(reach, fabs(mesh->rest[k] * s[k % 3]));
+  for (size_t k = 0; k < 3 * (size_t)mesh->edge_count; k++)
+    reach = fmax(reach, fabs(mesh->middles[k] * s[k % 3]));
   if (!(reach < DBL_MAX / 8 && fmax(fabs(t[0]), fmax(fabs(t[1]), fabs(t[2]))) < DBL_MAX / 8))
     return status_fail(STATUS_INPUT,
                        "placing the mesh exceeds the range of numbers; give a smaller scale or translation");
   return STATUS_OK;
 }
 
-Status fem_mesh_place(FemMesh *mesh, const FemPlacement *placement) {
-  TRY(check_placement(mesh, placement));
+static void place_points(const FemPlacement *placement, const double R[9], int count, double *points) {
   const double *s = placement->scale, *t = placement->translate;
-  double R[9];
-  rotation_of(placement, R);
-  for (int v = 0; v < mesh->vertex_count; v++) {
-    double *x = mesh->rest + 3 * (size_t)v;
+  for (int v = 0; v < count; v++) {
+    double *x = points + 3 * (size_t)v;
     double p[3] = {s[0] * x[0], s[1] * x[1], s[2] * x[2]};
     for (int i = 0; i < 3; i++) x[i] = t[i] + (R[3 * i] * p[0] + R[3 * i + 1] * p[1] + R[3 * i + 2] * p[2]);
   }
+}
+
+Status fem_mesh_place(FemMesh *mesh, const FemPlacement *placement) {
+  TRY(check_placement(mesh, placement));
+  const double *s = placement->scale;
+  double R[9];
+  rotation_of(placement, R);
+  place_points(placement, R, mesh->vertex_count, mesh->rest);
+  place_points(placement, R, mesh->edge_count, mesh->middles);
+  // Edges keep their ends, and so their numbers.
   bool is_mirrored = (s[0] < 0) != ((s[1] < 0) != (s[2] < 0));
   for (int e = 0; is_mirrored && e < mesh->tet_count; e++) {
     int kept = mesh->tets[e][2];

@@ -11,6 +11,9 @@ typedef struct FemMeshGroup {
   char *name;    // owned
   int *vertices; // sorted, distinct, owned   (vertex_count)
   int vertex_count;
+  // Of second-order files: the edges whose nodes belong to it too, by number, sorted, distinct, owned.
+  int *middles; //                            (middle_count)
+  int middle_count;
 } FemMeshGroup;
 
 typedef struct FemMesh {
@@ -20,6 +23,11 @@ typedef struct FemMesh {
   int (*tets)[4];       // vertices, positively oriented   (tet_count)
   FemMeshGroup *groups; //                                 (group_count)
   int group_count;
+  // Of a file of second-order tetrahedra, until the mesh is made linear or quadratic, else none: where the
+  // nodes on edges lie, edges in the order of their ends (fem/mesh_edges.h).
+  double *middles; // [m]                             (edge_count, 3)
+  int edge_count;
+  long long *tet_tags; // what the file calls its elements; NULL: their index   (tet_count)
   // Of a mesh made quadratic, else none: the nodes of each quadratic tetrahedron (fem/quadratic.h). `tets`
   // are their parts then, eight each in turn: 0 … 3 at the corners, 4 … 7 between them.
   int (*quadratic)[10]; //                               (quadratic_count)
@@ -51,12 +59,15 @@ typedef struct FemMeshOptions {
 
 // Reads by the ending: .msh (2.2, 4.1; ascii, binary), .mesh (MEDIT), .vtk (legacy), .stl and .geo (meshed in
 // place by gmsh), .node/.ele (TetGen; either name). Repairs orientation and drops unused vertices.
+// Second-order tetrahedra, of ten nodes, are taken by their corners, and their other nodes are kept beside
+// them for fem_mesh_make_quadratic.
 // Groups are the file's physical groups; one without a name is called point_7, curve_7, surface_7 or volume_7
 // by its number. A file that has no physical groups (MEDIT never has) gives its entities (MEDIT references)
 // under such names instead; TetGen's boundary markers become marker_7. A .stl has none.
 // STATUS_IO: no such file, or not readable.
-// STATUS_INPUT with file, element and what to do: not tetrahedral (other volume elements), zero volume,
-// non-manifold (a face with more than two tetrahedra), duplicate elements, indices out of range, not finite.
+// STATUS_INPUT with file, element and what to do: not tetrahedral (other volume elements, or tetrahedra of
+// both orders), zero volume, non-manifold (a face with more than two tetrahedra, two nodes on an edge),
+// duplicate elements, indices out of range, not finite.
 // `options` and `repairs` may be NULL.
 Status fem_mesh_read(FemMesh *mesh, const char *path, const FemMeshOptions *options, FemMeshRepairs *repairs);
 
@@ -69,10 +80,14 @@ Status fem_mesh_from_arrays(FemMesh *mesh, const char *origin, int vertex_count,
 // the mesh unchanged: a zero or non-finite scale, an angle about no axis, a result that is not finite.
 Status fem_mesh_place(FemMesh *mesh, const FemPlacement *placement);
 
-// Makes a linear mesh quadratic: a vertex in the middle of every edge, after the others and in the order of
-// the edges' ends; groups take in the middles of their edges. STATUS_INPUT: too many or too flat tetrahedra.
-// After a failure the mesh is only to be destroyed.
+// Makes a mesh quadratic: a vertex on every edge, after the others and in the order of the edges' ends; where
+// the file of second-order tetrahedra has it, else in the middle. Groups take in the nodes that the file
+// gives them, or, where it gives none, those of their edges. STATUS_INPUT: too many or too flat tetrahedra,
+// or so curved that they are inside out somewhere. After a failure the mesh is only to be destroyed.
 Status fem_mesh_make_quadratic(FemMesh *mesh);
+
+// Forgets the nodes on edges: what remains are straight tetrahedra of four corners.
+void fem_mesh_make_linear(FemMesh *mesh);
 
 void fem_mesh_destroy(FemMesh *mesh);
 
@@ -94,6 +109,17 @@ typedef struct FemMeshQuality {
   int pinch_vertex_count;      // vertices where the surface touches itself, on no pinch edge
   int coincident_vertex_count; // vertices whose coordinates another, earlier one has exactly: an open seam
 } FemMeshQuality;
+
+// How second-order tetrahedra differ from straight ones. Zero, and no Jacobian, where the mesh has no
+// middles.
+typedef struct FemMeshCurvature {
+  double deviation;    // of a node from the middle of its edge at most, over the edge's length
+  double volume;       // of the curved elements, by their points of integration [m³]
+  double min_jacobian; // smallest at those points, over that of the straight element; 1: straight
+  int min_jacobian_tet;
+} FemMeshCurvature;
+
+Status fem_mesh_curvature(const FemMesh *mesh, FemMeshCurvature *curvature);
 
 // The smallest of all dihedral angles [degrees].
 double fem_mesh_min_dihedral(const FemMesh *mesh);

@@ -13,7 +13,12 @@
 #include "base/memory.h"
 #include "fem/mesh_shell.h"
 
-enum { GMSH_TRIANGLE = 2, GMSH_TETRAHEDRON = 4 };
+enum { GMSH_TRIANGLE = 2, GMSH_TETRAHEDRON = 4, GMSH_SECOND_ORDER_TETRAHEDRON = 11 };
+
+// gmsh's order of the nodes on edges (gmsh reference manual, "Node ordering", Tetrahedron10): 01, 12, 02, 03,
+// 23, 13; here as numbers of fem_quadratic_edges. VTK (type 24) and MEDIT (TetrahedraP2) have the last two
+// the other way round, which gmsh mends as it reads them.
+static const int edge_order[6] = {0, 3, 1, 2, 5, 4};
 
 // Fails with what gmsh logged as its first error; later ones only repeat that it failed.
 static Status fail(const char *doing) {
@@ -138,7 +143,7 @@ static Status place_corners(const Nodes *nodes, const Elements *elements, size_t
   return STATUS_OK;
 }
 
-// Refuses what is three-dimensional but not a linear tetrahedron, by name.
+// Refuses what is three-dimensional but no tetrahedron of the first two orders, by name.
 static Status refuse_type(int type) {
   char *name = NULL;
   double *local = NULL;
@@ -153,11 +158,10 @@ static Status refuse_type(int type) {
     gmshFree(name);
     return status;
   }
-  status_fail(
-      STATUS_INPUT,
-      "has %zu elements of type '%s' (%d nodes), the first is element %zu; only linear tetrahedra of 4 nodes "
-      "are known: mesh it anew with those (element order 1, no recombination)",
-      elements.count, error ? "unknown" : name, node_count, elements.count ? elements.tags[0] : 0);
+  status_fail(STATUS_INPUT,
+              "has %zu elements of type '%s' (%d nodes), the first is element %zu; only tetrahedra of 4 or "
+              "10 nodes are known: mesh it anew with those (element order 1 or 2, no recombination)",
+              elements.count, error ? "unknown" : name, node_count, elements.count ? elements.tags[0] : 0);
   free_elements(&elements);
   gmshFree(name);
   return STATUS_INPUT;
@@ -177,19 +181,62 @@ static Status refuse_without_tets(void) {
       triangles.count);
 }
 
-static Status check_types(void) {
+static Status refuse_two_orders(void) {
+  return status_fail(STATUS_INPUT,
+                     "has tetrahedra of 4 and of 10 nodes; mesh it anew with one element order");
+}
+
+// gmsh 4.8 takes all tetrahedra of a volume for what the first one is, and writes beyond its lists where
+// others have more nodes. So those that it makes room for must be as many as are of that type.
+static Status check_one_order(int type) {
+  int *types = NULL, error = 0;
+  size_t *room = NULL, room_count = 0, *none = NULL, none_count = 0, type_count = 0, **element_tags = NULL;
+  size_t *element_counts = NULL, list_count = 0, **node_tags = NULL, *node_counts = NULL, node_list_count = 0;
+  size_t found = 0;
+  gmshModelMeshPreallocateElementsByType(type, 1, 0, &room, &room_count, &none, &none_count, -1, &error);
+  if (!error)
+    gmshModelMeshGetElements(&types, &type_count, &element_tags, &element_counts, &list_count, &node_tags,
+                             &node_counts, &node_list_count, 3, -1, &error);
+  for (size_t k = 0; k < list_count; k++) found += element_counts[k], gmshFree(element_tags[k]);
+  for (size_t k = 0; k < node_list_count; k++) gmshFree(node_tags[k]);
+  gmshFree(room), gmshFree(none), gmshFree(types), gmshFree(element_tags), gmshFree(element_counts),
+      gmshFree(node_tags), gmshFree(node_counts);
+  if (error) return fail("count the elements");
+  return found == room_count ? STATUS_OK : refuse_two_orders();
+}
+
+// The type of the tetrahedra, which must be all that there is.
+static Status find_type(int *type) {
   int *types = NULL, error = 0;
   size_t count = 0;
   gmshModelMeshGetElementTypes(&types, &count, 3, -1, &error);
   if (error) return fail("list the types of elements");
   Status status = count ? STATUS_OK : refuse_without_tets();
   for (size_t k = 0; k < count && status == STATUS_OK; k++)
-    if (types[k] != GMSH_TETRAHEDRON) status = refuse_type(types[k]);
+    if (types[k] != GMSH_TETRAHEDRON && types[k] != GMSH_SECOND_ORDER_TETRAHEDRON)
+      status = refuse_type(types[k]);
+  if (status == STATUS_OK && count > 1) status = refuse_two_orders();
+  if (status == STATUS_OK) status = check_one_order(types[0]);
+  if (status == STATUS_OK) *type = types[0];
   gmshFree(types);
   return status;
 }
 
-static Status take_tets(FemMeshSource *source, const Nodes *nodes, const Elements *tets) {
+// Splits ten nodes of each tetrahedron into corners and the nodes on its edges.
+static Status take_second_order(FemMeshSource *source, const Nodes *nodes, const Elements *tets) {
+  int(*all)[10] = memory_zeroed(tets->count, sizeof *all);
+  source->middles = memory_zeroed(tets->count, sizeof *source->middles);
+  Status status = all && source->middles ? place_corners(nodes, tets, 10, &all[0][0])
+                                         : status_no_memory("a second-order mesh");
+  for (size_t t = 0; t < tets->count && status == STATUS_OK; t++) {
+    memcpy(source->tets[t], all[t], sizeof source->tets[t]);
+    for (int k = 0; k < 6; k++) source->middles[t][edge_order[k]] = all[t][4 + k];
+  }
+  memory_free(all);
+  return status;
+}
+
+static Status take_tets(FemMeshSource *source, const Nodes *nodes, const Elements *tets, int type) {
   if (tets->count > FEM_MESH_MAX_TETS)
     return status_fail(STATUS_INPUT, "%zu tetrahedra are more than the %d that can be numbered", tets->count,
                        FEM_MESH_MAX_TETS);
@@ -202,7 +249,8 @@ static Status take_tets(FemMeshSource *source, const Nodes *nodes, const Element
     return status_no_memory("a mesh");
   for (int v = 0; v < nodes->count; v++) source->vertex_tags[v] = (long long)nodes->tags[v];
   for (size_t t = 0; t < tets->count; t++) source->tet_tags[t] = (long long)tets->tags[t];
-  return place_corners(nodes, tets, 4, &source->tets[0][0]);
+  return type == GMSH_TETRAHEDRON ? place_corners(nodes, tets, 4, &source->tets[0][0])
+                                  : take_second_order(source, nodes, tets);
 }
 
 // Adds nodes to the group of that name, which is made if it is new: "top" may be a surface and a curve.
@@ -296,10 +344,11 @@ static Status take_groups(FemMeshSource *source, const Nodes *nodes) {
 static Status take_mesh(FemMeshSource *source, bool has_groups) {
   Nodes nodes = {0};
   Elements tets = {0};
-  Status status = check_types();
+  int type = GMSH_TETRAHEDRON;
+  Status status = find_type(&type);
   if (status == STATUS_OK) status = get_nodes(&nodes);
-  if (status == STATUS_OK) status = get_elements(&tets, GMSH_TETRAHEDRON);
-  if (status == STATUS_OK) status = take_tets(source, &nodes, &tets);
+  if (status == STATUS_OK) status = get_elements(&tets, type);
+  if (status == STATUS_OK) status = take_tets(source, &nodes, &tets, type);
   if (status == STATUS_OK && has_groups) status = take_groups(source, &nodes);
   free_elements(&tets);
   free_nodes(&nodes);

@@ -10,7 +10,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 
-enum { VTK_TETRAHEDRON = 10 };
+enum { VTK_TETRAHEDRON = 10, VTK_QUADRATIC_TETRAHEDRON = 24 };
 
 Status fem_mesh_header_format(const char *path, FemMeshFormat *format) {
   static const struct {
@@ -51,11 +51,11 @@ static Status check_msh(const char *text) {
 // The kinds of volume elements that MEDIT knows and we do not.
 static Status refuse_medit_kind(const char *word, size_t length, long long count) {
   static const char *const kinds[] = {"Hexahedra",    "Prisms",      "Pentahedra", "Pyramids",
-                                      "TetrahedraP2", "HexahedraQ2", "PrismsP2",   "PyramidsP2"};
+                                      "TetrahedraP3", "HexahedraQ2", "PrismsP2",   "PyramidsP2"};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
     if (count > 0 && length == strlen(kinds[k]) && strncasecmp(word, kinds[k], length) == 0)
       return status_fail(STATUS_INPUT,
-                         "has %lld %s; only linear tetrahedra of 4 nodes are known: mesh it anew with those",
+                         "has %lld %s; only tetrahedra of 4 or 10 nodes are known: mesh it anew with those",
                          count, kinds[k]);
   return STATUS_OK;
 }
@@ -83,6 +83,7 @@ static long long count_numbers(const char *at, const char **end) {
 typedef struct MeditWord {
   const char *name;
   int size;
+  bool are_tets;
 } MeditWord;
 
 static Status check_medit_items(const MeditWord *word, long long count, long long number_count) {
@@ -95,7 +96,8 @@ static Status check_medit_items(const MeditWord *word, long long count, long lon
 // MEDIT: words, each followed by a count and so many lines (Frey 2001, "MEDIT: an interactive mesh
 // visualization software", INRIA RT-0253).
 static Status check_medit(const char *text, long long *tet_count) {
-  static const MeditWord words[] = {{"Vertices", 4}, {"Tetrahedra", 5}};
+  static const MeditWord words[] = {
+      {"Vertices", 4, false}, {"Tetrahedra", 5, true}, {"TetrahedraP2", 11, true}};
   const char *at = skip_space(text);
   if (!begins_with(at, "MeshVersionFormatted"))
     return status_fail(STATUS_INPUT,
@@ -113,7 +115,7 @@ static Status check_medit(const char *text, long long *tet_count) {
     for (size_t k = 0; k < sizeof words / sizeof *words; k++)
       if (length == strlen(words[k].name) && begins_with(word, words[k].name)) {
         TRY(check_medit_items(&words[k], count, count_numbers(after, &at)));
-        if (words[k].size == 5) *tet_count += count;
+        if (words[k].are_tets) *tet_count += count;
       }
   }
   return STATUS_OK;
@@ -156,8 +158,6 @@ static const char *vtk_type_name(long type) {
     return "wedge";
   case 14:
     return "pyramid";
-  case 24:
-    return "quadratic tetrahedron";
   case 25:
     return "quadratic hexahedron";
   case 26:
@@ -180,15 +180,17 @@ static Status count_vtk_types(const char *at, const char *end, bool is_binary, l
       return status_fail(STATUS_INPUT,
                          "ends after %lld of the %lld cell types that it announces; is it complete?", k,
                          count);
-    *tet_count += type == VTK_TETRAHEDRON;
+    bool is_tet = type == VTK_TETRAHEDRON || type == VTK_QUADRATIC_TETRAHEDRON;
+    *tet_count += is_tet;
     // The others are points, lines and faces, which may mark the boundary.
     bool is_volume = (type >= 11 && type <= 16) || (type >= 24 && type <= 27) || type == 29 ||
                      (type >= 31 && type <= 33) || type >= 41;
-    if (is_volume)
-      return status_fail(STATUS_INPUT,
-                         "cell %lld is a %s (VTK type %ld); only linear tetrahedra (type 10) are known: mesh "
-                         "it anew with those",
-                         k, vtk_type_name(type), type);
+    if (is_volume && !is_tet)
+      return status_fail(
+          STATUS_INPUT,
+          "cell %lld is a %s (VTK type %ld); only tetrahedra (types 10 and 24) are known: mesh "
+          "it anew with those",
+          k, vtk_type_name(type), type);
   }
   return STATUS_OK;
 }

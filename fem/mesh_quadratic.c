@@ -1,25 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A linear mesh made quadratic: a node in the middle of every edge, every tetrahedron in eight parts.
+// A mesh made quadratic: a node on every edge, every tetrahedron in eight parts.
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/mesh.h"
+#include "fem/mesh_edges.h"
 #include "fem/mesh_validate.h"
 #include "fem/quadratic.h"
-
-// A pair of vertices, low < high, of edge `local` of tetrahedron `tet`.
-typedef struct Edge {
-  int low, high, tet, local;
-} Edge;
 
 // What is known of the distinct edges while nodes are added; edge i gets node vertex_count + i.
 typedef struct Builder {
   FemMesh *mesh;       // linear still
-  Edge *edges;         // all, ordered by ends                  (6 tet_count)
+  FemMeshEdge *edges;  // all, ordered by ends                  (6 tet_count)
   int *first;          // of each distinct edge in `edges`      (edge_count)
   int edge_count;      // distinct ones
   int (*elements)[10]; //                                       (tet_count)
@@ -27,58 +22,41 @@ typedef struct Builder {
   bool *skin;          // of each vertex                        (mesh->vertex_count)
 } Builder;
 
-static int compare(const void *left, const void *right) {
-  const Edge *a = left, *b = right;
-  if (a->low != b->low) return a->low < b->low ? -1 : 1;
-  if (a->high != b->high) return a->high < b->high ? -1 : 1;
-  return (a->tet > b->tet) - (a->tet < b->tet);
-}
-
-static Edge edge_between(int a, int b, int tet, int local) {
-  return (Edge){a < b ? a : b, a < b ? b : a, tet, local};
-}
-
-static const Edge *edge_at(const Builder *builder, int i) {
+static const FemMeshEdge *edge_at(const Builder *builder, int i) {
   return &builder->edges[builder->first[i]];
 }
 
 static Status allocate(Builder *builder) {
   size_t tets = (size_t)builder->mesh->tet_count, vertices = (size_t)builder->mesh->vertex_count;
-  builder->edges = memory_zeroed(6 * tets, sizeof *builder->edges);
   builder->first = memory_zeroed(6 * tets, sizeof *builder->first);
   builder->elements = memory_zeroed(tets, sizeof *builder->elements);
   builder->on_surface = memory_zeroed(6 * tets, sizeof *builder->on_surface);
   builder->skin = memory_zeroed(vertices, sizeof *builder->skin);
-  bool is_ok = builder->edges && builder->first && builder->elements && builder->on_surface && builder->skin;
+  bool is_ok = builder->first && builder->elements && builder->on_surface && builder->skin;
   return is_ok ? STATUS_OK : status_no_memory("a quadratic mesh");
 }
 
 static void number_edges(Builder *builder) {
   const FemMesh *mesh = builder->mesh;
   int count = 6 * mesh->tet_count;
-  for (int e = 0; e < mesh->tet_count; e++) {
-    memcpy(builder->elements[e], mesh->tets[e], sizeof mesh->tets[e]);
-    for (int k = 0; k < 6; k++)
-      builder->edges[6 * e + k] = edge_between(mesh->tets[e][fem_quadratic_edges[k][0]],
-                                               mesh->tets[e][fem_quadratic_edges[k][1]], e, k);
-  }
-  qsort(builder->edges, (size_t)count, sizeof *builder->edges, compare);
-  for (int i = 0; i < count; i++) {
-    const Edge *edge = &builder->edges[i];
-    bool is_new = i == 0 || edge->low != edge[-1].low || edge->high != edge[-1].high;
-    if (is_new) builder->first[builder->edge_count++] = i;
-    builder->elements[edge->tet][4 + edge->local] = mesh->vertex_count + builder->edge_count - 1;
+  for (int e = 0; e < mesh->tet_count; e++) memcpy(builder->elements[e], mesh->tets[e], sizeof mesh->tets[e]);
+  for (int begin = 0, end; begin < count; begin = end) {
+    end = fem_mesh_edges_end(builder->edges, count, begin);
+    for (int i = begin; i < end; i++)
+      builder->elements[builder->edges[i].tet][4 + builder->edges[i].local] =
+          mesh->vertex_count + builder->edge_count;
+    builder->first[builder->edge_count++] = begin;
   }
 }
 
 // The distinct edge with these ends, which exists.
 static int find_edge(const Builder *builder, int a, int b) {
-  Edge sought = edge_between(a, b, 0, 0);
+  int lower = a < b ? a : b, upper = a < b ? b : a;
   int low = 0, high = builder->edge_count - 1;
   while (low < high) {
     int middle = low + (high - low) / 2;
-    const Edge *edge = edge_at(builder, middle);
-    if (edge->low < sought.low || (edge->low == sought.low && edge->high < sought.high))
+    const FemMeshEdge *edge = edge_at(builder, middle);
+    if (edge->low < lower || (edge->low == lower && edge->high < upper))
       low = middle + 1;
     else
       high = middle;
@@ -98,13 +76,13 @@ static Status mark_surface(Builder *builder) {
   return STATUS_OK;
 }
 
-// Marks the edges whose middle belongs to a group as both of their ends do. A chord, which runs through the
-// inside from surface to surface, belongs to it only with a whole tetrahedron: a group of two opposite faces
-// has nothing between them.
+// Marks the edges whose middle belongs to a group as both of their ends do, where no file says more. A chord,
+// which runs through the inside from surface to surface, belongs to it only with a whole tetrahedron: a group
+// of two opposite faces has nothing between them.
 static void choose_edges(const Builder *builder, const bool *in_group, bool *is_chosen) {
   const FemMesh *mesh = builder->mesh;
   for (int i = 0; i < builder->edge_count; i++) {
-    const Edge *edge = edge_at(builder, i);
+    const FemMeshEdge *edge = edge_at(builder, i);
     bool is_chord = !builder->on_surface[i] && builder->skin[edge->low] && builder->skin[edge->high];
     is_chosen[i] = in_group[edge->low] && in_group[edge->high] && !is_chord;
   }
@@ -119,7 +97,12 @@ static Status extend_group(const Builder *builder, FemMeshGroup *group, bool *in
   int vertex_count = builder->mesh->vertex_count, added = 0;
   memset(in_group, 0, (size_t)vertex_count * sizeof *in_group);
   for (int i = 0; i < group->vertex_count; i++) in_group[group->vertices[i]] = true;
-  choose_edges(builder, in_group, is_chosen);
+  if (group->middle_count > 0) {
+    memset(is_chosen, 0, (size_t)builder->edge_count * sizeof *is_chosen);
+    for (int i = 0; i < group->middle_count; i++) is_chosen[group->middles[i]] = true;
+  } else {
+    choose_edges(builder, in_group, is_chosen);
+  }
   for (int i = 0; i < builder->edge_count; i++) added += is_chosen[i];
   int *all = memory_zeroed((size_t)(group->vertex_count + added), sizeof *all);
   if (!all) return status_no_memory("a quadratic mesh");
@@ -142,19 +125,18 @@ static Status extend_groups(const Builder *builder) {
   return status;
 }
 
-// One part, its order mended so that it is positively oriented. False: it has no volume.
+// False: the part has no volume, or is inside out.
 static bool store_part(const double *rest, int part[4], int a, int b, int c, int d) {
-  double det = vec3_det4(vec3_at(rest + 3 * (size_t)a), vec3_at(rest + 3 * (size_t)b),
-                         vec3_at(rest + 3 * (size_t)c), vec3_at(rest + 3 * (size_t)d));
-  part[0] = a, part[1] = b, part[2] = det > 0 ? c : d, part[3] = det > 0 ? d : c;
-  return fabs(det) > 0;
+  part[0] = a, part[1] = b, part[2] = c, part[3] = d;
+  return vec3_det4(vec3_at(rest + 3 * (size_t)a), vec3_at(rest + 3 * (size_t)b),
+                   vec3_at(rest + 3 * (size_t)c), vec3_at(rest + 3 * (size_t)d)) > 0;
 }
 
 // Parts 0 … 3 at the corners, 4 … 7 around the shortest diagonal of the octahedron between them.
-static Status cut(const double *rest, const int nodes[10], int parts[8][4]) {
+static bool cut(const double *rest, const int nodes[10], int parts[8][4]) {
   static const int corners[4][4] = {{0, 4, 5, 6}, {4, 1, 7, 8}, {5, 7, 2, 9}, {6, 8, 9, 3}};
   static const int diagonals[3][2] = {{4, 9}, {5, 8}, {6, 7}};
-  static const int rings[3][4] = {{5, 6, 8, 7}, {4, 6, 9, 7}, {4, 5, 9, 8}};
+  static const int rings[3][4] = {{5, 6, 8, 7}, {6, 4, 7, 9}, {4, 5, 9, 8}};
   int shortest = 0;
   double length[3];
   for (int d = 0; d < 3; d++) {
@@ -171,13 +153,40 @@ static Status cut(const double *rest, const int nodes[10], int parts[8][4]) {
                    nodes[ring[k]], nodes[ring[(k + 1) % 4]]) &&
         is_ok;
   }
-  if (is_ok) return STATUS_OK;
-  const double *x = rest + 3 * (size_t)nodes[0];
+  return is_ok;
+}
+
+// Where a curved element is inside out at a point of integration its material would have no state to begin
+// with; where a part is, contact would take the body for its outside.
+static Status check_shape(const Builder *builder, int e, const double *rest, bool is_cut) {
+  const FemMesh *mesh = builder->mesh;
+  double nodes[30], jacobian = 1;
+  for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
+    memcpy(nodes + 3 * k, rest + 3 * (size_t)builder->elements[e][k], 3 * sizeof *nodes);
+  if (mesh->middles) jacobian = fem_quadratic_min_jacobian(nodes);
+  if (is_cut && jacobian > 0) return STATUS_OK;
+  if (!mesh->middles)
+    return status_fail(
+        STATUS_INPUT,
+        "the tetrahedron at (%g, %g, %g) is too flat to be cut into the parts of a quadratic one; mesh anew",
+        nodes[0], nodes[1], nodes[2]);
   return status_fail(
       STATUS_INPUT,
-      "the tetrahedron at (%g, %g, %g) is too flat to be cut into the parts of a quadratic one; "
-      "mesh anew",
-      x[0], x[1], x[2]);
+      "element %lld at (%g, %g, %g) is so curved that it is inside out (%s); mesh finer or straight, "
+      "or give the body element: linear, which takes the corners alone",
+      mesh->tet_tags ? mesh->tet_tags[e] : e, nodes[0], nodes[1], nodes[2],
+      jacobian > 0 ? "one of the eight parts that contact sees" : "at a point of integration");
+}
+
+// The nodes on edges, `middles` (edge_count, 3).
+static void place_nodes(const Builder *builder, double *middles) {
+  const FemMesh *mesh = builder->mesh;
+  for (int i = 0; i < builder->edge_count; i++) {
+    Vec3 low = vec3_at(mesh->rest + 3 * (size_t)edge_at(builder, i)->low),
+         high = vec3_at(mesh->rest + 3 * (size_t)edge_at(builder, i)->high);
+    vec3_store(middles + 3 * (size_t)i, vec3_add(low, vec3_scale(0.5, vec3_sub(high, low))));
+  }
+  if (mesh->middles) memcpy(middles, mesh->middles, (size_t)builder->edge_count * sizeof(double[3]));
 }
 
 // Puts the quadratic mesh into the place of the linear one.
@@ -185,19 +194,17 @@ static Status replace(Builder *builder, double *rest, int (*parts)[4]) {
   FemMesh *mesh = builder->mesh;
   size_t vertices = (size_t)mesh->vertex_count;
   memcpy(rest, mesh->rest, 3 * vertices * sizeof *rest);
-  for (int i = 0; i < builder->edge_count; i++) {
-    Vec3 low = vec3_at(mesh->rest + 3 * (size_t)edge_at(builder, i)->low),
-         high = vec3_at(mesh->rest + 3 * (size_t)edge_at(builder, i)->high);
-    vec3_store(rest + 3 * (vertices + (size_t)i), vec3_add(low, vec3_scale(0.5, vec3_sub(high, low))));
-  }
+  place_nodes(builder, rest + 3 * vertices);
   for (int e = 0; e < mesh->tet_count; e++)
-    TRY(cut(rest, builder->elements[e], parts + FEM_QUADRATIC_PARTS * (size_t)e));
+    TRY(check_shape(builder, e, rest,
+                    cut(rest, builder->elements[e], parts + FEM_QUADRATIC_PARTS * (size_t)e)));
   memory_free(mesh->rest);
   memory_free(mesh->tets);
   mesh->rest = rest, mesh->vertex_count += builder->edge_count;
   mesh->quadratic = builder->elements, mesh->quadratic_count = mesh->tet_count;
   mesh->tets = parts, mesh->tet_count *= FEM_QUADRATIC_PARTS;
   builder->elements = NULL;
+  fem_mesh_make_linear(mesh); // its nodes on edges are vertices now
   return STATUS_OK;
 }
 
@@ -215,6 +222,7 @@ static Status fill(Builder *builder) {
 
 static Status build(Builder *builder) {
   TRY(allocate(builder));
+  TRY(fem_mesh_edges_list(&builder->edges, builder->mesh->tet_count, (const int(*)[4])builder->mesh->tets));
   number_edges(builder);
   TRY(mark_surface(builder));
   TRY(extend_groups(builder));

@@ -12,6 +12,10 @@
 #include "base/file.h"
 #include "base/memory.h"
 
+// TetGen's order of the nodes on edges: 23, 03, 01, 12, 13, 02, as numbers of fem_quadratic_edges; what
+// TetGen 1.5 writes with -o2.
+static const int edge_order[6] = {5, 2, 0, 3, 4, 1};
+
 // A text file walked number by number; the line is kept for messages.
 typedef struct Reader {
   const char *path; // borrowed
@@ -185,29 +189,35 @@ static Status read_nodes(Reader *reader, FemMeshSource *source) {
   return status;
 }
 
-static Status read_tets(Reader *reader, FemMeshSource *source) {
-  long long count = 0, corner_count = 4, attribute_count = 0, value = 0;
-  double attribute;
+// The first line of an .ele file, and room for what it announces.
+static Status read_tet_head(Reader *reader, FemMeshSource *source, long long *attribute_count) {
+  long long count = 0, node_count = 4;
   TRY(read_integer(reader, "the number of tetrahedra", 1, FEM_MESH_MAX_TETS, &count));
-  TRY(read_integer(reader, "the number of nodes of a tetrahedron", 4, 10, &corner_count));
-  if (corner_count != 4)
-    return status_fail(
-        STATUS_INPUT,
-        "%s:%d: tetrahedra of %lld nodes; only linear ones of 4 nodes are known: run tetgen without -o2",
-        reader->path, reader->line, corner_count);
-  TRY(read_integer(reader, "the number of attributes", 0, 1000, &attribute_count));
-  TRY(check_room(reader, "tetrahedra", count, 5));
+  TRY(read_integer(reader, "the number of nodes of a tetrahedron", 4, 10, &node_count));
+  if (node_count != 4 && node_count != 10)
+    return status_fail(STATUS_INPUT, "%s:%d: tetrahedra of %lld nodes; only those of 4 or 10 nodes are known",
+                       reader->path, reader->line, node_count);
+  TRY(read_integer(reader, "the number of attributes", 0, 1000, attribute_count));
+  TRY(check_room(reader, "tetrahedra", count, (size_t)node_count + 1));
   source->tet_count = (int)count;
-  source->tets = memory_zeroed((size_t)source->tet_count, sizeof(int[4]));
-  source->tet_tags = memory_zeroed((size_t)source->tet_count, sizeof *source->tet_tags);
-  if (!source->tets || !source->tet_tags) return status_no_memory("the tetrahedra of a mesh");
-  long long base = source->vertex_tags[0];
+  source->tets = memory_zeroed((size_t)count, sizeof *source->tets);
+  source->tet_tags = memory_zeroed((size_t)count, sizeof *source->tet_tags);
+  if (node_count == 10) source->middles = memory_zeroed((size_t)count, sizeof *source->middles);
+  bool is_ok = source->tets && source->tet_tags && (node_count == 4 || source->middles);
+  return is_ok ? STATUS_OK : status_no_memory("the tetrahedra of a mesh");
+}
+
+static Status read_tets(Reader *reader, FemMeshSource *source) {
+  long long attribute_count = 0, value = 0, base = source->vertex_tags[0];
+  double attribute;
+  TRY(read_tet_head(reader, source, &attribute_count));
   for (int t = 0; t < source->tet_count; t++) {
     next_line(reader);
     TRY(read_integer(reader, "the number of a tetrahedron", t + base, t + base, &source->tet_tags[t]));
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < (source->middles ? 10 : 4); k++) {
       TRY(read_integer(reader, "the number of a node", base, base + source->vertex_count - 1, &value));
-      source->tets[t][k] = (int)(value - base);
+      int *node = k < 4 ? &source->tets[t][k] : &source->middles[t][edge_order[k - 4]];
+      *node = (int)(value - base);
     }
     for (long long k = 0; k < attribute_count; k++) TRY(read_real(reader, "an attribute", &attribute));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // TetGen's .node and .ele files (Hang Si, TetGen manual, "File formats"): text, # starts a comment, numbering
-// from 0 or 1 as the first node says.
+// from 0 or 1 as the first node says. Tetrahedra of 4 nodes, or of 10 (-o2).
 #ifndef TETLAP_FEM_MESH_TETGEN_H
 #define TETLAP_FEM_MESH_TETGEN_H
 

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/mesh_faces.h"
+#include "fem/mesh_middles.h"
 
 // 6 V of an element with longest edge L is taken for zero below FLATNESS · L³, or where the rounding of
 // coordinates of size M could have made it: below ROUNDING · M · L².
@@ -35,7 +36,7 @@ static Vec3 centroid(const FemMeshSource *source, int tet) {
 
 static Status check_counts(const FemMeshSource *source) {
   if (source->tet_count < 1)
-    return status_fail(STATUS_INPUT, "has no tetrahedra; give a volume mesh of linear tetrahedra");
+    return status_fail(STATUS_INPUT, "has no tetrahedra; give a volume mesh of tetrahedra");
   if (source->vertex_count < 4)
     return status_fail(STATUS_INPUT, "has %d vertices; a tetrahedron needs four", source->vertex_count);
   if (source->vertex_count > FEM_MESH_MAX_VERTICES || source->tet_count > FEM_MESH_MAX_TETS)
@@ -57,21 +58,24 @@ static Status check_positions(const FemMeshSource *source) {
 }
 
 static Status check_indices(const FemMeshSource *source) {
+  int count = source->middles ? 10 : 4;
   for (int t = 0; t < source->tet_count; t++) {
-    const int *tet = source->tets[t];
-    for (int k = 0; k < 4; k++)
-      if (tet[k] < 0 || tet[k] >= source->vertex_count)
-        return status_fail(
-            STATUS_INPUT, "element %lld names vertex %d, but there are only the vertices %lld to %lld",
-            tet_tag(source, t), tet[k], vertex_tag(source, 0), vertex_tag(source, source->vertex_count - 1));
-    for (int k = 0; k < 4; k++)
+    int nodes[10];
+    memcpy(nodes, source->tets[t], sizeof source->tets[t]);
+    if (source->middles) memcpy(nodes + 4, source->middles[t], sizeof source->middles[t]);
+    for (int k = 0; k < count; k++)
+      if (nodes[k] < 0 || nodes[k] >= source->vertex_count)
+        return status_fail(STATUS_INPUT,
+                           "element %lld names vertex %d, but there are only the vertices %lld to %lld",
+                           tet_tag(source, t), nodes[k], vertex_tag(source, 0),
+                           vertex_tag(source, source->vertex_count - 1));
+    for (int k = 0; k < count; k++)
       for (int m = 0; m < k; m++)
-        if (tet[k] == tet[m])
+        if (nodes[k] == nodes[m])
           return status_fail(
               STATUS_INPUT,
-              "element %lld names vertex %lld twice; remove the element or give it four different "
-              "vertices",
-              tet_tag(source, t), vertex_tag(source, tet[k]));
+              "element %lld names vertex %lld twice; remove the element or give it %s different vertices",
+              tet_tag(source, t), vertex_tag(source, nodes[k]), count == 4 ? "four" : "ten");
   }
   return STATUS_OK;
 }
@@ -88,6 +92,19 @@ static bool is_flat(const FemMeshSource *source, int tet, double det) {
   return !(fabs(det) > fmax(FLATNESS * longest, ROUNDING * size) * square);
 }
 
+static void swap(int *a, int *b) {
+  int kept = *a;
+  *a = *b, *b = kept;
+}
+
+// Exchanges corners 2 and 3, and so the edges 02 and 03, 12 and 13.
+static void turn_over(FemMeshSource *source, int tet) {
+  swap(&source->tets[tet][2], &source->tets[tet][3]);
+  if (!source->middles) return;
+  swap(&source->middles[tet][1], &source->middles[tet][2]);
+  swap(&source->middles[tet][3], &source->middles[tet][4]);
+}
+
 static Status orient(FemMeshSource *source, int *reoriented) {
   for (int t = 0; t < source->tet_count; t++) {
     double det =
@@ -99,9 +116,7 @@ static Status orient(FemMeshSource *source, int *reoriented) {
                          tet_tag(source, t), c.x, c.y, c.z, det);
     }
     if (det > 0) continue;
-    int kept = source->tets[t][2];
-    source->tets[t][2] = source->tets[t][3];
-    source->tets[t][3] = kept;
+    turn_over(source, t);
     ++*reoriented;
   }
   return STATUS_OK;
@@ -158,22 +173,38 @@ static int compare_int(const void *left, const void *right) {
   return (a > b) - (a < b);
 }
 
+// Sorts, and keeps one of each; returns how many there are then.
+static int sort_distinct(int *list, int count) {
+  qsort(list, (size_t)count, sizeof *list, compare_int);
+  int distinct = 0;
+  for (int k = 0; k < count; k++)
+    if (distinct == 0 || list[k] != list[distinct - 1]) list[distinct++] = list[k];
+  return distinct;
+}
+
+// The group's edges, from its vertices in the numbers of the file.
+static Status take_middles(FemMeshGroup *group, const int *edge_of_vertex) {
+  group->middles = memory_zeroed((size_t)group->vertex_count, sizeof *group->middles);
+  if (!group->middles) return status_no_memory("the groups of a mesh");
+  for (int k = 0; k < group->vertex_count; k++) {
+    int edge = edge_of_vertex[group->vertices[k]];
+    if (edge >= 0) group->middles[group->middle_count++] = edge;
+  }
+  group->middle_count = sort_distinct(group->middles, group->middle_count);
+  return STATUS_OK;
+}
+
 static void renumber_group(FemMeshGroup *group, const int *new_index) {
   int kept = 0;
   for (int k = 0; k < group->vertex_count; k++) {
     int vertex = new_index[group->vertices[k]];
     if (vertex >= 0) group->vertices[kept++] = vertex;
   }
-  qsort(group->vertices, (size_t)kept, sizeof(int), compare_int);
-  int distinct = 0;
-  for (int k = 0; k < kept; k++)
-    if (distinct == 0 || group->vertices[k] != group->vertices[distinct - 1])
-      group->vertices[distinct++] = group->vertices[k];
-  group->vertex_count = distinct;
+  group->vertex_count = sort_distinct(group->vertices, kept);
 }
 
-// Keeps the used vertices in their order, in place.
-static Status drop_unused(FemMeshSource *source, int *dropped) {
+// Keeps the corners in their order, in place.
+static Status keep_corners(FemMeshSource *source, const FemMeshMiddles *middles, int *dropped) {
   int *new_index = memory_zeroed((size_t)source->vertex_count, sizeof *new_index);
   if (!new_index) return status_no_memory("the vertex numbers of a mesh");
   for (int t = 0; t < source->tet_count; t++)
@@ -191,31 +222,45 @@ static Status drop_unused(FemMeshSource *source, int *dropped) {
     for (int k = 0; k < 4; k++) source->tets[t][k] = new_index[source->tets[t][k]];
   for (int g = 0; g < source->group_count; g++) renumber_group(&source->groups[g], new_index);
   memory_free(new_index);
-  *dropped = source->vertex_count - used;
+  *dropped = source->vertex_count - used - middles->edge_count;
   source->vertex_count = used;
   return STATUS_OK;
 }
 
-static Status check_and_mend(FemMeshSource *source, FemMeshRepairs *mended) {
+static Status check_and_mend(FemMeshSource *source, FemMeshMiddles *middles, FemMeshRepairs *mended) {
   TRY(check_counts(source));
   TRY(check_positions(source));
   TRY(check_indices(source));
   TRY(orient(source, &mended->reoriented_tets));
   TRY(check_faces(source));
-  return drop_unused(source, &mended->dropped_vertices);
+  if (source->middles) {
+    TRY(fem_mesh_middles_number(middles, source));
+    for (int g = 0; g < source->group_count; g++)
+      TRY(take_middles(&source->groups[g], middles->edge_of_vertex));
+  }
+  return keep_corners(source, middles, &mended->dropped_vertices);
 }
 
 Status fem_mesh_validate(FemMesh *mesh, FemMeshSource *source, const char *origin, FemMeshRepairs *repairs) {
   FemMeshRepairs mended = {0};
   *mesh = (FemMesh){0};
-  Status status = check_and_mend(source, &mended);
-  if (status != STATUS_OK) return status_prefix(status, "%s", origin);
+  FemMeshMiddles middles = {0};
+  Status status = check_and_mend(source, &middles, &mended);
+  if (status != STATUS_OK) {
+    fem_mesh_middles_destroy(&middles);
+    return status_prefix(status, "%s", origin);
+  }
   *mesh = (FemMesh){.vertex_count = source->vertex_count,
                     .tet_count = source->tet_count,
                     .rest = source->positions,
                     .tets = source->tets,
                     .groups = source->groups,
-                    .group_count = source->group_count};
+                    .group_count = source->group_count,
+                    .middles = middles.rest,
+                    .edge_count = middles.edge_count};
+  middles.rest = NULL;
+  fem_mesh_middles_destroy(&middles);
+  if (mesh->middles) mesh->tet_tags = source->tet_tags, source->tet_tags = NULL;
   source->positions = NULL, source->tets = NULL, source->groups = NULL, source->group_count = 0;
   if (repairs) *repairs = mended;
   return STATUS_OK;
@@ -223,9 +268,10 @@ Status fem_mesh_validate(FemMesh *mesh, FemMeshSource *source, const char *origi
 
 void fem_mesh_source_destroy(FemMeshSource *source) {
   for (int g = 0; g < source->group_count; g++)
-    memory_free(source->groups[g].name), memory_free(source->groups[g].vertices);
+    memory_free(source->groups[g].name), memory_free(source->groups[g].vertices),
+        memory_free(source->groups[g].middles);
   memory_free(source->groups);
-  memory_free(source->positions), memory_free(source->tets);
+  memory_free(source->positions), memory_free(source->tets), memory_free(source->middles);
   memory_free(source->vertex_tags), memory_free(source->tet_tags);
   *source = (FemMeshSource){0};
 }

@@ -20,7 +20,7 @@ typedef struct Head {
   int status;
   int message_size;
   int vertex_count, tet_count, group_count;
-  bool has_vertex_tags, has_tet_tags;
+  bool has_vertex_tags, has_tet_tags, has_middles;
 } Head;
 
 typedef struct GroupHead {
@@ -42,7 +42,8 @@ static bool send_source(int pipe, const FemMeshSource *source) {
   bool ok = send(pipe, source->positions, vertices * sizeof(double[3])) &&
             send(pipe, source->tets, tets * sizeof(int[4])) &&
             (!source->vertex_tags || send(pipe, source->vertex_tags, vertices * sizeof(long long))) &&
-            (!source->tet_tags || send(pipe, source->tet_tags, tets * sizeof(long long)));
+            (!source->tet_tags || send(pipe, source->tet_tags, tets * sizeof(long long))) &&
+            (!source->middles || send(pipe, source->middles, tets * sizeof *source->middles));
   for (int g = 0; ok && g < source->group_count; g++) {
     const FemMeshGroup *group = &source->groups[g];
     GroupHead head = {(int)strlen(group->name) + 1, group->vertex_count};
@@ -87,7 +88,8 @@ static void be_child(int pipe, FemMeshReader reader, const char *path, const Fem
                   source.tet_count,
                   source.group_count,
                   source.vertex_tags != NULL,
-                  source.tet_tags != NULL};
+                  source.tet_tags != NULL,
+                  source.middles != NULL};
   else
     head.message_size = (int)strlen(status_message()) + 1;
   bool ok = send(pipe, &head, sizeof head);
@@ -135,6 +137,8 @@ static Receipt receive_source(int pipe, const Head *head, FemMeshSource *source)
     receipt = receive_array(pipe, &source->vertex_tags, vertices, sizeof(long long));
   if (receipt == RECEIVED && head->has_tet_tags)
     receipt = receive_array(pipe, &source->tet_tags, tets, sizeof(long long));
+  if (receipt == RECEIVED && head->has_middles)
+    receipt = receive_array(pipe, &source->middles, tets, sizeof *source->middles);
   if (receipt != RECEIVED) return receipt;
   source->groups = memory_zeroed((size_t)head->group_count, sizeof *source->groups);
   if (!source->groups) return NO_MEMORY;

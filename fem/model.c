@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/cofactor.h"
@@ -12,10 +13,21 @@
 #include "fem/select.h"
 #include "fem/volume.h"
 
+// Tells what a mesh of second-order tetrahedra loses as one of linear ones.
+static Status straighten(FemMesh *mesh, const char *path) {
+  FemMeshCurvature curvature;
+  TRY(fem_mesh_curvature(mesh, &curvature));
+  log_info("%s: second-order tetrahedra, taken by their corners; the other nodes lie up to %.2g of an edge's "
+           "length from the middles of their edges (element: quadratic keeps them)",
+           path, curvature.deviation);
+  fem_mesh_make_linear(mesh);
+  return STATUS_OK;
+}
+
 // Reads or makes the mesh of a body or an obstacle and puts it in its place.
 static Status load_mesh(FemMesh *mesh, const FemSceneDef *scene, const char *path, const double box_size[3],
-                        const int box_cells[3], const FemMeshOptions *options,
-                        const FemPlacement *placement) {
+                        const int box_cells[3], const FemMeshOptions *options, const FemPlacement *placement,
+                        FemElementKind element) {
   if (!path) {
     TRY(fem_mesh_box(mesh, box_size, box_cells));
   } else {
@@ -26,7 +38,12 @@ static Status load_mesh(FemMesh *mesh, const FemSceneDef *scene, const char *pat
     memory_free(full);
     TRY(status);
   }
-  return fem_mesh_place(mesh, placement);
+  TRY(fem_mesh_place(mesh, placement));
+  if (element == FEM_ELEMENT_QUADRATIC) {
+    Status status = fem_mesh_make_quadratic(mesh);
+    return status && path ? status_prefix(status, "%s", path) : status;
+  }
+  return mesh->middles ? straighten(mesh, path) : STATUS_OK;
 }
 
 // The meshes of all bodies, then of the obstacles that have one. `meshes` has room for all.
@@ -34,8 +51,7 @@ static Status load_meshes(const FemSceneDef *scene, FemMesh *meshes) {
   for (int b = 0; b < scene->body_count; b++) {
     const FemBodyDef *def = &scene->bodies[b];
     Status status = load_mesh(&meshes[b], scene, def->mesh_path, def->box_size, def->box_cells,
-                              &def->mesh_options, &def->placement);
-    if (!status && def->element == FEM_ELEMENT_QUADRATIC) status = fem_mesh_make_quadratic(&meshes[b]);
+                              &def->mesh_options, &def->placement, def->element);
     if (status) return status_prefix(status, "body '%s'", def->name);
   }
   int next = scene->body_count;
@@ -43,7 +59,7 @@ static Status load_meshes(const FemSceneDef *scene, FemMesh *meshes) {
     const FemObstacleDef *def = &scene->obstacles[o];
     if (def->kind != FEM_OBSTACLE_MESH) continue;
     Status status = load_mesh(&meshes[next++], scene, def->mesh_path, def->box_size, def->box_cells,
-                              &def->mesh_options, &def->placement);
+                              &def->mesh_options, &def->placement, FEM_ELEMENT_LINEAR);
     if (status) return status_prefix(status, "obstacle '%s'", def->name);
   }
   return STATUS_OK;
@@ -95,14 +111,14 @@ static void append_mesh(FemModel *model, FemModelBody *body, const FemMesh *mesh
     fem_element_create(&model->elements[global], corners);
   }
   for (int e = 0; e < mesh->quadratic_count; e++) {
-    double corners[12];
+    double nodes[3 * FEM_QUADRATIC_NODES];
     int global = body->quadratic_begin + e;
-    for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
+    for (int k = 0; k < FEM_QUADRATIC_NODES; k++) {
       model->quadratic_nodes[global][k] = mesh->quadratic[e][k] + body->vertex_begin;
-    for (int k = 0; k < 4; k++)
-      memcpy(corners + 3 * k, mesh->rest + 3 * mesh->quadratic[e][k], 3 * sizeof *corners);
+      memcpy(nodes + 3 * k, mesh->rest + 3 * mesh->quadratic[e][k], 3 * sizeof *nodes);
+    }
     model->quadratic_body[global] = body_number;
-    fem_quadratic_create(&model->quadratics[global], corners);
+    fem_quadratic_create_curved(&model->quadratics[global], nodes);
   }
 }
 

@@ -4,34 +4,81 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/vec3.h"
 #include "fem/cofactor.h"
-#include "fem/element.h"
 #include "fem/viscous.h"
 
 enum { NODES = FEM_QUADRATIC_NODES, POINTS = FEM_QUADRATIC_POINTS, DOFS = 3 * NODES };
 
 const int fem_quadratic_edges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
-void fem_quadratic_create(FemQuadratic *element, const double corners[12]) {
+// ∂N_a/∂(L₁, L₂, L₃) at a point, L₀ = 1 − L₁ − L₂ − L₃.
+static void differentiate(int point, double derivative[NODES][3]) {
+  static const double slope[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const double near = (5 + 3 * sqrt(5)) / 20, far = (5 - sqrt(5)) / 20;
-  FemElement linear;
-  fem_element_create(&linear, corners);
-  element->volume = linear.volume;
-  for (int p = 0; p < POINTS; p++) {
-    double L[4] = {far, far, far, far};
-    L[p] = near;
-    for (int c = 0; c < 3; c++) {
-      for (int a = 0; a < 4; a++) element->gradient[p][a][c] = (4 * L[a] - 1) * linear.gradient[a][c];
-      for (int k = 0; k < 6; k++) {
-        int a = fem_quadratic_edges[k][0], b = fem_quadratic_edges[k][1];
-        element->gradient[p][4 + k][c] = 4 * (L[a] * linear.gradient[b][c] + L[b] * linear.gradient[a][c]);
-      }
+  double L[4] = {far, far, far, far};
+  L[point] = near;
+  for (int c = 0; c < 3; c++) {
+    for (int a = 0; a < 4; a++) derivative[a][c] = (4 * L[a] - 1) * slope[a][c];
+    for (int k = 0; k < 6; k++) {
+      int a = fem_quadratic_edges[k][0], b = fem_quadratic_edges[k][1];
+      derivative[4 + k][c] = 4 * (L[a] * slope[b][c] + L[b] * slope[a][c]);
     }
   }
 }
 
+// ∂X/∂(L₁, L₂, L₃), positions taken relative to node 0.
+static void find_jacobian(const double nodes[30], double (*derivative)[3], double jacobian[9]) {
+  memset(jacobian, 0, 9 * sizeof *jacobian);
+  for (int a = 1; a < NODES; a++)
+    for (int i = 0; i < 3; i++)
+      for (int c = 0; c < 3; c++) jacobian[3 * i + c] += (nodes[3 * a + i] - nodes[i]) * derivative[a][c];
+}
+
+void fem_quadratic_create_curved(FemQuadratic *element, const double nodes[30]) {
+  element->volume = 0;
+  for (int p = 0; p < POINTS; p++) {
+    double derivative[NODES][3], jacobian[9], cofactor[9];
+    differentiate(p, derivative);
+    find_jacobian(nodes, derivative, jacobian);
+    fem_cofactor_find(jacobian, cofactor);
+    double det = fem_cofactor_det(jacobian);
+    for (int a = 0; a < NODES; a++)
+      for (int i = 0; i < 3; i++)
+        element->gradient[p][a][i] =
+            (cofactor[3 * i] * derivative[a][0] + cofactor[3 * i + 1] * derivative[a][1] +
+             cofactor[3 * i + 2] * derivative[a][2]) /
+            det;
+    element->weight[p] = det / (6 * POINTS);
+    element->volume += element->weight[p];
+  }
+}
+
+void fem_quadratic_create(FemQuadratic *element, const double corners[12]) {
+  double nodes[DOFS];
+  memcpy(nodes, corners, 12 * sizeof *nodes);
+  for (int k = 0; k < 6; k++)
+    for (int i = 0; i < 3; i++) {
+      double a = corners[3 * fem_quadratic_edges[k][0] + i], b = corners[3 * fem_quadratic_edges[k][1] + i];
+      nodes[3 * (4 + k) + i] = a + 0.5 * (b - a);
+    }
+  fem_quadratic_create_curved(element, nodes);
+}
+
+double fem_quadratic_min_jacobian(const double nodes[30]) {
+  double straight = vec3_det4(vec3_at(nodes), vec3_at(nodes + 3), vec3_at(nodes + 6), vec3_at(nodes + 9));
+  double smallest = INFINITY;
+  for (int p = 0; p < POINTS; p++) {
+    double derivative[NODES][3], jacobian[9];
+    differentiate(p, derivative);
+    find_jacobian(nodes, derivative, jacobian);
+    smallest = fmin(smallest, fem_cofactor_det(jacobian) / straight);
+  }
+  return smallest;
+}
+
 FemPoint fem_quadratic_point(const FemQuadratic *element, int point) {
-  return (FemPoint){NODES, element->gradient[point], element->volume / POINTS};
+  return (FemPoint){NODES, element->gradient[point], element->weight[point]};
 }
 
 // ∫ N_a² over ∫ 1: 6/420 at corners, 32/420 at middles.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The quadratic tetrahedron: ten nodes, the corners 0 … 3 and the middles 4 … 9 of the edges 01, 02, 03, 12,
-// 13, 23, straight at rest. With the barycentric coordinates L its shape functions are L_i (2 L_i − 1) and 4
+// 13, 23. With the barycentric coordinates L its shape functions are L_i (2 L_i − 1) and 4
 // L_i L_j. Four quadrature points of equal weight, L = (a, b, b, b), a = (5 + 3√5)/20, b = (5 − √5)/20
 // (Hammer, Marlowe and Stroud 1956), integrate products of gradients exactly: at rest the stiffness is that
 // of exact integration, and only rigid motions cost no energy (4 points × 6 strains = 30 coordinates − 6).
+// At rest an edge may be curved (isoparametric): the same shape functions give the positions X(L), and each
+// point has the volume det(∂X/∂L)/24.
 //
 // What λ exceeds λ_e = min(λ, 2μ) by resists the mean of the volume change θ over the element
 // instead of each point's (mean dilatation, Nagtegaal, Parks and Rice 1974), or the element would lock
@@ -23,7 +25,8 @@ enum { FEM_QUADRATIC_NODES = 10, FEM_QUADRATIC_POINTS = 4, FEM_QUADRATIC_PARTS =
 
 typedef struct FemQuadratic {
   double gradient[FEM_QUADRATIC_POINTS][FEM_QUADRATIC_NODES][3]; // ∂N_a/∂X at each point [1/m]
-  double volume;                                                 // at rest [m³]
+  double weight[FEM_QUADRATIC_POINTS];                           // of the volume at rest [m³]
+  double volume;                                                 // their sum
 } FemQuadratic;
 
 // What resists in an element: pointwise, and by the mean volume change.
@@ -35,8 +38,15 @@ typedef struct FemQuadraticLaw {
 // The two ends of the edge whose middle is node 4 + k.
 extern const int fem_quadratic_edges[6][2];
 
-// `corners` (4, 3) at rest, positively oriented and of positive volume.
+// `nodes` (10, 3) at rest, with fem_quadratic_min_jacobian > 0.
+void fem_quadratic_create_curved(FemQuadratic *element, const double nodes[30]);
+
+// A straight one. `corners` (4, 3) at rest, positively oriented and of positive volume.
 void fem_quadratic_create(FemQuadratic *element, const double corners[12]);
+
+// The smallest det(∂X/∂L) at a point over that of the straight element of the same corners: 1 if all middles
+// are in the middle, ≤ 0 where the element is inside out.
+double fem_quadratic_min_jacobian(const double nodes[30]);
 
 // Point 0 … 3, each near the corner of that number.
 FemPoint fem_quadratic_point(const FemQuadratic *element, int point);

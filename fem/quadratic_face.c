@@ -13,10 +13,6 @@ typedef struct Point {
   double N[NODES], along_xi[NODES], along_eta[NODES], weight;
 } Point;
 
-double fem_quadratic_face_share(int node) {
-  return node < 3 ? 0 : 1.0 / 3;
-}
-
 static Point point_at(const double L[3], double weight) {
   Point point = {.weight = weight};
   // ∂L/∂ξ = (−1, 1, 0), ∂L/∂η = (−1, 0, 1).
@@ -55,6 +51,18 @@ static Vec3 sum(const double weights[NODES], const double x[18]) {
 // Positions relative to the first node: the areas do not depend on where the origin is.
 static void shift(const double x[18], double moved[18]) {
   for (int r = 0; r < DOFS; r++) moved[r] = x[r] - x[r % 3];
+}
+
+void fem_quadratic_face_share(const double x[18], double share[6]) {
+  Point points[POINTS];
+  double moved[DOFS];
+  list_points(points);
+  shift(x, moved);
+  memset(share, 0, NODES * sizeof *share);
+  for (int p = 0; p < POINTS; p++) {
+    double stretch = vec3_length(vec3_cross(sum(points[p].along_xi, moved), sum(points[p].along_eta, moved)));
+    for (int a = 0; a < NODES; a++) share[a] += points[p].weight * points[p].N[a] * stretch;
+  }
 }
 
 void fem_quadratic_face_area(const double x[18], double area[18]) {

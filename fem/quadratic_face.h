@@ -8,8 +8,9 @@
 
 enum { FEM_QUADRATIC_FACE_NODES = 6 };
 
-// What a node takes of a uniform load on a straight face: ∫ N_a over the area, 0 at corners, 1/3 at middles.
-double fem_quadratic_face_share(int node);
+// What each node takes of a uniform traction [m²]: ∫ N_a over the area; of a straight face 0 at corners and a
+// third of the area at middles. Nodes' positions x (6, 3).
+void fem_quadratic_face_share(const double x[18], double share[6]);
 
 // ∂V/∂x at the nodes' positions x (6, 3); the areas' sum where p is 1 [m²].
 void fem_quadratic_face_area(const double x[18], double area[18]);

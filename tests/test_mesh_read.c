@@ -214,19 +214,20 @@ START_TEST(other_elements_are_refused_by_name) {
   put("a.geo",
       "Point(1)={0,0,0,1}; Extrude{1,0,0}{Point{1};Layers{1};Recombine;}"
       "Extrude{0,1,0}{Curve{1};Layers{1};Recombine;} Extrude{0,0,1}{Surface{5};Layers{1};Recombine;}\n");
-  expect_refusal(STATUS_INPUT, scratch("a.geo"), "'Hexahedron 8'", "linear tetrahedra", "no recombination",
-                 NULL);
+  expect_refusal(STATUS_INPUT, scratch("a.geo"), "'Hexahedron 8'", "tetrahedra of 4 or 10",
+                 "no recombination", NULL);
   put("a.geo",
-      "SetFactory(\"OpenCASCADE\"); Box(1)={0,0,0,1,1,1}; Mesh.ElementOrder=2; Mesh.MeshSizeMin=1;\n");
-  expect_refusal(STATUS_INPUT, scratch("a.geo"), "'Tetrahedron 10'", "element order 1", NULL);
+      "SetFactory(\"OpenCASCADE\"); Box(1)={0,0,0,1,1,1}; Mesh.ElementOrder=3; Mesh.MeshSizeMin=1;\n");
+  expect_refusal(STATUS_INPUT, scratch("a.geo"), "'Tetrahedron 20'", "element order 1 or 2", NULL);
   put("a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n8\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 "
                 "0\n1 0 1 0\n"
                 "1 1 1 0\n0 1 1 0\nHexahedra\n1\n1 2 3 4 5 6 7 8 1\nEnd\n");
-  expect_refusal(STATUS_INPUT, scratch("a.mesh"), "1 Hexahedra", "linear tetrahedra", NULL);
+  expect_refusal(STATUS_INPUT, scratch("a.mesh"), "1 Hexahedra", "tetrahedra of 4 or 10", NULL);
   put("a.vtk", "# vtk DataFile Version 2.0\nhex\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n0 0 0 1 "
                "0 0 1 1 0 0 1 0\n"
                "0 0 1 1 0 1 1 1 1 0 1 1\nCELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n");
-  expect_refusal(STATUS_INPUT, scratch("a.vtk"), "cell 0 is a hexahedron", "linear tetrahedra", NULL);
+  expect_refusal(STATUS_INPUT, scratch("a.vtk"), "cell 0 is a hexahedron",
+                 "only tetrahedra (types 10 and 24)", NULL);
 }
 END_TEST
 
@@ -632,7 +633,7 @@ START_TEST(tetgen_faults_are_told_with_their_line) {
   expect_tetgen_refusal("1 3 0 0\n0 0 0\n", "", "a.node:2:", "the line or the file ends");
   expect_tetgen_refusal("2 3 0 0\n0 0 0 0\n5 0 0 1\n", "",
                         "a.node:3:", "number of a node is 5; it must be 1");
-  expect_tetgen_refusal(NODES, "1 10 0\n0 0 1 2 3 0 1 2 3 0 1\n", "a.ele:1:", "without -o2");
+  expect_tetgen_refusal(NODES, "1 7 0\n0 0 1 2 3 0 1 2\n", "a.ele:1:", "4 or 10");
   expect_tetgen_refusal(NODES, "1 4 0\n0 0 1 2 4\n", "a.ele:2:", "4; it must lie in 0 … 3");
   expect_tetgen_refusal(NODES, "2 4 0\n0 0 1 2 3\n", "a.ele:", "complete");
   expect_tetgen_refusal(NODES, "99999999999 4 0\n", "a.ele:1:", "must lie in");

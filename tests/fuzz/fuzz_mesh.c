@@ -46,8 +46,19 @@ static void check_mesh(const FemMesh *mesh) {
     }
   FemMeshQuality quality;
   FUZZ_CLAIM(fem_mesh_quality(mesh, &quality) == STATUS_OK, "%s", status_message());
+  FemMeshCurvature curvature;
+  FUZZ_CLAIM(fem_mesh_curvature(mesh, &curvature) == STATUS_OK, "%s", status_message());
   FUZZ_CLAIM(quality.volume > 0 && quality.surface_triangle_count >= 4, "volume %g, %d triangles",
              quality.volume, quality.surface_triangle_count);
+}
+
+// With the nodes that a second-order file has: refused, or as sound as any.
+static void promote(FemMesh *mesh) {
+  Status status = fem_mesh_make_quadratic(mesh);
+  if (status)
+    check_refusal(status);
+  else
+    check_mesh(mesh);
 }
 
 static void validate(FemMeshSource *source) {
@@ -57,6 +68,7 @@ static void validate(FemMeshSource *source) {
     check_refusal(status);
   else
     check_mesh(&mesh);
+  if (!status && mesh.middles) promote(&mesh);
   fem_mesh_destroy(&mesh);
 }
 
@@ -114,7 +126,8 @@ static void run_frame(const uint8_t *data, size_t size) {
     return;
   }
   for (int i = 0; i < fem_vtu_corner_count(content.cell) * content.cell_count; i++)
-    FUZZ_CLAIM(content.cells[i] >= 0 && content.cells[i] < content.vertex_count, "corner %d", content.cells[i]);
+    FUZZ_CLAIM(content.cells[i] >= 0 && content.cells[i] < content.vertex_count, "corner %d",
+               content.cells[i]);
   fem_vtu_read_destroy(&content);
 }
 
@@ -161,6 +174,18 @@ static size_t seed_small_tetgen(uint8_t *data) {
   static const char text[] = "T5 3 1 1\n0 0 0 0 9 1\n1 1 0 0 9 1\n2 0 1 0 9 2\n3 0 0 1 9 0\n4 1 1 1 9 -3\n"
                              "\0"
                              "2 4 1\n0 0 1 2 3 7\n1 1 2 3 4 8\n";
+  memcpy(data, text, sizeof text - 1);
+  return sizeof text - 1;
+}
+
+// The same of the second order, the node on edge 12 displaced.
+static size_t seed_second_order_tetgen(uint8_t *data) {
+  static const char text[] =
+      "T14 3 0 1\n0 0 0 0 1\n1 1 0 0 1\n2 0 1 0 2\n3 0 0 1 0\n4 1 1 1 0\n5 .5 0 0 1\n6 .6 .5 0 1\n7 0 .5 0 "
+      "1\n"
+      "8 0 0 .5 0\n9 .5 0 .5 0\n10 0 .5 .5 0\n11 1 .5 .5 0\n12 .5 1 .5 0\n13 .5 .5 1 0\n"
+      "\0"
+      "2 10 0\n0 0 1 2 3 10 8 5 6 9 7\n1 1 2 3 4 13 11 6 10 12 9\n";
   memcpy(data, text, sizeof text - 1);
   return sizeof text - 1;
 }
@@ -212,6 +237,8 @@ static size_t seed(int k, uint8_t *data) {
     return seed_file('M', "tests/data/mesh/box_22.msh", data);
   case 7:
     return seed_file('D', "meshes/tet.mesh", data);
+  case 8:
+    return seed_second_order_tetgen(data);
   default:
     return 0;
   }
