@@ -96,7 +96,8 @@ static void mark_surface(const FemModel *model, bool *on_surface) {
                   .tets = model->tets};
   int(*triangles)[3], count;
   ck_assert_ok(fem_mesh_surface(&mesh, &triangles, &count));
-  for (int i = 0; i < 3 * count; i++) on_surface[triangles[0][i]] = true;
+  for (int t = 0; t < count; t++)
+    for (int i = 0; i < 3; i++) on_surface[triangles[t][i]] = true;
   memory_free(triangles);
 }
 
