@@ -409,6 +409,30 @@ START_TEST(groups_hold_corners_of_linear_and_all_nodes_of_quadratic_meshes) {
 }
 END_TEST
 
+// TetGen 1.5 marks corners only: their group takes the nodes on its edges as that of a linear mesh does. One
+// that marks nodes on edges too means those and no others.
+START_TEST(a_group_that_names_no_nodes_on_edges_has_those_between_its_corners) {
+  static const int added[2] = {3, 1};
+  for (int is_told = 0; is_told < 2; is_told++) {
+    char text[512];
+    snprintf(text, sizeof text,
+             "10 3 0 1\n1 0 0 0 5\n2 1 0 0 5\n3 0 1 0 5\n4 0 0 1 0\n5 .5 0 0 0\n6 .5 .5 0 %d\n7 0 .5 0 0\n"
+             "8 0 0 .5 0\n9 0 .5 .5 0\n10 .5 0 .5 0\n",
+             is_told ? 5 : 0);
+    put("a.node", text);
+    put("a.ele", "1 10 0\n1 1 2 3 4  9 8 5 6 10 7\n");
+    FemMesh mesh;
+    ck_assert_ok(fem_mesh_read(&mesh, scratch("a.ele"), NULL, NULL));
+    ck_assert_int_eq(group_of(&mesh, "marker_5")->vertex_count, 3);
+    ck_assert_ok(fem_mesh_make_quadratic(&mesh));
+    const FemMeshGroup *group = group_of(&mesh, "marker_5");
+    ck_assert_int_eq(group->vertex_count, 3 + added[is_told]);
+    for (int k = 0; k < group->vertex_count; k++) ck_assert(mesh.rest[3 * group->vertices[k] + 2] == 0);
+    fem_mesh_destroy(&mesh);
+  }
+}
+END_TEST
+
 // A quarter of a thick-walled cylinder in plane strain (meshes/vessel.geo, coarse): the largest error of the
 // inner corners' radial displacement over Lamé's.
 static double vessel_error(int order, double size) {
@@ -553,6 +577,7 @@ int main(void) {
   tcase_add_test(cases, a_curved_element_reproduces_affine_motions);
   tcase_add_test(cases, curved_elements_keep_the_volume_of_a_ball);
   tcase_add_test(cases, groups_hold_corners_of_linear_and_all_nodes_of_quadratic_meshes);
+  tcase_add_test(cases, a_group_that_names_no_nodes_on_edges_has_those_between_its_corners);
   tcase_add_test(cases, a_curved_vessel_meets_theory_where_a_straight_one_does_not);
   tcase_add_test(cases, a_linear_body_says_what_it_leaves_out);
   tcase_add_test(cases, the_command_tells_the_order);
