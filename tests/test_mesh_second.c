@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fem/load.h"
 #include "fem/mesh.h"
 #include "fem/mesh_edges.h"
 #include "fem/quadratic.h"
@@ -322,8 +323,8 @@ START_TEST(a_curved_element_reproduces_affine_motions) {
   FemQuadratic image;
   fem_quadratic_create_curved(&image, moved);
   ck_assert_near(image.volume, det * element.volume, 1e-14);
-  // One node moved by d along x: V changes by d ∂V/∂x of the straight element, −d/6 of the node on edge 12
-  // opposite nothing but the faces x = 0 … its two faces add up to ∫ 4 L₁ L₂ n_x dA = (1/3)(½ − 0).
+  // The middle of edge 12 moved by d along x changes the volume by d ∫ N n_x dA over the faces there, z = 0,
+  // which has no n_x, and 123, whose share of the node is a third of ½: by d/6.
   FemQuadratic bulged;
   double straight[30];
   for (int k = 0; k < 4; k++) vec3_store(straight + 3 * k, vec3_at(corners[k]));
@@ -430,6 +431,45 @@ START_TEST(a_group_that_names_no_nodes_on_edges_has_those_between_its_corners) {
     for (int k = 0; k < group->vertex_count; k++) ck_assert(mesh.rest[3 * group->vertices[k] + 2] == 0);
     fem_mesh_destroy(&mesh);
   }
+}
+END_TEST
+
+// The sum of what a load on the group "skin" gives to all nodes, and of its work in a dilation, Σ f·x.
+static Vec3 sum_load(const FemMesh *mesh, FemLoadDef def, double *virial) {
+  FemLoad load;
+  char skin[] = "skin";
+  def.select = (FemSelectDef){.kind = FEM_SELECT_GROUP, .group = skin};
+  ck_assert_ok(fem_load_create(&load, &def, mesh, 0));
+  Vec3 sum = {0, 0, 0};
+  *virial = 0;
+  for (int i = 0; i < load.vertex_count; i++) {
+    sum = vec3_add(sum, vec3_at(load.force + 3 * i));
+    *virial += vec3_dot(vec3_at(load.force + 3 * i), vec3_at(mesh->rest + 3 * load.vertices[i]));
+  }
+  fem_load_destroy(&load);
+  return sum;
+}
+
+// A traction adds up to the skin's area; a pressure to nothing, and its work in a dilation is −3 p V of the
+// volume within (exactly: quadrature of the faces is), which the points of the elements give to h⁴.
+START_TEST(loads_act_on_the_curved_skin) {
+  const double pi = acos(-1);
+  FemMesh mesh;
+  FemMeshCurvature curvature;
+  double virial;
+  read_ball(&mesh, 0.35, 2);
+  ck_assert_ok(fem_mesh_curvature(&mesh, &curvature));
+  ck_assert_ok(fem_mesh_make_quadratic(&mesh));
+  Vec3 pulled = sum_load(&mesh, (FemLoadDef){.kind = FEM_LOAD_TRACTION, .vector = {1, 0, -2}}, &virial);
+  ck_assert_near(pulled.x / (4 * pi), 1, 1e-3);
+  ck_assert_near(pulled.z, -2 * pulled.x, 1e-12);
+  Vec3 pressed =
+      sum_load(&mesh, (FemLoadDef){.kind = FEM_LOAD_PRESSURE, .pressure = 5, .is_dead = true}, &virial);
+  ck_assert_near(vec3_length(pressed), 0, 1e-12);
+  printf("ball: area %.3g, volume by its skin %.3g, by its elements %.3g off\n", pulled.x / (4 * pi) - 1,
+         virial / -20 / pi - 1, curvature.volume / (4 * pi / 3) - 1);
+  ck_assert_near(virial / (-15 * curvature.volume), 1, 1e-3);
+  fem_mesh_destroy(&mesh);
 }
 END_TEST
 
@@ -578,6 +618,7 @@ int main(void) {
   tcase_add_test(cases, curved_elements_keep_the_volume_of_a_ball);
   tcase_add_test(cases, groups_hold_corners_of_linear_and_all_nodes_of_quadratic_meshes);
   tcase_add_test(cases, a_group_that_names_no_nodes_on_edges_has_those_between_its_corners);
+  tcase_add_test(cases, loads_act_on_the_curved_skin);
   tcase_add_test(cases, a_curved_vessel_meets_theory_where_a_straight_one_does_not);
   tcase_add_test(cases, a_linear_body_says_what_it_leaves_out);
   tcase_add_test(cases, the_command_tells_the_order);
