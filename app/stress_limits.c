@@ -63,6 +63,8 @@ static const AppStressLimit limits[] = {
     {"spike*", NETWORKS, "asymmetry in y", 0.07, UNSYMMETRIC, AUDIT},
     {"wedge*", NETWORKS, "asymmetry in x", 0.035, UNSYMMETRIC, AUDIT},
     {"wedge*", NETWORKS, "asymmetry in y", 0.03, UNSYMMETRIC, AUDIT},
+    {"wedge in a crack", "hybrid", "asymmetry in x", 0.005, UNSYMMETRIC, AUDIT},
+    {"wedge in a crack", "hybrid", "asymmetry in y", 0.005, UNSYMMETRIC, AUDIT},
     {"tetrahedron inside", NETWORKS, "steps told of", 0, NESTED,
      "trouble.enclosed stays 0; tetlap compare --audit-only exact"},
     {"tetrahedron inside", PAPERS, "enclosed pairs", 0, NESTED,

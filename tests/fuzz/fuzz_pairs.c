@@ -140,11 +140,17 @@ static double tet_extent(const double tet[12]) {
   return longest;
 }
 
-// `geo` takes a point for on a plane within some CONTACT_GEO_NOISE of a tetrahedron's height: what the volume
-// of the other may change by if a face moves so far.
+// How far off a plane of the tetrahedron `geo` takes a point for on it (contact/geo_gate.h).
+static double plane_doubt(const double tet[12]) {
+  double extent = tet_extent(tet), det = 6 * contact_invariant_tet_volume(tet),
+         flatness = fmin(extent * extent * extent / det, 1 / CONTACT_GEO_FLATTEST);
+  return fmax(CONTACT_GEO_NOISE, CONTACT_GEO_ROUNDING * flatness) * extent;
+}
+
+// An overlap that is called none may be some 24 times as thick.
 static double doubt_of_geo(const double x[SIZE]) {
-  double a = tet_extent(x), b = tet_extent(x + 12), smaller = fmin(a, b);
-  return 10 * CONTACT_GEO_NOISE * smaller * smaller * fmax(a, b);
+  double smaller = fmin(tet_extent(x), tet_extent(x + 12));
+  return 24 * fmax(plane_doubt(x), plane_doubt(x + 12)) * smaller * smaller;
 }
 
 static void check_against_exact(Model model, const double x[SIZE], const Answer *answer,
