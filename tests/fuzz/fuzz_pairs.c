@@ -9,8 +9,8 @@
 //                                   depends on the order of vertices and tetrahedra
 //   geo                             no overlap is missed, beyond what geo_gate.h calls noise
 //
-// Numbers that are not finite must be refused. Lengths beyond 2^±60 are evaluated, too, but V and ∇V may
-// overflow or underflow there and nothing is claimed of them.
+// Numbers that are not finite must be refused. Lengths beyond 2^±60 and volumes below 2^−960 are evaluated,
+// too, but V and ∇V may overflow or underflow there and nothing is claimed of them.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -201,7 +201,8 @@ static void check_orders(Model model, const double x[SIZE], const Answer *answer
 static bool is_moderate(const double x[SIZE]) {
   double largest = 0;
   for (int i = 0; i < SIZE; i++) largest = fmax(largest, fabs(x[i]));
-  return largest < 0x1p60 && contact_invariant_extent(x) > 0x1p-60;
+  double least = contact_invariant_smaller_volume(x); // parts of it are to be normal numbers, too
+  return largest < 0x1p60 && contact_invariant_extent(x) > 0x1p-60 && (least == 0 || least > 0x1p-960);
 }
 
 static void check_refused(const double x[SIZE]) {
