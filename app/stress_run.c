@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/stress_run.h"
 
+#include <assert.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -64,7 +65,9 @@ int app_stress_run_frames(const AppStressRun *run) {
 }
 
 static int frame_of(const AppStressRun *run, int frame) {
-  return frame < 0 ? run->result.frame_count + frame : frame;
+  int found = frame < 0 ? run->result.frame_count + frame : frame;
+  assert(found >= 0 && found < run->result.frame_count);
+  return found;
 }
 
 const double *app_stress_run_position(const AppStressRun *run, int frame, int vertex) {
