@@ -8,17 +8,17 @@
 #include <string.h>
 
 #include "app/argument.h"
-#include "app/scene_overlap.h"
-#include "app/scene_read.h"
-#include "app/scene_write.h"
+#include "app/scene/overlap.h"
+#include "app/scene/read.h"
+#include "app/scene/write.h"
 #include "app/versions.h"
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "contact/weights.h"
-#include "fem/effect_contact.h"
+#include "fem/effect/contact.h"
+#include "overlap/weights.h"
 
 static volatile sig_atomic_t stop_flag;
 

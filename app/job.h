@@ -7,8 +7,8 @@
 #include <argp.h>
 #include <stdbool.h>
 
-#include "fem/model.h"
-#include "fem/run.h"
+#include "fem/model/model.h"
+#include "fem/run/run.h"
 
 enum { APP_MAX_OVERRIDES = 64 };
 

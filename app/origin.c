@@ -5,12 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/scene_write.h"
+#include "app/scene/write.h"
 #include "app/versions.h"
 #include "base/digest.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "contact/weights.h"
+#include "overlap/weights.h"
 
 static void record_digest(Record *record, const char *key, uint64_t digest) {
   char text[DIGEST_TEXT];
@@ -43,7 +43,7 @@ static void find_weights(const FemSceneDef *scene, char path[PATH_MAX]) {
   const FemContactDef *contact = &scene->contact;
   path[0] = 0;
   if (!contact->is_on) return;
-  if (contact->net && contact_weights_is_path(contact->net)) {
+  if (contact->net && overlap_weights_is_path(contact->net)) {
     char *directory = file_directory_of(scene->path),
          *file = directory ? file_join(directory, contact->net) : NULL;
     if (file) snprintf(path, PATH_MAX, "%s", file);
@@ -52,7 +52,7 @@ static void find_weights(const FemSceneDef *scene, char path[PATH_MAX]) {
   }
   const char *name = contact->net ? contact->net : contact->overlap;
   if (!contact->net && strcmp(name, "hybrid") == 0) name = "tpn-scene";
-  if (contact_weights_find(name, path, PATH_MAX) != STATUS_OK) path[0] = 0;
+  if (overlap_weights_find(name, path, PATH_MAX) != STATUS_OK) path[0] = 0;
 }
 
 static Status record_weights(const FemSceneDef *scene, Record *origin) {
@@ -86,7 +86,7 @@ Status app_origin_make(const AppJob *job, const AppJobOptions *options, const ch
   record_path(record, "scene_file", options->scene_path);
   RecordList *overrides = record_list(record, "set");
   for (int i = 0; i < options->override_count; i++) record_append_text(overrides, options->overrides[i]);
-  if (overlap && contact_weights_is_path(overlap))
+  if (overlap && overlap_weights_is_path(overlap))
     record_path(record, "overlap", overlap);
   else
     record_text(record, "overlap", overlap);

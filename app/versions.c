@@ -23,7 +23,8 @@ void app_versions_record(Record *record) {
 
 const char *app_versions_line(void) {
   return "tetlap " TETLAP_VERSION "; " TETLAP_COMPILER "; SUNDIALS " TETLAP_SUNDIALS_VERSION
-         "; SuiteSparse " TETLAP_SUITESPARSE_VERSION "; CGAL " TETLAP_CGAL_VERSION "; gmsh " TETLAP_GMSH_VERSION;
+         "; SuiteSparse " TETLAP_SUITESPARSE_VERSION "; CGAL " TETLAP_CGAL_VERSION
+         "; gmsh " TETLAP_GMSH_VERSION;
 }
 
 const char *app_versions_simd(void) {

@@ -19,7 +19,7 @@ static double relative(double difference, double size) {
 // The length of the difference of two pairs' ∇V; NULL: zero.
 static double gradient_length(const double *gradient, const double *other) {
   double sum = 0;
-  for (int c = 0; c < CONTACT_PAIR_SIZE; c++) {
+  for (int c = 0; c < OVERLAP_PAIR_SIZE; c++) {
     double d = (gradient ? gradient[c] : 0) - (other ? other[c] : 0);
     sum += d * d;
   }
@@ -32,8 +32,8 @@ static void compare_overlaps(const ContactEvaluation *a, const ContactEvaluation
   audit->pair_count = 0;
   for (int i = 0, j = 0; i < a->pair_count || j < b->pair_count; audit->pair_count++) {
     int order = i == a->pair_count ? 1 : j == b->pair_count ? -1 : compare_pairs(&a->pairs[i], &b->pairs[j]);
-    const double *left = order <= 0 ? a->gradients + CONTACT_PAIR_SIZE * (size_t)i : NULL,
-                 *right = order >= 0 ? b->gradients + CONTACT_PAIR_SIZE * (size_t)j : NULL;
+    const double *left = order <= 0 ? a->gradients + OVERLAP_PAIR_SIZE * (size_t)i : NULL,
+                 *right = order >= 0 ? b->gradients + OVERLAP_PAIR_SIZE * (size_t)j : NULL;
     double left_volume = order <= 0 ? a->volumes[i++] : 0, right_volume = order >= 0 ? b->volumes[j++] : 0;
     volume_difference += fabs(left_volume - right_volume);
     volume += right_volume;

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "contact/clip.h"
+#include "overlap/clip/clip.h"
 
 // ---- The solids.
 
@@ -200,7 +200,7 @@ static void add_turning(const Vec3 x[4], const int face[3], const double share[4
 // the antisymmetric part, −½ [s]×, needs no division.
 static void add_segment(const Corner *p, const Corner *q, Vec3 face, Vec3 plane, double hessian[144]) {
   Vec3 step = vec3_sub(q->x, p->x);
-  double sine = fmax(vec3_length(vec3_cross(face, plane)), CONTACT_CLIP_LEAST_SINE);
+  double sine = fmax(vec3_length(vec3_cross(face, plane)), OVERLAP_CLIP_LEAST_SINE);
   double half = vec3_length(step) / (2 * sine);
   const double f[3] = {face.x, face.y, face.z}, g[3] = {plane.x, plane.y, plane.z};
   const double turn[9] = {0, step.z, -step.y, -step.z, 0, step.x, step.y, -step.x, 0};

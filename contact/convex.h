@@ -10,9 +10,9 @@
 //   V = ⅓ Σ_f n_f·(p_f − o) |P_f| + ⅓ Σ_k n_k·(p_k − o) |Q_k|,
 //
 // ∂V/∂x_a = Σ_{f∋a} n_f ∫_{P_f} β_a dA, β the barycentric coordinates, and ∂²V/∂x² as derived in
-// contact/clip.h: what turns with the faces, and what the edges of P_f that lie on a plane k sweep. Every
-// polygon is clipped for itself, so no sign of a distance that is only rounding can tear the surface open:
-// an error ε of a distance moves a polygon's edge by ε.
+// overlap/clip/clip.h: what turns with the faces, and what the edges of P_f that lie on a plane k sweep.
+// Every polygon is clipped for itself, so no sign of a distance that is only rounding can tear the surface
+// open: an error ε of a distance moves a polygon's edge by ε.
 #ifndef TETLAP_CONTACT_CONVEX_H
 #define TETLAP_CONTACT_CONVEX_H
 
@@ -45,12 +45,12 @@ double contact_convex_prism_error(int faces);
 
 // V [m³] and, where not NULL, ∂V/∂x [m²] and ∂²V/∂x² [m] (12, 12; symmetric) of a tetrahedron of either
 // orientation. Where a face lies in a plane V has one-sided derivatives only; ∂²V/∂x² is bounded there as in
-// contact/clip.h.
+// overlap/clip/clip.h.
 void contact_convex_overlap(const ContactConvex *convex, const double tet[12], double *volume,
                             double gradient[12], double hessian[144]);
 
-// How far apart the two are along the best of their separating axes (contact/separation.h): at most their
-// distance, negative once they overlap. It ends early with a lower bound that is > enough.
+// How far apart the two are along the best of their separating axes (overlap/clip/separation.h): at most
+// their distance, negative once they overlap. It ends early with a lower bound that is > enough.
 double contact_convex_separation(const ContactConvex *convex, const double tet[12], double enough);
 
 #endif

@@ -10,8 +10,8 @@
 #include "contact/bounds.h"
 #include "contact/potential.h"
 #include "contact/rest.h"
-#include "contact/separation.h"
 #include "contact/shape.h"
+#include "overlap/clip/separation.h"
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout) {
   *evaluation = (ContactEvaluation){0};
@@ -147,7 +147,7 @@ static void sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *la
     for (int k = begin; k < end; k++)
       contact_layout_gather_pair(layout, &evaluation->pairs[k], positions,
                                  coordinates + 24 * (size_t)(k - begin));
-    if (!keeps_all && mesh_end > begin) contact_separation_find(mesh_end - begin, coordinates, is_apart);
+    if (!keeps_all && mesh_end > begin) overlap_separation_find(mesh_end - begin, coordinates, is_apart);
     for (int k = begin; k < end; k++) evaluation->is_kept[k] = !is_apart[k - begin];
   }
   evaluation->mesh_pair_count = 0;
@@ -175,13 +175,12 @@ static Status blame_volume(const ContactLayout *layout, const ContactPair *pair,
 
 // Of a batch that failed, finds the pair for which the model fails again.
 static Status blame_failure(const ContactEvaluation *evaluation, const ContactLayout *layout,
-                            const ContactOverlapModel *model, const ContactOverlapBatch *batch,
-                            Status failure) {
+                            const OverlapModel *model, const OverlapBatch *batch, Status failure) {
   char why[1024];
   snprintf(why, sizeof why, "%s", status_message());
   for (int k = 0; k < batch->pair_count; k++) {
-    ContactOverlapBatch one = contact_overlap_part(batch, k, 1);
-    Status status = contact_overlap_eval(model, &one);
+    OverlapBatch one = overlap_ops_part(batch, k, 1);
+    Status status = overlap_model_eval(model, &one);
     if (status) {
       snprintf(why, sizeof why, "%s", status_message());
       return blame(layout, &evaluation->pairs[k], status, why);
@@ -191,23 +190,23 @@ static Status blame_failure(const ContactEvaluation *evaluation, const ContactLa
 }
 
 static void count_pair(ContactPairCounts *counts, unsigned flags) {
-  counts->enclosed += (flags & CONTACT_OVERLAP_ENCLOSED) != 0;
-  counts->fallbacks += (flags & CONTACT_OVERLAP_FALLBACK) != 0;
-  counts->blended += (flags & CONTACT_OVERLAP_BLENDED) != 0;
-  counts->by_net += (flags & CONTACT_OVERLAP_NET) != 0;
-  counts->beyond += (flags & CONTACT_OVERLAP_BEYOND) != 0;
+  counts->enclosed += (flags & OVERLAP_ENCLOSED) != 0;
+  counts->fallbacks += (flags & OVERLAP_FALLBACK) != 0;
+  counts->blended += (flags & OVERLAP_BLENDED) != 0;
+  counts->by_net += (flags & OVERLAP_NET) != 0;
+  counts->beyond += (flags & OVERLAP_BEYOND) != 0;
 }
 
 static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout *layout,
-                             const ContactOverlapModel *model) {
+                             const OverlapModel *model) {
   int count = evaluation->mesh_pair_count;
   if (count == 0) return STATUS_OK;
-  ContactOverlapBatch batch = {.pair_count = count,
-                               .pairs = evaluation->coordinates,
-                               .volume = evaluation->volumes,
-                               .gradient = evaluation->gradients,
-                               .flags = evaluation->flags};
-  Status status = contact_overlap_eval(model, &batch);
+  OverlapBatch batch = {.pair_count = count,
+                        .pairs = evaluation->coordinates,
+                        .volume = evaluation->volumes,
+                        .gradient = evaluation->gradients,
+                        .flags = evaluation->flags};
+  Status status = overlap_model_eval(model, &batch);
   if (status) return blame_failure(evaluation, layout, model, &batch, status);
   evaluation->counts.tried = count;
   for (int k = 0; k < count; k++) {
@@ -320,12 +319,12 @@ static Status apply_potential(ContactEvaluation *evaluation, const ContactLayout
 }
 
 Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout *layout,
-                              const ContactCandidateList *candidates, const ContactOverlapModel *model,
+                              const ContactCandidateList *candidates, const OverlapModel *model,
                               bool with_shapes, double time, const double *positions) {
   double start = clock_wall_s();
   clear(evaluation);
   TRY(sift_by_boxes(evaluation, layout, candidates, with_shapes, positions));
-  sift_by_faces(evaluation, layout, contact_overlap_has_ghosts(model), positions);
+  sift_by_faces(evaluation, layout, overlap_model_has_ghosts(model), positions);
   TRY(overlap_meshes(evaluation, layout, model));
   overlap_shapes(evaluation, layout, time);
   keep_overlapping(evaluation);

@@ -47,7 +47,7 @@ void contact_evaluation_start_over(ContactEvaluation *evaluation, const ContactL
 // Half-spaces only where asked: no overlap model takes part in them. STATUS_SOLVER: the model gave a volume
 // that is not a number ≥ 0.
 Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout *layout,
-                              const ContactCandidateList *candidates, const ContactOverlapModel *model,
+                              const ContactCandidateList *candidates, const OverlapModel *model,
                               bool with_shapes, double time, const double *positions);
 
 // Whether the result is that of these positions.

@@ -5,8 +5,8 @@
 
 #include "base/memory.h"
 #include "contact/bounds.h"
-#include "contact/separation.h"
 #include "contact/shape.h"
+#include "overlap/clip/separation.h"
 
 Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout) {
   *onset = (ContactOnset){0};
@@ -29,7 +29,7 @@ static double separation_of(const ContactLayout *layout, const ContactPair *pair
   contact_layout_gather(layout, pair->tets[0], positions, x);
   if (pair->tets[1] >= 0) {
     contact_layout_gather(layout, pair->tets[1], positions, x + 12);
-    return contact_separation_pair(x, enough);
+    return overlap_separation_pair(x, enough);
   }
   return contact_shape_separation(&layout->def.shapes[layout->facings[pair->facing].shape], time, x, enough);
 }

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "contact/bounds.h"
-#include "contact/separation.h"
+#include "overlap/clip/separation.h"
 
 // ---- The surface: faces that only one tetrahedron has.
 
@@ -133,7 +133,7 @@ static double separation_of(const ContactSystemDef *def, const int pair[2], cons
     for (int v = 0; v < 4; v++)
       for (int c = 0; c < 3; c++)
         x[12 * side + 3 * v + c] = positions[3 * (size_t)def->tets[pair[side]][v] + (size_t)c];
-  return contact_separation_pair(x, enough);
+  return overlap_separation_pair(x, enough);
 }
 
 // Turns pairs of boxes into pairs i < j of tetrahedra; j = −1 where they may not meet or are too far apart.

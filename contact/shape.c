@@ -7,7 +7,7 @@
 #include "contact/ball.h"
 #include "contact/convex.h"
 #include "contact/halfspace.h"
-#include "contact/separation.h"
+#include "overlap/clip/separation.h"
 
 // A point that moves with the shape, and its velocity.
 static Vec3 carry(const ContactShape *shape, double time, Vec3 rest, Vec3 *velocity) {
@@ -122,7 +122,7 @@ double contact_shape_separation(const ContactShape *shape, double time, const do
   }
   vec3_store(point, contact_shape_point(shape, time));
   return shape->kind == CONTACT_SHAPE_BALL ? contact_ball_separation(tet, point, shape->radius)
-                                           : contact_separation_halfspace(tet, point, shape->normal);
+                                           : overlap_separation_halfspace(tet, point, shape->normal);
 }
 
 static double distance_to_box(Vec3 x, const double *positions, int begin, int end) {

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "contact/bounds.h"
-#include "contact/separation.h"
+#include "overlap/clip/separation.h"
 
 // Pairs that are asked at a time.
 enum { PORTION = 2048 };
@@ -18,8 +18,8 @@ Status contact_status_create(ContactStatus *status, const ContactLayout *layout)
   status->error = memory_zeroed(tets, sizeof *status->error);
   status->wrong_pairs = memory_zeroed(tets, sizeof *status->wrong_pairs);
   status->portion = memory_zeroed(PORTION, sizeof *status->portion);
-  status->coordinates = memory_zeroed(PORTION, CONTACT_PAIR_SIZE * sizeof *status->coordinates);
-  status->asked = memory_zeroed(PORTION, CONTACT_PAIR_SIZE * sizeof *status->asked);
+  status->coordinates = memory_zeroed(PORTION, OVERLAP_PAIR_SIZE * sizeof *status->coordinates);
+  status->asked = memory_zeroed(PORTION, OVERLAP_PAIR_SIZE * sizeof *status->asked);
   status->volumes = memory_zeroed(PORTION, sizeof *status->volumes);
   status->places = memory_zeroed(PORTION, sizeof *status->places);
   for (int k = 0; k < 2; k++) status->says[k] = memory_zeroed(PORTION, 1);
@@ -49,27 +49,27 @@ void contact_status_destroy(ContactStatus *status) {
 
 // The pairs of the portion that a model is asked: all where it sees ghosts, else those that no face
 // separates.
-static int choose(ContactStatus *status, const ContactOverlapModel *model, int count) {
-  bool sees_ghosts = contact_overlap_has_ghosts(model);
+static int choose(ContactStatus *status, const OverlapModel *model, int count) {
+  bool sees_ghosts = overlap_model_has_ghosts(model);
   int chosen = 0;
   for (int k = 0; k < count; k++) {
-    const double *pair = status->coordinates + CONTACT_PAIR_SIZE * (size_t)k;
-    if (!sees_ghosts && contact_separation_is_certain(pair)) continue;
-    memcpy(status->asked + CONTACT_PAIR_SIZE * (size_t)chosen, pair, CONTACT_PAIR_SIZE * sizeof *pair);
+    const double *pair = status->coordinates + OVERLAP_PAIR_SIZE * (size_t)k;
+    if (!sees_ghosts && overlap_separation_is_certain(pair)) continue;
+    memcpy(status->asked + OVERLAP_PAIR_SIZE * (size_t)chosen, pair, OVERLAP_PAIR_SIZE * sizeof *pair);
     status->places[chosen++] = k;
   }
   return chosen;
 }
 
 // What a model says of the portion's pairs.
-static Status ask(ContactStatus *status, const ContactOverlapModel *model, int count, unsigned char *says) {
+static Status ask(ContactStatus *status, const OverlapModel *model, int count, unsigned char *says) {
   int chosen = choose(status, model, count);
-  ContactOverlapBatch batch = {.pair_count = chosen, .pairs = status->asked, .volume = status->volumes};
+  OverlapBatch batch = {.pair_count = chosen, .pairs = status->asked, .volume = status->volumes};
   for (int k = 0; k < count; k++) says[k] = 0;
-  TRY(contact_overlap_eval(model, &batch));
+  TRY(overlap_model_eval(model, &batch));
   for (int k = 0; k < chosen; k++) says[status->places[k]] = status->volumes[k] > 0;
   if (!model->ops->eval_logits) return STATUS_OK;
-  bool sees_ghosts = contact_overlap_has_ghosts(model);
+  bool sees_ghosts = overlap_model_has_ghosts(model);
   TRY(model->ops->eval_logits(model->self, chosen, status->asked, status->volumes));
   for (int k = 0; k < chosen; k++) {
     unsigned char *one = &says[status->places[k]];
@@ -96,8 +96,8 @@ static void judge(ContactStatus *status, int count) {
   }
 }
 
-static Status ask_both(ContactStatus *status, const ContactOverlapModel *model,
-                       const ContactOverlapModel *reference, int count) {
+static Status ask_both(ContactStatus *status, const OverlapModel *model, const OverlapModel *reference,
+                       int count) {
   if (count == 0) return STATUS_OK;
   TRY(ask(status, model, count, status->says[0]));
   TRY(ask(status, reference, count, status->says[1]));
@@ -129,8 +129,8 @@ static void clear(ContactStatus *status, int tet_count) {
 }
 
 Status contact_status_run(ContactStatus *status, const ContactLayout *layout,
-                          const ContactCandidateList *candidates, const ContactOverlapModel *model,
-                          const ContactOverlapModel *reference, const double *positions) {
+                          const ContactCandidateList *candidates, const OverlapModel *model,
+                          const OverlapModel *reference, const double *positions) {
   int count = 0, tet_count = layout->def.tet_count;
   double apart = 3 * layout->nudge;
   clear(status, tet_count);
@@ -141,7 +141,7 @@ Status contact_status_run(ContactStatus *status, const ContactLayout *layout,
     if (contact_bounds_distance(status->boxes[pair->tets[0]], status->boxes[pair->tets[1]]) > apart) continue;
     status->portion[count] = *pair;
     contact_layout_gather_pair(layout, pair, positions,
-                               status->coordinates + CONTACT_PAIR_SIZE * (size_t)count);
+                               status->coordinates + OVERLAP_PAIR_SIZE * (size_t)count);
     if (++count < PORTION) continue;
     TRY(ask_both(status, model, reference, count));
     count = 0;

@@ -40,7 +40,7 @@ void contact_status_destroy(ContactStatus *status);
 
 // Asks both at these positions, which the candidates must cover.
 Status contact_status_run(ContactStatus *status, const ContactLayout *layout,
-                          const ContactCandidateList *candidates, const ContactOverlapModel *model,
-                          const ContactOverlapModel *reference, const double *positions);
+                          const ContactCandidateList *candidates, const OverlapModel *model,
+                          const OverlapModel *reference, const double *positions);
 
 #endif

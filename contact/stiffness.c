@@ -5,9 +5,9 @@
 
 #include "base/memory.h"
 #include "contact/bounds.h"
-#include "contact/clip.h"
 #include "contact/potential.h"
 #include "contact/shape.h"
+#include "overlap/clip/clip.h"
 
 enum { PAIRS_AT_ONCE = 256 }; // Hessians held in memory: 1.2 MB
 
@@ -188,15 +188,15 @@ static void add_mesh_pair(const ContactStiffnessSink *sink, const ContactLayout 
 }
 
 static Status add_mesh_pairs(ContactStiffness *stiffness, const ContactLayout *layout,
-                             const ContactEvaluation *evaluation, const ContactOverlapModel *model,
+                             const ContactEvaluation *evaluation, const OverlapModel *model,
                              const ContactStiffnessSink *sink) {
   for (int first = 0; first < evaluation->mesh_pair_count; first += PAIRS_AT_ONCE) {
     int left = evaluation->mesh_pair_count - first, count = left < PAIRS_AT_ONCE ? left : PAIRS_AT_ONCE;
-    ContactOverlapBatch batch = {.pair_count = count,
-                                 .pairs = evaluation->coordinates + 24 * (size_t)first,
-                                 .volume = stiffness->volumes,
-                                 .hessian = stiffness->hessians};
-    TRY(contact_overlap_eval(model, &batch));
+    OverlapBatch batch = {.pair_count = count,
+                          .pairs = evaluation->coordinates + 24 * (size_t)first,
+                          .volume = stiffness->volumes,
+                          .hessian = stiffness->hessians};
+    TRY(overlap_model_eval(model, &batch));
     for (int k = 0; k < count; k++)
       add_mesh_pair(sink, layout, &evaluation->pairs[first + k], evaluation->pressures[first + k],
                     stiffness->hessians + 576 * (size_t)k);
@@ -224,7 +224,7 @@ static Status give_outer(void *self, const ContactStiffness *stiffness, double c
 }
 
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
-                             ContactEvaluation *evaluation, const ContactOverlapModel *model,
+                             ContactEvaluation *evaluation, const OverlapModel *model,
                              const ContactStiffnessSink *sink) {
   ContactStiffnessSink borrowed = *sink;
   if (layout->def.potential != CONTACT_POTENTIAL_LINEAR) {
@@ -235,8 +235,8 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
   if (!layout->def.use_full_hessian) return STATUS_OK;
   add_shape_pairs(layout, evaluation, sink);
   // Newton's matrix may be another model's: that changes how fast the method converges, not what it finds
-  static const ContactOverlapModel lender = {.ops = &contact_overlap_clip};
-  return add_mesh_pairs(stiffness, layout, evaluation, contact_overlap_has_hessian(model) ? model : &lender,
+  static const OverlapModel lender = {.ops = &overlap_clip_ops};
+  return add_mesh_pairs(stiffness, layout, evaluation, overlap_model_has_hessian(model) ? model : &lender,
                         sink);
 }
 

@@ -32,7 +32,7 @@ void contact_stiffness_destroy(ContactStiffness *stiffness);
 // Hands ∂²U/∂x² of the evaluation to the sink. The geometric part is included if the layout's definition asks
 // for it and the model has second derivatives.
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
-                             ContactEvaluation *evaluation, const ContactOverlapModel *model,
+                             ContactEvaluation *evaluation, const OverlapModel *model,
                              const ContactStiffnessSink *sink);
 
 // S += Σ_a coefficient_a ∇W_a ∇W_aᵀ over the nodes of the evaluation's patches whose sides carry unknowns;

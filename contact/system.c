@@ -64,7 +64,7 @@ void contact_system_destroy(ContactSystem *system) {
 static Status choose_watched(ContactSystem *system, double time, const double *positions) {
   const ContactEvaluation *evaluation = &system->evaluation;
   bool knows = contact_evaluation_is_at(evaluation, &system->layout, time, positions) &&
-               !contact_overlap_has_ghosts(system->layout.def.model);
+               !overlap_model_has_ghosts(system->layout.def.model);
   return contact_onset_choose(&system->onset, &system->layout, &system->candidates.list, evaluation->pairs,
                               knows ? evaluation->pair_count : 0, time, positions);
 }
@@ -206,7 +206,7 @@ Status contact_system_active_pairs(const ContactSystem *system, int *pair_count,
   const ContactEvaluation *evaluation = &system->evaluation;
   size_t active = (size_t)evaluation->mesh_pair_count;
   *pair_count = evaluation->mesh_pair_count;
-  *pairs = memory_copy(evaluation->coordinates, active, CONTACT_PAIR_SIZE * sizeof(double));
+  *pairs = memory_copy(evaluation->coordinates, active, OVERLAP_PAIR_SIZE * sizeof(double));
   *tets = memory_zeroed(active, 2 * sizeof(int));
   if (!*pairs || !*tets) {
     memory_free(*pairs), memory_free(*tets);
@@ -275,11 +275,11 @@ static Status create_audits(ContactSystem *system) {
 }
 
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,
-                            const ContactOverlapModel *candidate, const ContactOverlapModel *reference,
+                            const OverlapModel *candidate, const OverlapModel *reference,
                             ContactAudit *audit) {
   TRY(check_margin(system, time, positions));
   TRY(create_audits(system));
-  const ContactOverlapModel *models[2] = {candidate, reference};
+  const OverlapModel *models[2] = {candidate, reference};
   for (int k = 0; k < 2; k++)
     TRY(contact_evaluation_run(&system->audits[k], &system->layout, &system->candidates.list, models[k],
                                false, time, positions));
@@ -288,7 +288,7 @@ Status contact_system_audit(ContactSystem *system, double time, const double *po
 }
 
 Status contact_system_status(ContactSystem *system, double time, const double *positions,
-                             const ContactOverlapModel *reference, const ContactStatus **status) {
+                             const OverlapModel *reference, const ContactStatus **status) {
   TRY(check_margin(system, time, positions));
   if (!system->has_status) TRY(contact_status_create(&system->status, &system->layout));
   system->has_status = true;

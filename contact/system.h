@@ -22,7 +22,7 @@
 #include <stddef.h>
 
 #include "base/status.h"
-#include "contact/overlap.h"
+#include "overlap/model.h"
 
 typedef struct ContactBody {
   const char *name; // borrowed
@@ -86,7 +86,7 @@ typedef struct ContactSystemDef {
   double stiffness;      // κ
   double margin;         // skin margin while bodies are near [m]; 0: half the shortest mean edge of a body
   bool use_full_hessian; // include p ∇²V, of `clip` if the model has none; else Gauss–Newton
-  const ContactOverlapModel *model; // borrowed
+  const OverlapModel *model; // borrowed
 } ContactSystemDef;
 
 // Where the stiffness ∂²U/∂x² goes. Each call adds a dense symmetric part over a short list of distinct
@@ -111,7 +111,7 @@ typedef struct ContactInterface {
 // Pairs of meshes by how they were answered.
 typedef struct ContactPairCounts {
   long long tried;     // given to the overlap model
-  long long enclosed;  // flagged CONTACT_OVERLAP_ENCLOSED
+  long long enclosed;  // flagged OVERLAP_ENCLOSED
   long long fallbacks; // flagged FALLBACK
   long long by_net;    // flagged NET
   long long blended;   // flagged BLENDED
@@ -213,12 +213,12 @@ typedef struct ContactAudit {
   int pair_count;
 } ContactAudit;
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,
-                            const ContactOverlapModel *candidate, const ContactOverlapModel *reference,
+                            const OverlapModel *candidate, const OverlapModel *reference,
                             ContactAudit *audit);
 
 // Which elements overlap, by the system's own model and by `reference` (contact/status.h), at positions that
 // the last update covers. The result is the system's, valid until the next call.
 Status contact_system_status(ContactSystem *system, double time, const double *positions,
-                             const ContactOverlapModel *reference, const struct ContactStatus **status);
+                             const OverlapModel *reference, const struct ContactStatus **status);
 
 #endif

@@ -5,21 +5,21 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "contact/clip.h"
-#include "contact/exact.h"
 #include "datagen/sampler.h"
+#include "overlap/clip/clip.h"
+#include "overlap/exact/exact.h"
 
 Status datagen_label_pair(DatagenLabel label, const double pair[24], int dimension, double *volume,
                           double *gradient) {
   unsigned flags;
   *volume = 0;
-  if (gradient) memset(gradient, 0, CONTACT_PAIR_SIZE * sizeof *gradient);
+  if (gradient) memset(gradient, 0, OVERLAP_PAIR_SIZE * sizeof *gradient);
   if (dimension < 3) return STATUS_OK;
   if (label == DATAGEN_LABEL_CLIP) {
-    TRY(contact_overlap_clip.eval_pair(NULL, pair, volume, gradient, NULL, &flags));
+    TRY(overlap_clip_ops.eval_pair(NULL, pair, volume, gradient, NULL, &flags));
     if (*volume > 0) return STATUS_OK;
   }
-  return contact_overlap_exact.eval_pair(NULL, pair, volume, gradient, NULL, &flags);
+  return overlap_exact_ops.eval_pair(NULL, pair, volume, gradient, NULL, &flags);
 }
 
 // One pair, into its place in the arrays.
@@ -28,7 +28,7 @@ static Status make_pair(const DatagenPlan *plan, long long index, const DatagenP
   Random random = random_seeded(plan->seed, (uint64_t)index);
   DatagenKind kind = datagen_plan_kind(plan, index);
   DatagenSample sample = datagen_sample(kind, &plan->sieve, plan->law.swap_share, &random);
-  const size_t offset = (size_t)place * CONTACT_PAIR_SIZE;
+  const size_t offset = (size_t)place * OVERLAP_PAIR_SIZE;
   memcpy(pairs->coordinates + offset, sample.pair, sizeof sample.pair);
   pairs->status[place] = sample.proof.dimension >= 0;
   pairs->kind[place] = (uint8_t)kind;

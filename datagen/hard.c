@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/invariant.h"
+#include "overlap/invariant.h"
 
 void datagen_hard_permute(const double tet[12], int k, double permuted[12]) {
   int left[4] = {0, 1, 2, 3};
@@ -62,14 +62,14 @@ void datagen_hard_set(DatagenHardPair *pair, int i, Vec3 p) {
 void datagen_hard_fat(Random *random, DatagenHardPair *pair, int which) {
   do {
     for (int i = 0; i < 4; i++) datagen_hard_set(pair, 4 * which + i, grid_point(random, 0, 1));
-  } while (!(contact_invariant_tet_volume(pair->x + 12 * which) >= 0.1 / 6));
+  } while (!(overlap_invariant_tet_volume(pair->x + 12 * which) >= 0.1 / 6));
 }
 
 // A tetrahedron with vertices uniform in the unit cube, not flatter than `least`.
 static void loose(Random *random, DatagenHardPair *pair, int which, double least) {
   do {
     for (int i = 12 * which; i < 12 * which + 12; i++) pair->x[i] = random_uniform(random);
-  } while (!(contact_invariant_tet_volume(pair->x + 12 * which) >= least));
+  } while (!(overlap_invariant_tet_volume(pair->x + 12 * which) >= least));
 }
 
 // Vertices `first` … 7 at random on the grid on the side n·(p − at) > 0, until the second tetrahedron is fat;
@@ -82,7 +82,7 @@ static bool fill_beyond(Random *random, DatagenHardPair *pair, int first, Vec3 n
       while (!(vec3_dot(n, vec3_sub(p, at)) > 0.02 * vec3_length(n)));
       datagen_hard_set(pair, i, p);
     }
-    if (contact_invariant_tet_volume(pair->x + 12) >= 0.02 / 6) return true;
+    if (overlap_invariant_tet_volume(pair->x + 12) >= 0.02 / 6) return true;
   }
   return false;
 }
@@ -130,7 +130,7 @@ static void make_boxes(Random *random, DatagenHardPair *pair) {
       } while (!(i < 4 ? side < -0.01 : side > 0.01));
       datagen_hard_set(pair, i, p);
     }
-    bool boxes_overlap = contact_invariant_smaller_volume(pair->x) >= 1e-3;
+    bool boxes_overlap = overlap_invariant_smaller_volume(pair->x) >= 1e-3;
     for (int c = 0; c < 3; c++) {
       double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
       for (int i = 0; i < 8; i++) {
@@ -259,7 +259,7 @@ static void share(Random *random, DatagenHardPair *pair, int vertices) {
     datagen_hard_fat(random, pair, 0);
     datagen_hard_fat(random, pair, 1);
     for (int i = 0; i < vertices; i++) datagen_hard_set(pair, 4 + i, datagen_hard_vertex(pair, i));
-  } while (!(contact_invariant_tet_volume(pair->x + 12) >= 0.02 / 6));
+  } while (!(overlap_invariant_tet_volume(pair->x + 12) >= 0.02 / 6));
 }
 
 static void make_shared_vertex_overlap(Random *random, DatagenHardPair *pair) {
@@ -281,7 +281,7 @@ static void coplanar(Random *random, DatagenHardPair *pair, double slope, double
       p.z = slope * (p.x / 2 + p.y / 4) + above;
       datagen_hard_set(pair, i, p);
     }
-  } while (!(contact_invariant_smaller_volume(pair->x) >= 0.02));
+  } while (!(overlap_invariant_smaller_volume(pair->x) >= 0.02));
   if (side < 0) expect(pair, 0, 0);
 }
 
@@ -311,7 +311,7 @@ static void make_identical(Random *random, DatagenHardPair *pair) {
   datagen_hard_fat(random, pair, 0);
   rotate(random, pair);
   datagen_hard_permute(pair->x, random_below(random, 24), pair->x + 12);
-  expect(pair, contact_invariant_tet_volume(pair->x), 1e-15);
+  expect(pair, overlap_invariant_tet_volume(pair->x), 1e-15);
 }
 
 static void make_few_ulp(Random *random, DatagenHardPair *pair) {
@@ -319,7 +319,7 @@ static void make_few_ulp(Random *random, DatagenHardPair *pair) {
   for (int i = 12; i < 24; i++)
     for (int steps = random_below(random, 7) - 3; steps; steps += steps < 0 ? 1 : -1)
       pair->x[i] = nextafter(pair->x[i], steps < 0 ? -INFINITY : INFINITY);
-  expect(pair, contact_invariant_tet_volume(pair->x), 1e-14);
+  expect(pair, overlap_invariant_tet_volume(pair->x), 1e-14);
 }
 
 // The second is a smaller tetrahedron at a random place inside the first.
@@ -333,8 +333,8 @@ static void make_inside(Random *random, DatagenHardPair *pair) {
       for (int a = 0; a < 4; a++) p = vec3_add(p, vec3_scale(weight[a] / sum, datagen_hard_vertex(pair, a)));
       datagen_hard_set(pair, i, p);
     }
-  } while (!(contact_invariant_tet_volume(pair->x + 12) > 1e-5));
-  expect(pair, contact_invariant_tet_volume(pair->x + 12), 1e-15);
+  } while (!(overlap_invariant_tet_volume(pair->x + 12) > 1e-5));
+  expect(pair, overlap_invariant_tet_volume(pair->x + 12), 1e-15);
   pair->is_smooth = true;
 }
 
@@ -352,8 +352,8 @@ static void make_inside_touching(Random *random, DatagenHardPair *pair) {
       }
       datagen_hard_set(pair, 4 + i, p);
     }
-  } while (!(contact_invariant_tet_volume(pair->x + 12) > 1e-3));
-  expect(pair, contact_invariant_tet_volume(pair->x + 12), 1e-15);
+  } while (!(overlap_invariant_tet_volume(pair->x + 12) > 1e-3));
+  expect(pair, overlap_invariant_tet_volume(pair->x + 12), 1e-15);
 }
 
 // A tetrahedron of volume 1e-12 through the middle of the unit cube: a cap (a vertex just above a face), a

@@ -15,8 +15,9 @@
 enum { DATAGEN_GENERATOR_VERSION = 1 };
 
 typedef enum DatagenLabel {
-  DATAGEN_LABEL_EXACT, // contact/exact.h
-  DATAGEN_LABEL_CLIP,  // contact/clip.h; what it flags, and what it finds empty against the proof, by exact
+  DATAGEN_LABEL_EXACT, // overlap/exact/exact.h
+  DATAGEN_LABEL_CLIP,  // overlap/clip/clip.h; what it flags, and what it finds empty against the proof, by
+                       // exact
 } DatagenLabel;
 
 typedef struct DatagenPlan {

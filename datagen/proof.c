@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "datagen/proof.h"
 
-#include "contact/exact_pair.h"
+#include "overlap/exact/pair.h"
 
 // Which of the eight planes (0–3 of the first tetrahedron, 4–7 of the second, each opposite to the vertex of
 // that number) pass through every vertex of P seen so far.
@@ -20,7 +20,7 @@ static bool has_separating_face(const ExactPair *pair) {
   for (int t = 0; t < 2; t++)
     for (int k = 0; k < 4; k++) {
       int beyond = 0;
-      for (int p = 0; p < 4; p++) beyond += exact_sign(pair->tets[t].height[p][k]) < 0;
+      for (int p = 0; p < 4; p++) beyond += overlap_exact_integer_sign(pair->tets[t].height[p][k]) < 0;
       if (beyond == 4) return true;
     }
   return false;
@@ -30,7 +30,7 @@ static bool has_separating_face(const ExactPair *pair) {
 static void see_vertex(Common *common, const ExactPair *pair, int t, int v) {
   unsigned planes = (0xfu ^ (1u << v)) << (4 * t);
   for (int k = 0; k < 4; k++) {
-    int side = exact_sign(pair->tets[1 - t].height[v][k]);
+    int side = overlap_exact_integer_sign(pair->tets[1 - t].height[v][k]);
     if (side < 0) return;
     if (side == 0) planes |= 1u << (4 * (1 - t) + k);
   }
@@ -39,7 +39,7 @@ static void see_vertex(Common *common, const ExactPair *pair, int t, int v) {
 
 // The sign of the permutation (ends of the edge opposite to mn, m, n).
 static int parity(int m, int n) {
-  return exact_pair_edge_sign[5 - exact_pair_edge_of[m][n]] * (m < n ? 1 : -1);
+  return overlap_exact_pair_edge_sign[5 - overlap_exact_pair_edge_of[m][n]] * (m < n ? 1 : -1);
 }
 
 // The inner point where edge e = ij of tetrahedron t crosses plane k of the other, if it lies in the other:
@@ -47,15 +47,16 @@ static int parity(int m, int n) {
 // others of m, k.
 static void see_crossing(Common *common, const ExactPair *pair, int t, int e, int k) {
   const ExactTet *other = &pair->tets[1 - t];
-  const int i = exact_pair_edge_ends[e][0], j = exact_pair_edge_ends[e][1];
-  const int from = exact_sign(other->height[i][k]), to = exact_sign(other->height[j][k]);
+  const int i = overlap_exact_pair_edge_ends[e][0], j = overlap_exact_pair_edge_ends[e][1];
+  const int from = overlap_exact_integer_sign(other->height[i][k]),
+            to = overlap_exact_integer_sign(other->height[j][k]);
   if (from * to >= 0) return;
   unsigned planes = (0xfu ^ (1u << i) ^ (1u << j)) << (4 * t) | 1u << (4 * (1 - t) + k);
   for (int m = 0; m < 4; m++) {
     if (m == k) continue;
-    const int other_edge = 5 - exact_pair_edge_of[m][k];
+    const int other_edge = 5 - overlap_exact_pair_edge_of[m][k];
     const ExactInteger bracket = t == 0 ? pair->cross[e][other_edge] : pair->cross[other_edge][e];
-    const int side = exact_sign(bracket) * to * parity(m, k);
+    const int side = overlap_exact_integer_sign(bracket) * to * parity(m, k);
     if (side < 0) return;
     if (side == 0) planes |= 1u << (4 * (1 - t) + m);
   }
@@ -73,7 +74,8 @@ static Common find_common(const ExactPair *pair) {
 }
 
 static bool is_zero(const ExactInteger x[3]) {
-  return !exact_sign(x[0]) && !exact_sign(x[1]) && !exact_sign(x[2]);
+  return !overlap_exact_integer_sign(x[0]) && !overlap_exact_integer_sign(x[1]) &&
+         !overlap_exact_integer_sign(x[2]);
 }
 
 // Of integer vectors that are not zero.
@@ -83,10 +85,10 @@ static int rank_of(ExactArena *arena, const ExactInteger *const *vectors, int co
   int rank = 1;
   for (int i = 1; i < count && rank < 3; i++) {
     if (rank == 2) {
-      if (exact_sign(exact_dot(arena, plane, vectors[i]))) rank = 3;
+      if (overlap_exact_integer_sign(overlap_exact_integer_dot(arena, plane, vectors[i]))) rank = 3;
       continue;
     }
-    exact_cross(arena, vectors[0], vectors[i], plane);
+    overlap_exact_integer_cross(arena, vectors[0], vectors[i], plane);
     if (!is_zero(plane)) rank = 2;
   }
   return rank;
@@ -111,12 +113,12 @@ DatagenProof datagen_proof_of(const double coordinates[24]) {
   mp_limb_t limbs[EXACT_PAIR_LIMBS];
   ExactArena arena = {limbs, limbs + EXACT_PAIR_LIMBS};
   ExactPair pair;
-  exact_pair_load(&pair, &arena, coordinates);
-  if (!exact_sign(pair.tets[0].det) || !exact_sign(pair.tets[1].det))
+  overlap_exact_pair_load(&pair, &arena, coordinates);
+  if (!overlap_exact_integer_sign(pair.tets[0].det) || !overlap_exact_integer_sign(pair.tets[1].det))
     return (DatagenProof){.dimension = -1, .carrier = {3, 3}, .is_flat = true};
-  exact_pair_find_heights(&pair, &arena);
+  overlap_exact_pair_find_heights(&pair, &arena);
   if (has_separating_face(&pair)) return disjoint;
-  exact_pair_find_crossings(&pair, &arena);
+  overlap_exact_pair_find_crossings(&pair, &arena);
   Common common = find_common(&pair);
   if (common.is_empty) return disjoint;
   return (DatagenProof){.dimension = 3 - rank_of_planes(&pair, &arena, common.planes),

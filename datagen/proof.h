@@ -4,7 +4,7 @@
 //
 // P is a polytope cut out by eight half-spaces. Each of its vertices is a vertex of one tetrahedron or the
 // point where an edge of one crosses a plane of the other, so the signs of the 68 brackets of
-// contact/exact_pair.h name them all and say which of the eight planes pass through each. The planes through
+// overlap/exact/pair.h name them all and say which of the eight planes pass through each. The planes through
 // every vertex are those that hold all of P: if their normals have rank r, P has dimension 3 − r, and with c
 // of them of one tetrahedron, P lies in a face of it of dimension 3 − c and in none smaller.
 #ifndef TETLAP_DATAGEN_PROOF_H

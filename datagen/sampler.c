@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "base/vec3.h"
-#include "contact/clip.h"
-#include "contact/separation.h"
 #include "datagen/scene_pairs.h"
 #include "datagen/touch.h"
+#include "overlap/clip/clip.h"
+#include "overlap/clip/separation.h"
 
 static void draw_tet(Random *random, double tet[12]) {
   for (int i = 0; i < 12; i++) tet[i] = random_uniform(random);
@@ -43,10 +43,10 @@ static bool try_volumetric(const DatagenVolumeSieve *sieve, Random *random, doub
   if (!(volume_of(pair) >= floor)) return false;
   draw_tet(random, pair + 12);
   if (!(volume_of(pair + 12) >= floor && common_box(pair) > floor)) return false;
-  if (contact_separation_is_certain(pair)) return false;
+  if (overlap_separation_is_certain(pair)) return false;
   double volume;
   unsigned flags;
-  if (contact_overlap_clip.eval_pair(NULL, pair, &volume, NULL, NULL, &flags) != STATUS_OK) return false;
+  if (overlap_clip_ops.eval_pair(NULL, pair, &volume, NULL, NULL, &flags) != STATUS_OK) return false;
   return volume > 0 && u < datagen_volume_sieve_keeps(sieve, volume);
 }
 

@@ -7,8 +7,8 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/drive.h"
-#include "fem/solver.h"
+#include "fem/model/drive.h"
+#include "fem/sparse/solver.h"
 
 static FemState state_of(const FemSystem *system, double time) {
   return (FemState){.time = time, .positions = system->positions, .velocities = system->velocities};

@@ -4,8 +4,8 @@
 #ifndef TETLAP_FEM_SYSTEM_H
 #define TETLAP_FEM_SYSTEM_H
 
-#include "fem/effect.h"
-#include "fem/model.h"
+#include "fem/effect/effect.h"
+#include "fem/model/model.h"
 
 enum { FEM_MAX_EFFECTS = 32 };
 
@@ -50,7 +50,7 @@ Status fem_system_couple(FemSystem *system, double time);
 // Every effect is linear: K and D are constant.
 bool fem_system_is_linear(const FemSystem *system);
 
-// After unknowns of the model were numbered anew (fem/hold.h): lays the matrix out again.
+// After unknowns of the model were numbered anew (fem/run/hold.h): lays the matrix out again.
 Status fem_system_renumber(FemSystem *system);
 
 // matrix = k·K + d·D + m·M at the scattered state.

@@ -11,6 +11,5 @@ void NET_NAME(net_forward_gradient)(NET_NAME(NetWork) * work, const NET_NAME(Net
 // As net_forward_gradient, where c depends on y: once y is known, `weigh` fills c, memory of the caller's. At
 // most NET_CHUNK_COLUMNS samples, in the calling thread.
 void NET_NAME(net_forward_pull)(NET_NAME(NetWork) * work, const NET_NAME(NetModel) * model, int count,
-                                const NET_REAL *x,
-                                void (*weigh)(void *self, const NET_REAL *y, NET_REAL *c), void *self,
-                                NET_REAL *y, NET_REAL *c, NET_REAL *gx);
+                                const NET_REAL *x, void (*weigh)(void *self, const NET_REAL *y, NET_REAL *c),
+                                void *self, NET_REAL *y, NET_REAL *c, NET_REAL *gx);

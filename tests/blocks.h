@@ -68,7 +68,7 @@ static inline void blocks_add(Blocks *blocks, const BlockDef *def) {
 
 // A definition over these blocks, nodal, κ = 1000 Pa, at their present positions as rest.
 static inline ContactSystemDef blocks_def(const Blocks *blocks, const double *rest,
-                                          const ContactOverlapModel *model) {
+                                          const OverlapModel *model) {
   return (ContactSystemDef){.vertex_count = blocks->vertex_count,
                             .rest = rest,
                             .tets = (const int(*)[4])blocks->tets,

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the effects that a scene does not call for cost it: two programs of this source, one with the registry
-// of fem/effect.c, the other (FRAME_COST_FEW) with elasticity alone, run one scene and print the processor
-// time of a step [s]. tools/frame_cost builds both and compares them in turns.
+// of fem/effect/effect.c, the other (FRAME_COST_FEW) with elasticity alone, run one scene and print the
+// processor time of a step [s]. tools/frame_cost builds both and compares them in turns.
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
-#include "app/scene_read.h"
-#include "fem/effect.h"
-#include "fem/model.h"
-#include "fem/run.h"
+#include "app/scene/read.h"
+#include "fem/effect/effect.h"
+#include "fem/model/model.h"
+#include "fem/run/run.h"
 
 #ifdef FRAME_COST_FEW
 static const FemEffectOps *const few[] = {&fem_effect_elasticity};

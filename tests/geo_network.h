@@ -7,13 +7,13 @@
 #include <math.h>
 
 #include "base/random.h"
-#include "contact/geo.h"
+#include "overlap/geo/geo.h"
 
 enum { GEO_NETWORK_WIDTH = 16 };
 
 typedef struct GeoNetwork {
   int feature_count;
-  double inner[GEO_NETWORK_WIDTH][CONTACT_GEO_MAX_FEATURES + 1]; // the last: bias
+  double inner[GEO_NETWORK_WIDTH][OVERLAP_GEO_MAX_FEATURES + 1]; // the last: bias
   double outer[GEO_NETWORK_WIDTH][GEO_NETWORK_WIDTH + 1];
   double last[GEO_NETWORK_WIDTH];
 } GeoNetwork;
@@ -125,8 +125,8 @@ static inline Status geo_network_curve(const void *self, int count, const double
   return STATUS_OK;
 }
 
-static inline ContactGeoNetwork geo_network_interface(const GeoNetwork *network) {
-  return (ContactGeoNetwork){.self = network,
+static inline OverlapGeoNetwork geo_network_interface(const GeoNetwork *network) {
+  return (OverlapGeoNetwork){.self = network,
                              .feature_count = network->feature_count,
                              .eval = geo_network_eval,
                              .curve = geo_network_curve};

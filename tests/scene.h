@@ -5,9 +5,9 @@
 
 #include <stdio.h>
 
-#include "app/scene_read.h"
-#include "fem/model.h"
-#include "fem/run.h"
+#include "app/scene/read.h"
+#include "fem/model/model.h"
+#include "fem/run/run.h"
 #include "suite.h"
 
 typedef struct SceneRun {

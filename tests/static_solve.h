@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fem/solver.h"
+#include "fem/sparse/solver.h"
 #include "fem/system.h"
 #include "scene.h"
 

@@ -14,15 +14,15 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/scene_read.h"
+#include "app/scene/read.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "contact/overlap.h"
 #include "datagen/dataset.h"
 #include "datagen/run.h"
-#include "fem/checkpoint.h"
-#include "fem/mesh.h"
-#include "fem/run.h"
+#include "fem/mesh/mesh.h"
+#include "fem/run/checkpoint.h"
+#include "fem/run/run.h"
+#include "overlap/model.h"
 #include "suite.h"
 
 enum { MOST_LIVE = 1 << 16 };
@@ -191,19 +191,19 @@ END_TEST
 static Status ask_model(const char *name) {
   static const double pair[24] = {0,   0,   0,   1,   0,   0,   0,   1,   0,   0,   0,   1,
                                   0.2, 0.1, 0.3, 0.9, 0.3, 0.2, 0.1, 0.8, 0.4, 0.3, 0.2, 0.9};
-  ContactOverlapModel model = {0};
-  Status status = contact_overlap_create(&model, name);
+  OverlapModel model = {0};
+  Status status = overlap_model_create(&model, name);
   double volume, gradient[24];
-  ContactOverlapBatch batch = {.pair_count = 1, .pairs = pair, .volume = &volume, .gradient = gradient};
-  if (!status) status = contact_overlap_eval(&model, &batch);
-  contact_overlap_destroy(&model);
+  OverlapBatch batch = {.pair_count = 1, .pairs = pair, .volume = &volume, .gradient = gradient};
+  if (!status) status = overlap_model_eval(&model, &batch);
+  overlap_model_destroy(&model);
   return status;
 }
 
 // Those without networks keep nothing.
 START_TEST(an_overlap_model_is_made_and_asked) {
   int count, allocating = 0;
-  const ContactOverlapOps *const *models = contact_overlap_list(&count);
+  const OverlapOps *const *models = overlap_model_list(&count);
   for (int m = 0; m < count; m++) allocating += fail_each(ask_model, models[m]->name, 1, 1) > 3;
   ck_assert_int_ge(allocating, 5);
 }

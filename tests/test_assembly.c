@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/assembly.h"
+#include "fem/effect/assembly.h"
 
 // Two boxes of different law and damping, the first with a fixed face, and an obstacle that must stay silent.
 typedef struct Scene {

@@ -7,13 +7,13 @@
 #include <string.h>
 #include <sys/wait.h>
 
-#include "app/bench_builtin.h"
-#include "app/bench_pairs.h"
-#include "app/bench_peak.h"
-#include "app/bench_scaling.h"
-#include "app/bench_timer.h"
-#include "app/bench_trial.h"
-#include "app/model_card.h"
+#include "app/bench/builtin.h"
+#include "app/bench/pairs.h"
+#include "app/bench/peak.h"
+#include "app/bench/scaling.h"
+#include "app/bench/timer.h"
+#include "app/bench/trial.h"
+#include "app/evaluation/card.h"
 #include "base/memory.h"
 #include "base/text.h"
 
@@ -126,21 +126,21 @@ START_TEST(a_trial_is_cut_short_or_fails_and_says_so) {
 END_TEST
 
 START_TEST(a_card_tells_a_networks_size) {
-  ContactOverlapModel model;
+  OverlapModel model;
   AppModelCard card;
-  ck_assert_ok(contact_overlap_create(&model, "geo-small"));
+  ck_assert_ok(overlap_model_create(&model, "geo-small"));
   ck_assert_ok(app_model_card_read(&model, "geo-small", &card));
   ck_assert_str_eq(card.family, "geo");
   ck_assert(card.is_learned && !card.is_float);
   ck_assert_int_eq(card.features, 36);
   ck_assert_int_eq((int)card.parameters, 36 * 16 + 16 + 16 * 16 + 16 + 16 + 1);
   ck_assert_double_eq(card.flops, 2 * (36 * 16 + 16 * 16 + 16)); // a multiplication and an addition a weight
-  contact_overlap_destroy(&model);
-  ck_assert_ok(contact_overlap_create(&model, "clip"));
+  overlap_model_destroy(&model);
+  ck_assert_ok(overlap_model_create(&model, "clip"));
   ck_assert_ok(app_model_card_read(&model, "clip", &card));
   ck_assert_str_eq(card.family, "clip");
   ck_assert(!card.is_learned);
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
 }
 END_TEST
 

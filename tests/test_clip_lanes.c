@@ -5,49 +5,48 @@
 
 #include <string.h>
 
-#include "app/bench_pairs.h"
+#include "app/bench/pairs.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "contact/clip.h"
-#include "contact/clip_lanes.h"
-#include "contact/exact.h"
-#include "contact/invariant.h"
 #include "datagen/hard.h"
+#include "overlap/clip/clip.h"
+#include "overlap/clip/lanes.h"
+#include "overlap/exact/exact.h"
+#include "overlap/invariant.h"
 
-enum { WIDEST = CONTACT_CLIP_MAX_LANES, MEMBERS = 192 };
+enum { WIDEST = OVERLAP_CLIP_MAX_LANES, MEMBERS = 192 };
 
-static const ContactClipLanes *const *kernels;
+static const OverlapClipLanes *const *kernels;
 static int kernel_count;
 
-static bool is_single(const ContactClipLanes *kernel) {
+static bool is_single(const OverlapClipLanes *kernel) {
   return strstr(kernel->name, "single") != NULL;
 }
 
-static double volume_allowed(const ContactClipLanes *kernel, const double x[24], double expected) {
-  if (!is_single(kernel)) return contact_invariant_allowed(x, expected);
-  double smaller = contact_invariant_smaller_volume(x);
+static double volume_allowed(const OverlapClipLanes *kernel, const double x[24], double expected) {
+  if (!is_single(kernel)) return overlap_invariant_allowed(x, expected);
+  double smaller = overlap_invariant_smaller_volume(x);
   return expected > 0.1 * smaller ? 1e-3 * expected : 1e-4 * smaller;
 }
 
 typedef struct Group {
   double x[WIDEST][24], volume[WIDEST], gradient[WIDEST][24];
-  ContactClipLanesOutcome outcome;
+  OverlapClipLanesOutcome outcome;
 } Group;
 
-static void run(const ContactClipLanes *kernel, Group *group) {
+static void run(const OverlapClipLanes *kernel, Group *group) {
   group->outcome = kernel->differentiate(group->x[0], 0, group->volume, group->gradient[0]);
 }
 
 // The lanes that are not doubtful; how many they are.
-static int check_group(const ContactClipLanes *kernel, const Group *group, const char *what) {
+static int check_group(const OverlapClipLanes *kernel, const Group *group, const char *what) {
   int sure = 0;
   for (int k = 0; k < kernel->width; k++) {
-    double expected, expected_gradient[24], extent = contact_invariant_extent(group->x[k]);
+    double expected, expected_gradient[24], extent = overlap_invariant_extent(group->x[k]);
     unsigned flags;
     if (group->outcome.doubtful >> k & 1) continue;
-    ck_assert_ok(
-        contact_overlap_exact.eval_pair(NULL, group->x[k], &expected, expected_gradient, NULL, &flags));
-    ck_assert_msg(!(flags & CONTACT_OVERLAP_FLAT), "%s, %s: flat and not doubtful", kernel->name, what);
+    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, group->x[k], &expected, expected_gradient, NULL, &flags));
+    ck_assert_msg(!(flags & OVERLAP_FLAT), "%s, %s: flat and not doubtful", kernel->name, what);
     ck_assert_msg(fabs(group->volume[k] - expected) <= volume_allowed(kernel, group->x[k], expected),
                   "%s, %s: V = %.17g, exact %.17g", kernel->name, what, group->volume[k], expected);
     double tolerance = (is_single(kernel) ? 2e-5 : 1e-12) * extent * extent;
@@ -58,15 +57,15 @@ static int check_group(const ContactClipLanes *kernel, const Group *group, const
                     expected_gradient[c]);
     bool is_disjoint = group->outcome.disjoint >> k & 1;
     ck_assert_int_eq(is_disjoint, group->volume[k] == 0);
-    if (expected > 1e-3 * contact_invariant_smaller_volume(group->x[k]))
-      ck_assert_int_eq(group->outcome.enclosed >> k & 1, (flags & CONTACT_OVERLAP_ENCLOSED) != 0);
+    if (expected > 1e-3 * overlap_invariant_smaller_volume(group->x[k]))
+      ck_assert_int_eq(group->outcome.enclosed >> k & 1, (flags & OVERLAP_ENCLOSED) != 0);
     sure++;
   }
   return sure;
 }
 
 START_TEST(lanes_that_are_not_doubtful_are_right_in_every_class) {
-  const ContactClipLanes *kernel = kernels[_i];
+  const OverlapClipLanes *kernel = kernels[_i];
   for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++) {
     int sure = 0;
     for (int member = 0; member < MEMBERS; member += kernel->width) {
@@ -89,7 +88,7 @@ START_TEST(lanes_that_are_not_doubtful_are_right_in_every_class) {
 END_TEST
 
 START_TEST(ordinary_pairs_are_hardly_ever_doubtful) {
-  const ContactClipLanes *kernel = kernels[_i];
+  const OverlapClipLanes *kernel = kernels[_i];
   if (is_single(kernel)) return;
   enum { COUNT = 4096 };
   double *pairs = memory_zeroed(COUNT * 24, sizeof *pairs);
@@ -114,7 +113,7 @@ END_TEST
 // Vertices on a grid, the second's between those of the first: edges that meet edges, planes through grid
 // lines, flat tetrahedra.
 START_TEST(edges_that_meet_leave_lanes_right_or_doubtful) {
-  const ContactClipLanes *kernel = kernels[_i];
+  const OverlapClipLanes *kernel = kernels[_i];
   Random random = random_seeded(57, 0);
   int sure = 0;
   for (int round = 0; round < 40000 / kernel->width; round++) {
@@ -131,14 +130,14 @@ START_TEST(edges_that_meet_leave_lanes_right_or_doubtful) {
 END_TEST
 
 // All orders of the vertices and tetrahedra of a pair must be right or doubtful; how many are doubtful.
-static int check_orders(const ContactClipLanes *kernel, const double x[24], const char *what) {
+static int check_orders(const OverlapClipLanes *kernel, const double x[24], const char *what) {
   enum { ORDERS = 2 * 24 * 24 };
   int sure = 0;
   for (int order = 0; order < ORDERS; order += kernel->width) {
     Group group;
     for (int k = 0; k < kernel->width; k++) {
       double swapped[24];
-      contact_overlap_swap(x, swapped);
+      overlap_ops_swap(x, swapped);
       const double *from = (order + k) & 1 ? swapped : x;
       datagen_hard_permute(from, (order + k) / 2 % 24, group.x[k]);
       datagen_hard_permute(from + 12, (order + k) / 48, group.x[k] + 12);
@@ -176,7 +175,7 @@ END_TEST
 
 // Many of these are flat but for rounding, and what is found of their intersection may be anything.
 START_TEST(flat_lanes_that_are_apart_have_no_volume) {
-  const ContactClipLanes *kernel = kernels[_i];
+  const OverlapClipLanes *kernel = kernels[_i];
   Random random = random_seeded(58, 0);
   double rounding = is_single(kernel) ? 1e-5 : 1e-13;
   int apart = 0;
@@ -198,7 +197,7 @@ START_TEST(flat_lanes_that_are_apart_have_no_volume) {
 END_TEST
 
 START_TEST(lanes_that_are_not_finite_are_doubtful) {
-  const ContactClipLanes *kernel = kernels[_i];
+  const OverlapClipLanes *kernel = kernels[_i];
   static const double values[] = {NAN, INFINITY, -INFINITY};
   for (int number = 0; number < 24 * 3 * 8; number++) {
     Group group;
@@ -219,7 +218,7 @@ static void draw_any(int number, double x[24]) {
 }
 
 START_TEST(a_lane_knows_nothing_of_the_others) {
-  const ContactClipLanes *kernel = kernels[_i];
+  const OverlapClipLanes *kernel = kernels[_i];
   for (int number = 0; number < 300; number++) {
     Group alone, among;
     for (int k = 0; k < WIDEST; k++) {
@@ -244,13 +243,13 @@ START_TEST(every_instruction_set_gives_the_same_bits) {
     for (int number = 0; number < 3000; number += WIDEST) {
       Group groups[2];
       for (int side = 0; side < 2; side++) {
-        const ContactClipLanes *kernel = kernels[m - side];
+        const OverlapClipLanes *kernel = kernels[m - side];
         Group *group = &groups[side];
         for (int k = 0; k < WIDEST; k++) draw_any(number + k, group->x[k]);
         group->outcome.doubtful = 0;
         for (int first = 0; first < WIDEST; first += kernel->width) {
           double volume[WIDEST];
-          ContactClipLanesOutcome outcome =
+          OverlapClipLanesOutcome outcome =
               kernel->differentiate(group->x[first], 0, group->volume + first, group->gradient[first]);
           group->outcome.doubtful |= outcome.doubtful << first;
           outcome = kernel->measure(group->x[first], 0, volume);
@@ -270,24 +269,24 @@ START_TEST(every_instruction_set_gives_the_same_bits) {
 }
 END_TEST
 
-static const ContactOverlapOps *const batched[2] = {&contact_overlap_clip, &contact_overlap_clip32};
+static const OverlapOps *const batched[2] = {&overlap_clip_ops, &overlap_clip32_ops};
 
 // Sizes around the width of a vector and a portion; pairs of all classes and mostly disjoint ones, so that
 // groups are full, half full, and wait.
 START_TEST(a_batch_answers_each_pair_as_if_it_were_alone) {
   static const int sizes[] = {1, 3, 7, 8, 9, 17, 33, 511, 513, 1100};
   enum { MOST = 1100 };
-  const ContactOverlapOps *ops = batched[_i / 2];
+  const OverlapOps *ops = batched[_i / 2];
   double *x = memory_zeroed(MOST * 24, sizeof *x), *gradient = memory_zeroed(MOST * 24, sizeof *gradient);
   static double volume[MOST];
   static unsigned flags[MOST];
   for (int i = 0; i < MOST; i++) {
     draw_any(i, x + 24 * i);
     if (_i % 2 && i % 5)
-      for (int c = 12; c < 24; c++) x[24 * i + c] += 3 * contact_invariant_extent(x + 24 * i);
+      for (int c = 12; c < 24; c++) x[24 * i + c] += 3 * overlap_invariant_extent(x + 24 * i);
   }
   for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
-    ContactOverlapBatch batch = {
+    OverlapBatch batch = {
         .pair_count = sizes[s], .pairs = x, .volume = volume, .gradient = gradient, .flags = flags};
     memset(volume, 0xff, sizeof volume), memset(gradient, 0xff, MOST * 24 * sizeof *gradient);
     ck_assert_ok(ops->eval_batch(NULL, &batch));
@@ -298,7 +297,7 @@ START_TEST(a_batch_answers_each_pair_as_if_it_were_alone) {
       ck_assert_msg(alone == volume[i] && flag == flags[i], "pair %d of %d: %g, alone %g", i, sizes[s],
                     volume[i], alone);
       ck_assert_mem_eq(slope, gradient + 24 * i, sizeof slope);
-      ck_assert_int_eq((flag & (CONTACT_OVERLAP_DISJOINT | CONTACT_OVERLAP_FLAT)) != 0, alone == 0);
+      ck_assert_int_eq((flag & (OVERLAP_DISJOINT | OVERLAP_FLAT)) != 0, alone == 0);
     }
   }
   memory_free(x), memory_free(gradient);
@@ -310,16 +309,16 @@ START_TEST(the_scalar_form_gives_the_same_up_to_rounding) {
     double x[24], volume[2], gradient[24];
     unsigned flags[2];
     draw_any(number, x);
-    ck_assert_ok(contact_overlap_clip.eval_pair(NULL, x, &volume[0], gradient, NULL, &flags[0]));
-    ck_assert_ok(contact_overlap_clip_scalar.eval_pair(NULL, x, &volume[1], gradient, NULL, &flags[1]));
-    ck_assert_msg(fabs(volume[0] - volume[1]) <= 2 * contact_invariant_allowed(x, volume[1]),
+    ck_assert_ok(overlap_clip_ops.eval_pair(NULL, x, &volume[0], gradient, NULL, &flags[0]));
+    ck_assert_ok(overlap_clip_scalar_ops.eval_pair(NULL, x, &volume[1], gradient, NULL, &flags[1]));
+    ck_assert_msg(fabs(volume[0] - volume[1]) <= 2 * overlap_invariant_allowed(x, volume[1]),
                   "pair %d: %g, scalar %g", number, volume[0], volume[1]);
   }
 }
 END_TEST
 
 int main(void) {
-  kernels = contact_clip_lanes_list(&kernel_count);
+  kernels = overlap_clip_lanes_list(&kernel_count);
   TCase *cases = tcase_create("clip_lanes");
   tcase_add_loop_test(cases, lanes_that_are_not_doubtful_are_right_in_every_class, 0, kernel_count);
   tcase_add_loop_test(cases, ordinary_pairs_are_hardly_ever_doubtful, 0, kernel_count);

@@ -12,7 +12,7 @@ static const double NUDGE = 2e-9;
 typedef struct Fixture {
   Blocks blocks;
   double *rest, *still; // positions at rest, zero velocities
-  ContactOverlapModel model;
+  OverlapModel model;
   ContactSystem *system;
 } Fixture;
 
@@ -33,7 +33,7 @@ static void prepare(Fixture *f) {
   f->rest = blocks_copy(&f->blocks);
   f->still = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(f->still);
-  ck_assert_ok(contact_overlap_create(&f->model, "clip"));
+  ck_assert_ok(overlap_model_create(&f->model, "clip"));
 }
 
 // Two irregular blocks, the upper one pressed 0.3 elements into the lower.
@@ -59,7 +59,7 @@ static Fixture *pressed_system(ContactPotential potential, bool is_obstacle_belo
 
 static void destroy(Fixture *f) {
   contact_system_destroy(f->system);
-  contact_overlap_destroy(&f->model);
+  overlap_model_destroy(&f->model);
   blocks_destroy(&f->blocks);
   free(f->rest), free(f->still), free(f);
 }
@@ -336,7 +336,7 @@ START_TEST(a_third_body_does_not_change_the_force_between_two) {
   Fixture *three = pressed_blocks(false);
   // Covers some of the same elements of the lower block, from beside.
   blocks_add(&three->blocks, &(BlockDef){.corner = {2.4, 0.2, 1.6}, .cell = {1, 1, 1}, .cells = {1, 2, 1}});
-  free(three->rest), free(three->still), contact_overlap_destroy(&three->model);
+  free(three->rest), free(three->still), overlap_model_destroy(&three->model);
   prepare(three);
   ContactSystemDef def = blocks_def(&three->blocks, three->rest, &three->model);
   start(three, &def);
@@ -367,7 +367,7 @@ END_TEST
 
 static Status eval_scaled(const void *self, const double pair[24], double *volume, double *gradient,
                           double *hessian, unsigned *flags) {
-  const ContactOverlapModel *model = self;
+  const OverlapModel *model = self;
   TRY(model->ops->eval_pair(model->self, pair, volume, gradient, hessian, flags));
   *volume *= 1.001;
   for (int k = 0; gradient && k < 24; k++) gradient[k] *= 1.001;
@@ -375,12 +375,12 @@ static Status eval_scaled(const void *self, const double pair[24], double *volum
 }
 
 START_TEST(an_audit_measures_a_known_error_and_changes_nothing) {
-  static const ContactOverlapOps SCALED = {.name = "scaled", .eval_pair = eval_scaled};
+  static const OverlapOps SCALED = {.name = "scaled", .eval_pair = eval_scaled};
   Fixture *f = pressed_system(CONTACT_POTENTIAL_NODAL, false);
   double energy = energy_at(f, f->blocks.x), *moved = blocks_copy(&f->blocks);
   blocks_shift(&f->blocks, moved, 1, (double[]){0, 0, 0.05});
   ContactCounters before = *contact_system_counters(f->system);
-  ContactOverlapModel scaled = {&SCALED, &f->model};
+  OverlapModel scaled = {&SCALED, &f->model};
   ContactAudit audit;
   ck_assert_ok(contact_system_audit(f->system, 0, moved, &scaled, &f->model, &audit));
   ck_assert_near(audit.volume_error, 1e-3, 1e-12);
@@ -430,9 +430,9 @@ static Status eval_nan(const void *self, const double pair[24], double *volume, 
 }
 
 START_TEST(a_model_that_answers_nan_is_named) {
-  static const ContactOverlapOps BROKEN = {.name = "broken", .eval_pair = eval_nan};
+  static const OverlapOps BROKEN = {.name = "broken", .eval_pair = eval_nan};
   Fixture *f = pressed_blocks(false);
-  ContactOverlapModel broken = {&BROKEN, &f->model};
+  OverlapModel broken = {&BROKEN, &f->model};
   ContactSystemDef def = blocks_def(&f->blocks, f->rest, &broken);
   start(f, &def);
   double energy;

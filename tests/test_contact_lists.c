@@ -10,7 +10,7 @@
 typedef struct Fixture {
   Blocks blocks;
   double *rest, *velocities;
-  ContactOverlapModel model;
+  OverlapModel model;
   ContactSystemDef def;
   ContactSystem *system;
 } Fixture;
@@ -24,7 +24,7 @@ static void start(Fixture *f) {
   f->rest = blocks_copy(&f->blocks);
   f->velocities = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(f->velocities);
-  ck_assert_ok(contact_overlap_create(&f->model, "clip"));
+  ck_assert_ok(overlap_model_create(&f->model, "clip"));
   f->def = blocks_def(&f->blocks, f->rest, &f->model);
   ck_assert_ok(contact_system_create(&f->system, &f->def));
   update(f, 0, f->blocks.x);
@@ -45,7 +45,7 @@ static Fixture *two_blocks(double gap, double jitter) {
 
 static void destroy(Fixture *f) {
   contact_system_destroy(f->system);
-  contact_overlap_destroy(&f->model);
+  overlap_model_destroy(&f->model);
   blocks_destroy(&f->blocks);
   free(f->rest), free(f->velocities), free(f);
 }

@@ -20,7 +20,7 @@ typedef struct Slabs {
   Blocks blocks;
   double *rest, *velocities;
   double ratio, centre[2]; // of the upper slab
-  ContactOverlapModel model;
+  OverlapModel model;
   ContactSystem *system;
 } Slabs;
 
@@ -41,7 +41,7 @@ static void make(Slabs *slabs, ContactPotential potential, double ratio, double 
   slabs->rest = blocks_copy(&slabs->blocks);
   slabs->velocities = calloc(3 * (size_t)slabs->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(slabs->velocities);
-  ck_assert_ok(contact_overlap_create(&slabs->model, "clip"));
+  ck_assert_ok(overlap_model_create(&slabs->model, "clip"));
   ContactSystemDef def = blocks_def(&slabs->blocks, slabs->rest, &slabs->model);
   def.stiffness = KAPPA;
   def.potential = potential;
@@ -50,7 +50,7 @@ static void make(Slabs *slabs, ContactPotential potential, double ratio, double 
 
 static void destroy(Slabs *slabs) {
   contact_system_destroy(slabs->system);
-  contact_overlap_destroy(&slabs->model);
+  overlap_model_destroy(&slabs->model);
   blocks_destroy(&slabs->blocks);
   free(slabs->rest), free(slabs->velocities);
 }
@@ -203,15 +203,15 @@ END_TEST
 START_TEST(models_agree_where_meshes_are_aligned) {
   Slabs slabs;
   make(&slabs, CONTACT_POTENTIAL_NODAL, 1, 0.3, true);
-  ContactOverlapModel exact;
+  OverlapModel exact;
   ContactAudit audit;
-  ck_assert_ok(contact_overlap_create(&exact, "exact"));
+  ck_assert_ok(overlap_model_create(&exact, "exact"));
   ck_assert_ok(contact_system_update(slabs.system, 0, slabs.blocks.x, slabs.velocities, 0.01, NULL));
   ck_assert_ok(contact_system_audit(slabs.system, 0, slabs.blocks.x, &slabs.model, &exact, &audit));
   ck_assert_int_gt(audit.pair_count, 1000);
   ck_assert(audit.volume_error <= 1e-12);
   ck_assert(audit.force_error <= 1e-12);
-  contact_overlap_destroy(&exact);
+  overlap_model_destroy(&exact);
   destroy(&slabs);
 }
 END_TEST

@@ -8,7 +8,7 @@
 #include "base/vec3.h"
 #include "contact/convex.h"
 #include "contact/halfspace.h"
-#include "contact/overlap.h"
+#include "overlap/model.h"
 
 static const double HALF[3] = {0.5, 0.4, 0.3};
 
@@ -84,8 +84,8 @@ END_TEST
 START_TEST(a_box_is_the_sum_of_its_tetrahedra_as_the_exact_model_sees_them) {
   static const int paths[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   ContactConvex convex = solid(0);
-  ContactOverlapModel exact;
-  ck_assert_ok(contact_overlap_create(&exact, "exact"));
+  OverlapModel exact;
+  ck_assert_ok(overlap_model_create(&exact, "exact"));
   Random random = random_seeded(3, 0);
   int overlapping = 0;
   for (int trial = 0; trial < 300; trial++) {
@@ -99,9 +99,8 @@ START_TEST(a_box_is_the_sum_of_its_tetrahedra_as_the_exact_model_sees_them) {
         if (v < 3) corner[paths[p][v]] = HALF[paths[p][v]];
       }
     }
-    ContactOverlapBatch batch = {
-        .pair_count = 6, .pairs = pairs[0], .volume = volumes, .gradient = gradients[0]};
-    ck_assert_ok(contact_overlap_eval(&exact, &batch));
+    OverlapBatch batch = {.pair_count = 6, .pairs = pairs[0], .volume = volumes, .gradient = gradients[0]};
+    ck_assert_ok(overlap_model_eval(&exact, &batch));
     for (int p = 0; p < 6; p++) {
       sum += volumes[p];
       for (int k = 0; k < 12; k++) slope[k] += gradients[p][k];
@@ -113,7 +112,7 @@ START_TEST(a_box_is_the_sum_of_its_tetrahedra_as_the_exact_model_sees_them) {
     for (int k = 0; k < 12; k++) ck_assert_near(gradient[k], slope[k], 1e-12);
   }
   ck_assert_int_gt(overlapping, 100);
-  contact_overlap_destroy(&exact);
+  overlap_model_destroy(&exact);
 }
 END_TEST
 

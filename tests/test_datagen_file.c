@@ -13,13 +13,13 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "contact/invariant.h"
 #include "datagen/capture.h"
 #include "datagen/dataset.h"
 #include "datagen/generate.h"
 #include "datagen/hard.h"
 #include "datagen/merge.h"
 #include "datagen/run.h"
+#include "overlap/invariant.h"
 
 enum { COUNT = 9000, BLOCK = 1024 }; // more than two chunks
 
@@ -420,7 +420,7 @@ END_TEST
 START_TEST(a_capture_does_not_depend_on_the_unit) {
   static double pairs[2 * 24];
   DatagenHardPair c;
-  for (int member = 0; c = datagen_hard_make(2, member), !(contact_invariant_smaller_volume(c.x) > 0.03);
+  for (int member = 0; c = datagen_hard_make(2, member), !(overlap_invariant_smaller_volume(c.x) > 0.03);
        member++)
     continue;
   for (int i = 0; i < 24; i++) pairs[i] = c.x[i], pairs[24 + i] = 0x1p-10 * c.x[i] + 1;

@@ -5,11 +5,11 @@
 
 #include <string.h>
 
-#include "contact/exact.h"
-#include "contact/invariant.h"
-#include "contact/separation.h"
 #include "datagen/hard.h"
 #include "datagen/proof.h"
+#include "overlap/clip/separation.h"
+#include "overlap/exact/exact.h"
+#include "overlap/invariant.h"
 
 // Against the unit simplex 0, e₁, e₂, e₃.
 typedef struct Hand {
@@ -117,16 +117,16 @@ START_TEST(the_exact_model_and_the_separating_axes_agree) {
     DatagenHardPair c = datagen_hard_make(_i, member);
     double volume;
     unsigned flags;
-    ck_assert_ok(contact_overlap_exact.eval_pair(NULL, c.x, &volume, NULL, NULL, &flags));
+    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, c.x, &volume, NULL, NULL, &flags));
     DatagenProof proof = datagen_proof_of(c.x);
-    ck_assert_int_eq(proof.is_flat, (flags & CONTACT_OVERLAP_FLAT) != 0);
+    ck_assert_int_eq(proof.is_flat, (flags & OVERLAP_FLAT) != 0);
     if (proof.is_flat) continue;
-    ck_assert_msg((proof.dimension < 3) == ((flags & CONTACT_OVERLAP_DISJOINT) != 0), "%s %d: dimension %d",
+    ck_assert_msg((proof.dimension < 3) == ((flags & OVERLAP_DISJOINT) != 0), "%s %d: dimension %d",
                   datagen_hard_classes[_i].name, member, proof.dimension);
-    double gap = contact_separation_pair(c.x, INFINITY), extent = contact_invariant_extent(c.x);
+    double gap = overlap_separation_pair(c.x, INFINITY), extent = overlap_invariant_extent(c.x);
     if (gap > 1e-9 * extent) ck_assert_int_eq(proof.dimension, -1);
     if (gap < -1e-9 * extent) ck_assert_int_eq(proof.dimension, 3);
-    if (contact_separation_is_certain(c.x)) ck_assert_int_eq(proof.dimension, -1);
+    if (overlap_separation_is_certain(c.x)) ck_assert_int_eq(proof.dimension, -1);
   }
 }
 END_TEST

@@ -7,19 +7,19 @@
 
 #include "base/memory.h"
 #include "base/random.h"
-#include "contact/overlap.h"
+#include "overlap/model.h"
 #include "scene.h"
 
-static const ContactOverlapOps *model_of(int index) {
+static const OverlapOps *model_of(int index) {
   int count;
-  const ContactOverlapOps *const *models = contact_overlap_list(&count);
+  const OverlapOps *const *models = overlap_model_list(&count);
   ck_assert_int_lt(index, count);
   return models[index];
 }
 
 static int model_count(void) {
   int count;
-  contact_overlap_list(&count);
+  overlap_model_list(&count);
   return count;
 }
 
@@ -39,18 +39,18 @@ typedef struct Answer {
   unsigned *flags;             // (count)
 } Answer;
 
-static Answer ask(const ContactOverlapModel *model, const double *pairs, int count, int threads) {
+static Answer ask(const OverlapModel *model, const double *pairs, int count, int threads) {
   Answer answer = {memory_zeroed((size_t)count, sizeof(double)),
                    memory_zeroed(24 * (size_t)count, sizeof(double)),
                    memory_zeroed((size_t)count, sizeof(unsigned))};
   ck_assert(answer.volumes && answer.gradients && answer.flags);
   omp_set_num_threads(threads);
-  ContactOverlapBatch batch = {.pair_count = count,
-                               .pairs = pairs,
-                               .volume = answer.volumes,
-                               .gradient = answer.gradients,
-                               .flags = answer.flags};
-  ck_assert_ok(contact_overlap_eval(model, &batch));
+  OverlapBatch batch = {.pair_count = count,
+                        .pairs = pairs,
+                        .volume = answer.volumes,
+                        .gradient = answer.gradients,
+                        .flags = answer.flags};
+  ck_assert_ok(overlap_model_eval(model, &batch));
   return answer;
 }
 
@@ -64,13 +64,13 @@ static void check_same(const char *name, const char *what, const void *a, const 
 
 // _i: model.
 START_TEST(the_number_of_threads_changes_no_bit_of_a_volume) {
-  const ContactOverlapOps *ops = model_of(_i);
+  const OverlapOps *ops = model_of(_i);
   const double work = 0.02; // [s]
   double affordable = work / ops->seconds_per_pair;
   int count = affordable > 10000 ? 10000 : affordable < 20 ? 20 : (int)affordable;
   double *pairs = make_pairs(count);
-  ContactOverlapModel model;
-  ck_assert_ok(contact_overlap_create(&model, ops->name));
+  OverlapModel model;
+  ck_assert_ok(overlap_model_create(&model, ops->name));
   Answer one = ask(&model, pairs, count, 1);
   int overlapping = 0;
   for (int i = 0; i < count; i++) overlapping += one.volumes[i] > 0;
@@ -83,13 +83,13 @@ START_TEST(the_number_of_threads_changes_no_bit_of_a_volume) {
     forget(&other);
   }
   forget(&one);
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
   memory_free(pairs);
 }
 END_TEST
 
 // Models get as much of the scene as they can afford: `cgal` some hundred pairs, a few times.
-static void run_with(SceneRun *run, const ContactOverlapOps *ops, int threads, const char *more) {
+static void run_with(SceneRun *run, const OverlapOps *ops, int threads, const char *more) {
   char overlap[64], solver[64];
   snprintf(overlap, sizeof overlap, "contact.overlap=%s", ops->name);
   snprintf(solver, sizeof solver, "solver.threads=%d", threads);
@@ -132,7 +132,7 @@ static void compare(const char *name, const SceneRun *a, const SceneRun *b) {
 
 // _i: model. One thread, two, and one again.
 START_TEST(a_run_is_the_same_to_the_last_bit) {
-  const ContactOverlapOps *ops = model_of(_i);
+  const OverlapOps *ops = model_of(_i);
   SceneRun first, other;
   run_with(&first, ops, 1, NULL);
   for (int threads = 2; threads >= 1; threads--) {

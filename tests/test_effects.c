@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scene pays for the effects it calls for and for no other. This program has a registry of its own, without
-// contact and friction (it stands in for that of fem/effect.c when the program is linked): what it computes
-// of a scene that does not call for them must be what the whole program computes, to the last bit.
+// contact and friction (it stands in for that of fem/effect/effect.c when the program is linked): what it
+// computes of a scene that does not call for them must be what the whole program computes, to the last bit.
 #include "scene.h"
 
 #include <string.h>
@@ -9,7 +9,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "fem/effect.h"
+#include "fem/effect/effect.h"
 #include "fem/system.h"
 
 static const FemEffectOps *const few[] = {&fem_effect_elasticity, &fem_effect_damping, &fem_effect_gravity};

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "fem/element.h"
+#include "fem/element/element.h"
 
 enum { SAMPLES = 50 };
 

@@ -3,18 +3,18 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/evaluation.h"
-#include "app/evaluation_model.h"
-#include "app/evaluation_paths.h"
-#include "app/training_source.h"
-#include "contact/clip.h"
+#include "app/dataset/source.h"
+#include "app/evaluation/evaluation.h"
+#include "app/evaluation/model.h"
+#include "app/evaluation/paths.h"
+#include "overlap/clip/clip.h"
 #include "suite.h"
 
 // V and ∇V of clipping, ten per cent too large; disjoint pairs get a ghost of 1e-3.
 static Status inflate(const void *self, const double pair[24], double *volume, double *gradient,
                       double *hessian, unsigned *flags) {
   (void)self;
-  Status status = contact_overlap_clip.eval_pair(NULL, pair, volume, gradient, hessian, flags);
+  Status status = overlap_clip_ops.eval_pair(NULL, pair, volume, gradient, hessian, flags);
   if (!(*volume > 0)) {
     *volume = 1e-3;
     if (gradient) gradient[5] = 2;
@@ -24,7 +24,7 @@ static Status inflate(const void *self, const double pair[24], double *volume, d
   for (int i = 0; gradient && i < 24; i++) gradient[i] *= 1.1;
   return status;
 }
-static const ContactOverlapOps inflated = {.name = "inflated", .eval_pair = inflate, .rejects = true};
+static const OverlapOps inflated = {.name = "inflated", .eval_pair = inflate, .rejects = true};
 
 // The x coordinate of the first vertex in place of a volume: no symmetry at all.
 static Status lopsided_eval(const void *self, const double pair[24], double *volume, double *gradient,
@@ -35,7 +35,7 @@ static Status lopsided_eval(const void *self, const double pair[24], double *vol
   for (int i = 0; gradient && i < 24; i++) gradient[i] = i == 0;
   return STATUS_OK;
 }
-static const ContactOverlapOps lopsided = {.name = "lopsided", .eval_pair = lopsided_eval, .rejects = true};
+static const OverlapOps lopsided = {.name = "lopsided", .eval_pair = lopsided_eval, .rejects = true};
 
 static void load(const char *law, const char *mix, int count, DatagenPairs *pairs) {
   AppSourceDef def = {.law = law, .mix = mix, .count = count, .seed = 5};
@@ -44,7 +44,7 @@ static void load(const char *law, const char *mix, int count, DatagenPairs *pair
   ck_assert_uint_eq(loaded, (size_t)count);
 }
 
-static AppEvaluation evaluate(const ContactOverlapModel *model, const DatagenPairs *pairs, size_t count) {
+static AppEvaluation evaluate(const OverlapModel *model, const DatagenPairs *pairs, size_t count) {
   AppEvaluationRun run;
   AppEvaluation result;
   app_evaluation_begin(&run, model, NULL);
@@ -57,7 +57,7 @@ static AppEvaluation evaluate(const ContactOverlapModel *model, const DatagenPai
 START_TEST(errors_known_by_construction_are_found) {
   DatagenPairs pairs;
   load("paper-test", "none=1,volumetric=3", 800, &pairs);
-  ContactOverlapModel model = {.ops = &inflated};
+  OverlapModel model = {.ops = &inflated};
   AppEvaluation found = evaluate(&model, &pairs, 800);
   double sum = 0;
   for (int i = 0; i < 800; i++) sum += pairs.volume[i];
@@ -90,7 +90,7 @@ END_TEST
 START_TEST(symmetries_are_missed_where_they_are_missing) {
   DatagenPairs pairs;
   load("scene", "scene=1", 200, &pairs);
-  ContactOverlapModel crooked = {.ops = &lopsided}, exact;
+  OverlapModel crooked = {.ops = &lopsided}, exact;
   AppEvaluation found = evaluate(&crooked, &pairs, 200);
   ck_assert(found.defect_vertex_order > 0.05 && found.defect_swap > 0.05 && found.defect_rotation > 0.05);
   ck_assert_ok(app_evaluation_model_open(&exact, "exact"));
@@ -99,7 +99,7 @@ START_TEST(symmetries_are_missed_where_they_are_missing) {
   ck_assert_near(found.volume_error_sum, 0, 1e-9);
   ck_assert_near(found.gradient_error, 0, 1e-9);
   ck_assert_near(found.angle_p90_deg, 0, 1e-5);
-  contact_overlap_destroy(&exact);
+  overlap_model_destroy(&exact);
   datagen_pairs_destroy(&pairs);
 }
 END_TEST
@@ -107,13 +107,13 @@ END_TEST
 START_TEST(the_frame_without_network_has_no_ghosts_and_ten_per_cent_errors) {
   DatagenPairs pairs;
   load("scene", NULL, 1000, &pairs);
-  ContactOverlapModel model;
+  OverlapModel model;
   ck_assert_ok(app_evaluation_model_open(&model, "geo-constant"));
   AppEvaluation found = evaluate(&model, &pairs, 1000);
   ck_assert(found.volume_error_sum > 0.05 && found.volume_error_sum < 0.5);
   ck_assert(found.ghost_volume == 0 && found.ghost_gradient == 0);
   ck_assert_near(found.accuracy_mean, 1, 0);
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
   datagen_pairs_destroy(&pairs);
 }
 END_TEST
@@ -121,7 +121,7 @@ END_TEST
 START_TEST(blocks_do_not_change_what_is_found) {
   DatagenPairs pairs;
   load("scene", NULL, 300, &pairs);
-  ContactOverlapModel model = {.ops = &inflated};
+  OverlapModel model = {.ops = &inflated};
   AppEvaluation whole = evaluate(&model, &pairs, 300), parts;
   AppEvaluationRun run;
   app_evaluation_begin(&run, &model, NULL);
@@ -143,7 +143,7 @@ START_TEST(blocks_do_not_change_what_is_found) {
 END_TEST
 
 START_TEST(without_pairs_there_is_nothing_to_tell) {
-  ContactOverlapModel model = {.ops = &inflated};
+  OverlapModel model = {.ops = &inflated};
   DatagenPairs none = {0};
   AppEvaluation found = evaluate(&model, &none, 0);
   ck_assert_int_eq(found.count, 0);
@@ -155,7 +155,7 @@ END_TEST
 static AppEvaluation evaluate_shipped(const char *name, bool as_model, const AppSourceDef *source) {
   DatagenPairs pairs;
   size_t count;
-  ContactOverlapModel model;
+  OverlapModel model;
   AppEvaluationRun run;
   AppEvaluation found;
   char path[256];
@@ -166,7 +166,7 @@ static AppEvaluation evaluate_shipped(const char *name, bool as_model, const App
   ck_assert_ok(app_evaluation_add(&run, &pairs, count));
   app_evaluation_finish(&run, &found);
   app_evaluation_end(&run);
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
   datagen_pairs_destroy(&pairs);
   return found;
 }
@@ -218,16 +218,16 @@ static double volume_step, gradient_step;
 static Status step_up(const void *self, const double pair[24], double *volume, double *gradient,
                       double *hessian, unsigned *flags) {
   (void)self;
-  Status status = contact_overlap_clip.eval_pair(NULL, pair, volume, gradient, hessian, flags);
+  Status status = overlap_clip_ops.eval_pair(NULL, pair, volume, gradient, hessian, flags);
   if (!(*volume > 0) || pair[0] < pair[12]) return status;
   *volume *= 1 + volume_step;
   for (int i = 0; gradient && i < 24; i++) gradient[i] *= 1 + volume_step + gradient_step;
   return status;
 }
-static const ContactOverlapOps stepped = {.name = "stepped", .eval_pair = step_up};
+static const OverlapOps stepped = {.name = "stepped", .eval_pair = step_up};
 
 START_TEST(jumps_along_paths_are_found_and_measured) {
-  ContactOverlapModel model = {.ops = &stepped};
+  OverlapModel model = {.ops = &stepped};
   AppEvaluationPaths found, again;
   volume_step = 0.01, gradient_step = 0;
   ck_assert_ok(app_evaluation_paths(&model, 12, 5, &found));
@@ -249,13 +249,13 @@ END_TEST
 START_TEST(shipped_weights_do_not_jump) {
   static const char *const names[] = {"geo", "geo-small"};
   for (int n = 0; n < 2; n++) {
-    ContactOverlapModel model;
+    OverlapModel model;
     AppEvaluationPaths found;
     char path[256];
     snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/net/weights/%s.safetensors", names[n]);
     ck_assert_ok(app_evaluation_model_open(&model, path));
     ck_assert_ok(app_evaluation_paths(&model, 18, 9003, &found));
-    contact_overlap_destroy(&model);
+    overlap_model_destroy(&model);
     ck_assert(found.volume_jump < app_evaluation_volume_jump);
     ck_assert(found.gradient_jump < app_evaluation_gradient_jump);
   }
@@ -263,7 +263,7 @@ START_TEST(shipped_weights_do_not_jump) {
 END_TEST
 
 START_TEST(unknown_models_are_named) {
-  ContactOverlapModel model;
+  OverlapModel model;
   ck_assert(app_evaluation_model_open(&model, "clap") != STATUS_OK);
   ck_assert(strstr(status_message(), "clip"));
   ck_assert(app_evaluation_model_open(&model, "/nowhere/geo.safetensors") != STATUS_OK);

@@ -13,12 +13,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "app/run_command.h"
-#include "app/scene_read.h"
+#include "app/command/run.h"
+#include "app/scene/read.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "contact/overlap.h"
-#include "fem/run.h"
+#include "fem/run/run.h"
+#include "overlap/model.h"
 #include "suite.h"
 
 // Where a fault strikes: at the call `first` of its kind, counted from 1, and at `count` calls from there. 0:
@@ -142,8 +142,8 @@ const FemSolverOps *__wrap_fem_solver_ops(FemSolverKind kind) {
 
 // An overlap model that refuses one pair.
 
-static const ContactOverlapOps *true_model;
-static ContactOverlapOps broken_model;
+static const OverlapOps *true_model;
+static OverlapOps broken_model;
 
 static Status eval_pair(const void *self, const double pair[24], double *volume, double *gradient,
                         double *hessian, unsigned *flags) {
@@ -151,14 +151,14 @@ static Status eval_pair(const void *self, const double pair[24], double *volume,
   return true_model->eval_pair(self, pair, volume, gradient, hessian, flags);
 }
 
-Status __real_contact_overlap_create_with(ContactOverlapModel *model, const char *name, const char *weights,
-                                          const ContactNetOptions *options);
-Status __wrap_contact_overlap_create_with(ContactOverlapModel *model, const char *name, const char *weights,
-                                          const ContactNetOptions *options);
+Status __real_overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
+                                        const OverlapOptions *options);
+Status __wrap_overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
+                                        const OverlapOptions *options);
 
-Status __wrap_contact_overlap_create_with(ContactOverlapModel *model, const char *name, const char *weights,
-                                          const ContactNetOptions *options) {
-  TRY(__real_contact_overlap_create_with(model, name, weights, options));
+Status __wrap_overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
+                                        const OverlapOptions *options) {
+  TRY(__real_overlap_model_create_with(model, name, weights, options));
   true_model = model->ops;
   broken_model = *true_model;
   broken_model.eval_pair = eval_pair;

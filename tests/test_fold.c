@@ -7,7 +7,7 @@
 
 #include "base/vec3.h"
 #include "contact/bounds.h"
-#include "contact/overlap.h"
+#include "overlap/model.h"
 
 static bool share_vertex(const int a[4], const int b[4]) {
   for (int v = 0; v < 16; v++)
@@ -25,9 +25,9 @@ static bool boxes_meet(const SceneRun *run, int frame, const int a[4], const int
 // The volume that elements without a common vertex share at a frame, pair by pair [m³].
 static double shared_volume(const SceneRun *run, int frame) {
   const FemModel *model = &run->model;
-  ContactOverlapModel clip;
+  OverlapModel clip;
   double sum = 0;
-  ck_assert_ok(contact_overlap_create(&clip, "clip"));
+  ck_assert_ok(overlap_model_create(&clip, "clip"));
   for (int i = 0; i < model->tet_count; i++)
     for (int j = i + 1; j < model->tet_count; j++) {
       double x[24], volume;
@@ -35,11 +35,11 @@ static double shared_volume(const SceneRun *run, int frame) {
       if (share_vertex(tets[0], tets[1]) || !boxes_meet(run, frame, tets[0], tets[1])) continue;
       for (int k = 0; k < 8; k++)
         memcpy(x + 3 * k, scene_position(run, frame, tets[k / 4][k % 4]), 3 * sizeof(double));
-      ck_assert_ok(contact_overlap_eval(
-          &clip, &(ContactOverlapBatch){.pair_count = 1, .pairs = x, .volume = &volume}));
+      ck_assert_ok(
+          overlap_model_eval(&clip, &(OverlapBatch){.pair_count = 1, .pairs = x, .volume = &volume}));
       sum += volume;
     }
-  contact_overlap_destroy(&clip);
+  overlap_model_destroy(&clip);
   return sum;
 }
 

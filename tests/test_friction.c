@@ -10,7 +10,7 @@
 
 #include "base/vec3.h"
 #include "contact/friction.h"
-#include "fem/vtu_read.h"
+#include "fem/output/vtu_read.h"
 
 static const double MU = 0.4, SLIP_SPEED = 1e-3;
 
@@ -18,7 +18,7 @@ typedef struct Fixture {
   Blocks blocks;
   double *rest, *velocities;
   ContactShape ground;
-  ContactOverlapModel model;
+  OverlapModel model;
   ContactSystem *system;
   ContactFriction friction;
 } Fixture;
@@ -36,7 +36,7 @@ static double *zeros(const Fixture *f) {
 static void start(Fixture *f, const char *model, bool has_ground) {
   f->rest = blocks_copy(&f->blocks);
   f->velocities = zeros(f);
-  ck_assert_ok(contact_overlap_create(&f->model, model));
+  ck_assert_ok(overlap_model_create(&f->model, model));
   ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
   if (has_ground) def.shapes = &f->ground, def.shape_count = 1;
   ck_assert_ok(contact_system_create(&f->system, &def));
@@ -75,7 +75,7 @@ static Fixture *pressed_blocks(const char *model, bool is_obstacle_below) {
 static void destroy(Fixture *f) {
   contact_friction_destroy(&f->friction);
   contact_system_destroy(f->system);
-  contact_overlap_destroy(&f->model);
+  overlap_model_destroy(&f->model);
   blocks_destroy(&f->blocks);
   free(f->rest), free(f->velocities), free(f);
 }
@@ -142,7 +142,7 @@ END_TEST
 // _i: overlap model.
 START_TEST(friction_keeps_momentum_with_every_overlap_model) {
   int count;
-  const ContactOverlapOps *const *models = contact_overlap_list(&count);
+  const OverlapOps *const *models = overlap_model_list(&count);
   ck_assert_int_lt(_i, count);
   Fixture *f = pressed_blocks(models[_i]->name, false);
   int middle = f->blocks.bodies[1].vertex_begin;
@@ -402,7 +402,7 @@ END_TEST
 int main(void) {
   TCase *test_case = tcase_create("friction");
   int models;
-  contact_overlap_list(&models);
+  overlap_model_list(&models);
   tcase_add_test(test_case, sliding_resists_with_mu_times_the_normal_force_at_every_vertex);
   tcase_add_test(test_case, what_moves_along_feels_no_friction);
   tcase_add_test(test_case, slow_slip_is_held_by_a_part_of_the_friction);

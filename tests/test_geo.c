@@ -7,21 +7,21 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "contact/geo_centre.h"
-#include "contact/geo_features.h"
-#include "contact/geo_frame.h"
-#include "contact/invariant.h"
-#include "contact/overlap.h"
 #include "datagen/hard.h"
+#include "overlap/geo/centre.h"
+#include "overlap/geo/features/features.h"
+#include "overlap/geo/frame.h"
+#include "overlap/invariant.h"
+#include "overlap/model.h"
 
 static const double corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 static const int set_sizes[] = {36, 70, 100};
 
 // The frame of the first members of a class that have one; false at the end of the class.
-static bool next_frame(int class_index, int *member, DatagenHardPair *pair, ContactGeoFrame *frame) {
+static bool next_frame(int class_index, int *member, DatagenHardPair *pair, OverlapGeoFrame *frame) {
   for (; *member < 200; (*member)++) {
     *pair = datagen_hard_make(class_index, *member);
-    if (contact_geo_frame(frame, pair->x) != CONTACT_GEO_INSIDE) continue;
+    if (overlap_geo_frame(frame, pair->x) != OVERLAP_GEO_INSIDE) continue;
     (*member)++;
     return true;
   }
@@ -39,10 +39,10 @@ START_TEST(a_simplex_has_its_centroid_in_the_middle) {
   memcpy(x, corner, sizeof corner);
   for (int i = 0; i < 12; i++)
     x[12 + i] = 0.25 + 1e4 * (corner[i] - 0.25); // the planes of the other far away
-  ContactGeoFrame frame;
-  ck_assert_int_eq(contact_geo_frame(&frame, x), CONTACT_GEO_INSIDE);
+  OverlapGeoFrame frame;
+  ck_assert_int_eq(overlap_geo_frame(&frame, x), OVERLAP_GEO_INSIDE);
   GeoMatrix onset;
-  contact_geo_onset(&onset);
+  overlap_geo_frame_onset(&onset);
   ck_assert(frame.is_enclosed);
   ck_assert_near(frame.volume * 1.28, 1.0 / 6, 1e-7);
   for (int k = 0; k < 8; k++) {
@@ -55,8 +55,8 @@ END_TEST
 START_TEST(of_two_equal_tetrahedra_every_plane_counts_half) {
   double x[24];
   memcpy(x, corner, sizeof corner), memcpy(x + 12, corner, sizeof corner);
-  ContactGeoFrame frame;
-  ck_assert_int_eq(contact_geo_frame(&frame, x), CONTACT_GEO_INSIDE);
+  OverlapGeoFrame frame;
+  ck_assert_int_eq(overlap_geo_frame(&frame, x), OVERLAP_GEO_INSIDE);
   for (int k = 0; k < 8; k++) {
     ck_assert_near(frame.slack[k], 0.25, 1e-15);
     for (int l = 0; l < 8; l++)
@@ -71,7 +71,7 @@ START_TEST(at_the_centre_the_logarithms_of_the_slacks_are_stationary) {
   int seen = 0;
   for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++) {
     DatagenHardPair pair;
-    ContactGeoFrame frame;
+    OverlapGeoFrame frame;
     for (int member = 0; next_frame(c, &member, &pair, &frame); seen++) {
       double least = INFINITY, trace = 0;
       for (int k = 0; k < 8; k++) least = fmin(least, frame.slack[k]);
@@ -91,7 +91,7 @@ START_TEST(at_the_centre_the_logarithms_of_the_slacks_are_stationary) {
       ck_assert_msg(least > 0, "%s: a slack of %g", datagen_hard_classes[c].name, least);
       ck_assert_near(trace, 3, 1e-14);
       ck_assert_int_le(frame.step_count, 12);
-      ck_assert_near(vec3_length(vec3_sub(point[0], point[1])) / contact_invariant_extent(pair.x), 0, 1e-12);
+      ck_assert_near(vec3_length(vec3_sub(point[0], point[1])) / overlap_invariant_extent(pair.x), 0, 1e-12);
     }
   }
   ck_assert_int_gt(seen, 2000);
@@ -109,8 +109,8 @@ START_TEST(newton_finds_the_centre_of_the_smallest_overlaps) {
     for (int i = 4; i < 8; i++)
       datagen_hard_set(&pair, i,
                        vec3_sub(datagen_hard_vertex(&pair, i), vec3_scale(depth / vec3_length(n), n)));
-    ContactGeoFrame frame;
-    ck_assert_int_eq(contact_geo_frame(&frame, pair.x), CONTACT_GEO_INSIDE);
+    OverlapGeoFrame frame;
+    ck_assert_int_eq(overlap_geo_frame(&frame, pair.x), OVERLAP_GEO_INSIDE);
     if (frame.step_count > most) most = frame.step_count;
     total += frame.step_count;
   }
@@ -129,7 +129,7 @@ static void map_affinely(const double map[12], const double x[24], double image[
 START_TEST(an_affine_map_changes_neither_slacks_nor_projector) {
   Random random = random_seeded(6, 0);
   DatagenHardPair pair;
-  ContactGeoFrame frame, image;
+  OverlapGeoFrame frame, image;
   int seen = 0;
   for (int member = 0; next_frame(class_named("uniform"), &member, &pair, &frame); seen++) {
     double map[12], x[24];
@@ -138,7 +138,7 @@ START_TEST(an_affine_map_changes_neither_slacks_nor_projector) {
     double det = vec3_det4((Vec3){0, 0, 0}, (Vec3){map[0], map[4], map[8]}, (Vec3){map[1], map[5], map[9]},
                            (Vec3){map[2], map[6], map[10]});
     if (fabs(det) < 0.5) continue;
-    ck_assert_int_eq(contact_geo_frame(&image, x), CONTACT_GEO_INSIDE);
+    ck_assert_int_eq(overlap_geo_frame(&image, x), OVERLAP_GEO_INSIDE);
     double allowed = 1e-11 * frame.step_count;
     for (int k = 0; k < 8; k++) ck_assert_near(frame.slack[k], image.slack[k], allowed);
     for (int k = 0; k < 64; k++)
@@ -152,56 +152,56 @@ END_TEST
 // One P, alone in the last lane of a pack.
 enum { LANE = GEO_PACK - 1 };
 
-static void find_features(const ContactGeoKernel *kernel, const ContactGeoFeatureSet *set, const GeoMatrix *p,
-                          ContactGeoInvariants *invariants, double *features) {
+static void find_features(const OverlapGeoKernel *kernel, const OverlapGeoFeatureSet *set, const GeoMatrix *p,
+                          OverlapGeoInvariants *invariants, double *features) {
   GeoSymmetric packed = {{{0}}};
-  GeoPack packs[CONTACT_GEO_MAX_FEATURES];
+  GeoPack packs[OVERLAP_GEO_MAX_FEATURES];
   geo_pack_matrix(p, LANE, &packed);
   kernel->features(set, &packed, invariants, packs);
   geo_unpack_numbers(packs, set->count, LANE, features);
 }
 
-static void push_features(const ContactGeoKernel *kernel, const ContactGeoFeatureSet *set,
-                          const ContactGeoInvariants *invariants, const GeoMatrix *projector_change,
-                          ContactGeoInvariants *change, double *features_change) {
+static void push_features(const OverlapGeoKernel *kernel, const OverlapGeoFeatureSet *set,
+                          const OverlapGeoInvariants *invariants, const GeoMatrix *projector_change,
+                          OverlapGeoInvariants *change, double *features_change) {
   GeoSymmetric packed = {{{0}}};
-  GeoPack packs[CONTACT_GEO_MAX_FEATURES];
+  GeoPack packs[OVERLAP_GEO_MAX_FEATURES];
   geo_pack_matrix(projector_change, LANE, &packed);
   kernel->push(set, invariants, &packed, change, packs);
   geo_unpack_numbers(packs, set->count, LANE, features_change);
 }
 
-static void pull_features(const ContactGeoKernel *kernel, const ContactGeoFeatureSet *set,
-                          const ContactGeoInvariants *invariants, const double *weights,
-                          ContactGeoSweep *sweep, GeoMatrix *slope) {
+static void pull_features(const OverlapGeoKernel *kernel, const OverlapGeoFeatureSet *set,
+                          const OverlapGeoInvariants *invariants, const double *weights,
+                          OverlapGeoSweep *sweep, GeoMatrix *slope) {
   GeoSymmetric packed;
-  GeoPack packs[CONTACT_GEO_MAX_FEATURES] = {{0}};
+  GeoPack packs[OVERLAP_GEO_MAX_FEATURES] = {{0}};
   geo_pack_numbers(weights, set->count, LANE, packs);
   kernel->pull(set, invariants, packs, sweep, &packed);
   geo_unpack_matrix(&packed, LANE, slope);
 }
 
-static void bend_features(const ContactGeoKernel *kernel, const ContactGeoFeatureSet *set,
-                          const ContactGeoInvariants *invariants, const double *weights,
-                          const ContactGeoSweep *sweep, const ContactGeoInvariants *change,
+static void bend_features(const OverlapGeoKernel *kernel, const OverlapGeoFeatureSet *set,
+                          const OverlapGeoInvariants *invariants, const double *weights,
+                          const OverlapGeoSweep *sweep, const OverlapGeoInvariants *change,
                           GeoMatrix *slope_change) {
   GeoSymmetric packed;
-  GeoPack packs[CONTACT_GEO_MAX_FEATURES] = {{0}};
+  GeoPack packs[OVERLAP_GEO_MAX_FEATURES] = {{0}};
   geo_pack_numbers(weights, set->count, LANE, packs);
   kernel->bend(set, invariants, packs, sweep, change, &packed);
   geo_unpack_matrix(&packed, LANE, slope_change);
 }
 
 static void features_of(int count, const double x[24], double *features) {
-  ContactGeoFrame frame;
-  ContactGeoInvariants invariants;
-  ck_assert_int_eq(contact_geo_frame(&frame, x), CONTACT_GEO_INSIDE);
-  find_features(contact_geo_kernel(), contact_geo_feature_set(count), &frame.projector, &invariants,
+  OverlapGeoFrame frame;
+  OverlapGeoInvariants invariants;
+  ck_assert_int_eq(overlap_geo_frame(&frame, x), OVERLAP_GEO_INSIDE);
+  find_features(overlap_geo_features_kernel(), overlap_geo_features_set(count), &frame.projector, &invariants,
                 features);
 }
 
 // The features of the header's definition, by plain loops in their order.
-static int define_features(const ContactGeoFeatureSet *set, const GeoMatrix *p, double *f) {
+static int define_features(const OverlapGeoFeatureSet *set, const GeoMatrix *p, double *f) {
   int n_features = 0;
   for (int k = 2; k <= 5; k++) {
     f[n_features] = 0;
@@ -245,17 +245,17 @@ static int define_features(const ContactGeoFeatureSet *set, const GeoMatrix *p, 
 }
 
 START_TEST(features_are_what_the_header_says) {
-  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i]);
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i]);
   ck_assert_ptr_nonnull(set);
-  ck_assert_ptr_null(contact_geo_feature_set(37));
+  ck_assert_ptr_null(overlap_geo_features_set(37));
   DatagenHardPair pair;
-  ContactGeoFrame frame;
+  OverlapGeoFrame frame;
   int seen = 0;
   for (int member = 0; next_frame(class_named("uniform"), &member, &pair, &frame); seen++) {
-    double expected[CONTACT_GEO_MAX_FEATURES], features[CONTACT_GEO_MAX_FEATURES];
-    ContactGeoInvariants invariants;
+    double expected[OVERLAP_GEO_MAX_FEATURES], features[OVERLAP_GEO_MAX_FEATURES];
+    OverlapGeoInvariants invariants;
     ck_assert_int_eq(define_features(set, &frame.projector, expected), set->count);
-    find_features(contact_geo_kernel(), set, &frame.projector, &invariants, features);
+    find_features(overlap_geo_features_kernel(), set, &frame.projector, &invariants, features);
     for (int f = 0; f < set->count; f++) ck_assert_near(features[f], expected[f], 1e-14 * (1 + expected[f]));
   }
   ck_assert_int_gt(seen, 30);
@@ -264,14 +264,14 @@ END_TEST
 
 START_TEST(no_order_of_vertices_or_tetrahedra_changes_a_feature) {
   DatagenHardPair pair;
-  ContactGeoFrame frame;
+  OverlapGeoFrame frame;
   int count = set_sizes[_i], seen = 0;
   for (int member = 0; next_frame(class_named("uniform"), &member, &pair, &frame) && seen < 40; seen++)
     for (int k = 0; k < 24; k++) {
-      double permuted[24], swapped[24], one[CONTACT_GEO_MAX_FEATURES], other[CONTACT_GEO_MAX_FEATURES];
+      double permuted[24], swapped[24], one[OVERLAP_GEO_MAX_FEATURES], other[OVERLAP_GEO_MAX_FEATURES];
       datagen_hard_permute(pair.x, k, permuted);
       datagen_hard_permute(pair.x + 12, (7 * k + 5) % 24, permuted + 12);
-      contact_overlap_swap(permuted, swapped);
+      overlap_ops_swap(permuted, swapped);
       features_of(count, pair.x, one);
       features_of(count, swapped, other);
       for (int f = 0; f < count; f++) ck_assert_near(one[f], other[f], 1e-12);
@@ -282,17 +282,17 @@ END_TEST
 // Along random directions, against central differences.
 START_TEST(the_changes_of_frame_and_features_are_their_derivatives) {
   Random random = random_seeded(8, 0);
-  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i]);
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i]);
   DatagenHardPair pair;
-  ContactGeoFrame frame, up, down;
+  OverlapGeoFrame frame, up, down;
   for (int member = 0, seen = 0; next_frame(class_named("uniform"), &member, &pair, &frame); seen++) {
     double h = 1e-6 * cbrt(frame.volume), direction[24], x[24];
     for (int i = 0; i < 24; i++) x[i] = pair.x[i] + h * (direction[i] = random_normal(&random));
-    ck_assert_int_eq(contact_geo_frame(&up, x), CONTACT_GEO_INSIDE);
+    ck_assert_int_eq(overlap_geo_frame(&up, x), OVERLAP_GEO_INSIDE);
     for (int i = 0; i < 24; i++) x[i] = pair.x[i] - h * direction[i];
-    ck_assert_int_eq(contact_geo_frame(&down, x), CONTACT_GEO_INSIDE);
-    ContactGeoTangent tangent;
-    contact_geo_frame_push(&frame, direction, &tangent);
+    ck_assert_int_eq(overlap_geo_frame(&down, x), OVERLAP_GEO_INSIDE);
+    OverlapGeoTangent tangent;
+    overlap_geo_frame_push(&frame, direction, &tangent);
     double scale = 1 / cbrt(frame.volume), allowed = 1e-6 * scale;
     ck_assert_near((log(up.volume) - log(down.volume)) / (2 * h), tangent.log_volume, allowed);
     for (int k = 0; k < 8; k++)
@@ -301,13 +301,13 @@ START_TEST(the_changes_of_frame_and_features_are_their_derivatives) {
       ck_assert_near(((&up.projector.row[0][0])[k] - (&down.projector.row[0][0])[k]) / (2 * h),
                      (&tangent.projector.row[0][0])[k], allowed);
 
-    double f[CONTACT_GEO_MAX_FEATURES], plus[CONTACT_GEO_MAX_FEATURES], minus[CONTACT_GEO_MAX_FEATURES];
-    double change[CONTACT_GEO_MAX_FEATURES];
-    ContactGeoInvariants invariants, other;
-    find_features(contact_geo_kernel(), set, &up.projector, &other, plus);
-    find_features(contact_geo_kernel(), set, &down.projector, &other, minus);
-    find_features(contact_geo_kernel(), set, &frame.projector, &invariants, f);
-    push_features(contact_geo_kernel(), set, &invariants, &tangent.projector, &other, change);
+    double f[OVERLAP_GEO_MAX_FEATURES], plus[OVERLAP_GEO_MAX_FEATURES], minus[OVERLAP_GEO_MAX_FEATURES];
+    double change[OVERLAP_GEO_MAX_FEATURES];
+    OverlapGeoInvariants invariants, other;
+    find_features(overlap_geo_features_kernel(), set, &up.projector, &other, plus);
+    find_features(overlap_geo_features_kernel(), set, &down.projector, &other, minus);
+    find_features(overlap_geo_features_kernel(), set, &frame.projector, &invariants, f);
+    push_features(overlap_geo_features_kernel(), set, &invariants, &tangent.projector, &other, change);
     for (int i = 0; i < set->count; i++)
       ck_assert_near((plus[i] - minus[i]) / (2 * h), change[i], 5e-6 * scale * (1 + fabs(f[i])));
   }
@@ -329,21 +329,21 @@ static double inner_product(const GeoMatrix *a, const GeoMatrix *b) {
 // symmetric in δ and δ'. Holds for any P, not only for projectors.
 START_TEST(the_backward_sweep_is_the_transpose_and_its_change_is_symmetric) {
   Random random = random_seeded(9, 0);
-  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i]);
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i]);
   for (int trial = 0; trial < 50; trial++) {
     GeoMatrix p, direction[2], slope, bent[2];
-    double f[CONTACT_GEO_MAX_FEATURES], w[CONTACT_GEO_MAX_FEATURES], df[CONTACT_GEO_MAX_FEATURES];
+    double f[OVERLAP_GEO_MAX_FEATURES], w[OVERLAP_GEO_MAX_FEATURES], df[OVERLAP_GEO_MAX_FEATURES];
     random_matrix(&random, &p);
     for (int i = 0; i < 64; i++) (&p.row[0][0])[i] *= 0.3;
     for (int i = 0; i < set->count; i++) w[i] = random_normal(&random);
-    ContactGeoInvariants invariants, change;
-    ContactGeoSweep sweep;
-    find_features(contact_geo_kernel(), set, &p, &invariants, f);
-    pull_features(contact_geo_kernel(), set, &invariants, w, &sweep, &slope);
+    OverlapGeoInvariants invariants, change;
+    OverlapGeoSweep sweep;
+    find_features(overlap_geo_features_kernel(), set, &p, &invariants, f);
+    pull_features(overlap_geo_features_kernel(), set, &invariants, w, &sweep, &slope);
     for (int d = 0; d < 2; d++) {
       random_matrix(&random, &direction[d]);
-      push_features(contact_geo_kernel(), set, &invariants, &direction[d], &change, df);
-      bend_features(contact_geo_kernel(), set, &invariants, w, &sweep, &change, &bent[d]);
+      push_features(overlap_geo_features_kernel(), set, &invariants, &direction[d], &change, df);
+      bend_features(overlap_geo_features_kernel(), set, &invariants, w, &sweep, &change, &bent[d]);
       double sum = 0, size = 0;
       for (int i = 0; i < set->count; i++) sum += w[i] * df[i], size += fabs(w[i] * df[i]);
       ck_assert_near(inner_product(&slope, &direction[d]), sum, 1e-13 * size);
@@ -353,13 +353,13 @@ START_TEST(the_backward_sweep_is_the_transpose_and_its_change_is_symmetric) {
     // against differences of the sweep
     double h = 1e-5;
     GeoMatrix moved = p, plus, minus;
-    ContactGeoSweep unused;
+    OverlapGeoSweep unused;
     for (int i = 0; i < 64; i++) (&moved.row[0][0])[i] += h * (&direction[0].row[0][0])[i];
-    find_features(contact_geo_kernel(), set, &moved, &change, f);
-    pull_features(contact_geo_kernel(), set, &change, w, &unused, &plus);
+    find_features(overlap_geo_features_kernel(), set, &moved, &change, f);
+    pull_features(overlap_geo_features_kernel(), set, &change, w, &unused, &plus);
     for (int i = 0; i < 64; i++) (&moved.row[0][0])[i] -= 2 * h * (&direction[0].row[0][0])[i];
-    find_features(contact_geo_kernel(), set, &moved, &change, f);
-    pull_features(contact_geo_kernel(), set, &change, w, &unused, &minus);
+    find_features(overlap_geo_features_kernel(), set, &moved, &change, f);
+    pull_features(overlap_geo_features_kernel(), set, &change, w, &unused, &minus);
     double largest = sqrt(inner_product(&bent[0], &bent[0]));
     for (int i = 0; i < 64; i++)
       ck_assert_near(((&plus.row[0][0])[i] - (&minus.row[0][0])[i]) / (2 * h), (&bent[0].row[0][0])[i],
@@ -371,13 +371,13 @@ END_TEST
 // Lanes of eight different pairs, in all operations.
 START_TEST(every_kernel_gives_the_same_bits) {
   int kernel_count;
-  const ContactGeoKernel *const *kernels = contact_geo_kernels(&kernel_count);
-  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i]);
+  const OverlapGeoKernel *const *kernels = overlap_geo_features_kernels(&kernel_count);
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i]);
   Random random = random_seeded(10, 0);
   for (int trial = 0; trial < 20; trial++) {
     GeoSymmetric p, dp, slope[2], bent[2];
-    GeoPack weights[CONTACT_GEO_MAX_FEATURES], f[2][CONTACT_GEO_MAX_FEATURES],
-        df[2][CONTACT_GEO_MAX_FEATURES];
+    GeoPack weights[OVERLAP_GEO_MAX_FEATURES], f[2][OVERLAP_GEO_MAX_FEATURES],
+        df[2][OVERLAP_GEO_MAX_FEATURES];
     for (int lane = 0; lane < GEO_PACK; lane++) {
       GeoMatrix matrix;
       random_matrix(&random, &matrix);
@@ -387,8 +387,8 @@ START_TEST(every_kernel_gives_the_same_bits) {
       for (int i = 0; i < set->count; i++) weights[i][lane] = random_normal(&random);
     }
     for (int k = 0; k < kernel_count; k++) {
-      ContactGeoInvariants invariants, change;
-      ContactGeoSweep sweep;
+      OverlapGeoInvariants invariants, change;
+      OverlapGeoSweep sweep;
       int at = k > 0;
       kernels[k]->features(set, &p, &invariants, f[at]);
       kernels[k]->push(set, &invariants, &dp, &change, df[at]);

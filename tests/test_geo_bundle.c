@@ -4,13 +4,13 @@
 
 #include <string.h>
 
-#include "contact/geo_bundle.h"
-#include "contact/geo_coplanar.h"
-#include "contact/geo_frame.h"
-#include "contact/invariant.h"
 #include "datagen/hard.h"
+#include "overlap/geo/bundle/bundle.h"
+#include "overlap/geo/coplanar.h"
+#include "overlap/geo/frame.h"
+#include "overlap/invariant.h"
 
-enum { COUNT = CONTACT_GEO_BUNDLE - 3 };
+enum { COUNT = OVERLAP_GEO_BUNDLE - 3 };
 
 // Pairs of one class after another, from the member that is given.
 static void draw_pairs(int member, double *pairs) {
@@ -21,28 +21,28 @@ static void draw_pairs(int member, double *pairs) {
   }
 }
 
-static const ContactGeoBundleKernel *kernel_number(int index) {
+static const OverlapGeoBundleKernel *kernel_number(int index) {
   int count;
-  const ContactGeoBundleKernel *const *kernels = contact_geo_bundle_kernels(&count);
+  const OverlapGeoBundleKernel *const *kernels = overlap_geo_bundle_kernels(&count);
   return index < count ? kernels[index] : NULL;
 }
 
 START_TEST(the_gate_decides_as_the_scalar_one_to_the_bit) {
-  const ContactGeoBundleKernel *kernel = kernel_number(_i);
+  const OverlapGeoBundleKernel *kernel = kernel_number(_i);
   if (!kernel) return;
   double pairs[24 * COUNT];
-  ContactGeoBundle bundle;
+  OverlapGeoBundle bundle;
   int inside = 0;
   for (int round = 0; round < 60; round++) {
     draw_pairs(7 * round, pairs);
     kernel->gate(COUNT, pairs, &bundle);
     int at = 0;
     for (int i = 0; i < COUNT; i++) {
-      ContactGeoGate gate;
-      ContactGeoOutcome outcome = contact_geo_gate(&gate, pairs + 24 * i);
+      OverlapGeoGate gate;
+      OverlapGeoOutcome outcome = overlap_geo_gate(&gate, pairs + 24 * i);
       ck_assert_msg(bundle.outcome[i] == outcome, "%s, round %d, pair %d: %d, scalar %d", kernel->name, round,
                     i, bundle.outcome[i], outcome);
-      if (outcome != CONTACT_GEO_INSIDE) continue;
+      if (outcome != OVERLAP_GEO_INSIDE) continue;
       ck_assert_int_eq(bundle.pair[at], i);
       ck_assert(bundle.is_enclosed[at] == gate.is_enclosed);
       ck_assert(bundle.least_volume[at] == gate.least_volume);
@@ -58,32 +58,32 @@ END_TEST
 
 // Centre, frame and the pull of a slope Φ = 0. Where the overlap is thin rounding counts by its thickness.
 START_TEST(frames_and_gradients_are_the_scalar_ones) {
-  const ContactGeoBundleKernel *kernel = kernel_number(_i);
+  const OverlapGeoBundleKernel *kernel = kernel_number(_i);
   if (!kernel) return;
   double pairs[24 * COUNT];
-  ContactGeoBundle bundle;
-  ContactGeoBlock block;
+  OverlapGeoBundle bundle;
+  OverlapGeoBlock block;
   int seen = 0;
   for (int round = 0; round < 30; round++) {
     draw_pairs(11 * round, pairs);
     kernel->gate(COUNT, pairs, &bundle);
     for (int at = 0; at < bundle.count; at++) {
-      int column = at % CONTACT_GEO_BLOCK;
+      int column = at % OVERLAP_GEO_BLOCK;
       if (column == 0) {
         kernel->frame(&bundle, at, &block);
-        for (int j = 0; j < CONTACT_GEO_BLOCK; j++) block.factor[j] = 3;
+        for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.factor[j] = 3;
         kernel->pull(NULL, &block);
       }
-      ContactGeoFrame frame;
-      ContactGeoAdjoint adjoint;
+      OverlapGeoFrame frame;
+      OverlapGeoAdjoint adjoint;
       GeoMatrix slope = {{{0}}};
-      ContactGeoOutcome outcome = contact_geo_frame(&frame, pairs + 24 * bundle.pair[at]);
-      ck_assert_int_eq(block.is_fit[column] > 0, outcome == CONTACT_GEO_INSIDE);
-      if (outcome != CONTACT_GEO_INSIDE) continue;
-      ContactGeoCoplanar coplanar;
-      contact_geo_coplanar_find(&frame.projector, &coplanar);
+      OverlapGeoOutcome outcome = overlap_geo_frame(&frame, pairs + 24 * bundle.pair[at]);
+      ck_assert_int_eq(block.is_fit[column] > 0, outcome == OVERLAP_GEO_INSIDE);
+      if (outcome != OVERLAP_GEO_INSIDE) continue;
+      OverlapGeoCoplanar coplanar;
+      overlap_geo_coplanar_find(&frame.projector, &coplanar);
       ck_assert_int_eq(block.is_close[column] > 0, coplanar.count > 0);
-      contact_geo_frame_pull(&frame, &slope, &adjoint);
+      overlap_geo_frame_pull(&frame, &slope, &adjoint);
       double largest = 0, least = 1;
       for (int k = 0; k < 24; k++) largest = fmax(largest, fabs(adjoint.gradient[k]));
       for (int k = 0; k < 8; k++) least = fmin(least, frame.slack[k]);
@@ -104,39 +104,39 @@ END_TEST
 
 // Against the kernel for single pairs, by random weights.
 START_TEST(features_and_their_gradients_are_the_scalar_ones) {
-  const ContactGeoBundleKernel *kernel = kernel_number(_i / 3);
+  const OverlapGeoBundleKernel *kernel = kernel_number(_i / 3);
   if (!kernel) return;
   static const int set_sizes[] = {36, 70, 100};
-  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i % 3]);
-  const ContactGeoKernel *one = &contact_geo_kernel_portable;
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i % 3]);
+  const OverlapGeoKernel *one = &overlap_geo_features_kernel_portable;
   Random random = random_seeded(21, 0);
   double pairs[24 * COUNT];
-  ContactGeoBundle bundle;
-  ContactGeoBlock block;
+  OverlapGeoBundle bundle;
+  OverlapGeoBlock block;
   draw_pairs(5, pairs);
   kernel->gate(COUNT, pairs, &bundle);
-  ck_assert_int_gt(bundle.count, CONTACT_GEO_BLOCK);
+  ck_assert_int_gt(bundle.count, OVERLAP_GEO_BLOCK);
   kernel->frame(&bundle, 0, &block);
   kernel->features(set, &block);
   for (int f = 0; f < set->count; f++)
-    for (int j = 0; j < CONTACT_GEO_BLOCK; j++) block.weights[f][j] = random_normal(&random);
-  for (int j = 0; j < CONTACT_GEO_BLOCK; j++) block.factor[j] = 1 + j;
+    for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.weights[f][j] = random_normal(&random);
+  for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.factor[j] = 1 + j;
   kernel->pull(set, &block);
-  for (int j = 0; j < CONTACT_GEO_BLOCK; j++) {
-    ContactGeoFrame frame;
-    ContactGeoInvariants invariants;
-    ContactGeoSweep sweep;
-    ContactGeoAdjoint adjoint;
+  for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) {
+    OverlapGeoFrame frame;
+    OverlapGeoInvariants invariants;
+    OverlapGeoSweep sweep;
+    OverlapGeoAdjoint adjoint;
     GeoSymmetric projector = {{{0}}}, packed;
-    GeoPack features[CONTACT_GEO_MAX_FEATURES], weights[CONTACT_GEO_MAX_FEATURES] = {{0}};
+    GeoPack features[OVERLAP_GEO_MAX_FEATURES], weights[OVERLAP_GEO_MAX_FEATURES] = {{0}};
     GeoMatrix slope;
-    ck_assert_int_eq(contact_geo_frame(&frame, pairs + 24 * bundle.pair[j]), CONTACT_GEO_INSIDE);
+    ck_assert_int_eq(overlap_geo_frame(&frame, pairs + 24 * bundle.pair[j]), OVERLAP_GEO_INSIDE);
     geo_pack_matrix(&frame.projector, 0, &projector);
     one->features(set, &projector, &invariants, features);
     for (int f = 0; f < set->count; f++) weights[f][0] = block.weights[f][j];
     one->pull(set, &invariants, weights, &sweep, &packed);
     geo_unpack_matrix(&packed, 0, &slope);
-    contact_geo_frame_pull(&frame, &slope, &adjoint);
+    overlap_geo_frame_pull(&frame, &slope, &adjoint);
     double largest = 0;
     for (int k = 0; k < 24; k++) largest = fmax(largest, fabs(adjoint.gradient[k]));
     for (int f = 0; f < set->count; f++)
@@ -148,43 +148,43 @@ START_TEST(features_and_their_gradients_are_the_scalar_ones) {
 END_TEST
 
 // ∇² log V at fixed weights along all 24 directions, one at a time.
-static void bend_alone(const ContactGeoFeatureSet *set, const ContactGeoFrame *frame, const double *weights,
-                       double *gradient, double feature_changes[24][CONTACT_GEO_MAX_FEATURES],
+static void bend_alone(const OverlapGeoFeatureSet *set, const OverlapGeoFrame *frame, const double *weights,
+                       double *gradient, double feature_changes[24][OVERLAP_GEO_MAX_FEATURES],
                        double *hessian) {
-  const ContactGeoKernel *one = &contact_geo_kernel_portable;
-  ContactGeoInvariants invariants, change;
-  ContactGeoSweep sweep;
-  ContactGeoAdjoint adjoint;
+  const OverlapGeoKernel *one = &overlap_geo_features_kernel_portable;
+  OverlapGeoInvariants invariants, change;
+  OverlapGeoSweep sweep;
+  OverlapGeoAdjoint adjoint;
   GeoSymmetric projector = {{{0}}}, packed;
-  GeoPack packs[CONTACT_GEO_MAX_FEATURES], weight_packs[CONTACT_GEO_MAX_FEATURES] = {{0}};
+  GeoPack packs[OVERLAP_GEO_MAX_FEATURES], weight_packs[OVERLAP_GEO_MAX_FEATURES] = {{0}};
   GeoMatrix slope;
   geo_pack_matrix(&frame->projector, 0, &projector);
   geo_pack_numbers(weights, set->count, 0, weight_packs);
   one->features(set, &projector, &invariants, packs);
   one->pull(set, &invariants, weight_packs, &sweep, &packed);
   geo_unpack_matrix(&packed, 0, &slope);
-  contact_geo_frame_pull(frame, &slope, &adjoint);
+  overlap_geo_frame_pull(frame, &slope, &adjoint);
   memcpy(gradient, adjoint.gradient, sizeof adjoint.gradient);
   for (int j = 0; j < 24; j++) {
     double direction[24] = {0}, column[24];
-    ContactGeoTangent tangent;
+    OverlapGeoTangent tangent;
     GeoMatrix slope_change;
     direction[j] = 1;
-    contact_geo_frame_push(frame, direction, &tangent);
+    overlap_geo_frame_push(frame, direction, &tangent);
     geo_pack_matrix(&tangent.projector, 0, &projector);
     one->push(set, &invariants, &projector, &change, packs);
     geo_unpack_numbers(packs, set->count, 0, feature_changes[j]);
     one->bend(set, &invariants, weight_packs, &sweep, &change, &packed);
     geo_unpack_matrix(&packed, 0, &slope_change);
-    contact_geo_frame_bend(frame, &adjoint, &slope, &tangent, &slope_change, column);
+    overlap_geo_frame_bend(frame, &adjoint, &slope, &tangent, &slope_change, column);
     for (int i = 0; i < 24; i++) hessian[24 * i + j] = column[i];
   }
 }
 
-static void check_bends(const ContactGeoFeatureSet *set, const ContactGeoBlock *block,
-                        const ContactGeoBends *bends, int at, const ContactGeoFrame *frame) {
-  double weights[CONTACT_GEO_MAX_FEATURES], gradient[24], hessian[576];
-  double changes[24][CONTACT_GEO_MAX_FEATURES], largest = 0;
+static void check_bends(const OverlapGeoFeatureSet *set, const OverlapGeoBlock *block,
+                        const OverlapGeoBends *bends, int at, const OverlapGeoFrame *frame) {
+  double weights[OVERLAP_GEO_MAX_FEATURES], gradient[24], hessian[576];
+  double changes[24][OVERLAP_GEO_MAX_FEATURES], largest = 0;
   for (int f = 0; f < set->count; f++) weights[f] = block->weights[f][at];
   bend_alone(set, frame, weights, gradient, changes, hessian);
   for (int k = 0; k < 576; k++) {
@@ -208,15 +208,15 @@ static void check_bends(const ContactGeoFeatureSet *set, const ContactGeoBlock *
 // The changes of features and, with random weights, the Hessian of V. Thin overlaps, where rounding counts by
 // their thickness, are left out.
 START_TEST(second_derivatives_are_the_scalar_ones) {
-  const ContactGeoBundleKernel *kernel = kernel_number(_i / 3);
+  const OverlapGeoBundleKernel *kernel = kernel_number(_i / 3);
   if (!kernel) return;
   static const int set_sizes[] = {36, 70, 100};
-  const ContactGeoFeatureSet *set = contact_geo_feature_set(set_sizes[_i % 3]);
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i % 3]);
   Random random = random_seeded(22, 0);
   double pairs[24 * COUNT];
-  ContactGeoBundle bundle;
-  ContactGeoBlock block;
-  ContactGeoBends bends;
+  OverlapGeoBundle bundle;
+  OverlapGeoBlock block;
+  OverlapGeoBends bends;
   int seen[2] = {0};
   for (int round = 0; round < 10; round++) {
     draw_pairs(5 + 9 * round, pairs);
@@ -224,13 +224,13 @@ START_TEST(second_derivatives_are_the_scalar_ones) {
     kernel->frame(&bundle, 0, &block);
     kernel->features(set, &block);
     for (int f = 0; f < set->count; f++)
-      for (int j = 0; j < CONTACT_GEO_BLOCK; j++) block.weights[f][j] = random_normal(&random);
-    for (int j = 0; j < CONTACT_GEO_BLOCK; j++) block.factor[j] = 1 + j;
+      for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.weights[f][j] = random_normal(&random);
+    for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.factor[j] = 1 + j;
     kernel->bend(set, &bundle, 0, &block, &bends);
     kernel->finish(true, &block, &bends);
-    for (int at = 0; at < CONTACT_GEO_BLOCK; at++) {
-      ContactGeoFrame frame;
-      ck_assert_int_eq(contact_geo_frame(&frame, pairs + 24 * bundle.pair[at]), CONTACT_GEO_INSIDE);
+    for (int at = 0; at < OVERLAP_GEO_BLOCK; at++) {
+      OverlapGeoFrame frame;
+      ck_assert_int_eq(overlap_geo_frame(&frame, pairs + 24 * bundle.pair[at]), OVERLAP_GEO_INSIDE);
       double least = 1;
       for (int k = 0; k < 8; k++) least = fmin(least, frame.slack[k]);
       if (least < 1e-3) continue;
@@ -245,14 +245,14 @@ END_TEST
 
 // The same pairs from another one on, so that each is in another lane beside others.
 START_TEST(a_pair_gives_the_same_bits_in_every_lane) {
-  const ContactGeoBundleKernel *kernel = kernel_number(_i);
+  const OverlapGeoBundleKernel *kernel = kernel_number(_i);
   if (!kernel) return;
   enum { SKIPPED = 5 };
-  const ContactGeoFeatureSet *set = contact_geo_feature_set(100);
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(100);
   double pairs[24 * COUNT];
-  ContactGeoBundle bundle[2];
-  ContactGeoBlock block[2];
-  ContactGeoBends bends[2];
+  OverlapGeoBundle bundle[2];
+  OverlapGeoBlock block[2];
+  OverlapGeoBends bends[2];
   draw_pairs(3, pairs);
   for (int b = 0; b < 2; b++) kernel->gate(COUNT - b * SKIPPED, pairs + b * SKIPPED * 24, &bundle[b]);
   int skipped = bundle[0].count - bundle[1].count;
@@ -260,14 +260,14 @@ START_TEST(a_pair_gives_the_same_bits_in_every_lane) {
   for (int b = 0; b < 2; b++) {
     kernel->frame(&bundle[b], 0, &block[b]);
     kernel->features(set, &block[b]);
-    for (int j = 0; j < CONTACT_GEO_BLOCK; j++) block[b].factor[j] = 1;
+    for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block[b].factor[j] = 1;
     for (int f = 0; f < set->count; f++)
-      for (int j = 0; j < CONTACT_GEO_BLOCK; j++) block[b].weights[f][j] = f % 7 - 3;
+      for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block[b].weights[f][j] = f % 7 - 3;
     kernel->pull(set, &block[b]);
     kernel->bend(set, &bundle[b], 0, &block[b], &bends[b]);
     kernel->finish(true, &block[b], &bends[b]);
   }
-  for (int j = 0; j < CONTACT_GEO_BLOCK - skipped; j++) {
+  for (int j = 0; j < OVERLAP_GEO_BLOCK - skipped; j++) {
     ck_assert_int_eq(bundle[0].pair[j + skipped], bundle[1].pair[j] + SKIPPED);
     ck_assert(block[0].volume[j + skipped] == block[1].volume[j]);
     for (int f = 0; f < set->count; f++)

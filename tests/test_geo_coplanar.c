@@ -5,8 +5,9 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "contact/geo.h"
-#include "contact/geo_coplanar.h"
+#include "overlap/geo/coplanar.h"
+#include "overlap/geo/geo.h"
+#include "overlap/model.h"
 
 // The corner tetrahedron 0, e₁, e₂, e₃, and itself moved.
 static void corner_pair(const double move[3], double pair[24]) {
@@ -16,18 +17,18 @@ static void corner_pair(const double move[3], double pair[24]) {
   for (int i = 0; i < 12; i++) pair[12 + i] += move[i % 3];
 }
 
-static ContactGeoCoplanar find(const double pair[24], ContactGeoFrame *frame) {
-  ContactGeoCoplanar found;
-  ck_assert_int_eq(contact_geo_frame(frame, pair), CONTACT_GEO_INSIDE);
-  contact_geo_coplanar_find(&frame->projector, &found);
+static OverlapGeoCoplanar find(const double pair[24], OverlapGeoFrame *frame) {
+  OverlapGeoCoplanar found;
+  ck_assert_int_eq(overlap_geo_frame(frame, pair), OVERLAP_GEO_INSIDE);
+  overlap_geo_coplanar_find(&frame->projector, &found);
   return found;
 }
 
 START_TEST(a_tetrahedron_and_itself_have_four_common_planes) {
   double pair[24];
-  ContactGeoFrame frame;
+  OverlapGeoFrame frame;
   corner_pair((double[3]){0, 0, 0}, pair);
-  ContactGeoCoplanar found = find(pair, &frame);
+  OverlapGeoCoplanar found = find(pair, &frame);
   ck_assert_int_eq(found.count, 4);
   for (int c = 0; c < 4; c++) {
     ck_assert_int_eq(found.close[c].l, found.close[c].k + 4);
@@ -41,11 +42,11 @@ END_TEST
 // Moved by 0.01 along x: of the planes x = 0 and x = 0.01 one is cut off, the faces y = 0 and z = 0 stay.
 START_TEST(planes_part_with_their_distance) {
   double pair[24], before = 1;
-  ContactGeoFrame frame;
+  OverlapGeoFrame frame;
   const double moves[] = {0.003, 0.01, 0.03};
   for (int m = 0; m < 3; m++) {
     corner_pair((double[3]){moves[m], 0, 0}, pair);
-    ContactGeoCoplanar found = find(pair, &frame);
+    OverlapGeoCoplanar found = find(pair, &frame);
     double along_x = 0;
     for (int c = 0; c < found.count; c++)
       if (found.close[c].k == 1) along_x = found.close[c].share;
@@ -62,10 +63,10 @@ START_TEST(tetrahedra_at_random_have_no_share_as_a_rule) {
   while (seen < 2000) {
     double pair[24];
     for (int i = 0; i < 24; i++) pair[i] = random_uniform(&random);
-    ContactGeoFrame frame;
-    if (contact_geo_frame(&frame, pair) != CONTACT_GEO_INSIDE) continue;
-    ContactGeoCoplanar found;
-    contact_geo_coplanar_find(&frame.projector, &found);
+    OverlapGeoFrame frame;
+    if (overlap_geo_frame(&frame, pair) != OVERLAP_GEO_INSIDE) continue;
+    OverlapGeoCoplanar found;
+    overlap_geo_coplanar_find(&frame.projector, &found);
     seen++, shared += found.share > 0;
   }
   ck_assert_int_gt(shared, 0);
@@ -75,12 +76,12 @@ END_TEST
 
 // A model that knows nothing, V = V₀, so that the blend shows; faces nearly in a plane.
 static void blend(const double pair[24], double *volume, double gradient[24], double hessian[576]) {
-  ContactGeoModel model;
+  OverlapGeoModel model;
   unsigned flags;
-  ck_assert_ok(contact_geo_model_create(&model, NULL));
-  ContactOverlapBatch batch = {1, pair, volume, gradient, hessian, &flags};
-  ck_assert_ok(contact_geo_eval(&model, &batch));
-  ck_assert_uint_ne(flags & CONTACT_OVERLAP_BLENDED, 0);
+  ck_assert_ok(overlap_geo_create(&model, NULL));
+  OverlapBatch batch = {1, pair, volume, gradient, hessian, &flags};
+  ck_assert_ok(overlap_geo_eval(&model, &batch));
+  ck_assert_uint_ne(flags & OVERLAP_BLENDED, 0);
 }
 
 START_TEST(the_blend_has_the_derivatives_of_its_volume) {
@@ -117,7 +118,7 @@ static void cube(const double at[3], double tets[6][12]) {
 }
 
 // dV/d(motion) of a cube that stands on a floor of 3 × 3 cubes, its diagonal planes x = y apart by `offset`.
-static void push_cube(const ContactOverlapModel *model, double depth, double offset, double force[3]) {
+static void push_cube(const OverlapModel *model, double depth, double offset, double force[3]) {
   double upper[6][12], lower[6][12], pair[24], volume, gradient[24];
   unsigned flags;
   memset(force, 0, 3 * sizeof *force);
@@ -137,8 +138,8 @@ static void push_cube(const ContactOverlapModel *model, double depth, double off
 // offset.
 START_TEST(coinciding_planes_inside_of_bodies_do_not_attract_each_other) {
   const char *names[] = {"geo", "geo-small"};
-  ContactOverlapModel model;
-  ck_assert_ok(contact_overlap_create(&model, names[_i]));
+  OverlapModel model;
+  ck_assert_ok(overlap_model_create(&model, names[_i]));
   for (double depth = 0.02; depth < 0.4; depth += 0.14) {
     double before[3], after[3], force[3];
     push_cube(&model, depth, -1e-9, before);
@@ -150,7 +151,7 @@ START_TEST(coinciding_planes_inside_of_bodies_do_not_attract_each_other) {
       ck_assert_near(force[2], -1, 0.02);
     }
   }
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
 }
 END_TEST
 

@@ -6,30 +6,30 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "contact/exact.h"
-#include "contact/geo_frame.h"
-#include "contact/invariant.h"
 #include "datagen/hard.h"
+#include "overlap/exact/exact.h"
+#include "overlap/geo/frame.h"
+#include "overlap/invariant.h"
 
 START_TEST(the_gate_agrees_with_exact_in_every_class) {
   int inside = 0, empty = 0;
   for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
     for (int member = 0; member < 300; member++) {
       DatagenHardPair pair = datagen_hard_make(c, member);
-      ContactGeoGate gate;
-      ContactGeoOutcome outcome = contact_geo_gate(&gate, pair.x);
+      OverlapGeoGate gate;
+      OverlapGeoOutcome outcome = overlap_geo_gate(&gate, pair.x);
       double volume;
       unsigned flags;
-      ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &volume, NULL, NULL, &flags));
+      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair.x, &volume, NULL, NULL, &flags));
       // what the gate leaves to exact is right; overlaps thinner than rounding may be missed, none invented
-      if (outcome == CONTACT_GEO_UNFIT) continue;
+      if (outcome == OVERLAP_GEO_UNFIT) continue;
       bool is_missed =
-          outcome == CONTACT_GEO_EMPTY && volume <= 1e-15 * contact_invariant_smaller_volume(pair.x);
-      ck_assert_msg((volume > 0) == (outcome == CONTACT_GEO_INSIDE) || is_missed,
+          outcome == OVERLAP_GEO_EMPTY && volume <= 1e-15 * overlap_invariant_smaller_volume(pair.x);
+      ck_assert_msg((volume > 0) == (outcome == OVERLAP_GEO_INSIDE) || is_missed,
                     "%s, member %d: the gate says %d, V = %g", datagen_hard_classes[c].name, member, outcome,
                     volume);
-      if (outcome == CONTACT_GEO_INSIDE) ck_assert(gate.is_enclosed || !(flags & CONTACT_OVERLAP_ENCLOSED));
-      *(outcome == CONTACT_GEO_INSIDE ? &inside : &empty) += 1;
+      if (outcome == OVERLAP_GEO_INSIDE) ck_assert(gate.is_enclosed || !(flags & OVERLAP_ENCLOSED));
+      *(outcome == OVERLAP_GEO_INSIDE ? &inside : &empty) += 1;
     }
   ck_assert_int_gt(inside, 3000);
   ck_assert_int_gt(empty, 3000);
@@ -42,8 +42,8 @@ START_TEST(only_flat_and_sliver_shaped_tetrahedra_are_left_to_exact) {
         strstr(datagen_hard_classes[c].name, "sliver") || strcmp(datagen_hard_classes[c].name, "flat") == 0;
     for (int member = 0; member < 300; member++) {
       DatagenHardPair pair = datagen_hard_make(c, member);
-      ContactGeoFrame frame;
-      bool is_unfit = contact_geo_frame(&frame, pair.x) == CONTACT_GEO_UNFIT;
+      OverlapGeoFrame frame;
+      bool is_unfit = overlap_geo_frame(&frame, pair.x) == OVERLAP_GEO_UNFIT;
       ck_assert_msg(!is_unfit || is_flat, "%s, member %d", datagen_hard_classes[c].name, member);
       ck_assert_msg(is_unfit || !strstr(datagen_hard_classes[c].name, "sliver"), "member %d", member);
     }
@@ -57,9 +57,9 @@ static void check_equal(const double tet[12], int order) {
   double x[24];
   memcpy(x, tet, 12 * sizeof *x);
   datagen_hard_permute(tet, order, x + 12);
-  ContactGeoGate gate;
-  ContactGeoOutcome outcome = contact_geo_gate(&gate, x);
-  ck_assert_msg(outcome == CONTACT_GEO_INSIDE && gate.is_enclosed, "order %d: outcome %d, enclosed %d", order,
+  OverlapGeoGate gate;
+  OverlapGeoOutcome outcome = overlap_geo_gate(&gate, x);
+  ck_assert_msg(outcome == OVERLAP_GEO_INSIDE && gate.is_enclosed, "order %d: outcome %d, enclosed %d", order,
                 outcome, gate.is_enclosed);
   for (int k = 0; k < 8; k++) ck_assert_near(gate.slack[k], 0.25, 1e-9);
 }
@@ -85,10 +85,10 @@ START_TEST(equal_tetrahedra_of_any_flatness_overlap_whole_in_every_order) {
         double length = (a == 2 ? height : 1) * random_uniform(&random);
         for (int c = 0; c < 3; c++) tet[3 * v + c] += length * axes[3 * a + c];
       }
-    ContactGeoGate gate;
+    OverlapGeoGate gate;
     double twice[24];
     memcpy(twice, tet, sizeof tet), memcpy(twice + 12, tet, sizeof tet);
-    if (contact_geo_gate(&gate, twice) == CONTACT_GEO_UNFIT) continue;
+    if (overlap_geo_gate(&gate, twice) == OVERLAP_GEO_UNFIT) continue;
     for (int order = 0; order < 24; order++) check_equal(tet, order);
     seen++;
   }
@@ -99,7 +99,7 @@ END_TEST
 static double exact_volume(const double x[24]) {
   double volume;
   unsigned flags;
-  ck_assert_ok(contact_overlap_exact.eval_pair(NULL, x, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_exact_ops.eval_pair(NULL, x, &volume, NULL, NULL, &flags));
   return volume;
 }
 
@@ -107,13 +107,13 @@ static double exact_volume(const double x[24]) {
 static void check_found(const double x[24], const char *what) {
   for (int order = 0; order < 2 * 24 * 24; order++) {
     double swapped[24], y[24];
-    contact_overlap_swap(x, swapped);
+    overlap_ops_swap(x, swapped);
     const double *from = order & 1 ? swapped : x;
     datagen_hard_permute(from, order / 2 % 24, y);
     datagen_hard_permute(from + 12, order / 48, y + 12);
-    ContactGeoGate gate;
-    ContactGeoOutcome outcome = contact_geo_gate(&gate, y);
-    ck_assert_msg(outcome == CONTACT_GEO_INSIDE, "%s, order %d: outcome %d", what, order, outcome);
+    OverlapGeoGate gate;
+    OverlapGeoOutcome outcome = overlap_geo_gate(&gate, y);
+    ck_assert_msg(outcome == OVERLAP_GEO_INSIDE, "%s, order %d: outcome %d", what, order, outcome);
   }
 }
 
@@ -152,7 +152,7 @@ START_TEST(crossings_at_a_shallow_slope_are_found_in_every_order) {
        0x1.f4p-2},
   };
   for (int k = 0; k < 2; k++) {
-    ck_assert_double_gt(exact_volume(pairs[k]), 1e-7 * contact_invariant_smaller_volume(pairs[k]));
+    ck_assert_double_gt(exact_volume(pairs[k]), 1e-7 * overlap_invariant_smaller_volume(pairs[k]));
     check_found(pairs[k], k == 0 ? "shallow" : "nearly equal faces");
   }
 }
@@ -176,9 +176,9 @@ START_TEST(bases_turned_against_each_other_are_found_in_every_order) {
   for (int k = 0; k < 100; k++) {
     double x[24];
     draw_turned(&random, x);
-    ContactGeoGate gate;
-    if (contact_geo_gate(&gate, x) == CONTACT_GEO_UNFIT) continue;
-    if (!(exact_volume(x) > 1e-11 * contact_invariant_smaller_volume(x))) continue;
+    OverlapGeoGate gate;
+    if (overlap_geo_gate(&gate, x) == OVERLAP_GEO_UNFIT) continue;
+    if (!(exact_volume(x) > 1e-11 * overlap_invariant_smaller_volume(x))) continue;
     check_found(x, "turned");
     seen++;
   }
@@ -187,7 +187,7 @@ START_TEST(bases_turned_against_each_other_are_found_in_every_order) {
 END_TEST
 
 // What is wrong with the sum of a tetrahedron's four slacks is the net force of the pair.
-static void check_sums(const ContactGeoFrame *frame, int k) {
+static void check_sums(const OverlapGeoFrame *frame, int k) {
   for (int t = 0; t < 8; t += 4) {
     double sum = frame->slack[t] + frame->slack[t + 1] + frame->slack[t + 2] + frame->slack[t + 3];
     ck_assert_msg(fabs(sum - 1) <= 1e-15, "slice %d: the slacks sum to 1 + %g", k, sum - 1);
@@ -220,15 +220,15 @@ START_TEST(slacks_sum_to_one_in_the_thinnest_slices) {
                                    0x1.9840000000002p+26,
                                    0x1.bep+25,
                                    0x1.228p+26};
-  ContactGeoFrame frame;
-  ck_assert_int_eq(contact_geo_frame(&frame, found), CONTACT_GEO_INSIDE);
+  OverlapGeoFrame frame;
+  ck_assert_int_eq(overlap_geo_frame(&frame, found), OVERLAP_GEO_INSIDE);
   check_sums(&frame, -1);
   Random random = random_seeded(63, 0);
   double thinnest = 1;
   for (int k = 0; k < 300; k++) {
     double x[24];
     draw_turned(&random, x);
-    if (contact_geo_frame(&frame, x) != CONTACT_GEO_INSIDE) continue;
+    if (overlap_geo_frame(&frame, x) != OVERLAP_GEO_INSIDE) continue;
     check_sums(&frame, k);
     for (int p = 0; p < 8; p++) thinnest = fmin(thinnest, frame.slack[p]);
   }

@@ -8,12 +8,12 @@
 #include <unistd.h>
 
 #include "base/memory.h"
-#include "contact/exact.h"
-#include "contact/geo_overlap.h"
-#include "contact/invariant.h"
 #include "datagen/hard.h"
 #include "net/model.h"
 #include "net/weights.h"
+#include "overlap/exact/exact.h"
+#include "overlap/geo/model.h"
+#include "overlap/invariant.h"
 
 static const char *weights_path(void) {
   static char path[64];
@@ -40,8 +40,8 @@ static NetShape shape_of(int inputs) {
 static void *create(int inputs) {
   NetShape shape = shape_of(inputs);
   void *self = NULL;
-  write_weights(&shape, CONTACT_GEO_NORMALISATION);
-  ck_assert_ok(contact_geo_overlap_create(&self, weights_path()));
+  write_weights(&shape, OVERLAP_GEO_NORMALISATION);
+  ck_assert_ok(overlap_geo_model_create(&self, weights_path()));
   unlink(weights_path());
   return self;
 }
@@ -54,7 +54,7 @@ START_TEST(gradient_and_hessian_of_a_loaded_network_are_derivatives) {
     DatagenHardPair pair = datagen_hard_make(2, member);
     double volume, gradient[24], hessian[576];
     unsigned flags;
-    ck_assert_ok(contact_geo_overlap_eval_pair(self, pair.x, &volume, gradient, hessian, &flags));
+    ck_assert_ok(overlap_geo_model_eval_pair(self, pair.x, &volume, gradient, hessian, &flags));
     if (!(volume > 1e-6) || flags) continue;
     seen++;
     double h = 1e-6 * cbrt(volume), size = 0, bend = 0;
@@ -64,16 +64,16 @@ START_TEST(gradient_and_hessian_of_a_loaded_network_are_derivatives) {
       double x[24], up, down, up_gradient[24], down_gradient[24];
       memcpy(x, pair.x, sizeof x);
       x[i] = pair.x[i] + h;
-      ck_assert_ok(contact_geo_overlap_eval_pair(self, x, &up, up_gradient, NULL, &flags));
+      ck_assert_ok(overlap_geo_model_eval_pair(self, x, &up, up_gradient, NULL, &flags));
       x[i] = pair.x[i] - h;
-      ck_assert_ok(contact_geo_overlap_eval_pair(self, x, &down, down_gradient, NULL, &flags));
+      ck_assert_ok(overlap_geo_model_eval_pair(self, x, &down, down_gradient, NULL, &flags));
       ck_assert_near((up - down) / (2 * h), gradient[i], 1e-7 * size);
       for (int j = 0; j < 24; j++)
         ck_assert_near((up_gradient[j] - down_gradient[j]) / (2 * h), hessian[24 * i + j], 1e-6 * bend);
     }
   }
   ck_assert_int_gt(seen, 10);
-  contact_geo_overlap_destroy(self);
+  overlap_geo_model_destroy(self);
 }
 END_TEST
 
@@ -87,12 +87,12 @@ START_TEST(a_vanishing_overlap_is_true_with_any_weights) {
                        vec3_sub(datagen_hard_vertex(&pair, i), vec3_scale(1e-5 / vec3_length(n), n)));
     double volume, exact;
     unsigned flags;
-    ck_assert_ok(contact_geo_overlap_eval_pair(self, pair.x, &volume, NULL, NULL, &flags));
-    ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &exact, NULL, NULL, &flags));
+    ck_assert_ok(overlap_geo_model_eval_pair(self, pair.x, &volume, NULL, NULL, &flags));
+    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair.x, &exact, NULL, NULL, &flags));
     ck_assert(exact > 0);
     ck_assert_near(volume / exact, 1, 1e-3);
   }
-  contact_geo_overlap_destroy(self);
+  overlap_geo_model_destroy(self);
 }
 END_TEST
 
@@ -104,11 +104,11 @@ START_TEST(any_number_of_threads_gives_the_same_bits) {
   for (int run = 0; run < 2; run++) {
     void *self = create(100);
     omp_set_num_threads(run ? 4 : 1);
-    ContactOverlapBatch batch = {
+    OverlapBatch batch = {
         .pair_count = COUNT, .pairs = pairs, .volume = volume[run], .gradient = gradient[run]};
-    ck_assert_ok(contact_geo_overlap_eval_batch(self, &batch));
+    ck_assert_ok(overlap_geo_model_eval_batch(self, &batch));
     omp_set_num_threads(threads);
-    contact_geo_overlap_destroy(self);
+    overlap_geo_model_destroy(self);
   }
   ck_assert_mem_eq(volume[0], volume[1], sizeof volume[0]);
   ck_assert_mem_eq(gradient[0], gradient[1], sizeof gradient[0]);
@@ -118,7 +118,7 @@ END_TEST
 static void expect_refusal(const NetShape *shape, const char *normalisation, const char *says) {
   void *self = NULL;
   write_weights(shape, normalisation);
-  ck_assert_int_eq(contact_geo_overlap_create(&self, weights_path()), STATUS_INPUT);
+  ck_assert_int_eq(overlap_geo_model_create(&self, weights_path()), STATUS_INPUT);
   ck_assert_ptr_null(self);
   ck_assert_msg(strstr(status_message(), says) && strstr(status_message(), weights_path()), "%s",
                 status_message());
@@ -127,43 +127,43 @@ static void expect_refusal(const NetShape *shape, const char *normalisation, con
 
 START_TEST(weights_of_another_kind_are_refused_by_name) {
   NetShape shape = net_shape_tpn_b();
-  expect_refusal(&shape, CONTACT_GEO_NORMALISATION, "dense SiLU");
+  expect_refusal(&shape, OVERLAP_GEO_NORMALISATION, "dense SiLU");
   shape = shape_of(37);
-  expect_refusal(&shape, CONTACT_GEO_NORMALISATION, "37 inputs");
+  expect_refusal(&shape, OVERLAP_GEO_NORMALISATION, "37 inputs");
   shape = shape_of(36);
   expect_refusal(&shape, "unit", "'unit'");
   void *self = NULL;
-  ck_assert_int_ne(contact_geo_overlap_create(&self, "/nowhere.safetensors"), STATUS_OK);
+  ck_assert_int_ne(overlap_geo_model_create(&self, "/nowhere.safetensors"), STATUS_OK);
   ck_assert_ptr_nonnull(strstr(status_message(), "/nowhere.safetensors"));
 }
 END_TEST
 
 START_TEST(without_a_file_there_is_the_constant) {
   void *self = NULL;
-  ck_assert_ok(contact_geo_overlap_create(&self, NULL));
-  ContactGeoFrame frame;
+  ck_assert_ok(overlap_geo_model_create(&self, NULL));
+  OverlapGeoFrame frame;
   DatagenHardPair pair = datagen_hard_make(2, 1);
-  for (int member = 1; contact_geo_frame(&frame, pair.x) != CONTACT_GEO_INSIDE; member++)
+  for (int member = 1; overlap_geo_frame(&frame, pair.x) != OVERLAP_GEO_INSIDE; member++)
     pair = datagen_hard_make(2, member);
   double volume;
   unsigned flags;
-  ck_assert_ok(contact_geo_overlap_eval_pair(self, pair.x, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_geo_model_eval_pair(self, pair.x, &volume, NULL, NULL, &flags));
   ck_assert_near(volume, 1.28 * frame.volume, 1e-15 * volume);
-  contact_geo_overlap_destroy(self);
+  overlap_geo_model_destroy(self);
 }
 END_TEST
 
 START_TEST(every_failed_allocation_is_an_error_and_nothing_leaks) {
   NetShape shape = shape_of(36);
-  write_weights(&shape, CONTACT_GEO_NORMALISATION);
+  write_weights(&shape, OVERLAP_GEO_NORMALISATION);
   int failures = 0;
   for (long k = 1; k < 100; k++) {
     void *self = NULL;
     memory_fail_at(k);
-    Status status = contact_geo_overlap_create(&self, weights_path());
+    Status status = overlap_geo_model_create(&self, weights_path());
     memory_fail_at(0);
     if (status == STATUS_OK) {
-      contact_geo_overlap_destroy(self);
+      overlap_geo_model_destroy(self);
       break;
     }
     ck_assert_int_eq(status, STATUS_MEMORY);

@@ -8,31 +8,31 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/bench_pairs.h"
-#include "contact/clip.h"
-#include "contact/exact.h"
-#include "contact/geo_overlap.h"
-#include "contact/invariant.h"
+#include "app/bench/pairs.h"
 #include "datagen/hard.h"
 #include "geo_network.h"
+#include "overlap/clip/clip.h"
+#include "overlap/exact/exact.h"
+#include "overlap/geo/model.h"
+#include "overlap/invariant.h"
 
 enum { MODEL_COUNT = 4 };
 
 typedef struct Subject {
   GeoNetwork network;
-  ContactGeoOverlap overlap;
+  OverlapGeoOverlap overlap;
 } Subject;
 
 // The constant, then a network for each feature set.
 static void make_subject(int index, Subject *subject) {
   const int sizes[MODEL_COUNT] = {0, 36, 70, 100};
   if (index == 0) {
-    ck_assert_ok(contact_geo_model_create(&subject->overlap.model, NULL));
+    ck_assert_ok(overlap_geo_create(&subject->overlap.model, NULL));
     return;
   }
   subject->network = geo_network_random(sizes[index], 3);
-  ContactGeoNetwork interface = geo_network_interface(&subject->network);
-  ck_assert_ok(contact_geo_model_create(&subject->overlap.model, &interface));
+  OverlapGeoNetwork interface = geo_network_interface(&subject->network);
+  ck_assert_ok(overlap_geo_create(&subject->overlap.model, &interface));
 }
 
 typedef struct Answer {
@@ -42,8 +42,8 @@ typedef struct Answer {
 
 static Answer ask(const Subject *subject, const double x[24], bool wants_hessian) {
   Answer answer;
-  ck_assert_ok(contact_geo_overlap_eval_pair(&subject->overlap, x, &answer.volume, answer.gradient,
-                                             wants_hessian ? answer.hessian : NULL, &answer.flags));
+  ck_assert_ok(overlap_geo_model_eval_pair(&subject->overlap, x, &answer.volume, answer.gradient,
+                                           wants_hessian ? answer.hessian : NULL, &answer.flags));
   return answer;
 }
 
@@ -74,7 +74,7 @@ START_TEST(numbers_and_flags_fit_in_every_class) {
     for (int member = 0; member < 100; member++) {
       DatagenHardPair pair = datagen_hard_make(c, member);
       Answer answer = ask(&subject, pair.x, true);
-      bool is_nothing = (answer.flags & (CONTACT_OVERLAP_DISJOINT | CONTACT_OVERLAP_FLAT)) != 0;
+      bool is_nothing = (answer.flags & (OVERLAP_DISJOINT | OVERLAP_FLAT)) != 0;
       ck_assert_int_eq(is_nothing, answer.volume == 0);
       ck_assert(isfinite(answer.volume) && answer.volume >= 0);
       ck_assert(isfinite(largest_of(answer.gradient, 24)) && isfinite(largest_of(answer.hessian, 576)));
@@ -83,12 +83,12 @@ START_TEST(numbers_and_flags_fit_in_every_class) {
         continue;
       }
       positive++;
-      ck_assert_int_eq((answer.flags & CONTACT_OVERLAP_FLAT) != 0, pair.is_flat);
-      if (!(answer.flags & CONTACT_OVERLAP_FALLBACK)) continue;
+      ck_assert_int_eq((answer.flags & OVERLAP_FLAT) != 0, pair.is_flat);
+      if (!(answer.flags & OVERLAP_FALLBACK)) continue;
       fallbacks++;
       double volume, gradient[24];
       unsigned flags;
-      ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &volume, gradient, NULL, &flags));
+      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair.x, &volume, gradient, NULL, &flags));
       ck_assert(answer.volume == volume);
       ck_assert_mem_eq(answer.gradient, gradient, sizeof gradient);
     }
@@ -105,11 +105,11 @@ START_TEST(gradients_balance_to_rounding) {
     for (int member = 0; member < 100; member++) {
       DatagenHardPair pair = datagen_hard_make(c, member);
       Answer answer = ask(&subject, pair.x, false);
-      if (answer.volume == 0 || (answer.flags & CONTACT_OVERLAP_FALLBACK)) continue;
-      double extent = contact_invariant_extent(pair.x), size = largest_of(answer.gradient, 24);
-      double forces = contact_invariant_translation(pair.x, answer.gradient) * pow(extent, 2);
-      double torques = contact_invariant_rotation(pair.x, answer.gradient) * pow(extent, 3);
-      double degree = contact_invariant_scaling(pair.x, answer.volume, answer.gradient) * pow(extent, 3);
+      if (answer.volume == 0 || (answer.flags & OVERLAP_FALLBACK)) continue;
+      double extent = overlap_invariant_extent(pair.x), size = largest_of(answer.gradient, 24);
+      double forces = overlap_invariant_translation(pair.x, answer.gradient) * pow(extent, 2);
+      double torques = overlap_invariant_rotation(pair.x, answer.gradient) * pow(extent, 3);
+      double degree = overlap_invariant_scaling(pair.x, answer.volume, answer.gradient) * pow(extent, 3);
       ck_assert_at_most(forces, 1e-12 * size);
       ck_assert_at_most(torques, 1e-12 * size * extent);
       ck_assert_at_most(degree, 1e-12 * size * extent);
@@ -131,7 +131,7 @@ START_TEST(volumes_have_the_symmetries_of_the_true_one) {
       for (int k = 1; k < 24; k++) {
         datagen_hard_permute(pair.x, k, x);
         datagen_hard_permute(pair.x + 12, (5 * k + 3) % 24, x + 12);
-        contact_overlap_swap(x, swapped);
+        overlap_ops_swap(x, swapped);
         ck_assert_at_most(fabs(ask(&subject, swapped, false).volume / volume - 1), 1e-12);
       }
       memcpy(x, pair.x, sizeof x);
@@ -156,14 +156,14 @@ START_TEST(gradient_and_hessian_are_derivatives) {
   for (int n = 0; n < 5; n++)
     for (int c = class_named(names[n]), member = 0; member < 15; member++) {
       DatagenHardPair pair = datagen_hard_make(c, member);
-      ContactGeoFrame frame;
+      OverlapGeoFrame frame;
       Answer answer = ask(&subject, pair.x, true);
-      if (contact_geo_frame(&frame, pair.x) != CONTACT_GEO_INSIDE) continue;
+      if (overlap_geo_frame(&frame, pair.x) != OVERLAP_GEO_INSIDE) continue;
       double least = 1;
       for (int k = 0; k < 8; k++) least = fmin(least, frame.slack[k]);
       if (least < 1e-5) continue; // no step is small beside it and large beside rounding
       seen++;
-      double h = 3e-5 * least * contact_invariant_extent(pair.x), size = largest_of(answer.gradient, 24);
+      double h = 3e-5 * least * overlap_invariant_extent(pair.x), size = largest_of(answer.gradient, 24);
       double bend = largest_of(answer.hessian, 576);
       for (int i = 0; i < 24; i++) {
         double x[24];
@@ -202,9 +202,9 @@ START_TEST(a_vanishing_overlap_has_the_true_volume) {
         unsigned flags;
         push = vec3_scale(depth / vec3_length(push), push);
         for (int i = 4; i < 8; i++) datagen_hard_set(&pair, i, vec3_sub(datagen_hard_vertex(&pair, i), push));
-        ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &exact, NULL, NULL, &flags));
+        ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair.x, &exact, NULL, NULL, &flags));
         Answer answer = ask(&subject, pair.x, false);
-        if (answer.flags & CONTACT_OVERLAP_FALLBACK) continue;
+        if (answer.flags & OVERLAP_FALLBACK) continue;
         ck_assert(answer.volume > 0 && exact > 0);
         ck_assert_at_most(fabs(answer.volume / exact - 1), level ? 0.01 : 0.3);
       }
@@ -244,7 +244,7 @@ static double shape_of(const double from[24], const double x[24]) {
     double is = vec3_det4(vec3_at(x + t), vec3_at(x + t + 3), vec3_at(x + t + 6), vec3_at(x + t + 9));
     least = fmin(least, was > 0 ? is : -is);
   }
-  return least / pow(contact_invariant_extent(x), 3);
+  return least / pow(overlap_invariant_extent(x), 3);
 }
 
 static Point point_at(const Subject *subject, const Path *path, double tau) {
@@ -333,7 +333,7 @@ static int draw_test_law(int per_bin, double *pairs, double *volumes) {
     double x[24], volume;
     unsigned flags;
     for (int i = 0; i < 24; i++) x[i] = random_uniform(&random);
-    ck_assert_ok(contact_overlap_clip.eval_pair(NULL, x, &volume, NULL, NULL, &flags));
+    ck_assert_ok(overlap_clip_ops.eval_pair(NULL, x, &volume, NULL, NULL, &flags));
     int bin = (int)(volume / 1e-3);
     if (!(volume > 0) || bin >= BINS || filled[bin] == per_bin) continue;
     filled[bin]++;
@@ -350,8 +350,8 @@ START_TEST(without_a_network_the_error_on_the_uniform_law_is_the_known_one) {
   make_subject(0, &subject);
   subject.overlap.model.offset = mean_phi;
   ck_assert_int_eq(draw_test_law(PER_BIN, pairs, exact), COUNT);
-  ContactOverlapBatch batch = {.pair_count = COUNT, .pairs = pairs, .volume = volumes};
-  ck_assert_ok(contact_geo_eval(&subject.overlap.model, &batch));
+  OverlapBatch batch = {.pair_count = COUNT, .pairs = pairs, .volume = volumes};
+  ck_assert_ok(overlap_geo_eval(&subject.overlap.model, &batch));
   double sum = 0;
   for (int i = 0; i < COUNT; i++) sum += fabs(volumes[i] - exact[i]);
   ck_assert_near(sum / COUNT, 2.21e-3, 0.3e-3);
@@ -375,7 +375,7 @@ START_TEST(without_a_network_forces_of_pressed_meshes_are_off_by_a_few_degrees) 
     const double *x = pairs + 24 * n;
     double volume, gradient[24];
     unsigned flags;
-    ck_assert_ok(contact_overlap_clip.eval_pair(NULL, x, &volume, gradient, NULL, &flags));
+    ck_assert_ok(overlap_clip_ops.eval_pair(NULL, x, &volume, gradient, NULL, &flags));
     Answer answer = ask(&subject, x, false);
     volume_error += fabs(answer.volume - volume), volume_sum += volume;
     Vec3 force = {0, 0, 0}, true_force = {0, 0, 0};
@@ -403,7 +403,7 @@ END_TEST
 START_TEST(what_training_is_given_is_what_the_model_computes) {
   Subject subject;
   make_subject(3, &subject);
-  const ContactGeoFeatureSet *set = subject.overlap.model.set;
+  const OverlapGeoFeatureSet *set = subject.overlap.model.set;
   Random random = random_seeded(51, 0);
   int seen = 0;
   for (int member = 0; member < 60; member++) {
@@ -411,10 +411,10 @@ START_TEST(what_training_is_given_is_what_the_model_computes) {
     double directions[2 * 24], features[100], changes[2 * 100], log_volume, log_changes[2], rho, slope[100];
     for (int i = 0; i < 48; i++) directions[i] = random_normal(&random);
     Answer answer = ask(&subject, pair.x, false);
-    ContactGeoOutcome outcome =
-        contact_geo_features_tangent(set, pair.x, 2, directions, features, changes, &log_volume, log_changes);
-    ck_assert_int_eq(outcome == CONTACT_GEO_INSIDE, answer.volume > 0);
-    if (outcome != CONTACT_GEO_INSIDE || answer.flags & CONTACT_OVERLAP_BLENDED) continue;
+    OverlapGeoOutcome outcome =
+        overlap_geo_features_tangent(set, pair.x, 2, directions, features, changes, &log_volume, log_changes);
+    ck_assert_int_eq(outcome == OVERLAP_GEO_INSIDE, answer.volume > 0);
+    if (outcome != OVERLAP_GEO_INSIDE || answer.flags & OVERLAP_BLENDED) continue;
     seen++;
     ck_assert_ok(geo_network_eval(&subject.network, 1, features, &rho, slope));
     ck_assert_near(log_volume + subject.overlap.model.offset + rho, log(answer.volume),
@@ -440,22 +440,22 @@ static Status fail_eval(const void *self, int count, const double *features, dou
 }
 
 START_TEST(a_batch_gives_what_its_pairs_give_alone) {
-  enum { COUNT = 12 * CONTACT_GEO_CHUNK + 5 };
+  enum { COUNT = 12 * OVERLAP_GEO_CHUNK + 5 };
   static double pairs[COUNT * 24], volumes[COUNT], gradients[COUNT * 24], hessians[COUNT * 576];
   static unsigned flags[COUNT];
   Subject subject;
   make_subject(3, &subject);
   for (int n = 0; n < COUNT; n++)
     memcpy(pairs + 24 * n, datagen_hard_make(n % DATAGEN_HARD_CLASS_COUNT, n).x, 24 * sizeof *pairs);
-  ContactOverlapBatch batch = {.pair_count = COUNT,
-                               .pairs = pairs,
-                               .volume = volumes,
-                               .gradient = gradients,
-                               .hessian = hessians,
-                               .flags = flags};
+  OverlapBatch batch = {.pair_count = COUNT,
+                        .pairs = pairs,
+                        .volume = volumes,
+                        .gradient = gradients,
+                        .hessian = hessians,
+                        .flags = flags};
   int threads = omp_get_max_threads();
   omp_set_num_threads(3);
-  ck_assert_ok(contact_geo_overlap_eval_batch(&subject.overlap, &batch));
+  ck_assert_ok(overlap_geo_model_eval_batch(&subject.overlap, &batch));
   omp_set_num_threads(threads);
   for (int n = 0; n < COUNT; n++) {
     Answer answer = ask(&subject, pairs + 24 * n, true);
@@ -466,7 +466,7 @@ START_TEST(a_batch_gives_what_its_pairs_give_alone) {
   }
   // and what a network fails with comes through
   subject.overlap.model.network.eval = fail_eval;
-  ck_assert_int_eq(contact_geo_overlap_eval_batch(&subject.overlap, &batch), STATUS_SOLVER);
+  ck_assert_int_eq(overlap_geo_model_eval_batch(&subject.overlap, &batch), STATUS_SOLVER);
   ck_assert_ptr_nonnull(strstr(status_message(), "pairs 0 to 127: no"));
 }
 END_TEST
@@ -479,14 +479,14 @@ static Status answer_nan(const void *self, int count, const double *features, do
 }
 
 START_TEST(a_network_that_does_not_fit_or_fails_is_refused) {
-  ContactGeoModel model;
-  ContactGeoNetwork network = {.feature_count = 37, .eval = fail_eval};
-  ck_assert_int_eq(contact_geo_model_create(&model, &network), STATUS_INPUT);
+  OverlapGeoModel model;
+  OverlapGeoNetwork network = {.feature_count = 37, .eval = fail_eval};
+  ck_assert_int_eq(overlap_geo_create(&model, &network), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "37"));
   network.feature_count = 36;
-  ck_assert_int_eq(contact_geo_model_create(&model, &network), STATUS_SOLVER);
+  ck_assert_int_eq(overlap_geo_create(&model, &network), STATUS_SOLVER);
   network.eval = answer_nan;
-  ck_assert_int_eq(contact_geo_model_create(&model, &network), STATUS_INPUT);
+  ck_assert_int_eq(overlap_geo_create(&model, &network), STATUS_INPUT);
 }
 END_TEST
 

@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/history.h"
+#include "fem/output/history.h"
 
 static char path[64];
 

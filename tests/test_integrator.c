@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "fem/integrator.h"
+#include "fem/time/integrator.h"
 
 static const FemSolverKind KINDS[] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_KLU, FEM_SOLVER_PCG};
 enum { KIND_COUNT = 3, MOST = 3 };

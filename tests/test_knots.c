@@ -4,9 +4,9 @@
 #include "scene.h"
 
 #include "base/memory.h"
-#include "fem/drive.h"
-#include "fem/load.h"
-#include "fem/table.h"
+#include "fem/model/drive.h"
+#include "fem/model/load.h"
+#include "fem/model/table.h"
 
 static const FemForesight foresight = {.displacement = 1e-3, .velocity = 1e-3, .resolution = 1e-9};
 

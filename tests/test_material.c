@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "fem/material.h"
+#include "fem/material/material.h"
 
 static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 

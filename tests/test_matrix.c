@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/matrix.h"
+#include "fem/sparse/matrix.h"
 
 enum { VERTICES = 23, DOFS = 3 * VERTICES, CLIQUES = 40, MOST = 9 };
 

@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
-#include "fem/mesh.h"
+#include "fem/mesh/mesh.h"
 
 // The corners of a unit cube, x fastest, and its centre; vertex 9 is used by nobody.
 static const double cube[10][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},       {0, 0, 1},

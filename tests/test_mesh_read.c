@@ -13,13 +13,13 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "app/mesh_command.h"
+#include "app/command/mesh.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/mesh.h"
-#include "fem/mesh_tetgen.h"
-#include "fem/mesh_worker.h"
+#include "fem/mesh/mesh.h"
+#include "fem/mesh/reader/tetgen.h"
+#include "fem/mesh/reader/worker.h"
 
 #define DATA TETLAP_SOURCE_DIR "/tests/data/mesh/"
 #define MESHES TETLAP_SOURCE_DIR "/meshes/"

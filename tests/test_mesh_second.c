@@ -7,15 +7,15 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/mesh_command.h"
+#include "app/command/mesh.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/load.h"
-#include "fem/mesh.h"
-#include "fem/mesh_edges.h"
-#include "fem/quadratic.h"
+#include "fem/element/quadratic.h"
+#include "fem/mesh/edges.h"
+#include "fem/mesh/mesh.h"
+#include "fem/model/load.h"
 
 #define MESHES TETLAP_SOURCE_DIR "/meshes/"
 

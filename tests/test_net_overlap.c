@@ -5,9 +5,10 @@
 #include <unistd.h>
 
 #include "base/random.h"
-#include "contact/exact.h"
-#include "contact/net_overlap.h"
 #include "net/weights.h"
+#include "overlap/exact/exact.h"
+#include "overlap/model.h"
+#include "overlap/tpn/model.h"
 #include "suite.h"
 
 static char path[64];
@@ -63,7 +64,7 @@ static void draw_pairs(uint64_t seed, int count, double *pairs) {
 static double volume_of(const void *self, const double pair[24]) {
   double volume;
   unsigned flags;
-  ck_assert_ok(contact_net_overlap_eval_pair(self, pair, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_tpn_model_eval_pair(self, pair, &volume, NULL, NULL, &flags));
   return volume;
 }
 
@@ -72,12 +73,12 @@ static void check_gradient(const char *normalisation) {
   double pairs[24 * 40], volume, gradient[24];
   unsigned flags;
   write_network(normalisation, NET_SILU);
-  ck_assert_ok(contact_net_overlap_create(&self, path, NULL));
+  ck_assert_ok(overlap_tpn_model_create(&self, path, NULL));
   draw_pairs(1, 40, pairs);
   int checked = 0;
   for (int n = 0; n < 40; n++) {
     double *pair = pairs + 24 * n, size = 0, worst = 0;
-    ck_assert_ok(contact_net_overlap_eval_pair(self, pair, &volume, gradient, NULL, &flags));
+    ck_assert_ok(overlap_tpn_model_eval_pair(self, pair, &volume, gradient, NULL, &flags));
     for (int i = 0; i < 24; i++) size = fmax(size, fabs(gradient[i]));
     for (int i = 0; i < 24; i++) {
       double step = 1e-3, kept = pair[i];
@@ -92,7 +93,7 @@ static void check_gradient(const char *normalisation) {
     checked += worst < 0.02 * size && volume > 0;
   }
   ck_assert_int_ge(checked, 28);
-  contact_net_overlap_destroy(self);
+  overlap_tpn_model_destroy(self);
   unlink(path);
 }
 
@@ -111,11 +112,11 @@ START_TEST(batches_give_what_single_pairs_give) {
   static double pairs[24 * COUNT], volume[COUNT], gradient[24 * COUNT], logits[COUNT];
   void *self;
   write_network("pca, V times 1000", NET_RELU);
-  ck_assert_ok(contact_net_overlap_create(&self, path, NULL));
+  ck_assert_ok(overlap_tpn_model_create(&self, path, NULL));
   draw_pairs(2, COUNT, pairs);
-  ContactOverlapBatch batch = {.pair_count = COUNT, .pairs = pairs, .volume = volume, .gradient = gradient};
-  ck_assert_ok(contact_net_overlap_eval_batch(self, &batch));
-  ck_assert_ok(contact_net_overlap_logits(self, COUNT, pairs, logits));
+  OverlapBatch batch = {.pair_count = COUNT, .pairs = pairs, .volume = volume, .gradient = gradient};
+  ck_assert_ok(overlap_tpn_model_eval_batch(self, &batch));
+  ck_assert_ok(overlap_tpn_model_logits(self, COUNT, pairs, logits));
   for (int n = 0; n < COUNT; n++) {
     double alone = volume_of(self, pairs + 24 * n), total[3] = {0};
     ck_assert_near(volume[n], alone, 1e-5 * alone);
@@ -123,7 +124,7 @@ START_TEST(batches_give_what_single_pairs_give) {
     for (int i = 0; i < 24; i++) total[i % 3] += gradient[24 * n + i];
     for (int c = 0; c < 3; c++) ck_assert_near(total[c], 0, 1e-12); // no net force, by the normalisation
   }
-  contact_net_overlap_destroy(self);
+  overlap_tpn_model_destroy(self);
   unlink(path);
 }
 END_TEST
@@ -134,42 +135,42 @@ START_TEST(flat_first_tetrahedron_is_answered_by_exact) {
   unsigned flags = 0;
   void *self;
   write_network("unit, V times 1000", NET_RELU);
-  ck_assert_ok(contact_net_overlap_create(&self, path, NULL));
-  ck_assert_ok(contact_net_overlap_eval_pair(self, pair, &volume, gradient, NULL, &flags));
-  ck_assert(volume == 0 && (flags & CONTACT_OVERLAP_FALLBACK));
-  ck_assert_ok(contact_net_overlap_logits(self, 1, pair, &logit));
+  ck_assert_ok(overlap_tpn_model_create(&self, path, NULL));
+  ck_assert_ok(overlap_tpn_model_eval_pair(self, pair, &volume, gradient, NULL, &flags));
+  ck_assert(volume == 0 && (flags & OVERLAP_FALLBACK));
+  ck_assert_ok(overlap_tpn_model_logits(self, 1, pair, &logit));
   ck_assert(logit == -INFINITY);
-  contact_net_overlap_destroy(self);
+  overlap_tpn_model_destroy(self);
   unlink(path);
 }
 END_TEST
 
 START_TEST(normalisation_text_is_read_as_it_is_written) {
-  char text[CONTACT_NET_NORMALISATION_TEXT];
-  ContactNormalisation kind;
+  char text[OVERLAP_TPN_NORMALISATION_TEXT];
+  OverlapTpnNormalisation kind;
   double scale;
-  contact_net_model_print(CONTACT_NORMALISE_PCA, 1234.5, text);
-  ck_assert(contact_net_model_parse(text, &kind, &scale));
-  ck_assert(kind == CONTACT_NORMALISE_PCA && scale == 1234.5);
-  ck_assert(!contact_net_model_parse("unit", &kind, &scale));
-  ck_assert(!contact_net_model_parse("box, V times 10", &kind, &scale));
-  ck_assert(!contact_net_model_parse("pca, V times -1", &kind, &scale));
-  ck_assert(!contact_net_model_parse("pca, V times 10 or so", &kind, &scale));
+  overlap_tpn_network_print(OVERLAP_TPN_NORMALISE_PCA, 1234.5, text);
+  ck_assert(overlap_tpn_network_parse(text, &kind, &scale));
+  ck_assert(kind == OVERLAP_TPN_NORMALISE_PCA && scale == 1234.5);
+  ck_assert(!overlap_tpn_network_parse("unit", &kind, &scale));
+  ck_assert(!overlap_tpn_network_parse("box, V times 10", &kind, &scale));
+  ck_assert(!overlap_tpn_network_parse("pca, V times -1", &kind, &scale));
+  ck_assert(!overlap_tpn_network_parse("pca, V times 10 or so", &kind, &scale));
 }
 END_TEST
 
 START_TEST(weights_of_another_normalisation_are_refused_by_name) {
   void *self;
   write_network("analytic-centre frame", NET_RELU);
-  ck_assert_int_eq(contact_net_overlap_create(&self, path, NULL), STATUS_INPUT);
+  ck_assert_int_eq(overlap_tpn_model_create(&self, path, NULL), STATUS_INPUT);
   ck_assert(strstr(status_message(), "analytic-centre frame") && strstr(status_message(), path));
   unlink(path);
 }
 END_TEST
 
-static ContactOverlapModel open_with(const char *name, ContactNetOptions options) {
-  ContactOverlapModel model;
-  ck_assert_ok(contact_overlap_create_with(&model, name, path, &options));
+static OverlapModel open_with(const char *name, OverlapOptions options) {
+  OverlapModel model;
+  ck_assert_ok(overlap_model_create_with(&model, name, path, &options));
   return model;
 }
 
@@ -178,14 +179,14 @@ typedef struct Answer {
   unsigned flags;
 } Answer;
 
-static Answer ask(const ContactOverlapModel *model, const double pair[24]) {
+static Answer ask(const OverlapModel *model, const double pair[24]) {
   Answer answer;
-  ContactOverlapBatch batch = {.pair_count = 1,
-                               .pairs = pair,
-                               .volume = &answer.volume,
-                               .gradient = answer.gradient,
-                               .flags = &answer.flags};
-  ck_assert_ok(contact_overlap_eval(model, &batch));
+  OverlapBatch batch = {.pair_count = 1,
+                        .pairs = pair,
+                        .volume = &answer.volume,
+                        .gradient = answer.gradient,
+                        .flags = &answer.flags};
+  ck_assert_ok(overlap_model_eval(model, &batch));
   return answer;
 }
 
@@ -197,16 +198,16 @@ static void slide(double by, double pair[24]) {
 }
 
 START_TEST(a_file_says_which_model_it_is) {
-  ContactOverlapModel model;
+  OverlapModel model;
   write_network("unit, V times 1000", NET_RELU);
-  ck_assert_ok(contact_overlap_create(&model, path));
-  ck_assert(model.ops == &contact_overlap_tpn && contact_overlap_has_ghosts(&model));
-  contact_overlap_destroy(&model);
-  ck_assert_ok(contact_overlap_create(&model, TETLAP_SOURCE_DIR "/net/weights/geo-small.safetensors"));
-  ck_assert(strcmp(model.ops->name, "geo") == 0 && !contact_overlap_has_ghosts(&model));
-  contact_overlap_destroy(&model);
+  ck_assert_ok(overlap_model_create(&model, path));
+  ck_assert(model.ops == &overlap_tpn_ops && overlap_model_has_ghosts(&model));
+  overlap_model_destroy(&model);
+  ck_assert_ok(overlap_model_create(&model, TETLAP_SOURCE_DIR "/net/weights/geo-small.safetensors"));
+  ck_assert(strcmp(model.ops->name, "geo") == 0 && !overlap_model_has_ghosts(&model));
+  overlap_model_destroy(&model);
   unlink(path);
-  ck_assert_int_eq(contact_overlap_create(&model, path), STATUS_IO);
+  ck_assert_int_eq(overlap_model_create(&model, path), STATUS_IO);
   ck_assert_ptr_nonnull(strstr(status_message(), path));
 }
 END_TEST
@@ -215,25 +216,25 @@ START_TEST(ghosts_are_kept_cut_or_faded_as_asked) {
   double apart[24], touching[24], deep[24];
   write_smooth(40, 5);
   slide(0.4, apart), slide(0.3333, touching), slide(0.1, deep);
-  ContactNetOptions options = contact_net_options_default();
-  options.gate = CONTACT_NET_GATE_NONE;
-  options.orders = CONTACT_NET_ORDERS_ONE;
-  options.ghosts = CONTACT_NET_GHOSTS_KEEP;
-  ContactOverlapModel keep = open_with("tpn", options);
-  options.ghosts = CONTACT_NET_GHOSTS_CUT;
-  ContactOverlapModel cut = open_with("tpn", options);
-  options.ghosts = CONTACT_NET_GHOSTS_FADE;
-  ContactOverlapModel fade = open_with("tpn", options);
-  ck_assert(contact_overlap_has_ghosts(&keep) && !contact_overlap_has_ghosts(&cut));
+  OverlapOptions options = overlap_options_default();
+  options.gate = OVERLAP_GATE_NONE;
+  options.orders = OVERLAP_ORDERS_ONE;
+  options.ghosts = OVERLAP_GHOSTS_KEEP;
+  OverlapModel keep = open_with("tpn", options);
+  options.ghosts = OVERLAP_GHOSTS_CUT;
+  OverlapModel cut = open_with("tpn", options);
+  options.ghosts = OVERLAP_GHOSTS_FADE;
+  OverlapModel fade = open_with("tpn", options);
+  ck_assert(overlap_model_has_ghosts(&keep) && !overlap_model_has_ghosts(&cut));
   ck_assert(ask(&keep, apart).volume > 0.01);
   Answer nothing = ask(&cut, apart);
-  ck_assert(nothing.volume == 0 && (nothing.flags & CONTACT_OVERLAP_DISJOINT));
+  ck_assert(nothing.volume == 0 && (nothing.flags & OVERLAP_DISJOINT));
   for (int i = 0; i < 24; i++) ck_assert(nothing.gradient[i] == 0);
   ck_assert(ask(&fade, apart).volume == 0);
   ck_assert(ask(&cut, touching).volume == ask(&keep, touching).volume); // the jump
   ck_assert(ask(&fade, touching).volume < 1e-6);
   ck_assert(ask(&fade, deep).volume == ask(&keep, deep).volume);
-  contact_overlap_destroy(&keep), contact_overlap_destroy(&cut), contact_overlap_destroy(&fade);
+  overlap_model_destroy(&keep), overlap_model_destroy(&cut), overlap_model_destroy(&fade);
   unlink(path);
 }
 END_TEST
@@ -242,15 +243,15 @@ START_TEST(the_gate_multiplies_by_the_probability) {
   double pair[24], logit;
   write_smooth(40, 0.5f);
   slide(0.1, pair);
-  ContactNetOptions options = contact_net_options_default();
-  ContactOverlapModel plain = open_with("tpn", options);
-  options.gate = CONTACT_NET_GATE_STATUS;
-  ContactOverlapModel gated = open_with("tpn", options);
-  ck_assert_ok(contact_net_overlap_logits(gated.self, 1, pair, &logit));
+  OverlapOptions options = overlap_options_default();
+  OverlapModel plain = open_with("tpn", options);
+  options.gate = OVERLAP_GATE_STATUS;
+  OverlapModel gated = open_with("tpn", options);
+  ck_assert_ok(overlap_tpn_model_logits(gated.self, 1, pair, &logit));
   double expected = ask(&plain, pair).volume / (1 + exp(-logit));
   ck_assert(fabs(logit) < 3);
   ck_assert_near(ask(&gated, pair).volume, expected, 1e-12 * expected);
-  contact_overlap_destroy(&plain), contact_overlap_destroy(&gated);
+  overlap_model_destroy(&plain), overlap_model_destroy(&gated);
   unlink(path);
 }
 END_TEST
@@ -259,10 +260,10 @@ START_TEST(both_orders_make_it_symmetric) {
   double pairs[24 * 20], swapped[24];
   write_smooth(40, 5);
   draw_pairs(4, 20, pairs);
-  ContactNetOptions options = contact_net_options_default();
-  ContactOverlapModel one = open_with("tpn", options);
-  options.orders = CONTACT_NET_ORDERS_BOTH;
-  ContactOverlapModel both = open_with("tpn", options);
+  OverlapOptions options = overlap_options_default();
+  OverlapModel one = open_with("tpn", options);
+  options.orders = OVERLAP_ORDERS_BOTH;
+  OverlapModel both = open_with("tpn", options);
   int unequal = 0;
   for (int n = 0; n < 20; n++) {
     const double *pair = pairs + 24 * n;
@@ -276,7 +277,7 @@ START_TEST(both_orders_make_it_symmetric) {
       ck_assert_near(exchanged.gradient[i], mean.gradient[(i + 12) % 24], 1e-9 * mean.volume);
   }
   ck_assert_int_ge(unequal, 10);
-  contact_overlap_destroy(&one), contact_overlap_destroy(&both);
+  overlap_model_destroy(&one), overlap_model_destroy(&both);
   unlink(path);
 }
 END_TEST
@@ -284,7 +285,7 @@ END_TEST
 static double exact_volume(const double pair[24]) {
   double volume;
   unsigned flags;
-  ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair, &volume, NULL, NULL, &flags));
   return volume;
 }
 
@@ -294,17 +295,16 @@ START_TEST(pairs_beyond_the_range_are_counted_or_sent_to_exact) {
   slide(0.1, inside), slide(0.1, beyond);
   for (int v = 1; v < 4; v++) // four times as long: radius and volume leave the range
     for (int c = 0; c < 3; c++) beyond[12 + 3 * v + c] = 0.1 + 4 * (beyond[12 + 3 * v + c] - 0.1);
-  ContactNetOptions options = contact_net_options_default();
-  ContactOverlapModel count = open_with("tpn", options);
-  options.beyond = CONTACT_NET_BEYOND_EXACT;
-  ContactOverlapModel exact = open_with("tpn", options);
-  ck_assert(ask(&count, inside).flags == CONTACT_OVERLAP_NET &&
-            ask(&exact, inside).flags == CONTACT_OVERLAP_NET);
-  ck_assert(ask(&count, beyond).flags == (CONTACT_OVERLAP_NET | CONTACT_OVERLAP_BEYOND));
+  OverlapOptions options = overlap_options_default();
+  OverlapModel count = open_with("tpn", options);
+  options.beyond = OVERLAP_BEYOND_EXACT;
+  OverlapModel exact = open_with("tpn", options);
+  ck_assert(ask(&count, inside).flags == OVERLAP_NET && ask(&exact, inside).flags == OVERLAP_NET);
+  ck_assert(ask(&count, beyond).flags == (OVERLAP_NET | OVERLAP_BEYOND));
   Answer answer = ask(&exact, beyond);
-  ck_assert((answer.flags & CONTACT_OVERLAP_BEYOND) && (answer.flags & CONTACT_OVERLAP_FALLBACK));
-  ck_assert(!(answer.flags & CONTACT_OVERLAP_NET) && answer.volume == exact_volume(beyond));
-  contact_overlap_destroy(&count), contact_overlap_destroy(&exact);
+  ck_assert((answer.flags & OVERLAP_BEYOND) && (answer.flags & OVERLAP_FALLBACK));
+  ck_assert(!(answer.flags & OVERLAP_NET) && answer.volume == exact_volume(beyond));
+  overlap_model_destroy(&count), overlap_model_destroy(&exact);
   unlink(path);
 }
 END_TEST
@@ -312,12 +312,12 @@ END_TEST
 START_TEST(a_range_that_is_not_known_cannot_send_pairs_to_exact) {
   NetShape shape = net_shape_tpn_a();
   write_shape(&shape, "unit, V times 1000", "anything", 40, 5);
-  ContactOverlapModel model;
-  ContactNetOptions options = contact_net_options_default();
-  ck_assert_ok(contact_overlap_create_with(&model, "tpn", path, &options));
-  contact_overlap_destroy(&model);
-  options.beyond = CONTACT_NET_BEYOND_EXACT;
-  ck_assert_int_eq(contact_overlap_create_with(&model, "tpn", path, &options), STATUS_INPUT);
+  OverlapModel model;
+  OverlapOptions options = overlap_options_default();
+  ck_assert_ok(overlap_model_create_with(&model, "tpn", path, &options));
+  overlap_model_destroy(&model);
+  options.beyond = OVERLAP_BEYOND_EXACT;
+  ck_assert_int_eq(overlap_model_create_with(&model, "tpn", path, &options), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "tetlap weights --range"));
   unlink(path);
 }
@@ -327,27 +327,27 @@ START_TEST(hybrid_is_exact_where_shallow_deep_or_unsure_and_the_network_between)
   double shallow[24], middle[24], deep[24];
   write_smooth(40, 8); // sure of everything
   slide(0.3, shallow), slide(0.15, middle), slide(0.01, deep);
-  ContactNetOptions options = contact_net_options_default();
-  ContactOverlapModel sure = open_with("hybrid", options);
+  OverlapOptions options = overlap_options_default();
+  OverlapModel sure = open_with("hybrid", options);
   ck_assert(ask(&sure, shallow).volume == exact_volume(shallow));
   ck_assert(ask(&sure, deep).volume == exact_volume(deep));
-  ck_assert(ask(&sure, middle).flags == CONTACT_OVERLAP_NET);
+  ck_assert(ask(&sure, middle).flags == OVERLAP_NET);
   ck_assert(fabs(ask(&sure, middle).volume - exact_volume(middle)) > 0.01); // a network that learned nothing
-  contact_overlap_destroy(&sure);
+  overlap_model_destroy(&sure);
   write_smooth(40, -8); // sure that nothing meets
-  ContactOverlapModel unsure = open_with("hybrid", options);
+  OverlapModel unsure = open_with("hybrid", options);
   Answer answer = ask(&unsure, middle);
-  ck_assert(answer.volume == exact_volume(middle) && answer.flags == CONTACT_OVERLAP_FALLBACK);
-  contact_overlap_destroy(&unsure);
+  ck_assert(answer.volume == exact_volume(middle) && answer.flags == OVERLAP_FALLBACK);
+  overlap_model_destroy(&unsure);
   unlink(path);
 }
 END_TEST
 
 // Along the whole path from apart to coincident, in steps that blends can be seen in, V and ∇V change no more
 // than in proportion to the step; and ∇V is the slope of V.
-static void check_path(const char *name, ContactNetOptions options, int *blended) {
+static void check_path(const char *name, OverlapOptions options, int *blended) {
   enum { STEPS = 4000 };
-  ContactOverlapModel model = open_with(name, options);
+  OverlapModel model = open_with(name, options);
   Answer before = {0};
   double jump_volume = 0, jump_gradient = 0, slope_error = 0, largest = 0, top = 0.37,
          h = (top - 0.005) / STEPS;
@@ -363,22 +363,22 @@ static void check_path(const char *name, ContactNetOptions options, int *blended
     jump_gradient = suite_larger(jump_gradient, sqrt(difference));
     largest = suite_larger(largest, fabs(slope));
     slope_error = suite_larger(slope_error, fabs((now.volume - before.volume) / h - slope));
-    *blended += (now.flags & CONTACT_OVERLAP_BLENDED) != 0;
+    *blended += (now.flags & OVERLAP_BLENDED) != 0;
     before = now;
   }
   ck_assert_msg(jump_volume < 5 * h * largest, "%s: V jumps by %g, slope %g", name, jump_volume, largest);
   ck_assert_msg(jump_gradient < 0.05 * largest, "%s: the gradient jumps by %g of %g", name, jump_gradient,
                 largest);
   ck_assert_msg(slope_error < 0.02 * largest, "%s: slope off by %g of %g", name, slope_error, largest);
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
 }
 
 START_TEST(volume_and_gradient_are_continuous_along_a_path) {
   int blended;
-  ContactNetOptions options = contact_net_options_default();
+  OverlapOptions options = overlap_options_default();
   write_smooth(40, 1.5f);
   check_path("tpn-scene", options, &blended);
-  options.beyond = CONTACT_NET_BEYOND_EXACT;
+  options.beyond = OVERLAP_BEYOND_EXACT;
   check_path("tpn-scene", options, &blended);
   check_path("hybrid", options, &blended);
   ck_assert_int_ge(blended, 100);
@@ -389,7 +389,7 @@ END_TEST
 // Two spikes of four tetrahedra each, tip into tip by `depth` of their height of 1, their inner faces in the
 // same planes x = 0 and y = 0; the upper one moved aside by `shift`. What pushes it along x if all pairs
 // press alike.
-static double push_aside(const ContactOverlapModel *model, double depth, double shift) {
+static double push_aside(const OverlapModel *model, double depth, double shift) {
   static const double corner[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
   double push = 0;
   for (int a = 0; a < 4; a++)
@@ -410,19 +410,19 @@ static double push_aside(const ContactOverlapModel *model, double depth, double 
 START_TEST(the_force_of_meshes_in_the_same_planes_does_not_leap) {
   const double shift = 1e-7;
   double leap[3];
-  ContactNetOptions options = contact_net_options_default();
-  options.beyond = CONTACT_NET_BEYOND_COUNT;
+  OverlapOptions options = overlap_options_default();
+  options.beyond = OVERLAP_BEYOND_COUNT;
   write_smooth(40, 8);
-  for (int coplanar = CONTACT_NET_COPLANAR_AUTO; coplanar <= CONTACT_NET_COPLANAR_CLIP; coplanar++) {
-    options.coplanar = (ContactNetCoplanar)coplanar;
-    ContactOverlapModel model = open_with("hybrid", options);
+  for (int coplanar = OVERLAP_COPLANAR_AUTO; coplanar <= OVERLAP_COPLANAR_CLIP; coplanar++) {
+    options.coplanar = (OverlapCoplanar)coplanar;
+    OverlapModel model = open_with("hybrid", options);
     leap[coplanar] = fabs(push_aside(&model, 0.7, shift) - push_aside(&model, 0.7, -shift));
-    contact_overlap_destroy(&model);
+    overlap_model_destroy(&model);
   }
   // each inner face in the overlap has an area of about 0.1
-  ck_assert_msg(leap[CONTACT_NET_COPLANAR_KEEP] > 0.05, "keep: %g", leap[CONTACT_NET_COPLANAR_KEEP]);
-  ck_assert_msg(leap[CONTACT_NET_COPLANAR_CLIP] < 1e-4, "clip: %g", leap[CONTACT_NET_COPLANAR_CLIP]);
-  ck_assert_msg(leap[CONTACT_NET_COPLANAR_AUTO] < 1e-4, "auto: %g", leap[CONTACT_NET_COPLANAR_AUTO]);
+  ck_assert_msg(leap[OVERLAP_COPLANAR_KEEP] > 0.05, "keep: %g", leap[OVERLAP_COPLANAR_KEEP]);
+  ck_assert_msg(leap[OVERLAP_COPLANAR_CLIP] < 1e-4, "clip: %g", leap[OVERLAP_COPLANAR_CLIP]);
+  ck_assert_msg(leap[OVERLAP_COPLANAR_AUTO] < 1e-4, "auto: %g", leap[OVERLAP_COPLANAR_AUTO]);
   unlink(path);
 }
 END_TEST
@@ -432,11 +432,11 @@ START_TEST(gradient_holds_through_gate_fading_range_and_blend) {
   static const char *const names[] = {"tpn-scene", "hybrid"};
   write_smooth(40, 1.5f);
   for (int m = 0; m < 2; m++) {
-    ContactNetOptions options = contact_net_options_default();
-    options.beyond = CONTACT_NET_BEYOND_EXACT;
+    OverlapOptions options = overlap_options_default();
+    options.beyond = OVERLAP_BEYOND_EXACT;
     options.touch = 0.2; // most pairs lie in the bands
     options.deep = 0.6;
-    ContactOverlapModel model = open_with(names[m], options);
+    OverlapModel model = open_with(names[m], options);
     Random random = random_seeded(9, 0);
     int mixed = 0, right = 0;
     for (int n = 0; n < 60; n++) {
@@ -454,21 +454,21 @@ START_TEST(gradient_holds_through_gate_fading_range_and_blend) {
         pair[i] = kept;
         worst = suite_larger(worst, fabs((above - below) / (2 * step) - answer.gradient[i]));
       }
-      mixed += (answer.flags & CONTACT_OVERLAP_NET) != 0;
+      mixed += (answer.flags & OVERLAP_NET) != 0;
       right += worst < 0.01 * size;
     }
     ck_assert_int_ge(mixed, 30);
     ck_assert_msg(right >= 58, "%s: %d of 60 right", names[m], right);
-    contact_overlap_destroy(&model);
+    overlap_model_destroy(&model);
   }
   unlink(path);
 }
 END_TEST
 
 // ∇²V against differences of ∇V, through the same, and where faces are nearly coplanar.
-static void check_bend(const char *name, ContactNetOptions options, double squeeze) {
+static void check_bend(const char *name, OverlapOptions options, double squeeze) {
   enum { PAIRS = 60 };
-  ContactOverlapModel model = open_with(name, options);
+  OverlapModel model = open_with(name, options);
   Random random = random_seeded(11, 0);
   int mixed = 0, right = 0;
   for (int n = 0; n < PAIRS; n++) {
@@ -479,13 +479,13 @@ static void check_bend(const char *name, ContactNetOptions options, double squee
     if (squeeze > 0) // the faces at the bottom nearly in one plane
       for (int v = 0; v < 8; v++)
         if (v % 4 != 3) pair[3 * v + 2] = squeeze * random_uniform(&random);
-    ContactOverlapBatch batch = {.pair_count = 1,
-                                 .pairs = pair,
-                                 .volume = &volume,
-                                 .gradient = gradient,
-                                 .hessian = hessian,
-                                 .flags = &flags};
-    ck_assert_ok(contact_overlap_eval(&model, &batch));
+    OverlapBatch batch = {.pair_count = 1,
+                          .pairs = pair,
+                          .volume = &volume,
+                          .gradient = gradient,
+                          .hessian = hessian,
+                          .flags = &flags};
+    ck_assert_ok(overlap_model_eval(&model, &batch));
     Answer answer = ask(&model, pair);
     ck_assert_near(volume, answer.volume, 1e-6 * volume);
     ck_assert_int_eq(flags, answer.flags);
@@ -504,27 +504,27 @@ static void check_bend(const char *name, ContactNetOptions options, double squee
         ck_assert_near(hessian[24 * j + i], hessian[24 * i + j], 1e-5 * size);
       }
     }
-    mixed += (flags & (squeeze > 0 ? CONTACT_OVERLAP_BLENDED : CONTACT_OVERLAP_NET)) != 0;
+    mixed += (flags & (squeeze > 0 ? OVERLAP_BLENDED : OVERLAP_NET)) != 0;
     right += worst < 0.02 * size;
   }
   ck_assert_int_ge(mixed, PAIRS / 3);
   // differences cross the ends of bands, where ∇²V jumps, and corners of the true volume
   ck_assert_msg(right >= PAIRS * 8 / 10, "%s: %d of %d right", name, right, PAIRS);
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
 }
 
 START_TEST(second_derivatives_hold_through_gate_fading_range_and_blend) {
   write_smooth(40, 1.5f);
-  ContactNetOptions options = contact_net_options_default();
-  options.coplanar = CONTACT_NET_COPLANAR_KEEP;
+  OverlapOptions options = overlap_options_default();
+  options.coplanar = OVERLAP_COPLANAR_KEEP;
   check_bend("tpn", options, 0);
   check_bend("tpn-scene", options, 0);
-  options.beyond = CONTACT_NET_BEYOND_EXACT;
+  options.beyond = OVERLAP_BEYOND_EXACT;
   options.touch = 0.2;
   options.deep = 0.6;
   check_bend("tpn-scene", options, 0);
   check_bend("hybrid", options, 0);
-  options.coplanar = CONTACT_NET_COPLANAR_CLIP;
+  options.coplanar = OVERLAP_COPLANAR_CLIP;
   check_bend("tpn-scene", options, 0.1);
   check_bend("hybrid", options, 0.1);
   unlink(path);
@@ -536,14 +536,14 @@ START_TEST(networks_that_do_not_bend_offer_no_second_derivatives) {
                                                "unit, V times 1000"};
   for (int k = 0; k < 3; k++) {
     write_network(normalisations[k], k == 2 ? NET_RELU : NET_SILU);
-    ContactOverlapModel model = open_with("tpn", contact_net_options_default());
-    ck_assert(!contact_overlap_has_hessian(&model));
-    contact_overlap_destroy(&model);
+    OverlapModel model = open_with("tpn", overlap_options_default());
+    ck_assert(!overlap_model_has_hessian(&model));
+    overlap_model_destroy(&model);
   }
   write_smooth(40, 0);
-  ContactOverlapModel model = open_with("tpn", contact_net_options_default());
-  ck_assert(contact_overlap_has_hessian(&model));
-  contact_overlap_destroy(&model);
+  OverlapModel model = open_with("tpn", overlap_options_default());
+  ck_assert(overlap_model_has_hessian(&model));
+  overlap_model_destroy(&model);
   unlink(path);
 }
 END_TEST

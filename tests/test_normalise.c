@@ -3,13 +3,13 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "contact/clip.h"
-#include "contact/normalise.h"
+#include "overlap/clip/clip.h"
+#include "overlap/tpn/normalise.h"
 #include "suite.h"
 
 // The two that are maps of space come first.
-static const ContactNormalisation kinds[] = {CONTACT_NORMALISE_UNIT, CONTACT_NORMALISE_PCA,
-                                             CONTACT_NORMALISE_SORTED};
+static const OverlapTpnNormalisation kinds[] = {OVERLAP_TPN_NORMALISE_UNIT, OVERLAP_TPN_NORMALISE_PCA,
+                                                OVERLAP_TPN_NORMALISE_SORTED};
 
 static void draw_pair(Random *random, double pair[24]) {
   for (int i = 0; i < 24; i++) pair[i] = random_uniform(random);
@@ -18,14 +18,14 @@ static void draw_pair(Random *random, double pair[24]) {
 static double volume_of(const double pair[24]) {
   double volume;
   unsigned flags;
-  ck_assert_ok(contact_overlap_clip.eval_pair(NULL, pair, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_clip_ops.eval_pair(NULL, pair, &volume, NULL, NULL, &flags));
   return volume;
 }
 
 START_TEST(first_tetrahedron_becomes_the_unit_simplex) {
   const double pair[24] = {1, 1, 1, 3, 1, 1, 1, 4, 1, 1, 1, 5, 1, 1, 1, 2, 1, 1, 1, 2.5, 1, 3, 4, 5};
-  ContactNormalised normalised;
-  ck_assert(contact_normalise(CONTACT_NORMALISE_UNIT, pair, &normalised));
+  OverlapTpnNormalised normalised;
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_UNIT, pair, &normalised));
   ck_assert_near(normalised.factor, 24, 1e-14);
   const double expected[12] = {0, 0, 0, 0.5, 0, 0, 0, 0.5, 0, 1, 1, 1};
   for (int i = 0; i < 12; i++) ck_assert_near(normalised.pair[12 + i], expected[i], 1e-15);
@@ -35,8 +35,8 @@ END_TEST
 START_TEST(principal_axes_of_a_long_tetrahedron_are_its_own) {
   // long along z, then y, then x; centroid (0, 0, 0) by construction
   const double pair[24] = {-1, 0, -3, 1, 0, -3, 0, -2, 3, 0, 2, 3, 0, 0, 1, 1, 0, 1, 0, 1, 1, 0, 0, 2};
-  ContactNormalised normalised;
-  ck_assert(contact_normalise(CONTACT_NORMALISE_PCA, pair, &normalised));
+  OverlapTpnNormalised normalised;
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_PCA, pair, &normalised));
   ck_assert_near(normalised.principal[0], 9, 1e-14);
   ck_assert_near(normalised.principal[1], 2, 1e-14);
   ck_assert_near(normalised.principal[2], 0.5, 1e-14);
@@ -53,9 +53,9 @@ START_TEST(volume_is_the_factor_times_the_normalised_volume) {
   int with_volume = 0;
   for (int n = 0; n < 400; n++)
     for (int k = 0; k < 2; k++) {
-      ContactNormalised normalised;
+      OverlapTpnNormalised normalised;
       draw_pair(&random, pair);
-      ck_assert(contact_normalise(kinds[k], pair, &normalised));
+      ck_assert(overlap_tpn_normalise(kinds[k], pair, &normalised));
       double volume = volume_of(pair);
       ck_assert_near(normalised.factor * volume_of(normalised.pair), volume, 1e-9 * volume + 1e-15);
       with_volume += volume > 0;
@@ -69,7 +69,7 @@ START_TEST(rigid_motion_leaves_all_normalised_pairs_unchanged) {
   double pair[24], moved[24], r[9];
   for (int n = 0; n < 200; n++)
     for (int k = 0; k < 3; k++) {
-      ContactNormalised before, after;
+      OverlapTpnNormalised before, after;
       draw_pair(&random, pair);
       random_rotation(&random, r);
       for (int v = 0; v < 8; v++)
@@ -77,8 +77,8 @@ START_TEST(rigid_motion_leaves_all_normalised_pairs_unchanged) {
           moved[3 * v + i] = 5;
           for (int j = 0; j < 3; j++) moved[3 * v + i] += r[3 * i + j] * pair[3 * v + j];
         }
-      ck_assert(contact_normalise(kinds[k], pair, &before));
-      ck_assert(contact_normalise(kinds[k], moved, &after));
+      ck_assert(overlap_tpn_normalise(kinds[k], pair, &before));
+      ck_assert(overlap_tpn_normalise(kinds[k], moved, &after));
       double size = 1;
       for (int i = 0; i < 24; i++) size = fmax(size, fabs(before.pair[i]));
       for (int i = 0; i < 24; i++) ck_assert_near(after.pair[i], before.pair[i], 1e-9 * size * size);
@@ -91,15 +91,15 @@ START_TEST(sorted_pair_does_not_depend_on_the_order_of_vertices) {
   Random random = random_seeded(6, 0);
   double pair[24], shuffled[24];
   for (int n = 0; n < 200; n++) {
-    ContactNormalised before, after;
+    OverlapTpnNormalised before, after;
     draw_pair(&random, pair);
     const int *first = orders[random_below(&random, 4)], *second = orders[random_below(&random, 4)];
     for (int v = 0; v < 4; v++) {
       memcpy(shuffled + 3 * v, pair + 3 * first[v], 3 * sizeof(double));
       memcpy(shuffled + 12 + 3 * v, pair + 12 + 3 * second[v], 3 * sizeof(double));
     }
-    ck_assert(contact_normalise(CONTACT_NORMALISE_SORTED, pair, &before));
-    ck_assert(contact_normalise(CONTACT_NORMALISE_SORTED, shuffled, &after));
+    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SORTED, pair, &before));
+    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SORTED, shuffled, &after));
     for (int i = 0; i < 24; i++) ck_assert_near(after.pair[i], before.pair[i], 1e-9);
   }
 }
@@ -109,8 +109,8 @@ START_TEST(sorted_pair_by_hand) {
   // the other's centroid, (0, 0, 1.25), is nearest to the fourth vertex, and equally far from the first
   // three; z is 10, 1, −3 and −3 in the frame's barycentric coordinate of that vertex
   const double pair[24] = {1, 0, 0, -1, 1, 0, -1, -1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 10, 1, 0, -3, -1, 0, -3};
-  ContactNormalised normalised;
-  ck_assert(contact_normalise(CONTACT_NORMALISE_SORTED, pair, &normalised));
+  OverlapTpnNormalised normalised;
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SORTED, pair, &normalised));
   ck_assert_int_eq(normalised.order[0], 3);
   ck_assert_int_eq(normalised.order[4], 5);
   ck_assert_int_eq(normalised.order[5], 4);
@@ -132,10 +132,10 @@ static double function_of(const double x[24], double gradient[24]) {
   return value;
 }
 
-static double chain(ContactNormalisation kind, const double pair[24]) {
-  ContactNormalised normalised;
+static double chain(OverlapTpnNormalisation kind, const double pair[24]) {
+  OverlapTpnNormalised normalised;
   double unused[24];
-  ck_assert(contact_normalise(kind, pair, &normalised));
+  ck_assert(overlap_tpn_normalise(kind, pair, &normalised));
   return normalised.factor * function_of(normalised.pair, unused);
 }
 
@@ -144,12 +144,12 @@ START_TEST(gradient_is_that_of_the_whole_chain) {
   double pair[24], inner[24], gradient[24];
   for (int n = 0; n < 50; n++)
     for (int k = 0; k < 3; k++) {
-      ContactNormalised normalised;
+      OverlapTpnNormalised normalised;
       do draw_pair(&random, pair);
-      while (!contact_normalise(kinds[k], pair, &normalised) || !(normalised.matrix[0] < 10) ||
+      while (!overlap_tpn_normalise(kinds[k], pair, &normalised) || !(normalised.matrix[0] < 10) ||
              fabs(vec3_det4(vec3_at(pair), vec3_at(pair + 3), vec3_at(pair + 6), vec3_at(pair + 9))) < 0.1);
       double value = function_of(normalised.pair, inner), size = 0;
-      contact_normalise_pull(&normalised, value, inner, gradient);
+      overlap_tpn_normalise_pull(&normalised, value, inner, gradient);
       for (int i = 0; i < 24; i++) size = fmax(size, fabs(gradient[i]));
       for (int i = 0; i < 24; i++) {
         double step = 1e-6, kept = pair[i];
@@ -167,12 +167,12 @@ END_TEST
 START_TEST(gradient_is_bounded_where_principal_values_are_equal) {
   // a regular tetrahedron: all three values are equal
   const double pair[24] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-  ContactNormalised normalised;
+  OverlapTpnNormalised normalised;
   double inner[24], gradient[24], total[3] = {0};
-  ck_assert(contact_normalise(CONTACT_NORMALISE_PCA, pair, &normalised));
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_PCA, pair, &normalised));
   ck_assert_near(normalised.principal[0], normalised.principal[2], 1e-15);
   double value = function_of(normalised.pair, inner);
-  contact_normalise_pull(&normalised, value, inner, gradient);
+  overlap_tpn_normalise_pull(&normalised, value, inner, gradient);
   for (int i = 0; i < 24; i++) {
     ck_assert(fabs(gradient[i]) < 10);
     total[i % 3] += gradient[i];
@@ -183,11 +183,11 @@ END_TEST
 
 START_TEST(flat_first_tetrahedron_has_no_unit_frame) {
   double pair[24] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-  ContactNormalised normalised;
-  ck_assert(!contact_normalise(CONTACT_NORMALISE_UNIT, pair, &normalised));
-  ck_assert(contact_normalise(CONTACT_NORMALISE_PCA, pair, &normalised));
+  OverlapTpnNormalised normalised;
+  ck_assert(!overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_UNIT, pair, &normalised));
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_PCA, pair, &normalised));
   memset(pair, 0, 12 * sizeof(double));
-  ck_assert(!contact_normalise(CONTACT_NORMALISE_PCA, pair, &normalised));
+  ck_assert(!overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_PCA, pair, &normalised));
 }
 END_TEST
 

@@ -9,10 +9,10 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/shape.h"
-#include "fem/obstacle.h"
-#include "fem/obstacle_surface.h"
-#include "fem/pvd.h"
-#include "fem/vtu_read.h"
+#include "fem/model/obstacle.h"
+#include "fem/output/obstacle_surface.h"
+#include "fem/output/pvd.h"
+#include "fem/output/vtu_read.h"
 
 enum { STANDING, MOVING, SET_COUNT };
 

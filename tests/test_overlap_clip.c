@@ -4,12 +4,12 @@
 
 #include <string.h>
 
-#include "app/bench_pairs.h"
+#include "app/bench/pairs.h"
 #include "base/memory.h"
-#include "contact/clip.h"
-#include "contact/exact.h"
-#include "contact/invariant.h"
 #include "datagen/hard.h"
+#include "overlap/clip/clip.h"
+#include "overlap/exact/exact.h"
+#include "overlap/invariant.h"
 
 static const double corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 
@@ -20,8 +20,8 @@ typedef struct Answer {
 
 static Answer ask(const double x[24]) {
   Answer answer;
-  ck_assert_ok(contact_overlap_clip.eval_pair(NULL, x, &answer.volume, answer.gradient, answer.hessian,
-                                              &answer.flags));
+  ck_assert_ok(
+      overlap_clip_ops.eval_pair(NULL, x, &answer.volume, answer.gradient, answer.hessian, &answer.flags));
   return answer;
 }
 
@@ -75,10 +75,10 @@ START_TEST(a_tip_under_a_face_has_the_cube_of_its_depth) {
     const double x[24] = {-8, -8, 0,  16, -8, 0,     -8, 16, 0,     0,  0,  -16, // ground, its face z = 0
                           0,  0,  -d, 1,  0,  1 - d, 0,  1,  1 - d, -1, -1, 1 - d};
     Answer answer = ask(x);
-    double whole = contact_invariant_tet_volume(x + 12), depth = 0 - x[14];
+    double whole = overlap_invariant_tet_volume(x + 12), depth = 0 - x[14];
     ck_assert_near(answer.volume, whole * depth * depth * depth,
                    1e-9 * whole * depth * depth * depth + 1e-15);
-    if (answer.flags & CONTACT_OVERLAP_FALLBACK) continue;
+    if (answer.flags & OVERLAP_FALLBACK) continue;
     ask_along(&answer, 0, up, &first, &second);
     ck_assert_near(first, 3 * whole * depth * depth, 1e-14);
     ck_assert_near(second, 6 * whole * depth, 1e-13);
@@ -92,7 +92,7 @@ START_TEST(one_inside_the_other_moves_freely_and_grows_by_itself) {
   const double x[24] = {-8, -8, -8, 40, -8, -8, -8, 40, -8, -8, -8, 40, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   Answer answer = ask(x);
   ck_assert_near(answer.volume, 1.0 / 6, 1e-16);
-  ck_assert_uint_eq(answer.flags, CONTACT_OVERLAP_ENCLOSED);
+  ck_assert_uint_eq(answer.flags, OVERLAP_ENCLOSED);
   for (int i = 0; i < 12; i++) ck_assert_near(answer.gradient[i], 0, 1e-15);
   for (int c = 0; c < 3; c++) ck_assert_near(answer.gradient[15 + 4 * c], 1.0 / 6, 1e-15);
 }
@@ -104,7 +104,7 @@ START_TEST(the_hessian_is_bounded_where_faces_are_parallel) {
     for (int member = 0; member < 50; member++) {
       DatagenHardPair pair = datagen_hard_make(c, member);
       Answer answer = ask(pair.x);
-      double bound = 12 * contact_invariant_extent(pair.x) / CONTACT_CLIP_LEAST_SINE;
+      double bound = 12 * overlap_invariant_extent(pair.x) / OVERLAP_CLIP_LEAST_SINE;
       for (int i = 0; i < 576; i++)
         ck_assert_msg(fabs(answer.hessian[i]) <= bound, "%s, member %d: %g", datagen_hard_classes[c].name,
                       member, answer.hessian[i]);
@@ -121,12 +121,12 @@ static void check_set(const char *set, int count) {
   int helped = 0;
   for (int i = 0; i < count; i++) {
     const double *x = pairs + 24 * i;
-    double volume, gradient[24], expected, expected_gradient[24], extent = contact_invariant_extent(x);
+    double volume, gradient[24], expected, expected_gradient[24], extent = overlap_invariant_extent(x);
     unsigned flags;
-    ck_assert_ok(contact_overlap_clip.eval_pair(NULL, x, &volume, gradient, NULL, &flags));
-    helped += (flags & CONTACT_OVERLAP_FALLBACK) != 0;
-    ck_assert_ok(contact_overlap_exact.eval_pair(NULL, x, &expected, expected_gradient, NULL, &flags));
-    ck_assert_msg(contact_invariant_misfit(x, volume, expected) <= 1, "%s: pair %d", set, i);
+    ck_assert_ok(overlap_clip_ops.eval_pair(NULL, x, &volume, gradient, NULL, &flags));
+    helped += (flags & OVERLAP_FALLBACK) != 0;
+    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, x, &expected, expected_gradient, NULL, &flags));
+    ck_assert_msg(overlap_invariant_misfit(x, volume, expected) <= 1, "%s: pair %d", set, i);
     for (int c = 0; c < 24; c++)
       ck_assert_msg(fabs(gradient[c] - expected_gradient[c]) <= 1e-12 * extent * extent,
                     "%s: pair %d, gradient %d is %g, exact %g", set, i, c, gradient[c], expected_gradient[c]);
@@ -146,7 +146,7 @@ START_TEST(help_is_asked_for_slivers_and_the_shallowest_only) {
     const char *name = datagen_hard_classes[c].name;
     int helped = 0;
     for (int member = 0; member < 200; member++)
-      helped += (ask(datagen_hard_make(c, member).x).flags & CONTACT_OVERLAP_FALLBACK) != 0;
+      helped += (ask(datagen_hard_make(c, member).x).flags & OVERLAP_FALLBACK) != 0;
     bool is_extreme = strncmp(name, "sliver", 6) == 0 || strcmp(name, "flat") == 0;
     int allowed = is_extreme ? 200 : strcmp(name, "shallow") == 0 ? 50 : 4;
     ck_assert_msg(helped <= allowed, "%s: %d of 200", name, helped);
@@ -168,10 +168,10 @@ START_TEST(accuracy_holds_from_fat_to_flat) {
       double expected;
       unsigned flags;
       Answer answer = ask(pair.x);
-      ck_assert_ok(contact_overlap_exact.eval_pair(NULL, pair.x, &expected, NULL, NULL, &flags));
-      ck_assert_msg(contact_invariant_misfit(pair.x, answer.volume, expected) <= 1, "decade %d: %g, exact %g",
+      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair.x, &expected, NULL, NULL, &flags));
+      ck_assert_msg(overlap_invariant_misfit(pair.x, answer.volume, expected) <= 1, "decade %d: %g, exact %g",
                     decade, answer.volume, expected);
-      if (answer.flags & CONTACT_OVERLAP_FALLBACK)
+      if (answer.flags & OVERLAP_FALLBACK)
         helped++;
       else
         alone++;
@@ -187,7 +187,7 @@ START_TEST(numbers_too_large_or_small_for_double_products_get_help) {
     double unit = ask(pair.x).volume;
     for (int i = 0; i < 24; i++) pair.x[i] = ldexp(pair.x[i], power);
     Answer answer = ask(pair.x);
-    ck_assert_uint_ne(answer.flags & CONTACT_OVERLAP_FALLBACK, 0);
+    ck_assert_uint_ne(answer.flags & OVERLAP_FALLBACK, 0);
     if (power < 0)
       ck_assert_near(answer.volume, ldexp(unit, 3 * power), 1e-9 * ldexp(unit, 3 * power) + 0x1p-1074);
   }
@@ -219,9 +219,9 @@ START_TEST(slivers_that_cross_are_as_exact_as_stated) {
       datagen_hard_permute(pairs[k], order, x);
       datagen_hard_permute(pairs[k] + 12, (7 * order) % 24, x + 12);
       Answer answer = ask(x);
-      ck_assert_ok(contact_overlap_exact.eval_pair(NULL, x, &expected, NULL, NULL, &flags));
+      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, x, &expected, NULL, NULL, &flags));
       ck_assert_double_gt(expected, 0);
-      ck_assert_msg(contact_invariant_misfit(x, answer.volume, expected) <= 1,
+      ck_assert_msg(overlap_invariant_misfit(x, answer.volume, expected) <= 1,
                     "pair %d, order %d: %.17g, exact %.17g", k, order, answer.volume, expected);
     }
 }

@@ -8,15 +8,15 @@
 #include <omp.h>
 #include <string.h>
 
-#include "contact/exact.h"
-#include "contact/exact_fixed.h"
-#include "contact/exact_integer.h"
-#include "contact/invariant.h"
-#include "contact/overlap.h"
-#include "contact/overlap_cgal.h"
 #include "datagen/hard.h"
+#include "overlap/exact/cgal.h"
+#include "overlap/exact/exact.h"
+#include "overlap/exact/fixed.h"
+#include "overlap/exact/integer.h"
+#include "overlap/invariant.h"
+#include "overlap/model.h"
 
-static const ContactOverlapOps *const models[] = {&contact_overlap_exact, &contact_overlap_cgal};
+static const OverlapOps *const models[] = {&overlap_exact_ops, &overlap_cgal_ops};
 enum { MODEL_COUNT = 2 };
 
 // x, y, z ≥ 0, x + y + z ≤ 1
@@ -28,7 +28,7 @@ typedef struct Answer {
   unsigned flags;
 } Answer;
 
-static Answer ask(const ContactOverlapOps *model, const double x[24]) {
+static Answer ask(const OverlapOps *model, const double x[24]) {
   Answer answer;
   ck_assert_ok(model->eval_pair(NULL, x, &answer.volume, answer.gradient, NULL, &answer.flags));
   return answer;
@@ -125,7 +125,7 @@ START_TEST(a_tetrahedron_inside_counts_whole_and_pushes_nothing) {
   pair_simplices(x, 0.25, 0.125, 0.125, 0.125);
   const Answer answer = ask(models[_i], x);
   ck_assert(ulps_apart(answer.volume, 1 / 384.0) <= 1);
-  ck_assert_uint_eq(answer.flags, CONTACT_OVERLAP_ENCLOSED);
+  ck_assert_uint_eq(answer.flags, OVERLAP_ENCLOSED);
   differentiate_volume(x + 12, own);
   for (int c = 0; c < 12; c++) ck_assert(answer.gradient[c] == 0);
   ck_assert_near(furthest(answer.gradient + 12, own, 12), 0, 1e-17);
@@ -140,7 +140,7 @@ START_TEST(identical_tetrahedra_share_the_gradient_half_and_half) {
     datagen_hard_permute(simplex, order[k], x + 12);
     const Answer answer = ask(models[_i], x);
     ck_assert(ulps_apart(answer.volume, 1 / 6.0) <= 1);
-    ck_assert_uint_eq(answer.flags, CONTACT_OVERLAP_ENCLOSED);
+    ck_assert_uint_eq(answer.flags, OVERLAP_ENCLOSED);
     for (int t = 0; t < 2; t++) {
       differentiate_volume(x + 12 * t, own);
       for (int c = 0; c < 12; c++) ck_assert(ulps_apart(answer.gradient[12 * t + c], own[c] / 2) <= 1);
@@ -163,11 +163,11 @@ START_TEST(touching_is_disjoint) {
   for (size_t k = 0; k < sizeof other / sizeof *other; k++) {
     double x[24], swapped[24];
     memcpy(x, simplex, sizeof simplex), memcpy(x + 12, other[k], sizeof other[k]);
-    contact_overlap_swap(x, swapped);
+    overlap_ops_swap(x, swapped);
     Answer answer = ask(models[_i], x);
-    assert_nothing(&answer, CONTACT_OVERLAP_DISJOINT, "touching");
+    assert_nothing(&answer, OVERLAP_DISJOINT, "touching");
     answer = ask(models[_i], swapped);
-    assert_nothing(&answer, CONTACT_OVERLAP_DISJOINT, "touching, swapped");
+    assert_nothing(&answer, OVERLAP_DISJOINT, "touching, swapped");
   }
 }
 END_TEST
@@ -180,7 +180,7 @@ START_TEST(no_volume_is_flat) {
     memcpy(flat, x, sizeof flat);
     for (int c = 0; c < 3; c++) flat[12 * t + 9 + c] = (flat[12 * t + 3 + c] + flat[12 * t + 6 + c]) / 2;
     const Answer answer = ask(models[_i], flat);
-    assert_nothing(&answer, CONTACT_OVERLAP_FLAT, "flat");
+    assert_nothing(&answer, OVERLAP_FLAT, "flat");
   }
 }
 END_TEST
@@ -193,7 +193,7 @@ START_TEST(sizes_may_differ_by_two_hundred_decades) {
     x[c] = large * (4 * simplex[c] - (c % 3 ? 1 : 0));
     x[12 + c] = small * (simplex[c] - (c % 3 ? 0 : 0.5));
   }
-  const Answer answer = ask(&contact_overlap_exact, x);
+  const Answer answer = ask(&overlap_exact_ops, x);
   ck_assert(ulps_apart(answer.volume, small * small * small / 48) <= 1);
   ck_assert_uint_eq(answer.flags, 0);
   ck_assert(ulps_apart(slope(&answer, 0), small * small / 8) <= 2);
@@ -206,18 +206,18 @@ START_TEST(every_class_obeys_the_invariants) {
   int overlapping = 0;
   for (int m = 0; m < 100; m++) {
     const DatagenHardPair pair = datagen_hard_make(_i, m);
-    const double *x = pair.x, smaller = contact_invariant_smaller_volume(x);
-    const Answer answer = ask(&contact_overlap_exact, x);
+    const double *x = pair.x, smaller = overlap_invariant_smaller_volume(x);
+    const Answer answer = ask(&overlap_exact_ops, x);
     overlapping += answer.volume > 0;
-    ck_assert_msg(contact_invariant_bounds(x, answer.volume) <= 1e-3 * (smaller < 1e-9) + 1e-13, "%d: V = %g",
+    ck_assert_msg(overlap_invariant_bounds(x, answer.volume) <= 1e-3 * (smaller < 1e-9) + 1e-13, "%d: V = %g",
                   m, answer.volume);
-    ck_assert_near(contact_invariant_translation(x, answer.gradient), 0, 2e-15);
-    ck_assert_near(contact_invariant_rotation(x, answer.gradient), 0, 4e-15);
-    ck_assert_near(contact_invariant_scaling(x, answer.volume, answer.gradient), 0, 4e-15);
+    ck_assert_near(overlap_invariant_translation(x, answer.gradient), 0, 2e-15);
+    ck_assert_near(overlap_invariant_rotation(x, answer.gradient), 0, 4e-15);
+    ck_assert_near(overlap_invariant_scaling(x, answer.volume, answer.gradient), 0, 4e-15);
     if (!isnan(pair.volume)) ck_assert_near(answer.volume, pair.volume, pair.slack);
-    if (pair.is_flat) assert_nothing(&answer, CONTACT_OVERLAP_FLAT, datagen_hard_classes[_i].name);
+    if (pair.is_flat) assert_nothing(&answer, OVERLAP_FLAT, datagen_hard_classes[_i].name);
     if (!pair.is_flat && answer.volume == 0)
-      assert_nothing(&answer, CONTACT_OVERLAP_DISJOINT, datagen_hard_classes[_i].name);
+      assert_nothing(&answer, OVERLAP_DISJOINT, datagen_hard_classes[_i].name);
     if (pair.volume > 0) ck_assert(answer.volume > 0);
   }
   if (strcmp(datagen_hard_classes[_i].name, "uniform") == 0) ck_assert_int_ge(overlapping, 30);
@@ -227,16 +227,16 @@ END_TEST
 START_TEST(order_of_tetrahedra_and_vertices_does_not_matter) {
   for (int m = 0; m < 24; m++) {
     const DatagenHardPair pair = datagen_hard_make(_i, m);
-    const Answer answer = ask(&contact_overlap_exact, pair.x);
+    const Answer answer = ask(&overlap_exact_ops, pair.x);
     double swapped[24], moved[24], expected[24];
-    contact_overlap_swap(pair.x, swapped);
+    overlap_ops_swap(pair.x, swapped);
     datagen_hard_permute(swapped, m, moved);
     datagen_hard_permute(swapped + 12, 23 - m, moved + 12);
-    contact_overlap_swap(answer.gradient, swapped);
+    overlap_ops_swap(answer.gradient, swapped);
     datagen_hard_permute(swapped, m, expected);
     datagen_hard_permute(swapped + 12, 23 - m, expected + 12);
-    const Answer again = ask(&contact_overlap_exact, moved);
-    const double extent = contact_invariant_extent(pair.x);
+    const Answer again = ask(&overlap_exact_ops, moved);
+    const double extent = overlap_invariant_extent(pair.x);
     ck_assert(ulps_apart(again.volume, answer.volume) <= 1);
     ck_assert_uint_eq(again.flags, answer.flags);
     ck_assert_near(furthest(again.gradient, expected, 24), 0, 2e-16 * extent * extent);
@@ -249,12 +249,12 @@ START_TEST(scaling_by_powers_of_two_and_grid_shifts_change_no_bit) {
   const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   for (int m = 0; m < 20; m++) {
     const DatagenHardPair pair = datagen_hard_make(_i, m);
-    const Answer answer = ask(&contact_overlap_exact, pair.x);
+    const Answer answer = ask(&overlap_exact_ops, pair.x);
     for (int power = -200; power <= 200; power += 100) {
       double x[24];
       memcpy(x, pair.x, sizeof x);
       datagen_hard_transform(x, 8, identity, ldexp(1, power), (Vec3){0, 0, 0});
-      const Answer scaled = ask(&contact_overlap_exact, x);
+      const Answer scaled = ask(&overlap_exact_ops, x);
       ck_assert(scaled.volume == ldexp(answer.volume, 3 * power));
       for (int c = 0; c < 24; c++) ck_assert(scaled.gradient[c] == ldexp(answer.gradient[c], 2 * power));
     }
@@ -263,9 +263,9 @@ START_TEST(scaling_by_powers_of_two_and_grid_shifts_change_no_bit) {
     DatagenHardPair pair = {.volume = NAN};
     Random random = random_seeded(7, (uint64_t)m);
     datagen_hard_fat(&random, &pair, 0), datagen_hard_fat(&random, &pair, 1);
-    const Answer answer = ask(&contact_overlap_exact, pair.x);
+    const Answer answer = ask(&overlap_exact_ops, pair.x);
     datagen_hard_transform(pair.x, 8, identity, 1, (Vec3){1e6, -3e6, 12345678});
-    const Answer shifted = ask(&contact_overlap_exact, pair.x);
+    const Answer shifted = ask(&overlap_exact_ops, pair.x);
     ck_assert(shifted.volume == answer.volume);
     ck_assert(memcmp(shifted.gradient, answer.gradient, sizeof answer.gradient) == 0);
   }
@@ -279,12 +279,12 @@ START_TEST(parts_add_up_to_the_whole) {
     DatagenHardPair pair = {.volume = NAN};
     Random random = random_seeded(11, (uint64_t)m);
     datagen_hard_fat(&random, &pair, 0), datagen_hard_fat(&random, &pair, 1);
-    const double whole = ask(&contact_overlap_exact, pair.x).volume;
+    const double whole = ask(&overlap_exact_ops, pair.x).volume;
     double parts[4][12], sum = 0;
     datagen_hard_subdivide(pair.x + 12, weights, parts);
     for (int part = 0; part < 4; part++) {
       memcpy(pair.x + 12, parts[part], sizeof parts[part]);
-      sum += ask(&contact_overlap_exact, pair.x).volume;
+      sum += ask(&overlap_exact_ops, pair.x).volume;
     }
     overlapping += whole > 0;
     ck_assert(ulps_apart(sum, whole) <= 6);
@@ -298,14 +298,14 @@ START_TEST(gradient_is_the_derivative_of_the_volume) {
   for (int k = 0; k < DATAGEN_HARD_CLASS_COUNT; k++)
     for (int m = 0; m < 20; m++) {
       const DatagenHardPair pair = datagen_hard_make(k, m);
-      const double extent = contact_invariant_extent(pair.x), step = extent * 0x1p-20;
+      const double extent = overlap_invariant_extent(pair.x), step = extent * 0x1p-20;
       if (!pair.is_smooth) continue;
-      const Answer answer = ask(&contact_overlap_exact, pair.x);
+      const Answer answer = ask(&overlap_exact_ops, pair.x);
       for (int c = 0; c < 24; c++) {
         double up[24], down[24];
         memcpy(up, pair.x, sizeof up), memcpy(down, pair.x, sizeof down);
         up[c] += step, down[c] -= step;
-        const double rise = ask(&contact_overlap_exact, up).volume - ask(&contact_overlap_exact, down).volume;
+        const double rise = ask(&overlap_exact_ops, up).volume - ask(&overlap_exact_ops, down).volume;
         ck_assert_near(rise / (up[c] - down[c]), answer.gradient[c], 1e-9 * extent * extent);
       }
       compared += answer.volume > 0;
@@ -324,10 +324,10 @@ START_TEST(scattered_magnitudes_give_numbers) {
       const int power = random_below(&random, 2) ? random_below(&random, 2090) - 1070 : c % 2 ? 1023 : -1060;
       x[c] = ldexp(random_between(&random, -1, 1), power);
     }
-    const Answer answer = ask(&contact_overlap_exact, x);
+    const Answer answer = ask(&overlap_exact_ops, x);
     ck_assert(answer.volume >= 0);
     for (int c = 0; c < 24; c++) ck_assert(!isnan(answer.gradient[c]));
-    disjoint += answer.flags == CONTACT_OVERLAP_DISJOINT;
+    disjoint += answer.flags == OVERLAP_DISJOINT;
   }
   ck_assert(disjoint > 50 && disjoint < 450);
 }
@@ -338,8 +338,8 @@ END_TEST
 START_TEST(exact_equals_cgal_in_every_class) {
   for (int m = 0; m < 12; m++) {
     const DatagenHardPair pair = datagen_hard_make(_i, m);
-    const Answer ours = ask(&contact_overlap_exact, pair.x), theirs = ask(&contact_overlap_cgal, pair.x);
-    const double extent = contact_invariant_extent(pair.x);
+    const Answer ours = ask(&overlap_exact_ops, pair.x), theirs = ask(&overlap_cgal_ops, pair.x);
+    const double extent = overlap_invariant_extent(pair.x);
     ck_assert_msg(ulps_apart(ours.volume, theirs.volume) <= 1, "member %d: %.17g, %.17g", m, ours.volume,
                   theirs.volume);
     ck_assert_uint_eq(ours.flags, theirs.flags);
@@ -354,8 +354,8 @@ START_TEST(threads_give_identical_results) {
   enum { MEMBERS = 6, PAIRS = MEMBERS * DATAGEN_HARD_CLASS_COUNT };
   static double x[PAIRS][24], volume[2][PAIRS], gradient[2][PAIRS][24];
   static unsigned flags[2][PAIRS];
-  ContactOverlapModel model;
-  ck_assert_ok(contact_overlap_create(&model, models[_i]->name));
+  OverlapModel model;
+  ck_assert_ok(overlap_model_create(&model, models[_i]->name));
   for (int k = 0; k < PAIRS; k++) {
     const DatagenHardPair pair =
         datagen_hard_make(k % DATAGEN_HARD_CLASS_COUNT, k / DATAGEN_HARD_CLASS_COUNT);
@@ -363,14 +363,14 @@ START_TEST(threads_give_identical_results) {
   }
   for (int round = 0; round < 2; round++) {
     omp_set_num_threads(round ? 4 : 1);
-    const ContactOverlapBatch batch = {.pair_count = PAIRS,
-                                       .pairs = x[0],
-                                       .volume = volume[round],
-                                       .gradient = gradient[round][0],
-                                       .flags = flags[round]};
-    ck_assert_ok(contact_overlap_eval(&model, &batch));
+    const OverlapBatch batch = {.pair_count = PAIRS,
+                                .pairs = x[0],
+                                .volume = volume[round],
+                                .gradient = gradient[round][0],
+                                .flags = flags[round]};
+    ck_assert_ok(overlap_model_eval(&model, &batch));
   }
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
   ck_assert(memcmp(volume[0], volume[1], sizeof volume[0]) == 0);
   ck_assert(memcmp(gradient[0], gradient[1], sizeof gradient[0]) == 0);
   ck_assert(memcmp(flags[0], flags[1], sizeof flags[0]) == 0);
@@ -397,22 +397,26 @@ START_TEST(integers_are_exact) {
     const int spread = round % 2 ? 30 : 1000; // the second terms lie far below the first, or near
     const double x = ldexp(random_between(&random, -1, 1), random_below(&random, spread)),
                  y = ldexp(random_between(&random, -1, 1), -random_below(&random, spread));
-    const int exponent = exact_exponent(x) < exact_exponent(y) ? exact_exponent(x) : exact_exponent(y);
-    const ExactInteger a = exact_from_double(&arena, x, exponent), b = exact_from_double(&arena, y, exponent);
-    ck_assert_int_eq(exact_sign(a), (x > 0) - (x < 0));
-    ck_assert((double)ldexpl(exact_value(a, 0), exponent) == x);
-    ck_assert((double)ldexpl(exact_value(b, 1), exponent + 64) == y);
+    const int exponent = overlap_exact_integer_exponent(x) < overlap_exact_integer_exponent(y)
+                             ? overlap_exact_integer_exponent(x)
+                             : overlap_exact_integer_exponent(y);
+    const ExactInteger a = overlap_exact_integer_from_double(&arena, x, exponent),
+                       b = overlap_exact_integer_from_double(&arena, y, exponent);
+    ck_assert_int_eq(overlap_exact_integer_sign(a), (x > 0) - (x < 0));
+    ck_assert((double)ldexpl(overlap_exact_integer_value(a, 0), exponent) == x);
+    ck_assert((double)ldexpl(overlap_exact_integer_value(b, 1), exponent + 64) == y);
     // (a + b)(a − b) = a² − b², and dropping one of the two breaks it
-    const ExactInteger product = exact_mul(&arena, exact_add(&arena, a, b), exact_sub(&arena, a, b));
-    const ExactInteger squares = exact_minor(&arena, a, a, b, b);
-    ck_assert_int_eq(exact_sign(exact_sub(&arena, product, squares)), 0);
-    const ExactInteger square = exact_mul(&arena, a, a);
-    ck_assert_int_eq(exact_sign(exact_sub(&arena, square, squares)), 1);
+    const ExactInteger product = overlap_exact_integer_mul(&arena, overlap_exact_integer_add(&arena, a, b),
+                                                           overlap_exact_integer_sub(&arena, a, b));
+    const ExactInteger squares = overlap_exact_integer_minor(&arena, a, a, b, b);
+    ck_assert_int_eq(overlap_exact_integer_sign(overlap_exact_integer_sub(&arena, product, squares)), 0);
+    const ExactInteger square = overlap_exact_integer_mul(&arena, a, a);
+    ck_assert_int_eq(overlap_exact_integer_sign(overlap_exact_integer_sub(&arena, square, squares)), 1);
     const ExactInteger u[3] = {a, b, product}, v[3] = {b, squares, a};
     ExactInteger w[3];
-    exact_cross(&arena, u, v, w);
-    ck_assert_int_eq(exact_sign(exact_dot(&arena, u, w)), 0);
-    ck_assert_int_eq(exact_sign(exact_dot(&arena, w, w)), 1);
+    overlap_exact_integer_cross(&arena, u, v, w);
+    ck_assert_int_eq(overlap_exact_integer_sign(overlap_exact_integer_dot(&arena, u, w)), 0);
+    ck_assert_int_eq(overlap_exact_integer_sign(overlap_exact_integer_dot(&arena, w, w)), 1);
   }
 }
 END_TEST
@@ -422,13 +426,15 @@ static ExactInteger draw(ExactArena *arena, Random *random, int limbs) {
   ExactInteger number = {arena->next, 0};
   for (int k = 0; k < limbs; k++) {
     const double part = ldexp(random_between(random, -1, 1), 64 * k + random_below(random, 64));
-    number = exact_add(arena, number, exact_from_double(arena, trunc(part), 0));
+    number =
+        overlap_exact_integer_add(arena, number, overlap_exact_integer_from_double(arena, trunc(part), 0));
   }
   return random_below(random, 20) ? number : (ExactInteger){arena->next, 0};
 }
 
 static bool are_equal(ExactInteger a, ExactInteger b) {
-  return exact_compare(a, b) == 0 && exact_compare(b, a) == 0 && exact_sign(a) == exact_sign(b);
+  return overlap_exact_integer_compare(a, b) == 0 && overlap_exact_integer_compare(b, a) == 0 &&
+         overlap_exact_integer_sign(a) == overlap_exact_integer_sign(b);
 }
 
 // Times 2^640 every number is long.
@@ -438,19 +444,25 @@ START_TEST(short_numbers_follow_the_rules_of_long_ones) {
   for (int round = 0; round < 3000; round++) {
     ExactArena arena = {limbs, limbs + 4000};
     ExactInteger x[4], y[4], far_x[4], far_y[4];
-    const ExactInteger far = exact_from_double(&arena, 1, -640), twice = exact_mul(&arena, far, far);
+    const ExactInteger far = overlap_exact_integer_from_double(&arena, 1, -640),
+                       twice = overlap_exact_integer_mul(&arena, far, far);
     for (int k = 0; k < 4; k++) {
       x[k] = draw(&arena, &random, 1 + random_below(&random, 1 + _i));
       y[k] = draw(&arena, &random, 1 + random_below(&random, 1 + 2 * _i));
-      far_x[k] = exact_mul(&arena, x[k], far), far_y[k] = exact_mul(&arena, y[k], far);
+      far_x[k] = overlap_exact_integer_mul(&arena, x[k], far),
+      far_y[k] = overlap_exact_integer_mul(&arena, y[k], far);
     }
-    ck_assert(are_equal(exact_mul(&arena, exact_add(&arena, x[0], x[1]), far),
-                        exact_add(&arena, far_x[0], far_x[1])));
-    ck_assert(are_equal(exact_mul(&arena, exact_sum(&arena, y), far), exact_sum(&arena, far_y)));
-    ck_assert(are_equal(exact_mul(&arena, exact_minor(&arena, x[0], x[1], x[2], x[3]), twice),
-                        exact_minor(&arena, far_x[0], far_x[1], far_x[2], far_x[3])));
-    ck_assert(are_equal(exact_mul(&arena, exact_dot(&arena, x, y), twice), exact_dot(&arena, far_x, far_y)));
-    const int order = exact_compare(x[0], y[0]), sign = exact_sign(exact_sub(&arena, x[0], y[0]));
+    ck_assert(are_equal(overlap_exact_integer_mul(&arena, overlap_exact_integer_add(&arena, x[0], x[1]), far),
+                        overlap_exact_integer_add(&arena, far_x[0], far_x[1])));
+    ck_assert(are_equal(overlap_exact_integer_mul(&arena, overlap_exact_integer_sum(&arena, y), far),
+                        overlap_exact_integer_sum(&arena, far_y)));
+    ck_assert(are_equal(
+        overlap_exact_integer_mul(&arena, overlap_exact_integer_minor(&arena, x[0], x[1], x[2], x[3]), twice),
+        overlap_exact_integer_minor(&arena, far_x[0], far_x[1], far_x[2], far_x[3])));
+    ck_assert(are_equal(overlap_exact_integer_mul(&arena, overlap_exact_integer_dot(&arena, x, y), twice),
+                        overlap_exact_integer_dot(&arena, far_x, far_y)));
+    const int order = overlap_exact_integer_compare(x[0], y[0]),
+              sign = overlap_exact_integer_sign(overlap_exact_integer_sub(&arena, x[0], y[0]));
     ck_assert_int_eq((order > 0) - (order < 0), sign);
   }
 }
@@ -464,19 +476,20 @@ static Corner draw_corner(ExactArena *arena, Random *random, int limbs) {
   Corner corner = {.weight = {arena->next, 0}};
   for (int c = 0; c < 3; c++) {
     const ExactInteger number = draw(arena, random, limbs);
-    corner.coordinate[c] = exact_signed(number, exact_sign(number));
-    corner.weight = exact_add(arena, corner.weight, corner.coordinate[c]);
+    corner.coordinate[c] = overlap_exact_integer_signed(number, overlap_exact_integer_sign(number));
+    corner.weight = overlap_exact_integer_add(arena, corner.weight, corner.coordinate[c]);
   }
   return corner;
 }
 
 // The second corner moved towards the first until the triangle is as thin as 2^−depth.
 static void approach(ExactArena *arena, const Corner *first, Corner *second, int depth) {
-  const ExactInteger large = exact_from_double(arena, 1, -depth);
+  const ExactInteger large = overlap_exact_integer_from_double(arena, 1, -depth);
   for (int c = 0; c < 3; c++)
-    second->coordinate[c] =
-        exact_add(arena, exact_mul(arena, first->coordinate[c], large), second->coordinate[c]);
-  second->weight = exact_add(arena, exact_mul(arena, first->weight, large), second->weight);
+    second->coordinate[c] = overlap_exact_integer_add(
+        arena, overlap_exact_integer_mul(arena, first->coordinate[c], large), second->coordinate[c]);
+  second->weight = overlap_exact_integer_add(arena, overlap_exact_integer_mul(arena, first->weight, large),
+                                             second->weight);
 }
 
 START_TEST(fixed_points_are_right_wherever_they_say_so) {
@@ -493,28 +506,30 @@ START_TEST(fixed_points_are_right_wherever_they_say_so) {
       corners[k] = draw_corner(&arena, &random, k == 1 ? 1 : 1 + random_below(&random, 5));
     approach(&arena, &corners[0], &corners[1], depth);
     bool is_corner = true;
-    for (int k = 0; k < 3; k++) is_corner = is_corner && exact_sign(corners[k].weight) > 0;
+    for (int k = 0; k < 3; k++) is_corner = is_corner && overlap_exact_integer_sign(corners[k].weight) > 0;
     if (!is_corner) continue;
     long double weights = 1, found, value;
     for (int k = 0; k < 3; k++) {
-      fixed[k] = exact_fixed_from(corners[k].coordinate, corners[k].weight);
-      const long double weight = exact_fixed_weight(corners[k].weight);
+      fixed[k] = overlap_exact_fixed_from(corners[k].coordinate, corners[k].weight);
+      const long double weight = overlap_exact_fixed_weight(corners[k].weight);
       const long double ratio = ldexpl(1, fixed[k].bits);
       ck_assert(weight >= 0.5L && weight <= 1);
-      ck_assert(fabsl(exact_value(corners[k].weight, 0) / ratio - weight) <= 0x1p-62L);
+      ck_assert(fabsl(overlap_exact_integer_value(corners[k].weight, 0) / ratio - weight) <= 0x1p-62L);
       weights *= ratio;
       for (int c = 0; c < 3; c++) {
-        const long double coordinate = exact_value(corners[k].coordinate[c], 0) / ratio;
-        if (exact_fixed_value(&fixed[k], c, &value))
+        const long double coordinate = overlap_exact_integer_value(corners[k].coordinate[c], 0) / ratio;
+        if (overlap_exact_fixed_value(&fixed[k], c, &value))
           ck_assert(fabsl(value - coordinate) <= 0x1p-61L * coordinate);
         else
           ck_assert(coordinate < 0x1p-63L);
       }
     }
-    exact_cross(&arena, corners[1].coordinate, corners[2].coordinate, cross);
-    const long double wanted = exact_value(exact_dot(&arena, corners[0].coordinate, cross), 0) / weights;
+    overlap_exact_integer_cross(&arena, corners[1].coordinate, corners[2].coordinate, cross);
+    const long double wanted =
+        overlap_exact_integer_value(overlap_exact_integer_dot(&arena, corners[0].coordinate, cross), 0) /
+        weights;
     tried++;
-    if (exact_fixed_determinant(&fixed[0], &fixed[1], &fixed[2], &found)) {
+    if (overlap_exact_fixed_determinant(&fixed[0], &fixed[1], &fixed[2], &found)) {
       ck_assert(fabsl(found - wanted) <= 0x1p-61L * wanted);
       certain++;
     } else {

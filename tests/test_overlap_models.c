@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every overlap model must obey, on every class of pairs (datagen/hard.h). The volume's oracle is `exact`,
-// whose own oracles are cases with a known volume and `cgal`.
+// What every overlap model must obey, on every class of pairs (datagen/hard.h). The volume's oracle is
+// `exact`, whose own oracles are cases with a known volume and `cgal`.
 #include "suite.h"
 
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "contact/exact.h"
-#include "contact/invariant.h"
-#include "contact/overlap.h"
 #include "datagen/hard.h"
+#include "overlap/exact/exact.h"
+#include "overlap/invariant.h"
+#include "overlap/model.h"
 
 // What a model may lack. Networks that follow the paper see vertices in an order, know volumes roughly and
 // compute in float32.
@@ -22,7 +22,7 @@ enum {
   LACKS_ALL_BUT_BALANCE = LACKS_ACCURACY | LACKS_ORDER | LACKS_DIGITS,
 };
 
-// What is asked of a model. Volumes in units of contact_invariant_allowed, the rest relative to powers of the
+// What is asked of a model. Volumes in units of overlap_invariant_allowed, the rest relative to powers of the
 // pair's extent.
 typedef struct Demand {
   const char *name;
@@ -54,9 +54,9 @@ static double step_of(const Demand *demand) {
   return demand->step > 0 ? demand->step : 1e-6;
 }
 
-static const ContactOverlapOps *model_at(int index) {
+static const OverlapOps *model_at(int index) {
   int count;
-  const ContactOverlapOps *const *models = contact_overlap_list(&count);
+  const OverlapOps *const *models = overlap_model_list(&count);
   ck_assert_int_lt(index, count);
   return models[index];
 }
@@ -72,44 +72,44 @@ typedef struct Answer {
   unsigned flags;
 } Answer;
 
-static Answer ask(const ContactOverlapModel *model, const double x[24]) {
+static Answer ask(const OverlapModel *model, const double x[24]) {
   Answer answer;
-  ContactOverlapBatch batch = {.pair_count = 1,
-                               .pairs = x,
-                               .volume = &answer.volume,
-                               .gradient = answer.gradient,
-                               .flags = &answer.flags};
-  ck_assert_ok(contact_overlap_eval(model, &batch));
+  OverlapBatch batch = {.pair_count = 1,
+                        .pairs = x,
+                        .volume = &answer.volume,
+                        .gradient = answer.gradient,
+                        .flags = &answer.flags};
+  ck_assert_ok(overlap_model_eval(model, &batch));
   return answer;
 }
 
-static double ask_volume(const ContactOverlapModel *model, const double x[24]) {
+static double ask_volume(const OverlapModel *model, const double x[24]) {
   double volume;
-  ContactOverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume};
-  ck_assert_ok(contact_overlap_eval(model, &batch));
+  OverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume};
+  ck_assert_ok(overlap_model_eval(model, &batch));
   return volume;
 }
 
 static double exact_volume(const double x[24]) {
   double volume;
   unsigned flags;
-  ck_assert_ok(contact_overlap_exact.eval_pair(NULL, x, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_exact_ops.eval_pair(NULL, x, &volume, NULL, NULL, &flags));
   return volume;
 }
 
-static ContactOverlapModel open_model(int index) {
-  ContactOverlapModel model;
-  ck_assert_ok(contact_overlap_create(&model, model_at(index)->name));
+static OverlapModel open_model(int index) {
+  OverlapModel model;
+  ck_assert_ok(overlap_model_create(&model, model_at(index)->name));
   return model;
 }
 
 // Calls `check` for every member of every class, unless the model lacks what it asks for.
 static void for_each_pair(int model_index, unsigned asked,
-                          void (*check)(const ContactOverlapModel *model, const Demand *demand,
+                          void (*check)(const OverlapModel *model, const Demand *demand,
                                         const DatagenHardPair *pair, const char *where)) {
   const Demand *demand = demand_of(model_at(model_index)->name);
   if (demand->lacks & asked) return;
-  ContactOverlapModel model = open_model(model_index);
+  OverlapModel model = open_model(model_index);
   for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
     for (int member = 0; member < demand->members; member++) {
       char where[96];
@@ -117,7 +117,7 @@ static void for_each_pair(int model_index, unsigned asked,
       DatagenHardPair pair = datagen_hard_make(c, member);
       check(&model, demand, &pair, where);
     }
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
 }
 
 #define ck_assert_at_most(what, value, bound)                                                                \
@@ -128,8 +128,8 @@ static void for_each_pair(int model_index, unsigned asked,
 
 // How far V may differ from that of the same pair in another order or place [m³].
 static double difference_allowed(const Demand *demand, const double x[24], double volume) {
-  return demand->misfit * contact_invariant_allowed(x, volume) + demand->rounding[0] * volume +
-         demand->rounding[1] * contact_invariant_smaller_volume(x);
+  return demand->misfit * overlap_invariant_allowed(x, volume) + demand->rounding[0] * volume +
+         demand->rounding[1] * overlap_invariant_smaller_volume(x);
 }
 
 // How far V may be off where it should be `volume` [m³].
@@ -137,7 +137,7 @@ static double error_allowed(const Demand *demand, const double x[24], double vol
   return difference_allowed(demand, x, volume) + demand->learned * volume;
 }
 
-static void check_volume(const ContactOverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
+static void check_volume(const OverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
                          const char *where) {
   Answer answer = ask(model, pair->x);
   double reference = exact_volume(pair->x);
@@ -152,12 +152,12 @@ START_TEST(volumes_are_right_in_every_class) {
 }
 END_TEST
 
-static void check_flags(const ContactOverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
+static void check_flags(const OverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
                         const char *where) {
   (void)demand;
   Answer answer = ask(model, pair->x);
-  bool is_flat = (answer.flags & CONTACT_OVERLAP_FLAT) != 0;
-  bool is_nothing = is_flat || (answer.flags & CONTACT_OVERLAP_DISJOINT);
+  bool is_flat = (answer.flags & OVERLAP_FLAT) != 0;
+  bool is_nothing = is_flat || (answer.flags & OVERLAP_DISJOINT);
   ck_assert_msg(is_flat == pair->is_flat, "%s: FLAT is %d", where, is_flat);
   ck_assert_msg(is_nothing == (answer.volume == 0), "%s: flags %u with V = %g", where, answer.flags,
                 answer.volume);
@@ -171,17 +171,17 @@ START_TEST(flags_say_what_the_numbers_are) {
 }
 END_TEST
 
-static void check_invariants(const ContactOverlapModel *model, const Demand *demand,
-                             const DatagenHardPair *pair, const char *where) {
+static void check_invariants(const OverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
+                             const char *where) {
   Answer answer = ask(model, pair->x);
   if (!(demand->lacks & LACKS_ACCURACY))
-    ck_assert_at_most(where, contact_invariant_bounds(pair->x, answer.volume),
+    ck_assert_at_most(where, overlap_invariant_bounds(pair->x, answer.volume),
                       4e-16 + demand->learned + demand->rounding[1]);
   else
     ck_assert_msg(answer.volume >= 0, "%s: V = %g", where, answer.volume);
-  ck_assert_at_most(where, contact_invariant_translation(pair->x, answer.gradient), demand->invariant);
-  ck_assert_at_most(where, contact_invariant_rotation(pair->x, answer.gradient), demand->invariant);
-  ck_assert_at_most(where, contact_invariant_scaling(pair->x, answer.volume, answer.gradient),
+  ck_assert_at_most(where, overlap_invariant_translation(pair->x, answer.gradient), demand->invariant);
+  ck_assert_at_most(where, overlap_invariant_rotation(pair->x, answer.gradient), demand->invariant);
+  ck_assert_at_most(where, overlap_invariant_scaling(pair->x, answer.volume, answer.gradient),
                     demand->invariant);
 }
 
@@ -190,10 +190,10 @@ START_TEST(volumes_are_bounded_and_gradients_balance) {
 }
 END_TEST
 
-static void check_exchange(const ContactOverlapModel *model, const Demand *demand,
-                           const DatagenHardPair *pair, const char *where) {
+static void check_exchange(const OverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
+                           const char *where) {
   double volume = ask_volume(model, pair->x), swapped[24], permuted[24];
-  contact_overlap_swap(pair->x, swapped);
+  overlap_ops_swap(pair->x, swapped);
   double allowed = 2 * difference_allowed(demand, pair->x, volume);
   ck_assert_at_most(where, fabs(ask_volume(model, swapped) - volume), allowed);
   for (int k = 1; k < 24; k += demand->members < 10 ? 11 : 1) {
@@ -210,14 +210,14 @@ END_TEST
 
 // The largest coordinate times the extent squared: what rounding of coordinates may change, over ε.
 static double rounding_scale(const double x[24]) {
-  double largest = 0, extent = contact_invariant_extent(x);
+  double largest = 0, extent = overlap_invariant_extent(x);
   for (int i = 0; i < 24; i++) largest = fmax(largest, fabs(x[i]));
   return largest * extent * extent;
 }
 
-static void check_motion(const ContactOverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
+static void check_motion(const OverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
                          const char *where) {
-  double moved[24], volume = ask_volume(model, pair->x), extent = contact_invariant_extent(pair->x);
+  double moved[24], volume = ask_volume(model, pair->x), extent = overlap_invariant_extent(pair->x);
   double rotation[9];
   Random random = random_seeded(77, 0);
   random_rotation(&random, rotation);
@@ -227,7 +227,7 @@ static void check_motion(const ContactOverlapModel *model, const Demand *demand,
   ck_assert_at_most(where, fabs(ask_volume(model, moved) - volume),
                     slack + difference_allowed(demand, pair->x, volume));
   for (int i = 0; i < 24; i++) moved[i] = 0x1p20 * pair->x[i];
-  double scaled = 1e-6 * contact_invariant_allowed(pair->x, volume);
+  double scaled = 1e-6 * overlap_invariant_allowed(pair->x, volume);
   if (demand->rounding[0] > 0) scaled = difference_allowed(demand, pair->x, volume);
   ck_assert_at_most(where, fabs(0x1p-60 * ask_volume(model, moved) - volume), scaled);
 }
@@ -237,12 +237,12 @@ START_TEST(a_rigid_motion_changes_nothing_and_scaling_gives_the_cube) {
 }
 END_TEST
 
-static void check_subdivision(const ContactOverlapModel *model, const Demand *demand,
-                              const DatagenHardPair *pair, const char *where) {
+static void check_subdivision(const OverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
+                              const char *where) {
   const double weights[4] = {0.125, 0.25, 0.25, 0.375};
-  double parts[4][12], whole = contact_invariant_tet_volume(pair->x + 12), sum_of_parts = 0;
+  double parts[4][12], whole = overlap_invariant_tet_volume(pair->x + 12), sum_of_parts = 0;
   datagen_hard_subdivide(pair->x + 12, weights, parts);
-  for (int k = 0; k < 4; k++) sum_of_parts += contact_invariant_tet_volume(parts[k]);
+  for (int k = 0; k < 4; k++) sum_of_parts += overlap_invariant_tet_volume(parts[k]);
   if (!(fabs(sum_of_parts - whole) <= 1e-13 * whole) || pair->is_flat) return; // rounded out of a sliver
   double volume = ask_volume(model, pair->x), sum = 0, allowed = 1e-14 * volume;
   for (int k = 0; k < 4; k++) {
@@ -260,11 +260,11 @@ START_TEST(the_parts_of_a_tetrahedron_sum_to_the_whole) {
 }
 END_TEST
 
-static void check_gradient(const ContactOverlapModel *model, const Demand *demand,
-                           const DatagenHardPair *pair, const char *where) {
+static void check_gradient(const OverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
+                           const char *where) {
   if (!pair->is_smooth) return;
   Answer answer = ask(model, pair->x);
-  double extent = contact_invariant_extent(pair->x), h = step_of(demand) * extent;
+  double extent = overlap_invariant_extent(pair->x), h = step_of(demand) * extent;
   for (int i = 0; i < 24; i += demand->members < 10 ? 7 : 1) {
     double up[24], down[24];
     memcpy(up, pair->x, sizeof up), memcpy(down, pair->x, sizeof down);
@@ -279,15 +279,15 @@ START_TEST(the_gradient_is_the_derivative_of_the_volume) {
 }
 END_TEST
 
-static void ask_hessian(const ContactOverlapModel *model, const double x[24], double hessian[576]) {
+static void ask_hessian(const OverlapModel *model, const double x[24], double hessian[576]) {
   double volume;
-  ContactOverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume, .hessian = hessian};
-  ck_assert_ok(contact_overlap_eval(model, &batch));
+  OverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume, .hessian = hessian};
+  ck_assert_ok(overlap_model_eval(model, &batch));
 }
 
-static void check_hessian(const ContactOverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
+static void check_hessian(const OverlapModel *model, const Demand *demand, const DatagenHardPair *pair,
                           const char *where) {
-  double extent = contact_invariant_extent(pair->x), h = step_of(demand) * extent, hessian[576];
+  double extent = overlap_invariant_extent(pair->x), h = step_of(demand) * extent, hessian[576];
   ask_hessian(model, pair->x, hessian);
   double shift = 0; // what translation of both changes
   for (int i = 0; i < 24; i++)
@@ -318,24 +318,24 @@ static void check_hessian(const ContactOverlapModel *model, const Demand *demand
 }
 
 START_TEST(the_hessian_is_symmetric_and_the_derivative_of_the_gradient) {
-  ContactOverlapModel model = open_model(_i);
+  OverlapModel model = open_model(_i);
   double volume, hessian[576];
   DatagenHardPair pair = datagen_hard_make(2, 0);
-  if (contact_overlap_has_hessian(&model)) {
-    contact_overlap_destroy(&model);
+  if (overlap_model_has_hessian(&model)) {
+    overlap_model_destroy(&model);
     for_each_pair(_i, 0, check_hessian);
     return;
   }
-  ContactOverlapBatch batch = {.pair_count = 1, .pairs = pair.x, .volume = &volume, .hessian = hessian};
-  ck_assert_int_eq(contact_overlap_eval(&model, &batch), STATUS_INPUT);
+  OverlapBatch batch = {.pair_count = 1, .pairs = pair.x, .volume = &volume, .hessian = hessian};
+  ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "Hessian"));
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_tetrahedron_inside_another_is_flagged) {
   if (demand_of(model_at(_i)->name)->lacks & LACKS_STATUS) return;
-  ContactOverlapModel model = open_model(_i);
+  OverlapModel model = open_model(_i);
   int seen = 0;
   for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++) {
     bool is_inside = strcmp(datagen_hard_classes[c].name, "inside") == 0;
@@ -343,40 +343,40 @@ START_TEST(a_tetrahedron_inside_another_is_flagged) {
     for (int member = 0; member < 5; member++) {
       DatagenHardPair pair = datagen_hard_make(c, member);
       double swapped[24];
-      contact_overlap_swap(pair.x, swapped);
-      ck_assert_int_eq(is_inside, (ask(&model, pair.x).flags & CONTACT_OVERLAP_ENCLOSED) != 0);
-      ck_assert_int_eq(is_inside, (ask(&model, swapped).flags & CONTACT_OVERLAP_ENCLOSED) != 0);
+      overlap_ops_swap(pair.x, swapped);
+      ck_assert_int_eq(is_inside, (ask(&model, pair.x).flags & OVERLAP_ENCLOSED) != 0);
+      ck_assert_int_eq(is_inside, (ask(&model, swapped).flags & OVERLAP_ENCLOSED) != 0);
       seen++;
     }
   }
   ck_assert_int_eq(seen, 10);
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_coordinate_that_is_no_number_is_an_error_that_names_the_pair) {
   const double bad[3] = {NAN, INFINITY, -INFINITY};
-  ContactOverlapModel model = open_model(_i);
+  OverlapModel model = open_model(_i);
   double x[5 * 24], volume[5];
   for (int k = 0; k < 5; k++) memcpy(x + 24 * k, datagen_hard_make(0, k).x, 24 * sizeof *x);
-  ContactOverlapBatch batch = {.pair_count = 5, .pairs = x, .volume = volume};
+  OverlapBatch batch = {.pair_count = 5, .pairs = x, .volume = volume};
   for (int kind = 0; kind < 3; kind++)
     for (int i = 0; i < 24; i++) {
       double good = x[3 * 24 + i];
       x[3 * 24 + i] = bad[kind];
-      ck_assert_int_eq(contact_overlap_eval(&model, &batch), STATUS_INPUT);
+      ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_INPUT);
       ck_assert_ptr_nonnull(strstr(status_message(), "pair 3,"));
       x[3 * 24 + i] = good;
     }
-  ck_assert_ok(contact_overlap_eval(&model, &batch));
-  contact_overlap_destroy(&model);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  overlap_model_destroy(&model);
 }
 END_TEST
 
 enum { BATCH = 200 };
 
 START_TEST(results_do_not_depend_on_the_number_of_threads) {
-  ContactOverlapModel model = open_model(_i);
+  OverlapModel model = open_model(_i);
   static double x[BATCH * 24], volume[2][BATCH], gradient[2][BATCH * 24];
   static unsigned flags[2][BATCH];
   for (int k = 0; k < BATCH; k++)
@@ -384,37 +384,37 @@ START_TEST(results_do_not_depend_on_the_number_of_threads) {
   int threads = omp_get_max_threads();
   for (int run = 0; run < 2; run++) {
     omp_set_num_threads(run ? 4 : 1);
-    ContactOverlapBatch batch = {.pair_count = BATCH,
-                                 .pairs = x,
-                                 .volume = volume[run],
-                                 .gradient = gradient[run],
-                                 .flags = flags[run]};
-    ck_assert_ok(contact_overlap_eval(&model, &batch));
+    OverlapBatch batch = {.pair_count = BATCH,
+                          .pairs = x,
+                          .volume = volume[run],
+                          .gradient = gradient[run],
+                          .flags = flags[run]};
+    ck_assert_ok(overlap_model_eval(&model, &batch));
   }
   omp_set_num_threads(threads);
   ck_assert_mem_eq(volume[0], volume[1], sizeof volume[0]);
   ck_assert_mem_eq(gradient[0], gradient[1], sizeof gradient[0]);
   ck_assert_mem_eq(flags[0], flags[1], sizeof flags[0]);
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
 }
 END_TEST
 
 // What a batch leaves out beforehand must be what the model says of the pair.
 START_TEST(a_batch_says_what_each_pair_says) {
-  const ContactOverlapOps *ops = model_at(_i);
+  const OverlapOps *ops = model_at(_i);
   if (ops->eval_batch) return; // batches of their own: tested with them
-  ContactOverlapModel model = open_model(_i);
+  OverlapModel model = open_model(_i);
   static double x[BATCH * 24], volume[BATCH], gradient[BATCH * 24];
   static unsigned flags[BATCH];
   int disjoint = 0, flat = 0;
   for (int k = 0; k < BATCH; k++) {
     memcpy(x + 24 * k, datagen_hard_make(k % DATAGEN_HARD_CLASS_COUNT, k).x, 24 * sizeof *x);
-    for (int c = 12; k % 5 == 0 && c < 24; c++) x[24 * k + c] += 2 * contact_invariant_extent(x + 24 * k);
+    for (int c = 12; k % 5 == 0 && c < 24; c++) x[24 * k + c] += 2 * overlap_invariant_extent(x + 24 * k);
   }
-  ContactOverlapBatch batch = {
+  OverlapBatch batch = {
       .pair_count = BATCH, .pairs = x, .volume = volume, .gradient = gradient, .flags = flags};
   memset(volume, -1, sizeof volume), memset(gradient, -1, sizeof gradient);
-  ck_assert_ok(contact_overlap_eval(&model, &batch));
+  ck_assert_ok(overlap_model_eval(&model, &batch));
   for (int k = 0; k < BATCH; k += demand_of(ops->name)->members < 10 && k % 5 ? 7 : 1) {
     Answer answer;
     ck_assert_ok(
@@ -422,36 +422,36 @@ START_TEST(a_batch_says_what_each_pair_says) {
     ck_assert(answer.volume == volume[k]);
     ck_assert_uint_eq(answer.flags, flags[k]);
     ck_assert_mem_eq(answer.gradient, gradient + 24 * k, sizeof answer.gradient);
-    disjoint += (flags[k] & CONTACT_OVERLAP_DISJOINT) != 0, flat += (flags[k] & CONTACT_OVERLAP_FLAT) != 0;
+    disjoint += (flags[k] & OVERLAP_DISJOINT) != 0, flat += (flags[k] & OVERLAP_FLAT) != 0;
   }
   ck_assert_int_ge(disjoint, 20);
   ck_assert_int_ge(flat, 1);
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
 }
 END_TEST
 
 START_TEST(an_empty_batch_is_fine) {
-  ContactOverlapModel model = open_model(_i);
-  ck_assert_ok(contact_overlap_eval(&model, &(ContactOverlapBatch){0}));
-  contact_overlap_destroy(&model);
+  OverlapModel model = open_model(_i);
+  ck_assert_ok(overlap_model_eval(&model, &(OverlapBatch){0}));
+  overlap_model_destroy(&model);
 }
 END_TEST
 
 START_TEST(an_unknown_name_is_an_error_that_lists_the_known_ones) {
-  ContactOverlapModel model;
-  ck_assert_int_eq(contact_overlap_create(&model, "clipp"), STATUS_INPUT);
+  OverlapModel model;
+  ck_assert_int_eq(overlap_model_create(&model, "clipp"), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "did you mean 'clip'"));
   int count;
-  const ContactOverlapOps *const *models = contact_overlap_list(&count);
+  const OverlapOps *const *models = overlap_model_list(&count);
   for (int m = 0; m < count; m++) ck_assert_ptr_nonnull(strstr(status_message(), models[m]->name));
-  contact_overlap_destroy(&model); // also of one that was never made
+  overlap_model_destroy(&model); // also of one that was never made
 }
 END_TEST
 
 int main(void) {
   TCase *cases = tcase_create("overlap_models");
   int count;
-  contact_overlap_list(&count);
+  overlap_model_list(&count);
   tcase_add_loop_test(cases, volumes_are_right_in_every_class, 0, count);
   tcase_add_loop_test(cases, flags_say_what_the_numbers_are, 0, count);
   tcase_add_loop_test(cases, volumes_are_bounded_and_gradients_balance, 0, count);

@@ -7,12 +7,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "app/pareto_pairs.h"
-#include "app/pareto_scenes.h"
-#include "app/sweep.h"
+#include "app/pareto/pairs.h"
+#include "app/pareto/scenes.h"
+#include "app/training/sweep.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "contact/weights.h"
+#include "overlap/weights.h"
 
 static AppPareto small(void) {
   return (AppPareto){.common = app_bench_options_default(1),
@@ -138,7 +138,7 @@ END_TEST
 // As those of a sweep are.
 START_TEST(a_weights_file_runs_a_scene_as_its_name_does) {
   char path[1024];
-  ck_assert_ok(contact_weights_find("geo-small", path, sizeof path));
+  ck_assert_ok(overlap_weights_find("geo-small", path, sizeof path));
   const char *sources[] = {"geo-small", path}, *overrides[] = {"time.end=0.03"};
   double errors[2];
   for (int k = 0; k < 2; k++) {
@@ -210,7 +210,7 @@ static const char config[] = "name: base\n"
 START_TEST(a_sweep_trains_what_is_missing_and_gives_networks_of_the_sizes) {
   AppSweep sweep;
   AppModelCard card;
-  ContactOverlapModel model = {.ops = NULL};
+  OverlapModel model = {.ops = NULL};
   write_file("geo.yaml", config);
   write_file("sizes",
              "# two widths\ngeo.yaml name=one model.width=4\n\ngeo.yaml  name=two model.width=8 # wider\n");
@@ -218,10 +218,10 @@ START_TEST(a_sweep_trains_what_is_missing_and_gives_networks_of_the_sizes) {
   ck_assert_int_eq(sweep.count, 2);
   const int widths[2] = {4, 8};
   for (int w = 0; w < 2; w++) {
-    ck_assert_ok(contact_overlap_create(&model, sweep.weights[w]));
+    ck_assert_ok(overlap_model_create(&model, sweep.weights[w]));
     ck_assert_ok(app_model_card_read(&model, sweep.weights[w], &card));
     ck_assert_int_eq(card.width, widths[w]);
-    contact_overlap_destroy(&model);
+    overlap_model_destroy(&model);
   }
   app_sweep_destroy(&sweep);
   // what is there is not trained again: it would be refused

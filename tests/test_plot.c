@@ -7,8 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "app/gnuplot.h"
-#include "app/plot.h"
+#include "app/plot/gnuplot.h"
+#include "app/plot/plot.h"
 #include "base/file.h"
 #include "base/memory.h"
 

@@ -7,10 +7,10 @@
 #include <string.h>
 #include <sys/wait.h>
 
-#include "app/precision.h"
-#include "app/precision_summary.h"
-#include "app/scene_read.h"
-#include "app/scene_refine.h"
+#include "app/bench/precision_summary.h"
+#include "app/compare/precision.h"
+#include "app/scene/read.h"
+#include "app/scene/refine.h"
 
 enum { OUTPUT_SIZE = 1 << 16 };
 

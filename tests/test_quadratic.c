@@ -6,11 +6,11 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "fem/element.h"
-#include "fem/load.h"
-#include "fem/mesh.h"
-#include "fem/quadratic.h"
-#include "fem/quadratic_face.h"
+#include "fem/element/element.h"
+#include "fem/element/quadratic.h"
+#include "fem/element/quadratic_face.h"
+#include "fem/mesh/mesh.h"
+#include "fem/model/load.h"
 
 static const double corners[12] = {0.1, -0.2, 0, 1.2, 0.1, -0.1, 0.2, 0.9, 0.1, -0.1, 0.2, 1.1};
 static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -6,17 +6,17 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/report.h"
-#include "app/report_codes.h"
-#include "app/report_page.h"
-#include "app/report_surface.h"
+#include "app/report/codes.h"
+#include "app/report/page.h"
+#include "app/report/report.h"
+#include "app/report/surface.h"
 #include "base/deflate.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/base64.h"
-#include "fem/pvd.h"
-#include "fem/vtu.h"
+#include "fem/output/base64.h"
+#include "fem/output/pvd.h"
+#include "fem/output/vtu.h"
 
 enum { FRAMES = 3, VERTICES = 5, TETS = 2 };
 

@@ -5,9 +5,9 @@
 #include "scene.h"
 
 #include "base/vec3.h"
-#include "fem/drive.h"
-#include "fem/effect_contact.h"
-#include "fem/effect_rest.h"
+#include "fem/effect/contact.h"
+#include "fem/effect/rest.h"
+#include "fem/model/drive.h"
 
 // ---- contact_system_hold
 
@@ -15,7 +15,7 @@ typedef struct Pile {
   Blocks blocks;
   double *rest, *still;
   ContactShape ground;
-  ContactOverlapModel model;
+  OverlapModel model;
   ContactSystem *system;
 } Pile;
 
@@ -32,7 +32,7 @@ static Pile *pile(void) {
   p->rest = blocks_copy(&p->blocks);
   p->still = calloc(3 * (size_t)p->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(p->still);
-  ck_assert_ok(contact_overlap_create(&p->model, "clip"));
+  ck_assert_ok(overlap_model_create(&p->model, "clip"));
   ContactSystemDef def = blocks_def(&p->blocks, p->rest, &p->model);
   def.shapes = &p->ground, def.shape_count = 1, def.margin = 0.2;
   ck_assert_ok(contact_system_create(&p->system, &def));
@@ -42,7 +42,7 @@ static Pile *pile(void) {
 
 static void destroy(Pile *p) {
   contact_system_destroy(p->system);
-  contact_overlap_destroy(&p->model);
+  overlap_model_destroy(&p->model);
   blocks_destroy(&p->blocks);
   free(p->rest), free(p->still), free(p);
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// app/scene_*: scene files, from YAML and JSON to the definition and back; numbers; overrides; memory.
+// app/scene/*: scene files, from YAML and JSON to the definition and back; numbers; overrides; memory.
 #include "suite.h"
 
 #include <glob.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "app/scene_read.h"
-#include "app/scene_write.h"
+#include "app/scene/read.h"
+#include "app/scene/write.h"
 #include "base/memory.h"
 
 static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.yaml";

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// app/scene_read.h: every way in which a scene file or an override can be wrong, with the place and the words
+// app/scene/read.h: every way in which a scene file or an override can be wrong, with the place and the words
 // of the message; whatever stands in a file is survived.
 #include "suite.h"
 
 #include <string.h>
 
-#include "app/scene_read.h"
+#include "app/scene/read.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// app/scene_keys.h: the table of keys, and what is made of it: the manual, the schema.
+// app/scene/keys/keys.h: the table of keys, and what is made of it: the manual, the schema.
 #include "suite.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "app/scene_manual.h"
-#include "app/scene_read.h"
-#include "app/scene_schema.h"
+#include "app/scene/manual.h"
+#include "app/scene/read.h"
+#include "app/scene/schema.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"

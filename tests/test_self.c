@@ -7,7 +7,7 @@
 #include "base/vec3.h"
 #include "contact/friction.h"
 #include "contact/layout.h"
-#include "contact/separation.h"
+#include "overlap/clip/separation.h"
 
 // Overlap models see vertices shifted by less than this (contact/layout.h) [m].
 static const double NUDGE = 2e-9;
@@ -15,14 +15,14 @@ static const double NUDGE = 2e-9;
 typedef struct Fixture {
   Blocks blocks;
   double *rest, *still, *x; // at rest; zero velocities; now
-  ContactOverlapModel model;
+  OverlapModel model;
   ContactSystem *system;
 } Fixture;
 
 static Fixture *empty_fixture(void) {
   Fixture *f = calloc(1, sizeof *f);
   ck_assert_ptr_nonnull(f);
-  ck_assert_ok(contact_overlap_create(&f->model, "clip"));
+  ck_assert_ok(overlap_model_create(&f->model, "clip"));
   return f;
 }
 
@@ -50,7 +50,7 @@ static void update(Fixture *f) {
 
 static void destroy(Fixture *f) {
   contact_system_destroy(f->system);
-  contact_overlap_destroy(&f->model);
+  overlap_model_destroy(&f->model);
   blocks_destroy(&f->blocks);
   free(f->rest), free(f->still), free(f->x), free(f);
 }
@@ -262,8 +262,8 @@ START_TEST(every_pair_that_overlaps_is_found) {
           x[3 * v + c] = f->x[3 * f->blocks.tets[i][v] + c];
           x[12 + 3 * v + c] = f->x[3 * f->blocks.tets[j][v] + c];
         }
-      ck_assert_ok(contact_overlap_eval(
-          &f->model, &(ContactOverlapBatch){.pair_count = 1, .pairs = x, .volume = &volume}));
+      ck_assert_ok(
+          overlap_model_eval(&f->model, &(OverlapBatch){.pair_count = 1, .pairs = x, .volume = &volume}));
       if (!(volume > 1e-8)) continue;
       bool is_found = false;
       for (int k = 0; k < count; k++) is_found = is_found || (tets[2 * k] == i && tets[2 * k + 1] == j);

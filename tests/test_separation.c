@@ -6,8 +6,8 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "contact/overlap.h"
-#include "contact/separation.h"
+#include "overlap/clip/separation.h"
+#include "overlap/model.h"
 
 static const double CORNER[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 
@@ -27,9 +27,9 @@ static void random_pair(Random *random, double apart, double pair[24]) {
 START_TEST(face_to_vertex_is_the_distance) {
   double pair[24];
   place(pair, (double[]){0.2, 0.2, -0.25, 0.2, 0.2, -1, 0.3, 0.2, -1, 0.2, 0.3, -1});
-  ck_assert_near(contact_separation_pair(pair, INFINITY), 0.25, 1e-15);
+  ck_assert_near(overlap_separation_pair(pair, INFINITY), 0.25, 1e-15);
   place(pair, (double[]){0.2, 0.2, 0.125, 0.2, 0.2, -1, 0.3, 0.2, -1, 0.2, 0.3, -1});
-  ck_assert_near(contact_separation_pair(pair, INFINITY), -0.125, 1e-15);
+  ck_assert_near(overlap_separation_pair(pair, INFINITY), -0.125, 1e-15);
 }
 END_TEST
 
@@ -37,13 +37,13 @@ START_TEST(crossed_edges_are_their_distance) {
   // An edge along x below the edge along y.
   double pair[24] = {0,  -1, 1,   0, 1, 1,   0.5, 0,   2,  -0.5, 0,    2,
                      -1, 0,  0.5, 1, 0, 0.5, 0,   0.5, -1, 0,    -0.5, -1};
-  ck_assert_near(contact_separation_pair(pair, INFINITY), 0.5, 1e-15);
+  ck_assert_near(overlap_separation_pair(pair, INFINITY), 0.5, 1e-15);
 }
 END_TEST
 
 START_TEST(the_sign_says_whether_the_interiors_meet) {
-  ContactOverlapModel exact;
-  ck_assert_ok(contact_overlap_create(&exact, "exact"));
+  OverlapModel exact;
+  ck_assert_ok(overlap_model_create(&exact, "exact"));
   Random random = random_seeded(11, 0);
   int apart = 0, certain = 0;
   for (int k = 0; k < 4000; k++) {
@@ -51,25 +51,25 @@ START_TEST(the_sign_says_whether_the_interiors_meet) {
     unsigned flags;
     random_pair(&random, random_between(&random, 0, 2), pair);
     ck_assert_ok(exact.ops->eval_pair(exact.self, pair, &volume, NULL, NULL, &flags));
-    double separation = contact_separation_pair(pair, INFINITY);
+    double separation = overlap_separation_pair(pair, INFINITY);
     if (separation < -1e-12)
       ck_assert_msg(volume > 0, "pair %d: separation %g but no overlap", k, separation);
     if (separation > 1e-12)
       ck_assert_msg(volume == 0, "pair %d: separation %g but overlap %g", k, separation, volume);
-    bool is_certain = contact_separation_is_certain(pair);
+    bool is_certain = overlap_separation_is_certain(pair);
     if (is_certain) ck_assert(separation > -1e-14);
     apart += separation > 0, certain += is_certain;
   }
   ck_assert_int_gt(apart, 1000);
   ck_assert_int_gt(4000 - apart, 1000);
   ck_assert_int_gt(certain, apart / 2);
-  contact_overlap_destroy(&exact);
+  overlap_model_destroy(&exact);
 }
 END_TEST
 
 START_TEST(nothing_is_certain_about_overlap) {
-  ContactOverlapModel exact;
-  ck_assert_ok(contact_overlap_create(&exact, "exact"));
+  OverlapModel exact;
+  ck_assert_ok(overlap_model_create(&exact, "exact"));
   Random random = random_seeded(12, 0);
   for (int k = 0; k < 4000; k++) {
     // Touching to rounding: B's vertices are moved onto A's face plane z = 0, rotated and far from the
@@ -88,17 +88,17 @@ START_TEST(nothing_is_certain_about_overlap) {
         pair[3 * v + c] = R[3 * c] * x[0] + R[3 * c + 1] * x[1] + R[3 * c + 2] * x[2] + (k % 2 ? 1000 : 0);
     }
     ck_assert_ok(exact.ops->eval_pair(exact.self, pair, &volume, NULL, NULL, &flags));
-    if (volume > 0) ck_assert(!contact_separation_is_certain(pair));
+    if (volume > 0) ck_assert(!overlap_separation_is_certain(pair));
   }
-  contact_overlap_destroy(&exact);
+  overlap_model_destroy(&exact);
 }
 END_TEST
 
 // A small one just inside or outside of a corner of one that is up to 2^40 times larger, far from its first
 // vertex: what is certain must be so although differences over the pair's extent lose the small one's digits.
 START_TEST(certainty_holds_at_any_ratio_of_sizes) {
-  ContactOverlapModel exact;
-  ck_assert_ok(contact_overlap_create(&exact, "exact"));
+  OverlapModel exact;
+  ck_assert_ok(overlap_model_create(&exact, "exact"));
   Random random = random_seeded(15, 0);
   int certain = 0, overlapping = 0;
   for (int k = 0; k < 4000; k++) {
@@ -111,14 +111,14 @@ START_TEST(certainty_holds_at_any_ratio_of_sizes) {
     memcpy(shrunk, pair, sizeof shrunk);
     for (int v = 0; v < 24; v++) shrunk[v] *= 0x1p-300;
     ck_assert_ok(exact.ops->eval_pair(exact.self, shrunk, &volume, NULL, NULL, &flags));
-    bool is_disjoint = flags == CONTACT_OVERLAP_DISJOINT;
-    ck_assert(!contact_separation_is_certain(shrunk));
-    if (contact_separation_is_certain(pair)) ck_assert(is_disjoint), certain++;
+    bool is_disjoint = flags == OVERLAP_DISJOINT;
+    ck_assert(!overlap_separation_is_certain(shrunk));
+    if (overlap_separation_is_certain(pair)) ck_assert(is_disjoint), certain++;
     overlapping += !is_disjoint;
   }
   ck_assert_int_gt(certain, 500);
   ck_assert_int_gt(overlapping, 500);
-  contact_overlap_destroy(&exact);
+  overlap_model_destroy(&exact);
 }
 END_TEST
 
@@ -135,12 +135,12 @@ START_TEST(many_at_once_are_found_as_one_by_one) {
   }
   for (int count = COUNT; count >= COUNT - 20; count--) {
     for (int k = 0; k <= COUNT; k++) is_apart[k] = false;
-    contact_separation_find(count, pairs[0], is_apart);
+    overlap_separation_find(count, pairs[0], is_apart);
     found = different = 0;
     for (int k = 0; k < count; k++) {
       if (k % 7 == 0) ck_assert(!is_apart[k]);
-      if (is_apart[k]) ck_assert(contact_separation_pair(pairs[k], INFINITY) > 0);
-      found += is_apart[k], different += is_apart[k] != contact_separation_is_certain(pairs[k]);
+      if (is_apart[k]) ck_assert(overlap_separation_pair(pairs[k], INFINITY) > 0);
+      found += is_apart[k], different += is_apart[k] != overlap_separation_is_certain(pairs[k]);
     }
     ck_assert(!is_apart[count]);
   }
@@ -152,13 +152,13 @@ END_TEST
 START_TEST(a_flat_one_is_never_certainly_apart) {
   double pair[24];
   place(pair, (double[]){5, 5, 5, 6, 5, 5, 5, 6, 5, 5, 5, 6});
-  ck_assert(contact_separation_is_certain(pair));
+  ck_assert(overlap_separation_is_certain(pair));
   for (int t = 0; t < 2; t++)
     for (int c = 0; c < 3; c++) {
       double flat[24];
       memcpy(flat, pair, sizeof flat);
       for (int v = 0; v < 4; v++) flat[12 * t + 3 * v + c] = 7;
-      ck_assert(!contact_separation_is_certain(flat));
+      ck_assert(!overlap_separation_is_certain(flat));
     }
 }
 END_TEST
@@ -169,7 +169,7 @@ START_TEST(never_more_than_the_distance_of_two_points) {
   for (int k = 0; k < 500; k++) {
     double pair[24];
     random_pair(&random, 3, pair);
-    double separation = contact_separation_pair(pair, INFINITY);
+    double separation = overlap_separation_pair(pair, INFINITY);
     for (int s = 0; s < 50; s++) {
       Vec3 point[2];
       for (int t = 0; t < 2; t++) {
@@ -196,9 +196,9 @@ START_TEST(swapping_and_moving_change_nothing) {
       for (int c = 0; c < 3; c++)
         moved[3 * v + c] =
             10 + R[3 * c] * pair[3 * v] + R[3 * c + 1] * pair[3 * v + 1] + R[3 * c + 2] * pair[3 * v + 2];
-    double separation = contact_separation_pair(pair, INFINITY);
-    ck_assert_near(contact_separation_pair(swapped, INFINITY), separation, 1e-13);
-    ck_assert_near(contact_separation_pair(moved, INFINITY), separation, 1e-12);
+    double separation = overlap_separation_pair(pair, INFINITY);
+    ck_assert_near(overlap_separation_pair(swapped, INFINITY), separation, 1e-13);
+    ck_assert_near(overlap_separation_pair(moved, INFINITY), separation, 1e-12);
   }
 }
 END_TEST
@@ -208,8 +208,8 @@ START_TEST(an_early_end_is_a_lower_bound_above_what_was_enough) {
   for (int k = 0; k < 1000; k++) {
     double pair[24];
     random_pair(&random, 2, pair);
-    double whole = contact_separation_pair(pair, INFINITY), enough = random_between(&random, -0.5, 1);
-    double early = contact_separation_pair(pair, enough);
+    double whole = overlap_separation_pair(pair, INFINITY), enough = random_between(&random, -0.5, 1);
+    double early = overlap_separation_pair(pair, enough);
     ck_assert(early <= whole);
     ck_assert(early == whole || early > enough);
   }
@@ -218,8 +218,8 @@ END_TEST
 
 START_TEST(a_halfspace_is_met_by_the_lowest_vertex) {
   static const double POINT[3] = {5, 5, -0.5}, UP[3] = {0, 0, 1}, DOWN[3] = {0, 0, -1};
-  ck_assert_near(contact_separation_halfspace(CORNER, POINT, UP), 0.5, 0);
-  ck_assert_near(contact_separation_halfspace(CORNER, POINT, DOWN), -1.5, 0);
+  ck_assert_near(overlap_separation_halfspace(CORNER, POINT, UP), 0.5, 0);
+  ck_assert_near(overlap_separation_halfspace(CORNER, POINT, DOWN), -1.5, 0);
 }
 END_TEST
 

@@ -12,7 +12,7 @@ typedef struct Fixture {
   Blocks blocks;
   double *rest, *still;
   ContactShape shape;
-  ContactOverlapModel model;
+  OverlapModel model;
   ContactSystem *system;
 } Fixture;
 
@@ -25,7 +25,7 @@ static Fixture *block_on(ContactShape shape) {
   f->rest = blocks_copy(&f->blocks);
   f->still = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(f->still);
-  ck_assert_ok(contact_overlap_create(&f->model, "clip"));
+  ck_assert_ok(overlap_model_create(&f->model, "clip"));
   ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
   def.shapes = &f->shape, def.shape_count = 1, def.margin = 0.5;
   ck_assert_ok(contact_system_create(&f->system, &def));
@@ -35,7 +35,7 @@ static Fixture *block_on(ContactShape shape) {
 
 static void destroy(Fixture *f) {
   contact_system_destroy(f->system);
-  contact_overlap_destroy(&f->model);
+  overlap_model_destroy(&f->model);
   blocks_destroy(&f->blocks);
   free(f->rest), free(f->still), free(f);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/stall.h"
+#include "fem/time/stall.h"
 
 #include "suite.h"
 

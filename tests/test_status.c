@@ -11,7 +11,7 @@ static Status eval_claim(const void *self, const double pair[24], double *volume
   (void)pair, (void)hessian;
   *volume = *(const int *)self;
   if (gradient) memset(gradient, 0, 24 * sizeof *gradient);
-  *flags = *volume > 0 ? 0 : CONTACT_OVERLAP_DISJOINT;
+  *flags = *volume > 0 ? 0 : OVERLAP_DISJOINT;
   return STATUS_OK;
 }
 
@@ -27,23 +27,23 @@ static bool sees_all(const void *self) {
   return true;
 }
 
-static const ContactOverlapOps CLAIM = {.name = "claim", .eval_pair = eval_claim};
-static const ContactOverlapOps GHOSTS = {.name = "ghosts", .eval_pair = eval_claim, .has_ghosts = sees_all};
-static const ContactOverlapOps LOGITS = {
+static const OverlapOps CLAIM = {.name = "claim", .eval_pair = eval_claim};
+static const OverlapOps GHOSTS = {.name = "ghosts", .eval_pair = eval_claim, .has_ghosts = sees_all};
+static const OverlapOps LOGITS = {
     .name = "logits", .eval_pair = eval_claim, .has_ghosts = sees_all, .eval_logits = tell_opposite};
 static int NONE = 0, ALL = 1;
 
 typedef struct Stack {
   Blocks blocks;
   double *rest;
-  ContactOverlapModel exact;
+  OverlapModel exact;
   ContactSystem *system;
 } Stack;
 
 // Two cubes of 2 × 2 × 2 cells of 1 m; the upper one begins `height` above the lower one's top.
-static void build(Stack *stack, double height, const ContactOverlapModel *model) {
+static void build(Stack *stack, double height, const OverlapModel *model) {
   *stack = (Stack){0};
-  ck_assert_ok(contact_overlap_create(&stack->exact, "exact"));
+  ck_assert_ok(overlap_model_create(&stack->exact, "exact"));
   blocks_add(&stack->blocks, &(BlockDef){.cell = {1, 1, 1}, .cells = {2, 2, 2}});
   blocks_add(&stack->blocks,
              &(BlockDef){.corner = {0.3, 0.4, 2 + height}, .cell = {1, 1, 1}, .cells = {2, 2, 2}});
@@ -63,7 +63,7 @@ static const ContactStatus *status_of(Stack *stack) {
 
 static void clear(Stack *stack) {
   contact_system_destroy(stack->system);
-  contact_overlap_destroy(&stack->exact);
+  overlap_model_destroy(&stack->exact);
   free(stack->rest);
   blocks_destroy(&stack->blocks);
 }
@@ -98,7 +98,7 @@ END_TEST
 
 START_TEST(a_model_that_denies_every_overlap_gives_false_negatives_only) {
   Stack stack;
-  ContactOverlapModel none = {&CLAIM, &NONE};
+  OverlapModel none = {&CLAIM, &NONE};
   build(&stack, -0.1, &none);
   const ContactStatus *status = status_of(&stack);
   ck_assert_int_gt(status->pairs.overlapping, 0);
@@ -117,7 +117,7 @@ END_TEST
 // Boxes of many elements meet that share no volume.
 START_TEST(ghosts_are_false_positives_and_a_face_that_separates_hides_them) {
   Stack stack;
-  ContactOverlapModel ghosts = {&GHOSTS, &ALL}, all = {&CLAIM, &ALL};
+  OverlapModel ghosts = {&GHOSTS, &ALL}, all = {&CLAIM, &ALL};
   build(&stack, -0.1, &ghosts);
   const ContactStatusCounts pairs = status_of(&stack)->pairs;
   ck_assert_int_gt(pairs.asked, pairs.overlapping);
@@ -133,7 +133,7 @@ END_TEST
 
 START_TEST(a_status_head_has_the_word_not_the_volume) {
   Stack stack;
-  ContactOverlapModel denies = {&LOGITS, &ALL}, claims = {&LOGITS, &NONE};
+  OverlapModel denies = {&LOGITS, &ALL}, claims = {&LOGITS, &NONE};
   build(&stack, -0.1, &denies);
   const ContactStatusCounts denied = status_of(&stack)->pairs;
   ck_assert_int_eq(denied.false_negatives, denied.overlapping);

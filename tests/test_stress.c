@@ -4,14 +4,14 @@
 
 #include <string.h>
 
-#include "app/stress.h"
-#include "app/stress_limits.h"
-#include "app/stress_linking.h"
-#include "app/stress_scenes.h"
-#include "app/stress_traits.h"
+#include "app/stress/limits.h"
+#include "app/stress/linking.h"
+#include "app/stress/scenes.h"
+#include "app/stress/stress.h"
+#include "app/stress/traits.h"
 #include "base/memory.h"
-#include "contact/overlap.h"
 #include "datagen/hard.h"
+#include "overlap/model.h"
 
 static void run(AppStress *stress, const AppStressOptions *options) {
   Status status = app_stress_run(options, stress);
@@ -34,10 +34,10 @@ static void expect_no_failure(const AppStress *stress) {
 START_TEST(every_class_of_pairs_holds_with_every_model) {
   AppStress stress;
   int count;
-  contact_overlap_list(&count);
+  overlap_model_list(&count);
   char all[512] = "";
   for (int m = 0; m < count; m++) {
-    const char *name = contact_overlap_list(&count)[m]->name;
+    const char *name = overlap_model_list(&count)[m]->name;
     if (strcmp(name, "cgal") == 0) continue; // milliseconds a pair: the long run has it
     strcat(strcat(all, all[0] ? "," : ""), name);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A gain of energy is seen, counted and, with `is_strict`, an error. The time loop takes back what it can, so
-// this program has a registry of effects of its own (it stands in for that of fem/effect.c when the program
-// is linked), with a wind whose energy nobody accounts for.
+// this program has a registry of effects of its own (it stands in for that of fem/effect/effect.c when the
+// program is linked), with a wind whose energy nobody accounts for.
 #include "scene.h"
 
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "suite.h"
 
 #include "base/random.h"
-#include "fem/svd3.h"
+#include "fem/material/svd3.h"
 
 static double determinant(const double A[9]) {
   return A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +

@@ -5,18 +5,18 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/evaluation.h"
-#include "app/evaluation_model.h"
-#include "app/training.h"
-#include "app/training_pool.h"
-#include "app/training_rates.h"
-#include "app/training_start.h"
+#include "app/evaluation/evaluation.h"
+#include "app/evaluation/model.h"
+#include "app/training/pool.h"
+#include "app/training/rates.h"
+#include "app/training/start.h"
+#include "app/training/training.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "contact/clip.h"
-#include "contact/geo.h"
-#include "contact/geo_net.h"
+#include "overlap/clip/clip.h"
+#include "overlap/geo/geo.h"
+#include "overlap/geo/network.h"
 #include "suite.h"
 
 static char directory[64];
@@ -114,7 +114,7 @@ END_TEST
 START_TEST(affine_directions_change_neither_features_nor_target) {
   size_t count;
   DatagenPairs pairs = load_pairs(40, &count);
-  const ContactGeoFeatureSet *set = contact_geo_feature_set(36);
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(36);
   Random random = random_seeded(2, 0);
   int used = 0;
   for (size_t n = 0; n < count; n++) {
@@ -126,8 +126,8 @@ START_TEST(affine_directions_change_neither_features_nor_target) {
         direction[3 * v + r] = matrix[9 + r];
         for (int c = 0; c < 3; c++) direction[3 * v + r] += matrix[3 * r + c] * pair[3 * v + c];
       }
-    if (contact_geo_features_tangent(set, pair, 1, direction, features, changes, &guess, &guess_change) !=
-        CONTACT_GEO_INSIDE)
+    if (overlap_geo_features_tangent(set, pair, 1, direction, features, changes, &guess, &guess_change) !=
+        OVERLAP_GEO_INSIDE)
       continue;
     used++;
     for (int f = 0; f < 36; f++) ck_assert_near(changes[f], 0, 1e-7);
@@ -144,7 +144,7 @@ START_TEST(pool_holds_whitened_inputs) {
   DatagenPairs pairs = load_pairs(600, &count);
   AppTrainingPool pool;
   NetWhitening none = {0};
-  ck_assert_ok(app_training_pool_create(&pool, contact_geo_feature_set(36), &pairs, count, &none));
+  ck_assert_ok(app_training_pool_create(&pool, overlap_geo_features_set(36), &pairs, count, &none));
   ck_assert_int_eq((long long)pool.count + pool.left_out, 600);
   for (int i = 0; i < 36; i++) {
     double mean = 0, square = 0;
@@ -223,11 +223,11 @@ START_TEST(rates_are_the_changes_of_clipped_volumes) {
   int used = 0;
   ck_assert_ok(app_training_rates_create(&rates, 1));
   for (size_t n = 0; n < count; n++) {
-    ContactNormalised normalised;
+    OverlapTpnNormalised normalised;
     float direction[24];
     double moved[24], volume[2];
     unsigned flags;
-    ck_assert(contact_normalise(CONTACT_NORMALISE_UNIT, pairs.coordinates + 24 * n, &normalised));
+    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_UNIT, pairs.coordinates + 24 * n, &normalised));
     if (!(pairs.volume[n] > 1e-3 * normalised.factor)) continue;
     app_training_rates_set(&rates, 0, &normalised, pairs.gradient + 24 * n, scale);
     app_training_rates_finish(&rates, 1);
@@ -235,7 +235,7 @@ START_TEST(rates_are_the_changes_of_clipped_volumes) {
     for (int side = 0; side < 2; side++) {
       for (int i = 0; i < 24; i++)
         moved[i] = normalised.pair[i] + (side ? step : -step) * (double)direction[i];
-      ck_assert_ok(contact_overlap_clip.eval_pair(NULL, moved, &volume[side], NULL, NULL, &flags));
+      ck_assert_ok(overlap_clip_ops.eval_pair(NULL, moved, &volume[side], NULL, NULL, &flags));
     }
     ck_assert_near(scale * (volume[1] - volume[0]) / (2 * step), rate, 1e-3);
     used++;
@@ -345,7 +345,7 @@ static AppEvaluation evaluate(const char *model_name) {
   AppSourceDef def = {.law = "scene", .count = 1000, .seed = 77};
   DatagenPairs pairs;
   size_t count;
-  ContactOverlapModel model;
+  OverlapModel model;
   AppEvaluationRun run;
   AppEvaluation result;
   ck_assert_ok(app_training_source_load(&def, &pairs, &count));
@@ -354,7 +354,7 @@ static AppEvaluation evaluate(const char *model_name) {
   ck_assert_ok(app_evaluation_add(&run, &pairs, count));
   app_evaluation_finish(&run, &result);
   app_evaluation_end(&run);
-  contact_overlap_destroy(&model);
+  overlap_model_destroy(&model);
   datagen_pairs_destroy(&pairs);
   return result;
 }
@@ -423,14 +423,14 @@ START_TEST(weights_brought_over_to_another_whitening_are_the_same_function) {
   DatagenPairs pairs = load_pairs(300, &count);
   AppTrainingPool pool;
   NetWhitening none = {0};
-  ck_assert_ok(app_training_pool_create(&pool, contact_geo_feature_set(36), &pairs, count, &none));
+  ck_assert_ok(app_training_pool_create(&pool, overlap_geo_features_set(36), &pairs, count, &none));
   NetShape shape = app_training_geo.shape(&config);
   NetModel_f32 model;
   NetModel_f64 folded, file;
   ck_assert_int_eq(net_model_create_f32(&shape, &model), NET_OK);
   ck_assert_int_eq(net_model_create_f64(&shape, &folded), NET_OK);
   ck_assert_ok(
-      app_training_start_read(path_in("t.safetensors"), CONTACT_GEO_NORMALISATION, &pool.whitening, &model));
+      app_training_start_read(path_in("t.safetensors"), OVERLAP_GEO_NORMALISATION, &pool.whitening, &model));
   net_model_widen(&model, &folded);
   ck_assert_int_eq(net_whitening_fold(&pool.whitening, &folded), NET_OK);
   read_parameters(path_in("t.safetensors"), &file);
@@ -439,8 +439,8 @@ START_TEST(weights_brought_over_to_another_whitening_are_the_same_function) {
   ck_assert_int_eq(net_work_create_f64(file.plan, &def, &work), NET_OK);
   for (size_t n = 0; n < count; n++) {
     double features[36], unused, expected, found;
-    if (contact_geo_features_tangent(pool.set, pairs.coordinates + 24 * n, 0, NULL, features, NULL, &unused,
-                                     NULL) != CONTACT_GEO_INSIDE)
+    if (overlap_geo_features_tangent(pool.set, pairs.coordinates + 24 * n, 0, NULL, features, NULL, &unused,
+                                     NULL) != OVERLAP_GEO_INSIDE)
       continue;
     net_forward_eval_f64(&work, &file, 1, features, &expected);
     net_forward_eval_f64(&work, &folded, 1, features, &found);

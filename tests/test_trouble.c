@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "fem/trouble.h"
+#include "fem/run/trouble.h"
 
 typedef struct Looked {
   SceneRun run;

@@ -13,7 +13,7 @@ static const double ETA = 70; // [Pa s]
 typedef struct Fixture {
   Blocks blocks;
   double *rest, *still;
-  ContactOverlapModel model;
+  OverlapModel model;
   ContactShape ground;
   ContactSystem *system;
   ContactViscosity law;
@@ -22,7 +22,7 @@ typedef struct Fixture {
 static Fixture *empty_fixture(void) {
   Fixture *f = calloc(1, sizeof *f);
   ck_assert_ptr_nonnull(f);
-  ck_assert_ok(contact_overlap_create(&f->model, "clip"));
+  ck_assert_ok(overlap_model_create(&f->model, "clip"));
   return f;
 }
 
@@ -66,7 +66,7 @@ static Fixture *block_on_rising_ground(void) {
 static void destroy(Fixture *f) {
   contact_viscosity_destroy(&f->law);
   contact_system_destroy(f->system);
-  contact_overlap_destroy(&f->model);
+  overlap_model_destroy(&f->model);
   blocks_destroy(&f->blocks);
   free(f->rest), free(f->still), free(f);
 }

@@ -15,10 +15,10 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/base64.h"
-#include "fem/pvd.h"
-#include "fem/vtu.h"
-#include "fem/vtu_read.h"
+#include "fem/output/base64.h"
+#include "fem/output/pvd.h"
+#include "fem/output/vtu.h"
+#include "fem/output/vtu_read.h"
 
 static char path[64];
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrays out of the page's text: the way back of app/report_codes.c.
+// Arrays out of the page's text: the way back of app/report/codes.c.
 
 export const LEVELS = 65534; // codes 0 … 65534 go from low to high
 export const NO_CODE = 65535; // not finite

@@ -12,12 +12,12 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/mesh.h"
-#include "fem/mesh_header.h"
-#include "fem/mesh_tetgen.h"
-#include "fem/mesh_validate.h"
-#include "fem/vtu.h"
-#include "fem/vtu_read.h"
+#include "fem/mesh/mesh.h"
+#include "fem/mesh/reader/header.h"
+#include "fem/mesh/reader/tetgen.h"
+#include "fem/mesh/validate.h"
+#include "fem/output/vtu.h"
+#include "fem/output/vtu_read.h"
 #include "target.h"
 
 static void check_refusal(Status status) {
@@ -25,7 +25,7 @@ static void check_refusal(Status status) {
   FUZZ_CLAIM(strlen(status_message()) > 8, "message '%s'", status_message());
 }
 
-// What fem/mesh.h promises of every mesh, and that its measures can be taken.
+// What fem/mesh/mesh.h promises of every mesh, and that its measures can be taken.
 static void check_mesh(const FemMesh *mesh) {
   FUZZ_CLAIM(mesh->tet_count > 0 && mesh->vertex_count >= 4, "%d tetrahedra", mesh->tet_count);
   for (int t = 0; t < mesh->tet_count; t++) {

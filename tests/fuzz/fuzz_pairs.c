@@ -17,13 +17,13 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "contact/geo_gate.h"
-#include "contact/invariant.h"
-#include "contact/overlap.h"
 #include "datagen/hard.h"
+#include "overlap/geo/gate.h"
+#include "overlap/invariant.h"
+#include "overlap/model.h"
 #include "target.h"
 
-enum { SIZE = CONTACT_PAIR_SIZE, PAIR_BYTES = SIZE * sizeof(double) };
+enum { SIZE = OVERLAP_PAIR_SIZE, PAIR_BYTES = SIZE * sizeof(double) };
 
 // Limits relative to the pair's own size; the reason stands in each.
 static const double
@@ -53,18 +53,18 @@ typedef struct Batch {
 static const char *const names[] = {"exact", "clip-scalar", "clip", "geo"};
 typedef enum Model { EXACT, CLIP_SCALAR, CLIP, GEO, MODEL_COUNT } Model;
 
-static const ContactOverlapModel *model_of(Model model) {
-  static ContactOverlapModel models[MODEL_COUNT];
+static const OverlapModel *model_of(Model model) {
+  static OverlapModel models[MODEL_COUNT];
   if (!models[model].ops)
-    FUZZ_CLAIM(contact_overlap_create(&models[model], names[model]) == STATUS_OK, "%s", status_message());
+    FUZZ_CLAIM(overlap_model_create(&models[model], names[model]) == STATUS_OK, "%s", status_message());
   return &models[model];
 }
 
 static void ask(Model model, int count, const double *pairs, double *volumes, double *gradients,
                 unsigned *flags) {
-  ContactOverlapBatch batch = {
+  OverlapBatch batch = {
       .pair_count = count, .pairs = pairs, .volume = volumes, .gradient = gradients, .flags = flags};
-  FUZZ_CLAIM(contact_overlap_eval(model_of(model), &batch) == STATUS_OK, "%s: %s", names[model],
+  FUZZ_CLAIM(overlap_model_eval(model_of(model), &batch) == STATUS_OK, "%s: %s", names[model],
              status_message());
 }
 
@@ -80,7 +80,7 @@ static void fill_batch(const double x[SIZE], Batch *batch) {
   memcpy(batch->pairs[LAST], x, PAIR_BYTES);
   for (int k = 1; k < LAST; k++) {
     double swapped[SIZE];
-    contact_overlap_swap(x, swapped);
+    overlap_ops_swap(x, swapped);
     const double *from = k & 1 ? swapped : x;
     datagen_hard_permute(from, (5 * k) % 24, batch->pairs[k]);
     datagen_hard_permute(from + 12, (7 * k + 3) % 24, batch->pairs[k] + 12);
@@ -96,37 +96,37 @@ static bool is_finite(const Answer *answer) {
 
 // What rounding of products of three lengths is to the smaller volume: large if that is flat or small.
 static double flatness_of(const double x[SIZE]) {
-  double extent = contact_invariant_extent(x);
-  return extent / contact_invariant_smaller_volume(x) * extent * extent;
+  double extent = overlap_invariant_extent(x);
+  return extent / overlap_invariant_smaller_volume(x) * extent * extent;
 }
 
 // `geo` knows a slice by the angle between its faces, which is rounded by some ε: of the slice's thickness,
 // and so of the forces on it, that is ε · smaller/V.
 static double slice_doubt(const double x[SIZE], const Answer *answer) {
-  double largest = 0, extent = contact_invariant_extent(x);
+  double largest = 0, extent = overlap_invariant_extent(x);
   for (int i = 0; i < SIZE; i++) largest = fmax(largest, fabs(answer->gradient[i]));
-  return DBL_EPSILON * largest / (extent * extent) * contact_invariant_smaller_volume(x) / answer->volume;
+  return DBL_EPSILON * largest / (extent * extent) * overlap_invariant_smaller_volume(x) / answer->volume;
 }
 
 static void check_answer(Model model, const double x[SIZE], const Answer *answer) {
   const char *name = names[model];
-  bool is_flat = (answer->flags & CONTACT_OVERLAP_FLAT) != 0;
-  double least = contact_invariant_smaller_volume(x), flatness = flatness_of(x),
+  bool is_flat = (answer->flags & OVERLAP_FLAT) != 0;
+  double least = overlap_invariant_smaller_volume(x), flatness = flatness_of(x),
          balance = (model == GEO ? BALANCE_GEO : BALANCE) * (1 + 1e-3 * flatness);
   FUZZ_CLAIM(is_finite(answer), "%s: V = %g", name, answer->volume);
   FUZZ_CLAIM(answer->volume >= 0, "%s: V = %g", name, answer->volume);
-  if (answer->flags & (CONTACT_OVERLAP_FLAT | CONTACT_OVERLAP_DISJOINT)) // else V may have underflowed
+  if (answer->flags & (OVERLAP_FLAT | OVERLAP_DISJOINT)) // else V may have underflowed
     for (int i = 0; i < SIZE; i++)
       FUZZ_CLAIM(answer->gradient[i] == 0, "%s: component %d is %g", name, i, answer->gradient[i]);
   if (is_flat) FUZZ_CLAIM(answer->volume == 0, "%s: V = %g", name, answer->volume);
   if (answer->volume == 0) return;
-  double above = contact_invariant_bounds(x, answer->volume);
+  double above = overlap_invariant_bounds(x, answer->volume);
   FUZZ_CLAIM(above <= (model == GEO ? ERROR_GEO : 0) + BOUNDS * (1 + flatness),
              "%s: V = %.17g, smaller %.17g, beyond by %g", name, answer->volume, least, above);
   if (model == GEO) balance += slice_doubt(x, answer);
-  double residuals[3] = {contact_invariant_translation(x, answer->gradient),
-                         contact_invariant_rotation(x, answer->gradient),
-                         contact_invariant_scaling(x, answer->volume, answer->gradient)};
+  double residuals[3] = {overlap_invariant_translation(x, answer->gradient),
+                         overlap_invariant_rotation(x, answer->gradient),
+                         overlap_invariant_scaling(x, answer->volume, answer->gradient)};
   for (int k = 0; k < 3; k++)
     FUZZ_CLAIM(residuals[k] <= balance, "%s: sum %d of dV/dx is %g, V = %g", name, k, residuals[k],
                answer->volume);
@@ -140,11 +140,11 @@ static double tet_extent(const double tet[12]) {
   return longest;
 }
 
-// How far off a plane of the tetrahedron `geo` takes a point for on it (contact/geo_gate.h).
+// How far off a plane of the tetrahedron `geo` takes a point for on it (overlap/geo/gate.h).
 static double plane_doubt(const double tet[12]) {
-  double extent = tet_extent(tet), det = 6 * contact_invariant_tet_volume(tet),
-         flatness = fmin(extent * extent * extent / det, 1 / CONTACT_GEO_FLATTEST);
-  return fmax(CONTACT_GEO_NOISE, CONTACT_GEO_ROUNDING * flatness) * extent;
+  double extent = tet_extent(tet), det = 6 * overlap_invariant_tet_volume(tet),
+         flatness = fmin(extent * extent * extent / det, 1 / OVERLAP_GEO_FLATTEST);
+  return fmax(OVERLAP_GEO_NOISE, OVERLAP_GEO_ROUNDING * flatness) * extent;
 }
 
 // An overlap that is called none may be some 24 times as thick.
@@ -156,18 +156,17 @@ static double doubt_of_geo(const double x[SIZE]) {
 static void check_against_exact(Model model, const double x[SIZE], const Answer *answer,
                                 const Answer *exact) {
   const char *name = names[model];
-  bool is_flat = (answer->flags & CONTACT_OVERLAP_FLAT) != 0,
-       is_truly_flat = (exact->flags & CONTACT_OVERLAP_FLAT) != 0;
+  bool is_flat = (answer->flags & OVERLAP_FLAT) != 0, is_truly_flat = (exact->flags & OVERLAP_FLAT) != 0;
   FUZZ_CLAIM(is_flat == is_truly_flat, "%s: flags %u, exact %u", name, answer->flags, exact->flags);
   if (model == GEO) {
     double error = fabs(answer->volume - exact->volume);
-    FUZZ_CLAIM(!(answer->flags & CONTACT_OVERLAP_DISJOINT) ||
-                   exact->volume <= 1e-9 * contact_invariant_smaller_volume(x) + doubt_of_geo(x),
+    FUZZ_CLAIM(!(answer->flags & OVERLAP_DISJOINT) ||
+                   exact->volume <= 1e-9 * overlap_invariant_smaller_volume(x) + doubt_of_geo(x),
                "%s: disjoint, exact V = %.17g", name, exact->volume);
-    FUZZ_CLAIM(is_truly_flat || error <= ERROR_GEO * contact_invariant_smaller_volume(x) + doubt_of_geo(x),
+    FUZZ_CLAIM(is_truly_flat || error <= ERROR_GEO * overlap_invariant_smaller_volume(x) + doubt_of_geo(x),
                "V = %.17g, exact %.17g, flags %u", answer->volume, exact->volume, answer->flags);
   } else if (!is_truly_flat) {
-    double misfit = contact_invariant_misfit(x, answer->volume, exact->volume);
+    double misfit = overlap_invariant_misfit(x, answer->volume, exact->volume);
     FUZZ_CLAIM(misfit <= 1, "%s: V = %.17g, exact %.17g, %g times what is allowed", name, answer->volume,
                exact->volume, misfit);
   }
@@ -187,11 +186,11 @@ static void check_lanes(Model model, const Answer *alone, const Batch *batch) {
 
 // Variants 1 … 8 are the pair in another order.
 static void check_orders(Model model, const double x[SIZE], const Answer *answer, const Batch *batch) {
-  double least = contact_invariant_smaller_volume(x);
+  double least = overlap_invariant_smaller_volume(x);
   for (int k = 1; k <= 8; k++) {
     double difference = fabs(batch->volumes[k] - answer->volume);
     double allowed =
-        model == GEO ? 1e-9 * least + doubt_of_geo(x) : 2 * contact_invariant_allowed(x, answer->volume);
+        model == GEO ? 1e-9 * least + doubt_of_geo(x) : 2 * overlap_invariant_allowed(x, answer->volume);
     FUZZ_CLAIM(difference <= allowed || least == 0, "%s: V = %.17g, in order %d %.17g, smaller %g",
                names[model], answer->volume, k, batch->volumes[k], least);
   }
@@ -201,15 +200,15 @@ static void check_orders(Model model, const double x[SIZE], const Answer *answer
 static bool is_moderate(const double x[SIZE]) {
   double largest = 0;
   for (int i = 0; i < SIZE; i++) largest = fmax(largest, fabs(x[i]));
-  double least = contact_invariant_smaller_volume(x); // parts of it are to be normal numbers, too
-  return largest < 0x1p60 && contact_invariant_extent(x) > 0x1p-60 && (least == 0 || least > 0x1p-960);
+  double least = overlap_invariant_smaller_volume(x); // parts of it are to be normal numbers, too
+  return largest < 0x1p60 && overlap_invariant_extent(x) > 0x1p-60 && (least == 0 || least > 0x1p-960);
 }
 
 static void check_refused(const double x[SIZE]) {
   for (int m = 0; m < MODEL_COUNT; m++) {
     double volume;
-    ContactOverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume};
-    Status status = contact_overlap_eval(model_of((Model)m), &batch);
+    OverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume};
+    Status status = overlap_model_eval(model_of((Model)m), &batch);
     FUZZ_CLAIM(status == STATUS_INPUT, "%s: status %d", names[m], (int)status);
   }
 }

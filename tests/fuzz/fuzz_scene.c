@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/scene_override.h"
-#include "app/scene_read.h"
-#include "app/scene_write.h"
+#include "app/scene/override.h"
+#include "app/scene/read.h"
+#include "app/scene/write.h"
 #include "base/memory.h"
 #include "base/record.h"
 #include "target.h"

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/geo_net.h"
-#include "contact/net_model.h"
-#include "contact/overlap.h"
-#include "contact/weights.h"
 #include "datagen/hard.h"
 #include "net/weights.h"
+#include "overlap/geo/network.h"
+#include "overlap/model.h"
+#include "overlap/tpn/network.h"
+#include "overlap/weights.h"
 #include "target.h"
 
 static const char file_name[] = "fuzz.safetensors";
@@ -43,8 +43,8 @@ static void read_both(const char *path) {
 
 // Weights are any finite numbers, so the volumes may be, too: nothing is claimed of them.
 static void read_model(const char *path) {
-  ContactOverlapModel model;
-  Status status = contact_overlap_create(&model, path);
+  OverlapModel model;
+  Status status = overlap_model_create(&model, path);
   if (status) {
     FUZZ_CLAIM(status == STATUS_INPUT, "status %d: %s", (int)status, status_message());
     FUZZ_CLAIM(strstr(status_message(), path), "no path in '%s'", status_message());
@@ -52,9 +52,9 @@ static void read_model(const char *path) {
   }
   DatagenHardPair pair = datagen_hard_make(0, 0);
   double volume, gradient[24];
-  ContactOverlapBatch batch = {.pair_count = 1, .pairs = pair.x, .volume = &volume, .gradient = gradient};
-  contact_overlap_eval(&model, &batch);
-  contact_overlap_destroy(&model);
+  OverlapBatch batch = {.pair_count = 1, .pairs = pair.x, .volume = &volume, .gradient = gradient};
+  overlap_model_eval(&model, &batch);
+  overlap_model_destroy(&model);
 }
 
 static void run(const uint8_t *data, size_t size) {
@@ -79,9 +79,9 @@ static NetShape shape_of(int k) {
 
 static void write_seed(int k, const char *path) {
   NetShape shape = shape_of(k);
-  char normalisation[CONTACT_NET_NORMALISATION_TEXT] = CONTACT_GEO_NORMALISATION, range[] = "",
+  char normalisation[OVERLAP_TPN_NORMALISATION_TEXT] = OVERLAP_GEO_NORMALISATION, range[] = "",
        provenance[] = "a seed";
-  if (shape.kind == NET_TPN) contact_net_model_print(CONTACT_NORMALISE_UNIT, 1000, normalisation);
+  if (shape.kind == NET_TPN) overlap_tpn_network_print(OVERLAP_TPN_NORMALISE_UNIT, 1000, normalisation);
   NetCard card = {normalisation, range, provenance};
   NetModel_f64 number = {0};
   NetModel_f32 single = {0};

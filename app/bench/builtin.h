@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scenes that benches bring along, so that they need no file.
+#ifndef TETLAP_APP_BENCH_BUILTIN_H
+#define TETLAP_APP_BENCH_BUILTIN_H
+
+#include "fem/model/scene.h"
+
+// A beam of about `nodes` (≥ 24) vertices, `slenderness` times as long as thick (0.1 m), of cubes cut into
+// tetrahedra, clamped at one end, that falls under gravity: neo-Hookean, E 1 MPa, ν 0.4, 1000 kg/m³, damped;
+// 1 s. The more slender, the sparser are the factors. The caller destroys the scene.
+Status app_bench_builtin_beam(int nodes, double slenderness, FemSceneDef *scene);
+
+// A block of 0.2 m, 4³ cells, that falls 5 cm flat onto the ground and is not damped: neo-Hookean, E 1 MPa,
+// ν 0.4, 1000 kg/m³; 0.3 s. `stiffness` κ [Pa], `tolerance` of the time integration as in a scene file.
+Status app_bench_builtin_drop(double stiffness, double tolerance, FemSceneDef *scene);
+
+// Two blocks of 0.1 m whose meshes do not match, about `nodes` (≥ 60) vertices together, the upper one turned
+// about the vertical and pressed 2 % of an edge into the lower one, which stands on the ground: contact from
+// the first step. E 0.1 and 0.2 MPa, damped, gravity; 0.1 s.
+Status app_bench_builtin_blocks(int nodes, FemSceneDef *scene);
+
+#endif

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/bench/options.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/argument.h"
+#include "base/text.h"
+
+AppBenchOptions app_bench_options_default(int repeats) {
+  return (AppBenchOptions){.threads = 1, .repeats = repeats, .thread_list = {1}, .thread_list_count = 1};
+}
+
+static const struct argp_option option_table[] = {
+    {"threads", 't', "N", 0, "Threads (default: 1); some benches take a list, as in 1,2", 2},
+    {"repeat", 'r', "N", 0, "Rounds; the median is reported", 2},
+    {"json", 'j', NULL, 0, "Print one JSON object a row", 3},
+    {"csv", 'c', NULL, 0, "Print comma-separated values", 3},
+    {"markdown", 'M', NULL, 0, "Print a Markdown table", 3},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  AppBenchOptions *options = state->input;
+  switch (key) {
+  case 't':
+    options->thread_list_count = app_bench_options_counts(state, "threads", text, 1024, options->thread_list);
+    if (options->thread_list_count > 1 && !options->takes_thread_list)
+      argp_error(state, "--threads is '%s'; this bench takes one number", text);
+    options->threads = options->thread_list[0];
+    return 0;
+  case 'r':
+    options->repeats = (int)app_argument_integer(state, "repeat", text, 1, APP_BENCH_MAX_REPEATS);
+    return 0;
+  case 'j':
+    options->format = APP_BENCH_FORMAT_JSON;
+    return 0;
+  case 'c':
+    options->format = APP_BENCH_FORMAT_CSV;
+    return 0;
+  case 'M':
+    options->format = APP_BENCH_FORMAT_MARKDOWN;
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+const struct argp app_bench_options_argp = {.options = option_table, .parser = parse};
+
+static int find(const char *word, size_t length, const char *const *names, int count) {
+  int found = 0;
+  while (found < count && !(strlen(names[found]) == length && strncmp(names[found], word, length) == 0))
+    found++;
+  return found;
+}
+
+void app_bench_options_choose(struct argp_state *state, const char *option, const char *text,
+                              const char *const *names, int count, bool *wanted) {
+  char known[256] = "";
+  size_t used = 0;
+  for (int i = 0; i < count; i++) {
+    text_append(known, sizeof known, &used, "%s%s", i ? ", " : "", names[i]);
+    wanted[i] = false;
+  }
+  for (const char *rest = text;; rest++) {
+    size_t length = strcspn(rest, ",");
+    int found = find(rest, length, names, count);
+    if (found == count) {
+      argp_error(state, "--%s has '%.*s'; give some of: %s", option, (int)length, rest, known);
+      return;
+    }
+    wanted[found] = true;
+    rest += length;
+    if (!*rest) return;
+  }
+}
+
+int app_bench_options_numbers(struct argp_state *state, const char *option, const char *text, double smallest,
+                              double largest, double *numbers) {
+  const char *rest = text;
+  for (int count = 0; count < APP_BENCH_MAX_LIST; rest++) {
+    char *end;
+    double value = strtod(rest, &end);
+    if (end == rest || (*end && *end != ',') || !(value >= smallest && value <= largest)) break;
+    numbers[count++] = value;
+    rest = end;
+    if (!*rest) return count;
+  }
+  argp_error(state, "--%s is '%s'; give up to %d numbers from %g to %g, separated by commas", option, text,
+             APP_BENCH_MAX_LIST, smallest, largest);
+  return 0;
+}
+
+int app_bench_options_counts(struct argp_state *state, const char *option, const char *text, int largest,
+                             int *counts) {
+  double numbers[APP_BENCH_MAX_LIST];
+  int count = app_bench_options_numbers(state, option, text, 1, largest, numbers);
+  for (int i = 0; i < count; i++) {
+    if (numbers[i] != floor(numbers[i]))
+      argp_error(state, "--%s has %g; give whole numbers from 1 to %d", option, numbers[i], largest);
+    counts[i] = (int)numbers[i];
+  }
+  return count;
+}

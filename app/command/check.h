@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap check SCENE`: what a run would do, without running.
+#ifndef TETLAP_APP_COMMAND_CHECK_H
+#define TETLAP_APP_COMMAND_CHECK_H
+
+int app_check_run(int argument_count, char **arguments);
+
+#endif

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/compare.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/compare/comparison.h"
+#include "app/job.h"
+#include "base/clock.h"
+#include "base/cpu.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "fem/effect/contact.h"
+
+typedef struct CompareOptions {
+  AppJobOptions job;
+  char *overlaps, *audit_only; // comma-separated
+  const char *reference;
+  int audit_every;
+} CompareOptions;
+
+enum { KEY_REFERENCE = 256, KEY_AUDIT, KEY_AUDIT_ONLY };
+
+static const struct argp_option option_table[] = {
+    {"overlap", 'm', "NAME,…", 0, "The overlap models to compare", 1},
+    {"reference", KEY_REFERENCE, "NAME", 0, "The model that the others are held against (default: the first)",
+     1},
+    {"audit", KEY_AUDIT, "K", 0,
+     "Evaluate all models in every K-th step in contact of the reference (default 10; 0: never)", 1},
+    {"audit-only", KEY_AUDIT_ONLY, "NAME,…", 0,
+     "Models that take part in the audit but get no run of their own", 1},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  CompareOptions *options = state->input;
+  char *end;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &options->job;
+    break;
+  case 'm':
+    options->overlaps = text;
+    break;
+  case KEY_REFERENCE:
+    options->reference = text;
+    break;
+  case KEY_AUDIT_ONLY:
+    options->audit_only = text;
+    break;
+  case KEY_AUDIT:
+    options->audit_every = (int)strtol(text, &end, 10);
+    if (*end || end == text || options->audit_every < 0)
+      argp_error(state, "--audit takes a whole number, not '%s'", text);
+    break;
+  case ARGP_KEY_END:
+    if (!options->overlaps) argp_error(state, "name the models, as in --overlap clip,exact");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static Status add_model(AppComparison *comparison, const FemSceneDef *scene, const char *name,
+                        bool is_driven) {
+  for (int m = 0; m < comparison->model_count; m++)
+    if (strcmp(comparison->models[m].name, name) == 0)
+      return status_fail(STATUS_USAGE, "the model '%s' is named twice; name it once", name);
+  if (comparison->model_count == APP_MAX_MODELS)
+    return status_fail(STATUS_USAGE, "at most %d models can be compared", APP_MAX_MODELS);
+  AppComparisonModel *model = &comparison->models[comparison->model_count];
+  Status status = fem_effect_contact_create_overlap(scene, name, &model->overlap);
+  if (status) return status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "--overlap") : status;
+  model->name = name;
+  model->is_driven = is_driven;
+  comparison->model_count++;
+  return STATUS_OK;
+}
+
+static Status add_models(AppComparison *comparison, const FemSceneDef *scene, char *names, bool is_driven) {
+  char *rest = NULL;
+  for (char *name = strtok_r(names, ",", &rest); name; name = strtok_r(NULL, ",", &rest))
+    TRY(add_model(comparison, scene, name, is_driven));
+  return STATUS_OK;
+}
+
+static Status choose_models(AppComparison *comparison, const FemSceneDef *scene,
+                            const CompareOptions *options) {
+  TRY(add_models(comparison, scene, options->overlaps, true));
+  if (options->audit_only) TRY(add_models(comparison, scene, options->audit_only, false));
+  comparison->audit_every = options->audit_every;
+  if (!options->reference) return STATUS_OK;
+  for (int m = 0; m < comparison->model_count; m++)
+    if (strcmp(comparison->models[m].name, options->reference) == 0 && comparison->models[m].is_driven) {
+      comparison->reference = m;
+      return STATUS_OK;
+    }
+  return status_fail(STATUS_USAGE, "--reference %s: is not among the models of --overlap",
+                     options->reference);
+}
+
+typedef struct Observer {
+  AppProgress progress;
+  AppComparison *comparison; // NULL: no audit in this run
+  long long step_in_contact;
+} Observer;
+
+static Status observe(void *self, const FemRunProgress *progress) {
+  Observer *observer = self;
+  app_job_show_progress(&observer->progress, progress);
+  return observer->comparison
+             ? app_comparison_audit(observer->comparison, progress, &observer->step_in_contact)
+             : STATUS_OK;
+}
+
+// The folder of a model's run below the output directory: its name, or that of its weights file.
+static const char *folder_of(const char *name) {
+  const char *slash = strrchr(name, '/');
+  return slash ? slash + 1 : name;
+}
+
+// A run of one model. What stops the whole comparison is returned; a solver that gave up is kept as this
+// model's result.
+static Status run_model(AppComparison *comparison, int m, const CompareOptions *options) {
+  AppComparisonModel *model = &comparison->models[m];
+  AppJob job;
+  TRY(app_job_open(&job, &options->job, model->name, folder_of(model->name)));
+  if (!job.scene.contact.is_on) {
+    app_job_close(&job);
+    return status_fail(STATUS_INPUT,
+                       "%s: has no contact, so overlap models cannot differ; add a 'contact' section",
+                       options->job.scene_path);
+  }
+  comparison->length = job.model.length;
+  char label[64];
+  snprintf(label, sizeof label, "%s ", model->name);
+  Observer observer = {.progress = {.began_s = clock_wall_s(), .label = label},
+                       .comparison = m == comparison->reference ? comparison : NULL};
+  FemRunOptions run_options = {.directory = job.directory,
+                               .stop = app_job_stop_flag(),
+                               .observe = observe,
+                               .observer = &observer,
+                               .keep_trajectory = true};
+  model->status = fem_run(&job.model, &run_options, &model->result);
+  log_progress_end();
+  model->has_run = true;
+  if (model->status) snprintf(model->message, sizeof model->message, "%s", status_message());
+  Status status = app_job_write_summary(&job, &model->result, model->status);
+  app_job_close(&job);
+  if (model->status == STATUS_SOLVER) {
+    log_warning("%s: %s", model->name, model->message);
+    return status;
+  }
+  if (model->status) return status_fail(model->status, "%s", model->message);
+  return status;
+}
+
+static int cheapest_waiting(const AppComparison *comparison) {
+  int best = -1;
+  for (int m = 0; m < comparison->model_count; m++) {
+    const AppComparisonModel *model = &comparison->models[m];
+    if (!model->is_driven || model->has_run) continue;
+    if (best < 0 ||
+        model->overlap.ops->seconds_per_pair < comparison->models[best].overlap.ops->seconds_per_pair)
+      best = m;
+  }
+  return best;
+}
+
+// What the first run took tells what the others will: all but the overlap costs the same, and the overlap the
+// model's cost of a pair for each pair that was asked for.
+static void announce_times(const AppComparison *comparison, int first) {
+  const FemRunResult *pilot = &comparison->models[first].result;
+  for (int m = 0; m < comparison->model_count; m++) {
+    const AppComparisonModel *model = &comparison->models[m];
+    if (!model->is_driven || model->has_run) continue;
+    double overlap = (double)pilot->pairs.tried * model->overlap.ops->seconds_per_pair / cpu_thread_count();
+    double seconds = pilot->wall_s - pilot->phases.overlap + overlap;
+    log_info("%s will take about %.3g %s", model->name, seconds < 120 ? seconds : seconds / 60,
+             seconds < 120 ? "s" : "minutes");
+  }
+}
+
+static Status write_csv(const AppComparison *comparison, const char *path) {
+  FileWriter writer;
+  TRY(file_begin(&writer, path));
+  app_comparison_print_csv(comparison, writer.stream);
+  return file_commit(&writer);
+}
+
+static Status write_results(const AppComparison *comparison, const CompareOptions *options) {
+  AppJob job; // for the directory only
+  TRY(app_job_open(&job, &options->job, NULL, NULL));
+  char *json = file_join(job.directory, "compare.json"), *csv = file_join(job.directory, "compare.csv");
+  RecordList *list = record_list_new();
+  Status status = json && csv && list ? STATUS_OK : status_no_memory("the comparison");
+  if (!status) {
+    app_comparison_record(comparison, options->job.scene_path, list);
+    status = record_list_write(list, json);
+  }
+  if (!status) status = write_csv(comparison, csv);
+  if (!status && options->job.is_json) status = record_list_print(list, stdout);
+  if (!status && !options->job.is_json) app_comparison_print_table(comparison, stdout);
+  if (!status) log_info("wrote %s and compare.csv; the runs are in the folders beside them", json);
+  record_list_destroy(list);
+  memory_free(json);
+  memory_free(csv);
+  app_job_close(&job);
+  return status;
+}
+
+// The models are made as the scene wants them.
+static Status prepare(AppComparison *comparison, const CompareOptions *options) {
+  AppJob job;
+  TRY(app_job_open(&job, &options->job, NULL, NULL));
+  Status status = choose_models(comparison, &job.scene, options);
+  app_job_close(&job);
+  return status;
+}
+
+static Status compare(AppComparison *comparison, const CompareOptions *options) {
+  TRY(prepare(comparison, options));
+  int first = cheapest_waiting(comparison);
+  log_info("%s runs first: its time tells how long the others will take", comparison->models[first].name);
+  for (int m = first; m >= 0; m = cheapest_waiting(comparison)) {
+    TRY(run_model(comparison, m, options));
+    if (m == first) announce_times(comparison, first);
+  }
+  TRY(write_results(comparison, options));
+  for (int m = 0; m < comparison->model_count; m++)
+    if (comparison->models[m].status)
+      return status_fail(STATUS_SOLVER, "%s did not reach the end: %s", comparison->models[m].name,
+                         comparison->models[m].message);
+  return STATUS_OK;
+}
+
+int app_compare_run(int argument_count, char **arguments) {
+  static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
+  static const struct argp argp = {
+      .options = option_table,
+      .parser = parse,
+      .args_doc = "SCENE",
+      .doc = "Run a scene with several overlap models and hold the results together.",
+      .children = children};
+  CompareOptions options = {.audit_every = 10};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_job_prepare(&options.job);
+  AppComparison *comparison = memory_zeroed(1, sizeof *comparison);
+  Status status = comparison ? compare(comparison, &options) : status_no_memory("the comparison");
+  if (status) log_error("%s", status_message());
+  if (comparison) app_comparison_destroy(comparison);
+  memory_free(comparison);
+  return status_exit_code(status);
+}

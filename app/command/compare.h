@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap compare SCENE --overlap a,b,c`: the same scene with each overlap model, and what differs.
+#ifndef TETLAP_APP_COMMAND_COMPARE_H
+#define TETLAP_APP_COMMAND_COMPARE_H
+
+int app_compare_run(int argument_count, char **arguments);
+
+#endif

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap resume`: goes on with a run from its last checkpoint.
+#ifndef TETLAP_APP_COMMAND_RESUME_H
+#define TETLAP_APP_COMMAND_RESUME_H
+
+int app_resume_run(int argument_count, char **arguments);
+
+#endif

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap run SCENE`: runs a scene and writes what a person can open.
+#ifndef TETLAP_APP_COMMAND_RUN_H
+#define TETLAP_APP_COMMAND_RUN_H
+
+#include "app/job.h"
+
+typedef struct AppRunOptions {
+  AppJobOptions job;
+  const char *overlap, *capture; // NULL: the scene's; none
+  bool is_strict;
+  const struct FemCheckpoint *from; // to go on from; NULL: from the start
+  const char *from_path;            // its file
+  const Record *origin;             // what it says of itself (origin.h)
+} AppRunOptions;
+
+// Opens the scene, runs it, writes summary and manifest; tells the log what went wrong.
+Status app_run_execute(const AppRunOptions *options);
+
+int app_run_run(int argument_count, char **arguments);
+
+#endif

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap stress`: every hard case with every overlap model, as a table.
+#ifndef TETLAP_APP_COMMAND_STRESS_H
+#define TETLAP_APP_COMMAND_STRESS_H
+
+int app_stress_command_run(int argument_count, char **arguments);
+
+#endif

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `tetlap weights`: what a weights file says of itself.
+#ifndef TETLAP_APP_COMMAND_WEIGHTS_H
+#define TETLAP_APP_COMMAND_WEIGHTS_H
+
+int app_weights_run(int argument_count, char **arguments);
+
+#endif

@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap dataset info|merge|plot`: what to do with data set files.
-#ifndef TETLAP_APP_DATASET_COMMAND_H
-#define TETLAP_APP_DATASET_COMMAND_H
-
-// arguments[0] is "tetlap dataset"; returns the exit code.
-int app_dataset_run(int argument_count, char **arguments);
-
-#endif

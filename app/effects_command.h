@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap effects`: what can act on bodies, and the names that a scene chooses from.
-#ifndef TETLAP_APP_EFFECTS_COMMAND_H
-#define TETLAP_APP_EFFECTS_COMMAND_H
-
-int app_effects_run(int argument_count, char **arguments);
-
-#endif

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/evaluation/evaluation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/random.h"
+#include "base/vec3.h"
+#include "datagen/generate.h"
+
+enum { SIZE = OVERLAP_PAIR_SIZE };
+
+const double app_evaluation_bin_ends[APP_EVALUATION_BINS] = {0.0067, 0.0133, 0.02};
+
+static const uint64_t SYMMETRY_SEED = 0x5e3d;
+static const double DEGREES = 57.29577951308232;
+
+// What is known and what the model says of one block.
+typedef struct Block {
+  size_t count;
+  const DatagenPairs *pairs;
+  double *true_gradient; // (count, 24); owned unless it is the pairs'
+  double *volume;        // (count), owned
+  double *gradient;      // (count, 24), owned
+  unsigned *flags;       // (count), owned
+  double *logits;        // (count), owned; NULL: the model tells none
+} Block;
+
+void app_evaluation_begin(AppEvaluationRun *run, const OverlapModel *model, AppEvaluationLogits logits) {
+  *run = (AppEvaluationRun){.model = model, .logits = logits, .sums.has_status = logits != NULL};
+}
+
+void app_evaluation_end(AppEvaluationRun *run) {
+  memory_free(run->gradient_errors);
+  memory_free(run->angles);
+  *run = (AppEvaluationRun){0};
+}
+
+static double length_of(const double *x, int count) {
+  double sum = 0;
+  for (int i = 0; i < count; i++) sum += x[i] * x[i];
+  return sqrt(sum);
+}
+
+static double distance_of(const double a[SIZE], const double b[SIZE]) {
+  double difference[SIZE];
+  for (int i = 0; i < SIZE; i++) difference[i] = a[i] - b[i];
+  return length_of(difference, SIZE);
+}
+
+static Vec3 force_of(const double gradient[SIZE]) {
+  Vec3 force = {0, 0, 0};
+  for (int v = 0; v < 4; v++) force = vec3_add(force, vec3_at(gradient + 3 * v));
+  return force;
+}
+
+// The true gradients where the data have none.
+static Status differentiate(const DatagenPairs *pairs, size_t count, double *gradient) {
+  bool has_failed = false;
+#pragma omp parallel for schedule(dynamic, 64) reduction(|| : has_failed)
+  for (ptrdiff_t i = 0; i < (ptrdiff_t)count; i++) {
+    double volume;
+    if (pairs->volume[i] > 0 && datagen_label_pair(DATAGEN_LABEL_CLIP, pairs->coordinates + i * SIZE, 3,
+                                                   &volume, gradient + i * SIZE) != STATUS_OK)
+      has_failed = true;
+  }
+  return has_failed ? status_fail(STATUS_SOLVER, "clipping gave no derivatives of a pair") : STATUS_OK;
+}
+
+static void block_destroy(Block *block) {
+  if (block->true_gradient != block->pairs->gradient) memory_free(block->true_gradient);
+  memory_free(block->volume), memory_free(block->gradient);
+  memory_free(block->flags), memory_free(block->logits);
+}
+
+static Status block_tell_status(Block *block, const AppEvaluationRun *run) {
+  if (!run->logits) return STATUS_OK;
+  block->logits = memory_zeroed(block->count, sizeof *block->logits);
+  if (!block->logits) return status_no_memory("an evaluation");
+  return run->logits(run->model->self, (int)block->count, block->pairs->coordinates, block->logits);
+}
+
+static Status block_evaluate(Block *block, const OverlapModel *model) {
+  size_t count = block->count;
+  block->volume = memory_zeroed(count, sizeof *block->volume);
+  block->gradient = memory_zeroed(count * SIZE, sizeof *block->gradient);
+  block->flags = memory_zeroed(count, sizeof *block->flags);
+  block->true_gradient = block->pairs->gradient;
+  if (!block->true_gradient) block->true_gradient = memory_zeroed(count * SIZE, sizeof(double));
+  if (!block->volume || !block->gradient || !block->flags || !block->true_gradient)
+    return status_no_memory("an evaluation");
+  if (!block->pairs->gradient) TRY(differentiate(block->pairs, count, block->true_gradient));
+  OverlapBatch batch = {.pair_count = (int)count,
+                        .pairs = block->pairs->coordinates,
+                        .volume = block->volume,
+                        .gradient = block->gradient,
+                        .flags = block->flags};
+  return overlap_model_eval(model, &batch);
+}
+
+static int bin_of(double volume) {
+  int bin = 0;
+  while (bin < APP_EVALUATION_BINS - 1 && volume >= app_evaluation_bin_ends[bin]) bin++;
+  return bin;
+}
+
+static void add_angle(AppEvaluationRun *run, const double truth[SIZE], const double told[SIZE]) {
+  Vec3 a = force_of(truth), b = force_of(told);
+  // of a tetrahedron inside the other nothing but rounding is left
+  if (!(vec3_length(a) > 1e-9 * length_of(truth, SIZE))) return;
+  double angle = atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
+  run->angles[run->angle_count++] = vec3_length(b) > 0 ? DEGREES * angle : 180;
+}
+
+static void add_inside(AppEvaluationRun *run, const Block *block, size_t i) {
+  AppEvaluation *sums = &run->sums;
+  const double *truth = block->true_gradient + i * SIZE, *told = block->gradient + i * SIZE;
+  double volume = block->pairs->volume[i], error = fabs(block->volume[i] - volume);
+  int bin = bin_of(volume);
+  sums->mae += error;
+  sums->bin_mae[bin] += error;
+  sums->bin_accuracy[bin] += block->volume[i] > 0 && bin_of(block->volume[i]) == bin;
+  run->bins[bin]++;
+  run->true_volume += volume;
+  double size = length_of(truth, SIZE), difference = distance_of(told, truth);
+  run->true_gradient += size;
+  sums->gradient_error += difference;
+  run->gradient_errors[sums->inside++] = difference / size;
+  add_angle(run, truth, told);
+}
+
+static void add_outside(AppEvaluationRun *run, const Block *block, size_t i) {
+  run->outside++;
+  run->sums.ghost_volume += fabs(block->volume[i]);
+  run->sums.ghost_gradient += length_of(block->gradient + i * SIZE, SIZE);
+}
+
+static void add_confidence(AppEvaluationRun *run, double logit, bool intersects) {
+  double probability = 1 / (1 + exp(-logit));
+  int bin = (int)fmin(APP_EVALUATION_CONFIDENCES * probability, APP_EVALUATION_CONFIDENCES - 1);
+  run->probability[bin] += probability;
+  run->confident[bin]++;
+  run->intersecting[bin] += intersects;
+}
+
+static bool is_right(const Block *block, size_t i) {
+  if (block->logits) return (block->logits[i] > 0) == (block->pairs->status[i] != 0);
+  return (block->volume[i] > 0) == (block->pairs->volume[i] > 0);
+}
+
+static void add_pair(AppEvaluationRun *run, const Block *block, size_t i) {
+  AppEvaluationKind *kind = &run->sums.kinds[block->pairs->kind[i]];
+  double volume = block->pairs->volume[i];
+  kind->count++;
+  kind->accuracy += is_right(block, i);
+  if (block->logits) add_confidence(run, block->logits[i], block->pairs->status[i] != 0);
+  kind->volume_mae += fabs(block->volume[i] - volume);
+  run->sums.count++;
+  run->sums.fallbacks += (block->flags[i] & OVERLAP_FALLBACK) != 0;
+  run->sums.blended += (block->flags[i] & OVERLAP_BLENDED) != 0;
+  if (volume > 0)
+    add_inside(run, block, i);
+  else
+    add_outside(run, block, i);
+}
+
+static void reorder(const double pair[SIZE], Random *random, double changed[SIZE]) {
+  for (int t = 0; t < 2; t++) {
+    int order[4] = {0, 1, 2, 3};
+    for (int v = 3; v > 0; v--) {
+      int other = random_below(random, v + 1), kept = order[v];
+      order[v] = order[other], order[other] = kept;
+    }
+    for (int v = 0; v < 4; v++)
+      memcpy(changed + 12 * t + 3 * v, pair + 12 * t + 3 * order[v], 3 * sizeof(double));
+  }
+}
+
+static void rotate(const double pair[SIZE], Random *random, double changed[SIZE]) {
+  double r[9];
+  random_rotation(random, r);
+  for (int v = 0; v < 8; v++)
+    for (int i = 0; i < 3; i++) {
+      changed[3 * v + i] = 0.5;
+      for (int j = 0; j < 3; j++) changed[3 * v + i] += r[3 * i + j] * (pair[3 * v + j] - 0.5);
+    }
+}
+
+static Status add_defects(AppEvaluationRun *run, const double pair[SIZE], double volume) {
+  Random random = random_seeded(SYMMETRY_SEED, (uint64_t)run->symmetry_count);
+  double changed[3][SIZE], told[3];
+  reorder(pair, &random, changed[0]);
+  memcpy(changed[1], pair + 12, 12 * sizeof(double));
+  memcpy(changed[1] + 12, pair, 12 * sizeof(double));
+  rotate(pair, &random, changed[2]);
+  OverlapBatch batch = {.pair_count = 3, .pairs = changed[0], .volume = told};
+  TRY(overlap_model_eval(run->model, &batch));
+  run->sums.defect_vertex_order += fabs(told[0] - volume);
+  run->sums.defect_swap += fabs(told[1] - volume);
+  run->sums.defect_rotation += fabs(told[2] - volume);
+  run->symmetry_volume += volume;
+  run->symmetry_count++;
+  return STATUS_OK;
+}
+
+static Status add_block(AppEvaluationRun *run, Block *block) {
+  TRY(block_evaluate(block, run->model));
+  TRY(block_tell_status(block, run));
+  size_t wanted = (size_t)run->sums.inside + block->count;
+  if (!memory_reserve((void **)&run->gradient_errors, &run->gradient_capacity, wanted, sizeof(double)) ||
+      !memory_reserve((void **)&run->angles, &run->angle_capacity, wanted, sizeof(double)))
+    return status_no_memory("an evaluation");
+  for (size_t i = 0; i < block->count; i++) {
+    add_pair(run, block, i);
+    if (block->pairs->volume[i] > 0 && run->symmetry_count < APP_EVALUATION_SYMMETRY_PAIRS)
+      TRY(add_defects(run, block->pairs->coordinates + i * SIZE, block->volume[i]));
+  }
+  return STATUS_OK;
+}
+
+Status app_evaluation_add(AppEvaluationRun *run, const DatagenPairs *pairs, size_t count) {
+  enum { BLOCK = 16384 };
+  for (size_t first = 0; first < count; first += BLOCK) {
+    DatagenPairs part = {.coordinates = pairs->coordinates + first * SIZE,
+                         .status = pairs->status + first,
+                         .kind = pairs->kind + first,
+                         .volume = pairs->volume + first,
+                         .gradient = pairs->gradient ? pairs->gradient + first * SIZE : NULL};
+    Block block = {.count = count - first < BLOCK ? count - first : BLOCK, .pairs = &part};
+    Status status = add_block(run, &block);
+    block_destroy(&block);
+    TRY(status);
+  }
+  return STATUS_OK;
+}
+
+static int compare(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+// The value below which that share of them lies; sorts them.
+static double quantile(double *values, size_t count, double share) {
+  if (count == 0) return NAN;
+  qsort(values, count, sizeof *values, compare);
+  return values[(size_t)(share * (double)(count - 1) + 0.5)];
+}
+
+static double divide(double sum, double by) {
+  return by > 0 ? sum / by : NAN;
+}
+
+static void finish_kinds(AppEvaluation *result) {
+  int present = 0;
+  result->accuracy_mean = 0;
+  for (int k = 0; k < DATAGEN_KIND_COUNT; k++) {
+    AppEvaluationKind *kind = &result->kinds[k];
+    if (kind->count > 0) present++, result->accuracy_mean += kind->accuracy / (double)kind->count;
+    kind->accuracy = divide(kind->accuracy, (double)kind->count);
+    kind->volume_mae = divide(kind->volume_mae, (double)kind->count);
+  }
+  result->accuracy_mean = divide(result->accuracy_mean, present);
+}
+
+static double calibration_of(const AppEvaluationRun *run) {
+  double sum = 0;
+  for (int b = 0; b < APP_EVALUATION_CONFIDENCES; b++)
+    sum += fabs(run->probability[b] - (double)run->intersecting[b]);
+  return run->logits ? divide(sum, (double)run->sums.count) : NAN;
+}
+
+void app_evaluation_finish(AppEvaluationRun *run, AppEvaluation *result) {
+  *result = run->sums;
+  finish_kinds(result);
+  result->calibration_error = calibration_of(run);
+  double inside = (double)result->inside, outside = (double)run->outside;
+  for (int b = 0; b < APP_EVALUATION_BINS; b++) {
+    double count = (double)run->bins[b];
+    result->bin_mae[b] = divide(result->bin_mae[b], count);
+    result->bin_accuracy[b] = divide(result->bin_accuracy[b], count);
+    result->bin_share[b] = divide(count, inside);
+  }
+  result->volume_error_sum = divide(result->mae, run->true_volume);
+  result->mae = divide(result->mae, inside);
+  result->gradient_error = divide(result->gradient_error, run->true_gradient);
+  result->gradient_error_median = quantile(run->gradient_errors, (size_t)result->inside, 0.5);
+  result->gradient_error_p90 = quantile(run->gradient_errors, (size_t)result->inside, 0.9);
+  result->angle_median_deg = quantile(run->angles, run->angle_count, 0.5);
+  result->angle_p90_deg = quantile(run->angles, run->angle_count, 0.9);
+  result->ghost_volume = divide(result->ghost_volume, outside);
+  result->ghost_gradient = divide(result->ghost_gradient, outside);
+  result->defect_vertex_order = divide(result->defect_vertex_order, run->symmetry_volume);
+  result->defect_swap = divide(result->defect_swap, run->symmetry_volume);
+  result->defect_rotation = divide(result->defect_rotation, run->symmetry_volume);
+}

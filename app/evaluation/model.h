@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Overlap models as commands name them: one of the table of overlap/model.h, a weights file, or
+// `geo-constant`, the frame of `geo` without a network.
+#ifndef TETLAP_APP_EVALUATION_MODEL_H
+#define TETLAP_APP_EVALUATION_MODEL_H
+
+#include "app/evaluation/evaluation.h"
+
+// Destroy it with overlap_model_destroy. STATUS_INPUT: neither a known name nor a file that holds a model.
+Status app_evaluation_model_open(OverlapModel *model, const char *name);
+
+// What the model tells of a pair's status, if it does; NULL: it does not.
+AppEvaluationLogits app_evaluation_model_logits(const OverlapModel *model);
+
+#endif

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contact forces of whole scenes: all models held against the exact one in the same configurations of one
+// run, and a run of each model's own, whose time says what the scene gains from a faster overlap.
+#ifndef TETLAP_APP_PARETO_SCENES_H
+#define TETLAP_APP_PARETO_SCENES_H
+
+#include "app/pareto/pareto.h"
+
+// Adds a point a model. `reference`: the overlap model of the run that configurations are taken from and that
+// the other runs are compared with. A run that fails or takes too long is a result: its point says so.
+Status app_pareto_scenes_measure(AppPareto *pareto, const char *scene, const char *reference,
+                                 const char *const *overrides, int override_count);
+
+#endif

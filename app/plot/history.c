@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/plot/plot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/plot/gnuplot.h"
+#include "base/memory.h"
+
+enum { MAX_COLUMNS = 256, MAX_FORCES = 5, MAX_NAME = 160, WIDTH = 640, HEIGHT = 620 };
+
+typedef struct History {
+  char names[MAX_COLUMNS][MAX_NAME];
+  double largest[MAX_COLUMNS]; // absolute value
+  int count;
+} History;
+
+static const char *const hues[] = {"#2f6fc4", "#d2691e", "#2a8f78", "#8a56b8", "#b8487a"};
+
+static void read_names(History *history, const char *line, size_t length) {
+  for (const char *end = line + length; line < end && history->count < MAX_COLUMNS; line++) {
+    size_t size = strcspn(line, ",\r\n");
+    snprintf(history->names[history->count++], MAX_NAME, "%.*s", (int)(size < MAX_NAME ? size : MAX_NAME - 1),
+             line);
+    line += size;
+  }
+}
+
+static void read_row(History *history, const char *line) {
+  for (int k = 0; k < history->count; k++) {
+    char *end;
+    double value = fabs(strtod(line, &end));
+    if (isfinite(value)) history->largest[k] = fmax(history->largest[k], value);
+    line = *end == ',' ? end + 1 : end;
+  }
+}
+
+static Status read_history(History *history, const AppReportRun *run) {
+  const char *text = run->history;
+  if (!text || !strchr(text, '\n'))
+    return status_fail(STATUS_INPUT, "%s: has no history.csv to plot", run->directory);
+  read_names(history, text, strcspn(text, "\n"));
+  for (text = strchr(text, '\n'); text && text[1]; text = strchr(text + 1, '\n')) read_row(history, text + 1);
+  return STATUS_OK;
+}
+
+static int find(const History *history, const char *name) {
+  for (int k = 0; k < history->count; k++)
+    if (strcmp(history->names[k], name) == 0) return k;
+  return -1;
+}
+
+static bool is_alive(const History *history, const char *name) {
+  int k = find(history, name);
+  return k >= 0 && history->largest[k] > 0;
+}
+
+// One curve. `column` is gnuplot's expression of it.
+static void add_curve(FILE *script, int *count, int run, int run_count, const char *column, const char *title,
+                      const char *label) {
+  const char *hue = hues[*count / run_count % (int)(sizeof hues / sizeof *hues)];
+  fprintf(script, "%s$run%d using (column('time_s')):(%s) with lines lw 1.5 lc rgb '%s' dt %s title ",
+          *count ? ", \\\n  " : "plot ", run, column, hue, run ? "(6,4)" : "1");
+  char text[2 * MAX_NAME];
+  snprintf(text, sizeof text, run_count > 1 ? "%s, %s" : "%s", title, label);
+  app_gnuplot_quote(script, text);
+  ++*count;
+}
+
+// The pair of a column "force_PAIR_x_N", in `pair`; false: another column.
+static bool find_pair(const char *name, char *pair) {
+  size_t length = strlen(name);
+  if (strncmp(name, "force_", 6) != 0 || length < 11 || strcmp(name + length - 4, "_x_N") != 0) return false;
+  snprintf(pair, MAX_NAME, "%.*s", (int)(length - 10), name + 6);
+  return true;
+}
+
+static bool has_force(const History *history, const char *pair) {
+  bool is_there = false;
+  for (const char *axis = "xyz"; *axis; axis++) {
+    char name[MAX_NAME + 16];
+    snprintf(name, sizeof name, "force_%s_%c_N", pair, *axis);
+    is_there = is_there || is_alive(history, name);
+  }
+  return is_there;
+}
+
+static int write_forces(FILE *script, const History *histories, int run_count, const char *const *labels) {
+  int count = 0;
+  for (int k = 0; k < histories[0].count && count < MAX_FORCES * run_count; k++) {
+    char pair[MAX_NAME], column[4 * MAX_NAME];
+    if (!find_pair(histories[0].names[k], pair) || !has_force(&histories[0], pair)) continue;
+    snprintf(column, sizeof column,
+             "sqrt(column('force_%s_x_N')**2+column('force_%s_y_N')**2+column('force_%s_z_N')**2)", pair,
+             pair, pair);
+    for (int r = 0; r < run_count; r++)
+      if (r == 0 || has_force(&histories[r], pair))
+        add_curve(script, &count, r, run_count, column, pair, labels[r]);
+      else
+        count++; // keeps the hues in step
+  }
+  return count;
+}
+
+static int write_energies(FILE *script, const History *histories, int run_count, const char *const *labels) {
+  static const char *const names[] = {"kinetic", "elastic", "contact", "dissipated"};
+  int count = 0;
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+    char name[32], column[48];
+    snprintf(name, sizeof name, "%s_J", names[k]);
+    snprintf(column, sizeof column, "column('%s')", name);
+    bool is_shown = false;
+    for (int r = 0; r < run_count; r++) is_shown = is_shown || is_alive(&histories[r], name);
+    for (int r = 0; is_shown && r < run_count; r++)
+      if (find(&histories[r], name) >= 0)
+        add_curve(script, &count, r, run_count, column, names[k], labels[r]);
+      else
+        count++;
+  }
+  return count;
+}
+
+static void write_steps(FILE *script, int run_count, const char *const *labels) {
+  int count = 0;
+  for (int r = 0; r < run_count; r++)
+    add_curve(script, &count, r, run_count, "column('step_s') > 0 ? column('step_s') : NaN", "step",
+              labels[r]);
+}
+
+static void write_data(FILE *script, const AppReportRun *runs, int run_count) {
+  for (int r = 0; r < run_count; r++) {
+    size_t length = strlen(runs[r].history);
+    fprintf(script, "$run%d << END\n%s%sEND\n", r, runs[r].history,
+            length && runs[r].history[length - 1] == '\n' ? "" : "\n");
+  }
+}
+
+static void write_panels(FILE *script, const History *histories, int run_count, const char *const *labels) {
+  fputs("set multiplot layout 3,1\nset ylabel 'contact force [N]'\n", script);
+  if (write_forces(script, histories, run_count, labels) == 0) fputs("plot NaN notitle", script);
+  fputs("\nset ylabel 'energy [J]'\n", script);
+  if (write_energies(script, histories, run_count, labels) == 0) fputs("plot NaN notitle", script);
+  fputs("\nset ylabel 'step [s]'\nset xlabel 'time [s]'\nset logscale y\nset format y '10^{%T}'\n", script);
+  write_steps(script, run_count, labels);
+  fputs("\nunset multiplot\n", script);
+}
+
+Status app_plot_history(FILE *script, const char *picture, const AppReportRun *runs, int run_count,
+                        const char *const *labels) {
+  History *histories = memory_zeroed((size_t)run_count, sizeof *histories);
+  Status status = histories ? STATUS_OK : status_no_memory("the histories");
+  for (int r = 0; !status && r < run_count; r++) status = read_history(&histories[r], &runs[r]);
+  if (!status) {
+    fputs("# gnuplot script; run it again with: gnuplot THIS_FILE\nset datafile separator ','\n", script);
+    write_data(script, runs, run_count);
+    status = app_gnuplot_open(script, picture, WIDTH, HEIGHT);
+  }
+  if (!status) {
+    fputs("set border 3\nset tics nomirror\nset grid lc rgb '#e4e4e4' lt 1 lw 0.5\n"
+          "set key at graph 1.03,1 left top Left reverse noenhanced font small samplen 2\n"
+          "set lmargin 11\nset rmargin 26\n",
+          script);
+    write_panels(script, histories, run_count, labels);
+  }
+  memory_free(histories);
+  return status;
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A web page about one run or two, or about measurements: one file without any other, for a browser.
+#ifndef TETLAP_APP_REPORT_REPORT_H
+#define TETLAP_APP_REPORT_REPORT_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "app/report/run.h"
+
+enum { APP_REPORT_MAX_RUNS = 2, APP_REPORT_MAX_BENCHES = 8, APP_REPORT_MAX_STRESSES = 16 };
+
+// What the page shall show; records may be NULL. All owned.
+typedef struct AppReport {
+  AppReportRun runs[APP_REPORT_MAX_RUNS];
+  int run_count;
+  Record *comparison; // compare.json
+  Record *pareto;     // pareto.json
+  Record *benches[APP_REPORT_MAX_BENCHES];
+  int bench_count;
+  Record *stresses[APP_REPORT_MAX_STRESSES]; // of `tetlap stress --json`
+  int stress_count;
+  bool has_surface_only; // leaves out what lies inside the bodies
+} AppReport;
+
+// Numbers of frames beyond which a run's inside is left out all the same: such a page would be some 100 MB.
+enum { APP_REPORT_MAX_NUMBERS = 60000000 };
+
+// Writes the page. Empties the report's records and, with surface only, the runs' inside. STATUS_MEMORY,
+// STATUS_IO.
+Status app_report_print(AppReport *report, FILE *stream);
+Status app_report_write(AppReport *report, const char *path); // whole or not at all
+void app_report_destroy(AppReport *report);
+
+// Root mean square and largest distance between the vertices of two runs [m] in a frame; false if their
+// meshes or the times of their frames differ.
+bool app_report_distance(const AppReport *report, int frame, double *mean, double *largest);
+
+#endif

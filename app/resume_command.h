@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap resume`: goes on with a run from its last checkpoint.
-#ifndef TETLAP_APP_RESUME_COMMAND_H
-#define TETLAP_APP_RESUME_COMMAND_H
-
-int app_resume_run(int argument_count, char **arguments);
-
-#endif

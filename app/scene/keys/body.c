@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/keys/table.h"
+
+#include "app/scene/keys/choices.h"
+#include "fem/model/scene.h"
+
+static const SceneKey body_keys[] = {
+    {"name", SCENE_LABEL, AT(FemBodyDef, name), .required = "block",
+     .help = "how messages and outputs call it"},
+    {"mesh", SCENE_SECTION, .offset = offsetof(FemBodyDef, mesh_path), .required = "block.msh",
+     .section = &app_scene_keys_mesh, .help = "its tetrahedra: a file's path, or more in a mapping"},
+    {"place", SCENE_SECTION, AT(FemBodyDef, placement), .section = &app_scene_keys_mesh_place,
+     .help = "where the mesh stands"},
+    {"material", SCENE_SECTION, AT(FemBodyDef, material),
+     .required = "{young: 1e6, poisson: 0.4, density: 1000}", .section = &app_scene_keys_material,
+     .help = "what it is made of"},
+    {"element", SCENE_CHOICE, AT(FemBodyDef, element), .fallback = "linear",
+     .choices = &app_scene_choices_elements, .help = "how its tetrahedra resist"},
+    {"self_contact", SCENE_SWITCH, AT(FemBodyDef, self_contact), .fallback = "false",
+     .help =
+         "its parts may touch each other; needs `contact`. Elements that share a vertex or overlap at rest "
+         "never touch"},
+    {"velocity", SCENE_VECTOR, AT(FemBodyDef, velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
+     .help = "at t = 0"},
+    {"spin", SCENE_VECTOR, AT(FemBodyDef, spin), .unit = "rad/s", .fallback = "[0, 0, 0]",
+     .help = "angular velocity about the centre of mass at t = 0"},
+    {"fixed", SCENE_LIST, AT(FemBodyDef, fixed), .section = &app_scene_keys_motion_fixed,
+     .count_offset = offsetof(FemBodyDef, fixed_count), .help = "vertices that do not move"},
+    {"driven", SCENE_LIST, AT(FemBodyDef, driven), .section = &app_scene_keys_motion_driven,
+     .count_offset = offsetof(FemBodyDef, driven_count), .help = "vertices that move as told"},
+    {"loads", SCENE_LIST, AT(FemBodyDef, loads), .section = &app_scene_keys_load,
+     .count_offset = offsetof(FemBodyDef, load_count), .help = "forces and pressures from outside"},
+    {0},
+};
+const SceneSection app_scene_keys_body = {
+    .help = "an elastic body", .size = sizeof(FemBodyDef), .keys = body_keys, PLACE(FemBodyDef, place)};

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/keys/choices.h"
+
+#include <stddef.h>
+
+#include "contact/potential.h"
+#include "fem/material/material.h"
+#include "fem/sparse/solver.h"
+#include "overlap/model.h"
+
+// The names that other layers own.
+
+static const char *law_name(int i) {
+  return i < FEM_MATERIAL_LAW_COUNT ? fem_material_name((FemMaterialLaw)i) : NULL;
+}
+static const char *law_help(int i) {
+  return fem_material_help((FemMaterialLaw)i);
+}
+const SceneChoices app_scene_choices_laws = {law_name, law_help};
+
+static const char *potential_name(int i) {
+  return i < CONTACT_POTENTIAL_COUNT ? contact_potential_name((ContactPotential)i) : NULL;
+}
+static const char *potential_help(int i) {
+  return contact_potential_help((ContactPotential)i);
+}
+const SceneChoices app_scene_choices_potentials = {potential_name, potential_help};
+
+static const char *solver_name(int i) {
+  return i <= FEM_SOLVER_PCG ? fem_solver_name((FemSolverKind)i) : NULL;
+}
+static const char *solver_help(int i) {
+  return fem_solver_help((FemSolverKind)i);
+}
+const SceneChoices app_scene_choices_solvers = {solver_name, solver_help};
+
+static const char *overlap_name(int i) {
+  int count;
+  const OverlapOps *const *models = overlap_model_list(&count);
+  return i < count ? models[i]->name : NULL;
+}
+static const char *overlap_help(int i) {
+  int count;
+  return overlap_model_list(&count)[i]->help;
+}
+const SceneChoices app_scene_choices_overlaps = {overlap_name, overlap_help};
+
+// Names of numbers and switches in a scene's definition.
+
+static const char *hessian_name(int i) { // the number is FemContactDef.use_full_hessian
+  static const char *const names[] = {"gauss_newton", "full"};
+  return i < 2 ? names[i] : NULL;
+}
+static const char *hessian_help(int i) {
+  return i == 0 ? "products of the first derivatives only: cheaper, more iterations"
+                : "the second derivatives of the overlap volumes as well, where the model has them";
+}
+const SceneChoices app_scene_choices_hessians = {hessian_name, hessian_help};
+
+static const char *element_name(int i) {
+  static const char *const names[] = {"linear", "nodal", "quadratic"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *element_help(int i) {
+  static const char *const helps[] = {"constant strain; too stiff in bending, and from about ν = 0.45 in all",
+                                      "linear, the volume change averaged at the vertices: for ν up to 0.499",
+                                      "ten nodes, strain linear within: bending by few elements, for ν up to "
+                                      "0.499; keeps the curved edges of "
+                                      "second-order files"};
+  return helps[i];
+}
+const SceneChoices app_scene_choices_elements = {element_name, element_help};
+
+static const char *following_name(int i) { // the number is FemLoadDef.is_dead
+  static const char *const names[] = {"surface", "nothing"};
+  return i < 2 ? names[i] : NULL;
+}
+static const char *following_help(int i) {
+  return i == 0 ? "the surface as it is now: direction and area change with it"
+                : "the surface as it was at rest: a dead load";
+}
+const SceneChoices app_scene_choices_followings = {following_name, following_help};
+
+// The numbers are those of overlap/options.h.
+
+static const char *ghosts_name(int i) {
+  static const char *const names[] = {"auto", "keep", "cut", "fade"};
+  return i < 4 ? names[i] : NULL;
+}
+static const char *ghosts_help(int i) {
+  static const char *const helps[] = {
+      "as the model has it: tpn keep, tpn-scene fade", "pairs that share no volume get what the network says",
+      "an exact test finds them: they get none, and V jumps where a pair begins to touch",
+      "they get none, and V is faded in over the first overlap"};
+  return helps[i];
+}
+const SceneChoices app_scene_choices_ghosts = {ghosts_name, ghosts_help};
+
+static const char *gate_name(int i) {
+  static const char *const names[] = {"auto", "none", "status"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *gate_help(int i) {
+  static const char *const helps[] = {"as the model has it: tpn-scene status, others none",
+                                      "V is what the volume head says",
+                                      "V is multiplied by the probability that the status head says"};
+  return helps[i];
+}
+const SceneChoices app_scene_choices_gates = {gate_name, gate_help};
+
+static const char *orders_name(int i) {
+  static const char *const names[] = {"auto", "one", "both"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *orders_help(int i) {
+  static const char *const helps[] = {"as the model has it: tpn one, others both",
+                                      "V(A, B) and V(B, A) differ",
+                                      "the mean of V(A, B) and V(B, A), at twice the cost"};
+  return helps[i];
+}
+const SceneChoices app_scene_choices_orders = {orders_name, orders_help};
+
+static const char *beyond_name(int i) {
+  static const char *const names[] = {"auto", "count", "exact"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *beyond_help(int i) {
+  static const char *const helps[] = {"as the model has it: hybrid exact, others count",
+                                      "they are counted in summary.json",
+                                      "and answered by the exact model, blended over a band"};
+  return helps[i];
+}
+const SceneChoices app_scene_choices_beyond = {beyond_name, beyond_help};
+
+static const char *coplanar_name(int i) {
+  static const char *const names[] = {"auto", "keep", "clip"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *coplanar_help(int i) {
+  static const char *const helps[] = {"as the model has it: hybrid clip, others keep",
+                                      "the network answers them as any other",
+                                      "they turn to clipping, the more the nearer the faces"};
+  return helps[i];
+}
+const SceneChoices app_scene_choices_coplanar = {coplanar_name, coplanar_help};

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/keys/table.h"
+
+#include "app/scene/keys/choices.h"
+#include "fem/model/scene.h"
+
+static const char *finish_contact(void *self, const char **key) {
+  const FemContactDef *contact = self;
+  if (contact->viscosity > 0 && contact->potential != CONTACT_POTENTIAL_NODAL) {
+    *key = "viscosity";
+    return "viscosity builds on the potential nodal; take one of the two keys away";
+  }
+  return NULL;
+}
+
+static const SceneKey friction_keys[] = {
+    {"coefficient", SCENE_NUMBER, AT(FemContactDef, friction), .range = "[0, inf)", .required = "0.3",
+     .help = "Coulomb's μ: sliding resists with μ times the normal force"},
+    {"slip_speed", SCENE_NUMBER, AT(FemContactDef, slip_speed), .unit = "m/s", .range = "(0, inf)",
+     .absent_help = "1e-3 of the smallest body's size over `end`",
+     .help = "slower slip counts as sticking: what sticks creeps, more slowly than this"},
+    {0},
+};
+static const SceneSection friction = {
+    .help = "Coulomb friction", .keys = friction_keys, .shorthand = "coefficient"};
+
+static const SceneKey net_keys[] = {
+    {"weights", SCENE_TEXT, AT(FemContactDef, net), .absent_help = "those that ship with the model",
+     .help =
+         "of a learned model: a .safetensors file, path from the scene file, or a name; taken in place of "
+         "`overlap`, or by `hybrid` as its network"},
+    {"ghosts", SCENE_CHOICE, AT(FemContactDef, net_options.ghosts), .fallback = "auto",
+     .choices = &app_scene_choices_ghosts, .help = "tpn: volumes of pairs that share none"},
+    {"gate", SCENE_CHOICE, AT(FemContactDef, net_options.gate), .fallback = "auto",
+     .choices = &app_scene_choices_gates, .help = "tpn: whether the status head has a say in V"},
+    {"orders", SCENE_CHOICE, AT(FemContactDef, net_options.orders), .fallback = "auto",
+     .choices = &app_scene_choices_orders,
+     .help = "tpn, hybrid: in which order the two tetrahedra are shown to the network"},
+    {"out_of_range", SCENE_CHOICE, AT(FemContactDef, net_options.beyond), .fallback = "auto",
+     .choices = &app_scene_choices_beyond, .help = "tpn: pairs unlike those of the network's training"},
+    {"coplanar", SCENE_CHOICE, AT(FemContactDef, net_options.coplanar), .fallback = "auto",
+     .choices = &app_scene_choices_coplanar,
+     .help = "tpn, hybrid: pairs with faces that nearly lie in one plane, whose V has kinks"},
+    {"touch", SCENE_NUMBER, AT(FemContactDef, net_options.touch), .range = "(0, 1)", .fallback = "0.02",
+     .help = "share of overlap up to which V is faded in; `hybrid` takes exact up to there, the network from "
+             "twice "
+             "that"},
+    {"deep", SCENE_NUMBER, AT(FemContactDef, net_options.deep), .range = "(0, 2]", .fallback = "0.3",
+     .help =
+         "hybrid: share of overlap up to which the network is taken, exact from one and a half times that"},
+    {"confidence", SCENE_NUMBER, AT(FemContactDef, net_options.confidence), .range = "(0.5, 1)",
+     .fallback = "0.95", .help = "hybrid: probability of the status head from which the network is taken"},
+    {0},
+};
+static const SceneSection net = {
+    .help = "how networks that follow the paper are used", .keys = net_keys, .shorthand = "weights"};
+
+static const SceneKey rest_keys[] = {
+    {"speed", SCENE_NUMBER, AT(FemContactDef, rest_speed), .unit = "m/s", .range = "(0, inf)",
+     .absent_help = "`time.tolerance` times √(E/ρ) of the slowest body",
+     .help = "every vertex of a calm body is slower"},
+    {"acceleration", SCENE_NUMBER, AT(FemContactDef, rest_acceleration), .unit = "m/s²", .range = "(0, inf)",
+     .absent_help = "five times `speed` over `time`",
+     .help = "its centre of mass is accelerated by less in the step after which it falls asleep"},
+    {"time", SCENE_NUMBER, AT(FemContactDef, rest_time), .unit = "s", .range = "(0, inf)",
+     .absent_help = "twenty times what a wave takes through the largest body",
+     .help = "what touches falls asleep together once all of it has been calm for so long"},
+    {0},
+};
+static const SceneSection rest = {.help = "when bodies are at rest", .keys = rest_keys};
+
+static const SceneKey contact_keys[] = {
+    {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa", .range = "(0, inf)",
+     .absent_help = "E of the softest body (with `body` over its smallest mean element volume)",
+     .help = "penalty κ; higher: less overlap, shorter steps (Pa/m³ with the potential `body`)"},
+    {"potential", SCENE_CHOICE, AT(FemContactDef, potential), .fallback = "nodal",
+     .choices = &app_scene_choices_potentials, .help = "how overlap volumes become pressure"},
+    {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "geo",
+     .choices = &app_scene_choices_overlaps,
+     .help = "the model that gives the overlap volume of two tetrahedra"},
+    {"net", SCENE_SECTION, .section = &net, .help = "of a learned model: its weights, or more in a mapping"},
+    {"margin", SCENE_NUMBER, AT(FemContactDef, margin), .unit = "m", .range = "(0, inf)",
+     .absent_help = "half the shortest mean edge of a body",
+     .help = "pairs nearer than this are listed; a step that moves farther is tried again smaller"},
+    {"hessian", SCENE_CHOICE, AT(FemContactDef, use_full_hessian), .fallback = "full",
+     .choices = &app_scene_choices_hessians, .help = "derivatives of the contact force for Newton's method"},
+    {"friction", SCENE_SECTION, .section = &friction, .absent_help = "no friction",
+     .help = "what touches resists sliding; a number alone is its coefficient"},
+    {"viscosity", SCENE_NUMBER, AT(FemContactDef, viscosity), .unit = "Pa s", .range = "(0, inf)",
+     .absent_help = "none",
+     .help =
+         "η: a pressure η w dw/dt beside κ w, w the covered share of a vertex; takes energy out of impacts"},
+    {"rest", SCENE_SECTION, .section = &rest, .absent_help = "no body sleeps",
+     MARK(FemContactDef, rest_is_on, true),
+     .help = "bodies at rest sleep, without unknowns and contact search, until something nears them; `{}` "
+             "for the defaults"},
+    {0},
+};
+const SceneSection app_scene_keys_contact = {
+    .help = "bodies push each other apart", .keys = contact_keys, .finish = finish_contact};

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/keys/table.h"
+
+#include "app/scene/keys/choices.h"
+#include "fem/model/scene.h"
+
+static const SceneKey load_keys[] = {
+    {"force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "body_force traction pressure", .unit = "N",
+     MARK(FemLoadDef, kind, FEM_LOAD_FORCE), .help = "in all, shared evenly by the selected vertices"},
+    {"body_force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force traction pressure",
+     .unit = "N/m³", MARK(FemLoadDef, kind, FEM_LOAD_BODY_FORCE),
+     .help = "on the volume (at rest) around the selected vertices"},
+    {"traction", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force body_force pressure",
+     .unit = "N/m²", MARK(FemLoadDef, kind, FEM_LOAD_TRACTION),
+     .help = "on the area (at rest) of the surface triangles whose three corners are selected"},
+    {"pressure", SCENE_NUMBER, AT(FemLoadDef, pressure), .unit = "Pa",
+     MARK(FemLoadDef, kind, FEM_LOAD_PRESSURE),
+     .help = "on the same triangles, against their outward normal"},
+    {"follows", SCENE_CHOICE, AT(FemLoadDef, is_dead), .fallback = "surface",
+     .choices = &app_scene_choices_followings, .needs = "pressure", .help = "what a pressure acts on"},
+    {"factor", SCENE_FORMULA, AT(FemLoadDef, factor), .absent_help = "1", .excludes = "table",
+     .help = "the load is this function of t [s] times the value above"},
+    {"table", SCENE_PROFILE, AT(FemLoadDef, table), .count_offset = offsetof(FemLoadDef, table_count),
+     .absent_help = "1", .excludes = "factor",
+     .help = "or rows [t, factor], linear between them, constant before and after"},
+    {0},
+};
+const SceneSection app_scene_keys_load = {.help = "a load from outside",
+                                          .size = sizeof(FemLoadDef),
+                                          .keys = load_keys,
+                                          .more = &app_scene_keys_select,
+                                          .one_of = "box halfspace group all",
+                                          .some_of = "force body_force traction pressure",
+                                          PLACE(FemLoadDef, select.place)};

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/keys/table.h"
+
+#include <math.h>
+
+#include "fem/model/scene.h"
+
+static const char *finish_fixed(void *self, const char **key) {
+  (void)key;
+  ((FemConstraintDef *)self)->until = INFINITY;
+  return NULL;
+}
+
+static const char *finish_driven(void *self, const char **key) {
+  const FemConstraintDef *def = self;
+  *key = "release";
+  if (def->release > 0 && isfinite(def->until) && def->release < def->until)
+    return "the vertices are released before their motion ends; take away `until`, or release them later";
+  return NULL;
+}
+
+static const SceneKey prescribed_keys[] = {
+    {"components", SCENE_AXES, AT(FemConstraintDef, components), .fallback = "[x, y, z]",
+     .help = "the coordinates that are prescribed; the others stay free"},
+    {"release", SCENE_NUMBER, AT(FemConstraintDef, release), .unit = "s", .range = "(0, inf)",
+     .absent_help = "never", .help = "from then on the vertices are free, with the velocity that they have"},
+    {0},
+};
+static const SceneSection prescribed_more = {.keys = prescribed_keys, .more = &app_scene_keys_select};
+const SceneSection app_scene_keys_motion_fixed = {.help = "vertices that do not move",
+                                                  .size = sizeof(FemConstraintDef),
+                                                  .keys = prescribed_keys,
+                                                  .more = &app_scene_keys_select,
+                                                  .one_of = "box halfspace group all",
+                                                  .finish = finish_fixed,
+                                                  PLACE(FemConstraintDef, select.place)};
+
+static const SceneKey formula_keys[] = {
+    {"x", SCENE_FORMULA, AT(FemConstraintDef, formula[0]), .absent_help = "0",
+     .help = "displacement along x"},
+    {"y", SCENE_FORMULA, AT(FemConstraintDef, formula[1]), .absent_help = "0", .help = "along y"},
+    {"z", SCENE_FORMULA, AT(FemConstraintDef, formula[2]), .absent_help = "0", .help = "along z"},
+    {0},
+};
+static const SceneSection formula = {
+    .help = "displacements [m] as functions of t [s]: + - * / ^, pi, sin cos tan exp log sqrt abs floor step "
+            "smooth min max",
+    .keys = formula_keys,
+    .some_of = "x y z"};
+
+static const SceneKey motion_keys[] = {
+    {"velocity", SCENE_VECTOR, AT(FemConstraintDef, velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
+     .excludes = "table", .help = "steady motion"},
+    {"amplitude", SCENE_VECTOR, AT(FemConstraintDef, amplitude), .unit = "m", .fallback = "[0, 0, 0]",
+     .needs = "frequency", .excludes = "table", .help = "of a swing amplitude · sin(2π frequency t)"},
+    {"frequency", SCENE_NUMBER, AT(FemConstraintDef, frequency), .unit = "Hz", .range = "(0, inf)",
+     .needs = "amplitude", .excludes = "table", .help = "of the swing"},
+    {"table", SCENE_ROWS, AT(FemConstraintDef, table), .unit = "s, m",
+     .count_offset = offsetof(FemConstraintDef, table_count),
+     .help = "rows [t, dx, dy, dz] of time and displacement, linear between them"},
+    {"formula", SCENE_SECTION, .section = &formula, .excludes = "table",
+     .help = "displacements by formulas, added to velocity and amplitude"},
+    {"spin", SCENE_NUMBER, AT(FemConstraintDef, spin), .unit = "rad/s", .fallback = "0", .needs = "axis",
+     .help = "turning about an axis"},
+    {"axis", SCENE_DIRECTION, AT(FemConstraintDef, axis), .needs = "spin", .help = "of the spin"},
+    {"centre", SCENE_VECTOR, AT(FemConstraintDef, centre), .unit = "m", .fallback = "[0, 0, 0]",
+     .needs = "spin", .help = "a point on the axis"},
+    {"until", SCENE_NUMBER, AT(FemConstraintDef, until), .unit = "s", .range = "(0, inf]", .fallback = ".inf",
+     .help = "when the motion stops; what was reached is held"},
+    {0},
+};
+const SceneSection app_scene_keys_motion = {.help = "a prescribed motion, from t = 0",
+                                            .keys = motion_keys,
+                                            .some_of = "velocity amplitude table formula spin"};
+
+const SceneSection app_scene_keys_motion_driven = {.help = "vertices that move as told",
+                                                   .size = sizeof(FemConstraintDef),
+                                                   .keys = motion_keys,
+                                                   .more = &prescribed_more,
+                                                   .one_of = "box halfspace group all",
+                                                   .some_of = "velocity amplitude table formula spin",
+                                                   .finish = finish_driven,
+                                                   PLACE(FemConstraintDef, select.place)};

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/scene/keys/table.h"
+
+#include "app/scene/keys/choices.h"
+#include "fem/model/scene.h"
+
+static const char *finish_time(void *self, const char **key) {
+  const FemSceneDef *scene = self;
+  *key = "min_step";
+  if (scene->max_step > 0 && scene->min_step > scene->max_step) return "min_step must not exceed max_step";
+  *key = "initial_step";
+  if (scene->max_step > 0 && scene->initial_step > scene->max_step)
+    return "initial_step must not exceed max_step";
+  if (scene->initial_step > 0 && scene->min_step > scene->initial_step)
+    return "initial_step must not be below min_step";
+  return NULL;
+}
+
+static const SceneKey time_keys[] = {
+    {"end", SCENE_NUMBER, AT(FemSceneDef, end), .unit = "s", .range = "(0, inf)", .required = "0.5",
+     .help = "the run goes from 0 to here"},
+    {"static", SCENE_SWITCH, AT(FemSceneDef, is_static), .fallback = "false",
+     .help =
+         "equilibria at the times of the frames: no velocities, no mass; time is a parameter of the loads"},
+    {"tolerance", SCENE_NUMBER, AT(FemSceneDef, tolerance), .range = "(0, 1)", .fallback = "1e-4",
+     .help = "error of the positions per step, as a share of the smallest body's size"},
+    {"velocity_tolerance", SCENE_NUMBER, AT(FemSceneDef, velocity_tolerance), .unit = "m/s",
+     .range = "(0, inf)",
+     .absent_help =
+         "`tolerance` times √(E/ρ) of the slowest body, with friction at most 5 of its slip speeds",
+     .help = "error of the velocities per step"},
+    {"max_step", SCENE_NUMBER, AT(FemSceneDef, max_step), .unit = "s", .range = "(0, inf)",
+     .absent_help = "0.1 of `end`", .help = "longest step"},
+    {"initial_step", SCENE_NUMBER, AT(FemSceneDef, initial_step), .unit = "s", .range = "(0, inf)",
+     .absent_help = "the integrator's choice", .help = "first step"},
+    {"min_step", SCENE_NUMBER, AT(FemSceneDef, min_step), .unit = "s", .range = "(0, inf)",
+     .absent_help = "1e-11 of `end`",
+     .help = "a run that needs shorter steps gives up; rows of tables closer than this count as one"},
+    {"max_order", SCENE_INTEGER, AT(FemSceneDef, max_order), .range = "[1, 2]", .fallback = "2",
+     .help = "of the backward differentiation formula; 1 damps more"},
+    {0},
+};
+const SceneSection app_scene_keys_run_time = {
+    .help = "how long, and how exactly", .keys = time_keys, .finish = finish_time};
+
+static const SceneKey solver_keys[] = {
+    {"linear", SCENE_CHOICE, AT(FemSceneDef, solver), .fallback = "auto",
+     .choices = &app_scene_choices_solvers, .help = "of the linear systems"},
+    {"tolerance", SCENE_NUMBER, AT(FemSceneDef, solver_tolerance), .range = "(0, 1)", .fallback = "1e-8",
+     .help = "relative residual of `pcg`"},
+    {"threads", SCENE_INTEGER, AT(FemSceneDef, threads), .range = "[0, 4096]", .fallback = "0",
+     .help = "0: one for each core"},
+    {0},
+};
+const SceneSection app_scene_keys_run_solver = {.help = "linear algebra", .keys = solver_keys};
+
+static const SceneKey checkpoint_keys[] = {
+    {"frames", SCENE_INTEGER, AT(FemSceneDef, checkpoint_frames), .range = "[0, 1000000]", .absent = -1,
+     .absent_help =
+         "a checkpoint after so many steps that it is not felt: 1e6 over the unknowns, 200 at least",
+     .help = "so many frames lie between two checkpoints, at each of which the integrator begins anew; 0: "
+             "none"},
+    {"seconds", SCENE_NUMBER, AT(FemSceneDef, checkpoint_seconds), .unit = "s", .range = "[0, inf)",
+     .fallback = "30", .help = "wall time: a checkpoint is written to the disk when the last one is so old"},
+    {0},
+};
+static const SceneSection checkpoint = {
+    .help = "what `tetlap resume` goes on from", .keys = checkpoint_keys, .shorthand = "frames"};
+
+static const SceneKey output_keys[] = {
+    {"frames", SCENE_INTEGER, AT(FemSceneDef, frames), .range = "[1, 1000000]", .fallback = "50",
+     .help = "written at i · end/frames, i = 0 … frames"},
+    {"checkpoint", SCENE_SECTION, .section = &checkpoint, .help = "what `tetlap resume` goes on from"},
+    {"vtu", SCENE_SWITCH, AT(FemSceneDef, write_vtu), .fallback = "true",
+     .help = "a VTU file a frame, for ParaView"},
+    {"history", SCENE_SWITCH, AT(FemSceneDef, write_history), .fallback = "true",
+     .help = "history.csv: energies, momentum, contact forces per frame"},
+    {"status", SCENE_NAME, AT(FemSceneDef, status_reference), .choices = &app_scene_choices_overlaps,
+     .absent_help = "not asked",
+     .help = "which elements overlap by the scene's overlap model and by this one, at every frame"},
+    {0},
+};
+const SceneSection app_scene_keys_run_output = {.help = "what is written", .keys = output_keys};

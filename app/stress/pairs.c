@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/stress/pairs.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "app/stress/tolerances.h"
+#include "app/stress/traits.h"
+#include "base/clock.h"
+#include "datagen/hard.h"
+#include "overlap/exact/exact.h"
+#include "overlap/invariant.h"
+#include "overlap/model.h"
+
+enum { MEMBERS = 100, MEMBERS_QUICK = 10, MEMBERS_SLOW = 3 };
+static const double SLOW_PAIR = 1e-3; // seconds
+static const char NOT_A_NUMBER[] = "not a number";
+
+// What double precision must hold. Volumes count in overlap_invariant_allowed, besides what rounding of the
+// coordinates changes.
+static const double BOUNDS = 4e-16, BALANCE = 1e-14, GRADIENT = 1e-7;
+
+typedef struct Asked {
+  const OverlapModel *model;
+  AppStressPairErrors worst;
+  double misfit;       // worst volume-like error over what the standard allows
+  double gradient_max; // largest ∇V met, over the extent squared
+  long long member_count, true_count, wrong_flags;
+  long long fallbacks; // answers that the model left to another
+} Asked;
+
+typedef struct Answer {
+  double volume, gradient[24];
+  unsigned flags;
+} Answer;
+
+static Status ask(const Asked *asked, const double x[24], Answer *answer) {
+  OverlapBatch batch = {.pair_count = 1,
+                        .pairs = x,
+                        .volume = &answer->volume,
+                        .gradient = answer->gradient,
+                        .flags = &answer->flags};
+  return overlap_model_eval(asked->model, &batch);
+}
+
+static Status ask_volume(const Asked *asked, const double x[24], double *volume) {
+  OverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = volume};
+  return overlap_model_eval(asked->model, &batch);
+}
+
+// NaN is worse than anything.
+static void keep_worst(double *worst, double value) {
+  if (!(value <= *worst)) *worst = value;
+}
+
+// A volume that should be `wanted` but for `slack`.
+static void compare(Asked *asked, double *worst, const double x[24], double volume, double wanted,
+                    double allowances, double slack) {
+  double error = fmax(0, fabs(volume - wanted) - slack), smaller = overlap_invariant_smaller_volume(x);
+  if (isnan(volume)) error = NAN;
+  if (error == 0) return;
+  keep_worst(worst, error / smaller);
+  keep_worst(&asked->misfit, error / (allowances * overlap_invariant_allowed(x, wanted)));
+}
+
+static Status compare_orders(Asked *asked, const double x[24], double volume, int step) {
+  double swapped[24], permuted[24], other;
+  overlap_ops_swap(x, swapped);
+  TRY(ask_volume(asked, swapped, &other));
+  compare(asked, &asked->worst.order, x, other, volume, 2, 0);
+  for (int k = 1; k < 24; k += step) {
+    datagen_hard_permute(x, k, permuted);
+    datagen_hard_permute(x + 12, (5 * k + 3) % 24, permuted + 12);
+    TRY(ask_volume(asked, permuted, &other));
+    compare(asked, &asked->worst.order, x, other, volume, 2, 0);
+  }
+  return STATUS_OK;
+}
+
+// The largest coordinate times the extent squared: what rounding of coordinates may change, over ε.
+static double rounding_scale(const double x[24]) {
+  double largest = 0, extent = overlap_invariant_extent(x);
+  for (int i = 0; i < 24; i++) largest = fmax(largest, fabs(x[i]));
+  return largest * extent * extent;
+}
+
+static Status compare_motions(Asked *asked, const double x[24], double volume) {
+  double moved[24], rotation[9], extent = overlap_invariant_extent(x), other;
+  Random random = random_seeded(77, 0);
+  random_rotation(&random, rotation);
+  memcpy(moved, x, sizeof moved);
+  datagen_hard_transform(moved, 8, rotation, 1, (Vec3){extent, -2 * extent, extent});
+  TRY(ask_volume(asked, moved, &other));
+  compare(asked, &asked->worst.motion, x, other, volume, 1,
+          8 * DBL_EPSILON * (rounding_scale(x) + rounding_scale(moved)));
+  for (int i = 0; i < 24; i++) moved[i] = 0x1p20 * x[i];
+  TRY(ask_volume(asked, moved, &other));
+  compare(asked, &asked->worst.motion, x, 0x1p-60 * other, volume, 1, 0);
+  return STATUS_OK;
+}
+
+static Status compare_parts(Asked *asked, const DatagenHardPair *pair, double volume) {
+  const double weights[4] = {0.125, 0.25, 0.25, 0.375};
+  double parts[4][12], whole = overlap_invariant_tet_volume(pair->x + 12), sum = 0, slack = 1e-14 * volume;
+  datagen_hard_subdivide(pair->x + 12, weights, parts);
+  for (int k = 0; k < 4; k++) sum += overlap_invariant_tet_volume(parts[k]);
+  if (!(fabs(sum - whole) <= 1e-13 * whole) || pair->is_flat) return STATUS_OK; // rounded out of a sliver
+  sum = 0;
+  for (int k = 0; k < 4; k++) {
+    double x[24], part;
+    memcpy(x, pair->x, 12 * sizeof *x), memcpy(x + 12, parts[k], 12 * sizeof *x);
+    TRY(ask_volume(asked, x, &part));
+    sum += part;
+    slack += overlap_invariant_allowed(x, part);
+  }
+  compare(asked, &asked->worst.parts, pair->x, sum, volume, 1, slack);
+  return STATUS_OK;
+}
+
+static Status compare_differences(Asked *asked, const DatagenHardPair *pair, const double gradient[24],
+                                  int step) {
+  double extent = overlap_invariant_extent(pair->x), h = 1e-6 * extent;
+  for (int i = 0; i < 24 && pair->is_smooth; i += step) {
+    double up[24], down[24], high, low;
+    memcpy(up, pair->x, sizeof up), memcpy(down, pair->x, sizeof down);
+    up[i] += h, down[i] -= h;
+    TRY(ask_volume(asked, up, &high));
+    TRY(ask_volume(asked, down, &low));
+    double error = fabs((high - low) / (up[i] - down[i]) - gradient[i]) / (extent * extent);
+    keep_worst(&asked->worst.gradient, error);
+  }
+  return STATUS_OK;
+}
+
+static bool flags_are_right(const DatagenHardPair *pair, const Answer *answer) {
+  bool is_flat = (answer->flags & OVERLAP_FLAT) != 0;
+  bool is_nothing = is_flat || (answer->flags & OVERLAP_DISJOINT);
+  if (is_flat != pair->is_flat || is_nothing != (answer->volume == 0)) return false;
+  for (int i = 0; i < 24 && is_nothing; i++)
+    if (answer->gradient[i] != 0) return false;
+  return true;
+}
+
+static Status ask_member(Asked *asked, const DatagenHardPair *pair, bool is_slow) {
+  Answer answer;
+  double exact;
+  unsigned flags;
+  const double *x = pair->x;
+  TRY(ask(asked, x, &answer));
+  TRY(overlap_exact_ops.eval_pair(NULL, x, &exact, NULL, NULL, &flags));
+  asked->member_count++;
+  asked->fallbacks += (answer.flags & OVERLAP_FALLBACK) != 0;
+  asked->wrong_flags += !flags_are_right(pair, &answer);
+  if (!pair->is_flat) {
+    compare(asked, &asked->worst.volume, x, answer.volume, exact, 1, 0);
+    if (!isnan(pair->volume))
+      compare(asked, &asked->worst.volume, x, answer.volume, pair->volume, 1, pair->slack);
+  }
+  if (!pair->is_flat) keep_worst(&asked->worst.bounds, overlap_invariant_bounds(x, answer.volume));
+  keep_worst(&asked->worst.balance, overlap_invariant_translation(x, answer.gradient));
+  keep_worst(&asked->worst.balance, overlap_invariant_rotation(x, answer.gradient));
+  keep_worst(&asked->worst.balance, overlap_invariant_scaling(x, answer.volume, answer.gradient));
+  if (pair->is_flat) return STATUS_OK;
+  TRY(compare_orders(asked, x, answer.volume, is_slow ? 11 : 1));
+  TRY(compare_motions(asked, x, answer.volume));
+  TRY(compare_parts(asked, pair, answer.volume));
+  return compare_differences(asked, pair, answer.gradient, is_slow ? 7 : 1);
+}
+
+// What double precision must hold; the volumes themselves are told besides.
+static void ask_standard(const Asked *asked, AppStressRow *row) {
+  const AppStressPairErrors *worst = &asked->worst;
+  app_stress_ask_most(row, "misfit", asked->misfit, 1);
+  app_stress_ask_most(row, "volume", worst->volume, worst->volume);
+  app_stress_ask_most(row, "bounds", worst->bounds, BOUNDS);
+  app_stress_ask_most(row, "balance", worst->balance, BALANCE);
+  app_stress_ask_most(row, "gradient", worst->gradient, GRADIENT);
+  app_stress_ask_most(row, "flags", worst->flags, 0);
+}
+
+static void ask_tolerance(const Asked *asked, const AppStressPairErrors *most, AppStressRow *row) {
+  const AppStressPairErrors *worst = &asked->worst;
+  app_stress_ask_most(row, "volume", worst->volume, most->volume);
+  app_stress_ask_most(row, "bounds", worst->bounds, most->bounds);
+  app_stress_ask_most(row, "balance", worst->balance, most->balance);
+  app_stress_ask_most(row, "order", worst->order, most->order);
+  app_stress_ask_most(row, "motion", worst->motion, most->motion);
+  app_stress_ask_most(row, "parts", worst->parts, most->parts);
+  app_stress_ask_most(row, "gradient", worst->gradient, most->gradient);
+  app_stress_ask_most(row, "flags", worst->flags, most->flags);
+}
+
+// The verdict: held by the standard, else by the model's own tolerance.
+static void judge(const Asked *asked, AppStressRow *row) {
+  const AppStressPairErrors *worst = &asked->worst;
+  const AppStressTolerance *own = app_stress_tolerances_find(row->model);
+  bool is_held = asked->misfit <= 1 && worst->bounds <= BOUNDS && worst->balance <= BALANCE &&
+                 worst->gradient <= GRADIENT && worst->flags == 0;
+  app_stress_ask_occurred(row, "members that are what the class says", (double)asked->true_count,
+                          (double)asked->member_count);
+  row->pairs = asked->member_count, row->fallbacks = asked->fallbacks;
+  if (is_held || !own)
+    ask_standard(asked, row);
+  else
+    ask_tolerance(asked, &own->most, row);
+  app_stress_judge(row);
+  if (is_held || row->outcome != APP_STRESS_HELD) return;
+  row->outcome = APP_STRESS_TOLERANCE;
+  snprintf(row->remark, sizeof row->remark, "V to %.1e, order %.1e, motion %.1e, dV/dx %.1e; %s",
+           worst->volume, worst->order, worst->motion, worst->gradient, own->reason);
+  row->counter = own->counter;
+}
+
+static int members_of(const AppStressOptions *options, const OverlapModel *model) {
+  if (model->ops->seconds_per_pair > SLOW_PAIR) return MEMBERS_SLOW;
+  return options->is_quick ? MEMBERS_QUICK : MEMBERS;
+}
+
+static Status run_class(const AppStressOptions *options, const OverlapModel *model, int class_index,
+                        AppStressRow *row) {
+  Asked asked = {.model = model};
+  double began = clock_cpu_s();
+  int members = members_of(options, model);
+  for (int member = 0; member < members; member++) {
+    DatagenHardPair pair = datagen_hard_make(class_index, member);
+    asked.true_count += app_stress_traits_hold(class_index, &pair);
+    Status status = ask_member(&asked, &pair, members == MEMBERS_SLOW);
+    if (status == STATUS_MEMORY) return status;
+    if (status) {
+      snprintf(row->remark, sizeof row->remark, "member %d: %s", member, status_message());
+      row->outcome = APP_STRESS_FAILED;
+      return STATUS_OK;
+    }
+  }
+  asked.worst.flags = (double)asked.wrong_flags / (double)asked.member_count;
+  row->cpu_s = clock_cpu_s() - began;
+  judge(&asked, row);
+  return STATUS_OK;
+}
+
+// NaN and infinity in every coordinate of one of three pairs: an error that names the pair.
+static void run_not_numbers(const OverlapModel *model, AppStressRow *row) {
+  const double bad[3] = {NAN, INFINITY, -INFINITY};
+  double x[72], volume[3], refused = 0, named = 0;
+  for (int k = 0; k < 3; k++) memcpy(x + 24 * k, datagen_hard_make(2, k).x, 24 * sizeof *x);
+  OverlapBatch batch = {.pair_count = 3, .pairs = x, .volume = volume};
+  for (int kind = 0; kind < 3; kind++)
+    for (int i = 24; i < 48; i++) {
+      double good = x[i];
+      x[i] = bad[kind];
+      refused += overlap_model_eval(model, &batch) == STATUS_INPUT;
+      named += strstr(status_message(), "pair 1") != NULL;
+      x[i] = good;
+    }
+  app_stress_ask_occurred(row, "asked", 72, 72);
+  app_stress_ask_least(row, "refused", refused, 72);
+  app_stress_ask_least(row, "named", named, 72);
+  app_stress_judge(row);
+}
+
+static Status run_case(const AppStressOptions *options, AppStress *stress, const OverlapOps *ops,
+                       const OverlapModel *model, int class_index) {
+  bool is_class = class_index < DATAGEN_HARD_CLASS_COUNT;
+  const char *name = is_class ? datagen_hard_classes[class_index].name : NOT_A_NUMBER;
+  if (!app_stress_wants(options, name)) return STATUS_OK;
+  if (options->stop && *options->stop) return status_fail(STATUS_INTERRUPTED, "interrupted");
+  AppStressRow *row = app_stress_add(stress, "pairs", name, ops->name);
+  if (!row) return status_no_memory("the table of hard cases");
+  if (!model)
+    app_stress_excuse(row, "%s", status_message());
+  else if (is_class)
+    TRY(run_class(options, model, class_index, row));
+  else
+    run_not_numbers(model, row);
+  if (options->observe) options->observe(options->observer, stress);
+  return STATUS_OK;
+}
+
+static Status run_model(const AppStressOptions *options, AppStress *stress, const OverlapOps *ops) {
+  OverlapModel model;
+  Status created = overlap_model_create(&model, ops->name), status = STATUS_OK;
+  if (created && created != STATUS_IO) return created;
+  for (int c = 0; c <= DATAGEN_HARD_CLASS_COUNT && !status; c++)
+    status = run_case(options, stress, ops, created ? NULL : &model, c);
+  overlap_model_destroy(&model);
+  return status;
+}
+
+Status app_stress_pairs_run(const AppStressOptions *options, AppStress *stress) {
+  int count;
+  const OverlapOps *const *models = overlap_model_list(&count);
+  for (int m = 0; m < count; m++)
+    if (app_stress_wants_model(options, models[m]->name)) TRY(run_model(options, stress, models[m]));
+  return STATUS_OK;
+}

@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap stress`: every hard case with every overlap model, as a table.
-#ifndef TETLAP_APP_STRESS_COMMAND_H
-#define TETLAP_APP_STRESS_COMMAND_H
-
-int app_stress_command_run(int argument_count, char **arguments);
-
-#endif

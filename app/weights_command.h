@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap weights`: what a weights file says of itself.
-#ifndef TETLAP_APP_WEIGHTS_COMMAND_H
-#define TETLAP_APP_WEIGHTS_COMMAND_H
-
-int app_weights_run(int argument_count, char **arguments);
-
-#endif

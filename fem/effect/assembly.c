@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/effect/assembly.h"
+
+#include <stddef.h>
+
+#include "base/memory.h"
+
+// Elements whose scalars are added one after another by one thread; fixed, so that sums do not depend on how
+// many threads share the work.
+enum { CHUNK = 256 };
+// Coordinates of the largest element.
+enum { MOST = 3 * FEM_QUADRATIC_NODES };
+// Below this many elements one thread does it all: a colour is a barrier, and some thirty of them, on a
+// machine that others use too, take longer than the millisecond of work that a second thread would save.
+enum { FEW_FORCES = 20000, FEW_MATRICES = 4000 };
+
+static int chunk_count(const FemAssemblyList *list) {
+  return (list->count + CHUNK - 1) / CHUNK;
+}
+
+// Entries of a symmetric matrix of an element.
+static size_t half_of(const FemAssemblyList *list) {
+  size_t n = 3 * (size_t)list->node_count;
+  return n * (n + 1) / 2;
+}
+
+static const int *nodes_of(const FemAssemblyList *list, int i) {
+  return list->nodes + (size_t)list->node_count * (size_t)list->colouring.tets[i];
+}
+
+static Status select_elements(FemAssemblyList *list, const FemModel *model, const FemColouring *all,
+                              bool is_quadratic, bool (*takes)(const FemModelBody *body)) {
+  FemColouring *own = &list->colouring;
+  size_t most = all->colour_count > 0 ? (size_t)all->begin[all->colour_count] : 0;
+  own->begin = memory_zeroed((size_t)all->colour_count + 1, sizeof *own->begin);
+  own->tets = memory_zeroed(most, sizeof *own->tets);
+  list->elements = memory_zeroed(is_quadratic ? 0 : most, sizeof *list->elements);
+  if (!own->begin || !own->tets || !list->elements) return status_no_memory("the list of elements");
+  for (int colour = 0; colour < all->colour_count; colour++) {
+    own->begin[colour] = list->count;
+    for (int i = all->begin[colour]; i < all->begin[colour + 1]; i++) {
+      const FemModelBody *body = &model->bodies[list->body[all->tets[i]]];
+      if ((takes && !takes(body)) || (body->element == FEM_ELEMENT_QUADRATIC) != is_quadratic) continue;
+      if (!is_quadratic) list->elements[list->count] = model->elements[all->tets[i]];
+      own->tets[list->count++] = all->tets[i];
+    }
+  }
+  own->colour_count = all->colour_count;
+  own->begin[own->colour_count] = list->count;
+  list->partial = memory_zeroed((size_t)chunk_count(list), sizeof *list->partial);
+  return list->partial ? STATUS_OK : status_no_memory("partial sums over elements");
+}
+
+Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
+                           bool (*takes)(const FemModelBody *body)) {
+  *assembly = (FemAssembly){.model = model};
+  assembly->lists[0] =
+      (FemAssemblyList){.node_count = 4, .nodes = (const int *)model->tets, .body = model->tet_body};
+  TRY(select_elements(&assembly->lists[0], model, &model->colouring, false, takes));
+  assembly->lists[1] = (FemAssemblyList){.node_count = FEM_QUADRATIC_NODES,
+                                         .nodes = (const int *)model->quadratic_nodes,
+                                         .body = model->quadratic_body};
+  return select_elements(&assembly->lists[1], model, &model->quadratic_colouring, true, takes);
+}
+
+void fem_assembly_destroy(FemAssembly *assembly) {
+  for (int k = 0; k < 2; k++) {
+    FemAssemblyList *list = &assembly->lists[k];
+    memory_free(list->colouring.begin);
+    memory_free(list->colouring.tets);
+    memory_free(list->elements);
+    memory_free(list->partial);
+    memory_free(list->slots);
+  }
+  *assembly = (FemAssembly){0};
+}
+
+size_t fem_assembly_bytes(const FemAssembly *assembly) {
+  size_t bytes = 0;
+  for (int k = 0; k < 2; k++) {
+    const FemAssemblyList *list = &assembly->lists[k];
+    bytes += memory_held(list->colouring.begin) + memory_held(list->colouring.tets) +
+             memory_held(list->elements) + memory_held(list->partial) + memory_held(list->slots);
+  }
+  return bytes;
+}
+
+Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown) {
+  for (int k = 0; k < 2; k++) {
+    const FemAssemblyList *list = &assembly->lists[k];
+    for (int i = 0; i < list->count; i++)
+      TRY(fem_pattern_add_clique(pattern, list->node_count, nodes_of(list, i), has_grown));
+  }
+  return STATUS_OK;
+}
+
+// The i-th element of the list.
+static inline void gather(const FemAssembly *assembly, const FemAssemblyList *list, const FemState *state,
+                          int i, FemAssemblyElement *e) {
+  const FemModel *model = assembly->model;
+  int number = list->colouring.tets[i];
+  bool is_linear = list->node_count == 4;
+  const int *nodes = list->nodes + (size_t)list->node_count * (size_t)number;
+  e->element = is_linear ? &list->elements[i] : NULL;
+  e->quadratic = is_linear ? NULL : &model->quadratics[number];
+  e->body = &model->bodies[list->body[number]];
+  for (int a = 0; a < list->node_count; a++) {
+    size_t dof = 3 * (size_t)nodes[a];
+    for (int c = 0; c < 3; c++) {
+      e->x[3 * a + c] = state->positions[dof + (size_t)c];
+      e->v[3 * a + c] = state->velocities[dof + (size_t)c];
+    }
+  }
+}
+
+static void add_forces(const FemAssembly *assembly, const FemAssemblyList *list, const FemState *state,
+                       FemAssemblyForce *kernel, double *force) {
+  const FemColouring *colouring = &list->colouring;
+#pragma omp parallel if (list->count > FEW_FORCES)
+  for (int colour = 0; colour < colouring->colour_count; colour++) {
+#pragma omp for schedule(static)
+    for (int i = colouring->begin[colour]; i < colouring->begin[colour + 1]; i++) {
+      FemAssemblyElement e;
+      double own[MOST];
+      gather(assembly, list, state, i, &e);
+      if (e.body->is_held) continue;
+      kernel(&e, own);
+      const int *nodes = nodes_of(list, i);
+      for (int a = 0; a < list->node_count; a++)
+        for (int c = 0; c < 3; c++) force[3 * (size_t)nodes[a] + (size_t)c] += own[3 * a + c];
+    }
+  }
+}
+
+void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state, FemAssemblyForce *kernel,
+                             double *force) {
+  for (int k = 0; k < 2; k++)
+    if (assembly->lists[k].count > 0) add_forces(assembly, &assembly->lists[k], state, kernel, force);
+}
+
+// An entry and its mirror image are one number, and at most one of the two has a place in the matrix.
+static void pack_slots(int n, const int *slots, int *packed) {
+  for (int r = 0, k = 0; r < n; r++)
+    for (int c = 0; c <= r; c++, k++) packed[k] = slots[n * r + c] >= 0 ? slots[n * r + c] : slots[n * c + r];
+}
+
+static Status find_slots_of(FemAssemblyList *list, const FemMatrix *matrix) {
+  if (!list->slots) list->slots = memory_zeroed((size_t)list->count, half_of(list) * sizeof *list->slots);
+  if (!list->slots) return status_no_memory("the elements' places in the matrix");
+#pragma omp parallel for schedule(static) if (list->count > FEW_MATRICES)
+  for (int i = 0; i < list->count; i++) {
+    int slots[MOST * MOST];
+    fem_matrix_slots(matrix, list->node_count, nodes_of(list, i), slots);
+    pack_slots(3 * list->node_count, slots, list->slots + half_of(list) * (size_t)i);
+  }
+  return STATUS_OK;
+}
+
+static Status find_slots(FemAssembly *assembly, const FemMatrix *matrix) {
+  if (assembly->layout == matrix->layout) return STATUS_OK;
+  for (int k = 0; k < 2; k++) TRY(find_slots_of(&assembly->lists[k], matrix));
+  assembly->layout = matrix->layout;
+  return STATUS_OK;
+}
+
+static inline void scatter_matrix(int n, const double *own, const int *slots, double *value) {
+  for (int r = 0, k = 0; r < n; r++)
+    for (int c = 0; c <= r; c++, k++)
+      if (slots[k] >= 0) value[slots[k]] += own[n * r + c];
+}
+
+static void add_matrices(const FemAssembly *assembly, const FemAssemblyList *list, const FemState *state,
+                         FemAssemblyMatrix *kernel, double stiffness_scale, double damping_scale,
+                         FemMatrix *matrix) {
+  const FemColouring *colouring = &list->colouring;
+#pragma omp parallel if (list->count > FEW_MATRICES)
+  for (int colour = 0; colour < colouring->colour_count; colour++) {
+#pragma omp for schedule(static)
+    for (int i = colouring->begin[colour]; i < colouring->begin[colour + 1]; i++) {
+      FemAssemblyElement e;
+      double own[MOST * MOST];
+      gather(assembly, list, state, i, &e);
+      if (e.body->is_held) continue;
+      kernel(&e, stiffness_scale, damping_scale, own);
+      scatter_matrix(3 * list->node_count, own, list->slots + half_of(list) * (size_t)i, matrix->value);
+    }
+  }
+}
+
+Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state, FemAssemblyMatrix *kernel,
+                                 double stiffness_scale, double damping_scale, FemMatrix *matrix) {
+  TRY(find_slots(assembly, matrix));
+  for (int k = 0; k < 2; k++)
+    if (assembly->lists[k].count > 0)
+      add_matrices(assembly, &assembly->lists[k], state, kernel, stiffness_scale, damping_scale, matrix);
+  return STATUS_OK;
+}
+
+static double sum_list(const FemAssembly *assembly, const FemAssemblyList *list, const FemState *state,
+                       FemAssemblyScalar *kernel) {
+  int chunks = chunk_count(list);
+#pragma omp parallel for schedule(static) if (list->count > FEW_FORCES)
+  for (int chunk = 0; chunk < chunks; chunk++) {
+    int begin = chunk * CHUNK;
+    int end = begin + CHUNK < list->count ? begin + CHUNK : list->count;
+    double sum = 0;
+    for (int i = begin; i < end; i++) {
+      FemAssemblyElement e;
+      gather(assembly, list, state, i, &e);
+      sum += kernel(&e);
+    }
+    list->partial[chunk] = sum;
+  }
+  double sum = 0;
+  for (int chunk = 0; chunk < chunks; chunk++) sum += list->partial[chunk];
+  return sum;
+}
+
+double fem_assembly_sum(FemAssembly *assembly, const FemState *state, FemAssemblyScalar *kernel) {
+  return sum_list(assembly, &assembly->lists[0], state, kernel) +
+         sum_list(assembly, &assembly->lists[1], state, kernel);
+}

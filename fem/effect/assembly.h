@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sums over elements: what an effect that lives on tetrahedra (elasticity, damping) shares. The effect gives
+// a kernel for one element; here is the gathering, the adding by colours, and where entries of the matrix
+// lie. Every sum has a fixed order: results are the same to the last bit for any number of threads.
+#ifndef TETLAP_FEM_EFFECT_ASSEMBLY_H
+#define TETLAP_FEM_EFFECT_ASSEMBLY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "fem/effect/effect.h"
+
+// One element as a kernel sees it: of n = 4 vertices, or quadratic with n = 10 nodes.
+typedef struct FemAssemblyElement {
+  const FemElement *element;     // NULL: quadratic
+  const FemQuadratic *quadratic; // NULL: linear
+  const FemModelBody *body;
+  double x[30], v[30]; // positions [m] and velocities [m/s] of its nodes (n, 3)
+} FemAssemblyElement;
+
+typedef double FemAssemblyScalar(const FemAssemblyElement *e);
+typedef void FemAssemblyForce(const FemAssemblyElement *e, double *force); // (n, 3)
+// matrix = stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, (3n, 3n).
+typedef void FemAssemblyMatrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
+                               double *matrix);
+
+// The elements of one kind.
+typedef struct FemAssemblyList {
+  int node_count;         // n
+  const int *nodes;       // of the model's elements of this kind, borrowed   (…, n)
+  const int *body;        // of each of them, borrowed
+  FemColouring colouring; // the model's, without the bodies that take no part
+  int count;
+  FemElement *elements; // linear ones: copies in the order of the colouring, in which they are read  (count)
+  double *partial;      // sums of chunks of elements                                      (chunk_count)
+  int *slots; // of the lower half of each element matrix, by rows; −1: none     (count, 3n (3n + 1) / 2)
+} FemAssemblyList;
+
+typedef struct FemAssembly {
+  const FemModel *model;    // borrowed
+  FemAssemblyList lists[2]; // linear, quadratic
+  long long layout;         // of the matrix that `slots` belong to; 0: not looked up
+} FemAssembly;
+
+// All elements of the model's colouring, which leaves out obstacles, whose body `takes` accepts (NULL: all).
+// A zeroed assembly, and one whose creation failed, can be destroyed.
+Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
+                           bool (*takes)(const FemModelBody *body));
+void fem_assembly_destroy(FemAssembly *assembly);
+size_t fem_assembly_bytes(const FemAssembly *assembly); // on the heap
+
+// Each element couples its nodes.
+Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown);
+void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state, FemAssemblyForce *kernel,
+                             double *force);
+// Looks up the slots first if the matrix has been laid out anew (the first time allocates them).
+Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state, FemAssemblyMatrix *kernel,
+                                 double stiffness_scale, double damping_scale, FemMatrix *matrix);
+double fem_assembly_sum(FemAssembly *assembly, const FemState *state, FemAssemblyScalar *kernel);
+
+#endif

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contact by overlap volumes, as an effect: hands positions to contact/system.h, and its stiffness to the
+// matrix.
+#include "fem/effect/contact.h"
+
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect/effect.h"
+#include "fem/model/drive.h"
+#include "fem/model/obstacle.h"
+#include "overlap/weights.h"
+
+typedef struct Contact {
+  const FemModel *model; // borrowed
+  OverlapModel overlap;
+  ContactBody *bodies;   // (model->body_count)
+  ContactShape *shapes;  // (shape_count)
+  ContactConvex *solids; // of shapes                              (shape_count)
+  int shape_count;
+  bool has_self; // a body meets itself
+  ContactSystem *system;
+  double reach; // pairs closer than this are laid out in the matrix ahead [m]
+} Contact;
+
+// A pair this close, as a share of the mean edge, is expected to touch soon.
+static const double COUPLING_REACH = 0.1;
+
+static bool is_wanted(const FemSceneDef *scene) {
+  return scene->contact.is_on;
+}
+
+static void destroy(void *self) {
+  Contact *contact = self;
+  contact_system_destroy(contact->system);
+  overlap_model_destroy(&contact->overlap);
+  memory_free(contact->bodies);
+  memory_free(contact->shapes);
+  memory_free(contact->solids);
+  memory_free(contact);
+}
+
+// Obstacles with elements are among the model's drivers.
+static double horizon(const void *self, const FemForesight *foresight, double time, double farthest) {
+  const FemSceneDef *scene = ((const Contact *)self)->model->scene;
+  for (int o = 0; o < scene->obstacle_count; o++)
+    if (scene->obstacles[o].kind != FEM_OBSTACLE_MESH)
+      farthest = fem_drive_horizon(&scene->obstacles[o].motion, foresight, time, farthest);
+  return farthest;
+}
+
+static void list_sides(Contact *contact) {
+  const FemModel *model = contact->model;
+  for (int b = 0; b < model->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    contact->bodies[b] =
+        (ContactBody){.name = body->name,
+                      .vertex_begin = body->vertex_begin,
+                      .vertex_end = body->vertex_end,
+                      .tet_begin = body->tet_begin,
+                      .tet_end = body->tet_end,
+                      .is_obstacle = body->is_obstacle,
+                      .meets_itself = b < model->scene->body_count && model->scene->bodies[b].self_contact};
+  }
+  for (int b = 0; b < model->body_count; b++)
+    contact->has_self = contact->has_self || contact->bodies[b].meets_itself;
+  for (int o = 0; o < model->scene->obstacle_count; o++) {
+    const FemObstacleDef *def = &model->scene->obstacles[o];
+    if (def->kind == FEM_OBSTACLE_MESH) continue;
+    fem_obstacle_shape(def, &contact->shapes[contact->shape_count], &contact->solids[contact->shape_count]);
+    contact->shape_count++;
+  }
+}
+
+// The model of that name or weights file; hybrid's network is the scene's.
+static Status create_named(const FemSceneDef *scene, const char *name, const char *weights,
+                           OverlapModel *overlap) {
+  const OverlapOptions *options = scene->contact.is_on ? &scene->contact.net_options : NULL;
+  return overlap_model_create_with(overlap, name, strcmp(name, "hybrid") == 0 ? weights : NULL, options);
+}
+
+// What `contact.net` says, a file's path seen from here; owned. NULL: no memory.
+static char *locate_net(const FemSceneDef *scene) {
+  const char *net = scene->contact.net;
+  if (!overlap_weights_is_path(net)) return memory_copy(net, strlen(net) + 1, 1);
+  char *directory = file_directory_of(scene->path ? scene->path : ".");
+  char *path = directory ? file_join(directory, net) : NULL;
+  memory_free(directory);
+  return path;
+}
+
+const char *fem_effect_contact_overlap(const FemSceneDef *scene) {
+  const FemContactDef *contact = &scene->contact;
+  if (!contact->is_on) return NULL;
+  return contact->net && strcmp(contact->overlap, "hybrid") != 0 ? contact->net : contact->overlap;
+}
+
+Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *name, OverlapModel *overlap) {
+  *overlap = (OverlapModel){0};
+  if (!scene->contact.net) return create_named(scene, name ? name : scene->contact.overlap, NULL, overlap);
+  char *net = locate_net(scene);
+  if (!net) return status_no_memory("a file name");
+  bool is_scenes = name == NULL, is_hybrid = strcmp(scene->contact.overlap, "hybrid") == 0;
+  Status status = create_named(scene,
+                               !is_scenes  ? name
+                               : is_hybrid ? scene->contact.overlap
+                                           : net,
+                               is_hybrid ? net : NULL, overlap);
+  memory_free(net);
+  return status;
+}
+
+static Status build(Contact *contact, Contact *old) {
+  const FemModel *model = contact->model;
+  const FemContactDef *def = &model->scene->contact;
+  if (old) {
+    contact->overlap = old->overlap;
+    old->overlap = (OverlapModel){0};
+  } else {
+    TRY(fem_effect_contact_create_overlap(model->scene, NULL, &contact->overlap));
+  }
+  contact->bodies = memory_zeroed((size_t)model->body_count, sizeof *contact->bodies);
+  contact->shapes = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->shapes);
+  contact->solids = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->solids);
+  if (!contact->bodies || !contact->shapes || !contact->solids) return status_no_memory("the contact bodies");
+  list_sides(contact);
+  ContactSystemDef system = {.vertex_count = model->vertex_count,
+                             .rest = model->rest,
+                             .tets = (const int(*)[4])model->tets,
+                             .tet_count = model->tet_count,
+                             .bodies = contact->bodies,
+                             .body_count = model->body_count,
+                             .shapes = contact->shapes,
+                             .shape_count = contact->shape_count,
+                             .potential = def->potential,
+                             .stiffness = fem_model_contact_stiffness(model),
+                             .margin = def->margin,
+                             .use_full_hessian = def->use_full_hessian,
+                             .model = &contact->overlap};
+  return contact_system_create(&contact->system, &system);
+}
+
+// The overlap model, whose weights may have been replaced on the disk, goes on from `old`; NULL: it is made.
+static Status create_again(void **self, const FemModel *model, void *old) {
+  Contact *contact = memory_zeroed(1, sizeof *contact);
+  if (!contact) return status_no_memory("contact");
+  contact->model = model;
+  contact->reach = COUPLING_REACH * model->edge;
+  Status status = build(contact, old);
+  if (status)
+    destroy(contact);
+  else
+    *self = contact;
+  return status;
+}
+
+static Status create(void **self, const FemModel *model) {
+  return create_again(self, model, NULL);
+}
+
+static Status prepare(void *self, const FemState *state, double step) {
+  Contact *contact = self;
+  return contact_system_update(contact->system, state->time, state->positions, state->velocities, step, NULL);
+}
+
+typedef struct Coupling {
+  FemPattern *pattern;
+  int *has_grown;
+} Coupling;
+
+static Status add_clique(void *visitor, int count, const int *vertices) {
+  Coupling *coupling = visitor;
+  return fem_pattern_add_clique(coupling->pattern, count, vertices, coupling->has_grown);
+}
+
+static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
+  Contact *contact = self;
+  double energy;
+  TRY(contact_system_eval(contact->system, state->time, state->positions, &energy, NULL));
+  Coupling coupling = {.pattern = pattern, .has_grown = has_grown};
+  return contact_system_couple(contact->system, contact->reach, &coupling, add_clique);
+}
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  Contact *contact = self;
+  double energy;
+  return contact_system_eval(contact->system, state->time, state->positions, &energy, force);
+}
+
+typedef struct MatrixSink {
+  FemMatrix *matrix;
+  double scale;
+} MatrixSink;
+
+static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
+  MatrixSink *sink = self;
+  fem_matrix_add_outer(sink->matrix, count, vertices, w, sink->scale * scale);
+}
+
+static void add_dense(void *self, int count, const int *vertices, const double *matrix) {
+  MatrixSink *sink = self;
+  fem_matrix_add(sink->matrix, count, vertices, matrix, sink->scale);
+}
+
+static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                           FemMatrix *matrix) {
+  (void)damping_scale; // contact does not damp
+  Contact *contact = self;
+  if (stiffness_scale == 0) return STATUS_OK;
+  MatrixSink sink = {.matrix = matrix, .scale = stiffness_scale};
+  return contact_system_stiffness(
+      contact->system, state->time, state->positions,
+      &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer, .add_dense = add_dense});
+}
+
+static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
+  Contact *contact = self;
+  double contact_energy;
+  TRY(contact_system_eval(contact->system, state->time, state->positions, &contact_energy, NULL));
+  energy->contact += contact_energy;
+  // Mesh obstacles are prescribed coordinates, which the system counts.
+  energy->driven_power += contact_system_shape_power(contact->system);
+  return STATUS_OK;
+}
+
+static Status gap(void *self, const FemState *state, double *smallest) {
+  Contact *contact = self;
+  return contact_system_gap(contact->system, state->time, state->positions, smallest);
+}
+
+static void report(void *self, Record *counters) {
+  Contact *contact = self;
+  const ContactCounters *count = contact_system_counters(contact->system);
+  record_integer(counters, "contact_evaluations", count->evaluations);
+  record_integer(counters, "contact_pairs", count->pairs.tried);
+  record_integer(counters, "contact_searches", count->searches);
+  record_integer(counters, "enclosed_pairs", count->pairs.enclosed);
+  record_integer(counters, "overlap_fallbacks", count->pairs.fallbacks);
+  record_integer(counters, "net_pairs", count->pairs.by_net);
+  record_integer(counters, "overlap_blended", count->pairs.blended);
+  record_integer(counters, "beyond_range_pairs", count->pairs.beyond);
+  record_integer(counters, "beyond_margin", count->beyond_margin);
+  if (contact->has_self) record_integer(counters, "self_pairs_left_out", count->resting);
+}
+
+static size_t bytes(const void *self) {
+  const Contact *contact = self;
+  return memory_held(self) + memory_held(contact->bodies) + memory_held(contact->shapes) +
+         memory_held(contact->solids) + contact_system_bytes(contact->system);
+}
+
+const FemEffectOps fem_effect_contact = {
+    .name = "contact",
+    .help = "bodies and obstacles that overlap are pushed apart by a penalty on the overlap volume",
+    .is_wanted = is_wanted,
+    .create = create,
+    .create_again = create_again,
+    .couple = couple,
+    .prepare = prepare,
+    .add_force = add_force,
+    .add_jacobian = add_jacobian,
+    .add_energy = add_energy,
+    .gap = gap,
+    .horizon = horizon,
+    .report = report,
+    .bytes = bytes,
+    .destroy = destroy,
+};
+
+ContactSystem *fem_effect_contact_system(void *effect) {
+  return ((Contact *)effect)->system;
+}
+
+const char *fem_effect_contact_name(const void *effect, int number) {
+  const Contact *contact = effect;
+  int bodies = contact->model->body_count;
+  return number < bodies ? contact->bodies[number].name : contact->shapes[number - bodies].name;
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The contact effect's inside, for output, comparison and audit.
+#ifndef TETLAP_FEM_EFFECT_CONTACT_H
+#define TETLAP_FEM_EFFECT_CONTACT_H
+
+#include "contact/system.h"
+#include "fem/model/scene.h"
+
+// The contact system of the effect that fem_system_effect(system, "contact") returned; borrowed.
+ContactSystem *fem_effect_contact_system(void *effect);
+
+// The name of side `number` of an interface: a body, a mesh obstacle or a half-space.
+const char *fem_effect_contact_name(const void *effect, int number);
+
+// The name or weights file of the scene's overlap model; NULL: the scene has no contact.
+const char *fem_effect_contact_overlap(const FemSceneDef *scene);
+
+// Makes the overlap model of that name or weights file (seen from the program), NULL: the scene's, with what
+// the scene says of networks. Destroy it with overlap_model_destroy.
+Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *name, OverlapModel *overlap);
+
+#endif

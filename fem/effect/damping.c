@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stiffness-proportional damping of the strain rate; rigid motion goes undamped (fem/element/element.h). Only
+// bodies with β > 0 or a viscosity take part.
+#include "base/memory.h"
+#include "fem/effect/assembly.h"
+
+static bool is_wanted(const FemSceneDef *scene) {
+  if (scene->is_static) return false;
+  for (int b = 0; b < scene->body_count; b++) {
+    const FemMaterial *material = &scene->bodies[b].material;
+    double beta = material->damping >= 0 ? material->damping : scene->stiffness_damping;
+    if (beta > 0 || material->viscosity > 0 || material->bulk_viscosity > 0) return true;
+  }
+  return false;
+}
+
+static bool is_damped(const FemModelBody *body) {
+  return body->damping > 0 || body->material.viscosity > 0 || body->material.bulk_viscosity > 0;
+}
+
+static void destroy(void *self) {
+  fem_assembly_destroy(self);
+  memory_free(self);
+}
+
+static Status create(void **self, const FemModel *model) {
+  FemAssembly *assembly = memory_zeroed(1, sizeof *assembly);
+  if (!assembly) return status_no_memory("damping");
+  Status status = fem_assembly_create(assembly, model, is_damped);
+  if (status) {
+    destroy(assembly);
+    return status;
+  }
+  *self = assembly;
+  return STATUS_OK;
+}
+
+static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
+  (void)state;
+  return fem_assembly_couple(self, pattern, has_grown);
+}
+
+static void element_force(const FemAssemblyElement *e, double *force) {
+  if (e->element)
+    fem_element_damping_force(e->element, &e->body->local, e->body->damping, e->x, e->v, force);
+  else
+    fem_quadratic_damping_force(e->quadratic, &e->body->local, e->body->damping, e->x, e->v, force);
+}
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  fem_assembly_add_forces(self, state, element_force, force);
+  return STATUS_OK;
+}
+
+static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
+                           double *matrix) {
+  const FemMaterial *material = &e->body->local;
+  if (e->quadratic) {
+    fem_quadratic_damping_matrix(e->quadratic, material, e->body->damping, e->x, e->v, stiffness_scale,
+                                 damping_scale, matrix);
+    return;
+  }
+  double part[144];
+  for (int k = 0; k < 144; k++) matrix[k] = 0;
+  if (stiffness_scale != 0) {
+    fem_element_damping_stiffness(e->element, material, e->body->damping, e->x, e->v, part);
+    for (int k = 0; k < 144; k++) matrix[k] += stiffness_scale * part[k];
+  }
+  if (damping_scale != 0) {
+    fem_element_damping_matrix(e->element, material, e->body->damping, e->x, part);
+    for (int k = 0; k < 144; k++) matrix[k] += damping_scale * part[k];
+  }
+}
+
+static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                           FemMatrix *matrix) {
+  if (stiffness_scale == 0 && damping_scale == 0) return STATUS_OK;
+  return fem_assembly_add_matrices(self, state, element_matrix, stiffness_scale, damping_scale, matrix);
+}
+
+static double element_power(const FemAssemblyElement *e) {
+  return e->element
+             ? fem_element_damping_power(e->element, &e->body->local, e->body->damping, e->x, e->v)
+             : fem_quadratic_damping_power(e->quadratic, &e->body->local, e->body->damping, e->x, e->v);
+}
+
+static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
+  energy->dissipated_power += fem_assembly_sum(self, state, element_power);
+  return STATUS_OK;
+}
+
+static bool is_linear(void *self) {
+  return fem_model_has_linear_materials(((const FemAssembly *)self)->model);
+}
+
+static size_t bytes(const void *self) {
+  return memory_held(self) + fem_assembly_bytes(self);
+}
+
+const FemEffectOps fem_effect_damping = {
+    .name = "damping",
+    .help = "stiffness-proportional damping and viscosity, by the strain rate",
+    .dissipates = true,
+    .is_wanted = is_wanted,
+    .create = create,
+    .couple = couple,
+    .add_force = add_force,
+    .add_jacobian = add_jacobian,
+    .add_energy = add_energy,
+    .is_linear = is_linear,
+    .bytes = bytes,
+    .destroy = destroy,
+};

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An effect: one module that a scene calls for (elasticity, damping, gravity, contact …). A scene pays for
+// what it names and for nothing else: an effect that is absent is never created. Each is one file with one
+// table of operations, and one line in effect.c.
+#ifndef TETLAP_FEM_EFFECT_EFFECT_H
+#define TETLAP_FEM_EFFECT_EFFECT_H
+
+#include <stdbool.h>
+
+#include "base/record.h"
+#include "fem/model/model.h"
+#include "fem/sparse/matrix.h"
+
+struct FemSystem;
+
+// Positions and velocities of all vertices at a time; borrowed.
+typedef struct FemState {
+  double time;              // [s]
+  const double *positions;  // [m]     (vertex_count, 3)
+  const double *velocities; // [m/s]   (vertex_count, 3)
+} FemState;
+
+// Energies by kind [J] and powers [W]; each effect adds its own.
+typedef struct FemEnergy {
+  double kinetic; // of the unknown coordinates
+  double elastic, gravity, contact;
+  double dissipated_power; // ≥ 0
+  double driven_power;     // of whatever moves prescribed coordinates and obstacles
+  double applied_work;     // of loads since the start [J]
+  double plastic_work;     // dissipated by plasticity since the start [J]
+} FemEnergy;
+
+typedef struct FemEffectOps {
+  const char *name;
+  const char *help; // one line
+  bool dissipates;  // its forces depend on velocities: D is assembled for Newton's matrix
+  bool lags;        // `prepare` changes its forces: the powers are measured anew after it
+  bool (*is_wanted)(const FemSceneDef *scene);
+  Status (*create)(void **self, const FemModel *model);
+  // The same as create for a run that begins anew: takes over from `old`, which is destroyed next, what never
+  // changes and is dear to make or lies in a file (weights). NULL: create.
+  Status (*create_again)(void **self, const FemModel *model, void *old);
+  // Once all effects are there: to find one that this effect builds on, by fem_system_effect. NULL: none.
+  Status (*connect)(void *self, const struct FemSystem *system);
+  // Tells the matrix pattern which vertices this effect couples at that state; *has_grown (may be NULL) as in
+  // matrix.h. Called once, and before every assembly for effects that have `prepare`. NULL: none, or only a
+  // vertex with itself.
+  Status (*couple)(void *self, const FemState *state, FemPattern *pattern, int *has_grown);
+  // After creation and after every accepted step; `step` [s] is the length expected next. The only place
+  // where an effect may change what it keeps. NULL: nothing to keep.
+  Status (*prepare)(void *self, const FemState *state, double step);
+  // Adds forces [N] to `force` (vertex_count, 3); those on bodies that are held may be left out. RETRY: take
+  // a smaller step. NULL: none.
+  Status (*add_force)(void *self, const FemState *state, double *force);
+  // Adds stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, to the matrix. NULL: none.
+  Status (*add_jacobian)(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                         FemMatrix *matrix);
+  Status (*add_energy)(void *self, const FemState *state, FemEnergy *energy); // NULL: none
+  // Forces are linear in positions and velocities: one Jacobian for the whole run. NULL: they are not.
+  bool (*is_linear)(void *self);
+  // Onset function whose root restarts the integrator (contact touching); NULL: none.
+  Status (*gap)(void *self, const FemState *state, double *gap);
+  // How far a step from `time` may go along what the effect prescribes by functions of time (signal.h): at
+  // most to `farthest`. NULL: that far.
+  double (*horizon)(const void *self, const FemForesight *foresight, double time, double farthest);
+  // Adds counters to summary.json; NULL: none. Whole numbers count what happened since creation and are
+  // summed over the parts of a run between two checkpoints; of other numbers the last stands.
+  void (*report)(void *self, Record *counters);
+  // History: what the effect keeps that is no function of time, positions and velocities (lists that
+  // `prepare` renews are none). `save` makes a new array, the caller's; `load` comes before the first
+  // `prepare` at the checkpoint's state. STATUS_INPUT: it does not fit. NULL: no history.
+  Status (*save)(const void *self, double **values, size_t *count);
+  Status (*load)(void *self, const double *values, size_t count);
+  // What it holds on the heap, `self` included [bytes], by memory_held; NULL: not told.
+  size_t (*bytes)(const void *self);
+  void (*destroy)(void *self);
+} FemEffectOps;
+
+typedef struct FemEffect {
+  const FemEffectOps *ops;
+  void *self;
+} FemEffect;
+
+// All effects there are.
+const FemEffectOps *const *fem_effect_list(int *count);
+
+// Those files (fem/effect/NAME.c) define these:
+extern const FemEffectOps fem_effect_elasticity;
+extern const FemEffectOps fem_effect_volume;
+extern const FemEffectOps fem_effect_plasticity;
+extern const FemEffectOps fem_effect_damping;
+extern const FemEffectOps fem_effect_gravity;
+extern const FemEffectOps fem_effect_loads;
+extern const FemEffectOps fem_effect_contact;
+extern const FemEffectOps fem_effect_friction;
+extern const FemEffectOps fem_effect_viscosity;
+extern const FemEffectOps fem_effect_rest;
+
+#endif

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Elasticity: every element's stored energy by its body's law.
+#include "base/memory.h"
+#include "fem/effect/assembly.h"
+
+static bool is_wanted(const FemSceneDef *scene) {
+  return scene->body_count > 0;
+}
+
+static void destroy(void *self) {
+  fem_assembly_destroy(self);
+  memory_free(self);
+}
+
+static Status create(void **self, const FemModel *model) {
+  FemAssembly *assembly = memory_zeroed(1, sizeof *assembly);
+  if (!assembly) return status_no_memory("elasticity");
+  Status status = fem_assembly_create(assembly, model, NULL);
+  if (status) {
+    destroy(assembly);
+    return status;
+  }
+  *self = assembly;
+  return STATUS_OK;
+}
+
+static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
+  (void)state;
+  return fem_assembly_couple(self, pattern, has_grown);
+}
+
+static FemQuadraticLaw law_of(const FemModelBody *body) {
+  return (FemQuadraticLaw){&body->local, body->bulk};
+}
+
+static void element_force(const FemAssemblyElement *e, double *force) {
+  if (e->element)
+    fem_element_force(e->element, &e->body->local, e->x, force);
+  else
+    fem_quadratic_force(e->quadratic, law_of(e->body), e->x, force);
+}
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  fem_assembly_add_forces(self, state, element_force, force);
+  return STATUS_OK;
+}
+
+static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
+                           double *matrix) {
+  (void)damping_scale;
+  if (e->element)
+    fem_element_stiffness(e->element, &e->body->local, e->x, matrix);
+  else
+    fem_quadratic_stiffness(e->quadratic, law_of(e->body), e->x, matrix);
+  for (int k = 0; k < (e->element ? 144 : 900); k++) matrix[k] *= stiffness_scale;
+}
+
+static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                           FemMatrix *matrix) {
+  if (stiffness_scale == 0) return STATUS_OK;
+  return fem_assembly_add_matrices(self, state, element_matrix, stiffness_scale, damping_scale, matrix);
+}
+
+static double element_energy(const FemAssemblyElement *e) {
+  return e->element ? fem_element_energy(e->element, &e->body->local, e->x)
+                    : fem_quadratic_energy(e->quadratic, law_of(e->body), e->x);
+}
+
+static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
+  energy->elastic += fem_assembly_sum(self, state, element_energy);
+  return STATUS_OK;
+}
+
+static bool is_linear(void *self) {
+  return fem_model_has_linear_materials(((const FemAssembly *)self)->model);
+}
+
+static size_t bytes(const void *self) {
+  return memory_held(self) + fem_assembly_bytes(self);
+}
+
+const FemEffectOps fem_effect_elasticity = {
+    .name = "elasticity",
+    .help = "the elements' elastic forces, by each body's material",
+    .is_wanted = is_wanted,
+    .create = create,
+    .couple = couple,
+    .add_force = add_force,
+    .add_jacobian = add_jacobian,
+    .add_energy = add_energy,
+    .is_linear = is_linear,
+    .bytes = bytes,
+    .destroy = destroy,
+};

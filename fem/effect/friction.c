@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Friction as an effect: contact/friction.h on the system of the contact effect.
+#include "fem/effect/friction.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "fem/effect/contact.h"
+#include "fem/system.h"
+
+typedef struct Friction {
+  const FemModel *model;  // borrowed
+  ContactSystem *contact; // borrowed
+  ContactFriction law;
+} Friction;
+
+static bool is_wanted(const FemSceneDef *scene) {
+  return scene->contact.is_on && scene->contact.friction > 0;
+}
+
+static Status create(void **self, const FemModel *model) {
+  Friction *friction = memory_zeroed(1, sizeof *friction);
+  if (!friction) return status_no_memory("friction");
+  friction->model = model;
+  *self = friction;
+  return STATUS_OK;
+}
+
+static Status connect(void *self, const FemSystem *system) {
+  Friction *friction = self;
+  friction->contact = fem_effect_contact_system(fem_system_effect(system, "contact"));
+  return contact_friction_create(&friction->law, friction->contact, friction->model->scene->contact.friction,
+                                 fem_model_slip_speed(friction->model));
+}
+
+static void destroy(void *self) {
+  Friction *friction = self;
+  contact_friction_destroy(&friction->law);
+  memory_free(friction);
+}
+
+static Status prepare(void *self, const FemState *state, double step) {
+  (void)step;
+  Friction *friction = self;
+  double energy;
+  TRY(contact_system_eval(friction->contact, state->time, state->positions, &energy, NULL));
+  return contact_friction_update(&friction->law);
+}
+
+static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
+  (void)state;
+  const ContactFriction *law = &((Friction *)self)->law;
+  for (int g = 0; g < law->grip_count; g++)
+    TRY(fem_pattern_add_clique(pattern, law->grips[g].count, law->vertices + law->grips[g].begin, has_grown));
+  return STATUS_OK;
+}
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  contact_friction_add_force(&((Friction *)self)->law, state->velocities, force);
+  return STATUS_OK;
+}
+
+typedef struct MatrixSink {
+  FemMatrix *matrix;
+  double scale;
+} MatrixSink;
+
+static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
+  MatrixSink *sink = self;
+  fem_matrix_add_outer(sink->matrix, count, vertices, w, sink->scale * scale);
+}
+
+static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                           FemMatrix *matrix) {
+  (void)stiffness_scale; // normals and normal forces are those of the last accepted state
+  if (damping_scale == 0) return STATUS_OK;
+  MatrixSink sink = {.matrix = matrix, .scale = damping_scale};
+  contact_friction_add_damping(&((Friction *)self)->law, state->velocities,
+                               &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer});
+  return STATUS_OK;
+}
+
+static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
+  ContactFrictionPower power = contact_friction_power(&((Friction *)self)->law, state->velocities);
+  energy->dissipated_power += power.dissipated;
+  energy->driven_power += power.driven;
+  return STATUS_OK;
+}
+
+static void report(void *self, Record *counters) {
+  const ContactFriction *law = &((Friction *)self)->law;
+  record_integer(counters, "friction_updates", law->updates);
+  record_integer(counters, "friction_pairs", law->taken);
+  record_integer(counters, "friction_pairs_dropped", law->dropped);
+}
+
+// The forces by interface, of which those at rest are still told.
+static Status save(const void *self, double **values, size_t *count) {
+  const ContactFriction *law = &((const Friction *)self)->law;
+  *count = 3 * (size_t)law->interface_count;
+  *values = memory_copy(law->forces, *count, sizeof **values);
+  return *values ? STATUS_OK : status_no_memory("a checkpoint");
+}
+
+static Status load(void *self, const double *values, size_t count) {
+  ContactFriction *law = &((Friction *)self)->law;
+  if (count != 3 * (size_t)law->interface_count)
+    return status_fail(STATUS_INPUT, "the checkpoint has friction of %zu interfaces, this scene has %d",
+                       count / 3, law->interface_count);
+  memcpy(law->forces, values, count * sizeof *values);
+  return STATUS_OK;
+}
+
+static size_t bytes(const void *self) {
+  return memory_held(self) + contact_friction_bytes(&((const Friction *)self)->law);
+}
+
+const FemEffectOps fem_effect_friction = {
+    .name = "friction",
+    .help = "what touches resists sliding with up to μ times the normal force",
+    .dissipates = true,
+    .lags = true,
+    .is_wanted = is_wanted,
+    .create = create,
+    .connect = connect,
+    .couple = couple,
+    .prepare = prepare,
+    .add_force = add_force,
+    .add_jacobian = add_jacobian,
+    .add_energy = add_energy,
+    .report = report,
+    .save = save,
+    .load = load,
+    .bytes = bytes,
+    .destroy = destroy,
+};
+
+const ContactFriction *fem_effect_friction_of(const void *effect) {
+  return &((const Friction *)effect)->law;
+}

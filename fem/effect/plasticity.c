@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Isotropic J2 plasticity with linear hardening, beside the law stvk: S = C : (E − E_p) in the Green strain,
+// so that rotations may be large; strains should stay within some percent. Elasticity gives C : E; here is
+// the rest,
+//
+//   S_p = −2μ E_p,   yield: q = √(3/2) |s| ≤ σ_y + H α,   s = 2μ dev(E − E_p)
+//
+// by radial return (Simo and Hughes, Computational Inelasticity, 3.3) from the history at the last accepted
+// state: Δα = (q_trial − σ_y − H α)/(3μ + H), ΔE_p = √(3/2) Δα s/|s|. It is the gradient of an incremental
+// energy, ½ (E − E_p):C:(E − E_p) + ½ H α² + σ_y α, whose last part is dissipated. E_p has no trace, so
+// `nodal` volume changes are not concerned, nor mean ones. Each quadrature point has a history of its own.
+#include "fem/effect/plasticity.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect/effect.h"
+
+// The history of a quadrature point.
+typedef struct Plastic {
+  double strain[9]; // E_p
+  double alpha;     // accumulated plastic strain
+} Plastic;
+
+// A quadrature point of a plastic body.
+typedef struct Site {
+  FemPoint point;
+  const int *nodes; // of its element, borrowed from the model       (point.node_count)
+  int tet;          // where its stress is told: of a quadratic element the part at its corner
+} Site;
+
+typedef struct Plasticity {
+  const FemModel *model; // borrowed
+  Site *sites;           //                                          (site_count)
+  int site_count;
+  Plastic *history; // at the last accepted state                    (site_count)
+  int *place;       // of a tetrahedron's first site, −1: not plastic   (model->tet_count)
+} Plasticity;
+
+// A return from the history to E: the new plastic state, and its derivative ∂E_p/∂E = along n ⊗ n + across
+// (I_dev − n ⊗ n).
+typedef struct Return {
+  Plastic plastic;
+  double n[9], along, across;
+} Return;
+
+static bool is_wanted(const FemSceneDef *scene) {
+  for (int b = 0; b < scene->body_count; b++)
+    if (scene->bodies[b].material.yield_stress > 0) return true;
+  return false;
+}
+
+static void destroy(void *self) {
+  Plasticity *plasticity = self;
+  memory_free(plasticity->sites);
+  memory_free(plasticity->history);
+  memory_free(plasticity->place);
+  memory_free(plasticity);
+}
+
+static void add_site(Plasticity *plasticity, FemPoint point, const int *nodes, int tet) {
+  plasticity->sites[plasticity->site_count++] = (Site){point, nodes, tet};
+}
+
+static void add_tet(Plasticity *plasticity, int e) {
+  const FemElement *element = &plasticity->model->elements[e];
+  plasticity->place[e] = plasticity->site_count;
+  add_site(plasticity, (FemPoint){4, element->gradient, element->volume}, plasticity->model->tets[e], e);
+}
+
+static void add_quadratic(Plasticity *plasticity, int e, int tet) {
+  const FemModel *model = plasticity->model;
+  for (int part = 0; part < FEM_QUADRATIC_PARTS; part++)
+    plasticity->place[tet + part] = plasticity->site_count;
+  for (int p = 0; p < FEM_QUADRATIC_POINTS; p++)
+    add_site(plasticity, fem_quadratic_point(&model->quadratics[e], p), model->quadratic_nodes[e], tet + p);
+}
+
+static void list_sites(Plasticity *plasticity) {
+  const FemModel *model = plasticity->model;
+  for (int e = 0; e < model->tet_count; e++) plasticity->place[e] = -1;
+  for (int b = 0; b < model->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    if (!(body->material.yield_stress > 0)) continue;
+    bool is_quadratic = body->element == FEM_ELEMENT_QUADRATIC;
+    for (int e = body->tet_begin; e < body->tet_end && !is_quadratic; e++) add_tet(plasticity, e);
+    for (int e = body->quadratic_begin; e < body->quadratic_end; e++)
+      add_quadratic(plasticity, e, body->tet_begin + FEM_QUADRATIC_PARTS * (e - body->quadratic_begin));
+  }
+}
+
+static Status create(void **self, const FemModel *model) {
+  Plasticity *plasticity = memory_zeroed(1, sizeof *plasticity);
+  if (!plasticity) return status_no_memory("plasticity");
+  size_t tets = (size_t)model->tet_count; // a quadratic element has four points and eight tetrahedra
+  plasticity->model = model;
+  plasticity->sites = memory_zeroed(tets, sizeof *plasticity->sites);
+  plasticity->history = memory_zeroed(tets, sizeof *plasticity->history);
+  plasticity->place = memory_zeroed(tets, sizeof *plasticity->place);
+  if (!plasticity->sites || !plasticity->history || !plasticity->place) {
+    destroy(plasticity);
+    return status_no_memory("plasticity");
+  }
+  list_sites(plasticity);
+  *self = plasticity;
+  return STATUS_OK;
+}
+
+static const FemMaterial *material_of(const Plasticity *plasticity, int site) {
+  const FemModel *model = plasticity->model;
+  return &model->bodies[model->tet_body[plasticity->sites[site].tet]].material;
+}
+
+// F and E = ½ (G + Gᵀ + Gᵀ G), G = F − I.
+static void find_strain(const Site *site, const double *positions, double F[9], double E[9]) {
+  double x[3 * FEM_QUADRATIC_NODES], G[9];
+  for (int k = 0; k < site->point.node_count; k++)
+    memcpy(x + 3 * k, positions + 3 * (size_t)site->nodes[k], 3 * sizeof *x);
+  fem_point_deformation(&site->point, x, F);
+  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      double product = G[i] * G[j] + G[3 + i] * G[3 + j] + G[6 + i] * G[6 + j];
+      E[3 * i + j] = 0.5 * (G[3 * i + j] + G[3 * j + i] + product);
+    }
+}
+
+static Return return_to(const FemMaterial *material, const Plastic *history, const double E[9]) {
+  Return r = {.plastic = *history};
+  double mu = fem_material_lame(material).mu, trace = (E[0] + E[4] + E[8]) / 3, square = 0;
+  for (int k = 0; k < 9; k++) {
+    r.n[k] = 2 * mu * (E[k] - history->strain[k] - (k % 4 == 0 ? trace : 0));
+    square += r.n[k] * r.n[k];
+  }
+  double size = sqrt(square),
+         beyond = sqrt(1.5) * size - material->yield_stress - material->hardening * history->alpha;
+  if (!(beyond > 0)) return r;
+  double growth = beyond / (3 * mu + material->hardening);
+  for (int k = 0; k < 9; k++) {
+    r.n[k] /= size;
+    r.plastic.strain[k] += sqrt(1.5) * growth * r.n[k];
+  }
+  r.plastic.alpha += growth;
+  r.along = 3 * mu / (3 * mu + material->hardening);
+  r.across = sqrt(1.5) * growth * 2 * mu / size;
+  return r;
+}
+
+static Return evaluate(const Plasticity *plasticity, int i, const double *positions, double F[9],
+                       double E[9]) {
+  find_strain(&plasticity->sites[i], positions, F, E);
+  return return_to(material_of(plasticity, i), &plasticity->history[i], E);
+}
+
+static Status prepare(void *self, const FemState *state, double step) {
+  (void)step;
+  Plasticity *plasticity = self;
+  for (int i = 0; i < plasticity->site_count; i++) {
+    double F[9], E[9];
+    plasticity->history[i] = evaluate(plasticity, i, state->positions, F, E).plastic;
+  }
+  return STATUS_OK;
+}
+
+// P_p = −2μ F E_p.
+static void find_stress(double mu, const double F[9], const Plastic *plastic, double P[9]) {
+  const double *S = plastic->strain;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      P[3 * i + j] = -2 * mu * (F[3 * i] * S[j] + F[3 * i + 1] * S[3 + j] + F[3 * i + 2] * S[6 + j]);
+}
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  const Plasticity *plasticity = self;
+  for (int i = 0; i < plasticity->site_count; i++) {
+    const Site *site = &plasticity->sites[i];
+    double F[9], E[9], P[9], own[3 * FEM_QUADRATIC_NODES] = {0};
+    Return r = evaluate(plasticity, i, state->positions, F, E);
+    find_stress(fem_material_lame(material_of(plasticity, i)).mu, F, &r.plastic, P);
+    fem_point_add_force(&site->point, P, own);
+    for (int a = 0; a < site->point.node_count; a++)
+      vec3_accumulate(force + 3 * (size_t)site->nodes[a], vec3_at(own + 3 * a));
+  }
+  return STATUS_OK;
+}
+
+// ∂P_p,ij/∂F_kl = δ_ik S_p,jl + F_im A_mjnl F_kn, A = −2μ ∂E_p/∂E.
+static void find_tangent(double mu, const double F[9], const Return *r, double dP[81]) {
+  double A[81], half[81];
+  for (int p = 0; p < 9; p++)
+    for (int q = 0; q < 9; q++) {
+      int m = p / 3, j = p % 3, k = q / 3, l = q % 3;
+      double symmetric = 0.5 * ((m == k && j == l) + (m == l && j == k)),
+             deviatoric = (m == j && k == l) / 3.0;
+      double outer = r->n[p] * r->n[q];
+      A[9 * p + q] = -2 * mu * (r->along * outer + r->across * (symmetric - deviatoric - outer));
+    }
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int q = 0; q < 9; q++)
+        half[9 * (3 * i + j) + q] =
+            F[3 * i] * A[9 * j + q] + F[3 * i + 1] * A[9 * (3 + j) + q] + F[3 * i + 2] * A[9 * (6 + j) + q];
+  for (int p = 0; p < 9; p++)
+    for (int k = 0; k < 3; k++)
+      for (int l = 0; l < 3; l++) {
+        const double *row = half + 9 * p;
+        dP[9 * p + 3 * k + l] = F[3 * k] * row[l] + F[3 * k + 1] * row[3 + l] + F[3 * k + 2] * row[6 + l] -
+                                (p / 3 == k ? 2 * mu * r->plastic.strain[3 * (p % 3) + l] : 0);
+      }
+}
+
+static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                           FemMatrix *matrix) {
+  (void)damping_scale;
+  const Plasticity *plasticity = self;
+  for (int i = 0; i < plasticity->site_count && stiffness_scale != 0; i++) {
+    const Site *site = &plasticity->sites[i];
+    int nodes = site->point.node_count;
+    double F[9], E[9], dP[81], dense[9 * FEM_QUADRATIC_NODES * FEM_QUADRATIC_NODES] = {0};
+    Return r = evaluate(plasticity, i, state->positions, F, E);
+    find_tangent(fem_material_lame(material_of(plasticity, i)).mu, F, &r, dP);
+    fem_point_add_tangent(&site->point, dP, dense);
+    fem_point_mirror(nodes, dense);
+    fem_matrix_add(matrix, nodes, site->nodes, dense, stiffness_scale);
+  }
+  return STATUS_OK;
+}
+
+// Elasticity has counted ½ E:C:E: −2μ E:E_p + μ E_p:E_p + ½ H α² is missing.
+static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
+  const Plasticity *plasticity = self;
+  for (int i = 0; i < plasticity->site_count; i++) {
+    const FemMaterial *material = material_of(plasticity, i);
+    double F[9], E[9], product = 0, volume = plasticity->sites[i].point.weight;
+    Plastic plastic = evaluate(plasticity, i, state->positions, F, E).plastic;
+    for (int k = 0; k < 9; k++) product += plastic.strain[k] * (plastic.strain[k] - 2 * E[k]);
+    energy->elastic += volume * (fem_material_lame(material).mu * product +
+                                 0.5 * material->hardening * plastic.alpha * plastic.alpha);
+    energy->plastic_work += volume * material->yield_stress * plastic.alpha;
+  }
+  return STATUS_OK;
+}
+
+static Status save(const void *self, double **values, size_t *count) {
+  const Plasticity *plasticity = self;
+  *count = (size_t)plasticity->site_count * sizeof *plasticity->history / sizeof **values;
+  *values = memory_copy(plasticity->history, *count, sizeof **values);
+  return *values ? STATUS_OK : status_no_memory("the plastic strains");
+}
+
+static Status load(void *self, const double *values, size_t count) {
+  Plasticity *plasticity = self;
+  if (count * sizeof *values != (size_t)plasticity->site_count * sizeof *plasticity->history)
+    return status_fail(STATUS_INPUT, "plasticity: there are %zu numbers of history for %d plastic points",
+                       count, plasticity->site_count);
+  memcpy(plasticity->history, values, count * sizeof *values);
+  return STATUS_OK;
+}
+
+static void report(void *self, Record *counters) {
+  const Plasticity *plasticity = self;
+  double most = 0;
+  int yielded = 0, last = -1;
+  for (int i = 0; i < plasticity->site_count; i++) {
+    int element = plasticity->place[plasticity->sites[i].tet];
+    most = fmax(most, plasticity->history[i].alpha);
+    if (!(plasticity->history[i].alpha > 0) || element == last) continue;
+    yielded++;
+    last = element;
+  }
+  record_number(counters, "plastic_strain_max", most);
+  record_number(counters, "yielded_elements", yielded);
+}
+
+void fem_effect_plasticity_add_stress(const void *self, int tet, const double *positions, double stress[6]) {
+  const Plasticity *plasticity = self;
+  int begin = plasticity->place[tet], end = begin + 1;
+  if (begin < 0) return;
+  const Site *first = &plasticity->sites[begin];
+  if (first->point.node_count == FEM_QUADRATIC_NODES) {
+    int part = tet - first->tet;
+    if (part < FEM_QUADRATIC_POINTS)
+      begin += part, end = begin + 1;
+    else
+      end = begin + FEM_QUADRATIC_POINTS;
+  }
+  for (int i = begin; i < end; i++) {
+    double F[9], E[9], P[9], one[6];
+    find_strain(&plasticity->sites[i], positions, F, E);
+    find_stress(fem_material_lame(material_of(plasticity, i)).mu, F, &plasticity->history[i], P);
+    fem_material_cauchy(FEM_MATERIAL_STVK, F, P, one);
+    for (int s = 0; s < 6; s++) stress[s] += one[s] / (end - begin);
+  }
+}
+
+static size_t bytes(const void *self) {
+  const Plasticity *plasticity = self;
+  return memory_held(self) + memory_held(plasticity->sites) + memory_held(plasticity->history) +
+         memory_held(plasticity->place);
+}
+
+const FemEffectOps fem_effect_plasticity = {
+    .name = "plasticity",
+    .help = "isotropic J2 plasticity with linear hardening, beside the law stvk",
+    .is_wanted = is_wanted,
+    .create = create,
+    .prepare = prepare,
+    .add_force = add_force,
+    .add_jacobian = add_jacobian,
+    .add_energy = add_energy,
+    .report = report,
+    .save = save,
+    .load = load,
+    .bytes = bytes,
+    .destroy = destroy,
+};

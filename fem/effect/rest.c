@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/effect/rest.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect/contact.h"
+#include "fem/model/drive.h"
+#include "fem/system.h"
+
+typedef struct Rest {
+  const FemModel *model;         // borrowed
+  ContactSystem *contact;        // borrowed
+  int body_count;                // with unknowns
+  int party_count;               // bodies and mesh obstacles, then obstacles without elements
+  bool *is_held;                 // asleep, or an obstacle that stands still     (party_count)
+  double *calm_since;            // INFINITY: it is not calm [s]                 (body_count)
+  double next_change;            // of what is held, while a body sleeps [s]
+  bool has_changed, is_restored; // who sleeps; by a checkpoint, of which contact is yet to be told
+  double *before;                // velocities at the state before [m/s]        (vertex_count, 3)
+  double before_time;            // [s]; NAN: there is none
+  double decided_at;             // the last time that was decided for [s]; NAN: none
+  // Scratch memory.
+  int *root;       // union–find                                          (party_count)
+  bool *next_held; //                                                     (party_count)
+  unsigned char *state;
+  bool *is_balanced; //                                                   (body_count)
+  // What happened; the last two of the whole run.
+  long long sleeps, wakes;
+  double asleep_s, lost; // bodies' time asleep, summed [s]; kinetic energy [J]
+} Rest;
+
+// What holds for a body, or for one of an island at least.
+enum { IS_AWAKE = 1, IS_UNREADY = 2, IS_DISTURBED = 4 };
+
+static bool is_wanted(const FemSceneDef *scene) {
+  return scene->contact.is_on && scene->contact.rest_is_on && !scene->is_static;
+}
+
+static void destroy(void *self) {
+  Rest *rest = self;
+  memory_free(rest->is_held);
+  memory_free(rest->calm_since);
+  memory_free(rest->before);
+  memory_free(rest->root);
+  memory_free(rest->next_held);
+  memory_free(rest->state);
+  memory_free(rest->is_balanced);
+  memory_free(rest);
+}
+
+static size_t bytes(const void *self) {
+  const Rest *rest = self;
+  const void *const arrays[] = {rest->is_held,   rest->calm_since, rest->before,     rest->root,
+                                rest->next_held, rest->state,      rest->is_balanced};
+  return memory_held(self) + memory_held_by(sizeof arrays / sizeof *arrays, arrays);
+}
+
+static int count_shapes(const FemSceneDef *scene) {
+  int count = 0;
+  for (int o = 0; o < scene->obstacle_count; o++) count += scene->obstacles[o].kind != FEM_OBSTACLE_MESH;
+  return count;
+}
+
+static Status create(void **self, const FemModel *model) {
+  Rest *rest = memory_zeroed(1, sizeof *rest);
+  if (!rest) return status_no_memory("bodies at rest");
+  rest->model = model;
+  rest->body_count = model->scene->body_count;
+  rest->party_count = model->body_count + count_shapes(model->scene);
+  size_t parties = (size_t)rest->party_count, values = 3 * (size_t)model->vertex_count;
+  rest->is_held = memory_zeroed(parties, sizeof *rest->is_held);
+  rest->next_held = memory_zeroed(parties, sizeof *rest->next_held);
+  rest->root = memory_zeroed(parties, sizeof *rest->root);
+  rest->state = memory_zeroed(parties, sizeof *rest->state);
+  rest->calm_since = memory_zeroed((size_t)rest->body_count, sizeof *rest->calm_since);
+  rest->is_balanced = memory_zeroed((size_t)rest->body_count, sizeof *rest->is_balanced);
+  rest->before = memory_zeroed(values, sizeof *rest->before);
+  rest->next_change = INFINITY;
+  rest->before_time = rest->decided_at = NAN;
+  for (int b = 0; b < rest->body_count && rest->calm_since; b++) rest->calm_since[b] = INFINITY;
+  bool fits = rest->is_held && rest->next_held && rest->root && rest->state && rest->calm_since &&
+              rest->before && rest->is_balanced;
+  if (!fits) {
+    destroy(rest);
+    return status_no_memory("bodies at rest");
+  }
+  *self = rest;
+  return STATUS_OK;
+}
+
+static Status connect(void *self, const FemSystem *system) {
+  ((Rest *)self)->contact = fem_effect_contact_system(fem_system_effect(system, "contact"));
+  return STATUS_OK;
+}
+
+// ---- What changes, and when: `time` itself if it is changing.
+
+static double next_release(const FemConstraintDef *def, double time) {
+  return def->release > time ? def->release : INFINITY;
+}
+
+static double next_change_of_body(const Rest *rest, int body, double time) {
+  const FemBodyDef *def = &rest->model->scene->bodies[body];
+  double next = INFINITY;
+  for (int i = 0; i < def->fixed_count; i++) next = fmin(next, next_release(&def->fixed[i], time));
+  for (int i = 0; i < def->driven_count; i++) {
+    const FemConstraintDef *driven = &def->driven[i];
+    bool is_free = driven->release > 0 && driven->release <= time;
+    if (!is_free) next = fmin(next, fmin(next_release(driven, time), fem_drive_next_change(driven, time)));
+  }
+  for (int i = 0; i < def->load_count; i++) next = fmin(next, fem_load_next_change(&def->loads[i], time));
+  return next;
+}
+
+// The obstacle that is that party.
+static const FemObstacleDef *obstacle_of(const Rest *rest, int party) {
+  const FemSceneDef *scene = rest->model->scene;
+  int mesh = rest->body_count, shape = rest->model->body_count;
+  for (int o = 0; o < scene->obstacle_count; o++)
+    if ((scene->obstacles[o].kind == FEM_OBSTACLE_MESH ? mesh++ : shape++) == party)
+      return &scene->obstacles[o];
+  return NULL;
+}
+
+static double next_change(const Rest *rest, int party, double time) {
+  if (party < rest->body_count) return next_change_of_body(rest, party, time);
+  return fem_drive_next_change(&obstacle_of(rest, party)->motion, time);
+}
+
+// ---- Who is calm.
+
+static double fastest(const FemModelBody *body, const double *velocities) {
+  double largest = 0;
+  for (size_t v = (size_t)body->vertex_begin; v < (size_t)body->vertex_end; v++) {
+    Vec3 velocity = vec3_at(velocities + 3 * v);
+    double square = vec3_dot(velocity, velocity);
+    if (!(square <= largest)) largest = isnan(square) ? INFINITY : square;
+  }
+  return sqrt(largest);
+}
+
+// Of its centre of mass, over the step to this state: net force by mass.
+static double acceleration_of(const Rest *rest, const FemModelBody *body, const FemState *state) {
+  Vec3 sum = {0, 0, 0};
+  double mass = 0;
+  for (size_t v = (size_t)body->vertex_begin; v < (size_t)body->vertex_end; v++) {
+    Vec3 change = vec3_sub(vec3_at(state->velocities + 3 * v), vec3_at(rest->before + 3 * v));
+    sum = vec3_add(sum, vec3_scale(rest->model->mass[v], change));
+    mass += rest->model->mass[v];
+  }
+  return vec3_length(sum) / (mass * (state->time - rest->before_time));
+}
+
+// Something began to act, or to act otherwise, since the last decision, or is changing now.
+static bool is_disturbed(const Rest *rest, int body, double time) {
+  return next_change(rest, body, rest->decided_at) <= time || next_change(rest, body, time) <= time;
+}
+
+static void judge_bodies(Rest *rest, const FemState *state) {
+  double speed = fem_model_rest_speed(rest->model), acceleration = fem_model_rest_acceleration(rest->model);
+  bool has_step = state->time > rest->before_time;
+  for (int b = 0; b < rest->body_count; b++) {
+    if (rest->is_held[b]) continue;
+    const FemModelBody *body = &rest->model->bodies[b];
+    bool stays = has_step ? fastest(body, state->velocities) <= speed : isfinite(rest->calm_since[b]);
+    stays = stays && !is_disturbed(rest, b, state->time);
+    rest->is_balanced[b] = has_step && acceleration_of(rest, body, state) <= acceleration;
+    rest->calm_since[b] = stays ? fmin(rest->calm_since[b], state->time) : INFINITY;
+  }
+  memcpy(rest->before, state->velocities, 3 * (size_t)rest->model->vertex_count * sizeof(double));
+  rest->before_time = state->time;
+}
+
+// ---- Islands.
+
+static int root_of(const Rest *rest, int party) {
+  while (rest->root[party] != party) party = rest->root[party];
+  return party;
+}
+
+// The lower number stands for both.
+static void join(Rest *rest, int a, int b) {
+  int p = root_of(rest, a), q = root_of(rest, b);
+  rest->root[p > q ? p : q] = p > q ? q : p;
+}
+
+static unsigned char state_of(const Rest *rest, int body, double time) {
+  if (rest->is_held[body]) return is_disturbed(rest, body, time) ? IS_DISTURBED : 0;
+  bool is_ready =
+      rest->calm_since[body] + fem_model_rest_time(rest->model) <= time && rest->is_balanced[body];
+  return is_ready ? IS_AWAKE : IS_AWAKE | IS_UNREADY;
+}
+
+// Who is to be held, by what is near whom now.
+static void decide(Rest *rest, double time) {
+  int count;
+  const ContactInterface *facings = contact_system_interfaces(rest->contact, &count);
+  for (int p = 0; p < rest->party_count; p++) {
+    bool is_obstacle = p >= rest->body_count;
+    rest->root[p] = p;
+    rest->state[p] = is_obstacle ? 0 : state_of(rest, p, time);
+    rest->next_held[p] = is_obstacle && next_change(rest, p, time) > time;
+  }
+  for (int f = 0; f < count; f++) {
+    int low = facings[f].a < facings[f].b ? facings[f].a : facings[f].b,
+        high = facings[f].a + facings[f].b - low;
+    if (!contact_system_is_near(rest->contact, f)) continue;
+    if (high < rest->body_count)
+      join(rest, low, high);
+    else if (!rest->next_held[high])
+      rest->state[low] |= IS_UNREADY | IS_DISTURBED;
+  }
+  for (int b = 0; b < rest->body_count; b++) rest->state[root_of(rest, b)] |= rest->state[b];
+  for (int b = 0; b < rest->body_count; b++)
+    rest->next_held[b] = !(rest->state[root_of(rest, b)] & (IS_UNREADY | IS_DISTURBED));
+}
+
+static bool differs(const Rest *rest, int count) {
+  return memcmp(rest->is_held, rest->next_held, (size_t)count * sizeof *rest->is_held) != 0;
+}
+
+static bool has_sleeper(const Rest *rest, const bool *is_held) {
+  bool has = false;
+  for (int b = 0; b < rest->body_count; b++) has = has || is_held[b];
+  return has;
+}
+
+// ---- Adopting it.
+
+static Status tell_contact(const Rest *rest, const FemState *state, double step, const bool *is_held) {
+  return contact_system_hold(rest->contact, state->time, state->positions, state->velocities, step, is_held);
+}
+
+static void count_changes(Rest *rest) {
+  for (int b = 0; b < rest->body_count; b++) {
+    rest->sleeps += rest->next_held[b] && !rest->is_held[b];
+    rest->wakes += !rest->next_held[b] && rest->is_held[b];
+    if (rest->next_held[b] != rest->is_held[b]) rest->calm_since[b] = INFINITY;
+  }
+}
+
+static void find_next_change(Rest *rest, double time) {
+  rest->next_change = INFINITY;
+  if (!has_sleeper(rest, rest->is_held)) return;
+  for (int p = 0; p < rest->party_count; p++)
+    if (rest->is_held[p]) rest->next_change = fmin(rest->next_change, next_change(rest, p, time));
+}
+
+static void adopt(Rest *rest, double time) {
+  rest->has_changed = rest->has_changed || differs(rest, rest->body_count);
+  count_changes(rest);
+  memcpy(rest->is_held, rest->next_held, (size_t)rest->party_count * sizeof *rest->is_held);
+  find_next_change(rest, time);
+}
+
+// The lists that contact keeps may be old: before anything is changed all is searched where it is now.
+static Status change(Rest *rest, const FemState *state, double step) {
+  bool concerns_contact = has_sleeper(rest, rest->is_held) || has_sleeper(rest, rest->next_held);
+  if (concerns_contact) {
+    TRY(tell_contact(rest, state, step, NULL));
+    decide(rest, state->time);
+  }
+  adopt(rest, state->time);
+  return has_sleeper(rest, rest->is_held) ? tell_contact(rest, state, step, rest->is_held) : STATUS_OK;
+}
+
+static void count_time(Rest *rest, double time) {
+  if (time > rest->decided_at)
+    for (int b = 0; b < rest->body_count; b++)
+      if (rest->is_held[b]) rest->asleep_s += time - rest->decided_at;
+}
+
+// Takes up what a checkpoint says.
+static Status restore(Rest *rest, const FemState *state, double step) {
+  rest->is_restored = false;
+  for (int p = rest->body_count; p < rest->party_count; p++)
+    rest->is_held[p] = next_change(rest, p, state->time) > state->time;
+  find_next_change(rest, state->time);
+  return has_sleeper(rest, rest->is_held) ? tell_contact(rest, state, step, rest->is_held) : STATUS_OK;
+}
+
+static Status prepare(void *self, const FemState *state, double step) {
+  Rest *rest = self;
+  if (rest->is_restored) TRY(restore(rest, state, step));
+  if (isnan(rest->decided_at)) rest->decided_at = state->time;
+  count_time(rest, state->time);
+  judge_bodies(rest, state);
+  decide(rest, state->time);
+  Status status = differs(rest, rest->party_count) ? change(rest, state, step) : STATUS_OK;
+  rest->decided_at = state->time;
+  return status;
+}
+
+static void report(void *self, Record *counters) {
+  const Rest *rest = self;
+  const ContactCounters *contact = contact_system_counters(rest->contact);
+  record_integer(counters, "bodies_put_to_rest", rest->sleeps);
+  record_integer(counters, "bodies_awakened", rest->wakes);
+  record_integer(counters, "pairs_left_at_rest", contact->left_at_rest);
+  record_number(counters, "body_seconds_at_rest", rest->asleep_s);
+  record_number(counters, "energy_put_to_rest_J", rest->lost);
+}
+
+// asleep_s, lost; then of each body whether it sleeps, and since when it is calm (INFINITY: it is not).
+static Status save(const void *self, double **values, size_t *count) {
+  const Rest *rest = self;
+  size_t bodies = (size_t)rest->body_count;
+  *count = 2 + 2 * bodies;
+  *values = memory_zeroed(*count, sizeof **values);
+  if (!*values) return status_no_memory("a checkpoint");
+  (*values)[0] = rest->asleep_s, (*values)[1] = rest->lost;
+  for (size_t b = 0; b < bodies; b++) {
+    (*values)[2 + b] = rest->is_held[b];
+    (*values)[2 + bodies + b] = rest->calm_since[b];
+  }
+  return STATUS_OK;
+}
+
+static Status load(void *self, const double *values, size_t count) {
+  Rest *rest = self;
+  size_t bodies = (size_t)rest->body_count;
+  if (count != 2 + 2 * bodies)
+    return status_fail(STATUS_INPUT, "the checkpoint has %zu numbers of bodies at rest, this scene has %zu",
+                       count, 2 + 2 * bodies);
+  rest->asleep_s = values[0], rest->lost = values[1];
+  for (size_t b = 0; b < bodies; b++) {
+    rest->is_held[b] = values[2 + b] != 0;
+    rest->calm_since[b] = values[2 + bodies + b];
+  }
+  rest->before_time = rest->decided_at = NAN;
+  rest->is_restored = rest->has_changed = true;
+  return STATUS_OK;
+}
+
+const FemEffectOps fem_effect_rest = {
+    .name = "rest",
+    .help =
+        "bodies that have come to rest carry no unknowns and no contact search until something nears them",
+    .is_wanted = is_wanted,
+    .create = create,
+    .connect = connect,
+    .prepare = prepare,
+    .report = report,
+    .save = save,
+    .load = load,
+    .bytes = bytes,
+    .destroy = destroy,
+};
+
+bool fem_effect_rest_has_changed(void *effect) {
+  Rest *rest = effect;
+  if (!rest) return false;
+  bool has_changed = rest->has_changed;
+  rest->has_changed = false;
+  return has_changed;
+}
+
+bool fem_effect_rest_is_asleep(const void *effect, int body) {
+  const Rest *rest = effect;
+  return rest && body < rest->body_count && rest->is_held[body];
+}
+
+double fem_effect_rest_next_change(const void *effect) {
+  const Rest *rest = effect;
+  return rest ? rest->next_change : INFINITY;
+}
+
+void fem_effect_rest_add_loss(void *effect, double energy) {
+  ((Rest *)effect)->lost += energy;
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Viscous contact as an effect: contact/viscosity.h on the system of the contact effect, whose couplings are
+// its own.
+#include "contact/viscosity.h"
+#include "base/memory.h"
+#include "fem/effect/contact.h"
+#include "fem/system.h"
+
+typedef struct Viscosity {
+  const FemModel *model;  // borrowed
+  ContactSystem *contact; // borrowed
+  ContactViscosity law;
+} Viscosity;
+
+static bool is_wanted(const FemSceneDef *scene) {
+  return scene->contact.is_on && scene->contact.viscosity > 0;
+}
+
+static Status create(void **self, const FemModel *model) {
+  Viscosity *viscosity = memory_zeroed(1, sizeof *viscosity);
+  if (!viscosity) return status_no_memory("contact viscosity");
+  viscosity->model = model;
+  *self = viscosity;
+  return STATUS_OK;
+}
+
+static Status connect(void *self, const FemSystem *system) {
+  Viscosity *viscosity = self;
+  viscosity->contact = fem_effect_contact_system(fem_system_effect(system, "contact"));
+  return contact_viscosity_create(&viscosity->law, viscosity->contact,
+                                  viscosity->model->scene->contact.viscosity);
+}
+
+static void destroy(void *self) {
+  Viscosity *viscosity = self;
+  contact_viscosity_destroy(&viscosity->law);
+  memory_free(viscosity);
+}
+
+// Contact has evaluated these positions already, unless it is asked for energies only.
+static Status evaluate(const Viscosity *viscosity, const FemState *state) {
+  double energy;
+  return contact_system_eval(viscosity->contact, state->time, state->positions, &energy, NULL);
+}
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  Viscosity *viscosity = self;
+  TRY(evaluate(viscosity, state));
+  return contact_viscosity_add_force(&viscosity->law, state->velocities, force);
+}
+
+typedef struct MatrixSink {
+  FemMatrix *matrix;
+} MatrixSink;
+
+static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
+  fem_matrix_add_outer(((MatrixSink *)self)->matrix, count, vertices, w, scale);
+}
+
+static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
+                           FemMatrix *matrix) {
+  Viscosity *viscosity = self;
+  MatrixSink sink = {matrix};
+  TRY(evaluate(viscosity, state));
+  return contact_viscosity_add_jacobian(&viscosity->law, state->velocities, stiffness_scale, damping_scale,
+                                        &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer});
+}
+
+static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
+  Viscosity *viscosity = self;
+  ContactViscosityPower power;
+  TRY(evaluate(viscosity, state));
+  TRY(contact_viscosity_power(&viscosity->law, state->velocities, &power));
+  energy->dissipated_power += power.dissipated;
+  energy->driven_power += power.driven;
+  return STATUS_OK;
+}
+
+static size_t bytes(const void *self) {
+  return memory_held(self) + contact_viscosity_bytes(&((const Viscosity *)self)->law);
+}
+
+const FemEffectOps fem_effect_viscosity = {
+    .name = "contact_viscosity",
+    .help = "what goes into another body is resisted in proportion to its speed",
+    .dissipates = true,
+    .is_wanted = is_wanted,
+    .create = create,
+    .connect = connect,
+    .add_force = add_force,
+    .add_jacobian = add_jacobian,
+    .add_energy = add_energy,
+    .bytes = bytes,
+    .destroy = destroy,
+};

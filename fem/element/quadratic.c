@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/element/quadratic.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/vec3.h"
+#include "fem/material/cofactor.h"
+#include "fem/material/viscous.h"
+
+enum { NODES = FEM_QUADRATIC_NODES, POINTS = FEM_QUADRATIC_POINTS, DOFS = 3 * NODES };
+
+const int fem_quadratic_edges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+// ∂N_a/∂(L₁, L₂, L₃) at a point, L₀ = 1 − L₁ − L₂ − L₃.
+static void differentiate(int point, double derivative[NODES][3]) {
+  static const double slope[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const double near = (5 + 3 * sqrt(5)) / 20, far = (5 - sqrt(5)) / 20;
+  double L[4] = {far, far, far, far};
+  L[point] = near;
+  for (int c = 0; c < 3; c++) {
+    for (int a = 0; a < 4; a++) derivative[a][c] = (4 * L[a] - 1) * slope[a][c];
+    for (int k = 0; k < 6; k++) {
+      int a = fem_quadratic_edges[k][0], b = fem_quadratic_edges[k][1];
+      derivative[4 + k][c] = 4 * (L[a] * slope[b][c] + L[b] * slope[a][c]);
+    }
+  }
+}
+
+// ∂X/∂(L₁, L₂, L₃), positions taken relative to node 0.
+static void find_jacobian(const double nodes[30], double (*derivative)[3], double jacobian[9]) {
+  memset(jacobian, 0, 9 * sizeof *jacobian);
+  for (int a = 1; a < NODES; a++)
+    for (int i = 0; i < 3; i++)
+      for (int c = 0; c < 3; c++) jacobian[3 * i + c] += (nodes[3 * a + i] - nodes[i]) * derivative[a][c];
+}
+
+void fem_quadratic_create_curved(FemQuadratic *element, const double nodes[30]) {
+  element->volume = 0;
+  for (int p = 0; p < POINTS; p++) {
+    double derivative[NODES][3], jacobian[9], cofactor[9];
+    differentiate(p, derivative);
+    find_jacobian(nodes, derivative, jacobian);
+    fem_cofactor_find(jacobian, cofactor);
+    double det = fem_cofactor_det(jacobian);
+    for (int a = 0; a < NODES; a++)
+      for (int i = 0; i < 3; i++)
+        element->gradient[p][a][i] =
+            (cofactor[3 * i] * derivative[a][0] + cofactor[3 * i + 1] * derivative[a][1] +
+             cofactor[3 * i + 2] * derivative[a][2]) /
+            det;
+    element->weight[p] = det / (6 * POINTS);
+    element->volume += element->weight[p];
+  }
+}
+
+void fem_quadratic_create(FemQuadratic *element, const double corners[12]) {
+  double nodes[DOFS];
+  memcpy(nodes, corners, 12 * sizeof *nodes);
+  for (int k = 0; k < 6; k++)
+    for (int i = 0; i < 3; i++) {
+      double a = corners[3 * fem_quadratic_edges[k][0] + i], b = corners[3 * fem_quadratic_edges[k][1] + i];
+      nodes[3 * (4 + k) + i] = a + 0.5 * (b - a);
+    }
+  fem_quadratic_create_curved(element, nodes);
+}
+
+double fem_quadratic_min_jacobian(const double nodes[30]) {
+  double straight = vec3_det4(vec3_at(nodes), vec3_at(nodes + 3), vec3_at(nodes + 6), vec3_at(nodes + 9));
+  double smallest = INFINITY;
+  for (int p = 0; p < POINTS; p++) {
+    double derivative[NODES][3], jacobian[9];
+    differentiate(p, derivative);
+    find_jacobian(nodes, derivative, jacobian);
+    smallest = fmin(smallest, fem_cofactor_det(jacobian) / straight);
+  }
+  return smallest;
+}
+
+FemPoint fem_quadratic_point(const FemQuadratic *element, int point) {
+  return (FemPoint){NODES, element->gradient[point], element->weight[point]};
+}
+
+// ∫ N_a² over ∫ 1: 6/420 at corners, 32/420 at middles.
+double fem_quadratic_mass_share(int node) {
+  return (node < 4 ? 6.0 : 32.0) / (4 * 6.0 + 6 * 32.0);
+}
+
+double fem_quadratic_det(const FemQuadratic *element, int point, const double x[30]) {
+  FemPoint at = fem_quadratic_point(element, point);
+  double F[9];
+  fem_point_deformation(&at, x, F);
+  return fem_cofactor_det(F);
+}
+
+// V times the mean volume change, V θ̄.
+static double sum_volume_change(const FemQuadratic *element, FemMaterialLaw law, const double x[30]) {
+  double sum = 0, F[9], gradient[9];
+  for (int p = 0; p < POINTS; p++) {
+    FemPoint point = fem_quadratic_point(element, p);
+    fem_point_deformation(&point, x, F);
+    sum += point.weight * fem_material_volume(law, F, gradient);
+  }
+  return sum;
+}
+
+// (λ − λ_e) θ̄ [Pa], which acts along ∂θ/∂F at every point.
+static double mean_pressure(const FemQuadratic *element, FemQuadraticLaw law, const double x[30]) {
+  if (law.bulk == 0) return 0;
+  return law.bulk * sum_volume_change(element, law.local->law, x) / element->volume;
+}
+
+double fem_quadratic_energy(const FemQuadratic *element, FemQuadraticLaw law, const double x[30]) {
+  double sum = 0, F[9];
+  for (int p = 0; p < POINTS; p++) {
+    FemPoint point = fem_quadratic_point(element, p);
+    fem_point_deformation(&point, x, F);
+    sum += point.weight * fem_material_energy(law.local, F);
+  }
+  if (law.bulk == 0) return sum;
+  double change = sum_volume_change(element, law.local->law, x);
+  return sum + 0.5 * law.bulk * change * change / element->volume;
+}
+
+// P at a point, its share of the mean pressure included.
+static void find_stress(FemQuadraticLaw law, double pressure, const double F[9], double P[9]) {
+  fem_material_stress(law.local, F, P);
+  if (law.bulk == 0) return;
+  double gradient[9];
+  fem_material_volume(law.local->law, F, gradient);
+  for (int r = 0; r < 9; r++) P[r] += pressure * gradient[r];
+}
+
+void fem_quadratic_force(const FemQuadratic *element, FemQuadraticLaw law, const double x[30],
+                         double force[30]) {
+  double pressure = mean_pressure(element, law, x), F[9], P[9];
+  memset(force, 0, DOFS * sizeof *force);
+  for (int p = 0; p < POINTS; p++) {
+    FemPoint point = fem_quadratic_point(element, p);
+    fem_point_deformation(&point, x, F);
+    find_stress(law, pressure, F, P);
+    fem_point_add_force(&point, P, force);
+  }
+}
+
+void fem_quadratic_stiffness(const FemQuadratic *element, FemQuadraticLaw law, const double x[30],
+                             double stiffness[900]) {
+  double pressure = mean_pressure(element, law, x), F[9], dP[81], curvature[81], gradient[9];
+  double change[DOFS] = {0}; // −V ∂θ̄/∂x
+  memset(stiffness, 0, DOFS * DOFS * sizeof *stiffness);
+  for (int p = 0; p < POINTS; p++) {
+    FemPoint point = fem_quadratic_point(element, p);
+    fem_point_deformation(&point, x, F);
+    fem_material_tangent(law.local, F, dP);
+    if (law.bulk > 0) {
+      fem_material_volume(law.local->law, F, gradient);
+      fem_point_add_force(&point, gradient, change);
+      fem_material_volume_curvature(law.local->law, F, curvature);
+      for (int r = 0; r < 81; r++) dP[r] += pressure * curvature[r];
+    }
+    fem_point_add_tangent(&point, dP, stiffness);
+  }
+  for (int r = 0; law.bulk > 0 && r < DOFS; r++)
+    for (int c = r; c < DOFS; c++)
+      stiffness[DOFS * r + c] += law.bulk / element->volume * change[r] * change[c];
+  fem_point_mirror(NODES, stiffness);
+}
+
+void fem_quadratic_damping_force(const FemQuadratic *element, const FemMaterial *material, double beta,
+                                 const double x[30], const double v[30], double force[30]) {
+  double F[9], rate[9], P[9];
+  memset(force, 0, DOFS * sizeof *force);
+  for (int p = 0; p < POINTS; p++) {
+    FemPoint point = fem_quadratic_point(element, p);
+    fem_point_deformation(&point, x, F);
+    fem_point_deformation(&point, v, rate);
+    fem_viscous_stress(material, beta, F, rate, P);
+    fem_point_add_force(&point, P, force);
+  }
+}
+
+double fem_quadratic_damping_power(const FemQuadratic *element, const FemMaterial *material, double beta,
+                                   const double x[30], const double v[30]) {
+  double F[9], rate[9], power = 0;
+  for (int p = 0; p < POINTS; p++) {
+    FemPoint point = fem_quadratic_point(element, p);
+    fem_point_deformation(&point, x, F);
+    fem_point_deformation(&point, v, rate);
+    power += point.weight * fem_viscous_power(material, beta, F, rate);
+  }
+  return power;
+}
+
+void fem_quadratic_damping_matrix(const FemQuadratic *element, const FemMaterial *material, double beta,
+                                  const double x[30], const double v[30], double stiffness_scale,
+                                  double damping_scale, double matrix[900]) {
+  double F[9], rate[9], tangent[81], geometric[81];
+  memset(matrix, 0, DOFS * DOFS * sizeof *matrix);
+  for (int p = 0; p < POINTS; p++) {
+    FemPoint point = fem_quadratic_point(element, p);
+    fem_point_deformation(&point, x, F);
+    fem_point_deformation(&point, v, rate);
+    fem_viscous_tangent(material, beta, F, tangent);
+    fem_viscous_stiffness(material, beta, F, rate, geometric);
+    for (int r = 0; r < 81; r++) tangent[r] = damping_scale * tangent[r] + stiffness_scale * geometric[r];
+    fem_point_add_tangent(&point, tangent, matrix);
+  }
+  fem_point_mirror(NODES, matrix);
+}
+
+void fem_quadratic_cauchy(const FemQuadratic *element, FemQuadraticLaw law, const double x[30], int part,
+                          double stress[6]) {
+  double pressure = mean_pressure(element, law, x), F[9], P[9], one[6];
+  int begin = part < POINTS ? part : 0, end = part < POINTS ? part + 1 : POINTS;
+  memset(stress, 0, 6 * sizeof *stress);
+  for (int p = begin; p < end; p++) {
+    FemPoint point = fem_quadratic_point(element, p);
+    fem_point_deformation(&point, x, F);
+    find_stress(law, pressure, F, P);
+    fem_material_cauchy(law.local->law, F, P, one);
+    for (int s = 0; s < 6; s++) stress[s] += one[s] / (end - begin);
+  }
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/material/log.h"
+
+#include <math.h>
+
+#include "fem/material/cofactor.h"
+
+FemMaterialLog fem_material_log(double swelling) {
+  const double least = FEM_MATERIAL_LOG_SMALLEST;
+  double J = 1 + swelling, x = (J - least) / least;
+  if (x >= 0) return (FemMaterialLog){log1p(swelling), 1 / J, -1 / (J * J)};
+  return (FemMaterialLog){log(least) + x - 0.5 * x * x, (1 - x) / least, -1 / (least * least)};
+}
+
+// μ/2 (I_C − 3) − μ θ + λ/2 θ², I_C − 3 from the displacement gradient.
+double fem_material_log_energy(const FemMaterial *material, const double F[9]) {
+  FemLame lame = fem_material_lame(material);
+  double stretch = 0;
+  for (int r = 0; r < 9; r++) {
+    double G = F[r] - (r % 4 == 0);
+    stretch += G * G + (r % 4 == 0 ? 2 * G : 0);
+  }
+  double theta = fem_material_log(fem_cofactor_swelling(F)).value;
+  return lame.mu * (0.5 * stretch - theta) + 0.5 * lame.lambda * theta * theta;
+}
+
+// P = μ F + (λ θ − μ) θ' cof F.
+void fem_material_log_stress(const FemMaterial *material, const double F[9], double P[9]) {
+  FemLame lame = fem_material_lame(material);
+  FemMaterialLog theta = fem_material_log(fem_cofactor_swelling(F));
+  double C[9], weight = (lame.lambda * theta.value - lame.mu) * theta.slope;
+  fem_cofactor_find(F, C);
+  for (int r = 0; r < 9; r++) P[r] = lame.mu * F[r] + weight * C[r];
+}
+
+// ∂P/∂F = μ I + (λ θ'² + (λ θ − μ) θ'') cof F ⊗ cof F + (λ θ − μ) θ' ∂cof F/∂F.
+void fem_material_log_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
+  FemLame lame = fem_material_lame(material);
+  FemMaterialLog theta = fem_material_log(fem_cofactor_swelling(F));
+  double C[9], pressure = lame.lambda * theta.value - lame.mu;
+  double outer = lame.lambda * theta.slope * theta.slope + pressure * theta.bend;
+  fem_cofactor_find(F, C);
+  for (int r = 0; r < 9; r++) {
+    for (int c = 0; c < 9; c++) dP[9 * r + c] = outer * (C[r] * C[c]);
+    dP[10 * r] += lame.mu;
+  }
+  fem_cofactor_add_derivative(F, pressure * theta.slope, dP);
+}

@@ -1,0 +1,504 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/material/material.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "fem/material/cofactor.h"
+#include "fem/material/log.h"
+#include "fem/material/rubber.h"
+#include "fem/material/svd3.h"
+
+static const struct {
+  const char *name, *help;
+} laws[FEM_MATERIAL_LAW_COUNT] = {
+    [FEM_MATERIAL_LINEAR] = {"linear", "Hooke's law in fixed axes: small strains and small rotations"},
+    [FEM_MATERIAL_COROTATIONAL] = {"corotational",
+                                   "small strains, large rotations: linear in the polar stretch"},
+    [FEM_MATERIAL_STVK] = {"stvk",
+                           "St. Venant-Kirchhoff: large rotations; collapses under strong compression"},
+    [FEM_MATERIAL_NEO_HOOKEAN] = {"neo_hookean",
+                                  "stable neo-Hookean: large strains, recovers from inversion"},
+    [FEM_MATERIAL_NEO_HOOKEAN_LOG] =
+        {"neo_hookean_log", "neo-Hookean with the logarithm of the volume: no pressure flattens it"},
+    [FEM_MATERIAL_MOONEY_RIVLIN] = {"mooney_rivlin",
+                                    "Mooney-Rivlin rubber: two invariants, `mooney` shares them out"},
+    [FEM_MATERIAL_OGDEN] = {"ogden", "Ogden rubber: up to three powers of the principal stretches"},
+};
+
+const char *fem_material_name(FemMaterialLaw law) {
+  return laws[law].name;
+}
+const char *fem_material_help(FemMaterialLaw law) {
+  return laws[law].help;
+}
+
+FemLame fem_material_lame(const FemMaterial *material) {
+  double E = material->young, nu = material->poisson;
+  return (FemLame){.lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), .mu = E / (2 * (1 + nu))};
+}
+
+FemMaterial fem_material_with_lambda(const FemMaterial *material, double lambda) {
+  FemMaterial other = *material;
+  double mu = fem_material_lame(material).mu;
+  other.young = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+  other.poisson = lambda / (2 * (lambda + mu));
+  return other;
+}
+
+static inline double dot9(const double A[9], const double B[9]) {
+  double sum = 0;
+  for (int r = 0; r < 9; r++) sum += A[r] * B[r];
+  return sum;
+}
+
+// Linear: ε = sym F − I, P = 2μ ε + λ tr ε I.
+
+static void find_small_strain(const double F[9], double strain[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) strain[3 * i + j] = 0.5 * (F[3 * i + j] + F[3 * j + i]) - (i == j);
+}
+
+static double quadratic_energy(FemLame lame, const double strain[9]) {
+  double trace = strain[0] + strain[4] + strain[8];
+  return lame.mu * dot9(strain, strain) + 0.5 * lame.lambda * trace * trace;
+}
+
+// 2μ e + λ tr e I.
+static void apply_hooke(FemLame lame, const double strain[9], double stress[9]) {
+  double pressure = lame.lambda * (strain[0] + strain[4] + strain[8]);
+  for (int r = 0; r < 9; r++) stress[r] = 2 * lame.mu * strain[r];
+  stress[0] += pressure, stress[4] += pressure, stress[8] += pressure;
+}
+
+static void linear_stress(FemLame lame, const double F[9], double P[9]) {
+  double strain[9];
+  find_small_strain(F, strain);
+  apply_hooke(lame, strain, P);
+}
+
+static void linear_tangent(FemLame lame, double dP[81]) {
+  memset(dP, 0, 81 * sizeof *dP);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int r = 3 * i + j;
+      dP[9 * r + r] += lame.mu;
+      dP[9 * r + 3 * j + i] += lame.mu;
+      dP[9 * 4 * i + 4 * j] += lame.lambda;
+    }
+}
+
+// Corotational: P = 2μ (F − R) + λ tr(S − I) R.
+
+static double corotational_energy(FemLame lame, const double F[9]) {
+  FemSvd3 svd;
+  fem_svd3_factor(&svd, F);
+  double squares = 0, trace = 0;
+  for (int k = 0; k < 3; k++) {
+    double stretch = svd.sigma[k] - 1;
+    squares += stretch * stretch;
+    trace += stretch;
+  }
+  return lame.mu * squares + 0.5 * lame.lambda * trace * trace;
+}
+
+static double stretch_trace(const FemSvd3 *svd) {
+  return (svd->sigma[0] - 1) + (svd->sigma[1] - 1) + (svd->sigma[2] - 1);
+}
+
+static void corotational_stress(FemLame lame, const double F[9], double P[9]) {
+  FemSvd3 svd;
+  double R[9];
+  fem_svd3_factor(&svd, F);
+  fem_svd3_rotation(&svd, R);
+  double pressure = lame.lambda * stretch_trace(&svd);
+  for (int r = 0; r < 9; r++) P[r] = 2 * lame.mu * (F[r] - R[r]) + pressure * R[r];
+}
+
+// Sums of stretches below count as this (material.h).
+static const double SMALLEST_SUM = 1e-6;
+
+// u_i v_jᵀ − u_j v_iᵀ: how R moves where F is twisted in the plane (i, j).
+static inline void find_twist(const FemSvd3 *svd, int i, int j, double twist[9]) {
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++)
+      twist[3 * r + c] = svd->U[3 * r + i] * svd->V[3 * c + j] - svd->U[3 * r + j] * svd->V[3 * c + i];
+}
+
+// dP += scale · ∂R/∂F, as below.
+static void add_rotation_derivative(const double F[9], double scale, double dP[81]) {
+  static const int pairs[3][2] = {{0, 1}, {1, 2}, {0, 2}};
+  FemSvd3 svd;
+  fem_svd3_factor(&svd, F);
+  for (int k = 0; k < 3; k++) {
+    double twist[9], sum = svd.sigma[pairs[k][0]] + svd.sigma[pairs[k][1]];
+    find_twist(&svd, pairs[k][0], pairs[k][1], twist);
+    double weight = scale / fmax(sum, SMALLEST_SUM);
+    for (int r = 0; r < 9; r++)
+      for (int c = 0; c < 9; c++) dP[9 * r + c] += weight * twist[r] * twist[c];
+  }
+}
+
+// dP = 2μ dF + λ (R : dF) R + (λ tr(S − I) − 2μ) dR. With twists Q_ij = u_i v_jᵀ − u_j v_iᵀ,
+// dR = Σ_{i<j} (Q_ij : dF) Q_ij / (σ_i + σ_j)   (Smith, de Goes, Kim 2019, "Analytic eigensystems for
+// isotropic distortion energies").
+static void corotational_tangent(FemLame lame, const double F[9], double dP[81]) {
+  static const int pairs[3][2] = {{0, 1}, {1, 2}, {0, 2}};
+  FemSvd3 svd;
+  double modes[4][9], weights[4];
+  fem_svd3_factor(&svd, F);
+  fem_svd3_rotation(&svd, modes[3]);
+  weights[3] = lame.lambda;
+  double turning = lame.lambda * stretch_trace(&svd) - 2 * lame.mu;
+  for (int k = 0; k < 3; k++) {
+    double sum = svd.sigma[pairs[k][0]] + svd.sigma[pairs[k][1]];
+    find_twist(&svd, pairs[k][0], pairs[k][1], modes[k]);
+    weights[k] = turning / (sum < SMALLEST_SUM ? SMALLEST_SUM : sum);
+  }
+  for (int r = 0; r < 9; r++) {
+    double scaled[4];
+    for (int k = 0; k < 4; k++) scaled[k] = weights[k] * modes[k][r];
+    for (int c = r; c < 9; c++)
+      dP[9 * r + c] = dP[9 * c + r] = scaled[0] * modes[0][c] + scaled[1] * modes[1][c] +
+                                      scaled[2] * modes[2][c] + scaled[3] * modes[3][c];
+    dP[10 * r] += 2 * lame.mu;
+  }
+}
+
+// St. Venant–Kirchhoff: P = F S, S = 2μ E + λ tr E I.
+
+// E = ½ (G + Gᵀ + Gᵀ G) with G = F − I, which keeps small strains' digits.
+static void find_green_strain(const double F[9], double strain[9]) {
+  double G[9];
+  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) {
+      double product = G[i] * G[j] + G[3 + i] * G[3 + j] + G[6 + i] * G[6 + j];
+      strain[3 * i + j] = strain[3 * j + i] = 0.5 * (G[3 * i + j] + G[3 * j + i] + product);
+    }
+}
+
+static void second_stress(FemLame lame, const double F[9], double S[9]) {
+  double strain[9];
+  find_green_strain(F, strain);
+  apply_hooke(lame, strain, S);
+}
+
+static void stvk_stress(FemLame lame, const double F[9], double P[9]) {
+  double S[9];
+  second_stress(lame, F, S);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      P[3 * i + j] = F[3 * i] * S[j] + F[3 * i + 1] * S[3 + j] + F[3 * i + 2] * S[6 + j];
+}
+
+// ∂P_ij/∂F_kl = μ ((F Fᵀ)_ik δ_jl + F_il F_kj) + λ F_ij F_kl.
+static void push_stiffness(FemLame lame, const double F[9], double dP[81]) {
+  double left[9]; // F Fᵀ
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++)
+      left[3 * i + k] = F[3 * i] * F[3 * k] + F[3 * i + 1] * F[3 * k + 1] + F[3 * i + 2] * F[3 * k + 2];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) {
+        double *row = dP + 9 * (3 * i + j) + 3 * k;
+        for (int l = 0; l < 3; l++)
+          row[l] = lame.mu * (F[3 * i + l] * F[3 * k + j]) + lame.lambda * (F[3 * i + j] * F[3 * k + l]);
+        row[j] += lame.mu * left[3 * i + k];
+      }
+}
+
+// … + δ_ik S_jl.
+static void stvk_tangent(FemLame lame, const double F[9], double dP[81]) {
+  double S[9];
+  second_stress(lame, F, S);
+  push_stiffness(lame, F, dP);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int l = 0; l < 3; l++) dP[9 * (3 * i + j) + 3 * i + l] += S[3 * j + l];
+}
+
+// Stable neo-Hookean. Its own parameters, such that the given λ, μ are the small-strain ones.
+static FemLame neo_hookean_parameters(FemLame lame) {
+  return (FemLame){.lambda = lame.lambda + 5.0 / 6.0 * lame.mu, .mu = 4.0 / 3.0 * lame.mu};
+}
+
+// The factor of cof F in P: λ' (J − α) = λ' (J − 1) − ¾ μ'.
+static inline double cofactor_weight(FemLame own, const double F[9], const double C[9]) {
+  double J = F[0] * C[0] + F[1] * C[1] + F[2] * C[2];
+  return own.lambda * (J - 1) - 0.75 * own.mu;
+}
+
+static double neo_hookean_energy(FemLame lame, const double F[9]) {
+  FemLame own = neo_hookean_parameters(lame);
+  double G[9];
+  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
+  // I_C − 3 from the displacement gradient: no cancellation at small strain.
+  double stretch = 2 * (G[0] + G[4] + G[8]) + dot9(G, G), swelling = fem_cofactor_swelling(F);
+  return 0.5 * own.mu * (stretch - log1p(0.25 * stretch) - 1.5 * swelling) +
+         0.5 * own.lambda * swelling * swelling;
+}
+
+// P = μ' (1 − 1/(I_C + 1)) F + λ' (J − α) cof F.
+static void neo_hookean_stress(FemLame lame, const double F[9], double P[9]) {
+  FemLame own = neo_hookean_parameters(lame);
+  double C[9], square = dot9(F, F);
+  fem_cofactor_find(F, C);
+  double a = own.mu * (square / (square + 1)), b = cofactor_weight(own, F, C);
+  for (int r = 0; r < 9; r++) P[r] = a * F[r] + b * C[r];
+}
+
+// ∂P/∂F = μ' (1 − 1/(I_C + 1)) I + 2 μ'/(I_C + 1)² F ⊗ F + λ' cof F ⊗ cof F + λ' (J − α) ∂cof F/∂F.
+static void neo_hookean_tangent(FemLame lame, const double F[9], double dP[81]) {
+  FemLame own = neo_hookean_parameters(lame);
+  double C[9], square = dot9(F, F);
+  fem_cofactor_find(F, C);
+  double a = own.mu * (square / (square + 1)), b = cofactor_weight(own, F, C);
+  double f = 2 * own.mu / ((square + 1) * (square + 1));
+  for (int r = 0; r < 9; r++) {
+    for (int c = 0; c < 9; c++) dP[9 * r + c] = f * (F[r] * F[c]) + own.lambda * (C[r] * C[c]);
+    dP[10 * r] += a;
+  }
+  fem_cofactor_add_derivative(F, b, dP);
+}
+
+// Fibres along a: E_f, F a, and k, which is 0 where they buckle.
+typedef struct Fibre {
+  double stiffness, strain, direction[3], pushed[3];
+} Fibre;
+
+static Fibre fibre_of(const FemMaterial *material, const double F[9]) {
+  const double *a = material->fibre_direction;
+  double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]), G[9];
+  Fibre fibre = {.stiffness = material->fibre_stiffness};
+  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
+  for (int c = 0; c < 3; c++) fibre.direction[c] = a[c] / length;
+  for (int i = 0; i < 3; i++) { // E_f = a·G a + ½ |G a|²
+    const double *d = fibre.direction;
+    double stretch = G[3 * i] * d[0] + G[3 * i + 1] * d[1] + G[3 * i + 2] * d[2];
+    fibre.pushed[i] = d[i] + stretch;
+    fibre.strain += stretch * (d[i] + 0.5 * stretch);
+  }
+  if (material->fibres_buckle && fibre.strain < 0) fibre.stiffness = 0;
+  return fibre;
+}
+
+// P_f = k E_f (F a) ⊗ a.
+static void add_fibre_stress(const FemMaterial *material, const double F[9], double P[9]) {
+  Fibre fibre = fibre_of(material, F);
+  for (int r = 0; r < 9; r++)
+    P[r] += fibre.stiffness * fibre.strain * fibre.pushed[r / 3] * fibre.direction[r % 3];
+}
+
+// ∂P_f/∂F = k (Fa ⊗ a)(Fa ⊗ a) + k E_f δ_ik a_j a_l.
+static void add_fibre_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
+  Fibre fibre = fibre_of(material, F);
+  const double *a = fibre.direction, *b = fibre.pushed;
+  for (int r = 0; r < 9; r++)
+    for (int c = 0; c < 9; c++) {
+      double along = a[r % 3] * a[c % 3];
+      dP[9 * r + c] += fibre.stiffness * along * (b[r / 3] * b[c / 3] + (r / 3 == c / 3 ? fibre.strain : 0));
+    }
+}
+
+static double law_energy(const FemMaterial *material, const double F[9]) {
+  FemLame lame = fem_material_lame(material);
+  double strain[9];
+  switch (material->law) {
+  case FEM_MATERIAL_LINEAR:
+    find_small_strain(F, strain);
+    return quadratic_energy(lame, strain);
+  case FEM_MATERIAL_COROTATIONAL:
+    return corotational_energy(lame, F);
+  case FEM_MATERIAL_STVK:
+    find_green_strain(F, strain);
+    return quadratic_energy(lame, strain);
+  case FEM_MATERIAL_NEO_HOOKEAN:
+    return neo_hookean_energy(lame, F);
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    return fem_material_log_energy(material, F);
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+    return fem_material_mooney_energy(material, F);
+  case FEM_MATERIAL_OGDEN:
+    return fem_material_ogden_energy(material, F);
+  }
+  return NAN;
+}
+
+double fem_material_energy(const FemMaterial *material, const double F[9]) {
+  double own = law_energy(material, F);
+  if (!(material->fibre_stiffness > 0)) return own;
+  Fibre fibre = fibre_of(material, F);
+  return own + 0.5 * fibre.stiffness * fibre.strain * fibre.strain;
+}
+
+void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]) {
+  FemLame lame = fem_material_lame(material);
+  switch (material->law) {
+  case FEM_MATERIAL_LINEAR:
+    linear_stress(lame, F, P);
+    break;
+  case FEM_MATERIAL_COROTATIONAL:
+    corotational_stress(lame, F, P);
+    break;
+  case FEM_MATERIAL_STVK:
+    stvk_stress(lame, F, P);
+    break;
+  case FEM_MATERIAL_NEO_HOOKEAN:
+    neo_hookean_stress(lame, F, P);
+    break;
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    fem_material_log_stress(material, F, P);
+    break;
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+    fem_material_mooney_stress(material, F, P);
+    break;
+  case FEM_MATERIAL_OGDEN:
+    fem_material_ogden_stress(material, F, P);
+    break;
+  }
+  if (material->fibre_stiffness > 0) add_fibre_stress(material, F, P);
+}
+
+void fem_material_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
+  FemLame lame = fem_material_lame(material);
+  switch (material->law) {
+  case FEM_MATERIAL_LINEAR:
+    linear_tangent(lame, dP);
+    break;
+  case FEM_MATERIAL_COROTATIONAL:
+    corotational_tangent(lame, F, dP);
+    break;
+  case FEM_MATERIAL_STVK:
+    stvk_tangent(lame, F, dP);
+    break;
+  case FEM_MATERIAL_NEO_HOOKEAN:
+    neo_hookean_tangent(lame, F, dP);
+    break;
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    fem_material_log_tangent(material, F, dP);
+    break;
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+    fem_material_mooney_tangent(material, F, dP);
+    break;
+  case FEM_MATERIAL_OGDEN:
+    fem_material_ogden_tangent(material, F, dP);
+    break;
+  }
+  if (material->fibre_stiffness > 0) add_fibre_tangent(material, F, dP);
+}
+
+bool fem_material_is_linear(const FemMaterial *material) {
+  return material->law == FEM_MATERIAL_LINEAR && !(material->fibre_stiffness > 0);
+}
+
+FemLame fem_material_viscous(const FemMaterial *material, double beta) {
+  FemLame lame = fem_material_lame(material);
+  return (FemLame){.lambda = beta * lame.lambda + material->bulk_viscosity - 2.0 / 3.0 * material->viscosity,
+                   .mu = beta * lame.mu + material->viscosity};
+}
+
+void fem_material_pushed_stiffness(FemLame lame, const double F[9], double dP[81]) {
+  push_stiffness(lame, F, dP);
+}
+
+void fem_material_pushed_stiffness_rate(FemLame lame, const double F[9], const double rate[9],
+                                        double dP[81]) {
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) {
+      double left = 0; // of the rate of F Fᵀ
+      for (int m = 0; m < 3; m++) left += rate[3 * i + m] * F[3 * k + m] + F[3 * i + m] * rate[3 * k + m];
+      for (int j = 0; j < 3; j++)
+        for (int l = 0; l < 3; l++) {
+          int ij = 3 * i + j, kl = 3 * k + l, il = 3 * i + l, kj = 3 * k + j;
+          dP[9 * ij + kl] = lame.mu * (rate[il] * F[kj] + F[il] * rate[kj] + (j == l ? left : 0)) +
+                            lame.lambda * (rate[ij] * F[kl] + F[ij] * rate[kl]);
+        }
+    }
+}
+
+// θ by law.
+
+static void volume_rotation(const double F[9], FemSvd3 *svd, double R[9]) {
+  fem_svd3_factor(svd, F);
+  fem_svd3_rotation(svd, R);
+}
+
+static double green_trace(const double F[9]) {
+  double strain[9];
+  find_green_strain(F, strain);
+  return strain[0] + strain[4] + strain[8];
+}
+
+double fem_material_volume(FemMaterialLaw law, const double F[9], double gradient[9]) {
+  static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  FemSvd3 svd;
+  FemMaterialLog theta;
+  switch (law) {
+  case FEM_MATERIAL_LINEAR:
+    memcpy(gradient, identity, sizeof identity);
+    return (F[0] - 1) + (F[4] - 1) + (F[8] - 1);
+  case FEM_MATERIAL_COROTATIONAL:
+    volume_rotation(F, &svd, gradient);
+    return stretch_trace(&svd);
+  case FEM_MATERIAL_STVK:
+    memcpy(gradient, F, 9 * sizeof *gradient);
+    return green_trace(F);
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    theta = fem_material_log(fem_cofactor_swelling(F));
+    fem_cofactor_find(F, gradient);
+    for (int r = 0; r < 9; r++) gradient[r] *= theta.slope;
+    return theta.value;
+  case FEM_MATERIAL_NEO_HOOKEAN:
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+  case FEM_MATERIAL_OGDEN:
+    break;
+  }
+  fem_cofactor_find(F, gradient);
+  return fem_cofactor_swelling(F);
+}
+
+// θ' ∂cof F/∂F + θ'' cof F ⊗ cof F.
+static void log_curvature(const double F[9], double curvature[81]) {
+  FemMaterialLog theta = fem_material_log(fem_cofactor_swelling(F));
+  double C[9];
+  fem_cofactor_find(F, C);
+  for (int r = 0; r < 9; r++)
+    for (int c = 0; c < 9; c++) curvature[9 * r + c] = theta.bend * (C[r] * C[c]);
+  fem_cofactor_add_derivative(F, theta.slope, curvature);
+}
+
+void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double curvature[81]) {
+  memset(curvature, 0, 81 * sizeof *curvature);
+  switch (law) {
+  case FEM_MATERIAL_LINEAR:
+    return;
+  case FEM_MATERIAL_COROTATIONAL:
+    add_rotation_derivative(F, 1, curvature);
+    return;
+  case FEM_MATERIAL_STVK:
+    for (int r = 0; r < 9; r++) curvature[10 * r] = 1;
+    return;
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    log_curvature(F, curvature);
+    return;
+  case FEM_MATERIAL_NEO_HOOKEAN:
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+  case FEM_MATERIAL_OGDEN:
+    break;
+  }
+  fem_cofactor_add_derivative(F, 1, curvature);
+}
+
+void fem_material_cauchy(FemMaterialLaw law, const double F[9], const double P[9], double stress[6]) {
+  static const int rows[6] = {0, 1, 2, 0, 1, 0}, columns[6] = {0, 1, 2, 1, 2, 2};
+  static const double flat = 1e-12;
+  double J = fem_cofactor_det(F);
+  for (int s = 0; s < 6; s++) {
+    const double *p = P + 3 * rows[s], *f = F + 3 * columns[s];
+    if (law == FEM_MATERIAL_LINEAR)
+      stress[s] = p[columns[s]];
+    else
+      stress[s] = fabs(J) <= flat ? 0 : (p[0] * f[0] + p[1] * f[1] + p[2] * f[2]) / J;
+  }
+}

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Constitutive laws of isotropic elastic solids: energy density Ψ(F), first Piola–Kirchhoff stress P = ∂Ψ/∂F
+// and its derivative ∂P/∂F, exact, for every F, inverted ones included. Matrices are row-major: F[3 i + j] =
+// ∂x_i/∂X_j; the 9 × 9 derivative, symmetric, has rows P_ij, columns F_kl in the same order.
+//
+// With λ, μ of the given E, ν, every law has Ψ = 0, P = 0 and the isotropic tangent of E, ν at F = I; all but
+// `linear` also have Ψ(QF) = Ψ(F) for rotations Q:
+//
+//   linear        Ψ = μ ε:ε + λ/2 tr²ε                 ε = sym F − I
+//   corotational  Ψ = μ ‖S − I‖² + λ/2 tr²(S − I)      F = R S, R the nearest proper rotation
+//   stvk          Ψ = μ E:E + λ/2 tr²E                 E = ½ (FᵀF − I)
+//   neo_hookean   Ψ = μ'/2 (I_C − 3) − μ'/2 log((I_C + 1)/4) − ¾ μ' (J − 1) + λ'/2 (J − 1)²
+//                 μ' = 4/3 μ, λ' = λ + 5/6 μ, I_C = F:F, J = det F
+//   neo_hookean_log Ψ = μ/2 (I_C − 3) − μ ln J + λ/2 ln²J,  ν ≥ 0
+//   mooney_rivlin Ψ = c₁ (I_C − 3) + c₂ (‖cof F‖² − 3) − (2c₁ + 4c₂)(J − 1) + (λ + 2c₁)/2 (J − 1)²
+//                 c₁ = (1 − m) μ/2, c₂ = m μ/2
+//   ogden         Ψ = Σ_i Σ_p μ_p/α_p (σ_i^α_p − 1) − d (J − 1) + (λ + d)/2 (J − 1)²,  d = Σ μ_p
+//                 σ_i the principal stretches, μ_p α_p = 2 μ times the share of the term
+//
+// neo_hookean is the stable neo-Hookean energy of Smith, de Goes and Kim 2018 with their Lamé parameters,
+// less its constant, and with their rest stability α = 1 + ¾ μ'/λ' multiplied out. The logarithm is kept:
+// without it a collapse to F = 0 would be a stable state. It and stvk are smooth for all F; stvk, though,
+// depends on FᵀF alone: under strong compression it softens, and a mirrored element is at rest.
+//
+// neo_hookean_log is the classical compressible form (Simo and Pister 1984; Bonet and Wood, eq. 6.27): its
+// pressure grows without bound as J → 0, where that of neo_hookean ends at about 2 E (ν = 0.4). From J =
+// 0.05 down ln J goes on as its parabola, with two continuous derivatives, so that inverted elements are
+// pushed back; λ < 0 would win over the barrier.
+//
+// corotational: R comes from singular values whose last carries the sign of det F (svd3.h). R, and with it P,
+// jumps where σ_i + σ_j = 0, which needs J ≤ 0; there one of the nearest rotations is taken, and the
+// derivative's 1/(σ_i + σ_j) is bounded by 1e6 (a sum of stretches below 1e-6 counts as 1e-6). Everywhere
+// else it is exact. ogden is the same there (1e-4); below σ = 0.1 its powers go on as parabolas.
+//
+// Rubber laws are Mooney 1940, Rivlin 1948 and Ogden 1972 with a compressible part that is a polynomial in J
+// (after Ciarlet), so that they stay finite in inverted elements; as ν → ½ they become the incompressible
+// ones.
+//
+// Fibres (transverse isotropy) add Ψ_f = k/2 E_f², E_f = ½ (a·FᵀF a − 1), along the unit vector a at rest;
+// if they buckle, only for E_f > 0.
+#ifndef TETLAP_FEM_MATERIAL_MATERIAL_H
+#define TETLAP_FEM_MATERIAL_MATERIAL_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+
+typedef enum FemMaterialLaw {
+  FEM_MATERIAL_LINEAR,          // small strain: ε = sym(F) − I
+  FEM_MATERIAL_COROTATIONAL,    // linear in the polar stretch
+  FEM_MATERIAL_STVK,            // St. Venant–Kirchhoff
+  FEM_MATERIAL_NEO_HOOKEAN,     // stable neo-Hookean (Smith, de Goes, Kim 2018)
+  FEM_MATERIAL_NEO_HOOKEAN_LOG, // with ln J
+  FEM_MATERIAL_MOONEY_RIVLIN,
+  FEM_MATERIAL_OGDEN,
+} FemMaterialLaw;
+
+enum { FEM_MATERIAL_LAW_COUNT = 7 };
+
+typedef struct FemMaterial {
+  FemMaterialLaw law;
+  double young;   // E > 0 [Pa]
+  double poisson; // −1 < ν < ½
+  double density; // [kg/m³]
+  double damping; // β of stiffness-proportional damping [s]; < 0: the scene's
+  // Kelvin–Voigt: a viscous second Piola–Kirchhoff stress 2η dev Ė + ζ tr Ė I beside the elastic one.
+  double viscosity, bulk_viscosity; // η, ζ ≥ 0 [Pa s]
+  double yield_stress, hardening;   // σ_y, 0: elastic, and H of J2 plasticity [Pa] (fem/effect/plasticity.c)
+  double mooney;                    // m of mooney_rivlin, in [0, 1]
+  double exponents[3], shares[3];   // α_p and shares of ogden's terms; the shares are taken by their sum
+  double fibre_stiffness;           // k [Pa]; 0: no fibres
+  double fibre_direction[3];        // need not have unit length
+  bool fibres_buckle;
+} FemMaterial;
+
+// The name a scene uses: linear, corotational, stvk, neo_hookean; and one line of help.
+const char *fem_material_name(FemMaterialLaw law);
+const char *fem_material_help(FemMaterialLaw law);
+
+typedef struct FemLame {
+  double lambda, mu; // [Pa]
+} FemLame;
+FemLame fem_material_lame(const FemMaterial *material);
+
+double fem_material_energy(const FemMaterial *material, const double F[9]);               // Ψ [J/m³]
+void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]);    // [Pa]
+void fem_material_tangent(const FemMaterial *material, const double F[9], double dP[81]); // [Pa]
+
+// Cauchy stress σ = P Fᵀ / J [Pa] of a stress P: xx, yy, zz, xy, yz, xz. Zero where |J| ≤ 1e-12. The linear
+// law does not tell the two configurations apart: its σ is P.
+void fem_material_cauchy(FemMaterialLaw law, const double F[9], const double P[9], double stress[6]);
+
+// The law's measure of volume change θ(F), of which every law has the term λ/2 θ²: tr ε, tr(S − I), tr E, J −
+// 1, ln J. Returns θ; gradient ∂θ/∂F (9) and curvature ∂²θ/∂F² (9, 9).
+double fem_material_volume(FemMaterialLaw law, const double F[9], double gradient[9]);
+void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double curvature[81]);
+
+// The same material with another first Lamé parameter λ and the same μ.
+FemMaterial fem_material_with_lambda(const FemMaterial *material, double lambda);
+
+// The stress is linear in F: the law linear.
+bool fem_material_is_linear(const FemMaterial *material);
+
+// β C and the viscosities as a pair of Lamé parameters [Pa s].
+FemLame fem_material_viscous(const FemMaterial *material, double beta);
+
+// F C Fᵀ with the small-strain C of the Lamé parameters: what a strain dE = sym(Fᵀ dF) answers with, dP = F
+// (C : dE). The material part of stvk's tangent, and the matrix of damping.
+void fem_material_pushed_stiffness(FemLame lame, const double F[9], double dP[81]);
+// Its rate of change while F changes with `rate`: rate C Fᵀ + F C rateᵀ.
+void fem_material_pushed_stiffness_rate(FemLame lame, const double F[9], const double rate[9], double dP[81]);
+
+#endif

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stiffness-proportional damping and viscosity at a point, from F and Ḟ; no rigid motion feels it (but by the
+// law linear, whose rate is sym Ḟ): with the Green strain rate Ė = sym(Fᵀ Ḟ) and the Lamé parameters C_v of β
+// C and the material's viscosities, the density of dissipation is R = ½ Ė:C_v:Ė.
+#ifndef TETLAP_FEM_MATERIAL_VISCOUS_H
+#define TETLAP_FEM_MATERIAL_VISCOUS_H
+
+#include "fem/material/material.h"
+
+// P_v = ∂R/∂Ḟ = F Σ, Σ = C_v : Ė [Pa].
+void fem_viscous_stress(const FemMaterial *material, double beta, const double F[9], const double rate[9],
+                        double P[9]);
+// 2R = Ė:C_v:Ė ≥ 0 [W/m³].
+double fem_viscous_power(const FemMaterial *material, double beta, const double F[9], const double rate[9]);
+// ∂P_v/∂Ḟ [Pa s], symmetric, ≥ 0.
+void fem_viscous_tangent(const FemMaterial *material, double beta, const double F[9], double dP[81]);
+// The symmetric part of ∂P_v/∂F [Pa]: the geometric part of Σ and half the rate of change of the tangent. May
+// be indefinite; zero for the law linear.
+void fem_viscous_stiffness(const FemMaterial *material, double beta, const double F[9], const double rate[9],
+                           double dP[81]);
+
+#endif

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/model/drive.h"
+
+#include <stddef.h>
+
+#include "base/vec3.h"
+#include "fem/model/table.h"
+
+// Rodrigues' formula about the axis through the centre.
+static void turn(const FemConstraintDef *def, double time, double position[3], double velocity[3]) {
+  Vec3 axis = vec3_at(def->axis), centre = vec3_at(def->centre);
+  axis = vec3_scale(1 / vec3_length(axis), axis);
+  double angle = def->spin * time, cosine = cos(angle), sine = sin(angle);
+  Vec3 arm = vec3_sub(vec3_at(position), centre);
+  Vec3 along = vec3_scale(vec3_dot(axis, arm), axis);
+  Vec3 turned = vec3_add(
+      vec3_add(vec3_scale(cosine, vec3_sub(arm, along)), vec3_scale(sine, vec3_cross(axis, arm))), along);
+  vec3_store(position, vec3_add(centre, turned));
+  vec3_accumulate(velocity, vec3_scale(def->spin, vec3_cross(axis, turned)));
+}
+
+static FemTable table_of(const FemConstraintDef *def) {
+  return (FemTable){def->table, 4, def->table_count};
+}
+
+// Adds what moves all points alike.
+static void translate(const FemConstraintDef *def, double time, double position[3], double velocity[3]) {
+  double omega = 2 * M_PI * def->frequency;
+  for (int c = 0; c < 3; c++) {
+    position[c] += def->velocity[c] * time + def->amplitude[c] * sin(omega * time);
+    velocity[c] += def->velocity[c] + def->amplitude[c] * omega * cos(omega * time);
+  }
+  if (def->table_count > 0) {
+    double displacement[3], rate[3];
+    fem_table_eval(table_of(def), time, displacement, rate);
+    for (int c = 0; c < 3; c++) position[c] += displacement[c], velocity[c] += rate[c];
+  }
+  for (int c = 0; c < 3; c++) {
+    if (!def->formula[c]) continue;
+    ExpressionValue displacement = expression_eval(def->formula[c], time);
+    position[c] += displacement.value;
+    velocity[c] += displacement.rate;
+  }
+}
+
+void fem_drive_point(const FemConstraintDef *def, double time, const double rest[3], double position[3],
+                     double velocity[3]) {
+  bool is_frozen = time >= def->until;
+  double t = is_frozen ? def->until : time;
+  for (int c = 0; c < 3; c++) position[c] = rest[c], velocity[c] = 0;
+  if (def->spin != 0) turn(def, t, position, velocity);
+  translate(def, t, position, velocity);
+  for (int c = 0; c < 3 && is_frozen; c++) velocity[c] = 0;
+}
+
+double fem_drive_next_change(const FemConstraintDef *def, double time) {
+  if (fem_drive_is_still(def) || time >= def->until) return INFINITY;
+  bool flows = def->spin != 0;
+  for (int c = 0; c < 3; c++)
+    flows = flows || def->velocity[c] != 0 || def->amplitude[c] != 0 ||
+            (def->formula[c] && !expression_is_constant(def->formula[c]));
+  if (flows) return time;
+  double next = fem_table_next_change(table_of(def), time);
+  return next < def->until ? next : INFINITY;
+}
+
+// The motion of the centre of rotation: turning alone is smooth until it ends.
+static void eval_motion(const void *self, double time, double value[3], double rate[3]) {
+  const FemConstraintDef *def = self;
+  fem_drive_point(def, time, def->centre, value, rate);
+}
+
+static double next_knot(const void *self, double time) {
+  const FemConstraintDef *def = self;
+  double next = fem_table_next_row(table_of(def), time);
+  for (int c = 0; c < 3; c++)
+    if (def->formula[c]) next = fmin(next, expression_next_kink(def->formula[c], time));
+  if (time < def->until) return fmin(next, def->until);
+  return INFINITY;
+}
+
+double fem_drive_horizon(const FemConstraintDef *def, const FemForesight *foresight, double time,
+                         double farthest) {
+  FemSignal signal = {.def = def,
+                      .eval = eval_motion,
+                      .next_knot = next_knot,
+                      .deviation = foresight->displacement,
+                      .impulse = INFINITY};
+  for (int c = 0; c < 3; c++)
+    signal.is_curved = signal.is_curved || def->formula[c] || def->amplitude[c] != 0;
+  double horizon = fem_signal_horizon(&signal, foresight, time, farthest);
+  bool ends_turning = def->spin != 0 && def->until - time > foresight->resolution;
+  return ends_turning ? fmin(horizon, def->until) : horizon;
+}
+
+bool fem_drive_is_still(const FemConstraintDef *def) {
+  bool moves = def->spin != 0 || def->table_count > 0;
+  for (int c = 0; c < 3; c++)
+    moves = moves || def->velocity[c] != 0 || def->amplitude[c] != 0 || def->formula[c] != NULL;
+  return !moves;
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Prescribed motion: where a driven point is, and how fast, at a time.
+#ifndef TETLAP_FEM_MODEL_DRIVE_H
+#define TETLAP_FEM_MODEL_DRIVE_H
+
+#include "fem/model/scene.h"
+#include "fem/model/signal.h"
+
+// x(t) = centre + R(spin t)(rest − centre) + velocity t + amplitude sin(2π frequency t) + table(t) +
+// formula(t), all frozen from `until` on. Position [m] and velocity [m/s] of the point that rests at `rest`.
+void fem_drive_point(const FemConstraintDef *def, double time, const double rest[3], double position[3],
+                     double velocity[3]);
+
+// From a time on, when the motion begins to differ from standing still: that time itself if it moves then,
+// INFINITY if it never will again.
+double fem_drive_next_change(const FemConstraintDef *def, double time);
+
+// How far a step may go along the motion (signal.h).
+double fem_drive_horizon(const FemConstraintDef *def, const FemForesight *foresight, double time,
+                         double farthest);
+
+// Whether nothing ever moves.
+bool fem_drive_is_still(const FemConstraintDef *def);
+
+#endif

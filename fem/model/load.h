@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A load of the scene on a body's vertices. All kinds but a pressure that follows its surface are dead: fixed
+// nodal forces times the factor of time; those of a surface are the integrals of the shape functions, also on
+// the faces of quadratic tetrahedra, where the corners take nothing; a body force is shared as the mass is.
+// The following pressure p on a triangle with the area vector A = ½ (b − a) × (c − a), outward, gives each
+// corner −p A/3; it is −p ∂V/∂x of the volume that the surface bounds.
+#ifndef TETLAP_FEM_MODEL_LOAD_H
+#define TETLAP_FEM_MODEL_LOAD_H
+
+#include "fem/mesh/mesh.h"
+#include "fem/model/scene.h"
+#include "fem/model/signal.h"
+
+typedef struct FemLoad {
+  const FemLoadDef *def; // borrowed from the scene
+  int *vertices;         // of the model, that carry a dead load                      (vertex_count)
+  double *force;         // on each at factor 1 [N]                                   (vertex_count, 3)
+  int vertex_count;
+  int (*triangles)[3]; // of the model, outward, that carry a following pressure      (triangle_count)
+  int triangle_count;
+  int (*faces)[6]; // the same of quadratic tetrahedra (fem/element/quadratic_face.h)         (face_count)
+  int face_count;
+} FemLoad;
+
+// Finds vertices and triangles in `mesh`, whose first vertex has the number `vertex_begin` in the model.
+// STATUS_INPUT: a selection without a vertex, or for a surface load without a triangle.
+Status fem_load_create(FemLoad *load, const FemLoadDef *def, const FemMesh *mesh, int vertex_begin);
+void fem_load_destroy(FemLoad *load); // also of a zeroed one
+
+// What the load's values are multiplied with at a time. STATUS_INPUT: not a number.
+Status fem_load_factor(const FemLoadDef *def, double time, double *factor);
+
+// From a time on, when the load begins to change: that time itself if it is changing, INFINITY if never
+// again.
+double fem_load_next_change(const FemLoadDef *def, double time);
+
+// How far a step may go along the factor (signal.h); `acceleration` [m/s²]: the largest that the load at
+// factor 1 gives a vertex.
+double fem_load_horizon(const FemLoadDef *def, double acceleration, const FemForesight *foresight,
+                        double time, double farthest);
+
+// Adds factor × load at these positions to `force` (vertex_count, 3) [N].
+void fem_load_add_force(const FemLoad *load, double factor, const double *positions, double *force);
+
+// −∂f/∂x of one triangle of a following pressure p, the symmetric part, (9, 9): over a surface that is closed
+// or held at its rim the parts left out cancel.
+void fem_load_triangle_stiffness(double pressure, const double a[3], const double b[3], const double c[3],
+                                 double stiffness[81]);
+
+#endif

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What stays constant in a run: all bodies' meshes one after another, masses, elements, materials,
+// constraints, and which of the 3·vertex_count coordinates are unknowns. Built from a scene definition.
+#ifndef TETLAP_FEM_MODEL_MODEL_H
+#define TETLAP_FEM_MODEL_MODEL_H
+
+#include "contact/system.h"
+#include "fem/element/element.h"
+#include "fem/element/quadratic.h"
+#include "fem/model/colouring.h"
+#include "fem/model/load.h"
+#include "fem/model/scene.h"
+
+typedef struct FemModelBody {
+  const char *name; // borrowed from the scene
+  int vertex_begin, vertex_end;
+  int tet_begin, tet_end;
+  FemMaterial material; // obstacles: zeroed
+  FemMaterial local;    // what an element resists with by itself; the rest of λ is the vertices'
+                     // (fem/effect/volume.h) or the mean's of a quadratic one (fem/element/quadratic.h)
+  double bulk; // that rest, of quadratic ones; else 0 [Pa]
+  int quadratic_begin, quadratic_end;
+  FemElementKind element;
+  double damping; // β [s]
+  double mass;    // [kg]
+  bool is_obstacle;
+  bool is_held; // it sleeps: its vertices carry no unknowns for now
+} FemModelBody;
+
+// Coordinates whose motion is prescribed by one constraint.
+typedef struct FemModelDriver {
+  const FemConstraintDef *def; // borrowed from the scene
+  bool is_fixed;               // no motion at all
+  bool is_released;            // the coordinates are unknowns now
+  int *dofs;                   // 3·vertex + component   (dof_count)
+  int dof_count;
+} FemModelDriver;
+
+typedef struct FemModel {
+  const FemSceneDef *scene;                // borrowed
+  int vertex_count, tet_count, body_count; // obstacles included, after the bodies
+  double *rest;                            // [m]                                       (vertex_count, 3)
+  int (*tets)[4];                          //                                           (tet_count)
+  int *tet_body;                           //                                           (tet_count)
+  FemElement *elements;                    //                                           (tet_count)
+  int quadratic_count;                     // a body's tets are the eighths of its quadratic ones
+  FemQuadratic *quadratics;                //                                           (quadratic_count)
+  int (*quadratic_nodes)[10];              //                                           (quadratic_count)
+  int *quadratic_body;                     //                                           (quadratic_count)
+  FemModelBody *bodies;                    //                                           (body_count)
+  double *mass;                            // lumped, obstacles 0 [kg]                  (vertex_count)
+  double *initial_velocity;                // [m/s]                                     (vertex_count, 3)
+  int unknown_count;                       // n
+  int *unknown_of_dof;                     // number of the unknown, −1: prescribed     (3·vertex_count)
+  int *dof_of_unknown;                     //                                           (unknown_count)
+  FemModelDriver *drivers;                 //                                           (driver_count)
+  int driver_count;
+  FemLoad *loads; //                                                                    (load_count)
+  int load_count;
+  FemColouring colouring; // of the tetrahedra of bodies, which come first
+  FemColouring quadratic_colouring;
+  double length; // the smallest body's bounding box diagonal [m]
+  double edge;   // the smallest mean edge of a body [m]
+} FemModel;
+
+// Reads the meshes (relative to the scene file), places, checks and numbers. STATUS_INPUT names the body and
+// what is wrong: a selection that is empty, a vertex fixed and driven in the same component, an unknown
+// group.
+Status fem_model_create(FemModel *model, const FemSceneDef *scene);
+void fem_model_destroy(FemModel *model);
+
+// A copy whose vertices can be released, and bodies held, while the run goes on: bodies, drivers and
+// numbering are its own, all else is borrowed from `model`, which must outlive it.
+Status fem_model_copy_numbering(FemModel *copy, const FemModel *model);
+void fem_model_destroy_copy(FemModel *copy);
+
+// The next time after `time` at which vertices are released; INFINITY: none.
+double fem_model_next_release(const FemModel *model, double time);
+// Releases what is due at `time` and numbers the unknowns anew.
+void fem_model_release(FemModel *model, double time);
+// Numbers the coordinates that are neither prescribed nor of a body that is held.
+void fem_model_number(FemModel *model);
+
+// Positions and velocities of all prescribed coordinates at time t; the others are left alone.
+void fem_model_drive(const FemModel *model, double time, double *positions, double *velocities);
+
+// For messages: the name of the body that a vertex is of, "?" if it has none; borrowed.
+const char *fem_model_body_name(const FemModel *model, int vertex);
+
+// κ as the scene says, or as chosen for it: the softest body's Young's modulus E; for the `body` potential E
+// over the smallest mean element volume, which gives a comparable pressure.
+double fem_model_contact_stiffness(const FemModel *model);
+
+// Error per step of a velocity [m/s]: the scene's, or its tolerance times the slowest body's wave speed
+// √(E/ρ), with friction at most 5 ε.
+double fem_model_velocity_tolerance(const FemModel *model);
+
+// Every body's law is linear, without fibres.
+bool fem_model_has_linear_materials(const FemModel *model);
+
+// ε of friction [m/s]: the scene's, or such that nothing creeps by more than a thousandth of the smallest
+// body in the whole run.
+double fem_model_slip_speed(const FemModel *model);
+
+// det F of a tetrahedron; of a part of a quadratic one the smaller of its own and that at the point near its
+// corner.
+double fem_model_det(const FemModel *model, int tet, const double *positions);
+// Cauchy stress [Pa] of a tetrahedron of a body by its law alone.
+void fem_model_stress(const FemModel *model, int tet, const double *positions, double stress[6]);
+
+// What counts as rest (fem/effect/rest.h) [m/s], [m/s²], [s]: the scene's, or chosen.
+double fem_model_rest_speed(const FemModel *model);
+double fem_model_rest_acceleration(const FemModel *model);
+double fem_model_rest_time(const FemModel *model);
+
+// The memory that a run of this model will take, roughly [bytes].
+double fem_model_memory_estimate(const FemModel *model);
+
+#endif

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An obstacle without a mesh, as contact sees it.
+#ifndef TETLAP_FEM_MODEL_OBSTACLE_H
+#define TETLAP_FEM_MODEL_OBSTACLE_H
+
+#include "contact/convex.h"
+#include "contact/system.h"
+#include "fem/model/scene.h"
+
+// The shape of a definition that is no mesh; it borrows the definition and `solid`, which is filled for a box
+// and a cylinder.
+void fem_obstacle_shape(const FemObstacleDef *def, ContactShape *shape, ContactConvex *solid);
+
+#endif

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/model/scene.h"
+
+#include "base/memory.h"
+
+static void free_constraints(FemConstraintDef *constraints, int count) {
+  for (int i = 0; i < count; i++) {
+    memory_free(constraints[i].select.group);
+    memory_free(constraints[i].table);
+    for (int c = 0; c < 3; c++) memory_free(constraints[i].formula[c]);
+  }
+  memory_free(constraints);
+}
+
+static void free_loads(FemLoadDef *loads, int count) {
+  for (int i = 0; i < count; i++) {
+    memory_free(loads[i].select.group);
+    memory_free(loads[i].factor);
+    memory_free(loads[i].table);
+  }
+  memory_free(loads);
+}
+
+static void free_body(FemBodyDef *body) {
+  memory_free(body->name);
+  memory_free(body->mesh_path);
+  free_constraints(body->fixed, body->fixed_count);
+  free_constraints(body->driven, body->driven_count);
+  free_loads(body->loads, body->load_count);
+}
+
+static void free_obstacle(FemObstacleDef *obstacle) {
+  memory_free(obstacle->name);
+  memory_free(obstacle->mesh_path);
+  memory_free(obstacle->motion.select.group);
+  memory_free(obstacle->motion.table);
+  for (int c = 0; c < 3; c++) memory_free(obstacle->motion.formula[c]);
+}
+
+void fem_scene_destroy(FemSceneDef *scene) {
+  for (int i = 0; i < scene->body_count; i++) free_body(&scene->bodies[i]);
+  for (int i = 0; i < scene->obstacle_count; i++) free_obstacle(&scene->obstacles[i]);
+  memory_free(scene->bodies);
+  memory_free(scene->obstacles);
+  memory_free(scene->contact.overlap);
+  memory_free(scene->contact.net);
+  memory_free(scene->status_reference);
+  memory_free(scene->path);
+  memory_free(scene->title);
+  *scene = (FemSceneDef){0};
+}
+
+double fem_scene_frame_time(const FemSceneDef *scene, int frame) {
+  return frame == scene->frames ? scene->end : scene->end * frame / scene->frames;
+}

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene as its file says it: the definition from which a model is built. Plain data with defaults; reading
+// the file is app/scene/read.c. Strings and arrays are owned by the scene.
+#ifndef TETLAP_FEM_MODEL_SCENE_H
+#define TETLAP_FEM_MODEL_SCENE_H
+
+#include <stdbool.h>
+
+#include "base/expression.h"
+#include "contact/system.h"
+#include "fem/material/material.h"
+#include "fem/mesh/mesh.h"
+
+// A place in the scene file, for messages; line 0: not from a file.
+typedef struct FemScenePlace {
+  int line, column;
+} FemScenePlace;
+
+// Which vertices: exactly one way.
+typedef enum FemSelectKind {
+  FEM_SELECT_ALL,
+  FEM_SELECT_BOX,       // inside box_min … box_max, faces included
+  FEM_SELECT_HALFSPACE, // normal·(x − point) ≤ 0
+  FEM_SELECT_GROUP,     // a named group of the mesh
+} FemSelectKind;
+
+typedef struct FemSelectDef {
+  FemSelectKind kind;
+  double box_min[3], box_max[3]; // [m], in the scene, at rest
+  double point[3], normal[3];
+  char *group;
+  FemScenePlace place;
+} FemSelectDef;
+
+// Fixed (all motion zero) or driven vertices. A driven vertex moves with the displacement
+// d(t) = velocity·t + amplitude·sin(2π frequency t), or along a table of (time, displacement), or by a
+// formula for each coordinate, until `until`, where it stops; and turns about `axis` through `centre` by
+// spin·t [rad]. From `release` on the vertices are free, with the velocity that they had.
+typedef struct FemConstraintDef {
+  FemSelectDef select;
+  bool components[3];  // which of x, y, z are prescribed
+  double velocity[3];  // [m/s]
+  double amplitude[3]; // [m]
+  double frequency;    // [Hz]
+  double spin;         // [rad/s]
+  double axis[3], centre[3];
+  double *table; // time [s], displacement [m]    (table_count, 4), times increasing
+  int table_count;
+  Expression *formula[3]; // displacement [m] of t [s], owned; NULL: none
+  double until;           // [s]; INFINITY: for ever
+  double release;         // [s]; 0: never
+} FemConstraintDef;
+
+// A load on the surface or the vertices of a body: its value times a factor that may depend on time.
+typedef enum FemLoadKind {
+  FEM_LOAD_FORCE,      // in all, shared evenly by the selected vertices [N]
+  FEM_LOAD_BODY_FORCE, // by rest volume [N/m³]
+  FEM_LOAD_TRACTION,   // by rest area of the surface triangles whose corners are all selected [N/m²]
+  FEM_LOAD_PRESSURE,   // on the same triangles, against their outward normal [Pa]
+} FemLoadKind;
+
+typedef struct FemLoadDef {
+  FemSelectDef select; // the first member, as in FemConstraintDef
+  FemLoadKind kind;
+  double vector[3]; // of all kinds but pressure
+  double pressure;
+  bool is_dead;       // a pressure that keeps its direction and area at rest; else it follows the surface
+  Expression *factor; // of t [s], owned; NULL: none
+  double *table;      // time [s], factor; linear between, constant outside    (table_count, 2)
+  int table_count;
+} FemLoadDef;
+
+// How a body's tetrahedra resist. `nodal` and `quadratic` do not lock as ν → ½.
+typedef enum FemElementKind {
+  FEM_ELEMENT_LINEAR,
+  FEM_ELEMENT_NODAL,     // linear, the volume change averaged at the vertices (fem/effect/volume.h)
+  FEM_ELEMENT_QUADRATIC, // ten nodes (fem/element/quadratic.h)
+} FemElementKind;
+
+typedef struct FemBodyDef {
+  char *name;
+  char *mesh_path;    // as written, relative to the scene file; NULL: a box
+  double box_size[3]; // [m]
+  int box_cells[3];
+  FemMeshOptions mesh_options;
+  FemPlacement placement;
+  FemMaterial material;
+  FemElementKind element;
+  bool self_contact;       // its parts may touch each other
+  double velocity[3];      // initial [m/s]
+  double spin[3];          // initial angular velocity about the centre of mass [rad/s]
+  FemConstraintDef *fixed; //                                 (fixed_count)
+  int fixed_count;
+  FemConstraintDef *driven; //                                (driven_count)
+  int driven_count;
+  FemLoadDef *loads; //                                       (load_count)
+  int load_count;
+  FemScenePlace place;
+} FemBodyDef;
+
+typedef enum FemObstacleKind {
+  FEM_OBSTACLE_MESH,
+  FEM_OBSTACLE_HALFSPACE,
+  FEM_OBSTACLE_BALL,
+  FEM_OBSTACLE_BOX,
+  FEM_OBSTACLE_CYLINDER,
+} FemObstacleKind;
+
+// An obstacle carries no unknowns; it stands still or moves.
+typedef struct FemObstacleDef {
+  char *name;
+  FemObstacleKind kind;
+  double point[3];   // on a half-space's surface; the centre of a ball, a box, a cylinder
+  double normal[3];  // out of a half-space
+  double radius;     // of a ball, a cylinder [m]
+  double size[3];    // edges of a box [m]
+  FemPlacement turn; // of a box about its centre; only axis and angle
+  double axis[3];    // of a cylinder
+  double length;     // along it [m]
+  int faces;         // of the prism that stands for it
+  char *mesh_path;   // else a mesh, or a box as in FemBodyDef
+  double box_size[3];
+  int box_cells[3];
+  FemMeshOptions mesh_options;
+  FemPlacement placement;
+  FemConstraintDef motion; // selection ignored; a half-space must not spin
+  FemScenePlace place;
+} FemObstacleDef;
+
+typedef struct FemContactDef {
+  bool is_on;
+  double stiffness; // κ; 0: chosen (the softest body's Young's modulus; `body`: that over its volume²…)
+  ContactPotential potential;
+  char *overlap; // name of the overlap model
+  char *net;     // weights in its place, or hybrid's: a file, relative to the scene's, or a name; NULL: none
+  OverlapOptions net_options;
+  double margin; // [m]; 0: chosen
+  bool use_full_hessian;
+  double friction;                      // coefficient μ between any two; 0: none
+  double viscosity;                     // η [Pa s]; 0: none
+  double slip_speed;                    // ε: slower slip counts as sticking [m/s]; 0: chosen
+  bool rest_is_on;                      // bodies at rest are left out
+  double rest_speed, rest_acceleration; // below them a body is calm [m/s], [m/s²]; 0: chosen
+  double rest_time;                     // so long, and it is at rest [s]; 0: chosen
+} FemContactDef;
+
+typedef enum FemSolverKind {
+  FEM_SOLVER_AUTO,
+  FEM_SOLVER_CHOLMOD, // condensed, supernodal
+  FEM_SOLVER_KLU,     // full 2n system, to compare
+  FEM_SOLVER_PCG,     // condensed, block Jacobi
+} FemSolverKind;
+
+typedef struct FemSceneDef {
+  char *path; // of the scene file
+  char *title;
+  FemBodyDef *bodies; // (body_count)
+  int body_count;
+  FemObstacleDef *obstacles; // (obstacle_count)
+  int obstacle_count;
+  // effects
+  bool has_gravity;
+  double gravity[3];        // [m/s²]
+  double stiffness_damping; // β [s] of every body whose material gives none
+  FemContactDef contact;
+  // time
+  double end;                              // [s]
+  bool is_static;                          // equilibria only: time is the parameter of loads and motions
+  double tolerance;                        // error per step, as a share of the smallest body's size
+  double velocity_tolerance;               // [m/s]; 0: chosen
+  double max_step, initial_step, min_step; // [s]; 0: chosen
+  int max_order;                           // 1 or 2
+  // solver
+  FemSolverKind solver;
+  double solver_tolerance; // of PCG, relative
+  int threads;             // 0: all
+  // output
+  int frames;                // written at i · end/frames, i = 0 … frames
+  int checkpoint_frames;     // between two checkpoints; 0: none; −1: chosen
+  double checkpoint_seconds; // wall time between two that are written [s]
+  bool write_vtu;
+  bool write_history;
+  char *status_reference; // the overlap model that elements' status is held against; NULL: none
+} FemSceneDef;
+
+// Frees everything that the scene owns and zeroes it.
+void fem_scene_destroy(FemSceneDef *scene);
+
+// When frame 0 … frames is due [s].
+double fem_scene_frame_time(const FemSceneDef *scene, int frame);
+
+#endif

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which vertices a selection of the scene means.
+#ifndef TETLAP_FEM_MODEL_SELECT_H
+#define TETLAP_FEM_MODEL_SELECT_H
+
+#include "fem/model/scene.h"
+
+// The vertices of `mesh` (placed, at rest) that the selection holds, ascending; owned by the caller
+// (memory_free). STATUS_INPUT: it holds none, or the mesh has no such group; the message says what there is.
+Status fem_select_vertices(const FemSelectDef *select, const FemMesh *mesh, int **vertices,
+                           int *vertex_count);
+
+#endif

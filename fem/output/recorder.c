@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/output/recorder.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect/contact.h"
+#include "fem/effect/friction.h"
+#include "fem/effect/plasticity.h"
+#include "fem/effect/volume_effect.h"
+#include "fem/output/pvd.h"
+#include "fem/output/vtu.h"
+
+// The first columns of the history, each with the effect that it takes (NULL: none); those of bodies and
+// interfaces follow. The values are listed in this order by write_history.
+static const char DISSIPATION[] = "any that dissipates", STATUS_COLUMN[] = "contact, and output.status";
+static const struct {
+  const char *title, *effect;
+} columns[] = {
+    {"time_s", NULL},
+    {"kinetic_J", NULL},
+    {"elastic_J", NULL},
+    {"gravity_J", "gravity"},
+    {"contact_J", "contact"},
+    {"work_J", NULL},
+    {"dissipated_J", DISSIPATION},
+    {"total_J", NULL},
+    {"momentum_x", NULL},
+    {"momentum_y", NULL},
+    {"momentum_z", NULL},
+    {"angular_x", NULL},
+    {"angular_y", NULL},
+    {"angular_z", NULL},
+    {"active_pairs", "contact"},
+    {"overlap_m3", "contact"},
+    {"deepest_overlap", "contact"},
+    {"min_det_F", NULL},
+    {"step_s", NULL},
+    {"steps", NULL},
+    {"energy_gain", NULL},
+    {"energy_events", NULL},
+    {"inverted", NULL},
+    {"enclosed", "contact"},
+    {"wrong_way", "contact"},
+    {"status_pairs", STATUS_COLUMN},
+    {"status_overlapping", STATUS_COLUMN},
+    {"status_false_positive", STATUS_COLUMN},
+    {"status_false_negative", STATUS_COLUMN},
+    {"status_wrong_elements", STATUS_COLUMN},
+};
+enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
+
+static bool has_column(const FemRecorder *recorder, int column) {
+  if (columns[column].effect == DISSIPATION)
+    return fem_system_dissipates(recorder->system) || fem_system_effect(recorder->system, "plasticity");
+  if (columns[column].effect == STATUS_COLUMN) return recorder->has_status;
+  return !columns[column].effect || fem_system_effect(recorder->system, columns[column].effect);
+}
+
+static ContactSystem *contact_of(const FemSystem *system) {
+  void *effect = fem_system_effect(system, "contact");
+  return effect ? fem_effect_contact_system(effect) : NULL;
+}
+
+static const ContactInterface *interfaces_of(const FemSystem *system, int *count) {
+  ContactSystem *contact = contact_of(system);
+  *count = 0;
+  return contact ? contact_system_interfaces(contact, count) : NULL;
+}
+
+void fem_recorder_interface_force(const FemSystem *system, int interface, double force[3]) {
+  int count;
+  vec3_store(force, vec3_at(interfaces_of(system, &count)[interface].force));
+  void *friction = fem_system_effect(system, "friction");
+  if (friction) vec3_accumulate(force, vec3_at(fem_effect_friction_of(friction)->forces[interface]));
+}
+
+static Status add_columns(FemRecorder *recorder) {
+  const FemModel *model = recorder->system->model;
+  FemHistory *history = &recorder->history;
+  for (int i = 0; i < COLUMN_COUNT; i++)
+    if (has_column(recorder, i)) TRY(fem_history_add_column(history, "%s", columns[i].title));
+  for (int b = 0; b < model->scene->body_count; b++)
+    for (int c = 0; c < 3; c++)
+      TRY(fem_history_add_column(history, "centre_%s_%c_m", model->bodies[b].name, "xyz"[c]));
+  int count;
+  const ContactInterface *interfaces = interfaces_of(recorder->system, &count);
+  const void *effect = fem_system_effect(recorder->system, "contact");
+  for (int i = 0; i < count; i++)
+    for (int c = 0; c < 3; c++)
+      TRY(fem_history_add_column(history, "force_%s_%s_%c_N",
+                                 fem_effect_contact_name(effect, interfaces[i].a),
+                                 fem_effect_contact_name(effect, interfaces[i].b), "xyz"[c]));
+  recorder->row = memory_zeroed((size_t)history->column_count, sizeof *recorder->row);
+  return recorder->row ? STATUS_OK : status_no_memory("the history");
+}
+
+static Status create(FemRecorder *recorder, const char *directory) {
+  const FemModel *model = recorder->system->model;
+  size_t vertices = (size_t)model->vertex_count, tets = (size_t)model->tet_count;
+  recorder->det_F = memory_zeroed(tets, sizeof *recorder->det_F);
+  recorder->overlap = memory_zeroed(tets, sizeof *recorder->overlap);
+  if (!recorder->det_F || !recorder->overlap) return status_no_memory("the measures");
+  TRY(fem_trouble_watch_create(&recorder->watch, model));
+  if (!directory) return STATUS_OK;
+  recorder->writes_vtu = model->scene->write_vtu;
+  recorder->writes_history = model->scene->write_history;
+  recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
+  recorder->displacement = memory_zeroed(3 * vertices, sizeof *recorder->displacement);
+  recorder->contact_force = memory_zeroed(3 * vertices, sizeof *recorder->contact_force);
+  bool has_friction = fem_system_effect(recorder->system, "friction") != NULL;
+  if (has_friction) recorder->friction_force = memory_zeroed(3 * vertices, sizeof(double));
+  recorder->stress = memory_zeroed(6 * tets, sizeof *recorder->stress);
+  recorder->von_mises = memory_zeroed(tets, sizeof *recorder->von_mises);
+  if (!recorder->directory || !recorder->displacement || !recorder->contact_force || !recorder->stress ||
+      !recorder->von_mises || (has_friction && !recorder->friction_force))
+    return status_no_memory("the output arrays");
+  if (recorder->writes_vtu) TRY(fem_obstacle_frames_create(&recorder->obstacles, model));
+  TRY(file_make_directories(directory));
+  if (!recorder->writes_history) return STATUS_OK;
+  char *path = file_join(directory, "history.csv");
+  if (!path) return status_no_memory("a file name");
+  Status status = fem_history_create(&recorder->history, path);
+  memory_free(path);
+  return status ? status : add_columns(recorder);
+}
+
+// The model that the elements' status is held against.
+static Status create_reference(FemRecorder *recorder) {
+  const FemSceneDef *scene = recorder->system->model->scene;
+  if (!scene->status_reference) return STATUS_OK;
+  if (!contact_of(recorder->system))
+    return status_fail(STATUS_INPUT,
+                       "%s: output.status asks which elements overlap, but the scene has no contact; add a "
+                       "'contact' section",
+                       scene->path);
+  TRY(fem_effect_contact_create_overlap(scene, scene->status_reference, &recorder->reference));
+  recorder->has_status = true;
+  return STATUS_OK;
+}
+
+Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char *directory) {
+  *recorder = (FemRecorder){.system = system};
+  Status status = create_reference(recorder);
+  if (!status) status = create(recorder, directory);
+  if (status) fem_recorder_destroy(recorder);
+  return status;
+}
+
+void fem_recorder_destroy(FemRecorder *recorder) {
+  fem_history_destroy(&recorder->history);
+  fem_obstacle_frames_destroy(&recorder->obstacles);
+  memory_free(recorder->directory);
+  memory_free(recorder->row);
+  memory_free(recorder->displacement);
+  memory_free(recorder->contact_force);
+  memory_free(recorder->friction_force);
+  memory_free(recorder->stress);
+  memory_free(recorder->von_mises);
+  memory_free(recorder->det_F);
+  memory_free(recorder->overlap);
+  fem_trouble_watch_destroy(&recorder->watch);
+  overlap_model_destroy(&recorder->reference);
+  *recorder = (FemRecorder){0};
+}
+
+static void gather(const FemSystem *system, int tet, double corners[12]) {
+  for (int k = 0; k < 4; k++)
+    memcpy(corners + 3 * k, system->positions + 3 * system->model->tets[tet][k], 3 * sizeof *corners);
+}
+
+static void measure_elements(FemRecorder *recorder, FemMeasures *measures) {
+  const FemSystem *system = recorder->system;
+  ContactSystem *contact = contact_of(system);
+  const double *covered = contact ? contact_system_covered(contact) : NULL;
+  measures->min_det_F = INFINITY;
+  for (int e = 0; e < system->model->tet_count; e++) {
+    recorder->det_F[e] = fem_model_det(system->model, e, system->positions);
+    recorder->overlap[e] = covered ? covered[e] / system->model->elements[e].volume : 0;
+    if (system->model->bodies[system->model->tet_body[e]].is_obstacle) continue;
+    measures->min_det_F = fmin(measures->min_det_F, recorder->det_F[e]);
+    measures->deepest_overlap = fmax(measures->deepest_overlap, recorder->overlap[e]);
+  }
+}
+
+static void measure_motion(const FemSystem *system, FemMeasures *measures) {
+  Vec3 momentum = {0, 0, 0}, angular = {0, 0, 0};
+  for (int a = 0; a < system->model->vertex_count; a++) {
+    Vec3 p = vec3_scale(system->model->mass[a], vec3_at(system->velocities + 3 * a));
+    momentum = vec3_add(momentum, p);
+    angular = vec3_add(angular, vec3_cross(vec3_at(system->positions + 3 * a), p));
+  }
+  vec3_store(measures->momentum, momentum);
+  vec3_store(measures->angular_momentum, angular);
+}
+
+static void measure_contact(const FemSystem *system, FemMeasures *measures) {
+  ContactSystem *contact = contact_of(system);
+  if (!contact) return;
+  int count;
+  const ContactInterface *interfaces = contact_system_interfaces(contact, &count);
+  for (int i = 0; i < count; i++) {
+    measures->overlap_volume += interfaces[i].volume;
+    double force[3];
+    fem_recorder_interface_force(system, i, force);
+    measures->contact_force = fmax(measures->contact_force, vec3_length(vec3_at(force)));
+  }
+  measures->active_pairs = contact_system_active_count(contact);
+}
+
+Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures) {
+  *measures = (FemMeasures){0};
+  TRY(fem_system_energy(recorder->system, time, &measures->energy));
+  measure_elements(recorder, measures);
+  measure_motion(recorder->system, measures);
+  measure_contact(recorder->system, measures);
+  ContactSystem *contact = contact_of(recorder->system);
+  fem_trouble_look(&recorder->watch, recorder->system->positions,
+                   contact ? contact_system_forces(contact) : NULL, recorder->det_F, recorder->overlap,
+                   &measures->trouble);
+  return STATUS_OK;
+}
+
+static double von_mises(const double s[6]) {
+  double normal =
+      (s[0] - s[1]) * (s[0] - s[1]) + (s[1] - s[2]) * (s[1] - s[2]) + (s[2] - s[0]) * (s[2] - s[0]);
+  return sqrt(0.5 * normal + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+static void fill_arrays(FemRecorder *recorder) {
+  const FemSystem *system = recorder->system;
+  const FemModel *model = system->model;
+  ContactSystem *contact = contact_of(system);
+  for (int i = 0; i < 3 * model->vertex_count; i++)
+    recorder->displacement[i] = system->positions[i] - model->rest[i];
+  if (contact)
+    memcpy(recorder->contact_force, contact_system_forces(contact),
+           3 * (size_t)model->vertex_count * sizeof *recorder->contact_force);
+  if (recorder->friction_force) {
+    memset(recorder->friction_force, 0, 3 * (size_t)model->vertex_count * sizeof(double));
+    contact_friction_add_force(fem_effect_friction_of(fem_system_effect(system, "friction")),
+                               system->velocities, recorder->friction_force);
+  }
+  for (int e = 0; e < model->tet_count; e++) {
+    const FemModelBody *body = &model->bodies[model->tet_body[e]];
+    if (body->is_obstacle) continue;
+    fem_model_stress(model, e, system->positions, recorder->stress + 6 * e);
+    void *volume = body->element == FEM_ELEMENT_NODAL ? fem_system_effect(system, "volume") : NULL;
+    if (volume) {
+      double corners[12];
+      gather(system, e, corners);
+      fem_effect_volume_add_stress(volume, e, corners, recorder->stress + 6 * e);
+    }
+    void *plasticity = fem_system_effect(system, "plasticity");
+    if (plasticity)
+      fem_effect_plasticity_add_stress(plasticity, e, system->positions, recorder->stress + 6 * e);
+    recorder->von_mises[e] = von_mises(recorder->stress + 6 * e);
+  }
+}
+
+// Moves the arrays that have values to the front; how many.
+static int keep_given(FemVtuArray *arrays, size_t count) {
+  int kept = 0;
+  for (size_t k = 0; k < count; k++)
+    if (arrays[k].reals || arrays[k].integers) arrays[kept++] = arrays[k];
+  return kept;
+}
+
+static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
+  const FemSystem *system = recorder->system;
+  const FemModel *model = system->model;
+  fill_arrays(recorder);
+  const ContactStatus *status = recorder->status;
+  const int *verdicts[] = {status ? status->predicted : NULL, status ? status->exact : NULL,
+                           status ? status->error : NULL, status ? status->wrong_pairs : NULL};
+  bool has_contact = contact_of(system) != NULL;
+  // Those without values are left out.
+  FemVtuArray arrays[] = {
+      {.name = "displacement", .components = 3, .reals = recorder->displacement},
+      {.name = "velocity", .components = 3, .reals = system->velocities},
+      {.name = "body", .is_cell = true, .components = 1, .integers = model->tet_body},
+      {.name = "det_F", .is_cell = true, .components = 1, .reals = recorder->det_F},
+      {.name = "stress", .is_cell = true, .components = 6, .reals = recorder->stress},
+      {.name = "von_mises", .is_cell = true, .components = 1, .reals = recorder->von_mises},
+      {.name = "trouble", .is_cell = true, .components = 1, .integers = recorder->watch.marks},
+      {.name = "contact_force", .components = 3, .reals = has_contact ? recorder->contact_force : NULL},
+      {.name = "overlap_fraction",
+       .is_cell = true,
+       .components = 1,
+       .reals = has_contact ? recorder->overlap : NULL},
+      {.name = "wrong_way", .components = 1, .integers = has_contact ? recorder->watch.is_wrongway : NULL},
+      {.name = "friction_force", .components = 3, .reals = recorder->friction_force},
+      {.name = "status_predicted", .is_cell = true, .components = 1, .integers = verdicts[0]},
+      {.name = "status_exact", .is_cell = true, .components = 1, .integers = verdicts[1]},
+      {.name = "status_error", .is_cell = true, .components = 1, .integers = verdicts[2]},
+      {.name = "status_wrong_pairs", .is_cell = true, .components = 1, .integers = verdicts[3]},
+  };
+  const FemVtuFrame frame = {.time = time,
+                             .vertex_count = model->vertex_count,
+                             .positions = system->positions,
+                             .cell_count = model->tet_count,
+                             .cells = model->tets[0],
+                             .arrays = arrays,
+                             .array_count = keep_given(arrays, sizeof arrays / sizeof *arrays)};
+  return fem_vtu_write(path, &frame);
+}
+
+Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int frame_count) {
+  if (!recorder->directory) return STATUS_OK;
+  if (recorder->writes_history) TRY(fem_history_continue(&recorder->history, history));
+  recorder->frame_count = recorder->listed_count = recorder->writes_vtu ? frame_count : 0;
+  return STATUS_OK;
+}
+
+enum { NAME_SIZE = 32 };
+
+static void name_frame(int frame, char name[NAME_SIZE]) {
+  snprintf(name, NAME_SIZE, "frame_%05d.vtu", frame);
+}
+
+static Status write_frame(FemRecorder *recorder, double time) {
+  char name[NAME_SIZE];
+  name_frame(recorder->frame_count, name);
+  char *path = file_join(recorder->directory, name);
+  if (!path) return status_no_memory("a file name");
+  Status status = write_vtu(recorder, path, time);
+  memory_free(path);
+  TRY(status);
+  TRY(fem_obstacle_frames_write(&recorder->obstacles, recorder->directory, recorder->frame_count, time));
+  recorder->frame_count++;
+  return STATUS_OK;
+}
+
+// The list follows from how many frames there are, so none of it is kept.
+static Status write_list(FemRecorder *recorder) {
+  FileWriter list;
+  char *path = file_join(recorder->directory, "frames.pvd");
+  if (!path) return status_no_memory("a file name");
+  Status status = fem_pvd_begin(&list, path);
+  memory_free(path);
+  TRY(status);
+  for (int frame = 0; frame < recorder->frame_count; frame++) {
+    char file[NAME_SIZE];
+    double time = fem_scene_frame_time(recorder->system->model->scene, frame);
+    name_frame(frame, file);
+    fem_pvd_add(&list, time, 0, fem_obstacle_frames_any(&recorder->obstacles) ? "bodies" : NULL, file);
+    fem_obstacle_frames_list(&recorder->obstacles, &list, frame, time);
+  }
+  TRY(fem_pvd_commit(&list));
+  recorder->listed_count = recorder->frame_count;
+  recorder->listed_at_s = clock_wall_s();
+  return STATUS_OK;
+}
+
+// To write the whole list after every frame would take time that grows with the square of their number.
+static bool is_list_due(const FemRecorder *recorder) {
+  static const double PERIOD_S = 1;
+  enum { SHORT = 1000 };
+  return recorder->frame_count <= SHORT || clock_wall_s() - recorder->listed_at_s >= PERIOD_S;
+}
+
+static double *append_centres(const FemSystem *system, double *row) {
+  const FemModel *model = system->model;
+  for (int b = 0; b < model->scene->body_count; b++) {
+    Vec3 centre = {0, 0, 0};
+    for (int a = model->bodies[b].vertex_begin; a < model->bodies[b].vertex_end; a++)
+      centre = vec3_add(
+          centre, vec3_scale(model->mass[a] / model->bodies[b].mass, vec3_at(system->positions + 3 * a)));
+    vec3_store(row, centre);
+    row += 3;
+  }
+  return row;
+}
+
+static Status write_history(FemRecorder *recorder, double time, const FemMeasures *m, const FemAudit *audit,
+                            double step, long long step_count, long long energy_events) {
+  ContactStatusCounts status = {0};
+  long long wrong_elements = 0;
+  if (recorder->status) {
+    status = recorder->status->pairs;
+    wrong_elements = recorder->status->elements.false_positives + recorder->status->elements.false_negatives;
+  }
+  const double fixed[COLUMN_COUNT] = {time,
+                                      m->energy.kinetic,
+                                      m->energy.elastic,
+                                      m->energy.gravity,
+                                      m->energy.contact,
+                                      audit->work,
+                                      audit->dissipated,
+                                      audit->total,
+                                      m->momentum[0],
+                                      m->momentum[1],
+                                      m->momentum[2],
+                                      m->angular_momentum[0],
+                                      m->angular_momentum[1],
+                                      m->angular_momentum[2],
+                                      (double)m->active_pairs,
+                                      m->overlap_volume,
+                                      m->deepest_overlap,
+                                      m->min_det_F,
+                                      step,
+                                      (double)step_count,
+                                      audit->gain / audit->scale,
+                                      (double)energy_events,
+                                      m->trouble.count[FEM_TROUBLE_INVERTED],
+                                      m->trouble.count[FEM_TROUBLE_ENCLOSED],
+                                      m->trouble.count[FEM_TROUBLE_WRONG_WAY],
+                                      (double)status.asked,
+                                      (double)status.overlapping,
+                                      (double)status.false_positives,
+                                      (double)status.false_negatives,
+                                      (double)wrong_elements};
+  double *row = recorder->row;
+  for (int i = 0; i < COLUMN_COUNT; i++)
+    if (has_column(recorder, i)) *row++ = fixed[i];
+  row = append_centres(recorder->system, row);
+  int count;
+  interfaces_of(recorder->system, &count);
+  for (int i = 0; i < count; i++, row += 3) fem_recorder_interface_force(recorder->system, i, row);
+  return fem_history_add_row(&recorder->history, recorder->row);
+}
+
+static Status find_status(FemRecorder *recorder, double time) {
+  if (!recorder->has_status) return STATUS_OK;
+  const FemSystem *system = recorder->system;
+  return contact_system_status(contact_of(system), time, system->positions, &recorder->reference,
+                               &recorder->status);
+}
+
+Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
+                          const FemAudit *audit, double step, long long step_count, long long energy_events) {
+  double began = clock_wall_s();
+  TRY(find_status(recorder, time));
+  if (!recorder->directory) return STATUS_OK;
+  if (recorder->writes_vtu) TRY(write_frame(recorder, time));
+  if (recorder->writes_vtu && is_list_due(recorder)) TRY(write_list(recorder));
+  if (recorder->writes_history)
+    TRY(write_history(recorder, time, measures, audit, step, step_count, energy_events));
+  recorder->seconds += clock_wall_s() - began;
+  return STATUS_OK;
+}
+
+Status fem_recorder_finish(FemRecorder *recorder) {
+  return recorder->listed_count < recorder->frame_count ? write_list(recorder) : STATUS_OK;
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run writes frame by frame: frame_NNNNN.vtu with frames.pvd, and history.csv; and the measures that
+// go with a frame. docs/output.md describes every array and column.
+#ifndef TETLAP_FEM_OUTPUT_RECORDER_H
+#define TETLAP_FEM_OUTPUT_RECORDER_H
+
+#include "contact/status.h"
+#include "fem/output/history.h"
+#include "fem/output/obstacle_frames.h"
+#include "fem/run/trouble.h"
+#include "fem/system.h"
+#include "fem/time/audit.h"
+
+// The measures of one state.
+typedef struct FemMeasures {
+  FemEnergy energy;
+  double momentum[3], angular_momentum[3]; // [kg m/s], about the origin [kg m²/s]
+  double deepest_overlap;                  // largest share of an element that is covered
+  double min_det_F;
+  double overlap_volume; // [m³]
+  int active_pairs;
+  double contact_force; // largest norm over interfaces [N]
+  FemTroubleState trouble;
+} FemMeasures;
+
+typedef struct FemRecorder {
+  FemSystem *system; // borrowed
+  char *directory;   // owned; NULL: nothing is written
+  bool writes_vtu, writes_history;
+  FemHistory history;
+  double *row; // one line of the history
+  int row_capacity;
+  int frame_count;                              // frames that are written
+  int listed_count;                             // of these in frames.pvd
+  double listed_at_s;                           // wall clock when it was written
+  FemObstacleFrames obstacles;                  // those without a mesh, beside the frames
+  double *displacement, *contact_force;         // scratch             (vertex_count, 3)
+  double *friction_force;                       // scratch; NULL: no friction   (vertex_count, 3)
+  double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
+  FemTroubleWatch watch;
+  bool has_status;             // the scene asks for the elements' status
+  OverlapModel reference;      // that it is held against
+  const ContactStatus *status; // of the frame being written; borrowed
+  double seconds;              // spent writing
+} FemRecorder;
+
+// `directory` NULL: measures only.
+Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char *directory);
+// Goes on from what an earlier run left in the directory: its history as of that mark, and so many frames.
+// Fails as journal_continue does.
+Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int frame_count);
+void fem_recorder_destroy(FemRecorder *recorder);
+
+// The measures at the system's scattered state.
+Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures);
+
+// Writes one frame of the scattered state. `step` [s] and `step_count` are the integrator's, `energy_events`
+// those so far (fem/run/trouble.h).
+Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
+                          const FemAudit *audit, double step, long long step_count, long long energy_events);
+
+// The force on the first side of an interface at the state that was measured last [N]: of the potential and,
+// where there is friction, of friction.
+void fem_recorder_interface_force(const FemSystem *system, int interface, double force[3]);
+
+// Writes the list of frames if it lacks some: at the end, since in between long lists are written at most
+// once a second.
+Status fem_recorder_finish(FemRecorder *recorder);
+
+#endif

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/checkpoint.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+Status fem_checkpoint_create(FemCheckpoint *checkpoint, int vertex_count) {
+  *checkpoint = (FemCheckpoint){.vertex_count = vertex_count, .so_far.min_det_F = INFINITY};
+  size_t values = 3 * (size_t)vertex_count;
+  checkpoint->displacement = memory_zeroed(values, sizeof(double));
+  checkpoint->velocity = memory_zeroed(values, sizeof(double));
+  checkpoint->so_far.counters = record_new();
+  if (checkpoint->displacement && checkpoint->velocity && checkpoint->so_far.counters) return STATUS_OK;
+  fem_checkpoint_destroy(checkpoint);
+  return status_no_memory("a checkpoint");
+}
+
+static bool copy_origin(FemCheckpoint *copy, const char *origin) {
+  copy->origin = origin ? memory_copy(origin, strlen(origin) + 1, 1) : NULL;
+  return !origin || copy->origin;
+}
+
+static bool copy_effects(FemCheckpoint *copy, const FemCheckpoint *checkpoint) {
+  for (; copy->effect_count < checkpoint->effect_count; copy->effect_count++) {
+    FemCheckpointEffect *effect = &copy->effects[copy->effect_count];
+    *effect = checkpoint->effects[copy->effect_count];
+    effect->values = memory_copy(effect->values, effect->count, sizeof(double));
+    if (!effect->values) return false;
+  }
+  return true;
+}
+
+Status fem_checkpoint_copy(FemCheckpoint *copy, const FemCheckpoint *checkpoint) {
+  size_t values = 3 * (size_t)checkpoint->vertex_count;
+  *copy = *checkpoint;
+  copy->origin = NULL;
+  copy->effect_count = 0;
+  copy->displacement = memory_copy(checkpoint->displacement, values, sizeof(double));
+  copy->velocity = memory_copy(checkpoint->velocity, values, sizeof(double));
+  copy->so_far.counters = record_new();
+  record_merge(copy->so_far.counters, checkpoint->so_far.counters);
+  if (copy->displacement && copy->velocity && copy->so_far.counters &&
+      copy_origin(copy, checkpoint->origin) && copy_effects(copy, checkpoint))
+    return STATUS_OK;
+  fem_checkpoint_destroy(copy);
+  return status_no_memory("a checkpoint");
+}
+
+void fem_checkpoint_destroy(FemCheckpoint *checkpoint) {
+  memory_free(checkpoint->origin);
+  memory_free(checkpoint->displacement);
+  memory_free(checkpoint->velocity);
+  if (checkpoint->so_far.counters) record_destroy(checkpoint->so_far.counters);
+  for (int i = 0; i < checkpoint->effect_count; i++) memory_free(checkpoint->effects[i].values);
+  *checkpoint = (FemCheckpoint){0};
+}

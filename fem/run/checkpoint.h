@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A checkpoint: all that a run needs to go on, and its file.
+//
+// Nobody can save what an integrator, a factorisation or a contact list keeps inside, so none of it is saved:
+// at a checkpoint the run that goes on throws all that away as well and begins anew from these data, exactly
+// as a run does that is resumed from the file. What comes after is therefore the same to the last bit.
+//
+// The file is HDF5 (h5dump and h5py read it) behind a block of 512 bytes of text that holds the size and the
+// digest of the rest, so that damage is found before HDF5 sees it. Every number has an attribute `unit`.
+#ifndef TETLAP_FEM_RUN_CHECKPOINT_H
+#define TETLAP_FEM_RUN_CHECKPOINT_H
+
+#include <stddef.h>
+
+#include "base/journal.h"
+#include "fem/run/run_result.h"
+#include "fem/time/audit.h"
+
+enum { FEM_CHECKPOINT_NAME = 32 };
+static const char FEM_CHECKPOINT_FILE[] = "checkpoint.h5"; // in the run's folder
+
+// What an effect keeps that is no function of time, positions and velocities.
+typedef struct FemCheckpointEffect {
+  char name[FEM_CHECKPOINT_NAME];
+  double *values; // owned                                         (count)
+  size_t count;
+} FemCheckpointEffect;
+
+typedef struct FemCheckpoint {
+  char *origin; // JSON: what the run was started with; the program's, not read here. Owned; NULL: none
+  int vertex_count;
+  double time;          // [s]
+  double step;          // to be tried next; 0: the integrator's choice [s]
+  double *displacement; // from rest [m], owned                     (vertex_count, 3)
+  double *velocity;     // [m/s], owned                             (vertex_count, 3)
+  int next_frame;       // number of the frame to come
+  JournalMark history;  // what history.csv holds; its size is 0 if none is written
+  FemAudit audit;
+  double force_scale, driven_work; // of a static scene [N], [J]
+  FemRunResult so_far; // numbers and counters; its names, trajectory and effects' names are not kept
+  FemCheckpointEffect effects[FEM_MAX_EFFECTS]; // in the system's order; costs in so_far (effect_count)
+  int effect_count;
+} FemCheckpoint;
+
+// A run's beginning: everything zero. STATUS_MEMORY.
+Status fem_checkpoint_create(FemCheckpoint *checkpoint, int vertex_count);
+Status fem_checkpoint_copy(FemCheckpoint *copy, const FemCheckpoint *checkpoint);
+void fem_checkpoint_destroy(FemCheckpoint *checkpoint); // also of a zeroed one
+
+// Whole or not at all. STATUS_IO names the file and the system's reason.
+Status fem_checkpoint_write(const FemCheckpoint *checkpoint, const char *path);
+
+// STATUS_IO: cannot be read; STATUS_INPUT: is none, of another version, cut short, damaged, or lacks
+// something, which the message names. After a failure there is nothing to destroy.
+Status fem_checkpoint_read(FemCheckpoint *checkpoint, const char *path);
+
+#endif

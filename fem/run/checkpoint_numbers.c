@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/checkpoint_numbers.h"
+
+#include <assert.h>
+
+#define AT(member) offsetof(FemCheckpoint, member)
+#define AUDIT(name, unit)                                                                                    \
+  { "audit/" #name, FEM_REAL, AT(audit.name), unit }
+// A number of the result so far; one that a part of it has.
+#define RESULT(name, type, unit)                                                                             \
+  { "so_far/" #name, type, AT(so_far.name), unit }
+#define PART(part, name, type, unit)                                                                         \
+  { "so_far/" #part "/" #name, type, AT(so_far.part.name), unit }
+#define PHASE(name) PART(phases, name, FEM_REAL, "s")
+#define COUNT(part, name) PART(part, name, FEM_LONG, "1")
+// What a kind of trouble has done so far, and where it stood in the last state.
+#define TROUBLE(kind, name)                                                                                  \
+  {"so_far/trouble/" name "/steps", FEM_LONG, AT(so_far.trouble.of[kind].steps), "1"},                       \
+      {"so_far/trouble/" name "/events", FEM_LONG, AT(so_far.trouble.of[kind].events), "1"},                 \
+      {"so_far/trouble/" name "/most", FEM_INTEGER, AT(so_far.trouble.of[kind].most), "1"},                  \
+      {"so_far/trouble/" name "/first_time", FEM_REAL, AT(so_far.trouble.of[kind].first_time), "s"},         \
+      {"so_far/trouble/" name "/first", FEM_INTEGER, AT(so_far.trouble.of[kind].first), "1"},                \
+      {"so_far/trouble/" name "/last_count", FEM_INTEGER, AT(so_far.trouble.last.count[kind]), "1"}, {       \
+    "so_far/trouble/" name "/last_first", FEM_INTEGER, AT(so_far.trouble.last.first[kind]), "1"              \
+  }
+static const FemCheckpointNumber numbers[] = {
+    {"time", FEM_REAL, AT(time), "s"},
+    {"step", FEM_REAL, AT(step), "s"},
+    {"next_frame", FEM_INTEGER, AT(next_frame), "1"},
+    {"history/size", FEM_LONG, AT(history.size), "bytes of history.csv"},
+    {"history/digest", FEM_LONG, AT(history.digest), "FNV-1a of 64 bits of these"},
+    {"static/force_scale", FEM_REAL, AT(force_scale), "N"},
+    {"static/driven_work", FEM_REAL, AT(driven_work), "J"},
+    AUDIT(time, "s"),
+    AUDIT(damped, "J"),
+    AUDIT(dissipated, "J"),
+    AUDIT(driven_work, "J"),
+    AUDIT(work, "J"),
+    AUDIT(total, "J"),
+    AUDIT(lowest, "J"),
+    AUDIT(gain, "J"),
+    AUDIT(scale, "J"),
+    AUDIT(gravity_at_start, "J"),
+    AUDIT(dissipated_power, "W"),
+    AUDIT(driven_power, "W"),
+    RESULT(wall_s, FEM_REAL, "s"),
+    RESULT(cpu_s, FEM_REAL, "s"),
+    PHASE(broad_phase),
+    PHASE(overlap),
+    PHASE(contact),
+    PHASE(forces),
+    PHASE(assembly),
+    PHASE(analysis),
+    PHASE(factorisation),
+    PHASE(solve),
+    PHASE(output),
+    PHASE(total),
+    COUNT(integrator, steps),
+    COUNT(integrator, setups),
+    COUNT(integrator, newton_iterations),
+    COUNT(integrator, error_test_failures),
+    COUNT(integrator, newton_failures),
+    COUNT(integrator, residuals),
+    COUNT(integrator, restarts),
+    COUNT(integrator, roots),
+    COUNT(solver, analyses),
+    COUNT(solver, factorisations),
+    COUNT(solver, failed_factorisations),
+    COUNT(solver, solves),
+    COUNT(solver, iterations),
+    PART(solver, analyse_s, FEM_REAL, "s"),
+    PART(solver, factorise_s, FEM_REAL, "s"),
+    PART(solver, solve_s, FEM_REAL, "s"),
+    PART(solver, factor_entries, FEM_REAL, "1"),
+    RESULT(assemblies, FEM_LONG, "1"),
+    RESULT(pattern_layouts, FEM_LONG, "1"),
+    RESULT(energy_retries, FEM_LONG, "1"),
+    RESULT(relaxation_steps, FEM_LONG, "1"),
+    RESULT(halvings, FEM_LONG, "1"),
+    RESULT(residual, FEM_REAL, "N"),
+    RESULT(residual_allowed, FEM_REAL, "N"),
+    COUNT(pairs, tried),
+    COUNT(pairs, enclosed),
+    COUNT(pairs, fallbacks),
+    COUNT(pairs, by_net),
+    COUNT(pairs, blended),
+    COUNT(pairs, beyond),
+    COUNT(status_pairs, asked),
+    COUNT(status_pairs, overlapping),
+    COUNT(status_pairs, false_positives),
+    COUNT(status_pairs, false_negatives),
+    RESULT(pairs_max, FEM_INTEGER, "1"),
+    RESULT(overlap_volume_max, FEM_REAL, "m3"),
+    RESULT(contact_force_max, FEM_REAL, "N"),
+    RESULT(last_contact_force, FEM_REAL, "N"),
+    RESULT(min_det_F, FEM_REAL, "1"),
+    RESULT(deepest_overlap_max, FEM_REAL, "1"),
+    PART(trouble, smallest_step, FEM_REAL, "s"),
+    TROUBLE(FEM_TROUBLE_INVERTED, "inverted"),
+    TROUBLE(FEM_TROUBLE_ENCLOSED, "enclosed"),
+    TROUBLE(FEM_TROUBLE_WRONG_WAY, "wrong_way"),
+    TROUBLE(FEM_TROUBLE_ENERGY, "energy"),
+};
+#undef TROUBLE
+#undef COUNT
+#undef PHASE
+#undef PART
+#undef RESULT
+#undef AUDIT
+#undef AT
+
+// Whoever adds a number to one of these adds it to the list above.
+static_assert(sizeof(FemAudit) == 12 * sizeof(double), "numbers[] lists every number of FemAudit");
+static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "numbers[] lists every phase");
+static_assert(sizeof(FemIntegratorStats) == 11 * sizeof(double), "numbers[] lists the integrator's counts");
+static_assert(sizeof(FemSolverStats) == 9 * sizeof(double), "numbers[] lists the solver's counts");
+static_assert(sizeof(ContactPairCounts) == 6 * sizeof(long long), "numbers[] lists the counts of pairs");
+static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long),
+              "numbers[] lists the counts of the status");
+
+static_assert(FEM_TROUBLE_KIND_COUNT == 4, "numbers[] lists every kind of trouble");
+
+const FemCheckpointNumber *fem_checkpoint_numbers(int *count) {
+  *count = sizeof numbers / sizeof *numbers;
+  return numbers;
+}

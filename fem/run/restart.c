@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/restart.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+Status fem_restart_begin(FemCheckpoint *checkpoint, const FemModel *model, const double *displacement) {
+  TRY(fem_checkpoint_create(checkpoint, model->vertex_count));
+  size_t bytes = 3 * (size_t)model->vertex_count * sizeof(double);
+  memcpy(checkpoint->velocity, model->initial_velocity, bytes);
+  if (displacement) memcpy(checkpoint->displacement, displacement, bytes);
+  return STATUS_OK;
+}
+
+static Status save_effect(FemCheckpointEffect *saved, const FemEffect *effect) {
+  snprintf(saved->name, sizeof saved->name, "%s", effect->ops->name);
+  if (effect->ops->save) return effect->ops->save(effect->self, &saved->values, &saved->count);
+  saved->values = memory_zeroed(0, sizeof(double));
+  return saved->values ? STATUS_OK : status_no_memory("a checkpoint");
+}
+
+static Status save_effects(FemCheckpoint *checkpoint, const FemSystem *system) {
+  for (int i = 0; i < system->effect_count; i++) {
+    TRY(save_effect(&checkpoint->effects[i], &system->effects[i]));
+    checkpoint->effect_count++;
+  }
+  return STATUS_OK;
+}
+
+// Driven coordinates as they are scattered, for whoever reads the file; unknowns as they are, which adding
+// and subtracting the place at rest would round.
+static void save_state(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
+                       const double *v) {
+  const FemModel *model = system->model;
+  fem_system_scatter(system, time, u, v);
+  for (int i = 0; i < 3 * model->vertex_count; i++) {
+    int unknown = model->unknown_of_dof[i];
+    checkpoint->displacement[i] = unknown < 0 ? system->positions[i] - model->rest[i] : u[unknown];
+    checkpoint->velocity[i] = unknown < 0 ? system->velocities[i] : v[unknown];
+  }
+  checkpoint->time = time;
+}
+
+// Numbers, and a copy of the counters.
+static Status save_counts(FemCheckpoint *checkpoint, const FemRunResult *so_far) {
+  record_destroy(checkpoint->so_far.counters);
+  checkpoint->so_far = *so_far;
+  checkpoint->so_far.interface_names = NULL;
+  checkpoint->so_far.frame_times = checkpoint->so_far.trajectory = NULL;
+  checkpoint->so_far.interface_forces = NULL;
+  checkpoint->so_far.interface_count = checkpoint->so_far.frame_count = 0;
+  checkpoint->so_far.counters = record_new();
+  if (!checkpoint->so_far.counters) return status_no_memory("a checkpoint");
+  record_merge(checkpoint->so_far.counters, so_far->counters);
+  return STATUS_OK;
+}
+
+Status fem_restart_collect(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
+                           const double *v, const FemRunResult *so_far) {
+  FemCheckpoint next;
+  TRY(fem_checkpoint_create(&next, system->model->vertex_count));
+  save_state(&next, system, time, u, v);
+  Status status = save_effects(&next, system);
+  if (!status) status = save_counts(&next, so_far);
+  if (status) {
+    fem_checkpoint_destroy(&next);
+    return status;
+  }
+  next.origin = checkpoint->origin;
+  checkpoint->origin = NULL;
+  fem_checkpoint_destroy(checkpoint);
+  *checkpoint = next;
+  return STATUS_OK;
+}
+
+Status fem_restart_check(const FemCheckpoint *checkpoint, const FemModel *model) {
+  const FemSceneDef *scene = model->scene;
+  if (checkpoint->vertex_count != model->vertex_count)
+    return status_fail(STATUS_INPUT, "the checkpoint is of a scene with %d vertices, this one has %d",
+                       checkpoint->vertex_count, model->vertex_count);
+  if (checkpoint->next_frame > scene->frames || !(checkpoint->time < scene->end))
+    return status_fail(STATUS_INPUT, "the checkpoint, at t = %g s, lies at or beyond the end of the scene",
+                       checkpoint->time);
+  return STATUS_OK;
+}
+
+static Status load_effect(const FemCheckpointEffect *saved, FemEffect *effect) {
+  if (strcmp(saved->name, effect->ops->name) != 0)
+    return status_fail(STATUS_INPUT, "the checkpoint has the effect '%s' where this scene has '%s'",
+                       saved->name, effect->ops->name);
+  if (effect->ops->load) return effect->ops->load(effect->self, saved->values, saved->count);
+  return STATUS_OK;
+}
+
+Status fem_restart_load(const FemCheckpoint *checkpoint, FemSystem *system, double *u, double *v) {
+  const FemModel *model = system->model;
+  for (int i = 0; i < model->unknown_count; i++) {
+    u[i] = checkpoint->displacement[model->dof_of_unknown[i]];
+    v[i] = checkpoint->velocity[model->dof_of_unknown[i]];
+  }
+  if (checkpoint->next_frame == 0) return STATUS_OK; // a beginning
+  if (checkpoint->effect_count != system->effect_count)
+    return status_fail(STATUS_INPUT, "the checkpoint has %d effects, this scene has %d",
+                       checkpoint->effect_count, system->effect_count);
+  for (int i = 0; i < system->effect_count; i++)
+    TRY(load_effect(&checkpoint->effects[i], &system->effects[i]));
+  return STATUS_OK;
+}

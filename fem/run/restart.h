@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Between a run and its checkpoints: what is taken from the one for the other.
+#ifndef TETLAP_FEM_RUN_RESTART_H
+#define TETLAP_FEM_RUN_RESTART_H
+
+#include "fem/run/checkpoint.h"
+#include "fem/system.h"
+
+// The checkpoint with which a run begins that is not resumed: initial velocities, and displacements
+// (vertex_count, 3) unless NULL.
+Status fem_restart_begin(FemCheckpoint *checkpoint, const FemModel *model, const double *displacement);
+
+// Takes over the state (time; u, v of the unknowns), the effects' histories and the counts so far, which
+// include those of the system. `checkpoint` was made for this model; it is as it was after a failure.
+Status fem_restart_collect(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
+                           const double *v, const FemRunResult *so_far);
+
+// Whether the checkpoint belongs to a run of that model. STATUS_INPUT says what does not fit.
+Status fem_restart_check(const FemCheckpoint *checkpoint, const FemModel *model);
+
+// The other way: the unknowns u, v and the effects' histories, for a new system.
+Status fem_restart_load(const FemCheckpoint *checkpoint, FemSystem *system, double *u, double *v);
+
+#endif

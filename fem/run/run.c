@@ -1,0 +1,468 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "fem/effect/rest.h"
+#include "fem/run/hold.h"
+#include "fem/run/restart.h"
+#include "fem/run/run_checkpoint.h"
+#include "fem/run/run_frames.h"
+
+// A step that lifts the audited energy by more than this share of the scene's energy above its lowest value,
+// and by more than the second in one go, is taken back and tried again with a smaller step; at most so many
+// times in a row.
+static const double ENERGY_RISE_ALLOWED = 3e-4, ENERGY_RISE_OF_STEP = 1e-5, RETRY_FACTOR = 0.2;
+enum { RETRIES_IN_A_ROW = 8 };
+// A static run gives up where a step of load becomes shorter than this share of the time between two frames.
+static const double SHORTEST_LOAD_STEP = 1e-4;
+// While all bodies sleep time goes on by this share of the end at most, and by a shorter one where an
+// obstacle would move too far.
+static const double LONGEST_SLEEP = 0.1, SHORTER_SLEEP = 0.25, SHORTEST_SLEEP = 1e-9;
+
+// `auto` factorises up to this many unknowns. Beyond, a factor takes gigabytes and PCG, poor as it is for
+// slow and nearly incompressible scenes, is what fits.
+enum { MOST_UNKNOWNS_TO_FACTORISE = 200000 };
+
+FemSolverKind fem_run_solver(const FemModel *model) {
+  FemSolverKind kind = model->scene->solver;
+  if (kind != FEM_SOLVER_AUTO) return kind;
+  return model->unknown_count > MOST_UNKNOWNS_TO_FACTORISE ? FEM_SOLVER_PCG : FEM_SOLVER_CHOLMOD;
+}
+
+static bool gains_energy(const FemAudit *before, const FemAudit *after) {
+  double rise = after->total - before->lowest;
+  bool is_held = rise <= ENERGY_RISE_ALLOWED * after->scale ||
+                 after->total - before->total <= ENERGY_RISE_OF_STEP * after->scale;
+  return !is_held;
+}
+
+// Back to the last accepted state with a smaller step.
+static Status take_back(FemRunState *run) {
+  run->retries++;
+  double step = RETRY_FACTOR * fem_integrator_stats(run->integrator).last_step;
+  return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
+}
+
+// Counts what struck in the accepted state; `*has_begun`: something that had not in the state before.
+static Status judge(FemRunState *run, FemMeasures *measures, bool *has_begun) {
+  FemTrouble *trouble = &run->result->trouble;
+  double rise = (run->audit.total - run->audit.lowest) / run->audit.scale;
+  measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= FEM_TROUBLE_ENERGY_BOUND);
+  *has_begun = fem_trouble_add(trouble, run->time, &measures->trouble);
+  if (!run->options->is_strict || !measures->trouble.count[FEM_TROUBLE_ENERGY]) return STATUS_OK;
+  return status_fail(
+      STATUS_SOLVER,
+      "at t = %.9g s: the energy has risen by %.2g of the scene's, the bound is %g (--strict). Try "
+      "a smaller time.tolerance or time.max_step, or a smaller contact.stiffness",
+      run->time, rise, FEM_TROUBLE_ENERGY_BOUND);
+}
+
+static Status observe(FemRunState *run, FemMeasures *measures) {
+  bool has_begun;
+  TRY(judge(run, measures, &has_begun));
+  if (run->options->stop && *run->options->stop)
+    return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
+                       run->time);
+  if (!run->options->observe) return STATUS_OK;
+  FemIntegratorStats stats = fem_run_state_stats(run);
+  FemRunProgress progress = {.system = &run->system,
+                             .time = run->time,
+                             .end = run->model->scene->end,
+                             .step = stats.last_step,
+                             .step_count = stats.steps,
+                             .active_pairs = measures->active_pairs,
+                             .measures = measures,
+                             .audit = &run->audit,
+                             .trouble = &run->result->trouble,
+                             .has_trouble_begun = has_begun};
+  return run->options->observe(run->options->observer, &progress);
+}
+
+static void keep_state(FemRunState *run, double time) {
+  double *u = run->u, *v = run->v;
+  run->u = run->u_new, run->v = run->v_new;
+  run->u_new = u, run->v_new = v;
+  run->time = time;
+  run->retries = 0;
+}
+
+// Steps, and measures the state that the step leads to, kept in u_new, v_new. RETRY: too far for the contact
+// lists, or no numbers.
+static Status step(FemRunState *run, double *time, bool *is_onset, FemMeasures *measures) {
+  TRY(fem_integrator_step(run->integrator, time, is_onset));
+  const double *u, *v;
+  TRY(fem_integrator_at(run->integrator, *time, &u, &v));
+  size_t bytes = (size_t)run->model->unknown_count * sizeof(double);
+  memcpy(run->u_new, u, bytes);
+  memcpy(run->v_new, v, bytes);
+  fem_system_scatter(&run->system, *time, run->u_new, run->v_new);
+  return fem_run_frames_measure(run, *time, measures);
+}
+
+// The powers with which the next step begins, where they are not those with which the last one ended.
+static Status renew_powers(FemRunState *run) {
+  FemEnergy energy;
+  bool is_at_knot = run->integrator && fem_integrator_is_at_knot(run->integrator);
+  double time = is_at_knot ? fem_signal_past(run->time) : run->time;
+  fem_system_scatter(&run->system, time, run->u, run->v);
+  TRY(fem_system_energy(&run->system, time, &energy));
+  run->audit.dissipated_power = energy.dissipated_power;
+  run->audit.driven_power = energy.driven_power;
+  return STATUS_OK;
+}
+
+// The integrator of the stage that begins at the run's time; its states are u and v.
+static Status begin_stage(FemRunState *run, double step) {
+  const FemModel *model = run->model;
+  const FemSceneDef *scene = model->scene;
+  double next = fem_effect_rest_next_change(fem_system_effect(&run->system, "rest"));
+  run->stage_end = fmin(fmin(scene->end, next), fem_model_next_release(model, run->time));
+  if (model->unknown_count == 0) return STATUS_OK; // all sleep
+  FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
+                          .velocity_tolerance = fem_model_velocity_tolerance(model),
+                          .initial_step = step,
+                          .min_step = scene->min_step,
+                          .max_step = scene->max_step,
+                          .max_order = scene->max_order,
+                          .end = run->stage_end,
+                          .stall = &run->stall};
+  const FemSolverOps *solver = fem_solver_ops(fem_run_solver(model));
+  TRY(fem_integrator_create(&run->integrator, &run->system, solver, &def));
+  return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
+}
+
+// Counts what the integrator, or statics, has done, and lets it go.
+static void end_stage(FemRunState *run) {
+  FemRunResult *result = run->result;
+  const FemStatics *statics = &run->statics;
+  result->integrator = fem_run_state_stats(run);
+  if (run->integrator)
+    fem_run_result_add_solver(&result->solver, fem_integrator_solver_stats(run->integrator));
+  if (statics->equilibrium.solver) {
+    fem_run_result_add_solver(&result->solver, statics->equilibrium.ops->stats(statics->equilibrium.solver));
+    result->residual = statics->residual;
+    result->residual_allowed = statics->tolerance * statics->force_scale;
+    result->relaxation_steps += statics->relaxation_steps;
+    result->halvings += statics->halvings;
+  }
+  fem_integrator_destroy(run->integrator);
+  run->integrator = NULL;
+  fem_statics_destroy(&run->statics);
+}
+
+// Vertices come free, bodies fall asleep or awake: with other unknowns from here on.
+static Status renumber(FemRunState *run) {
+  end_stage(run);
+  TRY(fem_hold_renumber(&run->own, &run->system, run->time, &run->audit, run->u, run->v));
+  return begin_stage(run, 0);
+}
+
+// One step: taken, judged, shown, accepted.
+static Status advance(FemRunState *run) {
+  double time = run->time;
+  bool is_onset;
+  FemMeasures measures;
+  Status status = step(run, &time, &is_onset, &measures);
+  bool may_retry = run->retries < RETRIES_IN_A_ROW;
+  if (status == STATUS_RETRY && may_retry) return take_back(run);
+  TRY(status);
+  FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
+  if (gains_energy(&run->audit, &next) && may_retry) {
+    run->result->energy_retries++;
+    return take_back(run);
+  }
+  status = fem_run_frames_write_until(run, time);
+  if (status == STATUS_RETRY && may_retry) return take_back(run);
+  TRY(status);
+  run->audit = next;
+  keep_state(run, time);
+  fem_run_frames_keep_extremes(run->result, &measures);
+  FemIntegratorStats stats = fem_run_state_stats(run);
+  if (!is_onset)
+    run->result->trouble.smallest_step = fmin(run->result->trouble.smallest_step, stats.last_step);
+  TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
+  if (fem_system_lags(&run->system) || fem_integrator_is_at_knot(run->integrator)) TRY(renew_powers(run));
+  TRY(observe(run, &measures));
+  if (fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"))) return renumber(run);
+  return is_onset ? fem_integrator_restart(run->integrator, time, run->u, run->v, 0) : STATUS_OK;
+}
+
+// The next state while all bodies sleep: as late as contact lists allow for obstacles that move, and not
+// beyond what these do in between.
+static Status look_ahead(FemRunState *run, double *time, FemMeasures *measures) {
+  const FemSceneDef *scene = run->model->scene;
+  double longest = scene->max_step > 0 ? scene->max_step : LONGEST_SLEEP * scene->end;
+  FemForesight foresight = {.displacement = scene->tolerance * run->model->length,
+                            .velocity = fem_model_velocity_tolerance(run->model),
+                            .resolution = SHORTEST_SLEEP * scene->end};
+  double farthest = fmin(run->time + longest, run->stage_end);
+  farthest = fem_system_horizon(&run->system, &foresight, run->time, farthest);
+  for (double step = farthest - run->time;; step *= SHORTER_SLEEP) {
+    *time = step < run->stage_end - run->time ? run->time + step : run->stage_end;
+    fem_system_scatter(&run->system, *time, run->u, run->v);
+    Status status = fem_run_frames_measure(run, *time, measures);
+    if (status != STATUS_RETRY || step < SHORTEST_SLEEP * scene->end) return status;
+  }
+}
+
+static Status sleep_on(FemRunState *run) {
+  double time, began = run->time;
+  FemMeasures measures;
+  TRY(look_ahead(run, &time, &measures));
+  FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
+  TRY(fem_run_frames_write_until(run, time));
+  run->audit = next;
+  run->time = time;
+  fem_stall_pass(&run->stall, time - began);
+  fem_run_frames_keep_extremes(run->result, &measures);
+  TRY(fem_system_accept(&run->system, time, run->u, run->v, time - began));
+  TRY(observe(run, &measures));
+  bool has_changed = fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"));
+  return has_changed ? renumber(run) : STATUS_OK;
+}
+
+// A rest state is not judged by rounding: a millionth of the bodies' E·V counts as the scene's energy at
+// least, less where gravity or motion is smaller.
+static double energy_floor(const FemModel *model) {
+  double floor = 0;
+  for (int b = 0; b < model->scene->body_count; b++)
+    floor +=
+        1e-12 * model->bodies[b].material.young * model->bodies[b].mass / model->bodies[b].material.density;
+  return floor;
+}
+
+// Room for the unknowns, however many are released.
+static Status allocate_states(FemRunState *run) {
+  double **states[] = {&run->u, &run->v, &run->u_new, &run->v_new};
+  for (int i = 0; i < 4; i++)
+    if (!(*states[i] = memory_zeroed(3 * (size_t)run->model->vertex_count, sizeof(double))))
+      return status_no_memory("the state");
+  return STATUS_OK;
+}
+
+// A numbering of our own where vertices are released, with what has been released until now.
+static Status number(FemRunState *run) {
+  bool may_rest = run->given->scene->contact.rest_is_on && !run->given->scene->is_static;
+  if (!may_rest && !isfinite(fem_model_next_release(run->given, 0))) return STATUS_OK;
+  fem_model_destroy_copy(&run->own);
+  TRY(fem_model_copy_numbering(&run->own, run->given));
+  fem_model_release(&run->own, run->time);
+  run->model = &run->own;
+  return STATUS_OK;
+}
+
+// The first frame, and the audit from there on.
+static Status begin_record(FemRunState *run) {
+  FemMeasures measures;
+  TRY(fem_run_frames_measure(run, run->time, &measures));
+  fem_audit_begin(&run->audit, run->time, &measures.energy, energy_floor(run->model));
+  fem_run_frames_keep_extremes(run->result, &measures);
+  fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
+  // The files of an earlier run in this folder are about to be replaced: its checkpoint goes with them.
+  if (!run->options->from) TRY(fem_run_checkpoint_remove(run));
+  return fem_run_frames_write(run, run->time, &measures);
+}
+
+static Status begin_motion(FemRunState *run) {
+  TRY(fem_system_accept(&run->system, run->time, run->u, run->v, run->next_step));
+  if (run->next_frame == 0) TRY(begin_record(run));
+  if (fem_system_lags(&run->system)) TRY(renew_powers(run));
+  return begin_stage(run, run->next_step);
+}
+
+static Status begin_statics(FemRunState *run) {
+  const FemCheckpoint *from = &run->checkpoint;
+  TRY(fem_statics_create(&run->statics, &run->system, fem_solver_ops(fem_run_solver(run->model))));
+  if (run->next_frame == 0) {
+    fem_system_scatter(&run->system, run->time, run->u, run->v);
+    return begin_record(run);
+  }
+  TRY(fem_system_accept(&run->system, run->time, run->u, run->v, 0));
+  return fem_statics_continue(&run->statics, run->time, run->u, from->force_scale, from->driven_work);
+}
+
+// Everything anew from the checkpoint: the same whether the run goes on, is resumed, or begins.
+static Status begin_part(FemRunState *run) {
+  const FemCheckpoint *from = &run->checkpoint;
+  bool is_first = !run->system.model;
+  run->time = from->time;
+  run->audit = from->audit;
+  run->next_frame = from->next_frame;
+  run->next_step = from->step;
+  run->retries = 0;
+  TRY(number(run));
+  TRY(is_first ? fem_system_create(&run->system, run->model)
+               : fem_system_create_again(&run->system, run->model));
+  TRY(fem_restart_load(from, &run->system, run->u, run->v));
+  if (fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"))) {
+    fem_system_scatter(&run->system, run->time, run->u, run->v);
+    TRY(fem_hold_sleepers(&run->own, &run->system, run->u, run->v));
+  }
+  if (is_first) TRY(fem_run_frames_open(run));
+  return run->model->scene->is_static ? begin_statics(run) : begin_motion(run);
+}
+
+// Counts what the part has done; the system stays, for the next to take over from.
+static void end_part(FemRunState *run) {
+  FemRunResult *result = run->result;
+  run->checkpoint.force_scale = run->statics.force_scale;
+  run->checkpoint.driven_work = run->statics.driven_work;
+  end_stage(run);
+  if (run->system.model) fem_run_result_add_system(result, &run->system);
+  result->phases.output += run->recorder.seconds;
+  run->recorder.seconds = 0;
+  const double wall = clock_wall_s(), cpu = clock_cpu_s();
+  result->wall_s += wall - run->began_s;
+  result->cpu_s += cpu - run->cpu_began_s;
+  run->began_s = wall;
+  run->cpu_began_s = cpu;
+}
+
+// Collects a checkpoint and begins anew from it.
+static Status pass_checkpoint(FemRunState *run) {
+  end_part(run);
+  TRY(fem_run_checkpoint_take(run));
+  TRY(begin_part(run));
+  memory_trim();
+  return STATUS_OK;
+}
+
+// One step of load, halved where there is no equilibrium; `next_step` is what to try next.
+static Status advance_static(FemRunState *run) {
+  const FemSceneDef *scene = run->model->scene;
+  double longest = scene->max_step > 0 ? scene->max_step : scene->end / scene->frames;
+  double step = run->next_step > 0 ? fmin(run->next_step, longest) : longest;
+  FemForesight foresight = {.displacement = scene->tolerance * run->model->length,
+                            .resolution = SHORTEST_LOAD_STEP * scene->end / scene->frames,
+                            .static_share = scene->tolerance};
+  double target = fem_scene_frame_time(scene, run->next_frame), to = fmin(run->time + step, target),
+         work_before = run->statics.driven_work;
+  to = fem_system_horizon(&run->system, &foresight, run->time, to);
+  Status status = fem_statics_step(&run->statics, run->time, to, run->u);
+  if (status == STATUS_RETRY) {
+    run->next_step = 0.5 * (to - run->time);
+    bool is_too_short = run->next_step < SHORTEST_LOAD_STEP * scene->end / scene->frames;
+    return is_too_short ? status_fail(STATUS_SOLVER, "%s", status_message()) : STATUS_OK;
+  }
+  TRY(status);
+  run->time = to;
+  run->next_step = 2 * step;
+  FemMeasures measures;
+  run->audit.driven_work += run->statics.driven_work - work_before;
+  fem_equilibrium_scatter(&run->statics.equilibrium, run->time, run->u);
+  TRY(fem_run_frames_measure(run, run->time, &measures));
+  run->audit = fem_audit_next(&run->audit, run->time, &measures.energy);
+  fem_run_frames_keep_extremes(run->result, &measures);
+  if (run->time >= target) TRY(fem_run_frames_write(run, run->time, &measures));
+  return observe(run, &measures);
+}
+
+static Status march(FemRunState *run) {
+  TRY(allocate_states(run));
+  TRY(begin_part(run));
+  const FemSceneDef *scene = run->given->scene;
+  run->stall = fem_stall_begin(run->time, scene->end, scene->end / scene->frames);
+  TRY(fem_run_checkpoint_offer(run));
+  while (!fem_run_state_has_ended(run)) {
+    if (run->model->scene->is_static) {
+      TRY(advance_static(run));
+    } else {
+      if (run->time >= run->stage_end) TRY(renumber(run));
+      TRY(run->integrator ? advance(run) : sleep_on(run));
+    }
+    if (fem_run_checkpoint_is_due(run)) TRY(pass_checkpoint(run));
+  }
+  return STATUS_OK;
+}
+
+static Status collect(FemRunState *run) {
+  FemRunResult *result = run->result;
+  end_part(run);
+  result->audit = run->audit;
+  result->end_time = run->time;
+  result->peak_rss_bytes = memory_peak_bytes();
+  result->state_unknowns = (result->is_static ? 1 : 2) * run->model->unknown_count;
+  result->phases.analysis = result->solver.analyse_s;
+  result->phases.factorisation = result->solver.factorise_s;
+  result->phases.solve = result->solver.solve_s;
+  result->phases.total = result->wall_s;
+  return run->recorder.system ? fem_recorder_finish(&run->recorder) : STATUS_OK;
+}
+
+// The counts to go on from.
+static Status begin_result(FemRunState *run) {
+  FemRunResult *result = run->result;
+  *result = run->checkpoint.so_far;
+  result->counters = record_new();
+  if (!result->counters) return status_no_memory("the counters");
+  record_merge(result->counters, run->checkpoint.so_far.counters);
+  FemTrouble now = fem_trouble_begin(run->given);
+  if (run->checkpoint.next_frame == 0) result->trouble = now;
+  result->trouble.sliver_count = now.sliver_count;
+  result->trouble.worst_sliver = now.worst_sliver;
+  result->trouble.worst_shape = now.worst_shape;
+  result->solver_name = fem_solver_name(fem_run_solver(run->given));
+  result->is_static = run->given->scene->is_static;
+  return STATUS_OK;
+}
+
+static Status prepare(FemRunState *run) {
+  const FemRunOptions *options = run->options;
+  if (options->from) {
+    TRY(fem_restart_check(options->from, run->given));
+    TRY(fem_checkpoint_copy(&run->checkpoint, options->from));
+  } else {
+    TRY(fem_restart_begin(&run->checkpoint, run->given, options->initial_displacement));
+    run->checkpoint.step = run->given->scene->is_static ? 0 : run->given->scene->initial_step;
+  }
+  if (options->origin && !run->checkpoint.origin) {
+    run->checkpoint.origin = memory_copy(options->origin, strlen(options->origin) + 1, 1);
+    if (!run->checkpoint.origin) return status_no_memory("a checkpoint");
+  }
+  run->is_written = options->from;
+  return begin_result(run);
+}
+
+// The first failure gives the status; what closes the run may fail as well.
+static Status close_run(FemRunState *run, Status status) {
+  char message[2048], closing[1024] = "";
+  snprintf(message, sizeof message, "%s", status_message());
+  Status collected = collect(run), left = fem_run_checkpoint_leave(run, status ? status : collected);
+  if (collected || left) snprintf(closing, sizeof closing, "; besides: %s", status_message());
+  fem_recorder_destroy(&run->recorder);
+  fem_system_destroy(&run->system);
+  double *states[] = {run->u, run->v, run->u_new, run->v_new};
+  for (int i = 0; i < 4; i++) memory_free(states[i]);
+  fem_model_destroy_copy(&run->own);
+  fem_checkpoint_destroy(&run->checkpoint);
+  if (status) return status_fail(status, "%s%s", message, closing);
+  return collected ? collected : left;
+}
+
+// Says when a run failed, unless whoever failed did. A retry that nobody took is the solver's failure.
+static Status say_when(const FemRunState *run, Status status) {
+  if (status != STATUS_RETRY && status != STATUS_SOLVER) return status;
+  bool is_told = strstr(status_message(), "t = ");
+  if (is_told) return status_fail(STATUS_SOLVER, "%s", status_message());
+  return status_prefix(STATUS_SOLVER, "at t = %.9g s", run->time);
+}
+
+Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult *result) {
+  *result = (FemRunResult){.min_det_F = INFINITY};
+  FemRunState run = {.model = model,
+                     .given = model,
+                     .options = options,
+                     .result = result,
+                     .began_s = clock_wall_s(),
+                     .cpu_began_s = clock_cpu_s()};
+  run.written_s = run.began_s;
+  Status status = prepare(&run);
+  if (!status) status = march(&run);
+  return close_run(&run, say_when(&run, status));
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The checkpoints of a run that goes on: when one is due, what it holds, and whether its file is written.
+#ifndef TETLAP_FEM_RUN_RUN_CHECKPOINT_H
+#define TETLAP_FEM_RUN_RUN_CHECKPOINT_H
+
+#include "fem/run/run_state.h"
+
+bool fem_run_checkpoint_is_due(const FemRunState *run);
+
+// Takes the state between two parts as the checkpoint that the next one begins from, and offers it.
+Status fem_run_checkpoint_take(FemRunState *run);
+
+// Writes the checkpoint if the last one that was written is old enough.
+Status fem_run_checkpoint_offer(FemRunState *run);
+
+Status fem_run_checkpoint_remove(const FemRunState *run);
+
+// At the end: a run that was stopped, or failed for want of room, may be taken up; one that has ended need
+// not.
+Status fem_run_checkpoint_leave(FemRunState *run, Status status);
+
+#endif

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/run_frames.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "fem/effect/contact.h"
+
+static void keep_frame(FemRunState *run, double time) {
+  FemRunResult *result = run->result;
+  if (!result->trajectory) return;
+  int frame = result->frame_count++;
+  size_t values = 3 * (size_t)result->vertex_count;
+  result->frame_times[frame] = time;
+  memcpy(result->trajectory + (size_t)frame * values, run->system.positions, values * sizeof(double));
+  void *effect = fem_system_effect(&run->system, "contact");
+  if (!effect) return;
+  int count;
+  contact_system_interfaces(fem_effect_contact_system(effect), &count);
+  for (int i = 0; i < count; i++)
+    fem_recorder_interface_force(&run->system, i,
+                                 result->interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i));
+}
+
+void fem_run_frames_keep_extremes(FemRunResult *result, const FemMeasures *measures) {
+  result->pairs_max = measures->active_pairs > result->pairs_max ? measures->active_pairs : result->pairs_max;
+  result->overlap_volume_max = fmax(result->overlap_volume_max, measures->overlap_volume);
+  result->contact_force_max = fmax(result->contact_force_max, measures->contact_force);
+  result->deepest_overlap_max = fmax(result->deepest_overlap_max, measures->deepest_overlap);
+  result->min_det_F = fmin(result->min_det_F, measures->min_det_F);
+}
+
+static void keep_status(FemRunState *run) {
+  FemRunResult *result = run->result;
+  result->has_status = run->recorder.has_status;
+  if (!result->has_status) return;
+  const ContactStatusCounts *pairs = &run->recorder.status->pairs;
+  result->status_pairs.asked += pairs->asked;
+  result->status_pairs.overlapping += pairs->overlapping;
+  result->status_pairs.false_positives += pairs->false_positives;
+  result->status_pairs.false_negatives += pairs->false_negatives;
+}
+
+Status fem_run_frames_write(FemRunState *run, double time, const FemMeasures *measures) {
+  FemIntegratorStats stats = fem_run_state_stats(run);
+  FemAudit audit = time > run->audit.time ? fem_audit_next(&run->audit, time, &measures->energy) : run->audit;
+  TRY(fem_recorder_write(&run->recorder, time, measures, &audit, stats.last_step, stats.steps,
+                         run->result->trouble.of[FEM_TROUBLE_ENERGY].events));
+  run->result->last_contact_force = measures->contact_force;
+  keep_status(run);
+  keep_frame(run, time);
+  run->next_frame++;
+  return STATUS_OK;
+}
+
+Status fem_run_frames_measure(FemRunState *run, double time, FemMeasures *measures) {
+  TRY(fem_system_check_state(&run->system));
+  TRY(fem_recorder_measure(&run->recorder, time, measures));
+  const FemEnergy *energy = &measures->energy;
+  const double parts[] = {energy->kinetic,      energy->elastic,      energy->gravity,
+                          energy->contact,      energy->applied_work, energy->dissipated_power,
+                          energy->driven_power, energy->plastic_work};
+  static const char *const names[] = {"kinetic energy",    "elastic energy", "energy of gravity",
+                                      "energy of contact", "work of loads",  "dissipated power",
+                                      "driven power",      "plastic work"};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+    if (!isfinite(parts[k])) return status_fail(STATUS_RETRY, "the %s is not a number", names[k]);
+  return STATUS_OK;
+}
+
+// Measures at a frame within the last step; the contact lists are renewed there if it lies beyond their
+// margin.
+static Status measure_within_step(FemRunState *run, double time, FemMeasures *measures) {
+  const double *u = run->u, *v = run->v;
+  if (run->integrator) TRY(fem_integrator_at(run->integrator, time, &u, &v));
+  fem_system_scatter(&run->system, time, u, v);
+  Status status = fem_run_frames_measure(run, time, measures);
+  if (status != STATUS_RETRY) return status;
+  TRY(fem_system_check_state(&run->system)); // a wider list does not help what is no number
+  TRY(fem_system_accept(&run->system, time, u, v, 0));
+  return fem_run_frames_measure(run, time, measures);
+}
+
+Status fem_run_frames_write_until(FemRunState *run, double time) {
+  const FemSceneDef *scene = run->model->scene;
+  double slack = 1e-12 * scene->end;
+  while (run->next_frame <= scene->frames) {
+    double frame = fem_scene_frame_time(scene, run->next_frame);
+    if (frame > time + slack) break;
+    FemMeasures measures;
+    TRY(measure_within_step(run, fmin(frame, time), &measures));
+    TRY(fem_run_frames_write(run, frame, &measures));
+  }
+  return STATUS_OK;
+}
+
+// "a, b" for each interface.
+static Status keep_names(FemRunResult *result, void *effect) {
+  enum { NAME_SIZE = 256 };
+  int count;
+  const ContactInterface *interfaces = contact_system_interfaces(fem_effect_contact_system(effect), &count);
+  result->interface_names = memory_zeroed((size_t)count, sizeof *result->interface_names);
+  if (!result->interface_names) return status_no_memory("the names of interfaces");
+  result->interface_count = count;
+  for (int i = 0; i < count; i++) {
+    result->interface_names[i] = memory_zeroed(NAME_SIZE, 1);
+    if (!result->interface_names[i]) return status_no_memory("the names of interfaces");
+    snprintf(result->interface_names[i], NAME_SIZE, "%s, %s",
+             fem_effect_contact_name(effect, interfaces[i].a),
+             fem_effect_contact_name(effect, interfaces[i].b));
+  }
+  return STATUS_OK;
+}
+
+static Status keep_trajectory(FemRunState *run) {
+  FemRunResult *result = run->result;
+  void *effect = fem_system_effect(&run->system, "contact");
+  if (effect) TRY(keep_names(result, effect));
+  size_t frames = (size_t)run->model->scene->frames + 1;
+  result->vertex_count = run->model->vertex_count;
+  result->frame_times = memory_zeroed(frames, sizeof(double));
+  result->trajectory = memory_zeroed(frames * 3 * (size_t)result->vertex_count, sizeof(double));
+  result->interface_forces = memory_zeroed(frames * 3 * (size_t)result->interface_count, sizeof(double));
+  bool ok = result->frame_times && result->trajectory && result->interface_forces;
+  return ok ? STATUS_OK : status_no_memory("the kept trajectory");
+}
+
+Status fem_run_frames_open(FemRunState *run) {
+  const FemCheckpoint *from = &run->checkpoint;
+  TRY(fem_recorder_create(&run->recorder, &run->system, run->options->directory));
+  if (run->options->keep_trajectory) TRY(keep_trajectory(run));
+  return fem_recorder_continue(&run->recorder, from->history, from->next_frame);
+}

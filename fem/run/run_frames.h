@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run measures and shows: frames by its recorder, the trajectory where it is kept, extremes.
+#ifndef TETLAP_FEM_RUN_RUN_FRAMES_H
+#define TETLAP_FEM_RUN_RUN_FRAMES_H
+
+#include "fem/run/run_state.h"
+
+// Opens the recorder, and room for the trajectory, where the run's checkpoint left off.
+Status fem_run_frames_open(FemRunState *run);
+
+// Measures the scattered state. RETRY: it, or an energy, is not made of numbers, or it is too far for the
+// contact lists.
+Status fem_run_frames_measure(FemRunState *run, double time, FemMeasures *measures);
+
+void fem_run_frames_keep_extremes(FemRunResult *result, const FemMeasures *measures);
+
+// Writes the frame of the scattered state.
+Status fem_run_frames_write(FemRunState *run, double time, const FemMeasures *measures);
+
+// Writes the frames within the last step. RETRY as of measuring.
+Status fem_run_frames_write_until(FemRunState *run, double time);
+
+#endif

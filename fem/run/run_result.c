@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/run_result.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "fem/effect/contact.h"
+
+// Steps and order are those of the part.
+void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegratorStats *part) {
+  total->steps += part->steps, total->setups += part->setups, total->residuals += part->residuals;
+  total->newton_iterations += part->newton_iterations, total->newton_failures += part->newton_failures;
+  total->error_test_failures += part->error_test_failures;
+  total->restarts += part->restarts, total->roots += part->roots;
+  total->last_step = part->last_step, total->current_step = part->current_step;
+  total->last_order = part->last_order;
+}
+
+void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part) {
+  total->analyses += part->analyses, total->factorisations += part->factorisations;
+  total->failed_factorisations += part->failed_factorisations;
+  total->solves += part->solves, total->iterations += part->iterations;
+  total->analyse_s += part->analyse_s, total->factorise_s += part->factorise_s;
+  total->solve_s += part->solve_s;
+  total->factor_entries = part->factor_entries;
+}
+
+static void add_cost(FemEffectCost *total, const FemEffectCost *part) {
+  total->force_s += part->force_s, total->jacobian_s += part->jacobian_s;
+  total->prepare_s += part->prepare_s;
+  total->force_calls += part->force_calls, total->jacobian_calls += part->jacobian_calls;
+  total->prepare_calls += part->prepare_calls;
+  if (part->bytes_max > total->bytes_max) total->bytes_max = part->bytes_max;
+}
+
+static void add_pairs(ContactPairCounts *total, const ContactPairCounts *part) {
+  total->tried += part->tried, total->enclosed += part->enclosed;
+  total->fallbacks += part->fallbacks, total->by_net += part->by_net;
+  total->blended += part->blended, total->beyond += part->beyond;
+}
+
+static void add_contact(FemRunResult *result, const ContactCounters *counters) {
+  result->phases.broad_phase += counters->broad_s;
+  result->phases.overlap += counters->overlap_s;
+  result->phases.contact += counters->force_s - counters->broad_s;
+  add_pairs(&result->pairs, &counters->pairs);
+}
+
+void fem_run_result_add_system(FemRunResult *result, const FemSystem *system) {
+  void *contact = fem_system_effect(system, "contact");
+  if (contact) add_contact(result, contact_system_counters(fem_effect_contact_system(contact)));
+  result->pattern_layouts += system->pattern_version;
+  result->effect_count = system->effect_count;
+  result->assemblies = 0;
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffect *effect = &system->effects[i];
+    if (effect->self != contact) result->phases.forces += system->costs[i].force_s;
+    result->phases.assembly += system->costs[i].jacobian_s;
+    result->phases.contact += system->costs[i].prepare_s;
+    result->effects[i].name = effect->ops->name;
+    add_cost(&result->effects[i].cost, &system->costs[i]);
+    if (result->effects[i].cost.jacobian_calls > result->assemblies)
+      result->assemblies = result->effects[i].cost.jacobian_calls;
+    Record *counters = effect->ops->report ? record_new() : NULL;
+    if (counters) effect->ops->report(effect->self, counters);
+    if (counters) record_accumulate(result->counters, counters);
+    if (counters) record_destroy(counters);
+  }
+}
+
+void fem_run_result_destroy(FemRunResult *result) {
+  if (result->counters) record_destroy(result->counters);
+  for (int i = 0; i < result->interface_count; i++) memory_free(result->interface_names[i]);
+  memory_free(result->interface_names);
+  memory_free(result->frame_times);
+  memory_free(result->trajectory);
+  memory_free(result->interface_forces);
+  *result = (FemRunResult){0};
+}
+
+// Appends "; text" to what was told.
+static void tell(char *text, size_t size, size_t *used, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+static void tell(char *text, size_t size, size_t *used, const char *format, ...) {
+  char piece[256];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(piece, sizeof piece, format, arguments);
+  va_end(arguments);
+  text_append(text, size, used, "%s%s", *used > 0 ? "; " : "", piece);
+}
+
+void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size) {
+  const FemTrouble *trouble = &result->trouble;
+  size_t used = 0;
+  text[0] = 0;
+  for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) {
+    char piece[256];
+    if (trouble->of[k].steps == 0) continue;
+    fem_trouble_tell(trouble, model, (FemTroubleKind)k, piece, sizeof piece);
+    tell(text, size, &used, "%s", piece);
+  }
+  if (trouble->sliver_count > 0)
+    tell(text, size, &used, "slivers: %d elements, the worst %d", trouble->sliver_count,
+         trouble->worst_sliver);
+  if (result->pairs.enclosed > 0) tell(text, size, &used, "enclosed pairs: %lld", result->pairs.enclosed);
+  if (result->pairs.beyond > 0)
+    tell(text, size, &used, "pairs beyond the network's training: %lld", result->pairs.beyond);
+  if (result->pairs.fallbacks > 0)
+    tell(text, size, &used, "pairs answered by a more careful model: %lld", result->pairs.fallbacks);
+  if (result->energy_retries > 0)
+    tell(text, size, &used, "steps taken back for their energy: %lld", result->energy_retries);
+  if (result->solver.failed_factorisations > 0)
+    tell(text, size, &used, "failed factorisations: %lld", result->solver.failed_factorisations);
+  if (result->integrator.newton_failures > 0)
+    tell(text, size, &used, "steps without convergence: %lld", result->integrator.newton_failures);
+  if (used == 0) tell(text, size, &used, "none");
+  if (isfinite(trouble->smallest_step))
+    tell(text, size, &used, "smallest step %.1e s", trouble->smallest_step);
+}
+
+static void summarise_phases(const FemRunPhases *phases, Record *record) {
+  record_number(record, "broad_phase", phases->broad_phase);
+  record_number(record, "overlap", phases->overlap);
+  record_number(record, "contact", phases->contact);
+  record_number(record, "forces", phases->forces);
+  record_number(record, "assembly", phases->assembly);
+  record_number(record, "analysis", phases->analysis);
+  record_number(record, "factorisation", phases->factorisation);
+  record_number(record, "solve", phases->solve);
+  record_number(record, "output", phases->output);
+  double named = phases->broad_phase + phases->overlap + phases->contact + phases->forces + phases->assembly +
+                 phases->analysis + phases->factorisation + phases->solve + phases->output;
+  record_number(record, "other", phases->total - named);
+}
+
+static void summarise_counters(const FemRunResult *result, Record *record) {
+  const FemIntegratorStats *stats = &result->integrator;
+  record_integer(record, "setups", stats->setups);
+  record_integer(record, "newton_iterations", stats->newton_iterations);
+  record_integer(record, "newton_failures", stats->newton_failures);
+  record_integer(record, "error_test_failures", stats->error_test_failures);
+  record_integer(record, "residuals", stats->residuals);
+  record_integer(record, "onsets", stats->roots);
+  record_integer(record, "restarts", stats->restarts);
+  record_integer(record, "state_unknowns", result->state_unknowns);
+  record_integer(record, "energy_retries", result->energy_retries);
+  record_integer(record, "pattern_layouts", result->pattern_layouts);
+  record_integer(record, "matrix_assemblies", result->assemblies);
+  record_integer(record, "analyses", result->solver.analyses);
+  record_integer(record, "factorisations", result->solver.factorisations);
+  record_integer(record, "failed_factorisations", result->solver.failed_factorisations);
+  record_integer(record, "linear_solves", result->solver.solves);
+  record_integer(record, "linear_iterations", result->solver.iterations);
+  record_number(record, "factor_entries", result->solver.factor_entries);
+}
+
+// A row for each effect that there was.
+static void summarise_effects(const FemRunResult *result, Record *record) {
+  for (int i = 0; i < result->effect_count; i++) {
+    const FemEffectCost *cost = &result->effects[i].cost;
+    Record *row = record_child(record, result->effects[i].name);
+    record_number(row, "force_s", cost->force_s);
+    record_integer(row, "force_calls", cost->force_calls);
+    record_number(row, "jacobian_s", cost->jacobian_s);
+    record_integer(row, "jacobian_calls", cost->jacobian_calls);
+    record_number(row, "prepare_s", cost->prepare_s);
+    record_integer(row, "prepare_calls", cost->prepare_calls);
+    record_integer(row, "bytes_max", cost->bytes_max);
+  }
+}
+
+static void summarise_status(const ContactStatusCounts *pairs, Record *record) {
+  record_integer(record, "pairs", pairs->asked);
+  record_integer(record, "overlapping", pairs->overlapping);
+  record_integer(record, "false_positive", pairs->false_positives);
+  record_integer(record, "false_negative", pairs->false_negatives);
+}
+
+void fem_run_summarise(const FemRunResult *result, Record *summary) {
+  record_number(summary, "end_time", result->end_time);
+  record_number(summary, "wall_s", result->wall_s);
+  record_number(summary, "cpu_s", result->cpu_s);
+  record_integer(summary, "steps", result->integrator.steps);
+  record_text(summary, "solver", result->solver_name);
+  summarise_phases(&result->phases, record_child(summary, "phases"));
+  summarise_effects(result, record_child(summary, "effects"));
+  record_integer(summary, "pairs_max", result->pairs_max);
+  record_number(summary, "overlap_volume_max", result->overlap_volume_max);
+  record_number(summary, "deepest_overlap_max", result->deepest_overlap_max);
+  record_number(summary, "contact_force_max", result->contact_force_max);
+  record_number(summary, "contact_force_last", result->last_contact_force);
+  record_number(summary, "energy_gain_relative", result->audit.gain / result->audit.scale);
+  record_number(summary, "energy_scale", result->audit.scale);
+  record_number(summary, "min_det_F", result->min_det_F);
+  fem_trouble_record(&result->trouble, record_child(summary, "trouble"));
+  if (result->is_static) {
+    Record *equilibrium = record_child(summary, "equilibrium");
+    record_number(equilibrium, "residual_N", result->residual);
+    record_number(equilibrium, "residual_allowed_N", result->residual_allowed);
+    record_integer(equilibrium, "relaxation_steps", result->relaxation_steps);
+    record_integer(equilibrium, "halvings", result->halvings);
+  }
+  if (result->has_status) summarise_status(&result->status_pairs, record_child(summary, "status"));
+  record_integer(summary, "peak_rss_bytes", (long long)result->peak_rss_bytes);
+  Record *counters = record_child(summary, "counters");
+  summarise_counters(result, counters);
+  record_merge(counters, result->counters);
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run comes to: times, counts, extremes, and on demand its trajectory.
+#ifndef TETLAP_FEM_RUN_RUN_RESULT_H
+#define TETLAP_FEM_RUN_RUN_RESULT_H
+
+#include "base/record.h"
+#include "contact/status.h"
+#include "fem/run/trouble.h"
+#include "fem/time/audit.h"
+#include "fem/time/integrator.h"
+
+// `contact`: candidate lists, watched onsets, pressures and forces, without broad phase and overlap volumes.
+// What no phase names (the energy audit, the integrator's vectors) is the difference to the total.
+typedef struct FemRunPhases {
+  double broad_phase, overlap, contact, forces, assembly, analysis, factorisation, solve, output,
+      total; // wall [s]
+} FemRunPhases;
+
+// Counts of a part of the run between two checkpoints are added to those before. Whoever adds a number adds
+// it to numbers[] in checkpoint_numbers.c and to fem_run_result_add as well.
+typedef struct FemRunResult {
+  double wall_s, cpu_s;
+  FemRunPhases phases;
+  FemIntegratorStats integrator;
+  FemSolverStats solver;
+  const char *solver_name;
+  long long assemblies;      // of K, or K and D apart: how often the elements' matrices were added up
+  long long pattern_layouts; // how often the matrix pattern was laid out
+  long long energy_retries;  // steps taken back because they gained energy
+  FemAudit audit;
+  FemTrouble trouble;
+  double end_time;                  // reached [s]
+  bool has_status;                  // the scene asked who overlaps
+  ContactStatusCounts status_pairs; // summed over the frames
+  ContactPairCounts pairs;          // handed to the overlap model over the whole run
+  int state_unknowns;               // displacements, and in a motion as many velocities
+  bool is_static;
+  double residual, residual_allowed; // of the last equilibrium: largest force on an unknown [N]
+  long long relaxation_steps, halvings;
+  int pairs_max;
+  double overlap_volume_max, contact_force_max, min_det_F, deepest_overlap_max;
+  double last_contact_force; // largest interface force at the last frame [N]
+  size_t peak_rss_bytes;
+  Record *counters; // owned
+  int effect_count; // those that the scene called for
+  struct {
+    const char *name; // borrowed
+    FemEffectCost cost;
+  } effects[FEM_MAX_EFFECTS]; //                                  (effect_count)
+  // With keep_trajectory:
+  int frame_count, vertex_count, interface_count;
+  char **interface_names;   // "a, b", owned                       (interface_count)
+  double *frame_times;      //                                     (frame_count)
+  double *trajectory;       // positions [m]                       (frame_count, vertex_count, 3)
+  double *interface_forces; // on the first side [N]               (frame_count, interface_count, 3)
+} FemRunResult;
+
+// Adds what a system and a solver have counted since they were made. `contact` of the phases is what effects
+// took to prepare, without the broad phase.
+void fem_run_result_add_system(FemRunResult *result, const FemSystem *system);
+void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegratorStats *part);
+void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part);
+void fem_run_result_destroy(FemRunResult *result);
+
+// The run's last line: what trouble struck, or that none did. `model`: the one that ran.
+void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);
+
+// summary.json of a run.
+void fem_run_summarise(const FemRunResult *result, Record *summary);
+
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A run while it goes on, shared by the files that make it up: run.c steps, run_frames.c measures and shows,
+// run_checkpoint.c keeps what a resumed run needs. For those only.
+#ifndef TETLAP_FEM_RUN_RUN_STATE_H
+#define TETLAP_FEM_RUN_RUN_STATE_H
+
+#include "fem/output/recorder.h"
+#include "fem/run/checkpoint.h"
+#include "fem/run/run.h"
+#include "fem/time/integrator.h"
+#include "fem/time/stall.h"
+#include "fem/time/statics.h"
+
+typedef struct FemRunState {
+  const FemModel *given;        // borrowed
+  const FemModel *model;        // that, or `own`
+  FemModel own;                 // where vertices are released while the run goes on
+  const FemRunOptions *options; // borrowed
+  FemRunResult *result;         // borrowed; counts of what is over: closed parts and stages
+  FemSystem system;
+  FemIntegrator *integrator; // NULL in a static scene
+  FemStatics statics;        // of a static scene
+  FemRecorder recorder;
+  FemAudit audit;
+  double time;           // of the last accepted state
+  double *u, *v;         // the last accepted state         (unknown_count)
+  double *u_new, *v_new; // the state under judgement  (unknown_count)
+  int next_frame;
+  int retries;              // in a row
+  double next_step;         // to be tried; 0: the integrator's choice [s]
+  FemStall stall;           // over all stages
+  double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]
+  FemCheckpoint checkpoint; // where this part began
+  bool is_written;          // is that in the file
+  int interval;             // frames between two checkpoints; 0: none
+  double began_s, cpu_began_s, written_s; // clocks: of this part, and when a checkpoint was written
+} FemRunState;
+
+// Counted over all parts and stages.
+FemIntegratorStats fem_run_state_stats(const FemRunState *run);
+
+bool fem_run_state_has_ended(const FemRunState *run);
+
+#endif

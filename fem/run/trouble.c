@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/trouble.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/mesh/faces.h"
+
+static const double COVERED = 0.999, PULL = 0.5, FORCE_FLOOR = 1e-3, SLIVER_SHAPE = 1e-3;
+
+static const struct {
+  const char *name, *what, *unit;
+} kinds[FEM_TROUBLE_KIND_COUNT] = {
+    {"inverted", "inverted elements", "element"},
+    {"enclosed", "elements wholly inside another body, which nothing pushes out", "element"},
+    {"wrong_way", "contact pushing the wrong way", "vertex"},
+    {"energy", "energy out of nothing", NULL},
+};
+
+const char *fem_trouble_name(FemTroubleKind kind) {
+  return kinds[kind].name;
+}
+
+static Status list_surface(FemTroubleWatch *watch) {
+  const FemModel *model = watch->model;
+  FemMeshFace *faces;
+  TRY(fem_mesh_faces_list(&faces, model->vertex_count, model->tet_count, (const int(*)[4])model->tets));
+  int face_count = 4 * model->tet_count;
+  watch->triangles = memory_zeroed((size_t)face_count, sizeof *watch->triangles);
+  for (int f = 0, end; f < face_count && watch->triangles; f = end) {
+    end = fem_mesh_faces_end(faces, face_count, f);
+    if (end - f != 1) continue;
+    int *triangle = watch->triangles[watch->triangle_count++];
+    const int *tet = model->tets[faces[f].tet], *order = fem_mesh_face_vertices[faces[f].local];
+    for (int k = 0; k < 3; k++) triangle[k] = tet[order[k]];
+  }
+  memory_free(faces);
+  return watch->triangles ? STATUS_OK : status_no_memory("the surface");
+}
+
+static Status create(FemTroubleWatch *watch) {
+  const FemModel *model = watch->model;
+  watch->marks = memory_zeroed((size_t)model->tet_count, sizeof *watch->marks);
+  if (!watch->marks) return status_no_memory("the marks of elements");
+  if (!model->scene->contact.is_on) return STATUS_OK;
+  watch->normals = memory_zeroed(3 * (size_t)model->vertex_count, sizeof *watch->normals);
+  watch->is_wrongway = memory_zeroed((size_t)model->vertex_count, sizeof *watch->is_wrongway);
+  if (!watch->normals || !watch->is_wrongway) return status_no_memory("the marks of vertices");
+  return list_surface(watch);
+}
+
+Status fem_trouble_watch_create(FemTroubleWatch *watch, const FemModel *model) {
+  *watch = (FemTroubleWatch){.model = model};
+  Status status = create(watch);
+  if (status) fem_trouble_watch_destroy(watch);
+  return status;
+}
+
+void fem_trouble_watch_destroy(FemTroubleWatch *watch) {
+  memory_free(watch->triangles);
+  memory_free(watch->normals);
+  memory_free(watch->marks);
+  memory_free(watch->is_wrongway);
+  *watch = (FemTroubleWatch){0};
+}
+
+static void count(FemTroubleState *state, FemTroubleKind kind, int where) {
+  if (state->count[kind]++ == 0) state->first[kind] = where;
+}
+
+static void look_at_elements(FemTroubleWatch *watch, const double *det_F, const double *overlap,
+                             FemTroubleState *state) {
+  const FemModel *model = watch->model;
+  for (int e = 0; e < model->tet_count; e++) {
+    watch->marks[e] = 0;
+    if (model->bodies[model->tet_body[e]].is_obstacle) continue;
+    if (!(det_F[e] > 0)) {
+      watch->marks[e] |= FEM_TROUBLE_MARK_INVERTED;
+      count(state, FEM_TROUBLE_INVERTED, e);
+    }
+    if (overlap[e] > 0 && overlap[e] >= COVERED * fabs(det_F[e])) {
+      watch->marks[e] |= FEM_TROUBLE_MARK_ENCLOSED;
+      count(state, FEM_TROUBLE_ENCLOSED, e);
+    }
+  }
+}
+
+static void find_normals(FemTroubleWatch *watch, const double *positions) {
+  memset(watch->normals, 0, 3 * (size_t)watch->model->vertex_count * sizeof *watch->normals);
+  for (int t = 0; t < watch->triangle_count; t++) {
+    const int *v = watch->triangles[t];
+    Vec3 a = vec3_at(positions + 3 * v[0]);
+    Vec3 ab = vec3_sub(vec3_at(positions + 3 * v[1]), a), ac = vec3_sub(vec3_at(positions + 3 * v[2]), a);
+    for (int k = 0; k < 3; k++) vec3_accumulate(watch->normals + 3 * v[k], vec3_cross(ab, ac));
+  }
+}
+
+static void look_at_forces(FemTroubleWatch *watch, const double *positions, const double *force,
+                           FemTroubleState *state) {
+  const FemModel *model = watch->model;
+  double largest = 0;
+  for (int a = 0; a < model->vertex_count; a++) {
+    largest = fmax(largest, vec3_length(vec3_at(force + 3 * a)));
+    watch->is_wrongway[a] = 0;
+  }
+  if (!(largest > 0)) return;
+  find_normals(watch, positions);
+  for (int b = 0; b < model->scene->body_count; b++)
+    for (int a = model->bodies[b].vertex_begin; a < model->bodies[b].vertex_end; a++) {
+      Vec3 f = vec3_at(force + 3 * a), n = vec3_at(watch->normals + 3 * a);
+      double size = vec3_length(f), area = vec3_length(n);
+      if (!(size > FORCE_FLOOR * largest) || !(vec3_dot(f, n) > PULL * size * area)) continue;
+      watch->is_wrongway[a] = 1;
+      count(state, FEM_TROUBLE_WRONG_WAY, a);
+    }
+}
+
+void fem_trouble_look(FemTroubleWatch *watch, const double *positions, const double *force,
+                      const double *det_F, const double *overlap, FemTroubleState *state) {
+  *state = (FemTroubleState){.first = {-1, -1, -1, -1}};
+  look_at_elements(watch, det_F, overlap, state);
+  if (force && watch->triangles) look_at_forces(watch, positions, force, state);
+}
+
+// 6 V / (longest edge)³
+static double shape_of(const double *rest, const int tet[4]) {
+  Vec3 x[4];
+  double longest = 0;
+  for (int k = 0; k < 4; k++) {
+    x[k] = vec3_at(rest + 3 * tet[k]);
+    for (int l = 0; l < k; l++) longest = fmax(longest, vec3_length(vec3_sub(x[k], x[l])));
+  }
+  return fabs(vec3_det4(x[0], x[1], x[2], x[3])) / (longest * longest * longest);
+}
+
+FemTrouble fem_trouble_begin(const FemModel *model) {
+  FemTrouble trouble = {.worst_sliver = -1, .worst_shape = INFINITY, .smallest_step = INFINITY};
+  for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) trouble.of[k].first = -1;
+  for (int e = 0; e < model->tet_count; e++) {
+    if (model->bodies[model->tet_body[e]].is_obstacle) continue;
+    double shape = shape_of(model->rest, model->tets[e]);
+    trouble.sliver_count += !(shape >= SLIVER_SHAPE);
+    if (!(shape >= trouble.worst_shape)) trouble.worst_shape = shape, trouble.worst_sliver = e;
+  }
+  return trouble;
+}
+
+bool fem_trouble_add(FemTrouble *trouble, double time, const FemTroubleState *state) {
+  bool has_begun = false;
+  for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) {
+    if (state->count[k] == 0) continue;
+    if (trouble->of[k].steps++ == 0) {
+      trouble->of[k].first_time = time;
+      trouble->of[k].first = state->first[k];
+    }
+    bool is_new = trouble->last.count[k] == 0;
+    trouble->of[k].events += is_new;
+    has_begun = has_begun || is_new;
+    if (state->count[k] > trouble->of[k].most) trouble->of[k].most = state->count[k];
+  }
+  trouble->last = *state;
+  return has_begun;
+}
+
+static const char *body_of_element(const FemModel *model, int tet) {
+  return model->bodies[model->tet_body[tet]].name;
+}
+
+void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
+                      size_t size) {
+  int first = trouble->of[kind].first;
+  if (kind == FEM_TROUBLE_ENERGY) {
+    snprintf(text, size, "%s: first at t = %.6g s, %lld times in all", kinds[kind].what,
+             trouble->of[kind].first_time, trouble->of[kind].events);
+    return;
+  }
+  const char *body =
+      kind == FEM_TROUBLE_WRONG_WAY ? fem_model_body_name(model, first) : body_of_element(model, first);
+  snprintf(text, size, "%s: first at t = %.6g s, %s %d of body '%s'; %d at once at most, in %lld steps",
+           kinds[kind].what, trouble->of[kind].first_time, kinds[kind].unit, first, body,
+           trouble->of[kind].most, trouble->of[kind].steps);
+}
+
+void fem_trouble_record(const FemTrouble *trouble, Record *record) {
+  for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) {
+    Record *row = record_child(record, kinds[k].name);
+    record_integer(row, "steps", trouble->of[k].steps);
+    record_integer(row, "events", trouble->of[k].events);
+    record_integer(row, "most", trouble->of[k].most);
+    record_number(row, "first_time", trouble->of[k].steps ? trouble->of[k].first_time : NAN);
+    record_integer(row, "first", trouble->of[k].first);
+  }
+  record_integer(record, "slivers", trouble->sliver_count);
+  record_integer(record, "worst_element", trouble->worst_sliver);
+  record_number(record, "worst_shape", trouble->worst_shape);
+  record_number(record, "smallest_step", trouble->smallest_step);
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What strikes a run without ending it: elements turned inside out, elements wholly covered by another body,
+// contact forces that pull, energy out of nothing. Found in every accepted state, marked by element and
+// vertex for the frames, counted for history.csv, summary.json and the run's last line.
+#ifndef TETLAP_FEM_RUN_TROUBLE_H
+#define TETLAP_FEM_RUN_TROUBLE_H
+
+#include <stddef.h>
+
+#include "base/record.h"
+#include "fem/model/model.h"
+
+// Marks of an element; bits.
+enum {
+  FEM_TROUBLE_MARK_INVERTED = 1 << 0, // det F ≤ 0
+  FEM_TROUBLE_MARK_ENCLOSED = 1 << 1, // at least 99.9 % of its current volume lie in other bodies
+};
+
+typedef enum FemTroubleKind {
+  FEM_TROUBLE_INVERTED, // an element
+  FEM_TROUBLE_ENCLOSED, // an element: what is inside has no surface that contact could push out
+  // A vertex of a body's surface that contact pulls outwards: f·n > ½ |f|, n the outward normal. Contact only
+  // presses; a pull means that the nearest way out of the overlap leads deeper in, as in a body that was
+  // pierced. Forces below a thousandth of the largest are not looked at.
+  FEM_TROUBLE_WRONG_WAY,
+  FEM_TROUBLE_ENERGY, // the audited energy rose by more than FEM_TROUBLE_ENERGY_BOUND
+} FemTroubleKind;
+enum { FEM_TROUBLE_KIND_COUNT = 4 };
+
+// A rise of the audited energy above an earlier value, as a share of the scene's energy, beyond which it is
+// an event.
+static const double FEM_TROUBLE_ENERGY_BOUND = 1e-3;
+
+// One state: how many elements or vertices, and the first of them; −1: none. Of energy: 1 or 0.
+typedef struct FemTroubleState {
+  int count[FEM_TROUBLE_KIND_COUNT];
+  int first[FEM_TROUBLE_KIND_COUNT];
+} FemTroubleState;
+
+// A run.
+typedef struct FemTrouble {
+  struct {
+    long long steps;   // accepted states in which it struck
+    long long events;  // of them, those that it had not struck in the state before
+    int most;          // elements or vertices in one state
+    double first_time; // [s]
+    int first;         // the first element or vertex
+  } of[FEM_TROUBLE_KIND_COUNT];
+  FemTroubleState last;
+  int sliver_count; // elements with 6 V / (longest edge)³ < 1e-3 at rest (a regular one has 0.71)
+  int worst_sliver;
+  double worst_shape;   // that element's
+  double smallest_step; // [s]; INFINITY: none yet
+} FemTrouble;
+
+// Looks for trouble; of a model.
+typedef struct FemTroubleWatch {
+  const FemModel *model; // borrowed
+  int (*triangles)[3];   // surface of all bodies, outwards     (triangle_count); none without contact
+  int triangle_count;
+  double *normals;  // scratch: of vertices, by area         (vertex_count, 3)
+  int *marks;       // of the state looked at last           (tet_count)
+  int *is_wrongway; // likewise                              (vertex_count)
+} FemTroubleWatch;
+
+Status fem_trouble_watch_create(FemTroubleWatch *watch, const FemModel *model);
+void fem_trouble_watch_destroy(FemTroubleWatch *watch); // also of a zeroed one
+
+// A state: positions and contact forces (vertex_count, 3), det F and covered share of the rest volume
+// (tet_count); `force` NULL: no contact.
+void fem_trouble_look(FemTroubleWatch *watch, const double *positions, const double *force,
+                      const double *det_F, const double *overlap, FemTroubleState *state);
+
+FemTrouble fem_trouble_begin(const FemModel *model);
+// Adds an accepted state; whether trouble began in it that was not there in the state before.
+bool fem_trouble_add(FemTrouble *trouble, double time, const FemTroubleState *state);
+
+// "wrong-way push: from t = 0.1 s on, vertex 12 of body 'ball', at most 3 at a time" for what began.
+void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
+                      size_t size);
+const char *fem_trouble_name(FemTroubleKind kind); // "inverted", "enclosed", "wrong_way", "energy"
+void fem_trouble_record(const FemTrouble *trouble, Record *record);
+
+#endif

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/sparse/matrix.h"
+
+#include <assert.h>
+#include <limits.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+// Below this many unknowns a product is done before a team of threads has started.
+enum { PARALLEL_SIZE = 4000 };
+
+// Where the block of vertices (v, w), v < w, stands. Column c of v (c = 0 … active[v] − 1, counted over v's
+// own unknowns) holds
+//
+//   col_begin[first[v] + c] ─► own rows c … active[v] − 1 │ rows of w₁ │ rows of w₂ │ …
+//                                                         └ row_offset counts from here, the same for all c
+//
+// Vertices without an unknown have no blocks.
+typedef struct FemMatrixBlocks {
+  int reference_count;
+  int *col_begin, *row;
+  int *first;          // first unknown                                          (vertex_count)
+  signed char *active; // number of unknowns, 0 … 3                              (vertex_count)
+  int *above_begin;    // of v in above and row_offset                           (vertex_count + 1)
+  int *above;          // w > v, ascending                                       (block_count)
+  int *row_offset;     // rows of v's columns that stand before w's              (block_count)
+  int *below_begin;    // the same blocks by w: of w in below and below_offset   (vertex_count + 1)
+  int *below;          // v < w, ascending                                       (block_count)
+  int *below_offset;   // row_offset of the block                                (block_count)
+} FemMatrixBlocks;
+
+static atomic_llong layout_count;
+
+static void release_blocks(FemMatrixBlocks *blocks) {
+  if (!blocks || --blocks->reference_count > 0) return;
+  memory_free(blocks->col_begin), memory_free(blocks->row);
+  memory_free(blocks->first), memory_free(blocks->active);
+  memory_free(blocks->above_begin), memory_free(blocks->above), memory_free(blocks->row_offset);
+  memory_free(blocks->below_begin), memory_free(blocks->below), memory_free(blocks->below_offset);
+  memory_free(blocks);
+}
+
+static Status no_memory(void) {
+  return status_no_memory("the sparse matrix");
+}
+
+// First unknown and number of unknowns of every vertex.
+static Status number_vertices(FemMatrix *matrix) {
+  FemMatrixBlocks *blocks = matrix->blocks;
+  blocks->first = memory_zeroed((size_t)matrix->vertex_count, sizeof *blocks->first);
+  blocks->active = memory_zeroed((size_t)matrix->vertex_count, sizeof *blocks->active);
+  if (!blocks->first || !blocks->active) return no_memory();
+  int next = 0;
+  for (int v = 0; v < matrix->vertex_count; v++) {
+    blocks->first[v] = next;
+    for (int c = 0; c < 3; c++) {
+      int unknown = matrix->unknown_of_dof[3 * v + c];
+      assert(unknown < 0 || unknown == next);
+      next += unknown >= 0;
+    }
+    blocks->active[v] = (signed char)(next - blocks->first[v]);
+  }
+  matrix->size = next;
+  return STATUS_OK;
+}
+
+// Blocks by their lower vertex, and how many entries the columns have in all.
+static Status lay_blocks(FemMatrix *matrix, const FemPattern *pattern, size_t *entry_count) {
+  FemMatrixBlocks *blocks = matrix->blocks;
+  size_t block_count = 0;
+  for (int v = 0; v < matrix->vertex_count; v++) {
+    int count;
+    fem_pattern_above(pattern, v, &count);
+    block_count += (size_t)count;
+  }
+  if (block_count > INT_MAX)
+    return status_fail(
+        STATUS_INPUT,
+        "the matrix would have %zu pairs of coupled vertices, more than %d can be numbered: use "
+        "coarser meshes",
+        block_count, INT_MAX);
+  blocks->above_begin = memory_zeroed((size_t)matrix->vertex_count + 1, sizeof *blocks->above_begin);
+  blocks->above = memory_zeroed(block_count, sizeof *blocks->above);
+  blocks->row_offset = memory_zeroed(block_count, sizeof *blocks->row_offset);
+  if (!blocks->above_begin || !blocks->above || !blocks->row_offset) return no_memory();
+
+  *entry_count = 0;
+  int end = 0;
+  for (int v = 0; v < matrix->vertex_count; v++) {
+    int count, rows = 0;
+    const int *above = fem_pattern_above(pattern, v, &count);
+    for (int k = 0; k < count && blocks->active[v]; k++) {
+      if (!blocks->active[above[k]]) continue;
+      blocks->above[end] = above[k];
+      blocks->row_offset[end++] = rows;
+      rows += blocks->active[above[k]];
+    }
+    blocks->above_begin[v + 1] = end;
+    size_t a = (size_t)blocks->active[v];
+    *entry_count += a * (size_t)rows + a * (a + 1) / 2;
+  }
+  return STATUS_OK;
+}
+
+// The same blocks by their higher vertex, for products.
+static Status transpose_blocks(FemMatrix *matrix) {
+  FemMatrixBlocks *blocks = matrix->blocks;
+  int vertex_count = matrix->vertex_count, block_count = blocks->above_begin[vertex_count];
+  blocks->below_begin = memory_zeroed((size_t)vertex_count + 1, sizeof *blocks->below_begin);
+  blocks->below = memory_zeroed((size_t)block_count, sizeof *blocks->below);
+  blocks->below_offset = memory_zeroed((size_t)block_count, sizeof *blocks->below_offset);
+  int *next = memory_zeroed((size_t)vertex_count, sizeof *next);
+  if (!blocks->below_begin || !blocks->below || !blocks->below_offset || !next) {
+    memory_free(next);
+    return no_memory();
+  }
+  for (int b = 0; b < block_count; b++) blocks->below_begin[blocks->above[b] + 1]++;
+  for (int w = 0; w < vertex_count; w++) {
+    blocks->below_begin[w + 1] += blocks->below_begin[w];
+    next[w] = blocks->below_begin[w];
+  }
+  for (int v = 0; v < vertex_count; v++)
+    for (int b = blocks->above_begin[v]; b < blocks->above_begin[v + 1]; b++) {
+      int to = next[blocks->above[b]]++;
+      blocks->below[to] = v;
+      blocks->below_offset[to] = blocks->row_offset[b];
+    }
+  memory_free(next);
+  return STATUS_OK;
+}
+
+// col_begin and row from the blocks.
+static Status lay_entries(FemMatrix *matrix, size_t entry_count) {
+  FemMatrixBlocks *blocks = matrix->blocks;
+  if (entry_count > INT_MAX)
+    return status_fail(STATUS_INPUT,
+                       "the matrix would have %zu entries, more than %d can be numbered: use coarser meshes",
+                       entry_count, INT_MAX);
+  blocks->col_begin = memory_zeroed((size_t)matrix->size + 1, sizeof *blocks->col_begin);
+  blocks->row = memory_zeroed(entry_count, sizeof *blocks->row);
+  matrix->value = memory_zeroed(entry_count, sizeof *matrix->value);
+  if (!blocks->col_begin || !blocks->row || !matrix->value) return no_memory();
+  int end = 0;
+  for (int v = 0; v < matrix->vertex_count; v++)
+    for (int c = 0; c < blocks->active[v]; c++) {
+      for (int r = c; r < blocks->active[v]; r++) blocks->row[end++] = blocks->first[v] + r;
+      for (int b = blocks->above_begin[v]; b < blocks->above_begin[v + 1]; b++) {
+        int w = blocks->above[b];
+        for (int r = 0; r < blocks->active[w]; r++) blocks->row[end++] = blocks->first[w] + r;
+      }
+      blocks->col_begin[blocks->first[v] + c + 1] = end;
+    }
+  assert((size_t)end == entry_count);
+  matrix->entry_count = end;
+  matrix->col_begin = blocks->col_begin;
+  matrix->row = blocks->row;
+  return STATUS_OK;
+}
+
+static Status lay_out(FemMatrix *matrix, const FemPattern *pattern) {
+  size_t entry_count = 0;
+  TRY(number_vertices(matrix));
+  TRY(lay_blocks(matrix, pattern, &entry_count));
+  TRY(transpose_blocks(matrix));
+  return lay_entries(matrix, entry_count);
+}
+
+Status fem_matrix_create(FemMatrix *matrix, const FemPattern *pattern, const int *unknown_of_dof) {
+  *matrix = (FemMatrix){.vertex_count = fem_pattern_vertex_count(pattern), .unknown_of_dof = unknown_of_dof};
+  matrix->blocks = memory_zeroed(1, sizeof *matrix->blocks);
+  if (!matrix->blocks) return no_memory();
+  matrix->blocks->reference_count = 1;
+  matrix->layout = atomic_fetch_add(&layout_count, 1) + 1;
+  Status status = lay_out(matrix, pattern);
+  if (status != STATUS_OK) fem_matrix_destroy(matrix);
+  return status;
+}
+
+Status fem_matrix_copy_layout(FemMatrix *copy, const FemMatrix *from) {
+  double *value = memory_zeroed((size_t)from->entry_count, sizeof *value);
+  if (!value) {
+    *copy = (FemMatrix){0};
+    return no_memory();
+  }
+  *copy = *from;
+  copy->value = value;
+  copy->blocks->reference_count++;
+  return STATUS_OK;
+}
+
+void fem_matrix_destroy(FemMatrix *matrix) {
+  release_blocks(matrix->blocks);
+  memory_free(matrix->value);
+  *matrix = (FemMatrix){0};
+}
+
+void fem_matrix_zero(FemMatrix *matrix) {
+  memset(matrix->value, 0, (size_t)matrix->entry_count * sizeof *matrix->value);
+}
+
+// The row offset of the block (v, w), v < w, both with unknowns. The pattern must have it.
+static int find_block(const FemMatrixBlocks *blocks, int v, int w) {
+  int low = blocks->above_begin[v], high = blocks->above_begin[v + 1];
+  int end = high;
+  while (low < high) {
+    int middle = low + (high - low) / 2;
+    if (blocks->above[middle] < w)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  assert(low < end && blocks->above[low] == w);
+  (void)end;
+  return blocks->row_offset[low];
+}
+
+// The rows of a block in column c of v begin here.
+static int block_rows(const FemMatrixBlocks *blocks, int v, int c, int row_offset) {
+  return blocks->col_begin[blocks->first[v] + c] + blocks->active[v] - c + row_offset;
+}
+
+// block (3 × 3, rows of w, columns of v) += into the entries of (v, w), v < w.
+static void add_block(FemMatrix *matrix, int v, int w, const double block[9]) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  int row_offset = find_block(blocks, v, w);
+  const int *column = matrix->unknown_of_dof + 3 * v, *row = matrix->unknown_of_dof + 3 * w;
+  for (int c = 0; c < 3; c++) {
+    if (column[c] < 0) continue;
+    double *value = matrix->value + block_rows(blocks, v, column[c] - blocks->first[v], row_offset);
+    for (int r = 0; r < 3; r++)
+      if (row[r] >= 0) *value++ += block[3 * r + c];
+  }
+}
+
+// The lower triangle of block (3 × 3) += into v's own entries.
+static void add_own_block(FemMatrix *matrix, int v, const double block[9]) {
+  const int *unknown = matrix->unknown_of_dof + 3 * v;
+  for (int c = 0; c < 3; c++) {
+    if (unknown[c] < 0) continue;
+    double *value = matrix->value + matrix->col_begin[unknown[c]];
+    for (int r = c; r < 3; r++)
+      if (unknown[r] >= 0) *value++ += block[3 * r + c];
+  }
+}
+
+void fem_matrix_add(FemMatrix *matrix, int count, const int *vertices, const double *dense, double scale) {
+  const signed char *active = matrix->blocks->active;
+  for (int i = 0; i < count; i++) {
+    int v = vertices[i];
+    if (!active[v]) continue;
+    for (int j = 0; j < count; j++) {
+      int w = vertices[j];
+      if (w < v || !active[w]) continue;
+      const double *from = dense + (size_t)(3 * j) * (size_t)(3 * count) + 3 * i;
+      double block[9];
+      for (int r = 0; r < 3; r++, from += 3 * count)
+        for (int c = 0; c < 3; c++) block[3 * r + c] = scale * from[c];
+      if (w == v)
+        add_own_block(matrix, v, block);
+      else
+        add_block(matrix, v, w, block);
+    }
+  }
+}
+
+void fem_matrix_add_outer(FemMatrix *matrix, int count, const int *vertices, const double *w, double scale) {
+  const signed char *active = matrix->blocks->active;
+  for (int i = 0; i < count; i++) {
+    if (!active[vertices[i]]) continue;
+    for (int j = 0; j < count; j++) {
+      if (vertices[j] < vertices[i] || !active[vertices[j]]) continue;
+      double block[9];
+      for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) block[3 * r + c] = scale * w[3 * j + r] * w[3 * i + c];
+      if (j == i)
+        add_own_block(matrix, vertices[i], block);
+      else
+        add_block(matrix, vertices[i], vertices[j], block);
+    }
+  }
+}
+
+void fem_matrix_slots(const FemMatrix *matrix, int count, const int *vertices, int *slots) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  int n = 3 * count;
+  for (int k = 0; k < n * n; k++) slots[k] = -1;
+  for (int i = 0; i < count; i++)
+    for (int j = 0; j < count; j++) {
+      int v = vertices[i], w = vertices[j];
+      if (w < v || !blocks->active[v] || !blocks->active[w]) continue;
+      int row_offset = w == v ? -blocks->active[v] : find_block(blocks, v, w);
+      for (int c = 0; c < 3; c++)
+        for (int r = w == v ? c : 0; r < 3; r++) {
+          int column = matrix->unknown_of_dof[3 * v + c], row = matrix->unknown_of_dof[3 * w + r];
+          if (column < 0 || row < 0) continue;
+          slots[n * (3 * j + r) + 3 * i + c] =
+              block_rows(blocks, v, column - blocks->first[v], row_offset) + row - blocks->first[w];
+        }
+    }
+}
+
+void fem_matrix_add_mass(FemMatrix *matrix, const double *mass, double scale) {
+  for (int dof = 0; dof < 3 * matrix->vertex_count; dof++) {
+    int unknown = matrix->unknown_of_dof[dof];
+    if (unknown >= 0) matrix->value[matrix->col_begin[unknown]] += scale * mass[dof / 3];
+  }
+}
+
+// y of one vertex: its columns give what stands below (and on) the diagonal, the blocks with lower vertices
+// what stands before it.
+static void multiply_vertex(const FemMatrix *matrix, int w, const double *x, double *y) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  int first = blocks->first[w], active = blocks->active[w];
+  double sum[3] = {0};
+  for (int c = 0; c < active; c++) {
+    int own = matrix->col_begin[first + c];
+    for (int r = c + 1; r < active; r++) sum[r] += matrix->value[own + r - c] * x[first + c];
+    for (int k = own; k < matrix->col_begin[first + c + 1]; k++)
+      sum[c] += matrix->value[k] * x[matrix->row[k]];
+  }
+  for (int b = blocks->below_begin[w]; b < blocks->below_begin[w + 1]; b++) {
+    int v = blocks->below[b];
+    for (int c = 0; c < blocks->active[v]; c++) {
+      const double *value = matrix->value + block_rows(blocks, v, c, blocks->below_offset[b]);
+      double x_c = x[blocks->first[v] + c];
+      for (int r = 0; r < active; r++) sum[r] += value[r] * x_c;
+    }
+  }
+  for (int c = 0; c < active; c++) y[first + c] = sum[c];
+}
+
+void fem_matrix_multiply(const FemMatrix *matrix, const double *x, double *y) {
+#pragma omp parallel for schedule(static) if (matrix->size > PARALLEL_SIZE)
+  for (int w = 0; w < matrix->vertex_count; w++) multiply_vertex(matrix, w, x, y);
+}

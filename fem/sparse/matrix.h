@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The symmetric matrix over the unknowns: lower triangle in compressed columns, laid out once from vertex
+// cliques, filled many times. Coordinates that are prescribed have no row; adding to them does nothing.
+//
+//   FemPattern: vertex cliques ──► FemMatrix: col_begin, row, value (scalar, lower, sorted rows)
+//
+// The unknowns of a vertex stand side by side, so a column is the vertex's own rows followed by runs of one
+// to three rows a neighbour: an entry is found by searching the neighbour, not the row.
+#ifndef TETLAP_FEM_SPARSE_MATRIX_H
+#define TETLAP_FEM_SPARSE_MATRIX_H
+
+#include "base/status.h"
+#include "fem/sparse/pattern.h"
+
+typedef struct FemMatrix {
+  int size;       // unknowns n
+  int *col_begin; //                                                          (size + 1)
+  int *row;       // ascending, the diagonal first                            (entry_count)
+  double *value;  //                                                          (entry_count)
+  int entry_count;
+  int vertex_count;
+  // Stamp of the layout, never 0: two matrices with the same stamp have the same rows and slots, so whatever
+  // was looked up in one (slots, an analysis) holds for the other.
+  long long layout;
+  const int *unknown_of_dof;      // borrowed                                 (3·vertex_count)
+  struct FemMatrixBlocks *blocks; // vertex-pair lookup; owns col_begin and row, shared among copies
+} FemMatrix;
+
+// Lays out all couplings of the pattern, zeroed. Unknowns must be numbered in the order of their dofs.
+// STATUS_INPUT: more entries than an int can number. A zeroed matrix can be destroyed.
+Status fem_matrix_create(FemMatrix *matrix, const FemPattern *pattern, const int *unknown_of_dof);
+// The same layout, shared, with values of its own, zeroed. Not from two threads at once.
+Status fem_matrix_copy_layout(FemMatrix *copy, const FemMatrix *from);
+void fem_matrix_destroy(FemMatrix *matrix);
+void fem_matrix_zero(FemMatrix *matrix);
+
+// matrix += scale · dense over the vertices' coordinates; dense (3 count, 3 count) row-major, symmetric; the
+// vertices distinct. Entries that the pattern lacks are a bug (assert). Calls on disjoint vertex sets may run
+// in parallel.
+void fem_matrix_add(FemMatrix *matrix, int count, const int *vertices, const double *dense, double scale);
+// matrix += scale · w wᵀ, w (count, 3), without forming the dense matrix; else as fem_matrix_add.
+void fem_matrix_add_outer(FemMatrix *matrix, int count, const int *vertices, const double *w, double scale);
+// The same with `slots` looked up once for an element of n = 3 count coordinates: value[slots[n i + j]] is
+// entry (i, j) of the (n × n) element matrix, −1: no entry (upper or prescribed).
+void fem_matrix_slots(const FemMatrix *matrix, int count, const int *vertices, int *slots);
+// matrix += scale · diag(m) over all unknowns, m by vertex (vertex_count).
+void fem_matrix_add_mass(FemMatrix *matrix, const double *mass, double scale);
+
+// y = A x over the unknowns, deterministic for any number of threads. x and y must not overlap.
+void fem_matrix_multiply(const FemMatrix *matrix, const double *x, double *y);
+
+#endif

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/sparse/solver.h"
+
+#include <assert.h>
+#include <math.h>
+#include <omp.h>
+#include <stddef.h>
+
+const char *fem_solver_name(FemSolverKind kind) {
+  return kind == FEM_SOLVER_AUTO ? "auto" : fem_solver_ops(kind)->name;
+}
+
+const char *fem_solver_help(FemSolverKind kind) {
+  return kind == FEM_SOLVER_AUTO ? "chosen by the scene" : fem_solver_ops(kind)->help;
+}
+
+const FemSolverOps *fem_solver_ops(FemSolverKind kind) {
+  switch (kind) {
+  case FEM_SOLVER_CHOLMOD:
+    return &fem_solver_cholmod;
+  case FEM_SOLVER_KLU:
+    return &fem_solver_klu;
+  case FEM_SOLVER_PCG:
+    return &fem_solver_pcg;
+  case FEM_SOLVER_AUTO:
+    break;
+  }
+  assert(!"a solver that is not in the table");
+  return NULL;
+}
+
+int fem_solver_use_threads(int threads) {
+  int before = omp_get_max_threads();
+  if (threads > 0 && threads != before) omp_set_num_threads(threads);
+  return before;
+}
+
+bool fem_solver_is_finite(const double *values, int count) {
+  int is_bad = 0;
+  for (int i = 0; i < count; i++) is_bad |= !isfinite(values[i]);
+  return !is_bad;
+}

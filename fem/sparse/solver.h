@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Linear solvers behind one table. The condensed system S = K + c D + c² M is symmetric; a solver that works
+// on the full 2n system [c I, −I; K, c M + D] takes K and D apart (klu, to compare).
+#ifndef TETLAP_FEM_SPARSE_SOLVER_H
+#define TETLAP_FEM_SPARSE_SOLVER_H
+
+#include <stdbool.h>
+
+#include "fem/model/scene.h"
+#include "fem/sparse/matrix.h"
+
+typedef struct FemSolverStats {
+  long long analyses, factorisations, failed_factorisations, solves, iterations;
+  double analyse_s, factorise_s, solve_s; // wall [s]
+  double factor_entries;
+} FemSolverStats;
+
+typedef struct FemSolverOps {
+  const char *name;
+  const char *help;
+  bool is_condensed; // factorise is given S; else K and D
+  // `threads` 0: as OpenMP is set. `tolerance`: relative, of iterative solvers; in (0, 1).
+  Status (*create)(void **self, int threads, double tolerance);
+  // The pattern is new (or has grown).
+  Status (*analyse)(void *self, const FemMatrix *pattern);
+  // The numbers are new; the layout must be the analysed one. Matrices and mass are borrowed until the next
+  // factorise: their values must stay as they are while solve is called. RETRY: not positive definite,
+  // singular, or not finite. Condensed: `damping` NULL, `mass_of_unknown` NULL. Full: `damping` may be NULL:
+  // none.
+  Status (*factorise)(void *self, const FemMatrix *stiffness, const FemMatrix *damping,
+                      const double *mass_of_unknown, double c);
+  // Condensed: solves S x = b, size n. Full: size 2n. After a factorise that went well. RETRY: no
+  // convergence, or a solution that is not finite. b and x must not overlap.
+  Status (*solve)(void *self, const double *b, double *x);
+  void (*destroy)(void *self);
+  const FemSolverStats *(*stats)(const void *self);
+} FemSolverOps;
+
+extern const FemSolverOps fem_solver_cholmod;
+extern const FemSolverOps fem_solver_klu;
+extern const FemSolverOps fem_solver_pcg;
+
+const char *fem_solver_name(FemSolverKind kind); // "auto", "cholmod", "klu", "pcg"
+const char *fem_solver_help(FemSolverKind kind);
+const FemSolverOps *fem_solver_ops(FemSolverKind kind); // not for FEM_SOLVER_AUTO
+
+// For the solvers: OpenMP's (and so OpenBLAS's) number of threads from here on, 0: as it is. Returns the
+// number before, to be given back the same way.
+int fem_solver_use_threads(int threads);
+// For the solvers: no NaN and no infinity among them.
+bool fem_solver_is_finite(const double *values, int count);
+
+#endif

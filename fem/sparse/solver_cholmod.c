@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Condensed system by CHOLMOD's supernodal Cholesky factorisation. Unknowns of one vertex have the same
+// neighbours, so the ordering is found on the graph of vertices (a third of the nodes, a ninth of the edges)
+// and carried over.
+//
+// Threads: CHOLMOD opens teams of four for its own loops whatever OpenMP is set to, between calls of OpenBLAS
+// that open teams of another size. Teams that change size thousands of times a factorisation cost more than
+// they give: two to three times at 5,000 vertices, a hundred times on a machine with other work. A host
+// `teams` region with a thread limit gives both the same size, one below LARGE_WORK.
+#include "fem/sparse/solver.h"
+
+#include <omp.h>
+#include <stdint.h>
+#include <suitesparse/cholmod.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+
+// Smaller graphs are ordered by minimum degree: nested dissection gains nothing there.
+enum { SMALL_GRAPH = 300 };
+// Below this many floating-point operations (some seconds of one core) one thread factorises.
+static const double LARGE_WORK = 1e11;
+enum { CHOLMOD_TEAM = 4 };
+
+typedef struct CholmodSolver {
+  int threads;
+  int team; // threads that factorise
+  cholmod_common common;
+  cholmod_factor *factor;   // of the analysed layout; NULL before
+  cholmod_dense *x, *y, *e; // kept between solves
+  int size;
+  long long layout;
+  bool is_factorised;
+  FemSolverStats stats;
+} CholmodSolver;
+
+static Status fail_in(const CholmodSolver *solver, const char *what) {
+  int status = solver->common.status;
+  if (status == CHOLMOD_OUT_OF_MEMORY)
+    return status_no_memory("the factor of the condensed system (try solver.linear: pcg)");
+  if (status == CHOLMOD_TOO_LARGE)
+    return status_fail(STATUS_SOLVER,
+                       "cholmod: the factor is too large to be numbered: use solver.linear: pcg");
+  return status_fail(STATUS_SOLVER, "cholmod: %s failed with status %d", what, status);
+}
+
+static Status create(void **self, int threads, double tolerance) {
+  (void)tolerance;
+  CholmodSolver *solver = memory_zeroed(1, sizeof *solver);
+  *self = solver;
+  if (!solver) return status_no_memory("the solver cholmod");
+  solver->threads = threads;
+  cholmod_common *common = &solver->common;
+  cholmod_start(common);
+  common->print = 0;
+  common->error_handler = NULL;
+  common->supernodal = CHOLMOD_SUPERNODAL;
+  common->final_ll = 1;
+  common->quick_return_if_not_posdef = 1;
+  common->nmethods = 1;
+  common->method[0].ordering = CHOLMOD_GIVEN;
+  common->postorder = 1;
+  return STATUS_OK;
+}
+
+static void forget_factor(CholmodSolver *solver) {
+  cholmod_common *common = &solver->common;
+  cholmod_free_factor(&solver->factor, common);
+  cholmod_free_dense(&solver->x, common);
+  cholmod_free_dense(&solver->y, common);
+  cholmod_free_dense(&solver->e, common);
+  solver->is_factorised = false;
+}
+
+static void destroy(void *self) {
+  CholmodSolver *solver = self;
+  if (!solver) return;
+  forget_factor(solver);
+  cholmod_finish(&solver->common);
+  memory_free(solver);
+}
+
+// Our arrays as CHOLMOD sees them; nothing is copied.
+static cholmod_sparse view(const FemMatrix *matrix) {
+  return (cholmod_sparse){.nrow = (size_t)matrix->size,
+                          .ncol = (size_t)matrix->size,
+                          .nzmax = (size_t)matrix->entry_count,
+                          .p = matrix->col_begin,
+                          .i = matrix->row,
+                          .x = matrix->value,
+                          .stype = -1,
+                          .itype = CHOLMOD_INT,
+                          .xtype = CHOLMOD_REAL,
+                          .dtype = CHOLMOD_DOUBLE,
+                          .sorted = 1,
+                          .packed = 1};
+}
+
+// The graph of vertices that have unknowns, numbered anew: lower triangle with diagonal.
+typedef struct VertexGraph {
+  int node_count;
+  int *begin;       //                                (node_count + 1)
+  int *row;         //                                (begin[node_count])
+  int *first;       // first unknown of each node     (node_count + 1)
+  int *order;       // node at each place             (node_count)
+  int *permutation; // unknown at each place          (unknowns)
+} VertexGraph;
+
+static void free_graph(VertexGraph *graph) {
+  memory_free(graph->begin), memory_free(graph->row), memory_free(graph->first);
+  memory_free(graph->order), memory_free(graph->permutation);
+  *graph = (VertexGraph){0};
+}
+
+// Nodes, and for each unknown the node it belongs to, in `node_of_unknown`.
+static void number_nodes(const FemMatrix *matrix, VertexGraph *graph, int *node_of_unknown) {
+  int unknown = 0;
+  for (int v = 0; v < matrix->vertex_count; v++) {
+    int before = unknown;
+    for (int c = 0; c < 3; c++)
+      if (matrix->unknown_of_dof[3 * v + c] >= 0) node_of_unknown[unknown++] = graph->node_count;
+    if (unknown > before) graph->first[graph->node_count++] = before;
+  }
+  graph->first[graph->node_count] = unknown;
+}
+
+// Each node's first column holds all its neighbours, one run of rows for each.
+static int list_edges(const FemMatrix *matrix, const VertexGraph *graph, const int *node_of_unknown,
+                      int *begin, int *row) {
+  int end = 0;
+  for (int node = 0; node < graph->node_count; node++) {
+    int column = graph->first[node], last = -1;
+    if (begin) begin[node] = end;
+    for (int k = matrix->col_begin[column]; k < matrix->col_begin[column + 1]; k++) {
+      int other = node_of_unknown[matrix->row[k]];
+      if (other == last) continue;
+      if (row) row[end] = other;
+      end++;
+      last = other;
+    }
+  }
+  if (begin) begin[graph->node_count] = end;
+  return end;
+}
+
+static Status build_graph(const FemMatrix *matrix, VertexGraph *graph, int *node_of_unknown) {
+  size_t size = (size_t)matrix->size;
+  graph->first = memory_zeroed(size + 1, sizeof *graph->first);
+  graph->begin = memory_zeroed(size + 1, sizeof *graph->begin);
+  graph->order = memory_zeroed(size, sizeof *graph->order);
+  graph->permutation = memory_zeroed(size, sizeof *graph->permutation);
+  if (!graph->first || !graph->begin || !graph->order || !graph->permutation)
+    return status_no_memory("the graph of the matrix");
+  number_nodes(matrix, graph, node_of_unknown);
+  int edge_count = list_edges(matrix, graph, node_of_unknown, NULL, NULL);
+  graph->row = memory_zeroed((size_t)edge_count, sizeof *graph->row);
+  if (!graph->row) return status_no_memory("the graph of the matrix");
+  list_edges(matrix, graph, node_of_unknown, graph->begin, graph->row);
+  return STATUS_OK;
+}
+
+static Status order_graph(CholmodSolver *solver, VertexGraph *graph) {
+  size_t count = (size_t)graph->node_count;
+  cholmod_sparse pattern = {.nrow = count,
+                            .ncol = count,
+                            .nzmax = (size_t)graph->begin[count],
+                            .p = graph->begin,
+                            .i = graph->row,
+                            .stype = -1,
+                            .itype = CHOLMOD_INT,
+                            .xtype = CHOLMOD_PATTERN,
+                            .dtype = CHOLMOD_DOUBLE,
+                            .sorted = 1,
+                            .packed = 1};
+  int is_ok = graph->node_count < SMALL_GRAPH
+                  ? cholmod_amd(&pattern, NULL, 0, graph->order, &solver->common)
+                  : cholmod_metis(&pattern, NULL, 0, 1, graph->order, &solver->common);
+  if (!is_ok) return fail_in(solver, "ordering");
+  int place = 0;
+  for (int i = 0; i < graph->node_count; i++)
+    for (int u = graph->first[graph->order[i]]; u < graph->first[graph->order[i] + 1]; u++)
+      graph->permutation[place++] = u;
+  return STATUS_OK;
+}
+
+static Status order(CholmodSolver *solver, const FemMatrix *matrix, VertexGraph *graph) {
+  int *node_of_unknown = memory_zeroed((size_t)matrix->size, sizeof *node_of_unknown);
+  if (!node_of_unknown) return status_no_memory("the graph of the matrix");
+  Status status = build_graph(matrix, graph, node_of_unknown);
+  memory_free(node_of_unknown);
+  TRY(status);
+  return order_graph(solver, graph);
+}
+
+static Status analyse_matrix(CholmodSolver *solver, const FemMatrix *matrix) {
+  VertexGraph graph = {0};
+  Status status = order(solver, matrix, &graph);
+  if (status == STATUS_OK) {
+    cholmod_sparse symmetric = view(matrix);
+    solver->factor = cholmod_analyze_p(&symmetric, graph.permutation, NULL, 0, &solver->common);
+    if (!solver->factor) status = fail_in(solver, "analysis");
+  }
+  free_graph(&graph);
+  return status;
+}
+
+static Status analyse(void *self, const FemMatrix *pattern) {
+  CholmodSolver *solver = self;
+  double began = clock_wall_s();
+  forget_factor(solver);
+  solver->size = pattern->size;
+  solver->layout = pattern->layout;
+  TRY(analyse_matrix(solver, pattern));
+  int threads = solver->threads > 0 ? solver->threads : omp_get_max_threads();
+  solver->team = solver->common.fl < LARGE_WORK ? 1 : threads < CHOLMOD_TEAM ? threads : CHOLMOD_TEAM;
+  solver->stats.analyses++;
+  solver->stats.factor_entries = solver->common.lnz;
+  solver->stats.analyse_s += clock_wall_s() - began;
+  return STATUS_OK;
+}
+
+static Status refactor(CholmodSolver *solver, const FemMatrix *matrix) {
+  cholmod_common *common = &solver->common;
+  if (!fem_solver_is_finite(matrix->value, matrix->entry_count))
+    return status_fail(STATUS_RETRY, "the condensed matrix is not finite");
+  cholmod_sparse symmetric = view(matrix);
+  int before = fem_solver_use_threads(solver->team), is_ok = 0;
+#pragma omp teams num_teams(1) thread_limit(solver->team)
+  is_ok = cholmod_factorize(&symmetric, solver->factor, common);
+  fem_solver_use_threads(before);
+  if (common->status == CHOLMOD_NOT_POSDEF || (is_ok && solver->factor->minor < (size_t)solver->size))
+    return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
+  return is_ok ? STATUS_OK : fail_in(solver, "factorisation");
+}
+
+static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix *damping,
+                        const double *mass_of_unknown, double c) {
+  CholmodSolver *solver = self;
+  (void)damping, (void)mass_of_unknown, (void)c;
+  if (!solver->factor || stiffness->layout != solver->layout)
+    return status_fail(STATUS_SOLVER, "cholmod: this layout of the matrix has not been analysed");
+  double began = clock_wall_s();
+  Status status = refactor(solver, stiffness);
+  solver->is_factorised = status == STATUS_OK;
+  if (status == STATUS_OK)
+    solver->stats.factorisations++;
+  else
+    solver->stats.failed_factorisations++;
+  solver->stats.factorise_s += clock_wall_s() - began;
+  return status;
+}
+
+static Status solve(void *self, const double *b, double *x) {
+  CholmodSolver *solver = self;
+  if (!solver->is_factorised) return status_fail(STATUS_SOLVER, "cholmod: no factor to solve with");
+  double began = clock_wall_s();
+  size_t size = (size_t)solver->size;
+  cholmod_dense right = {.nrow = size,
+                         .ncol = 1,
+                         .nzmax = size,
+                         .d = size,
+                         .x = (void *)(uintptr_t)b, // only read
+                         .xtype = CHOLMOD_REAL,
+                         .dtype = CHOLMOD_DOUBLE};
+  int before = fem_solver_use_threads(1); // bound by memory, not by arithmetic
+  int is_ok = cholmod_solve2(CHOLMOD_A, solver->factor, &right, NULL, &solver->x, NULL, &solver->y,
+                             &solver->e, &solver->common);
+  fem_solver_use_threads(before);
+  if (!is_ok) return fail_in(solver, "solution");
+  const double *solution = solver->x->x;
+  for (size_t i = 0; i < size; i++) x[i] = solution[i];
+  solver->stats.solves++;
+  solver->stats.solve_s += clock_wall_s() - began;
+  if (!fem_solver_is_finite(x, solver->size))
+    return status_fail(STATUS_RETRY, "the solution of the condensed system is not finite");
+  return STATUS_OK;
+}
+
+static const FemSolverStats *stats(const void *self) {
+  return &((const CholmodSolver *)self)->stats;
+}
+
+const FemSolverOps fem_solver_cholmod = {
+    .name = "cholmod",
+    .help = "condensed system, supernodal Cholesky factorisation (CHOLMOD)",
+    .is_condensed = true,
+    .create = create,
+    .analyse = analyse,
+    .factorise = factorise,
+    .solve = solve,
+    .destroy = destroy,
+    .stats = stats,
+};

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/time/audit.h"
+
+#include <math.h>
+
+static double stored(const FemEnergy *energy) {
+  return energy->kinetic + energy->elastic + energy->gravity + energy->contact;
+}
+
+static double largest_part(const FemAudit *audit, const FemEnergy *energy) {
+  double moving = fmax(fabs(energy->kinetic), fabs(energy->elastic));
+  double held = fmax(fabs(energy->contact), fabs(energy->gravity - audit->gravity_at_start));
+  return fmax(fmax(moving, held), fmax(fabs(audit->work), audit->dissipated));
+}
+
+void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, double floor) {
+  double total = stored(energy) - energy->applied_work;
+  *audit = (FemAudit){.time = time,
+                      .work = energy->applied_work,
+                      .total = total,
+                      .lowest = total,
+                      .scale = floor,
+                      .gravity_at_start = energy->gravity,
+                      .dissipated_power = energy->dissipated_power,
+                      .driven_power = energy->driven_power};
+  audit->scale = fmax(floor, largest_part(audit, energy));
+}
+
+FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy) {
+  FemAudit next = *audit;
+  double half_step = 0.5 * (time - audit->time);
+  next.time = time;
+  next.damped += half_step * (audit->dissipated_power + energy->dissipated_power);
+  next.driven_work += half_step * (audit->driven_power + energy->driven_power);
+  next.work = next.driven_work + energy->applied_work;
+  next.dissipated = next.damped + energy->plastic_work;
+  next.dissipated_power = energy->dissipated_power;
+  next.driven_power = energy->driven_power;
+  next.total = stored(energy) + next.dissipated - next.work;
+  next.gain = fmax(audit->gain, next.total - audit->lowest);
+  next.lowest = fmin(audit->lowest, next.total);
+  next.scale = fmax(audit->scale, largest_part(&next, energy));
+  return next;
+}
+
+void fem_audit_release(FemAudit *audit, double kinetic_energy) {
+  audit->driven_work += kinetic_energy;
+  audit->work += kinetic_energy;
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/time/equilibrium.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+
+Status fem_equilibrium_create(FemEquilibrium *equilibrium, FemSystem *system, const FemSolverOps *ops) {
+  *equilibrium = (FemEquilibrium){.system = system, .ops = ops};
+  if (!ops->is_condensed)
+    return status_fail(STATUS_INPUT,
+                       "solver.linear: %s solves motions only; write cholmod or pcg for a static scene",
+                       ops->name);
+  const FemSceneDef *scene = system->model->scene;
+  equilibrium->still = memory_zeroed((size_t)system->model->unknown_count, sizeof *equilibrium->still);
+  if (!equilibrium->still) return status_no_memory("the equilibrium");
+  Status status = ops->create(&equilibrium->solver, scene->threads, scene->solver_tolerance);
+  if (status) fem_equilibrium_destroy(equilibrium);
+  return status;
+}
+
+void fem_equilibrium_destroy(FemEquilibrium *equilibrium) {
+  if (equilibrium->solver) equilibrium->ops->destroy(equilibrium->solver);
+  memory_free(equilibrium->still);
+  *equilibrium = (FemEquilibrium){0};
+}
+
+void fem_equilibrium_scatter(FemEquilibrium *equilibrium, double time, const double *u) {
+  FemSystem *system = equilibrium->system;
+  fem_system_scatter(system, time, u, equilibrium->still);
+  memset(system->velocities, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->velocities);
+}
+
+Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const double *u, double *force) {
+  FemSystem *system = equilibrium->system;
+  fem_equilibrium_scatter(equilibrium, time, u);
+  TRY(fem_system_forces(system, time));
+  for (int i = 0; i < system->model->unknown_count; i++)
+    force[i] = system->forces[system->model->dof_of_unknown[i]];
+  if (fem_solver_is_finite(force, system->model->unknown_count)) return STATUS_OK;
+  return status_fail(STATUS_RETRY, "a force is not a number");
+}
+
+Status fem_equilibrium_factorise(FemEquilibrium *equilibrium, double time, const double *u, double shift) {
+  FemSystem *system = equilibrium->system;
+  fem_equilibrium_scatter(equilibrium, time, u);
+  TRY(fem_system_couple(system, time));
+  TRY(fem_system_assemble(system, time, 1, 0, shift, &system->matrix));
+  if (equilibrium->layout != system->matrix.layout) {
+    TRY(equilibrium->ops->analyse(equilibrium->solver, &system->matrix));
+    equilibrium->layout = system->matrix.layout;
+  }
+  return equilibrium->ops->factorise(equilibrium->solver, &system->matrix, NULL, NULL, 0);
+}
+
+Status fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x) {
+  return equilibrium->ops->solve(equilibrium->solver, b, x);
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibrium of a system at rest: f(u, t) = 0 in the displacements alone, no velocities, no mass; half the
+// unknowns of a motion. What Newton's method and relaxation share: forces, K + s M, its factors.
+#ifndef TETLAP_FEM_TIME_EQUILIBRIUM_H
+#define TETLAP_FEM_TIME_EQUILIBRIUM_H
+
+#include "fem/sparse/solver.h"
+#include "fem/system.h"
+
+typedef struct FemEquilibrium {
+  FemSystem *system; // borrowed
+  const FemSolverOps *ops;
+  void *solver;     // of ops
+  long long layout; // that was analysed; 0: none
+  double *still;    // velocities, zero                  (unknown_count)
+} FemEquilibrium;
+
+// STATUS_INPUT: a solver that is not condensed (klu).
+Status fem_equilibrium_create(FemEquilibrium *equilibrium, FemSystem *system, const FemSolverOps *ops);
+void fem_equilibrium_destroy(FemEquilibrium *equilibrium); // also of a zeroed one
+
+// Scatters (time, u) with everything at rest, driven vertices included.
+void fem_equilibrium_scatter(FemEquilibrium *equilibrium, double time, const double *u);
+// Forces on the unknowns [N]. RETRY as the effects say, or if one is not a number.
+Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const double *u, double *force);
+// Factorises K + shift · M at (time, u). RETRY: not positive definite.
+Status fem_equilibrium_factorise(FemEquilibrium *equilibrium, double time, const double *u, double shift);
+Status fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x);
+
+#endif

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Newton's linear system of the integrator as SUNDIALS sees it: a custom direct linear solver and a matrix
+// without content. The Jacobian is assembled when IDA asks for one, into the system's own matrix.
+//
+//   IDA: Jacobian at (t, y, c) ──► fem_ida_solver_assemble ──► S = K + c D + c² M (or K and D apart)
+//        set-up                ──► analyse if the layout is new, factorise
+//        solve J x = b         ──► S du = r₂ + (c M + D) r₁, dv = c du − r₁
+//
+// Of a linear system K and D are assembled once, and S is factorised only where c is new: once for each step
+// size and order.
+//
+// Not matrix-embedded: IDA would then factorise in every Newton iteration.
+#ifndef TETLAP_FEM_TIME_IDA_SOLVER_H
+#define TETLAP_FEM_TIME_IDA_SOLVER_H
+
+#include <sundials/sundials_linearsolver.h>
+
+#include "fem/sparse/solver.h"
+#include "fem/system.h"
+
+enum { FEM_IDA_MESSAGE_SIZE = 1024 };
+
+// What callbacks could not say through IDA: the fatal status that ended the run, and why the last steps were
+// refused.
+typedef struct FemIdaFailure {
+  Status fatal;                             // STATUS_OK: none
+  char fatal_message[FEM_IDA_MESSAGE_SIZE]; //
+  char retry_message[FEM_IDA_MESSAGE_SIZE]; // "" if nothing asked for a retry since it was cleared
+} FemIdaFailure;
+
+// Keeps the thread's message and returns what IDA's callbacks must: 0, 1 (recoverable) or −1.
+int fem_ida_answer(FemIdaFailure *failure, Status status);
+
+typedef struct FemIdaSolver FemIdaSolver; // opaque
+
+// `system` and `failure` are borrowed.
+Status fem_ida_solver_create(FemIdaSolver **solver, FemSystem *system, const FemSolverOps *ops,
+                             FemIdaFailure *failure, SUNContext context);
+void fem_ida_solver_destroy(FemIdaSolver *solver);
+
+SUNLinearSolver fem_ida_solver_linear(FemIdaSolver *solver); // owned by the solver
+SUNMatrix fem_ida_solver_matrix(FemIdaSolver *solver);       // owned by the solver
+
+// Scatters (time, u, v), lets effects couple, assembles with c = ∂ẏ/∂y.
+Status fem_ida_solver_assemble(FemIdaSolver *solver, double time, double c, const double *u, const double *v);
+
+const double *fem_ida_solver_masses(const FemIdaSolver *solver); // of the unknowns [kg]   (unknown_count)
+const FemSolverStats *fem_ida_solver_stats(const FemIdaSolver *solver);
+
+#endif

@@ -1,0 +1,519 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/time/integrator.h"
+
+#include <float.h>
+#include <ida/ida.h>
+#include <math.h>
+#include <nvector/nvector_serial.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/time/ida_solver.h"
+
+// Chosen bounds of the step, as shares of the run's end.
+static const double LONGEST_STEP = 0.1, SHORTEST_STEP = 1e-11;
+// A step is given up after so many failures in a row; each cuts it to a quarter at least.
+enum { MAX_FAILURES = 15 };
+// Knots of prescribed motions and loads closer than this share of the run's end count as one; IDA tells 2e-14
+// apart.
+static const double KNOT_RESOLUTION = 1e-12;
+// Roots are found to this share of their step.
+static const double ROOT_RESOLUTION = 1e-9;
+
+struct FemIntegrator {
+  FemSystem *system; // borrowed
+  FemIntegratorDef def;
+  double min_step, max_step; // [s]
+  int n;                     // unknowns; y and ẏ have 2n
+  SUNContext context;
+  void *ida;
+  FemIdaSolver *solver;
+  FemIdaFailure failure;
+  N_Vector y, y_dot;     // state that the last step or restart ended at
+  N_Vector interpolated; // what `at` returns; scratch
+  N_Vector tolerance;
+  double time;                // of y
+  double step_end;            // where IDA stands: later than `time` after an onset
+  bool is_started, has_steps; // there was a restart; a step since then
+  double stop;                // which the next step does not pass [s]
+  bool stops_at_knot;         // that is why
+  bool is_at_knot;            // the last step ended there
+  double wanted_step;         // handed to the last restart [s]
+  FemIntegratorStats before;  // counted before the last restart
+  long long onset_count, restart_count;
+  FemStall own_stall;         // where the caller has none
+  long long failures_counted; // told to the stall
+};
+
+static double *values_of(N_Vector vector) {
+  return N_VGetArrayPointer(vector);
+}
+
+// r = [u̇ − v; M v̇ − f(u, v, t)]
+static int residual(realtype time, N_Vector y, N_Vector y_dot, N_Vector r, void *self) {
+  FemIntegrator *integrator = self;
+  FemSystem *system = integrator->system;
+  int n = integrator->n;
+  const double *u = values_of(y), *v = u + n, *u_dot = values_of(y_dot), *v_dot = u_dot + n;
+  const double *masses = fem_ida_solver_masses(integrator->solver);
+  double *kinematics = values_of(r), *balance = kinematics + n;
+  fem_system_scatter(system, time, u, v);
+  int answer = fem_ida_answer(&integrator->failure, fem_system_forces(system, time));
+  if (answer != 0) return answer;
+  for (int i = 0; i < n; i++) {
+    kinematics[i] = u_dot[i] - v[i];
+    balance[i] = masses[i] * v_dot[i] - system->forces[system->model->dof_of_unknown[i]];
+  }
+  return 0;
+}
+
+static int jacobian(realtype time, realtype c, N_Vector y, N_Vector y_dot, N_Vector r, SUNMatrix matrix,
+                    void *self, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
+  (void)y_dot, (void)r, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
+  FemIntegrator *integrator = self;
+  const double *u = values_of(y);
+  Status status = fem_ida_solver_assemble(integrator->solver, time, c, u, u + integrator->n);
+  return fem_ida_answer(&integrator->failure, status);
+}
+
+// IDA would print.
+static void be_silent(int code, const char *module, const char *function, char *message, void *self) {
+  (void)code, (void)module, (void)function, (void)message, (void)self;
+}
+
+static Status check_def(const FemIntegratorDef *def) {
+  if (!(def->displacement_tolerance > 0) || !(def->velocity_tolerance > 0) ||
+      isinf(def->displacement_tolerance) || isinf(def->velocity_tolerance))
+    return status_fail(STATUS_INPUT, "the time tolerances must be positive numbers, not %g m and %g m/s",
+                       def->displacement_tolerance, def->velocity_tolerance);
+  if (!(def->end > 0) || isinf(def->end))
+    return status_fail(STATUS_INPUT, "time.end must be a positive number, not %g s", def->end);
+  if (!(def->initial_step >= 0) || !(def->min_step >= 0) || !(def->max_step >= 0))
+    return status_fail(STATUS_INPUT, "time steps must not be negative");
+  if (def->max_step > 0 && def->min_step > def->max_step)
+    return status_fail(STATUS_INPUT, "time.min_step (%g s) is longer than time.max_step (%g s)",
+                       def->min_step, def->max_step);
+  if (def->max_order != 1 && def->max_order != 2)
+    return status_fail(STATUS_INPUT, "time.max_order must be 1 or 2, not %d", def->max_order);
+  return STATUS_OK;
+}
+
+static Status create_vectors(FemIntegrator *integrator) {
+  if (SUNContext_Create(NULL, &integrator->context) != 0) return status_no_memory("the integrator");
+  N_Vector *vectors[] = {&integrator->y, &integrator->y_dot, &integrator->interpolated,
+                         &integrator->tolerance};
+  for (int i = 0; i < 4; i++) {
+    *vectors[i] = N_VNew_Serial(2 * (sunindextype)integrator->n, integrator->context);
+    if (!*vectors[i]) return status_no_memory("the integrator");
+    N_VConst(0, *vectors[i]);
+  }
+  for (int i = 0; i < integrator->n; i++) {
+    values_of(integrator->tolerance)[i] = integrator->def.displacement_tolerance;
+    values_of(integrator->tolerance)[integrator->n + i] = integrator->def.velocity_tolerance;
+  }
+  return STATUS_OK;
+}
+
+static Status configure(FemIntegrator *integrator) {
+  void *ida = integrator->ida = IDACreate(integrator->context);
+  if (!ida) return status_no_memory("the integrator");
+  FemIdaSolver *solver = integrator->solver;
+  bool is_ok =
+      IDASetErrHandlerFn(ida, be_silent, NULL) == IDA_SUCCESS &&
+      IDAInit(ida, residual, 0, integrator->y, integrator->y_dot) == IDA_SUCCESS &&
+      IDASVtolerances(ida, 0, integrator->tolerance) == IDA_SUCCESS &&
+      IDASetUserData(ida, integrator) == IDA_SUCCESS &&
+      IDASetLinearSolver(ida, fem_ida_solver_linear(solver), fem_ida_solver_matrix(solver)) == IDA_SUCCESS &&
+      IDASetJacFn(ida, jacobian) == IDA_SUCCESS &&
+      IDASetMaxOrd(ida, integrator->def.max_order) == IDA_SUCCESS &&
+      IDASetMaxStep(ida, integrator->max_step) == IDA_SUCCESS &&
+      IDASetMinStep(ida, integrator->min_step) == IDA_SUCCESS &&
+      IDASetMaxErrTestFails(ida, MAX_FAILURES) == IDA_SUCCESS &&
+      IDASetMaxConvFails(ida, MAX_FAILURES) == IDA_SUCCESS && IDASetMaxNumSteps(ida, -1) == IDA_SUCCESS;
+  return is_ok ? STATUS_OK : status_fail(STATUS_SOLVER, "IDA could not be set up");
+}
+
+static Status create(FemIntegrator *integrator, const FemSolverOps *solver) {
+  const FemIntegratorDef *def = &integrator->def;
+  TRY(check_def(def));
+  integrator->max_step = def->max_step > 0 ? def->max_step : fmax(LONGEST_STEP * def->end, def->min_step);
+  integrator->min_step =
+      def->min_step > 0 ? def->min_step : fmin(SHORTEST_STEP * def->end, integrator->max_step);
+  TRY(create_vectors(integrator));
+  TRY(fem_ida_solver_create(&integrator->solver, integrator->system, solver, &integrator->failure,
+                            integrator->context));
+  return configure(integrator);
+}
+
+Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, const FemSolverOps *solver,
+                             const FemIntegratorDef *def) {
+  *integrator = memory_zeroed(1, sizeof **integrator);
+  if (!*integrator) return status_no_memory("the integrator");
+  (*integrator)->system = system;
+  (*integrator)->def = *def;
+  (*integrator)->own_stall = fem_stall_begin(0, def->end, def->end);
+  (*integrator)->n = system->model->unknown_count;
+  Status status = create(*integrator, solver);
+  if (status == STATUS_OK) return STATUS_OK;
+  fem_integrator_destroy(*integrator);
+  *integrator = NULL;
+  return status;
+}
+
+void fem_integrator_destroy(FemIntegrator *integrator) {
+  if (!integrator) return;
+  if (integrator->ida) IDAFree(&integrator->ida);
+  fem_ida_solver_destroy(integrator->solver);
+  N_Vector vectors[] = {integrator->y, integrator->y_dot, integrator->interpolated, integrator->tolerance};
+  for (int i = 0; i < 4; i++)
+    if (vectors[i]) N_VDestroy(vectors[i]);
+  if (integrator->context) SUNContext_Free(&integrator->context);
+  memory_free(integrator);
+}
+
+static FemStall *stall_of(FemIntegrator *integrator) {
+  return integrator->def.stall ? integrator->def.stall : &integrator->own_stall;
+}
+
+// v̇ = M⁻¹ f at (t, y), and ẏ = [v; v̇].
+static Status find_derivatives(FemIntegrator *integrator, double time) {
+  FemSystem *system = integrator->system;
+  int n = integrator->n;
+  const double *u = values_of(integrator->y), *v = u + n;
+  const double *masses = fem_ida_solver_masses(integrator->solver);
+  double *u_dot = values_of(integrator->y_dot), *v_dot = u_dot + n;
+  if (!fem_solver_is_finite(u, 2 * n))
+    return status_fail(STATUS_SOLVER, "at t = %g s: a position or velocity is not a number", time);
+  fem_system_scatter(system, time, u, v);
+  TRY(fem_system_forces(system, time));
+  for (int i = 0; i < n; i++) {
+    u_dot[i] = v[i];
+    v_dot[i] = system->forces[system->model->dof_of_unknown[i]] / masses[i];
+  }
+  if (fem_solver_is_finite(v_dot, n)) return STATUS_OK;
+  return status_fail(STATUS_SOLVER, "at t = %g s: an acceleration is not a number", time);
+}
+
+Status fem_integrator_restart(FemIntegrator *integrator, double time, const double *u, const double *v,
+                              double step) {
+  size_t bytes = (size_t)integrator->n * sizeof(double);
+  double *y = values_of(integrator->y);
+  FemIntegratorStats stats = fem_integrator_stats(integrator);
+  memmove(y, u, bytes); // they may be this very array
+  memmove(y + integrator->n, v, bytes);
+  TRY(find_derivatives(integrator, time));
+  if (step == 0 && !integrator->is_started) step = integrator->def.initial_step;
+  if (step > 0) step = fmin(fmax(step, integrator->min_step), integrator->max_step);
+  void *ida = integrator->ida;
+  bool is_ok = IDAReInit(ida, time, integrator->y, integrator->y_dot) == IDA_SUCCESS &&
+               IDASetInitStep(ida, step) == IDA_SUCCESS;
+  if (!is_ok) return status_fail(STATUS_SOLVER, "IDA could not be restarted at t = %g s", time);
+  if (integrator->has_steps && time < integrator->time) fem_stall_take_back(stall_of(integrator));
+  integrator->before = stats;
+  integrator->restart_count += integrator->is_started;
+  integrator->time = integrator->step_end = time;
+  integrator->is_started = true;
+  integrator->has_steps = integrator->is_at_knot = false;
+  integrator->wanted_step = step;
+  return STATUS_OK;
+}
+
+// The solution at `time` in `interpolated`.
+static Status interpolate(FemIntegrator *integrator, double time) {
+  if (integrator->is_started && time == integrator->time) { // to the last bit
+    N_VScale(1, integrator->y, integrator->interpolated);
+    return STATUS_OK;
+  }
+  if (!integrator->has_steps || IDAGetDky(integrator->ida, time, 0, integrator->interpolated) != IDA_SUCCESS)
+    return status_fail(STATUS_SOLVER,
+                       "the solution at t = %.17g s was asked for, which is not in the step to %.17g s", time,
+                       integrator->step_end);
+  return STATUS_OK;
+}
+
+Status fem_integrator_at(FemIntegrator *integrator, double time, const double **u, const double **v) {
+  TRY(interpolate(integrator, time));
+  *u = values_of(integrator->interpolated);
+  *v = *u + integrator->n;
+  return STATUS_OK;
+}
+
+void fem_integrator_state(const FemIntegrator *integrator, double *time, const double **u, const double **v) {
+  *time = integrator->time;
+  *u = values_of(integrator->y);
+  *v = *u + integrator->n;
+}
+
+const double *fem_integrator_acceleration(const FemIntegrator *integrator) {
+  return values_of(integrator->y_dot) + integrator->n;
+}
+
+static Status gap_at(FemIntegrator *integrator, double time, double *gap) {
+  TRY(interpolate(integrator, time));
+  const double *u = values_of(integrator->interpolated);
+  fem_system_scatter(integrator->system, time, u, u + integrator->n);
+  return fem_system_gap(integrator->system, time, gap);
+}
+
+// Illinois' variant of false position between low (gap > 0) and high (gap ≤ 0), whose end `high` is
+// returned: there the contact has begun.
+static Status find_root(FemIntegrator *integrator, double low, double gap_low, double high, double gap_high,
+                        double *root) {
+  double resolution = fmax(ROOT_RESOLUTION * (high - low), 8 * DBL_EPSILON * fabs(high));
+  int last_side = 0;
+  while (high - low > resolution) {
+    double share = gap_low / (gap_low - gap_high);
+    double middle = isfinite(share) ? low + share * (high - low) : 0.5 * (low + high), gap;
+    middle = fmin(fmax(middle, low + 0.5 * resolution), high - 0.5 * resolution);
+    TRY(gap_at(integrator, middle, &gap));
+    int side = gap > 0 ? -1 : 1;
+    if (side < 0)
+      low = middle, gap_low = gap;
+    else
+      high = middle, gap_high = gap;
+    if (side == last_side) *(side < 0 ? &gap_high : &gap_low) *= 0.5;
+    last_side = side;
+  }
+  *root = high;
+  return STATUS_OK;
+}
+
+// Looks for an onset in the step from `begin`, where the gap was `gap`; moves the state there.
+static Status look_for_onset(FemIntegrator *integrator, double begin, double gap, bool *is_onset) {
+  double gap_end, root;
+  TRY(gap_at(integrator, integrator->step_end, &gap_end));
+  if (!(gap > 0) || gap_end > 0) return STATUS_OK;
+  TRY(find_root(integrator, begin, gap, integrator->step_end, gap_end, &root));
+  if (IDAGetDky(integrator->ida, root, 0, integrator->y) != IDA_SUCCESS ||
+      IDAGetDky(integrator->ida, root, 1, integrator->y_dot) != IDA_SUCCESS)
+    return status_fail(STATUS_SOLVER, "the state at the onset at t = %.17g s could not be interpolated",
+                       root);
+  integrator->time = root;
+  integrator->onset_count++;
+  *is_onset = true;
+  return STATUS_OK;
+}
+
+// What happened, in words, and what may help.
+typedef struct Reason {
+  const char *what, *advice;
+} Reason;
+
+static Reason reason_of(int flag) {
+  switch (flag) {
+  case IDA_ERR_FAIL:
+    return (Reason){"the error of a step stayed above the tolerance however short the step",
+                    "a larger time.tolerance, a smaller contact.stiffness, or some effects.damping"};
+  case IDA_CONV_FAIL:
+  case IDA_LSETUP_FAIL:
+  case IDA_LSOLVE_FAIL:
+  case IDA_NLS_FAIL:
+    return (Reason){"Newton's method did not converge however short the step",
+                    "a smaller contact.stiffness, some effects.damping, a smaller time.min_step, or "
+                    "solver.linear: cholmod"};
+  case IDA_RES_FAIL:
+  case IDA_REP_RES_ERR:
+    return (Reason){"the forces could not be evaluated however short the step",
+                    "a smaller time.max_step, or a larger contact.margin"};
+  case IDA_TOO_MUCH_ACC:
+    return (Reason){"the tolerance is finer than the numbers are", "a larger time.tolerance"};
+  default:
+    return (Reason){"IDA gave up", "a larger time.tolerance, or a smaller contact.stiffness"};
+  }
+}
+
+// The unknown whose value, times its weight unless NULL, is largest; a value that is no number wins.
+static int worst_of(const double *values, const double *weights, int count) {
+  int worst = 0;
+  double largest = -1;
+  for (int i = 0; i < count; i++) {
+    double size = fabs(weights ? values[i] * weights[i] : values[i]);
+    if (isnan(size)) return i;
+    if (size > largest) largest = size, worst = i;
+  }
+  return worst;
+}
+
+// The number in y of the unknown that stands in the way: of the largest estimated error if the error test
+// failed, else of the largest unbalanced force.
+static int find_worst(FemIntegrator *integrator, int flag) {
+  int n = integrator->n;
+  N_Vector errors = integrator->interpolated, weights = integrator->tolerance; // of which IDA has a copy
+  if (flag == IDA_ERR_FAIL && IDAGetEstLocalErrors(integrator->ida, errors) == IDA_SUCCESS &&
+      IDAGetErrWeights(integrator->ida, weights) == IDA_SUCCESS)
+    return worst_of(values_of(errors), values_of(weights), 2 * n);
+  double time, c;
+  N_Vector y, y_dot, y_predicted, y_dot_predicted, r;
+  void *self;
+  if (IDAGetNonlinearSystemData(integrator->ida, &time, &y_predicted, &y_dot_predicted, &y, &y_dot, &r, &c,
+                                &self) == IDA_SUCCESS &&
+      r)
+    return n + worst_of(values_of(r) + n, NULL, n);
+  return 0;
+}
+
+// The element with this vertex that is squeezed most, as text; nothing where there are no elements.
+static void name_element(const FemModel *model, const double *positions, int vertex, char *text,
+                         size_t size) {
+  double least = INFINITY;
+  text[0] = 0;
+  for (int e = 0; e < model->tet_count; e++) {
+    const int *v = model->tets[e];
+    if (v[0] != vertex && v[1] != vertex && v[2] != vertex && v[3] != vertex) continue;
+    Vec3 rest[4], now[4];
+    for (int k = 0; k < 4; k++)
+      rest[k] = vec3_at(model->rest + 3 * v[k]), now[k] = vec3_at(positions + 3 * v[k]);
+    double share = vec3_det4(now[0], now[1], now[2], now[3]) / vec3_det4(rest[0], rest[1], rest[2], rest[3]);
+    if (!(share < least)) continue;
+    least = share;
+    snprintf(text, size, ", in element %d, which has %.3g of its rest volume", e, share);
+  }
+}
+
+static Status say_why(FemIntegrator *integrator, double time, double step, int worst, Reason reason) {
+  const FemSystem *system = integrator->system;
+  const FemModel *model = system->model;
+  int dof = model->dof_of_unknown[worst % integrator->n], vertex = dof / 3;
+  const double *x = system->positions + 3 * vertex;
+  const char *retry = integrator->failure.retry_message;
+  char element[96];
+  name_element(model, system->positions, vertex, element, sizeof element);
+  return status_fail(
+      STATUS_SOLVER,
+      "at t = %.9g s, step %.3g s: %s%s%s%s. Worst: %s of vertex %d of body '%s', now at (%.6g, %.6g, "
+      "%.6g) m, %c%s. Try %s",
+      time, step, reason.what, retry[0] ? " (last: " : "", retry, retry[0] ? ")" : "",
+      worst < integrator->n ? "position" : "velocity", vertex, fem_model_body_name(model, vertex), x[0], x[1],
+      x[2], "xyz"[dof % 3], element, reason.advice);
+}
+
+static Status give_up(FemIntegrator *integrator, int flag) {
+  const FemIdaFailure *failure = &integrator->failure;
+  if (failure->fatal != STATUS_OK)
+    return status_fail(failure->fatal, "at t = %.9g s: %s", integrator->time, failure->fatal_message);
+  if (flag == IDA_MEM_FAIL) return status_no_memory("the integrator");
+  double time = integrator->time, step = 0;
+  IDAGetCurrentTime(integrator->ida, &time);
+  IDAGetCurrentStep(integrator->ida, &step);
+  return say_why(integrator, time, step, find_worst(integrator, flag), reason_of(flag));
+}
+
+// Tells the step and what failed on the way to it.
+static Status check_stall(FemIntegrator *integrator) {
+  FemIntegratorStats stats = fem_integrator_stats(integrator);
+  long long failures = stats.error_test_failures + stats.newton_failures,
+            more = failures - integrator->failures_counted;
+  integrator->failures_counted = failures;
+  FemStall *stall = stall_of(integrator);
+  FemStallVerdict verdict = fem_stall_add(stall, 1 + more, more, integrator->time, integrator->max_step);
+  if (verdict == FEM_STALL_GOES_ON) return STATUS_OK;
+  char what[128];
+  snprintf(what, sizeof what,
+           "the run %s: at the pace of the last %d steps the rest of it would take %.2g more",
+           verdict == FEM_STALL_STANDS ? "stalls" : "creeps", FEM_STALL_WINDOW, stall->left);
+  Reason reason = {what,
+                   "a smaller contact.stiffness, a contact.potential other than linear, whose force jumps, "
+                   "another contact.overlap than tpn, whose force jumps, too, or some effects.damping"};
+  return say_why(integrator, integrator->time, stats.last_step, find_worst(integrator, IDA_ERR_FAIL), reason);
+}
+
+// The next step ends at def.end at the latest, or just before the knot that what is prescribed has to be
+// followed to. Where the step that is planned would leave less than itself to the knot, two equal ones go
+// there: one that is short would have to grow again.
+static Status choose_stop(FemIntegrator *integrator) {
+  double begin = integrator->step_end, end = integrator->def.end, step = integrator->max_step;
+  if (integrator->has_steps) IDAGetCurrentStep(integrator->ida, &step);
+  double least = fmax(integrator->min_step, KNOT_RESOLUTION * end);
+  FemForesight foresight = {.displacement = integrator->def.displacement_tolerance,
+                            .velocity = integrator->def.velocity_tolerance,
+                            .resolution = least};
+  double farthest = fmin(begin + 2 * step, end);
+  double knot = fem_system_horizon(integrator->system, &foresight, begin, farthest);
+  bool has_knot = knot < farthest && end - knot > least;
+  integrator->stop = has_knot ? fem_signal_before(knot) : end;
+  integrator->stops_at_knot = has_knot;
+  double half = 0.5 * (integrator->stop - begin);
+  if (has_knot && integrator->has_steps && 2 * half > step && half > least) {
+    integrator->stop = begin + half;
+    integrator->stops_at_knot = false;
+  }
+  if (IDASetStopTime(integrator->ida, integrator->stop) == IDA_SUCCESS) return STATUS_OK;
+  return status_fail(STATUS_SOLVER, "IDA cannot stop at t = %.17g s from t = %.17g s", integrator->stop,
+                     begin);
+}
+
+// Where a knot lies behind and the next is nearer than the last step was long, that step says nothing of what
+// comes: the method begins anew.
+static Status pass_knot(FemIntegrator *integrator) {
+  double last = fem_integrator_stats(integrator).last_step;
+  if (!integrator->stops_at_knot || integrator->stop - integrator->step_end >= last) return STATUS_OK;
+  const double *u = values_of(integrator->y);
+  double past = fem_signal_past(integrator->time);
+  TRY(fem_integrator_restart(integrator, past, u, u + integrator->n, 0));
+  return choose_stop(integrator);
+}
+
+static Status take_step(FemIntegrator *integrator) {
+  double reached;
+  TRY(choose_stop(integrator));
+  if (fem_integrator_is_at_knot(integrator)) TRY(pass_knot(integrator));
+  integrator->failure.retry_message[0] = 0;
+  int flag = IDASolve(integrator->ida, integrator->def.end, &reached, integrator->y, integrator->y_dot,
+                      IDA_ONE_STEP);
+  if (flag < 0) return give_up(integrator, flag);
+  integrator->time = integrator->step_end = reached;
+  integrator->has_steps = true;
+  integrator->is_at_knot = integrator->stops_at_knot && reached == integrator->stop;
+  return STATUS_OK;
+}
+
+Status fem_integrator_step(FemIntegrator *integrator, double *time, bool *is_onset) {
+  *is_onset = false;
+  *time = integrator->time;
+  if (!integrator->is_started || integrator->failure.fatal != STATUS_OK)
+    return status_fail(STATUS_SOLVER, "a step was asked for before a start or after a fatal failure");
+  double begin = integrator->step_end, end = integrator->def.end, gap = 0;
+  if (end - begin <= 4 * DBL_EPSILON * end) { // nothing that a step could resolve
+    *time = integrator->time = integrator->step_end = end;
+    return STATUS_OK;
+  }
+  bool has_gap = fem_system_has_gap(integrator->system);
+  if (has_gap) TRY(gap_at(integrator, begin, &gap));
+  TRY(take_step(integrator));
+  if (has_gap) TRY(look_for_onset(integrator, begin, gap, is_onset));
+  *time = integrator->time;
+  return check_stall(integrator);
+}
+
+bool fem_integrator_is_at_knot(const FemIntegrator *integrator) {
+  return integrator->is_at_knot && integrator->time == integrator->step_end;
+}
+
+FemIntegratorStats fem_integrator_stats(const FemIntegrator *integrator) {
+  FemIntegratorStats stats = integrator->before;
+  stats.restarts = integrator->restart_count;
+  stats.roots = integrator->onset_count;
+  stats.current_step = integrator->wanted_step;
+  long steps = 0, residuals = 0, setups = 0, error_failures = 0, iterations = 0, failures = 0;
+  if (!integrator->is_started) return stats;
+  IDAGetNumSteps(integrator->ida, &steps);
+  IDAGetNumResEvals(integrator->ida, &residuals);
+  IDAGetNumLinSolvSetups(integrator->ida, &setups);
+  IDAGetNumErrTestFails(integrator->ida, &error_failures);
+  IDAGetNumNonlinSolvIters(integrator->ida, &iterations);
+  IDAGetNumStepSolveFails(integrator->ida, &failures);
+  stats.steps += steps, stats.residuals += residuals, stats.setups += setups;
+  stats.error_test_failures += error_failures, stats.newton_iterations += iterations;
+  stats.newton_failures += failures;
+  if (!integrator->has_steps) return stats;
+  IDAGetLastStep(integrator->ida, &stats.last_step);
+  IDAGetCurrentStep(integrator->ida, &stats.current_step);
+  IDAGetLastOrder(integrator->ida, &stats.last_order);
+  return stats;
+}
+
+const FemSolverStats *fem_integrator_solver_stats(const FemIntegrator *integrator) {
+  return fem_ida_solver_stats(integrator->solver);
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Time: SUNDIALS IDA on y = [u; v], F = [u̇ − v; M v̇ − f(u, v, t)], BDF of order ≤ 2, rtol = 0.
+//
+// A custom direct linear solver condenses each Newton system to S du = r₂ + (c M + D) r₁, dv = c du − r₁ with
+// S = K + c D + c² M (ida_solver.h). Frames are interpolated, never stopped at. A step ends at the end and,
+// where what is prescribed could not be followed otherwise, just before a knot of it (signal.h).
+//
+// A contact onset is a root of the system's gap from + to −. It is searched here on the interpolant of each
+// step and not by IDA's root finder: after a step the system chooses anew which pairs it watches, so the gap
+// at the start of a step is another function than it was at the end of the step before. The caller restarts
+// the method at the root with recomputed accelerations.
+//
+//   create ─► restart (first state) ─► step ─► at … ─► (accept) ─► step ─► …
+//                  ▲                    │ onset, or a state to go back to
+//                  └────────────────────┘
+#ifndef TETLAP_FEM_TIME_INTEGRATOR_H
+#define TETLAP_FEM_TIME_INTEGRATOR_H
+
+#include "fem/sparse/solver.h"
+#include "fem/system.h"
+#include "fem/time/stall.h"
+
+typedef struct FemIntegratorDef {
+  double displacement_tolerance;           // error per step of every unknown [m]
+  double velocity_tolerance;               // [m/s]
+  double initial_step, min_step, max_step; // [s]; 0: chosen
+  int max_order;                           // 1 or 2
+  double end;                              // [s]
+  FemStall *stall;                         // of the run, borrowed; NULL: of this integrator alone, from t = 0
+} FemIntegratorDef;
+
+// Counted over all restarts.
+typedef struct FemIntegratorStats {
+  long long steps, setups, newton_iterations, error_test_failures;
+  long long newton_failures; // steps tried again because Newton, a solver or a force asked for it
+  long long residuals;
+  long long restarts;             // without the first
+  long long roots;                // onsets returned
+  double last_step, current_step; // taken, and to be tried next [s]
+  int last_order;
+} FemIntegratorStats;
+
+typedef struct FemIntegrator FemIntegrator; // opaque: IDA hides behind
+
+// `system` is borrowed. The linear solver takes its threads and tolerance from the system's scene.
+// STATUS_INPUT: a tolerance, step or end that makes no sense.
+Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, const FemSolverOps *solver,
+                             const FemIntegratorDef *def);
+void fem_integrator_destroy(FemIntegrator *integrator);
+
+// Begins (anew) from any (time, u, v), at order 1, with accelerations computed from the forces; `step` 0:
+// IDA's choice (the first time: def.initial_step). u and v may be the integrator's own arrays. RETRY: the
+// forces cannot be evaluated there.
+Status fem_integrator_restart(FemIntegrator *integrator, double time, const double *u, const double *v,
+                              double step);
+
+// One accepted step, or up to an onset. `*is_onset` tells which; at an onset the state is the one at the root
+// (on its far side), and a step without a restart goes on from the end of the step that was cut.
+// STATUS_SOLVER: gave up; the message says at what time and step size, why, and what to try. A fatal Status
+// of an effect or a solver comes out as it is. RETRY: the gap could not be evaluated; restart from an earlier
+// state with a smaller step.
+Status fem_integrator_step(FemIntegrator *integrator, double *time, bool *is_onset);
+
+// Whether that step ended just before a knot of what is prescribed (signal.h): velocities and forces may be
+// others from there on.
+bool fem_integrator_is_at_knot(const FemIntegrator *integrator);
+
+// The solution at a time within the last step; u, v of size n, borrowed until the next call.
+Status fem_integrator_at(FemIntegrator *integrator, double time, const double **u, const double **v);
+
+// The state that the last step or restart ended at; u, v, acceleration [m/s²] of size n, borrowed until the
+// next step or restart.
+void fem_integrator_state(const FemIntegrator *integrator, double *time, const double **u, const double **v);
+const double *fem_integrator_acceleration(const FemIntegrator *integrator);
+
+FemIntegratorStats fem_integrator_stats(const FemIntegrator *integrator);
+const FemSolverStats *fem_integrator_solver_stats(const FemIntegrator *integrator);
+
+#endif

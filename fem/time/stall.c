@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/time/stall.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+// Of `end` in a window, and of the longest steps that the window could have made.
+static const double LEAST_ADVANCE = 2e-3, LEAST_OF_LONGEST = 0.1;
+static const double MOST_LEFT = 1e5, MOST_VAIN = 0.25, SLOWED = 0.1;
+enum { STRIKES = 2 };
+
+FemStall fem_stall_begin(double time, double end, double frame) {
+  return (FemStall){.end = end, .frame = frame, .time = time};
+}
+
+void fem_stall_take_back(FemStall *stall) {
+  stall->vain++;
+}
+
+void fem_stall_pass(FemStall *stall, double duration) {
+  stall->time += duration;
+}
+
+static bool stands(const FemStall *stall, double advance, double max_step) {
+  double needed = fmin(LEAST_ADVANCE * stall->end, LEAST_OF_LONGEST * FEM_STALL_WINDOW * max_step);
+  return !(advance >= needed);
+}
+
+static bool creeps(const FemStall *stall, double advance, double pace) {
+  return (double)stall->vain > MOST_VAIN * (double)stall->tries && stall->left > MOST_LEFT &&
+         pace < SLOWED * stall->fastest && advance < stall->frame;
+}
+
+FemStallVerdict fem_stall_add(FemStall *stall, long long tries, long long vain, double time,
+                              double max_step) {
+  stall->tries += tries;
+  stall->vain += vain;
+  if (stall->tries < FEM_STALL_WINDOW) return FEM_STALL_GOES_ON;
+  double advance = time - stall->time, pace = advance / (double)stall->tries;
+  stall->left = advance > 0 ? (stall->end - time) / pace : INFINITY;
+  bool is_standing = time < stall->end && stands(stall, advance, max_step);
+  stall->strikes = creeps(stall, advance, pace) ? stall->strikes + 1 : 0;
+  stall->fastest = fmax(stall->fastest, pace);
+  stall->tries = stall->vain = 0;
+  stall->time = time;
+  if (is_standing) return FEM_STALL_STANDS;
+  return stall->strikes >= STRIKES ? FEM_STALL_CREEPS : FEM_STALL_GOES_ON;
+}

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/time/statics.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "fem/time/kinsol.h"
+
+// Equilibrium: this share of the largest force met, and of E · edge² at least.
+static const double TOLERANCE = 1e-8, SMALLEST_SCALE = 1e-9;
+// Nor less than what rounding of a coordinate x makes of forces, ε x · edge · E / (1 − 2ν), this many times:
+// a body that nothing loads is in equilibrium.
+static const double ROUNDING = 2;
+// Relaxation moves no vertex further at once, as a share of the mean edge.
+static const double LONGEST_WAY = 0.25;
+// Relaxation hands over to Newton once the force has fallen to this share.
+static const double HAND_OVER = 1e-3;
+// By this the shift falls while the force stays: large elements are heavy beside soft, and a shift that only
+// follows the force waits for them forever.
+static const double SHIFT_FALL = 0.5;
+enum { MAX_RELAXATIONS = 400, MAX_REFUSALS = 40, WORST_COUNT = 3 };
+
+static Status check_scene(const FemSceneDef *scene) {
+  if (scene->contact.friction > 0)
+    return status_fail(STATUS_INPUT,
+                       "friction is a force of motion; take contact.friction or time.static away");
+  for (int b = 0; b < scene->body_count; b++) {
+    const FemBodyDef *body = &scene->bodies[b];
+    for (int i = 0; i < body->fixed_count; i++)
+      if (body->fixed[i].release > 0)
+        return status_fail(STATUS_INPUT, "body '%s', fixed[%d]: a static scene cannot release vertices",
+                           body->name, i);
+    for (int i = 0; i < body->driven_count; i++)
+      if (body->driven[i].release > 0)
+        return status_fail(STATUS_INPUT, "body '%s', driven[%d]: a static scene cannot release vertices",
+                           body->name, i);
+    for (int c = 0; c < 3; c++)
+      if (body->velocity[c] != 0 || body->spin[c] != 0)
+        return status_fail(STATUS_INPUT, "body '%s' has a velocity; a static scene has none", body->name);
+  }
+  return STATUS_OK;
+}
+
+static double largest_of(const double *values, int count) {
+  double largest = 0;
+  for (int i = 0; i < count; i++) largest = fmax(largest, fabs(values[i]));
+  return largest;
+}
+
+static double smallest_scale(const FemModel *model) {
+  double softest = INFINITY, rounding = 0;
+  for (int b = 0; b < model->scene->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    double extent =
+        largest_of(model->rest + 3 * (size_t)body->vertex_begin, 3 * (body->vertex_end - body->vertex_begin));
+    double modulus = body->material.young / (1 - 2 * body->material.poisson);
+    softest = fmin(softest, body->material.young);
+    rounding = fmax(rounding, ROUNDING * DBL_EPSILON * modulus * model->edge * extent);
+  }
+  return fmax(SMALLEST_SCALE * softest * model->edge * model->edge, rounding / TOLERANCE);
+}
+
+Status fem_statics_create(FemStatics *statics, FemSystem *system, const FemSolverOps *ops) {
+  *statics = (FemStatics){.tolerance = TOLERANCE};
+  const FemModel *model = system->model;
+  TRY(check_scene(model->scene));
+  size_t n = (size_t)model->unknown_count, values = 3 * (size_t)model->vertex_count;
+  statics->force_scale = smallest_scale(model);
+  statics->force = memory_zeroed(n, sizeof(double));
+  statics->step = memory_zeroed(n, sizeof(double));
+  statics->start = memory_zeroed(n, sizeof(double));
+  statics->kept_force = memory_zeroed(values, sizeof(double));
+  statics->kept_position = memory_copy(model->rest, values, sizeof(double));
+  bool is_ok =
+      statics->force && statics->step && statics->start && statics->kept_force && statics->kept_position;
+  Status status =
+      is_ok ? fem_equilibrium_create(&statics->equilibrium, system, ops) : status_no_memory("statics");
+  if (status) fem_statics_destroy(statics);
+  return status;
+}
+
+void fem_statics_destroy(FemStatics *statics) {
+  fem_equilibrium_destroy(&statics->equilibrium);
+  double *arrays[] = {statics->force, statics->step, statics->start, statics->kept_force,
+                      statics->kept_position};
+  for (int i = 0; i < 5; i++) memory_free(arrays[i]);
+  *statics = (FemStatics){0};
+}
+
+// Forces at (time, u); the scale grows with the largest on any vertex, reactions included.
+static Status evaluate(FemStatics *statics, double time, const double *u) {
+  FemSystem *system = statics->equilibrium.system;
+  TRY(fem_equilibrium_forces(&statics->equilibrium, time, u, statics->force));
+  statics->force_scale =
+      fmax(statics->force_scale, largest_of(system->forces, 3 * system->model->vertex_count));
+  return STATUS_OK;
+}
+
+static Status newton(FemStatics *statics, double time, double *u) {
+  const FemModel *model = statics->equilibrium.system->model;
+  return fem_kinsol_solve(&statics->equilibrium, time, statics->tolerance * statics->force_scale,
+                          model->length, u, &statics->newton_iterations);
+}
+
+// (c/L)² of the slowest body: a shift that is felt by its lowest modes.
+static double first_shift(const FemModel *model) {
+  double shift = INFINITY;
+  for (int b = 0; b < model->scene->body_count; b++)
+    shift = fmin(shift, model->bodies[b].material.young / model->bodies[b].material.density);
+  return shift / (model->length * model->length);
+}
+
+// One step of relaxation from u, whose forces are in `force`; RETRY: a larger shift is needed.
+static Status relax_once(FemStatics *statics, double time, double shift, double *u) {
+  FemEquilibrium *equilibrium = &statics->equilibrium;
+  const FemModel *model = equilibrium->system->model;
+  int n = model->unknown_count;
+  double *step = statics->step;
+  TRY(fem_equilibrium_factorise(equilibrium, time, u, shift));
+  TRY(fem_equilibrium_solve(equilibrium, statics->force, step));
+  double way = largest_of(step, n), most = LONGEST_WAY * model->edge;
+  for (int i = 0; i < n; i++) u[i] += step[i] *= way > most ? most / way : 1;
+  Status status = evaluate(statics, time, u);
+  if (!status) status = fem_system_accept(equilibrium->system, time, u, equilibrium->still, 0);
+  if (status == STATUS_RETRY)
+    for (int i = 0; i < n; i++) u[i] -= step[i];
+  return status;
+}
+
+// Until the force has fallen far enough for Newton's method.
+static Status relax(FemStatics *statics, double time, double *u) {
+  int n = statics->equilibrium.system->model->unknown_count, refusals = 0;
+  double shift = first_shift(statics->equilibrium.system->model);
+  TRY(evaluate(statics, time, u));
+  double first = largest_of(statics->force, n), before = first;
+  for (int k = 0; k < MAX_RELAXATIONS && before > HAND_OVER * first; k++) {
+    Status status = relax_once(statics, time, shift, u);
+    if (status < 0 || (status && ++refusals > MAX_REFUSALS)) return status;
+    if (status) {
+      shift *= 10;
+      TRY(evaluate(statics, time, u));
+      continue;
+    }
+    statics->relaxation_steps++;
+    double now = largest_of(statics->force, n);
+    shift *= SHIFT_FALL * fmin(fmax(now / before, 0.4), 4);
+    before = now;
+  }
+  return STATUS_OK;
+}
+
+// What is left at the state that Newton's method ended in: the vertices with the largest forces, the element
+// that is distorted most.
+static Status say_why(FemStatics *statics, double time, const double *u) {
+  FemSystem *system = statics->equilibrium.system;
+  const FemModel *model = system->model;
+  char cause[512], text[1024];
+  size_t used = 0;
+  snprintf(cause, sizeof cause, "%s", status_message());
+  bool is_known = fem_equilibrium_forces(&statics->equilibrium, time, u, statics->force) == STATUS_OK;
+  text_append(text, sizeof text, &used, "no equilibrium at t = %.9g: %s", time, cause);
+  for (int k = 0; is_known && k < WORST_COUNT && k < model->unknown_count; k++) {
+    int worst = 0;
+    for (int i = 1; i < model->unknown_count; i++)
+      if (fabs(statics->force[i]) > fabs(statics->force[worst])) worst = i;
+    int dof = model->dof_of_unknown[worst], vertex = dof / 3;
+    const double *x = system->positions + 3 * (size_t)vertex;
+    text_append(text, sizeof text, &used,
+                "%s %.3g N along %c on vertex %d of body '%s' at (%.4g, %.4g, %.4g)", k ? "," : ". Left are",
+                statics->force[worst], "xyz"[dof % 3], vertex, fem_model_body_name(model, vertex), x[0], x[1],
+                x[2]);
+    statics->force[worst] = 0;
+  }
+  int flattest = 0;
+  double smallest = INFINITY;
+  for (int e = 0; e < model->tet_count; e++) {
+    double J = fem_model_det(model, e, system->positions);
+    if (J < smallest) smallest = J, flattest = e;
+  }
+  text_append(text, sizeof text, &used, "; element %d has the smallest det F, %.3g", flattest, smallest);
+  return status_fail(STATUS_RETRY, "%s", text);
+}
+
+// Work of driven vertices: mean force times way.
+static void keep_work(FemStatics *statics) {
+  const FemSystem *system = statics->equilibrium.system;
+  const FemModel *model = system->model;
+  for (int d = 0; d < model->driver_count; d++)
+    for (int i = 0; i < model->drivers[d].dof_count; i++) {
+      int dof = model->drivers[d].dofs[i];
+      statics->driven_work -= 0.5 * (statics->kept_force[dof] + system->forces[dof]) *
+                              (system->positions[dof] - statics->kept_position[dof]);
+    }
+  size_t bytes = 3 * (size_t)model->vertex_count * sizeof(double);
+  memcpy(statics->kept_force, system->forces, bytes);
+  memcpy(statics->kept_position, system->positions, bytes);
+}
+
+static Status find_equilibrium(FemStatics *statics, double time, double *u) {
+  FemEquilibrium *equilibrium = &statics->equilibrium;
+  size_t bytes = (size_t)equilibrium->system->model->unknown_count * sizeof *u;
+  Status status = evaluate(statics, time, u);
+  if (!status) status = newton(statics, time, u);
+  if (status == STATUS_RETRY) {
+    memcpy(u, statics->start, bytes);
+    status = relax(statics, time, u);
+    if (!status) status = newton(statics, time, u);
+    if (status == STATUS_RETRY) status = say_why(statics, time, u);
+  }
+  if (!status) status = evaluate(statics, time, u);
+  return status;
+}
+
+Status fem_statics_continue(FemStatics *statics, double time, const double *u, double force_scale,
+                            double driven_work) {
+  statics->force_scale = force_scale;
+  TRY(evaluate(statics, time, u));
+  statics->residual = largest_of(statics->force, statics->equilibrium.system->model->unknown_count);
+  keep_work(statics);
+  statics->driven_work = driven_work;
+  return STATUS_OK;
+}
+
+Status fem_statics_step(FemStatics *statics, double from, double to, double *u) {
+  FemEquilibrium *equilibrium = &statics->equilibrium;
+  int n = equilibrium->system->model->unknown_count;
+  memcpy(statics->start, u, (size_t)n * sizeof *u);
+  Status status = find_equilibrium(statics, to, u);
+  if (status == STATUS_OK) {
+    statics->residual = largest_of(statics->force, n);
+    statics->steps++;
+    keep_work(statics);
+    return fem_system_accept(equilibrium->system, to, u, equilibrium->still, 0);
+  }
+  memcpy(u, statics->start, (size_t)n * sizeof *u);
+  if (status < 0) return status;
+  char why[1024];
+  snprintf(why, sizeof why, "%s", status_message());
+  statics->halvings++;
+  TRY(fem_system_accept(equilibrium->system, from, u, equilibrium->still, 0));
+  return status_fail(STATUS_RETRY, "%s", why);
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Static scenes: the load (or a driven vertex) goes on in steps of `time`, which is no more than a parameter,
+// and every step ends in equilibrium.
+//
+//   Newton (KINSOL) from the last equilibrium ── ok ──► accept
+//        │ no
+//   relaxation: (K + s M) δ = f, s falling with the force ──► Newton ── ok ──► accept
+//        │ no
+//   half the step; given up below a millionth of the way between two frames
+//
+// Relaxation is pseudo-transient continuation (Kelley and Keyes 1998; s by switched evolution relaxation,
+// Mulder and van Leer 1985): implicit Euler on M u̇ = f, overdamped motion, which also brings a body that
+// nothing holds down to what it falls on. History variables and contact lists follow its way.
+#ifndef TETLAP_FEM_TIME_STATICS_H
+#define TETLAP_FEM_TIME_STATICS_H
+
+#include "fem/time/equilibrium.h"
+
+typedef struct FemStatics {
+  FemEquilibrium equilibrium;
+  double tolerance;             // largest force on an unknown in equilibrium, over the largest force met
+  double force_scale;           // that [N]
+  double *force, *step, *start; // scratch                     (unknown_count)
+  double *kept_force, *kept_position; // at the last equilibrium     (vertex_count, 3)
+  double driven_work;                 // of driven vertices so far [J]
+  double residual;                    // largest force on an unknown at the end of the last step [N]
+  long long steps, newton_iterations, relaxation_steps, halvings;
+} FemStatics;
+
+// STATUS_INPUT: what only a motion can have (friction, release, an initial velocity).
+Status fem_statics_create(FemStatics *statics, FemSystem *system, const FemSolverOps *ops);
+// Goes on from an equilibrium u at `time`, with the largest force met and the work done until then.
+Status fem_statics_continue(FemStatics *statics, double time, const double *u, double force_scale,
+                            double driven_work);
+void fem_statics_destroy(FemStatics *statics); // also of a zeroed one
+
+// From the equilibrium u at `from` to the one at `to`; u is as before if that fails. RETRY: try a smaller
+// step; the message says what is left: force, vertices, elements.
+Status fem_statics_step(FemStatics *statics, double from, double to, double *u);
+
+#endif

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Batches of pairs on vectors. Groups in which few lanes may overlap wait until there are enough for a full
+// vector, so that disjoint pairs cost only the first part of clip_lanes.h.
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "overlap/clip/clip.h"
+#include "overlap/clip/lanes.h"
+
+// Pairs that wait, a vector's worth and less than one more.
+typedef struct Queue {
+  int count;
+  int at[2 * OVERLAP_CLIP_MAX_LANES]; // index into the batch
+  double pairs[2 * OVERLAP_CLIP_MAX_LANES][OVERLAP_PAIR_SIZE];
+} Queue;
+
+typedef struct Work {
+  const OverlapClipLanes *lanes;
+  const OverlapBatch *batch;
+  Queue queue;
+} Work;
+
+// Pairs that are not finite all come here, for their lanes are doubtful.
+static Status ask_carefully(const OverlapBatch *batch, int i) {
+  size_t begin = (size_t)i * OVERLAP_PAIR_SIZE;
+  for (size_t c = begin; c < begin + OVERLAP_PAIR_SIZE; c++)
+    if (!isfinite(batch->pairs[c])) return status_fail(STATUS_INPUT, "pair %d is not finite", i);
+  double *hessian = batch->hessian ? batch->hessian + begin * OVERLAP_PAIR_SIZE : NULL;
+  unsigned flags = 0;
+  Status status =
+      overlap_clip_scalar_ops.eval_pair(NULL, batch->pairs + begin, batch->volume + i,
+                                        batch->gradient ? batch->gradient + begin : NULL, hessian, &flags);
+  if (batch->flags) batch->flags[i] = flags;
+  return status;
+}
+
+static void write_disjoint(const OverlapBatch *batch, int i) {
+  batch->volume[i] = 0;
+  if (batch->gradient)
+    memset(batch->gradient + (size_t)i * OVERLAP_PAIR_SIZE, 0, OVERLAP_PAIR_SIZE * sizeof(double));
+}
+
+static OverlapClipLanesOutcome run(const Work *work, const double *pairs, int least, double *volume,
+                                   double *gradient) {
+  return gradient ? work->lanes->differentiate(pairs, least, volume, gradient)
+                  : work->lanes->measure(pairs, least, volume);
+}
+
+static unsigned flags_of(const OverlapClipLanesOutcome *outcome, int lane) {
+  return (outcome->disjoint >> lane & 1 ? (unsigned)OVERLAP_DISJOINT : 0) |
+         (outcome->enclosed >> lane & 1 ? (unsigned)OVERLAP_ENCLOSED : 0);
+}
+
+// The first `count` that wait, at most a vector's worth.
+static Status answer_queue(Work *work, int count) {
+  const OverlapBatch *batch = work->batch;
+  Queue *queue = &work->queue;
+  double volume[OVERLAP_CLIP_MAX_LANES], gradient[OVERLAP_CLIP_MAX_LANES][OVERLAP_PAIR_SIZE];
+  for (int k = count; k < work->lanes->width; k++)
+    memcpy(queue->pairs[k], queue->pairs[0], sizeof queue->pairs[k]);
+  OverlapClipLanesOutcome outcome =
+      run(work, queue->pairs[0], 0, volume, batch->gradient ? gradient[0] : NULL);
+  for (int k = 0; k < count; k++) {
+    int i = queue->at[k];
+    if (outcome.doubtful >> k & 1) {
+      TRY(ask_carefully(batch, i));
+      continue;
+    }
+    batch->volume[i] = volume[k];
+    if (batch->gradient)
+      memcpy(batch->gradient + (size_t)i * OVERLAP_PAIR_SIZE, gradient[k], sizeof gradient[k]);
+    if (batch->flags) batch->flags[i] = flags_of(&outcome, k);
+  }
+  queue->count -= count;
+  memmove(queue->pairs, queue->pairs + count, (size_t)queue->count * sizeof *queue->pairs);
+  memmove(queue->at, queue->at + count, (size_t)queue->count * sizeof *queue->at);
+  return STATUS_OK;
+}
+
+static Status enqueue(Work *work, int i) {
+  Queue *queue = &work->queue;
+  queue->at[queue->count] = i;
+  memcpy(queue->pairs[queue->count++], work->batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE,
+         sizeof queue->pairs[0]);
+  return queue->count < 2 * work->lanes->width ? STATUS_OK : answer_queue(work, work->lanes->width);
+}
+
+static Status answer_group(Work *work, int first) {
+  const OverlapBatch *batch = work->batch;
+  size_t begin = (size_t)first * OVERLAP_PAIR_SIZE;
+  int width = work->lanes->width;
+  OverlapClipLanesOutcome outcome = run(work, batch->pairs + begin, width / 2 + 1, batch->volume + first,
+                                        batch->gradient ? batch->gradient + begin : NULL);
+  for (int k = 0; batch->flags && k < width; k++) batch->flags[first + k] = flags_of(&outcome, k);
+  for (uint32_t left = outcome.doubtful; left; left &= left - 1)
+    TRY(ask_carefully(batch, first + __builtin_ctz(left)));
+  for (uint32_t left = outcome.waiting; left; left &= left - 1)
+    TRY(enqueue(work, first + __builtin_ctz(left)));
+  bool is_written = outcome.waiting == 0 && outcome.disjoint != (1ULL << width) - 1;
+  for (uint32_t left = is_written ? 0 : outcome.disjoint; left; left &= left - 1)
+    write_disjoint(batch, first + __builtin_ctz(left));
+  return STATUS_OK;
+}
+
+static Status answer_range(const OverlapClipLanes *lanes, const OverlapBatch *batch, int begin, int end) {
+  Work work = {.lanes = lanes, .batch = batch};
+  int i = begin;
+  for (; i + lanes->width <= end; i += lanes->width) TRY(answer_group(&work, i));
+  for (; i < end; i++) TRY(enqueue(&work, i));
+  while (work.queue.count > 0)
+    TRY(answer_queue(&work, work.queue.count < lanes->width ? work.queue.count : lanes->width));
+  return STATUS_OK;
+}
+
+// What one thread takes at a time, and from how many pairs on more than one thread is worth it.
+enum { PORTION = 512, WORTH_THREADS = 4096 };
+
+static Status eval(const OverlapClipLanes *lanes, const OverlapBatch *batch) {
+  int count = batch->pair_count, portions = count / PORTION + (count % PORTION > 0), first_failed = INT_MAX;
+#pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (count >= WORTH_THREADS)
+  for (int p = 0; p < portions; p++) {
+    int begin = p * PORTION, end = count - begin < PORTION ? count : begin + PORTION;
+    Status status = STATUS_OK;
+    if (lanes && !batch->hessian)
+      status = answer_range(lanes, batch, begin, end);
+    else
+      for (int i = begin; i < end && status == STATUS_OK; i++) status = ask_carefully(batch, i);
+    if (status != STATUS_OK && p < first_failed) first_failed = p;
+  }
+  if (first_failed == INT_MAX) return STATUS_OK;
+  return status_fail(STATUS_SOLVER, "clipping failed among the pairs from %d on", first_failed * PORTION);
+}
+
+static Status eval_one(const OverlapClipLanes *lanes, const double pair[24], double *volume, double *gradient,
+                       double *hessian, unsigned *flags) {
+  OverlapBatch batch = {.pair_count = 1,
+                        .pairs = pair,
+                        .volume = volume,
+                        .gradient = gradient,
+                        .hessian = hessian,
+                        .flags = flags};
+  return lanes && !hessian ? answer_range(lanes, &batch, 0, 1) : ask_carefully(&batch, 0);
+}
+
+static Status eval_batch(const void *self, const OverlapBatch *batch) {
+  (void)self;
+  return eval(overlap_clip_lanes(), batch);
+}
+
+static Status eval_pair(const void *self, const double pair[24], double *volume, double *gradient,
+                        double *hessian, unsigned *flags) {
+  (void)self;
+  return eval_one(overlap_clip_lanes(), pair, volume, gradient, hessian, flags);
+}
+
+static Status eval_batch_single(const void *self, const OverlapBatch *batch) {
+  (void)self;
+  return eval(overlap_clip_lanes_single(), batch);
+}
+
+static Status eval_pair_single(const void *self, const double pair[24], double *volume, double *gradient,
+                               double *hessian, unsigned *flags) {
+  (void)self;
+  return eval_one(overlap_clip_lanes_single(), pair, volume, gradient, hessian, flags);
+}
+
+const OverlapOps overlap_clip_ops = {
+    .name = "clip",
+    .help = "clipping in double precision, with exact gradient and Hessian",
+    .has_hessian = true,
+    .seconds_per_pair = 1e-7,
+    .eval_pair = eval_pair,
+    .eval_batch = eval_batch,
+    .minds_finite = true,
+};
+
+const OverlapOps overlap_clip32_ops = {
+    .name = "clip32",
+    .help = "as clip in single precision: V within a thousandth of itself",
+    .seconds_per_pair = 7e-8,
+    .eval_pair = eval_pair_single,
+    .eval_batch = eval_batch_single,
+    .minds_finite = true,
+};

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Clipping with 4 pairs a vector.
+#if defined(__x86_64__)
+#include "overlap/clip/lanes.h"
+#include "overlap/clip/polytope.h"
+
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#else
+#pragma GCC target("avx2,fma")
+#endif
+
+#include "overlap/clip/vectors_avx2.inc"
+
+#include "overlap/clip/lanes.inc"
+
+const OverlapClipLanes overlap_clip_lanes_avx2 = {
+    .name = "avx2", .width = LANES, .separate = separate, .measure = measure, .differentiate = differentiate};
+
+#ifdef __clang__
+#pragma clang attribute pop
+#endif
+#endif

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Centre to second derivatives of a bundle of pairs for AVX2.
+#if defined(__x86_64__)
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#else
+#pragma GCC target("avx2,fma")
+#endif
+
+#include "overlap/geo/features/pack_avx2.h"
+
+#pragma GCC diagnostic ignored "-Wunused-function" // of single pairs
+
+#include "overlap/geo/features/forward.inc"
+
+#include "overlap/geo/features/backward.inc"
+
+#include "overlap/geo/features/curve.inc"
+
+#include "overlap/geo/bundle/frame.inc"
+
+#include "overlap/geo/bundle/hessian.inc"
+
+#ifdef __clang__
+#pragma clang attribute pop
+#endif
+#endif

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Centre to second derivatives of a bundle of pairs for any processor.
+#include "overlap/geo/features/pack_portable.h"
+
+#pragma GCC diagnostic ignored "-Wunused-function" // of single pairs
+
+#include "overlap/geo/features/forward.inc"
+
+#include "overlap/geo/features/backward.inc"
+
+#include "overlap/geo/features/curve.inc"
+
+#include "overlap/geo/bundle/frame.inc"
+
+#include "overlap/geo/bundle/hessian.inc"

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The analytic centre of eight half-spaces, c = argmax Σ_k log s_k, by Newton's method.
+//
+// With m_k = ∇s_k / s_k the gradient is Σ m_k and the Hessian −Σ m_k m_kᵀ. A step moves slack k to
+// s_k (1 + α r_k), r = P 1 with P the projector onto the columns of m: slacks are scaled, never subtracted,
+// and the point itself is not needed.
+//
+// Where the overlap is a slice between planes 1e-9 apart, m has rows 1e9 times larger than others, and what
+// rounding of those makes of the others' slacks adds up: the four of a tetrahedron sum to 1 + 1e-8. That
+// would be the net force of the pair. So in the end the sum is made 1 by the least relative changes, each
+// slack's in proportion to itself: those of the slice, which the volume hangs on, stay as they are.
+#ifndef TETLAP_OVERLAP_GEO_CENTRE_H
+#define TETLAP_OVERLAP_GEO_CENTRE_H
+
+#include <stdbool.h>
+
+#include "overlap/geo/lanes.h"
+
+enum { OVERLAP_GEO_MAX_STEPS = 40 };
+
+// Newton's decrement δ = (gᵀ H⁻¹ g)^½: up to FULL_STEP the whole step is taken, and the step from a point
+// with δ < CONVERGED ends at δ² or so.
+#define OVERLAP_GEO_FULL_STEP 0.2
+#define OVERLAP_GEO_CONVERGED 1e-7
+// Of the way to the nearest plane.
+#define OVERLAP_GEO_LONGEST_STEP 0.99
+
+// Moves `slack`, all positive at the start, to the centre. Returns the number of steps, 0 if it did not
+// converge.
+int overlap_geo_centre(const GeoColumns *normal, double slack[GEO_LANES]);
+
+// The columns of m are replaced by an orthonormal basis of their span (Gram–Schmidt, each column
+// orthogonalised `passes` times); `length` gets the diagonal of R in m = Q R.
+void overlap_geo_centre_orthonormalise(GeoColumns *m, int passes, double length[3]);
+
+#endif

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "overlap/geo/coplanar.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "overlap/clip/clip.h"
+#include "overlap/geo/hessian.h"
+
+enum { SIZE = OVERLAP_PAIR_SIZE, ACROSS = GEO_LANES / 2 };
+
+static bool is_close(const GeoMatrix *projector, int k, int l, double side, OverlapGeoClose *close) {
+  double reach = side < 0 ? OVERLAP_GEO_REACH_SAME : OVERLAP_GEO_REACH_FACING;
+  double kk = projector->row[k][k], ll = projector->row[l][l];
+  double apart = kk + ll + 2 * side * projector->row[k][l], measure = kk * ll;
+  if (!(apart < reach * measure)) return false;
+  double ratio = fmax(apart, 0) / measure, left = 1 - ratio / reach;
+  *close = (OverlapGeoClose){.k = k,
+                             .l = l,
+                             .side = side,
+                             .ratio = ratio,
+                             .share = left * left * left,
+                             .slope = -3 * left * left / reach,
+                             .bending = 6 * left / (reach * reach)};
+  return true;
+}
+
+void overlap_geo_coplanar_find(const GeoMatrix *projector, OverlapGeoCoplanar *coplanar) {
+  coplanar->count = 0;
+  double kept = 1;
+  for (int k = 0; k < ACROSS; k++)
+    for (int l = ACROSS; l < GEO_LANES; l++)
+      for (int side = -1; side <= 1; side += 2) {
+        OverlapGeoClose *close = &coplanar->close[coplanar->count];
+        if (!is_close(projector, k, l, side, close)) continue;
+        kept *= 1 - close->share;
+        coplanar->count++;
+      }
+  coplanar->share = 1 - kept;
+}
+
+// What the planes other than c and d leave to the network.
+static double left_by_others(const OverlapGeoCoplanar *coplanar, int c, int d) {
+  double kept = 1;
+  for (int o = 0; o < coplanar->count; o++)
+    if (o != c && o != d) kept *= 1 - coplanar->close[o].share;
+  return kept;
+}
+
+// ∂r_kl/∂P, times `factor`.
+static void add_slope(const GeoMatrix *projector, const OverlapGeoClose *close, double factor,
+                      GeoMatrix *slope) {
+  int k = close->k, l = close->l;
+  double kk = projector->row[k][k], ll = projector->row[l][l], inverse = 1 / (kk * ll);
+  slope->row[k][k] += factor * (inverse - close->ratio / kk);
+  slope->row[l][l] += factor * (inverse - close->ratio / ll);
+  slope->row[k][l] += factor * close->side * inverse;
+  slope->row[l][k] += factor * close->side * inverse;
+}
+
+// δr_kl
+static double change_ratio(const GeoMatrix *projector, const OverlapGeoClose *close,
+                           const GeoMatrix *change) {
+  int k = close->k, l = close->l;
+  double kk = projector->row[k][k], ll = projector->row[l][l];
+  double dk = change->row[k][k], dl = change->row[l][l];
+  return (dk + dl + 2 * close->side * change->row[k][l]) / (kk * ll) - close->ratio * (dk / kk + dl / ll);
+}
+
+// The change of ∂r_kl/∂P, times `factor`.
+static void add_bend(const GeoMatrix *projector, const OverlapGeoClose *close, const GeoMatrix *change,
+                     double ratio_change, double factor, GeoMatrix *bent) {
+  int k = close->k, l = close->l;
+  double kk = projector->row[k][k], ll = projector->row[l][l], inverse = 1 / (kk * ll);
+  double dk = change->row[k][k], dl = change->row[l][l];
+  double inverse_change = -inverse * (dk / kk + dl / ll);
+  bent->row[k][k] += factor * (inverse_change - ratio_change / kk + close->ratio * dk / (kk * kk));
+  bent->row[l][l] += factor * (inverse_change - ratio_change / ll + close->ratio * dl / (ll * ll));
+  bent->row[k][l] += factor * close->side * inverse_change;
+  bent->row[l][k] += factor * close->side * inverse_change;
+}
+
+void overlap_geo_coplanar_slope(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,
+                                GeoMatrix *slope) {
+  memset(slope, 0, sizeof *slope);
+  for (int c = 0; c < coplanar->count; c++) {
+    const OverlapGeoClose *close = &coplanar->close[c];
+    add_slope(projector, close, left_by_others(coplanar, c, c) * close->slope, slope);
+  }
+}
+
+void overlap_geo_coplanar_bend(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,
+                               const GeoMatrix *change, GeoMatrix *slope_change) {
+  memset(slope_change, 0, sizeof *slope_change);
+  double ratio_change[OVERLAP_GEO_MOST_CLOSE];
+  for (int c = 0; c < coplanar->count; c++)
+    ratio_change[c] = change_ratio(projector, &coplanar->close[c], change);
+  for (int c = 0; c < coplanar->count; c++) {
+    const OverlapGeoClose *close = &coplanar->close[c];
+    double kept = left_by_others(coplanar, c, c), factor = kept * close->bending * ratio_change[c];
+    for (int o = 0; o < coplanar->count; o++)
+      if (o != c)
+        factor -= left_by_others(coplanar, c, o) * close->slope * coplanar->close[o].slope * ratio_change[o];
+    add_slope(projector, close, factor, slope_change);
+    add_bend(projector, close, change, ratio_change[c], kept * close->slope, slope_change);
+  }
+}
+
+// Column j of ∇²w.
+static void bend_share(const OverlapGeoFrame *frame, const OverlapGeoCoplanar *coplanar,
+                       const OverlapGeoAdjoint *adjoint, const GeoMatrix *slope, int j, double *hessian) {
+  double direction[SIZE] = {0}, column[SIZE];
+  direction[j] = 1;
+  OverlapGeoTangent tangent;
+  GeoMatrix slope_change;
+  overlap_geo_frame_push(frame, direction, &tangent);
+  overlap_geo_coplanar_bend(coplanar, &frame->projector, &tangent.projector, &slope_change);
+  overlap_geo_frame_bend(frame, adjoint, slope, &tangent, &slope_change, column);
+  for (int i = 0; i < SIZE; i++) hessian[i * SIZE + j] = column[i];
+}
+
+void overlap_geo_coplanar_pull(const OverlapGeoFrame *frame, const OverlapGeoCoplanar *coplanar,
+                               double gradient[24], double *hessian) {
+  GeoMatrix slope; // ∂w/∂P
+  OverlapGeoAdjoint adjoint;
+  overlap_geo_coplanar_slope(coplanar, &frame->projector, &slope);
+  overlap_geo_frame_pull_phi(frame, &slope, &adjoint);
+  memcpy(gradient, adjoint.gradient, sizeof adjoint.gradient);
+  if (!hessian) return;
+  int moved = overlap_geo_hessian_moved(frame), first = moved * SIZE / 2;
+  for (int j = first; j < first + SIZE / 2; j++) bend_share(frame, coplanar, &adjoint, &slope, j, hessian);
+  overlap_geo_hessian_complete(frame, moved, gradient, hessian);
+}
+
+// A pair between the two models: how their volumes and gradients differ, and the derivatives of w.
+typedef struct Blend {
+  double share, share_gradient[SIZE], share_hessian[SIZE * SIZE];
+  double volume, gradient[SIZE], hessian[SIZE * SIZE]; // of clip
+  double difference, gradient_difference[SIZE];        // clip − network
+} Blend;
+
+static void blend_gradient(const Blend *blend, double *gradient) {
+  for (int i = 0; i < SIZE; i++)
+    gradient[i] +=
+        blend->share * blend->gradient_difference[i] + blend->difference * blend->share_gradient[i];
+}
+
+static void blend_hessian(const Blend *blend, double *hessian) {
+  for (int i = 0; i < SIZE; i++)
+    for (int j = i; j < SIZE; j++) {
+      int at = i * SIZE + j;
+      hessian[at] += blend->share * (blend->hessian[at] - hessian[at]) +
+                     blend->share_gradient[i] * blend->gradient_difference[j] +
+                     blend->gradient_difference[i] * blend->share_gradient[j] +
+                     blend->difference * blend->share_hessian[at];
+      hessian[j * SIZE + i] = hessian[at];
+    }
+}
+
+Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pair[24], double *volume,
+                                  double *gradient, double *hessian, unsigned *flags) {
+  OverlapGeoCoplanar coplanar;
+  overlap_geo_coplanar_find(&frame->projector, &coplanar);
+  if (!(coplanar.share > 0)) return STATUS_OK;
+  Blend blend;
+  blend.share = coplanar.share;
+  unsigned clip_flags;
+  TRY(overlap_clip_ops.eval_pair(NULL, pair, &blend.volume, gradient ? blend.gradient : NULL,
+                                 hessian ? blend.hessian : NULL, &clip_flags));
+  blend.difference = blend.volume - *volume;
+  *volume += blend.share * blend.difference;
+  if (flags) *flags |= OVERLAP_BLENDED;
+  if (!gradient) return STATUS_OK;
+  for (int i = 0; i < SIZE; i++) blend.gradient_difference[i] = blend.gradient[i] - gradient[i];
+  overlap_geo_coplanar_pull(frame, &coplanar, blend.share_gradient, hessian ? blend.share_hessian : NULL);
+  blend_gradient(&blend, gradient);
+  if (hessian) blend_hessian(&blend, hessian);
+  return STATUS_OK;
+}

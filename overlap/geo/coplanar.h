@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pairs with faces that nearly lie in one plane, which a smooth V cannot answer.
+//
+// Where face k of one tetrahedron passes through the plane of face l of the other, parallel to it, V has a
+// kink: it grows with the distance on one side only. In a mesh the kinks of neighbouring pairs cancel. A
+// smooth V has none on the one side (the faces look the same way: the pair keeps its volume) but has the
+// other's (they look at each other: an overlap begins as a slice), so the sum over a mesh gets a cusp that
+// pulls coinciding planes inside of the bodies together; measured on two blocks of aligned cubes, a side
+// force of half the lateral area. So such pairs turn to the exact volume, smoothly, by the share
+//
+//     w = 1 − Π_kl (1 − w_kl),   w_kl = (1 − r_kl / r₀)³ where r_kl < r₀, else 0,
+//     r_kl = |q_k ∓ q_l|² / (P_kk P_ll),
+//
+// q_k being row k of Q: −q_l for faces that look at each other. r is an affine invariant: the squared
+// distance of the planes by their distance from the centre. V = (1 − w) V_geo + w V_clip, with all its
+// derivatives.
+#ifndef TETLAP_OVERLAP_GEO_COPLANAR_H
+#define TETLAP_OVERLAP_GEO_COPLANAR_H
+
+#include "base/status.h"
+#include "overlap/geo/frame.h"
+
+// r₀ of faces that look the same way, and of faces that look at each other. The network's error grows below
+// r ≈ 0.4 for the first; slices it tells well, all that they need is the right start.
+#define OVERLAP_GEO_REACH_SAME 0.3
+#define OVERLAP_GEO_REACH_FACING 0.03
+
+enum { OVERLAP_GEO_MOST_CLOSE = GEO_LANES * GEO_LANES / 2 };
+
+// Two planes that nearly coincide.
+typedef struct OverlapGeoClose {
+  int k, l;
+  double side;                  // −1: they look the same way, +1: at each other
+  double ratio;                 // r_kl
+  double share, slope, bending; // w_kl and its first two derivatives by r_kl
+} OverlapGeoClose;
+
+typedef struct OverlapGeoCoplanar {
+  int count; // 0 as a rule
+  OverlapGeoClose close[OVERLAP_GEO_MOST_CLOSE];
+  double share; // w
+} OverlapGeoCoplanar;
+
+void overlap_geo_coplanar_find(const GeoMatrix *projector, OverlapGeoCoplanar *coplanar);
+
+// ∂w/∂P (symmetric), and its change along a change of P.
+void overlap_geo_coplanar_slope(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,
+                                GeoMatrix *slope);
+void overlap_geo_coplanar_bend(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,
+                               const GeoMatrix *change, GeoMatrix *slope_change);
+
+// ∇w (24) and, unless NULL, ∇²w (24, 24) by the vertices.
+void overlap_geo_coplanar_pull(const OverlapGeoFrame *frame, const OverlapGeoCoplanar *coplanar,
+                               double gradient[24], double *hessian);
+
+// If the pair has a share, turns volume, gradient and hessian (24 × 24) of the network, the latter two NULL
+// if not wanted, to the blend and adds OVERLAP_BLENDED to the flags (may be NULL). A Hessian needs
+// the gradient.
+Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pair[24], double *volume,
+                                  double *gradient, double *hessian, unsigned *flags);
+
+#endif

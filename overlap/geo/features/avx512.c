@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Features with eight numbers a register.
+#if defined(__x86_64__)
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512vl"))), apply_to = function)
+#else
+#pragma GCC target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")
+#endif
+
+#include "overlap/geo/features/forward.inc"
+
+#include "overlap/geo/features/backward.inc"
+
+const OverlapGeoKernel overlap_geo_features_kernel_avx512 = {
+    .name = "avx512", .features = features, .push = push, .pull = pull, .bend = bend};
+
+#ifdef __clang__
+#pragma clang attribute pop
+#endif
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "overlap/geo/features/features.h"
+
+#include <stddef.h>
+
+#include "base/cpu.h"
+
+static const OverlapGeoFeatureSet sets[] = {
+    {.name = "pairs", .count = 36, .power_count = 4},
+    {.name = "wedges",
+     .count = 70,
+     .power_count = 4,
+     .link_count = 4,
+     .links = {{1, 1}, {2, 0}, {1, 2}, {2, 1}}},
+    {.name = "squares",
+     .count = 100,
+     .power_count = 4,
+     .link_count = 4,
+     .links = {{1, 1}, {2, 0}, {1, 2}, {2, 1}},
+     .has_squares = true},
+};
+
+const OverlapGeoFeatureSet *overlap_geo_features_set(int count) {
+  for (size_t s = 0; s < sizeof sets / sizeof *sets; s++)
+    if (sets[s].count == count) return &sets[s];
+  return NULL;
+}
+
+// With AVX2, gcc 12 makes slower code of packs that are two registers wide than with four of SSE2: no kernel
+// of its own.
+static const OverlapGeoKernel *const kernels[] = {
+    &overlap_geo_features_kernel_portable,
+#if defined(__x86_64__)
+    &overlap_geo_features_kernel_avx512,
+#endif
+};
+
+const OverlapGeoKernel *const *overlap_geo_features_kernels(int *count) {
+  *count = 1 + cpu_has_avx512();
+  return kernels;
+}
+
+const OverlapGeoKernel *overlap_geo_features_kernel(void) {
+  int count;
+  overlap_geo_features_kernels(&count);
+  return kernels[count - 1];
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Polynomials in the projector P of a pair (geo_frame.h) that no order of its planes changes, hence neither
+// that of the vertices nor that of the two tetrahedra. With d_i = P_ii, powers taken entry by entry, and
+// links E^bq_ij = Σ_k d_k^q P_ik^b P_jk^b, in this order:
+//
+//   degrees   Σ_i d_i^k, k = 2 … 5
+//   pairs     Σ_ij d_i^a d_j^b P_ij^n, for n = 1 … power_count, a = 0 … 3, b = a … 3; those with a = 0 and
+//             n ≤ 2 say nothing new and are left out
+//   wedges    Σ_ij d_i^r d_j^s E_ij P_ij^a, for each link, a = 1 … 3, (r, s) = (0, 0), (0, 1), (1, 1);
+//   without
+//             (0, 0) for b = a = 1, which is a degree
+//   squares   Σ_ij E_ij E'_ij P_ij^a, for each link E and each E' up to it, a = 0 … 2
+//
+// The derivative of φ(features) by P is found by one backward sweep; its change along a direction by
+// differentiating that sweep once more. All of it eight pairs, or eight directions of a pair, at a time.
+#ifndef TETLAP_OVERLAP_GEO_FEATURES_FEATURES_H
+#define TETLAP_OVERLAP_GEO_FEATURES_FEATURES_H
+
+#include <stdbool.h>
+
+#include "overlap/geo/features/pack.h"
+
+enum {
+  OVERLAP_GEO_MAX_FEATURES = 128,
+  OVERLAP_GEO_MAX_POWER = 6, // of P
+  OVERLAP_GEO_MAX_LINKS = 4,
+  OVERLAP_GEO_DEGREES = 6,      // d⁰ … d⁵
+  OVERLAP_GEO_MIXED = 4,        // d⁰ … d³
+  OVERLAP_GEO_WEDGE_POWER = 3,  // of P in wedges
+  OVERLAP_GEO_SQUARE_POWER = 2, // of P in squares
+};
+
+typedef struct OverlapGeoFeatureSet {
+  const char *name;
+  int count;       // of features
+  int power_count; // highest n of the pairs, at least 3
+  int link_count;  // OVERLAP_GEO_MAX_LINKS; 0: neither wedges nor squares
+  struct {
+    int power;  // b: 1 or 2
+    int degree; // q: 0 … 3
+  } links[OVERLAP_GEO_MAX_LINKS];
+  bool has_squares;
+} OverlapGeoFeatureSet;
+
+// The set with so many features (36: degrees and pairs; 70: wedges too; 100: all), NULL if there is none.
+const OverlapGeoFeatureSet *overlap_geo_features_set(int count);
+
+// Everything that the features of one P are sums of; also the change of all that along a direction.
+typedef struct OverlapGeoInvariants {
+  GeoSymmetric power[OVERLAP_GEO_MAX_POWER + 1];                        // P^n, n ≥ 1
+  GeoPack degree[OVERLAP_GEO_DEGREES][GEO_LANES];                       // d^a
+  GeoPack row[OVERLAP_GEO_MAX_POWER + 1][OVERLAP_GEO_MIXED][GEO_LANES]; // Σ_j P_ij^n d_j^b
+  GeoSymmetric link[OVERLAP_GEO_MAX_LINKS];                             // E
+} OverlapGeoInvariants;
+
+typedef struct OverlapGeoMixed {
+  GeoPack at[OVERLAP_GEO_MIXED][GEO_LANES];
+} OverlapGeoMixed;
+
+// What the backward sweep leaves for its own derivative.
+typedef struct OverlapGeoSweep {
+  OverlapGeoMixed pairs[OVERLAP_GEO_MAX_POWER + 1];         // c_b,i: Σ_b c_b,i d_j^b times P_ij^n
+  GeoPack degree[OVERLAP_GEO_DEGREES][GEO_LANES];           // ∂φ/∂(d^a)
+  GeoSymmetric link[OVERLAP_GEO_MAX_LINKS];                 // ∂φ/∂E
+  GeoPack fan[OVERLAP_GEO_MAX_LINKS][GEO_LANES][GEO_LANES]; // that times P^b
+} OverlapGeoSweep;
+
+// The arithmetic, compiled for several instruction sets. All give the same bits.
+typedef struct OverlapGeoKernel {
+  const char *name;
+  // Features of P (count).
+  void (*features)(const OverlapGeoFeatureSet *set, const GeoSymmetric *projector,
+                   OverlapGeoInvariants *invariants, GeoPack *features);
+  // Their change (count) along a change of P; `change` gets that of the invariants.
+  void (*push)(const OverlapGeoFeatureSet *set, const OverlapGeoInvariants *invariants,
+               const GeoSymmetric *projector_change, OverlapGeoInvariants *change, GeoPack *features_change);
+  // Φ = ∂φ/∂P, the derivative by P_ij and by P_ji, for ∂φ/∂features = `weights` (count).
+  void (*pull)(const OverlapGeoFeatureSet *set, const OverlapGeoInvariants *invariants,
+               const GeoPack *weights, OverlapGeoSweep *sweep, GeoSymmetric *slope);
+  // The change of Φ along the direction of `change`, the weights held fixed; after a pull with the same.
+  void (*bend)(const OverlapGeoFeatureSet *set, const OverlapGeoInvariants *invariants,
+               const GeoPack *weights, const OverlapGeoSweep *sweep, const OverlapGeoInvariants *change,
+               GeoSymmetric *slope_change);
+} OverlapGeoKernel;
+
+// The fastest that this processor has.
+const OverlapGeoKernel *overlap_geo_features_kernel(void);
+// All that it has, the portable one first.
+const OverlapGeoKernel *const *overlap_geo_features_kernels(int *count);
+
+extern const OverlapGeoKernel overlap_geo_features_kernel_portable;
+#if defined(__x86_64__)
+extern const OverlapGeoKernel overlap_geo_features_kernel_avx512;
+#endif
+
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// GEO_PACK numbers side by side, computed with as one (a vector type of gcc and clang: on a processor without
+// such registers the compiler splits it). The lanes of a pack are different pairs, or different directions of
+// one. Eight, unless the including file says otherwise first; packs of another size stay within that file.
+#ifndef TETLAP_OVERLAP_GEO_FEATURES_PACK_H
+#define TETLAP_OVERLAP_GEO_FEATURES_PACK_H
+
+#include "overlap/geo/lanes.h"
+
+#ifndef GEO_PACK
+#define GEO_PACK 8
+#endif
+
+enum { GEO_ENTRIES = 36 };
+
+typedef double GeoPack __attribute__((vector_size(GEO_PACK * sizeof(double))));
+
+// The entries of a symmetric 8 × 8 matrix in each lane: the diagonal, then the rows below it.
+typedef struct GeoSymmetric {
+  GeoPack at[GEO_ENTRIES];
+} GeoSymmetric;
+
+static inline int geo_entry(int i, int j) {
+  return i == j ? i : i > j ? GEO_LANES + i * (i - 1) / 2 + j : GEO_LANES + j * (j - 1) / 2 + i;
+}
+
+// One lane to and from the whole matrix.
+static inline void geo_pack_matrix(const GeoMatrix *matrix, int lane, GeoSymmetric *pack) {
+  for (int i = 0; i < GEO_LANES; i++)
+    for (int j = 0; j <= i; j++) pack->at[geo_entry(i, j)][lane] = matrix->row[i][j];
+}
+
+static inline void geo_unpack_matrix(const GeoSymmetric *pack, int lane, GeoMatrix *matrix) {
+  for (int i = 0; i < GEO_LANES; i++)
+    for (int j = 0; j <= i; j++) matrix->row[i][j] = matrix->row[j][i] = pack->at[geo_entry(i, j)][lane];
+}
+
+// Numbers (count) of one lane.
+static inline void geo_pack_numbers(const double *numbers, int count, int lane, GeoPack *pack) {
+  for (int k = 0; k < count; k++) pack[k][lane] = numbers[k];
+}
+
+static inline void geo_unpack_numbers(const GeoPack *pack, int count, int lane, double *numbers) {
+  for (int k = 0; k < count; k++) numbers[k] = pack[k][lane];
+}
+
+#endif

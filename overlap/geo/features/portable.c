@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Features for any processor.
+
+#include "overlap/geo/features/forward.inc"
+
+#include "overlap/geo/features/backward.inc"
+
+const OverlapGeoKernel overlap_geo_features_kernel_portable = {
+    .name = "portable", .features = features, .push = push, .pull = pull, .bend = bend};

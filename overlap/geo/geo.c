@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "overlap/geo/geo.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "overlap/clip/clip.h"
+#include "overlap/exact/exact.h"
+#include "overlap/geo/coplanar.h"
+
+enum { SIZE = OVERLAP_PAIR_SIZE, HESSIAN_SIZE = SIZE * SIZE };
+
+// Of one P: in a pack of its own.
+static void find_features(const OverlapGeoModel *model, const GeoMatrix *projector, double *features) {
+  GeoSymmetric packed = {{{0}}};
+  OverlapGeoInvariants invariants;
+  GeoPack packs[OVERLAP_GEO_MAX_FEATURES];
+  geo_pack_matrix(projector, 0, &packed);
+  overlap_geo_features_kernel()->features(model->set, &packed, &invariants, packs);
+  geo_unpack_numbers(packs, model->set->count, 0, features);
+}
+
+Status overlap_geo_create(OverlapGeoModel *model, const OverlapGeoNetwork *network) {
+  *model = (OverlapGeoModel){.kernel = overlap_geo_bundle_kernel(), .offset = log(1.28)};
+  if (!network) return STATUS_OK;
+  model->set = overlap_geo_features_set(network->feature_count);
+  if (!model->set)
+    return status_fail(STATUS_INPUT, "the network has %d inputs: the features of a pair are 36, 70 or 100",
+                       network->feature_count);
+  model->network = *network;
+  GeoMatrix onset;
+  double features[OVERLAP_GEO_MAX_FEATURES], value;
+  overlap_geo_frame_onset(&onset);
+  find_features(model, &onset, features);
+  TRY(network->eval(network->self, 1, features, &value, NULL));
+  if (!isfinite(value))
+    return status_fail(STATUS_INPUT, "the network's value at the onset of an overlap is %g", value);
+  model->offset -= value;
+  return STATUS_OK;
+}
+
+// The places of pair i's results; NULL where they are not wanted.
+typedef struct Place {
+  const double *pair;
+  double *volume, *gradient, *hessian;
+  unsigned *flags;
+} Place;
+
+static Place place_of(const OverlapBatch *batch, int i) {
+  return (Place){.pair = batch->pairs + (size_t)i * SIZE,
+                 .volume = batch->volume + i,
+                 .gradient = batch->gradient ? batch->gradient + (size_t)i * SIZE : NULL,
+                 .hessian = batch->hessian ? batch->hessian + (size_t)i * HESSIAN_SIZE : NULL,
+                 .flags = batch->flags ? batch->flags + i : NULL};
+}
+
+static void write_empty(Place place) {
+  *place.volume = 0;
+  if (place.gradient) memset(place.gradient, 0, SIZE * sizeof(double));
+  if (place.hessian) memset(place.hessian, 0, HESSIAN_SIZE * sizeof(double));
+  if (place.flags) *place.flags = OVERLAP_DISJOINT;
+}
+
+static Status fall_back(Place place) {
+  unsigned flags;
+  double volume;
+  if (place.hessian) TRY(overlap_clip_ops.eval_pair(NULL, place.pair, &volume, NULL, place.hessian, &flags));
+  TRY(overlap_exact_ops.eval_pair(NULL, place.pair, place.volume, place.gradient, NULL, &flags));
+  if (place.flags) *place.flags = flags | OVERLAP_FALLBACK;
+  return STATUS_OK;
+}
+
+// ρ of a block's columns by a network that takes rows.
+static Status eval_rows(const OverlapGeoNetwork *network, OverlapGeoBlock *block, double *value,
+                        bool wants_gradient) {
+  int size = network->feature_count;
+  double rows[OVERLAP_GEO_BLOCK * OVERLAP_GEO_MAX_FEATURES],
+      slopes[OVERLAP_GEO_BLOCK * OVERLAP_GEO_MAX_FEATURES];
+  for (int at = 0; at < OVERLAP_GEO_BLOCK; at++)
+    for (int f = 0; f < size; f++) rows[at * size + f] = block->features[f][at];
+  TRY(network->eval(network->self, OVERLAP_GEO_BLOCK, rows, value, wants_gradient ? slopes : NULL));
+  for (int at = 0; at < OVERLAP_GEO_BLOCK && wants_gradient; at++)
+    for (int f = 0; f < size; f++) block->weights[f][at] = slopes[at * size + f];
+  return STATUS_OK;
+}
+
+static Status eval_network(const OverlapGeoNetwork *network, OverlapGeoBlock *block, double *value,
+                           bool wants_gradient) {
+  if (!network->eval_columns) return eval_rows(network, block, value, wants_gradient);
+  return network->eval_columns(network->self, block->features[0], value,
+                               wants_gradient ? block->weights[0] : NULL);
+}
+
+// The same of the second derivatives, added to the curvature.
+static Status curve_rows(const OverlapGeoNetwork *network, const OverlapGeoBends *bends,
+                         OverlapGeoColumn *second) {
+  enum { COUNT = OVERLAP_GEO_DIRECTIONS, MOST = OVERLAP_GEO_MAX_FEATURES };
+  int size = network->feature_count;
+  double rows[MOST], changes[COUNT * MOST], square[COUNT * COUNT];
+  for (int at = 0; at < OVERLAP_GEO_BLOCK; at++) {
+    for (int f = 0; f < size; f++) {
+      rows[f] = bends->features[f][0][at];
+      for (int j = 0; j < COUNT; j++) changes[j * size + f] = bends->features[f][1 + j][at];
+    }
+    TRY(network->curve(network->self, 1, rows, COUNT, changes, square));
+    for (int i = 0, pair = 0; i < COUNT; i++)
+      for (int j = 0; j <= i; j++, pair++) second[pair][at] = square[i * COUNT + j];
+  }
+  return STATUS_OK;
+}
+
+static Status add_network_curvature(const OverlapGeoNetwork *network, OverlapGeoBends *bends) {
+  _Alignas(64) OverlapGeoColumn second[OVERLAP_GEO_DIRECTION_PAIRS];
+  if (network->curve_columns)
+    TRY(network->curve_columns(network->self, bends->features[0][0], second[0]));
+  else
+    TRY(curve_rows(network, bends, second));
+  for (int pair = 0; pair < OVERLAP_GEO_DIRECTION_PAIRS; pair++)
+    for (int at = 0; at < OVERLAP_GEO_BLOCK; at++) bends->curvature[pair][at] += second[pair][at];
+  return STATUS_OK;
+}
+
+// What lanes could not find a frame of.
+static Status answer_unfit(Place place) {
+  OverlapGeoFrame frame;
+  if (overlap_geo_frame(&frame, place.pair) != OVERLAP_GEO_EMPTY) return fall_back(place);
+  write_empty(place);
+  return STATUS_OK;
+}
+
+static Status blend_column(const OverlapGeoBundle *bundle, int first, const OverlapGeoBlock *block, int at,
+                           Place place) {
+  OverlapGeoFrame frame;
+  for (int k = 0; k < GEO_LANES; k++) {
+    frame.slack[k] = block->slack[k][at];
+    for (int c = 0; c < 3; c++) {
+      frame.normal.column[c][k] = bundle->normal[c * GEO_LANES + k][first + at];
+      frame.scaled.column[c][k] = block->scaled[c * GEO_LANES + k][at];
+      frame.basis.column[c][k] = block->basis[c * GEO_LANES + k][at];
+    }
+    for (int l = 0; l < GEO_LANES; l++) frame.projector.row[k][l] = block->projector[geo_entry(k, l)][at];
+  }
+  for (int i = 0; i < 32; i++) frame.across[i / 16][i / 4 % 4][i % 4] = bundle->across[i][first + at];
+  double gradient[SIZE]; // the Hessian's blend needs it
+  memcpy(gradient, block->gradient[at], sizeof gradient);
+  return overlap_geo_coplanar_blend(&frame, place.pair, place.volume,
+                                    place.gradient  ? place.gradient
+                                    : place.hessian ? gradient
+                                                    : NULL,
+                                    place.hessian, place.flags);
+}
+
+// The tetrahedron that was moved comes first in bends.
+static void write_hessian(const OverlapGeoBends *bends, int at, double *hessian) {
+  int moved = bends->is_second[at] > 0;
+  for (int i = 0; i < SIZE; i++) {
+    const double *row = bends->hessian[at] + SIZE * (moved ? (i + SIZE / 2) % SIZE : i);
+    memcpy(hessian + SIZE * i + moved * SIZE / 2, row, SIZE / 2 * sizeof(double));
+    memcpy(hessian + SIZE * i + !moved * SIZE / 2, row + SIZE / 2, SIZE / 2 * sizeof(double));
+  }
+}
+
+static Status write_column(const OverlapGeoBundle *bundle, int first, const OverlapGeoBlock *block,
+                           const OverlapGeoBends *bends, int at, Place place) {
+  *place.volume = block->factor[at];
+  if (!(block->is_fit[at] > 0)) return answer_unfit(place);
+  if (!(*place.volume > 0 && *place.volume < INFINITY)) return fall_back(place);
+  if (place.gradient) memcpy(place.gradient, block->gradient[at], sizeof block->gradient[at]);
+  if (place.hessian) write_hessian(bends, at, place.hessian);
+  if (place.flags) *place.flags = bundle->is_enclosed[first + at] ? OVERLAP_ENCLOSED : 0;
+  return block->is_close[at] > 0 ? blend_column(bundle, first, block, at, place) : STATUS_OK;
+}
+
+// V, ∇V and ∇²V of a block, as far as they are wanted, in block and bends.
+static Status compute_block(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBundle *bundle,
+                            int first, OverlapGeoBlock *block, OverlapGeoBends *bends) {
+  _Alignas(64) double value[OVERLAP_GEO_BLOCK] = {0};
+  bool wants_gradient = batch->gradient || batch->hessian;
+  model->kernel->frame(bundle, first, block);
+  if (model->set) {
+    model->kernel->features(model->set, block);
+    TRY(eval_network(&model->network, block, value, wants_gradient));
+  }
+  for (int at = 0; at < OVERLAP_GEO_BLOCK; at++)
+    block->factor[at] = block->volume[at] * exp(model->offset + value[at]);
+  if (wants_gradient) model->kernel->pull(model->set, block);
+  if (!batch->hessian) return STATUS_OK;
+  model->kernel->bend(model->set, bundle, first, block, bends);
+  if (model->set) TRY(add_network_curvature(&model->network, bends));
+  model->kernel->finish(model->set != NULL, block, bends);
+  return STATUS_OK;
+}
+
+// The pairs of the bundle from `first` on.
+static Status eval_block(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBundle *bundle,
+                         int first, OverlapGeoBlock *block, OverlapGeoBends *bends) {
+  TRY(compute_block(model, batch, bundle, first, block, bends));
+  for (int at = 0; at < OVERLAP_GEO_BLOCK && first + at < bundle->count; at++)
+    TRY(write_column(bundle, first, block, bends, at, place_of(batch, bundle->pair[first + at])));
+  return STATUS_OK;
+}
+
+static Status eval_bundle(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBundle *bundle,
+                          OverlapGeoBlock *block, OverlapGeoBends *bends) {
+  model->kernel->gate(batch->pair_count, batch->pairs, bundle);
+  for (int i = 0; i < batch->pair_count; i++) {
+    if (bundle->outcome[i] == OVERLAP_GEO_EMPTY) write_empty(place_of(batch, i));
+    if (bundle->outcome[i] == OVERLAP_GEO_UNFIT) TRY(fall_back(place_of(batch, i)));
+  }
+  for (int first = 0; first < bundle->count; first += OVERLAP_GEO_BLOCK)
+    TRY(eval_block(model, batch, bundle, first, block, bends));
+  return STATUS_OK;
+}
+
+static Status eval_bundles(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBends *bends) {
+  OverlapGeoBundle bundle;
+  OverlapGeoBlock block;
+  for (int begin = 0; begin < batch->pair_count; begin += OVERLAP_GEO_BUNDLE) {
+    OverlapBatch part = overlap_ops_part(batch, begin, OVERLAP_GEO_BUNDLE);
+    TRY(eval_bundle(model, &part, &bundle, &block, bends));
+  }
+  return STATUS_OK;
+}
+
+static Status eval_with_hessians(const OverlapGeoModel *model, const OverlapBatch *batch) {
+  OverlapGeoBends bends;
+  return eval_bundles(model, batch, &bends);
+}
+
+Status overlap_geo_eval(const OverlapGeoModel *model, const OverlapBatch *batch) {
+  return batch->hessian ? eval_with_hessians(model, batch) : eval_bundles(model, batch, NULL);
+}
+
+OverlapGeoOutcome overlap_geo_features_tangent(const OverlapGeoFeatureSet *set, const double pair[24],
+                                               int count, const double *directions, double *features,
+                                               double *feature_changes, double *log_volume,
+                                               double *log_volume_changes) {
+  const OverlapGeoKernel *kernel = overlap_geo_features_kernel();
+  OverlapGeoFrame frame;
+  OverlapGeoOutcome outcome = overlap_geo_frame(&frame, pair);
+  if (outcome != OVERLAP_GEO_INSIDE) return outcome;
+  *log_volume = log(frame.volume);
+  GeoSymmetric projector, projector_change;
+  OverlapGeoInvariants invariants, change;
+  GeoPack packs[OVERLAP_GEO_MAX_FEATURES];
+  for (int lane = 0; lane < GEO_PACK; lane++) geo_pack_matrix(&frame.projector, lane, &projector);
+  kernel->features(set, &projector, &invariants, packs);
+  geo_unpack_numbers(packs, set->count, 0, features);
+  for (int d = 0; d < count; d++) {
+    int lane = d % GEO_PACK;
+    if (lane == 0) memset(&projector_change, 0, sizeof projector_change);
+    OverlapGeoTangent tangent;
+    overlap_geo_frame_push(&frame, directions + (size_t)d * SIZE, &tangent);
+    log_volume_changes[d] = tangent.log_volume;
+    geo_pack_matrix(&tangent.projector, lane, &projector_change);
+    if (lane < GEO_PACK - 1 && d < count - 1) continue;
+    kernel->push(set, &invariants, &projector_change, &change, packs);
+    for (int l = 0; l <= lane; l++)
+      geo_unpack_numbers(packs, set->count, l, feature_changes + (size_t)(d - lane + l) * (size_t)set->count);
+  }
+  return outcome;
+}

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "overlap/geo/model.h"
+
+#include <limits.h>
+#include <stddef.h>
+
+#include "base/memory.h"
+#include "overlap/weights.h"
+
+static Status load(OverlapGeoOverlap *overlap, const char *path) {
+  if (!path) return overlap_geo_create(&overlap->model, NULL);
+  TRY(overlap_geo_network_create(&overlap->net, path));
+  OverlapGeoNetwork network = overlap_geo_network_interface(overlap->net);
+  Status status = overlap_geo_create(&overlap->model, &network);
+  return status == STATUS_OK ? STATUS_OK : status_prefix(status, "%s", path);
+}
+
+Status overlap_geo_model_create(void **self, const char *path) {
+  OverlapGeoOverlap *overlap = memory_zeroed(1, sizeof *overlap);
+  if (!overlap) return status_no_memory("an overlap model");
+  Status status = load(overlap, path);
+  if (status != STATUS_OK) {
+    overlap_geo_model_destroy(overlap);
+    return status;
+  }
+  *self = overlap;
+  return STATUS_OK;
+}
+
+void overlap_geo_model_destroy(void *self) {
+  OverlapGeoOverlap *overlap = self;
+  if (!overlap) return;
+  overlap_geo_network_destroy(overlap->net);
+  memory_free(overlap);
+}
+
+Status overlap_geo_model_eval_pair(const void *self, const double pair[24], double *volume, double *gradient,
+                                   double *hessian, unsigned *flags) {
+  OverlapBatch batch = {.pair_count = 1,
+                        .pairs = pair,
+                        .volume = volume,
+                        .gradient = gradient,
+                        .hessian = hessian,
+                        .flags = flags};
+  const OverlapGeoOverlap *overlap = self;
+  return overlap_geo_eval(&overlap->model, &batch);
+}
+
+// What one thread takes at a time; the cut does not depend on the number of threads.
+enum { PORTION = OVERLAP_GEO_BUNDLE };
+
+Status overlap_geo_model_eval_batch(const void *self, const OverlapBatch *batch) {
+  const OverlapGeoModel *model = &((const OverlapGeoOverlap *)self)->model;
+  int count = (batch->pair_count + PORTION - 1) / PORTION, first_failed = INT_MAX;
+#pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (count > 1)
+  for (int p = 0; p < count; p++) {
+    OverlapBatch portion = overlap_ops_part(batch, p * PORTION, PORTION);
+    if (overlap_geo_eval(model, &portion) != STATUS_OK && p < first_failed) first_failed = p;
+  }
+  if (first_failed == INT_MAX) return STATUS_OK;
+  // the message belongs to the thread that failed: let this one see it too
+  OverlapBatch portion = overlap_ops_part(batch, first_failed * PORTION, PORTION);
+  Status status = overlap_geo_eval(model, &portion);
+  if (status == STATUS_OK)
+    return status_fail(STATUS_SOLVER, "pairs %d to %d failed once and not again", first_failed * PORTION,
+                       first_failed * PORTION + portion.pair_count - 1);
+  return status_prefix(status, "pairs %d to %d", first_failed * PORTION,
+                       first_failed * PORTION + portion.pair_count - 1);
+}
+
+// `weights`: a file, or the name of one that ships; NULL: `own`.
+static Status create_named(void **self, const char *own, const char *weights) {
+  char path[4096];
+  if (!weights) weights = own;
+  if (overlap_weights_is_path(weights)) return overlap_geo_model_create(self, weights);
+  TRY(overlap_weights_find(weights, path, sizeof path));
+  return overlap_geo_model_create(self, path);
+}
+
+static Status create_geo(void **self, const char *weights, const OverlapOptions *options) {
+  (void)options;
+  return create_named(self, "geo", weights);
+}
+
+static Status create_geo_small(void **self, const char *weights, const OverlapOptions *options) {
+  (void)options;
+  return create_named(self, "geo-small", weights);
+}
+
+const OverlapOps overlap_geo_ops = {
+    .name = "geo",
+    .help = "learned: analytic-centre frame and 100 symmetric features; smooth, no ghost forces",
+    .has_hessian = true,
+    .seconds_per_pair = 1.8e-6,
+    .create = create_geo,
+    .eval_pair = overlap_geo_model_eval_pair,
+    .eval_batch = overlap_geo_model_eval_batch,
+    .destroy = overlap_geo_model_destroy,
+};
+
+const OverlapOps overlap_geo_small_ops = {
+    .name = "geo-small",
+    .help = "learned: as geo, with 36 features and a smaller network",
+    .has_hessian = true,
+    .seconds_per_pair = 6e-7,
+    .create = create_geo_small,
+    .eval_pair = overlap_geo_model_eval_pair,
+    .eval_batch = overlap_geo_model_eval_batch,
+    .destroy = overlap_geo_model_destroy,
+};

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A trained network of net/ as the ρ of `geo`: read from a weights file, evaluated in double, whatever the
+// file's precision (folded whitening cancels digits).
+#ifndef TETLAP_OVERLAP_GEO_NETWORK_H
+#define TETLAP_OVERLAP_GEO_NETWORK_H
+
+#include "net/weights.h"
+#include "overlap/geo/geo.h"
+
+// What the card of such a file gives as its normalisation.
+#define OVERLAP_GEO_NORMALISATION "analytic-centre frame"
+
+typedef struct OverlapGeoNet OverlapGeoNet; // opaque: parameters, and memory of evaluation for every thread
+
+// STATUS_INPUT: no weights file, or one of another kind: a dense SiLU network with 36, 70 or 100 inputs and
+// one output is wanted. The message names the file.
+Status overlap_geo_network_create(OverlapGeoNet **net, const char *path);
+void overlap_geo_network_destroy(OverlapGeoNet *net);
+
+// Borrows the net.
+OverlapGeoNetwork overlap_geo_network_interface(const OverlapGeoNet *net);
+
+const NetCard *overlap_geo_network_card(const OverlapGeoNet *net);
+
+#endif

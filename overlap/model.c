@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "overlap/model.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "overlap/clip/clip.h"
+#include "overlap/clip/separation.h"
+#include "overlap/exact/cgal.h"
+#include "overlap/exact/exact.h"
+#include "overlap/geo/model.h"
+#include "overlap/tpn/model.h"
+#include "overlap/weights.h"
+
+// The fastest first: what a person reads when asking for the models.
+static const OverlapOps *const models[] = {
+    &overlap_clip_ops,   &overlap_clip32_ops, &overlap_clip_scalar_ops, &overlap_geo_small_ops,
+    &overlap_geo_ops,    &overlap_tpn_ops,    &overlap_tpn_bf16_ops,    &overlap_tpn_scene_ops,
+    &overlap_hybrid_ops, &overlap_exact_ops,  &overlap_cgal_ops,
+};
+enum { MODEL_COUNT = sizeof models / sizeof *models };
+
+const OverlapOps *const *overlap_model_list(int *count) {
+  *count = MODEL_COUNT;
+  return models;
+}
+
+static Status fail_unknown(const char *name) {
+  char known[256] = "";
+  size_t used = 0;
+  TextGuess guess = text_guess_of(name);
+  for (int m = 0; m < MODEL_COUNT; m++) {
+    text_append(known, sizeof known, &used, "%s%s", m ? ", " : "", models[m]->name);
+    text_guess_offer(&guess, models[m]->name);
+  }
+  if (guess.best)
+    return status_fail(STATUS_INPUT, "there is no overlap model '%s': did you mean '%s'? Known are %s", name,
+                       guess.best, known);
+  return status_fail(STATUS_INPUT, "there is no overlap model '%s': known are %s", name, known);
+}
+
+// The model that a weights file holds.
+static Status find_by_file(const char *path, const OverlapOps **ops) {
+  OverlapWeightsKind kind;
+  TRY(overlap_weights_kind(path, &kind));
+  *ops = kind == OVERLAP_WEIGHTS_TPN ? &overlap_tpn_ops : &overlap_geo_ops;
+  return STATUS_OK;
+}
+
+Status overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
+                                 const OverlapOptions *options) {
+  *model = (OverlapModel){0};
+  const OverlapOps *ops = NULL;
+  for (int m = 0; m < MODEL_COUNT; m++)
+    if (strcmp(models[m]->name, name) == 0) ops = models[m];
+  if (!ops && overlap_weights_is_path(name)) {
+    TRY(find_by_file(name, &ops));
+    weights = name;
+  }
+  if (!ops) return fail_unknown(name);
+  if (ops->create) TRY(ops->create(&model->self, weights, options));
+  model->ops = ops;
+  return STATUS_OK;
+}
+
+Status overlap_model_create(OverlapModel *model, const char *name) {
+  return overlap_model_create_with(model, name, NULL, NULL);
+}
+
+bool overlap_model_has_ghosts(const OverlapModel *model) {
+  return model->ops->has_ghosts && model->ops->has_ghosts(model->self);
+}
+
+bool overlap_model_has_hessian(const OverlapModel *model) {
+  return model->ops->bends ? model->ops->bends(model->self) : model->ops->has_hessian;
+}
+
+void overlap_model_destroy(OverlapModel *model) {
+  if (model->ops && model->ops->destroy) model->ops->destroy(model->self);
+  *model = (OverlapModel){0};
+}
+
+// x − x is 0 for finite x, else NaN. Eight sums that a compiler keeps side by side.
+static inline bool is_finite(const double pair[OVERLAP_PAIR_SIZE]) {
+  double sum[8] = {0};
+  for (int i = 0; i < OVERLAP_PAIR_SIZE; i++) sum[i % 8] += pair[i] - pair[i];
+  for (int i = 0; i < 4; i++) sum[i] += sum[i + 4];
+  return sum[0] + sum[1] + sum[2] + sum[3] == 0;
+}
+
+static Status fail_not_finite(int pair_index, const double pair[OVERLAP_PAIR_SIZE]) {
+  int i = 0;
+  while (isfinite(pair[i])) i++;
+  return status_fail(STATUS_INPUT,
+                     "pair %d, tetrahedron %d, vertex %d: coordinate %c is %g, it must be a finite number",
+                     pair_index, i / 12, i / 3 % 4, "xyz"[i % 3], pair[i]);
+}
+
+// The first pair with a coordinate that is not finite, pair_count if there is none.
+static int first_not_finite(const OverlapBatch *batch) {
+  int first = batch->pair_count;
+#pragma omp parallel for schedule(static) reduction(min : first) if (batch->pair_count > 20000)
+  for (int i = 0; i < batch->pair_count; i++)
+    if (!is_finite(batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE) && i < first) first = i;
+  return first;
+}
+
+static Status check_finite(const OverlapBatch *batch) {
+  int bad = first_not_finite(batch);
+  return bad == batch->pair_count ? STATUS_OK
+                                  : fail_not_finite(bad, batch->pairs + (size_t)bad * OVERLAP_PAIR_SIZE);
+}
+
+static Status eval_one(const OverlapModel *model, const OverlapBatch *batch, int i) {
+  const double *pair = batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE;
+  double *gradient = batch->gradient ? batch->gradient + (size_t)i * OVERLAP_PAIR_SIZE : NULL;
+  double *hessian =
+      batch->hessian ? batch->hessian + (size_t)i * OVERLAP_PAIR_SIZE * OVERLAP_PAIR_SIZE : NULL;
+  unsigned flags = 0;
+  Status status = model->ops->eval_pair(model->self, pair, batch->volume + i, gradient, hessian, &flags);
+  if (batch->flags) batch->flags[i] = flags;
+  return status;
+}
+
+static void write_disjoint(const OverlapBatch *batch, int i) {
+  enum { SIZE = OVERLAP_PAIR_SIZE };
+  batch->volume[i] = 0;
+  if (batch->gradient) memset(batch->gradient + (size_t)i * SIZE, 0, SIZE * sizeof(double));
+  if (batch->hessian) memset(batch->hessian + (size_t)i * SIZE * SIZE, 0, SIZE * SIZE * sizeof(double));
+  if (batch->flags) batch->flags[i] = OVERLAP_DISJOINT;
+}
+
+// Less work than this [s] is not worth waking threads for.
+static const double WORTH_THREADS = 2e-4;
+
+enum { PORTION = 64 }; // pairs that a thread takes at a time
+
+// Pairs begin … end, but for those that a face separates: what these are is known without the model. The
+// first that failed, or INT_MAX.
+static int eval_portion(const OverlapModel *model, const OverlapBatch *batch, int begin, int end) {
+  bool is_apart[PORTION] = {false};
+  if (!model->ops->rejects && !overlap_model_has_ghosts(model))
+    overlap_separation_find(end - begin, batch->pairs + (size_t)begin * OVERLAP_PAIR_SIZE, is_apart);
+  for (int i = begin; i < end; i++)
+    if (is_apart[i - begin])
+      write_disjoint(batch, i);
+    else if (eval_one(model, batch, i) != STATUS_OK)
+      return i;
+  return INT_MAX;
+}
+
+// Each pair has its own place in the outputs, so the threads' order does not show. Costs differ from pair to
+// pair by a hundred and more: portions are handed out as threads get free.
+static Status eval_each(const OverlapModel *model, const OverlapBatch *batch) {
+  int first_failed = INT_MAX, count = batch->pair_count, portions = count / PORTION + (count % PORTION > 0);
+  bool is_much = count * model->ops->seconds_per_pair > WORTH_THREADS;
+#pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (is_much)
+  for (int p = 0; p < portions; p++) {
+    int begin = p * PORTION, end = count - begin < PORTION ? count : begin + PORTION;
+    int failed = eval_portion(model, batch, begin, end);
+    if (failed < first_failed) first_failed = failed;
+  }
+  if (first_failed == INT_MAX) return STATUS_OK;
+  // the message belongs to the thread that failed: let this one see it too
+  Status status = eval_one(model, batch, first_failed);
+  if (status == STATUS_OK)
+    return status_fail(STATUS_SOLVER, "overlap model '%s': pair %d failed once and not again",
+                       model->ops->name, first_failed);
+  return status_prefix(status, "overlap model '%s': pair %d", model->ops->name, first_failed);
+}
+
+Status overlap_model_eval(const OverlapModel *model, const OverlapBatch *batch) {
+  if (batch->hessian && !overlap_model_has_hessian(model))
+    return status_fail(STATUS_INPUT, "overlap model '%s' has no Hessian", model->ops->name);
+  if (!model->ops->minds_finite) TRY(check_finite(batch));
+  Status status =
+      model->ops->eval_batch ? model->ops->eval_batch(model->self, batch) : eval_each(model, batch);
+  if (status != STATUS_OK && model->ops->minds_finite) TRY(check_finite(batch)); // which says more
+  return status;
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Overlap models by name: the list of those there are (overlap/ops.h says what one is), and batches evaluated
+// with OpenMP.
+#ifndef TETLAP_OVERLAP_MODEL_H
+#define TETLAP_OVERLAP_MODEL_H
+
+#include "overlap/ops.h"
+
+typedef struct OverlapModel {
+  const OverlapOps *ops;
+  void *self; // owned
+} OverlapModel;
+
+// The models there are, and how many.
+const OverlapOps *const *overlap_model_list(int *count);
+
+// Makes the model of that name, or of that weights file (….safetensors), which says what it is. STATUS_INPUT:
+// unknown name; the message lists the known ones and the nearest.
+Status overlap_model_create(OverlapModel *model, const char *name);
+
+// The same with options for networks, and for `hybrid` the name or file of its network; both may be NULL.
+Status overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
+                                 const OverlapOptions *options);
+
+// Whether pairs without common interior may get a volume.
+bool overlap_model_has_ghosts(const OverlapModel *model);
+
+// Whether it has second derivatives.
+bool overlap_model_has_hessian(const OverlapModel *model);
+
+// Evaluates all pairs of the batch with OpenMP. STATUS_INPUT: a coordinate is NaN or infinite; the message
+// names the pair. STATUS_INPUT: a Hessian is asked of a model that has none.
+Status overlap_model_eval(const OverlapModel *model, const OverlapBatch *batch);
+
+void overlap_model_destroy(OverlapModel *model);
+
+#endif

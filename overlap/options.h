@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a scene may ask of the models that are a TetrahedronPairNet (net_overlap.h). AUTO: the model's own.
+#ifndef TETLAP_OVERLAP_OPTIONS_H
+#define TETLAP_OVERLAP_OPTIONS_H
+
+// What becomes of the volumes that the network tells of pairs that share none.
+typedef enum OverlapGhosts {
+  OVERLAP_GHOSTS_AUTO,
+  OVERLAP_GHOSTS_KEEP, // they stay
+  OVERLAP_GHOSTS_CUT,  // an exact test says who is disjoint: V = 0; V jumps where two begin to touch
+  OVERLAP_GHOSTS_FADE, // and V is faded in over the first overlap, continuously differentiable
+} OverlapGhosts;
+
+typedef enum OverlapGate {
+  OVERLAP_GATE_AUTO,
+  OVERLAP_GATE_NONE,   // V is the volume head's
+  OVERLAP_GATE_STATUS, // times the probability that the status head tells, and max(0, v) rounded off
+} OverlapGate;
+
+typedef enum OverlapOrders {
+  OVERLAP_ORDERS_AUTO,
+  OVERLAP_ORDERS_ONE,
+  OVERLAP_ORDERS_BOTH, // the mean of V(A, B) and V(B, A)
+} OverlapOrders;
+
+// Pairs unlike those of the training (net_range.h).
+typedef enum OverlapBeyond {
+  OVERLAP_BEYOND_AUTO,
+  OVERLAP_BEYOND_COUNT, // are counted
+  OVERLAP_BEYOND_EXACT, // and answered by `exact`, blended over a band
+} OverlapBeyond;
+
+// Pairs with faces that nearly lie in one plane (geo_coplanar.h).
+typedef enum OverlapCoplanar {
+  OVERLAP_COPLANAR_AUTO,
+  OVERLAP_COPLANAR_KEEP, // are the network's as any other
+  OVERLAP_COPLANAR_CLIP, // turn to clipping, the more the nearer
+} OverlapCoplanar;
+
+typedef struct OverlapOptions {
+  OverlapGhosts ghosts;
+  OverlapGate gate;
+  OverlapOrders orders;
+  OverlapBeyond beyond;
+  OverlapCoplanar coplanar;
+  double touch;      // fading and `hybrid`: overlap share at which the network begins to count
+  double deep;       // hybrid: overlap share beyond which it no longer does
+  double confidence; // hybrid: probability of the status head from which it counts fully; at ½ not at all
+} OverlapOptions;
+
+OverlapOptions overlap_options_default(void);
+
+#endif

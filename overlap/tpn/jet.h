@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers that carry their derivatives by the few quantities that the answer for a pair is made of
+// (net_blend.h), so that a formula is written once and its first and second derivatives follow.
+//
+//     (a b)′ = a′ b + a b′,   (a b)″ = a″ b + a′ b′ᵀ + b′ a′ᵀ + a b″,   f(a)″ = f′ a″ + f″ a′ a′ᵀ
+#ifndef TETLAP_OVERLAP_TPN_JET_H
+#define TETLAP_OVERLAP_TPN_JET_H
+
+enum { OVERLAP_TPN_QUANTITIES = 12 };
+
+typedef struct OverlapTpnJet {
+  int order; // how many derivatives are carried: 0, 1 or 2
+  double value;
+  double first[OVERLAP_TPN_QUANTITIES];
+  double second[OVERLAP_TPN_QUANTITIES][OVERLAP_TPN_QUANTITIES]; // symmetric
+} OverlapTpnJet;
+
+// A function of one number: its value and two derivatives there.
+typedef struct OverlapTpnBend {
+  double value, slope, bend;
+} OverlapTpnBend;
+
+// The step S: from 0 for x ≤ 0 to 1 for x ≥ 1, x being a linear function of slope `rate`; NaN: 0. As S(1 − x)
+// = 1 − S(x), it falls where x does.
+static inline OverlapTpnBend overlap_tpn_jet_bend_rise(double x, double rate) {
+  if (x >= 1) return (OverlapTpnBend){.value = 1};
+  if (!(x > 0)) return (OverlapTpnBend){.value = 0};
+  return (OverlapTpnBend){x * x * (3 - 2 * x), 6 * x * (1 - x) * rate, 6 * (1 - 2 * x) * rate * rate};
+}
+
+static inline void overlap_tpn_jet_constant(OverlapTpnJet *a, int order, double value) {
+  a->order = order;
+  a->value = value;
+  for (int i = 0; i < OVERLAP_TPN_QUANTITIES && order > 0; i++) a->first[i] = 0;
+  for (int i = 0; i < OVERLAP_TPN_QUANTITIES && order > 1; i++)
+    for (int j = 0; j < OVERLAP_TPN_QUANTITIES; j++) a->second[i][j] = 0;
+}
+
+// A function of the quantity `which` alone.
+static inline void overlap_tpn_jet_of(OverlapTpnJet *a, int order, int which, OverlapTpnBend f) {
+  overlap_tpn_jet_constant(a, order, f.value);
+  if (order > 0) a->first[which] = f.slope;
+  if (order > 1) a->second[which][which] = f.bend;
+}
+
+// a += factor · b
+static inline void overlap_tpn_jet_add(OverlapTpnJet *a, double factor, const OverlapTpnJet *b) {
+  a->value += factor * b->value;
+  for (int i = 0; i < OVERLAP_TPN_QUANTITIES && a->order > 0; i++) a->first[i] += factor * b->first[i];
+  for (int i = 0; i < OVERLAP_TPN_QUANTITIES && a->order > 1; i++)
+    for (int j = 0; j < OVERLAP_TPN_QUANTITIES; j++) a->second[i][j] += factor * b->second[i][j];
+}
+
+// a = a · b
+static inline void overlap_tpn_jet_multiply(OverlapTpnJet *a, const OverlapTpnJet *b) {
+  for (int i = 0; i < OVERLAP_TPN_QUANTITIES && a->order > 1; i++)
+    for (int j = 0; j < OVERLAP_TPN_QUANTITIES; j++)
+      a->second[i][j] = a->second[i][j] * b->value + a->value * b->second[i][j] + a->first[i] * b->first[j] +
+                        a->first[j] * b->first[i];
+  for (int i = 0; i < OVERLAP_TPN_QUANTITIES && a->order > 0; i++)
+    a->first[i] = a->first[i] * b->value + a->value * b->first[i];
+  a->value *= b->value;
+}
+
+// a = f(a), f at a's value
+static inline void overlap_tpn_jet_apply(OverlapTpnJet *a, OverlapTpnBend f) {
+  for (int i = 0; i < OVERLAP_TPN_QUANTITIES && a->order > 1; i++)
+    for (int j = 0; j < OVERLAP_TPN_QUANTITIES; j++)
+      a->second[i][j] = f.slope * a->second[i][j] + f.bend * a->first[i] * a->first[j];
+  for (int i = 0; i < OVERLAP_TPN_QUANTITIES && a->order > 0; i++) a->first[i] *= f.slope;
+  a->value = f.value;
+}
+
+#endif

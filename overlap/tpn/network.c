@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "overlap/tpn/network.h"
+
+#include <assert.h>
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+void overlap_tpn_network_print(OverlapTpnNormalisation kind, double scale,
+                               char text[OVERLAP_TPN_NORMALISATION_TEXT]) {
+  snprintf(text, OVERLAP_TPN_NORMALISATION_TEXT, "%s, V times %.17g", overlap_tpn_normalise_name(kind),
+           scale);
+}
+
+bool overlap_tpn_network_parse(const char *text, OverlapTpnNormalisation *kind, double *scale) {
+  char name[8];
+  int used = 0;
+  if (sscanf(text, "%7[a-z], V times %lf%n", name, scale, &used) != 2 || text[used]) return false;
+  for (int k = 0; k < OVERLAP_TPN_NORMALISE_COUNT; k++) {
+    *kind = (OverlapTpnNormalisation)k;
+    if (strcmp(name, overlap_tpn_normalise_name(*kind)) == 0) return *scale > 0 && isfinite(*scale);
+  }
+  return false;
+}
+
+static Status fail_as_net(NetStatus status) {
+  Status code = status == NET_NO_MEMORY ? STATUS_MEMORY : status == NET_BAD_IO ? STATUS_IO : STATUS_INPUT;
+  return status_fail(code, "%s", net_status_message());
+}
+
+void overlap_tpn_network_destroy(OverlapTpnModel *model) {
+  for (int d = 0; model->desks && d < model->desk_count; d++) {
+    net_work_destroy_f32(&model->desks[d].work);
+    memory_free(model->desks[d].more);
+  }
+  memory_free(model->desks);
+  net_card_destroy(&model->card);
+  net_model_destroy_f32(&model->network);
+  *model = (OverlapTpnModel){0};
+}
+
+static Status furnish(OverlapTpnModel *model, NetKernelKind kernel, size_t more) {
+  model->desk_count = omp_get_max_threads();
+  model->desks = memory_zeroed((size_t)model->desk_count, sizeof *model->desks);
+  if (!model->desks) return status_no_memory("the network's memory of evaluation");
+  NetWorkDef def = net_work_default();
+  def.tangent_count = OVERLAP_TPN_TANGENTS;
+  def.kernel = kernel;
+  for (int d = 0; d < model->desk_count; d++) {
+    OverlapTpnDesk *desk = &model->desks[d];
+    atomic_flag_clear(&desk->is_taken);
+    desk->more = memory_zeroed(1, more);
+    if (!desk->more) return status_no_memory("the network's memory of evaluation");
+    NetStatus status = net_work_create_f32(model->network.plan, &def, &desk->work);
+    if (status != NET_OK) return fail_as_net(status);
+  }
+  return STATUS_OK;
+}
+
+// What the normalisation makes of every first tetrahedron, the network need not be shown.
+static Status fold(OverlapTpnModel *model) {
+  const double *first = overlap_tpn_normalise_first(model->kind);
+  if (!first) return STATUS_OK;
+  float coordinates[12];
+  for (int c = 0; c < 12; c++) coordinates[c] = (float)first[c];
+  NetModel_f32 whole = model->network;
+  NetStatus status = net_fold_create_f32(&whole, coordinates, &model->network);
+  net_model_destroy_f32(&whole);
+  model->input_first = 12;
+  return status == NET_OK ? STATUS_OK : fail_as_net(status);
+}
+
+static Status load(OverlapTpnModel *model, const char *path, NetKernelKind kernel, size_t more) {
+  NetStatus status = net_weights_read_f32(path, &model->network, &model->card);
+  if (status != NET_OK) return fail_as_net(status);
+  if (model->network.plan->shape.kind != NET_TPN)
+    return status_fail(STATUS_INPUT, "%s: a TetrahedronPairNet is needed, this is another network", path);
+  if (!overlap_tpn_network_parse(model->card.normalisation, &model->kind, &model->scale))
+    return status_fail(
+        STATUS_INPUT,
+        "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER', 'pca, …' or 'sorted, …'", path,
+        model->card.normalisation);
+  model->has_range = overlap_tpn_range_parse(model->card.range, &model->range);
+  TRY(fold(model));
+  return furnish(model, kernel, more);
+}
+
+Status overlap_tpn_network_create(OverlapTpnModel *model, const char *path, NetKernelKind kernel,
+                                  size_t more) {
+  *model = (OverlapTpnModel){0};
+  Status status = load(model, path, kernel, more);
+  if (status != STATUS_OK) overlap_tpn_network_destroy(model);
+  return status;
+}
+
+OverlapTpnDesk *overlap_tpn_network_take(const OverlapTpnModel *model) {
+  for (int d = omp_get_thread_num();; d++) {
+    OverlapTpnDesk *desk = &model->desks[d % model->desk_count];
+    if (atomic_flag_test_and_set_explicit(&desk->is_taken, memory_order_acquire)) continue;
+    desk->row_count = 0;
+    return desk;
+  }
+}
+
+void overlap_tpn_network_leave(OverlapTpnDesk *desk) {
+  atomic_flag_clear_explicit(&desk->is_taken, memory_order_release);
+}
+
+void overlap_tpn_network_lay(const OverlapTpnModel *model, OverlapTpnDesk *desk, const double pair[24]) {
+  assert(desk->row_count < OVERLAP_TPN_ROWS);
+  int first = model->input_first, width = 24 - first;
+  float *row = desk->x + (ptrdiff_t)width * desk->row_count++;
+  for (int c = 0; c < width; c++) row[c] = (float)pair[first + c];
+}
+
+void overlap_tpn_network_lift(const OverlapTpnModel *model, const OverlapTpnDesk *desk, int row,
+                              double gradient[24]) {
+  int first = model->input_first, width = 24 - first;
+  for (int c = 0; c < first; c++) gradient[c] = 0;
+  for (int c = 0; c < width; c++) gradient[first + c] = (double)desk->gx[(ptrdiff_t)width * row + c];
+}

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Normalisations of a pair before a network sees it (TetrahedronPairNet, table 2), and the way back of a
+// gradient through them.
+//
+//   pca   rigid: the first tetrahedron's centroid becomes the origin, its principal axes the coordinate axes,
+//         the largest principal value first. Along the first two axes the sum of the vertices' cubed
+//         coordinates is not negative, the third completes a right-handed system. V' = V.
+//   unit  affine: the first tetrahedron becomes the unit simplex (its vertices in their order the origin and
+//         the unit vectors). V' = V / |det E|, E the matrix of its edges from the first vertex.
+//   sorted  unit, with the vertices of both in an order that does not depend on how they came: the first's
+//         by its barycentric coordinates of the other's centroid, the largest first; then the other's by
+//         their barycentric coordinate of the first's first vertex. Coordinates beyond 3 are compressed: ±3
+//         (1 + ln(|x|/3)), so that a flat first tetrahedron gives no huge numbers.
+//
+// The paper has the first two. The third is ours: a network on it cannot tell the order of vertices, and
+// learns one twenty-fourth of the cases twice over; where two coordinates tie, its value jumps.
+//
+// All are functions of the pair: a network's V = factor · V'(normalised) has a gradient that goes through
+// them, including the turning of the axes. A principal axis turns by D_ij / (λ_j − λ_i), D the change of the
+// second moment in the axes' frame, which has no bound as values get equal, and there the axes jump: that is
+// the normalisation's own defect. 1/Δ is replaced by Δ/(Δ² + (1e-6 tr λ)²): the exact derivative while the
+// values differ, and with equal values the axes within their plane count as fixed.
+#ifndef TETLAP_OVERLAP_TPN_NORMALISE_H
+#define TETLAP_OVERLAP_TPN_NORMALISE_H
+
+#include <stdbool.h>
+
+typedef enum OverlapTpnNormalisation {
+  OVERLAP_TPN_NORMALISE_UNIT,
+  OVERLAP_TPN_NORMALISE_PCA,
+  OVERLAP_TPN_NORMALISE_SORTED,
+  OVERLAP_TPN_NORMALISE_COUNT,
+} OverlapTpnNormalisation;
+
+typedef struct OverlapTpnNormalised {
+  OverlapTpnNormalisation kind;
+  double pair[24];  // the normalised pair
+  double factor;    // V = factor · V'
+  double matrix[9]; // normalised = matrix · (x − origin), row-major
+  double origin[3];
+  double principal[3]; // pca: principal values, falling
+  int order[8];        // sorted: which of the pair's eight vertices stands in each place
+} OverlapTpnNormalised;
+
+// False: the first tetrahedron is too flat for it (unit and sorted: |det E| below 1e-14 of the edges'
+// product).
+bool overlap_tpn_normalise(OverlapTpnNormalisation kind, const double pair[24],
+                           OverlapTpnNormalised *normalised);
+
+// ∇ of factor · V' with respect to the pair, from V' and ∇V' with respect to the normalised pair.
+void overlap_tpn_normalise_pull(const OverlapTpnNormalised *normalised, double volume, const double inner[24],
+                                double gradient[24]);
+
+// The first tetrahedron of all normalised pairs (12), NULL where it depends on the pair.
+const double *overlap_tpn_normalise_first(OverlapTpnNormalisation kind);
+
+// Of `unit`, whose V' is a function of the second tetrahedron's normalised coordinates alone: of an
+// s(normalised) with derivatives inner (24, of which the last 12 count) and inner_hessian (12, 12), those
+// with respect to the pair, (24) and (24, 24); without the factor.
+void overlap_tpn_normalise_bend_unit(const OverlapTpnNormalised *normalised, const double inner[24],
+                                     const double inner_hessian[144], double gradient[24],
+                                     double hessian[576]);
+
+const char *overlap_tpn_normalise_name(OverlapTpnNormalisation kind); // "unit", "pca", "sorted"
+
+#endif
