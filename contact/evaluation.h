@@ -7,12 +7,20 @@
 
 #include "contact/candidates.h"
 #include "contact/patches.h"
+#include "contact/rest.h"
 
-struct ContactRest;
+// Pairs of meshes by how they were answered.
+typedef struct ContactPairCounts {
+  long long tried;     // given to the overlap model
+  long long enclosed;  // flagged OVERLAP_ENCLOSED
+  long long fallbacks; // flagged FALLBACK
+  long long by_net;    // flagged NET
+  long long blended;   // flagged BLENDED
+  long long beyond;    // flagged BEYOND
+} ContactPairCounts;
 
 typedef struct ContactEvaluation {
-  const struct ContactRest
-      *rest; // stands in the result beside the candidates (contact/rest.h); NULL: nothing
+  const ContactRest *rest; // stands in the result beside the candidates (contact/rest.h); NULL: nothing
   bool is_valid;
   double time;       // of this result [s]
   double *positions; // of this result [m]                                (vertex_count, 3)

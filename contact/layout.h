@@ -5,8 +5,8 @@
 
 #include <stddef.h>
 
+#include "contact/def.h"
 #include "contact/self.h"
-#include "contact/system.h"
 
 // Two that can meet: bodies a < b, a body and itself, or body a and a half-space. Side 0 is a, side 1 is b.
 // Of a body and itself an element may be tets[0] of one pair and tets[1] of another; both weights are ½ then.

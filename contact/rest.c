@@ -36,8 +36,7 @@ void contact_rest_clear(ContactRest *rest, const ContactLayout *layout) {
   rest->energy = 0;
 }
 
-static void keep_patch(ContactRest *rest, const ContactEvaluation *evaluation, const ContactPatch *patch) {
-  const ContactPatches *patches = &evaluation->patches;
+static void keep_patch(ContactRest *rest, const ContactPatches *patches, const ContactPatch *patch) {
   for (int n = patch->node_begin; n < patch->node_end; n++)
     for (size_t c = 0; c < 3; c++)
       rest->forces[3 * (size_t)patches->nodes[n].vertex + c] += patches->nodes[n].force[c];
@@ -48,7 +47,8 @@ static void keep_patch(ContactRest *rest, const ContactEvaluation *evaluation, c
 }
 
 void contact_rest_keep(ContactRest *rest, const ContactLayout *layout, const ContactCandidateList *candidates,
-                       const ContactEvaluation *evaluation, const bool *is_held) {
+                       const ContactPatches *patches, const ContactInterface *interfaces,
+                       const bool *is_held) {
   contact_rest_clear(rest, layout);
   for (int f = 0; f < layout->facing_count; f++) {
     const ContactFacing *facing = &layout->facings[f];
@@ -58,9 +58,8 @@ void contact_rest_keep(ContactRest *rest, const ContactLayout *layout, const Con
     rest->resting_count++;
     rest->is_near[f] = pairs > 0;
     rest->candidate_count += pairs;
-    rest->interfaces[f] = evaluation->interfaces[f];
+    rest->interfaces[f] = interfaces[f];
   }
-  for (int p = 0; p < evaluation->patches.patch_count; p++)
-    if (rest->is_resting[evaluation->patches.patches[p].facing])
-      keep_patch(rest, evaluation, &evaluation->patches.patches[p]);
+  for (int p = 0; p < patches->patch_count; p++)
+    if (rest->is_resting[patches->patches[p].facing]) keep_patch(rest, patches, &patches->patches[p]);
 }

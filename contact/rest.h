@@ -5,7 +5,9 @@
 #ifndef TETLAP_CONTACT_REST_H
 #define TETLAP_CONTACT_REST_H
 
-#include "contact/evaluation.h"
+#include "contact/candidates.h"
+#include "contact/interface.h"
+#include "contact/patches.h"
 
 typedef struct ContactRest {
   bool *is_resting; // of each facing                                        (facing_count)
@@ -24,9 +26,10 @@ void contact_rest_destroy(ContactRest *rest); // also of a zeroed one
 
 // Forgets all that rests.
 void contact_rest_clear(ContactRest *rest, const ContactLayout *layout);
-// Takes over, from a full evaluation on these candidates, every facing whose two parties (bodies, then
-// shapes) are held.
+// Takes over, from the patches and interfaces of a full evaluation on these candidates, every facing whose
+// two parties (bodies, then shapes) are held.
 void contact_rest_keep(ContactRest *rest, const ContactLayout *layout, const ContactCandidateList *candidates,
-                       const ContactEvaluation *evaluation, const bool *is_held);
+                       const ContactPatches *patches, const ContactInterface *interfaces,
+                       const bool *is_held);
 
 #endif

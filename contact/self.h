@@ -10,7 +10,7 @@
 
 #include "contact/boxes_cgal.h"
 #include "contact/broad.h"
-#include "contact/system.h"
+#include "contact/def.h"
 
 typedef struct ContactSelf {
   int *outer; // tetrahedra with a vertex on the surface, of bodies that meet themselves; ascending

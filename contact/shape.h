@@ -5,7 +5,7 @@
 #define TETLAP_CONTACT_SHAPE_H
 
 #include "base/vec3.h"
-#include "contact/system.h"
+#include "contact/def.h"
 
 // Where the shape's point is at a time [m].
 Vec3 contact_shape_point(const ContactShape *shape, double time);

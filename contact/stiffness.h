@@ -10,6 +10,16 @@
 
 #include "contact/evaluation.h"
 
+// Where the stiffness ∂²U/∂x² goes. Each call adds a dense symmetric part over a short list of distinct
+// vertices; those of obstacles carry no unknowns and are left out.
+typedef struct ContactStiffnessSink {
+  void *self;
+  // S += scale · w wᵀ, w (count, 3).
+  void (*add_outer)(void *self, int count, const int *vertices, const double *w, double scale);
+  // S += matrix, (3 count, 3 count), symmetric.
+  void (*add_dense)(void *self, int count, const int *vertices, const double *matrix);
+} ContactStiffnessSink;
+
 // Scratch memory.
 typedef struct ContactStiffness {
   ContactPatches near; // of the pairs that may couple

@@ -137,7 +137,8 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
   TRY(contact_system_update(system, time, positions, velocities, step, NULL));
   if (!is_held) return STATUS_OK;
   TRY(evaluate(system, time, positions));
-  contact_rest_keep(&system->rest, layout, &system->candidates.list, &system->evaluation, is_held);
+  contact_rest_keep(&system->rest, layout, &system->candidates.list, &system->evaluation.patches,
+                    system->evaluation.interfaces, is_held);
   contact_candidates_leave_out(&system->candidates, layout, system->rest.is_resting);
   contact_evaluation_start_over(&system->evaluation, layout);
   return choose_watched(system, time, positions);

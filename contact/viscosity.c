@@ -14,7 +14,7 @@ Status contact_viscosity_create(ContactViscosity *viscosity, ContactSystem *syst
     return status_fail(STATUS_INPUT, "contact: the viscosity is %g Pa s; it must be positive", coefficient);
   if (contact_system_layout(system)->def.potential != CONTACT_POTENTIAL_NODAL)
     return status_fail(STATUS_INPUT, "contact: viscosity needs the potential 'nodal', not '%s'",
-                       contact_potential_name(contact_system_layout(system)->def.potential));
+                       contact_def_potential_name(contact_system_layout(system)->def.potential));
   return STATUS_OK;
 }
 

@@ -137,7 +137,7 @@ enum { CASES = 9 };
 
 static void print_row(ContactPotential potential, double ratio, double depth, bool is_aligned) {
   Worst worst = slide(potential, ratio, depth, is_aligned);
-  printf("%-8s %4.2f %4.2f %-8s|", contact_potential_name(potential), ratio, depth,
+  printf("%-8s %4.2f %4.2f %-8s|", contact_def_potential_name(potential), ratio, depth,
          is_aligned ? "aligned" : "");
   for (int body = 0; body < 2; body++)
     printf(" %6.4f %8.1e %6.4f %6.3f |", worst.of[body].evenness, worst.of[body].tangential,

@@ -154,7 +154,7 @@ static void print_contact(const AppJob *job) {
   const FemContactDef *contact = &job->scene.contact;
   if (!contact->is_on) return;
   printf("contact       potential %s, κ = %g %s%s, overlap model %s\n",
-         contact_potential_name(contact->potential), fem_model_contact_stiffness(&job->model),
+         contact_def_potential_name(contact->potential), fem_model_contact_stiffness(&job->model),
          contact->potential == CONTACT_POTENTIAL_BODY ? "Pa/m³" : "Pa",
          contact->stiffness > 0 ? "" : " (chosen)", app_job_overlap(job));
 }
@@ -217,7 +217,7 @@ static void record_effects(const FemSceneDef *scene, RecordList *list) {
 
 static void record_contact(const AppJob *job, Record *record) {
   const FemContactDef *contact = &job->scene.contact;
-  record_text(record, "potential", contact_potential_name(contact->potential));
+  record_text(record, "potential", contact_def_potential_name(contact->potential));
   record_number(record, "stiffness", fem_model_contact_stiffness(&job->model));
   record_bool(record, "is_stiffness_chosen", !(contact->stiffness > 0));
   record_text(record, "overlap", app_job_overlap(job));

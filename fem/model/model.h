@@ -4,7 +4,7 @@
 #ifndef TETLAP_FEM_MODEL_MODEL_H
 #define TETLAP_FEM_MODEL_MODEL_H
 
-#include "contact/system.h"
+#include "contact/def.h"
 #include "fem/element/element.h"
 #include "fem/element/quadratic.h"
 #include "fem/model/colouring.h"

@@ -4,7 +4,7 @@
 #define TETLAP_FEM_MODEL_OBSTACLE_H
 
 #include "contact/convex.h"
-#include "contact/system.h"
+#include "contact/def.h"
 #include "fem/model/scene.h"
 
 // The shape of a definition that is no mesh; it borrows the definition and `solid`, which is filled for a box

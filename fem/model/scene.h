@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #include "base/expression.h"
-#include "contact/system.h"
+#include "contact/def.h"
 #include "fem/material/material.h"
 #include "fem/mesh/mesh.h"
 

@@ -4,6 +4,7 @@
 #define TETLAP_FEM_RUN_RUN_RESULT_H
 
 #include "base/record.h"
+#include "contact/evaluation.h"
 #include "contact/status.h"
 #include "fem/run/trouble.h"
 #include "fem/time/audit.h"

@@ -19,10 +19,10 @@ static const char *law_help(int i) {
 const SceneChoices app_scene_choices_laws = {law_name, law_help};
 
 static const char *potential_name(int i) {
-  return i < CONTACT_POTENTIAL_COUNT ? contact_potential_name((ContactPotential)i) : NULL;
+  return i < CONTACT_POTENTIAL_COUNT ? contact_def_potential_name((ContactPotential)i) : NULL;
 }
 static const char *potential_help(int i) {
-  return contact_potential_help((ContactPotential)i);
+  return contact_def_potential_help((ContactPotential)i);
 }
 const SceneChoices app_scene_choices_potentials = {potential_name, potential_help};
 

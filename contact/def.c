@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/def.h"
+
+#include <assert.h>
+
+static const struct {
+  const char *name, *help;
+} POTENTIALS[CONTACT_POTENTIAL_COUNT] = {
+    [CONTACT_POTENTIAL_NODAL] = {"nodal",
+                                 "covered over rest volume of each vertex, squared: even pressure, no "
+                                 "false friction [Pa]"},
+    [CONTACT_POTENTIAL_ELEMENT] = {"element", "covered over rest volume of each element, squared [Pa]"},
+    [CONTACT_POTENTIAL_PAIR] = {"pair",
+                                "overlap of each pair, squared: depends on how one mesh cuts the other "
+                                "[Pa]"},
+    [CONTACT_POTENTIAL_LINEAR] = {"linear",
+                                  "overlap volume: constant pressure, the force jumps at touch [Pa]"},
+    [CONTACT_POTENTIAL_BODY] = {"body", "overlap volume of two bodies, squared: one pressure for all patches "
+                                        "[Pa/m³]"},
+};
+
+const char *contact_def_potential_name(ContactPotential potential) {
+  assert((unsigned)potential < CONTACT_POTENTIAL_COUNT);
+  return POTENTIALS[potential].name;
+}
+
+const char *contact_def_potential_help(ContactPotential potential) {
+  assert((unsigned)potential < CONTACT_POTENTIAL_COUNT);
+  return POTENTIALS[potential].help;
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a contact system is made of, as its maker describes it: bodies, obstacles without elements, the
+// potential. Plain data; contact/system.h says what is done with it.
+#ifndef TETLAP_CONTACT_DEF_H
+#define TETLAP_CONTACT_DEF_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "overlap/model.h"
+
+typedef struct ContactBody {
+  const char *name; // borrowed
+  int vertex_begin, vertex_end;
+  int tet_begin, tet_end;
+  bool is_obstacle;  // carries no unknowns: static or driven
+  bool meets_itself; // parts of it may touch each other (contact/self.h)
+} ContactBody;
+
+// Obstacles without elements.
+typedef enum ContactShapeKind {
+  CONTACT_SHAPE_HALFSPACE, // { x : normal·(x − point) ≤ 0 }
+  CONTACT_SHAPE_BALL,      // { x : |x − point| ≤ radius }
+  CONTACT_SHAPE_CONVEX,    // `convex` about `point`, along `axes`
+} ContactShapeKind;
+
+// `point` moves by point(t) = point + t velocity, or as `move` says, which returns position and velocity at a
+// time of what rests at `rest`, by a rigid motion; a half-space must not turn. `move` may be called from
+// several threads.
+typedef struct ContactShape {
+  const char *name; // borrowed
+  ContactShapeKind kind;
+  double point[3];                    // [m]
+  double normal[3];                   // of a half-space, unit length
+  double radius;                      // of a ball [m]
+  const struct ContactConvex *convex; // of that kind; borrowed
+  double axes[3][3];                  // its own axes at rest, in space, orthonormal and right-handed
+  double velocity[3];                 // [m/s]
+  const void *motion;                 // handed to `move`; borrowed
+  void (*move)(const void *motion, double time, const double rest[3], double position[3],
+               double velocity[3]); // NULL: by `velocity`
+} ContactShape;
+
+// The potentials, by the name a scene uses. W_i: what the other body covers of element i [m³]; V_i its rest
+// volume; W_a, V_a their shares of vertex a (a quarter of each adjacent element). κ: stiffness.
+// Between two bodies each side's sum gets a leading ½; against an obstacle only the body's side counts,
+// without ½.
+typedef enum ContactPotential {
+  CONTACT_POTENTIAL_NODAL,   // U = Σ_a ½ κ W_a²/V_a, κ [Pa]: even pressure, no false friction
+  CONTACT_POTENTIAL_ELEMENT, // U = Σ_i ½ κ W_i²/V_i, κ [Pa]
+  CONTACT_POTENTIAL_PAIR,    // U = Σ_ij ½ κ V_ij²/V_ref, V_ref the smaller of the two rest volumes (a
+                             // half-space: V_i), κ [Pa]
+  CONTACT_POTENTIAL_LINEAR,  // U = κ Σ_ij V_ij, κ [Pa]: constant pressure, the force jumps at touch
+  CONTACT_POTENTIAL_BODY,    // U = ½ κ (Σ_ij V_ij)² a pair of bodies, κ [Pa/m³]
+} ContactPotential;
+
+enum { CONTACT_POTENTIAL_COUNT = 5 };
+const char *contact_def_potential_name(ContactPotential potential); // "nodal", …
+const char *contact_def_potential_help(ContactPotential potential); // one line
+
+typedef struct ContactSystemDef {
+  int vertex_count;
+  const double *rest;   // rest positions [m], borrowed                    (vertex_count, 3)
+  const int (*tets)[4]; // borrowed; all bodies one after another          (tet_count)
+  int tet_count;
+  const ContactBody *bodies; // borrowed                                    (body_count)
+  int body_count;
+  const ContactShape *shapes; // borrowed                           (shape_count)
+  int shape_count;
+  ContactPotential potential;
+  double stiffness;      // κ
+  double margin;         // skin margin while bodies are near [m]; 0: half the shortest mean edge of a body
+  bool use_full_hessian; // include p ∇²V, of `clip` if the model has none; else Gauss–Newton
+  const OverlapModel *model; // borrowed
+} ContactSystemDef;
+
+#endif
