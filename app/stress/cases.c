@@ -334,7 +334,7 @@ enum {
 #define HELD_ABOVE(z)                                                                                        \
   "bodies.upper.driven=[{halfspace: {point: [0, 0, " z "], normal: [0, 0, -1]}, velocity: [0, 0, -1]}]"
 #define HELD_AT_BOTTOM "bodies.lower.fixed=[{halfspace: {point: [0, 0, -0.149999], normal: [0, 0, 1]}}]"
-#define MESH(body, name) "bodies." body ".mesh=../../meshes/" name ".mesh"
+#define MESH(body, name) "bodies." body ".mesh=../../../meshes/" name ".mesh"
 
 // A plate that needs one step of `step` s at 1 m/s to come within reach of the target, `gap` m away.
 #define FIRED(gap, step, end)                                                                                \
