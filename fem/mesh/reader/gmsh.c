@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/mesh/reader/gmsh.h"
 
-#include <gmshc.h>
 #include <limits.h>
 #include <math.h>
 #include <stdbool.h>
@@ -11,7 +10,11 @@
 #include <strings.h>
 
 #include "base/memory.h"
+#include "fem/mesh/reader/gmsh_library.h"
 #include "fem/mesh/reader/shell.h"
+
+// gmsh keeps its state in globals, so there is one.
+static FemMeshGmshLibrary gmsh;
 
 enum { GMSH_TRIANGLE = 2, GMSH_TETRAHEDRON = 4, GMSH_SECOND_ORDER_TETRAHEDRON = 11 };
 
@@ -25,30 +28,30 @@ static Status fail(const char *doing) {
   char **lines = NULL, reason[512] = "it gives no reason; perhaps a count in the file is wrong";
   size_t count = 0;
   int error = 0;
-  gmshLoggerGet(&lines, &count, &error);
+  gmsh.LoggerGet(&lines, &count, &error);
   bool is_found = false;
   for (size_t k = 0; !error && k < count; k++) {
     if (!is_found && strncmp(lines[k], "Error: ", 7) == 0) {
       snprintf(reason, sizeof reason, "%s", lines[k] + 7);
       is_found = true;
     }
-    gmshFree(lines[k]);
+    gmsh.Free(lines[k]);
   }
-  gmshFree(lines);
+  gmsh.Free(lines);
   return status_fail(STATUS_INPUT, "gmsh could not %s: %s", doing, reason);
 }
 
 static Status set_option(const char *name, double value) {
   int error = 0;
-  gmshOptionSetNumber(name, value, &error);
+  gmsh.OptionSetNumber(name, value, &error);
   return error ? fail("take an option") : STATUS_OK;
 }
 
 static Status start(void) {
   int error = 0;
-  gmshInitialize(0, NULL, 0, &error);
+  gmsh.Initialize(0, NULL, 0, &error);
   if (error) return fail("start");
-  gmshLoggerStart(&error);
+  gmsh.LoggerStart(&error);
   static const struct {
     const char *name;
     double value;
@@ -70,13 +73,13 @@ typedef struct Elements {
 static Status get_elements(Elements *elements, int type) {
   int error = 0;
   *elements = (Elements){0};
-  gmshModelMeshGetElementsByType(type, &elements->tags, &elements->count, &elements->nodes,
-                                 &elements->node_count, -1, 0, 1, &error);
+  gmsh.ModelMeshGetElementsByType(type, &elements->tags, &elements->count, &elements->nodes,
+                                  &elements->node_count, -1, 0, 1, &error);
   return error ? fail("list the elements") : STATUS_OK;
 }
 
 static void free_elements(Elements *elements) {
-  gmshFree(elements->tags), gmshFree(elements->nodes);
+  gmsh.Free(elements->tags), gmsh.Free(elements->nodes);
 }
 
 // The node numbers of the file, sorted, with their place among the nodes.
@@ -102,9 +105,9 @@ static Status get_nodes(Nodes *nodes) {
   double *parameters = NULL;
   int error = 0;
   *nodes = (Nodes){0};
-  gmshModelMeshGetNodes(&nodes->tags, &count, &nodes->positions, &position_count, &parameters,
-                        &parameter_count, -1, -1, 0, 0, &error);
-  gmshFree(parameters);
+  gmsh.ModelMeshGetNodes(&nodes->tags, &count, &nodes->positions, &position_count, &parameters,
+                         &parameter_count, -1, -1, 0, 0, &error);
+  gmsh.Free(parameters);
   if (error) return fail("list the nodes");
   if (count > FEM_MESH_MAX_VERTICES)
     return status_fail(STATUS_INPUT, "%zu vertices are more than the %d that can be numbered", count,
@@ -118,7 +121,7 @@ static Status get_nodes(Nodes *nodes) {
 }
 
 static void free_nodes(Nodes *nodes) {
-  gmshFree(nodes->tags), gmshFree(nodes->positions);
+  gmsh.Free(nodes->tags), gmsh.Free(nodes->positions);
   memory_free(nodes->index);
 }
 
@@ -149,13 +152,13 @@ static Status refuse_type(int type) {
   double *local = NULL;
   size_t local_count = 0;
   int dimension = 0, order = 0, node_count = 0, primary_count = 0, error = 0;
-  gmshModelMeshGetElementProperties(type, &name, &dimension, &order, &node_count, &local, &local_count,
-                                    &primary_count, &error);
-  gmshFree(local);
+  gmsh.ModelMeshGetElementProperties(type, &name, &dimension, &order, &node_count, &local, &local_count,
+                                     &primary_count, &error);
+  gmsh.Free(local);
   Elements elements;
   Status status = get_elements(&elements, type);
   if (status != STATUS_OK) {
-    gmshFree(name);
+    gmsh.Free(name);
     return status;
   }
   status_fail(STATUS_INPUT,
@@ -163,7 +166,7 @@ static Status refuse_type(int type) {
               "10 nodes are known: mesh it anew with those (element order 1 or 2, no recombination)",
               elements.count, error ? "unknown" : name, node_count, elements.count ? elements.tags[0] : 0);
   free_elements(&elements);
-  gmshFree(name);
+  gmsh.Free(name);
   return STATUS_INPUT;
 }
 
@@ -193,14 +196,14 @@ static Status check_one_order(int type) {
   size_t *room = NULL, room_count = 0, *none = NULL, none_count = 0, type_count = 0, **element_tags = NULL;
   size_t *element_counts = NULL, list_count = 0, **node_tags = NULL, *node_counts = NULL, node_list_count = 0;
   size_t found = 0;
-  gmshModelMeshPreallocateElementsByType(type, 1, 0, &room, &room_count, &none, &none_count, -1, &error);
+  gmsh.ModelMeshPreallocateElementsByType(type, 1, 0, &room, &room_count, &none, &none_count, -1, &error);
   if (!error)
-    gmshModelMeshGetElements(&types, &type_count, &element_tags, &element_counts, &list_count, &node_tags,
-                             &node_counts, &node_list_count, 3, -1, &error);
-  for (size_t k = 0; k < list_count; k++) found += element_counts[k], gmshFree(element_tags[k]);
-  for (size_t k = 0; k < node_list_count; k++) gmshFree(node_tags[k]);
-  gmshFree(room), gmshFree(none), gmshFree(types), gmshFree(element_tags), gmshFree(element_counts),
-      gmshFree(node_tags), gmshFree(node_counts);
+    gmsh.ModelMeshGetElements(&types, &type_count, &element_tags, &element_counts, &list_count, &node_tags,
+                              &node_counts, &node_list_count, 3, -1, &error);
+  for (size_t k = 0; k < list_count; k++) found += element_counts[k], gmsh.Free(element_tags[k]);
+  for (size_t k = 0; k < node_list_count; k++) gmsh.Free(node_tags[k]);
+  gmsh.Free(room), gmsh.Free(none), gmsh.Free(types), gmsh.Free(element_tags), gmsh.Free(element_counts),
+      gmsh.Free(node_tags), gmsh.Free(node_counts);
   if (error) return fail("count the elements");
   return found == room_count ? STATUS_OK : refuse_two_orders();
 }
@@ -209,7 +212,7 @@ static Status check_one_order(int type) {
 static Status find_type(int *type) {
   int *types = NULL, error = 0;
   size_t count = 0;
-  gmshModelMeshGetElementTypes(&types, &count, 3, -1, &error);
+  gmsh.ModelMeshGetElementTypes(&types, &count, 3, -1, &error);
   if (error) return fail("list the types of elements");
   Status status = count ? STATUS_OK : refuse_without_tets();
   for (size_t k = 0; k < count && status == STATUS_OK; k++)
@@ -218,7 +221,7 @@ static Status find_type(int *type) {
   if (status == STATUS_OK && count > 1) status = refuse_two_orders();
   if (status == STATUS_OK) status = check_one_order(types[0]);
   if (status == STATUS_OK) *type = types[0];
-  gmshFree(types);
+  gmsh.Free(types);
   return status;
 }
 
@@ -280,10 +283,10 @@ static Status take_physical_group(FemMeshSource *source, const Nodes *nodes, con
   size_t *tags = NULL, count = 0, position_count = 0;
   double *positions = NULL;
   int error = 0;
-  gmshModelMeshGetNodesForPhysicalGroup(dimension, tag, &tags, &count, &positions, &position_count, &error);
+  gmsh.ModelMeshGetNodesForPhysicalGroup(dimension, tag, &tags, &count, &positions, &position_count, &error);
   Status status =
       error ? fail("list the nodes of a physical group") : add_to_group(source, nodes, name, tags, count);
-  gmshFree(tags), gmshFree(positions);
+  gmsh.Free(tags), gmsh.Free(positions);
   return status;
 }
 
@@ -293,16 +296,16 @@ static Status take_entity(FemMeshSource *source, const Nodes *nodes, const char 
   int *types = NULL, error = 0;
   size_t type_count = 0, **element_tags = NULL, *element_counts = NULL, list_count = 0;
   size_t **node_tags = NULL, *node_counts = NULL, node_list_count = 0;
-  gmshModelMeshGetElements(&types, &type_count, &element_tags, &element_counts, &list_count, &node_tags,
-                           &node_counts, &node_list_count, dimension, tag, &error);
+  gmsh.ModelMeshGetElements(&types, &type_count, &element_tags, &element_counts, &list_count, &node_tags,
+                            &node_counts, &node_list_count, dimension, tag, &error);
   Status status = error ? fail("list the elements of an entity") : STATUS_OK;
   for (size_t k = 0; k < node_list_count; k++) {
     if (status == STATUS_OK) status = add_to_group(source, nodes, name, node_tags[k], node_counts[k]);
-    gmshFree(node_tags[k]);
+    gmsh.Free(node_tags[k]);
   }
-  for (size_t k = 0; k < list_count; k++) gmshFree(element_tags[k]);
-  gmshFree(types), gmshFree(element_tags), gmshFree(element_counts), gmshFree(node_tags),
-      gmshFree(node_counts);
+  for (size_t k = 0; k < list_count; k++) gmsh.Free(element_tags[k]);
+  gmsh.Free(types), gmsh.Free(element_tags), gmsh.Free(element_counts), gmsh.Free(node_tags),
+      gmsh.Free(node_counts);
   return status;
 }
 
@@ -316,11 +319,11 @@ static Status take_group_list(FemMeshSource *source, const Nodes *nodes, const i
     int dimension = pairs[2 * k], tag = pairs[2 * k + 1], error = 0;
     char *given = NULL, name[32];
     snprintf(name, sizeof name, "%s_%d", kinds[dimension], tag);
-    if (are_physical) gmshModelGetPhysicalName(dimension, tag, &given, &error);
+    if (are_physical) gmsh.ModelGetPhysicalName(dimension, tag, &given, &error);
     const char *chosen = given && given[0] ? given : name;
     Status status = are_physical ? take_physical_group(source, nodes, chosen, dimension, tag)
                                  : take_entity(source, nodes, chosen, dimension, tag);
-    gmshFree(given);
+    gmsh.Free(given);
     TRY(status);
   }
   return STATUS_OK;
@@ -329,15 +332,15 @@ static Status take_group_list(FemMeshSource *source, const Nodes *nodes, const i
 static Status take_groups(FemMeshSource *source, const Nodes *nodes) {
   int *pairs = NULL, error = 0;
   size_t count = 0;
-  gmshModelGetPhysicalGroups(&pairs, &count, -1, &error);
+  gmsh.ModelGetPhysicalGroups(&pairs, &count, -1, &error);
   bool are_physical = !error && count > 0;
   if (!error && !are_physical) {
-    gmshFree(pairs), pairs = NULL;
-    gmshModelGetEntities(&pairs, &count, -1, &error);
+    gmsh.Free(pairs), pairs = NULL;
+    gmsh.ModelGetEntities(&pairs, &count, -1, &error);
   }
   Status status =
       error ? fail("list the groups") : take_group_list(source, nodes, pairs, count / 2, are_physical);
-  gmshFree(pairs);
+  gmsh.Free(pairs);
   return status;
 }
 
@@ -381,7 +384,7 @@ static Status check_shell(size_t *triangle_count) {
 static Status set_size(double size) {
   double low[3], high[3], volume = 1;
   int error = 0;
-  gmshModelGetBoundingBox(-1, -1, &low[0], &low[1], &low[2], &high[0], &high[1], &high[2], &error);
+  gmsh.ModelGetBoundingBox(-1, -1, &low[0], &low[1], &low[2], &high[0], &high[1], &high[2], &error);
   if (error) return fail("find the bounding box");
   for (int c = 0; c < 3; c++) volume *= fmax(high[c] - low[c], size);
   // A regular tetrahedron of edge a has a³/(6√2).
@@ -399,13 +402,13 @@ static Status set_size(double size) {
 static Status generate(int seed) {
   int error = 0;
   TRY(set_option("Mesh.RandomSeed", seed));
-  gmshModelMeshGenerate(3, &error);
+  gmsh.ModelMeshGenerate(3, &error);
   return error ? fail("mesh it") : STATUS_OK;
 }
 
 static Status clear_mesh(void) {
   int error = 0;
-  gmshModelMeshClear(NULL, 0, &error);
+  gmsh.ModelMeshClear(NULL, 0, &error);
   return error ? fail("mesh it again") : STATUS_OK;
 }
 
@@ -445,15 +448,15 @@ static Status generate_well(void) {
 static Status add_volume(void) {
   int *pairs = NULL, error = 0;
   size_t count = 0;
-  gmshModelGetEntities(&pairs, &count, 2, &error);
+  gmsh.ModelGetEntities(&pairs, &count, 2, &error);
   if (error) return fail("list the surfaces");
   for (size_t k = 0; k < count / 2; k++) pairs[k] = pairs[2 * k + 1];
-  int loop = gmshModelGeoAddSurfaceLoop(pairs, count / 2, -1, &error);
-  gmshFree(pairs);
+  int loop = gmsh.ModelGeoAddSurfaceLoop(pairs, count / 2, -1, &error);
+  gmsh.Free(pairs);
   if (error) return fail("close the surface");
-  gmshModelGeoAddVolume(&loop, 1, -1, &error);
+  gmsh.ModelGeoAddVolume(&loop, 1, -1, &error);
   if (error) return fail("make a volume of the surface");
-  gmshModelGeoSynchronize(&error);
+  gmsh.ModelGeoSynchronize(&error);
   return error ? fail("make a volume of the surface") : STATUS_OK;
 }
 
@@ -464,13 +467,13 @@ static Status remesh_surface(size_t triangle_count) {
   // to split (a tetrahedron has four): cut each into four, which changes no shape.
   enum { ENOUGH_TRIANGLES = 256 };
   for (size_t count = triangle_count; count < ENOUGH_TRIANGLES; count *= 4) {
-    gmshModelMeshRefine(&error);
+    gmsh.ModelMeshRefine(&error);
     if (error) return fail("refine the surface");
   }
   const double degree = acos(-1) / 180;
-  gmshModelMeshClassifySurfaces(40 * degree, 1, 1, 180 * degree, 1, &error);
+  gmsh.ModelMeshClassifySurfaces(40 * degree, 1, 1, 180 * degree, 1, &error);
   if (error) return fail("divide the surface into smooth patches");
-  gmshModelMeshCreateGeometry(NULL, 0, &error);
+  gmsh.ModelMeshCreateGeometry(NULL, 0, &error);
   return error ? fail("parametrise the surface") : STATUS_OK;
 }
 
@@ -489,8 +492,8 @@ static Status mesh_stl(double size) {
 static Status mesh_geo(double size) {
   int *types = NULL, error = 0;
   size_t count = 0;
-  gmshModelMeshGetElementTypes(&types, &count, 3, -1, &error);
-  gmshFree(types);
+  gmsh.ModelMeshGetElementTypes(&types, &count, 3, -1, &error);
+  gmsh.Free(types);
   if (error) return fail("list the types of elements");
   // The script has meshed itself.
   if (count > 0) return STATUS_OK;
@@ -506,7 +509,7 @@ static bool ends_in(const char *path, const char *ending) {
 static Status read_all(FemMeshSource *source, const char *path, double size) {
   int error = 0;
   TRY(start());
-  gmshOpen(path, &error);
+  gmsh.Open(path, &error);
   bool is_stl = ends_in(path, ".stl"), is_geo = ends_in(path, ".geo");
   if (error) return fail(is_geo ? "run it" : "read it (is the file complete?)");
   if (is_stl) TRY(mesh_stl(size));
@@ -516,9 +519,10 @@ static Status read_all(FemMeshSource *source, const char *path, double size) {
 
 Status fem_mesh_gmsh_read(FemMeshSource *source, const char *path, const FemMeshOptions *options) {
   *source = (FemMeshSource){0};
+  TRY(fem_mesh_gmsh_library_load(&gmsh));
   Status status = read_all(source, path, options->size);
   int error = 0;
-  gmshFinalize(&error);
+  gmsh.Finalize(&error);
   if (status != STATUS_OK) fem_mesh_source_destroy(source);
   return status;
 }

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The functions of gmsh's C API that we call, found in its library when a mesh is first read by it. The
+// program is not linked to gmsh: with the hundred libraries that gmsh brings along, each start took half a
+// second.
+#ifndef TETLAP_FEM_MESH_READER_GMSH_LIBRARY_H
+#define TETLAP_FEM_MESH_READER_GMSH_LIBRARY_H
+
+#include <gmshc.h>
+
+#include "base/status.h"
+
+// Names without their "gmsh".
+#define FEM_GMSH_FUNCTIONS(FUNCTION)                                                                         \
+  FUNCTION(Finalize)                                                                                         \
+  FUNCTION(Free)                                                                                             \
+  FUNCTION(Initialize)                                                                                       \
+  FUNCTION(LoggerGet)                                                                                        \
+  FUNCTION(LoggerStart)                                                                                      \
+  FUNCTION(ModelGeoAddSurfaceLoop)                                                                           \
+  FUNCTION(ModelGeoAddVolume)                                                                                \
+  FUNCTION(ModelGeoSynchronize)                                                                              \
+  FUNCTION(ModelGetBoundingBox)                                                                              \
+  FUNCTION(ModelGetEntities)                                                                                 \
+  FUNCTION(ModelGetPhysicalGroups)                                                                           \
+  FUNCTION(ModelGetPhysicalName)                                                                             \
+  FUNCTION(ModelMeshClassifySurfaces)                                                                        \
+  FUNCTION(ModelMeshClear)                                                                                   \
+  FUNCTION(ModelMeshCreateGeometry)                                                                          \
+  FUNCTION(ModelMeshGenerate)                                                                                \
+  FUNCTION(ModelMeshGetElementProperties)                                                                    \
+  FUNCTION(ModelMeshGetElementTypes)                                                                         \
+  FUNCTION(ModelMeshGetElements)                                                                             \
+  FUNCTION(ModelMeshGetElementsByType)                                                                       \
+  FUNCTION(ModelMeshGetNodes)                                                                                \
+  FUNCTION(ModelMeshGetNodesForPhysicalGroup)                                                                \
+  FUNCTION(ModelMeshPreallocateElementsByType)                                                               \
+  FUNCTION(ModelMeshRefine)                                                                                  \
+  FUNCTION(Open)                                                                                             \
+  FUNCTION(OptionSetNumber)
+
+typedef struct FemMeshGmshLibrary {
+#define FEM_GMSH_FIELD(name) __typeof__(gmsh##name) *name;
+  FEM_GMSH_FUNCTIONS(FEM_GMSH_FIELD)
+#undef FEM_GMSH_FIELD
+} FemMeshGmshLibrary;
+
+// The library stays loaded until the process ends. STATUS_IO: it is not installed, or is another than the one
+// whose header tetlap was compiled with; the message names it.
+Status fem_mesh_gmsh_library_load(FemMeshGmshLibrary *library);
+
+#endif
