@@ -5,8 +5,11 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { MOST_THREADS = 1024 };
+#include "base/text.h"
+
+enum { MOST_THREADS = 1024, MOST_WORDS = 64 };
 
 long long app_argument_integer(struct argp_state *state, const char *option, const char *text,
                                long long least, long long most) {
@@ -49,4 +52,32 @@ uint64_t app_argument_seed(struct argp_state *state, const char *text) {
 
 int app_argument_threads(struct argp_state *state, const char *text) {
   return (int)app_argument_integer(state, "threads", text, 1, MOST_THREADS);
+}
+
+int app_argument_list(struct argp_state *state, const char *option, char *text, const char *example, int most,
+                      const char **words) {
+  char *given = strdup(text);
+  int count = text_split(text, words, most);
+  if (count < 0)
+    argp_error(state, "--%s names more than the %d that there may be", option, most);
+  else if (count == 0)
+    argp_error(state, "--%s is '%s', in which a name is empty; give names with a comma between, as in %s",
+               option, given ? given : "", example);
+  free(given);
+  return count;
+}
+
+const char *app_argument_words(struct argp_state *state, const char *option, char *text,
+                               const char *example) {
+  const char *words[MOST_WORDS];
+  int count = app_argument_list(state, option, text, example, MOST_WORDS, words);
+  char *end = text;
+  for (int w = 0; w < count; w++) {
+    size_t length = strlen(words[w]);
+    if (w > 0) *end++ = ',';
+    memmove(end, words[w], length);
+    end += length;
+  }
+  *end = 0;
+  return text;
 }

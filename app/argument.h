@@ -19,4 +19,12 @@ uint64_t app_argument_seed(struct argp_state *state, const char *text);
 // Of --threads: 1 to 1024.
 int app_argument_threads(struct argp_state *state, const char *text);
 
+// Of a list such as "clip, geo": cut in place at its commas, blanks around a word left out. Fills `words`
+// (most), which point into `text`, and returns how many there are, at least 1. `example` is a list that would
+// be right.
+int app_argument_list(struct argp_state *state, const char *option, char *text, const char *example, int most,
+                      const char **words);
+// The same list as one text, with nothing but a comma between its words; it stays where it is.
+const char *app_argument_words(struct argp_state *state, const char *option, char *text, const char *example);
+
 #endif

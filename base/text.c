@@ -63,6 +63,28 @@ bool text_lists(const char *list, const char *word) {
   return false;
 }
 
+// The word that begins at `text`, without the blanks around it; `*text` moves behind it and its comma, or
+// becomes NULL.
+static char *cut_word(char **text) {
+  char *word = *text + strspn(*text, " \t"), *comma = word + strcspn(word, ",");
+  char *end = comma;
+  *text = *comma ? comma + 1 : NULL;
+  while (end > word && (end[-1] == ' ' || end[-1] == '\t')) end--;
+  *end = 0;
+  return word;
+}
+
+int text_split(char *list, const char **words, int most) {
+  int count = 0;
+  for (char *rest = list; rest;) {
+    const char *word = cut_word(&rest);
+    if (!*word) return 0;
+    if (count == most) return -1;
+    words[count++] = word;
+  }
+  return count;
+}
+
 void text_append(char *buffer, size_t size, size_t *used, const char *format, ...) {
   if (*used >= size) return;
   va_list args;

@@ -57,9 +57,34 @@ START_TEST(an_option_that_is_no_number_in_its_range_is_a_usage_error) {
 }
 END_TEST
 
+START_TEST(a_list_with_an_empty_name_is_a_usage_error_and_blanks_are_none) {
+  const char *scene = TETLAP_SOURCE_DIR "/examples/02_two_blocks.yaml";
+  static const char *const wrong[] = {"compare %s --overlap \"\"",
+                                      "compare %s --overlap ,",
+                                      "compare %s --overlap clip --audit-only ,",
+                                      "pareto -m \"\"",
+                                      "pareto -m clip,,geo",
+                                      "bench overlap --model \"\"",
+                                      "bench net --net ,",
+                                      "bench overlap -b 4,,8",
+                                      "bench precision %s --overlap \"\"",
+                                      "stress --quick --overlap \"\"",
+                                      "datagen --list --mix ,",
+                                      "plot pareto.json -o x.svg --quantity ,",
+                                      "bench overlap --model clip,cilp"};
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    char arguments[400];
+    snprintf(arguments, sizeof arguments, wrong[i], scene);
+    ck_assert_msg(exit_code_of(arguments) == 64, "tetlap %s", arguments);
+  }
+  ck_assert_int_eq(exit_code_of("bench overlap --model \"clip, exact\" --batch 8 --repeat 1 --set near"), 0);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("program");
   tcase_add_test(cases, exit_codes_say_who_is_to_blame);
   tcase_add_test(cases, an_option_that_is_no_number_in_its_range_is_a_usage_error);
+  tcase_add_test(cases, a_list_with_an_empty_name_is_a_usage_error_and_blanks_are_none);
   return suite_run("program", cases, 60);
 }

@@ -40,10 +40,37 @@ START_TEST(utf8_is_told_from_what_is_not) {
 }
 END_TEST
 
+static int split(const char *list, const char **words) {
+  static char text[64];
+  strcpy(text, list);
+  return text_split(text, words, 3);
+}
+
+START_TEST(a_list_is_cut_at_commas_and_blanks_around_words_are_left_out) {
+  const char *words[3];
+  ck_assert_int_eq(split("clip", words), 1);
+  ck_assert_str_eq(words[0], "clip");
+  ck_assert_int_eq(split(" clip ,\tmy weights.safetensors, geo", words), 3);
+  ck_assert_str_eq(words[0], "clip");
+  ck_assert_str_eq(words[1], "my weights.safetensors");
+  ck_assert_str_eq(words[2], "geo");
+}
+END_TEST
+
+START_TEST(a_list_with_an_empty_word_or_too_many_is_none) {
+  const char *words[3];
+  static const char *const empty[] = {"", " ", ",", "clip,", ",clip", "clip, ,geo"};
+  for (int i = 0; i < 6; i++) ck_assert_int_eq(split(empty[i], words), 0);
+  ck_assert_int_eq(split("a,b,c,d", words), -1);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("text");
   tcase_add_test(cases, distances_count_slips_of_the_finger);
   tcase_add_test(cases, a_guess_is_near_or_none);
   tcase_add_test(cases, utf8_is_told_from_what_is_not);
+  tcase_add_test(cases, a_list_is_cut_at_commas_and_blanks_around_words_are_left_out);
+  tcase_add_test(cases, a_list_with_an_empty_word_or_too_many_is_none);
   return suite_run("text", cases, 60);
 }

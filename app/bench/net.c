@@ -5,6 +5,7 @@
 #include <omp.h>
 #include <string.h>
 
+#include "app/argument.h"
 #include "app/bench/command.h"
 #include "app/bench/peak.h"
 #include "app/bench/report.h"
@@ -27,7 +28,7 @@ static const uint64_t SEED = 5;
 
 typedef struct Options {
   AppBenchOptions common;
-  char *nets[MAX_NETS]; // names or weights files
+  const char *nets[MAX_NETS]; // names or weights files
   int net_count;
   bool wants_quantity[QUANTITY_COUNT], has_torch;
   int batches[APP_BENCH_MAX_LIST], batch_count;
@@ -44,16 +45,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static void read_nets(struct argp_state *state, char *text, Options *options) {
-  char *rest = NULL;
-  options->net_count = 0;
-  for (char *name = strtok_r(text, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
-    if (options->net_count == MAX_NETS) argp_error(state, "at most %d networks", MAX_NETS);
-    options->nets[options->net_count++] = name;
-  }
-  if (options->net_count == 0) argp_error(state, "--net is empty; name networks, as in tpn,geo");
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   switch (key) {
@@ -61,7 +52,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[0] = &options->common;
     return 0;
   case 'm':
-    read_nets(state, text, options);
+    options->net_count = app_argument_list(state, "net", text, "tpn,geo", MAX_NETS, options->nets);
     return 0;
   case 'Q':
     app_bench_options_choose(state, "quantity", text, quantities, QUANTITY_COUNT, options->wants_quantity);
@@ -508,9 +499,8 @@ int app_bench_net_run(int argument_count, char **arguments) {
       .options = option_table,
       .parse = parse,
       .doc = "Measure networks without their geometry, by our kernels and by PyTorch where it is installed."};
-  static char first[] = "tpn", second[] = "geo", third[] = "geo-small";
   Options options = {.common = app_bench_options_default(9),
-                     .nets = {first, second, third},
+                     .nets = {"tpn", "geo", "geo-small"},
                      .net_count = 3,
                      .wants_quantity = {true, true},
                      .has_torch = true,

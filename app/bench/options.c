@@ -50,14 +50,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 const struct argp app_bench_options_argp = {.options = option_table, .parser = parse};
 
-static int find(const char *word, size_t length, const char *const *names, int count) {
+static int find(const char *word, const char *const *names, int count) {
   int found = 0;
-  while (found < count && !(strlen(names[found]) == length && strncmp(names[found], word, length) == 0))
-    found++;
+  while (found < count && strcmp(names[found], word) != 0) found++;
   return found;
 }
 
-void app_bench_options_choose(struct argp_state *state, const char *option, const char *text,
+void app_bench_options_choose(struct argp_state *state, const char *option, char *text,
                               const char *const *names, int count, bool *wanted) {
   char known[256] = "";
   size_t used = 0;
@@ -65,36 +64,28 @@ void app_bench_options_choose(struct argp_state *state, const char *option, cons
     text_append(known, sizeof known, &used, "%s%s", i ? ", " : "", names[i]);
     wanted[i] = false;
   }
-  for (const char *rest = text;; rest++) {
-    size_t length = strcspn(rest, ",");
-    int found = find(rest, length, names, count);
-    if (found == count) {
-      argp_error(state, "--%s has '%.*s'; give some of: %s", option, (int)length, rest, known);
-      return;
-    }
-    wanted[found] = true;
-    rest += length;
-    if (!*rest) return;
+  enum { MOST_CHOICES = 64 };
+  const char *words[MOST_CHOICES];
+  int word_count = app_argument_list(state, option, text, names[0], MOST_CHOICES, words);
+  for (int w = 0; w < word_count; w++) {
+    int found = find(words[w], names, count);
+    if (found == count)
+      argp_error(state, "--%s has '%s'; give some of: %s", option, words[w], known);
+    else
+      wanted[found] = true;
   }
 }
 
-int app_bench_options_numbers(struct argp_state *state, const char *option, const char *text, double smallest,
+int app_bench_options_numbers(struct argp_state *state, const char *option, char *text, double smallest,
                               double largest, double *numbers) {
-  const char *rest = text;
-  for (int count = 0; count < APP_BENCH_MAX_LIST; rest++) {
-    char *end;
-    double value = strtod(rest, &end);
-    if (end == rest || (*end && *end != ',') || !(value >= smallest && value <= largest)) break;
-    numbers[count++] = value;
-    rest = end;
-    if (!*rest) return count;
-  }
-  argp_error(state, "--%s is '%s'; give up to %d numbers from %g to %g, separated by commas", option, text,
-             APP_BENCH_MAX_LIST, smallest, largest);
-  return 0;
+  const char *words[APP_BENCH_MAX_LIST];
+  int count = app_argument_list(state, option, text, "1,2", APP_BENCH_MAX_LIST, words);
+  for (int w = 0; w < count; w++)
+    numbers[w] = app_argument_number(state, option, words[w], smallest, largest);
+  return count;
 }
 
-int app_bench_options_counts(struct argp_state *state, const char *option, const char *text, int largest,
+int app_bench_options_counts(struct argp_state *state, const char *option, char *text, int largest,
                              int *counts) {
   double numbers[APP_BENCH_MAX_LIST];
   int count = app_bench_options_numbers(state, option, text, 1, largest, numbers);

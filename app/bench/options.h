@@ -34,14 +34,14 @@ extern const struct argp app_bench_options_argp;
 
 // Readers of an option's text. Each ends the program with what would be right (argp_error) if it is wrong.
 // Marks each name of a comma-separated list in `wanted` (count), the others not.
-void app_bench_options_choose(struct argp_state *state, const char *option, const char *text,
+void app_bench_options_choose(struct argp_state *state, const char *option, char *text,
                               const char *const *names, int count, bool *wanted);
 // Fills `counts` (APP_BENCH_MAX_LIST) with whole numbers from 1 from a comma-separated list; returns how
 // many. 1e6 is one.
-int app_bench_options_counts(struct argp_state *state, const char *option, const char *text, int largest,
+int app_bench_options_counts(struct argp_state *state, const char *option, char *text, int largest,
                              int *counts);
 // The same of any numbers.
-int app_bench_options_numbers(struct argp_state *state, const char *option, const char *text, double smallest,
+int app_bench_options_numbers(struct argp_state *state, const char *option, char *text, double smallest,
                               double largest, double *numbers);
 
 #endif

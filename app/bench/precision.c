@@ -23,7 +23,7 @@ typedef struct Options {
   AppBenchOptions common;
   const char *scenes[MAX_SCENES];
   int scene_count;
-  char *overlaps[MAX_OVERLAPS]; // names or weights files
+  const char *overlaps[MAX_OVERLAPS]; // names or weights files
   int overlap_count;
   double tolerances[APP_BENCH_MAX_LIST], levels[APP_BENCH_MAX_LIST];
   int tolerance_count, level_count;
@@ -50,16 +50,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static void read_overlaps(struct argp_state *state, char *text, Options *options) {
-  char *rest = NULL;
-  options->overlap_count = 0;
-  for (char *name = strtok_r(text, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
-    if (options->overlap_count == MAX_OVERLAPS) argp_error(state, "at most %d overlap models", MAX_OVERLAPS);
-    options->overlaps[options->overlap_count++] = name;
-  }
-  if (options->overlap_count == 0) argp_error(state, "--overlap is empty; name models, as in clip,geo");
-}
-
 static error_t parse_argument(char *text, Options *options, struct argp_state *state) {
   if (options->scene_count == MAX_SCENES) argp_error(state, "at most %d scenes", MAX_SCENES);
   options->scenes[options->scene_count++] = text;
@@ -73,7 +63,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[0] = &options->common;
     return 0;
   case 'm':
-    read_overlaps(state, text, options);
+    options->overlap_count =
+        app_argument_list(state, "overlap", text, "clip,geo", MAX_OVERLAPS, options->overlaps);
     return 0;
   case 'e':
     options->tolerance_count =
@@ -309,8 +300,8 @@ static Status summarise(const Options *options, const Table *table) {
                                 .force_error = row->force,
                                 .trajectory_error = row->trajectory};
   }
-  Status status = app_precision_summary_print(&options->common, (const char *const *)options->overlaps,
-                                              options->overlap_count, runs, table->count);
+  Status status = app_precision_summary_print(&options->common, options->overlaps, options->overlap_count,
+                                              runs, table->count);
   memory_free(runs);
   return status;
 }
@@ -341,9 +332,8 @@ int app_bench_precision_run(int argument_count, char **arguments) {
       .doc =
           "Measure what precision costs: whole runs with every overlap model, at every tolerance, on every "
           "mesh level, against a reference at a far smaller tolerance."};
-  static char first[] = "clip", second[] = "geo", third[] = "geo-small";
   Options options = {.common = app_bench_options_default(1),
-                     .overlaps = {first, second, third},
+                     .overlaps = {"clip", "geo", "geo-small"},
                      .overlap_count = 3,
                      .tolerances = {1e-3, 3e-4, 1e-4, 3e-5},
                      .tolerance_count = 4,

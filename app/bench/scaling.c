@@ -52,7 +52,7 @@ static int list_models(const char *names[MAX_MODELS]) {
   return count;
 }
 
-static int read_sizes(struct argp_state *state, const char *option, const char *text, int *sizes) {
+static int read_sizes(struct argp_state *state, const char *option, char *text, int *sizes) {
   return strcmp(text, "0") == 0 ? 0 : app_bench_options_counts(state, option, text, 100000000, sizes);
 }
 

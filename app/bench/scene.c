@@ -29,7 +29,7 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static void choose_overlaps(struct argp_state *state, const char *text, Options *options) {
+static void choose_overlaps(struct argp_state *state, char *text, Options *options) {
   const char *names[MAX_OVERLAPS];
   bool wanted[MAX_OVERLAPS];
   int count;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/compare.h"
 
+#include <limits.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "app/argument.h"
 #include "app/compare/comparison.h"
 #include "app/job.h"
 #include "base/clock.h"
@@ -16,7 +17,8 @@
 
 typedef struct CompareOptions {
   AppJobOptions job;
-  char *overlaps, *audit_only; // comma-separated
+  const char *overlaps[APP_MAX_MODELS], *audited[APP_MAX_MODELS]; // names; the latter get no run of their own
+  int overlap_count, audited_count;
   const char *reference;
   int audit_every;
 } CompareOptions;
@@ -36,27 +38,26 @@ static const struct argp_option option_table[] = {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   CompareOptions *options = state->input;
-  char *end;
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &options->job;
     break;
   case 'm':
-    options->overlaps = text;
+    options->overlap_count =
+        app_argument_list(state, "overlap", text, "clip,exact", APP_MAX_MODELS, options->overlaps);
     break;
   case KEY_REFERENCE:
     options->reference = text;
     break;
   case KEY_AUDIT_ONLY:
-    options->audit_only = text;
+    options->audited_count =
+        app_argument_list(state, "audit-only", text, "exact,cgal", APP_MAX_MODELS, options->audited);
     break;
   case KEY_AUDIT:
-    options->audit_every = (int)strtol(text, &end, 10);
-    if (*end || end == text || options->audit_every < 0)
-      argp_error(state, "--audit takes a whole number, not '%s'", text);
+    options->audit_every = (int)app_argument_integer(state, "audit", text, 0, INT_MAX);
     break;
   case ARGP_KEY_END:
-    if (!options->overlaps) argp_error(state, "name the models, as in --overlap clip,exact");
+    if (!options->overlap_count) argp_error(state, "name the models, as in --overlap clip,exact");
     break;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -80,17 +81,17 @@ static Status add_model(AppComparison *comparison, const FemSceneDef *scene, con
   return STATUS_OK;
 }
 
-static Status add_models(AppComparison *comparison, const FemSceneDef *scene, char *names, bool is_driven) {
-  char *rest = NULL;
-  for (char *name = strtok_r(names, ",", &rest); name; name = strtok_r(NULL, ",", &rest))
-    TRY(add_model(comparison, scene, name, is_driven));
+static Status add_models(AppComparison *comparison, const FemSceneDef *scene, const CompareOptions *options) {
+  for (int m = 0; m < options->overlap_count; m++)
+    TRY(add_model(comparison, scene, options->overlaps[m], true));
+  for (int m = 0; m < options->audited_count; m++)
+    TRY(add_model(comparison, scene, options->audited[m], false));
   return STATUS_OK;
 }
 
 static Status choose_models(AppComparison *comparison, const FemSceneDef *scene,
                             const CompareOptions *options) {
-  TRY(add_models(comparison, scene, options->overlaps, true));
-  if (options->audit_only) TRY(add_models(comparison, scene, options->audit_only, false));
+  TRY(add_models(comparison, scene, options));
   comparison->audit_every = options->audit_every;
   if (!options->reference) return STATUS_OK;
   for (int m = 0; m < comparison->model_count; m++)

@@ -102,7 +102,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     set_label(state, options, "label", text);
     return 0;
   case KEY_MIX:
-    options->mix = text;
+    options->mix = app_argument_words(state, "mix", text, "none=50,volumetric=50");
     return 0;
   case KEY_VOLUME:
     options->volume = text;

@@ -61,7 +61,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->source.seed = app_argument_seed(state, text);
     return 0;
   case KEY_MIX:
-    options->source.mix = text;
+    options->source.mix = app_argument_words(state, "mix", text, "none=50,volumetric=50");
     return 0;
   case KEY_VOLUME:
     options->source.volume = text;

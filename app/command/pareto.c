@@ -22,7 +22,8 @@ enum { MAX_OVERRIDES = 64 };
 typedef struct Options {
   AppPareto pareto; // what is measured and how
   const char *directory, *sweep, *reference;
-  char *models; // comma-separated; NULL: all
+  const char *models[APP_PARETO_MAX_MODELS];
+  int model_count; // 0: all
   const char *scenes[APP_PARETO_MAX_SCENES];
   int scene_count;
   bool wants_set[APP_BENCH_SET_COUNT];
@@ -83,7 +84,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->directory = text;
     return 0;
   case 'm':
-    options->models = text;
+    options->model_count =
+        app_argument_list(state, "model", text, "clip,geo", APP_PARETO_MAX_MODELS, options->models);
     return 0;
   case KEY_SWEEP:
     options->sweep = text;
@@ -122,10 +124,9 @@ static Status add_all(AppPareto *pareto) {
   return STATUS_OK;
 }
 
-static Status add_named(AppPareto *pareto, char *names) {
-  char *rest = NULL;
-  for (char *name = strtok_r(names, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
-    Status status = app_pareto_add_model(pareto, name);
+static Status add_named(AppPareto *pareto, const Options *options) {
+  for (int m = 0; m < options->model_count; m++) {
+    Status status = app_pareto_add_model(pareto, options->models[m]);
     if (status) return status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "--model") : status;
   }
   return STATUS_OK;
@@ -147,7 +148,7 @@ static Status add_sweep(AppPareto *pareto, const Options *options) {
 
 static Status measure(AppPareto *pareto, const Options *options) {
   TRY(app_pareto_create(pareto));
-  TRY(options->models ? add_named(pareto, options->models) : add_all(pareto));
+  TRY(options->model_count ? add_named(pareto, options) : add_all(pareto));
   if (options->sweep) TRY(add_sweep(pareto, options));
   for (int set = 0; set < 2; set++)
     if (options->wants_set[set]) TRY(app_pareto_pairs_measure(pareto, app_bench_sets[set]));

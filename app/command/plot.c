@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "app/argument.h"
 #include "app/plot/gnuplot.h"
 #include "app/plot/plot.h"
 #include "base/file.h"
@@ -35,7 +36,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->picture = text;
     return 0;
   case KEY_QUANTITY:
-    options->quantities = text;
+    options->quantities = app_argument_words(state, "quantity", text, "V,force");
     return 0;
   case 'q':
     options->is_quiet = true;

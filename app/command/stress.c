@@ -41,7 +41,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->stress.only = text;
     return 0;
   case 'm':
-    options->stress.models = text;
+    options->stress.models = app_argument_words(state, "overlap", text, "clip,geo");
     return 0;
   case KEY_PAIRS:
     options->stress.has_pairs = true;
