@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of the program, and what they wrote."""
+
+import copy
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+import tetlap
+
+DROP = {
+    "time": {"end": 0.1},
+    "effects": {"gravity": [0, 0, -9.81]},
+    "bodies": [
+        {
+            "name": "block",
+            "mesh": {"box": {"size": [0.2, 0.2, 0.2], "cells": 2}},
+            "place": {"translate": [0, 0, 0.005]},
+            "material": {"young": 1e5, "poisson": 0.3, "density": 1000},
+        }
+    ],
+    "obstacles": [{"name": "ground", "halfspace": {"point": [0, 0, 0], "normal": [0, 0, 1]}}],
+    "contact": {"stiffness": 1e6},
+    "output": {"frames": 5},
+}
+
+ENDLESS = copy.deepcopy(DROP)
+ENDLESS["time"] = {"end": 1e3, "max_step": 1e-3}
+ENDLESS["output"] = {"frames": 1_000_000}
+
+
+class RunsOfTheProgram(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.directory = Path(holder.name, "out")
+
+    def test_a_dict_is_a_scene(self):
+        run = tetlap.run(DROP, self.directory)
+        self.assertEqual(run.outcome, "finished")
+        self.assertEqual(len(run.frames), 6)
+        np.testing.assert_allclose(run.frames.times, np.linspace(0, 0.1, 6), rtol=1e-14)
+
+    def test_arrays_have_the_shapes_of_the_mesh(self):
+        frame = tetlap.run(DROP, self.directory).frames[-1]
+        self.assertEqual(frame.points.shape, (27, 3))
+        self.assertEqual(frame.cells.shape, (48, 4))
+        self.assertEqual(frame["velocity"].shape, (27, 3))
+        self.assertEqual(frame["stress"].shape, (48, 6))
+        self.assertEqual(frame["body"].tolist(), [0] * 48)
+        self.assertEqual(frame.obstacles[0].cells.shape[1], 3)
+
+    def test_frames_and_history_tell_the_same(self):
+        """The centre of mass from the points by hand: elements of one density, a quarter of each to its vertices."""
+        run = tetlap.run(DROP, self.directory)
+        first = run.frames[0]
+        edges = first.points[first.cells[:, 1:]] - first.points[first.cells[:, :1]]
+        mass = np.zeros(len(first.points))
+        np.add.at(mass, first.cells, np.abs(np.linalg.det(edges))[:, None] / 24)
+        points = run.frames.array("points")
+        centres = np.einsum("v,fvc->fc", mass / mass.sum(), points)
+        for c, axis in enumerate("xyz"):
+            np.testing.assert_allclose(run.history[f"centre_block_{axis}_m"], centres[:, c], rtol=1e-12)
+
+    def test_the_body_falls_and_is_held(self):
+        run = tetlap.run(DROP, self.directory, set={"time.end": 0.2})
+        free = run.history["time_s"] < np.sqrt(2 * 0.005 / 9.81)
+        fallen = 0.105 - run.history["centre_block_z_m"]
+        np.testing.assert_allclose(fallen[free], 9.81 / 2 * run.history["time_s"][free] ** 2, atol=2e-5)
+        self.assertGreater(run.history["force_block_ground_z_N"].max(), 8 * 9.81)
+
+    def test_displacement_is_points_minus_rest(self):
+        run = tetlap.run(DROP, self.directory)
+        rest = run.frames[0].points - run.frames[0]["displacement"]
+        np.testing.assert_allclose(run.frames[3].points, rest + run.frames[3]["displacement"], atol=1e-15)
+
+    def test_values_are_set(self):
+        for given in ({"output.frames": 2, "bodies.block.velocity": np.array([0, 0, -1.0])},
+                      ["output.frames=2", "bodies.block.velocity=[0, 0, -1]"]):
+            run = tetlap.run(DROP, self.directory, set=given)
+            self.assertEqual(len(run.frames), 3)
+            np.testing.assert_array_equal(run.frames[0]["velocity"], np.tile([0, 0, -1.0], (27, 1)))
+
+    def test_each_frame_is_handed_over_once_and_in_order(self):
+        times = []
+        run = tetlap.run(DROP, self.directory, on_frame=lambda frame: times.append(frame.time))
+        self.assertEqual(times, [frame.time for frame in run.frames])
+        again = []
+        tetlap.run(DROP, self.directory, set={"output.frames": 2}, on_frame=lambda frame: again.append(frame.time))
+        self.assertEqual(len(again), 3)
+
+    def test_a_function_that_returns_false_stops_the_run(self):
+        run = tetlap.run(ENDLESS, self.directory, on_frame=lambda frame: frame.time < 0.02)
+        self.assertEqual(run.outcome, "interrupted")
+        self.assertLess(run.summary["end_time"], 1e3)
+
+    def test_a_function_that_raises_stops_the_run(self):
+        def refuse(frame):
+            raise LookupError("enough")
+
+        with self.assertRaisesRegex(LookupError, "enough"):
+            tetlap.run(ENDLESS, self.directory, on_frame=refuse)
+        self.assertEqual(tetlap.read(self.directory).outcome, "interrupted")
+
+    def test_a_run_without_frames_says_that_no_function_was_called(self):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            run = tetlap.run(DROP, self.directory, set={"output.vtu": False}, on_frame=print)
+        self.assertIn("on_frame was not called", str(told[0].message))
+        self.assertEqual(len(run.frames), 0)
+        self.assertEqual(len(run.history), 6)
+
+    def test_an_interrupt_of_python_alone_stops_the_run(self):
+        """SIGINT to the Python process only, as an editor or a notebook sends it."""
+        Path(self.directory).mkdir()
+        scene = self.directory / "endless.json"
+        scene.write_text(json.dumps(ENDLESS))
+        words = [sys.executable, "-c", "import sys, tetlap; tetlap.run(sys.argv[1], sys.argv[2])", scene, self.directory]
+        python = subprocess.Popen(words, stderr=subprocess.PIPE, text=True, start_new_session=True)
+        try:
+            while not (self.directory / "frames.pvd").exists():
+                self.assertIsNone(python.poll(), "the run ended by itself")
+                time.sleep(0.02)
+            python.send_signal(signal.SIGINT)
+            _, told = python.communicate()
+        finally:
+            python.kill()
+        self.assertIn("KeyboardInterrupt", told)
+        self.assertEqual(python.returncode, -signal.SIGINT)
+        self.assertEqual(tetlap.read(self.directory).outcome, "interrupted")
+        # Nobody of that session is left: the run has ended, not only Python.
+        with self.assertRaises(ProcessLookupError):
+            os.killpg(python.pid, 0)
+
+    def test_a_temporary_folder_lives_as_long_as_its_frames(self):
+        frames = tetlap.run(DROP).frames
+        folder = frames[0].path.parent
+        self.assertEqual(len(frames.array("det_F")), 6)
+        del frames
+        self.assertFalse(folder.exists())
+
+    def test_meshes_of_a_dict_count_from_the_current_directory(self):
+        mesh = Path(os.environ["TETLAP_SOURCE_DIR"], "meshes", "sphere.msh")
+        scene = copy.deepcopy(DROP)
+        scene["bodies"][0]["mesh"] = os.path.relpath(mesh)
+        scene["bodies"][0]["place"] = {"translate": [0, 0, 5]}
+        run = tetlap.run(scene, self.directory, set={"time.end": 1e-3})
+        self.assertEqual(run.outcome, "finished")
+
+
+class WhatIsWrong(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.directory = Path(holder.name)
+
+    def test_the_programs_message_and_code_are_raised(self):
+        with self.assertRaisesRegex(tetlap.RunError, "unknown key 'en' in time; did you mean 'end'") as caught:
+            tetlap.run(DROP, self.directory, set={"time.en": 1})
+        self.assertEqual(caught.exception.code, 64)
+        with self.assertRaisesRegex(tetlap.RunError, "scene.yaml:1:.*: time.end: expected a number") as caught:
+            tetlap.run({**DROP, "time": {"end": -1}}, self.directory)
+        self.assertEqual(caught.exception.code, 65)
+
+    def test_a_value_that_no_scene_has_is_named(self):
+        with self.assertRaisesRegex(TypeError, r"the scene\.time\.end is a complex; expected"):
+            tetlap.run({"time": {"end": 1j}})
+        with self.assertRaisesRegex(ValueError, r"the scene\.time\.end is NaN"):
+            tetlap.run({"time": {"end": float("nan")}})
+        with self.assertRaisesRegex(TypeError, "set is 'a=1'; expected a dict"):
+            tetlap.run(DROP, self.directory, set="a=1")
+
+    def test_a_folder_without_a_run_is_refused(self):
+        with self.assertRaisesRegex(tetlap.Error, "expected frames.pvd, history.csv or summary.json"):
+            tetlap.read(self.directory)
+        with self.assertRaisesRegex(FileNotFoundError, "no such folder"):
+            tetlap.read(self.directory / "none")
+
+    def test_a_torn_frame_is_refused(self):
+        run = tetlap.run(DROP, self.directory)
+        frame = run.frames[0].path
+        text = frame.read_text()
+        frame.write_text(text[: len(text) // 2])
+        with self.assertRaisesRegex(tetlap.Error, "frame_00000.vtu: is no whole XML file"):
+            run.frames[0]
+        frame.write_text(text.replace("AQAAAAAAAA", "AQAAAAAAAB", 1))
+        with self.assertRaisesRegex(tetlap.Error, "frame_00000.vtu: is no frame as tetlap writes it"):
+            run.frames[0]
+
+    def test_half_a_line_at_the_end_of_a_history_is_left_out(self):
+        history = tetlap.run(DROP, self.directory).directory / "history.csv"
+        history.write_text(history.read_text() + "0.12,3")
+        self.assertEqual(len(tetlap.read(self.directory).history), 6)
+
+    def test_a_program_that_is_not_there_is_named(self):
+        before = os.environ.get("TETLAP_PROGRAM")
+        os.environ["TETLAP_PROGRAM"] = str(self.directory / "none")
+        try:
+            with self.assertRaisesRegex(tetlap.Error, "TETLAP_PROGRAM names .*none, which is no file"):
+                tetlap.run(DROP, self.directory)
+        finally:
+            del os.environ["TETLAP_PROGRAM"]
+            if before is not None:
+                os.environ["TETLAP_PROGRAM"] = before
+
+
+if __name__ == "__main__":
+    unittest.main()

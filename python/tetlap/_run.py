@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of the program as a child process."""
+
+import logging
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+import warnings
+import weakref
+from collections.abc import Mapping
+from pathlib import Path
+
+from . import _locate
+from ._errors import RunError
+from ._results import Frames, Run
+from ._scene import override_texts, scene_text, with_absolute_paths
+
+_log = logging.getLogger("tetlap")
+_POLL_S = 0.02
+_INTERRUPTED = 130
+
+
+class _Folder:
+    """A temporary folder, removed with this object."""
+
+    def __init__(self):
+        self.path = tempfile.mkdtemp(prefix="tetlap-")
+        weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
+
+
+class _Watch:
+    """Hands new frames to a function. The program renews the list of frames after every frame; what a former run into
+    the same folder left there is no news."""
+
+    def __init__(self, directory, on_frame):
+        self._directory, self._on_frame = directory, on_frame
+        self._list = Path(directory, "frames.pvd")
+        self._seen = self._stamp()
+        self.count = 0
+
+    def _stamp(self):
+        try:
+            state = self._list.stat()
+        except FileNotFoundError:
+            return None
+        return state.st_ino, state.st_mtime_ns
+
+    def look(self):
+        """False: the function asks for the run to stop."""
+        stamp = self._stamp()
+        if stamp is None or stamp == self._seen:
+            return True
+        self._seen = stamp
+        frames = Frames(self._directory)
+        while self.count < len(frames):
+            frame = frames[self.count]
+            self.count += 1
+            if self._on_frame(frame) is False:
+                return False
+        return True
+
+
+class _Words(threading.Thread):
+    """Reads what the program says: to the logger `tetlap`, and errors into a message."""
+
+    def __init__(self, stream):
+        super().__init__(daemon=True)
+        self._stream, self.errors = stream, []
+        self.start()
+
+    def run(self):
+        for line in self._stream:
+            line = line.rstrip()
+            label, _, rest = line.partition(": ")
+            if label == "error":
+                self.errors.append(rest)
+            elif label == "warning":
+                _log.warning("%s", rest)
+            else:
+                _log.info("%s", line)
+        self._stream.close()
+
+
+def _stop(process):
+    """Ctrl-C for the run, which then writes its summary; a second one kills it."""
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+    try:
+        process.wait()
+    except BaseException:
+        process.kill()
+        process.wait()
+        raise
+
+
+def _follow(process, watch):
+    """Until the run ends. Whatever happens here, and be it Ctrl-C, stops the run too. True: a frame's function stopped it."""
+    try:
+        while True:
+            try:
+                process.wait(_POLL_S if watch else None)
+                break
+            except subprocess.TimeoutExpired:
+                pass
+            if not watch.look():
+                _stop(process)
+                return True
+        if watch:
+            watch.look()
+    except BaseException:
+        _stop(process)
+        raise
+    return False
+
+
+def _command(scene, directory, overrides, overlap, threads, strict, capture):
+    words = [_locate.program(), "run", str(scene), "-o", str(directory)]
+    for text in overrides:
+        words += ["--set", text]
+    if overlap is not None:
+        words += ["--overlap", str(overlap)]
+    if threads is not None:
+        words += ["--threads", str(threads)]
+    if capture is not None:
+        words += ["--capture", str(capture)]
+    return words + ["--strict"] if strict else words
+
+
+def _execute(command, directory, on_frame):
+    watch = _Watch(directory, on_frame) if on_frame else None
+    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                               text=True, errors="replace")
+    words = _Words(process.stderr)
+    try:
+        is_stopped = _follow(process, watch)
+    finally:
+        words.join()
+    code = process.returncode
+    if code != 0 and not (is_stopped and code == _INTERRUPTED):
+        message = "\n".join(words.errors) or (f"killed by signal {-code}" if code < 0 else f"exit code {code}")
+        raise RunError(f"tetlap run failed: {message}", code, directory)
+    if watch and watch.count == 0:
+        warnings.warn("the run wrote no frames (output.vtu is false), so on_frame was not called", stacklevel=3)
+
+
+def run(scene, directory=None, *, set=None, overlap=None, threads=None, strict=False, capture=None, on_frame=None):
+    """Runs a scene with the program `tetlap`, in a process of its own; a `tetlap.Run` with what it wrote.
+
+    scene: a scene file's path; or a dict with the same keys (docs/scene.md), whose paths count from the current
+        directory. It is kept as scene.yaml in `directory`.
+    directory: where the run writes. Default: out/NAME for a file, as the program does; for a dict a temporary
+        folder that lives as long as the result.
+    set: what to change in the scene, {"contact.stiffness": 1e6} or ["contact.stiffness=1e6"].
+    overlap, threads, strict, capture: as the program's options.
+    on_frame: called with every `Frame` soon after it was written. If it returns False, the run stops as by Ctrl-C,
+        and what there is is returned; if it raises, the run stops and the exception goes on.
+
+    Ctrl-C stops the run, which leaves whole files and a checkpoint, and is then raised. What the program says goes to
+    the logger "tetlap".
+
+    RunError: the program failed; it carries the program's message. Error: there is no program.
+    """
+    overrides = override_texts(set)
+    temporary = None
+    if isinstance(scene, Mapping):
+        text = scene_text(with_absolute_paths(scene))
+        if directory is None:
+            temporary = _Folder()
+            directory = temporary.path
+        Path(directory).mkdir(parents=True, exist_ok=True)
+        scene = Path(directory, "scene.yaml")
+        scene.write_text(text + "\n", encoding="utf-8")
+    elif directory is None:
+        directory = Path("out", Path(scene).stem)
+    _execute(_command(scene, directory, overrides, overlap, threads, strict, capture), directory, on_frame)
+    return Run(directory, temporary)

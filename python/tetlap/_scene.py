@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A scene given as a dict, as the text of a scene file."""
+
+import json
+import math
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+
+def _number_text(value, where):
+    if math.isnan(value):
+        raise ValueError(f"{where} is NaN; expected a number")
+    if math.isinf(value):
+        return ".inf" if value > 0 else "-.inf"
+    return repr(value)
+
+
+def scene_text(value, where="the scene"):
+    """YAML's flow style, which is JSON but for infinities. NumPy's arrays and numbers are lists and numbers."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        for key in value:
+            if not isinstance(key, str):
+                raise TypeError(f"{where} has the key {key!r}; expected text")
+        parts = (f"{json.dumps(key, ensure_ascii=False)}: {scene_text(item, f'{where}.{key}')}" for key, item in value.items())
+        return "{" + ", ".join(parts) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(scene_text(item, f"{where}[{i}]") for i, item in enumerate(value)) + "]"
+    if isinstance(value, (str, os.PathLike)):
+        return json.dumps(os.fspath(value), ensure_ascii=False)
+    if value is None or isinstance(value, (bool, int)):
+        return json.dumps(value)
+    if isinstance(value, float):
+        return _number_text(value, where)
+    raise TypeError(f"{where} is a {type(value).__name__}; expected a dict, list, text, number, bool or None")
+
+
+def _from_here(path):
+    return os.fspath(Path(path).absolute())
+
+
+def _solid_with_paths(solid):
+    """A body or obstacle whose mesh counts from the current directory."""
+    mesh = solid.get("mesh") if isinstance(solid, Mapping) else None
+    if isinstance(mesh, (str, os.PathLike)):
+        return {**solid, "mesh": _from_here(mesh)}
+    if isinstance(mesh, Mapping) and isinstance(mesh.get("file"), (str, os.PathLike)):
+        return {**solid, "mesh": {**mesh, "file": _from_here(mesh["file"])}}
+    return solid
+
+
+def _weights_with_path(section, key):
+    """A section whose weights file, not name, counts from the current directory."""
+    value = section.get(key)
+    is_file = isinstance(value, os.PathLike) or isinstance(value, str) and value.endswith(".safetensors")
+    return {**section, key: _from_here(value)} if is_file else section
+
+
+def with_absolute_paths(scene):
+    """The program counts paths from the scene file; those of a dict count from the current directory."""
+    result = dict(scene)
+    for key in ("bodies", "obstacles"):
+        if isinstance(result.get(key), (list, tuple)):
+            result[key] = [_solid_with_paths(solid) for solid in result[key]]
+    contact = result.get("contact")
+    if isinstance(contact, Mapping):
+        contact = _weights_with_path(contact, "overlap")
+        if isinstance(contact.get("net"), Mapping):
+            contact = {**contact, "net": _weights_with_path(contact["net"], "weights")}
+        result["contact"] = contact
+    return result
+
+
+def override_texts(overrides):
+    """KEY=VALUE for --set, of a dict or of such texts."""
+    if overrides is None:
+        return []
+    if isinstance(overrides, Mapping):
+        return [f"{key}={scene_text(value, key)}" for key, value in overrides.items()]
+    if isinstance(overrides, str) or not all(isinstance(text, str) and "=" in text for text in overrides):
+        raise TypeError(f"set is {overrides!r}; expected a dict as {{'contact.stiffness': 1e6}}, or a list of 'KEY=VALUE'")
+    return list(overrides)
