@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "app/bench/bench.h"
+#include "app/cli/versions.h"
 #include "app/command/check.h"
 #include "app/command/compare.h"
 #include "app/command/datagen.h"
@@ -21,7 +22,6 @@
 #include "app/command/stress.h"
 #include "app/command/train.h"
 #include "app/command/weights.h"
-#include "app/versions.h"
 #include "base/log.h"
 #include "base/record.h"
 #include "base/status.h"

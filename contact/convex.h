@@ -49,7 +49,7 @@ double contact_convex_prism_error(int faces);
 void contact_convex_overlap(const ContactConvex *convex, const double tet[12], double *volume,
                             double gradient[12], double hessian[144]);
 
-// How far apart the two are along the best of their separating axes (overlap/clip/separation.h): at most
+// How far apart the two are along the best of their separating axes (overlap/separation.h): at most
 // their distance, negative once they overlap. It ends early with a lower bound that is > enough.
 double contact_convex_separation(const ContactConvex *convex, const double tet[12], double enough);
 

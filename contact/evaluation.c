@@ -11,7 +11,7 @@
 #include "contact/potential.h"
 #include "contact/rest.h"
 #include "contact/shape.h"
-#include "overlap/clip/separation.h"
+#include "overlap/separation.h"
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout) {
   *evaluation = (ContactEvaluation){0};

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "contact/bounds.h"
 #include "contact/shape.h"
-#include "overlap/clip/separation.h"
+#include "overlap/separation.h"
 
 Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout) {
   *onset = (ContactOnset){0};

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "contact/bounds.h"
-#include "overlap/clip/separation.h"
+#include "overlap/separation.h"
 
 // ---- The surface: faces that only one tetrahedron has.
 

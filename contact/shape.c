@@ -7,7 +7,7 @@
 #include "contact/ball.h"
 #include "contact/convex.h"
 #include "contact/halfspace.h"
-#include "overlap/clip/separation.h"
+#include "overlap/separation.h"
 
 // A point that moves with the shape, and its velocity.
 static Vec3 carry(const ContactShape *shape, double time, Vec3 rest, Vec3 *velocity) {

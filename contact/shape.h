@@ -16,7 +16,7 @@ Vec3 contact_shape_velocity(const ContactShape *shape, double time, Vec3 x);
 void contact_shape_overlap(const ContactShape *shape, double time, const double tet[12], double *volume,
                            double gradient[12], double hessian[144]);
 // Distance of a tetrahedron from the shape [m], negative once they overlap; of a convex solid as in
-// overlap/clip/separation.h, ending early with a lower bound once it exceeds `enough`.
+// overlap/separation.h, ending early with a lower bound once it exceeds `enough`.
 double contact_shape_separation(const ContactShape *shape, double time, const double tet[12], double enough);
 
 // A lower bound of the distance of vertices begin … end, and of all between them, from the shape [m].

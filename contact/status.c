@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "contact/bounds.h"
-#include "overlap/clip/separation.h"
+#include "overlap/separation.h"
 
 // Pairs that are asked at a time.
 enum { PORTION = 2048 };

@@ -8,7 +8,7 @@
 #include "datagen/scene_pairs.h"
 #include "datagen/touch.h"
 #include "overlap/clip/clip.h"
-#include "overlap/clip/separation.h"
+#include "overlap/separation.h"
 
 static void draw_tet(Random *random, double tet[12]) {
   for (int i = 0; i < 12; i++) tet[i] = random_uniform(random);

@@ -8,10 +8,6 @@
 #include "net/plan.h"
 #include "net/work.h"
 
-// Samples of a chunk and chunks of `count` samples, for a number of tangents.
-int net_pass_chunk(int tangents);
-int net_pass_chunk_count(int count, int tangents);
-
 #include "net/real_f32.h"
 
 #include "net/pass_template.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/work.h"
 
+#include "net/chunk.h"
 #include "net/memory.h"
-#include "net/pass.h"
 
 NetWorkDef net_work_default(void) {
   return (NetWorkDef){.thread_count = 1, .kernel = net_kernel_best()};

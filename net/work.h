@@ -9,14 +9,11 @@
 #ifndef NET_WORK_H
 #define NET_WORK_H
 
+#include "net/chunk.h"
 #include "net/kernel.h"
 #include "net/model.h"
 
-enum {
-  NET_CHUNK_COLUMNS =
-      112, // samples · (1 + tangents) of a chunk; 7 cache lines of floats: strides avoid powers of two
-  NET_LANES = 16,
-};
+enum { NET_LANES = 16 };
 
 typedef struct NetWorkDef {
   int thread_count;  // ≥ 1

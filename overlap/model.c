@@ -7,10 +7,10 @@
 
 #include "base/text.h"
 #include "overlap/clip/clip.h"
-#include "overlap/clip/separation.h"
 #include "overlap/exact/cgal.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/model.h"
+#include "overlap/separation.h"
 #include "overlap/tpn/model.h"
 #include "overlap/weights.h"
 

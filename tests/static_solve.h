@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fem/effect/system.h"
 #include "fem/sparse/solver.h"
-#include "fem/system.h"
 #include "scene.h"
 
 // Reads and builds; `format` as printf's.

@@ -11,8 +11,8 @@
 #include "datagen/proof.h"
 #include "datagen/sampler.h"
 #include "overlap/clip/clip.h"
-#include "overlap/clip/separation.h"
 #include "overlap/exact/exact.h"
+#include "overlap/separation.h"
 
 enum { MEMBERS = 2500, MOST = 60000 };
 

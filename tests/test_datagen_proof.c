@@ -7,9 +7,9 @@
 
 #include "datagen/hard.h"
 #include "datagen/proof.h"
-#include "overlap/clip/separation.h"
 #include "overlap/exact/exact.h"
 #include "overlap/invariant.h"
+#include "overlap/separation.h"
 
 // Against the unit simplex 0, e₁, e₂, e₃.
 typedef struct Hand {

@@ -10,7 +10,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "fem/effect/effect.h"
-#include "fem/system.h"
+#include "fem/effect/system.h"
 
 static const FemEffectOps *const few[] = {&fem_effect_elasticity, &fem_effect_damping, &fem_effect_gravity};
 

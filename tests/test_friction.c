@@ -366,8 +366,8 @@ START_TEST(without_friction_no_friction_is_created) {
   scene_open(&run, "incline", (const char *const[]){"contact.friction=0", NULL});
   FemSystem system;
   ck_assert_ok(fem_system_create(&system, &run.model));
-  ck_assert_ptr_nonnull(fem_system_effect(&system, "contact"));
-  ck_assert_ptr_null(fem_system_effect(&system, "friction"));
+  ck_assert_ptr_nonnull(fem_system_effect(&system, &fem_effect_contact));
+  ck_assert_ptr_null(fem_system_effect(&system, &fem_effect_friction));
   ck_assert(!fem_system_lags(&system));
   fem_system_destroy(&system);
   scene_close(&run);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// app/program.h, app/argument.h: exit codes.
+// app/program.h, app/cli/argument.h: exit codes.
 #include "suite.h"
 
 #include <stdio.h>

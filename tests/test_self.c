@@ -7,7 +7,7 @@
 #include "base/vec3.h"
 #include "contact/friction.h"
 #include "contact/layout.h"
-#include "overlap/clip/separation.h"
+#include "overlap/separation.h"
 
 // Overlap models see vertices shifted by less than this (contact/layout.h) [m].
 static const double NUDGE = 2e-9;

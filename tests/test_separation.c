@@ -6,8 +6,8 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "overlap/clip/separation.h"
 #include "overlap/model.h"
+#include "overlap/separation.h"
 
 static const double CORNER[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 

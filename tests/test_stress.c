@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "app/stress/all.h"
 #include "app/stress/limits.h"
 #include "app/stress/linking.h"
 #include "app/stress/scenes.h"
@@ -14,7 +15,7 @@
 #include "overlap/model.h"
 
 static void run(AppStress *stress, const AppStressOptions *options) {
-  Status status = app_stress_run(options, stress);
+  Status status = app_stress_all_run(options, stress);
   ck_assert_msg(status == STATUS_OK, "%s", status_message());
 }
 
@@ -63,7 +64,7 @@ START_TEST(a_name_picks_cases_and_an_unknown_one_is_an_error) {
   run(&stress, &(AppStressOptions){.has_pairs = true, .is_quick = true, .only = "sliver", .models = "exact"});
   ck_assert_int_eq(stress.count, 2);
   app_stress_destroy(&stress);
-  ck_assert_int_eq(app_stress_run(&(AppStressOptions){.has_pairs = true, .only = "no such"}, &stress),
+  ck_assert_int_eq(app_stress_all_run(&(AppStressOptions){.has_pairs = true, .only = "no such"}, &stress),
                    STATUS_USAGE);
   app_stress_destroy(&stress);
 }

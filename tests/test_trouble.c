@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "fem/run/trouble.h"
+#include "fem/output/trouble.h"
 
 typedef struct Looked {
   SceneRun run;

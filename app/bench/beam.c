@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench/beam.h"
 
-#include "app/argument.h"
 #include "app/bench/builtin.h"
 #include "app/bench/command.h"
 #include "app/bench/report.h"
 #include "app/bench/trial.h"
+#include "app/cli/argument.h"
 #include "base/memory.h"
 #include "fem/sparse/solver.h"
 

@@ -7,10 +7,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/argument.h"
 #include "app/bench/command.h"
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
+#include "app/cli/argument.h"
 #include "base/memory.h"
 #include "datagen/generate.h"
 #include "datagen/run.h"

@@ -5,7 +5,7 @@
 #include <omp.h>
 #include <string.h>
 
-#include "app/argument.h"
+#include "app/cli/argument.h"
 #include "app/bench/command.h"
 #include "app/bench/peak.h"
 #include "app/bench/report.h"

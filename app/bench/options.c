@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/argument.h"
+#include "app/cli/argument.h"
 #include "base/text.h"
 
 AppBenchOptions app_bench_options_default(int repeats) {

@@ -5,11 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/argument.h"
 #include "app/bench/command.h"
 #include "app/bench/precision_summary.h"
 #include "app/bench/report.h"
 #include "app/bench/trial.h"
+#include "app/cli/argument.h"
 #include "app/compare/comparison.h"
 #include "app/compare/precision.h"
 #include "app/scene/overlap.h"

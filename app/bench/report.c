@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/versions.h"
+#include "app/cli/versions.h"
 #include "base/cpu.h"
 
 enum { CELL_SIZE = 512 };

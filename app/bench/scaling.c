@@ -5,13 +5,13 @@
 #include <omp.h>
 #include <string.h>
 
-#include "app/argument.h"
 #include "app/bench/builtin.h"
 #include "app/bench/command.h"
 #include "app/bench/contestant.h"
 #include "app/bench/pairs.h"
 #include "app/bench/report.h"
 #include "app/bench/trial.h"
+#include "app/cli/argument.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/text.h"

@@ -4,15 +4,15 @@
 #include <math.h>
 #include <omp.h>
 
-#include "app/argument.h"
 #include "app/bench/builtin.h"
 #include "app/bench/command.h"
 #include "app/bench/options.h"
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
+#include "app/cli/argument.h"
 #include "base/memory.h"
+#include "fem/effect/system.h"
 #include "fem/sparse/solver.h"
-#include "fem/system.h"
 
 enum { SOLVER_COUNT = 3 };
 static const FemSolverKind kinds[SOLVER_COUNT] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_PCG, FEM_SOLVER_KLU};

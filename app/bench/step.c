@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench/step.h"
 
-#include "app/argument.h"
 #include "app/bench/command.h"
 #include "app/bench/report.h"
 #include "app/bench/trial.h"
+#include "app/cli/argument.h"
 #include "app/scene/read.h"
 #include "base/memory.h"
 

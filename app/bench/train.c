@@ -7,11 +7,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/argument.h"
 #include "app/bench/command.h"
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
 #include "app/bench/torch_peer.h"
+#include "app/cli/argument.h"
 #include "app/training/task.h"
 #include "base/clock.h"
 #include "base/log.h"

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "app/job.h"
+#include "app/cli/job.h"
 #include "base/cpu.h"
 #include "base/log.h"
 #include "base/record.h"

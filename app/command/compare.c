@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/argument.h"
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
 #include "app/compare/comparison.h"
-#include "app/job.h"
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/file.h"

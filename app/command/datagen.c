@@ -9,9 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/argument.h"
-#include "app/job.h"
-#include "app/versions.h"
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
+#include "app/cli/versions.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "datagen/run.h"

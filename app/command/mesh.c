@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "app/argument.h"
+#include "app/cli/argument.h"
 #include "base/log.h"
 #include "base/record.h"
 #include "fem/mesh/mesh.h"

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/argument.h"
 #include "app/bench/pairs.h"
-#include "app/job.h"
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
 #include "app/pareto/pairs.h"
 #include "app/pareto/scenes.h"
 #include "app/plot/gnuplot.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "app/argument.h"
+#include "app/cli/argument.h"
 #include "app/plot/gnuplot.h"
 #include "app/plot/plot.h"
 #include "base/file.h"

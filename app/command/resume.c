@@ -4,10 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/argument.h"
+#include "app/cli/argument.h"
+#include "app/cli/origin.h"
+#include "app/cli/versions.h"
 #include "app/command/run.h"
-#include "app/origin.h"
-#include "app/versions.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"

@@ -3,8 +3,8 @@
 
 #include <stdio.h>
 
-#include "app/origin.h"
-#include "app/versions.h"
+#include "app/cli/origin.h"
+#include "app/cli/versions.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -93,7 +93,7 @@ typedef struct Observer {
 } Observer;
 
 static Status capture_pairs(DatagenCapture *capture, FemSystem *system) {
-  void *effect = fem_system_effect(system, "contact");
+  void *effect = fem_system_effect(system, &fem_effect_contact);
   if (!effect) return STATUS_OK;
   int count, *tets;
   double *pairs;

@@ -3,7 +3,7 @@
 #ifndef TETLAP_APP_COMMAND_RUN_H
 #define TETLAP_APP_COMMAND_RUN_H
 
-#include "app/job.h"
+#include "app/cli/job.h"
 
 typedef struct AppRunOptions {
   AppJobOptions job;

@@ -3,10 +3,11 @@
 
 #include <argp.h>
 
-#include "app/argument.h"
-#include "app/job.h"
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
+#include "app/cli/versions.h"
+#include "app/stress/all.h"
 #include "app/stress/stress.h"
-#include "app/versions.h"
 #include "base/cpu.h"
 #include "base/log.h"
 
@@ -112,7 +113,7 @@ int app_stress_command_run(int argument_count, char **arguments) {
   options.stress.stop = app_job_stop_flag();
   options.stress.observe = show, options.stress.observer = &options;
   AppStress stress;
-  Status status = app_stress_run(&options.stress, &stress);
+  Status status = app_stress_all_run(&options.stress, &stress);
   log_progress_end();
   if (status) log_error("%s", status_message());
   Status concluded = stress.count > 0 ? conclude(&options, &stress) : STATUS_OK;

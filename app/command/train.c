@@ -6,8 +6,8 @@
 #include <omp.h>
 #include <stdio.h>
 
-#include "app/argument.h"
-#include "app/job.h"
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
 #include "app/training/log.h"
 #include "app/training/training.h"
 #include "base/log.h"

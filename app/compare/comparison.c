@@ -63,7 +63,7 @@ Status app_comparison_audit(AppComparison *comparison, const FemRunProgress *pro
                             long long *step_in_contact) {
   if (comparison->audit_every == 0 || progress->active_pairs == 0) return STATUS_OK;
   if ((*step_in_contact)++ % comparison->audit_every != 0) return STATUS_OK;
-  void *effect = fem_system_effect(progress->system, "contact");
+  void *effect = fem_system_effect(progress->system, &fem_effect_contact);
   if (!effect) return STATUS_OK;
   for (int m = 0; m < comparison->model_count; m++) {
     if (m == comparison->reference) continue;

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "app/bench/peak.h"
+#include "app/cli/versions.h"
 #include "app/evaluation/model.h"
-#include "app/versions.h"
 #include "base/cpu.h"
 #include "base/file.h"
 #include "base/memory.h"

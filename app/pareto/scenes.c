@@ -46,7 +46,7 @@ static Status audit_model(Bench *bench, int m, ContactSystem *contact, const Fem
 // All models in a configuration of the reference's run.
 static Status watch(void *self, const FemRunProgress *progress) {
   Bench *bench = self;
-  void *effect = fem_system_effect(progress->system, "contact");
+  void *effect = fem_system_effect(progress->system, &fem_effect_contact);
   if (!effect || progress->active_pairs == 0) return STATUS_OK;
   if (bench->step_in_contact++ % bench->pareto->audit_every != 0) return STATUS_OK;
   for (int m = 0; m < bench->pareto->model_count; m++)

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/cli/versions.h"
 #include "app/report/codes.h"
 #include "app/report/page.h"
 #include "app/report/surface.h"
-#include "app/versions.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"

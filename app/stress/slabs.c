@@ -134,7 +134,7 @@ static Status press(Slabs *slabs, FemSystem *system) {
   size_t count = 3 * (size_t)run->model.vertex_count;
   double *velocities = memory_zeroed(count, sizeof *velocities);
   slabs->positions = memory_zeroed(count, sizeof *slabs->positions);
-  slabs->contact = fem_effect_contact_system(fem_system_effect(system, "contact"));
+  slabs->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
   Status status = velocities && slabs->positions ? STATUS_OK : status_no_memory("positions of slabs");
   for (int d = 0; d < DEPTH_COUNT && !status; d++) {
     slabs->depth = DEPTHS[d] * edge_of(run, 0);

@@ -6,8 +6,6 @@
 #include <string.h>
 
 #include "app/stress/limits.h"
-#include "app/stress/pairs.h"
-#include "app/stress/scenes.h"
 #include "base/memory.h"
 #include "base/text.h"
 
@@ -25,15 +23,6 @@ bool app_stress_wants(const AppStressOptions *options, const char *name) {
 bool app_stress_wants_model(const AppStressOptions *options, const char *model) {
   if (options->models) return text_lists(options->models, model);
   return !options->is_quick || text_lists("clip geo any", model);
-}
-
-Status app_stress_run(const AppStressOptions *options, AppStress *stress) {
-  *stress = (AppStress){0};
-  if (options->has_pairs) TRY(app_stress_pairs_run(options, stress));
-  if (options->has_scenes) TRY(app_stress_scenes_run(options, stress));
-  if (stress->count > 0) return STATUS_OK;
-  return status_fail(STATUS_USAGE, "no case has '%s' in its name, or no model is called '%s'",
-                     options->only ? options->only : "", options->models ? options->models : "");
 }
 
 void app_stress_destroy(AppStress *stress) {

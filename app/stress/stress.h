@@ -75,9 +75,6 @@ typedef struct AppStressOptions {
 bool app_stress_wants(const AppStressOptions *options, const char *name);
 bool app_stress_wants_model(const AppStressOptions *options, const char *model);
 
-// Runs what is asked for. STATUS_USAGE: nothing has that name; STATUS_INTERRUPTED. A case that fails is a
-// row, not a Status.
-Status app_stress_run(const AppStressOptions *options, AppStress *stress);
 void app_stress_destroy(AppStress *stress);
 
 // A new row at the end; NULL: no memory.

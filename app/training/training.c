@@ -6,8 +6,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "app/cli/versions.h"
 #include "app/training/log.h"
-#include "app/versions.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"

@@ -6,7 +6,7 @@
 #include "contact/system.h"
 #include "fem/model/scene.h"
 
-// The contact system of the effect that fem_system_effect(system, "contact") returned; borrowed.
+// The contact system of the effect that fem_system_effect(system, &fem_effect_contact) returned; borrowed.
 ContactSystem *fem_effect_contact_system(void *effect);
 
 // The name of side `number` of an interface: a body, a mesh obstacle or a half-space.

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "fem/effect/contact.h"
-#include "fem/system.h"
+#include "fem/effect/system.h"
 
 typedef struct Friction {
   const FemModel *model;  // borrowed
@@ -28,7 +28,7 @@ static Status create(void **self, const FemModel *model) {
 
 static Status connect(void *self, const FemSystem *system) {
   Friction *friction = self;
-  friction->contact = fem_effect_contact_system(fem_system_effect(system, "contact"));
+  friction->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
   return contact_friction_create(&friction->law, friction->contact, friction->model->scene->contact.friction,
                                  fem_model_slip_speed(friction->model));
 }

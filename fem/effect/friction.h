@@ -5,7 +5,7 @@
 
 #include "contact/friction.h"
 
-// The friction of the effect that fem_system_effect(system, "friction") returned; borrowed.
+// The friction of the effect that fem_system_effect(system, &fem_effect_friction) returned; borrowed.
 const ContactFriction *fem_effect_friction_of(const void *effect);
 
 #endif

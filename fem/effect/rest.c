@@ -7,8 +7,8 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact.h"
+#include "fem/effect/system.h"
 #include "fem/model/drive.h"
-#include "fem/system.h"
 
 typedef struct Rest {
   const FemModel *model;         // borrowed
@@ -92,7 +92,7 @@ static Status create(void **self, const FemModel *model) {
 }
 
 static Status connect(void *self, const FemSystem *system) {
-  ((Rest *)self)->contact = fem_effect_contact_system(fem_system_effect(system, "contact"));
+  ((Rest *)self)->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
   return STATUS_OK;
 }
 

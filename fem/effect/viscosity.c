@@ -4,7 +4,7 @@
 #include "contact/viscosity.h"
 #include "base/memory.h"
 #include "fem/effect/contact.h"
-#include "fem/system.h"
+#include "fem/effect/system.h"
 
 typedef struct Viscosity {
   const FemModel *model;  // borrowed
@@ -26,7 +26,7 @@ static Status create(void **self, const FemModel *model) {
 
 static Status connect(void *self, const FemSystem *system) {
   Viscosity *viscosity = self;
-  viscosity->contact = fem_effect_contact_system(fem_system_effect(system, "contact"));
+  viscosity->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
   return contact_viscosity_create(&viscosity->law, viscosity->contact,
                                   viscosity->model->scene->contact.viscosity);
 }

@@ -6,17 +6,6 @@
 
 #include "base/memory.h"
 
-// λ_e / μ at most: that of ν = 1/4. Measured, a cantilever of 10 cubes through its thickness at ν = 0.499:
-// 0.907 of beam theory with 2, 0.916 with 1, 0.926 with 0; at 0 nothing but μ is left against pressures that
-// alternate.
-static const double LARGEST_LOCAL_RATIO = 1;
-
-FemMaterial fem_volume_local_material(const FemMaterial *material) {
-  FemLame lame = fem_material_lame(material);
-  double most = LARGEST_LOCAL_RATIO * lame.mu;
-  return lame.lambda <= most ? *material : fem_material_with_lambda(material, most);
-}
-
 // λ − λ_e ≥ 0.
 static double stiffness_of(const FemModelBody *body) {
   return fmax(fem_material_lame(&body->material).lambda - fem_material_lame(&body->local).lambda, 0);

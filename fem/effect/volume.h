@@ -16,9 +16,6 @@
 #include "fem/model/model.h"
 #include "fem/sparse/matrix.h"
 
-// What an element of a body keeps for itself.
-FemMaterial fem_volume_local_material(const FemMaterial *material);
-
 typedef struct FemVolume {
   const FemModel *model; // borrowed
   int *tets;             // of nodal bodies                                      (tet_count)

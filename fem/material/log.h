@@ -4,7 +4,7 @@
 #ifndef TETLAP_FEM_MATERIAL_LOG_H
 #define TETLAP_FEM_MATERIAL_LOG_H
 
-#include "fem/material/material.h"
+#include "fem/material/law.h"
 
 // Below this J the logarithm goes on as its parabola, which falls without end, so that it is finite for every
 // F and pushes an inverted element back. The law's pressure has reached 80 E there (ν = 0.4).

@@ -33,17 +33,23 @@ const char *fem_material_help(FemMaterialLaw law) {
   return laws[law].help;
 }
 
-FemLame fem_material_lame(const FemMaterial *material) {
-  double E = material->young, nu = material->poisson;
-  return (FemLame){.lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), .mu = E / (2 * (1 + nu))};
-}
-
 FemMaterial fem_material_with_lambda(const FemMaterial *material, double lambda) {
   FemMaterial other = *material;
   double mu = fem_material_lame(material).mu;
   other.young = mu * (3 * lambda + 2 * mu) / (lambda + mu);
   other.poisson = lambda / (2 * (lambda + mu));
   return other;
+}
+
+// λ_e / μ at most: that of ν = 1/4. Measured, a cantilever of 10 cubes through its thickness at ν = 0.499:
+// 0.907 of beam theory with 2, 0.916 with 1, 0.926 with 0; at 0 nothing but μ is left against pressures that
+// alternate.
+static const double LARGEST_LOCAL_RATIO = 1;
+
+FemMaterial fem_material_local(const FemMaterial *material) {
+  FemLame lame = fem_material_lame(material);
+  double most = LARGEST_LOCAL_RATIO * lame.mu;
+  return lame.lambda <= most ? *material : fem_material_with_lambda(material, most);
 }
 
 static inline double dot9(const double A[9], const double B[9]) {

@@ -41,46 +41,11 @@
 #ifndef TETLAP_FEM_MATERIAL_MATERIAL_H
 #define TETLAP_FEM_MATERIAL_MATERIAL_H
 
-#include <stdbool.h>
-
-#include "base/status.h"
-
-typedef enum FemMaterialLaw {
-  FEM_MATERIAL_LINEAR,          // small strain: ε = sym(F) − I
-  FEM_MATERIAL_COROTATIONAL,    // linear in the polar stretch
-  FEM_MATERIAL_STVK,            // St. Venant–Kirchhoff
-  FEM_MATERIAL_NEO_HOOKEAN,     // stable neo-Hookean (Smith, de Goes, Kim 2018)
-  FEM_MATERIAL_NEO_HOOKEAN_LOG, // with ln J
-  FEM_MATERIAL_MOONEY_RIVLIN,
-  FEM_MATERIAL_OGDEN,
-} FemMaterialLaw;
-
-enum { FEM_MATERIAL_LAW_COUNT = 7 };
-
-typedef struct FemMaterial {
-  FemMaterialLaw law;
-  double young;   // E > 0 [Pa]
-  double poisson; // −1 < ν < ½
-  double density; // [kg/m³]
-  double damping; // β of stiffness-proportional damping [s]; < 0: the scene's
-  // Kelvin–Voigt: a viscous second Piola–Kirchhoff stress 2η dev Ė + ζ tr Ė I beside the elastic one.
-  double viscosity, bulk_viscosity; // η, ζ ≥ 0 [Pa s]
-  double yield_stress, hardening;   // σ_y, 0: elastic, and H of J2 plasticity [Pa] (fem/effect/plasticity.c)
-  double mooney;                    // m of mooney_rivlin, in [0, 1]
-  double exponents[3], shares[3];   // α_p and shares of ogden's terms; the shares are taken by their sum
-  double fibre_stiffness;           // k [Pa]; 0: no fibres
-  double fibre_direction[3];        // need not have unit length
-  bool fibres_buckle;
-} FemMaterial;
+#include "fem/material/law.h"
 
 // The name a scene uses: linear, corotational, stvk, neo_hookean; and one line of help.
 const char *fem_material_name(FemMaterialLaw law);
 const char *fem_material_help(FemMaterialLaw law);
-
-typedef struct FemLame {
-  double lambda, mu; // [Pa]
-} FemLame;
-FemLame fem_material_lame(const FemMaterial *material);
 
 double fem_material_energy(const FemMaterial *material, const double F[9]);               // Ψ [J/m³]
 void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]);    // [Pa]
@@ -97,6 +62,8 @@ void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double
 
 // The same material with another first Lamé parameter λ and the same μ.
 FemMaterial fem_material_with_lambda(const FemMaterial *material, double lambda);
+// What an element of a body keeps for itself.
+FemMaterial fem_material_local(const FemMaterial *material);
 
 // The stress is linear in F: the law linear.
 bool fem_material_is_linear(const FemMaterial *material);

@@ -4,7 +4,7 @@
 #ifndef TETLAP_FEM_MATERIAL_RUBBER_H
 #define TETLAP_FEM_MATERIAL_RUBBER_H
 
-#include "fem/material/material.h"
+#include "fem/material/law.h"
 
 double fem_material_mooney_energy(const FemMaterial *material, const double F[9]);
 void fem_material_mooney_stress(const FemMaterial *material, const double F[9], double P[9]);

@@ -4,7 +4,7 @@
 #ifndef TETLAP_FEM_MESH_MIDDLES_H
 #define TETLAP_FEM_MESH_MIDDLES_H
 
-#include "fem/mesh/validate.h"
+#include "fem/mesh/source.h"
 
 typedef struct FemMeshMiddles {
   int edge_count;

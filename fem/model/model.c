@@ -8,7 +8,6 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/volume.h"
 #include "fem/material/cofactor.h"
 #include "fem/model/drive.h"
 #include "fem/model/select.h"
@@ -183,7 +182,7 @@ static void append_bodies(FemModel *model, const FemMesh *meshes) {
       body->name = def->name;
       body->material = body->local = def->material;
       body->element = def->element;
-      if (def->element == FEM_ELEMENT_NODAL) body->local = fem_volume_local_material(&def->material);
+      if (def->element == FEM_ELEMENT_NODAL) body->local = fem_material_local(&def->material);
       if (def->element == FEM_ELEMENT_QUADRATIC) split_volume(body);
       body->damping = def->material.damping >= 0 ? def->material.damping : scene->stiffness_damping;
       lump_mass(model, body);

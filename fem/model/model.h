@@ -17,8 +17,8 @@ typedef struct FemModelBody {
   int tet_begin, tet_end;
   FemMaterial material; // obstacles: zeroed
   FemMaterial local;    // what an element resists with by itself; the rest of λ is the vertices'
-                     // (fem/effect/volume.h) or the mean's of a quadratic one (fem/element/quadratic.h)
-  double bulk; // that rest, of quadratic ones; else 0 [Pa]
+                        // (fem/effect/volume.h) or the mean's of a quadratic one (fem/element/quadratic.h)
+  double bulk;          // that rest, of quadratic ones; else 0 [Pa]
   int quadratic_begin, quadratic_end;
   FemElementKind element;
   double damping; // β [s]

@@ -10,6 +10,7 @@
 #include "contact/def.h"
 #include "fem/material/material.h"
 #include "fem/mesh/mesh.h"
+#include "fem/sparse/solver.h"
 
 // A place in the scene file, for messages; line 0: not from a file.
 typedef struct FemScenePlace {
@@ -143,13 +144,6 @@ typedef struct FemContactDef {
   double rest_speed, rest_acceleration; // below them a body is calm [m/s], [m/s²]; 0: chosen
   double rest_time;                     // so long, and it is at rest [s]; 0: chosen
 } FemContactDef;
-
-typedef enum FemSolverKind {
-  FEM_SOLVER_AUTO,
-  FEM_SOLVER_CHOLMOD, // condensed, supernodal
-  FEM_SOLVER_KLU,     // full 2n system, to compare
-  FEM_SOLVER_PCG,     // condensed, block Jacobi
-} FemSolverKind;
 
 typedef struct FemSceneDef {
   char *path; // of the scene file

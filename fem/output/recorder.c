@@ -13,57 +13,16 @@
 #include "fem/effect/friction.h"
 #include "fem/effect/plasticity.h"
 #include "fem/effect/volume_effect.h"
+#include "fem/output/columns.h"
 #include "fem/output/pvd.h"
 #include "fem/output/vtu.h"
 
-// The first columns of the history, each with the effect that it takes (NULL: none); those of bodies and
-// interfaces follow. The values are listed in this order by write_history.
-static const char DISSIPATION[] = "any that dissipates", STATUS_COLUMN[] = "contact, and output.status";
-static const struct {
-  const char *title, *effect;
-} columns[] = {
-    {"time_s", NULL},
-    {"kinetic_J", NULL},
-    {"elastic_J", NULL},
-    {"gravity_J", "gravity"},
-    {"contact_J", "contact"},
-    {"work_J", NULL},
-    {"dissipated_J", DISSIPATION},
-    {"total_J", NULL},
-    {"momentum_x", NULL},
-    {"momentum_y", NULL},
-    {"momentum_z", NULL},
-    {"angular_x", NULL},
-    {"angular_y", NULL},
-    {"angular_z", NULL},
-    {"active_pairs", "contact"},
-    {"overlap_m3", "contact"},
-    {"deepest_overlap", "contact"},
-    {"min_det_F", NULL},
-    {"step_s", NULL},
-    {"steps", NULL},
-    {"energy_gain", NULL},
-    {"energy_events", NULL},
-    {"inverted", NULL},
-    {"enclosed", "contact"},
-    {"wrong_way", "contact"},
-    {"status_pairs", STATUS_COLUMN},
-    {"status_overlapping", STATUS_COLUMN},
-    {"status_false_positive", STATUS_COLUMN},
-    {"status_false_negative", STATUS_COLUMN},
-    {"status_wrong_elements", STATUS_COLUMN},
-};
-enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
-
 static bool has_column(const FemRecorder *recorder, int column) {
-  if (columns[column].effect == DISSIPATION)
-    return fem_system_dissipates(recorder->system) || fem_system_effect(recorder->system, "plasticity");
-  if (columns[column].effect == STATUS_COLUMN) return recorder->has_status;
-  return !columns[column].effect || fem_system_effect(recorder->system, columns[column].effect);
+  return fem_columns_is_wanted(column, recorder->system, recorder->has_status);
 }
 
 static ContactSystem *contact_of(const FemSystem *system) {
-  void *effect = fem_system_effect(system, "contact");
+  void *effect = fem_system_effect(system, &fem_effect_contact);
   return effect ? fem_effect_contact_system(effect) : NULL;
 }
 
@@ -76,21 +35,21 @@ static const ContactInterface *interfaces_of(const FemSystem *system, int *count
 void fem_recorder_interface_force(const FemSystem *system, int interface, double force[3]) {
   int count;
   vec3_store(force, vec3_at(interfaces_of(system, &count)[interface].force));
-  void *friction = fem_system_effect(system, "friction");
+  void *friction = fem_system_effect(system, &fem_effect_friction);
   if (friction) vec3_accumulate(force, vec3_at(fem_effect_friction_of(friction)->forces[interface]));
 }
 
 static Status add_columns(FemRecorder *recorder) {
   const FemModel *model = recorder->system->model;
   FemHistory *history = &recorder->history;
-  for (int i = 0; i < COLUMN_COUNT; i++)
-    if (has_column(recorder, i)) TRY(fem_history_add_column(history, "%s", columns[i].title));
+  for (int i = 0; i < fem_columns_count(); i++)
+    if (has_column(recorder, i)) TRY(fem_history_add_column(history, "%s", fem_columns_title(i)));
   for (int b = 0; b < model->scene->body_count; b++)
     for (int c = 0; c < 3; c++)
       TRY(fem_history_add_column(history, "centre_%s_%c_m", model->bodies[b].name, "xyz"[c]));
   int count;
   const ContactInterface *interfaces = interfaces_of(recorder->system, &count);
-  const void *effect = fem_system_effect(recorder->system, "contact");
+  const void *effect = fem_system_effect(recorder->system, &fem_effect_contact);
   for (int i = 0; i < count; i++)
     for (int c = 0; c < 3; c++)
       TRY(fem_history_add_column(history, "force_%s_%s_%c_N",
@@ -113,7 +72,7 @@ static Status create(FemRecorder *recorder, const char *directory) {
   recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
   recorder->displacement = memory_zeroed(3 * vertices, sizeof *recorder->displacement);
   recorder->contact_force = memory_zeroed(3 * vertices, sizeof *recorder->contact_force);
-  bool has_friction = fem_system_effect(recorder->system, "friction") != NULL;
+  bool has_friction = fem_system_effect(recorder->system, &fem_effect_friction) != NULL;
   if (has_friction) recorder->friction_force = memory_zeroed(3 * vertices, sizeof(double));
   recorder->stress = memory_zeroed(6 * tets, sizeof *recorder->stress);
   recorder->von_mises = memory_zeroed(tets, sizeof *recorder->von_mises);
@@ -243,20 +202,20 @@ static void fill_arrays(FemRecorder *recorder) {
            3 * (size_t)model->vertex_count * sizeof *recorder->contact_force);
   if (recorder->friction_force) {
     memset(recorder->friction_force, 0, 3 * (size_t)model->vertex_count * sizeof(double));
-    contact_friction_add_force(fem_effect_friction_of(fem_system_effect(system, "friction")),
+    contact_friction_add_force(fem_effect_friction_of(fem_system_effect(system, &fem_effect_friction)),
                                system->velocities, recorder->friction_force);
   }
   for (int e = 0; e < model->tet_count; e++) {
     const FemModelBody *body = &model->bodies[model->tet_body[e]];
     if (body->is_obstacle) continue;
     fem_model_stress(model, e, system->positions, recorder->stress + 6 * e);
-    void *volume = body->element == FEM_ELEMENT_NODAL ? fem_system_effect(system, "volume") : NULL;
+    void *volume = body->element == FEM_ELEMENT_NODAL ? fem_system_effect(system, &fem_effect_volume) : NULL;
     if (volume) {
       double corners[12];
       gather(system, e, corners);
       fem_effect_volume_add_stress(volume, e, corners, recorder->stress + 6 * e);
     }
-    void *plasticity = fem_system_effect(system, "plasticity");
+    void *plasticity = fem_system_effect(system, &fem_effect_plasticity);
     if (plasticity)
       fem_effect_plasticity_add_stress(plasticity, e, system->positions, recorder->stress + 6 * e);
     recorder->von_mises[e] = von_mises(recorder->stress + 6 * e);
@@ -377,47 +336,10 @@ static double *append_centres(const FemSystem *system, double *row) {
   return row;
 }
 
-static Status write_history(FemRecorder *recorder, double time, const FemMeasures *m, const FemAudit *audit,
-                            double step, long long step_count, long long energy_events) {
-  ContactStatusCounts status = {0};
-  long long wrong_elements = 0;
-  if (recorder->status) {
-    status = recorder->status->pairs;
-    wrong_elements = recorder->status->elements.false_positives + recorder->status->elements.false_negatives;
-  }
-  const double fixed[COLUMN_COUNT] = {time,
-                                      m->energy.kinetic,
-                                      m->energy.elastic,
-                                      m->energy.gravity,
-                                      m->energy.contact,
-                                      audit->work,
-                                      audit->dissipated,
-                                      audit->total,
-                                      m->momentum[0],
-                                      m->momentum[1],
-                                      m->momentum[2],
-                                      m->angular_momentum[0],
-                                      m->angular_momentum[1],
-                                      m->angular_momentum[2],
-                                      (double)m->active_pairs,
-                                      m->overlap_volume,
-                                      m->deepest_overlap,
-                                      m->min_det_F,
-                                      step,
-                                      (double)step_count,
-                                      audit->gain / audit->scale,
-                                      (double)energy_events,
-                                      m->trouble.count[FEM_TROUBLE_INVERTED],
-                                      m->trouble.count[FEM_TROUBLE_ENCLOSED],
-                                      m->trouble.count[FEM_TROUBLE_WRONG_WAY],
-                                      (double)status.asked,
-                                      (double)status.overlapping,
-                                      (double)status.false_positives,
-                                      (double)status.false_negatives,
-                                      (double)wrong_elements};
+static Status write_history(FemRecorder *recorder, const FemColumnSource *source) {
   double *row = recorder->row;
-  for (int i = 0; i < COLUMN_COUNT; i++)
-    if (has_column(recorder, i)) *row++ = fixed[i];
+  for (int i = 0; i < fem_columns_count(); i++)
+    if (has_column(recorder, i)) *row++ = fem_columns_value(i, source);
   row = append_centres(recorder->system, row);
   int count;
   interfaces_of(recorder->system, &count);
@@ -439,8 +361,14 @@ Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures 
   if (!recorder->directory) return STATUS_OK;
   if (recorder->writes_vtu) TRY(write_frame(recorder, time));
   if (recorder->writes_vtu && is_list_due(recorder)) TRY(write_list(recorder));
-  if (recorder->writes_history)
-    TRY(write_history(recorder, time, measures, audit, step, step_count, energy_events));
+  const FemColumnSource source = {.time = time,
+                                  .measures = measures,
+                                  .audit = audit,
+                                  .step = step,
+                                  .step_count = step_count,
+                                  .energy_events = energy_events,
+                                  .status = recorder->status};
+  if (recorder->writes_history) TRY(write_history(recorder, &source));
   recorder->seconds += clock_wall_s() - began;
   return STATUS_OK;
 }

@@ -5,23 +5,12 @@
 #define TETLAP_FEM_OUTPUT_RECORDER_H
 
 #include "contact/status.h"
+#include "fem/effect/system.h"
+#include "fem/output/columns.h"
 #include "fem/output/history.h"
 #include "fem/output/obstacle_frames.h"
-#include "fem/run/trouble.h"
-#include "fem/system.h"
+#include "fem/output/trouble.h"
 #include "fem/time/audit.h"
-
-// The measures of one state.
-typedef struct FemMeasures {
-  FemEnergy energy;
-  double momentum[3], angular_momentum[3]; // [kg m/s], about the origin [kg m²/s]
-  double deepest_overlap;                  // largest share of an element that is covered
-  double min_det_F;
-  double overlap_volume; // [m³]
-  int active_pairs;
-  double contact_force; // largest norm over interfaces [N]
-  FemTroubleState trouble;
-} FemMeasures;
 
 typedef struct FemRecorder {
   FemSystem *system; // borrowed
@@ -55,7 +44,7 @@ void fem_recorder_destroy(FemRecorder *recorder);
 Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures);
 
 // Writes one frame of the scattered state. `step` [s] and `step_count` are the integrator's, `energy_events`
-// those so far (fem/run/trouble.h).
+// those so far (fem/output/trouble.h).
 Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
                           const FemAudit *audit, double step, long long step_count, long long energy_events);
 

@@ -24,7 +24,7 @@ static double stop(const FemModel *model, const FemModelBody *body, double *velo
 }
 
 Status fem_hold_sleepers(FemModel *model, FemSystem *system, double *u, double *v) {
-  void *rest = fem_system_effect(system, "rest");
+  void *rest = fem_system_effect(system, &fem_effect_rest);
   for (int b = 0; b < model->body_count; b++) {
     bool is_asleep = fem_effect_rest_is_asleep(rest, b);
     if (is_asleep) fem_effect_rest_add_loss(rest, stop(model, &model->bodies[b], system->velocities));

@@ -4,7 +4,7 @@
 #ifndef TETLAP_FEM_RUN_HOLD_H
 #define TETLAP_FEM_RUN_HOLD_H
 
-#include "fem/system.h"
+#include "fem/effect/system.h"
 #include "fem/time/audit.h"
 
 // The unknowns u, v (unknown_count) of the system's scattered state.

@@ -121,7 +121,7 @@ static Status renew_powers(FemRunState *run) {
 static Status begin_stage(FemRunState *run, double step) {
   const FemModel *model = run->model;
   const FemSceneDef *scene = model->scene;
-  double next = fem_effect_rest_next_change(fem_system_effect(&run->system, "rest"));
+  double next = fem_effect_rest_next_change(fem_system_effect(&run->system, &fem_effect_rest));
   run->stage_end = fmin(fmin(scene->end, next), fem_model_next_release(model, run->time));
   if (model->unknown_count == 0) return STATUS_OK; // all sleep
   FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
@@ -189,7 +189,7 @@ static Status advance(FemRunState *run) {
   TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
   if (fem_system_lags(&run->system) || fem_integrator_is_at_knot(run->integrator)) TRY(renew_powers(run));
   TRY(observe(run, &measures));
-  if (fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"))) return renumber(run);
+  if (fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest))) return renumber(run);
   return is_onset ? fem_integrator_restart(run->integrator, time, run->u, run->v, 0) : STATUS_OK;
 }
 
@@ -223,7 +223,7 @@ static Status sleep_on(FemRunState *run) {
   fem_run_frames_keep_extremes(run->result, &measures);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, time - began));
   TRY(observe(run, &measures));
-  bool has_changed = fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"));
+  bool has_changed = fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest));
   return has_changed ? renumber(run) : STATUS_OK;
 }
 
@@ -300,7 +300,7 @@ static Status begin_part(FemRunState *run) {
   TRY(is_first ? fem_system_create(&run->system, run->model)
                : fem_system_create_again(&run->system, run->model));
   TRY(fem_restart_load(from, &run->system, run->u, run->v));
-  if (fem_effect_rest_has_changed(fem_system_effect(&run->system, "rest"))) {
+  if (fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest))) {
     fem_system_scatter(&run->system, run->time, run->u, run->v);
     TRY(fem_hold_sleepers(&run->own, &run->system, run->u, run->v));
   }

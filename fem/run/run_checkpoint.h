@@ -19,4 +19,7 @@ Status fem_run_checkpoint_remove(const FemRunState *run);
 // not.
 Status fem_run_checkpoint_leave(FemRunState *run, Status status);
 
+// How many steps lie between two checkpoints where the scene does not say how many frames.
+long long fem_run_checkpoint_steps(int unknown_count);
+
 #endif

@@ -15,7 +15,7 @@ static void keep_frame(FemRunState *run, double time) {
   size_t values = 3 * (size_t)result->vertex_count;
   result->frame_times[frame] = time;
   memcpy(result->trajectory + (size_t)frame * values, run->system.positions, values * sizeof(double));
-  void *effect = fem_system_effect(&run->system, "contact");
+  void *effect = fem_system_effect(&run->system, &fem_effect_contact);
   if (!effect) return;
   int count;
   contact_system_interfaces(fem_effect_contact_system(effect), &count);
@@ -116,7 +116,7 @@ static Status keep_names(FemRunResult *result, void *effect) {
 
 static Status keep_trajectory(FemRunState *run) {
   FemRunResult *result = run->result;
-  void *effect = fem_system_effect(&run->system, "contact");
+  void *effect = fem_system_effect(&run->system, &fem_effect_contact);
   if (effect) TRY(keep_names(result, effect));
   size_t frames = (size_t)run->model->scene->frames + 1;
   result->vertex_count = run->model->vertex_count;

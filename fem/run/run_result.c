@@ -50,7 +50,7 @@ static void add_contact(FemRunResult *result, const ContactCounters *counters) {
 }
 
 void fem_run_result_add_system(FemRunResult *result, const FemSystem *system) {
-  void *contact = fem_system_effect(system, "contact");
+  void *contact = fem_system_effect(system, &fem_effect_contact);
   if (contact) add_contact(result, contact_system_counters(fem_effect_contact_system(contact)));
   result->pattern_layouts += system->pattern_version;
   result->effect_count = system->effect_count;

@@ -6,7 +6,7 @@
 #include "base/record.h"
 #include "contact/evaluation.h"
 #include "contact/status.h"
-#include "fem/run/trouble.h"
+#include "fem/output/trouble.h"
 #include "fem/time/audit.h"
 #include "fem/time/integrator.h"
 

@@ -6,7 +6,8 @@
 
 #include "fem/output/recorder.h"
 #include "fem/run/checkpoint.h"
-#include "fem/run/run.h"
+#include "fem/run/run_options.h"
+#include "fem/run/run_result.h"
 #include "fem/time/integrator.h"
 #include "fem/time/stall.h"
 #include "fem/time/statics.h"

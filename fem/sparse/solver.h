@@ -6,8 +6,14 @@
 
 #include <stdbool.h>
 
-#include "fem/model/scene.h"
 #include "fem/sparse/matrix.h"
+
+typedef enum FemSolverKind {
+  FEM_SOLVER_AUTO,
+  FEM_SOLVER_CHOLMOD, // condensed, supernodal
+  FEM_SOLVER_KLU,     // full 2n system, to compare
+  FEM_SOLVER_PCG,     // condensed, block Jacobi
+} FemSolverKind;
 
 typedef struct FemSolverStats {
   long long analyses, factorisations, failed_factorisations, solves, iterations;

@@ -4,8 +4,8 @@
 #ifndef TETLAP_FEM_TIME_EQUILIBRIUM_H
 #define TETLAP_FEM_TIME_EQUILIBRIUM_H
 
+#include "fem/effect/system.h"
 #include "fem/sparse/solver.h"
-#include "fem/system.h"
 
 typedef struct FemEquilibrium {
   FemSystem *system; // borrowed

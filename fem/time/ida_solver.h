@@ -15,8 +15,8 @@
 
 #include <sundials/sundials_linearsolver.h>
 
+#include "fem/effect/system.h"
 #include "fem/sparse/solver.h"
-#include "fem/system.h"
 
 enum { FEM_IDA_MESSAGE_SIZE = 1024 };
 

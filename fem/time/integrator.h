@@ -16,8 +16,8 @@
 #ifndef TETLAP_FEM_TIME_INTEGRATOR_H
 #define TETLAP_FEM_TIME_INTEGRATOR_H
 
+#include "fem/effect/system.h"
 #include "fem/sparse/solver.h"
-#include "fem/system.h"
 #include "fem/time/stall.h"
 
 typedef struct FemIntegratorDef {

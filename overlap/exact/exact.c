@@ -11,8 +11,8 @@
 
 #include <math.h>
 
-#include "overlap/clip/separation.h"
 #include "overlap/exact/polygon.h"
+#include "overlap/separation.h"
 
 // All four vertices of one on the outer side of a face of the other, or in it.
 static bool is_beyond_a_face(const ExactPair *pair) {

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "overlap/clip/clip.h"
-#include "overlap/clip/separation.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/coplanar.h"
+#include "overlap/separation.h"
 #include "overlap/tpn/share.h"
 #include "overlap/tpn/simplex.h"
 

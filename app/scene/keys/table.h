@@ -6,7 +6,7 @@
 
 #include <stddef.h>
 
-#include "app/scene/keys/keys.h"
+#include "app/scene/keys/section.h"
 
 // A field of a struct: offset and size.
 #define AT(Type, field) offsetof(Type, field), sizeof(((Type *)0)->field)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Readers of one option's text, for all commands. Each ends the program with what would be right (argp_error,
 // exit code 64) if the text is wrong; `option` is its long name.
-#ifndef TETLAP_APP_ARGUMENT_H
-#define TETLAP_APP_ARGUMENT_H
+#ifndef TETLAP_APP_CLI_ARGUMENT_H
+#define TETLAP_APP_CLI_ARGUMENT_H
 
 #include <argp.h>
 #include <stdint.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/argument.h"
+#include "app/cli/argument.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/origin.h"
+#include "app/cli/origin.h"
 
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/cli/versions.h"
 #include "app/scene/write.h"
-#include "app/versions.h"
 #include "base/digest.h"
 #include "base/file.h"
 #include "base/memory.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What this program was built from and how it was called, for manifests.
-#ifndef TETLAP_APP_VERSIONS_H
-#define TETLAP_APP_VERSIONS_H
+#ifndef TETLAP_APP_CLI_VERSIONS_H
+#define TETLAP_APP_CLI_VERSIONS_H
 
 #include "base/record.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "overlap/clip/separation.h"
+#include "overlap/separation.h"
 
 #include <float.h>
 #include <stddef.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The mechanical system of a run: model + the effects that its scene calls for. Evaluates forces, the
 // condensed or split Jacobian, energies; owns the matrix pattern.
-#ifndef TETLAP_FEM_SYSTEM_H
-#define TETLAP_FEM_SYSTEM_H
+#ifndef TETLAP_FEM_EFFECT_SYSTEM_H
+#define TETLAP_FEM_EFFECT_SYSTEM_H
 
 #include "fem/effect/effect.h"
 #include "fem/model/model.h"
@@ -75,7 +75,7 @@ bool fem_system_dissipates(const FemSystem *system);
 // Whether an effect's forces change when it is prepared.
 bool fem_system_lags(const FemSystem *system);
 
-// The effect of that name, NULL if the scene has none.
-void *fem_system_effect(const FemSystem *system, const char *name);
+// What the effect of that table keeps, NULL if the scene has none.
+void *fem_system_effect(const FemSystem *system, const FemEffectOps *effect);
 
 #endif

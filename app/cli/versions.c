@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/versions.h"
+#include "app/cli/versions.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -2,8 +2,8 @@
 // What strikes a run without ending it: elements turned inside out, elements wholly covered by another body,
 // contact forces that pull, energy out of nothing. Found in every accepted state, marked by element and
 // vertex for the frames, counted for history.csv, summary.json and the run's last line.
-#ifndef TETLAP_FEM_RUN_TROUBLE_H
-#define TETLAP_FEM_RUN_TROUBLE_H
+#ifndef TETLAP_FEM_OUTPUT_TROUBLE_H
+#define TETLAP_FEM_OUTPUT_TROUBLE_H
 
 #include <stddef.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/trouble.h"
+#include "fem/output/trouble.h"
 
 #include <math.h>
 #include <stdio.h>

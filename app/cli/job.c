@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/job.h"
+#include "app/cli/job.h"
 
 #include <limits.h>
 #include <math.h>
@@ -7,11 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/argument.h"
+#include "app/cli/argument.h"
+#include "app/cli/versions.h"
 #include "app/scene/overlap.h"
 #include "app/scene/read.h"
 #include "app/scene/write.h"
-#include "app/versions.h"
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/file.h"

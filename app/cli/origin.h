@@ -2,10 +2,10 @@
 // What a run was started with, kept in its checkpoints: the way to the scene and what was said on the command
 // line, to read it all again; the scene as it was understood and digests of meshes and weights, to see that
 // it is still the same.
-#ifndef TETLAP_APP_ORIGIN_H
-#define TETLAP_APP_ORIGIN_H
+#ifndef TETLAP_APP_CLI_ORIGIN_H
+#define TETLAP_APP_CLI_ORIGIN_H
 
-#include "app/job.h"
+#include "app/cli/job.h"
 
 // A new record, owned by the caller. STATUS_IO, STATUS_INPUT: weights that cannot be read; STATUS_MEMORY.
 Status app_origin_make(const AppJob *job, const AppJobOptions *options, const char *overlap, Record **origin);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/system.h"
+#include "fem/effect/system.h"
 
 #include <math.h>
 #include <string.h>
@@ -310,8 +310,8 @@ bool fem_system_lags(const FemSystem *system) {
   return false;
 }
 
-void *fem_system_effect(const FemSystem *system, const char *name) {
+void *fem_system_effect(const FemSystem *system, const FemEffectOps *effect) {
   for (int i = 0; i < system->effect_count; i++)
-    if (strcmp(system->effects[i].ops->name, name) == 0) return system->effects[i].self;
+    if (system->effects[i].ops == effect) return system->effects[i].self;
   return NULL;
 }

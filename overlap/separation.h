@@ -3,8 +3,8 @@
 // normals, the 36 cross products of edges; Gottschalk, Lin, Manocha 1996): positive if they are disjoint,
 // 0 if they touch, minus the smallest overlap of the projections if they have a common interior. Never more
 // than the distance, and equal to it where a face is one of the nearest features, or two edges are.
-#ifndef TETLAP_OVERLAP_CLIP_SEPARATION_H
-#define TETLAP_OVERLAP_CLIP_SEPARATION_H
+#ifndef TETLAP_OVERLAP_SEPARATION_H
+#define TETLAP_OVERLAP_SEPARATION_H
 
 #include <stdbool.h>
 

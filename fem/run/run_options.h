@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run is asked for, and what it shows while it goes on.
+#ifndef TETLAP_FEM_RUN_RUN_OPTIONS_H
+#define TETLAP_FEM_RUN_RUN_OPTIONS_H
+
+#include <signal.h>
+
+#include "fem/output/recorder.h"
+
+// What an observer sees after every accepted step.
+typedef struct FemRunProgress {
+  FemSystem *system; // scattered at `time`; an observer may evaluate, not change it
+  double time, end;  // [s]
+  double step;       // last step size [s]
+  long long step_count;
+  int active_pairs;
+  const FemMeasures *measures; // of this state; borrowed
+  const FemAudit *audit;       // borrowed
+  const FemTrouble *trouble;   // so far; borrowed
+  bool has_trouble_begun;      // in this step
+} FemRunProgress;
+
+typedef struct FemRunOptions {
+  const char *directory; // where to write; NULL: nowhere
+  const volatile sig_atomic_t
+      *stop; // becomes non-zero: finish the step, then STATUS_INTERRUPTED; may be NULL
+  Status (*observe)(void *observer, const FemRunProgress *progress); // may be NULL
+  void *observer;
+  const double *initial_displacement; // from rest [m], or NULL: none    (vertex_count, 3)
+  const struct FemCheckpoint *from;   // go on from there; NULL: from the start; borrowed
+  const char *origin;                 // JSON, kept in the checkpoints for whoever resumes; may be NULL
+  bool is_strict;       // an energy gain beyond FEM_TROUBLE_ENERGY_BOUND ends the run: STATUS_SOLVER
+  bool keep_trajectory; // keep positions and interface forces of every frame in the result
+} FemRunOptions;
+
+#endif
