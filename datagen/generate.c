@@ -16,10 +16,12 @@ Status datagen_label_pair(DatagenLabel label, const double pair[24], int dimensi
   if (gradient) memset(gradient, 0, OVERLAP_PAIR_SIZE * sizeof *gradient);
   if (dimension < 3) return STATUS_OK;
   if (label == DATAGEN_LABEL_CLIP) {
-    TRY(overlap_clip_ops.eval_pair(NULL, pair, volume, gradient, NULL, &flags));
+    TRY(overlap_clip_ops.eval_pair(
+        NULL, pair, &(OverlapAnswer){.volume = volume, .gradient = gradient, .flags = &flags}));
     if (*volume > 0) return STATUS_OK;
   }
-  return overlap_exact_ops.eval_pair(NULL, pair, volume, gradient, NULL, &flags);
+  return overlap_exact_ops.eval_pair(
+      NULL, pair, &(OverlapAnswer){.volume = volume, .gradient = gradient, .flags = &flags});
 }
 
 // One pair, into its place in the arrays.

@@ -46,7 +46,9 @@ static bool try_volumetric(const DatagenVolumeSieve *sieve, Random *random, doub
   if (overlap_separation_is_certain(pair)) return false;
   double volume;
   unsigned flags;
-  if (overlap_clip_ops.eval_pair(NULL, pair, &volume, NULL, NULL, &flags) != STATUS_OK) return false;
+  if (overlap_clip_ops.eval_pair(NULL, pair, &(OverlapAnswer){.volume = &volume, .flags = &flags}) !=
+      STATUS_OK)
+    return false;
   return volume > 0 && u < datagen_volume_sieve_keeps(sieve, volume);
 }
 

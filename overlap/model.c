@@ -74,7 +74,11 @@ bool overlap_model_has_ghosts(const OverlapModel *model) {
 }
 
 bool overlap_model_has_hessian(const OverlapModel *model) {
-  return model->ops->bends ? model->ops->bends(model->self) : model->ops->has_hessian;
+  return model->ops->has_hessian && model->ops->has_hessian(model->self);
+}
+
+bool overlap_model_has_centroid(const OverlapModel *model) {
+  return model->ops->has_centroid && model->ops->has_centroid(model->self);
 }
 
 void overlap_model_destroy(OverlapModel *model) {
@@ -114,22 +118,16 @@ static Status check_finite(const OverlapBatch *batch) {
 }
 
 static Status eval_one(const OverlapModel *model, const OverlapBatch *batch, int i) {
-  const double *pair = batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE;
-  double *gradient = batch->gradient ? batch->gradient + (size_t)i * OVERLAP_PAIR_SIZE : NULL;
-  double *hessian =
-      batch->hessian ? batch->hessian + (size_t)i * OVERLAP_PAIR_SIZE * OVERLAP_PAIR_SIZE : NULL;
   unsigned flags = 0;
-  Status status = model->ops->eval_pair(model->self, pair, batch->volume + i, gradient, hessian, &flags);
-  if (batch->flags) batch->flags[i] = flags;
-  return status;
+  OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
+  return model->ops->eval_pair(model->self, batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE, &answer);
 }
 
 static void write_disjoint(const OverlapBatch *batch, int i) {
-  enum { SIZE = OVERLAP_PAIR_SIZE };
-  batch->volume[i] = 0;
-  if (batch->gradient) memset(batch->gradient + (size_t)i * SIZE, 0, SIZE * sizeof(double));
-  if (batch->hessian) memset(batch->hessian + (size_t)i * SIZE * SIZE, 0, SIZE * SIZE * sizeof(double));
-  if (batch->flags) batch->flags[i] = OVERLAP_DISJOINT;
+  unsigned flags;
+  OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
+  overlap_ops_write_nothing(&answer);
+  *answer.flags = OVERLAP_DISJOINT;
 }
 
 // Less work than this [s] is not worth waking threads for.
@@ -141,7 +139,7 @@ enum { PORTION = 64 }; // pairs that a thread takes at a time
 // first that failed, or INT_MAX.
 static int eval_portion(const OverlapModel *model, const OverlapBatch *batch, int begin, int end) {
   bool is_apart[PORTION] = {false};
-  if (!model->ops->rejects && !overlap_model_has_ghosts(model))
+  if (!model->ops->rejects_disjoint && !overlap_model_has_ghosts(model))
     overlap_separation_find(end - begin, batch->pairs + (size_t)begin * OVERLAP_PAIR_SIZE, is_apart);
   for (int i = begin; i < end; i++)
     if (is_apart[i - begin])
@@ -174,9 +172,14 @@ static Status eval_each(const OverlapModel *model, const OverlapBatch *batch) {
 Status overlap_model_eval(const OverlapModel *model, const OverlapBatch *batch) {
   if (batch->hessian && !overlap_model_has_hessian(model))
     return status_fail(STATUS_INPUT, "overlap model '%s' has no Hessian", model->ops->name);
-  if (!model->ops->minds_finite) TRY(check_finite(batch));
+  if (batch->centroid && !overlap_model_has_centroid(model))
+    return status_fail(STATUS_INPUT,
+                       "overlap model '%s' gives no centroid of the intersection: `clip`, `clip32`, `exact` "
+                       "and `cgal` do",
+                       model->ops->name);
+  if (!model->ops->checks_finite) TRY(check_finite(batch));
   Status status =
       model->ops->eval_batch ? model->ops->eval_batch(model->self, batch) : eval_each(model, batch);
-  if (status != STATUS_OK && model->ops->minds_finite) TRY(check_finite(batch)); // which says more
+  if (status != STATUS_OK && model->ops->checks_finite) TRY(check_finite(batch)); // which says more
   return status;
 }

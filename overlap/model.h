@@ -28,8 +28,11 @@ bool overlap_model_has_ghosts(const OverlapModel *model);
 // Whether it has second derivatives.
 bool overlap_model_has_hessian(const OverlapModel *model);
 
+// Whether it gives the centroid of the intersection.
+bool overlap_model_has_centroid(const OverlapModel *model);
+
 // Evaluates all pairs of the batch with OpenMP. STATUS_INPUT: a coordinate is NaN or infinite; the message
-// names the pair. STATUS_INPUT: a Hessian is asked of a model that has none.
+// names the pair. STATUS_INPUT: a Hessian or a centroid is asked of a model that has none.
 Status overlap_model_eval(const OverlapModel *model, const OverlapBatch *batch);
 
 void overlap_model_destroy(OverlapModel *model);

@@ -3,6 +3,39 @@
 
 #include <string.h>
 
+bool overlap_ops_always(const void *self) {
+  (void)self;
+  return true;
+}
+
+OverlapBatch overlap_ops_single(const double pair[24], const OverlapAnswer *answer) {
+  return (OverlapBatch){.pair_count = 1,
+                        .pairs = pair,
+                        .volume = answer->volume,
+                        .gradient = answer->gradient,
+                        .hessian = answer->hessian,
+                        .flags = answer->flags,
+                        .centroid = answer->centroid};
+}
+
+OverlapAnswer overlap_ops_answer(const OverlapBatch *batch, int i, unsigned *flags) {
+  enum { SIZE = OVERLAP_PAIR_SIZE };
+  size_t at = (size_t)i * SIZE;
+  return (OverlapAnswer){.volume = batch->volume + i,
+                         .gradient = batch->gradient ? batch->gradient + at : NULL,
+                         .hessian = batch->hessian ? batch->hessian + at * SIZE : NULL,
+                         .centroid = batch->centroid ? batch->centroid + 3 * (size_t)i : NULL,
+                         .flags = batch->flags ? batch->flags + i : flags};
+}
+
+void overlap_ops_write_nothing(const OverlapAnswer *answer) {
+  enum { SIZE = OVERLAP_PAIR_SIZE };
+  *answer->volume = 0;
+  if (answer->gradient) memset(answer->gradient, 0, SIZE * sizeof(double));
+  if (answer->hessian) memset(answer->hessian, 0, SIZE * SIZE * sizeof(double));
+  if (answer->centroid) memset(answer->centroid, 0, 3 * sizeof(double));
+}
+
 OverlapBatch overlap_ops_part(const OverlapBatch *batch, int begin, int count) {
   enum { SIZE = OVERLAP_PAIR_SIZE };
   size_t at = (size_t)begin * SIZE;
@@ -12,7 +45,8 @@ OverlapBatch overlap_ops_part(const OverlapBatch *batch, int begin, int count) {
                         .volume = batch->volume + begin,
                         .gradient = batch->gradient ? batch->gradient + at : NULL,
                         .hessian = batch->hessian ? batch->hessian + at * SIZE : NULL,
-                        .flags = batch->flags ? batch->flags + begin : NULL};
+                        .flags = batch->flags ? batch->flags + begin : NULL,
+                        .centroid = batch->centroid ? batch->centroid + 3 * (size_t)begin : NULL};
 }
 
 void overlap_ops_swap(const double pair[24], double swapped[24]) {

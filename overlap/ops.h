@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an overlap model is: for pairs of tetrahedra the volume V of their intersection and its derivatives by
-// the 24 coordinates. One interface, many answers; each gradient is the derivative of the same model's V.
+// What an overlap model is: for pairs of tetrahedra the volume V of their intersection, its derivatives by
+// the 24 coordinates, and its centroid. One interface, many answers; each gradient is the derivative of the
+// same model's V.
 //
-//   pairs (n, 2, 4, 3) ──► model ──► V (n), ∇V (n, 2, 4, 3), ∇²V (n, 24, 24), flags (n)
+//   pairs (n, 2, 4, 3) ──► model ──► V (n), ∇V (n, 2, 4, 3), ∇²V (n, 24, 24), x̄ (n, 3), flags (n)
 //
 // Either orientation of a tetrahedron is accepted and means the same set of points. With exact arithmetic
 // Σ ∇V = 0, Σ x × ∇V = 0, Σ x·∇V = 3V, and the sum of ∇V over one tetrahedron's vertices is minus the
 // integral of the other's outward normal over its part of the boundary: contact normal times area.
+//
+// V x̄ is the integral of x over the intersection. Where V is 0, x̄ is written as (0, 0, 0): a number that any
+// weight V makes vanish.
 #ifndef TETLAP_OVERLAP_OPS_H
 #define TETLAP_OVERLAP_OPS_H
 
@@ -19,8 +23,8 @@ enum { OVERLAP_PAIR_SIZE = 24 }; // coordinates of a pair: 2 tetrahedra × 4 ver
 
 // What a model says of one pair besides its numbers; bits.
 typedef enum OverlapFlag {
-  OVERLAP_DISJOINT = 1 << 0, // no common interior: V, ∇V, ∇²V are exactly 0
-  OVERLAP_FLAT = 1 << 1,     // a tetrahedron has no volume: V, ∇V, ∇²V are exactly 0
+  OVERLAP_DISJOINT = 1 << 0, // no common interior: V, ∇V, ∇²V, x̄ are exactly 0
+  OVERLAP_FLAT = 1 << 1,     // a tetrahedron has no volume: V, ∇V, ∇²V, x̄ are exactly 0
   OVERLAP_FALLBACK = 1 << 2, // answered by a more careful model than the one asked
   OVERLAP_ENCLOSED = 1 << 3, // one tetrahedron lies wholly inside the other: ∇V pushes nothing apart
   OVERLAP_BLENDED = 1 << 4,  // answered partly by a more careful model
@@ -36,38 +40,60 @@ typedef struct OverlapBatch {
   double *gradient;    // out, or NULL: dV/dx [m²]         (pair_count, 2, 4, 3)
   double *hessian;     // out, or NULL: d²V/dx² [m]        (pair_count, 24, 24), symmetric
   unsigned *flags;     // out, or NULL: OverlapFlag (pair_count)
+  double *centroid;    // out, or NULL: x̄ of the intersection [m] (pair_count, 3)
 } OverlapBatch;
+
+// Where the answer for one pair goes.
+typedef struct OverlapAnswer {
+  double *volume;   // V [m³]
+  double *gradient; // or NULL: dV/dx [m²]       (2, 4, 3)
+  double *hessian;  // or NULL: d²V/dx² [m]      (24, 24)
+  double *centroid; // or NULL: x̄ [m]            (3)
+  unsigned *flags;  // OverlapFlag
+} OverlapAnswer;
 
 // What a model implements. One per model, `static const`, listed in model.c.
 typedef struct OverlapOps {
   const char *name;
   const char *help;        // one line for lists and the manual
-  bool has_hessian;        // always; where that hangs on what it was made of: `bends`
   double seconds_per_pair; // rough cost of V + ∇V on one core, to announce how long a run will take [s]
   // Allocates what the model keeps; NULL where it keeps nothing. `weights`: the path of a weights file, or
   // the name of one that ships; NULL: the model's own. `options`, NULL: the model's own, matter to some.
   Status (*create)(void **self, const char *weights, const OverlapOptions *options);
-  // Evaluates one pair; must be safe to call from several threads. `gradient` and `hessian` may be NULL; all
-  // outputs are written. The coordinates are finite. RETRY is not used; fatal: message names the reason only.
-  Status (*eval_pair)(const void *self, const double pair[24], double *volume, double *gradient,
-                      double *hessian, unsigned *flags);
+  // Evaluates one pair; must be safe to call from several threads. All outputs that are wanted are written;
+  // none that the model has not are. The coordinates are finite. RETRY is not used; fatal: message names the
+  // reason only.
+  Status (*eval_pair)(const void *self, const double pair[24], const OverlapAnswer *answer);
   // Evaluates a batch at once; NULL: eval_pair over OpenMP threads, of pairs that no face separates for
-  // certain. The others are DISJOINT unasked, unless the model sees ghosts or `rejects` them itself.
+  // certain. The others are DISJOINT unasked, unless the model sees ghosts or `rejects_disjoint` itself.
   Status (*eval_batch)(const void *self, const OverlapBatch *batch);
   void (*destroy)(void *self);
   // Whether pairs that share no volume may get one, and want to be asked for; NULL: never.
   bool (*has_ghosts)(const void *self);
   // Begins each pair by asking whether a face separates the two.
-  bool rejects;
+  bool rejects_disjoint;
   // Logits of "the two intersect" of pairs (count, 24), where a model tells them apart from V; NULL: V > 0.
   Status (*eval_logits)(const void *self, int count, const double *pairs, double *logits);
-  // Whether it has second derivatives as it was made, asked in place of has_hessian; NULL: as that says.
-  bool (*bends)(const void *self);
+  // Whether it has second derivatives, and the centroid, as it was made; NULL: never.
+  bool (*has_hessian)(const void *self);
+  bool (*has_centroid)(const void *self);
   // eval_batch fails where a coordinate is not finite; without it, all are looked through before.
-  bool minds_finite;
+  bool checks_finite;
   // The shipped weights that it takes, where they go by another name than its own; NULL: no others.
   const char *weights;
 } OverlapOps;
+
+// A capability that a model has however it was made.
+bool overlap_ops_always(const void *self);
+
+// The batch of one pair, with the answer's places.
+OverlapBatch overlap_ops_single(const double pair[24], const OverlapAnswer *answer);
+
+// The places of pair i of a batch; its flags go to `flags` where the batch wants none.
+OverlapAnswer overlap_ops_answer(const OverlapBatch *batch, int i, unsigned *flags);
+
+// Writes what a pair without common interior gets: zeros, but for the flags.
+void overlap_ops_write_nothing(const OverlapAnswer *answer);
 
 // The batch of its pairs from `begin` on, at most `count`.
 OverlapBatch overlap_ops_part(const OverlapBatch *batch, int begin, int count);

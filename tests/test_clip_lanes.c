@@ -45,7 +45,9 @@ static int check_group(const OverlapClipLanes *kernel, const Group *group, const
     double expected, expected_gradient[24], extent = overlap_invariant_extent(group->x[k]);
     unsigned flags;
     if (group->outcome.doubtful >> k & 1) continue;
-    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, group->x[k], &expected, expected_gradient, NULL, &flags));
+    ck_assert_ok(overlap_exact_ops.eval_pair(
+        NULL, group->x[k],
+        &(OverlapAnswer){.volume = &expected, .gradient = expected_gradient, .flags = &flags}));
     ck_assert_msg(!(flags & OVERLAP_FLAT), "%s, %s: flat and not doubtful", kernel->name, what);
     ck_assert_msg(fabs(group->volume[k] - expected) <= volume_allowed(kernel, group->x[k], expected),
                   "%s, %s: V = %.17g, exact %.17g", kernel->name, what, group->volume[k], expected);
@@ -293,7 +295,8 @@ START_TEST(a_batch_answers_each_pair_as_if_it_were_alone) {
     for (int i = 0; i < sizes[s]; i++) {
       double alone, slope[24];
       unsigned flag;
-      ck_assert_ok(ops->eval_pair(NULL, x + 24 * i, &alone, slope, NULL, &flag));
+      ck_assert_ok(ops->eval_pair(NULL, x + 24 * i,
+                                  &(OverlapAnswer){.volume = &alone, .gradient = slope, .flags = &flag}));
       ck_assert_msg(alone == volume[i] && flag == flags[i], "pair %d of %d: %g, alone %g", i, sizes[s],
                     volume[i], alone);
       ck_assert_mem_eq(slope, gradient + 24 * i, sizeof slope);
@@ -309,8 +312,10 @@ START_TEST(the_scalar_form_gives_the_same_up_to_rounding) {
     double x[24], volume[2], gradient[24];
     unsigned flags[2];
     draw_any(number, x);
-    ck_assert_ok(overlap_clip_ops.eval_pair(NULL, x, &volume[0], gradient, NULL, &flags[0]));
-    ck_assert_ok(overlap_clip_scalar_ops.eval_pair(NULL, x, &volume[1], gradient, NULL, &flags[1]));
+    ck_assert_ok(overlap_clip_ops.eval_pair(
+        NULL, x, &(OverlapAnswer){.volume = &volume[0], .gradient = gradient, .flags = &flags[0]}));
+    ck_assert_ok(overlap_clip_scalar_ops.eval_pair(
+        NULL, x, &(OverlapAnswer){.volume = &volume[1], .gradient = gradient, .flags = &flags[1]}));
     ck_assert_msg(fabs(volume[0] - volume[1]) <= 2 * overlap_invariant_allowed(x, volume[1]),
                   "pair %d: %g, scalar %g", number, volume[0], volume[1]);
   }

@@ -365,12 +365,11 @@ END_TEST
 
 // ---- Audit
 
-static Status eval_scaled(const void *self, const double pair[24], double *volume, double *gradient,
-                          double *hessian, unsigned *flags) {
+static Status eval_scaled(const void *self, const double pair[24], const OverlapAnswer *answer) {
   const OverlapModel *model = self;
-  TRY(model->ops->eval_pair(model->self, pair, volume, gradient, hessian, flags));
-  *volume *= 1.001;
-  for (int k = 0; gradient && k < 24; k++) gradient[k] *= 1.001;
+  TRY(model->ops->eval_pair(model->self, pair, answer));
+  *answer->volume *= 1.001;
+  for (int k = 0; answer->gradient && k < 24; k++) answer->gradient[k] *= 1.001;
   return STATUS_OK;
 }
 
@@ -422,10 +421,9 @@ START_TEST(a_definition_that_cannot_be_is_refused) {
 }
 END_TEST
 
-static Status eval_nan(const void *self, const double pair[24], double *volume, double *gradient,
-                       double *hessian, unsigned *flags) {
-  TRY(eval_scaled(self, pair, volume, gradient, hessian, flags));
-  *volume = NAN;
+static Status eval_nan(const void *self, const double pair[24], const OverlapAnswer *answer) {
+  TRY(eval_scaled(self, pair, answer));
+  *answer->volume = NAN;
   return STATUS_OK;
 }
 

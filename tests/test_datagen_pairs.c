@@ -62,7 +62,8 @@ START_TEST(the_exact_model_and_the_separating_axes_bear_the_kind_out) {
   for (int i = 0; i < MEMBERS; i++) {
     double volume;
     unsigned flags;
-    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, coordinates + 24 * i, &volume, NULL, NULL, &flags));
+    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, coordinates + 24 * i,
+                                             &(OverlapAnswer){.volume = &volume, .flags = &flags}));
     ck_assert_int_eq((flags & OVERLAP_DISJOINT) == 0, dimension == 3);
     ck_assert(volumes[i] == volume && (volume > 0) == (dimension == 3));
     double gap = overlap_separation_pair(coordinates + 24 * i, INFINITY);
@@ -153,7 +154,8 @@ START_TEST(the_gradient_is_that_of_the_volume) {
     }
     for (int side = 0; side < 2; side++) {
       for (int c = 0; c < 24; c++) moved[c] = coordinates[24 * i + c] + (side ? h : -h) * step[c];
-      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, moved, &value[side], NULL, NULL, &flags));
+      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, moved,
+                                               &(OverlapAnswer){.volume = &value[side], .flags = &flags}));
     }
     ck_assert_near((value[1] - value[0]) / (2 * h), slope, 1e-4 * size + 1e-9);
   }
@@ -213,7 +215,8 @@ START_TEST(a_volume_law_leaves_the_shapes_alone) {
       DatagenSample sample = datagen_sample(DATAGEN_VOLUMETRIC, &sieves[s], 0, &random);
       double volume;
       unsigned flags;
-      ck_assert_ok(overlap_clip_ops.eval_pair(NULL, sample.pair, &volume, NULL, NULL, &flags));
+      ck_assert_ok(overlap_clip_ops.eval_pair(NULL, sample.pair,
+                                              &(OverlapAnswer){.volume = &volume, .flags = &flags}));
       if (!(volume > 9e-4 && volume < 1.1e-3)) continue;
       double x[2];
       for (int t = 0; t < 2; t++) {
@@ -246,7 +249,8 @@ START_TEST(the_natural_density_of_volumes_is_as_recorded) {
     double pair[24], volume;
     unsigned flags;
     for (int c = 0; c < 24; c++) pair[c] = random_uniform(&random);
-    ck_assert_ok(overlap_clip_ops.eval_pair(NULL, pair, &volume, NULL, NULL, &flags));
+    ck_assert_ok(
+        overlap_clip_ops.eval_pair(NULL, pair, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
     intersecting += volume > 0;
     double place = volume > 0 ? (log(volume) - low) / width : -1;
     if (place >= 0 && place < BINS) counts[(int)place]++;

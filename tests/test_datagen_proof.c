@@ -117,7 +117,8 @@ START_TEST(the_exact_model_and_the_separating_axes_agree) {
     DatagenHardPair c = datagen_hard_make(_i, member);
     double volume;
     unsigned flags;
-    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, c.x, &volume, NULL, NULL, &flags));
+    ck_assert_ok(
+        overlap_exact_ops.eval_pair(NULL, c.x, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
     DatagenProof proof = datagen_proof_of(c.x);
     ck_assert_int_eq(proof.is_flat, (flags & OVERLAP_FLAT) != 0);
     if (proof.is_flat) continue;

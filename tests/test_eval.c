@@ -11,31 +11,29 @@
 #include "suite.h"
 
 // V and ∇V of clipping, ten per cent too large; disjoint pairs get a ghost of 1e-3.
-static Status inflate(const void *self, const double pair[24], double *volume, double *gradient,
-                      double *hessian, unsigned *flags) {
+static Status inflate(const void *self, const double pair[24], const OverlapAnswer *answer) {
   (void)self;
-  Status status = overlap_clip_ops.eval_pair(NULL, pair, volume, gradient, hessian, flags);
-  if (!(*volume > 0)) {
-    *volume = 1e-3;
-    if (gradient) gradient[5] = 2;
+  Status status = overlap_clip_ops.eval_pair(NULL, pair, answer);
+  if (!(*answer->volume > 0)) {
+    *answer->volume = 1e-3;
+    if (answer->gradient) answer->gradient[5] = 2;
     return status;
   }
-  *volume *= 1.1;
-  for (int i = 0; gradient && i < 24; i++) gradient[i] *= 1.1;
+  *answer->volume *= 1.1;
+  for (int i = 0; answer->gradient && i < 24; i++) answer->gradient[i] *= 1.1;
   return status;
 }
-static const OverlapOps inflated = {.name = "inflated", .eval_pair = inflate, .rejects = true};
+static const OverlapOps inflated = {.name = "inflated", .eval_pair = inflate, .rejects_disjoint = true};
 
 // The x coordinate of the first vertex in place of a volume: no symmetry at all.
-static Status lopsided_eval(const void *self, const double pair[24], double *volume, double *gradient,
-                            double *hessian, unsigned *flags) {
-  (void)self, (void)hessian;
-  *volume = pair[0];
-  *flags = 0;
-  for (int i = 0; gradient && i < 24; i++) gradient[i] = i == 0;
+static Status lopsided_eval(const void *self, const double pair[24], const OverlapAnswer *answer) {
+  (void)self;
+  *answer->volume = pair[0];
+  *answer->flags = 0;
+  for (int i = 0; answer->gradient && i < 24; i++) answer->gradient[i] = i == 0;
   return STATUS_OK;
 }
-static const OverlapOps lopsided = {.name = "lopsided", .eval_pair = lopsided_eval, .rejects = true};
+static const OverlapOps lopsided = {.name = "lopsided", .eval_pair = lopsided_eval, .rejects_disjoint = true};
 
 static void load(const char *law, const char *mix, int count, DatagenPairs *pairs) {
   AppSourceDef def = {.law = law, .mix = mix, .count = count, .seed = 5};
@@ -215,13 +213,12 @@ END_TEST
 
 // Clipping, with a step in V or in ∇V that depends on a coordinate alone.
 static double volume_step, gradient_step;
-static Status step_up(const void *self, const double pair[24], double *volume, double *gradient,
-                      double *hessian, unsigned *flags) {
+static Status step_up(const void *self, const double pair[24], const OverlapAnswer *answer) {
   (void)self;
-  Status status = overlap_clip_ops.eval_pair(NULL, pair, volume, gradient, hessian, flags);
-  if (!(*volume > 0) || pair[0] < pair[12]) return status;
-  *volume *= 1 + volume_step;
-  for (int i = 0; gradient && i < 24; i++) gradient[i] *= 1 + volume_step + gradient_step;
+  Status status = overlap_clip_ops.eval_pair(NULL, pair, answer);
+  if (!(*answer->volume > 0) || pair[0] < pair[12]) return status;
+  *answer->volume *= 1 + volume_step;
+  for (int i = 0; answer->gradient && i < 24; i++) answer->gradient[i] *= 1 + volume_step + gradient_step;
   return status;
 }
 static const OverlapOps stepped = {.name = "stepped", .eval_pair = step_up};

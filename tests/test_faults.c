@@ -145,10 +145,9 @@ const FemSolverOps *__wrap_fem_solver_ops(FemSolverKind kind) {
 static const OverlapOps *true_model;
 static OverlapOps broken_model;
 
-static Status eval_pair(const void *self, const double pair[24], double *volume, double *gradient,
-                        double *hessian, unsigned *flags) {
+static Status eval_pair(const void *self, const double pair[24], const OverlapAnswer *answer) {
   if (strikes(&fault.pair)) return status_fail(STATUS_SOLVER, "the pair was refused on purpose");
-  return true_model->eval_pair(self, pair, volume, gradient, hessian, flags);
+  return true_model->eval_pair(self, pair, answer);
 }
 
 Status __real_overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,

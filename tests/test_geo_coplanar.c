@@ -79,7 +79,7 @@ static void blend(const double pair[24], double *volume, double gradient[24], do
   OverlapGeoModel model;
   unsigned flags;
   ck_assert_ok(overlap_geo_create(&model, NULL));
-  OverlapBatch batch = {1, pair, volume, gradient, hessian, &flags};
+  OverlapBatch batch = {1, pair, volume, gradient, hessian, &flags, NULL};
   ck_assert_ok(overlap_geo_eval(&model, &batch));
   ck_assert_uint_ne(flags & OVERLAP_BLENDED, 0);
 }
@@ -128,7 +128,8 @@ static void push_cube(const OverlapModel *model, double depth, double offset, do
     for (int k = 0; k < 36; k++) {
       memcpy(pair, lower[k / 6], sizeof lower[0]);
       memcpy(pair + 12, upper[k % 6], sizeof upper[0]);
-      ck_assert_ok(model->ops->eval_pair(model->self, pair, &volume, gradient, NULL, &flags));
+      ck_assert_ok(model->ops->eval_pair(
+          model->self, pair, &(OverlapAnswer){.volume = &volume, .gradient = gradient, .flags = &flags}));
       for (int i = 0; i < 12; i++) force[i % 3] += gradient[12 + i];
     }
   }

@@ -20,7 +20,8 @@ START_TEST(the_gate_agrees_with_exact_in_every_class) {
       OverlapGeoOutcome outcome = overlap_geo_gate(&gate, pair.x);
       double volume;
       unsigned flags;
-      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair.x, &volume, NULL, NULL, &flags));
+      ck_assert_ok(
+          overlap_exact_ops.eval_pair(NULL, pair.x, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
       // what the gate leaves to exact is right; overlaps thinner than rounding may be missed, none invented
       if (outcome == OVERLAP_GEO_UNFIT) continue;
       bool is_missed =
@@ -99,7 +100,7 @@ END_TEST
 static double exact_volume(const double x[24]) {
   double volume;
   unsigned flags;
-  ck_assert_ok(overlap_exact_ops.eval_pair(NULL, x, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_exact_ops.eval_pair(NULL, x, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
   return volume;
 }
 

@@ -54,7 +54,9 @@ START_TEST(gradient_and_hessian_of_a_loaded_network_are_derivatives) {
     DatagenHardPair pair = datagen_hard_make(2, member);
     double volume, gradient[24], hessian[576];
     unsigned flags;
-    ck_assert_ok(overlap_geo_model_eval_pair(self, pair.x, &volume, gradient, hessian, &flags));
+    ck_assert_ok(overlap_geo_model_eval_pair(
+        self, pair.x,
+        &(OverlapAnswer){.volume = &volume, .gradient = gradient, .hessian = hessian, .flags = &flags}));
     if (!(volume > 1e-6) || flags) continue;
     seen++;
     double h = 1e-6 * cbrt(volume), size = 0, bend = 0;
@@ -64,9 +66,11 @@ START_TEST(gradient_and_hessian_of_a_loaded_network_are_derivatives) {
       double x[24], up, down, up_gradient[24], down_gradient[24];
       memcpy(x, pair.x, sizeof x);
       x[i] = pair.x[i] + h;
-      ck_assert_ok(overlap_geo_model_eval_pair(self, x, &up, up_gradient, NULL, &flags));
+      ck_assert_ok(overlap_geo_model_eval_pair(
+          self, x, &(OverlapAnswer){.volume = &up, .gradient = up_gradient, .flags = &flags}));
       x[i] = pair.x[i] - h;
-      ck_assert_ok(overlap_geo_model_eval_pair(self, x, &down, down_gradient, NULL, &flags));
+      ck_assert_ok(overlap_geo_model_eval_pair(
+          self, x, &(OverlapAnswer){.volume = &down, .gradient = down_gradient, .flags = &flags}));
       ck_assert_near((up - down) / (2 * h), gradient[i], 1e-7 * size);
       for (int j = 0; j < 24; j++)
         ck_assert_near((up_gradient[j] - down_gradient[j]) / (2 * h), hessian[24 * i + j], 1e-6 * bend);
@@ -87,8 +91,10 @@ START_TEST(a_vanishing_overlap_is_true_with_any_weights) {
                        vec3_sub(datagen_hard_vertex(&pair, i), vec3_scale(1e-5 / vec3_length(n), n)));
     double volume, exact;
     unsigned flags;
-    ck_assert_ok(overlap_geo_model_eval_pair(self, pair.x, &volume, NULL, NULL, &flags));
-    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair.x, &exact, NULL, NULL, &flags));
+    ck_assert_ok(
+        overlap_geo_model_eval_pair(self, pair.x, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
+    ck_assert_ok(
+        overlap_exact_ops.eval_pair(NULL, pair.x, &(OverlapAnswer){.volume = &exact, .flags = &flags}));
     ck_assert(exact > 0);
     ck_assert_near(volume / exact, 1, 1e-3);
   }
@@ -147,7 +153,8 @@ START_TEST(without_a_file_there_is_the_constant) {
     pair = datagen_hard_make(2, member);
   double volume;
   unsigned flags;
-  ck_assert_ok(overlap_geo_model_eval_pair(self, pair.x, &volume, NULL, NULL, &flags));
+  ck_assert_ok(
+      overlap_geo_model_eval_pair(self, pair.x, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
   ck_assert_near(volume, 1.28 * frame.volume, 1e-15 * volume);
   overlap_geo_model_destroy(self);
 }

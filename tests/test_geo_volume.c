@@ -42,8 +42,11 @@ typedef struct Answer {
 
 static Answer ask(const Subject *subject, const double x[24], bool wants_hessian) {
   Answer answer;
-  ck_assert_ok(overlap_geo_model_eval_pair(&subject->overlap, x, &answer.volume, answer.gradient,
-                                           wants_hessian ? answer.hessian : NULL, &answer.flags));
+  ck_assert_ok(overlap_geo_model_eval_pair(&subject->overlap, x,
+                                           &(OverlapAnswer){.volume = &answer.volume,
+                                                            .gradient = answer.gradient,
+                                                            .hessian = wants_hessian ? answer.hessian : NULL,
+                                                            .flags = &answer.flags}));
   return answer;
 }
 
@@ -88,7 +91,8 @@ START_TEST(numbers_and_flags_fit_in_every_class) {
       fallbacks++;
       double volume, gradient[24];
       unsigned flags;
-      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair.x, &volume, gradient, NULL, &flags));
+      ck_assert_ok(overlap_exact_ops.eval_pair(
+          NULL, pair.x, &(OverlapAnswer){.volume = &volume, .gradient = gradient, .flags = &flags}));
       ck_assert(answer.volume == volume);
       ck_assert_mem_eq(answer.gradient, gradient, sizeof gradient);
     }
@@ -202,7 +206,8 @@ START_TEST(a_vanishing_overlap_has_the_true_volume) {
         unsigned flags;
         push = vec3_scale(depth / vec3_length(push), push);
         for (int i = 4; i < 8; i++) datagen_hard_set(&pair, i, vec3_sub(datagen_hard_vertex(&pair, i), push));
-        ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair.x, &exact, NULL, NULL, &flags));
+        ck_assert_ok(
+            overlap_exact_ops.eval_pair(NULL, pair.x, &(OverlapAnswer){.volume = &exact, .flags = &flags}));
         Answer answer = ask(&subject, pair.x, false);
         if (answer.flags & OVERLAP_FALLBACK) continue;
         ck_assert(answer.volume > 0 && exact > 0);
@@ -333,7 +338,7 @@ static int draw_test_law(int per_bin, double *pairs, double *volumes) {
     double x[24], volume;
     unsigned flags;
     for (int i = 0; i < 24; i++) x[i] = random_uniform(&random);
-    ck_assert_ok(overlap_clip_ops.eval_pair(NULL, x, &volume, NULL, NULL, &flags));
+    ck_assert_ok(overlap_clip_ops.eval_pair(NULL, x, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
     int bin = (int)(volume / 1e-3);
     if (!(volume > 0) || bin >= BINS || filled[bin] == per_bin) continue;
     filled[bin]++;
@@ -375,7 +380,8 @@ START_TEST(without_a_network_forces_of_pressed_meshes_are_off_by_a_few_degrees) 
     const double *x = pairs + 24 * n;
     double volume, gradient[24];
     unsigned flags;
-    ck_assert_ok(overlap_clip_ops.eval_pair(NULL, x, &volume, gradient, NULL, &flags));
+    ck_assert_ok(overlap_clip_ops.eval_pair(
+        NULL, x, &(OverlapAnswer){.volume = &volume, .gradient = gradient, .flags = &flags}));
     Answer answer = ask(&subject, x, false);
     volume_error += fabs(answer.volume - volume), volume_sum += volume;
     Vec3 force = {0, 0, 0}, true_force = {0, 0, 0};

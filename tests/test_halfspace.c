@@ -116,7 +116,8 @@ START_TEST(it_agrees_with_the_exact_overlap_with_a_huge_tetrahedron) {
     vec3_store(pair + 18, vec3_add(point, vec3_add(vec3_scale(-16, a), vec3_scale(-32, b))));
     vec3_store(pair + 21, vec3_sub(point, vec3_scale(64, n)));
     unsigned flags;
-    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair, &expected, expected_gradient, NULL, &flags));
+    ck_assert_ok(overlap_exact_ops.eval_pair(
+        NULL, pair, &(OverlapAnswer){.volume = &expected, .gradient = expected_gradient, .flags = &flags}));
     contact_halfspace_overlap(it.tet, it.point, it.normal, &volume, gradient, NULL);
     ck_assert_near(volume, expected, 1e-14);
     for (int i = 0; i < 12; i++) ck_assert_near(gradient[i], expected_gradient[i], 1e-12);
@@ -196,7 +197,8 @@ START_TEST(vertices_near_the_plane_cost_no_digits) {
       memcpy(pair, tet, sizeof tet);
       memcpy(pair + 12, ground, sizeof ground);
       unsigned flags;
-      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair, &expected, expected_gradient, NULL, &flags));
+      ck_assert_ok(overlap_exact_ops.eval_pair(
+          NULL, pair, &(OverlapAnswer){.volume = &expected, .gradient = expected_gradient, .flags = &flags}));
       contact_halfspace_overlap(tet, point, up, &volume, gradient, NULL);
       ck_assert_near(volume, expected, 1e-14 * expected);
       if (signs == 13) continue; // the face lies in the plane: one-sided

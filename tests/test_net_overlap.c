@@ -64,7 +64,7 @@ static void draw_pairs(uint64_t seed, int count, double *pairs) {
 static double volume_of(const void *self, const double pair[24]) {
   double volume;
   unsigned flags;
-  ck_assert_ok(overlap_tpn_model_eval_pair(self, pair, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_tpn_model_eval_pair(self, pair, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
   return volume;
 }
 
@@ -78,7 +78,8 @@ static void check_gradient(const char *normalisation) {
   int checked = 0;
   for (int n = 0; n < 40; n++) {
     double *pair = pairs + 24 * n, size = 0, worst = 0;
-    ck_assert_ok(overlap_tpn_model_eval_pair(self, pair, &volume, gradient, NULL, &flags));
+    ck_assert_ok(overlap_tpn_model_eval_pair(
+        self, pair, &(OverlapAnswer){.volume = &volume, .gradient = gradient, .flags = &flags}));
     for (int i = 0; i < 24; i++) size = fmax(size, fabs(gradient[i]));
     for (int i = 0; i < 24; i++) {
       double step = 1e-3, kept = pair[i];
@@ -136,7 +137,8 @@ START_TEST(flat_first_tetrahedron_is_answered_by_exact) {
   void *self;
   write_network("unit, V times 1000", NET_RELU);
   ck_assert_ok(overlap_tpn_model_create(&self, path, NULL));
-  ck_assert_ok(overlap_tpn_model_eval_pair(self, pair, &volume, gradient, NULL, &flags));
+  ck_assert_ok(overlap_tpn_model_eval_pair(
+      self, pair, &(OverlapAnswer){.volume = &volume, .gradient = gradient, .flags = &flags}));
   ck_assert(volume == 0 && (flags & OVERLAP_FALLBACK));
   ck_assert_ok(overlap_tpn_model_logits(self, 1, pair, &logit));
   ck_assert(logit == -INFINITY);
@@ -285,7 +287,7 @@ END_TEST
 static double exact_volume(const double pair[24]) {
   double volume;
   unsigned flags;
-  ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
   return volume;
 }
 

@@ -18,7 +18,7 @@ static void draw_pair(Random *random, double pair[24]) {
 static double volume_of(const double pair[24]) {
   double volume;
   unsigned flags;
-  ck_assert_ok(overlap_clip_ops.eval_pair(NULL, pair, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_clip_ops.eval_pair(NULL, pair, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
   return volume;
 }
 

@@ -20,8 +20,11 @@ typedef struct Answer {
 
 static Answer ask(const double x[24]) {
   Answer answer;
-  ck_assert_ok(
-      overlap_clip_ops.eval_pair(NULL, x, &answer.volume, answer.gradient, answer.hessian, &answer.flags));
+  ck_assert_ok(overlap_clip_ops.eval_pair(NULL, x,
+                                          &(OverlapAnswer){.volume = &answer.volume,
+                                                           .gradient = answer.gradient,
+                                                           .hessian = answer.hessian,
+                                                           .flags = &answer.flags}));
   return answer;
 }
 
@@ -123,9 +126,11 @@ static void check_set(const char *set, int count) {
     const double *x = pairs + 24 * i;
     double volume, gradient[24], expected, expected_gradient[24], extent = overlap_invariant_extent(x);
     unsigned flags;
-    ck_assert_ok(overlap_clip_ops.eval_pair(NULL, x, &volume, gradient, NULL, &flags));
+    ck_assert_ok(overlap_clip_ops.eval_pair(
+        NULL, x, &(OverlapAnswer){.volume = &volume, .gradient = gradient, .flags = &flags}));
     helped += (flags & OVERLAP_FALLBACK) != 0;
-    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, x, &expected, expected_gradient, NULL, &flags));
+    ck_assert_ok(overlap_exact_ops.eval_pair(
+        NULL, x, &(OverlapAnswer){.volume = &expected, .gradient = expected_gradient, .flags = &flags}));
     ck_assert_msg(overlap_invariant_misfit(x, volume, expected) <= 1, "%s: pair %d", set, i);
     for (int c = 0; c < 24; c++)
       ck_assert_msg(fabs(gradient[c] - expected_gradient[c]) <= 1e-12 * extent * extent,
@@ -168,7 +173,8 @@ START_TEST(accuracy_holds_from_fat_to_flat) {
       double expected;
       unsigned flags;
       Answer answer = ask(pair.x);
-      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, pair.x, &expected, NULL, NULL, &flags));
+      ck_assert_ok(
+          overlap_exact_ops.eval_pair(NULL, pair.x, &(OverlapAnswer){.volume = &expected, .flags = &flags}));
       ck_assert_msg(overlap_invariant_misfit(pair.x, answer.volume, expected) <= 1, "decade %d: %g, exact %g",
                     decade, answer.volume, expected);
       if (answer.flags & OVERLAP_FALLBACK)
@@ -219,7 +225,8 @@ START_TEST(slivers_that_cross_are_as_exact_as_stated) {
       datagen_hard_permute(pairs[k], order, x);
       datagen_hard_permute(pairs[k] + 12, (7 * order) % 24, x + 12);
       Answer answer = ask(x);
-      ck_assert_ok(overlap_exact_ops.eval_pair(NULL, x, &expected, NULL, NULL, &flags));
+      ck_assert_ok(
+          overlap_exact_ops.eval_pair(NULL, x, &(OverlapAnswer){.volume = &expected, .flags = &flags}));
       ck_assert_double_gt(expected, 0);
       ck_assert_msg(overlap_invariant_misfit(x, answer.volume, expected) <= 1,
                     "pair %d, order %d: %.17g, exact %.17g", k, order, answer.volume, expected);

@@ -93,7 +93,7 @@ static double ask_volume(const OverlapModel *model, const double x[24]) {
 static double exact_volume(const double x[24]) {
   double volume;
   unsigned flags;
-  ck_assert_ok(overlap_exact_ops.eval_pair(NULL, x, &volume, NULL, NULL, &flags));
+  ck_assert_ok(overlap_exact_ops.eval_pair(NULL, x, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
   return volume;
 }
 
@@ -417,8 +417,9 @@ START_TEST(a_batch_says_what_each_pair_says) {
   ck_assert_ok(overlap_model_eval(&model, &batch));
   for (int k = 0; k < BATCH; k += demand_of(ops->name)->members < 10 && k % 5 ? 7 : 1) {
     Answer answer;
-    ck_assert_ok(
-        ops->eval_pair(model.self, x + 24 * k, &answer.volume, answer.gradient, NULL, &answer.flags));
+    ck_assert_ok(ops->eval_pair(
+        model.self, x + 24 * k,
+        &(OverlapAnswer){.volume = &answer.volume, .gradient = answer.gradient, .flags = &answer.flags}));
     ck_assert(answer.volume == volume[k]);
     ck_assert_uint_eq(answer.flags, flags[k]);
     ck_assert_mem_eq(answer.gradient, gradient + 24 * k, sizeof answer.gradient);

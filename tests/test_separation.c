@@ -50,7 +50,8 @@ START_TEST(the_sign_says_whether_the_interiors_meet) {
     double pair[24], volume;
     unsigned flags;
     random_pair(&random, random_between(&random, 0, 2), pair);
-    ck_assert_ok(exact.ops->eval_pair(exact.self, pair, &volume, NULL, NULL, &flags));
+    ck_assert_ok(
+        exact.ops->eval_pair(exact.self, pair, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
     double separation = overlap_separation_pair(pair, INFINITY);
     if (separation < -1e-12)
       ck_assert_msg(volume > 0, "pair %d: separation %g but no overlap", k, separation);
@@ -87,7 +88,8 @@ START_TEST(nothing_is_certain_about_overlap) {
       for (int c = 0; c < 3; c++)
         pair[3 * v + c] = R[3 * c] * x[0] + R[3 * c + 1] * x[1] + R[3 * c + 2] * x[2] + (k % 2 ? 1000 : 0);
     }
-    ck_assert_ok(exact.ops->eval_pair(exact.self, pair, &volume, NULL, NULL, &flags));
+    ck_assert_ok(
+        exact.ops->eval_pair(exact.self, pair, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
     if (volume > 0) ck_assert(!overlap_separation_is_certain(pair));
   }
   overlap_model_destroy(&exact);
@@ -110,7 +112,8 @@ START_TEST(certainty_holds_at_any_ratio_of_sizes) {
     double shrunk[24]; // exact decides without a look at the faces
     memcpy(shrunk, pair, sizeof shrunk);
     for (int v = 0; v < 24; v++) shrunk[v] *= 0x1p-300;
-    ck_assert_ok(exact.ops->eval_pair(exact.self, shrunk, &volume, NULL, NULL, &flags));
+    ck_assert_ok(
+        exact.ops->eval_pair(exact.self, shrunk, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
     bool is_disjoint = flags == OVERLAP_DISJOINT;
     ck_assert(!overlap_separation_is_certain(shrunk));
     if (overlap_separation_is_certain(pair)) ck_assert(is_disjoint), certain++;

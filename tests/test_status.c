@@ -6,12 +6,11 @@
 #include "contact/status.h"
 
 // Says V = 1 m³ of every pair: `claims` 1, or of none.
-static Status eval_claim(const void *self, const double pair[24], double *volume, double *gradient,
-                         double *hessian, unsigned *flags) {
-  (void)pair, (void)hessian;
-  *volume = *(const int *)self;
-  if (gradient) memset(gradient, 0, 24 * sizeof *gradient);
-  *flags = *volume > 0 ? 0 : OVERLAP_DISJOINT;
+static Status eval_claim(const void *self, const double pair[24], const OverlapAnswer *answer) {
+  (void)pair;
+  *answer->volume = *(const int *)self;
+  if (answer->gradient) memset(answer->gradient, 0, 24 * sizeof *answer->gradient);
+  *answer->flags = *answer->volume > 0 ? 0 : OVERLAP_DISJOINT;
   return STATUS_OK;
 }
 

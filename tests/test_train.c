@@ -235,7 +235,8 @@ START_TEST(rates_are_the_changes_of_clipped_volumes) {
     for (int side = 0; side < 2; side++) {
       for (int i = 0; i < 24; i++)
         moved[i] = normalised.pair[i] + (side ? step : -step) * (double)direction[i];
-      ck_assert_ok(overlap_clip_ops.eval_pair(NULL, moved, &volume[side], NULL, NULL, &flags));
+      ck_assert_ok(overlap_clip_ops.eval_pair(NULL, moved,
+                                              &(OverlapAnswer){.volume = &volume[side], .flags = &flags}));
     }
     ck_assert_near(scale * (volume[1] - volume[0]) / (2 * step), rate, 1e-3);
     used++;

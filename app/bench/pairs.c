@@ -73,7 +73,7 @@ static bool boxes_overlap(const double pair[24]) {
 static Status intersects(const double pair[24], bool *answer) {
   double volume;
   unsigned flags;
-  TRY(overlap_clip_ops.eval_pair(NULL, pair, &volume, NULL, NULL, &flags));
+  TRY(overlap_clip_ops.eval_pair(NULL, pair, &(OverlapAnswer){.volume = &volume, .flags = &flags}));
   *answer = volume > 0;
   return STATUS_OK;
 }

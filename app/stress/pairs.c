@@ -148,7 +148,7 @@ static Status ask_member(Asked *asked, const DatagenHardPair *pair, bool is_slow
   unsigned flags;
   const double *x = pair->x;
   TRY(ask(asked, x, &answer));
-  TRY(overlap_exact_ops.eval_pair(NULL, x, &exact, NULL, NULL, &flags));
+  TRY(overlap_exact_ops.eval_pair(NULL, x, &(OverlapAnswer){.volume = &exact, .flags = &flags}));
   asked->member_count++;
   asked->fallbacks += (answer.flags & OVERLAP_FALLBACK) != 0;
   asked->wrong_flags += !flags_are_right(pair, &answer);

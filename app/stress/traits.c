@@ -77,13 +77,15 @@ static bool is_nearly_the_same(const DatagenHardPair *pair) {
 static bool is_enclosed(const DatagenHardPair *pair) {
   double volume;
   unsigned flags;
-  return overlap_exact_ops.eval_pair(NULL, pair->x, &volume, NULL, NULL, &flags) == STATUS_OK &&
+  return overlap_exact_ops.eval_pair(NULL, pair->x, &(OverlapAnswer){.volume = &volume, .flags = &flags}) ==
+             STATUS_OK &&
          fabs(volume - overlap_invariant_tet_volume(pair->x + 12)) <= 1e-9 * volume;
 }
 static bool is_shallow(const DatagenHardPair *pair) {
   double volume;
   unsigned flags;
-  return overlap_exact_ops.eval_pair(NULL, pair->x, &volume, NULL, NULL, &flags) == STATUS_OK &&
+  return overlap_exact_ops.eval_pair(NULL, pair->x, &(OverlapAnswer){.volume = &volume, .flags = &flags}) ==
+             STATUS_OK &&
          volume < 0.5 * overlap_invariant_smaller_volume(pair->x);
 }
 

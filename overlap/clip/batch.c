@@ -26,23 +26,21 @@ static Status ask_carefully(const OverlapBatch *batch, int i) {
   size_t begin = (size_t)i * OVERLAP_PAIR_SIZE;
   for (size_t c = begin; c < begin + OVERLAP_PAIR_SIZE; c++)
     if (!isfinite(batch->pairs[c])) return status_fail(STATUS_INPUT, "pair %d is not finite", i);
-  double *hessian = batch->hessian ? batch->hessian + begin * OVERLAP_PAIR_SIZE : NULL;
   unsigned flags = 0;
-  Status status =
-      overlap_clip_scalar_ops.eval_pair(NULL, batch->pairs + begin, batch->volume + i,
-                                        batch->gradient ? batch->gradient + begin : NULL, hessian, &flags);
-  if (batch->flags) batch->flags[i] = flags;
-  return status;
+  OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
+  return overlap_clip_scalar_ops.eval_pair(NULL, batch->pairs + begin, &answer);
 }
 
 static void write_disjoint(const OverlapBatch *batch, int i) {
   batch->volume[i] = 0;
   if (batch->gradient)
     memset(batch->gradient + (size_t)i * OVERLAP_PAIR_SIZE, 0, OVERLAP_PAIR_SIZE * sizeof(double));
+  if (batch->centroid) memset(batch->centroid + 3 * (size_t)i, 0, 3 * sizeof(double));
 }
 
 static OverlapClipLanesOutcome run(const Work *work, const double *pairs, int least, double *volume,
-                                   double *gradient) {
+                                   double *gradient, double *centroid) {
+  if (centroid) return work->lanes->locate(pairs, least, volume, gradient, centroid);
   return gradient ? work->lanes->differentiate(pairs, least, volume, gradient)
                   : work->lanes->measure(pairs, least, volume);
 }
@@ -57,10 +55,12 @@ static Status answer_queue(Work *work, int count) {
   const OverlapBatch *batch = work->batch;
   Queue *queue = &work->queue;
   double volume[OVERLAP_CLIP_MAX_LANES], gradient[OVERLAP_CLIP_MAX_LANES][OVERLAP_PAIR_SIZE];
+  double centroid[OVERLAP_CLIP_MAX_LANES][3];
   for (int k = count; k < work->lanes->width; k++)
     memcpy(queue->pairs[k], queue->pairs[0], sizeof queue->pairs[k]);
   OverlapClipLanesOutcome outcome =
-      run(work, queue->pairs[0], 0, volume, batch->gradient ? gradient[0] : NULL);
+      run(work, queue->pairs[0], 0, volume, batch->gradient ? gradient[0] : NULL,
+          batch->centroid ? centroid[0] : NULL);
   for (int k = 0; k < count; k++) {
     int i = queue->at[k];
     if (outcome.doubtful >> k & 1) {
@@ -70,6 +70,7 @@ static Status answer_queue(Work *work, int count) {
     batch->volume[i] = volume[k];
     if (batch->gradient)
       memcpy(batch->gradient + (size_t)i * OVERLAP_PAIR_SIZE, gradient[k], sizeof gradient[k]);
+    if (batch->centroid) memcpy(batch->centroid + 3 * (size_t)i, centroid[k], sizeof centroid[k]);
     if (batch->flags) batch->flags[i] = flags_of(&outcome, k);
   }
   queue->count -= count;
@@ -91,7 +92,8 @@ static Status answer_group(Work *work, int first) {
   size_t begin = (size_t)first * OVERLAP_PAIR_SIZE;
   int width = work->lanes->width;
   OverlapClipLanesOutcome outcome = run(work, batch->pairs + begin, width / 2 + 1, batch->volume + first,
-                                        batch->gradient ? batch->gradient + begin : NULL);
+                                        batch->gradient ? batch->gradient + begin : NULL,
+                                        batch->centroid ? batch->centroid + 3 * (size_t)first : NULL);
   for (int k = 0; batch->flags && k < width; k++) batch->flags[first + k] = flags_of(&outcome, k);
   for (uint32_t left = outcome.doubtful; left; left &= left - 1)
     TRY(ask_carefully(batch, first + __builtin_ctz(left)));
@@ -132,15 +134,9 @@ static Status eval(const OverlapClipLanes *lanes, const OverlapBatch *batch) {
   return status_fail(STATUS_SOLVER, "clipping failed among the pairs from %d on", first_failed * PORTION);
 }
 
-static Status eval_one(const OverlapClipLanes *lanes, const double pair[24], double *volume, double *gradient,
-                       double *hessian, unsigned *flags) {
-  OverlapBatch batch = {.pair_count = 1,
-                        .pairs = pair,
-                        .volume = volume,
-                        .gradient = gradient,
-                        .hessian = hessian,
-                        .flags = flags};
-  return lanes && !hessian ? answer_range(lanes, &batch, 0, 1) : ask_carefully(&batch, 0);
+static Status eval_one(const OverlapClipLanes *lanes, const double pair[24], const OverlapAnswer *answer) {
+  OverlapBatch batch = overlap_ops_single(pair, answer);
+  return lanes && !batch.hessian ? answer_range(lanes, &batch, 0, 1) : ask_carefully(&batch, 0);
 }
 
 static Status eval_batch(const void *self, const OverlapBatch *batch) {
@@ -148,10 +144,9 @@ static Status eval_batch(const void *self, const OverlapBatch *batch) {
   return eval(overlap_clip_lanes(), batch);
 }
 
-static Status eval_pair(const void *self, const double pair[24], double *volume, double *gradient,
-                        double *hessian, unsigned *flags) {
+static Status eval_pair(const void *self, const double pair[24], const OverlapAnswer *answer) {
   (void)self;
-  return eval_one(overlap_clip_lanes(), pair, volume, gradient, hessian, flags);
+  return eval_one(overlap_clip_lanes(), pair, answer);
 }
 
 static Status eval_batch_single(const void *self, const OverlapBatch *batch) {
@@ -159,27 +154,28 @@ static Status eval_batch_single(const void *self, const OverlapBatch *batch) {
   return eval(overlap_clip_lanes_single(), batch);
 }
 
-static Status eval_pair_single(const void *self, const double pair[24], double *volume, double *gradient,
-                               double *hessian, unsigned *flags) {
+static Status eval_pair_single(const void *self, const double pair[24], const OverlapAnswer *answer) {
   (void)self;
-  return eval_one(overlap_clip_lanes_single(), pair, volume, gradient, hessian, flags);
+  return eval_one(overlap_clip_lanes_single(), pair, answer);
 }
 
 const OverlapOps overlap_clip_ops = {
     .name = "clip",
     .help = "clipping in double precision, with exact gradient and Hessian",
-    .has_hessian = true,
+    .has_hessian = overlap_ops_always,
+    .has_centroid = overlap_ops_always,
     .seconds_per_pair = 1e-7,
     .eval_pair = eval_pair,
     .eval_batch = eval_batch,
-    .minds_finite = true,
+    .checks_finite = true,
 };
 
 const OverlapOps overlap_clip32_ops = {
     .name = "clip32",
+    .has_centroid = overlap_ops_always,
     .help = "as clip in single precision: V within a thousandth of itself",
     .seconds_per_pair = 7e-8,
     .eval_pair = eval_pair_single,
     .eval_batch = eval_batch_single,
-    .minds_finite = true,
+    .checks_finite = true,
 };

@@ -17,6 +17,10 @@
 // height, so V = Σ_{f of A} φ_f λ_f(o) V_A + Σ_{g of B} φ_g λ_g(o) V_B. All sums are taken relative to o, so
 // that a small P loses no digits.
 //
+// Centroid. The pyramids' own, weighted: with V_f = φ_f λ_f(o) V_A or V_B and x_f the mean of P_f,
+//
+//   x̄ = Σ_f V_f (¼ o + ¾ x_f) / V,   φ_f x_f = Σ_a m_fa x_a.
+//
 // Gradient. A point of face f moves by Σ_a β_a δx_a, and V grows by what the boundary sweeps over:
 //
 //   ∂V/∂x_a = Σ_{f∋a} m_fa S_f.
@@ -47,6 +51,10 @@
 // The ones are planes that move along their normals. The rest: λ of a flat tetrahedron tell a point's place
 // along its faces to ν/det of L only, and by so much the other's planes seem to have moved, if they stand
 // across. `clip`, which sums each face on its own, adds ν/8 λ_f(o) for each face that P has (clip_lanes.h).
+// With |δV| so, the moment V x̄ is off by at most L |δV|: |δx̄| ≤ 1e-9 L where V is more than 1e-6 of the
+// smaller tetrahedron, and x̄ is within the boxes of both in any case. Rounding of well-shaped pairs leaves
+// |δx̄| ≤ 1e-12 L where V is more than 1e-4 of the smaller (tests/test_centroid.c).
+//
 // Where V is small and a tetrahedron flat, φ may be as wrong as V, and nothing is concluded. Pairs for which
 // this bound does not do (slivers, mostly) are answered by overlap_exact_ops and flagged FALLBACK; their
 // ∇²V is still from clipping, zero if a tetrahedron is too flat for it. In single precision: |δV| ≤ 1e-3 V,

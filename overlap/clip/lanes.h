@@ -13,7 +13,7 @@
 //                 on the one side of the segment leaves on the other, which gives it a direction. An end
 //                 is found in the parameters of the face whose edge it is on, and carried to the other's
 //   4. each segment p q adds p × q to the areas of the two polygons that it bounds, and (p × q)(p + q) to
-//                 their first moments; then clip.h's formulas for V and ∇V
+//                 their first moments; then clip.h's formulas for V, ∇V and x̄
 //
 // Every number of a corner is a convex combination with the same weights, so wrong decisions on what is only
 // rounding move the corner by no more than rounding does. What they may spoil is that polygons close; that is
@@ -34,7 +34,7 @@ enum { OVERLAP_CLIP_MAX_LANES = 16 };
 
 // What became of each lane: bit k is lane k.
 typedef struct OverlapClipLanesOutcome {
-  uint32_t doubtful; // ask a more careful method; V and ∇V mean nothing
+  uint32_t doubtful; // ask a more careful method; the numbers mean nothing
   uint32_t disjoint; // V = 0, ∇V = 0
   uint32_t waiting;  // not answered, see below; nothing is written then
   uint32_t enclosed; // one tetrahedron lies wholly inside the other
@@ -50,6 +50,9 @@ typedef struct OverlapClipLanes {
   // `least` are left after the first part, only `disjoint` is answered and the others are `waiting`.
   OverlapClipLanesOutcome (*measure)(const double *pairs, int least, double *volume);
   OverlapClipLanesOutcome (*differentiate)(const double *pairs, int least, double *volume, double *gradient);
+  // Also x̄ (width, 3) [m], zero where there is no common interior; `gradient` may be NULL.
+  OverlapClipLanesOutcome (*locate)(const double *pairs, int least, double *volume, double *gradient,
+                                    double *centroid);
 } OverlapClipLanes;
 
 // The widest that this processor has in double precision and in single; NULL: none.

@@ -14,8 +14,12 @@
 
 #include "overlap/clip/lanes.inc"
 
-const OverlapClipLanes overlap_clip_lanes_avx2 = {
-    .name = "avx2", .width = LANES, .separate = separate, .measure = measure, .differentiate = differentiate};
+const OverlapClipLanes overlap_clip_lanes_avx2 = {.name = "avx2",
+                                                  .width = LANES,
+                                                  .separate = separate,
+                                                  .measure = measure,
+                                                  .differentiate = differentiate,
+                                                  .locate = locate};
 
 #ifdef __clang__
 #pragma clang attribute pop

@@ -18,7 +18,8 @@ const OverlapClipLanes overlap_clip_lanes_avx512 = {.name = "avx512",
                                                     .width = LANES,
                                                     .separate = separate,
                                                     .measure = measure,
-                                                    .differentiate = differentiate};
+                                                    .differentiate = differentiate,
+                                                    .locate = locate};
 
 #ifdef __clang__
 #pragma clang attribute pop

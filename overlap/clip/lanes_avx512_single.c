@@ -19,7 +19,8 @@ const OverlapClipLanes overlap_clip_lanes_avx512_single = {.name = "avx512, sing
                                                            .width = LANES,
                                                            .separate = separate,
                                                            .measure = measure,
-                                                           .differentiate = differentiate};
+                                                           .differentiate = differentiate,
+                                                           .locate = locate};
 
 #ifdef __clang__
 #pragma clang attribute pop

@@ -149,7 +149,27 @@ void find_gradient(const Tet (&tets)[2], const Mesh &mesh, double *gradient) {
       for (int c = 0; c < 3; c++) gradient[12 * t + 3 * tets[t].order[i] + c] = CGAL::to_double(sum[t][i][c]);
 }
 
-unsigned intersect(const double *pair, double *volume, double *gradient) {
+// Of the pyramids from one corner over all triangles, six times: volume and the mean of its vertices.
+void find_centroid(const Mesh &mesh, double *centroid) {
+  const Rational::Point_3 apex = CGAL::exact(mesh.point(*mesh.vertices().begin()));
+  Rational::FT volume = 0;
+  Rational::Vector_3 sum = CGAL::NULL_VECTOR;
+  for (const Mesh::Face_index face : mesh.faces()) {
+    std::array<Rational::Vector_3, 3> way;
+    Mesh::Halfedge_index edge = mesh.halfedge(face);
+    for (Rational::Vector_3 &w : way) {
+      w = CGAL::exact(mesh.point(mesh.target(edge))) - apex;
+      edge = mesh.next(edge);
+    }
+    const Rational::FT part = CGAL::determinant(way[0], way[1], way[2]);
+    volume += part;
+    sum = sum + (way[0] + way[1] + way[2]) * Rational::FT(part / 4);
+  }
+  const Rational::Point_3 mean = apex + sum / volume;
+  for (int c = 0; c < 3; c++) centroid[c] = CGAL::to_double(mean[c]);
+}
+
+unsigned intersect(const double *pair, const OverlapAnswer *answer) {
   const Tet tets[2] = {Tet(pair), Tet(pair + 12)};
   if (tets[0].is_flat || tets[1].is_flat) return OVERLAP_FLAT;
   if (!CGAL::do_intersect(tets[0].solid(), tets[1].solid())) return OVERLAP_DISJOINT;
@@ -158,18 +178,16 @@ unsigned intersect(const double *pair, double *volume, double *gradient) {
   Mesh mesh;
   CGAL::convert_nef_polyhedron_to_polygon_mesh(common, mesh, true);
   // Of the exact value: to_double of a lazy number is content with an interval.
-  *volume = CGAL::to_double(CGAL::exact(CGAL::Polygon_mesh_processing::volume(mesh)));
-  if (gradient) find_gradient(tets, mesh, gradient);
+  *answer->volume = CGAL::to_double(CGAL::exact(CGAL::Polygon_mesh_processing::volume(mesh)));
+  if (answer->gradient) find_gradient(tets, mesh, answer->gradient);
+  if (answer->centroid) find_centroid(mesh, answer->centroid);
   return tets[0].encloses(tets[1]) || tets[1].encloses(tets[0]) ? OVERLAP_ENCLOSED : 0;
 }
 
-Status eval_pair(const void *, const double pair[24], double *volume, double *gradient, double *,
-                 unsigned *flags) {
-  *volume = 0;
-  if (gradient)
-    for (int c = 0; c < 24; c++) gradient[c] = 0;
+Status eval_pair(const void *, const double pair[24], const OverlapAnswer *answer) {
+  overlap_ops_write_nothing(answer);
   try {
-    *flags = intersect(pair, volume, gradient);
+    *answer->flags = intersect(pair, answer);
   } catch (const std::bad_alloc &) {
     return status_no_memory("a Nef polyhedron");
   } catch (const std::exception &failure) {
@@ -182,12 +200,20 @@ Status eval_pair(const void *, const double pair[24], double *volume, double *gr
 
 } // namespace
 
+// clang-format off
 extern "C" const OverlapOps overlap_cgal_ops = {
-    "cgal",  "CGAL: do_intersect, Nef_polyhedron_3, PMP::volume; the seed paper's ground truth",
-    false,   2.5e-3,
-    nullptr, eval_pair,
-    nullptr, nullptr,
-    nullptr, false,
-    nullptr, nullptr,
-    false,   nullptr,
+    "cgal",
+    "CGAL: do_intersect, Nef_polyhedron_3, PMP::volume; the seed paper's ground truth",
+    2.5e-3,             // seconds_per_pair
+    nullptr,            // create
+    eval_pair,
+    nullptr,            // eval_batch
+    nullptr,            // destroy
+    nullptr,            // has_ghosts
+    false,              // rejects_disjoint
+    nullptr,            // eval_logits
+    nullptr,            // has_hessian
+    overlap_ops_always, // has_centroid
+    false,              // checks_finite
+    nullptr,            // weights
 };

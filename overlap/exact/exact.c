@@ -6,7 +6,10 @@
 //     dV/dx_i = Σ_{F∋i} −½ n_F m_{F,i}          Reynolds: the face moves by N_i dx_i; −½ n_F is its outward
 //                                               area vector, m_{F,i} the polygon's share weighted with N_i
 //
-// and every α, r and m is a sum of non-negative terms.
+//     x̄ = ¼ O + ¾ Σ_F α_F(O) Σ_i m_{F,i} x_i / Σ_F α_F(O) r_F,   O = Σ_k α_k(O) x_k / Σ_k α_k(O)
+//
+// the mean of the pyramids' centroids, k the planes of one of the two; and every α, r and m is a sum of
+// non-negative terms.
 #include "overlap/exact/exact.h"
 
 #include <math.h>
@@ -95,7 +98,30 @@ static void sum_gradient(const Boundary *boundary, const ExactPair *pair, double
   }
 }
 
-static unsigned intersect(const double coordinates[24], double *volume, double *gradient) {
+// Relative to the pair's first vertex, with weights that are all positive.
+static void sum_centroid(const Boundary *boundary, const ExactPair *pair, const double coordinates[24],
+                         double centroid[3]) {
+  long double det = 0, volume = 0, apex[3] = {0}, sum[3] = {0};
+  for (int t = 0; t < 2; t++)
+    for (int k = 0; k < 4; k++) {
+      const long double height = boundary->apex[t][k];
+      volume += height * boundary->parts[t][k].area;
+      if (t == 0) det += height;
+      for (int i = 0; i < 4; i++) {
+        const double *x = coordinates + 12 * t + 3 * pair->tets[t].order[i];
+        const long double weight = height * boundary->parts[t][k].moment[i];
+        for (int c = 0; c < 3; c++) {
+          const long double way = (long double)x[c] - coordinates[c];
+          sum[c] += weight * way;
+          if (t == 0 && i == k) apex[c] += height * way;
+        }
+      }
+    }
+  for (int c = 0; c < 3; c++)
+    centroid[c] = (double)(coordinates[c] + (apex[c] / det + 3 * sum[c] / volume) / 4);
+}
+
+static unsigned intersect(const double coordinates[24], const OverlapAnswer *answer) {
   if (overlap_separation_is_certain(coordinates)) return OVERLAP_DISJOINT;
   mp_limb_t limbs[EXACT_PAIR_LIMBS];
   ExactArena arena = {limbs, limbs + EXACT_PAIR_LIMBS};
@@ -107,20 +133,18 @@ static unsigned intersect(const double coordinates[24], double *volume, double *
   if (is_beyond_a_face(&pair)) return OVERLAP_DISJOINT;
   overlap_exact_pair_find_crossings(&pair, &arena);
   Boundary boundary = {.has_area = false};
-  find_boundary(&boundary, &pair, &arena, gradient != NULL);
+  find_boundary(&boundary, &pair, &arena, answer->gradient || answer->centroid);
   if (!boundary.has_area) return OVERLAP_DISJOINT;
-  *volume = sum_volume(&boundary, pair.exponent);
-  if (gradient) sum_gradient(&boundary, &pair, gradient);
+  *answer->volume = sum_volume(&boundary, pair.exponent);
+  if (answer->gradient) sum_gradient(&boundary, &pair, answer->gradient);
+  if (answer->centroid) sum_centroid(&boundary, &pair, coordinates, answer->centroid);
   return encloses(&pair.tets[0]) || encloses(&pair.tets[1]) ? OVERLAP_ENCLOSED : 0;
 }
 
-static Status eval_pair(const void *self, const double pair[24], double *volume, double *gradient,
-                        double *hessian, unsigned *flags) {
-  (void)self, (void)hessian;
-  *volume = 0;
-  if (gradient)
-    for (int c = 0; c < 24; c++) gradient[c] = 0;
-  *flags = intersect(pair, volume, gradient);
+static Status eval_pair(const void *self, const double pair[24], const OverlapAnswer *answer) {
+  (void)self;
+  overlap_ops_write_nothing(answer);
+  *answer->flags = intersect(pair, answer);
   return STATUS_OK;
 }
 
@@ -129,4 +153,5 @@ const OverlapOps overlap_exact_ops = {
     .help = "exact rational arithmetic; every input, signs always right, values rounded once",
     .seconds_per_pair = 8e-6,
     .eval_pair = eval_pair,
+    .has_centroid = overlap_ops_always,
 };

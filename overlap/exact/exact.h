@@ -11,7 +11,9 @@
 // integer quotient rounded to long double once or twice: nothing cancels. Where long double has 64 bits or
 // more, V is within 1 ulp of the true volume, however small; a component of ∇V is within 1 ulp of the
 // component's largest term (three faces meet at a vertex and their parts may cancel). Overflow gives
-// infinity, underflow a subnormal or 0, as everywhere.
+// infinity, underflow a subnormal or 0, as everywhere. x̄ is a mean of the vertices, relative to the first,
+// with non-negative weights of which each has 60 digits right: within 1 ulp of its component, or 2^-58 of the
+// longest difference of coordinates where that is more, however small V is.
 //
 // The convention for coinciding faces. If a face of A and a face of B lie in one plane with the same outward
 // normal, V has one-sided derivatives only. Their common polygon counts half for the face of A and half for

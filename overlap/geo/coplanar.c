@@ -165,8 +165,11 @@ Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pai
   Blend blend;
   blend.share = coplanar.share;
   unsigned clip_flags;
-  TRY(overlap_clip_ops.eval_pair(NULL, pair, &blend.volume, gradient ? blend.gradient : NULL,
-                                 hessian ? blend.hessian : NULL, &clip_flags));
+  TRY(overlap_clip_ops.eval_pair(NULL, pair,
+                                 &(OverlapAnswer){.volume = &blend.volume,
+                                                  .gradient = gradient ? blend.gradient : NULL,
+                                                  .hessian = hessian ? blend.hessian : NULL,
+                                                  .flags = &clip_flags}));
   blend.difference = blend.volume - *volume;
   *volume += blend.share * blend.difference;
   if (flags) *flags |= OVERLAP_BLENDED;

@@ -64,8 +64,12 @@ static void write_empty(Place place) {
 static Status fall_back(Place place) {
   unsigned flags;
   double volume;
-  if (place.hessian) TRY(overlap_clip_ops.eval_pair(NULL, place.pair, &volume, NULL, place.hessian, &flags));
-  TRY(overlap_exact_ops.eval_pair(NULL, place.pair, place.volume, place.gradient, NULL, &flags));
+  if (place.hessian)
+    TRY(overlap_clip_ops.eval_pair(
+        NULL, place.pair, &(OverlapAnswer){.volume = &volume, .hessian = place.hessian, .flags = &flags}));
+  TRY(overlap_exact_ops.eval_pair(
+      NULL, place.pair,
+      &(OverlapAnswer){.volume = place.volume, .gradient = place.gradient, .flags = &flags}));
   if (place.flags) *place.flags = flags | OVERLAP_FALLBACK;
   return STATUS_OK;
 }

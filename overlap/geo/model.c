@@ -34,14 +34,8 @@ void overlap_geo_model_destroy(void *self) {
   memory_free(overlap);
 }
 
-Status overlap_geo_model_eval_pair(const void *self, const double pair[24], double *volume, double *gradient,
-                                   double *hessian, unsigned *flags) {
-  OverlapBatch batch = {.pair_count = 1,
-                        .pairs = pair,
-                        .volume = volume,
-                        .gradient = gradient,
-                        .hessian = hessian,
-                        .flags = flags};
+Status overlap_geo_model_eval_pair(const void *self, const double pair[24], const OverlapAnswer *answer) {
+  OverlapBatch batch = overlap_ops_single(pair, answer);
   const OverlapGeoOverlap *overlap = self;
   return overlap_geo_eval(&overlap->model, &batch);
 }
@@ -90,7 +84,7 @@ static Status create_geo_small(void **self, const char *weights, const OverlapOp
 const OverlapOps overlap_geo_ops = {
     .name = "geo",
     .help = "learned: analytic-centre frame and 100 symmetric features; smooth, no ghost forces",
-    .has_hessian = true,
+    .has_hessian = overlap_ops_always,
     .seconds_per_pair = 1.8e-6,
     .create = create_geo,
     .eval_pair = overlap_geo_model_eval_pair,
@@ -101,7 +95,7 @@ const OverlapOps overlap_geo_ops = {
 const OverlapOps overlap_geo_small_ops = {
     .name = "geo-small",
     .help = "learned: as geo, with 36 features and a smaller network",
-    .has_hessian = true,
+    .has_hessian = overlap_ops_always,
     .seconds_per_pair = 6e-7,
     .create = create_geo_small,
     .eval_pair = overlap_geo_model_eval_pair,

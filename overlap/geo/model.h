@@ -20,8 +20,7 @@ Status overlap_geo_model_create(void **self, const char *path);
 void overlap_geo_model_destroy(void *self);
 
 // As OverlapOps.eval_pair.
-Status overlap_geo_model_eval_pair(const void *self, const double pair[24], double *volume, double *gradient,
-                                   double *hessian, unsigned *flags);
+Status overlap_geo_model_eval_pair(const void *self, const double pair[24], const OverlapAnswer *answer);
 
 // As OverlapOps.eval_batch: over OpenMP threads, the same results for any number of them.
 Status overlap_geo_model_eval_batch(const void *self, const OverlapBatch *batch);

@@ -99,14 +99,8 @@ Status overlap_tpn_model_eval_batch(const void *self, const OverlapBatch *batch)
              : status;
 }
 
-Status overlap_tpn_model_eval_pair(const void *self, const double pair[24], double *volume, double *gradient,
-                                   double *hessian, unsigned *flags) {
-  OverlapBatch batch = {.pair_count = 1,
-                        .pairs = pair,
-                        .volume = volume,
-                        .gradient = gradient,
-                        .hessian = hessian,
-                        .flags = flags};
+Status overlap_tpn_model_eval_pair(const void *self, const double pair[24], const OverlapAnswer *answer) {
+  OverlapBatch batch = overlap_ops_single(pair, answer);
   return eval_portion(self, &batch);
 }
 
@@ -196,7 +190,7 @@ static Status create_hybrid(void **self, const char *weights, const OverlapOptio
   return create_named(self, weights, "tpn-scene", options, &for_hybrid, true, net_kernel_best());
 }
 
-static bool bends(const void *self) {
+static bool has_hessian(const void *self) {
   return overlap_tpn_portion_bends(&((const OverlapTpnOverlap *)self)->model);
 }
 
@@ -207,7 +201,7 @@ static bool has_ghosts(const void *self) {
 const OverlapOps overlap_tpn_ops = {
     .name = "tpn",
     .help = "learned: the paper's TetrahedronPairNet; its gradient jumps, disjoint pairs feel ghosts",
-    .bends = bends,
+    .has_hessian = has_hessian,
     .seconds_per_pair = 3e-6,
     .create = create_tpn,
     .has_ghosts = has_ghosts,
@@ -220,7 +214,7 @@ const OverlapOps overlap_tpn_ops = {
 const OverlapOps overlap_tpn_bf16_ops = {
     .name = "tpn-bf16",
     .help = "learned: tpn with factors rounded to bf16: faster where the processor has AVX512_BF16",
-    .bends = bends,
+    .has_hessian = has_hessian,
     .seconds_per_pair = 2e-6,
     .create = create_tpn_bf16,
     .has_ghosts = has_ghosts,
@@ -234,7 +228,7 @@ const OverlapOps overlap_tpn_bf16_ops = {
 const OverlapOps overlap_tpn_scene_ops = {
     .name = "tpn-scene",
     .help = "learned: a TetrahedronPairNet made fit for scenes: gated, in both orders, no ghosts",
-    .bends = bends,
+    .has_hessian = has_hessian,
     .seconds_per_pair = 1.2e-5,
     .create = create_tpn_scene,
     .has_ghosts = has_ghosts,
@@ -247,7 +241,7 @@ const OverlapOps overlap_tpn_scene_ops = {
 const OverlapOps overlap_hybrid_ops = {
     .name = "hybrid",
     .help = "a TetrahedronPairNet where it is confident, shallow and in range; exact elsewhere",
-    .bends = bends,
+    .has_hessian = has_hessian,
     .seconds_per_pair = 2e-5,
     .create = create_hybrid,
     .eval_pair = overlap_tpn_model_eval_pair,

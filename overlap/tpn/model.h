@@ -48,8 +48,7 @@ Status overlap_tpn_model_create(void **self, const char *path, const OverlapOpti
 void overlap_tpn_model_destroy(void *self);
 
 // As OverlapOps.
-Status overlap_tpn_model_eval_pair(const void *self, const double pair[24], double *volume, double *gradient,
-                                   double *hessian, unsigned *flags);
+Status overlap_tpn_model_eval_pair(const void *self, const double pair[24], const OverlapAnswer *answer);
 Status overlap_tpn_model_eval_batch(const void *self, const OverlapBatch *batch);
 
 // The status logits of pairs (count, 24): positive where the network says that they intersect; with both

@@ -84,8 +84,11 @@ static Status give_exact(const OverlapBatch *batch, int i) {
   double volume;
   const double *pair = batch->pairs + (size_t)i * SIZE;
   if (batch->hessian)
-    TRY(overlap_clip_ops.eval_pair(NULL, pair, &volume, NULL, hessian_of(batch, i), &flags));
-  TRY(overlap_exact_ops.eval_pair(NULL, pair, batch->volume + i, gradient_of(batch, i), NULL, &flags));
+    TRY(overlap_clip_ops.eval_pair(
+        NULL, pair, &(OverlapAnswer){.volume = &volume, .hessian = hessian_of(batch, i), .flags = &flags}));
+  TRY(overlap_exact_ops.eval_pair(
+      NULL, pair,
+      &(OverlapAnswer){.volume = batch->volume + i, .gradient = gradient_of(batch, i), .flags = &flags}));
   if (batch->flags) batch->flags[i] = flags | OVERLAP_FALLBACK;
   return STATUS_OK;
 }
@@ -131,8 +134,11 @@ static Status ask_clip(const Papers *papers, Seat *seat) {
   seat->said.of[OVERLAP_TPN_PLANE] = coplanar.share;
   if (!(coplanar.share > 0)) return STATUS_OK;
   unsigned flags;
-  return overlap_clip_ops.eval_pair(NULL, pair, &seat->said.of[OVERLAP_TPN_CLIP],
-                                    wants_slopes(papers->batch) ? seat->clip_gradient : NULL, NULL, &flags);
+  return overlap_clip_ops.eval_pair(
+      NULL, pair,
+      &(OverlapAnswer){.volume = &seat->said.of[OVERLAP_TPN_CLIP],
+                       .gradient = wants_slopes(papers->batch) ? seat->clip_gradient : NULL,
+                       .flags = &flags});
 }
 
 // Normalises the pair in all orders; false: the network cannot be asked.
@@ -219,8 +225,10 @@ static Status settle(Papers *papers, Seat *seat, const float *y, int order, Over
   double weight = overlap_tpn_blend_weight(rule, &seat->said);
   unsigned flags;
   if (weight < 1)
-    TRY(overlap_exact_ops.eval_pair(NULL, pair_of(papers, seat), &seat->said.of[OVERLAP_TPN_EXACT],
-                                    order > 0 ? seat->exact_gradient : NULL, NULL, &flags));
+    TRY(overlap_exact_ops.eval_pair(NULL, pair_of(papers, seat),
+                                    &(OverlapAnswer){.volume = &seat->said.of[OVERLAP_TPN_EXACT],
+                                                     .gradient = order > 0 ? seat->exact_gradient : NULL,
+                                                     .flags = &flags}));
   overlap_tpn_blend_eval(rule, &seat->said, order, volume);
   batch->volume[seat->pair] = volume->value;
   if (order > 0) memcpy(seat->by, volume->first, sizeof seat->by);
@@ -377,7 +385,8 @@ static Status chain_careful(Chain *chain, const Seat *seat, const double pair[SI
   if (seat->by[OVERLAP_TPN_EXACT] != 0) keep_slope(chain, OVERLAP_TPN_EXACT, seat->exact_gradient, false);
   double factor = (is_near ? seat->by[OVERLAP_TPN_CLIP] : 0) + seat->by[OVERLAP_TPN_EXACT];
   if (factor == 0) return STATUS_OK;
-  TRY(overlap_clip_ops.eval_pair(NULL, pair, &volume, NULL, hessian, &flags));
+  TRY(overlap_clip_ops.eval_pair(NULL, pair,
+                                 &(OverlapAnswer){.volume = &volume, .hessian = hessian, .flags = &flags}));
   add_bend(chain, factor, hessian, false);
   return STATUS_OK;
 }
