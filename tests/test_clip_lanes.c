@@ -30,24 +30,27 @@ static double volume_allowed(const OverlapClipLanes *kernel, const double x[24],
 }
 
 typedef struct Group {
-  double x[WIDEST][24], volume[WIDEST], gradient[WIDEST][24];
+  double x[WIDEST][24], volume[WIDEST], gradient[WIDEST][24], centroid[WIDEST][3];
   OverlapClipLanesOutcome outcome;
 } Group;
 
 static void run(const OverlapClipLanes *kernel, Group *group) {
-  group->outcome = kernel->differentiate(group->x[0], 0, group->volume, group->gradient[0]);
+  group->outcome = kernel->locate(group->x[0], 0, group->volume, group->gradient[0], group->centroid[0]);
 }
 
 // The lanes that are not doubtful; how many they are.
 static int check_group(const OverlapClipLanes *kernel, const Group *group, const char *what) {
   int sure = 0;
   for (int k = 0; k < kernel->width; k++) {
-    double expected, expected_gradient[24], extent = overlap_invariant_extent(group->x[k]);
+    double expected, expected_gradient[24], expected_centroid[3],
+        extent = overlap_invariant_extent(group->x[k]);
     unsigned flags;
     if (group->outcome.doubtful >> k & 1) continue;
-    ck_assert_ok(overlap_exact_ops.eval_pair(
-        NULL, group->x[k],
-        &(OverlapAnswer){.volume = &expected, .gradient = expected_gradient, .flags = &flags}));
+    ck_assert_ok(overlap_exact_ops.eval_pair(NULL, group->x[k],
+                                             &(OverlapAnswer){.volume = &expected,
+                                                              .gradient = expected_gradient,
+                                                              .centroid = expected_centroid,
+                                                              .flags = &flags}));
     ck_assert_msg(!(flags & OVERLAP_FLAT), "%s, %s: flat and not doubtful", kernel->name, what);
     ck_assert_msg(fabs(group->volume[k] - expected) <= volume_allowed(kernel, group->x[k], expected),
                   "%s, %s: V = %.17g, exact %.17g", kernel->name, what, group->volume[k], expected);
@@ -57,6 +60,14 @@ static int check_group(const OverlapClipLanes *kernel, const Group *group, const
       ck_assert_msg(fabs(group->gradient[k][c] - expected_gradient[c]) <= tolerance,
                     "%s, %s: gradient %d is %g, exact %g", kernel->name, what, c, group->gradient[k][c],
                     expected_gradient[c]);
+    const double *x = group->x[k];
+    double allowed = extent * volume_allowed(kernel, x, expected);
+    for (int c = 0; c < 3; c++) {
+      double moment = group->volume[k] * (group->centroid[k][c] - x[c]);
+      double wanted = expected * (expected_centroid[c] - x[c]);
+      ck_assert_msg(fabs(moment - wanted) <= allowed, "%s, %s: moment %g, exact %g", kernel->name, what,
+                    moment, wanted);
+    }
     bool is_disjoint = group->outcome.disjoint >> k & 1;
     ck_assert_int_eq(is_disjoint, group->volume[k] == 0);
     if (expected > 1e-3 * overlap_invariant_smaller_volume(group->x[k]))
@@ -234,11 +245,12 @@ START_TEST(a_lane_knows_nothing_of_the_others) {
     if (alone.outcome.doubtful & 1) continue;
     ck_assert_mem_eq(&alone.volume[0], &among.volume[lane], sizeof(double));
     ck_assert_mem_eq(alone.gradient[0], among.gradient[lane], sizeof alone.gradient[0]);
+    ck_assert_mem_eq(alone.centroid[0], among.centroid[lane], sizeof alone.centroid[0]);
   }
 }
 END_TEST
 
-// Also: V alone is the V that comes with ∇V.
+// Also: V alone is the V that comes with ∇V and with x̄.
 START_TEST(every_instruction_set_gives_the_same_bits) {
   for (int m = 1; m < kernel_count; m++) {
     if (is_single(kernels[m]) != is_single(kernels[m - 1])) continue;
@@ -250,14 +262,18 @@ START_TEST(every_instruction_set_gives_the_same_bits) {
         for (int k = 0; k < WIDEST; k++) draw_any(number + k, group->x[k]);
         group->outcome.doubtful = 0;
         for (int first = 0; first < WIDEST; first += kernel->width) {
-          double volume[WIDEST];
+          double volume[WIDEST], located[WIDEST], gradient[WIDEST][24];
           OverlapClipLanesOutcome outcome =
               kernel->differentiate(group->x[first], 0, group->volume + first, group->gradient[first]);
           group->outcome.doubtful |= outcome.doubtful << first;
           outcome = kernel->measure(group->x[first], 0, volume);
+          kernel->locate(group->x[first], 0, located, gradient[0], group->centroid[first]);
           for (int k = 0; k < kernel->width; k++)
-            if (!(outcome.doubtful >> k & 1))
+            if (!(outcome.doubtful >> k & 1)) {
               ck_assert_mem_eq(&volume[k], &group->volume[first + k], sizeof *volume);
+              ck_assert_mem_eq(&located[k], &group->volume[first + k], sizeof *volume);
+              ck_assert_mem_eq(gradient[k], group->gradient[first + k], sizeof gradient[k]);
+            }
         }
       }
       ck_assert_uint_eq(groups[0].outcome.doubtful, groups[1].outcome.doubtful);
@@ -265,6 +281,7 @@ START_TEST(every_instruction_set_gives_the_same_bits) {
         if (groups[0].outcome.doubtful >> k & 1) continue;
         ck_assert_mem_eq(&groups[0].volume[k], &groups[1].volume[k], sizeof(double));
         ck_assert_mem_eq(groups[0].gradient[k], groups[1].gradient[k], sizeof groups[0].gradient[k]);
+        ck_assert_mem_eq(groups[0].centroid[k], groups[1].centroid[k], sizeof groups[0].centroid[k]);
       }
     }
   }

@@ -14,8 +14,10 @@
 #include "base/log.h"
 #include "base/memory.h"
 
-enum { MAX_MODELS = 32, QUANTITY_COUNT = 3 };
-static const char *const quantities[QUANTITY_COUNT] = {"V", "V+grad", "V+grad+hess"};
+enum { MAX_MODELS = 32 };
+
+typedef enum Quantity { VOLUME, CENTROID, GRADIENT, HESSIAN, QUANTITY_COUNT } Quantity;
+static const char *const quantities[QUANTITY_COUNT] = {"V", "V+centroid", "V+grad", "V+grad+hess"};
 
 static const uint64_t SEED = 1;
 
@@ -28,7 +30,7 @@ typedef struct Options {
 static const struct argp_option option_table[] = {
     {"model", 'm', "NAME,…", 0, "Overlap models to measure (default: all)", 1},
     {"set", 's', "NAME,…", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
-    {"quantity", 'Q', "NAME,…", 0, "V, V+grad, V+grad+hess (default: all that a model has)", 1},
+    {"quantity", 'Q', "NAME,…", 0, "V, V+centroid, V+grad, V+grad+hess (default: all that a model has)", 1},
     {"batch", 'b', "N,…", 0, "Pairs a call (default: 4096); slow models get fewer", 1},
     {0},
 };
@@ -76,7 +78,7 @@ typedef struct Bench {
   OverlapModel models[MAX_MODELS]; // owned; ops NULL: not wanted, or not to be had
   AppModelCard cards[MAX_MODELS];
   double *pairs[APP_BENCH_SET_COUNT]; // (largest batch, 24), owned; NULL: not wanted
-  double *volume, *gradient, *hessian;
+  double *volume, *centroid, *gradient, *hessian;
   AppBenchContestant *contestants;
   Case *cases; // of the contestants
   int count, capacity;
@@ -101,22 +103,29 @@ static Status open_models(Bench *bench) {
 
 static void add(Bench *bench, const Case *what) {
   const OverlapModel *model = &bench->models[what->model];
-  int quantity = what->quantity, batch = bench->options->batches[what->batch];
+  int batch = bench->options->batches[what->batch];
+  bool has_hessian = what->quantity == HESSIAN, has_gradient = has_hessian || what->quantity == GRADIENT;
   bench->cases[bench->count] = *what;
   bench->contestants[bench->count++] = (AppBenchContestant){
       .model = model,
       .threads = what->threads,
-      .batch = {.pair_count = app_bench_contestant_batch(model, quantity == 2, what->threads, batch),
+      .batch = {.pair_count = app_bench_contestant_batch(model, has_hessian, what->threads, batch),
                 .pairs = bench->pairs[what->set],
                 .volume = bench->volume,
-                .gradient = quantity >= 1 ? bench->gradient : NULL,
-                .hessian = quantity >= 2 ? bench->hessian : NULL}};
+                .gradient = has_gradient ? bench->gradient : NULL,
+                .hessian = has_hessian ? bench->hessian : NULL,
+                .centroid = what->quantity == CENTROID ? bench->centroid : NULL}};
+}
+
+static bool gives(const OverlapModel *model, int quantity) {
+  return (quantity != HESSIAN || overlap_model_has_hessian(model)) &&
+         (quantity != CENTROID || overlap_model_has_centroid(model));
 }
 
 static void add_models(Bench *bench, Case what) {
   for (what.model = 0; what.model < bench->model_count; what.model++) {
     const OverlapModel *model = &bench->models[what.model];
-    if (model->ops && (what.quantity < 2 || overlap_model_has_hessian(model))) add(bench, &what);
+    if (model->ops && gives(model, what.quantity)) add(bench, &what);
   }
 }
 
@@ -133,7 +142,8 @@ static Status add_contestants(Bench *bench) {
         }
     }
   if (bench->count == 0)
-    return status_fail(STATUS_USAGE, "none of the chosen models has a Hessian: nothing to measure");
+    return status_fail(STATUS_USAGE,
+                       "none of the chosen models gives what was chosen (--quantity): nothing to measure");
   return STATUS_OK;
 }
 
@@ -152,10 +162,12 @@ static Status make_inputs(Bench *bench) {
   bench->contestants = memory_zeroed((size_t)bench->capacity, sizeof *bench->contestants);
   bench->cases = memory_zeroed((size_t)bench->capacity, sizeof *bench->cases);
   bench->volume = memory_zeroed(batch, sizeof *bench->volume);
+  bench->centroid = memory_zeroed(3 * batch, sizeof *bench->centroid);
   bench->gradient = memory_zeroed(batch * pair, sizeof *bench->gradient);
   bench->hessian =
-      memory_zeroed(options->wants_quantity[2] ? batch * pair * pair : 0, sizeof *bench->hessian);
-  if (!bench->contestants || !bench->cases || !bench->volume || !bench->gradient || !bench->hessian)
+      memory_zeroed(options->wants_quantity[HESSIAN] ? batch * pair * pair : 0, sizeof *bench->hessian);
+  if (!bench->contestants || !bench->cases || !bench->volume || !bench->centroid || !bench->gradient ||
+      !bench->hessian)
     return status_no_memory("the batch (--batch)");
   for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
     if (!options->wants_set[set]) continue;
@@ -179,7 +191,7 @@ typedef struct Row {
 static const AppBenchColumn columns[] = {
     {"model", APP_BENCH_TEXT, offsetof(Row, model), "model", "overlap model"},
     {"set", APP_BENCH_TEXT, offsetof(Row, set), "set", "set of pairs: near, uniform, disjoint"},
-    {"quantity", APP_BENCH_TEXT, offsetof(Row, quantity), "quantity", "V, V+grad or V+grad+hess"},
+    {"quantity", APP_BENCH_TEXT, offsetof(Row, quantity), "quantity", "V, V+centroid, V+grad or V+grad+hess"},
     {"batch", APP_BENCH_INTEGER, offsetof(Row, batch), "batch", "pairs a call"},
     {"threads", APP_BENCH_INTEGER, offsetof(Row, threads), "threads", "threads"},
     {"pairs_per_second", APP_BENCH_NUMBER, offsetof(Row, rate), "pairs/s", "of wall time"},
@@ -226,9 +238,9 @@ static int find_reference(const Bench *bench, Case what) {
 // takes depends on what its normalisation lets it leave out; `bench net` tells that.
 static double flops_of(const Bench *bench, const Case *what) {
   const AppModelCard *card = &bench->cards[what->model];
-  bool is_known = card->is_learned && !card->is_float && what->quantity <= 1;
+  bool is_known = card->is_learned && !card->is_float && what->quantity != HESSIAN;
   if (!is_known) return NAN;
-  return card->flops * (what->quantity == 0 ? 1 : 2);
+  return card->flops * (what->quantity == VOLUME ? 1 : 2);
 }
 
 static Row row_of(const Bench *bench, int c, const double peaks[2]) {
@@ -278,6 +290,7 @@ static void destroy(Bench *bench) {
   for (int m = 0; m < bench->model_count; m++) overlap_model_destroy(&bench->models[m]);
   for (int set = 0; set < APP_BENCH_SET_COUNT; set++) memory_free(bench->pairs[set]);
   memory_free(bench->contestants), memory_free(bench->cases), memory_free(bench->volume);
+  memory_free(bench->centroid);
   memory_free(bench->gradient), memory_free(bench->hessian);
   memory_free(bench);
 }
