@@ -6,13 +6,13 @@
 
 // Threads that wait shall sleep: on a machine that others use too, spinning ones held a matrix product of 20
 // k vertices for 17 ms instead of 2.4 ms. libgomp reads the policy before main, so the program starts itself
-// once more.
+// once more; only for commands that have threads, since a start takes a hundredth of a second.
 static void let_threads_sleep(char **arguments) {
   if (getenv("OMP_WAIT_POLICY") || setenv("OMP_WAIT_POLICY", "passive", 1) != 0) return;
   execv("/proc/self/exe", arguments); // where that fails, the run is only slower
 }
 
 int main(int argument_count, char **arguments) {
-  let_threads_sleep(arguments);
+  if (app_program_has_threads(argument_count, arguments)) let_threads_sleep(arguments);
   return app_program_run(argument_count, arguments);
 }

@@ -668,7 +668,7 @@ static int run_command(int count, char **arguments, char **text) {
   int saved = dup(STDOUT_FILENO);
   FILE *catcher = fopen(scratch("out"), "w");
   dup2(fileno(catcher), STDOUT_FILENO);
-  int code = app_mesh_run(count, arguments);
+  int code = app_command_mesh.run(count, arguments);
   fflush(stdout);
   dup2(saved, STDOUT_FILENO);
   close(saved), fclose(catcher);

@@ -566,7 +566,7 @@ static void run_mesh_command(void *arguments) {
   char **list = arguments;
   int count = 0;
   while (list[count]) count++;
-  ck_assert_int_eq(app_mesh_run(count, list), 0);
+  ck_assert_int_eq(app_command_mesh.run(count, list), 0);
 }
 
 START_TEST(the_command_tells_the_order) {

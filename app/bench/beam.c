@@ -137,17 +137,26 @@ static Status run(const Options *options) {
   return status;
 }
 
-int app_bench_beam_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {
-      .report = &report,
-      .options = option_table,
-      .parse = parse,
-      .doc = "Measure the same run of a clamped beam with each linear solver."};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .doc = "Measure the same run of a clamped beam with each linear solver.",
+                                 .children = app_bench_command_children,
+                                 .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 1},
                      .wants_solver = {true, true, true},
                      .nodes = 5000,
                      .slenderness = 5,
                      .steps = 20};
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_beam, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_beam = {.name = "beam",
+                                   .help = "linear solvers: a whole run of a beam",
+                                   .argp = &argp,
+                                   .run = run_command,
+                                   .has_threads = true,
+                                   .rows = &report,
+                                   .describe_rows = app_bench_command_rows};

@@ -3,21 +3,19 @@
 
 #include "base/log.h"
 
-static char *help(int key, const char *text, void *input) {
-  return app_bench_report_help(((const AppBenchOptions *)input)->report, key, text);
+const struct argp_child app_bench_command_children[] = {{.argp = &app_bench_options_argp}, {0}};
+
+char *app_bench_command_help(int key, const char *text, void *options) {
+  return app_bench_report_help(((const AppBenchOptions *)options)->report, key, text);
 }
 
-void app_bench_command_read(const AppBenchCommand *command, int argument_count, char **arguments,
-                            void *options) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  const struct argp argp = {.options = command->options,
-                            .parser = command->parse,
-                            .args_doc = command->arguments,
-                            .doc = command->doc,
-                            .children = children,
-                            .help_filter = help};
-  ((AppBenchOptions *)options)->report = command->report;
-  argp_parse(&argp, argument_count, arguments, 0, NULL, options);
+char *app_bench_command_rows(const void *rows) {
+  return app_bench_report_help(rows, ARGP_KEY_HELP_POST_DOC, NULL);
+}
+
+void app_bench_command_read(const AppCommand *command, int argument_count, char **arguments, void *options) {
+  ((AppBenchOptions *)options)->report = command->rows;
+  argp_parse(command->argp, argument_count, arguments, 0, NULL, options);
 }
 
 int app_bench_command_end(Status status) {

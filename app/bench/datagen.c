@@ -190,17 +190,26 @@ static Status run(const Options *options) {
   return status;
 }
 
-int app_bench_datagen_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {
-      .report = &report,
-      .options = option_table,
-      .parse = parse,
-      .doc = "Measure how many labelled pairs a second data sets are made of."};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .doc = "Measure how many labelled pairs a second data sets are made of.",
+                                 .children = app_bench_command_children,
+                                 .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(3), .count = 20000, .planned = 1.2e7};
   const char *names[MAX_LAWS];
   int laws = list_laws(names);
   for (int l = 0; l < laws; l++) options.wants_law[l] = strcmp(names[l], "paper-train") == 0;
   options.common.takes_thread_list = true;
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_datagen, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_datagen = {.name = "datagen",
+                                      .help = "labelled pairs a second",
+                                      .argp = &argp,
+                                      .run = run_command,
+                                      .has_threads = true,
+                                      .rows = &report,
+                                      .describe_rows = app_bench_command_rows};

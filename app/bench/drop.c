@@ -147,17 +147,27 @@ static Status run(const Options *options) {
   return status ? status : app_bench_report_print(&report, &options->common, rows, row_count);
 }
 
-int app_bench_drop_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {
-      .report = &report,
-      .options = option_table,
-      .parse = parse,
-      .doc = "Measure how much energy a drop gains, over contact stiffness and tolerance."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Measure how much energy a drop gains, over contact stiffness and tolerance.",
+    .children = app_bench_command_children,
+    .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 1},
                      .stiffness = {1e5, 1e6, 1e7, 1e8, 1e9},
                      .stiffness_count = 5,
                      .tolerance = {1e-4},
                      .tolerance_count = 1};
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_drop, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_drop = {.name = "drop",
+                                   .help = "energy gain of a drop, over contact stiffness",
+                                   .argp = &argp,
+                                   .run = run_command,
+                                   .has_threads = true,
+                                   .rows = &report,
+                                   .describe_rows = app_bench_command_rows};

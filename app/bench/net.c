@@ -493,12 +493,14 @@ static Status run(const Options *options) {
   return status;
 }
 
-int app_bench_net_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {
-      .report = &report,
-      .options = option_table,
-      .parse = parse,
-      .doc = "Measure networks without their geometry, by our kernels and by PyTorch where it is installed."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Measure networks without their geometry, by our kernels and by PyTorch where it is installed.",
+    .children = app_bench_command_children,
+    .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(9),
                      .nets = {"tpn", "geo", "geo-small"},
                      .net_count = 3,
@@ -507,6 +509,14 @@ int app_bench_net_run(int argument_count, char **arguments) {
                      .batches = {2048},
                      .batch_count = 1};
   options.common.takes_thread_list = true;
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_net, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_net = {.name = "net",
+                                  .help = "networks alone, beside PyTorch: samples a second",
+                                  .argp = &argp,
+                                  .run = run_command,
+                                  .has_threads = true,
+                                  .rows = &report,
+                                  .describe_rows = app_bench_command_rows};

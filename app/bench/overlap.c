@@ -316,17 +316,27 @@ static Status run(const Options *options) {
   return status;
 }
 
-int app_bench_overlap_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {
-      .report = &report,
-      .options = option_table,
-      .parse = parse,
-      .doc = "Measure how many pairs of tetrahedra a second the overlap models answer."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Measure how many pairs of tetrahedra a second the overlap models answer.",
+    .children = app_bench_command_children,
+    .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
   options.common.takes_thread_list = true;
   for (int i = 0; i < MAX_MODELS; i++) options.wants_model[i] = true;
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_overlap, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_overlap = {.name = "overlap",
+                                      .help = "overlap models: pairs of tetrahedra a second",
+                                      .argp = &argp,
+                                      .run = run_command,
+                                      .has_threads = true,
+                                      .rows = &report,
+                                      .describe_rows = app_bench_command_rows};

@@ -323,15 +323,16 @@ static Status run(Options *options) {
   return status;
 }
 
-int app_bench_precision_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {
-      .report = &report,
-      .options = option_table,
-      .parse = parse,
-      .arguments = "SCENE…",
-      .doc =
-          "Measure what precision costs: whole runs with every overlap model, at every tolerance, on every "
-          "mesh level, against a reference at a far smaller tolerance."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "SCENE…",
+    .doc = "Measure what precision costs: whole runs with every overlap model, at every tolerance, on every "
+           "mesh level, against a reference at a far smaller tolerance.",
+    .children = app_bench_command_children,
+    .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(1),
                      .overlaps = {"clip", "geo", "geo-small"},
                      .overlap_count = 3,
@@ -342,6 +343,15 @@ int app_bench_precision_run(int argument_count, char **arguments) {
                      .reference = "clip",
                      .reference_tolerance = 1e-6,
                      .wall_limit_s = 60};
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_precision, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_precision = {
+    .name = "precision",
+    .help = "error of whole runs against their time, over tolerances and mesh levels",
+    .argp = &argp,
+    .run = run_command,
+    .has_threads = true,
+    .rows = &report,
+    .describe_rows = app_bench_command_rows};

@@ -278,12 +278,14 @@ static Status run(Options *options) {
   return status;
 }
 
-int app_bench_scaling_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {
-      .report = &report,
-      .options = option_table,
-      .parse = parse,
-      .doc = "Measure how time grows with the number of pairs and with the number of vertices."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Measure how time grows with the number of pairs and with the number of vertices.",
+    .children = app_bench_command_children,
+    .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(3),
                      .pairs = {1000, 10000, 100000, 1000000},
                      .pair_sizes = 4,
@@ -295,6 +297,14 @@ int app_bench_scaling_run(int argument_count, char **arguments) {
   const char *names[MAX_MODELS];
   int models = list_models(names);
   for (int m = 0; m < models; m++) options.wants_model[m] = text_lists("clip geo-small geo", names[m]);
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_scaling, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_scaling = {.name = "scaling",
+                                      .help = "how time grows with pairs and with vertices",
+                                      .argp = &argp,
+                                      .run = run_command,
+                                      .has_threads = true,
+                                      .rows = &report,
+                                      .describe_rows = app_bench_command_rows};

@@ -4,8 +4,9 @@
 #ifndef TETLAP_APP_BENCH_SCALING_H
 #define TETLAP_APP_BENCH_SCALING_H
 
-// Runs the bench; arguments[0] is what the usage line begins with. Returns the exit code.
-int app_bench_scaling_run(int argument_count, char **arguments);
+#include "app/cli/command.h"
+
+extern const AppCommand app_bench_scaling;
 
 // The slope of the least-squares line through (ln size, ln seconds); NaN for fewer than two sizes. What is
 // not positive is left out.

@@ -154,13 +154,23 @@ static Status run(Options *options) {
   return status;
 }
 
-int app_bench_scene_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {.report = &report,
-                                          .options = option_table,
-                                          .parse = parse,
-                                          .arguments = "SCENE…",
-                                          .doc = "Measure whole runs of scenes; nothing is written."};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .args_doc = "SCENE…",
+                                 .doc = "Measure whole runs of scenes; nothing is written.",
+                                 .children = app_bench_command_children,
+                                 .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 3}};
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_scene, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_scene = {.name = "scene",
+                                    .help = "whole runs of scenes",
+                                    .argp = &argp,
+                                    .run = run_command,
+                                    .has_threads = true,
+                                    .rows = &report,
+                                    .describe_rows = app_bench_command_rows};

@@ -307,17 +307,27 @@ static Status run(const Options *options) {
   return status ? status : app_bench_report_print(&report, &options->common, rows, row_count);
 }
 
-int app_bench_solver_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {
-      .report = &report,
-      .options = option_table,
-      .parse = parse,
-      .doc = "Measure what the linear solvers take for a Newton set-up and a solution of a clamped beam."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Measure what the linear solvers take for a Newton set-up and a solution of a clamped beam.",
+    .children = app_bench_command_children,
+    .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 5},
                      .nodes = {5000, 20000},
                      .node_count = 2,
                      .slenderness = 5,
                      .step = 0.005};
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_solver, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_solver = {.name = "solver",
+                                     .help = "linear solvers: set-up and solution of a beam",
+                                     .argp = &argp,
+                                     .run = run_command,
+                                     .has_threads = true,
+                                     .rows = &report,
+                                     .describe_rows = app_bench_command_rows};

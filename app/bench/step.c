@@ -106,14 +106,24 @@ static Status run(const Options *options) {
   return status;
 }
 
-int app_bench_step_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {
-      .report = &report,
-      .options = option_table,
-      .parse = parse,
-      .arguments = "SCENE",
-      .doc = "Measure where the time of a run goes, one row a phase; nothing is written."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "SCENE",
+    .doc = "Measure where the time of a run goes, one row a phase; nothing is written.",
+    .children = app_bench_command_children,
+    .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 3}};
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_step, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_step = {.name = "step",
+                                   .help = "where the time of a run goes",
+                                   .argp = &argp,
+                                   .run = run_command,
+                                   .has_threads = true,
+                                   .rows = &report,
+                                   .describe_rows = app_bench_command_rows};

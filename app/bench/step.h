@@ -3,7 +3,8 @@
 #ifndef TETLAP_APP_BENCH_STEP_H
 #define TETLAP_APP_BENCH_STEP_H
 
-// Runs the bench; arguments[0] is what the usage line begins with. Returns the exit code.
-int app_bench_step_run(int argument_count, char **arguments);
+#include "app/cli/command.h"
+
+extern const AppCommand app_bench_step;
 
 #endif

@@ -307,15 +307,24 @@ static Status run(const Options *options) {
   return status;
 }
 
-int app_bench_train_run(int argument_count, char **arguments) {
-  static const AppBenchCommand command = {
-      .report = &report,
-      .options = option_table,
-      .parse = parse,
-      .arguments = "CONFIG…",
-      .doc = "Measure the steps of trainings, data and validation left out."};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .args_doc = "CONFIG…",
+                                 .doc = "Measure the steps of trainings, data and validation left out.",
+                                 .children = app_bench_command_children,
+                                 .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(3), .pairs = 20000, .has_torch = true};
   options.common.takes_thread_list = true;
-  app_bench_command_read(&command, argument_count, arguments, &options);
+  app_bench_command_read(&app_bench_train, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
+
+const AppCommand app_bench_train = {.name = "train",
+                                    .help = "training, beside PyTorch: samples a second",
+                                    .argp = &argp,
+                                    .run = run_command,
+                                    .has_threads = true,
+                                    .rows = &report,
+                                    .describe_rows = app_bench_command_rows};

@@ -270,10 +270,11 @@ static Status check(const AppJobOptions *options) {
   return status;
 }
 
-int app_check_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
-  static const struct argp argp = {.doc = "Say what a run of SCENE would do, without running.",
-                                   .children = children};
+static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
+static const struct argp argp = {
+    .args_doc = "SCENE", .doc = "Say what a run of SCENE would do, without running.", .children = children};
+
+static int run_command(int argument_count, char **arguments) {
   AppJobOptions options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&options);
@@ -281,3 +282,6 @@ int app_check_run(int argument_count, char **arguments) {
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
+
+const AppCommand app_command_check = {
+    .name = "check", .help = "say what a run would do, without running", .argp = &argp, .run = run_command};

@@ -238,14 +238,15 @@ static Status compare(AppComparison *comparison, const CompareOptions *options) 
   return STATUS_OK;
 }
 
-int app_compare_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .args_doc = "SCENE",
-      .doc = "Run a scene with several overlap models and hold the results together.",
-      .children = children};
+static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .args_doc = "SCENE",
+                                 .doc =
+                                     "Run a scene with several overlap models and hold the results together.",
+                                 .children = children};
+
+static int run_command(int argument_count, char **arguments) {
   CompareOptions options = {.audit_every = 10};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&options.job);
@@ -256,3 +257,9 @@ int app_compare_run(int argument_count, char **arguments) {
   memory_free(comparison);
   return status_exit_code(status);
 }
+
+const AppCommand app_command_compare = {.name = "compare",
+                                        .help = "run a scene with several overlap models and compare",
+                                        .argp = &argp,
+                                        .run = run_command,
+                                        .has_threads = true};

@@ -3,6 +3,8 @@
 #ifndef TETLAP_APP_COMMAND_COMPARE_H
 #define TETLAP_APP_COMMAND_COMPARE_H
 
-int app_compare_run(int argument_count, char **arguments);
+#include "app/cli/command.h"
+
+extern const AppCommand app_command_compare;
 
 #endif

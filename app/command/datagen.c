@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/datagen.h"
 
-#include <argp.h>
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
@@ -192,13 +191,13 @@ static Status make(const Options *options) {
   return status;
 }
 
-int app_datagen_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .doc =
-          "Make a data set of labelled pairs of tetrahedra: coordinates, whether they meet, their kind, the "
-          "volume they share and, if wanted, its derivatives."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Make a data set of labelled pairs of tetrahedra: coordinates, whether they meet, their kind, the "
+           "volume they share and, if wanted, its derivatives."};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.seed = 1, .swap_share = NAN, .shard = 1, .shard_count = 1};
   datagen_law_find("paper-train", &options.law);
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
@@ -212,3 +211,10 @@ int app_datagen_run(int argument_count, char **arguments) {
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
+
+const AppCommand app_command_datagen = {.name = "datagen",
+                                        .help =
+                                            "make labelled pairs of tetrahedra for learned overlap models",
+                                        .argp = &argp,
+                                        .run = run_command,
+                                        .has_threads = true};

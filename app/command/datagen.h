@@ -3,7 +3,8 @@
 #ifndef TETLAP_APP_COMMAND_DATAGEN_H
 #define TETLAP_APP_COMMAND_DATAGEN_H
 
-// arguments[0] is "tetlap datagen"; returns the exit code.
-int app_datagen_run(int argument_count, char **arguments);
+#include "app/cli/command.h"
+
+extern const AppCommand app_command_datagen;
 
 #endif

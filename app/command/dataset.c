@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/dataset.h"
 
-#include <argp.h>
 #include <stdbool.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "app/dataset/plot.h"
 #include "app/dataset/summary.h"
@@ -15,40 +13,32 @@
 
 enum { MAX_FILES = 65536, KEY_MIX = 256 };
 
-typedef struct Options {
-  const char *verb, *output;
-  char **files; // borrowed from the command line
-  int file_count;
-  bool is_json, mixes;
-} Options;
+static int conclude(Status status) {
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
 
-static const struct argp_option option_table[] = {
-    {"output", 'o', "FILE", 0, "merge: the file to write; plot: the picture (default: FILE.png)", 0},
-    {"mix", KEY_MIX, NULL, 0, "merge: take files of different laws or seeds, one after another", 0},
-    {"json", 'j', NULL, 0, "info: print JSON", 0},
-    {0},
-};
+// info
 
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
+typedef struct InfoOptions {
+  const char *file;
+  bool is_json;
+} InfoOptions;
+
+static const struct argp_option info_table[] = {{"json", 'j', NULL, 0, "Print JSON", 0}, {0}};
+
+static error_t parse_info(int key, char *text, struct argp_state *state) {
+  InfoOptions *options = state->input;
   switch (key) {
-  case 'o':
-    options->output = text;
-    return 0;
   case 'j':
     options->is_json = true;
     return 0;
-  case KEY_MIX:
-    options->mixes = true;
-    return 0;
   case ARGP_KEY_ARG:
-    if (options->verb) return ARGP_ERR_UNKNOWN; // the rest are files
-    options->verb = text;
+    if (options->file) argp_error(state, "'%s' is one too many: give one data set", text);
+    options->file = text;
     return 0;
-  case ARGP_KEY_ARGS:
-    options->files = state->argv + state->next;
-    options->file_count = state->argc - state->next;
-    state->next = state->argc;
+  case ARGP_KEY_NO_ARGS:
+    argp_error(state, "which data set? give a file, as in: tetlap dataset info train.h5");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -113,70 +103,162 @@ static Status print_json(const char *path, const DatagenInfo *info, const AppDat
   return status;
 }
 
-static Status run_info(const Options *options) {
-  if (options->file_count != 1)
-    return status_fail(STATUS_USAGE, "give one file, as in: tetlap dataset info train.h5");
+static Status tell(const InfoOptions *options) {
   DatagenDataset *dataset;
   AppDatasetSummary summary;
-  TRY(datagen_dataset_open(&dataset, options->files[0]));
+  TRY(datagen_dataset_open(&dataset, options->file));
   const DatagenInfo *info = datagen_dataset_info(dataset);
   Status status = app_dataset_summarise(dataset, &summary);
   if (!status && options->is_json)
-    status = print_json(options->files[0], info, &summary);
+    status = print_json(options->file, info, &summary);
   else if (!status)
-    print_text(options->files[0], info, &summary);
+    print_text(options->file, info, &summary);
   if (!status && fflush(stdout) != 0) status = status_fail(STATUS_IO, "standard output cannot be written");
   datagen_dataset_close(dataset);
   return status;
 }
 
-static Status run_merge(const Options *options) {
-  if (!options->output) return status_fail(STATUS_USAGE, "write where? Give -o FILE");
-  if (options->file_count < 1 || options->file_count > MAX_FILES)
-    return status_fail(STATUS_USAGE,
-                       "give the files to merge, as in: tetlap dataset merge part-*.h5 -o all.h5");
+static const struct argp info_argp = {
+    .options = info_table,
+    .parser = parse_info,
+    .args_doc = "FILE",
+    .doc = "Say what a data set of pairs holds: who made it and how, its kinds of pairs and their volumes."};
+
+static int run_info(int argument_count, char **arguments) {
+  InfoOptions options = {0};
+  argp_parse(&info_argp, argument_count, arguments, 0, NULL, &options);
+  return conclude(tell(&options));
+}
+
+static const AppCommand info_command = {
+    .name = "info", .help = "say what a data set holds", .argp = &info_argp, .run = run_info};
+
+// merge
+
+typedef struct MergeOptions {
+  const char *output;
+  char **files; // borrowed from the command line
+  int file_count;
+  bool mixes;
+} MergeOptions;
+
+static const struct argp_option merge_table[] = {
+    {"output", 'o', "FILE", 0, "The file to write", 0},
+    {"mix", KEY_MIX, NULL, 0, "Take files of different laws or seeds, one after another", 0},
+    {0},
+};
+
+static error_t parse_merge(int key, char *text, struct argp_state *state) {
+  MergeOptions *options = state->input;
+  switch (key) {
+  case 'o':
+    options->output = text;
+    return 0;
+  case KEY_MIX:
+    options->mixes = true;
+    return 0;
+  case ARGP_KEY_ARGS:
+    options->files = state->argv + state->next;
+    options->file_count = state->argc - state->next;
+    if (options->file_count > MAX_FILES) argp_error(state, "at most %d files", MAX_FILES);
+    return 0;
+  case ARGP_KEY_NO_ARGS:
+    argp_error(state, "which files? as in: tetlap dataset merge part-*.h5 -o all.h5");
+    return 0;
+  case ARGP_KEY_END:
+    if (!options->output) argp_error(state, "write where? give -o FILE");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static Status merge(const MergeOptions *options) {
   TRY(datagen_merge((const char *const *)options->files, options->file_count, options->output,
                     options->mixes));
   log_info("wrote %s from %d files", options->output, options->file_count);
   return STATUS_OK;
 }
 
-static Status run_plot(const Options *options) {
-  if (options->file_count != 1)
-    return status_fail(STATUS_USAGE, "give one file, as in: tetlap dataset plot train.h5");
+static const struct argp merge_argp = {.options = merge_table,
+                                       .parser = parse_merge,
+                                       .args_doc = "FILE…",
+                                       .doc = "Join the shards of a data set, or data sets, into one file."};
+
+static int run_merge(int argument_count, char **arguments) {
+  MergeOptions options = {0};
+  argp_parse(&merge_argp, argument_count, arguments, 0, NULL, &options);
+  return conclude(merge(&options));
+}
+
+static const AppCommand merge_command = {
+    .name = "merge", .help = "join shards, or data sets", .argp = &merge_argp, .run = run_merge};
+
+// plot
+
+typedef struct PlotOptions {
+  const char *file, *output; // output NULL: beside the file
+} PlotOptions;
+
+static const struct argp_option plot_table[] = {
+    {"output", 'o', "FILE", 0, "The picture (default: FILE.png)", 0},
+    {0},
+};
+
+static error_t parse_plot(int key, char *text, struct argp_state *state) {
+  PlotOptions *options = state->input;
+  switch (key) {
+  case 'o':
+    options->output = text;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (options->file) argp_error(state, "'%s' is one too many: give one data set", text);
+    options->file = text;
+    return 0;
+  case ARGP_KEY_NO_ARGS:
+    argp_error(state, "which data set? give a file, as in: tetlap dataset plot train.h5");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static Status plot(const PlotOptions *options) {
   char picture[4096];
   int length = options->output ? snprintf(picture, sizeof picture, "%s", options->output)
-                               : snprintf(picture, sizeof picture, "%s.png", options->files[0]);
+                               : snprintf(picture, sizeof picture, "%s.png", options->file);
   if (length >= (int)sizeof picture) return status_fail(STATUS_USAGE, "the picture's name is too long");
   DatagenDataset *dataset;
-  TRY(datagen_dataset_open(&dataset, options->files[0]));
-  Status status = app_dataset_plot(dataset, options->files[0], picture);
+  TRY(datagen_dataset_open(&dataset, options->file));
+  Status status = app_dataset_plot(dataset, options->file, picture);
   datagen_dataset_close(dataset);
   if (!status) log_info("wrote %s and its script %s.gp", picture, picture);
   return status;
 }
 
-static Status run_verb(const Options *options) {
-  static const struct {
-    const char *name;
-    Status (*run)(const Options *options);
-  } verbs[] = {{"info", run_info}, {"merge", run_merge}, {"plot", run_plot}};
-  for (size_t k = 0; options->verb && k < sizeof verbs / sizeof *verbs; k++)
-    if (strcmp(verbs[k].name, options->verb) == 0) return verbs[k].run(options);
-  if (!options->verb) return status_fail(STATUS_USAGE, "do what? There are: info, merge, plot");
-  return status_fail(STATUS_USAGE, "cannot '%s' a data set; there are: info, merge, plot", options->verb);
+static const struct argp plot_argp = {
+    .options = plot_table,
+    .parser = parse_plot,
+    .args_doc = "FILE",
+    .doc = "Draw how the kinds of a data set and their volumes are distributed."};
+
+static int run_plot(int argument_count, char **arguments) {
+  PlotOptions options = {0};
+  argp_parse(&plot_argp, argument_count, arguments, 0, NULL, &options);
+  return conclude(plot(&options));
 }
 
-int app_dataset_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .args_doc = "info FILE\nmerge FILE… -o FILE\nplot FILE",
-      .doc =
-          "Say what a data set of pairs holds, join shards, or draw how kinds and volumes are distributed."};
-  Options options = {0};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run_verb(&options);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
-}
+static const AppCommand plot_command = {
+    .name = "plot", .help = "draw its kinds and volumes", .argp = &plot_argp, .run = run_plot};
+
+static const AppCommand *const verbs[] = {&info_command, &merge_command, &plot_command, NULL};
+
+const AppCommand app_command_dataset = {
+    .name = "dataset",
+    .help = "tell, join or draw data sets of such pairs",
+    .children = verbs,
+    .child_word = "verb",
+    .child_of_files = "info",
+    .doc = "Works on data sets of labelled pairs of tetrahedra.",
+    .ending = "`tetlap dataset VERB --help` tells more; docs/data.md what the files hold.",
+};

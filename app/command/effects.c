@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/effects.h"
 
-#include <argp.h>
 #include <stdio.h>
 
 #include "app/scene/keys/keys.h"
@@ -29,9 +28,10 @@ static void print_choices(const SceneSection *section, const char *above) {
   }
 }
 
-int app_effects_run(int argument_count, char **arguments) {
-  static const struct argp argp = {.parser = parse,
-                                   .doc = "List the effects, and the names that a scene's keys choose from."};
+static const struct argp argp = {.parser = parse,
+                                 .doc = "List the effects, and the names that a scene's keys choose from."};
+
+static int run_command(int argument_count, char **arguments) {
   argp_parse(&argp, argument_count, arguments, 0, NULL, NULL);
   int count;
   const FemEffectOps *const *effects = fem_effect_list(&count);
@@ -42,3 +42,8 @@ int app_effects_run(int argument_count, char **arguments) {
   log_error("standard output cannot be written");
   return status_exit_code(STATUS_IO);
 }
+
+const AppCommand app_command_effects = {.name = "effects",
+                                        .help = "list effects, materials, potentials, models and solvers",
+                                        .argp = &argp,
+                                        .run = run_command};

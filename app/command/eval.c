@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/eval.h"
 
-#include <argp.h>
 #include <limits.h>
 #include <omp.h>
 #include <stdbool.h>
@@ -181,14 +180,15 @@ static Status open_and_evaluate(const Options *options) {
   return status;
 }
 
-int app_eval_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .args_doc = "MODEL [FILE]",
-      .doc = "Evaluate an overlap model, by name or weights file, on labelled pairs: status, volume, "
-             "derivatives, ghosts and symmetries, beside what the paper's Table 4 reports.",
-  };
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "MODEL [FILE]",
+    .doc = "Evaluate an overlap model, by name or weights file, on labelled pairs: status, volume, "
+           "derivatives, ghosts and symmetries, beside what the paper's Table 4 reports.",
+};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.source.seed = 1};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
@@ -197,3 +197,9 @@ int app_eval_run(int argument_count, char **arguments) {
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
+
+const AppCommand app_command_eval = {.name = "eval",
+                                     .help = "measure an overlap model against labelled pairs",
+                                     .argp = &argp,
+                                     .run = run_command,
+                                     .has_threads = true};

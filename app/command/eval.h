@@ -3,7 +3,8 @@
 #ifndef TETLAP_APP_COMMAND_EVAL_H
 #define TETLAP_APP_COMMAND_EVAL_H
 
-// Returns the exit code.
-int app_eval_run(int argument_count, char **arguments);
+#include "app/cli/command.h"
+
+extern const AppCommand app_command_eval;
 
 #endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/mesh.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -197,17 +196,23 @@ static Status report(const Options *options) {
   return status;
 }
 
-int app_mesh_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .args_doc = "FILE",
-      .doc =
-          "Say what a mesh holds and what is wrong with it: .msh, .mesh, .vtk, .node/.ele; a .stl or .geo is "
-          "meshed first. Lengths are taken as metres."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "FILE",
+    .doc =
+        "Say what a mesh holds and what is wrong with it: .msh, .mesh, .vtk, .node/.ele; a .stl or .geo is "
+        "meshed first. Lengths are taken as metres."};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   Status status = report(&options);
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
+
+const AppCommand app_command_mesh = {.name = "mesh",
+                                     .help = "say what a mesh holds: counts, volume, quality, what is wrong",
+                                     .argp = &argp,
+                                     .run = run_command};

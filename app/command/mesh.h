@@ -3,7 +3,9 @@
 #ifndef TETLAP_APP_COMMAND_MESH_H
 #define TETLAP_APP_COMMAND_MESH_H
 
-// Returns 0 for a mesh that can be used, with remarks or without; 65 for one that cannot.
-int app_mesh_run(int argument_count, char **arguments);
+#include "app/cli/command.h"
+
+// Its exit code is 0 for a mesh that can be used, with remarks or without; 65 for one that cannot.
+extern const AppCommand app_command_mesh;
 
 #endif

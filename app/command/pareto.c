@@ -213,17 +213,18 @@ static char *help(int key, const char *text, void *input) {
   return app_bench_report_help(&app_pareto_report, key, text);
 }
 
-int app_pareto_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .args_doc = "[SCENE…]",
-      .doc =
-          "Measure what accuracy costs: error against time of every overlap model and every size of network, "
-          "for V, for ∇V, and for the contact forces of whole scenes, in one run.",
-      .children = children,
-      .help_filter = help};
+static const struct argp_child children[] = {{.argp = &app_bench_options_argp}, {0}};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "[SCENE…]",
+    .doc =
+        "Measure what accuracy costs: error against time of every overlap model and every size of network, "
+        "for V, for ∇V, and for the contact forces of whole scenes, in one run.",
+    .children = children,
+    .help_filter = help};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {.pareto = {.common = app_bench_options_default(5),
                                 .batch = 2048,
                                 .error_pairs = 20000,
@@ -239,3 +240,9 @@ int app_pareto_run(int argument_count, char **arguments) {
   if (status != STATUS_OK) log_error("%s", status_message());
   return status_exit_code(status);
 }
+
+const AppCommand app_command_pareto = {.name = "pareto",
+                                       .help = "measure error against time of all overlap models",
+                                       .argp = &argp,
+                                       .run = run_command,
+                                       .has_threads = true};

@@ -3,7 +3,8 @@
 #ifndef TETLAP_APP_COMMAND_PARETO_H
 #define TETLAP_APP_COMMAND_PARETO_H
 
-// Runs the command; arguments[0] is what the usage line begins with. Returns the exit code.
-int app_pareto_run(int argument_count, char **arguments);
+#include "app/cli/command.h"
+
+extern const AppCommand app_command_pareto;
 
 #endif

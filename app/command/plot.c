@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/plot.h"
 
-#include <argp.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -111,17 +110,18 @@ static Status plot(const Options *options, const char *path) {
   return STATUS_OK;
 }
 
-int app_plot_command_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      option_table,
-      parse,
-      "DIR [DIR] | pareto.json",
-      "Draw a picture for a paper: the forces, energies and steps of a run or of two, or the frontier of "
-      "error and "
-      "time.\vThe gnuplot script that drew it is kept beside it and holds the data.",
-      NULL,
-      NULL,
-      NULL};
+static const struct argp argp = {
+    option_table,
+    parse,
+    "DIR [DIR] | pareto.json",
+    "Draw a picture for a paper: the forces, energies and steps of a run or of two, or the frontier of "
+    "error and "
+    "time.\vThe gnuplot script that drew it is kept beside it and holds the data.",
+    NULL,
+    NULL,
+    NULL};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {0};
   if (argp_parse(&argp, argument_count, arguments, 0, NULL, &options)) return status_exit_code(STATUS_USAGE);
   if (options.is_quiet) log_set_level(LOG_ERROR);
@@ -136,3 +136,8 @@ int app_plot_command_run(int argument_count, char **arguments) {
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
+
+const AppCommand app_command_plot = {.name = "plot",
+                                     .help = "draw a run or two, or a frontier, for a paper",
+                                     .argp = &argp,
+                                     .run = run_command};

@@ -3,6 +3,8 @@
 #ifndef TETLAP_APP_COMMAND_PLOT_H
 #define TETLAP_APP_COMMAND_PLOT_H
 
-int app_plot_command_run(int argument_count, char **arguments); // returns the exit code
+#include "app/cli/command.h"
+
+extern const AppCommand app_command_plot;
 
 #endif

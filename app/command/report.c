@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/report.h"
 
-#include <argp.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -183,18 +182,19 @@ static Status write_page(AppReport *report, const Options *options) {
   return status;
 }
 
-int app_report_command_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      option_table,
-      parse,
-      "[DIR [DIR]]",
-      "Write a web page about one run or two, side by side: the scene in motion, its plots, where the time "
-      "went.\vDIR is where `tetlap run` wrote, or `tetlap compare` (then its first two models are shown). "
-      "The "
-      "page is one file and needs no network.",
-      NULL,
-      NULL,
-      NULL};
+static const struct argp argp = {
+    option_table,
+    parse,
+    "[DIR [DIR]]",
+    "Write a web page about one run or two, side by side: the scene in motion, its plots, where the time "
+    "went.\vDIR is where `tetlap run` wrote, or `tetlap compare` (then its first two models are shown). "
+    "The "
+    "page is one file and needs no network.",
+    NULL,
+    NULL,
+    NULL};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {0};
   error_t wrong = argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   if (wrong) return status_exit_code(STATUS_USAGE);
@@ -206,3 +206,8 @@ int app_report_command_run(int argument_count, char **arguments) {
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
+
+const AppCommand app_command_report = {.name = "report",
+                                       .help = "write a web page about one run or two, side by side",
+                                       .argp = &argp,
+                                       .run = run_command};

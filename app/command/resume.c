@@ -111,17 +111,23 @@ static Status resume(AppRunOptions *options) {
   return status;
 }
 
-int app_resume_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .args_doc = "DIR",
-      .doc =
-          "Go on with a run that was stopped or killed, from its last checkpoint in DIR, as if it had never "
-          "been: the same files to the last bit. The scene, its meshes and weights and the program must be "
-          "those it began with."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "DIR",
+    .doc = "Go on with a run that was stopped or killed, from its last checkpoint in DIR, as if it had never "
+           "been: the same files to the last bit. The scene, its meshes and weights and the program must be "
+           "those it began with."};
+
+static int run_command(int argument_count, char **arguments) {
   AppRunOptions options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&options.job);
   return status_exit_code(resume(&options));
 }
+
+const AppCommand app_command_resume = {.name = "resume",
+                                       .help = "go on with a run that was stopped or killed",
+                                       .argp = &argp,
+                                       .run = run_command,
+                                       .has_threads = true};

@@ -199,17 +199,24 @@ Status app_run_execute(const AppRunOptions *options) {
   return status;
 }
 
-int app_run_run(int argument_count, char **arguments) {
-  static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .args_doc = "SCENE",
-      .doc = "Run a scene: frames for ParaView, a history and a summary are written.",
-      .children = children};
+static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .args_doc = "SCENE",
+                                 .doc =
+                                     "Run a scene: frames for ParaView, a history and a summary are written.",
+                                 .children = children};
+
+static int run_command(int argument_count, char **arguments) {
   AppRunOptions options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&options.job);
   Status status = app_run_execute(&options);
   return status_exit_code(status);
 }
+
+const AppCommand app_command_run = {.name = "run",
+                                    .help = "run a scene and write frames, history and summary",
+                                    .argp = &argp,
+                                    .run = run_command,
+                                    .has_threads = true};

@@ -3,6 +3,7 @@
 #ifndef TETLAP_APP_COMMAND_RUN_H
 #define TETLAP_APP_COMMAND_RUN_H
 
+#include "app/cli/command.h"
 #include "app/cli/job.h"
 
 typedef struct AppRunOptions {
@@ -17,6 +18,6 @@ typedef struct AppRunOptions {
 // Opens the scene, runs it, writes summary and manifest; tells the log what went wrong.
 Status app_run_execute(const AppRunOptions *options);
 
-int app_run_run(int argument_count, char **arguments);
+extern const AppCommand app_command_run;
 
 #endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/schema.h"
 
-#include <argp.h>
 #include <stdbool.h>
 #include <stdio.h>
 
@@ -38,11 +37,12 @@ static Status print_schema(FILE *stream) {
   return status;
 }
 
-int app_schema_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .doc = "Print the JSON Schema of a scene file, from which editors complete and check scenes."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Print the JSON Schema of a scene file, from which editors complete and check scenes."};
+
+static int run_command(int argument_count, char **arguments) {
   bool is_markdown = false;
   argp_parse(&argp, argument_count, arguments, 0, NULL, &is_markdown);
   Status status = is_markdown ? app_scene_manual_print(stdout) : print_schema(stdout);
@@ -50,3 +50,8 @@ int app_schema_run(int argument_count, char **arguments) {
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
+
+const AppCommand app_command_schema = {.name = "schema",
+                                       .help = "print the scene file's JSON Schema, or its manual page",
+                                       .argp = &argp,
+                                       .run = run_command};

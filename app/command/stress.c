@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/stress.h"
 
-#include <argp.h>
-
 #include "app/cli/argument.h"
 #include "app/cli/job.h"
 #include "app/cli/versions.h"
@@ -99,12 +97,13 @@ static Status conclude(const Options *options, const AppStress *stress) {
   return failed ? status_fail(STATUS_SOLVER, "%d of %d hard cases failed", failed, stress->count) : STATUS_OK;
 }
 
-int app_stress_command_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .doc = "Hard cases: every class of pairs and every hard scene with every overlap model, each held "
-             "against physics. docs/stability.md tells what the verdicts mean."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Hard cases: every class of pairs and every hard scene with every overlap model, each held "
+           "against physics. docs/stability.md tells what the verdicts mean."};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   if (!options.stress.has_pairs && !options.stress.has_scenes)
@@ -121,3 +120,10 @@ int app_stress_command_run(int argument_count, char **arguments) {
   app_stress_destroy(&stress);
   return status_exit_code(status ? status : concluded);
 }
+
+const AppCommand app_command_stress = {.name = "stress",
+                                       .help =
+                                           "hold every hard case against physics, with every overlap model",
+                                       .argp = &argp,
+                                       .run = run_command,
+                                       .has_threads = true};

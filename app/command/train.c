@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/train.h"
 
-#include <argp.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -105,14 +104,15 @@ static Status read_and_train(const Options *options) {
   return status;
 }
 
-int app_train_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .args_doc = "CONFIG",
-      .doc = "Train a learned overlap model: data, network, loss and schedule as CONFIG says. The best "
-             "weights, a checkpoint, a log and its picture are written.",
-  };
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "CONFIG",
+    .doc = "Train a learned overlap model: data, network, loss and schedule as CONFIG says. The best "
+           "weights, a checkpoint, a log and its picture are written.",
+};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
@@ -121,3 +121,9 @@ int app_train_run(int argument_count, char **arguments) {
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
+
+const AppCommand app_command_train = {.name = "train",
+                                      .help = "train a learned overlap model",
+                                      .argp = &argp,
+                                      .run = run_command,
+                                      .has_threads = true};

@@ -3,7 +3,8 @@
 #ifndef TETLAP_APP_COMMAND_TRAIN_H
 #define TETLAP_APP_COMMAND_TRAIN_H
 
-// Returns the exit code.
-int app_train_run(int argument_count, char **arguments);
+#include "app/cli/command.h"
+
+extern const AppCommand app_command_train;
 
 #endif

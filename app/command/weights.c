@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/weights.h"
 
-#include <argp.h>
 #include <stdio.h>
 
 #include "app/training/task.h"
@@ -84,17 +83,20 @@ static Status tell(const Options *options) {
   return status;
 }
 
-int app_weights_run(int argument_count, char **arguments) {
-  static const struct argp argp = {
-      .options = option_table,
-      .parser = parse,
-      .args_doc = "NAME|FILE",
-      .doc =
-          "Print what a weights file says of itself: the network's shape, what it expects of its input, the "
-          "range that it was trained on, and how it came to be."};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "NAME|FILE",
+    .doc = "Print what a weights file says of itself: the network's shape, what it expects of its input, the "
+           "range that it was trained on, and how it came to be."};
+
+static int run_command(int argument_count, char **arguments) {
   Options options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   Status status = tell(&options);
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
+
+const AppCommand app_command_weights = {
+    .name = "weights", .help = "say what a weights file holds", .argp = &argp, .run = run_command};
