@@ -195,10 +195,6 @@ double record_find_number(const Record *record, const char *key) {
   return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-bool record_find_bool(const Record *record, const char *key) {
-  return json_is_true((const json_t *)record_find(record, key));
-}
-
 static void print_value(const json_t *value, char text[RECORD_VALUE]) {
   char *dumped = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
   snprintf(text, RECORD_VALUE, "%s", dumped ? dumped : "nothing");

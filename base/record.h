@@ -66,6 +66,5 @@ typedef struct RecordDifference {
   char place[RECORD_PLACE], a[RECORD_VALUE], b[RECORD_VALUE];
 } RecordDifference;
 bool record_differ(const Record *a, const Record *b, RecordDifference *difference);
-bool record_find_bool(const Record *record, const char *key); // false: nothing there
 
 #endif

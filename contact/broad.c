@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "contact/bounds.h"
-#include "contact/boxes_cgal.h"
+#include "contact/boxes.h"
 
 static void grown_box(const int tet[4], const double *positions, double grow, double box[6]) {
   contact_bounds_of_tet(tet, positions, box);

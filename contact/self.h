@@ -8,7 +8,7 @@
 #ifndef TETLAP_CONTACT_SELF_H
 #define TETLAP_CONTACT_SELF_H
 
-#include "contact/boxes_cgal.h"
+#include "contact/boxes.h"
 #include "contact/broad.h"
 #include "contact/def.h"
 

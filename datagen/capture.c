@@ -20,10 +20,10 @@ Status datagen_capture_begin(DatagenCapture *capture, const char *path, const ch
   snprintf(info.law, sizeof info.law, "captured");
   snprintf(info.mix, sizeof info.mix, "captured");
   snprintf(info.volume_law, sizeof info.volume_law, "captured");
-  snprintf(info.label, sizeof info.label, "%s", datagen_label_name(label));
+  snprintf(info.label, sizeof info.label, "%s", datagen_plan_label_name(label));
   info.has_gradient = true;
   TRY(datagen_pairs_create(&capture->pairs, BLOCK, true));
-  Status status = datagen_writer_begin(&capture->writer, path, &info);
+  Status status = datagen_dataset_writer_begin(&capture->writer, path, &info);
   if (status) datagen_capture_abandon(capture);
   return status;
 }
@@ -39,8 +39,8 @@ static Status add_pair(const DatagenCapture *capture, const double *source, int 
   DatagenProof proof = datagen_proof_of(pair);
   pairs->status[place] = proof.is_flat || datagen_proof_of(source).is_flat ? FLAT : proof.dimension >= 0;
   pairs->kind[place] = DATAGEN_CAPTURED;
-  return datagen_label_pair(capture->label, pair, proof.dimension, pairs->volume + place,
-                            pairs->gradient + 24 * (size_t)place);
+  return datagen_generate_label(capture->label, pair, proof.dimension, pairs->volume + place,
+                                pairs->gradient + 24 * (size_t)place);
 }
 
 // Moves the others together; how many they are.
@@ -65,7 +65,8 @@ static Status append_block(DatagenCapture *capture, const double *source, int co
   if (failed) return status_fail(STATUS_SOLVER, "%d captured pairs could not be labelled", failed);
   int kept = drop_flat(&capture->pairs, count);
   capture->flat += count - kept;
-  return kept ? datagen_writer_append(capture->writer, &capture->pairs, (size_t)kept, NULL) : STATUS_OK;
+  return kept ? datagen_dataset_writer_append(capture->writer, &capture->pairs, (size_t)kept, NULL)
+              : STATUS_OK;
 }
 
 Status datagen_capture_append(DatagenCapture *capture, const double *pairs, int count) {
@@ -78,16 +79,16 @@ Status datagen_capture_commit(DatagenCapture *capture) {
   DatagenWriter *writer = capture->writer;
   capture->writer = NULL;
   Status status = STATUS_OK;
-  if (datagen_writer_count(writer) > 0)
-    status = datagen_writer_commit(writer);
+  if (datagen_dataset_writer_count(writer) > 0)
+    status = datagen_dataset_writer_commit(writer);
   else
-    datagen_writer_abandon(writer);
+    datagen_dataset_writer_abandon(writer);
   datagen_capture_abandon(capture);
   return status;
 }
 
 void datagen_capture_abandon(DatagenCapture *capture) {
-  datagen_writer_abandon(capture->writer);
+  datagen_dataset_writer_abandon(capture->writer);
   datagen_pairs_destroy(&capture->pairs);
   *capture = (DatagenCapture){0};
 }

@@ -174,8 +174,8 @@ struct DatagenWriter {
   DatagenInfo info;
 };
 
-DatagenInfo datagen_info_of_plan(const DatagenPlan *plan, const char *program, long long first,
-                                 long long planned) {
+DatagenInfo datagen_dataset_info_of_plan(const DatagenPlan *plan, const char *program, long long first,
+                                         long long planned) {
   DatagenInfo info;
   memset(&info, 0, sizeof info);
   info.generator_version = DATAGEN_GENERATOR_VERSION;
@@ -185,7 +185,7 @@ DatagenInfo datagen_info_of_plan(const DatagenPlan *plan, const char *program, l
   datagen_law_print_mix(plan->law.mix, info.mix, sizeof info.mix);
   datagen_volume_law_print(&plan->law.volume, info.volume_law, sizeof info.volume_law);
   info.swap_share = plan->law.swap_share;
-  snprintf(info.label, sizeof info.label, "%s", datagen_label_name(plan->label));
+  snprintf(info.label, sizeof info.label, "%s", datagen_plan_label_name(plan->label));
   info.total = plan->count;
   info.first = first;
   info.planned = planned;
@@ -268,7 +268,7 @@ static Status create_contents(DatagenWriter *writer) {
   return STATUS_OK;
 }
 
-Status datagen_writer_begin(DatagenWriter **result, const char *path, const DatagenInfo *info) {
+Status datagen_dataset_writer_begin(DatagenWriter **result, const char *path, const DatagenInfo *info) {
   silence();
   *result = NULL;
   DatagenWriter *writer = memory_zeroed(1, sizeof *writer);
@@ -281,14 +281,14 @@ Status datagen_writer_begin(DatagenWriter **result, const char *path, const Data
   Status status = file_begin(&writer->place, path);
   if (!status) status = create_contents(writer);
   if (status)
-    datagen_writer_abandon(writer);
+    datagen_dataset_writer_abandon(writer);
   else
     *result = writer;
   return status;
 }
 
-Status datagen_writer_append(DatagenWriter *writer, const DatagenPairs *pairs, size_t count,
-                             const long long *attempts) {
+Status datagen_dataset_writer_append(DatagenWriter *writer, const DatagenPairs *pairs, size_t count,
+                                     const long long *attempts) {
   DatagenInfo *info = &writer->info;
   const hsize_t first = (hsize_t)info->count;
   bool works = true;
@@ -308,7 +308,7 @@ Status datagen_writer_append(DatagenWriter *writer, const DatagenPairs *pairs, s
   return STATUS_OK;
 }
 
-long long datagen_writer_count(const DatagenWriter *writer) {
+long long datagen_dataset_writer_count(const DatagenWriter *writer) {
   return writer->info.count;
 }
 
@@ -324,18 +324,18 @@ static bool close_contents(DatagenWriter *writer) {
   return works;
 }
 
-Status datagen_writer_commit(DatagenWriter *writer) {
+Status datagen_dataset_writer_commit(DatagenWriter *writer) {
   DatagenInfo *info = &writer->info;
   if (!info->planned) info->planned = info->total = info->count;
   bool works = write_fields(writer->file, info);
   works = close_contents(writer) && works;
   Status status = works ? STATUS_OK : fail_hdf5(STATUS_IO, writer->place.path, "writing failed");
   if (!status) status = file_commit(&writer->place);
-  datagen_writer_abandon(writer);
+  datagen_dataset_writer_abandon(writer);
   return status;
 }
 
-void datagen_writer_abandon(DatagenWriter *writer) {
+void datagen_dataset_writer_abandon(DatagenWriter *writer) {
   if (!writer) return;
   close_contents(writer);
   file_abandon(&writer->place);

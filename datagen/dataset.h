@@ -40,24 +40,24 @@ typedef struct DatagenInfo {
 } DatagenInfo;
 
 // What a file with the pairs `first` … `first` + `planned` − 1 of the plan says of itself; none held yet.
-DatagenInfo datagen_info_of_plan(const DatagenPlan *plan, const char *program, long long first,
-                                 long long planned);
+DatagenInfo datagen_dataset_info_of_plan(const DatagenPlan *plan, const char *program, long long first,
+                                         long long planned);
 
 typedef struct DatagenWriter DatagenWriter; // opaque: HDF5 hides behind it
 
 // Begins a file beside `path`. STATUS_IO: the reason. Of `info`, count, kind_counts and attempts are counted
 // anew; planned 0: as many as will be appended, which are the whole.
-Status datagen_writer_begin(DatagenWriter **writer, const char *path, const DatagenInfo *info);
+Status datagen_dataset_writer_begin(DatagenWriter **writer, const char *path, const DatagenInfo *info);
 // Appends `count` pairs; all arrays (gradient only if the file has it) are read. `attempts` by kind, may be
 // NULL. Flushed when it returns. STATUS_INPUT: a pair is impossible (see datagen_dataset_read), nothing of
 // the batch is kept.
-Status datagen_writer_append(DatagenWriter *writer, const DatagenPairs *pairs, size_t count,
-                             const long long *attempts);
-long long datagen_writer_count(const DatagenWriter *writer); // pairs appended so far
+Status datagen_dataset_writer_append(DatagenWriter *writer, const DatagenPairs *pairs, size_t count,
+                                     const long long *attempts);
+long long datagen_dataset_writer_count(const DatagenWriter *writer); // pairs appended so far
 // Puts the file into its place. The writer is gone, whatever the outcome; on failure nothing is left.
-Status datagen_writer_commit(DatagenWriter *writer);
+Status datagen_dataset_writer_commit(DatagenWriter *writer);
 // Drops what was written; NULL is accepted.
-void datagen_writer_abandon(DatagenWriter *writer);
+void datagen_dataset_writer_abandon(DatagenWriter *writer);
 
 typedef struct DatagenDataset DatagenDataset; // opaque
 

@@ -9,8 +9,8 @@
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 
-Status datagen_label_pair(DatagenLabel label, const double pair[24], int dimension, double *volume,
-                          double *gradient) {
+Status datagen_generate_label(DatagenLabel label, const double pair[24], int dimension, double *volume,
+                              double *gradient) {
   unsigned flags;
   *volume = 0;
   if (gradient) memset(gradient, 0, OVERLAP_PAIR_SIZE * sizeof *gradient);
@@ -29,14 +29,14 @@ static Status make_pair(const DatagenPlan *plan, long long index, const DatagenP
                         long long *attempts) {
   Random random = random_seeded(plan->seed, (uint64_t)index);
   DatagenKind kind = datagen_plan_kind(plan, index);
-  DatagenSample sample = datagen_sample(kind, &plan->sieve, plan->law.swap_share, &random);
+  DatagenSample sample = datagen_sampler_draw(kind, &plan->sieve, plan->law.swap_share, &random);
   const size_t offset = (size_t)place * OVERLAP_PAIR_SIZE;
   memcpy(pairs->coordinates + offset, sample.pair, sizeof sample.pair);
   pairs->status[place] = sample.proof.dimension >= 0;
   pairs->kind[place] = (uint8_t)kind;
   attempts[kind] += sample.attempts;
-  return datagen_label_pair(plan->label, sample.pair, sample.proof.dimension, pairs->volume + place,
-                            pairs->gradient ? pairs->gradient + offset : NULL);
+  return datagen_generate_label(plan->label, sample.pair, sample.proof.dimension, pairs->volume + place,
+                                pairs->gradient ? pairs->gradient + offset : NULL);
 }
 
 // Kinds cost differently, by a thousand times: indices are handed out in small lots.

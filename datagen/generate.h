@@ -14,7 +14,7 @@ Status datagen_generate(const DatagenPlan *plan, long long first, int count, con
 
 // V and, unless `gradient` is NULL, ∇V of one pair of whose intersection the dimension is proven: exactly
 // zero below 3.
-Status datagen_label_pair(DatagenLabel label, const double pair[24], int dimension, double *volume,
-                          double *gradient);
+Status datagen_generate_label(DatagenLabel label, const double pair[24], int dimension, double *volume,
+                              double *gradient);
 
 #endif

@@ -92,7 +92,7 @@ static Status copy_part(const Part *part, DatagenWriter *writer, const DatagenPa
     long long left = info->count - done;
     size_t count = left < BLOCK ? (size_t)left : BLOCK;
     TRY(datagen_dataset_read(part->dataset, done, count, pairs));
-    TRY(datagen_writer_append(writer, pairs, count, done == 0 ? info->attempts : NULL));
+    TRY(datagen_dataset_writer_append(writer, pairs, count, done == 0 ? info->attempts : NULL));
     done += (long long)count;
   }
   return STATUS_OK;
@@ -102,13 +102,13 @@ static Status write_parts(const Part *parts, int count, const char *output, cons
   DatagenPairs pairs;
   DatagenWriter *writer;
   TRY(datagen_pairs_create(&pairs, BLOCK, info->has_gradient));
-  Status status = datagen_writer_begin(&writer, output, info);
+  Status status = datagen_dataset_writer_begin(&writer, output, info);
   if (!status) {
     for (int p = 0; p < count && !status; p++) status = copy_part(&parts[p], writer, &pairs);
     if (status)
-      datagen_writer_abandon(writer);
+      datagen_dataset_writer_abandon(writer);
     else
-      status = datagen_writer_commit(writer);
+      status = datagen_dataset_writer_commit(writer);
   }
   datagen_pairs_destroy(&pairs);
   return status;

@@ -6,7 +6,7 @@
 static const long long MOST_PAIRS = 1LL << 40;
 enum { ROUNDS = 4 };
 
-const char *datagen_label_name(DatagenLabel label) {
+const char *datagen_plan_label_name(DatagenLabel label) {
   return label == DATAGEN_LABEL_CLIP ? "clip" : "exact";
 }
 
@@ -18,7 +18,7 @@ Status datagen_plan_make(DatagenPlan *plan, const DatagenLaw *law, uint64_t seed
   if (!(law->swap_share >= 0 && law->swap_share <= 1))
     return status_fail(STATUS_USAGE, "the share of swapped pairs is %g; give a number from 0 to 1",
                        law->swap_share);
-  if (law->mix[DATAGEN_VOLUMETRIC] > 0) TRY(datagen_volume_sieve_make(&plan->sieve, &law->volume));
+  if (law->mix[DATAGEN_VOLUMETRIC] > 0) TRY(datagen_volume_law_sieve_make(&plan->sieve, &law->volume));
   datagen_law_divide(law->mix, count, plan->kind_counts);
   return STATUS_OK;
 }

@@ -40,6 +40,6 @@ DatagenKind datagen_plan_kind(const DatagenPlan *plan, long long index);
 void datagen_plan_shard(const DatagenPlan *plan, int shard, int shard_count, long long *first,
                         long long *count);
 
-const char *datagen_label_name(DatagenLabel label);
+const char *datagen_plan_label_name(DatagenLabel label);
 
 #endif

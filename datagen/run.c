@@ -16,7 +16,7 @@ static Status add_block(const DatagenPlan *plan, const DatagenRunOptions *option
   long long left = options->count - *done, attempts[DATAGEN_KIND_COUNT] = {0};
   int count = left < block ? (int)left : block;
   TRY(datagen_generate(plan, options->first + *done, count, pairs, attempts));
-  TRY(datagen_writer_append(writer, pairs, (size_t)count, attempts));
+  TRY(datagen_dataset_writer_append(writer, pairs, (size_t)count, attempts));
   *done += count;
   if (options->observe) options->observe(options->observer, &(DatagenProgress){*done, options->count});
   return STATUS_OK;
@@ -35,12 +35,12 @@ static Status add_blocks(const DatagenPlan *plan, const DatagenRunOptions *optio
 
 // Ends the file according to how the blocks ended. Stopped with something in it counts as an end, too.
 static Status conclude(DatagenWriter *writer, Status status, bool has_pairs) {
-  if (status == STATUS_OK) return datagen_writer_commit(writer);
+  if (status == STATUS_OK) return datagen_dataset_writer_commit(writer);
   if (status != STATUS_INTERRUPTED || !has_pairs) {
-    datagen_writer_abandon(writer);
+    datagen_dataset_writer_abandon(writer);
     return status;
   }
-  Status committed = datagen_writer_commit(writer);
+  Status committed = datagen_dataset_writer_commit(writer);
   return committed ? committed : status;
 }
 
@@ -49,11 +49,11 @@ Status datagen_run(const DatagenPlan *plan, const DatagenRunOptions *options) {
   DatagenPairs pairs;
   DatagenWriter *writer;
   TRY(datagen_pairs_create(&pairs, (size_t)block, plan->wants_gradient));
-  DatagenInfo info = datagen_info_of_plan(plan, options->program, options->first, options->count);
-  Status status = datagen_writer_begin(&writer, options->path, &info);
+  DatagenInfo info = datagen_dataset_info_of_plan(plan, options->program, options->first, options->count);
+  Status status = datagen_dataset_writer_begin(&writer, options->path, &info);
   if (!status) {
     status = add_blocks(plan, options, writer, &pairs, block);
-    status = conclude(writer, status, datagen_writer_count(writer) > 0);
+    status = conclude(writer, status, datagen_dataset_writer_count(writer) > 0);
   }
   datagen_pairs_destroy(&pairs);
   return status;

@@ -38,7 +38,7 @@ static double common_box(const double pair[24]) {
 // The candidate is dropped as soon as its volume must be too small for u < a(V). That changes nothing but
 // time: it would be dropped in the end.
 static bool try_volumetric(const DatagenVolumeSieve *sieve, Random *random, double pair[24]) {
-  const double u = random_uniform(random), floor = datagen_volume_sieve_floor(sieve, u);
+  const double u = random_uniform(random), floor = datagen_volume_law_sieve_floor(sieve, u);
   draw_tet(random, pair);
   if (!(volume_of(pair) >= floor)) return false;
   draw_tet(random, pair + 12);
@@ -49,7 +49,7 @@ static bool try_volumetric(const DatagenVolumeSieve *sieve, Random *random, doub
   if (overlap_clip_ops.eval_pair(NULL, pair, &(OverlapAnswer){.volume = &volume, .flags = &flags}) !=
       STATUS_OK)
     return false;
-  return volume > 0 && u < datagen_volume_sieve_keeps(sieve, volume);
+  return volume > 0 && u < datagen_volume_law_sieve_keeps(sieve, volume);
 }
 
 static bool try_kind(DatagenKind kind, const DatagenVolumeSieve *sieve, Random *random, double pair[24]) {
@@ -62,7 +62,7 @@ static bool try_kind(DatagenKind kind, const DatagenVolumeSieve *sieve, Random *
     return try_volumetric(sieve, random, pair);
   case DATAGEN_SCENE:
   case DATAGEN_SCENE_NONE:
-    return datagen_scene_try(random, pair);
+    return datagen_scene_pairs_try(random, pair);
   default:
     return datagen_touch_try(kind, random, pair);
   }
@@ -83,8 +83,8 @@ static void shuffle_vertices(Random *random, double tet[12]) {
   }
 }
 
-DatagenSample datagen_sample(DatagenKind kind, const DatagenVolumeSieve *sieve, double swap_share,
-                             Random *random) {
+DatagenSample datagen_sampler_draw(DatagenKind kind, const DatagenVolumeSieve *sieve, double swap_share,
+                                   Random *random) {
   DatagenSample sample;
   memset(&sample, 0, sizeof sample);
   do {

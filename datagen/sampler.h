@@ -15,7 +15,7 @@ typedef struct DatagenSample {
 
 // `sieve` matters to VOLUMETRIC only. Vertices of either tetrahedron come in random order; with probability
 // `swap_share` the two are exchanged. `kind` is not CAPTURED.
-DatagenSample datagen_sample(DatagenKind kind, const DatagenVolumeSieve *sieve, double swap_share,
-                             Random *random);
+DatagenSample datagen_sampler_draw(DatagenKind kind, const DatagenVolumeSieve *sieve, double swap_share,
+                                   Random *random);
 
 #endif

@@ -69,7 +69,7 @@ static void turn(Random *random, double pair[24]) {
   for (int i = 0; i < 8; i++) vec3_store(pair + 3 * i, turned(rotation, vec3_at(pair + 3 * i)));
 }
 
-bool datagen_scene_try(Random *random, double pair[24]) {
+bool datagen_scene_pairs_try(Random *random, double pair[24]) {
   Lattice lower = {.edge = 1, .rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}}, upper = {0};
   lower.seed = random_bits(random);
   upper.seed = random_bits(random);

@@ -17,6 +17,6 @@
 #include "base/random.h"
 
 // One attempt; false: the boxes do not overlap, try again.
-bool datagen_scene_try(Random *random, double pair[24]);
+bool datagen_scene_pairs_try(Random *random, double pair[24]);
 
 #endif

@@ -27,7 +27,7 @@ enum { FIT_TERMS = sizeof fit / sizeof *fit };
 
 // Clenshaw's recurrence. Below the fit a corner, or two edges, have just come through: V ~ depth³, and ln f
 // rises by a third of ln V.
-double datagen_volume_natural(double log_volume) {
+double datagen_volume_law_natural(double log_volume) {
   double low = log(FIT_LOW), high = log(FIT_HIGH), beyond = 0;
   if (log_volume < low) beyond = (log_volume - low) / 3, log_volume = low;
   double t = 2 * (log_volume - low) / (high - low) - 1, next = 0, after = 0;
@@ -107,7 +107,7 @@ static void find_knots(DatagenVolumeSieve *sieve) {
   for (int k = 0; k < DATAGEN_SIEVE_KNOTS; k++) {
     double x = low + (high - low) * k / (DATAGEN_SIEVE_KNOTS - 1);
     sieve->knots[k] = exp(x);
-    ratio[k] = log_wanted(&sieve->law, x) - datagen_volume_natural(x);
+    ratio[k] = log_wanted(&sieve->law, x) - datagen_volume_law_natural(x);
     sieve->log_peak = fmax(sieve->log_peak, ratio[k]);
   }
   for (int k = 0; k < DATAGEN_SIEVE_KNOTS; k++) {
@@ -118,7 +118,7 @@ static void find_knots(DatagenVolumeSieve *sieve) {
   sieve->knots[DATAGEN_SIEVE_KNOTS - 1] = sieve->law.high;
 }
 
-Status datagen_volume_sieve_make(DatagenVolumeSieve *sieve, const DatagenVolumeLaw *law) {
+Status datagen_volume_law_sieve_make(DatagenVolumeSieve *sieve, const DatagenVolumeLaw *law) {
   *sieve = (DatagenVolumeSieve){.law = *law, .share = NATURAL_SHARE};
   if (law->shape == DATAGEN_VOLUME_NATURAL) return STATUS_OK;
   TRY(check_range(law));
@@ -132,14 +132,14 @@ Status datagen_volume_sieve_make(DatagenVolumeSieve *sieve, const DatagenVolumeL
   return STATUS_OK;
 }
 
-double datagen_volume_sieve_keeps(const DatagenVolumeSieve *sieve, double volume) {
+double datagen_volume_law_sieve_keeps(const DatagenVolumeSieve *sieve, double volume) {
   if (sieve->law.shape == DATAGEN_VOLUME_NATURAL) return 1;
   if (!(volume >= sieve->law.low && volume <= sieve->law.high)) return 0;
   double x = log(volume);
-  return fmin(1, exp(log_wanted(&sieve->law, x) - datagen_volume_natural(x) - sieve->log_peak));
+  return fmin(1, exp(log_wanted(&sieve->law, x) - datagen_volume_law_natural(x) - sieve->log_peak));
 }
 
-double datagen_volume_sieve_floor(const DatagenVolumeSieve *sieve, double u) {
+double datagen_volume_law_sieve_floor(const DatagenVolumeSieve *sieve, double u) {
   if (sieve->law.shape == DATAGEN_VOLUME_NATURAL) return 0;
   for (int k = 0; k + 1 < DATAGEN_SIEVE_KNOTS; k++)
     if (sieve->ceilings[k] > u) return sieve->knots[k];

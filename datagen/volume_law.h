@@ -49,14 +49,14 @@ typedef struct DatagenVolumeSieve {
 
 // STATUS_USAGE: the range is empty, goes beyond 0.03 (where f is not known well), or is so narrow that less
 // than one uniform pair in 100,000 would be kept.
-Status datagen_volume_sieve_make(DatagenVolumeSieve *sieve, const DatagenVolumeLaw *law);
+Status datagen_volume_law_sieve_make(DatagenVolumeSieve *sieve, const DatagenVolumeLaw *law);
 
 // a(V), in [0, 1]; V > 0.
-double datagen_volume_sieve_keeps(const DatagenVolumeSieve *sieve, double volume);
+double datagen_volume_law_sieve_keeps(const DatagenVolumeSieve *sieve, double volume);
 // A volume below which a(V) > u is impossible; INFINITY if it is nowhere possible.
-double datagen_volume_sieve_floor(const DatagenVolumeSieve *sieve, double u);
+double datagen_volume_law_sieve_floor(const DatagenVolumeSieve *sieve, double u);
 
 // ln f(ln V).
-double datagen_volume_natural(double log_volume);
+double datagen_volume_law_natural(double log_volume);
 
 #endif

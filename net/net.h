@@ -13,7 +13,7 @@
 //   if (status == NET_OK) status = net_work_create_f32(model.plan, &def, &work);
 //   if (status == NET_OK) net_forward_eval_f32(&work, &model, count, x, y);
 //   else puts(net_status_message());
-//   net_work_destroy_f32(&work), net_card_destroy(&card), net_model_destroy_f32(&model);
+//   net_work_destroy_f32(&work), net_weights_card_destroy(&card), net_model_destroy_f32(&model);
 //
 // A training step: net_gradient_forward, a loss of loss.h (or one's own), net_gradient_backward,
 // net_adam_clip, net_adam_step at the rate of net_schedule_rate. Everything is there for float (_f32) and

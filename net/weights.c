@@ -10,7 +10,7 @@
 
 static const char format[] = "tetlap-net 1";
 
-void net_card_destroy(NetCard *card) {
+void net_weights_card_destroy(NetCard *card) {
   net_memory_free(card->normalisation);
   net_memory_free(card->range);
   net_memory_free(card->provenance);

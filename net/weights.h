@@ -21,7 +21,7 @@ typedef struct NetCard {
   char *provenance;
 } NetCard;
 
-void net_card_destroy(NetCard *card);
+void net_weights_card_destroy(NetCard *card);
 
 #include "net/real_f32.h"
 

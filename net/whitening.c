@@ -105,25 +105,14 @@ NetStatus net_whitening_fit(int count, int sample_count, const double *samples, 
 }
 
 // The mean is taken off before the product: where features nearly cancel, M is large.
-static void apply(const NetWhitening *whitening, int sample_count, const double *in, double *out,
-                  bool has_mean) {
+void net_whitening_apply(const NetWhitening *whitening, int sample_count, const double *in, double *out) {
   size_t n = (size_t)whitening->count;
   for (int s = 0; s < sample_count; s++, in += n, out += n)
     for (size_t i = 0; i < n; i++) {
       double sum = 0;
-      for (size_t j = 0; j < n; j++)
-        sum += whitening->matrix[i * n + j] * (has_mean ? in[j] - whitening->mean[j] : in[j]);
+      for (size_t j = 0; j < n; j++) sum += whitening->matrix[i * n + j] * (in[j] - whitening->mean[j]);
       out[i] = sum;
     }
-}
-
-void net_whitening_apply(const NetWhitening *whitening, int sample_count, const double *in, double *out) {
-  apply(whitening, sample_count, in, out, true);
-}
-
-void net_whitening_apply_tangents(const NetWhitening *whitening, int sample_count, const double *in,
-                                  double *out) {
-  apply(whitening, sample_count, in, out, false);
 }
 
 NetStatus net_whitening_fold(const NetWhitening *whitening, NetModel_f64 *model) {

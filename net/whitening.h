@@ -23,10 +23,8 @@ void net_whitening_destroy(NetWhitening *whitening);
 // Zeroed mean and matrix of a size.
 NetStatus net_whitening_create(int count, NetWhitening *whitening);
 
-// out (sample_count, count) = M (in − mean); without the mean for tangents. `out` may not be `in`.
+// out (sample_count, count) = M (in − mean). `out` may not be `in`.
 void net_whitening_apply(const NetWhitening *whitening, int sample_count, const double *in, double *out);
-void net_whitening_apply_tangents(const NetWhitening *whitening, int sample_count, const double *in,
-                                  double *out);
 
 // Changes the first layer of an mlp that takes w so that it takes f: W ← W M, b ← b − W M mean.
 NetStatus net_whitening_fold(const NetWhitening *whitening, NetModel_f64 *model);

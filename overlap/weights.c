@@ -35,7 +35,7 @@ Status overlap_weights_kind(const char *path, OverlapWeightsKind *kind) {
   if (status != NET_OK) // names the path
     return status_fail(status == NET_BAD_IO ? STATUS_IO : STATUS_INPUT, "%s", net_status_message());
   *kind = network.plan->shape.kind == NET_TPN ? OVERLAP_WEIGHTS_TPN : OVERLAP_WEIGHTS_GEO;
-  net_card_destroy(&card);
+  net_weights_card_destroy(&card);
   net_model_destroy_f32(&network);
   return STATUS_OK;
 }

@@ -38,7 +38,7 @@ static void describe(Scene *scene, int cells) {
         .name = names[b],
         .box_size = {1, 1, 1},
         .box_cells = {cells, cells, cells},
-        .placement = fem_placement_identity(),
+        .placement = fem_mesh_placement_identity(),
         .material =
             {.law = FEM_MATERIAL_NEO_HOOKEAN, .young = 1, .poisson = 0.3, .density = 2, .damping = -1},
     };
@@ -54,7 +54,7 @@ static void describe(Scene *scene, int cells) {
   scene->obstacle = (FemObstacleDef){.name = "wall",
                                      .box_size = {1, 1, 1},
                                      .box_cells = {1, 1, 1},
-                                     .placement = fem_placement_identity(),
+                                     .placement = fem_mesh_placement_identity(),
                                      .motion = {.components = {true, true, true}, .until = INFINITY}};
   scene->obstacle.placement.translate[0] = 4;
   scene->def = (FemSceneDef){.bodies = scene->bodies,

@@ -332,8 +332,8 @@ START_TEST(a_range_beyond_what_an_integer_holds_is_refused) {
                       .planned = 8,
                       .total = 8};
   DatagenWriter *writer;
-  ck_assert_ok(datagen_writer_begin(&writer, path_of("wrong.h5"), &info));
-  ck_assert_ok(datagen_writer_commit(writer));
+  ck_assert_ok(datagen_dataset_writer_begin(&writer, path_of("wrong.h5"), &info));
+  ck_assert_ok(datagen_dataset_writer_commit(writer));
   assert_refused("claims 8 pairs from 9223372036854775805 on of 8");
 }
 END_TEST
@@ -361,7 +361,7 @@ END_TEST
 
 START_TEST(impossible_pairs_are_not_written) {
   DatagenPlan plan = make_plan(100, true);
-  DatagenInfo info = datagen_info_of_plan(&plan, "test 1", 0, 100);
+  DatagenInfo info = datagen_dataset_info_of_plan(&plan, "test 1", 0, 100);
   static const char *const reasons[] = {"coordinate", "derivative", "status",       "kind",
                                         "volume",     "volume",     "says disjoint"};
   for (int k = 0; k < 7; k++) {
@@ -375,11 +375,11 @@ START_TEST(impossible_pairs_are_not_written) {
     if (k == 4) pairs.volume[2] = -1e-300;
     if (k == 5) pairs.volume[2] = NAN;
     if (k == 6) pairs.volume[2] = 1e-3;
-    ck_assert_ok(datagen_writer_begin(&writer, path_of("a.h5"), &info));
-    ck_assert_int_eq(datagen_writer_append(writer, &pairs, 3, NULL), STATUS_INPUT);
+    ck_assert_ok(datagen_dataset_writer_begin(&writer, path_of("a.h5"), &info));
+    ck_assert_int_eq(datagen_dataset_writer_append(writer, &pairs, 3, NULL), STATUS_INPUT);
     ck_assert_msg(strstr(status_message(), reasons[k]) && strstr(status_message(), "pair 2"), "%s",
                   status_message());
-    datagen_writer_abandon(writer);
+    datagen_dataset_writer_abandon(writer);
     datagen_pairs_destroy(&pairs);
   }
 }

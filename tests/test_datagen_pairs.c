@@ -207,12 +207,12 @@ START_TEST(a_volume_law_leaves_the_shapes_alone) {
   static double size[2][COUNT];
   Random random = random_seeded(17, 0);
   DatagenVolumeSieve sieves[2];
-  ck_assert_ok(datagen_volume_sieve_make(&sieves[0], &(DatagenVolumeLaw){DATAGEN_VOLUME_NATURAL, 0, 0}));
-  ck_assert_ok(
-      datagen_volume_sieve_make(&sieves[1], &(DatagenVolumeLaw){DATAGEN_VOLUME_LOG_UNIFORM, 9e-4, 1.1e-3}));
+  ck_assert_ok(datagen_volume_law_sieve_make(&sieves[0], &(DatagenVolumeLaw){DATAGEN_VOLUME_NATURAL, 0, 0}));
+  ck_assert_ok(datagen_volume_law_sieve_make(&sieves[1],
+                                             &(DatagenVolumeLaw){DATAGEN_VOLUME_LOG_UNIFORM, 9e-4, 1.1e-3}));
   for (int s = 0; s < 2; s++)
     for (int i = 0; i < COUNT;) {
-      DatagenSample sample = datagen_sample(DATAGEN_VOLUMETRIC, &sieves[s], 0, &random);
+      DatagenSample sample = datagen_sampler_draw(DATAGEN_VOLUMETRIC, &sieves[s], 0, &random);
       double volume;
       unsigned flags;
       ck_assert_ok(overlap_clip_ops.eval_pair(NULL, sample.pair,
@@ -259,7 +259,7 @@ START_TEST(the_natural_density_of_volumes_is_as_recorded) {
   for (int b = 0; b < BINS; b++) {
     double expected = 0;
     for (int k = 0; k < 100; k++)
-      expected += DRAWN * exp(datagen_volume_natural(low + width * (b + (k + 0.5) / 100))) * width / 100;
+      expected += DRAWN * exp(datagen_volume_law_natural(low + width * (b + (k + 0.5) / 100))) * width / 100;
     ck_assert_near((double)counts[b], expected, 5 * sqrt(expected));
   }
 }
@@ -274,12 +274,12 @@ START_TEST(the_floor_of_a_volume_law_drops_nothing_that_would_be_kept) {
     DatagenVolumeLaw law;
     DatagenVolumeSieve sieve;
     ck_assert_ok(datagen_volume_law_parse(&law, texts[k]));
-    ck_assert_ok(datagen_volume_sieve_make(&sieve, &law));
+    ck_assert_ok(datagen_volume_law_sieve_make(&sieve, &law));
     for (int i = 0; i < 20000; i++) {
       double volume = exp(random_between(&random, log(1e-13), log(0.04)));
-      double keeps = datagen_volume_sieve_keeps(&sieve, volume);
+      double keeps = datagen_volume_law_sieve_keeps(&sieve, volume);
       ck_assert(keeps >= 0 && keeps <= 1);
-      if (keeps > 0) ck_assert(datagen_volume_sieve_floor(&sieve, keeps * (1 - 1e-12)) <= volume);
+      if (keeps > 0) ck_assert(datagen_volume_law_sieve_floor(&sieve, keeps * (1 - 1e-12)) <= volume);
     }
   }
 }
@@ -305,7 +305,7 @@ START_TEST(volume_laws_that_cannot_be_met_are_refused) {
     DatagenVolumeLaw law;
     DatagenVolumeSieve sieve;
     Status result = datagen_volume_law_parse(&law, wrong[k].text);
-    if (result == STATUS_OK) result = datagen_volume_sieve_make(&sieve, &law);
+    if (result == STATUS_OK) result = datagen_volume_law_sieve_make(&sieve, &law);
     ck_assert_int_eq(result, STATUS_USAGE);
     ck_assert_msg(strstr(status_message(), wrong[k].reason), "%s: %s", wrong[k].text, status_message());
   }

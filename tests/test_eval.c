@@ -38,7 +38,7 @@ static const OverlapOps lopsided = {.name = "lopsided", .eval_pair = lopsided_ev
 static void load(const char *law, const char *mix, int count, DatagenPairs *pairs) {
   AppSourceDef def = {.law = law, .mix = mix, .count = count, .seed = 5};
   size_t loaded;
-  ck_assert_ok(app_training_source_load(&def, pairs, &loaded));
+  ck_assert_ok(app_dataset_source_load(&def, pairs, &loaded));
   ck_assert_uint_eq(loaded, (size_t)count);
 }
 
@@ -158,7 +158,7 @@ static AppEvaluation evaluate_shipped(const char *name, bool as_model, const App
   AppEvaluation found;
   char path[256];
   snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/net/weights/%s.safetensors", name);
-  ck_assert_ok(app_training_source_load(source, &pairs, &count));
+  ck_assert_ok(app_dataset_source_load(source, &pairs, &count));
   ck_assert_ok(app_evaluation_model_open(&model, as_model ? name : path));
   app_evaluation_begin(&run, &model, app_evaluation_model_logits(&model));
   ck_assert_ok(app_evaluation_add(&run, &pairs, count));

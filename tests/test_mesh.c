@@ -336,7 +336,7 @@ START_TEST(a_placement_scales_then_turns_then_shifts) {
   const int tet[4] = {0, 1, 2, 4};
   FemMesh mesh;
   ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 5, cube[0], 1, tet, NULL));
-  FemPlacement placement = fem_placement_identity();
+  FemPlacement placement = fem_mesh_placement_identity();
   memcpy(placement.scale, (double[3]){2, 3, 4}, sizeof placement.scale);
   memcpy(placement.axis, (double[3]){0, 0, -5}, sizeof placement.axis);
   placement.angle_degrees = -90;
@@ -353,7 +353,7 @@ START_TEST(a_rotation_about_a_diagonal_permutes_the_axes) {
   const int tet[4] = {0, 1, 2, 4};
   FemMesh mesh;
   ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 5, cube[0], 1, tet, NULL));
-  FemPlacement placement = fem_placement_identity();
+  FemPlacement placement = fem_mesh_placement_identity();
   memcpy(placement.axis, (double[3]){1, 1, 1}, sizeof placement.axis);
   placement.angle_degrees = 120;
   ck_assert_ok(fem_mesh_place(&mesh, &placement));
@@ -369,7 +369,7 @@ START_TEST(a_mirror_keeps_the_orientation_positive) {
     FemMesh mesh;
     make_bumpy(&mesh);
     double volume = signed_volume(&mesh);
-    FemPlacement placement = fem_placement_identity();
+    FemPlacement placement = fem_mesh_placement_identity();
     memcpy(placement.scale, signs[k], sizeof signs[k]);
     placement.angle_degrees = 33;
     ck_assert_ok(fem_mesh_place(&mesh, &placement));
@@ -386,7 +386,7 @@ START_TEST(an_impossible_placement_is_refused_and_changes_nothing) {
   size_t size = 3 * (size_t)mesh.vertex_count;
   double *before = memory_copy(mesh.rest, size, sizeof *before);
   FemPlacement cases[6];
-  for (int k = 0; k < 6; k++) cases[k] = fem_placement_identity();
+  for (int k = 0; k < 6; k++) cases[k] = fem_mesh_placement_identity();
   cases[0].scale[1] = 0;
   cases[1].scale[2] = NAN;
   cases[2].translate[0] = INFINITY;

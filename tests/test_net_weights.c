@@ -41,7 +41,7 @@ START_TEST(every_shape_survives_its_file_to_the_bit) {
     ck_assert_str_eq(back.normalisation, card.normalisation);
     ck_assert_str_eq(back.range, card.range);
     ck_assert_str_eq(back.provenance, card.provenance);
-    net_card_destroy(&back);
+    net_weights_card_destroy(&back);
     net_model_destroy_f64(&read), net_model_destroy_f64(&model);
   }
   unlink(temporary());
@@ -55,13 +55,13 @@ START_TEST(either_precision_reads_the_other) {
   NetCard card = make_card(), back;
   ck_net_ok(net_weights_write_f64(temporary(), &model, &card));
   ck_net_ok(net_weights_read_f32(temporary(), &narrow, &back));
-  net_card_destroy(&back);
+  net_weights_card_destroy(&back);
   ck_net_ok(net_model_create_f32(&shape, &same));
   net_model_narrow(&model, &same);
   ck_assert_int_eq(memcmp(narrow.parameters, same.parameters, 73370 * sizeof(float)), 0);
   ck_net_ok(net_weights_write_f32(temporary(), &narrow, &card));
   ck_net_ok(net_weights_read_f64(temporary(), &wide, &back));
-  net_card_destroy(&back);
+  net_weights_card_destroy(&back);
   double y[2], z[2];
   evaluate(&model, y);
   evaluate(&wide, z);
@@ -134,7 +134,7 @@ START_TEST(a_file_made_by_hand_is_read) {
   net_forward_eval_f64(&work, &model, 1, x, &y);
   ck_assert_double_eq(y, 324);
   net_work_destroy_f64(&work);
-  net_card_destroy(&card);
+  net_weights_card_destroy(&card);
   net_model_destroy_f64(&model);
   unlink(temporary());
 }
@@ -238,7 +238,7 @@ START_TEST(no_cut_and_no_changed_byte_of_the_header_does_harm) {
     NetStatus status = net_weights_read_f64(temporary(), &read, &back);
     if (k < size) ck_assert_int_eq(status, NET_BAD_FILE);
     refused += status != NET_OK;
-    net_card_destroy(&back);
+    net_weights_card_destroy(&back);
     net_model_destroy_f64(&read);
   }
   ck_assert_int_gt(refused, (int)size);

@@ -219,7 +219,7 @@ START_TEST(a_sweep_trains_what_is_missing_and_gives_networks_of_the_sizes) {
   const int widths[2] = {4, 8};
   for (int w = 0; w < 2; w++) {
     ck_assert_ok(overlap_model_create(&model, sweep.weights[w]));
-    ck_assert_ok(app_model_card_read(&model, sweep.weights[w], &card));
+    ck_assert_ok(app_evaluation_card_read(&model, sweep.weights[w], &card));
     ck_assert_int_eq(card.width, widths[w]);
     overlap_model_destroy(&model);
   }

@@ -68,7 +68,7 @@ static ContactShape box_below(void) {
   contact_convex_make_box(&box, (double[3]){0.9, 1.1, 0.8});
   ContactShape shape = {
       .name = "box", .kind = CONTACT_SHAPE_CONVEX, .convex = &box, .point = {1.7, 1.2, -0.4}, .move = swing};
-  fem_placement_axes(&turn, shape.axes);
+  fem_mesh_placement_axes(&turn, shape.axes);
   return shape;
 }
 
@@ -81,7 +81,7 @@ static ContactShape cylinder_below(void) {
                         .convex = &prism,
                         .point = {1.7, 1.2, -0.4},
                         .move = swing};
-  fem_placement_axes(&turn, shape.axes);
+  fem_mesh_placement_axes(&turn, shape.axes);
   return shape;
 }
 

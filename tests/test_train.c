@@ -83,7 +83,7 @@ static AppTrainingConfig read_config(const char *text) {
 static DatagenPairs load_pairs(int count, size_t *loaded) {
   AppSourceDef def = {.law = "scene", .mix = "scene=1", .count = count, .seed = 3};
   DatagenPairs pairs;
-  ck_assert_ok(app_training_source_load(&def, &pairs, loaded));
+  ck_assert_ok(app_dataset_source_load(&def, &pairs, loaded));
   return pairs;
 }
 
@@ -279,7 +279,7 @@ static void observe(void *observer, const AppTrainingProgress *progress) {
 static void read_parameters(const char *path, NetModel_f64 *model) {
   NetCard card;
   ck_assert_int_eq(net_weights_read_f64(path, model, &card), NET_OK);
-  net_card_destroy(&card);
+  net_weights_card_destroy(&card);
 }
 
 static void check_same_weights(const char *a, const char *b) {
@@ -349,7 +349,7 @@ static AppEvaluation evaluate(const char *model_name) {
   OverlapModel model;
   AppEvaluationRun run;
   AppEvaluation result;
-  ck_assert_ok(app_training_source_load(&def, &pairs, &count));
+  ck_assert_ok(app_dataset_source_load(&def, &pairs, &count));
   ck_assert_ok(app_evaluation_model_open(&model, model_name));
   app_evaluation_begin(&run, &model, NULL);
   ck_assert_ok(app_evaluation_add(&run, &pairs, count));
@@ -491,7 +491,7 @@ START_TEST(a_source_exchanges_the_share_of_pairs_that_it_is_told) {
   size_t count;
   for (int s = 0; s < 3; s++) {
     AppSourceDef def = app_training_config_source(&config.training[s]);
-    ck_assert_ok(app_training_source_load(&def, &pairs[s], &count));
+    ck_assert_ok(app_dataset_source_load(&def, &pairs[s], &count));
     ck_assert_int_eq((int)count, 400);
   }
   int half = count_exchanged(&pairs[2], &pairs[0], count);

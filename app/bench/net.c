@@ -5,12 +5,12 @@
 #include <omp.h>
 #include <string.h>
 
-#include "app/cli/argument.h"
 #include "app/bench/command.h"
 #include "app/bench/peak.h"
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
 #include "app/bench/torch_peer.h"
+#include "app/cli/argument.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -167,13 +167,13 @@ static Status read_net(Net *net, const char *name, int count) {
   }
   NetStatus status = net_weights_read_f32(net->path, &net->narrow, &card);
   if (status == NET_OK) net->first = first_of(net, &card);
-  net_card_destroy(&card);
+  net_weights_card_destroy(&card);
   TRY(fail_as_net(status));
   net->is_float = net->narrow.plan->shape.kind == NET_TPN;
   if (!net->is_float) {
     card = (NetCard){0};
     status = net_weights_read_f64(net->path, &net->wide, &card);
-    net_card_destroy(&card);
+    net_weights_card_destroy(&card);
     TRY(fail_as_net(status));
   }
   net->plan = net->is_float ? net->narrow.plan : net->wide.plan;

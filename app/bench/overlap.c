@@ -96,7 +96,7 @@ static Status open_models(Bench *bench) {
       continue;
     }
     TRY(status);
-    TRY(app_model_card_read(&bench->models[m], list[m]->name, &bench->cards[m]));
+    TRY(app_evaluation_card_read(&bench->models[m], list[m]->name, &bench->cards[m]));
   }
   return STATUS_OK;
 }

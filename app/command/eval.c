@@ -101,7 +101,7 @@ static Status add_blocks(AppSource *source, const DatagenPairs *buffer, AppEvalu
     size_t count = (size_t)(left < BLOCK ? left : BLOCK);
     DatagenPairs pairs = *buffer;
     if (!source->has_gradient) pairs.gradient = NULL;
-    TRY(app_training_source_read(source, first, count, &pairs));
+    TRY(app_dataset_source_read(source, first, count, &pairs));
     TRY(app_evaluation_add(run, &pairs, count));
     long long done = first + (long long)count;
     log_progress("%lld of %lld pairs  %.0f s left", done, source->count,
@@ -154,10 +154,10 @@ static Status evaluate(AppSource *source, const OverlapModel *model, AppEvaluati
 
 static Status evaluate_data(const Options *options, const OverlapModel *model, Findings *findings) {
   AppSource source;
-  Status status = app_training_source_open(&source, &options->source, true);
+  Status status = app_dataset_source_open(&source, &options->source, true);
   if (!status) status = evaluate(&source, model, &findings->evaluation);
-  if (!status) app_training_source_describe(&options->source, &source, findings->data, sizeof findings->data);
-  app_training_source_close(&source);
+  if (!status) app_dataset_source_describe(&options->source, &source, findings->data, sizeof findings->data);
+  app_dataset_source_close(&source);
   return status;
 }
 

@@ -78,7 +78,7 @@ static Status tell(const Options *options) {
   NetCard card;
   TRY(app_training_task_fail(net_weights_read_f32(path, &model, &card)));
   Status status = options->config ? stamp(path, options->config, &model, &card) : print(path, &model, &card);
-  net_card_destroy(&card);
+  net_weights_card_destroy(&card);
   net_model_destroy_f32(&model);
   return status;
 }

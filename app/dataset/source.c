@@ -32,12 +32,12 @@ static Status open_file(AppSource *source, const AppSourceDef *def) {
   return STATUS_OK;
 }
 
-Status app_training_source_open(AppSource *source, const AppSourceDef *def, bool wants_gradient) {
+Status app_dataset_source_open(AppSource *source, const AppSourceDef *def, bool wants_gradient) {
   *source = (AppSource){0};
   return def->file ? open_file(source, def) : open_law(source, def, wants_gradient);
 }
 
-void app_training_source_close(AppSource *source) {
+void app_dataset_source_close(AppSource *source) {
   datagen_dataset_close(source->dataset);
   *source = (AppSource){0};
 }
@@ -48,14 +48,15 @@ static Status differentiate(const DatagenPairs *pairs, size_t count) {
 #pragma omp parallel for schedule(dynamic, 64) reduction(|| : has_failed)
   for (size_t i = 0; i < count; i++) {
     double volume;
-    if (datagen_label_pair(DATAGEN_LABEL_CLIP, pairs->coordinates + i * SIZE, pairs->volume[i] > 0 ? 3 : -1,
-                           &volume, pairs->gradient + i * SIZE) != STATUS_OK)
+    if (datagen_generate_label(DATAGEN_LABEL_CLIP, pairs->coordinates + i * SIZE,
+                               pairs->volume[i] > 0 ? 3 : -1, &volume,
+                               pairs->gradient + i * SIZE) != STATUS_OK)
       has_failed = true;
   }
   return has_failed ? status_fail(STATUS_SOLVER, "clipping gave no derivatives of a pair") : STATUS_OK;
 }
 
-Status app_training_source_read(AppSource *source, long long first, size_t count, const DatagenPairs *pairs) {
+Status app_dataset_source_read(AppSource *source, long long first, size_t count, const DatagenPairs *pairs) {
   long long attempts[DATAGEN_KIND_COUNT] = {0};
   DatagenPairs read = *pairs;
   if (!source->has_gradient) read.gradient = NULL;
@@ -70,7 +71,7 @@ static Status load_block(AppSource *source, const DatagenPairs *pairs, size_t fi
                         .kind = pairs->kind + first,
                         .volume = pairs->volume + first,
                         .gradient = pairs->gradient + first * SIZE};
-  return app_training_source_read(source, (long long)first, count, &block);
+  return app_dataset_source_read(source, (long long)first, count, &block);
 }
 
 static Status load(AppSource *source, DatagenPairs *pairs, size_t *count) {
@@ -83,15 +84,15 @@ static Status load(AppSource *source, DatagenPairs *pairs, size_t *count) {
   return status;
 }
 
-Status app_training_source_load(const AppSourceDef *def, DatagenPairs *pairs, size_t *count) {
+Status app_dataset_source_load(const AppSourceDef *def, DatagenPairs *pairs, size_t *count) {
   AppSource source;
-  Status status = app_training_source_open(&source, def, true);
+  Status status = app_dataset_source_open(&source, def, true);
   if (!status) status = load(&source, pairs, count);
-  app_training_source_close(&source);
+  app_dataset_source_close(&source);
   return status;
 }
 
-void app_training_source_describe(const AppSourceDef *def, const AppSource *source, char *text, size_t size) {
+void app_dataset_source_describe(const AppSourceDef *def, const AppSource *source, char *text, size_t size) {
   size_t used = 0;
   text[0] = 0;
   if (def->file) {

@@ -30,16 +30,16 @@ typedef struct AppSource {
 
 // A law's pairs are labelled by clipping, checked, with ∇V if `wants_gradient`. A file without ∇V is opened
 // all the same: look at `has_gradient`. Close it; a zeroed one is accepted.
-Status app_training_source_open(AppSource *source, const AppSourceDef *def, bool wants_gradient);
-void app_training_source_close(AppSource *source);
+Status app_dataset_source_open(AppSource *source, const AppSourceDef *def, bool wants_gradient);
+void app_dataset_source_close(AppSource *source);
 
 // Pairs `first` … `first` + `count` − 1 into arrays of the caller's; gradient may be NULL.
-Status app_training_source_read(AppSource *source, long long first, size_t count, const DatagenPairs *pairs);
+Status app_dataset_source_read(AppSource *source, long long first, size_t count, const DatagenPairs *pairs);
 
 // All pairs at once, into arrays that the caller destroys (datagen_pairs_destroy); with ∇V in any case.
-Status app_training_source_load(const AppSourceDef *def, DatagenPairs *pairs, size_t *count);
+Status app_dataset_source_load(const AppSourceDef *def, DatagenPairs *pairs, size_t *count);
 
 // The law, or the file, in words: "law scene, mix scene=1, seed 7, 1000 pairs".
-void app_training_source_describe(const AppSourceDef *def, const AppSource *source, char *text, size_t size);
+void app_dataset_source_describe(const AppSourceDef *def, const AppSource *source, char *text, size_t size);
 
 #endif

@@ -21,7 +21,7 @@ static void describe(const NetPlan *plan, AppModelCard *card) {
   card->flops = plan->flops;
 }
 
-Status app_model_card_read(const OverlapModel *model, const char *name, AppModelCard *card) {
+Status app_evaluation_card_read(const OverlapModel *model, const char *name, AppModelCard *card) {
   *card = (AppModelCard){.family = model->ops->name};
   bool is_path = overlap_weights_is_path(name);
   if (!is_path && model->ops->weights) name = model->ops->weights;
@@ -35,7 +35,7 @@ Status app_model_card_read(const OverlapModel *model, const char *name, AppModel
   NetCard text = {0};
   NetStatus status = net_weights_read_f32(card->path, &network, &text);
   if (status == NET_OK) describe(network.plan, card);
-  net_card_destroy(&text);
+  net_weights_card_destroy(&text);
   net_model_destroy_f32(&network);
   return status == NET_OK ? STATUS_OK : status_fail(STATUS_INPUT, "%s", net_status_message());
 }

@@ -19,6 +19,6 @@ typedef struct AppModelCard {
 } AppModelCard;
 
 // The card of a model that was made by that name or from that file. STATUS_INPUT: the file holds no network.
-Status app_model_card_read(const OverlapModel *model, const char *name, AppModelCard *card);
+Status app_evaluation_card_read(const OverlapModel *model, const char *name, AppModelCard *card);
 
 #endif

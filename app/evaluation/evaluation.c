@@ -62,8 +62,8 @@ static Status differentiate(const DatagenPairs *pairs, size_t count, double *gra
 #pragma omp parallel for schedule(dynamic, 64) reduction(|| : has_failed)
   for (ptrdiff_t i = 0; i < (ptrdiff_t)count; i++) {
     double volume;
-    if (pairs->volume[i] > 0 && datagen_label_pair(DATAGEN_LABEL_CLIP, pairs->coordinates + i * SIZE, 3,
-                                                   &volume, gradient + i * SIZE) != STATUS_OK)
+    if (pairs->volume[i] > 0 && datagen_generate_label(DATAGEN_LABEL_CLIP, pairs->coordinates + i * SIZE, 3,
+                                                       &volume, gradient + i * SIZE) != STATUS_OK)
       has_failed = true;
   }
   return has_failed ? status_fail(STATUS_SOLVER, "clipping gave no derivatives of a pair") : STATUS_OK;

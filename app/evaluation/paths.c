@@ -200,7 +200,7 @@ Status app_evaluation_paths(const OverlapModel *model, int count, uint64_t seed,
   for (int s = 0; s < 2; s++) {
     DatagenPairs pairs;
     size_t pair_count;
-    TRY(app_training_source_load(&sources[s], &pairs, &pair_count));
+    TRY(app_dataset_source_load(&sources[s], &pairs, &pair_count));
     int share = s == 0 ? count / 2 : count - count / 2;
     Status status = follow(model, &pairs, pair_count, share, seed, result);
     datagen_pairs_destroy(&pairs);

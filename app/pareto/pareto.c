@@ -115,7 +115,7 @@ Status app_pareto_add_model(AppPareto *pareto, const char *source) {
       return status_fail(STATUS_USAGE, "two models are called '%s'; name each once", model->name);
   TRY(app_evaluation_model_open(&model->overlap, source));
   pareto->model_count++;
-  return app_model_card_read(&model->overlap, source, &model->card);
+  return app_evaluation_card_read(&model->overlap, source, &model->card);
 }
 
 AppParetoPoint *app_pareto_add_point(AppPareto *pareto, int model, const char *quantity, const char *set) {

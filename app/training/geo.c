@@ -62,7 +62,7 @@ static Status load_sets(Geo *geo, const AppTrainingConfig *config) {
     ValidationSet *set = &geo->sets[s];
     snprintf(set->name, sizeof set->name, "set%d", s + 1);
     if (def.name) snprintf(set->name, sizeof set->name, "%s", def.name);
-    TRY(app_training_source_load(&def, &set->pairs, &set->count));
+    TRY(app_dataset_source_load(&def, &set->pairs, &set->count));
     geo->set_count++;
   }
   return STATUS_OK;
@@ -74,7 +74,7 @@ static Status load_pairs(const AppTrainingConfig *config, DatagenPairs *all, siz
     AppSourceDef def = app_training_config_source(&config->training[s]);
     DatagenPairs more, joined;
     size_t more_count;
-    TRY(app_training_source_load(&def, &more, &more_count));
+    TRY(app_dataset_source_load(&def, &more, &more_count));
     Status status = datagen_pairs_create(&joined, *count + more_count, true);
     if (!status) {
       memcpy(joined.coordinates, all->coordinates, *count * 24 * sizeof(double));

@@ -79,7 +79,7 @@ Status app_training_start_read(const char *name, const char *normalisation, cons
   TRY(app_training_task_fail(net_weights_read_f64(path, &from, &card)));
   Status status = bring_over(path, normalisation, whitening, model, &from, &card);
   if (!status) net_model_narrow(&from, model);
-  net_card_destroy(&card);
+  net_weights_card_destroy(&card);
   net_model_destroy_f64(&from);
   return status;
 }

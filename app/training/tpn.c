@@ -142,7 +142,7 @@ static Status fill(Samples *samples, const AppTrainingConfig *config, AppSource 
   for (long long first = 0; first < source->count; first += BLOCK) {
     long long left = source->count - first;
     size_t count = (size_t)(left < BLOCK ? left : BLOCK);
-    TRY(app_training_source_read(source, first, count, block));
+    TRY(app_dataset_source_read(source, first, count, block));
     for (size_t i = 0; i < count; i++) samples_add(samples, config, block, i);
   }
   return STATUS_OK;
@@ -155,9 +155,9 @@ static Status load(Samples *samples, const AppTrainingConfig *config, const AppT
   long long total = 0;
   for (int s = 0; s < count; s++) {
     AppSourceDef def = app_training_config_source(&defs[s]);
-    TRY(app_training_source_open(&source, &def, learns_gradients(config)));
+    TRY(app_dataset_source_open(&source, &def, learns_gradients(config)));
     total += source.count;
-    app_training_source_close(&source);
+    app_dataset_source_close(&source);
   }
   TRY(samples_create(samples, (size_t)total));
   if (learns_gradients(config)) TRY(app_training_rates_create(&samples->rates, (size_t)total));
@@ -166,9 +166,9 @@ static Status load(Samples *samples, const AppTrainingConfig *config, const AppT
   Status status = STATUS_OK;
   for (int s = 0; s < count && !status; s++) {
     AppSourceDef def = app_training_config_source(&defs[s]);
-    status = app_training_source_open(&source, &def, learns_gradients(config));
+    status = app_dataset_source_open(&source, &def, learns_gradients(config));
     if (!status) status = fill(samples, config, &source, &block);
-    app_training_source_close(&source);
+    app_dataset_source_close(&source);
   }
   datagen_pairs_destroy(&block);
   if (learns_gradients(config)) app_training_rates_finish(&samples->rates, samples->count);

@@ -36,6 +36,8 @@ typedef struct FemEffectOps {
   bool dissipates;  // its forces depend on velocities: D is assembled for Newton's matrix
   bool lags;        // `prepare` changes its forces: the powers are measured anew after it
   bool (*is_wanted)(const FemSceneDef *scene);
+  // Why a static scene cannot have it, and the key to blame, as "contact.friction". NULL: it can.
+  const char *static_refusal, *static_key;
   Status (*create)(void **self, const FemModel *model);
   // The same as create for a run that begins anew: takes over from `old`, which is destroyed next, what never
   // changes and is dear to make or lies in a file (weights). NULL: create.

@@ -36,7 +36,7 @@ typedef struct Rest {
 enum { IS_AWAKE = 1, IS_UNREADY = 2, IS_DISTURBED = 4 };
 
 static bool is_wanted(const FemSceneDef *scene) {
-  return scene->contact.is_on && scene->contact.rest_is_on && !scene->is_static;
+  return scene->contact.is_on && scene->contact.rest_is_on;
 }
 
 static void destroy(void *self) {
@@ -340,6 +340,8 @@ const FemEffectOps fem_effect_rest = {
     .help =
         "bodies that have come to rest carry no unknowns and no contact search until something nears them",
     .is_wanted = is_wanted,
+    .static_refusal = "a static scene is at rest always; take 'rest' or time.static away",
+    .static_key = "contact.rest",
     .create = create,
     .connect = connect,
     .prepare = prepare,

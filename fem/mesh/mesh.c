@@ -22,7 +22,7 @@ void fem_mesh_destroy(FemMesh *mesh) {
   *mesh = (FemMesh){0};
 }
 
-FemPlacement fem_placement_identity(void) {
+FemPlacement fem_mesh_placement_identity(void) {
   return (FemPlacement){.scale = {1, 1, 1}, .axis = {0, 0, 1}};
 }
 
@@ -61,7 +61,7 @@ static void rotation_of(const FemPlacement *placement, double R[9]) {
          9 * sizeof *R);
 }
 
-void fem_placement_axes(const FemPlacement *placement, double axes[3][3]) {
+void fem_mesh_placement_axes(const FemPlacement *placement, double axes[3][3]) {
   double R[9];
   rotation_of(placement, R);
   for (int k = 0; k < 3; k++)

@@ -48,9 +48,9 @@ typedef struct FemPlacement {
   double translate[3]; // [m]
 } FemPlacement;
 
-FemPlacement fem_placement_identity(void);
+FemPlacement fem_mesh_placement_identity(void);
 // Where the turn takes the three axes of space: row k is that of axis k.
-void fem_placement_axes(const FemPlacement *placement, double axes[3][3]);
+void fem_mesh_placement_axes(const FemPlacement *placement, double axes[3][3]);
 
 // Options of meshing surfaces (.stl, .geo) in place.
 typedef struct FemMeshOptions {

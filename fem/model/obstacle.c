@@ -13,7 +13,7 @@ static void make_box(const FemObstacleDef *def, ContactShape *shape, ContactConv
   double half[3];
   for (int c = 0; c < 3; c++) half[c] = def->size[c] / 2;
   contact_convex_make_box(solid, half);
-  fem_placement_axes(&def->turn, shape->axes);
+  fem_mesh_placement_axes(&def->turn, shape->axes);
 }
 
 // About the axis any two directions will do.

@@ -20,10 +20,6 @@ static const struct {
     {"energy", "energy out of nothing", NULL},
 };
 
-const char *fem_trouble_name(FemTroubleKind kind) {
-  return kinds[kind].name;
-}
-
 static Status list_surface(FemTroubleWatch *watch) {
   const FemModel *model = watch->model;
   FemMeshFace *faces;

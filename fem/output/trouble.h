@@ -78,7 +78,6 @@ bool fem_trouble_add(FemTrouble *trouble, double time, const FemTroubleState *st
 // "wrong-way push: from t = 0.1 s on, vertex 12 of body 'ball', at most 3 at a time" for what began.
 void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
                       size_t size);
-const char *fem_trouble_name(FemTroubleKind kind); // "inverted", "enclosed", "wrong_way", "energy"
 void fem_trouble_record(const FemTrouble *trouble, Record *record);
 
 #endif

@@ -24,7 +24,7 @@ struct FemIdaSolver {
   double c;          // of the assembled matrix [1/s]
 };
 
-int fem_ida_answer(FemIdaFailure *failure, Status status) {
+int fem_ida_solver_answer(FemIdaFailure *failure, Status status) {
   if (status == STATUS_OK) return 0;
   if (status > 0) {
     snprintf(failure->retry_message, sizeof failure->retry_message, "%s", status_message());
@@ -77,7 +77,7 @@ static Status solve(FemIdaSolver *solver, const double *b, double *x) {
 static int set_up_callback(SUNLinearSolver linear, SUNMatrix matrix) {
   (void)matrix;
   FemIdaSolver *solver = linear->content;
-  return fem_direct_flag(fem_ida_answer(solver->failure, factorise(solver)));
+  return fem_direct_flag(fem_ida_solver_answer(solver->failure, factorise(solver)));
 }
 
 static int solve_callback(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b,
@@ -85,7 +85,7 @@ static int solve_callback(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, 
   (void)matrix, (void)tolerance;
   FemIdaSolver *solver = linear->content;
   Status status = solve(solver, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
-  return fem_direct_flag(fem_ida_answer(solver->failure, status));
+  return fem_direct_flag(fem_ida_solver_answer(solver->failure, status));
 }
 
 static Status create(FemIdaSolver *solver, SUNContext context) {

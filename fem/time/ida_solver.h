@@ -29,7 +29,7 @@ typedef struct FemIdaFailure {
 } FemIdaFailure;
 
 // Keeps the thread's message and returns what IDA's callbacks must: 0, 1 (recoverable) or −1.
-int fem_ida_answer(FemIdaFailure *failure, Status status);
+int fem_ida_solver_answer(FemIdaFailure *failure, Status status);
 
 typedef struct FemIdaSolver FemIdaSolver; // opaque
 

@@ -60,7 +60,7 @@ static int residual(realtype time, N_Vector y, N_Vector y_dot, N_Vector r, void 
   const double *masses = fem_ida_solver_masses(integrator->solver);
   double *kinematics = values_of(r), *balance = kinematics + n;
   fem_system_scatter(system, time, u, v);
-  int answer = fem_ida_answer(&integrator->failure, fem_system_forces(system, time));
+  int answer = fem_ida_solver_answer(&integrator->failure, fem_system_forces(system, time));
   if (answer != 0) return answer;
   for (int i = 0; i < n; i++) {
     kinematics[i] = u_dot[i] - v[i];
@@ -75,7 +75,7 @@ static int jacobian(realtype time, realtype c, N_Vector y, N_Vector y_dot, N_Vec
   FemIntegrator *integrator = self;
   const double *u = values_of(y);
   Status status = fem_ida_solver_assemble(integrator->solver, time, c, u, u + integrator->n);
-  return fem_ida_answer(&integrator->failure, status);
+  return fem_ida_solver_answer(&integrator->failure, status);
 }
 
 // IDA would print.

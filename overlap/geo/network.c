@@ -136,7 +136,7 @@ void overlap_geo_network_destroy(OverlapGeoNet *net) {
   if (!net) return;
   for (int d = 0; d < net->desk_count && net->desks; d++) net_work_destroy_f64(&net->desks[d].work);
   memory_free(net->desks);
-  net_card_destroy(&net->card);
+  net_weights_card_destroy(&net->card);
   net_model_destroy_f64(&net->model);
   memory_free(net);
 }
@@ -148,8 +148,4 @@ OverlapGeoNetwork overlap_geo_network_interface(const OverlapGeoNet *net) {
                              .eval_columns = eval_columns,
                              .curve = curve,
                              .curve_columns = curve_columns};
-}
-
-const NetCard *overlap_geo_network_card(const OverlapGeoNet *net) {
-  return &net->card;
 }

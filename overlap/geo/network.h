@@ -20,6 +20,4 @@ void overlap_geo_network_destroy(OverlapGeoNet *net);
 // Borrows the net.
 OverlapGeoNetwork overlap_geo_network_interface(const OverlapGeoNet *net);
 
-const NetCard *overlap_geo_network_card(const OverlapGeoNet *net);
-
 #endif

@@ -37,11 +37,13 @@ static void weigh_share(const OverlapTpnRule *rule, double share, int order, Ove
   overlap_tpn_jet_multiply(weight, &part);
 }
 
-static void weigh_confidence(const OverlapTpnRule *rule, const OverlapTpnSaid *said, OverlapTpnJet *weight) {
+static void weigh_confidence(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs,
+                             OverlapTpnJet *weight) {
   OverlapTpnJet mean, logit;
   overlap_tpn_jet_constant(&mean, weight->order, 0);
   for (int o = 0; o < rule->order_count; o++) {
-    overlap_tpn_jet_of(&logit, weight->order, OVERLAP_TPN_LOGIT + o, itself(said->of[OVERLAP_TPN_LOGIT + o]));
+    overlap_tpn_jet_of(&logit, weight->order, OVERLAP_TPN_LOGIT + o,
+                       itself(inputs->of[OVERLAP_TPN_LOGIT + o]));
     overlap_tpn_jet_add(&mean, 1.0 / rule->order_count, &logit);
   }
   overlap_tpn_jet_apply(&mean, overlap_tpn_jet_bend_rise(mean.value / rule->logit, 1 / rule->logit));
@@ -49,56 +51,59 @@ static void weigh_confidence(const OverlapTpnRule *rule, const OverlapTpnSaid *s
 }
 
 // The range's weights of order o: of the normalised pair, and of the volume that the network tells.
-static void weigh_range(const OverlapTpnRule *rule, const OverlapTpnSaid *said, int o,
+static void weigh_range(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs, int o,
                         OverlapTpnJet *weight) {
   OverlapTpnJet part;
-  overlap_tpn_jet_of(&part, weight->order, OVERLAP_TPN_INSIDE + o, itself(said->of[OVERLAP_TPN_INSIDE + o]));
+  overlap_tpn_jet_of(&part, weight->order, OVERLAP_TPN_INSIDE + o,
+                     itself(inputs->of[OVERLAP_TPN_INSIDE + o]));
   overlap_tpn_jet_multiply(weight, &part);
   overlap_tpn_jet_of(&part, weight->order, OVERLAP_TPN_VOLUME + o,
-                     clamp(rule, said->of[OVERLAP_TPN_VOLUME + o]));
+                     clamp(rule, inputs->of[OVERLAP_TPN_VOLUME + o]));
   overlap_tpn_jet_apply(&part, overlap_tpn_range_overlap_weight(&rule->range, part.value));
   overlap_tpn_jet_multiply(weight, &part);
 }
 
-static void weigh(const OverlapTpnRule *rule, const OverlapTpnSaid *said, int order, OverlapTpnJet *weight) {
-  weigh_share(rule, said->of[OVERLAP_TPN_SHARE], order, weight);
-  if (rule->is_hybrid) weigh_confidence(rule, said, weight);
-  for (int o = 0; o < rule->order_count && rule->keeps_to_range; o++) weigh_range(rule, said, o, weight);
+static void weigh(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs, int order,
+                  OverlapTpnJet *weight) {
+  weigh_share(rule, inputs->of[OVERLAP_TPN_SHARE], order, weight);
+  if (rule->is_hybrid) weigh_confidence(rule, inputs, weight);
+  for (int o = 0; o < rule->order_count && rule->keeps_to_range; o++) weigh_range(rule, inputs, o, weight);
 }
 
-bool overlap_tpn_blend_is_exact(const OverlapTpnRule *rule, const OverlapTpnSaid *said) {
+bool overlap_tpn_blend_is_exact(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs) {
   OverlapTpnJet weight;
-  weigh_share(rule, said->of[OVERLAP_TPN_SHARE], 0, &weight);
+  weigh_share(rule, inputs->of[OVERLAP_TPN_SHARE], 0, &weight);
   for (int o = 0; o < rule->order_count && rule->keeps_to_range; o++)
-    weight.value *= said->of[OVERLAP_TPN_INSIDE + o];
+    weight.value *= inputs->of[OVERLAP_TPN_INSIDE + o];
   return !(weight.value > 0);
 }
 
-double overlap_tpn_blend_weight(const OverlapTpnRule *rule, const OverlapTpnSaid *said) {
+double overlap_tpn_blend_weight(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs) {
   OverlapTpnJet weight;
-  weigh(rule, said, 0, &weight);
+  weigh(rule, inputs, 0, &weight);
   return weight.value;
 }
 
-bool overlap_tpn_blend_is_beyond(const OverlapTpnRule *rule, const OverlapTpnSaid *said) {
+bool overlap_tpn_blend_is_beyond(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs) {
   bool is_beyond = false;
   for (int o = 0; o < rule->order_count && rule->has_range; o++) {
-    double volume = clamp(rule, said->of[OVERLAP_TPN_VOLUME + o]).value;
+    double volume = clamp(rule, inputs->of[OVERLAP_TPN_VOLUME + o]).value;
     is_beyond |= overlap_tpn_range_overlap_weight(&rule->range, volume).value < 1;
   }
   return is_beyond;
 }
 
 // N: the mean of what the orders tell.
-static void tell(const OverlapTpnRule *rule, const OverlapTpnSaid *said, int order, OverlapTpnJet *net) {
+static void tell(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs, int order, OverlapTpnJet *net) {
   OverlapTpnJet part, factor;
   overlap_tpn_jet_constant(net, order, 0);
   for (int o = 0; o < rule->order_count; o++) {
-    overlap_tpn_jet_of(&part, order, OVERLAP_TPN_VOLUME + o, clamp(rule, said->of[OVERLAP_TPN_VOLUME + o]));
-    overlap_tpn_jet_of(&factor, order, OVERLAP_TPN_FACTOR + o, itself(said->of[OVERLAP_TPN_FACTOR + o]));
+    overlap_tpn_jet_of(&part, order, OVERLAP_TPN_VOLUME + o, clamp(rule, inputs->of[OVERLAP_TPN_VOLUME + o]));
+    overlap_tpn_jet_of(&factor, order, OVERLAP_TPN_FACTOR + o, itself(inputs->of[OVERLAP_TPN_FACTOR + o]));
     overlap_tpn_jet_multiply(&part, &factor);
     if (rule->gates) {
-      overlap_tpn_jet_of(&factor, order, OVERLAP_TPN_LOGIT + o, probability(said->of[OVERLAP_TPN_LOGIT + o]));
+      overlap_tpn_jet_of(&factor, order, OVERLAP_TPN_LOGIT + o,
+                         probability(inputs->of[OVERLAP_TPN_LOGIT + o]));
       overlap_tpn_jet_multiply(&part, &factor);
     }
     overlap_tpn_jet_add(net, 1.0 / rule->order_count, &part);
@@ -113,23 +118,24 @@ static void mix(OverlapTpnJet *a, const OverlapTpnJet *weight, const OverlapTpnJ
   overlap_tpn_jet_add(a, 1, &difference);
 }
 
-void overlap_tpn_blend_eval(const OverlapTpnRule *rule, const OverlapTpnSaid *said, int order,
+void overlap_tpn_blend_eval(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs, int order,
                             OverlapTpnJet *volume) {
   OverlapTpnJet weight, other;
-  tell(rule, said, order, volume);
+  tell(rule, inputs, order, volume);
   if (rule->fades) {
-    overlap_tpn_jet_of(&other, order, OVERLAP_TPN_SHARE,
-                       overlap_tpn_jet_bend_rise(said->of[OVERLAP_TPN_SHARE] / rule->touch, 1 / rule->touch));
+    overlap_tpn_jet_of(
+        &other, order, OVERLAP_TPN_SHARE,
+        overlap_tpn_jet_bend_rise(inputs->of[OVERLAP_TPN_SHARE] / rule->touch, 1 / rule->touch));
     overlap_tpn_jet_multiply(volume, &other);
   }
-  weigh(rule, said, order, &weight);
+  weigh(rule, inputs, order, &weight);
   if (weight.value < 1) {
     OverlapTpnJet net = *volume;
-    overlap_tpn_jet_of(volume, order, OVERLAP_TPN_EXACT, itself(said->of[OVERLAP_TPN_EXACT]));
+    overlap_tpn_jet_of(volume, order, OVERLAP_TPN_EXACT, itself(inputs->of[OVERLAP_TPN_EXACT]));
     mix(volume, &weight, &net);
   }
-  if (!(said->of[OVERLAP_TPN_PLANE] > 0)) return;
-  overlap_tpn_jet_of(&weight, order, OVERLAP_TPN_PLANE, itself(said->of[OVERLAP_TPN_PLANE]));
-  overlap_tpn_jet_of(&other, order, OVERLAP_TPN_CLIP, itself(said->of[OVERLAP_TPN_CLIP]));
+  if (!(inputs->of[OVERLAP_TPN_PLANE] > 0)) return;
+  overlap_tpn_jet_of(&weight, order, OVERLAP_TPN_PLANE, itself(inputs->of[OVERLAP_TPN_PLANE]));
+  overlap_tpn_jet_of(&other, order, OVERLAP_TPN_CLIP, itself(inputs->of[OVERLAP_TPN_CLIP]));
   mix(volume, &weight, &other);
 }

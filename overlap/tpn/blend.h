@@ -52,21 +52,21 @@ enum {
   OVERLAP_TPN_CLIP = 11,  // V_c, of no account where c = 0
 };
 
-typedef struct OverlapTpnSaid {
+typedef struct OverlapTpnInputs {
   double of[OVERLAP_TPN_QUANTITIES];
-} OverlapTpnSaid;
+} OverlapTpnInputs;
 
 // Whether w = 0 whatever the network says; reads the range's weights and the share.
-bool overlap_tpn_blend_is_exact(const OverlapTpnRule *rule, const OverlapTpnSaid *said);
+bool overlap_tpn_blend_is_exact(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs);
 
 // w from what the network says.
-double overlap_tpn_blend_weight(const OverlapTpnRule *rule, const OverlapTpnSaid *said);
+double overlap_tpn_blend_weight(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs);
 
 // Whether a volume u/scale is beyond the training's range.
-bool overlap_tpn_blend_is_beyond(const OverlapTpnRule *rule, const OverlapTpnSaid *said);
+bool overlap_tpn_blend_is_beyond(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs);
 
 // V with its derivatives up to `order` by all quantities.
-void overlap_tpn_blend_eval(const OverlapTpnRule *rule, const OverlapTpnSaid *said, int order,
+void overlap_tpn_blend_eval(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs, int order,
                             OverlapTpnJet *volume);
 
 #endif

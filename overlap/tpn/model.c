@@ -17,7 +17,7 @@ OverlapOptions overlap_options_default(void) {
 }
 
 void overlap_tpn_model_destroy(void *self) {
-  OverlapTpnOverlap *overlap = self;
+  OverlapTpnModel *overlap = self;
   if (!overlap) return;
   overlap_tpn_network_destroy(&overlap->model);
   memory_free(overlap);
@@ -34,9 +34,9 @@ static OverlapOptions resolve(const OverlapOptions *given, const OverlapOptions 
   return options;
 }
 
-static Status set_rule(OverlapTpnOverlap *overlap, const OverlapOptions *options, bool is_hybrid,
+static Status set_rule(OverlapTpnModel *overlap, const OverlapOptions *options, bool is_hybrid,
                        const char *path) {
-  const OverlapTpnModel *model = &overlap->model;
+  const OverlapTpnNetwork *model = &overlap->model;
   overlap->ghosts = is_hybrid ? OVERLAP_GHOSTS_FADE : options->ghosts;
   overlap->turns_to_clip = options->coplanar == OVERLAP_COPLANAR_CLIP;
   overlap->rule = (OverlapTpnRule){.fades = !is_hybrid && options->ghosts == OVERLAP_GHOSTS_FADE,
@@ -63,7 +63,7 @@ static Status set_rule(OverlapTpnOverlap *overlap, const OverlapOptions *options
 static Status create(void **self, const char *path, const OverlapOptions *given, const OverlapOptions *own,
                      bool is_hybrid, NetKernelKind kernel) {
   OverlapOptions options = resolve(given, own);
-  OverlapTpnOverlap *overlap = memory_zeroed(1, sizeof *overlap);
+  OverlapTpnModel *overlap = memory_zeroed(1, sizeof *overlap);
   if (!overlap) return status_no_memory("an overlap model");
   Status status = overlap_tpn_network_create(&overlap->model, path, kernel, overlap_tpn_portion_size());
   if (!status) status = set_rule(overlap, &options, is_hybrid, path);
@@ -74,15 +74,15 @@ static Status create(void **self, const char *path, const OverlapOptions *given,
   return status;
 }
 
-static Status eval_portion(const OverlapTpnOverlap *overlap, const OverlapBatch *batch) {
-  OverlapTpnDesk *desk = overlap_tpn_network_take(&overlap->model);
-  Status status = overlap_tpn_portion_eval(overlap, batch, desk);
-  overlap_tpn_network_leave(desk);
+static Status eval_portion(const OverlapTpnModel *overlap, const OverlapBatch *batch) {
+  OverlapTpnWorkspace *workspace = overlap_tpn_network_acquire(&overlap->model);
+  Status status = overlap_tpn_portion_eval(overlap, batch, workspace);
+  overlap_tpn_network_release(workspace);
   return status;
 }
 
 Status overlap_tpn_model_eval_batch(const void *self, const OverlapBatch *batch) {
-  const OverlapTpnOverlap *overlap = self;
+  const OverlapTpnModel *overlap = self;
   int size = (batch->hessian ? OVERLAP_TPN_BENT_ROWS : ROWS) / overlap->rule.order_count;
   int count = (batch->pair_count + size - 1) / size, first_failed = INT_MAX;
 #pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (count > 1)
@@ -105,40 +105,43 @@ Status overlap_tpn_model_eval_pair(const void *self, const double pair[24], cons
 }
 
 // Lays the pair's rows if the normalisation takes it.
-static bool lay_pair(const OverlapTpnOverlap *overlap, OverlapTpnDesk *desk, const double pair[SIZE]) {
+static bool add_normalised_row(const OverlapTpnModel *overlap, OverlapTpnWorkspace *workspace,
+                               const double pair[SIZE]) {
   OverlapTpnNormalised normalised[OVERLAP_TPN_MAX_ORDERS];
   double swapped[SIZE];
   overlap_ops_swap(pair, swapped);
   for (int o = 0; o < overlap->rule.order_count; o++)
     if (!overlap_tpn_normalise(overlap->model.kind, o ? swapped : pair, &normalised[o])) return false;
   for (int o = 0; o < overlap->rule.order_count; o++)
-    overlap_tpn_network_lay(&overlap->model, desk, normalised[o].pair);
+    overlap_tpn_network_add_row(&overlap->model, workspace, normalised[o].pair);
   return true;
 }
 
-static void tell_logits(const OverlapTpnOverlap *overlap, OverlapTpnDesk *desk, int count,
+static void tell_logits(const OverlapTpnModel *overlap, OverlapTpnWorkspace *workspace, int count,
                         const double *pairs, double *logits) {
-  bool is_laid[ROWS];
+  bool is_asked[ROWS];
   int n = overlap->rule.order_count;
-  desk->row_count = 0;
-  for (int i = 0; i < count; i++) is_laid[i] = lay_pair(overlap, desk, pairs + (ptrdiff_t)i * SIZE);
-  desk->work.outputs = STATUS;
-  net_forward_eval_f32(&desk->work, &overlap->model.network, desk->row_count, desk->x, desk->y);
-  const float *y = desk->y;
+  workspace->row_count = 0;
+  for (int i = 0; i < count; i++)
+    is_asked[i] = add_normalised_row(overlap, workspace, pairs + (ptrdiff_t)i * SIZE);
+  workspace->work.outputs = STATUS;
+  net_forward_eval_f32(&workspace->work, &overlap->model.network, workspace->row_count, workspace->x,
+                       workspace->y);
+  const float *y = workspace->y;
   for (int i = 0; i < count; i++) {
-    logits[i] = is_laid[i] ? 0 : -INFINITY;
-    for (int o = 0; o < n && is_laid[i]; o++, y += 2) logits[i] += (double)y[0] / n;
+    logits[i] = is_asked[i] ? 0 : -INFINITY;
+    for (int o = 0; o < n && is_asked[i]; o++, y += 2) logits[i] += (double)y[0] / n;
   }
 }
 
 Status overlap_tpn_model_logits(const void *self, int count, const double *pairs, double *logits) {
-  const OverlapTpnOverlap *overlap = self;
-  OverlapTpnDesk *desk = overlap_tpn_network_take(&overlap->model);
+  const OverlapTpnModel *overlap = self;
+  OverlapTpnWorkspace *workspace = overlap_tpn_network_acquire(&overlap->model);
   int size = ROWS / overlap->rule.order_count;
   for (int first = 0; first < count; first += size)
-    tell_logits(overlap, desk, count - first < size ? count - first : size, pairs + (ptrdiff_t)first * SIZE,
-                logits + first);
-  overlap_tpn_network_leave(desk);
+    tell_logits(overlap, workspace, count - first < size ? count - first : size,
+                pairs + (ptrdiff_t)first * SIZE, logits + first);
+  overlap_tpn_network_release(workspace);
   return STATUS_OK;
 }
 
@@ -191,11 +194,11 @@ static Status create_hybrid(void **self, const char *weights, const OverlapOptio
 }
 
 static bool has_hessian(const void *self) {
-  return overlap_tpn_portion_bends(&((const OverlapTpnOverlap *)self)->model);
+  return overlap_tpn_portion_has_hessian(&((const OverlapTpnModel *)self)->model);
 }
 
 static bool has_ghosts(const void *self) {
-  return ((const OverlapTpnOverlap *)self)->ghosts == OVERLAP_GHOSTS_KEEP;
+  return ((const OverlapTpnModel *)self)->ghosts == OVERLAP_GHOSTS_KEEP;
 }
 
 const OverlapOps overlap_tpn_ops = {

@@ -4,7 +4,7 @@
 //
 //   pair ─ disjoint, by an exact test? ─► V = 0                                       (ghosts: cut, fade)
 //     └─► normalised (normalise.h), in one order or both ─► network ─► z, v ─┐
-//     ├─► overlap share of the closed form (geo.h), where it fades or blends ─┼─► V, ∇V, ∇²V  (net_blend.h)
+//     ├─► overlap share of the closed form (geo.h), where it fades or blends ─┼─► V, ∇V, ∇²V  (blend.h)
 //     ├─► clip, where faces nearly lie in one plane, if asked ────────────────┤
 //     └─► exact, where the blend wants it ───────────────────────────────────┘
 //

@@ -31,37 +31,37 @@ static Status fail_as_net(NetStatus status) {
   return status_fail(code, "%s", net_status_message());
 }
 
-void overlap_tpn_network_destroy(OverlapTpnModel *model) {
-  for (int d = 0; model->desks && d < model->desk_count; d++) {
-    net_work_destroy_f32(&model->desks[d].work);
-    memory_free(model->desks[d].more);
+void overlap_tpn_network_destroy(OverlapTpnNetwork *model) {
+  for (int d = 0; model->workspaces && d < model->workspace_count; d++) {
+    net_work_destroy_f32(&model->workspaces[d].work);
+    memory_free(model->workspaces[d].more);
   }
-  memory_free(model->desks);
-  net_card_destroy(&model->card);
+  memory_free(model->workspaces);
+  net_weights_card_destroy(&model->card);
   net_model_destroy_f32(&model->network);
-  *model = (OverlapTpnModel){0};
+  *model = (OverlapTpnNetwork){0};
 }
 
-static Status furnish(OverlapTpnModel *model, NetKernelKind kernel, size_t more) {
-  model->desk_count = omp_get_max_threads();
-  model->desks = memory_zeroed((size_t)model->desk_count, sizeof *model->desks);
-  if (!model->desks) return status_no_memory("the network's memory of evaluation");
+static Status furnish(OverlapTpnNetwork *model, NetKernelKind kernel, size_t more) {
+  model->workspace_count = omp_get_max_threads();
+  model->workspaces = memory_zeroed((size_t)model->workspace_count, sizeof *model->workspaces);
+  if (!model->workspaces) return status_no_memory("the network's memory of evaluation");
   NetWorkDef def = net_work_default();
   def.tangent_count = OVERLAP_TPN_TANGENTS;
   def.kernel = kernel;
-  for (int d = 0; d < model->desk_count; d++) {
-    OverlapTpnDesk *desk = &model->desks[d];
-    atomic_flag_clear(&desk->is_taken);
-    desk->more = memory_zeroed(1, more);
-    if (!desk->more) return status_no_memory("the network's memory of evaluation");
-    NetStatus status = net_work_create_f32(model->network.plan, &def, &desk->work);
+  for (int d = 0; d < model->workspace_count; d++) {
+    OverlapTpnWorkspace *workspace = &model->workspaces[d];
+    atomic_flag_clear(&workspace->is_taken);
+    workspace->more = memory_zeroed(1, more);
+    if (!workspace->more) return status_no_memory("the network's memory of evaluation");
+    NetStatus status = net_work_create_f32(model->network.plan, &def, &workspace->work);
     if (status != NET_OK) return fail_as_net(status);
   }
   return STATUS_OK;
 }
 
 // What the normalisation makes of every first tetrahedron, the network need not be shown.
-static Status fold(OverlapTpnModel *model) {
+static Status fold(OverlapTpnNetwork *model) {
   const double *first = overlap_tpn_normalise_first(model->kind);
   if (!first) return STATUS_OK;
   float coordinates[12];
@@ -73,7 +73,7 @@ static Status fold(OverlapTpnModel *model) {
   return status == NET_OK ? STATUS_OK : fail_as_net(status);
 }
 
-static Status load(OverlapTpnModel *model, const char *path, NetKernelKind kernel, size_t more) {
+static Status load(OverlapTpnNetwork *model, const char *path, NetKernelKind kernel, size_t more) {
   NetStatus status = net_weights_read_f32(path, &model->network, &model->card);
   if (status != NET_OK) return fail_as_net(status);
   if (model->network.plan->shape.kind != NET_TPN)
@@ -88,37 +88,38 @@ static Status load(OverlapTpnModel *model, const char *path, NetKernelKind kerne
   return furnish(model, kernel, more);
 }
 
-Status overlap_tpn_network_create(OverlapTpnModel *model, const char *path, NetKernelKind kernel,
+Status overlap_tpn_network_create(OverlapTpnNetwork *model, const char *path, NetKernelKind kernel,
                                   size_t more) {
-  *model = (OverlapTpnModel){0};
+  *model = (OverlapTpnNetwork){0};
   Status status = load(model, path, kernel, more);
   if (status != STATUS_OK) overlap_tpn_network_destroy(model);
   return status;
 }
 
-OverlapTpnDesk *overlap_tpn_network_take(const OverlapTpnModel *model) {
+OverlapTpnWorkspace *overlap_tpn_network_acquire(const OverlapTpnNetwork *model) {
   for (int d = omp_get_thread_num();; d++) {
-    OverlapTpnDesk *desk = &model->desks[d % model->desk_count];
-    if (atomic_flag_test_and_set_explicit(&desk->is_taken, memory_order_acquire)) continue;
-    desk->row_count = 0;
-    return desk;
+    OverlapTpnWorkspace *workspace = &model->workspaces[d % model->workspace_count];
+    if (atomic_flag_test_and_set_explicit(&workspace->is_taken, memory_order_acquire)) continue;
+    workspace->row_count = 0;
+    return workspace;
   }
 }
 
-void overlap_tpn_network_leave(OverlapTpnDesk *desk) {
-  atomic_flag_clear_explicit(&desk->is_taken, memory_order_release);
+void overlap_tpn_network_release(OverlapTpnWorkspace *workspace) {
+  atomic_flag_clear_explicit(&workspace->is_taken, memory_order_release);
 }
 
-void overlap_tpn_network_lay(const OverlapTpnModel *model, OverlapTpnDesk *desk, const double pair[24]) {
-  assert(desk->row_count < OVERLAP_TPN_ROWS);
+void overlap_tpn_network_add_row(const OverlapTpnNetwork *model, OverlapTpnWorkspace *workspace,
+                                 const double pair[24]) {
+  assert(workspace->row_count < OVERLAP_TPN_ROWS);
   int first = model->input_first, width = 24 - first;
-  float *row = desk->x + (ptrdiff_t)width * desk->row_count++;
+  float *row = workspace->x + (ptrdiff_t)width * workspace->row_count++;
   for (int c = 0; c < width; c++) row[c] = (float)pair[first + c];
 }
 
-void overlap_tpn_network_lift(const OverlapTpnModel *model, const OverlapTpnDesk *desk, int row,
+void overlap_tpn_network_pull(const OverlapTpnNetwork *model, const OverlapTpnWorkspace *workspace, int row,
                               double gradient[24]) {
   int first = model->input_first, width = 24 - first;
   for (int c = 0; c < first; c++) gradient[c] = 0;
-  for (int c = 0; c < width; c++) gradient[first + c] = (double)desk->gx[(ptrdiff_t)width * row + c];
+  for (int c = 0; c < width; c++) gradient[first + c] = (double)workspace->gx[(ptrdiff_t)width * row + c];
 }

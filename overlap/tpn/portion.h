@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What net_overlap.h does with one portion of pairs: who is asked about each, and how V, ∇V and ∇²V come of
+// What model.h does with one portion of pairs: who is asked about each, and how V, ∇V and ∇²V come of
 // the answers.
 //
-//   pairs ─ sift ─► disjoint or flat: nothing
+// clang-format off
+//   pairs ─ find_disjoint ─► disjoint or flat: nothing
 //             ├─► the blend wants no network: exact
-//             └─► a seat ─ network ─► z, v ─► blend (net_blend.h) ─► V and its derivatives by what it is made
-//             of
-//                                                                     └─ times theirs by the pair ─► ∇V, ∇²V
+//             └─► a slot ─ network ─► z, v ─► blend (blend.h) ─► V and its derivatives by what it is made of
+//                                                                 └─ times theirs by the pair ─► ∇V, ∇²V
+// clang-format on
 //
 // ∇²V is that of this very V, but for the exact model's share in it, whose second derivatives are clipping's.
 #ifndef TETLAP_OVERLAP_TPN_PORTION_H
@@ -19,23 +20,23 @@
 // A portion with second derivatives has at most so many rows.
 enum { OVERLAP_TPN_BENT_ROWS = 32 };
 
-typedef struct OverlapTpnOverlap {
-  OverlapTpnModel model;
+typedef struct OverlapTpnModel {
+  OverlapTpnNetwork model;
   OverlapTpnRule rule;
   OverlapGhosts ghosts;
   bool turns_to_clip;     // where faces nearly lie in one plane
   OverlapGeoModel closed; // the closed form, where it fades or blends
-} OverlapTpnOverlap;
+} OverlapTpnModel;
 
-// The bytes that a portion needs at a desk.
+// The bytes that a portion needs in a workspace.
 size_t overlap_tpn_portion_size(void);
 
 // Whether the network's V has second derivatives: it bends everywhere, and only the second tetrahedron's
 // normalised coordinates matter.
-bool overlap_tpn_portion_bends(const OverlapTpnModel *model);
+bool overlap_tpn_portion_has_hessian(const OverlapTpnNetwork *model);
 
 // At most OVERLAP_TPN_ROWS rows, order_count for a pair; with a Hessian, OVERLAP_TPN_BENT_ROWS.
-Status overlap_tpn_portion_eval(const OverlapTpnOverlap *overlap, const OverlapBatch *batch,
-                                OverlapTpnDesk *desk);
+Status overlap_tpn_portion_eval(const OverlapTpnModel *overlap, const OverlapBatch *batch,
+                                OverlapTpnWorkspace *workspace);
 
 #endif

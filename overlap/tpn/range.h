@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What pairs a network of net_overlap.h was trained on, in three measures of a normalised pair (normalise.h):
+// What pairs a network of model.h was trained on, in three measures of a normalised pair (normalise.h):
 //
 //   radius   root mean square distance of the eight vertices from the first tetrahedron's centroid
 //   volume   of each of the two tetrahedra (with Unit the first is 1/6 always)

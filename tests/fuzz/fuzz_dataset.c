@@ -43,9 +43,9 @@ static const FuzzImage *template_image(void) {
   DatagenPairs pairs;
   FUZZ_CLAIM(datagen_pairs_create(&pairs, PAIR_COUNT, true) == STATUS_OK, "%s", status_message());
   fill_pairs(&pairs);
-  Status status = datagen_writer_begin(&writer, path, &info);
-  if (!status) status = datagen_writer_append(writer, &pairs, PAIR_COUNT, NULL);
-  if (!status) status = datagen_writer_commit(writer);
+  Status status = datagen_dataset_writer_begin(&writer, path, &info);
+  if (!status) status = datagen_dataset_writer_append(writer, &pairs, PAIR_COUNT, NULL);
+  if (!status) status = datagen_dataset_writer_commit(writer);
   FUZZ_CLAIM(status == STATUS_OK, "%s", status_message());
   datagen_pairs_destroy(&pairs);
   image.bytes = malloc(ROOM);

@@ -37,8 +37,8 @@ static void read_both(const char *path) {
                "two readings of one file differ");
   net_model_destroy_f64(&number);
   net_model_destroy_f32(&single);
-  net_card_destroy(&card);
-  net_card_destroy(&again);
+  net_weights_card_destroy(&card);
+  net_weights_card_destroy(&again);
 }
 
 // Weights are any finite numbers, so the volumes may be, too: nothing is claimed of them.

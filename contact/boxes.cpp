@@ -7,7 +7,7 @@
 
 extern "C" {
 #include "base/memory.h"
-#include "contact/boxes_cgal.h"
+#include "contact/boxes.h"
 }
 
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which boxes of one sequence meet which of another: CGAL's box_intersection_d (hybrid of segment trees and
 // scanning, Zomorodian and Edelsbrunner 2002) as a C function. Time O(n log³ n + pairs), memory O(n + pairs).
-#ifndef TETLAP_CONTACT_BOXES_CGAL_H
-#define TETLAP_CONTACT_BOXES_CGAL_H
+#ifndef TETLAP_CONTACT_BOXES_H
+#define TETLAP_CONTACT_BOXES_H
 
 #include <stddef.h>
 
