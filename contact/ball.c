@@ -15,6 +15,8 @@ typedef struct Section {
   double area;      // of the face's part inside the ball
   double moment[2]; // ∫ (x, y) over it
   double outer;     // sgn(d) R³ Ω of its part outside
+  double second;    // ∫ ρ² over the part inside, ρ² = x² + y²
+  double third[2];  // ∫ ρ² (x, y) over it
 } Section;
 
 // The plane of a face and the circle that the sphere cuts out of it.
@@ -49,6 +51,11 @@ static void add_inside(const Edge *edge, double from, double to, Section *sectio
   section->area += area;
   for (int c = 0; c < 2; c++)
     section->moment[c] += area / 3 * (2 * edge->foot[c] + (from + to) * edge->direction[c]);
+  double h = edge->height, a = from * from, b = to * to;
+  double even = h * h * (to - from) + (b * to - a * from) / 3; // ∫ (h² + t²) dt
+  double odd = h * h * (b - a) / 2 + (b * b - a * a) / 4;      // ∫ (h² + t²) t dt
+  section->second += h / 4 * even;
+  for (int c = 0; c < 2; c++) section->third[c] += h / 5 * (edge->foot[c] * even + edge->direction[c] * odd);
 }
 
 // θ(t): the angle from the edge's foot to the point t.
@@ -80,6 +87,9 @@ static void add_outside(const Edge *edge, const Plane *plane, double from, doubl
   section->area += 0.5 * r * r * turned;
   section->moment[0] += r * r * r / 3 * (end[1] - begin[1]);
   section->moment[1] -= r * r * r / 3 * (end[0] - begin[0]);
+  section->second += r * r * r * r / 4 * turned;
+  section->third[0] += r * r * r * r * r / 5 * (end[1] - begin[1]);
+  section->third[1] -= r * r * r * r * r / 5 * (end[0] - begin[0]);
 }
 
 // One edge from p to q: outside the circle, inside, outside again.
@@ -126,12 +136,28 @@ static void add_gradient(const Plane *plane, const Section *section, const Vec3 
   }
 }
 
-static double overlap_with_gradient(const double tet[12], const double centre[3], double radius,
-                                    double gradient[12]) {
-  Vec3 x[4], sums[4] = {{0, 0, 0}};
+// ∫ N n φ dA with φ = (R² − r²)/(2R), r² = d² + ρ².
+static void add_weighed_gradient(const Plane *plane, const Section *section, const Vec3 corners[3],
+                                 Vec3 doubled, Vec3 gradient[3]) {
+  double share = (plane->radius - plane->distance) * (plane->radius + plane->distance);
+  Section weighed = {.area = (share * section->area - section->second) / (2 * plane->radius)};
+  for (int c = 0; c < 2; c++)
+    weighed.moment[c] = (share * section->moment[c] - section->third[c]) / (2 * plane->radius);
+  add_gradient(plane, &weighed, corners, doubled, gradient);
+}
+
+// V and, of φ over it, the integral; with the gradient of one of them.
+typedef struct Sums {
+  double volume, depth;
+  Vec3 gradient[4];
+} Sums;
+
+static Sums sum_faces(const double tet[12], const double centre[3], double radius, bool is_weighed) {
+  Sums sums = {.volume = 0};
+  Vec3 x[4];
+  double second = 0; // ∫ r²
   for (int v = 0; v < 4; v++) x[v] = vec3_sub(vec3_at(tet + 3 * v), vec3_at(centre));
   bool is_flipped = vec3_det4(x[0], x[1], x[2], x[3]) < 0;
-  double volume = 0;
   for (int f = 0; f < 4; f++) {
     int order[3] = {FACES[f][0], FACES[f][1 + is_flipped], FACES[f][2 - is_flipped]};
     Vec3 corners[3] = {x[order[0]], x[order[1]], x[order[2]]}, own[3] = {{0, 0, 0}};
@@ -139,12 +165,22 @@ static double overlap_with_gradient(const double tet[12], const double centre[3]
     if (!(vec3_length(doubled) > 0)) continue;
     Plane plane = plane_of(corners[0], corners[1], doubled, radius);
     Section section = section_of(&plane, corners);
-    volume += (plane.distance * section.area + section.outer) / 3;
-    add_gradient(&plane, &section, corners, doubled, own);
-    for (int v = 0; v < 3; v++) sums[order[v]] = vec3_add(sums[order[v]], own[v]);
+    double d = plane.distance;
+    sums.volume += (d * section.area + section.outer) / 3;
+    second += (d * (d * d * section.area + section.second) + radius * radius * section.outer) / 5;
+    (is_weighed ? add_weighed_gradient : add_gradient)(&plane, &section, corners, doubled, own);
+    for (int v = 0; v < 3; v++) sums.gradient[order[v]] = vec3_add(sums.gradient[order[v]], own[v]);
   }
-  for (int v = 0; v < 4; v++) vec3_store(gradient + 3 * v, sums[v]);
-  return fmax(volume, 0);
+  sums.depth = fmax((radius * radius * sums.volume - second) / (2 * radius), 0);
+  sums.volume = fmax(sums.volume, 0);
+  return sums;
+}
+
+static double overlap_with_gradient(const double tet[12], const double centre[3], double radius,
+                                    double gradient[12]) {
+  Sums sums = sum_faces(tet, centre, radius, false);
+  for (int v = 0; v < 4; v++) vec3_store(gradient + 3 * v, sums.gradient[v]);
+  return sums.volume;
 }
 
 static double longest_edge(const double tet[12]) {
@@ -155,15 +191,48 @@ static double longest_edge(const double tet[12]) {
   return longest;
 }
 
-static void differentiate(const double tet[12], const double centre[3], double radius, double hessian[144]) {
+// What a gradient is taken of, at a tetrahedron.
+typedef struct Question {
+  const double *centre;
+  double radius;
+  double rest_volume; // 0: of V
+} Question;
+
+// U = s ∫ φ with s = V⁰/|V_tet|, and |V_tet| grows by |V_tet| ∇λ_v.
+static double press_with_gradient(const Question *question, const double tet[12], double *volume,
+                                  double gradient[12]) {
+  Sums sums = sum_faces(tet, question->centre, question->radius, true);
+  Vec3 a = vec3_sub(vec3_at(tet + 3), vec3_at(tet)), b = vec3_sub(vec3_at(tet + 6), vec3_at(tet));
+  Vec3 c = vec3_sub(vec3_at(tet + 9), vec3_at(tet)), slope[4];
+  double det = vec3_dot(a, vec3_cross(b, c)), s = 6 * question->rest_volume / fabs(det);
+  slope[1] = vec3_scale(1 / det, vec3_cross(b, c));
+  slope[2] = vec3_scale(1 / det, vec3_cross(c, a));
+  slope[3] = vec3_scale(1 / det, vec3_cross(a, b));
+  slope[0] = vec3_scale(-1, vec3_add(slope[1], vec3_add(slope[2], slope[3])));
+  for (int v = 0; v < 4; v++)
+    vec3_store(gradient + 3 * v,
+               vec3_scale(s, vec3_sub(sums.gradient[v], vec3_scale(sums.depth, slope[v]))));
+  *volume = sums.volume;
+  return s * sums.depth;
+}
+
+static void gradient_of(const Question *question, const double tet[12], double gradient[12]) {
+  double volume;
+  if (question->rest_volume > 0)
+    press_with_gradient(question, tet, &volume, gradient);
+  else
+    overlap_with_gradient(tet, question->centre, question->radius, gradient);
+}
+
+static void differentiate(const Question *question, const double tet[12], double hessian[144]) {
   static const double STEP = 1e-5; // of the longest edge
   double step = STEP * longest_edge(tet), moved[12], high[12], low[12];
   for (int c = 0; c < 12; c++) {
     memcpy(moved, tet, sizeof moved);
     moved[c] = tet[c] + step;
-    overlap_with_gradient(moved, centre, radius, high);
+    gradient_of(question, moved, high);
     moved[c] = tet[c] - step;
-    overlap_with_gradient(moved, centre, radius, low);
+    gradient_of(question, moved, low);
     for (int r = 0; r < 12; r++) hessian[12 * r + c] = (high[r] - low[r]) / (2 * step);
   }
   for (int r = 0; r < 12; r++)
@@ -179,7 +248,18 @@ void contact_ball_overlap(const double tet[12], const double centre[3], double r
   if (hessian) memset(hessian, 0, 144 * sizeof *hessian);
   if (contact_ball_separation(tet, centre, radius) >= 0) return;
   *volume = overlap_with_gradient(tet, centre, radius, gradient ? gradient : own);
-  if (hessian) differentiate(tet, centre, radius, hessian);
+  if (hessian) differentiate(&(Question){centre, radius, 0}, tet, hessian);
+}
+
+void contact_ball_press(const double tet[12], const double centre[3], double radius, double rest_volume,
+                        double *volume, double *energy, double gradient[12], double hessian[144]) {
+  Question question = {centre, radius, rest_volume};
+  *volume = *energy = 0;
+  memset(gradient, 0, 12 * sizeof *gradient);
+  if (hessian) memset(hessian, 0, 144 * sizeof *hessian);
+  if (contact_ball_separation(tet, centre, radius) >= 0) return;
+  *energy = press_with_gradient(&question, tet, volume, gradient);
+  if (hessian) differentiate(&question, tet, hessian);
 }
 
 // The square of the distance of the origin from the segment a b.

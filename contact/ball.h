@@ -14,6 +14,12 @@
 //
 //   ∂V/∂x_a = Σ_faces ∋ a ∫ N_a n dA over the part inside, N_a linear on the face.
 //
+// ∫ r² over the part inside, r the distance from the centre, is the same sum with weights of one degree two more,
+//
+//   Σ_faces ⅕ (d ∫ r² dA + sgn(d) R⁵ Ω),
+//
+// and gives the mean depth (R² − r²)/(2R) of the potential `field` in closed form.
+//
 // Rounding: about 1e-16 R² h of a tetrahedron of size h, so relative to its volume 1e-16 (R/h)².
 #ifndef TETLAP_CONTACT_BALL_H
 #define TETLAP_CONTACT_BALL_H
@@ -23,6 +29,11 @@
 // its largest entry, except where the sphere touches an edge or a vertex.
 void contact_ball_overlap(const double tet[12], const double centre[3], double radius, double *volume,
                           double gradient[12], double hessian[144]);
+
+// The overlap V [m³], and of the potential `field` (contact/field.h) with c = 1 Pa/m the energy of a tetrahedron
+// of that rest volume [m⁴], its gradient [m³] and, where not NULL, the Hessian [m²], of differences as above.
+void contact_ball_press(const double tet[12], const double centre[3], double radius, double rest_volume,
+                        double *volume, double *energy, double gradient[12], double hessian[144]);
 
 // Distance of the tetrahedron from the sphere: negative once they overlap, −radius if the centre lies inside.
 double contact_ball_separation(const double tet[12], const double centre[3], double radius);

@@ -20,7 +20,7 @@ static const double SELF_MARGIN = 0.5;
 static Status create_list(ContactCandidateList *list, const ContactLayout *layout) {
   list->begin = memory_zeroed((size_t)layout->facing_count + 1, sizeof(int));
   list->margins = memory_zeroed((size_t)layout->facing_count, sizeof(double));
-  list->tets = memory_zeroed((size_t)layout->def.tet_count, sizeof(int));
+  list->tets = memory_zeroed((size_t)layout->depth.cell_count, sizeof(int));
   return list->begin && list->margins && list->tets ? STATUS_OK : status_no_memory("the candidate lists");
 }
 
@@ -35,8 +35,8 @@ Status contact_candidates_create(ContactCandidates *candidates, const ContactLay
   *candidates = (ContactCandidates){0};
   TRY(create_list(&candidates->list, layout));
   TRY(create_list(&candidates->next, layout));
-  candidates->reference = memory_zeroed(3 * (size_t)layout->def.vertex_count, sizeof(double));
-  candidates->is_listed = memory_zeroed((size_t)layout->def.tet_count, 1);
+  candidates->reference = memory_zeroed(3 * (size_t)layout->depth.position_count, sizeof(double));
+  candidates->is_listed = memory_zeroed((size_t)layout->depth.cell_count, 1);
   candidates->boxes = memory_zeroed((size_t)layout->def.body_count, sizeof *candidates->boxes);
   size_t motions = (size_t)layout->party_count + (size_t)layout->def.body_count;
   candidates->is_left_out = memory_zeroed((size_t)layout->facing_count, sizeof *candidates->is_left_out);
@@ -126,7 +126,7 @@ void contact_candidates_bound(const ContactCandidateList *list, const ContactLay
                               const double *positions, double (*boxes)[6]) {
 #pragma omp parallel for schedule(static) if (list->tet_count > 512)
   for (int k = 0; k < list->tet_count; k++)
-    contact_bounds_of_tet(layout->def.tets[list->tets[k]], positions, boxes[list->tets[k]]);
+    contact_bounds_of_tet(layout->depth.cells[list->tets[k]], positions, boxes[list->tets[k]]);
 }
 
 bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
@@ -186,8 +186,9 @@ static Status push(ContactCandidateList *list, ContactPair pair) {
 }
 
 static ContactBroadSide side_of(const ContactLayout *layout, int body) {
-  const ContactBody *b = &layout->def.bodies[body];
-  return (ContactBroadSide){layout->def.tets + b->tet_begin, b->tet_end - b->tet_begin, b->tet_begin};
+  const ContactDepth *depth = &layout->depth;
+  int begin = depth->cell_begin[body], end = depth->cell_begin[body + 1];
+  return (ContactBroadSide){depth->cells + begin, end - begin, begin};
 }
 
 static Status search_bodies(ContactCandidates *candidates, const ContactLayout *layout, int f,
@@ -196,7 +197,7 @@ static Status search_bodies(ContactCandidates *candidates, const ContactLayout *
   ContactBroadSide a = side_of(layout, facing->a), b = side_of(layout, facing->b);
   candidates->found.count = 0;
   if (facing->a == facing->b)
-    TRY(contact_self_append(&layout->self, &layout->def, facing->a, positions, margin, &candidates->found));
+    TRY(contact_self_append(&layout->self, &layout->def, &layout->depth, facing->a, positions, margin, &candidates->found));
   else
     TRY(contact_broad_append(&candidates->found, &a, &b, positions, margin));
   for (int k = 0; k < candidates->found.count; k++) {
@@ -209,11 +210,12 @@ static Status search_bodies(ContactCandidates *candidates, const ContactLayout *
 static Status search_shape(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
                            const double *positions, double margin) {
   const ContactFacing *facing = &layout->facings[f];
-  const ContactBody *body = &layout->def.bodies[facing->a];
   const ContactShape *shape = &layout->def.shapes[facing->shape];
-  for (int i = body->tet_begin; i < body->tet_end; i++) {
+  const int *begin = layout->depth.cell_begin;
+  for (int i = begin[facing->a]; i < begin[facing->a + 1]; i++) {
     double x[12];
-    contact_layout_gather(layout, i, positions, x);
+    if (!contact_depth_leads(&layout->depth, i)) continue;
+    contact_layout_gather_whole(layout, i, positions, x);
     if (contact_shape_separation(shape, time, x, margin) <= margin)
       TRY(push(&candidates->next, (ContactPair){f, {i, -1}}));
   }
@@ -306,7 +308,7 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
   ContactCandidateList previous = candidates->list;
   candidates->list = candidates->next;
   candidates->next = previous;
-  memcpy(candidates->reference, positions, 3 * (size_t)layout->def.vertex_count * sizeof(double));
+  memcpy(candidates->reference, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
   candidates->reference_time = time;
   candidates->is_made = true;
   candidates->searches++;

@@ -15,7 +15,7 @@ typedef struct ContactCandidateList {
   ContactPair *pairs; // by facing, then by tets                      (count)
   int *begin;         // of each facing                               (facing_count + 1)
   double *margins;    // of each facing [m]                           (facing_count)
-  int *tets;          // those of mesh pairs, distinct                (tet_count)
+  int *tets;          // those of mesh pairs, distinct                (cell_count)
   int tet_count;
 } ContactCandidateList;
 
@@ -26,12 +26,12 @@ typedef struct ContactCandidates {
   long long searches;
   double search_s;
   // Where everything was when the list was made.
-  double *reference; // [m]                                           (vertex_count, 3)
+  double *reference; // [m]                                           (position_count, 3)
   double reference_time;
   // Scratch memory.
   ContactCandidateList next;
   ContactPairList found;
-  unsigned char *is_listed; // 0 between calls                        (tet_count)
+  unsigned char *is_listed; // 0 between calls                        (cell_count)
   double (*boxes)[6];       // of each body                                 (body_count)
   double *motions;          // of each party since the search [m]; then by how much two points of a body that
                             // meets itself may have come nearer      (party_count + body_count)
@@ -55,7 +55,7 @@ void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLa
 bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
                               const double *positions);
 
-// The boxes of the list's tetrahedra at these positions, into boxes (tet_count of the layout); others are
+// The boxes of the list's tetrahedra at these positions, into boxes (cell_count); others are
 // left alone.
 void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
                               const double *positions, double (*boxes)[6]);

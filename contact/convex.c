@@ -292,6 +292,146 @@ void contact_convex_overlap(const ContactConvex *convex, const double tet[12], d
   if (hessian) symmetrise(hessian);
 }
 
+// ---- The depth below the nearest plane.
+
+// The part of a tetrahedron to which plane `own` is the nearest, as another solid: below that plane, and below
+// the planes halfway to the others; those only that cut the tetrahedron.
+typedef struct Piece {
+  ContactConvex planes;
+  Cutting cutting;
+  double ridges[CONTACT_CONVEX_PLANES]; // |n_j − n_own| of a plane halfway to j; 0: the plane itself
+} Piece;
+
+// −1: all of the four are below or on 0, 1: all are above, 0: neither.
+static int side_of(const double heights[4]) {
+  int above = (heights[0] > 0) + (heights[1] > 0) + (heights[2] > 0) + (heights[3] > 0);
+  int below = (heights[0] < 0) + (heights[1] < 0) + (heights[2] < 0) + (heights[3] < 0);
+  return below == 0 ? 1 : above == 0 ? -1 : 0;
+}
+
+static void push_plane(Piece *piece, Vec3 normal, double offset, double length, bool is_ridge) {
+  int k = piece->planes.plane_count++;
+  piece->planes.normals[k] = vec3_scale(1 / length, normal);
+  piece->planes.offsets[k] = offset / length;
+  piece->ridges[k] = is_ridge ? length : 0;
+  piece->cutting.planes[piece->cutting.count++] = k;
+}
+
+// False: it is empty. `depths`: of the vertices below each plane.
+static bool make_piece(Piece *piece, const ContactConvex *convex, int own, double depths[][4]) {
+  double heights[4];
+  piece->planes.plane_count = piece->cutting.count = 0;
+  for (int v = 0; v < 4; v++) heights[v] = -depths[own][v];
+  int side = side_of(heights);
+  if (side > 0) return false;
+  if (side == 0) push_plane(piece, convex->normals[own], convex->offsets[own], 1, false);
+  for (int j = 0; j < convex->plane_count; j++) {
+    if (j == own) continue;
+    for (int v = 0; v < 4; v++) heights[v] = depths[own][v] - depths[j][v];
+    side = side_of(heights);
+    if (side > 0) return false;
+    Vec3 normal = vec3_sub(convex->normals[j], convex->normals[own]);
+    if (side == 0)
+      push_plane(piece, normal, convex->offsets[j] - convex->offsets[own], vec3_length(normal), true);
+  }
+  return true;
+}
+
+// ∫ β_a over the pyramid from o over a polygon, β_a(o) given.
+static void add_pyramid(const Polygon *polygon, Vec3 normal, const Corner *o, bool orient, double *volume,
+                        double first[4]) {
+  const Corner *corners = polygon->corners;
+  double height = vec3_dot(normal, vec3_sub(corners[0].x, o->x)), area = 0;
+  for (int i = 1; i + 1 < polygon->count; i++) area += vec3_dot(normal, doubled_triangle(polygon, i));
+  double sign = orient && area < 0 ? -1 : 1;
+  for (int i = 1; i + 1 < polygon->count; i++) {
+    double part = sign * height * vec3_dot(normal, doubled_triangle(polygon, i)) / 6;
+    *volume += part;
+    for (int a = 0; a < 4; a++)
+      first[a] += part / 4 * (o->beta[a] + corners[0].beta[a] + corners[i].beta[a] + corners[i + 1].beta[a]);
+  }
+}
+
+// H += factor ∫ (u·n)² over a polygon, either way round.
+static void add_squares(const Polygon *polygon, Vec3 n, double factor, double hessian[144]) {
+  const Corner *corners = polygon->corners;
+  const double normal[3] = {n.x, n.y, n.z};
+  double second[4][4] = {{0}}, area = 0;
+  for (int i = 1; i + 1 < polygon->count; i++) {
+    double doubled = vec3_dot(n, doubled_triangle(polygon, i));
+    const double *p = corners[0].beta, *q = corners[i].beta, *r = corners[i + 1].beta;
+    area += doubled;
+    for (int a = 0; a < 4; a++)
+      for (int b = 0; b < 4; b++)
+        second[a][b] += doubled / 24 *
+                        (p[a] * p[b] + q[a] * q[b] + r[a] * r[b] + (p[a] + q[a] + r[a]) * (p[b] + q[b] + r[b]));
+  }
+  if (area < 0) factor = -factor;
+  for (int a = 0; a < 4; a++)
+    for (int b = 0; b < 4; b++)
+      for (int e = 0; e < 9; e++)
+        hessian[12 * (3 * a + e / 3) + 3 * b + e % 3] += factor * second[a][b] * normal[e / 3] * normal[e % 3];
+}
+
+// V and ∫ β_a of a piece; its part of the Hessian. A ridge is in two pieces: half of it in each.
+static double measure_piece(const Piece *piece, const Vec3 x[4], bool is_mirrored, double scale,
+                            double first[4], double hessian[144]) {
+  Polygon polygon;
+  Corner o;
+  bool has_origin = false;
+  double volume = 0;
+  for (int f = 0; f < 4; f++) {
+    Face face = face_of(x, f, is_mirrored);
+    if (!(face.area > 0)) continue;
+    make_face(&polygon, &piece->planes, &piece->cutting, x, face.corners);
+    if (polygon.count < 3) continue;
+    if (!has_origin) o = polygon.corners[0], has_origin = true;
+    add_pyramid(&polygon, face.normal, &o, false, &volume, first);
+  }
+  for (int i = 0; i < piece->cutting.count; i++) {
+    Vec3 normal = piece->planes.normals[i];
+    make_section(&polygon, &piece->planes, &piece->cutting, i, x);
+    if (polygon.count < 3) continue;
+    if (!has_origin) o = polygon.corners[0], has_origin = true;
+    add_pyramid(&polygon, normal, &o, true, &volume, first);
+    if (hessian)
+      add_squares(&polygon, normal, piece->ridges[i] > 0 ? -scale * piece->ridges[i] / 2 : scale, hessian);
+  }
+  return volume;
+}
+
+void contact_convex_press(const ContactConvex *convex, const double tet[12], double rest_volume,
+                          double *volume, double *energy, double gradient[12], double hessian[144]) {
+  Vec3 x[4];
+  Piece piece;
+  double depths[CONTACT_CONVEX_PLANES][4];
+  *volume = *energy = 0;
+  memset(gradient, 0, 12 * sizeof *gradient);
+  if (hessian) memset(hessian, 0, 144 * sizeof *hessian);
+  for (int v = 0; v < 4; v++) x[v] = vec3_at(tet + 3 * v);
+  double det = vec3_det4(x[0], x[1], x[2], x[3]), scale = 6 * rest_volume / fabs(det);
+  if (det == 0) return;
+  for (int k = 0; k < convex->plane_count; k++) {
+    double deepest = -INFINITY;
+    for (int v = 0; v < 4; v++) {
+      depths[k][v] = convex->offsets[k] - vec3_dot(convex->normals[k], x[v]);
+      deepest = fmax(deepest, depths[k][v]);
+    }
+    if (!(deepest > 0)) return;
+  }
+  for (int k = 0; k < convex->plane_count; k++) {
+    double first[4] = {0};
+    if (!make_piece(&piece, convex, k, depths)) continue;
+    *volume += measure_piece(&piece, x, det < 0, scale, first, hessian);
+    for (int a = 0; a < 4; a++) {
+      *energy += scale * first[a] * depths[k][a];
+      vec3_accumulate(gradient + 3 * a, vec3_scale(-scale * first[a], convex->normals[k]));
+    }
+  }
+  *volume = fmax(*volume, 0);
+  *energy = fmax(*energy, 0);
+}
+
 // ---- Separation.
 
 static double extent(const ContactConvex *convex, Vec3 axis) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/evaluation.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -15,12 +16,11 @@
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout) {
   *evaluation = (ContactEvaluation){0};
-  size_t coordinate_count = 3 * (size_t)layout->def.vertex_count;
-  evaluation->positions = memory_zeroed(coordinate_count, sizeof(double));
-  evaluation->forces = memory_zeroed(coordinate_count, sizeof(double));
+  evaluation->positions = memory_zeroed((size_t)layout->depth.position_count, 3 * sizeof(double));
+  evaluation->forces = memory_zeroed((size_t)layout->def.vertex_count, 3 * sizeof(double));
   evaluation->covered = memory_zeroed((size_t)layout->def.tet_count, sizeof(double));
   evaluation->interfaces = memory_zeroed((size_t)layout->facing_count, sizeof(ContactInterface));
-  evaluation->boxes = memory_zeroed((size_t)layout->def.tet_count, sizeof *evaluation->boxes);
+  evaluation->boxes = memory_zeroed((size_t)layout->depth.cell_count, sizeof *evaluation->boxes);
   if (!evaluation->boxes || !evaluation->positions || !evaluation->forces || !evaluation->covered ||
       !evaluation->interfaces)
     return status_no_memory("contact forces");
@@ -41,10 +41,12 @@ void contact_evaluation_destroy(ContactEvaluation *evaluation) {
   memory_free(evaluation->is_kept);
   memory_free(evaluation->boxes);
   memory_free(evaluation->flags);
+  memory_free(evaluation->centroids);
+  memory_free(evaluation->fields);
   *evaluation = (ContactEvaluation){0};
 }
 
-static Status reserve(ContactEvaluation *evaluation, int count) {
+static Status reserve(ContactEvaluation *evaluation, const ContactLayout *layout, int count) {
   size_t n = (size_t)count, size = sizeof(double);
   bool fits =
       memory_reserve((void **)&evaluation->pairs, &evaluation->pair_capacity, n, sizeof(ContactPair)) &&
@@ -53,6 +55,11 @@ static Status reserve(ContactEvaluation *evaluation, int count) {
       memory_reserve((void **)&evaluation->gradients, &evaluation->gradient_capacity, 24 * n, size) &&
       memory_reserve((void **)&evaluation->pressures, &evaluation->pressure_capacity, n, size) &&
       memory_reserve((void **)&evaluation->flags, &evaluation->flag_capacity, n, sizeof(unsigned));
+  if (layout->depth.has_field)
+    fits = fits &&
+           memory_reserve((void **)&evaluation->centroids, &evaluation->centroid_capacity, 3 * n, size) &&
+           memory_reserve((void **)&evaluation->fields, &evaluation->field_capacity, n,
+                          sizeof(ContactFieldPair));
   return fits ? STATUS_OK : status_no_memory("overlapping pairs");
 }
 
@@ -115,7 +122,7 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
             : !(contact_bounds_distance(evaluation->boxes[tets[0]], evaluation->boxes[tets[1]]) > apart);
     kept += evaluation->is_kept[k];
   }
-  TRY(reserve(evaluation, kept));
+  TRY(reserve(evaluation, layout, kept));
   evaluation->pair_count = 0;
   for (int k = 0; k < count; k++)
     if (evaluation->is_kept[k]) evaluation->pairs[evaluation->pair_count++] = candidates->pairs[k];
@@ -130,6 +137,10 @@ static void move_pair(ContactEvaluation *evaluation, int from, int to) {
   evaluation->volumes[to] = evaluation->volumes[from];
   memcpy(evaluation->coordinates + target, evaluation->coordinates + source, row);
   memcpy(evaluation->gradients + target, evaluation->gradients + source, row);
+  if (evaluation->centroids)
+    memcpy(evaluation->centroids + 3 * (size_t)to, evaluation->centroids + 3 * (size_t)from,
+           3 * sizeof(double));
+  if (evaluation->fields) evaluation->fields[to] = evaluation->fields[from];
 }
 
 // Gathers the listed pairs and drops those that a face separates for certain, unless the model sees ghosts.
@@ -162,8 +173,13 @@ static void sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *la
 // Names the tetrahedra, as the frames number them, of a pair that the model refused or answered badly.
 static Status blame(const ContactLayout *layout, const ContactPair *pair, Status status, const char *why) {
   const ContactFacing *facing = &layout->facings[pair->facing];
-  return status_fail(status, "contact of element %d of '%s' and element %d of '%s': %s", pair->tets[0],
-                     layout->def.bodies[facing->a].name, pair->tets[1], layout->def.bodies[facing->b].name,
+  int element = contact_depth_tet(&layout->depth, pair->tets[0]);
+  const char *name = layout->def.bodies[facing->a].name;
+  if (facing->shape >= 0)
+    return status_fail(status, "contact of element %d of '%s' and '%s': %s", element, name,
+                       layout->def.shapes[facing->shape].name, why);
+  return status_fail(status, "contact of element %d of '%s' and element %d of '%s': %s", element, name,
+                     contact_depth_tet(&layout->depth, pair->tets[1]), layout->def.bodies[facing->b].name,
                      why);
 }
 
@@ -204,7 +220,8 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
   OverlapBatch batch = {.pair_count = count,
                         .pairs = evaluation->coordinates,
                         .volume = evaluation->volumes,
-                        .gradient = evaluation->gradients,
+                        .gradient = layout->depth.has_field ? NULL : evaluation->gradients,
+                        .centroid = layout->depth.has_field ? evaluation->centroids : NULL,
                         .flags = evaluation->flags};
   Status status = overlap_model_eval(model, &batch);
   if (status) return blame_failure(evaluation, layout, model, &batch, status);
@@ -222,8 +239,14 @@ static void overlap_shapes(ContactEvaluation *evaluation, const ContactLayout *l
   for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
     const ContactShape *shape = &layout->def.shapes[layout->facings[evaluation->pairs[k].facing].shape];
     double *gradient = evaluation->gradients + 24 * (size_t)k;
-    contact_shape_overlap(shape, time, evaluation->coordinates + 24 * (size_t)k, &evaluation->volumes[k],
-                          gradient, NULL);
+    const double *tet = evaluation->coordinates + 24 * (size_t)k;
+    if (layout->depth.has_field) {
+      ContactFieldPair *field = &evaluation->fields[k];
+      contact_field_press_shape(layout, &evaluation->pairs[k], time, tet, field, gradient);
+      evaluation->volumes[k] = field->volume;
+      continue;
+    }
+    contact_shape_overlap(shape, time, tet, &evaluation->volumes[k], gradient, NULL);
     memset(gradient + 12, 0, 12 * sizeof(double));
   }
 }
@@ -303,14 +326,42 @@ static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout
   }
 }
 
+// Energies, and the forces on the pairs' own vertices.
+static Status press_pairs(ContactEvaluation *evaluation, const ContactLayout *layout) {
+  int bad = INT_MAX;
+#pragma omp parallel for schedule(static) reduction(min : bad) if (evaluation->pair_count > 256)
+  for (int k = 0; k < evaluation->pair_count; k++) {
+    size_t at = (size_t)k;
+    evaluation->pressures[k] = 1;
+    if (k < evaluation->mesh_pair_count)
+      contact_field_press(layout, &evaluation->pairs[k], evaluation->coordinates + 24 * at,
+                          evaluation->volumes[k], evaluation->centroids + 3 * at, &evaluation->fields[k],
+                          evaluation->gradients + 24 * at);
+    const double *force = evaluation->fields[k].force;
+    if (!isfinite(evaluation->fields[k].energy + force[0] + force[1] + force[2]) && k < bad) bad = k;
+  }
+  if (bad == INT_MAX) return STATUS_OK;
+  return blame(layout, &evaluation->pairs[bad], STATUS_RETRY,
+               "a tetrahedron is so flat that its depth has no slope");
+}
+
+static double sum_energies(const ContactEvaluation *evaluation, const ContactPatch *patch) {
+  double energy = 0;
+  for (int k = patch->pair_begin; k < patch->pair_end; k++) energy += evaluation->fields[k].energy;
+  return energy;
+}
+
 static Status apply_potential(ContactEvaluation *evaluation, const ContactLayout *layout) {
   ContactPatches *patches = &evaluation->patches;
   TRY(contact_patches_build(patches, layout, evaluation->pair_count, evaluation->pairs));
   cover(evaluation);
+  if (layout->depth.has_field) TRY(press_pairs(evaluation, layout));
   for (int p = 0; p < patches->patch_count; p++) {
     ContactPatch *patch = &patches->patches[p];
-    patch->energy = contact_potential_apply(layout, patches, patch, evaluation->pairs, evaluation->volumes,
-                                            evaluation->pressures);
+    patch->energy = layout->depth.has_field
+                        ? sum_energies(evaluation, patch)
+                        : contact_potential_apply(layout, patches, patch, evaluation->pairs,
+                                                  evaluation->volumes, evaluation->pressures);
     evaluation->energy += patch->energy;
   }
   push_apart(evaluation);
@@ -330,7 +381,7 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   keep_overlapping(evaluation);
   double overlapped = clock_wall_s();
   TRY(apply_potential(evaluation, layout));
-  memcpy(evaluation->positions, positions, 3 * (size_t)layout->def.vertex_count * sizeof(double));
+  memcpy(evaluation->positions, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
   evaluation->time = time;
   evaluation->is_valid = true;
   evaluation->overlap_s = overlapped - start;

@@ -6,6 +6,7 @@
 #define TETLAP_CONTACT_EVALUATION_H
 
 #include "contact/candidates.h"
+#include "contact/field.h"
 #include "contact/patches.h"
 #include "contact/rest.h"
 
@@ -23,15 +24,19 @@ typedef struct ContactEvaluation {
   const ContactRest *rest; // stands in the result beside the candidates (contact/rest.h); NULL: nothing
   bool is_valid;
   double time;       // of this result [s]
-  double *positions; // of this result [m]                                (vertex_count, 3)
+  double *positions; // of this result [m]; then the virtual vertices    (position_count, 3)
   double energy;     // U [J]
-  // Pairs with V > 0 in the candidates' order, so those with half-spaces last.
+  // Pairs with V > 0 in the candidates' order, so those with shapes last.
   int pair_count, mesh_pair_count;
   ContactPair *pairs;           //                                       (pair_count)
   double *coordinates;          // as given to the model [m]             (mesh_pair_count, 2, 4, 3)
   double *volumes;              // V_ij [m³]                             (pair_count)
-  double *gradients;            // ∇V_ij [m²]; half-space's part: zeros  (pair_count, 2, 4, 3)
-  double *pressures;            // p_ij [Pa]                             (pair_count)
+  // The force on the vertices of a pair's tetrahedra is −pressure · gradient: p_ij and ∇V_ij, shape's part
+  // zeros; with the potential `field` 1 and minus the force [N].
+  double *gradients;            // [m²]                                  (pair_count, 2, 4, 3)
+  double *pressures;            // [Pa]                                  (pair_count)
+  double *centroids;            // x̄ of mesh pairs [m]; `field` only     (mesh_pair_count, 3)
+  ContactFieldPair *fields;     // `field` only                          (pair_count)
   ContactPatches patches;       // with W_i, W_a and forces per node
   double *forces;               // −∂U/∂x [N]                            (vertex_count, 3)
   double *covered;              // Σ over facings of W_i [m³]            (tet_count)
@@ -40,10 +45,10 @@ typedef struct ContactEvaluation {
   double overlap_s, force_s;    // wall time [s]
   // Scratch memory.
   unsigned char *is_kept; // of each candidate
-  double (*boxes)[6];     // of the candidates' tetrahedra            (tet_count)
+  double (*boxes)[6];     // of the candidates' cells                 (cell_count)
   unsigned *flags;
   size_t kept_capacity, pair_capacity, coordinate_capacity, volume_capacity, gradient_capacity;
-  size_t pressure_capacity, flag_capacity;
+  size_t pressure_capacity, flag_capacity, centroid_capacity, field_capacity;
 } ContactEvaluation;
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout);

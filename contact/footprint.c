@@ -8,7 +8,8 @@
 
 size_t contact_footprint_layout(const ContactLayout *layout) {
   const ContactSelf *self = &layout->self;
-  return HELD(layout->tet_volumes, layout->vertex_volumes, layout->facings, layout->nudges, layout->shifts,
+  const ContactDepth *depth = &layout->depth;
+  return HELD(layout->rest, layout->cell_volumes, depth->cell_begin, depth->own, depth->tets, depth->replaced, depth->outer, depth->virtuals, depth->depths, layout->tet_volumes, layout->vertex_volumes, layout->facings, layout->nudges, layout->shifts,
               self->outer, self->is_outer, self->left_out.pairs);
 }
 
@@ -40,7 +41,7 @@ size_t contact_footprint_evaluation(const ContactEvaluation *evaluation) {
   return of_patches(&evaluation->patches) +
          HELD(evaluation->positions, evaluation->pairs, evaluation->coordinates, evaluation->volumes,
               evaluation->gradients, evaluation->pressures, evaluation->forces, evaluation->covered,
-              evaluation->interfaces, evaluation->is_kept, evaluation->boxes, evaluation->flags);
+              evaluation->interfaces, evaluation->is_kept, evaluation->boxes, evaluation->flags, evaluation->centroids, evaluation->fields);
 }
 
 size_t contact_footprint_stiffness(const ContactStiffness *stiffness) {

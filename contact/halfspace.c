@@ -47,21 +47,26 @@ static double fraction_below(Heights heights) {
   return a + (1 - a) * (b + (1 - b) * c); // 1 − (1 − a)(1 − b)(1 − c)
 }
 
-// [t₀ … t₄] g for ascending knots with t₀ < 0 < t₄: a quarter of the cubic B-spline with integral 1 at 0, by
-// the recurrence of de Boor and Cox on the knot spans.
-static double spline(const double t[5]) {
-  double m[4] = {0};
-  for (int i = 0; i < 4; i++)
+// The B-spline with integral 1 over these ascending knots, at 0, where t₀ < 0 < t_last: by the recurrence of
+// de Boor and Cox on the knot spans.
+static double spline(const double *t, int count) {
+  double m[5] = {0};
+  for (int i = 0; i + 1 < count; i++)
     if (t[i] <= 0 && 0 < t[i + 1]) m[i] = 1 / (t[i + 1] - t[i]);
-  for (int order = 2; order <= 4; order++)
-    for (int i = 0; i + order <= 4; i++) {
+  for (int order = 2; order < count; order++)
+    for (int i = 0; i + order < count; i++) {
       double span = t[i + order] - t[i];
       if (span > 0)
         m[i] = order / (order - 1.0) * (-t[i] / span * m[i] + t[i + order] / span * m[i + 1]);
       else
         m[i] = 0; // knots that coincide
     }
-  return m[0] / 4;
+  return m[0];
+}
+
+// [t₀ … t₄] g
+static double cubic(const double t[5]) {
+  return spline(t, 5) / 4;
 }
 
 // ∂F/∂s_i.
@@ -69,7 +74,7 @@ static double first_derivative(Heights heights, double s_i) {
   double t[5];
   memcpy(t, heights.s, sizeof heights.s);
   insert(t, 4, s_i);
-  return -spline(t);
+  return -cubic(t);
 }
 
 // ∂²F/∂s_i∂s_j, for i = j to be doubled: the divided difference of two B-splines over the whole span.
@@ -78,7 +83,7 @@ static double second_derivative(Heights heights, double s_i, double s_j) {
   memcpy(t, heights.s, sizeof heights.s);
   insert(t, 4, s_i);
   insert(t, 5, s_j);
-  double low = t[4] > 0 ? spline(t) : 0, high = t[1] < 0 ? spline(t + 1) : 0;
+  double low = t[4] > 0 ? cubic(t) : 0, high = t[1] < 0 ? cubic(t + 1) : 0;
   return -(high - low) / (t[5] - t[0]);
 }
 
@@ -171,4 +176,64 @@ void contact_halfspace_overlap(const double tet[12], const double point[3], cons
     for (int i = 0; i < 4; i++) cut.slope[i] = first_derivative(cut.heights, cut.s[i]);
   if (gradient) write_gradient(&cut, gradient);
   if (hessian) write_hessian(&cut, tet, hessian);
+}
+
+// ---- The mean depth.
+
+// [a b c] max(−t, 0)³ with a ≤ b ≤ c, c > 0.
+static double cubed_difference(double a, double b, double c) {
+  if (!(a < 0)) return 0;
+  double low = b < 0 ? -b : 0; // max(−b, 0)
+  double hat = b < 0 ? c / ((c - b) * (c - a)) : -a / ((b - a) * (c - a));
+  double square = -a * hat + low / (c - b); // [b c] of a power is −lowᵐ/(c − b)
+  return -a * square + low * low / (c - b);
+}
+
+static double depth_below(Heights heights) {
+  const double *s = heights.s;
+  if (heights.below == 0) return 0;
+  if (!is_cut(heights)) return -(s[0] + s[1] + s[2] + s[3]) / 4;
+  return 0.25 * (-s[0] * fraction_below(heights) + cubed_difference(s[1], s[2], s[3]));
+}
+
+// ∂D/∂s_i.
+static double depth_derivative(Heights heights, double s_i) {
+  double t[5];
+  Heights upper = {.below = 0};
+  memcpy(t, heights.s, sizeof heights.s);
+  insert(t, 4, s_i);
+  for (int k = 0; k < 4; k++) upper.s[k] = t[k + 1], upper.below += t[k + 1] < 0;
+  return 0.25 * (t[0] * cubic(t) - (upper.below > 0 ? fraction_below(upper) : 0));
+}
+
+static double depth_curvature(Heights heights, double s_i, double s_j) {
+  double t[6];
+  memcpy(t, heights.s, sizeof heights.s);
+  insert(t, 4, s_i);
+  insert(t, 5, s_j);
+  return spline(t, 6) / 20;
+}
+
+void contact_halfspace_press(const double tet[12], const double point[3], const double normal[3],
+                             double rest_volume, double *volume, double *energy, double gradient[12],
+                             double hessian[144]) {
+  Cut cut = cut_of(tet, vec3_at(point), vec3_at(normal));
+  bool is_partly = is_cut(cut.heights);
+  *volume = cut.fraction * cut.whole_volume;
+  *energy = rest_volume * depth_below(cut.heights);
+  for (int i = 0; i < 4 && gradient; i++) {
+    double slope = is_partly               ? depth_derivative(cut.heights, cut.s[i])
+                   : cut.heights.below > 0 ? -0.25
+                                           : 0;
+    vec3_store(gradient + 3 * i, vec3_scale(rest_volume * slope, cut.normal));
+  }
+  if (!hessian) return;
+  memset(hessian, 0, 144 * sizeof *hessian);
+  const double n[3] = {cut.normal.x, cut.normal.y, cut.normal.z};
+  for (int i = 0; i < 4 && is_partly; i++)
+    for (int j = 0; j < 4; j++) {
+      double bend = rest_volume * (1 + (i == j)) * depth_curvature(cut.heights, cut.s[i], cut.s[j]);
+      for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) hessian[12 * (3 * i + r) + 3 * j + c] = bend * n[r] * n[c];
+    }
 }

@@ -10,6 +10,13 @@
 //
 // g(s) = max(−s, 0)³. They are evaluated by recurrences that add non-negative terms and divide by differences
 // that span the plane, so a vertex, edge or face near the plane costs no digits, at any scale.
+//
+// The mean depth max(−s, 0) over the tetrahedron is the same with one power more,
+//
+//   D = −¼ [s₀ s₁ s₂ s₃] h,   ∂D/∂s_i = −¼ [s₀ s₁ s₂ s₃ s_i] h,   ∂²D/∂s_i∂s_j = −¼ (1 + δ_ij) [s₀ s₁ s₂ s₃ s_i s_j] h,
+//
+// h(s) = max(−s, 0)⁴, convex in the heights. By Leibniz' rule [t₀ … t_n] s g = t₀ [t₀ … t_n] g + [t₁ … t_n] g
+// with t₀ the lowest, again in terms of one sign.
 #ifndef TETLAP_CONTACT_HALFSPACE_H
 #define TETLAP_CONTACT_HALFSPACE_H
 
@@ -20,5 +27,11 @@
 // from above has V = 0 and no derivatives.
 void contact_halfspace_overlap(const double tet[12], const double point[3], const double normal[3],
                                double *volume, double gradient[12], double hessian[144]);
+
+// The overlap V [m³], and of the potential `field` (contact/field.h) with c = 1 Pa/m the energy
+// `rest_volume` · D [m⁴] and, where not NULL, its derivatives [m³] and [m²] (12 × 12, positive semidefinite).
+void contact_halfspace_press(const double tet[12], const double point[3], const double normal[3],
+                             double rest_volume, double *volume, double *energy, double gradient[12],
+                             double hessian[144]);
 
 #endif

@@ -1,24 +1,45 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/layout.h"
 
+#include <string.h>
+
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
 #include "contact/shape.h"
 
+static double volume_of(const int vertices[4], const double *positions) {
+  Vec3 x[4];
+  for (int v = 0; v < 4; v++) x[v] = vec3_at(positions + 3 * (size_t)vertices[v]);
+  return fabs(vec3_det4(x[0], x[1], x[2], x[3])) / 6;
+}
+
 // Rest volumes of tetrahedra, and their quarters summed at the vertices.
 static Status measure_volumes(ContactLayout *layout) {
   const ContactSystemDef *def = &layout->def;
   for (int i = 0; i < def->tet_count; i++) {
-    double x[12];
-    contact_layout_gather(layout, i, def->rest, x);
-    double volume = fabs(vec3_det4(vec3_at(x), vec3_at(x + 3), vec3_at(x + 6), vec3_at(x + 9))) / 6;
+    double volume = volume_of(def->tets[i], def->rest);
     if (!(volume > 0 && isfinite(volume)))
       return status_fail(STATUS_INPUT, "contact: tetrahedron %d has rest volume %g; it must be positive", i,
                          volume);
     layout->tet_volumes[i] = volume;
     for (int v = 0; v < 4; v++) layout->vertex_volumes[def->tets[i][v]] += volume / 4;
   }
+  return STATUS_OK;
+}
+
+// The contact mesh, where it is at rest, and its volumes.
+static Status make_cells(ContactLayout *layout) {
+  ContactSystemDef *def = &layout->def;
+  TRY(contact_depth_create(&layout->depth, def));
+  layout->rest = memory_zeroed((size_t)layout->depth.position_count, 3 * sizeof(double));
+  layout->cell_volumes = memory_zeroed((size_t)layout->depth.cell_count, sizeof(double));
+  if (!layout->rest || !layout->cell_volumes) return status_no_memory("the contact mesh");
+  memcpy(layout->rest, def->rest, 3 * (size_t)def->vertex_count * sizeof(double));
+  contact_depth_place(&layout->depth, def, layout->rest);
+  def->rest = layout->rest;
+  for (int i = 0; i < layout->depth.cell_count; i++)
+    layout->cell_volumes[i] = volume_of(layout->depth.cells[i], layout->rest);
   return STATUS_OK;
 }
 
@@ -40,11 +61,17 @@ static double default_margin(const ContactSystemDef *def) {
   return isfinite(shortest) ? shortest / 2 : 1;
 }
 
+static double stiffness_of(const ContactSystemDef *def, int a, int b) {
+  return def->pair_stiffness ? def->pair_stiffness[a * (def->body_count + def->shape_count) + b]
+                             : def->stiffness;
+}
+
 static ContactFacing facing_of_bodies(const ContactSystemDef *def, int a, int b) {
   bool one_sided = def->bodies[a].is_obstacle || def->bodies[b].is_obstacle;
   return (ContactFacing){.a = a,
                          .b = b,
                          .shape = -1,
+                         .stiffness = stiffness_of(def, a, b),
                          .weight = {one_sided ? !def->bodies[a].is_obstacle : 0.5,
                                     one_sided ? !def->bodies[b].is_obstacle : 0.5}};
 }
@@ -60,8 +87,11 @@ static void list_facings(ContactLayout *layout) {
   for (int a = 0; a < def->body_count; a++)
     for (int h = 0; h < def->shape_count; h++)
       if (!def->bodies[a].is_obstacle)
-        layout->facings[count++] =
-            (ContactFacing){.a = a, .b = def->body_count + h, .shape = h, .weight = {1, 0}};
+        layout->facings[count++] = (ContactFacing){.a = a,
+                                                   .b = def->body_count + h,
+                                                   .shape = h,
+                                                   .stiffness = stiffness_of(def, a, def->body_count + h),
+                                                   .weight = {1, 0}};
   layout->facing_count = count;
 }
 
@@ -99,18 +129,23 @@ static void warp_body(ContactLayout *layout, int b) {
 static const double REST_DEPTH = 1e-9; // of the margin: rounding
 
 static Status prepare_self(ContactLayout *layout) {
-  TRY(contact_self_create(&layout->self, &layout->def, REST_DEPTH * layout->margin));
+  TRY(contact_self_create(&layout->self, &layout->def, &layout->depth, REST_DEPTH * layout->margin));
   if (!layout->self.outer) return STATUS_OK;
-  layout->shifts = memory_zeroed((size_t)layout->def.vertex_count, 3 * sizeof(double));
+  layout->shifts = memory_zeroed((size_t)layout->depth.position_count, 3 * sizeof(double));
   if (!layout->shifts) return status_no_memory("the contact system's volumes");
   for (int b = 0; b < layout->def.body_count; b++)
     if (layout->def.bodies[b].meets_itself) warp_body(layout, b);
+  contact_depth_place(&layout->depth, &layout->def, layout->shifts);
   return STATUS_OK;
 }
 
+static Status check_stiffness(double stiffness) {
+  if (stiffness > 0 && isfinite(stiffness)) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "contact: stiffness is %g; it must be positive", stiffness);
+}
+
 static Status check(const ContactSystemDef *def) {
-  if (!(def->stiffness > 0 && isfinite(def->stiffness)))
-    return status_fail(STATUS_INPUT, "contact: stiffness is %g; it must be positive", def->stiffness);
+  if (!def->pair_stiffness) TRY(check_stiffness(def->stiffness));
   if (!(def->margin >= 0 && isfinite(def->margin)))
     return status_fail(STATUS_INPUT, "contact: margin is %g m; it must be positive, or 0 for the default",
                        def->margin);
@@ -129,18 +164,23 @@ Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def)
   if (!layout->tet_volumes || !layout->vertex_volumes || !layout->facings || !layout->nudges)
     return status_no_memory("the contact system's volumes");
   list_facings(layout);
+  for (int f = 0; f < layout->facing_count; f++) TRY(check_stiffness(layout->facings[f].stiffness));
   layout->margin = def->margin > 0 ? def->margin : default_margin(def);
   nudge_bodies(layout);
   TRY(measure_volumes(layout));
+  TRY(make_cells(layout));
   return prepare_self(layout);
 }
 
 void contact_layout_destroy(ContactLayout *layout) {
+  memory_free(layout->rest);
   memory_free(layout->tet_volumes);
+  memory_free(layout->cell_volumes);
   memory_free(layout->vertex_volumes);
   memory_free(layout->facings);
   memory_free(layout->nudges);
   memory_free(layout->shifts);
   contact_self_destroy(&layout->self);
+  contact_depth_destroy(&layout->depth);
   *layout = (ContactLayout){0};
 }

@@ -10,8 +10,8 @@
 
 Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout) {
   *onset = (ContactOnset){0};
-  onset->is_marked = memory_zeroed((size_t)layout->def.vertex_count, 1);
-  onset->boxes = memory_zeroed((size_t)layout->def.tet_count, sizeof *onset->boxes);
+  onset->is_marked = memory_zeroed((size_t)layout->depth.position_count, 1);
+  onset->boxes = memory_zeroed((size_t)layout->depth.cell_count, sizeof *onset->boxes);
   return onset->is_marked && onset->boxes ? STATUS_OK : status_no_memory("watched pairs");
 }
 
@@ -26,11 +26,12 @@ void contact_onset_destroy(ContactOnset *onset) {
 static double separation_of(const ContactLayout *layout, const ContactPair *pair, double time,
                             const double *positions, double enough) {
   double x[24];
-  contact_layout_gather(layout, pair->tets[0], positions, x);
   if (pair->tets[1] >= 0) {
+    contact_layout_gather(layout, pair->tets[0], positions, x);
     contact_layout_gather(layout, pair->tets[1], positions, x + 12);
     return overlap_separation_pair(x, enough);
   }
+  contact_layout_gather_whole(layout, pair->tets[0], positions, x);
   return contact_shape_separation(&layout->def.shapes[layout->facings[pair->facing].shape], time, x, enough);
 }
 
@@ -68,12 +69,12 @@ static void find_engaged(ContactOnset *onset, const ContactLayout *layout,
 static void mark(ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,
                  unsigned char value) {
   for (int side = 0; side < 2 && pair->tets[side] >= 0; side++)
-    for (int v = 0; v < 4; v++) onset->is_marked[layout->def.tets[pair->tets[side]][v]] = value;
+    for (int v = 0; v < 4; v++) onset->is_marked[contact_layout_vertices(layout, pair->tets[side])[v]] = value;
 }
 
 static bool is_near_patch(const ContactOnset *onset, const ContactLayout *layout, int tet) {
   if (tet < 0) return true;
-  const int *v = layout->def.tets[tet];
+  const int *v = contact_layout_vertices(layout, tet);
   return onset->is_marked[v[0]] || onset->is_marked[v[1]] || onset->is_marked[v[2]] || onset->is_marked[v[3]];
 }
 

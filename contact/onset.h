@@ -18,8 +18,8 @@ typedef struct ContactOnset {
   size_t capacity;
   unsigned char *is_engaged; // scratch, of each candidate
   size_t engaged_capacity;
-  double (*boxes)[6];       // scratch, of the candidates' tetrahedra   (tet_count)
-  unsigned char *is_marked; // scratch, 0 between calls      (vertex_count)
+  double (*boxes)[6];       // scratch, of the candidates' tetrahedra   (cell_count)
+  unsigned char *is_marked; // scratch, 0 between calls      (position_count)
 } ContactOnset;
 
 Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout);

@@ -53,8 +53,9 @@ static int node_at(ContactPatches *patches, int vertex, int side) {
   return *node;
 }
 
-static int element_at(ContactPatches *patches, const ContactLayout *layout, int tet, int side) {
-  if (tet < 0) return -1;
+static int element_at(ContactPatches *patches, const ContactLayout *layout, int cell, int side) {
+  if (cell < 0) return -1;
+  int tet = contact_depth_tet(&layout->depth, cell);
   int *element = &patches->element_of_tet[tet];
   if (*element < 0) {
     *element = patches->element_count++;

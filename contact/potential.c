@@ -6,18 +6,18 @@
 
 double contact_potential_node_curvature(const ContactLayout *layout, const ContactFacing *facing,
                                         const ContactNode *node) {
-  return facing->weight[node->side] * layout->def.stiffness / layout->vertex_volumes[node->vertex];
+  return facing->weight[node->side] * facing->stiffness / layout->vertex_volumes[node->vertex];
 }
 
 double contact_potential_element_curvature(const ContactLayout *layout, const ContactFacing *facing,
                                            const ContactElement *element) {
-  return facing->weight[element->side] * layout->def.stiffness / layout->tet_volumes[element->tet];
+  return facing->weight[element->side] * facing->stiffness / layout->cell_volumes[element->tet];
 }
 
 double contact_potential_pair_curvature(const ContactLayout *layout, const ContactPair *pair) {
-  double reference = layout->tet_volumes[pair->tets[0]];
-  if (pair->tets[1] >= 0) reference = fmin(reference, layout->tet_volumes[pair->tets[1]]);
-  return layout->def.stiffness / reference;
+  double reference = layout->cell_volumes[pair->tets[0]];
+  if (pair->tets[1] >= 0) reference = fmin(reference, layout->cell_volumes[pair->tets[1]]);
+  return layout->facings[pair->facing].stiffness / reference;
 }
 
 // U = Σ_a ½ c_a W_a²; ∂U/∂W_i = ¼ Σ_{a∈i} c_a W_a.
@@ -88,7 +88,7 @@ static void fill(double *pressures, const ContactPatch *patch, double pressure) 
 double contact_potential_apply(const ContactLayout *layout, const ContactPatches *patches,
                                const ContactPatch *patch, const ContactPair *pairs, const double *volumes,
                                double *pressures) {
-  double stiffness = layout->def.stiffness, total = sum_of(volumes, patch);
+  double stiffness = layout->facings[patch->facing].stiffness, total = sum_of(volumes, patch);
   switch (layout->def.potential) {
   case CONTACT_POTENTIAL_NODAL:
     return apply_nodal(layout, patches, patch, pressures);
@@ -102,6 +102,8 @@ double contact_potential_apply(const ContactLayout *layout, const ContactPatches
   case CONTACT_POTENTIAL_BODY:
     fill(pressures, patch, stiffness * total);
     return 0.5 * stiffness * total * total;
+  case CONTACT_POTENTIAL_FIELD:
+    break; // knows no pressure of a pair: contact/field.h
   }
   assert(0 && "no such potential");
   return NAN;

@@ -23,7 +23,7 @@ Status contact_status_create(ContactStatus *status, const ContactLayout *layout)
   status->volumes = memory_zeroed(PORTION, sizeof *status->volumes);
   status->places = memory_zeroed(PORTION, sizeof *status->places);
   for (int k = 0; k < 2; k++) status->says[k] = memory_zeroed(PORTION, 1);
-  status->boxes = memory_zeroed(tets, sizeof *status->boxes);
+  status->boxes = memory_zeroed((size_t)layout->depth.cell_count, sizeof *status->boxes);
   if (status->predicted && status->exact && status->error && status->wrong_pairs && status->portion &&
       status->coordinates && status->asked && status->volumes && status->places && status->says[0] &&
       status->says[1] && status->boxes)
@@ -78,7 +78,7 @@ static Status ask(ContactStatus *status, const OverlapModel *model, int count, u
   return STATUS_OK;
 }
 
-static void judge(ContactStatus *status, int count) {
+static void judge(ContactStatus *status, const ContactLayout *layout, int count) {
   ContactStatusCounts *pairs = &status->pairs;
   for (int k = 0; k < count; k++) {
     bool predicted = status->says[0][k], exact = status->says[1][k];
@@ -87,7 +87,7 @@ static void judge(ContactStatus *status, int count) {
     pairs->false_positives += predicted && !exact;
     pairs->false_negatives += exact && !predicted;
     for (int side = 0; side < 2; side++) {
-      int tet = status->portion[k].tets[side];
+      int tet = contact_depth_tet(&layout->depth, status->portion[k].tets[side]);
       status->predicted[tet] |= predicted;
       status->exact[tet] |= exact;
       status->wrong_pairs[tet] += predicted != exact;
@@ -96,12 +96,12 @@ static void judge(ContactStatus *status, int count) {
   }
 }
 
-static Status ask_both(ContactStatus *status, const OverlapModel *model, const OverlapModel *reference,
-                       int count) {
+static Status ask_both(ContactStatus *status, const ContactLayout *layout, const OverlapModel *model,
+                       const OverlapModel *reference, int count) {
   if (count == 0) return STATUS_OK;
   TRY(ask(status, model, count, status->says[0]));
   TRY(ask(status, reference, count, status->says[1]));
-  judge(status, count);
+  judge(status, layout, count);
   return STATUS_OK;
 }
 
@@ -143,10 +143,10 @@ Status contact_status_run(ContactStatus *status, const ContactLayout *layout,
     contact_layout_gather_pair(layout, pair, positions,
                                status->coordinates + OVERLAP_PAIR_SIZE * (size_t)count);
     if (++count < PORTION) continue;
-    TRY(ask_both(status, model, reference, count));
+    TRY(ask_both(status, layout, model, reference, count));
     count = 0;
   }
-  TRY(ask_both(status, model, reference, count));
+  TRY(ask_both(status, layout, model, reference, count));
   judge_elements(status, tet_count);
   return STATUS_OK;
 }

@@ -26,13 +26,13 @@ typedef struct ContactStatus {
   int *predicted, *exact; // 0 or 1                                       (tet_count)
   int *error;             // ContactVerdict                               (tet_count)
   int *wrong_pairs;       // of its pairs, how many are told wrongly      (tet_count)
-  ContactStatusCounts pairs, elements;
+  ContactStatusCounts pairs, elements; // pairs of cells of the contact mesh
   // Scratch memory for a portion of the pairs.
   ContactPair *portion;
   double *coordinates, *asked, *volumes;
   int *places;            // of those asked in the portion
   unsigned char *says[2]; // model, reference
-  double (*boxes)[6];     // of the candidates' tetrahedra                (tet_count)
+  double (*boxes)[6];     // of the candidates' cells                     (cell_count)
 } ContactStatus;
 
 Status contact_status_create(ContactStatus *status, const ContactLayout *layout);

@@ -2,6 +2,7 @@
 #include "contact/stiffness.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "contact/bounds.h"
@@ -143,11 +144,12 @@ static Status walk_patch(ContactStiffness *stiffness, const Walk *walk, const Co
     return walk_elements(stiffness, walk, patch, self, take);
   case CONTACT_POTENTIAL_PAIR:
   case CONTACT_POTENTIAL_LINEAR:
+  case CONTACT_POTENTIAL_FIELD:
     return walk_pairs(stiffness, walk, patch, self, take);
   case CONTACT_POTENTIAL_BODY:
     empty(stiffness);
     for (int k = patch->pair_begin; k < patch->pair_end; k++) collect_pair(stiffness, walk, k, 1);
-    return take(self, stiffness, walk->layout->def.stiffness);
+    return take(self, stiffness, walk->facing->stiffness);
   }
   return STATUS_OK;
 }
@@ -179,7 +181,7 @@ static void add_side(const ContactStiffnessSink *sink, const int vertices[4], co
 static void add_mesh_pair(const ContactStiffnessSink *sink, const ContactLayout *layout,
                           const ContactPair *pair, double pressure, double *hessian) {
   const double *weight = layout->facings[pair->facing].weight;
-  const int *a = layout->def.tets[pair->tets[0]], *b = layout->def.tets[pair->tets[1]];
+  const int *a = contact_layout_vertices(layout, pair->tets[0]), *b = contact_layout_vertices(layout, pair->tets[1]);
   for (int k = 0; k < 576; k++) hessian[k] *= pressure;
   if (weight[0] > 0 && weight[1] > 0)
     sink->add_dense(sink->self, 8, (int[]){a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]}, hessian);
@@ -210,10 +212,10 @@ static void add_shape_pairs(const ContactLayout *layout, const ContactEvaluation
     const ContactPair *pair = &evaluation->pairs[k];
     const ContactShape *shape = &layout->def.shapes[layout->facings[pair->facing].shape];
     double x[12], volume, gradient[12], hessian[144];
-    contact_layout_gather(layout, pair->tets[0], evaluation->positions, x);
+    contact_layout_gather_whole(layout, pair->tets[0], evaluation->positions, x);
     contact_shape_overlap(shape, evaluation->time, x, &volume, gradient, hessian);
     for (int e = 0; e < 144; e++) hessian[e] *= evaluation->pressures[k];
-    sink->add_dense(sink->self, 4, layout->def.tets[pair->tets[0]], hessian);
+    sink->add_dense(sink->self, 4, contact_layout_vertices(layout, pair->tets[0]), hessian);
   }
 }
 
@@ -223,9 +225,39 @@ static Status give_outer(void *self, const ContactStiffness *stiffness, double c
   return STATUS_OK;
 }
 
+// ---- The potential `field`: each pair's own matrix.
+
+static Status add_field(ContactStiffness *stiffness, const ContactLayout *layout,
+                        const ContactEvaluation *evaluation, const ContactStiffnessSink *sink) {
+  bool is_full = layout->def.use_full_hessian;
+  for (int first = 0; first < evaluation->mesh_pair_count; first += PAIRS_AT_ONCE) {
+    int left = evaluation->mesh_pair_count - first, count = left < PAIRS_AT_ONCE ? left : PAIRS_AT_ONCE;
+#pragma omp parallel for schedule(static) if (count > 64)
+    for (int k = 0; k < count; k++) {
+      double coordinates[OVERLAP_PAIR_SIZE];
+      const ContactPair *pair = &evaluation->pairs[first + k];
+      memcpy(coordinates, evaluation->coordinates + OVERLAP_PAIR_SIZE * (size_t)(first + k),
+             sizeof coordinates);
+      contact_layout_unsettle_pair(layout, pair, coordinates);
+      contact_field_bend(layout, pair, coordinates, is_full, stiffness->hessians + 576 * (size_t)k);
+    }
+    for (int k = 0; k < count; k++)
+      add_mesh_pair(sink, layout, &evaluation->pairs[first + k], 1, stiffness->hessians + 576 * (size_t)k);
+  }
+  for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
+    double matrix[144];
+    const ContactPair *pair = &evaluation->pairs[k];
+    contact_field_bend_shape(layout, pair, evaluation->time, evaluation->coordinates + 24 * (size_t)k,
+                             is_full, matrix);
+    sink->add_dense(sink->self, 4, contact_layout_vertices(layout, pair->tets[0]), matrix);
+  }
+  return STATUS_OK;
+}
+
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
                              ContactEvaluation *evaluation, const OverlapModel *model,
                              const ContactStiffnessSink *sink) {
+  if (layout->depth.has_field) return add_field(stiffness, layout, evaluation, sink);
   ContactStiffnessSink borrowed = *sink;
   if (layout->def.potential != CONTACT_POTENTIAL_LINEAR) {
     TRY(contact_patches_index(&evaluation->patches));
@@ -268,12 +300,12 @@ static bool is_within(const ContactLayout *layout, const ContactPair *pair, doub
                       const double *positions, double reach) {
   if (pair->tets[1] >= 0) {
     double box_a[6], box_b[6];
-    contact_bounds_of_tet(layout->def.tets[pair->tets[0]], positions, box_a);
-    contact_bounds_of_tet(layout->def.tets[pair->tets[1]], positions, box_b);
+    contact_bounds_of_tet(layout->depth.cells[pair->tets[0]], positions, box_a);
+    contact_bounds_of_tet(layout->depth.cells[pair->tets[1]], positions, box_b);
     return contact_bounds_distance(box_a, box_b) <= reach + 3 * layout->nudge;
   }
   double x[12];
-  contact_layout_gather(layout, pair->tets[0], positions, x);
+  contact_layout_gather_whole(layout, pair->tets[0], positions, x);
   const ContactShape *shape = &layout->def.shapes[layout->facings[pair->facing].shape];
   return contact_shape_separation(shape, time, x, reach) <= reach;
 }

@@ -2,6 +2,7 @@
 #include "contact/system.h"
 
 #include <assert.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "contact/audit.h"
@@ -14,6 +15,7 @@
 
 struct ContactSystem {
   ContactLayout layout;
+  double *positions; // of the contact mesh, scratch; with virtual vertices only  (position_count, 3)
   ContactCandidates candidates;
   ContactRest rest; // made by the first contact_system_hold
   bool has_rest;
@@ -27,8 +29,22 @@ struct ContactSystem {
   ContactCounters counters;
 };
 
+// The potential `field` asks for more than other potentials.
+static Status check_model(const ContactSystemDef *def, const OverlapModel *model) {
+  if (def->potential != CONTACT_POTENTIAL_FIELD || overlap_model_has_centroid(model)) return STATUS_OK;
+  return status_fail(STATUS_INPUT,
+                     "contact: the potential 'field' needs the centroid of each overlap, which the overlap model "
+                     "'%s' does not give; take 'clip', or the potential 'nodal'",
+                     model->ops->name);
+}
+
 static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
+  TRY(check_model(def, def->model));
   TRY(contact_layout_create(&system->layout, def));
+  if (system->layout.depth.position_count > def->vertex_count) {
+    system->positions = memory_zeroed((size_t)system->layout.depth.position_count, 3 * sizeof(double));
+    if (!system->positions) return status_no_memory("a contact system");
+  }
   TRY(contact_candidates_create(&system->candidates, &system->layout));
   TRY(contact_onset_create(&system->onset, &system->layout));
   TRY(contact_evaluation_create(&system->evaluation, &system->layout));
@@ -50,6 +66,7 @@ Status contact_system_create(ContactSystem **system, const ContactSystemDef *def
 void contact_system_destroy(ContactSystem *system) {
   if (!system) return;
   contact_layout_destroy(&system->layout);
+  memory_free(system->positions);
   contact_candidates_destroy(&system->candidates);
   contact_rest_destroy(&system->rest);
   contact_onset_destroy(&system->onset);
@@ -58,6 +75,14 @@ void contact_system_destroy(ContactSystem *system) {
   for (int k = 0; k < 2; k++) contact_evaluation_destroy(&system->audits[k]);
   contact_status_destroy(&system->status);
   memory_free(system);
+}
+
+// Where the contact mesh is; what the inner modules are given.
+static const double *place(ContactSystem *system, const double *positions) {
+  if (!system->positions) return positions;
+  memcpy(system->positions, positions, 3 * (size_t)system->layout.def.vertex_count * sizeof(double));
+  contact_depth_place(&system->layout.depth, &system->layout.def, system->positions);
+  return system->positions;
 }
 
 // What the last evaluation found to overlap need not be separated once more.
@@ -72,6 +97,7 @@ static Status choose_watched(ContactSystem *system, double time, const double *p
 Status contact_system_update(ContactSystem *system, double time, const double *positions,
                              const double *velocities, double step, bool *has_changed) {
   bool changed;
+  positions = place(system, positions);
   TRY(contact_candidates_update(&system->candidates, &system->layout, time, positions, velocities, step,
                                 &changed));
   system->counters.searches = system->candidates.searches;
@@ -136,6 +162,7 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
   contact_system_forget(system);
   TRY(contact_system_update(system, time, positions, velocities, step, NULL));
   if (!is_held) return STATUS_OK;
+  positions = place(system, positions);
   TRY(evaluate(system, time, positions));
   contact_rest_keep(&system->rest, layout, &system->candidates.list, &system->evaluation.patches,
                     system->evaluation.interfaces, is_held);
@@ -156,7 +183,7 @@ bool contact_system_is_near(const ContactSystem *system, int interface) {
 
 Status contact_system_eval(ContactSystem *system, double time, const double *positions, double *energy,
                            double *force) {
-  TRY(evaluate(system, time, positions));
+  TRY(evaluate(system, time, place(system, positions)));
   const ContactEvaluation *evaluation = &system->evaluation;
   *energy = evaluation->energy;
   for (int n = 0; force && n < evaluation->patches.node_count; n++) {
@@ -168,7 +195,7 @@ Status contact_system_eval(ContactSystem *system, double time, const double *pos
 
 Status contact_system_stiffness(ContactSystem *system, double time, const double *positions,
                                 const ContactStiffnessSink *sink) {
-  TRY(evaluate(system, time, positions));
+  TRY(evaluate(system, time, place(system, positions)));
   return contact_stiffness_add(&system->stiffness, &system->layout, &system->evaluation,
                                system->layout.def.model, sink);
 }
@@ -182,7 +209,7 @@ Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
 }
 
 Status contact_system_gap(ContactSystem *system, double time, const double *positions, double *gap) {
-  *gap = contact_onset_gap(&system->onset, &system->layout, time, positions);
+  *gap = contact_onset_gap(&system->onset, &system->layout, time, place(system, positions));
   return STATUS_OK;
 }
 
@@ -215,7 +242,8 @@ Status contact_system_active_pairs(const ContactSystem *system, int *pair_count,
     return status_no_memory("overlapping pairs");
   }
   for (size_t k = 0; k < active; k++)
-    for (int side = 0; side < 2; side++) (*tets)[2 * k + (size_t)side] = evaluation->pairs[k].tets[side];
+    for (int side = 0; side < 2; side++) (*tets)[2 * k + (size_t)side] =
+        contact_depth_tet(&system->layout.depth, evaluation->pairs[k].tets[side]);
   return STATUS_OK;
 }
 
@@ -242,7 +270,7 @@ const ContactCounters *contact_system_counters(const ContactSystem *system) {
 }
 
 size_t contact_system_bytes(const ContactSystem *system) {
-  size_t sum = memory_held(system) + contact_footprint_layout(&system->layout) +
+  size_t sum = memory_held(system) + memory_held(system->positions) + contact_footprint_layout(&system->layout) +
                contact_footprint_candidates(&system->candidates) + contact_footprint_onset(&system->onset) +
                contact_footprint_stiffness(&system->stiffness) + contact_footprint_status(&system->status) +
                contact_footprint_rest(&system->rest);
@@ -278,6 +306,9 @@ static Status create_audits(ContactSystem *system) {
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,
                             const OverlapModel *candidate, const OverlapModel *reference,
                             ContactAudit *audit) {
+  TRY(check_model(&system->layout.def, candidate));
+  TRY(check_model(&system->layout.def, reference));
+  positions = place(system, positions);
   TRY(check_margin(system, time, positions));
   TRY(create_audits(system));
   const OverlapModel *models[2] = {candidate, reference};
@@ -290,6 +321,7 @@ Status contact_system_audit(ContactSystem *system, double time, const double *po
 
 Status contact_system_status(ContactSystem *system, double time, const double *positions,
                              const OverlapModel *reference, const ContactStatus **status) {
+  positions = place(system, positions);
   TRY(check_margin(system, time, positions));
   if (!system->has_status) TRY(contact_status_create(&system->status, &system->layout));
   system->has_status = true;

@@ -42,7 +42,7 @@ static double rate_of_pair(const View *view, int k) {
   int s = view->layout->facings[pair->facing].shape;
   for (int side = 0; side < 2 && pair->tets[side] >= 0; side++)
     for (int v = 0; v < 4; v++) {
-      size_t vertex = (size_t)view->layout->def.tets[pair->tets[side]][v];
+      size_t vertex = (size_t)contact_layout_vertices(view->layout, pair->tets[side])[v];
       Vec3 velocity = vec3_at(view->velocities + 3 * vertex);
       if (s >= 0)
         velocity =
@@ -108,7 +108,7 @@ Status contact_viscosity_add_force(ContactViscosity *viscosity, const double *ve
     const ContactPair *pair = &view.evaluation->pairs[k];
     for (int side = 0; side < 2 && pair->tets[side] >= 0; side++)
       for (int v = 0; v < 4; v++)
-        vec3_accumulate(force + 3 * (size_t)view.layout->def.tets[pair->tets[side]][v],
+        vec3_accumulate(force + 3 * (size_t)contact_layout_vertices(view.layout, pair->tets[side])[v],
                         vec3_scale(-pressure, vec3_at(view.evaluation->gradients + 24 * (size_t)k +
                                                       (size_t)(12 * side + 3 * v))));
   }
@@ -149,7 +149,7 @@ Status contact_viscosity_power(ContactViscosity *viscosity, const double *veloci
     const ContactPair *pair = &view.evaluation->pairs[k];
     const ContactShape *shape = &view.layout->def.shapes[view.layout->facings[pair->facing].shape];
     for (int v = 0; v < 4; v++) {
-      Vec3 x = vec3_at(view.evaluation->positions + 3 * (size_t)view.layout->def.tets[pair->tets[0]][v]);
+      Vec3 x = vec3_at(view.evaluation->positions + 3 * (size_t)contact_layout_vertices(view.layout, pair->tets[0])[v]);
       power->driven -=
           pressure * vec3_dot(vec3_at(view.evaluation->gradients + 24 * (size_t)k + 3 * (size_t)v),
                               contact_shape_velocity(shape, view.evaluation->time, x));
