@@ -210,8 +210,7 @@ static double press_with_gradient(const Question *question, const double tet[12]
   slope[3] = vec3_scale(1 / det, vec3_cross(a, b));
   slope[0] = vec3_scale(-1, vec3_add(slope[1], vec3_add(slope[2], slope[3])));
   for (int v = 0; v < 4; v++)
-    vec3_store(gradient + 3 * v,
-               vec3_scale(s, vec3_sub(sums.gradient[v], vec3_scale(sums.depth, slope[v]))));
+    vec3_store(gradient + 3 * v, vec3_scale(s, vec3_sub(sums.gradient[v], vec3_scale(sums.depth, slope[v]))));
   *volume = sums.volume;
   return s * sums.depth;
 }
@@ -252,14 +251,18 @@ void contact_ball_overlap(const double tet[12], const double centre[3], double r
 }
 
 void contact_ball_press(const double tet[12], const double centre[3], double radius, double rest_volume,
-                        double *volume, double *energy, double gradient[12], double hessian[144]) {
+                        double *volume, double *energy, double gradient[12], double hessian[144],
+                        bool is_full) {
   Question question = {centre, radius, rest_volume};
   *volume = *energy = 0;
   memset(gradient, 0, 12 * sizeof *gradient);
   if (hessian) memset(hessian, 0, 144 * sizeof *hessian);
   if (contact_ball_separation(tet, centre, radius) >= 0) return;
   *energy = press_with_gradient(&question, tet, volume, gradient);
-  if (hessian) differentiate(&question, tet, hessian);
+  if (!hessian) return;
+  differentiate(&question, tet, hessian);
+  double whole = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
+  for (int r = 0; r < 12 && !is_full; r++) hessian[13 * r] += rest_volume / whole / radius * *volume;
 }
 
 // The square of the distance of the origin from the segment a b.

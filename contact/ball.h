@@ -14,7 +14,8 @@
 //
 //   ∂V/∂x_a = Σ_faces ∋ a ∫ N_a n dA over the part inside, N_a linear on the face.
 //
-// ∫ r² over the part inside, r the distance from the centre, is the same sum with weights of one degree two more,
+// ∫ r² over the part inside, r the distance from the centre, is the same sum with weights of one degree two
+// more,
 //
 //   Σ_faces ⅕ (d ∫ r² dA + sgn(d) R⁵ Ω),
 //
@@ -24,16 +25,21 @@
 #ifndef TETLAP_CONTACT_BALL_H
 #define TETLAP_CONTACT_BALL_H
 
+#include <stdbool.h>
+
 // `tet` (4, 3), of either orientation. `gradient` (4, 3) and `hessian` (12, 12) may be NULL; all outputs are
 // written. The Hessian is made of central differences of the gradient, symmetrised: right to about 1e-8 of
 // its largest entry, except where the sphere touches an edge or a vertex.
 void contact_ball_overlap(const double tet[12], const double centre[3], double radius, double *volume,
                           double gradient[12], double hessian[144]);
 
-// The overlap V [m³], and of the potential `field` (contact/field.h) with c = 1 Pa/m the energy of a tetrahedron
-// of that rest volume [m⁴], its gradient [m³] and, where not NULL, the Hessian [m²], of differences as above.
+// The overlap V [m³], and of the potential `field` (contact/field.h) with c = 1 Pa/m the energy of a
+// tetrahedron of that rest volume [m⁴], its gradient [m³] and, where not NULL, the Hessian [m²], of
+// differences as above. What of it is negative is −s/R ∫ |δu|² ≥ −s/R V Σ |δu_v|²; not full: as much is
+// added.
 void contact_ball_press(const double tet[12], const double centre[3], double radius, double rest_volume,
-                        double *volume, double *energy, double gradient[12], double hessian[144]);
+                        double *volume, double *energy, double gradient[12], double hessian[144],
+                        bool is_full);
 
 // Distance of the tetrahedron from the sphere: negative once they overlap, −radius if the centre lies inside.
 double contact_ball_separation(const double tet[12], const double centre[3], double radius);

@@ -197,7 +197,8 @@ static Status search_bodies(ContactCandidates *candidates, const ContactLayout *
   ContactBroadSide a = side_of(layout, facing->a), b = side_of(layout, facing->b);
   candidates->found.count = 0;
   if (facing->a == facing->b)
-    TRY(contact_self_append(&layout->self, &layout->def, &layout->depth, facing->a, positions, margin, &candidates->found));
+    TRY(contact_self_append(&layout->self, &layout->def, &layout->depth, facing->a, positions, margin,
+                            &candidates->found));
   else
     TRY(contact_broad_append(&candidates->found, &a, &b, positions, margin));
   for (int k = 0; k < candidates->found.count; k++) {

@@ -294,8 +294,8 @@ void contact_convex_overlap(const ContactConvex *convex, const double tet[12], d
 
 // ---- The depth below the nearest plane.
 
-// The part of a tetrahedron to which plane `own` is the nearest, as another solid: below that plane, and below
-// the planes halfway to the others; those only that cut the tetrahedron.
+// The part of a tetrahedron to which plane `own` is the nearest, as another solid: below that plane, and
+// below the planes halfway to the others; those only that cut the tetrahedron.
 typedef struct Piece {
   ContactConvex planes;
   Cutting cutting;
@@ -363,19 +363,21 @@ static void add_squares(const Polygon *polygon, Vec3 n, double factor, double he
     area += doubled;
     for (int a = 0; a < 4; a++)
       for (int b = 0; b < 4; b++)
-        second[a][b] += doubled / 24 *
-                        (p[a] * p[b] + q[a] * q[b] + r[a] * r[b] + (p[a] + q[a] + r[a]) * (p[b] + q[b] + r[b]));
+        second[a][b] +=
+            doubled / 24 *
+            (p[a] * p[b] + q[a] * q[b] + r[a] * r[b] + (p[a] + q[a] + r[a]) * (p[b] + q[b] + r[b]));
   }
   if (area < 0) factor = -factor;
   for (int a = 0; a < 4; a++)
     for (int b = 0; b < 4; b++)
       for (int e = 0; e < 9; e++)
-        hessian[12 * (3 * a + e / 3) + 3 * b + e % 3] += factor * second[a][b] * normal[e / 3] * normal[e % 3];
+        hessian[12 * (3 * a + e / 3) + 3 * b + e % 3] +=
+            factor * second[a][b] * normal[e / 3] * normal[e % 3];
 }
 
 // V and ∫ β_a of a piece; its part of the Hessian. A ridge is in two pieces: half of it in each.
 static double measure_piece(const Piece *piece, const Vec3 x[4], bool is_mirrored, double scale,
-                            double first[4], double hessian[144]) {
+                            double first[4], double hessian[144], bool is_full) {
   Polygon polygon;
   Corner o;
   bool has_origin = false;
@@ -394,14 +396,15 @@ static double measure_piece(const Piece *piece, const Vec3 x[4], bool is_mirrore
     if (polygon.count < 3) continue;
     if (!has_origin) o = polygon.corners[0], has_origin = true;
     add_pyramid(&polygon, normal, &o, true, &volume, first);
-    if (hessian)
+    if (hessian && (is_full || !(piece->ridges[i] > 0)))
       add_squares(&polygon, normal, piece->ridges[i] > 0 ? -scale * piece->ridges[i] / 2 : scale, hessian);
   }
   return volume;
 }
 
 void contact_convex_press(const ContactConvex *convex, const double tet[12], double rest_volume,
-                          double *volume, double *energy, double gradient[12], double hessian[144]) {
+                          double *volume, double *energy, double gradient[12], double hessian[144],
+                          bool is_full) {
   Vec3 x[4];
   Piece piece;
   double depths[CONTACT_CONVEX_PLANES][4];
@@ -422,7 +425,7 @@ void contact_convex_press(const ContactConvex *convex, const double tet[12], dou
   for (int k = 0; k < convex->plane_count; k++) {
     double first[4] = {0};
     if (!make_piece(&piece, convex, k, depths)) continue;
-    *volume += measure_piece(&piece, x, det < 0, scale, first, hessian);
+    *volume += measure_piece(&piece, x, det < 0, scale, first, hessian, is_full);
     for (int a = 0; a < 4; a++) {
       *energy += scale * first[a] * depths[k][a];
       vec3_accumulate(gradient + 3 * a, vec3_scale(-scale * first[a], convex->normals[k]));

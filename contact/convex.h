@@ -16,6 +16,8 @@
 #ifndef TETLAP_CONTACT_CONVEX_H
 #define TETLAP_CONTACT_CONVEX_H
 
+#include <stdbool.h>
+
 #include "base/vec3.h"
 
 enum {
@@ -49,15 +51,19 @@ double contact_convex_prism_error(int faces);
 void contact_convex_overlap(const ContactConvex *convex, const double tet[12], double *volume,
                             double gradient[12], double hessian[144]);
 
-// Of the potential `field` (contact/field.h) with c = 1 Pa/m: V [m³], the energy of a tetrahedron of that rest
-// volume [m⁴], its gradient [m³] and, where not NULL, Hessian [m²]. The depth is that below the nearest plane, so
-// the tetrahedron is cut into pieces, one of each plane that is the nearest somewhere in it. With m_a = ∫ β_a over
-// piece k, rest over present volume s, and its section Q with plane k or with one halfway to another plane j,
+// Of the potential `field` (contact/field.h) with c = 1 Pa/m: V [m³], the energy of a tetrahedron of that
+// rest volume [m⁴], its gradient [m³] and, where not NULL, Hessian [m²]. The depth is that below the nearest
+// plane, so the tetrahedron is cut into pieces, one of each plane that is the nearest somewhere in it. With
+// m_a = ∫ β_a over piece k, rest over present volume s, and its section Q with plane k or with one halfway to
+// another plane j,
 //
 //   U = s Σ_k Σ_a m_a d_k(x_a),   ∂U/∂x_a = −s Σ_k m_a n_k,
-//   δ²U = s Σ_k ∫_Q_k (δu·n_k)² dA − s Σ_kj ∫_Q_kj |n_j − n_k| (δu·m)² dA,   m = (n_j − n_k)/|n_j − n_k|.
+//   δ²U = s Σ_k ∫_Q_k (δu·n_k)² dA − s Σ_kj ∫_Q_kj |n_j − n_k| (δu·m)² dA,   m = (n_j − n_k)/|n_j − n_k|,
+//
+// the second sum only if `is_full`.
 void contact_convex_press(const ContactConvex *convex, const double tet[12], double rest_volume,
-                          double *volume, double *energy, double gradient[12], double hessian[144]);
+                          double *volume, double *energy, double gradient[12], double hessian[144],
+                          bool is_full);
 
 // How far apart the two are along the best of their separating axes (overlap/separation.h): at most
 // their distance, negative once they overlap. It ends early with a lower bound that is > enough.

@@ -17,14 +17,18 @@ static const struct {
                                   "overlap volume: constant pressure, the force jumps at touch [Pa]"},
     [CONTACT_POTENTIAL_BODY] = {"body", "overlap volume of two bodies, squared: one pressure for all patches "
                                         "[Pa/m³]"},
-    [CONTACT_POTENTIAL_FIELD] = {"field",
-                                 "depth in the other body, over rest volume: even pressure whatever the meshes, "
-                                 "every pair balances; needs a model with the overlap's centroid [Pa/m]"},
+    [CONTACT_POTENTIAL_FIELD] =
+        {"field", "depth in the other body, over rest volume: even pressure whatever the meshes, "
+                  "every pair balances; needs a model with the overlap's centroid [Pa/m]"},
 };
 
 const char *contact_def_potential_name(ContactPotential potential) {
   assert((unsigned)potential < CONTACT_POTENTIAL_COUNT);
   return POTENTIALS[potential].name;
+}
+
+const char *contact_def_potential_unit(ContactPotential potential) {
+  return potential == CONTACT_POTENTIAL_BODY ? "Pa/m³" : potential == CONTACT_POTENTIAL_FIELD ? "Pa/m" : "Pa";
 }
 
 const char *contact_def_potential_help(ContactPotential potential) {

@@ -52,13 +52,14 @@ typedef enum ContactPotential {
                              // half-space: V_i), κ [Pa]
   CONTACT_POTENTIAL_LINEAR,  // U = κ Σ_ij V_ij, κ [Pa]: constant pressure, the force jumps at touch
   CONTACT_POTENTIAL_BODY,    // U = ½ κ (Σ_ij V_ij)² a pair of bodies, κ [Pa/m³]
-  CONTACT_POTENTIAL_FIELD,   // U = κ ∫_A φ_B + κ ∫_B φ_A over rest volumes, φ the depth below the other's
-                             // surface (contact/field.h), κ [Pa/m]; both terms also against a mesh obstacle
+  CONTACT_POTENTIAL_FIELD, // U = κ ∫_A φ_B + κ ∫_B φ_A over rest volumes, φ the depth below the other's
+                           // surface (contact/field.h), κ [Pa/m]; both terms also against a mesh obstacle
 } ContactPotential;
 
 enum { CONTACT_POTENTIAL_COUNT = 6 };
 const char *contact_def_potential_name(ContactPotential potential); // "nodal", …
 const char *contact_def_potential_help(ContactPotential potential); // one line
+const char *contact_def_potential_unit(ContactPotential potential); // of κ
 
 typedef struct ContactSystemDef {
   int vertex_count;
@@ -70,7 +71,7 @@ typedef struct ContactSystemDef {
   const ContactShape *shapes; // borrowed                           (shape_count)
   int shape_count;
   ContactPotential potential;
-  double stiffness;      // κ
+  double stiffness; // κ
   // κ of each body (row) with each party, bodies then shapes; NULL: `stiffness` for all. Read in creation.
   const double *pair_stiffness; // (body_count, body_count + shape_count)
   double margin;         // skin margin while bodies are near [m]; 0: half the shortest mean edge of a body

@@ -106,8 +106,8 @@ static Status reserve(ContactDepth *depth, const ContactSystemDef *def, int spli
   depth->replaced = memory_zeroed(cells, 1);
   depth->outer = memory_zeroed(cells, 1);
   depth->virtuals = memory_zeroed((size_t)split_count, sizeof *depth->virtuals);
-  bool fits = depth->depths && depth->own && depth->tets && depth->replaced && depth->outer &&
-              depth->virtuals;
+  bool fits =
+      depth->depths && depth->own && depth->tets && depth->replaced && depth->outer && depth->virtuals;
   return fits ? STATUS_OK : status_no_memory("the contact mesh");
 }
 
@@ -181,8 +181,8 @@ static Status make_field(Work *work) {
 }
 
 Status contact_depth_create(ContactDepth *depth, const ContactSystemDef *def) {
-  *depth = (ContactDepth){
-      .cell_count = def->tet_count, .cells = def->tets, .position_count = def->vertex_count};
+  *depth =
+      (ContactDepth){.cell_count = def->tet_count, .cells = def->tets, .position_count = def->vertex_count};
   depth->cell_begin = memory_zeroed((size_t)def->body_count + 1, sizeof *depth->cell_begin);
   if (!depth->cell_begin) return status_no_memory("the contact mesh");
   for (int b = 0; b < def->body_count; b++) {

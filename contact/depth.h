@@ -10,9 +10,9 @@
 //
 // is split into four cells at a virtual vertex. Its barycentric coordinates are λ_f = δ / height_f for the
 // outer faces, ¼ for the others, with δ = (number of outer faces / 4) / Σ 1/height_f; its φ is δ, so that the
-// slope is 1 on each outer face. Without an outer face it is the centroid, with its distance. A virtual vertex
-// moves as a fixed mean of the four real ones, so a cell deforms with its tetrahedron, and whatever acts on
-// the cell acts on the four vertices of that.
+// slope is 1 on each outer face. Without an outer face it is the centroid, with its distance. A virtual
+// vertex moves as a fixed mean of the four real ones, so a cell deforms with its tetrahedron, and whatever
+// acts on the cell acts on the four vertices of that.
 //
 // For the other potentials the cells are the tetrahedra.
 #ifndef TETLAP_CONTACT_DEPTH_H
@@ -35,11 +35,11 @@ typedef struct ContactDepth {
   int *cell_begin;       //                                                              (body_count + 1)
   int position_count;    // vertices, then virtual ones
   // The rest with a field only.
-  int (*own)[4];          // where the cells are not the tetrahedra; owned               (cell_count)
-  int *tets;              // whose part a cell is; ascending                             (cell_count)
-  signed char *replaced;  // which of that tetrahedron's vertices the virtual one stands for; −1: whole
-                          //                                                              (cell_count)
-  unsigned char *outer;   // bit f: the cell's face opposite to its vertex f is on the surface  (cell_count)
+  int (*own)[4];            // where the cells are not the tetrahedra; owned               (cell_count)
+  int *tets;                // whose part a cell is; ascending                             (cell_count)
+  signed char *replaced;    // which of that tetrahedron's vertices the virtual one stands for; −1: whole
+                            //                                                              (cell_count)
+  unsigned char *outer;     // bit f: the cell's face opposite to its vertex f is on the surface  (cell_count)
   ContactVirtual *virtuals; //                                           (position_count − vertex_count)
   double *depths;           // φ at rest [m]                             (position_count)
 } ContactDepth;

@@ -28,9 +28,9 @@ typedef struct ContactEvaluation {
   double energy;     // U [J]
   // Pairs with V > 0 in the candidates' order, so those with shapes last.
   int pair_count, mesh_pair_count;
-  ContactPair *pairs;           //                                       (pair_count)
-  double *coordinates;          // as given to the model [m]             (mesh_pair_count, 2, 4, 3)
-  double *volumes;              // V_ij [m³]                             (pair_count)
+  ContactPair *pairs;  //                                       (pair_count)
+  double *coordinates; // as given to the model [m]             (mesh_pair_count, 2, 4, 3)
+  double *volumes;     // V_ij [m³]                             (pair_count)
   // The force on the vertices of a pair's tetrahedra is −pressure · gradient: p_ij and ∇V_ij, shape's part
   // zeros; with the potential `field` 1 and minus the force [N].
   double *gradients;            // [m²]                                  (pair_count, 2, 4, 3)

@@ -10,9 +10,9 @@
 
 // A cell as it lies.
 typedef struct Side {
-  Vec3 x[4];     // vertices [m]
-  Vec3 slope[4]; // ∇λ [1/m]
-  Vec3 g;        // ∇φ
+  Vec3 x[4];        // vertices [m]
+  Vec3 slope[4];    // ∇λ [1/m]
+  Vec3 g;           // ∇φ
   double depths[4]; // φ of the vertices [m]
   double s;         // rest volume over the present one
 } Side;
@@ -59,7 +59,8 @@ void contact_field_press(const ContactLayout *layout, const ContactPair *pair, c
   }
   double press = layout->facings[pair->facing].stiffness * volume;
   field->energy = press * (sides[0].s * field->depths[1] + sides[1].s * field->depths[0]);
-  Vec3 force = vec3_scale(-press, vec3_sub(vec3_scale(sides[0].s, sides[1].g), vec3_scale(sides[1].s, sides[0].g)));
+  Vec3 force =
+      vec3_scale(-press, vec3_sub(vec3_scale(sides[0].s, sides[1].g), vec3_scale(sides[1].s, sides[0].g)));
   vec3_store(field->force, force);
   for (int v = 0; v < 4; v++) {
     vec3_store(gradient + 3 * v, vec3_scale(-field->weights[0][v], force));
@@ -102,7 +103,8 @@ static double doubled_area(const double *r, const double *p, const double *q, in
   return (p[u] - r[u]) * (q[v] - r[v]) - (p[v] - r[v]) * (q[u] - r[u]);
 }
 
-static void add_triangle(Sums *sums, int face, double doubled, const double *r, const double *p, const double *q) {
+static void add_triangle(Sums *sums, int face, double doubled, const double *r, const double *p,
+                         const double *q) {
   double sum[8];
   sums->fraction[face] += doubled;
   for (int z = 0; z < 8; z++) sum[z] = r[z] + p[z] + q[z];
@@ -125,7 +127,8 @@ static void add_faces(Bend *bend, unsigned wanted, Sums *sums) {
       if (!(wanted >> face & 1)) continue;
       if (first[face] < 0) first[face] = from;
       if (first[face] == from || first[face] == to) continue;
-      double doubled = doubled_area(polytope->vertex[first[face]], polytope->vertex[from], polytope->vertex[to], face);
+      double doubled =
+          doubled_area(polytope->vertex[first[face]], polytope->vertex[from], polytope->vertex[to], face);
       if (is_mirrored && face / 4 != polytope->subject) doubled = -doubled;
       add_triangle(sums, face, doubled, folded(bend, first[face]), folded(bend, from), folded(bend, to));
     }
@@ -150,7 +153,8 @@ static void add_volume(Bend *bend, Sums *sums) {
           to = end == 0 ? edge.to : edge.from;
       if (first[face] < 0) first[face] = from;
       if (first[face] == from || first[face] == to) continue;
-      double doubled = doubled_area(polytope->vertex[first[face]], polytope->vertex[from], polytope->vertex[to], face);
+      double doubled =
+          doubled_area(polytope->vertex[first[face]], polytope->vertex[from], polytope->vertex[to], face);
       if (is_mirrored && face / 4 != polytope->subject) doubled = -doubled;
       double volume = doubled * apex[face] * fabs(polytope->frame[face / 4].det) / 6;
       const double *r = folded(bend, first[face]), *p = folded(bend, from), *q = folded(bend, to);
@@ -172,7 +176,8 @@ static bool is_outer(const ContactLayout *layout, const ContactPair *pair, int f
 }
 
 // The main term on one face: c s ∫ (u·n)(−g·u), its symmetric part; on an outer face exactly |g| (u·n)².
-static void add_main(const Bend *bend, const Sums *sums, int face, double factor, const Side *own, double *matrix) {
+static void add_main(const Bend *bend, const Sums *sums, int face, double factor, const Side *own,
+                     double *matrix) {
   Vec3 area = bend->polytope.frame[face / 4].normal[face % 4]; // inward for det > 0
   double length = vec3_length(area), sign = bend->polytope.frame[face / 4].det < 0 ? 1 : -1;
   Vec3 n = vec3_scale(sign / length, area), push = vec3_scale(-1, own->g);
@@ -246,8 +251,8 @@ void contact_field_press_shape(const ContactLayout *layout, const ContactPair *p
   double rest = contact_layout_tet_volume(layout, pair->tets[0]);
   *field = (ContactFieldPair){0};
   memset(gradient, 0, 24 * sizeof *gradient);
-  contact_shape_press(&layout->def.shapes[facing->shape], time, tet, rest, &field->volume, &field->energy, gradient,
-                      NULL);
+  contact_shape_press(&layout->def.shapes[facing->shape], time, tet, rest, &field->volume, &field->energy,
+                      gradient, NULL, true);
   if (!(field->volume > 0)) return;
   field->energy *= facing->stiffness;
   Vec3 force = {0, 0, 0};
@@ -268,10 +273,10 @@ void contact_field_press_shape(const ContactLayout *layout, const ContactPair *p
 
 void contact_field_bend_shape(const ContactLayout *layout, const ContactPair *pair, double time,
                               const double tet[12], bool is_full, double matrix[144]) {
-  (void)is_full;
   const ContactFacing *facing = &layout->facings[pair->facing];
   double volume, energy, gradient[12];
-  contact_shape_press(&layout->def.shapes[facing->shape], time, tet, contact_layout_tet_volume(layout, pair->tets[0]),
-                      &volume, &energy, gradient, matrix);
+  contact_shape_press(&layout->def.shapes[facing->shape], time, tet,
+                      contact_layout_tet_volume(layout, pair->tets[0]), &volume, &energy, gradient, matrix,
+                      is_full);
   for (int e = 0; e < 144; e++) matrix[e] *= facing->stiffness;
 }

@@ -15,9 +15,9 @@
 //   F_ij = −c V (s_i g_B − s_j g_A)   on A at x̄, its opposite on B,   by λ onto the vertices.
 //
 // Force and torque of every pair balance by construction, whoever gave V and x̄. The sum over pairs is exactly
-// −∂U/∂x; one pair's force is not the gradient of its own U_ij: what its faces within the bodies sweep cancels
-// between neighbours and is left out. V and x̄ are continuous where faces of the two coincide, so the force
-// is.
+// −∂U/∂x; one pair's force is not the gradient of its own U_ij: what its faces within the bodies sweep
+// cancels between neighbours and is left out. V and x̄ are continuous where faces of the two coincide, so the
+// force is.
 //
 // Second derivatives, of the first term (the second with A and B exchanged), with u_A = Σ λ_a δx_a,
 // u_B = Σ λ_b δx_b and P_f the part of P's boundary on face f of j:
@@ -26,16 +26,18 @@
 //   turning  − c s_i m_a ∇λ_b ⊗ g_B at (a, b), its transpose at (b, a);
 //            + c s_i (m_c g_B ⊗ ∇λ_b + m_b ∇λ_c ⊗ g_B) at (b, c)
 //
-// On outer faces g_B = −|g_B| n_f and the main term is positive semidefinite; on others it is, summed with the
-// neighbour's, the jump of g across the face. Turning is of the relative size depth/h. There is no 1/sin θ.
+// On outer faces g_B = −|g_B| n_f and the main term is positive semidefinite; on others it is, summed with
+// the neighbour's, the jump of g across the face. Turning is of the relative size depth/h. There is no 1/sin
+// θ.
 #ifndef TETLAP_CONTACT_FIELD_H
 #define TETLAP_CONTACT_FIELD_H
 
 #include "contact/layout.h"
 
-// A pair with V > 0, for laws that build on it. Side 0 is tets[0] of the pair. Of a shape (side 1) the slope is
-// minus its outward normal, the depth that of the mean, both as the force sees them; φ_A and g_A are 0 there,
-// and x̄ and the weights of side 0 are those of the force: what is left of a shape's force is its resultant.
+// A pair with V > 0, for laws that build on it. Side 0 is tets[0] of the pair. Of a shape (side 1) the slope
+// is minus its outward normal, the depth that of the mean, both as the force sees them; φ_A and g_A are 0
+// there, and x̄ and the weights of side 0 are those of the force: what is left of a shape's force is its
+// resultant.
 typedef struct ContactFieldPair {
   double energy;        // U_ij [J]
   double volume;        // V [m³]
@@ -46,8 +48,8 @@ typedef struct ContactFieldPair {
   double weights[2][4]; // λ(x̄) of the vertices of the sides' tetrahedra (contact_layout_vertices)
 } ContactFieldPair;
 
-// Of a pair of cells with these coordinates (2, 4, 3), V > 0 and x̄. `gradient` (2, 4, 3): minus the force on the
-// vertices of the two tetrahedra.
+// Of a pair of cells with these coordinates (2, 4, 3), V > 0 and x̄. `gradient` (2, 4, 3): minus the force on
+// the vertices of the two tetrahedra.
 void contact_field_press(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
                          double volume, const double centroid[3], ContactFieldPair *field,
                          double gradient[24]);

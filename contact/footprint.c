@@ -9,8 +9,10 @@
 size_t contact_footprint_layout(const ContactLayout *layout) {
   const ContactSelf *self = &layout->self;
   const ContactDepth *depth = &layout->depth;
-  return HELD(layout->rest, layout->cell_volumes, depth->cell_begin, depth->own, depth->tets, depth->replaced, depth->outer, depth->virtuals, depth->depths, layout->tet_volumes, layout->vertex_volumes, layout->facings, layout->nudges, layout->shifts,
-              self->outer, self->is_outer, self->left_out.pairs);
+  return HELD(layout->rest, layout->cell_volumes, depth->cell_begin, depth->own, depth->tets, depth->replaced,
+              depth->outer, depth->virtuals, depth->depths, layout->tet_volumes, layout->vertex_volumes,
+              layout->facings, layout->nudges, layout->shifts, self->outer, self->is_outer,
+              self->left_out.pairs);
 }
 
 static size_t of_list(const ContactCandidateList *list) {
@@ -41,7 +43,8 @@ size_t contact_footprint_evaluation(const ContactEvaluation *evaluation) {
   return of_patches(&evaluation->patches) +
          HELD(evaluation->positions, evaluation->pairs, evaluation->coordinates, evaluation->volumes,
               evaluation->gradients, evaluation->pressures, evaluation->forces, evaluation->covered,
-              evaluation->interfaces, evaluation->is_kept, evaluation->boxes, evaluation->flags, evaluation->centroids, evaluation->fields);
+              evaluation->interfaces, evaluation->is_kept, evaluation->boxes, evaluation->flags,
+              evaluation->centroids, evaluation->fields);
 }
 
 size_t contact_footprint_stiffness(const ContactStiffness *stiffness) {

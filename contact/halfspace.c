@@ -183,10 +183,9 @@ void contact_halfspace_overlap(const double tet[12], const double point[3], cons
 // [a b c] max(−t, 0)³ with a ≤ b ≤ c, c > 0.
 static double cubed_difference(double a, double b, double c) {
   if (!(a < 0)) return 0;
-  double low = b < 0 ? -b : 0; // max(−b, 0)
-  double hat = b < 0 ? c / ((c - b) * (c - a)) : -a / ((b - a) * (c - a));
-  double square = -a * hat + low / (c - b); // [b c] of a power is −lowᵐ/(c − b)
-  return -a * square + low * low / (c - b);
+  if (!(b < 0)) return -a * -a * -a / ((b - a) * (c - a));
+  double square = -a * c / ((c - b) * (c - a)) - b / (c - b); // [b c] of a power m is −(−b)ᵐ/(c − b)
+  return -a * square + b * b / (c - b);
 }
 
 static double depth_below(Heights heights) {
@@ -222,9 +221,7 @@ void contact_halfspace_press(const double tet[12], const double point[3], const 
   *volume = cut.fraction * cut.whole_volume;
   *energy = rest_volume * depth_below(cut.heights);
   for (int i = 0; i < 4 && gradient; i++) {
-    double slope = is_partly               ? depth_derivative(cut.heights, cut.s[i])
-                   : cut.heights.below > 0 ? -0.25
-                                           : 0;
+    double slope = is_partly ? depth_derivative(cut.heights, cut.s[i]) : cut.heights.below > 0 ? -0.25 : 0;
     vec3_store(gradient + 3 * i, vec3_scale(rest_volume * slope, cut.normal));
   }
   if (!hessian) return;

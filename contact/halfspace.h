@@ -13,7 +13,8 @@
 //
 // The mean depth max(−s, 0) over the tetrahedron is the same with one power more,
 //
-//   D = −¼ [s₀ s₁ s₂ s₃] h,   ∂D/∂s_i = −¼ [s₀ s₁ s₂ s₃ s_i] h,   ∂²D/∂s_i∂s_j = −¼ (1 + δ_ij) [s₀ s₁ s₂ s₃ s_i s_j] h,
+//   D = −¼ [s₀ s₁ s₂ s₃] h,   ∂D/∂s_i = −¼ [s₀ s₁ s₂ s₃ s_i] h,   ∂²D/∂s_i∂s_j = −¼ (1 + δ_ij) [s₀ s₁ s₂ s₃
+//   s_i s_j] h,
 //
 // h(s) = max(−s, 0)⁴, convex in the heights. By Leibniz' rule [t₀ … t_n] s g = t₀ [t₀ … t_n] g + [t₁ … t_n] g
 // with t₀ the lowest, again in terms of one sign.

@@ -19,8 +19,8 @@ typedef struct ContactFacing {
   double stiffness; // κ
 } ContactFacing;
 
-// A cell of the contact mesh (contact/depth.h) of side 0 and one of side 1. Without the potential `field` cells
-// are tetrahedra. −1: a shape, which meets whole tetrahedra; the first cell of one stands for it.
+// A cell of the contact mesh (contact/depth.h) of side 0 and one of side 1. Without the potential `field`
+// cells are tetrahedra. −1: a shape, which meets whole tetrahedra; the first cell of one stands for it.
 typedef struct ContactPair {
   int facing;
   int tets[2];
@@ -33,8 +33,8 @@ typedef struct ContactPair {
 // the models agree. U stays an exact function of the positions, only that of bodies that stand a little
 // elsewhere. A body that meets itself is shifted by an affine function of the rest positions, no longer than
 // a nudge, so that its parts move against each other and neighbours stay together. The potential `field` asks
-// for no derivative of V and does without, so that its pairs balance to rounding; its stiffness takes the nudge
-// (contact_layout_unsettle_pair).
+// for no derivative of V and does without, so that its pairs balance to rounding; its stiffness takes the
+// nudge (contact_layout_unsettle_pair).
 typedef struct ContactLayout {
   ContactSystemDef def;   // its arrays are borrowed, but for `rest`, which has the virtual vertices as well
   double *rest;           // rest positions [m]                               (position_count, 3)
@@ -46,7 +46,8 @@ typedef struct ContactLayout {
   int facing_count;
   double nudge;        // length of a nudge [m]
   double (*nudges)[3]; // of each body, see above [m]                       (body_count)
-  double *shifts; // of each vertex in pairs of a body with itself; NULL: there are none [m] (position_count, 3)
+  double
+      *shifts; // of each vertex in pairs of a body with itself; NULL: there are none [m] (position_count, 3)
   ContactSelf self;
   int party_count; // bodies, then shapes
   double margin;   // def.margin, or its default [m]
@@ -78,8 +79,7 @@ static inline void contact_layout_gather_whole(const ContactLayout *layout, int 
                                                double coordinates[12]) {
   const int *vertices = contact_layout_vertices(layout, cell);
   for (int v = 0; v < 4; v++)
-    for (int c = 0; c < 3; c++)
-      coordinates[3 * v + c] = positions[3 * (size_t)vertices[v] + (size_t)c];
+    for (int c = 0; c < 3; c++) coordinates[3 * v + c] = positions[3 * (size_t)vertices[v] + (size_t)c];
 }
 
 // Shifts a cell's vertices as self-contact wants them.

@@ -69,7 +69,8 @@ static void find_engaged(ContactOnset *onset, const ContactLayout *layout,
 static void mark(ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,
                  unsigned char value) {
   for (int side = 0; side < 2 && pair->tets[side] >= 0; side++)
-    for (int v = 0; v < 4; v++) onset->is_marked[contact_layout_vertices(layout, pair->tets[side])[v]] = value;
+    for (int v = 0; v < 4; v++)
+      onset->is_marked[contact_layout_vertices(layout, pair->tets[side])[v]] = value;
 }
 
 static bool is_near_patch(const ContactOnset *onset, const ContactLayout *layout, int tet) {

@@ -112,8 +112,9 @@ static void judge(const ContactSelf *self, const ContactSystemDef *def, const Co
     int *pair = found->pairs[k], i = boxes->outer[pair[0]], j = boxes->cell_begin + pair[1];
     bool comes_twice = self->is_outer[j] && j < i;
     pair[0] = i < j ? i : j, pair[1] = i < j ? j : i;
-    if (comes_twice || shares_vertex(def->tets[contact_depth_tet(depth, i)], def->tets[contact_depth_tet(depth, j)]) || is_left_out(self, pair) ||
-        separation_of(depth, pair, positions, margin) > margin)
+    if (comes_twice ||
+        shares_vertex(def->tets[contact_depth_tet(depth, i)], def->tets[contact_depth_tet(depth, j)]) ||
+        is_left_out(self, pair) || separation_of(depth, pair, positions, margin) > margin)
       pair[1] = -1;
   }
 }
@@ -163,7 +164,8 @@ Status contact_self_create(ContactSelf *self, const ContactSystemDef *def, const
   ContactPairList touching = {0};
   Status status = STATUS_OK;
   for (int b = 0; b < def->body_count && !status; b++)
-    if (def->bodies[b].meets_itself) status = contact_self_append(self, def, depth, b, def->rest, 0, &touching);
+    if (def->bodies[b].meets_itself)
+      status = contact_self_append(self, def, depth, b, def->rest, 0, &touching);
   int kept = 0;
   for (int k = 0; k < touching.count; k++) {
     int *pair = touching.pairs[k];

@@ -114,19 +114,20 @@ void contact_shape_overlap(const ContactShape *shape, double time, const double 
 }
 
 void contact_shape_press(const ContactShape *shape, double time, const double tet[12], double rest_volume,
-                         double *volume, double *energy, double gradient[12], double hessian[144]) {
+                         double *volume, double *energy, double gradient[12], double hessian[144],
+                         bool is_full) {
   double point[3], own[12];
   if (shape->kind == CONTACT_SHAPE_CONVEX) {
     Pose pose = pose_of(shape, time);
     to_own_frame(&pose, tet, own);
-    contact_convex_press(shape->convex, own, rest_volume, volume, energy, gradient, hessian);
+    contact_convex_press(shape->convex, own, rest_volume, volume, energy, gradient, hessian, is_full);
     if (*volume > 0) turn_gradient(&pose, gradient);
     if (*volume > 0 && hessian) turn_hessian(&pose, hessian);
     return;
   }
   vec3_store(point, contact_shape_point(shape, time));
   if (shape->kind == CONTACT_SHAPE_BALL)
-    contact_ball_press(tet, point, shape->radius, rest_volume, volume, energy, gradient, hessian);
+    contact_ball_press(tet, point, shape->radius, rest_volume, volume, energy, gradient, hessian, is_full);
   else
     contact_halfspace_press(tet, point, shape->normal, rest_volume, volume, energy, gradient, hessian);
 }

@@ -16,10 +16,12 @@ Vec3 contact_shape_velocity(const ContactShape *shape, double time, Vec3 x);
 void contact_shape_overlap(const ContactShape *shape, double time, const double tet[12], double *volume,
                            double gradient[12], double hessian[144]);
 // Of the potential `field` (contact/field.h) with c = 1 Pa/m: the overlap V [m³], the energy [m⁴] of a
-// tetrahedron (4, 3) of that rest volume, ∂/∂x of it [m³] and, where not NULL, ∂²/∂x² [m²]. The depth in a ball
-// is (R² − r²)/(2R), in a convex solid the least of those below its planes.
+// tetrahedron (4, 3) of that rest volume, ∂/∂x of it [m³] and, where not NULL, ∂²/∂x² [m²]. The depth in a
+// ball is (R² − r²)/(2R), in a convex solid the least of those below its planes. Not full: ∂²/∂x² without
+// what is negative of it.
 void contact_shape_press(const ContactShape *shape, double time, const double tet[12], double rest_volume,
-                         double *volume, double *energy, double gradient[12], double hessian[144]);
+                         double *volume, double *energy, double gradient[12], double hessian[144],
+                         bool is_full);
 // Distance of a tetrahedron from the shape [m], negative once they overlap; of a convex solid as in
 // overlap/separation.h, ending early with a lower bound once it exceeds `enough`.
 double contact_shape_separation(const ContactShape *shape, double time, const double tet[12], double enough);

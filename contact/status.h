@@ -23,9 +23,9 @@ typedef struct ContactStatusCounts {
 
 // An element's status: whether it overlaps any element of another body.
 typedef struct ContactStatus {
-  int *predicted, *exact; // 0 or 1                                       (tet_count)
-  int *error;             // ContactVerdict                               (tet_count)
-  int *wrong_pairs;       // of its pairs, how many are told wrongly      (tet_count)
+  int *predicted, *exact;              // 0 or 1                                       (tet_count)
+  int *error;                          // ContactVerdict                               (tet_count)
+  int *wrong_pairs;                    // of its pairs, how many are told wrongly      (tet_count)
   ContactStatusCounts pairs, elements; // pairs of cells of the contact mesh
   // Scratch memory for a portion of the pairs.
   ContactPair *portion;

@@ -181,7 +181,8 @@ static void add_side(const ContactStiffnessSink *sink, const int vertices[4], co
 static void add_mesh_pair(const ContactStiffnessSink *sink, const ContactLayout *layout,
                           const ContactPair *pair, double pressure, double *hessian) {
   const double *weight = layout->facings[pair->facing].weight;
-  const int *a = contact_layout_vertices(layout, pair->tets[0]), *b = contact_layout_vertices(layout, pair->tets[1]);
+  const int *a = contact_layout_vertices(layout, pair->tets[0]),
+            *b = contact_layout_vertices(layout, pair->tets[1]);
   for (int k = 0; k < 576; k++) hessian[k] *= pressure;
   if (weight[0] > 0 && weight[1] > 0)
     sink->add_dense(sink->self, 8, (int[]){a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]}, hessian);

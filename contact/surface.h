@@ -18,10 +18,10 @@ typedef struct ContactSurface {
   int count;
   ContactSurfaceFace *faces; // (count)
   // Of the tree; made by contact_surface_index.
-  const double *rest;  // borrowed [m]                         (vertex, 3)
-  double (*boxes)[6];  // of the tree's nodes                  (node_count)
-  int (*ranges)[2];    // faces that a node holds              (node_count)
-  int (*children)[2];  // −1: a leaf                           (node_count)
+  const double *rest; // borrowed [m]                         (vertex, 3)
+  double (*boxes)[6]; // of the tree's nodes                  (node_count)
+  int (*ranges)[2];   // faces that a node holds              (node_count)
+  int (*children)[2]; // −1: a leaf                           (node_count)
   int node_count;
 } ContactSurface;
 

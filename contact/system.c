@@ -32,10 +32,11 @@ struct ContactSystem {
 // The potential `field` asks for more than other potentials.
 static Status check_model(const ContactSystemDef *def, const OverlapModel *model) {
   if (def->potential != CONTACT_POTENTIAL_FIELD || overlap_model_has_centroid(model)) return STATUS_OK;
-  return status_fail(STATUS_INPUT,
-                     "contact: the potential 'field' needs the centroid of each overlap, which the overlap model "
-                     "'%s' does not give; take 'clip', or the potential 'nodal'",
-                     model->ops->name);
+  return status_fail(
+      STATUS_INPUT,
+      "contact: the potential 'field' needs the centroid of each overlap, which the overlap model "
+      "'%s' does not give; take 'clip', or the potential 'nodal'",
+      model->ops->name);
 }
 
 static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
@@ -242,8 +243,9 @@ Status contact_system_active_pairs(const ContactSystem *system, int *pair_count,
     return status_no_memory("overlapping pairs");
   }
   for (size_t k = 0; k < active; k++)
-    for (int side = 0; side < 2; side++) (*tets)[2 * k + (size_t)side] =
-        contact_depth_tet(&system->layout.depth, evaluation->pairs[k].tets[side]);
+    for (int side = 0; side < 2; side++)
+      (*tets)[2 * k + (size_t)side] =
+          contact_depth_tet(&system->layout.depth, evaluation->pairs[k].tets[side]);
   return STATUS_OK;
 }
 
@@ -270,10 +272,10 @@ const ContactCounters *contact_system_counters(const ContactSystem *system) {
 }
 
 size_t contact_system_bytes(const ContactSystem *system) {
-  size_t sum = memory_held(system) + memory_held(system->positions) + contact_footprint_layout(&system->layout) +
-               contact_footprint_candidates(&system->candidates) + contact_footprint_onset(&system->onset) +
-               contact_footprint_stiffness(&system->stiffness) + contact_footprint_status(&system->status) +
-               contact_footprint_rest(&system->rest);
+  size_t sum = memory_held(system) + memory_held(system->positions) +
+               contact_footprint_layout(&system->layout) + contact_footprint_candidates(&system->candidates) +
+               contact_footprint_onset(&system->onset) + contact_footprint_stiffness(&system->stiffness) +
+               contact_footprint_status(&system->status) + contact_footprint_rest(&system->rest);
   for (int k = 0; k < 2; k++) sum += contact_footprint_evaluation(&system->audits[k]);
   return sum + contact_footprint_evaluation(&system->evaluation);
 }

@@ -149,7 +149,8 @@ Status contact_viscosity_power(ContactViscosity *viscosity, const double *veloci
     const ContactPair *pair = &view.evaluation->pairs[k];
     const ContactShape *shape = &view.layout->def.shapes[view.layout->facings[pair->facing].shape];
     for (int v = 0; v < 4; v++) {
-      Vec3 x = vec3_at(view.evaluation->positions + 3 * (size_t)contact_layout_vertices(view.layout, pair->tets[0])[v]);
+      Vec3 x = vec3_at(view.evaluation->positions +
+                       3 * (size_t)contact_layout_vertices(view.layout, pair->tets[0])[v]);
       power->driven -=
           pressure * vec3_dot(vec3_at(view.evaluation->gradients + 24 * (size_t)k + 3 * (size_t)v),
                               contact_shape_velocity(shape, view.evaluation->time, x));

@@ -11,6 +11,7 @@
 #include "base/record.h"
 #include "base/text.h"
 #include "fem/effect/effect.h"
+#include "fem/model/compliance.h"
 #include "fem/sparse/solver.h"
 
 enum { MAX_NOTES = 16 };
@@ -153,10 +154,14 @@ static void print_effects(const FemSceneDef *scene) {
 static void print_contact(const AppJob *job) {
   const FemContactDef *contact = &job->scene.contact;
   if (!contact->is_on) return;
-  printf("contact       potential %s, κ = %g %s%s, overlap model %s\n",
-         contact_def_potential_name(contact->potential), fem_model_contact_stiffness(&job->model),
-         contact->potential == CONTACT_POTENTIAL_BODY ? "Pa/m³" : "Pa",
-         contact->stiffness > 0 ? "" : " (chosen)", app_job_overlap(job));
+  double range[2];
+  char most[32] = "";
+  if (fem_compliance_range(&job->model, range)) return;
+  if (range[1] > range[0]) snprintf(most, sizeof most, " … %g", range[1]);
+  printf("contact       potential %s, κ = %g%s %s%s, overlap model %s\n",
+         contact_def_potential_name(contact->potential), range[0], most,
+         contact_def_potential_unit(contact->potential), contact->stiffness > 0 ? "" : " (chosen)",
+         app_job_overlap(job));
 }
 
 static void print_memory(double bytes) {
@@ -218,7 +223,12 @@ static void record_effects(const FemSceneDef *scene, RecordList *list) {
 static void record_contact(const AppJob *job, Record *record) {
   const FemContactDef *contact = &job->scene.contact;
   record_text(record, "potential", contact_def_potential_name(contact->potential));
-  record_number(record, "stiffness", fem_model_contact_stiffness(&job->model));
+  double range[2];
+  if (!fem_compliance_range(&job->model, range)) {
+    record_number(record, "stiffness", range[0]);
+    record_number(record, "largest_stiffness", range[1]);
+  }
+  record_text(record, "stiffness_unit", contact_def_potential_unit(contact->potential));
   record_bool(record, "is_stiffness_chosen", !(contact->stiffness > 0));
   record_text(record, "overlap", app_job_overlap(job));
 }

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/effect.h"
+#include "fem/model/compliance.h"
 #include "fem/model/drive.h"
 #include "fem/model/obstacle.h"
 #include "overlap/weights.h"
@@ -126,6 +127,9 @@ static Status build(Contact *contact, Contact *old) {
   contact->solids = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->solids);
   if (!contact->bodies || !contact->shapes || !contact->solids) return status_no_memory("the contact bodies");
   list_sides(contact);
+  double *stiffness;
+  int party_count;
+  TRY(fem_compliance_stiffness(model, &stiffness, &party_count));
   ContactSystemDef system = {.vertex_count = model->vertex_count,
                              .rest = model->rest,
                              .tets = (const int(*)[4])model->tets,
@@ -136,10 +140,13 @@ static Status build(Contact *contact, Contact *old) {
                              .shape_count = contact->shape_count,
                              .potential = def->potential,
                              .stiffness = fem_model_contact_stiffness(model),
+                             .pair_stiffness = stiffness,
                              .margin = def->margin,
                              .use_full_hessian = def->use_full_hessian,
                              .model = &contact->overlap};
-  return contact_system_create(&contact->system, &system);
+  Status status = contact_system_create(&contact->system, &system);
+  memory_free(stiffness);
+  return status;
 }
 
 // The overlap model, whose weights may have been replaced on the disk, goes on from `old`; NULL: it is made.

@@ -71,8 +71,11 @@ static const SceneSection rest = {.help = "when bodies are at rest", .keys = res
 
 static const SceneKey contact_keys[] = {
     {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa", .range = "(0, inf)",
-     .absent_help = "E of the softest body (with `body` over its smallest mean element volume)",
-     .help = "penalty κ; higher: less overlap, shorter steps (Pa/m³ with the potential `body`)"},
+     .absent_help =
+         "E of the softest body (with `body` over its smallest mean element volume); with `field` from "
+         "height and E of each two that meet, such that what touches gives way by 2 % of what they do",
+     .help = "penalty κ; higher: less overlap, shorter steps (Pa/m with the potential `field`, Pa/m³ with "
+             "`body`)"},
     {"potential", SCENE_CHOICE, AT(FemContactDef, potential), .fallback = "nodal",
      .choices = &app_scene_choices_potentials, .help = "how overlap volumes become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "geo",

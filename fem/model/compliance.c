@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/model/compliance.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "contact/surface.h"
+#include "fem/material/svd3.h"
+
+// What the interface may give, over what the bodies do.
+static const double GIVE = 0.02;
+
+static Vec3 corner_of(const FemModel *model, int tet, int v) {
+  return vec3_at(model->rest + 3 * (size_t)model->tets[tet][v]);
+}
+
+// Volume, and ∫ x and ∫ x xᵀ about the body's first vertex.
+typedef struct Moments {
+  double volume;
+  Vec3 first;
+  double second[9];
+} Moments;
+
+static void add_tet(const FemModel *model, int tet, Vec3 origin, Moments *moments) {
+  Vec3 x[4], sum = {0, 0, 0};
+  for (int v = 0; v < 4; v++) x[v] = vec3_sub(corner_of(model, tet, v), origin), sum = vec3_add(sum, x[v]);
+  double volume = fabs(vec3_det4(x[0], x[1], x[2], x[3])) / 6;
+  moments->volume += volume;
+  moments->first = vec3_add(moments->first, vec3_scale(volume / 4, sum));
+  for (int v = 0; v < 5; v++) {
+    Vec3 y = v < 4 ? x[v] : sum;
+    const double p[3] = {y.x, y.y, y.z};
+    for (int e = 0; e < 9; e++) moments->second[e] += volume / 20 * p[e / 3] * p[e % 3];
+  }
+}
+
+// The least radius of inertia about the centroid: the root of the least principal value of the covariance.
+static double least_radius(const FemModel *model, const FemModelBody *body, double *volume) {
+  Moments moments = {0};
+  FemSvd3 principal;
+  Vec3 origin = corner_of(model, body->tet_begin, 0);
+  for (int i = body->tet_begin; i < body->tet_end; i++) add_tet(model, i, origin, &moments);
+  const double mean[3] = {moments.first.x / moments.volume, moments.first.y / moments.volume,
+                          moments.first.z / moments.volume};
+  for (int e = 0; e < 9; e++)
+    moments.second[e] = moments.second[e] / moments.volume - mean[e / 3] * mean[e % 3];
+  fem_svd3_factor(&principal, moments.second);
+  *volume = moments.volume;
+  return sqrt(fabs(principal.sigma[2]));
+}
+
+static Status measure_area(const FemModel *model, const FemModelBody *body, double *area) {
+  ContactSurface surface;
+  TRY(contact_surface_find(&surface, (const int(*)[4])model->tets, body->tet_begin, body->tet_end));
+  *area = 0;
+  for (int f = 0; f < surface.count; f++) {
+    Vec3 x[3];
+    for (int v = 0; v < 3; v++) x[v] = vec3_at(model->rest + 3 * (size_t)surface.faces[f].vertices[v]);
+    *area += 0.5 * vec3_length(vec3_cross(vec3_sub(x[1], x[0]), vec3_sub(x[2], x[0])));
+  }
+  contact_surface_destroy(&surface);
+  return STATUS_OK;
+}
+
+Status fem_compliance_height(const FemModel *model, int body, double *height) {
+  double volume, area, radius = least_radius(model, &model->bodies[body], &volume);
+  TRY(measure_area(model, &model->bodies[body], &area));
+  *height = fmin(sqrt(12) * radius, 6 * volume / area);
+  return STATUS_OK;
+}
+
+// L/E of every body [m/Pa]; obstacles 0.
+static Status measure_compliances(const FemModel *model, double *compliances) {
+  for (int b = 0; b < model->scene->body_count; b++) {
+    double height;
+    TRY(fem_compliance_height(model, b, &height));
+    compliances[b] = height / model->bodies[b].material.young;
+  }
+  return STATUS_OK;
+}
+
+static int count_shapes(const FemSceneDef *scene) {
+  int count = 0;
+  for (int o = 0; o < scene->obstacle_count; o++) count += scene->obstacles[o].kind != FEM_OBSTACLE_MESH;
+  return count;
+}
+
+static Status choose_for_field(const FemModel *model, int party_count, double *stiffness) {
+  double *compliances = memory_zeroed((size_t)party_count, sizeof *compliances);
+  Status status =
+      compliances ? measure_compliances(model, compliances) : status_no_memory("contact stiffness");
+  for (int a = 0; a < model->body_count && !status; a++)
+    for (int b = 0; b < party_count; b++) {
+      double sum = compliances[a] + compliances[b], terms = b < model->body_count ? 2 : 1; // p = terms · c d
+      stiffness[a * party_count + b] = sum > 0 ? 1 / (terms * GIVE * sum) : 1;
+    }
+  memory_free(compliances);
+  return status;
+}
+
+Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *party_count) {
+  const FemContactDef *contact = &model->scene->contact;
+  int parties = *party_count = model->body_count + count_shapes(model->scene);
+  size_t count = (size_t)model->body_count * (size_t)parties;
+  double *table = *stiffness = memory_zeroed(count, sizeof *table);
+  if (!table) return status_no_memory("contact stiffness");
+  for (size_t k = 0; k < count; k++) table[k] = fem_model_contact_stiffness(model);
+  Status status = STATUS_OK;
+  if (contact->potential == CONTACT_POTENTIAL_FIELD && !(contact->stiffness > 0))
+    status = choose_for_field(model, parties, table);
+  if (status) {
+    memory_free(table);
+    *stiffness = NULL;
+  }
+  return status;
+}
+
+Status fem_compliance_range(const FemModel *model, double range[2]) {
+  double *stiffness;
+  int parties, bodies = model->scene->body_count;
+  TRY(fem_compliance_stiffness(model, &stiffness, &parties));
+  range[0] = INFINITY, range[1] = 0;
+  for (int a = 0; a < bodies; a++)
+    for (int b = a; b < parties; b++) {
+      if (a == b && !model->scene->bodies[a].self_contact) continue;
+      range[0] = fmin(range[0], stiffness[a * parties + b]);
+      range[1] = fmax(range[1], stiffness[a * parties + b]);
+    }
+  memory_free(stiffness);
+  if (!(range[1] > 0)) range[0] = range[1] = fem_model_contact_stiffness(model);
+  return STATUS_OK;
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How stiff contact is: κ of each two that can meet, as the scene says or as chosen from the bodies.
+//
+// For the potential `field` the choice does not depend on the mesh. Two that press each other with p give way
+// by p/(2c) where they touch and by p (L_A/E_A + L_B/E_B) in themselves, L their heights, so
+//
+//   c = 12.5 · 2 / (L_A/E_A + L_B/E_B)
+//
+// keeps the first at 2 % of the second: 12.5 E/L for two that are alike. Obstacles do not give way, and a
+// shape without elements presses with c d in place of 2 c d: against one, c = 50 E/L. The height of a body of
+// any shape is the smaller of √12 times its least radius of inertia, which is the least edge of a box, and
+// six times its volume over its surface, which is the edge of a cube and follows the wall of what is hollow.
+#ifndef TETLAP_FEM_MODEL_COMPLIANCE_H
+#define TETLAP_FEM_MODEL_COMPLIANCE_H
+
+#include "fem/model/model.h"
+
+// L of a body [m].
+Status fem_compliance_height(const FemModel *model, int body, double *height);
+
+// κ of every body with every party, bodies then the obstacles without elements in the scene's order, into
+// (body_count, body_count + obstacle_count); entries of what cannot meet are positive too. An array of the
+// caller's (memory_free). `party_count`: the columns.
+Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *party_count);
+
+// Its least and largest entry of what can meet.
+Status fem_compliance_range(const FemModel *model, double range[2]);
+
+#endif

@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The potential `field`: energies, forces and stiffness, pair by pair and summed; slabs, onset, sheets.
+#include "blocks.h"
+#include "product.h"
+
+#include "base/vec3.h"
+#include "contact/convex.h"
+#include "contact/field.h"
+
+static const double STIFFNESS = 1000;
+
+typedef struct Scene {
+  Blocks blocks;
+  double *rest, *still;
+  OverlapModel model;
+  ContactShape shape; // its kind's point of view; only where shape_count is 1
+  ContactConvex solid;
+  int shape_count;
+  ContactSystem *system;
+} Scene;
+
+static void start(Scene *scene, const char *model, bool is_full) {
+  scene->rest = scene->rest ? scene->rest : blocks_copy(&scene->blocks);
+  scene->still = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
+  ck_assert_ptr_nonnull(scene->still);
+  ck_assert_ok(overlap_model_create(&scene->model, model));
+  ContactSystemDef def = blocks_def(&scene->blocks, scene->rest, &scene->model);
+  def.potential = CONTACT_POTENTIAL_FIELD;
+  def.stiffness = STIFFNESS;
+  def.use_full_hessian = is_full;
+  def.shapes = &scene->shape, def.shape_count = scene->shape_count;
+  ck_assert_ok(contact_system_create(&scene->system, &def));
+  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01, NULL));
+}
+
+static void destroy(Scene *scene) {
+  contact_system_destroy(scene->system);
+  overlap_model_destroy(&scene->model);
+  blocks_destroy(&scene->blocks);
+  free(scene->rest), free(scene->still);
+  *scene = (Scene){.system = NULL};
+}
+
+static double energy_at(const Scene *scene, const double *x) {
+  double energy;
+  ck_assert_ok(contact_system_eval(scene->system, 0, x, &energy, NULL));
+  return energy;
+}
+
+static void move(const Scene *scene) {
+  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01, NULL));
+}
+
+// Owned by the caller (free).
+static double *forces_at(const Scene *scene, const double *x) {
+  double energy, *force = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
+  ck_assert_ptr_nonnull(force);
+  ck_assert_ok(contact_system_eval(scene->system, 0, x, &energy, force));
+  return force;
+}
+
+// Two irregular blocks, one pressed into the other, both stretched and sheared from where they rest; the
+// lower one is one cell thick.
+static void press_blocks(Scene *scene, bool is_obstacle_below) {
+  blocks_add(
+      &scene->blocks,
+      &(BlockDef){.cell = {1, 1, 1.6}, .cells = {3, 3, 1}, .jitter = 0.12, .is_obstacle = is_obstacle_below});
+  blocks_add(
+      &scene->blocks,
+      &(BlockDef){.corner = {0.63, 0.41, 1.3}, .cell = {0.83, 0.9, 0.8}, .cells = {2, 2, 3}, .jitter = 0.15});
+  scene->rest = blocks_copy(&scene->blocks);
+  for (int v = scene->blocks.bodies[1].vertex_begin; v < scene->blocks.bodies[1].vertex_end; v++) {
+    double *x = scene->blocks.x + 3 * v;
+    x[0] += 0.08 * sin(x[1]), x[1] += 0.1 * x[2] - 0.13, x[2] += 0.05 * x[0];
+  }
+}
+
+enum { ON_BODY, ON_MESH, ON_PLANE, ON_BALL, ON_BOX, ON_PRISM, KINDS };
+
+static void press_on(Scene *scene, int kind) {
+  *scene = (Scene){.system = NULL};
+  if (kind <= ON_MESH) {
+    press_blocks(scene, kind == ON_MESH);
+    return;
+  }
+  blocks_add(&scene->blocks, &(BlockDef){.corner = {-0.7, -0.8, -0.22},
+                                         .cell = {0.5, 0.6, 0.55},
+                                         .cells = {3, 3, 2},
+                                         .jitter = 0.15});
+  scene->shape_count = 1;
+  scene->shape = (ContactShape){.name = "obstacle",
+                                .normal = {0, 0, 1},
+                                .point = {0.1, 0.2, 0.01},
+                                .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  if (kind == ON_BALL)
+    scene->shape.kind = CONTACT_SHAPE_BALL, scene->shape.radius = 0.83, scene->shape.point[2] = -0.6;
+  if (kind == ON_BOX || kind == ON_PRISM) {
+    scene->shape.kind = CONTACT_SHAPE_CONVEX, scene->shape.convex = &scene->solid;
+    scene->shape.point[2] = -0.45;
+    if (kind == ON_BOX) contact_convex_make_box(&scene->solid, (double[]){0.4, 0.33, 0.47});
+    if (kind == ON_PRISM) contact_convex_make_prism(&scene->solid, 0.5, 0.48, 16);
+  }
+}
+
+static double *random_motion(const Scene *scene, uint64_t stream, bool obstacles_move) {
+  Random random = random_seeded(21, stream);
+  double *d = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
+  ck_assert_ptr_nonnull(d);
+  for (int b = 0; b < scene->blocks.body_count; b++)
+    for (int k = 3 * scene->blocks.bodies[b].vertex_begin; k < 3 * scene->blocks.bodies[b].vertex_end; k++)
+      d[k] = scene->blocks.bodies[b].is_obstacle && !obstacles_move ? 0 : random_between(&random, -1, 1);
+  return d;
+}
+
+static void step_to(const Scene *scene, double h, const double *d, double *x) {
+  for (int k = 0; k < 3 * scene->blocks.vertex_count; k++) x[k] = scene->blocks.x[k] + h * d[k];
+}
+
+// Differences over ± h and ± 2 h, such that the error is of fourth order.
+static double slope_along(const Scene *scene, const double *d, double h, double *x) {
+  double energy[4], steps[4] = {-2, -1, 1, 2};
+  for (int k = 0; k < 4; k++) {
+    step_to(scene, steps[k] * h, d, x);
+    energy[k] = energy_at(scene, x);
+  }
+  return (8 * (energy[2] - energy[1]) - (energy[3] - energy[0])) / (12 * h);
+}
+
+START_TEST(forces_are_minus_the_gradient_of_the_energy) {
+  Scene scene;
+  press_on(&scene, _i);
+  start(&scene, "clip", true);
+  int n = 3 * scene.blocks.vertex_count;
+  double *x = blocks_copy(&scene.blocks), *force = forces_at(&scene, scene.blocks.x);
+  double size = sqrt(product_dot(force, force, n));
+  ck_assert_int_gt(contact_system_active_count(scene.system), 10);
+  ck_assert(size > 0);
+  for (uint64_t k = 0; k < 10; k++) {
+    double *d = random_motion(&scene, k, true), length = sqrt(product_dot(d, d, n));
+    ck_assert_near(slope_along(&scene, d, 1e-5, x), -product_dot(force, d, n), 1e-8 * size * length);
+    free(d);
+  }
+  free(x), free(force), destroy(&scene);
+}
+END_TEST
+
+START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
+  Scene scene;
+  press_on(&scene, _i);
+  start(&scene, "clip", true);
+  int n = 3 * scene.blocks.vertex_count;
+  double *x = blocks_copy(&scene.blocks), h = 1e-6;
+  for (uint64_t k = 0; k < 5; k++) {
+    double *d = random_motion(&scene, k, false);
+    step_to(&scene, h, d, x);
+    double *above = forces_at(&scene, x);
+    step_to(&scene, -h, d, x);
+    double *below = forces_at(&scene, x);
+    Product product = product_of(d, scene.blocks.vertex_count);
+    ContactStiffnessSink sink = product_sink(&product);
+    ck_assert_ok(contact_system_stiffness(scene.system, 0, scene.blocks.x, &sink));
+    double size = sqrt(product_dot(product.y, product.y, n));
+    ck_assert(size > 0);
+    for (int v = 0; v < scene.blocks.vertex_count; v++)
+      for (int c = 0; c < 3; c++)
+        if (v < scene.blocks.bodies[0].vertex_begin || v >= scene.blocks.bodies[0].vertex_end ||
+            _i != ON_MESH)
+          ck_assert_near(-(above[3 * v + c] - below[3 * v + c]) / (2 * h), product.y[3 * v + c], 1e-6 * size);
+    free(d), free(above), free(below), free(product.y);
+  }
+  free(x), destroy(&scene);
+}
+END_TEST
+
+START_TEST(the_main_term_is_not_negative) {
+  Scene scene;
+  press_on(&scene, _i);
+  start(&scene, "clip", false);
+  int n = 3 * scene.blocks.vertex_count;
+  for (uint64_t k = 0; k < 20; k++) {
+    double *d = random_motion(&scene, k, false);
+    Product product = product_of(d, scene.blocks.vertex_count);
+    ContactStiffnessSink sink = product_sink(&product);
+    ck_assert_ok(contact_system_stiffness(scene.system, 0, scene.blocks.x, &sink));
+    ck_assert(product_dot(product.y, product.y, n) > 0);
+    ck_assert(product_dot(product.y, d, n) >= 0);
+    free(d), free(product.y);
+  }
+  destroy(&scene);
+}
+END_TEST
+
+// ---- Balance.
+
+static const char *const MODELS[] = {"clip", "clip32", "clip-scalar", "exact", "cgal"};
+enum { MODEL_COUNT = 5 };
+
+START_TEST(every_pair_balances_with_every_model) {
+  Scene scene = {.system = NULL};
+  press_blocks(&scene, false);
+  start(&scene, MODELS[_i], true);
+  energy_at(&scene, scene.blocks.x);
+  const ContactEvaluation *evaluation;
+  const ContactLayout *layout = contact_system_layout(scene.system);
+  ck_assert_ok(contact_system_look(scene.system, &evaluation));
+  ck_assert_int_gt(evaluation->pair_count, 50);
+  double worst_force = 0, worst_torque = 0, largest = 0;
+  for (int k = 0; k < evaluation->pair_count; k++) {
+    Vec3 sum = {0, 0, 0}, torque = {0, 0, 0};
+    double norms = 0;
+    for (int v = 0; v < 8; v++) {
+      int vertex = contact_layout_vertices(layout, evaluation->pairs[k].tets[v / 4])[v % 4];
+      Vec3 force = vec3_at(evaluation->gradients + 24 * k + 3 * v), x = vec3_at(scene.blocks.x + 3 * vertex);
+      sum = vec3_add(sum, force), torque = vec3_add(torque, vec3_cross(x, force));
+      norms += vec3_length(force);
+    }
+    largest = suite_larger(largest, norms);
+    worst_force = suite_larger(worst_force, vec3_length(sum));
+    worst_torque = suite_larger(worst_torque, vec3_length(torque)); // lengths are of the order of 1
+  }
+  ck_assert(largest > 0);
+  ck_assert(worst_force <= 1e-14 * largest);
+  ck_assert(worst_torque <= 1e-14 * largest);
+  destroy(&scene);
+}
+END_TEST
+
+START_TEST(a_model_without_centroid_is_refused_by_name) {
+  Scene scene = {.system = NULL};
+  press_blocks(&scene, false);
+  ck_assert_ok(overlap_model_create(&scene.model, "geo"));
+  ContactSystem *system;
+  ContactSystemDef def = blocks_def(&scene.blocks, scene.rest, &scene.model);
+  def.potential = CONTACT_POTENTIAL_FIELD;
+  ck_assert_int_eq(contact_system_create(&system, &def), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "geo"));
+  ck_assert_ptr_nonnull(strstr(status_message(), "nodal"));
+  destroy(&scene);
+}
+END_TEST
+
+// ---- The contact mesh.
+
+START_TEST(cells_fill_the_bodies_and_slope_by_one_on_every_outer_face) {
+  Scene scene = {.system = NULL};
+  press_blocks(&scene, false);
+  start(&scene, "clip", true);
+  const ContactLayout *layout = contact_system_layout(scene.system);
+  const ContactDepth *depth = &layout->depth;
+  int outer = 0;
+  double *volumes = calloc((size_t)scene.blocks.tet_count, sizeof *volumes);
+  ck_assert_int_gt(depth->cell_count, scene.blocks.tet_count);
+  for (int cell = 0; cell < depth->cell_count; cell++) {
+    volumes[contact_depth_tet(depth, cell)] += layout->cell_volumes[cell];
+    Vec3 x[4], slope = {0, 0, 0};
+    double phi[4];
+    for (int v = 0; v < 4; v++) {
+      x[v] = vec3_at(layout->rest + 3 * depth->cells[cell][v]), phi[v] = depth->depths[depth->cells[cell][v]];
+      ck_assert(phi[v] >= 0);
+    }
+    double det = vec3_det4(x[0], x[1], x[2], x[3]);
+    for (int v = 0; v < 4; v++) {
+      Vec3 a = x[(v + 1) % 4], b = x[(v + 2) % 4], c = x[(v + 3) % 4];
+      double sign = v % 2 ? 1 : -1;
+      slope = vec3_add(slope, vec3_scale(sign * phi[v] / det, vec3_cross(vec3_sub(b, a), vec3_sub(c, a))));
+    }
+    for (int f = 0; f < 4; f++) {
+      if (!(depth->outer[cell] >> f & 1)) continue;
+      outer++;
+      ck_assert_near(vec3_length(slope), 1, 0.0201);
+    }
+  }
+  ck_assert_int_eq(outer, 2 * 2 * (3 * 3 + 3 + 3) + 2 * 2 * (2 * 2 + 2 * 3 * 2)); // two triangles a square
+  for (int i = 0; i < scene.blocks.tet_count; i++)
+    ck_assert_near(volumes[i], layout->tet_volumes[i], 1e-13 * layout->tet_volumes[i]);
+  free(volumes), destroy(&scene);
+}
+END_TEST
+
+// ---- Flat slabs of meshes that coincide or do not match, as in test_contact_slabs.c.
+
+typedef struct Quality {
+  double evenness, tangential, pressure;
+} Quality;
+
+// Lower slab of cells of edge h, upper of edge ratio · h, `depth` into it.
+static Quality press_slabs(double h, double ratio, double depth, const double shift[2]) {
+  Scene scene = {.system = NULL};
+  int lower = (int)lround(8 / h), upper = (int)lround(6 / (h * ratio));
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {-4, -4, -2 * h}, .cell = {h, h, h}, .cells = {lower, lower, 2}});
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-3 + shift[0], -3 + shift[1], -depth},
+                                        .cell = {h * ratio, h * ratio, h * ratio},
+                                        .cells = {upper, upper, 2}});
+  start(&scene, "clip", true);
+  double *force = forces_at(&scene, scene.blocks.x), sum = 0, squares = 0, tangential = 0, first = 0;
+  int count = 0;
+  for (int v = 0; v < scene.blocks.bodies[0].vertex_end; v++) {
+    const double *x = scene.blocks.x + 3 * v, *f = force + 3 * v;
+    if (fabs(x[0]) > 1.6 || fabs(x[1]) > 1.6) continue;
+    tangential += hypot(f[0], f[1]);
+    if (fabs(x[2]) > h / 2) {
+      first += -f[2]; // what lands below the surface
+      continue;
+    }
+    sum -= f[2], squares += f[2] * f[2], count++;
+  }
+  ck_assert_int_gt(count, 8);
+  double mean = sum / count, pressure = (sum + first) / count / (h * h);
+  free(force), destroy(&scene);
+  return (Quality){sqrt(suite_larger(squares / count - mean * mean, 0)) / mean, tangential / (sum + first),
+                   pressure};
+}
+
+START_TEST(flat_slabs_press_evenly_whatever_the_meshes) {
+  static const double RATIOS[] = {1, 0.5, 0.77};
+  static const double SHIFTS[][2] = {{0, 0}, {0.031, 0.117}, {0.5, 0.25}};
+  for (int r = 0; r < 3; r++)
+    for (int s = 0; s < 3; s++)
+      for (int halvings = 0; halvings < 2; halvings++) {
+        double depth = 0.1;
+        Quality q = press_slabs(halvings ? 0.5 : 1, RATIOS[r], depth, SHIFTS[s]);
+        ck_assert(q.evenness <= 1e-6); // the root of what is left of a difference of squares
+        ck_assert(q.tangential <= 1e-10);
+        ck_assert_near(q.pressure / (2 * STIFFNESS * depth), 1, 1e-3);
+      }
+}
+END_TEST
+
+START_TEST(the_pressure_does_not_depend_on_the_mesh) {
+  Quality q = press_slabs(0.25, 1, 0.05, (double[]){0.01, 0.02});
+  ck_assert_near(q.pressure / (2 * STIFFNESS * 0.05), 1, 1e-3);
+}
+END_TEST
+
+START_TEST(sliding_past_faces_that_coincide_costs_nothing) {
+  Scene scene = {.system = NULL};
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-4, -4, -2}, .cell = {1, 1, 1}, .cells = {8, 8, 2}});
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-1, -1, -0.3}, .cell = {1, 1, 1}, .cells = {2, 2, 2}});
+  start(&scene, "clip", true);
+  double before = energy_at(&scene, scene.blocks.x);
+  for (int k = 0; k < 8; k++) {
+    double *force = forces_at(&scene, scene.blocks.x), total[3] = {0};
+    for (int v = 0; v < 3 * scene.blocks.bodies[0].vertex_end; v++) total[v % 3] += force[v];
+    ck_assert(hypot(total[0], total[1]) <= 1e-10 * fabs(total[2]));
+    blocks_shift(&scene.blocks, scene.blocks.x, 1, (double[]){0.125, 0, 0});
+    move(&scene);
+    ck_assert_near(energy_at(&scene, scene.blocks.x), before, 1e-13 * before);
+    free(force);
+  }
+  destroy(&scene);
+}
+END_TEST
+
+// A block beside a loaded one, tilted by θ and lowered until its face is wet.
+START_TEST(a_tilted_face_begins_with_no_leap) {
+  double theta = pow(10, -1 - 2 * _i), length = 2, width = 2;
+  Scene scene = {.system = NULL};
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-4, -4, -2}, .cell = {1, 1, 1}, .cells = {8, 8, 2}});
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-3, -1, -0.3}, .cell = {1, 1, 1}, .cells = {2, 2, 2}});
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {0, -1, 0}, .cell = {1, 1, 1}, .cells = {2, 2, 2}});
+  scene.rest = blocks_copy(&scene.blocks);
+  for (int v = scene.blocks.bodies[2].vertex_begin; v < scene.blocks.bodies[2].vertex_end; v++) {
+    double *x = scene.blocks.x + 3 * v, at[2] = {x[0], x[2]};
+    x[0] = cos(theta) * at[0] + sin(theta) * at[1];
+    x[2] = cos(theta) * at[1] - sin(theta) * at[0]; // the far edge goes down by θ · length
+  }
+  start(&scene, "clip", true);
+  double *force = forces_at(&scene, scene.blocks.x), total = 0;
+  for (int v = scene.blocks.bodies[2].vertex_begin; v < scene.blocks.bodies[2].vertex_end; v++)
+    total += force[3 * v + 2];
+  ck_assert(total > 0);
+  ck_assert(total <= 4 * STIFFNESS * length * width * theta * length);
+  free(force), destroy(&scene);
+}
+END_TEST
+
+START_TEST(what_is_wholly_inside_is_pushed_out) {
+  Scene scene = {.system = NULL};
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-5, -5, -10}, .cell = {1, 1, 1}, .cells = {10, 10, 10}});
+  blocks_add(
+      &scene.blocks,
+      &(BlockDef){.corner = {-0.1, -0.13, -1.1 - 0.5 * _i}, .cell = {0.1, 0.1, 0.1}, .cells = {2, 2, 2}});
+  start(&scene, "clip", true);
+  double *force = forces_at(&scene, scene.blocks.x), total = 0, volume = 0.2 * 0.2 * 0.2;
+  for (int v = scene.blocks.bodies[1].vertex_begin; v < scene.blocks.bodies[1].vertex_end; v++)
+    total += force[3 * v + 2];
+  ck_assert_near(total / (STIFFNESS * volume), 1, 1e-9);
+  free(force), destroy(&scene);
+}
+END_TEST
+
+START_TEST(a_sheet_of_one_cell_pushes_outwards) {
+  static const double DEPTHS[] = {0.1, 0.5, 0.9, 1.0};
+  Scene scene = {.system = NULL};
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-4, -4, -1}, .cell = {1, 1, 1}, .cells = {8, 8, 1}});
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-1.07, -0.91, 0}, .cell = {1, 1, 1}, .cells = {2, 2, 2}});
+  start(&scene, "clip", true);
+  for (int k = 0; k < 4; k++) {
+    double low = k ? DEPTHS[k - 1] : 0, total = 0;
+    blocks_shift(&scene.blocks, scene.blocks.x, 1, (double[]){0, 0, low - DEPTHS[k]});
+    move(&scene);
+    double *force = forces_at(&scene, scene.blocks.x);
+    for (int v = scene.blocks.bodies[1].vertex_begin; v < scene.blocks.bodies[1].vertex_end; v++)
+      total += force[3 * v + 2];
+    ck_assert(total > 0);
+    free(force);
+  }
+  destroy(&scene);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("field");
+  tcase_add_loop_test(tests, forces_are_minus_the_gradient_of_the_energy, 0, KINDS);
+  tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 0, KINDS);
+  tcase_add_loop_test(tests, the_main_term_is_not_negative, 0, KINDS);
+  tcase_add_loop_test(tests, every_pair_balances_with_every_model, 0, MODEL_COUNT);
+  tcase_add_test(tests, a_model_without_centroid_is_refused_by_name);
+  tcase_add_test(tests, cells_fill_the_bodies_and_slope_by_one_on_every_outer_face);
+  tcase_add_test(tests, flat_slabs_press_evenly_whatever_the_meshes);
+  tcase_add_test(tests, the_pressure_does_not_depend_on_the_mesh);
+  tcase_add_test(tests, sliding_past_faces_that_coincide_costs_nothing);
+  tcase_add_loop_test(tests, a_tilted_face_begins_with_no_leap, 0, 5);
+  tcase_add_loop_test(tests, what_is_wholly_inside_is_pushed_out, 0, 4);
+  tcase_add_test(tests, a_sheet_of_one_cell_pushes_outwards);
+  return suite_run("field", tests, 60);
+}
