@@ -12,7 +12,7 @@
 
 #include "overlap/clip/vectors_avx2.inc"
 
-#include "overlap/clip/lanes.inc"
+#include "overlap/clip/answer.inc"
 
 const OverlapClipLanes overlap_clip_lanes_avx2 = {.name = "avx2",
                                                   .width = LANES,

@@ -13,7 +13,7 @@
 #define LANES_SINGLE
 #include "overlap/clip/vectors_avx2.inc"
 
-#include "overlap/clip/lanes.inc"
+#include "overlap/clip/answer.inc"
 
 const OverlapClipLanes overlap_clip_lanes_avx2_single = {.name = "avx2, single",
                                                          .width = LANES,

@@ -12,7 +12,7 @@
 
 #include "overlap/clip/vectors_avx512.inc"
 
-#include "overlap/clip/lanes.inc"
+#include "overlap/clip/answer.inc"
 
 const OverlapClipLanes overlap_clip_lanes_avx512 = {.name = "avx512",
                                                     .width = LANES,

@@ -13,7 +13,7 @@
 #define LANES_SINGLE
 #include "overlap/clip/vectors_avx512.inc"
 
-#include "overlap/clip/lanes.inc"
+#include "overlap/clip/answer.inc"
 
 const OverlapClipLanes overlap_clip_lanes_avx512_single = {.name = "avx512, single",
                                                            .width = LANES,

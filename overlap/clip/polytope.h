@@ -24,23 +24,13 @@
 #include <stdint.h>
 
 #include "base/vec3.h"
+#include "overlap/clip/constants.h"
 
 // Every vertex ends three edges. A cut with c crossings, at most one an edge, replaces the c or more ends
 // outside (each ends three edges: at least c/3 vertices) by c new vertices: 4 vertices become at most 8, 16,
 // 32,
 // 64. With e = 3/2 v edges: at most 96 edges, and at most 4 + 6 + 12 + 24 + 48 = 94 vertices made in all.
 enum { OVERLAP_CLIP_VERTICES = 96, OVERLAP_CLIP_EDGES = 96 };
-
-// Beyond this error of a barycentric coordinate not even ∇V is worth computing here.
-#define OVERLAP_CLIP_FLATTEST 1e-10
-
-// What rounding may do to det · λ, over the cube of the longest difference of coordinates. Over the classes
-// of the tests the error of V asked for at most 0.065 ε where this has 0.25.
-#define OVERLAP_CLIP_NOISE (0.25 * DBL_EPSILON)
-
-// How far λ of a flat tetrahedron may slide along its faces, as clip.h has it: times noise, over det. Six
-// times what a search of bad pairs asked for.
-#define OVERLAP_CLIP_SLIDE (1 / (256 * OVERLAP_CLIP_NOISE))
 
 // A tetrahedron's planes.
 typedef struct OverlapClipFrame {
@@ -71,13 +61,6 @@ typedef enum OverlapClipOutcome {
   OVERLAP_CLIP_ENCLOSED,  // the same, and it is one of the two, whole
   OVERLAP_CLIP_UNCERTAIN, // a tetrahedron is so flat that double precision cannot tell
 } OverlapClipOutcome;
-
-// The planes u, v spanning the parameters of face f, such that the face, seen from outside and with positive
-// det, runs counter-clockwise through (0, 0), (1, 0), (0, 1) of (λ_u, λ_v); t is the third vertex, at (0, 0).
-// Indices 4–7 are those of B.
-static const uint8_t overlap_clip_t[8] = {1, 0, 0, 0, 5, 4, 4, 4};
-static const uint8_t overlap_clip_u[8] = {2, 3, 1, 2, 6, 7, 5, 6};
-static const uint8_t overlap_clip_v[8] = {3, 2, 3, 1, 7, 6, 7, 5};
 
 OverlapClipOutcome overlap_clip_polytope_make(OverlapClipPolytope *polytope, const double pair[24]);
 

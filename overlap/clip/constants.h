@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Constants of clipping that processors and devices share: its text is also part of what a device compiles,
+// so it includes nothing.
+#ifndef TETLAP_OVERLAP_CLIP_CONSTANTS_H
+#define TETLAP_OVERLAP_CLIP_CONSTANTS_H
+
+#ifndef CONSTANT
+#define CONSTANT static const
+#endif
+
+// Beyond this error of a barycentric coordinate not even ∇V is worth computing here.
+#define OVERLAP_CLIP_FLATTEST 1e-10
+
+// What rounding may do to det · λ, over the cube of the longest difference of coordinates. Over the classes
+// of the tests the error of V asked for at most 0.065 ε where this has 0.25.
+#define OVERLAP_CLIP_NOISE (0.25 * DBL_EPSILON)
+
+// How far λ of a flat tetrahedron may slide along its faces, as clip.h has it: times noise, over det. Six
+// times what a search of bad pairs asked for.
+#define OVERLAP_CLIP_SLIDE (1 / (256 * OVERLAP_CLIP_NOISE))
+
+// The planes u, v spanning the parameters of face f, such that the face, seen from outside and with positive
+// det, runs counter-clockwise through (0, 0), (1, 0), (0, 1) of (λ_u, λ_v); t is the third vertex, at (0, 0).
+// Indices 4–7 are those of B.
+CONSTANT unsigned char overlap_clip_t[8] = {1, 0, 0, 0, 5, 4, 4, 4};
+CONSTANT unsigned char overlap_clip_u[8] = {2, 3, 1, 2, 6, 7, 5, 6};
+CONSTANT unsigned char overlap_clip_v[8] = {3, 2, 3, 1, 7, 6, 7, 5};
+
+#endif
