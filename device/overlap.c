@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/overlap.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "overlap/clip/clip.h"
+
+enum { SIZE = OVERLAP_PAIR_SIZE, VOLUME_KERNEL = 0, GRADIENT_KERNEL = 1, GATHER = 0, SCATTER = 1 };
+
+typedef struct Chain {
+  const char *model;
+  const DeviceProgram *programs[DEVICE_OVERLAP_STAGES];
+} Chain;
+
+static const Chain chains[DEVICE_OVERLAP_MODELS] = {
+    {"clip", {&device_program_clip}},
+    {"clip32", {&device_program_clip32, &device_program_clip}},
+};
+const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {"clip", "clip32"};
+
+static const Chain *find_chain(const char *model) {
+  for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
+    if (strcmp(chains[k].model, model) == 0) return &chains[k];
+  return NULL;
+}
+
+static Status create(DeviceOverlap *overlap, const Chain *chain) {
+  const Device *device = overlap->device;
+  for (int k = 0; k < DEVICE_OVERLAP_STAGES && chain->programs[k]; k++, overlap->stage_count++)
+    TRY(device_build(device, chain->programs[k], &overlap->stages[k].module, overlap->stages[k].kernels));
+  TRY(device_build(device, &device_program_gather, &overlap->gather.module, overlap->gather.kernels));
+  return device_take(device, 1, sizeof(int), NULL, &overlap->list_count);
+}
+
+Status device_overlap_create(DeviceOverlap *overlap, const Device *device, const char *model) {
+  *overlap = (DeviceOverlap){.device = device};
+  const Chain *chain = find_chain(model);
+  if (!chain)
+    return status_fail(STATUS_USAGE, "overlap model '%s' has no kernels for devices; clip and clip32 have",
+                       model);
+  return create(overlap, chain);
+}
+
+static void release(const DeviceOverlap *overlap, DeviceMemory *memory) {
+  overlap->device->ops->release(overlap->device->self, memory);
+}
+
+static void release_rows(DeviceOverlap *overlap) {
+  release(overlap, &overlap->rows), release(overlap, &overlap->row_volume);
+  release(overlap, &overlap->row_gradient), release(overlap, &overlap->row_flags);
+  overlap->row_capacity = 0;
+}
+
+static void release_answers(DeviceOverlap *overlap) {
+  release(overlap, &overlap->volume), release(overlap, &overlap->gradient);
+  release(overlap, &overlap->flags), release(overlap, &overlap->lists[0]);
+  release(overlap, &overlap->lists[1]);
+  overlap->capacity = 0, overlap->has_gradient = false;
+}
+
+static void release_inputs(DeviceOverlap *overlap) {
+  release(overlap, &overlap->numbers), release(overlap, &overlap->tets), release(overlap, &overlap->pairs);
+}
+
+void device_overlap_destroy(DeviceOverlap *overlap) {
+  if (!overlap->device) return;
+  const Device *device = overlap->device;
+  release_rows(overlap), release_answers(overlap), release_inputs(overlap);
+  release(overlap, &overlap->list_count);
+  for (int k = 0; k < DEVICE_OVERLAP_STAGES; k++)
+    device->ops->discard(device->self, overlap->stages[k].module);
+  device->ops->discard(device->self, overlap->gather.module);
+  *overlap = (DeviceOverlap){0};
+}
+
+// Room for the answers to `count` pairs.
+static Status make_room(DeviceOverlap *overlap, int count) {
+  const Device *device = overlap->device;
+  if (count <= overlap->capacity) return STATUS_OK;
+  release_answers(overlap);
+  size_t n = (size_t)count;
+  TRY(device_take(device, n, sizeof(double), NULL, &overlap->volume));
+  TRY(device_take(device, n, 1, NULL, &overlap->flags));
+  for (int k = 0; k < 2; k++) TRY(device_take(device, n, sizeof(int), NULL, &overlap->lists[k]));
+  overlap->capacity = count;
+  return STATUS_OK;
+}
+
+static Status put_numbers(DeviceOverlap *overlap, DevicePairs kind, int count, const double *pairs) {
+  const Device *device = overlap->device;
+  size_t bytes = (size_t)count * SIZE * sizeof *pairs;
+  overlap->kind = kind, overlap->count = 0;
+  if (overlap->numbers.bytes < bytes || overlap->pairs.at) {
+    release_inputs(overlap);
+    TRY(device_take(device, (size_t)count * SIZE, sizeof *pairs, NULL, &overlap->numbers));
+  }
+  TRY(make_room(overlap, count));
+  TRY(device->ops->put(device->self, &overlap->numbers, 0, bytes, pairs));
+  overlap->count = count;
+  return STATUS_OK;
+}
+
+Status device_overlap_put_rows(DeviceOverlap *overlap, int count, const double *pairs) {
+  return put_numbers(overlap, DEVICE_PAIRS_ROWS, count, pairs);
+}
+
+Status device_overlap_put_columns(DeviceOverlap *overlap, int count, const double *pairs) {
+  return put_numbers(overlap, DEVICE_PAIRS_COLUMNS, count, pairs);
+}
+
+Status device_overlap_put_mesh(DeviceOverlap *overlap, int vertex_count, const double *positions,
+                               int tet_count, const int *tets, int count, const int *pairs) {
+  const Device *device = overlap->device;
+  overlap->kind = DEVICE_PAIRS_INDICES, overlap->count = 0;
+  release_inputs(overlap);
+  TRY(device_take(device, 3 * (size_t)vertex_count, sizeof *positions, positions, &overlap->numbers));
+  TRY(device_take(device, 4 * (size_t)tet_count, sizeof *tets, tets, &overlap->tets));
+  TRY(device_take(device, 2 * (size_t)count, sizeof *pairs, pairs, &overlap->pairs));
+  TRY(make_room(overlap, count));
+  overlap->count = count;
+  return STATUS_OK;
+}
+
+// The arguments that all kernels on pairs begin with. `list`: NULL for all.
+static int add_pairs(const DeviceOverlap *overlap, int count, const DeviceMemory *list,
+                     DeviceArgument *arguments) {
+  static const DeviceMemory none = {0};
+  const DeviceArgument given[] = {device_int((int)overlap->kind), device_int(count),
+                                  device_int(overlap->count),     device_memory(&overlap->numbers),
+                                  device_memory(&overlap->tets),  device_memory(&overlap->pairs),
+                                  device_int(list != NULL),       device_memory(list ? list : &none)};
+  memcpy(arguments, given, sizeof given);
+  return sizeof given / sizeof *given;
+}
+
+// One stage over `count` pairs; how many of them it leaves, in lists[k % 2].
+static Status run_stage(DeviceOverlap *overlap, int k, int count, bool wants_gradient, int *left) {
+  const Device *device = overlap->device;
+  DeviceArgument arguments[DEVICE_MAX_ARGUMENTS];
+  int n = add_pairs(overlap, count, k > 0 ? &overlap->lists[(k + 1) % 2] : NULL, arguments);
+  const int none = 0;
+  arguments[n++] = device_memory(&overlap->volume);
+  arguments[n++] = device_memory(&overlap->flags);
+  arguments[n++] = device_memory(&overlap->lists[k % 2]);
+  arguments[n++] = device_memory(&overlap->list_count);
+  if (wants_gradient) arguments[n++] = device_memory(&overlap->gradient);
+  TRY(device->ops->put(device->self, &overlap->list_count, 0, sizeof none, &none));
+  TRY(device_launch(device, &overlap->stages[k].kernels[wants_gradient ? GRADIENT_KERNEL : VOLUME_KERNEL],
+                    count, arguments, n));
+  return device->ops->get(device->self, &overlap->list_count, 0, sizeof *left, left);
+}
+
+// --- What is left to the host.
+
+typedef struct Rows {
+  int count;
+  int *numbers;           // of the pairs                    (count)
+  double *pairs, *volume; // (count, 24), (count)
+  double *gradient;       // (count, 24)
+  unsigned char *flags;   // (count)
+} Rows;
+
+static void destroy_rows(Rows *rows) {
+  memory_free(rows->numbers), memory_free(rows->pairs), memory_free(rows->volume);
+  memory_free(rows->gradient), memory_free(rows->flags);
+}
+
+static Status create_rows(Rows *rows, int count) {
+  size_t n = (size_t)count;
+  *rows = (Rows){.count = count,
+                 .numbers = memory_zeroed(n, sizeof(int)),
+                 .pairs = memory_zeroed(n * SIZE, sizeof(double)),
+                 .volume = memory_zeroed(n, sizeof(double)),
+                 .gradient = memory_zeroed(n * SIZE, sizeof(double)),
+                 .flags = memory_zeroed(n, 1)};
+  if (rows->numbers && rows->pairs && rows->volume && rows->gradient && rows->flags) return STATUS_OK;
+  destroy_rows(rows);
+  return status_no_memory("pairs that the device leaves to the host");
+}
+
+static Status make_rows_room(DeviceOverlap *overlap, int count) {
+  const Device *device = overlap->device;
+  if (count <= overlap->row_capacity) return STATUS_OK;
+  release_rows(overlap);
+  size_t n = (size_t)count;
+  TRY(device_take(device, n * SIZE, sizeof(double), NULL, &overlap->rows));
+  TRY(device_take(device, n, sizeof(double), NULL, &overlap->row_volume));
+  TRY(device_take(device, n * SIZE, sizeof(double), NULL, &overlap->row_gradient));
+  TRY(device_take(device, n, 1, NULL, &overlap->row_flags));
+  overlap->row_capacity = count;
+  return STATUS_OK;
+}
+
+static Status fetch_rows(DeviceOverlap *overlap, const DeviceMemory *list, Rows *rows) {
+  const Device *device = overlap->device;
+  DeviceArgument arguments[DEVICE_MAX_ARGUMENTS];
+  int n = add_pairs(overlap, rows->count, list, arguments);
+  arguments[n++] = device_memory(&overlap->rows);
+  TRY(device_launch(device, &overlap->gather.kernels[GATHER], rows->count, arguments, n));
+  TRY(device->ops->get(device->self, list, 0, (size_t)rows->count * sizeof(int), rows->numbers));
+  return device->ops->get(device->self, &overlap->rows, 0, (size_t)rows->count * SIZE * sizeof(double),
+                          rows->pairs);
+}
+
+static Status answer_row(Rows *rows, int i, bool wants_gradient) {
+  const double *pair = rows->pairs + (size_t)i * SIZE;
+  for (int c = 0; c < SIZE; c++)
+    if (!isfinite(pair[c]))
+      return status_fail(
+          STATUS_INPUT, "pair %d, tetrahedron %d, vertex %d: coordinate %c is %g, it must be a finite number",
+          rows->numbers[i], c / 12, c / 3 % 4, "xyz"[c % 3], pair[c]);
+  unsigned flags = 0;
+  TRY(overlap_clip_scalar_ops.eval_pair(
+      NULL, pair, rows->volume + i, wants_gradient ? rows->gradient + (size_t)i * SIZE : NULL, NULL, &flags));
+  rows->flags[i] = (unsigned char)flags;
+  return STATUS_OK;
+}
+
+static Status answer_rows(Rows *rows, bool wants_gradient) {
+  int first_failed = INT_MAX;
+#pragma omp parallel for schedule(dynamic, 16) reduction(min : first_failed) if (rows->count > 64)
+  for (int i = 0; i < rows->count; i++)
+    if (answer_row(rows, i, wants_gradient) != STATUS_OK && i < first_failed) first_failed = i;
+  // the message belongs to the thread that failed: let this one see it too
+  return first_failed == INT_MAX ? STATUS_OK : answer_row(rows, first_failed, wants_gradient);
+}
+
+static Status send_rows(DeviceOverlap *overlap, const DeviceMemory *list, const Rows *rows,
+                        bool wants_gradient) {
+  const Device *device = overlap->device;
+  size_t n = (size_t)rows->count;
+  TRY(device->ops->put(device->self, &overlap->row_volume, 0, n * sizeof(double), rows->volume));
+  TRY(device->ops->put(device->self, &overlap->row_flags, 0, n, rows->flags));
+  if (wants_gradient)
+    TRY(device->ops->put(device->self, &overlap->row_gradient, 0, n * SIZE * sizeof(double), rows->gradient));
+  const DeviceArgument arguments[] = {
+      device_int((int)overlap->kind),      device_int(rows->count),
+      device_int(overlap->count),          device_memory(list),
+      device_memory(&overlap->row_volume), device_memory(&overlap->row_flags),
+      device_int(wants_gradient),          device_memory(&overlap->row_gradient),
+      device_memory(&overlap->volume),     device_memory(&overlap->flags),
+      device_memory(&overlap->gradient)};
+  return device_launch(device, &overlap->gather.kernels[SCATTER], rows->count, arguments,
+                       sizeof arguments / sizeof *arguments);
+}
+
+static Status answer_on_host(DeviceOverlap *overlap, const DeviceMemory *list, int count,
+                             bool wants_gradient) {
+  Rows rows;
+  TRY(make_rows_room(overlap, count));
+  TRY(create_rows(&rows, count));
+  Status status = fetch_rows(overlap, list, &rows);
+  if (status == STATUS_OK) status = answer_rows(&rows, wants_gradient);
+  if (status == STATUS_OK) status = send_rows(overlap, list, &rows, wants_gradient);
+  destroy_rows(&rows);
+  return status;
+}
+
+Status device_overlap_run(DeviceOverlap *overlap, bool wants_gradient) {
+  const Device *device = overlap->device;
+  if (wants_gradient && !overlap->has_gradient) {
+    TRY(device_take(device, (size_t)overlap->capacity * SIZE, sizeof(double), NULL, &overlap->gradient));
+    overlap->has_gradient = true;
+  }
+  int left = overlap->count;
+  memset(overlap->handed_on, 0, sizeof overlap->handed_on);
+  for (int k = 0; k < overlap->stage_count && left > 0; k++) {
+    TRY(run_stage(overlap, k, left, wants_gradient, &left));
+    overlap->handed_on[k] = left;
+  }
+  if (left == 0) return STATUS_OK;
+  return answer_on_host(overlap, &overlap->lists[(overlap->stage_count + 1) % 2], left, wants_gradient);
+}
+
+static Status get_flags(const DeviceOverlap *overlap, unsigned *flags) {
+  const Device *device = overlap->device;
+  size_t n = (size_t)overlap->count;
+  unsigned char *bytes = memory_zeroed(n, 1);
+  if (!bytes) return status_no_memory("flags");
+  Status status = device->ops->get(device->self, &overlap->flags, 0, n, bytes);
+  for (size_t i = 0; i < n; i++) flags[i] = bytes[i];
+  memory_free(bytes);
+  return status;
+}
+
+Status device_overlap_get(DeviceOverlap *overlap, double *volume, double *gradient, unsigned *flags) {
+  const Device *device = overlap->device;
+  size_t n = (size_t)overlap->count;
+  TRY(device->ops->get(device->self, &overlap->volume, 0, n * sizeof *volume, volume));
+  if (gradient)
+    TRY(device->ops->get(device->self, &overlap->gradient, 0, n * SIZE * sizeof *gradient, gradient));
+  return flags ? get_flags(overlap, flags) : STATUS_OK;
+}
+
+Status device_overlap_eval(DeviceOverlap *overlap, const OverlapBatch *batch) {
+  if (batch->hessian) return status_fail(STATUS_INPUT, "no Hessian on a device");
+  TRY(device_overlap_put_rows(overlap, batch->pair_count, batch->pairs));
+  TRY(device_overlap_run(overlap, batch->gradient != NULL));
+  return device_overlap_get(overlap, batch->volume, batch->gradient, batch->flags);
+}

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Overlap models on a device: batches of pairs, V, ∇V and flags as overlap/ops.h has them.
+//
+//   clip    pairs ─► clip ─ doubtful ─► the host's clip-scalar
+//   clip32  pairs ─► clip32 ─ doubtful ─► clip ─ doubtful ─► the host's clip-scalar
+//
+// What the host answers goes back to the device, so that all answers are there. What a pair gets is to the
+// bit what the model of that name gives on a processor (clip32's doubtful ones: what `clip` gives), and does
+// not depend on which others come with it.
+#ifndef TETLAP_DEVICE_OVERLAP_H
+#define TETLAP_DEVICE_OVERLAP_H
+
+#include "device/device.h"
+#include "overlap/ops.h"
+
+// Where a batch's numbers lie; as PAIRS_… in kernels/pairs.inc.
+typedef enum DevicePairs {
+  DEVICE_PAIRS_ROWS,    // (count, 24), gradients likewise
+  DEVICE_PAIRS_COLUMNS, // (24, count), gradients likewise
+  DEVICE_PAIRS_INDICES, // positions, tetrahedra, and two tetrahedra a pair; gradients (24, count)
+} DevicePairs;
+
+enum { DEVICE_OVERLAP_STAGES = 3, DEVICE_OVERLAP_MODELS = 2 };
+extern const char *const device_overlap_models[DEVICE_OVERLAP_MODELS]; // names
+
+typedef struct DeviceOverlapStage {
+  void *module; // owned
+  DeviceKernel kernels[DEVICE_MAX_KERNELS];
+} DeviceOverlapStage;
+
+typedef struct DeviceOverlap {
+  const Device *device; // borrowed
+  int stage_count;
+  DeviceOverlapStage stages[DEVICE_OVERLAP_STAGES], gather;
+  DevicePairs kind;
+  int count, capacity; // pairs: of the batch, and the most there may be
+  bool has_gradient;   // there is room for it
+  DeviceMemory numbers, tets, pairs;
+  DeviceMemory volume, gradient, flags;                   // answers; flags are one byte each
+  DeviceMemory lists[2], list_count;                      // doubtful pairs
+  DeviceMemory rows, row_volume, row_gradient, row_flags; // what the host answers
+  int row_capacity;
+  int handed_on[DEVICE_OVERLAP_STAGES]; // of the last batch: pairs that stage k left to the next, or the host
+} DeviceOverlap;
+
+// A zeroed one, and one whose creation failed, can be destroyed. STATUS_USAGE: no kernels for that model.
+Status device_overlap_create(DeviceOverlap *overlap, const Device *device, const char *model);
+void device_overlap_destroy(DeviceOverlap *overlap);
+
+// What the next evaluations are of: sent to the device, where it stays.
+Status device_overlap_put_rows(DeviceOverlap *overlap, int count, const double *pairs);
+Status device_overlap_put_columns(DeviceOverlap *overlap, int count, const double *pairs);
+// positions (vertex_count, 3), tets (tet_count, 4), pairs (count, 2): tetrahedra.
+Status device_overlap_put_mesh(DeviceOverlap *overlap, int vertex_count, const double *positions,
+                               int tet_count, const int *tets, int count, const int *pairs);
+
+// Evaluates what was put; the answers stay on the device.
+Status device_overlap_run(DeviceOverlap *overlap, bool wants_gradient);
+
+// The answers: volume (count); gradient, as the pairs lie, and flags (count) may be NULL.
+Status device_overlap_get(DeviceOverlap *overlap, double *volume, double *gradient, unsigned *flags);
+
+// All of it: a batch of the host's, without Hessian.
+Status device_overlap_eval(DeviceOverlap *overlap, const OverlapBatch *batch);
+
+#endif

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/source.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+
+// The assembler takes a file's bytes as they are, and a terminating 0.
+#define PIECE(name, file)                                                                                    \
+  __asm__(".pushsection .rodata\n"                                                                           \
+          "device_piece_" #name ":\n"                                                                        \
+          ".incbin \"" TETLAP_SOURCE "/" file "\"\n"                                                         \
+          ".byte 0\n"                                                                                        \
+          ".popsection\n");                                                                                  \
+  extern const char name[] __asm__("device_piece_" #name)
+
+PIECE(language_opencl, "device/kernels/language_opencl.inc");
+PIECE(language_cuda, "device/kernels/language_cuda.inc");
+PIECE(one, "device/kernels/one.inc");
+PIECE(kept, "device/kernels/kept.inc");
+PIECE(pairs, "device/kernels/pairs.inc");
+PIECE(gather, "device/kernels/gather.inc");
+PIECE(clip, "device/kernels/clip.inc");
+PIECE(clip_constants, "overlap/clip/constants.h");
+PIECE(clip_lanes, "overlap/clip/lanes.inc");
+
+const DeviceProgram device_program_clip = {
+    .name = "clip",
+    .defines = "#define GROUPS_AT_ONCE 6\n",
+    .pieces = {clip_constants, one, kept, clip_lanes, pairs, clip},
+    .kernels = {"clip_volume", "clip_gradient"},
+    .items = 64,
+};
+
+const DeviceProgram device_program_clip32 = {
+    .name = "clip32",
+    .defines = "#define LANES_SINGLE\n#define GROUPS_AT_ONCE 8\n",
+    .pieces = {clip_constants, one, kept, clip_lanes, pairs, clip},
+    .kernels = {"clip_volume", "clip_gradient"},
+    .items = 64,
+};
+
+const DeviceProgram device_program_gather = {
+    .name = "gather",
+    .defines = "#define GROUPS_AT_ONCE 1\n",
+    .pieces = {one, pairs, gather},
+    .kernels = {"gather_pairs", "scatter_answers"},
+    .items = 64,
+};
+
+static const DeviceProgram *const programs[] = {&device_program_clip, &device_program_clip32,
+                                                &device_program_gather};
+
+const DeviceProgram *const *device_source_programs(int *count) {
+  *count = sizeof programs / sizeof *programs;
+  return programs;
+}
+
+Status device_source_text(const DeviceProgram *program, DeviceLanguage language, char **text) {
+  const char *parts[DEVICE_MAX_PIECES + 2] = {language == DEVICE_OPENCL_C ? language_opencl : language_cuda,
+                                              program->defines};
+  memcpy(parts + 2, program->pieces, sizeof program->pieces);
+  size_t length = 0, used = 0;
+  for (int k = 0; k < DEVICE_MAX_PIECES + 2; k++) length += parts[k] ? strlen(parts[k]) : 0;
+  if (!(*text = memory_zeroed(length + 1, 1))) return status_no_memory("a kernel's source");
+  for (int k = 0; k < DEVICE_MAX_PIECES + 2; k++) {
+    size_t size = parts[k] ? strlen(parts[k]) : 0;
+    if (size > 0) memcpy(*text + used, parts[k], size);
+    used += size;
+  }
+  return STATUS_OK;
+}

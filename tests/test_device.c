@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Kernels on every device that there is, against the models of the same name on this processor: to the bit.
+// Without an OpenCL driver (pocl is one) only `host` runs, and a line says so.
+#include "suite.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/bench/pairs.h"
+#include "base/memory.h"
+#include "datagen/hard.h"
+#include "device/cache.h"
+#include "device/cuda.h"
+#include "device/overlap.h"
+#include "overlap/clip/lanes.h"
+#include "overlap/model.h"
+
+enum { MAX_DEVICES = 4, COUNT = 4099, MEMBERS = 96 };
+
+static Device devices[MAX_DEVICES];
+static int device_count;
+
+// Usable devices of all kinds, the first of each.
+static void open_devices(void) {
+  static const char *const names[] = {"host", "opencl", "cuda"};
+  for (int k = 0; k < 3; k++) {
+    if (device_open(&devices[device_count], names[k]) == STATUS_OK)
+      device_count++;
+    else
+      printf("%s is not tested: %s\n", names[k], status_message());
+  }
+}
+
+static void close_devices(void) {
+  for (int k = 0; k < device_count; k++) device_close(&devices[k]);
+}
+
+// Answers of a model, to all of a batch.
+typedef struct Answers {
+  double *volume, *gradient; // (count), (count, 24)
+  unsigned *flags;           // (count)
+} Answers;
+
+static Answers make_answers(int count) {
+  size_t n = (size_t)count;
+  return (Answers){memory_zeroed(n, 8), memory_zeroed(n * 24, 8), memory_zeroed(n, sizeof(unsigned))};
+}
+
+static void destroy_answers(Answers *answers) {
+  memory_free(answers->volume), memory_free(answers->gradient), memory_free(answers->flags);
+}
+
+static OverlapBatch batch_of(const double *pairs, int count, const Answers *answers, bool has_gradient) {
+  return (OverlapBatch){.pair_count = count,
+                        .pairs = pairs,
+                        .volume = answers->volume,
+                        .gradient = has_gradient ? answers->gradient : NULL,
+                        .flags = answers->flags};
+}
+
+static void ask_processor(const char *name, const double *pairs, int count, bool has_gradient,
+                          Answers *answers) {
+  OverlapModel model;
+  OverlapBatch batch = batch_of(pairs, count, answers, has_gradient);
+  ck_assert_ok(overlap_model_create(&model, name));
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  overlap_model_destroy(&model);
+}
+
+static bool is_same_answer(const Answers *a, const Answers *b, int i, bool has_gradient) {
+  size_t at = (size_t)i;
+  return memcmp(&a->volume[at], &b->volume[at], 8) == 0 && a->flags[at] == b->flags[at] &&
+         (!has_gradient || memcmp(&a->gradient[24 * at], &b->gradient[24 * at], 24 * 8) == 0);
+}
+
+// A doubtful pair of clip32 is answered by clip on a device.
+static void check_same(const char *model, const double *pairs, int count, bool has_gradient,
+                       const Answers *answers, const char *what) {
+  Answers expected = make_answers(count), careful = make_answers(count);
+  bool is_single = strcmp(model, "clip32") == 0;
+  int others = 0;
+  ask_processor(model, pairs, count, has_gradient, &expected);
+  ask_processor("clip", pairs, count, has_gradient, &careful);
+  for (int i = 0; i < count; i++) {
+    if (is_same_answer(answers, &expected, i, has_gradient)) continue;
+    ck_assert_msg(is_single && is_same_answer(answers, &careful, i, has_gradient),
+                  "%s, pair %d: V = %.17g, flags %u; %s on the processor %.17g, flags %u", what, i,
+                  answers->volume[i], answers->flags[i], model, expected.volume[i], expected.flags[i]);
+    others++;
+  }
+  ck_assert_int_le(others, is_single ? count : 0);
+  destroy_answers(&expected), destroy_answers(&careful);
+}
+
+static void check_batch(const Device *device, const char *model, const double *pairs, int count,
+                        const char *what) {
+  DeviceOverlap overlap;
+  Answers answers = make_answers(count);
+  ck_assert_ok(device_overlap_create(&overlap, device, model));
+  for (int has_gradient = 0; has_gradient < 2; has_gradient++) {
+    OverlapBatch batch = batch_of(pairs, count, &answers, has_gradient);
+    memset(answers.volume, 0x55, (size_t)count * 8);
+    memset(answers.gradient, 0x55, (size_t)count * 24 * 8);
+    ck_assert_ok(device_overlap_eval(&overlap, &batch));
+    check_same(model, pairs, count, has_gradient, &answers, what);
+  }
+  device_overlap_destroy(&overlap);
+  destroy_answers(&answers);
+}
+
+START_TEST(bench_sets_are_answered_to_the_bit) {
+  const Device *device = &devices[_i / DEVICE_OVERLAP_MODELS];
+  const char *model = device_overlap_models[_i % DEVICE_OVERLAP_MODELS];
+  double *pairs = memory_zeroed(COUNT * 24, sizeof *pairs);
+  for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
+    ck_assert_ok(app_bench_pairs_make(app_bench_sets[set], COUNT, 3, pairs));
+    check_batch(device, model, pairs, COUNT, app_bench_sets[set]);
+  }
+  memory_free(pairs);
+}
+END_TEST
+
+START_TEST(hard_pairs_are_answered_to_the_bit) {
+  const Device *device = &devices[_i / DEVICE_OVERLAP_MODELS];
+  const char *model = device_overlap_models[_i % DEVICE_OVERLAP_MODELS];
+  int count = DATAGEN_HARD_CLASS_COUNT * MEMBERS;
+  double *pairs = memory_zeroed((size_t)count * 24, sizeof *pairs);
+  for (int i = 0; i < count; i++)
+    memcpy(pairs + (size_t)i * 24, datagen_hard_make(i / MEMBERS, i % MEMBERS).x, 24 * sizeof *pairs);
+  check_batch(device, model, pairs, count, "hard pairs");
+  memory_free(pairs);
+}
+END_TEST
+
+// Pairs of a set as two meshes: each tetrahedron has vertices of its own.
+static void check_residences(const Device *device, const double *pairs) {
+  DeviceOverlap overlap;
+  Answers rows = make_answers(COUNT), others = make_answers(COUNT);
+  double *columns = memory_zeroed(COUNT * 24, sizeof *columns);
+  int *tets = memory_zeroed(COUNT * 8, sizeof *tets), *ends = memory_zeroed(COUNT * 2, sizeof *ends);
+  for (int i = 0; i < COUNT; i++)
+    for (int c = 0; c < 24; c++) columns[(size_t)c * COUNT + (size_t)i] = pairs[(size_t)i * 24 + (size_t)c];
+  for (int k = 0; k < 8 * COUNT; k++) tets[k] = k;
+  for (int k = 0; k < 2 * COUNT; k++) ends[k] = k;
+  OverlapBatch batch = batch_of(pairs, COUNT, &rows, true);
+  ck_assert_ok(device_overlap_create(&overlap, device, "clip"));
+  ck_assert_ok(device_overlap_eval(&overlap, &batch));
+  for (int kind = 0; kind < 2; kind++) {
+    ck_assert_ok(kind == 0 ? device_overlap_put_columns(&overlap, COUNT, columns)
+                           : device_overlap_put_mesh(&overlap, 8 * COUNT, pairs, 2 * COUNT, tets, COUNT, ends));
+    ck_assert_ok(device_overlap_run(&overlap, true));
+    ck_assert_ok(device_overlap_get(&overlap, others.volume, others.gradient, others.flags));
+    ck_assert_mem_eq(rows.volume, others.volume, COUNT * sizeof(double));
+    ck_assert_mem_eq(rows.flags, others.flags, COUNT * sizeof(unsigned));
+    for (int i = 0; i < COUNT; i++)
+      for (int c = 0; c < 24; c++)
+        ck_assert(memcmp(&rows.gradient[24 * i + c], &others.gradient[COUNT * c + i], sizeof(double)) == 0);
+  }
+  device_overlap_destroy(&overlap);
+  destroy_answers(&rows), destroy_answers(&others);
+  memory_free(columns), memory_free(tets), memory_free(ends);
+}
+
+START_TEST(where_the_numbers_lie_does_not_matter) {
+  double *pairs = memory_zeroed(COUNT * 24, sizeof *pairs);
+  ck_assert_ok(app_bench_pairs_make("uniform", COUNT, 8, pairs));
+  check_residences(&devices[_i], pairs);
+  memory_free(pairs);
+}
+END_TEST
+
+START_TEST(doubtful_pairs_are_handed_on_and_counted) {
+  DeviceOverlap overlap;
+  double *pairs = memory_zeroed(COUNT * 24, sizeof *pairs);
+  Answers answers = make_answers(COUNT);
+  OverlapBatch batch = batch_of(pairs, COUNT, &answers, false);
+  ck_assert_ok(app_bench_pairs_make("uniform", COUNT, 3, pairs));
+  ck_assert_ok(device_overlap_create(&overlap, &devices[_i], "clip32"));
+  ck_assert_ok(device_overlap_eval(&overlap, &batch));
+  ck_assert_int_gt(overlap.handed_on[0], COUNT / 100);
+  ck_assert_int_lt(overlap.handed_on[1], overlap.handed_on[0] / 10);
+  device_overlap_destroy(&overlap);
+  destroy_answers(&answers), memory_free(pairs);
+}
+END_TEST
+
+START_TEST(a_pair_that_is_not_finite_is_named) {
+  DeviceOverlap overlap;
+  double pairs[5 * 24];
+  Answers answers = make_answers(5);
+  OverlapBatch batch = batch_of(pairs, 5, &answers, true);
+  ck_assert_ok(app_bench_pairs_make("near", 5, 3, pairs));
+  pairs[3 * 24 + 14] = NAN;
+  ck_assert_ok(device_overlap_create(&overlap, &devices[_i], "clip"));
+  ck_assert_int_eq(device_overlap_eval(&overlap, &batch), STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), "pair 3, tetrahedron 1, vertex 0: coordinate z") != NULL, "%s",
+                status_message());
+  device_overlap_destroy(&overlap);
+  destroy_answers(&answers);
+}
+END_TEST
+
+int main(void) {
+  setenv("CK_FORK", "no", 1); // a driver's threads do not survive a fork
+  open_devices();
+  TCase *cases = tcase_create("device");
+  tcase_add_loop_test(cases, bench_sets_are_answered_to_the_bit, 0, device_count * DEVICE_OVERLAP_MODELS);
+  tcase_add_loop_test(cases, hard_pairs_are_answered_to_the_bit, 0, device_count * DEVICE_OVERLAP_MODELS);
+  tcase_add_loop_test(cases, where_the_numbers_lie_does_not_matter, 0, device_count);
+  tcase_add_loop_test(cases, doubtful_pairs_are_handed_on_and_counted, 0, device_count);
+  tcase_add_loop_test(cases, a_pair_that_is_not_finite_is_named, 0, device_count);
+  int result = suite_run("device", cases, 300);
+  close_devices();
+  return result;
+}
