@@ -214,8 +214,10 @@ static Status answer_row(Rows *rows, int i, bool wants_gradient) {
           STATUS_INPUT, "pair %d, tetrahedron %d, vertex %d: coordinate %c is %g, it must be a finite number",
           rows->numbers[i], c / 12, c / 3 % 4, "xyz"[c % 3], pair[c]);
   unsigned flags = 0;
-  TRY(overlap_clip_scalar_ops.eval_pair(
-      NULL, pair, rows->volume + i, wants_gradient ? rows->gradient + (size_t)i * SIZE : NULL, NULL, &flags));
+  const OverlapAnswer answer = {.volume = rows->volume + i,
+                                .gradient = wants_gradient ? rows->gradient + (size_t)i * SIZE : NULL,
+                                .flags = &flags};
+  TRY(overlap_clip_scalar_ops.eval_pair(NULL, pair, &answer));
   rows->flags[i] = (unsigned char)flags;
   return STATUS_OK;
 }
@@ -297,7 +299,8 @@ Status device_overlap_get(DeviceOverlap *overlap, double *volume, double *gradie
 }
 
 Status device_overlap_eval(DeviceOverlap *overlap, const OverlapBatch *batch) {
-  if (batch->hessian) return status_fail(STATUS_INPUT, "no Hessian on a device");
+  if (batch->hessian || batch->centroid)
+    return status_fail(STATUS_INPUT, "devices give V and its gradient, no Hessian and no centroid");
   TRY(device_overlap_put_rows(overlap, batch->pair_count, batch->pairs));
   TRY(device_overlap_run(overlap, batch->gradient != NULL));
   return device_overlap_get(overlap, batch->volume, batch->gradient, batch->flags);
