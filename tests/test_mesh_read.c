@@ -18,6 +18,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "fem/mesh/mesh.h"
+#include "fem/mesh/reader/gmsh_library.h"
 #include "fem/mesh/reader/tetgen.h"
 #include "fem/mesh/reader/worker.h"
 
@@ -713,6 +714,9 @@ START_TEST(the_command_says_what_is_wrong) {
 END_TEST
 
 int main(void) {
+  // Loaded once for all tests, each of which reads in a process of its own.
+  FemMeshGmshLibrary gmsh;
+  if (fem_mesh_gmsh_library_load(&gmsh) != STATUS_OK) return EXIT_FAILURE;
   TCase *cases = tcase_create("mesh_read");
   tcase_add_checked_fixture(cases, make_directory, remove_directory);
   tcase_add_loop_test(cases, every_format_gives_the_same_box, 0, 10);

@@ -15,6 +15,7 @@
 #include "fem/element/quadratic.h"
 #include "fem/mesh/edges.h"
 #include "fem/mesh/mesh.h"
+#include "fem/mesh/reader/gmsh_library.h"
 #include "fem/model/load.h"
 
 #define MESHES TETLAP_SOURCE_DIR "/meshes/"
@@ -608,6 +609,9 @@ START_TEST(every_failed_allocation_is_an_error) {
 END_TEST
 
 int main(void) {
+  // Loaded once for all tests, each of which reads in a process of its own.
+  FemMeshGmshLibrary gmsh;
+  if (fem_mesh_gmsh_library_load(&gmsh) != STATUS_OK) return EXIT_FAILURE;
   TCase *cases = tcase_create("mesh_second");
   tcase_add_checked_fixture(cases, make_directory, remove_directory);
   tcase_add_loop_test(cases, every_format_keeps_each_node_on_its_edge, 0, sizeof writers / sizeof *writers);

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "app/command/dataset_import.h"
 #include "app/dataset/plot.h"
 #include "app/dataset/summary.h"
 #include "base/log.h"
@@ -251,11 +252,12 @@ static int run_plot(int argument_count, char **arguments) {
 static const AppCommand plot_command = {
     .name = "plot", .help = "draw its kinds and volumes", .argp = &plot_argp, .run = run_plot};
 
-static const AppCommand *const verbs[] = {&info_command, &merge_command, &plot_command, NULL};
+static const AppCommand *const verbs[] = {&app_command_dataset_import, &info_command, &merge_command,
+                                          &plot_command, NULL};
 
 const AppCommand app_command_dataset = {
     .name = "dataset",
-    .help = "tell, join or draw data sets of such pairs",
+    .help = "import, tell, join or draw data sets of such pairs",
     .children = verbs,
     .child_word = "verb",
     .child_of_files = "info",

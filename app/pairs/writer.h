@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an overlap model answers of pairs, as text (a line a pair, a header), JSON (an object a line), or
+// NumPy's .npy (a record a pair, with fields volume, gradient, centroid, flags).
+#ifndef TETLAP_APP_PAIRS_WRITER_H
+#define TETLAP_APP_PAIRS_WRITER_H
+
+#include <stdbool.h>
+
+#include "base/file.h"
+#include "overlap/ops.h"
+
+typedef enum AppPairsForm { APP_PAIRS_FORM_CSV, APP_PAIRS_FORM_JSON, APP_PAIRS_FORM_NPY } AppPairsForm;
+
+typedef struct AppPairsWriter {
+  AppPairsForm form;
+  bool has_gradient, has_centroid;
+  FILE *stream;
+  FileWriter file; // zero: standard output
+  long long count; // pairs written
+} AppPairsWriter;
+
+// By the file's name: .csv, .json and .jsonl, .npy. STATUS_USAGE: another one.
+Status app_pairs_writer_form(const char *path, AppPairsForm *form);
+
+// `path` NULL: standard output. STATUS_USAGE: .npy there, whose head tells a number that is known at the end.
+Status app_pairs_writer_open(AppPairsWriter *writer, const char *path, AppPairsForm form, bool has_gradient,
+                             bool has_centroid);
+// Of a batch with volumes and flags, and gradients and centroids if they are to be written.
+void app_pairs_writer_append(AppPairsWriter *writer, const OverlapBatch *batch);
+// Puts the file into its place. STATUS_IO.
+Status app_pairs_writer_commit(AppPairsWriter *writer);
+void app_pairs_writer_abandon(AppPairsWriter *writer); // allowed after a commit
+
+#endif
