@@ -311,7 +311,7 @@ END_TEST
 static void import(const char *path, AppImportDef def, AppImport *result, Status expected) {
   static AppPairsReader reader;
   ck_assert_ok(app_pairs_reader_open(&reader, path, true));
-  ck_assert_int_eq(app_import_run(&reader, &def, result), expected);
+  ck_assert_int_eq(app_dataset_import_run(&reader, &def, result), expected);
   app_pairs_reader_close(&reader);
 }
 
@@ -333,9 +333,9 @@ START_TEST(wrong_labels_are_counted_named_and_replaced) {
     if (finding->count) ck_assert_int_eq(finding->places[0], expected[k].place);
   }
   ck_assert_near(result.findings[APP_IMPORT_MISSED_VOLUME].largest, corner_volume, 1e-15);
-  ck_assert_int_eq(app_import_fault_count(&result), 5);
+  ck_assert_int_eq(app_dataset_import_fault_count(&result), 5);
   char text[512];
-  app_import_tell(&result, APP_IMPORT_MISSED_VOLUME, "line", text, sizeof text);
+  app_dataset_import_tell(&result, APP_IMPORT_MISSED_VOLUME, "line", text, sizeof text);
   ck_assert_str_eq(
       text,
       "1 of 5 pairs: the label's V is 0, but the tetrahedra overlap (line 3); at most by 0.0572, in line 3");

@@ -87,14 +87,15 @@ static void tell(const AppPairsReader *reader, const AppImport *import) {
   for (int f = 0; f < APP_IMPORT_FAULT_COUNT; f++) {
     char text[MOST_TEXT];
     if (import->findings[f].count == 0) continue;
-    app_import_tell(import, (AppImportFault)f, app_pairs_reader_place_word(reader), text, sizeof text);
+    app_dataset_import_tell(import, (AppImportFault)f, app_pairs_reader_place_word(reader), text,
+                            sizeof text);
     log_warning("%s: %s", reader->name, text);
   }
 }
 
 static void conclude(const AppPairsReader *reader, const AppImportDef *def, const AppImport *import) {
   bool has_labels = reader->has_volume || reader->has_status || reader->has_gradient;
-  long long wrong = app_import_fault_count(import);
+  long long wrong = app_dataset_import_fault_count(import);
   log_info("wrote %s: %lld pairs with exact labels; %s", def->output, import->written,
            !has_labels  ? "the file has none to compare"
            : wrong == 0 ? "all labels of the file agree"
@@ -106,7 +107,7 @@ static Status print_json(const Options *options, const AppImport *import) {
   if (!record) return status_no_memory("the findings");
   record_text(record, "file", options->file);
   record_text(record, "output", options->import.output);
-  app_import_record(import, record);
+  app_dataset_import_record(import, record);
   Status status = record_print(record, stdout);
   record_destroy(record);
   return status;
@@ -119,7 +120,7 @@ static Status run(const Options *options) {
   if (!status && reader.format == APP_PAIRS_DATASET)
     status = status_fail(STATUS_INPUT, "%s: is a data set already", options->file);
   if (!status) {
-    status = app_import_run(&reader, &options->import, &import);
+    status = app_dataset_import_run(&reader, &options->import, &import);
     tell(&reader, &import);
   }
   if (!status) conclude(&reader, &options->import, &import);

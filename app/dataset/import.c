@@ -61,8 +61,8 @@ static Status label_pair(const Run *run, int i) {
   run->are_flat[i] = proof.is_flat;
   run->pairs.status[i] = proof.dimension >= 0;
   run->pairs.kind[i] = (uint8_t)(proof.is_flat ? DATAGEN_CAPTURED : kind_of(&proof));
-  return datagen_label_pair(DATAGEN_LABEL_EXACT, pair, proof.dimension, run->pairs.volume + i,
-                            run->pairs.gradient + APP_PAIRS_SIZE * (size_t)i);
+  return datagen_generate_label(DATAGEN_LABEL_EXACT, pair, proof.dimension, run->pairs.volume + i,
+                                     run->pairs.gradient + APP_PAIRS_SIZE * (size_t)i);
 }
 
 static Status label_block(const Run *run) {
@@ -152,7 +152,7 @@ static Status import_block(Run *run) {
   run->import->written += (long long)kept;
   DatagenPairs pairs = run->pairs;
   if (!run->has_gradient) pairs.gradient = NULL;
-  return kept ? datagen_writer_append(run->writer, &pairs, kept, NULL) : STATUS_OK;
+  return kept ? datagen_dataset_writer_append(run->writer, &pairs, kept, NULL) : STATUS_OK;
 }
 
 static Status import_blocks(Run *run) {
@@ -166,7 +166,7 @@ static Status import_blocks(Run *run) {
 }
 
 static Status conclude(const Run *run) {
-  long long wrong = app_import_fault_count(run->import);
+  long long wrong = app_dataset_import_fault_count(run->import);
   if (run->def->is_strict && wrong > 0)
     return status_fail(STATUS_INPUT, "%s: %lld labels are wrong; nothing was written", run->reader->name,
                        wrong);
@@ -184,15 +184,15 @@ static Status begin(Run *run) {
   snprintf(info.law, sizeof info.law, "imported");
   snprintf(info.mix, sizeof info.mix, "imported");
   snprintf(info.volume_law, sizeof info.volume_law, "imported");
-  snprintf(info.label, sizeof info.label, "%s", datagen_label_name(DATAGEN_LABEL_EXACT));
+  snprintf(info.label, sizeof info.label, "%s", datagen_plan_label_name(DATAGEN_LABEL_EXACT));
   info.has_gradient = run->has_gradient;
   TRY(datagen_pairs_create(&run->pairs, APP_PAIRS_BLOCK, true));
   run->are_flat = memory_zeroed(APP_PAIRS_BLOCK, sizeof *run->are_flat);
   if (!run->are_flat) return status_no_memory("a block of pairs");
-  return datagen_writer_begin(&run->writer, run->def->output, &info);
+  return datagen_dataset_writer_begin(&run->writer, run->def->output, &info);
 }
 
-Status app_import_run(AppPairsReader *reader, const AppImportDef *def, AppImport *import) {
+Status app_dataset_import_run(AppPairsReader *reader, const AppImportDef *def, AppImport *import) {
   Run run = {.reader = reader,
              .def = def,
              .import = import,
@@ -202,22 +202,22 @@ Status app_import_run(AppPairsReader *reader, const AppImportDef *def, AppImport
   if (!status) status = import_blocks(&run);
   if (!status) status = conclude(&run);
   if (status)
-    datagen_writer_abandon(run.writer);
+    datagen_dataset_writer_abandon(run.writer);
   else
-    status = datagen_writer_commit(run.writer);
+    status = datagen_dataset_writer_commit(run.writer);
   datagen_pairs_destroy(&run.pairs);
   memory_free(run.are_flat);
   return status;
 }
 
-long long app_import_fault_count(const AppImport *import) {
+long long app_dataset_import_fault_count(const AppImport *import) {
   long long count = 0;
   for (int f = 0; f < APP_IMPORT_FLAT; f++) count += import->findings[f].count;
   return count;
 }
 
-void app_import_tell(const AppImport *import, AppImportFault fault, const char *place_word, char *text,
-                     size_t size) {
+void app_dataset_import_tell(const AppImport *import, AppImportFault fault, const char *place_word,
+                             char *text, size_t size) {
   const AppImportFinding *finding = &import->findings[fault];
   size_t used = 0;
   int named = finding->count < APP_IMPORT_NAMED ? (int)finding->count : APP_IMPORT_NAMED;
@@ -230,10 +230,10 @@ void app_import_tell(const AppImport *import, AppImportFault fault, const char *
                 finding->largest_place);
 }
 
-void app_import_record(const AppImport *import, Record *record) {
+void app_dataset_import_record(const AppImport *import, Record *record) {
   record_integer(record, "pairs", import->read);
   record_integer(record, "written", import->written);
-  record_integer(record, "wrong_labels", app_import_fault_count(import));
+  record_integer(record, "wrong_labels", app_dataset_import_fault_count(import));
   Record *findings = record_child(record, "findings");
   for (int f = 0; f < APP_IMPORT_FAULT_COUNT; f++) {
     const AppImportFinding *finding = &import->findings[f];

@@ -45,14 +45,14 @@ typedef struct AppImportDef {
 
 // Reads all pairs and writes the set. STATUS_INPUT: the file is wrong, or strict and a label is;
 // STATUS_INTERRUPTED. The findings are those up to there.
-Status app_import_run(AppPairsReader *reader, const AppImportDef *def, AppImport *import);
+Status app_dataset_import_run(AppPairsReader *reader, const AppImportDef *def, AppImport *import);
 
 // How many labels were wrong; pairs that are flat are not among them.
-long long app_import_fault_count(const AppImport *import);
+long long app_dataset_import_fault_count(const AppImport *import);
 
 // A finding in words: what, how many, where. `place_word`: what the file's places are called.
-void app_import_tell(const AppImport *import, AppImportFault fault, const char *place_word, char *text,
-                     size_t size);
-void app_import_record(const AppImport *import, Record *record);
+void app_dataset_import_tell(const AppImport *import, AppImportFault fault, const char *place_word,
+                             char *text, size_t size);
+void app_dataset_import_record(const AppImport *import, Record *record);
 
 #endif
