@@ -58,8 +58,8 @@ static int compare_pairs(const void *left, const void *right) {
   return (a[1] > b[1]) - (a[1] < b[1]);
 }
 
-static Status take(ContactPairList *list, const ContactBoxPairs *found, const Selection *in_a,
-                   const Selection *in_b, int offset_a, int offset_b) {
+static Status append_selected(ContactPairList *list, const ContactBoxPairs *found, const Selection *in_a,
+                              const Selection *in_b, int offset_a, int offset_b) {
   size_t wanted = (size_t)list->count + found->count;
   if (wanted > INT_MAX ||
       !memory_reserve((void **)&list->pairs, &list->capacity, wanted, sizeof *list->pairs))
@@ -88,7 +88,7 @@ Status contact_broad_append(ContactPairList *list, const ContactBroadSide *a, co
   if (!status)
     status = contact_boxes_intersect((const double(*)[6])in_a.boxes, in_a.count,
                                      (const double(*)[6])in_b.boxes, in_b.count, &found);
-  if (!status) status = take(list, &found, &in_a, &in_b, a->tet_offset, b->tet_offset);
+  if (!status) status = append_selected(list, &found, &in_a, &in_b, a->tet_offset, b->tet_offset);
   contact_boxes_destroy(&found);
   drop(&in_a);
   drop(&in_b);

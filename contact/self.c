@@ -104,8 +104,9 @@ static double separation_of(const ContactDepth *depth, const int pair[2], const 
 }
 
 // Turns pairs of boxes into pairs i < j of tetrahedra; j = −1 where they may not meet or are too far apart.
-static void judge(const ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth,
-                  const Boxes *boxes, const double *positions, double margin, ContactBoxPairs *found) {
+static void keep_separated(const ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth,
+                           const Boxes *boxes, const double *positions, double margin,
+                           ContactBoxPairs *found) {
   long long count = (long long)found->count;
 #pragma omp parallel for schedule(static) if (count > 512)
   for (long long k = 0; k < count; k++) {
@@ -119,7 +120,7 @@ static void judge(const ContactSelf *self, const ContactSystemDef *def, const Co
   }
 }
 
-static Status take(ContactPairList *list, const ContactBoxPairs *found) {
+static Status append_found(ContactPairList *list, const ContactBoxPairs *found) {
   size_t kept = 0, before = (size_t)list->count;
   for (size_t k = 0; k < found->count; k++) kept += found->pairs[k][1] >= 0;
   if (before + kept > INT_MAX ||
@@ -143,8 +144,8 @@ Status contact_self_append(const ContactSelf *self, const ContactSystemDef *def,
     status = contact_boxes_intersect((const double(*)[6])boxes.of_outer, boxes.outer_count,
                                      (const double(*)[6])boxes.of_all, boxes.cell_count, &found);
   if (!status) {
-    judge(self, def, depth, &boxes, positions, margin, &found);
-    status = take(list, &found);
+    keep_separated(self, def, depth, &boxes, positions, margin, &found);
+    status = append_found(list, &found);
   }
   contact_boxes_destroy(&found);
   memory_free(boxes.of_outer);

@@ -62,7 +62,8 @@ static int choose(ContactStatus *status, const OverlapModel *model, int count) {
 }
 
 // What a model says of the portion's pairs.
-static Status ask(ContactStatus *status, const OverlapModel *model, int count, unsigned char *says) {
+static Status find_verdicts(ContactStatus *status, const OverlapModel *model, int count,
+                            unsigned char *says) {
   int chosen = choose(status, model, count);
   OverlapBatch batch = {.pair_count = chosen, .pairs = status->asked, .volume = status->volumes};
   for (int k = 0; k < count; k++) says[k] = 0;
@@ -78,7 +79,7 @@ static Status ask(ContactStatus *status, const OverlapModel *model, int count, u
   return STATUS_OK;
 }
 
-static void judge(ContactStatus *status, const ContactLayout *layout, int count) {
+static void compare_verdicts(ContactStatus *status, const ContactLayout *layout, int count) {
   ContactStatusCounts *pairs = &status->pairs;
   for (int k = 0; k < count; k++) {
     bool predicted = status->says[0][k], exact = status->says[1][k];
@@ -99,9 +100,9 @@ static void judge(ContactStatus *status, const ContactLayout *layout, int count)
 static Status ask_both(ContactStatus *status, const ContactLayout *layout, const OverlapModel *model,
                        const OverlapModel *reference, int count) {
   if (count == 0) return STATUS_OK;
-  TRY(ask(status, model, count, status->says[0]));
-  TRY(ask(status, reference, count, status->says[1]));
-  judge(status, layout, count);
+  TRY(find_verdicts(status, model, count, status->says[0]));
+  TRY(find_verdicts(status, reference, count, status->says[1]));
+  compare_verdicts(status, layout, count);
   return STATUS_OK;
 }
 

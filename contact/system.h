@@ -3,11 +3,12 @@
 // knows no mechanics: bodies are ranges of vertices and tetrahedra, obstacles are bodies without unknowns or
 // shapes without elements.
 //
+// clang-format off
 //     candidates (broad.h, kept while motion < margin/2)
 //         │ gather (n, 2, 4, 3)
 //         ▼
-//     overlap model ──► V_ij, ∇V_ij ──► W_i = Σ_j V_ij, W_a = ¼ Σ_{i∋a} W_i ──► pressure p_ij ──► −Σ p_ij
-//     ∇V_ij
+//     overlap model ──► V_ij, ∇V_ij ──► W_i = Σ_j V_ij, W_a = ¼ Σ_{i∋a} W_i ──► pressure p_ij ──► −Σ p_ij ∇V_ij
+// clang-format on
 //
 // W is kept per interface (unordered pair of bodies), so a third body does not change the pressure between
 // two. A body that meets itself is an interface of its own, with the same potential: W_i is what other
@@ -91,8 +92,8 @@ Status contact_system_gap(ContactSystem *system, double time, const double *posi
 // Of the last evaluation. Pointers are the system's, valid until the next call.
 const ContactInterface *contact_system_interfaces(const ContactSystem *system, int *count);
 const double *contact_system_forces(const ContactSystem *system); // per vertex [N] (vertex_count, 3)
-const double *
-contact_system_covered(const ContactSystem *system); // Σ over interfaces of W_i [m³]    (tet_count)
+// Σ over interfaces of W_i [m³] (tet_count)
+const double *contact_system_covered(const ContactSystem *system);
 int contact_system_active_count(const ContactSystem *system); // pairs with V > 0, those at rest included
 // The pairs of the last evaluation with V > 0, as handed to the model (in general position); for audits and
 // capture. Owned by the caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).

@@ -48,9 +48,10 @@ Status datagen_generate(const DatagenPlan *plan, long long first, int count, con
   for (int i = 0; i < count; i++)
     if (make_pair(plan, first + i, pairs, i, attempts) != STATUS_OK && i < first_failed) first_failed = i;
   if (first_failed == INT_MAX) return STATUS_OK;
-  // the message belongs to the thread that failed: let this one see it too
+  // A message belongs to the thread that failed: this thread makes the pair again to have it.
   long long ignored[DATAGEN_KIND_COUNT] = {0};
   Status status = make_pair(plan, first + first_failed, pairs, first_failed, ignored);
-  if (status == STATUS_OK) return status_fail(STATUS_SOLVER, "pair %lld failed once and not again", first);
+  if (status == STATUS_OK)
+    return status_fail(STATUS_SOLVER, "pair %lld failed once and not again", first + first_failed);
   return status_prefix(status, "pair %lld", first + first_failed);
 }

@@ -34,7 +34,7 @@ static Status add_blocks(const DatagenPlan *plan, const DatagenRunOptions *optio
 }
 
 // Ends the file according to how the blocks ended. Stopped with something in it counts as an end, too.
-static Status conclude(DatagenWriter *writer, Status status, bool has_pairs) {
+static Status end_file(DatagenWriter *writer, Status status, bool has_pairs) {
   if (status == STATUS_OK) return datagen_dataset_writer_commit(writer);
   if (status != STATUS_INTERRUPTED || !has_pairs) {
     datagen_dataset_writer_abandon(writer);
@@ -53,7 +53,7 @@ Status datagen_run(const DatagenPlan *plan, const DatagenRunOptions *options) {
   Status status = datagen_dataset_writer_begin(&writer, options->path, &info);
   if (!status) {
     status = add_blocks(plan, options, writer, &pairs, block);
-    status = conclude(writer, status, datagen_dataset_writer_count(writer) > 0);
+    status = end_file(writer, status, datagen_dataset_writer_count(writer) > 0);
   }
   datagen_pairs_destroy(&pairs);
   return status;

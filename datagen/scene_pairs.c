@@ -63,7 +63,7 @@ static bool boxes_overlap(const double pair[24]) {
   return true;
 }
 
-static void turn(Random *random, double pair[24]) {
+static void turn_second(Random *random, double pair[24]) {
   double rotation[9];
   random_rotation(random, rotation);
   for (int i = 0; i < 8; i++) vec3_store(pair + 3 * i, turned(rotation, vec3_at(pair + 3 * i)));
@@ -84,7 +84,7 @@ bool datagen_scene_pairs_try(Random *random, double pair[24]) {
   place_tet(&lower, (int[]){0, 0, -1}, random_below(random, 6), pair);
   place_tet(&upper, (int[]){0, 0, 0}, random_below(random, 6), pair + 12);
   if (!boxes_overlap(pair)) return false;
-  turn(random, pair);
+  turn_second(random, pair);
   double place[3];
   for (int c = 0; c < 3; c++) place[c] = random_uniform(random);
   datagen_cube_fit(pair, place);

@@ -16,8 +16,8 @@ typedef struct NET_NAME(NetProduct) {
   NET_REAL *c;
   ptrdiff_t c_row;
   bool has_relu;
-  bool
-      is_raw; // a factor is the network's input, or what is wanted is a derivative by it: bf16 keeps to float
+  // A factor is the network's input, or what is wanted is a derivative by it: bf16 keeps to float.
+  bool is_raw;
 } NET_NAME(NetProduct);
 
 // A matrix of values and tangents: `rows` rows, each 1 + tangents groups of n columns.

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static uint64_t mix(uint64_t *seed) {
+static uint64_t splitmix(uint64_t *seed) {
   uint64_t z = (*seed += 0x9e3779b97f4a7c15u);
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
@@ -15,9 +15,9 @@ static uint64_t rotate(uint64_t x, int bits) {
 }
 
 NetRandom net_random_seeded(uint64_t seed, uint64_t stream) {
-  uint64_t stirred = mix(&seed) ^ mix(&stream) * 0xd1342543de82ef95u;
+  uint64_t stirred = splitmix(&seed) ^ splitmix(&stream) * 0xd1342543de82ef95u;
   NetRandom random;
-  for (int k = 0; k < 4; k++) random.state[k] = mix(&stirred);
+  for (int k = 0; k < 4; k++) random.state[k] = splitmix(&stirred);
   return random;
 }
 

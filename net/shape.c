@@ -157,7 +157,7 @@ typedef struct Reader {
   NetStatus status;
 } Reader;
 
-static const NetJson *take(Reader *reader, const char *key) {
+static const NetJson *read_member(Reader *reader, const char *key) {
   if (reader->status != NET_OK) return NULL;
   const NetJson *value = net_json_member(reader->json, key);
   if (!value) reader->status = net_status_fail(NET_BAD_FILE, "shape: key \"%s\" is missing", key);
@@ -166,7 +166,7 @@ static const NetJson *take(Reader *reader, const char *key) {
 }
 
 static int take_name(Reader *reader, const char *key, const char *const names[]) {
-  const NetJson *value = take(reader, key);
+  const NetJson *value = read_member(reader, key);
   if (!value) return 0;
   const char *text = net_json_text(value);
   for (int k = 0; text && names[k]; k++)
@@ -178,7 +178,7 @@ static int take_name(Reader *reader, const char *key, const char *const names[])
 }
 
 static int take_integer(Reader *reader, const char *key) {
-  const NetJson *value = take(reader, key);
+  const NetJson *value = read_member(reader, key);
   int64_t integer = 0;
   if (value && (!net_json_integer(value, &integer) || integer < 0 || integer > NET_MAX_WIDTH))
     reader->status =
@@ -187,7 +187,7 @@ static int take_integer(Reader *reader, const char *key) {
 }
 
 static bool take_bool(Reader *reader, const char *key) {
-  const NetJson *value = take(reader, key);
+  const NetJson *value = read_member(reader, key);
   bool boolean = false;
   if (value && !net_json_bool(value, &boolean))
     reader->status = net_status_fail(NET_BAD_FILE, "shape: \"%s\" must be true or false", key);
@@ -196,7 +196,7 @@ static bool take_bool(Reader *reader, const char *key) {
 
 static NetWidths take_widths(Reader *reader, const char *key) {
   NetWidths widths = {0};
-  const NetJson *value = take(reader, key);
+  const NetJson *value = read_member(reader, key);
   if (!value) return widths;
   int count = net_json_count(value);
   bool ok = net_json_is_array(value) && count <= NET_MAX_DEPTH;

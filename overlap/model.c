@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "overlap/model.h"
 
-#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -10,6 +9,7 @@
 #include "overlap/exact/cgal.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/model.h"
+#include "overlap/portions.h"
 #include "overlap/separation.h"
 #include "overlap/tpn/model.h"
 #include "overlap/weights.h"
@@ -135,38 +135,27 @@ static const double WORTH_THREADS = 2e-4;
 
 enum { PORTION = 64 }; // pairs that a thread takes at a time
 
-// Pairs begin … end, but for those that a face separates: what these are is known without the model. The
-// first that failed, or INT_MAX.
-static int eval_portion(const OverlapModel *model, const OverlapBatch *batch, int begin, int end) {
+// All pairs but those that a face separates: what these are is known without the model.
+static Status eval_portion(const void *self, const OverlapBatch *portion, int first) {
+  const OverlapModel *model = self;
   bool is_apart[PORTION] = {false};
   if (!model->ops->rejects_disjoint && !overlap_model_has_ghosts(model))
-    overlap_separation_find(end - begin, batch->pairs + (size_t)begin * OVERLAP_PAIR_SIZE, is_apart);
-  for (int i = begin; i < end; i++)
-    if (is_apart[i - begin])
-      write_disjoint(batch, i);
-    else if (eval_one(model, batch, i) != STATUS_OK)
-      return i;
-  return INT_MAX;
+    overlap_separation_find(portion->pair_count, portion->pairs, is_apart);
+  for (int i = 0; i < portion->pair_count; i++) {
+    Status status = STATUS_OK;
+    if (is_apart[i])
+      write_disjoint(portion, i);
+    else
+      status = eval_one(model, portion, i);
+    if (status) return status_prefix(status, "overlap model '%s': pair %d", model->ops->name, first + i);
+  }
+  return STATUS_OK;
 }
 
-// Each pair has its own place in the outputs, so the threads' order does not show. Costs differ from pair to
-// pair by a hundred and more: portions are handed out as threads get free.
+// Costs differ from pair to pair by a hundred and more, hence small portions.
 static Status eval_each(const OverlapModel *model, const OverlapBatch *batch) {
-  int first_failed = INT_MAX, count = batch->pair_count, portions = count / PORTION + (count % PORTION > 0);
-  bool is_much = count * model->ops->seconds_per_pair > WORTH_THREADS;
-#pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (is_much)
-  for (int p = 0; p < portions; p++) {
-    int begin = p * PORTION, end = count - begin < PORTION ? count : begin + PORTION;
-    int failed = eval_portion(model, batch, begin, end);
-    if (failed < first_failed) first_failed = failed;
-  }
-  if (first_failed == INT_MAX) return STATUS_OK;
-  // the message belongs to the thread that failed: let this one see it too
-  Status status = eval_one(model, batch, first_failed);
-  if (status == STATUS_OK)
-    return status_fail(STATUS_SOLVER, "overlap model '%s': pair %d failed once and not again",
-                       model->ops->name, first_failed);
-  return status_prefix(status, "overlap model '%s': pair %d", model->ops->name, first_failed);
+  bool is_much = batch->pair_count * model->ops->seconds_per_pair > WORTH_THREADS;
+  return overlap_portions_eval(batch, PORTION, is_much, eval_portion, model);
 }
 
 Status overlap_model_eval(const OverlapModel *model, const OverlapBatch *batch) {

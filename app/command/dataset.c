@@ -14,7 +14,7 @@
 
 enum { MAX_FILES = 65536, KEY_MIX = 256 };
 
-static int conclude(Status status) {
+static int exit_code_of(Status status) {
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
@@ -104,7 +104,7 @@ static Status print_json(const char *path, const DatagenInfo *info, const AppDat
   return status;
 }
 
-static Status tell(const InfoOptions *options) {
+static Status print_info(const InfoOptions *options) {
   DatagenDataset *dataset;
   AppDatasetSummary summary;
   TRY(datagen_dataset_open(&dataset, options->file));
@@ -128,7 +128,7 @@ static const struct argp info_argp = {
 static int run_info(int argument_count, char **arguments) {
   InfoOptions options = {0};
   argp_parse(&info_argp, argument_count, arguments, 0, NULL, &options);
-  return conclude(tell(&options));
+  return exit_code_of(print_info(&options));
 }
 
 static const AppCommand info_command = {
@@ -189,7 +189,7 @@ static const struct argp merge_argp = {.options = merge_table,
 static int run_merge(int argument_count, char **arguments) {
   MergeOptions options = {0};
   argp_parse(&merge_argp, argument_count, arguments, 0, NULL, &options);
-  return conclude(merge(&options));
+  return exit_code_of(merge(&options));
 }
 
 static const AppCommand merge_command = {
@@ -246,7 +246,7 @@ static const struct argp plot_argp = {
 static int run_plot(int argument_count, char **arguments) {
   PlotOptions options = {0};
   argp_parse(&plot_argp, argument_count, arguments, 0, NULL, &options);
-  return conclude(plot(&options));
+  return exit_code_of(plot(&options));
 }
 
 static const AppCommand plot_command = {

@@ -70,7 +70,7 @@ static Status flush(void) {
   return fflush(stdout) == 0 ? STATUS_OK : status_fail(STATUS_IO, "standard output cannot be written");
 }
 
-static int conclude(Status status) {
+static int exit_code_of(Status status) {
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }
@@ -92,11 +92,11 @@ static int run_command(int argument_count, char **arguments) {
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   char called[APP_CLI_MAX_CALL];
   const AppCommand *command = find(&options, called);
-  if (!command) return conclude(STATUS_USAGE);
+  if (!command) return exit_code_of(STATUS_USAGE);
   if (!options.wants_page) return ask(command, called);
-  if (options.directory) return conclude(app_cli_manual_write(command, called, options.directory));
+  if (options.directory) return exit_code_of(app_cli_manual_write(command, called, options.directory));
   Status status = app_cli_manual_print(command, called, stdout);
-  return conclude(status ? status : flush());
+  return exit_code_of(status ? status : flush());
 }
 
 const AppCommand app_command_help = {.name = "help",

@@ -58,8 +58,8 @@ static void remark(Remarks *remarks, const char *format, double number) {
   snprintf(remarks->lines[remarks->count++], REMARK_SIZE, format, number);
 }
 
-static Remarks judge(const FemMeshQuality *quality, const FemMeshCurvature *curvature,
-                     const FemMeshRepairs *repairs) {
+static Remarks find_remarks(const FemMeshQuality *quality, const FemMeshCurvature *curvature,
+                            const FemMeshRepairs *repairs) {
   Remarks remarks = {0};
   if (repairs->reoriented_tets)
     remark(&remarks, "tetrahedra that were inside out and have been turned: %.0f", repairs->reoriented_tets);
@@ -184,7 +184,7 @@ static Status report(const Options *options) {
   if (status == STATUS_OK) status = fem_mesh_quality(&mesh, &quality);
   if (status == STATUS_OK) status = fem_mesh_curvature(&mesh, &curvature);
   if (status == STATUS_OK) {
-    Remarks remarks = judge(&quality, &curvature, &repairs);
+    Remarks remarks = find_remarks(&quality, &curvature, &repairs);
     if (options->is_json)
       status = print_json(options->path, &mesh, &quality, &curvature, &repairs, &remarks);
     else

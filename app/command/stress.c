@@ -82,7 +82,7 @@ static Status write_json(const AppStress *stress, const char *path) {
 }
 
 // What is known so far is on disk, should the machine go down.
-static void show(void *observer, const AppStress *stress) {
+static void write_partial(void *observer, const AppStress *stress) {
   const Options *options = observer;
   const AppStressRow *row = &stress->rows[stress->count - 1];
   log_progress("%s, %s: %s", row->name, row->model, app_stress_outcome_name(row->outcome));
@@ -90,7 +90,7 @@ static void show(void *observer, const AppStress *stress) {
 }
 
 // The table, also of a run that was interrupted; a case that failed is a failure of the command.
-static Status conclude(const Options *options, const AppStress *stress) {
+static Status print_and_judge(const Options *options, const AppStress *stress) {
   if (!options->is_quiet) app_stress_print(stress, stdout);
   if (options->json) TRY(write_json(stress, options->json));
   int failed = app_stress_count(stress, APP_STRESS_FAILED);
@@ -110,12 +110,12 @@ static int run_command(int argument_count, char **arguments) {
     options.stress.has_pairs = options.stress.has_scenes = true;
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
   options.stress.stop = app_job_stop_flag();
-  options.stress.observe = show, options.stress.observer = &options;
+  options.stress.observe = write_partial, options.stress.observer = &options;
   AppStress stress;
   Status status = app_stress_all_run(&options.stress, &stress);
   log_progress_end();
   if (status) log_error("%s", status_message());
-  Status concluded = stress.count > 0 ? conclude(&options, &stress) : STATUS_OK;
+  Status concluded = stress.count > 0 ? print_and_judge(&options, &stress) : STATUS_OK;
   if (concluded && !status) log_error("%s", status_message());
   app_stress_destroy(&stress);
   return status_exit_code(status ? status : concluded);

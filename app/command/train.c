@@ -61,7 +61,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-static void show(void *observer, const AppTrainingProgress *progress) {
+static void show_progress(void *observer, const AppTrainingProgress *progress) {
   (void)observer;
   log_progress("%3.0f %%  %.3g M samples  loss %.3g  score %.4g, best %.4g  %.0f samples/s  %.0f s left",
                100 * (double)progress->step / (double)progress->step_count, progress->samples / 1e6,
@@ -69,7 +69,7 @@ static void show(void *observer, const AppTrainingProgress *progress) {
                progress->seconds_left);
 }
 
-static void tell(void *observer, const char *text) {
+static void log_line(void *observer, const char *text) {
   (void)observer;
   log_progress_end();
   log_info("%s", text);
@@ -82,8 +82,8 @@ static Status train(const Options *options, const AppTrainingConfig *config) {
                             .threads = omp_get_max_threads(),
                             .resumes = options->resumes,
                             .stop = app_job_stop_flag(),
-                            .observe = show,
-                            .tell = tell};
+                            .observe = show_progress,
+                            .tell = log_line};
   AppTrainingResult result;
   Status status = app_training_run(config, &run, &result);
   log_progress_end();

@@ -67,7 +67,7 @@ static Status stamp(const char *path, const char *config_path, const NetModel_f3
   return STATUS_OK;
 }
 
-static Status tell(const Options *options) {
+static Status print_weights(const Options *options) {
   char found[4096];
   const char *path = options->name;
   if (!overlap_weights_is_path(path)) {
@@ -93,7 +93,7 @@ static const struct argp argp = {
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = tell(&options);
+  Status status = print_weights(&options);
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }

@@ -34,7 +34,7 @@ typedef struct Jumps {
   bool is_usable;
 } Jumps;
 
-static void turn(const Path *path, double tau, double x[SIZE], double velocity[SIZE]) {
+static void turn_along_path(const Path *path, double tau, double x[SIZE], double velocity[SIZE]) {
   int i = (path->axis + 1) % 3, j = (path->axis + 2) % 3;
   double c = cos(path->turn * tau), s = sin(path->turn * tau);
   for (int v = 0; v < 12; v += 3) {
@@ -74,7 +74,7 @@ static Status look(const OverlapModel *model, const Path *path, double tau, Poin
     velocity[i] = path->to[i] - path->from[i];
     x[i] = path->from[i] + tau * velocity[i];
   }
-  turn(path, tau, x, velocity);
+  turn_along_path(path, tau, x, velocity);
   OverlapBatch one = {.pair_count = 1, .pairs = x, .volume = &point->volume, .gradient = point->gradient};
   TRY(overlap_model_eval(model, &one));
   point->flatness = flatness_of(path, x);

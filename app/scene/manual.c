@@ -141,7 +141,7 @@ static void name_chapter(const char *above, const char *key, char chapter[PATH_S
   snprintf(chapter, PATH_SIZE, "%s%s%s", above, above[0] ? "-" : "", key);
 }
 
-static const char *tell(Manual *manual, const SceneSection *section, const char *chapter) {
+static const char *note_section(Manual *manual, const SceneSection *section, const char *chapter) {
   int index = find_told(manual, section);
   if (index < 0 && manual->told_count < MAX_SECTIONS) {
     index = manual->told_count++;
@@ -200,8 +200,9 @@ static void print_section(Manual *manual, const SceneSection *section, const cha
   for (int i = 0; (key = app_scene_keys_at(section, i)); i++) {
     if (!key->section || find_told(manual, key->section) >= 0) continue;
     name_chapter(chapter, key->name, below);
-    fprintf(stream, "\n## %s\n\n%c%s%s.\n", tell(manual, key->section, below), key->section->help[0] & ~32,
-            key->section->help + 1, key->type == SCENE_LIST ? "; a list of them" : "");
+    fprintf(stream, "\n## %s\n\n%c%s%s.\n", note_section(manual, key->section, below),
+            key->section->help[0] & ~32, key->section->help + 1,
+            key->type == SCENE_LIST ? "; a list of them" : "");
     print_section(manual, key->section, below);
   }
 }

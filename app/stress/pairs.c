@@ -35,7 +35,7 @@ typedef struct Answer {
   unsigned flags;
 } Answer;
 
-static Status ask(const Asked *asked, const double x[24], Answer *answer) {
+static Status eval_measured(const Asked *asked, const double x[24], Answer *answer) {
   OverlapBatch batch = {.pair_count = 1,
                         .pairs = x,
                         .volume = &answer->volume,
@@ -147,7 +147,7 @@ static Status ask_member(Asked *asked, const DatagenHardPair *pair, bool is_slow
   double exact;
   unsigned flags;
   const double *x = pair->x;
-  TRY(ask(asked, x, &answer));
+  TRY(eval_measured(asked, x, &answer));
   TRY(overlap_exact_ops.eval_pair(NULL, x, &(OverlapAnswer){.volume = &exact, .flags = &flags}));
   asked->member_count++;
   asked->fallbacks += (answer.flags & OVERLAP_FALLBACK) != 0;
@@ -192,7 +192,7 @@ static void ask_tolerance(const Asked *asked, const AppStressPairErrors *most, A
 }
 
 // The verdict: held by the standard, else by the model's own tolerance.
-static void judge(const Asked *asked, AppStressRow *row) {
+static void judge_class(const Asked *asked, AppStressRow *row) {
   const AppStressPairErrors *worst = &asked->worst;
   const AppStressTolerance *own = app_stress_tolerances_find(row->model);
   bool is_held = asked->misfit <= 1 && worst->bounds <= BOUNDS && worst->balance <= BALANCE &&
@@ -235,7 +235,7 @@ static Status run_class(const AppStressOptions *options, const OverlapModel *mod
   }
   asked.worst.flags = (double)asked.wrong_flags / (double)asked.member_count;
   row->cpu_s = clock_cpu_s() - began;
-  judge(&asked, row);
+  judge_class(&asked, row);
   return STATUS_OK;
 }
 

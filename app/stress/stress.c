@@ -39,27 +39,29 @@ AppStressRow *app_stress_add(AppStress *stress, const char *group, const char *n
   return row;
 }
 
-static void ask(AppStressRow *row, AppStressMeasure measure) {
+static void add_measure(AppStressRow *row, AppStressMeasure measure) {
   measure.is_met = measure.is_least ? measure.value >= measure.bound : measure.value <= measure.bound;
   assert(row->measure_count < APP_STRESS_MAX_MEASURES);
   row->measures[row->measure_count++] = measure;
 }
 
 void app_stress_ask_most(AppStressRow *row, const char *name, double value, double bound) {
-  ask(row, (AppStressMeasure){.name = name, .value = value, .bound = bound});
+  add_measure(row, (AppStressMeasure){.name = name, .value = value, .bound = bound});
 }
 
 void app_stress_ask_least(AppStressRow *row, const char *name, double value, double bound) {
-  ask(row, (AppStressMeasure){.name = name, .value = value, .bound = bound, .is_least = true});
+  add_measure(row, (AppStressMeasure){.name = name, .value = value, .bound = bound, .is_least = true});
 }
 
 void app_stress_ask_occurred(AppStressRow *row, const char *name, double value, double least) {
-  ask(row, (AppStressMeasure){
-               .name = name, .value = value, .bound = least, .is_least = true, .is_occurrence = true});
+  add_measure(row,
+              (AppStressMeasure){
+                  .name = name, .value = value, .bound = least, .is_least = true, .is_occurrence = true});
 }
 
 void app_stress_ask_end(AppStressRow *row, double time, double end) {
-  ask(row, (AppStressMeasure){
+  add_measure(
+      row, (AppStressMeasure){
                .name = "time reached", .value = time / end, .bound = 1, .is_least = true, .is_of_end = true});
 }
 

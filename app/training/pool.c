@@ -77,7 +77,8 @@ static bool is_kept(const OverlapGeoFeatureSet *set, const DatagenPairs *pairs, 
                                       NULL) == OVERLAP_GEO_INSIDE;
 }
 
-static Status keep(Kept *kept, const OverlapGeoFeatureSet *set, const DatagenPairs *pairs, size_t count) {
+static Status keep_features(Kept *kept, const OverlapGeoFeatureSet *set, const DatagenPairs *pairs,
+                            size_t count) {
   size_t n = (size_t)set->count;
   kept->index = memory_zeroed(count, sizeof *kept->index);
   kept->features = memory_zeroed(count * n, sizeof *kept->features);
@@ -186,7 +187,7 @@ static Status fill_all(AppTrainingPool *pool, const DatagenPairs *pairs, const K
 
 static Status create(AppTrainingPool *pool, const DatagenPairs *pairs, size_t count,
                      const NetWhitening *whitening, Kept *kept) {
-  TRY(keep(kept, pool->set, pairs, count));
+  TRY(keep_features(kept, pool->set, pairs, count));
   pool->count = kept->count;
   pool->left_out = (long long)count - kept->count;
   if (whitening->count) {

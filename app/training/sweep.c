@@ -23,7 +23,7 @@ void app_sweep_destroy(AppSweep *sweep) {
   *sweep = (AppSweep){0};
 }
 
-static void show(void *observer, const AppTrainingProgress *progress) {
+static void show_progress(void *observer, const AppTrainingProgress *progress) {
   log_progress("%s: %3.0f %%, %.0f samples/s, %.0f s left", (const char *)observer,
                100 * (double)progress->step / (double)progress->step_count, progress->samples_per_s,
                progress->seconds_left);
@@ -34,7 +34,7 @@ static Status train(const Sweep *sweep, const AppTrainingConfig *config, const c
                                 .threads = sweep->threads,
                                 .resumes = true,
                                 .stop = sweep->stop,
-                                .observe = show,
+                                .observe = show_progress,
                                 .observer = config->name};
   AppTrainingResult result;
   Status status = app_training_run(config, &options, &result);

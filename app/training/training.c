@@ -42,7 +42,7 @@ typedef struct Training {
   char *weights, *candidate, *checkpoint; // paths, owned
 } Training;
 
-static void tell(const Training *training, const char *text) {
+static void report_line(const Training *training, const char *text) {
   if (training->options->tell) training->options->tell(training->options->observer, text);
 }
 
@@ -166,9 +166,9 @@ static Status read_checkpoint(Training *training, NetCheckpoint_f32 *checkpoint)
 }
 
 static Status load_task(Training *training, const NetWhitening *whitening) {
-  tell(training, "making the data");
+  report_line(training, "making the data");
   TRY(training->task.ops->create(&training->task, whitening));
-  tell(training, training->task.summary);
+  report_line(training, training->task.summary);
   return STATUS_OK;
 }
 
@@ -181,7 +181,7 @@ static Status resume(Training *training) {
   char text[128];
   snprintf(text, sizeof text, "resumed at step %lld of %lld", training->counts.step,
            (long long)training->schedule.total_steps);
-  tell(training, text);
+  report_line(training, text);
   return app_training_log_open(&training->log, training->options->directory, training->counts.step);
 }
 
@@ -287,7 +287,7 @@ static Status take_step(Training *training) {
   return STATUS_OK;
 }
 
-static void show(const Training *training, double first_step) {
+static void report_progress(const Training *training, double first_step) {
   if (!training->options->observe) return;
   const Counts *counts = &training->counts;
   double spent = clock_wall_s() - training->began_s - counts->seconds;
@@ -330,7 +330,7 @@ static Status run_steps(Training *training, AppTrainingResult *result) {
         return STATUS_OK;
       }
     }
-    show(training, first_step);
+    report_progress(training, first_step);
   }
   return STATUS_OK;
 }

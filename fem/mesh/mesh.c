@@ -27,7 +27,7 @@ FemPlacement fem_mesh_placement_identity(void) {
 }
 
 // Sine and cosine of an angle in degrees, exact at quarter turns.
-static void turn(double degrees, double *sine, double *cosine) {
+static void sine_cosine(double degrees, double *sine, double *cosine) {
   double reduced = remainder(degrees, 360), quarters = nearbyint(reduced / 90);
   double rest = (reduced - 90 * quarters) * (acos(-1) / 180), s = sin(rest), c = cos(rest);
   switch ((int)quarters & 3) {
@@ -53,7 +53,7 @@ static void rotation_of(const FemPlacement *placement, double R[9]) {
   double length = vec3_length(axis), s, c;
   if (length == 0) return;
   Vec3 k = vec3_scale(1 / length, axis);
-  turn(placement->angle_degrees, &s, &c);
+  sine_cosine(placement->angle_degrees, &s, &c);
   memcpy(R,
          (double[9]){c + k.x * k.x * (1 - c), k.x * k.y * (1 - c) - k.z * s, k.x * k.z * (1 - c) + k.y * s,
                      k.y * k.x * (1 - c) + k.z * s, c + k.y * k.y * (1 - c), k.y * k.z * (1 - c) - k.x * s,

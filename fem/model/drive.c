@@ -7,7 +7,8 @@
 #include "fem/model/table.h"
 
 // Rodrigues' formula about the axis through the centre.
-static void turn(const FemConstraintDef *def, double time, double position[3], double velocity[3]) {
+static void turn_about_axis(const FemConstraintDef *def, double time, double position[3],
+                            double velocity[3]) {
   Vec3 axis = vec3_at(def->axis), centre = vec3_at(def->centre);
   axis = vec3_scale(1 / vec3_length(axis), axis);
   double angle = def->spin * time, cosine = cos(angle), sine = sin(angle);
@@ -48,7 +49,7 @@ void fem_drive_point(const FemConstraintDef *def, double time, const double rest
   bool is_frozen = time >= def->until;
   double t = is_frozen ? def->until : time;
   for (int c = 0; c < 3; c++) position[c] = rest[c], velocity[c] = 0;
-  if (def->spin != 0) turn(def, t, position, velocity);
+  if (def->spin != 0) turn_about_axis(def, t, position, velocity);
   translate(def, t, position, velocity);
   for (int c = 0; c < 3 && is_frozen; c++) velocity[c] = 0;
 }

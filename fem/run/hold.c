@@ -13,7 +13,7 @@ void fem_hold_gather(const FemSystem *system, double *u, double *v) {
 }
 
 // Stops a body; returns the kinetic energy that its unknowns had.
-static double stop(const FemModel *model, const FemModelBody *body, double *velocities) {
+static double stop_body(const FemModel *model, const FemModelBody *body, double *velocities) {
   double energy = 0;
   for (int dof = 3 * body->vertex_begin; dof < 3 * body->vertex_end; dof++) {
     if (model->unknown_of_dof[dof] < 0) continue;
@@ -27,7 +27,7 @@ Status fem_hold_sleepers(FemModel *model, FemSystem *system, double *u, double *
   void *rest = fem_system_effect(system, &fem_effect_rest);
   for (int b = 0; b < model->body_count; b++) {
     bool is_asleep = fem_effect_rest_is_asleep(rest, b);
-    if (is_asleep) fem_effect_rest_add_loss(rest, stop(model, &model->bodies[b], system->velocities));
+    if (is_asleep) fem_effect_rest_add_loss(rest, stop_body(model, &model->bodies[b], system->velocities));
     model->bodies[b].is_held = is_asleep;
   }
   fem_model_number(model);

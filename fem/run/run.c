@@ -50,7 +50,7 @@ static Status take_back(FemRunState *run) {
 }
 
 // Counts what struck in the accepted state; `*has_begun`: something that had not in the state before.
-static Status judge(FemRunState *run, FemMeasures *measures, bool *has_begun) {
+static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_begun) {
   FemTrouble *trouble = &run->result->trouble;
   double rise = (run->audit.total - run->audit.lowest) / run->audit.scale;
   measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= FEM_TROUBLE_ENERGY_BOUND);
@@ -65,7 +65,7 @@ static Status judge(FemRunState *run, FemMeasures *measures, bool *has_begun) {
 
 static Status observe(FemRunState *run, FemMeasures *measures) {
   bool has_begun;
-  TRY(judge(run, measures, &has_begun));
+  TRY(watch_trouble(run, measures, &has_begun));
   if (run->options->stop && *run->options->stop)
     return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
                        run->time);

@@ -22,8 +22,8 @@ typedef struct FemRunProgress {
 
 typedef struct FemRunOptions {
   const char *directory; // where to write; NULL: nowhere
-  const volatile sig_atomic_t
-      *stop; // becomes non-zero: finish the step, then STATUS_INTERRUPTED; may be NULL
+  // Becomes non-zero: finish the step, then STATUS_INTERRUPTED. May be NULL.
+  const volatile sig_atomic_t *stop;
   Status (*observe)(void *observer, const FemRunProgress *progress); // may be NULL
   void *observer;
   const double *initial_displacement; // from rest [m], or NULL: none    (vertex_count, 3)

@@ -82,9 +82,9 @@ void fem_run_result_destroy(FemRunResult *result) {
 }
 
 // Appends "; text" to what was told.
-static void tell(char *text, size_t size, size_t *used, const char *format, ...)
+static void append_clause(char *text, size_t size, size_t *used, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-static void tell(char *text, size_t size, size_t *used, const char *format, ...) {
+static void append_clause(char *text, size_t size, size_t *used, const char *format, ...) {
   char piece[256];
   va_list arguments;
   va_start(arguments, format);
@@ -101,25 +101,26 @@ void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, cha
     char piece[256];
     if (trouble->of[k].steps == 0) continue;
     fem_trouble_tell(trouble, model, (FemTroubleKind)k, piece, sizeof piece);
-    tell(text, size, &used, "%s", piece);
+    append_clause(text, size, &used, "%s", piece);
   }
   if (trouble->sliver_count > 0)
-    tell(text, size, &used, "slivers: %d elements, the worst %d", trouble->sliver_count,
-         trouble->worst_sliver);
-  if (result->pairs.enclosed > 0) tell(text, size, &used, "enclosed pairs: %lld", result->pairs.enclosed);
+    append_clause(text, size, &used, "slivers: %d elements, the worst %d", trouble->sliver_count,
+                  trouble->worst_sliver);
+  if (result->pairs.enclosed > 0)
+    append_clause(text, size, &used, "enclosed pairs: %lld", result->pairs.enclosed);
   if (result->pairs.beyond > 0)
-    tell(text, size, &used, "pairs beyond the network's training: %lld", result->pairs.beyond);
+    append_clause(text, size, &used, "pairs beyond the network's training: %lld", result->pairs.beyond);
   if (result->pairs.fallbacks > 0)
-    tell(text, size, &used, "pairs answered by a more careful model: %lld", result->pairs.fallbacks);
+    append_clause(text, size, &used, "pairs answered by a more careful model: %lld", result->pairs.fallbacks);
   if (result->energy_retries > 0)
-    tell(text, size, &used, "steps taken back for their energy: %lld", result->energy_retries);
+    append_clause(text, size, &used, "steps taken back for their energy: %lld", result->energy_retries);
   if (result->solver.failed_factorisations > 0)
-    tell(text, size, &used, "failed factorisations: %lld", result->solver.failed_factorisations);
+    append_clause(text, size, &used, "failed factorisations: %lld", result->solver.failed_factorisations);
   if (result->integrator.newton_failures > 0)
-    tell(text, size, &used, "steps without convergence: %lld", result->integrator.newton_failures);
-  if (used == 0) tell(text, size, &used, "none");
+    append_clause(text, size, &used, "steps without convergence: %lld", result->integrator.newton_failures);
+  if (used == 0) append_clause(text, size, &used, "none");
   if (isfinite(trouble->smallest_step))
-    tell(text, size, &used, "smallest step %.1e s", trouble->smallest_step);
+    append_clause(text, size, &used, "smallest step %.1e s", trouble->smallest_step);
 }
 
 static void summarise_phases(const FemRunPhases *phases, Record *record) {

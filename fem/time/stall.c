@@ -21,7 +21,7 @@ void fem_stall_pass(FemStall *stall, double duration) {
   stall->time += duration;
 }
 
-static bool stands(const FemStall *stall, double advance, double max_step) {
+static bool has_not_advanced(const FemStall *stall, double advance, double max_step) {
   double needed = fmin(LEAST_ADVANCE * stall->end, LEAST_OF_LONGEST * FEM_STALL_WINDOW * max_step);
   return !(advance >= needed);
 }
@@ -38,7 +38,7 @@ FemStallVerdict fem_stall_add(FemStall *stall, long long tries, long long vain, 
   if (stall->tries < FEM_STALL_WINDOW) return FEM_STALL_GOES_ON;
   double advance = time - stall->time, pace = advance / (double)stall->tries;
   stall->left = advance > 0 ? (stall->end - time) / pace : INFINITY;
-  bool is_standing = time < stall->end && stands(stall, advance, max_step);
+  bool is_standing = time < stall->end && has_not_advanced(stall, advance, max_step);
   stall->strikes = creeps(stall, advance, pace) ? stall->strikes + 1 : 0;
   stall->fastest = fmax(stall->fastest, pace);
   stall->tries = stall->vain = 0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Batches of pairs on vectors. Groups in which few lanes may overlap wait until there are enough for a full
 // vector, so that disjoint pairs cost only the first part of clip_lanes.h.
-#include <limits.h>
 #include <math.h>
 #include <string.h>
 
 #include "overlap/clip/clip.h"
 #include "overlap/clip/lanes.h"
+#include "overlap/portions.h"
 
 // Pairs that wait, a vector's worth and less than one more.
 typedef struct Queue {
@@ -118,20 +118,19 @@ static Status answer_range(const OverlapClipLanes *lanes, const OverlapBatch *ba
 // What one thread takes at a time, and from how many pairs on more than one thread is worth it.
 enum { PORTION = 512, WORTH_THREADS = 4096 };
 
+// `self`: the lanes; NULL: none, each pair by itself.
+static Status eval_portion(const void *self, const OverlapBatch *portion, int first) {
+  Status status = STATUS_OK;
+  if (self && !portion->hessian)
+    status = answer_range(self, portion, 0, portion->pair_count);
+  else
+    for (int i = 0; i < portion->pair_count && !status; i++) status = ask_carefully(portion, i);
+  return status ? status_prefix(status, "clipping pairs %d to %d", first, first + portion->pair_count - 1)
+                : STATUS_OK;
+}
+
 static Status eval(const OverlapClipLanes *lanes, const OverlapBatch *batch) {
-  int count = batch->pair_count, portions = count / PORTION + (count % PORTION > 0), first_failed = INT_MAX;
-#pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (count >= WORTH_THREADS)
-  for (int p = 0; p < portions; p++) {
-    int begin = p * PORTION, end = count - begin < PORTION ? count : begin + PORTION;
-    Status status = STATUS_OK;
-    if (lanes && !batch->hessian)
-      status = answer_range(lanes, batch, begin, end);
-    else
-      for (int i = begin; i < end && status == STATUS_OK; i++) status = ask_carefully(batch, i);
-    if (status != STATUS_OK && p < first_failed) first_failed = p;
-  }
-  if (first_failed == INT_MAX) return STATUS_OK;
-  return status_fail(STATUS_SOLVER, "clipping failed among the pairs from %d on", first_failed * PORTION);
+  return overlap_portions_eval(batch, PORTION, batch->pair_count >= WORTH_THREADS, eval_portion, lanes);
 }
 
 static Status eval_one(const OverlapClipLanes *lanes, const double pair[24], const OverlapAnswer *answer) {

@@ -10,7 +10,7 @@
 
 static_assert(GMP_NUMB_BITS == 64, "limbs of 64 bits without nails");
 
-static mp_limb_t *take(ExactArena *arena, int count) {
+static mp_limb_t *allocate_limbs(ExactArena *arena, int count) {
   mp_limb_t *limbs = arena->next;
   assert(arena->end - limbs >= count);
   arena->next = limbs + count;
@@ -25,7 +25,7 @@ static ExactInteger finish(ExactArena *arena, mp_limb_t *limbs, int size, int si
 }
 
 // Gives back everything made since `mark` but `a`, which moves down to there.
-static ExactInteger keep(ExactArena *arena, mp_limb_t *mark, ExactInteger a) {
+static ExactInteger release_above(ExactArena *arena, mp_limb_t *mark, ExactInteger a) {
   const int size = abs(a.size);
   for (int k = 0; k < size; k++) mark[k] = a.limbs[k];
   arena->next = mark + size;
@@ -78,7 +78,7 @@ INLINED void multiply(mp_limb_t *product, ExactInteger a, int rows, ExactInteger
 // The number that `sum` is in two's complement.
 INLINED ExactInteger write_number(ExactArena *arena, const mp_limb_t *sum, int count) {
   const bool is_negative = sum[count - 1] >> 63;
-  mp_limb_t *limbs = take(arena, count);
+  mp_limb_t *limbs = allocate_limbs(arena, count);
   for (int k = 0; k < count; k++) limbs[k] = 0;
   accumulate(limbs, sum, count, is_negative);
   return finish(arena, limbs, count, is_negative ? -1 : 1);
@@ -137,7 +137,7 @@ static ExactInteger add_long(ExactArena *arena, ExactInteger a, ExactInteger b) 
   }
   if (b.size == 0) return a;
   const int size_a = abs(a.size), size_b = abs(b.size);
-  mp_limb_t *sum = take(arena, size_a + 1);
+  mp_limb_t *sum = allocate_limbs(arena, size_a + 1);
   sum[size_a] = 0;
   if ((a.size > 0) == (b.size > 0)) {
     sum[size_a] = mpn_add(sum, a.limbs, size_a, b.limbs, size_b);
@@ -170,7 +170,7 @@ ExactInteger overlap_exact_integer_sum(ExactArena *arena, const ExactInteger ter
   ExactInteger sum = overlap_exact_integer_add(arena, terms[0], terms[1]);
   sum = overlap_exact_integer_add(arena, sum, terms[2]);
   sum = overlap_exact_integer_add(arena, sum, terms[3]);
-  return keep(arena, mark, sum);
+  return release_above(arena, mark, sum);
 }
 
 int overlap_exact_integer_compare(ExactInteger a, ExactInteger b) {
@@ -186,7 +186,7 @@ ExactInteger overlap_exact_integer_mul(ExactArena *arena, ExactInteger a, ExactI
   }
   if (b.size == 0) return b;
   const int size_a = abs(a.size), size_b = abs(b.size);
-  mp_limb_t *product = take(arena, size_a + size_b);
+  mp_limb_t *product = allocate_limbs(arena, size_a + size_b);
   if (size_b == 1)
     product[size_a] = mpn_mul_1(product, a.limbs, size_a, b.limbs[0]);
   else
@@ -201,7 +201,7 @@ ExactInteger overlap_exact_integer_minor(ExactArena *arena, ExactInteger a, Exac
   if (limbs <= 2) return minor_short(arena, a, b, c, d, 2);
   mp_limb_t *mark = arena->next;
   const ExactInteger ab = overlap_exact_integer_mul(arena, a, b), cd = overlap_exact_integer_mul(arena, c, d);
-  return keep(arena, mark, overlap_exact_integer_sub(arena, ab, cd));
+  return release_above(arena, mark, overlap_exact_integer_sub(arena, ab, cd));
 }
 
 ExactInteger overlap_exact_integer_dot(ExactArena *arena, const ExactInteger x[3], const ExactInteger y[3]) {
@@ -212,7 +212,7 @@ ExactInteger overlap_exact_integer_dot(ExactArena *arena, const ExactInteger x[3
   ExactInteger sum = overlap_exact_integer_mul(arena, x[0], y[0]);
   sum = overlap_exact_integer_add(arena, sum, overlap_exact_integer_mul(arena, x[1], y[1]));
   sum = overlap_exact_integer_add(arena, sum, overlap_exact_integer_mul(arena, x[2], y[2]));
-  return keep(arena, mark, sum);
+  return release_above(arena, mark, sum);
 }
 
 void overlap_exact_integer_cross(ExactArena *arena, const ExactInteger x[3], const ExactInteger y[3],
@@ -246,7 +246,7 @@ ExactInteger overlap_exact_integer_from_double(ExactArena *arena, double x, int 
   int own;
   const uint64_t mantissa = decompose(x, &own);
   const int shift = own - exponent, low = shift / 64, bit = shift % 64;
-  mp_limb_t *limbs = take(arena, low + 2);
+  mp_limb_t *limbs = allocate_limbs(arena, low + 2);
   for (int k = 0; k < low; k++) limbs[k] = 0;
   limbs[low] = mantissa << bit;
   limbs[low + 1] = bit > 0 ? mantissa >> (64 - bit) : 0;

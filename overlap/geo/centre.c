@@ -49,7 +49,7 @@ static double search(const double r[GEO_LANES], double decrement) {
   return alpha;
 }
 
-static void settle(double slack[4]) {
+static void restore_slack_sum(double slack[4]) {
   double excess = slack[0] + slack[1] + slack[2] + slack[3] - 1, square = 0;
   for (int k = 0; k < 4; k++) square += slack[k] * slack[k];
   for (int k = 0; k < 4; k++) slack[k] -= excess / square * slack[k] * slack[k];
@@ -62,8 +62,8 @@ int overlap_geo_centre(const GeoColumns *normal, double slack[GEO_LANES]) {
     double alpha = decrement <= OVERLAP_GEO_FULL_STEP ? 1 : search(r, decrement);
     for (int l = 0; l < GEO_LANES; l++) slack[l] += alpha * r[l] * slack[l];
     if (!(decrement < OVERLAP_GEO_CONVERGED)) continue;
-    settle(slack);
-    settle(slack + 4);
+    restore_slack_sum(slack);
+    restore_slack_sum(slack + 4);
     return step;
   }
   return 0;

@@ -113,8 +113,8 @@ void overlap_geo_frame_pull_phi(const OverlapGeoFrame *frame, const GeoMatrix *s
 }
 
 // y = Θ x, with Θ = −diag(rate) − τ.
-static void turn(const double rate[GEO_LANES], double tau[GEO_LANES][4], const double x[GEO_LANES],
-                 double y[GEO_LANES]) {
+static void multiply_theta(const double rate[GEO_LANES], double tau[GEO_LANES][4], const double x[GEO_LANES],
+                           double y[GEO_LANES]) {
   for (int k = 0; k < GEO_LANES; k++) {
     const double *own = x + (k & 4);
     y[k] = -rate[k] * x[k] -
@@ -151,8 +151,8 @@ void overlap_geo_frame_push(const OverlapGeoFrame *frame, const double direction
   double moved[3][GEO_LANES]; // Θ Q, then (1 − P) Θ Q
   double inner[3][3];         // Qᵀ Θ Q
   for (int b = 0; b < 3; b++) {
-    turn(tangent->rate, tau, frame->scaled.column[b], tangent->scaled.column[b]);
-    turn(tangent->rate, tau, q[b], moved[b]);
+    multiply_theta(tangent->rate, tau, frame->scaled.column[b], tangent->scaled.column[b]);
+    multiply_theta(tangent->rate, tau, q[b], moved[b]);
     for (int c = 0; c < 3; c++) inner[c][b] = geo_dot(q[c], moved[b]);
   }
   tangent->log_volume = -(inner[0][0] + inner[1][1] + inner[2][2]);

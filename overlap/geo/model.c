@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "overlap/geo/model.h"
 
-#include <limits.h>
 #include <stddef.h>
 
 #include "base/memory.h"
+#include "overlap/portions.h"
 #include "overlap/weights.h"
 
 static Status load(OverlapGeoOverlap *overlap, const char *path) {
@@ -43,23 +43,13 @@ Status overlap_geo_model_eval_pair(const void *self, const double pair[24], cons
 // What one thread takes at a time; the cut does not depend on the number of threads.
 enum { PORTION = OVERLAP_GEO_BUNDLE };
 
+static Status eval_portion(const void *model, const OverlapBatch *portion, int first) {
+  Status status = overlap_geo_eval(model, portion);
+  return status ? status_prefix(status, "pairs %d to %d", first, first + portion->pair_count - 1) : STATUS_OK;
+}
+
 Status overlap_geo_model_eval_batch(const void *self, const OverlapBatch *batch) {
-  const OverlapGeoModel *model = &((const OverlapGeoOverlap *)self)->model;
-  int count = (batch->pair_count + PORTION - 1) / PORTION, first_failed = INT_MAX;
-#pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (count > 1)
-  for (int p = 0; p < count; p++) {
-    OverlapBatch portion = overlap_ops_part(batch, p * PORTION, PORTION);
-    if (overlap_geo_eval(model, &portion) != STATUS_OK && p < first_failed) first_failed = p;
-  }
-  if (first_failed == INT_MAX) return STATUS_OK;
-  // the message belongs to the thread that failed: let this one see it too
-  OverlapBatch portion = overlap_ops_part(batch, first_failed * PORTION, PORTION);
-  Status status = overlap_geo_eval(model, &portion);
-  if (status == STATUS_OK)
-    return status_fail(STATUS_SOLVER, "pairs %d to %d failed once and not again", first_failed * PORTION,
-                       first_failed * PORTION + portion.pair_count - 1);
-  return status_prefix(status, "pairs %d to %d", first_failed * PORTION,
-                       first_failed * PORTION + portion.pair_count - 1);
+  return overlap_portions_eval(batch, PORTION, true, eval_portion, &((const OverlapGeoOverlap *)self)->model);
 }
 
 // `weights`: a file, or the name of one that ships; NULL: `own`.

@@ -20,16 +20,16 @@ static_assert(sizeof ones / sizeof *ones == OVERLAP_GEO_CHUNK, "one for each pai
 static_assert((int)NET_COLUMN_UNIT == (int)OVERLAP_GEO_CHUNK, "a chunk is what net/ takes side by side");
 
 // Memory of evaluation, used by one caller at a time.
-typedef struct Desk {
+typedef struct Workspace {
   atomic_flag is_taken;
   NetWork_f64 work;
-} Desk;
+} Workspace;
 
 struct OverlapGeoNet {
   NetModel_f64 model;
   NetCard card;
-  int desk_count;
-  Desk *desks; // (desk_count)
+  int workspace_count;
+  Workspace *workspaces; // (workspace_count)
 };
 
 static Status fail_as_net(NetStatus status) {
@@ -37,52 +37,52 @@ static Status fail_as_net(NetStatus status) {
   return status_fail(code, "%s", net_status_message());
 }
 
-// A thread's own desk as a rule; another one if threads that OpenMP does not count are about.
-static Desk *take(const OverlapGeoNet *net) {
+// A thread's own workspace as a rule; another one if threads that OpenMP does not count are about.
+static Workspace *acquire_workspace(const OverlapGeoNet *net) {
   for (int d = omp_get_thread_num();; d++) {
-    Desk *desk = &net->desks[d % net->desk_count];
-    if (!atomic_flag_test_and_set_explicit(&desk->is_taken, memory_order_acquire)) return desk;
+    Workspace *workspace = &net->workspaces[d % net->workspace_count];
+    if (!atomic_flag_test_and_set_explicit(&workspace->is_taken, memory_order_acquire)) return workspace;
   }
 }
 
-static void leave(Desk *desk) {
-  atomic_flag_clear_explicit(&desk->is_taken, memory_order_release);
+static void release_workspace(Workspace *workspace) {
+  atomic_flag_clear_explicit(&workspace->is_taken, memory_order_release);
 }
 
 static Status eval(const void *self, int count, const double *features, double *value, double *gradient) {
   const OverlapGeoNet *net = self;
-  Desk *desk = take(net);
+  Workspace *workspace = acquire_workspace(net);
   if (gradient)
-    net_forward_gradient_f64(&desk->work, &net->model, count, features, ones, value, gradient);
+    net_forward_gradient_f64(&workspace->work, &net->model, count, features, ones, value, gradient);
   else
-    net_forward_eval_f64(&desk->work, &net->model, count, features, value);
-  leave(desk);
+    net_forward_eval_f64(&workspace->work, &net->model, count, features, value);
+  release_workspace(workspace);
   return STATUS_OK;
 }
 
 static Status eval_columns(const void *self, const double *features, double *value, double *gradient) {
   const OverlapGeoNet *net = self;
-  Desk *desk = take(net);
-  net_dense_eval_f64(&desk->work, &net->model, features, value, gradient);
-  leave(desk);
+  Workspace *workspace = acquire_workspace(net);
+  net_dense_eval_f64(&workspace->work, &net->model, features, value, gradient);
+  release_workspace(workspace);
   return STATUS_OK;
 }
 
 static Status curve(const void *self, int count, const double *features, int direction_count,
                     const double *directions, double *second) {
   const OverlapGeoNet *net = self;
-  Desk *desk = take(net);
-  net_tangent_second_f64(&desk->work, &net->model, count, direction_count, features, directions, ones, NULL,
-                         NULL, NULL, second);
-  leave(desk);
+  Workspace *workspace = acquire_workspace(net);
+  net_tangent_second_f64(&workspace->work, &net->model, count, direction_count, features, directions, ones,
+                         NULL, NULL, NULL, second);
+  release_workspace(workspace);
   return STATUS_OK;
 }
 
 static Status curve_columns(const void *self, const double *features, double *second) {
   const OverlapGeoNet *net = self;
-  Desk *desk = take(net);
-  net_dense_second_f64(&desk->work, &net->model, DIRECTIONS, features, second);
-  leave(desk);
+  Workspace *workspace = acquire_workspace(net);
+  net_dense_second_f64(&workspace->work, &net->model, DIRECTIONS, features, second);
+  release_workspace(workspace);
   return STATUS_OK;
 }
 
@@ -101,15 +101,15 @@ static Status check(const OverlapGeoNet *net, const char *path) {
   return STATUS_OK;
 }
 
-static Status furnish(OverlapGeoNet *net) {
-  net->desk_count = omp_get_max_threads();
-  net->desks = memory_zeroed((size_t)net->desk_count, sizeof *net->desks);
-  if (!net->desks) return status_no_memory("the network's memory of evaluation");
+static Status create_workspaces(OverlapGeoNet *net) {
+  net->workspace_count = omp_get_max_threads();
+  net->workspaces = memory_zeroed((size_t)net->workspace_count, sizeof *net->workspaces);
+  if (!net->workspaces) return status_no_memory("the network's memory of evaluation");
   NetWorkDef def = net_work_default();
   def.tangent_count = DIRECTIONS;
-  for (int d = 0; d < net->desk_count; d++) {
-    atomic_flag_clear(&net->desks[d].is_taken);
-    NetStatus status = net_work_create_f64(net->model.plan, &def, &net->desks[d].work);
+  for (int d = 0; d < net->workspace_count; d++) {
+    atomic_flag_clear(&net->workspaces[d].is_taken);
+    NetStatus status = net_work_create_f64(net->model.plan, &def, &net->workspaces[d].work);
     if (status != NET_OK) return fail_as_net(status);
   }
   return STATUS_OK;
@@ -119,7 +119,7 @@ static Status load(OverlapGeoNet *net, const char *path) {
   NetStatus status = net_weights_read_f64(path, &net->model, &net->card);
   if (status != NET_OK) return fail_as_net(status);
   TRY(check(net, path));
-  return furnish(net);
+  return create_workspaces(net);
 }
 
 Status overlap_geo_network_create(OverlapGeoNet **net, const char *path) {
@@ -134,8 +134,9 @@ Status overlap_geo_network_create(OverlapGeoNet **net, const char *path) {
 
 void overlap_geo_network_destroy(OverlapGeoNet *net) {
   if (!net) return;
-  for (int d = 0; d < net->desk_count && net->desks; d++) net_work_destroy_f64(&net->desks[d].work);
-  memory_free(net->desks);
+  for (int d = 0; d < net->workspace_count && net->workspaces; d++)
+    net_work_destroy_f64(&net->workspaces[d].work);
+  memory_free(net->workspaces);
   net_weights_card_destroy(&net->card);
   net_model_destroy_f64(&net->model);
   memory_free(net);

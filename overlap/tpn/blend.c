@@ -94,7 +94,8 @@ bool overlap_tpn_blend_is_beyond(const OverlapTpnRule *rule, const OverlapTpnInp
 }
 
 // N: the mean of what the orders tell.
-static void tell(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs, int order, OverlapTpnJet *net) {
+static void mean_of_orders(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs, int order,
+                           OverlapTpnJet *net) {
   OverlapTpnJet part, factor;
   overlap_tpn_jet_constant(net, order, 0);
   for (int o = 0; o < rule->order_count; o++) {
@@ -111,7 +112,7 @@ static void tell(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs, int
 }
 
 // a = (1 − weight) a + weight · b
-static void mix(OverlapTpnJet *a, const OverlapTpnJet *weight, const OverlapTpnJet *b) {
+static void blend_jets(OverlapTpnJet *a, const OverlapTpnJet *weight, const OverlapTpnJet *b) {
   OverlapTpnJet difference = *b;
   overlap_tpn_jet_add(&difference, -1, a);
   overlap_tpn_jet_multiply(&difference, weight);
@@ -121,7 +122,7 @@ static void mix(OverlapTpnJet *a, const OverlapTpnJet *weight, const OverlapTpnJ
 void overlap_tpn_blend_eval(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs, int order,
                             OverlapTpnJet *volume) {
   OverlapTpnJet weight, other;
-  tell(rule, inputs, order, volume);
+  mean_of_orders(rule, inputs, order, volume);
   if (rule->fades) {
     overlap_tpn_jet_of(
         &other, order, OVERLAP_TPN_SHARE,
@@ -132,10 +133,10 @@ void overlap_tpn_blend_eval(const OverlapTpnRule *rule, const OverlapTpnInputs *
   if (weight.value < 1) {
     OverlapTpnJet net = *volume;
     overlap_tpn_jet_of(volume, order, OVERLAP_TPN_EXACT, itself(inputs->of[OVERLAP_TPN_EXACT]));
-    mix(volume, &weight, &net);
+    blend_jets(volume, &weight, &net);
   }
   if (!(inputs->of[OVERLAP_TPN_PLANE] > 0)) return;
   overlap_tpn_jet_of(&weight, order, OVERLAP_TPN_PLANE, itself(inputs->of[OVERLAP_TPN_PLANE]));
   overlap_tpn_jet_of(&other, order, OVERLAP_TPN_CLIP, itself(inputs->of[OVERLAP_TPN_CLIP]));
-  mix(volume, &weight, &other);
+  blend_jets(volume, &weight, &other);
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "overlap/tpn/model.h"
 
-#include <limits.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "overlap/portions.h"
 #include "overlap/tpn/portion.h"
 #include "overlap/weights.h"
 
@@ -74,37 +74,27 @@ static Status create(void **self, const char *path, const OverlapOptions *given,
   return status;
 }
 
-static Status eval_portion(const OverlapTpnModel *overlap, const OverlapBatch *batch) {
+static Status eval_portion(const void *self, const OverlapBatch *portion, int first) {
+  const OverlapTpnModel *overlap = self;
+  (void)first;
   OverlapTpnWorkspace *workspace = overlap_tpn_network_acquire(&overlap->model);
-  Status status = overlap_tpn_portion_eval(overlap, batch, workspace);
+  Status status = overlap_tpn_portion_eval(overlap, portion, workspace);
   overlap_tpn_network_release(workspace);
   return status;
 }
 
 Status overlap_tpn_model_eval_batch(const void *self, const OverlapBatch *batch) {
-  const OverlapTpnModel *overlap = self;
-  int size = (batch->hessian ? OVERLAP_TPN_BENT_ROWS : ROWS) / overlap->rule.order_count;
-  int count = (batch->pair_count + size - 1) / size, first_failed = INT_MAX;
-#pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (count > 1)
-  for (int p = 0; p < count; p++) {
-    OverlapBatch portion = overlap_ops_part(batch, size * p, size);
-    if (eval_portion(self, &portion) != STATUS_OK && p < first_failed) first_failed = p;
-  }
-  if (first_failed == INT_MAX) return STATUS_OK;
-  // the message belongs to the thread that failed: let this one see it too
-  OverlapBatch portion = overlap_ops_part(batch, size * first_failed, size);
-  Status status = eval_portion(self, &portion);
-  return status == STATUS_OK
-             ? status_fail(STATUS_SOLVER, "pairs from %d on failed once and not again", first_failed * size)
-             : status;
+  int rows = batch->hessian ? OVERLAP_TPN_BENT_ROWS : ROWS;
+  int size = rows / ((const OverlapTpnModel *)self)->rule.order_count;
+  return overlap_portions_eval(batch, size, true, eval_portion, self);
 }
 
 Status overlap_tpn_model_eval_pair(const void *self, const double pair[24], const OverlapAnswer *answer) {
   OverlapBatch batch = overlap_ops_single(pair, answer);
-  return eval_portion(self, &batch);
+  return eval_portion(self, &batch, 0);
 }
 
-// Lays the pair's rows if the normalisation takes it.
+// Adds the pair's rows if the normalisation takes it.
 static bool add_normalised_row(const OverlapTpnModel *overlap, OverlapTpnWorkspace *workspace,
                                const double pair[SIZE]) {
   OverlapTpnNormalised normalised[OVERLAP_TPN_MAX_ORDERS];

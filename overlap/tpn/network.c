@@ -42,7 +42,7 @@ void overlap_tpn_network_destroy(OverlapTpnNetwork *model) {
   *model = (OverlapTpnNetwork){0};
 }
 
-static Status furnish(OverlapTpnNetwork *model, NetKernelKind kernel, size_t more) {
+static Status create_workspaces(OverlapTpnNetwork *model, NetKernelKind kernel, size_t more) {
   model->workspace_count = omp_get_max_threads();
   model->workspaces = memory_zeroed((size_t)model->workspace_count, sizeof *model->workspaces);
   if (!model->workspaces) return status_no_memory("the network's memory of evaluation");
@@ -85,7 +85,7 @@ static Status load(OverlapTpnNetwork *model, const char *path, NetKernelKind ker
         model->card.normalisation);
   model->has_range = overlap_tpn_range_parse(model->card.range, &model->range);
   TRY(fold(model));
-  return furnish(model, kernel, more);
+  return create_workspaces(model, kernel, more);
 }
 
 Status overlap_tpn_network_create(OverlapTpnNetwork *model, const char *path, NetKernelKind kernel,

@@ -215,7 +215,7 @@ static unsigned flags_of(const Portion *portion, const Slot *slot, double weight
 }
 
 // V of a pair with a slot from the network's outputs y, with its derivatives by what it is made of.
-static Status settle(Portion *portion, Slot *slot, const float *y, int order, OverlapTpnJet *volume) {
+static Status blend_answer(Portion *portion, Slot *slot, const float *y, int order, OverlapTpnJet *volume) {
   const OverlapBatch *batch = portion->batch;
   const OverlapTpnRule *rule = &portion->overlap->rule;
   for (int o = 0; o < rule->order_count; o++) {
@@ -248,7 +248,7 @@ static void weigh(void *self, const float *y, float *c) {
   for (int s = 0; s < portion->slot_count && !portion->status; s++) {
     Slot *slot = &portion->slots[s];
     OverlapTpnJet volume;
-    portion->status = settle(portion, slot, y + 2 * (ptrdiff_t)n * s, 1, &volume);
+    portion->status = blend_answer(portion, slot, y + 2 * (ptrdiff_t)n * s, 1, &volume);
     for (int o = 0; o < n; o++) {
       float *weights = c + 2 * ((ptrdiff_t)n * s + o);
       weights[0] = (float)(slot->partials[OVERLAP_TPN_LOGIT + o] / slot->normalised[o].factor);
@@ -442,7 +442,7 @@ static Status eval_bent(Portion *portion, OverlapTpnWorkspace *workspace) {
   net_forward_eval_f32(&workspace->work, &model->network, workspace->row_count, workspace->x, workspace->y);
   for (int s = 0; s < portion->slot_count; s++) {
     Slot *slot = &portion->slots[s];
-    TRY(settle(portion, slot, workspace->y + 2 * (ptrdiff_t)n * s, 2, &portion->volumes[s]));
+    TRY(blend_answer(portion, slot, workspace->y + 2 * (ptrdiff_t)n * s, 2, &portion->volumes[s]));
     for (int o = 0; o < n; o++) {
       float *weights = workspace->c + 2 * ((ptrdiff_t)n * s + o);
       weights[0] = (float)slot->partials[OVERLAP_TPN_LOGIT + o];
@@ -462,7 +462,7 @@ static Status eval_volumes(Portion *portion, OverlapTpnWorkspace *workspace) {
   net_forward_eval_f32(&workspace->work, &portion->overlap->model.network, workspace->row_count, workspace->x,
                        workspace->y);
   for (int s = 0; s < portion->slot_count; s++)
-    TRY(settle(portion, &portion->slots[s], workspace->y + 2 * (ptrdiff_t)n * s, 0, &volume));
+    TRY(blend_answer(portion, &portion->slots[s], workspace->y + 2 * (ptrdiff_t)n * s, 0, &volume));
   return STATUS_OK;
 }
 

@@ -46,9 +46,9 @@ typedef struct OverlapGeoBlock {
   OverlapGeoColumn scaled[3 * GEO_LANES];         // m, component c of plane k in row 8 c + k
   OverlapGeoColumn basis[3 * GEO_LANES];          // Q, likewise by column
   OverlapGeoColumn projector[GEO_ENTRIES];        // P, entries as in GeoSymmetric
-  OverlapGeoColumn
-      invariants[sizeof(OverlapGeoInvariants) / sizeof(GeoPack)]; // in packs of the kernel's width
-  OverlapGeoColumn volume;                                        // V₀ [m³]
+  // In packs of the kernel's width.
+  OverlapGeoColumn invariants[sizeof(OverlapGeoInvariants) / sizeof(GeoPack)];
+  OverlapGeoColumn volume;   // V₀ [m³]
   OverlapGeoColumn is_fit;   // 1; or 0: the scalar form must say what is wrong
   OverlapGeoColumn is_close; // 1: coplanar faces give the exact volume a share (geo_coplanar.h)
   OverlapGeoColumn features[OVERLAP_GEO_MAX_FEATURES];
