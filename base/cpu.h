@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The processor that this runs on, for manifests and benchmarks.
 #ifndef TETLAP_BASE_CPU_H
 #define TETLAP_BASE_CPU_H

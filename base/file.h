@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Files that appear whole or not at all: written beside their final place under a temporary name, flushed,
 // renamed.
 #ifndef TETLAP_BASE_FILE_H

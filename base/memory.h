@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Zeroed arrays whose size cannot overflow, growth, and an allocation that fails on purpose for tests.
 #ifndef TETLAP_BASE_MEMORY_H
 #define TETLAP_BASE_MEMORY_H

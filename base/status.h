@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // How every function of tetlap says that it failed.
 //
 // 0 is ok, positive is recoverable (take a smaller step), negative is fatal: IDA's own convention, so our

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Names that people mistype: how far two words are apart, and which of the known ones was meant.
 #ifndef TETLAP_BASE_TEXT_H
 #define TETLAP_BASE_TEXT_H

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // 3-vectors as small values; double[3] stays the form in arrays.
 #ifndef TETLAP_BASE_VEC3_H
 #define TETLAP_BASE_VEC3_H

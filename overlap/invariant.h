@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What the overlap volume V of two tetrahedra and its gradient must obey, whoever computes them: by how much
 // an answer misses it, relative to the pair's own size, so that each model can have its own tolerance. A NaN
 // stays a NaN. Pairs x (2, 4, 3) [m].

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "overlap/model.h"
 
 #include <math.h>
@@ -6,7 +6,6 @@
 
 #include "base/text.h"
 #include "overlap/clip/clip.h"
-#include "overlap/exact/cgal.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/model.h"
 #include "overlap/portions.h"
@@ -14,16 +13,23 @@
 #include "overlap/tpn/model.h"
 #include "overlap/weights.h"
 
+// In those programs that link it; the library that others embed (overlap/api) does not.
+extern const OverlapOps overlap_cgal_ops __attribute__((weak));
+
 // The fastest first: what a person reads when asking for the models.
 static const OverlapOps *const models[] = {
     &overlap_clip_ops,   &overlap_clip32_ops, &overlap_clip_scalar_ops, &overlap_geo_small_ops,
     &overlap_geo_ops,    &overlap_tpn_ops,    &overlap_tpn_bf16_ops,    &overlap_tpn_scene_ops,
     &overlap_hybrid_ops, &overlap_exact_ops,  &overlap_cgal_ops,
 };
-enum { MODEL_COUNT = sizeof models / sizeof *models };
+enum { MOST_MODELS = sizeof models / sizeof *models };
+
+static int model_count(void) {
+  return MOST_MODELS - (&overlap_cgal_ops == NULL);
+}
 
 const OverlapOps *const *overlap_model_list(int *count) {
-  *count = MODEL_COUNT;
+  *count = model_count();
   return models;
 }
 
@@ -31,7 +37,7 @@ static Status fail_unknown(const char *name) {
   char known[256] = "";
   size_t used = 0;
   TextGuess guess = text_guess_of(name);
-  for (int m = 0; m < MODEL_COUNT; m++) {
+  for (int m = 0; m < model_count(); m++) {
     text_append(known, sizeof known, &used, "%s%s", m ? ", " : "", models[m]->name);
     text_guess_offer(&guess, models[m]->name);
   }
@@ -53,7 +59,7 @@ Status overlap_model_create_with(OverlapModel *model, const char *name, const ch
                                  const OverlapOptions *options) {
   *model = (OverlapModel){0};
   const OverlapOps *ops = NULL;
-  for (int m = 0; m < MODEL_COUNT; m++)
+  for (int m = 0; m < model_count(); m++)
     if (strcmp(models[m]->name, name) == 0) ops = models[m];
   if (!ops && overlap_weights_is_path(name)) {
     TRY(find_by_file(name, &ops));

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Overlap models by name: the list of those there are (overlap/ops.h says what one is), and batches evaluated
 // with OpenMP.
 #ifndef TETLAP_OVERLAP_MODEL_H

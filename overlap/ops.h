@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What an overlap model is: for pairs of tetrahedra the volume V of their intersection, its derivatives by
 // the 24 coordinates, and its centroid. One interface, many answers; each gradient is the derivative of the
 // same model's V.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a scene may ask of the models that are a TetrahedronPairNet (net_overlap.h). AUTO: the model's own.
 #ifndef TETLAP_OVERLAP_OPTIONS_H
 #define TETLAP_OVERLAP_OPTIONS_H

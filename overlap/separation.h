@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // How far apart two tetrahedra are along the best of the 44 axes of the separating axis theorem (the 8 face
 // normals, the 36 cross products of edges; Gottschalk, Lin, Manocha 1996): positive if they are disjoint,
 // 0 if they touch, minus the smallest overlap of the projections if they have a common interior. Never more

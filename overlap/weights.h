@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Where the weights of learned models are.
 #ifndef TETLAP_OVERLAP_WEIGHTS_H
 #define TETLAP_OVERLAP_WEIGHTS_H

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Batches of pairs on vectors. Groups in which few lanes may overlap wait until there are enough for a full
 // vector, so that disjoint pairs cost only the first part of clip_lanes.h.
 #include <math.h>

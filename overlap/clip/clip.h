@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The overlap models `clip`, `clip-scalar` and `clip32`: clipping in double precision, with the exact
 // gradient and Hessian of V; `clip32` in single.
 //

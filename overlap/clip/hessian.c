@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The Hessian of clip.h: what turns with the faces, then one segment after another.
 #include <math.h>
 #include <string.h>

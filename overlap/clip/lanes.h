@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Clipping of several pairs at once, one a lane of the processor's vectors, without a branch that hangs on a
 // pair: what `clip` and `clip32` do with batches.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Clipping with 16 pairs a vector.
 #if defined(__x86_64__)
 #include "overlap/clip/lanes.h"

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The intersection of two tetrahedra as a closed polyhedron, by clipping one with the other's planes in
 // double precision.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The boundary of the intersection is eight polygons, one on each face of either tetrahedron. With O any
 // point of the intersection, here one of its corners, and r_F the polygon's share of the face F,
 //

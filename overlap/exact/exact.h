@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The overlap model `exact`: the volume of two tetrahedra's intersection and its gradient by exact rational
 // arithmetic. The referee of the other models.
 //

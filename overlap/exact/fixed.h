@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A corner's homogeneous coordinates (c_0, c_1, c_2), all ≥ 0, with sum ≤ w, to 127 bits after the binary
 // point: enough for all but the thinnest triangles, and known when not. With b the number of bits of w,
 //

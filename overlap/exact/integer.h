@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Integers of any size for short straight-line computations: immutable values whose limbs lie one after
 // another in memory that the caller lends (an arena). No allocation, no clean-up, no shared state. Of few
 // limbs the arithmetic is our own, else GMP's mpn layer; this is the only place that knows GMP.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A pair of tetrahedra as integers, with the 68 brackets [w x y z] = det(x − w, y − w, z − w) that decide
 // everything about their intersection: 16 + 16 vertices against face planes and 36 edges against edges.
 // All three are of degree 3 in the coordinates. That they suffice is Cramer's rule: with

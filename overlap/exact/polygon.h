@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The part of a tetrahedron's face that lies in another tetrahedron: a convex polygon, cut out of the face by
 // the other's four planes (Sutherland and Hodgman 1974). No coordinate is ever constructed while cutting: a
 // corner is a name (a vertex; an own edge and the other's plane; the other's edge and the own plane), and on

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The analytic centre of eight half-spaces, c = argmax Σ_k log s_k, by Newton's method.
 //
 // With m_k = ∇s_k / s_k the gradient is Σ m_k and the Hessian −Σ m_k m_kᵀ. A step moves slack k to

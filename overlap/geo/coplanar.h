@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Pairs with faces that nearly lie in one plane, which a smooth V cannot answer.
 //
 // Where face k of one tetrahedron passes through the plane of face l of the other, parallel to it, V has a

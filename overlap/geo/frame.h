@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The analytic-centre frame of a pair: what of two tetrahedra no affine map changes, and a first guess of V.
 //
 // At the centre c (geo_centre.h) let m be the 8 × 3 matrix with rows m_k = ∇s_k / s_k, m = Q R with QᵀQ = 1,

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Whether two tetrahedra intersect, and a point inside the intersection if they do: the first step of the
 // overlap model `geo`.
 //

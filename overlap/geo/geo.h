@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Learned overlap volumes that can be trusted with forces:
 //
 //     pair ─ gate ─► empty: V = 0

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Second derivatives along half of the directions are enough. An affine map of all space by 1 + B changes the
 // gradient of log V at x_i, and that of any function of P, by −Bᵀ times itself. A step of one vertex of one
 // tetrahedron is such a map but for the vertices of the other. So only the vertices of one tetrahedron are

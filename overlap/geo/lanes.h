@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Arithmetic on eight numbers at a time, one for each plane of a pair: 0–3 the faces of the first
 // tetrahedron, 4–7 those of the second. Loops of fixed length that a compiler turns into vectors; sums are
 // taken in a fixed order, so that every instruction set gives the same bits.

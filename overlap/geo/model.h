@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // `geo` behind the interface of the overlap models: what an operations table of theirs points to.
 #ifndef TETLAP_OVERLAP_GEO_MODEL_H
 #define TETLAP_OVERLAP_GEO_MODEL_H

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A trained network of net/ as the ρ of `geo`: read from a weights file, evaluated in double, whatever the
 // file's precision (folded whitening cancels digits).
 #ifndef TETLAP_OVERLAP_GEO_NETWORK_H

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // How the answer for one pair is made of what a network, the closed form, the exact model and clipping say of
 // it, and its derivatives by each of them.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Numbers that carry their derivatives by the few quantities that the answer for a pair is made of
 // (blend.h), so that a formula is written once and its first and second derivatives follow.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // TetrahedronPairNet as an overlap model: `tpn` as it was published, `tpn-scene` made fit for scenes, and
 // `hybrid`, the paper's section 5. `tpn-bf16` is tpn computed with less precision.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A TetrahedronPairNet from a weights file, and what its card says, made ready for threads: each evaluation
 // acquires a workspace, memory for one portion of pairs, and releases it.
 #ifndef TETLAP_OVERLAP_TPN_NETWORK_H

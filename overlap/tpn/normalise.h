@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Normalisations of a pair before a network sees it (TetrahedronPairNet, table 2), and the way back of a
 // gradient through them.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What model.h does with one portion of pairs: who is asked about each, and how V, ∇V and ∇²V come of
 // the answers.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What pairs a network of model.h was trained on, in three measures of a normalised pair (normalise.h):
 //
 //   radius   root mean square distance of the eight vertices from the first tetrahedron's centroid

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The overlap share of a pair: q = V₀ (1/V_A + 1/V_B), V₀ the closed form of `geo` without a network, which
 // is 0 where the pair is disjoint and has continuous derivatives. What networks are faded in by.
 #ifndef TETLAP_OVERLAP_TPN_SHARE_H

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The volume of a tetrahedron and its derivatives: with λ_k the gradients of its barycentric coordinates,
 //
 //     ∂ ln|V|/∂x_k = λ_k,   ∂² ln|V|/∂x_kr ∂x_lc = −λ_kc λ_lr.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The way of many pairs through `geo`, side by side in vector lanes: what geo_gate.h, geo_centre.h,
 // geo_frame.h and geo_features.h do for one.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Features with eight numbers a register.
 #if defined(__x86_64__)
 #ifdef __clang__

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // GEO_PACK numbers side by side, computed with as one (a vector type of gcc and clang: on a processor without
 // such registers the compiler splits it). The lanes of a pack are different pairs, or different directions of
 // one. Eight, unless the including file says otherwise first; packs of another size stay within that file.
