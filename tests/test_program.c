@@ -81,10 +81,31 @@ START_TEST(a_list_with_an_empty_name_is_a_usage_error_and_blanks_are_none) {
 }
 END_TEST
 
+// A short run into a scratch folder: whether its messages have a line of that form.
+static bool run_says(const char *options, const char *line) {
+  char command[768];
+  snprintf(command, sizeof command,
+           "folder=$(mktemp -d) && %s run %s/examples/01_drop.yaml --set time.end=0.01 -o $folder %s 2>&1 > "
+           "/dev/null | "
+           "grep -q '%s'; found=$?; rm -r $folder; exit $found",
+           TETLAP_PROGRAM, TETLAP_SOURCE_DIR, options, line);
+  int code = WEXITSTATUS(system(command));
+  ck_assert_int_le(code, 1);
+  return code == 0;
+}
+
+START_TEST(a_verbose_run_has_a_line_for_every_step) {
+  static const char step[] = "^debug: t = .* s: step 1 of .* s, 0 pairs overlap$";
+  ck_assert(run_says("-v", step));
+  ck_assert(!run_says("", "^debug"));
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("program");
   tcase_add_test(cases, exit_codes_say_who_is_to_blame);
   tcase_add_test(cases, an_option_that_is_no_number_in_its_range_is_a_usage_error);
   tcase_add_test(cases, a_list_with_an_empty_name_is_a_usage_error_and_blanks_are_none);
+  tcase_add_test(cases, a_verbose_run_has_a_line_for_every_step);
   return suite_run("program", cases, 60);
 }

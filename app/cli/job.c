@@ -34,7 +34,7 @@ static const struct argp_option option_table[] = {
     {"threads", 't', "N", 0, "Use N threads (default: the scene's, else all)", 1},
     {"json", 'j', NULL, 0, "Print the result as JSON on standard output", 2},
     {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
-    {"verbose", 'v', NULL, 0, "Say more", 2},
+    {"verbose", 'v', NULL, 0, "Say more: a line a step, and why one is taken back", 2},
     {0},
 };
 
@@ -119,6 +119,8 @@ Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overl
     if (options->threads) job->scene.threads = options->threads;
     if (job->scene.threads) omp_set_num_threads(job->scene.threads);
     status = fem_model_create(&job->model, &job->scene);
+    log_debug("%s: read and built on %d threads; output goes to %s", job->scene.path, omp_get_max_threads(),
+              job->directory);
   }
   if (status) app_job_close(job);
   return status;
@@ -134,6 +136,8 @@ void app_job_close(AppJob *job) {
 Status app_job_show_progress(void *self, const FemRunProgress *state) {
   AppProgress *progress = self;
   double share = state->time / state->end;
+  log_debug("%st = %.9g s: step %lld of %.3g s, %d pairs overlap", progress->label, state->time,
+            state->step_count, state->step, state->active_pairs);
   double left = share > 0 ? (clock_wall_s() - progress->began_s) * (1 - share) / share : 0;
   log_progress("%s%3.0f %%  t %.4g of %.4g s  step %lld  h %.1e s  pairs %d  left %d:%02d", progress->label,
                100 * share, state->time, state->end, state->step_count, state->step, state->active_pairs,

@@ -20,7 +20,7 @@ static const struct argp_option option_table[] = {
     {"strict", KEY_STRICT, NULL, 0, "End with an error where energy comes out of nothing", 1},
     {"json", 'j', NULL, 0, "Print the result as JSON on standard output", 2},
     {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
-    {"verbose", 'v', NULL, 0, "Say more", 2},
+    {"verbose", 'v', NULL, 0, "Say more: a line a step, and why one is taken back", 2},
     {0},
 };
 

@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "fem/effect/rest.h"
 #include "fem/run/hold.h"
@@ -43,7 +44,9 @@ static bool gains_energy(const FemAudit *before, const FemAudit *after) {
 }
 
 // Back to the last accepted state with a smaller step.
-static Status take_back(FemRunState *run) {
+static Status take_back(FemRunState *run, const char *why) {
+  log_debug("t = %.9g s: a step of %.3g s is taken back: %s", run->time,
+            fem_integrator_stats(run->integrator).last_step, why);
   run->retries++;
   double step = RETRY_FACTOR * fem_integrator_stats(run->integrator).last_step;
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
@@ -170,15 +173,15 @@ static Status advance(FemRunState *run) {
   FemMeasures measures;
   Status status = step(run, &time, &is_onset, &measures);
   bool may_retry = run->retries < RETRIES_IN_A_ROW;
-  if (status == STATUS_RETRY && may_retry) return take_back(run);
+  if (status == STATUS_RETRY && may_retry) return take_back(run, status_message());
   TRY(status);
   FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
   if (gains_energy(&run->audit, &next) && may_retry) {
     run->result->energy_retries++;
-    return take_back(run);
+    return take_back(run, "it gains energy");
   }
   status = fem_run_frames_write_until(run, time);
-  if (status == STATUS_RETRY && may_retry) return take_back(run);
+  if (status == STATUS_RETRY && may_retry) return take_back(run, status_message());
   TRY(status);
   run->audit = next;
   keep_state(run, time);
@@ -190,7 +193,9 @@ static Status advance(FemRunState *run) {
   if (fem_system_lags(&run->system) || fem_integrator_is_at_knot(run->integrator)) TRY(renew_powers(run));
   TRY(observe(run, &measures));
   if (fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest))) return renumber(run);
-  return is_onset ? fem_integrator_restart(run->integrator, time, run->u, run->v, 0) : STATUS_OK;
+  if (!is_onset) return STATUS_OK;
+  log_debug("t = %.9g s: the integrator starts anew, something begins here", time);
+  return fem_integrator_restart(run->integrator, time, run->u, run->v, 0);
 }
 
 // The next state while all bodies sleep: as late as contact lists allow for obstacles that move, and not

@@ -25,7 +25,8 @@ typedef struct FuzzTarget {
   size_t (*mutate)(uint8_t *data, size_t size, size_t room, unsigned number, FuzzPlainMutation plain);
 } FuzzTarget;
 
-extern const FuzzTarget fuzz_scene, fuzz_mesh, fuzz_weights, fuzz_dataset, fuzz_checkpoint, fuzz_pairs;
+extern const FuzzTarget fuzz_scene, fuzz_mesh, fuzz_weights, fuzz_dataset, fuzz_checkpoint, fuzz_pairs,
+    fuzz_table;
 
 // What a target claims of the code that it feeds; `...` is a printf format with what was found instead.
 #define FUZZ_CLAIM(is_true, ...)                                                                             \
