@@ -1,11 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """tetlap: overlap volumes of tetrahedra with their derivatives, and runs of the finite element program of that name.
 
-    run, read            a scene run by the program; what it wrote, as arrays
+    overlap                     volumes of pairs, gradients, Hessians
+    mesh_overlap, mesh_pairs    of all tetrahedra of two meshes
+    tetlap.torch.overlap        the same as a differentiable function of PyTorch tensors
+    Model, models               the overlap models there are
+    run, read                   a scene run by the program; what it wrote, as arrays
 """
 
 from ._errors import Error, RunError
+from ._library import Model, models
 from ._results import Frame, Frames, Run, read
 from ._run import run
+from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
 
-__all__ = ["Error", "Frame", "Frames", "Run", "RunError", "read", "run"]
+__all__ = ["Error", "Flag", "Frame", "Frames", "MeshPairs", "Model", "Overlap", "Run", "RunError", "mesh_overlap", "mesh_pairs",
+           "models", "overlap", "read", "run"]
+
+
+def __getattr__(name):
+    if name == "torch":
+        from importlib import import_module
+
+        return import_module(".torch", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

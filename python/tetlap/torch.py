@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Overlap volumes as a differentiable function of PyTorch tensors.
+
+    V = tetlap.torch.overlap(x)      x (…, 2, 4, 3) on the CPU, V (…)
+
+The first derivative is the model's own ∇V. The second is its ∇²V, given as products with the vectors that autograd hands
+down, so that no matrix of 24 x 24 is made; models without ∇²V refuse that, by name.
+"""
+
+import torch
+
+from ._volumes import _model, overlap as _overlap_of_arrays
+
+
+def _check(x):
+    if not isinstance(x, torch.Tensor):
+        raise TypeError(f"x is a {type(x).__name__}; expected a torch.Tensor (tetlap.overlap takes arrays)")
+    if x.device.type != "cpu" or x.layout != torch.strided:
+        raise ValueError(f"x is a {x.layout} tensor on {x.device}; expected a dense one on the CPU: x.cpu()")
+    if x.dtype not in (torch.float64, torch.float32):
+        raise TypeError(f"x has dtype {x.dtype}; expected torch.float64 or torch.float32")
+
+
+def _as_array(tensor):
+    return tensor.detach().numpy()
+
+
+class _Volume(torch.autograd.Function):
+    """V, which keeps ∇V for the way back."""
+
+    @staticmethod
+    def forward(ctx, x, model):
+        needs_gradient = ctx.needs_input_grad[0]
+        result = _overlap_of_arrays(_as_array(x), model, order=1 if needs_gradient else 0)
+        if needs_gradient:
+            ctx.save_for_backward(x)
+            ctx.model, ctx.gradient = model, torch.from_numpy(result.gradient).to(x.dtype)
+        return torch.as_tensor(result.volume).to(x.dtype)
+
+    @staticmethod
+    def backward(ctx, from_volume):
+        (x,) = ctx.saved_tensors
+        return from_volume[..., None, None, None] * _Gradient.apply(x, ctx.gradient, ctx.model), None
+
+
+class _Gradient(torch.autograd.Function):
+    """∇V, known already, as a function of x: its derivative is ∇²V."""
+
+    @staticmethod
+    def forward(ctx, x, gradient, model):
+        ctx.save_for_backward(x)
+        ctx.model = model
+        return gradient.clone() if ctx.needs_input_grad[0] else gradient
+
+    @staticmethod
+    @torch.autograd.function.once_differentiable
+    def backward(ctx, vector):
+        (x,) = ctx.saved_tensors
+        result = _overlap_of_arrays(_as_array(x), ctx.model, order=0, vector=_as_array(vector))
+        return torch.from_numpy(result.product).to(x.dtype), None, None
+
+
+def overlap(x, model="clip", threads=0):
+    """The overlap volumes (…) of the pairs x (…, 2, 4, 3), of the same dtype; computed in float64 whatever that is.
+
+    Differentiable once with every model, twice with those that have a Hessian. `model` and `threads` as for
+    tetlap.overlap, and so is what is refused.
+    """
+    _check(x)
+    return _Volume.apply(x, _model(model, threads))
