@@ -13,7 +13,7 @@ from setuptools.command.build_py import build_py
 HERE = Path(__file__).resolve().parent
 BUILD = Path(os.environ.get("TETLAP_BUILD_DIR") or HERE.parent / "build" / "release")
 LIBRARY = BUILD / "libtetlap-overlap.so.0"
-WEIGHTS = HERE.parent / "net" / "weights"
+WEIGHTS = HERE.parent / "net" / "weights"  # looked for by the library under share/tetlap, by that name
 
 
 class BuildWithLibrary(build_py):
@@ -27,7 +27,7 @@ class BuildWithLibrary(build_py):
         package = Path(self.build_lib, "tetlap")
         (package / "lib").mkdir(parents=True, exist_ok=True)
         shutil.copy(LIBRARY, package / "lib" / LIBRARY.name)
-        shutil.copytree(WEIGHTS, package / "share" / "tetlap" / "weights", dirs_exist_ok=True)
+        shutil.copytree(WEIGHTS, package / "share" / "tetlap" / "net" / "weights", dirs_exist_ok=True)
 
 
 class DistributionWithLibrary(Distribution):

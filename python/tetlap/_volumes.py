@@ -57,6 +57,14 @@ def _model(model, threads):
     return _model_of_name(os.fspath(model), threads)
 
 
+def _check_model(model, wants_hessian, wants_centroid):
+    for is_wanted, what in ((wants_hessian, "hessian"), (wants_centroid, "centroid")):
+        if is_wanted and not getattr(model, f"has_{what}"):
+            able = [other.name for other in _library.models() if getattr(other, f"has_{what}")]
+            raise ValueError(f"model '{model.name}' has no {what}; expected one of {', '.join(able)}")
+    return model
+
+
 def _real(array, name):
     """As float64, contiguous; the array itself where it is that already."""
     array = np.asarray(array)
@@ -120,9 +128,10 @@ def overlap(x, model="clip", order=1, *, vector=None, centroid=False, threads=0,
         vector = _pairs(vector, "vector")
         if vector.shape != x.shape:
             raise ValueError(f"vector has shape {vector.shape}; expected that of x, {x.shape}")
+    model = _check_model(_model(model, threads), order == 2 or vector is not None, centroid)
     asked = (x.shape[:-3], order, vector is not None, centroid)
     result = _outputs(*asked) if out is None else _check_out(out, *asked)
-    _model(model, threads).evaluate(x, vector, result)
+    model.evaluate(x, vector, result)
     return result
 
 
@@ -170,9 +179,10 @@ def mesh_pairs(points_a, tets_a, points_b, tets_b, model="clip", order=0, *, cen
     """
     if order not in (0, 1):
         raise ValueError(f"order is {order!r}; expected 0 (V) or 1 (and the gradient)")
+    model = _check_model(_model(model, threads), False, centroid)
     a, b = _mesh(points_a, tets_a, "a"), _mesh(points_b, tets_b, "b")
     wanted = _library.VOLUME | (_library.GRADIENT if order else 0) | (_library.CENTROID if centroid else 0)
-    found = _model(model, threads).evaluate_meshes(*a, *b, wanted)
+    found = model.evaluate_meshes(*a, *b, wanted)
     return MeshPairs(*found, (len(a[1]), len(b[1])))
 
 
