@@ -148,10 +148,16 @@ static Status run_stage(DeviceOverlap *overlap, int k, int count, bool wants_gra
   arguments[n++] = device_memory(&overlap->lists[k % 2]);
   arguments[n++] = device_memory(&overlap->list_count);
   if (wants_gradient) arguments[n++] = device_memory(&overlap->gradient);
+  double seconds = 0;
   TRY(device->ops->put(device->self, &overlap->list_count, 0, sizeof none, &none));
+  TRY(device->ops->mark(device->self, DEVICE_BEGIN));
   TRY(device_launch(device, &overlap->stages[k].kernels[wants_gradient ? GRADIENT_KERNEL : VOLUME_KERNEL],
                     count, arguments, n));
-  return device->ops->get(device->self, &overlap->list_count, 0, sizeof *left, left);
+  TRY(device->ops->mark(device->self, DEVICE_END));
+  TRY(device->ops->get(device->self, &overlap->list_count, 0, sizeof *left, left));
+  TRY(device->ops->elapsed(device->self, &seconds));
+  overlap->kernel_s += seconds;
+  return STATUS_OK;
 }
 
 // --- What is left to the host.
@@ -269,6 +275,7 @@ Status device_overlap_run(DeviceOverlap *overlap, bool wants_gradient) {
     overlap->has_gradient = true;
   }
   int left = overlap->count;
+  overlap->kernel_s = 0;
   memset(overlap->handed_on, 0, sizeof overlap->handed_on);
   for (int k = 0; k < overlap->stage_count && left > 0; k++) {
     TRY(run_stage(overlap, k, left, wants_gradient, &left));

@@ -40,6 +40,7 @@ typedef struct DeviceOverlap {
   DeviceMemory lists[2], list_count;                      // doubtful pairs
   DeviceMemory rows, row_volume, row_gradient, row_flags; // what the host answers
   int row_capacity;
+  double kernel_s;                      // of the last batch: what the stages' kernels took [s]
   int handed_on[DEVICE_OVERLAP_STAGES]; // of the last batch: pairs that stage k left to the next, or the host
 } DeviceOverlap;
 

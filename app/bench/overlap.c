@@ -4,9 +4,11 @@
 #include <math.h>
 #include <omp.h>
 #include <stdbool.h>
+#include <string.h>
 
 #include "app/bench/command.h"
 #include "app/bench/contestant.h"
+#include "app/bench/overlap_device.h"
 #include "app/bench/pairs.h"
 #include "app/bench/peak.h"
 #include "app/bench/report.h"
@@ -25,6 +27,8 @@ typedef struct Options {
   AppBenchOptions common;
   bool wants_model[MAX_MODELS], wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
   int batches[APP_BENCH_MAX_LIST], batch_count;
+  const char *device; // NULL: this processor as it is
+  bool wants_residence[APP_BENCH_RESIDENCES];
 } Options;
 
 static const struct argp_option option_table[] = {
@@ -32,6 +36,12 @@ static const struct argp_option option_table[] = {
     {"set", 's', "NAME,…", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
     {"quantity", 'Q', "NAME,…", 0, "V, V+centroid, V+grad, V+grad+hess (default: all that a model has)", 1},
     {"batch", 'b', "N,…", 0, "Pairs a call (default: 4096); slow models get fewer", 1},
+    {"device", 'D', "NAME", 0,
+     "Measure kernels on a device: host, opencl, cuda, auto, or with a number (opencl:1); `tetlap devices` "
+     "lists them",
+     1},
+    {"residence", 'R', "NAME,…", 0,
+     "With --device, where the pairs lie: device, indices, host (default: all)", 1},
     {0},
 };
 
@@ -61,6 +71,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case 'b':
     options->batch_count = app_bench_options_counts(state, "batch", text, 10000000, options->batches);
+    return 0;
+  case 'D':
+    options->device = text;
+    return 0;
+  case 'R':
+    app_bench_options_choose(state, "residence", text, app_bench_residences, APP_BENCH_RESIDENCES,
+                             options->wants_residence);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -307,7 +324,25 @@ static Status measure(Bench *bench) {
   return print(bench);
 }
 
+static Status run_on_device(const Options *options) {
+  AppBenchDeviceDef def = {.common = &options->common,
+                           .device = options->device,
+                           .wants_volume = options->wants_quantity[VOLUME],
+                           .wants_gradient = options->wants_quantity[GRADIENT],
+                           .batches = options->batches,
+                           .batch_count = options->batch_count};
+  const char *names[MAX_MODELS];
+  int count = list_models(names);
+  for (int m = 0; m < count; m++)
+    for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
+      if (strcmp(names[m], device_overlap_models[k]) == 0) def.wants_model[k] = options->wants_model[m];
+  memcpy(def.wants_set, options->wants_set, sizeof def.wants_set);
+  memcpy(def.wants_residence, options->wants_residence, sizeof def.wants_residence);
+  return app_bench_overlap_device_run(&def);
+}
+
 static Status run(const Options *options) {
+  if (options->device) return run_on_device(options);
   Bench *bench = memory_zeroed(1, sizeof *bench);
   if (!bench) return status_no_memory("the bench");
   bench->options = options;
@@ -329,6 +364,7 @@ static int run_command(int argument_count, char **arguments) {
   for (int i = 0; i < MAX_MODELS; i++) options.wants_model[i] = true;
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
+  for (int i = 0; i < APP_BENCH_RESIDENCES; i++) options.wants_residence[i] = true;
   app_bench_command_read(&app_bench_overlap, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));
 }
