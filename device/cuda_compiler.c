@@ -79,7 +79,7 @@ static Status compile(ProgramId program, const DeviceProgram *what, const char *
                       char **code, size_t *size, char **log) {
   char architecture[64];
   snprintf(architecture, sizeof architecture, "--gpu-architecture=%s", target);
-  const char *options[] = {architecture, "--default-device", "--fmad=false", "--std=c++20",
+  const char *options[] = {architecture, "--device-as-default-execution-space", "--fmad=false", "--std=c++20",
                            "--ptxas-options=-v"};
   int error = nvrtc.compile(program, tells ? 5 : 4, options);
   if (error == COMPILATION_FAILED) return fail_build(program, what, target);
