@@ -14,7 +14,8 @@ typedef struct DeviceHostKernel {
 } DeviceHostKernel;
 
 // Ends with a name that is NULL.
-extern const DeviceHostKernel device_host_clip[], device_host_clip32[], device_host_gather[];
+extern const DeviceHostKernel device_host_clip[], device_host_clip32[], device_host_gather[],
+    device_host_poses[];
 
 static inline void *device_host_at(const DeviceArgument *argument) {
   return argument->memory->at;

@@ -21,6 +21,8 @@ PIECE(kept, "device/kernels/kept.inc");
 PIECE(pairs, "device/kernels/pairs.inc");
 PIECE(gather, "device/kernels/gather.inc");
 PIECE(clip, "device/kernels/clip.inc");
+PIECE(pose, "device/kernels/pose.inc");
+PIECE(poses, "device/kernels/poses.inc");
 PIECE(clip_constants, "overlap/clip/constants.h");
 PIECE(clip_lanes, "overlap/clip/lanes.inc");
 
@@ -48,8 +50,16 @@ const DeviceProgram device_program_gather = {
     .items = 64,
 };
 
+const DeviceProgram device_program_poses = {
+    .name = "poses",
+    .defines = "#define GROUPS_AT_ONCE 6\n",
+    .pieces = {clip_constants, one, kept, clip_lanes, pose, poses},
+    .kernels = {"poses_clip", "poses_mend", "poses_sum"},
+    .items = 64,
+};
+
 static const DeviceProgram *const programs[] = {&device_program_clip, &device_program_clip32,
-                                                &device_program_gather};
+                                                &device_program_gather, &device_program_poses};
 
 const DeviceProgram *const *device_source_programs(int *count) {
   *count = sizeof programs / sizeof *programs;

@@ -29,7 +29,8 @@ typedef struct DeviceProgram {
   int items;                               // of a group
 } DeviceProgram;
 
-extern const DeviceProgram device_program_clip, device_program_clip32, device_program_gather;
+extern const DeviceProgram device_program_clip, device_program_clip32, device_program_gather,
+    device_program_poses;
 
 // All programs, an array of `*count`.
 const DeviceProgram *const *device_source_programs(int *count);
