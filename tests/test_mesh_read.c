@@ -713,6 +713,28 @@ START_TEST(the_command_says_what_is_wrong) {
 }
 END_TEST
 
+// Reading says that it turned an element: once, however many bodies are made of the file.
+START_TEST(a_file_of_several_bodies_is_read_once) {
+  char command[512], count[8] = "";
+  put("a.node", "4 3 0 0\n1 0 0 0\n2 0 1 0\n3 1 0 0\n4 0 0 1\n"), put("a.ele", "1 4 0\n1 1 2 3 4\n");
+  put("three.yaml", "time: {end: 1}\nbodies:\n"
+                    "  - {name: a, mesh: a.ele, material: {young: 1, poisson: 0, density: 1}}\n"
+                    "  - {name: b, mesh: a.ele, material: {young: 1, poisson: 0, density: 1}, place: "
+                    "{translate: [3, 0, 0]}}\n"
+                    "  - {name: c, mesh: a.ele, material: {young: 1, poisson: 0, density: 1}, place: "
+                    "{translate: [6, 0, 0]}}\n");
+  snprintf(command, sizeof command, "%s check %s 2>&1 | grep -c 'have been turned: 1'", TETLAP_PROGRAM,
+           scratch("three.yaml"));
+  FILE *pipe = popen(command, "r");
+  ck_assert_ptr_nonnull(fgets(count, sizeof count, pipe));
+  ck_assert_int_eq(pclose(pipe), 0);
+  ck_assert_str_eq(count, "1\n");
+  snprintf(command, sizeof command, "%s check %s | grep -q '36 displacements'", TETLAP_PROGRAM,
+           scratch("three.yaml"));
+  ck_assert_int_eq(system(command), 0);
+}
+END_TEST
+
 int main(void) {
   // Loaded once for all tests, each of which reads in a process of its own.
   FemMeshGmshLibrary gmsh;
@@ -747,6 +769,7 @@ int main(void) {
   tcase_add_test(cases, tetgen_files_may_count_from_zero_and_hold_comments_and_attributes);
   tcase_add_test(cases, tetgen_faults_are_told_with_their_line);
   tcase_add_loop_test(cases, every_failed_allocation_is_an_error, 0, 2);
+  tcase_add_test(cases, a_file_of_several_bodies_is_read_once);
   tcase_add_test(cases, the_command_says_what_a_mesh_holds);
   tcase_add_test(cases, the_command_says_what_is_wrong);
   return suite_run("mesh_read", cases, 60);

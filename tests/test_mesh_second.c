@@ -589,19 +589,52 @@ START_TEST(the_command_tells_the_order) {
 }
 END_TEST
 
+static bool are_equal(const void *a, const void *b, size_t count, size_t size) {
+  return a != b && memcmp(a, b, count * size) == 0;
+}
+
+START_TEST(a_copy_has_all_that_a_mesh_has) {
+  FemMesh mesh, copy;
+  write_tetgen((int[4]){0, 2, 1, 3});
+  ck_assert_ok(fem_mesh_read(&mesh, scratch("a.ele"), NULL, NULL));
+  ck_assert_ok(fem_mesh_copy(&copy, &mesh));
+  ck_assert_int_gt(mesh.edge_count, 0);
+  ck_assert_int_eq(copy.vertex_count, mesh.vertex_count);
+  ck_assert_int_eq(copy.tet_count, mesh.tet_count);
+  ck_assert_int_eq(copy.edge_count, mesh.edge_count);
+  ck_assert(are_equal(copy.rest, mesh.rest, (size_t)mesh.vertex_count, sizeof(double[3])));
+  ck_assert(are_equal(copy.tets, mesh.tets, (size_t)mesh.tet_count, sizeof *mesh.tets));
+  ck_assert(are_equal(copy.middles, mesh.middles, (size_t)mesh.edge_count, sizeof(double[3])));
+  fem_mesh_destroy(&copy), fem_mesh_destroy(&mesh);
+  ck_assert_ok(fem_mesh_box(&mesh, (double[3]){1, 1, 1}, (int[3]){1, 1, 1}));
+  ck_assert_ok(fem_mesh_copy(&copy, &mesh));
+  ck_assert_int_gt(mesh.group_count, 0);
+  ck_assert_int_eq(copy.group_count, mesh.group_count);
+  for (int g = 0; g < mesh.group_count; g++) {
+    ck_assert_str_eq(copy.groups[g].name, mesh.groups[g].name);
+    ck_assert_int_eq(copy.groups[g].vertex_count, mesh.groups[g].vertex_count);
+    ck_assert(are_equal(copy.groups[g].vertices, mesh.groups[g].vertices, (size_t)mesh.groups[g].vertex_count,
+                        sizeof(int)));
+  }
+  fem_mesh_destroy(&copy), fem_mesh_destroy(&mesh);
+}
+END_TEST
+
 START_TEST(every_failed_allocation_is_an_error) {
   write_tetgen((int[4]){0, 2, 1, 3});
   int k = 1;
   for (Status status = STATUS_MEMORY; status != STATUS_OK; k++) {
-    FemMesh mesh;
+    FemMesh mesh, copy = {0};
     FemMeshCurvature curvature;
     memory_fail_at(k);
     status = fem_mesh_read(&mesh, scratch("a.ele"), NULL, NULL);
     if (!status) status = fem_mesh_curvature(&mesh, &curvature);
+    if (!status) status = fem_mesh_copy(&copy, &mesh);
     if (!status) status = fem_mesh_make_quadratic(&mesh);
     memory_fail_at(0);
     ck_assert_msg(status == STATUS_OK || status == STATUS_MEMORY, "k = %d: %s", k, status_message());
     ck_assert_int_lt(k, 200);
+    fem_mesh_destroy(&copy);
     fem_mesh_destroy(&mesh);
   }
   ck_assert_int_gt(k, 15);
@@ -626,6 +659,7 @@ int main(void) {
   tcase_add_test(cases, a_curved_vessel_meets_theory_where_a_straight_one_does_not);
   tcase_add_test(cases, a_linear_body_says_what_it_leaves_out);
   tcase_add_test(cases, the_command_tells_the_order);
+  tcase_add_test(cases, a_copy_has_all_that_a_mesh_has);
   tcase_add_test(cases, every_failed_allocation_is_an_error);
   return suite_run("mesh_second", cases, 60);
 }

@@ -22,6 +22,47 @@ void fem_mesh_destroy(FemMesh *mesh) {
   *mesh = (FemMesh){0};
 }
 
+// A copy of an array into the pointer at `copy`; of none, none. False: no memory.
+static bool copy_array(void *copy, const void *array, size_t count, size_t size) {
+  void *made = array ? memory_copy(array, count, size) : NULL;
+  memcpy(copy, &made, sizeof made);
+  return made || !array;
+}
+
+static bool copy_group(FemMeshGroup *copy, const FemMeshGroup *group) {
+  copy->vertex_count = group->vertex_count, copy->middle_count = group->middle_count;
+  return copy_array(&copy->name, group->name, strlen(group->name) + 1, 1) &&
+         copy_array(&copy->vertices, group->vertices, (size_t)group->vertex_count, sizeof(int)) &&
+         copy_array(&copy->middles, group->middles, (size_t)group->middle_count, sizeof(int));
+}
+
+static bool copy_groups(FemMesh *copy, const FemMesh *mesh) {
+  copy->groups = memory_zeroed((size_t)mesh->group_count, sizeof *copy->groups);
+  if (!copy->groups) return false;
+  copy->group_count = mesh->group_count;
+  for (int g = 0; g < mesh->group_count; g++)
+    if (!copy_group(&copy->groups[g], &mesh->groups[g])) return false;
+  return true;
+}
+
+Status fem_mesh_copy(FemMesh *copy, const FemMesh *mesh) {
+  size_t vertices = (size_t)mesh->vertex_count, tets = (size_t)mesh->tet_count;
+  *copy = (FemMesh){.vertex_count = mesh->vertex_count,
+                    .tet_count = mesh->tet_count,
+                    .edge_count = mesh->edge_count,
+                    .quadratic_count = mesh->quadratic_count};
+  bool is_whole =
+      copy_array(&copy->rest, mesh->rest, vertices, sizeof(double[3])) &&
+      copy_array(&copy->tets, mesh->tets, tets, sizeof *mesh->tets) &&
+      copy_array(&copy->middles, mesh->middles, (size_t)mesh->edge_count, sizeof(double[3])) &&
+      copy_array(&copy->tet_tags, mesh->tet_tags, tets, sizeof *mesh->tet_tags) &&
+      copy_array(&copy->quadratic, mesh->quadratic, (size_t)mesh->quadratic_count, sizeof *mesh->quadratic) &&
+      copy_groups(copy, mesh);
+  if (is_whole) return STATUS_OK;
+  fem_mesh_destroy(copy);
+  return status_no_memory("a copy of a mesh");
+}
+
 FemPlacement fem_mesh_placement_identity(void) {
   return (FemPlacement){.scale = {1, 1, 1}, .axis = {0, 0, 1}};
 }

@@ -91,6 +91,9 @@ void fem_mesh_make_linear(FemMesh *mesh);
 
 void fem_mesh_destroy(FemMesh *mesh);
 
+// A mesh of its own with the same content. STATUS_MEMORY: the copy is zeroed.
+Status fem_mesh_copy(FemMesh *copy, const FemMesh *mesh);
+
 // For tests and tools: MEDIT .mesh, without groups.
 Status fem_mesh_write_medit(const FemMesh *mesh, const char *path);
 
