@@ -121,6 +121,13 @@ class RunsOfTheProgram(unittest.TestCase):
 
     def test_an_interrupt_of_python_alone_stops_the_run(self):
         """SIGINT to the Python process only, as an editor or a notebook sends it."""
+        self.interrupt(os.kill)
+
+    def test_an_interrupt_of_both_stops_the_run(self):
+        """SIGINT to Python and to what it started, as a terminal sends it."""
+        self.interrupt(os.killpg)
+
+    def interrupt(self, send):
         Path(self.directory).mkdir()
         scene = self.directory / "endless.json"
         scene.write_text(json.dumps(ENDLESS))
@@ -130,7 +137,7 @@ class RunsOfTheProgram(unittest.TestCase):
             while not (self.directory / "frames.pvd").exists():
                 self.assertIsNone(python.poll(), "the run ended by itself")
                 time.sleep(0.02)
-            python.send_signal(signal.SIGINT)
+            send(python.pid, signal.SIGINT)
             _, told = python.communicate()
         finally:
             python.kill()
