@@ -21,7 +21,7 @@
 #include "base/status.h"
 #include "device/source.h"
 
-enum { DEVICE_TEXT = 160, DEVICE_MAX_FOUND = 16, DEVICE_MAX_ARGUMENTS = 16 };
+enum { DEVICE_TEXT = 160, DEVICE_MAX_FOUND = 16, DEVICE_MAX_ARGUMENTS = 24 };
 
 // What is known of a device before it is opened.
 typedef struct DeviceInfo {

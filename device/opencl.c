@@ -42,7 +42,7 @@ enum {
   CL_BUILD_LOG = 0x1183,
 };
 static const uint64_t TYPE_ALL = 0xFFFFFFFF;
-enum { LEAST_LOCAL_BYTES = 35 << 10, LEAST_GROUP = 64 }; // what kernels/ want
+enum { LEAST_LOCAL_BYTES = 48 << 10, LEAST_GROUP = 64 }; // what kernels/ want
 
 static struct {
   int (*platforms)(unsigned, PlatformId *, unsigned *);
@@ -166,13 +166,18 @@ static int find(DeviceInfo *infos, char reason[DEVICE_TEXT]) {
   return count;
 }
 
+// A program with its kernels.
+typedef struct Built {
+  ProgramId program;
+  KernelId kernels[DEVICE_MAX_KERNELS]; // owned                  (kernel_count)
+  int kernel_count;
+} Built;
+
 typedef struct OpenCl {
   DeviceInfo info;
   DeviceId device;
   ContextId context;
   QueueId queue;
-  KernelId kernels[64]; // made so far, owned
-  int kernel_count;
   double marks[DEVICE_MARK_COUNT]; // [s]
 } OpenCl;
 
@@ -201,7 +206,6 @@ static Status fail(const OpenCl *opencl, int code, const char *what) {
 static void close(void *self) {
   OpenCl *opencl = self;
   if (opencl->queue) cl.finish(opencl->queue);
-  for (int k = 0; k < opencl->kernel_count; k++) cl.release_kernel(opencl->kernels[k]);
   if (opencl->queue) cl.release_queue(opencl->queue);
   if (opencl->context) cl.release_context(opencl->context);
   memory_free(opencl);
@@ -256,6 +260,7 @@ static Status compile(OpenCl *opencl, const DeviceProgram *what, const char *tex
   Status status = code == BUILD_PROGRAM_FAILURE ? fail_build(opencl, *program, what)
                                                 : fail(opencl, code, "compiling a program");
   cl.release_program(*program);
+  *program = NULL;
   return status;
 }
 
@@ -271,6 +276,7 @@ static bool recall(OpenCl *opencl, uint64_t key, const char *options, ProgramId 
   if (error != SUCCESS || binary != SUCCESS) return false;
   if (cl.build_program(*program, 1, &opencl->device, options, NULL, NULL) == SUCCESS) return true;
   cl.release_program(*program);
+  *program = NULL;
   return false;
 }
 
@@ -283,38 +289,52 @@ static void keep(ProgramId program, uint64_t key) {
   memory_free(code);
 }
 
-static Status build(void *self, const DeviceProgram *what, void **module) {
-  OpenCl *opencl = self;
-  bool rounds = (number(opencl->device, CL_DEVICE_FLOAT) & ROUNDS_DIVISIONS) != 0;
+static void discard(void *self, void *module) {
+  (void)self;
+  Built *built = module;
+  if (!built) return;
+  for (int k = 0; k < built->kernel_count; k++) cl.release_kernel(built->kernels[k]);
+  if (built->program) cl.release_program(built->program);
+  memory_free(built);
+}
+
+static Status compile_or_recall(OpenCl *opencl, const DeviceProgram *what, const char *text, Built *built) {
+  const bool rounds = (number(opencl->device, CL_DEVICE_FLOAT) & ROUNDS_DIVISIONS) != 0;
   const char *options = rounds ? "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt" : "-cl-std=CL1.2";
-  char *text;
-  TRY(device_source_text(what, DEVICE_OPENCL_C, &text));
   const uint64_t key =
       device_cache_key(4, (const char *[]){text, options, opencl->info.name, opencl->info.driver});
-  ProgramId program;
-  Status status = STATUS_OK;
-  if (!recall(opencl, key, options, &program)) {
-    status = compile(opencl, what, text, options, &program);
-    if (status == STATUS_OK) keep(program, key);
+  if (recall(opencl, key, options, &built->program)) return STATUS_OK;
+  built->program = NULL;
+  TRY(compile(opencl, what, text, options, &built->program));
+  keep(built->program, key);
+  return STATUS_OK;
+}
+
+static Status build(void *self, const DeviceProgram *what, void **module) {
+  char *text;
+  Built *built = memory_zeroed(1, sizeof *built);
+  if (!built) return status_no_memory("an OpenCL program");
+  Status status = device_source_text(what, DEVICE_OPENCL_C, &text);
+  if (status == STATUS_OK) {
+    status = compile_or_recall(self, what, text, built);
+    memory_free(text);
   }
-  memory_free(text);
-  if (status == STATUS_OK) *module = program;
+  if (status == STATUS_OK)
+    *module = built;
+  else
+    discard(self, built);
   return status;
 }
 
-static void discard(void *self, void *module) {
-  (void)self;
-  if (module) cl.release_program(module);
-}
-
 static Status kernel(void *self, void *module, const char *name, DeviceKernel *found) {
-  OpenCl *opencl = self;
+  Built *built = module;
   int code;
-  if (opencl->kernel_count == sizeof opencl->kernels / sizeof *opencl->kernels)
-    return status_fail(STATUS_DEVICE, "device 'opencl': too many kernels");
-  KernelId made = cl.create_kernel(module, name, &code);
-  if (code != SUCCESS) return fail(opencl, code, name);
-  opencl->kernels[opencl->kernel_count++] = made;
+  if (built->kernel_count == DEVICE_MAX_KERNELS)
+    return status_fail(STATUS_DEVICE, "device 'opencl': a program has more than %d kernels",
+                       DEVICE_MAX_KERNELS);
+  KernelId made = cl.create_kernel(built->program, name, &code);
+  if (code != SUCCESS) return fail(self, code, name);
+  built->kernels[built->kernel_count++] = made;
   *found = (DeviceKernel){.at = made, .name = name};
   return STATUS_OK;
 }

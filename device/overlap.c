@@ -8,40 +8,52 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "overlap/clip/clip.h"
+#include "overlap/exact/exact.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE, VOLUME_KERNEL = 0, GRADIENT_KERNEL = 1, GATHER = 0, SCATTER = 1 };
 
-typedef struct Chain {
+typedef struct DeviceOverlapChain {
   const char *model;
   const DeviceProgram *programs[DEVICE_OVERLAP_STAGES];
-} Chain;
+  const OverlapOps *last; // answers on the host what is left
+  unsigned flags;         // of what that answers, besides its own
+  const char *weights;    // of a network; NULL: there is none
+  bool has_gradient;
+} DeviceOverlapChain;
 
-static const Chain chains[DEVICE_OVERLAP_MODELS] = {
-    {"clip", {&device_program_clip}},
-    {"clip32", {&device_program_clip32, &device_program_clip}},
+static const DeviceOverlapChain chains[DEVICE_OVERLAP_MODELS] = {
+    {"clip", {&device_program_clip}, &overlap_clip_scalar_ops, 0, NULL, true},
+    {"clip32", {&device_program_clip32, &device_program_clip}, &overlap_clip_scalar_ops, 0, NULL, true},
+    {"tpn", {&device_program_tpn}, &overlap_exact_ops, OVERLAP_FALLBACK, "tpn", false},
 };
-const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {"clip", "clip32"};
+const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {"clip", "clip32", "tpn"};
 
-static const Chain *find_chain(const char *model) {
+static const DeviceOverlapChain *find_chain(const char *model) {
   for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
     if (strcmp(chains[k].model, model) == 0) return &chains[k];
   return NULL;
 }
 
-static Status create(DeviceOverlap *overlap, const Chain *chain) {
+bool device_overlap_has_gradient(const char *model) {
+  const DeviceOverlapChain *chain = find_chain(model);
+  return chain && chain->has_gradient;
+}
+
+static Status create(DeviceOverlap *overlap, const DeviceOverlapChain *chain) {
   const Device *device = overlap->device;
   for (int k = 0; k < DEVICE_OVERLAP_STAGES && chain->programs[k]; k++, overlap->stage_count++)
     TRY(device_build(device, chain->programs[k], &overlap->stages[k].module, overlap->stages[k].kernels));
+  if (chain->weights) TRY(device_tpn_create(&overlap->tpn, device, chain->weights));
   TRY(device_build(device, &device_program_gather, &overlap->gather.module, overlap->gather.kernels));
   return device_take(device, 1, sizeof(int), NULL, &overlap->list_count);
 }
 
 Status device_overlap_create(DeviceOverlap *overlap, const Device *device, const char *model) {
   *overlap = (DeviceOverlap){.device = device};
-  const Chain *chain = find_chain(model);
+  const DeviceOverlapChain *chain = overlap->chain = find_chain(model);
   if (!chain)
-    return status_fail(STATUS_USAGE, "overlap model '%s' has no kernels for devices; clip and clip32 have",
-                       model);
+    return status_fail(STATUS_USAGE,
+                       "overlap model '%s' has no kernels for devices; clip, clip32 and tpn have", model);
   return create(overlap, chain);
 }
 
@@ -71,6 +83,7 @@ void device_overlap_destroy(DeviceOverlap *overlap) {
   const Device *device = overlap->device;
   release_rows(overlap), release_answers(overlap), release_inputs(overlap);
   release(overlap, &overlap->list_count);
+  device_tpn_destroy(&overlap->tpn, device);
   for (int k = 0; k < DEVICE_OVERLAP_STAGES; k++)
     device->ops->discard(device->self, overlap->stages[k].module);
   device->ops->discard(device->self, overlap->gather.module);
@@ -137,22 +150,31 @@ static int add_pairs(const DeviceOverlap *overlap, int count, const DeviceMemory
   return sizeof given / sizeof *given;
 }
 
+// Starts the kernel of a stage.
+static Status launch_stage(const DeviceOverlap *overlap, int k, int count, bool wants_gradient,
+                           DeviceArgument *arguments, int n) {
+  const Device *device = overlap->device;
+  const DeviceKernel *kernel = &overlap->stages[k].kernels[wants_gradient ? GRADIENT_KERNEL : VOLUME_KERNEL];
+  if (!overlap->chain->weights) return device_launch(device, kernel, count, arguments, n);
+  n += device_tpn_arguments(&overlap->tpn, arguments + n);
+  return device->ops->launch(device->self, kernel, device_tpn_groups(count), arguments, n);
+}
+
 // One stage over `count` pairs; how many of them it leaves, in lists[k % 2].
 static Status run_stage(DeviceOverlap *overlap, int k, int count, bool wants_gradient, int *left) {
   const Device *device = overlap->device;
   DeviceArgument arguments[DEVICE_MAX_ARGUMENTS];
   int n = add_pairs(overlap, count, k > 0 ? &overlap->lists[(k + 1) % 2] : NULL, arguments);
   const int none = 0;
+  double seconds = 0;
   arguments[n++] = device_memory(&overlap->volume);
   arguments[n++] = device_memory(&overlap->flags);
   arguments[n++] = device_memory(&overlap->lists[k % 2]);
   arguments[n++] = device_memory(&overlap->list_count);
   if (wants_gradient) arguments[n++] = device_memory(&overlap->gradient);
-  double seconds = 0;
   TRY(device->ops->put(device->self, &overlap->list_count, 0, sizeof none, &none));
   TRY(device->ops->mark(device->self, DEVICE_BEGIN));
-  TRY(device_launch(device, &overlap->stages[k].kernels[wants_gradient ? GRADIENT_KERNEL : VOLUME_KERNEL],
-                    count, arguments, n));
+  TRY(launch_stage(overlap, k, count, wants_gradient, arguments, n));
   TRY(device->ops->mark(device->self, DEVICE_END));
   TRY(device->ops->get(device->self, &overlap->list_count, 0, sizeof *left, left));
   TRY(device->ops->elapsed(device->self, &seconds));
@@ -212,7 +234,7 @@ static Status fetch_rows(DeviceOverlap *overlap, const DeviceMemory *list, Rows 
                           rows->pairs);
 }
 
-static Status answer_row(Rows *rows, int i, bool wants_gradient) {
+static Status answer_row(const DeviceOverlapChain *chain, Rows *rows, int i, bool wants_gradient) {
   const double *pair = rows->pairs + (size_t)i * SIZE;
   for (int c = 0; c < SIZE; c++)
     if (!isfinite(pair[c]))
@@ -223,18 +245,18 @@ static Status answer_row(Rows *rows, int i, bool wants_gradient) {
   const OverlapAnswer answer = {.volume = rows->volume + i,
                                 .gradient = wants_gradient ? rows->gradient + (size_t)i * SIZE : NULL,
                                 .flags = &flags};
-  TRY(overlap_clip_scalar_ops.eval_pair(NULL, pair, &answer));
-  rows->flags[i] = (unsigned char)flags;
+  TRY(chain->last->eval_pair(NULL, pair, &answer));
+  rows->flags[i] = (unsigned char)(flags | chain->flags);
   return STATUS_OK;
 }
 
-static Status answer_rows(Rows *rows, bool wants_gradient) {
+static Status answer_rows(const DeviceOverlapChain *chain, Rows *rows, bool wants_gradient) {
   int first_failed = INT_MAX;
 #pragma omp parallel for schedule(dynamic, 16) reduction(min : first_failed) if (rows->count > 64)
   for (int i = 0; i < rows->count; i++)
-    if (answer_row(rows, i, wants_gradient) != STATUS_OK && i < first_failed) first_failed = i;
+    if (answer_row(chain, rows, i, wants_gradient) != STATUS_OK && i < first_failed) first_failed = i;
   // the message belongs to the thread that failed: let this one see it too
-  return first_failed == INT_MAX ? STATUS_OK : answer_row(rows, first_failed, wants_gradient);
+  return first_failed == INT_MAX ? STATUS_OK : answer_row(chain, rows, first_failed, wants_gradient);
 }
 
 static Status send_rows(DeviceOverlap *overlap, const DeviceMemory *list, const Rows *rows,
@@ -262,7 +284,7 @@ static Status answer_on_host(DeviceOverlap *overlap, const DeviceMemory *list, i
   TRY(make_rows_room(overlap, count));
   TRY(create_rows(&rows, count));
   Status status = fetch_rows(overlap, list, &rows);
-  if (status == STATUS_OK) status = answer_rows(&rows, wants_gradient);
+  if (status == STATUS_OK) status = answer_rows(overlap->chain, &rows, wants_gradient);
   if (status == STATUS_OK) status = send_rows(overlap, list, &rows, wants_gradient);
   destroy_rows(&rows);
   return status;
@@ -270,6 +292,9 @@ static Status answer_on_host(DeviceOverlap *overlap, const DeviceMemory *list, i
 
 Status device_overlap_run(DeviceOverlap *overlap, bool wants_gradient) {
   const Device *device = overlap->device;
+  if (wants_gradient && !overlap->chain->has_gradient)
+    return status_fail(STATUS_USAGE, "overlap model '%s' gives no gradient on a device yet",
+                       overlap->chain->model);
   if (wants_gradient && !overlap->has_gradient) {
     TRY(device_take(device, (size_t)overlap->capacity * SIZE, sizeof(double), NULL, &overlap->gradient));
     overlap->has_gradient = true;

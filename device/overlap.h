@@ -3,6 +3,7 @@
 //
 //   clip    pairs ─► clip ─ doubtful ─► the host's clip-scalar
 //   clip32  pairs ─► clip32 ─ doubtful ─► clip ─ doubtful ─► the host's clip-scalar
+//   tpn     pairs ─► tpn ─ the first is flat ─► the host's exact; V only, and flags without BEYOND
 //
 // What the host answers goes back to the device, so that all answers are there. What a pair gets is to the
 // bit what the model of that name gives on a processor (clip32's doubtful ones: what `clip` gives), and does
@@ -11,6 +12,7 @@
 #define TETLAP_DEVICE_OVERLAP_H
 
 #include "device/device.h"
+#include "device/tpn.h"
 #include "overlap/ops.h"
 
 // Where a batch's numbers lie; as PAIRS_… in kernels/pairs.inc.
@@ -20,7 +22,7 @@ typedef enum DevicePairs {
   DEVICE_PAIRS_INDICES, // positions, tetrahedra, and two tetrahedra a pair; gradients (24, count)
 } DevicePairs;
 
-enum { DEVICE_OVERLAP_STAGES = 3, DEVICE_OVERLAP_MODELS = 2 };
+enum { DEVICE_OVERLAP_STAGES = 3, DEVICE_OVERLAP_MODELS = 3 };
 extern const char *const device_overlap_models[DEVICE_OVERLAP_MODELS]; // names
 
 typedef struct DeviceOverlapStage {
@@ -29,8 +31,10 @@ typedef struct DeviceOverlapStage {
 } DeviceOverlapStage;
 
 typedef struct DeviceOverlap {
-  const Device *device; // borrowed
+  const Device *device;                   // borrowed
+  const struct DeviceOverlapChain *chain; // borrowed
   int stage_count;
+  DeviceTpn tpn; // the network, where there is one
   DeviceOverlapStage stages[DEVICE_OVERLAP_STAGES], gather;
   DevicePairs kind;
   int count, capacity; // pairs: of the batch, and the most there may be
@@ -47,6 +51,9 @@ typedef struct DeviceOverlap {
 // A zeroed one, and one whose creation failed, can be destroyed. STATUS_USAGE: no kernels for that model.
 Status device_overlap_create(DeviceOverlap *overlap, const Device *device, const char *model);
 void device_overlap_destroy(DeviceOverlap *overlap);
+
+// Whether ∇V is to be had.
+bool device_overlap_has_gradient(const char *model);
 
 // What the next evaluations are of: sent to the device, where it stays.
 Status device_overlap_put_rows(DeviceOverlap *overlap, int count, const double *pairs);

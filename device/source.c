@@ -23,6 +23,8 @@ PIECE(gather, "device/kernels/gather.inc");
 PIECE(clip, "device/kernels/clip.inc");
 PIECE(pose, "device/kernels/pose.inc");
 PIECE(poses, "device/kernels/poses.inc");
+PIECE(tpn_steps, "device/kernels/tpn_steps.h");
+PIECE(tpn, "device/kernels/tpn.inc");
 PIECE(clip_constants, "overlap/clip/constants.h");
 PIECE(clip_lanes, "overlap/clip/lanes.inc");
 
@@ -58,8 +60,17 @@ const DeviceProgram device_program_poses = {
     .items = 64,
 };
 
+const DeviceProgram device_program_tpn = {
+    .name = "tpn",
+    .defines = "#define GROUPS_AT_ONCE 4\n",
+    .pieces = {one, pairs, tpn_steps, tpn},
+    .kernels = {"tpn_volume"},
+    .items = 64,
+};
+
 static const DeviceProgram *const programs[] = {&device_program_clip, &device_program_clip32,
-                                                &device_program_gather, &device_program_poses};
+                                                &device_program_gather, &device_program_poses,
+                                                &device_program_tpn};
 
 const DeviceProgram *const *device_source_programs(int *count) {
   *count = sizeof programs / sizeof *programs;

@@ -174,8 +174,10 @@ static void add_contestants(Bench *bench, int set, int batch) {
   for (int residence = 0; residence < APP_BENCH_RESIDENCES; residence++)
     for (int quantity = 0; quantity < 2; quantity++)
       for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++) {
-        bool is_wanted = def->wants_residence[residence] && def->wants_model[m] &&
-                         (quantity ? def->wants_gradient : def->wants_volume);
+        bool is_wanted =
+            def->wants_residence[residence] && def->wants_model[m] &&
+            (quantity ? def->wants_gradient && device_overlap_has_gradient(device_overlap_models[m])
+                      : def->wants_volume);
         if (!is_wanted) continue;
         bench->contestants[bench->count++] = (Contestant){.overlap = &bench->overlaps[m],
                                                           .pairs = bench->pairs,
@@ -199,7 +201,8 @@ static Status measure_sets(Bench *bench) {
       TRY(take_rounds(bench, first));
     }
   if (bench->count == 0)
-    return status_fail(STATUS_USAGE, "a device answers V and V+grad of clip and clip32: nothing to measure");
+    return status_fail(STATUS_USAGE,
+                       "a device answers V and V+grad of clip and clip32, V of tpn: nothing to measure");
   return print(bench);
 }
 
