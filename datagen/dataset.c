@@ -349,7 +349,10 @@ struct DatagenDataset {
 };
 
 static Status fail_foreign(const char *path, const char *what) {
-  return status_fail(STATUS_INPUT, "%s: is no data set of pairs: %s; `tetlap datagen` makes one", path, what);
+  return status_fail(STATUS_INPUT,
+                     "%s: is no data set of pairs: %s; `tetlap datagen` makes one, `tetlap dataset import` "
+                     "of your own pairs",
+                     path, what);
 }
 
 // Opens an attribute of the expected class; −1 with a message in `what` (160 characters) otherwise.

@@ -3,6 +3,7 @@
 // tetrahedra.
 #include "suite.h"
 
+#include <hdf5.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -196,6 +197,54 @@ START_TEST(every_form_of_the_same_pairs_gives_the_same_volumes) {
 }
 END_TEST
 
+static void expect_fault(const char *name, const char *words) {
+  static char text[MOST_TEXT];
+  char arguments[128];
+  snprintf(arguments, sizeof arguments, "overlap %s -o answer.csv", name);
+  ck_assert_msg(run(arguments, text) == 65, "%s: %s", name, text);
+  ck_assert_msg(strstr(text, words) != NULL, "'%s' lacks '%s'", text, words);
+  ck_assert_msg(!file_exists(scratch("answer.csv")), "%s", name);
+}
+
+// An array of native floats or doubles in a file of its own.
+static void put_hdf5(const char *name, const char *array, hid_t type, int rank, const hsize_t *shape,
+                     const void *content) {
+  hid_t file = H5Fcreate(scratch(name), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t space = H5Screate_simple(rank, shape, NULL);
+  hid_t dataset = H5Dcreate2(file, array, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  ck_assert_int_ge(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, content), 0);
+  H5Dclose(dataset), H5Sclose(space), H5Fclose(file);
+}
+
+START_TEST(hdf5_files_of_others_are_read_by_their_array) {
+  static double pairs[PAIRS][24], volumes[PAIRS];
+  static float narrow[PAIRS][24];
+  OverlapModel model;
+  fill(pairs);
+  for (int i = 0; i < PAIRS; i++)
+    for (int k = 0; k < 24; k++) narrow[i][k] = (float)pairs[i][k];
+  ck_assert_ok(overlap_model_create(&model, "exact"));
+  ck_assert_ok(overlap_model_eval(
+      &model, &(OverlapBatch){.pair_count = PAIRS, .pairs = &pairs[0][0], .volume = volumes}));
+  overlap_model_destroy(&model);
+  put_hdf5("a.h5", "coordinates", H5T_NATIVE_DOUBLE, 4, (hsize_t[4]){PAIRS, 2, 4, 3}, pairs);
+  expect_volumes(scratch("a.h5"), volumes, 0);
+  put_hdf5("b.h5", "x", H5T_NATIVE_DOUBLE, 2, (hsize_t[2]){PAIRS, 24}, pairs);
+  expect_volumes(scratch("b.h5"), volumes, 0);
+  put_hdf5("c.h5", "pairs", H5T_NATIVE_FLOAT, 3, (hsize_t[3]){PAIRS, 8, 3}, narrow);
+  expect_volumes(scratch("c.h5"), volumes, 1e-6);
+  put_hdf5("d.h5", "x", H5T_NATIVE_DOUBLE, 2, (hsize_t[2]){2 * PAIRS, 12}, pairs);
+  expect_fault("d.h5", "d.h5: the array 'x' is not one of floating point numbers, 24 a row");
+  pairs[3][4] = NAN;
+  put_hdf5("e.h5", "x", H5T_NATIVE_DOUBLE, 2, (hsize_t[2]){PAIRS, 24}, pairs);
+  expect_fault("e.h5", "e.h5: pair 3, number 4 (both from 0): nan");
+  put("f.h5", "\x89HDF\r\n\x1a\n and no more", 20);
+  static char text[MOST_TEXT];
+  ck_assert_int_eq(run("overlap f.h5", text), 74);
+  ck_assert_ptr_nonnull(strstr(text, "f.h5: cannot be opened as HDF5"));
+}
+END_TEST
+
 // The second tetrahedron's columns first, a number in front.
 START_TEST(a_header_that_names_the_columns_gives_their_order) {
   static char text[MOST_TEXT], expected[MOST_TEXT];
@@ -210,15 +259,6 @@ START_TEST(a_header_that_names_the_columns_gives_their_order) {
   ck_assert_str_eq(text, expected);
 }
 END_TEST
-
-static void expect_fault(const char *name, const char *words) {
-  static char text[MOST_TEXT];
-  char arguments[128];
-  snprintf(arguments, sizeof arguments, "overlap %s -o answer.csv", name);
-  ck_assert_msg(run(arguments, text) == 65, "%s: %s", name, text);
-  ck_assert_msg(strstr(text, words) != NULL, "'%s' lacks '%s'", text, words);
-  ck_assert_msg(!file_exists(scratch("answer.csv")), "%s", name);
-}
 
 START_TEST(what_is_wrong_is_told_with_line_and_column) {
   put_text("letter.csv",
@@ -421,6 +461,7 @@ int main(void) {
   tcase_add_test(cases, a_pair_that_a_hand_can_compute);
   tcase_add_test(cases, order_0_gives_volumes_and_flags_have_names);
   tcase_add_test(cases, every_form_of_the_same_pairs_gives_the_same_volumes);
+  tcase_add_test(cases, hdf5_files_of_others_are_read_by_their_array);
   tcase_add_test(cases, a_header_that_names_the_columns_gives_their_order);
   tcase_add_test(cases, what_is_wrong_is_told_with_line_and_column);
   tcase_add_test(cases, npy_files_that_cannot_be_read_say_what_would_be_right);

@@ -158,7 +158,8 @@ static const struct argp argp = {
            "centroid and what "
            "the model says of each pair.\vFILE is text (.csv) of 24 numbers a row, tetrahedron 1's four "
            "vertices x y z, "
-           "then tetrahedron 2's; or .npy of shape (n, 24) or (n, 2, 4, 3); or a data set (.h5); - is "
+           "then tetrahedron 2's; or .npy of shape (n, 24) or (n, 2, 4, 3); or .h5, a data set or an array; "
+           "- is "
            "standard input. A "
            "header may name the columns a0x … a3z, b0x … b3z. docs/overlap.md tells more."};
 

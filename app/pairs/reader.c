@@ -43,12 +43,16 @@ static Status open_npy(AppPairsReader *reader, bool takes_labels) {
   return status ? status_prefix(status, "%s", reader->name) : STATUS_OK;
 }
 
-static Status open_dataset(AppPairsReader *reader, const char *path) {
+// A data set of pairs has labels; of any other file the coordinates are read.
+static Status open_hdf5(AppPairsReader *reader, const char *path) {
   if (!reader->is_owned)
     return status_fail(STATUS_INPUT, "standard input: is HDF5, which must be a file; give its name");
   fclose(reader->stream);
   reader->stream = NULL;
-  TRY(datagen_dataset_open(&reader->dataset, path));
+  if (datagen_dataset_open(&reader->dataset, path) != STATUS_OK) {
+    reader->format = APP_PAIRS_ARRAY;
+    return datagen_array_open(&reader->array, path);
+  }
   reader->has_status = reader->has_volume = true;
   reader->has_gradient = datagen_dataset_info(reader->dataset)->has_gradient;
   return STATUS_OK;
@@ -69,7 +73,7 @@ Status app_pairs_reader_open(AppPairsReader *reader, const char *path, bool take
   TRY(open_stream(reader, path));
   TRY(make_block(&reader->block));
   reader->format = guess_format(reader->stream);
-  if (reader->format == APP_PAIRS_DATASET) return open_dataset(reader, path);
+  if (reader->format == APP_PAIRS_DATASET) return open_hdf5(reader, path);
   TRY(reader->format == APP_PAIRS_NPY ? open_npy(reader, takes_labels) : open_csv(reader, takes_labels));
   reader->has_status = reader->columns.status >= 0;
   reader->has_volume = reader->columns.volume >= 0;
@@ -133,9 +137,19 @@ static Status read_dataset(AppPairsReader *reader) {
                       : STATUS_OK;
 }
 
+static Status read_array(AppPairsReader *reader) {
+  AppPairsBlock *block = &reader->block;
+  long long left = datagen_array_count(reader->array) - reader->done;
+  int count = (int)(left < APP_PAIRS_BLOCK ? left : APP_PAIRS_BLOCK);
+  for (int i = 0; i < count; i++) block->places[i] = reader->done + i;
+  TRY(datagen_array_read(reader->array, reader->done, (size_t)count, block->coordinates));
+  block->count = count;
+  return STATUS_OK;
+}
+
 Status app_pairs_reader_next(AppPairsReader *reader) {
   reader->block.count = 0;
-  TRY(reader->format == APP_PAIRS_DATASET ? read_dataset(reader) : read_rows(reader));
+  TRY(reader->dataset ? read_dataset(reader) : reader->array ? read_array(reader) : read_rows(reader));
   reader->done += reader->block.count;
   if (reader->done == 0)
     return status_fail(STATUS_INPUT, "%s: holds no pairs; a row for each is expected", reader->name);
@@ -143,8 +157,10 @@ Status app_pairs_reader_next(AppPairsReader *reader) {
 }
 
 const char *app_pairs_reader_place_word(const AppPairsReader *reader) {
-  static const char *const words[] = {
-      [APP_PAIRS_CSV] = "line", [APP_PAIRS_NPY] = "row", [APP_PAIRS_DATASET] = "pair"};
+  static const char *const words[] = {[APP_PAIRS_CSV] = "line",
+                                      [APP_PAIRS_NPY] = "row",
+                                      [APP_PAIRS_DATASET] = "pair",
+                                      [APP_PAIRS_ARRAY] = "pair"};
   return words[reader->format];
 }
 
@@ -154,6 +170,7 @@ void app_pairs_reader_close(AppPairsReader *reader) {
   memory_free(block->status), memory_free(block->places);
   app_pairs_csv_close(&reader->csv);
   datagen_dataset_close(reader->dataset);
+  datagen_array_close(reader->array);
   if (reader->stream && reader->is_owned) fclose(reader->stream);
   *reader = (AppPairsReader){0};
 }

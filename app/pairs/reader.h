@@ -9,9 +9,15 @@
 #include "app/pairs/columns.h"
 #include "app/pairs/csv.h"
 #include "app/pairs/npy.h"
+#include "datagen/array.h"
 #include "datagen/dataset.h"
 
-typedef enum AppPairsFormat { APP_PAIRS_CSV, APP_PAIRS_NPY, APP_PAIRS_DATASET } AppPairsFormat;
+typedef enum AppPairsFormat {
+  APP_PAIRS_CSV,
+  APP_PAIRS_NPY,
+  APP_PAIRS_DATASET,
+  APP_PAIRS_ARRAY
+} AppPairsFormat;
 
 enum { APP_PAIRS_BLOCK = 16384 };
 
@@ -28,11 +34,12 @@ typedef struct AppPairsBlock {
 typedef struct AppPairsReader {
   const char *name; // of the file, borrowed; "standard input"
   AppPairsFormat format;
-  FILE *stream; // NULL: a data set
+  FILE *stream; // NULL: HDF5
   bool is_owned;
   AppPairsCsv csv;
   AppPairsNpy npy;
   DatagenDataset *dataset;
+  DatagenArray *array;
   AppPairsColumns columns;
   int column_count;
   long long done; // pairs read so far
