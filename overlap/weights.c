@@ -2,10 +2,9 @@
 #include "overlap/weights.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
+#include "base/data.h"
 #include "net/weights.h"
 
 static const char ENDING[] = ".safetensors";
@@ -16,16 +15,12 @@ bool overlap_weights_is_path(const char *name) {
 }
 
 Status overlap_weights_find(const char *name, char *path, size_t size) {
-  const char *directory = getenv("TETLAP_WEIGHTS");
-  if (!directory) directory = TETLAP_WEIGHTS_DIR;
-  int length = snprintf(path, size, "%s/%s%s", directory, name, ENDING);
-  if (length < 0 || (size_t)length >= size)
-    return status_fail(STATUS_INPUT, "%s: the path is too long", directory);
-  if (file_exists(path)) return STATUS_OK;
-  return status_fail(STATUS_IO,
-                     "the weights of '%s' are not at %s; set TETLAP_WEIGHTS to the folder that holds them, "
-                     "or name a weights file",
-                     name, path);
+  char file[256];
+  int length = snprintf(file, sizeof file, "net/weights/%s%s", name, ENDING);
+  if (length < 0 || (size_t)length >= sizeof file)
+    return status_fail(STATUS_INPUT, "%s: the name is too long", name);
+  Status status = data_find(file, path, size);
+  return status == STATUS_IO ? status_prefix(status, "the weights of '%s'", name) : status;
 }
 
 Status overlap_weights_kind(const char *path, OverlapWeightsKind *kind) {

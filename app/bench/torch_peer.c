@@ -3,12 +3,15 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "base/data.h"
 
 extern char **environ;
 
@@ -30,10 +33,9 @@ static Status write_inputs(AppTorchPeer *peer, const void *inputs, size_t size) 
 }
 
 // The child reads from `to` and writes to `from`; what it says to the person is not ours to show.
-static int spawn(AppTorchPeer *peer, const char *weights, bool is_float, int threads, const int to[2],
-                 const int from[2]) {
-  char python[] = "python3", script[] = TETLAP_TOOLS_DIR "/torch_bench.py", path[1024], number[16],
-       precision[8];
+static int spawn(AppTorchPeer *peer, char *script, const char *weights, bool is_float, int threads,
+                 const int to[2], const int from[2]) {
+  char python[] = "python3", path[1024], number[16], precision[8];
   snprintf(path, sizeof path, "%s", weights);
   snprintf(number, sizeof number, "%d", threads);
   snprintf(precision, sizeof precision, "%s", is_float ? "float" : "double");
@@ -56,7 +58,7 @@ static Status open_pipe(int ends[2]) {
   return STATUS_OK;
 }
 
-static Status launch(AppTorchPeer *peer, const char *weights, bool is_float, int threads) {
+static Status launch(AppTorchPeer *peer, char *script, const char *weights, bool is_float, int threads) {
   int to[2], from[2];
   TRY(open_pipe(to));
   Status status = open_pipe(from);
@@ -64,7 +66,7 @@ static Status launch(AppTorchPeer *peer, const char *weights, bool is_float, int
     close(to[0]), close(to[1]);
     return status;
   }
-  int failed = spawn(peer, weights, is_float, threads, to, from);
+  int failed = spawn(peer, script, weights, is_float, threads, to, from);
   close(to[0]), close(from[1]);
   peer->to = fdopen(to[1], "w"), peer->from = fdopen(from[0], "r");
   if (!peer->to) close(to[1]);
@@ -88,9 +90,11 @@ static Status read_version(AppTorchPeer *peer) {
 
 Status app_torch_peer_start(AppTorchPeer *peer, const char *weights, bool is_float, const void *inputs,
                             size_t size, int threads) {
+  char script[PATH_MAX];
   *peer = (AppTorchPeer){0};
+  TRY(data_find("tools/torch_bench.py", script, sizeof script));
   TRY(write_inputs(peer, inputs, size));
-  TRY(launch(peer, weights, is_float, threads));
+  TRY(launch(peer, script, weights, is_float, threads));
   return read_version(peer);
 }
 

@@ -8,12 +8,14 @@
 
 #include "app/scene/read.h"
 #include "base/clock.h"
+#include "base/data.h"
 #include "base/vec3.h"
 
 Status app_stress_run_open(AppStressRun *run, const char *file, const char *const *overrides, int count) {
-  char path[PATH_MAX];
-  snprintf(path, sizeof path, "%s/%s.yaml", TETLAP_STRESS_DIR, file);
+  char path[PATH_MAX], name[128];
   *run = (AppStressRun){0};
+  snprintf(name, sizeof name, "app/stress/scenes/%s.yaml", file);
+  TRY(data_find(name, path, sizeof path));
   Status status = app_scene_read(path, overrides, count, &run->scene);
   if (!status) status = fem_model_create(&run->model, &run->scene);
   if (status) app_stress_run_close(run);
