@@ -713,6 +713,38 @@ START_TEST(the_command_says_what_is_wrong) {
 }
 END_TEST
 
+// gmsh's library is not installed while this is set (--wrap in tests/CMakeLists.txt).
+static bool gmsh_is_missing;
+void *__real_dlopen(const char *name, int flags);
+void *__wrap_dlopen(const char *name, int flags);
+char *__real_dlerror(void);
+char *__wrap_dlerror(void);
+
+void *__wrap_dlopen(const char *name, int flags) {
+  return gmsh_is_missing ? NULL : __real_dlopen(name, flags);
+}
+
+char *__wrap_dlerror(void) {
+  static char reason[] = "libgmsh.so: no such file";
+  return gmsh_is_missing ? reason : __real_dlerror();
+}
+
+START_TEST(without_gmsh_a_message_says_what_to_install_and_tetgen_files_are_read) {
+  FemMesh mesh;
+  gmsh_is_missing = true;
+  ck_assert_int_eq(fem_mesh_read(&mesh, TETLAP_SOURCE_DIR "/meshes/block.msh", NULL, NULL), STATUS_IO);
+  ck_assert_ptr_nonnull(strstr(status_message(),
+                               "block.msh: gmsh, which reads this, cannot be loaded "
+                               "(libgmsh.so: no such file); install gmsh's library, version 4."));
+  put("a.node", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"), put("a.ele", "1 4 0\n1 1 2 3 4\n");
+  ck_assert_ok(fem_mesh_read(&mesh, scratch("a.ele"), NULL, NULL));
+  fem_mesh_destroy(&mesh);
+  gmsh_is_missing = false;
+  ck_assert_ok(fem_mesh_read(&mesh, TETLAP_SOURCE_DIR "/meshes/block.msh", NULL, NULL));
+  fem_mesh_destroy(&mesh);
+}
+END_TEST
+
 // Reading says that it turned an element: once, however many bodies are made of the file.
 START_TEST(a_file_of_several_bodies_is_read_once) {
   char command[512], count[8] = "";
@@ -769,6 +801,7 @@ int main(void) {
   tcase_add_test(cases, tetgen_files_may_count_from_zero_and_hold_comments_and_attributes);
   tcase_add_test(cases, tetgen_faults_are_told_with_their_line);
   tcase_add_loop_test(cases, every_failed_allocation_is_an_error, 0, 2);
+  tcase_add_test(cases, without_gmsh_a_message_says_what_to_install_and_tetgen_files_are_read);
   tcase_add_test(cases, a_file_of_several_bodies_is_read_once);
   tcase_add_test(cases, the_command_says_what_a_mesh_holds);
   tcase_add_test(cases, the_command_says_what_is_wrong);
