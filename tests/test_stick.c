@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// contact/stick on pairs made by hand: two tetrahedra that share a point, pressed by a force that is given.
+#include "suite.h"
+
+#include <string.h>
+
+#include "base/vec3.h"
+#include "contact/stick.h"
+
+static const double MU = 0.5, STIFFNESS = 2e4; // [Pa/m]
+static const double AREA = 0.03, PRESS = 12;   // [m²], [N]
+
+// A above, B below, both around the origin; x̄ is a point of space that both cover.
+static const double REST[24] = {-0.5, -0.4, -0.3, 0.9, -0.2, -0.2, -0.1, 1.1,  -0.25, 0.1, 0.2, 0.9,
+                                -0.6, -0.5, 0.3,  0.2, 1.0,  0.25, 0.8,  -0.3, 0.2,   0.0, 0.1, -0.8};
+static const int TETS[2][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+static const double MEET[3] = {0.1, 0.05, 0.02};
+
+typedef struct Fixture {
+  ContactStick stick;
+  double x[24];
+  double meet[3], force[3]; // x̄ and what presses A
+  bool has_body_below;      // else an obstacle without elements
+  double obstacle[3];       // way of that since the last accepted state
+} Fixture;
+
+// Barycentric coordinates of p.
+static void locate(const double *x, const int tet[4], const double *p, double lambda[4]) {
+  Vec3 corner[4];
+  for (int v = 0; v < 4; v++) corner[v] = vec3_at(x + 3 * tet[v]);
+  double whole = vec3_det4(corner[0], corner[1], corner[2], corner[3]);
+  for (int v = 0; v < 4; v++) {
+    Vec3 other[4] = {corner[0], corner[1], corner[2], corner[3]};
+    other[v] = vec3_at(p);
+    lambda[v] = vec3_det4(other[0], other[1], other[2], other[3]) / whole;
+  }
+}
+
+static void eval(Fixture *f) {
+  ck_assert_ok(contact_stick_reserve(&f->stick, 1));
+  ContactStickPair *pair = &f->stick.pairs[0];
+  *pair = (ContactStickPair){.tets = {0, f->has_body_below ? 1 : -1}, .area = AREA};
+  memcpy(pair->force, f->force, sizeof f->force);
+  for (int side = 0; side < 2; side++) locate(f->x, TETS[side], f->meet, pair->lambda[side]);
+  vec3_store(pair->before, vec3_sub(vec3_at(f->meet), vec3_at(f->obstacle)));
+  ck_assert_ok(contact_stick_eval(&f->stick, 1, f->x, NULL));
+}
+
+static void accept(Fixture *f) {
+  ck_assert_ok(contact_stick_accept(&f->stick, f->x, NULL));
+  memset(f->obstacle, 0, sizeof f->obstacle);
+}
+
+static Fixture *start(double weight_above, bool has_body_below) {
+  Fixture *f = calloc(1, sizeof *f);
+  ck_assert_ptr_nonnull(f);
+  ContactStickLaw law = {.friction = MU, .stiffness = STIFFNESS, .weight = {weight_above, 1 - weight_above}};
+  ck_assert_ok(contact_stick_create(&f->stick, 8, REST, TETS, 1, &law));
+  memcpy(f->x, REST, sizeof f->x);
+  memcpy(f->meet, MEET, sizeof f->meet);
+  f->force[2] = PRESS;
+  f->has_body_below = has_body_below;
+  eval(f);
+  return f;
+}
+
+static void finish(Fixture *f) {
+  contact_stick_destroy(&f->stick);
+  free(f);
+}
+
+static void shift(Fixture *f, int tet, double x, double y, double z) {
+  for (int v = 0; v < 4; v++) vec3_accumulate(f->x + 3 * TETS[tet][v], (Vec3){x, y, z});
+}
+
+static Vec3 pull_of(const Fixture *f) {
+  return vec3_at(f->stick.forces[0]);
+}
+
+START_TEST(what_is_moved_a_little_is_held_by_a_spring) {
+  Fixture *f = start(1, true);
+  double way = 1e-4, k = STIFFNESS * AREA;
+  shift(f, 0, way, 0, 0.3 * way); // the way along the normal is no slip
+  eval(f);
+  ck_assert_near(pull_of(f).x, -k * way, 1e-12 * k);
+  ck_assert_near(pull_of(f).y, 0, 1e-12 * k);
+  ck_assert_near(pull_of(f).z, 0, 1e-12 * k);
+  ck_assert_int_eq(f->stick.slip_count, 0);
+  ck_assert_near(f->stick.stored, 0.5 * k * way * way, 1e-12 * k);
+  ck_assert_near(f->stick.spent, 0, 1e-12 * k);
+  finish(f);
+}
+END_TEST
+
+START_TEST(the_spring_is_cut_at_the_limit) {
+  Fixture *f = start(1, true);
+  double way = 0.1, k = STIFFNESS * AREA, elastic = MU * PRESS / k;
+  ck_assert(elastic < 0.5 * way);
+  shift(f, 0, 0, -way, 0);
+  eval(f);
+  ck_assert_near(pull_of(f).y, MU * PRESS, 1e-12 * PRESS);
+  ck_assert_int_eq(f->stick.slip_count, 4);
+  ck_assert_near(f->stick.stored + f->stick.spent, 0.5 * k * elastic * elastic + MU * PRESS * (way - elastic),
+                 1e-12);
+  accept(f);
+  shift(f, 0, 0, elastic, 0); // back until the spring is slack
+  eval(f);
+  ck_assert_near(pull_of(f).y, 0, 1e-9 * PRESS);
+  ck_assert_int_eq(f->stick.slip_count, 0);
+  finish(f);
+}
+END_TEST
+
+START_TEST(forces_and_torques_of_a_pair_balance) {
+  for (int k = 0; k < 3; k++) {
+    Fixture *f = start(0.5 * k, true);
+    shift(f, 0, 2e-4, 3e-4, 1e-4);
+    eval(f);
+    double force[24] = {0};
+    Vec3 sum = {0, 0, 0}, torque = {0, 0, 0};
+    contact_stick_add_force(&f->stick, force);
+    for (int v = 0; v < 8; v++) {
+      sum = vec3_add(sum, vec3_at(force + 3 * v));
+      torque = vec3_add(torque, vec3_cross(vec3_at(f->x + 3 * v), vec3_at(force + 3 * v)));
+    }
+    ck_assert(vec3_length(pull_of(f)) > 1e-3);
+    ck_assert_near(vec3_length(sum), 0, 1e-14);
+    ck_assert_near(vec3_length(torque), 0, 1e-14);
+    finish(f);
+  }
+}
+END_TEST
+
+static Vec3 turn(const double R[9], const double *x) {
+  return (Vec3){R[0] * x[0] + R[1] * x[1] + R[2] * x[2], R[3] * x[0] + R[4] * x[1] + R[5] * x[2],
+                R[6] * x[0] + R[7] * x[1] + R[8] * x[2]};
+}
+
+// About the axis (1, 2, 2)/3.
+static void make_rotation(double angle, double R[9]) {
+  const double n[3] = {1.0 / 3, 2.0 / 3, 2.0 / 3}, c = cos(angle), s = sin(angle);
+  const double cross[9] = {0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) R[3 * i + j] = c * (i == j) + (1 - c) * n[i] * n[j] + s * cross[3 * i + j];
+}
+
+static void rotate(Fixture *f, const double R[9]) {
+  for (int v = 0; v < 8; v++) vec3_store(f->x + 3 * v, turn(R, f->x + 3 * v));
+  vec3_store(f->meet, turn(R, f->meet));
+  vec3_store(f->force, turn(R, f->force));
+}
+
+START_TEST(a_common_rotation_carries_forces_along_however_large_the_step) {
+  const double degrees[] = {1, 10, 30, 120};
+  for (int d = 0; d < 4; d++) {
+    Fixture *f = start(0.5, true);
+    double R[9];
+    make_rotation(degrees[d] * M_PI / 180, R);
+    shift(f, 0, 2e-3, -1e-3, 0);
+    eval(f);
+    accept(f);
+    eval(f); // F of both sides is exact here: nothing but a shift
+    Vec3 expected = pull_of(f);
+    for (int step = 0; step < 12; step++) {
+      rotate(f, R);
+      eval(f);
+      accept(f);
+      double kept[3];
+      vec3_store(kept, expected);
+      expected = turn(R, kept);
+      ck_assert_near(vec3_length(vec3_sub(pull_of(f), expected)), 0, 1e-12 * vec3_length(expected));
+    }
+    ck_assert(vec3_length(expected) > 0.1);
+    finish(f);
+  }
+}
+END_TEST
+
+typedef struct Dense {
+  double matrix[24][24];
+} Dense;
+
+static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
+  Dense *dense = self;
+  for (int i = 0; i < 3 * count; i++)
+    for (int j = 0; j < 3 * count; j++)
+      dense->matrix[3 * vertices[i / 3] + i % 3][3 * vertices[j / 3] + j % 3] += scale * w[i] * w[j];
+}
+
+// With the force, area and x̄ of the pair held, and no history, the matrix is the derivative of the pull on A,
+// and where that is zero of all forces (the weights λ depend on the positions too).
+static void check_matrix(Fixture *f, double step, double tolerance) {
+  Dense dense = {0};
+  double largest = 0, before[24];
+  memcpy(before, f->x, sizeof before);
+  eval(f);
+  ck_assert_ok(contact_stick_add_stiffness(&f->stick,
+                                           &(ContactStiffnessSink){.self = &dense, .add_outer = add_outer}));
+  for (int i = 0; i < 24; i++) largest = suite_larger(largest, dense.matrix[i][i]);
+  ck_assert(largest > 0);
+  for (int j = 0; j < 24; j++) {
+    double force[2][24] = {0};
+    for (int k = 0; k < 2; k++) {
+      memcpy(f->x, before, sizeof before);
+      f->x[j] += k ? -step : step;
+      eval(f);
+      contact_stick_add_force(&f->stick, force[k]);
+    }
+    double slopes[24], sums[2][3] = {0};
+    for (int i = 0; i < 24; i++) {
+      slopes[i] = (force[1][i] - force[0][i]) / (2 * step);
+      if (i < 12) sums[0][i % 3] += dense.matrix[i][j], sums[1][i % 3] += slopes[i];
+      if (!f->stick.slip_count) ck_assert_near(dense.matrix[i][j], slopes[i], tolerance * largest);
+    }
+    for (int c = 0; c < 3; c++) ck_assert_near(sums[0][c], sums[1][c], tolerance * largest);
+  }
+  memcpy(f->x, before, sizeof before);
+}
+
+START_TEST(the_matrix_is_the_derivative_in_stick) {
+  for (int k = 0; k < 3; k++) {
+    Fixture *f = start(0.5 * k, true);
+    check_matrix(f, 1e-6, 1e-5);
+    finish(f);
+  }
+}
+END_TEST
+
+// Only the tangent across the slip is left of it.
+START_TEST(the_matrix_is_the_derivative_in_slip) {
+  Fixture *f = start(1, false);
+  f->obstacle[0] = 0.3, f->obstacle[1] = 0.2;
+  eval(f);
+  ck_assert_int_eq(f->stick.slip_count, 4);
+  check_matrix(f, 1e-6, 2e-5);
+  finish(f);
+}
+END_TEST
+
+START_TEST(evaluating_leaves_no_trace) {
+  Fixture *f = start(1, true);
+  shift(f, 0, 1e-3, 0, 0);
+  eval(f);
+  accept(f);
+  eval(f);
+  Vec3 first = pull_of(f);
+  shift(f, 0, 0.2, 0.3, 0);
+  eval(f);
+  ck_assert(vec3_length(vec3_sub(pull_of(f), first)) > 0.1);
+  memcpy(f->x, f->stick.before, sizeof f->x);
+  eval(f);
+  Vec3 again = pull_of(f);
+  ck_assert_int_eq(memcmp(&first, &again, sizeof first), 0);
+  finish(f);
+}
+END_TEST
+
+START_TEST(what_is_saved_and_loaded_goes_on_to_the_bit) {
+  Fixture *f = start(0.5, true), *other = start(0.5, true);
+  double *values;
+  size_t count;
+  shift(f, 0, 1e-3, 7e-4, 0);
+  eval(f);
+  accept(f);
+  ck_assert_ok(contact_stick_history_save(&f->stick.history, &values, &count));
+  ck_assert_int_eq((int)count, 8 * CONTACT_STICK_ENTRY_SIZE);
+  ck_assert_ok(contact_stick_history_load(&other->stick.history, values, count, 1, 8));
+  memcpy(other->x, f->x, sizeof f->x);
+  contact_stick_begin(&other->stick, other->x);
+  shift(f, 0, 1e-4, 0, 0);
+  shift(other, 0, 1e-4, 0, 0);
+  eval(f);
+  eval(other);
+  ck_assert_int_eq(memcmp(f->stick.forces, other->stick.forces, sizeof *f->stick.forces), 0);
+  ck_assert_int_eq(memcmp(f->stick.pulls, other->stick.pulls, sizeof *f->stick.pulls), 0);
+  ck_assert(f->stick.stored == other->stick.stored && f->stick.spent == other->stick.spent);
+  ck_assert_int_eq(contact_stick_history_load(&other->stick.history, values, count - 1, 1, 8), STATUS_INPUT);
+  ck_assert_int_eq(contact_stick_history_load(&other->stick.history, values, count, 1, 7), STATUS_INPUT);
+  free(values);
+  finish(f);
+  finish(other);
+}
+END_TEST
+
+START_TEST(what_lifts_off_loses_its_spring) {
+  Fixture *f = start(1, true);
+  shift(f, 0, 2e-3, 0, 0);
+  eval(f);
+  double stored = f->stick.stored;
+  accept(f);
+  ck_assert_int_eq(f->stick.history.count, 4);
+  ck_assert_ok(contact_stick_eval(&f->stick, 0, f->x, NULL));
+  ck_assert(stored > 0);
+  ck_assert_near(f->stick.spent, stored, 1e-12 * stored);
+  ck_assert_near(f->stick.stored, 0, 0);
+  accept(f);
+  ck_assert_int_eq(f->stick.history.count, 0);
+  ck_assert_near(f->stick.dissipated, stored, 1e-12 * stored);
+  finish(f);
+}
+END_TEST
+
+START_TEST(what_rests_keeps_its_history) {
+  Fixture *f = start(1, true);
+  const bool is_resting = true;
+  shift(f, 0, 2e-3, 0, 0);
+  eval(f);
+  accept(f);
+  double stretch[3], stored = f->stick.stored;
+  Vec3 pull = pull_of(f);
+  memcpy(stretch, f->stick.history.entries[0].stretch, sizeof stretch);
+  ck_assert_ok(contact_stick_eval(&f->stick, 0, f->x, &is_resting));
+  ck_assert_near(f->stick.stored, stored, 1e-15);
+  ck_assert_near(f->stick.spent, 0, 0);
+  ck_assert_near(pull_of(f).x, pull.x, 0);
+  ck_assert_ok(contact_stick_accept(&f->stick, f->x, &is_resting));
+  ck_assert_int_eq(f->stick.history.count, 4);
+  ck_assert_int_eq(memcmp(stretch, f->stick.history.entries[0].stretch, sizeof stretch), 0);
+  finish(f);
+}
+END_TEST
+
+// Straight slip is exact whatever the steps; the spring is not counted twice.
+START_TEST(a_way_in_many_steps_dissipates_as_much_as_in_one) {
+  const int steps[] = {1, 7, 100};
+  const double way = 0.2, k = STIFFNESS * AREA, elastic = MU * PRESS / k;
+  for (int i = 0; i < 3; i++) {
+    Fixture *f = start(0.5, false);
+    f->stick.laws[0].weight[0] = 1; // an obstacle has no half
+    for (int s = 0; s < steps[i]; s++) {
+      f->obstacle[1] = way / steps[i];
+      eval(f);
+      ck_assert(f->stick.spent >= -1e-15);
+      accept(f);
+    }
+    ck_assert_near(f->stick.dissipated, MU * PRESS * (way - elastic), 1e-10);
+    finish(f);
+  }
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("stick");
+  tcase_add_test(test_case, what_is_moved_a_little_is_held_by_a_spring);
+  tcase_add_test(test_case, the_spring_is_cut_at_the_limit);
+  tcase_add_test(test_case, forces_and_torques_of_a_pair_balance);
+  tcase_add_test(test_case, a_common_rotation_carries_forces_along_however_large_the_step);
+  tcase_add_test(test_case, the_matrix_is_the_derivative_in_stick);
+  tcase_add_test(test_case, the_matrix_is_the_derivative_in_slip);
+  tcase_add_test(test_case, evaluating_leaves_no_trace);
+  tcase_add_test(test_case, what_is_saved_and_loaded_goes_on_to_the_bit);
+  tcase_add_test(test_case, what_lifts_off_loses_its_spring);
+  tcase_add_test(test_case, what_rests_keeps_its_history);
+  tcase_add_test(test_case, a_way_in_many_steps_dissipates_as_much_as_in_one);
+  return suite_run("stick", test_case, 30);
+}
