@@ -69,6 +69,21 @@ Vec3 contact_shape_velocity(const ContactShape *shape, double time, Vec3 x) {
   return vec3_add(velocity, vec3_cross(spin, vec3_sub(x, point)));
 }
 
+Vec3 contact_shape_place_before(const ContactShape *shape, double time, double before, Vec3 x) {
+  const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  Vec3 rest = vec3_at(shape->point), velocity;
+  Vec3 now = carry(shape, time, rest, &velocity), place = carry(shape, before, rest, &velocity),
+       arm = vec3_sub(x, now);
+  if (!shape->move) return vec3_add(place, arm);
+  const Vec3 there = place;
+  for (int k = 0; k < 3; k++) {
+    Vec3 end = vec3_add(rest, axes[k]);
+    double along = vec3_dot(vec3_sub(carry(shape, time, end, &velocity), now), arm);
+    place = vec3_add(place, vec3_scale(along, vec3_sub(carry(shape, before, end, &velocity), there)));
+  }
+  return place;
+}
+
 static void turn_gradient(const Pose *pose, double gradient[12]) {
   for (int v = 0; v < 4; v++) {
     Vec3 turned = {0, 0, 0};

@@ -12,6 +12,9 @@ Vec3 contact_shape_point(const ContactShape *shape, double time);
 // How fast the shape's material moves at x [m/s]; with its spin.
 Vec3 contact_shape_velocity(const ContactShape *shape, double time, Vec3 x);
 
+// Where the shape's material that is at x at `time` was at the time `before` [m].
+Vec3 contact_shape_place_before(const ContactShape *shape, double time, double before, Vec3 x);
+
 // V [m³], ∂V/∂x [m²] and ∂²V/∂x² [m] of a tetrahedron (4, 3) in the shape; the last two may be NULL.
 void contact_shape_overlap(const ContactShape *shape, double time, const double tet[12], double *volume,
                            double gradient[12], double hessian[144]);

@@ -172,6 +172,10 @@ static Status prepare(void *self, const FemState *state, double step) {
   return contact_system_update(contact->system, state->time, state->positions, state->velocities, step, NULL);
 }
 
+static Status renew(void *self, const FemState *state) {
+  return prepare(self, state, 0);
+}
+
 typedef struct Coupling {
   FemPattern *pattern;
   int *has_grown;
@@ -266,6 +270,7 @@ const FemEffectOps fem_effect_contact = {
     .create_again = create_again,
     .couple = couple,
     .prepare = prepare,
+    .renew = renew,
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,

@@ -12,6 +12,7 @@ static const FemEffectOps *const effects[] = {
     &fem_effect_loads,
     &fem_effect_contact,
     &fem_effect_friction,
+    &fem_effect_stick,
     &fem_effect_viscosity,
     &fem_effect_rest,
 };

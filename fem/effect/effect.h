@@ -28,6 +28,7 @@ typedef struct FemEnergy {
   double driven_power;     // of whatever moves prescribed coordinates and obstacles
   double applied_work;     // of loads since the start [J]
   double plastic_work;     // dissipated by plasticity since the start [J]
+  double friction_work;    // dissipated by friction with a history since the start [J]
 } FemEnergy;
 
 typedef struct FemEffectOps {
@@ -51,6 +52,12 @@ typedef struct FemEffectOps {
   // After creation and after every accepted step; `step` [s] is the length expected next. The only place
   // where an effect may change what it keeps. NULL: nothing to keep.
   Status (*prepare)(void *self, const FemState *state, double step);
+  // The run begins, or goes on from a checkpoint, at this state, after `load`: what is kept of ways counts from
+  // here. NULL: nothing to do.
+  Status (*begin)(void *self, const FemState *state);
+  // At a state that is not accepted: renews lists and nothing else, so that forces can be evaluated there.
+  // NULL: there are none.
+  Status (*renew)(void *self, const FemState *state);
   // Adds forces [N] to `force` (vertex_count, 3); those on bodies that are held may be left out. RETRY: take
   // a smaller step. NULL: none.
   Status (*add_force)(void *self, const FemState *state, double *force);
@@ -95,6 +102,7 @@ extern const FemEffectOps fem_effect_gravity;
 extern const FemEffectOps fem_effect_loads;
 extern const FemEffectOps fem_effect_contact;
 extern const FemEffectOps fem_effect_friction;
+extern const FemEffectOps fem_effect_stick;
 extern const FemEffectOps fem_effect_viscosity;
 extern const FemEffectOps fem_effect_rest;
 

@@ -15,7 +15,8 @@ typedef struct Friction {
 } Friction;
 
 static bool is_wanted(const FemSceneDef *scene) {
-  return scene->contact.is_on && scene->contact.friction > 0;
+  return scene->contact.is_on && scene->contact.friction > 0 &&
+         fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY;
 }
 
 static Status create(void **self, const FemModel *model) {
@@ -121,7 +122,8 @@ const FemEffectOps fem_effect_friction = {
     .dissipates = true,
     .lags = true,
     .is_wanted = is_wanted,
-    .static_refusal = "friction is a force of motion; take it or time.static away",
+    .static_refusal = "friction of the law velocity is a force of motion; take it or time.static away, or take the "
+                      "potential field and the law stick",
     .static_key = "contact.friction",
     .create = create,
     .connect = connect,

@@ -211,6 +211,22 @@ Status fem_system_assemble(FemSystem *system, double time, double k, double d, d
   return STATUS_OK;
 }
 
+Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v) {
+  fem_system_scatter(system, time, u, v);
+  FemState state = state_of(system, time);
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops->begin) TRY(system->effects[i].ops->begin(system->effects[i].self, &state));
+  return STATUS_OK;
+}
+
+Status fem_system_renew(FemSystem *system, double time, const double *u, const double *v) {
+  fem_system_scatter(system, time, u, v);
+  FemState state = state_of(system, time);
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops->renew) TRY(system->effects[i].ops->renew(system->effects[i].self, &state));
+  return STATUS_OK;
+}
+
 Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
   fem_system_scatter(system, time, u, v);
   FemState state = state_of(system, time);

@@ -56,6 +56,10 @@ Status fem_system_renumber(FemSystem *system);
 // matrix = k·K + d·D + m·M at the scattered state.
 Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix);
 
+// Once the state from which a run begins or goes on is known (scatters it itself).
+Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v);
+// At a state that is not accepted (scatters it itself): lets effects renew their lists.
+Status fem_system_renew(FemSystem *system, double time, const double *u, const double *v);
 // After an accepted step (scatters it itself): lets effects renew what they keep.
 Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step);
 

@@ -517,8 +517,9 @@ double fem_model_velocity_tolerance(const FemModel *model) {
   for (int b = 0; b < scene->body_count; b++)
     slowest = fmin(slowest, sqrt(scene->bodies[b].material.young / scene->bodies[b].material.density));
   double chosen = scene->tolerance * slowest;
-  return scene->contact.friction > 0 ? fmin(chosen, FRICTION_RESOLUTION * fem_model_slip_speed(model))
-                                     : chosen;
+  bool creeps =
+      scene->contact.friction > 0 && fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY;
+  return creeps ? fmin(chosen, FRICTION_RESOLUTION * fem_model_slip_speed(model)) : chosen;
 }
 
 static const FemModelBody *body_of(const FemModel *model, int tet) {

@@ -92,7 +92,7 @@ const char *fem_model_body_name(const FemModel *model, int vertex);
 double fem_model_contact_stiffness(const FemModel *model);
 
 // Error per step of a velocity [m/s]: the scene's, or its tolerance times the slowest body's wave speed
-// √(E/ρ), with friction at most 5 ε.
+// √(E/ρ), with friction by the law `velocity` at most 5 ε.
 double fem_model_velocity_tolerance(const FemModel *model);
 
 // Every body's law is linear, without fibres.

@@ -50,6 +50,11 @@ void fem_scene_destroy(FemSceneDef *scene) {
   *scene = (FemSceneDef){0};
 }
 
+FemFrictionLaw fem_scene_friction_law(const FemContactDef *contact) {
+  if (contact->friction_law != FEM_FRICTION_AUTO) return contact->friction_law;
+  return contact->potential == CONTACT_POTENTIAL_FIELD ? FEM_FRICTION_STICK : FEM_FRICTION_VELOCITY;
+}
+
 double fem_scene_frame_time(const FemSceneDef *scene, int frame) {
   return frame == scene->frames ? scene->end : scene->end * frame / scene->frames;
 }

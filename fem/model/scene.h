@@ -128,6 +128,13 @@ typedef struct FemObstacleDef {
   FemScenePlace place;
 } FemObstacleDef;
 
+// How friction resists.
+typedef enum FemFrictionLaw {
+  FEM_FRICTION_AUTO,     // stick with the potential `field`, else velocity
+  FEM_FRICTION_STICK,    // contact/stick.h
+  FEM_FRICTION_VELOCITY, // contact/friction.h
+} FemFrictionLaw;
+
 typedef struct FemContactDef {
   bool is_on;
   double stiffness; // κ; 0: chosen (the softest body's Young's modulus; `body`: that over its volume²…)
@@ -137,7 +144,8 @@ typedef struct FemContactDef {
   OverlapOptions net_options;
   double margin; // [m]; 0: chosen
   bool use_full_hessian;
-  double friction;                      // coefficient μ between any two; 0: none
+  double friction; // coefficient μ between any two; 0: none
+  FemFrictionLaw friction_law;
   double viscosity;                     // η [Pa s]; 0: none
   double slip_speed;                    // ε: slower slip counts as sticking [m/s]; 0: chosen
   bool rest_is_on;                      // bodies at rest are left out
@@ -182,5 +190,8 @@ void fem_scene_destroy(FemSceneDef *scene);
 
 // When frame 0 … frames is due [s].
 double fem_scene_frame_time(const FemSceneDef *scene, int frame);
+
+// The law that `auto` stands for, or the one that the scene names.
+FemFrictionLaw fem_scene_friction_law(const FemContactDef *contact);
 
 #endif

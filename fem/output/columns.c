@@ -153,7 +153,8 @@ bool fem_columns_is_wanted(int column, const FemSystem *system, bool has_status)
   case IF_EFFECT:
     return fem_system_effect(system, columns[column].effect) != NULL;
   case IF_DISSIPATIVE:
-    return fem_system_dissipates(system) || fem_system_effect(system, &fem_effect_plasticity) != NULL;
+    return fem_system_dissipates(system) || fem_system_effect(system, &fem_effect_plasticity) ||
+           fem_system_effect(system, &fem_effect_stick);
   case IF_STATUS:
     return has_status;
   }

@@ -12,6 +12,7 @@
 #include "fem/effect/contact.h"
 #include "fem/effect/friction.h"
 #include "fem/effect/plasticity.h"
+#include "fem/effect/stick.h"
 #include "fem/effect/volume_effect.h"
 #include "fem/output/columns.h"
 #include "fem/output/pvd.h"
@@ -37,6 +38,19 @@ void fem_recorder_interface_force(const FemSystem *system, int interface, double
   vec3_store(force, vec3_at(interfaces_of(system, &count)[interface].force));
   void *friction = fem_system_effect(system, &fem_effect_friction);
   if (friction) vec3_accumulate(force, vec3_at(fem_effect_friction_of(friction)->forces[interface]));
+  void *stick = fem_system_effect(system, &fem_effect_stick);
+  if (stick) vec3_accumulate(force, vec3_at(fem_effect_stick_of(stick)->forces[interface]));
+}
+
+static bool has_friction(const FemSystem *system) {
+  return fem_system_effect(system, &fem_effect_friction) || fem_system_effect(system, &fem_effect_stick);
+}
+
+static void add_friction(const FemSystem *system, double *force) {
+  void *friction = fem_system_effect(system, &fem_effect_friction),
+       *stick = fem_system_effect(system, &fem_effect_stick);
+  if (friction) contact_friction_add_force(fem_effect_friction_of(friction), system->velocities, force);
+  if (stick) contact_stick_add_force(fem_effect_stick_of(stick), force);
 }
 
 static Status add_columns(FemRecorder *recorder) {
@@ -72,12 +86,12 @@ static Status create(FemRecorder *recorder, const char *directory) {
   recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
   recorder->displacement = memory_zeroed(3 * vertices, sizeof *recorder->displacement);
   recorder->contact_force = memory_zeroed(3 * vertices, sizeof *recorder->contact_force);
-  bool has_friction = fem_system_effect(recorder->system, &fem_effect_friction) != NULL;
-  if (has_friction) recorder->friction_force = memory_zeroed(3 * vertices, sizeof(double));
+  bool rubs = has_friction(recorder->system);
+  if (rubs) recorder->friction_force = memory_zeroed(3 * vertices, sizeof(double));
   recorder->stress = memory_zeroed(6 * tets, sizeof *recorder->stress);
   recorder->von_mises = memory_zeroed(tets, sizeof *recorder->von_mises);
   if (!recorder->directory || !recorder->displacement || !recorder->contact_force || !recorder->stress ||
-      !recorder->von_mises || (has_friction && !recorder->friction_force))
+      !recorder->von_mises || (rubs && !recorder->friction_force))
     return status_no_memory("the output arrays");
   if (recorder->writes_vtu) TRY(fem_obstacle_frames_create(&recorder->obstacles, model));
   TRY(file_make_directories(directory));
@@ -202,8 +216,7 @@ static void fill_arrays(FemRecorder *recorder) {
            3 * (size_t)model->vertex_count * sizeof *recorder->contact_force);
   if (recorder->friction_force) {
     memset(recorder->friction_force, 0, 3 * (size_t)model->vertex_count * sizeof(double));
-    contact_friction_add_force(fem_effect_friction_of(fem_system_effect(system, &fem_effect_friction)),
-                               system->velocities, recorder->friction_force);
+    add_friction(system, recorder->friction_force);
   }
   for (int e = 0; e < model->tet_count; e++) {
     const FemModelBody *body = &model->bodies[model->tet_body[e]];

@@ -275,6 +275,7 @@ static Status begin_record(FemRunState *run) {
 }
 
 static Status begin_motion(FemRunState *run) {
+  TRY(fem_system_begin(&run->system, run->time, run->u, run->v));
   TRY(fem_system_accept(&run->system, run->time, run->u, run->v, run->next_step));
   if (run->next_frame == 0) TRY(begin_record(run));
   if (fem_system_lags(&run->system)) TRY(renew_powers(run));
@@ -284,6 +285,7 @@ static Status begin_motion(FemRunState *run) {
 static Status begin_statics(FemRunState *run) {
   const FemCheckpoint *from = &run->checkpoint;
   TRY(fem_statics_create(&run->statics, &run->system, fem_solver_ops(fem_run_solver(run->model))));
+  TRY(fem_system_begin(&run->system, run->time, run->u, run->v));
   if (run->next_frame == 0) {
     fem_system_scatter(&run->system, run->time, run->u, run->v);
     return begin_record(run);

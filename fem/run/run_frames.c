@@ -61,10 +61,10 @@ Status fem_run_frames_measure(FemRunState *run, double time, FemMeasures *measur
   const FemEnergy *energy = &measures->energy;
   const double parts[] = {energy->kinetic,      energy->elastic,      energy->gravity,
                           energy->contact,      energy->applied_work, energy->dissipated_power,
-                          energy->driven_power, energy->plastic_work};
+                          energy->driven_power, energy->plastic_work, energy->friction_work};
   static const char *const names[] = {"kinetic energy",    "elastic energy", "energy of gravity",
                                       "energy of contact", "work of loads",  "dissipated power",
-                                      "driven power",      "plastic work"};
+                                      "driven power",      "plastic work",   "work of friction"};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
     if (!isfinite(parts[k])) return status_fail(STATUS_RETRY, "the %s is not a number", names[k]);
   return STATUS_OK;
@@ -79,7 +79,7 @@ static Status measure_within_step(FemRunState *run, double time, FemMeasures *me
   Status status = fem_run_frames_measure(run, time, measures);
   if (status != STATUS_RETRY) return status;
   TRY(fem_system_check_state(&run->system)); // a wider list does not help what is no number
-  TRY(fem_system_accept(&run->system, time, u, v, 0));
+  TRY(fem_system_renew(&run->system, time, u, v));
   return fem_run_frames_measure(run, time, measures);
 }
 

@@ -33,7 +33,7 @@ FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *ene
   next.damped += half_step * (audit->dissipated_power + energy->dissipated_power);
   next.driven_work += half_step * (audit->driven_power + energy->driven_power);
   next.work = next.driven_work + energy->applied_work;
-  next.dissipated = next.damped + energy->plastic_work;
+  next.dissipated = next.damped + energy->plastic_work + energy->friction_work;
   next.dissipated_power = energy->dissipated_power;
   next.driven_power = energy->driven_power;
   next.total = stored(energy) + next.dissipated - next.work;

@@ -11,7 +11,7 @@
 typedef struct FemAudit {
   double time;        // of the last accepted state [s]
   double damped;      // by dissipated_power so far [J]
-  double dissipated;  // damped and plastic work [J]
+  double dissipated;  // damped, plastic work and friction with a history [J]
   double driven_work; // of driven vertices and obstacles [J]
   double work;        // driven_work and the loads' [J]
   double total;       // A [J]

@@ -25,9 +25,9 @@ static const double SHIFT_FALL = 0.5;
 enum { MAX_RELAXATIONS = 400, MAX_REFUSALS = 40, WORST_COUNT = 3 };
 
 static Status check_scene(const FemSceneDef *scene) {
-  if (scene->contact.friction > 0)
-    return status_fail(STATUS_INPUT,
-                       "friction is a force of motion; take contact.friction or time.static away");
+  if (scene->contact.friction > 0 && fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY)
+    return status_fail(STATUS_INPUT, "friction by the law 'velocity' is a force of motion; take it or "
+                                     "time.static away, or take the potential 'field' and the law 'stick'");
   for (int b = 0; b < scene->body_count; b++) {
     const FemBodyDef *body = &scene->bodies[b];
     for (int i = 0; i < body->fixed_count; i++)
@@ -125,7 +125,7 @@ static Status relax_once(FemStatics *statics, double time, double shift, double 
   double way = largest_of(step, n), most = LONGEST_WAY * model->edge;
   for (int i = 0; i < n; i++) u[i] += step[i] *= way > most ? most / way : 1;
   Status status = evaluate(statics, time, u);
-  if (!status) status = fem_system_accept(equilibrium->system, time, u, equilibrium->still, 0);
+  if (!status) status = fem_system_renew(equilibrium->system, time, u, equilibrium->still);
   if (status == STATUS_RETRY)
     for (int i = 0; i < n; i++) u[i] -= step[i];
   return status;
@@ -241,6 +241,6 @@ Status fem_statics_step(FemStatics *statics, double from, double to, double *u) 
   char why[1024];
   snprintf(why, sizeof why, "%s", status_message());
   statics->halvings++;
-  TRY(fem_system_accept(equilibrium->system, from, u, equilibrium->still, 0));
+  TRY(fem_system_renew(equilibrium->system, from, u, equilibrium->still));
   return status_fail(STATUS_RETRY, "%s", why);
 }

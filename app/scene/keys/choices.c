@@ -71,6 +71,20 @@ static const char *element_help(int i) {
 }
 const SceneChoices app_scene_choices_elements = {element_name, element_help};
 
+// The numbers are those of FemFrictionLaw.
+static const char *friction_name(int i) {
+  static const char *const names[] = {"auto", "stick", "velocity"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *friction_help(int i) {
+  static const char *const helps[] = {
+      "stick with the potential field, velocity with the others",
+      "a spring in the tangent plane, cut at μN: what sticks does not creep, in motion and at rest",
+      "a force that depends on the slip's speed, for potentials without a centroid: what sticks creeps"};
+  return helps[i];
+}
+const SceneChoices app_scene_choices_frictions = {friction_name, friction_help};
+
 static const char *following_name(int i) { // the number is FemLoadDef.is_dead
   static const char *const names[] = {"surface", "nothing"};
   return i < 2 ? names[i] : NULL;

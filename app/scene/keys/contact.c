@@ -10,15 +10,27 @@ static const char *finish_contact(void *self, const char **key) {
     *key = "viscosity";
     return "viscosity builds on the potential nodal; take one of the two keys away";
   }
+  FemFrictionLaw law = fem_scene_friction_law(contact);
+  if (contact->friction > 0 && law == FEM_FRICTION_STICK && contact->potential != CONTACT_POTENTIAL_FIELD) {
+    *key = "friction";
+    return "the law stick builds on the potential field; take that, or the law velocity";
+  }
+  if (contact->friction > 0 && law == FEM_FRICTION_STICK && contact->slip_speed > 0) {
+    *key = "friction";
+    return "slip_speed belongs to the law velocity; with stick nothing creeps: take slip_speed away";
+  }
   return NULL;
 }
 
 static const SceneKey friction_keys[] = {
     {"coefficient", SCENE_NUMBER, AT(FemContactDef, friction), .range = "[0, inf)", .required = "0.3",
      .help = "Coulomb's μ: sliding resists with μ times the normal force"},
+    {"law", SCENE_CHOICE, AT(FemContactDef, friction_law), .fallback = "auto",
+     .choices = &app_scene_choices_frictions, .help = "how it resists"},
     {"slip_speed", SCENE_NUMBER, AT(FemContactDef, slip_speed), .unit = "m/s", .range = "(0, inf)",
      .absent_help = "1e-3 of the smallest body's size over `end`",
-     .help = "slower slip counts as sticking: what sticks creeps, more slowly than this"},
+     .help =
+         "of the law velocity: slower slip counts as sticking: what sticks creeps, more slowly than this"},
     {0},
 };
 static const SceneSection friction = {
