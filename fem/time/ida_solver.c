@@ -178,6 +178,10 @@ Status fem_ida_solver_assemble(FemIdaSolver *solver, double time, double c, cons
   return STATUS_OK;
 }
 
+const double *fem_ida_solver_right(const FemIdaSolver *solver) {
+  return solver->ops->is_condensed ? solver->right : NULL;
+}
+
 const double *fem_ida_solver_masses(const FemIdaSolver *solver) {
   return solver->masses;
 }

@@ -44,6 +44,10 @@ SUNMatrix fem_ida_solver_matrix(FemIdaSolver *solver);       // owned by the sol
 // Scatters (time, u, v), lets effects couple, assembles with c = ∂ẏ/∂y.
 Status fem_ida_solver_assemble(FemIdaSolver *solver, double time, double c, const double *u, const double *v);
 
+// The right-hand side of the condensed system that was solved last (unknown_count); NULL: the linear solver
+// does not condense.
+const double *fem_ida_solver_right(const FemIdaSolver *solver);
+
 const double *fem_ida_solver_masses(const FemIdaSolver *solver); // of the unknowns [kg]   (unknown_count)
 const FemSolverStats *fem_ida_solver_stats(const FemIdaSolver *solver);
 

@@ -10,7 +10,9 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fem/effect/contact.h"
 #include "fem/time/ida_solver.h"
+#include "fem/time/newton.h"
 
 // Chosen bounds of the step, as shares of the run's end.
 static const double LONGEST_STEP = 0.1, SHORTEST_STEP = 1e-11;
@@ -19,6 +21,11 @@ enum { MAX_FAILURES = 15 };
 // Knots of prescribed motions and loads closer than this share of the run's end count as one; IDA tells 2e-14
 // apart.
 static const double KNOT_RESOLUTION = 1e-12;
+// Forces on a body in contact balance to this share of its weight or, where that is more, of what its
+// acceleration takes: what is written of contact is as right.
+static const double BALANCE = 2e-4;
+// Nor less than this share of E · edge².
+static const double SMALLEST_FORCE = 1e-10;
 // Roots are found to this share of their step.
 static const double ROOT_RESOLUTION = 1e-9;
 
@@ -31,8 +38,10 @@ struct FemIntegrator {
   void *ida;
   FemIdaSolver *solver;
   FemIdaFailure failure;
-  N_Vector y, y_dot;     // state that the last step or restart ended at
-  N_Vector interpolated; // what `at` returns; scratch
+  FemNewton newton;
+  double *unbalanced, *wanted; // of each body: Σ |r| and what it is held against [N]   (body_count)
+  N_Vector y, y_dot;           // state that the last step or restart ended at
+  N_Vector interpolated;       // what `at` returns; scratch
   N_Vector tolerance;
   double time;                // of y
   double step_end;            // where IDA stands: later than `time` after an onset
@@ -76,6 +85,52 @@ static int jacobian(realtype time, realtype c, N_Vector y, N_Vector y_dot, N_Vec
   const double *u = values_of(y);
   Status status = fem_ida_solver_assemble(integrator->solver, time, c, u, u + integrator->n);
   return fem_ida_solver_answer(&integrator->failure, status);
+}
+
+static const double *right_of(void *self) {
+  return fem_ida_solver_right(((FemIntegrator *)self)->solver);
+}
+
+// Of a body's vertices in contact.
+static double pressed_on(const double *forces, const FemModelBody *body) {
+  double sum = 0;
+  for (int a = body->vertex_begin; a < body->vertex_end; a++)
+    sum += vec3_length(vec3_at(forces + 3 * (size_t)a));
+  return sum;
+}
+
+// Σ |r| of the balance, and Σ m |v̇| = Σ |r + f|, of each body.
+static void sum_balance(FemIntegrator *integrator, const double *balance) {
+  const FemSystem *system = integrator->system;
+  const FemModel *model = system->model;
+  for (int b = 0; b < model->body_count; b++) integrator->unbalanced[b] = integrator->wanted[b] = 0;
+  int body = 0;
+  for (int i = 0; i < integrator->n; i++) {
+    int dof = model->dof_of_unknown[i];
+    while (dof / 3 >= model->bodies[body].vertex_end) body++;
+    integrator->unbalanced[body] += fabs(balance[i]);
+    integrator->wanted[body] += fabs(balance[i] + system->forces[dof]);
+  }
+}
+
+// The largest Σ |r| of a body in contact over what is allowed.
+static double unbalance(void *self, const double *balance) {
+  FemIntegrator *integrator = self;
+  const FemModel *model = integrator->system->model;
+  void *contact = fem_system_effect(integrator->system, &fem_effect_contact);
+  if (!contact) return 0;
+  const double *forces = contact_system_forces(fem_effect_contact_system(contact));
+  double worst = 0, gravity = model->scene->has_gravity ? vec3_length(vec3_at(model->scene->gravity)) : 0;
+  sum_balance(integrator, balance);
+  for (int b = 0; b < model->scene->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    double pressed = pressed_on(forces, body), weight = gravity > 0 ? gravity * body->mass : pressed;
+    if (!(pressed > 0)) continue;
+    double floor = SMALLEST_FORCE * body->material.young * model->edge * model->edge;
+    double allowed = fmax(BALANCE * fmax(weight, integrator->wanted[b]), floor);
+    worst = fmax(worst, integrator->unbalanced[b] / allowed);
+  }
+  return worst;
 }
 
 // IDA would print.
@@ -127,6 +182,7 @@ static Status configure(FemIntegrator *integrator) {
       IDASetUserData(ida, integrator) == IDA_SUCCESS &&
       IDASetLinearSolver(ida, fem_ida_solver_linear(solver), fem_ida_solver_matrix(solver)) == IDA_SUCCESS &&
       IDASetJacFn(ida, jacobian) == IDA_SUCCESS &&
+      IDASetNonlinearSolver(ida, integrator->newton.solver) == IDA_SUCCESS &&
       IDASetMaxOrd(ida, integrator->def.max_order) == IDA_SUCCESS &&
       IDASetMaxStep(ida, integrator->max_step) == IDA_SUCCESS &&
       IDASetMinStep(ida, integrator->min_step) == IDA_SUCCESS &&
@@ -144,6 +200,12 @@ static Status create(FemIntegrator *integrator, const FemSolverOps *solver) {
   TRY(create_vectors(integrator));
   TRY(fem_ida_solver_create(&integrator->solver, integrator->system, solver, &integrator->failure,
                             integrator->context));
+  size_t bodies = (size_t)integrator->system->model->body_count;
+  integrator->unbalanced = memory_zeroed(bodies, sizeof(double));
+  integrator->wanted = memory_zeroed(bodies, sizeof(double));
+  if (!integrator->unbalanced || !integrator->wanted) return status_no_memory("the integrator");
+  FemNewtonUser user = {.self = integrator, .n = integrator->n, .right = right_of, .unbalance = unbalance};
+  TRY(fem_newton_create(&integrator->newton, &user, integrator->y, integrator->context));
   return configure(integrator);
 }
 
@@ -165,6 +227,9 @@ Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, cons
 void fem_integrator_destroy(FemIntegrator *integrator) {
   if (!integrator) return;
   if (integrator->ida) IDAFree(&integrator->ida);
+  fem_newton_destroy(&integrator->newton);
+  memory_free(integrator->unbalanced);
+  memory_free(integrator->wanted);
   fem_ida_solver_destroy(integrator->solver);
   N_Vector vectors[] = {integrator->y, integrator->y_dot, integrator->interpolated, integrator->tolerance};
   for (int i = 0; i < 4; i++)

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/time/newton.h"
+
+#include <math.h>
+#include <nvector/nvector_serial.h>
+
+// Iterations, and matrices made anew, before a step is given up.
+enum { MAX_ITERATIONS = 16, MAX_RENEWALS = 5, MAX_CUTS = 6 };
+// A step is shortened where the slope of the potential along it is, at its end, beyond this share of what it
+// was, with the other sign; and not below this share at once.
+static const double SLOPE_ALLOWED = 0.9, SHORTEST_CUT = 0.1;
+// Where forces cannot be evaluated.
+static const double BLIND_CUT = 0.35;
+// Below this share of the tolerance a step counts as nothing.
+static const double NOTHING = 1e-4;
+
+static FemNewton *newton_of(SUNNonlinearSolver solver) {
+  return solver->content;
+}
+
+static SUNNonlinearSolver_Type type_of(SUNNonlinearSolver solver) {
+  (void)solver;
+  return SUNNONLINEARSOLVER_ROOTFIND;
+}
+static int initialize(SUNNonlinearSolver solver) {
+  (void)solver;
+  return SUN_NLS_SUCCESS;
+}
+static int set_system(SUNNonlinearSolver solver, SUNNonlinSolSysFn evaluate) {
+  newton_of(solver)->evaluate = evaluate;
+  return SUN_NLS_SUCCESS;
+}
+static int set_set_up(SUNNonlinearSolver solver, SUNNonlinSolLSetupFn set_up) {
+  newton_of(solver)->set_up = set_up;
+  return SUN_NLS_SUCCESS;
+}
+static int set_solve(SUNNonlinearSolver solver, SUNNonlinSolLSolveFn solve) {
+  newton_of(solver)->solve = solve;
+  return SUN_NLS_SUCCESS;
+}
+static int set_test(SUNNonlinearSolver solver, SUNNonlinSolConvTestFn test, void *data) {
+  newton_of(solver)->test = test;
+  newton_of(solver)->test_data = data;
+  return SUN_NLS_SUCCESS;
+}
+static int set_most(SUNNonlinearSolver solver, int most) {
+  (void)solver, (void)most; // ours
+  return SUN_NLS_SUCCESS;
+}
+static int get_iterations(SUNNonlinearSolver solver, long int *count) {
+  *count = newton_of(solver)->iterations;
+  return SUN_NLS_SUCCESS;
+}
+static int get_current(SUNNonlinearSolver solver, int *current) {
+  *current = newton_of(solver)->current;
+  return SUN_NLS_SUCCESS;
+}
+static int get_failures(SUNNonlinearSolver solver, long int *count) {
+  *count = newton_of(solver)->failures;
+  return SUN_NLS_SUCCESS;
+}
+
+// A solve while it goes on.
+typedef struct Solve {
+  FemNewton *newton;
+  N_Vector correction, weights;
+  double tolerance;
+  void *memory;      // IDA's
+  bool wants_matrix; // before the next iteration
+  bool was_bad;      // because the last one was bad
+  bool is_fresh;     // the matrix is of where the iteration stands
+  int renewals;
+  double slope;  // g(0) of the step being taken; 0: not known
+  double settle; // δu · (what the kinematics' residual adds to the condensed one)
+} Solve;
+
+static int evaluate(Solve *solve) {
+  return solve->newton->evaluate(solve->correction, solve->newton->residual, solve->memory);
+}
+
+static int make_matrix(Solve *solve) {
+  int is_current = 0;
+  int flag = solve->newton->set_up(solve->was_bad, &is_current, solve->memory);
+  solve->wants_matrix = solve->was_bad = false;
+  solve->is_fresh = true;
+  solve->newton->current = 0;
+  return flag;
+}
+
+// Asks for a matrix of where the iteration stands; false: there were enough.
+static bool renew(Solve *solve) {
+  if (solve->renewals >= MAX_RENEWALS) return false;
+  solve->renewals++;
+  solve->newton->stats.renewed++;
+  solve->wants_matrix = solve->was_bad = true;
+  return true;
+}
+
+static double dot(const double *a, const double *b, int n) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+// δu · r of the balance at the correction.
+static double slope_of_balance(const FemNewton *newton) {
+  int n = newton->user.n;
+  return dot(N_VGetArrayPointer(newton->direction), N_VGetArrayPointer(newton->residual) + n, n);
+}
+
+// The direction from the residual, and g(0) along it. The condensed right-hand side is minus the condensed
+// residual.
+static int find_direction(Solve *solve) {
+  FemNewton *newton = solve->newton;
+  N_VScale(-1, newton->residual, newton->direction);
+  int flag = newton->solve(newton->direction, solve->memory);
+  if (flag != 0) return flag;
+  const double *right = newton->user.right(newton->user.self);
+  double balance = slope_of_balance(newton);
+  solve->slope = right ? -dot(N_VGetArrayPointer(newton->direction), right, newton->user.n) : balance;
+  solve->settle = solve->slope - balance;
+  return 0;
+}
+
+// Takes the step, shortened as far as it must be; *share: what of it. The residual is that of its end.
+static int take_step(Solve *solve, double *share) {
+  FemNewton *newton = solve->newton;
+  N_VScale(1, solve->correction, newton->start);
+  *share = 1;
+  for (int cut = 0;; cut++) {
+    N_VLinearSum(1, newton->start, *share, newton->direction, solve->correction);
+    int flag = evaluate(solve);
+    if (flag < 0 || (flag > 0 && cut >= MAX_CUTS)) return flag;
+    if (flag > 0) {
+      *share *= BLIND_CUT;
+      continue;
+    }
+    double end = slope_of_balance(newton) + (1 - *share) * solve->settle, begin = solve->slope;
+    bool overshoots = begin < 0 && end > -SLOPE_ALLOWED * begin;
+    if (!overshoots || cut >= MAX_CUTS) return 0;
+    double root = begin / (begin - end);
+    *share *= fmax(root, SHORTEST_CUT);
+  }
+}
+
+static bool is_balanced(const FemNewton *newton) {
+  const double *balance = N_VGetArrayPointer(newton->residual) + newton->user.n;
+  return newton->user.unbalance(newton->user.self, balance) <= 1;
+}
+
+// One iteration; *has_converged. > 0: no way from here.
+static int iterate(Solve *solve, bool *has_converged) {
+  FemNewton *newton = solve->newton;
+  double share;
+  if (solve->wants_matrix) {
+    int flag = make_matrix(solve);
+    if (flag != 0) return flag;
+  }
+  int flag = find_direction(solve);
+  if (flag > 0 && !solve->is_fresh && renew(solve)) return 0;
+  if (flag != 0) return flag;
+  newton->iterations++;
+  flag = take_step(solve, &share);
+  if (flag != 0) return flag;
+  bool was_fresh = solve->is_fresh;
+  solve->is_fresh = false;
+  if (share < 1) {
+    newton->stats.shortened++;
+    return renew(solve) ? 0 : 1;
+  }
+  int verdict = newton->test(newton->solver, solve->correction, newton->direction, solve->tolerance,
+                             solve->weights, newton->test_data);
+  newton->current++;
+  if (verdict == SUN_NLS_SUCCESS) {
+    double size = N_VWrmsNorm(newton->direction, solve->weights);
+    *has_converged = is_balanced(newton) || !(size > NOTHING * solve->tolerance);
+    newton->stats.polished += !*has_converged;
+    return 0;
+  }
+  if (verdict == SUN_NLS_CONTINUE) return 0;
+  if (verdict < 0) return verdict;
+  (void)was_fresh;
+  return renew(solve) ? 0 : 1;
+}
+
+static int run(Solve *solve) {
+  bool has_converged = false, is_good_enough = false;
+  int flag = evaluate(solve);
+  while (flag == 0 && !has_converged && solve->newton->iterations < MAX_ITERATIONS) {
+    long long polished = solve->newton->stats.polished;
+    flag = iterate(solve, &has_converged);
+    is_good_enough = is_good_enough || solve->newton->stats.polished > polished;
+  }
+  if (flag < 0) return flag;
+  return has_converged || (flag == 0 && is_good_enough) ? SUN_NLS_SUCCESS : SUN_NLS_CONV_RECVR;
+}
+
+static int solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Vector correction, N_Vector weights,
+                      realtype tolerance, booleantype wants_matrix, void *memory) {
+  (void)predicted;
+  FemNewton *newton = newton_of(solver);
+  Solve solve = {.newton = newton,
+                 .correction = correction,
+                 .weights = weights,
+                 .tolerance = tolerance,
+                 .memory = memory,
+                 .wants_matrix = wants_matrix};
+  newton->iterations = newton->failures = newton->current = 0;
+  int flag = run(&solve);
+  newton->failures = flag != SUN_NLS_SUCCESS;
+  newton->stats.solves++;
+  newton->stats.iterations += newton->iterations;
+  newton->stats.failures += newton->failures;
+  return flag;
+}
+
+Status fem_newton_create(FemNewton *newton, const FemNewtonUser *user, N_Vector like, SUNContext context) {
+  *newton = (FemNewton){.user = *user, .solver = SUNNonlinSolNewEmpty(context)};
+  N_Vector *vectors[] = {&newton->residual, &newton->direction, &newton->start};
+  for (int i = 0; i < 3; i++)
+    if (!(*vectors[i] = N_VClone(like))) return status_no_memory("Newton's method");
+  if (!newton->solver) return status_no_memory("Newton's method");
+  newton->solver->content = newton;
+  newton->solver->ops->gettype = type_of;
+  newton->solver->ops->initialize = initialize;
+  newton->solver->ops->solve = solve_step;
+  newton->solver->ops->setsysfn = set_system;
+  newton->solver->ops->setlsetupfn = set_set_up;
+  newton->solver->ops->setlsolvefn = set_solve;
+  newton->solver->ops->setctestfn = set_test;
+  newton->solver->ops->setmaxiters = set_most;
+  newton->solver->ops->getnumiters = get_iterations;
+  newton->solver->ops->getcuriter = get_current;
+  newton->solver->ops->getnumconvfails = get_failures;
+  return STATUS_OK;
+}
+
+void fem_newton_destroy(FemNewton *newton) {
+  N_Vector vectors[] = {newton->residual, newton->direction, newton->start};
+  for (int i = 0; i < 3; i++)
+    if (vectors[i]) N_VDestroy(vectors[i]);
+  if (newton->solver) SUNNonlinSolFreeEmpty(newton->solver);
+  *newton = (FemNewton){0};
+}
