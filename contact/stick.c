@@ -199,7 +199,8 @@ static void order_touches(ContactStick *stick) {
 static double return_radially(const ContactStickHistory *history, ContactStickNode *node) {
   const ContactStickEntry *entry = contact_stick_history_find(history, node->interface, node->vertex);
   Vec3 kept = entry ? vec3_at(entry->stretch) : (Vec3){0, 0, 0};
-  double before = entry ? entry->energy : 0, pressed = vec3_length(vec3_at(node->force));
+  double before = entry ? entry->energy : 0, limit = entry ? entry->limit : 0,
+         pressed = vec3_length(vec3_at(node->force));
   Vec3 normal = pressed > 0 ? vec3_scale(1 / pressed, vec3_at(node->force)) : (Vec3){0, 0, 0};
   for (int r = 0; r < 9; r++) node->deformation[r] /= node->weight;
   node->limit *= pressed;
@@ -214,7 +215,7 @@ static double return_radially(const ContactStickHistory *history, ContactStickNo
   node->trial = length;
   vec3_store(node->stretch, stretch);
   vec3_store(node->force, vec3_scale(-k, stretch));
-  double cut = node->slips ? node->limit * (1 - kept_share) * length : 0;
+  double cut = node->slips ? 0.5 * (limit + node->limit) * (1 - kept_share) * length : 0;
   return before - 0.5 * k * vec3_dot(carried, carried) + cut;
 }
 
@@ -378,10 +379,11 @@ static Status keep_nodes(ContactStick *stick) {
   for (int n = 0; n < stick->node_count; n++) {
     const ContactStickNode *node = &stick->nodes[n];
     Vec3 stretch = vec3_at(node->stretch);
-    if (!(vec3_length(stretch) > 0)) continue;
+    if (!(node->limit > 0)) continue;
     ContactStickEntry entry = {.interface = node->interface,
                                .vertex = node->vertex,
-                               .energy = 0.5 * node->stiffness * vec3_dot(stretch, stretch)};
+                               .energy = 0.5 * node->stiffness * vec3_dot(stretch, stretch),
+                               .limit = node->limit};
     vec3_store(entry.stretch, divide(node->deformation, stretch));
     TRY(contact_stick_history_add(&stick->next, &entry));
   }

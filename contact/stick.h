@@ -17,7 +17,7 @@
 //             spring)
 //   force     Σ_a (w/W) T_a on the pair, at x̄: by λ on A's vertices, its opposite on B's
 //   matrix    D_a ⊗ ω ωᵀ,  ω = Σ (w/W)(λ_A, −λ_B);   D = k P in stick, μN/|s_trial| (P − ŝŝᵀ) in slip
-//   accepted  S_a ← F_a⁻¹ s,  xⁿ ← x;   dissipated += |T_a| · length cut off
+//   accepted  S_a ← F_a⁻¹ s,  xⁿ ← x;   dissipated += mean of μN_a then and now · length cut off
 //
 // Δ is zero to rounding in any common rigid motion and telescopes; only increments are averaged. Force and
 // torque balance pair by pair. The matrix is positive semidefinite; the derivatives of N, n and the weights

@@ -48,6 +48,7 @@ Status contact_stick_history_save(const ContactStickHistory *history, double **v
     value[1] = entry->vertex;
     vec3_store(value + 2, vec3_at(entry->stretch));
     value[5] = entry->energy;
+    value[6] = entry->limit;
   }
   return STATUS_OK;
 }
@@ -66,7 +67,8 @@ Status contact_stick_history_load(ContactStickHistory *history, const double *va
       return status_fail(STATUS_INPUT,
                          "the checkpoint's friction does not fit: there are %d interfaces and %d vertices",
                          interface_count, vertex_count);
-    ContactStickEntry entry = {.interface = (int)value[0], .vertex = (int)value[1], .energy = value[5]};
+    ContactStickEntry entry = {
+        .interface = (int)value[0], .vertex = (int)value[1], .energy = value[5], .limit = value[6]};
     vec3_store(entry.stretch, vec3_at(value + 2));
     TRY(contact_stick_history_add(history, &entry));
   }

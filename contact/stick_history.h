@@ -14,6 +14,7 @@ typedef struct ContactStickEntry {
   int interface, vertex;
   double stretch[3]; // S_a, in the rest frame [m]
   double energy;     // ½ k_a s² as it was stored [J]
+  double limit;      // μ N_a then [N]
 } ContactStickEntry;
 
 // By interface, then by vertex.
@@ -23,7 +24,7 @@ typedef struct ContactStickHistory {
   size_t capacity;
 } ContactStickHistory;
 
-enum { CONTACT_STICK_ENTRY_SIZE = 6 }; // numbers an entry is kept as
+enum { CONTACT_STICK_ENTRY_SIZE = 7 }; // numbers an entry is kept as
 
 void contact_stick_history_destroy(ContactStickHistory *history);
 

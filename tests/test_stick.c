@@ -61,6 +61,7 @@ static Fixture *start(double weight_above, bool has_body_below) {
   f->force[2] = PRESS;
   f->has_body_below = has_body_below;
   eval(f);
+  accept(f);
   return f;
 }
 
@@ -107,6 +108,18 @@ START_TEST(the_spring_is_cut_at_the_limit) {
   eval(f);
   ck_assert_near(pull_of(f).y, 0, 1e-9 * PRESS);
   ck_assert_int_eq(f->stick.slip_count, 0);
+  finish(f);
+}
+END_TEST
+
+// The energies of motions and obstacles are integrated by the trapezoidal rule, and so is this.
+START_TEST(a_press_that_grows_while_it_slides_dissipates_by_its_mean) {
+  Fixture *f = start(1, true);
+  double way = 0.1, k = STIFFNESS * AREA, elastic = 3 * MU * PRESS / k;
+  f->force[2] = 3 * PRESS;
+  shift(f, 0, way, 0, 0);
+  eval(f);
+  ck_assert_near(f->stick.spent, 2 * MU * PRESS * (way - elastic), 1e-12);
   finish(f);
 }
 END_TEST
@@ -343,6 +356,7 @@ int main(void) {
   TCase *test_case = tcase_create("stick");
   tcase_add_test(test_case, what_is_moved_a_little_is_held_by_a_spring);
   tcase_add_test(test_case, the_spring_is_cut_at_the_limit);
+  tcase_add_test(test_case, a_press_that_grows_while_it_slides_dissipates_by_its_mean);
   tcase_add_test(test_case, forces_and_torques_of_a_pair_balance);
   tcase_add_test(test_case, a_common_rotation_carries_forces_along_however_large_the_step);
   tcase_add_test(test_case, the_matrix_is_the_derivative_in_stick);
