@@ -52,7 +52,7 @@ static double area_of(const ContactFieldPair *field, bool is_shape) {
 static void hand_over(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, double before,
                       ContactStickPair *pair) {
   const ContactPair *cells = &evaluation->pairs[k];
-  const ContactFieldPair *field = &evaluation->field[k];
+  const ContactFieldPair *field = &evaluation->fields[k];
   int shape = layout->facings[cells->facing].shape;
   *pair = (ContactStickPair){.interface = cells->facing, .area = area_of(field, shape >= 0)};
   for (int side = 0; side < 2; side++) {
@@ -85,7 +85,7 @@ double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem 
   for (int k = 0; k < stick->pair_count; k++) {
     int shape = layout->facings[stick->pairs[k].interface].shape;
     if (shape < 0) continue;
-    Vec3 x = vec3_at(evaluation->field[k].centroid);
+    Vec3 x = vec3_at(evaluation->fields[k].centroid);
     Vec3 velocity = contact_shape_velocity(&layout->def.shapes[shape], evaluation->time, x);
     power += vec3_dot(vec3_at(stick->pulls[k]), velocity);
   }
