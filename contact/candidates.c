@@ -17,6 +17,10 @@ enum { STEPS_AHEAD = 4, WIDEST_TRIAL = 4 };
 // Of the margin, for a body with itself: elements that are neighbours but one are always near.
 static const double SELF_MARGIN = 0.5;
 
+// The share of a margin that the next step may use up, and the step by which speeds are measured where the
+// next one is not known [s].
+static const double MARGIN_USED = 0.8, NO_STEP = 1e-9;
+
 static Status create_list(ContactCandidateList *list, const ContactLayout *layout) {
   list->begin = memory_zeroed((size_t)layout->facing_count + 1, sizeof(int));
   list->margins = memory_zeroed((size_t)layout->facing_count, sizeof(double));
@@ -295,12 +299,28 @@ static bool lists_are_equal(const ContactCandidateList *a, const ContactCandidat
          (a->count == 0 || memcmp(a->pairs, b->pairs, (size_t)a->count * sizeof *a->pairs) == 0);
 }
 
+// At the speeds with which motions were expected in `step`, the list holds for so long, less a reserve for
+// what accelerates; a new list, for longer.
+static double time_left(const ContactCandidates *candidates, const ContactLayout *layout, double step) {
+  double left = INFINITY;
+  for (int f = 0; f < layout->facing_count && step > 0; f++) {
+    const ContactFacing *facing = &layout->facings[f];
+    if (candidates->is_left_out[f]) continue;
+    double expected = sum_of(candidates->expected, layout, facing),
+           free = candidates->list.margins[f] - sum_of(candidates->motions, layout, facing);
+    if (expected > 0) left = fmin(left, MARGIN_USED * free / expected * step);
+  }
+  return left;
+}
+
 Status contact_candidates_update(ContactCandidates *candidates, const ContactLayout *layout, double time,
                                  const double *positions, const double *velocities, double step,
                                  bool *has_changed) {
   *has_changed = false;
   measure_motions(candidates, layout, time, positions);
+  step = step > 0 ? step : NO_STEP;
   expect_motions(candidates, layout, time, velocities, step);
+  candidates->time_left = time_left(candidates, layout, step);
   if (!wants_search(candidates, layout)) return STATUS_OK;
 
   double start = clock_wall_s();
@@ -312,6 +332,8 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
   memcpy(candidates->reference, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
   candidates->reference_time = time;
   candidates->is_made = true;
+  measure_motions(candidates, layout, time, positions);
+  candidates->time_left = time_left(candidates, layout, step);
   candidates->searches++;
   candidates->search_s += clock_wall_s() - start;
   return STATUS_OK;

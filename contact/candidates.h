@@ -28,6 +28,7 @@ typedef struct ContactCandidates {
   // Where everything was when the list was made.
   double *reference; // [m]                                           (position_count, 3)
   double reference_time;
+  double time_left; // for which the list is expected to hold, at the speeds of the last update [s]
   // Scratch memory.
   ContactCandidateList next;
   ContactPairList found;

@@ -107,6 +107,10 @@ Status contact_system_update(ContactSystem *system, double time, const double *p
   return choose_watched(system, time, positions);
 }
 
+double contact_system_longest_step(const ContactSystem *system) {
+  return system->candidates.time_left;
+}
+
 void contact_system_forget(ContactSystem *system) {
   system->candidates.is_made = false;
 }

@@ -53,6 +53,10 @@ void contact_system_destroy(ContactSystem *system);
 Status contact_system_update(ContactSystem *system, double time, const double *positions,
                              const double *velocities, double step, bool *has_changed);
 
+// How long the next step may be so that no vertex is expected to move beyond the margin, at the speeds of the
+// last update [s].
+double contact_system_longest_step(const ContactSystem *system);
+
 // The next update searches anew: what a run does at its checkpoints, so that nothing depends on older ones.
 void contact_system_forget(ContactSystem *system);
 

@@ -241,6 +241,10 @@ static Status gap(void *self, const FemState *state, double *smallest) {
   return contact_system_gap(contact->system, state->time, state->positions, smallest);
 }
 
+static double longest_step(const void *self) {
+  return contact_system_longest_step(((const Contact *)self)->system);
+}
+
 static void report(void *self, Record *counters) {
   Contact *contact = self;
   const ContactCounters *count = contact_system_counters(contact->system);
@@ -276,6 +280,7 @@ const FemEffectOps fem_effect_contact = {
     .add_energy = add_energy,
     .gap = gap,
     .horizon = horizon,
+    .longest_step = longest_step,
     .report = report,
     .bytes = bytes,
     .destroy = destroy,

@@ -72,6 +72,9 @@ typedef struct FemEffectOps {
   // How far a step from `time` may go along what the effect prescribes by functions of time (signal.h): at
   // most to `farthest`. NULL: that far.
   double (*horizon)(const void *self, const FemForesight *foresight, double time, double farthest);
+  // How long the next step may be, at the speeds of the last accepted state, so that forces can be evaluated at
+  // its end [s]. NULL: as long as it likes.
+  double (*longest_step)(const void *self);
   // Adds counters to summary.json; NULL: none. Whole numbers count what happened since creation and are
   // summed over the parts of a run between two checkpoints; of other numbers the last stands.
   void (*report)(void *self, Record *counters);

@@ -314,6 +314,14 @@ double fem_system_horizon(const FemSystem *system, const FemForesight *foresight
   return farthest;
 }
 
+double fem_system_longest_step(const FemSystem *system) {
+  double longest = INFINITY;
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops->longest_step)
+      longest = fmin(longest, system->effects[i].ops->longest_step(system->effects[i].self));
+  return longest;
+}
+
 bool fem_system_dissipates(const FemSystem *system) {
   for (int i = 0; i < system->effect_count; i++)
     if (system->effects[i].ops->dissipates) return true;

@@ -74,6 +74,9 @@ bool fem_system_has_gap(const FemSystem *system);
 double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,
                           double farthest);
 
+// How long the next step may be so that its forces can be evaluated [s]; INFINITY: nobody minds.
+double fem_system_longest_step(const FemSystem *system);
+
 // Whether an effect's forces depend on velocities.
 bool fem_system_dissipates(const FemSystem *system);
 // Whether an effect's forces change when it is prepared.

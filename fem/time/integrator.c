@@ -504,6 +504,11 @@ static Status choose_stop(FemIntegrator *integrator) {
     integrator->stop = begin + half;
     integrator->stops_at_knot = false;
   }
+  double longest = fmax(fem_system_longest_step(integrator->system), least);
+  if (integrator->stop - begin > longest) {
+    integrator->stop = begin + longest;
+    integrator->stops_at_knot = false;
+  }
   if (IDASetStopTime(integrator->ida, integrator->stop) == IDA_SUCCESS) return STATUS_OK;
   return status_fail(STATUS_SOLVER, "IDA cannot stop at t = %.17g s from t = %.17g s", integrator->stop,
                      begin);

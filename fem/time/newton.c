@@ -11,6 +11,8 @@ enum { MAX_ITERATIONS = 16, MAX_RENEWALS = 5, MAX_CUTS = 6 };
 static const double SLOPE_ALLOWED = 0.9, SHORTEST_CUT = 0.1;
 // Where forces cannot be evaluated.
 static const double BLIND_CUT = 0.35;
+// A matrix of elsewhere is made anew once the iterations that are left, at the rate of the last, are more.
+static const double WORTH_A_MATRIX = 3, LEAST_RATE = 0.2, CLOSE = 0.3;
 // Below this share of the tolerance a step counts as nothing.
 static const double NOTHING = 1e-4;
 
@@ -65,10 +67,12 @@ typedef struct Solve {
   FemNewton *newton;
   N_Vector correction, weights;
   double tolerance;
-  void *memory;      // IDA's
-  bool wants_matrix; // before the next iteration
-  bool was_bad;      // because the last one was bad
-  bool is_fresh;     // the matrix is of where the iteration stands
+  void *memory;        // IDA's
+  bool wants_matrix;   // before the next iteration
+  bool was_bad;        // because the last one was bad
+  bool is_newest;      // it was made for this iteration
+  bool is_good_enough; // IDA's test has passed once
+  double size;         // of the last whole step, by the weights; 0: there was none
   int renewals;
   double slope;  // g(0) of the step being taken; 0: not known
   double settle; // δu · (what the kinematics' residual adds to the condensed one)
@@ -82,7 +86,7 @@ static int make_matrix(Solve *solve) {
   int is_current = 0;
   int flag = solve->newton->set_up(solve->was_bad, &is_current, solve->memory);
   solve->wants_matrix = solve->was_bad = false;
-  solve->is_fresh = true;
+  solve->size = 0;
   solve->newton->current = 0;
   return flag;
 }
@@ -143,56 +147,67 @@ static int take_step(Solve *solve, double *share) {
   }
 }
 
-static bool is_balanced(const FemNewton *newton) {
+static double unbalance(const FemNewton *newton) {
   const double *balance = N_VGetArrayPointer(newton->residual) + newton->user.n;
-  return newton->user.unbalance(newton->user.self, balance) <= 1;
+  return newton->user.unbalance(newton->user.self, balance);
+}
+
+// Whether at the rate of the last iteration, with a matrix that is not of here, more are left than that is
+// worth.
+static bool is_slow(const Solve *solve, double size, double before, double excess) {
+  if (!(size > 0 && before > 0)) return false;
+  double rate = size / before, beyond = fmax(size / (CLOSE * solve->tolerance), excess);
+  return rate > LEAST_RATE && (rate >= 1 || log(beyond) / -log(rate) > WORTH_A_MATRIX);
+}
+
+// What IDA's test and the balance say after a whole step.
+static int judge(Solve *solve, bool *has_converged) {
+  FemNewton *newton = solve->newton;
+  double before = solve->size, excess = unbalance(newton);
+  solve->size = N_VWrmsNorm(newton->direction, solve->weights);
+  int verdict = newton->test(newton->solver, solve->correction, newton->direction, solve->tolerance,
+                             solve->weights, newton->test_data);
+  newton->current++;
+  if (verdict < 0) return verdict;
+  if (verdict == SUN_NLS_SUCCESS) {
+    *has_converged = excess <= 1 || !(solve->size > NOTHING * solve->tolerance);
+    if (*has_converged) return 0;
+    newton->stats.polished++;
+    solve->is_good_enough = true;
+  }
+  if (verdict > SUN_NLS_CONTINUE && verdict != SUN_NLS_CONTINUE) return renew(solve) ? 0 : 1;
+  if (!solve->is_newest && is_slow(solve, solve->size, before, excess)) renew(solve);
+  return 0;
 }
 
 // One iteration; *has_converged. > 0: no way from here.
 static int iterate(Solve *solve, bool *has_converged) {
   FemNewton *newton = solve->newton;
   double share;
+  solve->is_newest = solve->wants_matrix;
   if (solve->wants_matrix) {
     int flag = make_matrix(solve);
     if (flag != 0) return flag;
   }
   int flag = find_direction(solve);
-  if (flag > 0 && !solve->is_fresh && renew(solve)) return 0;
+  if (flag > 0 && !solve->is_newest && renew(solve)) return 0;
   if (flag != 0) return flag;
   newton->iterations++;
   flag = take_step(solve, &share);
   if (flag != 0) return flag;
-  bool was_fresh = solve->is_fresh;
-  solve->is_fresh = false;
-  if (share < 1) {
-    newton->stats.shortened++;
-    return renew(solve) ? 0 : 1;
-  }
-  int verdict = newton->test(newton->solver, solve->correction, newton->direction, solve->tolerance,
-                             solve->weights, newton->test_data);
-  newton->current++;
-  if (verdict == SUN_NLS_SUCCESS) {
-    double size = N_VWrmsNorm(newton->direction, solve->weights);
-    *has_converged = is_balanced(newton) || !(size > NOTHING * solve->tolerance);
-    newton->stats.polished += !*has_converged;
-    return 0;
-  }
-  if (verdict == SUN_NLS_CONTINUE) return 0;
-  if (verdict < 0) return verdict;
-  (void)was_fresh;
+  if (share == 1) return judge(solve, has_converged);
+  newton->stats.shortened++;
+  solve->size = 0;
   return renew(solve) ? 0 : 1;
 }
 
 static int run(Solve *solve) {
-  bool has_converged = false, is_good_enough = false;
+  bool has_converged = false;
   int flag = evaluate(solve);
-  while (flag == 0 && !has_converged && solve->newton->iterations < MAX_ITERATIONS) {
-    long long polished = solve->newton->stats.polished;
+  while (flag == 0 && !has_converged && solve->newton->iterations < MAX_ITERATIONS)
     flag = iterate(solve, &has_converged);
-    is_good_enough = is_good_enough || solve->newton->stats.polished > polished;
-  }
   if (flag < 0) return flag;
-  return has_converged || (flag == 0 && is_good_enough) ? SUN_NLS_SUCCESS : SUN_NLS_CONV_RECVR;
+  return has_converged || (flag == 0 && solve->is_good_enough) ? SUN_NLS_SUCCESS : SUN_NLS_CONV_RECVR;
 }
 
 static int solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Vector correction, N_Vector weights,
