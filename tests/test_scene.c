@@ -181,6 +181,7 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_str_eq(scene->contact.overlap, "exact");
   ck_assert_double_eq(scene->contact.margin, 0.02);
   ck_assert_double_eq(scene->contact.friction, 0.3);
+  ck_assert_int_eq(scene->contact.friction_law, FEM_FRICTION_VELOCITY);
   ck_assert_double_eq(scene->contact.slip_speed, 1e-4);
   ck_assert_double_eq(scene->contact.viscosity, 11);
   ck_assert(scene->contact.rest_is_on);

@@ -484,6 +484,21 @@ static Status check_stall(FemIntegrator *integrator) {
   return say_why(integrator, integrator->time, stats.last_step, find_worst(integrator, IDA_ERR_FAIL), reason);
 }
 
+// No step longer than effects can follow (contact lists hold so far), nor one that changes with each step by
+// a little: of the lengths 2^(k/2) s the longest that will do, for a matrix serves steps of one length.
+static void limit_step(FemIntegrator *integrator, double begin, double planned, double least) {
+  double longest = fem_system_longest_step(integrator->system);
+  if (!(longest < integrator->max_step)) {
+    IDASetMaxStep(integrator->ida, integrator->max_step);
+    return;
+  }
+  double even = fmax(exp2(0.5 * floor(2 * log2(longest))), least);
+  IDASetMaxStep(integrator->ida, even);
+  if (!(planned > longest) || !(integrator->stop - begin > even)) return;
+  integrator->stop = begin + even;
+  integrator->stops_at_knot = false;
+}
+
 // The next step ends at def.end at the latest, or just before the knot that what is prescribed has to be
 // followed to. Where the step that is planned would leave less than itself to the knot, two equal ones go
 // there: one that is short would have to grow again.
@@ -504,11 +519,7 @@ static Status choose_stop(FemIntegrator *integrator) {
     integrator->stop = begin + half;
     integrator->stops_at_knot = false;
   }
-  double longest = fmax(fem_system_longest_step(integrator->system), least);
-  if (integrator->stop - begin > longest) {
-    integrator->stop = begin + longest;
-    integrator->stops_at_knot = false;
-  }
+  limit_step(integrator, begin, step, least);
   if (IDASetStopTime(integrator->ida, integrator->stop) == IDA_SUCCESS) return STATUS_OK;
   return status_fail(STATUS_SOLVER, "IDA cannot stop at t = %.17g s from t = %.17g s", integrator->stop,
                      begin);

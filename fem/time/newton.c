@@ -13,8 +13,6 @@ static const double SLOPE_ALLOWED = 0.9, SHORTEST_CUT = 0.1;
 static const double BLIND_CUT = 0.35;
 // A matrix of elsewhere is made anew once the iterations that are left, at the rate of the last, are more.
 static const double WORTH_A_MATRIX = 3, LEAST_RATE = 0.2, CLOSE = 0.3;
-// Below this share of the tolerance a step counts as nothing.
-static const double NOTHING = 1e-4;
 
 static FemNewton *newton_of(SUNNonlinearSolver solver) {
   return solver->content;
@@ -72,6 +70,7 @@ typedef struct Solve {
   bool was_bad;        // because the last one was bad
   bool is_newest;      // it was made for this iteration
   bool is_good_enough; // IDA's test has passed once
+  double excess;       // of the balance, after the last whole step
   double size;         // of the last whole step, by the weights; 0: there was none
   int renewals;
   double slope;  // g(0) of the step being taken; 0: not known
@@ -126,6 +125,13 @@ static int find_direction(Solve *solve) {
   return 0;
 }
 
+// Whether the slope at the end of a step has turned and grown. A step shorter than the error that a step may
+// have is never cut.
+static bool overshoots(const Solve *solve, double share, double end) {
+  double size = share * N_VWrmsNorm(solve->newton->direction, solve->weights);
+  return size > 1 && solve->slope < 0 && end > -SLOPE_ALLOWED * solve->slope;
+}
+
 // Takes the step, shortened as far as it must be; *share: what of it. The residual is that of its end.
 static int take_step(Solve *solve, double *share) {
   FemNewton *newton = solve->newton;
@@ -139,11 +145,9 @@ static int take_step(Solve *solve, double *share) {
       *share *= BLIND_CUT;
       continue;
     }
-    double end = slope_of_balance(newton) + (1 - *share) * solve->settle, begin = solve->slope;
-    bool overshoots = begin < 0 && end > -SLOPE_ALLOWED * begin;
-    if (!overshoots || cut >= MAX_CUTS) return 0;
-    double root = begin / (begin - end);
-    *share *= fmax(root, SHORTEST_CUT);
+    double end = slope_of_balance(newton) + (1 - *share) * solve->settle;
+    if (cut >= MAX_CUTS || !overshoots(solve, *share, end)) return 0;
+    *share *= fmax(solve->slope / (solve->slope - end), SHORTEST_CUT);
   }
 }
 
@@ -160,27 +164,29 @@ static bool is_slow(const Solve *solve, double size, double before, double exces
   return rate > LEAST_RATE && (rate >= 1 || log(beyond) / -log(rate) > WORTH_A_MATRIX);
 }
 
-// What IDA's test and the balance say after a whole step.
+// What IDA's test and the balance say after a whole step. Where the forces jump the balance cannot be had:
+// once IDA's test has passed, iterations go on while each halves what is missing.
 static int judge(Solve *solve, bool *has_converged) {
   FemNewton *newton = solve->newton;
-  double before = solve->size, excess = unbalance(newton);
+  double before = solve->size, excess_before = solve->excess;
+  solve->excess = unbalance(newton);
   solve->size = N_VWrmsNorm(newton->direction, solve->weights);
   int verdict = newton->test(newton->solver, solve->correction, newton->direction, solve->tolerance,
                              solve->weights, newton->test_data);
   newton->current++;
   if (verdict < 0) return verdict;
-  if (verdict == SUN_NLS_SUCCESS) {
-    *has_converged = excess <= 1 || !(solve->size > NOTHING * solve->tolerance);
-    if (*has_converged) return 0;
-    newton->stats.polished++;
-    solve->is_good_enough = true;
-  }
-  if (verdict > SUN_NLS_CONTINUE && verdict != SUN_NLS_CONTINUE) return renew(solve) ? 0 : 1;
-  if (!solve->is_newest && is_slow(solve, solve->size, before, excess)) renew(solve);
+  bool passes = verdict == SUN_NLS_SUCCESS, is_stuck = !(solve->excess <= 0.5 * excess_before);
+  *has_converged = passes && solve->excess <= 1;
+  if (!*has_converged && solve->is_good_enough && (is_stuck || !passes)) *has_converged = true;
+  if (*has_converged) return 0;
+  solve->is_good_enough = solve->is_good_enough || passes;
+  newton->stats.polished += passes;
+  if (!passes && verdict != SUN_NLS_CONTINUE) return renew(solve) ? 0 : SUN_NLS_CONV_RECVR;
+  if (!solve->is_newest && is_slow(solve, solve->size, before, solve->excess)) renew(solve);
   return 0;
 }
 
-// One iteration; *has_converged. > 0: no way from here.
+// One iteration; *has_converged. > 0: no way from here, as IDA or the caller says it.
 static int iterate(Solve *solve, bool *has_converged) {
   FemNewton *newton = solve->newton;
   double share;
@@ -198,7 +204,7 @@ static int iterate(Solve *solve, bool *has_converged) {
   if (share == 1) return judge(solve, has_converged);
   newton->stats.shortened++;
   solve->size = 0;
-  return renew(solve) ? 0 : 1;
+  return renew(solve) ? 0 : SUN_NLS_CONV_RECVR;
 }
 
 static int run(Solve *solve) {
@@ -206,8 +212,8 @@ static int run(Solve *solve) {
   int flag = evaluate(solve);
   while (flag == 0 && !has_converged && solve->newton->iterations < MAX_ITERATIONS)
     flag = iterate(solve, &has_converged);
-  if (flag < 0) return flag;
-  return has_converged || (flag == 0 && solve->is_good_enough) ? SUN_NLS_SUCCESS : SUN_NLS_CONV_RECVR;
+  if (flag != 0) return flag;
+  return has_converged || solve->is_good_enough ? SUN_NLS_SUCCESS : SUN_NLS_CONV_RECVR;
 }
 
 static int solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Vector correction, N_Vector weights,
@@ -219,7 +225,8 @@ static int solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Vector co
                  .weights = weights,
                  .tolerance = tolerance,
                  .memory = memory,
-                 .wants_matrix = wants_matrix};
+                 .wants_matrix = wants_matrix,
+                 .excess = INFINITY};
   newton->iterations = newton->failures = newton->current = 0;
   int flag = run(&solve);
   newton->failures = flag != SUN_NLS_SUCCESS;
