@@ -147,10 +147,11 @@ END_TEST
 // What the scene has not: viscous contact, bodies that sleep.
 #define OTHER_CONTACT                                                                                        \
   "contact={stiffness: 2e5, overlap: clip, viscosity: 50, rest: {speed: 1, acceleration: 1e9, time: 1e-5}}"
+#define STICKING "contact={stiffness: 1e7, potential: field, overlap: clip, friction: 0.3}"
 
 // _i: with those; other solvers.
 START_TEST(other_settings_are_the_same_to_the_last_bit) {
-  static const char *const settings[] = {OTHER_CONTACT, "solver.linear=pcg", "solver.linear=klu"};
+  static const char *const settings[] = {OTHER_CONTACT, "solver.linear=pcg", "solver.linear=klu", STICKING};
   SceneRun one, two;
   run_with(&one, model_of(0), 1, settings[_i]);
   run_with(&two, model_of(0), 2, settings[_i]);
@@ -162,13 +163,15 @@ END_TEST
 START_TEST(the_scene_has_every_effect) {
   int count, present = 0;
   const FemEffectOps *const *effects = fem_effect_list(&count);
-  SceneRun run, other;
+  SceneRun run, other, sticking;
   scene_open(&run, "everything", NULL);
+  scene_open(&sticking, "everything", (const char *const[]){STICKING, NULL});
   scene_open(&other, "everything", (const char *const[]){OTHER_CONTACT, NULL});
   for (int i = 0; i < count; i++)
-    present += effects[i]->is_wanted(&run.scene) || effects[i]->is_wanted(&other.scene);
+    present += effects[i]->is_wanted(&run.scene) || effects[i]->is_wanted(&other.scene) ||
+               effects[i]->is_wanted(&sticking.scene);
   ck_assert_int_eq(present, count);
-  scene_close(&run), scene_close(&other);
+  scene_close(&run), scene_close(&other), scene_close(&sticking);
 }
 END_TEST
 
@@ -176,7 +179,7 @@ int main(void) {
   TCase *test_case = tcase_create("determinism");
   tcase_add_loop_test(test_case, the_number_of_threads_changes_no_bit_of_a_volume, 0, model_count());
   tcase_add_loop_test(test_case, a_run_is_the_same_to_the_last_bit, 0, model_count());
-  tcase_add_loop_test(test_case, other_settings_are_the_same_to_the_last_bit, 0, 3);
+  tcase_add_loop_test(test_case, other_settings_are_the_same_to_the_last_bit, 0, 4);
   tcase_add_test(test_case, the_scene_has_every_effect);
   return suite_run("determinism", test_case, 120);
 }

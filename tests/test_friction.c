@@ -316,9 +316,9 @@ START_TEST(on_a_slope_of_15_degrees_the_forces_carry_the_weight) {
   scene_run(&run, "incline", (const char *const[]){gravity, NULL});
   double weight = run.model.bodies[0].mass * g;
   const double *force = scene_force(&run, run.result.frame_count - 1, 0);
-  ck_assert_near(force[0], -weight * sin(slope), 1e-5 * weight);
-  ck_assert_near(force[1], 0, 1e-5 * weight);
-  ck_assert_near(force[2], weight * cos(slope), 1e-5 * weight);
+  ck_assert_near(force[0], -weight * sin(slope), 5e-4 * weight);
+  ck_assert_near(force[1], 0, 5e-4 * weight);
+  ck_assert_near(force[2], weight * cos(slope), 5e-4 * weight);
   scene_close(&run);
 }
 END_TEST

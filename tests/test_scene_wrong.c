@@ -113,7 +113,7 @@ static const Wrong wrong[] = {
     {TIME BODY "contact: {friction: 1}\ncontact: {}\n",
      "s.yaml:4:1: duplicate key 'contact'; it stands at line 3, column 1 already"},
     {TIME BODY "contact: {potential: nodel}\n", "s.yaml:3:22: contact.potential: expected one of nodal, "
-                                                "element, pair, linear, body, found the text 'nodel'; "
+                                                "element, pair, linear, body, field, found the text 'nodel'; "
                                                 "did you mean 'nodal'?"},
     {TIME BODY "contact: {overlap: clop}\n", "s.yaml:3:20: contact.overlap: expected one of clip"},
     {TIME BODY "contact: {hessian: true}\n",

@@ -10,9 +10,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact.h"
-#include "fem/effect/friction.h"
 #include "fem/effect/plasticity.h"
-#include "fem/effect/stick.h"
 #include "fem/effect/volume_effect.h"
 #include "fem/output/columns.h"
 #include "fem/output/pvd.h"
@@ -31,26 +29,6 @@ static const ContactInterface *interfaces_of(const FemSystem *system, int *count
   ContactSystem *contact = contact_of(system);
   *count = 0;
   return contact ? contact_system_interfaces(contact, count) : NULL;
-}
-
-void fem_recorder_interface_force(const FemSystem *system, int interface, double force[3]) {
-  int count;
-  vec3_store(force, vec3_at(interfaces_of(system, &count)[interface].force));
-  void *friction = fem_system_effect(system, &fem_effect_friction);
-  if (friction) vec3_accumulate(force, vec3_at(fem_effect_friction_of(friction)->forces[interface]));
-  void *stick = fem_system_effect(system, &fem_effect_stick);
-  if (stick) vec3_accumulate(force, vec3_at(fem_effect_stick_of(stick)->forces[interface]));
-}
-
-static bool has_friction(const FemSystem *system) {
-  return fem_system_effect(system, &fem_effect_friction) || fem_system_effect(system, &fem_effect_stick);
-}
-
-static void add_friction(const FemSystem *system, double *force) {
-  void *friction = fem_system_effect(system, &fem_effect_friction),
-       *stick = fem_system_effect(system, &fem_effect_stick);
-  if (friction) contact_friction_add_force(fem_effect_friction_of(friction), system->velocities, force);
-  if (stick) contact_stick_add_force(fem_effect_stick_of(stick), force);
 }
 
 static Status add_columns(FemRecorder *recorder) {
@@ -80,18 +58,15 @@ static Status create(FemRecorder *recorder, const char *directory) {
   recorder->overlap = memory_zeroed(tets, sizeof *recorder->overlap);
   if (!recorder->det_F || !recorder->overlap) return status_no_memory("the measures");
   TRY(fem_trouble_watch_create(&recorder->watch, model));
+  TRY(fem_forces_create(&recorder->forces, recorder->system, directory && model->scene->write_vtu));
   if (!directory) return STATUS_OK;
   recorder->writes_vtu = model->scene->write_vtu;
   recorder->writes_history = model->scene->write_history;
   recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
   recorder->displacement = memory_zeroed(3 * vertices, sizeof *recorder->displacement);
-  recorder->contact_force = memory_zeroed(3 * vertices, sizeof *recorder->contact_force);
-  bool rubs = has_friction(recorder->system);
-  if (rubs) recorder->friction_force = memory_zeroed(3 * vertices, sizeof(double));
   recorder->stress = memory_zeroed(6 * tets, sizeof *recorder->stress);
   recorder->von_mises = memory_zeroed(tets, sizeof *recorder->von_mises);
-  if (!recorder->directory || !recorder->displacement || !recorder->contact_force || !recorder->stress ||
-      !recorder->von_mises || (rubs && !recorder->friction_force))
+  if (!recorder->directory || !recorder->displacement || !recorder->stress || !recorder->von_mises)
     return status_no_memory("the output arrays");
   if (recorder->writes_vtu) TRY(fem_obstacle_frames_create(&recorder->obstacles, model));
   TRY(file_make_directories(directory));
@@ -131,8 +106,7 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   memory_free(recorder->directory);
   memory_free(recorder->row);
   memory_free(recorder->displacement);
-  memory_free(recorder->contact_force);
-  memory_free(recorder->friction_force);
+  fem_forces_destroy(&recorder->forces);
   memory_free(recorder->stress);
   memory_free(recorder->von_mises);
   memory_free(recorder->det_F);
@@ -172,7 +146,8 @@ static void measure_motion(const FemSystem *system, FemMeasures *measures) {
   vec3_store(measures->angular_momentum, angular);
 }
 
-static void measure_contact(const FemSystem *system, FemMeasures *measures) {
+static void measure_contact(const FemRecorder *recorder, FemMeasures *measures) {
+  const FemSystem *system = recorder->system;
   ContactSystem *contact = contact_of(system);
   if (!contact) return;
   int count;
@@ -180,7 +155,7 @@ static void measure_contact(const FemSystem *system, FemMeasures *measures) {
   for (int i = 0; i < count; i++) {
     measures->overlap_volume += interfaces[i].volume;
     double force[3];
-    fem_recorder_interface_force(system, i, force);
+    vec3_store(force, vec3_at(recorder->forces.now.interfaces[i]));
     measures->contact_force = fmax(measures->contact_force, vec3_length(vec3_at(force)));
   }
   measures->active_pairs = contact_system_active_count(contact);
@@ -191,7 +166,8 @@ Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *mea
   TRY(fem_system_energy(recorder->system, time, &measures->energy));
   measure_elements(recorder, measures);
   measure_motion(recorder->system, measures);
-  measure_contact(recorder->system, measures);
+  fem_forces_set(&recorder->forces, time);
+  measure_contact(recorder, measures);
   ContactSystem *contact = contact_of(recorder->system);
   fem_trouble_look(&recorder->watch, recorder->system->positions,
                    contact ? contact_system_forces(contact) : NULL, recorder->det_F, recorder->overlap,
@@ -208,16 +184,8 @@ static double von_mises(const double s[6]) {
 static void fill_arrays(FemRecorder *recorder) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
-  ContactSystem *contact = contact_of(system);
   for (int i = 0; i < 3 * model->vertex_count; i++)
     recorder->displacement[i] = system->positions[i] - model->rest[i];
-  if (contact)
-    memcpy(recorder->contact_force, contact_system_forces(contact),
-           3 * (size_t)model->vertex_count * sizeof *recorder->contact_force);
-  if (recorder->friction_force) {
-    memset(recorder->friction_force, 0, 3 * (size_t)model->vertex_count * sizeof(double));
-    add_friction(system, recorder->friction_force);
-  }
   for (int e = 0; e < model->tet_count; e++) {
     const FemModelBody *body = &model->bodies[model->tet_body[e]];
     if (body->is_obstacle) continue;
@@ -260,13 +228,13 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
       {.name = "stress", .is_cell = true, .components = 6, .reals = recorder->stress},
       {.name = "von_mises", .is_cell = true, .components = 1, .reals = recorder->von_mises},
       {.name = "trouble", .is_cell = true, .components = 1, .integers = recorder->watch.marks},
-      {.name = "contact_force", .components = 3, .reals = has_contact ? recorder->contact_force : NULL},
+      {.name = "contact_force", .components = 3, .reals = recorder->forces.now.contact},
       {.name = "overlap_fraction",
        .is_cell = true,
        .components = 1,
        .reals = has_contact ? recorder->overlap : NULL},
       {.name = "wrong_way", .components = 1, .integers = has_contact ? recorder->watch.is_wrongway : NULL},
-      {.name = "friction_force", .components = 3, .reals = recorder->friction_force},
+      {.name = "friction_force", .components = 3, .reals = recorder->forces.now.friction},
       {.name = "status_predicted", .is_cell = true, .components = 1, .integers = verdicts[0]},
       {.name = "status_exact", .is_cell = true, .components = 1, .integers = verdicts[1]},
       {.name = "status_error", .is_cell = true, .components = 1, .integers = verdicts[2]},
@@ -356,7 +324,7 @@ static Status write_history(FemRecorder *recorder, const FemColumnSource *source
   row = append_centres(recorder->system, row);
   int count;
   interfaces_of(recorder->system, &count);
-  for (int i = 0; i < count; i++, row += 3) fem_recorder_interface_force(recorder->system, i, row);
+  for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->forces.now.interfaces[i]));
   return fem_history_add_row(&recorder->history, recorder->row);
 }
 

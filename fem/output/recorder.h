@@ -7,6 +7,7 @@
 #include "contact/status.h"
 #include "fem/effect/system.h"
 #include "fem/output/columns.h"
+#include "fem/output/forces.h"
 #include "fem/output/history.h"
 #include "fem/output/obstacle_frames.h"
 #include "fem/output/trouble.h"
@@ -23,8 +24,8 @@ typedef struct FemRecorder {
   int listed_count;                             // of these in frames.pvd
   double listed_at_s;                           // wall clock when it was written
   FemObstacleFrames obstacles;                  // those without a mesh, beside the frames
-  double *displacement, *contact_force;         // scratch             (vertex_count, 3)
-  double *friction_force;                       // scratch; NULL: no friction   (vertex_count, 3)
+  FemForces forces;                             // as they are written
+  double *displacement;                         // scratch             (vertex_count, 3)
   double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
   FemTroubleWatch watch;
   bool has_status;             // the scene asks for the elements' status
@@ -40,17 +41,13 @@ Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char 
 Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int frame_count);
 void fem_recorder_destroy(FemRecorder *recorder);
 
-// The measures at the system's scattered state.
+// The measures at the system's scattered state, with contact forces as they are written (forces.h).
 Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures);
 
 // Writes one frame of the scattered state. `step` [s] and `step_count` are the integrator's, `energy_events`
 // those so far (fem/output/trouble.h).
 Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
                           const FemAudit *audit, double step, long long step_count, long long energy_events);
-
-// The force on the first side of an interface at the state that was measured last [N]: of the potential and,
-// where there is friction, of friction.
-void fem_recorder_interface_force(const FemSystem *system, int interface, double force[3]);
 
 // Writes the list of frames if it lacks some: at the end, since in between long lists are written at most
 // once a second.

@@ -93,6 +93,7 @@ static void keep_state(FemRunState *run, double time) {
   run->u_new = u, run->v_new = v;
   run->time = time;
   run->retries = 0;
+  fem_forces_accept(&run->recorder.forces);
 }
 
 // Steps, and measures the state that the step leads to, kept in u_new, v_new. RETRY: too far for the contact
@@ -105,7 +106,10 @@ static Status step(FemRunState *run, double *time, bool *is_onset, FemMeasures *
   memcpy(run->u_new, u, bytes);
   memcpy(run->v_new, v, bytes);
   fem_system_scatter(&run->system, *time, run->u_new, run->v_new);
-  return fem_run_frames_measure(run, *time, measures);
+  run->recorder.forces.has_end = false;
+  TRY(fem_run_frames_measure(run, *time, measures));
+  fem_forces_end(&run->recorder.forces, *time);
+  return STATUS_OK;
 }
 
 // The powers with which the next step begins, where they are not those with which the last one ended.
@@ -227,6 +231,7 @@ static Status sleep_on(FemRunState *run) {
   fem_stall_pass(&run->stall, time - began);
   fem_run_frames_keep_extremes(run->result, &measures);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, time - began));
+  fem_forces_begin(&run->recorder.forces, time);
   TRY(observe(run, &measures));
   bool has_changed = fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest));
   return has_changed ? renumber(run) : STATUS_OK;
@@ -278,6 +283,9 @@ static Status begin_motion(FemRunState *run) {
   TRY(fem_system_begin(&run->system, run->time, run->u, run->v));
   TRY(fem_system_accept(&run->system, run->time, run->u, run->v, run->next_step));
   if (run->next_frame == 0) TRY(begin_record(run));
+  FemMeasures measures;
+  TRY(fem_run_frames_measure(run, run->time, &measures));
+  fem_forces_begin(&run->recorder.forces, run->time);
   if (fem_system_lags(&run->system)) TRY(renew_powers(run));
   return begin_stage(run, run->next_step);
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/vec3.h"
 #include "fem/effect/contact.h"
 
 static void keep_frame(FemRunState *run, double time) {
@@ -20,8 +21,8 @@ static void keep_frame(FemRunState *run, double time) {
   int count;
   contact_system_interfaces(fem_effect_contact_system(effect), &count);
   for (int i = 0; i < count; i++)
-    fem_recorder_interface_force(&run->system, i,
-                                 result->interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i));
+    vec3_store(result->interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i),
+               vec3_at(run->recorder.forces.now.interfaces[i]));
 }
 
 void fem_run_frames_keep_extremes(FemRunResult *result, const FemMeasures *measures) {

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/output/forces.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect/contact.h"
+#include "fem/effect/friction.h"
+#include "fem/effect/stick.h"
+
+bool fem_forces_has_friction(const FemSystem *system) {
+  return fem_system_effect(system, &fem_effect_friction) || fem_system_effect(system, &fem_effect_stick);
+}
+
+static ContactSystem *contact_of(const FemSystem *system) {
+  void *effect = fem_system_effect(system, &fem_effect_contact);
+  return effect ? fem_effect_contact_system(effect) : NULL;
+}
+
+static size_t values_of(const FemForces *forces) {
+  return 3 * (size_t)forces->system->model->vertex_count;
+}
+
+static Status create_at(FemForcesAt *at, const FemForces *forces, bool with_vertices) {
+  at->interfaces = memory_zeroed((size_t)forces->interface_count, sizeof *at->interfaces);
+  if (!at->interfaces) return status_no_memory("the contact forces");
+  if (!with_vertices) return STATUS_OK;
+  at->contact = memory_zeroed(values_of(forces), sizeof *at->contact);
+  bool rubs = fem_forces_has_friction(forces->system);
+  if (rubs) at->friction = memory_zeroed(values_of(forces), sizeof *at->friction);
+  return at->contact && (!rubs || at->friction) ? STATUS_OK : status_no_memory("the contact forces");
+}
+
+Status fem_forces_create(FemForces *forces, const FemSystem *system, bool with_vertices) {
+  *forces = (FemForces){.system = system};
+  ContactSystem *contact = contact_of(system);
+  if (!contact) return STATUS_OK;
+  contact_system_interfaces(contact, &forces->interface_count);
+  TRY(create_at(&forces->begin, forces, with_vertices));
+  TRY(create_at(&forces->end, forces, with_vertices));
+  return create_at(&forces->now, forces, with_vertices);
+}
+
+static void destroy_at(FemForcesAt *at) {
+  memory_free(at->interfaces);
+  memory_free(at->contact);
+  memory_free(at->friction);
+}
+
+void fem_forces_destroy(FemForces *forces) {
+  destroy_at(&forces->begin);
+  destroy_at(&forces->end);
+  destroy_at(&forces->now);
+  *forces = (FemForces){0};
+}
+
+// From the state that was evaluated last.
+static void take(const FemForces *forces, FemForcesAt *at, double time) {
+  const FemSystem *system = forces->system;
+  void *friction = fem_system_effect(system, &fem_effect_friction),
+       *stick = fem_system_effect(system, &fem_effect_stick);
+  ContactSystem *contact = contact_of(system);
+  int count;
+  const ContactInterface *interfaces = contact_system_interfaces(contact, &count);
+  at->time = time;
+  for (int i = 0; i < count; i++) {
+    vec3_store(at->interfaces[i], vec3_at(interfaces[i].force));
+    if (friction) vec3_accumulate(at->interfaces[i], vec3_at(fem_effect_friction_of(friction)->forces[i]));
+    if (stick) vec3_accumulate(at->interfaces[i], vec3_at(fem_effect_stick_of(stick)->forces[i]));
+  }
+  if (at->contact) memcpy(at->contact, contact_system_forces(contact), values_of(forces) * sizeof(double));
+  if (!at->friction) return;
+  memset(at->friction, 0, values_of(forces) * sizeof *at->friction);
+  if (friction)
+    contact_friction_add_force(fem_effect_friction_of(friction), system->velocities, at->friction);
+  if (stick) contact_stick_add_force(fem_effect_stick_of(stick), at->friction);
+}
+
+void fem_forces_begin(FemForces *forces, double time) {
+  if (!forces->now.interfaces) return;
+  take(forces, &forces->begin, time);
+  forces->has_begin = true;
+  forces->has_end = false;
+}
+
+void fem_forces_end(FemForces *forces, double time) {
+  if (!forces->now.interfaces) return;
+  take(forces, &forces->end, time);
+  forces->has_end = true;
+}
+
+void fem_forces_accept(FemForces *forces) {
+  if (!forces->has_end) return;
+  FemForcesAt begin = forces->begin;
+  forces->begin = forces->end;
+  forces->end = begin;
+  forces->has_begin = true;
+  forces->has_end = false;
+}
+
+static void mix(size_t count, double share, const double *begin, const double *end, double *now) {
+  for (size_t k = 0; k < count; k++) now[k] = begin[k] + share * (end[k] - begin[k]);
+}
+
+void fem_forces_set(FemForces *forces, double time) {
+  const FemForcesAt *begin = &forces->begin, *end = &forces->end;
+  FemForcesAt *now = &forces->now;
+  if (!now->interfaces) return;
+  if (!forces->has_begin || !forces->has_end || !(end->time > begin->time)) {
+    take(forces, now, time);
+    return;
+  }
+  double share = fmin(fmax((time - begin->time) / (end->time - begin->time), 0), 1);
+  now->time = time;
+  mix(3 * (size_t)forces->interface_count, share, begin->interfaces[0], end->interfaces[0],
+      now->interfaces[0]);
+  if (now->contact) mix(values_of(forces), share, begin->contact, end->contact, now->contact);
+  if (now->friction) mix(values_of(forces), share, begin->friction, end->friction, now->friction);
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contact and friction forces as they are written. A frame lies within a step, at positions that are
+// interpolated: right to the tolerance, which is more than a body at rest is deep, so forces evaluated there
+// are not those that moved the body. They are interpolated between the accepted states at the step's ends.
+#ifndef TETLAP_FEM_OUTPUT_FORCES_H
+#define TETLAP_FEM_OUTPUT_FORCES_H
+
+#include <stdbool.h>
+
+#include "fem/effect/system.h"
+
+// At one state.
+typedef struct FemForcesAt {
+  double time;             // [s]
+  double (*interfaces)[3]; // on the first side, friction included [N]    (interface_count)
+  double *contact;         // of the potential [N]; NULL: not wanted      (vertex_count, 3)
+  double *friction;        // [N]; NULL: not wanted                       (vertex_count, 3)
+} FemForcesAt;
+
+typedef struct FemForces {
+  const FemSystem *system; // borrowed
+  int interface_count;
+  bool has_begin, has_end; // of the step that is being looked at
+  FemForcesAt begin, end;
+  FemForcesAt now; // what `set` has found
+} FemForces;
+
+// With forces of vertices, or of interfaces alone. A zeroed one, and one whose creation failed, can be
+// destroyed.
+Status fem_forces_create(FemForces *forces, const FemSystem *system, bool with_vertices);
+void fem_forces_destroy(FemForces *forces);
+
+bool fem_forces_has_friction(const FemSystem *system);
+
+// The state that was evaluated last is the one that a run begins or goes on from, or the end of a step.
+void fem_forces_begin(FemForces *forces, double time);
+void fem_forces_end(FemForces *forces, double time);
+// The step is accepted: its end is the next one's beginning.
+void fem_forces_accept(FemForces *forces);
+
+// Fills `now`: within the step by interpolation, else, or where nothing is known of its ends, from the state
+// that was evaluated last.
+void fem_forces_set(FemForces *forces, double time);
+
+#endif
