@@ -22,8 +22,13 @@ typedef struct DeviceOverlapChain {
 } DeviceOverlapChain;
 
 static const DeviceOverlapChain chains[DEVICE_OVERLAP_MODELS] = {
-    {"clip", {&device_program_clip}, &overlap_clip_scalar_ops, 0, NULL, true},
-    {"clip32", {&device_program_clip32, &device_program_clip}, &overlap_clip_scalar_ops, 0, NULL, true},
+    {"clip", {&device_program_clip, &device_program_scalar}, &overlap_clip_scalar_ops, 0, NULL, true},
+    {"clip32",
+     {&device_program_clip32, &device_program_clip, &device_program_scalar},
+     &overlap_clip_scalar_ops,
+     0,
+     NULL,
+     true},
     {"tpn", {&device_program_tpn}, &overlap_exact_ops, OVERLAP_FALLBACK, "tpn", false},
 };
 const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {"clip", "clip32", "tpn"};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Overlap models on a device: batches of pairs, V, ∇V and flags as overlap/ops.h has them.
 //
-//   clip    pairs ─► clip ─ doubtful ─► the host's clip-scalar
-//   clip32  pairs ─► clip32 ─ doubtful ─► clip ─ doubtful ─► the host's clip-scalar
+//   clip    pairs ─► clip ─ doubtful ─► clip-scalar ─ too flat ─► the host's clip-scalar: exact
+//   clip32  pairs ─► clip32 ─ doubtful ─► clip ─ doubtful ─► clip-scalar ─ too flat ─► the host's
 //   tpn     pairs ─► tpn ─ the first is flat ─► the host's exact; V only, and flags without BEYOND
 //
 // What the host answers goes back to the device, so that all answers are there. What a pair gets is to the

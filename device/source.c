@@ -27,6 +27,11 @@ PIECE(tpn_steps, "device/kernels/tpn_steps.h");
 PIECE(tpn, "device/kernels/tpn.inc");
 PIECE(clip_constants, "overlap/clip/constants.h");
 PIECE(clip_lanes, "overlap/clip/lanes.inc");
+PIECE(vec3, "device/kernels/vec3.inc");
+PIECE(scalar, "device/kernels/scalar.inc");
+PIECE(polytope_types, "overlap/clip/polytope_types.h");
+PIECE(polytope, "overlap/clip/polytope.inc");
+PIECE(clip_sums, "overlap/clip/sums.inc");
 
 const DeviceProgram device_program_clip = {
     .name = "clip",
@@ -60,6 +65,14 @@ const DeviceProgram device_program_poses = {
     .items = 64,
 };
 
+const DeviceProgram device_program_scalar = {
+    .name = "scalar",
+    .defines = "#define GROUPS_AT_ONCE 1\n",
+    .pieces = {clip_constants, one, pairs, vec3, polytope_types, polytope, clip_sums, scalar},
+    .kernels = {"scalar_volume", "scalar_gradient"},
+    .items = 64,
+};
+
 const DeviceProgram device_program_tpn = {
     .name = "tpn",
     .defines = "#define GROUPS_AT_ONCE 4\n",
@@ -68,9 +81,9 @@ const DeviceProgram device_program_tpn = {
     .items = 64,
 };
 
-static const DeviceProgram *const programs[] = {&device_program_clip, &device_program_clip32,
+static const DeviceProgram *const programs[] = {&device_program_clip,   &device_program_clip32,
                                                 &device_program_gather, &device_program_poses,
-                                                &device_program_tpn};
+                                                &device_program_tpn,    &device_program_scalar};
 
 const DeviceProgram *const *device_source_programs(int *count) {
   *count = sizeof programs / sizeof *programs;

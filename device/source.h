@@ -30,7 +30,7 @@ typedef struct DeviceProgram {
 } DeviceProgram;
 
 extern const DeviceProgram device_program_clip, device_program_clip32, device_program_gather,
-    device_program_poses, device_program_tpn;
+    device_program_poses, device_program_tpn, device_program_scalar;
 
 // All programs, an array of `*count`.
 const DeviceProgram *const *device_source_programs(int *count);

@@ -69,11 +69,6 @@ extern const OverlapOps overlap_clip_ops, overlap_clip_scalar_ops, overlap_clip3
 
 #define OVERLAP_CLIP_LEAST_SINE 1e-6
 
-// What the gradient and the Hessian share: φ_f and m_fa of all eight faces.
-typedef struct OverlapClipMoments {
-  double fraction[8];  // φ_f
-  double moment[8][4]; // m_fa, a the vertex of face f's own tetrahedron; 0 for the vertex that is not in it
-} OverlapClipMoments;
 
 // ∇²V of a polytope, (24, 24); clip_hessian.c.
 void overlap_clip_hessian(const OverlapClipPolytope *polytope, const OverlapClipMoments *moments,

@@ -7,6 +7,7 @@
 //   clip-scalar, clip               V as exact within what clip.h states
 //   clip, geo                       the same bits in whichever lane, beside whichever neighbours; nothing
 //                                   depends on the order of vertices and tetrahedra
+//   clip                            the same bits from the kernels for devices, as plain C
 //   geo                             no overlap is missed, beyond what geo_gate.h calls noise
 //
 // Numbers that are not finite must be refused. Lengths beyond 2^±60 and volumes below 2^−960 are evaluated,
@@ -18,6 +19,7 @@
 #include "base/random.h"
 #include "base/vec3.h"
 #include "datagen/hard.h"
+#include "device/overlap.h"
 #include "overlap/geo/gate.h"
 #include "overlap/invariant.h"
 #include "overlap/model.h"
@@ -196,6 +198,29 @@ static void check_orders(Model model, const double x[SIZE], const Answer *answer
   }
 }
 
+// The batch once more by the kernels for devices.
+static void check_kernels(const Batch *batch) {
+  static Device device;
+  static DeviceOverlap kernels;
+  static Batch other;
+  if (!kernels.device)
+    FUZZ_CLAIM(device_open(&device, "host") == STATUS_OK &&
+                   device_overlap_create(&kernels, &device, "clip") == STATUS_OK,
+               "%s", status_message());
+  const OverlapBatch asked = {.pair_count = VARIANTS,
+                              .pairs = batch->pairs[0],
+                              .volume = other.volumes,
+                              .gradient = other.gradients[0],
+                              .flags = other.flags};
+  FUZZ_CLAIM(device_overlap_eval(&kernels, &asked) == STATUS_OK, "kernels: %s", status_message());
+  for (int k = 0; k < VARIANTS; k++)
+    FUZZ_CLAIM(memcmp(&batch->volumes[k], &other.volumes[k], sizeof(double)) == 0 &&
+                   memcmp(batch->gradients[k], other.gradients[k], PAIR_BYTES) == 0 &&
+                   batch->flags[k] == other.flags[k],
+               "kernels, place %d: V = %.17g, flags %u; clip %.17g, flags %u", k, other.volumes[k],
+               other.flags[k], batch->volumes[k], batch->flags[k]);
+}
+
 // Whether V, ∇V and their checks stay within what doubles can hold.
 static bool is_moderate(const double x[SIZE]) {
   double largest = 0;
@@ -234,6 +259,7 @@ static void run(const uint8_t *data, size_t size) {
     ask(model, VARIANTS, batch.pairs[0], batch.volumes, batch.gradients[0], batch.flags);
     check_lanes(model, &answer, &batch);
     check_orders(model, x, &answer, &batch);
+    if (model == CLIP) check_kernels(&batch);
   }
 }
 
