@@ -4,8 +4,10 @@
 #include "suite.h"
 
 #include <hdf5.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include "app/dataset/import.h"
@@ -339,6 +341,40 @@ START_TEST(npy_answers_are_records_behind_a_head_of_whole_lines_of_64_bytes) {
   ck_assert_int_eq(run("overlap corners.csv -o answer.txt", text), 64);
   ck_assert_int_eq(run("overlap corners.csv --json -o answer.npy", text), 64);
   ck_assert_int_eq(run("overlap corners.csv > /dev/full", text), 74);
+  ck_assert_int_eq(run("overlap .", text), 74);
+  ck_assert_int_eq(run("overlap corners.csv --model clpi", text), 64);
+  ck_assert_ptr_nonnull(strstr(text, "did you mean 'clip'"));
+}
+END_TEST
+
+static void ignore_signal(int number) {
+  (void)number;
+}
+
+// A signal that is handled, as Ctrl-C is, repeated so that one that comes before the wait is not the only
+// one.
+START_TEST(a_signal_ends_the_wait_for_standard_input) {
+  static AppPairsReader reader;
+  int ends[2];
+  struct sigaction action = {.sa_handler = ignore_signal};
+  sigaction(SIGALRM, &action, NULL);
+  ck_assert_int_eq(pipe(ends), 0);
+  ck_assert_int_eq(dup2(ends[0], STDIN_FILENO), STDIN_FILENO);
+  struct itimerval often = {{0, 20000}, {0, 20000}}, never = {0};
+  setitimer(ITIMER_REAL, &often, NULL);
+  Status status = app_pairs_reader_open(&reader, "-", false);
+  setitimer(ITIMER_REAL, &never, NULL);
+  ck_assert_int_eq(status, STATUS_INTERRUPTED);
+  app_pairs_reader_close(&reader);
+  // the same in the middle of a file
+  clearerr(stdin);
+  ck_assert_int_eq(write(ends[1], CORNERS "\n", strlen(CORNERS) + 1), (int)strlen(CORNERS) + 1);
+  ck_assert_ok(app_pairs_reader_open(&reader, "-", false));
+  setitimer(ITIMER_REAL, &often, NULL);
+  status = app_pairs_reader_next(&reader);
+  setitimer(ITIMER_REAL, &never, NULL);
+  ck_assert_int_eq(status, STATUS_INTERRUPTED);
+  app_pairs_reader_close(&reader);
 }
 END_TEST
 
@@ -466,6 +502,7 @@ int main(void) {
   tcase_add_test(cases, what_is_wrong_is_told_with_line_and_column);
   tcase_add_test(cases, npy_files_that_cannot_be_read_say_what_would_be_right);
   tcase_add_test(cases, npy_answers_are_records_behind_a_head_of_whole_lines_of_64_bytes);
+  tcase_add_test(cases, a_signal_ends_the_wait_for_standard_input);
   tcase_add_test(cases, wrong_labels_are_counted_named_and_replaced);
   tcase_add_test(cases, a_strict_import_of_wrong_labels_writes_nothing);
   tcase_add_test(cases, flat_pairs_are_left_out_and_told);

@@ -139,11 +139,16 @@ static Status run_opened(const Options *options, AppPairsReader *reader, const O
   return status;
 }
 
+static Status open_model(OverlapModel *model, const char *name) {
+  Status status = app_evaluation_model_open(model, name);
+  return status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "--model") : status;
+}
+
 static Status run(const Options *options) {
   AppPairsReader reader;
   OverlapModel model = {0};
   Status status = app_pairs_reader_open(&reader, options->file, false);
-  if (!status) status = app_evaluation_model_open(&model, options->model);
+  if (!status) status = open_model(&model, options->model);
   if (!status) status = run_opened(options, &reader, &model);
   if (model.ops) overlap_model_destroy(&model);
   app_pairs_reader_close(&reader);

@@ -11,6 +11,7 @@
 static const char byte_order_mark[] = "\xef\xbb\xbf";
 
 static Status fail_read(const AppPairsCsv *csv) {
+  if (errno == EINTR) return status_fail(STATUS_INTERRUPTED, "interrupted");
   return status_fail(STATUS_IO, "%s: cannot be read: %s", csv->name, strerror(errno));
 }
 

@@ -129,6 +129,7 @@ Status app_pairs_npy_read(AppPairsNpy *npy, double *row) {
   unsigned char bytes[8 * APP_PAIRS_MAX_COLUMNS];
   size_t size = (size_t)npy->row_size * (size_t)npy->number_size;
   if (fread(bytes, 1, size, npy->stream) != size) {
+    if (ferror(npy->stream) && errno == EINTR) return status_fail(STATUS_INTERRUPTED, "interrupted");
     if (ferror(npy->stream))
       return status_fail(STATUS_IO, "%s: cannot be read: %s", npy->name, strerror(errno));
     return status_fail(STATUS_INPUT, "%s: announces %lld rows and ends in row %lld; is it complete?",

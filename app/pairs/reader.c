@@ -18,11 +18,16 @@ static Status open_stream(AppPairsReader *reader, const char *path) {
 }
 
 // The first byte tells: no text begins with either magic's.
-static AppPairsFormat guess_format(FILE *stream) {
-  int first = getc(stream);
-  if (first != EOF) ungetc(first, stream);
-  if (first == (unsigned char)hdf5_magic[0]) return APP_PAIRS_DATASET;
-  return first == (unsigned char)app_pairs_npy_magic[0] ? APP_PAIRS_NPY : APP_PAIRS_CSV;
+static Status find_format(AppPairsReader *reader) {
+  int first = getc(reader->stream);
+  if (ferror(reader->stream) && errno == EINTR) return status_fail(STATUS_INTERRUPTED, "interrupted");
+  if (ferror(reader->stream))
+    return status_fail(STATUS_IO, "%s: cannot be read: %s", reader->name, strerror(errno));
+  if (first != EOF) ungetc(first, reader->stream);
+  reader->format = first == (unsigned char)hdf5_magic[0]            ? APP_PAIRS_DATASET
+                   : first == (unsigned char)app_pairs_npy_magic[0] ? APP_PAIRS_NPY
+                                                                    : APP_PAIRS_CSV;
+  return STATUS_OK;
 }
 
 static Status open_csv(AppPairsReader *reader, bool takes_labels) {
@@ -72,7 +77,7 @@ Status app_pairs_reader_open(AppPairsReader *reader, const char *path, bool take
   *reader = (AppPairsReader){0};
   TRY(open_stream(reader, path));
   TRY(make_block(&reader->block));
-  reader->format = guess_format(reader->stream);
+  TRY(find_format(reader));
   if (reader->format == APP_PAIRS_DATASET) return open_hdf5(reader, path);
   TRY(reader->format == APP_PAIRS_NPY ? open_npy(reader, takes_labels) : open_csv(reader, takes_labels));
   reader->has_status = reader->columns.status >= 0;
