@@ -36,7 +36,7 @@ add_custom_target(pages ALL DEPENDS ${pages}/man/man1/tetlap.1)
 install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_DATAROOTDIR})
 
 # The Python package.
-install(DIRECTORY python/tetlap DESTINATION lib/python3/dist-packages FILES_MATCHING PATTERN "*.py" PATTERN "py.typed")
+install(DIRECTORY python/tetlap DESTINATION lib/python3/dist-packages FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
 
 # For those that build against the library.
 file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
