@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""run.py TEST [MODULE …]: the tests of TEST.py, of the package on PYTHONPATH or installed. Exit status 77, skipped, if one of the modules is not installed."""
+"""run.py TEST [MODULE …]: the tests of TEST.py, of the package on PYTHONPATH or installed. Exit status 77, skipped, if one of the
+modules is not installed."""
 
 import importlib.util
 import sys

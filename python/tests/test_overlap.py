@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Overlap volumes of arrays of pairs and of meshes."""
 
+import dataclasses
 import os
 import re
 import subprocess
@@ -194,7 +195,12 @@ class WhatIsWrongWithPairs(unittest.TestCase):
     def test_an_earlier_result_of_another_kind(self):
         earlier = tetlap.overlap(shifted(0.5))
         self.refused(TypeError, "out is a ndarray; expected what an earlier", shifted(0), out=earlier.volume)
-        self.refused(ValueError, r"out is for pairs of shape \(\); expected \(1,\)", shifted(0)[None], out=earlier)
+        self.refused(ValueError, r"out.volume is float64 of shape \(\); expected float64 of shape \(1,\)", shifted(0)[None], out=earlier)
+        narrow = dataclasses.replace(earlier, gradient=earlier.gradient.astype(np.float32))
+        self.refused(ValueError, "out.gradient is float32", shifted(0), out=narrow)
+        turned = dataclasses.replace(earlier, gradient=np.zeros((3, 4, 2)).T)
+        self.refused(ValueError, "out.gradient .* contiguous and writeable", shifted(0), out=turned)
+        self.refused(ValueError, "out.gradient lies where x or vector does", earlier.gradient, out=earlier)
         self.refused(ValueError, "out has no hessian; expected the result", shifted(0), order=2, out=earlier)
         self.refused(ValueError, "out has a gradient; expected the result", shifted(0), order=0, out=earlier)
 

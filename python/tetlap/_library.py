@@ -51,7 +51,6 @@ class List(ctypes.Structure):
 
 _FUNCTIONS = {
     "message": (c_char_p, []),
-    "version": (c_char_p, []),
     "model": (c_char_p, [c_int]),
     "open_with": (c_int, [POINTER(c_void_p), POINTER(Options)]),
     "close": (None, [c_void_p]),
@@ -158,8 +157,3 @@ def models():
         names.append(name.decode())
         name = _function("model")(len(names))
     return [Model(name) for name in names]
-
-
-def version():
-    """Of the library."""
-    return _function("version")().decode()

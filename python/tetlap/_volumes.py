@@ -52,7 +52,7 @@ def _model_of_name(name, threads):
 def _model(model, threads):
     if isinstance(model, _library.Model):
         if threads:
-            raise ValueError(f"threads is {threads} beside a tetlap.Model, which has its own; expected tetlap.Model(…, threads={threads})")
+            raise ValueError(f"threads is {threads} beside a tetlap.Model; expected tetlap.Model(…, threads={threads})")
         return model
     return _model_of_name(os.fspath(model), threads)
 
@@ -82,29 +82,36 @@ def _pairs(x, name="x"):
     return x
 
 
-def _outputs(lead, order, has_product, centroid):
-    """Arrays for what is asked of pairs of this leading shape."""
-    return Overlap(
-        volume=np.empty(lead),
-        flags=np.empty(lead, np.uint32),
-        gradient=np.empty(lead + (2, 4, 3)) if order >= 1 else None,
-        hessian=np.empty(lead + (24, 24)) if order == 2 else None,
-        product=np.empty(lead + (2, 4, 3)) if has_product else None,
-        centroid=np.empty(lead + (3,)) if centroid else None,
-    )
+def _outputs(lead, order, has_product, has_centroid):
+    """Shape and dtype of each array of the answer for pairs of this leading shape."""
+    shapes = {"volume": (lead, np.float64), "flags": (lead, np.uint32)}
+    if order >= 1:
+        shapes["gradient"] = (lead + (2, 4, 3), np.float64)
+    if order == 2:
+        shapes["hessian"] = (lead + (24, 24), np.float64)
+    if has_product:
+        shapes["product"] = (lead + (2, 4, 3), np.float64)
+    if has_centroid:
+        shapes["centroid"] = (lead + (3,), np.float64)
+    return shapes
 
 
-def _check_out(out, lead, order, has_product, centroid):
-    """An earlier result that has just what is asked, of as many pairs."""
+def _check_out(out, outputs, *inputs):
+    """That C may write into these arrays."""
     if not isinstance(out, Overlap):
         raise TypeError(f"out is a {type(out).__name__}; expected what an earlier tetlap.overlap returned")
-    if out.volume.shape != lead:
-        raise ValueError(f"out is for pairs of shape {out.volume.shape}; expected {lead}")
-    asked = {"gradient": order >= 1, "hessian": order == 2, "product": has_product, "centroid": centroid}
-    for name, is_asked in asked.items():
-        if (getattr(out, name) is not None) != bool(is_asked):
-            raise ValueError(f"out has {'no' if is_asked else 'a'} {name}; expected the result of a call that asked the same")
-    return out
+    for name in Overlap.__dataclass_fields__:
+        array = getattr(out, name)
+        if (array is not None) != (name in outputs):
+            raise ValueError(f"out has {'no' if array is None else 'a'} {name}; expected the result of a call that asked the same")
+        if array is None:
+            continue
+        shape, dtype = outputs[name]
+        if array.shape != shape or array.dtype != dtype or not (array.flags.c_contiguous and array.flags.writeable):
+            raise ValueError(f"out.{name} is {array.dtype} of shape {array.shape}; expected {np.dtype(dtype)} of shape {shape}, "
+                             "contiguous and writeable")
+        if any(given is not None and np.may_share_memory(array, given) for given in inputs):
+            raise ValueError(f"out.{name} lies where x or vector does; expected other memory")
 
 
 def overlap(x, model="clip", order=1, *, vector=None, centroid=False, threads=0, out=None):
@@ -129,10 +136,13 @@ def overlap(x, model="clip", order=1, *, vector=None, centroid=False, threads=0,
         if vector.shape != x.shape:
             raise ValueError(f"vector has shape {vector.shape}; expected that of x, {x.shape}")
     model = _check_model(_model(model, threads), order == 2 or vector is not None, centroid)
-    asked = (x.shape[:-3], order, vector is not None, centroid)
-    result = _outputs(*asked) if out is None else _check_out(out, *asked)
-    model.evaluate(x, vector, result)
-    return result
+    outputs = _outputs(x.shape[:-3], order, vector is not None, centroid)
+    if out is None:
+        out = Overlap(**{name: np.empty(*shape_and_dtype) for name, shape_and_dtype in outputs.items()})
+    else:
+        _check_out(out, outputs, x, vector)
+    model.evaluate(x, vector, out)
+    return out
 
 
 class MeshPairs(NamedTuple):
