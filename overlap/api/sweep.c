@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 
@@ -199,10 +200,28 @@ static Status walk_column(const Walk *walk, size_t column) {
   return STATUS_OK;
 }
 
-static int by_numbers(const void *a, const void *b) {
-  const OverlapApiCandidate *x = a, *y = b;
-  if (x->first != y->first) return x->first < y->first ? -1 : 1;
-  return (x->second > y->second) - (x->second < y->second);
+// Copies candidates in the order of one of their numbers, which is below `most`; equal ones stay as they
+// stand. `begin` (most + 1) is scratch.
+static void order_by(const OverlapApiCandidate *from, size_t count, bool by_second, int most, size_t *begin,
+                     OverlapApiCandidate *to) {
+  memset(begin, 0, ((size_t)most + 1) * sizeof *begin);
+  for (size_t k = 0; k < count; k++) begin[(by_second ? from[k].second : from[k].first) + 1]++;
+  for (int n = 0; n < most; n++) begin[n + 1] += begin[n];
+  for (size_t k = 0; k < count; k++) to[begin[by_second ? from[k].second : from[k].first]++] = from[k];
+}
+
+static Status sort_candidates(OverlapApiCandidates *candidates, const Entries sets[2]) {
+  int counts[2] = {sets[0].box_count, sets[1].box_count}, most = counts[counts[1] > counts[0]];
+  OverlapApiCandidate *other = memory_zeroed(candidates->count, sizeof *other);
+  size_t *begin = memory_zeroed((size_t)most + 1, sizeof *begin);
+  if (other && begin) {
+    order_by(candidates->at, candidates->count, true, counts[1], begin, other);
+    order_by(other, candidates->count, false, counts[0], begin, candidates->at);
+  }
+  Status status = other && begin ? STATUS_OK : status_no_memory("the list of candidate pairs");
+  memory_free(other);
+  memory_free(begin);
+  return status;
 }
 
 static Status walk_all(const Columns *columns, const Entries sets[2], OverlapApiCandidates *candidates) {
@@ -211,8 +230,7 @@ static Status walk_all(const Columns *columns, const Entries sets[2], OverlapApi
       Walk walk = {columns, sets, {y, z}, candidates};
       TRY(walk_column(&walk, (size_t)y * (size_t)columns->count[1] + (size_t)z));
     }
-  qsort(candidates->at, candidates->count, sizeof *candidates->at, by_numbers);
-  return STATUS_OK;
+  return sort_candidates(candidates, sets);
 }
 
 // Entries that a box may have on average, before columns are made wider.

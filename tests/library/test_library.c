@@ -352,6 +352,50 @@ START_TEST(meshes_that_are_wrong_or_empty) {
 }
 END_TEST
 
+// ---- Memory.
+
+// The allocations of the library go through here, as it calls those of the program.
+static long fail_at;
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *memory, size_t size);
+void *calloc(size_t count, size_t size);
+void *realloc(void *memory, size_t size);
+
+static bool strikes(void) {
+  return fail_at > 0 && --fail_at == 0;
+}
+
+void *calloc(size_t count, size_t size) {
+  return strikes() ? NULL : __libc_calloc(count, size);
+}
+
+void *realloc(void *memory, size_t size) {
+  return strikes() ? NULL : __libc_realloc(memory, size);
+}
+
+START_TEST(each_allocation_that_fails_is_told) {
+  Grid grids[2] = {make_grid(2, 1, 0, 0), make_grid(2, 1.1, 0.3, 0.4)};
+  TetlapOverlapMesh a = mesh_of(&grids[0]), b = mesh_of(&grids[1]);
+  long failed = 0;
+  for (bool is_done = false; !is_done; failed++) {
+    TetlapOverlap *overlap = NULL;
+    TetlapOverlapList *list = NULL;
+    fail_at = failed + 1;
+    int status = tetlap_overlap_open(&overlap, "clip");
+    if (status == TETLAP_OVERLAP_OK)
+      status =
+          tetlap_overlap_meshes(overlap, &a, &b, TETLAP_OVERLAP_GRADIENT | TETLAP_OVERLAP_CENTROID, &list);
+    is_done = fail_at > 0;
+    fail_at = 0;
+    ck_assert_int_eq(status, is_done ? TETLAP_OVERLAP_OK : TETLAP_OVERLAP_MEMORY);
+    ck_assert_int_eq(list != NULL, is_done);
+    tetlap_overlap_list_free(list), tetlap_overlap_close(overlap);
+  }
+  ck_assert_int_ge(failed, 15);
+  destroy_grid(&grids[0]), destroy_grid(&grids[1]);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("library");
   tcase_add_test(cases, a_pair_has_volume_gradient_hessian_and_centroid);
@@ -363,5 +407,6 @@ int main(void) {
   tcase_add_loop_test(cases, two_meshes_overlap_where_their_tetrahedra_do, 0, 3);
   tcase_add_test(cases, a_covered_mesh_is_covered_once);
   tcase_add_test(cases, meshes_that_are_wrong_or_empty);
+  tcase_add_test(cases, each_allocation_that_fails_is_told);
   return suite_run("library", cases, 60);
 }
