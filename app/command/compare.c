@@ -2,6 +2,7 @@
 #include "app/command/compare.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -21,9 +22,10 @@ typedef struct CompareOptions {
   int overlap_count, audited_count;
   const char *reference;
   int audit_every;
+  double wall_s; // a run that takes longer is cut short; 0: none is
 } CompareOptions;
 
-enum { KEY_REFERENCE = 256, KEY_AUDIT, KEY_AUDIT_ONLY };
+enum { KEY_REFERENCE = 256, KEY_AUDIT, KEY_AUDIT_ONLY, KEY_WALL };
 
 static const struct argp_option option_table[] = {
     {"overlap", 'm', "NAME,…", 0, "The overlap models to compare", 1},
@@ -33,6 +35,7 @@ static const struct argp_option option_table[] = {
      "Evaluate all models in every K-th step in contact of the reference (default 10; 0: never)", 1},
     {"audit-only", KEY_AUDIT_ONLY, "NAME,…", 0,
      "Models that take part in the audit but get no run of their own", 1},
+    {"wall", KEY_WALL, "SECONDS", 0, "Cut a model's run short that takes longer (default: none is)", 1},
     {0},
 };
 
@@ -48,6 +51,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     break;
   case KEY_REFERENCE:
     options->reference = text;
+    break;
+  case KEY_WALL:
+    options->wall_s = app_argument_number(state, "wall", text, 1e-3, 1e7);
     break;
   case KEY_AUDIT_ONLY:
     options->audited_count =
@@ -107,11 +113,39 @@ typedef struct Observer {
   AppProgress progress;
   AppComparison *comparison; // NULL: no audit in this run
   long long step_in_contact;
+  const char *name;      // of the model
+  double began_s;        // of its run
+  double wall_s;         // its limit; 0: none
+  double tell_again_s;   // how long the run may last before its estimate is told anew; INFINITY: never
+  bool is_cut;           // by the limit
+  double mark_s, mark_t; // where the last estimate was taken
 } Observer;
+
+// What is left at the pace since the last estimate; told when the run has lasted twice as long as was said,
+// then twice as long again.
+static void tell_estimate(Observer *observer, const FemRunProgress *progress) {
+  double now = clock_wall_s() - observer->began_s;
+  if (now < observer->tell_again_s) return;
+  double pace = (progress->time - observer->mark_t) / (now - observer->mark_s);
+  double left = (progress->end - progress->time) / pace;
+  log_info("%s: %.0f s so far, t = %.4g of %.4g s; about %.3g %s more at this pace", observer->name, now,
+           progress->time, progress->end, left < 120 ? left : left / 60, left < 120 ? "s" : "minutes");
+  observer->tell_again_s = 2 * now;
+  observer->mark_s = now, observer->mark_t = progress->time;
+}
+
+static Status check_wall(Observer *observer, const FemRunProgress *progress) {
+  if (!(observer->wall_s > 0) || clock_wall_s() - observer->began_s <= observer->wall_s) return STATUS_OK;
+  observer->is_cut = true;
+  return status_fail(STATUS_INTERRUPTED, "cut short by --wall: t = %g s of %g s was reached in %g s",
+                     progress->time, progress->end, observer->wall_s);
+}
 
 static Status observe(void *self, const FemRunProgress *progress) {
   Observer *observer = self;
   app_job_show_progress(&observer->progress, progress);
+  tell_estimate(observer, progress);
+  TRY(check_wall(observer, progress));
   return observer->comparison
              ? app_comparison_audit(observer->comparison, progress, &observer->step_in_contact)
              : STATUS_OK;
@@ -123,9 +157,12 @@ static const char *folder_of(const char *name) {
   return slash ? slash + 1 : name;
 }
 
-// A run of one model. What stops the whole comparison is returned; a solver that gave up is kept as this
-// model's result.
-static Status run_model(AppComparison *comparison, int m, const CompareOptions *options) {
+// Estimates of runs shorter than this are not mended.
+static const double SHORT_RUN_S = 5;
+
+// A run of one model, expected to take so long (0: unknown). What stops the whole comparison is returned; a
+// solver that gave up is kept as this model's result.
+static Status run_model(AppComparison *comparison, int m, const CompareOptions *options, double expected_s) {
   AppComparisonModel *model = &comparison->models[m];
   AppJob job;
   TRY(app_job_open(&job, &options->job, model->name, folder_of(model->name)));
@@ -136,10 +173,15 @@ static Status run_model(AppComparison *comparison, int m, const CompareOptions *
                        options->job.scene_path);
   }
   comparison->length = job.model.length;
+  comparison->end = job.scene.end;
   char label[64];
   snprintf(label, sizeof label, "%s ", model->name);
   Observer observer = {.progress = {.began_s = clock_wall_s(), .label = label},
-                       .comparison = m == comparison->reference ? comparison : NULL};
+                       .comparison = m == comparison->reference ? comparison : NULL,
+                       .name = model->name,
+                       .began_s = clock_wall_s(),
+                       .wall_s = options->wall_s,
+                       .tell_again_s = expected_s > 0 ? 2 * fmax(expected_s, SHORT_RUN_S) : INFINITY};
   FemRunOptions run_options = {.directory = job.directory,
                                .stop = app_job_stop_flag(),
                                .observe = observe,
@@ -151,7 +193,7 @@ static Status run_model(AppComparison *comparison, int m, const CompareOptions *
   if (model->status) snprintf(model->message, sizeof model->message, "%s", status_message());
   Status status = app_job_write_summary(&job, &model->result, model->status);
   app_job_close(&job);
-  if (model->status == STATUS_SOLVER) {
+  if (model->status == STATUS_SOLVER || observer.is_cut) {
     log_warning("%s: %s", model->name, model->message);
     return status;
   }
@@ -171,18 +213,21 @@ static int cheapest_waiting(const AppComparison *comparison) {
   return best;
 }
 
-// What the first run took tells what the others will: all but the overlap costs the same, and the overlap the
-// model's cost of a pair for each pair that was asked for.
-static void announce_times(const AppComparison *comparison, int first) {
+// What the first run took tells what another will: all but the overlap costs the same, and the overlap the
+// model's cost of a pair for each pair that was asked for. Nothing is known after a run that failed: 0.
+static double expect_time(const AppComparison *comparison, int first, int m) {
   const FemRunResult *pilot = &comparison->models[first].result;
-  for (int m = 0; m < comparison->model_count; m++) {
-    const AppComparisonModel *model = &comparison->models[m];
-    if (!model->is_driven || model->has_run) continue;
-    double overlap = (double)pilot->pairs.tried * model->overlap.ops->seconds_per_pair / cpu_thread_count();
-    double seconds = pilot->wall_s - pilot->phases.overlap + overlap;
-    log_info("%s will take about %.3g %s", model->name, seconds < 120 ? seconds : seconds / 60,
-             seconds < 120 ? "s" : "minutes");
-  }
+  if (m == first || comparison->models[first].status) return 0;
+  double cost = comparison->models[m].overlap.ops->seconds_per_pair;
+  double overlap = (double)pilot->pairs.tried * cost / cpu_thread_count();
+  return pilot->wall_s - pilot->phases.overlap + overlap;
+}
+
+static void announce_time(const AppComparison *comparison, int m, double seconds) {
+  if (!(seconds > 0)) return;
+  log_info("%s: about %.3g %s, if it takes as many steps; told again where it does not",
+           comparison->models[m].name, seconds < 120 ? seconds : seconds / 60,
+           seconds < 120 ? "s" : "minutes");
 }
 
 static Status write_csv(const AppComparison *comparison, const char *path) {
@@ -227,8 +272,9 @@ static Status compare(AppComparison *comparison, const CompareOptions *options) 
   int first = cheapest_waiting(comparison);
   log_info("%s runs first: its time tells how long the others will take", comparison->models[first].name);
   for (int m = first; m >= 0; m = cheapest_waiting(comparison)) {
-    TRY(run_model(comparison, m, options));
-    if (m == first) announce_times(comparison, first);
+    double expected_s = expect_time(comparison, first, m);
+    announce_time(comparison, m, expected_s);
+    TRY(run_model(comparison, m, options, expected_s));
   }
   TRY(write_results(comparison, options));
   for (int m = 0; m < comparison->model_count; m++)

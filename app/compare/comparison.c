@@ -6,7 +6,7 @@
 #include "base/vec3.h"
 #include "fem/effect/contact.h"
 
-static int common_frames(const FemRunResult *a, const FemRunResult *b) {
+int app_comparison_common_frames(const FemRunResult *a, const FemRunResult *b) {
   return a->frame_count < b->frame_count ? a->frame_count : b->frame_count;
 }
 
@@ -14,7 +14,7 @@ static int common_frames(const FemRunResult *a, const FemRunResult *b) {
 static AppForceError force_error(const FemRunResult *result, const FemRunResult *reference, int first,
                                  int last) {
   double difference = 0, size = 0, largest_difference = 0, largest = 0;
-  for (int f = 0; f < common_frames(result, reference); f++)
+  for (int f = 0; f < app_comparison_common_frames(result, reference); f++)
     for (int i = first; i < last; i++) {
       size_t at = 3 * ((size_t)f * (size_t)reference->interface_count + (size_t)i);
       Vec3 force = vec3_at(reference->interface_forces + at);
@@ -24,9 +24,8 @@ static AppForceError force_error(const FemRunResult *result, const FemRunResult 
       largest_difference = fmax(largest_difference, vec3_length(change));
       largest = fmax(largest, vec3_length(force));
     }
-  AppForceError error = {0, 0};
-  if (difference > 0) error = (AppForceError){sqrt(difference / size), largest_difference / largest};
-  return error;
+  if (!(size > 0)) return (AppForceError){NAN, NAN};
+  return (AppForceError){sqrt(difference / size), largest_difference / largest};
 }
 
 AppForceError app_comparison_force_error(const FemRunResult *result, const FemRunResult *reference) {
@@ -39,14 +38,14 @@ AppForceError app_comparison_interface_error(const FemRunResult *result, const F
 }
 
 double app_comparison_trajectory_error(const FemRunResult *result, const FemRunResult *reference) {
-  int frames = common_frames(result, reference);
+  int frames = app_comparison_common_frames(result, reference);
   size_t count = (size_t)frames * (size_t)reference->vertex_count;
   double sum = 0;
   for (size_t i = 0; i < 3 * count; i++) {
     double change = result->trajectory[i] - reference->trajectory[i];
     sum += change * change;
   }
-  return count > 0 ? sqrt(sum / (double)count) : 0;
+  return count > 0 ? sqrt(sum / (double)count) : NAN;
 }
 
 static void add_audit(AppAuditSums *sums, const ContactAudit *audit) {
@@ -82,6 +81,8 @@ static const char *const audit_words[APP_AUDIT_KIND_COUNT] = {"volume", "gradien
 typedef struct Row {
   const char *model, *reference, *outcome;
   double audit[APP_AUDIT_KIND_COUNT], audit_max[APP_AUDIT_KIND_COUNT]; // mean, largest
+  int frames;                                                          // that both have reached; −1: no run
+  double share;                                                        // of the scene's time that was reached
   AppForceError force;
   double trajectory; // relative to the scene's length
   double energy_gain, wall_s, overlap_s;
@@ -94,9 +95,12 @@ static Row row_of(const AppComparison *comparison, int m) {
   bool is_reference = m == comparison->reference;
   Row row = {.model = model->name,
              .reference = reference->name,
-             .outcome = !model->is_driven ? "audit only"
-                        : model->status   ? "failed"
-                                          : "finished",
+             .outcome = !model->is_driven                     ? "audit only"
+                        : model->status == STATUS_INTERRUPTED ? "cut short"
+                        : model->status                       ? "failed"
+                                                              : "finished",
+             .frames = -1,
+             .share = NAN,
              .force = {NAN, NAN},
              .trajectory = NAN,
              .energy_gain = NAN,
@@ -107,6 +111,8 @@ static Row row_of(const AppComparison *comparison, int m) {
     row.audit_max[k] = audits ? model->audit.max[k] : is_reference ? 0 : NAN;
   }
   if (!model->has_run) return row;
+  row.frames = app_comparison_common_frames(&model->result, &reference->result);
+  row.share = model->result.end_time / comparison->end;
   row.force = app_comparison_force_error(&model->result, &reference->result);
   row.trajectory = app_comparison_trajectory_error(&model->result, &reference->result) / comparison->length;
   row.energy_gain = model->result.audit.gain / model->result.audit.scale;
@@ -146,6 +152,8 @@ void app_comparison_record(const AppComparison *comparison, const char *scene_pa
       snprintf(key, sizeof key, "audit_%s_error_max", audit_words[k]);
       record_number(record, key, row.audit_max[k]);
     }
+    if (model->has_run) record_integer(record, "frames_compared", row.frames);
+    record_number(record, "share_reached", row.share);
     record_number(record, "force_error_l2", row.force.l2);
     record_number(record, "force_error_max", row.force.max);
     record_number(record, "trajectory_error", row.trajectory);
@@ -162,14 +170,17 @@ void app_comparison_print_csv(const AppComparison *comparison, FILE *stream) {
   fputs("model,reference,outcome,audits", stream);
   for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++)
     fprintf(stream, ",audit_%s_error,audit_%s_error_max", audit_words[k], audit_words[k]);
-  fputs(",force_error_l2,force_error_max,trajectory_error,energy_gain_relative,wall_s,overlap_s\n", stream);
+  fputs(",frames_compared,share_reached,force_error_l2,force_error_max,trajectory_error,energy_gain_relative,"
+        "wall_s,"
+        "overlap_s\n",
+        stream);
   for (int m = 0; m < comparison->model_count; m++) {
     Row row = row_of(comparison, m);
     fprintf(stream, "%s,%s,%s,%d", row.model, row.reference, row.outcome, comparison->models[m].audit.count);
     for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++)
       fprintf(stream, ",%.9g,%.9g", row.audit[k], row.audit_max[k]);
-    fprintf(stream, ",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", row.force.l2, row.force.max, row.trajectory,
-            row.energy_gain, row.wall_s, row.overlap_s);
+    fprintf(stream, ",%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", row.frames, row.share, row.force.l2,
+            row.force.max, row.trajectory, row.energy_gain, row.wall_s, row.overlap_s);
   }
 }
 
@@ -182,22 +193,25 @@ static void print_figure(FILE *stream, const char *format, double value) {
 
 void app_comparison_print_table(const AppComparison *comparison, FILE *stream) {
   fprintf(stream, "reference: %s\n", comparison->models[comparison->reference].name);
-  fprintf(stream, "%-12s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "", "audit", "audit",
-          "audit", "audit", "force", "force", "path", "energy", "wall", "overlap", "");
+  fprintf(stream, "%-12s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "", "audit", "audit",
+          "audit", "audit", "frames", "force", "force", "path", "energy", "wall", "overlap", "");
   // Δ and ∇ have two and three bytes.
-  fprintf(stream, "%-12s  %9s  %11s  %9s  %9s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "model", "ΔV", "Δ∇V",
-          "Δf", "ΔF", "L2", "max", "RMS/L", "gain", "s", "s", "");
+  fprintf(stream, "%-12s  %9s  %11s  %9s  %9s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "model", "ΔV", "Δ∇V",
+          "Δf", "ΔF", "shared", "L2", "max", "RMS/L", "gain", "s", "s", "");
   for (int m = 0; m < comparison->model_count; m++) {
     Row row = row_of(comparison, m);
     fprintf(stream, "%-12s", row.model);
     for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) print_figure(stream, "%.1e", row.audit[k]);
+    print_figure(stream, "%.0f", row.frames < 0 ? NAN : (double)row.frames);
     print_figure(stream, "%.1e", row.force.l2);
     print_figure(stream, "%.1e", row.force.max);
     print_figure(stream, "%.1e", row.trajectory);
     print_figure(stream, "%.1e", row.energy_gain);
     print_figure(stream, "%.2f", row.wall_s);
     print_figure(stream, "%.2f", row.overlap_s);
-    fprintf(stream, "  %s\n", row.outcome);
+    fprintf(stream, "  %s", row.outcome);
+    if (row.share < 1) fprintf(stream, " at %.3g %% of the time", 100 * row.share);
+    fputc('\n', stream);
   }
 }
 

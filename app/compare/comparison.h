@@ -41,9 +41,14 @@ typedef struct AppComparison {
   int reference;   // its index; it is driven
   int audit_every; // every k-th accepted step in contact; 0: never
   double length;   // the scene's, for relative trajectories [m]
+  double end;      // of the scene [s]
 } AppComparison;
 
-// ‖f − f_ref‖₂ / ‖f_ref‖₂ over frames and interfaces, and the largest difference over the largest force.
+// Frames that both have reached: errors are over these.
+int app_comparison_common_frames(const FemRunResult *a, const FemRunResult *b);
+
+// ‖f − f_ref‖₂ / ‖f_ref‖₂ over frames and interfaces, and the largest difference over the largest force. NaN
+// where the reference has no force in these frames.
 typedef struct AppForceError {
   double l2, max;
 } AppForceError;
@@ -52,7 +57,7 @@ AppForceError app_comparison_force_error(const FemRunResult *result, const FemRu
 AppForceError app_comparison_interface_error(const FemRunResult *result, const FemRunResult *reference,
                                              int interface);
 
-// Root mean square over frames and vertices of |x − x_ref| [m].
+// Root mean square over frames and vertices of |x − x_ref| [m]; NaN: no frames.
 double app_comparison_trajectory_error(const FemRunResult *result, const FemRunResult *reference);
 
 // An observer's part: every audit_every-th step with overlap, all models against the reference in this
