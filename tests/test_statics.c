@@ -249,6 +249,42 @@ START_TEST(what_only_a_motion_has_is_refused_with_its_place) {
 }
 END_TEST
 
+// A column of one quadratic element's width is pressed to `share` of its height between rollers.
+static void press(SceneRun *run, const char *law, double share) {
+  char text[1024];
+  snprintf(text, sizeof text,
+           "time: {end: 1, static: true}\n"
+           "bodies:\n"
+           "  - name: column\n"
+           "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 2}}\n"
+           "    element: quadratic\n"
+           "    material: {law: %s, young: 1e6, poisson: 0.3, density: 1000}\n"
+           "    fixed: [{group: x_min, components: [x]}, {group: y_min, components: [y]},\n"
+           "            {group: z_min, components: [z]}]\n"
+           "    driven: [{group: z_max, components: [z], formula: {z: '%g*t'}}]\n"
+           "output: {frames: 4}\n",
+           law, -0.1 * (1 - share));
+  run_text(run, text);
+}
+
+// Uniaxial compression to 40 %: beyond where stvk bears most, its equilibria are inside out.
+START_TEST(an_equilibrium_that_is_inside_out_is_none) {
+  SceneRun run;
+  press(&run, "stvk", 0.4);
+  if (run.status == STATUS_OK) ck_assert_double_gt(run.result.min_det_F, 0);
+  if (run.status != STATUS_OK) {
+    ck_assert_int_eq(run.status, STATUS_SOLVER);
+    ck_assert_msg(strstr(status_message(), "0.58 of a length") != NULL, "%s", status_message());
+    ck_assert_msg(strstr(status_message(), "'column'") != NULL, "%s", status_message());
+  }
+  scene_close(&run);
+  press(&run, "neo_hookean_log", 0.4);
+  ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
+  ck_assert_double_gt(run.result.min_det_F, 0);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("statics");
   tcase_add_test(test_case, a_static_scene_has_half_the_unknowns);
@@ -260,6 +296,7 @@ int main(void) {
   tcase_add_test(test_case, a_beam_that_turns_far_takes_few_iterations);
   tcase_add_test(test_case, a_pressure_vessel_widens_as_lame_says);
   tcase_add_test(test_case, without_an_equilibrium_the_run_ends_and_says_why);
+  tcase_add_test(test_case, an_equilibrium_that_is_inside_out_is_none);
   tcase_add_test(test_case, what_only_a_motion_has_is_refused_with_its_place);
   return suite_run("statics", test_case, 60);
 }

@@ -46,6 +46,8 @@
 // The name a scene uses: linear, corotational, stvk, neo_hookean; and one line of help.
 const char *fem_material_name(FemMaterialLaw law);
 const char *fem_material_help(FemMaterialLaw law);
+// Why an element of this law may be turned inside out by a load, and what to do; for messages.
+const char *fem_material_limit(FemMaterialLaw law);
 
 double fem_material_energy(const FemMaterial *material, const double F[9]);               // Ψ [J/m³]
 void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]);    // [Pa]

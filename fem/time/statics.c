@@ -22,6 +22,8 @@ static const double HAND_OVER = 1e-3;
 // By this the shift falls while the force stays: large elements are heavy beside soft, and a shift that only
 // follows the force waits for them forever.
 static const double SHIFT_FALL = 0.5;
+// Where no equilibrium is found and an element has less than this of its volume, the law may be the reason.
+static const double SQUEEZED = 0.3, SQUEEZED_STVK = 0.8;
 enum { MAX_RELAXATIONS = 400, MAX_REFUSALS = 40, WORST_COUNT = 3 };
 
 static Status check_scene(const FemSceneDef *scene) {
@@ -182,6 +184,9 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
     if (J < smallest) smallest = J, flattest = e;
   }
   text_append(text, sizeof text, &used, "; element %d has the smallest det F, %.3g", flattest, smallest);
+  FemMaterialLaw law = model->bodies[model->tet_body[flattest]].material.law;
+  if (smallest < (law == FEM_MATERIAL_STVK ? SQUEEZED_STVK : SQUEEZED))
+    text_append(text, sizeof text, &used, ": %s", fem_material_limit(law));
   return status_fail(STATUS_RETRY, "%s", text);
 }
 
@@ -200,6 +205,25 @@ static void keep_work(FemStatics *statics) {
   memcpy(statics->kept_position, system->positions, bytes);
 }
 
+// A state that turns an element inside out is no equilibrium of a body. The linear law knows no deformed
+// state.
+static Status check_orientation(const FemStatics *statics, double time) {
+  const FemSystem *system = statics->equilibrium.system;
+  const FemModel *model = system->model;
+  for (int e = 0; e < model->tet_count; e++) {
+    const FemModelBody *body = &model->bodies[model->tet_body[e]];
+    if (body->is_obstacle || body->material.law == FEM_MATERIAL_LINEAR) continue;
+    double J = fem_model_det(model, e, system->positions);
+    if (J > 0) continue;
+    const double *x = system->positions + 3 * (size_t)model->tets[e][0];
+    return status_fail(STATUS_RETRY,
+                       "no equilibrium at t = %.9g: forces balance only with element %d of body '%s' turned "
+                       "inside out, det F = %.3g, at (%.4g, %.4g, %.4g): %s",
+                       time, e, body->name, J, x[0], x[1], x[2], fem_material_limit(body->material.law));
+  }
+  return STATUS_OK;
+}
+
 static Status find_equilibrium(FemStatics *statics, double time, double *u) {
   FemEquilibrium *equilibrium = &statics->equilibrium;
   size_t bytes = (size_t)equilibrium->system->model->unknown_count * sizeof *u;
@@ -212,7 +236,7 @@ static Status find_equilibrium(FemStatics *statics, double time, double *u) {
     if (status == STATUS_RETRY) status = say_why(statics, time, u);
   }
   if (!status) status = evaluate(statics, time, u);
-  return status;
+  return status ? status : check_orientation(statics, time);
 }
 
 Status fem_statics_continue(FemStatics *statics, double time, const double *u, double force_scale,
