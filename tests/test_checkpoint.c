@@ -46,7 +46,7 @@ static FemCheckpoint example(void) {
   checkpoint.next_frame = 3;
   checkpoint.audit = (FemAudit){.time = 0.1, .damped = 1, .dissipated = 2, .driven_work = 3, .work = 4};
   checkpoint.audit.total = -0.0, checkpoint.audit.lowest = -7, checkpoint.audit.gain = 1e-300;
-  checkpoint.audit.driven_power = 11;
+  checkpoint.audit.driven_power = 11, checkpoint.audit.first = 12;
   checkpoint.so_far.min_det_F = INFINITY;
   checkpoint.so_far.integrator.steps = 1LL << 60;
   checkpoint.so_far.pairs.beyond = 5;
@@ -200,7 +200,7 @@ END_TEST
 START_TEST(a_right_head_does_not_make_a_checkpoint) {
   char file[560], digest[DIGEST_TEXT];
   static const char *const heads[] = {
-      "tetlap checkpoint 3\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
+      "tetlap checkpoint 4\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
       "tetlap checkpoint 2\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n"};
   static const char *const words[] = {"is damaged", "version 2"};
   for (int k = 0; k < 2; k++) {

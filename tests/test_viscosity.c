@@ -240,7 +240,7 @@ START_TEST(the_more_viscous_the_lower_it_bounces_and_the_audit_knows_why) {
       ck_assert_double_lt(height, last - 0.01);
       ck_assert_double_gt(lost, lost_last);
       // What it lacks in height was dissipated; the rest trembles in the block, or did so without viscosity.
-      ck_assert_double_le(lost, 1.01 * missing);
+      ck_assert_double_le(lost, 1.02 * missing); // and 1 % for the height between two frames
       ck_assert_double_ge(lost, missing - missing_without);
     }
     last = height, lost_last = lost;

@@ -248,6 +248,10 @@ static void record_job(const AppJob *job, const Notes *notes, Record *record) {
   record_integer(record, "tetrahedra", model->tet_count);
   record_integer(record, "unknowns", model->unknown_count);
   record_number(record, "end", scene->end);
+  record_bool(record, "is_static", scene->is_static);
+  record_number(record, "length_m", model->length);
+  record_number(record, "tolerance", scene->tolerance);
+  record_number(record, "velocity_tolerance_m_s", fem_model_velocity_tolerance(model));
   record_text(record, "solver", fem_solver_name(fem_run_solver(model)));
   record_integer(record, "threads", cpu_thread_count());
   record_number(record, "memory_bytes", fem_model_memory_estimate(model));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/run.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "app/cli/origin.h"
@@ -63,13 +64,22 @@ static void conclude_network(const ContactPairCounts *pairs) {
       share * (double)pairs->blended, pairs->beyond);
 }
 
+// What was lost, apart into what was asked for and the integrator's own.
+static void conclude_energy(const FemAudit *audit) {
+  double lost = fem_audit_lost(audit);
+  log_info("energy: the integrator itself %s %.3g J, %.2g %% of the scene's %.3g J, and never gained more "
+           "than %.1e of it; %.3g J went into damping, friction and plasticity as asked",
+           lost < 0 ? "gained" : "lost", fabs(lost), 100 * fabs(lost) / audit->scale, audit->scale,
+           audit->gain / audit->scale, audit->dissipated);
+}
+
 static void conclude(const AppJob *job, const FemRunResult *result) {
   log_info("t = %g s reached in %.2f s: %lld steps, %lld factorisations, up to %d overlapping pairs",
            result->end_time, result->wall_s, result->integrator.steps, result->solver.factorisations,
            result->pairs_max);
-  log_info("energy gain %.1e of the scene's energy, smallest det F %.3f, %lld onsets, %lld steps taken back",
-           result->audit.gain / result->audit.scale, result->min_det_F, result->integrator.roots,
-           result->energy_retries);
+  conclude_energy(&result->audit);
+  log_info("smallest det F %.3f, %lld onsets, %lld steps taken back", result->min_det_F,
+           result->integrator.roots, result->energy_retries);
   conclude_network(&result->pairs);
   char trouble[1024];
   fem_run_tell_trouble(result, &job->model, trouble, sizeof trouble);
@@ -113,7 +123,7 @@ static void warn(Observer *observer, const FemRunProgress *progress) {
     if (k == FEM_TROUBLE_ENERGY && trouble->of[k].events > observer->told.of[k].events)
       log_warning("t = %.6g s: the energy has risen by %.2g of the scene's, the bound is %g", progress->time,
                   (progress->audit->total - progress->audit->lowest) / progress->audit->scale,
-                  FEM_TROUBLE_ENERGY_BOUND);
+                  progress->energy_bound);
     else if (observer->told.of[k].events == 0) {
       fem_trouble_tell(trouble, progress->system->model, (FemTroubleKind)k, text, sizeof text);
       log_warning("%s", text);

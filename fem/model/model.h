@@ -91,8 +91,8 @@ const char *fem_model_body_name(const FemModel *model, int vertex);
 // over the smallest mean element volume, which gives a comparable pressure.
 double fem_model_contact_stiffness(const FemModel *model);
 
-// Error per step of a velocity [m/s]: the scene's, or its tolerance times the slowest body's wave speed
-// √(E/ρ), with friction by the law `velocity` at most 5 ε.
+// Error per step of a velocity [m/s]: the scene's, or its tolerance times 0.03 of the slowest body's wave speed
+// √(E/ρ), all of it where a body rubs on itself; with friction by the law `velocity` at most 5 ε.
 double fem_model_velocity_tolerance(const FemModel *model);
 
 // Every body's law is linear, without fibres.

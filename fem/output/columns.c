@@ -25,6 +25,9 @@ static double dissipated_J(const FemColumnSource *s) {
 static double total_J(const FemColumnSource *s) {
   return s->audit->total;
 }
+static double lost_J(const FemColumnSource *s) {
+  return fem_audit_lost(s->audit);
+}
 static double momentum_x(const FemColumnSource *s) {
   return s->measures->momentum[0];
 }
@@ -113,6 +116,7 @@ static const struct {
     {"work_J", work_J, .when = ALWAYS},
     {"dissipated_J", dissipated_J, .when = IF_DISSIPATIVE},
     {"total_J", total_J, .when = ALWAYS},
+    {"lost_J", lost_J, .when = ALWAYS},
     {"momentum_x", momentum_x, .when = ALWAYS},
     {"momentum_y", momentum_y, .when = ALWAYS},
     {"momentum_z", momentum_z, .when = ALWAYS},

@@ -23,13 +23,9 @@ typedef enum FemTroubleKind {
   // presses; a pull means that the nearest way out of the overlap leads deeper in, as in a body that was
   // pierced. Forces below a thousandth of the largest are not looked at.
   FEM_TROUBLE_WRONG_WAY,
-  FEM_TROUBLE_ENERGY, // the audited energy rose by more than FEM_TROUBLE_ENERGY_BOUND
+  FEM_TROUBLE_ENERGY, // the audited energy rose by more than a run may gain (fem/time/audit.h)
 } FemTroubleKind;
 enum { FEM_TROUBLE_KIND_COUNT = 4 };
-
-// A rise of the audited energy above an earlier value, as a share of the scene's energy, beyond which it is
-// an event.
-static const double FEM_TROUBLE_ENERGY_BOUND = 1e-3;
 
 // One state: how many elements or vertices, and the first of them; −1: none. Of energy: 1 or 0.
 typedef struct FemTroubleState {

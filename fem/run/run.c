@@ -15,10 +15,9 @@
 #include "fem/run/run_checkpoint.h"
 #include "fem/run/run_frames.h"
 
-// A step that lifts the audited energy by more than this share of the scene's energy above its lowest value,
-// and by more than the second in one go, is taken back and tried again with a smaller step; at most so many
-// times in a row.
-static const double ENERGY_RISE_ALLOWED = 3e-4, ENERGY_RISE_OF_STEP = 1e-5, RETRY_FACTOR = 0.2;
+// A step that gains energy (fem/time/audit.h) is taken back and tried again with a smaller step; at most so
+// many times in a row.
+static const double RETRY_FACTOR = 0.2;
 enum { RETRIES_IN_A_ROW = 8 };
 // A static run gives up where a step of load becomes shorter than this share of the time between two frames.
 static const double SHORTEST_LOAD_STEP = 1e-4;
@@ -36,13 +35,6 @@ FemSolverKind fem_run_solver(const FemModel *model) {
   return model->unknown_count > MOST_UNKNOWNS_TO_FACTORISE ? FEM_SOLVER_PCG : FEM_SOLVER_CHOLMOD;
 }
 
-static bool gains_energy(const FemAudit *before, const FemAudit *after) {
-  double rise = after->total - before->lowest;
-  bool is_held = rise <= ENERGY_RISE_ALLOWED * after->scale ||
-                 after->total - before->total <= ENERGY_RISE_OF_STEP * after->scale;
-  return !is_held;
-}
-
 // Back to the last accepted state with a smaller step.
 static Status take_back(FemRunState *run, const char *why) {
   log_debug("t = %.9g s: a step of %.3g s is taken back: %s", run->time,
@@ -56,14 +48,15 @@ static Status take_back(FemRunState *run, const char *why) {
 static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_begun) {
   FemTrouble *trouble = &run->result->trouble;
   double rise = (run->audit.total - run->audit.lowest) / run->audit.scale;
-  measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= FEM_TROUBLE_ENERGY_BOUND);
+  double bound = run->result->energy_bounds.run;
+  measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= bound);
   *has_begun = fem_trouble_add(trouble, run->time, &measures->trouble);
   if (!run->options->is_strict || !measures->trouble.count[FEM_TROUBLE_ENERGY]) return STATUS_OK;
   return status_fail(
       STATUS_SOLVER,
       "at t = %.9g s: the energy has risen by %.2g of the scene's, the bound is %g (--strict). Try "
       "a smaller time.tolerance or time.max_step, or a smaller contact.stiffness",
-      run->time, rise, FEM_TROUBLE_ENERGY_BOUND);
+      run->time, rise, bound);
 }
 
 static Status observe(FemRunState *run, FemMeasures *measures) {
@@ -82,6 +75,7 @@ static Status observe(FemRunState *run, FemMeasures *measures) {
                              .active_pairs = measures->active_pairs,
                              .measures = measures,
                              .audit = &run->audit,
+                             .energy_bound = run->result->energy_bounds.run,
                              .trouble = &run->result->trouble,
                              .has_trouble_begun = has_begun};
   return run->options->observe(run->options->observer, &progress);
@@ -180,7 +174,7 @@ static Status advance(FemRunState *run) {
   if (status == STATUS_RETRY && may_retry) return take_back(run, status_message());
   TRY(status);
   FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
-  if (gains_energy(&run->audit, &next) && may_retry) {
+  if (fem_audit_is_refused(&run->result->energy_bounds, &run->audit, &next) && may_retry) {
     run->result->energy_retries++;
     return take_back(run, "it gains energy");
   }
@@ -424,6 +418,7 @@ static Status begin_result(FemRunState *run) {
   result->trouble.worst_shape = now.worst_shape;
   result->solver_name = fem_solver_name(fem_run_solver(run->given));
   result->is_static = run->given->scene->is_static;
+  result->energy_bounds = fem_audit_bounds(run->given->scene->contact.is_on);
   return STATUS_OK;
 }
 

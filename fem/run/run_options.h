@@ -16,6 +16,7 @@ typedef struct FemRunProgress {
   int active_pairs;
   const FemMeasures *measures; // of this state; borrowed
   const FemAudit *audit;       // borrowed
+  double energy_bound;         // what the run may gain, as a share of the scene's energy
   const FemTrouble *trouble;   // so far; borrowed
   bool has_trouble_begun;      // in this step
 } FemRunProgress;
@@ -29,7 +30,7 @@ typedef struct FemRunOptions {
   const double *initial_displacement; // from rest [m], or NULL: none    (vertex_count, 3)
   const struct FemCheckpoint *from;   // go on from there; NULL: from the start; borrowed
   const char *origin;                 // JSON, kept in the checkpoints for whoever resumes; may be NULL
-  bool is_strict;       // an energy gain beyond FEM_TROUBLE_ENERGY_BOUND ends the run: STATUS_SOLVER
+  bool is_strict;       // an energy gain beyond the run's bound (fem/time/audit.h) ends it: STATUS_SOLVER
   bool keep_trajectory; // keep positions and interface forces of every frame in the result
 } FemRunOptions;
 

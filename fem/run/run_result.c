@@ -196,6 +196,9 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_number(summary, "contact_force_last", result->last_contact_force);
   record_number(summary, "energy_gain_relative", result->audit.gain / result->audit.scale);
   record_number(summary, "energy_scale", result->audit.scale);
+  record_number(summary, "energy_gain_allowed", result->energy_bounds.run);
+  record_number(summary, "energy_lost_J", fem_audit_lost(&result->audit));
+  record_number(summary, "energy_dissipated_J", result->audit.dissipated);
   record_number(summary, "min_det_F", result->min_det_F);
   fem_trouble_record(&result->trouble, record_child(summary, "trouble"));
   if (result->is_static) {

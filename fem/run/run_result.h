@@ -29,6 +29,7 @@ typedef struct FemRunResult {
   long long pattern_layouts; // how often the matrix pattern was laid out
   long long energy_retries;  // steps taken back because they gained energy
   FemAudit audit;
+  FemAuditBounds energy_bounds;
   FemTrouble trouble;
   double end_time;                  // reached [s]
   bool has_status;                  // the scene asked who overlaps

@@ -18,6 +18,7 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
   *audit = (FemAudit){.time = time,
                       .work = energy->applied_work,
                       .total = total,
+                      .first = total,
                       .lowest = total,
                       .scale = floor,
                       .gravity_at_start = energy->gravity,
@@ -41,6 +42,23 @@ FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *ene
   next.lowest = fmin(audit->lowest, next.total);
   next.scale = fmax(audit->scale, largest_part(&next, energy));
   return next;
+}
+
+FemAuditBounds fem_audit_bounds(bool has_contact) {
+  FemAuditBounds smooth = {.step = 0.1, .run = 2e-2, .near = INFINITY};
+  FemAuditBounds jumping = {.step = 3e-3, .run = 1e-3, .near = 8e-4, .negligible = 1e-6};
+  return has_contact ? jumping : smooth;
+}
+
+bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after) {
+  double of_step = (after->total - before->total) / after->scale;
+  double of_run = (after->total - before->lowest) / after->scale;
+  bool is_held = of_step <= bounds->step && (of_run <= bounds->near || of_step <= bounds->negligible);
+  return !is_held;
+}
+
+double fem_audit_lost(const FemAudit *audit) {
+  return audit->first - audit->total;
 }
 
 void fem_audit_release(FemAudit *audit, double kinetic_energy) {

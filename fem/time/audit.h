@@ -3,10 +3,23 @@
 //     A = kinetic + elastic + gravity + contact + dissipated − work of driven vertices, obstacles and loads
 // is constant in exact mechanics and falls by the integrator's own damping; a rise is an error. Powers are
 // integrated by the trapezoidal rule over accepted steps.
+//
+// Two bounds, as shares of the scene's energy. What one step may gain: more is taken back. What a run may
+// gain in all: more is trouble (fem/run/trouble.h). Where nothing jumps both are far beyond what the error
+// test lets pass, so that they speak of errors only. Contact jumps within a step, and gains of many steps add
+// up: there a step is also taken back where the run's gain comes near its bound, unless the step gains next
+// to nothing.
 #ifndef TETLAP_FEM_TIME_AUDIT_H
 #define TETLAP_FEM_TIME_AUDIT_H
 
 #include "fem/effect/effect.h"
+
+typedef struct FemAuditBounds {
+  double step;       // what one step may gain
+  double run;        // what a run may gain in all
+  double near;       // of the run's gain, from which on a step may not gain more than `negligible`
+  double negligible; //
+} FemAuditBounds;
 
 typedef struct FemAudit {
   double time;        // of the last accepted state [s]
@@ -15,6 +28,7 @@ typedef struct FemAudit {
   double driven_work; // of driven vertices and obstacles [J]
   double work;        // driven_work and the loads' [J]
   double total;       // A [J]
+  double first;       // A at the start [J]
   double lowest;      // smallest A so far [J]
   double gain;        // largest rise of A above an earlier value [J]
   double scale;       // the scene's energy: largest of its parts so far, gravity from its start [J]
@@ -27,6 +41,15 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
 
 // The audit as it would be after accepting this state.
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy);
+
+FemAuditBounds fem_audit_bounds(bool has_contact);
+
+// Whether the step between the two must be taken back.
+bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after);
+
+// What the integrator itself has lost since the start, apart from all damping that was asked for [J];
+// negative: gained.
+double fem_audit_lost(const FemAudit *audit);
 
 // Coordinates that were driven have been set free: from now on their kinetic energy counts, and whoever drove
 // them has given it to them.
