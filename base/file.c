@@ -102,6 +102,25 @@ void file_remove_parts(const char *directory) {
   closedir(folder);
 }
 
+static bool is_numbered(const char *name, const char *prefix, const char *suffix) {
+  enum { FEWEST_DIGITS = 5 };
+  size_t begin = strlen(prefix);
+  if (strncmp(name, prefix, begin) != 0) return false;
+  size_t digits = strspn(name + begin, "0123456789");
+  return digits >= FEWEST_DIGITS && strcmp(name + begin + digits, suffix) == 0;
+}
+
+int file_remove_numbered(const char *directory, const char *prefix, const char *suffix) {
+  DIR *folder = opendir(directory);
+  int count = 0;
+  if (!folder) return 0;
+  const struct dirent *entry;
+  while ((entry = readdir(folder)))
+    if (is_numbered(entry->d_name, prefix, suffix)) count += unlinkat(dirfd(folder), entry->d_name, 0) == 0;
+  closedir(folder);
+  return count;
+}
+
 static Status make_one(const char *path) {
   if (mkdir(path, 0777) == 0 || errno == EEXIST) return STATUS_OK;
   return status_fail(STATUS_IO, "%s: the directory cannot be made: %s", path, strerror(errno));

@@ -25,6 +25,9 @@ void file_abandon(FileWriter *writer);
 // Removes what writers left in a folder that were killed: files named as file_begin names them whose process
 // is gone.
 void file_remove_parts(const char *directory);
+// Removes the files of the directory whose names are prefix, a number of five digits or more, suffix; returns
+// how many these were.
+int file_remove_numbered(const char *directory, const char *prefix, const char *suffix);
 
 Status file_make_directories(const char *path); // like mkdir -p
 int file_exists(const char *path);

@@ -7,6 +7,7 @@
 #include <check.h>
 #include <math.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #include "base/status.h"
 
@@ -29,10 +30,24 @@ static inline double suite_larger(double a, double b) {
   return isnan(a) || a >= b ? a : b;
 }
 
-// Runs one test case under its name; to be returned from main.
-static inline int suite_run(const char *name, TCase *test_case, double timeout_s) {
+// Processor time that a test may take, and each program that it starts [s].
+static double suite_limit_s;
+
+static inline void suite_limit_time(void) {
+  const char *multiplier = getenv("CK_TIMEOUT_MULTIPLIER");
+  double seconds = suite_limit_s * (multiplier ? fmax(1, atof(multiplier)) : 1);
+  struct rlimit limit = {.rlim_cur = (rlim_t)ceil(seconds), .rlim_max = RLIM_INFINITY};
+  setrlimit(RLIMIT_CPU, &limit);
+}
+
+// Runs one test case under its name; to be returned from main. The limit is on processor time of one thread,
+// so that a machine that others load fails no test; by the clock it is far off.
+static inline int suite_run(const char *name, TCase *test_case, double limit_s) {
+  enum { THREADS = 2, SLOWEST = 30 };
   Suite *suite = suite_create(name);
-  tcase_set_timeout(test_case, timeout_s);
+  suite_limit_s = THREADS * limit_s;
+  tcase_add_checked_fixture(test_case, suite_limit_time, NULL);
+  tcase_set_timeout(test_case, SLOWEST * limit_s);
   suite_add_tcase(suite, test_case);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);

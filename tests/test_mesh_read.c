@@ -256,6 +256,28 @@ START_TEST(a_file_that_is_not_there_is_an_io_error) {
 }
 END_TEST
 
+// The format lets a word and its count share a line.
+START_TEST(a_count_beside_its_word_is_read) {
+  put("a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n"
+                "Tetrahedra 1\n1 2 3 4 7\nEnd\n");
+  FemMesh mesh;
+  FemMeshRepairs repairs;
+  ck_assert_ok(fem_mesh_read(&mesh, scratch("a.mesh"), NULL, &repairs));
+  ck_assert_int_eq(mesh.vertex_count, 4);
+  ck_assert_int_eq(mesh.tet_count, 1);
+  for (int v = 0; v < 4; v++)
+    for (int c = 0; c < 3; c++) ck_assert_double_eq(mesh.rest[3 * v + c], v == c + 1);
+  fem_mesh_destroy(&mesh);
+}
+END_TEST
+
+START_TEST(formats_of_others_are_told_the_converter) {
+  expect_refusal(STATUS_INPUT, "thing.vtu", "meshio convert thing.vtu mesh.msh", NULL);
+  expect_refusal(STATUS_INPUT, "thing.inp", "meshio convert thing.inp mesh.msh", NULL);
+  expect_refusal(STATUS_INPUT, "thing.xdmf", "meshio convert", NULL);
+}
+END_TEST
+
 START_TEST(an_unknown_ending_is_told_the_known_ones) {
   expect_refusal(STATUS_INPUT, "thing.obj", "ending .obj is not known", ".msh", ".mesh", ".vtk", ".stl",
                  ".geo", ".node", NULL);
@@ -277,7 +299,7 @@ START_TEST(empty_and_foreign_files_are_refused) {
   put("a.vtk", "<VTKFile>\n");
   expect_refusal(STATUS_INPUT, scratch("a.vtk"), "does not begin with '# vtk DataFile Version'", NULL);
   put("a.vtk", "# vtk DataFile Version 5.1\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n");
-  expect_refusal(STATUS_INPUT, scratch("a.vtk"), "version 5", "4.2", NULL);
+  expect_refusal(STATUS_INPUT, scratch("a.vtk"), "version 5", "meshio convert", "4.2", NULL);
   put("a.geo", "Point(1) = {0, 0;\n");
   expect_refusal(STATUS_INPUT, scratch("a.geo"), "line 1: syntax error", NULL);
   put("a.stl", "solid nothing\nendsolid\n");
@@ -783,6 +805,8 @@ int main(void) {
   tcase_add_test(cases, other_elements_are_refused_by_name);
   tcase_add_test(cases, a_surface_in_a_volume_format_is_told_what_to_do);
   tcase_add_test(cases, a_file_that_is_not_there_is_an_io_error);
+  tcase_add_test(cases, a_count_beside_its_word_is_read);
+  tcase_add_test(cases, formats_of_others_are_told_the_converter);
   tcase_add_test(cases, an_unknown_ending_is_told_the_known_ones);
   tcase_add_test(cases, empty_and_foreign_files_are_refused);
   tcase_add_test(cases, a_count_beyond_the_file_is_refused_at_once);

@@ -18,6 +18,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "fem/effect/contact.h"
+#include "fem/run/checkpoint.h"
 #include "overlap/weights.h"
 
 static volatile sig_atomic_t stop_flag;
@@ -78,7 +79,8 @@ const struct argp app_job_argp = {.options = option_table, .parser = parse};
 
 void app_job_prepare(const AppJobOptions *options) {
   log_set_level(options->is_quiet ? LOG_ERROR : options->is_verbose ? LOG_DEBUG : LOG_INFO);
-  struct sigaction action = {.sa_handler = raise_flag};
+  // The first signal lets a run end in order, a second one kills.
+  struct sigaction action = {.sa_handler = raise_flag, .sa_flags = (int)SA_RESETHAND};
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
 }
@@ -147,6 +149,18 @@ Status app_job_show_progress(void *self, const FemRunProgress *state) {
 
 const char *app_job_overlap(const AppJob *job) {
   return fem_effect_contact_overlap(&job->scene);
+}
+
+void app_job_clear_output(const AppJob *job) {
+  static const char *const names[] = {"frames.pvd", "history.csv", "summary.json", FEM_CHECKPOINT_FILE};
+  int frames = file_remove_numbered(job->directory, "frame_", ".vtu");
+  int count = frames + file_remove_numbered(job->directory, "obstacles_", ".vtu");
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+    char *path = file_join(job->directory, names[k]);
+    if (path) count += remove(path) == 0;
+    memory_free(path);
+  }
+  if (count > 0) log_info("%s held an earlier run: it and its %d frames are removed", job->directory, frames);
 }
 
 static const char *word_of(Status status) {

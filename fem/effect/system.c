@@ -164,7 +164,12 @@ static Status blame_effect(FemSystem *system, const FemState *state) {
   return status_fail(STATUS_RETRY, "a force was not a number once, and is one now");
 }
 
+static Status check_stop(const FemSystem *system) {
+  return system->stop && *system->stop ? status_fail(STATUS_INTERRUPTED, "interrupted") : STATUS_OK;
+}
+
 Status fem_system_forces(FemSystem *system, double time) {
+  TRY(check_stop(system));
   memset(system->forces, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->forces);
   TRY(fem_system_check_state(system));
   FemState state = state_of(system, time);
@@ -198,6 +203,7 @@ Status fem_system_renumber(FemSystem *system) {
 }
 
 Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix) {
+  TRY(check_stop(system));
   fem_matrix_zero(matrix);
   FemState state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {
@@ -228,6 +234,7 @@ Status fem_system_renew(FemSystem *system, double time, const double *u, const d
 }
 
 Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
+  TRY(check_stop(system));
   fem_system_scatter(system, time, u, v);
   FemState state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {

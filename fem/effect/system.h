@@ -4,6 +4,8 @@
 #ifndef TETLAP_FEM_EFFECT_SYSTEM_H
 #define TETLAP_FEM_EFFECT_SYSTEM_H
 
+#include <signal.h>
+
 #include "fem/effect/effect.h"
 #include "fem/model/model.h"
 
@@ -25,6 +27,8 @@ typedef struct FemSystem {
   FemMatrix matrix;                        // S, or K for split use
   long long pattern_version;               // grows whenever matrix has been laid out anew
   double *positions, *velocities, *forces; // scratch, all vertices   (vertex_count, 3)
+  const volatile sig_atomic_t *stop;       // becomes non-zero: forces, matrices and what effects keep are
+                                     // STATUS_INTERRUPTED; borrowed, NULL: never
 } FemSystem;
 
 Status fem_system_create(FemSystem *system, const FemModel *model);

@@ -308,6 +308,7 @@ static Status begin_part(FemRunState *run) {
   TRY(number(run));
   TRY(is_first ? fem_system_create(&run->system, run->model)
                : fem_system_create_again(&run->system, run->model));
+  run->system.stop = run->options->stop;
   TRY(fem_restart_load(from, &run->system, run->u, run->v));
   if (fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest))) {
     fem_system_scatter(&run->system, run->time, run->u, run->v);
@@ -457,6 +458,10 @@ static Status close_run(FemRunState *run, Status status) {
 
 // Says when a run failed, unless whoever failed did. A retry that nobody took is the solver's failure.
 static Status say_when(const FemRunState *run, Status status) {
+  bool is_stopped = run->options->stop && *run->options->stop && status == STATUS_INTERRUPTED;
+  if (is_stopped)
+    return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
+                       run->time);
   if (status != STATUS_RETRY && status != STATUS_SOLVER) return status;
   bool is_told = strstr(status_message(), "t = ");
   if (is_told) return status_fail(STATUS_SOLVER, "%s", status_message());

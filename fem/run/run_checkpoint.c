@@ -42,6 +42,15 @@ long long fem_run_checkpoint_steps(int unknown_count) {
   return (long long)fmax(LEAST, WORK / unknown_count);
 }
 
+// The first checkpoints come sooner, after frames 1, 4, 16 …, so that what is stopped early does not begin at
+// the start again.
+enum { EARLY_STEPS = 20, EARLY_GROWTH = 4 };
+static bool is_early(const FemRunState *run) {
+  int last = run->checkpoint.next_frame > 0 ? run->checkpoint.next_frame - 1 : 0; // frame written last
+  int frame = run->next_frame - 1;
+  return last == 0 ? frame >= 1 : frame >= EARLY_GROWTH * last;
+}
+
 bool fem_run_checkpoint_is_due(const FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
   if (fem_run_state_has_ended(run) || (!scene->is_static && run->time >= run->stage_end)) return false;
@@ -49,7 +58,8 @@ bool fem_run_checkpoint_is_due(const FemRunState *run) {
     return scene->checkpoint_frames > 0 &&
            run->next_frame >= run->checkpoint.next_frame + scene->checkpoint_frames;
   long long steps = fem_run_state_stats(run).steps - run->checkpoint.so_far.integrator.steps;
-  return steps >= fem_run_checkpoint_steps(run->given->unknown_count);
+  return steps >= fem_run_checkpoint_steps(run->given->unknown_count) ||
+         (steps >= EARLY_STEPS && is_early(run));
 }
 
 // Between two parts: what the statics reached stands in the checkpoint already.

@@ -5,7 +5,11 @@
 #include "fem/model/scene.h"
 
 static const char *finish_time(void *self, const char **key) {
+  static const double SHORTEST_SHARE = 1e-9; // of the end: a run of that many steps has no end
   const FemSceneDef *scene = self;
+  *key = "max_step";
+  if (scene->max_step > 0 && scene->max_step < SHORTEST_SHARE * scene->end)
+    return "max_step is below 1e-9 of end: the run would take more than a billion steps";
   *key = "min_step";
   if (scene->max_step > 0 && scene->min_step > scene->max_step) return "min_step must not exceed max_step";
   *key = "initial_step";

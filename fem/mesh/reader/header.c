@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 enum { VTK_TETRAHEDRON = 10, VTK_QUADRATIC_TETRAHEDRON = 24 };
 
@@ -21,12 +22,21 @@ Status fem_mesh_header_format(const char *path, FemMeshFormat *format) {
       {".stl", FEM_MESH_FORMAT_STL},    {".geo", FEM_MESH_FORMAT_GEO},    {".node", FEM_MESH_FORMAT_TETGEN},
       {".ele", FEM_MESH_FORMAT_TETGEN},
   };
+  static const char foreign[] =
+      ".vtu .inp .xdmf .xmf .bdf .nas .fem .exo .e .med .unv .cgns .h5m "
+      ".ugrid .su2 .xml .avs .key .k .dat .cdb";
   const char *name = strrchr(path, '/'), *dot = strrchr(name ? name : path, '.');
   for (size_t k = 0; dot && k < sizeof endings / sizeof *endings; k++)
     if (strcasecmp(dot, endings[k].ending) == 0) {
       *format = endings[k].format;
       return STATUS_OK;
     }
+  if (dot && text_lists(foreign, dot))
+    return status_fail(
+        STATUS_INPUT,
+        "%s: %s files are not read; `meshio convert %s mesh.msh` (python3-meshio) makes a gmsh "
+        "mesh of it, or let the program that wrote it export .msh",
+        path, dot, path);
   return status_fail(STATUS_INPUT,
                      "%s: the ending %s is not known; give a .msh (gmsh), .mesh (MEDIT, ascii), .vtk "
                      "(legacy), .node or .ele "
@@ -209,7 +219,10 @@ static Status check_vtk(const char *text, size_t size, long long *tet_count) {
     return status_fail(STATUS_INPUT,
                        "does not begin with '# vtk DataFile Version' and so is no legacy VTK file");
   if (strtod(text + strlen("# vtk DataFile Version"), NULL) >= 5)
-    return status_fail(STATUS_INPUT, "is of VTK version 5; save it as version 4.2 or lower, or as .msh");
+    return status_fail(
+        STATUS_INPUT,
+        "is of VTK version 5, which meshio and ParaView write; `meshio convert FILE.vtk mesh.msh` "
+        "(python3-meshio) makes a gmsh mesh of it, or save it as version 4.2 or lower");
   if (!find_line(text, size, "DATASET UNSTRUCTURED_GRID"))
     return status_fail(STATUS_INPUT, "is no 'DATASET UNSTRUCTURED_GRID'; save its tetrahedra as one");
   *tet_count = 0;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "base/log.h"
+#include "base/memory.h"
 #include "fem/mesh/reader/gmsh.h"
 #include "fem/mesh/reader/header.h"
+#include "fem/mesh/reader/medit.h"
 #include "fem/mesh/reader/tetgen.h"
 #include "fem/mesh/reader/worker.h"
 
@@ -25,9 +28,13 @@ static Status check_options(const char *path, FemMeshFormat format, const FemMes
 }
 
 // gmsh in a process of its own, and a check that it left nothing out.
-static Status read_by_gmsh(FemMeshSource *source, const char *path, const FemMeshOptions *options,
-                           const FemMeshHeader *header, size_t memory_limit) {
-  Status status = fem_mesh_worker_run(fem_mesh_gmsh_read, source, path, options, memory_limit);
+static Status read_by_gmsh(FemMeshSource *source, const char *path, FemMeshFormat format,
+                           const FemMeshOptions *options, const FemMeshHeader *header, size_t memory_limit) {
+  char *copy = NULL;
+  if (format == FEM_MESH_FORMAT_MEDIT) TRY(fem_mesh_medit_split(path, &copy));
+  Status status = fem_mesh_worker_run(fem_mesh_gmsh_read, source, copy ? copy : path, options, memory_limit);
+  if (copy) remove(copy);
+  memory_free(copy);
   long long announced = header->tet_count;
   if (status == STATUS_OK && announced >= 0 && announced != source->tet_count)
     status = status_fail(STATUS_INPUT, "announces %lld tetrahedra, but %d can be read; is it complete?",
@@ -45,7 +52,7 @@ static Status read_source(FemMeshSource *source, const char *path, const FemMesh
   // Reading takes memory in proportion to the file (a 4-byte integer makes a pointer or two); meshing does
   // not.
   size_t limit = is_meshed_here(format) ? 0 : ((size_t)1 << 30) + 64 * header.size;
-  return read_by_gmsh(source, path, options, &header, limit);
+  return read_by_gmsh(source, path, format, options, &header, limit);
 }
 
 Status fem_mesh_read(FemMesh *mesh, const char *path, const FemMeshOptions *options,

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs that are stopped, run again into the same folder, or cannot write what they print.
+#include "scene.h"
+
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "fem/run/checkpoint.h"
+#include "fem/run/run_checkpoint.h"
+
+static char folder[64];
+
+static void make_folder(void) {
+  strcpy(folder, "/tmp/tetlap_stop_XXXXXX");
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+}
+
+static void remove_folder(void) {
+  char command[128];
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  ck_assert_int_eq(system(command), 0);
+}
+
+// A flag that is up stops a run in the middle of an evaluation, before any step of load is through.
+START_TEST(a_static_run_stops_within_an_evaluation) {
+  SceneRun run;
+  volatile sig_atomic_t stop = 1;
+  scene_open(
+      &run, "cantilever",
+      (const char *const[]){"time={end: 1, static: true}", "bodies.beam.mesh.box.cells=[6, 2, 2]", NULL});
+  FemRunOptions options = {.stop = &stop};
+  ck_assert_int_eq(fem_run(&run.model, &options, &run.result), STATUS_INTERRUPTED);
+  ck_assert_double_eq(run.result.end_time, 0);
+  ck_assert_ptr_nonnull(strstr(status_message(), "interrupted at t = 0 s"));
+  scene_close(&run);
+}
+END_TEST
+
+typedef struct Stopper {
+  volatile sig_atomic_t flag;
+  double time; // at which it is raised [s]
+} Stopper;
+
+static Status stop_at(void *self, const FemRunProgress *progress) {
+  Stopper *stopper = self;
+  if (progress->time >= stopper->time) stopper->flag = 1;
+  return STATUS_OK;
+}
+
+START_TEST(an_early_stop_leaves_a_checkpoint_of_what_was_done) {
+  SceneRun run;
+  Stopper stopper = {.time = 0.06};
+  FemCheckpoint checkpoint;
+  char path[96];
+  make_folder();
+  scene_open(&run, "drop",
+             (const char *const[]){"output.frames=100", "time.end=0.5", "time.max_step=5e-4", NULL});
+  FemRunOptions options = {
+      .stop = &stopper.flag, .observe = stop_at, .observer = &stopper, .directory = folder};
+  ck_assert_int_eq(fem_run(&run.model, &options, &run.result), STATUS_INTERRUPTED);
+  ck_assert_int_lt((int)run.result.integrator.steps, (int)fem_run_checkpoint_steps(run.model.unknown_count));
+  snprintf(path, sizeof path, "%s/%s", folder, FEM_CHECKPOINT_FILE);
+  ck_assert_ok(fem_checkpoint_read(&checkpoint, path));
+  ck_assert_int_ge(checkpoint.next_frame, 4);
+  ck_assert_double_gt(checkpoint.time, 0);
+  fem_checkpoint_destroy(&checkpoint);
+  scene_close(&run);
+  remove_folder();
+}
+END_TEST
+
+// What a command prints, both streams; returns its exit code.
+static int print(const char *words, char *text, size_t size) {
+  char command[1024];
+  snprintf(command, sizeof command, TETLAP_PROGRAM " %s 2>&1", words);
+  FILE *pipe = popen(command, "r");
+  ck_assert_ptr_nonnull(pipe);
+  text[fread(text, 1, size - 1, pipe)] = 0;
+  int status = pclose(pipe);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static bool has_file(const char *name) {
+  char path[128];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  return file_exists(path);
+}
+
+START_TEST(a_second_run_into_a_folder_leaves_nothing_of_the_first) {
+  static char text[1 << 14];
+  char words[512];
+  make_folder();
+  for (int frames = 12; frames >= 4; frames -= 8) {
+    snprintf(words, sizeof words, "run %s/tests/scenes/free_fall.yaml -o %s --set output.frames=%d",
+             TETLAP_SOURCE_DIR, folder, frames);
+    ck_assert_int_eq(print(words, text, sizeof text), 0);
+    ck_assert(has_file("frame_00004.vtu"));
+    ck_assert_int_eq(has_file("frame_00012.vtu"), frames == 12);
+    ck_assert_int_eq(strstr(text, "its 13 frames are removed") != NULL, frames == 4);
+  }
+  remove_folder();
+}
+END_TEST
+
+START_TEST(what_cannot_be_printed_is_an_error) {
+  static char text[1 << 14];
+  const char *words = "check -j " TETLAP_SOURCE_DIR "/tests/scenes/free_fall.yaml > /dev/full";
+  ck_assert_int_eq(print(words, text, sizeof text), status_exit_code(STATUS_IO));
+  make_folder();
+  char run[512];
+  snprintf(run, sizeof run, "run -q -j %s/tests/scenes/free_fall.yaml -o %s > /dev/full", TETLAP_SOURCE_DIR,
+           folder);
+  ck_assert_int_eq(print(run, text, sizeof text), status_exit_code(STATUS_IO));
+  remove_folder();
+}
+END_TEST
+
+START_TEST(steps_that_never_end_are_refused) {
+  FemSceneDef scene;
+  const char *set[] = {"time.max_step=1e-30"};
+  ck_assert_int_eq(app_scene_read(TETLAP_SOURCE_DIR "/tests/scenes/free_fall.yaml", set, 1, &scene),
+                   STATUS_USAGE);
+  ck_assert_ptr_nonnull(strstr(status_message(), "max_step is below 1e-9 of end"));
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("stop");
+  tcase_add_test(cases, a_static_run_stops_within_an_evaluation);
+  tcase_add_test(cases, an_early_stop_leaves_a_checkpoint_of_what_was_done);
+  tcase_add_test(cases, a_second_run_into_a_folder_leaves_nothing_of_the_first);
+  tcase_add_test(cases, what_cannot_be_printed_is_an_error);
+  tcase_add_test(cases, steps_that_never_end_are_refused);
+  return suite_run("stop", cases, 60);
+}
