@@ -192,7 +192,7 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_double_eq(scene->solver_tolerance, 1e-6);
   ck_assert_int_eq(scene->threads, 3);
   ck_assert_int_eq(scene->frames, 7);
-  ck_assert(!scene->write_vtu && !scene->write_history);
+  ck_assert(!scene->write_vtu && scene->history == FEM_HISTORY_NONE);
 }
 
 static void check_full(const FemSceneDef *scene) {
@@ -236,7 +236,7 @@ START_TEST(absent_keys_take_their_defaults) {
   ck_assert_int_eq(scene.max_order, 2);
   ck_assert_int_eq(scene.solver, FEM_SOLVER_AUTO);
   ck_assert_int_eq(scene.frames, 50);
-  ck_assert(scene.write_vtu && scene.write_history);
+  ck_assert(scene.write_vtu && scene.history == FEM_HISTORY_FRAMES);
   ck_vector(scene.bodies[0].placement.scale, 1, 1, 1);
   ck_assert_double_eq(scene.bodies[0].placement.angle_degrees, 0);
   ck_assert_double_eq(scene.bodies[0].material.damping, -1);
@@ -423,6 +423,20 @@ START_TEST(overrides_replace_values) {
 }
 END_TEST
 
+START_TEST(a_history_is_of_frames_or_steps_or_none) {
+  const char *const words[] = {"output.history=steps", "output.history=true", "output.history=frames",
+                               "output.history=false", "output.history=none"};
+  const FemHistoryRows rows[] = {FEM_HISTORY_STEPS, FEM_HISTORY_FRAMES, FEM_HISTORY_FRAMES, FEM_HISTORY_NONE,
+                                 FEM_HISTORY_NONE};
+  for (int k = 0; k < 5; k++) {
+    FemSceneDef scene;
+    ck_assert_ok(app_scene_read(full_yaml, &words[k], 1, &scene));
+    ck_assert_int_eq(scene.history, rows[k]);
+    fem_scene_destroy(&scene);
+  }
+}
+END_TEST
+
 START_TEST(an_override_turns_contact_off_and_on) {
   static const char *const off[] = {"contact=null"};
   static const char *const on[] = {"contact=null", "contact.potential=pair"};
@@ -452,6 +466,7 @@ int main(void) {
   tcase_add_test(cases, a_table_may_be_written_flat);
   tcase_add_test(cases, every_failed_allocation_is_reported);
   tcase_add_test(cases, overrides_replace_values);
+  tcase_add_test(cases, a_history_is_of_frames_or_steps_or_none);
   tcase_add_test(cases, an_override_turns_contact_off_and_on);
   return suite_run("scene", cases, 60);
 }

@@ -118,6 +118,52 @@ START_TEST(what_cannot_be_printed_is_an_error) {
 }
 END_TEST
 
+// The columns of history.csv whose title is `title`; returns how many rows.
+static int read_column(const char *title, double *values, int most) {
+  static char line[1 << 16];
+  char path[96];
+  snprintf(path, sizeof path, "%s/history.csv", folder);
+  FILE *stream = fopen(path, "r");
+  ck_assert_ptr_nonnull(stream);
+  int place = -1, rows = 0;
+  for (int k = 0; fgets(line, sizeof line, stream); k++) {
+    char *rest = line, *word;
+    for (int c = 0; (word = strsep(&rest, ",\n")); c++) {
+      if (k == 0 && strcmp(word, title) == 0) place = c;
+      if (k > 0 && c == place && rows < most) values[rows++] = atof(word);
+    }
+  }
+  fclose(stream);
+  ck_assert_int_ge(place, 0);
+  return rows;
+}
+
+// A row a step holds the run's largest force; a row a frame tells it as the peak since the row before.
+START_TEST(no_peak_of_a_force_is_missed) {
+  enum { MOST = 5000 };
+  static double force[MOST], steps[MOST];
+  const char *const rows[] = {"output.history=steps", "output.history=frames"};
+  for (int k = 0; k < 2; k++) {
+    SceneRun run;
+    make_folder();
+    scene_open(&run, "drop", (const char *const[]){rows[k], "output.vtu=false", "output.frames=7", NULL});
+    FemRunOptions options = {.directory = folder};
+    ck_assert_ok(fem_run(&run.model, &options, &run.result));
+    int count = read_column("contact_force_peak_N", force, MOST);
+    read_column("steps", steps, MOST);
+    double largest = 0;
+    for (int i = 0; i < count; i++) largest = fmax(largest, force[i]);
+    ck_assert_double_gt(largest, 0);
+    ck_assert_near(largest, run.result.contact_force_max, 1e-12 * largest);
+    if (k == 0) ck_assert_int_eq(count, (int)run.result.integrator.steps + 1);
+    if (k == 1) ck_assert_int_eq(count, 8);
+    for (int i = 1; i < count; i++) ck_assert_double_ge(steps[i], steps[i - 1]);
+    scene_close(&run);
+    remove_folder();
+  }
+}
+END_TEST
+
 START_TEST(steps_that_never_end_are_refused) {
   FemSceneDef scene;
   const char *set[] = {"time.max_step=1e-30"};
@@ -133,6 +179,7 @@ int main(void) {
   tcase_add_test(cases, an_early_stop_leaves_a_checkpoint_of_what_was_done);
   tcase_add_test(cases, a_second_run_into_a_folder_leaves_nothing_of_the_first);
   tcase_add_test(cases, what_cannot_be_printed_is_an_error);
+  tcase_add_test(cases, no_peak_of_a_force_is_missed);
   tcase_add_test(cases, steps_that_never_end_are_refused);
   return suite_run("stop", cases, 60);
 }

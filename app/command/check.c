@@ -188,7 +188,10 @@ static void print_text(const AppJob *job, const Notes *notes) {
          scene->solver == FEM_SOLVER_AUTO ? " (chosen)" : "", cpu_thread_count());
   print_memory(fem_model_memory_estimate(model));
   printf("output        %s: %d frames%s%s\n", job->directory, scene->frames + 1,
-         scene->write_vtu ? ", VTU" : "", scene->write_history ? ", history" : "");
+         scene->write_vtu ? ", VTU" : "",
+         scene->history == FEM_HISTORY_NONE    ? ""
+         : scene->history == FEM_HISTORY_STEPS ? ", history of steps"
+                                               : ", history");
   for (int i = 0; i < notes->count; i++) printf("note: %s\n", notes->texts[i]);
 }
 

@@ -103,8 +103,9 @@ static void store_choice(void *field, size_t size, int value) {
 }
 
 static Status read_choice(const SceneKey *key, const SceneNode *node, void *field) {
-  int choice;
-  TRY(find_choice(key, node, &choice));
+  int choice = node->is_true;
+  bool is_switch = key->choices->takes_switch && node->kind == SCENE_NODE_SWITCH;
+  if (!is_switch) TRY(find_choice(key, node, &choice));
   store_choice(field, key->size, choice);
   return STATUS_OK;
 }

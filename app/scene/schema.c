@@ -67,6 +67,16 @@ static void put_names(RecordList *list, const SceneChoices *choices) {
   for (int i = 0; (name = choices->name(i)); i++) record_append_text(list, name);
 }
 
+static void put_choices(const SceneChoices *choices, Record *record) {
+  if (!choices->takes_switch) {
+    put_names(record_list(record, "enum"), choices);
+    return;
+  }
+  RecordList *any = record_list(record, "anyOf");
+  put_names(record_list(record_append(any), "enum"), choices);
+  put_type(record_append(any), "boolean", false);
+}
+
 static void put_axes(bool is_nullable, Record *record) {
   put_type(record, "array", is_nullable);
   RecordList *axes = record_list(record_child(record, "items"), "enum");
@@ -182,7 +192,7 @@ static Status put_key(const SceneKey *key, const void *defaults, Record *record)
     break;
   case SCENE_NAME:
   case SCENE_CHOICE:
-    put_names(record_list(record, "enum"), key->choices);
+    put_choices(key->choices, record);
     break;
   case SCENE_VECTOR:
   case SCENE_DIRECTION:

@@ -59,11 +59,11 @@ static const char *normalisation_help(int i) {
   return normalisation_helps[i];
 }
 
-static const SceneChoices kind_choices = {kind_name, kind_help};
-static const SceneChoices reading_choices = {reading_name, reading_help};
-static const SceneChoices activation_choices = {activation_name, activation_help};
-static const SceneChoices pool_choices = {pool_name, pool_help};
-static const SceneChoices normalisation_choices = {normalisation_name, normalisation_help};
+static const SceneChoices kind_choices = {.name = kind_name, .help = kind_help};
+static const SceneChoices reading_choices = {.name = reading_name, .help = reading_help};
+static const SceneChoices activation_choices = {.name = activation_name, .help = activation_help};
+static const SceneChoices pool_choices = {.name = pool_name, .help = pool_help};
+static const SceneChoices normalisation_choices = {.name = normalisation_name, .help = normalisation_help};
 
 static const char *finish_model(void *self, const char **key) {
   const AppTrainingModelDef *model = self;

@@ -153,6 +153,8 @@ typedef struct FemContactDef {
   double rest_time;                     // so long, and it is at rest [s]; 0: chosen
 } FemContactDef;
 
+typedef enum FemHistoryRows { FEM_HISTORY_NONE, FEM_HISTORY_FRAMES, FEM_HISTORY_STEPS } FemHistoryRows;
+
 typedef struct FemSceneDef {
   char *path; // of the scene file
   char *title;
@@ -181,7 +183,7 @@ typedef struct FemSceneDef {
   int checkpoint_frames;     // between two checkpoints; 0: none; −1: chosen
   double checkpoint_seconds; // wall time between two that are written [s]
   bool write_vtu;
-  bool write_history;
+  FemHistoryRows history; // rows of history.csv
   char *status_reference; // the overlap model that elements' status is held against; NULL: none
 } FemSceneDef;
 

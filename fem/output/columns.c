@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/output/columns.h"
 
+#include <math.h>
+
 static double time_s(const FemColumnSource *s) {
   return s->time;
 }
@@ -48,6 +50,9 @@ static double angular_z(const FemColumnSource *s) {
 }
 static double active_pairs(const FemColumnSource *s) {
   return s->measures->active_pairs;
+}
+static double contact_force_peak_N(const FemColumnSource *s) {
+  return fmax(s->measures->contact_force, s->measures->peak_force);
 }
 static double overlap_m3(const FemColumnSource *s) {
   return s->measures->overlap_volume;
@@ -124,6 +129,7 @@ static const struct {
     {"angular_y", angular_y, .when = ALWAYS},
     {"angular_z", angular_z, .when = ALWAYS},
     {"active_pairs", active_pairs, .when = IF_EFFECT, .effect = &fem_effect_contact},
+    {"contact_force_peak_N", contact_force_peak_N, .when = IF_EFFECT, .effect = &fem_effect_contact},
     {"overlap_m3", overlap_m3, .when = IF_EFFECT, .effect = &fem_effect_contact},
     {"deepest_overlap", deepest_overlap, .when = IF_EFFECT, .effect = &fem_effect_contact},
     {"min_det_F", min_det_F, .when = ALWAYS},

@@ -18,6 +18,7 @@ typedef struct FemMeasures {
   double overlap_volume; // [m³]
   int active_pairs;
   double contact_force; // largest norm over interfaces [N]
+  double peak_force;    // largest of that in the steps since the last row [N]
   FemTroubleState trouble;
 } FemMeasures;
 

@@ -61,7 +61,7 @@ static Status create(FemRecorder *recorder, const char *directory) {
   TRY(fem_forces_create(&recorder->forces, recorder->system, directory && model->scene->write_vtu));
   if (!directory) return STATUS_OK;
   recorder->writes_vtu = model->scene->write_vtu;
-  recorder->writes_history = model->scene->write_history;
+  recorder->writes_history = model->scene->history;
   recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
   recorder->displacement = memory_zeroed(3 * vertices, sizeof *recorder->displacement);
   recorder->stress = memory_zeroed(6 * tets, sizeof *recorder->stress);
@@ -317,7 +317,7 @@ static double *append_centres(const FemSystem *system, double *row) {
   return row;
 }
 
-static Status write_history(FemRecorder *recorder, const FemColumnSource *source) {
+static void fill_row(FemRecorder *recorder, const FemColumnSource *source) {
   double *row = recorder->row;
   for (int i = 0; i < fem_columns_count(); i++)
     if (has_column(recorder, i)) *row++ = fem_columns_value(i, source);
@@ -325,6 +325,23 @@ static Status write_history(FemRecorder *recorder, const FemColumnSource *source
   int count;
   interfaces_of(recorder->system, &count);
   for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->forces.now.interfaces[i]));
+}
+
+void fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,
+                            const FemAudit *audit, double step, long long step_count,
+                            long long energy_events) {
+  const FemColumnSource source = {.time = time,
+                                  .measures = measures,
+                                  .audit = audit,
+                                  .step = step,
+                                  .step_count = step_count,
+                                  .energy_events = energy_events,
+                                  .status = recorder->status};
+  if (recorder->writes_history == FEM_HISTORY_STEPS) fill_row(recorder, &source);
+}
+
+Status fem_recorder_append_step(FemRecorder *recorder) {
+  if (recorder->writes_history != FEM_HISTORY_STEPS) return STATUS_OK;
   return fem_history_add_row(&recorder->history, recorder->row);
 }
 
@@ -349,7 +366,11 @@ Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures 
                                   .step_count = step_count,
                                   .energy_events = energy_events,
                                   .status = recorder->status};
-  if (recorder->writes_history) TRY(write_history(recorder, &source));
+  bool is_first = recorder->history.file.end.size == 0;
+  if (recorder->writes_history == FEM_HISTORY_FRAMES || (recorder->writes_history && is_first)) {
+    fill_row(recorder, &source);
+    TRY(fem_history_add_row(&recorder->history, recorder->row));
+  }
   recorder->seconds += clock_wall_s() - began;
   return STATUS_OK;
 }

@@ -16,7 +16,8 @@
 typedef struct FemRecorder {
   FemSystem *system; // borrowed
   char *directory;   // owned; NULL: nothing is written
-  bool writes_vtu, writes_history;
+  bool writes_vtu;
+  FemHistoryRows writes_history;
   FemHistory history;
   double *row; // one line of the history
   int row_capacity;
@@ -48,6 +49,13 @@ Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *mea
 // those so far (fem/output/trouble.h).
 Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
                           const FemAudit *audit, double step, long long step_count, long long energy_events);
+
+// A row of a history of steps: taken at the state that was measured last, while it is there, and appended
+// once the step is accepted; nothing where the history is another.
+void fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,
+                            const FemAudit *audit, double step, long long step_count,
+                            long long energy_events);
+Status fem_recorder_append_step(FemRecorder *recorder);
 
 // Writes the list of frames if it lacks some: at the end, since in between long lists are written at most
 // once a second.

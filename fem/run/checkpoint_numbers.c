@@ -93,6 +93,7 @@ static const FemCheckpointNumber numbers[] = {
     RESULT(pairs_max, FEM_INTEGER, "1"),
     RESULT(overlap_volume_max, FEM_REAL, "m3"),
     RESULT(contact_force_max, FEM_REAL, "N"),
+    RESULT(peak_since_row, FEM_REAL, "N"),
     RESULT(last_contact_force, FEM_REAL, "N"),
     RESULT(min_det_F, FEM_REAL, "1"),
     RESULT(deepest_overlap_max, FEM_REAL, "1"),

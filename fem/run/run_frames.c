@@ -29,6 +29,7 @@ void fem_run_frames_keep_extremes(FemRunResult *result, const FemMeasures *measu
   result->pairs_max = measures->active_pairs > result->pairs_max ? measures->active_pairs : result->pairs_max;
   result->overlap_volume_max = fmax(result->overlap_volume_max, measures->overlap_volume);
   result->contact_force_max = fmax(result->contact_force_max, measures->contact_force);
+  result->peak_since_row = fmax(result->peak_since_row, measures->contact_force);
   result->deepest_overlap_max = fmax(result->deepest_overlap_max, measures->deepest_overlap);
   result->min_det_F = fmin(result->min_det_F, measures->min_det_F);
 }
@@ -47,7 +48,10 @@ static void keep_status(FemRunState *run) {
 Status fem_run_frames_write(FemRunState *run, double time, const FemMeasures *measures) {
   FemIntegratorStats stats = fem_run_state_stats(run);
   FemAudit audit = time > run->audit.time ? fem_audit_next(&run->audit, time, &measures->energy) : run->audit;
-  TRY(fem_recorder_write(&run->recorder, time, measures, &audit, stats.last_step, stats.steps,
+  FemMeasures shown = *measures;
+  shown.peak_force = run->result->peak_since_row;
+  run->result->peak_since_row = 0;
+  TRY(fem_recorder_write(&run->recorder, time, &shown, &audit, stats.last_step, stats.steps,
                          run->result->trouble.of[FEM_TROUBLE_ENERGY].events));
   run->result->last_contact_force = measures->contact_force;
   keep_status(run);

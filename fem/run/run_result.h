@@ -41,6 +41,7 @@ typedef struct FemRunResult {
   long long relaxation_steps, halvings;
   int pairs_max;
   double overlap_volume_max, contact_force_max, min_det_F, deepest_overlap_max;
+  double peak_since_row;     // largest interface force in the steps since the last row of the history [N]
   double last_contact_force; // largest interface force at the last frame [N]
   size_t peak_rss_bytes;
   Record *counters; // owned

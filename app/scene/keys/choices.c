@@ -16,7 +16,7 @@ static const char *law_name(int i) {
 static const char *law_help(int i) {
   return fem_material_help((FemMaterialLaw)i);
 }
-const SceneChoices app_scene_choices_laws = {law_name, law_help};
+const SceneChoices app_scene_choices_laws = {.name = law_name, .help = law_help};
 
 static const char *potential_name(int i) {
   return i < CONTACT_POTENTIAL_COUNT ? contact_def_potential_name((ContactPotential)i) : NULL;
@@ -24,7 +24,7 @@ static const char *potential_name(int i) {
 static const char *potential_help(int i) {
   return contact_def_potential_help((ContactPotential)i);
 }
-const SceneChoices app_scene_choices_potentials = {potential_name, potential_help};
+const SceneChoices app_scene_choices_potentials = {.name = potential_name, .help = potential_help};
 
 static const char *solver_name(int i) {
   return i <= FEM_SOLVER_PCG ? fem_solver_name((FemSolverKind)i) : NULL;
@@ -32,7 +32,7 @@ static const char *solver_name(int i) {
 static const char *solver_help(int i) {
   return fem_solver_help((FemSolverKind)i);
 }
-const SceneChoices app_scene_choices_solvers = {solver_name, solver_help};
+const SceneChoices app_scene_choices_solvers = {.name = solver_name, .help = solver_help};
 
 static const char *overlap_name(int i) {
   int count;
@@ -43,7 +43,7 @@ static const char *overlap_help(int i) {
   int count;
   return overlap_model_list(&count)[i]->help;
 }
-const SceneChoices app_scene_choices_overlaps = {overlap_name, overlap_help};
+const SceneChoices app_scene_choices_overlaps = {.name = overlap_name, .help = overlap_help};
 
 // Names of numbers and switches in a scene's definition.
 
@@ -55,7 +55,7 @@ static const char *hessian_help(int i) {
   return i == 0 ? "products of the first derivatives only: cheaper, more iterations"
                 : "the second derivatives of the overlap volumes as well, where the model has them";
 }
-const SceneChoices app_scene_choices_hessians = {hessian_name, hessian_help};
+const SceneChoices app_scene_choices_hessians = {.name = hessian_name, .help = hessian_help};
 
 static const char *element_name(int i) {
   static const char *const names[] = {"linear", "nodal", "quadratic"};
@@ -69,7 +69,7 @@ static const char *element_help(int i) {
                                       "second-order files"};
   return helps[i];
 }
-const SceneChoices app_scene_choices_elements = {element_name, element_help};
+const SceneChoices app_scene_choices_elements = {.name = element_name, .help = element_help};
 
 // The numbers are those of FemFrictionLaw.
 static const char *friction_name(int i) {
@@ -83,7 +83,7 @@ static const char *friction_help(int i) {
       "a force that depends on the slip's speed, for potentials without a centroid: what sticks creeps"};
   return helps[i];
 }
-const SceneChoices app_scene_choices_frictions = {friction_name, friction_help};
+const SceneChoices app_scene_choices_frictions = {.name = friction_name, .help = friction_help};
 
 static const char *following_name(int i) { // the number is FemLoadDef.is_dead
   static const char *const names[] = {"surface", "nothing"};
@@ -93,7 +93,7 @@ static const char *following_help(int i) {
   return i == 0 ? "the surface as it is now: direction and area change with it"
                 : "the surface as it was at rest: a dead load";
 }
-const SceneChoices app_scene_choices_followings = {following_name, following_help};
+const SceneChoices app_scene_choices_followings = {.name = following_name, .help = following_help};
 
 // The numbers are those of overlap/options.h.
 
@@ -108,7 +108,7 @@ static const char *ghosts_help(int i) {
       "they get none, and V is faded in over the first overlap"};
   return helps[i];
 }
-const SceneChoices app_scene_choices_ghosts = {ghosts_name, ghosts_help};
+const SceneChoices app_scene_choices_ghosts = {.name = ghosts_name, .help = ghosts_help};
 
 static const char *gate_name(int i) {
   static const char *const names[] = {"auto", "none", "status"};
@@ -120,7 +120,7 @@ static const char *gate_help(int i) {
                                       "V is multiplied by the probability that the status head says"};
   return helps[i];
 }
-const SceneChoices app_scene_choices_gates = {gate_name, gate_help};
+const SceneChoices app_scene_choices_gates = {.name = gate_name, .help = gate_help};
 
 static const char *orders_name(int i) {
   static const char *const names[] = {"auto", "one", "both"};
@@ -132,7 +132,7 @@ static const char *orders_help(int i) {
                                       "the mean of V(A, B) and V(B, A), at twice the cost"};
   return helps[i];
 }
-const SceneChoices app_scene_choices_orders = {orders_name, orders_help};
+const SceneChoices app_scene_choices_orders = {.name = orders_name, .help = orders_help};
 
 static const char *beyond_name(int i) {
   static const char *const names[] = {"auto", "count", "exact"};
@@ -144,7 +144,7 @@ static const char *beyond_help(int i) {
                                       "and answered by the exact model, blended over a band"};
   return helps[i];
 }
-const SceneChoices app_scene_choices_beyond = {beyond_name, beyond_help};
+const SceneChoices app_scene_choices_beyond = {.name = beyond_name, .help = beyond_help};
 
 static const char *coplanar_name(int i) {
   static const char *const names[] = {"auto", "keep", "clip"};
@@ -156,4 +156,14 @@ static const char *coplanar_help(int i) {
                                       "they turn to clipping, the more the nearer the faces"};
   return helps[i];
 }
-const SceneChoices app_scene_choices_coplanar = {coplanar_name, coplanar_help};
+const SceneChoices app_scene_choices_coplanar = {.name = coplanar_name, .help = coplanar_help};
+
+static const char *history_name(int i) { // the number is FemSceneDef.history
+  static const char *const names[] = {"none", "frames", "steps"};
+  return i < 3 ? names[i] : NULL;
+}
+static const char *history_help(int i) {
+  static const char *const helps[] = {"no history", "a row a frame", "a row an accepted step"};
+  return helps[i];
+}
+const SceneChoices app_scene_choices_histories = {history_name, history_help, .takes_switch = true};

@@ -77,8 +77,10 @@ static const SceneKey output_keys[] = {
     {"checkpoint", SCENE_SECTION, .section = &checkpoint, .help = "what `tetlap resume` goes on from"},
     {"vtu", SCENE_SWITCH, AT(FemSceneDef, write_vtu), .fallback = "true",
      .help = "a VTU file a frame, for ParaView"},
-    {"history", SCENE_SWITCH, AT(FemSceneDef, write_history), .fallback = "true",
-     .help = "history.csv: energies, momentum, contact forces per frame"},
+    {"history", SCENE_CHOICE, AT(FemSceneDef, history), .fallback = "frames",
+     .choices = &app_scene_choices_histories,
+     .help =
+         "history.csv: energies, momentum, contact forces per frame or per step; true: frames, false: none"},
     {"status", SCENE_NAME, AT(FemSceneDef, status_reference), .choices = &app_scene_choices_overlaps,
      .absent_help = "not asked",
      .help = "which elements overlap by the scene's overlap model and by this one, at every frame"},

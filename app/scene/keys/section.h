@@ -32,6 +32,7 @@ typedef enum SceneType {
 typedef struct SceneChoices {
   const char *(*name)(int index);
   const char *(*help)(int index);
+  bool takes_switch; // true stands for the second name, false for the first
 } SceneChoices;
 
 // What giving a key sets besides its own value: a flag, or which way was chosen.
