@@ -29,5 +29,12 @@ static void run_gradient(int group, const DeviceArgument *a) {
                   device_host_at(a + 11), device_host_at(a + 12));
 }
 
-const DeviceHostKernel device_host_scalar[] = {
-    {"scalar_volume", run_volume}, {"scalar_gradient", run_gradient}, {NULL, NULL}};
+static void run_centroid(int group, const DeviceArgument *a) {
+  scalar_centroid(group, HOST_PAIRS(a), device_host_at(a + 8), device_host_at(a + 9), device_host_at(a + 10),
+                  device_host_at(a + 11), device_host_at(a + 12));
+}
+
+const DeviceHostKernel device_host_scalar[] = {{"scalar_volume", run_volume},
+                                               {"scalar_gradient", run_gradient},
+                                               {"scalar_centroid", run_centroid},
+                                               {NULL, NULL}};

@@ -10,7 +10,7 @@
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 
-enum { SIZE = OVERLAP_PAIR_SIZE, VOLUME_KERNEL = 0, GRADIENT_KERNEL = 1, GATHER = 0, SCATTER = 1 };
+enum { SIZE = OVERLAP_PAIR_SIZE, GATHER = 0, SCATTER = 1 };
 
 typedef struct DeviceOverlapChain {
   const char *model;
@@ -18,7 +18,7 @@ typedef struct DeviceOverlapChain {
   const OverlapOps *last; // answers on the host what is left
   unsigned flags;         // of what that answers, besides its own
   const char *weights;    // of a network; NULL: there is none
-  bool has_gradient;
+  bool has_more;          // ∇V and x̄
 } DeviceOverlapChain;
 
 static const DeviceOverlapChain chains[DEVICE_OVERLAP_MODELS] = {
@@ -39,9 +39,9 @@ static const DeviceOverlapChain *find_chain(const char *model) {
   return NULL;
 }
 
-bool device_overlap_has_gradient(const char *model) {
+bool device_overlap_has_more(const char *model) {
   const DeviceOverlapChain *chain = find_chain(model);
-  return chain && chain->has_gradient;
+  return chain && chain->has_more;
 }
 
 static Status create(DeviceOverlap *overlap, const DeviceOverlapChain *chain) {
@@ -68,15 +68,15 @@ static void release(const DeviceOverlap *overlap, DeviceMemory *memory) {
 
 static void release_rows(DeviceOverlap *overlap) {
   release(overlap, &overlap->rows), release(overlap, &overlap->row_volume);
-  release(overlap, &overlap->row_gradient), release(overlap, &overlap->row_flags);
+  release(overlap, &overlap->row_more), release(overlap, &overlap->row_flags);
   overlap->row_capacity = 0;
 }
 
 static void release_answers(DeviceOverlap *overlap) {
-  release(overlap, &overlap->volume), release(overlap, &overlap->gradient);
+  release(overlap, &overlap->volume), release(overlap, &overlap->more);
   release(overlap, &overlap->flags), release(overlap, &overlap->lists[0]);
   release(overlap, &overlap->lists[1]);
-  overlap->capacity = 0, overlap->has_gradient = false;
+  overlap->capacity = 0;
 }
 
 static void release_inputs(DeviceOverlap *overlap) {
@@ -156,17 +156,17 @@ static int add_pairs(const DeviceOverlap *overlap, int count, const DeviceMemory
 }
 
 // Starts the kernel of a stage.
-static Status launch_stage(const DeviceOverlap *overlap, int k, int count, bool wants_gradient,
+static Status launch_stage(const DeviceOverlap *overlap, int k, int count, DeviceQuantity quantity,
                            DeviceArgument *arguments, int n) {
   const Device *device = overlap->device;
-  const DeviceKernel *kernel = &overlap->stages[k].kernels[wants_gradient ? GRADIENT_KERNEL : VOLUME_KERNEL];
+  const DeviceKernel *kernel = &overlap->stages[k].kernels[quantity];
   if (!overlap->chain->weights) return device_launch(device, kernel, count, arguments, n);
   n += device_tpn_arguments(&overlap->tpn, arguments + n);
   return device->ops->launch(device->self, kernel, device_tpn_groups(count), arguments, n);
 }
 
 // One stage over `count` pairs; how many of them it leaves, in lists[k % 2].
-static Status run_stage(DeviceOverlap *overlap, int k, int count, bool wants_gradient, int *left) {
+static Status run_stage(DeviceOverlap *overlap, int k, int count, DeviceQuantity quantity, int *left) {
   const Device *device = overlap->device;
   DeviceArgument arguments[DEVICE_MAX_ARGUMENTS];
   int n = add_pairs(overlap, count, k > 0 ? &overlap->lists[(k + 1) % 2] : NULL, arguments);
@@ -176,10 +176,10 @@ static Status run_stage(DeviceOverlap *overlap, int k, int count, bool wants_gra
   arguments[n++] = device_memory(&overlap->flags);
   arguments[n++] = device_memory(&overlap->lists[k % 2]);
   arguments[n++] = device_memory(&overlap->list_count);
-  if (wants_gradient) arguments[n++] = device_memory(&overlap->gradient);
+  if (quantity != DEVICE_VOLUME) arguments[n++] = device_memory(&overlap->more);
   TRY(device->ops->put(device->self, &overlap->list_count, 0, sizeof none, &none));
   TRY(device->ops->mark(device->self, DEVICE_BEGIN));
-  TRY(launch_stage(overlap, k, count, wants_gradient, arguments, n));
+  TRY(launch_stage(overlap, k, count, quantity, arguments, n));
   TRY(device->ops->mark(device->self, DEVICE_END));
   TRY(device->ops->get(device->self, &overlap->list_count, 0, sizeof *left, left));
   TRY(device->ops->elapsed(device->self, &seconds));
@@ -193,13 +193,13 @@ typedef struct Rows {
   int count;
   int *numbers;           // of the pairs                    (count)
   double *pairs, *volume; // (count, 24), (count)
-  double *gradient;       // (count, 24)
+  double *more;           // ∇V (count, 24) or x̄ (count, 3)
   unsigned char *flags;   // (count)
 } Rows;
 
 static void destroy_rows(Rows *rows) {
   memory_free(rows->numbers), memory_free(rows->pairs), memory_free(rows->volume);
-  memory_free(rows->gradient), memory_free(rows->flags);
+  memory_free(rows->more), memory_free(rows->flags);
 }
 
 static Status create_rows(Rows *rows, int count) {
@@ -208,9 +208,9 @@ static Status create_rows(Rows *rows, int count) {
                  .numbers = memory_zeroed(n, sizeof(int)),
                  .pairs = memory_zeroed(n * SIZE, sizeof(double)),
                  .volume = memory_zeroed(n, sizeof(double)),
-                 .gradient = memory_zeroed(n * SIZE, sizeof(double)),
+                 .more = memory_zeroed(n * SIZE, sizeof(double)),
                  .flags = memory_zeroed(n, 1)};
-  if (rows->numbers && rows->pairs && rows->volume && rows->gradient && rows->flags) return STATUS_OK;
+  if (rows->numbers && rows->pairs && rows->volume && rows->more && rows->flags) return STATUS_OK;
   destroy_rows(rows);
   return status_no_memory("pairs that the device leaves to the host");
 }
@@ -222,7 +222,7 @@ static Status make_rows_room(DeviceOverlap *overlap, int count) {
   size_t n = (size_t)count;
   TRY(device_take(device, n * SIZE, sizeof(double), NULL, &overlap->rows));
   TRY(device_take(device, n, sizeof(double), NULL, &overlap->row_volume));
-  TRY(device_take(device, n * SIZE, sizeof(double), NULL, &overlap->row_gradient));
+  TRY(device_take(device, n * SIZE, sizeof(double), NULL, &overlap->row_more));
   TRY(device_take(device, n, 1, NULL, &overlap->row_flags));
   overlap->row_capacity = count;
   return STATUS_OK;
@@ -239,7 +239,7 @@ static Status fetch_rows(DeviceOverlap *overlap, const DeviceMemory *list, Rows 
                           rows->pairs);
 }
 
-static Status answer_row(const DeviceOverlapChain *chain, Rows *rows, int i, bool wants_gradient) {
+static Status answer_row(const DeviceOverlapChain *chain, Rows *rows, int i, DeviceQuantity quantity) {
   const double *pair = rows->pairs + (size_t)i * SIZE;
   for (int c = 0; c < SIZE; c++)
     if (!isfinite(pair[c]))
@@ -248,71 +248,80 @@ static Status answer_row(const DeviceOverlapChain *chain, Rows *rows, int i, boo
           rows->numbers[i], c / 12, c / 3 % 4, "xyz"[c % 3], pair[c]);
   unsigned flags = 0;
   const OverlapAnswer answer = {.volume = rows->volume + i,
-                                .gradient = wants_gradient ? rows->gradient + (size_t)i * SIZE : NULL,
+                                .gradient =
+                                    quantity == DEVICE_GRADIENT ? rows->more + (size_t)i * SIZE : NULL,
+                                .centroid = quantity == DEVICE_CENTROID ? rows->more + (size_t)i * 3 : NULL,
                                 .flags = &flags};
   TRY(chain->last->eval_pair(NULL, pair, &answer));
   rows->flags[i] = (unsigned char)(flags | chain->flags);
   return STATUS_OK;
 }
 
-static Status answer_rows(const DeviceOverlapChain *chain, Rows *rows, bool wants_gradient) {
+static Status answer_rows(const DeviceOverlapChain *chain, Rows *rows, DeviceQuantity quantity) {
   int first_failed = INT_MAX;
 #pragma omp parallel for schedule(dynamic, 16) reduction(min : first_failed) if (rows->count > 64)
   for (int i = 0; i < rows->count; i++)
-    if (answer_row(chain, rows, i, wants_gradient) != STATUS_OK && i < first_failed) first_failed = i;
+    if (answer_row(chain, rows, i, quantity) != STATUS_OK && i < first_failed) first_failed = i;
   // the message belongs to the thread that failed: let this one see it too
-  return first_failed == INT_MAX ? STATUS_OK : answer_row(chain, rows, first_failed, wants_gradient);
+  return first_failed == INT_MAX ? STATUS_OK : answer_row(chain, rows, first_failed, quantity);
 }
 
 static Status send_rows(DeviceOverlap *overlap, const DeviceMemory *list, const Rows *rows,
-                        bool wants_gradient) {
+                        DeviceQuantity quantity) {
   const Device *device = overlap->device;
   size_t n = (size_t)rows->count;
   TRY(device->ops->put(device->self, &overlap->row_volume, 0, n * sizeof(double), rows->volume));
   TRY(device->ops->put(device->self, &overlap->row_flags, 0, n, rows->flags));
-  if (wants_gradient)
-    TRY(device->ops->put(device->self, &overlap->row_gradient, 0, n * SIZE * sizeof(double), rows->gradient));
-  const DeviceArgument arguments[] = {
-      device_int((int)overlap->kind),      device_int(rows->count),
-      device_int(overlap->count),          device_memory(list),
-      device_memory(&overlap->row_volume), device_memory(&overlap->row_flags),
-      device_int(wants_gradient),          device_memory(&overlap->row_gradient),
-      device_memory(&overlap->volume),     device_memory(&overlap->flags),
-      device_memory(&overlap->gradient)};
+  const int width = quantity == DEVICE_GRADIENT ? SIZE : quantity == DEVICE_CENTROID ? 3 : 0;
+  if (width > 0)
+    TRY(device->ops->put(device->self, &overlap->row_more, 0, n * (size_t)width * sizeof(double),
+                         rows->more));
+  const DeviceArgument arguments[] = {device_int((int)overlap->kind),
+                                      device_int(rows->count),
+                                      device_int(overlap->count),
+                                      device_memory(list),
+                                      device_memory(&overlap->row_volume),
+                                      device_memory(&overlap->row_flags),
+                                      device_int(width),
+                                      device_memory(&overlap->row_more),
+                                      device_memory(&overlap->volume),
+                                      device_memory(&overlap->flags),
+                                      device_memory(&overlap->more)};
   return device_launch(device, &overlap->gather.kernels[SCATTER], rows->count, arguments,
                        sizeof arguments / sizeof *arguments);
 }
 
 static Status answer_on_host(DeviceOverlap *overlap, const DeviceMemory *list, int count,
-                             bool wants_gradient) {
+                             DeviceQuantity quantity) {
   Rows rows;
   TRY(make_rows_room(overlap, count));
   TRY(create_rows(&rows, count));
   Status status = fetch_rows(overlap, list, &rows);
-  if (status == STATUS_OK) status = answer_rows(overlap->chain, &rows, wants_gradient);
-  if (status == STATUS_OK) status = send_rows(overlap, list, &rows, wants_gradient);
+  if (status == STATUS_OK) status = answer_rows(overlap->chain, &rows, quantity);
+  if (status == STATUS_OK) status = send_rows(overlap, list, &rows, quantity);
   destroy_rows(&rows);
   return status;
 }
 
-Status device_overlap_run(DeviceOverlap *overlap, bool wants_gradient) {
+Status device_overlap_run(DeviceOverlap *overlap, DeviceQuantity quantity) {
   const Device *device = overlap->device;
-  if (wants_gradient && !overlap->chain->has_gradient)
-    return status_fail(STATUS_USAGE, "overlap model '%s' gives no gradient on a device yet",
-                       overlap->chain->model);
-  if (wants_gradient && !overlap->has_gradient) {
-    TRY(device_take(device, (size_t)overlap->capacity * SIZE, sizeof(double), NULL, &overlap->gradient));
-    overlap->has_gradient = true;
+  const size_t room = (size_t)overlap->capacity * SIZE;
+  if (quantity != DEVICE_VOLUME && !overlap->chain->has_more)
+    return status_fail(STATUS_USAGE, "overlap model '%s' gives V only on a device", overlap->chain->model);
+  if (quantity != DEVICE_VOLUME && overlap->more.bytes < room * sizeof(double)) {
+    release(overlap, &overlap->more);
+    TRY(device_take(device, room, sizeof(double), NULL, &overlap->more));
   }
+  overlap->last = quantity;
   int left = overlap->count;
   overlap->kernel_s = 0;
   memset(overlap->handed_on, 0, sizeof overlap->handed_on);
   for (int k = 0; k < overlap->stage_count && left > 0; k++) {
-    TRY(run_stage(overlap, k, left, wants_gradient, &left));
+    TRY(run_stage(overlap, k, left, quantity, &left));
     overlap->handed_on[k] = left;
   }
   if (left == 0) return STATUS_OK;
-  return answer_on_host(overlap, &overlap->lists[(overlap->stage_count + 1) % 2], left, wants_gradient);
+  return answer_on_host(overlap, &overlap->lists[(overlap->stage_count + 1) % 2], left, quantity);
 }
 
 static Status get_flags(const DeviceOverlap *overlap, unsigned *flags) {
@@ -326,19 +335,23 @@ static Status get_flags(const DeviceOverlap *overlap, unsigned *flags) {
   return status;
 }
 
-Status device_overlap_get(DeviceOverlap *overlap, double *volume, double *gradient, unsigned *flags) {
+Status device_overlap_get(DeviceOverlap *overlap, double *volume, double *more, unsigned *flags) {
   const Device *device = overlap->device;
   size_t n = (size_t)overlap->count;
   TRY(device->ops->get(device->self, &overlap->volume, 0, n * sizeof *volume, volume));
-  if (gradient)
-    TRY(device->ops->get(device->self, &overlap->gradient, 0, n * SIZE * sizeof *gradient, gradient));
+  const size_t width = overlap->last == DEVICE_CENTROID ? 3 : SIZE;
+  if (more) TRY(device->ops->get(device->self, &overlap->more, 0, n * width * sizeof *more, more));
   return flags ? get_flags(overlap, flags) : STATUS_OK;
 }
 
 Status device_overlap_eval(DeviceOverlap *overlap, const OverlapBatch *batch) {
-  if (batch->hessian || batch->centroid)
-    return status_fail(STATUS_INPUT, "devices give V and its gradient, no Hessian and no centroid");
+  if (batch->hessian || (batch->gradient && batch->centroid))
+    return status_fail(STATUS_INPUT, "a device gives V, and its gradient or the centroid, but no Hessian");
+  const DeviceQuantity quantity = batch->gradient   ? DEVICE_GRADIENT
+                                  : batch->centroid ? DEVICE_CENTROID
+                                                    : DEVICE_VOLUME;
   TRY(device_overlap_put_rows(overlap, batch->pair_count, batch->pairs));
-  TRY(device_overlap_run(overlap, batch->gradient != NULL));
-  return device_overlap_get(overlap, batch->volume, batch->gradient, batch->flags);
+  TRY(device_overlap_run(overlap, quantity));
+  return device_overlap_get(overlap, batch->volume, batch->gradient ? batch->gradient : batch->centroid,
+                            batch->flags);
 }

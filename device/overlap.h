@@ -25,6 +25,9 @@ typedef enum DevicePairs {
 enum { DEVICE_OVERLAP_STAGES = 3, DEVICE_OVERLAP_MODELS = 3 };
 extern const char *const device_overlap_models[DEVICE_OVERLAP_MODELS]; // names
 
+// What is wanted of a batch; as the kernels of a program are listed.
+typedef enum DeviceQuantity { DEVICE_VOLUME, DEVICE_GRADIENT, DEVICE_CENTROID } DeviceQuantity;
+
 typedef struct DeviceOverlapStage {
   void *module; // owned
   DeviceKernel kernels[DEVICE_MAX_KERNELS];
@@ -37,12 +40,12 @@ typedef struct DeviceOverlap {
   DeviceTpn tpn; // the network, where there is one
   DeviceOverlapStage stages[DEVICE_OVERLAP_STAGES], gather;
   DevicePairs kind;
+  DeviceQuantity last; // what was evaluated last
   int count, capacity; // pairs: of the batch, and the most there may be
-  bool has_gradient;   // there is room for it
   DeviceMemory numbers, tets, pairs;
-  DeviceMemory volume, gradient, flags;                   // answers; flags are one byte each
-  DeviceMemory lists[2], list_count;                      // doubtful pairs
-  DeviceMemory rows, row_volume, row_gradient, row_flags; // what the host answers
+  DeviceMemory volume, more, flags;                   // answers; more: ∇V or x̄; flags are one byte each
+  DeviceMemory lists[2], list_count;                  // doubtful pairs
+  DeviceMemory rows, row_volume, row_more, row_flags; // what the host answers
   int row_capacity;
   double kernel_s;                      // of the last batch: what the stages' kernels took [s]
   int handed_on[DEVICE_OVERLAP_STAGES]; // of the last batch: pairs that stage k left to the next, or the host
@@ -52,8 +55,8 @@ typedef struct DeviceOverlap {
 Status device_overlap_create(DeviceOverlap *overlap, const Device *device, const char *model);
 void device_overlap_destroy(DeviceOverlap *overlap);
 
-// Whether ∇V is to be had.
-bool device_overlap_has_gradient(const char *model);
+// Whether ∇V and x̄ are to be had beside V.
+bool device_overlap_has_more(const char *model);
 
 // What the next evaluations are of: sent to the device, where it stays.
 Status device_overlap_put_rows(DeviceOverlap *overlap, int count, const double *pairs);
@@ -63,12 +66,12 @@ Status device_overlap_put_mesh(DeviceOverlap *overlap, int vertex_count, const d
                                int tet_count, const int *tets, int count, const int *pairs);
 
 // Evaluates what was put; the answers stay on the device.
-Status device_overlap_run(DeviceOverlap *overlap, bool wants_gradient);
+Status device_overlap_run(DeviceOverlap *overlap, DeviceQuantity quantity);
 
-// The answers: volume (count); gradient, as the pairs lie, and flags (count) may be NULL.
-Status device_overlap_get(DeviceOverlap *overlap, double *volume, double *gradient, unsigned *flags);
+// The answers: volume (count); `more`, ∇V or x̄ as the pairs lie, and flags (count) may be NULL.
+Status device_overlap_get(DeviceOverlap *overlap, double *volume, double *more, unsigned *flags);
 
-// All of it: a batch of the host's, without Hessian.
+// All of it: a batch of the host's, without Hessian; ∇V or x̄, not both.
 Status device_overlap_eval(DeviceOverlap *overlap, const OverlapBatch *batch);
 
 #endif

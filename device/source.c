@@ -37,7 +37,7 @@ const DeviceProgram device_program_clip = {
     .name = "clip",
     .defines = "#define GROUPS_AT_ONCE 6\n",
     .pieces = {clip_constants, one, kept, clip_lanes, pairs, clip},
-    .kernels = {"clip_volume", "clip_gradient"},
+    .kernels = {"clip_volume", "clip_gradient", "clip_centroid"},
     .items = 64,
 };
 
@@ -45,7 +45,7 @@ const DeviceProgram device_program_clip32 = {
     .name = "clip32",
     .defines = "#define LANES_SINGLE\n#define GROUPS_AT_ONCE 8\n",
     .pieces = {clip_constants, one, kept, clip_lanes, pairs, clip},
-    .kernels = {"clip_volume", "clip_gradient"},
+    .kernels = {"clip_volume", "clip_gradient", "clip_centroid"},
     .items = 64,
 };
 
@@ -67,9 +67,9 @@ const DeviceProgram device_program_poses = {
 
 const DeviceProgram device_program_scalar = {
     .name = "scalar",
-    .defines = "#define GROUPS_AT_ONCE 1\n",
+    .defines = "#define GROUPS_AT_ONCE 6\n",
     .pieces = {clip_constants, one, pairs, vec3, polytope_types, polytope, clip_sums, scalar},
-    .kernels = {"scalar_volume", "scalar_gradient"},
+    .kernels = {"scalar_volume", "scalar_gradient", "scalar_centroid"},
     .items = 64,
 };
 

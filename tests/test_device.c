@@ -109,7 +109,7 @@ static void check_batch(const Device *device, const char *model, const double *p
   DeviceOverlap overlap;
   Answers answers = make_answers(count);
   ck_assert_ok(device_overlap_create(&overlap, device, model));
-  for (int has_gradient = 0; has_gradient <= device_overlap_has_gradient(model); has_gradient++) {
+  for (int has_gradient = 0; has_gradient <= device_overlap_has_more(model); has_gradient++) {
     OverlapBatch batch = batch_of(pairs, count, &answers, has_gradient);
     memset(answers.volume, 0x55, (size_t)count * 8);
     memset(answers.gradient, 0x55, (size_t)count * 24 * 8);
@@ -161,7 +161,7 @@ static void check_residences(const Device *device, const double *pairs) {
     ck_assert_ok(kind == 0
                      ? device_overlap_put_columns(&overlap, COUNT, columns)
                      : device_overlap_put_mesh(&overlap, 8 * COUNT, pairs, 2 * COUNT, tets, COUNT, ends));
-    ck_assert_ok(device_overlap_run(&overlap, true));
+    ck_assert_ok(device_overlap_run(&overlap, DEVICE_GRADIENT));
     ck_assert_ok(device_overlap_get(&overlap, others.volume, others.gradient, others.flags));
     ck_assert_mem_eq(rows.volume, others.volume, COUNT * sizeof(double));
     ck_assert_mem_eq(rows.flags, others.flags, COUNT * sizeof(unsigned));
@@ -173,6 +173,48 @@ static void check_residences(const Device *device, const double *pairs) {
   destroy_answers(&rows), destroy_answers(&others);
   memory_free(columns), memory_free(tets), memory_free(ends);
 }
+
+// By rows, of a bench set and hard pairs at once.
+START_TEST(centroids_are_answered_to_the_bit) {
+  const Device *device = &devices[_i / 2];
+  const char *name = device_overlap_models[_i % 2];
+  const int hard = DATAGEN_HARD_CLASS_COUNT * MEMBERS, count = hard + COUNT;
+  double *pairs = memory_zeroed((size_t)count * 24, sizeof *pairs);
+  Answers answers = make_answers(count), expected = make_answers(count), careful = make_answers(count);
+  const Answers *all[3] = {&answers, &expected, &careful};
+  DeviceOverlap overlap;
+  OverlapModel model;
+  int inside = 0;
+  ck_assert_ok(app_bench_pairs_make("uniform", COUNT, 5, pairs));
+  for (int i = 0; i < hard; i++)
+    memcpy(pairs + (size_t)(COUNT + i) * 24, datagen_hard_make(i / MEMBERS, i % MEMBERS).x,
+           24 * sizeof *pairs);
+  ck_assert_ok(device_overlap_create(&overlap, device, name));
+  for (int k = 0; k < 3; k++) {
+    OverlapBatch batch = batch_of(pairs, count, all[k], false);
+    batch.centroid = all[k]->gradient;
+    if (k == 0) {
+      ck_assert_ok(device_overlap_eval(&overlap, &batch));
+      continue;
+    }
+    ck_assert_ok(overlap_model_create(&model, k == 1 ? name : "clip"));
+    ck_assert_ok(overlap_model_eval(&model, &batch));
+    overlap_model_destroy(&model);
+  }
+  const bool is_compared = is_comparable(name);
+  for (int i = 0; i < count && is_compared; i++) {
+    bool is_same = memcmp(answers.gradient + 3 * i, expected.gradient + 3 * i, 3 * sizeof(double)) == 0,
+         is_careful = memcmp(answers.gradient + 3 * i, careful.gradient + 3 * i, 3 * sizeof(double)) == 0;
+    ck_assert_msg(is_same || (is_careful && _i % 2), "%s, pair %d: %.17g, expected %.17g", name, i,
+                  answers.gradient[3 * i], expected.gradient[3 * i]);
+    inside += answers.volume[i] > 0;
+  }
+  ck_assert(inside > COUNT / 2 || !is_compared);
+  device_overlap_destroy(&overlap);
+  destroy_answers(&answers), destroy_answers(&expected), destroy_answers(&careful);
+  memory_free(pairs);
+}
+END_TEST
 
 START_TEST(where_the_numbers_lie_does_not_matter) {
   double *pairs = memory_zeroed(COUNT * 24, sizeof *pairs);
@@ -219,6 +261,7 @@ int main(void) {
   TCase *cases = tcase_create("device");
   tcase_add_loop_test(cases, bench_sets_are_answered_to_the_bit, 0, device_count * DEVICE_OVERLAP_MODELS);
   tcase_add_loop_test(cases, hard_pairs_are_answered_to_the_bit, 0, device_count * DEVICE_OVERLAP_MODELS);
+  tcase_add_loop_test(cases, centroids_are_answered_to_the_bit, 0, device_count * 2);
   tcase_add_loop_test(cases, where_the_numbers_lie_does_not_matter, 0, device_count);
   tcase_add_loop_test(cases, doubtful_pairs_are_handed_on_and_counted, 0, device_count);
   tcase_add_loop_test(cases, a_pair_that_is_not_finite_is_named, 0, device_count);

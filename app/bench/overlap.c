@@ -327,8 +327,9 @@ static Status measure(Bench *bench) {
 static Status run_on_device(const Options *options) {
   AppBenchDeviceDef def = {.common = &options->common,
                            .device = options->device,
-                           .wants_volume = options->wants_quantity[VOLUME],
-                           .wants_gradient = options->wants_quantity[GRADIENT],
+                           .wants_quantity = {[DEVICE_VOLUME] = options->wants_quantity[VOLUME],
+                                              [DEVICE_GRADIENT] = options->wants_quantity[GRADIENT],
+                                              [DEVICE_CENTROID] = options->wants_quantity[CENTROID]},
                            .batches = options->batches,
                            .batch_count = options->batch_count};
   const char *names[MAX_MODELS];

@@ -12,7 +12,8 @@
 #include "base/memory.h"
 
 const char *const app_bench_residences[APP_BENCH_RESIDENCES] = {"device", "indices", "host"};
-enum { DEVICE_COLUMNS, INDICES, HOST };
+enum { DEVICE_COLUMNS, INDICES, HOST, QUANTITY_COUNT = 3 };
+static const char *const quantities[QUANTITY_COUNT] = {"V", "V+grad", "V+centroid"}; // of DeviceQuantity
 
 static const uint64_t SEED = 1;
 static const double ROUND_S = 0.05; // what a round shall take
@@ -21,10 +22,10 @@ static const double ROUND_S = 0.05; // what a round shall take
 typedef struct Contestant {
   DeviceOverlap *overlap; // borrowed
   const double *pairs;    // (batch, 24), borrowed
-  double *volume, *gradient;
+  double *volume, *more;
   const char *model, *set;
   int residence, batch, calls;
-  bool wants_gradient;
+  DeviceQuantity quantity;
   AppBenchTimer timer;
   double kernel_s[APP_BENCH_MAX_REPEATS]; // of a pair
   int handed_on, to_host;
@@ -51,7 +52,7 @@ typedef struct Row {
 static const AppBenchColumn columns[] = {
     {"model", APP_BENCH_TEXT, offsetof(Row, model), "model", "overlap model"},
     {"set", APP_BENCH_TEXT, offsetof(Row, set), "set", "set of pairs: near, uniform, disjoint"},
-    {"quantity", APP_BENCH_TEXT, offsetof(Row, quantity), "quantity", "V or V+grad"},
+    {"quantity", APP_BENCH_TEXT, offsetof(Row, quantity), "quantity", "V, V+grad or V+centroid"},
     {"residence", APP_BENCH_TEXT, offsetof(Row, residence), "residence", "where pairs and answers lie"},
     {"batch", APP_BENCH_INTEGER, offsetof(Row, batch), "batch", "pairs a call"},
     {"handed_on", APP_BENCH_NUMBER, offsetof(Row, handed_on), "handed on",
@@ -85,10 +86,12 @@ static Status call(Contestant *contestant, double *kernel_s) {
     const OverlapBatch batch = {.pair_count = contestant->batch,
                                 .pairs = contestant->pairs,
                                 .volume = contestant->volume,
-                                .gradient = contestant->wants_gradient ? contestant->gradient : NULL};
+                                .gradient = contestant->quantity == DEVICE_GRADIENT ? contestant->more : NULL,
+                                .centroid =
+                                    contestant->quantity == DEVICE_CENTROID ? contestant->more : NULL};
     TRY(device_overlap_eval(overlap, &batch));
   } else {
-    TRY(device_overlap_run(overlap, contestant->wants_gradient));
+    TRY(device_overlap_run(overlap, contestant->quantity));
   }
   *kernel_s += overlap->kernel_s;
   return STATUS_OK;
@@ -145,7 +148,7 @@ static Row row_of(const Bench *bench, Contestant *contestant) {
   AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
   return (Row){.model = contestant->model,
                .set = contestant->set,
-               .quantity = contestant->wants_gradient ? "V+grad" : "V",
+               .quantity = quantities[contestant->quantity],
                .residence = app_bench_residences[contestant->residence],
                .device = bench->device.info.name,
                .batch = contestant->batch,
@@ -172,22 +175,21 @@ static Status print(const Bench *bench) {
 static void add_contestants(Bench *bench, int set, int batch) {
   const AppBenchDeviceDef *def = bench->def;
   for (int residence = 0; residence < APP_BENCH_RESIDENCES; residence++)
-    for (int quantity = 0; quantity < 2; quantity++)
+    for (int quantity = 0; quantity < QUANTITY_COUNT; quantity++)
       for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++) {
-        bool is_wanted =
-            def->wants_residence[residence] && def->wants_model[m] &&
-            (quantity ? def->wants_gradient && device_overlap_has_gradient(device_overlap_models[m])
-                      : def->wants_volume);
+        bool is_wanted = def->wants_residence[residence] && def->wants_model[m] &&
+                         def->wants_quantity[quantity] &&
+                         (quantity == DEVICE_VOLUME || device_overlap_has_more(device_overlap_models[m]));
         if (!is_wanted) continue;
         bench->contestants[bench->count++] = (Contestant){.overlap = &bench->overlaps[m],
                                                           .pairs = bench->pairs,
                                                           .volume = bench->volume,
-                                                          .gradient = bench->gradient,
+                                                          .more = bench->gradient,
                                                           .model = device_overlap_models[m],
                                                           .set = app_bench_sets[set],
                                                           .residence = residence,
                                                           .batch = batch,
-                                                          .wants_gradient = quantity};
+                                                          .quantity = (DeviceQuantity)quantity};
       }
 }
 
@@ -201,8 +203,9 @@ static Status measure_sets(Bench *bench) {
       TRY(take_rounds(bench, first));
     }
   if (bench->count == 0)
-    return status_fail(STATUS_USAGE,
-                       "a device answers V and V+grad of clip and clip32, V of tpn: nothing to measure");
+    return status_fail(
+        STATUS_USAGE,
+        "a device answers V, V+grad, V+centroid of clip and clip32, V of tpn: nothing to measure");
   return print(bench);
 }
 
@@ -211,7 +214,8 @@ static Status make_inputs(Bench *bench) {
   size_t most = 0;
   for (int b = 0; b < def->batch_count; b++)
     most = (size_t)def->batches[b] > most ? (size_t)def->batches[b] : most;
-  int rows = APP_BENCH_SET_COUNT * APP_BENCH_RESIDENCES * 2 * DEVICE_OVERLAP_MODELS * def->batch_count;
+  int rows =
+      APP_BENCH_SET_COUNT * APP_BENCH_RESIDENCES * QUANTITY_COUNT * DEVICE_OVERLAP_MODELS * def->batch_count;
   bench->contestants = memory_zeroed((size_t)rows, sizeof *bench->contestants);
   bench->pairs = memory_zeroed(most * 24, sizeof(double));
   bench->columns = memory_zeroed(most * 24, sizeof(double));

@@ -21,7 +21,8 @@ typedef struct AppBenchDeviceDef {
   const AppBenchOptions *common;
   const char *device; // as device_open takes it
   bool wants_model[DEVICE_OVERLAP_MODELS], wants_set[APP_BENCH_SET_COUNT];
-  bool wants_volume, wants_gradient, wants_residence[APP_BENCH_RESIDENCES];
+  bool wants_quantity[3]; // of DeviceQuantity
+  bool wants_residence[APP_BENCH_RESIDENCES];
   const int *batches; // (batch_count)
   int batch_count;
 } AppBenchDeviceDef;
