@@ -57,10 +57,11 @@ void contact_field_press(const ContactLayout *layout, const ContactPair *pair, c
     contact_depth_fold(&layout->depth, &layout->def, pair->tets[t], weights);
     vec3_store(field->slopes[t], sides[t].g);
   }
-  double press = layout->facings[pair->facing].stiffness * volume;
-  field->energy = press * (sides[0].s * field->depths[1] + sides[1].s * field->depths[0]);
-  Vec3 force =
-      vec3_scale(-press, vec3_sub(vec3_scale(sides[0].s, sides[1].g), vec3_scale(sides[1].s, sides[0].g)));
+  double stiffness = layout->facings[pair->facing].stiffness;
+  for (int t = 0; t < 2; t++) field->weighed[t] = sides[t].s * volume;
+  field->energy = stiffness * (field->weighed[0] * field->depths[1] + field->weighed[1] * field->depths[0]);
+  Vec3 force = vec3_scale(-stiffness, vec3_sub(vec3_scale(field->weighed[0], sides[1].g),
+                                               vec3_scale(field->weighed[1], sides[0].g)));
   vec3_store(field->force, force);
   for (int v = 0; v < 4; v++) {
     vec3_store(gradient + 3 * v, vec3_scale(-field->weights[0][v], force));
@@ -266,9 +267,9 @@ void contact_field_press_shape(const ContactLayout *layout, const ContactPair *p
     vec3_accumulate(field->centroid, vec3_scale(*weight, vec3_at(tet + 3 * v)));
   }
   double present = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
-  double weighed = facing->stiffness * field->volume * rest / present; // c s V
-  field->depths[1] = field->energy / weighed;
-  vec3_store(field->slopes[1], vec3_scale(-1 / weighed, force));
+  field->weighed[0] = field->volume * rest / present;
+  field->depths[1] = field->energy / (facing->stiffness * field->weighed[0]);
+  vec3_store(field->slopes[1], vec3_scale(-1 / (facing->stiffness * field->weighed[0]), force));
 }
 
 void contact_field_bend_shape(const ContactLayout *layout, const ContactPair *pair, double time,

@@ -41,6 +41,7 @@
 typedef struct ContactFieldPair {
   double energy;        // U_ij [J]
   double volume;        // V [m³]
+  double weighed[2];    // s_i V, s_j V: how much of A's and B's material at rest is in P; of a shape 0 [m³]
   double centroid[3];   // x̄ [m]
   double force[3];      // F_ij on side 0 [N]; N = |F_ij|
   double depths[2];     // φ_A(x̄), φ_B(x̄): of this point below the surface of side 0, 1 [m]

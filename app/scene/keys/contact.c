@@ -6,9 +6,10 @@
 
 static const char *finish_contact(void *self, const char **key) {
   const FemContactDef *contact = self;
-  if (contact->viscosity > 0 && contact->potential != CONTACT_POTENTIAL_NODAL) {
+  if (contact->viscosity > 0 && contact->potential != CONTACT_POTENTIAL_NODAL &&
+      contact->potential != CONTACT_POTENTIAL_FIELD) {
     *key = "viscosity";
-    return "viscosity builds on the potential nodal; take one of the two keys away";
+    return "viscosity builds on the potential field or nodal; take one of the two keys away";
   }
   FemFrictionLaw law = fem_scene_friction_law(contact);
   if (contact->friction > 0 && law == FEM_FRICTION_STICK && contact->potential != CONTACT_POTENTIAL_FIELD) {
