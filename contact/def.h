@@ -70,6 +70,9 @@ typedef struct ContactSystemDef {
   int body_count;
   const ContactShape *shapes; // borrowed                           (shape_count)
   int shape_count;
+  // Bit k of a vertex: it lies on the k-th part of the boundary that is no surface (a plane of symmetry, what
+  // is glued). Faces whose three vertices share a bit have no depth below them. NULL: none; read in creation.
+  const unsigned char *inner; //                                            (vertex_count)
   ContactPotential potential;
   double stiffness; // κ
   // κ of each body (row) with each party, bodies then shapes; NULL: `stiffness` for all. Read in creation.

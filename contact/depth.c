@@ -23,12 +23,24 @@ static Vec3 rest_of(const ContactSystemDef *def, int vertex) {
 
 // ---- Depths of the vertices.
 
+// The surface of a body, with its tree.
+static Status find_surface(const ContactSystemDef *def, int b, ContactSurface *surface) {
+  int kept = 0;
+  TRY(contact_surface_find(surface, def->tets, def->bodies[b].tet_begin, def->bodies[b].tet_end));
+  for (int f = 0; f < surface->count; f++) {
+    const int *v = surface->faces[f].vertices;
+    bool is_inner = def->inner && (def->inner[v[0]] & def->inner[v[1]] & def->inner[v[2]]);
+    if (!is_inner) surface->faces[kept++] = surface->faces[f];
+  }
+  surface->count = kept;
+  return contact_surface_index(surface, def->rest);
+}
+
 static Status measure_body(Work *work, int b) {
   const ContactSystemDef *def = work->def;
   const ContactBody *body = &def->bodies[b];
   ContactSurface surface;
-  Status status = contact_surface_find(&surface, def->tets, body->tet_begin, body->tet_end);
-  if (!status) status = contact_surface_index(&surface, def->rest);
+  Status status = find_surface(def, b, &surface);
   if (!status) {
     double *depths = work->depth->depths;
     for (int v = body->vertex_begin; v < body->vertex_end; v++) depths[v] = 1;
@@ -134,15 +146,13 @@ static void add_tet(Work *work, int tet, int *virtual) {
 // The centroids among the virtual vertices of a body.
 static Status measure_centroids(Work *work, int b, int begin, int end) {
   const ContactSystemDef *def = work->def;
-  const ContactBody *body = &def->bodies[b];
   ContactDepth *depth = work->depth;
   ContactSurface surface = {0};
   Status status = STATUS_OK;
   for (int u = begin; u < end && !status; u++) {
     if (depth->depths[u] < INFINITY) continue;
     if (!surface.faces) {
-      status = contact_surface_find(&surface, def->tets, body->tet_begin, body->tet_end);
-      if (!status) status = contact_surface_index(&surface, def->rest);
+      status = find_surface(def, b, &surface);
       if (status) break;
     }
     const int *vertices = def->tets[depth->virtuals[u - def->vertex_count].tet];

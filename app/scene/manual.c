@@ -94,6 +94,8 @@ static const char *type_of(const SceneKey *key) {
     return "number or [x, y, z], not zero";
   case SCENE_COUNTS:
     return "whole number or [x, y, z]";
+  case SCENE_TWO:
+    return "list of two names";
   case SCENE_AXES:
     return "list of x, y, z";
   case SCENE_ROWS:

@@ -94,6 +94,12 @@ static Status read_name(const SceneKey *key, const SceneNode *node, char **field
   return read_text(key, node, field);
 }
 
+static Status read_two(const SceneKey *key, const SceneNode *node, char *field[2]) {
+  if (node->kind != SCENE_NODE_LIST || node->count != 2) return fail_expected(key, node, "");
+  for (const SceneNode *item = node->first; item; item = item->next) TRY(read_text(key, item, field++));
+  return STATUS_OK;
+}
+
 // An enum or a flag, by its size.
 static void store_choice(void *field, size_t size, int value) {
   if (size == sizeof(bool))
@@ -271,6 +277,8 @@ static Status read_value(const SceneKey *key, const SceneNode *node, void *self)
     return read_name(key, node, field);
   case SCENE_CHOICE:
     return read_choice(key, node, field);
+  case SCENE_TWO:
+    return read_two(key, node, field);
   case SCENE_VECTOR:
     return read_numbers(key, node, 3, field);
   case SCENE_DIRECTION:

@@ -77,6 +77,13 @@ static void put_choices(const SceneChoices *choices, Record *record) {
   put_type(record_append(any), "boolean", false);
 }
 
+static void put_two(bool is_nullable, Record *record) {
+  put_type(record, "array", is_nullable);
+  put_type(record_child(record, "items"), "string", false);
+  record_integer(record, "minItems", 2);
+  record_integer(record, "maxItems", 2);
+}
+
 static void put_axes(bool is_nullable, Record *record) {
   put_type(record, "array", is_nullable);
   RecordList *axes = record_list(record_child(record, "items"), "enum");
@@ -203,6 +210,9 @@ static Status put_key(const SceneKey *key, const void *defaults, Record *record)
     break;
   case SCENE_COUNTS:
     put_broadcast(key, "integer", is_nullable, record);
+    break;
+  case SCENE_TWO:
+    put_two(is_nullable, record);
     break;
   case SCENE_AXES:
     put_axes(is_nullable, record);

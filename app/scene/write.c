@@ -39,6 +39,8 @@ static bool is_given(const SceneKey *key, const void *self, const void *defaults
   case SCENE_LABEL:
   case SCENE_NAME:
     return text_of(key, self) != NULL;
+  case SCENE_TWO:
+    return *(char *const *)field != NULL;
   case SCENE_FORMULA:
     return *(Expression *const *)field != NULL;
   case SCENE_ROWS:
@@ -94,6 +96,11 @@ static bool is_written(const SceneSection *section, const SceneKey *key, const v
 static void write_counts(const int counts[3], Record *record, const char *name) {
   RecordList *list = record_list(record, name);
   for (int c = 0; c < 3; c++) record_append_number(list, counts[c]);
+}
+
+static void write_two(char *const names[2], Record *record, const char *name) {
+  RecordList *list = record_list(record, name);
+  for (int k = 0; k < 2; k++) record_append_text(list, names[k]);
 }
 
 static void write_axes(const bool axes[3], Record *record, const char *name) {
@@ -160,6 +167,9 @@ Status app_scene_write_value(const SceneKey *key, const void *self, Record *reco
     break;
   case SCENE_COUNTS:
     write_counts(field, record, name);
+    break;
+  case SCENE_TWO:
+    write_two(field, record, name);
     break;
   case SCENE_AXES:
     write_axes(field, record, name);

@@ -138,6 +138,7 @@ static Status build(Contact *contact, Contact *old) {
                              .body_count = model->body_count,
                              .shapes = contact->shapes,
                              .shape_count = contact->shape_count,
+                             .inner = model->inner,
                              .potential = def->potential,
                              .stiffness = fem_model_contact_stiffness(model),
                              .pair_stiffness = stiffness,

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "fem/effect/contact.h"
 #include "fem/effect/system.h"
+#include "fem/model/compliance.h"
 
 typedef struct Friction {
   const FemModel *model;  // borrowed
@@ -15,7 +16,7 @@ typedef struct Friction {
 } Friction;
 
 static bool is_wanted(const FemSceneDef *scene) {
-  return scene->contact.is_on && scene->contact.friction > 0 &&
+  return scene->contact.is_on && fem_scene_most_friction(&scene->contact) > 0 &&
          fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY;
 }
 
@@ -30,8 +31,14 @@ static Status create(void **self, const FemModel *model) {
 static Status connect(void *self, const FemSystem *system) {
   Friction *friction = self;
   friction->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
-  return contact_friction_create(&friction->law, friction->contact, friction->model->scene->contact.friction,
-                                 fem_model_slip_speed(friction->model));
+  TRY(contact_friction_create(&friction->law, friction->contact, friction->model->scene->contact.friction,
+                              fem_model_slip_speed(friction->model)));
+  int count;
+  const ContactInterface *interfaces = contact_system_interfaces(friction->contact, &count);
+  for (int i = 0; i < count; i++)
+    friction->law.coefficients[i] =
+        fem_compliance_friction(friction->model, interfaces[i].a, interfaces[i].b);
+  return STATUS_OK;
 }
 
 static void destroy(void *self) {
@@ -122,8 +129,9 @@ const FemEffectOps fem_effect_friction = {
     .dissipates = true,
     .lags = true,
     .is_wanted = is_wanted,
-    .static_refusal = "friction of the law velocity is a force of motion; take it or time.static away, or take the "
-                      "potential field and the law stick",
+    .static_refusal =
+        "friction of the law velocity is a force of motion; take it or time.static away, or take the "
+        "potential field and the law stick",
     .static_key = "contact.friction",
     .create = create,
     .connect = connect,

@@ -9,6 +9,7 @@
 #include "contact/stick_pairs.h"
 #include "fem/effect/contact.h"
 #include "fem/effect/system.h"
+#include "fem/model/compliance.h"
 
 typedef struct Stick {
   const FemModel *model;  // borrowed
@@ -22,7 +23,7 @@ typedef struct Stick {
 } Stick;
 
 static bool is_wanted(const FemSceneDef *scene) {
-  return scene->contact.is_on && scene->contact.friction > 0 &&
+  return scene->contact.is_on && fem_scene_most_friction(&scene->contact) > 0 &&
          fem_scene_friction_law(&scene->contact) == FEM_FRICTION_STICK;
 }
 
@@ -37,7 +38,9 @@ static Status create(void **self, const FemModel *model) {
 
 static Status create_law(Stick *stick, int count, double *coefficients, ContactStickLaw *laws) {
   const FemModel *model = stick->model;
-  for (int i = 0; i < count; i++) coefficients[i] = model->scene->contact.friction;
+  const ContactInterface *interfaces = contact_system_interfaces(stick->contact, &count);
+  for (int i = 0; i < count; i++)
+    coefficients[i] = fem_compliance_friction(model, interfaces[i].a, interfaces[i].b);
   contact_stick_pairs_laws(stick->contact, coefficients, laws);
   return contact_stick_create(&stick->law, model->vertex_count, model->rest, (const int(*)[4])model->tets,
                               count, laws);

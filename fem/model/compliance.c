@@ -2,6 +2,8 @@
 #include "fem/model/compliance.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/vec3.h"
@@ -99,6 +101,54 @@ static Status choose_for_field(const FemModel *model, int party_count, double *s
   return status;
 }
 
+int fem_compliance_party(const FemModel *model, const char *name) {
+  int party = model->body_count;
+  for (int b = 0; b < model->body_count; b++)
+    if (strcmp(model->bodies[b].name, name) == 0) return b;
+  for (int o = 0; o < model->scene->obstacle_count; o++) {
+    const FemObstacleDef *obstacle = &model->scene->obstacles[o];
+    if (obstacle->kind == FEM_OBSTACLE_MESH) continue;
+    if (strcmp(obstacle->name, name) == 0) return party;
+    party++;
+  }
+  return -1;
+}
+
+static Status check_pair(const FemModel *model, const FemContactPairDef *pair) {
+  for (int k = 0; k < 2; k++)
+    if (fem_compliance_party(model, pair->names[k]) < 0)
+      return status_fail(STATUS_INPUT, "%s:%d:%d: contact.pairs: no body or obstacle has the name '%s'",
+                         model->scene->path ? model->scene->path : "scene", pair->place.line,
+                         pair->place.column, pair->names[k]);
+  return STATUS_OK;
+}
+
+static Status apply_pairs(const FemModel *model, int party_count, double *stiffness) {
+  const FemContactDef *contact = &model->scene->contact;
+  for (int i = 0; i < contact->pair_count; i++) {
+    const FemContactPairDef *pair = &contact->pairs[i];
+    TRY(check_pair(model, pair));
+    if (!(pair->stiffness > 0)) continue;
+    int a = fem_compliance_party(model, pair->names[0]), b = fem_compliance_party(model, pair->names[1]);
+    if (a < model->body_count) stiffness[a * party_count + b] = pair->stiffness;
+    if (b < model->body_count) stiffness[b * party_count + a] = pair->stiffness;
+  }
+  return STATUS_OK;
+}
+
+double fem_compliance_friction(const FemModel *model, int a, int b) {
+  const FemContactDef *contact = &model->scene->contact;
+  double friction = contact->friction;
+  for (int i = 0; i < contact->pair_count; i++) {
+    const FemContactPairDef *pair = &contact->pairs[i];
+    int first = fem_compliance_party(model, pair->names[0]),
+        second = fem_compliance_party(model, pair->names[1]);
+    bool is_theirs = (first == a && second == b) || (first == b && second == a);
+    if (is_theirs && pair->friction >= 0) friction = pair->friction;
+  }
+  return friction;
+}
+
 Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *party_count) {
   const FemContactDef *contact = &model->scene->contact;
   int parties = *party_count = model->body_count + count_shapes(model->scene);
@@ -109,6 +159,7 @@ Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *
   Status status = STATUS_OK;
   if (contact->potential == CONTACT_POTENTIAL_FIELD && !(contact->stiffness > 0))
     status = choose_for_field(model, parties, table);
+  if (!status) status = apply_pairs(model, parties, table);
   if (status) {
     memory_free(table);
     *stiffness = NULL;

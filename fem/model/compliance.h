@@ -20,8 +20,15 @@ Status fem_compliance_height(const FemModel *model, int body, double *height);
 
 // κ of every body with every party, bodies then the obstacles without elements in the scene's order, into
 // (body_count, body_count + obstacle_count); entries of what cannot meet are positive too. An array of the
-// caller's (memory_free). `party_count`: the columns.
+// caller's (memory_free). `party_count`: the columns. STATUS_INPUT: `contact.pairs` names what is not there.
 Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *party_count);
+
+// The number of that body or obstacle, as a party: −1, none has that name.
+int fem_compliance_party(const FemModel *model, const char *name);
+
+// μ between two parties: the scene's, or that of the last of `contact.pairs` with these two. Names must have
+// been checked (fem_compliance_stiffness).
+double fem_compliance_friction(const FemModel *model, int a, int b);
 
 // Its least and largest entry of what can meet.
 Status fem_compliance_range(const FemModel *model, double range[2]);

@@ -326,6 +326,28 @@ static Status add_loads(FemModel *model, const FemMesh *meshes) {
   return STATUS_OK;
 }
 
+static Status mark_inner(FemModel *model, const FemMesh *meshes) {
+  const FemSceneDef *scene = model->scene;
+  model->inner = memory_zeroed((size_t)model->vertex_count, 1);
+  if (!model->inner) return status_no_memory("the inner faces");
+  for (int b = 0; b < scene->body_count; b++)
+    for (int i = 0; i < scene->bodies[b].inner_count; i++) {
+      const FemSelectDef *select = &scene->bodies[b].inner[i].select;
+      int *vertices, count;
+      Status status = i < FEM_MAX_INNER
+                          ? fem_select_vertices(select, &meshes[b], &vertices, &count)
+                          : status_fail(STATUS_INPUT, "one too many; %d at most", FEM_MAX_INNER);
+      if (status)
+        return status_prefix(status, "%s:%d:%d: body '%s', inner_faces[%d]",
+                             scene->path ? scene->path : "scene", select->place.line, select->place.column,
+                             scene->bodies[b].name, i);
+      for (int v = 0; v < count; v++)
+        model->inner[model->bodies[b].vertex_begin + vertices[v]] |= (unsigned char)(1 << i);
+      memory_free(vertices);
+    }
+  return STATUS_OK;
+}
+
 void fem_model_number(FemModel *model) {
   for (int dof = 0; dof < 3 * model->vertex_count; dof++) model->unknown_of_dof[dof] = 0;
   for (int d = 0; d < model->driver_count; d++)
@@ -373,6 +395,7 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   append_bodies(model, meshes);
   TRY(add_drivers(model, meshes));
   TRY(add_loads(model, meshes));
+  TRY(mark_inner(model, meshes));
   fem_model_number(model);
   int elastic_tets = model->bodies[model->scene->body_count - 1].tet_end;
   TRY(fem_colouring_create(&model->colouring, model->vertex_count, (const int(*)[4])model->tets,
@@ -412,6 +435,7 @@ void fem_model_destroy(FemModel *model) {
   memory_free(model->bodies);
   memory_free(model->mass);
   memory_free(model->initial_velocity);
+  memory_free(model->inner);
   memory_free(model->unknown_of_dof);
   memory_free(model->dof_of_unknown);
   fem_colouring_destroy(&model->colouring);
@@ -531,8 +555,8 @@ double fem_model_velocity_tolerance(const FemModel *model) {
     slowest = fmin(slowest, sqrt(scene->bodies[b].material.young / scene->bodies[b].material.density));
   double share = has_self_friction(scene) ? VELOCITY_SHARE_OF_SELF_FRICTION : VELOCITY_SHARE;
   double chosen = share * scene->tolerance * slowest;
-  bool creeps =
-      scene->contact.friction > 0 && fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY;
+  bool creeps = fem_scene_most_friction(&scene->contact) > 0 &&
+                fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY;
   return creeps ? fmin(chosen, FRICTION_RESOLUTION * fem_model_slip_speed(model)) : chosen;
 }
 

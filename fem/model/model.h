@@ -49,11 +49,12 @@ typedef struct FemModel {
   int *quadratic_body;                     //                                           (quadratic_count)
   FemModelBody *bodies;                    //                                           (body_count)
   double *mass;                            // lumped, obstacles 0 [kg]                  (vertex_count)
-  double *initial_velocity;                // [m/s]                                     (vertex_count, 3)
-  int unknown_count;                       // n
-  int *unknown_of_dof;                     // number of the unknown, −1: prescribed     (3·vertex_count)
-  int *dof_of_unknown;                     //                                           (unknown_count)
-  FemModelDriver *drivers;                 //                                           (driver_count)
+  unsigned char *inner;     // bit k: on the k-th part of the boundary that is no surface (vertex_count)
+  double *initial_velocity; // [m/s]                                     (vertex_count, 3)
+  int unknown_count;        // n
+  int *unknown_of_dof;      // number of the unknown, −1: prescribed     (3·vertex_count)
+  int *dof_of_unknown;      //                                           (unknown_count)
+  FemModelDriver *drivers;  //                                           (driver_count)
   int driver_count;
   FemLoad *loads; //                                                                    (load_count)
   int load_count;

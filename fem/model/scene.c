@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/model/scene.h"
 
+#include <math.h>
+
 #include "base/memory.h"
 
 static void free_constraints(FemConstraintDef *constraints, int count) {
@@ -27,6 +29,8 @@ static void free_body(FemBodyDef *body) {
   free_constraints(body->fixed, body->fixed_count);
   free_constraints(body->driven, body->driven_count);
   free_loads(body->loads, body->load_count);
+  for (int i = 0; i < body->inner_count; i++) memory_free(body->inner[i].select.group);
+  memory_free(body->inner);
 }
 
 static void free_obstacle(FemObstacleDef *obstacle) {
@@ -42,6 +46,9 @@ void fem_scene_destroy(FemSceneDef *scene) {
   for (int i = 0; i < scene->obstacle_count; i++) free_obstacle(&scene->obstacles[i]);
   memory_free(scene->bodies);
   memory_free(scene->obstacles);
+  for (int i = 0; i < scene->contact.pair_count; i++)
+    for (int k = 0; k < 2; k++) memory_free(scene->contact.pairs[i].names[k]);
+  memory_free(scene->contact.pairs);
   memory_free(scene->contact.overlap);
   memory_free(scene->contact.net);
   memory_free(scene->status_reference);
@@ -53,6 +60,12 @@ void fem_scene_destroy(FemSceneDef *scene) {
 FemFrictionLaw fem_scene_friction_law(const FemContactDef *contact) {
   if (contact->friction_law != FEM_FRICTION_AUTO) return contact->friction_law;
   return contact->potential == CONTACT_POTENTIAL_FIELD ? FEM_FRICTION_STICK : FEM_FRICTION_VELOCITY;
+}
+
+double fem_scene_most_friction(const FemContactDef *contact) {
+  double most = contact->friction;
+  for (int i = 0; i < contact->pair_count; i++) most = fmax(most, contact->pairs[i].friction);
+  return most;
 }
 
 double fem_scene_frame_time(const FemSceneDef *scene, int frame) {

@@ -78,6 +78,13 @@ typedef enum FemElementKind {
   FEM_ELEMENT_QUADRATIC, // ten nodes (fem/element/quadratic.h)
 } FemElementKind;
 
+// Part of a body's boundary that is no surface: a plane of symmetry, or glued to something.
+typedef struct FemInnerDef {
+  FemSelectDef select; // the first member; its faces have all their corners in it
+} FemInnerDef;
+
+enum { FEM_MAX_INNER = 8 }; // of a body
+
 typedef struct FemBodyDef {
   char *name;
   char *mesh_path;    // as written, relative to the scene file; NULL: a box
@@ -96,6 +103,8 @@ typedef struct FemBodyDef {
   int driven_count;
   FemLoadDef *loads; //                                       (load_count)
   int load_count;
+  FemInnerDef *inner; //                                      (inner_count)
+  int inner_count;
   FemScenePlace place;
 } FemBodyDef;
 
@@ -135,10 +144,21 @@ typedef enum FemFrictionLaw {
   FEM_FRICTION_VELOCITY, // contact/friction.h
 } FemFrictionLaw;
 
+// What holds between two in place of what holds between any two.
+typedef struct FemContactPairDef {
+  char *names[2];   // of bodies or obstacles
+  double stiffness; // κ; 0: as without
+  double friction;  // μ; NAN: as without
+  FemScenePlace place;
+} FemContactPairDef;
+
 typedef struct FemContactDef {
   bool is_on;
   double stiffness; // κ; 0: chosen (the softest body's Young's modulus; `body`: that over its volume²…)
   ContactPotential potential;
+  bool potential_is_given;  // else it is chosen by the overlap model
+  FemContactPairDef *pairs; //                                (pair_count)
+  int pair_count;
   char *overlap; // name of the overlap model
   char *net;     // weights in its place, or hybrid's: a file, relative to the scene's, or a name; NULL: none
   OverlapOptions net_options;
@@ -195,5 +215,7 @@ double fem_scene_frame_time(const FemSceneDef *scene, int frame);
 
 // The law that `auto` stands for, or the one that the scene names.
 FemFrictionLaw fem_scene_friction_law(const FemContactDef *contact);
+// The largest μ between any two; 0: nothing rubs.
+double fem_scene_most_friction(const FemContactDef *contact);
 
 #endif

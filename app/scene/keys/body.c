@@ -4,6 +4,13 @@
 #include "app/scene/keys/choices.h"
 #include "fem/model/scene.h"
 
+static const SceneSection inner = {.help = "faces that are no surface",
+                                   .size = sizeof(FemInnerDef),
+                                   .keys = (const SceneKey[]){{0}},
+                                   .more = &app_scene_keys_select,
+                                   .one_of = "box halfspace group all",
+                                   PLACE(FemInnerDef, select.place)};
+
 static const SceneKey body_keys[] = {
     {"name", SCENE_LABEL, AT(FemBodyDef, name), .required = "block",
      .help = "how messages and outputs call it"},
@@ -30,6 +37,11 @@ static const SceneKey body_keys[] = {
      .count_offset = offsetof(FemBodyDef, driven_count), .help = "vertices that move as told"},
     {"loads", SCENE_LIST, AT(FemBodyDef, loads), .section = &app_scene_keys_load,
      .count_offset = offsetof(FemBodyDef, load_count), .help = "forces and pressures from outside"},
+    {"inner_faces", SCENE_LIST, AT(FemBodyDef, inner), .section = &inner,
+     .count_offset = offsetof(FemBodyDef, inner_count),
+     .help = "parts of its boundary that contact shall not take for a surface: planes of symmetry, what is "
+             "glued; "
+             "faces with all corners selected. At most 8; matters to the potential `field`"},
     {0},
 };
 const SceneSection app_scene_keys_body = {

@@ -1,18 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/scene/keys/table.h"
 
+#include <math.h>
+#include <string.h>
+
 #include "app/scene/keys/choices.h"
 #include "fem/model/scene.h"
+#include "overlap/model.h"
+
+// Whether the model of that name gives the centroid of an overlap, without which there is no `field`.
+static bool has_centroid(const char *overlap) {
+  int count;
+  const OverlapOps *const *models = overlap_model_list(&count);
+  for (int i = 0; i < count; i++)
+    if (strcmp(models[i]->name, overlap) == 0) return models[i]->has_centroid != NULL;
+  return false;
+}
 
 static const char *finish_contact(void *self, const char **key) {
-  const FemContactDef *contact = self;
+  FemContactDef *contact = self;
+  if (!contact->potential_is_given)
+    contact->potential =
+        !contact->net && has_centroid(contact->overlap) ? CONTACT_POTENTIAL_FIELD : CONTACT_POTENTIAL_NODAL;
   if (contact->viscosity > 0 && contact->potential != CONTACT_POTENTIAL_NODAL &&
       contact->potential != CONTACT_POTENTIAL_FIELD) {
     *key = "viscosity";
     return "viscosity builds on the potential field or nodal; take one of the two keys away";
   }
   FemFrictionLaw law = fem_scene_friction_law(contact);
-  if (contact->friction > 0 && law == FEM_FRICTION_STICK && contact->potential != CONTACT_POTENTIAL_FIELD) {
+  if (fem_scene_most_friction(contact) > 0 && law == FEM_FRICTION_STICK &&
+      contact->potential != CONTACT_POTENTIAL_FIELD) {
     *key = "friction";
     return "the law stick builds on the potential field; take that, or the law velocity";
   }
@@ -82,6 +99,21 @@ static const SceneKey rest_keys[] = {
 };
 static const SceneSection rest = {.help = "when bodies are at rest", .keys = rest_keys};
 
+static const SceneKey pair_keys[] = {
+    {"bodies", SCENE_TWO, AT(FemContactPairDef, names), .required = "[block, ground]",
+     .help = "two names, of bodies or a body and an obstacle; twice the same: a body with itself"},
+    {"stiffness", SCENE_NUMBER, AT(FemContactPairDef, stiffness), .unit = "Pa", .range = "(0, inf)",
+     .absent_help = "as between any two", .help = "κ between these two, as above"},
+    {"friction", SCENE_NUMBER, AT(FemContactPairDef, friction), .range = "[0, inf)", .absent = NAN,
+     .absent_help = "as between any two", .help = "μ between these two"},
+    {0},
+};
+static const SceneSection pair = {.help = "what holds between two",
+                                  .size = sizeof(FemContactPairDef),
+                                  .keys = pair_keys,
+                                  .some_of = "stiffness friction",
+                                  PLACE(FemContactPairDef, place)};
+
 static const SceneKey contact_keys[] = {
     {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa", .range = "(0, inf)",
      .absent_help =
@@ -89,9 +121,11 @@ static const SceneKey contact_keys[] = {
          "height and E of each two that meet, such that what touches gives way by 2 % of what they do",
      .help = "penalty κ; higher: less overlap, shorter steps (Pa/m with the potential `field`, Pa/m³ with "
              "`body`)"},
-    {"potential", SCENE_CHOICE, AT(FemContactDef, potential), .fallback = "nodal",
-     .choices = &app_scene_choices_potentials, .help = "how overlap volumes become pressure"},
-    {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "geo",
+    {"potential", SCENE_CHOICE, AT(FemContactDef, potential),
+     .absent_help = "`field`; with an overlap model that gives no centroid (the learned ones) `nodal`",
+     MARK(FemContactDef, potential_is_given, true), .choices = &app_scene_choices_potentials,
+     .help = "how overlaps become pressure"},
+    {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",
      .choices = &app_scene_choices_overlaps,
      .help = "the model that gives the overlap volume of two tetrahedra"},
     {"net", SCENE_SECTION, .section = &net, .help = "of a learned model: its weights, or more in a mapping"},
@@ -102,10 +136,14 @@ static const SceneKey contact_keys[] = {
      .choices = &app_scene_choices_hessians, .help = "derivatives of the contact force for Newton's method"},
     {"friction", SCENE_SECTION, .section = &friction, .absent_help = "no friction",
      .help = "what touches resists sliding; a number alone is its coefficient"},
+    {"pairs", SCENE_LIST, AT(FemContactDef, pairs), .section = &pair,
+     .count_offset = offsetof(FemContactDef, pair_count),
+     .help = "what holds between some two in place of the above; of entries for the same two the last one"},
     {"viscosity", SCENE_NUMBER, AT(FemContactDef, viscosity), .unit = "Pa s", .range = "(0, inf)",
      .absent_help = "none",
-     .help =
-         "η: a pressure η w dw/dt beside κ w, w the covered share of a vertex; takes energy out of impacts"},
+     .help = "η: takes energy out of impacts. With `field` a pressure η d dd/dt beside κ d, d the depth [Pa "
+             "s/m²]; with "
+             "`nodal` η w dw/dt beside κ w, w the covered share of a vertex"},
     {"rest", SCENE_SECTION, .section = &rest, .absent_help = "no body sleeps",
      MARK(FemContactDef, rest_is_on, true),
      .help = "bodies at rest sleep, without unknowns and contact search, until something nears them; `{}` "

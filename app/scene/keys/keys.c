@@ -125,6 +125,8 @@ static const char *type_text(SceneType type) {
     return "a number or three [x, y, z], none zero";
   case SCENE_COUNTS:
     return "a whole number or three [x, y, z]";
+  case SCENE_TWO:
+    return "a list of two names, [a, b]";
   case SCENE_AXES:
     return "a list of some of x, y, z";
   case SCENE_ROWS:

@@ -16,6 +16,7 @@ typedef enum SceneType {
   SCENE_LABEL,     // char *, owned: a name that others refer to
   SCENE_NAME,      // char *, owned: one of `choices`
   SCENE_CHOICE,    // an enum or bool: the number of one of `choices`
+  SCENE_TWO,       // char *[2], owned: two names that differ, or twice the same
   SCENE_VECTOR,    // double[3]
   SCENE_DIRECTION, // double[3], not zero; need not have unit length
   SCENE_FACTORS,   // double[3], none of them zero; one number stands for three
