@@ -108,6 +108,7 @@ static void run_with(SceneRun *run, const OverlapOps *ops, int threads, const ch
                                          : "bodies.slab.mesh.box.cells=[6,6,1]",
                              is_costly ? "bodies.block.mesh.box.cells=1"
                                        : "bodies.block.mesh.box.cells=[4,4,1]",
+                             is_dear ? "contact.potential=nodal" : "contact.margin=null", // whole elements
                              more,
                              NULL};
   omp_set_num_threads(threads);
@@ -146,7 +147,7 @@ END_TEST
 
 // What the scene has not: viscous contact, bodies that sleep.
 #define OTHER_CONTACT                                                                                        \
-  "contact={stiffness: 2e5, overlap: clip, viscosity: 50, rest: {speed: 1, acceleration: 1e9, time: 1e-5}}"
+  "contact={overlap: clip, viscosity: 5e4, rest: {speed: 1, acceleration: 1e9, time: 1e-5}}"
 #define STICKING "contact={stiffness: 1e7, potential: field, overlap: clip, friction: 0.3}"
 
 // _i: with those; other solvers.

@@ -184,6 +184,17 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_int_eq(scene->contact.friction_law, FEM_FRICTION_VELOCITY);
   ck_assert_double_eq(scene->contact.slip_speed, 1e-4);
   ck_assert_double_eq(scene->contact.viscosity, 11);
+  ck_assert_int_eq(scene->contact.pair_count, 2);
+  ck_assert_str_eq(scene->contact.pairs[0].names[0], "lower");
+  ck_assert_str_eq(scene->contact.pairs[0].names[1], "ground");
+  ck_assert_double_eq(scene->contact.pairs[0].stiffness, 5e6);
+  ck_assert(isnan(scene->contact.pairs[0].friction));
+  ck_assert_str_eq(scene->contact.pairs[1].names[1], "upper-2");
+  ck_assert_double_eq(scene->contact.pairs[1].stiffness, 0);
+  ck_assert_double_eq(scene->contact.pairs[1].friction, 0.1);
+  ck_assert_int_eq(scene->bodies[1].inner_count, 2);
+  ck_assert_str_eq(scene->bodies[1].inner[0].select.group, "glue");
+  ck_assert_int_eq(scene->bodies[1].inner[1].select.kind, FEM_SELECT_BOX);
   ck_assert(scene->contact.rest_is_on);
   ck_assert_double_eq(scene->contact.rest_speed, 1e-3);
   ck_assert_double_eq(scene->contact.rest_acceleration, 0.02);
@@ -252,8 +263,8 @@ START_TEST(an_empty_contact_section_turns_contact_on) {
   ck_assert_ok(app_scene_read_text("s.yaml", text, strlen(text), &scene));
   ck_assert(scene.contact.is_on && scene.contact.use_full_hessian);
   ck_assert_double_eq(scene.contact.stiffness, 0);
-  ck_assert_int_eq(scene.contact.potential, CONTACT_POTENTIAL_NODAL);
-  ck_assert_str_eq(scene.contact.overlap, "geo");
+  ck_assert_int_eq(scene.contact.potential, CONTACT_POTENTIAL_FIELD);
+  ck_assert_str_eq(scene.contact.overlap, "clip");
   fem_scene_destroy(&scene);
 }
 END_TEST
@@ -447,7 +458,7 @@ START_TEST(an_override_turns_contact_off_and_on) {
   ck_assert_ok(app_scene_read(full_yaml, on, 2, &scene));
   ck_assert(scene.contact.is_on);
   ck_assert_int_eq(scene.contact.potential, CONTACT_POTENTIAL_PAIR);
-  ck_assert_str_eq(scene.contact.overlap, "geo");
+  ck_assert_str_eq(scene.contact.overlap, "clip");
   fem_scene_destroy(&scene);
 }
 END_TEST

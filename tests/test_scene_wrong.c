@@ -108,7 +108,7 @@ static const Wrong wrong[] = {
     {TIME BODY "contact: {friction: much}\n",
      "s.yaml:3:21: contact.friction: expected a mapping {key: value} or a number (its 'coefficient'), found"},
     {TIME BODY "contact: {potential: pair, viscosity: 1}\n",
-     "s.yaml:3:39: contact: viscosity builds on the potential nodal"},
+     "s.yaml:3:39: contact: viscosity builds on the potential field or nodal"},
     {TIME BODY "contact: {friction: {slip_speed: 1}}\n", "s.yaml:3:21: contact.friction needs 'coefficient'"},
     {TIME BODY "contact: {friction: 1}\ncontact: {}\n",
      "s.yaml:4:1: duplicate key 'contact'; it stands at line 3, column 1 already"},

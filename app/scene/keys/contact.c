@@ -22,6 +22,13 @@ static const char *finish_contact(void *self, const char **key) {
   if (!contact->potential_is_given)
     contact->potential =
         !contact->net && has_centroid(contact->overlap) ? CONTACT_POTENTIAL_FIELD : CONTACT_POTENTIAL_NODAL;
+  if (!contact->potential_is_given && contact->potential == CONTACT_POTENTIAL_NODAL &&
+      contact->stiffness > 0) {
+    *key = "stiffness";
+    return "the overlap model gives no centroid, so the potential would be nodal, whose stiffness is in Pa, "
+           "not field, "
+           "whose stiffness is in Pa/m; name the potential";
+  }
   if (contact->viscosity > 0 && contact->potential != CONTACT_POTENTIAL_NODAL &&
       contact->potential != CONTACT_POTENTIAL_FIELD) {
     *key = "viscosity";
