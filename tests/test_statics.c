@@ -242,8 +242,9 @@ START_TEST(what_only_a_motion_has_is_refused_with_its_place) {
   refuse("    fixed: [{group: x_min, release: 0.5}]\n", "", "test.yaml:6:28: ");
   refuse("    fixed: [{group: x_min}]\n    driven: [{group: x_max, velocity: [1, 0, 0], release: 0.5}]\n", "",
          "cannot release");
-  refuse("", "contact: {friction: 0.5}\n", "test.yaml:2:11: ");
-  refuse("", "contact: {friction: {coefficient: 0.5}}\n", "friction of the law velocity is a force of motion");
+  refuse("", "contact: {friction: {coefficient: 0.5, law: velocity}}\n", "test.yaml:2:11: ");
+  refuse("", "contact: {potential: nodal, friction: 0.5}\n",
+         "friction of the law velocity is a force of motion");
   refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "test.yaml:2:18: ");
   refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "cholmod or pcg");
 }

@@ -27,7 +27,8 @@ static const double SQUEEZED = 0.3, SQUEEZED_STVK = 0.8;
 enum { MAX_RELAXATIONS = 400, MAX_REFUSALS = 40, WORST_COUNT = 3 };
 
 static Status check_scene(const FemSceneDef *scene) {
-  if (scene->contact.friction > 0 && fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY)
+  if (fem_scene_most_friction(&scene->contact) > 0 &&
+      fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY)
     return status_fail(STATUS_INPUT, "friction by the law 'velocity' is a force of motion; take it or "
                                      "time.static away, or take the potential 'field' and the law 'stick'");
   for (int b = 0; b < scene->body_count; b++) {
