@@ -34,7 +34,13 @@ static const Case cases[] = {
     // Bodies in contact.
     {"tests/scenes/balls.yaml", "--set time.end=0.05", "\"onsets\": "},
     // Friction, which lags.
-    {"tests/scenes/incline.yaml", "--set time.end=0.3", "\"friction_pairs\": "},
+    {"tests/scenes/incline.yaml", "--set time.end=0.3 --set contact.potential=nodal", "\"friction_pairs\": "},
+    // Friction with a history.
+    {"tests/scenes/incline.yaml",
+     "--set contact.potential=field --set contact.overlap=clip --set contact.stiffness=3.5e7 --set "
+     "time.end=0.3",
+     "\"friction_vertices\": "},
+    {"tests/scenes/held.yaml", "--set time.end=0.2", "\"friction_vertices\": "},
     // A linear scene, assembled once.
     {"tests/scenes/cantilever.yaml", "--set time.end=0.02", "\"steps\": "},
     // Unknowns that are numbered anew.

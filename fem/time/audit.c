@@ -27,11 +27,18 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
   audit->scale = fmax(floor, largest_part(audit, energy));
 }
 
+// Of a power that is dissipated in a step. One that falls does so exponentially, as that of a mode which is
+// damped faster than the step is long: the mean of the ends would be many times what there was to lose.
+static double mean_dissipated(double begin, double end) {
+  if (!(begin > end)) return 0.5 * (begin + end);
+  return end > 0 ? (begin - end) / log(begin / end) : 0;
+}
+
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy) {
   FemAudit next = *audit;
   double half_step = 0.5 * (time - audit->time);
   next.time = time;
-  next.damped += half_step * (audit->dissipated_power + energy->dissipated_power);
+  next.damped += 2 * half_step * mean_dissipated(audit->dissipated_power, energy->dissipated_power);
   next.driven_work += half_step * (audit->driven_power + energy->driven_power);
   next.work = next.driven_work + energy->applied_work;
   next.dissipated = next.damped + energy->plastic_work + energy->friction_work;

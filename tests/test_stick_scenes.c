@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Friction by elastic stick in motion: what sticks stays, and what is written is what holds it.
+#include "scene.h"
+
+#include "base/vec3.h"
+
+// A block on a slope of atan ½, with the potential `field`.
+static void run_incline(SceneRun *run, const char *friction, const char *tolerance, const char *end) {
+  scene_run(run, "incline",
+            (const char *const[]){"contact.potential=field", "contact.overlap=clip",
+                                  "contact.stiffness=3.5e7", friction, tolerance, end, NULL});
+}
+
+// Of a body's vertices.
+static Vec3 centre(const SceneRun *run, int frame) {
+  Vec3 sum = {0, 0, 0};
+  for (int v = 0; v < run->model.vertex_count; v++)
+    sum = vec3_add(sum, vec3_scale(run->model.mass[v] / run->model.bodies[0].mass,
+                                   vec3_at(scene_position(run, frame, v))));
+  return sum;
+}
+
+START_TEST(on_a_slope_of_one_half_a_block_sticks_at_0_51) {
+  SceneRun run;
+  run_incline(&run, "contact.friction=0.51", "time.tolerance=1e-4", "time.end=10");
+  int last = run.result.frame_count - 1;
+  double moved = vec3_length(vec3_sub(centre(&run, last), centre(&run, last / 2)));
+  double weight = run.model.bodies[0].mass * 9.81;
+  const double *force = scene_force(&run, last, 0);
+  ck_assert_double_le(moved, 1e-7);
+  ck_assert_near(force[0], -weight / sqrt(5), 1e-3 * weight);
+  ck_assert_near(force[2], 2 * weight / sqrt(5), 1e-3 * weight);
+  scene_close(&run);
+}
+END_TEST
+
+// Acceleration over the last half of the run, from three frames.
+static double acceleration(const SceneRun *run) {
+  int last = run->result.frame_count - 1, half = last / 2, middle = (half + last) / 2;
+  double h = run->result.frame_times[last] - run->result.frame_times[middle],
+         g = run->result.frame_times[middle] - run->result.frame_times[half];
+  double late = (centre(run, last).x - centre(run, middle).x) / h,
+         early = (centre(run, middle).x - centre(run, half).x) / g;
+  return 2 * (late - early) / (h + g);
+}
+
+// _i: tolerance.
+START_TEST(on_a_slope_of_one_half_a_block_slides_at_0_49) {
+  static const char *const tolerances[] = {"time.tolerance=1e-4", "time.tolerance=1e-6"};
+  static const double bounds[] = {1e-2, 1e-3};
+  SceneRun run;
+  run_incline(&run, "contact.friction=0.49", tolerances[_i], "time.end=1");
+  double theory = 9.81 * (1 - 0.49 * 2) / sqrt(5); // g (sin θ − μ cos θ)
+  ck_assert_near(acceleration(&run), theory, bounds[_i] * theory);
+  ck_assert_double_gt(run.result.audit.dissipated, 0);
+  ck_assert_double_le(scene_gain(&run), 1e-3);
+  scene_close(&run);
+}
+END_TEST
+
+// _i: longest step, the chosen one, and shorter ones.
+START_TEST(a_cube_held_between_plates_is_carried_by_what_is_written) {
+  static const char *const steps[] = {"time.tolerance=1e-4", "time.max_step=0.02", "time.max_step=0.005"};
+  SceneRun run;
+  scene_run(&run, "held", (const char *const[]){steps[_i], NULL});
+  double weight = run.model.bodies[0].mass * 9.81;
+  ck_assert_near(weight, 3.924, 1e-9);
+  int held = 0;
+  for (int frame = 0; frame < run.result.frame_count; frame++) {
+    if (run.result.frame_times[frame] < 0.5) continue; // the table has gone at 0.45 s
+    Vec3 sum = {0, 0, 0};
+    for (int i = 0; i < run.result.interface_count; i++)
+      sum = vec3_add(sum, vec3_at(scene_force(&run, frame, i)));
+    ck_assert_near(sum.z, weight, 1e-3 * weight);
+    ck_assert_near(sum.y, 0, 1e-3 * weight);
+    ck_assert_near(sum.x, 0, 1e-3 * weight);
+    held++;
+  }
+  ck_assert_int_gt(held, 20);
+  int last = run.result.frame_count - 1;
+  ck_assert_near(vec3_length(vec3_sub(centre(&run, last), centre(&run, last - 20))), 0, 1e-7);
+  scene_close(&run);
+}
+END_TEST
+
+// Coulomb's friction turns a solid ball's sliding into rolling at 5/7 of its speed, v / (1 + I/(m R²)): here
+// with the inertia of the mesh, whose masses are at its vertices, and the height of its centre.
+START_TEST(a_ball_that_slides_rolls_on_at_what_its_inertia_leaves) {
+  SceneRun run;
+  scene_run(&run, "bowl", NULL);
+  int last = run.result.frame_count - 1, from = last / 2;
+  double inertia = 0, mass = run.model.bodies[0].mass, height = 0;
+  Vec3 start = centre(&run, 0);
+  for (int v = 0; v < run.model.vertex_count; v++) {
+    Vec3 arm = vec3_sub(vec3_at(scene_position(&run, 0, v)), start);
+    inertia += run.model.mass[v] * (arm.x * arm.x + arm.z * arm.z);
+  }
+  for (int frame = from; frame <= last; frame++) height += centre(&run, frame).z / (last - from + 1);
+  double time = run.result.frame_times[last] - run.result.frame_times[from];
+  double speed = (centre(&run, last).x - centre(&run, from).x) / time;
+  double theory = 1 / (1 + inertia / (mass * height * height));
+  ck_assert_near(theory, 5.0 / 7, 0.05); // what the mesh is worth
+  ck_assert_near(speed, theory, 0.01 * theory);
+  scene_close(&run);
+}
+END_TEST
+
+// A block dragged over a block that is meshed otherwise, from equilibrium to equilibrium: T = μN, and what is
+// put in is dissipated.
+START_TEST(static_scenes_have_friction) {
+  SceneRun run;
+  scene_run(&run, "drag", NULL);
+  int last = run.result.frame_count - 1;
+  for (int frame = 5; frame <= last; frame++) {
+    const double *force = scene_force(&run, frame, 0);
+    ck_assert_double_gt(force[2], 30);
+    ck_assert_near(-force[0] / force[2] / 0.4, 1, 3e-4);
+    ck_assert_near(force[1], 0, 1e-3 * force[2]);
+  }
+  double work = run.result.audit.work;
+  ck_assert_double_gt(work, 0.2);
+  ck_assert_near(run.result.audit.dissipated, work, 2e-2 * work); // the rest is stored
+  scene_close(&run);
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("stick_scenes");
+  tcase_add_test(test_case, on_a_slope_of_one_half_a_block_sticks_at_0_51);
+  tcase_add_loop_test(test_case, on_a_slope_of_one_half_a_block_slides_at_0_49, 0, 2);
+  tcase_add_loop_test(test_case, a_cube_held_between_plates_is_carried_by_what_is_written, 0, 3);
+  tcase_add_test(test_case, a_ball_that_slides_rolls_on_at_what_its_inertia_leaves);
+  tcase_add_test(test_case, static_scenes_have_friction);
+  return suite_run("stick_scenes", test_case, 120);
+}
