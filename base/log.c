@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -63,6 +64,22 @@ void log_debug(const char *format, ...) {
   va_end(args);
 }
 
+bool log_has_terminal(void) {
+  return isatty(STDERR_FILENO);
+}
+
+// As many columns as the terminal has now, less one; characters of several bytes are not torn.
+static void cut_to_terminal(char *text) {
+  struct winsize window;
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &window) != 0 || window.ws_col < 2) return;
+  int columns = 0;
+  for (char *at = text; *at; at++) {
+    bool begins_character = ((unsigned char)*at & 0xC0) != 0x80;
+    if (begins_character && ++columns >= window.ws_col) *at = 0;
+    if (!*at) return;
+  }
+}
+
 void log_progress(const char *format, ...) {
   static double shown_at = -1;
   if (level < LOG_INFO || !isatty(STDERR_FILENO)) return;
@@ -71,9 +88,11 @@ void log_progress(const char *format, ...) {
   shown_at = now;
   va_list args;
   va_start(args, format);
-  fputs("\r\033[K", stderr);
-  vfprintf(stderr, format, args);
+  char line[512];
+  vsnprintf(line, sizeof line, format, args);
   va_end(args);
+  cut_to_terminal(line);
+  fprintf(stderr, "\r\033[K%s", line);
   fflush(stderr);
   progress_is_shown = true;
 }

@@ -25,6 +25,8 @@ void log_debug(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 // One line that is overwritten in place, on a terminal only and at most ten times a second.
 void log_progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
+// Whether the progress line is seen: standard error is a terminal.
+bool log_has_terminal(void);
 // Removes the progress line, before other output or at the end.
 void log_progress_end(void);
 

@@ -10,8 +10,7 @@
 static const char ENDING[] = ".safetensors";
 
 bool overlap_weights_is_path(const char *name) {
-  size_t length = strlen(name), ending = sizeof ENDING - 1;
-  return length > ending && strcmp(name + length - ending, ENDING) == 0;
+  return strpbrk(name, "./") != NULL; // names of the program's own models have neither
 }
 
 Status overlap_weights_find(const char *name, char *path, size_t size) {

@@ -164,6 +164,37 @@ START_TEST(no_peak_of_a_force_is_missed) {
 }
 END_TEST
 
+START_TEST(bodies_that_overlap_at_the_start_are_named) {
+  static char text[1 << 14];
+  char words[512];
+  make_folder();
+  const char *const commands[] = {"check", "run -o"};
+  for (int k = 0; k < 4; k++) {
+    snprintf(words, sizeof words, "%s %s %s/tests/scenes/drop.yaml --set time.end=1e-3 %s", commands[k % 2],
+             k % 2 ? folder : "", TETLAP_SOURCE_DIR,
+             k < 2 ? "--set bodies.block.place='{translate: [0, 0, -0.01]}'" : "");
+    ck_assert_int_eq(print(words, text, sizeof text), 0);
+    ck_assert_msg((strstr(text, "'block' and 'ground' overlap at the start") != NULL) == (k < 2), "%s", text);
+  }
+  remove_folder();
+}
+END_TEST
+
+START_TEST(progress_in_a_pipe_is_lines) {
+  static char text[1 << 16];
+  char words[512];
+  make_folder();
+  snprintf(words, sizeof words, "run %s/tests/scenes/drop.yaml -o %s", TETLAP_SOURCE_DIR, folder);
+  ck_assert_int_eq(print(words, text, sizeof text), 0);
+  ck_assert_ptr_nonnull(strstr(text, "\n50 %: t = "));
+  ck_assert_ptr_null(strchr(text, '\r'));
+  strncat(words, " -q --progress json", sizeof words - strlen(words) - 1);
+  ck_assert_int_eq(print(words, text, sizeof text), 0);
+  ck_assert_msg(strstr(text, "\"left_s\":") != NULL, "%s", text);
+  remove_folder();
+}
+END_TEST
+
 START_TEST(steps_that_never_end_are_refused) {
   FemSceneDef scene;
   const char *set[] = {"time.max_step=1e-30"};
@@ -180,6 +211,8 @@ int main(void) {
   tcase_add_test(cases, a_second_run_into_a_folder_leaves_nothing_of_the_first);
   tcase_add_test(cases, what_cannot_be_printed_is_an_error);
   tcase_add_test(cases, no_peak_of_a_force_is_missed);
+  tcase_add_test(cases, bodies_that_overlap_at_the_start_are_named);
+  tcase_add_test(cases, progress_in_a_pipe_is_lines);
   tcase_add_test(cases, steps_that_never_end_are_refused);
   return suite_run("stop", cases, 60);
 }

@@ -28,12 +28,15 @@ static void raise_flag(int signal_number) {
   stop_flag = 1;
 }
 
+enum { KEY_PROGRESS = 600 };
+
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Write into DIR (default: out/ and the scene's name)", 1},
     {"set", 's', "KEY=VALUE", 0, "Replace a value of the scene, as in contact.stiffness=1e6; may be repeated",
      1},
     {"threads", 't', "N", 0, "Use N threads (default: the scene's, else all)", 1},
     {"json", 'j', NULL, 0, "Print the result as JSON on standard output", 2},
+    {"progress", KEY_PROGRESS, "json", 0, "Progress as a line of JSON twice a second, on standard error", 2},
     {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
     {"verbose", 'v', NULL, 0, "Say more: a line a step, and why one is taken back", 2},
     {0},
@@ -50,6 +53,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     break;
   case 'j':
     options->is_json = true;
+    break;
+  case KEY_PROGRESS:
+    if (strcmp(text, "json") != 0) argp_error(state, "--progress %s: the only form is json", text);
+    options->is_progress_json = true;
     break;
   case 'q':
     options->is_quiet = true;
@@ -135,15 +142,39 @@ void app_job_close(AppJob *job) {
   *job = (AppJob){0};
 }
 
+static Status print_progress(AppProgress *progress, const FemRunProgress *state, double left) {
+  static const double PERIOD_S = 0.5;
+  double now = clock_wall_s();
+  bool is_due = now - progress->told_at_s >= PERIOD_S || state->time >= state->end;
+  Record *record = is_due ? record_new() : NULL;
+  if (!record) return is_due ? status_no_memory("the progress") : STATUS_OK;
+  progress->told_at_s = now;
+  record_number(record, "time", state->time);
+  record_number(record, "end", state->end);
+  record_integer(record, "steps", state->step_count);
+  record_number(record, "step_s", state->step);
+  record_integer(record, "pairs", state->active_pairs);
+  record_number(record, "left_s", left);
+  Status status = record_print_line(record, stderr);
+  record_destroy(record);
+  return status;
+}
+
 Status app_job_show_progress(void *self, const FemRunProgress *state) {
   AppProgress *progress = self;
   double share = state->time / state->end;
   log_debug("%st = %.9g s: step %lld of %.3g s, %d pairs overlap", progress->label, state->time,
             state->step_count, state->step, state->active_pairs);
   double left = share > 0 ? (clock_wall_s() - progress->began_s) * (1 - share) / share : 0;
+  if (progress->is_json) return print_progress(progress, state, left);
   log_progress("%s%3.0f %%  t %.4g of %.4g s  step %lld  h %.1e s  pairs %d  left %d:%02d", progress->label,
                100 * share, state->time, state->end, state->step_count, state->step, state->active_pairs,
                (int)(left / 60), (int)fmod(left, 60));
+  int tenth = (int)(10 * share);
+  if (tenth > progress->tenth && tenth < 10 && !log_has_terminal())
+    log_info("%s%d %%: t = %.4g of %.4g s, step %lld, about %.3g s left", progress->label, 10 * tenth,
+             state->time, state->end, state->step_count, left);
+  progress->tenth = tenth;
   return STATUS_OK;
 }
 

@@ -20,6 +20,7 @@ typedef struct AppJobOptions {
   int override_count;
   int threads; // 0: the scene's, else all
   bool is_quiet, is_verbose, is_json;
+  bool is_progress_json; // progress as a line of JSON each
 } AppJobOptions;
 
 // The options -o, --set, --threads, -q, -v, --json and the argument SCENE, as an argp child; its input is
@@ -44,10 +45,15 @@ const volatile sig_atomic_t *app_job_stop_flag(void);
 // The overlap model's name or weights file; NULL: the scene has no contact.
 const char *app_job_overlap(const AppJob *job);
 
-// An observer of fem_run that draws the progress line: time, step, step size, pairs, time left.
+// An observer of fem_run that draws the progress line: time, step, step size, pairs, time left. Where
+// standard error is no terminal, a line a tenth of the time; as JSON, an object a line on standard error,
+// twice a second.
 typedef struct AppProgress {
   double began_s;
   const char *label; // in front; "" for none
+  bool is_json;
+  int tenth;        // told last
+  double told_at_s; // of JSON; 0: never
 } AppProgress;
 Status app_job_show_progress(void *progress, const FemRunProgress *state);
 

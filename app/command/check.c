@@ -12,14 +12,16 @@
 #include "base/text.h"
 #include "fem/effect/effect.h"
 #include "fem/model/compliance.h"
+#include "fem/run/start.h"
 #include "fem/sparse/solver.h"
 
-enum { MAX_NOTES = 16 };
+enum { MAX_NOTES = 16, MAX_OVERLAPS = 6 };
 
 // What the scene's author may not have meant.
 typedef struct Notes {
   const char *texts[MAX_NOTES];
   int count;
+  char overlaps[MAX_OVERLAPS][512];
 } Notes;
 
 static void note(Notes *notes, bool is_true, const char *text) {
@@ -61,6 +63,20 @@ static bool meets_itself(const FemSceneDef *scene) {
 
 static double machine_memory(void) {
   return (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+}
+
+// Who overlaps before anything has moved.
+static Status note_overlaps(const AppJob *job, Notes *notes) {
+  FemSystem system = {0};
+  TRY(fem_system_create(&system, &job->model));
+  Status status = fem_run_start_evaluate(&system);
+  for (int k = 0, i = 0; !status && k < MAX_OVERLAPS; k++, i++) {
+    i = fem_run_start_overlap(&system, i, notes->overlaps[k], sizeof notes->overlaps[k]);
+    if (i < 0) break;
+    note(notes, true, notes->overlaps[k]);
+  }
+  fem_system_destroy(&system);
+  return status;
 }
 
 static Notes take_notes(const AppJob *job) {
@@ -277,7 +293,11 @@ static Status check(const AppJobOptions *options) {
   AppJob job;
   TRY(app_job_open(&job, options, NULL, NULL));
   Notes notes = take_notes(&job);
-  Status status = STATUS_OK;
+  Status status = job.scene.contact.is_on ? note_overlaps(&job, &notes) : STATUS_OK;
+  if (status) {
+    app_job_close(&job);
+    return status;
+  }
   if (options->is_json)
     status = print_json(&job, &notes);
   else

@@ -78,10 +78,10 @@ static void conclude(const AppJob *job, const FemRunResult *result) {
            result->end_time, result->wall_s, result->integrator.steps, result->solver.factorisations,
            result->pairs_max);
   conclude_energy(&result->audit);
-  log_info("smallest det F %.3f, %lld onsets, %lld steps taken back", result->min_det_F,
-           result->integrator.roots, result->energy_retries);
   conclude_network(&result->pairs);
-  char trouble[1024];
+  char trouble[2048], statistics[1024];
+  fem_run_tell_statistics(result, statistics, sizeof statistics);
+  log_info("statistics: %s", statistics);
   fem_run_tell_trouble(result, &job->model, trouble, sizeof trouble);
   log_info("wrote %s: frames.pvd (ParaView), history.csv, summary.json, manifest.json", job->directory);
   log_info("trouble: %s", trouble);
@@ -118,7 +118,7 @@ static Status capture_pairs(DatagenCapture *capture, FemSystem *system) {
 static void warn(Observer *observer, const FemRunProgress *progress) {
   const FemTrouble *trouble = progress->trouble;
   for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) {
-    char text[256];
+    char text[512];
     if (trouble->of[k].events == observer->told.of[k].events) continue;
     if (k == FEM_TROUBLE_ENERGY && trouble->of[k].events > observer->told.of[k].events)
       log_warning("t = %.6g s: the energy has risen by %.2g of the scene's, the bound is %g", progress->time,
@@ -145,8 +145,9 @@ static Status run_captured(const AppRunOptions *options, const AppJob *job, cons
   DatagenCapture capture = {0};
   if (options->capture)
     TRY(datagen_capture_begin(&capture, options->capture, app_versions_program(), DATAGEN_LABEL_EXACT));
-  Observer observer = {.progress = {.began_s = clock_wall_s(), .label = ""},
-                       .capture = options->capture ? &capture : NULL};
+  Observer observer = {
+      .progress = {.began_s = clock_wall_s(), .label = "", .is_json = options->job.is_progress_json},
+      .capture = options->capture ? &capture : NULL};
   FemRunOptions run_options = {.directory = job->directory,
                                .stop = app_job_stop_flag(),
                                .observe = observe,

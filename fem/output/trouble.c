@@ -12,12 +12,15 @@
 static const double COVERED = 0.999, PULL = 0.5, FORCE_FLOOR = 1e-3, SLIVER_SHAPE = 1e-3;
 
 static const struct {
-  const char *name, *what, *unit;
+  const char *name, *what, *unit, *advice;
 } kinds[FEM_TROUBLE_KIND_COUNT] = {
-    {"inverted", "inverted elements", "element"},
-    {"enclosed", "elements wholly inside another body, which nothing pushes out", "element"},
-    {"wrong_way", "contact pushing the wrong way", "vertex"},
-    {"energy", "energy out of nothing", NULL},
+    {"inverted", "inverted elements", "element",
+     "refine the mesh there, load more slowly, or take law: neo_hookean_log"},
+    {"enclosed", "elements wholly inside another body, which nothing pushes out", "element",
+     "a larger contact.stiffness, a finer mesh or a shorter time.max_step, and bodies apart at the start"},
+    {"wrong_way", "contact pushing the wrong way", "vertex",
+     "a body is pierced there: a larger contact.stiffness, or a shorter time.max_step"},
+    {"energy", "energy out of nothing", NULL, "a smaller time.tolerance, or a smaller contact.stiffness"},
 };
 
 static Status list_surface(FemTroubleWatch *watch) {
@@ -169,15 +172,15 @@ void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroub
                       size_t size) {
   int first = trouble->of[kind].first;
   if (kind == FEM_TROUBLE_ENERGY) {
-    snprintf(text, size, "%s: first at t = %.6g s, %lld times in all", kinds[kind].what,
-             trouble->of[kind].first_time, trouble->of[kind].events);
+    snprintf(text, size, "%s: first at t = %.6g s, %lld times in all (try %s)", kinds[kind].what,
+             trouble->of[kind].first_time, trouble->of[kind].events, kinds[kind].advice);
     return;
   }
   const char *body =
       kind == FEM_TROUBLE_WRONG_WAY ? fem_model_body_name(model, first) : body_of_element(model, first);
-  snprintf(text, size, "%s: first at t = %.6g s, %s %d of body '%s'; %d at once at most, in %lld steps",
+  snprintf(text, size, "%s: first at t = %.6g s, %s %d of body '%s'; %d at once at most, in %lld steps (%s)",
            kinds[kind].what, trouble->of[kind].first_time, kinds[kind].unit, first, body,
-           trouble->of[kind].most, trouble->of[kind].steps);
+           trouble->of[kind].most, trouble->of[kind].steps, kinds[kind].advice);
 }
 
 void fem_trouble_record(const FemTrouble *trouble, Record *record) {

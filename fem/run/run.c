@@ -14,6 +14,7 @@
 #include "fem/run/restart.h"
 #include "fem/run/run_checkpoint.h"
 #include "fem/run/run_frames.h"
+#include "fem/run/start.h"
 
 // A step that gains energy (fem/time/audit.h) is taken back and tried again with a smaller step; at most so
 // many times in a row.
@@ -273,12 +274,19 @@ static Status number(FemRunState *run) {
 }
 
 // The first frame, and the audit from there on.
+static void tell_overlaps(const FemSystem *system) {
+  char text[512];
+  for (int i = 0; (i = fem_run_start_overlap(system, i, text, sizeof text)) >= 0; i++)
+    log_warning("%s", text);
+}
+
 static Status begin_record(FemRunState *run) {
   FemMeasures measures;
   TRY(fem_run_frames_measure(run, run->time, &measures));
   fem_audit_begin(&run->audit, run->time, &measures.energy, energy_floor(run->model));
   fem_run_frames_keep_extremes(run->result, &measures);
   fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
+  if (!run->options->from) tell_overlaps(&run->system);
   // The files of an earlier run in this folder are about to be replaced: its checkpoint goes with them.
   if (!run->options->from) TRY(fem_run_checkpoint_remove(run));
   return fem_run_frames_write(run, run->time, &measures);

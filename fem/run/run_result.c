@@ -85,7 +85,7 @@ void fem_run_result_destroy(FemRunResult *result) {
 static void append_clause(char *text, size_t size, size_t *used, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 static void append_clause(char *text, size_t size, size_t *used, const char *format, ...) {
-  char piece[256];
+  char piece[512];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(piece, sizeof piece, format, arguments);
@@ -93,34 +93,47 @@ static void append_clause(char *text, size_t size, size_t *used, const char *for
   text_append(text, size, used, "%s%s", *used > 0 ? "; " : "", piece);
 }
 
+// Share of pairs that a network may be asked beyond its training before it is trouble.
+static const double BEYOND_ALLOWED = 0.01;
+
 void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size) {
   const FemTrouble *trouble = &result->trouble;
   size_t used = 0;
   text[0] = 0;
   for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) {
-    char piece[256];
+    char piece[512];
     if (trouble->of[k].steps == 0) continue;
     fem_trouble_tell(trouble, model, (FemTroubleKind)k, piece, sizeof piece);
     append_clause(text, size, &used, "%s", piece);
   }
   if (trouble->sliver_count > 0)
-    append_clause(text, size, &used, "slivers: %d elements, the worst %d", trouble->sliver_count,
-                  trouble->worst_sliver);
-  if (result->pairs.enclosed > 0)
-    append_clause(text, size, &used, "enclosed pairs: %lld", result->pairs.enclosed);
-  if (result->pairs.beyond > 0)
-    append_clause(text, size, &used, "pairs beyond the network's training: %lld", result->pairs.beyond);
-  if (result->pairs.fallbacks > 0)
-    append_clause(text, size, &used, "pairs answered by a more careful model: %lld", result->pairs.fallbacks);
-  if (result->energy_retries > 0)
-    append_clause(text, size, &used, "steps taken back for their energy: %lld", result->energy_retries);
-  if (result->solver.failed_factorisations > 0)
-    append_clause(text, size, &used, "failed factorisations: %lld", result->solver.failed_factorisations);
-  if (result->integrator.newton_failures > 0)
-    append_clause(text, size, &used, "steps without convergence: %lld", result->integrator.newton_failures);
+    append_clause(text, size, &used, "slivers: %d elements, the worst %d (mesh it anew)",
+                  trouble->sliver_count, trouble->worst_sliver);
+  if ((double)result->pairs.beyond > BEYOND_ALLOWED * (double)result->pairs.tried)
+    append_clause(text, size, &used,
+                  "pairs beyond the network's training: %lld of %lld (take contact.overlap: clip)",
+                  result->pairs.beyond, result->pairs.tried);
   if (used == 0) append_clause(text, size, &used, "none");
-  if (isfinite(trouble->smallest_step))
-    append_clause(text, size, &used, "smallest step %.1e s", trouble->smallest_step);
+}
+
+void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size) {
+  const struct {
+    const char *what;
+    long long count;
+  } rows[] = {{"onsets", result->integrator.roots},
+              {"steps taken back for their energy", result->energy_retries},
+              {"steps without convergence", result->integrator.newton_failures},
+              {"failed factorisations", result->solver.failed_factorisations},
+              {"enclosed pairs", result->pairs.enclosed},
+              {"pairs answered by a more careful model", result->pairs.fallbacks},
+              {"pairs beyond the network's training", result->pairs.beyond}};
+  size_t used = 0;
+  text[0] = 0;
+  append_clause(text, size, &used, "smallest det F %.3f", result->min_det_F);
+  if (isfinite(result->trouble.smallest_step))
+    append_clause(text, size, &used, "smallest step %.1e s", result->trouble.smallest_step);
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+    if (rows[k].count > 0) append_clause(text, size, &used, "%s: %lld", rows[k].what, rows[k].count);
 }
 
 static void summarise_phases(const FemRunPhases *phases, Record *record) {

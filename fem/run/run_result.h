@@ -67,6 +67,8 @@ void fem_run_result_destroy(FemRunResult *result);
 
 // The run's last line: what trouble struck, or that none did. `model`: the one that ran.
 void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);
+// What happened and needs no one to act: restarts, retries, extremes.
+void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size);
 
 // summary.json of a run.
 void fem_run_summarise(const FemRunResult *result, Record *summary);

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/start.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "base/memory.h"
+#include "fem/effect/contact.h"
+
+// Overlaps below this share of an element's cube are rounding of places.
+static const double ROUNDING_SHARE = 1e-6;
+
+// The largest covered share of an element of a body; 0 for what has no elements.
+static double deepest_of(const FemSystem *system, int body) {
+  const FemModel *model = system->model;
+  const double *covered =
+      contact_system_covered(fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact)));
+  double deepest = 0;
+  if (body >= model->scene->body_count) return 0;
+  for (int e = model->bodies[body].tet_begin; e < model->bodies[body].tet_end; e++)
+    deepest = fmax(deepest, covered[e] / model->elements[e].volume);
+  return deepest;
+}
+
+int fem_run_start_overlap(const FemSystem *system, int from, char *text, size_t size) {
+  void *effect = fem_system_effect(system, &fem_effect_contact);
+  if (!effect) return -1;
+  int count;
+  const ContactInterface *interfaces = contact_system_interfaces(fem_effect_contact_system(effect), &count);
+  double least = ROUNDING_SHARE * pow(system->model->edge, 3);
+  for (int i = from; i < count; i++) {
+    if (!(interfaces[i].volume > least)) continue;
+    double deepest = fmax(deepest_of(system, interfaces[i].a), deepest_of(system, interfaces[i].b));
+    snprintf(
+        text, size,
+        "'%s' and '%s' overlap at the start: %.3g m³ in %d pairs, up to %.2g %% of an element; they will "
+        "be pushed apart at once: move them apart if that is not meant",
+        fem_effect_contact_name(effect, interfaces[i].a), fem_effect_contact_name(effect, interfaces[i].b),
+        interfaces[i].volume, interfaces[i].active_count, 100 * deepest);
+    return i;
+  }
+  return -1;
+}
+
+Status fem_run_start_evaluate(FemSystem *system) {
+  size_t n = (size_t)system->model->unknown_count;
+  double *zero = memory_zeroed(n, sizeof *zero);
+  FemEnergy energy;
+  if (!zero) return status_no_memory("the state");
+  Status status = fem_system_begin(system, 0, zero, zero);
+  if (!status) status = fem_system_accept(system, 0, zero, zero, 0);
+  fem_system_scatter(system, 0, zero, zero);
+  if (!status) status = fem_system_energy(system, 0, &energy);
+  memory_free(zero);
+  return status;
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a scene begins with that its author may not have meant: bodies that overlap.
+#ifndef TETLAP_FEM_RUN_START_H
+#define TETLAP_FEM_RUN_START_H
+
+#include <stddef.h>
+
+#include "fem/effect/system.h"
+
+// The next two that overlap at the evaluated state, from interface `from` on, in words; returns its number,
+// −1: no more.
+int fem_run_start_overlap(const FemSystem *system, int from, char *text, size_t size);
+
+// The same for a model before a run of it: evaluates the state at t = 0.
+Status fem_run_start_evaluate(FemSystem *system);
+
+#endif
