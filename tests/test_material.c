@@ -175,8 +175,9 @@ START_TEST(fibres_have_consistent_derivatives) {
 END_TEST
 
 START_TEST(names_are_the_ones_that_scenes_use) {
-  static const char *const names[] = {"linear",          "corotational",  "stvk", "neo_hookean",
-                                      "neo_hookean_log", "mooney_rivlin", "ogden"};
+  static const char *const names[] = {
+      "linear",          "corotational",          "stvk",          "neo_hookean",
+      "neo_hookean_log", "neo_hookean_isochoric", "mooney_rivlin", "ogden"};
   for (int law = 0; law < FEM_MATERIAL_LAW_COUNT; law++) {
     ck_assert_str_eq(fem_material_name((FemMaterialLaw)law), names[law]);
     ck_assert_uint_gt(strlen(fem_material_help((FemMaterialLaw)law)), 10);
@@ -455,6 +456,29 @@ START_TEST(the_logarithm_resists_any_pressure_and_the_stable_law_does_not) {
 }
 END_TEST
 
+// Abaqus and CalculiX: σ = μ J^(−5/3) dev b + 2/D₁ (J − 1) I with D₁ = 2/K, b = F Fᵀ.
+START_TEST(the_isochoric_law_is_that_of_calculix_and_abaqus) {
+  FemMaterial material = make_material(FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC);
+  FemLame lame = fem_material_lame(&material);
+  double bulk = material.young / (3 * (1 - 2 * material.poisson));
+  const double F[9] = {1.4, 0.3, -0.1, 0.2, 0.7, 0.1, 0, -0.4, 1.1};
+  double P[9], sigma[6], b[9] = {0};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) b[3 * i + j] += F[3 * i + k] * F[3 * j + k];
+  double J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+             F[2] * (F[3] * F[7] - F[4] * F[6]);
+  double shear = lame.mu * pow(J, -5.0 / 3), mean = (b[0] + b[4] + b[8]) / 3;
+  fem_material_stress(&material, F, P);
+  fem_material_cauchy(material.law, F, P, sigma);
+  static const int places[6] = {0, 4, 8, 1, 5, 2};
+  for (int r = 0; r < 6; r++) {
+    double expected = shear * (b[places[r]] - (r < 3 ? mean : 0)) + (r < 3 ? bulk * (J - 1) : 0);
+    ck_assert_near(sigma[r], expected, 1e-12 * material.young);
+  }
+}
+END_TEST
+
 // Energy, stress and tangent on both sides of the J where the logarithm ends.
 START_TEST(the_logarithm_goes_on_with_two_continuous_derivatives) {
   FemMaterial material = make_material(FEM_MATERIAL_NEO_HOOKEAN_LOG);
@@ -561,6 +585,7 @@ int main(void) {
   tcase_add_test(cases, corotational_stress_is_the_linear_one_turned);
   tcase_add_test(cases, neo_hookean_energy_is_the_published_one_less_its_rest_value);
   tcase_add_test(cases, the_logarithm_resists_any_pressure_and_the_stable_law_does_not);
+  tcase_add_test(cases, the_isochoric_law_is_that_of_calculix_and_abaqus);
   tcase_add_test(cases, the_logarithm_goes_on_with_two_continuous_derivatives);
   tcase_add_loop_test(cases, no_state_has_less_energy_than_rest, 0, FEM_MATERIAL_LAW_COUNT);
   tcase_add_test(cases, a_mirrored_state_is_pushed_back_by_the_laws_that_say_so);

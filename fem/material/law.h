@@ -6,16 +6,17 @@
 #include <stdbool.h>
 
 typedef enum FemMaterialLaw {
-  FEM_MATERIAL_LINEAR,          // small strain: ε = sym(F) − I
-  FEM_MATERIAL_COROTATIONAL,    // linear in the polar stretch
-  FEM_MATERIAL_STVK,            // St. Venant–Kirchhoff
-  FEM_MATERIAL_NEO_HOOKEAN,     // stable neo-Hookean (Smith, de Goes, Kim 2018)
-  FEM_MATERIAL_NEO_HOOKEAN_LOG, // with ln J
+  FEM_MATERIAL_LINEAR,                // small strain: ε = sym(F) − I
+  FEM_MATERIAL_COROTATIONAL,          // linear in the polar stretch
+  FEM_MATERIAL_STVK,                  // St. Venant–Kirchhoff
+  FEM_MATERIAL_NEO_HOOKEAN,           // stable neo-Hookean (Smith, de Goes, Kim 2018)
+  FEM_MATERIAL_NEO_HOOKEAN_LOG,       // with ln J
+  FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC, // with J^(−2/3), as in CalculiX and Abaqus
   FEM_MATERIAL_MOONEY_RIVLIN,
   FEM_MATERIAL_OGDEN,
 } FemMaterialLaw;
 
-enum { FEM_MATERIAL_LAW_COUNT = 7 };
+enum { FEM_MATERIAL_LAW_COUNT = 8 };
 
 typedef struct FemMaterial {
   FemMaterialLaw law;

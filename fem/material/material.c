@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fem/material/cofactor.h"
+#include "fem/material/isochoric.h"
 #include "fem/material/log.h"
 #include "fem/material/rubber.h"
 #include "fem/material/svd3.h"
@@ -21,6 +22,8 @@ static const struct {
                                   "stable neo-Hookean: large strains, recovers from inversion"},
     [FEM_MATERIAL_NEO_HOOKEAN_LOG] =
         {"neo_hookean_log", "neo-Hookean with the logarithm of the volume: no pressure flattens it"},
+    [FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC] =
+        {"neo_hookean_isochoric", "neo-Hookean as in CalculiX and Abaqus: shear feels the shape only"},
     [FEM_MATERIAL_MOONEY_RIVLIN] = {"mooney_rivlin",
                                     "Mooney-Rivlin rubber: two invariants, `mooney` shares them out"},
     [FEM_MATERIAL_OGDEN] = {"ogden", "Ogden rubber: up to three powers of the principal stretches"},
@@ -342,6 +345,8 @@ static double law_energy(const FemMaterial *material, const double F[9]) {
     return neo_hookean_energy(lame, F);
   case FEM_MATERIAL_NEO_HOOKEAN_LOG:
     return fem_material_log_energy(material, F);
+  case FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC:
+    return fem_material_isochoric_energy(material, F);
   case FEM_MATERIAL_MOONEY_RIVLIN:
     return fem_material_mooney_energy(material, F);
   case FEM_MATERIAL_OGDEN:
@@ -375,6 +380,9 @@ void fem_material_stress(const FemMaterial *material, const double F[9], double 
   case FEM_MATERIAL_NEO_HOOKEAN_LOG:
     fem_material_log_stress(material, F, P);
     break;
+  case FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC:
+    fem_material_isochoric_stress(material, F, P);
+    break;
   case FEM_MATERIAL_MOONEY_RIVLIN:
     fem_material_mooney_stress(material, F, P);
     break;
@@ -402,6 +410,9 @@ void fem_material_tangent(const FemMaterial *material, const double F[9], double
     break;
   case FEM_MATERIAL_NEO_HOOKEAN_LOG:
     fem_material_log_tangent(material, F, dP);
+    break;
+  case FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC:
+    fem_material_isochoric_tangent(material, F, dP);
     break;
   case FEM_MATERIAL_MOONEY_RIVLIN:
     fem_material_mooney_tangent(material, F, dP);
@@ -475,6 +486,7 @@ double fem_material_volume(FemMaterialLaw law, const double F[9], double gradien
     for (int r = 0; r < 9; r++) gradient[r] *= theta.slope;
     return theta.value;
   case FEM_MATERIAL_NEO_HOOKEAN:
+  case FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC:
   case FEM_MATERIAL_MOONEY_RIVLIN:
   case FEM_MATERIAL_OGDEN:
     break;
@@ -508,6 +520,7 @@ void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double
     log_curvature(F, curvature);
     return;
   case FEM_MATERIAL_NEO_HOOKEAN:
+  case FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC:
   case FEM_MATERIAL_MOONEY_RIVLIN:
   case FEM_MATERIAL_OGDEN:
     break;

@@ -12,6 +12,7 @@
 //   neo_hookean   Ψ = μ'/2 (I_C − 3) − μ'/2 log((I_C + 1)/4) − ¾ μ' (J − 1) + λ'/2 (J − 1)²
 //                 μ' = 4/3 μ, λ' = λ + 5/6 μ, I_C = F:F, J = det F
 //   neo_hookean_log Ψ = μ/2 (I_C − 3) − μ ln J + λ/2 ln²J,  ν ≥ 0
+//   neo_hookean_isochoric Ψ = μ/2 (J^(−2/3) I_C − 3) + K/2 (J − 1)²,  K = λ + 2/3 μ
 //   mooney_rivlin Ψ = c₁ (I_C − 3) + c₂ (‖cof F‖² − 3) − (2c₁ + 4c₂)(J − 1) + (λ + 2c₁)/2 (J − 1)²
 //                 c₁ = (1 − m) μ/2, c₂ = m μ/2
 //   ogden         Ψ = Σ_i Σ_p μ_p/α_p (σ_i^α_p − 1) − d (J − 1) + (λ + d)/2 (J − 1)²,  d = Σ μ_p
@@ -26,6 +27,9 @@
 // pressure grows without bound as J → 0, where that of neo_hookean ends at about 2 E (ν = 0.4). From J =
 // 0.05 down ln J goes on as its parabola, with two continuous derivatives, so that inverted elements are
 // pushed back; λ < 0 would win over the barrier.
+//
+// neo_hookean_isochoric is that of CalculiX and Abaqus (C₁₀ = μ/2, D₁ = 2/K; Abaqus Theory Manual, 4.6.1).
+// From J = 0.05 down the power goes on as its parabola.
 //
 // corotational: R comes from singular values whose last carries the sign of det F (svd3.h). R, and with it P,
 // jumps where σ_i + σ_j = 0, which needs J ≤ 0; there one of the nearest rotations is taken, and the

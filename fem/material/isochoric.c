@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/material/isochoric.h"
+
+#include <math.h>
+
+#include "fem/material/cofactor.h"
+
+// g = J^(−2/3), less 1, with its derivatives by J.
+typedef struct Power {
+  double less_one, slope, bend;
+} Power;
+
+static Power power_of(double swelling) {
+  const double least = FEM_MATERIAL_ISOCHORIC_SMALLEST, e = -2.0 / 3;
+  double J = fmax(1 + swelling, least), x = 1 + swelling - J; // x < 0 on the parabola
+  double g = pow(J, e), slope = e * g / J, bend = e * (e - 1) * g / (J * J);
+  double less_one = x < 0 ? g - 1 : expm1(e * log1p(swelling));
+  return (Power){less_one + slope * x + 0.5 * bend * x * x, slope + bend * x, bend};
+}
+
+// I_C − 3 from the displacement gradient.
+static double stretch_of(const double F[9]) {
+  double stretch = 0;
+  for (int r = 0; r < 9; r++) {
+    double G = F[r] - (r % 4 == 0);
+    stretch += G * G + (r % 4 == 0 ? 2 * G : 0);
+  }
+  return stretch;
+}
+
+static double bulk_of(FemLame lame) {
+  return lame.lambda + 2.0 / 3 * lame.mu;
+}
+
+// μ/2 (g I_C − 3) + K/2 (J − 1)².
+double fem_material_isochoric_energy(const FemMaterial *material, const double F[9]) {
+  FemLame lame = fem_material_lame(material);
+  double swelling = fem_cofactor_swelling(F), stretch = stretch_of(F);
+  Power g = power_of(swelling);
+  return 0.5 * lame.mu * (stretch + g.less_one * (stretch + 3)) + 0.5 * bulk_of(lame) * swelling * swelling;
+}
+
+// P = μ g F + (μ/2 g' I_C + K (J − 1)) cof F.
+void fem_material_isochoric_stress(const FemMaterial *material, const double F[9], double P[9]) {
+  FemLame lame = fem_material_lame(material);
+  double C[9], swelling = fem_cofactor_swelling(F);
+  Power g = power_of(swelling);
+  double weight = 0.5 * lame.mu * g.slope * (stretch_of(F) + 3) + bulk_of(lame) * swelling;
+  fem_cofactor_find(F, C);
+  for (int r = 0; r < 9; r++) P[r] = lame.mu * (1 + g.less_one) * F[r] + weight * C[r];
+}
+
+// ∂P/∂F = μ g I + μ g' (F ⊗ cof F + cof F ⊗ F) + (μ/2 g'' I_C + K) cof F ⊗ cof F
+//         + (μ/2 g' I_C + K (J − 1)) ∂cof F/∂F.
+void fem_material_isochoric_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
+  FemLame lame = fem_material_lame(material);
+  double C[9], swelling = fem_cofactor_swelling(F), I = stretch_of(F) + 3;
+  Power g = power_of(swelling);
+  double outer = 0.5 * lame.mu * g.bend * I + bulk_of(lame), mixed = lame.mu * g.slope;
+  fem_cofactor_find(F, C);
+  for (int r = 0; r < 9; r++) {
+    for (int c = 0; c < 9; c++) dP[9 * r + c] = mixed * (F[r] * C[c] + C[r] * F[c]) + outer * (C[r] * C[c]);
+    dP[10 * r] += lame.mu * (1 + g.less_one);
+  }
+  fem_cofactor_add_derivative(F, 0.5 * lame.mu * g.slope * I + bulk_of(lame) * swelling, dP);
+}

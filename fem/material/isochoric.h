@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The neo-Hookean law of CalculiX and Abaqus, in which shear feels the shape only (formulas in
+// fem/material/material.h). For fem/material/material.c alone.
+#ifndef TETLAP_FEM_MATERIAL_ISOCHORIC_H
+#define TETLAP_FEM_MATERIAL_ISOCHORIC_H
+
+#include "fem/material/law.h"
+
+// Below this J the power J^(−2/3) goes on as its parabola, so that it is finite for every F and pushes an
+// inverted element back.
+#define FEM_MATERIAL_ISOCHORIC_SMALLEST 0.05
+
+double fem_material_isochoric_energy(const FemMaterial *material, const double F[9]);
+void fem_material_isochoric_stress(const FemMaterial *material, const double F[9], double P[9]);
+void fem_material_isochoric_tangent(const FemMaterial *material, const double F[9], double dP[81]);
+
+#endif
