@@ -14,6 +14,7 @@
 #include "fem/effect/volume_effect.h"
 #include "fem/output/columns.h"
 #include "fem/output/pvd.h"
+#include "fem/output/reactions.h"
 #include "fem/output/vtu.h"
 
 static bool has_column(const FemRecorder *recorder, int column) {
@@ -47,6 +48,7 @@ static Status add_columns(FemRecorder *recorder) {
       TRY(fem_history_add_column(history, "force_%s_%s_%c_N",
                                  fem_effect_contact_name(effect, interfaces[i].a),
                                  fem_effect_contact_name(effect, interfaces[i].b), "xyz"[c]));
+  TRY(fem_reactions_add_columns(history, model));
   recorder->row = memory_zeroed((size_t)history->column_count, sizeof *recorder->row);
   return recorder->row ? STATUS_OK : status_no_memory("the history");
 }
@@ -64,9 +66,12 @@ static Status create(FemRecorder *recorder, const char *directory) {
   recorder->writes_history = model->scene->history;
   recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
   recorder->displacement = memory_zeroed(3 * vertices, sizeof *recorder->displacement);
+  bool has_reactions = fem_reactions_any(model);
+  if (has_reactions) recorder->reaction = memory_zeroed(3 * vertices, sizeof *recorder->reaction);
   recorder->stress = memory_zeroed(6 * tets, sizeof *recorder->stress);
   recorder->von_mises = memory_zeroed(tets, sizeof *recorder->von_mises);
-  if (!recorder->directory || !recorder->displacement || !recorder->stress || !recorder->von_mises)
+  if (!recorder->directory || !recorder->displacement || !recorder->stress || !recorder->von_mises ||
+      (has_reactions && !recorder->reaction))
     return status_no_memory("the output arrays");
   if (recorder->writes_vtu) TRY(fem_obstacle_frames_create(&recorder->obstacles, model));
   TRY(file_make_directories(directory));
@@ -107,6 +112,7 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   memory_free(recorder->row);
   memory_free(recorder->displacement);
   fem_forces_destroy(&recorder->forces);
+  memory_free(recorder->reaction);
   memory_free(recorder->stress);
   memory_free(recorder->von_mises);
   memory_free(recorder->det_F);
@@ -181,11 +187,12 @@ static double von_mises(const double s[6]) {
   return sqrt(0.5 * normal + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
-static void fill_arrays(FemRecorder *recorder) {
+static void fill_arrays(FemRecorder *recorder, double time) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
   for (int i = 0; i < 3 * model->vertex_count; i++)
     recorder->displacement[i] = system->positions[i] - model->rest[i];
+  if (recorder->reaction) fem_reactions_measure(recorder->system, time, NULL, recorder->reaction);
   for (int e = 0; e < model->tet_count; e++) {
     const FemModelBody *body = &model->bodies[model->tet_body[e]];
     if (body->is_obstacle) continue;
@@ -214,7 +221,7 @@ static int keep_given(FemVtuArray *arrays, size_t count) {
 static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
-  fill_arrays(recorder);
+  fill_arrays(recorder, time);
   const ContactStatus *status = recorder->status;
   const int *verdicts[] = {status ? status->predicted : NULL, status ? status->exact : NULL,
                            status ? status->error : NULL, status ? status->wrong_pairs : NULL};
@@ -234,6 +241,7 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
        .components = 1,
        .reals = has_contact ? recorder->overlap : NULL},
       {.name = "wrong_way", .components = 1, .integers = has_contact ? recorder->watch.is_wrongway : NULL},
+      {.name = "reaction", .components = 3, .reals = recorder->reaction},
       {.name = "friction_force", .components = 3, .reals = recorder->forces.now.friction},
       {.name = "status_predicted", .is_cell = true, .components = 1, .integers = verdicts[0]},
       {.name = "status_exact", .is_cell = true, .components = 1, .integers = verdicts[1]},
@@ -325,6 +333,8 @@ static void fill_row(FemRecorder *recorder, const FemColumnSource *source) {
   int count;
   interfaces_of(recorder->system, &count);
   for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->forces.now.interfaces[i]));
+  if (fem_reactions_any(recorder->system->model))
+    fem_reactions_measure(recorder->system, source->time, row, NULL);
 }
 
 void fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,

@@ -27,6 +27,7 @@ typedef struct FemRecorder {
   FemObstacleFrames obstacles;                  // those without a mesh, beside the frames
   FemForces forces;                             // as they are written
   double *displacement;                         // scratch             (vertex_count, 3)
+  double *reaction;                             // scratch; NULL: nothing is prescribed (vertex_count, 3)
   double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
   FemTroubleWatch watch;
   bool has_status;             // the scene asks for the elements' status

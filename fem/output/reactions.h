@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What holds and drives a body: the force that each of its `fixed` and `driven` entries exerts on it, columns
+// of history.csv and the array `reaction` of frames. It is what balances all other forces on the prescribed
+// coordinates; the inertia of the driven vertices themselves is left out.
+#ifndef TETLAP_FEM_OUTPUT_REACTIONS_H
+#define TETLAP_FEM_OUTPUT_REACTIONS_H
+
+#include "fem/effect/system.h"
+#include "fem/output/history.h"
+
+// Three columns for each entry: reaction_BODY_fixed_0_x_N …
+Status fem_reactions_add_columns(FemHistory *history, const FemModel *model);
+
+// Whether anything of a body is prescribed.
+bool fem_reactions_any(const FemModel *model);
+
+// Evaluates the forces at the scattered state. `sums` (NULL: none): three for each entry, in the columns'
+// order, NaN where the state cannot be evaluated; `at` (NULL: none): of each vertex (vertex_count, 3).
+// Returns the end of `sums`.
+double *fem_reactions_measure(FemSystem *system, double time, double *sums, double *at);
+
+#endif
