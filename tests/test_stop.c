@@ -146,7 +146,8 @@ START_TEST(no_peak_of_a_force_is_missed) {
   for (int k = 0; k < 2; k++) {
     SceneRun run;
     make_folder();
-    scene_open(&run, "drop", (const char *const[]){rows[k], "output.vtu=false", "output.frames=7", "time.end=0.15", NULL});
+    scene_open(&run, "drop",
+               (const char *const[]){rows[k], "output.vtu=false", "output.frames=7", "time.end=0.15", NULL});
     FemRunOptions options = {.directory = folder};
     ck_assert_ok(fem_run(&run.model, &options, &run.result));
     int count = read_column("contact_force_peak_N", force, MOST);
