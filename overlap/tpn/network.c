@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <math.h>
 #include <omp.h>
+#include <sched.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -96,12 +97,17 @@ Status overlap_tpn_network_create(OverlapTpnNetwork *model, const char *path, Ne
   return status;
 }
 
+// There is one for each thread of the program that made the model; where more ask, those that wait let others
+// run.
 OverlapTpnWorkspace *overlap_tpn_network_acquire(const OverlapTpnNetwork *model) {
-  for (int d = omp_get_thread_num();; d++) {
-    OverlapTpnWorkspace *workspace = &model->workspaces[d % model->workspace_count];
-    if (atomic_flag_test_and_set_explicit(&workspace->is_taken, memory_order_acquire)) continue;
-    workspace->row_count = 0;
-    return workspace;
+  int count = model->workspace_count, first = omp_get_thread_num() % count;
+  for (int tried = 0;; tried = (tried + 1) % count) {
+    OverlapTpnWorkspace *workspace = &model->workspaces[(first + tried) % count];
+    if (!atomic_flag_test_and_set_explicit(&workspace->is_taken, memory_order_acquire)) {
+      workspace->row_count = 0;
+      return workspace;
+    }
+    if (tried == count - 1) sched_yield();
   }
 }
 
