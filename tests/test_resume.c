@@ -255,7 +255,7 @@ static void copy_scene(char path[128]) {
   char command[512];
   snprintf(path, 128, "%s/scene.yaml", folder);
   snprintf(command, sizeof command,
-           "cp %s/tests/scenes/incline.yaml %s && sed -i 's/contact: {/contact: {potential: nodal, overlap: geo, net: "
+           "cp %s/tests/scenes/incline.yaml %s && sed -i 's/contact: {/contact: {overlap: geo, net: "
            "w.safetensors, /' %s && cp %s/net/weights/geo.safetensors %s/w.safetensors",
            TETLAP_SOURCE_DIR, path, path, TETLAP_SOURCE_DIR, folder);
   ck_assert_int_eq(system(command), 0);
