@@ -38,7 +38,7 @@ static double press(double scale, const char *obstacle, double stiffness, double
            "    material: {law: linear, young: %g, poisson: %g, density: 1000}\n"
            "    fixed: [{group: outer}, {group: x_min, components: [x]}, {group: y_min, components: [y]}]\n"
            "obstacles: [{name: tool, %s}]\n"
-           "contact: {stiffness: %g, overlap: clip}\n"
+           "contact: {potential: nodal, stiffness: %g, overlap: clip}\n"
            "output: {frames: 1}\n",
            mesh, E, NU, obstacle, stiffness);
   SceneRun run = {0};

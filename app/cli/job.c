@@ -182,18 +182,6 @@ const char *app_job_overlap(const AppJob *job) {
   return fem_effect_contact_overlap(&job->scene);
 }
 
-void app_job_clear_output(const AppJob *job) {
-  static const char *const names[] = {"frames.pvd", "history.csv", "summary.json", FEM_CHECKPOINT_FILE};
-  int frames = file_remove_numbered(job->directory, "frame_", ".vtu");
-  int count = frames + file_remove_numbered(job->directory, "obstacles_", ".vtu");
-  for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
-    char *path = file_join(job->directory, names[k]);
-    if (path) count += remove(path) == 0;
-    memory_free(path);
-  }
-  if (count > 0) log_info("%s held an earlier run: it and its %d frames are removed", job->directory, frames);
-}
-
 static const char *word_of(Status status) {
   if (status == STATUS_OK) return "finished";
   return status == STATUS_INTERRUPTED ? "interrupted" : "failed";

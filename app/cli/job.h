@@ -57,9 +57,6 @@ typedef struct AppProgress {
 } AppProgress;
 Status app_job_show_progress(void *progress, const FemRunProgress *state);
 
-// Removes the frames, lists, summary and checkpoint that an earlier run has left in the folder, and says so.
-void app_job_clear_output(const AppJob *job);
-
 // Writes summary.json and manifest.json (the resolved scene, versions, processor, command) of a run that
 // ended with `status`.
 Status app_job_write_summary(const AppJob *job, const FemRunResult *result, Status status);

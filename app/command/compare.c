@@ -187,7 +187,6 @@ static Status run_model(AppComparison *comparison, int m, const CompareOptions *
                                .observe = observe,
                                .observer = &observer,
                                .keep_trajectory = true};
-  app_job_clear_output(&job);
   model->status = fem_run(&job.model, &run_options, &model->result);
   log_progress_end();
   model->has_run = true;

@@ -184,7 +184,6 @@ static Status make_origin(const AppRunOptions *options, const AppJob *job, char 
 
 static Status run_opened(const AppRunOptions *options, const AppJob *job, const char *origin) {
   announce(job);
-  if (!options->from) app_job_clear_output(job);
   FemRunResult result = {0};
   Status status = run_captured(options, job, origin, &result);
   if (status) tell_of_checkpoint(job);

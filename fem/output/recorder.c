@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact.h"
@@ -120,6 +121,20 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   fem_trouble_watch_destroy(&recorder->watch);
   overlap_model_destroy(&recorder->reference);
   *recorder = (FemRecorder){0};
+}
+
+void fem_recorder_clear(const FemRecorder *recorder) {
+  static const char *const names[] = {"frames.pvd", "history.csv", "summary.json"};
+  if (!recorder->directory) return;
+  int frames = file_remove_numbered(recorder->directory, "frame_", ".vtu");
+  int count = frames + file_remove_numbered(recorder->directory, "obstacles_", ".vtu");
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+    char *path = file_join(recorder->directory, names[k]);
+    if (path) count += remove(path) == 0;
+    memory_free(path);
+  }
+  if (count > 0)
+    log_info("%s held an earlier run: it and its %d frames are removed", recorder->directory, frames);
 }
 
 static void gather(const FemSystem *system, int tet, double corners[12]) {

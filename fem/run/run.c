@@ -287,8 +287,11 @@ static Status begin_record(FemRunState *run) {
   fem_run_frames_keep_extremes(run->result, &measures);
   fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
   if (!run->options->from) tell_overlaps(&run->system);
-  // The files of an earlier run in this folder are about to be replaced: its checkpoint goes with them.
-  if (!run->options->from) TRY(fem_run_checkpoint_remove(run));
+  // Files of an earlier run in this folder are about to be replaced: all of them go, the checkpoint too.
+  if (!run->options->from) {
+    fem_recorder_clear(&run->recorder);
+    TRY(fem_run_checkpoint_remove(run));
+  }
   return fem_run_frames_write(run, run->time, &measures);
 }
 
