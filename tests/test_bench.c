@@ -262,7 +262,7 @@ static const Promise promises[] = {
     {"net --net geo,geo-small --batch 100 --repeat 1 --no-torch --threads 2 --quantity V", 0,
      "bench net implementation precision quantity spread ratio_to_torch difference",
      "parameters batch threads samples_per_second samples_per_cpu_second flops gflops peak_share"},
-    {"datagen --count 300 --repeat 1 --threads 1,2", 6, "bench law product spread",
+    {"datagen --count 3000 --repeat 1 --threads 1,2", 6, "bench law product spread",
      "count threads pairs_per_second pairs_per_cpu_second thread_gain planned planned_s"},
     {"train examples/train/sweep/geo.yaml --batch 64 --pairs 300 --repeat 1", 1,
      "bench config model implementation spread ratio_to_torch",
