@@ -523,8 +523,9 @@ START_TEST(inputs_that_change_during_a_run_do_not_touch_it) {
 }
 END_TEST
 
-// The disk stays full: the same, though the last checkpoint cannot be written either.
-START_TEST(a_disk_that_stays_full_leaves_what_was_there) {
+// The disk stays full: the same, though the last checkpoint cannot be written either. What is left of the
+// earlier run is whole; its summary does not stand beside frames that are not its own.
+START_TEST(a_disk_that_stays_full_leaves_nothing_half_written) {
   ck_assert_ok(run_command("whole"));
   for (long k = 1; k < 12; k += 3) {
     forget_faults();
@@ -535,9 +536,9 @@ START_TEST(a_disk_that_stays_full_leaves_what_was_there) {
     check_message("No space left");
     check_whole("again");
     ck_assert_int_eq(
-        shell("cd %s && cmp whole/summary.json again/summary.json && cmp whole/manifest.json "
-              "again/manifest.json && head -c $(stat -c %%s again/history.csv) whole/history.csv | "
-              "cmp - again/history.csv",
+        shell("cd %s && [ ! -e again/summary.json ] && cmp whole/manifest.json again/manifest.json && "
+              "{ [ ! -e again/history.csv ] || head -c $(stat -c %%s again/history.csv) whole/history.csv | "
+              "cmp - again/history.csv; }",
               folder),
         0);
   }
@@ -565,6 +566,6 @@ int main(void) {
   tcase_add_test(test_case, a_folder_that_vanishes_during_a_run_is_named);
   tcase_add_loop_test(test_case, an_input_that_vanishes_before_the_run_is_named, 0, 3);
   tcase_add_loop_test(test_case, inputs_that_change_during_a_run_do_not_touch_it, 0, 3);
-  tcase_add_test(test_case, a_disk_that_stays_full_leaves_what_was_there);
+  tcase_add_test(test_case, a_disk_that_stays_full_leaves_nothing_half_written);
   return suite_run("faults", test_case, 60);
 }
