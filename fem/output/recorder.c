@@ -123,18 +123,20 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   *recorder = (FemRecorder){0};
 }
 
-void fem_recorder_clear(const FemRecorder *recorder) {
+Status fem_recorder_clear(const FemRecorder *recorder) {
   static const char *const names[] = {"frames.pvd", "history.csv", "summary.json"};
-  if (!recorder->directory) return;
+  if (!recorder->directory) return STATUS_OK;
   int frames = file_remove_numbered(recorder->directory, "frame_", ".vtu");
   int count = frames + file_remove_numbered(recorder->directory, "obstacles_", ".vtu");
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
     char *path = file_join(recorder->directory, names[k]);
-    if (path) count += remove(path) == 0;
+    if (!path) return status_no_memory("a file name");
+    count += remove(path) == 0;
     memory_free(path);
   }
   if (count > 0)
     log_info("%s held an earlier run: it and its %d frames are removed", recorder->directory, frames);
+  return STATUS_OK;
 }
 
 static void gather(const FemSystem *system, int tet, double corners[12]) {

@@ -45,7 +45,7 @@ void fem_recorder_destroy(FemRecorder *recorder);
 
 // Removes the frames, lists, history and summary that an earlier run has left in the folder, and says so. Called
 // once the first state is known, so that a run that fails before it takes nothing away.
-void fem_recorder_clear(const FemRecorder *recorder);
+Status fem_recorder_clear(const FemRecorder *recorder);
 
 // The measures at the system's scattered state, with contact forces as they are written (forces.h).
 Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures);

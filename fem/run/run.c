@@ -289,7 +289,7 @@ static Status begin_record(FemRunState *run) {
   if (!run->options->from) tell_overlaps(&run->system);
   // Files of an earlier run in this folder are about to be replaced: all of them go, the checkpoint too.
   if (!run->options->from) {
-    fem_recorder_clear(&run->recorder);
+    TRY(fem_recorder_clear(&run->recorder));
     TRY(fem_run_checkpoint_remove(run));
   }
   return fem_run_frames_write(run, run->time, &measures);
