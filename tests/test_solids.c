@@ -109,7 +109,7 @@ START_TEST(a_linear_scene_with_one_step_size_is_factorised_once) {
   SceneRun run;
   scene_open_text(&run,
                   "time: {end: 0.2, initial_step: 0.002, min_step: 0.002, max_step: 0.002, tolerance: 0.1}\n"
-                  "output: {checkpoint: {frames: 0}}\n"
+                  "output: {checkpoint: 0}\n"
                   "effects: {gravity: [0, 0, -1], damping: 1e-3}\n"
                   "bodies:\n"
                   "  - name: beam\n"

@@ -254,7 +254,8 @@ static Status read_subsection(const SceneKey *key, const SceneNode *node, void *
   const SceneSection *section = key->section;
   if (node->kind == SCENE_NODE_MAP) return read_section(section, node, field);
   const SceneKey *meant = section->shorthand ? app_scene_keys_find(section, section->shorthand) : NULL;
-  bool is_meant = meant && node->kind == (meant->type == SCENE_NUMBER ? SCENE_NODE_NUMBER : SCENE_NODE_TEXT);
+  bool is_number = meant && (meant->type == SCENE_NUMBER || meant->type == SCENE_INTEGER);
+  bool is_meant = meant && node->kind == (is_number ? SCENE_NODE_NUMBER : SCENE_NODE_TEXT);
   return is_meant ? read_value(meant, node, field) : fail_expected(key, node, "");
 }
 
