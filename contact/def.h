@@ -14,7 +14,7 @@ typedef struct ContactBody {
   int vertex_begin, vertex_end;
   int tet_begin, tet_end;
   bool is_obstacle;  // carries no unknowns: static or driven
-  bool meets_itself; // parts of it may touch each other (contact/self.h)
+  bool meets_itself; // parts of it may touch each other (contact/search/self.h)
 } ContactBody;
 
 // Obstacles without elements.
@@ -53,7 +53,8 @@ typedef enum ContactPotential {
   CONTACT_POTENTIAL_LINEAR,  // U = κ Σ_ij V_ij, κ [Pa]: constant pressure, the force jumps at touch
   CONTACT_POTENTIAL_BODY,    // U = ½ κ (Σ_ij V_ij)² a pair of bodies, κ [Pa/m³]
   CONTACT_POTENTIAL_FIELD, // U = κ ∫_A φ_B + κ ∫_B φ_A over rest volumes, φ the depth below the other's
-                           // surface (contact/field.h), κ [Pa/m]; both terms also against a mesh obstacle
+                           // surface (contact/pressure/field.h), κ [Pa/m]; both terms also against a mesh
+                           // obstacle
 } ContactPotential;
 
 enum { CONTACT_POTENTIAL_COUNT = 6 };

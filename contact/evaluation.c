@@ -8,10 +8,10 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "contact/bounds.h"
-#include "contact/potential.h"
+#include "contact/pressure/potential.h"
 #include "contact/rest.h"
-#include "contact/shape.h"
+#include "contact/search/bounds.h"
+#include "contact/shape/shape.h"
 #include "overlap/separation.h"
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout) {

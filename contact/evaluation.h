@@ -5,10 +5,10 @@
 #ifndef TETLAP_CONTACT_EVALUATION_H
 #define TETLAP_CONTACT_EVALUATION_H
 
-#include "contact/candidates.h"
-#include "contact/field.h"
-#include "contact/patches.h"
+#include "contact/pressure/field.h"
+#include "contact/pressure/patches.h"
 #include "contact/rest.h"
+#include "contact/search/candidates.h"
 
 // Pairs of meshes by how they were answered.
 typedef struct ContactPairCounts {

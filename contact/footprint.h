@@ -6,9 +6,9 @@
 
 #include "contact/evaluation.h"
 #include "contact/onset.h"
+#include "contact/pressure/stiffness.h"
 #include "contact/rest.h"
 #include "contact/status.h"
-#include "contact/stiffness.h"
 
 size_t contact_footprint_layout(const ContactLayout *layout);
 size_t contact_footprint_candidates(const ContactCandidates *candidates);

@@ -4,8 +4,8 @@
 #include <math.h>
 
 #include "base/memory.h"
-#include "contact/bounds.h"
-#include "contact/shape.h"
+#include "contact/search/bounds.h"
+#include "contact/shape/shape.h"
 #include "overlap/separation.h"
 
 Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout) {

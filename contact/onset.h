@@ -10,7 +10,7 @@
 #ifndef TETLAP_CONTACT_ONSET_H
 #define TETLAP_CONTACT_ONSET_H
 
-#include "contact/candidates.h"
+#include "contact/search/candidates.h"
 
 typedef struct ContactOnset {
   int count;

@@ -5,9 +5,9 @@
 #ifndef TETLAP_CONTACT_REST_H
 #define TETLAP_CONTACT_REST_H
 
-#include "contact/candidates.h"
 #include "contact/interface.h"
-#include "contact/patches.h"
+#include "contact/pressure/patches.h"
+#include "contact/search/candidates.h"
 
 typedef struct ContactRest {
   bool *is_resting; // of each facing                                        (facing_count)

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "contact/bounds.h"
+#include "contact/search/bounds.h"
 #include "overlap/separation.h"
 
 // Pairs that are asked at a time.

@@ -7,7 +7,7 @@
 #ifndef TETLAP_CONTACT_STATUS_H
 #define TETLAP_CONTACT_STATUS_H
 
-#include "contact/candidates.h"
+#include "contact/search/candidates.h"
 
 typedef enum ContactVerdict {
   CONTACT_VERDICT_RIGHT,

@@ -8,10 +8,10 @@
 #include "contact/audit.h"
 #include "contact/footprint.h"
 #include "contact/onset.h"
+#include "contact/pressure/stiffness.h"
 #include "contact/rest.h"
-#include "contact/shape.h"
+#include "contact/shape/shape.h"
 #include "contact/status.h"
-#include "contact/stiffness.h"
 
 struct ContactSystem {
   ContactLayout layout;

@@ -14,8 +14,8 @@
 // two. A body that meets itself is an interface of its own, with the same potential: W_i is what other
 // elements of the body cover of i, each pair counts once for either of its elements, and the leading ½ is
 // that between two bodies; two halves of a body that are not connected press each other as two bodies would.
-// The overlap models see bodies in general position (contact/layout.h), so that planes of regular meshes do
-// not coincide. Evaluation changes no list: an integrator may try a step, reject it and try again.
+// The overlap models see bodies in general position (contact/search/layout.h), so that planes of regular
+// meshes do not coincide. Evaluation changes no list: an integrator may try a step, reject it and try again.
 #ifndef TETLAP_CONTACT_SYSTEM_H
 #define TETLAP_CONTACT_SYSTEM_H
 
@@ -26,8 +26,8 @@
 #include "contact/audit.h"
 #include "contact/def.h"
 #include "contact/evaluation.h"
+#include "contact/pressure/stiffness.h"
 #include "contact/status.h"
-#include "contact/stiffness.h"
 
 // What struck, since creation; for summary and warnings.
 typedef struct ContactCounters {
@@ -107,7 +107,7 @@ double contact_system_shape_power(const ContactSystem *system);
 const ContactCounters *contact_system_counters(const ContactSystem *system);
 // What it holds on the heap [bytes], the overlap model left out.
 size_t contact_system_bytes(const ContactSystem *system);
-// What laws that build on the potential (friction.h) look at: contact/evaluation.h, contact/layout.h.
+// What laws that build on the potential (friction.h) look at: contact/evaluation.h, contact/search/layout.h.
 // `look` indexes the last evaluation's patches; the result is the system's, valid until the next evaluation.
 Status contact_system_look(ContactSystem *system, const ContactEvaluation **evaluation);
 const ContactLayout *contact_system_layout(const ContactSystem *system);

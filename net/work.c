@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/work.h"
 
-#include "net/chunk.h"
+#include "net/kernel/chunk.h"
 #include "net/memory.h"
 
 NetWorkDef net_work_default(void) {

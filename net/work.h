@@ -9,9 +9,9 @@
 #ifndef NET_WORK_H
 #define NET_WORK_H
 
-#include "net/chunk.h"
-#include "net/kernel.h"
-#include "net/model.h"
+#include "net/kernel/chunk.h"
+#include "net/kernel/kernel.h"
+#include "net/model/model.h"
 
 enum { NET_LANES = 16 };
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/data.h"
-#include "net/weights.h"
+#include "net/files/weights.h"
 
 static const char ENDING[] = ".safetensors";
 

@@ -6,7 +6,7 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "contact/ball.h"
+#include "contact/shape/ball.h"
 
 static const double CENTRE[3] = {0.3, -0.2, 0.1};
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// contact/broad: the candidate pairs are those whose grown boxes meet, no more and no fewer.
+// contact/search/broad: the candidate pairs are those whose grown boxes meet, no more and no fewer.
 #include "blocks.h"
 
 #include "base/memory.h"
-#include "contact/broad.h"
+#include "contact/search/broad.h"
 
 static ContactBroadSide side_of(const Blocks *blocks, int body) {
   const ContactBody *b = &blocks->bodies[body];

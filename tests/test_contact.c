@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 
-// Overlap models see bodies shifted by less than this (contact/layout.h) [m].
+// Overlap models see bodies shifted by less than this (contact/search/layout.h) [m].
 static const double NUDGE = 2e-9;
 
 typedef struct Fixture {

@@ -6,8 +6,8 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "contact/convex.h"
-#include "contact/halfspace.h"
+#include "contact/shape/convex.h"
+#include "contact/shape/halfspace.h"
 #include "overlap/model.h"
 
 static const double HALF[3] = {0.5, 0.4, 0.3};

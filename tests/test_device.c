@@ -13,7 +13,7 @@
 #include "device/cache.h"
 #include "device/cuda.h"
 #include "device/overlap.h"
-#include "net/kernel.h"
+#include "net/kernel/kernel.h"
 #include "overlap/clip/lanes.h"
 #include "overlap/model.h"
 

@@ -4,8 +4,8 @@
 #include "product.h"
 
 #include "base/vec3.h"
-#include "contact/convex.h"
-#include "contact/field.h"
+#include "contact/pressure/field.h"
+#include "contact/shape/convex.h"
 
 static const double STIFFNESS = 1000;
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/vec3.h"
-#include "contact/bounds.h"
+#include "contact/search/bounds.h"
 #include "overlap/model.h"
 
 static bool share_vertex(const int a[4], const int b[4]) {

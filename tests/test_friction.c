@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/vec3.h"
-#include "contact/friction.h"
+#include "contact/friction/friction.h"
 #include "fem/output/vtu_read.h"
 
 static const double MU = 0.4, SLIP_SPEED = 1e-3;

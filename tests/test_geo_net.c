@@ -9,8 +9,8 @@
 
 #include "base/memory.h"
 #include "datagen/hard.h"
-#include "net/model.h"
-#include "net/weights.h"
+#include "net/files/weights.h"
+#include "net/model/model.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/model.h"
 #include "overlap/invariant.h"

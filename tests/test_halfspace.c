@@ -7,7 +7,7 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "contact/halfspace.h"
+#include "contact/shape/halfspace.h"
 #include "overlap/exact/exact.h"
 
 static const double corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -3,7 +3,7 @@
 // instructions.
 #include "net_suite.h"
 
-#include "net/kernel_bf16.h"
+#include "net/kernel/bf16.h"
 
 enum { DRAWS = 60, SAMPLES = 300 };
 

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "base/random.h"
-#include "net/weights.h"
+#include "net/files/weights.h"
 #include "overlap/exact/exact.h"
 #include "overlap/model.h"
 #include "overlap/tpn/model.h"

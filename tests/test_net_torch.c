@@ -8,7 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "net/safetensors.h"
+#include "net/files/safetensors.h"
 
 enum { COUNT = 150, MAX_ENTRIES = 2 * NET_MAX_TENSORS + 16 };
 

@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "contact/shape.h"
+#include "contact/shape/shape.h"
 #include "fem/model/obstacle.h"
 #include "fem/output/obstacle_surface.h"
 #include "fem/output/pvd.h"

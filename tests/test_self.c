@@ -5,11 +5,11 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "contact/friction.h"
-#include "contact/layout.h"
+#include "contact/friction/friction.h"
+#include "contact/search/layout.h"
 #include "overlap/separation.h"
 
-// Overlap models see vertices shifted by less than this (contact/layout.h) [m].
+// Overlap models see vertices shifted by less than this (contact/search/layout.h) [m].
 static const double NUDGE = 2e-9;
 
 typedef struct Fixture {

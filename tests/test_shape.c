@@ -4,9 +4,9 @@
 #include "scene.h"
 
 #include "base/vec3.h"
-#include "contact/convex.h"
-#include "contact/friction.h"
-#include "contact/shape.h"
+#include "contact/friction/friction.h"
+#include "contact/shape/convex.h"
+#include "contact/shape/shape.h"
 
 typedef struct Fixture {
   Blocks blocks;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// contact/stick on pairs made by hand: two tetrahedra that share a point, pressed by a force that is given.
+// contact/friction/stick on pairs made by hand: two tetrahedra that share a point, pressed by a force that is
+// given.
 #include "suite.h"
 
 #include <string.h>
 
 #include "base/vec3.h"
-#include "contact/stick.h"
+#include "contact/friction/stick.h"
 
 static const double MU = 0.5, STIFFNESS = 2e4; // [Pa/m]
 static const double AREA = 0.03, PRESS = 12;   // [m²], [N]

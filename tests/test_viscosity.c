@@ -5,8 +5,8 @@
 
 #include "base/vec3.h"
 #include "blocks.h"
-#include "contact/layout.h"
-#include "contact/viscosity.h"
+#include "contact/friction/viscosity.h"
+#include "contact/search/layout.h"
 
 static const double ETA = 70; // [Pa s]
 

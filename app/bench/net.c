@@ -19,8 +19,8 @@
 #include "overlap/tpn/network.h"
 #include "overlap/weights.h"
 
-// Of a TetrahedronPairNet each kernel also computes the folded network (net/fold.h): its normalisation makes
-// the first tetrahedron the same for all pairs, here as in its overlap model.
+// Of a TetrahedronPairNet each kernel also computes the folded network (net/pass/fold.h): its normalisation
+// makes the first tetrahedron the same for all pairs, here as in its overlap model.
 enum { MAX_NETS = 16, QUANTITY_COUNT = 2, TORCH = 2 * NET_KERNEL_COUNT, IMPLEMENTATIONS };
 static const char *const quantities[QUANTITY_COUNT] = {"V", "V+grad"};
 static const double ROUND_S = 0.1; // what a round shall take

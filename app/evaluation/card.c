@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "net/weights.h"
+#include "net/files/weights.h"
 #include "overlap/weights.h"
 
 static void describe(const NetPlan *plan, AppModelCard *card) {

@@ -4,7 +4,7 @@
 #define TETLAP_APP_POSES_CANDIDATES_H
 
 #include "base/status.h"
-#include "contact/boxes.h"
+#include "contact/search/boxes.h"
 #include "fem/model/model.h"
 
 typedef struct AppPosesCandidates {

@@ -11,7 +11,7 @@
 
 #include "base/status.h"
 #include "datagen/pairs.h"
-#include "net/whitening.h"
+#include "net/model/whitening.h"
 #include "overlap/geo/features/features.h"
 
 enum { APP_POOL_RATES = 12 };

@@ -12,7 +12,7 @@
 #include <stddef.h>
 
 #include "base/status.h"
-#include "net/random.h"
+#include "net/model/random.h"
 #include "overlap/tpn/normalise.h"
 
 enum { APP_RATES_FRAME = 9, APP_RATES = 12 };

@@ -7,7 +7,7 @@
 
 #include "app/training/task.h"
 #include "base/memory.h"
-#include "net/weights.h"
+#include "net/files/weights.h"
 #include "overlap/weights.h"
 
 // Solves X A = B for X, rows of B in place; A (n, n) is destroyed. Aᵀ is eliminated with pivots by size, that

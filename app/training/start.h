@@ -4,8 +4,8 @@
 #define TETLAP_APP_TRAINING_START_H
 
 #include "base/status.h"
-#include "net/model.h"
-#include "net/whitening.h"
+#include "net/model/model.h"
+#include "net/model/whitening.h"
 
 // Reads the parameters of a file, or of a model whose weights ship, with the model's shape and the card's
 // normalisation. With a whitening

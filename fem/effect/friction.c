@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Friction as an effect: contact/friction.h on the system of the contact effect.
+// Friction as an effect: contact/friction/friction.h on the system of the contact effect.
 #include "fem/effect/friction.h"
 
 #include <string.h>

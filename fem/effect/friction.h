@@ -3,7 +3,7 @@
 #ifndef TETLAP_FEM_EFFECT_FRICTION_H
 #define TETLAP_FEM_EFFECT_FRICTION_H
 
-#include "contact/friction.h"
+#include "contact/friction/friction.h"
 
 // The friction of the effect that fem_system_effect(system, &fem_effect_friction) returned; borrowed.
 const ContactFriction *fem_effect_friction_of(const void *effect);

@@ -3,7 +3,7 @@
 #ifndef TETLAP_FEM_EFFECT_STICK_H
 #define TETLAP_FEM_EFFECT_STICK_H
 
-#include "contact/stick.h"
+#include "contact/friction/stick.h"
 
 // The law of the effect that fem_system_effect(system, "stick") returned, as it was evaluated last; borrowed.
 const ContactStick *fem_effect_stick_of(const void *effect);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Viscous contact as an effect: contact/viscosity.h on the system of the contact effect, whose couplings are
-// its own.
-#include "contact/viscosity.h"
+// Viscous contact as an effect: contact/friction/viscosity.h on the system of the contact effect, whose
+// couplings are its own.
+#include "contact/friction/viscosity.h"
 #include "base/memory.h"
 #include "fem/effect/contact.h"
 #include "fem/effect/system.h"

@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "contact/surface.h"
+#include "contact/surface/surface.h"
 #include "fem/material/svd3.h"
 
 // What the interface may give, over what the bodies do.

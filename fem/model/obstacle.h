@@ -3,8 +3,8 @@
 #ifndef TETLAP_FEM_MODEL_OBSTACLE_H
 #define TETLAP_FEM_MODEL_OBSTACLE_H
 
-#include "contact/convex.h"
 #include "contact/def.h"
+#include "contact/shape/convex.h"
 #include "fem/model/scene.h"
 
 // The shape of a definition that is no mesh; it borrows the definition and `solid`, which is filled for a box

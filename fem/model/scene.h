@@ -140,8 +140,8 @@ typedef struct FemObstacleDef {
 // How friction resists.
 typedef enum FemFrictionLaw {
   FEM_FRICTION_AUTO,     // stick with the potential `field`, else velocity
-  FEM_FRICTION_STICK,    // contact/stick.h
-  FEM_FRICTION_VELOCITY, // contact/friction.h
+  FEM_FRICTION_STICK,    // contact/friction/stick.h
+  FEM_FRICTION_VELOCITY, // contact/friction/friction.h
 } FemFrictionLaw;
 
 // What holds between two in place of what holds between any two.

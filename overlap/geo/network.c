@@ -8,8 +8,8 @@
 
 #include "base/memory.h"
 #include "net/dense.h"
-#include "net/forward.h"
-#include "net/tangent.h"
+#include "net/pass/forward.h"
+#include "net/pass/tangent.h"
 #include "net/work.h"
 
 enum { DIRECTIONS = 12 };

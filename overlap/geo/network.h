@@ -4,7 +4,7 @@
 #ifndef TETLAP_OVERLAP_GEO_NETWORK_H
 #define TETLAP_OVERLAP_GEO_NETWORK_H
 
-#include "net/weights.h"
+#include "net/files/weights.h"
 #include "overlap/geo/geo.h"
 
 // What the card of such a file gives as its normalisation.

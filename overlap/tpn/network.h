@@ -7,10 +7,10 @@
 #include <stdatomic.h>
 
 #include "base/status.h"
-#include "net/fold.h"
-#include "net/forward.h"
-#include "net/tangent.h"
-#include "net/weights.h"
+#include "net/files/weights.h"
+#include "net/pass/fold.h"
+#include "net/pass/forward.h"
+#include "net/pass/tangent.h"
 #include "overlap/tpn/normalise.h"
 #include "overlap/tpn/range.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "datagen/hard.h"
-#include "net/weights.h"
+#include "net/files/weights.h"
 #include "overlap/geo/network.h"
 #include "overlap/model.h"
 #include "overlap/tpn/network.h"

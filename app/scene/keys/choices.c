@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-#include "contact/potential.h"
+#include "contact/pressure/potential.h"
 #include "fem/material/material.h"
 #include "fem/sparse/solver.h"
 #include "overlap/model.h"

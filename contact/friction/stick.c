@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/friction/stick.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+
+// ---- What is kept for a run.
+
+static Status check_law(const ContactStickLaw *law) {
+  if (!(law->friction >= 0 && isfinite(law->friction)))
+    return status_fail(STATUS_INPUT, "friction: the coefficient is %g; it must not be negative",
+                       law->friction);
+  if (!(law->stiffness > 0 && isfinite(law->stiffness)))
+    return status_fail(STATUS_INPUT, "friction: the stiffness is %g Pa/m; it must be positive",
+                       law->stiffness);
+  if (!(law->weight[0] >= 0 && law->weight[1] >= 0 && fabs(law->weight[0] + law->weight[1] - 1) < 1e-12))
+    return status_fail(STATUS_INPUT, "friction: the weights of the two sides are %g and %g, not 1 together",
+                       law->weight[0], law->weight[1]);
+  return STATUS_OK;
+}
+
+Status contact_stick_create(ContactStick *stick, int vertex_count, const double *rest, const int (*tets)[4],
+                            int interface_count, const ContactStickLaw *laws) {
+  *stick = (ContactStick){
+      .vertex_count = vertex_count, .interface_count = interface_count, .rest = rest, .tets = tets};
+  for (int i = 0; i < interface_count; i++) TRY(check_law(&laws[i]));
+  size_t vertices = (size_t)vertex_count, interfaces = (size_t)interface_count;
+  stick->laws = memory_copy(laws, interfaces, sizeof *laws);
+  stick->before = memory_copy(rest, 3 * vertices, sizeof *stick->before);
+  stick->forces = memory_zeroed(interfaces, sizeof *stick->forces);
+  stick->node_of_vertex = memory_zeroed(vertices, sizeof *stick->node_of_vertex);
+  stick->place = memory_zeroed(vertices, sizeof *stick->place);
+  if (!stick->laws || !stick->before || !stick->forces || !stick->node_of_vertex || !stick->place)
+    return status_no_memory("friction");
+  for (size_t v = 0; v < vertices; v++) stick->node_of_vertex[v] = -1;
+  return STATUS_OK;
+}
+
+void contact_stick_destroy(ContactStick *stick) {
+  void *arrays[] = {stick->laws,  stick->before, stick->pairs,         stick->nodes, stick->touches,
+                    stick->order, stick->pulls,  stick->forces,        stick->place, stick->clique,
+                    stick->outer, stick->shares, stick->node_of_vertex};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
+  contact_stick_history_destroy(&stick->history);
+  contact_stick_history_destroy(&stick->next);
+  *stick = (ContactStick){0};
+}
+
+size_t contact_stick_bytes(const ContactStick *stick) {
+  const void *const arrays[] = {stick->laws,    stick->before,          stick->pairs,          stick->nodes,
+                                stick->touches, stick->order,           stick->pulls,          stick->forces,
+                                stick->place,   stick->clique,          stick->node_of_vertex, stick->outer,
+                                stick->shares,  stick->history.entries, stick->next.entries};
+  return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
+}
+
+Status contact_stick_reserve(ContactStick *stick, int pair_count) {
+  size_t n = (size_t)pair_count;
+  bool fits = memory_reserve((void **)&stick->pairs, &stick->pair_capacity, n, sizeof *stick->pairs) &&
+              memory_reserve((void **)&stick->touches, &stick->touch_capacity, n, sizeof *stick->touches) &&
+              memory_reserve((void **)&stick->pulls, &stick->pull_capacity, n, sizeof *stick->pulls) &&
+              memory_reserve((void **)&stick->order, &stick->order_capacity, 8 * n, sizeof *stick->order) &&
+              memory_reserve((void **)&stick->nodes, &stick->node_capacity, 8 * n, sizeof *stick->nodes);
+  return fits ? STATUS_OK : status_no_memory("friction");
+}
+
+// ---- Small matrices, by rows.
+
+static Vec3 times(const double A[9], Vec3 x) {
+  return (Vec3){A[0] * x.x + A[1] * x.y + A[2] * x.z, A[3] * x.x + A[4] * x.y + A[5] * x.z,
+                A[6] * x.x + A[7] * x.y + A[8] * x.z};
+}
+
+// A⁻¹ x, and x itself where A is flat.
+static Vec3 divide(const double A[9], Vec3 x) {
+  Vec3 r0 = vec3_at(A), r1 = vec3_at(A + 3), r2 = vec3_at(A + 6);
+  double det = vec3_dot(r0, vec3_cross(r1, r2)), size = vec3_length(r0) * vec3_length(r1) * vec3_length(r2);
+  if (!(fabs(det) > 1e-9 * size)) return x;
+  Vec3 sum = vec3_add(vec3_scale(x.x, vec3_cross(r1, r2)), vec3_scale(x.y, vec3_cross(r2, r0)));
+  return vec3_scale(1 / det, vec3_add(sum, vec3_scale(x.z, vec3_cross(r0, r1))));
+}
+
+// F of a tetrahedron: edges now by edges at rest.
+static void find_deformation(const ContactStick *stick, int tet, const double *positions, double F[9]) {
+  const int *v = stick->tets[tet];
+  Vec3 rest[3], now[3], across[3];
+  for (int k = 0; k < 3; k++) {
+    rest[k] = vec3_sub(vec3_at(stick->rest + 3 * (size_t)v[k + 1]), vec3_at(stick->rest + 3 * (size_t)v[0]));
+    now[k] = vec3_sub(vec3_at(positions + 3 * (size_t)v[k + 1]), vec3_at(positions + 3 * (size_t)v[0]));
+  }
+  for (int k = 0; k < 3; k++) across[k] = vec3_cross(rest[(k + 1) % 3], rest[(k + 2) % 3]);
+  double det = vec3_dot(rest[0], across[0]);
+  for (int r = 0; r < 9; r++) F[r] = 0;
+  for (int k = 0; k < 3; k++) {
+    const double column[3] = {now[k].x, now[k].y, now[k].z};
+    for (int r = 0; r < 3; r++) vec3_accumulate(F + 3 * r, vec3_scale(column[r] / det, across[k]));
+  }
+}
+
+static Vec3 project(Vec3 normal, Vec3 x) {
+  return vec3_sub(x, vec3_scale(vec3_dot(normal, x), normal));
+}
+
+// ---- Gathering.
+
+// Where what is at x̄ now was at the last accepted state.
+static Vec3 place_before(const ContactStick *stick, const ContactStickPair *pair, int side) {
+  if (pair->tets[side] < 0) return vec3_at(pair->before);
+  Vec3 x = {0, 0, 0};
+  for (int v = 0; v < 4; v++)
+    x = vec3_add(x, vec3_scale(pair->lambda[side][v],
+                               vec3_at(stick->before + 3 * (size_t)stick->tets[pair->tets[side]][v])));
+  return x;
+}
+
+static bool is_slave(const ContactStick *stick, const ContactStickPair *pair, int side) {
+  return pair->tets[side] >= 0 && stick->laws[pair->interface].weight[side] > 0;
+}
+
+// The node of a slave's vertex, made where it is met for the first time in its interface.
+static int node_at(ContactStick *stick, int interface, int vertex) {
+  int *node = &stick->node_of_vertex[vertex];
+  if (*node >= 0) return *node;
+  stick->nodes[stick->node_count] = (ContactStickNode){.interface = interface, .vertex = vertex};
+  return *node = stick->node_count++;
+}
+
+// Adds a pair to the nodes of its slave on that side.
+static void gather_side(ContactStick *stick, int k, int side, const double *positions) {
+  const ContactStickPair *pair = &stick->pairs[k];
+  const ContactStickLaw *law = &stick->laws[pair->interface];
+  double F[9], sign = side == 0 ? 1 : -1, half = law->weight[side];
+  Vec3 force = vec3_scale(sign, vec3_at(pair->force));
+  Vec3 gap = vec3_sub(place_before(stick, pair, 1 - side), place_before(stick, pair, side));
+  double pressed = vec3_length(force);
+  find_deformation(stick, pair->tets[side], positions, F);
+  for (int v = 0; v < 4; v++) {
+    double lambda = fmax(pair->lambda[side][v], 0), w = lambda * pressed;
+    ContactStickTouch *touch = &stick->touches[k][side][v];
+    *touch = (ContactStickTouch){.node = -1};
+    if (!(w > 0)) continue;
+    *touch = (ContactStickTouch){.node = node_at(stick, pair->interface, stick->tets[pair->tets[side]][v]),
+                                 .share = w};
+    ContactStickNode *node = &stick->nodes[touch->node];
+    node->end++;
+    node->weight += w;
+    node->stiffness += half * law->stiffness * lambda * pair->area;
+    node->limit = half * law->friction; // times N once it is known
+    vec3_accumulate(node->force, vec3_scale(lambda, force));
+    vec3_accumulate(node->gap, vec3_scale(w, gap));
+    for (int r = 0; r < 9; r++) node->deformation[r] += w * F[r];
+  }
+}
+
+// Vertices are told apart within an interface; the next one has nodes of its own.
+static void forget_vertices(ContactStick *stick, int node_begin) {
+  for (int n = node_begin; n < stick->node_count; n++) stick->node_of_vertex[stick->nodes[n].vertex] = -1;
+}
+
+static void gather(ContactStick *stick, const double *positions) {
+  int first = 0;
+  stick->node_count = 0;
+  for (int k = 0; k < stick->pair_count; k++) {
+    if (k > 0 && stick->pairs[k].interface != stick->pairs[k - 1].interface) {
+      forget_vertices(stick, first);
+      first = stick->node_count;
+    }
+    for (int side = 0; side < 2; side++) {
+      for (int v = 0; v < 4; v++) stick->touches[k][side][v] = (ContactStickTouch){.node = -1};
+      if (is_slave(stick, &stick->pairs[k], side)) gather_side(stick, k, side, positions);
+    }
+  }
+  forget_vertices(stick, first);
+}
+
+// Lists the touches node by node, their shares from w to w/W.
+static void order_touches(ContactStick *stick) {
+  int begin = 0;
+  for (int n = 0; n < stick->node_count; n++) {
+    int count = stick->nodes[n].end;
+    stick->nodes[n].begin = stick->nodes[n].end = begin;
+    begin += count;
+  }
+  ContactStickTouch *touches = stick->pair_count ? &stick->touches[0][0][0] : NULL;
+  for (int t = 0; t < 8 * stick->pair_count; t++) {
+    if (touches[t].node < 0) continue;
+    ContactStickNode *node = &stick->nodes[touches[t].node];
+    touches[t].share /= node->weight;
+    stick->order[node->end++] = t;
+  }
+}
+
+// ---- The law.
+
+// From the history to the force of a node; returns what it dissipates since then.
+static double return_radially(const ContactStickHistory *history, ContactStickNode *node) {
+  const ContactStickEntry *entry = contact_stick_history_find(history, node->interface, node->vertex);
+  Vec3 kept = entry ? vec3_at(entry->stretch) : (Vec3){0, 0, 0};
+  double before = entry ? entry->energy : 0, limit = entry ? entry->limit : 0,
+         pressed = vec3_length(vec3_at(node->force));
+  Vec3 normal = pressed > 0 ? vec3_scale(1 / pressed, vec3_at(node->force)) : (Vec3){0, 0, 0};
+  for (int r = 0; r < 9; r++) node->deformation[r] /= node->weight;
+  node->limit *= pressed;
+  Vec3 carried = project(normal, times(node->deformation, kept));
+  Vec3 trial = vec3_add(carried, project(normal, vec3_scale(1 / node->weight, vec3_at(node->gap))));
+  double length = vec3_length(trial), k = node->stiffness;
+  node->slips = k * length > node->limit;
+  double kept_share = node->slips ? node->limit / (k * length) : 1;
+  Vec3 stretch = vec3_scale(kept_share, trial);
+  vec3_store(node->normal, normal);
+  vec3_store(node->gap, trial);
+  node->trial = length;
+  vec3_store(node->stretch, stretch);
+  vec3_store(node->force, vec3_scale(-k, stretch));
+  double cut = node->slips ? 0.5 * (limit + node->limit) * (1 - kept_share) * length : 0;
+  return before - 0.5 * k * vec3_dot(carried, carried) + cut;
+}
+
+// A vertex that nothing presses any more, or no longer so that it is found: what it stored is lost.
+static double energy_of_left(const ContactStick *stick, const bool *is_resting) {
+  double left = 0;
+  for (int i = 0; i < stick->history.count; i++) {
+    const ContactStickEntry *entry = &stick->history.entries[i];
+    if (!is_resting || !is_resting[entry->interface]) left += entry->energy;
+  }
+  for (int n = 0; n < stick->node_count; n++) {
+    const ContactStickEntry *entry =
+        contact_stick_history_find(&stick->history, stick->nodes[n].interface, stick->nodes[n].vertex);
+    if (entry) left -= entry->energy;
+  }
+  return left;
+}
+
+static double energy_at_rest(const ContactStick *stick, const bool *is_resting) {
+  double sum = 0;
+  for (int i = 0; is_resting && i < stick->history.count; i++)
+    if (is_resting[stick->history.entries[i].interface]) sum += stick->history.entries[i].energy;
+  return sum;
+}
+
+// Σ (w/W) T_a of each pair, on its side 0, and of each interface.
+static void share_forces(ContactStick *stick, const bool *is_resting) {
+  for (int i = 0; i < stick->interface_count; i++)
+    if (!is_resting || !is_resting[i]) vec3_store(stick->forces[i], (Vec3){0, 0, 0});
+  for (int k = 0; k < stick->pair_count; k++) {
+    Vec3 pull = {0, 0, 0};
+    for (int side = 0; side < 2; side++)
+      for (int v = 0; v < 4; v++) {
+        const ContactStickTouch *touch = &stick->touches[k][side][v];
+        if (touch->node < 0) continue;
+        double share = side == 0 ? touch->share : -touch->share;
+        pull = vec3_add(pull, vec3_scale(share, vec3_at(stick->nodes[touch->node].force)));
+      }
+    vec3_store(stick->pulls[k], pull);
+    vec3_accumulate(stick->forces[stick->pairs[k].interface], pull);
+  }
+}
+
+Status contact_stick_eval(ContactStick *stick, int pair_count, const double *positions,
+                          const bool *is_resting) {
+  stick->pair_count = pair_count;
+  TRY(contact_stick_reserve(stick, pair_count));
+  gather(stick, positions);
+  order_touches(stick);
+  stick->slip_count = 0;
+  stick->spent = energy_of_left(stick, is_resting);
+  stick->stored = energy_at_rest(stick, is_resting);
+  for (int n = 0; n < stick->node_count; n++) {
+    ContactStickNode *node = &stick->nodes[n];
+    stick->spent += return_radially(&stick->history, node);
+    stick->stored += 0.5 * node->stiffness * vec3_dot(vec3_at(node->stretch), vec3_at(node->stretch));
+    stick->slip_count += node->slips;
+  }
+  share_forces(stick, is_resting);
+  return STATUS_OK;
+}
+
+void contact_stick_add_force(const ContactStick *stick, double *force) {
+  for (int k = 0; k < stick->pair_count; k++)
+    for (int side = 0; side < 2; side++) {
+      const ContactStickPair *pair = &stick->pairs[k];
+      if (pair->tets[side] < 0) continue;
+      for (int v = 0; v < 4; v++) {
+        double share = side == 0 ? pair->lambda[0][v] : -pair->lambda[1][v];
+        vec3_accumulate(force + 3 * (size_t)stick->tets[pair->tets[side]][v],
+                        vec3_scale(share, vec3_at(stick->pulls[k])));
+      }
+    }
+}
+
+// ---- The matrix.
+
+// The vertices that a node couples into stick->clique, ω into stick->shares; how many. −1: no memory.
+static int collect(ContactStick *stick, const ContactStickNode *node) {
+  size_t most = 8 * (size_t)(node->end - node->begin);
+  if (!memory_reserve((void **)&stick->clique, &stick->clique_capacity, most, sizeof *stick->clique) ||
+      !memory_reserve((void **)&stick->shares, &stick->share_capacity, most, sizeof *stick->shares) ||
+      !memory_reserve((void **)&stick->outer, &stick->outer_capacity, 3 * most, sizeof *stick->outer))
+    return -1;
+  int count = 0;
+  for (int r = node->begin; r < node->end; r++) {
+    int t = stick->order[r], slave = t / 4 % 2;
+    const ContactStickPair *pair = &stick->pairs[t / 8];
+    double share = stick->touches[t / 8][slave][t % 4].share;
+    for (int side = 0; side < 2; side++)
+      for (int v = 0; v < 4 && pair->tets[side] >= 0; v++) {
+        int vertex = stick->tets[pair->tets[side]][v], *place = &stick->place[vertex];
+        if (*place == 0) {
+          stick->clique[count] = vertex;
+          stick->shares[count] = 0;
+          *place = ++count;
+        }
+        stick->shares[*place - 1] += (side == slave ? share : -share) * pair->lambda[side][v];
+      }
+  }
+  for (int i = 0; i < count; i++) stick->place[stick->clique[i]] = 0;
+  return count;
+}
+
+// Two unit vectors that make a right-handed frame with the normal, the first along `along` if that is long
+// enough.
+static void find_tangents(Vec3 normal, Vec3 along, Vec3 tangent[2]) {
+  double length = vec3_length(along);
+  if (!(length > 0)) {
+    along = vec3_cross(normal, fabs(normal.x) < 0.6 ? (Vec3){1, 0, 0} : (Vec3){0, 1, 0});
+    length = vec3_length(along);
+  }
+  tangent[0] = vec3_scale(1 / length, along);
+  tangent[1] = vec3_cross(normal, tangent[0]);
+}
+
+Status contact_stick_add_stiffness(ContactStick *stick, const ContactStiffnessSink *sink) {
+  for (int n = 0; n < stick->node_count; n++) {
+    const ContactStickNode *node = &stick->nodes[n];
+    double across = node->slips ? node->limit / node->trial : node->stiffness;
+    const double slopes[2] = {node->slips ? 0 : node->stiffness, across};
+    Vec3 tangent[2];
+    if (!(across > 0)) continue;
+    int count = collect(stick, node);
+    if (count < 0) return status_no_memory("friction");
+    find_tangents(vec3_at(node->normal), vec3_at(node->gap), tangent);
+    for (int k = 0; k < 2; k++) {
+      if (!(slopes[k] > 0)) continue;
+      for (int i = 0; i < count; i++)
+        vec3_store(stick->outer + 3 * i, vec3_scale(stick->shares[i], tangent[k]));
+      sink->add_outer(sink->self, count, stick->clique, stick->outer, slopes[k]);
+    }
+  }
+  return STATUS_OK;
+}
+
+Status contact_stick_couple(ContactStick *stick, void *visitor,
+                            Status (*visit)(void *visitor, int count, const int *vertices)) {
+  for (int n = 0; n < stick->node_count; n++) {
+    int count = collect(stick, &stick->nodes[n]);
+    if (count < 0) return status_no_memory("friction");
+    TRY(visit(visitor, count, stick->clique));
+  }
+  return STATUS_OK;
+}
+
+// ---- Accepting.
+
+void contact_stick_begin(ContactStick *stick, const double *positions) {
+  memcpy(stick->before, positions, 3 * (size_t)stick->vertex_count * sizeof *positions);
+}
+
+static Status keep_resting(ContactStick *stick, const bool *is_resting) {
+  for (int i = 0; is_resting && i < stick->history.count; i++)
+    if (is_resting[stick->history.entries[i].interface])
+      TRY(contact_stick_history_add(&stick->next, &stick->history.entries[i]));
+  return STATUS_OK;
+}
+
+static Status keep_nodes(ContactStick *stick) {
+  for (int n = 0; n < stick->node_count; n++) {
+    const ContactStickNode *node = &stick->nodes[n];
+    Vec3 stretch = vec3_at(node->stretch);
+    if (!(node->limit > 0)) continue;
+    ContactStickEntry entry = {.interface = node->interface,
+                               .vertex = node->vertex,
+                               .energy = 0.5 * node->stiffness * vec3_dot(stretch, stretch),
+                               .limit = node->limit};
+    vec3_store(entry.stretch, divide(node->deformation, stretch));
+    TRY(contact_stick_history_add(&stick->next, &entry));
+  }
+  return STATUS_OK;
+}
+
+Status contact_stick_accept(ContactStick *stick, const double *positions, const bool *is_resting) {
+  stick->next.count = 0;
+  TRY(keep_resting(stick, is_resting));
+  TRY(keep_nodes(stick));
+  contact_stick_history_sort(&stick->next);
+  ContactStickHistory old = stick->history;
+  stick->history = stick->next;
+  stick->next = old;
+  stick->dissipated += stick->spent;
+  contact_stick_begin(stick, positions);
+  return STATUS_OK;
+}

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Coulomb friction by elastic stick: a spring in the tangent plane, cut at μN. Its stretch is a vector per
+// vertex of one of the two bodies, the slave, kept in that body's rest frame and moved on only in accepted
+// states, so a force is a function of positions: nothing creeps, and a step that is refused leaves no trace.
+//
+// Of a pair (i of A, j of B) it needs the force F_ij on A, the area A_ij that it covers and the weights λ at
+// the centroid x̄ of the overlap of the mesh vertices of either side. With xⁿ of the last accepted state:
+//
+//   gap       Δ_ij = Σ_b λ_b x_bⁿ − Σ_a λ_a x_aⁿ     the way of A against B since then: both are at x̄ now
+//
+// For a vertex a of the slave A, w = λ_a |F_ij|, W = Σ w over its pairs:
+//
+//   Δ_a = Σ w Δ_ij / W,   F_a = Σ w F_i / W  (deformation gradients),   f_a = Σ λ_a F_ij,   N_a = |f_a|,
+//   n_a = f_a / N_a,      k_a = c_t Σ λ_a A_ij,      P = 1 − n nᵀ
+//   trial     s = P (F_a S_a + Δ_a),   T_a = −k_a s;   where k_a |s| > μ N_a by radial return
+//             s ← s μN_a/(k_a |s|)     (Simo and Hughes, Computational Inelasticity, 1.4: a slider and a
+//             spring)
+//   force     Σ_a (w/W) T_a on the pair, at x̄: by λ on A's vertices, its opposite on B's
+//   matrix    D_a ⊗ ω ωᵀ,  ω = Σ (w/W)(λ_A, −λ_B);   D = k P in stick, μN/|s_trial| (P − ŝŝᵀ) in slip
+//   accepted  S_a ← F_a⁻¹ s,  xⁿ ← x;   dissipated += mean of μN_a then and now · length cut off
+//
+// Δ is zero to rounding in any common rigid motion and telescopes; only increments are averaged. Force and
+// torque balance pair by pair. The matrix is positive semidefinite; the derivatives of N, n and the weights
+// are left out of it. A change of ½ k_a s² that is no work of a spring (k_a, frame, lift-off) is counted as
+// dissipated, so that the energies add up.
+//
+// Either side may be slave, or both with half of k and of μ each (weights ½, ½): a body and itself.
+#ifndef TETLAP_CONTACT_STICK_H
+#define TETLAP_CONTACT_STICK_H
+
+#include <stdbool.h>
+
+#include "contact/friction/stick_history.h"
+#include "contact/pressure/stiffness.h"
+
+// What the normal law hands over, interface by interface.
+typedef struct ContactStickPair {
+  int interface;
+  int tets[2];         // [1] −1: an obstacle without elements
+  double lambda[2][4]; // weights at x̄ of the tetrahedra's vertices; their sum is 1
+  double force[3];     // F_ij on side 0 [N]
+  double area;         // A_ij [m²]
+  double
+      before[3]; // of an obstacle without elements: where its point at x̄ was at the last accepted state [m]
+} ContactStickPair;
+
+// An interface's law.
+typedef struct ContactStickLaw {
+  double friction;  // μ
+  double stiffness; // c_t [Pa/m]
+  double weight[2]; // of each side as slave: 1 and 0, 0 and 1, or ½ and ½
+} ContactStickLaw;
+
+// A slave's vertex at the positions of the last evaluation.
+typedef struct ContactStickNode {
+  int interface, vertex;
+  int begin, end;        // of its touches
+  double weight;         // W [N]
+  double force[3];       // f_a, then T_a [N]
+  double normal[3];      // n
+  double deformation[9]; // F_a
+  double stiffness;      // k_a [N/m]
+  double limit;          // μ N_a [N]
+  double gap[3];         // Δ_a, then s_trial [m]
+  double trial;          // |s_trial| [m]
+  double stretch[3];     // s [m]
+  bool slips;
+} ContactStickNode;
+
+// A corner of a pair that is a slave: which node, with which share of it.
+typedef struct ContactStickTouch {
+  int node;     // −1: nothing presses it
+  double share; // w, then w/W
+} ContactStickTouch;
+
+typedef struct ContactStick {
+  int vertex_count, interface_count;
+  const double *rest;    // borrowed                                (vertex_count, 3)
+  const int (*tets)[4];  // borrowed
+  ContactStickLaw *laws; //                                         (interface_count)
+  // The last accepted state.
+  double *before; // xⁿ [m]                                         (vertex_count, 3)
+  ContactStickHistory history;
+  double dissipated; // until then [J]
+  // The last evaluation.
+  ContactStickPair *pairs; // as given, for the caller to fill      (pair_count)
+  int pair_count;
+  ContactStickNode *nodes; //                                       (node_count)
+  int node_count;
+  ContactStickTouch (*touches)[2][4]; //                            (pair_count)
+  int *order;                         // numbers of touches (8 a pair), node by node
+  double (*pulls)[3];                 // on side 0 of each pair [N]               (pair_count)
+  double (*forces)[3];  // on side 0 of each interface [N]; of one at rest as it was   (interface_count)
+  double stored, spent; // ½ Σ k s², and dissipated since the last accepted state [J]
+  int slip_count;
+  // Scratch memory.
+  int *node_of_vertex; // −1 between calls                          (vertex_count)
+  int *place;          // 0 between calls                           (vertex_count)
+  int *clique;
+  double *shares, *outer;
+  size_t pair_capacity, node_capacity, touch_capacity, order_capacity, pull_capacity;
+  size_t clique_capacity, share_capacity, outer_capacity;
+  ContactStickHistory next;
+} ContactStick;
+
+// The laws are copied. STATUS_INPUT: a μ, stiffness or weight that makes no sense. A zeroed stick, and one
+// whose creation failed, can be destroyed.
+Status contact_stick_create(ContactStick *stick, int vertex_count, const double *rest, const int (*tets)[4],
+                            int interface_count, const ContactStickLaw *laws);
+void contact_stick_destroy(ContactStick *stick);
+size_t contact_stick_bytes(const ContactStick *stick); // on the heap
+
+// Room for so many pairs in stick->pairs, which the caller fills before it evaluates.
+Status contact_stick_reserve(ContactStick *stick, int pair_count);
+
+// The friction at these positions (vertex_count, 3), from stick->pairs of which there are pair_count. Changes
+// nothing that is kept. `is_resting` (interface_count), NULL: none: those have no pairs, and keep what they
+// have.
+Status contact_stick_eval(ContactStick *stick, int pair_count, const double *positions,
+                          const bool *is_resting);
+
+// Of the last evaluation.
+void contact_stick_add_force(const ContactStick *stick, double *force); // (vertex_count, 3)
+// Adds −∂f/∂x, without what comes from N, n and the weights.
+Status contact_stick_add_stiffness(ContactStick *stick, const ContactStiffnessSink *sink);
+// Visits the vertices that each node couples.
+Status contact_stick_couple(ContactStick *stick, void *visitor,
+                            Status (*visit)(void *visitor, int count, const int *vertices));
+
+// Where history counts from: the gaps that follow are ways from here.
+void contact_stick_begin(ContactStick *stick, const double *positions);
+// The last evaluation, which was at these positions, is accepted.
+Status contact_stick_accept(ContactStick *stick, const double *positions, const bool *is_resting);
+
+#endif

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/friction/stick_pairs.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/vec3.h"
+#include "contact/evaluation.h"
+#include "contact/pressure/field.h"
+#include "contact/shape/shape.h"
+
+// ---- Who is slave.
+
+static double volume_of(const ContactLayout *layout, int body) {
+  double sum = 0;
+  for (int c = layout->depth.cell_begin[body]; c < layout->depth.cell_begin[body + 1]; c++)
+    sum += layout->cell_volumes[c];
+  return sum;
+}
+
+// Whether side 0 is the better slave of two bodies.
+static bool is_first_slave(const ContactLayout *layout, const ContactFacing *facing) {
+  const ContactBody *a = &layout->def.bodies[facing->a], *b = &layout->def.bodies[facing->b];
+  if (a->is_obstacle != b->is_obstacle) return b->is_obstacle;
+  double volumes[2] = {volume_of(layout, facing->a), volume_of(layout, facing->b)};
+  if (fabs(volumes[0] - volumes[1]) > 1e-6 * volumes[0]) return volumes[0] < volumes[1];
+  return a->vertex_end - a->vertex_begin >= b->vertex_end - b->vertex_begin;
+}
+
+void contact_stick_pairs_laws(const ContactSystem *system, const double *coefficients,
+                              ContactStickLaw *laws) {
+  const ContactLayout *layout = contact_system_layout(system);
+  for (int i = 0; i < layout->facing_count; i++) {
+    const ContactFacing *facing = &layout->facings[i];
+    laws[i] = (ContactStickLaw){.friction = coefficients[i], .stiffness = facing->stiffness};
+    double first = facing->shape >= 0 || is_first_slave(layout, facing);
+    if (facing->shape < 0 && facing->a == facing->b) first = 0.5;
+    laws[i].weight[0] = first;
+    laws[i].weight[1] = 1 - first;
+  }
+}
+
+// ---- Pairs.
+
+// The area that a pair covers: exact for flat surfaces, whatever their depth. Of a shape the depth is that of
+// the mean, half of it.
+static double area_of(const ContactFieldPair *field, bool is_shape) {
+  double depth = is_shape ? 2 * field->depths[1] : field->depths[0] + field->depths[1];
+  return depth > 0 ? field->volume / depth : 0;
+}
+
+static void hand_over(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, double before,
+                      ContactStickPair *pair) {
+  const ContactPair *cells = &evaluation->pairs[k];
+  const ContactFieldPair *field = &evaluation->fields[k];
+  int shape = layout->facings[cells->facing].shape;
+  *pair = (ContactStickPair){.interface = cells->facing, .area = area_of(field, shape >= 0)};
+  for (int side = 0; side < 2; side++) {
+    pair->tets[side] = cells->tets[side] < 0 ? -1 : contact_depth_tet(&layout->depth, cells->tets[side]);
+    memcpy(pair->lambda[side], field->weights[side], sizeof pair->lambda[side]);
+  }
+  memcpy(pair->force, field->force, sizeof pair->force);
+  if (shape < 0) return;
+  Vec3 centroid = vec3_at(field->centroid);
+  vec3_store(pair->before,
+             contact_shape_place_before(&layout->def.shapes[shape], evaluation->time, before, centroid));
+}
+
+Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, double before, bool *is_resting) {
+  const ContactEvaluation *evaluation;
+  const ContactLayout *layout = contact_system_layout(system);
+  TRY(contact_system_look(system, &evaluation));
+  int count = evaluation->pair_count;
+  TRY(contact_stick_reserve(stick, count));
+  for (int i = 0; i < layout->facing_count; i++) is_resting[i] = contact_system_is_resting(system, i);
+  for (int k = 0; k < count; k++) hand_over(layout, evaluation, k, before, &stick->pairs[k]);
+  return contact_stick_eval(stick, count, evaluation->positions, is_resting);
+}
+
+double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem *system) {
+  const ContactEvaluation *evaluation;
+  const ContactLayout *layout = contact_system_layout(system);
+  double power = 0;
+  if (contact_system_look(system, &evaluation)) return NAN;
+  for (int k = 0; k < stick->pair_count; k++) {
+    int shape = layout->facings[stick->pairs[k].interface].shape;
+    if (shape < 0) continue;
+    Vec3 x = vec3_at(evaluation->fields[k].centroid);
+    Vec3 velocity = contact_shape_velocity(&layout->def.shapes[shape], evaluation->time, x);
+    power += vec3_dot(vec3_at(stick->pulls[k]), velocity);
+  }
+  return power;
+}

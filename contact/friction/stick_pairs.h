@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Between a contact system with the potential `field` and friction by elastic stick
+// (contact/friction/stick.h): which of two is the slave, and what the pairs of an evaluation hand over.
+#ifndef TETLAP_CONTACT_STICK_PAIRS_H
+#define TETLAP_CONTACT_STICK_PAIRS_H
+
+#include "contact/friction/stick.h"
+#include "contact/system.h"
+
+// Laws for all interfaces of the system with these coefficients (interface_count) and the stiffness of the
+// normal law, c_t = c. Slave is the body against an obstacle, the smaller of two bodies, of two of one size
+// the one with more vertices; of a body and itself both halves. `laws` (interface_count).
+void contact_stick_pairs_laws(const ContactSystem *system, const double *coefficients, ContactStickLaw *laws);
+
+// Evaluates the friction for the system's last evaluation; `before`: the time of the last accepted state.
+// `is_resting` (interface_count) is filled.
+Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, double before, bool *is_resting);
+
+// The power that moving obstacles without elements put in by friction at the last evaluation [W].
+double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem *system);
+
+#endif

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The neighbourhoods of a list of pairs: per facing one patch with its elements (tetrahedra that take part)
+// and nodes (their vertices), numbered in order of first appearance, and who touches whom.
+//
+//     pair ──► 2 elements ──► 4 nodes each          after contact_patches_index also
+//     node ──► elements   ──► pairs
+//
+// The cost is that of the list, whatever the size of the meshes.
+#ifndef TETLAP_CONTACT_PATCHES_H
+#define TETLAP_CONTACT_PATCHES_H
+
+#include "contact/search/layout.h"
+
+typedef struct ContactElement {
+  int tet;
+  int side;       // of the facing: 0 or 1; of a body and itself: in the first of its pairs
+  int nodes[4];   // of its vertices
+  double covered; // W_i [m³]; the user's
+} ContactElement;
+
+typedef struct ContactNode {
+  int vertex;
+  int side;
+  double covered;  // W_a [m³]; the user's
+  double force[3]; // [N]; the user's
+} ContactNode;
+
+// A facing that has pairs.
+typedef struct ContactPatch {
+  int facing;
+  int pair_begin, pair_end;
+  int element_begin, element_end;
+  int node_begin, node_end;
+  double energy; // U of its pairs [J]; the user's
+} ContactPatch;
+
+// Rows of varying length, one after another.
+typedef struct ContactRows {
+  int *begin;
+  size_t begin_capacity;
+  int *items;
+  size_t item_capacity;
+} ContactRows;
+
+typedef struct ContactPatches {
+  int patch_count, element_count, node_count, pair_count;
+  ContactPatch *patches;     //                                                (patch_count)
+  ContactElement *elements;  //                                                (element_count)
+  ContactNode *nodes;        //                                                (node_count)
+  int (*pair_elements)[2];   // elements of each pair, −1: the half-space      (pair_count)
+  ContactRows element_pairs; // pairs of each element
+  ContactRows node_elements; // elements of each node
+  size_t patch_capacity, element_capacity, node_capacity, pair_capacity;
+  int *element_of_tet; // scratch: −1 between calls                            (tet_count)
+  int *node_of_vertex; // scratch: −1 between calls                            (vertex_count)
+} ContactPatches;
+
+Status contact_patches_create(ContactPatches *patches, const ContactLayout *layout);
+void contact_patches_destroy(ContactPatches *patches);
+
+// Builds the patches of `pairs`, which come facing by facing. Elements' and nodes' own numbers are zeroed.
+Status contact_patches_build(ContactPatches *patches, const ContactLayout *layout, int pair_count,
+                             const ContactPair *pairs);
+
+// Fills element_pairs and node_elements.
+Status contact_patches_index(ContactPatches *patches);
+
+#endif

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/search/broad.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "contact/search/bounds.h"
+#include "contact/search/boxes.h"
+
+static void grown_box(const int tet[4], const double *positions, double grow, double box[6]) {
+  contact_bounds_of_tet(tet, positions, box);
+  for (int c = 0; c < 3; c++) box[c] -= grow, box[c + 3] += grow;
+}
+
+static void bounds_of_side(const ContactBroadSide *side, const double *positions, double grow,
+                           double bounds[6]) {
+  for (int c = 0; c < 3; c++) bounds[c] = INFINITY, bounds[c + 3] = -INFINITY;
+  for (int i = 0; i < side->tet_count; i++) {
+    double box[6];
+    grown_box(side->tets[i], positions, grow, box);
+    for (int c = 0; c < 3; c++) {
+      bounds[c] = fmin(bounds[c], box[c]);
+      bounds[c + 3] = fmax(bounds[c + 3], box[c + 3]);
+    }
+  }
+}
+
+// The tetrahedra of one side whose boxes reach into what the other side occupies.
+typedef struct Selection {
+  int count;
+  int *tets;          // index into the side                    (count)
+  double (*boxes)[6]; //                                       (count)
+} Selection;
+
+static Status select_within(Selection *selection, const ContactBroadSide *side, const double *positions,
+                            double grow, const double bounds[6]) {
+  selection->tets = memory_zeroed((size_t)side->tet_count, sizeof *selection->tets);
+  selection->boxes = memory_zeroed((size_t)side->tet_count, sizeof *selection->boxes);
+  if (!selection->tets || !selection->boxes) return status_no_memory("boxes of the broad phase");
+  for (int i = 0; i < side->tet_count; i++) {
+    double *box = selection->boxes[selection->count];
+    grown_box(side->tets[i], positions, grow, box);
+    if (contact_bounds_distance(box, bounds) <= 0) selection->tets[selection->count++] = i;
+  }
+  return STATUS_OK;
+}
+
+static void drop(Selection *selection) {
+  memory_free(selection->tets);
+  memory_free(selection->boxes);
+}
+
+static int compare_pairs(const void *left, const void *right) {
+  const int *a = left, *b = right;
+  if (a[0] != b[0]) return a[0] < b[0] ? -1 : 1;
+  return (a[1] > b[1]) - (a[1] < b[1]);
+}
+
+static Status append_selected(ContactPairList *list, const ContactBoxPairs *found, const Selection *in_a,
+                              const Selection *in_b, int offset_a, int offset_b) {
+  size_t wanted = (size_t)list->count + found->count;
+  if (wanted > INT_MAX ||
+      !memory_reserve((void **)&list->pairs, &list->capacity, wanted, sizeof *list->pairs))
+    return status_no_memory("candidate pairs");
+  int(*pairs)[2] = list->pairs + list->count;
+  for (size_t k = 0; k < found->count; k++) {
+    pairs[k][0] = offset_a + in_a->tets[found->pairs[k][0]];
+    pairs[k][1] = offset_b + in_b->tets[found->pairs[k][1]];
+  }
+  qsort(pairs, found->count, sizeof *pairs, compare_pairs);
+  list->count += (int)found->count;
+  return STATUS_OK;
+}
+
+Status contact_broad_append(ContactPairList *list, const ContactBroadSide *a, const ContactBroadSide *b,
+                            const double *positions, double margin) {
+  double bounds_a[6], bounds_b[6];
+  bounds_of_side(a, positions, margin / 2, bounds_a);
+  bounds_of_side(b, positions, margin / 2, bounds_b);
+  if (!(contact_bounds_distance(bounds_a, bounds_b) <= 0)) return STATUS_OK;
+
+  Selection in_a = {0}, in_b = {0};
+  ContactBoxPairs found = {0};
+  Status status = select_within(&in_a, a, positions, margin / 2, bounds_b);
+  if (!status) status = select_within(&in_b, b, positions, margin / 2, bounds_a);
+  if (!status)
+    status = contact_boxes_intersect((const double(*)[6])in_a.boxes, in_a.count,
+                                     (const double(*)[6])in_b.boxes, in_b.count, &found);
+  if (!status) status = append_selected(list, &found, &in_a, &in_b, a->tet_offset, b->tet_offset);
+  contact_boxes_destroy(&found);
+  drop(&in_a);
+  drop(&in_b);
+  return status;
+}
+
+void contact_broad_destroy(ContactPairList *list) {
+  memory_free(list->pairs);
+  *list = (ContactPairList){0};
+}

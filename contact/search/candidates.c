@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/search/candidates.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "contact/search/bounds.h"
+#include "contact/shape/shape.h"
+
+// Where the boxes of two bodies meet but the bodies may not, a margin of several steps of free motion is
+// tried, bounded so that the trial costs little more than a search.
+enum { STEPS_AHEAD = 4, WIDEST_TRIAL = 4 };
+
+// Of the margin, for a body with itself: elements that are neighbours but one are always near.
+static const double SELF_MARGIN = 0.5;
+
+// The share of a margin that the next step may use up, and the step by which speeds are measured where the
+// next one is not known [s].
+static const double MARGIN_USED = 0.8, NO_STEP = 1e-9;
+
+static Status create_list(ContactCandidateList *list, const ContactLayout *layout) {
+  list->begin = memory_zeroed((size_t)layout->facing_count + 1, sizeof(int));
+  list->margins = memory_zeroed((size_t)layout->facing_count, sizeof(double));
+  list->tets = memory_zeroed((size_t)layout->depth.cell_count, sizeof(int));
+  return list->begin && list->margins && list->tets ? STATUS_OK : status_no_memory("the candidate lists");
+}
+
+static void destroy_list(ContactCandidateList *list) {
+  memory_free(list->pairs);
+  memory_free(list->begin);
+  memory_free(list->margins);
+  memory_free(list->tets);
+}
+
+Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout) {
+  *candidates = (ContactCandidates){0};
+  TRY(create_list(&candidates->list, layout));
+  TRY(create_list(&candidates->next, layout));
+  candidates->reference = memory_zeroed(3 * (size_t)layout->depth.position_count, sizeof(double));
+  candidates->is_listed = memory_zeroed((size_t)layout->depth.cell_count, 1);
+  candidates->boxes = memory_zeroed((size_t)layout->def.body_count, sizeof *candidates->boxes);
+  size_t motions = (size_t)layout->party_count + (size_t)layout->def.body_count;
+  candidates->is_left_out = memory_zeroed((size_t)layout->facing_count, sizeof *candidates->is_left_out);
+  candidates->motions = memory_zeroed(motions, sizeof(double));
+  candidates->expected = memory_zeroed(motions, sizeof(double));
+  bool fits = candidates->reference && candidates->is_listed && candidates->boxes && candidates->motions &&
+              candidates->expected && candidates->is_left_out;
+  return fits ? STATUS_OK : status_no_memory("the candidate lists");
+}
+
+void contact_candidates_destroy(ContactCandidates *candidates) {
+  destroy_list(&candidates->list);
+  destroy_list(&candidates->next);
+  contact_broad_destroy(&candidates->found);
+  memory_free(candidates->reference);
+  memory_free(candidates->is_listed);
+  memory_free(candidates->boxes);
+  memory_free(candidates->motions);
+  memory_free(candidates->is_left_out);
+  memory_free(candidates->expected);
+  *candidates = (ContactCandidates){0};
+}
+
+// The longest of the vectors to − from over vertices begin … end (from NULL: 0); NaN counts as infinite.
+static double longest(const double *to, const double *from, int begin, int end) {
+  double largest = 0;
+  for (size_t v = (size_t)begin; v < (size_t)end; v++) {
+    Vec3 d = from ? vec3_sub(vec3_at(to + 3 * v), vec3_at(from + 3 * v)) : vec3_at(to + 3 * v);
+    double square = vec3_dot(d, d);
+    if (!(square <= largest)) largest = isnan(square) ? INFINITY : square;
+  }
+  return sqrt(largest);
+}
+
+// Twice the longest of to − from, less their mean: no two vertices come nearer to each other by more.
+static double approach(const double *to, const double *from, int begin, int end) {
+  Vec3 mean = {0, 0, 0};
+  double largest = 0, share = 1.0 / (end - begin);
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t v = (size_t)begin; v < (size_t)end; v++) {
+      Vec3 d = from ? vec3_sub(vec3_at(to + 3 * v), vec3_at(from + 3 * v)) : vec3_at(to + 3 * v);
+      if (pass == 0) mean = vec3_add(mean, vec3_scale(share, d));
+      double distance = pass == 0 ? 0 : vec3_length(vec3_sub(d, mean));
+      if (!(distance <= largest)) largest = isnan(distance) ? INFINITY : distance;
+    }
+  return 2 * largest;
+}
+
+static void measure_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                            const double *positions) {
+  const ContactSystemDef *def = &layout->def;
+  for (int b = 0; b < def->body_count; b++)
+    candidates->motions[b] =
+        longest(positions, candidates->reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+  for (int b = 0; b < def->body_count; b++)
+    if (def->bodies[b].meets_itself)
+      candidates->motions[layout->party_count + b] =
+          approach(positions, candidates->reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+  for (int h = 0; h < def->shape_count; h++) {
+    candidates->motions[def->body_count + h] =
+        contact_shape_motion(&def->shapes[h], candidates->reference_time, time);
+  }
+}
+
+static void expect_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                           const double *velocities, double step) {
+  const ContactSystemDef *def = &layout->def;
+  for (int b = 0; b < def->body_count; b++)
+    candidates->expected[b] =
+        step * longest(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+  for (int b = 0; b < def->body_count; b++)
+    if (def->bodies[b].meets_itself)
+      candidates->expected[layout->party_count + b] =
+          step * approach(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+  for (int h = 0; h < def->shape_count; h++) {
+    candidates->expected[def->body_count + h] = step * contact_shape_speed(&def->shapes[h], time);
+  }
+}
+
+// By how much the two of a facing may come nearer, of motions laid out like `motions`.
+static double sum_of(const double *motions, const ContactLayout *layout, const ContactFacing *facing) {
+  if (facing->a == facing->b) return motions[layout->party_count + facing->a];
+  return motions[facing->a] + motions[facing->b];
+}
+
+void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
+                              const double *positions, double (*boxes)[6]) {
+#pragma omp parallel for schedule(static) if (list->tet_count > 512)
+  for (int k = 0; k < list->tet_count; k++)
+    contact_bounds_of_tet(layout->depth.cells[list->tets[k]], positions, boxes[list->tets[k]]);
+}
+
+bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                              const double *positions) {
+  if (!candidates->is_made) return false;
+  measure_motions(candidates, layout, time, positions);
+  for (int f = 0; f < layout->facing_count; f++)
+    if (!candidates->is_left_out[f] &&
+        !(sum_of(candidates->motions, layout, &layout->facings[f]) <= candidates->list.margins[f]))
+      return false;
+  return true;
+}
+
+// Half of the margin is used up, or the next step might use up the rest. The latter cannot be helped by a
+// search right after the last one, unless nothing was near and the margin may grow.
+static bool wants_search(const ContactCandidates *candidates, const ContactLayout *layout) {
+  if (!candidates->is_made) return true;
+  for (int f = 0; f < layout->facing_count; f++) {
+    if (candidates->is_left_out[f]) continue;
+    const ContactFacing *facing = &layout->facings[f];
+    double margin = candidates->list.margins[f], moved = sum_of(candidates->motions, layout, facing);
+    bool is_empty = candidates->list.begin[f] == candidates->list.begin[f + 1] && facing->a != facing->b;
+    bool may_leave = moved + sum_of(candidates->expected, layout, facing) > margin;
+    if (!(moved <= margin / 2) || (may_leave && (is_empty || moved > margin / 4))) return true;
+  }
+  return false;
+}
+
+static void bound_bodies(ContactCandidates *candidates, const ContactLayout *layout,
+                         const double *positions) {
+  for (int b = 0; b < layout->def.body_count; b++) {
+    double *box = candidates->boxes[b];
+    for (int c = 0; c < 3; c++) box[c] = INFINITY, box[c + 3] = -INFINITY;
+    for (int v = layout->def.bodies[b].vertex_begin; v < layout->def.bodies[b].vertex_end; v++)
+      for (int c = 0; c < 3; c++) {
+        double x = positions[3 * (size_t)v + (size_t)c];
+        box[c] = fmin(box[c], x), box[c + 3] = fmax(box[c + 3], x);
+      }
+  }
+}
+
+// A lower bound of the distance of the two parties: nothing meets until they have moved that far.
+static double clearance(const ContactCandidates *candidates, const ContactLayout *layout,
+                        const ContactFacing *facing, double time, const double *positions) {
+  const ContactBody *a = &layout->def.bodies[facing->a];
+  if (facing->shape >= 0)
+    return contact_shape_clearance(&layout->def.shapes[facing->shape], time, positions, a->vertex_begin,
+                                   a->vertex_end);
+  return contact_bounds_distance(candidates->boxes[facing->a], candidates->boxes[facing->b]);
+}
+
+static Status push(ContactCandidateList *list, ContactPair pair) {
+  if (!memory_reserve((void **)&list->pairs, &list->capacity, (size_t)list->count + 1, sizeof *list->pairs))
+    return status_no_memory("candidate pairs");
+  list->pairs[list->count++] = pair;
+  return STATUS_OK;
+}
+
+static ContactBroadSide side_of(const ContactLayout *layout, int body) {
+  const ContactDepth *depth = &layout->depth;
+  int begin = depth->cell_begin[body], end = depth->cell_begin[body + 1];
+  return (ContactBroadSide){depth->cells + begin, end - begin, begin};
+}
+
+static Status search_bodies(ContactCandidates *candidates, const ContactLayout *layout, int f,
+                            const double *positions, double margin) {
+  const ContactFacing *facing = &layout->facings[f];
+  ContactBroadSide a = side_of(layout, facing->a), b = side_of(layout, facing->b);
+  candidates->found.count = 0;
+  if (facing->a == facing->b)
+    TRY(contact_self_append(&layout->self, &layout->def, &layout->depth, facing->a, positions, margin,
+                            &candidates->found));
+  else
+    TRY(contact_broad_append(&candidates->found, &a, &b, positions, margin));
+  for (int k = 0; k < candidates->found.count; k++) {
+    const int *tets = candidates->found.pairs[k];
+    TRY(push(&candidates->next, (ContactPair){f, {tets[0], tets[1]}}));
+  }
+  return STATUS_OK;
+}
+
+static Status search_shape(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
+                           const double *positions, double margin) {
+  const ContactFacing *facing = &layout->facings[f];
+  const ContactShape *shape = &layout->def.shapes[facing->shape];
+  const int *begin = layout->depth.cell_begin;
+  for (int i = begin[facing->a]; i < begin[facing->a + 1]; i++) {
+    double x[12];
+    if (!contact_depth_leads(&layout->depth, i)) continue;
+    contact_layout_gather_whole(layout, i, positions, x);
+    if (contact_shape_separation(shape, time, x, margin) <= margin)
+      TRY(push(&candidates->next, (ContactPair){f, {i, -1}}));
+  }
+  return STATUS_OK;
+}
+
+static Status search_with(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
+                          const double *positions, double margin) {
+  candidates->next.margins[f] = margin;
+  if (layout->facings[f].shape < 0) return search_bodies(candidates, layout, f, positions, margin);
+  return search_shape(candidates, layout, f, time, positions, margin);
+}
+
+// A margin wider than the layout's is kept only where it holds no pair.
+static Status search_facing(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
+                            const double *positions) {
+  const ContactFacing *facing = &layout->facings[f];
+  ContactCandidateList *next = &candidates->next;
+  int begin = next->begin[f] = next->count;
+  if (candidates->is_left_out[f]) return STATUS_OK;
+  if (facing->a == facing->b)
+    return search_with(candidates, layout, f, time, positions, SELF_MARGIN * layout->margin);
+  double distance = clearance(candidates, layout, facing, time, positions);
+  if (distance > layout->margin && isfinite(distance)) {
+    next->margins[f] = distance;
+    return STATUS_OK;
+  }
+  double wide =
+      fmin(STEPS_AHEAD * sum_of(candidates->expected, layout, facing), WIDEST_TRIAL * layout->margin);
+  if (wide > layout->margin) {
+    TRY(search_with(candidates, layout, f, time, positions, wide));
+    if (next->count == begin) return STATUS_OK;
+    next->count = begin;
+  }
+  return search_with(candidates, layout, f, time, positions, layout->margin);
+}
+
+static void list_tets(ContactCandidates *candidates) {
+  ContactCandidateList *next = &candidates->next;
+  next->tet_count = 0;
+  for (int k = 0; k < next->count; k++)
+    for (int side = 0; side < 2 && next->pairs[k].tets[1] >= 0; side++) {
+      int tet = next->pairs[k].tets[side];
+      if (!candidates->is_listed[tet]) next->tets[next->tet_count++] = tet;
+      candidates->is_listed[tet] = 1;
+    }
+  for (int k = 0; k < next->tet_count; k++) candidates->is_listed[next->tets[k]] = 0;
+}
+
+// Fills `next`.
+static Status search_all(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                         const double *positions) {
+  candidates->next.count = 0;
+  bound_bodies(candidates, layout, positions);
+  for (int f = 0; f < layout->facing_count; f++) TRY(search_facing(candidates, layout, f, time, positions));
+  candidates->next.begin[layout->facing_count] = candidates->next.count;
+  list_tets(candidates);
+  return STATUS_OK;
+}
+
+void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLayout *layout,
+                                  const bool *is_left_out) {
+  ContactCandidateList *list = &candidates->list;
+  int kept = 0;
+  for (int f = 0; f < layout->facing_count; f++) {
+    int begin = list->begin[f], end = list->begin[f + 1];
+    candidates->is_left_out[f] = is_left_out && is_left_out[f];
+    list->begin[f] = kept;
+    for (int k = begin; k < end && !candidates->is_left_out[f]; k++) list->pairs[kept++] = list->pairs[k];
+  }
+  list->begin[layout->facing_count] = list->count = kept;
+}
+
+static bool lists_are_equal(const ContactCandidateList *a, const ContactCandidateList *b) {
+  return a->count == b->count &&
+         (a->count == 0 || memcmp(a->pairs, b->pairs, (size_t)a->count * sizeof *a->pairs) == 0);
+}
+
+// At the speeds with which motions were expected in `step`, the list holds for so long, less a reserve for
+// what accelerates; a new list, for longer.
+static double time_left(const ContactCandidates *candidates, const ContactLayout *layout, double step) {
+  double left = INFINITY;
+  for (int f = 0; f < layout->facing_count && step > 0; f++) {
+    const ContactFacing *facing = &layout->facings[f];
+    if (candidates->is_left_out[f]) continue;
+    double expected = sum_of(candidates->expected, layout, facing),
+           free = candidates->list.margins[f] - sum_of(candidates->motions, layout, facing);
+    if (expected > 0) left = fmin(left, MARGIN_USED * free / expected * step);
+  }
+  return left;
+}
+
+Status contact_candidates_update(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                                 const double *positions, const double *velocities, double step,
+                                 bool *has_changed) {
+  *has_changed = false;
+  measure_motions(candidates, layout, time, positions);
+  step = step > 0 ? step : NO_STEP;
+  expect_motions(candidates, layout, time, velocities, step);
+  candidates->time_left = time_left(candidates, layout, step);
+  if (!wants_search(candidates, layout)) return STATUS_OK;
+
+  double start = clock_wall_s();
+  TRY(search_all(candidates, layout, time, positions));
+  *has_changed = !candidates->is_made || !lists_are_equal(&candidates->list, &candidates->next);
+  ContactCandidateList previous = candidates->list;
+  candidates->list = candidates->next;
+  candidates->next = previous;
+  memcpy(candidates->reference, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
+  candidates->reference_time = time;
+  candidates->is_made = true;
+  measure_motions(candidates, layout, time, positions);
+  candidates->time_left = time_left(candidates, layout, step);
+  candidates->searches++;
+  candidates->search_s += clock_wall_s() - start;
+  return STATUS_OK;
+}

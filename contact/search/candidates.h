@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which pairs may overlap until the next search, for every two that can meet, and how far the parties may
+// move until then: as far as they are apart while no pair is near, half an element once one is, so that
+// nothing can pass through anything unseen.
+#ifndef TETLAP_CONTACT_CANDIDATES_H
+#define TETLAP_CONTACT_CANDIDATES_H
+
+#include "contact/search/broad.h"
+#include "contact/search/layout.h"
+
+// Valid while the two parties of a facing have together moved by no more than its margin.
+typedef struct ContactCandidateList {
+  int count;
+  size_t capacity;
+  ContactPair *pairs; // by facing, then by tets                      (count)
+  int *begin;         // of each facing                               (facing_count + 1)
+  double *margins;    // of each facing [m]                           (facing_count)
+  int *tets;          // those of mesh pairs, distinct                (cell_count)
+  int tet_count;
+} ContactCandidateList;
+
+typedef struct ContactCandidates {
+  ContactCandidateList list;
+  bool is_made;
+  bool *is_left_out; // facings that are not looked at: at rest (contact/rest.h)   (facing_count)
+  long long searches;
+  double search_s;
+  // Where everything was when the list was made.
+  double *reference; // [m]                                           (position_count, 3)
+  double reference_time;
+  double time_left; // for which the list is expected to hold, at the speeds of the last update [s]
+  // Scratch memory.
+  ContactCandidateList next;
+  ContactPairList found;
+  unsigned char *is_listed; // 0 between calls                        (cell_count)
+  double (*boxes)[6];       // of each body                                 (body_count)
+  double *motions;          // of each party since the search [m]; then by how much two points of a body that
+                            // meets itself may have come nearer      (party_count + body_count)
+  double *expected;         // the same in the next step [m]          (party_count + body_count)
+} ContactCandidates;
+
+Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout);
+void contact_candidates_destroy(ContactCandidates *candidates);
+
+// Searches anew if the motion asks for it; `*has_changed`: the list differs from the one before.
+Status contact_candidates_update(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                                 const double *positions, const double *velocities, double step,
+                                 bool *has_changed);
+
+// Which facings are not looked at from now on (facing_count), NULL: none. The list loses their pairs; for
+// those of facings that are looked at again it must be made anew.
+void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLayout *layout,
+                                  const bool *is_left_out);
+
+// Whether the list still holds every overlapping pair; NaN: false.
+bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                              const double *positions);
+
+// The boxes of the list's tetrahedra at these positions, into boxes (cell_count); others are
+// left alone.
+void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
+                              const double *positions, double (*boxes)[6]);
+
+#endif

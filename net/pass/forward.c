@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "net/pass/forward.h"
+
+#include <assert.h>
+
+#include "net/pass/drive.h"
+#include "net/pass/pass.h"
+
+#include "net/real_f32.h"
+
+#include "net/pass/forward.inc"
+
+#include "net/real_f64.h"
+
+#include "net/pass/forward.inc"
