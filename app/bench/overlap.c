@@ -252,10 +252,12 @@ static int find_reference(const Bench *bench, Case what) {
 }
 
 // A gradient by the input takes the products once more, transposed. How many a network of the paper's kind
-// takes depends on what its normalisation lets it leave out; `bench net` tells that.
+// takes depends on what its normalisation lets it leave out; `bench net` tells that. Disjoint pairs do not
+// reach it.
 static double flops_of(const Bench *bench, const Case *what) {
   const AppModelCard *card = &bench->cards[what->model];
-  bool is_known = card->is_learned && !card->is_float && what->quantity != HESSIAN;
+  bool is_known =
+      card->is_learned && !card->is_float && what->quantity != HESSIAN && what->set != APP_BENCH_DISJOINT;
   if (!is_known) return NAN;
   return card->flops * (what->quantity == VOLUME ? 1 : 2);
 }

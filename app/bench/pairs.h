@@ -14,7 +14,7 @@
 
 #include "base/status.h"
 
-enum { APP_BENCH_SET_COUNT = 3 };
+enum { APP_BENCH_NEAR, APP_BENCH_UNIFORM, APP_BENCH_DISJOINT, APP_BENCH_SET_COUNT };
 extern const char *const app_bench_sets[APP_BENCH_SET_COUNT]; // "near", "uniform", "disjoint"
 
 // Fills `pairs` (count, 2, 4, 3), the caller's. STATUS_USAGE: no set has that name.
