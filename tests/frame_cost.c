@@ -8,6 +8,7 @@
 
 #include "app/scene/read.h"
 #include "fem/effect/effect.h"
+#include "fem/model/build.h"
 #include "fem/model/model.h"
 #include "fem/run/run.h"
 

@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "app/scene/read.h"
+#include "fem/model/build.h"
 #include "fem/model/model.h"
 #include "fem/run/run.h"
 #include "suite.h"

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "fem/effect/system.h"
+#include "fem/model/build.h"
 #include "fem/sparse/solver.h"
 #include "scene.h"
 

@@ -20,6 +20,7 @@
 #include "datagen/dataset.h"
 #include "datagen/run.h"
 #include "fem/mesh/mesh.h"
+#include "fem/model/build.h"
 #include "fem/run/checkpoint.h"
 #include "fem/run/run.h"
 #include "overlap/model.h"

@@ -16,6 +16,7 @@
 #include "app/evaluation/card.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "fem/model/build.h"
 
 enum { COUNT = 50, OUTPUT_SIZE = 1 << 16 };
 

@@ -17,6 +17,7 @@
 #include "app/scene/read.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "fem/model/build.h"
 #include "fem/run/run.h"
 #include "overlap/model.h"
 #include "suite.h"

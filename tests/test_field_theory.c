@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "fem/model/build.h"
 
 static const double E = 1e6, NU = 0.3, TRACTION = 1000;
 

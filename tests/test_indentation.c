@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "fem/model/build.h"
 #include "scene.h"
 
 static const double E = 1e6, NU = 0.3, WIDTH = 0.05; // of the ground; radius of both contacts [m]

@@ -16,6 +16,7 @@
 #include "fem/mesh/edges.h"
 #include "fem/mesh/mesh.h"
 #include "fem/mesh/reader/gmsh_library.h"
+#include "fem/model/build.h"
 #include "fem/model/load.h"
 
 #define MESHES TETLAP_SOURCE_DIR "/meshes/"

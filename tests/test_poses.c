@@ -12,6 +12,7 @@
 #include "app/poses/poses.h"
 #include "app/scene/read.h"
 #include "base/memory.h"
+#include "fem/model/build.h"
 #include "overlap/clip/lanes.h"
 
 // A block of 4 × 4 × 4 cubes, 1 m wide, on one of 3 × 3 × 3 that is 2 m wide and begins at z = −2.

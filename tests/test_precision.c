@@ -11,6 +11,7 @@
 #include "app/compare/precision.h"
 #include "app/scene/read.h"
 #include "app/scene/refine.h"
+#include "fem/model/build.h"
 
 enum { OUTPUT_SIZE = 1 << 16 };
 

@@ -12,6 +12,7 @@
 #include "app/cli/argument.h"
 #include "base/memory.h"
 #include "fem/effect/system.h"
+#include "fem/model/build.h"
 #include "fem/sparse/solver.h"
 
 enum { SOLVER_COUNT = 3 };

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "fem/model/build.h"
 
 Status app_bench_trial_begin(AppBenchTrial *trial, const AppBenchOptions *options, long long step_limit) {
   trial->step_limit = step_limit;

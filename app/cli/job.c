@@ -18,6 +18,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "fem/effect/contact.h"
+#include "fem/model/build.h"
 #include "fem/run/checkpoint.h"
 #include "overlap/weights.h"
 

@@ -12,6 +12,7 @@
 #include "app/scene/read.h"
 #include "base/file.h"
 #include "base/log.h"
+#include "fem/model/build.h"
 
 typedef struct Options {
   const char *scene, *file, *body, *device, *output;

@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "base/data.h"
 #include "base/vec3.h"
+#include "fem/model/build.h"
 
 Status app_stress_run_open(AppStressRun *run, const char *file, const char *const *overrides, int count) {
   char path[PATH_MAX], name[128];

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/model/drive.h"
+#include "fem/model/drivers.h"
 #include "fem/sparse/solver.h"
 
 static FemState state_of(const FemSystem *system, double time) {
@@ -79,7 +80,7 @@ static Status create(FemSystem *system, const FemSystem *old) {
   system->velocities = memory_copy(system->model->initial_velocity, values, sizeof *system->velocities);
   system->forces = memory_zeroed(values, sizeof *system->forces);
   if (!system->positions || !system->velocities || !system->forces) return status_no_memory("the state");
-  fem_model_drive(system->model, 0, system->positions, system->velocities);
+  fem_model_drivers_move(system->model, 0, system->positions, system->velocities);
   TRY(create_effects(system, old));
   TRY(fem_pattern_create(&system->pattern, system->model->vertex_count));
   TRY(couple_vertices(system));
@@ -133,7 +134,7 @@ void fem_system_scatter(FemSystem *system, double time, const double *u, const d
     system->positions[dof] = model->rest[dof] + u[i];
     system->velocities[dof] = v[i];
   }
-  fem_model_drive(model, time, system->positions, system->velocities);
+  fem_model_drivers_move(model, time, system->positions, system->velocities);
 }
 
 // `what`: of which array the first value that is no number is told. RETRY if there is one.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What stays constant in a run: all bodies' meshes one after another, masses, elements, materials,
-// constraints, and which of the 3·vertex_count coordinates are unknowns. Built from a scene definition.
+// constraints, and which of the 3·vertex_count coordinates are unknowns. fem/model/build.h makes it.
 #ifndef TETLAP_FEM_MODEL_MODEL_H
 #define TETLAP_FEM_MODEL_MODEL_H
 
@@ -64,27 +64,6 @@ typedef struct FemModel {
   double edge;   // the smallest mean edge of a body [m]
 } FemModel;
 
-// Reads the meshes (relative to the scene file), places, checks and numbers. STATUS_INPUT names the body and
-// what is wrong: a selection that is empty, a vertex fixed and driven in the same component, an unknown
-// group.
-Status fem_model_create(FemModel *model, const FemSceneDef *scene);
-void fem_model_destroy(FemModel *model);
-
-// A copy whose vertices can be released, and bodies held, while the run goes on: bodies, drivers and
-// numbering are its own, all else is borrowed from `model`, which must outlive it.
-Status fem_model_copy_numbering(FemModel *copy, const FemModel *model);
-void fem_model_destroy_copy(FemModel *copy);
-
-// The next time after `time` at which vertices are released; INFINITY: none.
-double fem_model_next_release(const FemModel *model, double time);
-// Releases what is due at `time` and numbers the unknowns anew.
-void fem_model_release(FemModel *model, double time);
-// Numbers the coordinates that are neither prescribed nor of a body that is held.
-void fem_model_number(FemModel *model);
-
-// Positions and velocities of all prescribed coordinates at time t; the others are left alone.
-void fem_model_drive(const FemModel *model, double time, double *positions, double *velocities);
-
 // For messages: the name of the body that a vertex is of, "?" if it has none; borrowed.
 const char *fem_model_body_name(const FemModel *model, int vertex);
 
@@ -92,8 +71,8 @@ const char *fem_model_body_name(const FemModel *model, int vertex);
 // over the smallest mean element volume, which gives a comparable pressure.
 double fem_model_contact_stiffness(const FemModel *model);
 
-// Error per step of a velocity [m/s]: the scene's, or its tolerance times 0.03 of the slowest body's wave speed
-// √(E/ρ), all of it where a body rubs on itself; with friction by the law `velocity` at most 5 ε.
+// Error per step of a velocity [m/s]: the scene's, or its tolerance times 0.03 of the slowest body's wave
+// speed √(E/ρ), all of it where a body rubs on itself; with friction by the law `velocity` at most 5 ε.
 double fem_model_velocity_tolerance(const FemModel *model);
 
 // Every body's law is linear, without fibres.

@@ -2,6 +2,7 @@
 #include "fem/run/hold.h"
 
 #include "fem/effect/rest.h"
+#include "fem/model/numbering.h"
 
 void fem_hold_gather(const FemSystem *system, double *u, double *v) {
   const FemModel *model = system->model;
@@ -30,7 +31,7 @@ Status fem_hold_sleepers(FemModel *model, FemSystem *system, double *u, double *
     if (is_asleep) fem_effect_rest_add_loss(rest, stop_body(model, &model->bodies[b], system->velocities));
     model->bodies[b].is_held = is_asleep;
   }
-  fem_model_number(model);
+  fem_model_numbering_renew(model);
   fem_hold_gather(system, u, v);
   return model->unknown_count > 0 ? fem_system_renumber(system) : STATUS_OK;
 }
@@ -40,7 +41,7 @@ Status fem_hold_renumber(FemModel *model, FemSystem *system, double time, FemAud
   FemEnergy before, after;
   fem_system_scatter(system, time, u, v);
   TRY(fem_system_energy(system, time, &before));
-  fem_model_release(model, time);
+  fem_model_numbering_release(model, time);
   TRY(fem_system_energy(system, time, &after));
   fem_audit_release(audit, after.kinetic - before.kinetic);
   return fem_hold_sleepers(model, system, u, v);

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "fem/effect/rest.h"
+#include "fem/model/numbering.h"
 #include "fem/run/hold.h"
 #include "fem/run/restart.h"
 #include "fem/run/run_checkpoint.h"
@@ -124,7 +125,7 @@ static Status begin_stage(FemRunState *run, double step) {
   const FemModel *model = run->model;
   const FemSceneDef *scene = model->scene;
   double next = fem_effect_rest_next_change(fem_system_effect(&run->system, &fem_effect_rest));
-  run->stage_end = fmin(fmin(scene->end, next), fem_model_next_release(model, run->time));
+  run->stage_end = fmin(fmin(scene->end, next), fem_model_numbering_next_release(model, run->time));
   if (model->unknown_count == 0) return STATUS_OK; // all sleep
   FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
                           .velocity_tolerance = fem_model_velocity_tolerance(model),
@@ -265,10 +266,10 @@ static Status allocate_states(FemRunState *run) {
 // A numbering of our own where vertices are released, with what has been released until now.
 static Status number(FemRunState *run) {
   bool may_rest = run->given->scene->contact.rest_is_on && !run->given->scene->is_static;
-  if (!may_rest && !isfinite(fem_model_next_release(run->given, 0))) return STATUS_OK;
-  fem_model_destroy_copy(&run->own);
-  TRY(fem_model_copy_numbering(&run->own, run->given));
-  fem_model_release(&run->own, run->time);
+  if (!may_rest && !isfinite(fem_model_numbering_next_release(run->given, 0))) return STATUS_OK;
+  fem_model_numbering_destroy_copy(&run->own);
+  TRY(fem_model_numbering_copy(&run->own, run->given));
+  fem_model_numbering_release(&run->own, run->time);
   run->model = &run->own;
   return STATUS_OK;
 }
@@ -474,7 +475,7 @@ static Status close_run(FemRunState *run, Status status) {
   fem_system_destroy(&run->system);
   double *states[] = {run->u, run->v, run->u_new, run->v_new};
   for (int i = 0; i < 4; i++) memory_free(states[i]);
-  fem_model_destroy_copy(&run->own);
+  fem_model_numbering_destroy_copy(&run->own);
   fem_checkpoint_destroy(&run->checkpoint);
   if (status) return status_fail(status, "%s%s", message, closing);
   return collected ? collected : left;

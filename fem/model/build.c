@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/model/build.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/model/drivers.h"
+#include "fem/model/meshes.h"
+#include "fem/model/numbering.h"
+#include "fem/model/select.h"
+
+static Status allocate(FemModel *model, const FemMesh *meshes, int mesh_count) {
+  long long vertices = 0, tets = 0, quadratics = 0;
+  for (int m = 0; m < mesh_count; m++) {
+    vertices += meshes[m].vertex_count, tets += meshes[m].tet_count;
+    quadratics += meshes[m].quadratic_count;
+  }
+  if (vertices > 100000000 || tets > 300000000)
+    return status_fail(STATUS_INPUT,
+                       "the scene has %lld vertices and %lld tetrahedra; at most 1e8 and 3e8 are possible",
+                       vertices, tets);
+  size_t v = (size_t)vertices, t = (size_t)tets, q = (size_t)quadratics;
+  model->vertex_count = (int)vertices, model->tet_count = (int)tets, model->body_count = mesh_count;
+  model->quadratic_count = (int)quadratics;
+  model->quadratics = memory_zeroed(q, sizeof *model->quadratics);
+  model->quadratic_nodes = memory_zeroed(q, sizeof *model->quadratic_nodes);
+  model->quadratic_body = memory_zeroed(q, sizeof *model->quadratic_body);
+  model->rest = memory_zeroed(3 * v, sizeof *model->rest);
+  model->tets = memory_zeroed(t, sizeof *model->tets);
+  model->tet_body = memory_zeroed(t, sizeof *model->tet_body);
+  model->elements = memory_zeroed(t, sizeof *model->elements);
+  model->bodies = memory_zeroed((size_t)mesh_count, sizeof *model->bodies);
+  model->mass = memory_zeroed(v, sizeof *model->mass);
+  model->initial_velocity = memory_zeroed(3 * v, sizeof *model->initial_velocity);
+  model->unknown_of_dof = memory_zeroed(3 * v, sizeof *model->unknown_of_dof);
+  model->dof_of_unknown = memory_zeroed(3 * v, sizeof *model->dof_of_unknown);
+  bool ok = model->quadratics && model->quadratic_nodes && model->quadratic_body;
+  ok = ok && model->rest && model->tets && model->tet_body && model->elements && model->bodies &&
+       model->mass && model->initial_velocity && model->unknown_of_dof && model->dof_of_unknown;
+  return ok ? STATUS_OK : status_no_memory("the model");
+}
+
+// Copies one mesh behind the others.
+static void append_mesh(FemModel *model, FemModelBody *body, const FemMesh *mesh, int body_number) {
+  memcpy(model->rest + 3 * body->vertex_begin, mesh->rest,
+         3 * (size_t)mesh->vertex_count * sizeof *mesh->rest);
+  for (int e = 0; e < mesh->tet_count; e++) {
+    double corners[12];
+    int global = body->tet_begin + e;
+    for (int k = 0; k < 4; k++) {
+      model->tets[global][k] = mesh->tets[e][k] + body->vertex_begin;
+      memcpy(corners + 3 * k, mesh->rest + 3 * mesh->tets[e][k], 3 * sizeof *corners);
+    }
+    model->tet_body[global] = body_number;
+    fem_element_create(&model->elements[global], corners);
+  }
+  for (int e = 0; e < mesh->quadratic_count; e++) {
+    double nodes[3 * FEM_QUADRATIC_NODES];
+    int global = body->quadratic_begin + e;
+    for (int k = 0; k < FEM_QUADRATIC_NODES; k++) {
+      model->quadratic_nodes[global][k] = mesh->quadratic[e][k] + body->vertex_begin;
+      memcpy(nodes + 3 * k, mesh->rest + 3 * mesh->quadratic[e][k], 3 * sizeof *nodes);
+    }
+    model->quadratic_body[global] = body_number;
+    fem_quadratic_create_curved(&model->quadratics[global], nodes);
+  }
+}
+
+static void lump_quadratic_mass(FemModel *model, FemModelBody *body) {
+  for (int e = body->quadratic_begin; e < body->quadratic_end; e++) {
+    double mass = body->material.density * model->quadratics[e].volume;
+    for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
+      model->mass[model->quadratic_nodes[e][k]] += fem_quadratic_mass_share(k) * mass;
+    body->mass += mass;
+  }
+}
+
+static void lump_mass(FemModel *model, FemModelBody *body) {
+  if (body->element == FEM_ELEMENT_QUADRATIC) {
+    lump_quadratic_mass(model, body);
+    return;
+  }
+  for (int e = body->tet_begin; e < body->tet_end; e++) {
+    double share = 0.25 * body->material.density * model->elements[e].volume;
+    for (int k = 0; k < 4; k++) model->mass[model->tets[e][k]] += share;
+    body->mass += 4 * share;
+  }
+}
+
+// v = velocity + spin × (x − centre of mass).
+static void set_velocity(FemModel *model, const FemModelBody *body, const FemBodyDef *def) {
+  Vec3 centre = {0, 0, 0};
+  for (int a = body->vertex_begin; a < body->vertex_end; a++)
+    centre = vec3_add(centre, vec3_scale(model->mass[a] / body->mass, vec3_at(model->rest + 3 * a)));
+  for (int a = body->vertex_begin; a < body->vertex_end; a++) {
+    Vec3 arm = vec3_sub(vec3_at(model->rest + 3 * a), centre);
+    vec3_store(model->initial_velocity + 3 * a,
+               vec3_add(vec3_at(def->velocity), vec3_cross(vec3_at(def->spin), arm)));
+  }
+}
+
+// λ_e / μ at most (fem/element/quadratic.h): that of ν = 1/3, so that materials up to there are integrated
+// pointwise, which converges with the third order. Measured, a cantilever with two elements through its
+// thickness at ν = 0.499, over the converged deflection: 0.94 with all of λ, 0.97 with 10, 0.98 with 4, 0.992
+// with 2, 1.001 with 1.
+static const double LARGEST_POINTWISE_RATIO = 2;
+
+static void split_volume(FemModelBody *body) {
+  FemLame lame = fem_material_lame(&body->material);
+  double most = LARGEST_POINTWISE_RATIO * lame.mu;
+  if (!(lame.lambda > most)) return;
+  body->local = fem_material_with_lambda(&body->material, most);
+  body->bulk = lame.lambda - fem_material_lame(&body->local).lambda;
+}
+
+static void append_bodies(FemModel *model, const FemMesh *meshes) {
+  const FemSceneDef *scene = model->scene;
+  int vertex = 0, tet = 0, quadratic = 0, obstacle = 0;
+  for (int b = 0; b < model->body_count; b++) {
+    FemModelBody *body = &model->bodies[b];
+    body->vertex_begin = vertex, body->vertex_end = vertex += meshes[b].vertex_count;
+    body->tet_begin = tet, body->tet_end = tet += meshes[b].tet_count;
+    body->quadratic_begin = quadratic, body->quadratic_end = quadratic += meshes[b].quadratic_count;
+    append_mesh(model, body, &meshes[b], b);
+    if (b < scene->body_count) {
+      const FemBodyDef *def = &scene->bodies[b];
+      body->name = def->name;
+      body->material = body->local = def->material;
+      body->element = def->element;
+      if (def->element == FEM_ELEMENT_NODAL) body->local = fem_material_local(&def->material);
+      if (def->element == FEM_ELEMENT_QUADRATIC) split_volume(body);
+      body->damping = def->material.damping >= 0 ? def->material.damping : scene->stiffness_damping;
+      lump_mass(model, body);
+      set_velocity(model, body, def);
+    } else {
+      while (scene->obstacles[obstacle].kind != FEM_OBSTACLE_MESH) obstacle++;
+      body->name = scene->obstacles[obstacle++].name;
+      body->is_obstacle = true;
+    }
+  }
+}
+
+static Status add_loads(FemModel *model, const FemMesh *meshes) {
+  const FemSceneDef *scene = model->scene;
+  size_t most = 0;
+  for (int b = 0; b < scene->body_count; b++) most += (size_t)scene->bodies[b].load_count;
+  model->loads = memory_zeroed(most, sizeof *model->loads);
+  if (!model->loads) return status_no_memory("the loads");
+  for (int b = 0; b < scene->body_count; b++)
+    for (int i = 0; i < scene->bodies[b].load_count; i++) {
+      const FemLoadDef *def = &scene->bodies[b].loads[i];
+      Status status =
+          fem_load_create(&model->loads[model->load_count], def, &meshes[b], model->bodies[b].vertex_begin);
+      if (status)
+        return status_prefix(status, "%s:%d:%d: body '%s', loads[%d]", scene->path ? scene->path : "scene",
+                             def->select.place.line, def->select.place.column, scene->bodies[b].name, i);
+      model->load_count++;
+    }
+  return STATUS_OK;
+}
+
+static Status mark_inner(FemModel *model, const FemMesh *meshes) {
+  const FemSceneDef *scene = model->scene;
+  model->inner = memory_zeroed((size_t)model->vertex_count, 1);
+  if (!model->inner) return status_no_memory("the inner faces");
+  for (int b = 0; b < scene->body_count; b++)
+    for (int i = 0; i < scene->bodies[b].inner_count; i++) {
+      const FemSelectDef *select = &scene->bodies[b].inner[i].select;
+      int *vertices, count;
+      Status status = i < FEM_MAX_INNER
+                          ? fem_select_vertices(select, &meshes[b], &vertices, &count)
+                          : status_fail(STATUS_INPUT, "one too many; %d at most", FEM_MAX_INNER);
+      if (status)
+        return status_prefix(status, "%s:%d:%d: body '%s', inner_faces[%d]",
+                             scene->path ? scene->path : "scene", select->place.line, select->place.column,
+                             scene->bodies[b].name, i);
+      for (int v = 0; v < count; v++)
+        model->inner[model->bodies[b].vertex_begin + vertices[v]] |= (unsigned char)(1 << i);
+      memory_free(vertices);
+    }
+  return STATUS_OK;
+}
+
+static Status measure(FemModel *model, const FemMesh *meshes) {
+  model->length = model->edge = INFINITY;
+  for (int b = 0; b < model->scene->body_count; b++) {
+    FemMeshQuality quality;
+    TRY(fem_mesh_quality(&meshes[b], &quality));
+    double diagonal = vec3_length(vec3_sub(vec3_at(quality.box_max), vec3_at(quality.box_min)));
+    model->length = fmin(model->length, diagonal);
+    model->edge = fmin(model->edge, quality.mean_edge);
+  }
+  return STATUS_OK;
+}
+
+// Those that share a middle share its edge's ends: their corners tell.
+static Status colour_quadratics(FemModel *model) {
+  int(*corners)[4] = memory_zeroed((size_t)model->quadratic_count, sizeof *corners);
+  if (!corners) return status_no_memory("the colouring of the mesh");
+  for (int e = 0; e < model->quadratic_count; e++)
+    memcpy(corners[e], model->quadratic_nodes[e], sizeof corners[e]);
+  Status status = fem_colouring_create(&model->quadratic_colouring, model->vertex_count,
+                                       (const int(*)[4])corners, model->quadratic_count);
+  memory_free(corners);
+  return status;
+}
+
+static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
+  TRY(allocate(model, meshes, mesh_count));
+  append_bodies(model, meshes);
+  TRY(fem_model_drivers_create(model, meshes));
+  TRY(add_loads(model, meshes));
+  TRY(mark_inner(model, meshes));
+  fem_model_numbering_renew(model);
+  int elastic_tets = model->bodies[model->scene->body_count - 1].tet_end;
+  TRY(fem_colouring_create(&model->colouring, model->vertex_count, (const int(*)[4])model->tets,
+                           elastic_tets));
+  TRY(colour_quadratics(model));
+  return measure(model, meshes);
+}
+
+Status fem_model_create(FemModel *model, const FemSceneDef *scene) {
+  *model = (FemModel){.scene = scene};
+  if (scene->body_count < 1) return status_fail(STATUS_INPUT, "the scene has no bodies; give at least one");
+  int mesh_count = scene->body_count;
+  for (int o = 0; o < scene->obstacle_count; o++) mesh_count += scene->obstacles[o].kind == FEM_OBSTACLE_MESH;
+  FemMesh *meshes = memory_zeroed((size_t)mesh_count, sizeof *meshes);
+  if (!meshes) return status_no_memory("the meshes");
+  Status status = fem_model_meshes_load(scene, meshes);
+  if (!status) status = build(model, meshes, mesh_count);
+  for (int m = 0; m < mesh_count; m++) fem_mesh_destroy(&meshes[m]);
+  memory_free(meshes);
+  if (status) fem_model_destroy(model);
+  return status;
+}
+
+void fem_model_destroy(FemModel *model) {
+  for (int d = 0; d < model->driver_count; d++) memory_free(model->drivers[d].dofs);
+  memory_free(model->drivers);
+  for (int i = 0; i < model->load_count; i++) fem_load_destroy(&model->loads[i]);
+  memory_free(model->loads);
+  memory_free(model->rest);
+  memory_free(model->tets);
+  memory_free(model->tet_body);
+  memory_free(model->elements);
+  memory_free(model->quadratics);
+  memory_free(model->quadratic_nodes);
+  memory_free(model->quadratic_body);
+  fem_colouring_destroy(&model->quadratic_colouring);
+  memory_free(model->bodies);
+  memory_free(model->mass);
+  memory_free(model->initial_velocity);
+  memory_free(model->inner);
+  memory_free(model->unknown_of_dof);
+  memory_free(model->dof_of_unknown);
+  fem_colouring_destroy(&model->colouring);
+  *model = (FemModel){0};
+}
