@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/time/equilibrium.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -55,4 +56,18 @@ Status fem_equilibrium_factorise(FemEquilibrium *equilibrium, double time, const
 
 Status fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x) {
   return equilibrium->ops->solve(equilibrium->solver, b, x);
+}
+
+double fem_equilibrium_largest(const double *values, int count) {
+  double largest = 0;
+  for (int i = 0; i < count; i++) largest = fmax(largest, fabs(values[i]));
+  return largest;
+}
+
+double fem_equilibrium_first_shift(const FemEquilibrium *equilibrium) {
+  const FemModel *model = equilibrium->system->model;
+  double shift = INFINITY;
+  for (int b = 0; b < model->scene->body_count; b++)
+    shift = fmin(shift, model->bodies[b].material.young / model->bodies[b].material.density);
+  return shift / (model->length * model->length);
 }

@@ -27,4 +27,9 @@ Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const do
 Status fem_equilibrium_factorise(FemEquilibrium *equilibrium, double time, const double *u, double shift);
 Status fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x);
 
+// The largest absolute value.
+double fem_equilibrium_largest(const double *values, int count);
+// (c/L)² of the slowest body: a shift that its lowest modes feel.
+double fem_equilibrium_first_shift(const FemEquilibrium *equilibrium);
+
 #endif

@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
+#include "fem/time/descent.h"
 #include "fem/time/kinsol.h"
 
 // Equilibrium: this share of the largest force met, and of E · edge² at least.
@@ -48,18 +49,12 @@ static Status check_scene(const FemSceneDef *scene) {
   return STATUS_OK;
 }
 
-static double largest_of(const double *values, int count) {
-  double largest = 0;
-  for (int i = 0; i < count; i++) largest = fmax(largest, fabs(values[i]));
-  return largest;
-}
-
 static double smallest_scale(const FemModel *model) {
   double softest = INFINITY, rounding = 0;
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
-    double extent =
-        largest_of(model->rest + 3 * (size_t)body->vertex_begin, 3 * (body->vertex_end - body->vertex_begin));
+    double extent = fem_equilibrium_largest(model->rest + 3 * (size_t)body->vertex_begin,
+                                            3 * (body->vertex_end - body->vertex_begin));
     double modulus = body->material.young / (1 - 2 * body->material.poisson);
     softest = fmin(softest, body->material.young);
     rounding = fmax(rounding, ROUNDING * DBL_EPSILON * modulus * model->edge * extent);
@@ -99,22 +94,18 @@ static Status evaluate(FemStatics *statics, double time, const double *u) {
   FemSystem *system = statics->equilibrium.system;
   TRY(fem_equilibrium_forces(&statics->equilibrium, time, u, statics->force));
   statics->force_scale =
-      fmax(statics->force_scale, largest_of(system->forces, 3 * system->model->vertex_count));
+      fmax(statics->force_scale, fem_equilibrium_largest(system->forces, 3 * system->model->vertex_count));
   return STATUS_OK;
 }
 
+// With friction by the work of the force; else KINSOL.
 static Status newton(FemStatics *statics, double time, double *u) {
   const FemModel *model = statics->equilibrium.system->model;
-  return fem_kinsol_solve(&statics->equilibrium, time, statics->tolerance * statics->force_scale,
-                          model->length, u, &statics->newton_iterations);
-}
-
-// (c/L)² of the slowest body: a shift that is felt by its lowest modes.
-static double first_shift(const FemModel *model) {
-  double shift = INFINITY;
-  for (int b = 0; b < model->scene->body_count; b++)
-    shift = fmin(shift, model->bodies[b].material.young / model->bodies[b].material.density);
-  return shift / (model->length * model->length);
+  double tolerance = statics->tolerance * statics->force_scale;
+  if (fem_scene_most_friction(&model->scene->contact) > 0)
+    return fem_descent_solve(&statics->equilibrium, time, tolerance, u, &statics->newton_iterations);
+  return fem_kinsol_solve(&statics->equilibrium, time, tolerance, model->length, u,
+                          &statics->newton_iterations);
 }
 
 // One step of relaxation from u, whose forces are in `force`; RETRY: a larger shift is needed.
@@ -125,7 +116,7 @@ static Status relax_once(FemStatics *statics, double time, double shift, double 
   double *step = statics->step;
   TRY(fem_equilibrium_factorise(equilibrium, time, u, shift));
   TRY(fem_equilibrium_solve(equilibrium, statics->force, step));
-  double way = largest_of(step, n), most = LONGEST_WAY * model->edge;
+  double way = fem_equilibrium_largest(step, n), most = LONGEST_WAY * model->edge;
   for (int i = 0; i < n; i++) u[i] += step[i] *= way > most ? most / way : 1;
   Status status = evaluate(statics, time, u);
   if (!status) status = fem_system_renew(equilibrium->system, time, u, equilibrium->still);
@@ -137,9 +128,9 @@ static Status relax_once(FemStatics *statics, double time, double shift, double 
 // Until the force has fallen far enough for Newton's method.
 static Status relax(FemStatics *statics, double time, double *u) {
   int n = statics->equilibrium.system->model->unknown_count, refusals = 0;
-  double shift = first_shift(statics->equilibrium.system->model);
+  double shift = fem_equilibrium_first_shift(&statics->equilibrium);
   TRY(evaluate(statics, time, u));
-  double first = largest_of(statics->force, n), before = first;
+  double first = fem_equilibrium_largest(statics->force, n), before = first;
   for (int k = 0; k < MAX_RELAXATIONS && before > HAND_OVER * first; k++) {
     Status status = relax_once(statics, time, shift, u);
     if (status < 0 || (status && ++refusals > MAX_REFUSALS)) return status;
@@ -149,7 +140,7 @@ static Status relax(FemStatics *statics, double time, double *u) {
       continue;
     }
     statics->relaxation_steps++;
-    double now = largest_of(statics->force, n);
+    double now = fem_equilibrium_largest(statics->force, n);
     shift *= SHIFT_FALL * fmin(fmax(now / before, 0.4), 4);
     before = now;
   }
@@ -244,7 +235,8 @@ Status fem_statics_continue(FemStatics *statics, double time, const double *u, d
                             double driven_work) {
   statics->force_scale = force_scale;
   TRY(evaluate(statics, time, u));
-  statics->residual = largest_of(statics->force, statics->equilibrium.system->model->unknown_count);
+  statics->residual =
+      fem_equilibrium_largest(statics->force, statics->equilibrium.system->model->unknown_count);
   keep_work(statics);
   statics->driven_work = driven_work;
   return STATUS_OK;
@@ -256,7 +248,7 @@ Status fem_statics_step(FemStatics *statics, double from, double to, double *u) 
   memcpy(statics->start, u, (size_t)n * sizeof *u);
   Status status = find_equilibrium(statics, to, u);
   if (status == STATUS_OK) {
-    statics->residual = largest_of(statics->force, n);
+    statics->residual = fem_equilibrium_largest(statics->force, n);
     statics->steps++;
     keep_work(statics);
     return fem_system_accept(equilibrium->system, to, u, equilibrium->still, 0);

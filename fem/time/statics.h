@@ -2,7 +2,7 @@
 // Static scenes: the load (or a driven vertex) goes on in steps of `time`, which is no more than a parameter,
 // and every step ends in equilibrium.
 //
-//   Newton (KINSOL) from the last equilibrium ── ok ──► accept
+//   Newton (KINSOL; with friction fem/time/descent.h) from the last equilibrium ── ok ──► accept
 //        │ no
 //   relaxation: (K + s M) δ = f, s falling with the force ──► Newton ── ok ──► accept
 //        │ no
@@ -27,7 +27,7 @@ typedef struct FemStatics {
   long long steps, newton_iterations, relaxation_steps, halvings;
 } FemStatics;
 
-// STATUS_INPUT: what only a motion can have (friction, release, an initial velocity).
+// STATUS_INPUT: what only a motion can have (friction by velocities, release, an initial velocity).
 Status fem_statics_create(FemStatics *statics, FemSystem *system, const FemSolverOps *ops);
 // Goes on from an equilibrium u at `time`, with the largest force met and the work done until then.
 Status fem_statics_continue(FemStatics *statics, double time, const double *u, double force_scale,

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The line search is that of Matthies and Strang (1979): a step d from u is as long as f(u + s d)·d has at
+// most a share of f(u)·d. It needs no potential, which friction does not have.
+#include "fem/time/descent.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+// A full step is taken if this share of the first work is left, and a search ends there.
+static const double WORK_LEFT = 0.8, WORK_FOUND = 0.3;
+// No vertex moves further at once, as a share of the mean edge.
+static const double LONGEST_WAY = 0.25;
+// Where K is not positive definite, the first shift, as a share of (c/L)², and by what it rises and falls.
+static const double FIRST_SHIFT = 1e-3, SHIFT_RISE = 10, SHIFT_FALL = 0.1;
+enum { MAX_ITERATIONS = 80, MAX_REFUSALS = 30, MAX_SEARCH = 8, MAX_HALVINGS = 8 };
+
+typedef struct Descent {
+  FemEquilibrium *equilibrium;
+  double time, first_shift, shift;
+  int n, refusals;
+  double *u, *force;    // the caller's, and there
+  double *step;         // d
+  double *next, *there; // u + s d, and the force there
+} Descent;
+
+static double dot(const double *a, const double *b, int n) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+// K + shift M, the shift such that it is positive definite; d, no longer than the longest way.
+static Status find_step(Descent *descent) {
+  FemEquilibrium *equilibrium = descent->equilibrium;
+  const FemModel *model = equilibrium->system->model;
+  Status status = fem_equilibrium_factorise(equilibrium, descent->time, descent->u, descent->shift);
+  while (status == STATUS_RETRY && descent->refusals++ < MAX_REFUSALS) {
+    descent->shift = fmax(SHIFT_RISE * descent->shift, FIRST_SHIFT * descent->first_shift);
+    status = fem_equilibrium_factorise(equilibrium, descent->time, descent->u, descent->shift);
+  }
+  TRY(status);
+  TRY(fem_equilibrium_solve(equilibrium, descent->force, descent->step));
+  double way = fem_equilibrium_largest(descent->step, descent->n), most = LONGEST_WAY * model->edge;
+  for (int i = 0; i < descent->n && way > most; i++) descent->step[i] *= most / way;
+  descent->shift = descent->shift > FIRST_SHIFT * descent->first_shift ? SHIFT_FALL * descent->shift : 0;
+  return STATUS_OK;
+}
+
+// The work along the step that is left at u + s d.
+static Status try_length(Descent *descent, double s, double *work) {
+  for (int i = 0; i < descent->n; i++) descent->next[i] = descent->u[i] + s * descent->step[i];
+  TRY(fem_equilibrium_forces(descent->equilibrium, descent->time, descent->next, descent->there));
+  *work = dot(descent->there, descent->step, descent->n);
+  return STATUS_OK;
+}
+
+// A length that can be evaluated: with new contact lists, if need be, and shorter.
+static Status try_longest(Descent *descent, double *s, double *work) {
+  Status status = try_length(descent, *s, work);
+  if (status != STATUS_RETRY) return status;
+  FemEquilibrium *equilibrium = descent->equilibrium;
+  TRY(fem_equilibrium_forces(equilibrium, descent->time, descent->u, descent->there));
+  TRY(fem_system_renew(equilibrium->system, descent->time, descent->u, equilibrium->still));
+  for (int k = 0; k < MAX_HALVINGS; k++, *s *= 0.5)
+    if ((status = try_length(descent, *s, work)) != STATUS_RETRY) return status;
+  return status;
+}
+
+// Between 0, where the work is `first`, and `most`, where it has changed its sign: by the regula falsi that
+// halves the value of an end that stays (Illinois).
+static Status search(Descent *descent, double first, double most, double work) {
+  double low = 0, low_work = first, high = most, high_work = work;
+  for (int k = 0; k < MAX_SEARCH && fabs(work) > WORK_FOUND * first; k++) {
+    double s = low + (high - low) * fmin(fmax(low_work / (low_work - high_work), 0.05), 0.95);
+    TRY(try_length(descent, s, &work));
+    if (work > 0) {
+      low = s, low_work = work;
+      high_work *= 0.5;
+    } else {
+      high = s, high_work = work;
+      low_work *= 0.5;
+    }
+  }
+  return STATUS_OK;
+}
+
+static Status iterate(Descent *descent) {
+  double length = 1, work;
+  TRY(find_step(descent));
+  double first = dot(descent->force, descent->step, descent->n);
+  TRY(try_longest(descent, &length, &work));
+  if (work < -WORK_LEFT * first) TRY(search(descent, first, length, work));
+  memcpy(descent->u, descent->next, (size_t)descent->n * sizeof *descent->u);
+  memcpy(descent->force, descent->there, (size_t)descent->n * sizeof *descent->force);
+  return STATUS_OK;
+}
+
+static Status descend(Descent *descent, double tolerance, long long *iterations) {
+  FemEquilibrium *equilibrium = descent->equilibrium;
+  TRY(fem_equilibrium_forces(equilibrium, descent->time, descent->u, descent->force));
+  for (int k = 0; k < MAX_ITERATIONS; k++) {
+    if (fem_equilibrium_largest(descent->force, descent->n) <= tolerance) return STATUS_OK;
+    TRY(iterate(descent));
+    ++*iterations;
+  }
+  double left = fem_equilibrium_largest(descent->force, descent->n);
+  if (left <= tolerance) return STATUS_OK;
+  return status_fail(
+      STATUS_RETRY,
+      "Newton's method left a force of %.3g times the tolerance after %d iterations with a search",
+      left / tolerance, MAX_ITERATIONS);
+}
+
+Status fem_descent_solve(FemEquilibrium *equilibrium, double time, double tolerance, double *u,
+                         long long *iterations) {
+  int n = equilibrium->system->model->unknown_count;
+  double *room = memory_zeroed(4 * (size_t)n, sizeof *room);
+  if (!room) return status_no_memory("Newton's method");
+  Descent descent = {.equilibrium = equilibrium,
+                     .time = time,
+                     .first_shift = fem_equilibrium_first_shift(equilibrium),
+                     .n = n,
+                     .u = u,
+                     .force = room,
+                     .step = room + n,
+                     .next = room + 2 * n,
+                     .there = room + 3 * n};
+  Status status = descend(&descent, tolerance, iterations);
+  memory_free(room);
+  return status;
+}
