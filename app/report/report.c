@@ -160,7 +160,8 @@ static void record_stresses(AppReport *report, Record *data) {
 static void record_rest(AppReport *report, Record *data) {
   record_adopt(data, "comparison", report->comparison);
   record_adopt(data, "pareto", report->pareto);
-  report->comparison = report->pareto = NULL;
+  record_adopt(data, "sweep", report->sweep);
+  report->comparison = report->pareto = report->sweep = NULL;
   record_stresses(report, data);
   if (report->bench_count == 0) return;
   RecordList *benches = record_list(data, "benches");
@@ -326,5 +327,6 @@ void app_report_destroy(AppReport *report) {
   for (int k = 0; k < report->stress_count; k++) record_destroy(report->stresses[k]);
   record_destroy(report->comparison);
   record_destroy(report->pareto);
+  record_destroy(report->sweep);
   *report = (AppReport){0};
 }

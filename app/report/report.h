@@ -16,6 +16,7 @@ typedef struct AppReport {
   int run_count;
   Record *comparison; // compare.json
   Record *pareto;     // pareto.json
+  Record *sweep;      // sweep.json
   Record *benches[APP_REPORT_MAX_BENCHES];
   int bench_count;
   Record *stresses[APP_REPORT_MAX_STRESSES]; // of `tetlap stress --json`

@@ -12,6 +12,7 @@ import { TimePlot, listPlots } from "./plots.js";
 import { Stage } from "./stage.js";
 import { createState } from "./state.js";
 import { buildStress } from "./stress.js";
+import { buildSweep, sweepTitle } from "./sweep.js";
 import { Transport } from "./transport.js";
 
 const KEYS = [
@@ -103,7 +104,7 @@ async function start() {
     edges: true,
   });
   prefersDark.addEventListener("change", () => state.set({ theme: themeOf() }));
-  const title = runs[0]?.summary?.title || runs[0]?.manifest?.scene?.title || runs[0]?.name || (data.stress && !data.pareto ? "Stability" : "Overlap models");
+  const title = runs[0]?.summary?.title || runs[0]?.manifest?.scene?.title || runs[0]?.name || (data.sweep && sweepTitle(data.sweep)) || (data.stress && !data.pareto ? "Stability" : "Overlap models");
   document.title = `${title} · tetlap`;
 
   const transport = times.length > 1 ? new Transport(runs, times, state) : null;
@@ -122,6 +123,7 @@ async function start() {
     stage?.element,
     transport?.element,
     plots.length > 0 && h("section.block", { id: "plots" }, h("h2", "Over time"), h(".plots", plots.map((plot) => plot.element))),
+    data.sweep && buildSweep(data.sweep, state, createState),
     data.pareto && buildFrontier(data.pareto, state),
     data.stress && buildStress(data.stress),
     buildPhases(runs),

@@ -3,7 +3,7 @@
 // models, and one with obstacles of every kind, makes the pages, uses them, and leaves screenshots in OUT.
 
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { launch } from "./browser.mjs";
@@ -44,6 +44,13 @@ const STRESS = {
 };
 const STRESS_LATER = { format: "tetlap-stress 1", rows: [{ ...STRESS.rows[6], outcome: "held" }] };
 
+// A scene over a grid, in which one value is none that a scene can have.
+function makeSweep() {
+  const words = ["sweep", scene, "-q", "-o", join(out, "sweep"), "-V", "contact.stiffness=1e5..1e7:3,log", "-V", "bodies.upper.material.poisson=0.3,0.7", "-s", "time.end=0.15", "-s", "output.vtu=false", "-s", "output.frames=5"];
+  const { status } = spawnSync(tetlap, words, { stdio: "ignore" });
+  assert.equal(status, 70); // half of it failed
+}
+
 function makePages() {
   const run = (...args) => execFileSync(tetlap, args, { stdio: ["ignore", "inherit", "inherit"] });
   const runs = ["clip", "geo"].map((model) => join(out, model));
@@ -53,10 +60,11 @@ function makePages() {
   run("report", "-q", runs[0], "--surface", "-o", join(out, "one.html"));
   run("run", obstacles, "-q", "-o", join(out, "obstacles"), "-s", "time.end=1", "-s", "output.frames=10");
   run("report", "-q", join(out, "obstacles"), "-o", join(out, "obstacles.html"));
+  makeSweep();
   writeFileSync(join(out, "stress.json"), JSON.stringify(STRESS));
   writeFileSync(join(out, "later.json"), JSON.stringify(STRESS_LATER));
   run("report", "-q", "--stress", join(out, "stress.json"), "--stress", join(out, "later.json"), "-o", join(out, "stress.html"));
-  return { obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
+  return { sweep: `file://${resolve(out, "sweep", "sweep.html")}`, obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
 }
 
 // Different colours in each canvas, read right after it was drawn: 1 is an empty one.
@@ -373,6 +381,27 @@ const stressTests = {
   },
 };
 
+const sweepTests = {
+  async "a sweep's page has a plot of each quantity, and a row of each run"(page) {
+    assert.equal(await page.eval("document.title"), "Sweep of 02_two_blocks · tetlap");
+    assert.equal(await page.eval(`document.querySelectorAll("#sweep tbody tr").length`), 6);
+    assert.equal(await page.eval(`document.querySelectorAll("#sweep tbody tr[data-outcome=failed]").length`), 3);
+    assert.match(await page.eval(`document.querySelector("#sweep .lead").textContent`), /6 runs.*3 finished, 3 failed/);
+    const dots = await page.eval(`document.querySelectorAll("#sweep-contact_force_max_N svg circle").length`);
+    assert.equal(dots, 3);
+    assert.equal(await page.eval(`document.querySelectorAll("#sweep-steps svg [aria-label=dot] path").length`), 3); // crosses
+  },
+
+  async "the axis is chosen, and the dots tell the table's numbers"(page) {
+    const table = await page.eval("tetlap.data.sweep.runs.map((run) => run.steps).filter(Boolean)");
+    const titles = () => page.eval(`[...document.querySelectorAll("#sweep-steps svg circle title")].map((one) => one.textContent)`);
+    for (const steps of table) assert.ok((await titles()).some((text) => text.includes(`: ${steps}`)), `${steps} in ${await titles()}`);
+    await page.eval(`(() => { const select = document.querySelector("#along"); select.value = "bodies.upper.material.poisson"; select.dispatchEvent(new Event("change")); })()`);
+    assert.ok((await titles()).every((text) => text.startsWith("poisson 0.3")), String(await titles()));
+    assert.match(await page.eval(`document.querySelector("#sweep-steps svg").getAttribute("aria-label")`), /Steps against bodies.upper.material.poisson/);
+  },
+};
+
 async function shoot(browser, url, name, view, script) {
   const page = await browser.open(url, view);
   await page.eval(script);
@@ -413,6 +442,12 @@ try {
     await attempt("no complaint after all of it", () => assert.deepEqual(table.problems, []));
     await table.close();
   }
+  const sweep = await browser.open(pages.sweep, { width: 1280, height: 900 });
+  for (const [name, test] of Object.entries(sweepTests)) await attempt(name, () => test(sweep));
+  await attempt("no complaint after all of it", () => assert.deepEqual(sweep.problems, []));
+  await sweep.close();
+  for (const [width, theme] of [[1280, "light"], [420, "dark"]])
+    await attempt(`a sweep fits ${width} pixels, ${theme}`, () => shoot(browser, pages.sweep, `sweep-${theme}-${width}`, { width, height: 1000, theme, isMobile: width < 600 }, "0"));
   const point = `document.querySelector('${VERDICT("mat twist", "clip")}').focus()`;
   for (const [width, height, theme] of [[1600, 1000, "light"], [1600, 1000, "dark"], [400, 1100, "light"], [400, 1100, "dark"]])
     await attempt(`hard cases fit ${width} pixels, ${theme}`, () => shoot(browser, pages.stress, `stress-${theme}-${width}`, { width, height, theme, isMobile: width < 600 }, point));

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/sweep/point.h"
+
+#include <ctype.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "app/cli/versions.h"
+#include "app/scene/overlap.h"
+#include "app/scene/write.h"
+#include "base/digest.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "fem/run/checkpoint.h"
+
+int app_sweep_point_count(const AppSweepBase *base) {
+  int count = 1;
+  for (int a = 0; a < base->axis_count && count <= APP_SWEEP_MAX_POINTS; a++)
+    count *= base->axes[a].value_count;
+  return count;
+}
+
+// The last word of a key: "stiffness" of "contact.stiffness", unless another axis has the same.
+static const char *short_key(const AppSweepBase *base, int axis) {
+  const char *keys[2] = {NULL, NULL};
+  for (int a = 0; a < base->axis_count; a++) {
+    const char *dot = strrchr(base->axes[a].key, '.');
+    keys[0] = dot ? dot + 1 : base->axes[a].key;
+    if (a == axis) continue;
+    const char *own = strrchr(base->axes[axis].key, '.');
+    own = own ? own + 1 : base->axes[axis].key;
+    if (strcmp(keys[0], own) == 0) keys[1] = base->axes[axis].key;
+  }
+  const char *dot = strrchr(base->axes[axis].key, '.');
+  return keys[1] ? keys[1] : dot ? dot + 1 : base->axes[axis].key;
+}
+
+// Readable where it can be: "stiffness=1e+06,overlap=clip"; what a folder's name should not have becomes '_',
+// and then, or where it is long, a digest tells it from others.
+static void name_folder(AppSweepPoint *point, const AppSweepBase *base) {
+  enum { ROOM = APP_SWEEP_FOLDER - DIGEST_TEXT - 1 };
+  char whole[1024];
+  size_t used = 0;
+  uint64_t digest = DIGEST_START;
+  for (int a = 0; a < base->axis_count; a++) {
+    const AppSweepAxis *axis = &base->axes[a];
+    text_append(whole, sizeof whole, &used, "%s%s=%s", a ? "," : "", short_key(base, a),
+                axis->values[point->values[a]]);
+    digest = digest_bytes(digest, point->settings[a], strlen(point->settings[a]) + 1);
+  }
+  bool is_plain = used < ROOM;
+  size_t length = is_plain ? used : ROOM;
+  for (size_t i = 0; i < length; i++) {
+    bool is_fit = isalnum((unsigned char)whole[i]) || strchr("=,.+-_", whole[i]);
+    point->folder[i] = is_fit ? whole[i] : '_';
+    is_plain = is_plain && is_fit;
+  }
+  if (is_plain) return;
+  point->folder[length] = '-';
+  digest_print(digest, point->folder + length + 1);
+}
+
+Status app_sweep_point_create(AppSweepPoint *point, const AppSweepBase *base, int index) {
+  *point = (AppSweepPoint){0};
+  for (int a = base->axis_count - 1; a >= 0; a--) {
+    const AppSweepAxis *axis = &base->axes[a];
+    point->values[a] = index % axis->value_count;
+    index /= axis->value_count;
+    const char *value = axis->values[point->values[a]];
+    size_t size = strlen(axis->key) + strlen(value) + 2;
+    point->settings[a] = memory_zeroed(size, 1);
+    if (!point->settings[a]) return status_no_memory("the points of a sweep");
+    snprintf(point->settings[a], size, "%s=%s", axis->key, value);
+  }
+  name_folder(point, base);
+  point->directory = file_join(base->directory, point->folder);
+  return point->directory ? STATUS_OK : status_no_memory("the points of a sweep");
+}
+
+void app_sweep_point_destroy(AppSweepPoint *point) {
+  for (int a = 0; a < APP_SWEEP_MAX_AXES; a++) memory_free(point->settings[a]);
+  memory_free(point->directory);
+  record_destroy(point->summary);
+  *point = (AppSweepPoint){0};
+}
+
+static Status read_scene(const AppSweepPoint *point, const AppSweepBase *base, FemSceneDef *scene) {
+  const char **overrides =
+      memory_zeroed((size_t)(base->override_count + base->axis_count), sizeof *overrides);
+  if (!overrides) return status_no_memory("the points of a sweep");
+  int count = 0;
+  for (; count < base->override_count; count++) overrides[count] = base->overrides[count];
+  for (int a = 0; a < base->axis_count; a++) overrides[count++] = point->settings[a];
+  Status status = app_scene_overlap_read(base->scene_path, overrides, count, base->overlap, scene);
+  memory_free(overrides);
+  return status;
+}
+
+// A file of the folder as a record; NULL: it is not there, or is no record.
+static Record *read_record(const char *directory, const char *name) {
+  Record *record = NULL;
+  char *path = file_join(directory, name);
+  if (path && file_exists(path) && record_read(&record, path)) record = NULL;
+  memory_free(path);
+  return record;
+}
+
+static bool has_file(const char *directory, const char *name) {
+  char *path = file_join(directory, name);
+  bool is_there = path && file_exists(path);
+  memory_free(path);
+  return is_there;
+}
+
+// Whether a run of this scene, as it would be read now by this program, is what the manifest tells of.
+// Threads change no result.
+static bool is_same_scene(const Record *manifest, const FemSceneDef *scene) {
+  const char *version = record_find_text(record_find(manifest, "versions"), "tetlap");
+  const Record *was = record_find(manifest, "scene");
+  double threads = record_find_number(record_find(was, "solver"), "threads");
+  FemSceneDef same = *scene; // borrows all that it points to
+  same.threads = threads >= 0 ? (int)threads : 0;
+  Record *now = record_new();
+  RecordDifference difference;
+  bool is_same = now && version && strcmp(version, app_versions_program()) == 0 &&
+                 app_scene_write_resolved(&same, now, "scene") == STATUS_OK &&
+                 !record_differ(was, record_find(now, "scene"), &difference);
+  record_destroy(now);
+  return is_same;
+}
+
+// Whether a mesh has been written after the run's summary, as `make` would see it.
+static bool has_newer_mesh(const AppSweepPoint *point, const FemSceneDef *scene) {
+  char *summary = file_join(point->directory, "summary.json"), *folder = file_directory_of(scene->path);
+  struct stat done, mesh;
+  bool is_newer = !summary || !folder || stat(summary, &done) != 0;
+  for (int b = 0; !is_newer && b < scene->body_count; b++) {
+    char *path = scene->bodies[b].mesh_path ? file_join(folder, scene->bodies[b].mesh_path) : NULL;
+    is_newer = path && (stat(path, &mesh) != 0 || mesh.st_mtime > done.st_mtime);
+    memory_free(path);
+  }
+  memory_free(summary);
+  memory_free(folder);
+  return is_newer;
+}
+
+// How the earlier sweep saw this point end; −1: it does not tell.
+static int exit_code_before(const AppSweepPoint *point, const Record *before) {
+  const Record *runs = record_find(before, "runs");
+  for (int k = 0; k < record_count(runs); k++) {
+    const char *folder = record_find_text(record_at(runs, k), "folder");
+    double code = record_find_number(record_at(runs, k), "exit_code");
+    if (folder && strcmp(folder, point->folder) == 0 && code >= 0) return (int)code;
+  }
+  return -1;
+}
+
+static void set_message(AppSweepPoint *point, const char *message) {
+  snprintf(point->message, sizeof point->message, "%s", message ? message : "");
+}
+
+// What to do with a folder that is there already.
+static void judge(AppSweepPoint *point, const FemSceneDef *scene, const Record *before, bool again) {
+  Record *summary = read_record(point->directory, "summary.json"),
+         *manifest = read_record(point->directory, "manifest.json");
+  const char *outcome = record_find_text(summary, "outcome");
+  bool is_same = outcome && is_same_scene(manifest, scene) && !has_newer_mesh(point, scene);
+  record_destroy(manifest);
+  int code = exit_code_before(point, before), gave_up = status_exit_code(STATUS_SOLVER);
+  if (is_same && strcmp(outcome, "finished") == 0)
+    point->state = APP_SWEEP_FINISHED;
+  else if (is_same && !again && strcmp(outcome, "failed") == 0 && code == gave_up)
+    point->state = APP_SWEEP_FAILED, point->exit_code = gave_up;
+  else
+    point->state = has_file(point->directory, FEM_CHECKPOINT_FILE) ? APP_SWEEP_RESUMABLE : APP_SWEEP_WAITING;
+  bool has_ended = point->state == APP_SWEEP_FINISHED || point->state == APP_SWEEP_FAILED;
+  if (point->state == APP_SWEEP_FAILED) set_message(point, record_find_text(summary, "message"));
+  point->summary = has_ended ? summary : NULL;
+  if (!has_ended) record_destroy(summary);
+}
+
+Status app_sweep_point_examine(AppSweepPoint *point, const AppSweepBase *base, const Record *before,
+                               bool again) {
+  FemSceneDef scene;
+  Status status = read_scene(point, base, &scene);
+  if (status) {
+    point->state = APP_SWEEP_FAILED;
+    point->exit_code = status_exit_code(status);
+    set_message(point, status_message());
+    return status;
+  }
+  judge(point, &scene, before, again);
+  fem_scene_destroy(&scene);
+  return STATUS_OK;
+}
+
+// The last error that its log tells of, else how the process ended.
+static void explain(AppSweepPoint *point) {
+  char *path = file_join(point->directory, "log.txt"), *text = NULL;
+  size_t size;
+  snprintf(point->message, sizeof point->message,
+           point->exit_code > 128 ? "the process was ended by signal %d" : "exit code %d; see log.txt",
+           point->exit_code > 128 ? point->exit_code - 128 : point->exit_code);
+  if (path && file_read(path, &text, &size) == STATUS_OK)
+    for (char *line = strstr(text, "error: "); line; line = strstr(line + 1, "error: ")) {
+      size_t length = strcspn(line, "\n") - strlen("error: ");
+      snprintf(point->message, sizeof point->message, "%.*s", (int)length, line + strlen("error: "));
+    }
+  memory_free(text);
+  memory_free(path);
+}
+
+void app_sweep_point_conclude(AppSweepPoint *point, int exit_code) {
+  record_destroy(point->summary);
+  point->exit_code = exit_code;
+  point->summary = read_record(point->directory, "summary.json");
+  point->state = exit_code == 0 ? APP_SWEEP_FINISHED : APP_SWEEP_FAILED;
+  point->message[0] = 0;
+  if (exit_code == 0) return;
+  const char *message = record_find_text(point->summary, "message");
+  if (message)
+    set_message(point, message);
+  else
+    explain(point);
+}

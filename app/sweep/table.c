@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/sweep/table.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/cli/versions.h"
+#include "app/report/report.h"
+#include "base/file.h"
+#include "base/memory.h"
+
+// The numbers of a row: where they stand in summary.json, and what they are called.
+static const struct Column {
+  const char *section, *key; // section NULL: at its top
+  const char *name;
+} columns[] = {
+    {NULL, "end_time", "end_time_s"},
+    {NULL, "wall_s", "wall_s"},
+    {NULL, "cpu_s", "cpu_s"},
+    {NULL, "unknowns", "unknowns"},
+    {NULL, "steps", "steps"},
+    {"counters", "newton_iterations", "newton_iterations"},
+    {"counters", "newton_failures", "newton_failures"},
+    {"counters", "energy_retries", "energy_retries"},
+    {NULL, "contact_force_max", "contact_force_max_N"},
+    {NULL, "contact_force_last", "contact_force_last_N"},
+    {NULL, "pairs_max", "pairs_max"},
+    {NULL, "overlap_volume_max", "overlap_volume_max_m3"},
+    {NULL, "deepest_overlap_max", "deepest_overlap_max"},
+    {NULL, "energy_gain_relative", "energy_gain_relative"},
+    {NULL, "energy_lost_J", "energy_lost_J"},
+    {NULL, "min_det_F", "min_det_F"},
+    {NULL, "peak_rss_bytes", "peak_rss_bytes"},
+};
+enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
+
+static double value_of(const AppSweepPoint *point, const struct Column *column) {
+  const Record *section = column->section ? record_find(point->summary, column->section) : point->summary;
+  return record_find_number(section, column->key);
+}
+
+static const char *outcome_of(const AppSweepPoint *point) {
+  static const char *const words[] = {[APP_SWEEP_WAITING] = "waiting",
+                                      [APP_SWEEP_RESUMABLE] = "interrupted",
+                                      [APP_SWEEP_RUNNING] = "running",
+                                      [APP_SWEEP_FINISHED] = "finished",
+                                      [APP_SWEEP_FAILED] = "failed"};
+  return words[point->state];
+}
+
+static bool has_ended(const AppSweepPoint *point) {
+  return point->state == APP_SWEEP_FINISHED || point->state == APP_SWEEP_FAILED;
+}
+
+static const char *value_text(const AppSweepGrid *grid, const AppSweepPoint *point, int axis) {
+  return grid->base.axes[axis].values[point->values[axis]];
+}
+
+// A number as such, anything else as text.
+static void record_value(Record *record, const char *key, const char *text) {
+  char *end;
+  double value = strtod(text, &end);
+  if (end != text && !*end && isfinite(value))
+    record_number(record, key, value);
+  else
+    record_text(record, key, text);
+}
+
+static void record_axes(const AppSweepGrid *grid, Record *record) {
+  RecordList *list = record_list(record, "axes");
+  for (int a = 0; a < grid->base.axis_count; a++) {
+    const AppSweepAxis *axis = &grid->base.axes[a];
+    Record *row = record_append(list);
+    record_text(row, "key", axis->key);
+    RecordList *values = record_list(row, "values");
+    for (int k = 0; k < axis->value_count; k++) record_append_text(values, axis->values[k]);
+  }
+}
+
+static void record_point(const AppSweepGrid *grid, const AppSweepPoint *point, Record *row) {
+  record_text(row, "folder", point->folder);
+  Record *set = record_child(row, "set");
+  for (int a = 0; a < grid->base.axis_count; a++)
+    record_value(set, grid->base.axes[a].key, value_text(grid, point, a));
+  record_text(row, "outcome", outcome_of(point));
+  if (!has_ended(point)) return;
+  record_integer(row, "exit_code", point->exit_code);
+  if (point->message[0]) record_text(row, "message", point->message);
+  if (!point->summary) return;
+  for (int c = 0; c < COLUMN_COUNT; c++) record_number(row, columns[c].name, value_of(point, &columns[c]));
+}
+
+Record *app_sweep_table_record(const AppSweepGrid *grid) {
+  Record *record = record_new();
+  if (!record) return NULL;
+  record_text(record, "format", "tetlap-sweep 1");
+  record_text(record, "scene", grid->base.scene_path);
+  record_text(record, "command", app_versions_command());
+  app_versions_record(record_child(record, "versions"));
+  record_axes(grid, record);
+  RecordList *runs = record_list(record, "runs");
+  for (int p = 0; p < grid->point_count; p++) record_point(grid, &grid->points[p], record_append(runs));
+  return record;
+}
+
+// In double quotes where a comma, a quote or a line's end stands in it (RFC 4180).
+static void print_text(const char *text, FILE *stream) {
+  if (!strpbrk(text, ",\"\n")) {
+    fputs(text, stream);
+    return;
+  }
+  fputc('"', stream);
+  for (; *text; text++) {
+    if (*text == '"') fputc('"', stream);
+    fputc(*text, stream);
+  }
+  fputc('"', stream);
+}
+
+static void print_csv_row(const AppSweepGrid *grid, const AppSweepPoint *point, FILE *stream) {
+  print_text(point->folder, stream);
+  for (int a = 0; a < grid->base.axis_count; a++) {
+    fputc(',', stream);
+    print_text(value_text(grid, point, a), stream);
+  }
+  fprintf(stream, ",%s", outcome_of(point));
+  for (int c = 0; c < COLUMN_COUNT; c++) {
+    double value = value_of(point, &columns[c]);
+    fputc(',', stream);
+    if (isfinite(value)) fprintf(stream, "%.17g", value);
+  }
+  fputc(',', stream);
+  print_text(point->message, stream);
+  fputc('\n', stream);
+}
+
+static Status write_csv(const AppSweepGrid *grid, const char *path) {
+  FileWriter writer;
+  TRY(file_begin(&writer, path));
+  fputs("folder", writer.stream);
+  for (int a = 0; a < grid->base.axis_count; a++) {
+    fputc(',', writer.stream);
+    print_text(grid->base.axes[a].key, writer.stream);
+  }
+  fputs(",outcome", writer.stream);
+  for (int c = 0; c < COLUMN_COUNT; c++) fprintf(writer.stream, ",%s", columns[c].name);
+  fputs(",message\n", writer.stream);
+  for (int p = 0; p < grid->point_count; p++) print_csv_row(grid, &grid->points[p], writer.stream);
+  return file_commit(&writer);
+}
+
+// The page takes the record over.
+static Status write_page(Record *table, const char *path) {
+  AppReport report = {.sweep = table};
+  Status status = app_report_write(&report, path);
+  app_report_destroy(&report);
+  return status;
+}
+
+Status app_sweep_table_write(const AppSweepGrid *grid) {
+  const char *directory = grid->base.directory;
+  char *json = file_join(directory, "sweep.json"), *csv = file_join(directory, "sweep.csv"),
+       *page = file_join(directory, "sweep.html");
+  Record *table = app_sweep_table_record(grid);
+  Status status = json && csv && page && table ? STATUS_OK : status_no_memory("the table of a sweep");
+  if (!status) status = record_write(table, json);
+  if (!status) status = write_csv(grid, csv);
+  if (!status) {
+    status = write_page(table, page);
+    table = NULL;
+  }
+  record_destroy(table);
+  memory_free(json);
+  memory_free(csv);
+  memory_free(page);
+  return status;
+}
+
+void app_sweep_table_print(const AppSweepGrid *grid, FILE *stream) {
+  int width = (int)strlen("run");
+  for (int p = 0; p < grid->point_count; p++) {
+    int length = (int)strlen(grid->points[p].folder);
+    if (length > width) width = length;
+  }
+  fprintf(stream, "%-*s  %-11s  %8s  %7s  %9s  %9s  %9s\n", width, "run", "outcome", "wall s", "steps",
+          "force N", "deepest", "gain");
+  for (int p = 0; p < grid->point_count; p++) {
+    const AppSweepPoint *point = &grid->points[p];
+    fprintf(stream, "%-*s  %-11s", width, point->folder, outcome_of(point));
+    if (point->summary)
+      fprintf(stream, "  %8.3g  %7.0f  %9.3g  %9.3g  %9.1e", record_find_number(point->summary, "wall_s"),
+              record_find_number(point->summary, "steps"),
+              record_find_number(point->summary, "contact_force_max"),
+              record_find_number(point->summary, "deepest_overlap_max"),
+              record_find_number(point->summary, "energy_gain_relative"));
+    fprintf(stream, "%s%s\n", point->message[0] ? "  " : "", point->message);
+  }
+}

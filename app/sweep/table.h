@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a sweep found, a row a point: sweep.json, sweep.csv, the page sweep.html and the table for a terminal.
+#ifndef TETLAP_APP_SWEEP_TABLE_H
+#define TETLAP_APP_SWEEP_TABLE_H
+
+#include <stdio.h>
+
+#include "app/sweep/grid.h"
+
+// sweep.json as a record, owned by the caller; NULL: no memory.
+Record *app_sweep_table_record(const AppSweepGrid *grid);
+
+// Writes all three into the sweep's folder, each whole or not at all.
+Status app_sweep_table_write(const AppSweepGrid *grid);
+
+void app_sweep_table_print(const AppSweepGrid *grid, FILE *stream);
+
+#endif

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// app/sweep: the values of an axis, and `tetlap sweep` as a whole.
+#include "suite.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "app/sweep/axis.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/record.h"
+
+static void expect_values(const char *text, const char *key, int count, const char *const *values) {
+  AppSweepAxis axis;
+  ck_assert_ok(app_sweep_axis_parse(&axis, text));
+  ck_assert_str_eq(axis.key, key);
+  ck_assert_int_eq(axis.value_count, count);
+  for (int k = 0; k < count; k++) ck_assert_str_eq(axis.values[k], values[k]);
+  app_sweep_axis_destroy(&axis);
+}
+
+START_TEST(ranges_have_both_ends_and_lists_their_words) {
+  expect_values("contact.stiffness=1e5..1e9:5,log", "contact.stiffness", 5,
+                (const char *const[]){"1e5", "1e6", "1e7", "1e8", "1e9"});
+  expect_values("time.end=0.1..0.5:3", "time.end", 3, (const char *const[]){"0.1", "0.3", "0.5"});
+  expect_values("a=-1..1:3", "a", 3, (const char *const[]){"-1", "0", "1"});
+  expect_values("a=1...5:2", "a", 2, (const char *const[]){"1", "0.5"});
+  expect_values("a=1e-5..1e-3:3,log", "a", 3, (const char *const[]){"1e-5", "0.0001", "0.001"});
+  expect_values("contact.overlap=clip, geo", "contact.overlap", 2, (const char *const[]){"clip", "geo"});
+  expect_values("v=[0, 1],\"a,b\",{x: 1, y: 2}", "v", 3,
+                (const char *const[]){"[0, 1]", "\"a,b\"", "{x: 1, y: 2}"});
+  expect_values("mesh=../a..b.msh", "mesh", 1, (const char *const[]){"../a..b.msh"});
+}
+END_TEST
+
+START_TEST(an_axis_that_makes_no_sense_is_a_usage_error) {
+  static const char *const wrong[] = {"time.end",     "=1,2",           "a=",          "a=1,,2", "a=1..2:1",
+                                      "a=0..1:3,log", "a=-2..-1:3,log", "a=1..2:1001", "a=1,2,1"};
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    AppSweepAxis axis;
+    ck_assert_msg(app_sweep_axis_parse(&axis, wrong[i]) == STATUS_USAGE, "%s", wrong[i]);
+    ck_assert_msg(strstr(status_message(), "--vary") != NULL, "%s", status_message());
+  }
+}
+END_TEST
+
+static char folder[] = "/tmp/tetlap_sweep_XXXXXX";
+
+static void make_folder(void) {
+  strcpy(folder, "/tmp/tetlap_sweep_XXXXXX");
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+}
+
+static void remove_folder(void) {
+  char command[128];
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  ck_assert_int_eq(system(command), 0);
+}
+
+// The exit code; what is said goes to the file `said` in the folder above.
+static int sweep(const char *options) {
+  char command[1024];
+  snprintf(command, sizeof command,
+           "%s sweep " TETLAP_SOURCE_DIR
+           "/examples/01_drop.yaml -o %s/out -s output.frames=4 -s output.vtu=false %s > %s/said 2>&1",
+           TETLAP_PROGRAM, folder, options, folder);
+  return WEXITSTATUS(system(command));
+}
+
+static char *read_text(const char *name) {
+  char path[256], *text;
+  size_t size;
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  ck_assert_ok(file_read(path, &text, &size));
+  return text;
+}
+
+static Record *read_table(void) {
+  char path[256];
+  Record *table;
+  snprintf(path, sizeof path, "%s/out/sweep.json", folder);
+  ck_assert_ok(record_read(&table, path));
+  return table;
+}
+
+static bool says(const char *text) {
+  char *said = read_text("said");
+  bool is_there = strstr(said, text) != NULL;
+  memory_free(said);
+  return is_there;
+}
+
+static const char *outcome_of(const Record *table, int k) {
+  return record_find_text(record_at(record_find(table, "runs"), k), "outcome");
+}
+
+// A value that a scene cannot have fails alone.
+START_TEST(runs_are_rows_and_one_that_fails_is_a_row_too) {
+  const char *grid = "-s time.end=0.02 -V bodies[0].material.poisson=0.3,0.7 -V contact.stiffness=1e5,1e6";
+  ck_assert_int_eq(sweep(grid), 70);
+  Record *table = read_table();
+  const Record *runs = record_find(table, "runs");
+  ck_assert_str_eq(record_find_text(table, "format"), "tetlap-sweep 1");
+  ck_assert_int_eq(record_count(runs), 4);
+  for (int k = 0; k < 4; k++) {
+    const Record *row = record_at(runs, k), *set = record_find(row, "set");
+    ck_assert_str_eq(record_find_text(row, "outcome"), k < 2 ? "finished" : "failed");
+    ck_assert_near(record_find_number(row, "exit_code"), k < 2 ? 0 : 64, 0);
+    ck_assert_near(record_find_number(set, "contact.stiffness"), k % 2 ? 1e6 : 1e5, 0);
+    if (k < 2)
+      ck_assert_near(record_find_number(row, "end_time_s"), 0.02, 1e-12);
+    else
+      ck_assert_ptr_nonnull(strstr(record_find_text(row, "message"), "poisson"));
+  }
+  record_destroy(table);
+
+  char *csv = read_text("out/sweep.csv");
+  int lines = 0;
+  for (const char *at = csv; *at; at++) lines += *at == '\n';
+  ck_assert_int_eq(lines, 5);
+  ck_assert_ptr_nonnull(strstr(csv, "folder,bodies[0].material.poisson,contact.stiffness,outcome,"));
+  memory_free(csv);
+  char *page = read_text("out/sweep.html");
+  ck_assert_ptr_nonnull(strstr(page, "tetlap-sweep 1"));
+  memory_free(page);
+}
+END_TEST
+
+START_TEST(what_is_finished_is_kept_and_what_has_changed_runs_again) {
+  ck_assert_int_eq(sweep("-s time.end=0.01 -V contact.stiffness=1e5,1e6"), 0);
+  ck_assert(says("0 are there, 0 go on, 2 begin"));
+  ck_assert_int_eq(sweep("-s time.end=0.01 -V contact.stiffness=1e5,1e6,1e7"), 0);
+  ck_assert(says("2 are there, 0 go on, 1 begin"));
+  ck_assert_int_eq(sweep("-s time.end=0.012 -V contact.stiffness=1e5,1e6"), 0);
+  ck_assert(says("0 are there, 0 go on, 2 begin"));
+  Record *table = read_table();
+  ck_assert_int_eq(record_count(record_find(table, "runs")), 2);
+  record_destroy(table);
+}
+END_TEST
+
+START_TEST(a_wrong_key_is_told_at_once) {
+  ck_assert_int_eq(sweep("-V contact.stifness=1,2"), 64);
+  ck_assert(says("did you mean 'stiffness'"));
+  ck_assert_int_eq(sweep("-V contact.stiffness=1,2 -V contact.stiffness=3,4"), 64);
+  ck_assert(says("stands there twice"));
+  ck_assert_int_eq(sweep(""), 64);
+  ck_assert_int_eq(sweep("-V a=1..1000:1000 -V b=1..1000:1000"), 64);
+  char path[128];
+  snprintf(path, sizeof path, "%s/out", folder);
+  ck_assert(!file_exists(path)); // nothing was begun
+}
+END_TEST
+
+static pid_t start_sweep(const char *out) {
+  char path[128];
+  snprintf(path, sizeof path, "%s/%s", folder, out);
+  pid_t child = fork();
+  if (child == 0) {
+    freopen("/dev/null", "w", stdout);
+    freopen("/dev/null", "w", stderr);
+    execl(TETLAP_PROGRAM, "tetlap", "sweep", TETLAP_SOURCE_DIR "/examples/02_two_blocks.yaml", "-o", path,
+          "-J", "2", "-V", "contact.stiffness=1e5,2e5,4e5", "-s", "output.vtu=false", "-s",
+          "output.frames=40", "-s", "output.checkpoint=2", "-s", "time.end=0.15", (char *)NULL);
+    _exit(127);
+  }
+  ck_assert_int_gt(child, 0);
+  return child;
+}
+
+static int wait_for(pid_t child) {
+  int state;
+  ck_assert_int_eq(waitpid(child, &state, 0), child);
+  return WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+}
+
+static char *history_of(const char *out, const char *run) {
+  char name[128];
+  snprintf(name, sizeof name, "%s/%s/history.csv", out, run);
+  return read_text(name);
+}
+
+// Stopped when both first runs are at work, and gone on with: the same histories, to the last bit.
+START_TEST(a_sweep_that_is_interrupted_goes_on_as_if_it_had_not_been) {
+  static const char *const runs[] = {"stiffness=1e5", "stiffness=2e5", "stiffness=4e5"};
+  char started[160];
+  snprintf(started, sizeof started, "%s/cut/%s/history.csv", folder, runs[1]);
+  pid_t child = start_sweep("cut");
+  for (int k = 0; k < 3000 && !file_exists(started); k++)
+    nanosleep(&(struct timespec){.tv_nsec = 10 * 1000 * 1000}, NULL);
+  ck_assert_int_eq(kill(child, SIGINT), 0);
+  ck_assert_int_eq(wait_for(child), 130);
+  Record *table;
+  char path[128];
+  snprintf(path, sizeof path, "%s/cut/sweep.json", folder);
+  ck_assert_ok(record_read(&table, path));
+  ck_assert_str_eq(outcome_of(table, 2), "waiting");
+  record_destroy(table);
+
+  ck_assert_int_eq(wait_for(start_sweep("cut")), 0);
+  ck_assert_int_eq(wait_for(start_sweep("whole")), 0);
+  for (int k = 0; k < 3; k++) {
+    char *cut = history_of("cut", runs[k]), *whole = history_of("whole", runs[k]);
+    ck_assert_ptr_nonnull(strstr(cut, "\n"));
+    ck_assert_msg(strcmp(cut, whole) == 0, "%s", runs[k]);
+    memory_free(cut);
+    memory_free(whole);
+  }
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("sweep");
+  tcase_add_checked_fixture(cases, make_folder, remove_folder);
+  tcase_add_test(cases, ranges_have_both_ends_and_lists_their_words);
+  tcase_add_test(cases, an_axis_that_makes_no_sense_is_a_usage_error);
+  tcase_add_test(cases, runs_are_rows_and_one_that_fails_is_a_row_too);
+  tcase_add_test(cases, what_is_finished_is_kept_and_what_has_changed_runs_again);
+  tcase_add_test(cases, a_wrong_key_is_told_at_once);
+  tcase_add_test(cases, a_sweep_that_is_interrupted_goes_on_as_if_it_had_not_been);
+  return suite_run("sweep", cases, 60);
+}
