@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "contact/pressure/imprint.h"
 #include "contact/pressure/potential.h"
 #include "contact/rest.h"
 #include "contact/search/bounds.h"
@@ -310,12 +311,18 @@ static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout
   for (int f = 0; f < layout->facing_count; f++)
     evaluation->interfaces[f] = rest && rest->is_resting[f] ? rest->interfaces[f]
                                                             : (ContactInterface){.a = layout->facings[f].a,
-                                                                                 .b = layout->facings[f].b};
+                                                                                 .b = layout->facings[f].b,
+                                                                                 .centre = {NAN, NAN, NAN}};
+  const ContactImprintSource source = {.patches = patches,
+                                       .fields = layout->depth.has_field ? evaluation->fields : NULL,
+                                       .gradients = evaluation->gradients,
+                                       .positions = evaluation->positions};
   for (int p = 0; p < patches->patch_count; p++) {
     const ContactPatch *patch = &patches->patches[p];
     ContactInterface *interface = &evaluation->interfaces[patch->facing];
     interface->active_count = patch->pair_end - patch->pair_begin;
     for (int k = patch->pair_begin; k < patch->pair_end; k++) interface->volume += evaluation->volumes[k];
+    contact_imprint_find(&source, patch, interface);
     if (interface->a == interface->b) {
       sum_lower(evaluation, patch, interface->force);
       continue;
@@ -380,8 +387,8 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   overlap_shapes(evaluation, layout, time);
   keep_overlapping(evaluation);
   double overlapped = clock_wall_s();
-  TRY(apply_potential(evaluation, layout));
   memcpy(evaluation->positions, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
+  TRY(apply_potential(evaluation, layout));
   evaluation->time = time;
   evaluation->is_valid = true;
   evaluation->overlap_s = overlapped - start;

@@ -9,6 +9,8 @@ typedef struct ContactInterface {
   double force[3];  // on a [N]; the opposite acts on b
   double volume;    // Σ V_ij [m³]
   int active_count; // pairs with V > 0
+  double area;      // of contact [m²] (contact/pressure/imprint.h)
+  double centre[3]; // of pressure [m]; NaN: nothing presses
 } ContactInterface;
 
 #endif

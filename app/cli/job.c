@@ -183,19 +183,20 @@ const char *app_job_overlap(const AppJob *job) {
   return fem_effect_contact_overlap(&job->scene);
 }
 
-static const char *word_of(Status status) {
-  if (status == STATUS_OK) return "finished";
-  return status == STATUS_INTERRUPTED ? "interrupted" : "failed";
-}
-
 Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status status) {
   Record *summary = record_new();
   if (!summary) return NULL;
   record_text(summary, "scene", job->scene.path);
   record_text(summary, "title", job->scene.title);
   record_text(summary, "overlap", app_job_overlap(job));
-  record_text(summary, "outcome", word_of(status));
+  record_text(summary, "outcome", fem_run_outcome(result, status));
   if (status) record_text(summary, "message", status_message());
+  if (!status && result->trouble.of[FEM_TROUBLE_PASSED].steps > 0) {
+    char text[512] = "finished, but ";
+    size_t used = strlen(text);
+    fem_trouble_tell(&result->trouble, &job->model, FEM_TROUBLE_PASSED, text + used, sizeof text - used);
+    record_text(summary, "message", text);
+  }
   record_integer(summary, "bodies", job->scene.body_count);
   record_integer(summary, "vertices", job->model.vertex_count);
   record_integer(summary, "tetrahedra", job->model.tet_count);

@@ -20,8 +20,8 @@ static const struct argp_option option_table[] = {
     {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
     {"capture", KEY_CAPTURE, "FILE", 0, "Keep the overlapping pairs of every step, labelled, as a data set",
      1},
-    {"strict", KEY_STRICT, NULL, 0, "A gain of energy beyond 0.1 % of the scene's is an error, not a warning",
-     1},
+    {"strict", KEY_STRICT, NULL, 0,
+     "Energy gained beyond 0.1 % of the scene's, and bodies that pass through each other, are an error", 1},
     {0},
 };
 

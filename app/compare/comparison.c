@@ -95,10 +95,10 @@ static Row row_of(const AppComparison *comparison, int m) {
   bool is_reference = m == comparison->reference;
   Row row = {.model = model->name,
              .reference = reference->name,
-             .outcome = !model->is_driven                     ? "audit only"
-                        : model->status == STATUS_INTERRUPTED ? "cut short"
-                        : model->status                       ? "failed"
-                                                              : "finished",
+             .outcome = !model->is_driven ? "audit only"
+                        : model->status == STATUS_INTERRUPTED
+                            ? "cut short"
+                            : fem_run_outcome(&model->result, model->status),
              .frames = -1,
              .share = NAN,
              .force = {NAN, NAN},

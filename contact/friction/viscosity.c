@@ -103,6 +103,7 @@ static double pressure_of_pair(const ContactViscosity *viscosity, const View *vi
 
 // One of a pair's two terms: points of one side in the field of the other.
 typedef struct Term {
+  int facing;
   int count;                // of vertices: 8, with a shape 4
   int free_begin, free_end; // of those on sides that carry unknowns
   int vertices[8];
@@ -121,7 +122,8 @@ static bool term_of(const ContactViscosity *viscosity, const View *view, int k, 
   double sign = t == 0 ? 1 : -1; // the points of A go deeper by g_B · w, those of B by −g_A · w
   Vec3 g = vec3_at(field->slopes[1 - t]);
   const double *weight_of = view->layout->facings[pair->facing].weight;
-  *term = (Term){.count = s >= 0 ? 4 : 8,
+  *term = (Term){.facing = pair->facing,
+                 .count = s >= 0 ? 4 : 8,
                  .free_begin = weight_of[0] > 0 ? 0 : 4,
                  .free_end = weight_of[1] > 0 ? 8 : 4,
                  .resistance = viscosity->viscosity * field->weighed[t]};
@@ -157,6 +159,13 @@ static void push_term(void *self, const Term *term) {
   double *force = self;
   for (int v = 0; v < term->count; v++)
     vec3_accumulate(force + 3 * (size_t)term->vertices[v],
+                    vec3_scale(-term->resistance * term->rate, vec3_at(term->along + 3 * v)));
+}
+
+static void sum_term(void *self, const Term *term) {
+  double(*resultants)[3] = self;
+  for (int v = 0; v < 4; v++)
+    vec3_accumulate(resultants[term->facing],
                     vec3_scale(-term->resistance * term->rate, vec3_at(term->along + 3 * v)));
 }
 
@@ -196,6 +205,21 @@ Status contact_viscosity_add_force(ContactViscosity *viscosity, const double *ve
         vec3_accumulate(force + 3 * (size_t)contact_layout_vertices(view.layout, pair->tets[side])[v],
                         vec3_scale(-pressure, vec3_at(view.evaluation->gradients + 24 * (size_t)k +
                                                       (size_t)(12 * side + 3 * v))));
+  }
+  return STATUS_OK;
+}
+
+Status contact_viscosity_add_resultants(ContactViscosity *viscosity, const double *velocities,
+                                        double (*resultants)[3]) {
+  if (has_field(viscosity)) return walk_terms(viscosity, velocities, resultants, sum_term);
+  View view;
+  TRY(measure(viscosity, velocities, &view));
+  press(viscosity, &view);
+  for (int k = 0; k < view.evaluation->pair_count; k++) {
+    double pressure = pressure_of_pair(viscosity, &view, k);
+    for (int v = 0; v < 4; v++)
+      vec3_accumulate(resultants[view.evaluation->pairs[k].facing],
+                      vec3_scale(-pressure, vec3_at(view.evaluation->gradients + 24 * (size_t)k + 3 * v)));
   }
   return STATUS_OK;
 }

@@ -41,6 +41,10 @@ size_t contact_viscosity_bytes(const ContactViscosity *viscosity); // on the hea
 // Adds the forces [N] at these velocities (vertex_count, 3) to `force`.
 Status contact_viscosity_add_force(ContactViscosity *viscosity, const double *velocities, double *force);
 
+// Adds to `resultants` [N] the force on the first side of each interface (contact_system_interfaces, 3).
+Status contact_viscosity_add_resultants(ContactViscosity *viscosity, const double *velocities,
+                                        double (*resultants)[3]);
+
 // Adds −∂f/∂v times `damping_scale`, exact and never negative, and of −∂f/∂x, times `stiffness_scale`, with
 // `nodal` the part Σ η Ẇ_a/V_a² ∇W_a ∇W_aᵀ where bodies go into each other. (The rest is not symmetric, or
 // small.)

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Viscous contact as an effect: contact/friction/viscosity.h on the system of the contact effect, whose
 // couplings are its own.
-#include "contact/friction/viscosity.h"
+#include "fem/effect/viscosity.h"
+
 #include "base/memory.h"
+#include "contact/friction/viscosity.h"
 #include "fem/effect/contact.h"
 #include "fem/effect/system.h"
 
@@ -93,3 +95,10 @@ const FemEffectOps fem_effect_viscosity = {
     .bytes = bytes,
     .destroy = destroy,
 };
+
+Status fem_effect_viscosity_add(void *effect, const double *velocities, double (*interfaces)[3],
+                                double *vertices) {
+  ContactViscosity *law = &((Viscosity *)effect)->law;
+  if (vertices) TRY(contact_viscosity_add_force(law, velocities, vertices));
+  return interfaces ? contact_viscosity_add_resultants(law, velocities, interfaces) : STATUS_OK;
+}

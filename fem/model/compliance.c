@@ -114,6 +114,15 @@ int fem_compliance_party(const FemModel *model, const char *name) {
   return -1;
 }
 
+const char *fem_compliance_party_name(const FemModel *model, int party) {
+  if (party >= 0 && party < model->body_count) return model->bodies[party].name;
+  int shape = model->body_count;
+  for (int o = 0; o < model->scene->obstacle_count; o++)
+    if (model->scene->obstacles[o].kind != FEM_OBSTACLE_MESH && shape++ == party)
+      return model->scene->obstacles[o].name;
+  return "?";
+}
+
 static Status check_pair(const FemModel *model, const FemContactPairDef *pair) {
   for (int k = 0; k < 2; k++)
     if (fem_compliance_party(model, pair->names[k]) < 0)

@@ -26,6 +26,9 @@ Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *
 // The number of that body or obstacle, as a party: −1, none has that name.
 int fem_compliance_party(const FemModel *model, const char *name);
 
+// The name of that party; "?" if there is none. Borrowed.
+const char *fem_compliance_party_name(const FemModel *model, int party);
+
 // μ between two parties: the scene's, or that of the last of `contact.pairs` with these two. Names must have
 // been checked (fem_compliance_stiffness).
 double fem_compliance_friction(const FemModel *model, int a, int b);

@@ -75,6 +75,9 @@ static double energy_gain(const FemColumnSource *s) {
 static double energy_events(const FemColumnSource *s) {
   return (double)s->energy_events;
 }
+static double momentum_gap(const FemColumnSource *s) {
+  return s->measures->momentum_gap;
+}
 static double inverted(const FemColumnSource *s) {
   return s->measures->trouble.count[FEM_TROUBLE_INVERTED];
 }
@@ -104,6 +107,7 @@ typedef enum When {
   ALWAYS,
   IF_EFFECT,      // the scene has the effect of the row
   IF_DISSIPATIVE, // an effect dissipates
+  IF_MOTION,      // the scene is not static
   IF_STATUS,      // the scene asks for the elements' status
 } When;
 
@@ -137,6 +141,7 @@ static const struct {
     {"steps", steps, .when = ALWAYS},
     {"energy_gain", energy_gain, .when = ALWAYS},
     {"energy_events", energy_events, .when = ALWAYS},
+    {"momentum_gap", momentum_gap, .when = IF_MOTION},
     {"inverted", inverted, .when = ALWAYS},
     {"enclosed", enclosed, .when = IF_EFFECT, .effect = &fem_effect_contact},
     {"wrong_way", wrong_way, .when = IF_EFFECT, .effect = &fem_effect_contact},
@@ -165,6 +170,8 @@ bool fem_columns_is_wanted(int column, const FemSystem *system, bool has_status)
   case IF_DISSIPATIVE:
     return fem_system_dissipates(system) || fem_system_effect(system, &fem_effect_plasticity) ||
            fem_system_effect(system, &fem_effect_stick);
+  case IF_MOTION:
+    return !system->model->scene->is_static;
   case IF_STATUS:
     return has_status;
   }

@@ -19,6 +19,9 @@ typedef struct FemMeasures {
   int active_pairs;
   double contact_force; // largest norm over interfaces [N]
   double peak_force;    // largest of that in the steps since the last row [N]
+  int momentum_body;
+  double
+      momentum_gap; // of that body where it is largest, until the end of this step (fem/measure/momentum.h)
   FemTroubleState trouble;
 } FemMeasures;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/output/forces.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -8,6 +9,7 @@
 #include "fem/effect/contact.h"
 #include "fem/effect/friction.h"
 #include "fem/effect/stick.h"
+#include "fem/effect/viscosity.h"
 
 bool fem_forces_has_friction(const FemSystem *system) {
   return fem_system_effect(system, &fem_effect_friction) || fem_system_effect(system, &fem_effect_stick);
@@ -24,7 +26,9 @@ static size_t values_of(const FemForces *forces) {
 
 static Status create_at(FemForcesAt *at, const FemForces *forces, bool with_vertices) {
   at->interfaces = memory_zeroed((size_t)forces->interface_count, sizeof *at->interfaces);
-  if (!at->interfaces) return status_no_memory("the contact forces");
+  at->areas = memory_zeroed((size_t)forces->interface_count, sizeof *at->areas);
+  at->centres = memory_zeroed((size_t)forces->interface_count, sizeof *at->centres);
+  if (!at->interfaces || !at->areas || !at->centres) return status_no_memory("the contact forces");
   if (!with_vertices) return STATUS_OK;
   at->contact = memory_zeroed(values_of(forces), sizeof *at->contact);
   bool rubs = fem_forces_has_friction(forces->system);
@@ -44,6 +48,8 @@ Status fem_forces_create(FemForces *forces, const FemSystem *system, bool with_v
 
 static void destroy_at(FemForcesAt *at) {
   memory_free(at->interfaces);
+  memory_free(at->areas);
+  memory_free(at->centres);
   memory_free(at->contact);
   memory_free(at->friction);
 }
@@ -59,17 +65,22 @@ void fem_forces_destroy(FemForces *forces) {
 static void take(const FemForces *forces, FemForcesAt *at, double time) {
   const FemSystem *system = forces->system;
   void *friction = fem_system_effect(system, &fem_effect_friction),
-       *stick = fem_system_effect(system, &fem_effect_stick);
+       *stick = fem_system_effect(system, &fem_effect_stick),
+       *viscosity = fem_system_effect(system, &fem_effect_viscosity);
   ContactSystem *contact = contact_of(system);
   int count;
   const ContactInterface *interfaces = contact_system_interfaces(contact, &count);
   at->time = time;
   for (int i = 0; i < count; i++) {
     vec3_store(at->interfaces[i], vec3_at(interfaces[i].force));
+    vec3_store(at->centres[i], vec3_at(interfaces[i].centre));
+    at->areas[i] = interfaces[i].area;
     if (friction) vec3_accumulate(at->interfaces[i], vec3_at(fem_effect_friction_of(friction)->forces[i]));
     if (stick) vec3_accumulate(at->interfaces[i], vec3_at(fem_effect_stick_of(stick)->forces[i]));
   }
+  if (viscosity) fem_effect_viscosity_add(viscosity, system->velocities, at->interfaces, NULL);
   if (at->contact) memcpy(at->contact, contact_system_forces(contact), values_of(forces) * sizeof(double));
+  if (at->contact && viscosity) fem_effect_viscosity_add(viscosity, system->velocities, NULL, at->contact);
   if (!at->friction) return;
   memset(at->friction, 0, values_of(forces) * sizeof *at->friction);
   if (friction)
@@ -99,8 +110,10 @@ void fem_forces_accept(FemForces *forces) {
   forces->has_end = false;
 }
 
+// Where one of the two is not known the other stands.
 static void mix(size_t count, double share, const double *begin, const double *end, double *now) {
-  for (size_t k = 0; k < count; k++) now[k] = begin[k] + share * (end[k] - begin[k]);
+  for (size_t k = 0; k < count; k++)
+    now[k] = isnan(begin[k]) ? end[k] : isnan(end[k]) ? begin[k] : begin[k] + share * (end[k] - begin[k]);
 }
 
 void fem_forces_set(FemForces *forces, double time) {
@@ -115,6 +128,8 @@ void fem_forces_set(FemForces *forces, double time) {
   now->time = time;
   mix(3 * (size_t)forces->interface_count, share, begin->interfaces[0], end->interfaces[0],
       now->interfaces[0]);
+  mix((size_t)forces->interface_count, share, begin->areas, end->areas, now->areas);
+  mix(3 * (size_t)forces->interface_count, share, begin->centres[0], end->centres[0], now->centres[0]);
   if (now->contact) mix(values_of(forces), share, begin->contact, end->contact, now->contact);
   if (now->friction) mix(values_of(forces), share, begin->friction, end->friction, now->friction);
 }

@@ -12,8 +12,10 @@
 // At one state.
 typedef struct FemForcesAt {
   double time;             // [s]
-  double (*interfaces)[3]; // on the first side, friction included [N]    (interface_count)
-  double *contact;         // of the potential [N]; NULL: not wanted      (vertex_count, 3)
+  double (*interfaces)[3]; // on the first side, friction and viscosity included [N]    (interface_count)
+  double *areas;           // of contact [m²]                             (interface_count)
+  double (*centres)[3];    // of pressure [m]; NaN: nothing presses       (interface_count)
+  double *contact;         // of potential and viscosity [N]; NULL: not wanted    (vertex_count, 3)
   double *friction;        // [N]; NULL: not wanted                       (vertex_count, 3)
 } FemForcesAt;
 

@@ -50,6 +50,16 @@ static Status add_columns(FemRecorder *recorder) {
                                  fem_effect_contact_name(effect, interfaces[i].a),
                                  fem_effect_contact_name(effect, interfaces[i].b), "xyz"[c]));
   TRY(fem_reactions_add_columns(history, model));
+  for (int b = 0; b < model->scene->body_count && !model->scene->is_static; b++)
+    for (int c = 0; c < 3; c++)
+      TRY(fem_history_add_column(history, "unbalanced_%s_%c_Ns", model->bodies[b].name, "xyz"[c]));
+  for (int i = 0; i < count; i++) {
+    const char *a = fem_effect_contact_name(effect, interfaces[i].a),
+               *b = fem_effect_contact_name(effect, interfaces[i].b);
+    TRY(fem_history_add_column(history, "contact_area_%s_%s_m2", a, b));
+    for (int c = 0; c < 3; c++)
+      TRY(fem_history_add_column(history, "contact_centre_%s_%s_%c_m", a, b, "xyz"[c]));
+  }
   recorder->row = memory_zeroed((size_t)history->column_count, sizeof *recorder->row);
   return recorder->row ? STATUS_OK : status_no_memory("the history");
 }
@@ -61,6 +71,7 @@ static Status create(FemRecorder *recorder, const char *directory) {
   recorder->overlap = memory_zeroed(tets, sizeof *recorder->overlap);
   if (!recorder->det_F || !recorder->overlap) return status_no_memory("the measures");
   TRY(fem_trouble_watch_create(&recorder->watch, model));
+  TRY(fem_ledger_create(&recorder->ledger, recorder->system));
   TRY(fem_forces_create(&recorder->forces, recorder->system, directory && model->scene->write_vtu));
   if (!directory) return STATUS_OK;
   recorder->writes_vtu = model->scene->write_vtu;
@@ -113,6 +124,7 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   memory_free(recorder->row);
   memory_free(recorder->displacement);
   fem_forces_destroy(&recorder->forces);
+  fem_ledger_destroy(&recorder->ledger);
   memory_free(recorder->reaction);
   memory_free(recorder->stress);
   memory_free(recorder->von_mises);
@@ -184,6 +196,10 @@ static void measure_contact(const FemRecorder *recorder, FemMeasures *measures) 
   measures->active_pairs = contact_system_active_count(contact);
 }
 
+static void measure_steps(const FemRecorder *recorder, FemMeasures *measures) {
+  measures->momentum_gap = fem_momentum_largest_gap(&recorder->ledger.momentum, &measures->momentum_body);
+}
+
 Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures) {
   *measures = (FemMeasures){0};
   TRY(fem_system_energy(recorder->system, time, &measures->energy));
@@ -191,11 +207,56 @@ Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *mea
   measure_motion(recorder->system, measures);
   fem_forces_set(&recorder->forces, time);
   measure_contact(recorder, measures);
+  measure_steps(recorder, measures);
   ContactSystem *contact = contact_of(recorder->system);
   fem_trouble_look(&recorder->watch, recorder->system->positions,
                    contact ? contact_system_forces(contact) : NULL, recorder->det_F, recorder->overlap,
                    &measures->trouble);
   return STATUS_OK;
+}
+
+static FemMomentumContact contact_at(const FemRecorder *recorder, const FemForcesAt *at) {
+  FemMomentumContact contact = {.forces = (const double(*)[3])at->interfaces};
+  contact.interfaces = interfaces_of(recorder->system, &contact.count);
+  return contact;
+}
+
+Status fem_recorder_begin_step(FemRecorder *recorder, double time) {
+  fem_forces_begin(&recorder->forces, time);
+  FemMomentumContact contact = contact_at(recorder, &recorder->forces.begin);
+  return fem_ledger_begin(&recorder->ledger, time, &contact);
+}
+
+static void tell_passages(const FemRecorder *recorder, int count, const ContactPassageEntry *first,
+                          FemTroubleState *state) {
+  int interface_count;
+  state->count[FEM_TROUBLE_PASSED] = count;
+  if (count == 0) return;
+  const ContactInterface *interface = &interfaces_of(recorder->system, &interface_count)[first->facing];
+  state->first[FEM_TROUBLE_PASSED] = first->tet;
+  state->passed[0] = interface->a;
+  state->passed[1] = interface->b;
+}
+
+Status fem_recorder_end_step(FemRecorder *recorder, double time, FemMeasures *measures) {
+  const ContactPassage *passage = &recorder->ledger.passage;
+  fem_forces_end(&recorder->forces, time);
+  FemMomentumContact contact = contact_at(recorder, &recorder->forces.end);
+  TRY(fem_ledger_end(&recorder->ledger, time, &contact));
+  measure_steps(recorder, measures);
+  tell_passages(recorder, passage->passed, &passage->first, &measures->trouble);
+  return STATUS_OK;
+}
+
+void fem_recorder_find_turned(const FemRecorder *recorder, FemTroubleState *state) {
+  ContactPassageEntry first;
+  int count = contact_passage_turned(&recorder->ledger.passage, &first);
+  tell_passages(recorder, count, &first, state);
+}
+
+void fem_recorder_accept_step(FemRecorder *recorder) {
+  fem_forces_accept(&recorder->forces);
+  fem_ledger_accept(&recorder->ledger);
 }
 
 static double von_mises(const double s[6]) {
@@ -351,7 +412,14 @@ static void fill_row(FemRecorder *recorder, const FemColumnSource *source) {
   interfaces_of(recorder->system, &count);
   for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->forces.now.interfaces[i]));
   if (fem_reactions_any(recorder->system->model))
-    fem_reactions_measure(recorder->system, source->time, row, NULL);
+    row = fem_reactions_measure(recorder->system, source->time, row, NULL);
+  const FemSceneDef *scene = recorder->system->model->scene;
+  for (int b = 0; b < scene->body_count && !scene->is_static; b++, row += 3)
+    fem_momentum_missing(&recorder->ledger.momentum, b, row);
+  for (int i = 0; i < count; i++, row += 4) {
+    row[0] = recorder->forces.now.areas[i];
+    vec3_store(row + 1, vec3_at(recorder->forces.now.centres[i]));
+  }
 }
 
 void fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,

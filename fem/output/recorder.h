@@ -6,6 +6,7 @@
 
 #include "contact/status.h"
 #include "fem/effect/system.h"
+#include "fem/measure/ledger.h"
 #include "fem/output/columns.h"
 #include "fem/output/forces.h"
 #include "fem/output/history.h"
@@ -21,11 +22,12 @@ typedef struct FemRecorder {
   FemHistory history;
   double *row; // one line of the history
   int row_capacity;
-  int frame_count;                              // frames that are written
-  int listed_count;                             // of these in frames.pvd
-  double listed_at_s;                           // wall clock when it was written
-  FemObstacleFrames obstacles;                  // those without a mesh, beside the frames
-  FemForces forces;                             // as they are written
+  int frame_count;             // frames that are written
+  int listed_count;            // of these in frames.pvd
+  double listed_at_s;          // wall clock when it was written
+  FemObstacleFrames obstacles; // those without a mesh, beside the frames
+  FemForces forces;            // as they are written
+  FemLedger ledger;
   double *displacement;                         // scratch             (vertex_count, 3)
   double *reaction;                             // scratch; NULL: nothing is prescribed (vertex_count, 3)
   double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
@@ -43,12 +45,24 @@ Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char 
 Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int frame_count);
 void fem_recorder_destroy(FemRecorder *recorder);
 
-// Removes the frames, lists, history and summary that an earlier run has left in the folder, and says so. Called
-// once the first state is known, so that a run that fails before it takes nothing away.
+// Removes the frames, lists, history and summary that an earlier run has left in the folder, and says so.
+// Called once the first state is known, so that a run that fails before it takes nothing away.
 Status fem_recorder_clear(const FemRecorder *recorder);
 
 // The measures at the system's scattered state, with contact forces as they are written (forces.h).
 Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures);
+
+// A run begins, or goes on, at the scattered state, which was measured last.
+Status fem_recorder_begin_step(FemRecorder *recorder, double time);
+// A step may end at the scattered state, which was measured last; adds to the measures what only whole steps
+// know.
+Status fem_recorder_end_step(FemRecorder *recorder, double time, FemMeasures *measures);
+// It does: its end is the next one's beginning.
+void fem_recorder_accept_step(FemRecorder *recorder);
+
+// Into `state`: how many elements lie beyond the middle of another body at the last accepted state, as if
+// they had passed through it.
+void fem_recorder_find_turned(const FemRecorder *recorder, FemTroubleState *state);
 
 // Writes one frame of the scattered state. `step` [s] and `step_count` are the integrator's, `energy_events`
 // those so far (fem/output/trouble.h).

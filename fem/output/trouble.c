@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/mesh/faces.h"
+#include "fem/model/compliance.h"
 
 static const double COVERED = 0.999, PULL = 0.5, FORCE_FLOOR = 1e-3, SLIVER_SHAPE = 1e-3;
 
@@ -21,6 +22,8 @@ static const struct {
     {"wrong_way", "contact pushing the wrong way", "vertex",
      "a body is pierced there: a larger contact.stiffness, or a shorter time.max_step"},
     {"energy", "energy out of nothing", NULL, "a smaller time.tolerance, or a smaller contact.stiffness"},
+    {"passed", "bodies passed through each other", "element",
+     "a larger contact.stiffness, a shorter time.max_step, or a thicker or finer body"},
 };
 
 static Status list_surface(FemTroubleWatch *watch) {
@@ -119,7 +122,7 @@ static void look_at_forces(FemTroubleWatch *watch, const double *positions, cons
 
 void fem_trouble_look(FemTroubleWatch *watch, const double *positions, const double *force,
                       const double *det_F, const double *overlap, FemTroubleState *state) {
-  *state = (FemTroubleState){.first = {-1, -1, -1, -1}};
+  *state = (FemTroubleState){.first = {-1, -1, -1, -1, -1}, .passed = {-1, -1}};
   look_at_elements(watch, det_F, overlap, state);
   if (force && watch->triangles) look_at_forces(watch, positions, force, state);
 }
@@ -136,7 +139,8 @@ static double shape_of(const double *rest, const int tet[4]) {
 }
 
 FemTrouble fem_trouble_begin(const FemModel *model) {
-  FemTrouble trouble = {.worst_sliver = -1, .worst_shape = INFINITY, .smallest_step = INFINITY};
+  FemTrouble trouble = {
+      .passed = {-1, -1}, .worst_sliver = -1, .worst_shape = INFINITY, .smallest_step = INFINITY};
   for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) trouble.of[k].first = -1;
   for (int e = 0; e < model->tet_count; e++) {
     if (model->bodies[model->tet_body[e]].is_obstacle) continue;
@@ -154,6 +158,8 @@ bool fem_trouble_add(FemTrouble *trouble, double time, const FemTroubleState *st
     if (trouble->of[k].steps++ == 0) {
       trouble->of[k].first_time = time;
       trouble->of[k].first = state->first[k];
+      if (k == FEM_TROUBLE_PASSED)
+        for (int side = 0; side < 2; side++) trouble->passed[side] = state->passed[side];
     }
     bool is_new = trouble->last.count[k] == 0;
     trouble->of[k].events += is_new;
@@ -174,6 +180,13 @@ void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroub
   if (kind == FEM_TROUBLE_ENERGY) {
     snprintf(text, size, "%s: first at t = %.6g s, %lld times in all (try %s)", kinds[kind].what,
              trouble->of[kind].first_time, trouble->of[kind].events, kinds[kind].advice);
+    return;
+  }
+  if (kind == FEM_TROUBLE_PASSED) {
+    snprintf(text, size, "%s: '%s' and '%s' at t = %.6g s, element %d first (%s)", kinds[kind].what,
+             fem_compliance_party_name(model, trouble->passed[0]),
+             fem_compliance_party_name(model, trouble->passed[1]), trouble->of[kind].first_time, first,
+             kinds[kind].advice);
     return;
   }
   const char *body =

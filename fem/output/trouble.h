@@ -24,13 +24,16 @@ typedef enum FemTroubleKind {
   // pierced. Forces below a thousandth of the largest are not looked at.
   FEM_TROUBLE_WRONG_WAY,
   FEM_TROUBLE_ENERGY, // the audited energy rose by more than a run may gain (fem/time/audit.h)
+  FEM_TROUBLE_PASSED, // an element left another body on the side opposite to where it came in
+                      // (contact/passage.h)
 } FemTroubleKind;
-enum { FEM_TROUBLE_KIND_COUNT = 4 };
+enum { FEM_TROUBLE_KIND_COUNT = 5 };
 
 // One state: how many elements or vertices, and the first of them; −1: none. Of energy: 1 or 0.
 typedef struct FemTroubleState {
   int count[FEM_TROUBLE_KIND_COUNT];
   int first[FEM_TROUBLE_KIND_COUNT];
+  int passed[2]; // the bodies, or a body and a shape (as in ContactInterface), that passed through each other
 } FemTroubleState;
 
 // A run.
@@ -43,6 +46,7 @@ typedef struct FemTrouble {
     int first;         // the first element or vertex
   } of[FEM_TROUBLE_KIND_COUNT];
   FemTroubleState last;
+  int passed[2];    // as in FemTroubleState, of the first time
   int sliver_count; // elements with 6 V / (longest edge)³ < 1e-3 at rest (a regular one has 0.71)
   int worst_sliver;
   double worst_shape;   // that element's

@@ -40,6 +40,8 @@ typedef struct FemCheckpoint {
   FemRunResult so_far; // numbers and counters; its names, trajectory and effects' names are not kept
   FemCheckpointEffect effects[FEM_MAX_EFFECTS]; // in the system's order; costs in so_far (effect_count)
   int effect_count;
+  double *ledger; // what a run keeps account of (fem/measure/ledger.h), owned       (ledger_count)
+  size_t ledger_count;
 } FemCheckpoint;
 
 // A run's beginning: everything zero. STATUS_MEMORY.

@@ -14,7 +14,7 @@
 #include "fem/run/checkpoint_numbers.h"
 
 // HDF5 looks for its own beginning at 0, 512, 1024 …
-enum { HEAD_SIZE = 512, FORMAT_VERSION = 4, PATH_SIZE = 96 };
+enum { HEAD_SIZE = 512, FORMAT_VERSION = 5, PATH_SIZE = 96 };
 static const char MAGIC[] = "tetlap checkpoint";
 
 // An effect's cost, one array.
@@ -171,6 +171,9 @@ static bool write_contents(hid_t file, const FemCheckpoint *checkpoint, const ch
                write_values(file, "velocity", FEM_REAL, 2, shape, checkpoint->velocity, "m/s") &&
                write_text(file, "origin", checkpoint->origin ? checkpoint->origin : "") &&
                write_text(file, "counters", counters);
+  const hsize_t ledger_count = checkpoint->ledger_count;
+  works = works &&
+          write_values(file, "ledger", FEM_REAL, 1, &ledger_count, checkpoint->ledger, "the ledger's own");
   int count;
   const FemCheckpointNumber *numbers = fem_checkpoint_numbers(&count);
   for (int k = 0; k < count && works; k++)
@@ -365,6 +368,8 @@ static Status read_arrays(hid_t file, FemCheckpoint *checkpoint, const char *pat
   TRY(read_array(file, path, "velocity", 2, again, &checkpoint->velocity));
   if (again[0] != shape[0] || again[1] != 3) return fail_lacking(path, "velocity");
   checkpoint->vertex_count = (int)shape[0];
+  TRY(read_array(file, path, "ledger", 1, shape, &checkpoint->ledger));
+  checkpoint->ledger_count = (size_t)shape[0];
   return read_text(file, path, "origin", &checkpoint->origin);
 }
 

@@ -102,6 +102,11 @@ static const FemCheckpointNumber numbers[] = {
     TROUBLE(FEM_TROUBLE_ENCLOSED, "enclosed"),
     TROUBLE(FEM_TROUBLE_WRONG_WAY, "wrong_way"),
     TROUBLE(FEM_TROUBLE_ENERGY, "energy"),
+    TROUBLE(FEM_TROUBLE_PASSED, "passed"),
+    PART(trouble, passed[0], FEM_INTEGER, "1"),
+    PART(trouble, passed[1], FEM_INTEGER, "1"),
+    RESULT(momentum_gap, FEM_REAL, "1"),
+    RESULT(momentum_body, FEM_INTEGER, "1"),
 };
 #undef TROUBLE
 #undef COUNT
@@ -120,7 +125,7 @@ static_assert(sizeof(ContactPairCounts) == 6 * sizeof(long long), "numbers[] lis
 static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long),
               "numbers[] lists the counts of the status");
 
-static_assert(FEM_TROUBLE_KIND_COUNT == 4, "numbers[] lists every kind of trouble");
+static_assert(FEM_TROUBLE_KIND_COUNT == 5, "numbers[] lists every kind of trouble");
 
 const FemCheckpointNumber *fem_checkpoint_numbers(int *count) {
   *count = sizeof numbers / sizeof *numbers;

@@ -46,6 +46,12 @@ static Status take_back(FemRunState *run, const char *why) {
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
 }
 
+static Status refuse_passage(const FemRunState *run) {
+  char text[512];
+  fem_trouble_tell(&run->result->trouble, run->model, FEM_TROUBLE_PASSED, text, sizeof text);
+  return status_fail(STATUS_SOLVER, "%s (--strict)", text);
+}
+
 // Counts what struck in the accepted state; `*has_begun`: something that had not in the state before.
 static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_begun) {
   FemTrouble *trouble = &run->result->trouble;
@@ -53,6 +59,7 @@ static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_b
   double bound = run->result->energy_bounds.run;
   measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= bound);
   *has_begun = fem_trouble_add(trouble, run->time, &measures->trouble);
+  if (run->options->is_strict && measures->trouble.count[FEM_TROUBLE_PASSED] > 0) return refuse_passage(run);
   if (!run->options->is_strict || !measures->trouble.count[FEM_TROUBLE_ENERGY]) return STATUS_OK;
   return status_fail(
       STATUS_SOLVER,
@@ -89,7 +96,7 @@ static void keep_state(FemRunState *run, double time) {
   run->u_new = u, run->v_new = v;
   run->time = time;
   run->retries = 0;
-  fem_forces_accept(&run->recorder.forces);
+  fem_recorder_accept_step(&run->recorder);
 }
 
 // Steps, and measures the state that the step leads to, kept in u_new, v_new. RETRY: too far for the contact
@@ -104,8 +111,7 @@ static Status step(FemRunState *run, double *time, bool *is_onset, FemMeasures *
   fem_system_scatter(&run->system, *time, run->u_new, run->v_new);
   run->recorder.forces.has_end = false;
   TRY(fem_run_frames_measure(run, *time, measures));
-  fem_forces_end(&run->recorder.forces, *time);
-  return STATUS_OK;
+  return fem_recorder_end_step(&run->recorder, *time, measures);
 }
 
 // The powers with which the next step begins, where they are not those with which the last one ended.
@@ -159,10 +165,19 @@ static void end_stage(FemRunState *run) {
   fem_statics_destroy(&run->statics);
 }
 
+// With the coordinates that are free from here on.
+static Status begin_account(FemRunState *run) {
+  FemMeasures measures;
+  fem_system_scatter(&run->system, run->time, run->u, run->v);
+  TRY(fem_run_frames_measure(run, run->time, &measures));
+  return fem_recorder_begin_step(&run->recorder, run->time);
+}
+
 // Vertices come free, bodies fall asleep or awake: with other unknowns from here on.
 static Status renumber(FemRunState *run) {
   end_stage(run);
   TRY(fem_hold_renumber(&run->own, &run->system, run->time, &run->audit, run->u, run->v));
+  TRY(begin_account(run));
   return begin_stage(run, 0);
 }
 
@@ -238,7 +253,7 @@ static Status sleep_on(FemRunState *run) {
   fem_stall_pass(&run->stall, time - began);
   fem_run_frames_keep_extremes(run->result, &measures);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, time - began));
-  fem_forces_begin(&run->recorder.forces, time);
+  TRY(fem_recorder_begin_step(&run->recorder, time));
   TRY(observe(run, &measures));
   bool has_changed = fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest));
   return has_changed ? renumber(run) : STATUS_OK;
@@ -302,7 +317,7 @@ static Status begin_motion(FemRunState *run) {
   if (run->next_frame == 0) TRY(begin_record(run));
   FemMeasures measures;
   TRY(fem_run_frames_measure(run, run->time, &measures));
-  fem_forces_begin(&run->recorder.forces, run->time);
+  TRY(fem_recorder_begin_step(&run->recorder, run->time));
   if (fem_system_lags(&run->system)) TRY(renew_powers(run));
   return begin_stage(run, run->next_step);
 }
@@ -390,12 +405,24 @@ static Status advance_static(FemRunState *run) {
   run->audit.driven_work += run->statics.driven_work - work_before;
   fem_equilibrium_scatter(&run->statics.equilibrium, run->time, run->u);
   TRY(fem_run_frames_measure(run, run->time, &measures));
+  TRY(fem_recorder_end_step(&run->recorder, run->time, &measures));
+  fem_recorder_accept_step(&run->recorder);
   run->audit = fem_audit_next(&run->audit, run->time, &measures.energy);
   fem_run_frames_keep_extremes(run->result, &measures);
   take_row(run, run->time, &measures, &run->audit);
   if (run->time >= target) TRY(fem_run_frames_write(run, run->time, &measures));
   TRY(fem_recorder_append_step(&run->recorder));
   return observe(run, &measures);
+}
+
+// At the end: who is beyond the middle of another has passed it, too.
+static Status judge_passages(FemRunState *run) {
+  FemTrouble *trouble = &run->result->trouble;
+  FemTroubleState state = trouble->last;
+  fem_recorder_find_turned(&run->recorder, &state);
+  if (trouble->of[FEM_TROUBLE_PASSED].steps > 0 || state.count[FEM_TROUBLE_PASSED] == 0) return STATUS_OK;
+  fem_trouble_add(trouble, run->time, &state);
+  return run->options->is_strict ? refuse_passage(run) : STATUS_OK;
 }
 
 static Status march(FemRunState *run) {
@@ -413,7 +440,7 @@ static Status march(FemRunState *run) {
     }
     if (fem_run_checkpoint_is_due(run)) TRY(pass_checkpoint(run));
   }
-  return STATUS_OK;
+  return judge_passages(run);
 }
 
 static Status collect(FemRunState *run) {

@@ -69,6 +69,10 @@ Status fem_run_checkpoint_take(FemRunState *run) {
   TRY(fem_restart_collect(checkpoint, &run->system, run->time, run->u, run->v, run->result));
   // IDA's choice: a step as long as the last one, taken at order 1, let a block that sticks creep 2.6 times
   // as fast; short ones lost nothing, for five to ten steps more.
+  memory_free(checkpoint->ledger);
+  checkpoint->ledger = NULL;
+  checkpoint->ledger_count = 0;
+  TRY(fem_ledger_save(&run->recorder.ledger, &checkpoint->ledger, &checkpoint->ledger_count));
   checkpoint->step = run->model->scene->is_static ? run->next_step : 0;
   checkpoint->next_frame = run->next_frame;
   checkpoint->history = run->recorder.history.file.end;

@@ -32,6 +32,8 @@ void fem_run_frames_keep_extremes(FemRunResult *result, const FemMeasures *measu
   result->peak_since_row = fmax(result->peak_since_row, measures->contact_force);
   result->deepest_overlap_max = fmax(result->deepest_overlap_max, measures->deepest_overlap);
   result->min_det_F = fmin(result->min_det_F, measures->min_det_F);
+  result->momentum_gap = measures->momentum_gap;
+  result->momentum_body = measures->momentum_body;
 }
 
 static void keep_status(FemRunState *run) {
@@ -136,5 +138,6 @@ Status fem_run_frames_open(FemRunState *run) {
   const FemCheckpoint *from = &run->checkpoint;
   TRY(fem_recorder_create(&run->recorder, &run->system, run->options->directory));
   if (run->options->keep_trajectory) TRY(keep_trajectory(run));
+  if (from->next_frame > 0) TRY(fem_ledger_load(&run->recorder.ledger, from->ledger, from->ledger_count));
   return fem_recorder_continue(&run->recorder, from->history, from->next_frame);
 }

@@ -93,6 +93,15 @@ static void append_clause(char *text, size_t size, size_t *used, const char *for
   text_append(text, size, used, "%s%s", *used > 0 ? "; " : "", piece);
 }
 
+const char *fem_run_outcome(const FemRunResult *result, Status status) {
+  if (status == STATUS_INTERRUPTED) return "interrupted";
+  if (status) return "failed";
+  return result->trouble.of[FEM_TROUBLE_PASSED].steps > 0 ? "passed through" : "finished";
+}
+
+// Over a run, the share of all impulses by which forces and motion may differ (fem/measure/momentum.h).
+static const double MOMENTUM_ALLOWED = 1e-3;
+
 // Share of pairs that a network may be asked beyond its training before it is trouble.
 static const double BEYOND_ALLOWED = 0.01;
 
@@ -109,6 +118,12 @@ void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, cha
   if (trouble->sliver_count > 0)
     append_clause(text, size, &used, "slivers: %d elements, the worst %d (mesh it anew)",
                   trouble->sliver_count, trouble->worst_sliver);
+  if (!(result->momentum_gap <= MOMENTUM_ALLOWED))
+    append_clause(
+        text, size, &used,
+        "forces and motion differ: of body '%s' by %.2g %% of all impulses (a smaller time.tolerance or "
+        "time.max_step)",
+        model->bodies[result->momentum_body].name, 100 * result->momentum_gap);
   if ((double)result->pairs.beyond > BEYOND_ALLOWED * (double)result->pairs.tried)
     append_clause(text, size, &used,
                   "pairs beyond the network's training: %lld of %lld (take contact.overlap: clip)",
@@ -130,6 +145,8 @@ void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size
   size_t used = 0;
   text[0] = 0;
   append_clause(text, size, &used, "smallest det F %.3f", result->min_det_F);
+  if (!result->is_static)
+    append_clause(text, size, &used, "forces and motion agree to %.1e of all impulses", result->momentum_gap);
   if (isfinite(result->trouble.smallest_step))
     append_clause(text, size, &used, "smallest step %.1e s", result->trouble.smallest_step);
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
@@ -212,6 +229,10 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_number(summary, "energy_gain_allowed", result->energy_bounds.run);
   record_number(summary, "energy_lost_J", fem_audit_lost(&result->audit));
   record_number(summary, "energy_dissipated_J", result->audit.dissipated);
+  if (!result->is_static) {
+    record_number(summary, "momentum_gap", result->momentum_gap);
+    record_number(summary, "momentum_gap_allowed", MOMENTUM_ALLOWED);
+  }
   record_number(summary, "min_det_F", result->min_det_F);
   fem_trouble_record(&result->trouble, record_child(summary, "trouble"));
   if (result->is_static) {

@@ -42,6 +42,8 @@ typedef struct FemRunResult {
   int pairs_max;
   double overlap_volume_max, contact_force_max, min_det_F, deepest_overlap_max;
   double peak_since_row;     // largest interface force in the steps since the last row of the history [N]
+  double momentum_gap;       // over the run, of the body where it is largest (fem/measure/momentum.h)
+  int momentum_body;         // that body
   double last_contact_force; // largest interface force at the last frame [N]
   size_t peak_rss_bytes;
   Record *counters; // owned
@@ -64,6 +66,10 @@ void fem_run_result_add_system(FemRunResult *result, const FemSystem *system);
 void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegratorStats *part);
 void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part);
 void fem_run_result_destroy(FemRunResult *result);
+
+// "finished", "interrupted" or "failed"; "passed through": it reached its end, but bodies passed through each
+// other.
+const char *fem_run_outcome(const FemRunResult *result, Status status);
 
 // The run's last line: what trouble struck, or that none did. `model`: the one that ran.
 void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/passage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "contact/evaluation.h"
+#include "contact/shape/convex.h"
+
+// |h| from which on a direction is one; how far h may turn at once and be followed (cosines); where an
+// element is turned, and how deep it must reach for that.
+static const double CLEAR = 0.4, FOLLOWED = -0.25, TURNED = -0.3, BACK = 0.3, REACH = 0.1;
+
+void contact_passage_destroy(ContactPassage *passage) {
+  memory_free(passage->now.entries);
+  memory_free(passage->next.entries);
+  memory_free(passage->meetings);
+  *passage = (ContactPassage){0};
+}
+
+// The most that a point can be inside of a shape [m].
+static double depth_of_shape(const ContactShape *shape) {
+  if (shape->kind == CONTACT_SHAPE_HALFSPACE) return INFINITY;
+  if (shape->kind == CONTACT_SHAPE_BALL) return shape->radius;
+  double least = INFINITY;
+  for (int k = 0; k < shape->convex->plane_count; k++) least = fmin(least, shape->convex->offsets[k]);
+  return least;
+}
+
+// The most that a point of the cell can be deep [m].
+static double depth_of_cell(const ContactDepth *depth, int cell) {
+  double most = 0;
+  for (int v = 0; v < 4; v++) most = fmax(most, depth->depths[depth->cells[cell][v]]);
+  return most;
+}
+
+// What the element on side `side` of pair k meets in it.
+static void add_field(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, int side,
+                      ContactPassageMeeting *meeting) {
+  const ContactFieldPair *field = &evaluation->fields[k];
+  const ContactPair *pair = &evaluation->pairs[k];
+  int other = pair->tets[1 - side];
+  double most = other < 0 ? depth_of_shape(&layout->def.shapes[layout->facings[pair->facing].shape])
+                          : depth_of_cell(&layout->depth, other);
+  Vec3 slope = vec3_at(field->slopes[1 - side]);
+  vec3_accumulate(meeting->slope, vec3_scale(field->weighed[side], slope));
+  meeting->size += field->weighed[side] * vec3_length(slope);
+  meeting->reach = fmax(meeting->reach, field->depths[1 - side] / most);
+}
+
+static void add_gradient(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, int side,
+                         ContactPassageMeeting *meeting) {
+  const double *gradient = evaluation->gradients + 24 * (size_t)k + 12 * side;
+  int other = evaluation->pairs[k].tets[1 - side];
+  for (int v = 0; v < 4; v++) vec3_accumulate(meeting->slope, vec3_at(gradient + 3 * v));
+  meeting->covered += evaluation->volumes[k];
+  meeting->other += other < 0 ? INFINITY : layout->cell_volumes[other];
+}
+
+static void find_meetings(ContactPassage *passage, const ContactLayout *layout,
+                          const ContactEvaluation *evaluation) {
+  const ContactPatches *patches = &evaluation->patches;
+  bool has_field = layout->depth.has_field;
+  for (int e = 0; e < patches->element_count; e++) passage->meetings[e] = (ContactPassageMeeting){0};
+  for (int k = 0; k < evaluation->pair_count; k++)
+    for (int side = 0; side < 2; side++) {
+      int e = patches->pair_elements[k][side];
+      if (e < 0) continue;
+      (has_field ? add_field : add_gradient)(layout, evaluation, k, side, &passage->meetings[e]);
+    }
+  for (int e = 0; e < patches->element_count && !has_field; e++) {
+    ContactPassageMeeting *meeting = &passage->meetings[e];
+    meeting->size = vec3_length(vec3_at(meeting->slope));
+    meeting->reach = meeting->covered / fmin(layout->tet_volumes[patches->elements[e].tet], meeting->other);
+  }
+}
+
+static int compare_entries(const void *first, const void *second) {
+  const ContactPassageEntry *a = first, *b = second;
+  if (a->facing != b->facing) return a->facing < b->facing ? -1 : 1;
+  return (a->tet > b->tet) - (a->tet < b->tet);
+}
+
+static void sort(ContactPassageList *list) {
+  if (list->count > 1) qsort(list->entries, (size_t)list->count, sizeof *list->entries, compare_entries);
+}
+
+// What the element becomes at the direction h, |h| ≤ 1.
+static void meet(ContactPassageEntry *entry, Vec3 h, double reach) {
+  Vec3 kept = vec3_at(entry->direction);
+  double length = vec3_length(h), along = vec3_dot(h, kept);
+  bool is_known = vec3_length(kept) > 0;
+  if (is_known && along < TURNED && reach > REACH) entry->is_turned = true;
+  if (is_known && along > BACK) entry->is_turned = false;
+  bool is_followed = !is_known || (!entry->is_turned && along > FOLLOWED * length);
+  if (length > CLEAR && is_followed) vec3_store(entry->direction, vec3_scale(1 / length, h));
+}
+
+static Status reserve(ContactPassageList *list, size_t count) {
+  return memory_reserve((void **)&list->entries, &list->capacity, count, sizeof *list->entries)
+             ? STATUS_OK
+             : status_no_memory("who passes through whom");
+}
+
+// The elements of the evaluation's patches; `direction` holds h.
+static void list_elements(ContactPassage *passage, const ContactPatches *patches) {
+  ContactPassageList *next = &passage->next;
+  next->count = 0;
+  for (int p = 0; p < patches->patch_count; p++)
+    for (int e = patches->patches[p].element_begin; e < patches->patches[p].element_end; e++) {
+      const ContactPassageMeeting *meeting = &passage->meetings[e];
+      Vec3 h = meeting->size > 0 ? vec3_scale(1 / meeting->size, vec3_at(meeting->slope)) : (Vec3){0, 0, 0};
+      ContactPassageEntry *entry = &next->entries[next->count++];
+      *entry = (ContactPassageEntry){
+          .facing = patches->patches[p].facing, .tet = patches->elements[e].tet, .reach = meeting->reach};
+      vec3_store(entry->direction, h);
+    }
+  sort(next);
+}
+
+static void leave(ContactPassage *passage, const ContactPassageEntry *entry) {
+  if (!entry->is_turned) return;
+  if (passage->passed++ == 0) passage->first = *entry;
+}
+
+// Both lists are in order: what is in both goes on, what is in `now` alone has left, or lies at rest.
+static void match(ContactPassage *passage, const ContactSystem *system) {
+  ContactPassageList *now = &passage->now, *next = &passage->next;
+  int listed = next->count, i = 0;
+  for (int k = 0; k < listed; k++) {
+    ContactPassageEntry *entry = &next->entries[k], meeting = *entry;
+    for (; i < now->count && compare_entries(&now->entries[i], entry) < 0; i++) {
+      if (contact_system_is_resting(system, now->entries[i].facing))
+        next->entries[next->count++] = now->entries[i];
+      else
+        leave(passage, &now->entries[i]);
+    }
+    vec3_store(entry->direction, (Vec3){0, 0, 0});
+    if (i < now->count && compare_entries(&now->entries[i], entry) == 0) *entry = now->entries[i++];
+    meet(entry, vec3_at(meeting.direction), meeting.reach);
+  }
+  for (; i < now->count; i++) {
+    if (contact_system_is_resting(system, now->entries[i].facing))
+      next->entries[next->count++] = now->entries[i];
+    else
+      leave(passage, &now->entries[i]);
+  }
+  if (next->count > listed) sort(next);
+}
+
+Status contact_passage_look(ContactPassage *passage, ContactSystem *system) {
+  const ContactEvaluation *evaluation;
+  TRY(contact_system_look(system, &evaluation));
+  size_t elements = (size_t)evaluation->patches.element_count;
+  passage->passed = 0;
+  if (!memory_reserve((void **)&passage->meetings, &passage->meeting_capacity, elements,
+                      sizeof *passage->meetings))
+    return status_no_memory("who passes through whom");
+  TRY(reserve(&passage->next, elements + (size_t)passage->now.count));
+  find_meetings(passage, contact_system_layout(system), evaluation);
+  list_elements(passage, &evaluation->patches);
+  match(passage, system);
+  return STATUS_OK;
+}
+
+void contact_passage_accept(ContactPassage *passage) {
+  ContactPassageList now = passage->now;
+  passage->now = passage->next;
+  passage->next = now;
+  passage->passed = 0;
+}
+
+int contact_passage_turned(const ContactPassage *passage, ContactPassageEntry *first) {
+  int count = 0;
+  for (int i = 0; i < passage->now.count; i++) {
+    if (!passage->now.entries[i].is_turned) continue;
+    if (count++ == 0) *first = passage->now.entries[i];
+  }
+  return count;
+}
+
+void contact_passage_save(const ContactPassage *passage, double *values) {
+  for (int i = 0; i < passage->now.count; i++, values += CONTACT_PASSAGE_KEPT) {
+    const ContactPassageEntry *entry = &passage->now.entries[i];
+    values[0] = entry->facing, values[1] = entry->tet, values[2] = entry->is_turned;
+    memcpy(values + 3, entry->direction, sizeof entry->direction);
+  }
+}
+
+Status contact_passage_load(ContactPassage *passage, int count, const double *values) {
+  TRY(reserve(&passage->now, (size_t)count));
+  passage->now.count = count;
+  for (int i = 0; i < count; i++, values += CONTACT_PASSAGE_KEPT) {
+    passage->now.entries[i] =
+        (ContactPassageEntry){.facing = (int)values[0], .tet = (int)values[1], .is_turned = values[2] != 0};
+    memcpy(passage->now.entries[i].direction, values + 3, 3 * sizeof *values);
+  }
+  return STATUS_OK;
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who passed through whom. A deep overlap is no passage, and neither is one that is pushed back out: what is
+// looked for are elements that came into another body on one side and leave it on another.
+//
+// An element i meets another body or shape B with the direction
+//
+//   h_i = Σ_j w_ij g_j / Σ_j w_ij |g_j|,   g the slope of the depth in B, w the volume at rest of i in it
+//
+// (contact/pressure/field.h): inwards from the surface of B that is nearest to what of i is inside; |h| = 1
+// where it sees one side of B only, about 0 where it reaches as far into either half. Other potentials have
+// no depth: there h is the direction of Σ_j ∂V_ij/∂x_i. The element keeps the direction in which it came in.
+// That follows h while h turns by less than a right angle and a bit from one accepted state to the next and
+// |h| > 0.4, as it does for what slides round a drum or over an edge, or turns together with B. Where h comes
+// to point against it while the element reaches at least a tenth of B's own depth into B (without a depth:
+// while what overlaps is a tenth of the element or of what it meets), the element has gone beyond the middle
+// of B and is being pushed out on the other side: it is turned. Above that, cells along an edge of B's mesh,
+// whose slope is any, have no say. One that leaves B while it is turned has passed through it; one that comes
+// back is turned no more.
+#ifndef TETLAP_CONTACT_PASSAGE_H
+#define TETLAP_CONTACT_PASSAGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "contact/system.h"
+
+// An element in another's body.
+typedef struct ContactPassageEntry {
+  int facing, tet;
+  bool is_turned;
+  double direction[3]; // in which it came in; 0: not known yet
+  double reach;        // scratch: of what it meets now
+} ContactPassageEntry;
+
+typedef struct ContactPassageList {
+  ContactPassageEntry *entries; // by facing, then tet                     (count)
+  int count;
+  size_t capacity;
+} ContactPassageList;
+
+// What an element of the patches meets.
+typedef struct ContactPassageMeeting {
+  double slope[3], size; // Σ w g, Σ w |g|
+  double reach;          // largest depth as a share of the most that there is where it is
+  double covered, other; // Σ V_ij, Σ V_j of the cells that it meets [m³]
+} ContactPassageMeeting;
+
+typedef struct ContactPassage {
+  ContactPassageList now, next;    // at the last accepted state, and at the one that is looked at
+  int passed;                      // elements that have left turned, from `now` to `next`
+  ContactPassageEntry first;       // of them
+  ContactPassageMeeting *meetings; // scratch                             (elements of the patches)
+  size_t meeting_capacity;
+} ContactPassage;
+
+void contact_passage_destroy(ContactPassage *passage); // also of a zeroed one, which is a beginning
+
+// At the system's last evaluation: fills `next`, `passed` and `first`.
+Status contact_passage_look(ContactPassage *passage, ContactSystem *system);
+// What was looked at is accepted.
+void contact_passage_accept(ContactPassage *passage);
+
+// How many elements are turned at the accepted state, and the first of them.
+int contact_passage_turned(const ContactPassage *passage, ContactPassageEntry *first);
+
+// What a checkpoint keeps: so many numbers, a row an entry of `now`.
+enum { CONTACT_PASSAGE_KEPT = 6 };
+void contact_passage_save(const ContactPassage *passage, double *values);
+Status contact_passage_load(ContactPassage *passage, int count, const double *values);
+
+#endif

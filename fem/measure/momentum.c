@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/measure/momentum.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+
+Status fem_momentum_create(FemMomentum *momentum, FemSystem *system) {
+  size_t bodies = (size_t)system->model->scene->body_count;
+  *momentum = (FemMomentum){.system = system, .body_count = (int)bodies};
+  momentum->now = memory_zeroed(bodies, sizeof *momentum->now);
+  momentum->next = memory_zeroed(bodies, sizeof *momentum->next);
+  bool has_loads = system->model->load_count > 0;
+  if (has_loads) momentum->loads = memory_zeroed(3 * (size_t)system->model->vertex_count, sizeof(double));
+  return momentum->now && momentum->next && (!has_loads || momentum->loads)
+             ? STATUS_OK
+             : status_no_memory("the balance of momentum");
+}
+
+void fem_momentum_destroy(FemMomentum *momentum) {
+  memory_free(momentum->now);
+  memory_free(momentum->next);
+  memory_free(momentum->loads);
+  *momentum = (FemMomentum){0};
+}
+
+static void add(FemMomentumBody *body, Vec3 force) {
+  vec3_accumulate(body->force, force);
+  body->sum += vec3_length(force);
+}
+
+static void add_motion(const FemSystem *system, const FemModelBody *range, FemMomentumBody *body) {
+  for (int dof = 3 * range->vertex_begin; dof < 3 * range->vertex_end; dof++)
+    if (system->model->unknown_of_dof[dof] >= 0)
+      body->p[dof % 3] += system->model->mass[dof / 3] * system->velocities[dof];
+}
+
+static void add_gravity(const FemModel *model, const FemModelBody *range, FemMomentumBody *body) {
+  if (model->scene->has_gravity) add(body, vec3_scale(range->mass, vec3_at(model->scene->gravity)));
+}
+
+static Status add_loads(FemMomentum *momentum, double time, FemMomentumBody *bodies) {
+  const FemModel *model = momentum->system->model;
+  const FemState state = {time, momentum->system->positions, momentum->system->velocities};
+  if (!momentum->loads) return STATUS_OK;
+  memset(momentum->loads, 0, 3 * (size_t)model->vertex_count * sizeof(double));
+  TRY(fem_effect_loads.add_force(fem_system_effect(momentum->system, &fem_effect_loads), &state,
+                                 momentum->loads));
+  for (int b = 0; b < momentum->body_count; b++) {
+    Vec3 sum = {0, 0, 0};
+    for (int a = model->bodies[b].vertex_begin; a < model->bodies[b].vertex_end; a++)
+      sum = vec3_add(sum, vec3_at(momentum->loads + 3 * a));
+    add(&bodies[b], sum);
+  }
+  return STATUS_OK;
+}
+
+static int body_of(const FemModel *model, const FemModelDriver *driver) {
+  for (int b = 0; b < model->scene->body_count && driver->dof_count > 0; b++)
+    if (driver->dofs[0] / 3 >= model->bodies[b].vertex_begin &&
+        driver->dofs[0] / 3 < model->bodies[b].vertex_end)
+      return b;
+  return -1;
+}
+
+// What holds and drives: minus all other forces on those coordinates.
+static Status add_reactions(const FemMomentum *momentum, double time, FemMomentumBody *bodies) {
+  FemSystem *system = momentum->system;
+  const FemModel *model = system->model;
+  bool is_evaluated = false;
+  for (int d = 0; d < model->driver_count; d++) {
+    const FemModelDriver *driver = &model->drivers[d];
+    int b = driver->is_released ? -1 : body_of(model, driver);
+    if (b < 0 || model->bodies[b].is_held) continue;
+    if (!is_evaluated) TRY(fem_system_forces(system, time));
+    is_evaluated = true;
+    double sum[3] = {0, 0, 0};
+    for (int i = 0; i < driver->dof_count; i++) sum[driver->dofs[i] % 3] -= system->forces[driver->dofs[i]];
+    add(&bodies[b], vec3_at(sum));
+  }
+  return STATUS_OK;
+}
+
+// Momenta and forces of the scattered state; of what sleeps nothing.
+static Status measure(FemMomentum *momentum, double time, const FemMomentumContact *contact,
+                      FemMomentumBody *bodies) {
+  const FemModel *model = momentum->system->model;
+  for (int b = 0; b < momentum->body_count; b++) {
+    for (int c = 0; c < 3; c++) bodies[b].p[c] = bodies[b].force[c] = 0;
+    bodies[b].sum = 0;
+    add_motion(momentum->system, &model->bodies[b], &bodies[b]);
+    add_gravity(model, &model->bodies[b], &bodies[b]);
+  }
+  for (int i = 0; i < contact->count; i++) {
+    const ContactInterface *interface = &contact->interfaces[i];
+    Vec3 force = vec3_at(contact->forces[i]);
+    if (interface->a == interface->b) continue;
+    if (interface->a < momentum->body_count) add(&bodies[interface->a], force);
+    if (interface->b < momentum->body_count) add(&bodies[interface->b], vec3_scale(-1, force));
+  }
+  TRY(add_loads(momentum, time, bodies));
+  TRY(add_reactions(momentum, time, bodies));
+  for (int b = 0; b < momentum->body_count; b++) {
+    if (!model->bodies[b].is_held) continue;
+    for (int c = 0; c < 3; c++) bodies[b].p[c] = bodies[b].force[c] = 0;
+    bodies[b].sum = 0;
+  }
+  return STATUS_OK;
+}
+
+static void copy(const FemMomentum *momentum, const FemMomentumBody *from, FemMomentumBody *to) {
+  memcpy(to, from, (size_t)momentum->body_count * sizeof *to);
+}
+
+Status fem_momentum_begin(FemMomentum *momentum, double time, const FemMomentumContact *contact) {
+  TRY(measure(momentum, time, contact, momentum->now));
+  copy(momentum, momentum->now, momentum->next);
+  momentum->time = momentum->next_time = time;
+  return STATUS_OK;
+}
+
+Status fem_momentum_end(FemMomentum *momentum, double time, const FemMomentumContact *contact) {
+  double half = 0.5 * (time - momentum->time);
+  copy(momentum, momentum->now, momentum->next);
+  TRY(measure(momentum, time, contact, momentum->next));
+  momentum->next_time = time;
+  for (int b = 0; b < momentum->body_count; b++) {
+    const FemMomentumBody *now = &momentum->now[b];
+    FemMomentumBody *next = &momentum->next[b];
+    next->size += half * (now->sum + next->sum);
+    for (int c = 0; c < 3; c++) {
+      next->change[c] += next->p[c] - now->p[c];
+      next->impulse[c] += half * (now->force[c] + next->force[c]);
+    }
+  }
+  return STATUS_OK;
+}
+
+void fem_momentum_accept(FemMomentum *momentum) {
+  copy(momentum, momentum->next, momentum->now);
+  momentum->time = momentum->next_time;
+}
+
+void fem_momentum_missing(const FemMomentum *momentum, int body, double missing[3]) {
+  const FemMomentumBody *next = &momentum->next[body];
+  for (int c = 0; c < 3; c++) missing[c] = next->impulse[c] - next->change[c];
+}
+
+double fem_momentum_gap(const FemMomentum *momentum, int body) {
+  const FemModel *model = momentum->system->model;
+  double missing[3], least = model->bodies[body].mass * fem_model_velocity_tolerance(model);
+  fem_momentum_missing(momentum, body, missing);
+  return vec3_length(vec3_at(missing)) / fmax(momentum->next[body].size, least);
+}
+
+double fem_momentum_largest_gap(const FemMomentum *momentum, int *body) {
+  double largest = 0;
+  if (body) *body = 0;
+  for (int b = 0; b < momentum->body_count; b++) {
+    double gap = fem_momentum_gap(momentum, b);
+    if (!(gap > largest)) continue;
+    largest = gap;
+    if (body) *body = b;
+  }
+  return largest;
+}
+
+void fem_momentum_save(const FemMomentum *momentum, double *values) {
+  for (int b = 0; b < momentum->body_count; b++, values += FEM_MOMENTUM_KEPT) {
+    memcpy(values, momentum->now[b].change, 3 * sizeof *values);
+    memcpy(values + 3, momentum->now[b].impulse, 3 * sizeof *values);
+    values[6] = momentum->now[b].size;
+  }
+}
+
+void fem_momentum_load(FemMomentum *momentum, const double *values) {
+  for (int b = 0; b < momentum->body_count; b++, values += FEM_MOMENTUM_KEPT) {
+    memcpy(momentum->now[b].change, values, 3 * sizeof *values);
+    memcpy(momentum->now[b].impulse, values + 3, 3 * sizeof *values);
+    momentum->now[b].size = values[6];
+  }
+  copy(momentum, momentum->now, momentum->next);
+}

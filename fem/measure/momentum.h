@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Momentum's balance: whether the forces that are written are those that moved the bodies. Of each body, over
+// its coordinates that are free,
+//
+//   Δp = Σ m Δv,     J = ∫ (Σ contact + M g + Σ loads + Σ reactions) dt,     S = ∫ Σ |each of them| dt,
+//
+// by the trapezoidal rule over accepted steps; contact between two as history.csv has it
+// (fem/output/forces.h), reactions are those of `fixed` and `driven`. In exact mechanics J = Δp. The gap is
+// |J − Δp| over the larger of S and M times the velocity tolerance of one step, which is all that is known of
+// a body on which next to nothing acts.
+#ifndef TETLAP_FEM_MEASURE_MOMENTUM_H
+#define TETLAP_FEM_MEASURE_MOMENTUM_H
+
+#include "contact/interface.h"
+#include "fem/effect/system.h"
+
+// What has been added up, and the last state that was.
+typedef struct FemMomentumBody {
+  double change[3];  // Δp [kg m/s]
+  double impulse[3]; // J [N s]
+  double size;       // S [N s]
+  double p[3];       // [kg m/s]
+  double force[3];   // [N]
+  double sum;        // Σ |f| [N]
+} FemMomentumBody;
+
+typedef struct FemMomentum {
+  FemSystem *system; // borrowed
+  int body_count;
+  double time;           // of the last state
+  FemMomentumBody *now;  // until then                                     (body_count)
+  FemMomentumBody *next; // until the end of the step that is looked at    (body_count)
+  double next_time;
+  double *loads; // scratch; NULL: no loads                    (vertex_count, 3)
+} FemMomentum;
+
+// A zeroed one, and one whose creation failed, can be destroyed.
+Status fem_momentum_create(FemMomentum *momentum, FemSystem *system);
+void fem_momentum_destroy(FemMomentum *momentum);
+
+// The contact forces of a state: those of `interfaces`, `forces` on the first side of each [N].
+typedef struct FemMomentumContact {
+  int count;
+  const ContactInterface *interfaces; //                                    (count)
+  const double (*forces)[3];          //                                    (count)
+} FemMomentumContact;
+
+// The next step begins at the scattered state: with other free coordinates, or where forces have jumped.
+Status fem_momentum_begin(FemMomentum *momentum, double time, const FemMomentumContact *contact);
+// A step may end at the scattered state …
+Status fem_momentum_end(FemMomentum *momentum, double time, const FemMomentumContact *contact);
+// … and does.
+void fem_momentum_accept(FemMomentum *momentum);
+
+// J − Δp of a body up to the state that was looked at last [N s].
+void fem_momentum_missing(const FemMomentum *momentum, int body, double missing[3]);
+// Its gap, and the largest of all bodies, `*body` (may be NULL) whose it is.
+double fem_momentum_gap(const FemMomentum *momentum, int body);
+double fem_momentum_largest_gap(const FemMomentum *momentum, int *body);
+
+// What a checkpoint keeps: 7 numbers a body.
+enum { FEM_MOMENTUM_KEPT = 7 };
+void fem_momentum_save(const FemMomentum *momentum, double *values);
+void fem_momentum_load(FemMomentum *momentum, const double *values);
+
+#endif

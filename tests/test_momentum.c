@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Momentum's balance: the forces that are written are those that moved the bodies.
+#include "scene.h"
+
+#include "fem/measure/momentum.h"
+
+typedef struct Falling {
+  SceneRun run;
+  FemSystem system;
+  FemMomentum momentum;
+  double *u, *v;
+} Falling;
+
+static const FemMomentumContact nothing = {0};
+
+// A block that falls freely, at t = 0.
+static void open_falling(Falling *falling) {
+  scene_open(&falling->run, "free_fall", NULL);
+  const FemModel *model = &falling->run.model;
+  falling->u = calloc((size_t)model->unknown_count, sizeof(double));
+  falling->v = calloc((size_t)model->unknown_count, sizeof(double));
+  for (int i = 0; i < model->unknown_count; i++)
+    falling->v[i] = model->initial_velocity[model->dof_of_unknown[i]];
+  ck_assert_ok(fem_system_create(&falling->system, model));
+  ck_assert_ok(fem_momentum_create(&falling->momentum, &falling->system));
+  fem_system_scatter(&falling->system, 0, falling->u, falling->v);
+  ck_assert_ok(fem_momentum_begin(&falling->momentum, 0, &nothing));
+}
+
+// After 0.1 s at another speed downwards.
+static void step(Falling *falling, double faster) {
+  for (int i = 0; i < falling->run.model.unknown_count; i++)
+    if (falling->run.model.dof_of_unknown[i] % 3 == 2) falling->v[i] -= faster;
+  fem_system_scatter(&falling->system, 0.1, falling->u, falling->v);
+  ck_assert_ok(fem_momentum_end(&falling->momentum, 0.1, &nothing));
+}
+
+static void close_falling(Falling *falling) {
+  fem_momentum_destroy(&falling->momentum);
+  fem_system_destroy(&falling->system);
+  free(falling->u);
+  free(falling->v);
+  scene_close(&falling->run);
+}
+
+START_TEST(a_body_that_falls_as_gravity_wants_is_balanced) {
+  Falling falling;
+  int body = -1;
+  open_falling(&falling);
+  step(&falling, 0.981);
+  ck_assert_near(fem_momentum_gap(&falling.momentum, 0), 0, 1e-14);
+  ck_assert_near(fem_momentum_largest_gap(&falling.momentum, &body), 0, 1e-14);
+  ck_assert_int_eq(body, 0);
+  close_falling(&falling);
+}
+END_TEST
+
+START_TEST(a_body_that_does_not_is_not) {
+  Falling falling;
+  double missing[3];
+  open_falling(&falling);
+  step(&falling, 0.5 * 0.981);
+  fem_momentum_missing(&falling.momentum, 0, missing);
+  double weight = 9.81 * falling.run.model.bodies[0].mass;
+  ck_assert_near(missing[2], -0.05 * weight, 1e-12 * weight);
+  ck_assert_near(fem_momentum_gap(&falling.momentum, 0), 0.5, 1e-12);
+  close_falling(&falling);
+}
+END_TEST
+
+START_TEST(a_step_that_is_taken_back_leaves_no_trace) {
+  Falling falling;
+  open_falling(&falling);
+  step(&falling, 0.5 * 0.981);
+  step(&falling, 0.5 * 0.981); // the step anew, from the same beginning
+  ck_assert_near(fem_momentum_gap(&falling.momentum, 0), 0, 1e-14);
+  fem_momentum_accept(&falling.momentum);
+  double kept[FEM_MOMENTUM_KEPT], again[FEM_MOMENTUM_KEPT];
+  fem_momentum_save(&falling.momentum, kept);
+  ck_assert_near(kept[2], -0.981 * falling.run.model.bodies[0].mass, 1e-10);
+  fem_momentum_load(&falling.momentum, kept);
+  fem_momentum_save(&falling.momentum, again);
+  for (int k = 0; k < FEM_MOMENTUM_KEPT; k++) ck_assert(kept[k] == again[k]);
+  close_falling(&falling);
+}
+END_TEST
+
+static void expect_balance(const char *scene, const char *const *overrides) {
+  SceneRun run;
+  scene_run(&run, scene, overrides);
+  ck_assert_msg(run.result.momentum_gap <= 1e-3, "%s: %g", scene, run.result.momentum_gap);
+  ck_assert_double_gt(run.result.momentum_gap, 0);
+  scene_close(&run);
+}
+
+START_TEST(contact_reactions_and_loads_are_balanced) {
+  expect_balance("drop", (const char *const[]){"time.end=0.1", NULL});
+  expect_balance("cantilever", (const char *const[]){"time.end=0.1", NULL});
+  expect_balance("rest_load", NULL); // sleeps and is pushed
+}
+END_TEST
+
+START_TEST(viscous_contact_is_part_of_what_is_written) {
+  expect_balance("bounce", (const char *const[]){"time.end=0.2", "contact.viscosity=300", NULL});
+  expect_balance("bounce", (const char *const[]){"time.end=0.2", "contact.potential=field",
+                                                 "contact.stiffness=1e7", "contact.viscosity=3e4", NULL});
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("momentum");
+  tcase_add_test(cases, a_body_that_falls_as_gravity_wants_is_balanced);
+  tcase_add_test(cases, a_body_that_does_not_is_not);
+  tcase_add_test(cases, a_step_that_is_taken_back_leaves_no_trace);
+  tcase_add_test(cases, contact_reactions_and_loads_are_balanced);
+  tcase_add_test(cases, viscous_contact_is_part_of_what_is_written);
+  return suite_run("momentum", cases, 60);
+}
