@@ -13,8 +13,9 @@ typedef struct ContactBody {
   const char *name; // borrowed
   int vertex_begin, vertex_end;
   int tet_begin, tet_end;
-  bool is_obstacle;  // carries no unknowns: static or driven
-  bool meets_itself; // parts of it may touch each other (contact/search/self.h)
+  int quadratic_begin, quadratic_end; // equal: its tetrahedra are linear
+  bool is_obstacle;                   // carries no unknowns: static or driven
+  bool meets_itself;                  // parts of it may touch each other (contact/search/self.h)
 } ContactBody;
 
 // Obstacles without elements.
@@ -67,6 +68,12 @@ typedef struct ContactSystemDef {
   const double *rest;   // rest positions [m], borrowed                    (vertex_count, 3)
   const int (*tets)[4]; // borrowed; all bodies one after another          (tet_count)
   int tet_count;
+  // Quadratic tetrahedra, of ten nodes: the corners, then the middles of the edges 01, 02, 03, 12, 13, 23.
+  // Each is eight of its body's tets, one after another. NULL: there are none. Read in creation.
+  const int (*quadratics)[10]; // borrowed
+  // What a tet is called elsewhere (contact/surface/stars.h), below origin_count; NULL: its number.
+  const int *origin; //                                                     (tet_count)
+  int origin_count;
   const ContactBody *bodies; // borrowed                                    (body_count)
   int body_count;
   const ContactShape *shapes; // borrowed                           (shape_count)

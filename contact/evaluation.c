@@ -174,14 +174,13 @@ static void sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *la
 // Names the tetrahedra, as the frames number them, of a pair that the model refused or answered badly.
 static Status blame(const ContactLayout *layout, const ContactPair *pair, Status status, const char *why) {
   const ContactFacing *facing = &layout->facings[pair->facing];
-  int element = contact_depth_tet(&layout->depth, pair->tets[0]);
+  int element = contact_layout_origin(layout, pair->tets[0]);
   const char *name = layout->def.bodies[facing->a].name;
   if (facing->shape >= 0)
     return status_fail(status, "contact of element %d of '%s' and '%s': %s", element, name,
                        layout->def.shapes[facing->shape].name, why);
   return status_fail(status, "contact of element %d of '%s' and element %d of '%s': %s", element, name,
-                     contact_depth_tet(&layout->depth, pair->tets[1]), layout->def.bodies[facing->b].name,
-                     why);
+                     contact_layout_origin(layout, pair->tets[1]), layout->def.bodies[facing->b].name, why);
 }
 
 static Status blame_volume(const ContactLayout *layout, const ContactPair *pair, double volume) {

@@ -10,9 +10,14 @@
 // Pairs that are asked at a time.
 enum { PORTION = 2048 };
 
+// As they were given.
+static int count_tets(const ContactLayout *layout) {
+  return layout->def.origin ? layout->def.origin_count : layout->def.tet_count;
+}
+
 Status contact_status_create(ContactStatus *status, const ContactLayout *layout) {
   *status = (ContactStatus){0};
-  size_t tets = (size_t)layout->def.tet_count;
+  size_t tets = (size_t)count_tets(layout);
   status->predicted = memory_zeroed(tets, sizeof *status->predicted);
   status->exact = memory_zeroed(tets, sizeof *status->exact);
   status->error = memory_zeroed(tets, sizeof *status->error);
@@ -88,7 +93,7 @@ static void compare_verdicts(ContactStatus *status, const ContactLayout *layout,
     pairs->false_positives += predicted && !exact;
     pairs->false_negatives += exact && !predicted;
     for (int side = 0; side < 2; side++) {
-      int tet = contact_depth_tet(&layout->depth, status->portion[k].tets[side]);
+      int tet = contact_layout_origin(layout, status->portion[k].tets[side]);
       status->predicted[tet] |= predicted;
       status->exact[tet] |= exact;
       status->wrong_pairs[tet] += predicted != exact;
@@ -132,7 +137,7 @@ static void clear(ContactStatus *status, int tet_count) {
 Status contact_status_run(ContactStatus *status, const ContactLayout *layout,
                           const ContactCandidateList *candidates, const OverlapModel *model,
                           const OverlapModel *reference, const double *positions) {
-  int count = 0, tet_count = layout->def.tet_count;
+  int count = 0, tet_count = count_tets(layout);
   double apart = 3 * layout->nudge;
   clear(status, tet_count);
   contact_candidates_bound(candidates, layout, positions, status->boxes);

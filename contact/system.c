@@ -2,20 +2,28 @@
 #include "contact/system.h"
 
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "contact/audit.h"
 #include "contact/footprint.h"
 #include "contact/onset.h"
+#include "contact/pressure/star_sink.h"
 #include "contact/pressure/stiffness.h"
 #include "contact/rest.h"
 #include "contact/shape/shape.h"
 #include "contact/status.h"
+#include "contact/surface/stars.h"
 
 struct ContactSystem {
+  ContactStars stars; // what all below works on
+  ContactStarSink star_sink;
   ContactLayout layout;
-  double *positions; // of the contact mesh, scratch; with virtual vertices only  (position_count, 3)
+  double *positions; // of the contact mesh, scratch; with virtual vertices or stars only  (position_count, 3)
+  double *velocities; // of its vertices, scratch; with stars only                        (vertex_count, 3)
+  // By the vertices and tetrahedra as they were given, of the last evaluation; with stars only.
+  double *given_forces, *given_covered, *given_volumes;
   ContactCandidates candidates;
   ContactRest rest; // made by the first contact_system_hold
   bool has_rest;
@@ -39,13 +47,37 @@ static Status check_model(const ContactSystemDef *def, const OverlapModel *model
       model->ops->name);
 }
 
-static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
-  TRY(check_model(def, def->model));
-  TRY(contact_layout_create(&system->layout, def));
+static void measure_given(const ContactSystemDef *def, double *volumes) {
+  for (int i = 0; i < def->tet_count; i++) {
+    Vec3 x[4];
+    for (int v = 0; v < 4; v++) x[v] = vec3_at(def->rest + 3 * (size_t)def->tets[i][v]);
+    volumes[i] = fabs(vec3_det4(x[0], x[1], x[2], x[3])) / 6;
+  }
+}
+
+// Room for what stands between the contact mesh and the definition as it was given.
+static Status reserve(ContactSystem *system, const ContactSystemDef *def) {
+  size_t vector = 3 * sizeof(double);
   if (system->layout.depth.position_count > def->vertex_count) {
-    system->positions = memory_zeroed((size_t)system->layout.depth.position_count, 3 * sizeof(double));
+    system->positions = memory_zeroed((size_t)system->layout.depth.position_count, vector);
     if (!system->positions) return status_no_memory("a contact system");
   }
+  if (!system->stars.is_needed) return STATUS_OK;
+  system->velocities = memory_zeroed((size_t)system->stars.def.vertex_count, vector);
+  system->given_forces = memory_zeroed((size_t)def->vertex_count, vector);
+  system->given_covered = memory_zeroed((size_t)def->tet_count, sizeof(double));
+  system->given_volumes = memory_zeroed((size_t)def->tet_count, sizeof(double));
+  if (!system->velocities || !system->given_forces || !system->given_covered || !system->given_volumes)
+    return status_no_memory("a contact system");
+  measure_given(def, system->given_volumes);
+  return contact_star_sink_create(&system->star_sink, &system->stars);
+}
+
+static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
+  TRY(check_model(def, def->model));
+  TRY(contact_stars_create(&system->stars, def));
+  TRY(contact_layout_create(&system->layout, &system->stars.def));
+  TRY(reserve(system, def));
   TRY(contact_candidates_create(&system->candidates, &system->layout));
   TRY(contact_onset_create(&system->onset, &system->layout));
   TRY(contact_evaluation_create(&system->evaluation, &system->layout));
@@ -67,7 +99,13 @@ Status contact_system_create(ContactSystem **system, const ContactSystemDef *def
 void contact_system_destroy(ContactSystem *system) {
   if (!system) return;
   contact_layout_destroy(&system->layout);
+  contact_stars_destroy(&system->stars);
+  contact_star_sink_destroy(&system->star_sink);
   memory_free(system->positions);
+  memory_free(system->velocities);
+  memory_free(system->given_forces);
+  memory_free(system->given_covered);
+  memory_free(system->given_volumes);
   contact_candidates_destroy(&system->candidates);
   contact_rest_destroy(&system->rest);
   contact_onset_destroy(&system->onset);
@@ -81,9 +119,46 @@ void contact_system_destroy(ContactSystem *system) {
 // Where the contact mesh is; what the inner modules are given.
 static const double *place(ContactSystem *system, const double *positions) {
   if (!system->positions) return positions;
-  memcpy(system->positions, positions, 3 * (size_t)system->layout.def.vertex_count * sizeof(double));
+  if (system->stars.is_needed)
+    contact_stars_place(&system->stars, positions, system->positions);
+  else
+    memcpy(system->positions, positions, 3 * (size_t)system->layout.def.vertex_count * sizeof(double));
   contact_depth_place(&system->layout.depth, &system->layout.def, system->positions);
   return system->positions;
+}
+
+const double *contact_system_place(ContactSystem *system, const double *positions) {
+  return place(system, positions);
+}
+
+const double *contact_system_spread(ContactSystem *system, const double *velocities) {
+  if (!system->stars.is_needed) return velocities;
+  contact_stars_place(&system->stars, velocities, system->velocities);
+  return system->velocities;
+}
+
+const ContactStars *contact_system_stars(const ContactSystem *system) {
+  return &system->stars;
+}
+
+const ContactStiffnessSink *contact_system_sink(ContactSystem *system, const ContactStiffnessSink *sink) {
+  return system->stars.is_needed ? contact_star_sink_to(&system->star_sink, sink) : sink;
+}
+
+void contact_system_carriers(ContactSystem *system, int *count, const int **vertices) {
+  if (!system->stars.is_needed) return;
+  contact_star_sink_gather(&system->star_sink, *count, *vertices);
+  *count = system->star_sink.count, *vertices = system->star_sink.vertices;
+}
+
+// What the evaluation found, by the vertices and tetrahedra as they were given.
+static void fold_result(ContactSystem *system) {
+  const ContactEvaluation *evaluation = &system->evaluation;
+  if (!system->stars.is_needed) return;
+  memset(system->given_forces, 0, 3 * (size_t)system->stars.given_vertex_count * sizeof(double));
+  for (int v = 0; v < system->stars.def.vertex_count; v++)
+    contact_stars_push(&system->stars, v, vec3_at(evaluation->forces + 3 * (size_t)v), system->given_forces);
+  contact_stars_cover(&system->stars, evaluation->covered, system->given_volumes, system->given_covered);
 }
 
 // What the last evaluation found to overlap need not be separated once more.
@@ -99,8 +174,8 @@ Status contact_system_update(ContactSystem *system, double time, const double *p
                              const double *velocities, double step, bool *has_changed) {
   bool changed;
   positions = place(system, positions);
-  TRY(contact_candidates_update(&system->candidates, &system->layout, time, positions, velocities, step,
-                                &changed));
+  TRY(contact_candidates_update(&system->candidates, &system->layout, time, positions,
+                                contact_system_spread(system, velocities), step, &changed));
   system->counters.searches = system->candidates.searches;
   system->counters.broad_s = system->candidates.search_s;
   if (has_changed) *has_changed = changed;
@@ -145,6 +220,7 @@ static Status evaluate(ContactSystem *system, double time, const double *positio
                              true, time, positions));
   count(&system->counters, evaluation);
   if (system->has_rest) system->counters.left_at_rest += system->rest.candidate_count;
+  fold_result(system);
   return STATUS_OK;
 }
 
@@ -173,6 +249,7 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
                     system->evaluation.interfaces, is_held);
   contact_candidates_leave_out(&system->candidates, layout, system->rest.is_resting);
   contact_evaluation_start_over(&system->evaluation, layout);
+  fold_result(system);
   return choose_watched(system, time, positions);
 }
 
@@ -193,7 +270,7 @@ Status contact_system_eval(ContactSystem *system, double time, const double *pos
   *energy = evaluation->energy;
   for (int n = 0; force && n < evaluation->patches.node_count; n++) {
     const ContactNode *node = &evaluation->patches.nodes[n];
-    for (size_t c = 0; c < 3; c++) force[3 * (size_t)node->vertex + c] += node->force[c];
+    contact_stars_push(&system->stars, node->vertex, vec3_at(node->force), force);
   }
   return STATUS_OK;
 }
@@ -202,15 +279,29 @@ Status contact_system_stiffness(ContactSystem *system, double time, const double
                                 const ContactStiffnessSink *sink) {
   TRY(evaluate(system, time, place(system, positions)));
   return contact_stiffness_add(&system->stiffness, &system->layout, &system->evaluation,
-                               system->layout.def.model, sink);
+                               system->layout.def.model, contact_system_sink(system, sink));
+}
+
+// Hands on cliques by the vertices as they were given.
+typedef struct Visit {
+  ContactSystem *system;
+  void *visitor;
+  Status (*visit)(void *visitor, int count, const int *vertices);
+} Visit;
+
+static Status visit_given(void *visitor, int count, const int *vertices) {
+  const Visit *visit = visitor;
+  contact_system_carriers(visit->system, &count, &vertices);
+  return visit->visit(visit->visitor, count, vertices);
 }
 
 Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
                              Status (*visit)(void *visitor, int count, const int *vertices)) {
   const ContactEvaluation *evaluation = &system->evaluation;
+  Visit given = {system, visitor, visit};
   assert(evaluation->is_valid);
   return contact_stiffness_couple(&system->stiffness, &system->layout, &system->candidates.list,
-                                  evaluation->time, evaluation->positions, reach, visitor, visit);
+                                  evaluation->time, evaluation->positions, reach, &given, visit_given);
 }
 
 Status contact_system_gap(ContactSystem *system, double time, const double *positions, double *gap) {
@@ -224,11 +315,11 @@ const ContactInterface *contact_system_interfaces(const ContactSystem *system, i
 }
 
 const double *contact_system_forces(const ContactSystem *system) {
-  return system->evaluation.forces;
+  return system->stars.is_needed ? system->given_forces : system->evaluation.forces;
 }
 
 const double *contact_system_covered(const ContactSystem *system) {
-  return system->evaluation.covered;
+  return system->stars.is_needed ? system->given_covered : system->evaluation.covered;
 }
 
 int contact_system_active_count(const ContactSystem *system) {
@@ -248,8 +339,7 @@ Status contact_system_active_pairs(const ContactSystem *system, int *pair_count,
   }
   for (size_t k = 0; k < active; k++)
     for (int side = 0; side < 2; side++)
-      (*tets)[2 * k + (size_t)side] =
-          contact_depth_tet(&system->layout.depth, evaluation->pairs[k].tets[side]);
+      (*tets)[2 * k + (size_t)side] = contact_layout_origin(&system->layout, evaluation->pairs[k].tets[side]);
   return STATUS_OK;
 }
 
@@ -276,10 +366,13 @@ const ContactCounters *contact_system_counters(const ContactSystem *system) {
 }
 
 size_t contact_system_bytes(const ContactSystem *system) {
-  size_t sum = memory_held(system) + memory_held(system->positions) +
-               contact_footprint_layout(&system->layout) + contact_footprint_candidates(&system->candidates) +
-               contact_footprint_onset(&system->onset) + contact_footprint_stiffness(&system->stiffness) +
-               contact_footprint_status(&system->status) + contact_footprint_rest(&system->rest);
+  size_t sum = memory_held(system) + memory_held(system->positions) + memory_held(system->velocities) +
+               memory_held(system->given_forces) + memory_held(system->given_covered) +
+               memory_held(system->given_volumes) + contact_stars_bytes(&system->stars) +
+               contact_star_sink_bytes(&system->star_sink) + contact_footprint_layout(&system->layout) +
+               contact_footprint_candidates(&system->candidates) + contact_footprint_onset(&system->onset) +
+               contact_footprint_stiffness(&system->stiffness) + contact_footprint_status(&system->status) +
+               contact_footprint_rest(&system->rest);
   for (int k = 0; k < 2; k++) sum += contact_footprint_evaluation(&system->audits[k]);
   return sum + contact_footprint_evaluation(&system->evaluation);
 }
@@ -296,7 +389,7 @@ const ContactLayout *contact_system_layout(const ContactSystem *system) {
 Status contact_system_add_nodes(ContactSystem *system, const double *coefficients,
                                 const ContactStiffnessSink *sink) {
   return contact_stiffness_add_nodes(&system->stiffness, &system->layout, &system->evaluation, coefficients,
-                                     sink);
+                                     contact_system_sink(system, sink));
 }
 
 static Status create_audits(ContactSystem *system) {
@@ -333,6 +426,10 @@ Status contact_system_status(ContactSystem *system, double time, const double *p
   system->has_status = true;
   TRY(contact_status_run(&system->status, &system->layout, &system->candidates.list, system->layout.def.model,
                          reference, positions));
+  contact_stars_spread(&system->stars, system->status.predicted);
+  contact_stars_spread(&system->stars, system->status.exact);
+  contact_stars_spread(&system->stars, system->status.error);
+  contact_stars_spread(&system->stars, system->status.wrong_pairs);
   *status = &system->status;
   return STATUS_OK;
 }

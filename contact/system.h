@@ -28,6 +28,7 @@
 #include "contact/evaluation.h"
 #include "contact/pressure/stiffness.h"
 #include "contact/status.h"
+#include "contact/surface/stars.h"
 
 // What struck, since creation; for summary and warnings.
 typedef struct ContactCounters {
@@ -111,6 +112,15 @@ size_t contact_system_bytes(const ContactSystem *system);
 // `look` indexes the last evaluation's patches; the result is the system's, valid until the next evaluation.
 Status contact_system_look(ContactSystem *system, const ContactEvaluation **evaluation);
 const ContactLayout *contact_system_layout(const ContactSystem *system);
+// The layout's vertices are those of the definition but where elements are quadratic
+// (contact/surface/stars.h): there such laws take positions and velocities by the first two, give forces by
+// contact_stars_push, stiffness to the sink that is given in place of the caller's, and cliques of vertices
+// by those that carry them. Results are the system's, valid until the next call.
+const double *contact_system_place(ContactSystem *system, const double *positions);
+const double *contact_system_spread(ContactSystem *system, const double *velocities);
+const ContactStars *contact_system_stars(const ContactSystem *system);
+const ContactStiffnessSink *contact_system_sink(ContactSystem *system, const ContactStiffnessSink *sink);
+void contact_system_carriers(ContactSystem *system, int *count, const int **vertices);
 // Σ_a coefficient_a ∇W_a ∇W_aᵀ of the last evaluation to the sink; coefficients by its patches' nodes.
 Status contact_system_add_nodes(ContactSystem *system, const double *coefficients,
                                 const ContactStiffnessSink *sink);

@@ -285,8 +285,8 @@ void contact_stick_add_force(const ContactStick *stick, double *force) {
       if (pair->tets[side] < 0) continue;
       for (int v = 0; v < 4; v++) {
         double share = side == 0 ? pair->lambda[0][v] : -pair->lambda[1][v];
-        vec3_accumulate(force + 3 * (size_t)stick->tets[pair->tets[side]][v],
-                        vec3_scale(share, vec3_at(stick->pulls[k])));
+        contact_stars_push(stick->stars, stick->tets[pair->tets[side]][v],
+                           vec3_scale(share, vec3_at(stick->pulls[k])), force);
       }
     }
 }

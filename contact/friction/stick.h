@@ -32,6 +32,7 @@
 
 #include "contact/friction/stick_history.h"
 #include "contact/pressure/stiffness.h"
+#include "contact/surface/stars.h"
 
 // What the normal law hands over, interface by interface.
 typedef struct ContactStickPair {
@@ -75,9 +76,10 @@ typedef struct ContactStickTouch {
 
 typedef struct ContactStick {
   int vertex_count, interface_count;
-  const double *rest;    // borrowed                                (vertex_count, 3)
-  const int (*tets)[4];  // borrowed
-  ContactStickLaw *laws; //                                         (interface_count)
+  const double *rest;        // borrowed                                (vertex_count, 3)
+  const int (*tets)[4];      // borrowed
+  const ContactStars *stars; // what carries the vertices; borrowed. NULL, as created: they are as given
+  ContactStickLaw *laws;     //                                         (interface_count)
   // The last accepted state.
   double *before; // xⁿ [m]                                         (vertex_count, 3)
   ContactStickHistory history;
@@ -120,7 +122,8 @@ Status contact_stick_eval(ContactStick *stick, int pair_count, const double *pos
                           const bool *is_resting);
 
 // Of the last evaluation.
-void contact_stick_add_force(const ContactStick *stick, double *force); // (vertex_count, 3)
+// By the vertices as given: (vertex_count, 3) without stars.
+void contact_stick_add_force(const ContactStick *stick, double *force);
 // Adds −∂f/∂x, without what comes from N, n and the weights.
 Status contact_stick_add_stiffness(ContactStick *stick, const ContactStiffnessSink *sink);
 // Visits the vertices that each node couples.

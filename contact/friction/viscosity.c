@@ -145,7 +145,8 @@ static bool term_of(const ContactViscosity *viscosity, const View *view, int k, 
 typedef void (*TakeTerm)(void *self, const Term *term);
 
 static Status walk_terms(ContactViscosity *viscosity, const double *velocities, void *self, TakeTerm take) {
-  View view = {.layout = contact_system_layout(viscosity->system), .velocities = velocities};
+  View view = {.layout = contact_system_layout(viscosity->system),
+               .velocities = contact_system_spread(viscosity->system, velocities)};
   TRY(contact_system_look(viscosity->system, &view.evaluation));
   for (int k = 0; k < view.evaluation->pair_count; k++)
     for (int t = 0; t < 2; t++) {
@@ -155,11 +156,16 @@ static Status walk_terms(ContactViscosity *viscosity, const double *velocities, 
   return STATUS_OK;
 }
 
+typedef struct ForceSink {
+  const ContactStars *stars;
+  double *force;
+} ForceSink;
+
 static void push_term(void *self, const Term *term) {
-  double *force = self;
+  const ForceSink *to = self;
   for (int v = 0; v < term->count; v++)
-    vec3_accumulate(force + 3 * (size_t)term->vertices[v],
-                    vec3_scale(-term->resistance * term->rate, vec3_at(term->along + 3 * v)));
+    contact_stars_push(to->stars, term->vertices[v],
+                       vec3_scale(-term->resistance * term->rate, vec3_at(term->along + 3 * v)), to->force);
 }
 
 static void sum_term(void *self, const Term *term) {
@@ -193,7 +199,9 @@ static bool has_field(const ContactViscosity *viscosity) {
 // ---- What both potentials answer.
 
 Status contact_viscosity_add_force(ContactViscosity *viscosity, const double *velocities, double *force) {
-  if (has_field(viscosity)) return walk_terms(viscosity, velocities, force, push_term);
+  if (has_field(viscosity))
+    return walk_terms(viscosity, velocities, &(ForceSink){contact_system_stars(viscosity->system), force},
+                      push_term);
   View view;
   TRY(measure(viscosity, velocities, &view));
   press(viscosity, &view);
@@ -228,7 +236,8 @@ Status contact_viscosity_add_jacobian(ContactViscosity *viscosity, const double 
                                       double stiffness_scale, double damping_scale,
                                       const ContactStiffnessSink *sink) {
   if (has_field(viscosity))
-    return walk_terms(viscosity, velocities, &(TermSink){sink, damping_scale}, bend_term);
+    return walk_terms(viscosity, velocities,
+                      &(TermSink){contact_system_sink(viscosity->system, sink), damping_scale}, bend_term);
   View view;
   TRY(measure(viscosity, velocities, &view));
   for (int p = 0; p < view.patches->patch_count; p++) {

@@ -63,6 +63,13 @@ static inline const int *contact_layout_vertices(const ContactLayout *layout, in
   return layout->def.tets[contact_depth_tet(&layout->depth, cell)];
 }
 
+// What the definition's maker calls that tetrahedron; of a star (contact/surface/stars.h) the element's first
+// eighth.
+static inline int contact_layout_origin(const ContactLayout *layout, int cell) {
+  int tet = contact_depth_tet(&layout->depth, cell);
+  return layout->def.origin ? layout->def.origin[tet] : tet;
+}
+
 static inline double contact_layout_tet_volume(const ContactLayout *layout, int cell) {
   return layout->tet_volumes[contact_depth_tet(&layout->depth, cell)];
 }

@@ -62,6 +62,8 @@ static void list_sides(Contact *contact) {
                       .vertex_end = body->vertex_end,
                       .tet_begin = body->tet_begin,
                       .tet_end = body->tet_end,
+                      .quadratic_begin = body->quadratic_begin,
+                      .quadratic_end = body->quadratic_end,
                       .is_obstacle = body->is_obstacle,
                       .meets_itself = b < model->scene->body_count && model->scene->bodies[b].self_contact};
   }
@@ -134,6 +136,7 @@ static Status build(Contact *contact, Contact *old) {
                              .rest = model->rest,
                              .tets = (const int(*)[4])model->tets,
                              .tet_count = model->tet_count,
+                             .quadratics = (const int(*)[10])model->quadratic_nodes,
                              .bodies = contact->bodies,
                              .body_count = model->body_count,
                              .shapes = contact->shapes,

@@ -42,8 +42,10 @@ static Status create_law(Stick *stick, int count, double *coefficients, ContactS
   for (int i = 0; i < count; i++)
     coefficients[i] = fem_compliance_friction(model, interfaces[i].a, interfaces[i].b);
   contact_stick_pairs_laws(stick->contact, coefficients, laws);
-  return contact_stick_create(&stick->law, model->vertex_count, model->rest, (const int(*)[4])model->tets,
-                              count, laws);
+  const ContactSystemDef *def = &contact_system_layout(stick->contact)->def;
+  TRY(contact_stick_create(&stick->law, def->vertex_count, def->rest, def->tets, count, laws));
+  stick->law.stars = contact_system_stars(stick->contact);
+  return STATUS_OK;
 }
 
 static Status connect(void *self, const FemSystem *system) {
@@ -81,7 +83,7 @@ static Status evaluate(Stick *stick, const FemState *state) {
 
 static Status begin(void *self, const FemState *state) {
   Stick *stick = self;
-  contact_stick_begin(&stick->law, state->positions);
+  contact_stick_begin(&stick->law, contact_system_place(stick->contact, state->positions));
   stick->has_begun = true;
   stick->time = state->time;
   stick->evaluation = -1;
@@ -91,7 +93,8 @@ static Status begin(void *self, const FemState *state) {
 // A state is accepted once, or its history would be rounded anew each time.
 static bool is_at_last(const Stick *stick, const FemState *state) {
   size_t bytes = 3 * (size_t)stick->law.vertex_count * sizeof(double);
-  return state->time == stick->time && memcmp(state->positions, stick->law.before, bytes) == 0;
+  return state->time == stick->time &&
+         memcmp(contact_system_place(stick->contact, state->positions), stick->law.before, bytes) == 0;
 }
 
 static Status prepare(void *self, const FemState *state, double step) {
@@ -100,7 +103,8 @@ static Status prepare(void *self, const FemState *state, double step) {
   if (!stick->has_begun) return begin(self, state);
   if (is_at_last(stick, state)) return STATUS_OK;
   TRY(evaluate(stick, state));
-  TRY(contact_stick_accept(&stick->law, state->positions, stick->is_resting));
+  TRY(contact_stick_accept(&stick->law, contact_system_place(stick->contact, state->positions),
+                           stick->is_resting));
   stick->time = state->time;
   stick->evaluation = -1;
   stick->accepted++;
@@ -108,19 +112,21 @@ static Status prepare(void *self, const FemState *state, double step) {
 }
 
 typedef struct Coupling {
+  ContactSystem *contact;
   FemPattern *pattern;
   int *has_grown;
 } Coupling;
 
 static Status add_clique(void *visitor, int count, const int *vertices) {
   Coupling *coupling = visitor;
+  contact_system_carriers(coupling->contact, &count, &vertices);
   return fem_pattern_add_clique(coupling->pattern, count, vertices, coupling->has_grown);
 }
 
 static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
   Stick *stick = self;
   TRY(evaluate(stick, state));
-  Coupling coupling = {.pattern = pattern, .has_grown = has_grown};
+  Coupling coupling = {.contact = stick->contact, .pattern = pattern, .has_grown = has_grown};
   return contact_stick_couple(&stick->law, &coupling, add_clique);
 }
 
@@ -148,8 +154,9 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
   if (stiffness_scale == 0) return STATUS_OK;
   TRY(evaluate(stick, state));
   MatrixSink sink = {.matrix = matrix, .scale = stiffness_scale};
-  return contact_stick_add_stiffness(&stick->law,
-                                     &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer});
+  return contact_stick_add_stiffness(
+      &stick->law,
+      contact_system_sink(stick->contact, &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer}));
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {

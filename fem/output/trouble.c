@@ -50,7 +50,12 @@ static Status create(FemTroubleWatch *watch) {
   if (!model->scene->contact.is_on) return STATUS_OK;
   watch->normals = memory_zeroed(3 * (size_t)model->vertex_count, sizeof *watch->normals);
   watch->is_wrongway = memory_zeroed((size_t)model->vertex_count, sizeof *watch->is_wrongway);
-  if (!watch->normals || !watch->is_wrongway) return status_no_memory("the marks of vertices");
+  watch->is_corner = memory_zeroed((size_t)model->vertex_count, sizeof *watch->is_corner);
+  if (!watch->normals || !watch->is_wrongway || !watch->is_corner)
+    return status_no_memory("the marks of vertices");
+  if (model->scene->contact.potential == CONTACT_POTENTIAL_FIELD)
+    for (int e = 0; e < model->quadratic_count; e++)
+      for (int k = 0; k < 4; k++) watch->is_corner[model->quadratic_nodes[e][k]] = true;
   return list_surface(watch);
 }
 
@@ -66,6 +71,7 @@ void fem_trouble_watch_destroy(FemTroubleWatch *watch) {
   memory_free(watch->normals);
   memory_free(watch->marks);
   memory_free(watch->is_wrongway);
+  memory_free(watch->is_corner);
   *watch = (FemTroubleWatch){0};
 }
 
@@ -114,6 +120,7 @@ static void look_at_forces(FemTroubleWatch *watch, const double *positions, cons
     for (int a = model->bodies[b].vertex_begin; a < model->bodies[b].vertex_end; a++) {
       Vec3 f = vec3_at(force + 3 * a), n = vec3_at(watch->normals + 3 * a);
       double size = vec3_length(f), area = vec3_length(n);
+      if (watch->is_corner[a]) continue;
       if (!(size > FORCE_FLOOR * largest) || !(vec3_dot(f, n) > PULL * size * area)) continue;
       watch->is_wrongway[a] = 1;
       count(state, FEM_TROUBLE_WRONG_WAY, a);

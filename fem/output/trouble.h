@@ -7,6 +7,8 @@
 
 #include <stddef.h>
 
+#include <stdbool.h>
+
 #include "base/record.h"
 #include "fem/model/model.h"
 
@@ -61,6 +63,9 @@ typedef struct FemTroubleWatch {
   double *normals;  // scratch: of vertices, by area         (vertex_count, 3)
   int *marks;       // of the state looked at last           (tet_count)
   int *is_wrongway; // likewise                              (vertex_count)
+  // Of quadratic elements with the potential `field`: pressure leaves next to nothing there, and of either
+  // sign.
+  bool *is_corner; //                                        (vertex_count)
 } FemTroubleWatch;
 
 Status fem_trouble_watch_create(FemTroubleWatch *watch, const FemModel *model);

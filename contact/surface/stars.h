@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The mesh that the potential `field` works on where a body's tetrahedra are quadratic.
+//
+// On the eighths of a quadratic tetrahedron an even pressure p would put p area/12 onto each corner of a face
+// and p area/4 onto each middle of an edge. What the element wants of an even pressure is ∫ N_a dA: nothing
+// on the corners of a straight face, a third of the area on each middle. So an element with a face on the
+// surface is cut anew: that face into a fan of six triangles about a vertex
+//
+//   x = Σ_corners −⅓ x_c + Σ_middles ⅔ x_m,
+//
+// its other faces into four as the eighths do, so that neighbours fit, and all triangles make cells with one
+// vertex o inside. A linear function of the fan then adds up to area/9 − ⅓ · area/3 = 0 at a corner and to
+// area/9 + ⅔ · area/3 = area/3 at a middle: the nodal forces of an even pressure are those of the element,
+// the volume below the fan is that below the curved face (to first order in its curvature), and rigid motion
+// and balance are kept, since the weights reproduce linear fields. o lies at λ_f = δ/height_f for the faces
+// on the surface, ¼ for the others, δ as in contact/surface/depth.h, and follows all ten nodes by their shape
+// functions there.
+//
+// The vertices that others carry are vertices of a definition of its own. Positions go there by the weights,
+// forces and stiffness come back by them, so what is exact there is exact for the nodes.
+#ifndef TETLAP_CONTACT_STARS_H
+#define TETLAP_CONTACT_STARS_H
+
+#include "base/vec3.h"
+#include "contact/def.h"
+
+typedef struct ContactStars {
+  bool is_needed;       // else everything is as it was given
+  ContactSystemDef def; // with stars; its arrays are these
+  ContactBody *bodies;
+  double *rest;
+  unsigned char *inner;
+  int (*tets)[4];
+  int *origin;   // of each tet: the given one, of a star's the first eighth             (def.tet_count)
+  bool *is_star; //                                                                      (def.tet_count)
+  int given_vertex_count, given_tet_count;
+  int *place; // of a given vertex among those of `def`                                  (given_vertex_count)
+  // The given vertices that a vertex follows: begin[v] … begin[v + 1] of nodes, weights.
+  int *begin; //                                                                    (def.vertex_count + 1)
+  int *nodes; //                                                                    (begin[def.vertex_count])
+  double *weights; // their sum is 1 for each vertex
+  size_t tet_capacity, row_capacity, weight_capacity, begin_capacity, origin_capacity, star_capacity;
+} ContactStars;
+
+// Makes them where the potential is `field` and a body is quadratic. A zeroed one can be destroyed.
+Status contact_stars_create(ContactStars *stars, const ContactSystemDef *def);
+void contact_stars_destroy(ContactStars *stars);
+
+// Values of the vertices of `def` (positions, velocities) from those of the given ones.
+void contact_stars_place(const ContactStars *stars, const double *given, double *values);
+
+// Adds a force on a vertex of `def` to those on the given ones. NULL: the vertices are the given ones.
+void contact_stars_push(const ContactStars *stars, int vertex, Vec3 force, double *given);
+
+// Σ over `def`'s tets of what each covers, by given tetrahedra; a star's is spread over its eighths by
+// volume.
+void contact_stars_cover(const ContactStars *stars, const double *covered, const double *given_volumes,
+                         double *given);
+
+// What the first eighth of a star has, to all eight; by given tetrahedra. Without stars nothing.
+void contact_stars_spread(const ContactStars *stars, int *values);
+
+size_t contact_stars_bytes(const ContactStars *stars); // on the heap
+
+#endif
