@@ -161,8 +161,13 @@ static void fold_result(ContactSystem *system) {
   contact_stars_cover(&system->stars, evaluation->covered, system->given_volumes, system->given_covered);
 }
 
+bool contact_system_has_onset(const ContactSystem *system) {
+  return !system->layout.depth.has_field;
+}
+
 // What the last evaluation found to overlap need not be separated once more.
 static Status choose_watched(ContactSystem *system, double time, const double *positions) {
+  if (!contact_system_has_onset(system)) return STATUS_OK;
   const ContactEvaluation *evaluation = &system->evaluation;
   bool knows = contact_evaluation_is_at(evaluation, &system->layout, time, positions) &&
                !overlap_model_has_ghosts(system->layout.def.model);

@@ -87,11 +87,16 @@ Status contact_system_stiffness(ContactSystem *system, double time, const double
 Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
                              Status (*visit)(void *visitor, int count, const int *vertices));
 
+// Whether contact begins with a jump that an integrator had better stop at. The force of the potential
+// `field` begins at zero, wherever that is.
+bool contact_system_has_onset(const ContactSystem *system);
+
 // The smallest separation of the pairs watched since the last update [m]: negative once one of them overlaps;
 // at most, and without any pair, +margin. Its root is the onset of a new contact; contact/onset.h says which
 // pairs are watched (after a root, the next update leaves that pair out). Separation of two tetrahedra is the
 // largest over the 44 separating axes of their projections' distance (exactly the distance for face
 // contacts).
+// Without an onset, see above: +margin.
 Status contact_system_gap(ContactSystem *system, double time, const double *positions, double *gap);
 
 // Of the last evaluation. Pointers are the system's, valid until the next call.

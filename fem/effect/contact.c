@@ -245,6 +245,10 @@ static Status gap(void *self, const FemState *state, double *smallest) {
   return contact_system_gap(contact->system, state->time, state->positions, smallest);
 }
 
+static bool has_gap(const void *self) {
+  return contact_system_has_onset(((const Contact *)self)->system);
+}
+
 static double longest_step(const void *self) {
   return contact_system_longest_step(((const Contact *)self)->system);
 }
@@ -283,6 +287,7 @@ const FemEffectOps fem_effect_contact = {
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .gap = gap,
+    .has_gap = has_gap,
     .horizon = horizon,
     .longest_step = longest_step,
     .report = report,

@@ -52,8 +52,8 @@ typedef struct FemEffectOps {
   // After creation and after every accepted step; `step` [s] is the length expected next. The only place
   // where an effect may change what it keeps. NULL: nothing to keep.
   Status (*prepare)(void *self, const FemState *state, double step);
-  // The run begins, or goes on from a checkpoint, at this state, after `load`: what is kept of ways counts from
-  // here. NULL: nothing to do.
+  // The run begins, or goes on from a checkpoint, at this state, after `load`: what is kept of ways counts
+  // from here. NULL: nothing to do.
   Status (*begin)(void *self, const FemState *state);
   // At a state that is not accepted: renews lists and nothing else, so that forces can be evaluated there.
   // NULL: there are none.
@@ -69,11 +69,13 @@ typedef struct FemEffectOps {
   bool (*is_linear)(void *self);
   // Onset function whose root restarts the integrator (contact touching); NULL: none.
   Status (*gap)(void *self, const FemState *state, double *gap);
+  // Whether there is such a function in this scene. NULL: there is one wherever there is `gap`.
+  bool (*has_gap)(const void *self);
   // How far a step from `time` may go along what the effect prescribes by functions of time (signal.h): at
   // most to `farthest`. NULL: that far.
   double (*horizon)(const void *self, const FemForesight *foresight, double time, double farthest);
-  // How long the next step may be, at the speeds of the last accepted state, so that forces can be evaluated at
-  // its end [s]. NULL: as long as it likes.
+  // How long the next step may be, at the speeds of the last accepted state, so that forces can be evaluated
+  // at its end [s]. NULL: as long as it likes.
   double (*longest_step)(const void *self);
   // Adds counters to summary.json; NULL: none. Whole numbers count what happened since creation and are
   // summed over the parts of a run between two checkpoints; of other numbers the last stands.

@@ -291,11 +291,16 @@ Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
   return STATUS_OK;
 }
 
+static bool has_gap(const FemEffect *effect) {
+  if (!effect->ops->gap) return false;
+  return !effect->ops->has_gap || effect->ops->has_gap(effect->self);
+}
+
 Status fem_system_gap(FemSystem *system, double time, double *gap) {
   *gap = INFINITY;
   FemState state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {
-    if (!system->effects[i].ops->gap) continue;
+    if (!has_gap(&system->effects[i])) continue;
     double one;
     TRY(system->effects[i].ops->gap(system->effects[i].self, &state, &one));
     *gap = fmin(*gap, one);
@@ -305,7 +310,7 @@ Status fem_system_gap(FemSystem *system, double time, double *gap) {
 
 bool fem_system_has_gap(const FemSystem *system) {
   for (int i = 0; i < system->effect_count; i++)
-    if (system->effects[i].ops->gap) return true;
+    if (has_gap(&system->effects[i])) return true;
   return false;
 }
 

@@ -57,6 +57,20 @@ static bool has_self_friction(const FemSceneDef *scene) {
   return is_wanted && scene->contact.friction > 0;
 }
 
+// Of time.tolerance.
+static const double SPEED_SHARE = 5;
+
+static bool creeps(const FemSceneDef *scene) {
+  return fem_scene_most_friction(&scene->contact) > 0 &&
+         fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY;
+}
+
+double fem_model_speed_share(const FemModel *model) {
+  const FemSceneDef *scene = model->scene;
+  if (scene->velocity_tolerance > 0 || !scene->contact.is_on || creeps(scene)) return 0;
+  return SPEED_SHARE * scene->tolerance;
+}
+
 double fem_model_velocity_tolerance(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
   if (scene->velocity_tolerance > 0) return scene->velocity_tolerance;
@@ -65,9 +79,7 @@ double fem_model_velocity_tolerance(const FemModel *model) {
     slowest = fmin(slowest, sqrt(scene->bodies[b].material.young / scene->bodies[b].material.density));
   double share = has_self_friction(scene) ? VELOCITY_SHARE_OF_SELF_FRICTION : VELOCITY_SHARE;
   double chosen = share * scene->tolerance * slowest;
-  bool creeps = fem_scene_most_friction(&scene->contact) > 0 &&
-                fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY;
-  return creeps ? fmin(chosen, FRICTION_RESOLUTION * fem_model_slip_speed(model)) : chosen;
+  return creeps(scene) ? fmin(chosen, FRICTION_RESOLUTION * fem_model_slip_speed(model)) : chosen;
 }
 
 static const FemModelBody *body_of(const FemModel *model, int tet) {

@@ -75,6 +75,10 @@ double fem_model_contact_stiffness(const FemModel *model);
 // speed √(E/ρ), all of it where a body rubs on itself; with friction by the law `velocity` at most 5 ε.
 double fem_model_velocity_tolerance(const FemModel *model);
 
+// Share of the fastest body's present speed that a velocity may err by beside that, where there is contact
+// (fem/time/error_weights.h); 0 where the scene says how far, or friction by the law `velocity` needs it.
+double fem_model_speed_share(const FemModel *model);
+
 // Every body's law is linear, without fibres.
 bool fem_model_has_linear_materials(const FemModel *model);
 

@@ -135,6 +135,8 @@ static Status begin_stage(FemRunState *run, double step) {
   if (model->unknown_count == 0) return STATUS_OK; // all sleep
   FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
                           .velocity_tolerance = fem_model_velocity_tolerance(model),
+                          .speed_share = fem_model_speed_share(model),
+                          .wave_share = scene->tolerance,
                           .initial_step = step,
                           .min_step = scene->min_step,
                           .max_step = scene->max_step,

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact.h"
+#include "fem/time/error_weights.h"
 #include "fem/time/ida_solver.h"
 #include "fem/time/newton.h"
 
@@ -21,11 +22,17 @@ enum { MAX_FAILURES = 15 };
 // Knots of prescribed motions and loads closer than this share of the run's end count as one; IDA tells 2e-14
 // apart.
 static const double KNOT_RESOLUTION = 1e-12;
-// Forces on a body in contact balance to this share of its weight or, where that is more, of what its
+// Forces on a body in contact balance to this share of its weight or, where that is more, to that of what its
 // acceleration takes: what is written of contact is as right.
-static const double BALANCE = 2e-4;
+static const double BALANCE = 2e-4, BALANCE_OF_INERTIA = 2e-3;
 // Nor less than this share of E · edge².
 static const double SMALLEST_FORCE = 1e-10;
+// IDA lengthens a step only where it may double, which saves matrices. Where contact begins and ends steps
+// change all the time, and it is longer ones that save.
+static const double LEAST_GROWTH = 1.2, LEAST_GROWTH_WITHOUT_CONTACT = 2;
+// What a step ended at is taken from the last evaluation where the two differ by less than this share of the
+// tolerance, which is rounding.
+static const double SAME_STATE = 1e-6;
 // Roots are found to this share of their step.
 static const double ROOT_RESOLUTION = 1e-9;
 
@@ -42,7 +49,9 @@ struct FemIntegrator {
   double *unbalanced, *wanted; // of each body: Σ |r| and what it is held against [N]   (body_count)
   N_Vector y, y_dot;           // state that the last step or restart ended at
   N_Vector interpolated;       // what `at` returns; scratch
-  N_Vector tolerance;
+  N_Vector evaluated;          // of the last residual
+  double evaluated_time;
+  N_Vector weights;           // scratch: of the error test
   double time;                // of y
   double step_end;            // where IDA stands: later than `time` after an onset
   bool is_started, has_steps; // there was a restart; a step since then
@@ -68,6 +77,8 @@ static int residual(realtype time, N_Vector y, N_Vector y_dot, N_Vector r, void 
   const double *u = values_of(y), *v = u + n, *u_dot = values_of(y_dot), *v_dot = u_dot + n;
   const double *masses = fem_ida_solver_masses(integrator->solver);
   double *kinematics = values_of(r), *balance = kinematics + n;
+  N_VScale(1, y, integrator->evaluated);
+  integrator->evaluated_time = time;
   fem_system_scatter(system, time, u, v);
   int answer = fem_ida_solver_answer(&integrator->failure, fem_system_forces(system, time));
   if (answer != 0) return answer;
@@ -85,6 +96,18 @@ static int jacobian(realtype time, realtype c, N_Vector y, N_Vector y_dot, N_Vec
   const double *u = values_of(y);
   Status status = fem_ida_solver_assemble(integrator->solver, time, c, u, u + integrator->n);
   return fem_ida_solver_answer(&integrator->failure, status);
+}
+
+// IDA asks before every step.
+static int find_weights(N_Vector y, N_Vector weights, void *self) {
+  const FemIntegrator *integrator = self;
+  const FemIntegratorDef *def = &integrator->def;
+  FemErrorTolerance tolerance = {.displacement = def->displacement_tolerance,
+                                 .velocity = def->velocity_tolerance,
+                                 .speed_share = def->speed_share,
+                                 .wave_share = def->wave_share};
+  fem_error_weights(&tolerance, integrator->system->model, values_of(y) + integrator->n, values_of(weights));
+  return 0;
 }
 
 static const double *right_of(void *self) {
@@ -127,7 +150,8 @@ static double unbalance(void *self, const double *balance) {
     double pressed = pressed_on(forces, body), weight = gravity > 0 ? gravity * body->mass : pressed;
     if (!(pressed > 0)) continue;
     double floor = SMALLEST_FORCE * body->material.young * model->edge * model->edge;
-    double allowed = fmax(BALANCE * fmax(weight, integrator->wanted[b]), floor);
+    double needed = fmax(BALANCE * weight, BALANCE_OF_INERTIA * integrator->wanted[b]);
+    double allowed = fmax(needed, floor);
     worst = fmax(worst, integrator->unbalanced[b] / allowed);
   }
   return worst;
@@ -158,15 +182,11 @@ static Status check_def(const FemIntegratorDef *def) {
 static Status create_vectors(FemIntegrator *integrator) {
   if (SUNContext_Create(NULL, &integrator->context) != 0) return status_no_memory("the integrator");
   N_Vector *vectors[] = {&integrator->y, &integrator->y_dot, &integrator->interpolated,
-                         &integrator->tolerance};
-  for (int i = 0; i < 4; i++) {
+                         &integrator->evaluated, &integrator->weights};
+  for (int i = 0; i < 5; i++) {
     *vectors[i] = N_VNew_Serial(2 * (sunindextype)integrator->n, integrator->context);
     if (!*vectors[i]) return status_no_memory("the integrator");
     N_VConst(0, *vectors[i]);
-  }
-  for (int i = 0; i < integrator->n; i++) {
-    values_of(integrator->tolerance)[i] = integrator->def.displacement_tolerance;
-    values_of(integrator->tolerance)[integrator->n + i] = integrator->def.velocity_tolerance;
   }
   return STATUS_OK;
 }
@@ -175,17 +195,19 @@ static Status configure(FemIntegrator *integrator) {
   void *ida = integrator->ida = IDACreate(integrator->context);
   if (!ida) return status_no_memory("the integrator");
   FemIdaSolver *solver = integrator->solver;
+  bool has_contact = fem_system_effect(integrator->system, &fem_effect_contact);
+  double least_growth = has_contact ? LEAST_GROWTH : LEAST_GROWTH_WITHOUT_CONTACT;
   bool is_ok =
       IDASetErrHandlerFn(ida, be_silent, NULL) == IDA_SUCCESS &&
       IDAInit(ida, residual, 0, integrator->y, integrator->y_dot) == IDA_SUCCESS &&
-      IDASVtolerances(ida, 0, integrator->tolerance) == IDA_SUCCESS &&
-      IDASetUserData(ida, integrator) == IDA_SUCCESS &&
+      IDAWFtolerances(ida, find_weights) == IDA_SUCCESS && IDASetUserData(ida, integrator) == IDA_SUCCESS &&
       IDASetLinearSolver(ida, fem_ida_solver_linear(solver), fem_ida_solver_matrix(solver)) == IDA_SUCCESS &&
       IDASetJacFn(ida, jacobian) == IDA_SUCCESS &&
       IDASetNonlinearSolver(ida, integrator->newton.solver) == IDA_SUCCESS &&
       IDASetMaxOrd(ida, integrator->def.max_order) == IDA_SUCCESS &&
       IDASetMaxStep(ida, integrator->max_step) == IDA_SUCCESS &&
       IDASetMinStep(ida, integrator->min_step) == IDA_SUCCESS &&
+      IDASetEtaFixedStepBounds(ida, 1, least_growth) == IDA_SUCCESS &&
       IDASetMaxErrTestFails(ida, MAX_FAILURES) == IDA_SUCCESS &&
       IDASetMaxConvFails(ida, MAX_FAILURES) == IDA_SUCCESS && IDASetMaxNumSteps(ida, -1) == IDA_SUCCESS;
   return is_ok ? STATUS_OK : status_fail(STATUS_SOLVER, "IDA could not be set up");
@@ -231,8 +253,9 @@ void fem_integrator_destroy(FemIntegrator *integrator) {
   memory_free(integrator->unbalanced);
   memory_free(integrator->wanted);
   fem_ida_solver_destroy(integrator->solver);
-  N_Vector vectors[] = {integrator->y, integrator->y_dot, integrator->interpolated, integrator->tolerance};
-  for (int i = 0; i < 4; i++)
+  N_Vector vectors[] = {integrator->y, integrator->y_dot, integrator->interpolated, integrator->evaluated,
+                        integrator->weights};
+  for (int i = 0; i < 5; i++)
     if (vectors[i]) N_VDestroy(vectors[i]);
   if (integrator->context) SUNContext_Free(&integrator->context);
   memory_free(integrator);
@@ -405,7 +428,7 @@ static int worst_of(const double *values, const double *weights, int count) {
 // failed, else of the largest unbalanced force.
 static int find_worst(FemIntegrator *integrator, int flag) {
   int n = integrator->n;
-  N_Vector errors = integrator->interpolated, weights = integrator->tolerance; // of which IDA has a copy
+  N_Vector errors = integrator->interpolated, weights = integrator->weights;
   if (flag == IDA_ERR_FAIL && IDAGetEstLocalErrors(integrator->ida, errors) == IDA_SUCCESS &&
       IDAGetErrWeights(integrator->ida, weights) == IDA_SUCCESS)
     return worst_of(values_of(errors), values_of(weights), 2 * n);
@@ -536,6 +559,17 @@ static Status pass_knot(FemIntegrator *integrator) {
   return choose_stop(integrator);
 }
 
+// IDA hands out the step's end from its differences, rounded otherwise than where forces were evaluated last:
+// what has been found there would be found anew.
+static void take_evaluated(FemIntegrator *integrator, double reached) {
+  if (integrator->evaluated_time != reached) return;
+  N_Vector difference = integrator->interpolated;
+  N_VLinearSum(1, integrator->evaluated, -1, integrator->y, difference);
+  if (IDAGetErrWeights(integrator->ida, integrator->weights) != IDA_SUCCESS) return;
+  N_VProd(difference, integrator->weights, difference);
+  if (N_VMaxNorm(difference) <= SAME_STATE) N_VScale(1, integrator->evaluated, integrator->y);
+}
+
 static Status take_step(FemIntegrator *integrator) {
   double reached;
   TRY(choose_stop(integrator));
@@ -544,6 +578,7 @@ static Status take_step(FemIntegrator *integrator) {
   int flag = IDASolve(integrator->ida, integrator->def.end, &reached, integrator->y, integrator->y_dot,
                       IDA_ONE_STEP);
   if (flag < 0) return give_up(integrator, flag);
+  take_evaluated(integrator, reached);
   integrator->time = integrator->step_end = reached;
   integrator->has_steps = true;
   integrator->is_at_knot = integrator->stops_at_knot && reached == integrator->stop;

@@ -22,7 +22,8 @@
 
 typedef struct FemIntegratorDef {
   double displacement_tolerance;           // error per step of every unknown [m]
-  double velocity_tolerance;               // [m/s]
+  double velocity_tolerance;               // [m/s]; at least, where the next two are given
+  double speed_share, wave_share;          // what else a velocity may err by (error_weights.h); 0: nothing
   double initial_step, min_step, max_step; // [s]; 0: chosen
   int max_order;                           // 1 or 2
   double end;                              // [s]

@@ -30,8 +30,11 @@ static const SceneKey time_keys[] = {
      .help = "error of the positions per step, as a share of the smallest body's size"},
     {"velocity_tolerance", SCENE_NUMBER, AT(FemSceneDef, velocity_tolerance), .unit = "m/s",
      .range = "(0, inf)",
-     .absent_help = "0.03 of `tolerance` times √(E/ρ) of the slowest body (all of it where a body rubs on "
-                    "itself), with friction of the law velocity at most 5 of its slip speeds",
+     .absent_help =
+         "0.03 of `tolerance` times √(E/ρ) of the slowest body (all of it where a body rubs on "
+         "itself); with contact, where that is more, 5 of `tolerance` times the present speed of the "
+         "fastest body, up to `tolerance` times the body's own √(E/ρ); with friction of the law "
+         "velocity at most 5 of its slip speeds",
      .help = "error of the velocities per step"},
     {"max_step", SCENE_NUMBER, AT(FemSceneDef, max_step), .unit = "s", .range = "(0, inf)",
      .absent_help = "0.1 of `end`", .help = "longest step"},

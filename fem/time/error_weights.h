@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What each unknown may err by in a step: the tolerances of IDA's error test.
+//
+// Positions may err by a length. Velocities by a share of what moves: where bodies strike each other at a
+// speed v, their surfaces change theirs by v, and an error far below that costs steps and changes nothing. So
+// a velocity may err by `speed_share` of the present speed of the fastest body (root mean square over its
+// mass), at least by the `velocity` tolerance and at most by `wave_share` of the body's own √(E/ρ), the speed
+// of its waves. This is a function of the state, so a resumed run has the same weights.
+#ifndef TETLAP_FEM_TIME_ERROR_WEIGHTS_H
+#define TETLAP_FEM_TIME_ERROR_WEIGHTS_H
+
+#include "fem/model/model.h"
+
+typedef struct FemErrorTolerance {
+  double displacement; // [m]
+  double velocity;     // at least [m/s]
+  double speed_share;  // of the fastest body's speed; 0: `velocity` is all
+  double wave_share;   // of a body's √(E/ρ), at most
+} FemErrorTolerance;
+
+// The weights 1/tolerance of u and v (2 · unknown_count) at the velocities v (unknown_count).
+void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model, const double *v,
+                       double *weights);
+
+#endif

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The steps that a run with contact takes: that few of them fail, that none is short for nothing, and what
+// the error test lets pass.
+#include "scene.h"
+
+#include <string.h>
+
+#include "base/vec3.h"
+#include "fem/time/error_weights.h"
+
+// Of a stack that falls and comes to rest.
+static void run_slabs(SceneRun *run, const char *potential) {
+  scene_run(run, "slabs",
+            (const char *const[]){"bodies.low.mesh.box.cells=[2, 2, 1]",
+                                  "bodies.middle.mesh.box.cells=[3, 3, 2]",
+                                  "bodies.top.mesh.box.cells=[4, 4, 2]", potential, NULL});
+}
+
+static double kinetic_speed(const SceneRun *run, int frame) {
+  double largest = 0;
+  double duration = run->result.frame_times[frame] - run->result.frame_times[frame - 1];
+  for (int v = 0; v < run->model.vertex_count; v++) {
+    Vec3 moved = vec3_sub(vec3_at(scene_position(run, frame, v)), vec3_at(scene_position(run, frame - 1, v)));
+    largest = fmax(largest, vec3_length(moved) / duration);
+  }
+  return largest;
+}
+
+START_TEST(a_stack_falls_on_an_incline_and_comes_to_rest_without_short_or_failing_steps) {
+  SceneRun run;
+  run_slabs(&run, "contact.potential=field");
+  const FemIntegratorStats *stats = &run.result.integrator;
+  int last = run.result.frame_count - 1;
+  ck_assert_double_gt(kinetic_speed(&run, 4), 0.1);
+  ck_assert_double_le(kinetic_speed(&run, last), 1e-4);
+  ck_assert_int_le(stats->newton_failures, stats->steps / 10);
+  ck_assert_double_ge(run.result.trouble.smallest_step, 1e-6);
+  ck_assert_double_le(scene_gain(&run), 1e-3);
+  // Balance on the incline: friction carries what pulls downhill.
+  double mass = 0;
+  for (int b = 0; b < 3; b++) mass += run.model.bodies[b].mass;
+  double weight = mass * vec3_length(vec3_at(run.scene.gravity)), carried = 0, pressed = 0;
+  for (int i = 3; i < 6; i++) {
+    carried -= scene_force(&run, last, i)[0];
+    pressed += scene_force(&run, last, i)[2];
+  }
+  ck_assert_near(carried, 3.355217608 / 9.81 * weight, 1e-3 * weight);
+  ck_assert_near(pressed, 9.218384816 / 9.81 * weight, 1e-3 * weight);
+  scene_close(&run);
+}
+END_TEST
+
+// Where the force begins at zero nothing jumps; `nodal` still stops where it does.
+START_TEST(an_onset_restarts_the_integrator_only_where_the_force_may_jump) {
+  const char *const potentials[] = {"contact.potential=field", "contact.potential=nodal"};
+  for (int k = 0; k < 2; k++) {
+    SceneRun run;
+    scene_run(&run, "collision", (const char *const[]){potentials[k], NULL});
+    ck_assert_double_gt(run.result.contact_force_max, 0);
+    if (k == 0) ck_assert_int_eq(run.result.integrator.roots, 0);
+    if (k == 1) ck_assert_int_ge(run.result.integrator.roots, 1);
+    scene_close(&run);
+  }
+}
+END_TEST
+
+// Two bodies of one element each, the second ten times as stiff.
+static void open_two(SceneRun *run) {
+  scene_open(run, "single_tets", NULL);
+  ck_assert_int_eq(run->model.body_count, 2);
+  run->model.bodies[1].material = run->model.bodies[0].material;
+  run->model.bodies[1].material.young *= 100;
+}
+
+START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_bounds) {
+  SceneRun run;
+  open_two(&run);
+  int n = run.model.unknown_count;
+  double *v = calloc((size_t)n, sizeof *v), *weights = calloc(2 * (size_t)n, sizeof *weights);
+  const FemMaterial *soft = &run.model.bodies[0].material;
+  double wave = sqrt(soft->young / soft->density);
+  FemErrorTolerance tolerance = {
+      .displacement = 1e-5, .velocity = 1e-6 * wave, .speed_share = 1e-3, .wave_share = 1e-4};
+  const double speeds[] = {0, 0.02 * wave, wave}; // of the first body, along z
+  const double expected[][2] = {{1e-6, 1e-6}, {2e-5, 2e-5}, {1e-4, 1e-3}};
+  for (int k = 0; k < 3; k++) {
+    for (int i = 0; i < n; i++) {
+      int dof = run.model.dof_of_unknown[i];
+      v[i] = dof % 3 == 2 && dof / 3 < run.model.bodies[0].vertex_end ? speeds[k] : 0;
+    }
+    fem_error_weights(&tolerance, &run.model, v, weights);
+    for (int i = 0; i < n; i++) {
+      int body = run.model.dof_of_unknown[i] / 3 >= run.model.bodies[0].vertex_end;
+      ck_assert_near(weights[i], 1e5, 1e-6);
+      ck_assert_near(1 / weights[n + i], expected[k][body] * wave, 1e-9 * wave);
+    }
+  }
+  v[0] = NAN;
+  fem_error_weights(&tolerance, &run.model, v, weights);
+  for (int i = 0; i < 2 * n; i++) ck_assert(weights[i] > 0 && isfinite(weights[i]));
+  free(v), free(weights);
+  scene_close(&run);
+}
+END_TEST
+
+START_TEST(a_tolerance_that_the_scene_gives_is_all_there_is) {
+  const char *const given[] = {"time.velocity_tolerance=1e-3", "time.tolerance=1e-4"};
+  for (int k = 0; k < 2; k++) {
+    SceneRun run;
+    scene_open(&run, "collision", (const char *const[]){given[k], NULL});
+    double share = fem_model_speed_share(&run.model);
+    ck_assert_msg((share > 0) == (k == 1), "%s: a share of %g", given[k], share);
+    scene_close(&run);
+  }
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("steps");
+  tcase_add_test(cases, a_stack_falls_on_an_incline_and_comes_to_rest_without_short_or_failing_steps);
+  tcase_add_test(cases, an_onset_restarts_the_integrator_only_where_the_force_may_jump);
+  tcase_add_test(cases, a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_bounds);
+  tcase_add_test(cases, a_tolerance_that_the_scene_gives_is_all_there_is);
+  return suite_run("steps", cases, 120);
+}
