@@ -88,6 +88,8 @@ START_TEST(what_is_moved_a_little_is_held_by_a_spring) {
   ck_assert_near(pull_of(f).y, 0, 1e-12 * k);
   ck_assert_near(pull_of(f).z, 0, 1e-12 * k);
   ck_assert_int_eq(f->stick.slip_count, 0);
+  ck_assert_near(f->stick.areas[0][0], AREA, 1e-12 * AREA);
+  ck_assert_near(f->stick.areas[0][1], 0, 1e-12 * AREA);
   ck_assert_near(f->stick.stored, 0.5 * k * way * way, 1e-12 * k);
   ck_assert_near(f->stick.spent, 0, 1e-12 * k);
   finish(f);
@@ -102,6 +104,8 @@ START_TEST(the_spring_is_cut_at_the_limit) {
   eval(f);
   ck_assert_near(pull_of(f).y, MU * PRESS, 1e-12 * PRESS);
   ck_assert_int_eq(f->stick.slip_count, 4);
+  ck_assert_near(f->stick.areas[0][0], 0, 1e-12 * AREA);
+  ck_assert_near(f->stick.areas[0][1], AREA, 1e-12 * AREA);
   ck_assert_near(f->stick.stored + f->stick.spent, 0.5 * k * elastic * elastic + MU * PRESS * (way - elastic),
                  1e-12);
   accept(f);

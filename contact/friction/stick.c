@@ -7,6 +7,9 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 
+// A vertex counts as sliding from this share of its limit.
+static const double SLIDES_FROM = 0.98;
+
 // ---- What is kept for a run.
 
 static Status check_law(const ContactStickLaw *law) {
@@ -31,18 +34,20 @@ Status contact_stick_create(ContactStick *stick, int vertex_count, const double 
   stick->laws = memory_copy(laws, interfaces, sizeof *laws);
   stick->before = memory_copy(rest, 3 * vertices, sizeof *stick->before);
   stick->forces = memory_zeroed(interfaces, sizeof *stick->forces);
+  stick->areas = memory_zeroed(interfaces, sizeof *stick->areas);
   stick->node_of_vertex = memory_zeroed(vertices, sizeof *stick->node_of_vertex);
   stick->place = memory_zeroed(vertices, sizeof *stick->place);
-  if (!stick->laws || !stick->before || !stick->forces || !stick->node_of_vertex || !stick->place)
+  if (!stick->laws || !stick->before || !stick->forces || !stick->areas || !stick->node_of_vertex ||
+      !stick->place)
     return status_no_memory("friction");
   for (size_t v = 0; v < vertices; v++) stick->node_of_vertex[v] = -1;
   return STATUS_OK;
 }
 
 void contact_stick_destroy(ContactStick *stick) {
-  void *arrays[] = {stick->laws,  stick->before, stick->pairs,         stick->nodes, stick->touches,
-                    stick->order, stick->pulls,  stick->forces,        stick->place, stick->clique,
-                    stick->outer, stick->shares, stick->node_of_vertex};
+  void *arrays[] = {stick->laws,  stick->before, stick->pairs,          stick->nodes, stick->touches,
+                    stick->order, stick->pulls,  stick->forces,         stick->place, stick->clique,
+                    stick->outer, stick->shares, stick->node_of_vertex, stick->areas};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   contact_stick_history_destroy(&stick->history);
   contact_stick_history_destroy(&stick->next);
@@ -53,7 +58,7 @@ size_t contact_stick_bytes(const ContactStick *stick) {
   const void *const arrays[] = {stick->laws,    stick->before,          stick->pairs,          stick->nodes,
                                 stick->touches, stick->order,           stick->pulls,          stick->forces,
                                 stick->place,   stick->clique,          stick->node_of_vertex, stick->outer,
-                                stick->shares,  stick->history.entries, stick->next.entries};
+                                stick->shares,  stick->history.entries, stick->next.entries,   stick->areas};
   return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
 }
 
@@ -259,6 +264,19 @@ static void share_forces(ContactStick *stick, const bool *is_resting) {
   }
 }
 
+// What sticks and what slides, k_a / c_t of the vertices. Where the press grows a little, what slides sticks
+// for a step at nearly all of its limit: that counts as sliding.
+static void share_areas(ContactStick *stick, const bool *is_resting) {
+  for (int i = 0; i < stick->interface_count; i++)
+    if (!is_resting || !is_resting[i]) stick->areas[i][0] = stick->areas[i][1] = 0;
+  for (int n = 0; n < stick->node_count; n++) {
+    const ContactStickNode *node = &stick->nodes[n];
+    double pull = vec3_length(vec3_at(node->force));
+    stick->areas[node->interface][pull > SLIDES_FROM * node->limit] +=
+        node->stiffness / stick->laws[node->interface].stiffness;
+  }
+}
+
 Status contact_stick_eval(ContactStick *stick, int pair_count, const double *positions,
                           const bool *is_resting) {
   stick->pair_count = pair_count;
@@ -275,6 +293,7 @@ Status contact_stick_eval(ContactStick *stick, int pair_count, const double *pos
     stick->slip_count += node->slips;
   }
   share_forces(stick, is_resting);
+  share_areas(stick, is_resting);
   return STATUS_OK;
 }
 

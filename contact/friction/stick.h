@@ -93,6 +93,7 @@ typedef struct ContactStick {
   int *order;                         // numbers of touches (8 a pair), node by node
   double (*pulls)[3];                 // on side 0 of each pair [N]               (pair_count)
   double (*forces)[3];  // on side 0 of each interface [N]; of one at rest as it was   (interface_count)
+  double (*areas)[2];   // that stick and that slide [m²]; likewise                    (interface_count)
   double stored, spent; // ½ Σ k s², and dissipated since the last accepted state [J]
   int slip_count;
   // Scratch memory.

@@ -176,18 +176,20 @@ static void report(void *self, Record *counters) {
   record_number(counters, "friction_work", stick->law.dissipated);
 }
 
-// What was dissipated, the forces by interface, of which those at rest are still told, and the history.
+// What was dissipated, the forces and areas by interface, of which those at rest are still told, and the
+// history.
 static Status save(const void *self, double **values, size_t *count) {
   const ContactStick *law = &((const Stick *)self)->law;
-  size_t forces = 3 * (size_t)law->interface_count, entries;
+  size_t forces = 3 * (size_t)law->interface_count, areas = 2 * (size_t)law->interface_count, entries;
   double *history;
   TRY(contact_stick_history_save(&law->history, &history, &entries));
-  *count = 1 + forces + entries;
+  *count = 1 + forces + areas + entries;
   *values = memory_zeroed(*count, sizeof **values);
   if (*values) {
     (*values)[0] = law->dissipated;
     memcpy(*values + 1, law->forces, forces * sizeof **values);
-    memcpy(*values + 1 + forces, history, entries * sizeof **values);
+    memcpy(*values + 1 + forces, law->areas, areas * sizeof **values);
+    memcpy(*values + 1 + forces + areas, history, entries * sizeof **values);
   }
   memory_free(history);
   return *values ? STATUS_OK : status_no_memory("a checkpoint");
@@ -195,14 +197,16 @@ static Status save(const void *self, double **values, size_t *count) {
 
 static Status load(void *self, const double *values, size_t count) {
   ContactStick *law = &((Stick *)self)->law;
-  size_t forces = 3 * (size_t)law->interface_count;
-  if (count < 1 + forces)
+  size_t forces = 3 * (size_t)law->interface_count, areas = 2 * (size_t)law->interface_count,
+         own = 1 + forces + areas;
+  if (count < own)
     return status_fail(STATUS_INPUT, "the checkpoint has friction of another scene: %zu numbers, not %zu",
-                       count, 1 + forces);
+                       count, own);
   law->dissipated = values[0];
   memcpy(law->forces, values + 1, forces * sizeof *values);
-  return contact_stick_history_load(&law->history, values + 1 + forces, count - 1 - forces,
-                                    law->interface_count, law->vertex_count);
+  memcpy(law->areas, values + 1 + forces, areas * sizeof *values);
+  return contact_stick_history_load(&law->history, values + own, count - own, law->interface_count,
+                                    law->vertex_count);
 }
 
 static size_t bytes(const void *self) {

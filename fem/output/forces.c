@@ -15,6 +15,10 @@ bool fem_forces_has_friction(const FemSystem *system) {
   return fem_system_effect(system, &fem_effect_friction) || fem_system_effect(system, &fem_effect_stick);
 }
 
+bool fem_forces_has_stick(const FemSystem *system) {
+  return fem_system_effect(system, &fem_effect_stick) != NULL;
+}
+
 static ContactSystem *contact_of(const FemSystem *system) {
   void *effect = fem_system_effect(system, &fem_effect_contact);
   return effect ? fem_effect_contact_system(effect) : NULL;
@@ -29,9 +33,11 @@ static Status create_at(FemForcesAt *at, const FemForces *forces, bool with_vert
   at->areas = memory_zeroed((size_t)forces->interface_count, sizeof *at->areas);
   at->centres = memory_zeroed((size_t)forces->interface_count, sizeof *at->centres);
   if (!at->interfaces || !at->areas || !at->centres) return status_no_memory("the contact forces");
+  bool rubs = fem_forces_has_friction(forces->system);
+  if (rubs) at->rubbing = memory_zeroed((size_t)forces->interface_count, sizeof *at->rubbing);
+  if (rubs && !at->rubbing) return status_no_memory("the contact forces");
   if (!with_vertices) return STATUS_OK;
   at->contact = memory_zeroed(values_of(forces), sizeof *at->contact);
-  bool rubs = fem_forces_has_friction(forces->system);
   if (rubs) at->friction = memory_zeroed(values_of(forces), sizeof *at->friction);
   return at->contact && (!rubs || at->friction) ? STATUS_OK : status_no_memory("the contact forces");
 }
@@ -52,6 +58,7 @@ static void destroy_at(FemForcesAt *at) {
   memory_free(at->centres);
   memory_free(at->contact);
   memory_free(at->friction);
+  memory_free(at->rubbing);
 }
 
 void fem_forces_destroy(FemForces *forces) {
@@ -59,6 +66,20 @@ void fem_forces_destroy(FemForces *forces) {
   destroy_at(&forces->end);
   destroy_at(&forces->now);
   *forces = (FemForces){0};
+}
+
+static void take_rubbing(const FemSystem *system, int count, FemRubbing *rubbing) {
+  void *friction = fem_system_effect(system, &fem_effect_friction),
+       *stick = fem_system_effect(system, &fem_effect_stick);
+  const ContactStick *law = stick ? fem_effect_stick_of(stick) : NULL;
+  for (int i = 0; i < count; i++) {
+    rubbing[i] = (FemRubbing){0};
+    if (friction) vec3_store(rubbing[i].force, vec3_at(fem_effect_friction_of(friction)->forces[i]));
+    if (!law) continue;
+    vec3_store(rubbing[i].force, vec3_at(law->forces[i]));
+    rubbing[i].stuck = law->areas[i][0];
+    rubbing[i].slides = law->areas[i][1];
+  }
 }
 
 // From the state that was evaluated last.
@@ -79,6 +100,7 @@ static void take(const FemForces *forces, FemForcesAt *at, double time) {
     if (stick) vec3_accumulate(at->interfaces[i], vec3_at(fem_effect_stick_of(stick)->forces[i]));
   }
   if (viscosity) fem_effect_viscosity_add(viscosity, system->velocities, at->interfaces, NULL);
+  if (at->rubbing) take_rubbing(system, count, at->rubbing);
   if (at->contact) memcpy(at->contact, contact_system_forces(contact), values_of(forces) * sizeof(double));
   if (at->contact && viscosity) fem_effect_viscosity_add(viscosity, system->velocities, NULL, at->contact);
   if (!at->friction) return;
@@ -130,6 +152,9 @@ void fem_forces_set(FemForces *forces, double time) {
       now->interfaces[0]);
   mix((size_t)forces->interface_count, share, begin->areas, end->areas, now->areas);
   mix(3 * (size_t)forces->interface_count, share, begin->centres[0], end->centres[0], now->centres[0]);
+  if (now->rubbing)
+    mix((size_t)forces->interface_count * sizeof *now->rubbing / sizeof(double), share,
+        (const double *)begin->rubbing, (const double *)end->rubbing, (double *)now->rubbing);
   if (now->contact) mix(values_of(forces), share, begin->contact, end->contact, now->contact);
   if (now->friction) mix(values_of(forces), share, begin->friction, end->friction, now->friction);
 }

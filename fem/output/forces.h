@@ -9,6 +9,12 @@
 
 #include "fem/effect/system.h"
 
+// Friction between two [N], and the areas that stick and that slide [m²].
+typedef struct FemRubbing {
+  double force[3];      // on the first side; part of the force between the two
+  double stuck, slides; // 0 with friction by velocities
+} FemRubbing;
+
 // At one state.
 typedef struct FemForcesAt {
   double time;             // [s]
@@ -17,6 +23,7 @@ typedef struct FemForcesAt {
   double (*centres)[3];    // of pressure [m]; NaN: nothing presses       (interface_count)
   double *contact;         // of potential and viscosity [N]; NULL: not wanted    (vertex_count, 3)
   double *friction;        // [N]; NULL: not wanted                       (vertex_count, 3)
+  FemRubbing *rubbing;     // NULL: no friction                           (interface_count)
 } FemForcesAt;
 
 typedef struct FemForces {
@@ -33,6 +40,7 @@ Status fem_forces_create(FemForces *forces, const FemSystem *system, bool with_v
 void fem_forces_destroy(FemForces *forces);
 
 bool fem_forces_has_friction(const FemSystem *system);
+bool fem_forces_has_stick(const FemSystem *system); // friction that knows what sticks
 
 // The state that was evaluated last is the one that a run begins or goes on from, or the end of a step.
 void fem_forces_begin(FemForces *forces, double time);

@@ -33,6 +33,22 @@ static const ContactInterface *interfaces_of(const FemSystem *system, int *count
   return contact ? contact_system_interfaces(contact, count) : NULL;
 }
 
+static Status add_friction_columns(FemRecorder *recorder) {
+  int count;
+  FemHistory *history = &recorder->history;
+  const ContactInterface *interfaces = interfaces_of(recorder->system, &count);
+  const void *effect = fem_system_effect(recorder->system, &fem_effect_contact);
+  for (int i = 0; i < count && fem_forces_has_friction(recorder->system); i++) {
+    const char *a = fem_effect_contact_name(effect, interfaces[i].a),
+               *b = fem_effect_contact_name(effect, interfaces[i].b);
+    for (int c = 0; c < 3; c++) TRY(fem_history_add_column(history, "friction_%s_%s_%c_N", a, b, "xyz"[c]));
+    if (!fem_forces_has_stick(recorder->system)) continue;
+    TRY(fem_history_add_column(history, "stuck_%s_%s_m2", a, b));
+    TRY(fem_history_add_column(history, "slides_%s_%s_m2", a, b));
+  }
+  return STATUS_OK;
+}
+
 static Status add_columns(FemRecorder *recorder) {
   const FemModel *model = recorder->system->model;
   FemHistory *history = &recorder->history;
@@ -60,6 +76,7 @@ static Status add_columns(FemRecorder *recorder) {
     for (int c = 0; c < 3; c++)
       TRY(fem_history_add_column(history, "contact_centre_%s_%s_%c_m", a, b, "xyz"[c]));
   }
+  TRY(add_friction_columns(recorder));
   recorder->row = memory_zeroed((size_t)history->column_count, sizeof *recorder->row);
   return recorder->row ? STATUS_OK : status_no_memory("the history");
 }
@@ -403,6 +420,18 @@ static double *append_centres(const FemSystem *system, double *row) {
   return row;
 }
 
+static double *append_friction(const FemRecorder *recorder, double *row) {
+  const FemRubbing *rubbing = recorder->forces.now.rubbing;
+  for (int i = 0; rubbing && i < recorder->forces.interface_count; i++) {
+    vec3_store(row, vec3_at(rubbing[i].force));
+    row += 3;
+    if (!fem_forces_has_stick(recorder->system)) continue;
+    *row++ = rubbing[i].stuck;
+    *row++ = rubbing[i].slides;
+  }
+  return row;
+}
+
 static void fill_row(FemRecorder *recorder, const FemColumnSource *source) {
   double *row = recorder->row;
   for (int i = 0; i < fem_columns_count(); i++)
@@ -420,6 +449,7 @@ static void fill_row(FemRecorder *recorder, const FemColumnSource *source) {
     row[0] = recorder->forces.now.areas[i];
     vec3_store(row + 1, vec3_at(recorder->forces.now.centres[i]));
   }
+  append_friction(recorder, row);
 }
 
 void fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,
