@@ -62,5 +62,5 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # gmsh is loaded where a mesh is read or made, so dpkg-shlibdeps does not see it: libgmsh.so.4.8 is in libgmsh4.8.
 get_source_file_property(gmsh_name fem/mesh/reader/gmsh_library.c COMPILE_DEFINITIONS)
 string(REGEX REPLACE ".*libgmsh\\.so\\.([0-9.]+).*" "libgmsh\\1" CPACK_DEBIAN_PACKAGE_DEPENDS "${gmsh_name}")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, python3-numpy")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, libmicrohttpd12, python3-numpy")
 include(CPack)

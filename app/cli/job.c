@@ -215,7 +215,7 @@ static Status write_record(const char *directory, const char *name, const Record
 }
 
 // What it takes to run the same again: the scene with every default filled in, versions, processor, command.
-static Status write_manifest(const AppJob *job) {
+Status app_job_write_manifest(const AppJob *job) {
   Record *manifest = record_new();
   if (!manifest) return status_no_memory("the manifest");
   app_versions_record(record_child(manifest, "versions"));
@@ -234,5 +234,5 @@ Status app_job_write_summary(const AppJob *job, const FemRunResult *result, Stat
   if (!summary) return status_no_memory("the summary");
   Status written = write_record(job->directory, "summary.json", summary);
   record_destroy(summary);
-  return written ? written : write_manifest(job);
+  return written ? written : app_job_write_manifest(job);
 }

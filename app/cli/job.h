@@ -60,6 +60,7 @@ Status app_job_show_progress(void *progress, const FemRunProgress *state);
 // Writes summary.json and manifest.json (the resolved scene, versions, processor, command) of a run that
 // ended with `status`.
 Status app_job_write_summary(const AppJob *job, const FemRunResult *result, Status status);
+Status app_job_write_manifest(const AppJob *job); // the latter alone
 // The same summary as a new record, owned by the caller; NULL: no memory.
 Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status status);
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "app/cli/beacon.h"
 #include "app/cli/origin.h"
 #include "app/cli/versions.h"
 #include "base/clock.h"
@@ -101,6 +102,7 @@ typedef struct Observer {
   AppProgress progress;
   DatagenCapture *capture; // NULL: none
   FemTrouble told;         // what the log has been told of
+  AppBeacon beacon;
 } Observer;
 
 static Status capture_pairs(DatagenCapture *capture, FemSystem *system) {
@@ -137,6 +139,7 @@ static Status observe(void *self, const FemRunProgress *progress) {
   Observer *observer = self;
   TRY(app_job_show_progress(&observer->progress, progress));
   if (progress->has_trouble_begun) warn(observer, progress);
+  TRY(app_beacon_show(&observer->beacon, progress));
   return observer->capture ? capture_pairs(observer->capture, progress->system) : STATUS_OK;
 }
 
@@ -148,7 +151,8 @@ static Status run_captured(const AppRunOptions *options, const AppJob *job, cons
     TRY(datagen_capture_begin(&capture, options->capture, app_versions_program(), DATAGEN_LABEL_EXACT));
   Observer observer = {
       .progress = {.began_s = clock_wall_s(), .label = "", .is_json = options->job.is_progress_json},
-      .capture = options->capture ? &capture : NULL};
+      .capture = options->capture ? &capture : NULL,
+      .beacon = app_beacon_begin(job)};
   FemRunOptions run_options = {.directory = job->directory,
                                .stop = app_job_stop_flag(),
                                .observe = observe,
@@ -158,6 +162,7 @@ static Status run_captured(const AppRunOptions *options, const AppJob *job, cons
                                .is_strict = options->is_strict};
   Status status = fem_run(&job->model, &run_options, result);
   log_progress_end();
+  app_beacon_end(&observer.beacon);
   if (status) log_error("%s", status_message());
   Status kept = options->capture ? datagen_capture_commit(&capture) : STATUS_OK;
   if (kept) log_error("%s", status_message());

@@ -7,6 +7,9 @@
 // Where in the page the data belongs.
 #define APP_REPORT_PAGE_MARK "<!--tetlap:data-->"
 
+// Where its security policy, which lets it ask for nothing, ends.
+#define APP_REPORT_PAGE_POLICY_END "\">\n<title>"
+
 // The whole page; borrowed.
 const char *app_report_page_text(void);
 

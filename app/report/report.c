@@ -161,7 +161,8 @@ static void record_rest(AppReport *report, Record *data) {
   record_adopt(data, "comparison", report->comparison);
   record_adopt(data, "pareto", report->pareto);
   record_adopt(data, "sweep", report->sweep);
-  report->comparison = report->pareto = report->sweep = NULL;
+  record_adopt(data, "live", report->live);
+  report->comparison = report->pareto = report->sweep = report->live = NULL;
   record_stresses(report, data);
   if (report->bench_count == 0) return;
   RecordList *benches = record_list(data, "benches");
@@ -297,6 +298,17 @@ static Status print_data(AppReport *report, Record *data, AppReportSurface *surf
   return STATUS_OK;
 }
 
+// The page up to its data. One that is to follow a run may ask the server that it came from.
+static void print_head(const char *page, const char *mark, bool is_live, FILE *stream) {
+  const char *end = is_live ? strstr(page, APP_REPORT_PAGE_POLICY_END) : NULL;
+  if (end && end < mark) {
+    fwrite(page, 1, (size_t)(end - page), stream);
+    fputs("; connect-src 'self'", stream);
+    page = end;
+  }
+  fwrite(page, 1, (size_t)(mark - page), stream);
+}
+
 Status app_report_print(AppReport *report, FILE *stream) {
   const char *page = app_report_page_text(), *mark = strstr(page, APP_REPORT_PAGE_MARK);
   if (!mark) return status_fail(STATUS_IO, "the page in this program has no place for data; build it again");
@@ -304,7 +316,7 @@ Status app_report_print(AppReport *report, FILE *stream) {
   if (!data) return status_no_memory("the page's records");
   AppReportSurface surfaces[APP_REPORT_MAX_RUNS] = {{0}};
   const char *rest = mark + strlen(APP_REPORT_PAGE_MARK);
-  fwrite(page, 1, (size_t)(mark - page), stream);
+  print_head(page, mark, report->live != NULL, stream);
   Status status = print_data(report, data, surfaces, stream);
   fputs(rest, stream);
   for (int r = 0; r < report->run_count; r++) app_report_surface_destroy(&surfaces[r]);
@@ -328,5 +340,6 @@ void app_report_destroy(AppReport *report) {
   record_destroy(report->comparison);
   record_destroy(report->pareto);
   record_destroy(report->sweep);
+  record_destroy(report->live);
   *report = (AppReport){0};
 }

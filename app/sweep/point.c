@@ -170,7 +170,9 @@ static void judge(AppSweepPoint *point, const FemSceneDef *scene, const Record *
   bool is_same = outcome && is_same_scene(manifest, scene) && !has_newer_mesh(point, scene);
   record_destroy(manifest);
   int code = exit_code_before(point, before), gave_up = status_exit_code(STATUS_SOLVER);
-  if (is_same && strcmp(outcome, "finished") == 0)
+  bool has_finished = is_same && (strcmp(outcome, "finished") == 0 ||
+                                  (code == 0 && strcmp(outcome, "interrupted") != 0));
+  if (has_finished)
     point->state = APP_SWEEP_FINISHED;
   else if (is_same && !again && strcmp(outcome, "failed") == 0 && code == gave_up)
     point->state = APP_SWEEP_FAILED, point->exit_code = gave_up;

@@ -10,15 +10,16 @@ async function inflate(text) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-function textOf(id) {
-  const element = document.getElementById(id);
+// `source` is the document that holds the arrays: this page, or a newer one that was fetched.
+function textOf(source, id) {
+  const element = source.getElementById(id);
   if (!element) throw new Error(`the page lacks its array ${id}`);
   return element.textContent;
 }
 
 // Codes (rows, rowSize): differences to the row before, in the first row to the code `stride` before.
-export async function readCodes(id, rowSize, stride) {
-  const bytes = await inflate(textOf(id));
+export async function readCodes(source, id, rowSize, stride) {
+  const bytes = await inflate(textOf(source, id));
   const count = bytes.length / 2;
   const codes = new Uint16Array(count);
   for (let i = 0; i < count; i++) {
@@ -30,8 +31,8 @@ export async function readCodes(id, rowSize, stride) {
 }
 
 // Whole numbers: differences to the number `stride` before.
-export async function readIntegers(id, stride) {
-  const bytes = await inflate(textOf(id));
+export async function readIntegers(source, id, stride) {
+  const bytes = await inflate(textOf(source, id));
   const count = bytes.length / 4;
   const numbers = new Int32Array(count);
   for (let i = 0; i < count; i++) {

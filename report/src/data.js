@@ -4,7 +4,7 @@
 import { readCodes, readIntegers } from "./codes.js";
 import { Obstacles } from "./obstacles.js";
 
-const NAMES = ["A", "B"];
+const NAMES = [..."ABCDEFGHIJKLMNOP"];
 
 // history.csv as columns of numbers by name; {} without one.
 export function readHistory(text) {
@@ -53,43 +53,45 @@ export function solidsOf(run) {
   };
 }
 
-// Runs are called by what tells them apart.
+const areDistinct = (names) => names.every(Boolean) && new Set(names).size === names.length;
+
+// Runs are called by what tells them apart: their overlap models, else their folders.
 function labelRuns(runs) {
-  const model = (run) => run.summary?.overlap;
-  const differ = runs.length === 2 && model(runs[0]) && model(runs[1]) && model(runs[0]) !== model(runs[1]);
+  const models = runs.map((run) => run.summary?.overlap);
+  const names = runs.length > 1 && areDistinct(models) ? models : runs.map((run, k) => run.name ?? NAMES[k]);
   runs.forEach((run, k) => {
     run.letter = NAMES[k];
-    run.label = differ ? model(run) : (run.name ?? NAMES[k]);
+    run.label = runs.length > 1 && !areDistinct(names) ? `${names[k]} (${NAMES[k]})` : names[k];
   });
-  if (runs.length === 2 && runs[0].label === runs[1].label) runs.forEach((run) => (run.label += ` (${run.letter})`));
 }
 
-function prepare(run, index) {
+function prepare(run, index, source) {
   const columns = readHistory(run.history);
   const solids = solidsOf(run);
-  return { ...run, index, columns, solids, forces: forcesOf(columns, solids.names), times: columns.time_s ?? [] };
+  return { ...run, index, source, columns, solids, forces: forcesOf(columns, solids.names), times: columns.time_s ?? [] };
 }
 
-export function readData() {
-  const data = JSON.parse(document.getElementById("tetlap-data")?.textContent ?? "{}");
-  const runs = (data.runs ?? []).map(prepare);
+// `source` is this document or a newer one.
+export function readData(source = document) {
+  const data = JSON.parse(source.getElementById("tetlap-data")?.textContent ?? "{}");
+  const runs = (data.runs ?? []).map((run, index) => prepare(run, index, source));
   labelRuns(runs);
   return { ...data, runs };
 }
 
 // The arrays of a run's frames. Fields are read when they are first asked for.
 export async function readFrames(run) {
-  const { frames, index } = run;
+  const { frames, index, source } = run;
   const id = (name) => `run-${index}-${name}`;
   const [triangles, tetrahedra, positions] = await Promise.all([
-    readIntegers(id("triangles"), 4),
-    frames.has_inside ? readIntegers(id("tetrahedra"), 4) : null,
-    readCodes(id("positions"), 3 * frames.vertices, 3),
+    readIntegers(source, id("triangles"), 4),
+    frames.has_inside ? readIntegers(source, id("tetrahedra"), 4) : null,
+    readCodes(source, id("positions"), 3 * frames.vertices, 3),
   ]);
   const parts = await Promise.all((frames.obstacles ?? []).map(async (part, k) => ({
     ...part,
-    triangles: await readIntegers(id(`obstacle-triangles-${k}`), 5), // vertices, body, face
-    positions: await readCodes(id(`obstacle-positions-${k}`), 3 * part.vertices, 3),
+    triangles: await readIntegers(source, id(`obstacle-triangles-${k}`), 5), // vertices, body, face
+    positions: await readCodes(source, id(`obstacle-positions-${k}`), 3 * part.vertices, 3),
   })));
   const waiting = new Map();
   const field = (name) => {
@@ -98,7 +100,7 @@ export async function readFrames(run) {
     if (!waiting.has(k)) {
       const info = frames.fields[k];
       const size = info.on === "vertices" ? frames.vertices : frames.tetrahedra;
-      waiting.set(k, readCodes(id(`field-${k}`), size, 1).then((codes) => ({ ...info, size, codes })));
+      waiting.set(k, readCodes(source, id(`field-${k}`), size, 1).then((codes) => ({ ...info, size, codes })));
     }
     return waiting.get(k);
   };

@@ -5,10 +5,11 @@ import { listFields } from "./colour.js";
 import { readData, unionTimes } from "./data.js";
 import { h } from "./dom.js";
 import { buildFrontier } from "./frontier.js";
+import { LiveBar, follow } from "./live.js";
 import { buildManifest } from "./manifest.js";
 import { buildHeader, buildOverview } from "./overview.js";
 import { buildPhases } from "./phases.js";
-import { TimePlot, listPlots } from "./plots.js";
+import { TimePlot, listPlots, momentOf } from "./plots.js";
 import { Stage } from "./stage.js";
 import { createState } from "./state.js";
 import { buildStress } from "./stress.js";
@@ -48,11 +49,11 @@ function buildBar(state, version) {
   return h("header.bar-top", h("span.mark", "tetlap", version && h("span.version", version)), h("span.space"), ask, toggle, keys);
 }
 
-// Keys work wherever the focus is, but in what takes them itself.
-function listenToKeys(state, transport, stage) {
+// What keys do to a page as it is now.
+function actionsOf({ state, transport, stage }) {
   const fields = listFields(stage?.runs ?? []);
   const cut = (axis) => state.set({ cut: state.cut === axis ? -1 : axis });
-  const actions = {
+  return {
     " ": () => transport?.toggle(),
     ArrowLeft: () => transport?.step(-1),
     ArrowRight: () => transport?.step(1),
@@ -67,12 +68,16 @@ function listenToKeys(state, transport, stage) {
     e: () => state.set({ edges: !state.edges }),
     t: () => state.set({ theme: state.theme === "dark" ? "light" : "dark" }),
   };
+}
+
+// Keys work wherever the focus is, but in what takes them itself.
+function listenToKeys() {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
     const own = event.target.closest?.("select, input, button, summary, pre");
     if (own && !(own.matches(".scrub") && event.key === " ") && !/^[a-z[\]]$/i.test(event.key)) return;
     if (own?.matches("select")) return;
-    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    const action = actionsOf(window.tetlap)[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!action) return;
     event.preventDefault();
     action();
@@ -86,25 +91,34 @@ function worldSize(runs) {
   return Math.hypot(...high.map((value, k) => value - low[k]));
 }
 
+// Where a page opens: of runs that are compared, where they differ most; else at the start.
+function openingTime({ runs }, times) {
+  return (runs.length > 1 ? momentOf(runs) : undefined) ?? times[0] ?? 0;
+}
+
 const licences = () => document.getElementById("tetlap-licences")?.textContent.trim() ?? "";
 
-async function start() {
-  const data = readData();
+const titleOf = ({ runs, sweep, stress, pareto, live }) =>
+  runs[0]?.summary?.title || runs[0]?.manifest?.scene?.title || runs[0]?.name || (sweep && sweepTitle(sweep)) || (stress && !pareto ? "Stability" : live ? "A run to come" : "Overlap models");
+
+// A whole page about these data, not yet in the document. `kept`: the page that it takes the place of.
+function build(data, kept) {
   const { runs } = data;
   const framed = runs.filter((run) => run.frames);
   const times = unionTimes(runs);
   const fields = listFields(framed);
+  const before = kept?.state;
+  const isFollowing = kept && (!kept.times.length || before.time === kept.times.at(-1));
   const state = createState({
-    theme: themeOf(),
-    time: times[0] ?? 0,
+    theme: before?.theme ?? themeOf(),
+    time: (kept && (isFollowing ? times.at(-1) : before.time)) ?? openingTime(data, times),
     isPlaying: false,
-    field: fields[0],
-    cut: -1,
-    cutShare: 0.5,
-    edges: true,
+    field: fields.includes(before?.field) ? before.field : fields[0],
+    cut: before?.cut ?? -1,
+    cutShare: before?.cutShare ?? 0.5,
+    edges: before?.edges ?? true,
   });
-  prefersDark.addEventListener("change", () => state.set({ theme: themeOf() }));
-  const title = runs[0]?.summary?.title || runs[0]?.manifest?.scene?.title || runs[0]?.name || (data.sweep && sweepTitle(data.sweep)) || (data.stress && !data.pareto ? "Stability" : "Overlap models");
+  const title = titleOf(data);
   document.title = `${title} · tetlap`;
 
   const transport = times.length > 1 ? new Transport(runs, times, state) : null;
@@ -116,9 +130,12 @@ async function start() {
     transport.seek(best);
   };
   const plots = transport ? listPlots(data, worldSize(runs)).map((plot) => new TimePlot(plot, runs, state, seek)) : [];
+  const live = data.live ? (kept?.live ?? new LiveBar()) : null;
+  live?.show(data.live);
   const page = h(
     "main",
     buildHeader(runs, title),
+    live?.element,
     buildOverview(runs),
     stage?.element,
     transport?.element,
@@ -130,13 +147,40 @@ async function start() {
     data.benches && buildBenches(data.benches),
     buildManifest(runs),
   );
+  return { state, transport, stage, plots, data, live, times, page, bar: buildBar(state, data.version) };
+}
+
+// A newer page in the place of this one, once it is ready to be seen: same camera, field, cut and scroll.
+async function replace(data) {
+  const old = window.tetlap;
+  old.transport?.pause();
+  const place = document.activeElement?.dataset?.place;
+  const next = build(data, old);
+  next.page.classList.add("arriving");
+  document.body.insertBefore(next.page, old.page.nextSibling);
+  await next.stage?.load(old.stage?.view());
+  old.bar.replaceWith(next.bar);
+  old.page.remove();
+  next.page.classList.remove("arriving");
+  next.stage?.resize();
+  old.stage?.destroy();
+  window.tetlap = next;
+  if (place) document.querySelector(`[data-place="${place}"]`)?.focus({ preventScroll: true });
+}
+
+async function start() {
+  const data = readData();
   const text = licences();
-  const footer = h("footer", h("p", "Made by tetlap report. This page is one file and asks for nothing from any network."), text && h("details.more", h("summary", "Licences of what is inside this page"), h("pre", { tabindex: 0 }, text)));
-  document.body.replaceChildren(...document.querySelectorAll("body > script"), buildBar(state, data.version), page, footer);
-  listenToKeys(state, transport, stage);
-  await stage?.load();
+  const says = data.live ? "Served by tetlap view to this machine alone." : "Made by tetlap report. This page is one file and asks for nothing from any network.";
+  const footer = h("footer", h("p", says), text && h("details.more", h("summary", "Licences of what is inside this page"), h("pre", { tabindex: 0 }, text)));
+  const page = build(data);
+  window.tetlap = page;
+  prefersDark.addEventListener("change", () => window.tetlap.state.set({ theme: themeOf() }));
+  document.body.replaceChildren(...document.querySelectorAll("body > script"), page.bar, page.page, footer);
+  listenToKeys();
+  await page.stage?.load();
   for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame); // plots draw when they know their size
-  window.tetlap = { state, transport, stage, plots, data };
+  if (data.live) follow(data.live, (state) => window.tetlap.live.show(state), (source) => replace(readData(source)));
 }
 
 start().then(

@@ -105,6 +105,15 @@ export function listPlots(data, size) {
   return plots.filter((plot) => plot.series.some((one) => one.values.some(Number.isFinite)));
 }
 
+// When runs differ most from the first: in their contact forces, else nothing is known.
+export function momentOf(runs) {
+  let [most, moment] = [0, undefined];
+  for (const other of runs.slice(1))
+    for (const { values, times } of forceDifference([runs[0], other]))
+      values.forEach((value, i) => value > most && ([most, moment] = [value, times[i]]));
+  return moment;
+}
+
 export class TimePlot {
   constructor(plot, runs, state, seek) {
     Object.assign(this, { plot, runs, state, seek });

@@ -410,4 +410,9 @@ export class View {
   render(camera) {
     this.renderer.render(this.scene, camera);
   }
+
+  destroy() {
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
 }

@@ -99,12 +99,14 @@ export class Stage {
     );
   }
 
-  async load() {
+  // `view`: the camera of a stage that this one takes the place of.
+  async load(view) {
     const all = await Promise.all(this.runs.map(readFrames));
     this.world = worldOf(all);
     this.runs.forEach((run, k) => this.addPane(run, all[k]));
     for (const view of this.views) view.body = await view.frames.field("body");
     this.addCamera();
+    if (view) this.setView(view);
     this.listen();
     await this.showField();
     this.showTheme();
@@ -144,6 +146,28 @@ export class Stage {
     // The wheel scrolls the page, too; with Ctrl, or a pinch, it comes closer.
     this.panes.addEventListener("wheel", (event) => event.ctrlKey || event.metaKey || event.stopImmediatePropagation(), { capture: true });
     this.resetCamera();
+  }
+
+  // Where the camera stands and what it looks at, in the scene's coordinates.
+  view() {
+    if (!this.camera) return undefined;
+    const { origin } = this.world;
+    const add = (place) => place.toArray().map((value, k) => value + origin[k]);
+    return { position: add(this.camera.position), target: add(this.controls.target) };
+  }
+
+  setView({ position, target }) {
+    const { origin } = this.world;
+    const less = (place) => place.map((value, k) => value - origin[k]);
+    this.isPlaced = true;
+    this.camera.position.fromArray(less(position));
+    this.controls.target.fromArray(less(target));
+    this.controls.update();
+  }
+
+  destroy() {
+    this.controls?.dispose();
+    for (const view of this.views) view.destroy();
   }
 
   // From the front, a little from above, so near that all frames just fit.
@@ -308,7 +332,7 @@ export class Stage {
     if (!canvas) return;
     const { width, height } = canvas.getBoundingClientRect();
     if (!width || !height) return;
-    const isFirst = this.camera.aspect === 1 && !this.isSized;
+    const isFirst = !this.isPlaced && this.camera.aspect === 1 && !this.isSized;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     for (const view of this.views) view.resize(width, height);

@@ -36,9 +36,10 @@ export class Transport {
 
   build(runs) {
     const last = this.times.length - 1;
-    this.button = h("button.play", { type: "button", "aria-label": "Play", click: () => this.toggle() }, icon(PLAY));
+    this.button = h("button.play", { type: "button", "data-place": "play", "aria-label": "Play", click: () => this.toggle() }, icon(PLAY));
     this.range = h("input.scrub", {
       type: "range",
+      "data-place": "time",
       min: 0,
       max: last,
       step: 1,

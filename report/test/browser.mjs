@@ -16,7 +16,7 @@ const FLAGS = [
   "--hide-scrollbars",
   "--use-angle=swiftshader", // WebGL without a graphics card
   "--enable-unsafe-swiftshader",
-  "--host-resolver-rules=MAP * ~NOTFOUND", // no network
+  "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1", // no network but this machine
 ];
 
 export async function launch(program) {

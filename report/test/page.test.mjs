@@ -3,8 +3,8 @@
 // models, and one with obstacles of every kind, makes the pages, uses them, and leaves screenshots in OUT.
 
 import assert from "node:assert/strict";
-import { execFileSync, spawnSync } from "node:child_process";
-import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { execFileSync, spawn, spawnSync } from "node:child_process";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { launch } from "./browser.mjs";
 
@@ -402,6 +402,45 @@ const sweepTests = {
   },
 };
 
+// The address that `tetlap view` prints.
+function serve(folder) {
+  mkdirSync(folder, { recursive: true });
+  const server = spawn(tetlap, ["view", folder, "-q"], { stdio: ["ignore", "pipe", "inherit"] });
+  return new Promise((resolve, reject) => {
+    server.stdout.once("data", (text) => resolve({ server, url: String(text).trim() }));
+    server.once("exit", () => reject(new Error("tetlap view ended")));
+  });
+}
+
+// A run is watched from before it begins until it has ended.
+async function testLive(browser) {
+  const folder = join(out, "live");
+  rmSync(folder, { recursive: true, force: true });
+  const { server, url } = await serve(folder);
+  const page = await browser.open(url, { width: 1280, height: 900 });
+  const word = () => page.eval(`document.querySelector(".live [role=status]").textContent`);
+  try {
+    assert.equal(await word(), "Waiting for the run to begin");
+    const run = spawn(tetlap, ["run", scene, "-q", "-o", folder, "-s", "output.frames=40"], { stdio: ["ignore", "ignore", "inherit"] });
+    await page.until("tetlap.times.length > 5 && !!tetlap.stage?.camera");
+    assert.equal(await word(), "Running");
+    await page.eval("(tetlap.state.set({ cut: 1, theme: 'dark' }), tetlap.stage.controls.target.set(0.01, 0, 0), tetlap.stage.controls.update(), tetlap.before = tetlap.stage, 0)");
+    const frames = await page.eval("tetlap.times.length");
+    await page.until(`tetlap.times.length > ${frames} && tetlap.stage.views.length === 1`);
+    assert.equal(await page.eval("tetlap.before === tetlap.stage"), false);
+    assert.deepEqual(await page.eval("[tetlap.state.cut, tetlap.state.theme, tetlap.state.time === tetlap.times.at(-1)]"), [1, "dark", true]);
+    await page.until("tetlap.data.live.outcome === 'finished' && tetlap.times.length === 41");
+    run.kill();
+    assert.equal(await word(), "Finished");
+    assert.ok((await page.eval(COLOURS)).every((count) => count > 50));
+    assert.deepEqual(page.problems, []);
+    assert.ok(page.requests.every((one) => one.startsWith(url) || one.startsWith("data:")));
+  } finally {
+    await page.close();
+    server.kill("SIGINT");
+  }
+}
+
 async function shoot(browser, url, name, view, script) {
   const page = await browser.open(url, view);
   await page.eval(script);
@@ -442,6 +481,7 @@ try {
     await attempt("no complaint after all of it", () => assert.deepEqual(table.problems, []));
     await table.close();
   }
+  await attempt("a page follows a run from before it begins to its end", () => testLive(browser));
   const sweep = await browser.open(pages.sweep, { width: 1280, height: 900 });
   for (const [name, test] of Object.entries(sweepTests)) await attempt(name, () => test(sweep));
   await attempt("no complaint after all of it", () => assert.deepEqual(sweep.problems, []));

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/view/server.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+
+static const char *header_of(const AppViewServer *server, struct MHD_Connection *connection,
+                             const char *name) {
+  return server->library.lookup_connection_value(connection, MHD_HEADER_KIND, name);
+}
+
+// Whether the request names this server as its host.
+static bool is_own_host(const AppViewServer *server, const char *host) {
+  static const char *const hosts[] = {"127.0.0.1", "localhost"};
+  char own[32];
+  for (int k = 0; host && k < 2; k++) {
+    snprintf(own, sizeof own, "%s:%d", hosts[k], server->port);
+    if (strcmp(host, own) == 0) return true;
+  }
+  return false;
+}
+
+// Whether a page of another site asks: browsers say so. To follow a link from there is fine.
+static bool is_foreign(const AppViewServer *server, struct MHD_Connection *connection) {
+  const char *site = header_of(server, connection, "Sec-Fetch-Site"),
+             *mode = header_of(server, connection, "Sec-Fetch-Mode");
+  if (!site || strcmp(site, "same-origin") == 0 || strcmp(site, "none") == 0) return false;
+  return !mode || strcmp(mode, "navigate") != 0;
+}
+
+// The reply takes `text` over, which malloc gave; headers keep it where it belongs.
+static enum MHD_Result reply(const AppViewServer *server, struct MHD_Connection *connection,
+                             unsigned int code, const char *type, char *text, size_t size) {
+  static const char *const headers[][2] = {
+      {"Cache-Control", "no-store"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Content-Security-Policy", "frame-ancestors 'none'"},
+      {"Referrer-Policy", "no-referrer"},
+  };
+  const AppViewLibrary *library = &server->library;
+  struct MHD_Response *response = library->create_response_from_buffer(size, text, MHD_RESPMEM_MUST_FREE);
+  if (!response) {
+    free(text);
+    return MHD_NO;
+  }
+  library->add_response_header(response, "Content-Type", type);
+  for (size_t k = 0; k < sizeof headers / sizeof *headers; k++)
+    library->add_response_header(response, headers[k][0], headers[k][1]);
+  enum MHD_Result result = library->queue_response(connection, code, response);
+  library->destroy_response(response);
+  return result;
+}
+
+static enum MHD_Result refuse(const AppViewServer *server, struct MHD_Connection *connection,
+                              unsigned int code, const char *why) {
+  char *text = strdup(why);
+  return text ? reply(server, connection, code, "text/plain; charset=utf-8", text, strlen(text)) : MHD_NO;
+}
+
+static enum MHD_Result send_state(const AppViewServer *server, struct MHD_Connection *connection) {
+  Record *state;
+  char *text = NULL;
+  size_t size = 0;
+  Status status = app_view_folder_state(&server->folder, &state);
+  FILE *stream = status ? NULL : open_memstream(&text, &size);
+  if (!status) status = stream ? record_print_line(state, stream) : status_no_memory("the state");
+  if (stream) fclose(stream);
+  record_destroy(state);
+  if (!status) return reply(server, connection, MHD_HTTP_OK, "application/json", text, size);
+  free(text);
+  return refuse(server, connection, MHD_HTTP_INTERNAL_SERVER_ERROR, status_message());
+}
+
+// What is written just now may not fit together, so it is read again before that is told.
+static enum MHD_Result send_page(const AppViewServer *server, struct MHD_Connection *connection) {
+  static const struct timespec pause = {.tv_nsec = 100 * 1000 * 1000};
+  enum { ATTEMPTS = 3 };
+  char *page;
+  size_t size;
+  for (int attempt = 1; app_view_folder_page(&server->folder, &page, &size); attempt++) {
+    if (attempt == ATTEMPTS)
+      return refuse(server, connection, MHD_HTTP_INTERNAL_SERVER_ERROR, status_message());
+    nanosleep(&pause, NULL);
+  }
+  return reply(server, connection, MHD_HTTP_OK, "text/html; charset=utf-8", page, size);
+}
+
+static enum MHD_Result answer(void *self, struct MHD_Connection *connection, const char *url,
+                              const char *method, const char *version, const char *upload,
+                              size_t *upload_size, void **state) {
+  (void)version, (void)upload, (void)upload_size, (void)state;
+  const AppViewServer *server = self;
+  if (!is_own_host(server, header_of(server, connection, "Host")))
+    return refuse(server, connection, MHD_HTTP_FORBIDDEN, "this server answers to 127.0.0.1 only");
+  if (is_foreign(server, connection))
+    return refuse(server, connection, MHD_HTTP_FORBIDDEN, "this server does not answer to pages of others");
+  if (strcmp(method, "GET") != 0)
+    return refuse(server, connection, MHD_HTTP_METHOD_NOT_ALLOWED, "there is nothing but GET");
+  bool is_page = strcmp(url, "/") == 0;
+  if (!is_page && strcmp(url, "/state") != 0)
+    return refuse(server, connection, MHD_HTTP_NOT_FOUND, "there is nothing but / and /state");
+  if (app_view_folder_check(&server->folder))
+    return refuse(server, connection, MHD_HTTP_FORBIDDEN, status_message());
+  return is_page ? send_page(server, connection) : send_state(server, connection);
+}
+
+static int port_of(const AppViewServer *server) {
+  const union MHD_DaemonInfo *info =
+      server->library.get_daemon_info(server->daemon, MHD_DAEMON_INFO_BIND_PORT);
+  return info ? info->port : 0;
+}
+
+Status app_view_server_start(AppViewServer *server, const AppViewFolder *folder, int port) {
+  *server = (AppViewServer){.folder = *folder};
+  TRY(app_view_library_load(&server->library));
+  struct sockaddr_in address = {
+      .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+  enum { SECONDS = 30, MOST_CONNECTIONS = 32 };
+  server->daemon = server->library.start_daemon(
+      MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_AUTO, (uint16_t)port, NULL, NULL, answer, server,
+      MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned int)SECONDS,
+      MHD_OPTION_CONNECTION_LIMIT, (unsigned int)MOST_CONNECTIONS, MHD_OPTION_END);
+  if (!server->daemon)
+    return status_fail(STATUS_IO,
+                       "port %d of 127.0.0.1 cannot be opened: another program has it; choose one "
+                       "with --port, or 0 for any that is free",
+                       port);
+  server->port = port ? port : port_of(server);
+  return STATUS_OK;
+}
+
+void app_view_server_stop(AppViewServer *server) {
+  if (server->daemon) server->library.stop_daemon(server->daemon);
+  server->daemon = NULL;
+}
