@@ -38,6 +38,7 @@
 #include "net/status.h"
 #include "net/training/adam.h"
 #include "net/training/loss.h"
+#include "net/training/plateau.h"
 #include "net/training/schedule.h"
 #include "net/work.h"
 

@@ -52,10 +52,13 @@ static inline NetShape net_suite_shape(NetRandom *random, NetKind kind) {
   shape.backbone = net_suite_widths(random, 0);
   shape.status_head = net_suite_widths(random, 0);
   shape.volume_head = net_suite_widths(random, 0);
-  shape.vertex_skip = (NetSkip)net_suite_below(random, 4);
-  shape.tetrahedron_skip = (NetSkip)net_suite_below(random, 3);
+  static const NetSkip of_tetrahedra[] = {NET_SKIP_NONE, NET_SKIP_BIASED, NET_SKIP_UNBIASED, NET_SKIP_OWN};
+  shape.vertex_skip = (NetSkip)net_suite_below(random, 5);
+  shape.tetrahedron_skip = of_tetrahedra[net_suite_below(random, 4)];
   shape.combiner_skip = (NetSkip)net_suite_below(random, 3);
-  shape.input_count = 24;
+  shape.has_one_tetrahedron = net_suite_below(random, 2);
+  shape.ends_linear = net_suite_below(random, 2);
+  shape.input_count = shape.has_one_tetrahedron ? 12 : 24;
   shape.output_count = 2;
   return shape;
 }

@@ -31,6 +31,7 @@ static void fill(Case *made, NetRandom *random) {
 static Case make_case(int index) {
   NetRandom random = net_random_seeded(31, (uint64_t)index);
   NetShape shape = net_suite_shape(&random, NET_TPN);
+  shape.has_one_tetrahedron = false, shape.input_count = 24;
   Case made = {.whole = net_suite_model(&shape, (uint64_t)index)};
   ck_net_ok(net_fold_create_f64(&made.whole, first, &made.folded));
   made.whole_work = net_suite_work(&made.whole, 1, TANGENTS, SAMPLES);

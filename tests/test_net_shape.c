@@ -13,9 +13,84 @@ static size_t count_of(NetShape shape) {
   return count;
 }
 
-START_TEST(both_readings_of_the_paper_have_73370_parameters) {
+START_TEST(all_readings_of_the_paper_have_73370_parameters) {
   ck_assert_uint_eq(count_of(net_shape_tpn_a()), 73370);
   ck_assert_uint_eq(count_of(net_shape_tpn_b()), 73370);
+  ck_assert_uint_eq(count_of(net_shape_tpn_c()), 73370);
+}
+END_TEST
+
+// Rows × columns of the published network's tensors, off its authors' code; a bias has one column.
+START_TEST(the_published_network_has_its_tensors) {
+  static const struct {
+    const char *name;
+    int rows, columns;
+  } expected[] = {
+      {"vertex.0", 24, 3},
+      {"vertex.1", 24, 24},
+      {"vertex_skip.0", 24, 3},
+      {"vertex_skip.7", 24, 3},
+      {"tetrahedron.0", 48, 24},
+      {"tetrahedron.1", 48, 48},
+      {"tetrahedron_skip.0", 48, 12},
+      {"tetrahedron_skip.1", 48, 12},
+      {"combiner.0", 96, 48},
+      {"combiner.1", 96, 96},
+      {"combiner_skip", 96, 12},
+      {"status_head.0", 128, 96},
+      {"status_head.1", 64, 128},
+      {"status_head.2", 32, 64},
+      {"status_head.3", 1, 32},
+      {"volume_head.0", 128, 96},
+      {"volume_head.1", 128, 128},
+      {"volume_head.2", 1, 128},
+  };
+  NetShape shape = net_shape_tpn_c();
+  NetPlan *plan = net_memory_zeroed(1, sizeof *plan);
+  ck_net_ok(net_plan_create(&shape, plan));
+  for (size_t k = 0; k < sizeof expected / sizeof *expected; k++) {
+    char name[NET_NAME_SIZE];
+    snprintf(name, sizeof name, "%s.weight", expected[k].name);
+    int weight = net_plan_find(plan, name);
+    snprintf(name, sizeof name, "%s.bias", expected[k].name);
+    int bias = net_plan_find(plan, name);
+    ck_assert_msg(weight >= 0 && bias >= 0, "%s", expected[k].name);
+    ck_assert_int_eq(plan->tensors[weight].rows, expected[k].rows);
+    ck_assert_int_eq(plan->tensors[weight].columns, expected[k].columns);
+    ck_assert_int_eq(plan->tensors[bias].rows, expected[k].rows);
+  }
+  ck_assert_int_eq(plan->tensor_count, 2 * (18 + 6)); // six vertex skips are not named above
+  net_memory_free(plan);
+}
+END_TEST
+
+// What no input reaches has no gradient: four vertex skips, 4 (24 · 3 + 24), and a tetrahedron's, 48 · 12
+// + 48.
+START_TEST(the_published_network_never_reaches_1008_parameters) {
+  NetShape shape = net_shape_tpn_c();
+  NetModel_f64 model = net_suite_model(&shape, 6);
+  NetWork_f64 work = net_suite_work(&model, 1, 0, 64);
+  NetRandom random = net_random_seeded(7, 0);
+  size_t count = model.plan->parameter_count, idle = 0, others = 0;
+  double *x = net_suite_array(&random, 64 * 12, 2), *gy = net_suite_array(&random, 64 * 2, 1), y[128];
+  double *gradient = net_suite_array(&random, (int)count, 1);
+  net_gradient_forward_f64(&work, &model, 64, 0, x, NULL, y, NULL);
+  net_gradient_backward_f64(&work, &model, 64, 0, gy, NULL, gradient);
+  for (int k = 0; k < model.plan->tensor_count; k++) {
+    const NetTensor *tensor = &model.plan->tensors[k];
+    double largest = 0;
+    for (size_t i = 0; i < net_plan_tensor_size(tensor); i++)
+      largest = suite_larger(largest, fabs(gradient[tensor->offset + i]));
+    if (strstr(tensor->name, "_skip.") && largest == 0)
+      idle += net_plan_tensor_size(tensor);
+    else
+      others += largest > 0 ? net_plan_tensor_size(tensor) : 0;
+  }
+  ck_assert_uint_eq(idle, 1008);
+  ck_assert_uint_eq(others, 73370 - 1008);
+  net_memory_free(x), net_memory_free(gy), net_memory_free(gradient);
+  net_work_destroy_f64(&work);
+  net_model_destroy_f64(&model);
 }
 END_TEST
 
@@ -80,6 +155,11 @@ START_TEST(a_shape_out_of_range_is_refused_by_the_field) {
   shape = net_shape_tpn_a();
   shape.combiner_skip = NET_SKIP_PER_INDEX;
   ck_net_fails(net_model_create_f32(&shape, &model), NET_BAD_ARGUMENT, "per_index");
+  shape.combiner_skip = NET_SKIP_OWN;
+  ck_net_fails(net_model_create_f32(&shape, &model), NET_BAD_ARGUMENT, "own");
+  shape = net_shape_tpn_c();
+  shape.input_count = 24;
+  ck_net_fails(net_model_create_f32(&shape, &model), NET_BAD_ARGUMENT, "12 inputs");
   shape = net_shape_mlp(5, 8, 9, 1);
   ck_net_fails(net_model_create_f32(&shape, &model), NET_BAD_ARGUMENT, "hidden has 9 layers");
 }
@@ -92,7 +172,8 @@ START_TEST(the_deepest_shape_can_be_evaluated) {
   shape.vertex = shape.tetrahedron = shape.combiner = deepest;
   shape.backbone = shape.status_head = shape.volume_head = deepest;
   shape.activation = NET_SILU;
-  shape.tetrahedron_skip = shape.combiner_skip = NET_SKIP_BIASED;
+  shape.vertex_skip = shape.tetrahedron_skip = NET_SKIP_OWN;
+  shape.combiner_skip = NET_SKIP_BIASED;
   NetModel_f64 model = net_suite_model(&shape, 1);
   NetWork_f64 work = net_suite_work(&model, 1, 0, 0);
   double x[24] = {0.5}, y[2];
@@ -184,7 +265,9 @@ END_TEST
 
 int main(void) {
   TCase *test_case = tcase_create("net_shape");
-  tcase_add_test(test_case, both_readings_of_the_paper_have_73370_parameters);
+  tcase_add_test(test_case, all_readings_of_the_paper_have_73370_parameters);
+  tcase_add_test(test_case, the_published_network_has_its_tensors);
+  tcase_add_test(test_case, the_published_network_never_reaches_1008_parameters);
   tcase_add_test(test_case, the_1024_backbone_has_410266_parameters);
   tcase_add_test(test_case, the_networks_of_the_study_have_their_parameters);
   tcase_add_test(test_case, a_shape_survives_its_text);

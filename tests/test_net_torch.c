@@ -80,8 +80,9 @@ static void make_double(const char *name, const NetShape *shape) {
   NetWork_f64 work = net_suite_work(&model, 1, 0, COUNT);
   ck_net_ok(net_weights_write_f64(place(name, "weights"), &model, &card));
   NetRandom random = net_random_seeded(43, 0);
-  double *x = net_suite_array(&random, COUNT * 24, 1), *c = net_suite_array(&random, COUNT * 2, 1);
-  double *y = net_suite_array(&random, COUNT * 2, 0), *gx = net_suite_array(&random, COUNT * 24, 0);
+  int inputs = shape->input_count;
+  double *x = net_suite_array(&random, COUNT * inputs, 1), *c = net_suite_array(&random, COUNT * 2, 1);
+  double *y = net_suite_array(&random, COUNT * 2, 0), *gx = net_suite_array(&random, COUNT * inputs, 0);
   double *later = net_suite_array(&random, COUNT * 2, 0);
   double *labels = net_suite_array(&random, COUNT, 1), *targets = net_suite_array(&random, COUNT, 3);
   double *gradient = net_suite_array(&random, (int)model.plan->parameter_count, 0), *first, gy[COUNT * 2],
@@ -104,10 +105,10 @@ static void make_double(const char *name, const NetShape *shape) {
   }
   static NetEntry entries[MAX_ENTRIES];
   int count = 0;
-  entries[count++] = entry_of("x", NET_DOUBLE, COUNT, 24, x);
+  entries[count++] = entry_of("x", NET_DOUBLE, COUNT, inputs, x);
   entries[count++] = entry_of("y", NET_DOUBLE, COUNT, 2, y);
   entries[count++] = entry_of("c", NET_DOUBLE, COUNT, 2, c);
-  entries[count++] = entry_of("gx", NET_DOUBLE, COUNT, 24, gx);
+  entries[count++] = entry_of("gx", NET_DOUBLE, COUNT, inputs, gx);
   entries[count++] = entry_of("labels", NET_DOUBLE, COUNT, 0, labels);
   entries[count++] = entry_of("targets", NET_DOUBLE, COUNT, 0, targets);
   entries[count++] = entry_of("loss", NET_DOUBLE, 1, 0, &loss);
@@ -122,23 +123,30 @@ static void make_double(const char *name, const NetShape *shape) {
 }
 
 START_TEST(networks_and_what_they_compute_are_written) {
-  NetShape a = net_shape_tpn_a(), b = net_shape_tpn_b(), wide = net_shape_tpn_backbone();
+  NetShape a = net_shape_tpn_a(), b = net_shape_tpn_b(), c = net_shape_tpn_c();
+  NetShape wide = net_shape_tpn_backbone(), both = net_shape_tpn_c();
   NetShape smooth = net_shape_tpn_a(), geo = net_shape_mlp(100, 32, 3, 1);
+  both.has_one_tetrahedron = false, both.input_count = 24;
   smooth.activation = NET_SILU, smooth.pool = NET_SUM, smooth.tetrahedron_skip = NET_SKIP_NONE;
   make_single("a", &a);
   make_single("b", &b);
+  make_single("c", &c);
   make_single("backbone", &wide);
   make_single("smooth", &smooth);
   make_single("geo", &geo);
   make_double("a64", &a);
   make_double("b64", &b);
+  make_double("c64", &c);
+  make_double("both64", &both);
   make_double("smooth64", &smooth);
 }
 END_TEST
 
 static void clean(void) {
-  static const char *const names[] = {"a", "b", "backbone", "smooth", "geo", "a64", "b64", "smooth64"};
-  for (int k = 0; k < 8; k++) unlink(place(names[k], "weights")), unlink(place(names[k], "case"));
+  static const char *const names[] = {"a",   "b",   "c",   "backbone", "smooth",  "geo",
+                                      "a64", "b64", "c64", "both64",   "smooth64"};
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+    unlink(place(names[k], "weights")), unlink(place(names[k], "case"));
   rmdir(directory);
 }
 
@@ -151,8 +159,9 @@ int main(void) {
   TCase *test_case = tcase_create("net_torch");
   tcase_add_test(test_case, networks_and_what_they_compute_are_written);
   if (suite_run("net_torch", test_case, 60) != EXIT_SUCCESS) return EXIT_FAILURE;
-  char command[256];
-  snprintf(command, sizeof command, "python3 '%s/tests/torch_compare.py' %s", TETLAP_SOURCE_DIR, directory);
+  char command[512];
+  snprintf(command, sizeof command, "'%s' '%s/tests/torch_compare.py' %s", TETLAP_PYTHON, TETLAP_SOURCE_DIR,
+           directory);
   fflush(stdout);
   int status = system(command);
   clean();

@@ -9,7 +9,7 @@
 
 // The two that are maps of space come first.
 static const OverlapTpnNormalisation kinds[] = {OVERLAP_TPN_NORMALISE_UNIT, OVERLAP_TPN_NORMALISE_PCA,
-                                                OVERLAP_TPN_NORMALISE_SORTED};
+                                                OVERLAP_TPN_NORMALISE_SORTED, OVERLAP_TPN_NORMALISE_UNSCALED};
 
 static void draw_pair(Random *random, double pair[24]) {
   for (int i = 0; i < 24; i++) pair[i] = random_uniform(random);
@@ -64,11 +64,25 @@ START_TEST(volume_is_the_factor_times_the_normalised_volume) {
 }
 END_TEST
 
+START_TEST(unscaled_is_unit_with_a_factor_of_one) {
+  Random random = random_seeded(9, 0);
+  double pair[24];
+  for (int n = 0; n < 50; n++) {
+    OverlapTpnNormalised unit, unscaled;
+    draw_pair(&random, pair);
+    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_UNIT, pair, &unit));
+    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_UNSCALED, pair, &unscaled));
+    ck_assert_double_eq(unscaled.factor, 1);
+    ck_assert_mem_eq(unscaled.pair, unit.pair, sizeof unit.pair);
+  }
+}
+END_TEST
+
 START_TEST(rigid_motion_leaves_all_normalised_pairs_unchanged) {
   Random random = random_seeded(2, 0);
   double pair[24], moved[24], r[9];
   for (int n = 0; n < 200; n++)
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
       OverlapTpnNormalised before, after;
       draw_pair(&random, pair);
       random_rotation(&random, r);
@@ -143,7 +157,7 @@ START_TEST(gradient_is_that_of_the_whole_chain) {
   Random random = random_seeded(3, 0);
   double pair[24], inner[24], gradient[24];
   for (int n = 0; n < 50; n++)
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
       OverlapTpnNormalised normalised;
       do draw_pair(&random, pair);
       while (!overlap_tpn_normalise(kinds[k], pair, &normalised) || !(normalised.matrix[0] < 10) ||
@@ -196,6 +210,7 @@ int main(void) {
   tcase_add_test(test_case, first_tetrahedron_becomes_the_unit_simplex);
   tcase_add_test(test_case, principal_axes_of_a_long_tetrahedron_are_its_own);
   tcase_add_test(test_case, volume_is_the_factor_times_the_normalised_volume);
+  tcase_add_test(test_case, unscaled_is_unit_with_a_factor_of_one);
   tcase_add_test(test_case, sorted_pair_does_not_depend_on_the_order_of_vertices);
   tcase_add_test(test_case, sorted_pair_by_hand);
   tcase_add_test(test_case, rigid_motion_leaves_all_normalised_pairs_unchanged);

@@ -29,7 +29,7 @@ def main():
     torch.set_num_threads(int(threads))
     tensors, metadata = read(pathlib.Path(weights))
     network = Network({name: tensor.to(dtype) for name, tensor in tensors.items()}, metadata)
-    columns = 24 if network.shape["kind"] == "tpn" else network.weights["layer.0.weight"].shape[1]
+    columns = network.input_count()
     numbers = bytearray(pathlib.Path(inputs).read_bytes())
     samples = torch.frombuffer(numbers, dtype=dtype).reshape(-1, columns)
     parameters = list(network.weights.values())

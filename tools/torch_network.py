@@ -31,16 +31,34 @@ class Network:
         self.weights = {name: tensor.requires_grad_() for name, tensor in tensors.items()}
         self.activate = {"relu": torch.relu, "silu": torch.nn.functional.silu}[self.shape["activation"]]
 
+    def input_count(self):
+        if self.shape["kind"] == "tpn":
+            return 12 if self.shape.get("one_tetrahedron", False) else 24
+        return self.weights["layer.0.weight"].shape[1]
+
     def linear(self, name, x):
         return torch.nn.functional.linear(x, self.weights[name + ".weight"], self.weights.get(name + ".bias"))
 
     def layers(self, block, x, widths):
         for k in range(len(widths)):
-            x = self.activate(self.linear(f"{block}.{k}", x))
+            x = self.linear(f"{block}.{k}", x)
+            if not self.ends_linearly(block) or k < len(widths) - 1:
+                x = self.activate(x)
         return x
+
+    def ends_linearly(self, block):
+        return self.shape.get("linear_ends", False) and block in ("vertex", "tetrahedron", "combiner")
+
+    def own(self, block, raw):
+        """A map for each vertex (or tetrahedron) of the pair; with one tetrahedron the others are idle."""
+        members = raw.reshape(len(raw), -1, raw.shape[-1])
+        maps = [self.linear(f"{block}_skip.{m}", members[:, m]) for m in range(members.shape[1])]
+        return torch.stack(maps, dim=1).reshape(*raw.shape[:-1], -1)
 
     def skip(self, block, x, raw):
         kind = self.shape[block + "_skip"]
+        if kind == "own":
+            return x + self.own(block, raw)
         if kind == "none":
             return x
         if kind == "per_index":  # one matrix for each of the four vertices, which are the last dimension but one
@@ -58,12 +76,13 @@ class Network:
         shape = self.shape
         if shape["kind"] == "mlp":
             return self.linear(f"layer.{len(shape['hidden'])}", self.layers("layer", x, shape["hidden"]))
-        xyz = x.reshape(-1, 2, 4, 3)
+        count = 1 if shape.get("one_tetrahedron", False) else 2
+        xyz = x.reshape(-1, count, 4, 3)
         h = self.skip("vertex", self.layers("vertex", xyz, shape["vertex"]), xyz)
         if shape["coordinates"]:
             h = torch.cat([h, xyz], dim=-1)
         h = self.layers("tetrahedron", self.pool(h), shape["tetrahedron"])
-        h = self.skip("tetrahedron", h, x.reshape(-1, 2, 12))
+        h = self.skip("tetrahedron", h, x.reshape(-1, count, 12))
         h = self.skip("combiner", self.layers("combiner", self.pool(h), shape["combiner"]), x)
         h = self.layers("backbone", h, shape["backbone"])
         return torch.cat([self.head("status_head", h), self.head("volume_head", h)], dim=-1)

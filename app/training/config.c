@@ -14,19 +14,24 @@
 static const char *const kinds[] = {"geo", "tpn", NULL};
 static const char *const kind_helps[] = {"analytic-centre frame, symmetric features, a small dense network",
                                          "the paper's TetrahedronPairNet"};
-static const char *const readings[] = {"a", "b", "backbone", NULL};
+static const char *const readings[] = {"a", "b", "c", "backbone", NULL};
 static const char *const reading_helps[] = {"coordinates concatenated, biased skips; 73,370 parameters",
                                             "a vertex skip for each index; 73,370 parameters",
+                                            "as published: one tetrahedron, blocks that end linearly; 73,370",
                                             "reading a with a layer of 1024; 410,266 parameters"};
 static const char *const activations[] = {"relu", "silu", NULL};
 static const char *const activation_helps[] = {"as published; its gradient is piecewise constant", "smooth"};
 static const char *const pools[] = {"max", "sum", NULL};
 static const char *const pool_helps[] = {"as published; the gradient jumps where another vertex takes over",
                                          "smooth"};
-static const char *const normalisations[] = {"unit", "pca", "sorted", NULL};
+static const char *const normalisations[] = {"unit", "pca", "sorted", "unscaled", NULL};
 static const char *const normalisation_helps[] = {"the first tetrahedron becomes the unit simplex",
                                                   "the first tetrahedron's principal axes become the axes",
-                                                  "unit, vertices in an order of their own"};
+                                                  "unit, vertices in an order of their own",
+                                                  "unit, but the network tells V of the pair as it was"};
+static const char *const schedules[] = {"cosine", "plateau", NULL};
+static const char *const schedule_helps[] = {"half a cosine from rate to final_rate",
+                                             "a cut where the validation's score stops falling"};
 
 static const char *kind_name(int i) {
   return kinds[i];
@@ -59,17 +64,30 @@ static const char *normalisation_help(int i) {
   return normalisation_helps[i];
 }
 
+static const char *schedule_name(int i) {
+  return schedules[i];
+}
+static const char *schedule_help(int i) {
+  return schedule_helps[i];
+}
+
 static const SceneChoices kind_choices = {.name = kind_name, .help = kind_help};
 static const SceneChoices reading_choices = {.name = reading_name, .help = reading_help};
 static const SceneChoices activation_choices = {.name = activation_name, .help = activation_help};
 static const SceneChoices pool_choices = {.name = pool_name, .help = pool_help};
 static const SceneChoices normalisation_choices = {.name = normalisation_name, .help = normalisation_help};
 
+static const SceneChoices schedule_choices = {.name = schedule_name, .help = schedule_help};
+
 static const char *finish_model(void *self, const char **key) {
   const AppTrainingModelDef *model = self;
   *key = "features";
   if (model->kind == APP_MODEL_GEO && !overlap_geo_features_set(model->features))
     return "there is no set of so many features: 36, 70, 100";
+  *key = "normalisation";
+  if (model->kind == APP_MODEL_TPN && model->reading == APP_READING_C &&
+      model->normalisation == APP_NORMALISATION_PCA)
+    return "reading c is shown the second tetrahedron alone: unit, sorted or unscaled";
   return NULL;
 }
 
@@ -78,6 +96,8 @@ static const char *finish_root(void *self, const char **key) {
   *key = "loss";
   if (config->loss.sobolev > 0 && config->model.normalisation != APP_NORMALISATION_UNIT)
     return "sobolev needs model.normalisation: unit";
+  if (config->loss.sobolev > 0 && config->model.reading == APP_READING_C)
+    return "sobolev needs a model.reading of both tetrahedra: a, b, backbone";
   return NULL;
 }
 
@@ -158,7 +178,13 @@ static const SceneKey optimiser_keys[] = {
     {"rate", SCENE_NUMBER, AT(AppTrainingOptimiserDef, rate), .range = "(0, inf)", .fallback = "2e-3",
      .help = "AdamW's learning rate at its peak"},
     {"final_rate", SCENE_NUMBER, AT(AppTrainingOptimiserDef, final_rate), .range = "[0, inf)", .fallback = "0",
-     .help = "at the end of half a cosine"},
+     .help = "at the end of half a cosine; the least of plateau"},
+    {"schedule", SCENE_CHOICE, AT(AppTrainingOptimiserDef, schedule), .choices = &schedule_choices,
+     .fallback = "cosine", .help = "of the learning rate, after the warm-up"},
+    {"plateau_factor", SCENE_NUMBER, AT(AppTrainingOptimiserDef, plateau_factor), .range = "(0, 1)",
+     .fallback = "0.5", .help = "schedule plateau: of the rate at each cut, down to final_rate"},
+    {"plateau_patience", SCENE_INTEGER, AT(AppTrainingOptimiserDef, plateau_patience), .range = "[0, inf)",
+     .fallback = "5", .help = "schedule plateau: validations without a gain of 1e-4 before a cut"},
     {"warmup", SCENE_NUMBER, AT(AppTrainingOptimiserDef, warmup), .range = "[0, 1)", .fallback = "0.01",
      .help = "share of the steps before the peak"},
     {"beta1", SCENE_NUMBER, AT(AppTrainingOptimiserDef, beta1), .range = "[0, 1)", .fallback = "0.9",
@@ -293,6 +319,9 @@ char *app_training_config_print(const AppTrainingConfig *config) {
       "samples %.15g\n",
       adam->rate, adam->final_rate, adam->warmup, adam->beta1, adam->beta2, adam->weight_decay, adam->clip,
       adam->batch, adam->samples);
+  if (adam->schedule == APP_SCHEDULE_PLATEAU)
+    text_append(text, size, &used, "plateau: factor %.15g, patience %d\n", adam->plateau_factor,
+                adam->plateau_patience);
   text_append(text, size, &used, "seed: %d, start: %s, validations %d, patience %d\n", config->seed,
               text_of(config->start), config->validations, config->patience);
   return text;

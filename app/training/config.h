@@ -14,8 +14,15 @@ typedef enum AppNormalisation {
   APP_NORMALISATION_UNIT,
   APP_NORMALISATION_PCA,
   APP_NORMALISATION_SORTED,
+  APP_NORMALISATION_UNSCALED,
 } AppNormalisation;
-typedef enum AppReading { APP_READING_A, APP_READING_B, APP_READING_BACKBONE } AppReading;
+typedef enum AppReading {
+  APP_READING_A,
+  APP_READING_B,
+  APP_READING_C,
+  APP_READING_BACKBONE,
+} AppReading;
+typedef enum AppSchedule { APP_SCHEDULE_COSINE, APP_SCHEDULE_PLATEAU } AppSchedule;
 typedef enum AppPool { APP_POOL_MAX, APP_POOL_SUM } AppPool;
 typedef enum AppActivation { APP_ACTIVATION_RELU, APP_ACTIVATION_SILU } AppActivation;
 
@@ -49,7 +56,10 @@ typedef struct AppTrainingLossDef {
 
 typedef struct AppTrainingOptimiserDef {
   double rate, final_rate; // of AdamW, at the peak and at the end
-  double warmup;           // share of the steps until the peak
+  AppSchedule schedule;
+  double plateau_factor; // plateau: of the rate at each cut
+  int plateau_patience;  // plateau: validations without gain that are borne
+  double warmup;         // share of the steps until the peak
   double beta1, beta2, weight_decay;
   double clip; // largest norm of a gradient
   int batch;

@@ -17,13 +17,14 @@
 #include "overlap/tpn/network.h"
 #include "overlap/tpn/range.h"
 
-enum { SIZE = 24, BLOCK = 16384, MAX_SETS = 6, MEASURED = 1 << 18 };
+enum { SIZE = 24, HALF = SIZE / 2, BLOCK = 16384, MAX_SETS = 6, MEASURED = 1 << 18 };
 
 // Samples as the network sees them.
 typedef struct Samples {
   char name[APP_TRAINING_SCORE_NAME];
   int count, left_out;
-  float *x;               // normalised pairs        (count, 24)
+  int width;              // numbers that the network is shown: 24, or the second tetrahedron's 12
+  float *x;               // of normalised pairs     (count, width)
   float *factor;          // scale · V = factor · y  (count)
   float *label;           // 1: the pair intersects  (count)
   float *target;          // scale · V               (count)
@@ -39,7 +40,7 @@ typedef struct Tpn {
   OverlapTpnRange range;          // of the training's pairs
   NetWork_f32 work;               // of validation
   int *samples;                   // (batch)
-  float *x, *y, *gy;              // (batch, 24), (batch, 2), (batch, 2)
+  float *x, *y, *gy;              // (batch, width), (batch, 2), (batch, 2)
   float *factor, *label, *target; // (batch)
   float *xt, *yt, *gyt, *rate;    // (batch, tangents, 24), twice (…, 2), (batch, tangents); NULL: none
 } Tpn;
@@ -47,7 +48,9 @@ typedef struct Tpn {
 static OverlapTpnNormalisation normalisation_of(const AppTrainingConfig *config) {
   static const OverlapTpnNormalisation kinds[] = {[APP_NORMALISATION_UNIT] = OVERLAP_TPN_NORMALISE_UNIT,
                                                   [APP_NORMALISATION_PCA] = OVERLAP_TPN_NORMALISE_PCA,
-                                                  [APP_NORMALISATION_SORTED] = OVERLAP_TPN_NORMALISE_SORTED};
+                                                  [APP_NORMALISATION_SORTED] = OVERLAP_TPN_NORMALISE_SORTED,
+                                                  [APP_NORMALISATION_UNSCALED] =
+                                                      OVERLAP_TPN_NORMALISE_UNSCALED};
   return kinds[config->model.normalisation];
 }
 
@@ -79,9 +82,11 @@ static void resize(NetShape *shape, double scale, int layers) {
 }
 
 static NetShape shape(const AppTrainingConfig *config) {
-  NetShape made = config->model.reading == APP_READING_A   ? net_shape_tpn_a()
-                  : config->model.reading == APP_READING_B ? net_shape_tpn_b()
-                                                           : net_shape_tpn_backbone();
+  NetShape (*const readings[])(void) = {[APP_READING_A] = net_shape_tpn_a,
+                                        [APP_READING_B] = net_shape_tpn_b,
+                                        [APP_READING_C] = net_shape_tpn_c,
+                                        [APP_READING_BACKBONE] = net_shape_tpn_backbone};
+  NetShape made = readings[config->model.reading]();
   made.activation = config->model.activation == APP_ACTIVATION_RELU ? NET_RELU : NET_SILU;
   made.pool = config->model.pool == APP_POOL_MAX ? NET_MAX : NET_SUM;
   resize(&made, config->model.scale, config->model.layers);
@@ -109,8 +114,9 @@ static void destroy(AppTrainingTask *task) {
   task->self = NULL;
 }
 
-static Status samples_create(Samples *samples, size_t count) {
-  samples->x = memory_zeroed(count * SIZE, sizeof(float));
+static Status samples_create(Samples *samples, const AppTrainingConfig *config, size_t count) {
+  samples->width = shape(config).input_count;
+  samples->x = memory_zeroed(count * (size_t)samples->width, sizeof(float));
   samples->factor = memory_zeroed(count, sizeof(float));
   samples->label = memory_zeroed(count, sizeof(float));
   samples->target = memory_zeroed(count, sizeof(float));
@@ -126,8 +132,9 @@ static void samples_add(Samples *samples, const AppTrainingConfig *config, const
     samples->left_out++;
     return;
   }
-  int at = samples->count++;
-  for (int c = 0; c < SIZE; c++) samples->x[at * (ptrdiff_t)SIZE + c] = (float)normalised.pair[c];
+  int at = samples->count++, first = SIZE - samples->width;
+  float *x = samples->x + at * (ptrdiff_t)samples->width;
+  for (int c = 0; c < samples->width; c++) x[c] = (float)normalised.pair[first + c];
   samples->factor[at] = (float)(normalised.factor * config->loss.volume_scale / config->model.output_scale);
   samples->label[at] = pairs->status[i];
   samples->target[at] = (float)(config->loss.volume_scale * pairs->volume[i]);
@@ -159,7 +166,7 @@ static Status load(Samples *samples, const AppTrainingConfig *config, const AppT
     total += source.count;
     app_dataset_source_close(&source);
   }
-  TRY(samples_create(samples, (size_t)total));
+  TRY(samples_create(samples, config, (size_t)total));
   if (learns_gradients(config)) TRY(app_training_rates_create(&samples->rates, (size_t)total));
   DatagenPairs block;
   TRY(datagen_pairs_create(&block, BLOCK, learns_gradients(config)));
@@ -191,7 +198,7 @@ static Status load_sets(Tpn *tpn, const AppTrainingConfig *config) {
 static Status create_batch(Tpn *tpn, const AppTrainingConfig *config) {
   size_t batch = (size_t)config->optimiser.batch;
   tpn->samples = memory_zeroed(batch, sizeof(int));
-  tpn->x = memory_zeroed(batch * SIZE, sizeof(float));
+  tpn->x = memory_zeroed(batch * (size_t)tpn->training.width, sizeof(float));
   tpn->y = memory_zeroed(batch * 2, sizeof(float)), tpn->gy = memory_zeroed(batch * 2, sizeof(float));
   tpn->factor = memory_zeroed(batch, sizeof(float)), tpn->label = memory_zeroed(batch, sizeof(float));
   tpn->target = memory_zeroed(batch, sizeof(float));
@@ -208,26 +215,29 @@ static Status create_tangents(Tpn *tpn, const AppTrainingConfig *config) {
   return tpn->xt && tpn->yt && tpn->gyt && tpn->rate ? STATUS_OK : status_no_memory("a batch's tangents");
 }
 
-static void measure_range(const Samples *samples, double output_scale, int count,
+static void measure_range(const Samples *samples, const AppTrainingConfig *config, int count,
                           OverlapTpnMeasures *measures, double *overlaps, double *values,
                           OverlapTpnRange *range) {
+  double pair[SIZE], output_scale = config->model.output_scale;
+  if (samples->width == HALF)
+    memcpy(pair, overlap_tpn_normalise_first(normalisation_of(config)), HALF * sizeof *pair);
   for (int i = 0; i < count; i++) {
     ptrdiff_t at = (ptrdiff_t)i * samples->count / count; // evenly from all of them
-    double pair[SIZE];
-    for (int c = 0; c < SIZE; c++) pair[c] = (double)samples->x[at * SIZE + c];
+    for (int c = 0; c < samples->width; c++)
+      pair[SIZE - samples->width + c] = (double)samples->x[at * samples->width + c];
     measures[i] = overlap_tpn_range_measure(pair);
     overlaps[i] = (double)samples->target[at] / (output_scale * (double)samples->factor[at]);
   }
   *range = overlap_tpn_range_of(count, measures, overlaps, values);
 }
 
-static Status find_range(const Samples *samples, double output_scale, OverlapTpnRange *range) {
+static Status find_range(const Samples *samples, const AppTrainingConfig *config, OverlapTpnRange *range) {
   int count = samples->count < MEASURED ? samples->count : MEASURED;
   OverlapTpnMeasures *measures = memory_zeroed((size_t)count, sizeof *measures);
   double *overlaps = memory_zeroed((size_t)count, sizeof *overlaps);
   double *values = memory_zeroed((size_t)count, sizeof *values);
   bool fits = measures && overlaps && values;
-  if (fits) measure_range(samples, output_scale, count, measures, overlaps, values, range);
+  if (fits) measure_range(samples, config, count, measures, overlaps, values, range);
   memory_free(measures), memory_free(overlaps), memory_free(values);
   return fits ? STATUS_OK : status_no_memory("the range of the training's pairs");
 }
@@ -236,7 +246,7 @@ Status app_training_tpn_range(const AppTrainingConfig *config, OverlapTpnRange *
   Samples samples = {0};
   Status status = load(&samples, config, config->training, config->training_count);
   if (!status && samples.count == 0) status = status_fail(STATUS_INPUT, "there is no pair to train on");
-  if (!status) status = find_range(&samples, config->model.output_scale, range);
+  if (!status) status = find_range(&samples, config, range);
   samples_destroy(&samples);
   return status;
 }
@@ -247,7 +257,7 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   if (!tpn) return status_no_memory("a training");
   TRY(load(&tpn->training, task->config, task->config->training, task->config->training_count));
   if (tpn->training.count == 0) return status_fail(STATUS_INPUT, "there is no pair to train on");
-  TRY(find_range(&tpn->training, task->config->model.output_scale, &tpn->range));
+  TRY(find_range(&tpn->training, task->config, &tpn->range));
   TRY(load_sets(tpn, task->config));
   TRY(app_training_order_create(&tpn->order, tpn->training.count));
   task->sample_count = tpn->training.count;
@@ -261,7 +271,8 @@ static void gather(Tpn *tpn, const int *samples, int count) {
   const Samples *from = &tpn->training;
   for (int k = 0; k < count; k++) {
     int at = samples[k];
-    memcpy(tpn->x + (ptrdiff_t)k * SIZE, from->x + (ptrdiff_t)at * SIZE, SIZE * sizeof(float));
+    memcpy(tpn->x + (ptrdiff_t)k * from->width, from->x + (ptrdiff_t)at * from->width,
+           (size_t)from->width * sizeof(float));
     tpn->factor[k] = from->factor[at];
     tpn->label[k] = from->label[at];
     tpn->target[k] = from->target[at];
@@ -376,7 +387,7 @@ static void measure(Tpn *tpn, const AppTrainingConfig *config, const NetModel_f3
   int batch = config->optimiser.batch;
   for (int first = 0; first < set->count; first += batch) {
     int count = set->count - first < batch ? set->count - first : batch;
-    net_forward_eval_f32(&tpn->work, model, count, set->x + (ptrdiff_t)first * SIZE, tpn->y);
+    net_forward_eval_f32(&tpn->work, model, count, set->x + (ptrdiff_t)first * set->width, tpn->y);
     for (int k = 0; k < count; k++) tpn->y[2 * k + 1] *= set->factor[first + k];
     sums.loss +=
         count * net_loss_paper_f32(count, tpn->y, set->label + first, set->target + first, tpn->gy).total;

@@ -32,6 +32,7 @@ typedef struct Training {
   NetAdam_f32 adam;
   NetWork_f32 work;
   NetSchedule schedule;
+  NetPlateau plateau;
   AppTrainingLog log;
   float *gradient, *best; // (parameter_count)
   double best_score, score;
@@ -63,6 +64,15 @@ static NetSchedule schedule_of(const AppTrainingConfig *config) {
                        .final = def->final_rate,
                        .warmup_steps = (int64_t)(def->warmup * (double)steps),
                        .total_steps = steps};
+}
+
+// The rate of a step.
+static double rate_of(const Training *training, long long step) {
+  const NetSchedule *schedule = &training->schedule;
+  bool is_warm = step >= schedule->warmup_steps;
+  if (is_warm && training->config->optimiser.schedule == APP_SCHEDULE_PLATEAU)
+    return net_plateau_rate(&training->plateau, schedule->peak, schedule->final);
+  return net_schedule_rate(schedule, step);
 }
 
 static Status name_files(Training *training) {
@@ -114,17 +124,25 @@ static Status create_network(Training *training) {
 
 static void print_note(const Training *training, char *note, size_t size) {
   const Counts *counts = &training->counts;
-  snprintf(note, size, "step %lld best_step %lld stale %d seconds %.3f loss %.17g norm %.17g over %lld\n%s",
+  const NetPlateau *plateau = &training->plateau;
+  snprintf(note, size,
+           "step %lld best_step %lld stale %d seconds %.3f loss %.17g norm %.17g over %lld plateau %.17g "
+           "stale %d cuts %d\n%s",
            counts->step, counts->best_step, counts->stale, counts->seconds, counts->loss_sum,
-           counts->norm_sum, counts->loss_count, training->description);
+           counts->norm_sum, counts->loss_count, plateau->best, plateau->stale, plateau->cuts,
+           training->description);
 }
 
 static Status parse_note(Training *training, const char *note) {
   Counts *counts = &training->counts;
   const char *rest = strchr(note, '\n');
-  if (!rest || sscanf(note, "step %lld best_step %lld stale %d seconds %lf loss %lf norm %lf over %lld",
-                      &counts->step, &counts->best_step, &counts->stale, &counts->seconds, &counts->loss_sum,
-                      &counts->norm_sum, &counts->loss_count) != 7)
+  NetPlateau *plateau = &training->plateau;
+  if (!rest ||
+      sscanf(note,
+             "step %lld best_step %lld stale %d seconds %lf loss %lf norm %lf over %lld plateau %lf stale %d "
+             "cuts %d",
+             &counts->step, &counts->best_step, &counts->stale, &counts->seconds, &counts->loss_sum,
+             &counts->norm_sum, &counts->loss_count, &plateau->best, &plateau->stale, &plateau->cuts) != 10)
     return status_fail(STATUS_INPUT, "%s: its note is not one of `tetlap train`", training->checkpoint);
   if (strcmp(rest + 1, training->description) != 0)
     return status_fail(STATUS_INPUT,
@@ -196,6 +214,9 @@ static Status prepare(Training *training) {
   training->schedule = schedule_of(training->config);
   training->best_score = INFINITY;
   training->score = NAN;
+  training->plateau = (NetPlateau){.factor = training->config->optimiser.plateau_factor,
+                                   .patience = training->config->optimiser.plateau_patience,
+                                   .best = INFINITY};
   training->task = (AppTrainingTask){.config = training->config,
                                      .ops = app_training_task_find(training->config->model.kind)};
   TRY(name_files(training));
@@ -253,13 +274,14 @@ static Status validate(Training *training) {
   AppTrainingRow row = {.step = counts->step,
                         .samples = (double)counts->step * training->config->optimiser.batch,
                         .seconds = clock_wall_s() - training->began_s,
-                        .rate = net_schedule_rate(&training->schedule, counts->step - 1),
+                        .rate = rate_of(training, counts->step - 1),
                         .loss = counts->loss_sum / count,
                         .gradient_norm = counts->norm_sum / count,
                         .scores = &scores};
   TRY(app_training_log_add(&training->log, &row));
   counts->loss_sum = counts->norm_sum = 0;
   counts->loss_count = 0;
+  net_plateau_add(&training->plateau, scores.score);
   TRY(keep_if_better(training, scores.score));
   return write_checkpoint(training);
 }
@@ -271,8 +293,8 @@ static Status take_step(Training *training) {
                                          training->gradient);
   double norm = net_adam_clip_f32(size, training->config->optimiser.clip, training->gradient);
   if (isfinite(loss) && isfinite(norm)) {
-    net_adam_step_f32(&training->adam, net_schedule_rate(&training->schedule, counts->step),
-                      training->gradient, training->model.parameters);
+    net_adam_step_f32(&training->adam, rate_of(training, counts->step), training->gradient,
+                      training->model.parameters);
     counts->loss_sum += loss;
     counts->norm_sum += norm;
     counts->loss_count++;

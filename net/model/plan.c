@@ -102,33 +102,73 @@ static void add_layer(NetPlan *plan, const char *name, Rows in, Rows out) {
   };
 }
 
-// Hidden layers from `in`; the last one writes to rows `out`, or to a new slot where out.slot is negative.
-static Rows add_layers(NetPlan *plan, const char *block, Rows in, const NetWidths *widths, Rows out) {
+// Hidden layers from `in`; the last one writes to rows `out`, or to a new slot where out.slot is negative,
+// and has no activation where it `ends_linear`.
+static Rows add_layers(NetPlan *plan, const char *block, Rows in, const NetWidths *widths, bool ends_linear,
+                       Rows out) {
   for (int k = 0; k < widths->count; k++) {
     char name[NET_NAME_SIZE];
     snprintf(name, sizeof name, "%s.%d", block, k);
-    bool is_given = k == widths->count - 1 && out.slot >= 0;
+    bool is_last = k == widths->count - 1, is_given = is_last && out.slot >= 0;
     Rows next =
         is_given ? out
                  : (Rows){add_slot(plan, widths->width[k], plan->slots[in.slot].spread), 0, widths->width[k]};
-    add_layer(plan, name, in, next);
+    if (is_last && ends_linear)
+      add_linear(plan, name, in, next, true, false);
+    else
+      add_layer(plan, name, in, next);
     in = next;
   }
   return in;
 }
 
+// Tetrahedra of a pair that a plan works on.
+typedef struct Seen {
+  int first, count;
+} Seen;
+
+static bool is_seen(Seen seen, int tetrahedron) {
+  return tetrahedron >= seen.first && tetrahedron < seen.first + seen.count;
+}
+
+// One map of a skip: out = base + S raw (+ c) on the parts from `part` on.
+static void add_skip_map(NetPlan *plan, const char *name, NetSkip skip, Rows raw, Rows base, Rows out,
+                         int part, int part_count) {
+  NetStep *step = add_linear(plan, name, raw, out, skip == NET_SKIP_BIASED || skip == NET_SKIP_OWN, false);
+  step->base = base.slot;
+  step->part = part;
+  step->part_count = part_count;
+}
+
+// A map for each of the pair's two tetrahedra, `members` of each: one, or four vertices. Those of a
+// tetrahedron that is not seen are made and never used.
+static void add_own_skips(NetPlan *plan, const char *name, Seen seen, int members, Rows raw, Rows base,
+                          Rows out) {
+  for (int t = 0; t < 2; t++)
+    for (int a = 0; a < members; a++) {
+      char numbered[NET_NAME_SIZE];
+      snprintf(numbered, sizeof numbered, "%.20s.%d", name, members * t + a);
+      if (is_seen(seen, t)) {
+        add_skip_map(plan, numbered, NET_SKIP_OWN, raw, base, out, a * seen.count + t - seen.first, 1);
+      } else {
+        add_tensor(plan, numbered, "weight", out.count, raw.count, sqrt(3.0 / raw.count));
+        add_tensor(plan, numbered, "bias", out.count, 0, 0);
+      }
+    }
+}
+
 // out = base + S raw (+ c). The derivative with respect to base is the one with respect to out: they share
 // it.
-static void add_skip(NetPlan *plan, const char *name, NetSkip skip, Rows raw, Rows base, Rows out) {
+static void add_skip(NetPlan *plan, const char *name, NetSkip skip, Seen seen, Rows raw, Rows base,
+                     Rows out) {
   const NetSlot *target = &plan->slots[out.slot];
   int count = skip == NET_SKIP_PER_INDEX ? 4 : 1;
-  for (int k = 0; k < count; k++) {
+  if (skip == NET_SKIP_OWN) add_own_skips(plan, name, seen, target->spread / seen.count, raw, base, out);
+  for (int k = 0; k < count && skip != NET_SKIP_OWN; k++) {
     char numbered[NET_NAME_SIZE];
     snprintf(numbered, sizeof numbered, count == 1 ? "%.20s" : "%.20s.%d", name, k);
-    NetStep *step = add_linear(plan, numbered, raw, out, skip == NET_SKIP_BIASED, false);
-    step->base = base.slot;
-    step->part_count = target->spread / count;
-    step->part = k * step->part_count;
+    int part_count = target->spread / count;
+    add_skip_map(plan, numbered, skip, raw, base, out, k * part_count, part_count);
   }
   plan->slots[base.slot].gradient_offset = target->gradient_offset + (size_t)(out.first * target->spread);
 }
@@ -136,13 +176,14 @@ static void add_skip(NetPlan *plan, const char *name, NetSkip skip, Rows raw, Ro
 // A block: hidden layers from `in`, then the skip from `raw`, into the first rows of a slot with `extra` rows
 // more.
 static Rows add_block(NetPlan *plan, const char *block, Rows in, const NetWidths *widths, NetSkip skip,
-                      Rows raw, Rows out) {
-  if (skip == NET_SKIP_NONE) return add_layers(plan, block, in, widths, out);
+                      Seen seen, Rows raw, Rows out) {
+  bool ends_linear = plan->shape.ends_linear;
+  if (skip == NET_SKIP_NONE) return add_layers(plan, block, in, widths, ends_linear, out);
   Rows none = {-1, 0, 0};
-  Rows base = add_layers(plan, block, in, widths, none);
+  Rows base = add_layers(plan, block, in, widths, ends_linear, none);
   char name[NET_NAME_SIZE];
   snprintf(name, sizeof name, "%s_skip", block);
-  add_skip(plan, name, skip, raw, base, out);
+  add_skip(plan, name, skip, seen, raw, base, out);
   return out;
 }
 
@@ -176,7 +217,7 @@ static NetView *add_view(NetPlan *plan, Rows rows) {
 
 static void add_head(NetPlan *plan, const char *block, Rows in, const NetWidths *widths, int output_row) {
   Rows none = {-1, 0, 0};
-  Rows hidden = add_layers(plan, block, in, widths, none);
+  Rows hidden = add_layers(plan, block, in, widths, false, none);
   char name[NET_NAME_SIZE];
   snprintf(name, sizeof name, "%s.%d", block, widths->count);
   add_linear(plan, name, hidden, (Rows){plan->output_slot, output_row, 1}, true, false);
@@ -206,9 +247,11 @@ static Rows add_pair_view(NetPlan *plan, int n) {
   return rows;
 }
 
-// n = 2 tetrahedra, or 1 where the first one is folded into constants.
-static void plan_tpn(NetPlan *plan, int n) {
+// Of both tetrahedra, of the only one that there is, or of the second where the first one is folded into
+// constants.
+static void plan_tpn(NetPlan *plan, Seen seen, bool is_folded) {
   const NetShape *shape = &plan->shape;
+  const int n = seen.count;
   Rows nothing = {-1, 0, 0};
   plan->output_slot = add_slot(plan, 2, 1);
 
@@ -218,7 +261,8 @@ static void plan_tpn(NetPlan *plan, int n) {
   int vertex_slot = add_slot(plan, width + (shape->has_coordinates ? 3 : 0), 4 * n);
   Rows xyz = shape->has_coordinates ? (Rows){vertex_slot, width, 3} : (Rows){add_slot(plan, 3, 4 * n), 0, 3};
   add_vertex_view(plan, n, xyz);
-  add_block(plan, "vertex", xyz, &shape->vertex, shape->vertex_skip, xyz, (Rows){vertex_slot, 0, width});
+  add_block(plan, "vertex", xyz, &shape->vertex, shape->vertex_skip, seen, xyz,
+            (Rows){vertex_slot, 0, width});
 
   // Tetrahedra.
   int pooled = add_pool(plan, vertex_slot, n);
@@ -226,17 +270,17 @@ static void plan_tpn(NetPlan *plan, int n) {
   width = shape->tetrahedron.width[shape->tetrahedron.count - 1];
   Rows tetrahedron = {add_slot(plan, width, n), 0, width};
   add_block(plan, "tetrahedron", (Rows){pooled, 0, plan->slots[pooled].rows}, &shape->tetrahedron,
-            shape->tetrahedron_skip, raw, tetrahedron);
+            shape->tetrahedron_skip, seen, raw, tetrahedron);
 
   // The pair.
-  pooled = add_pool(plan, tetrahedron.slot, 1);
-  if (n == 1) pool_with_constant(plan, &plan->steps[plan->step_count - 1]);
+  pooled = shape->has_one_tetrahedron ? tetrahedron.slot : add_pool(plan, tetrahedron.slot, 1);
+  if (is_folded) pool_with_constant(plan, &plan->steps[plan->step_count - 1]);
   raw = shape->combiner_skip == NET_SKIP_NONE ? nothing : add_pair_view(plan, n);
   width = shape->combiner.width[shape->combiner.count - 1];
   Rows pair = {add_slot(plan, width, 1), 0, width};
   add_block(plan, "combiner", (Rows){pooled, 0, plan->slots[pooled].rows}, &shape->combiner,
-            shape->combiner_skip, raw, pair);
-  pair = add_layers(plan, "backbone", pair, &shape->backbone, nothing);
+            shape->combiner_skip, seen, raw, pair);
+  pair = add_layers(plan, "backbone", pair, &shape->backbone, false, nothing);
   add_head(plan, "status_head", pair, &shape->status_head, 0);
   add_head(plan, "volume_head", pair, &shape->volume_head, 1);
 }
@@ -246,7 +290,7 @@ static void plan_mlp(NetPlan *plan) {
   plan->output_slot = add_slot(plan, shape->output_count, 1);
   Rows input = {add_slot(plan, shape->input_count, 1), 0, shape->input_count};
   add_view(plan, input);
-  Rows hidden = add_layers(plan, "layer", input, &shape->hidden, (Rows){-1, 0, 0});
+  Rows hidden = add_layers(plan, "layer", input, &shape->hidden, false, (Rows){-1, 0, 0});
   char name[NET_NAME_SIZE];
   snprintf(name, sizeof name, "layer.%d", shape->hidden.count);
   add_linear(plan, name, hidden, (Rows){plan->output_slot, 0, shape->output_count}, true, false);
@@ -262,7 +306,7 @@ NetStatus net_plan_create(const NetShape *shape, NetPlan *plan) {
   NET_TRY(net_shape_check(shape));
   *plan = (NetPlan){.shape = *shape};
   if (shape->kind == NET_TPN)
-    plan_tpn(plan, 2);
+    plan_tpn(plan, (Seen){0, shape->has_one_tetrahedron ? 1 : 2}, false);
   else
     plan_mlp(plan);
   complete(plan);
@@ -271,13 +315,13 @@ NetStatus net_plan_create(const NetShape *shape, NetPlan *plan) {
 
 NetStatus net_plan_create_folded(const NetShape *shape, NetPlan *plan) {
   NET_TRY(net_shape_check(shape));
-  if (shape->kind != NET_TPN)
+  if (shape->kind != NET_TPN || shape->has_one_tetrahedron)
     return net_status_fail(NET_BAD_ARGUMENT,
-                           "a network to fold must be a tpn: others have no first tetrahedron");
+                           "a network to fold must be a tpn of two tetrahedra: others have no first one");
   *plan = (NetPlan){.shape = *shape};
   plan->shape.input_count = 12;
   if (shape->combiner_skip != NET_SKIP_NONE) plan->shape.combiner_skip = NET_SKIP_BIASED;
-  plan_tpn(plan, 1);
+  plan_tpn(plan, (Seen){1, 1}, true);
   complete(plan);
   return NET_OK;
 }

@@ -87,8 +87,8 @@ typedef struct NetPlan {
 // NET_BAD_ARGUMENT where the shape is wrong.
 NetStatus net_plan_create(const NetShape *shape, NetPlan *plan);
 
-// A tpn whose first tetrahedron is the same in all samples (fold.h): the input is the second one's 12
-// coordinates, what the first one gives is a constant of the pool over tetrahedra and in the bias of the
+// A tpn of two tetrahedra whose first one is the same in all samples (fold.h): the input is the second one's
+// 12 coordinates, what the first one gives is a constant of the pool over tetrahedra and in the bias of the
 // combiner's skip. Its shape is the given one but for the input's width and that bias.
 NetStatus net_plan_create_folded(const NetShape *shape, NetPlan *plan);
 

@@ -10,7 +10,7 @@
 static const char *const kind_names[] = {"tpn", "mlp", NULL};
 static const char *const activation_names[] = {"relu", "silu", NULL};
 static const char *const pool_names[] = {"max", "sum", NULL};
-static const char *const skip_names[] = {"none", "biased", "unbiased", "per_index", NULL};
+static const char *const skip_names[] = {"none", "biased", "unbiased", "per_index", "own", NULL};
 
 NetShape net_shape_tpn_a(void) {
   return (NetShape){
@@ -36,6 +36,15 @@ NetShape net_shape_tpn_b(void) {
   shape.has_coordinates = false;
   shape.vertex_skip = NET_SKIP_PER_INDEX;
   shape.tetrahedron_skip = NET_SKIP_UNBIASED;
+  return shape;
+}
+
+NetShape net_shape_tpn_c(void) {
+  NetShape shape = net_shape_tpn_a();
+  shape.has_coordinates = false;
+  shape.has_one_tetrahedron = shape.ends_linear = true;
+  shape.vertex_skip = shape.tetrahedron_skip = NET_SKIP_OWN;
+  shape.input_count = 12;
   return shape;
 }
 
@@ -73,9 +82,12 @@ static NetStatus check_tpn(const NetShape *shape) {
   NET_TRY(check_widths("volume_head", &shape->volume_head, 0));
   if (shape->tetrahedron_skip == NET_SKIP_PER_INDEX || shape->combiner_skip == NET_SKIP_PER_INDEX)
     return net_status_fail(NET_BAD_ARGUMENT, "shape: only vertex_skip can be per_index");
-  if (shape->input_count != 24 || shape->output_count != 2)
-    return net_status_fail(NET_BAD_ARGUMENT, "shape: tpn has 24 inputs and 2 outputs, not %d and %d",
-                           shape->input_count, shape->output_count);
+  if (shape->combiner_skip == NET_SKIP_OWN)
+    return net_status_fail(NET_BAD_ARGUMENT, "shape: only vertex_skip and tetrahedron_skip can be own");
+  int inputs = shape->has_one_tetrahedron ? 12 : 24;
+  if (shape->input_count != inputs || shape->output_count != 2)
+    return net_status_fail(NET_BAD_ARGUMENT, "shape: this tpn has %d inputs and 2 outputs, not %d and %d",
+                           inputs, shape->input_count, shape->output_count);
   return NET_OK;
 }
 
@@ -102,11 +114,11 @@ bool net_shape_equal(const NetShape *a, const NetShape *b) {
                a->output_count == b->output_count;
   if (a->kind == NET_MLP) return equal && equal_widths(&a->hidden, &b->hidden);
   return equal && a->pool == b->pool && a->has_coordinates == b->has_coordinates &&
-         a->vertex_skip == b->vertex_skip && a->tetrahedron_skip == b->tetrahedron_skip &&
-         a->combiner_skip == b->combiner_skip && equal_widths(&a->vertex, &b->vertex) &&
-         equal_widths(&a->tetrahedron, &b->tetrahedron) && equal_widths(&a->combiner, &b->combiner) &&
-         equal_widths(&a->backbone, &b->backbone) && equal_widths(&a->status_head, &b->status_head) &&
-         equal_widths(&a->volume_head, &b->volume_head);
+         a->ends_linear == b->ends_linear && a->vertex_skip == b->vertex_skip &&
+         a->tetrahedron_skip == b->tetrahedron_skip && a->combiner_skip == b->combiner_skip &&
+         equal_widths(&a->vertex, &b->vertex) && equal_widths(&a->tetrahedron, &b->tetrahedron) &&
+         equal_widths(&a->combiner, &b->combiner) && equal_widths(&a->backbone, &b->backbone) &&
+         equal_widths(&a->status_head, &b->status_head) && equal_widths(&a->volume_head, &b->volume_head);
 }
 
 static bool set_widths(NetJson *json, const char *key, const NetWidths *widths) {
@@ -115,10 +127,16 @@ static bool set_widths(NetJson *json, const char *key, const NetWidths *widths) 
   return net_json_set_integers(json, key, widths->count, integers);
 }
 
+// Keys whose value is false are left out.
+static bool set_claim(NetJson *json, const char *key, bool claim) {
+  return !claim || net_json_set_bool(json, key, claim);
+}
+
 static bool set_tpn(NetJson *json, const NetShape *shape) {
   return net_json_set_text(json, "pool", pool_names[shape->pool]) &&
          net_json_set_bool(json, "coordinates", shape->has_coordinates) &&
-         set_widths(json, "vertex", &shape->vertex) &&
+         set_claim(json, "one_tetrahedron", shape->has_one_tetrahedron) &&
+         set_claim(json, "linear_ends", shape->ends_linear) && set_widths(json, "vertex", &shape->vertex) &&
          net_json_set_text(json, "vertex_skip", skip_names[shape->vertex_skip]) &&
          set_widths(json, "tetrahedron", &shape->tetrahedron) &&
          net_json_set_text(json, "tetrahedron_skip", skip_names[shape->tetrahedron_skip]) &&
@@ -194,6 +212,11 @@ static bool take_bool(Reader *reader, const char *key) {
   return boolean;
 }
 
+// false where the key is absent.
+static bool take_claim(Reader *reader, const char *key) {
+  return reader->status == NET_OK && net_json_member(reader->json, key) && take_bool(reader, key);
+}
+
 static NetWidths take_widths(Reader *reader, const char *key) {
   NetWidths widths = {0};
   const NetJson *value = read_member(reader, key);
@@ -216,6 +239,8 @@ static NetWidths take_widths(Reader *reader, const char *key) {
 static void take_tpn(Reader *reader, NetShape *shape) {
   shape->pool = (NetPool)take_name(reader, "pool", pool_names);
   shape->has_coordinates = take_bool(reader, "coordinates");
+  shape->has_one_tetrahedron = take_claim(reader, "one_tetrahedron");
+  shape->ends_linear = take_claim(reader, "linear_ends");
   shape->vertex = take_widths(reader, "vertex");
   shape->vertex_skip = (NetSkip)take_name(reader, "vertex_skip", skip_names);
   shape->tetrahedron = take_widths(reader, "tetrahedron");
@@ -225,7 +250,7 @@ static void take_tpn(Reader *reader, NetShape *shape) {
   shape->backbone = take_widths(reader, "backbone");
   shape->status_head = take_widths(reader, "status_head");
   shape->volume_head = take_widths(reader, "volume_head");
-  shape->input_count = 24;
+  shape->input_count = shape->has_one_tetrahedron ? 12 : 24;
   shape->output_count = 2;
 }
 

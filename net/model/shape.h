@@ -9,11 +9,13 @@
 //            ──► combiner layers (+ skip of all 24) ──► backbone layers ──► status head, volume head
 //
 //        With the Unit normalisation the first tetrahedron is constant (the unit simplex); it is fed all the
-//        same, so that the input is 24 numbers whatever the normalisation.
+//        same, so that the input is 24 numbers whatever the normalisation. `has_one_tetrahedron`: it is not
+//        fed, the input is the second one's (1, 4, 3), and there is no pool over tetrahedra.
 //   mlp  Dense layers: input_count → hidden → output_count, the last linear.
 //
 // Every layer is linear followed by the activation; a skip is a linear map of the block's raw input, added
-// after the block's last activation; a head ends in a linear layer of width 1.
+// after the block's last activation; a head ends in a linear layer of width 1. `ends_linear`: no activation
+// follows the last layer of the vertex, tetrahedron and combiner blocks.
 #ifndef NET_SHAPE_H
 #define NET_SHAPE_H
 
@@ -33,6 +35,8 @@ typedef enum NetSkip {
   NET_SKIP_BIASED,
   NET_SKIP_UNBIASED,
   NET_SKIP_PER_INDEX, // vertices only: a matrix for each of the four indices, without bias. Not invariant.
+  NET_SKIP_OWN,       // a matrix and a bias for each of the pair's eight vertices or two tetrahedra, all of
+                      // them made, also those of a tetrahedron that is not fed. Not invariant.
 } NetSkip;
 
 typedef struct NetWidths {
@@ -56,15 +60,22 @@ typedef struct NetShape {
                             // vertices
   NetSkip combiner_skip;    // all 24: neither to the order of vertices nor of tetrahedra
   NetWidths hidden;         // mlp, may be empty: then the network is affine
-  int input_count;          // tpn 24
+  bool has_one_tetrahedron; // tpn: the input is the second one alone
+  bool ends_linear;         // tpn
+  int input_count;          // tpn 24, or 12 with one tetrahedron
   int output_count;         // tpn 2
 } NetShape;
 
-// The two readings of the paper's Table 3 that have exactly 73,370 parameters, without its 1024-wide
+// Two readings of the paper's Table 3 that have exactly 73,370 parameters, without its 1024-wide
 // backbone: (a) coordinates concatenated, all skips biased; (b) none concatenated, a vertex skip for each
 // index, one bias-free skip from the tetrahedron, a biased one from the pair.
 NetShape net_shape_tpn_a(void);
 NetShape net_shape_tpn_b(void);
+
+// (c) The published network, off its authors' public code: one tetrahedron, blocks that end linearly, a skip
+// of its own for each vertex and tetrahedron. 73,370 parameters, of which 1,008 are made for the other
+// tetrahedron and never reached.
+NetShape net_shape_tpn_c(void);
 
 // Reading (a) with the 1024-wide backbone that the table names (410,266 parameters).
 NetShape net_shape_tpn_backbone(void);

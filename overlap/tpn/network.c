@@ -17,9 +17,9 @@ void overlap_tpn_network_print(OverlapTpnNormalisation kind, double scale,
 }
 
 bool overlap_tpn_network_parse(const char *text, OverlapTpnNormalisation *kind, double *scale) {
-  char name[8];
+  char name[16];
   int used = 0;
-  if (sscanf(text, "%7[a-z], V times %lf%n", name, scale, &used) != 2 || text[used]) return false;
+  if (sscanf(text, "%15[a-z], V times %lf%n", name, scale, &used) != 2 || text[used]) return false;
   for (int k = 0; k < OVERLAP_TPN_NORMALISE_COUNT; k++) {
     *kind = (OverlapTpnNormalisation)k;
     if (strcmp(name, overlap_tpn_normalise_name(*kind)) == 0) return *scale > 0 && isfinite(*scale);
@@ -62,15 +62,20 @@ static Status create_workspaces(OverlapTpnNetwork *model, NetKernelKind kernel, 
 }
 
 // What the normalisation makes of every first tetrahedron, the network need not be shown.
-static Status fold(OverlapTpnNetwork *model) {
+static Status fold(OverlapTpnNetwork *model, const char *path) {
   const double *first = overlap_tpn_normalise_first(model->kind);
-  if (!first) return STATUS_OK;
+  bool has_one = model->network.plan->shape.has_one_tetrahedron;
+  if (has_one && !first)
+    return status_fail(STATUS_INPUT,
+                       "%s: a network of the second tetrahedron alone cannot have the normalisation %s", path,
+                       overlap_tpn_normalise_name(model->kind));
+  model->input_first = first ? 12 : 0;
+  if (!first || has_one) return STATUS_OK;
   float coordinates[12];
   for (int c = 0; c < 12; c++) coordinates[c] = (float)first[c];
   NetModel_f32 whole = model->network;
   NetStatus status = net_fold_create_f32(&whole, coordinates, &model->network);
   net_model_destroy_f32(&whole);
-  model->input_first = 12;
   return status == NET_OK ? STATUS_OK : fail_as_net(status);
 }
 
@@ -82,10 +87,11 @@ static Status load(OverlapTpnNetwork *model, const char *path, NetKernelKind ker
   if (!overlap_tpn_network_parse(model->card.normalisation, &model->kind, &model->scale))
     return status_fail(
         STATUS_INPUT,
-        "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER', 'pca, …' or 'sorted, …'", path,
-        model->card.normalisation);
+        "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER', 'pca, …', 'sorted, …' or "
+        "'unscaled, …'",
+        path, model->card.normalisation);
   model->has_range = overlap_tpn_range_parse(model->card.range, &model->range);
-  TRY(fold(model));
+  TRY(fold(model, path));
   return create_workspaces(model, kernel, more);
 }
 

@@ -36,7 +36,8 @@ typedef struct OverlapTpnWorkspace {
 
 typedef struct OverlapTpnNetwork {
   NetModel_f32 network; // folded where the normalisation makes the first tetrahedron the same for all pairs
-  int input_first;      // it is shown the pair's numbers from here on: 0, or 12 where it is folded
+  int input_first;      // it is shown the pair's numbers from here on: 0, or 12 where it is folded or has one
+                        // tetrahedron
   NetCard card;
   OverlapTpnNormalisation kind;
   double scale; // the network tells scale · V' of the normalised pair

@@ -9,7 +9,7 @@
 static const double FLATTEST = 1e-14, SOFTEST = 1e-6, LINEAR = 3;
 
 const char *overlap_tpn_normalise_name(OverlapTpnNormalisation kind) {
-  static const char *const names[OVERLAP_TPN_NORMALISE_COUNT] = {"unit", "pca", "sorted"};
+  static const char *const names[OVERLAP_TPN_NORMALISE_COUNT] = {"unit", "pca", "sorted", "unscaled"};
   return names[kind];
 }
 
@@ -196,6 +196,10 @@ bool overlap_tpn_normalise(OverlapTpnNormalisation kind, const double pair[24],
     return find_pca(pair, normalised);
   case OVERLAP_TPN_NORMALISE_SORTED:
     return find_sorted(pair, normalised);
+  case OVERLAP_TPN_NORMALISE_UNSCALED:
+    if (!find_unit(pair, normalised)) return false;
+    normalised->factor = 1;
+    return true;
   default:
     return false;
   }
@@ -324,6 +328,8 @@ void overlap_tpn_normalise_pull(const OverlapTpnNormalised *normalised, double v
                                 double gradient[24]) {
   if (normalised->kind == OVERLAP_TPN_NORMALISE_UNIT)
     pull_unit(normalised, volume, inner, gradient);
+  else if (normalised->kind == OVERLAP_TPN_NORMALISE_UNSCALED)
+    pull_unit(normalised, 0, inner, gradient);
   else if (normalised->kind == OVERLAP_TPN_NORMALISE_SORTED)
     pull_sorted(normalised, volume, inner, gradient);
   else

@@ -7,13 +7,17 @@
 //         coordinates is not negative, the third completes a right-handed system. V' = V.
 //   unit  affine: the first tetrahedron becomes the unit simplex (its vertices in their order the origin and
 //         the unit vectors). V' = V / |det E|, E the matrix of its edges from the first vertex.
+//   unscaled  unit, but V' = V: the network is left to tell the volume of the pair as it was, of which only
+//   the
+//         image is shown. No function of its input: pairs with the same image have other volumes.
 //   sorted  unit, with the vertices of both in an order that does not depend on how they came: the first's
 //         by its barycentric coordinates of the other's centroid, the largest first; then the other's by
 //         their barycentric coordinate of the first's first vertex. Coordinates beyond 3 are compressed: ±3
 //         (1 + ln(|x|/3)), so that a flat first tetrahedron gives no huge numbers.
 //
-// The paper has the first two. The third is ours: a network on it cannot tell the order of vertices, and
-// learns one twenty-fourth of the cases twice over; where two coordinates tie, its value jumps.
+// The paper has the first two, the code that its authors published trains the third. The last is ours: a
+// network on it cannot tell the order of vertices, and learns one twenty-fourth of the cases twice over;
+// where two coordinates tie, its value jumps.
 //
 // All are functions of the pair: a network's V = factor · V'(normalised) has a gradient that goes through
 // them, including the turning of the axes. A principal axis turns by D_ij / (λ_j − λ_i), D the change of the
@@ -29,6 +33,7 @@ typedef enum OverlapTpnNormalisation {
   OVERLAP_TPN_NORMALISE_UNIT,
   OVERLAP_TPN_NORMALISE_PCA,
   OVERLAP_TPN_NORMALISE_SORTED,
+  OVERLAP_TPN_NORMALISE_UNSCALED,
   OVERLAP_TPN_NORMALISE_COUNT,
 } OverlapTpnNormalisation;
 
@@ -42,7 +47,7 @@ typedef struct OverlapTpnNormalised {
   int order[8];        // sorted: which of the pair's eight vertices stands in each place
 } OverlapTpnNormalised;
 
-// False: the first tetrahedron is too flat for it (unit and sorted: |det E| below 1e-14 of the edges'
+// False: the first tetrahedron is too flat for it (all but pca: |det E| below 1e-14 of the edges'
 // product).
 bool overlap_tpn_normalise(OverlapTpnNormalisation kind, const double pair[24],
                            OverlapTpnNormalised *normalised);
@@ -61,6 +66,6 @@ void overlap_tpn_normalise_bend_unit(const OverlapTpnNormalised *normalised, con
                                      const double inner_hessian[144], double gradient[24],
                                      double hessian[576]);
 
-const char *overlap_tpn_normalise_name(OverlapTpnNormalisation kind); // "unit", "pca", "sorted"
+const char *overlap_tpn_normalise_name(OverlapTpnNormalisation kind); // "unit", "pca", …
 
 #endif
