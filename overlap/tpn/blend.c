@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "overlap/tpn/blend.h"
 
+#include <float.h>
 #include <math.h>
 
 // Volumes of the network below this share of the unit simplex are rounded off.
 static const double SOFTEST = 1e-3 / 6;
+
+// The width of the bands in which a volume is bent to stay below the smaller tetrahedron's.
+static const double BAND = 0.05;
 
 static OverlapTpnBend itself(double x) {
   return (OverlapTpnBend){.value = x, .slope = 1};
@@ -18,6 +22,24 @@ static OverlapTpnBend clamp(const OverlapTpnRule *rule, double v) {
                             (v + soft) / (2 * soft) / rule->scale, 1 / (2 * soft) / rule->scale};
   return v > 0 ? (OverlapTpnBend){.value = v / rule->scale, .slope = 1 / rule->scale}
                : (OverlapTpnBend){.value = 0};
+}
+
+static OverlapTpnBend inverse(double x) {
+  return (OverlapTpnBend){1 / x, -1 / (x * x), 2 / (x * x * x)};
+}
+
+// h: |d| with a parabola in place of the corner, above it.
+static OverlapTpnBend magnitude(double d) {
+  if (fabs(d) >= BAND) return (OverlapTpnBend){.value = fabs(d), .slope = copysign(1, d)};
+  return (OverlapTpnBend){0.5 * (d * d / BAND + BAND), d / BAND, 1 / BAND};
+}
+
+// c: min(y, 1) with a parabola in place of the corner, below it; 1 less what rounding may add later.
+static OverlapTpnBend bound(double y) {
+  double left = 1 + BAND - y;
+  if (y <= 1 - BAND) return itself(y);
+  if (!(left > 0)) return (OverlapTpnBend){.value = 1 - 4 * DBL_EPSILON};
+  return (OverlapTpnBend){1 - left * left / (4 * BAND) - 4 * DBL_EPSILON, left / (2 * BAND), -1 / (2 * BAND)};
 }
 
 static OverlapTpnBend probability(double z) {
@@ -111,6 +133,36 @@ static void mean_of_orders(const OverlapTpnRule *rule, const OverlapTpnInputs *i
   }
 }
 
+// m, from the volumes of both tetrahedra.
+static void find_smaller(const OverlapTpnInputs *inputs, int order, OverlapTpnJet *smaller) {
+  OverlapTpnJet second, ratio, part;
+  overlap_tpn_jet_of(&ratio, order, OVERLAP_TPN_SIZE, itself(inputs->of[OVERLAP_TPN_SIZE]));
+  overlap_tpn_jet_of(&second, order, OVERLAP_TPN_SIZE + 1, itself(inputs->of[OVERLAP_TPN_SIZE + 1]));
+  OverlapTpnJet sum = ratio;
+  overlap_tpn_jet_add(&sum, 1, &second);
+  overlap_tpn_jet_add(&ratio, -1, &second);
+  part = sum;
+  overlap_tpn_jet_apply(&part, inverse(part.value));
+  overlap_tpn_jet_multiply(&ratio, &part);
+  overlap_tpn_jet_apply(&ratio, magnitude(ratio.value));
+  overlap_tpn_jet_constant(smaller, order, 0.5);
+  overlap_tpn_jet_add(smaller, -0.5, &ratio);
+  overlap_tpn_jet_multiply(smaller, &sum);
+}
+
+// C: below the smaller tetrahedron's volume.
+static void keep_below(const OverlapTpnInputs *inputs, OverlapTpnJet *volume) {
+  const double *size = inputs->of + OVERLAP_TPN_SIZE;
+  if (volume->value <= (1 - 2 * BAND) * fmin(size[0], size[1])) return; // m is above (1 − b) of it
+  OverlapTpnJet smaller, part;
+  find_smaller(inputs, volume->order, &smaller);
+  part = smaller;
+  overlap_tpn_jet_apply(&part, inverse(part.value));
+  overlap_tpn_jet_multiply(volume, &part);
+  overlap_tpn_jet_apply(volume, bound(volume->value));
+  overlap_tpn_jet_multiply(volume, &smaller);
+}
+
 // a = (1 − weight) a + weight · b
 static void blend_jets(OverlapTpnJet *a, const OverlapTpnJet *weight, const OverlapTpnJet *b) {
   OverlapTpnJet difference = *b;
@@ -129,6 +181,7 @@ void overlap_tpn_blend_eval(const OverlapTpnRule *rule, const OverlapTpnInputs *
         overlap_tpn_jet_bend_rise(inputs->of[OVERLAP_TPN_SHARE] / rule->touch, 1 / rule->touch));
     overlap_tpn_jet_multiply(volume, &other);
   }
+  if (rule->rounds) keep_below(inputs, volume);
   weigh(rule, inputs, order, &weight);
   if (weight.value < 1) {
     OverlapTpnJet net = *volume;

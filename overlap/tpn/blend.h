@@ -6,7 +6,14 @@
 // normalised pair. With u the volume v clamped at 0, g the gate (the probability σ(z), or 1), f the
 // normalisation's factor, V_e the exact volume and V_c that of clipping,
 //
-//     V = (1 − c) (w r N + (1 − w) V_e) + c V_c,   N = 1/n Σ_o f_o u(v_o)/scale g(z_o).
+//     V = (1 − c) (w C(r N) + (1 − w) V_e) + c V_c,   N = 1/n Σ_o f_o u(v_o)/scale g(z_o).
+//
+// C keeps a network's volume below m, the smaller of the two tetrahedra's, where u is rounded off; else C(x)
+// = x. With b = 1/20 and both corners replaced by parabolas,
+//
+//     C(x) = m c(x/m),   c(y) = y for y ≤ 1 − b, 1 for y ≥ 1 + b, 1 − (1 + b − y)²/(4 b) between,
+//     m = ½ (V_A + V_B) (1 − h(d)),   d = (V_A − V_B)/(V_A + V_B),   h(d) = |d| for |d| ≥ b, ½ (d²/b + b)
+//     below.
 //
 // Fading r(q) and weight w are functions of the pair. q is its overlap share (net_share.h). With S the step
 // x²(3 − 2x) between 0 and 1:
@@ -29,7 +36,7 @@ enum { OVERLAP_TPN_MAX_ORDERS = 2 };
 
 // What holds for all pairs.
 typedef struct OverlapTpnRule {
-  bool fades, gates, rounds; // r, g; u is rounded off near 0
+  bool fades, gates, rounds; // r, g; u is rounded off near 0, and C bounds
   bool is_hybrid;
   bool keeps_to_range; // the range decides about w
   bool has_range;
@@ -50,6 +57,7 @@ enum {
   OVERLAP_TPN_EXACT = 9,  // V_e, of no account where w = 1
   OVERLAP_TPN_PLANE = 10, // c
   OVERLAP_TPN_CLIP = 11,  // V_c, of no account where c = 0
+  OVERLAP_TPN_SIZE = 12,  // V_A and V_B, two places; of no account where C does not bound
 };
 
 typedef struct OverlapTpnInputs {

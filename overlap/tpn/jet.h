@@ -6,7 +6,7 @@
 #ifndef TETLAP_OVERLAP_TPN_JET_H
 #define TETLAP_OVERLAP_TPN_JET_H
 
-enum { OVERLAP_TPN_QUANTITIES = 12 };
+enum { OVERLAP_TPN_QUANTITIES = 14 };
 
 typedef struct OverlapTpnJet {
   int order; // how many derivatives are carried: 0, 1 or 2

@@ -7,6 +7,7 @@
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/coplanar.h"
+#include "overlap/invariant.h"
 #include "overlap/separation.h"
 #include "overlap/tpn/share.h"
 #include "overlap/tpn/simplex.h"
@@ -158,6 +159,8 @@ static bool prepare(const Portion *portion, Slot *slot) {
                                                    wants_slope ? slot->inside_gradient[o] : NULL, NULL)
                         : 1;
   }
+  for (int t = 0; t < 2 && rule->rounds; t++)
+    slot->inputs.of[OVERLAP_TPN_SIZE + t] = overlap_invariant_tet_volume(orders[0] + HALF * t);
   if (overlap->ghosts == OVERLAP_GHOSTS_FADE)
     slot->inputs.of[OVERLAP_TPN_SHARE] = overlap_tpn_share(orders[0], portion->closed[slot->pair]);
   return true;
@@ -281,6 +284,13 @@ static void add(double factor, const double part[SIZE], double gradient[SIZE]) {
   for (int i = 0; i < SIZE; i++) gradient[i] += factor * part[i];
 }
 
+// ∇ of the volume of tetrahedron t.
+static void size_slope(const Slot *slot, const double pair[SIZE], int t, double gradient[SIZE]) {
+  memset(gradient, 0, SIZE * sizeof *gradient);
+  overlap_tpn_simplex_volume(pair + HALF * t, gradient + HALF * t);
+  for (int i = 0; i < HALF; i++) gradient[HALF * t + i] *= slot->inputs.of[OVERLAP_TPN_SIZE + t];
+}
+
 static void differentiate(const Portion *portion, const Slot *slot, const OverlapTpnWorkspace *workspace,
                           int row) {
   const double *pair = pair_of(portion, slot), *by = slot->partials;
@@ -292,6 +302,11 @@ static void differentiate(const Portion *portion, const Slot *slot, const Overla
                            portion->closed_gradient + SIZE * (ptrdiff_t)slot->pair, NULL, part, NULL);
     add(by[OVERLAP_TPN_SHARE], part, gradient);
   }
+  for (int t = 0; t < 2; t++)
+    if (by[OVERLAP_TPN_SIZE + t] != 0) {
+      size_slope(slot, pair, t, part);
+      add(by[OVERLAP_TPN_SIZE + t], part, gradient);
+    }
   if (by[OVERLAP_TPN_EXACT] != 0) add(by[OVERLAP_TPN_EXACT], slot->exact_gradient, gradient);
   if (!(slot->inputs.of[OVERLAP_TPN_PLANE] > 0)) return;
   pull_plane(pair, part, NULL);
@@ -354,6 +369,14 @@ static void chain_factor(Chain *chain, const Slot *slot, const double pair[SIZE]
   for (int i = 0; i < HALF; i++) lambda[i] *= factor;
   keep_slope(chain, OVERLAP_TPN_FACTOR + o, lambda, o);
   add_bend(chain, slot->partials[OVERLAP_TPN_FACTOR + o], hessian, o);
+}
+
+static void chain_size(Chain *chain, const Slot *slot, const double pair[SIZE], int t) {
+  double lambda[HALF], hessian[SQUARE] = {0}, volume = slot->inputs.of[OVERLAP_TPN_SIZE + t];
+  overlap_tpn_simplex_volume(pair + HALF * t, lambda);
+  overlap_tpn_simplex_add_outer(lambda, volume, -volume, SIZE, hessian + (SIZE + 1) * HALF * t);
+  size_slope(slot, pair, t, meet(chain, OVERLAP_TPN_SIZE + t));
+  add_bend(chain, slot->partials[OVERLAP_TPN_SIZE + t], hessian, false);
 }
 
 static void chain_range(Chain *chain, const OverlapTpnRule *rule, const Slot *slot, int o) {
@@ -422,6 +445,8 @@ static Status bend(const Portion *portion, int s) {
     if (rule->keeps_to_range && slot->inputs.of[OVERLAP_TPN_INSIDE + o] < 1)
       chain_range(&chain, rule, slot, o);
   }
+  for (int t = 0; t < 2; t++)
+    if (slot->partials[OVERLAP_TPN_SIZE + t] != 0) chain_size(&chain, slot, pair_of(portion, slot), t);
   if (slot->partials[OVERLAP_TPN_SHARE] != 0) chain_share(&chain, portion, slot);
   TRY(chain_careful(&chain, slot, pair_of(portion, slot)));
   finish_chain(&chain, &portion->volumes[s], gradient_of(portion->batch, slot->pair),
