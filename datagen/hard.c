@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "overlap/exact/exact.h"
 #include "overlap/invariant.h"
 
 void datagen_hard_permute(const double tet[12], int k, double permuted[12]) {
@@ -437,6 +438,73 @@ static void make_flat(Random *random, DatagenHardPair *pair) {
   pair->is_flat = true;
 }
 
+// Any kind of touch, moved: what touched on the grid now does but for the rounding of coordinates, which may
+// part the two or let them share a volume of that size.
+static void make_touching_moved(Random *random, DatagenHardPair *pair) {
+  static void (*const touches[])(Random *, DatagenHardPair *) = {
+      make_vertex_face, make_edge_face,   make_face_face,   make_vertex_vertex,
+      make_vertex_edge, make_shared_edge, make_shared_face, make_edge_edge};
+  touches[random_below(random, 8)](random, pair);
+  double rotation[9];
+  random_rotation(random, rotation);
+  datagen_hard_transform(pair->x, 8, rotation, 1, (Vec3){0.3, -0.7, 1.1});
+  expect(pair, 0, 1e-14);
+}
+
+// A tetrahedron of a twentieth to a third of the size, through a face of the other.
+static void make_small_through_face(Random *random, DatagenHardPair *pair) {
+  datagen_hard_fat(random, pair, 0);
+  double size = pow(10, random_between(random, -1.3, -0.5));
+  Vec3 middle = face_point(random, pair);
+  bool is_cut;
+  do {
+    datagen_hard_fat(random, pair, 1);
+    Vec3 centre = {0, 0, 0}, n = datagen_hard_face_normal(pair, 0);
+    for (int i = 4; i < 8; i++) centre = vec3_add(centre, vec3_scale(0.25, datagen_hard_vertex(pair, i)));
+    int above = 0;
+    for (int i = 4; i < 8; i++) {
+      Vec3 arm = vec3_scale(size, vec3_sub(datagen_hard_vertex(pair, i), centre));
+      above += vec3_dot(n, arm) > 0;
+      datagen_hard_set(pair, i, vec3_add(middle, arm));
+    }
+    is_cut = above > 0 && above < 4;
+  } while (!is_cut);
+  rotate(random, pair);
+  pair->is_smooth = true;
+}
+
+// One of the six tetrahedra of a cell of a cubic grid whose vertices are shifted by up to a fifth of its
+// edge.
+static void mesh_cell(Random *random, DatagenHardPair *pair, int which) {
+  static const int paths[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  const int *path = paths[random_below(random, 6)];
+  double corner[3] = {0, 0, 0};
+  for (int i = 0; i < 4; i++) {
+    if (i) corner[path[i - 1]] = 1;
+    for (int c = 0; c < 3; c++)
+      pair->x[12 * which + 3 * i + c] = corner[c] + random_between(random, -0.2, 0.2);
+  }
+}
+
+// Two cells of meshes that stand in each other, in any position, with a common volume of a ten-thousandth of
+// the smaller at least: what a scene asks.
+static void make_mesh_cells(Random *random, DatagenHardPair *pair) {
+  double volume;
+  unsigned flags;
+  do {
+    double rotation[9];
+    mesh_cell(random, pair, 0);
+    mesh_cell(random, pair, 1);
+    random_rotation(random, rotation);
+    Vec3 shift = {random_between(random, -0.5, 1), random_between(random, -0.5, 1),
+                  random_between(random, -0.5, 1)};
+    datagen_hard_transform(pair->x + 12, 4, rotation, 1, shift);
+    if (overlap_exact_ops.eval_pair(NULL, pair->x, &(OverlapAnswer){.volume = &volume, .flags = &flags}))
+      volume = 0; // no memory
+  } while (!(volume > 1e-4 * overlap_invariant_smaller_volume(pair->x)));
+  pair->is_smooth = true;
+}
+
 const DatagenHardClass datagen_hard_classes[] = {
     {"far", make_far},
     {"boxes", make_boxes},
@@ -471,6 +539,9 @@ const DatagenHardClass datagen_hard_classes[] = {
     {"scale 1e9", make_huge},
     {"inverted", make_inverted},
     {"flat", make_flat},
+    {"touching, moved", make_touching_moved},
+    {"small through a face", make_small_through_face},
+    {"mesh cells", make_mesh_cells},
 };
 
 _Static_assert(sizeof datagen_hard_classes / sizeof *datagen_hard_classes == DATAGEN_HARD_CLASS_COUNT,

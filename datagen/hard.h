@@ -25,7 +25,7 @@ typedef struct DatagenHardClass {
   void (*make)(Random *random, DatagenHardPair *pair);
 } DatagenHardClass;
 
-enum { DATAGEN_HARD_CLASS_COUNT = 33 };
+enum { DATAGEN_HARD_CLASS_COUNT = 36 };
 extern const DatagenHardClass datagen_hard_classes[DATAGEN_HARD_CLASS_COUNT];
 
 // The k-th (0 … 23) order of a tetrahedron's vertices; every second one turns it inside out.

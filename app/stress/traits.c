@@ -111,6 +111,18 @@ static bool is_inside_out(const DatagenHardPair *pair) {
   return determinant(pair, 0, 1, 2, 3) < 0 || determinant(pair, 4, 5, 6, 7) < 0;
 }
 
+// Nothing in common but what rounding gave.
+static bool barely_touches(const DatagenHardPair *pair) {
+  double volume;
+  unsigned flags;
+  return overlap_exact_ops.eval_pair(NULL, pair->x, &(OverlapAnswer){.volume = &volume, .flags = &flags}) ==
+             STATUS_OK &&
+         volume < 1e-14;
+}
+static bool one_is_small(const DatagenHardPair *pair) {
+  return overlap_invariant_tet_volume(pair->x + 12) < 0.5 * overlap_invariant_tet_volume(pair->x);
+}
+
 static const Trait traits[] = {
     {"far", EMPTY, EMPTY, ANY, ANY, boxes_are_apart},
     {"boxes", EMPTY, EMPTY, ANY, ANY, boxes_overlap},
@@ -143,6 +155,9 @@ static const Trait traits[] = {
     {"offset 1e6", EMPTY, BODY, ANY, ANY, is_far_from_the_origin},
     {"scale 1e-9", EMPTY, BODY, ANY, ANY, is_tiny},
     {"scale 1e9", EMPTY, BODY, ANY, ANY, is_huge},
+    {"touching, moved", EMPTY, BODY, ANY, ANY, barely_touches},
+    {"small through a face", BODY, BODY, ANY, ANY, one_is_small},
+    {"mesh cells", BODY, BODY, ANY, ANY, NULL},
     {"inverted", EMPTY, BODY, ANY, ANY, is_inside_out},
 };
 

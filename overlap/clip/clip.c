@@ -10,11 +10,13 @@
 
 #include "overlap/clip/sums.inc"
 
-// V, ∇V and x̄ of the exact model; the Hessian is left alone.
+// V, ∇V and x̄ of the exact model; the Hessian is left alone where there is a volume.
 static Status fall_back(const double pair[24], const OverlapAnswer *answer) {
   OverlapAnswer rest = *answer;
   rest.hessian = NULL;
   Status status = overlap_exact_ops.eval_pair(NULL, pair, &rest);
+  if (!status && answer->hessian && *answer->flags & (OVERLAP_DISJOINT | OVERLAP_FLAT))
+    memset(answer->hessian, 0, (size_t)OVERLAP_PAIR_SIZE * OVERLAP_PAIR_SIZE * sizeof(double));
   *answer->flags |= OVERLAP_FALLBACK;
   return status;
 }

@@ -55,6 +55,10 @@
 // smaller tetrahedron, and x̄ is within the boxes of both in any case. Rounding of well-shaped pairs leaves
 // |δx̄| ≤ 1e-12 L where V is more than 1e-4 of the smaller (tests/test_centroid.c).
 //
+// Whether there is a volume at all is rounding where V ≤ 64 of this bound's |δV| (without the last part):
+// faces that lie on each other but for rounding have φ, and so ∇V, of an overlap. Such pairs are handed on, so
+// that V = 0 and ∇V = 0 where `exact` says so.
+//
 // Where V is small and a tetrahedron flat, φ may be as wrong as V, and nothing is concluded. Pairs for which
 // this bound does not do (slivers, mostly) are answered by overlap_exact_ops and flagged FALLBACK; their
 // ∇²V is still from clipping, zero if a tetrahedron is too flat for it. In single precision: |δV| ≤ 1e-3 V,

@@ -19,6 +19,9 @@
 // times what a search of bad pairs asked for.
 #define OVERLAP_CLIP_SLIDE (1 / (256 * OVERLAP_CLIP_NOISE))
 
+// A volume no thicker than so many times what rounding may move its faces by may be none at all.
+#define OVERLAP_CLIP_THINNEST 64.0
+
 // The planes u, v spanning the parameters of face f, such that the face, seen from outside and with positive
 // det, runs counter-clockwise through (0, 0), (1, 0), (0, 1) of (λ_u, λ_v); t is the third vertex, at (0, 0).
 // Indices 4–7 are those of B.
