@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "net/files/weights.h"
 #include "overlap/exact/exact.h"
+#include "overlap/invariant.h"
 #include "overlap/model.h"
 #include "overlap/tpn/model.h"
 #include "suite.h"
@@ -533,6 +534,39 @@ START_TEST(second_derivatives_hold_through_gate_fading_range_and_blend) {
 }
 END_TEST
 
+// A network that says too much: V is bent to stay below the smaller tetrahedron, and the derivatives with it.
+START_TEST(volumes_stay_below_the_smaller_tetrahedron) {
+  static const char *const names[] = {"tpn-scene", "hybrid"};
+  static const float said[] = {60, 120, 160}; // thousandths of V over six times the first volume, about
+  int near = 0;
+  for (int k = 0; k < 3; k++) {
+    write_smooth(said[k], 8);
+    OverlapOptions options = overlap_options_default();
+    options.beyond = OVERLAP_BEYOND_COUNT;
+    options.coplanar = OVERLAP_COPLANAR_KEEP;
+    for (int m = 0; m < 2; m++) {
+      OverlapModel model = open_with(names[m], options);
+      Random random = random_seeded(12, 0);
+      for (int n = 0; n < 300; n++) {
+        double pair[24];
+        slide(0.4 * random_uniform(&random), pair);
+        double size = pow(10, -3 * random_uniform(&random)); // of the second
+        for (int i = 12; i < 24; i++) pair[i] = pair[12 + i % 3] + size * (pair[i] - pair[12 + i % 3]);
+        for (int i = 0; i < 24; i++) pair[i] += 0.1 * size * random_uniform(&random);
+        double smaller = overlap_invariant_smaller_volume(pair), volume = ask(&model, pair).volume;
+        ck_assert_msg(volume <= smaller, "%s: V = %g of %g", names[m], volume, smaller);
+        near += volume > 0.95 * smaller;
+      }
+      overlap_model_destroy(&model);
+    }
+    check_bend("tpn-scene", options, 0);
+    check_bend("hybrid", options, 0);
+  }
+  ck_assert_int_gt(near, 100);
+  unlink(path);
+}
+END_TEST
+
 START_TEST(networks_that_do_not_bend_offer_no_second_derivatives) {
   static const char *const normalisations[] = {"pca, V times 1000", "sorted, V times 1000",
                                                "unit, V times 1000"};
@@ -569,6 +603,7 @@ int main(void) {
   tcase_add_test(test_case, the_force_of_meshes_in_the_same_planes_does_not_leap);
   tcase_add_test(test_case, gradient_holds_through_gate_fading_range_and_blend);
   tcase_add_test(test_case, second_derivatives_hold_through_gate_fading_range_and_blend);
+  tcase_add_test(test_case, volumes_stay_below_the_smaller_tetrahedron);
   tcase_add_test(test_case, networks_that_do_not_bend_offer_no_second_derivatives);
   return suite_run("net_overlap", test_case, 30);
 }

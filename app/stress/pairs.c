@@ -19,6 +19,7 @@ static const char NOT_A_NUMBER[] = "not a number";
 
 // What double precision must hold. Volumes count in overlap_invariant_allowed, besides what rounding of the
 // coordinates changes.
+static const double WORTH_NOTING = 1e-9; // of the smaller tetrahedron: an overlap that is not to be missed
 static const double BOUNDS = 4e-16, BALANCE = 1e-14, GRADIENT = 1e-7;
 
 typedef struct Asked {
@@ -27,7 +28,8 @@ typedef struct Asked {
   double misfit;       // worst volume-like error over what the standard allows
   double gradient_max; // largest ∇V met, over the extent squared
   long long member_count, true_count, wrong_flags;
-  long long fallbacks; // answers that the model left to another
+  long long overlap_count, missed; // pairs that share a volume, and of those the ones said to share none
+  long long fallbacks;             // answers that the model left to another
 } Asked;
 
 typedef struct Answer {
@@ -152,6 +154,9 @@ static Status ask_member(Asked *asked, const DatagenHardPair *pair, bool is_slow
   asked->member_count++;
   asked->fallbacks += (answer.flags & OVERLAP_FALLBACK) != 0;
   asked->wrong_flags += !flags_are_right(pair, &answer);
+  bool overlaps = !pair->is_flat && exact > WORTH_NOTING * overlap_invariant_smaller_volume(x);
+  asked->overlap_count += overlaps;
+  asked->missed += overlaps && answer.volume == 0;
   if (!pair->is_flat) {
     compare(asked, &asked->worst.volume, x, answer.volume, exact, 1, 0);
     if (!isnan(pair->volume))
@@ -177,6 +182,7 @@ static void ask_standard(const Asked *asked, AppStressRow *row) {
   app_stress_ask_most(row, "balance", worst->balance, BALANCE);
   app_stress_ask_most(row, "gradient", worst->gradient, GRADIENT);
   app_stress_ask_most(row, "flags", worst->flags, 0);
+  app_stress_ask_most(row, "missed", worst->missed, 0);
 }
 
 static void ask_tolerance(const Asked *asked, const AppStressPairErrors *most, AppStressRow *row) {
@@ -189,6 +195,7 @@ static void ask_tolerance(const Asked *asked, const AppStressPairErrors *most, A
   app_stress_ask_most(row, "parts", worst->parts, most->parts);
   app_stress_ask_most(row, "gradient", worst->gradient, most->gradient);
   app_stress_ask_most(row, "flags", worst->flags, most->flags);
+  app_stress_ask_most(row, "missed", worst->missed, most->missed);
 }
 
 // The verdict: held by the standard, else by the model's own tolerance.
@@ -196,7 +203,7 @@ static void judge_class(const Asked *asked, AppStressRow *row) {
   const AppStressPairErrors *worst = &asked->worst;
   const AppStressTolerance *own = app_stress_tolerances_find(row->model);
   bool is_held = asked->misfit <= 1 && worst->bounds <= BOUNDS && worst->balance <= BALANCE &&
-                 worst->gradient <= GRADIENT && worst->flags == 0;
+                 worst->gradient <= GRADIENT && worst->flags == 0 && worst->missed == 0;
   app_stress_ask_occurred(row, "members that are what the class says", (double)asked->true_count,
                           (double)asked->member_count);
   row->pairs = asked->member_count, row->fallbacks = asked->fallbacks;
@@ -207,8 +214,10 @@ static void judge_class(const Asked *asked, AppStressRow *row) {
   app_stress_judge(row);
   if (is_held || row->outcome != APP_STRESS_HELD) return;
   row->outcome = APP_STRESS_TOLERANCE;
-  snprintf(row->remark, sizeof row->remark, "V to %.1e, order %.1e, motion %.1e, dV/dx %.1e; %s",
-           worst->volume, worst->order, worst->motion, worst->gradient, own->reason);
+  char missed[32] = "";
+  if (worst->missed > 0) snprintf(missed, sizeof missed, ", missed %.0f %%", 100 * worst->missed);
+  snprintf(row->remark, sizeof row->remark, "V to %.1e, order %.1e, motion %.1e, dV/dx %.1e%s; %s",
+           worst->volume, worst->order, worst->motion, worst->gradient, missed, own->reason);
   row->counter = own->counter;
 }
 
@@ -234,6 +243,7 @@ static Status run_class(const AppStressOptions *options, const OverlapModel *mod
     }
   }
   asked.worst.flags = (double)asked.wrong_flags / (double)asked.member_count;
+  asked.worst.missed = asked.overlap_count ? (double)asked.missed / (double)asked.overlap_count : 0;
   row->cpu_s = clock_cpu_s() - began;
   judge_class(&asked, row);
   return STATUS_OK;

@@ -28,10 +28,11 @@ static OverlapTpnBend inverse(double x) {
   return (OverlapTpnBend){1 / x, -1 / (x * x), 2 / (x * x * x)};
 }
 
-// h: |d| with a parabola in place of the corner, above it.
-static OverlapTpnBend magnitude(double d) {
-  if (fabs(d) >= BAND) return (OverlapTpnBend){.value = fabs(d), .slope = copysign(1, d)};
-  return (OverlapTpnBend){0.5 * (d * d / BAND + BAND), d / BAND, 1 / BAND};
+// k: what a parabola in place of the corner of |d|, at d = 0, is above it.
+static OverlapTpnBend rounding(double d) {
+  double sign = d > 0 ? 1 : -1, left = BAND - fabs(d);
+  if (left <= 0) return (OverlapTpnBend){.value = 0};
+  return (OverlapTpnBend){left * left / (2 * BAND), -sign * left / BAND, 1 / BAND};
 }
 
 // c: min(y, 1) with a parabola in place of the corner, below it; 1 less what rounding may add later.
@@ -135,19 +136,19 @@ static void mean_of_orders(const OverlapTpnRule *rule, const OverlapTpnInputs *i
 
 // m, from the volumes of both tetrahedra.
 static void find_smaller(const OverlapTpnInputs *inputs, int order, OverlapTpnJet *smaller) {
-  OverlapTpnJet second, ratio, part;
-  overlap_tpn_jet_of(&ratio, order, OVERLAP_TPN_SIZE, itself(inputs->of[OVERLAP_TPN_SIZE]));
-  overlap_tpn_jet_of(&second, order, OVERLAP_TPN_SIZE + 1, itself(inputs->of[OVERLAP_TPN_SIZE + 1]));
-  OverlapTpnJet sum = ratio;
-  overlap_tpn_jet_add(&sum, 1, &second);
-  overlap_tpn_jet_add(&ratio, -1, &second);
+  OverlapTpnJet sum, ratio, part;
+  overlap_tpn_jet_of(&sum, order, OVERLAP_TPN_SIZE, itself(inputs->of[OVERLAP_TPN_SIZE]));
+  overlap_tpn_jet_of(&part, order, OVERLAP_TPN_SIZE + 1, itself(inputs->of[OVERLAP_TPN_SIZE + 1]));
+  ratio = sum;
+  overlap_tpn_jet_add(&ratio, -1, &part);
+  *smaller = ratio.value > 0 ? part : sum; // as k's slope has it
+  overlap_tpn_jet_add(&sum, 1, &part);
   part = sum;
   overlap_tpn_jet_apply(&part, inverse(part.value));
   overlap_tpn_jet_multiply(&ratio, &part);
-  overlap_tpn_jet_apply(&ratio, magnitude(ratio.value));
-  overlap_tpn_jet_constant(smaller, order, 0.5);
+  overlap_tpn_jet_apply(&ratio, rounding(ratio.value));
+  overlap_tpn_jet_multiply(&ratio, &sum);
   overlap_tpn_jet_add(smaller, -0.5, &ratio);
-  overlap_tpn_jet_multiply(smaller, &sum);
 }
 
 // C: below the smaller tetrahedron's volume.

@@ -12,8 +12,8 @@
 // = x. With b = 1/20 and both corners replaced by parabolas,
 //
 //     C(x) = m c(x/m),   c(y) = y for y ≤ 1 − b, 1 for y ≥ 1 + b, 1 − (1 + b − y)²/(4 b) between,
-//     m = ½ (V_A + V_B) (1 − h(d)),   d = (V_A − V_B)/(V_A + V_B),   h(d) = |d| for |d| ≥ b, ½ (d²/b + b)
-//     below.
+//     m = min(V_A, V_B) − ½ (V_A + V_B) k(d),   d = (V_A − V_B)/(V_A + V_B),
+//     k(d) = (b − |d|)²/(2 b) for |d| < b, 0 beyond.
 //
 // Fading r(q) and weight w are functions of the pair. q is its overlap share (net_share.h). With S the step
 // x²(3 − 2x) between 0 and 1:
