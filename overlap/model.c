@@ -18,9 +18,9 @@ extern const OverlapOps overlap_cgal_ops __attribute__((weak));
 
 // The fastest first: what a person reads when asking for the models.
 static const OverlapOps *const models[] = {
-    &overlap_clip_ops,   &overlap_clip32_ops, &overlap_clip_scalar_ops, &overlap_geo_small_ops,
-    &overlap_geo_ops,    &overlap_tpn_ops,    &overlap_tpn_bf16_ops,    &overlap_tpn_scene_ops,
-    &overlap_hybrid_ops, &overlap_exact_ops,  &overlap_cgal_ops,
+    &overlap_clip_ops,      &overlap_clip32_ops, &overlap_clip_scalar_ops, &overlap_geo_small_ops,
+    &overlap_geo_ops,       &overlap_tpn_ops,    &overlap_tpn_bf16_ops,    &overlap_tpn_published_ops,
+    &overlap_tpn_scene_ops, &overlap_hybrid_ops, &overlap_exact_ops,       &overlap_cgal_ops,
 };
 enum { MOST_MODELS = sizeof models / sizeof *models };
 

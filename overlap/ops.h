@@ -79,6 +79,9 @@ typedef struct OverlapOps {
   bool (*has_centroid)(const void *self);
   // eval_batch fails where a coordinate is not finite; without it, all are looked through before.
   bool checks_finite;
+  // V does not follow the size of the pair: it means something of pairs as large as those of its training, a
+  // scene's forces mean nothing.
+  bool lacks_scale;
   // The shipped weights that it takes, where they go by another name than its own; NULL: no others.
   const char *weights;
 } OverlapOps;

@@ -195,6 +195,31 @@ START_TEST(shipped_tpn_detects_and_measures_as_the_paper_has_it) {
 }
 END_TEST
 
+// Its input does not have the scale of V: V is as rough as the paper's, status is right in most pairs.
+START_TEST(shipped_tpn_published_is_as_rough_as_the_paper) {
+  AppSourceDef source = {.law = "paper-test", .count = 10000, .seed = 9106};
+  AppEvaluation found = evaluate_shipped("tpn-published", false, &source);
+  ck_assert(found.has_status);
+  ck_assert(found.accuracy_mean > 0.97);
+  ck_assert(found.accuracy_swapped_mean < 0.95); // it leans on which of the two is touched
+  ck_assert(found.mae > 1.8e-3 && found.mae < 3.5e-3);
+  ck_assert(found.bin_mae[0] < found.bin_mae[1] && found.bin_mae[1] < found.bin_mae[2]);
+}
+END_TEST
+
+// Status of the pairs exchanged is that of data in which they are.
+START_TEST(status_is_also_told_of_the_exchanged_pairs) {
+  AppSourceDef source = {.law = "paper-test", .count = 4000, .seed = 9108}, exchanged = source;
+  exchanged.swap = 1;
+  AppEvaluation there = evaluate_shipped("tpn", false, &source),
+                back = evaluate_shipped("tpn", false, &exchanged);
+  ck_assert_near(there.accuracy_swapped_mean, back.accuracy_mean, 1e-15);
+  ck_assert_near(back.accuracy_swapped_mean, there.accuracy_mean, 1e-15);
+  for (int k = DATAGEN_NONE; k <= DATAGEN_VOLUMETRIC; k++)
+    ck_assert_near(there.kinds[k].accuracy_swapped, back.kinds[k].accuracy, 1e-15);
+}
+END_TEST
+
 START_TEST(shipped_tpn_scene_has_forces_in_the_right_direction) {
   AppSourceDef source = {.law = "scene", .count = 4000, .seed = 9107};
   AppEvaluation found = evaluate_shipped("tpn-scene", true, &source);
@@ -276,6 +301,8 @@ int main(void) {
   tcase_add_test(test_case, blocks_do_not_change_what_is_found);
   tcase_add_test(test_case, without_pairs_there_is_nothing_to_tell);
   tcase_add_test(test_case, shipped_tpn_detects_and_measures_as_the_paper_has_it);
+  tcase_add_test(test_case, shipped_tpn_published_is_as_rough_as_the_paper);
+  tcase_add_test(test_case, status_is_also_told_of_the_exchanged_pairs);
   tcase_add_test(test_case, shipped_tpn_scene_has_forces_in_the_right_direction);
   tcase_add_test(test_case, shipped_weights_keep_their_promise);
   tcase_add_test(test_case, jumps_along_paths_are_found_and_measured);

@@ -73,6 +73,21 @@ START_TEST(the_schedule_warms_up_and_follows_half_a_cosine) {
 }
 END_TEST
 
+// With patience 2 the third score without a gain of a ten-thousandth cuts; counting begins anew after it.
+START_TEST(a_plateau_cuts_the_rate_after_its_patience) {
+  NetPlateau plateau = {.factor = 0.5, .patience = 2, .best = INFINITY};
+  const double scores[] = {1, 0.99995, 1.2, 0.9, NAN, 0.95, 0.9, 0.8999, 0.9, 0.9, 0.89};
+  const int cuts[] = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
+  for (int k = 0; k < 11; k++) {
+    net_plateau_add(&plateau, scores[k]);
+    ck_assert_int_eq(plateau.cuts, cuts[k]);
+    ck_assert_near(net_plateau_rate(&plateau, 2, 0), cuts[k] ? 1 : 2, 1e-15);
+  }
+  plateau.cuts = 10;
+  ck_assert_near(net_plateau_rate(&plateau, 2, 0.25), 0.25, 1e-15);
+}
+END_TEST
+
 // The first step of Adam is rate · sign(g), whatever the gradient's length; decay comes on top.
 START_TEST(the_first_steps_of_adam_are_those_of_its_definition) {
   NetAdamDef def = net_adam_default();
@@ -417,6 +432,7 @@ int main(void) {
   tcase_add_test(test_case, losses_have_the_values_and_derivatives_that_a_hand_computes);
   tcase_add_test(test_case, the_losses_derivatives_agree_with_differences);
   tcase_add_test(test_case, the_schedule_warms_up_and_follows_half_a_cosine);
+  tcase_add_test(test_case, a_plateau_cuts_the_rate_after_its_patience);
   tcase_add_test(test_case, the_first_steps_of_adam_are_those_of_its_definition);
   tcase_add_test(test_case, clipping_keeps_direction_and_leaves_what_is_short_or_not_finite);
   tcase_add_test(test_case, training_a_linear_network_reaches_the_known_optimum);

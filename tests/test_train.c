@@ -64,6 +64,16 @@ static const char tpn_config[] = "name: t\n"
                                  "optimiser: {rate: 1e-3, batch: 200, samples: 12000}\n"
                                  "validations: 3\n";
 
+// Cuts fall on either side of where it is interrupted.
+static const char published_config[] =
+    "name: t\n"
+    "model: {kind: tpn, reading: c, normalisation: unscaled}\n"
+    "data:\n"
+    "  training: [{law: paper-train, count: 2000, seed: 11}]\n"
+    "  validation: [{name: paper, law: paper-test, count: 500, seed: 12}]\n"
+    "optimiser: {rate: 3e-3, schedule: plateau, plateau_patience: 0, warmup: 0, batch: 200, samples: 12000}\n"
+    "validations: 12\n";
+
 static const char sobolev_config[] = "name: t\n"
                                      "model: {kind: tpn, activation: silu, pool: sum, output_scale: 30}\n"
                                      "data:\n"
@@ -328,6 +338,11 @@ START_TEST(resumed_tpn_training_ends_with_the_same_bits) {
 }
 END_TEST
 
+START_TEST(resumed_training_on_a_plateau_ends_with_the_same_bits) {
+  check_resume(published_config);
+}
+END_TEST
+
 START_TEST(checkpoint_of_another_configuration_is_refused) {
   make_directory();
   AppTrainingConfig config = read_config(geo_config);
@@ -516,14 +531,17 @@ START_TEST(wrong_configurations_are_refused_by_name) {
                 "data: {training: [{law: scene}], validation: [{law: scene}]}\n"
                 "loss: {sobolev: 1}\noptimiser: {samples: 1}\n",
                 "normalisation: unit");
+  check_refusal("name: t\nmodel: {kind: tpn, reading: c, normalisation: pca}\n"
+                "data: {training: [{law: scene}], validation: [{law: scene}]}\noptimiser: {samples: 1}\n",
+                "second tetrahedron alone");
   check_refusal("name: t\nmodle: {kind: geo}\n", "model");
   remove_directory();
 }
 END_TEST
 
 START_TEST(shipped_configurations_are_read) {
-  static const char *const names[] = {"geo", "geo-small", "smoke", "tpn", "tpn-scene"};
-  for (int n = 0; n < 5; n++) {
+  static const char *const names[] = {"geo", "geo-small", "smoke", "tpn", "tpn-published", "tpn-scene"};
+  for (int n = 0; n < 6; n++) {
     char path[256];
     AppTrainingConfig config;
     snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/examples/train/%s.yaml", names[n]);
@@ -546,6 +564,7 @@ int main(void) {
   tcase_add_test(test_case, each_epoch_takes_each_sample_once);
   tcase_add_test(test_case, resumed_geo_training_ends_with_the_same_bits);
   tcase_add_test(test_case, resumed_tpn_training_ends_with_the_same_bits);
+  tcase_add_test(test_case, resumed_training_on_a_plateau_ends_with_the_same_bits);
   tcase_add_test(test_case, checkpoint_of_another_configuration_is_refused);
   tcase_add_test(test_case, trained_network_is_far_better_than_none);
   tcase_add_test(test_case, fine_tuning_begins_where_shipped_weights_ended);

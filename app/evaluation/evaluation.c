@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "base/vec3.h"
 #include "datagen/generate.h"
+#include "overlap/ops.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE };
 
@@ -26,6 +27,7 @@ typedef struct Block {
   double *gradient;      // (count, 24), owned
   unsigned *flags;       // (count), owned
   double *logits;        // (count), owned; NULL: the model tells none
+  double *swapped;       // (count), owned: what the status hangs on, V or logit, the two exchanged
 } Block;
 
 void app_evaluation_begin(AppEvaluationRun *run, const OverlapModel *model, AppEvaluationLogits logits) {
@@ -72,7 +74,7 @@ static Status differentiate(const DatagenPairs *pairs, size_t count, double *gra
 static void block_destroy(Block *block) {
   if (block->true_gradient != block->pairs->gradient) memory_free(block->true_gradient);
   memory_free(block->volume), memory_free(block->gradient);
-  memory_free(block->flags), memory_free(block->logits);
+  memory_free(block->flags), memory_free(block->logits), memory_free(block->swapped);
 }
 
 static Status block_tell_status(Block *block, const AppEvaluationRun *run) {
@@ -80,6 +82,20 @@ static Status block_tell_status(Block *block, const AppEvaluationRun *run) {
   block->logits = memory_zeroed(block->count, sizeof *block->logits);
   if (!block->logits) return status_no_memory("an evaluation");
   return run->logits(run->model->self, (int)block->count, block->pairs->coordinates, block->logits);
+}
+
+static Status block_tell_swapped(Block *block, const AppEvaluationRun *run) {
+  block->swapped = memory_zeroed(block->count, sizeof *block->swapped);
+  double *pairs = memory_zeroed(block->count * SIZE, sizeof *pairs);
+  Status status = block->swapped && pairs ? STATUS_OK : status_no_memory("an evaluation");
+  for (size_t i = 0; i < block->count && !status; i++)
+    overlap_ops_swap(block->pairs->coordinates + i * SIZE, pairs + i * SIZE);
+  OverlapBatch batch = {.pair_count = (int)block->count, .pairs = pairs, .volume = block->swapped};
+  if (!status)
+    status = run->logits ? run->logits(run->model->self, (int)block->count, pairs, block->swapped)
+                         : overlap_model_eval(run->model, &batch);
+  memory_free(pairs);
+  return status;
 }
 
 static Status block_evaluate(Block *block, const OverlapModel *model) {
@@ -145,16 +161,18 @@ static void add_confidence(AppEvaluationRun *run, double logit, bool intersects)
   run->intersecting[bin] += intersects;
 }
 
-static bool is_right(const Block *block, size_t i) {
-  if (block->logits) return (block->logits[i] > 0) == (block->pairs->status[i] != 0);
-  return (block->volume[i] > 0) == (block->pairs->volume[i] > 0);
+// `told`: the logit if the model tells one, else V.
+static bool is_right(const Block *block, size_t i, double told) {
+  if (block->logits) return (told > 0) == (block->pairs->status[i] != 0);
+  return (told > 0) == (block->pairs->volume[i] > 0);
 }
 
 static void add_pair(AppEvaluationRun *run, const Block *block, size_t i) {
   AppEvaluationKind *kind = &run->sums.kinds[block->pairs->kind[i]];
   double volume = block->pairs->volume[i];
   kind->count++;
-  kind->accuracy += is_right(block, i);
+  kind->accuracy += is_right(block, i, block->logits ? block->logits[i] : block->volume[i]);
+  kind->accuracy_swapped += is_right(block, i, block->swapped[i]);
   if (block->logits) add_confidence(run, block->logits[i], block->pairs->status[i] != 0);
   kind->volume_mae += fabs(block->volume[i] - volume);
   run->sums.count++;
@@ -208,6 +226,7 @@ static Status add_defects(AppEvaluationRun *run, const double pair[SIZE], double
 static Status add_block(AppEvaluationRun *run, Block *block) {
   TRY(block_evaluate(block, run->model));
   TRY(block_tell_status(block, run));
+  TRY(block_tell_swapped(block, run));
   size_t wanted = (size_t)run->sums.inside + block->count;
   if (!memory_reserve((void **)&run->gradient_errors, &run->gradient_capacity, wanted, sizeof(double)) ||
       !memory_reserve((void **)&run->angles, &run->angle_capacity, wanted, sizeof(double)))
@@ -254,14 +273,20 @@ static double divide(double sum, double by) {
 
 static void finish_kinds(AppEvaluation *result) {
   int present = 0;
-  result->accuracy_mean = 0;
+  result->accuracy_mean = result->accuracy_swapped_mean = 0;
   for (int k = 0; k < DATAGEN_KIND_COUNT; k++) {
     AppEvaluationKind *kind = &result->kinds[k];
-    if (kind->count > 0) present++, result->accuracy_mean += kind->accuracy / (double)kind->count;
-    kind->accuracy = divide(kind->accuracy, (double)kind->count);
-    kind->volume_mae = divide(kind->volume_mae, (double)kind->count);
+    double count = (double)kind->count;
+    kind->accuracy = divide(kind->accuracy, count);
+    kind->accuracy_swapped = divide(kind->accuracy_swapped, count);
+    kind->volume_mae = divide(kind->volume_mae, count);
+    if (kind->count == 0) continue;
+    present++;
+    result->accuracy_mean += kind->accuracy;
+    result->accuracy_swapped_mean += kind->accuracy_swapped;
   }
   result->accuracy_mean = divide(result->accuracy_mean, present);
+  result->accuracy_swapped_mean = divide(result->accuracy_swapped_mean, present);
 }
 
 static double calibration_of(const AppEvaluationRun *run) {

@@ -28,8 +28,9 @@ extern const double app_evaluation_bin_ends[APP_EVALUATION_BINS];
 // What a set of pairs without anything to measure gives is NaN.
 typedef struct AppEvaluationKind {
   long long count;
-  double accuracy;   // share of pairs whose status is right
-  double volume_mae; // mean |ΔV|
+  double accuracy;         // share of pairs whose status is right
+  double accuracy_swapped; // likewise, the two tetrahedra exchanged
+  double volume_mae;       // mean |ΔV|
 } AppEvaluationKind;
 
 typedef struct AppEvaluation {
@@ -37,7 +38,7 @@ typedef struct AppEvaluation {
   long long inside; // with V > 0: what mae … angle_p90_deg are taken over
   long long fallbacks, blended;
   AppEvaluationKind kinds[DATAGEN_KIND_COUNT];
-  double accuracy_mean;                             // mean over the kinds that there are
+  double accuracy_mean, accuracy_swapped_mean;      // mean over the kinds that there are
   double mae;                                       // mean |ΔV|
   double bin_mae[APP_EVALUATION_BINS];              // by the true V; beyond the last end belongs to the last
   double bin_share[APP_EVALUATION_BINS];            // of pairs in each bin

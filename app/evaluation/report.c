@@ -37,8 +37,8 @@ static void print_row(FILE *stream, const char *name, const char *format, double
 }
 
 static void print_kinds(FILE *stream, const AppEvaluation *evaluation) {
-  fprintf(stream, "\n  %-16s %8s  %12s %10s  %12s %10s\n", "kind", "pairs", "status right", "paper",
-          "mean |dV|", "paper");
+  fprintf(stream, "\n  %-16s %8s  %12s %10s  %12s %10s  %10s\n", "kind", "pairs", "status right", "paper",
+          "mean |dV|", "paper", "exchanged");
   for (int k = 0; k < DATAGEN_KIND_COUNT; k++) {
     const AppEvaluationKind *kind = &evaluation->kinds[k];
     if (!kind->count) continue;
@@ -48,7 +48,7 @@ static void print_kinds(FILE *stream, const AppEvaluation *evaluation) {
     fprintf(stream, "  %-16s %8lld", datagen_kind_info(k)->name, kind->count);
     print_pair(stream, "%.2f %%", 100 * kind->accuracy, 100 * accuracy);
     print_pair(stream, "%.3g", kind->volume_mae, mae);
-    fputc('\n', stream);
+    fprintf(stream, "  %8.2f %%\n", 100 * kind->accuracy_swapped);
   }
 }
 
@@ -73,6 +73,7 @@ void app_evaluation_print(const AppEvaluation *evaluation, const char *model, co
   fprintf(stream, "\n  %-26s  %12s %10s\n", "", "", "paper");
   print_row(stream, "mean of the kinds' status", "%.2f %%", 100 * evaluation->accuracy_mean,
             100 * paper_accuracy_mean);
+  print_row(stream, "the two exchanged", "%.2f %%", 100 * evaluation->accuracy_swapped_mean, NAN);
   print_row(stream, "mean |dV|", "%.3g", evaluation->mae, paper_mae);
   print_row(stream, "sum |dV| / sum V", "%.3g %%", 100 * evaluation->volume_error_sum, NAN);
   print_row(stream, "gradient, aggregate", "%.3g %%", 100 * evaluation->gradient_error, NAN);
@@ -110,12 +111,15 @@ void app_evaluation_record(const AppEvaluation *evaluation, Record *record) {
   record_integer(record, "fallbacks", evaluation->fallbacks);
   record_integer(record, "blended", evaluation->blended);
   Record *accuracy = record_child(record, "accuracy"), *mae = record_child(record, "mae_by_kind");
+  Record *swapped = record_child(record, "accuracy_swapped");
   for (int k = 0; k < DATAGEN_KIND_COUNT; k++) {
     if (!evaluation->kinds[k].count) continue;
     record_number(accuracy, datagen_kind_info(k)->name, evaluation->kinds[k].accuracy);
+    record_number(swapped, datagen_kind_info(k)->name, evaluation->kinds[k].accuracy_swapped);
     record_number(mae, datagen_kind_info(k)->name, evaluation->kinds[k].volume_mae);
   }
   record_number(record, "accuracy_mean", evaluation->accuracy_mean);
+  record_number(record, "accuracy_swapped_mean", evaluation->accuracy_swapped_mean);
   record_number(record, "mae", evaluation->mae);
   record_bins(evaluation, record);
   record_number(record, "volume_error_sum", evaluation->volume_error_sum);

@@ -12,8 +12,8 @@ static const char UNEVEN_LOWER[] = "unevenness, lower", UNEVEN_UPPER[] = "uneven
                   INSIDE_UPPER[] = "false friction inside, upper",
                   WHOLE_PATCH[] = "false friction, whole patch", BELOW[] = "force below the surface";
 
-static const char LEARNED[] = "geo geo-small", PAPERS[] = "tpn tpn-bf16", INTEGRABLE[] = "tpn-scene hybrid",
-                  NETWORKS[] = "tpn tpn-bf16 tpn-scene";
+static const char LEARNED[] = "geo geo-small", PAPERS[] = "tpn tpn-bf16",
+                  INTEGRABLE[] = "tpn-scene hybrid", NETWORKS[] = "tpn tpn-bf16 tpn-scene";
 static const char FINER[] =
     "the finer slab is pressed deep in its own elements: by 1.2 of them at the last depth";
 static const char BY_ELEMENT[] = "pressure by element, which depends on how the other mesh covers it; "

@@ -104,6 +104,10 @@ static bool is_able(const AppStressScene *scene, const AppStressOptions *options
     app_stress_excuse(row, "%s", status_message());
     return false;
   }
+  if (ops->lacks_scale) {
+    app_stress_excuse(row, "its V does not follow the size of the pair: no forces");
+    return false;
+  }
   if (ops->seconds_per_pair < 1e-4) return true;
   long long pairs = pairs_of(scene, options);
   double needed = (double)pairs * ops->seconds_per_pair;

@@ -215,5 +215,6 @@ extern "C" const OverlapOps overlap_cgal_ops = {
     nullptr,            // has_hessian
     overlap_ops_always, // has_centroid
     false,              // checks_finite
+    false,              // lacks_scale
     nullptr,            // weights
 };

@@ -175,6 +175,10 @@ static Status create_tpn_bf16(void **self, const char *weights, const OverlapOpt
   return create_named(self, weights, "tpn", options, &as_published, false, NET_KERNEL_BF16);
 }
 
+static Status create_tpn_published(void **self, const char *weights, const OverlapOptions *options) {
+  return create_named(self, weights, "tpn-published", options, &as_published, false, net_kernel_best());
+}
+
 static Status create_tpn_scene(void **self, const char *weights, const OverlapOptions *options) {
   return create_named(self, weights, "tpn-scene", options, &for_scenes, false, net_kernel_best());
 }
@@ -193,7 +197,7 @@ static bool has_ghosts(const void *self) {
 
 const OverlapOps overlap_tpn_ops = {
     .name = "tpn",
-    .help = "learned: the paper's TetrahedronPairNet; its gradient jumps, disjoint pairs feel ghosts",
+    .help = "learned, after TetrahedronPairNet; its gradient jumps, disjoint pairs feel ghosts",
     .has_hessian = has_hessian,
     .seconds_per_pair = 3e-6,
     .create = create_tpn,
@@ -218,9 +222,23 @@ const OverlapOps overlap_tpn_bf16_ops = {
     .weights = "tpn",
 };
 
+const OverlapOps overlap_tpn_published_ops = {
+    .name = "tpn-published",
+    .help = "learned: TetrahedronPairNet as its authors train it; knows no scale, so V is rough",
+    .has_hessian = has_hessian,
+    .seconds_per_pair = 3e-6,
+    .create = create_tpn_published,
+    .lacks_scale = true,
+    .has_ghosts = has_ghosts,
+    .eval_logits = overlap_tpn_model_logits,
+    .eval_pair = overlap_tpn_model_eval_pair,
+    .eval_batch = overlap_tpn_model_eval_batch,
+    .destroy = overlap_tpn_model_destroy,
+};
+
 const OverlapOps overlap_tpn_scene_ops = {
     .name = "tpn-scene",
-    .help = "learned: a TetrahedronPairNet made fit for scenes: gated, in both orders, no ghosts",
+    .help = "learned, after TetrahedronPairNet, made fit for scenes: gated, in both orders, no ghosts",
     .has_hessian = has_hessian,
     .seconds_per_pair = 1.2e-5,
     .create = create_tpn_scene,
@@ -233,7 +251,7 @@ const OverlapOps overlap_tpn_scene_ops = {
 
 const OverlapOps overlap_hybrid_ops = {
     .name = "hybrid",
-    .help = "a TetrahedronPairNet where it is confident, shallow and in range; exact elsewhere",
+    .help = "the network of tpn-scene where it is confident, shallow and in range; exact elsewhere",
     .has_hessian = has_hessian,
     .seconds_per_pair = 2e-5,
     .create = create_hybrid,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetrahedronPairNet as an overlap model: `tpn` as it was published, `tpn-scene` made fit for scenes, and
-// `hybrid`, the paper's section 5. `tpn-bf16` is tpn computed with less precision.
+// TetrahedronPairNet as an overlap model: `tpn-published` as its authors train it, `tpn` after it (reading a,
+// vertices sorted, V over the determinant), `tpn-scene` made fit for scenes, and `hybrid`, the paper's
+// section
+// 5. `tpn-bf16` is tpn computed with less precision.
 //
 //   pair ─ disjoint, by an exact test? ─► V = 0                                       (ghosts: cut, fade)
 //     └─► normalised (normalise.h), in one order or both ─► network ─► z, v ─┐
@@ -15,7 +17,7 @@
 // With SiLU, sums and Unit there is a ∇²V; it jumps where a band of a blend begins or ends.
 //
 //              ghosts  gate    orders  coplanar  beyond the range of the training
-//   tpn        keep    none    one     keep      counted
+//   tpn        keep    none    one     keep      counted    likewise tpn-published
 //   tpn-scene  fade    status  both    keep      counted
 //   hybrid     –       none    both    clip      exact
 //
@@ -41,7 +43,8 @@
 #include "overlap/tpn/network.h"
 
 // The weights that ship under these names; hybrid takes those of tpn-scene unless others are named.
-extern const OverlapOps overlap_tpn_ops, overlap_tpn_bf16_ops, overlap_tpn_scene_ops, overlap_hybrid_ops;
+extern const OverlapOps overlap_tpn_ops, overlap_tpn_bf16_ops, overlap_tpn_published_ops,
+    overlap_tpn_scene_ops, overlap_hybrid_ops;
 
 // `path` as tpn; options NULL: its own. STATUS_INPUT: another kind of network; the message names the file.
 Status overlap_tpn_model_create(void **self, const char *path, const OverlapOptions *options);
