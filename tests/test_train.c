@@ -71,7 +71,8 @@ static const char published_config[] =
     "data:\n"
     "  training: [{law: paper-train, count: 2000, seed: 11}]\n"
     "  validation: [{name: paper, law: paper-test, count: 500, seed: 12}]\n"
-    "optimiser: {rate: 3e-3, schedule: plateau, plateau_patience: 0, warmup: 0, batch: 200, samples: 12000}\n"
+    "optimiser: {rate: 1e-3, schedule: plateau, plateau_patience: 0, plateau_factor: 0.9, batch: 200, "
+    "samples: 12000}\n"
     "validations: 12\n";
 
 static const char sobolev_config[] = "name: t\n"
