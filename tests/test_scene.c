@@ -192,6 +192,10 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_str_eq(scene->contact.pairs[1].names[1], "upper-2");
   ck_assert_double_eq(scene->contact.pairs[1].stiffness, 0);
   ck_assert_double_eq(scene->contact.pairs[1].friction, 0.1);
+  ck_assert_int_eq(scene->bodies[1].probe_count, 2);
+  ck_assert_str_eq(scene->bodies[1].probes[0].name, "sole");
+  ck_assert_str_eq(scene->bodies[1].probes[0].select.group, "glue");
+  ck_assert_int_eq(scene->bodies[1].probes[1].select.kind, FEM_SELECT_ALL);
   ck_assert_int_eq(scene->bodies[1].inner_count, 2);
   ck_assert_str_eq(scene->bodies[1].inner[0].select.group, "glue");
   ck_assert_int_eq(scene->bodies[1].inner[1].select.kind, FEM_SELECT_BOX);

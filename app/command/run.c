@@ -81,6 +81,7 @@ static void conclude(const AppJob *job, const FemRunResult *result) {
            result->pairs_max);
   conclude_energy(&result->audit);
   conclude_network(&result->pairs);
+  for (int i = 0; i < result->told_count; i++) log_info("contact: %s", result->told[i]);
   char trouble[2048], statistics[1024];
   fem_run_tell_statistics(result, statistics, sizeof statistics);
   log_info("statistics: %s", statistics);

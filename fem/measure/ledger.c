@@ -2,72 +2,220 @@
 #include "fem/measure/ledger.h"
 
 #include <limits.h>
+#include <string.h>
 
 #include "base/memory.h"
+#include "base/text.h"
+#include "contact/evaluation.h"
 #include "fem/effect/contact.h"
+#include "fem/model/compliance.h"
 
 static void find_contact(FemLedger *ledger) {
   void *effect = fem_system_effect(ledger->system, &fem_effect_contact);
   ledger->contact = effect ? fem_effect_contact_system(effect) : NULL;
 }
 
+static int probe_count(const FemLedger *ledger) {
+  return ledger->system->model->probe_count;
+}
+
+static bool is_static(const FemLedger *ledger) {
+  return ledger->system->model->scene->is_static;
+}
+
 Status fem_ledger_create(FemLedger *ledger, FemSystem *system) {
   *ledger = (FemLedger){.system = system};
+  find_contact(ledger);
+  size_t probes = (size_t)probe_count(ledger);
+  ledger->readings = memory_zeroed(probes, sizeof *ledger->readings);
+  ledger->next_readings = memory_zeroed(probes, sizeof *ledger->next_readings);
+  if (!ledger->readings || !ledger->next_readings) return status_no_memory("the probes");
+  TRY(fem_accuracy_create(&ledger->accuracy, system->model, ledger->contact));
   return fem_momentum_create(&ledger->momentum, system);
 }
 
 void fem_ledger_destroy(FemLedger *ledger) {
   fem_momentum_destroy(&ledger->momentum);
   contact_passage_destroy(&ledger->passage);
+  fem_accuracy_destroy(&ledger->accuracy);
+  memory_free(ledger->readings);
+  memory_free(ledger->next_readings);
   *ledger = (FemLedger){0};
 }
 
-// The effects are made anew at a checkpoint, so contact is looked up whenever a part begins.
-Status fem_ledger_begin(FemLedger *ledger, double time, const FemMomentumContact *contact) {
-  find_contact(ledger);
-  if (!ledger->system->model->scene->is_static) TRY(fem_momentum_begin(&ledger->momentum, time, contact));
-  if (!ledger->contact || ledger->passage.now.count > 0) return STATUS_OK;
+static Status look(FemLedger *ledger, double time, const FemLedgerState *state) {
+  for (int p = 0; p < probe_count(ledger); p++) {
+    ledger->next_readings[p] = ledger->readings[p];
+    fem_readings_add(&ledger->next_readings[p], &state->readings[p], time);
+  }
+  if (!ledger->contact) return STATUS_OK;
   TRY(contact_passage_look(&ledger->passage, ledger->contact));
+  return fem_accuracy_look(&ledger->accuracy, ledger->system, ledger->contact, time, state->elastic);
+}
+
+static void accept(FemLedger *ledger) {
+  FemReadings *readings = ledger->readings;
+  ledger->readings = ledger->next_readings;
+  ledger->next_readings = readings;
+  if (!ledger->contact) return;
   contact_passage_accept(&ledger->passage);
+  fem_accuracy_accept(&ledger->accuracy);
+}
+
+// The effects are made anew at a checkpoint, so contact is looked up whenever a part begins. What was
+// accepted already is looked at once more, which changes nothing.
+Status fem_ledger_begin(FemLedger *ledger, double time, const FemLedgerState *state) {
+  find_contact(ledger);
+  if (!is_static(ledger)) TRY(fem_momentum_begin(&ledger->momentum, time, &state->contact));
+  TRY(look(ledger, time, state));
+  accept(ledger);
   return STATUS_OK;
 }
 
-Status fem_ledger_end(FemLedger *ledger, double time, const FemMomentumContact *contact) {
-  if (ledger->contact) TRY(contact_passage_look(&ledger->passage, ledger->contact));
-  if (ledger->system->model->scene->is_static) return STATUS_OK;
-  return fem_momentum_end(&ledger->momentum, time, contact);
+Status fem_ledger_end(FemLedger *ledger, double time, const FemLedgerState *state) {
+  TRY(look(ledger, time, state));
+  return is_static(ledger) ? STATUS_OK : fem_momentum_end(&ledger->momentum, time, &state->contact);
 }
 
 void fem_ledger_accept(FemLedger *ledger) {
-  if (!ledger->system->model->scene->is_static) fem_momentum_accept(&ledger->momentum);
-  if (ledger->contact) contact_passage_accept(&ledger->passage);
+  if (!is_static(ledger)) fem_momentum_accept(&ledger->momentum);
+  accept(ledger);
+}
+
+// ---- Telling.
+
+// κ or c of an interface.
+static double stiffness_of(const FemLedger *ledger, int interface) {
+  return contact_system_layout(ledger->contact)->facings[interface].stiffness;
+}
+
+static void record_estimate(const FemEstimate *estimate, Record *record) {
+  record_number(record, "give", estimate->give);
+  record_number(record, "rim", estimate->rim);
+  record_number(record, "depth_over_edge", estimate->depth_over_edge);
+  record_number(record, "tolerance_over_depth", estimate->tolerance_over_depth);
+  record_number(record, "elements_across", estimate->elements_across);
+  record_number(record, "stiffness", estimate->stiffness);
+  record_number(record, "stiffness_for_1_percent", estimate->stiffness_for);
+  record_number(record, "tolerance_for_1_percent", estimate->tolerance_for);
+}
+
+static void record_contact(const FemLedger *ledger, int i, Record *record) {
+  const FemModel *model = ledger->system->model;
+  const FemAccuracyPair *pair = &ledger->accuracy.pairs[i];
+  const ContactFacing *facing = &contact_system_layout(ledger->contact)->facings[i];
+  FemEstimate estimate = fem_accuracy_estimate(pair, model, facing->stiffness);
+  record_text(record, "a", fem_compliance_party_name(model, facing->a));
+  record_text(record, "b", fem_compliance_party_name(model, facing->b));
+  record_number(record, "force_max_N", pair->force);
+  record_number(record, "force_max_time", pair->time);
+  record_number(record, "area_m2", pair->area);
+  record_numbers(record, "centre_m", pair->centre, 3);
+  record_estimate(&estimate, record_child(record, "estimate"));
+}
+
+static void record_readings(const FemLedger *ledger, int p, Record *record) {
+  const FemReadings *readings = &ledger->readings[p];
+  record_text(record, "name", ledger->system->model->probes[p].def->name);
+  record_text(record, "body", ledger->system->model->bodies[ledger->system->model->probes[p].body].name);
+  record_number(record, "force_max_N", readings->largest_force);
+  record_number(record, "force_max_time", readings->largest_force_time);
+  record_number(record, "displacement_max_m", readings->largest_displacement);
+  record_number(record, "displacement_max_time", readings->largest_displacement_time);
+  double last[FEM_READING_COUNT];
+  memcpy(last, &readings->last, sizeof last);
+  Record *end = record_child(record, "last");
+  for (int k = 0; k < FEM_READING_COUNT; k++) record_number(end, fem_reading_title(k), last[k]);
+}
+
+void fem_ledger_record(const FemLedger *ledger, Record *record) {
+  if (ledger->contact) {
+    RecordList *contacts = record_list(record, "contacts");
+    for (int i = 0; i < ledger->accuracy.count; i++)
+      if (ledger->accuracy.pairs[i].force > 0) record_contact(ledger, i, record_append(contacts));
+  }
+  if (probe_count(ledger) == 0) return;
+  RecordList *probes = record_list(record, "probes");
+  for (int p = 0; p < probe_count(ledger); p++) record_readings(ledger, p, record_append(probes));
+}
+
+// The interface of that rank by force; −1: none.
+static int find_rank(const FemAccuracy *accuracy, int rank) {
+  for (int i = 0; i < accuracy->count; i++) {
+    int before = 0;
+    double force = accuracy->pairs[i].force;
+    for (int k = 0; k < accuracy->count; k++)
+      before += accuracy->pairs[k].force > force || (accuracy->pairs[k].force == force && k < i);
+    if (force > 0 && before == rank) return i;
+  }
+  return -1;
+}
+
+bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size) {
+  const FemModel *model = ledger->system->model;
+  int i = ledger->contact ? find_rank(&ledger->accuracy, rank) : -1;
+  if (i < 0) return false;
+  const FemAccuracyPair *pair = &ledger->accuracy.pairs[i];
+  const ContactFacing *facing = &contact_system_layout(ledger->contact)->facings[i];
+  FemEstimate estimate = fem_accuracy_estimate(pair, model, stiffness_of(ledger, i));
+  size_t used = 0;
+  text_append(text, size, &used,
+              "'%s' and '%s' press with %.4g N at most, at t = %.4g s: the contact gives %.2g %% of the way",
+              fem_compliance_party_name(model, facing->a), fem_compliance_party_name(model, facing->b),
+              pair->force, pair->time, 100 * estimate.give);
+  if (estimate.rim > 0) text_append(text, size, &used, ", rims lose %.2g %%", 100 * estimate.rim);
+  text_append(text, size, &used, ", %.1f elements across", estimate.elements_across);
+  if (estimate.stiffness_for > estimate.stiffness)
+    text_append(text, size, &used, "; 1 %% with a stiffness of %.2g %s in place of %.2g",
+                estimate.stiffness_for, contact_def_potential_unit(model->scene->contact.potential),
+                estimate.stiffness);
+  return true;
+}
+
+// ---- Checkpoints.
+
+// How many numbers there are before the passages.
+static size_t fixed_count(const FemLedger *ledger) {
+  return (size_t)ledger->momentum.body_count * FEM_MOMENTUM_KEPT +
+         (size_t)ledger->accuracy.count * FEM_ACCURACY_KEPT + (size_t)probe_count(ledger) * FEM_READINGS_KEPT;
 }
 
 Status fem_ledger_save(const FemLedger *ledger, double **values, size_t *count) {
-  const int bodies = ledger->momentum.body_count, entries = ledger->passage.now.count;
-  *count = (size_t)bodies * FEM_MOMENTUM_KEPT + (size_t)entries * CONTACT_PASSAGE_KEPT;
-  *values = memory_zeroed(*count, sizeof **values);
-  if (!*values) return status_no_memory("a checkpoint");
-  fem_momentum_save(&ledger->momentum, *values);
-  contact_passage_save(&ledger->passage, *values + bodies * FEM_MOMENTUM_KEPT);
+  *count = fixed_count(ledger) + (size_t)ledger->passage.now.count * CONTACT_PASSAGE_KEPT;
+  double *to = *values = memory_zeroed(*count, sizeof **values);
+  if (!to) return status_no_memory("a checkpoint");
+  fem_momentum_save(&ledger->momentum, to);
+  to += ledger->momentum.body_count * FEM_MOMENTUM_KEPT;
+  for (int i = 0; i < ledger->accuracy.count; i++, to += FEM_ACCURACY_KEPT)
+    memcpy(to, &ledger->accuracy.pairs[i], sizeof ledger->accuracy.pairs[i]);
+  for (int p = 0; p < probe_count(ledger); p++, to += FEM_READINGS_KEPT)
+    memcpy(to, &ledger->readings[p], sizeof ledger->readings[p]);
+  contact_passage_save(&ledger->passage, to);
   return STATUS_OK;
 }
 
+// Whether so many numbers, from `passages` on, can be entries of passages.
+static bool are_passages(const FemLedger *ledger, const double *passages, size_t count) {
+  bool fits = count % CONTACT_PASSAGE_KEPT == 0;
+  for (size_t k = 0; k < count && fits; k += CONTACT_PASSAGE_KEPT)
+    fits = passages[k] >= 0 && passages[k] < ledger->accuracy.count && passages[k + 1] >= 0 &&
+           passages[k + 1] <= INT_MAX;
+  return fits;
+}
+
 Status fem_ledger_load(FemLedger *ledger, const double *values, size_t count) {
-  const size_t moved = (size_t)ledger->momentum.body_count * FEM_MOMENTUM_KEPT;
-  if (count < moved || (count - moved) % CONTACT_PASSAGE_KEPT != 0)
-    return status_fail(STATUS_INPUT,
-                       "the checkpoint has %zu numbers of momentum and passages, this scene has %zu "
-                       "or more, by sixes",
-                       count, moved);
+  const size_t fixed = fixed_count(ledger);
+  if (count < fixed || !are_passages(ledger, values + fixed, count - fixed))
+    return status_fail(
+        STATUS_INPUT,
+        "the checkpoint holds %zu numbers of momentum, contacts and probes that do not fit this "
+        "scene, which has %zu and sixes of contacts",
+        count, fixed);
   fem_momentum_load(&ledger->momentum, values);
-  find_contact(ledger);
-  int facings = 0;
-  if (ledger->contact) contact_system_interfaces(ledger->contact, &facings);
-  for (size_t k = moved; k < count; k += CONTACT_PASSAGE_KEPT)
-    if (!(values[k] >= 0 && values[k] < facings && values[k + 1] >= 0 && values[k + 1] <= INT_MAX))
-      return status_fail(STATUS_INPUT,
-                         "the checkpoint tells of contact between two that this scene does not have");
-  return contact_passage_load(&ledger->passage, (int)((count - moved) / CONTACT_PASSAGE_KEPT),
-                              values + moved);
+  values += ledger->momentum.body_count * FEM_MOMENTUM_KEPT;
+  for (int i = 0; i < ledger->accuracy.count; i++, values += FEM_ACCURACY_KEPT)
+    memcpy(&ledger->accuracy.pairs[i], values, sizeof ledger->accuracy.pairs[i]);
+  for (int p = 0; p < probe_count(ledger); p++, values += FEM_READINGS_KEPT)
+    memcpy(&ledger->readings[p], values, sizeof ledger->readings[p]);
+  return contact_passage_load(&ledger->passage, (int)((count - fixed) / CONTACT_PASSAGE_KEPT), values);
 }

@@ -1,29 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run keeps account of from one accepted state to the next: momentum's balance (momentum.h) and who
-// passed through whom (contact/passage.h). A step that is taken back leaves no trace.
+// What a run keeps account of from one accepted state to the next: momentum's balance (momentum.h), who
+// passed through whom (contact/passage.h), how wrong contact may be (accuracy.h), what probes read
+// (reading.h). A step that is taken back leaves no trace.
 #ifndef TETLAP_FEM_MEASURE_LEDGER_H
 #define TETLAP_FEM_MEASURE_LEDGER_H
 
 #include "contact/passage.h"
+#include "fem/measure/accuracy.h"
 #include "fem/measure/momentum.h"
+#include "fem/measure/reading.h"
 
 typedef struct FemLedger {
   FemSystem *system;      // borrowed
   ContactSystem *contact; // borrowed; NULL: the scene has none
   FemMomentum momentum;
   ContactPassage passage;
+  FemAccuracy accuracy;
+  FemReadings *readings, *next_readings; //                         (probe_count)
 } FemLedger;
+
+// What it is told of a state: contact forces, the elastic energy of all bodies [J], what the probes read
+// (probe_count).
+typedef struct FemLedgerState {
+  FemMomentumContact contact;
+  double elastic;
+  const FemReading *readings;
+} FemLedgerState;
 
 // A zeroed one, and one whose creation failed, can be destroyed.
 Status fem_ledger_create(FemLedger *ledger, FemSystem *system);
 void fem_ledger_destroy(FemLedger *ledger);
 
 // As those of momentum.h: a run begins or goes on at the scattered state, which has been evaluated …
-Status fem_ledger_begin(FemLedger *ledger, double time, const FemMomentumContact *contact);
+Status fem_ledger_begin(FemLedger *ledger, double time, const FemLedgerState *state);
 // … a step may end there …
-Status fem_ledger_end(FemLedger *ledger, double time, const FemMomentumContact *contact);
+Status fem_ledger_end(FemLedger *ledger, double time, const FemLedgerState *state);
 // … and does.
 void fem_ledger_accept(FemLedger *ledger);
+
+// Into summary.json: `contacts`, a row for each two that touched, and `probes`.
+void fem_ledger_record(const FemLedger *ledger, Record *record);
+// One line for people of the pair with that rank by force, 0 first: what presses, and how wrong it may be.
+// False: there is none.
+bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size);
 
 // For a checkpoint: a new array, the caller's; and back. STATUS_INPUT: it does not fit.
 Status fem_ledger_save(const FemLedger *ledger, double **values, size_t *count);

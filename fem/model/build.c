@@ -161,6 +161,26 @@ static Status add_loads(FemModel *model, const FemMesh *meshes) {
   return STATUS_OK;
 }
 
+static Status add_probes(FemModel *model, const FemMesh *meshes) {
+  const FemSceneDef *scene = model->scene;
+  size_t most = 0;
+  for (int b = 0; b < scene->body_count; b++) most += (size_t)scene->bodies[b].probe_count;
+  model->probes = memory_zeroed(most, sizeof *model->probes);
+  if (!model->probes) return status_no_memory("the probes");
+  for (int b = 0; b < scene->body_count; b++)
+    for (int i = 0; i < scene->bodies[b].probe_count; i++) {
+      const FemProbeDef *def = &scene->bodies[b].probes[i];
+      Status status = fem_probe_create(&model->probes[model->probe_count], def, &meshes[b], b,
+                                       model->bodies[b].vertex_begin);
+      if (status)
+        return status_prefix(status, "%s:%d:%d: body '%s', probe '%s'", scene->path ? scene->path : "scene",
+                             def->select.place.line, def->select.place.column, scene->bodies[b].name,
+                             def->name);
+      model->probe_count++;
+    }
+  return STATUS_OK;
+}
+
 static Status mark_inner(FemModel *model, const FemMesh *meshes) {
   const FemSceneDef *scene = model->scene;
   model->inner = memory_zeroed((size_t)model->vertex_count, 1);
@@ -213,6 +233,7 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(fem_model_drivers_create(model, meshes));
   TRY(add_loads(model, meshes));
   TRY(mark_inner(model, meshes));
+  TRY(add_probes(model, meshes));
   fem_model_numbering_renew(model);
   int elastic_tets = model->bodies[model->scene->body_count - 1].tet_end;
   TRY(fem_colouring_create(&model->colouring, model->vertex_count, (const int(*)[4])model->tets,
@@ -241,6 +262,8 @@ void fem_model_destroy(FemModel *model) {
   memory_free(model->drivers);
   for (int i = 0; i < model->load_count; i++) fem_load_destroy(&model->loads[i]);
   memory_free(model->loads);
+  for (int i = 0; i < model->probe_count; i++) fem_probe_destroy(&model->probes[i]);
+  memory_free(model->probes);
   memory_free(model->rest);
   memory_free(model->tets);
   memory_free(model->tet_body);

@@ -9,6 +9,7 @@
 #include "fem/element/quadratic.h"
 #include "fem/model/colouring.h"
 #include "fem/model/load.h"
+#include "fem/model/probe.h"
 #include "fem/model/scene.h"
 
 typedef struct FemModelBody {
@@ -58,6 +59,8 @@ typedef struct FemModel {
   int driver_count;
   FemLoad *loads; //                                                                    (load_count)
   int load_count;
+  FemProbe *probes; //                                                                  (probe_count)
+  int probe_count;
   FemColouring colouring; // of the tetrahedra of bodies, which come first
   FemColouring quadratic_colouring;
   double length; // the smallest body's bounding box diagonal [m]

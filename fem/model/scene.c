@@ -31,6 +31,11 @@ static void free_body(FemBodyDef *body) {
   free_loads(body->loads, body->load_count);
   for (int i = 0; i < body->inner_count; i++) memory_free(body->inner[i].select.group);
   memory_free(body->inner);
+  for (int i = 0; i < body->probe_count; i++) {
+    memory_free(body->probes[i].select.group);
+    memory_free(body->probes[i].name);
+  }
+  memory_free(body->probes);
 }
 
 static void free_obstacle(FemObstacleDef *obstacle) {

@@ -85,6 +85,12 @@ typedef struct FemInnerDef {
 
 enum { FEM_MAX_INNER = 8 }; // of a body
 
+// A part of a body whose force, moment, pressure, area and displacement are told.
+typedef struct FemProbeDef {
+  FemSelectDef select; // the first member
+  char *name;
+} FemProbeDef;
+
 typedef struct FemBodyDef {
   char *name;
   char *mesh_path;    // as written, relative to the scene file; NULL: a box
@@ -105,6 +111,8 @@ typedef struct FemBodyDef {
   int load_count;
   FemInnerDef *inner; //                                      (inner_count)
   int inner_count;
+  FemProbeDef *probes; //                                     (probe_count)
+  int probe_count;
   FemScenePlace place;
 } FemBodyDef;
 

@@ -54,9 +54,9 @@ Status fem_history_add_column(FemHistory *history, const char *format, ...) {
   }
   Status status = STATUS_OK;
   if (has_column(history, title))
-    status =
-        status_fail(STATUS_INPUT, "%s: two columns would be named %s; give one of the bodies another name",
-                    history->file.path, title);
+    status = status_fail(STATUS_INPUT,
+                         "%s: two columns would be named %s; give one of the bodies or probes another name",
+                         history->file.path, title);
   if (status)
     memory_free(title);
   else

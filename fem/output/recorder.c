@@ -77,6 +77,7 @@ static Status add_columns(FemRecorder *recorder) {
       TRY(fem_history_add_column(history, "contact_centre_%s_%s_%c_m", a, b, "xyz"[c]));
   }
   TRY(add_friction_columns(recorder));
+  TRY(fem_probes_add_columns(history, model));
   recorder->row = memory_zeroed((size_t)history->column_count, sizeof *recorder->row);
   return recorder->row ? STATUS_OK : status_no_memory("the history");
 }
@@ -89,7 +90,9 @@ static Status create(FemRecorder *recorder, const char *directory) {
   if (!recorder->det_F || !recorder->overlap) return status_no_memory("the measures");
   TRY(fem_trouble_watch_create(&recorder->watch, model));
   TRY(fem_ledger_create(&recorder->ledger, recorder->system));
-  TRY(fem_forces_create(&recorder->forces, recorder->system, directory && model->scene->write_vtu));
+  TRY(fem_probes_create(&recorder->probes, recorder->system));
+  TRY(fem_forces_create(&recorder->forces, recorder->system,
+                        (directory && model->scene->write_vtu) || model->probe_count > 0));
   if (!directory) return STATUS_OK;
   recorder->writes_vtu = model->scene->write_vtu;
   recorder->writes_history = model->scene->history;
@@ -142,6 +145,7 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   memory_free(recorder->displacement);
   fem_forces_destroy(&recorder->forces);
   fem_ledger_destroy(&recorder->ledger);
+  fem_probes_destroy(&recorder->probes);
   memory_free(recorder->reaction);
   memory_free(recorder->stress);
   memory_free(recorder->von_mises);
@@ -232,16 +236,22 @@ Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *mea
   return STATUS_OK;
 }
 
-static FemMomentumContact contact_at(const FemRecorder *recorder, const FemForcesAt *at) {
-  FemMomentumContact contact = {.forces = (const double(*)[3])at->interfaces};
-  contact.interfaces = interfaces_of(recorder->system, &contact.count);
-  return contact;
+// What the ledger is told of a state with these forces of contact.
+static Status describe(FemRecorder *recorder, double time, const FemForcesAt *at, const FemMeasures *measures,
+                       FemLedgerState *state) {
+  TRY(fem_probes_measure(&recorder->probes, time, at));
+  *state = (FemLedgerState){.contact = {.forces = (const double(*)[3])at->interfaces},
+                            .elastic = measures->energy.elastic,
+                            .readings = recorder->probes.readings};
+  state->contact.interfaces = interfaces_of(recorder->system, &state->contact.count);
+  return STATUS_OK;
 }
 
-Status fem_recorder_begin_step(FemRecorder *recorder, double time) {
+Status fem_recorder_begin_step(FemRecorder *recorder, double time, const FemMeasures *measures) {
+  FemLedgerState state;
   fem_forces_begin(&recorder->forces, time);
-  FemMomentumContact contact = contact_at(recorder, &recorder->forces.begin);
-  return fem_ledger_begin(&recorder->ledger, time, &contact);
+  TRY(describe(recorder, time, &recorder->forces.begin, measures, &state));
+  return fem_ledger_begin(&recorder->ledger, time, &state);
 }
 
 static void tell_passages(const FemRecorder *recorder, int count, const ContactPassageEntry *first,
@@ -258,8 +268,9 @@ static void tell_passages(const FemRecorder *recorder, int count, const ContactP
 Status fem_recorder_end_step(FemRecorder *recorder, double time, FemMeasures *measures) {
   const ContactPassage *passage = &recorder->ledger.passage;
   fem_forces_end(&recorder->forces, time);
-  FemMomentumContact contact = contact_at(recorder, &recorder->forces.end);
-  TRY(fem_ledger_end(&recorder->ledger, time, &contact));
+  FemLedgerState state;
+  TRY(describe(recorder, time, &recorder->forces.end, measures, &state));
+  TRY(fem_ledger_end(&recorder->ledger, time, &state));
   measure_steps(recorder, measures);
   tell_passages(recorder, passage->passed, &passage->first, &measures->trouble);
   return STATUS_OK;
@@ -449,7 +460,8 @@ static void fill_row(FemRecorder *recorder, const FemColumnSource *source) {
     row[0] = recorder->forces.now.areas[i];
     vec3_store(row + 1, vec3_at(recorder->forces.now.centres[i]));
   }
-  append_friction(recorder, row);
+  row = append_friction(recorder, row);
+  fem_probes_fill(&recorder->probes, row);
 }
 
 void fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,
@@ -493,6 +505,7 @@ Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures 
                                   .status = recorder->status};
   bool is_first = recorder->history.file.end.size == 0;
   if (recorder->writes_history == FEM_HISTORY_FRAMES || (recorder->writes_history && is_first)) {
+    TRY(fem_probes_measure(&recorder->probes, time, &recorder->forces.now));
     fill_row(recorder, &source);
     TRY(fem_history_add_row(&recorder->history, recorder->row));
   }

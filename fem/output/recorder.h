@@ -11,6 +11,7 @@
 #include "fem/output/forces.h"
 #include "fem/output/history.h"
 #include "fem/output/obstacle_frames.h"
+#include "fem/output/probes.h"
 #include "fem/output/trouble.h"
 #include "fem/time/audit.h"
 
@@ -28,6 +29,7 @@ typedef struct FemRecorder {
   FemObstacleFrames obstacles; // those without a mesh, beside the frames
   FemForces forces;            // as they are written
   FemLedger ledger;
+  FemProbes probes;
   double *displacement;                         // scratch             (vertex_count, 3)
   double *reaction;                             // scratch; NULL: nothing is prescribed (vertex_count, 3)
   double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
@@ -53,7 +55,7 @@ Status fem_recorder_clear(const FemRecorder *recorder);
 Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures);
 
 // A run begins, or goes on, at the scattered state, which was measured last.
-Status fem_recorder_begin_step(FemRecorder *recorder, double time);
+Status fem_recorder_begin_step(FemRecorder *recorder, double time, const FemMeasures *measures);
 // A step may end at the scattered state, which was measured last; adds to the measures what only whole steps
 // know.
 Status fem_recorder_end_step(FemRecorder *recorder, double time, FemMeasures *measures);

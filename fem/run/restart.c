@@ -48,6 +48,7 @@ static Status save_counts(FemCheckpoint *checkpoint, const FemRunResult *so_far)
   record_destroy(checkpoint->so_far.counters);
   checkpoint->so_far = *so_far;
   checkpoint->so_far.interface_names = NULL;
+  checkpoint->so_far.account = NULL;
   checkpoint->so_far.frame_times = checkpoint->so_far.trajectory = NULL;
   checkpoint->so_far.interface_forces = NULL;
   checkpoint->so_far.interface_count = checkpoint->so_far.frame_count = 0;

@@ -172,7 +172,7 @@ static Status begin_account(FemRunState *run) {
   FemMeasures measures;
   fem_system_scatter(&run->system, run->time, run->u, run->v);
   TRY(fem_run_frames_measure(run, run->time, &measures));
-  return fem_recorder_begin_step(&run->recorder, run->time);
+  return fem_recorder_begin_step(&run->recorder, run->time, &measures);
 }
 
 // Vertices come free, bodies fall asleep or awake: with other unknowns from here on.
@@ -255,7 +255,7 @@ static Status sleep_on(FemRunState *run) {
   fem_stall_pass(&run->stall, time - began);
   fem_run_frames_keep_extremes(run->result, &measures);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, time - began));
-  TRY(fem_recorder_begin_step(&run->recorder, time));
+  TRY(fem_recorder_begin_step(&run->recorder, time, &measures));
   TRY(observe(run, &measures));
   bool has_changed = fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest));
   return has_changed ? renumber(run) : STATUS_OK;
@@ -319,7 +319,7 @@ static Status begin_motion(FemRunState *run) {
   if (run->next_frame == 0) TRY(begin_record(run));
   FemMeasures measures;
   TRY(fem_run_frames_measure(run, run->time, &measures));
-  TRY(fem_recorder_begin_step(&run->recorder, run->time));
+  TRY(fem_recorder_begin_step(&run->recorder, run->time, &measures));
   if (fem_system_lags(&run->system)) TRY(renew_powers(run));
   return begin_stage(run, run->next_step);
 }
@@ -445,6 +445,18 @@ static Status march(FemRunState *run) {
   return judge_passages(run);
 }
 
+static Status keep_account(FemRunState *run) {
+  FemRunResult *result = run->result;
+  const FemLedger *ledger = &run->recorder.ledger;
+  result->account = record_new();
+  if (!result->account) return status_no_memory("the summary");
+  fem_ledger_record(ledger, result->account);
+  while (result->told_count < FEM_RUN_TOLD &&
+         fem_ledger_tell(ledger, result->told_count, result->told[result->told_count], sizeof *result->told))
+    result->told_count++;
+  return STATUS_OK;
+}
+
 static Status collect(FemRunState *run) {
   FemRunResult *result = run->result;
   end_part(run);
@@ -456,7 +468,9 @@ static Status collect(FemRunState *run) {
   result->phases.factorisation = result->solver.factorise_s;
   result->phases.solve = result->solver.solve_s;
   result->phases.total = result->wall_s;
-  return run->recorder.system ? fem_recorder_finish(&run->recorder) : STATUS_OK;
+  if (!run->recorder.system) return STATUS_OK;
+  TRY(keep_account(run));
+  return fem_recorder_finish(&run->recorder);
 }
 
 // The counts to go on from.

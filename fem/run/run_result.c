@@ -73,6 +73,7 @@ void fem_run_result_add_system(FemRunResult *result, const FemSystem *system) {
 
 void fem_run_result_destroy(FemRunResult *result) {
   if (result->counters) record_destroy(result->counters);
+  if (result->account) record_destroy(result->account);
   for (int i = 0; i < result->interface_count; i++) memory_free(result->interface_names[i]);
   memory_free(result->interface_names);
   memory_free(result->frame_times);
@@ -244,6 +245,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   }
   if (result->has_status) summarise_status(&result->status_pairs, record_child(summary, "status"));
   record_integer(summary, "peak_rss_bytes", (long long)result->peak_rss_bytes);
+  record_merge(summary, result->account);
   Record *counters = record_child(summary, "counters");
   summarise_counters(result, counters);
   record_merge(counters, result->counters);

@@ -17,6 +17,8 @@ typedef struct FemRunPhases {
       total; // wall [s]
 } FemRunPhases;
 
+enum { FEM_RUN_TOLD = 3 };
+
 // Counts of a part of the run between two checkpoints are added to those before. Whoever adds a number adds
 // it to numbers[] in checkpoint_numbers.c and to fem_run_result_add as well.
 typedef struct FemRunResult {
@@ -47,6 +49,10 @@ typedef struct FemRunResult {
   double last_contact_force; // largest interface force at the last frame [N]
   size_t peak_rss_bytes;
   Record *counters; // owned
+  Record *account;  // contacts and probes as in summary.json, owned; NULL: the run has not begun
+  char told[FEM_RUN_TOLD]
+           [512]; // a line on each of the two that pressed most, on how wrong they may be  (told_count)
+  int told_count;
   int effect_count; // those that the scene called for
   struct {
     const char *name; // borrowed

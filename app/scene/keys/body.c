@@ -11,6 +11,17 @@ static const SceneSection inner = {.help = "faces that are no surface",
                                    .one_of = "box halfspace group all",
                                    PLACE(FemInnerDef, select.place)};
 
+static const SceneKey probe_keys[] = {
+    {"name", SCENE_LABEL, AT(FemProbeDef, name), .required = "foot", .help = "how its columns are called"},
+    {0},
+};
+static const SceneSection probe = {.help = "what is told of a part of a body",
+                                   .size = sizeof(FemProbeDef),
+                                   .keys = probe_keys,
+                                   .more = &app_scene_keys_select,
+                                   .one_of = "box halfspace group all",
+                                   PLACE(FemProbeDef, select.place)};
+
 static const SceneKey body_keys[] = {
     {"name", SCENE_LABEL, AT(FemBodyDef, name), .required = "block",
      .help = "how messages and outputs call it"},
@@ -42,6 +53,11 @@ static const SceneKey body_keys[] = {
      .help = "parts of its boundary that contact shall not take for a surface: planes of symmetry, what is "
              "glued; "
              "faces with all corners selected. At most 8; matters to the potential `field`"},
+    {"probes", SCENE_LIST, AT(FemBodyDef, probes), .section = &probe,
+     .count_offset = offsetof(FemBodyDef, probe_count),
+     .help =
+         "parts of it whose force, moment, mean pressure, area and displacement are columns of history.csv "
+         "and in the summary"},
     {0},
 };
 const SceneSection app_scene_keys_body = {

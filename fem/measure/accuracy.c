@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/measure/accuracy.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "contact/evaluation.h"
+
+static_assert(sizeof(FemAccuracyPair) == FEM_ACCURACY_KEPT * sizeof(double), "numbers only");
+
+// A pair is estimated anew where its force has grown by so much.
+static const double GROWN = 1.01;
+// What an estimate should be below.
+static const double WANTED = 0.01;
+
+Status fem_accuracy_create(FemAccuracy *accuracy, const FemModel *model, const ContactSystem *contact) {
+  *accuracy = (FemAccuracy){0};
+  if (!contact) return STATUS_OK;
+  contact_system_interfaces(contact, &accuracy->count);
+  size_t count = (size_t)accuracy->count;
+  accuracy->pairs = memory_zeroed(count, sizeof *accuracy->pairs);
+  accuracy->found = memory_zeroed(count, sizeof *accuracy->found);
+  accuracy->places = memory_zeroed(count, sizeof *accuracy->places);
+  accuracy->energies = memory_zeroed((size_t)model->body_count, sizeof *accuracy->energies);
+  return accuracy->pairs && accuracy->found && accuracy->places && accuracy->energies
+             ? STATUS_OK
+             : status_no_memory("the accuracy of contact");
+}
+
+void fem_accuracy_destroy(FemAccuracy *accuracy) {
+  memory_free(accuracy->pairs);
+  memory_free(accuracy->found);
+  memory_free(accuracy->places);
+  memory_free(accuracy->energies);
+  *accuracy = (FemAccuracy){0};
+}
+
+static double energy_of_tet(const FemModel *model, const FemModelBody *body, int tet,
+                            const double *positions) {
+  double x[12];
+  for (int v = 0; v < 4; v++) memcpy(x + 3 * v, positions + 3 * (size_t)model->tets[tet][v], 3 * sizeof *x);
+  return fem_element_energy(&model->elements[tet], &body->local, x);
+}
+
+static double energy_of_quadratic(const FemModel *model, const FemModelBody *body, int e,
+                                  const double *positions) {
+  double x[30];
+  for (int v = 0; v < 10; v++)
+    memcpy(x + 3 * v, positions + 3 * (size_t)model->quadratic_nodes[e][v], 3 * sizeof *x);
+  return fem_quadratic_energy(&model->quadratics[e], (FemQuadraticLaw){&body->local, body->bulk}, x);
+}
+
+// Of every body, scaled so that the sum is `elastic`: what the elements' own law leaves out is shared as the
+// rest.
+static void share_energy(FemAccuracy *accuracy, const FemSystem *system, double elastic) {
+  const FemModel *model = system->model;
+  double sum = 0;
+  for (int b = 0; b < model->scene->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    double energy = 0;
+    if (body->quadratic_end > body->quadratic_begin)
+      for (int e = body->quadratic_begin; e < body->quadratic_end; e++)
+        energy += energy_of_quadratic(model, body, e, system->positions);
+    else
+      for (int e = body->tet_begin; e < body->tet_end; e++)
+        energy += energy_of_tet(model, body, e, system->positions);
+    accuracy->energies[b] = energy;
+    sum += energy;
+  }
+  for (int b = 0; b < model->scene->body_count && sum > 0; b++) accuracy->energies[b] *= elastic / sum;
+}
+
+// Mean edge of the elements of a patch, each as if it were regular: V = e³ / (6 √2).
+static double mean_edge(const ContactLayout *layout, const ContactPatches *patches,
+                        const ContactPatch *patch) {
+  double sum = 0;
+  for (int e = patch->element_begin; e < patch->element_end; e++)
+    sum += cbrt(6 * sqrt(2) * layout->tet_volumes[patches->elements[e].tet]);
+  return sum / (patch->element_end - patch->element_begin);
+}
+
+// An element's share of Σ F and of what its pairs would press without edges.
+typedef struct Push {
+  double force[3], full;
+} Push;
+
+static void add_push(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, Push *push) {
+  const ContactFieldPair *field = &evaluation->fields[k];
+  const ContactFacing *facing = &layout->facings[evaluation->pairs[k].facing];
+  vec3_accumulate(push->force, vec3_at(field->force));
+  push->full += facing->stiffness * (field->weighed[0] * vec3_length(vec3_at(field->slopes[1])) +
+                                     field->weighed[1] * vec3_length(vec3_at(field->slopes[0])));
+}
+
+// The pairs of an element are not beside each other, so its sums are kept in `pushes` (elements of the
+// patch).
+static double lost_at_rim(const ContactLayout *layout, const ContactEvaluation *evaluation,
+                          const ContactPatch *patch, Push *pushes) {
+  const ContactPatches *patches = &evaluation->patches;
+  double along = 0, full = 0;
+  for (int k = patch->pair_begin; k < patch->pair_end; k++)
+    add_push(layout, evaluation, k, &pushes[patches->pair_elements[k][0] - patch->element_begin]);
+  for (int e = 0; e < patch->element_end - patch->element_begin; e++) {
+    along += vec3_length(vec3_at(pushes[e].force));
+    full += pushes[e].full;
+  }
+  return (full - along) / along;
+}
+
+static Status find_rim(const ContactLayout *layout, const ContactEvaluation *evaluation,
+                       const ContactPatch *patch, double *rim) {
+  *rim = NAN;
+  if (!layout->depth.has_field) return STATUS_OK;
+  Push *pushes = memory_zeroed((size_t)(patch->element_end - patch->element_begin), sizeof *pushes);
+  if (!pushes) return status_no_memory("the accuracy of contact");
+  *rim = fmax(0, lost_at_rim(layout, evaluation, patch, pushes));
+  memory_free(pushes);
+  return STATUS_OK;
+}
+
+// Whether the patch presses more than ever; then `found` holds by how much and where.
+static bool is_largest(const FemAccuracy *accuracy, const ContactInterface *interface, int place, double time,
+                       FemAccuracyPair *found) {
+  double force = vec3_length(vec3_at(interface->force));
+  *found = accuracy->pairs[place];
+  if (!(force > found->force)) return false;
+  found->force = force;
+  found->time = time;
+  found->area = interface->area;
+  memcpy(found->centre, interface->centre, sizeof found->centre);
+  return true;
+}
+
+static Status estimate(FemAccuracy *accuracy, const FemSystem *system, const ContactLayout *layout,
+                       const ContactEvaluation *evaluation, const ContactPatch *patch, double elastic,
+                       FemAccuracyPair *found) {
+  const ContactFacing *facing = &layout->facings[patch->facing];
+  const int bodies = system->model->scene->body_count;
+  if (!accuracy->has_energies) share_energy(accuracy, system, elastic);
+  accuracy->has_energies = true;
+  found->estimated = found->force;
+  found->energy = patch->energy;
+  found->elastic[0] = facing->a < bodies ? accuracy->energies[facing->a] : 0;
+  found->elastic[1] = facing->b < bodies && facing->b != facing->a ? accuracy->energies[facing->b] : 0;
+  found->edge = mean_edge(layout, &evaluation->patches, patch);
+  return find_rim(layout, evaluation, patch, &found->rim);
+}
+
+Status fem_accuracy_look(FemAccuracy *accuracy, const FemSystem *system, ContactSystem *contact, double time,
+                         double elastic) {
+  const ContactEvaluation *evaluation;
+  const ContactLayout *layout = contact_system_layout(contact);
+  TRY(contact_system_look(contact, &evaluation));
+  accuracy->found_count = 0;
+  accuracy->has_energies = false;
+  for (int p = 0; p < evaluation->patches.patch_count; p++) {
+    const ContactPatch *patch = &evaluation->patches.patches[p];
+    FemAccuracyPair *found = &accuracy->found[accuracy->found_count];
+    if (!is_largest(accuracy, &evaluation->interfaces[patch->facing], patch->facing, time, found)) continue;
+    if (found->force > GROWN * found->estimated)
+      TRY(estimate(accuracy, system, layout, evaluation, patch, elastic, found));
+    accuracy->places[accuracy->found_count++] = patch->facing;
+  }
+  return STATUS_OK;
+}
+
+void fem_accuracy_accept(FemAccuracy *accuracy) {
+  for (int i = 0; i < accuracy->found_count; i++) accuracy->pairs[accuracy->places[i]] = accuracy->found[i];
+  accuracy->found_count = 0;
+}
+
+FemEstimate fem_accuracy_estimate(const FemAccuracyPair *pair, const FemModel *model, double stiffness) {
+  const FemSceneDef *scene = model->scene;
+  double depth = 2 * pair->energy / pair->estimated, tolerance = scene->tolerance * model->length;
+  FemEstimate estimate = {.give = pair->energy / (pair->energy + pair->elastic[0] + pair->elastic[1]),
+                          .rim = pair->rim,
+                          .depth_over_edge = depth / pair->edge,
+                          .tolerance_over_depth = scene->is_static ? NAN : tolerance / depth,
+                          .elements_across = sqrt(pair->area) / pair->edge,
+                          .stiffness = stiffness,
+                          .tolerance_for = NAN};
+  double by_give = estimate.give / (1 - estimate.give) * (1 - WANTED) / WANTED;
+  double by_rim = isnan(estimate.rim) ? 0 : estimate.rim / WANTED;
+  estimate.stiffness_for = stiffness * fmax(1, fmax(by_give, by_rim));
+  if (!scene->is_static)
+    estimate.tolerance_for = scene->tolerance * fmin(1, WANTED / estimate.tolerance_over_depth);
+  return estimate;
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How wrong contact may be, pair of bodies by pair, estimated at the state in which the two pressed each
+// other most.
+//
+// give    The interface is a spring in series with the bodies: with the potential U of the pair and the
+// elastic
+//         energies E_a, E_b of the two (0 of an obstacle), each of them ½ force · way,
+//
+//           give = U / (U + E_a + E_b)
+//
+//         is the interface's share of the way. What is pressed by a prescribed way is too soft by that share
+//         of the force, what is pressed by a prescribed force by that share of the way. U goes with 1/c, so
+//         the stiffness that brings it to 1 % is c · 99 give / (1 − give).
+// rim     Beside an edge of a body the nearest surface is its side, and what lies there is pushed sideways:
+// the share
+//         of the force that is lost at this depth. With F_k the pairs of an element, w_k and g_k their
+//         weights and slopes (contact/pressure/field.h),
+//
+//           rim = Σ [ c (w_i |g_B| + w_j |g_A|) − F_k · n ] / Σ F_k · n,    n = Σ F_k / |Σ F_k| of the
+//           element.
+//
+//         It goes with the depth, so with 1/c.
+// depth   D = 2 U / F, the mean depth of the overlap, over the mean edge of the elements that take part: how
+// much
+//         of what should be a surface is a volume.
+// known   the position tolerance of a time step over D: by how much the depth is undetermined in one step of
+// a
+//         motion. Forces at rest are balanced more closely than that (docs/time.md).
+// across  √area over that edge: how many elements resolve the patch.
+#ifndef TETLAP_FEM_MEASURE_ACCURACY_H
+#define TETLAP_FEM_MEASURE_ACCURACY_H
+
+#include "base/record.h"
+#include "contact/system.h"
+#include "fem/effect/system.h"
+
+// Of one interface, at its largest force so far; what stands below `estimated` at a force that is smaller by
+// a hundredth at most. Numbers only, for checkpoints.
+typedef struct FemAccuracyPair {
+  double force;      // 0: the two never touched [N]
+  double time;       // [s]
+  double area;       // [m²]
+  double centre[3];  // of pressure [m]
+  double estimated;  // at that force [N]
+  double energy;     // U [J]
+  double elastic[2]; // E_a, E_b [J]
+  double edge;       // [m]
+  double rim;        // NaN: the potential is not `field`
+} FemAccuracyPair;
+enum { FEM_ACCURACY_KEPT = 12 };
+
+typedef struct FemAccuracy {
+  int count;
+  FemAccuracyPair *pairs; // in the order of contact_system_interfaces     (count)
+  FemAccuracyPair *found; // in the state that is looked at               (found_count)
+  int *places;            // whose they are                               (found_count)
+  int found_count;
+  double *energies;  // scratch: of bodies                                (body_count)
+  bool has_energies; // of the state that is looked at
+} FemAccuracy;
+
+// A zeroed one, and one whose creation failed, can be destroyed. `contact` NULL: nothing to estimate.
+Status fem_accuracy_create(FemAccuracy *accuracy, const FemModel *model, const ContactSystem *contact);
+void fem_accuracy_destroy(FemAccuracy *accuracy);
+
+// Looks for pairs that press more than ever at contact's last evaluation, that of the scattered state;
+// `elastic`: the elastic energy of all bodies [J].
+Status fem_accuracy_look(FemAccuracy *accuracy, const FemSystem *system, ContactSystem *contact, double time,
+                         double elastic);
+// What was looked at is accepted.
+void fem_accuracy_accept(FemAccuracy *accuracy);
+
+// What follows for one pair.
+typedef struct FemEstimate {
+  double give, rim, depth_over_edge, tolerance_over_depth, elements_across; // NaN: not known
+  double stiffness;                                                         // c or κ of the pair
+  double stiffness_for; // that would bring give and rim to 1 %
+  double tolerance_for; // time.tolerance that would bring tolerance_over_depth there; NaN: static
+} FemEstimate;
+FemEstimate fem_accuracy_estimate(const FemAccuracyPair *pair, const FemModel *model, double stiffness);
+
+#endif

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How wrong contact may be, as a run estimates it, against how wrong it is: the same with a stiffness a hundred and more times as
+// large.
+#include "scene.h"
+
+#include <string.h>
+
+typedef struct Told {
+  double force, give, rim, stiffness_for;
+} Told;
+
+// Of the pair that presses most in that scene, at that stiffness.
+static Told run_with(const char *path, const char *const *overrides, double stiffness) {
+  SceneRun run = {0};
+  char set[64];
+  const char *all[16] = {set};
+  int count = 1;
+  snprintf(set, sizeof set, "contact.stiffness=%g", stiffness);
+  while (overrides && overrides[count - 1]) all[count] = overrides[count - 1], count++;
+  ck_assert_ok(app_scene_read(path, all, count, &run.scene));
+  ck_assert_ok(fem_model_create(&run.model, &run.scene));
+  scene_run_from(&run, NULL);
+  ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
+  const Record *contact = record_at(record_find(run.result.account, "contacts"), 0);
+  const Record *estimate = record_find(contact, "estimate");
+  Told told = {.force = record_find_number(contact, "force_max_N"),
+               .give = record_find_number(estimate, "give"),
+               .rim = record_find_number(estimate, "rim"),
+               .stiffness_for = record_find_number(estimate, "stiffness_for_1_percent")};
+  scene_close(&run);
+  return told;
+}
+
+// The estimate is within a factor of two of the force that is missing.
+static void expect_honest(const char *path, const char *const *overrides, double stiffness, double stiffest) {
+  Told told = run_with(path, overrides, stiffness), reference = run_with(path, overrides, stiffest);
+  double missing = 1 - told.force / reference.force;
+  ck_assert_double_gt(missing, 1e-3);
+  ck_assert_msg(told.give > 0.5 * missing && told.give < 2 * missing, "c = %g: told %g, missing %g", stiffness,
+                told.give, missing);
+}
+
+static const char *const pressed[] = {
+    "bodies.upper.loads=[]", "bodies.upper.driven=[{group: z_max, components: [z], velocity: [0, 0, -0.001]}]", NULL};
+
+START_TEST(the_give_of_two_blocks_in_a_press) {
+  expect_honest(TETLAP_SOURCE_DIR "/tests/scenes/patch.yaml", pressed, 2e7, 1e10);
+  expect_honest(TETLAP_SOURCE_DIR "/tests/scenes/patch.yaml", pressed, 1.25e8, 1e10);
+}
+END_TEST
+
+START_TEST(the_give_under_a_ball) {
+  expect_honest(TETLAP_SOURCE_DIR "/examples/26_hertz.yaml", NULL, 1.25e8, 1.25e10);
+  expect_honest(TETLAP_SOURCE_DIR "/examples/26_hertz.yaml", NULL, 1.25e9, 2.5e10);
+}
+END_TEST
+
+// Rigid, as it were: one block overlaps another by d at once. Full pressure would be 2 c d everywhere.
+START_TEST(what_a_rim_loses_at_a_given_depth) {
+  const double depth = 2e-4, stiffness = 1e5;
+  char place[96];
+  snprintf(place, sizeof place, "bodies.upper.place={translate: [0.02, 0.02, %.17g]}", 0.05 - depth);
+  const char *const overrides[] = {place,
+                                   "bodies.upper.mesh={box: {size: [0.05, 0.05, 0.05], cells: [5, 5, 5]}}",
+                                   "bodies.upper.fixed=[{group: z_max}]",
+                                   "bodies.lower.fixed=[{group: z_min}]",
+                                   "bodies.upper.material={young: 1e13, poisson: 0, density: 1000}",
+                                   "bodies.lower.material={young: 1e13, poisson: 0, density: 1000}",
+                                   "bodies.upper.loads=[]",
+                                   "output.frames=1",
+                                   NULL};
+  Told told = run_with(TETLAP_SOURCE_DIR "/tests/scenes/patch.yaml", overrides, stiffness);
+  double lost = 1 - told.force / (2 * stiffness * depth * 0.05 * 0.05);
+  ck_assert_double_gt(lost, 1e-3);
+  ck_assert_msg(told.rim > 0.5 * lost && told.rim < 2 * lost, "told %g, lost %g", told.rim, lost);
+}
+END_TEST
+
+// With the stiffness that the estimate asks for, it is what was asked for.
+START_TEST(the_advice_leads_to_a_hundredth) {
+  const char *path = TETLAP_SOURCE_DIR "/tests/scenes/patch.yaml";
+  Told told = run_with(path, pressed, 2e7), advised = run_with(path, pressed, told.stiffness_for);
+  ck_assert_double_gt(told.give, 0.1);
+  ck_assert(advised.give > 0.005 && advised.give < 0.0105);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("accuracy");
+  tcase_add_test(cases, the_give_of_two_blocks_in_a_press);
+  tcase_add_test(cases, the_give_under_a_ball);
+  tcase_add_test(cases, what_a_rim_loses_at_a_given_depth);
+  tcase_add_test(cases, the_advice_leads_to_a_hundredth);
+  return suite_run("accuracy", cases, 60);
+}
