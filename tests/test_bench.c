@@ -270,9 +270,9 @@ static const Promise promises[] = {
      "parameters batch threads samples_per_second samples_per_cpu_second"},
     {"scaling --model clip --pairs 100,1000 --nodes 100,200 --steps 2 --repeat 1", 0,
      "bench subject name spread exponent cpu_seconds", "size seconds seconds_per_item done"},
-    {"solver --nodes 60,100 --repeat 2", 6, "bench solver iterations spread factor_entries",
+    {"solver --nodes 60,100 --repeat 2", 10, "bench solver iterations spread factor_entries",
      "vertices unknowns step slenderness assembly_s factorisation_s solve_s setup_solve_s residual"},
-    {"beam --nodes 60 --steps 3", 3, "bench solver linear_iterations spread",
+    {"beam --nodes 60 --steps 3", 5, "bench solver linear_iterations spread",
      "vertices unknowns steps newton_iterations factorisations linear_solves end_time wall_s forces_s "
      "assembly_s factorisation_s solve_s ratio slenderness"},
     {"scene tests/scenes/onset.yaml examples/01_drop.yaml --set time.end=0.02 --overlap clip,exact --repeat "

@@ -246,7 +246,7 @@ START_TEST(what_only_a_motion_has_is_refused_with_its_place) {
   refuse("", "contact: {potential: nodal, friction: 0.5}\n",
          "friction of the law velocity is a force of motion");
   refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "test.yaml:2:18: ");
-  refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "cholmod or pcg");
+  refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "cholmod, amg or pcg");
 }
 END_TEST
 

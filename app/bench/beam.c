@@ -9,8 +9,9 @@
 #include "base/memory.h"
 #include "fem/sparse/solver.h"
 
-enum { SOLVER_COUNT = 3 };
-static const FemSolverKind kinds[SOLVER_COUNT] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_PCG, FEM_SOLVER_KLU};
+enum { SOLVER_COUNT = 5 };
+static const FemSolverKind kinds[SOLVER_COUNT] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_AMG, FEM_SOLVER_GAMG,
+                                                  FEM_SOLVER_PCG, FEM_SOLVER_KLU};
 
 typedef struct Options {
   AppBenchOptions common;
@@ -145,7 +146,7 @@ static const struct argp argp = {.options = option_table,
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 1},
-                     .wants_solver = {true, true, true},
+                     .wants_solver = {true, true, true, true, true},
                      .nodes = 5000,
                      .slenderness = 5,
                      .steps = 20};

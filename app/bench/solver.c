@@ -15,8 +15,9 @@
 #include "fem/model/build.h"
 #include "fem/sparse/solver.h"
 
-enum { SOLVER_COUNT = 3 };
-static const FemSolverKind kinds[SOLVER_COUNT] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_PCG, FEM_SOLVER_KLU};
+enum { SOLVER_COUNT = 5 };
+static const FemSolverKind kinds[SOLVER_COUNT] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_AMG, FEM_SOLVER_GAMG,
+                                                  FEM_SOLVER_PCG, FEM_SOLVER_KLU};
 
 // On more vertices the full system takes minutes and gigabytes: it is measured there only if it is asked for.
 static const double LARGEST_KLU = 6000;
@@ -177,6 +178,7 @@ static Status measure(Contestant *contestant, int round) {
   app_bench_timer_start(&contestant->assembly);
   TRY(assemble(contestant));
   app_bench_timer_stop(&contestant->assembly, round, 1);
+  if (contestant->ops->forget) contestant->ops->forget(contestant->solver);
   app_bench_timer_start(&contestant->set_up_and_solve);
   app_bench_timer_start(&contestant->factorisation);
   TRY(factorise(contestant));
@@ -265,7 +267,7 @@ static Status add_contestant(Bench *bench, FemSolverKind kind, const Options *op
   if (!contestant->solution) return status_no_memory("a solution");
   bench->contestant_count++;
   TRY(contestant->ops->create(&contestant->solver, options->common.threads,
-                              bench->beam.scene.solver_tolerance));
+                              fem_solver_tolerance(contestant->ops, bench->beam.scene.solver_tolerance)));
   return contestant->ops->analyse(contestant->solver, &bench->beam.condensed);
 }
 

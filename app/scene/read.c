@@ -533,7 +533,7 @@ static Status check_static(const SceneNode *root, const FemSceneDef *scene) {
     }
   if (scene->solver == FEM_SOLVER_KLU)
     return app_scene_tree_fail(app_scene_tree_find(app_scene_tree_find(root, "solver"), "linear"),
-                               "klu solves motions only; write cholmod or pcg for a static scene");
+                               "klu solves motions only; write cholmod, amg or pcg for a static scene");
   return STATUS_OK;
 }
 

@@ -70,6 +70,7 @@ static Status couple_effects(FemSystem *system, double time, bool only_changing,
 static Status lay_out(FemSystem *system) {
   fem_matrix_destroy(&system->matrix);
   TRY(fem_matrix_create(&system->matrix, system->pattern, system->model->unknown_of_dof));
+  system->matrix.rest = system->model->rest;
   system->pattern_version++;
   return STATUS_OK;
 }

@@ -204,7 +204,7 @@ typedef struct FemSceneDef {
   int max_order;                           // 1 or 2
   // solver
   FemSolverKind solver;
-  double solver_tolerance; // of PCG, relative
+  double solver_tolerance; // of iterative solvers, relative; 0: as the solver says
   int threads;             // 0: all
   // output
   int frames;                // written at i · end/frames, i = 0 … frames

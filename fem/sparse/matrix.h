@@ -23,6 +23,7 @@ typedef struct FemMatrix {
   // was looked up in one (slots, an analysis) holds for the other.
   long long layout;
   const int *unknown_of_dof;      // borrowed                                 (3·vertex_count)
+  const double *rest;             // of the vertices [m], borrowed; NULL: not known   (vertex_count, 3)
   struct FemMatrixBlocks *blocks; // vertex-pair lookup; owns col_begin and row, shared among copies
 } FemMatrix;
 

@@ -22,11 +22,19 @@ const FemSolverOps *fem_solver_ops(FemSolverKind kind) {
     return &fem_solver_klu;
   case FEM_SOLVER_PCG:
     return &fem_solver_pcg;
+  case FEM_SOLVER_AMG:
+    return &fem_solver_amg;
+  case FEM_SOLVER_GAMG:
+    return &fem_solver_gamg;
   case FEM_SOLVER_AUTO:
     break;
   }
   assert(!"a solver that is not in the table");
   return NULL;
+}
+
+double fem_solver_tolerance(const FemSolverOps *ops, double said) {
+  return said > 0 ? said : ops->tolerance;
 }
 
 int fem_solver_use_threads(int threads) {

@@ -13,7 +13,11 @@ typedef enum FemSolverKind {
   FEM_SOLVER_CHOLMOD, // condensed, supernodal
   FEM_SOLVER_KLU,     // full 2n system, to compare
   FEM_SOLVER_PCG,     // condensed, block Jacobi
+  FEM_SOLVER_AMG,     // condensed, conjugate gradients with BoomerAMG
+  FEM_SOLVER_GAMG,    // condensed, conjugate gradients with smoothed aggregation
 } FemSolverKind;
+
+enum { FEM_SOLVER_COUNT = FEM_SOLVER_GAMG + 1 };
 
 typedef struct FemSolverStats {
   long long analyses, factorisations, failed_factorisations, solves, iterations;
@@ -25,6 +29,7 @@ typedef struct FemSolverOps {
   const char *name;
   const char *help;
   bool is_condensed; // factorise is given S; else K and D
+  double tolerance;  // of an iterative solver where the scene says none; 0: it has none
   // `threads` 0: as OpenMP is set. `tolerance`: relative, of iterative solvers; in (0, 1).
   Status (*create)(void **self, int threads, double tolerance);
   // The pattern is new (or has grown).
@@ -38,6 +43,8 @@ typedef struct FemSolverOps {
   // Condensed: solves S x = b, size n. Full: size 2n. After a factorise that went well. RETRY: no
   // convergence, or a solution that is not finite. b and x must not overlap.
   Status (*solve)(void *self, const double *b, double *x);
+  // Optional: what was kept for the numbers to come is dropped; the next factorise begins from nothing.
+  void (*forget)(void *self);
   void (*destroy)(void *self);
   const FemSolverStats *(*stats)(const void *self);
 } FemSolverOps;
@@ -45,10 +52,15 @@ typedef struct FemSolverOps {
 extern const FemSolverOps fem_solver_cholmod;
 extern const FemSolverOps fem_solver_klu;
 extern const FemSolverOps fem_solver_pcg;
+extern const FemSolverOps fem_solver_amg;
+extern const FemSolverOps fem_solver_gamg;
 
-const char *fem_solver_name(FemSolverKind kind); // "auto", "cholmod", "klu", "pcg"
+const char *fem_solver_name(FemSolverKind kind); // "auto", "cholmod", …
 const char *fem_solver_help(FemSolverKind kind);
 const FemSolverOps *fem_solver_ops(FemSolverKind kind); // not for FEM_SOLVER_AUTO
+
+// What `create` is given for a scene's tolerance, 0: not said.
+double fem_solver_tolerance(const FemSolverOps *ops, double said);
 
 // For the solvers: OpenMP's (and so OpenBLAS's) number of threads from here on, 0: as it is. Returns the
 // number before, to be given back the same way.

@@ -1,37 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Condensed system by conjugate gradients, preconditioned by the inverses of the diagonal blocks of vertices
-// (block Jacobi, at most 3 × 3). Converged when √(rᵀ P r) ≤ tolerance · √(bᵀ P b), P the preconditioner.
-// Sums are formed over pieces of fixed length, so that the result does not depend on the number of threads.
+// (block Jacobi, at most 3 × 3).
 #include "fem/sparse/solver.h"
 
 #include <math.h>
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "fem/sparse/cg.h"
 
-enum { PIECE = 1024, PARALLEL_SIZE = 4000, MAX_ITERATIONS = 2000 };
+enum { PARALLEL_SIZE = 4000, MAX_ITERATIONS = 2000 };
 
 typedef struct PcgSolver {
   int threads;
   double tolerance;
   int size;
   int block_count;
-  int *first;                           // first unknown of each vertex that has some   (block_count + 1)
-  double *inverse;                      // of its diagonal block, row-major             (block_count, 9)
-  double *residual, *direction, *image; // r, p, A p                                    (size)
-  double *preconditioned;               // P r                                          (size)
-  double *partial;                      // sums of pieces
-  const FemMatrix *matrix;              // borrowed, of the last factorise; NULL: none
+  int *first;              // first unknown of each vertex that has some   (block_count + 1)
+  double *inverse;         // of its diagonal block, row-major             (block_count, 9)
+  FemCg cg;                // its vectors
+  const FemMatrix *matrix; // borrowed, of the last factorise; NULL: none
   long long layout;
   FemSolverStats stats;
 } PcgSolver;
 
 static void forget(PcgSolver *solver) {
   memory_free(solver->first), memory_free(solver->inverse);
-  memory_free(solver->residual), memory_free(solver->direction), memory_free(solver->image);
-  memory_free(solver->preconditioned), memory_free(solver->partial);
+  fem_cg_destroy(&solver->cg);
   solver->first = NULL, solver->inverse = NULL;
-  solver->residual = solver->direction = solver->image = solver->preconditioned = solver->partial = NULL;
   solver->matrix = NULL;
   solver->layout = 0;
 }
@@ -62,14 +58,8 @@ static Status analyse(void *self, const FemMatrix *pattern) {
   solver->size = pattern->size;
   solver->first = memory_zeroed(size + 1, sizeof *solver->first);
   solver->inverse = memory_zeroed(9 * size, sizeof *solver->inverse);
-  solver->residual = memory_zeroed(size, sizeof *solver->residual);
-  solver->direction = memory_zeroed(size, sizeof *solver->direction);
-  solver->image = memory_zeroed(size, sizeof *solver->image);
-  solver->preconditioned = memory_zeroed(size, sizeof *solver->preconditioned);
-  solver->partial = memory_zeroed(size / PIECE + 1, sizeof *solver->partial);
-  if (!solver->first || !solver->inverse || !solver->residual || !solver->direction || !solver->image ||
-      !solver->preconditioned || !solver->partial)
-    return status_no_memory("the solver pcg");
+  if (!solver->first || !solver->inverse) return status_no_memory("the solver pcg");
+  TRY(fem_cg_create(&solver->cg, pattern->size));
   int unknown = 0;
   solver->block_count = 0;
   for (int v = 0; v < pattern->vertex_count; v++) {
@@ -148,22 +138,9 @@ static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix 
   return status;
 }
 
-static double dot(PcgSolver *solver, const double *a, const double *b) {
-  int pieces = (solver->size + PIECE - 1) / PIECE;
-#pragma omp parallel for schedule(static) if (solver->size > PARALLEL_SIZE)
-  for (int p = 0; p < pieces; p++) {
-    int end = p + 1 < pieces ? (p + 1) * PIECE : solver->size;
-    double sum = 0;
-    for (int i = p * PIECE; i < end; i++) sum += a[i] * b[i];
-    solver->partial[p] = sum;
-  }
-  double sum = 0;
-  for (int p = 0; p < pieces; p++) sum += solver->partial[p];
-  return sum;
-}
-
 // z = P r
-static void precondition(const PcgSolver *solver, const double *r, double *z) {
+static Status precondition(void *self, const double *r, double *z) {
+  const PcgSolver *solver = self;
 #pragma omp parallel for schedule(static) if (solver->size > PARALLEL_SIZE)
   for (int b = 0; b < solver->block_count; b++) {
     int first = solver->first[b], size = solver->first[b + 1] - first;
@@ -174,44 +151,7 @@ static void precondition(const PcgSolver *solver, const double *r, double *z) {
       z[first + i] = sum;
     }
   }
-}
-
-// y += a x
-static void add_scaled(int size, double a, const double *x, double *y) {
-#pragma omp parallel for simd schedule(static) if (size > PARALLEL_SIZE)
-  for (int i = 0; i < size; i++) y[i] += a * x[i];
-}
-
-static Status iterate(PcgSolver *solver, const double *b, double *x) {
-  double *r = solver->residual, *p = solver->direction, *Ap = solver->image, *z = solver->preconditioned;
-  int size = solver->size;
-  for (int i = 0; i < size; i++) x[i] = 0, r[i] = b[i];
-  precondition(solver, r, z);
-  for (int i = 0; i < size; i++) p[i] = z[i];
-  double rz = dot(solver, r, z);
-  if (rz == 0) return STATUS_OK; // b = 0
-  double goal = solver->tolerance * solver->tolerance * rz;
-  int limit = size < MAX_ITERATIONS / 2 ? 2 * size : MAX_ITERATIONS;
-  for (int k = 0; k < limit; k++) {
-    fem_matrix_multiply(solver->matrix, p, Ap);
-    double pAp = dot(solver, p, Ap);
-    if (!(pAp > 0) || isinf(pAp))
-      return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite (found by pcg)");
-    double step = rz / pAp;
-    add_scaled(size, step, p, x);
-    add_scaled(size, -step, Ap, r);
-    precondition(solver, r, z);
-    double rz_next = dot(solver, r, z);
-    solver->stats.iterations++;
-    if (rz_next <= goal) return STATUS_OK;
-    double ratio = rz_next / rz;
-    for (int i = 0; i < size; i++) p[i] = z[i] + ratio * p[i];
-    rz = rz_next;
-  }
-  return status_fail(
-      STATUS_RETRY,
-      "pcg did not converge in %d iterations: use solver.linear: cholmod, or a larger solver.tolerance",
-      limit);
+  return STATUS_OK;
 }
 
 static Status solve(void *self, const double *b, double *x) {
@@ -219,7 +159,14 @@ static Status solve(void *self, const double *b, double *x) {
   if (!solver->matrix) return status_fail(STATUS_SOLVER, "pcg: no matrix to solve with");
   double began = clock_wall_s();
   int before = fem_solver_use_threads(solver->threads);
-  Status status = iterate(solver, b, x);
+  FemCgProblem problem = {.matrix = solver->matrix,
+                          .precondition = precondition,
+                          .self = solver,
+                          .name = "pcg",
+                          .tolerance = solver->tolerance,
+                          .limit = solver->size < MAX_ITERATIONS / 2 ? 2 * solver->size : MAX_ITERATIONS};
+  FemCgEnd end;
+  Status status = fem_cg_solve(&solver->cg, &problem, b, x, &solver->stats.iterations, &end);
   fem_solver_use_threads(before);
   solver->stats.solves++;
   solver->stats.solve_s += clock_wall_s() - began;
@@ -234,6 +181,7 @@ const FemSolverOps fem_solver_pcg = {
     .name = "pcg",
     .help = "condensed system, conjugate gradients with block-Jacobi preconditioning",
     .is_condensed = true,
+    .tolerance = 1e-8,
     .create = create,
     .analyse = analyse,
     .factorise = factorise,

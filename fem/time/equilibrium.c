@@ -10,12 +10,13 @@ Status fem_equilibrium_create(FemEquilibrium *equilibrium, FemSystem *system, co
   *equilibrium = (FemEquilibrium){.system = system, .ops = ops};
   if (!ops->is_condensed)
     return status_fail(STATUS_INPUT,
-                       "solver.linear: %s solves motions only; write cholmod or pcg for a static scene",
+                       "solver.linear: %s solves motions only; write cholmod, amg or pcg for a static scene",
                        ops->name);
   const FemSceneDef *scene = system->model->scene;
   equilibrium->still = memory_zeroed((size_t)system->model->unknown_count, sizeof *equilibrium->still);
   if (!equilibrium->still) return status_no_memory("the equilibrium");
-  Status status = ops->create(&equilibrium->solver, scene->threads, scene->solver_tolerance);
+  Status status =
+      ops->create(&equilibrium->solver, scene->threads, fem_solver_tolerance(ops, scene->solver_tolerance));
   if (status) fem_equilibrium_destroy(equilibrium);
   return status;
 }

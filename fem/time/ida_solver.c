@@ -90,7 +90,8 @@ static int solve_callback(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, 
 
 static Status create(FemIdaSolver *solver, SUNContext context) {
   const FemModel *model = solver->system->model;
-  TRY(solver->ops->create(&solver->solver, model->scene->threads, model->scene->solver_tolerance));
+  TRY(solver->ops->create(&solver->solver, model->scene->threads,
+                          fem_solver_tolerance(solver->ops, model->scene->solver_tolerance)));
   size_t n = (size_t)model->unknown_count;
   solver->masses = memory_zeroed(n, sizeof *solver->masses);
   solver->right = memory_zeroed(n, sizeof *solver->right);

@@ -27,7 +27,7 @@ static const char *potential_help(int i) {
 const SceneChoices app_scene_choices_potentials = {.name = potential_name, .help = potential_help};
 
 static const char *solver_name(int i) {
-  return i <= FEM_SOLVER_PCG ? fem_solver_name((FemSolverKind)i) : NULL;
+  return i < FEM_SOLVER_COUNT ? fem_solver_name((FemSolverKind)i) : NULL;
 }
 static const char *solver_help(int i) {
   return fem_solver_help((FemSolverKind)i);

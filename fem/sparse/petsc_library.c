@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/sparse/petsc_library.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static FemPetscLibrary functions;
+static void *handle;
+static int is_ready;
+
+static Status find(const char *name, void *pointer) {
+  void *found = dlsym(handle, name);
+  if (!found)
+    return status_fail(STATUS_IO, "PETSc's library %s has no %s; install the one of PETSc %d.%d",
+                       TETLAP_PETSC_LIBRARY, name, PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR);
+  memcpy(pointer, &found, sizeof found); // ISO C converts no pointer to an object to one to a function
+  return STATUS_OK;
+}
+
+static int load(void) {
+  if (!handle) handle = dlopen(TETLAP_PETSC_LIBRARY, RTLD_LAZY | RTLD_LOCAL);
+  return handle != NULL;
+}
+
+int fem_petsc_library_is_there(void) {
+  return load();
+}
+
+static Status find_functions(void) {
+#define FIND(name) TRY(find(#name, &functions.name));
+  FEM_PETSC_FUNCTIONS(FIND)
+#undef FIND
+  PetscInt major, minor, subminor, release;
+  functions.PetscGetVersionNumber(&major, &minor, &subminor, &release);
+  if (major == PETSC_VERSION_MAJOR && minor == PETSC_VERSION_MINOR) return STATUS_OK;
+  return status_fail(STATUS_IO, "PETSc's library is of version %d.%d, and tetlap was compiled for %d.%d",
+                     (int)major, (int)minor, PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR);
+}
+
+// One process that was not started by mpiexec: Open MPI need not look for neighbours, networks or a shell to
+// start others with. What the user has set stays.
+static void keep_mpi_to_itself(void) {
+  static const char *const settings[][2] = {
+      {"OMPI_MCA_ess_singleton_isolated", "1"},
+      {"OMPI_MCA_btl", "self"},
+      {"OMPI_MCA_pml", "ob1"},
+      {"OMPI_MCA_oob_tcp_if_include", "lo"},
+      {"OMPI_MCA_plm", "isolated"},
+      {"OMPI_MCA_mpi_warn_on_fork", "0"},
+      {"OMPI_MCA_opal_signal", ""},
+      {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
+  };
+  for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) setenv(settings[i][0], settings[i][1], 0);
+}
+
+static void finalize(void) {
+  functions.PetscFinalize();
+}
+
+// Signals and messages are ours; files of options in a home or a folder would change results unseen.
+static Status initialize(void) {
+  char *own[] = {(char[]){"tetlap"},
+                 (char[]){"-skip_petscrc"},
+                 (char[]){"-no_signal_handler"},
+                 (char[]){"-options_left"},
+                 (char[]){"0"},
+                 NULL};
+  char **arguments = own;
+  int count = 5;
+  keep_mpi_to_itself();
+  if (functions.PetscInitialize(&count, &arguments, "", NULL) != 0)
+    return status_fail(STATUS_SOLVER, "PETSc could not be initialised: use solver.linear: cholmod");
+  MPI_Comm *world = NULL;
+  TRY(find("PETSC_COMM_WORLD", &world));
+  functions.self = *world;
+  functions.PetscPushErrorHandler(functions.PetscIgnoreErrorHandler, NULL);
+  atexit(finalize);
+  return STATUS_OK;
+}
+
+Status fem_petsc_library(const FemPetscLibrary **library) {
+  *library = &functions;
+  if (is_ready) return STATUS_OK;
+  if (!load())
+    return status_fail(
+        STATUS_IO,
+        "solver.linear: amg and gamg are PETSc's, which cannot be loaded (%s); install the package of %s "
+        "or use solver.linear: cholmod",
+        dlerror(), TETLAP_PETSC_LIBRARY);
+  TRY(find_functions());
+  TRY(initialize());
+  is_ready = 1;
+  return STATUS_OK;
+}

@@ -1,0 +1,465 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Condensed system by conjugate gradients with algebraic multigrid of PETSc: `amg` is hypre's BoomerAMG, with
+// unknowns of a vertex kept apart by their direction (Henson and Yang 2002), `gamg` PETSc's smoothed
+// aggregation with the rigid motions as near-null space (Vaněk, Mandel and Brezina 1996; Adams et al. 2004).
+//
+// A hierarchy is dear (some five iterations) and bears that the matrix moves on: it is kept for new numbers
+// while iterations stay near what they were when it was new. Conjugate gradients see the newest matrix
+// always, so this never touches the answer. Only counts decide, no clock: a run repeats itself.
+//
+// The multigrid sees three coordinates of every vertex that has an unknown; prescribed ones stand alone, with
+// nothing but a diagonal.
+#include <limits.h>
+#include <math.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "fem/sparse/cg.h"
+#include "fem/sparse/petsc_library.h"
+#include "fem/sparse/solver.h"
+
+// Iterations before a kept hierarchy is made anew at once, and before a new one gives up.
+enum { LIMIT_KEPT = 60, LIMIT = 500 };
+// A hierarchy is worn where iterations are more than this share beyond those of when it was new, and some.
+static const double WORN_SHARE = 1.5;
+enum { WORN_MORE = 2 };
+
+typedef enum Kind { BOOMER, GAMG } Kind;
+static const char *const names[] = {[BOOMER] = "amg", [GAMG] = "gamg"};
+static const char *const prefixes[] = {[BOOMER] = "tetlap_amg_", [GAMG] = "tetlap_gamg_"};
+
+// Rows of the whole matrix, both halves, of the coordinates that the multigrid sees.
+typedef struct Rows {
+  int count;
+  int *begin, *column; //      (count + 1), (begin[count])
+  double *value;       //      (begin[count])
+} Rows;
+
+typedef struct PetscSolver {
+  Kind kind;
+  const FemPetscLibrary *petsc;
+  int threads;
+  double tolerance;
+  int size;                // unknowns
+  int row_count;           // three a vertex that has some
+  int *place;              // row of each unknown                             (size)
+  double *rest;            // of those vertices [m]; NULL: not known          (row_count)
+  double *right, *left;    // what the multigrid is given and gives           (row_count)
+  Vec right_vec, left_vec; // views of them
+  Rows rows;               // kept by gamg, whose matrix they are
+  Mat matrix;              // of gamg
+  PC multigrid;            // NULL: none yet
+  bool is_worn;            // to be made anew at the next factorise
+  bool is_fresh;           // has not solved yet
+  long long new_count;     // iterations of its first solve
+  FemCg cg;
+  const FemMatrix *current; // borrowed, of the last factorise; NULL: none
+  long long layout;         // that was analysed
+  long long rows_layout;    // whose rows gamg has
+  FemSolverStats stats;
+} PetscSolver;
+
+static void wear(void *self) {
+  ((PetscSolver *)self)->is_worn = true;
+}
+
+static Status fail_in(const PetscSolver *solver, const char *what, PetscErrorCode code) {
+  if (code == PETSC_ERR_MEM) return status_no_memory("the multigrid of the condensed system");
+  return status_fail(STATUS_RETRY, "%s: %s failed with PETSc's error %d", names[solver->kind], what,
+                     (int)code);
+}
+
+#define PETSC_TRY(what, call)                                                                                \
+  do {                                                                                                       \
+    PetscErrorCode code_ = (call);                                                                           \
+    if (code_) return fail_in(solver, what, code_);                                                          \
+  } while (0)
+
+static void free_rows(Rows *rows) {
+  memory_free(rows->begin), memory_free(rows->column), memory_free(rows->value);
+  *rows = (Rows){0};
+}
+
+static void forget_multigrid(PetscSolver *solver) {
+  if (solver->multigrid) solver->petsc->PCDestroy(&solver->multigrid);
+  if (solver->matrix) solver->petsc->MatDestroy(&solver->matrix);
+  solver->multigrid = NULL, solver->matrix = NULL;
+  free_rows(&solver->rows);
+  solver->rows_layout = 0;
+}
+
+static void forget(PetscSolver *solver) {
+  forget_multigrid(solver);
+  if (solver->right_vec) solver->petsc->VecDestroy(&solver->right_vec);
+  if (solver->left_vec) solver->petsc->VecDestroy(&solver->left_vec);
+  memory_free(solver->place), memory_free(solver->rest);
+  memory_free(solver->right), memory_free(solver->left);
+  fem_cg_destroy(&solver->cg);
+  solver->place = NULL, solver->rest = solver->right = solver->left = NULL;
+  solver->right_vec = solver->left_vec = NULL;
+  solver->current = NULL;
+  solver->layout = 0;
+}
+
+static void destroy(void *self) {
+  if (!self) return;
+  forget(self);
+  memory_free(self);
+}
+
+// BoomerAMG as measured on contact, friction, statics and ν = 0.45: one level of aggressive coarsening, which
+// halves memory for a third more iterations, and one sweep of Gauss and Seidel down and one back up, which is
+// symmetric and half the work of a symmetric one each way. gamg with its own smoother.
+static void set_options(const FemPetscLibrary *petsc) {
+  static const char *const options[][2] = {
+      {"-tetlap_amg_pc_hypre_type", "boomeramg"},
+      {"-tetlap_amg_pc_hypre_boomeramg_coarsen_type", "HMIS"},
+      {"-tetlap_amg_pc_hypre_boomeramg_interp_type", "ext+i"},
+      {"-tetlap_amg_pc_hypre_boomeramg_P_max", "4"},
+      {"-tetlap_amg_pc_hypre_boomeramg_strong_threshold", "0.5"},
+      {"-tetlap_amg_pc_hypre_boomeramg_agg_nl", "1"},
+      {"-tetlap_amg_pc_hypre_boomeramg_no_CF", NULL},
+      {"-tetlap_amg_pc_hypre_boomeramg_relax_type_down", "SOR/Jacobi"},
+      {"-tetlap_amg_pc_hypre_boomeramg_relax_type_up", "backward-SOR/Jacobi"},
+      {"-tetlap_gamg_pc_gamg_reuse_interpolation", "true"},
+  };
+  for (size_t i = 0; i < sizeof options / sizeof *options; i++)
+    petsc->PetscOptionsSetValue(NULL, options[i][0], options[i][1]);
+}
+
+static Status create(Kind kind, void **self, int threads, double tolerance) {
+  *self = NULL;
+  const FemPetscLibrary *petsc;
+  if (!(tolerance > 0 && tolerance < 1))
+    return status_fail(STATUS_INPUT, "solver %s: the tolerance must lie between 0 and 1, not %g", names[kind],
+                       tolerance);
+  TRY(fem_petsc_library(&petsc));
+  PetscSolver *solver = memory_zeroed(1, sizeof *solver);
+  if (!solver) return status_no_memory("the solver amg");
+  *self = solver;
+  solver->kind = kind;
+  solver->petsc = petsc;
+  solver->threads = threads;
+  solver->tolerance = tolerance;
+  set_options(petsc);
+  return STATUS_OK;
+}
+
+static Status create_amg(void **self, int threads, double tolerance) {
+  return create(BOOMER, self, threads, tolerance);
+}
+static Status create_gamg(void **self, int threads, double tolerance) {
+  return create(GAMG, self, threads, tolerance);
+}
+
+// Rows of the vertices that have unknowns; whether they are those of the last analysis.
+static bool number_rows(PetscSolver *solver, const FemMatrix *pattern, int *place, double *rest) {
+  int row = 0, unknown = 0;
+  bool is_same = solver->place && solver->size == pattern->size;
+  for (int v = 0; v < pattern->vertex_count; v++) {
+    int before = unknown;
+    for (int c = 0; c < 3; c++) {
+      if (pattern->unknown_of_dof[3 * v + c] < 0) continue;
+      place[unknown] = row + c;
+      is_same = is_same && solver->place[unknown] == row + c;
+      unknown++;
+    }
+    if (unknown == before) continue;
+    for (int c = 0; c < 3 && pattern->rest; c++) rest[row + c] = pattern->rest[3 * v + c];
+    row += 3;
+  }
+  is_same = is_same && solver->row_count == row;
+  solver->row_count = row;
+  return is_same;
+}
+
+static Status make_vectors(PetscSolver *solver) {
+  const FemPetscLibrary *petsc = solver->petsc;
+  size_t rows = (size_t)solver->row_count;
+  solver->right = memory_zeroed(rows, sizeof *solver->right);
+  solver->left = memory_zeroed(rows, sizeof *solver->left);
+  if (!solver->right || !solver->left) return status_no_memory("the solver amg");
+  TRY(fem_cg_create(&solver->cg, solver->size));
+  PETSC_TRY("a vector", petsc->VecCreateSeqWithArray(petsc->self, 3, solver->row_count, solver->right,
+                                                     &solver->right_vec));
+  PETSC_TRY("a vector",
+            petsc->VecCreateSeqWithArray(petsc->self, 3, solver->row_count, solver->left, &solver->left_vec));
+  return STATUS_OK;
+}
+
+// Another pattern over the same unknowns leaves the hierarchy be.
+static Status analyse_rows(PetscSolver *solver, const FemMatrix *pattern) {
+  int *place = memory_zeroed((size_t)pattern->size, sizeof *place);
+  double *rest = memory_zeroed(3 * (size_t)pattern->size, sizeof *rest);
+  if (!place || !rest) {
+    memory_free(place), memory_free(rest);
+    return status_no_memory("the solver amg");
+  }
+  if (number_rows(solver, pattern, place, rest)) {
+    memory_free(place), memory_free(rest);
+    return STATUS_OK;
+  }
+  int rows = solver->row_count;
+  forget(solver);
+  solver->row_count = rows;
+  solver->size = pattern->size;
+  solver->place = place;
+  solver->rest = rest;
+  if (!pattern->rest) memory_free(solver->rest), solver->rest = NULL;
+  return make_vectors(solver);
+}
+
+static Status analyse(void *self, const FemMatrix *pattern) {
+  PetscSolver *solver = self;
+  double began = clock_wall_s();
+  solver->current = NULL;
+  solver->layout = 0;
+  TRY(analyse_rows(solver, pattern));
+  solver->layout = pattern->layout;
+  solver->stats.analyses++;
+  solver->stats.analyse_s += clock_wall_s() - began;
+  return STATUS_OK;
+}
+
+// How many entries each row has, then where it begins. Rows that no unknown has: one.
+static void count_entries(const PetscSolver *solver, const FemMatrix *matrix, int *begin) {
+  for (int u = 0; u < matrix->size; u++)
+    for (int k = matrix->col_begin[u]; k < matrix->col_begin[u + 1]; k++) {
+      begin[solver->place[u] + 1]++;
+      if (matrix->row[k] != u) begin[solver->place[matrix->row[k]] + 1]++;
+    }
+  for (int r = 0; r < solver->row_count; r++) begin[r + 1] = begin[r] + (begin[r + 1] ? begin[r + 1] : 1);
+}
+
+// Columns come in ascending order, so a row is filled from left to right: what is below the diagonal of
+// earlier columns, then its own. `begin` is pushed on by a row, and moved back at the end.
+static void fill_entries(const PetscSolver *solver, const FemMatrix *matrix, Rows *rows) {
+  int *next = rows->begin;
+  for (int u = 0, row = 0; u <= matrix->size; u++) {
+    int own = u < matrix->size ? solver->place[u] : solver->row_count;
+    for (; row < own; row++) { // prescribed ones: as stiff as a neighbour
+      int of = u > 0 ? u - 1 : u;
+      rows->column[next[row]] = row;
+      rows->value[next[row]++] = matrix->value[matrix->col_begin[of]];
+    }
+    if (u == matrix->size) break;
+    row++;
+    for (int k = matrix->col_begin[u]; k < matrix->col_begin[u + 1]; k++) {
+      int other = solver->place[matrix->row[k]];
+      rows->column[next[own]] = other;
+      rows->value[next[own]++] = matrix->value[k];
+      if (other == own) continue;
+      rows->column[next[other]] = own;
+      rows->value[next[other]++] = matrix->value[k];
+    }
+  }
+  for (int r = rows->count; r > 0; r--) next[r] = next[r - 1];
+  next[0] = 0;
+}
+
+static Status make_rows(const PetscSolver *solver, const FemMatrix *matrix, Rows *rows) {
+  size_t most = 2 * (size_t)matrix->entry_count + (size_t)solver->row_count;
+  if (most > INT_MAX)
+    return status_fail(STATUS_SOLVER, "%s: the matrix has more entries than can be numbered",
+                       names[solver->kind]);
+  rows->count = solver->row_count;
+  rows->begin = memory_zeroed((size_t)rows->count + 1, sizeof *rows->begin);
+  if (!rows->begin) return status_no_memory("the multigrid's matrix");
+  count_entries(solver, matrix, rows->begin);
+  size_t entries = (size_t)rows->begin[rows->count];
+  rows->column = memory_zeroed(entries, sizeof *rows->column);
+  rows->value = memory_zeroed(entries, sizeof *rows->value);
+  if (!rows->column || !rows->value) return status_no_memory("the multigrid's matrix");
+  fill_entries(solver, matrix, rows);
+  return STATUS_OK;
+}
+
+static Status wrap_rows(PetscSolver *solver, const Rows *rows, Mat *matrix) {
+  const FemPetscLibrary *petsc = solver->petsc;
+  PETSC_TRY("the matrix", petsc->MatCreateSeqAIJWithArrays(petsc->self, rows->count, rows->count, rows->begin,
+                                                           rows->column, rows->value, matrix));
+  PETSC_TRY("the matrix", petsc->MatSetBlockSize(*matrix, 3));
+  PETSC_TRY("the matrix", petsc->MatSetOption(*matrix, MAT_SYMMETRIC, PETSC_TRUE));
+  PETSC_TRY("the matrix", petsc->MatSetOption(*matrix, MAT_SPD, PETSC_TRUE));
+  return STATUS_OK;
+}
+
+static Status set_up(PetscSolver *solver, Mat matrix) {
+  const FemPetscLibrary *petsc = solver->petsc;
+  PETSC_TRY("the multigrid", petsc->PCCreate(petsc->self, &solver->multigrid));
+  PETSC_TRY("the multigrid", petsc->PCSetOptionsPrefix(solver->multigrid, prefixes[solver->kind]));
+  PETSC_TRY("the multigrid", petsc->PCSetType(solver->multigrid, solver->kind == BOOMER ? PCHYPRE : PCGAMG));
+  PETSC_TRY("the multigrid", petsc->PCSetOperators(solver->multigrid, matrix, matrix));
+  PETSC_TRY("the multigrid", petsc->PCSetFromOptions(solver->multigrid));
+  if (solver->kind == GAMG && solver->rest)
+    PETSC_TRY("the multigrid",
+              petsc->PCSetCoordinates(solver->multigrid, 3, solver->row_count / 3, solver->rest));
+  PETSC_TRY("the multigrid", petsc->PCSetUp(solver->multigrid));
+  return STATUS_OK;
+}
+
+// hypre has a matrix of its own: ours goes before the hierarchy is made.
+static Status convert(PetscSolver *solver, const FemMatrix *matrix, Mat *converted) {
+  const FemPetscLibrary *petsc = solver->petsc;
+  Rows rows = {0};
+  Mat own = NULL;
+  Status status = make_rows(solver, matrix, &rows);
+  if (!status) status = wrap_rows(solver, &rows, &own);
+  if (!status) {
+    PetscErrorCode code = petsc->MatConvert(own, MATHYPRE, MAT_INITIAL_MATRIX, converted);
+    if (code) status = fail_in(solver, "the matrix", code);
+  }
+  if (own) petsc->MatDestroy(&own);
+  free_rows(&rows);
+  return status;
+}
+
+static Status build_boomer(PetscSolver *solver, const FemMatrix *matrix) {
+  Mat converted = NULL;
+  forget_multigrid(solver);
+  TRY(convert(solver, matrix, &converted));
+  Status status = STATUS_OK;
+  PetscErrorCode code = solver->petsc->MatSetBlockSize(converted, 3);
+  if (code) status = fail_in(solver, "the matrix", code);
+  if (!status) status = set_up(solver, converted);
+  solver->petsc->MatDestroy(&converted); // the multigrid has it
+  return status;
+}
+
+static Status build_gamg(PetscSolver *solver, const FemMatrix *matrix) {
+  forget_multigrid(solver);
+  TRY(make_rows(solver, matrix, &solver->rows));
+  TRY(wrap_rows(solver, &solver->rows, &solver->matrix));
+  return set_up(solver, solver->matrix);
+}
+
+static Status build(PetscSolver *solver, const FemMatrix *matrix) {
+  solver->is_worn = false;
+  solver->is_fresh = true;
+  Status status = solver->kind == BOOMER ? build_boomer(solver, matrix) : build_gamg(solver, matrix);
+  if (status) forget_multigrid(solver);
+  return status;
+}
+
+static bool has_positive_diagonal(const FemMatrix *matrix) {
+  bool is_positive = true;
+  for (int u = 0; u < matrix->size; u++) is_positive = is_positive && matrix->value[matrix->col_begin[u]] > 0;
+  return is_positive;
+}
+
+static Status renew(PetscSolver *solver, const FemMatrix *matrix) {
+  if (!fem_solver_is_finite(matrix->value, matrix->entry_count))
+    return status_fail(STATUS_RETRY, "the condensed matrix is not finite");
+  if (!has_positive_diagonal(matrix))
+    return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
+  if (solver->multigrid && !solver->is_worn) return STATUS_OK;
+  int before = fem_solver_use_threads(1); // of BLAS in it
+  Status status = build(solver, matrix);
+  fem_solver_use_threads(before);
+  return status;
+}
+
+static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix *damping,
+                        const double *mass_of_unknown, double c) {
+  PetscSolver *solver = self;
+  (void)damping, (void)mass_of_unknown, (void)c;
+  solver->current = NULL;
+  if (!solver->layout || stiffness->layout != solver->layout)
+    return status_fail(STATUS_SOLVER, "%s: this layout of the matrix has not been analysed",
+                       names[solver->kind]);
+  double began = clock_wall_s();
+  Status status = renew(solver, stiffness);
+  if (status == STATUS_OK) {
+    solver->current = stiffness;
+    solver->stats.factorisations++;
+  } else
+    solver->stats.failed_factorisations++;
+  solver->stats.factorise_s += clock_wall_s() - began;
+  return status;
+}
+
+static Status precondition(void *self, const double *r, double *z) {
+  PetscSolver *solver = self;
+  const FemPetscLibrary *petsc = solver->petsc;
+  double *right, *left;
+  PETSC_TRY("a vector", petsc->VecGetArray(solver->right_vec, &right));
+  for (int u = 0; u < solver->size; u++) right[solver->place[u]] = r[u];
+  PETSC_TRY("a vector", petsc->VecRestoreArray(solver->right_vec, &right));
+  PETSC_TRY("the multigrid", petsc->PCApply(solver->multigrid, solver->right_vec, solver->left_vec));
+  PETSC_TRY("a vector", petsc->VecGetArray(solver->left_vec, &left));
+  for (int u = 0; u < solver->size; u++) z[u] = left[solver->place[u]];
+  PETSC_TRY("a vector", petsc->VecRestoreArray(solver->left_vec, &left));
+  return STATUS_OK;
+}
+
+static Status iterate(PetscSolver *solver, const double *b, double *x, int limit, FemCgEnd *end) {
+  FemCgProblem problem = {.matrix = solver->current,
+                          .precondition = precondition,
+                          .self = solver,
+                          .name = names[solver->kind],
+                          .tolerance = solver->tolerance,
+                          .limit = limit};
+  long long before = solver->stats.iterations;
+  TRY(fem_cg_solve(&solver->cg, &problem, b, x, &solver->stats.iterations, end));
+  long long taken = solver->stats.iterations - before;
+  if (solver->is_fresh) solver->new_count = taken;
+  solver->is_fresh = false;
+  solver->is_worn = (double)taken > WORN_SHARE * (double)solver->new_count + WORN_MORE;
+  return STATUS_OK;
+}
+
+// With the hierarchy that there is, and where that is of another matrix and does not do, with a new one.
+static Status solve_by(PetscSolver *solver, const double *b, double *x) {
+  FemCgEnd end = FEM_CG_CONVERGED;
+  bool was_fresh = solver->is_fresh;
+  Status status = iterate(solver, b, x, was_fresh ? LIMIT : LIMIT_KEPT, &end);
+  if (status != STATUS_RETRY || was_fresh) return status;
+  TRY(build(solver, solver->current));
+  return iterate(solver, b, x, LIMIT, &end);
+}
+
+static Status solve(void *self, const double *b, double *x) {
+  PetscSolver *solver = self;
+  if (!solver->current) return status_fail(STATUS_SOLVER, "%s: no matrix to solve with", names[solver->kind]);
+  double began = clock_wall_s();
+  int before = fem_solver_use_threads(solver->threads);
+  Status status = solve_by(solver, b, x);
+  fem_solver_use_threads(before);
+  solver->stats.solves++;
+  solver->stats.solve_s += clock_wall_s() - began;
+  if (!status && !fem_solver_is_finite(x, solver->size))
+    return status_fail(STATUS_RETRY, "the solution of the condensed system is not finite");
+  return status;
+}
+
+static const FemSolverStats *stats(const void *self) {
+  return &((const PetscSolver *)self)->stats;
+}
+
+const FemSolverOps fem_solver_amg = {
+    .name = "amg",
+    .help = "condensed system, conjugate gradients with algebraic multigrid (BoomerAMG of hypre, by PETSc)",
+    .is_condensed = true,
+    .tolerance = 1e-4,
+    .create = create_amg,
+    .analyse = analyse,
+    .factorise = factorise,
+    .solve = solve,
+    .forget = wear,
+    .destroy = destroy,
+    .stats = stats,
+};
+
+const FemSolverOps fem_solver_gamg = {
+    .name = "gamg",
+    .help = "condensed system, conjugate gradients with smoothed aggregation (GAMG of PETSc); less memory",
+    .is_condensed = true,
+    .tolerance = 1e-4,
+    .create = create_gamg,
+    .analyse = analyse,
+    .factorise = factorise,
+    .solve = solve,
+    .forget = wear,
+    .destroy = destroy,
+    .stats = stats,
+};
