@@ -21,7 +21,7 @@ Status datagen_capture_begin(DatagenCapture *capture, const char *path, const ch
   snprintf(info.mix, sizeof info.mix, "captured");
   snprintf(info.volume_law, sizeof info.volume_law, "captured");
   snprintf(info.label, sizeof info.label, "%s", datagen_plan_label_name(label));
-  info.has_gradient = true;
+  info.has_gradient = info.has_centroid = true;
   TRY(datagen_pairs_create(&capture->pairs, BLOCK, true));
   Status status = datagen_dataset_writer_begin(&capture->writer, path, &info);
   if (status) datagen_capture_abandon(capture);
@@ -40,7 +40,7 @@ static Status add_pair(const DatagenCapture *capture, const double *source, int 
   pairs->status[place] = proof.is_flat || datagen_proof_of(source).is_flat ? FLAT : proof.dimension >= 0;
   pairs->kind[place] = DATAGEN_CAPTURED;
   return datagen_generate_label(capture->label, pair, proof.dimension, pairs->volume + place,
-                                pairs->gradient + 24 * (size_t)place);
+                                pairs->gradient + 24 * (size_t)place, pairs->centroid + 3 * (size_t)place);
 }
 
 // Moves the others together; how many they are.
@@ -50,6 +50,7 @@ static int drop_flat(const DatagenPairs *pairs, int count) {
     if (pairs->status[i] == FLAT) continue;
     memmove(pairs->coordinates + 24 * (size_t)kept, pairs->coordinates + 24 * (size_t)i, 24 * sizeof(double));
     memmove(pairs->gradient + 24 * (size_t)kept, pairs->gradient + 24 * (size_t)i, 24 * sizeof(double));
+    memmove(pairs->centroid + 3 * (size_t)kept, pairs->centroid + 3 * (size_t)i, 3 * sizeof(double));
     pairs->status[kept] = pairs->status[i];
     pairs->kind[kept] = pairs->kind[i];
     pairs->volume[kept] = pairs->volume[i];

@@ -12,7 +12,7 @@
 
 static const char *const FORMAT = "tetlap pairs";
 static const char *const UNITS =
-    "coordinates in edges of the unit cube, volume in its cube, gradient in its square";
+    "coordinates and centroid in edges of the unit cube, volume in its cube, gradient in its square";
 static const long long FORMAT_VERSION = 1;
 
 static herr_t keep_description(unsigned level, const H5E_error2_t *error, void *text) {
@@ -35,7 +35,7 @@ static void silence(void) {
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-typedef enum Column { COORDINATES, STATUS, KIND, VOLUME, GRADIENT, COLUMN_COUNT } Column;
+typedef enum Column { COORDINATES, STATUS, KIND, VOLUME, GRADIENT, CENTROID, COLUMN_COUNT } Column;
 
 typedef struct ColumnLayout {
   const char *name;
@@ -50,6 +50,7 @@ static const ColumnLayout layouts[COLUMN_COUNT] = {
     [KIND] = {"kind", 1, {0}, false},
     [VOLUME] = {"volume", 1, {0}, true},
     [GRADIENT] = {"gradient", 4, {2, 4, 3}, true},
+    [CENTROID] = {"centroid", 2, {3}, true},
 };
 
 static void *column_of(const DatagenPairs *pairs, int column) {
@@ -64,6 +65,8 @@ static void *column_of(const DatagenPairs *pairs, int column) {
     return pairs->volume;
   case GRADIENT:
     return pairs->gradient;
+  case CENTROID:
+    return pairs->centroid;
   case COLUMN_COUNT:
     break;
   }
@@ -190,11 +193,12 @@ DatagenInfo datagen_dataset_info_of_plan(const DatagenPlan *plan, const char *pr
   info.first = first;
   info.planned = planned;
   info.has_gradient = plan->wants_gradient;
+  info.has_centroid = true;
   return info;
 }
 
 static bool is_wanted(const DatagenInfo *info, int column) {
-  return column != GRADIENT || info->has_gradient;
+  return column == GRADIENT ? info->has_gradient : column == CENTROID ? info->has_centroid : true;
 }
 
 // x − x is 0 for finite x, else NaN; the sum has no branch.
@@ -208,6 +212,7 @@ static bool are_finite(const double *values, size_t count) {
 static const char *find_fault(const DatagenPairs *pairs, size_t i) {
   if (pairs->coordinates && !are_finite(pairs->coordinates + 24 * i, 24)) return "a coordinate is not finite";
   if (pairs->gradient && !are_finite(pairs->gradient + 24 * i, 24)) return "a derivative is not finite";
+  if (pairs->centroid && !are_finite(pairs->centroid + 3 * i, 3)) return "its centroid is not finite";
   if (pairs->status && pairs->status[i] > 1) return "its status is neither 0 nor 1";
   if (pairs->kind && !datagen_kind_info(pairs->kind[i])) return "its kind has no name";
   if (pairs->volume && !(pairs->volume[i] >= 0 && isfinite(pairs->volume[i])))
@@ -459,7 +464,7 @@ static double bytes_of(int column, long long count) {
 static Status open_column(DatagenDataset *dataset, int column) {
   const char *name = layouts[column].name, *path = dataset->path;
   if (H5Lexists(dataset->file, name, H5P_DEFAULT) <= 0) {
-    if (column == GRADIENT) return STATUS_OK;
+    if (column == GRADIENT || column == CENTROID) return STATUS_OK;
     return status_fail(STATUS_INPUT, "%s: has no array '%s'", path, name);
   }
   dataset->datasets[column] = H5Dopen2(dataset->file, name, H5P_DEFAULT);
@@ -468,7 +473,9 @@ static Status open_column(DatagenDataset *dataset, int column) {
   if (!check_column(dataset->datasets[column], column, &count))
     return status_fail(STATUS_INPUT, "%s: array '%s' should be %s of shape (n%s)", path, name,
                        layouts[column].is_real ? "float64" : "8-bit integers",
-                       layouts[column].rank == 4 ? ", 2, 4, 3" : "");
+                       layouts[column].rank == 4   ? ", 2, 4, 3"
+                       : layouts[column].rank == 2 ? ", 3"
+                                                   : "");
   if (column == COORDINATES) dataset->info.count = count;
   if (count != dataset->info.count)
     return status_fail(STATUS_INPUT, "%s: array '%s' has %lld pairs, 'coordinates' has %lld", path, name,
@@ -477,6 +484,7 @@ static Status open_column(DatagenDataset *dataset, int column) {
     return status_fail(STATUS_INPUT, "%s: array '%s' claims %lld pairs, but not all of them are in the file",
                        path, name, count);
   if (column == GRADIENT) dataset->info.has_gradient = true;
+  if (column == CENTROID) dataset->info.has_centroid = true;
   return STATUS_OK;
 }
 
@@ -550,6 +558,7 @@ Status datagen_dataset_read(DatagenDataset *dataset, long long first, size_t cou
                        dataset->path);
   for (int c = 0; c < COLUMN_COUNT && count > 0; c++) {
     void *array = column_of(pairs, c);
+    if (c == CENTROID && !info->has_centroid) continue;
     if (array && !transfer(dataset->datasets[c], c, (hsize_t)first, count, array, false)) {
       char what[80];
       snprintf(what, sizeof what, "array '%s' is damaged", layouts[c].name);

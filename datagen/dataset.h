@@ -6,6 +6,7 @@
 //   /kind        (n)          uint8       kinds        the kinds' names in the order of their codes
 //   /volume      (n)          float64     units        in words
 //   /gradient    (n, 2, 4, 3) float64, if wanted
+//   /centroid    (n, 3)       float64; files of programs before 0.2 have none
 //
 // Chunks of 4096 pairs, each with a checksum (Fletcher 32): damage is found when a chunk is read. Files
 // appear whole or not at all: they grow beside their place and are renamed. Not safe to call from two threads
@@ -34,7 +35,7 @@ typedef struct DatagenInfo {
   long long first;               // index of its first pair there
   long long planned;             // pairs that it should hold; more than `count` if it was interrupted
   long long count;               // pairs that it holds
-  bool has_gradient;
+  bool has_gradient, has_centroid;
   long long kind_counts[DATAGEN_KIND_COUNT]; // of the pairs that it holds
   long long attempts[DATAGEN_KIND_COUNT];    // candidates drawn for them
 } DatagenInfo;
@@ -48,7 +49,7 @@ typedef struct DatagenWriter DatagenWriter; // opaque: HDF5 hides behind it
 // Begins a file beside `path`. STATUS_IO: the reason. Of `info`, count, kind_counts and attempts are counted
 // anew; planned 0: as many as will be appended, which are the whole.
 Status datagen_dataset_writer_begin(DatagenWriter **writer, const char *path, const DatagenInfo *info);
-// Appends `count` pairs; all arrays (gradient only if the file has it) are read. `attempts` by kind, may be
+// Appends `count` pairs; all arrays (gradient and centroid only if the file has them) are read. `attempts` by kind, may be
 // NULL. Flushed when it returns. STATUS_INPUT: a pair is impossible (see datagen_dataset_read), nothing of
 // the batch is kept.
 Status datagen_dataset_writer_append(DatagenWriter *writer, const DatagenPairs *pairs, size_t count,
@@ -66,7 +67,8 @@ typedef struct DatagenDataset DatagenDataset; // opaque
 Status datagen_dataset_open(DatagenDataset **dataset, const char *path);
 // Valid until the data set is closed.
 const DatagenInfo *datagen_dataset_info(const DatagenDataset *dataset);
-// Reads pairs `first` … `first` + `count` − 1 into the arrays that are not NULL. STATUS_INPUT: the range goes
+// Reads pairs `first` … `first` + `count` − 1 into the arrays that are not NULL; a file without centroids leaves
+// theirs as they are. STATUS_INPUT: the range goes
 // beyond the file, a chunk is damaged, or a pair is impossible (NaN, an unknown kind, V > 0 without contact);
 // the message names the pair.
 Status datagen_dataset_read(DatagenDataset *dataset, long long first, size_t count,

@@ -10,18 +10,18 @@
 #include "overlap/exact/exact.h"
 
 Status datagen_generate_label(DatagenLabel label, const double pair[24], int dimension, double *volume,
-                              double *gradient) {
+                              double *gradient, double *centroid) {
   unsigned flags;
+  OverlapAnswer answer = {.volume = volume, .gradient = gradient, .centroid = centroid, .flags = &flags};
   *volume = 0;
+  if (centroid) memset(centroid, 0, 3 * sizeof *centroid);
   if (gradient) memset(gradient, 0, OVERLAP_PAIR_SIZE * sizeof *gradient);
   if (dimension < 3) return STATUS_OK;
   if (label == DATAGEN_LABEL_CLIP) {
-    TRY(overlap_clip_ops.eval_pair(
-        NULL, pair, &(OverlapAnswer){.volume = volume, .gradient = gradient, .flags = &flags}));
+    TRY(overlap_clip_ops.eval_pair(NULL, pair, &answer));
     if (*volume > 0) return STATUS_OK;
   }
-  return overlap_exact_ops.eval_pair(
-      NULL, pair, &(OverlapAnswer){.volume = volume, .gradient = gradient, .flags = &flags});
+  return overlap_exact_ops.eval_pair(NULL, pair, &answer);
 }
 
 // One pair, into its place in the arrays.
@@ -36,7 +36,8 @@ static Status make_pair(const DatagenPlan *plan, long long index, const DatagenP
   pairs->kind[place] = (uint8_t)kind;
   attempts[kind] += sample.attempts;
   return datagen_generate_label(plan->label, sample.pair, sample.proof.dimension, pairs->volume + place,
-                                pairs->gradient ? pairs->gradient + offset : NULL);
+                                pairs->gradient ? pairs->gradient + offset : NULL,
+                                pairs->centroid ? pairs->centroid + 3 * (size_t)place : NULL);
 }
 
 // Kinds cost differently, by a thousand times: indices are handed out in small lots.

@@ -35,6 +35,7 @@ static const char *find_difference(const DatagenInfo *a, const DatagenInfo *b) {
   if (a->total != b->total) return "the number of pairs in all";
   if (strcmp(a->label, b->label) != 0) return "the model of the labels";
   if (a->has_gradient != b->has_gradient) return "whether they have gradients";
+  if (a->has_centroid != b->has_centroid) return "whether they have centroids";
   return NULL;
 }
 
@@ -80,6 +81,7 @@ static DatagenInfo mixed_info(const Part *parts, int count) {
     const DatagenInfo *part = info_of(&parts[p]);
     info.planned += part->count;
     info.has_gradient = info.has_gradient && part->has_gradient;
+    info.has_centroid = info.has_centroid && part->has_centroid;
     if (strcmp(info.label, part->label) != 0) snprintf(info.label, sizeof info.label, "mixed");
   }
   info.total = info.planned;

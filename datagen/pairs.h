@@ -17,6 +17,7 @@ typedef struct DatagenPairs {
   uint8_t *kind;       // DatagenKind                                           (n)
   double *volume;      // V; exactly 0 where they have no interior in common    (n)
   double *gradient;    // dV/dx                                                 (n, 2, 4, 3)
+  double *centroid;    // x̄ of what they share; (0, 0, 0) where V is 0           (n, 3)
 } DatagenPairs;
 
 // Arrays for `count` pairs, zeroed. STATUS_MEMORY: nothing is left behind.

@@ -5,7 +5,7 @@
 #include <string.h>
 
 bool net_dense_is_possible(const NetShape *shape) {
-  return shape->kind == NET_MLP && shape->activation == NET_SILU && shape->output_count == 1;
+  return shape->kind == NET_MLP && shape->activation == NET_SILU;
 }
 
 #include "net/real_f32.h"

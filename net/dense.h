@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A dense SiLU network with one output on NET_COLUMN_UNIT samples that lie side by side: row f of the input
+// A dense SiLU network on NET_COLUMN_UNIT samples that lie side by side: row f of the input
 // is feature f of all of them. What makes features in vector lanes hands them over as they are, and gets the
 // gradient in the same form. The slopes of the activations are found with their values, so that the way back
 // has no exponential.
@@ -8,7 +8,7 @@
 
 #include "net/work.h"
 
-// Whether it is such a network.
+// Whether it is such a network. Derivatives are those of its first output.
 bool net_dense_is_possible(const NetShape *shape);
 
 #include "net/real_f32.h"

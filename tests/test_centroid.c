@@ -330,13 +330,13 @@ END_TEST
 
 START_TEST(a_model_without_it_says_so) {
   OverlapModel model;
-  ck_assert_ok(overlap_model_create(&model, "geo-small"));
+  ck_assert_ok(overlap_model_create(&model, "tpn-scene"));
   ck_assert(!overlap_model_has_centroid(&model));
   double x[24], volume, centroid[3];
   place(x, 1, (double[]){0, 0, 0}), place(x + 12, 1, (double[]){0.25, 0.125, 0});
   OverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume, .centroid = centroid};
   ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_INPUT);
-  ck_assert_ptr_nonnull(strstr(status_message(), "'geo-small' gives no centroid"));
+  ck_assert_ptr_nonnull(strstr(status_message(), "'tpn-scene' gives no centroid"));
   overlap_model_destroy(&model);
 }
 END_TEST

@@ -80,6 +80,7 @@ static void assert_same_pairs(const DatagenPairs *a, size_t first, const Datagen
   ck_assert(memcmp(a->kind + first, b->kind, count) == 0);
   ck_assert(memcmp(a->volume + first, b->volume, count * sizeof(double)) == 0);
   ck_assert_int_eq(!a->gradient, !b->gradient);
+  ck_assert(memcmp(a->centroid + 3 * first, b->centroid, 3 * count * sizeof(double)) == 0);
   if (a->gradient) ck_assert(memcmp(a->gradient + 24 * first, b->gradient, 24 * count * sizeof(double)) == 0);
 }
 

@@ -8,6 +8,7 @@
 #include "overlap/geo/bundle/bundle.h"
 #include "overlap/geo/coplanar.h"
 #include "overlap/geo/frame.h"
+#include "overlap/geo/geo.h"
 #include "overlap/invariant.h"
 
 enum { COUNT = OVERLAP_GEO_BUNDLE - 3 };
@@ -147,6 +148,48 @@ START_TEST(features_and_their_gradients_are_the_scalar_ones) {
 }
 END_TEST
 
+// Σ_m c_m e_mk by the kernel for single pairs, which lists the planes' features one by one. The coefficients are such
+// that some centroids would leave the overlap.
+START_TEST(centroids_are_the_scalar_ones) {
+  const OverlapGeoBundleKernel *kernel = kernel_number(_i / 3);
+  if (!kernel) return;
+  static const int set_sizes[] = {36, 70, 100};
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i % 3]);
+  int count = overlap_geo_features_plane_count(set), held = 0;
+  Random random = random_seeded(22, 0);
+  double pairs[24 * COUNT];
+  OverlapGeoBundle bundle;
+  OverlapGeoBlock block;
+  draw_pairs(5, pairs);
+  kernel->gate(COUNT, pairs, &bundle);
+  kernel->frame(&bundle, 0, &block);
+  kernel->features(set, &block);
+  for (int m = 0; m < count; m++)
+    for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.outputs[1 + m][j] = random_normal(&random) * (j % 2 ? 3 : 0.1);
+  kernel->centroid(set, &block);
+  for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) {
+    OverlapGeoFrame frame;
+    double features[OVERLAP_GEO_MAX_FEATURES], vectors[OVERLAP_GEO_MAX_PLANE_FEATURES][3], unused[3], z[3] = {0};
+    const double *pair = pairs + 24 * bundle.pair[j];
+    ck_assert_int_eq(overlap_geo_frame(&frame, pair), OVERLAP_GEO_INSIDE);
+    ck_assert_int_eq(overlap_geo_features_centroid(set, pair, pair, features, unused, vectors), OVERLAP_GEO_INSIDE);
+    for (int m = 0; m < count; m++)
+      for (int c = 0; c < 3; c++) z[c] += block.outputs[1 + m][j] * vectors[m][c];
+    double change[8], lowest = 0;
+    for (int k = 0; k < 8; k++) {
+      change[k] = 0;
+      for (int c = 0; c < 3; c++) change[k] += frame.basis.column[c][k] * z[c];
+      lowest = fmin(lowest, change[k]);
+    }
+    double scale = lowest < -OVERLAP_GEO_LONGEST_SHIFT ? OVERLAP_GEO_LONGEST_SHIFT / -lowest : 1;
+    held += scale < 1;
+    for (int k = 0; k < 8; k++)
+      ck_assert_near(block.place[k][j], frame.slack[k] * (1 + scale * change[k]), 1e-11 * frame.slack[k]);
+  }
+  ck_assert_int_ge(held, 1);
+}
+END_TEST
+
 // ∇² log V at fixed weights along all 24 directions, one at a time.
 static void bend_alone(const OverlapGeoFeatureSet *set, const OverlapGeoFrame *frame, const double *weights,
                        double *gradient, double feature_changes[24][OVERLAP_GEO_MAX_FEATURES],
@@ -283,6 +326,7 @@ int main(void) {
   tcase_add_loop_test(cases, the_gate_decides_as_the_scalar_one_to_the_bit, 0, 3);
   tcase_add_loop_test(cases, frames_and_gradients_are_the_scalar_ones, 0, 3);
   tcase_add_loop_test(cases, features_and_their_gradients_are_the_scalar_ones, 0, 9);
+  tcase_add_loop_test(cases, centroids_are_the_scalar_ones, 0, 9);
   tcase_add_loop_test(cases, second_derivatives_are_the_scalar_ones, 0, 9);
   tcase_add_loop_test(cases, a_pair_gives_the_same_bits_in_every_lane, 0, 3);
   return suite_run("geo_bundle", cases, 60);

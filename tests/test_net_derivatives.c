@@ -365,12 +365,12 @@ START_TEST(a_dense_network_takes_columns) {
       for (int f = 0; f < INPUTS; f++) rows[j * INPUTS + f] = x[f * COUNT + j];
     }
     net_forward_gradient_f64(&work, &model, COUNT, rows, ones, y, by_rows);
-    net_dense_eval_f64(&work, &model, x, columns, gx);
+    net_dense_eval_f64(&work, &model, 1, x, columns, gx);
     for (int j = 0; j < COUNT; j++) {
       ck_assert_near(columns[j], y[j], 1e-14 * (1 + fabs(y[j])));
       for (int f = 0; f < INPUTS; f++) ck_assert_near(gx[f * COUNT + j], by_rows[j * INPUTS + f], 1e-14);
     }
-    net_dense_eval_f64(&work, &model, x, y, NULL);
+    net_dense_eval_f64(&work, &model, 1, x, y, NULL);
     ck_assert_mem_eq(y, columns, sizeof y);
     net_memory_free(x), net_memory_free(rows), net_memory_free(gx), net_memory_free(columns);
     net_work_destroy_f64(&work);

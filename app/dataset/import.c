@@ -62,7 +62,7 @@ static Status label_pair(const Run *run, int i) {
   run->pairs.status[i] = proof.dimension >= 0;
   run->pairs.kind[i] = (uint8_t)(proof.is_flat ? DATAGEN_CAPTURED : kind_of(&proof));
   return datagen_generate_label(DATAGEN_LABEL_EXACT, pair, proof.dimension, run->pairs.volume + i,
-                                     run->pairs.gradient + APP_PAIRS_SIZE * (size_t)i);
+                                     run->pairs.gradient + APP_PAIRS_SIZE * (size_t)i, run->pairs.centroid + 3 * (size_t)i);
 }
 
 static Status label_block(const Run *run) {
@@ -186,6 +186,7 @@ static Status begin(Run *run) {
   snprintf(info.volume_law, sizeof info.volume_law, "imported");
   snprintf(info.label, sizeof info.label, "%s", datagen_plan_label_name(DATAGEN_LABEL_EXACT));
   info.has_gradient = run->has_gradient;
+  info.has_centroid = true;
   TRY(datagen_pairs_create(&run->pairs, APP_PAIRS_BLOCK, true));
   run->are_flat = memory_zeroed(APP_PAIRS_BLOCK, sizeof *run->are_flat);
   if (!run->are_flat) return status_no_memory("a block of pairs");

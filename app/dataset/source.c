@@ -17,6 +17,7 @@ static Status open_law(AppSource *source, const AppSourceDef *def, bool wants_gr
   source->plan.wants_gradient = wants_gradient;
   source->count = source->plan.count;
   source->has_gradient = wants_gradient;
+  source->has_centroid = true;
   return STATUS_OK;
 }
 
@@ -25,6 +26,7 @@ static Status open_file(AppSource *source, const AppSourceDef *def) {
   const DatagenInfo *info = datagen_dataset_info(source->dataset);
   source->count = info->count;
   source->has_gradient = info->has_gradient;
+  source->has_centroid = info->has_centroid;
   if (def->count > info->count)
     return status_fail(STATUS_INPUT, "%s holds %lld pairs, %lld are wanted", def->file, info->count,
                        def->count);
@@ -42,27 +44,29 @@ void app_dataset_source_close(AppSource *source) {
   *source = (AppSource){0};
 }
 
-// ∇V of the pairs by clipping.
-static Status differentiate(const DatagenPairs *pairs, size_t count) {
+// ∇V and x̄ of the pairs by clipping, of those that are not NULL.
+static Status complete(const DatagenPairs *pairs, size_t count) {
   bool has_failed = false;
 #pragma omp parallel for schedule(dynamic, 64) reduction(|| : has_failed)
   for (size_t i = 0; i < count; i++) {
     double volume;
     if (datagen_generate_label(DATAGEN_LABEL_CLIP, pairs->coordinates + i * SIZE,
                                pairs->volume[i] > 0 ? 3 : -1, &volume,
-                               pairs->gradient + i * SIZE) != STATUS_OK)
+                               pairs->gradient ? pairs->gradient + i * SIZE : NULL,
+                               pairs->centroid ? pairs->centroid + i * 3 : NULL) != STATUS_OK)
       has_failed = true;
   }
-  return has_failed ? status_fail(STATUS_SOLVER, "clipping gave no derivatives of a pair") : STATUS_OK;
+  return has_failed ? status_fail(STATUS_SOLVER, "clipping gave no answer for a pair") : STATUS_OK;
 }
 
 Status app_dataset_source_read(AppSource *source, long long first, size_t count, const DatagenPairs *pairs) {
   long long attempts[DATAGEN_KIND_COUNT] = {0};
-  DatagenPairs read = *pairs;
-  if (!source->has_gradient) read.gradient = NULL;
+  DatagenPairs read = *pairs, missing = {.coordinates = pairs->coordinates, .volume = pairs->volume};
+  if (!source->has_gradient) missing.gradient = pairs->gradient, read.gradient = NULL;
+  if (!source->has_centroid) missing.centroid = pairs->centroid, read.centroid = NULL;
   TRY(source->dataset ? datagen_dataset_read(source->dataset, first, count, &read)
                       : datagen_generate(&source->plan, first, (int)count, &read, attempts));
-  return pairs->gradient && !source->has_gradient ? differentiate(pairs, count) : STATUS_OK;
+  return missing.gradient || missing.centroid ? complete(&missing, count) : STATUS_OK;
 }
 
 static Status load_block(AppSource *source, const DatagenPairs *pairs, size_t first, size_t count) {
@@ -70,7 +74,8 @@ static Status load_block(AppSource *source, const DatagenPairs *pairs, size_t fi
                         .status = pairs->status + first,
                         .kind = pairs->kind + first,
                         .volume = pairs->volume + first,
-                        .gradient = pairs->gradient + first * SIZE};
+                        .gradient = pairs->gradient + first * SIZE,
+                        .centroid = pairs->centroid + first * 3};
   return app_dataset_source_read(source, (long long)first, count, &block);
 }
 

@@ -26,6 +26,7 @@ typedef struct AppSource {
   DatagenPlan plan;
   long long count;   // pairs that there are
   bool has_gradient; // each pair comes with ∇V
+  bool has_centroid; // and with x̄
 } AppSource;
 
 // A law's pairs are labelled by clipping, checked, with ∇V if `wants_gradient`. A file without ∇V is opened
@@ -33,7 +34,8 @@ typedef struct AppSource {
 Status app_dataset_source_open(AppSource *source, const AppSourceDef *def, bool wants_gradient);
 void app_dataset_source_close(AppSource *source);
 
-// Pairs `first` … `first` + `count` − 1 into arrays of the caller's; gradient may be NULL.
+// Pairs `first` … `first` + `count` − 1 into arrays of the caller's; gradient and centroid may be NULL, and are made
+// by clipping where the file has none.
 Status app_dataset_source_read(AppSource *source, long long first, size_t count, const DatagenPairs *pairs);
 
 // All pairs at once, into arrays that the caller destroys (datagen_pairs_destroy); with ∇V in any case.

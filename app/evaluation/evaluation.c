@@ -23,8 +23,10 @@ typedef struct Block {
   size_t count;
   const DatagenPairs *pairs;
   double *true_gradient; // (count, 24); owned unless it is the pairs'
+  double *true_centroid; // (count, 3); owned unless it is the pairs'
   double *volume;        // (count), owned
   double *gradient;      // (count, 24), owned
+  double *centroid;      // (count, 3), owned; NULL: the model has none
   unsigned *flags;       // (count), owned
   double *logits;        // (count), owned; NULL: the model tells none
   double *swapped;       // (count), owned: what the status hangs on, V or logit, the two exchanged
@@ -58,23 +60,26 @@ static Vec3 force_of(const double gradient[SIZE]) {
   return force;
 }
 
-// The true gradients where the data have none.
-static Status differentiate(const DatagenPairs *pairs, size_t count, double *gradient) {
+// The true gradients and centroids where the data have none; NULL: not wanted.
+static Status complete(const DatagenPairs *pairs, size_t count, double *gradient, double *centroid) {
   bool has_failed = false;
 #pragma omp parallel for schedule(dynamic, 64) reduction(|| : has_failed)
   for (ptrdiff_t i = 0; i < (ptrdiff_t)count; i++) {
     double volume;
     if (pairs->volume[i] > 0 && datagen_generate_label(DATAGEN_LABEL_CLIP, pairs->coordinates + i * SIZE, 3,
-                                                       &volume, gradient + i * SIZE) != STATUS_OK)
+                                                       &volume, gradient ? gradient + i * SIZE : NULL,
+                                                       centroid ? centroid + i * 3 : NULL) != STATUS_OK)
       has_failed = true;
   }
-  return has_failed ? status_fail(STATUS_SOLVER, "clipping gave no derivatives of a pair") : STATUS_OK;
+  return has_failed ? status_fail(STATUS_SOLVER, "clipping gave no answer for a pair") : STATUS_OK;
 }
 
 static void block_destroy(Block *block) {
   if (block->true_gradient != block->pairs->gradient) memory_free(block->true_gradient);
+  if (block->true_centroid != block->pairs->centroid) memory_free(block->true_centroid);
   memory_free(block->volume), memory_free(block->gradient);
-  memory_free(block->flags), memory_free(block->logits), memory_free(block->swapped);
+  memory_free(block->centroid), memory_free(block->flags);
+  memory_free(block->logits), memory_free(block->swapped);
 }
 
 static Status block_tell_status(Block *block, const AppEvaluationRun *run) {
@@ -103,15 +108,22 @@ static Status block_evaluate(Block *block, const OverlapModel *model) {
   block->volume = memory_zeroed(count, sizeof *block->volume);
   block->gradient = memory_zeroed(count * SIZE, sizeof *block->gradient);
   block->flags = memory_zeroed(count, sizeof *block->flags);
-  block->true_gradient = block->pairs->gradient;
+  bool has_centroid = overlap_model_has_centroid(model);
+  if (has_centroid) block->centroid = memory_zeroed(count * 3, sizeof *block->centroid);
+  block->true_gradient = block->pairs->gradient, block->true_centroid = block->pairs->centroid;
   if (!block->true_gradient) block->true_gradient = memory_zeroed(count * SIZE, sizeof(double));
-  if (!block->volume || !block->gradient || !block->flags || !block->true_gradient)
+  if (!block->true_centroid) block->true_centroid = memory_zeroed(count * 3, sizeof(double));
+  if (!block->volume || !block->gradient || !block->flags || !block->true_gradient || !block->true_centroid ||
+      (has_centroid && !block->centroid))
     return status_no_memory("an evaluation");
-  if (!block->pairs->gradient) TRY(differentiate(block->pairs, count, block->true_gradient));
+  if (!block->pairs->gradient || !block->pairs->centroid)
+    TRY(complete(block->pairs, count, block->pairs->gradient ? NULL : block->true_gradient,
+                 block->pairs->centroid ? NULL : block->true_centroid));
   OverlapBatch batch = {.pair_count = (int)count,
                         .pairs = block->pairs->coordinates,
                         .volume = block->volume,
                         .gradient = block->gradient,
+                        .centroid = block->centroid,
                         .flags = block->flags};
   return overlap_model_eval(model, &batch);
 }
@@ -122,12 +134,43 @@ static int bin_of(double volume) {
   return bin;
 }
 
+// λ of x in the tetrahedron, by the three edges from its first vertex; false: it is flat.
+static bool find_coordinates(const double tet[12], const double x[3], double lambda[4]) {
+  Vec3 edge[3], to = vec3_sub(vec3_at(x), vec3_at(tet));
+  for (int k = 0; k < 3; k++) edge[k] = vec3_sub(vec3_at(tet + 3 * (k + 1)), vec3_at(tet));
+  double det = vec3_dot(edge[0], vec3_cross(edge[1], edge[2]));
+  lambda[0] = 1;
+  for (int k = 0; k < 3; k++) {
+    lambda[k + 1] = vec3_dot(to, vec3_cross(edge[(k + 1) % 3], edge[(k + 2) % 3])) / det;
+    lambda[0] -= lambda[k + 1];
+  }
+  return det != 0;
+}
+
+bool app_evaluation_coordinates(const double pair[24], const double x[3], double lambda[8]) {
+  return find_coordinates(pair, x, lambda) && find_coordinates(pair + 12, x, lambda + 4);
+}
+
 static void add_angle(AppEvaluationRun *run, const double truth[SIZE], const double told[SIZE]) {
   Vec3 a = force_of(truth), b = force_of(told);
   // of a tetrahedron inside the other nothing but rounding is left
   if (!(vec3_length(a) > 1e-9 * length_of(truth, SIZE))) return;
   double angle = atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
   run->angles[run->angle_count++] = vec3_length(b) > 0 ? DEGREES * angle : 180;
+}
+
+// Σ_z |m_z − m*_z| over the eight vertices, m_z = V λ_z(x̄), with the true V and with the model's own.
+static void add_moments(AppEvaluationRun *run, const Block *block, size_t i) {
+  double truth[8], told[8], volume = block->pairs->volume[i];
+  if (!app_evaluation_coordinates(block->pairs->coordinates + i * SIZE, block->true_centroid + 3 * i, truth) ||
+      !app_evaluation_coordinates(block->pairs->coordinates + i * SIZE, block->centroid + 3 * i, told))
+    return;
+  for (int z = 0; z < 8; z++) {
+    if (!(block->volume[i] > 0)) told[z] = 0; // with no volume there is no centroid
+    run->sums.moment_error += fabs(volume * (told[z] - truth[z]));
+    run->sums.moment_error_own += fabs(block->volume[i] * told[z] - volume * truth[z]);
+    run->true_moments += fabs(volume * truth[z]);
+  }
 }
 
 static void add_inside(AppEvaluationRun *run, const Block *block, size_t i) {
@@ -145,6 +188,7 @@ static void add_inside(AppEvaluationRun *run, const Block *block, size_t i) {
   sums->gradient_error += difference;
   run->gradient_errors[sums->inside++] = difference / size;
   add_angle(run, truth, told);
+  if (block->centroid) add_moments(run, block, i);
 }
 
 static void add_outside(AppEvaluationRun *run, const Block *block, size_t i) {
@@ -246,7 +290,8 @@ Status app_evaluation_add(AppEvaluationRun *run, const DatagenPairs *pairs, size
                          .status = pairs->status + first,
                          .kind = pairs->kind + first,
                          .volume = pairs->volume + first,
-                         .gradient = pairs->gradient ? pairs->gradient + first * SIZE : NULL};
+                         .gradient = pairs->gradient ? pairs->gradient + first * SIZE : NULL,
+                         .centroid = pairs->centroid ? pairs->centroid + first * 3 : NULL};
     Block block = {.count = count - first < BLOCK ? count - first : BLOCK, .pairs = &part};
     Status status = add_block(run, &block);
     block_destroy(&block);
@@ -310,6 +355,8 @@ void app_evaluation_finish(AppEvaluationRun *run, AppEvaluation *result) {
   result->volume_error_sum = divide(result->mae, run->true_volume);
   result->mae = divide(result->mae, inside);
   result->gradient_error = divide(result->gradient_error, run->true_gradient);
+  result->moment_error = divide(result->moment_error, run->true_moments);
+  result->moment_error_own = divide(result->moment_error_own, run->true_moments);
   result->gradient_error_median = quantile(run->gradient_errors, (size_t)result->inside, 0.5);
   result->gradient_error_p90 = quantile(run->gradient_errors, (size_t)result->inside, 0.9);
   result->angle_median_deg = quantile(run->angles, run->angle_count, 0.5);

@@ -79,6 +79,8 @@ void app_evaluation_print(const AppEvaluation *evaluation, const char *model, co
   print_row(stream, "gradient, aggregate", "%.3g %%", 100 * evaluation->gradient_error, NAN);
   print_row(stream, "gradient, median", "%.3g %%", 100 * evaluation->gradient_error_median, NAN);
   print_row(stream, "gradient, 90 %", "%.3g %%", 100 * evaluation->gradient_error_p90, NAN);
+  print_row(stream, "moments by the centroid", "%.3g %%", 100 * evaluation->moment_error, NAN);
+  print_row(stream, "moments by V and centroid", "%.3g %%", 100 * evaluation->moment_error_own, NAN);
   print_row(stream, "force angle, median", "%.3g deg", evaluation->angle_median_deg, NAN);
   print_row(stream, "force angle, 90 %", "%.3g deg", evaluation->angle_p90_deg, NAN);
   print_row(stream, "ghost volume", "%.3g", evaluation->ghost_volume, NAN);
@@ -126,6 +128,8 @@ void app_evaluation_record(const AppEvaluation *evaluation, Record *record) {
   record_number(record, "gradient_error", evaluation->gradient_error);
   record_number(record, "gradient_error_median", evaluation->gradient_error_median);
   record_number(record, "gradient_error_p90", evaluation->gradient_error_p90);
+  record_number(record, "moment_error", evaluation->moment_error);
+  record_number(record, "moment_error_own", evaluation->moment_error_own);
   record_number(record, "angle_median_deg", evaluation->angle_median_deg);
   record_number(record, "angle_p90_deg", evaluation->angle_p90_deg);
   record_number(record, "ghost_volume", evaluation->ghost_volume);

@@ -130,6 +130,8 @@ static const SceneKey model_keys[] = {
      .help = "geo: of the hidden layers"},
     {"depth", SCENE_INTEGER, AT(AppTrainingModelDef, depth), .range = "[1, 8]", .fallback = "3",
      .help = "geo: number of hidden layers"},
+    {"centroid", SCENE_SWITCH, AT(AppTrainingModelDef, has_centroid), .fallback = "true",
+     .help = "geo: the network gives the centroid of the overlap too, which the potential `field` needs"},
     {"reading", SCENE_CHOICE, AT(AppTrainingModelDef, reading), .choices = &reading_choices, .fallback = "a",
      .help = "tpn: of the paper's table of layers"},
     {"scale", SCENE_NUMBER, AT(AppTrainingModelDef, scale), .range = "(0, 16]", .fallback = "1",
@@ -166,6 +168,8 @@ static const SceneKey loss_keys[] = {
      .help = "where the loss of derivatives, and of geo's V, turns from quadratic to linear"},
     {"tangent_scale", SCENE_NUMBER, AT(AppTrainingLossDef, tangent_scale), .range = "[0, inf)", .fallback = "1",
      .help = "geo: factor of errors of derivatives"},
+    {"centroid", SCENE_NUMBER, AT(AppTrainingLossDef, centroid), .range = "(0, inf)", .fallback = "1",
+     .help = "geo: weight of the centroid's errors"},
     {"volume_scale", SCENE_NUMBER, AT(AppTrainingLossDef, volume_scale), .range = "(0, inf)", .fallback = "1000",
      .help = "tpn: factor of V"},
     {"sobolev", SCENE_NUMBER, AT(AppTrainingLossDef, sobolev), .range = "[0, inf)", .fallback = "0",
@@ -292,7 +296,8 @@ static void print_sources(const char *key, const AppTrainingSourceDef *sources, 
 static void print_model(const AppTrainingModelDef *def, char *text, size_t size, size_t *used) {
   text_append(text, size, used, "model: %s", kinds[def->kind]);
   if (def->kind == APP_MODEL_GEO)
-    text_append(text, size, used, ", %d features, %d x %d\n", def->features, def->width, def->depth);
+    text_append(text, size, used, ", %d features, %d x %d%s\n", def->features, def->width, def->depth,
+                def->has_centroid ? ", centroid" : "");
   else
     text_append(text, size, used, ", reading %s, %s%s, %s, output_scale %.15g\n", readings[def->reading],
                 activations[def->activation], def->pool == APP_POOL_SUM ? ", sum pools" : "",
@@ -313,6 +318,7 @@ char *app_training_config_print(const AppTrainingConfig *config) {
   text_append(text, size, &used, "loss: tangents %d, huber %.15g, tangent_scale %.15g, volume_scale %.15g\n",
               def->tangents, def->huber, def->tangent_scale, def->volume_scale);
   if (def->sobolev > 0) text_append(text, size, &used, "sobolev: %.15g\n", def->sobolev);
+  if (config->model.has_centroid) text_append(text, size, &used, "centroid: %.15g\n", def->centroid);
   text_append(
       text, size, &used,
       "AdamW: rate %.15g to %.15g, warmup %.15g, betas %.15g %.15g, decay %.15g, clip %.15g, batch %d, "

@@ -37,6 +37,7 @@ typedef struct AppTrainingSourceDef {
 typedef struct AppTrainingModelDef {
   AppModelKind kind;
   int features, width, depth;     // geo
+  bool has_centroid;              // geo: the network gives the centroid too
   AppReading reading;             // tpn
   AppActivation activation;       // tpn
   AppPool pool;                   // tpn
@@ -50,6 +51,7 @@ typedef struct AppTrainingLossDef {
   int tangents;         // geo: directions a sample
   double huber;         // geo: where Huber's function turns linear
   double tangent_scale; // geo: factor of the tangents' term inside Huber's function
+  double centroid;      // geo: weight of the centroid's errors
   double volume_scale;  // tpn: V is multiplied by it
   double sobolev;       // tpn: weight of errors of ∇V; 0: the paper's loss
 } AppTrainingLossDef;

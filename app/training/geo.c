@@ -1,35 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Training of `geo`: φ = ln 1.28 + ρ(w) − ρ(w*) against t = ln V − ln V₀ and against its derivatives along
 // random directions, w the whitened features and w* those of the onset. The onset is one more sample of each
-// batch, whose derivative is minus the sum of all others'.
+// batch, whose derivative is minus the sum of all others'. If the network gives the centroid too, its other outputs
+// are coefficients of vectors that shall sum to the centroid's z (vectors.h).
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "app/evaluation/evaluation.h"
-#include "app/evaluation/model.h"
 #include "app/training/pool.h"
+#include "app/training/sets.h"
 #include "app/training/start.h"
 #include "app/training/task.h"
+#include "app/training/vectors.h"
 #include "base/memory.h"
 #include "overlap/geo/network.h"
 
-enum { MAX_SETS = 6 };
-
-typedef struct ValidationSet {
-  char name[APP_TRAINING_SCORE_NAME];
-  DatagenPairs pairs;
-  size_t count;
-} ValidationSet;
-
 typedef struct Geo {
   AppTrainingPool pool;
+  AppTrainingVectors vectors; // zeroed: no centroid
   AppTrainingOrder order;
-  ValidationSet sets[MAX_SETS];
-  int set_count;
+  AppTrainingSets sets;
   int *samples;                   // (batch)
   float *x, *xt;                  // (batch + 1, features), (batch + 1, tangents, features)
-  float *y, *yt, *gy, *gyt;       // (batch + 1), (batch + 1, tangents)
+  int outputs;                    // of the network
+  float *y, *yt, *gy, *gyt;       // (batch + 1, outputs), (batch + 1, tangents, outputs)
+  float *rho, *rho_t;             // first of the outputs, then its derivatives (batch + 1), (batch + 1, tangents)
+  float *slope, *slope_t;         // of the loss, likewise
   float *target, *target_t, *one; // (batch), (batch, tangents), (batch)
 } Geo;
 
@@ -38,85 +34,56 @@ static int tangents_of(const AppTrainingConfig *config) {
 }
 
 static NetShape shape(const AppTrainingConfig *config) {
-  return net_shape_mlp(config->model.features, config->model.width, config->model.depth, 1);
+  int outputs = 1;
+  if (config->model.has_centroid)
+    outputs += overlap_geo_features_plane_count(overlap_geo_features_set(config->model.features));
+  return net_shape_mlp(config->model.features, config->model.width, config->model.depth, outputs);
 }
 
 static void destroy(AppTrainingTask *task) {
   Geo *geo = task->self;
   if (!geo) return;
   app_training_pool_destroy(&geo->pool);
+  app_training_vectors_destroy(&geo->vectors);
   app_training_order_destroy(&geo->order);
-  for (int s = 0; s < geo->set_count; s++) datagen_pairs_destroy(&geo->sets[s].pairs);
+  app_training_sets_destroy(&geo->sets);
   memory_free(geo->samples), memory_free(geo->x), memory_free(geo->xt), memory_free(geo->y);
   memory_free(geo->yt), memory_free(geo->gy), memory_free(geo->gyt), memory_free(geo->target);
-  memory_free(geo->target_t), memory_free(geo->one), memory_free(geo);
+  memory_free(geo->target_t), memory_free(geo->one), memory_free(geo->rho), memory_free(geo->rho_t);
+  memory_free(geo->slope), memory_free(geo->slope_t), memory_free(geo);
   task->self = NULL;
-}
-
-static Status load_sets(Geo *geo, const AppTrainingConfig *config) {
-  if (config->validation_count > MAX_SETS)
-    return status_fail(STATUS_INPUT, "%s: %d validation sets; at most %d", config->path,
-                       config->validation_count, MAX_SETS);
-  for (int s = 0; s < config->validation_count; s++) {
-    AppSourceDef def = app_training_config_source(&config->validation[s]);
-    ValidationSet *set = &geo->sets[s];
-    snprintf(set->name, sizeof set->name, "set%d", s + 1);
-    if (def.name) snprintf(set->name, sizeof set->name, "%s", def.name);
-    TRY(app_dataset_source_load(&def, &set->pairs, &set->count));
-    geo->set_count++;
-  }
-  return STATUS_OK;
-}
-
-// All sources one after another.
-static Status load_pairs(const AppTrainingConfig *config, DatagenPairs *all, size_t *count) {
-  for (int s = 0; s < config->training_count; s++) {
-    AppSourceDef def = app_training_config_source(&config->training[s]);
-    DatagenPairs more, joined;
-    size_t more_count;
-    TRY(app_dataset_source_load(&def, &more, &more_count));
-    Status status = datagen_pairs_create(&joined, *count + more_count, true);
-    if (!status) {
-      memcpy(joined.coordinates, all->coordinates, *count * 24 * sizeof(double));
-      memcpy(joined.gradient, all->gradient, *count * 24 * sizeof(double));
-      memcpy(joined.volume, all->volume, *count * sizeof(double));
-      memcpy(joined.coordinates + *count * 24, more.coordinates, more_count * 24 * sizeof(double));
-      memcpy(joined.gradient + *count * 24, more.gradient, more_count * 24 * sizeof(double));
-      memcpy(joined.volume + *count, more.volume, more_count * sizeof(double));
-      datagen_pairs_destroy(all);
-      *all = joined;
-      *count += more_count;
-    }
-    datagen_pairs_destroy(&more);
-    TRY(status);
-  }
-  return STATUS_OK;
 }
 
 static Status load_pool(AppTrainingTask *task, const NetWhitening *whitening) {
   Geo *geo = task->self;
   DatagenPairs pairs;
-  size_t count = 0;
-  TRY(datagen_pairs_create(&pairs, 0, true));
-  Status status = load_pairs(task->config, &pairs, &count);
+  size_t count;
+  TRY(app_training_sets_load_pairs(task->config, &pairs, &count));
   const OverlapGeoFeatureSet *set = overlap_geo_features_set(task->config->model.features);
-  if (!status) status = app_training_pool_create(&geo->pool, set, &pairs, count, whitening);
+  Status status = app_training_pool_create(&geo->pool, set, &pairs, count, whitening);
+  if (!status && task->config->model.has_centroid)
+    status = app_training_vectors_create(&geo->vectors, set, &pairs, count);
   datagen_pairs_destroy(&pairs);
   return status;
 }
 
 static Status create_batch(Geo *geo, const AppTrainingConfig *config) {
   size_t batch = (size_t)config->optimiser.batch, rows = batch + 1, n = (size_t)config->model.features,
-         tangents = (size_t)config->loss.tangents;
+         tangents = (size_t)config->loss.tangents, outputs = 1 + (size_t)geo->vectors.vector_count;
+  geo->outputs = (int)outputs;
   geo->samples = memory_zeroed(batch, sizeof *geo->samples);
   geo->x = memory_zeroed(rows * n, sizeof(float)),
   geo->xt = memory_zeroed(rows * tangents * n, sizeof(float));
-  geo->y = memory_zeroed(rows, sizeof(float)), geo->yt = memory_zeroed(rows * tangents, sizeof(float));
-  geo->gy = memory_zeroed(rows, sizeof(float)), geo->gyt = memory_zeroed(rows * tangents, sizeof(float));
+  geo->y = memory_zeroed(rows * outputs, sizeof(float));
+  geo->yt = memory_zeroed(rows * tangents * outputs, sizeof(float));
+  geo->gy = memory_zeroed(rows * outputs, sizeof(float));
+  geo->gyt = memory_zeroed(rows * tangents * outputs, sizeof(float));
+  geo->rho = memory_zeroed(rows, sizeof(float)), geo->rho_t = memory_zeroed(rows * tangents, sizeof(float));
+  geo->slope = memory_zeroed(rows, sizeof(float)), geo->slope_t = memory_zeroed(rows * tangents, sizeof(float));
   geo->target = memory_zeroed(batch, sizeof(float)), geo->one = memory_zeroed(batch, sizeof(float));
   geo->target_t = memory_zeroed(batch * tangents, sizeof(float));
   bool fits = geo->samples && geo->x && geo->xt && geo->y && geo->yt && geo->gy && geo->gyt && geo->target &&
-              geo->one && geo->target_t;
+              geo->one && geo->target_t && geo->rho && geo->rho_t && geo->slope && geo->slope_t;
   if (!fits) return status_no_memory("a batch");
   for (size_t k = 0; k < batch; k++) geo->one[k] = (float)config->loss.tangent_scale;
   memcpy(geo->x + batch * n, geo->pool.onset, n * sizeof(float));
@@ -127,7 +94,7 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   Geo *geo = task->self = memory_zeroed(1, sizeof *geo);
   if (!geo) return status_no_memory("a training");
   TRY(load_pool(task, whitening));
-  TRY(load_sets(geo, task->config));
+  TRY(app_training_sets_load(&geo->sets, task->config));
   TRY(app_training_order_create(&geo->order, geo->pool.count));
   task->sample_count = geo->pool.count;
   snprintf(task->summary, sizeof task->summary, "%d pairs to train on, %lld left out", geo->pool.count,
@@ -155,6 +122,37 @@ static void fill_row(Geo *geo, const AppTrainingConfig *config, NetRandom random
   }
 }
 
+// Of ρ and its tangents; the derivatives go to the first outputs.
+static double volume_loss(Geo *geo, const AppTrainingConfig *config) {
+  int batch = config->optimiser.batch, tangents = config->loss.tangents, outputs = geo->outputs;
+  float onset = geo->y[batch * outputs], sum = 0;
+  for (int k = 0; k < batch; k++) geo->rho[k] = geo->y[k * outputs] + (float)log(1.28) - onset;
+  for (int k = 0; k < batch * tangents; k++) geo->rho_t[k] = geo->yt[k * outputs];
+  double loss = net_loss_sobolev_f32(batch, tangents, config->loss.huber, geo->rho, geo->rho_t, geo->target,
+                                     geo->target_t, geo->one, geo->slope, geo->slope_t);
+  for (int k = 0; k < batch; k++) {
+    geo->gy[k * outputs] = geo->slope[k];
+    sum += geo->slope[k];
+  }
+  for (int k = 0; k < batch * tangents; k++) geo->gyt[k * outputs] = geo->slope_t[k];
+  geo->gy[batch * outputs] = -sum;
+  return loss;
+}
+
+// Of the other outputs, to which its derivatives go.
+static double centroid_loss(Geo *geo, const AppTrainingConfig *config) {
+  int batch = config->optimiser.batch, outputs = geo->outputs;
+  float factor = (float)(config->loss.centroid / batch);
+  double sum = 0;
+  for (int k = 0; k < batch; k++) {
+    float *gy = geo->gy + k * outputs + 1;
+    sum += app_training_vectors_loss(&geo->vectors, geo->samples[k], config->loss.huber,
+                                     geo->y + k * outputs + 1, gy);
+    for (int m = 0; m < outputs - 1; m++) gy[m] *= factor;
+  }
+  return config->loss.centroid * sum / batch;
+}
+
 static double step(AppTrainingTask *task, const NetModel_f32 *model, NetWork_f32 *work, long long number,
                    float *gradient) {
   Geo *geo = task->self;
@@ -167,12 +165,8 @@ static double step(AppTrainingTask *task, const NetModel_f32 *model, NetWork_f32
     fill_row(geo, config, net_random_seeded((uint64_t)config->seed, stream + 2 * (uint64_t)k), k,
              geo->samples[k]);
   net_gradient_forward_f32(work, model, batch + 1, tangents, geo->x, geo->xt, geo->y, geo->yt);
-  float onset = geo->y[batch], sum = 0;
-  for (int k = 0; k < batch; k++) geo->y[k] += (float)log(1.28) - onset;
-  double loss = net_loss_sobolev_f32(batch, tangents, config->loss.huber, geo->y, geo->yt, geo->target,
-                                     geo->target_t, geo->one, geo->gy, geo->gyt);
-  for (int k = 0; k < batch; k++) sum += geo->gy[k];
-  geo->gy[batch] = -sum;
+  double loss = volume_loss(geo, config);
+  if (config->model.has_centroid) loss += centroid_loss(geo, config);
   net_gradient_backward_f32(work, model, batch + 1, tangents, geo->gy, geo->gyt, gradient);
   return loss;
 }
@@ -181,6 +175,7 @@ static Status fold_and_write(const Geo *geo, const NetModel_f32 *model, const Ne
                              NetModel_f64 *folded) {
   net_model_widen(model, folded);
   TRY(app_training_task_fail(net_whitening_fold(&geo->pool.whitening, folded)));
+  if (geo->outputs > 1) app_training_vectors_fold(&geo->vectors.whitening, folded);
   return app_training_task_fail(net_weights_write_f64(path, folded, card));
 }
 
@@ -203,41 +198,28 @@ static Status write(const AppTrainingTask *task, const NetModel_f32 *model, cons
   return status;
 }
 
-static Status measure(const OverlapModel *model, const ValidationSet *set, AppTrainingScores *scores) {
-  AppEvaluationRun run;
-  AppEvaluation result;
-  app_evaluation_begin(&run, model, NULL);
-  Status status = app_evaluation_add(&run, &set->pairs, set->count);
-  if (!status) {
-    app_evaluation_finish(&run, &result);
-    app_training_scores_add(scores, set->name, "mae", result.mae);
-    app_training_scores_add(scores, set->name, "volume_error", result.volume_error_sum);
-    app_training_scores_add(scores, set->name, "gradient_error", result.gradient_error);
-    app_training_scores_add(scores, set->name, "angle_p90", result.angle_p90_deg);
-    // what the network did not answer is no merit of its
-    double share = (double)result.fallbacks / (double)result.count;
-    scores->score += result.volume_error_sum + result.gradient_error + share;
-  }
-  app_evaluation_end(&run);
-  return status;
+static double score(const AppEvaluation *result, const char *set, AppTrainingScores *scores) {
+  app_training_scores_add(scores, set, "mae", result->mae);
+  app_training_scores_add(scores, set, "volume_error", result->volume_error_sum);
+  app_training_scores_add(scores, set, "gradient_error", result->gradient_error);
+  app_training_scores_add(scores, set, "angle_p90", result->angle_p90_deg);
+  if (isnan(result->moment_error)) return result->volume_error_sum + result->gradient_error;
+  app_training_scores_add(scores, set, "moment_error", result->moment_error);
+  return result->volume_error_sum + result->gradient_error + result->moment_error;
 }
 
 // The file is read back: what is measured is the model as scenes will have it.
 static Status validate(AppTrainingTask *task, const NetModel_f32 *model, const char *path,
                        AppTrainingScores *scores) {
   const Geo *geo = task->self;
-  OverlapModel overlap;
   TRY(write(task, model, "a training in progress", path));
-  TRY(app_evaluation_model_open(&overlap, path));
-  Status status = STATUS_OK;
-  for (int s = 0; s < geo->set_count && !status; s++) status = measure(&overlap, &geo->sets[s], scores);
-  overlap_model_destroy(&overlap);
-  return status;
+  return app_training_sets_measure(&geo->sets, path, score, scores);
 }
 
 static Status start(AppTrainingTask *task, NetModel_f32 *model) {
   const Geo *geo = task->self;
-  return app_training_start_read(task->config->start, OVERLAP_GEO_NORMALISATION, &geo->pool.whitening, model);
+  return app_training_start_read(task->config->start, OVERLAP_GEO_NORMALISATION, &geo->pool.whitening,
+                                 geo->outputs > 1 ? &geo->vectors.whitening : NULL, model);
 }
 
 static const NetWhitening *whitening_of(const AppTrainingTask *task) {

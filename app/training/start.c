@@ -57,18 +57,57 @@ static Status unfold(const NetWhitening *whitening, NetModel_f64 *model) {
   return is_solved ? STATUS_OK : status_fail(STATUS_INPUT, "the data's whitening cannot be inverted");
 }
 
+// Coefficients of the vectors become those of the whitened ones: c = Aᵀ ĉ is solved for ĉ, whose rows begin
+// with row 1 of a tensor.
+static Status unfold_rows(const NetWhitening *vectors, const NetTensor *tensor, double *numbers) {
+  int n = vectors->count, columns = tensor->columns ? tensor->columns : 1;
+  size_t size = (size_t)n;
+  double *matrix = memory_copy(vectors->matrix, size * size, sizeof(double));
+  double *transposed = memory_zeroed(size * (size_t)columns, sizeof(double));
+  bool fits = matrix && transposed;
+  for (int j = 0; j < columns && fits; j++)
+    for (int r = 0; r < n; r++) transposed[j * n + r] = numbers[(1 + r) * columns + j];
+  bool is_solved = fits && solve_rows(n, matrix, columns, transposed);
+  for (int j = 0; j < columns && is_solved; j++)
+    for (int r = 0; r < n; r++) numbers[(1 + r) * columns + j] = transposed[j * n + r];
+  memory_free(matrix), memory_free(transposed);
+  if (!fits) return status_no_memory("the first weights");
+  return is_solved ? STATUS_OK : status_fail(STATUS_INPUT, "the vectors' whitening cannot be inverted");
+}
+
+static Status unfold_vectors(const NetWhitening *vectors, NetModel_f64 *model) {
+  const NetPlan *plan = model->plan;
+  for (int t = plan->tensor_count - 2; t < plan->tensor_count; t++) // the last weights and biases
+    TRY(unfold_rows(vectors, &plan->tensors[t], model->parameters + plan->tensors[t].offset));
+  return STATUS_OK;
+}
+
 static Status bring_over(const char *path, const char *normalisation, const NetWhitening *whitening,
-                         const NetModel_f32 *model, NetModel_f64 *from, const NetCard *card) {
-  if (!net_shape_equal(&from->plan->shape, &model->plan->shape))
+                         const NetWhitening *vectors, const NetModel_f32 *model, NetModel_f64 *from, const NetCard *card) {
+  NetShape shape = model->plan->shape;
+  bool lacks_centroid = vectors && from->plan->shape.output_count == 1;
+  if (lacks_centroid) shape.output_count = 1;
+  if (!net_shape_equal(&from->plan->shape, &shape))
     return status_fail(STATUS_INPUT, "%s: a network of another shape than `model` describes", path);
   if (strcmp(card->normalisation, normalisation) != 0)
     return status_fail(STATUS_INPUT, "%s: made for the normalisation '%s', the training has '%s'", path,
                        card->normalisation, normalisation);
-  return whitening ? unfold(whitening, from) : STATUS_OK;
+  if (whitening) TRY(unfold(whitening, from));
+  return vectors && !lacks_centroid ? unfold_vectors(vectors, from) : STATUS_OK;
+}
+
+// Into the model, whose parameters stay where the file has none: those of the outputs beyond its first.
+static void copy_parameters(const NetModel_f64 *from, NetModel_f32 *model) {
+  for (int t = 0; t < from->plan->tensor_count; t++) {
+    const NetTensor *tensor = &from->plan->tensors[t];
+    const double *numbers = from->parameters + tensor->offset;
+    float *place = model->parameters + model->plan->tensors[t].offset;
+    for (size_t i = 0; i < net_plan_tensor_size(tensor); i++) place[i] = (float)numbers[i];
+  }
 }
 
 Status app_training_start_read(const char *name, const char *normalisation, const NetWhitening *whitening,
-                               NetModel_f32 *model) {
+                               const NetWhitening *vectors, NetModel_f32 *model) {
   char path[4096];
   if (overlap_weights_is_path(name))
     snprintf(path, sizeof path, "%s", name);
@@ -77,8 +116,8 @@ Status app_training_start_read(const char *name, const char *normalisation, cons
   NetModel_f64 from = {0};
   NetCard card = {0};
   TRY(app_training_task_fail(net_weights_read_f64(path, &from, &card)));
-  Status status = bring_over(path, normalisation, whitening, model, &from, &card);
-  if (!status) net_model_narrow(&from, model);
+  Status status = bring_over(path, normalisation, whitening, vectors, model, &from, &card);
+  if (!status) copy_parameters(&from, model);
   net_weights_card_destroy(&card);
   net_model_destroy_f64(&from);
   return status;

@@ -418,7 +418,7 @@ static void print_normalisation(const AppTrainingTask *task, char text[OVERLAP_T
 static Status start(AppTrainingTask *task, NetModel_f32 *model) {
   char normalisation[OVERLAP_TPN_NORMALISATION_TEXT];
   print_normalisation(task, normalisation);
-  return app_training_start_read(task->config->start, normalisation, NULL, model);
+  return app_training_start_read(task->config->start, normalisation, NULL, NULL, model);
 }
 
 static Status write(const AppTrainingTask *task, const NetModel_f32 *model, const char *provenance,

@@ -157,21 +157,30 @@ static void blend_hessian(const Blend *blend, double *hessian) {
     }
 }
 
+// `clip_volume`: what of the blended volume is clip's.
+static void blend_centroid(double volume, double clip_volume, const double clip[3], double centroid[3]) {
+  for (int c = 0; c < 3; c++)
+    centroid[c] = volume > 0 ? centroid[c] + clip_volume / volume * (clip[c] - centroid[c]) : 0;
+}
+
 Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pair[24], double *volume,
-                                  double *gradient, double *hessian, unsigned *flags) {
+                                  double *gradient, double *hessian, double *centroid, unsigned *flags) {
   OverlapGeoCoplanar coplanar;
   overlap_geo_coplanar_find(&frame->projector, &coplanar);
   if (!(coplanar.share > 0)) return STATUS_OK;
   Blend blend;
   blend.share = coplanar.share;
   unsigned clip_flags;
+  double clip_centroid[3];
   TRY(overlap_clip_ops.eval_pair(NULL, pair,
                                  &(OverlapAnswer){.volume = &blend.volume,
                                                   .gradient = gradient ? blend.gradient : NULL,
                                                   .hessian = hessian ? blend.hessian : NULL,
+                                                  .centroid = centroid ? clip_centroid : NULL,
                                                   .flags = &clip_flags}));
   blend.difference = blend.volume - *volume;
   *volume += blend.share * blend.difference;
+  if (centroid) blend_centroid(*volume, blend.share * blend.volume, clip_centroid, centroid);
   if (flags) *flags |= OVERLAP_BLENDED;
   if (!gradient) return STATUS_OK;
   for (int i = 0; i < SIZE; i++) blend.gradient_difference[i] = blend.gradient[i] - gradient[i];

@@ -53,10 +53,10 @@ void overlap_geo_coplanar_bend(const OverlapGeoCoplanar *coplanar, const GeoMatr
 void overlap_geo_coplanar_pull(const OverlapGeoFrame *frame, const OverlapGeoCoplanar *coplanar,
                                double gradient[24], double *hessian);
 
-// If the pair has a share, turns volume, gradient and hessian (24 × 24) of the network, the latter two NULL
-// if not wanted, to the blend and adds OVERLAP_BLENDED to the flags (may be NULL). A Hessian needs
+// If the pair has a share, turns volume, gradient, hessian (24 × 24) and centroid of the network, all but the
+// first NULL if not wanted, to the blend (V x̄ is blended as V is) and adds OVERLAP_BLENDED to the flags (may be NULL). A Hessian needs
 // the gradient.
 Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pair[24], double *volume,
-                                  double *gradient, double *hessian, unsigned *flags);
+                                  double *gradient, double *hessian, double *centroid, unsigned *flags);
 
 #endif

@@ -42,7 +42,7 @@ Status overlap_geo_create(OverlapGeoModel *model, const OverlapGeoNetwork *netwo
 // The places of pair i's results; NULL where they are not wanted.
 typedef struct Place {
   const double *pair;
-  double *volume, *gradient, *hessian;
+  double *volume, *gradient, *hessian, *centroid;
   unsigned *flags;
 } Place;
 
@@ -51,6 +51,7 @@ static Place place_of(const OverlapBatch *batch, int i) {
                  .volume = batch->volume + i,
                  .gradient = batch->gradient ? batch->gradient + (size_t)i * SIZE : NULL,
                  .hessian = batch->hessian ? batch->hessian + (size_t)i * HESSIAN_SIZE : NULL,
+                 .centroid = batch->centroid ? batch->centroid + (size_t)i * 3 : NULL,
                  .flags = batch->flags ? batch->flags + i : NULL};
 }
 
@@ -58,6 +59,7 @@ static void write_empty(Place place) {
   *place.volume = 0;
   if (place.gradient) memset(place.gradient, 0, SIZE * sizeof(double));
   if (place.hessian) memset(place.hessian, 0, HESSIAN_SIZE * sizeof(double));
+  if (place.centroid) memset(place.centroid, 0, 3 * sizeof(double));
   if (place.flags) *place.flags = OVERLAP_DISJOINT;
 }
 
@@ -69,9 +71,17 @@ static Status fall_back(Place place) {
         NULL, place.pair, &(OverlapAnswer){.volume = &volume, .hessian = place.hessian, .flags = &flags}));
   TRY(overlap_exact_ops.eval_pair(
       NULL, place.pair,
-      &(OverlapAnswer){.volume = place.volume, .gradient = place.gradient, .flags = &flags}));
+      &(OverlapAnswer){
+          .volume = place.volume, .gradient = place.gradient, .centroid = place.centroid, .flags = &flags}));
   if (place.flags) *place.flags = flags | OVERLAP_FALLBACK;
   return STATUS_OK;
+}
+
+// What the gate has no use for: a flat tetrahedron, or one with a coordinate that is not finite.
+static Status answer_flat(Place place) {
+  for (int i = 0; i < SIZE; i++)
+    if (!isfinite(place.pair[i])) return status_fail(STATUS_INPUT, "a coordinate is not finite");
+  return fall_back(place);
 }
 
 // ρ of a block's columns by a network that takes rows.
@@ -88,10 +98,12 @@ static Status eval_rows(const OverlapGeoNetwork *network, OverlapGeoBlock *block
   return STATUS_OK;
 }
 
-static Status eval_network(const OverlapGeoNetwork *network, OverlapGeoBlock *block, double *value,
-                           bool wants_gradient) {
-  if (!network->eval_columns) return eval_rows(network, block, value, wants_gradient);
-  return network->eval_columns(network->self, block->features[0], value,
+static Status eval_network(const OverlapGeoModel *model, OverlapGeoBlock *block, bool wants_gradient,
+                           bool wants_centroid) {
+  const OverlapGeoNetwork *network = &model->network;
+  if (!network->eval_columns) return eval_rows(network, block, block->outputs[0], wants_gradient);
+  int outputs = wants_centroid ? 1 + overlap_geo_features_plane_count(model->set) : 1;
+  return network->eval_columns(network->self, block->features[0], outputs, block->outputs[0],
                                wants_gradient ? block->weights[0] : NULL);
 }
 
@@ -151,7 +163,7 @@ static Status blend_column(const OverlapGeoBundle *bundle, int first, const Over
                                     place.gradient  ? place.gradient
                                     : place.hessian ? gradient
                                                     : NULL,
-                                    place.hessian, place.flags);
+                                    place.hessian, place.centroid, place.flags);
 }
 
 // The tetrahedron that was moved comes first in bends.
@@ -164,6 +176,15 @@ static void write_hessian(const OverlapGeoBends *bends, int at, double *hessian)
   }
 }
 
+// From barycentric coordinates in the first tetrahedron.
+static void write_centroid(const OverlapGeoBlock *block, int at, Place place) {
+  for (int c = 0; c < 3; c++) {
+    double sum = 0;
+    for (int k = 0; k < 4; k++) sum += block->place[k][at] * place.pair[3 * k + c];
+    place.centroid[c] = sum;
+  }
+}
+
 static Status write_column(const OverlapGeoBundle *bundle, int first, const OverlapGeoBlock *block,
                            const OverlapGeoBends *bends, int at, Place place) {
   *place.volume = block->factor[at];
@@ -171,23 +192,26 @@ static Status write_column(const OverlapGeoBundle *bundle, int first, const Over
   if (!(*place.volume > 0 && *place.volume < INFINITY)) return fall_back(place);
   if (place.gradient) memcpy(place.gradient, block->gradient[at], sizeof block->gradient[at]);
   if (place.hessian) write_hessian(bends, at, place.hessian);
+  if (place.centroid) write_centroid(block, at, place);
   if (place.flags) *place.flags = bundle->is_enclosed[first + at] ? OVERLAP_ENCLOSED : 0;
   return block->is_close[at] > 0 ? blend_column(bundle, first, block, at, place) : STATUS_OK;
 }
 
-// V, ∇V and ∇²V of a block, as far as they are wanted, in block and bends.
+// V, ∇V, x̄ and ∇²V of a block, as far as they are wanted, in block and bends.
 static Status compute_block(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBundle *bundle,
                             int first, OverlapGeoBlock *block, OverlapGeoBends *bends) {
-  _Alignas(64) double value[OVERLAP_GEO_BLOCK] = {0};
   bool wants_gradient = batch->gradient || batch->hessian;
   model->kernel->frame(bundle, first, block);
   if (model->set) {
     model->kernel->features(model->set, block);
-    TRY(eval_network(&model->network, block, value, wants_gradient));
+    TRY(eval_network(model, block, wants_gradient, batch->centroid != NULL));
+  } else {
+    memset(block->outputs[0], 0, sizeof block->outputs[0]);
   }
   for (int at = 0; at < OVERLAP_GEO_BLOCK; at++)
-    block->factor[at] = block->volume[at] * exp(model->offset + value[at]);
+    block->factor[at] = block->volume[at] * exp(model->offset + block->outputs[0][at]);
   if (wants_gradient) model->kernel->pull(model->set, block);
+  if (batch->centroid) model->kernel->centroid(model->set, block);
   if (!batch->hessian) return STATUS_OK;
   model->kernel->bend(model->set, bundle, first, block, bends);
   if (model->set) TRY(add_network_curvature(&model->network, bends));
@@ -209,7 +233,7 @@ static Status eval_bundle(const OverlapGeoModel *model, const OverlapBatch *batc
   model->kernel->gate(batch->pair_count, batch->pairs, bundle);
   for (int i = 0; i < batch->pair_count; i++) {
     if (bundle->outcome[i] == OVERLAP_GEO_EMPTY) write_empty(place_of(batch, i));
-    if (bundle->outcome[i] == OVERLAP_GEO_UNFIT) TRY(fall_back(place_of(batch, i)));
+    if (bundle->outcome[i] == OVERLAP_GEO_UNFIT) TRY(answer_flat(place_of(batch, i)));
   }
   for (int first = 0; first < bundle->count; first += OVERLAP_GEO_BLOCK)
     TRY(eval_block(model, batch, bundle, first, block, bends));
@@ -262,5 +286,37 @@ OverlapGeoOutcome overlap_geo_features_tangent(const OverlapGeoFeatureSet *set, 
     for (int l = 0; l <= lane; l++)
       geo_unpack_numbers(packs, set->count, l, feature_changes + (size_t)(d - lane + l) * (size_t)set->count);
   }
+  return outcome;
+}
+
+OverlapGeoOutcome overlap_geo_features_centroid(const OverlapGeoFeatureSet *set, const double pair[24],
+                                                const double centroid[3], double *features, double z[3],
+                                                double (*vectors)[3]) {
+  const OverlapGeoKernel *kernel = overlap_geo_features_kernel();
+  OverlapGeoFrame frame;
+  OverlapGeoOutcome outcome = overlap_geo_frame(&frame, pair);
+  if (outcome != OVERLAP_GEO_INSIDE) return outcome;
+  GeoSymmetric projector = {{{0}}};
+  OverlapGeoInvariants invariants;
+  GeoPack packs[OVERLAP_GEO_MAX_FEATURES], planes[OVERLAP_GEO_MAX_PLANE_FEATURES][GEO_LANES];
+  geo_pack_matrix(&frame.projector, 0, &projector);
+  kernel->features(set, &projector, &invariants, packs);
+  geo_unpack_numbers(packs, set->count, 0, features);
+  kernel->planes(set, &invariants, planes);
+  double(*q)[GEO_LANES] = frame.basis.column;
+  for (int m = 0; m < overlap_geo_features_plane_count(set); m++)
+    for (int c = 0; c < 3; c++) {
+      vectors[m][c] = 0;
+      for (int k = 0; k < GEO_LANES; k++) vectors[m][c] += q[c][k] * planes[m][k][0];
+    }
+  // q_k·z = m_k·(x̄ − centre), the relative change of s_k
+  double change[GEO_LANES];
+  for (int k = 0; k < GEO_LANES; k++) {
+    const double *base = pair + 3 * ((k & 4) + (k + 1) % 4); // where λ_k is 0
+    double along = 0;
+    for (int c = 0; c < 3; c++) along += frame.normal.column[c][k] * (centroid[c] - base[c]);
+    change[k] = along / frame.slack[k] - 1;
+  }
+  for (int c = 0; c < 3; c++) z[c] = geo_dot(q[c], change);
   return outcome;
 }

@@ -9,7 +9,13 @@
 // the exact model has by symmetry (order of vertices and of tetrahedra, rigid motion, scale, net force and
 // torque of a pair) it has to rounding.
 //
-// The network is anything with the two operations below; without one φ = ln 1.28. Pairs too flat for the
+// The centroid x̄ is the centre moved within the frame. α_k = Σ_m c_m(f) e_mk, e_mk the features that plane k
+// has of its own (features/features.h) and c_m(f) what the network makes of the pair's beside ρ; z = Σ_k α_k q_k with
+// q_k the rows of Q; a plane's s_k, a barycentric coordinate of a tetrahedron, is s_k (1 + q_k·z) at x̄. Hence
+// x̄ goes along with affine maps and any order of planes, is the centre of a simplex at the onset of an
+// overlap, and lies inside of both tetrahedra, since z is shortened where a slack would lose 99 % of itself.
+//
+// The network is anything with the operations below; without one φ = ln 1.28. Pairs too flat for the
 // frame, or whose centre Newton's method does not find, are answered by the exact model and flagged FALLBACK
 // (their Hessian by clipping).
 #ifndef TETLAP_OVERLAP_GEO_GEO_H
@@ -28,9 +34,12 @@ typedef struct OverlapGeoNetwork {
   int feature_count; // must have a feature set
   // ρ (count) and, unless NULL, dρ/df (count, feature_count) of features (count, feature_count).
   Status (*eval)(const void *self, int count, const double *features, double *value, double *gradient);
-  // The same of OVERLAP_GEO_CHUNK pairs side by side: features and gradient (feature_count, chunk), value
-  // (chunk), on cache lines. NULL: eval is used.
-  Status (*eval_columns)(const void *self, const double *features, double *value, double *gradient);
+  // The same of OVERLAP_GEO_CHUNK pairs side by side: features and gradient (feature_count, chunk), outputs
+  // (output_count, chunk), on cache lines: ρ and, if more than one is wanted, c. NULL: eval is used.
+  Status (*eval_columns)(const void *self, const double *features, int output_count, double *outputs,
+                         double *gradient);
+  // Whether it has the c: eval_columns and 1 + plane_count outputs.
+  bool has_centroid;
   // second (count, n, n): second derivatives of ρ at each of features (count, feature_count) along all pairs
   // of its n directions in feature space (count, n, feature_count); n at most 12. NULL: no Hessian.
   Status (*curve)(const void *self, int count, const double *features, int direction_count,
@@ -53,6 +62,12 @@ Status overlap_geo_create(OverlapGeoModel *model, const OverlapGeoNetwork *netwo
 
 // Evaluates the batch in this thread; a failure is the network's.
 Status overlap_geo_eval(const OverlapGeoModel *model, const OverlapBatch *batch);
+
+// What training the centroid needs of one pair: features (set->count), for the centroid `centroid` its z
+// (3) in a frame, and Σ_k e_mk q_k (plane_count, 3) in the same. Only with INSIDE anything is written.
+OverlapGeoOutcome overlap_geo_features_centroid(const OverlapGeoFeatureSet *set, const double pair[24],
+                                                const double centroid[3], double *features, double z[3],
+                                                double (*vectors)[3]);
 
 // What training needs of one pair: features (set->count), ln V₀, and their changes along each of `count`
 // directions (count, 24) in the coordinates: (count, set->count) and (count). Only with INSIDE anything is

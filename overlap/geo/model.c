@@ -52,6 +52,10 @@ Status overlap_geo_model_eval_batch(const void *self, const OverlapBatch *batch)
   return overlap_portions_eval(batch, PORTION, true, eval_portion, &((const OverlapGeoOverlap *)self)->model);
 }
 
+static bool has_centroid(const void *self) {
+  return ((const OverlapGeoOverlap *)self)->model.network.has_centroid;
+}
+
 // `weights`: a file, or the name of one that ships; NULL: `own`.
 static Status create_named(void **self, const char *own, const char *weights) {
   char path[4096];
@@ -75,6 +79,8 @@ const OverlapOps overlap_geo_ops = {
     .name = "geo",
     .help = "learned: analytic-centre frame and 100 symmetric features; smooth, no ghost forces",
     .has_hessian = overlap_ops_always,
+    .has_centroid = has_centroid,
+    .checks_finite = true,
     .seconds_per_pair = 1.8e-6,
     .create = create_geo,
     .eval_pair = overlap_geo_model_eval_pair,
@@ -86,6 +92,8 @@ const OverlapOps overlap_geo_small_ops = {
     .name = "geo-small",
     .help = "learned: as geo, with 36 features and a smaller network",
     .has_hessian = overlap_ops_always,
+    .has_centroid = has_centroid,
+    .checks_finite = true,
     .seconds_per_pair = 6e-7,
     .create = create_geo_small,
     .eval_pair = overlap_geo_model_eval_pair,

@@ -14,9 +14,6 @@
 
 enum { DIRECTIONS = 12 };
 
-// What the derivative of ρ itself weighs its one output with, for each pair.
-static const double ones[] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-static_assert(sizeof ones / sizeof *ones == OVERLAP_GEO_CHUNK, "one for each pair of a chunk");
 static_assert((int)NET_COLUMN_UNIT == (int)OVERLAP_GEO_CHUNK, "a chunk is what net/ takes side by side");
 
 // Memory of evaluation, used by one caller at a time.
@@ -28,6 +25,7 @@ typedef struct Workspace {
 struct OverlapGeoNet {
   NetModel_f64 model;
   NetCard card;
+  double *of_first; // 1 for ρ, 0 for all other outputs     (OVERLAP_GEO_CHUNK, outputs)
   int workspace_count;
   Workspace *workspaces; // (workspace_count)
 };
@@ -49,21 +47,37 @@ static void release_workspace(Workspace *workspace) {
   atomic_flag_clear_explicit(&workspace->is_taken, memory_order_release);
 }
 
+static int outputs_of(const OverlapGeoNet *net) {
+  return net->model.plan->shape.output_count;
+}
+
+// ρ of pairs that a chunk holds, by all outputs of the network.
+static void eval_chunk(const OverlapGeoNet *net, Workspace *workspace, int count, const double *features,
+                       double *value, double *gradient) {
+  double outputs[OVERLAP_GEO_CHUNK * (1 + OVERLAP_GEO_MAX_PLANE_FEATURES)];
+  if (gradient)
+    net_forward_gradient_f64(&workspace->work, &net->model, count, features, net->of_first, outputs, gradient);
+  else
+    net_forward_eval_f64(&workspace->work, &net->model, count, features, outputs);
+  for (int n = 0; n < count; n++) value[n] = outputs[n * outputs_of(net)];
+}
+
 static Status eval(const void *self, int count, const double *features, double *value, double *gradient) {
   const OverlapGeoNet *net = self;
   Workspace *workspace = acquire_workspace(net);
-  if (gradient)
-    net_forward_gradient_f64(&workspace->work, &net->model, count, features, ones, value, gradient);
-  else
-    net_forward_eval_f64(&workspace->work, &net->model, count, features, value);
+  ptrdiff_t size = net->model.plan->shape.input_count;
+  for (int first = 0; first < count; first += OVERLAP_GEO_CHUNK)
+    eval_chunk(net, workspace, count - first < OVERLAP_GEO_CHUNK ? count - first : OVERLAP_GEO_CHUNK,
+               features + first * size, value + first, gradient ? gradient + first * size : NULL);
   release_workspace(workspace);
   return STATUS_OK;
 }
 
-static Status eval_columns(const void *self, const double *features, double *value, double *gradient) {
+static Status eval_columns(const void *self, const double *features, int output_count, double *outputs,
+                           double *gradient) {
   const OverlapGeoNet *net = self;
   Workspace *workspace = acquire_workspace(net);
-  net_dense_eval_f64(&workspace->work, &net->model, features, value, gradient);
+  net_dense_eval_f64(&workspace->work, &net->model, output_count, features, outputs, gradient);
   release_workspace(workspace);
   return STATUS_OK;
 }
@@ -72,7 +86,7 @@ static Status curve(const void *self, int count, const double *features, int dir
                     const double *directions, double *second) {
   const OverlapGeoNet *net = self;
   Workspace *workspace = acquire_workspace(net);
-  net_tangent_second_f64(&workspace->work, &net->model, count, direction_count, features, directions, ones,
+  net_tangent_second_f64(&workspace->work, &net->model, count, direction_count, features, directions, net->of_first,
                          NULL, NULL, NULL, second);
   release_workspace(workspace);
   return STATUS_OK;
@@ -89,12 +103,16 @@ static Status curve_columns(const void *self, const double *features, double *se
 static Status check(const OverlapGeoNet *net, const char *path) {
   const NetShape *shape = &net->model.plan->shape;
   if (!net_dense_is_possible(shape))
-    return status_fail(STATUS_INPUT, "%s: geo needs a dense SiLU network with one output, this is another",
-                       path);
+    return status_fail(STATUS_INPUT, "%s: geo needs a dense SiLU network, this is another", path);
   if (!overlap_geo_features_set(shape->input_count))
     return status_fail(STATUS_INPUT,
                        "%s: the network has %d inputs, the features of a pair are 36, 70 or 100", path,
                        shape->input_count);
+  int planes = overlap_geo_features_plane_count(overlap_geo_features_set(shape->input_count));
+  if (shape->output_count != 1 && shape->output_count != 1 + planes)
+    return status_fail(STATUS_INPUT,
+                       "%s: the network has %d outputs; one, or with the centroid %d, is what geo takes", path,
+                       shape->output_count, 1 + planes);
   if (strcmp(net->card.normalisation, OVERLAP_GEO_NORMALISATION) != 0)
     return status_fail(STATUS_INPUT, "%s: made for the normalisation '%s', geo has '%s'", path,
                        net->card.normalisation, OVERLAP_GEO_NORMALISATION);
@@ -111,6 +129,7 @@ static Status create_workspaces(OverlapGeoNet *net) {
     atomic_flag_clear(&net->workspaces[d].is_taken);
     NetStatus status = net_work_create_f64(net->model.plan, &def, &net->workspaces[d].work);
     if (status != NET_OK) return fail_as_net(status);
+    net->workspaces[d].work.outputs = 1; // derivatives are those of ρ
   }
   return STATUS_OK;
 }
@@ -119,6 +138,9 @@ static Status load(OverlapGeoNet *net, const char *path) {
   NetStatus status = net_weights_read_f64(path, &net->model, &net->card);
   if (status != NET_OK) return fail_as_net(status);
   TRY(check(net, path));
+  net->of_first = memory_zeroed((size_t)(OVERLAP_GEO_CHUNK * outputs_of(net)), sizeof *net->of_first);
+  if (!net->of_first) return status_no_memory("a network");
+  for (int n = 0; n < OVERLAP_GEO_CHUNK; n++) net->of_first[n * outputs_of(net)] = 1;
   return create_workspaces(net);
 }
 
@@ -137,6 +159,7 @@ void overlap_geo_network_destroy(OverlapGeoNet *net) {
   for (int d = 0; d < net->workspace_count && net->workspaces; d++)
     net_work_destroy_f64(&net->workspaces[d].work);
   memory_free(net->workspaces);
+  memory_free(net->of_first);
   net_weights_card_destroy(&net->card);
   net_model_destroy_f64(&net->model);
   memory_free(net);
@@ -148,5 +171,6 @@ OverlapGeoNetwork overlap_geo_network_interface(const OverlapGeoNet *net) {
                              .eval = eval,
                              .eval_columns = eval_columns,
                              .curve = curve,
-                             .curve_columns = curve_columns};
+                             .curve_columns = curve_columns,
+                             .has_centroid = outputs_of(net) > 1};
 }

@@ -19,6 +19,8 @@
 
 #include "overlap/geo/bundle/frame.inc"
 
+#include "overlap/geo/bundle/centroid.inc"
+
 #include "overlap/geo/bundle/hessian.inc"
 
 #ifdef __clang__

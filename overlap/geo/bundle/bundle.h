@@ -5,7 +5,7 @@
 //   pairs ─ gate ─► those that intersect, moved together ─ frame ─► P ─► features ─► ρ ─ pull ─► ∇ log V
 //                   (OverlapGeoBundle)                    blocks of OVERLAP_GEO_BLOCK columns
 //
-// and for second derivatives `bend`, the network's curvature, and `finish` (OverlapGeoBends).
+// for the centroid `centroid`, and for second derivatives `bend`, the network's curvature, and `finish` (OverlapGeoBends).
 //
 // A pair's numbers do not depend on the lane it is in nor on its neighbours. Every instruction set takes the
 // gate's decisions to the same bits, the scalar form's; what follows differs by rounding, for multiplications
@@ -23,6 +23,9 @@ enum {
   OVERLAP_GEO_DIRECTION_PAIRS = OVERLAP_GEO_DIRECTIONS * (OVERLAP_GEO_DIRECTIONS + 1) / 2,
   OVERLAP_GEO_BUNDLE_ROW = OVERLAP_GEO_BUNDLE + OVERLAP_GEO_BLOCK + GEO_LANES, // and a pack beyond
 };
+
+// The centroid is inside: no slack becomes less than 1 − this of what it is at the centre.
+#define OVERLAP_GEO_LONGEST_SHIFT 0.99
 
 // A number of each of the pairs that intersect.
 typedef double OverlapGeoRow[OVERLAP_GEO_BUNDLE_ROW];
@@ -54,6 +57,9 @@ typedef struct OverlapGeoBlock {
   OverlapGeoColumn features[OVERLAP_GEO_MAX_FEATURES];
   OverlapGeoColumn weights[OVERLAP_GEO_MAX_FEATURES]; // dρ/df, from the network
   OverlapGeoColumn factor;                            // what `pull` multiplies with
+  // From the network: ρ, and the coefficients of the planes' features.
+  OverlapGeoColumn outputs[1 + OVERLAP_GEO_MAX_PLANE_FEATURES];
+  OverlapGeoColumn place[GEO_LANES];                             // s_k at the centroid
   double gradient[OVERLAP_GEO_BLOCK][24];             // factor · ∂ log V/∂x
 } OverlapGeoBlock;
 
@@ -80,6 +86,8 @@ typedef struct OverlapGeoBundleKernel {
   void (*frame)(OverlapGeoBundle *bundle, int first, OverlapGeoBlock *block);
   // block->features of block->projector.
   void (*features)(const OverlapGeoFeatureSet *set, OverlapGeoBlock *block);
+  // block->place from block->outputs, after `features`.
+  void (*centroid)(const OverlapGeoFeatureSet *set, OverlapGeoBlock *block);
   // block->gradient from block->weights and block->factor, after `features`; `set` NULL: φ is constant.
   void (*pull)(const OverlapGeoFeatureSet *set, OverlapGeoBlock *block);
   // All of bends but the Hessian, after `features`; the block holds the bundle's pairs from `first` on.

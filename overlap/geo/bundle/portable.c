@@ -12,4 +12,6 @@
 
 #include "overlap/geo/bundle/frame.inc"
 
+#include "overlap/geo/bundle/centroid.inc"
+
 #include "overlap/geo/bundle/hessian.inc"

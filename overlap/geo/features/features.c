@@ -26,6 +26,16 @@ const OverlapGeoFeatureSet *overlap_geo_features_set(int count) {
   return NULL;
 }
 
+int overlap_geo_features_plane_count(const OverlapGeoFeatureSet *set) {
+  int count = OVERLAP_GEO_PLANE_DEGREE;
+  for (int n = 1; n <= set->power_count; n++)
+    for (int b = n <= 2; b < OVERLAP_GEO_MIXED; b++)
+      for (int a = n == 1; a < OVERLAP_GEO_MIXED && a + b <= OVERLAP_GEO_PLANE_DEGREE; a++) count++;
+  for (int e = 0; e < set->link_count; e++)
+    count += 2 * OVERLAP_GEO_WEDGE_POWER - 1 - (set->links[e].power == 1);
+  return count;
+}
+
 // With AVX2, gcc 12 makes slower code of packs that are two registers wide than with four of SSE2: no kernel
 // of its own.
 static const OverlapGeoKernel *const kernels[] = {

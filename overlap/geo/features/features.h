@@ -11,6 +11,15 @@
 //             (0, 0) for b = a = 1, which is a degree
 //   squares   Σ_ij E_ij E'_ij P_ij^a, for each link E and each E' up to it, a = 0 … 2
 //
+// What a plane k has of its own, which another order of the planes only permutes (for the centroid: q_k, a
+// row of Q, weighted by them and summed over the planes is a vector of the frame):
+//
+//   degrees   d_k^a, a = 1 … 4
+//   rows      d_k^a Σ_j P_kj^n d_j^b, for n = 1 … power_count, b = 0 … 3, a = 0 … 3, a + b ≤ 4; those with
+//             b = 0 for n ≤ 2 and a = 0 for n = 1 say nothing new
+//   links     Σ_j E_kj P_kj^a d_j^s, for each link, a = 1 … 3, s = 0, 1, without s = 1 for a = 3, and s = 0 for
+//             b = a = 1, which is a row
+//
 // The derivative of φ(features) by P is found by one backward sweep; its change along a direction by
 // differentiating that sweep once more. All of it eight pairs, or eight directions of a pair, at a time.
 #ifndef TETLAP_OVERLAP_GEO_FEATURES_FEATURES_H
@@ -28,6 +37,8 @@ enum {
   OVERLAP_GEO_MIXED = 4,        // d⁰ … d³
   OVERLAP_GEO_WEDGE_POWER = 3,  // of P in wedges
   OVERLAP_GEO_SQUARE_POWER = 2, // of P in squares
+  OVERLAP_GEO_PLANE_DEGREE = 4, // of d in the features of a plane
+  OVERLAP_GEO_MAX_PLANE_FEATURES = 64,
 };
 
 typedef struct OverlapGeoFeatureSet {
@@ -44,6 +55,9 @@ typedef struct OverlapGeoFeatureSet {
 
 // The set with so many features (36: degrees and pairs; 70: wedges too; 100: all), NULL if there is none.
 const OverlapGeoFeatureSet *overlap_geo_features_set(int count);
+
+// How many features each plane has.
+int overlap_geo_features_plane_count(const OverlapGeoFeatureSet *set);
 
 // Everything that the features of one P are sums of; also the change of all that along a direction.
 typedef struct OverlapGeoInvariants {
@@ -71,7 +85,10 @@ typedef struct OverlapGeoKernel {
   // Features of P (count).
   void (*features)(const OverlapGeoFeatureSet *set, const GeoSymmetric *projector,
                    OverlapGeoInvariants *invariants, GeoPack *features);
-  // Their change (count) along a change of P; `change` gets that of the invariants.
+  // Those of each plane: (plane_count, GEO_LANES).
+  void (*planes)(const OverlapGeoFeatureSet *set, const OverlapGeoInvariants *invariants,
+                 GeoPack (*planes)[GEO_LANES]);
+  // The change of the features (count) along a change of P; `change` gets that of the invariants.
   void (*push)(const OverlapGeoFeatureSet *set, const OverlapGeoInvariants *invariants,
                const GeoSymmetric *projector_change, OverlapGeoInvariants *change, GeoPack *features_change);
   // Φ = ∂φ/∂P, the derivative by P_ij and by P_ji, for ∂φ/∂features = `weights` (count).

@@ -5,5 +5,7 @@
 
 #include "overlap/geo/features/backward.inc"
 
+#include "overlap/geo/features/planes.inc"
+
 const OverlapGeoKernel overlap_geo_features_kernel_portable = {
-    .name = "portable", .features = features, .push = push, .pull = pull, .bend = bend};
+    .name = "portable", .features = features, .planes = planes, .push = push, .pull = pull, .bend = bend};
