@@ -49,9 +49,9 @@ typedef struct DatagenWriter DatagenWriter; // opaque: HDF5 hides behind it
 // Begins a file beside `path`. STATUS_IO: the reason. Of `info`, count, kind_counts and attempts are counted
 // anew; planned 0: as many as will be appended, which are the whole.
 Status datagen_dataset_writer_begin(DatagenWriter **writer, const char *path, const DatagenInfo *info);
-// Appends `count` pairs; all arrays (gradient and centroid only if the file has them) are read. `attempts` by kind, may be
-// NULL. Flushed when it returns. STATUS_INPUT: a pair is impossible (see datagen_dataset_read), nothing of
-// the batch is kept.
+// Appends `count` pairs; all arrays (gradient and centroid only if the file has them) are read. `attempts` by
+// kind, may be NULL. Flushed when it returns. STATUS_INPUT: a pair is impossible (see datagen_dataset_read),
+// nothing of the batch is kept.
 Status datagen_dataset_writer_append(DatagenWriter *writer, const DatagenPairs *pairs, size_t count,
                                      const long long *attempts);
 long long datagen_dataset_writer_count(const DatagenWriter *writer); // pairs appended so far
@@ -67,10 +67,9 @@ typedef struct DatagenDataset DatagenDataset; // opaque
 Status datagen_dataset_open(DatagenDataset **dataset, const char *path);
 // Valid until the data set is closed.
 const DatagenInfo *datagen_dataset_info(const DatagenDataset *dataset);
-// Reads pairs `first` … `first` + `count` − 1 into the arrays that are not NULL; a file without centroids leaves
-// theirs as they are. STATUS_INPUT: the range goes
-// beyond the file, a chunk is damaged, or a pair is impossible (NaN, an unknown kind, V > 0 without contact);
-// the message names the pair.
+// Reads pairs `first` … `first` + `count` − 1 into the arrays that are not NULL; a file without centroids
+// leaves theirs as they are. STATUS_INPUT: the range goes beyond the file, a chunk is damaged, or a pair is
+// impossible (NaN, an unknown kind, V > 0 without contact); the message names the pair.
 Status datagen_dataset_read(DatagenDataset *dataset, long long first, size_t count,
                             const DatagenPairs *pairs);
 void datagen_dataset_close(DatagenDataset *dataset); // NULL is accepted

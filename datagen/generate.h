@@ -7,8 +7,8 @@
 #include "datagen/plan.h"
 
 // Makes pairs `first` … `first` + `count` − 1 of the plan over OpenMP threads; the result does not depend on
-// their number. `pairs->gradient` and `pairs->centroid` may be NULL, the other arrays are the caller's. Adds to `attempts`, by
-// kind, how many candidates were drawn.
+// their number. `pairs->gradient` and `pairs->centroid` may be NULL, the other arrays are the caller's. Adds
+// to `attempts`, by kind, how many candidates were drawn.
 Status datagen_generate(const DatagenPlan *plan, long long first, int count, const DatagenPairs *pairs,
                         long long attempts[DATAGEN_KIND_COUNT]);
 

@@ -18,7 +18,7 @@ enum { MEMBERS = 2500, MOST = 60000 };
 
 static double coordinates[MOST * 24], gradients[MOST * 24], volumes[MOST];
 static uint8_t status[MOST], kinds[MOST];
-static const DatagenPairs arrays = {coordinates, status, kinds, volumes, gradients};
+static const DatagenPairs arrays = {coordinates, status, kinds, volumes, gradients, NULL};
 
 static DatagenPlan plan_of_kind(int kind, const char *law_name, uint64_t seed, long long count) {
   DatagenLaw law;

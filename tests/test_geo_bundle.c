@@ -148,8 +148,8 @@ START_TEST(features_and_their_gradients_are_the_scalar_ones) {
 }
 END_TEST
 
-// Σ_m c_m e_mk by the kernel for single pairs, which lists the planes' features one by one. The coefficients are such
-// that some centroids would leave the overlap.
+// Σ_m c_m e_mk by the kernel for single pairs, which lists the planes' features one by one. The coefficients
+// are such that some centroids would leave the overlap.
 START_TEST(centroids_are_the_scalar_ones) {
   const OverlapGeoBundleKernel *kernel = kernel_number(_i / 3);
   if (!kernel) return;
@@ -165,14 +165,17 @@ START_TEST(centroids_are_the_scalar_ones) {
   kernel->frame(&bundle, 0, &block);
   kernel->features(set, &block);
   for (int m = 0; m < count; m++)
-    for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.outputs[1 + m][j] = random_normal(&random) * (j % 2 ? 3 : 0.1);
+    for (int j = 0; j < OVERLAP_GEO_BLOCK; j++)
+      block.outputs[1 + m][j] = random_normal(&random) * (j % 2 ? 3 : 0.1);
   kernel->centroid(set, &block);
   for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) {
     OverlapGeoFrame frame;
-    double features[OVERLAP_GEO_MAX_FEATURES], vectors[OVERLAP_GEO_MAX_PLANE_FEATURES][3], unused[3], z[3] = {0};
+    double features[OVERLAP_GEO_MAX_FEATURES], vectors[OVERLAP_GEO_MAX_PLANE_FEATURES][3], unused[3],
+        z[3] = {0};
     const double *pair = pairs + 24 * bundle.pair[j];
     ck_assert_int_eq(overlap_geo_frame(&frame, pair), OVERLAP_GEO_INSIDE);
-    ck_assert_int_eq(overlap_geo_features_centroid(set, pair, pair, features, unused, vectors), OVERLAP_GEO_INSIDE);
+    ck_assert_int_eq(overlap_geo_features_centroid(set, pair, pair, features, unused, vectors),
+                     OVERLAP_GEO_INSIDE);
     for (int m = 0; m < count; m++)
       for (int c = 0; c < 3; c++) z[c] += block.outputs[1 + m][j] * vectors[m][c];
     double change[8], lowest = 0;

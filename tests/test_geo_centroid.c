@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The centroid that `geo` gives: what holds by construction, whatever the network has learned, with random weights;
-// and how near the shipped weights come.
+// The centroid that `geo` gives: what holds by construction, whatever the network has learned, with random
+// weights; and how near the shipped weights come.
 #include "suite.h"
 
 #include <stdio.h>
@@ -81,8 +81,9 @@ START_TEST(it_is_inside_of_both_and_zero_without_volume) {
       double allowed = 1e-11 * extent * extent * extent / smaller;
       for (int t = 0; t < 2; t++)
         ck_assert_msg(inside_by(pair.x + 12 * t, answer.centroid) >= -allowed,
-                      "%s, member %d, tetrahedron %d: outside by %g, allowed %g", datagen_hard_classes[c].name, member,
-                      t, -inside_by(pair.x + 12 * t, answer.centroid), allowed);
+                      "%s, member %d, tetrahedron %d: outside by %g, allowed %g",
+                      datagen_hard_classes[c].name, member, t, -inside_by(pair.x + 12 * t, answer.centroid),
+                      allowed);
       seen++;
     }
   ck_assert_int_gt(seen, 500);
@@ -156,7 +157,8 @@ START_TEST(asking_for_it_changes_nothing_else) {
   OverlapBatch batch = {.pair_count = BATCH, .pairs = x};
   batch.volume = volume[0], batch.gradient = gradient[0], batch.flags = flags[0];
   ck_assert_ok(overlap_model_eval(&model, &batch));
-  batch.volume = volume[1], batch.gradient = gradient[1], batch.flags = flags[1], batch.centroid = centroid[0];
+  batch.volume = volume[1], batch.gradient = gradient[1], batch.flags = flags[1],
+  batch.centroid = centroid[0];
   ck_assert_ok(overlap_model_eval(&model, &batch));
   batch.volume = volume[2], batch.gradient = NULL, batch.flags = flags[2], batch.centroid = centroid[1];
   ck_assert_ok(overlap_model_eval(&model, &batch));

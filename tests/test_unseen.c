@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap bench unseen`: bodies that no training has seen, and what learned volumes make of contact with them.
+// `tetlap bench unseen`: bodies that no training has seen, and what learned volumes make of contact with
+// them.
 #include "suite.h"
 
 #include "app/bench/unseen_path.h"

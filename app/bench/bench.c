@@ -15,9 +15,19 @@
 #include "app/bench/unseen.h"
 
 static const AppCommand *const benches[] = {
-    &app_bench_overlap,   &app_bench_net,     &app_bench_datagen, &app_bench_train,
-    &app_bench_solver,    &app_bench_beam,    &app_bench_scene,   &app_bench_step,
-    &app_bench_precision, &app_bench_scaling, &app_bench_drop,    &app_bench_unseen, NULL,
+    &app_bench_overlap,
+    &app_bench_net,
+    &app_bench_datagen,
+    &app_bench_train,
+    &app_bench_solver,
+    &app_bench_beam,
+    &app_bench_scene,
+    &app_bench_step,
+    &app_bench_precision,
+    &app_bench_scaling,
+    &app_bench_drop,
+    &app_bench_unseen,
+    NULL,
 };
 
 const AppCommand app_bench_bench = {

@@ -24,8 +24,8 @@ typedef struct Options {
 
 static const struct argp_option option_table[] = {
     {"model", 'm', "NAME,…", 0, "Overlap models or weights files to measure (default: geo,geo-small)", 1},
-    {"case", 'k', "NAME,…", 0, "Cases: jittered, aligned, five, graded, slivers, strained, fine, thin, edge (default: all)",
-     1},
+    {"case", 'k', "NAME,…", 0,
+     "Cases: jittered, aligned, five, graded, slivers, strained, fine, thin, edge (default: all)", 1},
     {"seeds", 's', "N", 0, "Meshes of each case (default: 3)", 1},
     {"places", 'p', "N", 0, "Places of each path (default: 96)", 1},
     {0},
@@ -79,9 +79,11 @@ typedef struct Row {
 static const AppBenchColumn columns[] = {
     {"case", APP_BENCH_TEXT, offsetof(Row, what), "case", "the bodies: `tetlap bench unseen --help`"},
     {"model", APP_BENCH_TEXT, offsetof(Row, model), "model", "overlap model"},
-    {"potential", APP_BENCH_TEXT, offsetof(Row, potential), NULL, "field; nodal for models without a centroid"},
+    {"potential", APP_BENCH_TEXT, offsetof(Row, potential), NULL,
+     "field; nodal for models without a centroid"},
     {"seeds", APP_BENCH_INTEGER, offsetof(Row, seeds), NULL, "meshes; each error is the largest over them"},
-    {"pairs", APP_BENCH_INTEGER, offsetof(Row, pairs), "pairs", "that share volume, over all places and meshes"},
+    {"pairs", APP_BENCH_INTEGER, offsetof(Row, pairs), "pairs",
+     "that share volume, over all places and meshes"},
     {"volume_error", APP_BENCH_NUMBER, ERROR(volume), "V", "sum of errors of V over the sum of V"},
     {"moment_error", APP_BENCH_NUMBER, ERROR(moment), "moments",
      "sum of errors of V λ(centroid) at the eight vertices over the sum of those"},
@@ -99,7 +101,8 @@ static const AppBenchColumn columns[] = {
     {"time_ratio", APP_BENCH_NUMBER, offsetof(Row, time_ratio), "× time",
      "processor time of volumes, with centroids for field, over that of clipping"},
 };
-static const AppBenchReport report = {"unseen", columns, sizeof columns / sizeof *columns, sizeof(Row), false};
+static const AppBenchReport report = {"unseen", columns, sizeof columns / sizeof *columns, sizeof(Row),
+                                      false};
 
 static void keep_worst(AppUnseenErrors *worst, const AppUnseenErrors *errors, bool is_first) {
   AppUnseenErrors sum = *worst;
@@ -160,20 +163,25 @@ static Status run(const Options *options) {
   return status ? status : app_bench_report_print(&report, &options->common, rows, count);
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .doc = "Measure overlap models on bodies that no training has seen: meshes of other makers and gradings, slivers, "
-           "large strain, thin parts, edges, aligned slabs. The upper body goes round a closed path in contact, and "
-           "at each place volumes, centroids and forces are compared with those of clipping. Errors are the largest "
-           "over the seeds.",
-    .children = app_bench_command_children,
-    .help_filter = app_bench_command_help};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .doc = "Measure overlap models on bodies that no training has seen: meshes "
+                                        "of other makers and gradings, slivers, "
+                                        "large strain, thin parts, edges, aligned slabs. The upper body goes "
+                                        "round a closed path in contact, and "
+                                        "at each place volumes, centroids and forces are compared with those "
+                                        "of clipping. Errors are the largest "
+                                        "over the seeds.",
+                                 .children = app_bench_command_children,
+                                 .help_filter = app_bench_command_help};
 
 static int run_command(int argument_count, char **arguments) {
   static char geo[] = "geo", geo_small[] = "geo-small";
-  Options options = {
-      .common = {.threads = 1, .repeats = 1}, .models = {geo, geo_small}, .model_count = 2, .seeds = 3, .places = 96};
+  Options options = {.common = {.threads = 1, .repeats = 1},
+                     .models = {geo, geo_small},
+                     .model_count = 2,
+                     .seeds = 3,
+                     .places = 96};
   for (int c = 0; c < app_unseen_case_count; c++) options.wants_case[c] = true;
   app_bench_command_read(&app_bench_unseen, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));

@@ -10,34 +10,66 @@
 
 #define BLOCK .grading = 1, .push = 1
 const AppUnseenCase app_unseen_cases[] = {
-    {"jittered", "six tetrahedra a cell, jittered by .15: as in training, other seeds",
+    {"jittered",
+     "six tetrahedra a cell, jittered by .15: as in training, other seeds",
      {.cells = {5, 5, 3}, .cell = {1, 1, 1}, .jitter = 0.15, BLOCK},
-     {.cells = {4, 4, 3}, .cell = {0.83, 0.83, 0.83}, .jitter = 0.15, .turn = 0.7, .tilt = 0.05, BLOCK}, 0.35, 0.9},
-    {"aligned", "flat slabs whose inner faces coincide",
+     {.cells = {4, 4, 3}, .cell = {0.83, 0.83, 0.83}, .jitter = 0.15, .turn = 0.7, .tilt = 0.05, BLOCK},
+     0.35,
+     0.9},
+    {"aligned",
+     "flat slabs whose inner faces coincide",
      {.cells = {6, 6, 3}, .cell = {1, 1, 1}, BLOCK},
-     {.cells = {3, 3, 3}, .cell = {1, 1, 1}, BLOCK}, 0.3, 1},
-    {"five", "five tetrahedra a cell, mirrored from cell to cell",
+     {.cells = {3, 3, 3}, .cell = {1, 1, 1}, BLOCK},
+     0.3,
+     1},
+    {"five",
+     "five tetrahedra a cell, mirrored from cell to cell",
      {.cells = {5, 5, 3}, .cell = {1, 1, 1}, .jitter = 0.1, .is_five = true, BLOCK},
-     {.cells = {4, 4, 3}, .cell = {0.9, 0.9, 0.9}, .jitter = 0.2, .is_five = true, .turn = 0.3, BLOCK}, 0.35, 0.9},
-    {"graded", "cells that grow by 1.6 from one to the next",
+     {.cells = {4, 4, 3}, .cell = {0.9, 0.9, 0.9}, .jitter = 0.2, .is_five = true, .turn = 0.3, BLOCK},
+     0.35,
+     0.9},
+    {"graded",
+     "cells that grow by 1.6 from one to the next",
      {.cells = {8, 8, 4}, .cell = {0.4, 0.4, 0.4}, .grading = 1.6, .jitter = 0.1, .push = 1},
-     {.cells = {6, 6, 4}, .cell = {0.3, 0.3, 0.3}, .grading = 1.6, .jitter = 0.1, .turn = 0.5, .push = 1}, 0.2, 0.6},
-    {"slivers", "cells twelve times as wide as thick",
+     {.cells = {6, 6, 4}, .cell = {0.3, 0.3, 0.3}, .grading = 1.6, .jitter = 0.1, .turn = 0.5, .push = 1},
+     0.2,
+     0.6},
+    {"slivers",
+     "cells twelve times as wide as thick",
      {.cells = {5, 5, 6}, .cell = {1, 1, 0.08}, .jitter = 0.2, BLOCK},
-     {.cells = {4, 4, 6}, .cell = {0.85, 0.85, 0.07}, .jitter = 0.2, .turn = 0.4, BLOCK}, 0.12, 0.8},
-    {"strained", "sheared by 45°, compressed to .5 and stretched to 1.5",
+     {.cells = {4, 4, 6}, .cell = {0.85, 0.85, 0.07}, .jitter = 0.2, .turn = 0.4, BLOCK},
+     0.12,
+     0.8},
+    {"strained",
+     "sheared by 45°, compressed to .5 and stretched to 1.5",
      {.cells = {5, 5, 3}, .cell = {1, 1, 1}, .jitter = 0.15, .grading = 1, .shear = 1, .push = 0.5},
-     {.cells = {4, 4, 3}, .cell = {0.8, 0.8, 0.8}, .jitter = 0.15, .turn = 0.6, .grading = 1, .shear = -1, .push = 1.5},
-     0.3, 0.8},
-    {"fine", "cells five times as small as the other's",
+     {.cells = {4, 4, 3},
+      .cell = {0.8, 0.8, 0.8},
+      .jitter = 0.15,
+      .turn = 0.6,
+      .grading = 1,
+      .shear = -1,
+      .push = 1.5},
+     0.3,
+     0.8},
+    {"fine",
+     "cells five times as small as the other's",
      {.cells = {4, 4, 2}, .cell = {1, 1, 1}, .jitter = 0.15, BLOCK},
-     {.cells = {8, 8, 4}, .cell = {0.2, 0.2, 0.2}, .jitter = 0.15, .turn = 0.3, BLOCK}, 0.15, 0.5},
-    {"thin", "a sheet one cell thick on a block",
+     {.cells = {8, 8, 4}, .cell = {0.2, 0.2, 0.2}, .jitter = 0.15, .turn = 0.3, BLOCK},
+     0.15,
+     0.5},
+    {"thin",
+     "a sheet one cell thick on a block",
      {.cells = {5, 5, 3}, .cell = {1, 1, 1}, .jitter = 0.15, BLOCK},
-     {.cells = {5, 5, 1}, .cell = {0.7, 0.7, 0.2}, .jitter = 0.1, .turn = 0.5, BLOCK}, 0.12, 0.8},
-    {"edge", "an edge on a block, the side faces at 45°",
+     {.cells = {5, 5, 1}, .cell = {0.7, 0.7, 0.2}, .jitter = 0.1, .turn = 0.5, BLOCK},
+     0.12,
+     0.8},
+    {"edge",
+     "an edge on a block, the side faces at 45°",
      {.cells = {5, 5, 3}, .cell = {1, 1, 1}, .jitter = 0.15, BLOCK},
-     {.cells = {4, 3, 3}, .cell = {0.8, 0.8, 0.8}, .jitter = 0.05, .turn = 0.2, .tilt = 0.785, BLOCK}, 0.35, 0.8},
+     {.cells = {4, 3, 3}, .cell = {0.8, 0.8, 0.8}, .jitter = 0.05, .turn = 0.2, .tilt = 0.785, BLOCK},
+     0.35,
+     0.8},
 };
 const int app_unseen_case_count = sizeof app_unseen_cases / sizeof *app_unseen_cases;
 
@@ -54,8 +86,8 @@ static int tets_of(const AppUnseenBody *body) {
   return (body->is_five ? 5 : 6) * body->cells[0] * body->cells[1] * body->cells[2];
 }
 
-// Where line i of an axis is, and how wide the cells beside it are: from the surface down, and from the middle to
-// either side.
+// Where line i of an axis is, and how wide the cells beside it are: from the surface down, and from the
+// middle to either side.
 static double line_at(const AppUnseenBody *body, int axis, int i, double *width) {
   double middle = axis < 2 ? 0.5 * body->cells[axis] : 0, steps = fabs(i - middle), at = 0;
   *width = body->cell[axis];
@@ -109,7 +141,8 @@ static void add_tet(AppUnseenMesh *mesh, const int corners[8], const int which[4
 static void add_cell(AppUnseenMesh *mesh, const AppUnseenBody *body, const int corners[8], bool is_odd) {
   static const int fives[2][5][4] = {{{0, 3, 5, 6}, {0, 3, 5, 1}, {0, 3, 6, 2}, {0, 5, 6, 4}, {3, 5, 6, 7}},
                                      {{1, 2, 4, 7}, {1, 2, 4, 0}, {1, 2, 7, 3}, {1, 4, 7, 5}, {2, 4, 7, 6}}};
-  static const int sixes[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}};
+  static const int sixes[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7},
+                                  {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}};
   if (body->is_five)
     for (int t = 0; t < 5; t++) add_tet(mesh, corners, fives[is_odd][t]);
   else
@@ -131,7 +164,8 @@ static void add_cells(AppUnseenMesh *mesh, const AppUnseenBody *body, int first)
 static void add_body(AppUnseenMesh *mesh, const AppUnseenBody *body, int number, Random *random) {
   static const char *const names[] = {"lower", "upper"};
   ContactBody *range = &mesh->bodies[number];
-  *range = (ContactBody){.name = names[number], .vertex_begin = mesh->vertex_count, .tet_begin = mesh->tet_count};
+  *range =
+      (ContactBody){.name = names[number], .vertex_begin = mesh->vertex_count, .tet_begin = mesh->tet_count};
   add_vertices(mesh, body, number ? 1 : -1, random);
   add_cells(mesh, body, range->vertex_begin);
   range->vertex_end = mesh->vertex_count, range->tet_end = mesh->tet_count;

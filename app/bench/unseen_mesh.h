@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two bodies of tetrahedra as no training makes them: other splits of cells, gradings, slivers, large strain, thin
-// parts, edges. The lower one is below z = 0 and stays; the upper one, whose lowest vertex is at z = 0, is moved by
-// whoever asks.
+// Two bodies of tetrahedra as no training makes them: other splits of cells, gradings, slivers, large strain,
+// thin parts, edges. The lower one is below z = 0 and stays; the upper one, whose lowest vertex is at z = 0,
+// is moved by whoever asks.
 #ifndef TETLAP_APP_BENCH_UNSEEN_MESH_H
 #define TETLAP_APP_BENCH_UNSEEN_MESH_H
 
@@ -23,8 +23,8 @@ typedef struct AppUnseenBody {
 typedef struct AppUnseenCase {
   const char *name, *help;
   AppUnseenBody lower, upper;
-  double depth;   // of the middle of the path below the touch
-  double slide;   // how far the path goes aside, to either side
+  double depth; // of the middle of the path below the touch
+  double slide; // how far the path goes aside, to either side
 } AppUnseenCase;
 
 extern const AppUnseenCase app_unseen_cases[];

@@ -31,7 +31,7 @@ typedef struct Walk {
   bool has_centroid;
   double *x, *velocity; // of this place                                  (vertex_count, 3)
   Walker told, truth;
-  int capacity;                  // of the pairs' answers
+  int capacity;                    // of the pairs' answers
   double *volume[2], *centroid[2]; // of the pairs of clipping, told and true
   // Sums: differences and the truth's.
   double volumes[2], moments[2], nodal[2], totals[2], normals[2];
@@ -205,9 +205,11 @@ static void finish(const Walk *walk, AppUnseenErrors *errors) {
                               .seconds_clip = truth->seconds};
 }
 
-Status app_unseen_path_measure(const AppUnseenCase *what, const AppUnseenMesh *mesh, const OverlapModel *model,
-                               const OverlapModel *clip, int places, AppUnseenErrors *errors) {
-  Walk walk = {.what = what, .mesh = mesh, .has_centroid = overlap_model_has_centroid(model), .capacity = 4096};
+Status app_unseen_path_measure(const AppUnseenCase *what, const AppUnseenMesh *mesh,
+                               const OverlapModel *model, const OverlapModel *clip, int places,
+                               AppUnseenErrors *errors) {
+  Walk walk = {
+      .what = what, .mesh = mesh, .has_centroid = overlap_model_has_centroid(model), .capacity = 4096};
   Status status = create(&walk);
   if (!status) status = go(&walk, model, clip, places);
   if (!status) finish(&walk, errors);

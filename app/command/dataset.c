@@ -51,10 +51,11 @@ static void print_text(const char *path, const DatagenInfo *info, const AppDatas
   printf("  made by      %s, generator %lld\n", info->program, info->generator_version);
   printf("  law          %s, seed %llu\n", info->law, (unsigned long long)info->seed);
   printf("  mix          %s\n  volume law   %s\n", info->mix, info->volume_law);
-  printf("  labels       %s, %s\n", info->label, info->has_gradient && info->has_centroid ? "V, its gradient, centroid"
-         : info->has_gradient                      ? "V and its gradient"
-         : info->has_centroid                      ? "V and centroid"
-                                                   : "V");
+  printf("  labels       %s, %s\n", info->label,
+         info->has_gradient && info->has_centroid ? "V, its gradient, centroid"
+         : info->has_gradient                     ? "V and its gradient"
+         : info->has_centroid                     ? "V and centroid"
+                                                  : "V");
   printf("  pairs        %lld", info->count);
   if (info->count < info->planned) printf(" of %lld planned: interrupted", info->planned);
   if (info->planned < info->total) printf(" (%lld … of %lld in all)", info->first, info->total);

@@ -62,7 +62,8 @@ static Status label_pair(const Run *run, int i) {
   run->pairs.status[i] = proof.dimension >= 0;
   run->pairs.kind[i] = (uint8_t)(proof.is_flat ? DATAGEN_CAPTURED : kind_of(&proof));
   return datagen_generate_label(DATAGEN_LABEL_EXACT, pair, proof.dimension, run->pairs.volume + i,
-                                     run->pairs.gradient + APP_PAIRS_SIZE * (size_t)i, run->pairs.centroid + 3 * (size_t)i);
+                                run->pairs.gradient + APP_PAIRS_SIZE * (size_t)i,
+                                run->pairs.centroid + 3 * (size_t)i);
 }
 
 static Status label_block(const Run *run) {

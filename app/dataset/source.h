@@ -34,8 +34,8 @@ typedef struct AppSource {
 Status app_dataset_source_open(AppSource *source, const AppSourceDef *def, bool wants_gradient);
 void app_dataset_source_close(AppSource *source);
 
-// Pairs `first` … `first` + `count` − 1 into arrays of the caller's; gradient and centroid may be NULL, and are made
-// by clipping where the file has none.
+// Pairs `first` … `first` + `count` − 1 into arrays of the caller's; gradient and centroid may be NULL, and
+// are made by clipping where the file has none.
 Status app_dataset_source_read(AppSource *source, long long first, size_t count, const DatagenPairs *pairs);
 
 // All pairs at once, into arrays that the caller destroys (datagen_pairs_destroy); with ∇V in any case.

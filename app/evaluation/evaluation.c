@@ -162,7 +162,8 @@ static void add_angle(AppEvaluationRun *run, const double truth[SIZE], const dou
 // Σ_z |m_z − m*_z| over the eight vertices, m_z = V λ_z(x̄), with the true V and with the model's own.
 static void add_moments(AppEvaluationRun *run, const Block *block, size_t i) {
   double truth[8], told[8], volume = block->pairs->volume[i];
-  if (!app_evaluation_coordinates(block->pairs->coordinates + i * SIZE, block->true_centroid + 3 * i, truth) ||
+  if (!app_evaluation_coordinates(block->pairs->coordinates + i * SIZE, block->true_centroid + 3 * i,
+                                  truth) ||
       !app_evaluation_coordinates(block->pairs->coordinates + i * SIZE, block->centroid + 3 * i, told))
     return;
   for (int z = 0; z < 8; z++) {

@@ -47,11 +47,11 @@ typedef struct AppEvaluation {
   double gradient_error;                            // Σ‖Δ∇V‖ / Σ‖∇V‖
   double gradient_error_median, gradient_error_p90; // of ‖Δ∇V‖ / ‖∇V‖
   double angle_median_deg, angle_p90_deg; // between the forces Σ ∇V over the first tetrahedron, true and told
-  // Σ|Δm| / Σ|m| over the moments m_z = V λ_z(x̄) of the eight vertices, with the true V: what the centroid is off;
-  // and with the model's own. NaN: the model has no centroid.
+  // Σ|Δm| / Σ|m| over the moments m_z = V λ_z(x̄) of the eight vertices, with the true V: what the centroid is
+  // off; and with the model's own. NaN: the model has no centroid.
   double moment_error, moment_error_own;
-  double ghost_volume;                    // mean V told of pairs that share no volume
-  double ghost_gradient;                  // mean ‖∇V‖ told of them
+  double ghost_volume;   // mean V told of pairs that share no volume
+  double ghost_gradient; // mean ‖∇V‖ told of them
   // Σ|V(changed pair) − V| / ΣV over the first APP_EVALUATION_SYMMETRY_PAIRS pairs with V > 0: another order
   // of either's vertices, the two exchanged, a rotation about the cube's centre
   double defect_vertex_order, defect_swap, defect_rotation;
@@ -68,7 +68,7 @@ typedef struct AppEvaluationRun {
   AppEvaluation sums;         // not yet divided
   long long bins[APP_EVALUATION_BINS];
   double true_volume, true_gradient, true_moments; // Σ
-  double symmetry_volume;            // Σ V told of the pairs that symmetries are tried on
+  double symmetry_volume;                          // Σ V told of the pairs that symmetries are tried on
   long long symmetry_count;
   long long outside;                // pairs that share no volume
   double *gradient_errors, *angles; // (inside), (angle_count), owned
@@ -80,9 +80,10 @@ typedef struct AppEvaluationRun {
 
 // Borrows the model. `logits` may be NULL. End it, whatever happens.
 void app_evaluation_begin(AppEvaluationRun *run, const OverlapModel *model, AppEvaluationLogits logits);
-// Evaluates `count` pairs. Without `pairs->gradient` or `pairs->centroid` the true ones are those of clipping, checked as data sets
-// check it. A model with logits is right about a pair if their sign tells whether the closed tetrahedra meet;
-// one without says no more than V, and is right if V > 0 just where the two share volume.
+// Evaluates `count` pairs. Without `pairs->gradient` or `pairs->centroid` the true ones are those of
+// clipping, checked as data sets check it. A model with logits is right about a pair if their sign tells
+// whether the closed tetrahedra meet; one without says no more than V, and is right if V > 0 just where the
+// two share volume.
 Status app_evaluation_add(AppEvaluationRun *run, const DatagenPairs *pairs, size_t count);
 // Barycentric coordinates (8) of a point in both tetrahedra of a pair; false: one is flat.
 bool app_evaluation_coordinates(const double pair[24], const double x[3], double lambda[8]);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Training of `geo`: φ = ln 1.28 + ρ(w) − ρ(w*) against t = ln V − ln V₀ and against its derivatives along
 // random directions, w the whitened features and w* those of the onset. The onset is one more sample of each
-// batch, whose derivative is minus the sum of all others'. If the network gives the centroid too, its other outputs
-// are coefficients of vectors that shall sum to the centroid's z (vectors.h).
+// batch, whose derivative is minus the sum of all others'. If the network gives the centroid too, its other
+// outputs are coefficients of vectors that shall sum to the centroid's z (vectors.h).
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,12 +20,12 @@ typedef struct Geo {
   AppTrainingVectors vectors; // zeroed: no centroid
   AppTrainingOrder order;
   AppTrainingSets sets;
-  int *samples;                   // (batch)
-  float *x, *xt;                  // (batch + 1, features), (batch + 1, tangents, features)
-  int outputs;                    // of the network
-  float *y, *yt, *gy, *gyt;       // (batch + 1, outputs), (batch + 1, tangents, outputs)
-  float *rho, *rho_t;             // first of the outputs, then its derivatives (batch + 1), (batch + 1, tangents)
-  float *slope, *slope_t;         // of the loss, likewise
+  int *samples;             // (batch)
+  float *x, *xt;            // (batch + 1, features), (batch + 1, tangents, features)
+  int outputs;              // of the network
+  float *y, *yt, *gy, *gyt; // (batch + 1, outputs), (batch + 1, tangents, outputs)
+  float *rho, *rho_t;       // first of the outputs, then its derivatives (batch + 1), (batch + 1, tangents)
+  float *slope, *slope_t;   // of the loss, likewise
   float *target, *target_t, *one; // (batch), (batch, tangents), (batch)
 } Geo;
 
@@ -79,7 +79,8 @@ static Status create_batch(Geo *geo, const AppTrainingConfig *config) {
   geo->gy = memory_zeroed(rows * outputs, sizeof(float));
   geo->gyt = memory_zeroed(rows * tangents * outputs, sizeof(float));
   geo->rho = memory_zeroed(rows, sizeof(float)), geo->rho_t = memory_zeroed(rows * tangents, sizeof(float));
-  geo->slope = memory_zeroed(rows, sizeof(float)), geo->slope_t = memory_zeroed(rows * tangents, sizeof(float));
+  geo->slope = memory_zeroed(rows, sizeof(float)),
+  geo->slope_t = memory_zeroed(rows * tangents, sizeof(float));
   geo->target = memory_zeroed(batch, sizeof(float)), geo->one = memory_zeroed(batch, sizeof(float));
   geo->target_t = memory_zeroed(batch * tangents, sizeof(float));
   bool fits = geo->samples && geo->x && geo->xt && geo->y && geo->yt && geo->gy && geo->gyt && geo->target &&

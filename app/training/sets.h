@@ -27,8 +27,8 @@ void app_training_sets_destroy(AppTrainingSets *sets); // a zeroed one is accept
 typedef double (*AppTrainingSetScore)(const AppEvaluation *result, const char *set,
                                       AppTrainingScores *scores);
 
-// Evaluates the model of a weights file on every set, and adds what `score` makes of each to the scores; pairs that
-// a more careful model answered count as wrong.
+// Evaluates the model of a weights file on every set, and adds what `score` makes of each to the scores;
+// pairs that a more careful model answered count as wrong.
 Status app_training_sets_measure(const AppTrainingSets *sets, const char *path, AppTrainingSetScore score,
                                  AppTrainingScores *scores);
 

@@ -83,7 +83,8 @@ static Status unfold_vectors(const NetWhitening *vectors, NetModel_f64 *model) {
 }
 
 static Status bring_over(const char *path, const char *normalisation, const NetWhitening *whitening,
-                         const NetWhitening *vectors, const NetModel_f32 *model, NetModel_f64 *from, const NetCard *card) {
+                         const NetWhitening *vectors, const NetModel_f32 *model, NetModel_f64 *from,
+                         const NetCard *card) {
   NetShape shape = model->plan->shape;
   bool lacks_centroid = vectors && from->plan->shape.output_count == 1;
   if (lacks_centroid) shape.output_count = 1;

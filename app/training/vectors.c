@@ -38,10 +38,9 @@ static void raw_destroy(Raw *raw) {
 static bool find_pair(const AppTrainingVectors *vectors, const DatagenPairs *pairs, size_t i, Raw *raw) {
   double features[OVERLAP_GEO_MAX_FEATURES];
   return pairs->volume[i] > 0 &&
-         overlap_geo_features_centroid(vectors->set, pairs->coordinates + i * SIZE, pairs->centroid + i * 3, features,
-                                       raw->z + i * 3,
-                                       (double(*)[3])(raw->vectors + i * 3 * (size_t)vectors->vector_count)) ==
-             OVERLAP_GEO_INSIDE;
+         overlap_geo_features_centroid(
+             vectors->set, pairs->coordinates + i * SIZE, pairs->centroid + i * 3, features, raw->z + i * 3,
+             (double(*)[3])(raw->vectors + i * 3 * (size_t)vectors->vector_count)) == OVERLAP_GEO_INSIDE;
 }
 
 // The pairs that have a frame, moved together.
@@ -119,7 +118,8 @@ Status app_training_vectors_create(AppTrainingVectors *vectors, const OverlapGeo
 double app_training_vectors_loss(const AppTrainingVectors *vectors, int sample, double delta, const float *y,
                                  float *gy) {
   int count = vectors->vector_count;
-  const float *v = vectors->vectors + 3 * (size_t)sample * (size_t)count, *z = vectors->targets + 3 * (size_t)sample;
+  const float *v = vectors->vectors + 3 * (size_t)sample * (size_t)count,
+              *z = vectors->targets + 3 * (size_t)sample;
   float error[3] = {-z[0], -z[1], -z[2]};
   for (int m = 0; m < count; m++)
     for (int c = 0; c < 3; c++) error[c] += y[m] * v[3 * m + c];

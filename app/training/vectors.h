@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What training the centroid of `geo` sees of its pairs, computed once: the vectors that its planes' own features make
-// in the frame, Σ_k e_mk q_k, whitened as samples of either sign, and the centroid's z in the same frame
-// (overlap/geo/geo.h). Of the same pairs as the pool, in the same order.
+// What training the centroid of `geo` sees of its pairs, computed once: the vectors that its planes' own
+// features make in the frame, Σ_k e_mk q_k, whitened as samples of either sign, and the centroid's z in the
+// same frame (overlap/geo/geo.h). Of the same pairs as the pool, in the same order.
 #ifndef TETLAP_APP_TRAINING_VECTORS_H
 #define TETLAP_APP_TRAINING_VECTORS_H
 
@@ -27,8 +27,8 @@ void app_training_vectors_destroy(AppTrainingVectors *vectors); // a zeroed one 
 double app_training_vectors_loss(const AppTrainingVectors *vectors, int sample, double delta, const float *y,
                                  float *gy);
 
-// Coefficients of the whitened vectors, rows of the last layer, become those of the vectors: the network that is
-// written takes no part in whitening.
+// Coefficients of the whitened vectors, rows of the last layer, become those of the vectors: the network that
+// is written takes no part in whitening.
 void app_training_vectors_fold(const NetWhitening *whitening, NetModel_f64 *model);
 
 #endif

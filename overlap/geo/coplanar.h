@@ -54,8 +54,8 @@ void overlap_geo_coplanar_pull(const OverlapGeoFrame *frame, const OverlapGeoCop
                                double gradient[24], double *hessian);
 
 // If the pair has a share, turns volume, gradient, hessian (24 × 24) and centroid of the network, all but the
-// first NULL if not wanted, to the blend (V x̄ is blended as V is) and adds OVERLAP_BLENDED to the flags (may be NULL). A Hessian needs
-// the gradient.
+// first NULL if not wanted, to the blend (V x̄ is blended as V is) and adds OVERLAP_BLENDED to the flags (may
+// be NULL). A Hessian needs the gradient.
 Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pair[24], double *volume,
                                   double *gradient, double *hessian, double *centroid, unsigned *flags);
 

@@ -56,7 +56,8 @@ static void eval_chunk(const OverlapGeoNet *net, Workspace *workspace, int count
                        double *value, double *gradient) {
   double outputs[OVERLAP_GEO_CHUNK * (1 + OVERLAP_GEO_MAX_PLANE_FEATURES)];
   if (gradient)
-    net_forward_gradient_f64(&workspace->work, &net->model, count, features, net->of_first, outputs, gradient);
+    net_forward_gradient_f64(&workspace->work, &net->model, count, features, net->of_first, outputs,
+                             gradient);
   else
     net_forward_eval_f64(&workspace->work, &net->model, count, features, outputs);
   for (int n = 0; n < count; n++) value[n] = outputs[n * outputs_of(net)];
@@ -86,8 +87,8 @@ static Status curve(const void *self, int count, const double *features, int dir
                     const double *directions, double *second) {
   const OverlapGeoNet *net = self;
   Workspace *workspace = acquire_workspace(net);
-  net_tangent_second_f64(&workspace->work, &net->model, count, direction_count, features, directions, net->of_first,
-                         NULL, NULL, NULL, second);
+  net_tangent_second_f64(&workspace->work, &net->model, count, direction_count, features, directions,
+                         net->of_first, NULL, NULL, NULL, second);
   release_workspace(workspace);
   return STATUS_OK;
 }
@@ -111,8 +112,8 @@ static Status check(const OverlapGeoNet *net, const char *path) {
   int planes = overlap_geo_features_plane_count(overlap_geo_features_set(shape->input_count));
   if (shape->output_count != 1 && shape->output_count != 1 + planes)
     return status_fail(STATUS_INPUT,
-                       "%s: the network has %d outputs; one, or with the centroid %d, is what geo takes", path,
-                       shape->output_count, 1 + planes);
+                       "%s: the network has %d outputs; one, or with the centroid %d, is what geo takes",
+                       path, shape->output_count, 1 + planes);
   if (strcmp(net->card.normalisation, OVERLAP_GEO_NORMALISATION) != 0)
     return status_fail(STATUS_INPUT, "%s: made for the normalisation '%s', geo has '%s'", path,
                        net->card.normalisation, OVERLAP_GEO_NORMALISATION);

@@ -12,8 +12,9 @@
 
 typedef struct OverlapGeoNet OverlapGeoNet; // opaque: parameters, and memory of evaluation for every thread
 
-// STATUS_INPUT: no weights file, or one of another kind: a dense SiLU network with 36, 70 or 100 inputs is wanted,
-// with one output, or with as many more as a plane has features, which give the centroid. The message names the file.
+// STATUS_INPUT: no weights file, or one of another kind: a dense SiLU network with 36, 70 or 100 inputs is
+// wanted, with one output, or with as many more as a plane has features, which give the centroid. The message
+// names the file.
 Status overlap_geo_network_create(OverlapGeoNet **net, const char *path);
 void overlap_geo_network_destroy(OverlapGeoNet *net);
 

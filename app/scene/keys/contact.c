@@ -129,7 +129,8 @@ static const SceneKey contact_keys[] = {
      .help = "penalty κ; higher: less overlap, shorter steps (Pa/m with the potential `field`, Pa/m³ with "
              "`body`)"},
     {"potential", SCENE_CHOICE, AT(FemContactDef, potential),
-     .absent_help = "`field`; with an overlap model that gives no centroid (`tpn`, `tpn-scene`, `hybrid`) `nodal`",
+     .absent_help =
+         "`field`; with an overlap model that gives no centroid (`tpn`, `tpn-scene`, `hybrid`) `nodal`",
      MARK(FemContactDef, potential_is_given, true), .choices = &app_scene_choices_potentials,
      .help = "how overlaps become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",

@@ -5,7 +5,8 @@
 //   pairs ─ gate ─► those that intersect, moved together ─ frame ─► P ─► features ─► ρ ─ pull ─► ∇ log V
 //                   (OverlapGeoBundle)                    blocks of OVERLAP_GEO_BLOCK columns
 //
-// for the centroid `centroid`, and for second derivatives `bend`, the network's curvature, and `finish` (OverlapGeoBends).
+// for the centroid `centroid`, and for second derivatives `bend`, the network's curvature, and `finish`
+// (OverlapGeoBends).
 //
 // A pair's numbers do not depend on the lane it is in nor on its neighbours. Every instruction set takes the
 // gate's decisions to the same bits, the scalar form's; what follows differs by rounding, for multiplications
@@ -59,8 +60,8 @@ typedef struct OverlapGeoBlock {
   OverlapGeoColumn factor;                            // what `pull` multiplies with
   // From the network: ρ, and the coefficients of the planes' features.
   OverlapGeoColumn outputs[1 + OVERLAP_GEO_MAX_PLANE_FEATURES];
-  OverlapGeoColumn place[GEO_LANES];                             // s_k at the centroid
-  double gradient[OVERLAP_GEO_BLOCK][24];             // factor · ∂ log V/∂x
+  OverlapGeoColumn place[GEO_LANES];      // s_k at the centroid
+  double gradient[OVERLAP_GEO_BLOCK][24]; // factor · ∂ log V/∂x
 } OverlapGeoBlock;
 
 // Second derivatives of a block's columns. The vertices of one tetrahedron of each pair are moved: what

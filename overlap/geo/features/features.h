@@ -17,7 +17,8 @@
 //   degrees   d_k^a, a = 1 … 4
 //   rows      d_k^a Σ_j P_kj^n d_j^b, for n = 1 … power_count, b = 0 … 3, a = 0 … 3, a + b ≤ 4; those with
 //             b = 0 for n ≤ 2 and a = 0 for n = 1 say nothing new
-//   links     Σ_j E_kj P_kj^a d_j^s, for each link, a = 1 … 3, s = 0, 1, without s = 1 for a = 3, and s = 0 for
+//   links     Σ_j E_kj P_kj^a d_j^s, for each link, a = 1 … 3, s = 0, 1, without s = 1 for a = 3, and s = 0
+//   for
 //             b = a = 1, which is a row
 //
 // The derivative of φ(features) by P is found by one backward sweep; its change along a direction by
