@@ -79,6 +79,7 @@ typedef struct Net {
   const NetPlan *plan; // of the one that is there, borrowed
   void *inputs;        // (largest batch, input_count), owned
   size_t input_bytes;
+  void *seeds;          // c of the derivative: 1 for the last output (largest batch, output_count), owned
   const double *first;  // the first tetrahedron of all inputs, NULL where they differ
   NetModel_f32 folded;  // where there is one
   float *second_inputs; // (largest batch, 12), the inputs without the first tetrahedron; owned
@@ -90,9 +91,9 @@ typedef struct Contestant {
   int quantity, batch, threads, calls;
   NetWork_f32 narrow;
   NetWork_f64 wide;
-  AppTorchPeer *torch;               // borrowed
-  void *outputs, *seeds, *gradients; // shared by all contestants
-  double check;                      // mean of the absolute results
+  AppTorchPeer *torch;       // borrowed
+  void *outputs, *gradients; // shared by all contestants
+  double check;              // mean of the absolute results
   AppBenchTimer timer;
 } Contestant;
 
@@ -103,7 +104,7 @@ typedef struct Bench {
   AppTorchPeer torches[MAX_NETS][APP_BENCH_MAX_LIST]; // for every number of threads
   Contestant *contestants;
   int count;
-  void *outputs, *seeds[2], *gradients; // seeds: c of the derivative, in float and in double
+  void *outputs, *gradients;
 } Bench;
 
 static Status fail_as_net(NetStatus status) {
@@ -248,7 +249,6 @@ static Status add(Bench *bench, Contestant contestant, int n, int t) {
   contestant.torch = &bench->torches[n][t];
   contestant.threads = bench->options->common.thread_list[t];
   contestant.outputs = bench->outputs, contestant.gradients = bench->gradients;
-  contestant.seeds = bench->seeds[contestant.net->is_float ? 0 : 1];
   bench->contestants[bench->count] = contestant;
   bool is_there;
   TRY(begin(&bench->contestants[bench->count], &is_there));
@@ -269,32 +269,37 @@ static Status add_all(Bench *bench) {
   return STATUS_OK;
 }
 
-// The derivative is that of the last output: V.
-static void fill_seeds(Bench *bench, size_t batch) {
-  for (size_t i = 0; i < batch * 2; i++) {
-    ((float *)bench->seeds[0])[i] = (float)(i % 2);
-    ((double *)bench->seeds[1])[i] = 1;
-  }
+// The derivative is that of the last output: of TetrahedronPairNet V.
+static Status make_seeds(Net *net, size_t batch) {
+  size_t outputs = (size_t)net->plan->shape.output_count;
+  net->seeds = memory_zeroed(batch * outputs, sizeof(double));
+  if (!net->seeds) return status_no_memory("the batch (--batch)");
+  for (size_t i = 0; i < batch; i++)
+    if (net->is_float)
+      ((float *)net->seeds)[i * outputs + outputs - 1] = 1;
+    else
+      ((double *)net->seeds)[i * outputs + outputs - 1] = 1;
+  return STATUS_OK;
 }
 
 static Status make(Bench *bench) {
   const Options *options = bench->options;
-  size_t batch = (size_t)largest_batch(options), widest = 1;
+  size_t batch = (size_t)largest_batch(options), widest = 1, most = 1;
   TRY(read_nets_in(bench));
   for (int n = 0; n < bench->net_count; n++) {
     size_t inputs = (size_t)bench->nets[n].plan->shape.input_count;
-    widest = inputs > widest ? inputs : widest;
+    size_t outputs = (size_t)bench->nets[n].plan->shape.output_count;
+    widest = inputs > widest ? inputs : widest, most = outputs > most ? outputs : most;
+    TRY(make_seeds(&bench->nets[n], batch));
   }
   bench->contestants = memory_zeroed((size_t)(bench->net_count * QUANTITY_COUNT * options->batch_count *
                                                   options->common.thread_list_count * IMPLEMENTATIONS +
                                               1),
                                      sizeof *bench->contestants);
-  bench->outputs = memory_zeroed(batch * 2, sizeof(double));
+  bench->outputs = memory_zeroed(batch * most, sizeof(double));
   bench->gradients = memory_zeroed(batch * widest, sizeof(double));
-  for (int s = 0; s < 2; s++) bench->seeds[s] = memory_zeroed(batch * 2, sizeof(double));
-  if (!bench->contestants || !bench->outputs || !bench->gradients || !bench->seeds[0] || !bench->seeds[1])
+  if (!bench->contestants || !bench->outputs || !bench->gradients)
     return status_no_memory("the batch (--batch)");
-  fill_seeds(bench, batch);
   TRY(start_torch(bench));
   return add_all(bench);
 }
@@ -307,9 +312,9 @@ static void call(Contestant *c) {
   else if (c->quantity == 0)
     net_forward_eval_f64(&c->wide, &net->wide, c->batch, net->inputs, c->outputs);
   else if (net->is_float)
-    net_forward_gradient_f32(&c->narrow, narrow_of(c), c->batch, x, c->seeds, c->outputs, c->gradients);
+    net_forward_gradient_f32(&c->narrow, narrow_of(c), c->batch, x, net->seeds, c->outputs, c->gradients);
   else
-    net_forward_gradient_f64(&c->wide, &net->wide, c->batch, net->inputs, c->seeds, c->outputs, c->gradients);
+    net_forward_gradient_f64(&c->wide, &net->wide, c->batch, net->inputs, net->seeds, c->outputs, c->gradients);
 }
 
 static double mean_of(const Contestant *c) {
@@ -471,10 +476,11 @@ static void destroy(Bench *bench) {
     for (int t = 0; t < APP_BENCH_MAX_LIST; t++) app_torch_peer_stop(&bench->torches[n][t]);
     net_model_destroy_f32(&bench->nets[n].narrow), net_model_destroy_f64(&bench->nets[n].wide);
     net_model_destroy_f32(&bench->nets[n].folded);
+    memory_free(bench->nets[n].seeds);
     memory_free(bench->nets[n].inputs), memory_free(bench->nets[n].second_inputs);
   }
   memory_free(bench->contestants), memory_free(bench->outputs), memory_free(bench->gradients);
-  memory_free(bench->seeds[0]), memory_free(bench->seeds[1]), memory_free(bench);
+  memory_free(bench);
 }
 
 static Status measure(Bench *bench) {

@@ -209,7 +209,7 @@ class WhatIsWrongWithPairs(unittest.TestCase):
         self.refused(ValueError, "clipp.*clip", shifted(0), "clipp")
         self.refused(ValueError, "'exact' has no hessian; expected one of clip, ", shifted(0), "exact", order=2)
         self.refused(ValueError, "'exact' has no hessian; expected one of clip, ", shifted(0), "exact", vector=shifted(0))
-        self.refused(ValueError, "'geo' has no centroid; expected one of clip, ", shifted(0), "geo", centroid=True)
+        self.refused(ValueError, "'tpn-scene' has no centroid; expected one of clip, ", shifted(0), "tpn-scene", centroid=True)
         self.refused(ValueError, "threads is -1; expected", shifted(0), threads=-1)
         self.refused(ValueError, "threads is 2 beside a tetlap.Model", shifted(0), tetlap.Model(), threads=2)
         self.refused(OSError, "none.safetensors", shifted(0), "/nowhere/none.safetensors")
@@ -285,8 +285,8 @@ class Meshes(unittest.TestCase):
         ):
             with self.subTest(text=text), self.assertRaisesRegex(kind, text):
                 tetlap.mesh_pairs(points, tets, *bad)
-        with self.assertRaisesRegex(ValueError, "'geo' has no centroid"):
-            tetlap.mesh_pairs(points, tets, points, tets, "geo", centroid=True)
+        with self.assertRaisesRegex(ValueError, "'tpn-scene' has no centroid"):
+            tetlap.mesh_pairs(points, tets, points, tets, "tpn-scene", centroid=True)
         with self.assertRaisesRegex(ValueError, "order is 2; expected 0"):
             tetlap.mesh_pairs(points, tets, points, tets, order=2)
 

@@ -324,7 +324,7 @@ START_TEST(a_covered_mesh_is_covered_once) {
 END_TEST
 
 START_TEST(meshes_that_are_wrong_or_empty) {
-  TetlapOverlap *overlap = open_model("geo-small");
+  TetlapOverlap *overlap = open_model("tpn-scene");
   Grid grids[2] = {make_grid(1, 1, 0, 0), make_grid(1, 1, 5, 0)};
   TetlapOverlapMesh a = mesh_of(&grids[0]), b = mesh_of(&grids[1]), none = TETLAP_OVERLAP_MESH_INIT;
   TetlapOverlapList *list;
@@ -338,7 +338,7 @@ START_TEST(meshes_that_are_wrong_or_empty) {
   ck_assert_int_eq(tetlap_overlap_meshes(overlap, &a, &b, TETLAP_OVERLAP_CENTROID, &list),
                    TETLAP_OVERLAP_INVALID);
   ck_assert_ptr_null(list);
-  ck_assert_ptr_nonnull(strstr(tetlap_overlap_message(), "'geo-small'"));
+  ck_assert_ptr_nonnull(strstr(tetlap_overlap_message(), "'tpn-scene'"));
   grids[1].tets[7] = 8;
   ck_assert_int_eq(tetlap_overlap_meshes(overlap, &a, &b, TETLAP_OVERLAP_VOLUME, &list),
                    TETLAP_OVERLAP_INVALID);
