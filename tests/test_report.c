@@ -421,13 +421,13 @@ START_TEST(two_runs_are_held_against_each_other_frame_by_frame) {
   read_run(&report.runs[1]);
   double mean, largest;
   report.runs[1].positions[3 * VERTICES] += 0.5; // one vertex in the second frame
-  ck_assert(app_report_distance(&report, 0, &mean, &largest));
+  ck_assert(app_report_distance(&report, 1, 0, &mean, &largest));
   ck_assert(mean == 0.0 && largest == 0.0);
-  ck_assert(app_report_distance(&report, 1, &mean, &largest));
+  ck_assert(app_report_distance(&report, 1, 1, &mean, &largest));
   ck_assert_near(mean, 0.5 / sqrt(VERTICES), 1e-15);
   ck_assert_near(largest, 0.5, 1e-15);
   report.runs[1].times[1] = 1.25;
-  ck_assert(!app_report_distance(&report, 1, &mean, &largest));
+  ck_assert(!app_report_distance(&report, 1, 1, &mean, &largest));
   app_report_destroy(&report);
 }
 END_TEST

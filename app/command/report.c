@@ -80,7 +80,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_ARG:
     if (options->directory_count == APP_REPORT_MAX_RUNS)
-      argp_error(state, "'%s' is one too many: a page shows one run or two", text);
+      argp_error(state, "'%s' is one too many: a page shows at most %d runs", text, APP_REPORT_MAX_RUNS);
     options->directories[options->directory_count++] = text;
     return 0;
   case ARGP_KEY_END:
@@ -95,7 +95,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 static Status add_run(AppReport *report, const char *directory, const Options *options) {
   if (report->run_count == APP_REPORT_MAX_RUNS)
-    return status_fail(STATUS_USAGE, "%s: is one too many: a page shows one run or two", directory);
+    return status_fail(STATUS_USAGE, "%s: is one too many: a page shows at most %d runs", directory,
+                       APP_REPORT_MAX_RUNS);
   TRY(app_report_run_read(&report->runs[report->run_count], directory, options->max_frames));
   report->run_count++;
   return STATUS_OK;
@@ -111,13 +112,15 @@ static Status add_model(AppReport *report, const char *directory, const char *mo
   return status;
 }
 
-// The first two runs of a comparison; models of its audit have none.
+// All runs of a comparison; models of its audit have none.
 static Status add_comparison(AppReport *report, const char *directory, const Options *options) {
   const Record *rows = report->comparison;
-  for (int k = 0; k < record_count(rows) && report->run_count < APP_REPORT_MAX_RUNS; k++) {
+  for (int k = 0; k < record_count(rows); k++) {
     const Record *row = record_at(rows, k);
-    const char *model = record_find_text(row, "model");
-    if (model && record_find(row, "summary")) TRY(add_model(report, directory, model, options));
+    const char *model = record_find_text(row, "model"), *reference = record_find_text(row, "reference");
+    if (!model || !record_find(row, "summary")) continue;
+    if (reference && strcmp(model, reference) == 0) report->reference = report->run_count;
+    TRY(add_model(report, directory, model, options));
   }
   if (report->run_count == 0)
     return status_fail(STATUS_INPUT, "%s/compare.json: names no run; give the directories of runs",
@@ -136,8 +139,8 @@ static Status add_directory(AppReport *report, const char *directory, const Opti
   Status status = comparison && summary ? STATUS_OK : status_no_memory("a file name");
   bool is_comparison = !status && file_exists(comparison) && !file_exists(summary);
   if (is_comparison && options->directory_count > 1)
-    status =
-        status_fail(STATUS_USAGE, "%s: holds several runs; give the directories of two of them", directory);
+    status = status_fail(STATUS_USAGE, "%s: holds several runs; give their directories, or this one alone",
+                         directory);
   if (is_comparison && !status) status = record_read(&report->comparison, comparison);
   if (!status)
     status = is_comparison ? add_comparison(report, directory, options) : add_run(report, directory, options);
@@ -185,11 +188,10 @@ static Status write_page(AppReport *report, const Options *options) {
 static const struct argp argp = {
     option_table,
     parse,
-    "[DIR [DIR]]",
-    "Write a web page about one run or two, side by side: the scene in motion, its plots, where the time "
-    "went.\vDIR is where `tetlap run` wrote, or `tetlap compare` (then its first two models are shown). "
-    "The "
-    "page is one file and needs no network.",
+    "[DIR…]",
+    "Write a web page about a run, or about several side by side: the scene in motion, its plots, where the "
+    "time went.\vDIR is where `tetlap run` wrote, or `tetlap compare` (then all its models are shown). The "
+    "first is the one that the others are held against. The page is one file and needs no network.",
     NULL,
     NULL,
     NULL};
@@ -208,6 +210,6 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_report = {.name = "report",
-                                       .help = "write a web page about one run or two, side by side",
+                                       .help = "write a web page about a run, or several side by side",
                                        .argp = &argp,
                                        .run = run_command};

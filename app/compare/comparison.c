@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact.h"
 
@@ -48,14 +49,21 @@ double app_comparison_trajectory_error(const FemRunResult *result, const FemRunR
   return count > 0 ? sqrt(sum / (double)count) : NAN;
 }
 
-static void add_audit(AppAuditSums *sums, const ContactAudit *audit) {
+static Status add_audit(AppAuditSums *sums, double time, const ContactAudit *audit) {
   const double errors[APP_AUDIT_KIND_COUNT] = {audit->volume_error, audit->gradient_error, audit->force_error,
                                                audit->total_error};
+  size_t count = (size_t)sums->count + 1;
+  if (!memory_reserve((void **)&sums->rows, &sums->capacity, count, sizeof *sums->rows))
+    return status_no_memory("the audits");
+  AppAuditRow *row = &sums->rows[sums->count];
+  row->time = time;
   for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) {
+    row->errors[k] = errors[k];
     sums->sum[k] += errors[k];
     sums->max[k] = fmax(sums->max[k], errors[k]);
   }
   sums->count++;
+  return STATUS_OK;
 }
 
 Status app_comparison_audit(AppComparison *comparison, const FemRunProgress *progress,
@@ -70,7 +78,7 @@ Status app_comparison_audit(AppComparison *comparison, const FemRunProgress *pro
     TRY(contact_system_audit(fem_effect_contact_system(effect), progress->time, progress->system->positions,
                              &comparison->models[m].overlap,
                              &comparison->models[comparison->reference].overlap, &audit));
-    add_audit(&comparison->models[m].audit, &audit);
+    TRY(add_audit(&comparison->models[m].audit, progress->time, &audit));
   }
   return STATUS_OK;
 }
@@ -134,6 +142,18 @@ static void record_interfaces(const AppComparison *comparison, int m, Record *re
   }
 }
 
+// The audits one by one, for plots over time.
+static void record_audits(const AppAuditSums *sums, Record *record) {
+  if (sums->count == 0) return;
+  Record *series = record_child(record, "audit_series");
+  RecordList *times = record_list(series, "time_s");
+  for (int i = 0; i < sums->count; i++) record_append_number(times, sums->rows[i].time);
+  for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) {
+    RecordList *errors = record_list(series, audit_words[k]);
+    for (int i = 0; i < sums->count; i++) record_append_number(errors, sums->rows[i].errors[k]);
+  }
+}
+
 void app_comparison_record(const AppComparison *comparison, const char *scene_path, RecordList *list) {
   for (int m = 0; m < comparison->model_count; m++) {
     const AppComparisonModel *model = &comparison->models[m];
@@ -152,6 +172,7 @@ void app_comparison_record(const AppComparison *comparison, const char *scene_pa
       snprintf(key, sizeof key, "audit_%s_error_max", audit_words[k]);
       record_number(record, key, row.audit_max[k]);
     }
+    record_audits(&model->audit, record);
     if (model->has_run) record_integer(record, "frames_compared", row.frames);
     record_number(record, "share_reached", row.share);
     record_number(record, "force_error_l2", row.force.l2);
@@ -218,6 +239,7 @@ void app_comparison_print_table(const AppComparison *comparison, FILE *stream) {
 void app_comparison_destroy(AppComparison *comparison) {
   for (int m = 0; m < comparison->model_count; m++) {
     overlap_model_destroy(&comparison->models[m].overlap);
+    memory_free(comparison->models[m].audit.rows);
     fem_run_result_destroy(&comparison->models[m].result);
   }
   *comparison = (AppComparison){0};

@@ -16,10 +16,18 @@ typedef enum AppAuditKind {
   APP_AUDIT_KIND_COUNT
 } AppAuditKind;
 
-// Of contact_system_audit over the audited configurations.
+// One audited configuration.
+typedef struct AppAuditRow {
+  double time; // [s]
+  double errors[APP_AUDIT_KIND_COUNT];
+} AppAuditRow;
+
+// Of contact_system_audit over the audited configurations. Zeroed: none.
 typedef struct AppAuditSums {
   double sum[APP_AUDIT_KIND_COUNT], max[APP_AUDIT_KIND_COUNT];
   int count;
+  AppAuditRow *rows; // (count), owned
+  size_t capacity;
 } AppAuditSums;
 
 typedef struct AppComparisonModel {

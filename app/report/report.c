@@ -14,21 +14,19 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 
-// Whether the runs can be held against each other vertex by vertex.
-static bool are_alike(const AppReport *report) {
-  const AppReportRun *a = &report->runs[0], *b = &report->runs[1];
-  if (report->run_count != 2 || a->frame_count != b->frame_count || a->vertex_count != b->vertex_count)
-    return false;
-  for (int frame = 0; frame < a->frame_count; frame++) {
-    double span = a->times[a->frame_count - 1] - a->times[0];
-    if (!(fabs(a->times[frame] - b->times[frame]) <= 1e-9 * span)) return false;
-  }
-  return true;
+// How many frames a run and the reference have at the same times, vertex for vertex.
+static int common_frames(const AppReport *report, int run) {
+  const AppReportRun *a = &report->runs[report->reference], *b = &report->runs[run];
+  if (a->vertex_count != b->vertex_count || a->frame_count == 0) return 0;
+  int least = a->frame_count < b->frame_count ? a->frame_count : b->frame_count, frame = 0;
+  double span = a->times[a->frame_count - 1] - a->times[0];
+  while (frame < least && fabs(a->times[frame] - b->times[frame]) <= 1e-9 * span) frame++;
+  return frame;
 }
 
-bool app_report_distance(const AppReport *report, int frame, double *mean, double *largest) {
-  if (!are_alike(report)) return false;
-  const AppReportRun *a = &report->runs[0], *b = &report->runs[1];
+bool app_report_distance(const AppReport *report, int run, int frame, double *mean, double *largest) {
+  if (frame >= common_frames(report, run)) return false;
+  const AppReportRun *a = &report->runs[report->reference], *b = &report->runs[run];
   const size_t count = (size_t)a->vertex_count, begin = 3 * (size_t)frame * count;
   double sum = 0;
   *largest = 0;
@@ -41,17 +39,26 @@ bool app_report_distance(const AppReport *report, int frame, double *mean, doubl
   return true;
 }
 
-static void record_difference(const AppReport *report, Record *data) {
-  if (!are_alike(report)) return;
-  Record *difference = record_child(data, "difference");
-  record_numbers(difference, "time_s", report->runs[0].times, report->runs[0].frame_count);
+static void record_difference(const AppReport *report, int run, RecordList *list) {
+  int frames = common_frames(report, run);
+  if (run == report->reference || frames < 2) return;
+  Record *difference = record_append(list);
+  record_integer(difference, "run", run);
+  record_numbers(difference, "time_s", report->runs[run].times, frames);
   RecordList *means = record_list(difference, "rms_m"), *largest = record_list(difference, "max_m");
-  for (int frame = 0; frame < report->runs[0].frame_count; frame++) {
+  for (int frame = 0; frame < frames; frame++) {
     double mean, most;
-    if (!app_report_distance(report, frame, &mean, &most)) return;
+    if (!app_report_distance(report, run, frame, &mean, &most)) return;
     record_append_number(means, mean);
     record_append_number(largest, most);
   }
+}
+
+static void record_differences(const AppReport *report, Record *data) {
+  if (report->run_count < 2) return;
+  record_integer(data, "reference", report->reference);
+  RecordList *list = record_list(data, "differences");
+  for (int run = 0; run < report->run_count; run++) record_difference(report, run, list);
 }
 
 // The last part of a path, whatever slashes it ends in.
@@ -286,7 +293,7 @@ static Status find_surface(AppReport *report, int r, AppReportSurface *surface) 
 
 static Status print_data(AppReport *report, Record *data, AppReportSurface *surfaces, FILE *stream) {
   record_text(data, "version", app_versions_program());
-  record_difference(report, data); // needs all vertices
+  record_differences(report, data); // needs all vertices
   RecordList *runs = record_list(data, "runs");
   for (int r = 0; r < report->run_count; r++) {
     TRY(find_surface(report, r, &surfaces[r]));

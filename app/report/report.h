@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A web page about one run or two, or about measurements: one file without any other, for a browser.
+// A web page about a run or several, or about measurements: one file without any other, for a browser.
 #ifndef TETLAP_APP_REPORT_REPORT_H
 #define TETLAP_APP_REPORT_REPORT_H
 
@@ -8,12 +8,13 @@
 
 #include "app/report/run.h"
 
-enum { APP_REPORT_MAX_RUNS = 2, APP_REPORT_MAX_BENCHES = 8, APP_REPORT_MAX_STRESSES = 16 };
+enum { APP_REPORT_MAX_RUNS = 16, APP_REPORT_MAX_BENCHES = 8, APP_REPORT_MAX_STRESSES = 16 };
 
 // What the page shall show; records may be NULL. All owned.
 typedef struct AppReport {
   AppReportRun runs[APP_REPORT_MAX_RUNS];
   int run_count;
+  int reference;      // the run that the others are held against
   Record *comparison; // compare.json
   Record *pareto;     // pareto.json
   Record *sweep;      // sweep.json
@@ -34,8 +35,8 @@ Status app_report_print(AppReport *report, FILE *stream);
 Status app_report_write(AppReport *report, const char *path); // whole or not at all
 void app_report_destroy(AppReport *report);
 
-// Root mean square and largest distance between the vertices of two runs [m] in a frame; false if their
-// meshes or the times of their frames differ.
-bool app_report_distance(const AppReport *report, int frame, double *mean, double *largest);
+// Root mean square and largest distance between the vertices of a run and the reference [m] in a frame; false
+// if their meshes differ, or one of them did not reach that frame at the same time.
+bool app_report_distance(const AppReport *report, int run, int frame, double *mean, double *largest);
 
 #endif

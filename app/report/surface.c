@@ -73,7 +73,8 @@ static void renumber(AppReportSurface *surface, const Kept *vertices, const Kept
 
 Status app_report_surface_strip(AppReportSurface *surface, AppReportRun *run) {
   Kept vertices = {0}, tets = {0};
-  bool ok = keep_corners(&vertices, run->vertex_count, surface, 0, 2) && keep_corners(&tets, run->tet_count, surface, 3, 3);
+  bool ok = keep_corners(&vertices, run->vertex_count, surface, 0, 2) &&
+            keep_corners(&tets, run->tet_count, surface, 3, 3);
   if (ok) {
     compact(run->positions, run->frame_count, run->vertex_count, &vertices, 3);
     for (int k = 0; k < run->field_count; k++) {

@@ -4,7 +4,7 @@
 import { readCodes, readIntegers } from "./codes.js";
 import { Obstacles } from "./obstacles.js";
 
-const NAMES = [..."ABCDEFGHIJKLMNOP"];
+export const RUNS = [..."ABCDEFGHIJKLMNOP"]; // letters of runs
 
 // history.csv as columns of numbers by name; {} without one.
 export function readHistory(text) {
@@ -58,10 +58,10 @@ const areDistinct = (names) => names.every(Boolean) && new Set(names).size === n
 // Runs are called by what tells them apart: their overlap models, else their folders.
 function labelRuns(runs) {
   const models = runs.map((run) => run.summary?.overlap);
-  const names = runs.length > 1 && areDistinct(models) ? models : runs.map((run, k) => run.name ?? NAMES[k]);
+  const names = runs.length > 1 && areDistinct(models) ? models : runs.map((run, k) => run.name ?? RUNS[k]);
   runs.forEach((run, k) => {
-    run.letter = NAMES[k];
-    run.label = runs.length > 1 && !areDistinct(names) ? `${names[k]} (${NAMES[k]})` : names[k];
+    run.letter = RUNS[k];
+    run.label = runs.length > 1 && !areDistinct(names) ? `${names[k]} (${RUNS[k]})` : names[k];
   });
 }
 

@@ -23,6 +23,9 @@ export function svg(tag, attributes = {}, ...children) {
   return element;
 }
 
+// The mark of a run, in its colour (style.css has the first two; main.js sets them all).
+export const swatchOf = (run) => h("span.swatch.run", { style: `background:var(--run-${run.letter})` });
+
 const PREFIXES = [
   [1e9, "G"],
   [1e6, "M"],

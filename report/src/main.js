@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import "./style.css";
 import { buildBenches } from "./bench.js";
-import { listFields } from "./colour.js";
-import { readData, unionTimes } from "./data.js";
+import { HUES, listFields } from "./colour.js";
+import { buildComparison } from "./compare.js";
+import { RUNS, indexAt, readData, unionTimes } from "./data.js";
 import { h } from "./dom.js";
 import { buildFrontier } from "./frontier.js";
 import { LiveBar, follow } from "./live.js";
@@ -39,6 +40,7 @@ function buildBar(state, version) {
   const toggle = h("button.plain", { type: "button", click: () => state.set({ theme: state.theme === "dark" ? "light" : "dark" }) });
   const show = () => {
     document.documentElement.dataset.theme = state.theme;
+    RUNS.forEach((letter, k) => document.documentElement.style.setProperty(`--run-${letter}`, HUES[state.theme][k % HUES.light.length]));
     toggle.textContent = state.theme === "dark" ? "Light" : "Dark";
     toggle.setAttribute("aria-label", `Switch to ${toggle.textContent.toLowerCase()} colours`);
   };
@@ -92,8 +94,9 @@ function worldSize(runs) {
 }
 
 // Where a page opens: of runs that are compared, where they differ most; else at the start.
-function openingTime({ runs }, times) {
-  return (runs.length > 1 ? momentOf(runs) : undefined) ?? times[0] ?? 0;
+function openingTime(data, times) {
+  const moment = data.runs.length > 1 ? momentOf(data) : undefined;
+  return times[moment === undefined ? 0 : indexAt(times, moment)] ?? 0;
 }
 
 const licences = () => document.getElementById("tetlap-licences")?.textContent.trim() ?? "";
@@ -139,6 +142,7 @@ function build(data, kept) {
     buildOverview(runs),
     stage?.element,
     transport?.element,
+    data.comparison && buildComparison(data),
     plots.length > 0 && h("section.block", { id: "plots" }, h("h2", "Over time"), h(".plots", plots.map((plot) => plot.element))),
     data.sweep && buildSweep(data.sweep, state, createState),
     data.pareto && buildFrontier(data.pareto, state),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What it takes to do the same again.
 
-import { h } from "./dom.js";
+import { h, swatchOf } from "./dom.js";
 
 const text = (value) => (typeof value === "object" && value !== null ? JSON.stringify(value) : String(value));
 
@@ -44,7 +44,7 @@ function counters(run) {
 function manifestOf(run, isNamed) {
   return h(
     ".manifest",
-    isNamed && h("h3", h(`span.swatch.run-${run.letter}`), run.label),
+    isNamed && h("h3", swatchOf(run), run.label),
     h("dl", rowsOf(run).flatMap(([name, value]) => [h("dt", name), h("dd", text(value))])),
     run.manifest?.scene && h("details.more", h("summary", "Scene, with every default filled in"), h("pre", { tabindex: 0 }, yamlOf(run.manifest.scene).trimStart())),
     counters(run),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The figures that one looks for first, of one run or of both.
 
-import { count, format, h } from "./dom.js";
+import { count, format, h, swatchOf } from "./dom.js";
 
 const FIGURES = [
   ["Wall time", (s) => format(s.wall_s, "s")],
@@ -12,9 +12,18 @@ const FIGURES = [
   ["Energy gained", (s) => format(s.energy_gain_relative), "largest rise of the audited total energy, over the scene’s energy"],
 ];
 
+// More than two runs: a line each.
+function buildTable(runs) {
+  const shown = FIGURES.filter(([, value]) => runs.some((run) => value(run.summary)));
+  const head = h("tr", h("th", { scope: "col" }, "Run"), shown.map(([label, , help]) => h("th.number", { scope: "col", title: help }, label)));
+  const line = (run) => h("tr", h("th", { scope: "row" }, swatchOf(run), run.label), shown.map(([, value]) => h("td.number", value(run.summary) || "–")));
+  return h(".scroll.overview", { tabindex: 0, role: "region", "aria-label": "Figures of the runs" }, h("table", h("thead", head), h("tbody", runs.map(line))));
+}
+
 export function buildOverview(runs) {
   const known = runs.filter((run) => run.summary);
   if (known.length === 0) return null;
+  if (known.length > 2) return buildTable(known);
   const tiles = FIGURES.map(([label, value, help]) => {
     const values = known.map((run) => value(run.summary));
     if (!values.some(Boolean)) return null;
@@ -22,7 +31,7 @@ export function buildOverview(runs) {
       ".figure",
       { title: help },
       h("dt", label),
-      known.map((run, k) => h("dd", known.length > 1 && h(`span.swatch.run-${run.letter}`), values[k] || "–")),
+      known.map((run, k) => h("dd", known.length > 1 && swatchOf(run), values[k] || "–")),
     );
   });
   return h("dl.figures", tiles);
@@ -32,7 +41,7 @@ export function buildHeader(runs, title) {
   const { summary } = runs[0] ?? {};
   const models = [...new Set(runs.map((run) => run.summary?.overlap).filter(Boolean))];
   const facts = summary
-    ? [summary.scene, `${count(summary.tetrahedra)} tetrahedra`, `${count(summary.vertices)} vertices`, models.length && `overlap: ${models.join(" and ")}`]
+    ? [summary.scene, `${count(summary.tetrahedra)} tetrahedra`, `${count(summary.vertices)} vertices`, models.length && `overlap: ${models.join(", ")}`]
     : [];
   const trouble = runs
     .filter((run) => run.summary && run.summary.outcome !== "finished")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a run's time went: a bar of phases, and the seconds beside their names.
 
-import { format, h } from "./dom.js";
+import { count, format, h, swatchOf } from "./dom.js";
 import { buildEffects } from "./effects.js";
 
 const PHASES = [
@@ -16,6 +16,12 @@ const PHASES = [
   ["output", "Output", "rest"],
   ["other", "Everything else", "rest"],
 ];
+
+// "1,444 steps", and whether the run got to its end.
+function stepsOf({ summary }) {
+  const ended = summary.outcome && summary.outcome !== "finished" ? `, ${summary.outcome}` : "";
+  return `${count(summary.steps)} steps${ended}`;
+}
 
 function listed(phases) {
   const known = new Set(PHASES.map(([key]) => key));
@@ -46,28 +52,29 @@ export function buildPhases(runs) {
   if (known.length === 0) return null;
   const totals = known.map((run) => Object.values(run.summary.phases).reduce((a, b) => a + b, 0));
   const most = Math.max(...totals);
+  const isMany = known.length > 2; // then the bars show the shares
   const keys = listed(Object.assign({}, ...known.map((run) => run.summary.phases)));
   const header = h(
     "tr",
     h("th", { scope: "col" }, "Phase"),
     known.map((run) => h("th.number", { scope: "col" }, known.length > 1 ? run.label : "Wall time")),
-    known.map((run) => h("th.number", { scope: "col" }, known.length > 1 ? `${run.label}, share` : "Share")),
+    !isMany && known.map((run) => h("th.number", { scope: "col" }, known.length > 1 ? `${run.label}, share` : "Share")),
   );
   const row = ([key, label, group]) =>
     h(
       "tr",
       h("th", { scope: "row" }, h(`span.swatch.${group}`), label),
       known.map((run) => h("td.number", format(run.summary.phases[key], "s"))),
-      known.map((run, k) => h("td.number", format((100 * run.summary.phases[key]) / totals[k], "%", 2))),
+      !isMany && known.map((run, k) => h("td.number", format((100 * run.summary.phases[key]) / totals[k], "%", 2))),
     );
-  const sum = h("tr.sum", h("th", { scope: "row" }, "Total"), totals.map((total) => h("td.number", format(total, "s"))), totals.map(() => h("td.number", "100\u2009%")));
+  const sum = h("tr.sum", h("th", { scope: "row" }, "Total"), totals.map((total) => h("td.number", format(total, "s"))), !isMany && totals.map(() => h("td.number", "100\u2009%")));
   return h(
     "section.block",
     { id: "phases" },
     h("h2", "Where the time went"),
     h(
       ".bars",
-      known.map((run) => h(".row", known.length > 1 && h(".name", h(`span.swatch.run-${run.letter}`), run.label), bar(run, most))),
+      known.map((run) => h(".row", known.length > 1 && h(".name", swatchOf(run), run.label, h("span.steps", stepsOf(run))), bar(run, most))),
     ),
     h("details.more", { open: true }, h("summary", "In numbers"), h(".scroll", h("table", h("thead", header), h("tbody", keys.map(row), sum)))),
     buildEffects(known),

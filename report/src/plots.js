@@ -10,7 +10,7 @@ const MARGIN = { left: 52, right: 12, top: 10, bottom: 26 };
 const MAX_FORCES = 5;
 const DASH = "4 3"; // of run B where the hue says what the quantity is
 
-const byRun = (run, theme) => HUES[theme][run.index];
+const byRun = (run, theme) => HUES[theme][run.index % HUES.light.length];
 
 // Each plot's series: [{run, label, hue: number | null (the run's), values, times}].
 function forceSeries(runs) {
@@ -58,59 +58,125 @@ function driftSeries(runs) {
     const scale = run.summary?.energy_scale;
     if (!total || !(scale > 0)) return [];
     const values = positive(total.map((value) => Math.abs(value - total[0]) / scale));
-    const label = runs.length > 1 ? `energy, ${run.label}` : "energy";
+    const label = runs.length === 2 ? `energy, ${run.label}` : runs.length > 2 ? run.label : "energy";
     return [{ run, label, hue: null, values, times: run.times }];
   });
 }
 
-// Forces of B against A, over A's largest; on A's lines where B has one at the same time.
-function forceDifference([a, b]) {
-  if (!b || a.forces.length === 0) return [];
+// Forces of b against a, over a's largest; on a's lines, as far as both have come.
+function forceDifference(a, b) {
+  if (a.forces.length === 0 || b.times.length === 0) return null;
   const most = a.forces[0].most;
-  const values = Array.from(a.times, (time, i) => {
+  const end = b.times[b.times.length - 1] * (1 + 1e-9);
+  const keys = new Set([...a.forces, ...b.forces].map((force) => force.key));
+  return Array.from(a.times, (time, i) => {
+    if (time > end) return NaN;
     const j = indexAt(b.times, time);
     let sum = 0;
-    for (const key of new Set([...a.forces, ...b.forces].map((force) => force.key)))
+    for (const key of keys)
       for (const axis of ["x", "y", "z"]) {
         const column = `force_${key}_${axis}_N`;
         sum += ((b.columns[column]?.[j] ?? 0) - (a.columns[column]?.[i] ?? 0)) ** 2;
       }
     return Math.sqrt(sum) / most;
   });
-  return [{ run: a, label: "force, B − A", hue: 2, values: positive(values), times: a.times }];
 }
 
-function distance(difference, size) {
-  if (!difference || !(size > 0)) return [];
-  const values = positive(difference.rms_m.map((value) => value / size));
-  return [{ run: null, label: "vertices, B − A", hue: 3, values, times: difference.time_s }];
+// Each run but the reference with its differences in force.
+function forceDifferences({ runs, reference = 0 }) {
+  const first = runs[reference];
+  return runs
+    .filter((run) => run !== first)
+    .map((run) => ({ run, times: first.times, values: forceDifference(first, run) }))
+    .filter(({ values }) => values);
+}
+
+const isPair = (runs) => runs.length === 2;
+
+function forceErrorSeries(data) {
+  return forceDifferences(data).map(({ run, times, values }) => ({ run: isPair(data.runs) ? data.runs[0] : run, label: isPair(data.runs) ? "force, B − A" : run.label, hue: isPair(data.runs) ? 2 : null, values: positive(values), times }));
+}
+
+// The band reaches from the root mean square to the farthest vertex.
+function distanceSeries({ runs, differences = [] }, size) {
+  if (!(size > 0)) return [];
+  const over = (values) => positive(values.map((value) => value / size));
+  return differences.map(({ run, time_s, rms_m, max_m }) => ({
+    run: isPair(runs) ? null : runs[run],
+    label: isPair(runs) ? "vertices, B − A" : runs[run].label,
+    hue: isPair(runs) ? 3 : null,
+    values: over(rms_m),
+    upper: over(max_m),
+    times: time_s,
+  }));
+}
+
+// What compare's audit measured in single configurations of the reference's run.
+function auditSeries({ comparison, runs }, kind) {
+  const rows = (comparison ?? []).filter((row) => row.audit_series?.[kind]);
+  return rows.map((row, k) => {
+    const run = runs.find((one) => one.summary?.overlap === row.model);
+    return { run: run ?? null, label: row.model, hue: run ? null : runs.length + k, values: positive(row.audit_series[kind]), times: row.audit_series.time_s };
+  });
+}
+
+// With more than two runs a plot for each two bodies, in which the hue says which run it is.
+function forcePlots(runs) {
+  const plot = { id: "force", title: "Contact force", unit: "N", series: forceSeries(runs) };
+  if (runs.length <= 2) return [plot];
+  const keys = [...new Set(runs.flatMap((run) => run.forces.map((force) => force.key)))].slice(0, 3);
+  return keys.map((key, k) => {
+    const owners = runs.flatMap((run) => run.forces.filter((force) => force.key === key).map((force) => ({ run, force })));
+    return { ...plot, id: k ? `force-${k}` : "force", title: `Contact force, ${owners[0].force.label}`, series: owners.map(({ run, force }) => ({ run, label: run.label, hue: null, values: force.values, times: run.times })) };
+  });
+}
+
+function energyPlots(runs) {
+  if (runs.length <= 2) return [{ id: "energy", title: "Energy, change since the start", unit: "J", series: energySeries(runs) }];
+  return ENERGIES.slice(0, 2).map(([column, label]) => ({
+    id: `energy-${label}`,
+    title: `Energy, ${label}`,
+    unit: "J",
+    series: runs.filter((run) => run.columns[column]).map((run) => ({ run, label: run.label, hue: null, values: run.columns[column], times: run.times })),
+  }));
+}
+
+function errorPlots(data, size) {
+  const { runs, reference = 0 } = data;
+  const log = { unit: "", isLog: true };
+  const drift = { ...log, id: "drift", title: "Drift of the total energy", note: "over the scene’s energy", series: driftSeries(runs) };
+  if (runs.length < 2) return [{ ...drift, id: "error", title: "Error", note: "drift of the total energy over the scene’s energy" }];
+  if (isPair(runs)) {
+    const note = "drift of the total energy; B against A: force over the largest, vertices (root mean square; the band reaches to the farthest) over the scene’s size";
+    return [{ ...log, id: "error", title: "Error", note, series: [...driftSeries(runs), ...forceErrorSeries(data), ...distanceSeries(data, size)] }];
+  }
+  const than = runs[reference].label;
+  return [
+    { ...log, id: "error", title: `Forces against ${than}`, note: "each model on its own trajectory; over the largest force of the reference", series: forceErrorSeries(data) },
+    { ...log, id: "distance", title: `Vertices against ${than}`, note: "root mean square over the scene’s size; the band reaches to the farthest vertex", series: distanceSeries(data, size) },
+    drift,
+  ];
 }
 
 // The plots that these runs have something for.
 export function listPlots(data, size) {
-  const { runs, difference } = data;
+  const { runs } = data;
   const plots = [
-    { id: "force", title: "Contact force", unit: "N", series: forceSeries(runs) },
-    { id: "energy", title: "Energy, change since the start", unit: "J", series: energySeries(runs) },
-    {
-      id: "error",
-      title: "Error",
-      note: runs.length > 1 ? "drift of the total energy; B against A: force over the largest, vertices (rms) over the scene’s size" : "drift of the total energy over the scene’s energy",
-      unit: "",
-      isLog: true,
-      series: [...driftSeries(runs), ...forceDifference(runs), ...distance(difference, size)],
-    },
+    ...forcePlots(runs),
+    ...energyPlots(runs),
+    ...errorPlots(data, size),
+    { id: "audit", title: "Audit: nodal forces", note: "relative error in the same configurations, those of the reference’s run", unit: "", isLog: true, series: auditSeries(data, "force") },
     { id: "step", title: "Step size", unit: "s", isLog: true, series: stepSeries(runs) },
   ];
   return plots.filter((plot) => plot.series.some((one) => one.values.some(Number.isFinite)));
 }
 
-// When runs differ most from the first: in their contact forces, else nothing is known.
-export function momentOf(runs) {
+// When runs differ most from the reference: in their contact forces, else in their vertices.
+export function momentOf(data) {
   let [most, moment] = [0, undefined];
-  for (const other of runs.slice(1))
-    for (const { values, times } of forceDifference([runs[0], other]))
-      values.forEach((value, i) => value > most && ([most, moment] = [value, times[i]]));
+  const look = (values, times) => values.forEach((value, i) => value > most && ([most, moment] = [value, times[i]]));
+  for (const { values, times } of forceDifferences(data)) look(values, times);
+  if (moment === undefined) for (const { rms_m, time_s } of data.differences ?? []) look(rms_m, time_s);
   return moment;
 }
 
@@ -133,11 +199,12 @@ export class TimePlot {
   }
 
   hueOf(one) {
-    return one.hue === null ? byRun(one.run, this.state.theme) : HUES[this.state.theme][one.hue];
+    return one.hue === null ? byRun(one.run, this.state.theme) : HUES[this.state.theme][one.hue % HUES.light.length];
   }
 
+  // Run B where the hue says what the quantity is; runs beyond the hues that there are.
   isDashed(one) {
-    return one.hue !== null && one.run?.index === 1;
+    return one.hue !== null ? one.run?.index === 1 : one.run.index >= HUES.light.length;
   }
 
   buildRow(one) {
@@ -151,6 +218,9 @@ export class TimePlot {
     const width = Math.round(this.area.clientWidth);
     if (width < 50) return;
     const { plot } = this;
+    const bands = plot.series
+      .filter((one) => one.upper)
+      .map((one) => Plot.areaY(one.values, { x: one.times, y1: one.values, y2: one.upper, fill: this.hueOf(one), fillOpacity: 0.16 }));
     const marks = plot.series.map((one) =>
       Plot.lineY(one.values, {
         x: one.times,
@@ -179,7 +249,7 @@ export class TimePlot {
         tickSize: 0,
         tickFormat: plot.isLog ? powerOf : (value) => format(value, "", 3),
       },
-      marks: [plot.isLog ? null : Plot.ruleY([0], { strokeOpacity: 0.35 }), ...marks],
+      marks: [plot.isLog ? null : Plot.ruleY([0], { strokeOpacity: 0.35 }), ...bands, ...marks],
     });
     chart.setAttribute("role", "img");
     chart.setAttribute("aria-label", `${plot.title} over time`);
@@ -235,9 +305,9 @@ export class TimePlot {
 
 // From a power of ten to a power of ten, with at most six of them labelled.
 function logScale(series) {
-  const values = series.flatMap((one) => Array.from(one.values)).filter((value) => value > 0);
-  const low = Math.floor(Math.log10(Math.min(...values)));
-  const high = Math.max(Math.ceil(Math.log10(Math.max(...values))), low + 1);
+  const values = series.flatMap((one) => [...one.values, ...(one.upper ?? [])]).filter((value) => value > 0);
+  const low = Math.floor(Math.log10(values.reduce((a, b) => Math.min(a, b))));
+  const high = Math.max(Math.ceil(Math.log10(values.reduce((a, b) => Math.max(a, b)))), low + 1);
   const step = Math.max(1, Math.ceil((high - low) / 5));
   const ticks = [];
   for (let power = high; power >= low; power -= step) ticks.unshift(10 ** power);

@@ -6,7 +6,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { NO_CODE, decode } from "./codes.js";
 import { bytesOf, describe, listFields, neutralOf, rampOf, tintsOf } from "./colour.js";
 import { indexAt, readFrames } from "./data.js";
-import { format, h } from "./dom.js";
+import { format, h, swatchOf } from "./dom.js";
 import { PALETTE, View } from "./scene.js";
 
 const AXES = ["x", "y", "z"];
@@ -66,7 +66,7 @@ export class Stage {
   }
 
   build() {
-    this.panes = h(".panes", { "data-count": this.runs.length });
+    this.panes = h(".panes", { "data-count": this.runs.length > 2 ? "many" : this.runs.length });
     this.legend = h("figure.legend", { "aria-live": "off" });
     this.tip = h(".tip", { hidden: true });
     return h("section.stage", { "aria-label": "Scene" }, this.panes, this.buildControls());
@@ -122,10 +122,12 @@ export class Stage {
       role: "img",
       "aria-label": `${run.label} in 3-D. Arrow keys turn it, plus and minus come closer and go away.`,
     });
-    const name = this.runs.length > 1 ? h("figcaption", h(`span.swatch.run-${run.letter}`), run.label) : null;
+    const ended = h("span.ended", { hidden: true });
+    const name = this.runs.length > 1 ? h("figcaption", swatchOf(run), run.label, ended) : null;
     const pane = h("figure.pane", canvas, name);
     this.panes.append(pane);
     const view = new View(run, frames, this.world, canvas);
+    view.ended = ended;
     this.views.push(view);
     canvas.addEventListener("pointermove", (event) => this.hover(view, event));
     canvas.addEventListener("pointerleave", () => (this.tip.hidden = true));
@@ -216,8 +218,16 @@ export class Stage {
     state.on(["theme"], () => this.showTheme());
   }
 
+  // A run that did not come so far stays at its last frame, and says so.
   showTime() {
-    for (const view of this.views) view.setFrame(indexAt(view.frames.time_s, this.state.time));
+    const { time } = this.state;
+    for (const view of this.views) {
+      const { time_s } = view.frames;
+      const last = time_s[time_s.length - 1];
+      view.setFrame(indexAt(time_s, time));
+      view.ended.hidden = !(time > last * (1 + 1e-9));
+      view.ended.textContent = `ended at ${format(last, "s")}`;
+    }
     this.request();
   }
 

@@ -21,7 +21,7 @@ function trace(runs, times) {
       const force = Math.max(...run.forces.map((one) => one.values[i]), 0);
       return `${(((time - first) / (last - first)) * 1000).toFixed(1)},${(30 - 28 * Math.sqrt(force / most)).toFixed(2)}`;
     });
-    return svg("polyline", { points: points.join(" "), class: `run-${run.letter}` });
+    return svg("polyline", { points: points.join(" "), style: `stroke:var(--run-${run.letter})` });
   });
   return svg("svg", { class: "trace", viewBox: "0 0 1000 30", preserveAspectRatio: "none", "aria-hidden": "true" }, ...paths);
 }

@@ -51,6 +51,21 @@ function makeSweep() {
   assert.equal(status, 70); // half of it failed
 }
 
+// Three models and one of the audit alone; the last has a run that gave up halfway.
+function makeComparison() {
+  const folder = join(out, "models");
+  const scaled = (end, frames) => ["-q", "-t", "1", "-s", `time.end=${end}`, "-s", `output.frames=${frames}`, "-s", "bodies.upper.velocity=[0, 0, -1]", "-s", "contact.potential=nodal", "-s", "contact.stiffness=1e6"];
+  const run = (...args) => execFileSync(tetlap, args, { stdio: "ignore" });
+  run("compare", scene, "--overlap", "clip,geo,clip32", "--audit-only", "exact", "--audit", "3", "-o", folder, ...scaled(0.06, 24));
+  run("run", scene, "-m", "clip32", "-o", join(folder, "clip32"), ...scaled(0.03, 12));
+  const path = join(folder, "compare.json");
+  const rows = JSON.parse(readFileSync(path, "utf8"));
+  Object.assign(rows[2], { outcome: "failed", message: "Newton's method gave up", share_reached: 0.5 });
+  writeFileSync(path, JSON.stringify(rows));
+  run("report", "-q", folder, "-o", join(out, "models.html"));
+  return folder;
+}
+
 function makePages() {
   const run = (...args) => execFileSync(tetlap, args, { stdio: ["ignore", "inherit", "inherit"] });
   const runs = ["clip", "geo"].map((model) => join(out, model));
@@ -61,10 +76,11 @@ function makePages() {
   run("run", obstacles, "-q", "-o", join(out, "obstacles"), "-s", "time.end=1", "-s", "output.frames=10");
   run("report", "-q", join(out, "obstacles"), "-o", join(out, "obstacles.html"));
   makeSweep();
+  const models = makeComparison();
   writeFileSync(join(out, "stress.json"), JSON.stringify(STRESS));
   writeFileSync(join(out, "later.json"), JSON.stringify(STRESS_LATER));
   run("report", "-q", "--stress", join(out, "stress.json"), "--stress", join(out, "later.json"), "-o", join(out, "stress.html"));
-  return { sweep: `file://${resolve(out, "sweep", "sweep.html")}`, obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
+  return { models: `file://${resolve(out, "models.html")}`, folder: models, sweep: `file://${resolve(out, "sweep", "sweep.html")}`, obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
 }
 
 // Different colours in each canvas, read right after it was drawn: 1 is an empty one.
@@ -381,6 +397,61 @@ const stressTests = {
   },
 };
 
+// history.csv of a model as rows of numbers by name.
+function historyOf(folder, model) {
+  const [head, ...lines] = readFileSync(join(folder, model, "history.csv"), "utf8").trim().split("\n");
+  const names = head.split(",");
+  return lines.map((line) => Object.fromEntries(line.split(",").map((text, k) => [names[k], Number(text)])));
+}
+
+const compareTests = {
+  async "all models of a comparison are shown, and it opens where their forces differ most"(page, { folder }) {
+    assert.deepEqual(await page.eval("tetlap.stage.views.map((view) => view.run.label)"), ["clip", "geo", "clip32"]);
+    assert.ok((await page.eval(COLOURS)).every((count) => count > 50));
+    const clip = historyOf(folder, "clip");
+    let [most, moment] = [0, -1];
+    for (const other of ["geo", "clip32"])
+      historyOf(folder, other).forEach((row, i) => {
+        const apart = Math.hypot(...Object.keys(row).filter((key) => /^force_.*_N$/.test(key)).map((key) => row[key] - clip[i][key]));
+        if (apart > most) [most, moment] = [apart, row.time_s];
+      });
+    assert.ok(most > 0 && moment > 0, "they differ");
+    assert.ok(Math.abs((await page.eval("tetlap.state.time")) - moment) < 1e-9, `${await page.eval("tetlap.state.time")} for ${moment}`);
+  },
+
+  async "the tables have every model, and what failed looks failed"(page) {
+    const rows = (n) => page.eval(`[...document.querySelectorAll("#compare table")][${n}].querySelectorAll("tbody tr").length`);
+    assert.equal(await rows(0), 3); // geo, clip32, exact against clip
+    assert.equal(await rows(1), 3);
+    const [text, colour, plain] = await page.eval(`(() => { const cells = [...document.querySelectorAll("#compare td.outcome")]; return [cells[2].textContent, getComputedStyle(cells[2]).color, getComputedStyle(cells[0]).color]; })()`);
+    assert.equal(text, "failed");
+    assert.notEqual(colour, plain);
+    const geo = await page.eval("tetlap.data.comparison[1].audit_force_error");
+    assert.ok(geo > 0 && geo < 0.1);
+    await page.eval("tetlap.transport.seek(20)");
+    assert.deepEqual(await page.eval(`[...document.querySelectorAll(".pane .ended")].map((one) => !one.hidden)`), [false, false, true]);
+  },
+
+  async "plots have a line of each model, distances a band, the audit one without a run as well"(page) {
+    const lines = (id) => page.eval(`[...document.querySelectorAll("#plot-${id} .reading > span:nth-of-type(1)")].map((one) => one.textContent)`);
+    assert.deepEqual(await lines("force"), ["clip", "geo", "clip32"]);
+    assert.deepEqual(await lines("distance"), ["geo", "clip32"]);
+    assert.deepEqual(await lines("audit"), ["geo", "clip32", "exact"]);
+    assert.ok((await page.eval(`document.querySelectorAll("#plot-distance svg [aria-label=area] path").length`)) >= 1);
+    assert.equal(await page.eval(`document.querySelectorAll("#phases .bar").length`), 3);
+  },
+
+  async "one camera turns them all, by keys as well, and all has a name"(page) {
+    const pictures = () => page.eval("tetlap.stage.views.map(({ canvas }) => (tetlap.stage.renderNow(), canvas.toDataURL()))");
+    const before = await pictures();
+    await page.eval("tetlap.stage.views[2].canvas.focus()");
+    await page.key("ArrowLeft");
+    (await pictures()).forEach((picture, k) => assert.notEqual(picture, before[k], `view ${k}`));
+    const nameless = await page.eval(`[...document.querySelectorAll("canvas, [role=region], svg[role=img], input, select, button")].filter((one) => !one.getAttribute("aria-label") && !one.textContent.trim() && !one.labels?.length).length`);
+    assert.equal(nameless, 0);
+  },
+};
+
 const sweepTests = {
   async "a sweep's page has a plot of each quantity, and a row of each run"(page) {
     assert.equal(await page.eval("document.title"), "Sweep of 02_two_blocks · tetlap");
@@ -421,17 +492,17 @@ async function testLive(browser) {
   const word = () => page.eval(`document.querySelector(".live [role=status]").textContent`);
   try {
     assert.equal(await word(), "Waiting for the run to begin");
-    const run = spawn(tetlap, ["run", scene, "-q", "-o", folder, "-s", "output.frames=40"], { stdio: ["ignore", "ignore", "inherit"] });
-    await page.until("tetlap.times.length > 5 && !!tetlap.stage?.camera");
+    const run = spawn(tetlap, ["run", scene, "-q", "-o", folder, "-t", "1", "-s", "time.end=20", "-s", "output.frames=2000"], { stdio: ["ignore", "ignore", "inherit"] });
+    await page.until("tetlap.times.length > 5 && !!tetlap.stage?.camera", 300);
     assert.equal(await word(), "Running");
     await page.eval("(tetlap.state.set({ cut: 1, theme: 'dark' }), tetlap.stage.controls.target.set(0.01, 0, 0), tetlap.stage.controls.update(), tetlap.before = tetlap.stage, 0)");
     const frames = await page.eval("tetlap.times.length");
-    await page.until(`tetlap.times.length > ${frames} && tetlap.stage.views.length === 1`);
+    await page.until(`tetlap.times.length > ${frames} && tetlap.stage.views.length === 1`, 300);
     assert.equal(await page.eval("tetlap.before === tetlap.stage"), false);
     assert.deepEqual(await page.eval("[tetlap.state.cut, tetlap.state.theme, tetlap.state.time === tetlap.times.at(-1)]"), [1, "dark", true]);
-    await page.until("tetlap.data.live.outcome === 'finished' && tetlap.times.length === 41");
-    run.kill();
-    assert.equal(await word(), "Finished");
+    run.kill("SIGINT");
+    await page.until("tetlap.data.live.outcome === 'interrupted'", 300);
+    assert.match(await word(), /^Interrupted/);
     assert.ok((await page.eval(COLOURS)).every((count) => count > 50));
     assert.deepEqual(page.problems, []);
     assert.ok(page.requests.every((one) => one.startsWith(url) || one.startsWith("data:")));
@@ -482,6 +553,12 @@ try {
     await table.close();
   }
   await attempt("a page follows a run from before it begins to its end", () => testLive(browser));
+  const models = await browser.open(pages.models, { width: 1280, height: 900 });
+  for (const [name, test] of Object.entries(compareTests)) await attempt(name, () => test(models, pages));
+  await attempt("no complaint after all of it", () => assert.deepEqual(models.problems, []));
+  await models.close();
+  for (const [width, theme] of [[1280, "light"], [420, "light"], [420, "dark"]])
+    await attempt(`three models fit ${width} pixels, ${theme}`, () => shoot(browser, pages.models, `models-${theme}-${width}`, { width, height: 1000, theme, isMobile: width < 600 }, "0"));
   const sweep = await browser.open(pages.sweep, { width: 1280, height: 900 });
   for (const [name, test] of Object.entries(sweepTests)) await attempt(name, () => test(sweep));
   await attempt("no complaint after all of it", () => assert.deepEqual(sweep.problems, []));
