@@ -25,6 +25,8 @@ Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLay
   if (!evaluation->boxes || !evaluation->positions || !evaluation->forces || !evaluation->covered ||
       !evaluation->interfaces)
     return status_no_memory("contact forces");
+  for (int f = 0; f < layout->facing_count; f++)
+    evaluation->interfaces[f] = (ContactInterface){.a = layout->facings[f].a, .b = layout->facings[f].b};
   return contact_patches_create(&evaluation->patches, layout);
 }
 

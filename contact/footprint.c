@@ -48,9 +48,9 @@ size_t contact_footprint_evaluation(const ContactEvaluation *evaluation) {
 }
 
 size_t contact_footprint_stiffness(const ContactStiffness *stiffness) {
-  return of_patches(&stiffness->near) + HELD(stiffness->near_pairs, stiffness->nodes, stiffness->vertices,
-                                             stiffness->gradient, stiffness->place, stiffness->hessians,
-                                             stiffness->volumes);
+  return of_patches(&stiffness->near) + contact_field_stiffness_bytes(&stiffness->field) +
+         HELD(stiffness->near_pairs, stiffness->nodes, stiffness->vertices, stiffness->gradient,
+              stiffness->place, stiffness->hessians, stiffness->volumes);
 }
 
 size_t contact_footprint_status(const ContactStatus *status) {

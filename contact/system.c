@@ -11,6 +11,7 @@
 #include "contact/onset.h"
 #include "contact/pressure/star_sink.h"
 #include "contact/pressure/stiffness.h"
+#include "contact/pressure/trace.h"
 #include "contact/rest.h"
 #include "contact/shape/shape.h"
 #include "contact/status.h"
@@ -32,6 +33,8 @@ struct ContactSystem {
   ContactStiffness stiffness;
   ContactEvaluation audits[2]; // candidate, reference; made by the first audit
   bool has_audits;
+  // Made when they are first asked for: of the evaluation, of what rests, and scratch by given vertices.
+  ContactTrace *traces, *resting_traces, *given_traces;
   ContactStatus status; // made when it is first asked for
   bool has_status;
   ContactCounters counters;
@@ -113,6 +116,9 @@ void contact_system_destroy(ContactSystem *system) {
   contact_stiffness_destroy(&system->stiffness);
   for (int k = 0; k < 2; k++) contact_evaluation_destroy(&system->audits[k]);
   contact_status_destroy(&system->status);
+  memory_free(system->traces);
+  memory_free(system->resting_traces);
+  memory_free(system->given_traces);
   memory_free(system);
 }
 
@@ -238,6 +244,44 @@ static Status make_rest(ContactSystem *system) {
   return STATUS_OK;
 }
 
+static bool reserve_traces(ContactTrace **traces, int count) {
+  if (!*traces) *traces = memory_zeroed((size_t)count, sizeof **traces);
+  return *traces;
+}
+
+// Of what is put to rest by an evaluation.
+static Status keep_traces(ContactSystem *system) {
+  const ContactLayout *layout = &system->layout;
+  if (!layout->depth.has_field) return STATUS_OK;
+  if (!reserve_traces(&system->resting_traces, layout->def.vertex_count))
+    return status_no_memory("contact at rest");
+  memset(system->resting_traces, 0, (size_t)layout->def.vertex_count * sizeof(ContactTrace));
+  contact_trace_add(layout, &system->evaluation, system->rest.is_resting, system->resting_traces);
+  return STATUS_OK;
+}
+
+Status contact_system_trace(ContactSystem *system, double *pressures, double *depths) {
+  const ContactLayout *layout = &system->layout;
+  size_t count = (size_t)layout->def.vertex_count, given = (size_t)system->stars.given_vertex_count;
+  memset(pressures, 0, given * sizeof *pressures);
+  memset(depths, 0, given * sizeof *depths);
+  if (!layout->depth.has_field) return STATUS_OK;
+  if (!reserve_traces(&system->traces, layout->def.vertex_count) ||
+      !reserve_traces(&system->given_traces, system->stars.given_vertex_count))
+    return status_no_memory("pressures at the surface");
+  if (system->resting_traces && system->has_rest && system->rest.resting_count > 0)
+    memcpy(system->traces, system->resting_traces, count * sizeof *system->traces);
+  else
+    memset(system->traces, 0, count * sizeof *system->traces);
+  contact_trace_add(layout, &system->evaluation, NULL, system->traces);
+  contact_trace_divide(layout, &system->stars, system->traces, system->given_traces, pressures, depths);
+  return STATUS_OK;
+}
+
+int contact_system_origin(const ContactSystem *system, int tet) {
+  return system->stars.is_needed ? system->stars.origin[tet] : tet;
+}
+
 Status contact_system_hold(ContactSystem *system, double time, const double *positions,
                            const double *velocities, double step, const bool *is_held) {
   const ContactLayout *layout = &system->layout;
@@ -252,6 +296,7 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
   TRY(evaluate(system, time, positions));
   contact_rest_keep(&system->rest, layout, &system->candidates.list, &system->evaluation.patches,
                     system->evaluation.interfaces, is_held);
+  TRY(keep_traces(system));
   contact_candidates_leave_out(&system->candidates, layout, system->rest.is_resting);
   contact_evaluation_start_over(&system->evaluation, layout);
   fold_result(system);
@@ -373,11 +418,12 @@ const ContactCounters *contact_system_counters(const ContactSystem *system) {
 size_t contact_system_bytes(const ContactSystem *system) {
   size_t sum = memory_held(system) + memory_held(system->positions) + memory_held(system->velocities) +
                memory_held(system->given_forces) + memory_held(system->given_covered) +
-               memory_held(system->given_volumes) + contact_stars_bytes(&system->stars) +
-               contact_star_sink_bytes(&system->star_sink) + contact_footprint_layout(&system->layout) +
-               contact_footprint_candidates(&system->candidates) + contact_footprint_onset(&system->onset) +
-               contact_footprint_stiffness(&system->stiffness) + contact_footprint_status(&system->status) +
-               contact_footprint_rest(&system->rest);
+               memory_held(system->given_volumes) + memory_held(system->traces) +
+               memory_held(system->resting_traces) + memory_held(system->given_traces) +
+               contact_stars_bytes(&system->stars) + contact_star_sink_bytes(&system->star_sink) +
+               contact_footprint_layout(&system->layout) + contact_footprint_candidates(&system->candidates) +
+               contact_footprint_onset(&system->onset) + contact_footprint_stiffness(&system->stiffness) +
+               contact_footprint_status(&system->status) + contact_footprint_rest(&system->rest);
   for (int k = 0; k < 2; k++) sum += contact_footprint_evaluation(&system->audits[k]);
   return sum + contact_footprint_evaluation(&system->evaluation);
 }

@@ -104,6 +104,11 @@ const ContactInterface *contact_system_interfaces(const ContactSystem *system, i
 const double *contact_system_forces(const ContactSystem *system); // per vertex [N] (vertex_count, 3)
 // Σ over interfaces of W_i [m³] (tet_count)
 const double *contact_system_covered(const ContactSystem *system);
+// Pressure [Pa] and depth [m] at the surface by contact/pressure/trace.h, those at rest included
+// (vertex_count). With another potential than `field` zeros.
+Status contact_system_trace(ContactSystem *system, double *pressures, double *depths);
+// What the definition's maker calls an element of the contact mesh (contact/surface/stars.h).
+int contact_system_origin(const ContactSystem *system, int tet);
 int contact_system_active_count(const ContactSystem *system); // pairs with V > 0, those at rest included
 // The pairs of the last evaluation with V > 0, as handed to the model (in general position); for audits and
 // capture. Owned by the caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).

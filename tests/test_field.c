@@ -4,6 +4,7 @@
 #include "product.h"
 
 #include "base/vec3.h"
+#include "contact/friction/viscosity.h"
 #include "contact/pressure/field.h"
 #include "contact/shape/convex.h"
 
@@ -16,6 +17,7 @@ typedef struct Scene {
   ContactShape shape; // its kind's point of view; only where shape_count is 1
   ContactConvex solid;
   int shape_count;
+  const unsigned char *inner; // borrowed
   ContactSystem *system;
 } Scene;
 
@@ -29,6 +31,7 @@ static void start(Scene *scene, const char *model, bool is_full) {
   def.stiffness = STIFFNESS;
   def.use_full_hessian = is_full;
   def.shapes = &scene->shape, def.shape_count = scene->shape_count;
+  def.inner = scene->inner;
   ck_assert_ok(contact_system_create(&scene->system, &def));
   ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01, NULL));
 }
@@ -228,12 +231,12 @@ END_TEST
 START_TEST(a_model_without_centroid_is_refused_by_name) {
   Scene scene = {.system = NULL};
   press_blocks(&scene, false);
-  ck_assert_ok(overlap_model_create(&scene.model, "geo"));
+  ck_assert_ok(overlap_model_create(&scene.model, "tpn"));
   ContactSystem *system;
   ContactSystemDef def = blocks_def(&scene.blocks, scene.rest, &scene.model);
   def.potential = CONTACT_POTENTIAL_FIELD;
   ck_assert_int_eq(contact_system_create(&system, &def), STATUS_INPUT);
-  ck_assert_ptr_nonnull(strstr(status_message(), "geo"));
+  ck_assert_ptr_nonnull(strstr(status_message(), "tpn"));
   ck_assert_ptr_nonnull(strstr(status_message(), "nodal"));
   destroy(&scene);
 }
@@ -333,6 +336,36 @@ START_TEST(the_pressure_does_not_depend_on_the_mesh) {
 }
 END_TEST
 
+// Up to the rim: what is not covered does not count.
+START_TEST(traces_tell_pressure_and_depth_at_the_surface) {
+  Scene scene = {.system = NULL};
+  double depth = 0.07, pressure = 2 * STIFFNESS * depth;
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-4, -4, -2}, .cell = {0.5, 0.5, 1}, .cells = {16, 16, 2}});
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {-1.93, -1.81, -depth}, .cell = {0.77, 0.77, 0.77}, .cells = {5, 5, 2}});
+  start(&scene, "clip", true);
+  energy_at(&scene, scene.blocks.x);
+  size_t count = (size_t)scene.blocks.vertex_count;
+  double *p = calloc(count, sizeof *p), *d = calloc(count, sizeof *d);
+  ck_assert(p && d);
+  ck_assert_ok(contact_system_trace(scene.system, p, d));
+  int inside = 0, pressed = 0;
+  for (int v = 0; v < scene.blocks.vertex_count; v++) {
+    const double *x = scene.blocks.x + 3 * v;
+    bool is_facing = v < scene.blocks.bodies[0].vertex_end ? x[2] == 0 : fabs(x[2] + depth) < 1e-12;
+    pressed += p[v] > 0;
+    if (!is_facing) continue;
+    if (fabs(x[0]) > 0.9 || fabs(x[1]) > 0.9) continue; // away from its sides, which are near as well
+    ck_assert_near(p[v], pressure, 1e-9 * pressure);
+    ck_assert_near(d[v], depth, 1e-9 * depth);
+    inside++;
+  }
+  ck_assert_int_gt(inside, 8);
+  ck_assert_int_lt(pressed, scene.blocks.vertex_count / 2);
+  free(p), free(d), destroy(&scene);
+}
+END_TEST
+
 START_TEST(sliding_past_faces_that_coincide_costs_nothing) {
   Scene scene = {.system = NULL};
   blocks_add(&scene.blocks, &(BlockDef){.corner = {-4, -4, -2}, .cell = {1, 1, 1}, .cells = {8, 8, 2}});
@@ -410,6 +443,84 @@ START_TEST(a_sheet_of_one_cell_pushes_outwards) {
 }
 END_TEST
 
+// ---- Faces that are no surface.
+
+// The four sides of two blocks that stand on each other, bits 0 … 3.
+static unsigned char *mark_sides(const Scene *scene, double width) {
+  unsigned char *inner = calloc((size_t)scene->blocks.vertex_count, 1);
+  ck_assert_ptr_nonnull(inner);
+  for (int v = 0; v < scene->blocks.vertex_count; v++)
+    for (int c = 0; c < 2; c++) {
+      double x = scene->blocks.x[3 * v + c];
+      if (fabs(x) < 1e-9) inner[v] |= (unsigned char)(1 << 2 * c);
+      if (fabs(x - width) < 1e-9) inner[v] |= (unsigned char)(2 << 2 * c);
+    }
+  return inner;
+}
+
+// The force between them, over 2 c d times their area.
+static double share_of_force(bool has_inner, double *sideways) {
+  double depth = 0.1, total[3] = {0};
+  Scene scene = {.system = NULL};
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {0, 0, -2}, .cell = {1, 1, 1}, .cells = {4, 4, 2}});
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {0, 0, -depth}, .cell = {0.8, 0.8, 0.7}, .cells = {5, 5, 3}});
+  unsigned char *inner = mark_sides(&scene, 4);
+  scene.inner = has_inner ? inner : NULL;
+  start(&scene, "clip", true);
+  double *force = forces_at(&scene, scene.blocks.x);
+  for (int k = 3 * scene.blocks.bodies[1].vertex_begin; k < 3 * scene.blocks.vertex_count; k++)
+    total[k % 3] += force[k];
+  *sideways = hypot(total[0], total[1]) / total[2];
+  free(force), free(inner), destroy(&scene);
+  return total[2] / (2 * STIFFNESS * depth * 16);
+}
+
+START_TEST(faces_of_symmetry_are_no_surface) {
+  double sideways;
+  ck_assert_near(share_of_force(true, &sideways), 1, 1e-12);
+  ck_assert(sideways <= 1e-12);
+  ck_assert(share_of_force(false, &sideways) < 0.99); // near a rim the field looks sideways
+}
+END_TEST
+
+// ---- Viscosity: a pressure η d ḋ of each of the two terms, of a shape one.
+
+START_TEST(viscosity_presses_by_depth_and_speed) {
+  double depth = 0.1, speed = 0.7, coefficient = 3, area = 4;
+  bool on_block = _i;
+  Scene scene = {.system = NULL};
+  if (on_block) {
+    blocks_add(&scene.blocks, &(BlockDef){.corner = {-4, -4, -2}, .cell = {1, 1, 1}, .cells = {8, 8, 2}});
+  } else {
+    scene.shape_count = 1;
+    scene.shape = (ContactShape){.name = "floor", .normal = {0, 0, 1}};
+  }
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {-1.1, -0.9, -depth}, .cell = {1, 1, 1}, .cells = {2, 2, 2}});
+  start(&scene, "clip", true);
+  energy_at(&scene, scene.blocks.x);
+  ContactViscosity law;
+  ContactViscosityPower power;
+  ck_assert_ok(contact_viscosity_create(&law, scene.system, coefficient));
+  const ContactBody *upper = &scene.blocks.bodies[scene.blocks.body_count - 1];
+  double total[3] = {0}, *v = calloc(3 * (size_t)scene.blocks.vertex_count, sizeof *v);
+  double *force = calloc(3 * (size_t)scene.blocks.vertex_count, sizeof *force);
+  ck_assert(v && force);
+  for (int a = upper->vertex_begin; a < upper->vertex_end; a++) v[3 * a + 2] = -speed;
+  ck_assert_ok(contact_viscosity_add_force(&law, v, force));
+  ck_assert_ok(contact_viscosity_power(&law, v, &power));
+  for (int k = 3 * upper->vertex_begin; k < 3 * upper->vertex_end; k++) total[k % 3] += force[k];
+  double expected =
+      coefficient * depth * speed * area; // of one term; the lower block's slope is 1 all over it
+  if (!on_block) ck_assert_near(total[2], expected, 1e-12 * expected);
+  if (on_block)
+    ck_assert(total[2] > 1.8 * expected && total[2] <= 2 * expected); // less at the upper one's rim
+  ck_assert_near(power.dissipated, total[2] * speed, 1e-12 * power.dissipated);
+  free(v), free(force), contact_viscosity_destroy(&law), destroy(&scene);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("field");
   tcase_add_loop_test(tests, forces_are_minus_the_gradient_of_the_energy, 0, KINDS);
@@ -420,9 +531,12 @@ int main(void) {
   tcase_add_test(tests, cells_fill_the_bodies_and_slope_by_one_on_every_outer_face);
   tcase_add_test(tests, flat_slabs_press_evenly_whatever_the_meshes);
   tcase_add_test(tests, the_pressure_does_not_depend_on_the_mesh);
+  tcase_add_test(tests, traces_tell_pressure_and_depth_at_the_surface);
   tcase_add_test(tests, sliding_past_faces_that_coincide_costs_nothing);
   tcase_add_loop_test(tests, a_tilted_face_begins_with_no_leap, 0, 5);
   tcase_add_loop_test(tests, what_is_wholly_inside_is_pushed_out, 0, 4);
   tcase_add_test(tests, a_sheet_of_one_cell_pushes_outwards);
+  tcase_add_test(tests, faces_of_symmetry_are_no_surface);
+  tcase_add_loop_test(tests, viscosity_presses_by_depth_and_speed, 0, 2);
   return suite_run("field", tests, 60);
 }

@@ -136,11 +136,77 @@ START_TEST(what_stands_weighs_m_g) {
 }
 END_TEST
 
+// ---- What holds between some two in place of what holds for all.
+
+static const char TWO_CUBES[] =
+    "time: {%s}\n"
+    "effects: {gravity: [%g, 0, -9.81], damping: 2e-3}\n"
+    "bodies:\n"
+    "  - name: one\n"
+    "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 2}}\n"
+    "    material: {law: linear, young: 1e6, poisson: 0, density: 1000}\n"
+    "    %s\n"
+    "  - name: two\n"
+    "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 2}}\n"
+    "    place: {translate: [0, 1, 0]}\n"
+    "    material: {law: linear, young: 1e6, poisson: 0, density: 1000}\n"
+    "    %s\n"
+    "obstacles: [{name: floor, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+    "contact: {potential: field, stiffness: 1e7, friction: %g, pairs: [{bodies: [%s], %s}]}\n"
+    "output: {frames: 4}\n";
+
+// p = c d under m g, with what was given to that pair in either order of names.
+START_TEST(a_pair_has_its_own_stiffness) {
+  static const char HELD[] = "fixed: [{box: {min: [-9, -9, -9], max: [9, 9, 9]}, components: [x, y]}]";
+  char text[2048];
+  snprintf(text, sizeof text, TWO_CUBES, "end: 1, static: true", 0.0, HELD, HELD, 0.0,
+           _i ? "floor, two" : "two, floor", "stiffness: 1e8");
+  SceneRun run;
+  open_text(&run, text);
+  scene_run_from(&run, NULL);
+  ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
+  for (int b = 0; b < 2; b++) {
+    double sum = 0, pressure = 1000 * 9.81 * 0.1;
+    int count = 0;
+    for (int v = run.model.bodies[b].vertex_begin; v < run.model.bodies[b].vertex_end; v++) {
+      if (run.model.rest[3 * v + 2] != 0) continue;
+      sum += scene_position(&run, 4, v)[2], count++;
+    }
+    ck_assert_int_eq(count, 9);
+    ck_assert_near(-sum / count, pressure / (b ? 1e8 : 1e7), 0.02 * pressure / (b ? 1e8 : 1e7));
+  }
+  scene_close(&run);
+}
+END_TEST
+
+// One sticks by the scene's μ, the other slides as its own says.
+START_TEST(a_pair_has_its_own_friction) {
+  double end = 0.2, pull = 2;
+  char text[2048];
+  snprintf(text, sizeof text, TWO_CUBES, "end: 0.2", pull, "", "", 0.5, "two, floor", "friction: 0");
+  SceneRun run;
+  open_text(&run, text);
+  scene_run_from(&run, NULL);
+  ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
+  for (int b = 0; b < 2; b++) {
+    double way = 0;
+    const FemModelBody *body = &run.model.bodies[b];
+    for (int v = body->vertex_begin; v < body->vertex_end; v++)
+      way += run.model.mass[v] / body->mass * (scene_position(&run, 4, v)[0] - run.model.rest[3 * v]);
+    if (b == 0) ck_assert(fabs(way) < 1e-3);
+    if (b == 1) ck_assert_near(way, 0.5 * pull * end * end, 0.01 * way);
+  }
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("field_theory");
   tcase_add_loop_test(tests, uniform_stress_passes_an_interface, 0, 2);
   tcase_add_loop_test(tests, uniform_stress_passes_between_quadratic_elements, 0, 2);
   tcase_add_loop_test(tests, uniform_stress_passes_between_curved_elements, 0, 2);
   tcase_add_loop_test(tests, what_stands_weighs_m_g, 0, 5);
+  tcase_add_loop_test(tests, a_pair_has_its_own_stiffness, 0, 2);
+  tcase_add_test(tests, a_pair_has_its_own_friction);
   return suite_run("field_theory", tests, 120);
 }

@@ -137,8 +137,11 @@ START_TEST(an_even_pressure_loads_the_middles_of_edges) {
   start(&scene, "clip", true);
   for (int v = 0; v < scene.vertex_count; v++) scene.x[3 * v + 2] -= depth;
   move(&scene);
+  double pressures[500], depths[500];
   double *force = forces_at(&scene, scene.x), face = STIFFNESS * depth / 2; // a triangle's: p times its area
   int corners = 0, middles = 0;
+  ck_assert_int_le(scene.vertex_count, 500);
+  ck_assert_ok(contact_system_trace(scene.system, pressures, depths));
   for (int v = 0; v < scene.vertex_count; v++) {
     const double *X = scene.rest + 3 * v;
     bool is_inside =
@@ -147,6 +150,8 @@ START_TEST(an_even_pressure_loads_the_middles_of_edges) {
     bool is_corner = X[0] == floor(X[0]) && X[1] == floor(X[1]);
     ck_assert_near(force[3 * v + 2], is_corner ? 0 : 2 * face / 3, 1e-3 * face);
     is_corner ? corners++ : middles++;
+    ck_assert_near(pressures[v], STIFFNESS * depth, 1e-3 * STIFFNESS * depth);
+    ck_assert_near(depths[v], depth, 1e-3 * depth);
   }
   ck_assert_int_eq(corners, (CELLS - 1) * (CELLS - 1));
   ck_assert_int_eq(middles, 3 * CELLS * CELLS - 2 * CELLS);

@@ -78,7 +78,7 @@ START_TEST(a_verdict_follows_from_the_measures) {
   app_stress_ask_least(&row, "large", NAN, 2);
   app_stress_judge(&row);
   ck_assert_int_eq(row.outcome, APP_STRESS_FAILED);
-  const AppStressLimit *limit = app_stress_limits_find("two spheres", "clip", "change of angular momentum");
+  const AppStressLimit *limit = app_stress_limits_find("two spheres", "clip", NULL, "change of angular momentum");
   ck_assert_ptr_nonnull(limit);
   row = (AppStressRow){.group = "scenes", .name = limit->name, .model = "clip"};
   app_stress_ask_most(&row, limit->measure, limit->worst / 2, 0);

@@ -32,6 +32,12 @@ static const char ROUGH[] =
     "what is wrong does not cancel between neighbouring pairs";
 static const char BALANCED[] =
     "an edge balanced on an edge is an unstable equilibrium: rounding decides to which side it slides off";
+static const char TIPS[] =
+    "a tip balanced on a tip or an edge is an unstable equilibrium, and the chosen stiffness "
+    "lets it go deeper";
+static const char MEDIAL[] =
+    "pressed in deeper than half of the finer slab's thickness, from where the other side is "
+    "nearer";
 static const char UNSYMMETRIC[] =
     "V of a network is not the same for mirror images, nor for another order of vertices: its forces err "
     "sideways, and what stands on a tip slides off";
@@ -90,16 +96,32 @@ static const AppStressLimit limits[] = {
     SLABS("flat slabs*", LEARNED, 0.045, 0.06, 0.2, 0.2, 0.21, 0.09, SIDEWAYS, AUDIT),
 };
 
+// With the potential `field`.
+static const AppStressLimit limits_of_field[] = {
+    {"spikes", NULL, "asymmetry in y", 0.09, TIPS, NULL},
+    {"spike and wedge", NULL, "asymmetry in x", 0.0016, TIPS, NULL},
+    {"flat slabs, edge ratio 1/2", NULL, "pressure against 2 c depth", 0.25, MEDIAL, NULL},
+};
+
 static bool is_named(const char *pattern, const char *name) {
   size_t length = strlen(pattern);
   if (length > 0 && pattern[length - 1] == '*') return strncmp(pattern, name, length - 1) == 0;
   return strcmp(pattern, name) == 0;
 }
 
-const AppStressLimit *app_stress_limits_find(const char *name, const char *model, const char *measure) {
-  for (size_t l = 0; l < sizeof limits / sizeof *limits; l++)
-    if (is_named(limits[l].name, name) && strcmp(limits[l].measure, measure) == 0 &&
-        (!limits[l].models || text_lists(limits[l].models, model)))
-      return &limits[l];
+static const AppStressLimit *find_in(const AppStressLimit *table, size_t count, const char *name,
+                                     const char *model, const char *measure) {
+  for (size_t l = 0; l < count; l++)
+    if (is_named(table[l].name, name) && strcmp(table[l].measure, measure) == 0 &&
+        (!table[l].models || text_lists(table[l].models, model)))
+      return &table[l];
   return NULL;
+}
+
+const AppStressLimit *app_stress_limits_find(const char *name, const char *model, const char *potential,
+                                             const char *measure) {
+  const AppStressLimit *found = NULL;
+  if (potential && strcmp(potential, "field") == 0)
+    found = find_in(limits_of_field, sizeof limits_of_field / sizeof *limits_of_field, name, model, measure);
+  return found ? found : find_in(limits, sizeof limits / sizeof *limits, name, model, measure);
 }

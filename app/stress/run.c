@@ -12,13 +12,27 @@
 #include "base/vec3.h"
 #include "fem/model/build.h"
 
-Status app_stress_run_open(AppStressRun *run, const char *file, const char *const *overrides, int count) {
+static void replace_potential(FemContactDef *contact, const char *name) {
+  if (!name || !contact->is_on || contact->potential != CONTACT_POTENTIAL_NODAL) return;
+  for (int p = 0; p < CONTACT_POTENTIAL_COUNT; p++) {
+    if (p == CONTACT_POTENTIAL_NODAL || strcmp(contact_def_potential_name((ContactPotential)p), name) != 0)
+      continue;
+    contact->potential = (ContactPotential)p;
+    contact->stiffness = 0;
+  }
+}
+
+Status app_stress_run_open(AppStressRun *run, const char *file, const char *const *overrides, int count,
+                           const char *potential) {
   char path[PATH_MAX], name[128];
   *run = (AppStressRun){0};
   snprintf(name, sizeof name, "app/stress/scenes/%s.yaml", file);
   TRY(data_find(name, path, sizeof path));
   Status status = app_scene_read(path, overrides, count, &run->scene);
-  if (!status) status = fem_model_create(&run->model, &run->scene);
+  if (!status) {
+    replace_potential(&run->scene.contact, potential);
+    status = fem_model_create(&run->model, &run->scene);
+  }
   if (status) app_stress_run_close(run);
   return status;
 }

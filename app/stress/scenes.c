@@ -62,7 +62,8 @@ static Status run_open(const AppStressScene *scene, const AppStressOptions *opti
   return STATUS_OK;
 }
 
-static Status open_with(const AppStressScene *scene, const char *model, AppStressRun *run) {
+static Status open_with(const AppStressScene *scene, const AppStressOptions *options, const char *model,
+                        AppStressRun *run) {
   const char *overrides[APP_STRESS_MAX_OVERRIDES + 1];
   char overlap[64];
   int count = 0;
@@ -70,13 +71,13 @@ static Status open_with(const AppStressScene *scene, const char *model, AppStres
     overrides[count] = scene->overrides[count];
   snprintf(overlap, sizeof overlap, "contact.overlap=%s", model);
   if (model != ANY) overrides[count++] = overlap;
-  return app_stress_run_open(run, scene->file, overrides, count);
+  return app_stress_run_open(run, scene->file, overrides, count, options->potential);
 }
 
 static Status run_case(const AppStressScene *scene, const AppStressOptions *options, const char *model,
                        AppStressRow *row) {
   AppStressRun run;
-  TRY(open_with(scene, model, &run));
+  TRY(open_with(scene, options, model, &run));
   Status status = run_open(scene, options, &run, row);
   app_stress_run_close(&run);
   return status;
@@ -85,7 +86,7 @@ static Status run_case(const AppStressScene *scene, const AppStressOptions *opti
 // Pairs that the scene asks of clip; 0: it could not be run.
 static long long pairs_of(const AppStressScene *scene, const AppStressOptions *options) {
   AppStressRun run;
-  if (open_with(scene, "clip", &run)) return 0;
+  if (open_with(scene, options, "clip", &run)) return 0;
   run.limit_s = LIMIT_S;
   run.asked_to_stop = options->stop;
   Status status = scene->run ? scene->run(&run) : app_stress_run_scene(&run);
@@ -99,6 +100,7 @@ static bool is_able(const AppStressScene *scene, const AppStressOptions *options
                     AppStressRow *row) {
   OverlapModel model;
   Status created = overlap_model_create(&model, ops->name);
+  bool has_centroid = !created && overlap_model_has_centroid(&model);
   overlap_model_destroy(&model);
   if (created) {
     app_stress_excuse(row, "%s", status_message());
@@ -106,6 +108,10 @@ static bool is_able(const AppStressScene *scene, const AppStressOptions *options
   }
   if (ops->lacks_scale) {
     app_stress_excuse(row, "its V does not follow the size of the pair: no forces");
+    return false;
+  }
+  if (options->potential && strcmp(options->potential, "field") == 0 && !has_centroid) {
+    app_stress_excuse(row, "gives no centroid, which the potential field needs");
     return false;
   }
   if (ops->seconds_per_pair < 1e-4) return true;
@@ -121,6 +127,7 @@ static Status run_row(const AppStressScene *scene, const AppStressOptions *optio
   if (options->stop && *options->stop) return status_fail(STATUS_INTERRUPTED, "interrupted");
   AppStressRow *row = app_stress_add(stress, "scenes", scene->name, ops ? ops->name : ANY);
   if (!row) return status_no_memory("the table of hard cases");
+  row->potential = options->potential;
   if (!ops || is_able(scene, options, ops, row)) {
     Status status = run_case(scene, options, row->model, row);
     if (status) {

@@ -43,6 +43,7 @@ typedef struct AppStressMeasure {
 typedef struct AppStressRow {
   const char *group; // "pairs" or "scenes"
   const char *name, *model;
+  const char *potential; // of a scene, in place of its own; NULL: that
   AppStressOutcome outcome;
   AppStressMeasure measures[APP_STRESS_MAX_MEASURES];
   int measure_count;
@@ -65,7 +66,9 @@ typedef struct AppStressOptions {
   bool has_pairs, has_scenes, is_quick;
   const char *only;   // part of a case's name; NULL: all
   const char *models; // comma-separated; NULL: all, with `is_quick` clip, geo and any
-  double limit_s;     // processor time of a scene with a model; 0: the case's own
+  // In place of `nodal`, which scenes name, at its default stiffness; NULL: as they say.
+  const char *potential;
+  double limit_s; // processor time of a scene with a model; 0: the case's own
   const volatile sig_atomic_t *stop;
   void (*observe)(void *observer, const AppStress *stress); // after each row, the last; may be NULL
   void *observer;

@@ -42,19 +42,12 @@ void contact_stick_pairs_laws(const ContactSystem *system, const double *coeffic
 
 // ---- Pairs.
 
-// The area that a pair covers: exact for flat surfaces, whatever their depth. Of a shape the depth is that of
-// the mean, half of it.
-static double area_of(const ContactFieldPair *field, bool is_shape) {
-  double depth = is_shape ? 2 * field->depths[1] : field->depths[0] + field->depths[1];
-  return depth > 0 ? field->volume / depth : 0;
-}
-
 static void hand_over(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, double before,
                       ContactStickPair *pair) {
   const ContactPair *cells = &evaluation->pairs[k];
   const ContactFieldPair *field = &evaluation->fields[k];
   int shape = layout->facings[cells->facing].shape;
-  *pair = (ContactStickPair){.interface = cells->facing, .area = area_of(field, shape >= 0)};
+  *pair = (ContactStickPair){.interface = cells->facing, .area = contact_field_area(field, shape >= 0)};
   for (int side = 0; side < 2; side++) {
     pair->tets[side] = cells->tets[side] < 0 ? -1 : contact_depth_tet(&layout->depth, cells->tets[side]);
     memcpy(pair->lambda[side], field->weights[side], sizeof pair->lambda[side]);

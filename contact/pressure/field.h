@@ -49,6 +49,13 @@ typedef struct ContactFieldPair {
   double weights[2][4]; // λ(x̄) of the vertices of the sides' tetrahedra (contact_layout_vertices)
 } ContactFieldPair;
 
+// The area that a pair covers [m²]: exact for flat surfaces, whatever their depth. Of a shape the depth is
+// that of the mean, half of it.
+static inline double contact_field_area(const ContactFieldPair *field, bool is_shape) {
+  double depth = is_shape ? 2 * field->depths[1] : field->depths[0] + field->depths[1];
+  return depth > 0 ? field->volume / depth : 0;
+}
+
 // Of a pair of cells with these coordinates (2, 4, 3), V > 0 and x̄. `gradient` (2, 4, 3): minus the force on
 // the vertices of the two tetrahedra.
 void contact_field_press(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],

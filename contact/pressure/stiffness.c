@@ -17,11 +17,13 @@ Status contact_stiffness_create(ContactStiffness *stiffness, const ContactLayout
   stiffness->hessians = memory_zeroed(PAIRS_AT_ONCE, 576 * sizeof(double));
   stiffness->volumes = memory_zeroed(PAIRS_AT_ONCE, sizeof(double));
   if (!stiffness->hessians || !stiffness->volumes) return status_no_memory("contact stiffness");
+  TRY(contact_field_stiffness_create(&stiffness->field, layout));
   return contact_patches_create(&stiffness->near, layout);
 }
 
 void contact_stiffness_destroy(ContactStiffness *stiffness) {
   contact_patches_destroy(&stiffness->near);
+  contact_field_stiffness_destroy(&stiffness->field);
   memory_free(stiffness->near_pairs);
   memory_free(stiffness->nodes);
   memory_free(stiffness->vertices);
@@ -226,39 +228,11 @@ static Status give_outer(void *self, const ContactStiffness *stiffness, double c
   return STATUS_OK;
 }
 
-// ---- The potential `field`: each pair's own matrix.
-
-static Status add_field(ContactStiffness *stiffness, const ContactLayout *layout,
-                        const ContactEvaluation *evaluation, const ContactStiffnessSink *sink) {
-  bool is_full = layout->def.use_full_hessian;
-  for (int first = 0; first < evaluation->mesh_pair_count; first += PAIRS_AT_ONCE) {
-    int left = evaluation->mesh_pair_count - first, count = left < PAIRS_AT_ONCE ? left : PAIRS_AT_ONCE;
-#pragma omp parallel for schedule(static) if (count > 64)
-    for (int k = 0; k < count; k++) {
-      double coordinates[OVERLAP_PAIR_SIZE];
-      const ContactPair *pair = &evaluation->pairs[first + k];
-      memcpy(coordinates, evaluation->coordinates + OVERLAP_PAIR_SIZE * (size_t)(first + k),
-             sizeof coordinates);
-      contact_layout_unsettle_pair(layout, pair, coordinates);
-      contact_field_bend(layout, pair, coordinates, is_full, stiffness->hessians + 576 * (size_t)k);
-    }
-    for (int k = 0; k < count; k++)
-      add_mesh_pair(sink, layout, &evaluation->pairs[first + k], 1, stiffness->hessians + 576 * (size_t)k);
-  }
-  for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
-    double matrix[144];
-    const ContactPair *pair = &evaluation->pairs[k];
-    contact_field_bend_shape(layout, pair, evaluation->time, evaluation->coordinates + 24 * (size_t)k,
-                             is_full, matrix);
-    sink->add_dense(sink->self, 4, contact_layout_vertices(layout, pair->tets[0]), matrix);
-  }
-  return STATUS_OK;
-}
-
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
                              ContactEvaluation *evaluation, const OverlapModel *model,
                              const ContactStiffnessSink *sink) {
-  if (layout->depth.has_field) return add_field(stiffness, layout, evaluation, sink);
+  if (layout->depth.has_field)
+    return contact_field_stiffness_add(&stiffness->field, layout, evaluation, sink->self, sink->add_dense);
   ContactStiffnessSink borrowed = *sink;
   if (layout->def.potential != CONTACT_POTENTIAL_LINEAR) {
     TRY(contact_patches_index(&evaluation->patches));
@@ -333,6 +307,8 @@ Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout
   for (int k = 0; k < candidates->count; k++)
     if (is_within(layout, &candidates->pairs[k], time, positions, reach))
       stiffness->near_pairs[count++] = candidates->pairs[k];
+  if (layout->depth.has_field)
+    TRY(contact_field_stiffness_thin(&stiffness->field, layout, &count, stiffness->near_pairs));
   TRY(contact_patches_build(&stiffness->near, layout, count, stiffness->near_pairs));
   TRY(contact_patches_index(&stiffness->near));
   Visit self = {visitor, visit};

@@ -10,6 +10,7 @@
 #define TETLAP_CONTACT_STIFFNESS_H
 
 #include "contact/evaluation.h"
+#include "contact/pressure/field_stiffness.h"
 
 // Where the stiffness ∂²U/∂x² goes. Each call adds a dense symmetric part over a short list of distinct
 // vertices; those of obstacles carry no unknowns and are left out.
@@ -35,6 +36,7 @@ typedef struct ContactStiffness {
   size_t node_capacity, vertex_capacity, gradient_capacity, place_capacity;
   double *hessians; //                                             (PAIRS_AT_ONCE, 24, 24)
   double *volumes;  //                                             (PAIRS_AT_ONCE)
+  ContactFieldStiffness field;
 } ContactStiffness;
 
 Status contact_stiffness_create(ContactStiffness *stiffness, const ContactLayout *layout);

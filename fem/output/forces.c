@@ -38,6 +38,12 @@ static Status create_at(FemForcesAt *at, const FemForces *forces, bool with_vert
   if (rubs && !at->rubbing) return status_no_memory("the contact forces");
   if (!with_vertices) return STATUS_OK;
   at->contact = memory_zeroed(values_of(forces), sizeof *at->contact);
+  size_t vertices = (size_t)forces->system->model->vertex_count;
+  if (forces->system->model->scene->contact.potential == CONTACT_POTENTIAL_FIELD) {
+    at->pressure = memory_zeroed(vertices, sizeof *at->pressure);
+    at->depth = memory_zeroed(vertices, sizeof *at->depth);
+    if (!at->pressure || !at->depth) return status_no_memory("the contact forces");
+  }
   if (rubs) at->friction = memory_zeroed(values_of(forces), sizeof *at->friction);
   return at->contact && (!rubs || at->friction) ? STATUS_OK : status_no_memory("the contact forces");
 }
@@ -59,6 +65,8 @@ static void destroy_at(FemForcesAt *at) {
   memory_free(at->contact);
   memory_free(at->friction);
   memory_free(at->rubbing);
+  memory_free(at->pressure);
+  memory_free(at->depth);
 }
 
 void fem_forces_destroy(FemForces *forces) {
@@ -83,7 +91,7 @@ static void take_rubbing(const FemSystem *system, int count, FemRubbing *rubbing
 }
 
 // From the state that was evaluated last.
-static void take(const FemForces *forces, FemForcesAt *at, double time) {
+static Status take(const FemForces *forces, FemForcesAt *at, double time) {
   const FemSystem *system = forces->system;
   void *friction = fem_system_effect(system, &fem_effect_friction),
        *stick = fem_system_effect(system, &fem_effect_stick),
@@ -103,24 +111,28 @@ static void take(const FemForces *forces, FemForcesAt *at, double time) {
   if (at->rubbing) take_rubbing(system, count, at->rubbing);
   if (at->contact) memcpy(at->contact, contact_system_forces(contact), values_of(forces) * sizeof(double));
   if (at->contact && viscosity) fem_effect_viscosity_add(viscosity, system->velocities, NULL, at->contact);
-  if (!at->friction) return;
+  if (at->pressure) TRY(contact_system_trace(contact, at->pressure, at->depth));
+  if (!at->friction) return STATUS_OK;
   memset(at->friction, 0, values_of(forces) * sizeof *at->friction);
   if (friction)
     contact_friction_add_force(fem_effect_friction_of(friction), system->velocities, at->friction);
   if (stick) contact_stick_add_force(fem_effect_stick_of(stick), at->friction);
+  return STATUS_OK;
 }
 
-void fem_forces_begin(FemForces *forces, double time) {
-  if (!forces->now.interfaces) return;
-  take(forces, &forces->begin, time);
+Status fem_forces_begin(FemForces *forces, double time) {
+  if (!forces->now.interfaces) return STATUS_OK;
+  TRY(take(forces, &forces->begin, time));
   forces->has_begin = true;
   forces->has_end = false;
+  return STATUS_OK;
 }
 
-void fem_forces_end(FemForces *forces, double time) {
-  if (!forces->now.interfaces) return;
-  take(forces, &forces->end, time);
+Status fem_forces_end(FemForces *forces, double time) {
+  if (!forces->now.interfaces) return STATUS_OK;
+  TRY(take(forces, &forces->end, time));
   forces->has_end = true;
+  return STATUS_OK;
 }
 
 void fem_forces_accept(FemForces *forces) {
@@ -138,14 +150,11 @@ static void mix(size_t count, double share, const double *begin, const double *e
     now[k] = isnan(begin[k]) ? end[k] : isnan(end[k]) ? begin[k] : begin[k] + share * (end[k] - begin[k]);
 }
 
-void fem_forces_set(FemForces *forces, double time) {
+Status fem_forces_set(FemForces *forces, double time) {
   const FemForcesAt *begin = &forces->begin, *end = &forces->end;
   FemForcesAt *now = &forces->now;
-  if (!now->interfaces) return;
-  if (!forces->has_begin || !forces->has_end || !(end->time > begin->time)) {
-    take(forces, now, time);
-    return;
-  }
+  if (!now->interfaces) return STATUS_OK;
+  if (!forces->has_begin || !forces->has_end || !(end->time > begin->time)) return take(forces, now, time);
   double share = fmin(fmax((time - begin->time) / (end->time - begin->time), 0), 1);
   now->time = time;
   mix(3 * (size_t)forces->interface_count, share, begin->interfaces[0], end->interfaces[0],
@@ -157,4 +166,8 @@ void fem_forces_set(FemForces *forces, double time) {
         (const double *)begin->rubbing, (const double *)end->rubbing, (double *)now->rubbing);
   if (now->contact) mix(values_of(forces), share, begin->contact, end->contact, now->contact);
   if (now->friction) mix(values_of(forces), share, begin->friction, end->friction, now->friction);
+  if (!now->pressure) return STATUS_OK;
+  mix(values_of(forces) / 3, share, begin->pressure, end->pressure, now->pressure);
+  mix(values_of(forces) / 3, share, begin->depth, end->depth, now->depth);
+  return STATUS_OK;
 }

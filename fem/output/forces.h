@@ -24,6 +24,8 @@ typedef struct FemForcesAt {
   double *contact;         // of potential and viscosity [N]; NULL: not wanted    (vertex_count, 3)
   double *friction;        // [N]; NULL: not wanted                       (vertex_count, 3)
   FemRubbing *rubbing;     // NULL: no friction                           (interface_count)
+  double *pressure; // at the surface [Pa]; NULL: not wanted, or the potential has none   (vertex_count)
+  double *depth;    // likewise [m]                                (vertex_count)
 } FemForcesAt;
 
 typedef struct FemForces {
@@ -43,13 +45,13 @@ bool fem_forces_has_friction(const FemSystem *system);
 bool fem_forces_has_stick(const FemSystem *system); // friction that knows what sticks
 
 // The state that was evaluated last is the one that a run begins or goes on from, or the end of a step.
-void fem_forces_begin(FemForces *forces, double time);
-void fem_forces_end(FemForces *forces, double time);
+Status fem_forces_begin(FemForces *forces, double time);
+Status fem_forces_end(FemForces *forces, double time);
 // The step is accepted: its end is the next one's beginning.
 void fem_forces_accept(FemForces *forces);
 
 // Fills `now`: within the step by interpolation, else, or where nothing is known of its ends, from the state
 // that was evaluated last.
-void fem_forces_set(FemForces *forces, double time);
+Status fem_forces_set(FemForces *forces, double time);
 
 #endif

@@ -226,7 +226,7 @@ Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *mea
   TRY(fem_system_energy(recorder->system, time, &measures->energy));
   measure_elements(recorder, measures);
   measure_motion(recorder->system, measures);
-  fem_forces_set(&recorder->forces, time);
+  TRY(fem_forces_set(&recorder->forces, time));
   measure_contact(recorder, measures);
   measure_steps(recorder, measures);
   ContactSystem *contact = contact_of(recorder->system);
@@ -249,7 +249,7 @@ static Status describe(FemRecorder *recorder, double time, const FemForcesAt *at
 
 Status fem_recorder_begin_step(FemRecorder *recorder, double time, const FemMeasures *measures) {
   FemLedgerState state;
-  fem_forces_begin(&recorder->forces, time);
+  TRY(fem_forces_begin(&recorder->forces, time));
   TRY(describe(recorder, time, &recorder->forces.begin, measures, &state));
   return fem_ledger_begin(&recorder->ledger, time, &state);
 }
@@ -260,14 +260,14 @@ static void tell_passages(const FemRecorder *recorder, int count, const ContactP
   state->count[FEM_TROUBLE_PASSED] = count;
   if (count == 0) return;
   const ContactInterface *interface = &interfaces_of(recorder->system, &interface_count)[first->facing];
-  state->first[FEM_TROUBLE_PASSED] = first->tet;
+  state->first[FEM_TROUBLE_PASSED] = contact_system_origin(contact_of(recorder->system), first->tet);
   state->passed[0] = interface->a;
   state->passed[1] = interface->b;
 }
 
 Status fem_recorder_end_step(FemRecorder *recorder, double time, FemMeasures *measures) {
   const ContactPassage *passage = &recorder->ledger.passage;
-  fem_forces_end(&recorder->forces, time);
+  TRY(fem_forces_end(&recorder->forces, time));
   FemLedgerState state;
   TRY(describe(recorder, time, &recorder->forces.end, measures, &state));
   TRY(fem_ledger_end(&recorder->ledger, time, &state));
@@ -342,6 +342,8 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
       {.name = "von_mises", .is_cell = true, .components = 1, .reals = recorder->von_mises},
       {.name = "trouble", .is_cell = true, .components = 1, .integers = recorder->watch.marks},
       {.name = "contact_force", .components = 3, .reals = recorder->forces.now.contact},
+      {.name = "contact_pressure", .components = 1, .reals = recorder->forces.now.pressure},
+      {.name = "contact_depth", .components = 1, .reals = recorder->forces.now.depth},
       {.name = "overlap_fraction",
        .is_cell = true,
        .components = 1,

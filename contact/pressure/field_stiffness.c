@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/pressure/field_stiffness.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "contact/pressure/field.h"
+
+// Pairs whose matrices are held at once; vertices that two elements have at most: of a star ten, four and
+// one.
+enum { PORTION = 512, MOST = 32, STRIDE = 3 * MOST };
+
+Status contact_field_stiffness_create(ContactFieldStiffness *stiffness, const ContactLayout *layout) {
+  *stiffness = (ContactFieldStiffness){0};
+  if (!layout->depth.has_field) return STATUS_OK;
+  stiffness->matrices = memory_zeroed((size_t)PORTION * 576, sizeof(double));
+  stiffness->vertices = memory_zeroed(MOST, sizeof(int));
+  stiffness->place = memory_zeroed((size_t)layout->def.vertex_count, sizeof(int));
+  stiffness->sum = memory_zeroed((size_t)STRIDE * STRIDE, sizeof(double));
+  stiffness->dense = memory_zeroed((size_t)STRIDE * STRIDE, sizeof(double));
+  bool fits =
+      stiffness->matrices && stiffness->vertices && stiffness->place && stiffness->sum && stiffness->dense;
+  return fits ? STATUS_OK : status_no_memory("contact stiffness");
+}
+
+void contact_field_stiffness_destroy(ContactFieldStiffness *stiffness) {
+  memory_free(stiffness->order);
+  memory_free(stiffness->matrices);
+  memory_free(stiffness->vertices);
+  memory_free(stiffness->place);
+  memory_free(stiffness->sum);
+  memory_free(stiffness->dense);
+  *stiffness = (ContactFieldStiffness){0};
+}
+
+size_t contact_field_stiffness_bytes(const ContactFieldStiffness *stiffness) {
+  const void *const arrays[] = {stiffness->order, stiffness->matrices, stiffness->vertices,
+                                stiffness->place, stiffness->sum,      stiffness->dense};
+  return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
+}
+
+// ---- Which pairs are of the same two elements.
+
+static int compare(const void *left, const void *right) {
+  const ContactFieldKey *a = left, *b = right;
+  if (a->facing != b->facing) return a->facing < b->facing ? -1 : 1;
+  for (int side = 0; side < 2; side++)
+    if (a->elements[side] != b->elements[side]) return a->elements[side] < b->elements[side] ? -1 : 1;
+  return (a->pair > b->pair) - (a->pair < b->pair);
+}
+
+static bool are_alike(const ContactFieldKey *a, const ContactFieldKey *b) {
+  return a->facing == b->facing && a->elements[0] == b->elements[0] && a->elements[1] == b->elements[1];
+}
+
+static Status order_pairs(ContactFieldStiffness *stiffness, const ContactLayout *layout, int count,
+                          const ContactPair *pairs) {
+  if (!memory_reserve((void **)&stiffness->order, &stiffness->order_capacity, (size_t)count,
+                      sizeof *stiffness->order))
+    return status_no_memory("contact stiffness");
+  for (int k = 0; k < count; k++) {
+    const int *cells = pairs[k].tets;
+    stiffness->order[k] = (ContactFieldKey){pairs[k].facing,
+                                            {contact_layout_origin(layout, cells[0]),
+                                             cells[1] < 0 ? -1 : contact_layout_origin(layout, cells[1])},
+                                            k};
+  }
+  if (count > 1) qsort(stiffness->order, (size_t)count, sizeof *stiffness->order, compare);
+  return STATUS_OK;
+}
+
+Status contact_field_stiffness_thin(ContactFieldStiffness *stiffness, const ContactLayout *layout, int *count,
+                                    ContactPair *pairs) {
+  int kept = 0;
+  TRY(order_pairs(stiffness, layout, *count, pairs));
+  // pairs are told by their place: one of each kind is marked, then all others are dropped in their own order
+  for (int k = 0; k < *count; k++)
+    if (k > 0 && are_alike(&stiffness->order[k], &stiffness->order[k - 1]))
+      pairs[stiffness->order[k].pair].facing = -1;
+  for (int k = 0; k < *count; k++)
+    if (pairs[k].facing >= 0) pairs[kept++] = pairs[k];
+  *count = kept;
+  return STATUS_OK;
+}
+
+// ---- The sum over the cells of two elements.
+
+static int place_of(ContactFieldStiffness *stiffness, int vertex) {
+  int *place = &stiffness->place[vertex];
+  if (*place == 0) {
+    assert(stiffness->count < MOST);
+    stiffness->vertices[stiffness->count] = vertex;
+    *place = ++stiffness->count;
+  }
+  return *place - 1;
+}
+
+// The part of a pair's matrix, of `width` rows, that belongs to sides which carry unknowns.
+static void add_pair(ContactFieldStiffness *stiffness, const ContactLayout *layout, const ContactPair *pair,
+                     const double *matrix) {
+  const double *weight = layout->facings[pair->facing].weight;
+  int places[8], count = pair->tets[1] < 0 ? 4 : 8, width = 3 * count;
+  for (int v = 0; v < count; v++)
+    places[v] = weight[v / 4] > 0
+                    ? place_of(stiffness, contact_layout_vertices(layout, pair->tets[v / 4])[v % 4])
+                    : -1;
+  for (int v = 0; v < count; v++)
+    for (int w = 0; w < count; w++) {
+      if (places[v] < 0 || places[w] < 0) continue;
+      double *to = stiffness->sum + 3 * places[v] * STRIDE + 3 * places[w];
+      const double *from = matrix + 3 * v * width + 3 * w;
+      for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) to[STRIDE * r + c] += from[width * r + c];
+    }
+}
+
+static void hand_on(ContactFieldStiffness *stiffness, void *self, ContactFieldTake take) {
+  int width = 3 * stiffness->count;
+  for (int r = 0; r < width; r++) {
+    memcpy(stiffness->dense + r * width, stiffness->sum + r * STRIDE, (size_t)width * sizeof(double));
+    memset(stiffness->sum + r * STRIDE, 0, (size_t)width * sizeof(double));
+  }
+  if (width > 0) take(self, stiffness->count, stiffness->vertices, stiffness->dense);
+  for (int k = 0; k < stiffness->count; k++) stiffness->place[stiffness->vertices[k]] = 0;
+  stiffness->count = 0;
+}
+
+// ---- All of it.
+
+static void bend(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, double *matrix) {
+  bool is_full = layout->def.use_full_hessian;
+  const ContactPair *pair = &evaluation->pairs[k];
+  double coordinates[OVERLAP_PAIR_SIZE];
+  memcpy(coordinates, evaluation->coordinates + OVERLAP_PAIR_SIZE * (size_t)k, sizeof coordinates);
+  if (pair->tets[1] < 0) {
+    contact_field_bend_shape(layout, pair, evaluation->time, coordinates, is_full, matrix);
+    return;
+  }
+  contact_layout_unsettle_pair(layout, pair, coordinates);
+  contact_field_bend(layout, pair, coordinates, is_full, matrix);
+}
+
+Status contact_field_stiffness_add(ContactFieldStiffness *stiffness, const ContactLayout *layout,
+                                   const ContactEvaluation *evaluation, void *self, ContactFieldTake take) {
+  int count = evaluation->pair_count;
+  TRY(order_pairs(stiffness, layout, count, evaluation->pairs));
+  const ContactFieldKey *order = stiffness->order;
+  for (int first = 0; first < count; first += PORTION) {
+    int end = first + PORTION < count ? first + PORTION : count;
+#pragma omp parallel for schedule(static) if (end - first > 64)
+    for (int k = first; k < end; k++)
+      bend(layout, evaluation, order[k].pair, stiffness->matrices + 576 * (size_t)(k - first));
+    for (int k = first; k < end; k++) {
+      if (k > 0 && !are_alike(&order[k], &order[k - 1])) hand_on(stiffness, self, take);
+      add_pair(stiffness, layout, &evaluation->pairs[order[k].pair],
+               stiffness->matrices + 576 * (size_t)(k - first));
+    }
+  }
+  hand_on(stiffness, self, take);
+  return STATUS_OK;
+}
