@@ -362,7 +362,7 @@ START_TEST(a_failed_allocation_is_an_error) {
     ck_assert_int_eq(status, STATUS_MEMORY);
     failures++;
   }
-  ck_assert_int_eq(failures, 9); // the effect, and four lists for each of two kinds of elements
+  ck_assert_int_eq(failures, 16); // the effect, and four lists for each of two kinds of elements
   ck_assert_ok(ops->create(&effect, &scene.model));
   lay_out(&scene, ops, effect);
   FemState state = state_of(&scene);

@@ -12,7 +12,7 @@ enum { CHUNK = 256 };
 enum { MOST = 3 * FEM_QUADRATIC_NODES };
 // Below this many elements one thread does it all: a colour is a barrier, and some thirty of them, on a
 // machine that others use too, take longer than the millisecond of work that a second thread would save.
-enum { FEW_FORCES = 20000, FEW_MATRICES = 4000 };
+enum { FEW_FORCES = 20000, FEW_MATRICES = 4000, FEW_IN_LANES = 60000, FEW_MATRICES_IN_LANES = 16000 };
 
 static int chunk_count(const FemAssemblyList *list) {
   return (list->count + CHUNK - 1) / CHUNK;
@@ -34,14 +34,12 @@ static Status select_elements(FemAssemblyList *list, const FemModel *model, cons
   size_t most = all->colour_count > 0 ? (size_t)all->begin[all->colour_count] : 0;
   own->begin = memory_zeroed((size_t)all->colour_count + 1, sizeof *own->begin);
   own->tets = memory_zeroed(most, sizeof *own->tets);
-  list->elements = memory_zeroed(is_quadratic ? 0 : most, sizeof *list->elements);
-  if (!own->begin || !own->tets || !list->elements) return status_no_memory("the list of elements");
+  if (!own->begin || !own->tets) return status_no_memory("the list of elements");
   for (int colour = 0; colour < all->colour_count; colour++) {
     own->begin[colour] = list->count;
     for (int i = all->begin[colour]; i < all->begin[colour + 1]; i++) {
       const FemModelBody *body = &model->bodies[list->body[all->tets[i]]];
       if ((takes && !takes(body)) || (body->element == FEM_ELEMENT_QUADRATIC) != is_quadratic) continue;
-      if (!is_quadratic) list->elements[list->count] = model->elements[all->tets[i]];
       own->tets[list->count++] = all->tets[i];
     }
   }
@@ -54,6 +52,7 @@ static Status select_elements(FemAssemblyList *list, const FemModel *model, cons
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
                            bool (*takes)(const FemModelBody *body)) {
   *assembly = (FemAssembly){.model = model};
+  TRY(fem_packs_create(&assembly->packs, model, takes));
   assembly->lists[0] =
       (FemAssemblyList){.node_count = 4, .nodes = (const int *)model->tets, .body = model->tet_body};
   TRY(select_elements(&assembly->lists[0], model, &model->colouring, false, takes));
@@ -64,11 +63,11 @@ Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
 }
 
 void fem_assembly_destroy(FemAssembly *assembly) {
+  fem_packs_destroy(&assembly->packs);
   for (int k = 0; k < 2; k++) {
     FemAssemblyList *list = &assembly->lists[k];
     memory_free(list->colouring.begin);
     memory_free(list->colouring.tets);
-    memory_free(list->elements);
     memory_free(list->partial);
     memory_free(list->slots);
   }
@@ -76,11 +75,11 @@ void fem_assembly_destroy(FemAssembly *assembly) {
 }
 
 size_t fem_assembly_bytes(const FemAssembly *assembly) {
-  size_t bytes = 0;
+  size_t bytes = fem_packs_bytes(&assembly->packs);
   for (int k = 0; k < 2; k++) {
     const FemAssemblyList *list = &assembly->lists[k];
     bytes += memory_held(list->colouring.begin) + memory_held(list->colouring.tets) +
-             memory_held(list->elements) + memory_held(list->partial) + memory_held(list->slots);
+             memory_held(list->partial) + memory_held(list->slots);
   }
   return bytes;
 }
@@ -101,7 +100,7 @@ static inline void gather(const FemAssembly *assembly, const FemAssemblyList *li
   int number = list->colouring.tets[i];
   bool is_linear = list->node_count == 4;
   const int *nodes = list->nodes + (size_t)list->node_count * (size_t)number;
-  e->element = is_linear ? &list->elements[i] : NULL;
+  e->element = is_linear ? &model->elements[number] : NULL;
   e->quadratic = is_linear ? NULL : &model->quadratics[number];
   e->body = &model->bodies[list->body[number]];
   for (int a = 0; a < list->node_count; a++) {
@@ -132,10 +131,67 @@ static void add_forces(const FemAssembly *assembly, const FemAssemblyList *list,
   }
 }
 
-void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state, FemAssemblyForce *kernel,
-                             double *force) {
-  for (int k = 0; k < 2; k++)
-    if (assembly->lists[k].count > 0) add_forces(assembly, &assembly->lists[k], state, kernel, force);
+// One lane of a pack as an element, whose copy `element` holds.
+static void unpack(const FemAssemblyPack *pack, int lane, FemElement *element, FemAssemblyElement *e) {
+  *element = fem_lanes_element(pack->elements, lane);
+  e->element = element;
+  e->quadratic = NULL;
+  e->body = pack->body;
+  for (int a = 0; a < 4; a++) {
+    size_t dof = 3 * (size_t)pack->elements->node[a][lane];
+    for (int c = 0; c < 3; c++) {
+      e->x[3 * a + c] = pack->positions[dof + (size_t)c];
+      e->v[3 * a + c] = pack->velocities[dof + (size_t)c];
+    }
+  }
+}
+
+static void find_forces(const FemAssemblyKernels *kernels, const FemAssemblyPack *pack,
+                        FemLanesRow force[12]) {
+  if (kernels->has_lanes(pack->body)) {
+    kernels->pack_force(pack, force);
+    return;
+  }
+  for (int l = 0; l < pack->elements->count; l++) {
+    FemAssemblyElement e;
+    FemElement element;
+    double own[12];
+    unpack(pack, l, &element, &e);
+    kernels->force(&e, own);
+    for (int r = 0; r < 12; r++) force[r][l] = own[r];
+  }
+}
+
+static FemAssemblyPack pack_of(const FemAssembly *assembly, const FemState *state, int body) {
+  return (FemAssemblyPack){.lanes = fem_lanes(),
+                           .body = &assembly->model->bodies[body],
+                           .positions = state->positions,
+                           .velocities = state->velocities};
+}
+
+static void add_chunk_forces(const FemAssembly *assembly, const FemState *state,
+                             const FemAssemblyKernels *kernels, int chunk, double *force) {
+  const FemPacks *packs = &assembly->packs;
+  FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_body[chunk]);
+  if (pack.body->is_held) return;
+  for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++) {
+    FemLanesRow own[12];
+    pack.elements = &packs->packs[p];
+    find_forces(kernels, &pack, own);
+    pack.lanes->scatter_force(pack.elements, own, force);
+  }
+}
+
+void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state,
+                             const FemAssemblyKernels *kernels, double *force) {
+  const FemPacks *packs = &assembly->packs;
+#pragma omp parallel if (packs->tet_count > FEW_IN_LANES)
+  for (int colour = 0; colour < packs->colour_count; colour++) {
+#pragma omp for schedule(static)
+    for (int chunk = packs->colour_begin[colour]; chunk < packs->colour_begin[colour + 1]; chunk++)
+      add_chunk_forces(assembly, state, kernels, chunk, force);
+  }
+  if (assembly->lists[1].count > 0) add_forces(assembly, &assembly->lists[1], state, kernels->force, force);
 }
 
 // An entry and its mirror image are one number, and at most one of the two has a place in the matrix.
@@ -158,7 +214,8 @@ static Status find_slots_of(FemAssemblyList *list, const FemMatrix *matrix) {
 
 static Status find_slots(FemAssembly *assembly, const FemMatrix *matrix) {
   if (assembly->layout == matrix->layout) return STATUS_OK;
-  for (int k = 0; k < 2; k++) TRY(find_slots_of(&assembly->lists[k], matrix));
+  TRY(fem_packs_find_slots(&assembly->packs, matrix));
+  TRY(find_slots_of(&assembly->lists[1], matrix));
   assembly->layout = matrix->layout;
   return STATUS_OK;
 }
@@ -187,12 +244,71 @@ static void add_matrices(const FemAssembly *assembly, const FemAssemblyList *lis
   }
 }
 
-Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state, FemAssemblyMatrix *kernel,
-                                 double stiffness_scale, double damping_scale, FemMatrix *matrix) {
+static void find_matrices(const FemAssemblyKernels *kernels, const FemAssemblyPack *pack,
+                          double stiffness_scale, double damping_scale,
+                          FemLanesRow matrix[FEM_LANES_ENTRIES]) {
+  if (kernels->has_lanes(pack->body)) {
+    kernels->pack_matrix(pack, stiffness_scale, damping_scale, matrix);
+    return;
+  }
+  for (int l = 0; l < pack->elements->count; l++) {
+    FemAssemblyElement e;
+    FemElement element;
+    double own[144];
+    unpack(pack, l, &element, &e);
+    kernels->matrix(&e, stiffness_scale, damping_scale, own);
+    fem_lanes_pack(own, l, matrix);
+  }
+}
+
+// Elements of which a coordinate is prescribed have no whole blocks.
+static void add_partial_matrices(const FemLanesElements *elements, const int slots[FEM_LANES],
+                                 FemLanesRow own[FEM_LANES_ENTRIES], FemMatrix *matrix) {
+  for (int l = 0; l < elements->count; l++) {
+    if (slots[l] >= 0) continue;
+    double dense[144];
+    int vertices[4];
+    for (int a = 0; a < 4; a++) vertices[a] = elements->node[a][l];
+    fem_lanes_unpack(own, l, dense);
+    fem_matrix_add(matrix, 4, vertices, dense, 1);
+  }
+}
+
+static void add_chunk_matrices(const FemAssembly *assembly, const FemState *state,
+                               const FemAssemblyKernels *kernels, double stiffness_scale,
+                               double damping_scale, int chunk, FemMatrix *matrix) {
+  const FemPacks *packs = &assembly->packs;
+  FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_body[chunk]);
+  if (pack.body->is_held) return;
+  for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++) {
+    FemLanesRow own[FEM_LANES_ENTRIES];
+    pack.elements = &packs->packs[p];
+    find_matrices(kernels, &pack, stiffness_scale, damping_scale, own);
+    pack.lanes->scatter_matrix(pack.elements, packs->slots[p], own, matrix->value);
+    add_partial_matrices(pack.elements, packs->slots[p][0], own, matrix);
+  }
+}
+
+static void add_packed_matrices(const FemAssembly *assembly, const FemState *state,
+                                const FemAssemblyKernels *kernels, double stiffness_scale,
+                                double damping_scale, FemMatrix *matrix) {
+  const FemPacks *packs = &assembly->packs;
+#pragma omp parallel if (packs->tet_count > FEW_MATRICES_IN_LANES)
+  for (int colour = 0; colour < packs->colour_count; colour++) {
+#pragma omp for schedule(static)
+    for (int chunk = packs->colour_begin[colour]; chunk < packs->colour_begin[colour + 1]; chunk++)
+      add_chunk_matrices(assembly, state, kernels, stiffness_scale, damping_scale, chunk, matrix);
+  }
+}
+
+Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state,
+                                 const FemAssemblyKernels *kernels, double stiffness_scale,
+                                 double damping_scale, FemMatrix *matrix) {
   TRY(find_slots(assembly, matrix));
-  for (int k = 0; k < 2; k++)
-    if (assembly->lists[k].count > 0)
-      add_matrices(assembly, &assembly->lists[k], state, kernel, stiffness_scale, damping_scale, matrix);
+  add_packed_matrices(assembly, state, kernels, stiffness_scale, damping_scale, matrix);
+  if (assembly->lists[1].count > 0)
+    add_matrices(assembly, &assembly->lists[1], state, kernels->matrix, stiffness_scale, damping_scale,
+                 matrix);
   return STATUS_OK;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sums over elements: what an effect that lives on tetrahedra (elasticity, damping) shares. The effect gives
-// a kernel for one element; here is the gathering, the adding by colours, and where entries of the matrix
-// lie. Every sum has a fixed order: results are the same to the last bit for any number of threads.
+// kernels; here is the gathering, the adding by colours, and where entries of the matrix lie. Linear elements
+// go through vector lanes where the effect has kernels for them, eight at a time (fem/effect/packs.h). Every
+// sum has a fixed order: results are the same to the last bit for any number of threads.
 #ifndef TETLAP_FEM_EFFECT_ASSEMBLY_H
 #define TETLAP_FEM_EFFECT_ASSEMBLY_H
 
@@ -9,6 +10,7 @@
 #include <stddef.h>
 
 #include "fem/effect/effect.h"
+#include "fem/effect/packs.h"
 
 // One element as a kernel sees it: of n = 4 vertices, or quadratic with n = 10 nodes.
 typedef struct FemAssemblyElement {
@@ -18,11 +20,29 @@ typedef struct FemAssemblyElement {
   double x[30], v[30]; // positions [m] and velocities [m/s] of its nodes (n, 3)
 } FemAssemblyElement;
 
+// Eight linear elements of a body.
+typedef struct FemAssemblyPack {
+  const FemLanes *lanes; // the kernels of this processor
+  const FemLanesElements *elements;
+  const FemModelBody *body;
+  const double *positions, *velocities; // of all vertices
+} FemAssemblyPack;
+
 typedef double FemAssemblyScalar(const FemAssemblyElement *e);
 typedef void FemAssemblyForce(const FemAssemblyElement *e, double *force); // (n, 3)
 // matrix = stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, (3n, 3n).
 typedef void FemAssemblyMatrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
                                double *matrix);
+
+// An effect's kernels: for any element, and for packs of those whose body has_lanes accepts.
+typedef struct FemAssemblyKernels {
+  FemAssemblyForce *force;
+  FemAssemblyMatrix *matrix;
+  bool (*has_lanes)(const FemModelBody *body);
+  void (*pack_force)(const FemAssemblyPack *pack, FemLanesRow force[12]);
+  void (*pack_matrix)(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
+                      FemLanesRow matrix[FEM_LANES_ENTRIES]);
+} FemAssemblyKernels;
 
 // The elements of one kind.
 typedef struct FemAssemblyList {
@@ -31,14 +51,14 @@ typedef struct FemAssemblyList {
   const int *body;        // of each of them, borrowed
   FemColouring colouring; // the model's, without the bodies that take no part
   int count;
-  FemElement *elements; // linear ones: copies in the order of the colouring, in which they are read  (count)
-  double *partial;      // sums of chunks of elements                                      (chunk_count)
-  int *slots; // of the lower half of each element matrix, by rows; −1: none     (count, 3n (3n + 1) / 2)
+  double *partial; // sums of chunks of elements                                      (chunk_count)
+  int *slots; // quadratic: of the lower half of each matrix, by rows; −1: none  (count, 3n (3n + 1) / 2)
 } FemAssemblyList;
 
 typedef struct FemAssembly {
   const FemModel *model;    // borrowed
-  FemAssemblyList lists[2]; // linear, quadratic
+  FemPacks packs;           // the linear ones: forces and matrices
+  FemAssemblyList lists[2]; // linear (sums alone), quadratic
   long long layout;         // of the matrix that `slots` belong to; 0: not looked up
 } FemAssembly;
 
@@ -51,11 +71,12 @@ size_t fem_assembly_bytes(const FemAssembly *assembly); // on the heap
 
 // Each element couples its nodes.
 Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown);
-void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state, FemAssemblyForce *kernel,
-                             double *force);
+void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state,
+                             const FemAssemblyKernels *kernels, double *force);
 // Looks up the slots first if the matrix has been laid out anew (the first time allocates them).
-Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state, FemAssemblyMatrix *kernel,
-                                 double stiffness_scale, double damping_scale, FemMatrix *matrix);
+Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state,
+                                 const FemAssemblyKernels *kernels, double stiffness_scale,
+                                 double damping_scale, FemMatrix *matrix);
 double fem_assembly_sum(FemAssembly *assembly, const FemState *state, FemAssemblyScalar *kernel);
 
 #endif

@@ -47,11 +47,6 @@ static void element_force(const FemAssemblyElement *e, double *force) {
     fem_quadratic_damping_force(e->quadratic, &e->body->local, e->body->damping, e->x, e->v, force);
 }
 
-static Status add_force(void *self, const FemState *state, double *force) {
-  fem_assembly_add_forces(self, state, element_force, force);
-  return STATUS_OK;
-}
-
 static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
                            double *matrix) {
   const FemMaterial *material = &e->body->local;
@@ -72,10 +67,35 @@ static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, 
   }
 }
 
+static bool has_lanes(const FemModelBody *body) {
+  (void)body;
+  return true;
+}
+
+static void pack_force(const FemAssemblyPack *pack, FemLanesRow force[12]) {
+  const FemModelBody *body = pack->body;
+  pack->lanes->damping_force(&body->local, body->damping, pack->elements, pack->positions, pack->velocities,
+                             force);
+}
+
+static void pack_matrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
+                        FemLanesRow matrix[FEM_LANES_ENTRIES]) {
+  const FemModelBody *body = pack->body;
+  pack->lanes->damping_matrix(&body->local, body->damping, pack->elements, pack->positions, pack->velocities,
+                              stiffness_scale, damping_scale, matrix);
+}
+
+static const FemAssemblyKernels kernels = {element_force, element_matrix, has_lanes, pack_force, pack_matrix};
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  fem_assembly_add_forces(self, state, &kernels, force);
+  return STATUS_OK;
+}
+
 static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
                            FemMatrix *matrix) {
   if (stiffness_scale == 0 && damping_scale == 0) return STATUS_OK;
-  return fem_assembly_add_matrices(self, state, element_matrix, stiffness_scale, damping_scale, matrix);
+  return fem_assembly_add_matrices(self, state, &kernels, stiffness_scale, damping_scale, matrix);
 }
 
 static double element_power(const FemAssemblyElement *e) {

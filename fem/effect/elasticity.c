@@ -40,11 +40,6 @@ static void element_force(const FemAssemblyElement *e, double *force) {
     fem_quadratic_force(e->quadratic, law_of(e->body), e->x, force);
 }
 
-static Status add_force(void *self, const FemState *state, double *force) {
-  fem_assembly_add_forces(self, state, element_force, force);
-  return STATUS_OK;
-}
-
 static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
                            double *matrix) {
   (void)damping_scale;
@@ -55,10 +50,31 @@ static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, 
   for (int k = 0; k < (e->element ? 144 : 900); k++) matrix[k] *= stiffness_scale;
 }
 
+static bool has_lanes(const FemModelBody *body) {
+  return fem_lanes_has(&body->local);
+}
+
+static void pack_force(const FemAssemblyPack *pack, FemLanesRow force[12]) {
+  pack->lanes->force(&pack->body->local, pack->elements, pack->positions, force);
+}
+
+static void pack_matrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
+                        FemLanesRow matrix[FEM_LANES_ENTRIES]) {
+  (void)damping_scale;
+  pack->lanes->matrix(&pack->body->local, pack->elements, pack->positions, stiffness_scale, matrix);
+}
+
+static const FemAssemblyKernels kernels = {element_force, element_matrix, has_lanes, pack_force, pack_matrix};
+
+static Status add_force(void *self, const FemState *state, double *force) {
+  fem_assembly_add_forces(self, state, &kernels, force);
+  return STATUS_OK;
+}
+
 static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
                            FemMatrix *matrix) {
   if (stiffness_scale == 0) return STATUS_OK;
-  return fem_assembly_add_matrices(self, state, element_matrix, stiffness_scale, damping_scale, matrix);
+  return fem_assembly_add_matrices(self, state, &kernels, stiffness_scale, damping_scale, matrix);
 }
 
 static double element_energy(const FemAssemblyElement *e) {

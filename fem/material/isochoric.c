@@ -5,17 +5,12 @@
 
 #include "fem/material/cofactor.h"
 
-// g = J^(−2/3), less 1, with its derivatives by J.
-typedef struct Power {
-  double less_one, slope, bend;
-} Power;
-
-static Power power_of(double swelling) {
+FemMaterialPower fem_material_isochoric_power(double swelling) {
   const double least = FEM_MATERIAL_ISOCHORIC_SMALLEST, e = -2.0 / 3;
   double J = fmax(1 + swelling, least), x = 1 + swelling - J; // x < 0 on the parabola
   double g = pow(J, e), slope = e * g / J, bend = e * (e - 1) * g / (J * J);
   double less_one = x < 0 ? g - 1 : expm1(e * log1p(swelling));
-  return (Power){less_one + slope * x + 0.5 * bend * x * x, slope + bend * x, bend};
+  return (FemMaterialPower){less_one + slope * x + 0.5 * bend * x * x, slope + bend * x, bend};
 }
 
 // I_C − 3 from the displacement gradient.
@@ -36,7 +31,7 @@ static double bulk_of(FemLame lame) {
 double fem_material_isochoric_energy(const FemMaterial *material, const double F[9]) {
   FemLame lame = fem_material_lame(material);
   double swelling = fem_cofactor_swelling(F), stretch = stretch_of(F);
-  Power g = power_of(swelling);
+  FemMaterialPower g = fem_material_isochoric_power(swelling);
   return 0.5 * lame.mu * (stretch + g.less_one * (stretch + 3)) + 0.5 * bulk_of(lame) * swelling * swelling;
 }
 
@@ -44,7 +39,7 @@ double fem_material_isochoric_energy(const FemMaterial *material, const double F
 void fem_material_isochoric_stress(const FemMaterial *material, const double F[9], double P[9]) {
   FemLame lame = fem_material_lame(material);
   double C[9], swelling = fem_cofactor_swelling(F);
-  Power g = power_of(swelling);
+  FemMaterialPower g = fem_material_isochoric_power(swelling);
   double weight = 0.5 * lame.mu * g.slope * (stretch_of(F) + 3) + bulk_of(lame) * swelling;
   fem_cofactor_find(F, C);
   for (int r = 0; r < 9; r++) P[r] = lame.mu * (1 + g.less_one) * F[r] + weight * C[r];
@@ -55,7 +50,7 @@ void fem_material_isochoric_stress(const FemMaterial *material, const double F[9
 void fem_material_isochoric_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
   FemLame lame = fem_material_lame(material);
   double C[9], swelling = fem_cofactor_swelling(F), I = stretch_of(F) + 3;
-  Power g = power_of(swelling);
+  FemMaterialPower g = fem_material_isochoric_power(swelling);
   double outer = 0.5 * lame.mu * g.bend * I + bulk_of(lame), mixed = lame.mu * g.slope;
   fem_cofactor_find(F, C);
   for (int r = 0; r < 9; r++) {

@@ -10,6 +10,12 @@
 // inverted element back.
 #define FEM_MATERIAL_ISOCHORIC_SMALLEST 0.05
 
+// J^(−2/3), less 1, with its derivatives by J.
+typedef struct FemMaterialPower {
+  double less_one, slope, bend;
+} FemMaterialPower;
+FemMaterialPower fem_material_isochoric_power(double swelling); // of J − 1
+
 double fem_material_isochoric_energy(const FemMaterial *material, const double F[9]);
 void fem_material_isochoric_stress(const FemMaterial *material, const double F[9], double P[9]);
 void fem_material_isochoric_tangent(const FemMaterial *material, const double F[9], double dP[81]);

@@ -301,6 +301,22 @@ void fem_matrix_slots(const FemMatrix *matrix, int count, const int *vertices, i
     }
 }
 
+bool fem_matrix_block_slots(const FemMatrix *matrix, const int vertices[4], int slots[14]) {
+  static const int first[6] = {0, 0, 0, 1, 1, 2}, second[6] = {1, 2, 3, 2, 3, 3};
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  for (int a = 0; a < 4; a++) {
+    if (blocks->active[vertices[a]] < 3) return false;
+    const int *begin = matrix->col_begin + blocks->first[vertices[a]];
+    slots[a] = begin[0];
+    slots[10 + a] = begin[1] - begin[0];
+  }
+  for (int p = 0; p < 6; p++) {
+    int v = vertices[first[p]];
+    slots[4 + p] = block_rows(blocks, v, 0, find_block(blocks, v, vertices[second[p]]));
+  }
+  return true;
+}
+
 void fem_matrix_add_mass(FemMatrix *matrix, const double *mass, double scale) {
   for (int dof = 0; dof < 3 * matrix->vertex_count; dof++) {
     int unknown = matrix->unknown_of_dof[dof];

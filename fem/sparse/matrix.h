@@ -9,6 +9,8 @@
 #ifndef TETLAP_FEM_SPARSE_MATRIX_H
 #define TETLAP_FEM_SPARSE_MATRIX_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 #include "fem/sparse/pattern.h"
 
@@ -44,6 +46,12 @@ void fem_matrix_add_outer(FemMatrix *matrix, int count, const int *vertices, con
 // The same with `slots` looked up once for an element of n = 3 count coordinates: value[slots[n i + j]] is
 // entry (i, j) of the (n × n) element matrix, −1: no entry (upper or prescribed).
 void fem_matrix_slots(const FemMatrix *matrix, int count, const int *vertices, int *slots);
+// For four vertices in ascending order that have all their coordinates: where the lower triangle of each
+// vertex' own block begins (4), then the blocks of the pairs 01, 02, 03, 12, 13, 23 (6), then how long the
+// first column of each vertex is (4). The second column of a block lies by that length less 1 behind the
+// first, the third by that less 2 behind the second; of an own block by the length and by the length less 1.
+// False: a coordinate is prescribed.
+bool fem_matrix_block_slots(const FemMatrix *matrix, const int vertices[4], int slots[14]);
 // matrix += scale · diag(m) over all unknowns, m by vertex (vertex_count).
 void fem_matrix_add_mass(FemMatrix *matrix, const double *mass, double scale);
 

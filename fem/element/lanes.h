@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Linear tetrahedra in vector lanes: forces and matrices of eight elements of one body at once, a lane an
+// element. The formulas are those of fem/element/element.h and fem/material, with the fourth-order tangent
+// never formed: contracted with two nodes' gradients g_a, g_b, its terms are outer products of F g and cof F
+// g,
+//
+//   ∂P/∂F            between nodes a and b
+//   I                g_a·g_b I
+//   F ⊗ F            (F g_a)(F g_b)ᵀ
+//   cof F ⊗ cof F    (cof F g_a)(cof F g_b)ᵀ
+//   ∂cof F/∂F        skew matrix with entries ε_ikm (F (g_a × g_b))_m
+//   F C Fᵀ           μ (g_a·g_b F Fᵀ + (F g_b)(F g_a)ᵀ) + λ (F g_a)(F g_b)ᵀ
+//   S on the right   (g_a·S g_b) I
+//
+// The same source is compiled for each instruction set. A lane's result depends on its element alone.
+#ifndef TETLAP_FEM_ELEMENT_LANES_H
+#define TETLAP_FEM_ELEMENT_LANES_H
+
+#include "fem/element/element.h"
+
+enum {
+  FEM_LANES = 8,
+  FEM_LANES_ENTRIES = 78, // of the lower half of an element's matrix
+  FEM_LANES_SLOTS = 14,
+};
+
+typedef double FemLanesRow[FEM_LANES];
+
+// Eight elements with their nodes in ascending order. Lanes beyond the last element repeat it, and are not
+// added.
+typedef struct FemLanesElements {
+  FemLanesRow gradient[9]; // ∂N_a/∂X_j at 3 (a − 1) + j, a = 1, 2, 3 [1/m]
+  FemLanesRow volume;      // at rest [m³]
+  int node[4][FEM_LANES];
+  int count;  // of elements, 1 … 8
+  int tet[8]; // the model's numbers
+} FemLanesElements;
+
+// The matrix's order: of nodes 0 … 3 the columns of their own lower triangle, then of the pairs 01, 02, 03,
+// 12, 13, 23 the columns of the first, three rows of the second each. A slot is where such a block's first
+// entry lies; the last four are how long the first column of each node is.
+typedef struct FemLanes {
+  const char *name;
+  // positions and velocities (vertices, 3); force (12) by node and coordinate.
+  void (*force)(const FemMaterial *material, const FemLanesElements *e, const double *positions,
+                FemLanesRow force[12]);
+  void (*matrix)(const FemMaterial *material, const FemLanesElements *e, const double *positions,
+                 double scale, FemLanesRow matrix[FEM_LANES_ENTRIES]);
+  void (*damping_force)(const FemMaterial *material, double beta, const FemLanesElements *e,
+                        const double *positions, const double *velocities, FemLanesRow force[12]);
+  // stiffness_scale · (symmetric part of −∂f/∂x) + damping_scale · (−∂f/∂v).
+  void (*damping_matrix)(const FemMaterial *material, double beta, const FemLanesElements *e,
+                         const double *positions, const double *velocities, double stiffness_scale,
+                         double damping_scale, FemLanesRow matrix[FEM_LANES_ENTRIES]);
+  // Adds lanes in ascending order. A slot −1 in the first row: that lane is left out.
+  void (*scatter_force)(const FemLanesElements *e, FemLanesRow force[12], double *to);
+  void (*scatter_matrix)(const FemLanesElements *e, int slots[FEM_LANES_SLOTS][FEM_LANES],
+                         FemLanesRow matrix[FEM_LANES_ENTRIES], double *value);
+} FemLanes;
+
+// Whether a material's elastic forces have lanes; damping's always do.
+bool fem_lanes_has(const FemMaterial *material);
+
+// The widest that this processor has; all that it has, in an array of `*count`.
+const FemLanes *fem_lanes(void);
+const FemLanes *const *fem_lanes_list(int *count);
+
+// One lane as fem/element/element.h has it, nodes in the order of the lane: its element, and its matrix both
+// ways.
+FemElement fem_lanes_element(const FemLanesElements *e, int lane);
+void fem_lanes_unpack(FemLanesRow matrix[FEM_LANES_ENTRIES], int lane, double dense[144]);
+void fem_lanes_pack(const double dense[144], int lane, FemLanesRow matrix[FEM_LANES_ENTRIES]);
+
+extern const FemLanes fem_lanes_portable;
+#if defined(__x86_64__)
+extern const FemLanes fem_lanes_avx2, fem_lanes_avx512;
+#endif
+
+#endif
