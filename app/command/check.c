@@ -11,17 +11,21 @@
 #include "base/record.h"
 #include "base/text.h"
 #include "fem/effect/effect.h"
+#include "fem/measure/thickness.h"
 #include "fem/model/compliance.h"
 #include "fem/run/start.h"
 #include "fem/sparse/solver.h"
 
-enum { MAX_NOTES = 16, MAX_OVERLAPS = 6 };
+enum { MAX_NOTES = 24, MAX_OVERLAPS = 6, MAX_THIN = 6 };
+// Elements through the thickness from which on linear ones bend as they should, roughly.
+static const double ENOUGH_LAYERS = 3.5;
 
 // What the scene's author may not have meant.
 typedef struct Notes {
   const char *texts[MAX_NOTES];
   int count;
   char overlaps[MAX_OVERLAPS][512];
+  char thin[MAX_THIN][512];
 } Notes;
 
 static void note(Notes *notes, bool is_true, const char *text) {
@@ -77,6 +81,25 @@ static Status note_overlaps(const AppJob *job, Notes *notes) {
   }
   fem_system_destroy(&system);
   return status;
+}
+
+// Bodies that bend and have too few elements for it; quadratic ones need but one.
+static Status note_thin(const AppJob *job, Notes *notes) {
+  const FemSceneDef *scene = &job->scene;
+  for (int b = 0, k = 0; b < scene->body_count && k < MAX_THIN; b++) {
+    FemThickness found;
+    if (scene->bodies[b].element == FEM_ELEMENT_QUADRATIC) continue;
+    TRY(fem_thickness_find(&job->model, b, &found));
+    if (!found.is_slender || !(found.layers < ENOUGH_LAYERS)) continue;
+    snprintf(notes->thin[k], sizeof notes->thin[k],
+             "'%s' is slender, %.3g m thick, and has about %.0f linear %s through that: it bends too "
+             "stiffly; take element: "
+             "quadratic, or four layers or more",
+             scene->bodies[b].name, found.thickness, fmax(1, round(found.layers)),
+             round(found.layers) > 1 ? "elements" : "element");
+    note(notes, true, notes->thin[k++]);
+  }
+  return STATUS_OK;
 }
 
 static Notes take_notes(const AppJob *job) {
@@ -294,6 +317,7 @@ static Status check(const AppJobOptions *options) {
   TRY(app_job_open(&job, options, NULL, NULL));
   Notes notes = take_notes(&job);
   Status status = job.scene.contact.is_on ? note_overlaps(&job, &notes) : STATUS_OK;
+  if (!status) status = note_thin(&job, &notes);
   if (status) {
     app_job_close(&job);
     return status;

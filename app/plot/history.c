@@ -14,9 +14,10 @@ typedef struct History {
   char names[MAX_COLUMNS][MAX_NAME];
   double largest[MAX_COLUMNS]; // absolute value
   int count;
+  int row_count;
 } History;
 
-static const char *const hues[] = {"#2f6fc4", "#d2691e", "#2a8f78", "#8a56b8", "#b8487a"};
+static const char *const hues[] = {"#2f6fc4", "#d2691e", "#2a8f78", "#8a56b8", "#b8487a", "#8a7a1f"};
 
 static void read_names(History *history, const char *line, size_t length) {
   for (const char *end = line + length; line < end && history->count < MAX_COLUMNS; line++) {
@@ -41,7 +42,10 @@ static Status read_history(History *history, const AppReportRun *run) {
   if (!text || !strchr(text, '\n'))
     return status_fail(STATUS_INPUT, "%s: has no history.csv to plot", run->directory);
   read_names(history, text, strcspn(text, "\n"));
-  for (text = strchr(text, '\n'); text && text[1]; text = strchr(text + 1, '\n')) read_row(history, text + 1);
+  for (text = strchr(text, '\n'); text && text[1]; text = strchr(text + 1, '\n')) {
+    read_row(history, text + 1);
+    history->row_count++;
+  }
   return STATUS_OK;
 }
 
@@ -86,6 +90,21 @@ static bool has_force(const History *history, const char *pair) {
   return is_there;
 }
 
+// What rows a frame miss: the largest force between any two after any step since the row before. Where every
+// step has its row there is nothing to miss.
+static int write_peaks(FILE *script, const History *histories, int run_count, const char *const *labels) {
+  static const char column[] = "contact_force_peak_N";
+  int count = MAX_FORCES * run_count; // the hue after those of the forces
+  for (int r = 0; r < run_count; r++) {
+    int steps = find(&histories[r], "steps");
+    bool misses = steps >= 0 && histories[r].largest[steps] > histories[r].row_count;
+    if (misses && is_alive(&histories[r], column))
+      add_curve(script, &count, r, run_count, "column('contact_force_peak_N')", "largest since the last row",
+                labels[r]);
+  }
+  return count - MAX_FORCES * run_count;
+}
+
 static int write_forces(FILE *script, const History *histories, int run_count, const char *const *labels) {
   int count = 0;
   for (int k = 0; k < histories[0].count && count < MAX_FORCES * run_count; k++) {
@@ -100,7 +119,7 @@ static int write_forces(FILE *script, const History *histories, int run_count, c
       else
         count++; // keeps the hues in step
   }
-  return count;
+  return count + (count > 0 ? write_peaks(script, histories, run_count, labels) : 0);
 }
 
 static int write_energies(FILE *script, const History *histories, int run_count, const char *const *labels) {

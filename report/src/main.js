@@ -3,6 +3,7 @@ import "./style.css";
 import { buildBenches } from "./bench.js";
 import { HUES, listFields } from "./colour.js";
 import { buildComparison } from "./compare.js";
+import { buildContacts } from "./contacts.js";
 import { RUNS, indexAt, readData, unionTimes } from "./data.js";
 import { h } from "./dom.js";
 import { buildFrontier } from "./frontier.js";
@@ -144,6 +145,7 @@ function build(data, kept) {
     transport?.element,
     data.comparison && buildComparison(data),
     plots.length > 0 && h("section.block", { id: "plots" }, h("h2", "Over time"), h(".plots", plots.map((plot) => plot.element))),
+    buildContacts(runs),
     data.sweep && buildSweep(data.sweep, state, createState),
     data.pareto && buildFrontier(data.pareto, state),
     data.stress && buildStress(data.stress),

@@ -3,20 +3,25 @@
 
 import { count, format, h, swatchOf } from "./dom.js";
 
+const hasEnded = (summary) => summary.outcome === "finished";
+
 const FIGURES = [
+  ["Outcome", (s, all) => (all.every(hasEnded) ? null : hasEnded(s) ? "finished" : s.outcome), "how far each run came"],
   ["Wall time", (s) => format(s.wall_s, "s")],
   ["Steps", (s) => count(s.steps)],
   ["Largest contact force", (s) => s.overlap && format(s.contact_force_max, "N")],
   ["Deepest overlap", (s) => s.overlap && format(100 * s.deepest_overlap_max, "%"), "largest share of an element that another body covers"],
   ["Overlapping pairs, most", (s) => s.overlap && count(s.pairs_max)],
+  ["Forces against motion", (s) => s.momentum_gap != null && format(100 * s.momentum_gap, "%", 2), "by how much the impulse of all written forces differs from the change of momentum, at worst of a body"],
   ["Energy gained", (s) => format(s.energy_gain_relative), "largest rise of the audited total energy, over the scene’s energy"],
 ];
 
 // More than two runs: a line each.
 function buildTable(runs) {
-  const shown = FIGURES.filter(([, value]) => runs.some((run) => value(run.summary)));
+  const all = runs.map((run) => run.summary);
+  const shown = FIGURES.filter(([, value]) => runs.some((run) => value(run.summary, all)));
   const head = h("tr", h("th", { scope: "col" }, "Run"), shown.map(([label, , help]) => h("th.number", { scope: "col", title: help }, label)));
-  const line = (run) => h("tr", h("th", { scope: "row" }, swatchOf(run), run.label), shown.map(([, value]) => h("td.number", value(run.summary) || "–")));
+  const line = (run) => h("tr", h("th", { scope: "row" }, swatchOf(run), run.label), shown.map(([, value]) => h("td.number", value(run.summary, all) || "–")));
   return h(".scroll.overview", { tabindex: 0, role: "region", "aria-label": "Figures of the runs" }, h("table", h("thead", head), h("tbody", runs.map(line))));
 }
 
@@ -25,13 +30,13 @@ export function buildOverview(runs) {
   if (known.length === 0) return null;
   if (known.length > 2) return buildTable(known);
   const tiles = FIGURES.map(([label, value, help]) => {
-    const values = known.map((run) => value(run.summary));
+    const values = known.map((run) => value(run.summary, known.map((one) => one.summary)));
     if (!values.some(Boolean)) return null;
     return h(
       ".figure",
       { title: help },
       h("dt", label),
-      known.map((run, k) => h("dd", known.length > 1 && swatchOf(run), values[k] || "–")),
+      known.map((run, k) => h(hasEnded(run.summary) || label !== "Outcome" ? "dd" : "dd.failed", known.length > 1 && swatchOf(run), values[k] || "–")),
     );
   });
   return h("dl.figures", tiles);

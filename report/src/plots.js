@@ -16,12 +16,24 @@ const byRun = (run, theme) => HUES[theme][run.index % HUES.light.length];
 function forceSeries(runs) {
   const keys = [...new Set(runs.flatMap((run) => run.forces.map((force) => force.key)))].slice(0, MAX_FORCES);
   const isOne = keys.length === 1 && runs.length > 1;
-  return keys.flatMap((key, hue) =>
+  const series = keys.flatMap((key, hue) =>
     runs.flatMap((run) => {
       const force = run.forces.find((one) => one.key === key);
       return force ? [{ run, label: isOne ? run.label : force.label, hue: isOne ? null : hue, values: force.values, times: run.times }] : [];
     }),
   );
+  return [...series, ...peakSeries(runs)];
+}
+
+// What rows a frame would miss: the largest force between any two after any step since the row before. Its maximum is
+// the run's. Left out where every step has its row.
+function peakSeries(runs) {
+  return runs.flatMap((run) => {
+    const values = run.columns.contact_force_peak_N;
+    const known = run.forces.length > 0 && values ? run.times.map((_, i) => Math.max(...run.forces.map((force) => force.values[i]))) : [];
+    if (!known.some((value, i) => values[i] > 1.001 * value)) return [];
+    return [{ run, label: "largest since the last row", hue: MAX_FORCES, values, times: run.times }];
+  });
 }
 
 const ENERGIES = [

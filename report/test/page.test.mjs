@@ -4,7 +4,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawn, spawnSync } from "node:child_process";
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { launch } from "./browser.mjs";
 
@@ -238,6 +238,19 @@ const tests = {
     await page.eval(`document.querySelector("#frontier .point").focus()`);
     assert.match(await page.eval(`document.querySelector("#frontier .tip:not([hidden])").textContent`), /clip.*100\u2009ns/);
     await page.eval("document.activeElement.blur()");
+  },
+
+  async "the headline, the plot and the history agree about the largest force"(page, { runs }) {
+    const { contact_force_max } = JSON.parse(readFileSync(join(runs[0], "summary.json"), "utf8"));
+    const peaks = await page.eval(`Array.from(tetlap.data.runs[0].columns.contact_force_peak_N)`);
+    assert.ok(Math.abs(Math.max(...peaks) / contact_force_max - 1) < 1e-9, `${Math.max(...peaks)} and ${contact_force_max}`);
+    assert.match(await page.eval(`document.querySelector("#plot-force .readings").textContent`), /largest since the last row/);
+  },
+
+  async "tells how wrong the contact may be, a row for each two that touched"(page, { runs }) {
+    const contacts = runs.flatMap((run) => JSON.parse(readFileSync(join(run, "summary.json"), "utf8")).contacts);
+    assert.ok(contacts.length > 0);
+    assert.equal(await page.eval(`document.querySelectorAll("#contacts tbody tr").length`), contacts.length);
   },
 
   async "says where the time went, in full"(page, { runs }) {
@@ -512,6 +525,22 @@ async function testLive(browser) {
   }
 }
 
+// A run that failed looks so beside one that finished: in its name, its warning and its figure.
+async function testFailed(browser, runs) {
+  const failed = join(out, "failed-run");
+  cpSync(runs[1], failed, { recursive: true });
+  const path = join(failed, "summary.json");
+  const summary = JSON.parse(readFileSync(path, "utf8"));
+  writeFileSync(path, JSON.stringify({ ...summary, outcome: "failed", message: "at t = 0.1 s: it gave up" }));
+  execFileSync(tetlap, ["report", "-q", runs[0], failed, "-o", join(out, "failed.html")]);
+  const page = await browser.open(`file://${resolve(out, "failed.html")}`, { width: 1280, height: 900 });
+  const figures = await page.eval(`[...document.querySelectorAll(".figures dd.failed")].map((one) => one.textContent)`);
+  assert.deepEqual(figures, ["failed"]);
+  assert.match(await page.eval(`document.querySelector(".warning").textContent`), /: failed. at t = 0.1 s: it gave up/);
+  assert.deepEqual(page.problems, []);
+  await page.close();
+}
+
 async function shoot(browser, url, name, view, script) {
   const page = await browser.open(url, view);
   await page.eval(script);
@@ -552,6 +581,7 @@ try {
     await attempt("no complaint after all of it", () => assert.deepEqual(table.problems, []));
     await table.close();
   }
+  await attempt("a run that failed looks so", () => testFailed(browser, pages.runs));
   await attempt("a page follows a run from before it begins to its end", () => testLive(browser));
   const models = await browser.open(pages.models, { width: 1280, height: 900 });
   for (const [name, test] of Object.entries(compareTests)) await attempt(name, () => test(models, pages));

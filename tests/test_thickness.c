@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many elements lie through the thickness of a body that bends, and what `tetlap check` says of it.
+#include "scene.h"
+
+#include <string.h>
+
+#include "fem/measure/thickness.h"
+
+static FemThickness find(const char *mesh) {
+  SceneRun run;
+  char set[160];
+  FemThickness thickness;
+  snprintf(set, sizeof set, "bodies.block.mesh=%s", mesh);
+  scene_open(&run, "free_fall", (const char *const[]){set, NULL});
+  ck_assert_ok(fem_thickness_find(&run.model, 0, &thickness));
+  scene_close(&run);
+  return thickness;
+}
+
+START_TEST(a_thin_plate_is_slender_and_its_layers_are_counted) {
+  const char *const meshes[] = {"{box: {size: [0.2, 0.2, 0.01], cells: [6, 6, 1]}}",
+                                "{box: {size: [0.2, 0.2, 0.01], cells: [6, 6, 2]}}",
+                                "{box: {size: [0.2, 0.2, 0.01], cells: [6, 6, 4]}}"};
+  const double layers[] = {1, 2, 4};
+  for (int k = 0; k < 3; k++) {
+    FemThickness thickness = find(meshes[k]);
+    ck_assert(thickness.is_slender);
+    ck_assert_near(thickness.thickness, 0.01, 1e-9);
+    ck_assert_near(thickness.layers, layers[k], 1e-9);
+  }
+}
+END_TEST
+
+START_TEST(a_beam_is_slender_across) {
+  FemThickness thickness = find("{box: {size: [0.5, 0.05, 0.05], cells: [20, 2, 2]}}");
+  ck_assert(thickness.is_slender);
+  ck_assert_near(thickness.thickness, 0.05, 1e-9);
+  ck_assert_near(thickness.layers, 2, 1e-9);
+}
+END_TEST
+
+START_TEST(a_block_is_not_slender_however_coarse) {
+  ck_assert(!find("{box: {size: [0.2, 0.2, 0.2], cells: 1}}").is_slender);
+  ck_assert(!find("{box: {size: [0.2, 0.2, 0.1], cells: 2}}").is_slender);
+}
+END_TEST
+
+// What `tetlap check` prints of the scene with that plate; owned by the caller.
+static char *check_scene(const char *sets) {
+  char command[1024], *text = NULL;
+  size_t size = 0;
+  snprintf(command, sizeof command, "%s check %s/tests/scenes/free_fall.yaml %s 2>&1", TETLAP_PROGRAM,
+           TETLAP_SOURCE_DIR, sets);
+  FILE *pipe = popen(command, "r"), *all = open_memstream(&text, &size);
+  for (int c; (c = fgetc(pipe)) != EOF;) fputc(c, all);
+  fclose(all);
+  ck_assert_int_eq(pclose(pipe), 0);
+  return text;
+}
+
+START_TEST(check_says_what_to_do_about_it) {
+  const char *const plate = "--set 'bodies.block.mesh={box: {size: [0.2, 0.2, 0.01], cells: [6, 6, 1]}}'";
+  char *thin = check_scene(plate), *block = check_scene(""), both[256];
+  snprintf(both, sizeof both, "%s --set bodies.block.element=quadratic", plate);
+  char *quadratic = check_scene(both);
+  ck_assert_ptr_nonnull(
+      strstr(thin, "'block' is slender, 0.01 m thick, and has about 1 linear element through that"));
+  ck_assert_ptr_nonnull(strstr(thin, "element: quadratic"));
+  ck_assert_ptr_null(strstr(block, "slender"));
+  ck_assert_ptr_null(strstr(quadratic, "slender"));
+  free(thin), free(block), free(quadratic);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("thickness");
+  tcase_add_test(cases, a_thin_plate_is_slender_and_its_layers_are_counted);
+  tcase_add_test(cases, a_beam_is_slender_across);
+  tcase_add_test(cases, a_block_is_not_slender_however_coarse);
+  tcase_add_test(cases, check_says_what_to_do_about_it);
+  return suite_run("thickness", cases, 30);
+}
