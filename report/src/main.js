@@ -12,6 +12,7 @@ import { buildManifest } from "./manifest.js";
 import { buildHeader, buildOverview } from "./overview.js";
 import { buildPhases } from "./phases.js";
 import { TimePlot, listPlots, momentOf } from "./plots.js";
+import { present, showFrame } from "./present.js";
 import { Stage } from "./stage.js";
 import { createState } from "./state.js";
 import { buildStress } from "./stress.js";
@@ -153,7 +154,7 @@ function build(data, kept) {
     data.benches && buildBenches(data.benches),
     buildManifest(runs),
   );
-  return { state, transport, stage, plots, data, live, times, page, bar: buildBar(state, data.version) };
+  return { state, transport, stage, plots, data, live, times, page, bar: buildBar(state, data.version), present, showFrame };
 }
 
 // A newer page in the place of this one, once it is ready to be seen: same camera, field, cut and scroll.

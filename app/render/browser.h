@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A Chromium without a window, spoken to over a pipe (the DevTools protocol): it opens one page, runs scripts
+// in it and takes its picture. It has no network.
+#ifndef TETLAP_APP_RENDER_BROWSER_H
+#define TETLAP_APP_RENDER_BROWSER_H
+
+#include <stdio.h>
+#include <sys/types.h>
+
+#include "base/record.h"
+
+typedef struct AppRenderBrowser {
+  pid_t process; // 0: none
+  int to;        // its end for commands
+  FILE *from;    // what it answers
+  char *profile; // its folder, owned; removed at the end
+  char *session; // of the page, owned
+  int last_call;
+} AppRenderBrowser;
+
+// Starts it with a page of so many pixels. STATUS_IO: there is no Chromium (the message names the package),
+// or it does not answer. Stop it always.
+Status app_render_browser_start(AppRenderBrowser *browser, const char *url, int width, int height);
+void app_render_browser_stop(AppRenderBrowser *browser);
+
+// Evaluates a script, waits for what it promises; `text` is what comes out if that is a text (owned by the
+// caller; else NULL; may be NULL). STATUS_IO: the script failed.
+Status app_render_browser_run(AppRenderBrowser *browser, const char *script, char **text);
+
+// The page as a PNG in memory, owned by the caller (memory_free).
+Status app_render_browser_capture(AppRenderBrowser *browser, unsigned char **png, size_t *size);
+
+#endif

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE 1 // pipe2
+#endif
+#include "app/render/movie.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { NOT_FOUND = 127 };
+
+static bool ends_in(const char *path, const char *ending) {
+  size_t length = strlen(path), size = strlen(ending);
+  return length > size && strcmp(path + length - size, ending) == 0;
+}
+
+bool app_render_movie_is_known(const char *path) {
+  return ends_in(path, ".mp4") || ends_in(path, ".gif");
+}
+
+static void become(int pictures, const char *path, const char *rate, bool is_gif) {
+  // A palette for the whole movie; and what every player can show: even sizes, colours at half resolution.
+  const char *gif =
+      "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=bayer:bayer_scale=4";
+  const char *mp4 = "scale=trunc(iw/2)*2:trunc(ih/2)*2,format=yuv420p";
+  int nothing = open("/dev/null", O_WRONLY);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  dup2(pictures, STDIN_FILENO), dup2(nothing, STDOUT_FILENO), dup2(nothing, STDERR_FILENO);
+  execlp("ffmpeg", "ffmpeg", "-y", "-loglevel", "error", "-f", "image2pipe", "-c:v", "png", "-framerate",
+         rate, "-i", "-", "-vf", is_gif ? gif : mp4, path, (char *)NULL);
+  _exit(NOT_FOUND);
+}
+
+Status app_render_movie_begin(AppRenderMovie *movie, const char *path, int per_second) {
+  *movie = (AppRenderMovie){.path = path};
+  int ends[2];
+  char rate[16];
+  snprintf(rate, sizeof rate, "%d", per_second);
+  signal(SIGPIPE, SIG_IGN); // ffmpeg that is gone shows as a failed write
+  if (pipe2(ends, O_CLOEXEC) != 0) return status_fail(STATUS_IO, "no pipe can be made");
+  movie->process = fork();
+  if (movie->process == 0) become(ends[0], path, rate, ends_in(path, ".gif"));
+  close(ends[0]);
+  movie->stream = movie->process > 0 ? fdopen(ends[1], "w") : NULL;
+  if (movie->stream) return STATUS_OK;
+  close(ends[1]);
+  return status_fail(STATUS_IO, "no process can be started");
+}
+
+Status app_render_movie_add(AppRenderMovie *movie, const unsigned char *png, size_t size) {
+  if (fwrite(png, 1, size, movie->stream) == size && fflush(movie->stream) == 0) return STATUS_OK;
+  return app_render_movie_end(movie); // which knows why
+}
+
+Status app_render_movie_end(AppRenderMovie *movie) {
+  int state = 0;
+  bool is_written = fclose(movie->stream) == 0;
+  movie->stream = NULL;
+  waitpid(movie->process, &state, 0);
+  movie->process = 0;
+  int code = WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+  if (code == NOT_FOUND)
+    return status_fail(STATUS_IO,
+                       "movies are made by ffmpeg, which is not there; install it (Debian: ffmpeg)");
+  if (code == 0 && is_written) return STATUS_OK;
+  return status_fail(STATUS_IO, "%s: ffmpeg could not write it (exit code %d)", movie->path, code);
+}
+
+void app_render_movie_abandon(AppRenderMovie *movie) {
+  if (movie->stream) fclose(movie->stream);
+  if (movie->process > 0) {
+    kill(movie->process, SIGKILL);
+    waitpid(movie->process, NULL, 0);
+  }
+  *movie = (AppRenderMovie){0};
+}

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/render/render.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "app/render/browser.h"
+#include "app/render/movie.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+
+static Status check_stop(const AppRenderOptions *options) {
+  return *options->stop ? status_fail(STATUS_INTERRUPTED, "interrupted") : STATUS_OK;
+}
+
+// The page says when it is ready, or that it cannot be.
+static Status wait_until_ready(AppRenderBrowser *browser, const AppRenderOptions *options) {
+  static const struct timespec pause = {.tv_nsec = 50 * 1000 * 1000};
+  enum { ATTEMPTS = 6000 };
+  for (int k = 0; k < ATTEMPTS; k++) {
+    char *state;
+    TRY(check_stop(options));
+    TRY(app_render_browser_run(browser, "document.documentElement.dataset.ready ?? ''", &state));
+    bool is_ready = state && strcmp(state, "yes") == 0, has_failed = state && strcmp(state, "failed") == 0;
+    memory_free(state);
+    if (is_ready) return STATUS_OK;
+    if (has_failed) break;
+    nanosleep(&pause, NULL);
+  }
+  return status_fail(STATUS_IO, "the page of this run could not be shown by Chromium");
+}
+
+// Fits the page to the picture; returns how many frames there are.
+static Status present(AppRenderBrowser *browser, const AppRenderOptions *options, int *frame_count) {
+  Record *wishes = record_new();
+  if (options->field) record_text(wishes, "field", options->field);
+  if (options->cut) {
+    record_text(wishes, "cut", options->cut);
+    record_number(wishes, "share", options->cut_share);
+  }
+  if (options->theme) record_text(wishes, "theme", options->theme);
+  if (options->hides_edges) record_bool(wishes, "edges", false);
+  char *text = wishes ? record_text_of(wishes) : NULL, *script = NULL, *count = NULL;
+  record_destroy(wishes);
+  size_t size = text ? strlen(text) + 64 : 0;
+  if (text) script = memory_zeroed(size, 1);
+  Status status = script ? STATUS_OK : status_no_memory("a script");
+  if (!status) {
+    snprintf(script, size, "tetlap.present(tetlap, %s)", text);
+    status = app_render_browser_run(browser, script, &count);
+  }
+  *frame_count = count ? atoi(count) : 0;
+  memory_free(count);
+  memory_free(script);
+  memory_free(text);
+  return status;
+}
+
+static Status draw(AppRenderBrowser *browser, int frame, unsigned char **png, size_t *size) {
+  char script[64];
+  snprintf(script, sizeof script, "tetlap.showFrame(tetlap, %d)", frame);
+  TRY(app_render_browser_run(browser, script, NULL));
+  return app_render_browser_capture(browser, png, size);
+}
+
+static Status draw_picture(AppRenderBrowser *browser, const AppRenderOptions *options) {
+  unsigned char *png;
+  size_t size;
+  FileWriter writer;
+  TRY(draw(browser, options->frame, &png, &size));
+  Status status = file_begin(&writer, options->picture);
+  if (!status) {
+    fwrite(png, 1, size, writer.stream);
+    status = file_commit(&writer);
+  }
+  memory_free(png);
+  return status;
+}
+
+static Status add_frames(AppRenderBrowser *browser, const AppRenderOptions *options, int frame_count,
+                         AppRenderMovie *movie) {
+  for (int frame = 0; frame < frame_count; frame++) {
+    unsigned char *png;
+    size_t size;
+    TRY(check_stop(options));
+    log_progress("frame %d of %d", frame + 1, frame_count);
+    TRY(draw(browser, frame, &png, &size));
+    Status status = app_render_movie_add(movie, png, size);
+    memory_free(png);
+    TRY(status);
+  }
+  return app_render_movie_end(movie);
+}
+
+static Status draw_movie(AppRenderBrowser *browser, const AppRenderOptions *options, int frame_count) {
+  AppRenderMovie movie;
+  Status status = app_render_movie_begin(&movie, options->movie, options->per_second);
+  if (!status) status = add_frames(browser, options, frame_count, &movie);
+  log_progress_end();
+  app_render_movie_abandon(&movie);
+  return status;
+}
+
+static Status draw_all(AppRenderBrowser *browser, const AppRenderOptions *options) {
+  int frame_count;
+  TRY(wait_until_ready(browser, options));
+  TRY(present(browser, options, &frame_count));
+  if (options->picture) TRY(draw_picture(browser, options));
+  return options->movie ? draw_movie(browser, options, frame_count) : STATUS_OK;
+}
+
+static Status show(const char *page, const AppRenderOptions *options) {
+  char url[320];
+  AppRenderBrowser browser;
+  snprintf(url, sizeof url, "file://%s", page);
+  Status status = app_render_browser_start(&browser, url, options->width, options->height);
+  if (!status) status = draw_all(&browser, options);
+  app_render_browser_stop(&browser);
+  return status;
+}
+
+Status app_render(AppReport *report, const AppRenderOptions *options) {
+  char folder[] = "/tmp/tetlap-page-XXXXXX", page[64];
+  if (!mkdtemp(folder)) return status_fail(STATUS_IO, "%s: no folder can be made there", folder);
+  snprintf(page, sizeof page, "%s/page.html", folder);
+  Status status = app_report_write(report, page);
+  if (!status) status = show(page, options);
+  unlink(page);
+  rmdir(folder);
+  return status;
+}
