@@ -41,6 +41,8 @@ static const Case cases[] = {
      "time.end=0.3",
      "\"friction_vertices\": "},
     {"tests/scenes/held.yaml", "--set time.end=0.2", "\"friction_vertices\": "},
+    // The same from equilibrium to equilibrium.
+    {"tests/scenes/drag.yaml", "--set time.end=0.4", "\"friction_vertices\": "},
     // A linear scene, assembled once.
     {"tests/scenes/cantilever.yaml", "--set time.end=0.02", "\"steps\": "},
     // Unknowns that are numbered anew.

@@ -102,7 +102,7 @@ START_TEST(rubber_pulled_to_twice_its_length_pulls_back_as_theory_says) {
 }
 END_TEST
 
-// Nothing holds the block but the ground: relaxation lets it sink until the contact carries it, Σ F = m g.
+// Nothing holds the block but the ground, 1 cm below: it sinks until the contact carries it, Σ F = m g.
 START_TEST(a_block_comes_to_rest_on_the_ground) {
   SceneRun run;
   run_well(&run, "time: {end: 1, static: true}\n"
@@ -116,7 +116,6 @@ START_TEST(a_block_comes_to_rest_on_the_ground) {
                  "obstacles: [{name: ground, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}}]\n"
                  "contact: {}\n"
                  "output: {frames: 1}\n");
-  ck_assert_int_gt(run.result.relaxation_steps, 0);
   ck_assert_int_gt(run.result.pairs_max, 0);
   ck_assert_near(fabs(scene_force(&run, 1, 0)[2]), 9.81, 9.81e-6);
   scene_close(&run);

@@ -98,11 +98,11 @@ static Status evaluate(FemStatics *statics, double time, const double *u) {
   return STATUS_OK;
 }
 
-// With friction by the work of the force; else KINSOL.
+// With contact by the work of the force; else KINSOL.
 static Status newton(FemStatics *statics, double time, double *u) {
   const FemModel *model = statics->equilibrium.system->model;
   double tolerance = statics->tolerance * statics->force_scale;
-  if (fem_scene_most_friction(&model->scene->contact) > 0)
+  if (model->scene->contact.is_on)
     return fem_descent_solve(&statics->equilibrium, time, tolerance, u, &statics->newton_iterations);
   return fem_kinsol_solve(&statics->equilibrium, time, tolerance, model->length, u,
                           &statics->newton_iterations);
