@@ -333,7 +333,10 @@ static Status begin_statics(FemRunState *run) {
     return begin_record(run);
   }
   TRY(fem_system_accept(&run->system, run->time, run->u, run->v, 0));
-  return fem_statics_continue(&run->statics, run->time, run->u, from->force_scale, from->driven_work);
+  TRY(fem_statics_continue(&run->statics, run->time, run->u, from->force_scale, from->driven_work));
+  FemMeasures measures;
+  TRY(fem_run_frames_measure(run, run->time, &measures));
+  return fem_recorder_begin_step(&run->recorder, run->time, &measures);
 }
 
 // Everything anew from the checkpoint: the same whether the run goes on, is resumed, or begins.
