@@ -55,7 +55,7 @@
 // smaller tetrahedron, and x̄ is within the boxes of both in any case. Rounding of well-shaped pairs leaves
 // |δx̄| ≤ 1e-12 L where V is more than 1e-4 of the smaller (tests/test_centroid.c).
 //
-// Whether there is a volume at all is rounding where V ≤ 64 of this bound's |δV| (without the last part):
+// Whether there is a volume at all is rounding where V ≤ 64 of this bound's |δV| (without the last part) or Σ φ ≤ 4096 ε:
 // faces that lie on each other but for rounding have φ, and so ∇V, of an overlap. Such pairs are handed on, so
 // that V = 0 and ∇V = 0 where `exact` says so.
 //

@@ -19,8 +19,10 @@
 // times what a search of bad pairs asked for.
 #define OVERLAP_CLIP_SLIDE (1 / (256 * OVERLAP_CLIP_NOISE))
 
-// A volume no thicker than so many times what rounding may move its faces by may be none at all.
+// A volume may be none at all if it is no thicker than so many times what rounding may move its faces by, or if
+// its faces are no larger in all than that, in units of whole faces.
 #define OVERLAP_CLIP_THINNEST 64.0
+#define OVERLAP_CLIP_SMALLEST (4096 * DBL_EPSILON)
 
 // The planes u, v spanning the parameters of face f, such that the face, seen from outside and with positive
 // det, runs counter-clockwise through (0, 0), (1, 0), (0, 1) of (λ_u, λ_v); t is the third vertex, at (0, 0).
