@@ -10,9 +10,10 @@
 #include "fem/effect/contact.h"
 #include "fem/model/compliance.h"
 
-static void find_contact(FemLedger *ledger) {
+// The system's own: it has another one once it began anew from a checkpoint.
+static ContactSystem *contact_of(const FemLedger *ledger) {
   void *effect = fem_system_effect(ledger->system, &fem_effect_contact);
-  ledger->contact = effect ? fem_effect_contact_system(effect) : NULL;
+  return effect ? fem_effect_contact_system(effect) : NULL;
 }
 
 static int probe_count(const FemLedger *ledger) {
@@ -25,7 +26,7 @@ static bool is_static(const FemLedger *ledger) {
 
 Status fem_ledger_create(FemLedger *ledger, FemSystem *system) {
   *ledger = (FemLedger){.system = system};
-  find_contact(ledger);
+  ledger->contact = contact_of(ledger);
   size_t probes = (size_t)probe_count(ledger);
   ledger->readings = memory_zeroed(probes, sizeof *ledger->readings);
   ledger->next_readings = memory_zeroed(probes, sizeof *ledger->next_readings);
@@ -65,7 +66,7 @@ static void accept(FemLedger *ledger) {
 // The effects are made anew at a checkpoint, so contact is looked up whenever a part begins. What was
 // accepted already is looked at once more, which changes nothing.
 Status fem_ledger_begin(FemLedger *ledger, double time, const FemLedgerState *state) {
-  find_contact(ledger);
+  ledger->contact = contact_of(ledger);
   if (!is_static(ledger)) TRY(fem_momentum_begin(&ledger->momentum, time, &state->contact));
   TRY(look(ledger, time, state));
   accept(ledger);
@@ -86,7 +87,7 @@ void fem_ledger_accept(FemLedger *ledger) {
 
 // κ or c of an interface.
 static double stiffness_of(const FemLedger *ledger, int interface) {
-  return contact_system_layout(ledger->contact)->facings[interface].stiffness;
+  return contact_system_layout(contact_of(ledger))->facings[interface].stiffness;
 }
 
 static void record_estimate(const FemEstimate *estimate, Record *record) {
@@ -103,7 +104,7 @@ static void record_estimate(const FemEstimate *estimate, Record *record) {
 static void record_contact(const FemLedger *ledger, int i, Record *record) {
   const FemModel *model = ledger->system->model;
   const FemAccuracyPair *pair = &ledger->accuracy.pairs[i];
-  const ContactFacing *facing = &contact_system_layout(ledger->contact)->facings[i];
+  const ContactFacing *facing = &contact_system_layout(contact_of(ledger))->facings[i];
   FemEstimate estimate = fem_accuracy_estimate(pair, model, facing->stiffness);
   record_text(record, "a", fem_compliance_party_name(model, facing->a));
   record_text(record, "b", fem_compliance_party_name(model, facing->b));
@@ -129,7 +130,7 @@ static void record_readings(const FemLedger *ledger, int p, Record *record) {
 }
 
 void fem_ledger_record(const FemLedger *ledger, Record *record) {
-  if (ledger->contact) {
+  if (contact_of(ledger)) {
     RecordList *contacts = record_list(record, "contacts");
     for (int i = 0; i < ledger->accuracy.count; i++)
       if (ledger->accuracy.pairs[i].force > 0) record_contact(ledger, i, record_append(contacts));
@@ -153,10 +154,10 @@ static int find_rank(const FemAccuracy *accuracy, int rank) {
 
 bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size) {
   const FemModel *model = ledger->system->model;
-  int i = ledger->contact ? find_rank(&ledger->accuracy, rank) : -1;
+  int i = contact_of(ledger) ? find_rank(&ledger->accuracy, rank) : -1;
   if (i < 0) return false;
   const FemAccuracyPair *pair = &ledger->accuracy.pairs[i];
-  const ContactFacing *facing = &contact_system_layout(ledger->contact)->facings[i];
+  const ContactFacing *facing = &contact_system_layout(contact_of(ledger))->facings[i];
   FemEstimate estimate = fem_accuracy_estimate(pair, model, stiffness_of(ledger, i));
   size_t used = 0;
   text_append(text, size, &used,
