@@ -157,10 +157,12 @@ static void blend_hessian(const Blend *blend, double *hessian) {
     }
 }
 
-// `clip_volume`: what of the blended volume is clip's.
-static void blend_centroid(double volume, double clip_volume, const double clip[3], double centroid[3]) {
-  for (int c = 0; c < 3; c++)
-    centroid[c] = volume > 0 ? centroid[c] + clip_volume / volume * (clip[c] - centroid[c]) : 0;
+void overlap_geo_coplanar_mix(double share, double clip_volume, const double clip_centroid[3], double *volume,
+                              double *centroid) {
+  *volume += share * (clip_volume - *volume);
+  double part = *volume > 0 ? share * clip_volume / *volume : 0;
+  for (int c = 0; c < 3 && centroid; c++)
+    centroid[c] = *volume > 0 ? centroid[c] + part * (clip_centroid[c] - centroid[c]) : 0;
 }
 
 Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pair[24], double *volume,
@@ -179,8 +181,7 @@ Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pai
                                                   .centroid = centroid ? clip_centroid : NULL,
                                                   .flags = &clip_flags}));
   blend.difference = blend.volume - *volume;
-  *volume += blend.share * blend.difference;
-  if (centroid) blend_centroid(*volume, blend.share * blend.volume, clip_centroid, centroid);
+  overlap_geo_coplanar_mix(blend.share, blend.volume, clip_centroid, volume, centroid);
   if (flags) *flags |= OVERLAP_BLENDED;
   if (!gradient) return STATUS_OK;
   for (int i = 0; i < SIZE; i++) blend.gradient_difference[i] = blend.gradient[i] - gradient[i];

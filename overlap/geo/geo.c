@@ -166,6 +166,40 @@ static Status blend_column(const OverlapGeoBundle *bundle, int first, const Over
                                     place.hessian, place.centroid, place.flags);
 }
 
+// Pairs of a bundle that only want the blend's V and x̄: clipping takes them side by side.
+typedef struct Waiting {
+  int count;
+  double share[OVERLAP_GEO_BUNDLE], pairs[OVERLAP_GEO_BUNDLE * SIZE];
+  Place place[OVERLAP_GEO_BUNDLE];
+} Waiting;
+
+static void wait_for_clip(const OverlapGeoBlock *block, int at, Place place, Waiting *waiting) {
+  GeoMatrix projector;
+  OverlapGeoCoplanar coplanar;
+  for (int k = 0; k < GEO_LANES; k++)
+    for (int l = 0; l < GEO_LANES; l++) projector.row[k][l] = block->projector[geo_entry(k, l)][at];
+  overlap_geo_coplanar_find(&projector, &coplanar);
+  if (!(coplanar.share > 0)) return;
+  memcpy(waiting->pairs + waiting->count * SIZE, place.pair, SIZE * sizeof(double));
+  waiting->share[waiting->count] = coplanar.share;
+  waiting->place[waiting->count++] = place;
+}
+
+static Status blend_waiting(const Waiting *waiting, bool wants_centroid) {
+  double volume[OVERLAP_GEO_BUNDLE], centroid[OVERLAP_GEO_BUNDLE * 3];
+  if (waiting->count == 0) return STATUS_OK;
+  TRY(overlap_clip_ops.eval_batch(NULL, &(OverlapBatch){.pair_count = waiting->count,
+                                                        .pairs = waiting->pairs,
+                                                        .volume = volume,
+                                                        .centroid = wants_centroid ? centroid : NULL}));
+  for (int i = 0; i < waiting->count; i++) {
+    Place place = waiting->place[i];
+    overlap_geo_coplanar_mix(waiting->share[i], volume[i], centroid + 3 * i, place.volume, place.centroid);
+    if (place.flags) *place.flags |= OVERLAP_BLENDED;
+  }
+  return STATUS_OK;
+}
+
 // The tetrahedron that was moved comes first in bends.
 static void write_hessian(const OverlapGeoBends *bends, int at, double *hessian) {
   int moved = bends->is_second[at] > 0;
@@ -186,7 +220,7 @@ static void write_centroid(const OverlapGeoBlock *block, int at, Place place) {
 }
 
 static Status write_column(const OverlapGeoBundle *bundle, int first, const OverlapGeoBlock *block,
-                           const OverlapGeoBends *bends, int at, Place place) {
+                           const OverlapGeoBends *bends, int at, Place place, Waiting *waiting) {
   *place.volume = block->factor[at];
   if (!(block->is_fit[at] > 0)) return answer_unfit(place);
   if (!(*place.volume > 0 && *place.volume < INFINITY)) return fall_back(place);
@@ -194,7 +228,10 @@ static Status write_column(const OverlapGeoBundle *bundle, int first, const Over
   if (place.hessian) write_hessian(bends, at, place.hessian);
   if (place.centroid) write_centroid(block, at, place);
   if (place.flags) *place.flags = bundle->is_enclosed[first + at] ? OVERLAP_ENCLOSED : 0;
-  return block->is_close[at] > 0 ? blend_column(bundle, first, block, at, place) : STATUS_OK;
+  if (!(block->is_close[at] > 0)) return STATUS_OK;
+  if (place.gradient || place.hessian) return blend_column(bundle, first, block, at, place);
+  wait_for_clip(block, at, place, waiting);
+  return STATUS_OK;
 }
 
 // V, ∇V, x̄ and ∇²V of a block, as far as they are wanted, in block and bends.
@@ -221,10 +258,10 @@ static Status compute_block(const OverlapGeoModel *model, const OverlapBatch *ba
 
 // The pairs of the bundle from `first` on.
 static Status eval_block(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBundle *bundle,
-                         int first, OverlapGeoBlock *block, OverlapGeoBends *bends) {
+                         int first, OverlapGeoBlock *block, OverlapGeoBends *bends, Waiting *waiting) {
   TRY(compute_block(model, batch, bundle, first, block, bends));
   for (int at = 0; at < OVERLAP_GEO_BLOCK && first + at < bundle->count; at++)
-    TRY(write_column(bundle, first, block, bends, at, place_of(batch, bundle->pair[first + at])));
+    TRY(write_column(bundle, first, block, bends, at, place_of(batch, bundle->pair[first + at]), waiting));
   return STATUS_OK;
 }
 
@@ -235,9 +272,11 @@ static Status eval_bundle(const OverlapGeoModel *model, const OverlapBatch *batc
     if (bundle->outcome[i] == OVERLAP_GEO_EMPTY) write_empty(place_of(batch, i));
     if (bundle->outcome[i] == OVERLAP_GEO_UNFIT) TRY(answer_flat(place_of(batch, i)));
   }
+  Waiting waiting;
+  waiting.count = 0;
   for (int first = 0; first < bundle->count; first += OVERLAP_GEO_BLOCK)
-    TRY(eval_block(model, batch, bundle, first, block, bends));
-  return STATUS_OK;
+    TRY(eval_block(model, batch, bundle, first, block, bends, &waiting));
+  return blend_waiting(&waiting, batch->centroid != NULL);
 }
 
 static Status eval_bundles(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBends *bends) {
