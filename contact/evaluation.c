@@ -132,18 +132,28 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
   return STATUS_OK;
 }
 
-// Moves pair `from` and what belongs to it to the earlier place `to`.
+// Moves pair `from` and its coordinates to the earlier place `to`.
 static void move_pair(ContactEvaluation *evaluation, int from, int to) {
-  size_t row = 24 * sizeof(double), source = 24 * (size_t)from, target = 24 * (size_t)to;
   if (from == to) return;
   evaluation->pairs[to] = evaluation->pairs[from];
+  memcpy(evaluation->coordinates + 24 * (size_t)to, evaluation->coordinates + 24 * (size_t)from,
+         24 * sizeof(double));
+}
+
+// What the overlap of a pair is, too. Of two bodies the field's forces are found later, from the centroid.
+static void move_overlap(ContactEvaluation *evaluation, bool has_field, int from, int to) {
+  bool is_of_shape = evaluation->pairs[from].tets[1] < 0;
+  if (from == to) return;
+  move_pair(evaluation, from, to);
   evaluation->volumes[to] = evaluation->volumes[from];
-  memcpy(evaluation->coordinates + target, evaluation->coordinates + source, row);
-  memcpy(evaluation->gradients + target, evaluation->gradients + source, row);
-  if (evaluation->centroids)
+  if (has_field && !is_of_shape) {
     memcpy(evaluation->centroids + 3 * (size_t)to, evaluation->centroids + 3 * (size_t)from,
            3 * sizeof(double));
-  if (evaluation->fields) evaluation->fields[to] = evaluation->fields[from];
+    return;
+  }
+  memcpy(evaluation->gradients + 24 * (size_t)to, evaluation->gradients + 24 * (size_t)from,
+         24 * sizeof(double));
+  if (has_field) evaluation->fields[to] = evaluation->fields[from];
 }
 
 // Gathers the listed pairs and drops those that a face separates for certain, unless the model sees ghosts.
@@ -254,12 +264,12 @@ static void overlap_shapes(ContactEvaluation *evaluation, const ContactLayout *l
 }
 
 // Drops the pairs without overlap, keeping the order.
-static void keep_overlapping(ContactEvaluation *evaluation) {
+static void keep_overlapping(ContactEvaluation *evaluation, bool has_field) {
   int kept = 0, mesh_kept = 0;
   for (int k = 0; k < evaluation->pair_count; k++) {
     if (!(evaluation->volumes[k] > 0)) continue;
     mesh_kept += k < evaluation->mesh_pair_count;
-    move_pair(evaluation, k, kept++);
+    move_overlap(evaluation, has_field, k, kept++);
   }
   evaluation->pair_count = kept;
   evaluation->mesh_pair_count = mesh_kept;
@@ -386,7 +396,7 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   sift_by_faces(evaluation, layout, overlap_model_has_ghosts(model), positions);
   TRY(overlap_meshes(evaluation, layout, model));
   overlap_shapes(evaluation, layout, time);
-  keep_overlapping(evaluation);
+  keep_overlapping(evaluation, layout->depth.has_field);
   double overlapped = clock_wall_s();
   memcpy(evaluation->positions, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
   TRY(apply_potential(evaluation, layout));
