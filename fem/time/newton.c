@@ -111,17 +111,29 @@ static double slope_of_balance(const FemNewton *newton) {
   return dot(N_VGetArrayPointer(newton->direction), N_VGetArrayPointer(newton->residual) + n, n);
 }
 
-// The direction from the residual, and g(0) along it. The condensed right-hand side is minus the condensed
-// residual.
+// g(0) along the direction. The condensed right-hand side is minus the condensed residual.
+static void find_slope(Solve *solve) {
+  const FemNewton *newton = solve->newton;
+  const double *right = newton->user.right(newton->user.self);
+  double balance = slope_of_balance(newton);
+  solve->slope = right ? -dot(N_VGetArrayPointer(newton->direction), right, newton->user.n) : balance;
+  solve->settle = solve->slope - balance;
+}
+
+// The direction from the residual; once a matrix had to be made anew, mixed with those before unless that
+// leads uphill.
 static int find_direction(Solve *solve) {
   FemNewton *newton = solve->newton;
   N_VScale(-1, newton->residual, newton->direction);
   int flag = newton->solve(newton->direction, solve->memory);
   if (flag != 0) return flag;
-  const double *right = newton->user.right(newton->user.self);
-  double balance = slope_of_balance(newton);
-  solve->slope = right ? -dot(N_VGetArrayPointer(newton->direction), right, newton->user.n) : balance;
-  solve->settle = solve->slope - balance;
+  N_VScale(1, newton->direction, newton->pure);
+  fem_mixing_mix(&newton->mixing, N_VGetArrayPointer(solve->weights), N_VGetArrayPointer(newton->direction));
+  if (solve->renewals == 0) N_VScale(1, newton->pure, newton->direction);
+  find_slope(solve);
+  if (solve->slope < 0 || solve->renewals == 0) return 0;
+  N_VScale(1, newton->pure, newton->direction);
+  find_slope(solve);
   return 0;
 }
 
@@ -201,6 +213,7 @@ static int iterate(Solve *solve, bool *has_converged) {
   newton->iterations++;
   flag = take_step(solve, &share);
   if (flag != 0) return flag;
+  fem_mixing_take(&newton->mixing, share, N_VGetArrayPointer(newton->direction));
   if (share == 1) return judge(solve, has_converged);
   newton->stats.shortened++;
   solve->size = 0;
@@ -228,6 +241,7 @@ static int solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Vector co
                  .wants_matrix = wants_matrix,
                  .excess = INFINITY};
   newton->iterations = newton->failures = newton->current = 0;
+  fem_mixing_forget(&newton->mixing);
   int flag = run(&solve);
   newton->failures = flag != SUN_NLS_SUCCESS;
   newton->stats.solves++;
@@ -238,9 +252,10 @@ static int solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Vector co
 
 Status fem_newton_create(FemNewton *newton, const FemNewtonUser *user, N_Vector like, SUNContext context) {
   *newton = (FemNewton){.user = *user, .solver = SUNNonlinSolNewEmpty(context)};
-  N_Vector *vectors[] = {&newton->residual, &newton->direction, &newton->start};
-  for (int i = 0; i < 3; i++)
+  N_Vector *vectors[] = {&newton->residual, &newton->direction, &newton->start, &newton->pure};
+  for (int i = 0; i < 4; i++)
     if (!(*vectors[i] = N_VClone(like))) return status_no_memory("Newton's method");
+  TRY(fem_mixing_create(&newton->mixing, 2 * user->n));
   if (!newton->solver) return status_no_memory("Newton's method");
   newton->solver->content = newton;
   newton->solver->ops->gettype = type_of;
@@ -258,9 +273,10 @@ Status fem_newton_create(FemNewton *newton, const FemNewtonUser *user, N_Vector 
 }
 
 void fem_newton_destroy(FemNewton *newton) {
-  N_Vector vectors[] = {newton->residual, newton->direction, newton->start};
-  for (int i = 0; i < 3; i++)
+  N_Vector vectors[] = {newton->residual, newton->direction, newton->start, newton->pure};
+  for (int i = 0; i < 4; i++)
     if (vectors[i]) N_VDestroy(vectors[i]);
+  fem_mixing_destroy(&newton->mixing);
   if (newton->solver) SUNNonlinSolFreeEmpty(newton->solver);
   *newton = (FemNewton){0};
 }

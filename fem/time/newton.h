@@ -10,6 +10,9 @@
 //   slope
 //     of the step's potential along δ, has changed its sign and grown (a line search by false position:
 //     Matthies and Strang 1979, The solution of nonlinear finite element equations);
+//   – once a new matrix did not help, directions are mixed with those before (mixing.h), so that a matrix
+//   that
+//     leaves something out does not set the rate, and what goes to and fro between two states settles;
 //   – where forces cannot be evaluated (beyond the contact margin, no numbers) the step is shortened as well;
 //   – a matrix that makes too little way is made anew where the iteration stands, before the step is given
 //   up; – what has converged by IDA's test must also balance: the caller says by how much the forces do not.
@@ -20,6 +23,7 @@
 #include <sundials/sundials_nonlinearsolver.h>
 
 #include "base/status.h"
+#include "fem/time/mixing.h"
 
 // What the method asks of its user. Vectors are (2 n): displacements, velocities; residuals: kinematics,
 // balance.
@@ -50,9 +54,11 @@ typedef struct FemNewton {
   SUNNonlinSolConvTestFn test;
   void *test_data;
   N_Vector residual, direction, start; // of the size of y
-  long iterations;                     // of the last solve
-  long failures;                       // of the last solve
-  int current; // iterations since the matrix or the step was changed: what IDA's test counts
+  N_Vector pure;                       // the direction before it was mixed
+  FemMixing mixing;
+  long iterations; // of the last solve
+  long failures;   // of the last solve
+  int current;     // iterations since the matrix or the step was changed: what IDA's test counts
 } FemNewton;
 
 // `like`: a vector of the size of y. A zeroed one, and one whose creation failed, can be destroyed.
