@@ -93,15 +93,29 @@ static const struct {
   ExpressionValue (*apply1)(ExpressionValue a);
   ExpressionValue (*apply2)(ExpressionValue a, ExpressionValue b);
   double (*kink)(ExpressionValue a, ExpressionValue b); // NULL: it makes none
+  const char *help;
 } functions[] = {
-    {"sin", do_sin, NULL, NULL},          {"cos", do_cos, NULL, NULL},
-    {"tan", do_tan, NULL, NULL},          {"exp", do_exp, NULL, NULL},
-    {"log", do_log, NULL, NULL},          {"sqrt", do_sqrt, NULL, NULL},
-    {"abs", do_abs, NULL, to_zero},       {"floor", do_floor, NULL, to_whole},
-    {"step", do_step, NULL, to_zero},     {"smooth", do_smooth, NULL, to_zero_or_one},
-    {"min", NULL, do_min, to_each_other}, {"max", NULL, do_max, to_each_other},
+    {"sin", do_sin, NULL, NULL, "sine, of radians"},
+    {"cos", do_cos, NULL, NULL, "cosine, of radians"},
+    {"tan", do_tan, NULL, NULL, "tangent, of radians"},
+    {"exp", do_exp, NULL, NULL, "e to that power"},
+    {"log", do_log, NULL, NULL, "natural logarithm; no number at 0 and below"},
+    {"sqrt", do_sqrt, NULL, NULL, "square root; no number below 0"},
+    {"abs", do_abs, NULL, to_zero, "size without sign"},
+    {"floor", do_floor, NULL, to_whole, "the next whole number below"},
+    {"step", do_step, NULL, to_zero, "0 below 0, else 1"},
+    {"smooth", do_smooth, NULL, to_zero_or_one,
+     "0 below 0, 3x² − 2x³ up to 1, then 1: a rise without a kink"},
+    {"min", NULL, do_min, to_each_other, "the smaller of two, min(a, b)"},
+    {"max", NULL, do_max, to_each_other, "the larger of two, max(a, b)"},
 };
 enum { FUNCTION_COUNT = sizeof functions / sizeof *functions };
+
+const char *expression_function(int index, const char **help) {
+  if (index >= FUNCTION_COUNT) return NULL;
+  *help = functions[index].help;
+  return functions[index].name;
+}
 
 // Recursive descent; each level of precedence is a function below.
 typedef struct Parser {

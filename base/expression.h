@@ -24,6 +24,7 @@ typedef struct ExpressionCode {
 
 typedef struct Expression {
   char text[EXPRESSION_MAX_TEXT]; // as it was written
+  int line, column;               // where, in the file that it is from; 0: nowhere; the user's
   int count;
   ExpressionCode codes[EXPRESSION_MAX_CODES]; // in the order of evaluation  (count)
 } Expression;
@@ -37,6 +38,9 @@ Status expression_parse(Expression *expression, const char *text);
 
 // Whether t does not occur in it.
 bool expression_is_constant(const Expression *expression);
+
+// The functions there are, one after the other, with a line of help; NULL beyond the last.
+const char *expression_function(int index, const char **help);
 
 // NaN or infinite where the formula is: log(0), 1/0.
 ExpressionValue expression_eval(const Expression *expression, double t);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/scene/keys/keys.h"
+#include "base/expression.h"
 
 enum { MAX_SECTIONS = 64, PATH_SIZE = 128 };
 
@@ -56,6 +57,25 @@ static const char *const introduction =
     "written `3`, `0.5`, `1e6`; where the range says so also `.inf`. Ranges: a square bracket includes the "
     "end, a round one\n"
     "does not. YAML's anchors, aliases, tags and multiple documents are not supported; indent with spaces.\n";
+
+static const char *const about_formulas = "\n"
+                                          "## Formulas\n"
+                                          "\n"
+                                          "A formula is a function of the time t [s]: numbers, `t`, `pi`, `+ "
+                                          "- * / ^`, brackets, and the functions below. `^` "
+                                          "binds before a sign: `-t^2`\n"
+                                          "is `-(t^2)`. Where it is no number in the run, as `log(t)` at 0, "
+                                          "the run ends with its place, its text and the "
+                                          "time.\n"
+                                          "\n"
+                                          "| function | |\n"
+                                          "|---|---|\n";
+
+static void print_formulas(FILE *stream) {
+  const char *name, *help;
+  fputs(about_formulas, stream);
+  for (int i = 0; (name = expression_function(i, &help)); i++) fprintf(stream, "| `%s` | %s |\n", name, help);
+}
 
 // A table's cell must not hold a bar.
 static void print_cell(FILE *stream, const char *text) {
@@ -214,5 +234,6 @@ Status app_scene_manual_print(FILE *stream) {
   fputs(introduction, stream);
   fputs("\n## The keys\n", stream);
   print_section(&manual, &app_scene_keys_root, "");
+  print_formulas(stream);
   return ferror(stream) ? status_fail(STATUS_IO, "writing the manual failed") : STATUS_OK;
 }

@@ -217,7 +217,10 @@ static Status read_formula(const SceneKey *key, const SceneNode *node, Expressio
   if (!expression) return status_no_memory("the scene");
   memory_free(*field);
   *field = expression;
-  if (expression_parse(expression, node->text) == STATUS_OK) return STATUS_OK;
+  bool is_parsed = expression_parse(expression, node->text) == STATUS_OK;
+  expression->line = node->line;
+  expression->column = node->column;
+  if (is_parsed) return STATUS_OK;
   char path[MESSAGE_SIZE], wrong[MESSAGE_SIZE];
   app_scene_tree_path(node, path, sizeof path);
   snprintf(wrong, sizeof wrong, "%s", status_message());
@@ -249,6 +252,11 @@ static Status read_list(const SceneKey *key, const SceneNode *node, void *self) 
 
 static Status read_value(const SceneKey *key, const SceneNode *node, void *self);
 
+static void keep_place(const SceneSection *section, const SceneNode *node, void *self) {
+  if (section->has_place)
+    *(FemScenePlace *)field_of(self, section->place_offset) = (FemScenePlace){node->line, node->column};
+}
+
 // A section in its place, which a scalar may stand for.
 static Status read_subsection(const SceneKey *key, const SceneNode *node, void *field) {
   const SceneSection *section = key->section;
@@ -256,7 +264,9 @@ static Status read_subsection(const SceneKey *key, const SceneNode *node, void *
   const SceneKey *meant = section->shorthand ? app_scene_keys_find(section, section->shorthand) : NULL;
   bool is_number = meant && (meant->type == SCENE_NUMBER || meant->type == SCENE_INTEGER);
   bool is_meant = meant && node->kind == (is_number ? SCENE_NODE_NUMBER : SCENE_NODE_TEXT);
-  return is_meant ? read_value(meant, node, field) : fail_expected(key, node, "");
+  if (!is_meant) return fail_expected(key, node, "");
+  keep_place(section, node, field);
+  return read_value(meant, node, field);
 }
 
 static Status read_value(const SceneKey *key, const SceneNode *node, void *self) {
@@ -402,8 +412,7 @@ static Status read_section(const SceneSection *section, const SceneNode *map, vo
   const SceneKey *key;
   TRY(check_alternatives(section, map));
   for (int i = 0; (key = app_scene_keys_at(section, i)); i++) TRY(check_key_rules(key, map));
-  if (section->has_place)
-    *(FemScenePlace *)field_of(self, section->place_offset) = (FemScenePlace){map->line, map->column};
+  keep_place(section, map, self);
   return finish_section(section, map, self);
 }
 

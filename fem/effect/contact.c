@@ -112,7 +112,10 @@ Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *n
                                            : net,
                                is_hybrid ? net : NULL, overlap);
   memory_free(net);
-  return status;
+  const FemScenePlace *place = &scene->contact.place;
+  if (!status || place->line == 0) return status;
+  return status_prefix(status, "%s:%d:%d: contact.net", scene->path ? scene->path : "scene", place->line,
+                       place->column);
 }
 
 static Status build(Contact *contact, Contact *old) {

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/model/drive.h"
+#include "fem/model/formulas.h"
 #include "fem/model/drivers.h"
 #include "fem/sparse/solver.h"
 
@@ -173,6 +174,7 @@ static Status check_stop(const FemSystem *system) {
 Status fem_system_forces(FemSystem *system, double time) {
   TRY(check_stop(system));
   memset(system->forces, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->forces);
+  TRY(fem_formulas_check(system->model, time));
   TRY(fem_system_check_state(system));
   FemState state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {
@@ -220,6 +222,7 @@ Status fem_system_assemble(FemSystem *system, double time, double k, double d, d
 }
 
 Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v) {
+  TRY(fem_formulas_check(system->model, time));
   fem_system_scatter(system, time, u, v);
   FemState state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++)
@@ -236,6 +239,7 @@ Status fem_system_renew(FemSystem *system, double time, const double *u, const d
 }
 
 Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
+  TRY(fem_formulas_check(system->model, time));
   TRY(check_stop(system));
   fem_system_scatter(system, time, u, v);
   FemState state = state_of(system, time);
@@ -280,6 +284,7 @@ static bool has_moving_driver(const FemModel *model) {
 }
 
 Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
+  TRY(fem_formulas_check(system->model, time));
   *energy = (FemEnergy){.kinetic = kinetic_energy(system)};
   if (has_moving_driver(system->model)) {
     TRY(fem_system_forces(system, time));

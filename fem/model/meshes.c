@@ -76,6 +76,14 @@ static Status load_mesh(FemMesh *mesh, const FemSceneDef *scene, const char *pat
   return mesh->middles ? straighten(mesh, path) : STATUS_OK;
 }
 
+// With the mesh's place in the scene.
+static Status fail_at(Status status, const FemSceneDef *scene, const FemScenePlace *place, const char *what,
+                      const char *name) {
+  if (place->line == 0) return status_prefix(status, "%s '%s'", what, name);
+  return status_prefix(status, "%s:%d:%d: %s '%s'", scene->path ? scene->path : "scene", place->line,
+                       place->column, what, name);
+}
+
 // The meshes of all bodies, then of the obstacles that have one. `meshes` has room for all, `kept` for one
 // more.
 static Status load_each(const FemSceneDef *scene, FemMesh *meshes, KeptMesh *kept) {
@@ -83,7 +91,7 @@ static Status load_each(const FemSceneDef *scene, FemMesh *meshes, KeptMesh *kep
     const FemBodyDef *def = &scene->bodies[b];
     Status status = load_mesh(&meshes[b], scene, def->mesh_path, def->box_size, def->box_cells,
                               &def->mesh_options, &def->placement, def->element, kept);
-    if (status) return status_prefix(status, "body '%s'", def->name);
+    if (status) return fail_at(status, scene, &def->mesh_place, "body", def->name);
   }
   int next = scene->body_count;
   for (int o = 0; o < scene->obstacle_count; o++) {
@@ -91,7 +99,7 @@ static Status load_each(const FemSceneDef *scene, FemMesh *meshes, KeptMesh *kep
     if (def->kind != FEM_OBSTACLE_MESH) continue;
     Status status = load_mesh(&meshes[next++], scene, def->mesh_path, def->box_size, def->box_cells,
                               &def->mesh_options, &def->placement, FEM_ELEMENT_LINEAR, kept);
-    if (status) return status_prefix(status, "obstacle '%s'", def->name);
+    if (status) return fail_at(status, scene, &def->mesh_place, "obstacle", def->name);
   }
   return STATUS_OK;
 }

@@ -97,6 +97,7 @@ typedef struct FemBodyDef {
   double box_size[3]; // [m]
   int box_cells[3];
   FemMeshOptions mesh_options;
+  FemScenePlace mesh_place;
   FemPlacement placement;
   FemMaterial material;
   FemElementKind element;
@@ -140,6 +141,7 @@ typedef struct FemObstacleDef {
   double box_size[3];
   int box_cells[3];
   FemMeshOptions mesh_options;
+  FemScenePlace mesh_place;
   FemPlacement placement;
   FemConstraintDef motion; // selection ignored; a half-space must not spin
   FemScenePlace place;
@@ -162,6 +164,7 @@ typedef struct FemContactPairDef {
 
 typedef struct FemContactDef {
   bool is_on;
+  FemScenePlace place;
   double stiffness; // κ; 0: chosen (the softest body's Young's modulus; `body`: that over its volume²…)
   ContactPotential potential;
   bool potential_is_given;  // else it is chosen by the overlap model

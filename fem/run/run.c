@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "fem/effect/rest.h"
+#include "fem/model/formulas.h"
 #include "fem/model/numbering.h"
 #include "fem/run/hold.h"
 #include "fem/run/restart.h"
@@ -348,6 +349,7 @@ static Status begin_part(FemRunState *run) {
   run->next_frame = from->next_frame;
   run->next_step = from->step;
   run->retries = 0;
+  TRY(fem_formulas_check(run->given, run->time));
   TRY(number(run));
   TRY(is_first ? fem_system_create(&run->system, run->model)
                : fem_system_create_again(&run->system, run->model));

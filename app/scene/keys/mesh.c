@@ -13,6 +13,7 @@
 SAME_IN_MESH(box_size);
 SAME_IN_MESH(box_cells);
 SAME_IN_MESH(mesh_options);
+SAME_IN_MESH(mesh_place);
 
 static const SceneKey mesh_box_keys[] = {
     {"size", SCENE_VECTOR, IN_MESH(box_size), .unit = "m", .range = "(0, inf)", .required = "[0.2, 0.2, 0.2]",
@@ -33,8 +34,13 @@ static const SceneKey mesh_keys[] = {
     {"box", SCENE_SECTION, .section = &mesh_box, .help = "a box in place of a file"},
     {0},
 };
-const SceneSection app_scene_keys_mesh = {
-    .help = "tetrahedra: a file, or a box", .keys = mesh_keys, .shorthand = "file", .one_of = "file box"};
+const SceneSection app_scene_keys_mesh = {.help = "tetrahedra: a file, or a box",
+                                          .keys = mesh_keys,
+                                          .shorthand = "file",
+                                          .one_of = "file box",
+                                          .has_place = true,
+                                          .place_offset = offsetof(FemBodyDef, mesh_place) -
+                                                          offsetof(FemBodyDef, mesh_path)};
 
 static const SceneKey rotate_keys[] = {
     {"axis", SCENE_DIRECTION, AT(FemPlacement, axis), .required = "[0, 0, 1]", .help = "through the origin"},
