@@ -12,7 +12,8 @@
 
 // |h| from which on a direction is one; how far h may turn at once and be followed (cosines); where an
 // element is turned, and how deep it must reach for that.
-static const double CLEAR = 0.4, FOLLOWED = -0.25, TURNED = -0.3, BACK = 0.3, REACH = 0.1;
+static const double CLEAR = 0.4, FOLLOWED = -0.25, TURNED = -0.3, TURNED_WITHOUT_DEPTH = -0.8, BACK = 0.3,
+                    REACH = 0.1;
 
 void contact_passage_destroy(ContactPassage *passage) {
   memory_free(passage->now.entries);
@@ -89,11 +90,11 @@ static void sort(ContactPassageList *list) {
 }
 
 // What the element becomes at the direction h, |h| ≤ 1.
-static void meet(ContactPassageEntry *entry, Vec3 h, double reach) {
+static void meet(ContactPassageEntry *entry, Vec3 h, double reach, double turned) {
   Vec3 kept = vec3_at(entry->direction);
   double length = vec3_length(h), along = vec3_dot(h, kept);
   bool is_known = vec3_length(kept) > 0;
-  if (is_known && along < TURNED && reach > REACH) entry->is_turned = true;
+  if (is_known && along < turned && reach > REACH) entry->is_turned = true;
   if (is_known && along > BACK) entry->is_turned = false;
   bool is_followed = !is_known || (!entry->is_turned && along > FOLLOWED * length);
   if (length > CLEAR && is_followed) vec3_store(entry->direction, vec3_scale(1 / length, h));
@@ -130,6 +131,7 @@ static void leave(ContactPassage *passage, const ContactPassageEntry *entry) {
 static void match(ContactPassage *passage, const ContactSystem *system) {
   ContactPassageList *now = &passage->now, *next = &passage->next;
   int listed = next->count, i = 0;
+  double turned = contact_system_layout(system)->depth.has_field ? TURNED : TURNED_WITHOUT_DEPTH;
   for (int k = 0; k < listed; k++) {
     ContactPassageEntry *entry = &next->entries[k], meeting = *entry;
     for (; i < now->count && compare_entries(&now->entries[i], entry) < 0; i++) {
@@ -140,7 +142,7 @@ static void match(ContactPassage *passage, const ContactSystem *system) {
     }
     vec3_store(entry->direction, (Vec3){0, 0, 0});
     if (i < now->count && compare_entries(&now->entries[i], entry) == 0) *entry = now->entries[i++];
-    meet(entry, vec3_at(meeting.direction), meeting.reach);
+    meet(entry, vec3_at(meeting.direction), meeting.reach, turned);
   }
   for (; i < now->count; i++) {
     if (contact_system_is_resting(system, now->entries[i].facing))

@@ -474,7 +474,7 @@ static Status collect(FemRunState *run) {
   result->phases.solve = result->solver.solve_s;
   result->phases.total = result->wall_s;
   if (!run->recorder.system) return STATUS_OK;
-  TRY(keep_account(run));
+  if (run->system.model) TRY(keep_account(run)); // else a new part could not be begun
   return fem_recorder_finish(&run->recorder);
 }
 
