@@ -13,7 +13,7 @@
 #include "fem/mesh/mesh.h"
 #include "suite.h"
 
-// The middle of an edge, moved by up to `jitter` of a cell in each coordinate that is not that of a side.
+// A point (the middle of an edge), moved by up to `jitter` of a cell in each coordinate that is not that of a side.
 static inline void curved_move(const double size[3], const int cells[3], double jitter, Random *random,
                                double middle[3]) {
   for (int c = 0; c < 3; c++) {

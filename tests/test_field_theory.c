@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include "curved.h"
+#include "fem/effect/contact.h"
+#include "fem/effect/effect.h"
 #include "fem/model/build.h"
 #include "scene.h"
 
@@ -85,6 +87,27 @@ START_TEST(uniform_stress_passes_an_interface) {
 }
 END_TEST
 
+// Every vertex moved by up to a fifth of a cell, those of a side within it.
+START_TEST(uniform_stress_passes_between_jittered_meshes) {
+  static const double SIZE[3] = {0.1, 0.1, 0.05};
+  static const int CELLS[3] = {4, 4, 2};
+  char path[] = "/tmp/tetlap_jittered_XXXXXX.mesh", mesh_key[64];
+  int file = mkstemps(path, 5);
+  ck_assert_int_ge(file, 0);
+  close(file);
+  FemMesh mesh;
+  Random random = random_seeded(9, 0);
+  ck_assert_ok(fem_mesh_box(&mesh, SIZE, CELLS));
+  for (int v = 0; v < mesh.vertex_count; v++) curved_move(SIZE, CELLS, 0.2, &random, mesh.rest + 3 * v);
+  ck_assert_ok(fem_mesh_write_medit(&mesh, path));
+  fem_mesh_destroy(&mesh);
+  snprintf(mesh_key, sizeof mesh_key, "file: %s", path);
+  Patch patch = {"linear", mesh_key, "", "[5, 5, 3]"};
+  expect_evenness("jittered", &patch, 5e-3, 5e-4);
+  unlink(path);
+}
+END_TEST
+
 START_TEST(uniform_stress_passes_between_quadratic_elements) {
   static const Patch PATCHES[] = {
       {"quadratic", "box: {size: [0.1, 0.1, 0.05], cells: [2, 2, 1]}", "", "[3, 3, 2]"},
@@ -133,6 +156,90 @@ START_TEST(what_stands_weighs_m_g) {
   ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
   for (int frame = 13; frame <= 20; frame++) ck_assert_near(scene_force(&run, frame, 0)[2] / 9.81, 1, 1e-3);
   scene_close(&run);
+}
+END_TEST
+
+// ---- A press of 1 %, ends glued, in plane strain: the pressure is uneven, and converges.
+
+static const char PRESS[] =
+    "time: {end: 1, static: true}\n"
+    "bodies:\n"
+    "  - name: lower\n"
+    "    mesh: {box: {size: [0.1, %g, 0.1], cells: [%d, 1, %d]}}\n"
+    "    material: {law: linear, young: 1e6, poisson: 0.3, density: 1000}\n"
+    "    fixed: [{group: z_min}, {box: {min: [-1, -1, 1e-9], max: [1, 1, 1]}, components: [y]}]\n"
+    "    inner_faces: [{group: y_min}, {group: y_max}]\n"
+    "  - name: upper\n"
+    "    mesh: {box: {size: [0.1, %g, 0.1], cells: [%d, 1, %d]}}\n"
+    "    place: {translate: [0, 0, 0.1]}\n"
+    "    material: {law: linear, young: 1e6, poisson: 0.3, density: 1000}\n"
+    "    fixed: [{box: {min: [-1, -1, -1], max: [1, 1, 0.1999999]}, components: [y]}]\n"
+    "    inner_faces: [{group: y_min}, {group: y_max}]\n"
+    "    driven: [{group: z_max, velocity: [0, 0, -0.002]}]\n"
+    "contact: {potential: field, overlap: clip}\n"
+    "output: {frames: 1}\n";
+
+enum { SAMPLES = 61 };
+
+// Pressures of the upper block's lower side, means over y, by x.
+typedef struct Line {
+  const FemModel *model;
+  int cells;
+  double *pressures, *depths;
+  double by_x[65];
+} Line;
+
+static Status look_at_line(void *self, const FemRunProgress *progress) {
+  Line *line = self;
+  ContactSystem *contact =
+      fem_effect_contact_system(fem_system_effect(progress->system, &fem_effect_contact));
+  const FemModelBody *upper = &line->model->bodies[1];
+  ck_assert_ok(contact_system_trace(contact, line->pressures, line->depths));
+  memset(line->by_x, 0, sizeof line->by_x);
+  for (int v = upper->vertex_begin; v < upper->vertex_end; v++)
+    if (fabs(line->model->rest[3 * v + 2] - 0.1) < 1e-9)
+      line->by_x[lround(line->model->rest[3 * v] * line->cells / 0.1)] += 0.5 * line->pressures[v];
+  return STATUS_OK;
+}
+
+// At points from 0.02 to 0.08 m: a band of 0.02 m at the rim is left out.
+static void press_line(int cells, double samples[SAMPLES]) {
+  int upper_cells = 5 * cells / 4;
+  char text[2048];
+  snprintf(text, sizeof text, PRESS, 0.1 / cells, cells, cells, 0.1 / cells, upper_cells, upper_cells);
+  SceneRun run;
+  open_text(&run, text);
+  Line line = {.model = &run.model, .cells = upper_cells};
+  line.pressures = calloc((size_t)run.model.vertex_count, sizeof(double));
+  line.depths = calloc((size_t)run.model.vertex_count, sizeof(double));
+  ck_assert(line.pressures && line.depths);
+  FemRunOptions options = {.observe = look_at_line, .observer = &line};
+  ck_assert_ok(fem_run(&run.model, &options, &run.result));
+  for (int k = 0; k < SAMPLES; k++) {
+    double at = (0.02 + 0.06 * k / (SAMPLES - 1)) * upper_cells / 0.1;
+    int left = (int)at;
+    samples[k] = line.by_x[left] + (at - left) * (line.by_x[left + 1] - line.by_x[left]);
+  }
+  free(line.pressures), free(line.depths);
+  scene_close(&run);
+}
+
+static double difference(const double a[SAMPLES], const double b[SAMPLES]) {
+  double sum = 0;
+  for (int k = 0; k < SAMPLES; k++) sum += (a[k] - b[k]) * (a[k] - b[k]) / SAMPLES;
+  return sqrt(sum);
+}
+
+START_TEST(pressure_converges_in_the_mean_square) {
+  double lines[4][SAMPLES], apart[3], mean = 0;
+  for (int k = 0; k < 4; k++) press_line(4 << k, lines[k]);
+  for (int k = 0; k < SAMPLES; k++) mean += lines[3][k] / SAMPLES;
+  for (int k = 0; k < 3; k++) apart[k] = difference(lines[k], lines[k + 1]) / mean;
+  printf("press of 1 %%: pressure at h, h/2, h/4 against half of each %.2e, %.2e, %.2e: orders %.2f, %.2f\n",
+         apart[0], apart[1], apart[2], log2(apart[0] / apart[1]), log2(apart[1] / apart[2]));
+  ck_assert(apart[0] > 1e-4); // uneven indeed
+  ck_assert(log2(apart[0] / apart[1]) >= 0.9);
+  ck_assert(log2(apart[1] / apart[2]) >= 0.9);
 }
 END_TEST
 
@@ -203,9 +310,11 @@ END_TEST
 int main(void) {
   TCase *tests = tcase_create("field_theory");
   tcase_add_loop_test(tests, uniform_stress_passes_an_interface, 0, 2);
+  tcase_add_test(tests, uniform_stress_passes_between_jittered_meshes);
   tcase_add_loop_test(tests, uniform_stress_passes_between_quadratic_elements, 0, 2);
   tcase_add_loop_test(tests, uniform_stress_passes_between_curved_elements, 0, 2);
   tcase_add_loop_test(tests, what_stands_weighs_m_g, 0, 5);
+  tcase_add_test(tests, pressure_converges_in_the_mean_square);
   tcase_add_loop_test(tests, a_pair_has_its_own_stiffness, 0, 2);
   tcase_add_test(tests, a_pair_has_its_own_friction);
   return suite_run("field_theory", tests, 120);
