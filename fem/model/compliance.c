@@ -72,14 +72,25 @@ Status fem_compliance_height(const FemModel *model, int body, double *height) {
   return STATUS_OK;
 }
 
-// L/E of every body [m/Pa]; obstacles 0.
-static Status measure_compliances(const FemModel *model, double *compliances) {
+// Of every body; an obstacle is rigid and has none.
+typedef struct Give {
+  double height;  // L [m]
+  double inverse; // 1/E [1/Pa]
+} Give;
+
+static Status measure_bodies(const FemModel *model, Give *gives) {
   for (int b = 0; b < model->scene->body_count; b++) {
-    double height;
-    TRY(fem_compliance_height(model, b, &height));
-    compliances[b] = height / model->bodies[b].material.young;
+    TRY(fem_compliance_height(model, b, &gives[b].height));
+    gives[b].inverse = 1 / model->bodies[b].material.young;
   }
   return STATUS_OK;
+}
+
+// What two give by for each Pa between them [m/Pa]: no patch is larger than the smaller one, and what lies
+// farther away than its height feels little of it.
+static double give_of(const Give *a, const Give *b) {
+  if (!(a->inverse > 0) || !(b->inverse > 0)) return a->height * a->inverse + b->height * b->inverse;
+  return fmin(a->height, b->height) * (a->inverse + b->inverse);
 }
 
 static int count_shapes(const FemSceneDef *scene) {
@@ -89,15 +100,14 @@ static int count_shapes(const FemSceneDef *scene) {
 }
 
 static Status choose_for_field(const FemModel *model, int party_count, double *stiffness) {
-  double *compliances = memory_zeroed((size_t)party_count, sizeof *compliances);
-  Status status =
-      compliances ? measure_compliances(model, compliances) : status_no_memory("contact stiffness");
+  Give *gives = memory_zeroed((size_t)party_count, sizeof *gives);
+  Status status = gives ? measure_bodies(model, gives) : status_no_memory("contact stiffness");
   for (int a = 0; a < model->body_count && !status; a++)
     for (int b = 0; b < party_count; b++) {
-      double sum = compliances[a] + compliances[b], terms = b < model->body_count ? 2 : 1; // p = terms · c d
+      double sum = give_of(&gives[a], &gives[b]), terms = b < model->body_count ? 2 : 1; // p = terms · c d
       stiffness[a * party_count + b] = sum > 0 ? 1 / (terms * GIVE * sum) : 1;
     }
-  memory_free(compliances);
+  memory_free(gives);
   return status;
 }
 

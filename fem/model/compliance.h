@@ -2,9 +2,10 @@
 // How stiff contact is: κ of each two that can meet, as the scene says or as chosen from the bodies.
 //
 // For the potential `field` the choice does not depend on the mesh. Two that press each other with p give way
-// by p/(2c) where they touch and by p (L_A/E_A + L_B/E_B) in themselves, L their heights, so
+// by p/(2c) where they touch and by about p L (1/E_A + 1/E_B) in themselves, L the height of the smaller one: no patch
+// is larger than that, and what lies farther away feels little of it. So
 //
-//   c = 12.5 · 2 / (L_A/E_A + L_B/E_B)
+//   c = 25 / (L (1/E_A + 1/E_B))
 //
 // keeps the first at 2 % of the second: 12.5 E/L for two that are alike. Obstacles do not give way, and a
 // shape without elements presses with c d in place of 2 c d: against one, c = 50 E/L. The height of a body of
