@@ -99,7 +99,7 @@ static const AppStressLimit limits[] = {
 // With the potential `field`.
 static const AppStressLimit limits_of_field[] = {
     {"spikes", NULL, "asymmetry in y", 0.09, TIPS, NULL},
-    {"spike and wedge", NULL, "asymmetry in x", 0.0016, TIPS, NULL},
+    {"spike and wedge", NULL, "asymmetry in x", 0.007, TIPS, NULL},
     {"flat slabs, edge ratio 1/2", NULL, "pressure against 2 c depth", 0.25, MEDIAL, NULL},
 };
 
