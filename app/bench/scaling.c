@@ -15,6 +15,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "fem/run/choice.h"
 
 enum { MAX_MODELS = 32, MAX_ROWS = MAX_MODELS * APP_BENCH_MAX_LIST + 16 * APP_BENCH_MAX_LIST };
 static const double GIB = 1024.0 * 1024 * 1024;
@@ -248,7 +249,7 @@ static Status measure_nodes(const Options *options, AppBenchTrial *trial, int no
   TRY(app_bench_builtin_blocks(nodes, &trial->scene));
   trial->wall_limit_s = options->seconds;
   TRY(app_bench_trial_begin(trial, &options->common, options->steps));
-  if (!is_affordable(options, "vertices", nodes, fem_model_memory_estimate(&trial->model), 0))
+  if (!is_affordable(options, "vertices", nodes, fem_run_choice(&trial->model).bytes, 0))
     return STATUS_OK;
   TRY(app_bench_timer_take_turns(trial, sizeof *trial, 1, rounds, false, app_bench_trial_run));
   add_phases(trial, rounds, table);

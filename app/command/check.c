@@ -13,6 +13,7 @@
 #include "fem/effect/effect.h"
 #include "fem/measure/thickness.h"
 #include "fem/model/compliance.h"
+#include "fem/run/choice.h"
 #include "fem/run/start.h"
 #include "fem/sparse/solver.h"
 
@@ -116,7 +117,7 @@ static Notes take_notes(const AppJob *job) {
        "linear tetrahedra are too stiff at a Poisson's ratio of 0.45 and above: bending is underestimated; "
        "try element: quadratic or nodal");
   note(&notes, job->model.unknown_count == 0, "every vertex is prescribed: there is nothing to solve");
-  note(&notes, fem_model_memory_estimate(&job->model) > machine_memory(),
+  note(&notes, fem_run_choice(&job->model).bytes > machine_memory(),
        "the run needs more memory than this machine has");
   return notes;
 }
@@ -223,9 +224,10 @@ static void print_text(const AppJob *job, const Notes *notes) {
          scene->is_static ? "no" : "and as many");
   printf("time          0 to %g s, error per step %g m and %g m/s\n", scene->end,
          scene->tolerance * model->length, fem_model_velocity_tolerance(model));
-  printf("solver        %s%s, %d threads\n", fem_solver_name(fem_run_solver(model)),
-         scene->solver == FEM_SOLVER_AUTO ? " (chosen)" : "", cpu_thread_count());
-  print_memory(fem_model_memory_estimate(model));
+  FemRunChoice choice = fem_run_choice(model);
+  printf("solver        %s%s%s%s, %d threads\n", fem_solver_name(choice.kind),
+         choice.why[0] ? " (chosen: " : "", choice.why, choice.why[0] ? ")" : "", cpu_thread_count());
+  print_memory(choice.bytes);
   printf("output        %s: %d frames%s%s\n", job->directory, scene->frames + 1,
          scene->write_vtu ? ", VTU" : "",
          scene->history == FEM_HISTORY_NONE    ? ""
@@ -294,9 +296,11 @@ static void record_job(const AppJob *job, const Notes *notes, Record *record) {
   record_number(record, "length_m", model->length);
   record_number(record, "tolerance", scene->tolerance);
   record_number(record, "velocity_tolerance_m_s", fem_model_velocity_tolerance(model));
-  record_text(record, "solver", fem_solver_name(fem_run_solver(model)));
+  FemRunChoice choice = fem_run_choice(model);
+  record_text(record, "solver", fem_solver_name(choice.kind));
+  record_text(record, "solver_why", choice.why);
   record_integer(record, "threads", cpu_thread_count());
-  record_number(record, "memory_bytes", fem_model_memory_estimate(model));
+  record_number(record, "memory_bytes", choice.bytes);
   record_text(record, "output", job->directory);
   record_integer(record, "frames", scene->frames + 1);
   RecordList *list = record_list(record, "notes");

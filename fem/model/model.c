@@ -161,10 +161,8 @@ double fem_model_rest_acceleration(const FemModel *model) {
 
 double fem_model_memory_estimate(const FemModel *model) {
   double vertices = model->vertex_count, tets = model->tet_count, unknowns = model->unknown_count;
-  double arrays = vertices * 30 * sizeof(double) + tets * (sizeof(FemElement) + 600);
+  double arrays = vertices * 30 * sizeof(double) + tets * (sizeof(FemElement) + 400);
   arrays += model->quadratic_count * (double)(sizeof(FemQuadratic) + 465 * sizeof(int));
   double matrix = unknowns * 23 * (sizeof(double) + sizeof(int));
-  // Nested dissection in three dimensions: O(n^{4/3}) factor entries (George 1973); the constant is measured.
-  double factor = 12 * pow(unknowns, 4.0 / 3.0) * sizeof(double);
-  return 3e7 + arrays + matrix + factor;
+  return 3e7 + arrays + matrix;
 }

@@ -100,7 +100,7 @@ double fem_model_rest_speed(const FemModel *model);
 double fem_model_rest_acceleration(const FemModel *model);
 double fem_model_rest_time(const FemModel *model);
 
-// The memory that a run of this model will take, roughly [bytes].
+// The memory that a run of this model will take, roughly, without its linear solver [bytes].
 double fem_model_memory_estimate(const FemModel *model);
 
 #endif

@@ -12,6 +12,7 @@
 #include "fem/effect/rest.h"
 #include "fem/model/formulas.h"
 #include "fem/model/numbering.h"
+#include "fem/run/choice.h"
 #include "fem/run/hold.h"
 #include "fem/run/restart.h"
 #include "fem/run/run_checkpoint.h"
@@ -28,14 +29,8 @@ static const double SHORTEST_LOAD_STEP = 1e-4;
 // obstacle would move too far.
 static const double LONGEST_SLEEP = 0.1, SHORTER_SLEEP = 0.25, SHORTEST_SLEEP = 1e-9;
 
-// `auto` factorises up to this many unknowns. Beyond, a factor takes gigabytes and PCG, poor as it is for
-// slow and nearly incompressible scenes, is what fits.
-enum { MOST_UNKNOWNS_TO_FACTORISE = 200000 };
-
 FemSolverKind fem_run_solver(const FemModel *model) {
-  FemSolverKind kind = model->scene->solver;
-  if (kind != FEM_SOLVER_AUTO) return kind;
-  return model->unknown_count > MOST_UNKNOWNS_TO_FACTORISE ? FEM_SOLVER_PCG : FEM_SOLVER_CHOLMOD;
+  return fem_run_choice(model).kind;
 }
 
 // Back to the last accepted state with a smaller step.

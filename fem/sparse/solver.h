@@ -59,6 +59,9 @@ const char *fem_solver_name(FemSolverKind kind); // "auto", "cholmod", …
 const char *fem_solver_help(FemSolverKind kind);
 const FemSolverOps *fem_solver_ops(FemSolverKind kind); // not for FEM_SOLVER_AUTO
 
+// Whether the library of amg and gamg can be loaded; loads it.
+bool fem_solver_has_multigrid(void);
+
 // What `create` is given for a scene's tolerance, 0: not said.
 double fem_solver_tolerance(const FemSolverOps *ops, double said);
 

@@ -24,6 +24,10 @@ enum { LIMIT_KEPT = 60, LIMIT = 500 };
 static const double WORN_SHARE = 1.5;
 enum { WORN_MORE = 2 };
 
+bool fem_solver_has_multigrid(void) {
+  return fem_petsc_library_is_there();
+}
+
 typedef enum Kind { BOOMER, GAMG } Kind;
 static const char *const names[] = {[BOOMER] = "amg", [GAMG] = "gamg"};
 static const char *const prefixes[] = {[BOOMER] = "tetlap_amg_", [GAMG] = "tetlap_gamg_"};

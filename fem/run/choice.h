@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which linear solver a run gets, why, and the memory that it will take.
+#ifndef TETLAP_FEM_RUN_CHOICE_H
+#define TETLAP_FEM_RUN_CHOICE_H
+
+#include "fem/model/model.h"
+#include "fem/sparse/solver.h"
+
+typedef struct FemRunChoice {
+  FemSolverKind kind; // never FEM_SOLVER_AUTO
+  const char *why;    // of `auto`; "" where the scene says which
+  double bytes;       // of the whole run, roughly
+} FemRunChoice;
+
+FemRunChoice fem_run_choice(const FemModel *model);
+
+#endif
