@@ -151,7 +151,8 @@ static Status fold(Net *net, int count) {
 static const double *first_of(const Net *net, const NetCard *card) {
   OverlapTpnNormalisation kind;
   double scale;
-  if (net->narrow.plan->shape.kind != NET_TPN ||
+  const NetShape *shape = &net->narrow.plan->shape;
+  if (shape->kind != NET_TPN || shape->has_one_tetrahedron ||
       !overlap_tpn_network_parse(card->normalisation, &kind, &scale))
     return NULL;
   return overlap_tpn_normalise_first(kind);
@@ -314,7 +315,8 @@ static void call(Contestant *c) {
   else if (net->is_float)
     net_forward_gradient_f32(&c->narrow, narrow_of(c), c->batch, x, net->seeds, c->outputs, c->gradients);
   else
-    net_forward_gradient_f64(&c->wide, &net->wide, c->batch, net->inputs, net->seeds, c->outputs, c->gradients);
+    net_forward_gradient_f64(&c->wide, &net->wide, c->batch, net->inputs, net->seeds, c->outputs,
+                             c->gradients);
 }
 
 static double mean_of(const Contestant *c) {
