@@ -124,7 +124,7 @@ static Status start_torch(Trainer *trainer) {
   int file = mkstemps(path, 12), batch = trainer->config.optimiser.batch;
   if (file < 0) return status_fail(STATUS_IO, "no temporary file in /tmp");
   close(file);
-  size_t numbers = (size_t)batch * 24;
+  size_t numbers = (size_t)batch * (size_t)trainer->model.plan->shape.input_count;
   float *inputs = memory_zeroed(numbers, sizeof *inputs);
   Random random = random_seeded(3, 0);
   for (size_t i = 0; inputs && i < numbers; i++) inputs[i] = (float)random_between(&random, -1, 1);
