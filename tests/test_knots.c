@@ -179,8 +179,8 @@ END_TEST
 START_TEST(knots_at_the_beginning_and_at_the_end_are_kept) {
   ck_assert_near(struck_by((const char *[]){TABLE "[[0,0],[0.00005,1],[0.0001,0],[1,0]]", NULL}), 0.5,
                  1e-3 * 0.5);
-  // What begins at the end comes too late.
-  ck_assert_near(struck_by((const char *[]){TABLE "[[0,0],[1,0],[1.0001,1]]", NULL}), 0, 0);
+  // What begins at the end comes too late; the rounding of forces at rest is not nothing.
+  ck_assert_near(struck_by((const char *[]){TABLE "[[0,0],[1,0],[1.0001,1]]", NULL}), 0, 1e-12);
 }
 END_TEST
 
