@@ -42,7 +42,7 @@ const FIELDS = {
   status_predicted: { label: "Status by the overlap model", isClass: true, classes: ["apart", "overlaps"] },
   status_exact: { label: "Status by the reference", isClass: true, classes: ["apart", "overlaps"] },
   status_error: { label: "Errors of the status", isClass: true, classes: ["right", "false positive", "false negative"] },
-  status_wrong_pairs: { label: "Pairs told wrongly", isClass: false },
+  status_wrong_pairs: { label: "Pairs misclassified", isClass: false },
   body: { label: "Body", unit: "", isClass: true },
 };
 
