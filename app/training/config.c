@@ -13,7 +13,7 @@
 
 static const char *const kinds[] = {"geo", "tpn", NULL};
 static const char *const kind_helps[] = {"analytic-centre frame, symmetric features, a small dense network",
-                                         "the paper's TetrahedronPairNet"};
+                                         "TetrahedronPairNet as published (reading c) or after it"};
 static const char *const readings[] = {"a", "b", "c", "backbone", NULL};
 static const char *const reading_helps[] = {"coordinates concatenated, biased skips; 73,370 parameters",
                                             "a vertex skip for each index; 73,370 parameters",
