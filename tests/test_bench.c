@@ -135,7 +135,8 @@ START_TEST(a_card_tells_a_networks_size) {
   ck_assert(card.is_learned && !card.is_float);
   ck_assert_int_eq(card.features, 36);
   ck_assert_int_eq((int)card.parameters, 36 * 16 + 16 + 16 * 16 + 16 + 46 * (16 + 1));
-  ck_assert_double_eq(card.flops, 2 * (36 * 16 + 16 * 16 + 46 * 16)); // a multiplication and an addition a weight
+  ck_assert_double_eq(card.flops,
+                      2 * (36 * 16 + 16 * 16 + 46 * 16)); // a multiplication and an addition a weight
   overlap_model_destroy(&model);
   ck_assert_ok(overlap_model_create(&model, "clip"));
   ck_assert_ok(app_evaluation_card_read(&model, "clip", &card));
@@ -268,7 +269,7 @@ static const Promise promises[] = {
     {"train examples/train/sweep/geo.yaml --batch 64 --pairs 300 --repeat 1", 1,
      "bench config model implementation spread ratio_to_torch",
      "parameters batch threads samples_per_second samples_per_cpu_second"},
-    {"scaling --model clip --pairs 100,1000 --nodes 100,200 --steps 2 --repeat 1", 0,
+    {"scaling --model clip --pairs 100,1000 --nodes 100,200 --steps 2 --repeat 1 --solver amg", 0,
      "bench subject name spread exponent cpu_seconds", "size seconds seconds_per_item done"},
     {"solver --nodes 60,100 --repeat 2", 10, "bench solver iterations spread factor_entries",
      "vertices unknowns step slenderness assembly_s factorisation_s solve_s setup_solve_s residual"},
@@ -378,6 +379,8 @@ START_TEST(wrong_arguments_are_usage_errors) {
                          "overlap --batch 0",
                          "overlap --batch 1.5",
                          "solver --threads 1,2",
+                         "scaling --solver amg,pcg",
+                         "scaling --solver umfpack",
                          "datagen --law paper",
                          "train",
                          "precision examples/02_two_blocks.yaml --level 0",

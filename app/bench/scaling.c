@@ -27,16 +27,18 @@ typedef struct Options {
   int pairs[APP_BENCH_MAX_LIST], pair_sizes;
   int nodes[APP_BENCH_MAX_LIST], node_sizes;
   int steps;
+  FemSolverKind solver;   // of the blocks
   double memory, seconds; // limits of one size [GiB], [s]
 } Options;
 
-enum { KEY_MEMORY = 256, KEY_SECONDS };
+enum { KEY_MEMORY = 256, KEY_SECONDS, KEY_SOLVER };
 
 static const struct argp_option option_table[] = {
     {"model", 'm', "NAME,…", 0, "Overlap models (default: clip,geo-small,geo)", 1},
     {"pairs", 'p', "N,…", 0, "Pairs a call, V + ∇V (default: 1e3,1e4,1e5,1e6; 0: none)", 1},
     {"nodes", 'n', "N,…", 0, "Vertices of two blocks in contact (default: 1e3,3e3,1e4; 0: none)", 1},
     {"steps", 'k', "N", 0, "Steps of each run (default: 10)", 1},
+    {"solver", KEY_SOLVER, "NAME", 0, "Linear solver of the runs (default: auto)", 1},
     {"memory", KEY_MEMORY, "GIB", 0, "Leave out sizes that take more (default: 6)", 1},
     {"seconds", KEY_SECONDS, "S", 0,
      "Leave out calls that take longer by the model's own guess, and end runs that "
@@ -57,6 +59,18 @@ static int read_sizes(struct argp_state *state, const char *option, char *text, 
   return strcmp(text, "0") == 0 ? 0 : app_bench_options_counts(state, option, text, 100000000, sizes);
 }
 
+static FemSolverKind read_solver(struct argp_state *state, char *text) {
+  const char *names[FEM_SOLVER_COUNT];
+  bool wanted[FEM_SOLVER_COUNT] = {false};
+  for (int k = 0; k < FEM_SOLVER_COUNT; k++) names[k] = fem_solver_name((FemSolverKind)k);
+  app_bench_options_choose(state, "solver", text, names, FEM_SOLVER_COUNT, wanted);
+  int chosen = 0, count = 0;
+  for (int k = 0; k < FEM_SOLVER_COUNT; k++)
+    if (wanted[k]) chosen = k, count++;
+  if (count != 1) argp_error(state, "--solver takes one name");
+  return (FemSolverKind)chosen;
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   const char *models[MAX_MODELS];
@@ -75,6 +89,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case 'k':
     options->steps = (int)app_argument_integer(state, "steps", text, 1, 1000000);
+    return 0;
+  case KEY_SOLVER:
+    options->solver = read_solver(state, text);
     return 0;
   case KEY_MEMORY:
     options->memory = app_argument_number(state, "memory", text, 1e-3, 1e6);
@@ -247,10 +264,10 @@ static void add_phases(const AppBenchTrial *trial, int rounds, Table *table) {
 static Status measure_nodes(const Options *options, AppBenchTrial *trial, int nodes, Table *table) {
   int rounds = options->common.repeats;
   TRY(app_bench_builtin_blocks(nodes, &trial->scene));
+  trial->scene.solver = options->solver;
   trial->wall_limit_s = options->seconds;
   TRY(app_bench_trial_begin(trial, &options->common, options->steps));
-  if (!is_affordable(options, "vertices", nodes, fem_run_choice(&trial->model).bytes, 0))
-    return STATUS_OK;
+  if (!is_affordable(options, "vertices", nodes, fem_run_choice(&trial->model).bytes, 0)) return STATUS_OK;
   TRY(app_bench_timer_take_turns(trial, sizeof *trial, 1, rounds, false, app_bench_trial_run));
   add_phases(trial, rounds, table);
   return STATUS_OK;
@@ -293,6 +310,7 @@ static int run_command(int argument_count, char **arguments) {
                      .nodes = {1000, 3000, 10000},
                      .node_sizes = 3,
                      .steps = 10,
+                     .solver = FEM_SOLVER_AUTO,
                      .memory = 6,
                      .seconds = 60};
   const char *names[MAX_MODELS];
