@@ -259,7 +259,7 @@ static const Promise promises[] = {
      "1,2",
      16, "bench model set quantity spread reference flops_per_pair peak_share",
      "pairs_per_second pairs_per_cpu_second batch threads ratio ratio_min ratio_max thread_gain"},
-    {"overlap --model geo --set near --quantity V --batch 100 --repeat 1", 1, "bench",
+    {"overlap --model geo --set near --quantity V --batch 4096 --repeat 1", 1, "bench",
      "flops_per_pair peak_share"},
     {"net --net geo,geo-small --batch 100 --repeat 1 --no-torch --threads 2 --quantity V", 0,
      "bench net implementation precision quantity spread ratio_to_torch difference",
