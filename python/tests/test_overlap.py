@@ -131,7 +131,9 @@ class Pairs(unittest.TestCase):
         for model in models:
             with self.subTest(model=model.name):
                 result = tetlap.overlap(x, model.name)
-                np.testing.assert_allclose(result.volume, expected, rtol=0.2, atol=1e-3)
+                # As its authors train it, it errs by 3e-3 of the unit cube on average, whatever the volume (docs/models.md).
+                most = 2e-2 if model.name == "tpn-published" else 1e-3
+                np.testing.assert_allclose(result.volume, expected, rtol=0.2, atol=most)
                 self.assertTrue(np.isfinite(result.gradient).all())
                 if not model.has_centroid:
                     with self.assertRaisesRegex(ValueError, f"'{model.name}' has no centroid; expected one of clip"):
