@@ -139,7 +139,7 @@ START_TEST(it_is_true_at_the_onset_with_any_weights) {
     ck_assert(truth.volume > 0);
     ck_assert_int_eq(answer.flags, 0);
     double distance = 0;
-    for (int c = 0; c < 3; c++) distance = fmax(distance, fabs(answer.centroid[c] - truth.centroid[c]));
+    for (int c = 0; c < 3; c++) distance = suite_larger(fabs(answer.centroid[c] - truth.centroid[c]), distance);
     ck_assert_msg(distance <= 2 * d * d, "at depth %g: off by %g", d, distance);
   }
   overlap_model_destroy(&model);

@@ -21,7 +21,7 @@ static double kinetic_speed(const SceneRun *run, int frame) {
   double duration = run->result.frame_times[frame] - run->result.frame_times[frame - 1];
   for (int v = 0; v < run->model.vertex_count; v++) {
     Vec3 moved = vec3_sub(vec3_at(scene_position(run, frame, v)), vec3_at(scene_position(run, frame - 1, v)));
-    largest = fmax(largest, vec3_length(moved) / duration);
+    largest = suite_larger(vec3_length(moved) / duration, largest);
   }
   return largest;
 }

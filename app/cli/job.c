@@ -20,6 +20,7 @@
 #include "fem/effect/contact.h"
 #include "fem/model/build.h"
 #include "fem/run/checkpoint.h"
+#include "overlap/model.h"
 #include "overlap/weights.h"
 
 static volatile sig_atomic_t stop_flag;
@@ -119,6 +120,19 @@ static Status choose_directory(AppJob *job, const AppJobOptions *options, const 
   return job->directory ? STATUS_OK : status_no_memory("a directory name");
 }
 
+// A model that is for pairs of one size alone gives forces that mean nothing.
+static void warn_of_scale(const AppJob *job) {
+  int count;
+  const OverlapOps *const *models = overlap_model_list(&count);
+  const char *name = app_job_overlap(job);
+  for (int i = 0; name && i < count; i++)
+    if (strcmp(models[i]->name, name) == 0 && models[i]->lacks_scale)
+      log_warning(
+          "%s: V of the overlap model '%s' does not follow the size of the pair, so forces in a scene mean "
+          "nothing; take 'clip' or 'geo' for forces",
+          job->scene.path, name);
+}
+
 Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overlap,
                     const char *subdirectory) {
   *job = (AppJob){0};
@@ -132,6 +146,7 @@ Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overl
     log_debug("%s: read and built on %d threads; output goes to %s", job->scene.path, omp_get_max_threads(),
               job->directory);
   }
+  if (!status) warn_of_scale(job);
   if (status) app_job_close(job);
   return status;
 }

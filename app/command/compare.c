@@ -176,12 +176,13 @@ static Status run_model(AppComparison *comparison, int m, const CompareOptions *
   comparison->end = job.scene.end;
   char label[64];
   snprintf(label, sizeof label, "%s ", model->name);
-  Observer observer = {.progress = {.began_s = clock_wall_s(), .label = label},
-                       .comparison = m == comparison->reference ? comparison : NULL,
-                       .name = model->name,
-                       .began_s = clock_wall_s(),
-                       .wall_s = options->wall_s,
-                       .tell_again_s = expected_s > 0 ? 2 * fmax(expected_s, SHORT_RUN_S) : INFINITY};
+  Observer observer = {
+      .progress = {.began_s = clock_wall_s(), .label = label, .is_json = options->job.is_progress_json},
+      .comparison = m == comparison->reference ? comparison : NULL,
+      .name = model->name,
+      .began_s = clock_wall_s(),
+      .wall_s = options->wall_s,
+      .tell_again_s = expected_s > 0 ? 2 * fmax(expected_s, SHORT_RUN_S) : INFINITY};
   FemRunOptions run_options = {.directory = job.directory,
                                .stop = app_job_stop_flag(),
                                .observe = observe,

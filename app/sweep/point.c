@@ -167,17 +167,19 @@ static void judge(AppSweepPoint *point, const FemSceneDef *scene, const Record *
   Record *summary = read_record(point->directory, "summary.json"),
          *manifest = read_record(point->directory, "manifest.json");
   const char *outcome = record_find_text(summary, "outcome");
-  bool is_same = outcome && is_same_scene(manifest, scene) && !has_newer_mesh(point, scene);
+  bool is_scene = is_same_scene(manifest, scene),
+       is_same = outcome && is_scene && !has_newer_mesh(point, scene);
   record_destroy(manifest);
   int code = exit_code_before(point, before), gave_up = status_exit_code(STATUS_SOLVER);
-  bool has_finished = is_same && (strcmp(outcome, "finished") == 0 ||
-                                  (code == 0 && strcmp(outcome, "interrupted") != 0));
+  bool has_finished =
+      is_same && (strcmp(outcome, "finished") == 0 || (code == 0 && strcmp(outcome, "interrupted") != 0));
   if (has_finished)
     point->state = APP_SWEEP_FINISHED;
   else if (is_same && !again && strcmp(outcome, "failed") == 0 && code == gave_up)
     point->state = APP_SWEEP_FAILED, point->exit_code = gave_up;
   else
-    point->state = has_file(point->directory, FEM_CHECKPOINT_FILE) ? APP_SWEEP_RESUMABLE : APP_SWEEP_WAITING;
+    point->state =
+        is_scene && has_file(point->directory, FEM_CHECKPOINT_FILE) ? APP_SWEEP_RESUMABLE : APP_SWEEP_WAITING;
   bool has_ended = point->state == APP_SWEEP_FINISHED || point->state == APP_SWEEP_FAILED;
   if (point->state == APP_SWEEP_FAILED) set_message(point, record_find_text(summary, "message"));
   point->summary = has_ended ? summary : NULL;
