@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/measure/ledger.h"
 
-#include <limits.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -198,9 +197,10 @@ Status fem_ledger_save(const FemLedger *ledger, double **values, size_t *count) 
 // Whether so many numbers, from `passages` on, can be entries of passages.
 static bool are_passages(const FemLedger *ledger, const double *passages, size_t count) {
   bool fits = count % CONTACT_PASSAGE_KEPT == 0;
+  const int tets = count > 0 ? contact_system_layout(contact_of(ledger))->def.tet_count : 0;
   for (size_t k = 0; k < count && fits; k += CONTACT_PASSAGE_KEPT)
     fits = passages[k] >= 0 && passages[k] < ledger->accuracy.count && passages[k + 1] >= 0 &&
-           passages[k + 1] <= INT_MAX;
+           passages[k + 1] < tets;
   return fits;
 }
 

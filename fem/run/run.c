@@ -287,13 +287,13 @@ static Status number(FemRunState *run) {
   return STATUS_OK;
 }
 
-// The first frame, and the audit from there on.
 static void tell_overlaps(const FemSystem *system) {
   char text[512];
   for (int i = 0; (i = fem_run_start_overlap(system, i, text, sizeof text)) >= 0; i++)
     log_warning("%s", text);
 }
 
+// The first frame, and the audit from there on.
 static Status begin_record(FemRunState *run) {
   FemMeasures measures;
   TRY(fem_run_frames_measure(run, run->time, &measures));
@@ -423,6 +423,8 @@ static Status judge_passages(FemRunState *run) {
   FemTroubleState state = trouble->last;
   fem_recorder_find_turned(&run->recorder, &state);
   if (trouble->of[FEM_TROUBLE_PASSED].steps > 0 || state.count[FEM_TROUBLE_PASSED] == 0) return STATUS_OK;
+  for (int kind = 0; kind < FEM_TROUBLE_KIND_COUNT; kind++) // the rest of the last step has been added
+    if (kind != FEM_TROUBLE_PASSED) state.count[kind] = 0;
   fem_trouble_add(trouble, run->time, &state);
   return run->options->is_strict ? refuse_passage(run) : STATUS_OK;
 }

@@ -67,12 +67,11 @@ Status fem_run_checkpoint_take(FemRunState *run) {
   FemCheckpoint *checkpoint = &run->checkpoint;
   const double force_scale = checkpoint->force_scale, driven_work = checkpoint->driven_work;
   TRY(fem_restart_collect(checkpoint, &run->system, run->time, run->u, run->v, run->result));
-  // IDA's choice: a step as long as the last one, taken at order 1, let a block that sticks creep 2.6 times
-  // as fast; short ones lost nothing, for five to ten steps more.
   memory_free(checkpoint->ledger);
   checkpoint->ledger = NULL;
   checkpoint->ledger_count = 0;
   TRY(fem_ledger_save(&run->recorder.ledger, &checkpoint->ledger, &checkpoint->ledger_count));
+  // 0: IDA's choice. At order 1 a step as long as the last one would let what sticks creep.
   checkpoint->step = run->model->scene->is_static ? run->next_step : 0;
   checkpoint->next_frame = run->next_frame;
   checkpoint->history = run->recorder.history.file.end;

@@ -10,8 +10,6 @@
 #include "base/status.h"
 
 #define FEM_PETSC_FUNCTIONS(FUNCTION)                                                                        \
-  FUNCTION(MatAssemblyBegin)                                                                                 \
-  FUNCTION(MatAssemblyEnd)                                                                                   \
   FUNCTION(MatConvert)                                                                                       \
   FUNCTION(MatCreateSeqAIJWithArrays)                                                                        \
   FUNCTION(MatDestroy)                                                                                       \

@@ -210,7 +210,9 @@ static Status analyse_rows(PetscSolver *solver, const FemMatrix *pattern) {
   solver->place = place;
   solver->rest = rest;
   if (!pattern->rest) memory_free(solver->rest), solver->rest = NULL;
-  return make_vectors(solver);
+  Status status = make_vectors(solver);
+  if (status) forget(solver);
+  return status;
 }
 
 static Status analyse(void *self, const FemMatrix *pattern) {
