@@ -7,10 +7,10 @@
 #include <string.h>
 #include <sys/wait.h>
 
-#include "app/bench/builtin.h"
-#include "app/bench/pairs.h"
+#include "app/bench/overlap/pairs.h"
 #include "app/bench/peak.h"
-#include "app/bench/scaling.h"
+#include "app/bench/scene/builtin.h"
+#include "app/bench/scene/scaling.h"
 #include "app/bench/timer.h"
 #include "app/bench/trial.h"
 #include "app/evaluation/card.h"

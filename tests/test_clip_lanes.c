@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "app/bench/pairs.h"
+#include "app/bench/overlap/pairs.h"
 #include "base/memory.h"
 #include "base/random.h"
 #include "datagen/hard.h"

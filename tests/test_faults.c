@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "app/command/run.h"
+#include "app/command/scene/run.h"
 #include "app/scene/read.h"
 #include "base/file.h"
 #include "base/memory.h"

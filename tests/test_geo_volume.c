@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/bench/pairs.h"
+#include "app/bench/overlap/pairs.h"
 #include "datagen/hard.h"
 #include "geo_network.h"
 #include "overlap/clip/clip.h"

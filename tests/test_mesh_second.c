@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/command/mesh.h"
+#include "app/command/scene/mesh.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"

@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "app/command/mesh.h"
+#include "app/command/scene/mesh.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "fem/mesh/reader/gmsh_library.h"

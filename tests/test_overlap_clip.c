@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "app/bench/pairs.h"
+#include "app/bench/overlap/pairs.h"
 #include "base/memory.h"
 #include "datagen/hard.h"
 #include "overlap/clip/clip.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/wait.h>
 
-#include "app/bench/precision_summary.h"
+#include "app/bench/precision/summary.h"
 #include "app/compare/precision.h"
 #include "app/scene/read.h"
 #include "app/scene/refine.h"

@@ -3,7 +3,7 @@
 // them.
 #include "suite.h"
 
-#include "app/bench/unseen_path.h"
+#include "app/bench/unseen/path.h"
 #include "base/vec3.h"
 #include "overlap/model.h"
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench/bench.h"
 
-#include "app/bench/beam.h"
-#include "app/bench/datagen.h"
-#include "app/bench/drop.h"
-#include "app/bench/net.h"
-#include "app/bench/overlap.h"
-#include "app/bench/precision.h"
-#include "app/bench/scaling.h"
-#include "app/bench/scene.h"
-#include "app/bench/solver.h"
-#include "app/bench/step.h"
-#include "app/bench/train.h"
-#include "app/bench/unseen.h"
+#include "app/bench/net/net.h"
+#include "app/bench/net/train.h"
+#include "app/bench/overlap/datagen.h"
+#include "app/bench/overlap/overlap.h"
+#include "app/bench/precision/precision.h"
+#include "app/bench/scene/beam.h"
+#include "app/bench/scene/drop.h"
+#include "app/bench/scene/scaling.h"
+#include "app/bench/scene/scene.h"
+#include "app/bench/scene/solver.h"
+#include "app/bench/scene/step.h"
+#include "app/bench/unseen/unseen.h"
 
 static const AppCommand *const benches[] = {
     &app_bench_overlap,

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "app/bench/contestant.h"
-#include "app/bench/pairs.h"
+#include "app/bench/overlap/pairs.h"
 #include "base/memory.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE };

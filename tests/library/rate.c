@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <tetlap/overlap.h>
 
-#include "app/bench/pairs.h"
+#include "app/bench/overlap/pairs.h"
 #include "app/bench/timer.h"
 #include "overlap/model.h"
 

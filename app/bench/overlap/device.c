@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/bench/overlap/device.h"
+
+#include <limits.h>
+#include <math.h>
+#include <omp.h>
+#include <stddef.h>
+
+#include "app/bench/report.h"
+#include "app/bench/timer.h"
+#include "base/clock.h"
+#include "base/memory.h"
+
+const char *const app_bench_residences[APP_BENCH_RESIDENCES] = {"device", "indices", "host"};
+enum { DEVICE_COLUMNS, INDICES, HOST, QUANTITY_COUNT = 3 };
+static const char *const quantities[QUANTITY_COUNT] = {"V", "V+grad", "V+centroid"}; // of DeviceQuantity
+
+static const uint64_t SEED = 1;
+static const double ROUND_S = 0.05; // what a round shall take
+
+// Rows on which one takes turns.
+typedef struct Contestant {
+  DeviceOverlap *overlap; // borrowed
+  const double *pairs;    // (batch, 24), borrowed
+  double *volume, *more;
+  const char *model, *set;
+  int residence, batch, calls;
+  DeviceQuantity quantity;
+  AppBenchTimer timer;
+  double kernel_s[APP_BENCH_MAX_REPEATS]; // of a pair
+  int handed_on, to_host;
+} Contestant;
+
+typedef struct Bench {
+  const AppBenchDeviceDef *def;
+  Device device;
+  DeviceOverlap overlaps[DEVICE_OVERLAP_MODELS];
+  double *pairs, *columns; // of one set: (most, 24), (24, most)
+  double *volume, *gradient;
+  int *tets, *ends;
+  Contestant *contestants;
+  int count;
+} Bench;
+
+typedef struct Row {
+  const char *model, *set, *quantity, *residence, *device;
+  long long batch;
+  double handed_on, to_host; // shares of the pairs
+  double kernel_rate, rate, rate_min, rate_max, spread;
+} Row;
+
+static const AppBenchColumn columns[] = {
+    {"model", APP_BENCH_TEXT, offsetof(Row, model), "model", "overlap model"},
+    {"set", APP_BENCH_TEXT, offsetof(Row, set), "set", "set of pairs: near, uniform, disjoint"},
+    {"quantity", APP_BENCH_TEXT, offsetof(Row, quantity), "quantity", "V, V+grad or V+centroid"},
+    {"residence", APP_BENCH_TEXT, offsetof(Row, residence), "residence", "where pairs and answers lie"},
+    {"batch", APP_BENCH_INTEGER, offsetof(Row, batch), "batch", "pairs a call"},
+    {"handed_on", APP_BENCH_NUMBER, offsetof(Row, handed_on), "handed on",
+     "share of the pairs that the first kernel left"},
+    {"handed_to_host", APP_BENCH_NUMBER, offsetof(Row, to_host), "to host",
+     "share of the pairs that the processor answered"},
+    {"kernel_pairs_s", APP_BENCH_NUMBER, offsetof(Row, kernel_rate), "kernel pairs/s",
+     "pairs over the time of all kernels, median of the rounds"},
+    {"pairs_s", APP_BENCH_NUMBER, offsetof(Row, rate), "pairs/s", "complete answers, of wall time"},
+    {"pairs_s_min", APP_BENCH_NUMBER, offsetof(Row, rate_min), NULL, "slowest round"},
+    {"pairs_s_max", APP_BENCH_NUMBER, offsetof(Row, rate_max), NULL, "fastest round"},
+    {"spread", APP_BENCH_NUMBER, offsetof(Row, spread), "spread", "(max − min) / median"},
+    {"device", APP_BENCH_TEXT, offsetof(Row, device), "device", "as its driver names it"},
+};
+static const AppBenchReport report = {"overlap", columns, sizeof columns / sizeof *columns, sizeof(Row),
+                                      .has_own_threads = false};
+
+static Status place(Contestant *contestant, const Bench *bench) {
+  DeviceOverlap *overlap = contestant->overlap;
+  int n = contestant->batch;
+  if (contestant->residence == INDICES)
+    return device_overlap_put_mesh(overlap, 8 * n, contestant->pairs, 2 * n, bench->tets, n, bench->ends);
+  for (size_t i = 0; i < (size_t)n; i++)
+    for (size_t c = 0; c < 24; c++) bench->columns[c * (size_t)n + i] = contestant->pairs[24 * i + c];
+  return device_overlap_put_columns(overlap, n, bench->columns);
+}
+
+static Status call(Contestant *contestant, double *kernel_s) {
+  DeviceOverlap *overlap = contestant->overlap;
+  if (contestant->residence == HOST) {
+    const OverlapBatch batch = {.pair_count = contestant->batch,
+                                .pairs = contestant->pairs,
+                                .volume = contestant->volume,
+                                .gradient = contestant->quantity == DEVICE_GRADIENT ? contestant->more : NULL,
+                                .centroid =
+                                    contestant->quantity == DEVICE_CENTROID ? contestant->more : NULL};
+    TRY(device_overlap_eval(overlap, &batch));
+  } else {
+    TRY(device_overlap_run(overlap, contestant->quantity));
+  }
+  *kernel_s += overlap->kernel_s;
+  return STATUS_OK;
+}
+
+// As many calls as fill a round.
+static Status find_calls(Contestant *contestant) {
+  double ignored = 0, began;
+  TRY(call(contestant, &ignored)); // takes memory, loads code
+  began = clock_wall_s();
+  TRY(call(contestant, &ignored));
+  double calls = ROUND_S / (clock_wall_s() - began + 1e-9);
+  contestant->calls = calls < 1 ? 1 : calls < INT_MAX ? (int)calls : INT_MAX;
+  return STATUS_OK;
+}
+
+static Status take_turn(Contestant *contestant, const Bench *bench, int round) {
+  const Device *device = &bench->device;
+  double kernel_s = 0;
+  if (contestant->residence != HOST) TRY(place(contestant, bench));
+  if (contestant->calls == 0) TRY(find_calls(contestant));
+  TRY(device->ops->wait(device->self));
+  app_bench_timer_start(&contestant->timer);
+  for (int k = 0; k < contestant->calls; k++) TRY(call(contestant, &kernel_s));
+  TRY(device->ops->wait(device->self));
+  double parts = (double)contestant->calls * contestant->batch;
+  app_bench_timer_stop(&contestant->timer, round, parts);
+  contestant->kernel_s[round] = kernel_s / parts;
+  const DeviceOverlap *overlap = contestant->overlap;
+  contestant->handed_on = overlap->handed_on[0];
+  contestant->to_host = overlap->handed_on[overlap->stage_count - 1];
+  return STATUS_OK;
+}
+
+static Status take_rounds(Bench *bench, int first) {
+  for (int round = 0; round < bench->def->common->repeats; round++)
+    for (int c = first; c < bench->count; c++) TRY(take_turn(&bench->contestants[c], bench, round));
+  return STATUS_OK;
+}
+
+// --- The rows.
+
+static double median_of(double *values, int count) {
+  for (int i = 1; i < count; i++)
+    for (int j = i; j > 0 && values[j - 1] > values[j]; j--) {
+      double kept = values[j];
+      values[j] = values[j - 1], values[j - 1] = kept;
+    }
+  return values[count / 2];
+}
+
+static Row row_of(const Bench *bench, Contestant *contestant) {
+  int rounds = bench->def->common->repeats;
+  AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
+  return (Row){.model = contestant->model,
+               .set = contestant->set,
+               .quantity = quantities[contestant->quantity],
+               .residence = app_bench_residences[contestant->residence],
+               .device = bench->device.info.name,
+               .batch = contestant->batch,
+               .handed_on = (double)contestant->handed_on / contestant->batch,
+               .to_host = (double)contestant->to_host / contestant->batch,
+               .kernel_rate = 1 / median_of(contestant->kernel_s, rounds),
+               .rate = 1 / time.wall,
+               .rate_min = 1 / time.wall_max,
+               .rate_max = 1 / time.wall_min,
+               .spread = time.wall / time.wall_min - time.wall / time.wall_max};
+}
+
+static Status print(const Bench *bench) {
+  Row *rows = memory_zeroed((size_t)bench->count, sizeof *rows);
+  if (!rows) return status_no_memory("the rows");
+  for (int c = 0; c < bench->count; c++) rows[c] = row_of(bench, &bench->contestants[c]);
+  Status status = app_bench_report_print(&report, bench->def->common, rows, bench->count);
+  memory_free(rows);
+  return status;
+}
+
+// --- The bench.
+
+static void add_contestants(Bench *bench, int set, int batch) {
+  const AppBenchDeviceDef *def = bench->def;
+  for (int residence = 0; residence < APP_BENCH_RESIDENCES; residence++)
+    for (int quantity = 0; quantity < QUANTITY_COUNT; quantity++)
+      for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++) {
+        bool is_wanted = def->wants_residence[residence] && def->wants_model[m] &&
+                         def->wants_quantity[quantity] &&
+                         (quantity == DEVICE_VOLUME || device_overlap_has_more(device_overlap_models[m]));
+        if (!is_wanted) continue;
+        bench->contestants[bench->count++] = (Contestant){.overlap = &bench->overlaps[m],
+                                                          .pairs = bench->pairs,
+                                                          .volume = bench->volume,
+                                                          .more = bench->gradient,
+                                                          .model = device_overlap_models[m],
+                                                          .set = app_bench_sets[set],
+                                                          .residence = residence,
+                                                          .batch = batch,
+                                                          .quantity = (DeviceQuantity)quantity};
+      }
+}
+
+static Status measure_sets(Bench *bench) {
+  const AppBenchDeviceDef *def = bench->def;
+  for (int set = 0; set < APP_BENCH_SET_COUNT; set++)
+    for (int b = 0; b < def->batch_count && def->wants_set[set]; b++) {
+      int first = bench->count;
+      TRY(app_bench_pairs_fill(app_bench_sets[set], def->batches[b], SEED, bench->pairs));
+      add_contestants(bench, set, def->batches[b]);
+      TRY(take_rounds(bench, first));
+    }
+  if (bench->count == 0)
+    return status_fail(
+        STATUS_USAGE,
+        "a device answers V, V+grad, V+centroid of clip and clip32, V of tpn: nothing to measure");
+  return print(bench);
+}
+
+static Status make_inputs(Bench *bench) {
+  const AppBenchDeviceDef *def = bench->def;
+  size_t most = 0;
+  for (int b = 0; b < def->batch_count; b++)
+    most = (size_t)def->batches[b] > most ? (size_t)def->batches[b] : most;
+  int rows =
+      APP_BENCH_SET_COUNT * APP_BENCH_RESIDENCES * QUANTITY_COUNT * DEVICE_OVERLAP_MODELS * def->batch_count;
+  bench->contestants = memory_zeroed((size_t)rows, sizeof *bench->contestants);
+  bench->pairs = memory_zeroed(most * 24, sizeof(double));
+  bench->columns = memory_zeroed(most * 24, sizeof(double));
+  bench->gradient = memory_zeroed(most * 24, sizeof(double));
+  bench->volume = memory_zeroed(most, sizeof(double));
+  bench->tets = memory_zeroed(most * 8, sizeof(int));
+  bench->ends = memory_zeroed(most * 2, sizeof(int));
+  if (!bench->contestants || !bench->pairs || !bench->columns || !bench->gradient || !bench->volume ||
+      !bench->tets || !bench->ends)
+    return status_no_memory("the batch (--batch)");
+  for (size_t k = 0; k < most * 8; k++) bench->tets[k] = (int)k;
+  for (size_t k = 0; k < most * 2; k++) bench->ends[k] = (int)k;
+  return STATUS_OK;
+}
+
+static Status measure(Bench *bench) {
+  const AppBenchDeviceDef *def = bench->def;
+  omp_set_num_threads(def->common->threads);
+  TRY(device_open(&bench->device, def->device));
+  for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++)
+    if (def->wants_model[m])
+      TRY(device_overlap_create(&bench->overlaps[m], &bench->device, device_overlap_models[m]));
+  TRY(make_inputs(bench));
+  return measure_sets(bench);
+}
+
+static void destroy(Bench *bench) {
+  for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++) device_overlap_destroy(&bench->overlaps[m]);
+  device_close(&bench->device);
+  memory_free(bench->contestants), memory_free(bench->pairs), memory_free(bench->columns);
+  memory_free(bench->gradient), memory_free(bench->volume), memory_free(bench->tets);
+  memory_free(bench->ends), memory_free(bench);
+}
+
+Status app_bench_overlap_device_run(const AppBenchDeviceDef *def) {
+  Bench *bench = memory_zeroed(1, sizeof *bench);
+  if (!bench) return status_no_memory("the bench");
+  bench->def = def;
+  Status status = measure(bench);
+  destroy(bench);
+  return status;
+}

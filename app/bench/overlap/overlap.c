@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/bench/overlap/overlap.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "app/bench/command.h"
+#include "app/bench/contestant.h"
+#include "app/bench/overlap/device.h"
+#include "app/bench/overlap/pairs.h"
+#include "app/bench/peak.h"
+#include "app/bench/report.h"
+#include "app/evaluation/card.h"
+#include "base/log.h"
+#include "base/memory.h"
+
+enum { MAX_MODELS = 32 };
+
+typedef enum Quantity { VOLUME, CENTROID, GRADIENT, HESSIAN, QUANTITY_COUNT } Quantity;
+static const char *const quantities[QUANTITY_COUNT] = {"V", "V+centroid", "V+grad", "V+grad+hess"};
+
+static const uint64_t SEED = 1;
+
+typedef struct Options {
+  AppBenchOptions common;
+  bool wants_model[MAX_MODELS], wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
+  int batches[APP_BENCH_MAX_LIST], batch_count;
+  const char *device; // NULL: this processor as it is
+  bool wants_residence[APP_BENCH_RESIDENCES];
+} Options;
+
+static const struct argp_option option_table[] = {
+    {"model", 'm', "NAME,…", 0, "Overlap models to measure (default: all)", 1},
+    {"set", 's', "NAME,…", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
+    {"quantity", 'Q', "NAME,…", 0, "V, V+centroid, V+grad, V+grad+hess (default: all that a model has)", 1},
+    {"batch", 'b', "N,…", 0, "Pairs a call (default: 4096); slow models get fewer", 1},
+    {"device", 'D', "NAME", 0,
+     "Measure kernels on a device: host, opencl, cuda, auto, or with a number (opencl:1); `tetlap devices` "
+     "lists them",
+     1},
+    {"residence", 'R', "NAME,…", 0,
+     "With --device, where the pairs lie: device, indices, host (default: all)", 1},
+    {0},
+};
+
+static int list_models(const char *names[MAX_MODELS]) {
+  int count;
+  const OverlapOps *const *models = overlap_model_list(&count);
+  if (count > MAX_MODELS) count = MAX_MODELS;
+  for (int m = 0; m < count; m++) names[m] = models[m]->name;
+  return count;
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  const char *models[MAX_MODELS];
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &options->common;
+    return 0;
+  case 'm':
+    app_bench_options_choose(state, "model", text, models, list_models(models), options->wants_model);
+    return 0;
+  case 's':
+    app_bench_options_choose(state, "set", text, app_bench_sets, APP_BENCH_SET_COUNT, options->wants_set);
+    return 0;
+  case 'Q':
+    app_bench_options_choose(state, "quantity", text, quantities, QUANTITY_COUNT, options->wants_quantity);
+    return 0;
+  case 'b':
+    options->batch_count = app_bench_options_counts(state, "batch", text, 10000000, options->batches);
+    return 0;
+  case 'D':
+    options->device = text;
+    return 0;
+  case 'R':
+    app_bench_options_choose(state, "residence", text, app_bench_residences, APP_BENCH_RESIDENCES,
+                             options->wants_residence);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+// What tells contestants apart.
+typedef struct Case {
+  int model, set, quantity, batch, threads; // threads: their number
+} Case;
+
+typedef struct Bench {
+  const Options *options;
+  int model_count;
+  OverlapModel models[MAX_MODELS]; // owned; ops NULL: not wanted, or not to be had
+  AppModelCard cards[MAX_MODELS];
+  double *pairs[APP_BENCH_SET_COUNT]; // (largest batch, 24), owned; NULL: not wanted
+  double *volume, *centroid, *gradient, *hessian;
+  AppBenchContestant *contestants;
+  Case *cases; // of the contestants
+  int count, capacity;
+} Bench;
+
+// Models whose weights are not there are left out, by name.
+static Status open_models(Bench *bench) {
+  const OverlapOps *const *list = overlap_model_list(&bench->model_count);
+  if (bench->model_count > MAX_MODELS) bench->model_count = MAX_MODELS;
+  for (int m = 0; m < bench->model_count; m++) {
+    if (!bench->options->wants_model[m]) continue;
+    Status status = overlap_model_create(&bench->models[m], list[m]->name);
+    if (status == STATUS_IO) {
+      log_warning("left out: %s", status_message());
+      continue;
+    }
+    TRY(status);
+    TRY(app_evaluation_card_read(&bench->models[m], list[m]->name, &bench->cards[m]));
+  }
+  return STATUS_OK;
+}
+
+static void add(Bench *bench, const Case *what) {
+  const OverlapModel *model = &bench->models[what->model];
+  int batch = bench->options->batches[what->batch];
+  bool has_hessian = what->quantity == HESSIAN, has_gradient = has_hessian || what->quantity == GRADIENT;
+  bench->cases[bench->count] = *what;
+  bench->contestants[bench->count++] = (AppBenchContestant){
+      .model = model,
+      .threads = what->threads,
+      .batch = {.pair_count = app_bench_contestant_batch(model, has_hessian, what->threads, batch),
+                .pairs = bench->pairs[what->set],
+                .volume = bench->volume,
+                .gradient = has_gradient ? bench->gradient : NULL,
+                .hessian = has_hessian ? bench->hessian : NULL,
+                .centroid = what->quantity == CENTROID ? bench->centroid : NULL}};
+}
+
+static bool gives(const OverlapModel *model, int quantity) {
+  return (quantity != HESSIAN || overlap_model_has_hessian(model)) &&
+         (quantity != CENTROID || overlap_model_has_centroid(model));
+}
+
+static void add_models(Bench *bench, Case what) {
+  for (what.model = 0; what.model < bench->model_count; what.model++) {
+    const OverlapModel *model = &bench->models[what.model];
+    if (model->ops && gives(model, what.quantity)) add(bench, &what);
+  }
+}
+
+static Status add_contestants(Bench *bench) {
+  const Options *options = bench->options;
+  Case what;
+  for (what.set = 0; what.set < APP_BENCH_SET_COUNT; what.set++)
+    for (what.quantity = 0; what.quantity < QUANTITY_COUNT; what.quantity++) {
+      if (!options->wants_set[what.set] || !options->wants_quantity[what.quantity]) continue;
+      for (what.batch = 0; what.batch < options->batch_count; what.batch++)
+        for (int t = 0; t < options->common.thread_list_count; t++) {
+          what.threads = options->common.thread_list[t];
+          add_models(bench, what);
+        }
+    }
+  if (bench->count == 0)
+    return status_fail(STATUS_USAGE,
+                       "none of the chosen models gives what was chosen (--quantity): nothing to measure");
+  return STATUS_OK;
+}
+
+static int largest_of(const int *numbers, int count) {
+  int largest = numbers[0];
+  for (int i = 1; i < count; i++) largest = numbers[i] > largest ? numbers[i] : largest;
+  return largest;
+}
+
+static Status make_inputs(Bench *bench) {
+  const Options *options = bench->options;
+  int most = largest_of(options->batches, options->batch_count);
+  size_t batch = (size_t)most, pair = OVERLAP_PAIR_SIZE;
+  bench->capacity = APP_BENCH_SET_COUNT * QUANTITY_COUNT * MAX_MODELS * options->batch_count *
+                    options->common.thread_list_count;
+  bench->contestants = memory_zeroed((size_t)bench->capacity, sizeof *bench->contestants);
+  bench->cases = memory_zeroed((size_t)bench->capacity, sizeof *bench->cases);
+  bench->volume = memory_zeroed(batch, sizeof *bench->volume);
+  bench->centroid = memory_zeroed(3 * batch, sizeof *bench->centroid);
+  bench->gradient = memory_zeroed(batch * pair, sizeof *bench->gradient);
+  bench->hessian =
+      memory_zeroed(options->wants_quantity[HESSIAN] ? batch * pair * pair : 0, sizeof *bench->hessian);
+  if (!bench->contestants || !bench->cases || !bench->volume || !bench->centroid || !bench->gradient ||
+      !bench->hessian)
+    return status_no_memory("the batch (--batch)");
+  for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
+    if (!options->wants_set[set]) continue;
+    if (!(bench->pairs[set] = memory_zeroed(batch * pair, sizeof *bench->pairs[set])))
+      return status_no_memory("the batch (--batch)");
+    TRY(app_bench_pairs_fill(app_bench_sets[set], most, SEED, bench->pairs[set]));
+  }
+  return STATUS_OK;
+}
+
+typedef struct Row {
+  const char *model, *set, *quantity, *reference;
+  long long batch, threads;
+  double rate, cpu_rate, rate_min, rate_max; // pairs a second
+  double spread;
+  double ratio, ratio_min, ratio_max, cpu_ratio; // speed over the reference's
+  double thread_gain;                            // speed over that on the first number of threads
+  double flops, share;
+} Row;
+
+static const AppBenchColumn columns[] = {
+    {"model", APP_BENCH_TEXT, offsetof(Row, model), "model", "overlap model"},
+    {"set", APP_BENCH_TEXT, offsetof(Row, set), "set", "set of pairs: near, uniform, disjoint"},
+    {"quantity", APP_BENCH_TEXT, offsetof(Row, quantity), "quantity", "V, V+centroid, V+grad or V+grad+hess"},
+    {"batch", APP_BENCH_INTEGER, offsetof(Row, batch), "batch", "pairs a call"},
+    {"threads", APP_BENCH_INTEGER, offsetof(Row, threads), "threads", "threads"},
+    {"pairs_per_second", APP_BENCH_NUMBER, offsetof(Row, rate), "pairs/s", "of wall time"},
+    {"pairs_per_cpu_second", APP_BENCH_NUMBER, offsetof(Row, cpu_rate), "pairs/cpu s", "of processor time"},
+    {"pairs_per_second_min", APP_BENCH_NUMBER, offsetof(Row, rate_min), NULL, "slowest round"},
+    {"pairs_per_second_max", APP_BENCH_NUMBER, offsetof(Row, rate_max), NULL, "fastest round"},
+    {"spread", APP_BENCH_NUMBER, offsetof(Row, spread), "spread", "(max − min) / median"},
+    {"ratio", APP_BENCH_NUMBER, offsetof(Row, ratio), "ratio",
+     "speed over that of `reference` in the same round, median of the rounds"},
+    {"ratio_min", APP_BENCH_NUMBER, offsetof(Row, ratio_min), NULL, "smallest of the rounds"},
+    {"ratio_max", APP_BENCH_NUMBER, offsetof(Row, ratio_max), NULL, "largest of the rounds"},
+    {"cpu_ratio", APP_BENCH_NUMBER, offsetof(Row, cpu_ratio), NULL,
+     "the same of processor times, median of the rounds"},
+    {"reference", APP_BENCH_TEXT, offsetof(Row, reference), NULL,
+     "the first model, same set, quantity, threads"},
+    {"thread_gain", APP_BENCH_NUMBER, offsetof(Row, thread_gain), "× threads",
+     "speed over that of the same row on the first number of threads, median of the rounds"},
+    {"flops_per_pair", APP_BENCH_NUMBER, offsetof(Row, flops), NULL,
+     "of a network's matrix products: multiplications and additions"},
+    {"peak_share", APP_BENCH_NUMBER, offsetof(Row, share), "of peak",
+     "those a processor second over what one core can do (measured in this run)"},
+};
+static const AppBenchReport report = {"overlap", columns, sizeof columns / sizeof *columns, sizeof(Row),
+                                      .has_own_threads = true};
+
+// The contestant that differs in the one thing: −1 if there is none.
+static int find(const Bench *bench, Case what) {
+  for (int c = 0; c < bench->count; c++) {
+    const Case *other = &bench->cases[c];
+    if (other->model == what.model && other->set == what.set && other->quantity == what.quantity &&
+        other->batch == what.batch && other->threads == what.threads)
+      return c;
+  }
+  return -1;
+}
+
+static int find_reference(const Bench *bench, Case what) {
+  int found = -1;
+  for (what.model = 0; what.model < bench->model_count && found < 0; what.model++) found = find(bench, what);
+  return found;
+}
+
+// A gradient by the input takes the products once more, transposed. How many a network of the paper's kind
+// takes depends on what its normalisation lets it leave out; `bench net` tells that. Disjoint pairs do not
+// reach it.
+static double flops_of(const Bench *bench, const Case *what) {
+  const AppModelCard *card = &bench->cards[what->model];
+  bool is_known =
+      card->is_learned && !card->is_float && what->quantity != HESSIAN && what->set != APP_BENCH_DISJOINT;
+  if (!is_known) return NAN;
+  return card->flops * (what->quantity == VOLUME ? 1 : 2);
+}
+
+static Row row_of(const Bench *bench, int c, const double peaks[2]) {
+  const AppBenchContestant *contestant = &bench->contestants[c];
+  const Case *what = &bench->cases[c];
+  int rounds = bench->options->common.repeats;
+  Case single = *what;
+  single.threads = bench->options->common.thread_list[0];
+  const AppBenchContestant *reference = &bench->contestants[find_reference(bench, *what)],
+                           *narrow = &bench->contestants[find(bench, single)];
+  AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
+  AppBenchRatio ratio = app_bench_timer_ratio(&contestant->timer, &reference->timer, rounds);
+  double cpu_ratio = app_bench_timer_cpu_ratio(&contestant->timer, &reference->timer, rounds).median;
+  double flops = flops_of(bench, what);
+  return (Row){.model = contestant->model->ops->name,
+               .set = app_bench_sets[what->set],
+               .quantity = quantities[what->quantity],
+               .reference = reference->model->ops->name,
+               .batch = contestant->batch.pair_count,
+               .threads = what->threads,
+               .rate = 1 / time.wall,
+               .cpu_rate = 1 / time.cpu,
+               .rate_min = 1 / time.wall_max,
+               .rate_max = 1 / time.wall_min,
+               .spread = time.wall / time.wall_min - time.wall / time.wall_max,
+               .ratio = ratio.median,
+               .ratio_min = ratio.min,
+               .ratio_max = ratio.max,
+               .cpu_ratio = cpu_ratio,
+               .thread_gain = app_bench_timer_ratio(&contestant->timer, &narrow->timer, rounds).median,
+               .flops = flops,
+               .share = flops / time.cpu / peaks[bench->cards[what->model].is_float]};
+}
+
+static Status print(const Bench *bench) {
+  Row *rows = memory_zeroed((size_t)bench->count, sizeof *rows);
+  if (!rows) return status_no_memory("the rows");
+  const AppBenchOptions *common = &bench->options->common;
+  const double peaks[2] = {app_bench_peak_measure(false), app_bench_peak_measure(true)};
+  for (int c = 0; c < bench->count; c++) rows[c] = row_of(bench, c, peaks);
+  Status status = app_bench_report_print(&report, common, rows, bench->count);
+  memory_free(rows);
+  return status;
+}
+
+static void destroy(Bench *bench) {
+  for (int m = 0; m < bench->model_count; m++) overlap_model_destroy(&bench->models[m]);
+  for (int set = 0; set < APP_BENCH_SET_COUNT; set++) memory_free(bench->pairs[set]);
+  memory_free(bench->contestants), memory_free(bench->cases), memory_free(bench->volume);
+  memory_free(bench->centroid);
+  memory_free(bench->gradient), memory_free(bench->hessian);
+  memory_free(bench);
+}
+
+static Status measure(Bench *bench) {
+  const AppBenchOptions *common = &bench->options->common;
+  // what models keep for every thread is made for the largest number of them
+  omp_set_num_threads(largest_of(common->thread_list, common->thread_list_count));
+  TRY(open_models(bench));
+  TRY(make_inputs(bench));
+  TRY(add_contestants(bench));
+  TRY(app_bench_timer_take_turns(bench->contestants, sizeof *bench->contestants, bench->count,
+                                 common->repeats, true, app_bench_contestant_take_turn));
+  return print(bench);
+}
+
+static Status run_on_device(const Options *options) {
+  AppBenchDeviceDef def = {.common = &options->common,
+                           .device = options->device,
+                           .wants_quantity = {[DEVICE_VOLUME] = options->wants_quantity[VOLUME],
+                                              [DEVICE_GRADIENT] = options->wants_quantity[GRADIENT],
+                                              [DEVICE_CENTROID] = options->wants_quantity[CENTROID]},
+                           .batches = options->batches,
+                           .batch_count = options->batch_count};
+  const char *names[MAX_MODELS];
+  int count = list_models(names);
+  for (int m = 0; m < count; m++)
+    for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
+      if (strcmp(names[m], device_overlap_models[k]) == 0) def.wants_model[k] = options->wants_model[m];
+  memcpy(def.wants_set, options->wants_set, sizeof def.wants_set);
+  memcpy(def.wants_residence, options->wants_residence, sizeof def.wants_residence);
+  return app_bench_overlap_device_run(&def);
+}
+
+static Status run(const Options *options) {
+  if (options->device) return run_on_device(options);
+  Bench *bench = memory_zeroed(1, sizeof *bench);
+  if (!bench) return status_no_memory("the bench");
+  bench->options = options;
+  Status status = measure(bench);
+  destroy(bench);
+  return status;
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Measure how many pairs of tetrahedra a second the overlap models answer.",
+    .children = app_bench_command_children,
+    .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
+  Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
+  options.common.takes_thread_list = true;
+  for (int i = 0; i < MAX_MODELS; i++) options.wants_model[i] = true;
+  for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
+  for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
+  for (int i = 0; i < APP_BENCH_RESIDENCES; i++) options.wants_residence[i] = true;
+  app_bench_command_read(&app_bench_overlap, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
+}
+
+const AppCommand app_bench_overlap = {.name = "overlap",
+                                      .help = "overlap models: pairs of tetrahedra a second",
+                                      .argp = &argp,
+                                      .run = run_command,
+                                      .has_threads = true,
+                                      .rows = &report,
+                                      .describe_rows = app_bench_command_rows};

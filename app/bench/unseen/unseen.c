@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/bench/unseen/unseen.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/bench/command.h"
+#include "app/bench/unseen/path.h"
+#include "app/cli/argument.h"
+#include "app/evaluation/model.h"
+#include "base/log.h"
+#include "base/memory.h"
+
+enum { MAX_MODELS = 16, MAX_CASES = 16 };
+
+typedef struct Options {
+  AppBenchOptions common;
+  bool wants_case[MAX_CASES];
+  char *models[MAX_MODELS]; // borrowed
+  int model_count;
+  int seeds, places;
+} Options;
+
+static const struct argp_option option_table[] = {
+    {"model", 'm', "NAME,…", 0, "Overlap models or weights files to measure (default: geo,geo-small)", 1},
+    {"case", 'k', "NAME,…", 0,
+     "Cases: jittered, aligned, five, graded, slivers, strained, fine, thin, edge (default: all)", 1},
+    {"seeds", 's', "N", 0, "Meshes of each case (default: 3)", 1},
+    {"places", 'p', "N", 0, "Places of each path (default: 96)", 1},
+    {0},
+};
+
+static int list_cases(const char *names[MAX_CASES]) {
+  for (int c = 0; c < app_unseen_case_count; c++) names[c] = app_unseen_cases[c].name;
+  return app_unseen_case_count;
+}
+
+static void read_models(struct argp_state *state, Options *options, char *text) {
+  options->model_count = 0;
+  for (char *rest, *name = strtok_r(text, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
+    if (options->model_count == MAX_MODELS) argp_error(state, "--model: at most %d", MAX_MODELS);
+    options->models[options->model_count++] = name;
+  }
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  const char *names[MAX_CASES];
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &options->common;
+    return 0;
+  case 'm':
+    read_models(state, options, text);
+    return 0;
+  case 'k':
+    app_bench_options_choose(state, "case", text, names, list_cases(names), options->wants_case);
+    return 0;
+  case 's':
+    options->seeds = (int)app_argument_integer(state, "seeds", text, 1, 1000);
+    return 0;
+  case 'p':
+    options->places = (int)app_argument_integer(state, "places", text, 8, 100000);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+typedef struct Row {
+  const char *model, *what, *potential;
+  long long seeds, pairs;
+  AppUnseenErrors worst; // over the seeds
+  double time_ratio;
+} Row;
+
+#define ERROR(field) offsetof(Row, worst) + offsetof(AppUnseenErrors, field)
+static const AppBenchColumn columns[] = {
+    {"case", APP_BENCH_TEXT, offsetof(Row, what), "case", "the bodies: `tetlap bench unseen --help`"},
+    {"model", APP_BENCH_TEXT, offsetof(Row, model), "model", "overlap model"},
+    {"potential", APP_BENCH_TEXT, offsetof(Row, potential), NULL,
+     "field; nodal for models without a centroid"},
+    {"seeds", APP_BENCH_INTEGER, offsetof(Row, seeds), NULL, "meshes; each error is the largest over them"},
+    {"pairs", APP_BENCH_INTEGER, offsetof(Row, pairs), "pairs",
+     "that share volume, over all places and meshes"},
+    {"volume_error", APP_BENCH_NUMBER, ERROR(volume), "V", "sum of errors of V over the sum of V"},
+    {"moment_error", APP_BENCH_NUMBER, ERROR(moment), "moments",
+     "sum of errors of V λ(centroid) at the eight vertices over the sum of those"},
+    {"nodal_force_error", APP_BENCH_NUMBER, ERROR(nodal_force), "nodal forces",
+     "of all vertices along the path, root of squares, relative"},
+    {"total_force_error", APP_BENCH_NUMBER, ERROR(total_force), "total force", "of the upper body, likewise"},
+    {"tangential_error", APP_BENCH_NUMBER, ERROR(tangential), "tangential",
+     "largest error of the total force along the surface over the largest force across it: false friction"},
+    {"normal_sum_error", APP_BENCH_NUMBER, ERROR(normal_sum), "sum of N",
+     "of the pairs' forces, which bounds friction, likewise; null with nodal"},
+    {"path_work", APP_BENCH_NUMBER, ERROR(path_work), "closed path",
+     "work of the total force round the closed path over the work turned over"},
+    {"path_work_clip", APP_BENCH_NUMBER, ERROR(path_work_clip), "by clip",
+     "the same of clipping: what the steps of the path leave"},
+    {"time_ratio", APP_BENCH_NUMBER, offsetof(Row, time_ratio), "× time",
+     "processor time of volumes, with centroids for field, over that of clipping"},
+};
+static const AppBenchReport report = {"unseen", columns, sizeof columns / sizeof *columns, sizeof(Row),
+                                      false};
+
+static void keep_worst(AppUnseenErrors *worst, const AppUnseenErrors *errors, bool is_first) {
+  AppUnseenErrors sum = *worst;
+  *worst = *errors;
+  if (is_first) return;
+  worst->pairs += sum.pairs, worst->seconds += sum.seconds, worst->seconds_clip += sum.seconds_clip;
+  double *values[] = {&worst->volume,     &worst->moment,     &worst->nodal_force, &worst->total_force,
+                      &worst->tangential, &worst->normal_sum, &worst->path_work,   &worst->path_work_clip};
+  const double others[] = {sum.volume,     sum.moment,     sum.nodal_force, sum.total_force,
+                           sum.tangential, sum.normal_sum, sum.path_work,   sum.path_work_clip};
+  for (int v = 0; v < 8; v++) *values[v] = fmax(*values[v], others[v]);
+}
+
+static Status measure(const Options *options, const AppUnseenCase *what, const char *name,
+                      const OverlapModel *model, const OverlapModel *clip, Row *row) {
+  *row = (Row){.model = name,
+               .what = what->name,
+               .potential = overlap_model_has_centroid(model) ? "field" : "nodal",
+               .seeds = options->seeds};
+  for (int s = 0; s < options->seeds; s++) {
+    AppUnseenMesh mesh;
+    AppUnseenErrors errors;
+    TRY(app_unseen_mesh_create(&mesh, what, 7001 + (uint64_t)s));
+    Status status = app_unseen_path_measure(what, &mesh, model, clip, options->places, &errors);
+    app_unseen_mesh_destroy(&mesh);
+    TRY(status);
+    keep_worst(&row->worst, &errors, s == 0);
+  }
+  row->pairs = row->worst.pairs;
+  row->time_ratio = row->worst.seconds / row->worst.seconds_clip;
+  return STATUS_OK;
+}
+
+static Status measure_model(const Options *options, const char *name, const OverlapModel *clip, Row *rows,
+                            int *count) {
+  OverlapModel model;
+  TRY(app_evaluation_model_open(&model, name));
+  Status status = STATUS_OK;
+  for (int c = 0; c < app_unseen_case_count && !status; c++) {
+    if (!options->wants_case[c]) continue;
+    log_progress("%s, %s", name, app_unseen_cases[c].name);
+    status = measure(options, &app_unseen_cases[c], name, &model, clip, &rows[(*count)++]);
+  }
+  log_progress_end();
+  overlap_model_destroy(&model);
+  return status;
+}
+
+static Status run(const Options *options) {
+  static Row rows[MAX_MODELS * MAX_CASES];
+  int count = 0;
+  OverlapModel clip;
+  TRY(overlap_model_create(&clip, "clip"));
+  Status status = STATUS_OK;
+  for (int m = 0; m < options->model_count && !status; m++)
+    status = measure_model(options, options->models[m], &clip, rows, &count);
+  overlap_model_destroy(&clip);
+  return status ? status : app_bench_report_print(&report, &options->common, rows, count);
+}
+
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .doc = "Measure overlap models on bodies that no training has seen: meshes "
+                                        "of other makers and gradings, slivers, "
+                                        "large strain, thin parts, edges, aligned slabs. The upper body goes "
+                                        "round a closed path in contact, and "
+                                        "at each place volumes, centroids and forces are compared with those "
+                                        "of clipping. Errors are the largest "
+                                        "over the seeds.",
+                                 .children = app_bench_command_children,
+                                 .help_filter = app_bench_command_help};
+
+static int run_command(int argument_count, char **arguments) {
+  static char geo[] = "geo", geo_small[] = "geo-small";
+  Options options = {.common = {.threads = 1, .repeats = 1},
+                     .models = {geo, geo_small},
+                     .model_count = 2,
+                     .seeds = 3,
+                     .places = 96};
+  for (int c = 0; c < app_unseen_case_count; c++) options.wants_case[c] = true;
+  app_bench_command_read(&app_bench_unseen, argument_count, arguments, &options);
+  return app_bench_command_end(run(&options));
+}
+
+const AppCommand app_bench_unseen = {.name = "unseen",
+                                     .help = "overlap models: errors on bodies that no training has seen",
+                                     .argp = &argp,
+                                     .run = run_command,
+                                     .has_threads = true,
+                                     .rows = &report,
+                                     .describe_rows = app_bench_command_rows};

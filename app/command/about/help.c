@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/about/help.h"
+
+#include "app/cli/manual.h"
+#include "base/log.h"
+#include "base/text.h"
+
+enum { KEY_MAN = 256, MOST_WORDS = 8, MOST_MESSAGE = 1024 };
+
+typedef struct Options {
+  const char *directory; // for manual pages; NULL: one page on standard output
+  bool wants_page;
+  char *words[MOST_WORDS]; // of the command that is asked about
+  int word_count;
+} Options;
+
+static const struct argp_option option_table[] = {
+    {"man", KEY_MAN, NULL, 0, "Print the command's page for man(1)", 0},
+    {"output", 'o', "DIR", 0, "With --man: write the page and those of the commands below it into DIR", 0},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  switch (key) {
+  case KEY_MAN:
+    options->wants_page = true;
+    return 0;
+  case 'o':
+    options->directory = text;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (options->word_count == MOST_WORDS) argp_error(state, "'%s' is one word too many", text);
+    options->words[options->word_count++] = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (options->directory && !options->wants_page)
+      argp_error(state, "-o is for manual pages: tetlap help --man -o %s", options->directory);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+// The command that the words name, and how it is called.
+static const AppCommand *find(const Options *options, char called[APP_CLI_MAX_CALL]) {
+  const AppCommand *command = app_cli_command_root();
+  size_t used = 0;
+  text_append(called, APP_CLI_MAX_CALL, &used, "%s", command->name);
+  for (int w = 0; w < options->word_count; w++) {
+    const AppCommand *child = app_cli_command_find(command, options->words[w]);
+    if (!child && command->children) {
+      char message[MOST_MESSAGE];
+      app_cli_command_explain(command, called, 1, &options->words[w], message, sizeof message);
+      status_fail(STATUS_USAGE, "%s", message);
+      return NULL;
+    }
+    if (!child) {
+      status_fail(STATUS_USAGE, "'%s %s': %s is a command, so no other can follow", called, options->words[w],
+                  called);
+      return NULL;
+    }
+    command = child;
+    text_append(called, APP_CLI_MAX_CALL, &used, " %s", child->name);
+  }
+  return command;
+}
+
+static Status flush(void) {
+  return fflush(stdout) == 0 ? STATUS_OK : status_fail(STATUS_IO, "standard output cannot be written");
+}
+
+static int exit_code_of(Status status) {
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
+
+static int ask(const AppCommand *command, char called[APP_CLI_MAX_CALL]) {
+  char option[] = "--help";
+  char *asking[] = {called, option, NULL};
+  return app_cli_command_run(command, 2, asking);
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "[COMMAND…]",
+    .doc = "List the commands, or tell what one of them does, as in: tetlap help dataset info"};
+
+static int run_command(int argument_count, char **arguments) {
+  Options options = {0};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  char called[APP_CLI_MAX_CALL];
+  const AppCommand *command = find(&options, called);
+  if (!command) return exit_code_of(STATUS_USAGE);
+  if (!options.wants_page) return ask(command, called);
+  if (options.directory) return exit_code_of(app_cli_manual_write(command, called, options.directory));
+  Status status = app_cli_manual_print(command, called, stdout);
+  return exit_code_of(status ? status : flush());
+}
+
+const AppCommand app_command_help = {.name = "help",
+                                     .help = "print this; `tetlap COMMAND --help` tells more",
+                                     .argp = &argp,
+                                     .run = run_command};

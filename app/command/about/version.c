@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/about/version.h"
+
+#include "app/cli/versions.h"
+#include "base/log.h"
+#include "base/record.h"
+#include "base/status.h"
+
+static const struct argp argp = {.doc = "Print the versions of the program and its libraries, as JSON."};
+
+static int run_command(int argument_count, char **arguments) {
+  argp_parse(&argp, argument_count, arguments, 0, NULL, NULL);
+  Record *versions = record_new();
+  Status status = versions ? STATUS_OK : status_no_memory("the versions");
+  if (!status) {
+    app_versions_record(versions);
+    status = record_print(versions, stdout);
+  }
+  record_destroy(versions);
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
+
+const AppCommand app_command_version = {.name = "version",
+                                        .help = "print the versions of the program and its libraries",
+                                        .argp = &argp,
+                                        .run = run_command};

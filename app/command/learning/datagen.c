@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/learning/datagen.h"
+
+#include <limits.h>
+#include <math.h>
+#include <omp.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
+#include "app/cli/versions.h"
+#include "base/clock.h"
+#include "base/log.h"
+#include "datagen/run.h"
+
+enum { KEY_MIX = 256, KEY_VOLUME, KEY_SWAP, KEY_GRADIENT, KEY_LABEL, KEY_SHARD, KEY_LIST, BAR_WIDTH = 24 };
+
+typedef struct Options {
+  DatagenLaw law;
+  const char *mix, *volume, *output; // NULL: the law's; the law's; not given
+  double swap_share;                 // NaN: the law's
+  long long count;                   // 0: the law's
+  uint64_t seed;
+  DatagenLabel label;
+  bool has_label, wants_gradient, is_quiet, lists;
+  int shard, shard_count, threads; // 0 threads: all
+} Options;
+
+static const struct argp_option option_table[] = {
+    {"law", 'l', "NAME", 0, "What the pairs are: paper-train (default), paper-test, scene, uniform", 0},
+    {"count", 'n', "N", 0, "Pairs in all (default: the law's)", 0},
+    {"seed", 's', "S", 0, "A number; the same gives the same pairs (default: 1)", 0},
+    {"output", 'o', "FILE", 0, "The HDF5 file to write", 0},
+    {"threads", 't', "N", 0, "Threads (default: all); the pairs do not depend on it", 0},
+    {"shard", KEY_SHARD, "I/N", 0, "Make part I of N only, I from 1; `tetlap dataset merge` joins them", 0},
+    {"gradient", KEY_GRADIENT, "MODEL", 0, "Also the 24 derivatives of V: none (default), clip, exact", 0},
+    {"label", KEY_LABEL, "MODEL", 0, "What V is computed with: exact (default), clip", 0},
+    {"mix", KEY_MIX, "KIND=SHARE,…", 0, "Shares of the kinds, instead of the law's", 0},
+    {"volume", KEY_VOLUME, "LAW", 0,
+     "Law of the volumetric pairs' V: log-uniform:LOW:HIGH, uniform:LOW:HIGH, natural", 0},
+    {"swap", KEY_SWAP, "SHARE", 0, "Exchange the two tetrahedra in this share of the pairs (default: 0)", 0},
+    {"list", KEY_LIST, NULL, 0, "List laws and kinds", 0},
+    {"quiet", 'q', NULL, 0, "Say errors only", 0},
+    {0},
+};
+
+static DatagenLabel model_of(struct argp_state *state, const char *option, const char *text) {
+  if (strcmp(text, "exact") == 0) return DATAGEN_LABEL_EXACT;
+  if (strcmp(text, "clip") == 0) return DATAGEN_LABEL_CLIP;
+  argp_error(state, "--%s is '%s'; give exact or clip%s", option, text,
+             strcmp(option, "gradient") == 0 ? ", or none" : "");
+  return DATAGEN_LABEL_EXACT;
+}
+
+static void set_label(struct argp_state *state, Options *options, const char *option, const char *text) {
+  DatagenLabel label = model_of(state, option, text);
+  if (options->has_label && label != options->label)
+    argp_error(state, "--label and --gradient name different models; V and its derivatives have one");
+  options->label = label;
+  options->has_label = true;
+}
+
+static void set_shard(struct argp_state *state, Options *options, const char *text) {
+  int used = 0;
+  if (sscanf(text, "%d/%d%n", &options->shard, &options->shard_count, &used) != 2 || text[used] ||
+      options->shard < 1 || options->shard > options->shard_count || options->shard_count > 1000000)
+    argp_error(state, "--shard is '%s'; give I/N with I from 1 to N, as in 3/16", text);
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  switch (key) {
+  case 'l':
+    if (datagen_law_find(text, &options->law) != STATUS_OK) argp_error(state, "%s", status_message());
+    return 0;
+  case 'n':
+    options->count = app_argument_integer(state, "count", text, 1, LLONG_MAX);
+    return 0;
+  case 's':
+    options->seed = app_argument_seed(state, text);
+    return 0;
+  case 'o':
+    options->output = text;
+    return 0;
+  case 't':
+    options->threads = app_argument_threads(state, text);
+    return 0;
+  case 'q':
+    options->is_quiet = true;
+    return 0;
+  case KEY_SHARD:
+    set_shard(state, options, text);
+    return 0;
+  case KEY_GRADIENT:
+    options->wants_gradient = strcmp(text, "none") != 0;
+    if (options->wants_gradient) set_label(state, options, "gradient", text);
+    return 0;
+  case KEY_LABEL:
+    set_label(state, options, "label", text);
+    return 0;
+  case KEY_MIX:
+    options->mix = app_argument_words(state, "mix", text, "none=50,volumetric=50");
+    return 0;
+  case KEY_VOLUME:
+    options->volume = text;
+    return 0;
+  case KEY_SWAP:
+    options->swap_share = app_argument_number(state, "swap", text, 0, 1);
+    return 0;
+  case KEY_LIST:
+    options->lists = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    argp_error(state, "'%s' is one too many: the file to write is given with -o", text);
+    return 0;
+  case ARGP_KEY_END:
+    if (!options->output && !options->lists) argp_error(state, "write where? Give -o FILE");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static void list_names(void) {
+  int count;
+  const DatagenLaw *laws = datagen_law_list(&count);
+  printf("laws\n");
+  for (int k = 0; k < count; k++) {
+    char mix[DATAGEN_MIX_TEXT], volume[DATAGEN_VOLUME_TEXT];
+    datagen_law_print_mix(laws[k].mix, mix, sizeof mix);
+    datagen_volume_law_print(&laws[k].volume, volume, sizeof volume);
+    printf("  %-14s %s\n  %14s %lld pairs, --mix %s\n  %14s --volume %s\n", laws[k].name, laws[k].help, "",
+           laws[k].default_count, mix, "", volume);
+  }
+  printf("kinds\n");
+  for (int k = 0; k < DATAGEN_CAPTURED; k++)
+    printf("  %-14s %s\n", datagen_kind_info(k)->name, datagen_kind_info(k)->help);
+}
+
+typedef struct Progress {
+  double began_s;
+} Progress;
+
+static void show_progress(void *observer, const DatagenProgress *progress) {
+  const Progress *state = observer;
+  double seconds = clock_wall_s() - state->began_s,
+         share = (double)progress->done / (double)progress->planned;
+  double rate = seconds > 0 ? (double)progress->done / seconds : 0;
+  char bar[BAR_WIDTH + 1];
+  for (int i = 0; i < BAR_WIDTH; i++) bar[i] = i < share * BAR_WIDTH ? '#' : '.';
+  bar[BAR_WIDTH] = 0;
+  log_progress("[%s] %3.0f %%  %lld of %lld pairs  %.0f pairs/s  %.0f s left", bar, 100 * share,
+               progress->done, progress->planned, rate,
+               rate > 0 ? (double)(progress->planned - progress->done) / rate : 0);
+}
+
+static Status plan_of(const Options *options, DatagenPlan *plan) {
+  DatagenLaw law = options->law;
+  if (options->mix) TRY(datagen_law_parse_mix(law.mix, options->mix));
+  if (options->volume) TRY(datagen_volume_law_parse(&law.volume, options->volume));
+  if (!isnan(options->swap_share)) law.swap_share = options->swap_share;
+  TRY(datagen_plan_make(plan, &law, options->seed, options->count ? options->count : law.default_count));
+  plan->label = options->label;
+  plan->wants_gradient = options->wants_gradient;
+  return STATUS_OK;
+}
+
+static Status make(const Options *options) {
+  char program[64];
+  DatagenPlan plan;
+  TRY(plan_of(options, &plan));
+  snprintf(program, sizeof program, "tetlap %s", app_versions_program());
+  Progress progress = {clock_wall_s()};
+  DatagenRunOptions run = {.path = options->output,
+                           .program = program,
+                           .stop = app_job_stop_flag(),
+                           .observe = show_progress,
+                           .observer = &progress};
+  datagen_plan_shard(&plan, options->shard, options->shard_count, &run.first, &run.count);
+  if (run.count == 0)
+    return status_fail(STATUS_USAGE, "%lld pairs in %d parts leave none for part %d", plan.count,
+                       options->shard_count, options->shard);
+  Status status = datagen_run(&plan, &run);
+  log_progress_end();
+  double seconds = clock_wall_s() - progress.began_s;
+  if (!status)
+    log_info("%s: %lld pairs of law %s, seed %llu, in %.1f s (%.0f pairs/s)", options->output, run.count,
+             plan.law.name, (unsigned long long)plan.seed, seconds, (double)run.count / seconds);
+  return status;
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Make a data set of labelled pairs of tetrahedra: coordinates, whether they meet, their kind, the "
+           "volume they share and, if wanted, its derivatives."};
+
+static int run_command(int argument_count, char **arguments) {
+  Options options = {.seed = 1, .swap_share = NAN, .shard = 1, .shard_count = 1};
+  datagen_law_find("paper-train", &options.law);
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  if (options.lists) {
+    list_names();
+    return 0;
+  }
+  app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
+  if (options.threads) omp_set_num_threads(options.threads);
+  Status status = make(&options);
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
+
+const AppCommand app_command_datagen = {.name = "datagen",
+                                        .help =
+                                            "make labelled pairs of tetrahedra for learned overlap models",
+                                        .argp = &argp,
+                                        .run = run_command,
+                                        .has_threads = true};

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/learning/eval.h"
+
+#include <limits.h>
+#include <omp.h>
+#include <stdbool.h>
+
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
+#include "app/cli/versions.h"
+#include "app/dataset/source.h"
+#include "app/evaluation/model.h"
+#include "app/evaluation/paths.h"
+#include "app/evaluation/report.h"
+#include "base/clock.h"
+#include "base/log.h"
+
+enum { KEY_MIX = 256, KEY_VOLUME, KEY_PATHS, BLOCK = 16384 };
+
+typedef struct Options {
+  const char *model;
+  AppSourceDef source;
+  int threads; // 0: all
+  int paths;   // to look for jumps along; 0: none
+  bool is_json, is_quiet;
+} Options;
+
+static const struct argp_option option_table[] = {
+    {"law", 'l', "NAME", 0, "Make the pairs by this law, as `tetlap datagen` does, instead of a FILE", 0},
+    {"count", 'n', "N", 0, "Pairs (default: all of the file; the law's)", 0},
+    {"seed", 's', "S", 0, "The law's seed (default: 1)", 0},
+    {"mix", KEY_MIX, "KIND=SHARE,…", 0, "Shares of the kinds, instead of the law's", 0},
+    {"volume", KEY_VOLUME, "LAW", 0, "Law of the volumetric pairs' V, instead of the law's", 0},
+    {"paths", KEY_PATHS, "N", 0, "Look for jumps of V and of its gradient along N paths; needs no data", 0},
+    {"threads", 't', "N", 0, "Threads (default: all); the result does not depend on it", 0},
+    {"json", 'j', NULL, 0, "Print the result as JSON", 0},
+    {"quiet", 'q', NULL, 0, "Say errors only", 0},
+    {0},
+};
+
+static void check(struct argp_state *state, const Options *options) {
+  if (!options->model)
+    argp_error(state, "name a model (clip, exact, geo, …) or a weights file, then a data set or --law");
+  if (!options->source.file && !options->source.law && !options->paths)
+    argp_error(state, "name a data set's file, a --law, or a number of --paths");
+  if (options->source.file && options->source.law)
+    argp_error(state, "a file and --law contradict each other; give one of them");
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  switch (key) {
+  case 'l':
+    options->source.law = text;
+    return 0;
+  case 'n':
+    options->source.count = app_argument_integer(state, "count", text, 1, LLONG_MAX);
+    return 0;
+  case 's':
+    options->source.seed = app_argument_seed(state, text);
+    return 0;
+  case KEY_MIX:
+    options->source.mix = app_argument_words(state, "mix", text, "none=50,volumetric=50");
+    return 0;
+  case KEY_VOLUME:
+    options->source.volume = text;
+    return 0;
+  case KEY_PATHS:
+    options->paths = (int)app_argument_integer(state, "paths", text, 1, INT_MAX);
+    return 0;
+  case 't':
+    options->threads = app_argument_threads(state, text);
+    return 0;
+  case 'j':
+    options->is_json = true;
+    return 0;
+  case 'q':
+    options->is_quiet = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (!options->model)
+      options->model = text;
+    else if (!options->source.file)
+      options->source.file = text;
+    else
+      argp_error(state, "'%s' is one too many: give MODEL and FILE", text);
+    return 0;
+  case ARGP_KEY_END:
+    check(state, options);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static Status add_blocks(AppSource *source, const DatagenPairs *buffer, AppEvaluationRun *run) {
+  double began = clock_wall_s();
+  for (long long first = 0; first < source->count; first += BLOCK) {
+    if (*app_job_stop_flag()) return status_fail(STATUS_INTERRUPTED, "interrupted");
+    long long left = source->count - first;
+    size_t count = (size_t)(left < BLOCK ? left : BLOCK);
+    DatagenPairs pairs = *buffer;
+    if (!source->has_gradient) pairs.gradient = NULL;
+    TRY(app_dataset_source_read(source, first, count, &pairs));
+    TRY(app_evaluation_add(run, &pairs, count));
+    long long done = first + (long long)count;
+    log_progress("%lld of %lld pairs  %.0f s left", done, source->count,
+                 (clock_wall_s() - began) / (double)done * (double)(source->count - done));
+  }
+  return STATUS_OK;
+}
+
+// What was found; either part may be absent.
+typedef struct Findings {
+  bool has_evaluation, has_paths;
+  char data[768];
+  AppEvaluation evaluation;
+  AppEvaluationPaths paths;
+} Findings;
+
+static void print(const Options *options, const Findings *findings) {
+  if (findings->has_evaluation)
+    app_evaluation_print(&findings->evaluation, options->model, findings->data, stdout);
+  if (findings->has_paths) app_evaluation_print_paths(&findings->paths, options->model, stdout);
+}
+
+static Status record(const Options *options, const Findings *findings) {
+  Record *record = record_new();
+  if (!record) return status_no_memory("the result");
+  record_text(record, "model", options->model);
+  record_text(record, "program", app_versions_program());
+  if (findings->has_evaluation) {
+    record_text(record, "data", findings->data);
+    app_evaluation_record(&findings->evaluation, record);
+  }
+  if (findings->has_paths) app_evaluation_record_paths(&findings->paths, record_child(record, "paths"));
+  Status status = record_print(record, stdout);
+  record_destroy(record);
+  return status;
+}
+
+static Status evaluate(AppSource *source, const OverlapModel *model, AppEvaluation *evaluation) {
+  DatagenPairs buffer;
+  AppEvaluationRun run;
+  TRY(datagen_pairs_create(&buffer, BLOCK, true));
+  app_evaluation_begin(&run, model, app_evaluation_model_logits(model));
+  Status status = add_blocks(source, &buffer, &run);
+  log_progress_end();
+  if (!status) app_evaluation_finish(&run, evaluation);
+  app_evaluation_end(&run);
+  datagen_pairs_destroy(&buffer);
+  return status;
+}
+
+static Status evaluate_data(const Options *options, const OverlapModel *model, Findings *findings) {
+  AppSource source;
+  Status status = app_dataset_source_open(&source, &options->source, true);
+  if (!status) status = evaluate(&source, model, &findings->evaluation);
+  if (!status) app_dataset_source_describe(&options->source, &source, findings->data, sizeof findings->data);
+  app_dataset_source_close(&source);
+  return status;
+}
+
+static Status evaluate_all(const Options *options, const OverlapModel *model) {
+  Findings findings = {.has_evaluation = options->source.file || options->source.law,
+                       .has_paths = options->paths > 0};
+  if (findings.has_evaluation) TRY(evaluate_data(options, model, &findings));
+  if (findings.has_paths)
+    TRY(app_evaluation_paths(model, options->paths, options->source.seed, &findings.paths));
+  if (options->is_json) return record(options, &findings);
+  print(options, &findings);
+  return STATUS_OK;
+}
+
+static Status open_and_evaluate(const Options *options) {
+  OverlapModel model;
+  TRY(app_evaluation_model_open(&model, options->model));
+  Status status = evaluate_all(options, &model);
+  overlap_model_destroy(&model);
+  return status;
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "MODEL [FILE]",
+    .doc = "Evaluate an overlap model, by name or weights file, on labelled pairs: status, volume, "
+           "derivatives, ghosts and symmetries, beside what the paper's Table 4 reports.",
+};
+
+static int run_command(int argument_count, char **arguments) {
+  Options options = {.source.seed = 1};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
+  if (options.threads) omp_set_num_threads(options.threads);
+  Status status = open_and_evaluate(&options);
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
+
+const AppCommand app_command_eval = {.name = "eval",
+                                     .help = "measure an overlap model against labelled pairs",
+                                     .argp = &argp,
+                                     .run = run_command,
+                                     .has_threads = true};

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/learning/weights.h"
+
+#include <stdio.h>
+
+#include "app/training/task.h"
+#include "app/training/tpn.h"
+#include "base/log.h"
+#include "overlap/weights.h"
+
+typedef struct Options {
+  const char *name, *config;
+} Options;
+
+static const struct argp_option option_table[] = {
+    {"range", 'r', "CONFIG", 0,
+     "Write into the file the range of the training data of this `tetlap train` configuration (kind tpn)", 0},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  switch (key) {
+  case 'r':
+    options->config = text;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (options->name) argp_error(state, "one file at a time; '%s' is the second", text);
+    options->name = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (!options->name) argp_error(state, "name a weights file, or a model whose weights ship");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static Status print(const char *path, const NetModel_f32 *model, const NetCard *card) {
+  char shape[NET_SHAPE_TEXT];
+  TRY(app_training_task_fail(net_shape_print(&model->plan->shape, shape)));
+  printf("file           %s\nparameters     %zu\nshape          %s\nnormalisation  %s\nrange          "
+         "%s\n\n%s\n",
+         path, model->plan->parameter_count, shape, card->normalisation, card->range, card->provenance);
+  return STATUS_OK;
+}
+
+// The card gets another range; all else, the numbers too, stays.
+static Status stamp(const char *path, const char *config_path, const NetModel_f32 *model,
+                    const NetCard *card) {
+  AppTrainingConfig config;
+  OverlapTpnRange range;
+  char text[OVERLAP_TPN_RANGE_TEXT];
+  if (model->plan->shape.kind != NET_TPN)
+    return status_fail(STATUS_INPUT, "%s: --range is for a TetrahedronPairNet, this is another network",
+                       path);
+  TRY(app_training_config_read(config_path, NULL, 0, &config));
+  Status status = config.model.kind == APP_MODEL_TPN
+                      ? app_training_tpn_range(&config, &range)
+                      : status_fail(STATUS_INPUT, "%s: does not train a tpn", config_path);
+  app_training_config_destroy(&config);
+  TRY(status);
+  overlap_tpn_range_print(&range, text);
+  NetCard stamped = {.normalisation = card->normalisation, .range = text, .provenance = card->provenance};
+  TRY(app_training_task_fail(net_weights_write_f32(path, model, &stamped)));
+  log_info("%s: range %s", path, text);
+  return STATUS_OK;
+}
+
+static Status print_weights(const Options *options) {
+  char found[4096];
+  const char *path = options->name;
+  if (!overlap_weights_is_path(path)) {
+    TRY(overlap_weights_find(path, found, sizeof found));
+    path = found;
+  }
+  NetModel_f32 model;
+  NetCard card;
+  TRY(app_training_task_fail(net_weights_read_f32(path, &model, &card)));
+  Status status = options->config ? stamp(path, options->config, &model, &card) : print(path, &model, &card);
+  net_weights_card_destroy(&card);
+  net_model_destroy_f32(&model);
+  return status;
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "NAME|FILE",
+    .doc = "Print what a weights file says of itself: the network's shape, what it expects of its input, the "
+           "range that it was trained on, and how it came to be."};
+
+static int run_command(int argument_count, char **arguments) {
+  Options options = {0};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  Status status = print_weights(&options);
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
+
+const AppCommand app_command_weights = {
+    .name = "weights", .help = "say what a weights file holds", .argp = &argp, .run = run_command};

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/output/report.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "app/report/collect.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+
+enum { KEY_FRAMES = 256, KEY_SURFACE, KEY_PARETO, KEY_BENCH, KEY_STRESS };
+
+typedef struct Options {
+  const char *directories[APP_REPORT_MAX_RUNS];
+  int directory_count;
+  const char *output;
+  const char *pareto;
+  const char *benches[APP_REPORT_MAX_BENCHES];
+  int bench_count;
+  const char *stresses[APP_REPORT_MAX_STRESSES];
+  int stress_count;
+  int max_frames;
+  bool has_surface_only, is_quiet;
+} Options;
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "FILE", 0, "Write this file (default: report.html in the first DIR, else here)", 0},
+    {"frames", KEY_FRAMES, "N", 0, "Take at most N frames of a run, at even distances (default: all)", 0},
+    {"surface", KEY_SURFACE, NULL, 0,
+     "Take the bodies' surfaces only: a smaller page, which cannot cut bodies open", 0},
+    {"pareto", KEY_PARETO, "FILE", 0, "Show this result of `tetlap pareto` as well", 0},
+    {"bench", KEY_BENCH, "FILE", 0, "Show this result of `tetlap bench --json` as well; may be repeated", 0},
+    {"stress", KEY_STRESS, "FILE", 0,
+     "Show this table of `tetlap stress --json` as well; may be repeated: a later one replaces the same "
+     "cases",
+     0},
+    {"quiet", 'q', NULL, 0, "Say errors only", 0},
+    {0},
+};
+
+static int frames_of(struct argp_state *state, const char *text) {
+  char *end;
+  errno = 0;
+  long frames = strtol(text, &end, 10);
+  if (end == text || *end || errno || frames < 1 || frames > 1000000)
+    argp_error(state, "--frames is '%s'; give a whole number from 1 up", text);
+  return (int)frames;
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  switch (key) {
+  case 'o':
+    options->output = text;
+    return 0;
+  case KEY_FRAMES:
+    options->max_frames = frames_of(state, text);
+    return 0;
+  case KEY_SURFACE:
+    options->has_surface_only = true;
+    return 0;
+  case KEY_PARETO:
+    options->pareto = text;
+    return 0;
+  case KEY_BENCH:
+    if (options->bench_count == APP_REPORT_MAX_BENCHES)
+      argp_error(state, "at most %d results of bench can be shown", APP_REPORT_MAX_BENCHES);
+    options->benches[options->bench_count++] = text;
+    return 0;
+  case KEY_STRESS:
+    if (options->stress_count == APP_REPORT_MAX_STRESSES)
+      argp_error(state, "at most %d tables of stress can be shown", APP_REPORT_MAX_STRESSES);
+    options->stresses[options->stress_count++] = text;
+    return 0;
+  case 'q':
+    options->is_quiet = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (options->directory_count == APP_REPORT_MAX_RUNS)
+      argp_error(state, "'%s' is one too many: a page shows at most %d runs", text, APP_REPORT_MAX_RUNS);
+    options->directories[options->directory_count++] = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (options->directory_count == 0 && !options->pareto && options->bench_count == 0 &&
+        options->stress_count == 0)
+      argp_error(state, "name the directory of a run, of two runs or of a comparison");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static Status add_stress(AppReport *report, const char *path) {
+  Record **record = &report->stresses[report->stress_count];
+  TRY(record_read(record, path));
+  report->stress_count++;
+  const char *format = record_find_text(*record, "format");
+  if (format && strcmp(format, "tetlap-stress 1") == 0) return STATUS_OK;
+  return status_fail(STATUS_INPUT,
+                     "%s: is no table of hard cases; give what `tetlap stress --json FILE` wrote", path);
+}
+
+static Status collect(AppReport *report, const Options *options) {
+  report->has_surface_only = options->has_surface_only;
+  for (int k = 0; k < options->directory_count; k++)
+    TRY(app_report_collect(report, options->directories[k], options->directory_count == 1,
+                           options->max_frames));
+  if (options->pareto) TRY(record_read(&report->pareto, options->pareto));
+  for (int k = 0; k < options->bench_count; k++) {
+    TRY(record_read(&report->benches[k], options->benches[k]));
+    report->bench_count++;
+  }
+  for (int k = 0; k < options->stress_count; k++) TRY(add_stress(report, options->stresses[k]));
+  return STATUS_OK;
+}
+
+static Status write_page(AppReport *report, const Options *options) {
+  char *path = options->output            ? memory_copy(options->output, strlen(options->output) + 1, 1)
+               : options->directory_count ? file_join(options->directories[0], "report.html")
+                                          : file_join(".", "report.html");
+  if (!path) return status_no_memory("a file name");
+  Status status = app_report_write(report, path);
+  struct stat info;
+  if (!status && stat(path, &info) == 0)
+    log_info("wrote %s (%.1f MB): open it in a browser", path, (double)info.st_size / 1e6);
+  memory_free(path);
+  return status;
+}
+
+static const struct argp argp = {
+    option_table,
+    parse,
+    "[DIR…]",
+    "Write a web page about a run, or about several side by side: the scene in motion, its plots, where the "
+    "time went.\vDIR is where `tetlap run` wrote, or `tetlap compare` (then all its models are shown). The "
+    "first is the one that the others are held against. The page is one file and needs no network.",
+    NULL,
+    NULL,
+    NULL};
+
+static int run_command(int argument_count, char **arguments) {
+  Options options = {0};
+  error_t wrong = argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  if (wrong) return status_exit_code(STATUS_USAGE);
+  if (options.is_quiet) log_set_level(LOG_ERROR);
+  AppReport report = {0};
+  Status status = collect(&report, &options);
+  if (!status) status = write_page(&report, &options);
+  app_report_destroy(&report);
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
+
+const AppCommand app_command_report = {.name = "report",
+                                       .help = "write a web page about a run, or several side by side",
+                                       .argp = &argp,
+                                       .run = run_command};

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/overlap/poses.h"
+
+#include <limits.h>
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
+#include "app/poses/poses.h"
+#include "app/scene/read.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "fem/model/build.h"
+
+typedef struct Options {
+  const char *scene, *file, *body, *device, *output;
+  const char *overrides[APP_MAX_OVERRIDES];
+  int override_count, random_count, threads;
+  uint64_t seed;
+  double shift, turn; // shift < 0: a tenth of the body's length
+} Options;
+
+enum { KEY_POSES = 256, KEY_RANDOM, KEY_BODY, KEY_SEED, KEY_SHIFT, KEY_TURN };
+
+static const struct argp_option option_table[] = {
+    {"poses", KEY_POSES, "FILE", 0,
+     "Poses, a line of 12 numbers each: a rotation R row by row, then a shift t, for x' = R x + t", 1},
+    {"random", KEY_RANDOM, "N", 0, "N poses at random about the one that the scene has", 1},
+    {"body", KEY_BODY, "NAME", 0, "The body or obstacle that is posed (default: the first)", 1},
+    {"shift", KEY_SHIFT, "LENGTH", 0,
+     "With --random: shifts of up to so much in each coordinate [m] (default: a tenth of the smallest body)",
+     2},
+    {"turn", KEY_TURN, "ANGLE", 0, "With --random: turns of up to so much [rad] (default: 0.2)", 2},
+    {"seed", KEY_SEED, "N", 0, "With --random: of the random numbers (default: 1)", 2},
+    {"device", 'D', "NAME", 0,
+     "host, opencl, cuda or auto, or with a number (opencl:1); default: this processor's vectors. The "
+     "answers are "
+     "the same to the bit",
+     3},
+    {"set", 's', "KEY=VALUE", 0, "Replace a value of the scene; may be repeated", 3},
+    {"threads", 't', "N", 0, "Use N threads (default: all)", 3},
+    {"output", 'o', "FILE", 0, "Write the table there (default: standard output)", 3},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  switch (key) {
+  case KEY_POSES:
+    options->file = text;
+    break;
+  case KEY_RANDOM:
+    options->random_count = (int)app_argument_integer(state, "random", text, 1, INT_MAX / 16);
+    break;
+  case KEY_BODY:
+    options->body = text;
+    break;
+  case KEY_SEED:
+    options->seed = app_argument_seed(state, text);
+    break;
+  case KEY_SHIFT:
+    options->shift = app_argument_number(state, "shift", text, 0, 1e300);
+    break;
+  case KEY_TURN:
+    options->turn = app_argument_number(state, "turn", text, 0, 1e3);
+    break;
+  case 'D':
+    options->device = text;
+    break;
+  case 's':
+    if (options->override_count == APP_MAX_OVERRIDES)
+      argp_error(state, "at most %d --set", APP_MAX_OVERRIDES);
+    options->overrides[options->override_count++] = text;
+    break;
+  case 't':
+    options->threads = app_argument_threads(state, text);
+    break;
+  case 'o':
+    options->output = text;
+    break;
+  case ARGP_KEY_ARG:
+    if (options->scene) argp_error(state, "'%s' is one too many: poses takes one scene", text);
+    options->scene = text;
+    break;
+  case ARGP_KEY_END:
+    if (!options->scene)
+      argp_error(state, "name a scene, as in tetlap poses examples/02_two_blocks.yaml --random 100");
+    if (!options->file == !options->random_count) argp_error(state, "give either --poses FILE or --random N");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static Status find_body(const FemModel *model, const char *name, int *body) {
+  char known[1024];
+  size_t used = 0;
+  known[0] = 0;
+  *body = 0;
+  for (int b = 0; b < model->body_count; b++) {
+    if (!name || strcmp(model->bodies[b].name, name) == 0) {
+      *body = b;
+      return STATUS_OK;
+    }
+    used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", b ? ", " : "", model->bodies[b].name);
+    if (used >= sizeof known) break;
+  }
+  return status_fail(STATUS_USAGE, "--body: the scene has no body '%s' with a mesh; it has %s", name, known);
+}
+
+static void print_table(const AppPosesResult *result, int count, FILE *stream) {
+  fputs("pose,V,fx,fy,fz,mx,my,mz\n", stream);
+  for (int i = 0; i < count; i++) {
+    const double *sum = result->sums + DEVICE_POSE_SUMS * (size_t)i;
+    fprintf(stream, "%d", i);
+    for (int k = 0; k < DEVICE_POSE_SUMS; k++) fprintf(stream, ",%.17g", sum[k]);
+    fputc('\n', stream);
+  }
+}
+
+static Status write_table(const AppPosesResult *result, int count, const char *path) {
+  FileWriter writer;
+  if (!path) {
+    print_table(result, count, stdout);
+    return fflush(stdout) == 0 ? STATUS_OK : status_fail(STATUS_IO, "standard output cannot be written");
+  }
+  TRY(file_begin(&writer, path));
+  print_table(result, count, writer.stream);
+  Status status = file_commit(&writer);
+  file_abandon(&writer);
+  return status;
+}
+
+static void tell(const AppPosesResult *result, int count, const Device *device) {
+  const double pairs = (double)result->pair_count;
+  log_info("%d poses of %.4g pairs by %s: %.3g s, %.3g poses/s, %.3g pairs/s (%.3g a processor second)",
+           count, pairs / count, device ? device->info.name : "this processor's vectors", result->eval_s,
+           count / result->eval_s, pairs / result->eval_s, pairs / result->eval_cpu_s);
+  log_info("%.3g s to find the pairs", result->find_s);
+  if (result->handed_on > 0)
+    log_info("%lld pairs were doubtful and left to this processor", result->handed_on);
+}
+
+static Status make_list(const Options *options, const FemModel *model, int body, AppPosesList *list) {
+  double centre[3];
+  if (options->file) return app_poses_list_read(list, options->file);
+  app_poses_centre(model, body, centre);
+  const double shift = options->shift < 0 ? 0.1 * model->length : options->shift;
+  return app_poses_list_draw(list, options->random_count, options->seed, centre, shift, options->turn);
+}
+
+static Status run_model(const Options *options, const FemModel *model, const Device *device) {
+  AppPosesList list = {0};
+  AppPosesResult result = {0};
+  int body;
+  TRY(find_body(model, options->body, &body));
+  if (model->body_count < 2)
+    return status_fail(STATUS_INPUT, "%s: a second body or obstacle with a mesh is needed to overlap with",
+                       options->scene);
+  TRY(make_list(options, model, body, &list));
+  Status status = app_poses_run(&result, model, body, &list, device);
+  if (!status) status = write_table(&result, list.count, options->output);
+  if (!status) tell(&result, list.count, device);
+  app_poses_destroy(&result);
+  app_poses_list_destroy(&list);
+  return status;
+}
+
+static Status run_scene(const Options *options, const FemSceneDef *scene) {
+  FemModel model;
+  Device device = {0};
+  TRY(fem_model_create(&model, scene));
+  Status status = options->device ? device_open(&device, options->device) : STATUS_OK;
+  if (!status) status = run_model(options, &model, options->device ? &device : NULL);
+  device_close(&device);
+  fem_model_destroy(&model);
+  return status;
+}
+
+static Status run(const Options *options) {
+  FemSceneDef scene;
+  if (options->threads) omp_set_num_threads(options->threads);
+  TRY(app_scene_read(options->scene, options->overrides, options->override_count, &scene));
+  Status status = run_scene(options, &scene);
+  fem_scene_destroy(&scene);
+  return status;
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "SCENE",
+    .doc = "Evaluate many rigid poses of one of a scene's bodies against all others: a line a pose with the "
+           "overlap "
+           "volume V [m³], the force f = −∂V/∂t [m²] and the moment m [m³] about the body's centre that a "
+           "pressure "
+           "of 1 Pa would exert on it. Obstacles without elements take no part. docs/devices.md tells more."};
+
+static int run_command(int argument_count, char **arguments) {
+  Options options = {.seed = 1, .shift = -1, .turn = 0.2};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  Status status = run(&options);
+  if (status != STATUS_OK) log_error("%s", status_message());
+  return status_exit_code(status);
+}
+
+const AppCommand app_command_poses = {.name = "poses",
+                                      .help = "overlap volume and wrench of many poses of a body",
+                                      .argp = &argp,
+                                      .run = run_command,
+                                      .has_threads = true};

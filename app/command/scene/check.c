@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/scene/check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include "app/cli/job.h"
+#include "base/cpu.h"
+#include "base/log.h"
+#include "base/record.h"
+#include "base/text.h"
+#include "fem/effect/effect.h"
+#include "fem/measure/thickness.h"
+#include "fem/model/compliance.h"
+#include "fem/run/choice.h"
+#include "fem/run/start.h"
+#include "fem/sparse/solver.h"
+
+enum { MAX_NOTES = 24, MAX_OVERLAPS = 6, MAX_THIN = 6 };
+// Elements through the thickness from which on linear ones bend as they should, roughly.
+static const double ENOUGH_LAYERS = 3.5;
+
+// What the scene's author may not have meant.
+typedef struct Notes {
+  const char *texts[MAX_NOTES];
+  int count;
+  char overlaps[MAX_OVERLAPS][512];
+  char thin[MAX_THIN][512];
+} Notes;
+
+static void note(Notes *notes, bool is_true, const char *text) {
+  if (is_true && notes->count < MAX_NOTES) notes->texts[notes->count++] = text;
+}
+
+static bool is_zero(const double v[3]) {
+  return v[0] == 0 && v[1] == 0 && v[2] == 0;
+}
+
+static bool is_at_rest(const FemSceneDef *scene) {
+  bool moves = scene->has_gravity && !is_zero(scene->gravity);
+  for (int b = 0; b < scene->body_count; b++) {
+    const FemBodyDef *body = &scene->bodies[b];
+    moves = moves || body->driven_count > 0 || body->load_count > 0 || !is_zero(body->velocity) ||
+            !is_zero(body->spin);
+  }
+  for (int o = 0; o < scene->obstacle_count; o++) {
+    const FemConstraintDef *motion = &scene->obstacles[o].motion;
+    moves = moves || motion->table_count > 0 || motion->spin != 0 || !is_zero(motion->velocity) ||
+            !is_zero(motion->amplitude) || motion->formula[0] || motion->formula[1] || motion->formula[2];
+  }
+  return !moves;
+}
+
+static bool is_locking(const FemSceneDef *scene) {
+  bool locks = false;
+  for (int b = 0; b < scene->body_count; b++)
+    locks = locks ||
+            (scene->bodies[b].material.poisson >= 0.45 && scene->bodies[b].element == FEM_ELEMENT_LINEAR);
+  return locks;
+}
+
+static bool meets_itself(const FemSceneDef *scene) {
+  bool meets = false;
+  for (int b = 0; b < scene->body_count; b++) meets = meets || scene->bodies[b].self_contact;
+  return meets;
+}
+
+static double machine_memory(void) {
+  return (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+}
+
+// Who overlaps before anything has moved.
+static Status note_overlaps(const AppJob *job, Notes *notes) {
+  FemSystem system = {0};
+  TRY(fem_system_create(&system, &job->model));
+  Status status = fem_run_start_evaluate(&system);
+  for (int k = 0, i = 0; !status && k < MAX_OVERLAPS; k++, i++) {
+    i = fem_run_start_overlap(&system, i, notes->overlaps[k], sizeof notes->overlaps[k]);
+    if (i < 0) break;
+    note(notes, true, notes->overlaps[k]);
+  }
+  fem_system_destroy(&system);
+  return status;
+}
+
+// Bodies that bend and have too few elements for it; quadratic ones need but one.
+static Status note_thin(const AppJob *job, Notes *notes) {
+  const FemSceneDef *scene = &job->scene;
+  for (int b = 0, k = 0; b < scene->body_count && k < MAX_THIN; b++) {
+    FemThickness found;
+    if (scene->bodies[b].element == FEM_ELEMENT_QUADRATIC) continue;
+    TRY(fem_thickness_find(&job->model, b, &found));
+    if (!found.is_slender || !(found.layers < ENOUGH_LAYERS)) continue;
+    snprintf(notes->thin[k], sizeof notes->thin[k],
+             "'%s' is slender, %.3g m thick, and has about %.0f linear %s through that: it bends too "
+             "stiffly; take element: "
+             "quadratic, or four layers or more",
+             scene->bodies[b].name, found.thickness, fmax(1, round(found.layers)),
+             round(found.layers) > 1 ? "elements" : "element");
+    note(notes, true, notes->thin[k++]);
+  }
+  return STATUS_OK;
+}
+
+static Notes take_notes(const AppJob *job) {
+  const FemSceneDef *scene = &job->scene;
+  int solids = scene->body_count + scene->obstacle_count;
+  Notes notes = {.count = 0};
+  note(&notes, solids > 1 && !scene->contact.is_on,
+       "there is no 'contact' section: the bodies will pass through each other and through obstacles");
+  note(&notes, solids == 1 && scene->contact.is_on && !meets_itself(scene),
+       "contact is on, but there is only one body, without self_contact, and no obstacle to touch");
+  note(&notes, is_at_rest(scene),
+       "nothing moves: no gravity, no initial velocity, no driven vertices, no moving obstacle");
+  note(&notes, is_locking(scene),
+       "linear tetrahedra are too stiff at a Poisson's ratio of 0.45 and above: bending is underestimated; "
+       "try element: quadratic or nodal");
+  note(&notes, job->model.unknown_count == 0, "every vertex is prescribed: there is nothing to solve");
+  note(&notes, fem_run_choice(&job->model).bytes > machine_memory(),
+       "the run needs more memory than this machine has");
+  return notes;
+}
+
+// How many coordinates of a body are prescribed, fixed and driven.
+typedef struct Prescribed {
+  int fixed, driven;
+} Prescribed;
+
+static Prescribed count_prescribed(const FemModel *model, const FemModelBody *body) {
+  Prescribed count = {0, 0};
+  for (int d = 0; d < model->driver_count; d++) {
+    const FemModelDriver *driver = &model->drivers[d];
+    if (driver->dof_count == 0) continue;
+    int vertex = driver->dofs[0] / 3; // a driver belongs to one body
+    if (vertex < body->vertex_begin || vertex >= body->vertex_end) continue;
+    *(driver->is_fixed ? &count.fixed : &count.driven) += driver->dof_count;
+  }
+  return count;
+}
+
+static void describe_mesh(const char *path, const int cells[3], char *text, size_t size) {
+  if (path)
+    snprintf(text, size, "%s", path);
+  else
+    snprintf(text, size, "box of %d × %d × %d cubes", cells[0], cells[1], cells[2]);
+}
+
+// As text.
+
+static void print_body(const AppJob *job, int b) {
+  const FemModelBody *body = &job->model.bodies[b];
+  const FemBodyDef *def = &job->scene.bodies[b];
+  Prescribed prescribed = count_prescribed(&job->model, body);
+  char mesh[512];
+  describe_mesh(def->mesh_path, def->box_cells, mesh, sizeof mesh);
+  int quadratic_count = body->quadratic_end - body->quadratic_begin;
+  printf("  %-12s %s: %d vertices, ", body->name, mesh, body->vertex_end - body->vertex_begin);
+  if (quadratic_count > 0) printf("%d quadratic tetrahedra, for contact in ", quadratic_count);
+  printf("%d tetrahedra\n", body->tet_end - body->tet_begin);
+  printf("  %-12s %s, E %g Pa, ν %g, ρ %g kg/m³: %.4g kg\n", "", fem_material_name(body->material.law),
+         body->material.young, body->material.poisson, body->material.density, body->mass);
+  if (body->damping > 0) printf("  %-12s damping β %g s\n", "", body->damping);
+  if (prescribed.fixed + prescribed.driven > 0)
+    printf("  %-12s %d coordinates fixed, %d driven\n", "", prescribed.fixed, prescribed.driven);
+}
+
+static void print_obstacle(const AppJob *job, int o) {
+  const FemObstacleDef *def = &job->scene.obstacles[o];
+  char mesh[512] = "half-space";
+  if (def->kind == FEM_OBSTACLE_BALL) snprintf(mesh, sizeof mesh, "sphere of radius %g m", def->radius);
+  if (def->kind == FEM_OBSTACLE_BOX)
+    snprintf(mesh, sizeof mesh, "box of %g m × %g m × %g m", def->size[0], def->size[1], def->size[2]);
+  if (def->kind == FEM_OBSTACLE_CYLINDER)
+    snprintf(mesh, sizeof mesh, "cylinder of radius %g m, length %g m, as a prism of %d faces", def->radius,
+             def->length, def->faces);
+  if (def->kind == FEM_OBSTACLE_MESH) describe_mesh(def->mesh_path, def->box_cells, mesh, sizeof mesh);
+  printf("  %-12s %s\n", def->name, mesh);
+}
+
+static void print_effects(const FemSceneDef *scene) {
+  int count;
+  const FemEffectOps *const *effects = fem_effect_list(&count);
+  printf("effects       ");
+  bool is_first = true;
+  for (int i = 0; i < count; i++) {
+    if (!effects[i]->is_wanted(scene)) continue;
+    printf("%s%s", is_first ? "" : ", ", effects[i]->name);
+    is_first = false;
+  }
+  putchar('\n');
+}
+
+static void print_contact(const AppJob *job) {
+  const FemContactDef *contact = &job->scene.contact;
+  if (!contact->is_on) return;
+  double range[2];
+  char most[32] = "";
+  if (fem_compliance_range(&job->model, range)) return;
+  if (range[1] > range[0]) snprintf(most, sizeof most, " … %g", range[1]);
+  printf("contact       potential %s, κ = %g%s %s%s, overlap model %s\n",
+         contact_def_potential_name(contact->potential), range[0], most,
+         contact_def_potential_unit(contact->potential), contact->stiffness > 0 ? "" : " (chosen)",
+         app_job_overlap(job));
+}
+
+static void print_memory(double bytes) {
+  const double units[] = {1e9, 1e6}; // GB, MB
+  bool is_small = bytes < units[0];
+  printf("memory        about %.2g %s\n", bytes / units[is_small], is_small ? "MB" : "GB");
+}
+
+static void print_text(const AppJob *job, const Notes *notes) {
+  const FemSceneDef *scene = &job->scene;
+  const FemModel *model = &job->model;
+  printf("%s%s%s\n", scene->path, scene->title ? ": " : "", scene->title ? scene->title : "");
+  puts("bodies");
+  for (int b = 0; b < scene->body_count; b++) print_body(job, b);
+  if (scene->obstacle_count > 0) puts("obstacles");
+  for (int o = 0; o < scene->obstacle_count; o++) print_obstacle(job, o);
+  print_effects(scene);
+  print_contact(job);
+  printf("unknowns      %d displacements, %s velocities\n", model->unknown_count,
+         scene->is_static ? "no" : "and as many");
+  printf("time          0 to %g s, error per step %g m and %g m/s\n", scene->end,
+         scene->tolerance * model->length, fem_model_velocity_tolerance(model));
+  FemRunChoice choice = fem_run_choice(model);
+  printf("solver        %s%s%s%s, %d threads\n", fem_solver_name(choice.kind),
+         choice.why[0] ? " (chosen: " : "", choice.why, choice.why[0] ? ")" : "", cpu_thread_count());
+  print_memory(choice.bytes);
+  printf("output        %s: %d frames%s%s\n", job->directory, scene->frames + 1,
+         scene->write_vtu ? ", VTU" : "",
+         scene->history == FEM_HISTORY_NONE    ? ""
+         : scene->history == FEM_HISTORY_STEPS ? ", history of steps"
+                                               : ", history");
+  for (int i = 0; i < notes->count; i++) printf("note: %s\n", notes->texts[i]);
+}
+
+// As JSON.
+
+static void record_body(const AppJob *job, int b, Record *record) {
+  const FemModelBody *body = &job->model.bodies[b];
+  const FemBodyDef *def = &job->scene.bodies[b];
+  Prescribed prescribed = count_prescribed(&job->model, body);
+  char mesh[512];
+  describe_mesh(def->mesh_path, def->box_cells, mesh, sizeof mesh);
+  record_text(record, "name", body->name);
+  record_text(record, "mesh", mesh);
+  record_integer(record, "vertices", body->vertex_end - body->vertex_begin);
+  record_integer(record, "tetrahedra", body->tet_end - body->tet_begin);
+  if (body->quadratic_end > body->quadratic_begin)
+    record_integer(record, "quadratic_tetrahedra", body->quadratic_end - body->quadratic_begin);
+  record_number(record, "mass", body->mass);
+  record_text(record, "law", fem_material_name(body->material.law));
+  record_number(record, "damping", body->damping);
+  record_integer(record, "fixed_coordinates", prescribed.fixed);
+  record_integer(record, "driven_coordinates", prescribed.driven);
+}
+
+static void record_effects(const FemSceneDef *scene, RecordList *list) {
+  int count;
+  const FemEffectOps *const *effects = fem_effect_list(&count);
+  for (int i = 0; i < count; i++)
+    if (effects[i]->is_wanted(scene)) record_append_text(list, effects[i]->name);
+}
+
+static void record_contact(const AppJob *job, Record *record) {
+  const FemContactDef *contact = &job->scene.contact;
+  record_text(record, "potential", contact_def_potential_name(contact->potential));
+  double range[2];
+  if (!fem_compliance_range(&job->model, range)) {
+    record_number(record, "stiffness", range[0]);
+    record_number(record, "largest_stiffness", range[1]);
+  }
+  record_text(record, "stiffness_unit", contact_def_potential_unit(contact->potential));
+  record_bool(record, "is_stiffness_chosen", !(contact->stiffness > 0));
+  record_text(record, "overlap", app_job_overlap(job));
+}
+
+static void record_job(const AppJob *job, const Notes *notes, Record *record) {
+  const FemSceneDef *scene = &job->scene;
+  const FemModel *model = &job->model;
+  record_text(record, "scene", scene->path);
+  record_text(record, "title", scene->title);
+  RecordList *bodies = record_list(record, "bodies"), *obstacles = record_list(record, "obstacles");
+  for (int b = 0; b < scene->body_count; b++) record_body(job, b, record_append(bodies));
+  for (int o = 0; o < scene->obstacle_count; o++)
+    record_text(record_append(obstacles), "name", scene->obstacles[o].name);
+  record_effects(scene, record_list(record, "effects"));
+  if (scene->contact.is_on) record_contact(job, record_child(record, "contact"));
+  record_integer(record, "vertices", model->vertex_count);
+  record_integer(record, "tetrahedra", model->tet_count);
+  record_integer(record, "unknowns", model->unknown_count);
+  record_number(record, "end", scene->end);
+  record_bool(record, "is_static", scene->is_static);
+  record_number(record, "length_m", model->length);
+  record_number(record, "tolerance", scene->tolerance);
+  record_number(record, "velocity_tolerance_m_s", fem_model_velocity_tolerance(model));
+  FemRunChoice choice = fem_run_choice(model);
+  record_text(record, "solver", fem_solver_name(choice.kind));
+  record_text(record, "solver_why", choice.why);
+  record_integer(record, "threads", cpu_thread_count());
+  record_number(record, "memory_bytes", choice.bytes);
+  record_text(record, "output", job->directory);
+  record_integer(record, "frames", scene->frames + 1);
+  RecordList *list = record_list(record, "notes");
+  for (int i = 0; i < notes->count; i++) record_append_text(list, notes->texts[i]);
+}
+
+static Status print_json(const AppJob *job, const Notes *notes) {
+  Record *record = record_new();
+  if (!record) return status_no_memory("the report");
+  record_job(job, notes, record);
+  Status status = record_print(record, stdout);
+  record_destroy(record);
+  return status;
+}
+
+static Status check(const AppJobOptions *options) {
+  AppJob job;
+  TRY(app_job_open(&job, options, NULL, NULL));
+  Notes notes = take_notes(&job);
+  Status status = job.scene.contact.is_on ? note_overlaps(&job, &notes) : STATUS_OK;
+  if (!status) status = note_thin(&job, &notes);
+  if (status) {
+    app_job_close(&job);
+    return status;
+  }
+  if (options->is_json)
+    status = print_json(&job, &notes);
+  else
+    print_text(&job, &notes);
+  if (!status && fflush(stdout) != 0) status = status_fail(STATUS_IO, "standard output cannot be written");
+  app_job_close(&job);
+  return status;
+}
+
+static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
+static const struct argp argp = {
+    .args_doc = "SCENE", .doc = "Say what a run of SCENE would do, without running.", .children = children};
+
+static int run_command(int argument_count, char **arguments) {
+  AppJobOptions options = {0};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_job_prepare(&options);
+  Status status = check(&options);
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
+
+const AppCommand app_command_check = {
+    .name = "check", .help = "say what a run would do, without running", .argp = &argp, .run = run_command};

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/scene/compare.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
+#include "app/compare/comparison.h"
+#include "base/clock.h"
+#include "base/cpu.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "fem/effect/contact.h"
+
+typedef struct CompareOptions {
+  AppJobOptions job;
+  const char *overlaps[APP_MAX_MODELS], *audited[APP_MAX_MODELS]; // names; the latter get no run of their own
+  int overlap_count, audited_count;
+  const char *reference;
+  int audit_every;
+  double wall_s; // a run that takes longer is cut short; 0: none is
+} CompareOptions;
+
+enum { KEY_REFERENCE = 256, KEY_AUDIT, KEY_AUDIT_ONLY, KEY_WALL };
+
+static const struct argp_option option_table[] = {
+    {"overlap", 'm', "NAME,…", 0, "The overlap models to compare", 1},
+    {"reference", KEY_REFERENCE, "NAME", 0, "The model that the others are held against (default: the first)",
+     1},
+    {"audit", KEY_AUDIT, "K", 0,
+     "Evaluate all models in every K-th step in contact of the reference (default 10; 0: never)", 1},
+    {"audit-only", KEY_AUDIT_ONLY, "NAME,…", 0,
+     "Models that take part in the audit but get no run of their own", 1},
+    {"wall", KEY_WALL, "SECONDS", 0, "Cut a model's run short that takes longer (default: none is)", 1},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  CompareOptions *options = state->input;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &options->job;
+    break;
+  case 'm':
+    options->overlap_count =
+        app_argument_list(state, "overlap", text, "clip,exact", APP_MAX_MODELS, options->overlaps);
+    break;
+  case KEY_REFERENCE:
+    options->reference = text;
+    break;
+  case KEY_WALL:
+    options->wall_s = app_argument_number(state, "wall", text, 1e-3, 1e7);
+    break;
+  case KEY_AUDIT_ONLY:
+    options->audited_count =
+        app_argument_list(state, "audit-only", text, "exact,cgal", APP_MAX_MODELS, options->audited);
+    break;
+  case KEY_AUDIT:
+    options->audit_every = (int)app_argument_integer(state, "audit", text, 0, INT_MAX);
+    break;
+  case ARGP_KEY_END:
+    if (!options->overlap_count) argp_error(state, "name the models, as in --overlap clip,exact");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static Status add_model(AppComparison *comparison, const FemSceneDef *scene, const char *name,
+                        bool is_driven) {
+  for (int m = 0; m < comparison->model_count; m++)
+    if (strcmp(comparison->models[m].name, name) == 0)
+      return status_fail(STATUS_USAGE, "the model '%s' is named twice; name it once", name);
+  if (comparison->model_count == APP_MAX_MODELS)
+    return status_fail(STATUS_USAGE, "at most %d models can be compared", APP_MAX_MODELS);
+  AppComparisonModel *model = &comparison->models[comparison->model_count];
+  Status status = fem_effect_contact_create_overlap(scene, name, &model->overlap);
+  if (status) return status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "--overlap") : status;
+  model->name = name;
+  model->is_driven = is_driven;
+  comparison->model_count++;
+  return STATUS_OK;
+}
+
+static Status add_models(AppComparison *comparison, const FemSceneDef *scene, const CompareOptions *options) {
+  for (int m = 0; m < options->overlap_count; m++)
+    TRY(add_model(comparison, scene, options->overlaps[m], true));
+  for (int m = 0; m < options->audited_count; m++)
+    TRY(add_model(comparison, scene, options->audited[m], false));
+  return STATUS_OK;
+}
+
+static Status choose_models(AppComparison *comparison, const FemSceneDef *scene,
+                            const CompareOptions *options) {
+  TRY(add_models(comparison, scene, options));
+  comparison->audit_every = options->audit_every;
+  if (!options->reference) return STATUS_OK;
+  for (int m = 0; m < comparison->model_count; m++)
+    if (strcmp(comparison->models[m].name, options->reference) == 0 && comparison->models[m].is_driven) {
+      comparison->reference = m;
+      return STATUS_OK;
+    }
+  return status_fail(STATUS_USAGE, "--reference %s: is not among the models of --overlap",
+                     options->reference);
+}
+
+typedef struct Observer {
+  AppProgress progress;
+  AppComparison *comparison; // NULL: no audit in this run
+  long long step_in_contact;
+  const char *name;      // of the model
+  double began_s;        // of its run
+  double wall_s;         // its limit; 0: none
+  double tell_again_s;   // how long the run may last before its estimate is told anew; INFINITY: never
+  bool is_cut;           // by the limit
+  double mark_s, mark_t; // where the last estimate was taken
+} Observer;
+
+// What is left at the pace since the last estimate; told when the run has lasted twice as long as was said,
+// then twice as long again.
+static void tell_estimate(Observer *observer, const FemRunProgress *progress) {
+  double now = clock_wall_s() - observer->began_s;
+  if (now < observer->tell_again_s) return;
+  double pace = (progress->time - observer->mark_t) / (now - observer->mark_s);
+  double left = (progress->end - progress->time) / pace;
+  log_info("%s: %.0f s so far, t = %.4g of %.4g s; about %.3g %s more at this pace", observer->name, now,
+           progress->time, progress->end, left < 120 ? left : left / 60, left < 120 ? "s" : "minutes");
+  observer->tell_again_s = 2 * now;
+  observer->mark_s = now, observer->mark_t = progress->time;
+}
+
+static Status check_wall(Observer *observer, const FemRunProgress *progress) {
+  if (!(observer->wall_s > 0) || clock_wall_s() - observer->began_s <= observer->wall_s) return STATUS_OK;
+  observer->is_cut = true;
+  return status_fail(STATUS_INTERRUPTED, "cut short by --wall: t = %g s of %g s was reached in %g s",
+                     progress->time, progress->end, observer->wall_s);
+}
+
+static Status observe(void *self, const FemRunProgress *progress) {
+  Observer *observer = self;
+  app_job_show_progress(&observer->progress, progress);
+  tell_estimate(observer, progress);
+  TRY(check_wall(observer, progress));
+  return observer->comparison
+             ? app_comparison_audit(observer->comparison, progress, &observer->step_in_contact)
+             : STATUS_OK;
+}
+
+// The folder of a model's run below the output directory: its name, or that of its weights file.
+static const char *folder_of(const char *name) {
+  const char *slash = strrchr(name, '/');
+  return slash ? slash + 1 : name;
+}
+
+// Estimates of runs shorter than this are not mended.
+static const double SHORT_RUN_S = 5;
+
+// A run of one model, expected to take so long (0: unknown). What stops the whole comparison is returned; a
+// solver that gave up is kept as this model's result.
+static Status run_model(AppComparison *comparison, int m, const CompareOptions *options, double expected_s) {
+  AppComparisonModel *model = &comparison->models[m];
+  AppJob job;
+  TRY(app_job_open(&job, &options->job, model->name, folder_of(model->name)));
+  if (!job.scene.contact.is_on) {
+    app_job_close(&job);
+    return status_fail(STATUS_INPUT,
+                       "%s: has no contact, so overlap models cannot differ; add a 'contact' section",
+                       options->job.scene_path);
+  }
+  comparison->length = job.model.length;
+  comparison->end = job.scene.end;
+  char label[64];
+  snprintf(label, sizeof label, "%s ", model->name);
+  Observer observer = {
+      .progress = {.began_s = clock_wall_s(), .label = label, .is_json = options->job.is_progress_json},
+      .comparison = m == comparison->reference ? comparison : NULL,
+      .name = model->name,
+      .began_s = clock_wall_s(),
+      .wall_s = options->wall_s,
+      .tell_again_s = expected_s > 0 ? 2 * fmax(expected_s, SHORT_RUN_S) : INFINITY};
+  FemRunOptions run_options = {.directory = job.directory,
+                               .stop = app_job_stop_flag(),
+                               .observe = observe,
+                               .observer = &observer,
+                               .keep_trajectory = true};
+  model->status = fem_run(&job.model, &run_options, &model->result);
+  log_progress_end();
+  model->has_run = true;
+  if (model->status) snprintf(model->message, sizeof model->message, "%s", status_message());
+  Status status = app_job_write_summary(&job, &model->result, model->status);
+  app_job_close(&job);
+  if (model->status == STATUS_SOLVER || observer.is_cut) {
+    log_warning("%s: %s", model->name, model->message);
+    return status;
+  }
+  if (model->status) return status_fail(model->status, "%s", model->message);
+  return status;
+}
+
+static int cheapest_waiting(const AppComparison *comparison) {
+  int best = -1;
+  for (int m = 0; m < comparison->model_count; m++) {
+    const AppComparisonModel *model = &comparison->models[m];
+    if (!model->is_driven || model->has_run) continue;
+    if (best < 0 ||
+        model->overlap.ops->seconds_per_pair < comparison->models[best].overlap.ops->seconds_per_pair)
+      best = m;
+  }
+  return best;
+}
+
+// What the first run took tells what another will: all but the overlap costs the same, and the overlap the
+// model's cost of a pair for each pair that was asked for. Nothing is known after a run that failed: 0.
+static double expect_time(const AppComparison *comparison, int first, int m) {
+  const FemRunResult *pilot = &comparison->models[first].result;
+  if (m == first || comparison->models[first].status) return 0;
+  double cost = comparison->models[m].overlap.ops->seconds_per_pair;
+  double overlap = (double)pilot->pairs.tried * cost / cpu_thread_count();
+  return pilot->wall_s - pilot->phases.overlap + overlap;
+}
+
+static void announce_time(const AppComparison *comparison, int m, double seconds) {
+  if (!(seconds > 0)) return;
+  log_info("%s: about %.3g %s, if it takes as many steps; told again where it does not",
+           comparison->models[m].name, seconds < 120 ? seconds : seconds / 60,
+           seconds < 120 ? "s" : "minutes");
+}
+
+static Status write_csv(const AppComparison *comparison, const char *path) {
+  FileWriter writer;
+  TRY(file_begin(&writer, path));
+  app_comparison_print_csv(comparison, writer.stream);
+  return file_commit(&writer);
+}
+
+static Status write_results(const AppComparison *comparison, const CompareOptions *options) {
+  AppJob job; // for the directory only
+  TRY(app_job_open(&job, &options->job, NULL, NULL));
+  char *json = file_join(job.directory, "compare.json"), *csv = file_join(job.directory, "compare.csv");
+  RecordList *list = record_list_new();
+  Status status = json && csv && list ? STATUS_OK : status_no_memory("the comparison");
+  if (!status) {
+    app_comparison_record(comparison, options->job.scene_path, list);
+    status = record_list_write(list, json);
+  }
+  if (!status) status = write_csv(comparison, csv);
+  if (!status && options->job.is_json) status = record_list_print(list, stdout);
+  if (!status && !options->job.is_json) app_comparison_print_table(comparison, stdout);
+  if (!status) log_info("wrote %s and compare.csv; the runs are in the folders beside them", json);
+  record_list_destroy(list);
+  memory_free(json);
+  memory_free(csv);
+  app_job_close(&job);
+  return status;
+}
+
+// One potential for all: where the scene names none, `nodal` if a model gives no centroid, which `field`
+// needs.
+static Status agree_on_potential(const AppComparison *comparison, const FemSceneDef *scene,
+                                 AppJobOptions *job) {
+  if (!scene->contact.is_on || scene->contact.potential_is_given) return STATUS_OK;
+  for (int m = 0; m < comparison->model_count; m++) {
+    if (overlap_model_has_centroid(&comparison->models[m].overlap)) continue;
+    if (scene->contact.stiffness > 0)
+      return status_fail(
+          STATUS_INPUT,
+          "'%s' gives no centroid, which the potential field needs; contact.stiffness is in Pa/m "
+          "with field and in Pa with nodal: name contact.potential, as by --set",
+          comparison->models[m].name);
+    if (job->override_count == APP_MAX_OVERRIDES)
+      return status_fail(STATUS_USAGE, "--set: %d at most", APP_MAX_OVERRIDES - 1);
+    job->overrides[job->override_count++] = "contact.potential=nodal";
+    log_info("all models run with the potential nodal: '%s' gives no centroid, which field needs",
+             comparison->models[m].name);
+    return STATUS_OK;
+  }
+  return STATUS_OK;
+}
+
+// The models are made as the scene wants them.
+static Status prepare(AppComparison *comparison, CompareOptions *options) {
+  AppJob job;
+  TRY(app_job_open(&job, &options->job, NULL, NULL));
+  Status status = choose_models(comparison, &job.scene, options);
+  if (!status) status = agree_on_potential(comparison, &job.scene, &options->job);
+  app_job_close(&job);
+  return status;
+}
+
+static Status compare(AppComparison *comparison, CompareOptions *options) {
+  TRY(prepare(comparison, options));
+  int first = cheapest_waiting(comparison);
+  log_info("%s runs first: its time tells how long the others will take", comparison->models[first].name);
+  for (int m = first; m >= 0; m = cheapest_waiting(comparison)) {
+    double expected_s = expect_time(comparison, first, m);
+    announce_time(comparison, m, expected_s);
+    TRY(run_model(comparison, m, options, expected_s));
+  }
+  TRY(write_results(comparison, options));
+  for (int m = 0; m < comparison->model_count; m++)
+    if (comparison->models[m].status)
+      return status_fail(STATUS_SOLVER, "%s did not reach the end: %s", comparison->models[m].name,
+                         comparison->models[m].message);
+  return STATUS_OK;
+}
+
+static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .args_doc = "SCENE",
+                                 .doc =
+                                     "Run a scene with several overlap models and hold the results together.",
+                                 .children = children};
+
+static int run_command(int argument_count, char **arguments) {
+  CompareOptions options = {.audit_every = 10};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_job_prepare(&options.job);
+  AppComparison *comparison = memory_zeroed(1, sizeof *comparison);
+  Status status = comparison ? compare(comparison, &options) : status_no_memory("the comparison");
+  if (status) log_error("%s", status_message());
+  if (comparison) app_comparison_destroy(comparison);
+  memory_free(comparison);
+  return status_exit_code(status);
+}
+
+const AppCommand app_command_compare = {.name = "compare",
+                                        .help = "run a scene with several overlap models and compare",
+                                        .argp = &argp,
+                                        .run = run_command,
+                                        .has_threads = true};

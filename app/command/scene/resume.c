@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/scene/resume.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "app/cli/argument.h"
+#include "app/cli/origin.h"
+#include "app/cli/versions.h"
+#include "app/command/scene/run.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "fem/run/checkpoint.h"
+
+enum { KEY_STRICT = 256 };
+
+static const struct argp_option option_table[] = {
+    {"threads", 't', "N", 0, "Use N threads (default: the scene's, else all)", 1},
+    {"strict", KEY_STRICT, NULL, 0, "End with an error where energy comes out of nothing", 1},
+    {"json", 'j', NULL, 0, "Print the result as JSON on standard output", 2},
+    {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
+    {"verbose", 'v', NULL, 0, "Say more: a line a step, and why one is taken back", 2},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  AppRunOptions *options = state->input;
+  switch (key) {
+  case 't':
+    options->job.threads = app_argument_threads(state, text);
+    break;
+  case KEY_STRICT:
+    options->is_strict = true;
+    break;
+  case 'j':
+    options->job.is_json = true;
+    break;
+  case 'q':
+    options->job.is_quiet = true;
+    break;
+  case 'v':
+    options->job.is_verbose = true;
+    break;
+  case ARGP_KEY_ARG:
+    if (options->job.directory) argp_error(state, "one run at a time; '%s' is the second", text);
+    options->job.directory = text;
+    break;
+  case ARGP_KEY_END:
+    if (!options->job.directory) argp_error(state, "name the folder that the run wrote into");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static Status read_checkpoint(const char *directory, const char *path, FemCheckpoint *checkpoint) {
+  if (file_exists(directory) && !file_exists(path))
+    return status_fail(
+        STATUS_INPUT,
+        "%s: there is no checkpoint.h5 to go on from: the run has reached its end, or was killed "
+        "before the first was written; begin anew with `tetlap run`",
+        directory);
+  return fem_checkpoint_read(checkpoint, path);
+}
+
+// Other instructions round otherwise: nothing to refuse, but the promise of the last bit is off.
+static void warn_of_processor(const Record *origin) {
+  const char *was = record_find_text(origin, "instructions");
+  if (was && strcmp(was, app_versions_simd()) != 0)
+    log_warning("the run began on a processor with other instructions (%s, here %s): it goes on, but not to "
+                "the last bit as it would have there",
+                was, app_versions_simd());
+}
+
+// The manifest tells how the run was begun.
+static void keep_command(const Record *origin) {
+  const char *command = record_find_text(origin, "command");
+  char *words[] = {(char *)command};
+  if (command) app_versions_set_command(1, words);
+}
+
+static Status go_on(AppRunOptions *options, const char *path, FemCheckpoint *checkpoint, Record *origin) {
+  TRY(app_origin_read(origin, path, &options->job, &options->overlap));
+  warn_of_processor(origin);
+  keep_command(origin);
+  file_remove_parts(options->job.directory);
+  options->from = checkpoint;
+  options->from_path = path;
+  options->origin = origin;
+  log_info("%s: goes on from t = %g s, frame %d", options->job.directory, checkpoint->time,
+           checkpoint->next_frame);
+  return app_run_execute(options);
+}
+
+static Status resume(AppRunOptions *options) {
+  FemCheckpoint checkpoint = {0};
+  Record *origin = NULL;
+  char *path = file_join(options->job.directory, FEM_CHECKPOINT_FILE);
+  Status status =
+      path ? read_checkpoint(options->job.directory, path, &checkpoint) : status_no_memory("a file name");
+  if (!status) status = record_parse(&origin, checkpoint.origin, strlen(checkpoint.origin), path);
+  if (status)
+    log_error("%s", status_message());
+  else
+    status = go_on(options, path, &checkpoint, origin);
+  if (origin) record_destroy(origin);
+  fem_checkpoint_destroy(&checkpoint);
+  memory_free(path);
+  return status;
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "DIR",
+    .doc = "Go on with a run that was stopped or killed, from its last checkpoint in DIR, as if it had never "
+           "been: the same files to the last bit. The scene, its meshes and weights and the program must be "
+           "those it began with."};
+
+static int run_command(int argument_count, char **arguments) {
+  AppRunOptions options = {0};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_job_prepare(&options.job);
+  return status_exit_code(resume(&options));
+}
+
+const AppCommand app_command_resume = {.name = "resume",
+                                       .help = "go on with a run that was stopped or killed",
+                                       .argp = &argp,
+                                       .run = run_command,
+                                       .has_threads = true};

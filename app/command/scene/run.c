@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/scene/run.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "app/cli/beacon.h"
+#include "app/cli/origin.h"
+#include "app/cli/versions.h"
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "datagen/capture.h"
+#include "fem/effect/contact.h"
+#include "fem/run/checkpoint.h"
+
+enum { KEY_CAPTURE = 256, KEY_STRICT };
+
+static const struct argp_option option_table[] = {
+    {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
+    {"capture", KEY_CAPTURE, "FILE", 0, "Keep the overlapping pairs of every step, labelled, as a data set",
+     1},
+    {"strict", KEY_STRICT, NULL, 0,
+     "Energy gained beyond 0.1 % of the scene's, and bodies that pass through each other, are an error", 1},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  AppRunOptions *options = state->input;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &options->job;
+    break;
+  case 'm':
+    options->overlap = text;
+    break;
+  case KEY_CAPTURE:
+    options->capture = text;
+    break;
+  case KEY_STRICT:
+    options->is_strict = true;
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static void announce(const AppJob *job) {
+  const char *overlap = app_job_overlap(job);
+  log_info("%s: %d %s, %d vertices, %d tetrahedra, %d unknowns, solver %s%s%s", job->scene.path,
+           job->scene.body_count, job->scene.body_count == 1 ? "body" : "bodies", job->model.vertex_count,
+           job->model.tet_count, job->model.unknown_count, fem_solver_name(fem_run_solver(&job->model)),
+           overlap ? ", overlap " : "", overlap ? overlap : "");
+}
+
+// Who answered the pairs, where a network took part.
+static void conclude_network(const ContactPairCounts *pairs) {
+  if (pairs->by_net == 0 && pairs->beyond == 0) return;
+  double share = 100.0 / (double)pairs->tried;
+  log_info(
+      "of %lld pairs the network answered %.1f %%, the exact model %.1f %%, both together %.1f %%; %lld are "
+      "beyond the range of its training",
+      pairs->tried, share * (double)(pairs->by_net - pairs->blended), share * (double)pairs->fallbacks,
+      share * (double)pairs->blended, pairs->beyond);
+}
+
+// What was lost, apart into what was asked for and the integrator's own.
+static void conclude_energy(const FemAudit *audit) {
+  double lost = fem_audit_lost(audit);
+  log_info("energy: the integrator itself %s %.3g J, %.2g %% of the scene's %.3g J, and never gained more "
+           "than %.1e of it; %.3g J went into damping, friction and plasticity as asked",
+           lost < 0 ? "gained" : "lost", fabs(lost), 100 * fabs(lost) / audit->scale, audit->scale,
+           audit->gain / audit->scale, audit->dissipated);
+}
+
+static void conclude(const AppJob *job, const FemRunResult *result) {
+  log_info("t = %g s reached in %.2f s: %lld steps, %lld factorisations, up to %d overlapping pairs",
+           result->end_time, result->wall_s, result->integrator.steps, result->solver.factorisations,
+           result->pairs_max);
+  conclude_energy(&result->audit);
+  conclude_network(&result->pairs);
+  for (int i = 0; i < result->told_count; i++) log_info("contact: %s", result->told[i]);
+  char trouble[2048], statistics[1024];
+  fem_run_tell_statistics(result, statistics, sizeof statistics);
+  log_info("statistics: %s", statistics);
+  fem_run_tell_trouble(result, &job->model, trouble, sizeof trouble);
+  log_info("wrote %s: frames.pvd (ParaView), history.csv, summary.json, manifest.json", job->directory);
+  log_info("trouble: %s", trouble);
+}
+
+static Status print_summary(const AppJob *job, const FemRunResult *result, Status status) {
+  Record *summary = app_job_summary(job, result, status);
+  if (!summary) return status_no_memory("the summary");
+  Status printed = record_print(summary, stdout);
+  record_destroy(summary);
+  return printed;
+}
+
+// What watches the run: the progress line, and the capture if one was asked for.
+typedef struct Observer {
+  AppProgress progress;
+  DatagenCapture *capture; // NULL: none
+  FemTrouble told;         // what the log has been told of
+  AppBeacon beacon;
+} Observer;
+
+static Status capture_pairs(DatagenCapture *capture, FemSystem *system) {
+  void *effect = fem_system_effect(system, &fem_effect_contact);
+  if (!effect) return STATUS_OK;
+  int count, *tets;
+  double *pairs;
+  TRY(contact_system_active_pairs(fem_effect_contact_system(effect), &count, &pairs, &tets));
+  Status status = count > 0 ? datagen_capture_append(capture, pairs, count) : STATUS_OK;
+  memory_free(pairs);
+  memory_free(tets);
+  return status;
+}
+
+// The first time that a kind of trouble strikes, and every event of energy.
+static void warn(Observer *observer, const FemRunProgress *progress) {
+  const FemTrouble *trouble = progress->trouble;
+  for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) {
+    char text[512];
+    if (trouble->of[k].events == observer->told.of[k].events) continue;
+    if (k == FEM_TROUBLE_ENERGY && trouble->of[k].events > observer->told.of[k].events)
+      log_warning("t = %.6g s: the energy has risen by %.2g of the scene's, the bound is %g", progress->time,
+                  (progress->audit->total - progress->audit->lowest) / progress->audit->scale,
+                  progress->energy_bound);
+    else if (observer->told.of[k].events == 0) {
+      fem_trouble_tell(trouble, progress->system->model, (FemTroubleKind)k, text, sizeof text);
+      log_warning("%s", text);
+    }
+  }
+  observer->told = *trouble;
+}
+
+static Status observe(void *self, const FemRunProgress *progress) {
+  Observer *observer = self;
+  TRY(app_job_show_progress(&observer->progress, progress));
+  if (progress->has_trouble_begun) warn(observer, progress);
+  TRY(app_beacon_show(&observer->beacon, progress));
+  return observer->capture ? capture_pairs(observer->capture, progress->system) : STATUS_OK;
+}
+
+// Runs, and puts the capture into its place, if only of a run that was cut short.
+static Status run_captured(const AppRunOptions *options, const AppJob *job, const char *origin,
+                           FemRunResult *result) {
+  DatagenCapture capture = {0};
+  if (options->capture)
+    TRY(datagen_capture_begin(&capture, options->capture, app_versions_program(), DATAGEN_LABEL_EXACT));
+  Observer observer = {
+      .progress = {.began_s = clock_wall_s(), .label = "", .is_json = options->job.is_progress_json},
+      .capture = options->capture ? &capture : NULL,
+      .beacon = app_beacon_begin(job)};
+  FemRunOptions run_options = {.directory = job->directory,
+                               .stop = app_job_stop_flag(),
+                               .observe = observe,
+                               .observer = &observer,
+                               .from = options->from,
+                               .origin = origin,
+                               .is_strict = options->is_strict};
+  Status status = fem_run(&job->model, &run_options, result);
+  log_progress_end();
+  app_beacon_end(&observer.beacon);
+  if (status) log_error("%s", status_message());
+  Status kept = options->capture ? datagen_capture_commit(&capture) : STATUS_OK;
+  if (kept) log_error("%s", status_message());
+  return status ? status : kept;
+}
+
+// Where a run that did not reach its end can be taken up.
+static void tell_of_checkpoint(const AppJob *job) {
+  char *path = file_join(job->directory, FEM_CHECKPOINT_FILE);
+  if (path && file_exists(path))
+    log_info("`tetlap resume %s` goes on from the last checkpoint", job->directory);
+  memory_free(path);
+}
+
+// What the run is started with, as text; owned by the caller. A run that goes on must be the one that began.
+static Status make_origin(const AppRunOptions *options, const AppJob *job, char **text) {
+  Record *origin;
+  TRY(app_origin_make(job, &options->job, options->overlap, &origin));
+  Status status =
+      options->origin ? app_origin_compare(options->origin, origin, options->from_path) : STATUS_OK;
+  *text = status ? NULL : record_text_of(origin);
+  record_destroy(origin);
+  return status || *text ? status : status_no_memory("the run's origin");
+}
+
+static Status run_opened(const AppRunOptions *options, const AppJob *job, const char *origin) {
+  announce(job);
+  FemRunResult result = {0};
+  Status status = run_captured(options, job, origin, &result);
+  if (status) tell_of_checkpoint(job);
+  // The summary tells of a run that failed, too, unless nothing can be written.
+  Status written = status == STATUS_IO ? STATUS_OK : app_job_write_summary(job, &result, status);
+  if (!status && !written) conclude(job, &result);
+  if (options->job.is_json && !written) written = print_summary(job, &result, status);
+  fem_run_result_destroy(&result);
+  if (written) log_error("%s", status_message());
+  return status ? status : written;
+}
+
+Status app_run_execute(const AppRunOptions *options) {
+  AppJob job;
+  char *origin = NULL;
+  Status status = app_job_open(&job, &options->job, options->overlap, NULL);
+  if (!status) status = make_origin(options, &job, &origin);
+  if (status)
+    log_error("%s", status_message());
+  else
+    status = run_opened(options, &job, origin);
+  memory_free(origin);
+  app_job_close(&job);
+  return status;
+}
+
+static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .args_doc = "SCENE",
+                                 .doc =
+                                     "Run a scene: frames for ParaView, a history and a summary are written.",
+                                 .children = children};
+
+static int run_command(int argument_count, char **arguments) {
+  AppRunOptions options = {0};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_job_prepare(&options.job);
+  Status status = app_run_execute(&options);
+  return status_exit_code(status);
+}
+
+const AppCommand app_command_run = {.name = "run",
+                                    .help = "run a scene and write frames, history and summary",
+                                    .argp = &argp,
+                                    .run = run_command,
+                                    .has_threads = true};

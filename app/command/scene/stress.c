@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/scene/stress.h"
+
+#include <string.h>
+
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
+#include "app/cli/versions.h"
+#include "app/stress/all.h"
+#include "app/stress/stress.h"
+#include "base/cpu.h"
+#include "base/log.h"
+#include "contact/def.h"
+
+enum { KEY_ONLY = 256, KEY_PAIRS, KEY_SCENES, KEY_QUICK, KEY_LIMIT, KEY_POTENTIAL };
+
+typedef struct Options {
+  AppStressOptions stress;
+  const char *json;
+  bool is_quiet;
+} Options;
+
+static const struct argp_option option_table[] = {
+    {"only", KEY_ONLY, "NAME", 0, "Only cases with NAME in their name", 0},
+    {"overlap", 'm', "NAME,…", 0,
+     "Only these overlap models; any: scenes in which none takes part (default: all; with --quick clip and "
+     "geo)",
+     0},
+    {"potential", KEY_POTENTIAL, "NAME", 0,
+     "Scenes with this contact potential (field, …) and its default stiffness where they name nodal", 0},
+    {"pairs", KEY_PAIRS, NULL, 0, "Only classes of pairs", 0},
+    {"scenes", KEY_SCENES, NULL, 0, "Only scenes", 0},
+    {"quick", KEY_QUICK, NULL, 0, "Fewer members of each class, and only the scenes that take a moment", 0},
+    {"limit", KEY_LIMIT, "SECONDS", 0,
+     "Cut a scene with a model after so much processor time (default: the case's own, 60 or more)", 0},
+    {"json", 'j', "FILE", 0, "Write the table and all that was measured to FILE, anew after every row", 0},
+    {"quiet", 'q', NULL, 0, "Say errors only", 0},
+    {0},
+};
+
+static const char *potential_of(struct argp_state *state, const char *text) {
+  for (int p = 0; p < CONTACT_POTENTIAL_COUNT; p++)
+    if (strcmp(contact_def_potential_name((ContactPotential)p), text) == 0) return text;
+  argp_error(state, "--potential '%s' is none of them: field, nodal, element, pair, linear, body", text);
+  return NULL;
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  switch (key) {
+  case KEY_ONLY:
+    options->stress.only = text;
+    return 0;
+  case 'm':
+    options->stress.models = app_argument_words(state, "overlap", text, "clip,geo");
+    return 0;
+  case KEY_POTENTIAL:
+    options->stress.potential = potential_of(state, text);
+    return 0;
+  case KEY_PAIRS:
+    options->stress.has_pairs = true;
+    return 0;
+  case KEY_SCENES:
+    options->stress.has_scenes = true;
+    return 0;
+  case KEY_QUICK:
+    options->stress.is_quick = true;
+    return 0;
+  case KEY_LIMIT:
+    options->stress.limit_s = app_argument_positive(state, "limit", text);
+    return 0;
+  case 'j':
+    options->json = text;
+    return 0;
+  case 'q':
+    options->is_quiet = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    argp_error(state, "'%s' is one too many: there are only options, as --only %s", text, text);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static Status write_json(const AppStress *stress, const char *path) {
+  Record *record = record_new();
+  if (!record) return status_no_memory("the table of hard cases");
+  record_text(record, "command", app_versions_command());
+  record_text(record, "processor", cpu_name());
+  record_integer(record, "threads", cpu_thread_count());
+  app_versions_record(record_child(record, "versions"));
+  Status status = app_stress_record(stress, record);
+  if (!status) status = record_write(record, path);
+  record_destroy(record);
+  return status;
+}
+
+// What is known so far is on disk, should the machine go down.
+static void write_partial(void *observer, const AppStress *stress) {
+  const Options *options = observer;
+  const AppStressRow *row = &stress->rows[stress->count - 1];
+  log_progress("%s, %s: %s", row->name, row->model, app_stress_outcome_name(row->outcome));
+  if (options->json && write_json(stress, options->json)) log_warning("%s", status_message());
+}
+
+// The table, also of a run that was interrupted; a case that failed is a failure of the command.
+static Status print_and_judge(const Options *options, const AppStress *stress) {
+  if (!options->is_quiet) app_stress_print(stress, stdout);
+  if (options->json) TRY(write_json(stress, options->json));
+  int failed = app_stress_count(stress, APP_STRESS_FAILED);
+  return failed ? status_fail(STATUS_SOLVER, "%d of %d hard cases failed", failed, stress->count) : STATUS_OK;
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Hard cases: every class of pairs and every hard scene with every overlap model, each held "
+           "against physics. docs/stability.md tells what the verdicts mean."};
+
+static int run_command(int argument_count, char **arguments) {
+  Options options = {0};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  if (!options.stress.has_pairs && !options.stress.has_scenes)
+    options.stress.has_pairs = options.stress.has_scenes = true;
+  app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
+  options.stress.stop = app_job_stop_flag();
+  options.stress.observe = write_partial, options.stress.observer = &options;
+  AppStress stress;
+  Status status = app_stress_all_run(&options.stress, &stress);
+  log_progress_end();
+  if (status) log_error("%s", status_message());
+  Status concluded = stress.count > 0 ? print_and_judge(&options, &stress) : STATUS_OK;
+  if (concluded && !status) log_error("%s", status_message());
+  app_stress_destroy(&stress);
+  return status_exit_code(status ? status : concluded);
+}
+
+const AppCommand app_command_stress = {.name = "stress",
+                                       .help =
+                                           "hold every hard case against physics, with every overlap model",
+                                       .argp = &argp,
+                                       .run = run_command,
+                                       .has_threads = true};

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command/scene/sweep.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "app/cli/argument.h"
+#include "app/cli/job.h"
+#include "app/sweep/child.h"
+#include "app/sweep/crew.h"
+#include "app/sweep/table.h"
+#include "base/cpu.h"
+#include "base/log.h"
+#include "base/memory.h"
+
+enum { KEY_AGAIN = 256 };
+
+typedef struct Options {
+  const char *scene_path, *directory, *overlap;
+  const char *overrides[APP_MAX_OVERRIDES], *axes[APP_SWEEP_MAX_AXES];
+  int override_count, axis_count;
+  int jobs, threads; // 0: by what the machine has
+  bool again, is_json, is_quiet;
+} Options;
+
+static const struct argp_option option_table[] = {
+    {"vary", 'V', "KEY=VALUES", 0,
+     "Take these values of a key: LOW..HIGH:COUNT, LOW..HIGH:COUNT,log or A,B,C; may be repeated: every "
+     "value "
+     "with every other",
+     1},
+    {"set", 's', "KEY=VALUE", 0, "Replace a value of the scene in all runs; may be repeated", 1},
+    {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
+    {"output", 'o', "DIR", 0, "Write into DIR (default: out/ and the scene's name, -sweep)", 1},
+    {"jobs", 'J', "N", 0, "Runs at once (default: one a core)", 1},
+    {"threads", 't', "N", 0, "Threads of each run (default: the cores shared among the runs)", 1},
+    {"again", KEY_AGAIN, NULL, 0, "Try again the runs that the solver gave up in an earlier sweep", 1},
+    {"json", 'j', NULL, 0, "Print the table as JSON on standard output", 2},
+    {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
+    {0},
+};
+
+static void add_text(struct argp_state *state, const char *option, char *text, const char **list, int *count,
+                     int most) {
+  if (*count == most) argp_error(state, "at most %d --%s", most, option);
+  list[(*count)++] = text;
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  switch (key) {
+  case 'V':
+    add_text(state, "vary", text, options->axes, &options->axis_count, APP_SWEEP_MAX_AXES);
+    return 0;
+  case 's':
+    add_text(state, "set", text, options->overrides, &options->override_count,
+             APP_MAX_OVERRIDES - APP_SWEEP_MAX_AXES);
+    return 0;
+  case 'm':
+    options->overlap = text;
+    return 0;
+  case 'o':
+    options->directory = text;
+    return 0;
+  case 'J':
+    options->jobs = (int)app_argument_integer(state, "jobs", text, 1, APP_SWEEP_MAX_JOBS);
+    return 0;
+  case 't':
+    options->threads = app_argument_threads(state, text);
+    return 0;
+  case KEY_AGAIN:
+    options->again = true;
+    return 0;
+  case 'j':
+    options->is_json = true;
+    return 0;
+  case 'q':
+    options->is_quiet = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (options->scene_path) argp_error(state, "one scene at a time; '%s' is the second", text);
+    options->scene_path = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (!options->scene_path) argp_error(state, "name a scene file, as in examples/01_drop.yaml");
+    if (!options->axis_count)
+      argp_error(state, "say what varies, as in --vary contact.stiffness=1e5..1e9:5,log");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+// out/NAME-sweep for …/NAME.yaml, owned by the caller.
+static char *default_directory(const char *scene_path) {
+  const char *slash = strrchr(scene_path, '/'), *name = slash ? slash + 1 : scene_path;
+  const char *dot = strrchr(name, '.');
+  int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
+  size_t size = (size_t)length + sizeof "out/-sweep";
+  char *directory = memory_zeroed(size, 1);
+  if (directory) snprintf(directory, size, "out/%.*s-sweep", length, name);
+  return directory;
+}
+
+static Status parse_axes(const Options *options, AppSweepBase *base) {
+  for (; base->axis_count < options->axis_count; base->axis_count++)
+    TRY(app_sweep_axis_parse(&base->axes[base->axis_count], options->axes[base->axis_count]));
+  return STATUS_OK;
+}
+
+// As many runs as there are cores, and what is left of these as threads.
+static AppSweepOptions share_cores(const Options *options, int point_count) {
+  int cores = cpu_thread_count();
+  int jobs = options->jobs ? options->jobs : options->threads ? cores / options->threads : cores;
+  if (jobs > point_count) jobs = point_count;
+  if (jobs > APP_SWEEP_MAX_JOBS) jobs = APP_SWEEP_MAX_JOBS;
+  if (jobs < 1) jobs = 1;
+  int threads = options->threads ? options->threads : cores / jobs;
+  return (AppSweepOptions){.jobs = jobs,
+                           .threads = threads > 0 ? threads : 1,
+                           .again = options->again,
+                           .stop = app_job_stop_flag()};
+}
+
+static Status print_table(const AppSweepGrid *grid, bool is_json) {
+  if (!is_json) {
+    app_sweep_table_print(grid, stdout);
+    return STATUS_OK;
+  }
+  Record *table = app_sweep_table_record(grid);
+  if (!table) return status_no_memory("the table of a sweep");
+  Status status = record_print(table, stdout);
+  record_destroy(table);
+  return status;
+}
+
+// A sweep with failed runs is one that the solver gave up in part.
+static Status conclude(const AppSweepGrid *grid, const Options *options) {
+  TRY(print_table(grid, options->is_json));
+  log_info("wrote %s: sweep.html, sweep.csv, sweep.json; the runs are in the folders beside them",
+           grid->base.directory);
+  int failed = app_sweep_grid_count(grid, APP_SWEEP_FAILED);
+  if (failed == 0) return STATUS_OK;
+  return status_fail(STATUS_SOLVER, "%d of %d runs failed; the table says why", failed, grid->point_count);
+}
+
+static Status sweep(const Options *options, const char *directory) {
+  AppSweepGrid grid = {0};
+  AppSweepBase base = {.scene_path = options->scene_path,
+                       .directory = directory,
+                       .overlap = options->overlap,
+                       .overrides = options->overrides,
+                       .override_count = options->override_count};
+  Status status = parse_axes(options, &base);
+  if (status) {
+    for (int a = 0; a < base.axis_count; a++) app_sweep_axis_destroy(&base.axes[a]);
+    return status;
+  }
+  status = app_sweep_grid_create(&grid, &base);
+  if (!status) {
+    AppSweepOptions run_options = share_cores(options, grid.point_count);
+    status = app_sweep_crew_run(&grid, &run_options);
+  }
+  if (!status) status = conclude(&grid, options);
+  app_sweep_grid_destroy(&grid);
+  return status;
+}
+
+static const struct argp argp = {
+    option_table,
+    parse,
+    "SCENE",
+    "Run a scene with every combination of values of some of its keys, side by side: a table and a page with "
+    "plots.\vEach run is a process with a folder of its own, named by its values. The same command again "
+    "goes "
+    "on with what is not finished and keeps what is; more values may be added. A run that fails is a line of "
+    "the table; then the exit code is 70.",
+    NULL,
+    NULL,
+    NULL};
+
+static int run_command(int argument_count, char **arguments) {
+  Options options = {0};
+  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
+  char *directory = options.directory ? memory_copy(options.directory, strlen(options.directory) + 1, 1)
+                                      : default_directory(options.scene_path);
+  Status status = directory ? sweep(&options, directory) : status_no_memory("a directory name");
+  if (status) log_error("%s", status_message());
+  memory_free(directory);
+  return status_exit_code(status);
+}
+
+const AppCommand app_command_sweep = {.name = "sweep",
+                                      .help = "run a scene over a grid of values, side by side",
+                                      .argp = &argp,
+                                      .run = run_command};
