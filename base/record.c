@@ -159,6 +159,15 @@ Status record_read(Record **root, const char *path) {
   return status;
 }
 
+Status record_read_in(Record **root, const char *directory, const char *name) {
+  char *path = file_join(directory, name);
+  *root = NULL;
+  if (!path) return status_no_memory("a file name");
+  Status status = file_exists(path) ? record_read(root, path) : STATUS_OK;
+  memory_free(path);
+  return status;
+}
+
 char *record_text_of(const Record *root) {
   char *dumped = json_dumps((const json_t *)root, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
   char *text = dumped ? memory_copy(dumped, strlen(dumped) + 1, 1) : NULL;

@@ -45,6 +45,8 @@ Status record_list_write(const RecordList *root, const char *path);
 // Reads a file that holds one object or one list. STATUS_INPUT names file, line and column; STATUS_IO. After
 // a failure `*root` is NULL.
 Status record_read(Record **root, const char *path);
+// Reads DIRECTORY/NAME if it is there; where it is not, `*root` is NULL.
+Status record_read_in(Record **root, const char *directory, const char *name);
 // Reads the same from a text in memory; `name` stands for it in messages.
 Status record_parse(Record **root, const char *text, size_t size, const char *name);
 // The text that record_print writes, owned by the caller (memory_free); NULL: no memory.

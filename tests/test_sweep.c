@@ -62,13 +62,16 @@ static void remove_folder(void) {
 }
 
 // The exit code; what is said goes to the file `said` in the folder above.
-static int sweep(const char *options) {
+static int sweep_scene(const char *scene, const char *options) {
   char command[1024];
   snprintf(command, sizeof command,
-           "%s sweep " TETLAP_SOURCE_DIR
-           "/examples/01_drop.yaml -o %s/out -s output.frames=4 -s output.vtu=false %s > %s/said 2>&1",
-           TETLAP_PROGRAM, folder, options, folder);
+           "%s sweep %s -o %s/out -s output.frames=4 -s output.vtu=false %s > %s/said 2>&1", TETLAP_PROGRAM,
+           scene, folder, options, folder);
   return WEXITSTATUS(system(command));
+}
+
+static int sweep(const char *options) {
+  return sweep_scene(TETLAP_SOURCE_DIR "/examples/01_drop.yaml", options);
 }
 
 static char *read_text(const char *name) {
@@ -143,6 +146,86 @@ START_TEST(what_is_finished_is_kept_and_what_has_changed_runs_again) {
 }
 END_TEST
 
+// A shell command in the folder.
+static void change(const char *what) {
+  char command[640];
+  snprintf(command, sizeof command, "cd %s && %s", folder, what);
+  ck_assert_int_eq(system(command), 0);
+}
+
+// What the scene file only names: the mesh of a body, the weights of the overlap model. Times of files say
+// nothing; a mesh written anew with the same content is the same.
+START_TEST(a_changed_mesh_or_changed_weights_run_again) {
+  static const char scene[] =
+      "title: t\ntime: {end: 0.002}\nbodies:\n"
+      "  - {name: a, mesh: m.msh, material: {law: neo_hookean, young: 1e5, poisson: 0.3, density: 1000}}\n"
+      "obstacles:\n  - {name: ground, halfspace: {point: [0, 0, -1], normal: [0, 0, 1]}}\n"
+      "contact: {overlap: geo, net: w.safetensors}\n";
+  static const char kept[] = "1 are there, 0 go on, 0 begin", begun[] = "0 are there, 0 go on, 1 begin";
+  static const struct {
+    const char *change, *said;
+  } cases[] = {
+      {"true", kept},
+      {"cp m.msh n.msh && mv n.msh m.msh && touch -d tomorrow m.msh", kept},
+      {"cp " TETLAP_SOURCE_DIR "/meshes/sphere.msh m.msh && touch -d 2001-01-01 m.msh", begun},
+      {"true", kept},
+      {"cp " TETLAP_SOURCE_DIR
+       "/net/weights/geo-small.safetensors w.safetensors && touch -d 2001-01-01 w.safetensors",
+       begun},
+      {"true", kept},
+  };
+  char path[128];
+  snprintf(path, sizeof path, "%s/scene.yaml", folder);
+  FileWriter writer;
+  ck_assert_ok(file_begin(&writer, path));
+  fputs(scene, writer.stream);
+  ck_assert_ok(file_commit(&writer));
+  change("cp " TETLAP_SOURCE_DIR "/meshes/block.msh m.msh && cp " TETLAP_SOURCE_DIR
+         "/net/weights/geo.safetensors w.safetensors");
+  ck_assert_int_eq(sweep_scene(path, "-V bodies[0].material.young=1e5"), 0);
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    change(cases[k].change);
+    ck_assert_int_eq(sweep_scene(path, "-V bodies[0].material.young=1e5"), 0);
+    ck_assert_msg(says(cases[k].said), "%s", cases[k].change);
+  }
+}
+END_TEST
+
+// Two bodies' keys that end alike, in two sweeps into one folder.
+START_TEST(other_keys_have_other_folders) {
+  ck_assert_int_eq(sweep("-s time.end=0.002 -V bodies[0].material.poisson=0.3"), 0);
+  change("mv out/sweep.json before.json");
+  ck_assert_int_eq(sweep("-s time.end=0.002 -V bodies.block.material.poisson=0.3"), 0);
+  Record *table = read_table(), *before;
+  char path[128];
+  snprintf(path, sizeof path, "%s/before.json", folder);
+  ck_assert_ok(record_read(&before, path));
+  const char *one = record_find_text(record_at(record_find(table, "runs"), 0), "folder"),
+             *other = record_find_text(record_at(record_find(before, "runs"), 0), "folder");
+  ck_assert(one && other && strcmp(one, other) != 0);
+  record_destroy(table);
+  record_destroy(before);
+}
+END_TEST
+
+// What an earlier process left in the log is not told of the later one, which says nothing.
+START_TEST(a_message_is_the_own_process_s) {
+  const char *grid = "-s time.end=0.002 -V bodies.block.material.poisson=0.3,0.7";
+  ck_assert_int_eq(sweep(grid), 70);
+  ck_assert(says("0 are there, 0 go on, 1 begin")); // one that cannot be read is not there
+  ck_assert(says("1 of them cannot be run"));
+  change("cd out/bodies.block.material.poisson=0.3 && rm summary.json && mkdir -p summary.json/taken && "
+         "echo 'tetlap: error: of yesterday' > log.txt");
+  ck_assert_int_eq(sweep(grid), 70);
+  Record *table = read_table();
+  const Record *row = record_at(record_find(table, "runs"), 0);
+  ck_assert_str_eq(record_find_text(row, "outcome"), "failed");
+  const char *message = record_find_text(row, "message");
+  ck_assert(message && !strstr(message, "yesterday") && strstr(message, "summary.json"));
+  record_destroy(table);
+}
+END_TEST
+
 START_TEST(a_wrong_key_is_told_at_once) {
   ck_assert_int_eq(sweep("-V contact.stifness=1,2"), 64);
   ck_assert(says("did you mean 'stiffness'"));
@@ -186,7 +269,8 @@ static char *history_of(const char *out, const char *run) {
 
 // Stopped when both first runs are at work, and gone on with: the same histories, to the last bit.
 START_TEST(a_sweep_that_is_interrupted_goes_on_as_if_it_had_not_been) {
-  static const char *const runs[] = {"stiffness=1e5", "stiffness=2e5", "stiffness=4e5"};
+  static const char *const runs[] = {"contact.stiffness=1e5", "contact.stiffness=2e5",
+                                     "contact.stiffness=4e5"};
   char started[160];
   snprintf(started, sizeof started, "%s/cut/%s/history.csv", folder, runs[1]);
   pid_t child = start_sweep("cut");
@@ -220,6 +304,9 @@ int main(void) {
   tcase_add_test(cases, an_axis_that_makes_no_sense_is_a_usage_error);
   tcase_add_test(cases, runs_are_rows_and_one_that_fails_is_a_row_too);
   tcase_add_test(cases, what_is_finished_is_kept_and_what_has_changed_runs_again);
+  tcase_add_test(cases, a_changed_mesh_or_changed_weights_run_again);
+  tcase_add_test(cases, other_keys_have_other_folders);
+  tcase_add_test(cases, a_message_is_the_own_process_s);
   tcase_add_test(cases, a_wrong_key_is_told_at_once);
   tcase_add_test(cases, a_sweep_that_is_interrupted_goes_on_as_if_it_had_not_been);
   return suite_run("sweep", cases, 60);

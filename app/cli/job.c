@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
+#include "app/cli/inputs.h"
 #include "app/cli/versions.h"
 #include "app/scene/overlap.h"
 #include "app/scene/read.h"
@@ -98,20 +99,20 @@ const volatile sig_atomic_t *app_job_stop_flag(void) {
   return &stop_flag;
 }
 
-// out/NAME for …/NAME.yaml.
-static char *default_directory(const char *scene_path) {
-  const char *slash = strrchr(scene_path, '/');
-  const char *name = slash ? slash + 1 : scene_path;
+char *app_job_default_directory(const char *scene_path, const char *ending) {
+  const char *slash = strrchr(scene_path, '/'), *name = slash ? slash + 1 : scene_path;
   const char *dot = strrchr(name, '.');
   int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
-  char *directory = memory_zeroed((size_t)length + 8, 1);
-  if (directory) sprintf(directory, "out/%.*s", length, name);
+  size_t size = (size_t)length + strlen(ending) + sizeof "out/";
+  char *directory = memory_zeroed(size, 1);
+  if (directory) snprintf(directory, size, "out/%.*s%s", length, name, ending);
   return directory;
 }
 
 static Status choose_directory(AppJob *job, const AppJobOptions *options, const char *subdirectory) {
   const char *given = options->directory;
-  job->directory = given ? memory_copy(given, strlen(given) + 1, 1) : default_directory(options->scene_path);
+  job->directory =
+      given ? memory_copy(given, strlen(given) + 1, 1) : app_job_default_directory(options->scene_path, "");
   if (job->directory && subdirectory) {
     char *below = file_join(job->directory, subdirectory);
     memory_free(job->directory);
@@ -229,7 +230,8 @@ static Status write_record(const char *directory, const char *name, const Record
   return status;
 }
 
-// What it takes to run the same again: the scene with every default filled in, versions, processor, command.
+// What it takes to run the same again: the scene with every default filled in, what it reads (as digests),
+// versions, processor, command.
 Status app_job_write_manifest(const AppJob *job) {
   Record *manifest = record_new();
   if (!manifest) return status_no_memory("the manifest");
@@ -237,7 +239,8 @@ Status app_job_write_manifest(const AppJob *job) {
   record_text(manifest, "processor", cpu_name());
   record_integer(manifest, "threads", cpu_thread_count());
   record_text(manifest, "command", app_versions_command());
-  Status status = app_scene_write_resolved(&job->scene, manifest, "scene");
+  Status status = app_inputs_record(&job->scene, &job->model, record_child(manifest, "inputs"));
+  if (!status) status = app_scene_write_resolved(&job->scene, manifest, "scene");
   if (!status) status = write_record(job->directory, "manifest.json", manifest);
   record_destroy(manifest);
   return status;

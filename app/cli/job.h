@@ -38,6 +38,10 @@ typedef struct AppJob {
 Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overlap, const char *subdirectory);
 void app_job_close(AppJob *job);
 
+// "out/NAME" and `ending` for a scene …/NAME.yaml: where its results go by default. Owned by the caller;
+// NULL: no memory.
+char *app_job_default_directory(const char *scene_path, const char *ending);
+
 // Sets the log level from -q and -v, and the flag that Ctrl-C and SIGTERM raise.
 void app_job_prepare(const AppJobOptions *options);
 const volatile sig_atomic_t *app_job_stop_flag(void);
@@ -57,8 +61,8 @@ typedef struct AppProgress {
 } AppProgress;
 Status app_job_show_progress(void *progress, const FemRunProgress *state);
 
-// Writes summary.json and manifest.json (the resolved scene, versions, processor, command) of a run that
-// ended with `status`.
+// Writes summary.json and manifest.json (the resolved scene, digests of meshes and weights, versions,
+// processor, command) of a run that ended with `status`.
 Status app_job_write_summary(const AppJob *job, const FemRunResult *result, Status status);
 Status app_job_write_manifest(const AppJob *job); // the latter alone
 // The same summary as a new record, owned by the caller; NULL: no memory.

@@ -3,69 +3,16 @@
 
 #include <limits.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "app/cli/inputs.h"
 #include "app/cli/versions.h"
 #include "app/scene/write.h"
-#include "base/digest.h"
-#include "base/file.h"
-#include "base/memory.h"
 #include "overlap/weights.h"
-
-static void record_digest(Record *record, const char *key, uint64_t digest) {
-  char text[DIGEST_TEXT];
-  digest_print(digest, text);
-  record_text(record, key, text);
-}
 
 // The absolute path, or as it is if that cannot be found.
 static void record_path(Record *record, const char *key, const char *path) {
   char absolute[PATH_MAX];
   record_text(record, key, realpath(path, absolute) ? absolute : path);
-}
-
-// Places, elements and which coordinates are unknown, of each body or obstacle with a mesh.
-static void record_meshes(const FemModel *model, Record *record) {
-  for (int b = 0; b < model->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
-    size_t first = 3 * (size_t)body->vertex_begin,
-           values = 3 * (size_t)(body->vertex_end - body->vertex_begin);
-    uint64_t digest = digest_bytes(DIGEST_START, model->rest + first, values * sizeof *model->rest);
-    digest = digest_bytes(digest, model->tets[body->tet_begin],
-                          (size_t)(body->tet_end - body->tet_begin) * sizeof *model->tets);
-    digest = digest_bytes(digest, model->unknown_of_dof + first, values * sizeof *model->unknown_of_dof);
-    record_digest(record, body->name ? body->name : "?", digest);
-  }
-}
-
-// The file with the weights of the scene's overlap model; "": it has none.
-static void find_weights(const FemSceneDef *scene, char path[PATH_MAX]) {
-  const FemContactDef *contact = &scene->contact;
-  path[0] = 0;
-  if (!contact->is_on) return;
-  if (contact->net && overlap_weights_is_path(contact->net)) {
-    char *directory = file_directory_of(scene->path),
-         *file = directory ? file_join(directory, contact->net) : NULL;
-    if (file) snprintf(path, PATH_MAX, "%s", file);
-    memory_free(directory), memory_free(file);
-    return;
-  }
-  const char *name = contact->net ? contact->net : contact->overlap;
-  if (!contact->net && strcmp(name, "hybrid") == 0) name = "tpn-scene";
-  if (overlap_weights_find(name, path, PATH_MAX) != STATUS_OK) path[0] = 0;
-}
-
-static Status record_weights(const FemSceneDef *scene, Record *origin) {
-  char path[PATH_MAX], *content;
-  size_t size;
-  find_weights(scene, path);
-  record_text(origin, "weights_file", path);
-  record_text(origin, "weights", "none");
-  if (!path[0]) return STATUS_OK;
-  TRY(file_read(path, &content, &size));
-  record_digest(origin, "weights", digest_bytes(DIGEST_START, content, size));
-  memory_free(content);
-  return STATUS_OK;
 }
 
 // The scene but for what changes no result.
@@ -90,8 +37,7 @@ Status app_origin_make(const AppJob *job, const AppJobOptions *options, const ch
     record_path(record, "overlap", overlap);
   else
     record_text(record, "overlap", overlap);
-  record_meshes(&job->model, record_child(record, "meshes"));
-  Status status = record_weights(&job->scene, record);
+  Status status = app_inputs_record(&job->scene, &job->model, record);
   if (!status) status = record_scene(&job->scene, record);
   if (!status) return STATUS_OK;
   record_destroy(record);

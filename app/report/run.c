@@ -8,15 +8,6 @@
 #include "base/memory.h"
 #include "fem/output/pvd.h"
 
-// Reads DIR/NAME if it is there.
-static Status read_record(Record **record, const char *directory, const char *name) {
-  char *path = file_join(directory, name);
-  if (!path) return status_no_memory("a file name");
-  Status status = file_exists(path) ? record_read(record, path) : STATUS_OK;
-  memory_free(path);
-  return status;
-}
-
 // Whole lines: of a run that goes on, or was killed, the last one may lack its end.
 static Status read_history(AppReportRun *run) {
   char *path = file_join(run->directory, "history.csv");
@@ -150,8 +141,8 @@ static Status read_frames(AppReportRun *run, int max_frames) {
 }
 
 static Status read_all(AppReportRun *run, int max_frames) {
-  TRY(read_record(&run->summary, run->directory, "summary.json"));
-  TRY(read_record(&run->manifest, run->directory, "manifest.json"));
+  TRY(record_read_in(&run->summary, run->directory, "summary.json"));
+  TRY(record_read_in(&run->manifest, run->directory, "manifest.json"));
   TRY(read_history(run));
   TRY(read_frames(run, max_frames));
   if (!run->summary && !run->manifest && !run->history && run->frame_count == 0)

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#define _XOPEN_SOURCE 700 // nftw
 #include "app/stress/resume.h"
 
 #include <errno.h>
-#include <ftw.h>
 #include <math.h>
 #include <omp.h>
 #include <signal.h>
@@ -15,6 +13,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/temporary.h"
 #include "fem/run/checkpoint.h"
 
 // run->extra
@@ -106,25 +105,17 @@ static Status stop_and_kill(AppStressRun *run, const char *folder) {
   return status;
 }
 
-static int remove_entry(const char *path, const struct stat *info, int kind, struct FTW *place) {
-  (void)info, (void)kind, (void)place;
-  return remove(path);
-}
-
 Status app_stress_resume_run(AppStressRun *run) {
-  const char *parent = getenv("TMPDIR");
-  char *folder = file_join(parent && *parent ? parent : "/tmp", "tetlap_stress_XXXXXX");
-  if (!folder) return status_no_memory("a file name");
+  char *folder;
   Status status = app_stress_run_scene(run);
   run->extra[STOPPED_DIFFERENCE] = run->extra[KILLED_DIFFERENCE] = NAN;
   if (!status && !run->is_cut && !run->status) {
-    Status done = mkdtemp(folder) ? stop_and_kill(run, folder)
-                                  : status_fail(STATUS_IO, "%s: cannot be made: %s", folder, strerror(errno));
+    Status done = temporary_directory("stress", &folder);
+    if (!done) done = stop_and_kill(run, folder);
     if (done) snprintf(run->message, sizeof run->message, "%s", status_message());
-    nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
+    temporary_remove(folder);
     if (done == STATUS_MEMORY) status = done;
   }
-  memory_free(folder);
   return status;
 }
 

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 
 #include "app/sweep/child.h"
@@ -81,8 +82,10 @@ static Status start(Crew *crew, int slot, AppSweepPoint *point) {
   fill_words(crew->grid, point, threads, words);
   TRY(file_make_directories(point->directory));
   remove_summary(point);
-  char *log = file_join(point->directory, "log.txt");
+  char *log = file_join(point->directory, APP_SWEEP_LOG);
   if (!log) return status_no_memory("a file name");
+  struct stat info;
+  point->log_begin = stat(log, &info) == 0 ? (size_t)info.st_size : 0;
   Status status = app_sweep_child_start((char *const *)words, log, &crew->children[slot]);
   memory_free(log);
   if (status) return status;
@@ -173,14 +176,23 @@ static void leave(Crew *crew) {
     if (crew->slots[s].point) crew->slots[s].point->state = APP_SWEEP_RESUMABLE;
 }
 
+// Points whose scene cannot be read: failed, though no run has left a summary.
+static int count_unreadable(const AppSweepGrid *grid) {
+  int count = 0;
+  for (int p = 0; p < grid->point_count; p++)
+    count += grid->points[p].state == APP_SWEEP_FAILED && !grid->points[p].summary;
+  return count;
+}
+
 static Status run_all(AppSweepGrid *grid, const AppSweepOptions *options) {
   Crew crew = {.grid = grid, .options = options, .began_s = clock_wall_s()};
-  int kept = app_sweep_grid_count(grid, APP_SWEEP_FINISHED) + app_sweep_grid_count(grid, APP_SWEEP_FAILED);
-  int resumed = app_sweep_grid_count(grid, APP_SWEEP_RESUMABLE);
-  crew.to_do = grid->point_count - kept;
+  int resumed = app_sweep_grid_count(grid, APP_SWEEP_RESUMABLE),
+      new = app_sweep_grid_count(grid, APP_SWEEP_WAITING), unreadable = count_unreadable(grid);
+  crew.to_do = resumed + new;
   log_info("%d runs in %s: %d are there, %d go on, %d begin; %d at once with %d %s each", grid->point_count,
-           grid->base.directory, kept, resumed, crew.to_do - resumed, options->jobs, options->threads,
-           options->threads == 1 ? "thread" : "threads");
+           grid->base.directory, grid->point_count - crew.to_do - unreadable, resumed, new, options->jobs,
+           options->threads, options->threads == 1 ? "thread" : "threads");
+  if (unreadable) log_warning("%d of them cannot be run: the table says what is wrong", unreadable);
   Status status = work(&crew);
   log_progress_end();
   if (!status) return STATUS_OK;

@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "app/cli/inputs.h"
 #include "app/cli/versions.h"
 #include "app/scene/overlap.h"
 #include "app/scene/write.h"
@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "fem/model/build.h"
 #include "fem/run/checkpoint.h"
 
 int app_sweep_point_count(const AppSweepBase *base) {
@@ -23,23 +24,8 @@ int app_sweep_point_count(const AppSweepBase *base) {
   return count;
 }
 
-// The last word of a key: "stiffness" of "contact.stiffness", unless another axis has the same.
-static const char *short_key(const AppSweepBase *base, int axis) {
-  const char *keys[2] = {NULL, NULL};
-  for (int a = 0; a < base->axis_count; a++) {
-    const char *dot = strrchr(base->axes[a].key, '.');
-    keys[0] = dot ? dot + 1 : base->axes[a].key;
-    if (a == axis) continue;
-    const char *own = strrchr(base->axes[axis].key, '.');
-    own = own ? own + 1 : base->axes[axis].key;
-    if (strcmp(keys[0], own) == 0) keys[1] = base->axes[axis].key;
-  }
-  const char *dot = strrchr(base->axes[axis].key, '.');
-  return keys[1] ? keys[1] : dot ? dot + 1 : base->axes[axis].key;
-}
-
-// Readable where it can be: "stiffness=1e+06,overlap=clip"; what a folder's name should not have becomes '_',
-// and then, or where it is long, a digest tells it from others.
+// Readable where it can be: "contact.stiffness=1e6,contact.overlap=clip"; what a folder's name should not
+// have becomes '_', and then, or where it is long, a digest tells it from others.
 static void name_folder(AppSweepPoint *point, const AppSweepBase *base) {
   enum { ROOM = APP_SWEEP_FOLDER - DIGEST_TEXT - 1 };
   char whole[1024];
@@ -47,7 +33,7 @@ static void name_folder(AppSweepPoint *point, const AppSweepBase *base) {
   uint64_t digest = DIGEST_START;
   for (int a = 0; a < base->axis_count; a++) {
     const AppSweepAxis *axis = &base->axes[a];
-    text_append(whole, sizeof whole, &used, "%s%s=%s", a ? "," : "", short_key(base, a),
+    text_append(whole, sizeof whole, &used, "%s%s=%s", a ? "," : "", axis->key,
                 axis->values[point->values[a]]);
     digest = digest_bytes(digest, point->settings[a], strlen(point->settings[a]) + 1);
   }
@@ -101,11 +87,8 @@ static Status read_scene(const AppSweepPoint *point, const AppSweepBase *base, F
 
 // A file of the folder as a record; NULL: it is not there, or is no record.
 static Record *read_record(const char *directory, const char *name) {
-  Record *record = NULL;
-  char *path = file_join(directory, name);
-  if (path && file_exists(path) && record_read(&record, path)) record = NULL;
-  memory_free(path);
-  return record;
+  Record *record;
+  return record_read_in(&record, directory, name) == STATUS_OK ? record : NULL;
 }
 
 static bool has_file(const char *directory, const char *name) {
@@ -132,19 +115,19 @@ static bool is_same_scene(const Record *manifest, const FemSceneDef *scene) {
   return is_same;
 }
 
-// Whether a mesh has been written after the run's summary, as `make` would see it.
-static bool has_newer_mesh(const AppSweepPoint *point, const FemSceneDef *scene) {
-  char *summary = file_join(point->directory, "summary.json"), *folder = file_directory_of(scene->path);
-  struct stat done, mesh;
-  bool is_newer = !summary || !folder || stat(summary, &done) != 0;
-  for (int b = 0; !is_newer && b < scene->body_count; b++) {
-    char *path = scene->bodies[b].mesh_path ? file_join(folder, scene->bodies[b].mesh_path) : NULL;
-    is_newer = path && (stat(path, &mesh) != 0 || mesh.st_mtime > done.st_mtime);
-    memory_free(path);
+// Whether meshes and weights, as they are now, are those that the manifest has digests of. What cannot be
+// read now is another.
+static bool is_same_input(const Record *manifest, const FemSceneDef *scene) {
+  FemModel model;
+  Record *now = record_new();
+  bool is_same = now && fem_model_create(&model, scene) == STATUS_OK;
+  if (is_same) {
+    is_same = app_inputs_record(scene, &model, now) == STATUS_OK &&
+              !app_inputs_differ(record_find(manifest, "inputs"), now);
+    fem_model_destroy(&model);
   }
-  memory_free(summary);
-  memory_free(folder);
-  return is_newer;
+  record_destroy(now);
+  return is_same;
 }
 
 // How the earlier sweep saw this point end; −1: it does not tell.
@@ -168,7 +151,7 @@ static void judge(AppSweepPoint *point, const FemSceneDef *scene, const Record *
          *manifest = read_record(point->directory, "manifest.json");
   const char *outcome = record_find_text(summary, "outcome");
   bool is_scene = is_same_scene(manifest, scene),
-       is_same = outcome && is_scene && !has_newer_mesh(point, scene);
+       is_same = outcome && is_scene && is_same_input(manifest, scene);
   record_destroy(manifest);
   int code = exit_code_before(point, before), gave_up = status_exit_code(STATUS_SOLVER);
   bool has_finished =
@@ -201,18 +184,22 @@ Status app_sweep_point_examine(AppSweepPoint *point, const AppSweepBase *base, c
   return STATUS_OK;
 }
 
-// The last error that its log tells of, else how the process ended.
+// Copies the line that begins at `line`.
+static void set_line(AppSweepPoint *point, const char *line) {
+  snprintf(point->message, sizeof point->message, "%.*s", (int)strcspn(line, "\n"), line);
+}
+
+// The last error that this process told of in the log, else how it ended.
 static void explain(AppSweepPoint *point) {
-  char *path = file_join(point->directory, "log.txt"), *text = NULL;
+  static const char mark[] = "error: ";
+  char *path = file_join(point->directory, APP_SWEEP_LOG), *text = NULL;
   size_t size;
   snprintf(point->message, sizeof point->message,
-           point->exit_code > 128 ? "the process was ended by signal %d" : "exit code %d; see log.txt",
+           point->exit_code > 128 ? "the process was ended by signal %d" : "exit code %d; see " APP_SWEEP_LOG,
            point->exit_code > 128 ? point->exit_code - 128 : point->exit_code);
-  if (path && file_read(path, &text, &size) == STATUS_OK)
-    for (char *line = strstr(text, "error: "); line; line = strstr(line + 1, "error: ")) {
-      size_t length = strcspn(line, "\n") - strlen("error: ");
-      snprintf(point->message, sizeof point->message, "%.*s", (int)length, line + strlen("error: "));
-    }
+  if (path && file_read(path, &text, &size) == STATUS_OK && point->log_begin <= size)
+    for (char *at = strstr(text + point->log_begin, mark); at; at = strstr(at + 1, mark))
+      set_line(point, at + sizeof mark - 1);
   memory_free(text);
   memory_free(path);
 }

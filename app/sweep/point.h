@@ -4,9 +4,12 @@
 #define TETLAP_APP_SWEEP_POINT_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "app/sweep/axis.h"
 #include "base/record.h"
+
+#define APP_SWEEP_LOG "log.txt" // in a point's folder: what its processes print, one after another
 
 enum { APP_SWEEP_MAX_AXES = 8, APP_SWEEP_MAX_POINTS = 10000, APP_SWEEP_FOLDER = 128 };
 
@@ -35,6 +38,7 @@ typedef struct AppSweepPoint {
   char *directory;                    // owned
   AppSweepState state;
   int exit_code;     // of a point that has ended
+  size_t log_begin;  // where its log begins to tell of the process that was started last
   char message[512]; // why it failed
   Record *summary;   // summary.json, owned; NULL: none
 } AppSweepPoint;
@@ -45,9 +49,9 @@ int app_sweep_point_count(const AppSweepBase *base); // of the grid; more than M
 Status app_sweep_point_create(AppSweepPoint *point, const AppSweepBase *base, int index);
 void app_sweep_point_destroy(AppSweepPoint *point);
 
-// What an earlier sweep left of it, if that was the same scene: finished, to be resumed, or to be run. One
-// that the solver gave up stays failed, unless `again`. `before` is the earlier sweep.json (NULL: none).
-// STATUS_USAGE, STATUS_INPUT: no such scene; then the point has failed, with the message.
+// What an earlier sweep left of it, if scene, meshes and weights are the same: finished, to be resumed, or to
+// be run. One that the solver gave up stays failed, unless `again`. `before` is the earlier sweep.json (NULL:
+// none). STATUS_USAGE, STATUS_INPUT: no such scene; then the point has failed, with the message.
 Status app_sweep_point_examine(AppSweepPoint *point, const AppSweepBase *base, const Record *before,
                                bool again);
 

@@ -53,15 +53,6 @@ Status app_view_folder_check(const AppViewFolder *folder) {
   return check_list(root, folder->directory);
 }
 
-static Status read_record(const AppViewFolder *folder, const char *name, Record **record) {
-  *record = NULL;
-  char *path = file_join(folder->directory, name);
-  if (!path) return status_no_memory("a file name");
-  Status status = file_exists(path) ? record_read(record, path) : STATUS_OK;
-  memory_free(path);
-  return status;
-}
-
 // Sizes and times of the files that the page is made of.
 static void print_stamp(const AppViewFolder *folder, char *stamp, size_t size) {
   size_t used = 0;
@@ -94,9 +85,9 @@ Status app_view_folder_state(const AppViewFolder *folder, Record **state) {
   Record *summary = NULL, *progress = NULL;
   char stamp[512];
   *state = record_new();
-  Status status =
-      *state ? read_record(folder, "summary.json", &summary) : status_no_memory("the run's state");
-  if (!status) status = read_record(folder, APP_BEACON_FILE, &progress);
+  Status status = *state ? record_read_in(&summary, folder->directory, "summary.json")
+                         : status_no_memory("the run's state");
+  if (!status) status = record_read_in(&progress, folder->directory, APP_BEACON_FILE);
   if (!status) {
     print_stamp(folder, stamp, sizeof stamp);
     record_merge(*state, progress);

@@ -12,21 +12,16 @@
 #include <unistd.h>
 
 #include "base/data.h"
+#include "base/temporary.h"
 
 extern char **environ;
 
 enum { NOT_INSTALLED = 77 }; // exit status of the script
 
 static Status write_inputs(AppTorchPeer *peer, const void *inputs, size_t size) {
-  snprintf(peer->inputs, sizeof peer->inputs, "/tmp/tetlap_inputs_XXXXXX");
-  int file = mkstemp(peer->inputs);
-  if (file < 0) {
-    peer->inputs[0] = 0;
-    return status_fail(STATUS_IO, "no temporary file in /tmp: %s", strerror(errno));
-  }
-  FILE *stream = fdopen(file, "wb");
+  TRY(temporary_file("inputs", "", &peer->inputs));
+  FILE *stream = fopen(peer->inputs, "wb");
   size_t written = stream ? fwrite(inputs, 1, size, stream) : 0;
-  if (!stream) close(file);
   if (!stream || fclose(stream) != 0 || written != size)
     return status_fail(STATUS_IO, "%s: cannot be written", peer->inputs);
   return STATUS_OK;
@@ -104,7 +99,7 @@ void app_torch_peer_stop(AppTorchPeer *peer) {
   if (peer->child) {
     while (waitpid(peer->child, NULL, 0) < 0 && errno == EINTR) continue;
   }
-  if (peer->inputs[0]) unlink(peer->inputs);
+  temporary_remove(peer->inputs);
   *peer = (AppTorchPeer){0};
 }
 

@@ -15,7 +15,7 @@ typedef struct AppTorchPeer {
   pid_t child; // 0: none
   FILE *to, *from;
   char name[64];   // "PyTorch 1.13.1"
-  char inputs[64]; // temporary file
+  char *inputs; // temporary file, owned
 } AppTorchPeer;
 
 // `inputs`: `size` bytes, samples in float or double, in which the child computes, whatever the file has.

@@ -17,6 +17,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/random.h"
+#include "base/temporary.h"
 
 enum { MAX_CONFIGS = 8, MAX_OVERRIDES = 64 };
 static const double ROUND_S = 0.5; // what a round shall take
@@ -120,10 +121,9 @@ static Status make_network(Trainer *trainer) {
 }
 
 static Status start_torch(Trainer *trainer) {
-  char path[] = "/tmp/tetlap_weights_XXXXXX.safetensors";
-  int file = mkstemps(path, 12), batch = trainer->config.optimiser.batch;
-  if (file < 0) return status_fail(STATUS_IO, "no temporary file in /tmp");
-  close(file);
+  char *path;
+  int batch = trainer->config.optimiser.batch;
+  TRY(temporary_file("weights", ".safetensors", &path));
   size_t numbers = (size_t)batch * (size_t)trainer->model.plan->shape.input_count;
   float *inputs = memory_zeroed(numbers, sizeof *inputs);
   Random random = random_seeded(3, 0);
@@ -134,7 +134,7 @@ static Status start_torch(Trainer *trainer) {
     status =
         app_torch_peer_start(&trainer->torch, path, true, inputs, numbers * sizeof *inputs, trainer->threads);
   memory_free(inputs);
-  unlink(path);
+  temporary_remove(path);
   return status;
 }
 

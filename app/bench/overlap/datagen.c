@@ -12,6 +12,7 @@
 #include "app/bench/timer.h"
 #include "app/cli/argument.h"
 #include "base/memory.h"
+#include "base/temporary.h"
 #include "datagen/generate.h"
 #include "datagen/run.h"
 
@@ -75,14 +76,12 @@ typedef struct Contestant {
 } Contestant;
 
 static Status write_file(Contestant *contestant) {
-  char path[] = "/tmp/tetlap_bench_XXXXXX.h5";
-  int file = mkstemps(path, 3);
-  if (file < 0) return status_fail(STATUS_IO, "no temporary file in /tmp");
-  close(file);
+  char *path;
+  TRY(temporary_file("bench", ".h5", &path));
   DatagenRunOptions run = {
       .path = path, .program = "tetlap bench", .first = contestant->first, .count = contestant->count};
   Status status = datagen_run(&contestant->plan, &run);
-  unlink(path);
+  temporary_remove(path);
   return status;
 }
 

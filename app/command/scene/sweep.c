@@ -26,8 +26,7 @@ typedef struct Options {
 static const struct argp_option option_table[] = {
     {"vary", 'V', "KEY=VALUES", 0,
      "Take these values of a key: LOW..HIGH:COUNT, LOW..HIGH:COUNT,log or A,B,C; may be repeated: every "
-     "value "
-     "with every other",
+     "value with every other",
      1},
     {"set", 's', "KEY=VALUE", 0, "Replace a value of the scene in all runs; may be repeated", 1},
     {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
@@ -89,17 +88,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   default:
     return ARGP_ERR_UNKNOWN;
   }
-}
-
-// out/NAME-sweep for …/NAME.yaml, owned by the caller.
-static char *default_directory(const char *scene_path) {
-  const char *slash = strrchr(scene_path, '/'), *name = slash ? slash + 1 : scene_path;
-  const char *dot = strrchr(name, '.');
-  int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
-  size_t size = (size_t)length + sizeof "out/-sweep";
-  char *directory = memory_zeroed(size, 1);
-  if (directory) snprintf(directory, size, "out/%.*s-sweep", length, name);
-  return directory;
 }
 
 static Status parse_axes(const Options *options, AppSweepBase *base) {
@@ -184,7 +172,7 @@ static int run_command(int argument_count, char **arguments) {
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
   char *directory = options.directory ? memory_copy(options.directory, strlen(options.directory) + 1, 1)
-                                      : default_directory(options.scene_path);
+                                      : app_job_default_directory(options.scene_path, "-sweep");
   Status status = directory ? sweep(&options, directory) : status_no_memory("a directory name");
   if (status) log_error("%s", status_message());
   memory_free(directory);

@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/temporary.h"
 
 // The end of the word that this line begins with and whose count follows on it; NULL: there is none. Version
 // and dimension are looked for on the line of their word.
@@ -50,19 +51,17 @@ static bool needs_split(const char *text) {
 }
 
 static Status write_copy(const char *text, char **copy) {
-  static const char pattern[] = "/tmp/tetlap_XXXXXX.mesh";
-  *copy = memory_copy(pattern, sizeof pattern, 1);
-  if (!*copy) return status_no_memory("a file name");
-  int descriptor = mkstemps(*copy, 5);
-  FILE *stream = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+  TRY(temporary_file("mesh", ".mesh", copy));
+  FILE *stream = fopen(*copy, "w");
   if (stream) write_split(stream, text);
   bool is_written = stream && !ferror(stream);
   if (stream && fclose(stream) != 0) is_written = false;
   if (is_written) return STATUS_OK;
-  if (descriptor >= 0) remove(*copy);
-  memory_free(*copy);
+  Status status =
+      status_fail(STATUS_IO, "%s: a copy, with each count on a line of its own, cannot be written", *copy);
+  temporary_remove(*copy);
   *copy = NULL;
-  return status_fail(STATUS_IO, "a copy in /tmp, with each count on a line of its own, cannot be written");
+  return status;
 }
 
 Status fem_mesh_medit_split(const char *path, char **copy) {

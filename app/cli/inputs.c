@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/cli/inputs.h"
+
+#include <limits.h>
+#include <string.h>
+
+#include "base/digest.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "overlap/weights.h"
+
+static void record_digest(Record *record, const char *key, uint64_t digest) {
+  char text[DIGEST_TEXT];
+  digest_print(digest, text);
+  record_text(record, key, text);
+}
+
+// Places, elements and which coordinates are unknown, of each body or obstacle with a mesh.
+static void record_meshes(const FemModel *model, Record *record) {
+  for (int b = 0; b < model->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    size_t first = 3 * (size_t)body->vertex_begin,
+           values = 3 * (size_t)(body->vertex_end - body->vertex_begin);
+    uint64_t digest = digest_bytes(DIGEST_START, model->rest + first, values * sizeof *model->rest);
+    digest = digest_bytes(digest, model->tets[body->tet_begin],
+                          (size_t)(body->tet_end - body->tet_begin) * sizeof *model->tets);
+    digest = digest_bytes(digest, model->unknown_of_dof + first, values * sizeof *model->unknown_of_dof);
+    record_digest(record, body->name ? body->name : "?", digest);
+  }
+}
+
+// The file with the weights of the scene's overlap model; "": it has none.
+static void find_weights(const FemSceneDef *scene, char path[PATH_MAX]) {
+  const FemContactDef *contact = &scene->contact;
+  path[0] = 0;
+  if (!contact->is_on) return;
+  if (contact->net && overlap_weights_is_path(contact->net)) {
+    char *directory = file_directory_of(scene->path),
+         *file = directory ? file_join(directory, contact->net) : NULL;
+    if (file) snprintf(path, PATH_MAX, "%s", file);
+    memory_free(directory), memory_free(file);
+    return;
+  }
+  const char *name = contact->net ? contact->net : contact->overlap;
+  if (!contact->net && strcmp(name, "hybrid") == 0) name = "tpn-scene";
+  if (overlap_weights_find(name, path, PATH_MAX) != STATUS_OK) path[0] = 0;
+}
+
+static Status record_weights(const FemSceneDef *scene, Record *record) {
+  char path[PATH_MAX], *content;
+  size_t size;
+  find_weights(scene, path);
+  record_text(record, "weights_file", path);
+  record_text(record, "weights", "none");
+  if (!path[0]) return STATUS_OK;
+  TRY(file_read(path, &content, &size));
+  record_digest(record, "weights", digest_bytes(DIGEST_START, content, size));
+  memory_free(content);
+  return STATUS_OK;
+}
+
+Status app_inputs_record(const FemSceneDef *scene, const FemModel *model, Record *record) {
+  record_meshes(model, record_child(record, "meshes"));
+  return record_weights(scene, record);
+}
+
+bool app_inputs_differ(const Record *was, const Record *is) {
+  RecordDifference difference;
+  return !was || !is || record_differ(record_find(was, "meshes"), record_find(is, "meshes"), &difference) ||
+         record_differ(record_find(was, "weights"), record_find(is, "weights"), &difference);
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run reads beside its scene file, as digests: the meshes of its bodies and the weights of its overlap
+// model. Kept in manifests and checkpoints, so that a later process sees whether they are still the same.
+#ifndef TETLAP_APP_CLI_INPUTS_H
+#define TETLAP_APP_CLI_INPUTS_H
+
+#include "base/record.h"
+#include "fem/model/model.h"
+
+// Adds `meshes` (a digest a body: places, elements, which coordinates are unknown), `weights_file` and
+// `weights` ("none": the model has no such file). STATUS_IO: weights that cannot be read; STATUS_MEMORY.
+Status app_inputs_record(const FemSceneDef *scene, const FemModel *model, Record *record);
+
+// Whether the digests of two records differ; of none, from everything.
+bool app_inputs_differ(const Record *was, const Record *is);
+
+#endif
