@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/confine.h"
 #include "base/memory.h"
 
 char *file_join(const char *directory, const char *name) {
@@ -148,8 +149,13 @@ Status file_read(const char *path, char **text, size_t *size) {
   *text = NULL;
   *size = 0;
   struct stat info;
-  FILE *stream = fopen(path, "rb");
-  if (!stream) return status_fail(STATUS_IO, "%s: cannot be opened: %s", path, strerror(errno));
+  int file = confine_open(path);
+  FILE *stream = file >= 0 ? fdopen(file, "rb") : NULL;
+  if (!stream && file >= 0) close(file);
+  if (!stream)
+    return status_fail(STATUS_IO, "%s: cannot be opened: %s", path,
+                       confine_has_refused() ? "it leads out of the folder, or is a link or no file"
+                                             : strerror(errno));
   Status status = STATUS_OK;
   if (fstat(fileno(stream), &info) == 0 && S_ISDIR(info.st_mode))
     status = status_fail(STATUS_IO, "%s: is a directory, a file was expected", path);

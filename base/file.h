@@ -31,7 +31,8 @@ int file_remove_numbered(const char *directory, const char *prefix, const char *
 
 Status file_make_directories(const char *path); // like mkdir -p
 int file_exists(const char *path);
-// The whole file as text with a terminating 0; `*text` is owned by the caller (memory_free).
+// The whole file as text with a terminating 0, of those that base/confine.h allows; `*text` is owned by the
+// caller (memory_free).
 Status file_read(const char *path, char **text, size_t *size);
 // "dir/name" or `name` itself if it is absolute; owned by the caller. NULL: no memory.
 char *file_join(const char *directory, const char *name);

@@ -14,6 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "app/view/server.h"
+#include "base/confine.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/record.h"
@@ -190,6 +192,21 @@ START_TEST(no_path_leads_to_a_file) {
 }
 END_TEST
 
+static void remove_file(const char *name) {
+  char path[128];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  ck_assert_int_eq(unlink(path), 0);
+}
+
+static void list_frame(const char *name) {
+  char text[512];
+  snprintf(text, sizeof text,
+           "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n"
+           "<DataSet timestep=\"0\" part=\"0\" file=\"%s\"/>\n</Collection>\n</VTKFile>\n",
+           name);
+  write_text("run/frames.pvd", text);
+}
+
 static void link_out(const char *name, const char *target) {
   char path[128];
   snprintf(path, sizeof path, "%s/run/%s", folder, name);
@@ -197,23 +214,101 @@ static void link_out(const char *name, const char *target) {
 }
 
 START_TEST(links_and_lists_that_lead_out_are_not_followed) {
-  char path[128];
   start_server();
   link_out("history.csv", "../secret.csv");
   expect(403, "GET", "/", NULL, NULL);
   expect(403, "GET", "/state", NULL, NULL);
-  snprintf(path, sizeof path, "%s/run/history.csv", folder);
-  ck_assert_int_eq(unlink(path), 0);
+  remove_file("run/history.csv");
   expect(200, "GET", "/", NULL, NULL);
-  write_text("run/frames.pvd",
-             "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n"
-             "<DataSet timestep=\"0\" part=\"0\" file=\"../secret.csv\"/>\n</Collection>\n</VTKFile>\n");
-  char *reply = ask("GET", "/", NULL, NULL);
-  ck_assert_int_eq(code_of(reply), 403);
-  ck_assert_ptr_nonnull(strstr(reply, "leads out"));
-  ck_assert_ptr_null(strstr(reply, secret));
-  memory_free(reply);
+  link_out("frames", "..");
+  static const char *const files[] = {"../secret.csv", "/etc/passwd", "frames/secret.csv", "./../secret.csv",
+                                      "frames"};
+  for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+    list_frame(files[k]);
+    char *reply = ask("GET", "/", NULL, NULL);
+    ck_assert_msg(code_of(reply) == 403, "%s: %.60s", files[k], reply);
+    ck_assert_ptr_nonnull(strstr(reply, "leads out"));
+    ck_assert_ptr_null(strstr(reply, secret));
+    ck_assert_ptr_null(strstr(reply, "root:"));
+    memory_free(reply);
+  }
   ck_assert_int_eq(end(server), 0);
+}
+END_TEST
+
+// Nobody writes into the pipes: who opened one to read would wait for ever.
+START_TEST(a_pipe_is_refused_without_waiting) {
+  char path[128];
+  start_server();
+  list_frame("pipe.vtu");
+  snprintf(path, sizeof path, "%s/run/pipe.vtu", folder);
+  ck_assert_int_eq(mkfifo(path, 0666), 0);
+  expect(403, "GET", "/", NULL, NULL);
+  snprintf(path, sizeof path, "%s/run/summary.json", folder);
+  ck_assert_int_eq(mkfifo(path, 0666), 0);
+  expect(403, "GET", "/state", NULL, NULL);
+  ck_assert_int_eq(end(server), 0);
+}
+END_TEST
+
+START_TEST(what_is_broken_or_gone_is_told_as_such) {
+  char path[128];
+  start_server();
+  write_text("run/summary.json", "{");
+  expect(500, "GET", "/state", NULL, NULL);
+  list_frame("lost.vtu");
+  remove_file("run/summary.json");
+  expect(500, "GET", "/", NULL, NULL);
+  remove_file("run/frames.pvd");
+  snprintf(path, sizeof path, "%s/run", folder);
+  ck_assert_int_eq(rmdir(path), 0);
+  expect(404, "GET", "/", NULL, NULL);
+  expect(404, "GET", "/state", NULL, NULL);
+  ck_assert_int_eq(mkdir(path, 0777), 0);
+  expect(200, "GET", "/state", NULL, NULL);
+  ck_assert_int_eq(end(server), 0);
+}
+END_TEST
+
+// Browsers leave out the port where it is http's own.
+START_TEST(a_host_is_a_name_and_the_port_unless_that_is_80) {
+  ck_assert(app_view_server_is_own_host("127.0.0.1:80", 80));
+  ck_assert(app_view_server_is_own_host("127.0.0.1", 80));
+  ck_assert(app_view_server_is_own_host("localhost", 80));
+  ck_assert(!app_view_server_is_own_host("127.0.0.1", 8080));
+  ck_assert(!app_view_server_is_own_host("attacker.example", 80));
+  ck_assert(!app_view_server_is_own_host(NULL, 80));
+}
+END_TEST
+
+START_TEST(a_port_that_is_taken_is_told_as_such) {
+  char command[256], said[512] = "";
+  start_server();
+  snprintf(command, sizeof command, "%s view -p %d %s/run 2>&1", TETLAP_PROGRAM, port, folder);
+  FILE *out = popen(command, "r");
+  ck_assert_ptr_nonnull(fgets(said, sizeof said, out));
+  ck_assert_int_eq(WEXITSTATUS(pclose(out)), 74);
+  ck_assert_msg(strstr(said, "another program has it") != NULL, "%s", said);
+  ck_assert_int_eq(end(server), 0);
+}
+END_TEST
+
+// The whole machine as the folder: nothing is there to be shown, nothing else is refused.
+START_TEST(the_root_is_a_folder_like_others) {
+  char *text;
+  size_t size;
+  ck_assert_ok(confine_begin("/"));
+  ck_assert_ok(file_read("/proc/version", &text, &size));
+  memory_free(text);
+  ck_assert(!confine_has_refused());
+  ck_assert_ok(confine_begin("/proc/"));
+  ck_assert_int_eq(file_read("/etc/passwd", &text, &size), STATUS_IO);
+  ck_assert(confine_has_refused());
+  ck_assert_int_eq(file_read("/proc/../etc/passwd", &text, &size), STATUS_IO);
+  ck_assert_int_eq(file_read("/procfs", &text, &size), STATUS_IO);
+  confine_end();
+  ck_assert_ok(file_read("/etc/passwd", &text, &size));
+  memory_free(text);
 }
 END_TEST
 
@@ -283,6 +378,11 @@ int main(void) {
   tcase_add_test(cases, it_listens_on_the_loopback_address_only);
   tcase_add_test(cases, no_path_leads_to_a_file);
   tcase_add_test(cases, links_and_lists_that_lead_out_are_not_followed);
+  tcase_add_test(cases, a_pipe_is_refused_without_waiting);
+  tcase_add_test(cases, what_is_broken_or_gone_is_told_as_such);
+  tcase_add_test(cases, a_host_is_a_name_and_the_port_unless_that_is_80);
+  tcase_add_test(cases, a_port_that_is_taken_is_told_as_such);
+  tcase_add_test(cases, the_root_is_a_folder_like_others);
   tcase_add_test(cases, it_tells_how_far_a_run_is);
   tcase_add_test(cases, a_run_tells_how_far_it_is_while_it_goes_on);
   return suite_run("view", cases, 60);

@@ -13,44 +13,34 @@
 #include "app/cli/beacon.h"
 #include "app/report/page.h"
 #include "app/report/report.h"
+#include "base/confine.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "fem/output/pvd.h"
 
 static const char *const names[] = {"summary.json", "manifest.json", "history.csv", "frames.pvd",
                                     APP_BEACON_FILE};
 enum { NAME_COUNT = sizeof names / sizeof *names };
 
-// Where it is there at all: whether the file lies in the folder after all links have been followed.
-static Status check_file(const char *root, const char *directory, const char *name) {
-  char real[PATH_MAX], *path = file_join(directory, name);
+// A file that the page is made of is refused before it is looked at where it is no plain file; what the lists
+// name, when it is read (base/confine.h).
+static Status check_file(const char *directory, const char *name) {
+  struct stat info;
+  char *path = file_join(directory, name);
   if (!path) return status_no_memory("a file name");
-  bool is_there = realpath(path, real) != NULL;
-  size_t length = strlen(root);
-  bool is_inside = is_there && strncmp(real, root, length) == 0 && real[length] == '/';
+  bool is_wrong = lstat(path, &info) == 0 && !S_ISREG(info.st_mode);
   memory_free(path);
-  if (!is_there || is_inside) return STATUS_OK;
-  return status_fail(STATUS_INPUT, "%s: leads out of %s, so it is not shown", name, directory);
+  if (!is_wrong) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "%s: is a link or no file, so it is not shown: it may lead out of %s",
+                     name, directory);
 }
 
-static Status check_list(const char *root, const char *directory) {
-  char *path = file_join(directory, "frames.pvd");
-  FemPvdList list = {0};
-  if (!path) return status_no_memory("a file name");
-  Status status = file_exists(path) ? fem_pvd_read(path, &list) : STATUS_OK;
-  memory_free(path);
-  TRY(status);
-  for (int k = 0; !status && k < list.count * list.part_count; k++)
-    status = check_file(root, directory, list.files[k]);
-  fem_pvd_destroy(&list);
-  return status;
-}
-
-Status app_view_folder_check(const AppViewFolder *folder) {
-  char root[PATH_MAX];
-  if (!realpath(folder->directory, root)) return STATUS_OK; // nothing is there to be read
-  for (int k = 0; k < NAME_COUNT; k++) TRY(check_file(root, folder->directory, names[k]));
-  return check_list(root, folder->directory);
+Status app_view_folder_open(const AppViewFolder *folder, AppViewRefusal *refusal) {
+  *refusal = APP_VIEW_MISSING;
+  TRY(confine_begin(folder->directory));
+  *refusal = APP_VIEW_FORBIDDEN;
+  for (int k = 0; k < NAME_COUNT; k++) TRY(check_file(folder->directory, names[k]));
+  *refusal = APP_VIEW_ALLOWED;
+  return STATUS_OK;
 }
 
 // Sizes and times of the files that the page is made of.
@@ -60,7 +50,7 @@ static void print_stamp(const AppViewFolder *folder, char *stamp, size_t size) {
   for (int k = 0; k < NAME_COUNT; k++) {
     struct stat info;
     char *path = file_join(folder->directory, names[k]);
-    bool is_there = path && strcmp(names[k], APP_BEACON_FILE) != 0 && stat(path, &info) == 0;
+    bool is_there = path && strcmp(names[k], APP_BEACON_FILE) != 0 && lstat(path, &info) == 0;
     memory_free(path);
     if (!is_there) continue;
     int printed = snprintf(stamp + used, size - used, "%d:%lld:%lld.%09ld ", k, (long long)info.st_size,
@@ -71,7 +61,7 @@ static void print_stamp(const AppViewFolder *folder, char *stamp, size_t size) {
 
 static bool is_alive(const Record *progress) {
   double pid = record_find_number(progress, "pid");
-  return pid > 0 && (kill((pid_t)pid, 0) == 0 || errno == EPERM);
+  return pid >= 1 && pid <= INT_MAX && (kill((pid_t)pid, 0) == 0 || errno == EPERM);
 }
 
 // A run that begins anew, or goes on, in the folder of an earlier one has a newer word than its summary.

@@ -2,6 +2,7 @@
 #include "app/view/server.h"
 
 #include <arpa/inet.h>
+#include <errno.h>
 #include <netinet/in.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -9,19 +10,20 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/confine.h"
 
 static const char *header_of(const AppViewServer *server, struct MHD_Connection *connection,
                              const char *name) {
   return server->library.lookup_connection_value(connection, MHD_HEADER_KIND, name);
 }
 
-// Whether the request names this server as its host.
-static bool is_own_host(const AppViewServer *server, const char *host) {
+bool app_view_server_is_own_host(const char *host, int port) {
   static const char *const hosts[] = {"127.0.0.1", "localhost"};
+  enum { DEFAULT_PORT = 80 }; // of http: browsers leave it out
   char own[32];
   for (int k = 0; host && k < 2; k++) {
-    snprintf(own, sizeof own, "%s:%d", hosts[k], server->port);
-    if (strcmp(host, own) == 0) return true;
+    snprintf(own, sizeof own, "%s:%d", hosts[k], port);
+    if (strcmp(host, own) == 0 || (port == DEFAULT_PORT && strcmp(host, hosts[k]) == 0)) return true;
   }
   return false;
 }
@@ -65,6 +67,23 @@ static enum MHD_Result refuse(const AppViewServer *server, struct MHD_Connection
   return text ? reply(server, connection, code, "text/plain; charset=utf-8", text, strlen(text)) : MHD_NO;
 }
 
+static unsigned int code_of(AppViewRefusal refusal) {
+  switch (refusal) {
+  case APP_VIEW_MISSING:
+    return MHD_HTTP_NOT_FOUND;
+  case APP_VIEW_FORBIDDEN:
+    return MHD_HTTP_FORBIDDEN;
+  default:
+    return MHD_HTTP_INTERNAL_SERVER_ERROR;
+  }
+}
+
+// What has failed when it was read: something that is not to be read, or else something that is broken.
+static enum MHD_Result fail(const AppViewServer *server, struct MHD_Connection *connection) {
+  return refuse(server, connection, code_of(confine_has_refused() ? APP_VIEW_FORBIDDEN : APP_VIEW_ALLOWED),
+                status_message());
+}
+
 static enum MHD_Result send_state(const AppViewServer *server, struct MHD_Connection *connection) {
   Record *state;
   char *text = NULL;
@@ -76,7 +95,7 @@ static enum MHD_Result send_state(const AppViewServer *server, struct MHD_Connec
   record_destroy(state);
   if (!status) return reply(server, connection, MHD_HTTP_OK, "application/json", text, size);
   free(text);
-  return refuse(server, connection, MHD_HTTP_INTERNAL_SERVER_ERROR, status_message());
+  return fail(server, connection);
 }
 
 // What is written just now may not fit together, so it is read again before that is told.
@@ -86,8 +105,7 @@ static enum MHD_Result send_page(const AppViewServer *server, struct MHD_Connect
   char *page;
   size_t size;
   for (int attempt = 1; app_view_folder_page(&server->folder, &page, &size); attempt++) {
-    if (attempt == ATTEMPTS)
-      return refuse(server, connection, MHD_HTTP_INTERNAL_SERVER_ERROR, status_message());
+    if (attempt == ATTEMPTS || confine_has_refused()) return fail(server, connection);
     nanosleep(&pause, NULL);
   }
   return reply(server, connection, MHD_HTTP_OK, "text/html; charset=utf-8", page, size);
@@ -98,7 +116,7 @@ static enum MHD_Result answer(void *self, struct MHD_Connection *connection, con
                               size_t *upload_size, void **state) {
   (void)version, (void)upload, (void)upload_size, (void)state;
   const AppViewServer *server = self;
-  if (!is_own_host(server, header_of(server, connection, "Host")))
+  if (!app_view_server_is_own_host(header_of(server, connection, "Host"), server->port))
     return refuse(server, connection, MHD_HTTP_FORBIDDEN, "this server answers to 127.0.0.1 only");
   if (is_foreign(server, connection))
     return refuse(server, connection, MHD_HTTP_FORBIDDEN, "this server does not answer to pages of others");
@@ -107,8 +125,9 @@ static enum MHD_Result answer(void *self, struct MHD_Connection *connection, con
   bool is_page = strcmp(url, "/") == 0;
   if (!is_page && strcmp(url, "/state") != 0)
     return refuse(server, connection, MHD_HTTP_NOT_FOUND, "there is nothing but / and /state");
-  if (app_view_folder_check(&server->folder))
-    return refuse(server, connection, MHD_HTTP_FORBIDDEN, status_message());
+  AppViewRefusal refusal;
+  if (app_view_folder_open(&server->folder, &refusal))
+    return refuse(server, connection, code_of(refusal), status_message());
   return is_page ? send_page(server, connection) : send_state(server, connection);
 }
 
@@ -118,21 +137,30 @@ static int port_of(const AppViewServer *server) {
   return info ? info->port : 0;
 }
 
+// `reason` is an errno; 0: unknown.
+static Status fail_port(int port, int reason) {
+  return status_fail(
+      STATUS_IO,
+      "port %d of 127.0.0.1 cannot be opened%s%s; choose another with --port, or 0 for any that is free",
+      port, reason ? ": " : "",
+      reason == EADDRINUSE ? "another program has it"
+      : reason == EACCES   ? "it needs the rights of the administrator"
+      : reason             ? strerror(reason)
+                           : "");
+}
+
 Status app_view_server_start(AppViewServer *server, const AppViewFolder *folder, int port) {
   *server = (AppViewServer){.folder = *folder};
   TRY(app_view_library_load(&server->library));
   struct sockaddr_in address = {
       .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
   enum { SECONDS = 30, MOST_CONNECTIONS = 32 };
+  errno = 0;
   server->daemon = server->library.start_daemon(
       MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_AUTO, (uint16_t)port, NULL, NULL, answer, server,
       MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned int)SECONDS,
       MHD_OPTION_CONNECTION_LIMIT, (unsigned int)MOST_CONNECTIONS, MHD_OPTION_END);
-  if (!server->daemon)
-    return status_fail(STATUS_IO,
-                       "port %d of 127.0.0.1 cannot be opened: another program has it; choose one "
-                       "with --port, or 0 for any that is free",
-                       port);
+  if (!server->daemon) return fail_port(port, errno);
   server->port = port ? port : port_of(server);
   return STATUS_OK;
 }

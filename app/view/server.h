@@ -6,6 +6,8 @@
 #ifndef TETLAP_APP_VIEW_SERVER_H
 #define TETLAP_APP_VIEW_SERVER_H
 
+#include <stdbool.h>
+
 #include "app/view/folder.h"
 #include "app/view/library.h"
 
@@ -17,8 +19,11 @@ typedef struct AppViewServer {
 } AppViewServer;
 
 // Starts; answers come from a thread of its own. `port` 0: one that is free. STATUS_IO: the library is
-// missing, or the port is taken.
+// missing, or the port cannot be had.
 Status app_view_server_start(AppViewServer *server, const AppViewFolder *folder, int port);
+// Whether a request's header `Host` (NULL: none) names the server at this port.
+bool app_view_server_is_own_host(const char *host, int port);
+
 void app_view_server_stop(AppViewServer *server); // also one that did not start
 
 #endif

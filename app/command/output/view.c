@@ -11,6 +11,7 @@
 #include "app/cli/argument.h"
 #include "app/cli/job.h"
 #include "app/view/server.h"
+#include "base/confine.h"
 #include "base/log.h"
 
 enum { KEY_FRAMES = 256, DEFAULT_FRAMES = 150, MOST_FRAMES = 1000000, MOST_PORT = 65535 };
@@ -69,7 +70,9 @@ static Status view(const Options *options) {
   TRY(check_directory(options->directory));
   AppViewServer server;
   AppViewFolder folder = {.directory = options->directory, .max_frames = options->frames};
-  TRY(app_view_folder_check(&folder));
+  AppViewRefusal refusal;
+  TRY(app_view_folder_open(&folder, &refusal));
+  confine_end(); // the library is still to be loaded
   TRY(app_view_server_start(&server, &folder, options->port));
   printf("http://127.0.0.1:%d/\n", server.port);
   fflush(stdout);
