@@ -4,17 +4,22 @@
 #endif
 #include "app/render/browser.h"
 
+#include <errno.h>
 #include <fcntl.h>
+#include <math.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdbool.h>
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
+#include "base/temporary.h"
 
 enum { TO_BROWSER = 3, FROM_BROWSER = 4 }; // the descriptors at which Chromium expects the pipes
 
@@ -24,8 +29,9 @@ static const char *const names[] = {"chromium", "chromium-browser", "google-chro
 static void become(int commands, int answers, const char *profile) {
   char user_data[512];
   snprintf(user_data, sizeof user_data, "--user-data-dir=%s", profile);
-  int in = fcntl(commands, F_DUPFD, 10), out = fcntl(answers, F_DUPFD, 10);
-  int nothing = open("/dev/null", O_RDWR);
+  int in = fcntl(commands, F_DUPFD_CLOEXEC, 10), out = fcntl(answers, F_DUPFD_CLOEXEC, 10);
+  int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
+  setpgid(0, 0); // a Ctrl-C of the terminal is the parent's to answer
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   dup2(nothing, STDIN_FILENO), dup2(nothing, STDOUT_FILENO), dup2(nothing, STDERR_FILENO);
   if (dup2(in, TO_BROWSER) < 0 || dup2(out, FROM_BROWSER) < 0) _exit(127);
@@ -38,28 +44,27 @@ static void become(int commands, int answers, const char *profile) {
   _exit(127);
 }
 
-static Status make_profile(AppRenderBrowser *browser) {
-  const char *folder = getenv("TMPDIR");
-  char name[256];
-  snprintf(name, sizeof name, "%s/tetlap-render-XXXXXX", folder ? folder : "/tmp");
-  if (!mkdtemp(name)) return status_fail(STATUS_IO, "%s: no folder can be made there", name);
-  browser->profile = memory_copy(name, strlen(name) + 1, 1);
-  return browser->profile ? STATUS_OK : status_no_memory("a file name");
-}
-
+// Our ends go to the browser's struct, which closes them; the other two are closed here.
 static Status start(AppRenderBrowser *browser) {
   int commands[2], answers[2];
-  TRY(make_profile(browser));
+  TRY(temporary_directory("render", &browser->profile));
   signal(SIGPIPE, SIG_IGN); // a browser that is gone shows as a failed call
-  if (pipe2(commands, O_CLOEXEC) != 0 || pipe2(answers, O_CLOEXEC) != 0)
-    return status_fail(STATUS_IO, "no pipe can be made");
+  if (pipe2(commands, O_CLOEXEC) != 0)
+    return status_fail(STATUS_IO, "no pipe can be made: %s", strerror(errno));
+  browser->to = commands[1];
+  int reason = pipe2(answers, O_CLOEXEC) != 0 ? errno : 0;
+  if (reason) {
+    close(commands[0]);
+    return status_fail(STATUS_IO, "no pipe can be made: %s", strerror(reason));
+  }
+  browser->from = answers[0];
   browser->process = fork();
   if (browser->process == 0) become(commands[0], answers[1], browser->profile);
+  reason = errno;
   close(commands[0]), close(answers[1]);
-  browser->to = commands[1];
-  browser->from = fdopen(answers[0], "r");
-  return browser->process > 0 && browser->from ? STATUS_OK
-                                               : status_fail(STATUS_IO, "no process can be started");
+  if (browser->process > 0) return STATUS_OK;
+  browser->process = 0;
+  return status_fail(STATUS_IO, "no process can be started: %s", strerror(reason));
 }
 
 static Status fail_gone(void) {
@@ -71,6 +76,48 @@ static bool send(int to, const char *text, size_t size) {
   for (ssize_t sent; size > 0; text += sent, size -= (size_t)sent)
     if ((sent = write(to, text, size)) <= 0) return false;
   return true;
+}
+
+// Reads until `text` holds a whole message, which ends with a 0, or `until_s` on the clock.
+static Status receive(AppRenderBrowser *browser, double until_s) {
+  enum { PIECE = 1 << 16 };
+  while (!memchr(browser->text, 0, browser->text_size)) {
+    double left_s = until_s - clock_wall_s();
+    struct pollfd ready = {.fd = browser->from, .events = POLLIN};
+    if (left_s <= 0 || poll(&ready, 1, (int)fmin(1000 * left_s + 1, 1e9)) == 0)
+      return status_fail(
+          STATUS_IO,
+          "Chromium has not answered for %g s; a smaller --size, or a run with fewer frames, takes less",
+          browser->patience_s);
+    if (!memory_reserve((void **)&browser->text, &browser->text_room, browser->text_size + PIECE, 1))
+      return status_no_memory("an answer of the browser");
+    ssize_t got = read(browser->from, browser->text + browser->text_size, PIECE);
+    if (got <= 0) return fail_gone();
+    browser->text_size += (size_t)got;
+  }
+  return STATUS_OK;
+}
+
+// The next message as a record, owned by the caller.
+static Status next_message(AppRenderBrowser *browser, double until_s, Record **message) {
+  TRY(receive(browser, until_s));
+  size_t length = strlen(browser->text);
+  Status status = record_parse(message, browser->text, length, "Chromium");
+  browser->text_size -= length + 1;
+  memmove(browser->text, browser->text + length + 1, browser->text_size);
+  return status;
+}
+
+// The answer to the call `id`; what comes before are events.
+static Status wait_for_answer(AppRenderBrowser *browser, int id, Record **answer) {
+  double until_s = clock_wall_s() + browser->patience_s;
+  TRY(next_message(browser, until_s, answer));
+  while (record_find_number(*answer, "id") != id) {
+    record_destroy(*answer);
+    *answer = NULL;
+    TRY(next_message(browser, until_s, answer));
+  }
+  return STATUS_OK;
 }
 
 // Sends {id, method, params, sessionId} and gives the answer, which the caller owns; what comes between are
@@ -89,23 +136,10 @@ static Status call(AppRenderBrowser *browser, const char *method, Record *params
   bool is_sent = send(browser->to, text, strlen(text) + 1); // with the 0 that ends it
   memory_free(text);
   if (!is_sent) return fail_gone();
-  char *line = NULL;
-  size_t room = 0;
-  Status status = STATUS_OK;
-  for (ssize_t length; !status && !*answer && (length = getdelim(&line, &room, 0, browser->from)) > 0;) {
-    Record *one;
-    status = record_parse(&one, line, (size_t)length - (line[length - 1] == 0), "Chromium");
-    if (!status && (int)record_find_number(one, "id") == id)
-      *answer = one;
-    else if (!status)
-      record_destroy(one);
-  }
-  free(line); // by getdelim
-  if (status) return status;
-  if (!*answer) return fail_gone();
+  TRY(wait_for_answer(browser, id, answer));
   const char *error = record_find_text(record_find(*answer, "error"), "message");
   if (!error) return STATUS_OK;
-  status = status_fail(STATUS_IO, "Chromium, %s: %s", method, error);
+  Status status = status_fail(STATUS_IO, "Chromium, %s: %s", method, error);
   record_destroy(*answer);
   *answer = NULL;
   return status;
@@ -147,8 +181,9 @@ static Status set_size(AppRenderBrowser *browser, int width, int height) {
   return tell(browser, "Emulation.setDeviceMetricsOverride", params);
 }
 
-Status app_render_browser_start(AppRenderBrowser *browser, const char *url, int width, int height) {
-  *browser = (AppRenderBrowser){.to = -1};
+Status app_render_browser_start(AppRenderBrowser *browser, const char *url, int width, int height,
+                                double patience_s) {
+  *browser = (AppRenderBrowser){.to = -1, .from = -1, .patience_s = patience_s};
   TRY(start(browser));
   TRY(open_page(browser, url));
   return set_size(browser, width, height);
@@ -166,23 +201,14 @@ static void end(pid_t process) {
   waitpid(process, NULL, 0);
 }
 
-static void remove_profile(const char *profile) {
-  pid_t child = fork();
-  if (child == 0) {
-    execlp("rm", "rm", "-rf", "--", profile, (char *)NULL);
-    _exit(127);
-  }
-  if (child > 0) waitpid(child, NULL, 0);
-}
-
 void app_render_browser_stop(AppRenderBrowser *browser) {
   if (browser->process > 0) end(browser->process);
   if (browser->to >= 0) close(browser->to);
-  if (browser->from) fclose(browser->from);
-  if (browser->profile) remove_profile(browser->profile);
-  memory_free(browser->profile);
+  if (browser->from >= 0) close(browser->from);
+  temporary_remove(browser->profile);
+  memory_free(browser->text);
   memory_free(browser->session);
-  *browser = (AppRenderBrowser){.to = -1};
+  *browser = (AppRenderBrowser){.to = -1, .from = -1};
 }
 
 Status app_render_browser_run(AppRenderBrowser *browser, const char *script, char **text) {

@@ -4,23 +4,26 @@
 #ifndef TETLAP_APP_RENDER_BROWSER_H
 #define TETLAP_APP_RENDER_BROWSER_H
 
-#include <stdio.h>
+#include <stddef.h>
 #include <sys/types.h>
 
 #include "base/record.h"
 
 typedef struct AppRenderBrowser {
   pid_t process; // 0: none
-  int to;        // its end for commands
-  FILE *from;    // what it answers
+  int to, from;  // descriptors: for commands, of answers; −1: none
   char *profile; // its folder, owned; removed at the end
   char *session; // of the page, owned
+  char *text;    // what has come and is not yet read (text_size), owned
+  size_t text_size, text_room;
+  double patience_s; // for an answer
   int last_call;
 } AppRenderBrowser;
 
 // Starts it with a page of so many pixels. STATUS_IO: there is no Chromium (the message names the package),
-// or it does not answer. Stop it always.
-Status app_render_browser_start(AppRenderBrowser *browser, const char *url, int width, int height);
+// or, as in every call, it has not answered for `patience_s`. Stop it always.
+Status app_render_browser_start(AppRenderBrowser *browser, const char *url, int width, int height,
+                                double patience_s);
 void app_render_browser_stop(AppRenderBrowser *browser);
 
 // Evaluates a script, waits for what it promises; `text` is what comes out if that is a text (owned by the

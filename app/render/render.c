@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/render/render.h"
 
+#include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "app/render/browser.h"
 #include "app/render/movie.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/temporary.h"
 
 static Status check_stop(const AppRenderOptions *options) {
   return *options->stop ? status_fail(STATUS_INTERRUPTED, "interrupted") : STATUS_OK;
@@ -114,22 +116,23 @@ static Status draw_all(AppRenderBrowser *browser, const AppRenderOptions *option
 }
 
 static Status show(const char *page, const AppRenderOptions *options) {
-  char url[320];
+  static const double PATIENCE_S = 300; // a large run, drawn by a processor
+  char url[PATH_MAX + 8], absolute[PATH_MAX];
   AppRenderBrowser browser;
-  snprintf(url, sizeof url, "file://%s", page);
-  Status status = app_render_browser_start(&browser, url, options->width, options->height);
+  if (!realpath(page, absolute)) return status_fail(STATUS_IO, "%s: %s", page, strerror(errno));
+  snprintf(url, sizeof url, "file://%s", absolute);
+  Status status = app_render_browser_start(&browser, url, options->width, options->height, PATIENCE_S);
   if (!status) status = draw_all(&browser, options);
   app_render_browser_stop(&browser);
   return status;
 }
 
 Status app_render(AppReport *report, const AppRenderOptions *options) {
-  char folder[] = "/tmp/tetlap-page-XXXXXX", page[64];
-  if (!mkdtemp(folder)) return status_fail(STATUS_IO, "%s: no folder can be made there", folder);
-  snprintf(page, sizeof page, "%s/page.html", folder);
+  char *page;
+  TRY(temporary_file("page", ".html", &page));
   Status status = app_report_write(report, page);
   if (!status) status = show(page, options);
-  unlink(page);
-  rmdir(folder);
-  return status;
+  temporary_remove(page);
+  // Where a signal has cut a call short, that is the reason.
+  return status && *options->stop ? check_stop(options) : status;
 }
