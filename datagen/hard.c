@@ -489,9 +489,11 @@ static void mesh_cell(Random *random, DatagenHardPair *pair, int which) {
 // Two cells of meshes that stand in each other, in any position, with a common volume of a ten-thousandth of
 // the smaller at least: what a scene asks.
 static void make_mesh_cells(Random *random, DatagenHardPair *pair) {
-  double volume;
+  enum { ATTEMPTS = 1000 }; // one in three does
+  double volume = 0;
   unsigned flags;
-  do {
+  pair->failure = "no two mesh cells that overlap were found in 1000 attempts";
+  for (int attempt = 0; attempt < ATTEMPTS && pair->failure; attempt++) {
     double rotation[9];
     mesh_cell(random, pair, 0);
     mesh_cell(random, pair, 1);
@@ -499,9 +501,12 @@ static void make_mesh_cells(Random *random, DatagenHardPair *pair) {
     Vec3 shift = {random_between(random, -0.5, 1), random_between(random, -0.5, 1),
                   random_between(random, -0.5, 1)};
     datagen_hard_transform(pair->x + 12, 4, rotation, 1, shift);
-    if (overlap_exact_ops.eval_pair(NULL, pair->x, &(OverlapAnswer){.volume = &volume, .flags = &flags}))
-      volume = 0; // no memory
-  } while (!(volume > 1e-4 * overlap_invariant_smaller_volume(pair->x)));
+    if (overlap_exact_ops.eval_pair(NULL, pair->x, &(OverlapAnswer){.volume = &volume, .flags = &flags})) {
+      pair->failure = "no memory for the exact volume";
+      return;
+    }
+    if (volume > 1e-4 * overlap_invariant_smaller_volume(pair->x)) pair->failure = NULL;
+  }
   pair->is_smooth = true;
 }
 

@@ -13,11 +13,12 @@
 #include "base/vec3.h"
 
 typedef struct DatagenHardPair {
-  double x[24];   // two tetrahedra, four vertices, three coordinates
-  double volume;  // what V must be; NaN: only an oracle knows
-  double slack;   // by how much rounding of the coordinates may have changed it [same unit]
-  bool is_flat;   // a tetrahedron has no volume at all: V = 0 and the flag FLAT
-  bool is_smooth; // V has a derivative here: central differences may be compared
+  double x[24];        // two tetrahedra, four vertices, three coordinates
+  double volume;       // what V must be; NaN: only an oracle knows
+  double slack;        // by how much rounding of the coordinates may have changed it [same unit]
+  bool is_flat;        // a tetrahedron has no volume at all: V = 0 and the flag FLAT
+  bool is_smooth;      // V has a derivative here: central differences may be compared
+  const char *failure; // NULL; else why it is none of its class (its `x` is some pair then)
 } DatagenHardPair;
 
 typedef struct DatagenHardClass {
@@ -48,7 +49,8 @@ void datagen_hard_fat(Random *random, DatagenHardPair *pair, int which);
 // Exact on the grid.
 Vec3 datagen_hard_face_normal(const DatagenHardPair *pair, int opposite);
 
-// Always the same pair for the same numbers.
+// Always the same pair for the same numbers. `failure` is set where the exact volume, which one class needs,
+// finds no memory.
 DatagenHardPair datagen_hard_make(int class_index, int member);
 
 #endif

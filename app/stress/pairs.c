@@ -233,6 +233,8 @@ static Status run_class(const AppStressOptions *options, const OverlapModel *mod
   int members = members_of(options, model);
   for (int member = 0; member < members; member++) {
     DatagenHardPair pair = datagen_hard_make(class_index, member);
+    if (pair.failure)
+      return status_fail(STATUS_MEMORY, "%s: %s", datagen_hard_classes[class_index].name, pair.failure);
     asked.true_count += app_stress_traits_hold(class_index, &pair);
     Status status = ask_member(&asked, &pair, members == MEMBERS_SLOW);
     if (status == STATUS_MEMORY) return status;

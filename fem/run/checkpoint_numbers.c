@@ -67,6 +67,7 @@ static const FemCheckpointNumber numbers[] = {
     COUNT(solver, analyses),
     COUNT(solver, factorisations),
     COUNT(solver, failed_factorisations),
+    COUNT(solver, hierarchies),
     COUNT(solver, solves),
     COUNT(solver, iterations),
     PART(solver, analyse_s, FEM_REAL, "s"),
@@ -120,7 +121,7 @@ static const FemCheckpointNumber numbers[] = {
 static_assert(sizeof(FemAudit) == 13 * sizeof(double), "numbers[] lists every number of FemAudit");
 static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "numbers[] lists every phase");
 static_assert(sizeof(FemIntegratorStats) == 11 * sizeof(double), "numbers[] lists the integrator's counts");
-static_assert(sizeof(FemSolverStats) == 9 * sizeof(double), "numbers[] lists the solver's counts");
+static_assert(sizeof(FemSolverStats) == 10 * sizeof(double), "numbers[] lists the solver's counts");
 static_assert(sizeof(ContactPairCounts) == 6 * sizeof(long long), "numbers[] lists the counts of pairs");
 static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long),
               "numbers[] lists the counts of the status");

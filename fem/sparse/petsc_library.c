@@ -24,10 +24,6 @@ static int load(void) {
   return handle != NULL;
 }
 
-int fem_petsc_library_is_there(void) {
-  return load();
-}
-
 static Status find_functions(void) {
 #define FIND(name) TRY(find(#name, &functions.name));
   FEM_PETSC_FUNCTIONS(FIND)
@@ -37,6 +33,10 @@ static Status find_functions(void) {
   if (major == PETSC_VERSION_MAJOR && minor == PETSC_VERSION_MINOR) return STATUS_OK;
   return status_fail(STATUS_IO, "PETSc's library is of version %d.%d, and tetlap was compiled for %d.%d",
                      (int)major, (int)minor, PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR);
+}
+
+bool fem_petsc_library_has_hypre(void) {
+  return load() && find_functions() == STATUS_OK && dlsym(handle, "PCCreate_HYPRE");
 }
 
 // One process that was not started by mpiexec: Open MPI need not look for neighbours, networks or a shell to

@@ -6,6 +6,7 @@
 #define TETLAP_FEM_SPARSE_PETSC_LIBRARY_H
 
 #include <petscksp.h>
+#include <stdbool.h>
 
 #include "base/status.h"
 
@@ -47,7 +48,8 @@ typedef struct FemPetscLibrary {
 // threads at once.
 Status fem_petsc_library(const FemPetscLibrary **library);
 
-// Whether it can be loaded, without initialising it.
-int fem_petsc_library_is_there(void);
+// Whether it can be used, without initialising it: it is there, has all these functions and the version of
+// the headers, and BoomerAMG (hypre) is part of it.
+bool fem_petsc_library_has_hypre(void);
 
 #endif

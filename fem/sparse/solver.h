@@ -21,6 +21,7 @@ enum { FEM_SOLVER_COUNT = FEM_SOLVER_GAMG + 1 };
 
 typedef struct FemSolverStats {
   long long analyses, factorisations, failed_factorisations, solves, iterations;
+  long long hierarchies; // of multigrid, made anew; fewer than factorisations where they are kept
   double analyse_s, factorise_s, solve_s; // wall [s]
   double factor_entries;
 } FemSolverStats;

@@ -25,7 +25,7 @@ static const double WORN_SHARE = 1.5;
 enum { WORN_MORE = 2 };
 
 bool fem_solver_has_multigrid(void) {
-  return fem_petsc_library_is_there();
+  return fem_petsc_library_has_hypre();
 }
 
 typedef enum Kind { BOOMER, GAMG } Kind;
@@ -67,10 +67,17 @@ static void wear(void *self) {
   ((PetscSolver *)self)->is_worn = true;
 }
 
+// Errors that a matrix can be the cause of, so that another one may do. hypre's are all of one kind.
+static bool is_of_matrix(PetscErrorCode code) {
+  return code == PETSC_ERR_MAT_LU_ZRPVT || code == PETSC_ERR_MAT_CH_ZRPVT || code == PETSC_ERR_FP ||
+         code == PETSC_ERR_CONV_FAILED || code == PETSC_ERR_NOT_CONVERGED || code == PETSC_ERR_LIB;
+}
+
 static Status fail_in(const PetscSolver *solver, const char *what, PetscErrorCode code) {
   if (code == PETSC_ERR_MEM) return status_no_memory("the multigrid of the condensed system");
-  return status_fail(STATUS_RETRY, "%s: %s failed with PETSc's error %d", names[solver->kind], what,
-                     (int)code);
+  return status_fail(is_of_matrix(code) ? STATUS_RETRY : STATUS_SOLVER,
+                     "%s: %s failed with PETSc's error %d; solver.linear: cholmod does without PETSc",
+                     names[solver->kind], what, (int)code);
 }
 
 #define PETSC_TRY(what, call)                                                                                \
@@ -114,7 +121,7 @@ static void destroy(void *self) {
 // BoomerAMG as measured on contact, friction, statics and ν = 0.45: one level of aggressive coarsening, which
 // halves memory for a third more iterations, and one sweep of Gauss and Seidel down and one back up, which is
 // symmetric and half the work of a symmetric one each way. gamg with its own smoother.
-static void set_options(const FemPetscLibrary *petsc) {
+static Status set_options(const PetscSolver *solver) {
   static const char *const options[][2] = {
       {"-tetlap_amg_pc_hypre_type", "boomeramg"},
       {"-tetlap_amg_pc_hypre_boomeramg_coarsen_type", "HMIS"},
@@ -128,7 +135,8 @@ static void set_options(const FemPetscLibrary *petsc) {
       {"-tetlap_gamg_pc_gamg_reuse_interpolation", "true"},
   };
   for (size_t i = 0; i < sizeof options / sizeof *options; i++)
-    petsc->PetscOptionsSetValue(NULL, options[i][0], options[i][1]);
+    PETSC_TRY(options[i][0], solver->petsc->PetscOptionsSetValue(NULL, options[i][0], options[i][1]));
+  return STATUS_OK;
 }
 
 static Status create(Kind kind, void **self, int threads, double tolerance) {
@@ -138,6 +146,10 @@ static Status create(Kind kind, void **self, int threads, double tolerance) {
     return status_fail(STATUS_INPUT, "solver %s: the tolerance must lie between 0 and 1, not %g", names[kind],
                        tolerance);
   TRY(fem_petsc_library(&petsc));
+  if (kind == BOOMER && !fem_petsc_library_has_hypre())
+    return status_fail(STATUS_IO,
+                       "solver.linear: amg is BoomerAMG of hypre, which this PETSc was built without; "
+                       "use gamg or cholmod");
   PetscSolver *solver = memory_zeroed(1, sizeof *solver);
   if (!solver) return status_no_memory("the solver amg");
   *self = solver;
@@ -145,8 +157,7 @@ static Status create(Kind kind, void **self, int threads, double tolerance) {
   solver->petsc = petsc;
   solver->threads = threads;
   solver->tolerance = tolerance;
-  set_options(petsc);
-  return STATUS_OK;
+  return set_options(solver);
 }
 
 static Status create_amg(void **self, int threads, double tolerance) {
@@ -339,11 +350,17 @@ static Status build_gamg(PetscSolver *solver, const FemMatrix *matrix) {
   return set_up(solver, solver->matrix);
 }
 
+// A new hierarchy, by one thread of the BLAS in it.
 static Status build(PetscSolver *solver, const FemMatrix *matrix) {
   solver->is_worn = false;
   solver->is_fresh = true;
+  int before = fem_solver_use_threads(1);
   Status status = solver->kind == BOOMER ? build_boomer(solver, matrix) : build_gamg(solver, matrix);
-  if (status) forget_multigrid(solver);
+  fem_solver_use_threads(before);
+  if (status)
+    forget_multigrid(solver);
+  else
+    solver->stats.hierarchies++;
   return status;
 }
 
@@ -359,10 +376,16 @@ static Status renew(PetscSolver *solver, const FemMatrix *matrix) {
   if (!has_positive_diagonal(matrix))
     return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
   if (solver->multigrid && !solver->is_worn) return STATUS_OK;
-  int before = fem_solver_use_threads(1); // of BLAS in it
-  Status status = build(solver, matrix);
-  fem_solver_use_threads(before);
-  return status;
+  return build(solver, matrix);
+}
+
+// Counts a factorisation that ended with `status`, and its time.
+static void count_factorisation(PetscSolver *solver, Status status, double began_s) {
+  if (status == STATUS_OK)
+    solver->stats.factorisations++;
+  else
+    solver->stats.failed_factorisations++;
+  solver->stats.factorise_s += clock_wall_s() - began_s;
 }
 
 static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix *damping,
@@ -375,12 +398,8 @@ static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix 
                        names[solver->kind]);
   double began = clock_wall_s();
   Status status = renew(solver, stiffness);
-  if (status == STATUS_OK) {
-    solver->current = stiffness;
-    solver->stats.factorisations++;
-  } else
-    solver->stats.failed_factorisations++;
-  solver->stats.factorise_s += clock_wall_s() - began;
+  if (status == STATUS_OK) solver->current = stiffness;
+  count_factorisation(solver, status, began);
   return status;
 }
 
@@ -420,19 +439,22 @@ static Status solve_by(PetscSolver *solver, const double *b, double *x) {
   bool was_fresh = solver->is_fresh;
   Status status = iterate(solver, b, x, was_fresh ? LIMIT : LIMIT_KEPT, &end);
   if (status != STATUS_RETRY || was_fresh) return status;
-  TRY(build(solver, solver->current));
+  double began = clock_wall_s();
+  status = build(solver, solver->current);
+  count_factorisation(solver, status, began);
+  TRY(status);
   return iterate(solver, b, x, LIMIT, &end);
 }
 
 static Status solve(void *self, const double *b, double *x) {
   PetscSolver *solver = self;
   if (!solver->current) return status_fail(STATUS_SOLVER, "%s: no matrix to solve with", names[solver->kind]);
-  double began = clock_wall_s();
+  double began = clock_wall_s(), factorised_s = solver->stats.factorise_s;
   int before = fem_solver_use_threads(solver->threads);
   Status status = solve_by(solver, b, x);
   fem_solver_use_threads(before);
   solver->stats.solves++;
-  solver->stats.solve_s += clock_wall_s() - began;
+  solver->stats.solve_s += clock_wall_s() - began - (solver->stats.factorise_s - factorised_s);
   if (!status && !fem_solver_is_finite(x, solver->size))
     return status_fail(STATUS_RETRY, "the solution of the condensed system is not finite");
   return status;

@@ -8,7 +8,9 @@ enum { COLUMNS = 4 * NET_COLUMN_UNIT };
 
 bool net_kernel_bf16_is_native(void) {
 #if defined(__x86_64__)
-  return net_kernel_is_available(NET_KERNEL_AVX512) && __builtin_cpu_supports("avx512bf16");
+  return __builtin_cpu_supports("avx512bf16") && __builtin_cpu_supports("avx512f") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+         __builtin_cpu_supports("avx512bw");
 #else
   return false;
 #endif
