@@ -12,8 +12,8 @@ static const char UNEVEN_LOWER[] = "unevenness, lower", UNEVEN_UPPER[] = "uneven
                   INSIDE_UPPER[] = "false friction inside, upper",
                   WHOLE_PATCH[] = "false friction, whole patch", BELOW[] = "force below the surface";
 
-static const char LEARNED[] = "geo geo-small", PAPERS[] = "tpn tpn-bf16",
-                  INTEGRABLE[] = "tpn-scene hybrid", NETWORKS[] = "tpn tpn-bf16 tpn-scene";
+static const char LEARNED[] = "geo geo-small", PAPERS[] = "tpn tpn-bf16", INTEGRABLE[] = "tpn-scene hybrid",
+                  NETWORKS[] = "tpn tpn-bf16 tpn-scene";
 static const char FINER[] =
     "the finer slab is pressed deep in its own elements: by 1.2 of them at the last depth";
 static const char BY_ELEMENT[] = "pressure by element, which depends on how the other mesh covers it; "
@@ -25,8 +25,7 @@ static const char SIDEWAYS[] =
     "and what is left is 4 to 14 % of the normal force";
 static const char PIECEWISE[] =
     "a network of ReLUs and maxima: its grad V errs by tens of per cent, is constant in pieces and jumps "
-    "from "
-    "one to the next; pairs that are apart are pushed by ghosts and some that overlap are missed";
+    "from one to the next; pairs that are apart are pushed by ghosts and some that overlap are missed";
 static const char ROUGH[] =
     "the network's grad V is continuous but errs by tens of per cent, sideways too, and "
     "what is wrong does not cancel between neighbouring pairs";

@@ -8,11 +8,10 @@
 #include "net/model/whitening.h"
 
 // Reads the parameters of a file, or of a model whose weights ship, with the model's shape and the card's
-// normalisation. With a whitening
-// (may be NULL) the file's network takes features f and the model takes w = M (f − mean): the first layer is
-// brought over, W ← W M⁻¹, b ← b + W mean. With that of vectors.h (may be NULL) so are the last layer's
-// rows from the second on; a file without those leaves the model's as they are. STATUS_INPUT: another shape
-// or normalisation.
+// normalisation. With a whitening (may be NULL) the file's network takes features f and the model takes
+// w = M (f − mean): the first layer is brought over, W ← W M⁻¹, b ← b + W mean. With that of vectors.h (may
+// be NULL) so are the last layer's rows from the second on; a file without those leaves the model's as they
+// are. STATUS_INPUT: another shape or normalisation.
 Status app_training_start_read(const char *name, const char *normalisation, const NetWhitening *whitening,
                                const NetWhitening *vectors, NetModel_f32 *model);
 

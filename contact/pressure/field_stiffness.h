@@ -22,8 +22,7 @@ typedef struct ContactFieldStiffness {
   int count;
   int *vertices; // of the contact mesh                              (count)
   int *place;    // 1 + place among them, 0: none                    (vertex_count)
-  double
-      *sum; //                                                  (3 count, 3 count) in rows of a fixed length
+  double *sum;   // in rows of a fixed length                        (3 count, 3 count)
   double *dense; // the same without gaps
 } ContactFieldStiffness;
 

@@ -40,12 +40,10 @@ const char *fem_material_limit(FemMaterialLaw law) {
   switch (law) {
   case FEM_MATERIAL_STVK:
     return "St. Venant-Kirchhoff's law bears the largest pressure at 0.58 of a length, where ever less "
-           "resists "
-           "more compression; take law: neo_hookean or neo_hookean_log, or a smaller load";
+           "resists more compression; take law: neo_hookean or neo_hookean_log, or a smaller load";
   case FEM_MATERIAL_COROTATIONAL:
     return "the corotational law resists compression by no more than a spring, to nothing left and beyond; "
-           "take "
-           "law: neo_hookean_log, or a smaller load";
+           "take law: neo_hookean_log, or a smaller load";
   case FEM_MATERIAL_NEO_HOOKEAN_LOG:
     return "its law bears any pressure, so the mesh folds: refine it there, or take smaller steps of load "
            "(time.max_step)";

@@ -3,29 +3,25 @@
 // other most.
 //
 // give    The interface is a spring in series with the bodies: with the potential U of the pair and the
-// elastic
-//         energies E_a, E_b of the two (0 of an obstacle), each of them ½ force · way,
+//         elastic energies E_a, E_b of the two (0 of an obstacle), each of them ½ force · way,
 //
 //           give = U / (U + E_a + E_b)
 //
-//         is the interface's share of the way. What is pressed by a prescribed way is too soft by that share
-//         of the force, what is pressed by a prescribed force by that share of the way. U goes with 1/c, so
-//         the stiffness that brings it to 1 % is c · 99 give / (1 − give).
-// rim     Beside an edge of a body the nearest surface is its side, and what lies there is pushed sideways:
-// the share
-//         of the force that is lost at this depth. With F_k the pairs of an element, w_k and g_k their
-//         weights and slopes (contact/pressure/field.h),
+//         is the interface's share of the way. What is pressed by a prescribed way is too soft by that
+//         share of the force, what is pressed by a prescribed force by that share of the way. U goes with
+//         1/c, so the stiffness that brings it to 1 % is c · 99 give / (1 − give).
+// rim     Beside an edge of a body the nearest surface is its side, and what lies there is pushed
+//         sideways: the share of the force that is lost at this depth. With F_k the pairs of an element,
+//         w_k and g_k their weights and slopes (contact/pressure/field.h), n = Σ F_k / |Σ F_k| of the
+//         element,
 //
-//           rim = Σ [ c (w_i |g_B| + w_j |g_A|) − F_k · n ] / Σ F_k · n,    n = Σ F_k / |Σ F_k| of the
-//           element.
+//           rim = Σ [ c (w_i |g_B| + w_j |g_A|) − F_k · n ] / Σ F_k · n.
 //
 //         It goes with the depth, so with 1/c.
-// depth   D = 2 U / F, the mean depth of the overlap, over the mean edge of the elements that take part: how
-// much
-//         of what should be a surface is a volume.
-// known   the position tolerance of a time step over D: by how much the depth is undetermined in one step of
-// a
-//         motion. Forces at rest are balanced more closely than that (docs/time.md).
+// depth   D = 2 U / F, the mean depth of the overlap, over the mean edge of the elements that take part:
+//         how much of what should be a surface is a volume.
+// known   the position tolerance of a time step over D: by how much the depth is undetermined in one step
+//         of a motion. Forces at rest are balanced more closely than that (docs/time.md).
 // across  √area over that edge: how many elements resolve the patch.
 #ifndef TETLAP_FEM_MEASURE_ACCURACY_H
 #define TETLAP_FEM_MEASURE_ACCURACY_H

@@ -10,8 +10,8 @@
 enum { FEM_MESH_MAX_VERTICES = 500 * 1000 * 1000, FEM_MESH_MAX_TETS = 150 * 1000 * 1000 };
 
 // Checks, turns what is inside out, takes middles out of the vertices, drops those that are unused and
-// renumbers groups. The arrays of the source move
-// into the mesh; on failure the mesh is zeroed. The source is left to be destroyed in both cases.
+// renumbers groups. The arrays of the source move into the mesh; on failure the mesh is zeroed. The source is
+// left to be destroyed in both cases.
 Status fem_mesh_validate(FemMesh *mesh, FemMeshSource *source, const char *origin, FemMeshRepairs *repairs);
 
 #endif

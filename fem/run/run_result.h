@@ -12,9 +12,9 @@
 
 // `contact`: candidate lists, watched onsets, pressures and forces, without broad phase and overlap volumes.
 // What no phase names (the energy audit, the integrator's vectors) is the difference to the total.
+// All of them wall [s].
 typedef struct FemRunPhases {
-  double broad_phase, overlap, contact, forces, assembly, analysis, factorisation, solve, output,
-      total; // wall [s]
+  double broad_phase, overlap, contact, forces, assembly, analysis, factorisation, solve, output, total;
 } FemRunPhases;
 
 enum { FEM_RUN_TOLD = 3 };
@@ -50,8 +50,8 @@ typedef struct FemRunResult {
   size_t peak_rss_bytes;
   Record *counters; // owned
   Record *account;  // contacts and probes as in summary.json, owned; NULL: the run has not begun
-  char told[FEM_RUN_TOLD]
-           [512]; // a line on each of the two that pressed most, on how wrong they may be  (told_count)
+  // A line on each of the two that pressed most, on how wrong they may be                 (told_count)
+  char told[FEM_RUN_TOLD][512];
   int told_count;
   int effect_count; // those that the scene called for
   struct {

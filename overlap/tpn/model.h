@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // TetrahedronPairNet as an overlap model: `tpn-published` as its authors train it, `tpn` after it (reading a,
-// vertices sorted, V over the determinant), `tpn-scene` made fit for scenes, and `hybrid`, the paper's
-// section
-// 5. `tpn-bf16` is tpn computed with less precision.
+// vertices sorted, V over the determinant), `tpn-scene` made fit for scenes, and `hybrid`, section 5
+// of the paper. `tpn-bf16` is tpn computed with less precision.
 //
 //   pair ─ disjoint, by an exact test? ─► V = 0                                       (ghosts: cut, fade)
 //     └─► normalised (normalise.h), in one order or both ─► network ─► z, v ─┐

@@ -379,8 +379,7 @@ static const AppBenchColumn columns[] = {
     {"net", APP_BENCH_TEXT, offsetof(Row, net), "net", "name or weights file"},
     {"implementation", APP_BENCH_TEXT, offsetof(Row, implementation), "by",
      "a kernel of ours, or PyTorch and its version; folded: the first tetrahedron, the same in all inputs, "
-     "once "
-     "for all"},
+     "once for all"},
     {"precision", APP_BENCH_TEXT, offsetof(Row, precision), NULL, "float, double or bf16"},
     {"parameters", APP_BENCH_INTEGER, offsetof(Row, parameters), NULL, "of the network"},
     {"quantity", APP_BENCH_TEXT, offsetof(Row, quantity), "quantity",

@@ -223,8 +223,8 @@ static const AppBenchColumn columns[] = {
     {"spread", APP_BENCH_NUMBER, offsetof(Row, spread), "spread", "(max − min) / median"},
     {"ratio_to_torch", APP_BENCH_NUMBER, offsetof(Row, ratio), "× PyTorch",
      "speed over PyTorch's in the same round, median of the rounds. PyTorch takes the same batch over and "
-     "over "
-     "(forward, loss, backward, AdamW); ours also gathers each batch from all pairs and clips the gradient"},
+     "over (forward, loss, backward, AdamW); ours also gathers each batch from all pairs and clips the "
+     "gradient"},
     {"ratio_to_torch_min", APP_BENCH_NUMBER, offsetof(Row, ratio_min), NULL, "smallest of the rounds"},
     {"ratio_to_torch_max", APP_BENCH_NUMBER, offsetof(Row, ratio_max), NULL, "largest of the rounds"},
     {"cpu_ratio_to_torch", APP_BENCH_NUMBER, offsetof(Row, cpu_ratio), NULL,

@@ -38,8 +38,7 @@ static const struct argp_option option_table[] = {
     {"model", 'm', "NAME,…", 0, "Models, by name or weights file (default: all that there are)", 1},
     {"sweep", KEY_SWEEP, "DIR", 0,
      "Also the networks of this sweep, as in examples/train/sweep; what is not in DIR/weights of the output "
-     "is "
-     "trained first",
+     "is trained first",
      1},
     {"pairs", KEY_SET, "NAME,…", 0, "Sets of pairs: near, uniform (default: both)", 1},
     {"count", 'n', "N", 0, "Pairs that errors are taken over (default: 20000; slow models fewer)", 1},

@@ -194,10 +194,9 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "SCENE",
     .doc = "Evaluate many rigid poses of one of a scene's bodies against all others: a line a pose with the "
-           "overlap "
-           "volume V [m³], the force f = −∂V/∂t [m²] and the moment m [m³] about the body's centre that a "
-           "pressure "
-           "of 1 Pa would exert on it. Obstacles without elements take no part. docs/devices.md tells more."};
+           "overlap volume V [m³], the force f = −∂V/∂t [m²] and the moment m [m³] about the body's centre "
+           "that a pressure of 1 Pa would exert on it. Obstacles without elements take no part. "
+           "docs/devices.md tells more."};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.seed = 1, .shift = -1, .turn = 0.2};

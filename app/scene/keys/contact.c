@@ -80,8 +80,7 @@ static const SceneKey net_keys[] = {
      .help = "tpn, hybrid: pairs with faces that nearly lie in one plane, whose V has kinks"},
     {"touch", SCENE_NUMBER, AT(FemContactDef, net_options.touch), .range = "(0, 1)", .fallback = "0.02",
      .help = "share of overlap up to which V is faded in; `hybrid` takes exact up to there, the network from "
-             "twice "
-             "that"},
+             "twice that"},
     {"deep", SCENE_NUMBER, AT(FemContactDef, net_options.deep), .range = "(0, 2]", .fallback = "0.3",
      .help =
          "hybrid: share of overlap up to which the network is taken, exact from one and a half times that"},
