@@ -91,13 +91,14 @@ START_TEST(a_power_law_gives_its_exponent) {
 }
 END_TEST
 
-START_TEST(two_blocks_touch_from_the_first_step) {
+START_TEST(scenes_for_large_meshes_touch_from_the_first_step) {
   static AppBenchTrial trial;
   AppBenchOptions options = app_bench_options_default(1);
-  ck_assert_ok(app_bench_builtin_blocks(300, &trial.scene));
+  trial = (AppBenchTrial){0};
+  ck_assert_ok(app_bench_builtin_large[_i].read(300, &trial.scene));
   ck_assert_ok(app_bench_trial_begin(&trial, &options, 1));
   ck_assert_int_ge(trial.model.vertex_count, 200);
-  ck_assert_int_le(trial.model.vertex_count, 400);
+  ck_assert_int_le(trial.model.vertex_count, 550); // the press with the vertices of its plate
   ck_assert_ok(app_bench_trial_run(&trial, 0));
   ck_assert_int_gt(trial.result.pairs_max, 10);
   app_bench_trial_end(&trial);
@@ -269,8 +270,8 @@ static const Promise promises[] = {
     {"train examples/train/sweep/geo.yaml --batch 64 --pairs 300 --repeat 1", 1,
      "bench config model implementation spread ratio_to_torch",
      "parameters batch threads samples_per_second samples_per_cpu_second"},
-    {"scaling --model clip --pairs 100,1000 --nodes 100,200 --steps 2 --repeat 1 --solver amg", 0,
-     "bench subject name spread exponent cpu_seconds", "size seconds seconds_per_item done"},
+    {"scaling --model clip --pairs 100,1000 --nodes 100,200 --scene press --steps 2 --repeat 1 --solver amg",
+     0, "bench subject name spread exponent cpu_seconds", "size seconds seconds_per_item done"},
     {"solver --nodes 60,100 --repeat 2", 10, "bench solver iterations spread factor_entries",
      "vertices unknowns step slenderness assembly_s factorisation_s solve_s setup_solve_s residual"},
     {"beam --nodes 60 --steps 3", 5, "bench solver linear_iterations spread",
@@ -381,6 +382,7 @@ START_TEST(wrong_arguments_are_usage_errors) {
                          "solver --threads 1,2",
                          "scaling --solver amg,pcg",
                          "scaling --solver umfpack",
+                         "scaling --scene moon",
                          "datagen --law paper",
                          "train",
                          "precision examples/02_two_blocks.yaml --level 0",
@@ -421,7 +423,7 @@ int main(void) {
   tcase_add_test(cases, more_pairs_than_are_made_repeat_the_first);
   tcase_add_test(cases, the_peak_is_a_number);
   tcase_add_test(cases, a_power_law_gives_its_exponent);
-  tcase_add_test(cases, two_blocks_touch_from_the_first_step);
+  tcase_add_loop_test(cases, scenes_for_large_meshes_touch_from_the_first_step, 0, APP_BENCH_LARGE_COUNT);
   tcase_add_test(cases, a_trial_is_cut_short_or_fails_and_says_so);
   tcase_add_test(cases, a_card_tells_a_networks_size);
   tcase_add_test(cases, contestants_take_turns_to_and_fro_after_a_warm_up);

@@ -71,3 +71,99 @@ Status app_bench_builtin_blocks(int nodes, FemSceneDef *scene) {
            lower, upper, 0.1 - 0.02 * edge);
   return app_scene_read_text("(blocks)", text, strlen(text), scene);
 }
+
+// Blocks of builtin_blocks, the upper one held by nothing but contact in statics, or pushed down and aside.
+static Status read_blocks(int nodes, const char *poisson, const char *upper, const char *rest,
+                          FemSceneDef *scene) {
+  int lower = (int)fmax(2, round(cbrt(nodes / 2.95) - 0.9)), above = (int)round(1.25 * lower);
+  double edge = 0.1 / lower;
+  char text[TEXT_SIZE];
+  snprintf(text, sizeof text,
+           "title: A block is pressed into another\n"
+           "bodies:\n"
+           "  - name: lower\n"
+           "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: %d}}\n"
+           "    place: {translate: [-0.05, -0.05, 0]}\n"
+           "    material: {young: 1e5, poisson: %s, density: 1000, damping: 1e-3}\n"
+           "    fixed: [{box: {min: [-1, -1, -1e-9], max: [1, 1, 1e-9]}}]\n"
+           "  - name: upper\n"
+           "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: %d}}\n"
+           "    place: {rotate: {axis: [0, 0, 1], degrees: 20}, translate: [-0.03, -0.07, %.17g]}\n"
+           "    material: {young: 2e5, poisson: %s, density: 1000, damping: 1e-3}\n"
+           "%s%s"
+           "output: {frames: 1, vtu: false}\n",
+           lower, poisson, above, 0.1 - 0.02 * edge, poisson, upper, rest);
+  return app_scene_read_text("(blocks)", text, strlen(text), scene);
+}
+
+static Status read_pressed(int nodes, FemSceneDef *scene) {
+  return read_blocks(nodes, "0.45", "    driven: [{group: z_max, velocity: [0.05, 0, -0.1]}]\n",
+                     "contact: {friction: 0.5}\n"
+                     "time: {end: 0.1}\n",
+                     scene);
+}
+
+static Status read_floating(int nodes, FemSceneDef *scene) {
+  return read_blocks(nodes, "0.45", "",
+                     "effects: {gravity: [0, 0, -9.81]}\n"
+                     "contact: {friction: 0.5}\n"
+                     "time: {end: 1, static: true}\n",
+                     scene);
+}
+
+// A cube of n cells along an edge has (n + 1)³ vertices.
+static int cells_of(int nodes) {
+  return (int)fmax(2, round(cbrt(nodes) - 1));
+}
+
+static Status read_ball(int nodes, FemSceneDef *scene) {
+  char text[TEXT_SIZE];
+  snprintf(text, sizeof text,
+           "title: A rigid ball is pressed into a block and turns\n"
+           "bodies:\n"
+           "  - name: block\n"
+           "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: %d}}\n"
+           "    place: {translate: [-0.05, -0.05, -0.1]}\n"
+           "    material: {young: 1e5, poisson: 0.3, density: 1000, damping: 1e-3}\n"
+           "    fixed: [{group: z_min}]\n"
+           "obstacles:\n"
+           "  - name: ball\n"
+           "    sphere: {centre: [0, 0, 0.0499], radius: 0.05}\n"
+           "    motion: {velocity: [0, 0, -0.1], spin: 6, axis: [0, 1, 0], centre: [0, 0, 0.0499]}\n"
+           "contact: {friction: 0.6}\n"
+           "time: {end: 0.1}\n"
+           "output: {frames: 1, vtu: false}\n",
+           cells_of(nodes));
+  return app_scene_read_text("(ball)", text, strlen(text), scene);
+}
+
+static Status read_press(int nodes, FemSceneDef *scene) {
+  int cells = cells_of(nodes);
+  char text[TEXT_SIZE];
+  snprintf(text, sizeof text,
+           "title: A driven plate presses a block\n"
+           "bodies:\n"
+           "  - name: block\n"
+           "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: %d}}\n"
+           "    place: {translate: [-0.05, -0.05, 0]}\n"
+           "    material: {young: 1e6, poisson: 0.3, density: 1000, damping: 2e-3}\n"
+           "    fixed: [{group: z_min}]\n"
+           "obstacles:\n"
+           "  - name: plate\n"
+           "    mesh: {box: {size: [0.16, 0.16, 0.02], cells: [%d, %d, 2]}}\n"
+           "    place: {translate: [-0.08, -0.08, 0.09999]}\n"
+           "    motion: {velocity: [0, 0, -0.026]}\n"
+           "contact: {}\n"
+           "time: {end: 0.8}\n"
+           "output: {frames: 1, vtu: false}\n",
+           cells, cells, cells);
+  return app_scene_read_text("(press)", text, strlen(text), scene);
+}
+
+const AppBenchLarge app_bench_builtin_large[APP_BENCH_LARGE_COUNT] = {
+    {"blocks", "two blocks in contact", app_bench_builtin_blocks},
+    {"pressed", "two blocks pressed with friction, nu 0.45", read_pressed},
+    {"ball", "a rigid ball that turns in a block", read_ball},
+    {"press", "a plate with a mesh presses a block", read_press},
+    {"floating", "statics: two blocks, the upper held by contact and friction alone, nu 0.45", read_floating},
+};

@@ -19,4 +19,12 @@ Status app_bench_builtin_drop(double stiffness, double tolerance, FemSceneDef *s
 // the first step. E 0.1 and 0.2 MPa, damped, gravity; 0.1 s.
 Status app_bench_builtin_blocks(int nodes, FemSceneDef *scene);
 
+// Scenes for large meshes, of about `nodes` (≥ 60) vertices, in contact from the first step.
+enum { APP_BENCH_LARGE_COUNT = 5 };
+typedef struct AppBenchLarge {
+  const char *name, *help;
+  Status (*read)(int nodes, FemSceneDef *scene);
+} AppBenchLarge;
+extern const AppBenchLarge app_bench_builtin_large[APP_BENCH_LARGE_COUNT];
+
 #endif

@@ -27,16 +27,18 @@ typedef struct Options {
   int pairs[APP_BENCH_MAX_LIST], pair_sizes;
   int nodes[APP_BENCH_MAX_LIST], node_sizes;
   int steps;
-  FemSolverKind solver;   // of the blocks
+  const AppBenchLarge *scene;
+  FemSolverKind solver;   // of its runs
   double memory, seconds; // limits of one size [GiB], [s]
 } Options;
 
-enum { KEY_MEMORY = 256, KEY_SECONDS, KEY_SOLVER };
+enum { KEY_MEMORY = 256, KEY_SECONDS, KEY_SOLVER, KEY_SCENE };
 
 static const struct argp_option option_table[] = {
     {"model", 'm', "NAME,…", 0, "Overlap models (default: clip,geo-small,geo)", 1},
     {"pairs", 'p', "N,…", 0, "Pairs a call, V + ∇V (default: 1e3,1e4,1e5,1e6; 0: none)", 1},
-    {"nodes", 'n', "N,…", 0, "Vertices of two blocks in contact (default: 1e3,3e3,1e4; 0: none)", 1},
+    {"nodes", 'n', "N,…", 0, "Vertices of the scene (default: 1e3,3e3,1e4; 0: none)", 1},
+    {"scene", KEY_SCENE, "NAME", 0, "blocks (the default), pressed, ball, press or floating (static)", 1},
     {"steps", 'k', "N", 0, "Steps of each run (default: 10)", 1},
     {"solver", KEY_SOLVER, "NAME", 0, "Linear solver of the runs (default: auto)", 1},
     {"memory", KEY_MEMORY, "GIB", 0, "Leave out sizes that take more (default: 6)", 1},
@@ -71,6 +73,19 @@ static FemSolverKind read_solver(struct argp_state *state, char *text) {
   return (FemSolverKind)chosen;
 }
 
+static const AppBenchLarge *read_scene(struct argp_state *state, char *text) {
+  const char *names[APP_BENCH_LARGE_COUNT];
+  bool wanted[APP_BENCH_LARGE_COUNT] = {false};
+  for (int k = 0; k < APP_BENCH_LARGE_COUNT; k++) names[k] = app_bench_builtin_large[k].name;
+  app_bench_options_choose(state, "scene", text, names, APP_BENCH_LARGE_COUNT, wanted);
+  const AppBenchLarge *chosen = NULL;
+  int count = 0;
+  for (int k = 0; k < APP_BENCH_LARGE_COUNT; k++)
+    if (wanted[k]) chosen = &app_bench_builtin_large[k], count++;
+  if (count != 1) argp_error(state, "--scene takes one name");
+  return chosen;
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   const char *models[MAX_MODELS];
@@ -93,6 +108,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case KEY_SOLVER:
     options->solver = read_solver(state, text);
     return 0;
+  case KEY_SCENE:
+    options->scene = read_scene(state, text);
+    return 0;
   case KEY_MEMORY:
     options->memory = app_argument_number(state, "memory", text, 1e-3, 1e6);
     return 0;
@@ -108,6 +126,7 @@ typedef struct Row {
   const char *subject, *of; // overlap and the model, or step and the phase
   long long size, done;     // pairs or vertices; calls or steps
   double seconds, cpu, spread, each, exponent;
+  double newton, set_ups, iterations, peak; // of the whole run, of `total` alone
 } Row;
 
 static const AppBenchColumn columns[] = {
@@ -115,7 +134,7 @@ static const AppBenchColumn columns[] = {
      "overlap (size: pairs) or step (size: vertices)"},
     {"name", APP_BENCH_TEXT, offsetof(Row, of), "",
      "overlap model, or phase of a step; `factorisation` is told a "
-     "factorisation"},
+     "set-up"},
     {"size", APP_BENCH_INTEGER, offsetof(Row, size), "size", "pairs of a call, or vertices of the scene"},
     {"seconds", APP_BENCH_NUMBER, offsetof(Row, seconds), "s", "wall time of a call or a step [s]"},
     {"cpu_seconds", APP_BENCH_NUMBER, offsetof(Row, cpu), "cpu s", "processor time of it; not of phases [s]"},
@@ -123,6 +142,13 @@ static const AppBenchColumn columns[] = {
     {"seconds_per_item", APP_BENCH_NUMBER, offsetof(Row, each), "s each", "a pair or a vertex [s]"},
     {"exponent", APP_BENCH_NUMBER, offsetof(Row, exponent), "exponent",
      "p of the power law seconds ~ sizeᵖ that fits all sizes of this name best"},
+    {"newton_iterations", APP_BENCH_NUMBER, offsetof(Row, newton), "Newton", "of the run"},
+    {"set_ups", APP_BENCH_NUMBER, offsetof(Row, set_ups), "set-ups",
+     "factors or hierarchies made in the run"},
+    {"iterations_per_solve", APP_BENCH_NUMBER, offsetof(Row, iterations), "its",
+     "iterations of an iterative linear solver, the mean of a solve"},
+    {"peak_bytes", APP_BENCH_NUMBER, offsetof(Row, peak), "peak B",
+     "largest resident set of the process so far, so sizes should ascend"},
     {"done", APP_BENCH_INTEGER, offsetof(Row, done), NULL, "steps of the run; calls of a round"},
 };
 static const AppBenchReport report = {"scaling", columns, sizeof columns / sizeof *columns, sizeof(Row),
@@ -192,7 +218,11 @@ static Status measure_model(const Options *options, const OverlapModel *model, d
                                         .seconds = time.wall * size,
                                         .cpu = time.cpu * size,
                                         .spread = (time.wall_max - time.wall_min) / time.wall,
-                                        .each = time.wall};
+                                        .each = time.wall,
+                                        .newton = NAN,
+                                        .set_ups = NAN,
+                                        .iterations = NAN,
+                                        .peak = NAN};
   }
   memory_free(contestants);
   return status;
@@ -238,22 +268,32 @@ static Status measure_pairs(Options *options, Table *table) {
   return status;
 }
 
+static long long set_ups_of(const FemRunResult *result) {
+  return result->solver.hierarchies > 0 ? result->solver.hierarchies : result->solver.factorisations;
+}
+
 // Phases by name beside the whole: what is none in this scene is left out.
 static void add_phases(const AppBenchTrial *trial, int rounds, Table *table) {
   double seconds[APP_BENCH_PHASE_COUNT];
   const FemRunResult *result = &trial->result;
   AppBenchTime time = app_bench_timer_time(&trial->timer, rounds);
   FemRunPhases phases = app_bench_trial_phases(trial, rounds);
-  double steps = (double)result->integrator.steps, size = trial->model.vertex_count;
+  double steps = fmax((double)result->integrator.steps, 1), size = trial->model.vertex_count;
   Row row = {
       .subject = "step", .of = "total", .size = trial->model.vertex_count, .done = result->integrator.steps};
   row.seconds = time.wall / steps, row.cpu = time.cpu / steps, row.each = row.seconds / size;
   row.spread = (time.wall_max - time.wall_min) / time.wall;
+  row.newton = (double)result->integrator.newton_iterations;
+  row.set_ups = (double)set_ups_of(result);
+  row.iterations =
+      result->solver.solves ? (double)result->solver.iterations / (double)result->solver.solves : NAN;
+  row.peak = (double)result->peak_rss_bytes;
   table->rows[table->count++] = row;
+  row.newton = row.set_ups = row.iterations = row.peak = NAN;
   app_bench_trial_split(&phases, seconds);
   for (int p = 0; p < APP_BENCH_PHASE_COUNT; p++) {
     bool is_factor = strcmp(app_bench_phases[p], "factorisation") == 0;
-    double parts = is_factor ? (double)result->solver.factorisations : steps;
+    double parts = is_factor ? (double)set_ups_of(result) : steps;
     if (!(seconds[p] > 0 && parts > 0)) continue;
     row.of = app_bench_phases[p];
     row.seconds = seconds[p] / parts, row.each = row.seconds / size, row.cpu = row.spread = NAN;
@@ -263,7 +303,7 @@ static void add_phases(const AppBenchTrial *trial, int rounds, Table *table) {
 
 static Status measure_nodes(const Options *options, AppBenchTrial *trial, int nodes, Table *table) {
   int rounds = options->common.repeats;
-  TRY(app_bench_builtin_blocks(nodes, &trial->scene));
+  TRY(options->scene->read(nodes, &trial->scene));
   trial->scene.solver = options->solver;
   trial->wall_limit_s = options->seconds;
   TRY(app_bench_trial_begin(trial, &options->common, options->steps));
@@ -310,6 +350,7 @@ static int run_command(int argument_count, char **arguments) {
                      .nodes = {1000, 3000, 10000},
                      .node_sizes = 3,
                      .steps = 10,
+                     .scene = &app_bench_builtin_large[0],
                      .solver = FEM_SOLVER_AUTO,
                      .memory = 6,
                      .seconds = 60};
