@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/element/lanes on every instruction set that this processor has, against the formulas for one element;
+// fem/lanes on every instruction set that this processor has, against the formulas for one element;
 // and fem/effect/packs, the order in which elements come to them.
 #include "suite.h"
 
@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "fem/effect/packs.h"
-#include "fem/element/lanes.h"
+#include "fem/lanes/lanes.h"
 #include "fem/model/build.h"
 
 enum { ROUNDS = 40 };
@@ -66,19 +66,27 @@ static void check_matrix(FemLanesRow matrix[FEM_LANES_ENTRIES], int lane, const 
                   expected[k]);
 }
 
-static FemMaterial material_of(int law) {
-  return (FemMaterial){.law = (FemMaterialLaw)law,
+// A law; beyond them laws with fibres: those that buckle, and such that do not.
+enum { MATERIALS = 3 * FEM_MATERIAL_LAW_COUNT };
+
+static FemMaterial material_of(int number) {
+  int fibres = number / FEM_MATERIAL_LAW_COUNT;
+  return (FemMaterial){.law = (FemMaterialLaw)(number % FEM_MATERIAL_LAW_COUNT),
                        .young = 1,
                        .poisson = 0.3,
                        .density = 1,
                        .mooney = 0.3,
+                       .exponents = {1.3, 5, -2},
+                       .shares = {0.9, 0.02, 0.08},
+                       .fibre_stiffness = fibres > 0 ? 2 : 0,
+                       .fibre_direction = {1, 0.5, -2},
+                       .fibres_buckle = fibres > 1,
                        .viscosity = 0.1,
                        .bulk_viscosity = 0.2};
 }
 
 START_TEST(elastic_forces_and_matrices_are_those_of_single_elements) {
   FemMaterial material = material_of(_i);
-  if (!fem_lanes_has(&material)) return;
   int count;
   const FemLanes *const *all = fem_lanes_list(&count);
   Random random = random_seeded(71, 0);
@@ -131,7 +139,6 @@ END_TEST
 // Lanes in the reverse order give the reverse of the numbers, to the bit.
 START_TEST(a_lane_hangs_on_its_element_alone) {
   FemMaterial material = material_of(_i);
-  if (!fem_lanes_has(&material)) return;
   int count;
   const FemLanes *const *all = fem_lanes_list(&count);
   Random random = random_seeded(73, 0);
@@ -155,15 +162,74 @@ START_TEST(a_lane_hangs_on_its_element_alone) {
 }
 END_TEST
 
-START_TEST(packing_a_matrix_and_unpacking_it_changes_nothing) {
-  double dense[144], again[144];
-  Random random = random_seeded(74, 0);
-  for (int r = 0; r < 12; r++)
-    for (int c = 0; c <= r; c++) dense[12 * r + c] = dense[12 * c + r] = random_normal(&random);
-  FemLanesRow rows[FEM_LANES_ENTRIES];
-  fem_lanes_pack(dense, 5, rows);
-  fem_lanes_unpack(rows, 5, again);
-  ck_assert_mem_eq(dense, again, sizeof dense);
+// All lanes of an element whose nodes 1, 2, 3 are unit vectors at rest: its F, by columns, is what they are.
+static void eight_deform(Eight *eight, const double F[9]) {
+  static const double rest[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  for (int l = 0; l < FEM_LANES; l++) {
+    fem_element_create(&eight->element[l], rest);
+    for (int a = 0; a < 4; a++)
+      for (int i = 0; i < 3; i++) eight->x[12 * l + 3 * a + i] = a == 0 ? 0 : F[3 * i + a - 1];
+    for (int a = 0; a < 3; a++)
+      for (int j = 0; j < 3; j++) eight->lanes.gradient[3 * a + j][l] = eight->element[l].gradient[a + 1][j];
+    eight->lanes.volume[l] = eight->element[l].volume;
+  }
+}
+
+// At rest, turned, equal stretches, beyond the edges of powers and logarithms, tiny, huge, flat, mirrored.
+START_TEST(deformations_of_every_kind_are_those_of_single_elements) {
+  static const double kinds[][9] = {{1, 0, 0, 0, 1, 0, 0, 0, 1},
+                                    {0, -1, 0, 1, 0, 0, 0, 0, 1},
+                                    {1.5, 0, 0, 0, 1.5, 0, 0, 0, 1.5},
+                                    {0.05, 0, 0, 0, 2, 0, 0, 0, 1},
+                                    {0.05, 0, 0, 0, 0.07, 0, 0, 0, 1},
+                                    {1e-3, 0, 0, 0, 0.02, 0, 0, 0, 3},
+                                    {1, 0, 0, 0, 1 + 1e-9, 0, 0, 0, 2},
+                                    {1, 1, 0, 0, 1, 0, 0, 0, 0},
+                                    {0.9, 0, 0, 0, 1.3, 0, 0, 0, -0.4},
+                                    {30, 0, 0, 0, 20, 1, 0, 0, 50},
+                                    {2e-11, 0, 0, 0, 1e-11, 0, 0, 0, 3e-11}};
+  FemMaterial material = material_of(_i);
+  int count;
+  const FemLanes *const *all = fem_lanes_list(&count);
+  Random random = random_seeded(75, 0);
+  Eight eight = eight_random(&random, 0);
+  for (size_t n = 0; n < sizeof kinds / sizeof *kinds; n++) {
+    eight_deform(&eight, kinds[n]);
+    for (int k = 0; k < count; k++) {
+      FemLanesRow force[12], matrix[FEM_LANES_ENTRIES];
+      double expected[144];
+      all[k]->force(&material, &eight.lanes, eight.x, force);
+      all[k]->matrix(&material, &eight.lanes, eight.x, 1, matrix);
+      fem_element_force(&eight.element[3], &material, eight.x + 36, expected);
+      check_forces(force, 3, expected, 1e-14, all[k]->name);
+      fem_element_stiffness(&eight.element[3], &material, eight.x + 36, expected);
+      check_matrix(matrix, 3, expected, 1e-14, all[k]->name);
+    }
+  }
+}
+END_TEST
+
+START_TEST(what_is_not_finite_stays_in_its_lane) {
+  FemMaterial material = material_of(_i);
+  int count;
+  const FemLanes *const *all = fem_lanes_list(&count);
+  Random random = random_seeded(76, 0);
+  Eight eight = eight_random(&random, 0.1), bad = eight;
+  bad.x[12 * 2 + 7] = NAN;
+  for (int k = 0; k < count; k++) {
+    FemLanesRow force[2][12];
+    all[k]->force(&material, &eight.lanes, eight.x, force[0]);
+    all[k]->force(&material, &eight.lanes, bad.x, force[1]);
+    bool is_finite = true;
+    for (int r = 0; r < 12; r++)
+      for (int l = 0; l < FEM_LANES; l++) {
+        if (l == 2)
+          is_finite = is_finite && isfinite(force[1][r][l]);
+        else
+          ck_assert(force[0][r][l] == force[1][r][l]);
+      }
+    ck_assert(!is_finite);
+  }
 }
 END_TEST
 
@@ -244,12 +310,11 @@ END_TEST
 
 int main(void) {
   TCase *cases = tcase_create("lanes");
-  tcase_add_loop_test(cases, elastic_forces_and_matrices_are_those_of_single_elements, 0,
-                      FEM_MATERIAL_LAW_COUNT);
-  tcase_add_loop_test(cases, damping_forces_and_matrices_are_those_of_single_elements, 0,
-                      FEM_MATERIAL_LAW_COUNT);
-  tcase_add_loop_test(cases, a_lane_hangs_on_its_element_alone, 0, FEM_MATERIAL_LAW_COUNT);
-  tcase_add_test(cases, packing_a_matrix_and_unpacking_it_changes_nothing);
+  tcase_add_loop_test(cases, elastic_forces_and_matrices_are_those_of_single_elements, 0, MATERIALS);
+  tcase_add_loop_test(cases, damping_forces_and_matrices_are_those_of_single_elements, 0, MATERIALS);
+  tcase_add_loop_test(cases, a_lane_hangs_on_its_element_alone, 0, MATERIALS);
+  tcase_add_loop_test(cases, deformations_of_every_kind_are_those_of_single_elements, 0, MATERIALS);
+  tcase_add_loop_test(cases, what_is_not_finite_stays_in_its_lane, 0, MATERIALS);
   tcase_add_test(cases, packs_hold_each_element_of_bodies_once_and_colours_share_no_vertex);
   return suite_run("lanes", cases, 20);
 }

@@ -131,37 +131,6 @@ static void add_forces(const FemAssembly *assembly, const FemAssemblyList *list,
   }
 }
 
-// One lane of a pack as an element, whose copy `element` holds.
-static void unpack(const FemAssemblyPack *pack, int lane, FemElement *element, FemAssemblyElement *e) {
-  *element = fem_lanes_element(pack->elements, lane);
-  e->element = element;
-  e->quadratic = NULL;
-  e->body = pack->body;
-  for (int a = 0; a < 4; a++) {
-    size_t dof = 3 * (size_t)pack->elements->node[a][lane];
-    for (int c = 0; c < 3; c++) {
-      e->x[3 * a + c] = pack->positions[dof + (size_t)c];
-      e->v[3 * a + c] = pack->velocities[dof + (size_t)c];
-    }
-  }
-}
-
-static void find_forces(const FemAssemblyKernels *kernels, const FemAssemblyPack *pack,
-                        FemLanesRow force[12]) {
-  if (kernels->has_lanes(pack->body)) {
-    kernels->pack_force(pack, force);
-    return;
-  }
-  for (int l = 0; l < pack->elements->count; l++) {
-    FemAssemblyElement e;
-    FemElement element;
-    double own[12];
-    unpack(pack, l, &element, &e);
-    kernels->force(&e, own);
-    for (int r = 0; r < 12; r++) force[r][l] = own[r];
-  }
-}
-
 static FemAssemblyPack pack_of(const FemAssembly *assembly, const FemState *state, int body) {
   return (FemAssemblyPack){.lanes = fem_lanes(),
                            .body = &assembly->model->bodies[body],
@@ -177,7 +146,7 @@ static void add_chunk_forces(const FemAssembly *assembly, const FemState *state,
   for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++) {
     FemLanesRow own[12];
     pack.elements = &packs->packs[p];
-    find_forces(kernels, &pack, own);
+    kernels->pack_force(&pack, own);
     pack.lanes->scatter_force(pack.elements, own, force);
   }
 }
@@ -244,23 +213,6 @@ static void add_matrices(const FemAssembly *assembly, const FemAssemblyList *lis
   }
 }
 
-static void find_matrices(const FemAssemblyKernels *kernels, const FemAssemblyPack *pack,
-                          double stiffness_scale, double damping_scale,
-                          FemLanesRow matrix[FEM_LANES_ENTRIES]) {
-  if (kernels->has_lanes(pack->body)) {
-    kernels->pack_matrix(pack, stiffness_scale, damping_scale, matrix);
-    return;
-  }
-  for (int l = 0; l < pack->elements->count; l++) {
-    FemAssemblyElement e;
-    FemElement element;
-    double own[144];
-    unpack(pack, l, &element, &e);
-    kernels->matrix(&e, stiffness_scale, damping_scale, own);
-    fem_lanes_pack(own, l, matrix);
-  }
-}
-
 // Elements of which a coordinate is prescribed have no whole blocks.
 static void add_partial_matrices(const FemLanesElements *elements, const int slots[FEM_LANES],
                                  FemLanesRow own[FEM_LANES_ENTRIES], FemMatrix *matrix) {
@@ -283,7 +235,7 @@ static void add_chunk_matrices(const FemAssembly *assembly, const FemState *stat
   for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++) {
     FemLanesRow own[FEM_LANES_ENTRIES];
     pack.elements = &packs->packs[p];
-    find_matrices(kernels, &pack, stiffness_scale, damping_scale, own);
+    kernels->pack_matrix(&pack, stiffness_scale, damping_scale, own);
     pack.lanes->scatter_matrix(pack.elements, packs->slots[p], own, matrix->value);
     add_partial_matrices(pack.elements, packs->slots[p][0], own, matrix);
   }

@@ -34,11 +34,10 @@ typedef void FemAssemblyForce(const FemAssemblyElement *e, double *force); // (n
 typedef void FemAssemblyMatrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
                                double *matrix);
 
-// An effect's kernels: for any element, and for packs of those whose body has_lanes accepts.
+// An effect's kernels: for quadratic elements, and for packs of linear ones.
 typedef struct FemAssemblyKernels {
   FemAssemblyForce *force;
   FemAssemblyMatrix *matrix;
-  bool (*has_lanes)(const FemModelBody *body);
   void (*pack_force)(const FemAssemblyPack *pack, FemLanesRow force[12]);
   void (*pack_matrix)(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
                       FemLanesRow matrix[FEM_LANES_ENTRIES]);

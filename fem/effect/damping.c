@@ -67,11 +67,6 @@ static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, 
   }
 }
 
-static bool has_lanes(const FemModelBody *body) {
-  (void)body;
-  return true;
-}
-
 static void pack_force(const FemAssemblyPack *pack, FemLanesRow force[12]) {
   const FemModelBody *body = pack->body;
   pack->lanes->damping_force(&body->local, body->damping, pack->elements, pack->positions, pack->velocities,
@@ -85,7 +80,7 @@ static void pack_matrix(const FemAssemblyPack *pack, double stiffness_scale, dou
                               stiffness_scale, damping_scale, matrix);
 }
 
-static const FemAssemblyKernels kernels = {element_force, element_matrix, has_lanes, pack_force, pack_matrix};
+static const FemAssemblyKernels kernels = {element_force, element_matrix, pack_force, pack_matrix};
 
 static Status add_force(void *self, const FemState *state, double *force) {
   fem_assembly_add_forces(self, state, &kernels, force);

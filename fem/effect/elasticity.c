@@ -50,10 +50,6 @@ static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, 
   for (int k = 0; k < (e->element ? 144 : 900); k++) matrix[k] *= stiffness_scale;
 }
 
-static bool has_lanes(const FemModelBody *body) {
-  return fem_lanes_has(&body->local);
-}
-
 static void pack_force(const FemAssemblyPack *pack, FemLanesRow force[12]) {
   pack->lanes->force(&pack->body->local, pack->elements, pack->positions, force);
 }
@@ -64,7 +60,7 @@ static void pack_matrix(const FemAssemblyPack *pack, double stiffness_scale, dou
   pack->lanes->matrix(&pack->body->local, pack->elements, pack->positions, stiffness_scale, matrix);
 }
 
-static const FemAssemblyKernels kernels = {element_force, element_matrix, has_lanes, pack_force, pack_matrix};
+static const FemAssemblyKernels kernels = {element_force, element_matrix, pack_force, pack_matrix};
 
 static Status add_force(void *self, const FemState *state, double *force) {
   fem_assembly_add_forces(self, state, &kernels, force);

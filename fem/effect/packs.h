@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The linear elements of a model in packs for vector lanes (fem/element/lanes.h), so ordered that what is
+// The linear elements of a model in packs for vector lanes (fem/lanes/lanes.h), so ordered that what is
 // near in space is near in memory: along a Morton curve, in chunks of some packs of one body. Chunks are
 // coloured: those of a colour share no vertex and may be added at the same time. Within a chunk elements are
 // added one after another, so every sum has a fixed order.
@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "fem/element/lanes.h"
+#include "fem/lanes/lanes.h"
 #include "fem/model/model.h"
 #include "fem/sparse/matrix.h"
 

@@ -18,6 +18,9 @@ typedef enum FemMaterialLaw {
 
 enum { FEM_MATERIAL_LAW_COUNT = 8 };
 
+// Sums of stretches below count as this in corotational's derivative (fem/material/material.h).
+#define FEM_MATERIAL_SMALLEST_SUM 1e-6
+
 typedef struct FemMaterial {
   FemMaterialLaw law;
   double young;   // E > 0 [Pa]

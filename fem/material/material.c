@@ -141,9 +141,6 @@ static void corotational_stress(FemLame lame, const double F[9], double P[9]) {
   for (int r = 0; r < 9; r++) P[r] = 2 * lame.mu * (F[r] - R[r]) + pressure * R[r];
 }
 
-// Sums of stretches below count as this (material.h).
-static const double SMALLEST_SUM = 1e-6;
-
 // u_i v_jᵀ − u_j v_iᵀ: how R moves where F is twisted in the plane (i, j).
 static inline void find_twist(const FemSvd3 *svd, int i, int j, double twist[9]) {
   for (int r = 0; r < 3; r++)
@@ -159,7 +156,7 @@ static void add_rotation_derivative(const double F[9], double scale, double dP[8
   for (int k = 0; k < 3; k++) {
     double twist[9], sum = svd.sigma[pairs[k][0]] + svd.sigma[pairs[k][1]];
     find_twist(&svd, pairs[k][0], pairs[k][1], twist);
-    double weight = scale / fmax(sum, SMALLEST_SUM);
+    double weight = scale / fmax(sum, FEM_MATERIAL_SMALLEST_SUM);
     for (int r = 0; r < 9; r++)
       for (int c = 0; c < 9; c++) dP[9 * r + c] += weight * twist[r] * twist[c];
   }
@@ -179,7 +176,7 @@ static void corotational_tangent(FemLame lame, const double F[9], double dP[81])
   for (int k = 0; k < 3; k++) {
     double sum = svd.sigma[pairs[k][0]] + svd.sigma[pairs[k][1]];
     find_twist(&svd, pairs[k][0], pairs[k][1], modes[k]);
-    weights[k] = turning / (sum < SMALLEST_SUM ? SMALLEST_SUM : sum);
+    weights[k] = turning / (sum < FEM_MATERIAL_SMALLEST_SUM ? FEM_MATERIAL_SMALLEST_SUM : sum);
   }
   for (int r = 0; r < 9; r++) {
     double scaled[4];

@@ -66,55 +66,84 @@ void fem_material_mooney_tangent(const FemMaterial *material, const double F[9],
 
 // Ogden.
 
-// Below this stretch w goes on as its parabola, so that it is finite for σ ≤ 0.
-static const double SMALLEST_STRETCH = 0.1;
-// Stretches nearer than this have a common derivative: the error is its square.
-static const double SAME_STRETCH = 1e-5;
-// Sums of stretches below count as this: f is large where σ is small.
-static const double SMALLEST_SUM = 1e-4;
-
-// w(σ) = Σ_p μ_p/α_p (σ^α_p − 1) and its derivatives.
-typedef struct Ogden {
-  double w, f, slope;
-} Ogden;
-
-static Ogden ogden_power(const FemMaterial *material, double stretch) {
+FemOgden fem_material_ogden(const FemMaterial *material) {
   double mu = fem_material_lame(material).mu, total = 0;
-  Ogden sum = {0, 0, 0};
+  FemOgden law;
   for (int p = 0; p < 3; p++) total += material->shares[p];
   for (int p = 0; p < 3; p++) {
-    double alpha = material->exponents[p], own = 2 * mu * material->shares[p] / total;
-    if (own == 0) continue; // its exponent may be 0
-    sum.w += own / (alpha * alpha) * expm1(alpha * log1p(stretch - 1));
-    sum.f += own / alpha * pow(stretch, alpha - 1);
-    sum.slope += own / alpha * (alpha - 1) * pow(stretch, alpha - 2);
+    double own = 2 * mu * material->shares[p] / total;
+    law.power[p] = material->exponents[p] - 1;
+    law.own[p] = own == 0 ? 0 : own / material->exponents[p]; // the exponent of what is not there may be 0
   }
-  return sum;
+  return law;
 }
 
-static Ogden ogden_at(const FemMaterial *material, double stretch) {
-  if (stretch >= SMALLEST_STRETCH) return ogden_power(material, stretch);
-  Ogden edge = ogden_power(material, SMALLEST_STRETCH);
-  double way = stretch - SMALLEST_STRETCH;
-  return (Ogden){.w = edge.w + edge.f * way + 0.5 * edge.slope * way * way,
-                 .f = edge.f + edge.slope * way,
-                 .slope = edge.slope};
+static FemOgdenForce ogden_power(const FemOgden *law, double stretch) {
+  FemOgdenForce f = {0, 0};
+  for (int p = 0; p < 3; p++) {
+    if (law->own[p] == 0) continue;
+    double term = law->own[p] * pow(stretch, law->power[p]);
+    f.value += term;
+    f.slope += law->power[p] * term / stretch;
+  }
+  return f;
+}
+
+FemOgdenForce fem_material_ogden_edge(const FemMaterial *material) {
+  FemOgden law = fem_material_ogden(material);
+  return ogden_power(&law, FEM_MATERIAL_OGDEN_SMALLEST);
+}
+
+static FemOgdenForce ogden_force(const FemOgden *law, double stretch) {
+  const double least = FEM_MATERIAL_OGDEN_SMALLEST;
+  if (stretch >= least) return ogden_power(law, stretch);
+  FemOgdenForce edge = ogden_power(law, least);
+  return (FemOgdenForce){edge.value + edge.slope * (stretch - least), edge.slope};
+}
+
+// w(σ) = Σ μ_p/α_p (σ^α_p − 1)
+static double ogden_energy(const FemOgden *law, double stretch) {
+  const double least = FEM_MATERIAL_OGDEN_SMALLEST, kept = fmax(stretch, least), way = stretch - kept;
+  double sum = 0;
+  for (int p = 0; p < 3; p++) {
+    double alpha = law->power[p] + 1;
+    if (law->own[p] != 0) sum += law->own[p] / alpha * expm1(alpha * log1p(kept - 1));
+  }
+  if (way == 0) return sum;
+  FemOgdenForce edge = ogden_power(law, least);
+  return sum + edge.value * way + 0.5 * edge.slope * way * way;
+}
+
+// (f(a) − f(b))/(a − b), to all digits however near they are: a^q − b^q = b^q ((1 + (a − b)/b)^q − 1). Below
+// the edge the share of the way that is above it counts.
+static double ogden_quotient(const FemOgden *law, double a, double b) {
+  const double least = FEM_MATERIAL_OGDEN_SMALLEST;
+  double high = fmax(a, least), low = fmax(b, least), d = high - low, sum = 0;
+  for (int p = 0; p < 3; p++) {
+    double q = law->power[p];
+    if (law->own[p] != 0)
+      sum += law->own[p] * pow(low, q) * (d == 0 ? q / low : expm1(q * log1p(d / low)) / d);
+  }
+  if (high == a && low == b) return sum;
+  double share = a == b ? 1 : d / (a - b);
+  return share * sum + (1 - share) * ogden_power(law, least).slope;
 }
 
 // d = w'(1) makes the stress at rest zero; κ' = λ + d.
-static double ogden_rest(const FemMaterial *material) {
-  return ogden_power(material, 1).f;
+static double ogden_rest(const FemOgden *law) {
+  return law->own[0] + law->own[1] + law->own[2];
 }
 
 // With e = σ − 1: Σ (w − d e) − d (e₁e₂ + e₂e₃ + e₃e₁ + e₁e₂e₃) + …, of second order part by part.
 double fem_material_ogden_energy(const FemMaterial *material, const double F[9]) {
   FemSvd3 svd;
   fem_svd3_factor(&svd, F);
-  double d = ogden_rest(material), kappa = fem_material_lame(material).lambda + d;
+  FemOgden law = fem_material_ogden(material);
+  double d = ogden_rest(&law), kappa = fem_material_lame(material).lambda + d;
   double swelling = fem_cofactor_swelling(F), sum = 0, e[3];
   for (int k = 0; k < 3; k++) {
     e[k] = svd.sigma[k] - 1;
-    sum += ogden_at(material, svd.sigma[k]).w - d * e[k];
+    sum += ogden_energy(&law, svd.sigma[k]) - d * e[k];
   }
   sum -= d * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0] + e[0] * e[1] * e[2]);
   return sum + 0.5 * kappa * swelling * swelling;
@@ -123,12 +152,13 @@ double fem_material_ogden_energy(const FemMaterial *material, const double F[9])
 void fem_material_ogden_stress(const FemMaterial *material, const double F[9], double P[9]) {
   FemSvd3 svd;
   fem_svd3_factor(&svd, F);
-  double d = ogden_rest(material), kappa = fem_material_lame(material).lambda + d, C[9];
+  FemOgden law = fem_material_ogden(material);
+  double d = ogden_rest(&law), kappa = fem_material_lame(material).lambda + d, C[9];
   double weight = kappa * fem_cofactor_swelling(F) - d;
   fem_cofactor_find(F, C);
   for (int r = 0; r < 9; r++) P[r] = weight * C[r];
   for (int k = 0; k < 3; k++) {
-    double f = ogden_at(material, svd.sigma[k]).f;
+    double f = ogden_force(&law, svd.sigma[k]).value;
     for (int r = 0; r < 9; r++) P[r] += f * svd.U[3 * (r / 3) + k] * svd.V[3 * (r % 3) + k];
   }
 }
@@ -140,12 +170,11 @@ static void add_outer(const double mode[9], double weight, double dP[81]) {
 
 // The planes (i, j): twist u_i v_jᵀ − u_j v_iᵀ with (f_i + f_j)/(σ_i + σ_j), flip u_i v_jᵀ + u_j v_iᵀ with
 // (f_i − f_j)/(σ_i − σ_j), each of length √2 (Smith, de Goes, Kim 2019).
-static void add_plane(const FemMaterial *material, const FemSvd3 *svd, int i, int j, double dP[81]) {
+static void add_plane(const FemOgden *law, const FemSvd3 *svd, int i, int j, double dP[81]) {
   double a = svd->sigma[i], b = svd->sigma[j];
-  double fa = ogden_at(material, a).f, fb = ogden_at(material, b).f;
-  double twisting = (fa + fb) / fmax(a + b, SMALLEST_SUM);
-  double flipping =
-      fabs(a - b) > SAME_STRETCH ? (fa - fb) / (a - b) : ogden_at(material, 0.5 * (a + b)).slope;
+  double forces = ogden_force(law, a).value + ogden_force(law, b).value;
+  double twisting = forces / fmax(a + b, FEM_MATERIAL_OGDEN_SMALLEST_SUM);
+  double flipping = ogden_quotient(law, a, b);
   double twist[9], flip[9];
   for (int r = 0; r < 9; r++) {
     double ij = svd->U[3 * (r / 3) + i] * svd->V[3 * (r % 3) + j];
@@ -159,7 +188,8 @@ static void add_plane(const FemMaterial *material, const FemSvd3 *svd, int i, in
 
 void fem_material_ogden_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
   FemSvd3 svd;
-  double C[9], d = ogden_rest(material), kappa = fem_material_lame(material).lambda + d;
+  FemOgden law = fem_material_ogden(material);
+  double C[9], d = ogden_rest(&law), kappa = fem_material_lame(material).lambda + d;
   fem_svd3_factor(&svd, F);
   fem_cofactor_find(F, C);
   memset(dP, 0, 81 * sizeof *dP);
@@ -167,8 +197,8 @@ void fem_material_ogden_tangent(const FemMaterial *material, const double F[9], 
   for (int k = 0; k < 3; k++) {
     double mode[9];
     for (int r = 0; r < 9; r++) mode[r] = svd.U[3 * (r / 3) + k] * svd.V[3 * (r % 3) + k];
-    add_outer(mode, ogden_at(material, svd.sigma[k]).slope, dP);
-    add_plane(material, &svd, k, (k + 1) % 3, dP);
+    add_outer(mode, ogden_force(&law, svd.sigma[k]).slope, dP);
+    add_plane(&law, &svd, k, (k + 1) % 3, dP);
   }
   fem_cofactor_add_derivative(F, kappa * fem_cofactor_swelling(F) - d, dP);
   for (int r = 0; r < 9; r++)

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Linear tetrahedra in vector lanes: forces and matrices of eight elements of one body at once, a lane an
-// element. The formulas are those of fem/element/element.h and fem/material, with the fourth-order tangent
-// never formed: contracted with two nodes' gradients g_a, g_b, its terms are outer products of F g and cof F
-// g,
+// element. The formulas are those of fem/element/element.h and fem/material. The fourth-order tangent is
+// never formed (law.inc): contracted with two nodes' gradients g_a, g_b, its terms are
 //
 //   ∂P/∂F            between nodes a and b
 //   I                g_a·g_b I
@@ -11,10 +10,11 @@
 //   ∂cof F/∂F        skew matrix with entries ε_ikm (F (g_a × g_b))_m
 //   F C Fᵀ           μ (g_a·g_b F Fᵀ + (F g_b)(F g_a)ᵀ) + λ (F g_a)(F g_b)ᵀ
 //   S on the right   (g_a·S g_b) I
+//   in the axes of F = U σ Vᵀ, U K' Uᵀ with K' of Vᵀ g_a, Vᵀ g_b
 //
 // The same source is compiled for each instruction set. A lane's result depends on its element alone.
-#ifndef TETLAP_FEM_ELEMENT_LANES_H
-#define TETLAP_FEM_ELEMENT_LANES_H
+#ifndef TETLAP_FEM_LANES_LANES_H
+#define TETLAP_FEM_LANES_LANES_H
 
 #include "fem/element/element.h"
 
@@ -58,18 +58,12 @@ typedef struct FemLanes {
                          FemLanesRow matrix[FEM_LANES_ENTRIES], double *value);
 } FemLanes;
 
-// Whether a material's elastic forces have lanes; damping's always do.
-bool fem_lanes_has(const FemMaterial *material);
-
 // The widest that this processor has; all that it has, in an array of `*count`.
 const FemLanes *fem_lanes(void);
 const FemLanes *const *fem_lanes_list(int *count);
 
-// One lane as fem/element/element.h has it, nodes in the order of the lane: its element, and its matrix both
-// ways.
-FemElement fem_lanes_element(const FemLanesElements *e, int lane);
+// The matrix of one lane, nodes in its order.
 void fem_lanes_unpack(FemLanesRow matrix[FEM_LANES_ENTRIES], int lane, double dense[144]);
-void fem_lanes_pack(const double dense[144], int lane, FemLanesRow matrix[FEM_LANES_ENTRIES]);
 
 extern const FemLanes fem_lanes_portable;
 #if defined(__x86_64__)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/element/lanes.h"
+#include "fem/lanes/lanes.h"
 
 #include "base/cpu.h"
 
@@ -22,29 +22,6 @@ const FemLanes *fem_lanes(void) {
   return all[count - 1];
 }
 
-bool fem_lanes_has(const FemMaterial *material) {
-  switch (material->law) {
-  case FEM_MATERIAL_LINEAR:
-  case FEM_MATERIAL_STVK:
-  case FEM_MATERIAL_NEO_HOOKEAN:
-  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
-  case FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC:
-    return !(material->fibre_stiffness > 0);
-  default:
-    return false;
-  }
-}
-
-FemElement fem_lanes_element(const FemLanesElements *e, int lane) {
-  FemElement element = {.volume = e->volume[lane]};
-  for (int j = 0; j < 3; j++)
-    for (int a = 1; a < 4; a++) {
-      element.gradient[a][j] = e->gradient[3 * (a - 1) + j][lane];
-      element.gradient[0][j] -= element.gradient[a][j];
-    }
-  return element;
-}
-
 // Row and column of each entry, in the order of the lanes.
 static void find_places(int row[FEM_LANES_ENTRIES], int column[FEM_LANES_ENTRIES]) {
   static const int first[6] = {0, 0, 0, 1, 1, 2}, second[6] = {1, 2, 3, 2, 3, 3};
@@ -62,10 +39,4 @@ void fem_lanes_unpack(FemLanesRow matrix[FEM_LANES_ENTRIES], int lane, double de
   find_places(row, column);
   for (int n = 0; n < FEM_LANES_ENTRIES; n++)
     dense[12 * row[n] + column[n]] = dense[12 * column[n] + row[n]] = matrix[n][lane];
-}
-
-void fem_lanes_pack(const double dense[144], int lane, FemLanesRow matrix[FEM_LANES_ENTRIES]) {
-  int row[FEM_LANES_ENTRIES], column[FEM_LANES_ENTRIES];
-  find_places(row, column);
-  for (int n = 0; n < FEM_LANES_ENTRIES; n++) matrix[n][lane] = dense[12 * row[n] + column[n]];
 }

@@ -3,4 +3,4 @@
 #define LANES_PACK 2
 #define LANES_NAME(name) name##_portable
 
-#include "fem/element/lanes.inc"
+#include "fem/lanes/kernels.inc"

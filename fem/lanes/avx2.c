@@ -10,7 +10,7 @@
 #define LANES_PACK 4
 #define LANES_NAME(name) name##_avx2
 
-#include "fem/element/lanes.inc"
+#include "fem/lanes/kernels.inc"
 
 #ifdef __clang__
 #pragma clang attribute pop
