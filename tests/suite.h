@@ -6,6 +6,8 @@
 
 #include <check.h>
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 
@@ -24,6 +26,16 @@
     ck_assert_msg(fabs(ck_a_ - ck_b_) <= ck_t_, "%s = %.17g, %s = %.17g, differ by %.3g > %.3g", #a, ck_a_,  \
                   #b, ck_b_, fabs(ck_a_ - ck_b_), ck_t_);                                                    \
   } while (0)
+
+// A test that cannot be made here, or asks nothing of this one, says so.
+__attribute__((format(printf, 1, 2))) static inline void suite_skip(const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  printf("skipped: ");
+  vprintf(format, arguments);
+  printf("\n");
+  va_end(arguments);
+}
 
 // The larger one; NaN stays, which fmax would drop.
 static inline double suite_larger(double a, double b) {

@@ -71,7 +71,7 @@ END_TEST
 static bool has_compiler(void) {
   char reason[DEVICE_TEXT];
   if (device_cuda_compiler(reason)) return true;
-  printf("NVRTC is not tested: %s\n", reason);
+  suite_skip("NVRTC: %s", reason);
   return false;
 }
 

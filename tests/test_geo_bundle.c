@@ -22,10 +22,14 @@ static void draw_pairs(int member, double *pairs) {
   }
 }
 
+// NULL: this processor has fewer, the portable one at least.
 static const OverlapGeoBundleKernel *kernel_number(int index) {
   int count;
   const OverlapGeoBundleKernel *const *kernels = overlap_geo_bundle_kernels(&count);
-  return index < count ? kernels[index] : NULL;
+  ck_assert_int_ge(count, 1);
+  if (index < count) return kernels[index];
+  suite_skip("kernel %d: this processor has the instructions of %d", index, count);
+  return NULL;
 }
 
 START_TEST(the_gate_decides_as_the_scalar_one_to_the_bit) {

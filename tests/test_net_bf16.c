@@ -196,7 +196,7 @@ END_TEST
 START_TEST(the_emulated_form_gives_what_the_instructions_give) {
   const NetKernel_f32 *found[2];
   if (kernels(found) < 2) {
-    printf("skipped: this processor has no AVX512-BF16\n");
+    suite_skip("this processor has no AVX512-BF16");
     return;
   }
   NetShape shape = smooth();

@@ -129,7 +129,7 @@ START_TEST(every_device_gives_the_same_bits) {
   Device device;
   AppPosesList list;
   if (device_open(&device, names[_i]) != STATUS_OK) {
-    printf("%s is not tested: %s\n", names[_i], status_message());
+    suite_skip("%s: %s", names[_i], status_message());
     return;
   }
   app_poses_centre(&model, 0, centre);
@@ -138,8 +138,10 @@ START_TEST(every_device_gives_the_same_bits) {
   // faces in one plane: doubtful pairs, left to the processor
   shift_to(list.poses, 0.4, 0.3, -1);
   AppPosesResult vectors = run(COUNT, list.poses, NULL), kernels = run(COUNT, list.poses, &device);
-  if (overlap_clip_lanes()) // else this processor clips in another way
+  if (overlap_clip_lanes())
     ck_assert_mem_eq(vectors.sums, kernels.sums, COUNT * 7 * sizeof(double));
+  else
+    suite_skip("%s: without vector lanes this processor clips in another order", names[_i]);
   ck_assert_int_gt(kernels.handed_on, 100);
   ck_assert_int_gt(kernels.pair_count, 10000);
   app_poses_destroy(&vectors), app_poses_destroy(&kernels);

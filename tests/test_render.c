@@ -84,7 +84,7 @@ static bool has_program(const char *name, const char *loss) {
   char command[64];
   snprintf(command, sizeof command, "command -v %s > /dev/null", name);
   if (system(command) == 0) return true;
-  printf("skipped: %s is not installed, so %s\n", name, loss);
+  suite_skip("%s is not installed, so %s", name, loss);
   return false;
 }
 

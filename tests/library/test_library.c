@@ -95,8 +95,6 @@ START_TEST(each_model_says_what_it_gives_and_gives_it) {
     TetlapOverlapBatch batch = TETLAP_OVERLAP_BATCH_INIT;
     batch.count = 1, batch.pairs = x, batch.volume = &volume, batch.gradient = gradient;
     ck_assert_eval(overlap, &batch);
-    bool has_scale = strcmp(name, "tpn-published") != 0; // which was shown volumes up to 0.02 only
-    ck_assert_near(volume, pow(0.7, 3) / 6, (has_scale ? 0.4 : 1) * pow(0.7, 3) / 6);
     batch.hessian = hessian;
     ck_assert_int_eq(tetlap_overlap_eval(overlap, &batch),
                      info.gives & TETLAP_OVERLAP_HESSIAN ? TETLAP_OVERLAP_OK : TETLAP_OVERLAP_INVALID);
@@ -110,6 +108,52 @@ START_TEST(each_model_says_what_it_gives_and_gives_it) {
   }
   ck_assert_int_ge(count, 10);
   ck_assert_int_ge(with_centroid, 4);
+}
+END_TEST
+
+// Numbers in 0 … 1, always the same (Lehmer's generator, as Park and Miller 1988).
+static void fill_uniform(int count, double *x) {
+  unsigned long long state = 1;
+  for (int i = 0; i < count; i++) {
+    state = 48271 * state % 2147483647;
+    x[i] = (double)state / 2147483647.0;
+  }
+}
+
+static void eval_volumes(const char *name, int count, const double *x, double *volume) {
+  TetlapOverlap *overlap = open_model(name);
+  TetlapOverlapBatch batch = TETLAP_OVERLAP_BATCH_INIT;
+  batch.count = (size_t)count, batch.pairs = x, batch.volume = volume;
+  ck_assert_eval(overlap, &batch);
+  tetlap_overlap_close(overlap);
+}
+
+// The error over the volume, both as roots of mean squares, on pairs such as the networks have been shown:
+// vertices anywhere in the unit cube. docs/models.md has these figures on many more.
+static double most_error_of(const char *name) {
+  static const struct {
+    const char *name;
+    double most;
+  } learned[] = {{"geo", 0.02},    {"geo-small", 0.02}, {"tpn", 0.15},          {"tpn-bf16", 0.15},
+                 {"hybrid", 0.25}, {"tpn-scene", 0.25}, {"tpn-published", 0.65}};
+  for (size_t k = 0; k < sizeof learned / sizeof *learned; k++)
+    if (strcmp(name, learned[k].name) == 0) return learned[k].most;
+  return strcmp(name, "clip32") == 0 ? 1e-5 : 1e-12;
+}
+
+START_TEST(each_model_s_volumes_are_as_near_to_the_exact_ones_as_is_said) {
+  enum { COUNT = 1000 };
+  static double x[24 * COUNT], exact[COUNT], volume[COUNT];
+  fill_uniform(24 * COUNT, x);
+  eval_volumes("exact", COUNT, x, exact);
+  const char *name;
+  for (int m = 0; (name = tetlap_overlap_model(m)); m++) {
+    double error = 0, norm = 0;
+    eval_volumes(name, COUNT, x, volume);
+    for (int k = 0; k < COUNT; k++)
+      error += (volume[k] - exact[k]) * (volume[k] - exact[k]), norm += exact[k] * exact[k];
+    ck_assert_msg(sqrt(error / norm) <= most_error_of(name), "%s: %g", name, sqrt(error / norm));
+  }
 }
 END_TEST
 
@@ -410,6 +454,7 @@ int main(void) {
   tcase_add_test(cases, a_pair_has_volume_gradient_hessian_and_centroid);
   tcase_add_test(cases, products_are_those_of_the_hessian);
   tcase_add_test(cases, each_model_says_what_it_gives_and_gives_it);
+  tcase_add_test(cases, each_model_s_volumes_are_as_near_to_the_exact_ones_as_is_said);
   tcase_add_test(cases, what_is_wrong_is_a_status_and_a_message);
   tcase_add_test(cases, structs_of_other_versions_are_taken_or_refused);
   tcase_add_loop_test(cases, several_threads_get_what_one_gets, 0, 4);
