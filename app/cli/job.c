@@ -147,6 +147,8 @@ Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overl
     log_debug("%s: read and built on %d threads; output goes to %s", job->scene.path, omp_get_max_threads(),
               job->directory);
   }
+  if (!status && !(job->inputs = record_new())) status = status_no_memory("the run's inputs");
+  if (!status) status = app_inputs_record(&job->scene, &job->model, job->inputs);
   if (!status) warn_of_scale(job);
   if (status) app_job_close(job);
   return status;
@@ -156,6 +158,7 @@ void app_job_close(AppJob *job) {
   fem_model_destroy(&job->model);
   fem_scene_destroy(&job->scene);
   memory_free(job->directory);
+  record_destroy(job->inputs);
   *job = (AppJob){0};
 }
 
@@ -239,8 +242,8 @@ Status app_job_write_manifest(const AppJob *job) {
   record_text(manifest, "processor", cpu_name());
   record_integer(manifest, "threads", cpu_thread_count());
   record_text(manifest, "command", app_versions_command());
-  Status status = app_inputs_record(&job->scene, &job->model, record_child(manifest, "inputs"));
-  if (!status) status = app_scene_write_resolved(&job->scene, manifest, "scene");
+  record_merge(record_child(manifest, "inputs"), job->inputs);
+  Status status = app_scene_write_resolved(&job->scene, manifest, "scene");
   if (!status) status = write_record(job->directory, "manifest.json", manifest);
   record_destroy(manifest);
   return status;

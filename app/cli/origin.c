@@ -4,7 +4,6 @@
 #include <limits.h>
 #include <stdlib.h>
 
-#include "app/cli/inputs.h"
 #include "app/cli/versions.h"
 #include "app/scene/write.h"
 #include "overlap/weights.h"
@@ -37,8 +36,8 @@ Status app_origin_make(const AppJob *job, const AppJobOptions *options, const ch
     record_path(record, "overlap", overlap);
   else
     record_text(record, "overlap", overlap);
-  Status status = app_inputs_record(&job->scene, &job->model, record);
-  if (!status) status = record_scene(&job->scene, record);
+  record_merge(record, job->inputs);
+  Status status = record_scene(&job->scene, record);
   if (!status) return STATUS_OK;
   record_destroy(record);
   *origin = NULL;

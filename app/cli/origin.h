@@ -7,7 +7,7 @@
 
 #include "app/cli/job.h"
 
-// A new record, owned by the caller. STATUS_IO, STATUS_INPUT: weights that cannot be read; STATUS_MEMORY.
+// A new record, owned by the caller. STATUS_MEMORY.
 Status app_origin_make(const AppJob *job, const AppJobOptions *options, const char *overlap, Record **origin);
 
 // STATUS_INPUT names what differs so that a run would not go on as it began: the program, the scene, the mesh
