@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/vec3.h"
 #include "fem/material/cofactor.h"
 
 const char *fem_model_body_name(const FemModel *model, int vertex) {
@@ -71,6 +72,21 @@ double fem_model_speed_share(const FemModel *model) {
   return SPEED_SHARE * scene->tolerance;
 }
 
+// Of the speed that a scene's motion is expected to have: in stiff bodies that move slowly waves carry far less
+// than a hundredth of √(E/ρ).
+static const double MOTION_SHARE = 0.3;
+
+// The fastest at t = 0, or after falling the smallest body's length; infinite where neither is given.
+static double expected_speed(const FemModel *model) {
+  const FemSceneDef *scene = model->scene;
+  double fastest = scene->has_gravity ? sqrt(vec3_length(vec3_at(scene->gravity)) * model->length) : 0;
+  for (int b = 0; b < scene->body_count; b++) {
+    const FemBodyDef *body = &scene->bodies[b];
+    fastest = fmax(fastest, vec3_length(vec3_at(body->velocity)) + 0.5 * model->length * vec3_length(vec3_at(body->spin)));
+  }
+  return fastest > 0 ? fastest : INFINITY;
+}
+
 double fem_model_velocity_tolerance(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
   if (scene->velocity_tolerance > 0) return scene->velocity_tolerance;
@@ -78,7 +94,7 @@ double fem_model_velocity_tolerance(const FemModel *model) {
   for (int b = 0; b < scene->body_count; b++)
     slowest = fmin(slowest, sqrt(scene->bodies[b].material.young / scene->bodies[b].material.density));
   double share = has_self_friction(scene) ? VELOCITY_SHARE_OF_SELF_FRICTION : VELOCITY_SHARE;
-  double chosen = share * scene->tolerance * slowest;
+  double chosen = fmin(share * scene->tolerance * slowest, MOTION_SHARE * scene->tolerance * expected_speed(model));
   return creeps(scene) ? fmin(chosen, FRICTION_RESOLUTION * fem_model_slip_speed(model)) : chosen;
 }
 

@@ -75,7 +75,8 @@ const char *fem_model_body_name(const FemModel *model, int vertex);
 double fem_model_contact_stiffness(const FemModel *model);
 
 // Error per step of a velocity [m/s]: the scene's, or its tolerance times 0.03 of the slowest body's wave
-// speed √(E/ρ), all of it where a body rubs on itself; with friction by the law `velocity` at most 5 ε.
+// speed √(E/ρ), all of it where a body rubs on itself, or where that is less times 0.3 of the fastest speed at
+// t = 0 or √(g L), L the smallest body's diagonal; with friction by the law `velocity` at most 5 ε.
 double fem_model_velocity_tolerance(const FemModel *model);
 
 // Share of the fastest body's present speed that a velocity may err by beside that, where there is contact

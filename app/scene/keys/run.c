@@ -32,7 +32,8 @@ static const SceneKey time_keys[] = {
      .range = "(0, inf)",
      .absent_help =
          "0.03 of `tolerance` times √(E/ρ) of the slowest body (all of it where a body rubs on "
-         "itself); with contact, where that is more, 5 of `tolerance` times the present speed of the "
+         "itself), or where that is less 0.3 of `tolerance` times the fastest speed at t = 0 or, with "
+         "gravity, √(g L), L the smallest body's size; with contact, where that is more, 5 of `tolerance` times the present speed of the "
          "fastest body, up to `tolerance` times the body's own √(E/ρ); with friction of the law "
          "velocity at most 5 of its slip speeds",
      .help = "error of the velocities per step"},
