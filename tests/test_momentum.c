@@ -48,8 +48,8 @@ START_TEST(a_body_that_falls_as_gravity_wants_is_balanced) {
   int body = -1;
   open_falling(&falling);
   step(&falling, 0.981);
-  ck_assert_near(fem_momentum_gap(&falling.momentum, 0), 0, 1e-14);
-  ck_assert_near(fem_momentum_largest_gap(&falling.momentum, &body), 0, 1e-14);
+  ck_assert_near(fem_momentum_gap(&falling.momentum, 0.1, 0), 0, 1e-14);
+  ck_assert_near(fem_momentum_largest_gap(&falling.momentum, 0.1, &body), 0, 1e-14);
   ck_assert_int_eq(body, 0);
   close_falling(&falling);
 }
@@ -60,10 +60,10 @@ START_TEST(a_body_that_does_not_is_not) {
   double missing[3];
   open_falling(&falling);
   step(&falling, 0.5 * 0.981);
-  fem_momentum_missing(&falling.momentum, 0, missing);
+  fem_momentum_missing(&falling.momentum, 0.1, 0, missing);
   double weight = 9.81 * falling.run.model.bodies[0].mass;
   ck_assert_near(missing[2], -0.05 * weight, 1e-12 * weight);
-  ck_assert_near(fem_momentum_gap(&falling.momentum, 0), 0.5, 1e-12);
+  ck_assert_near(fem_momentum_gap(&falling.momentum, 0.1, 0), 0.5, 1e-12);
   close_falling(&falling);
 }
 END_TEST
@@ -73,7 +73,7 @@ START_TEST(a_step_that_is_taken_back_leaves_no_trace) {
   open_falling(&falling);
   step(&falling, 0.5 * 0.981);
   step(&falling, 0.5 * 0.981); // the step anew, from the same beginning
-  ck_assert_near(fem_momentum_gap(&falling.momentum, 0), 0, 1e-14);
+  ck_assert_near(fem_momentum_gap(&falling.momentum, 0.1, 0), 0, 1e-14);
   fem_momentum_accept(&falling.momentum);
   double kept[FEM_MOMENTUM_KEPT], again[FEM_MOMENTUM_KEPT];
   fem_momentum_save(&falling.momentum, kept);
@@ -81,6 +81,39 @@ START_TEST(a_step_that_is_taken_back_leaves_no_trace) {
   fem_momentum_load(&falling.momentum, kept);
   fem_momentum_save(&falling.momentum, again);
   for (int k = 0; k < FEM_MOMENTUM_KEPT; k++) ck_assert(kept[k] == again[k]);
+  close_falling(&falling);
+}
+END_TEST
+
+START_TEST(what_a_row_within_a_step_tells_lies_between_its_ends) {
+  Falling falling;
+  double missing[3];
+  open_falling(&falling);
+  step(&falling, 0.5 * 0.981);
+  double weight = 9.81 * falling.run.model.bodies[0].mass;
+  fem_momentum_missing(&falling.momentum, 0.025, 0, missing);
+  ck_assert_near(missing[2], -0.0125 * weight, 1e-12 * weight);
+  fem_momentum_missing(&falling.momentum, 0, 0, missing);
+  ck_assert_near(missing[2], 0, 1e-12 * weight);
+  fem_momentum_accept(&falling.momentum);
+  fem_momentum_missing(&falling.momentum, 0.1, 0, missing);
+  ck_assert_near(missing[2], -0.05 * weight, 1e-12 * weight);
+  close_falling(&falling);
+}
+END_TEST
+
+// Until t = 0.1 s all impulses are 0.1 s of weight, and the momentum that is reached 0.0981 m/s · mass.
+START_TEST(a_step_too_long_for_its_forces_is_refused) {
+  Falling falling;
+  open_falling(&falling);
+  step(&falling, 0.981);
+  ck_assert(!fem_momentum_is_refused(&falling.momentum, 0.1));
+  step(&falling, -2e-3 * 0.981);
+  ck_assert(fem_momentum_is_refused(&falling.momentum, 0.1));
+  ck_assert(!fem_momentum_is_refused(&falling.momentum, 1)); // a third of what a second allows
+  fem_momentum_accept(&falling.momentum);                    // a step that adds nothing is not to blame
+  ck_assert_ok(fem_momentum_end(&falling.momentum, 0.1, &nothing));
+  ck_assert(!fem_momentum_is_refused(&falling.momentum, 0.1));
   close_falling(&falling);
 }
 END_TEST
@@ -101,6 +134,16 @@ START_TEST(contact_reactions_and_loads_are_balanced) {
 }
 END_TEST
 
+// A stack lands on itself and on the ground, with friction.
+START_TEST(a_stack_that_lands_is_balanced) {
+  SceneRun run;
+  scene_run(&run, "asleep", (const char *const[]){"time.end=0.12", NULL});
+  ck_assert_msg(run.result.momentum_gap <= 1e-3, "%g", run.result.momentum_gap);
+  ck_assert_double_gt(run.result.contact_force_max, 0);
+  scene_close(&run);
+}
+END_TEST
+
 START_TEST(viscous_contact_is_part_of_what_is_written) {
   expect_balance("bounce", (const char *const[]){"time.end=0.2", "contact.viscosity=300", NULL}, true);
   expect_balance("bounce",
@@ -116,6 +159,9 @@ int main(void) {
   tcase_add_test(cases, a_body_that_does_not_is_not);
   tcase_add_test(cases, a_step_that_is_taken_back_leaves_no_trace);
   tcase_add_test(cases, contact_reactions_and_loads_are_balanced);
+  tcase_add_test(cases, what_a_row_within_a_step_tells_lies_between_its_ends);
+  tcase_add_test(cases, a_step_too_long_for_its_forces_is_refused);
+  tcase_add_test(cases, a_stack_that_lands_is_balanced);
   tcase_add_test(cases, viscous_contact_is_part_of_what_is_written);
   return suite_run("momentum", cases, 60);
 }

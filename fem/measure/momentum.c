@@ -7,6 +7,10 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 
+// A body's balance may be out by so much of all impulses of a run, and a step adds no more than the second to
+// one that is.
+static const double NEAR = 6e-4, NEGLIGIBLE = 1e-5;
+
 Status fem_momentum_create(FemMomentum *momentum, FemSystem *system) {
   size_t bodies = (size_t)system->model->scene->body_count;
   *momentum = (FemMomentum){.system = system, .body_count = (int)bodies};
@@ -143,23 +147,55 @@ void fem_momentum_accept(FemMomentum *momentum) {
   momentum->time = momentum->next_time;
 }
 
-void fem_momentum_missing(const FemMomentum *momentum, int body, double missing[3]) {
-  const FemMomentumBody *next = &momentum->next[body];
-  for (int c = 0; c < 3; c++) missing[c] = next->impulse[c] - next->change[c];
+// J − Δp.
+static Vec3 missing_of(const FemMomentumBody *body) {
+  return vec3_sub(vec3_at(body->impulse), vec3_at(body->change));
 }
 
-double fem_momentum_gap(const FemMomentum *momentum, int body) {
+static double weight_of(const FemMomentum *momentum, int body) {
+  const FemModel *model = momentum->system->model;
+  return model->scene->has_gravity ? model->bodies[body].mass * vec3_length(vec3_at(model->scene->gravity))
+                                   : 0;
+}
+
+bool fem_momentum_is_refused(const FemMomentum *momentum, double end) {
+  for (int b = 0; b < momentum->body_count; b++) {
+    const FemMomentumBody *now = &momentum->now[b], *next = &momentum->next[b];
+    double speeding = fmax(vec3_length(vec3_at(now->p)), vec3_length(vec3_at(next->p)));
+    double expected = next->size + weight_of(momentum, b) * fmax(end - momentum->next_time, 0) + speeding;
+    double before = vec3_length(missing_of(now)), after = vec3_length(missing_of(next));
+    bool is_held = after <= NEAR * expected || after - before <= NEGLIGIBLE * expected;
+    if (!is_held) return true;
+  }
+  return false;
+}
+
+// How much of the last step lies before a time.
+static double share_at(const FemMomentum *momentum, double time) {
+  double step = momentum->next_time - momentum->time;
+  return step > 0 ? fmin(fmax((time - momentum->time) / step, 0), 1) : 1;
+}
+
+void fem_momentum_missing(const FemMomentum *momentum, double time, int body, double missing[3]) {
+  double share = share_at(momentum, time);
+  Vec3 now = missing_of(&momentum->now[body]), next = missing_of(&momentum->next[body]);
+  vec3_store(missing, vec3_add(vec3_scale(1 - share, now), vec3_scale(share, next)));
+}
+
+double fem_momentum_gap(const FemMomentum *momentum, double time, int body) {
   const FemModel *model = momentum->system->model;
   double missing[3], least = model->bodies[body].mass * fem_model_velocity_tolerance(model);
-  fem_momentum_missing(momentum, body, missing);
-  return vec3_length(vec3_at(missing)) / fmax(momentum->next[body].size, least);
+  double share = share_at(momentum, time),
+         size = (1 - share) * momentum->now[body].size + share * momentum->next[body].size;
+  fem_momentum_missing(momentum, time, body, missing);
+  return vec3_length(vec3_at(missing)) / fmax(size, least);
 }
 
-double fem_momentum_largest_gap(const FemMomentum *momentum, int *body) {
+double fem_momentum_largest_gap(const FemMomentum *momentum, double time, int *body) {
   double largest = 0;
   if (body) *body = 0;
   for (int b = 0; b < momentum->body_count; b++) {
-    double gap = fem_momentum_gap(momentum, b);
+    double gap = fem_momentum_gap(momentum, time, b);
     if (!(gap > largest)) continue;
     largest = gap;
     if (body) *body = b;

@@ -7,7 +7,7 @@
 // by the trapezoidal rule over accepted steps; contact between two as history.csv has it
 // (fem/output/forces.h), reactions are those of `fixed` and `driven`. In exact mechanics J = Δp. The gap is
 // |J − Δp| over the larger of S and M times the velocity tolerance of one step, which is all that is known of
-// a body on which next to nothing acts.
+// a body on which next to nothing acts. Within a step J, Δp and S are interpolated, as forces are.
 #ifndef TETLAP_FEM_MEASURE_MOMENTUM_H
 #define TETLAP_FEM_MEASURE_MOMENTUM_H
 
@@ -51,12 +51,16 @@ Status fem_momentum_begin(FemMomentum *momentum, double time, const FemMomentumC
 Status fem_momentum_end(FemMomentum *momentum, double time, const FemMomentumContact *contact);
 // … and does.
 void fem_momentum_accept(FemMomentum *momentum);
+// Whether the step that was looked at last is too long for its forces: it leaves a body's balance further out
+// than what the run may end with, `end` its time. S of the whole run is known in part: what was, what the
+// body's weight will be, and that something stops it.
+bool fem_momentum_is_refused(const FemMomentum *momentum, double end);
 
-// J − Δp of a body up to the state that was looked at last [N s].
-void fem_momentum_missing(const FemMomentum *momentum, int body, double missing[3]);
+// J − Δp of a body up to a time in the step that was looked at last [N s].
+void fem_momentum_missing(const FemMomentum *momentum, double time, int body, double missing[3]);
 // Its gap, and the largest of all bodies, `*body` (may be NULL) whose it is.
-double fem_momentum_gap(const FemMomentum *momentum, int body);
-double fem_momentum_largest_gap(const FemMomentum *momentum, int *body);
+double fem_momentum_gap(const FemMomentum *momentum, double time, int body);
+double fem_momentum_largest_gap(const FemMomentum *momentum, double time, int *body);
 
 // What a checkpoint keeps: 7 numbers a body.
 enum { FEM_MOMENTUM_KEPT = 7 };

@@ -46,7 +46,7 @@ static Status find_external(FemProbes *probes, double time, const FemForcesAt *c
   void *loads = fem_system_effect(system, &fem_effect_loads);
   if (loads) TRY(fem_effect_loads.add_force(loads, &state, probes->external));
   if (fem_reactions_any(system->model)) {
-    fem_reactions_measure(system, time, NULL, probes->reaction);
+    TRY(fem_reactions_measure(system, time, NULL, probes->reaction));
     add(count, probes->reaction, probes->external);
   }
   add(count, contact->contact, probes->external);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/output/reactions.h"
 
-#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -43,9 +42,9 @@ Status fem_reactions_add_columns(FemHistory *history, const FemModel *model) {
   return STATUS_OK;
 }
 
-double *fem_reactions_measure(FemSystem *system, double time, double *sums, double *at) {
+Status fem_reactions_measure(FemSystem *system, double time, double **sums, double *at) {
   const FemModel *model = system->model;
-  bool is_known = fem_system_forces(system, time) == STATUS_OK;
+  TRY(fem_system_forces(system, time));
   if (at) memset(at, 0, 3 * (size_t)model->vertex_count * sizeof *at);
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
@@ -57,7 +56,7 @@ double *fem_reactions_measure(FemSystem *system, double time, double *sums, doub
       sum[dof % 3] -= system->forces[dof];
       if (at) at[dof] = -system->forces[dof];
     }
-    for (int c = 0; c < 3 && sums; c++) *sums++ = is_known ? sum[c] : NAN;
+    for (int c = 0; c < 3 && sums; c++) *(*sums)++ = sum[c];
   }
-  return sums;
+  return STATUS_OK;
 }

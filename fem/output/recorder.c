@@ -217,8 +217,9 @@ static void measure_contact(const FemRecorder *recorder, FemMeasures *measures) 
   measures->active_pairs = contact_system_active_count(contact);
 }
 
-static void measure_steps(const FemRecorder *recorder, FemMeasures *measures) {
-  measures->momentum_gap = fem_momentum_largest_gap(&recorder->ledger.momentum, &measures->momentum_body);
+static void measure_steps(const FemRecorder *recorder, double time, FemMeasures *measures) {
+  const FemMomentum *momentum = &recorder->ledger.momentum;
+  measures->momentum_gap = fem_momentum_largest_gap(momentum, time, &measures->momentum_body);
 }
 
 Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures) {
@@ -228,7 +229,7 @@ Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *mea
   measure_motion(recorder->system, measures);
   TRY(fem_forces_set(&recorder->forces, time));
   measure_contact(recorder, measures);
-  measure_steps(recorder, measures);
+  measure_steps(recorder, time, measures);
   ContactSystem *contact = contact_of(recorder->system);
   fem_trouble_look(&recorder->watch, recorder->system->positions,
                    contact ? contact_system_forces(contact) : NULL, recorder->det_F, recorder->overlap,
@@ -271,7 +272,7 @@ Status fem_recorder_end_step(FemRecorder *recorder, double time, FemMeasures *me
   FemLedgerState state;
   TRY(describe(recorder, time, &recorder->forces.end, measures, &state));
   TRY(fem_ledger_end(&recorder->ledger, time, &state));
-  measure_steps(recorder, measures);
+  measure_steps(recorder, time, measures);
   tell_passages(recorder, passage->passed, &passage->first, &measures->trouble);
   return STATUS_OK;
 }
@@ -293,12 +294,12 @@ static double von_mises(const double s[6]) {
   return sqrt(0.5 * normal + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
-static void fill_arrays(FemRecorder *recorder, double time) {
+static Status fill_arrays(FemRecorder *recorder, double time) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
   for (int i = 0; i < 3 * model->vertex_count; i++)
     recorder->displacement[i] = system->positions[i] - model->rest[i];
-  if (recorder->reaction) fem_reactions_measure(recorder->system, time, NULL, recorder->reaction);
+  if (recorder->reaction) TRY(fem_reactions_measure(recorder->system, time, NULL, recorder->reaction));
   for (int e = 0; e < model->tet_count; e++) {
     const FemModelBody *body = &model->bodies[model->tet_body[e]];
     if (body->is_obstacle) continue;
@@ -314,6 +315,7 @@ static void fill_arrays(FemRecorder *recorder, double time) {
       fem_effect_plasticity_add_stress(plasticity, e, system->positions, recorder->stress + 6 * e);
     recorder->von_mises[e] = von_mises(recorder->stress + 6 * e);
   }
+  return STATUS_OK;
 }
 
 // Moves the arrays that have values to the front; how many.
@@ -327,7 +329,7 @@ static int keep_given(FemVtuArray *arrays, size_t count) {
 static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
-  fill_arrays(recorder, time);
+  TRY(fill_arrays(recorder, time));
   const ContactStatus *status = recorder->status;
   const int *verdicts[] = {status ? status->predicted : NULL, status ? status->exact : NULL,
                            status ? status->error : NULL, status ? status->wrong_pairs : NULL};
@@ -445,7 +447,7 @@ static double *append_friction(const FemRecorder *recorder, double *row) {
   return row;
 }
 
-static void fill_row(FemRecorder *recorder, const FemColumnSource *source) {
+static Status fill_row(FemRecorder *recorder, const FemColumnSource *source) {
   double *row = recorder->row;
   for (int i = 0; i < fem_columns_count(); i++)
     if (has_column(recorder, i)) *row++ = fem_columns_value(i, source);
@@ -454,21 +456,22 @@ static void fill_row(FemRecorder *recorder, const FemColumnSource *source) {
   interfaces_of(recorder->system, &count);
   for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->forces.now.interfaces[i]));
   if (fem_reactions_any(recorder->system->model))
-    row = fem_reactions_measure(recorder->system, source->time, row, NULL);
+    TRY(fem_reactions_measure(recorder->system, source->time, &row, NULL));
   const FemSceneDef *scene = recorder->system->model->scene;
   for (int b = 0; b < scene->body_count && !scene->is_static; b++, row += 3)
-    fem_momentum_missing(&recorder->ledger.momentum, b, row);
+    fem_momentum_missing(&recorder->ledger.momentum, source->time, b, row);
   for (int i = 0; i < count; i++, row += 4) {
     row[0] = recorder->forces.now.areas[i];
     vec3_store(row + 1, vec3_at(recorder->forces.now.centres[i]));
   }
   row = append_friction(recorder, row);
   fem_probes_fill(&recorder->probes, row);
+  return STATUS_OK;
 }
 
-void fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,
-                            const FemAudit *audit, double step, long long step_count,
-                            long long energy_events) {
+Status fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,
+                              const FemAudit *audit, double step, long long step_count,
+                              long long energy_events) {
   const FemColumnSource source = {.time = time,
                                   .measures = measures,
                                   .audit = audit,
@@ -476,7 +479,7 @@ void fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasure
                                   .step_count = step_count,
                                   .energy_events = energy_events,
                                   .status = recorder->status};
-  if (recorder->writes_history == FEM_HISTORY_STEPS) fill_row(recorder, &source);
+  return recorder->writes_history == FEM_HISTORY_STEPS ? fill_row(recorder, &source) : STATUS_OK;
 }
 
 Status fem_recorder_append_step(FemRecorder *recorder) {
@@ -508,7 +511,7 @@ Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures 
   bool is_first = recorder->history.file.end.size == 0;
   if (recorder->writes_history == FEM_HISTORY_FRAMES || (recorder->writes_history && is_first)) {
     TRY(fem_probes_measure(&recorder->probes, time, &recorder->forces.now));
-    fill_row(recorder, &source);
+    TRY(fill_row(recorder, &source));
     TRY(fem_history_add_row(&recorder->history, recorder->row));
   }
   recorder->seconds += clock_wall_s() - began;

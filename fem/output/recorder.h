@@ -73,9 +73,9 @@ Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures 
 
 // A row of a history of steps: taken at the state that was measured last, while it is there, and appended
 // once the step is accepted; nothing where the history is another.
-void fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,
-                            const FemAudit *audit, double step, long long step_count,
-                            long long energy_events);
+Status fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,
+                              const FemAudit *audit, double step, long long step_count,
+                              long long energy_events);
 Status fem_recorder_append_step(FemRecorder *recorder);
 
 // Writes the list of frames if it lacks some: at the end, since in between long lists are written at most

@@ -77,6 +77,7 @@ static const FemCheckpointNumber numbers[] = {
     RESULT(assemblies, FEM_LONG, "1"),
     RESULT(pattern_layouts, FEM_LONG, "1"),
     RESULT(energy_retries, FEM_LONG, "1"),
+    RESULT(momentum_retries, FEM_LONG, "1"),
     RESULT(relaxation_steps, FEM_LONG, "1"),
     RESULT(halvings, FEM_LONG, "1"),
     RESULT(residual, FEM_REAL, "N"),

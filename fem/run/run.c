@@ -180,10 +180,10 @@ static Status renumber(FemRunState *run) {
 }
 
 // The step's row, before frames within the step are measured in its place.
-static void take_row(FemRunState *run, double time, const FemMeasures *measures, const FemAudit *audit) {
+static Status take_row(FemRunState *run, double time, const FemMeasures *measures, const FemAudit *audit) {
   FemIntegratorStats stats = fem_run_state_stats(run);
-  fem_recorder_take_step(&run->recorder, time, measures, audit, stats.last_step, stats.steps,
-                         run->result->trouble.of[FEM_TROUBLE_ENERGY].events);
+  return fem_recorder_take_step(&run->recorder, time, measures, audit, stats.last_step, stats.steps,
+                                run->result->trouble.of[FEM_TROUBLE_ENERGY].events);
 }
 
 // One step: taken, judged, shown, accepted.
@@ -200,8 +200,12 @@ static Status advance(FemRunState *run) {
     run->result->energy_retries++;
     return take_back(run, "it gains energy");
   }
-  take_row(run, time, &measures, &next);
-  status = fem_run_frames_write_until(run, time);
+  if (fem_momentum_is_refused(&run->recorder.ledger.momentum, run->model->scene->end) && may_retry) {
+    run->result->momentum_retries++;
+    return take_back(run, "forces and motion differ");
+  }
+  status = take_row(run, time, &measures, &next);
+  if (!status) status = fem_run_frames_write_until(run, time);
   if (status == STATUS_RETRY && may_retry) return take_back(run, status_message());
   TRY(status);
   TRY(fem_recorder_append_step(&run->recorder));
@@ -243,7 +247,7 @@ static Status sleep_on(FemRunState *run) {
   FemMeasures measures;
   TRY(look_ahead(run, &time, &measures));
   FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
-  take_row(run, time, &measures, &next);
+  TRY(take_row(run, time, &measures, &next));
   TRY(fem_run_frames_write_until(run, time));
   TRY(fem_recorder_append_step(&run->recorder));
   run->audit = next;
@@ -411,7 +415,7 @@ static Status advance_static(FemRunState *run) {
   fem_recorder_accept_step(&run->recorder);
   run->audit = fem_audit_next(&run->audit, run->time, &measures.energy);
   fem_run_frames_keep_extremes(run->result, &measures);
-  take_row(run, run->time, &measures, &run->audit);
+  TRY(take_row(run, run->time, &measures, &run->audit));
   if (run->time >= target) TRY(fem_run_frames_write(run, run->time, &measures));
   TRY(fem_recorder_append_step(&run->recorder));
   return observe(run, &measures);

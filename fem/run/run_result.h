@@ -27,9 +27,10 @@ typedef struct FemRunResult {
   FemIntegratorStats integrator;
   FemSolverStats solver;
   const char *solver_name;
-  long long assemblies;      // of K, or K and D apart: how often the elements' matrices were added up
-  long long pattern_layouts; // how often the matrix pattern was laid out
-  long long energy_retries;  // steps taken back because they gained energy
+  long long assemblies;       // of K, or K and D apart: how often the elements' matrices were added up
+  long long pattern_layouts;  // how often the matrix pattern was laid out
+  long long energy_retries;   // steps taken back because they gained energy
+  long long momentum_retries; // … because forces and motion differed
   FemAudit audit;
   FemAuditBounds energy_bounds;
   FemTrouble trouble;
