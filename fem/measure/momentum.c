@@ -158,11 +158,36 @@ static double weight_of(const FemMomentum *momentum, int body) {
                                    : 0;
 }
 
+// What another may stop or hand over.
+typedef struct Motion {
+  double momentum; // Σ |p| of all bodies [kg m/s]
+  double speed;    // of the fastest [m/s]
+} Motion;
+
+static Motion motion_of(const FemMomentum *momentum) {
+  Motion motion = {0, 0};
+  for (int b = 0; b < momentum->body_count; b++) {
+    double p = vec3_length(vec3_at(momentum->now[b].p));
+    motion.momentum += p;
+    motion.speed = fmax(motion.speed, p / momentum->system->model->bodies[b].mass);
+  }
+  return motion;
+}
+
+// S of a body at the end of a run, as far as can be known: what was, what its weight will be, what moves now.
+static double expected_of(const FemMomentum *momentum, int body, const Motion *motion, double end) {
+  const FemModel *model = momentum->system->model;
+  double mass = model->bodies[body].mass, left = fmax(end - momentum->next_time, 0);
+  double expected = momentum->next[body].size + weight_of(momentum, body) * left +
+                    fmin(motion->momentum, mass * motion->speed);
+  return fmax(expected, mass * fem_model_velocity_tolerance(model));
+}
+
 bool fem_momentum_is_refused(const FemMomentum *momentum, double end) {
+  Motion motion = motion_of(momentum);
   for (int b = 0; b < momentum->body_count; b++) {
     const FemMomentumBody *now = &momentum->now[b], *next = &momentum->next[b];
-    double speeding = fmax(vec3_length(vec3_at(now->p)), vec3_length(vec3_at(next->p)));
-    double expected = next->size + weight_of(momentum, b) * fmax(end - momentum->next_time, 0) + speeding;
+    double expected = expected_of(momentum, b, &motion, end);
     double before = vec3_length(missing_of(now)), after = vec3_length(missing_of(next));
     bool is_held = after <= NEAR * expected || after - before <= NEGLIGIBLE * expected;
     if (!is_held) return true;

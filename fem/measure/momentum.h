@@ -53,7 +53,7 @@ Status fem_momentum_end(FemMomentum *momentum, double time, const FemMomentumCon
 void fem_momentum_accept(FemMomentum *momentum);
 // Whether the step that was looked at last is too long for its forces: it leaves a body's balance further out
 // than what the run may end with, `end` its time. S of the whole run is known in part: what was, what the
-// body's weight will be, and that something stops it.
+// body's weight will be, and what moves now, which something may stop.
 bool fem_momentum_is_refused(const FemMomentum *momentum, double end);
 
 // J − Δp of a body up to a time in the step that was looked at last [N s].

@@ -186,10 +186,12 @@ static Status take_row(FemRunState *run, double time, const FemMeasures *measure
                                 run->result->trouble.of[FEM_TROUBLE_ENERGY].events);
 }
 
-// Whether the step's forces are too far from the motion. Without contact nothing jumps within a step.
+// Whether the step's forces are too far from the motion. Without contact nothing jumps within a step; of
+// potentials other than the depth field forces jump in steps however short.
 static bool differs_from_motion(const FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
-  return scene->contact.is_on && fem_momentum_is_refused(&run->recorder.ledger.momentum, scene->end);
+  if (!scene->contact.is_on || scene->contact.potential != CONTACT_POTENTIAL_FIELD) return false;
+  return fem_momentum_is_refused(&run->recorder.ledger.momentum, scene->end);
 }
 
 // One step: taken, judged, shown, accepted.
