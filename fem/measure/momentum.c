@@ -7,9 +7,9 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 
-// A body's balance may be out by so much of all impulses of a run, and a step adds no more than the second to
-// one that is.
-static const double NEAR = 6e-4, NEGLIGIBLE = 1e-4;
+// A body's balance may be out by the first share of all impulses of a run. Beyond it a step adds no more than
+// half of what is left to the second; the third is always allowed.
+static const double NEAR = 6e-4, FAR = 9e-4, NEGLIGIBLE = 1e-5;
 
 Status fem_momentum_create(FemMomentum *momentum, FemSystem *system) {
   size_t bodies = (size_t)system->model->scene->body_count;
@@ -201,7 +201,8 @@ bool fem_momentum_is_refused(const FemMomentum *momentum, double end) {
     const FemMomentumBody *now = &momentum->now[b], *next = &momentum->next[b];
     double expected = expected_of(momentum, b, &motion, end);
     double before = vec3_length(missing_of(now)), after = lasting_of(momentum, next, b, step);
-    bool is_held = after <= NEAR * expected || after - before <= NEGLIGIBLE * expected;
+    double room = fmax(0.5 * (FAR * expected - before), NEGLIGIBLE * expected);
+    bool is_held = after <= NEAR * expected || after - before <= room;
     if (!is_held) return true;
   }
   return false;
