@@ -7,11 +7,11 @@
 
 #include "app/evaluation/evaluation.h"
 #include "app/evaluation/model.h"
-#include "app/training/pool.h"
+#include "app/training/geo/pool.h"
 #include "app/training/rates.h"
 #include "app/training/start.h"
 #include "app/training/training.h"
-#include "app/training/vectors.h"
+#include "app/training/geo/vectors.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"

@@ -2,8 +2,8 @@
 // What training the centroid of `geo` sees of its pairs, computed once: the vectors that its planes' own
 // features make in the frame, Σ_k e_mk q_k, whitened as samples of either sign, and the centroid's z in the
 // same frame (overlap/geo/geo.h). Of the same pairs as the pool, in the same order.
-#ifndef TETLAP_APP_TRAINING_VECTORS_H
-#define TETLAP_APP_TRAINING_VECTORS_H
+#ifndef TETLAP_APP_TRAINING_GEO_VECTORS_H
+#define TETLAP_APP_TRAINING_GEO_VECTORS_H
 
 #include "datagen/pairs.h"
 #include "net/model/model.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/training/pool.h"
+#include "app/training/geo/pool.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/training/vectors.h"
+#include "app/training/geo/vectors.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,8 +6,8 @@
 // nothing. Rates are kept along an orthonormal basis of the other twelve: along a normally distributed
 // direction of all 24 the changes are Σ_q z_q rates_q with twelve normal z, whatever the basis. They are
 // multiplied by V/‖∇V‖, which makes them numbers without unit.
-#ifndef TETLAP_APP_TRAINING_POOL_H
-#define TETLAP_APP_TRAINING_POOL_H
+#ifndef TETLAP_APP_TRAINING_GEO_POOL_H
+#define TETLAP_APP_TRAINING_GEO_POOL_H
 
 #include "base/status.h"
 #include "datagen/pairs.h"
