@@ -8,6 +8,7 @@
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/model.h"
+#include "overlap/hybrid/hybrid.h"
 #include "overlap/portions.h"
 #include "overlap/separation.h"
 #include "overlap/tpn/model.h"

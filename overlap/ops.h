@@ -74,6 +74,10 @@ typedef struct OverlapOps {
   bool rejects_disjoint;
   // Logits of "the two intersect" of pairs (count, 24), where a model tells them apart from V; NULL: V > 0.
   Status (*eval_logits)(const void *self, int count, const double *pairs, double *logits);
+  // V of pairs (count, 24) by its network alone, and a bound of what each is off at a stated confidence; NULL:
+  // it tells none. `has_bounds`: whether it does as it was made; NULL: always.
+  Status (*eval_bounds)(const void *self, int count, const double *pairs, double *volumes, double *bounds);
+  bool (*has_bounds)(const void *self);
   // Whether it has second derivatives, and the centroid, as it was made; NULL: never.
   bool (*has_hessian)(const void *self);
   bool (*has_centroid)(const void *self);

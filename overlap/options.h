@@ -45,6 +45,7 @@ typedef struct OverlapOptions {
   OverlapCoplanar coplanar;
   double touch;      // fading and `hybrid`: overlap share at which the network begins to count
   double deep;       // hybrid: overlap share beyond which it no longer does
+  double doubt;      // hybrid of a geo: V's relative error that a bound may reach before clipping begins
   double confidence; // hybrid: probability of the status head from which it counts fully; at ½ not at all
 } OverlapOptions;
 

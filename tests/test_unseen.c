@@ -63,8 +63,10 @@ END_TEST
 
 // What docs/models.md promises of forces.
 START_TEST(learned_volumes_keep_their_promise) {
-  AppUnseenErrors geo = measure(_i, "geo"), small = measure(_i, "geo-small");
+  AppUnseenErrors geo = measure(_i, "geo"), small = measure(_i, "geo-small"), hybrid = measure(_i, "hybrid");
   ck_assert(geo.nodal_force < 0.003 && small.nodal_force < 0.006);
+  ck_assert(hybrid.nodal_force < 0.003 && hybrid.tangential < 0.01 && hybrid.moment < 0.005);
+  ck_assert(hybrid.path_work < hybrid.path_work_clip + 5e-4);
   ck_assert(geo.tangential < 0.01 && small.tangential < 0.01);
   ck_assert(geo.moment < 0.008 && small.moment < 0.016);
   ck_assert(geo.path_work < geo.path_work_clip + 5e-4);
@@ -73,7 +75,7 @@ START_TEST(learned_volumes_keep_their_promise) {
 END_TEST
 
 START_TEST(without_a_centroid_it_is_nodal) {
-  AppUnseenErrors errors = measure(0, "hybrid");
+  AppUnseenErrors errors = measure(0, "tpn-scene");
   ck_assert(isnan(errors.moment) && isnan(errors.normal_sum));
   ck_assert(errors.nodal_force > 0 && errors.nodal_force < 0.5);
 }

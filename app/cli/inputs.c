@@ -7,6 +7,7 @@
 #include "base/digest.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "overlap/hybrid/hybrid.h"
 #include "overlap/weights.h"
 
 static void record_digest(Record *record, const char *key, uint64_t digest) {
@@ -42,7 +43,7 @@ static void find_weights(const FemSceneDef *scene, char path[PATH_MAX]) {
     return;
   }
   const char *name = contact->net ? contact->net : contact->overlap;
-  if (!contact->net && strcmp(name, "hybrid") == 0) name = "tpn-scene";
+  if (!contact->net && strcmp(name, "hybrid") == 0) name = OVERLAP_HYBRID_NETWORK;
   if (overlap_weights_find(name, path, PATH_MAX) != STATUS_OK) path[0] = 0;
 }
 

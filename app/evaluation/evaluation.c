@@ -39,6 +39,7 @@ void app_evaluation_begin(AppEvaluationRun *run, const OverlapModel *model, AppE
 void app_evaluation_end(AppEvaluationRun *run) {
   memory_free(run->gradient_errors);
   memory_free(run->angles);
+  app_evaluation_bounds_end(&run->bounds);
   *run = (AppEvaluationRun){0};
 }
 
@@ -272,6 +273,7 @@ static Status add_block(AppEvaluationRun *run, Block *block) {
   TRY(block_evaluate(block, run->model));
   TRY(block_tell_status(block, run));
   TRY(block_tell_swapped(block, run));
+  TRY(app_evaluation_bounds_add(&run->bounds, run->model, block->pairs, block->count));
   size_t wanted = (size_t)run->sums.inside + block->count;
   if (!memory_reserve((void **)&run->gradient_errors, &run->gradient_capacity, wanted, sizeof(double)) ||
       !memory_reserve((void **)&run->angles, &run->angle_capacity, wanted, sizeof(double)))
@@ -346,6 +348,7 @@ void app_evaluation_finish(AppEvaluationRun *run, AppEvaluation *result) {
   *result = run->sums;
   finish_kinds(result);
   result->calibration_error = calibration_of(run);
+  result->bounds = app_evaluation_bounds_finish(&run->bounds);
   double inside = (double)result->inside, outside = (double)run->outside;
   for (int b = 0; b < APP_EVALUATION_BINS; b++) {
     double count = (double)run->bins[b];

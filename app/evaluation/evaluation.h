@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "app/evaluation/bounds.h"
 #include "datagen/kind.h"
 #include "datagen/pairs.h"
 #include "overlap/model.h"
@@ -56,6 +57,7 @@ typedef struct AppEvaluation {
   // of either's vertices, the two exchanged, a rotation about the cube's centre
   double defect_vertex_order, defect_swap, defect_rotation;
   bool has_status;          // the model tells a status of its own, a logit
+  AppEvaluationBounds bounds;
   double calibration_error; // Σ over bins of share · |predicted probability − frequency| (Naeini et al. 2015)
 } AppEvaluation;
 
@@ -66,6 +68,7 @@ typedef struct AppEvaluationRun {
   const OverlapModel *model;  // borrowed
   AppEvaluationLogits logits; // NULL: the model tells no status
   AppEvaluation sums;         // not yet divided
+  AppEvaluationBoundsRun bounds;
   long long bins[APP_EVALUATION_BINS];
   double true_volume, true_gradient, true_moments; // Σ
   double symmetry_volume;                          // Σ V told of the pairs that symmetries are tried on

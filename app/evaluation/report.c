@@ -88,6 +88,14 @@ void app_evaluation_print(const AppEvaluation *evaluation, const char *model, co
   print_row(stream, "defect, vertex order", "%.3g", evaluation->defect_vertex_order, NAN);
   print_row(stream, "defect, swap", "%.3g", evaluation->defect_swap, NAN);
   print_row(stream, "defect, rotation", "%.3g", evaluation->defect_rotation, NAN);
+  if (evaluation->bounds.count) {
+    const AppEvaluationBounds *bounds = &evaluation->bounds;
+    print_row(stream, "error within its bound", "%.2f %%", 100 * bounds->coverage, NAN);
+    print_row(stream, "bound / V, median", "%.3g %%", 100 * bounds->width_median, NAN);
+    print_row(stream, "bound / V, 95 %", "%.3g %%", 100 * bounds->width_p95, NAN);
+    print_row(stream, "error / V, median", "%.3g %%", 100 * bounds->error_median, NAN);
+    print_row(stream, "error / V, 95 %", "%.3g %%", 100 * bounds->error_p95, NAN);
+  }
   if (evaluation->has_status)
     print_row(stream, "calibration of status", "%.3g", evaluation->calibration_error, NAN);
   fputs(evaluation->has_status ? "\nstatus: the sign of the logit, right if the closed tetrahedra meet\n"
@@ -139,6 +147,11 @@ void app_evaluation_record(const AppEvaluation *evaluation, Record *record) {
   record_number(record, "defect_rotation", evaluation->defect_rotation);
   record_bool(record, "has_status", evaluation->has_status);
   record_number(record, "calibration_error", evaluation->calibration_error);
+  record_number(record, "bound_coverage", evaluation->bounds.coverage);
+  record_number(record, "bound_width_median", evaluation->bounds.width_median);
+  record_number(record, "bound_width_p95", evaluation->bounds.width_p95);
+  record_number(record, "bound_error_median", evaluation->bounds.error_median);
+  record_number(record, "bound_error_p95", evaluation->bounds.error_p95);
 }
 
 void app_evaluation_print_paths(const AppEvaluationPaths *paths, const char *model, FILE *stream) {

@@ -11,9 +11,10 @@
 
 #define AT(Type, field) offsetof(Type, field), sizeof(((Type *)0)->field)
 
-static const char *const kinds[] = {"geo", "tpn", NULL};
+static const char *const kinds[] = {"geo", "tpn", "bound", NULL};
 static const char *const kind_helps[] = {"analytic-centre frame, symmetric features, a small dense network",
-                                         "TetrahedronPairNet as published (reading c) or after it"};
+                                         "TetrahedronPairNet as published (reading c) or after it",
+                                         "a bound of the error of a geo's V, which `hybrid` goes by"};
 static const char *const readings[] = {"a", "b", "c", "backbone", NULL};
 static const char *const reading_helps[] = {"coordinates concatenated, biased skips; 73,370 parameters",
                                             "a vertex skip for each index; 73,370 parameters",
@@ -84,6 +85,11 @@ static const char *finish_model(void *self, const char **key) {
   *key = "features";
   if (model->kind == APP_MODEL_GEO && !overlap_geo_features_set(model->features))
     return "there is no set of so many features: 36, 70, 100";
+  if (model->kind == APP_MODEL_BOUND && !overlap_geo_features_set(model->features))
+    return "there is no set of so many features: those of the network that is bounded, 36, 70, 100";
+  *key = "of";
+  if (model->kind == APP_MODEL_BOUND && !model->of) return "name the geo whose error is bounded";
+  if (model->kind != APP_MODEL_BOUND && model->of) return "only a bound is of another network";
   *key = "normalisation";
   if (model->kind == APP_MODEL_TPN && model->reading == APP_READING_C &&
       model->normalisation == APP_NORMALISATION_PCA)
@@ -125,11 +131,13 @@ static const SceneKey model_keys[] = {
     {"kind", SCENE_CHOICE, AT(AppTrainingModelDef, kind), .choices = &kind_choices, .required = "geo",
      .help = "what is trained"},
     {"features", SCENE_INTEGER, AT(AppTrainingModelDef, features), .range = "[1, 256]", .fallback = "100",
-     .help = "geo: size of the set of features"},
+     .help = "geo, bound: size of the set of features"},
     {"width", SCENE_INTEGER, AT(AppTrainingModelDef, width), .range = "[1, 1024]", .fallback = "32",
-     .help = "geo: of the hidden layers"},
+     .help = "geo, bound: of the hidden layers"},
     {"depth", SCENE_INTEGER, AT(AppTrainingModelDef, depth), .range = "[1, 8]", .fallback = "3",
-     .help = "geo: number of hidden layers"},
+     .help = "geo, bound: number of hidden layers"},
+    {"of", SCENE_TEXT, AT(AppTrainingModelDef, of), .absent_help = "of a bound it must be there",
+     .help = "bound: the geo whose errors are learned, a file or the name of one that ships"},
     {"centroid", SCENE_SWITCH, AT(AppTrainingModelDef, has_centroid), .fallback = "true",
      .help = "geo: the network gives the centroid of the overlap too, which the potential `field` needs"},
     {"reading", SCENE_CHOICE, AT(AppTrainingModelDef, reading), .choices = &reading_choices, .fallback = "a",
@@ -170,6 +178,8 @@ static const SceneKey loss_keys[] = {
      .help = "geo: factor of errors of derivatives"},
     {"centroid", SCENE_NUMBER, AT(AppTrainingLossDef, centroid), .range = "(0, inf)", .fallback = "1",
      .help = "geo: weight of the centroid's errors"},
+    {"quantile", SCENE_NUMBER, AT(AppTrainingLossDef, quantile), .range = "(0, 1)", .fallback = "0.95",
+     .help = "bound: share of the pairs whose error it shall hold"},
     {"volume_scale", SCENE_NUMBER, AT(AppTrainingLossDef, volume_scale), .range = "(0, inf)", .fallback = "1000",
      .help = "tpn: factor of V"},
     {"sobolev", SCENE_NUMBER, AT(AppTrainingLossDef, sobolev), .range = "[0, inf)", .fallback = "0",
@@ -241,7 +251,7 @@ static void destroy_sources(AppTrainingSourceDef *sources, int count) {
 void app_training_config_destroy(AppTrainingConfig *config) {
   destroy_sources(config->training, config->training_count);
   destroy_sources(config->validation, config->validation_count);
-  memory_free(config->name), memory_free(config->start);
+  memory_free(config->name), memory_free(config->start), memory_free(config->model.of);
   memory_free(config->text), memory_free(config->path);
   *config = (AppTrainingConfig){0};
 }
@@ -298,6 +308,9 @@ static void print_model(const AppTrainingModelDef *def, char *text, size_t size,
   if (def->kind == APP_MODEL_GEO)
     text_append(text, size, used, ", %d features, %d x %d%s\n", def->features, def->width, def->depth,
                 def->has_centroid ? ", centroid" : "");
+  else if (def->kind == APP_MODEL_BOUND)
+    text_append(text, size, used, ", of %s, %d features, %d x %d\n", def->of, def->features, def->width,
+                def->depth);
   else
     text_append(text, size, used, ", reading %s, %s%s, %s, output_scale %.15g\n", readings[def->reading],
                 activations[def->activation], def->pool == APP_POOL_SUM ? ", sum pools" : "",
@@ -318,6 +331,8 @@ char *app_training_config_print(const AppTrainingConfig *config) {
   text_append(text, size, &used, "loss: tangents %d, huber %.15g, tangent_scale %.15g, volume_scale %.15g\n",
               def->tangents, def->huber, def->tangent_scale, def->volume_scale);
   if (def->sobolev > 0) text_append(text, size, &used, "sobolev: %.15g\n", def->sobolev);
+  if (config->model.kind == APP_MODEL_BOUND)
+    text_append(text, size, &used, "quantile: %.15g\n", def->quantile);
   if (config->model.has_centroid) text_append(text, size, &used, "centroid: %.15g\n", def->centroid);
   text_append(
       text, size, &used,

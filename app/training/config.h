@@ -9,7 +9,7 @@
 #include "app/dataset/source.h"
 #include "app/scene/keys/keys.h"
 
-typedef enum AppModelKind { APP_MODEL_GEO, APP_MODEL_TPN } AppModelKind;
+typedef enum AppModelKind { APP_MODEL_GEO, APP_MODEL_TPN, APP_MODEL_BOUND } AppModelKind;
 typedef enum AppNormalisation {
   APP_NORMALISATION_UNIT,
   APP_NORMALISATION_PCA,
@@ -36,7 +36,8 @@ typedef struct AppTrainingSourceDef {
 
 typedef struct AppTrainingModelDef {
   AppModelKind kind;
-  int features, width, depth;     // geo
+  int features, width, depth;     // geo, bound
+  char *of;                       // bound: the geo whose error it bounds, owned
   bool has_centroid;              // geo: the network gives the centroid too
   AppReading reading;             // tpn
   AppActivation activation;       // tpn
@@ -53,6 +54,7 @@ typedef struct AppTrainingLossDef {
   double tangent_scale; // geo: factor of the tangents' term inside Huber's function
   double centroid;      // geo: weight of the centroid's errors
   double volume_scale;  // tpn: V is multiplied by it
+  double quantile;      // bound: share of pairs whose error it shall hold
   double sobolev;       // tpn: weight of errors of ∇V; 0: the paper's loss
 } AppTrainingLossDef;
 

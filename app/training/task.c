@@ -6,7 +6,10 @@
 #include "base/memory.h"
 
 const AppTrainingTaskOps *app_training_task_find(AppModelKind kind) {
-  return kind == APP_MODEL_GEO ? &app_training_geo : &app_training_tpn;
+  static const AppTrainingTaskOps *const tasks[] = {[APP_MODEL_GEO] = &app_training_geo,
+                                                    [APP_MODEL_TPN] = &app_training_tpn,
+                                                    [APP_MODEL_BOUND] = &app_training_bound};
+  return tasks[kind];
 }
 
 void app_training_scores_add(AppTrainingScores *scores, const char *set, const char *name, double value) {

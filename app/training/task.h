@@ -53,7 +53,7 @@ struct AppTrainingTask {
   char summary[512];               // of the data, for people and for the weights' file
 };
 
-extern const AppTrainingTaskOps app_training_geo, app_training_tpn;
+extern const AppTrainingTaskOps app_training_geo, app_training_tpn, app_training_bound;
 
 const AppTrainingTaskOps *app_training_task_find(AppModelKind kind);
 

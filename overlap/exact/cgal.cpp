@@ -212,6 +212,8 @@ extern "C" const OverlapOps overlap_cgal_ops = {
     nullptr,            // has_ghosts
     false,              // rejects_disjoint
     nullptr,            // eval_logits
+    nullptr,            // eval_bounds
+    nullptr,            // has_bounds
     nullptr,            // has_hessian
     overlap_ops_always, // has_centroid
     false,              // checks_finite

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "overlap/geo/geo.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -20,14 +21,19 @@ static void find_features(const OverlapGeoModel *model, const GeoMatrix *project
   geo_unpack_numbers(packs, model->set->count, 0, features);
 }
 
-Status overlap_geo_create(OverlapGeoModel *model, const OverlapGeoNetwork *network) {
-  *model = (OverlapGeoModel){.kernel = overlap_geo_bundle_kernel(), .offset = log(1.28)};
-  if (!network) return STATUS_OK;
+static Status take_network(OverlapGeoModel *model, const OverlapGeoNetwork *network) {
   model->set = overlap_geo_features_set(network->feature_count);
   if (!model->set)
     return status_fail(STATUS_INPUT, "the network has %d inputs: the features of a pair are 36, 70 or 100",
                        network->feature_count);
   model->network = *network;
+  return STATUS_OK;
+}
+
+Status overlap_geo_create(OverlapGeoModel *model, const OverlapGeoNetwork *network) {
+  *model = (OverlapGeoModel){.kernel = overlap_geo_bundle_kernel(), .offset = log(1.28)};
+  if (!network) return STATUS_OK;
+  TRY(take_network(model, network));
   GeoMatrix onset;
   double features[OVERLAP_GEO_MAX_FEATURES], value;
   overlap_geo_frame_onset(&onset);
@@ -37,6 +43,11 @@ Status overlap_geo_create(OverlapGeoModel *model, const OverlapGeoNetwork *netwo
     return status_fail(STATUS_INPUT, "the network's value at the onset of an overlap is %g", value);
   model->offset -= value;
   return STATUS_OK;
+}
+
+Status overlap_geo_create_bound(OverlapGeoModel *model, const OverlapGeoNetwork *network) {
+  *model = (OverlapGeoModel){.kernel = overlap_geo_bundle_kernel(), .is_bound = true};
+  return take_network(model, network);
 }
 
 // The places of pair i's results; NULL where they are not wanted.
@@ -63,9 +74,13 @@ static void write_empty(Place place) {
   if (place.flags) *place.flags = OVERLAP_DISJOINT;
 }
 
-static Status fall_back(Place place) {
+static Status fall_back(const OverlapGeoModel *model, Place place) {
   unsigned flags;
   double volume;
+  if (model->is_bound) {
+    write_empty(place);
+    return STATUS_OK;
+  }
   if (place.hessian)
     TRY(overlap_clip_ops.eval_pair(
         NULL, place.pair, &(OverlapAnswer){.volume = &volume, .hessian = place.hessian, .flags = &flags}));
@@ -78,10 +93,10 @@ static Status fall_back(Place place) {
 }
 
 // What the gate has no use for: a flat tetrahedron, or one with a coordinate that is not finite.
-static Status answer_flat(Place place) {
+static Status answer_flat(const OverlapGeoModel *model, Place place) {
   for (int i = 0; i < SIZE; i++)
     if (!isfinite(place.pair[i])) return status_fail(STATUS_INPUT, "a coordinate is not finite");
-  return fall_back(place);
+  return fall_back(model, place);
 }
 
 // ρ of a block's columns by a network that takes rows.
@@ -137,9 +152,9 @@ static Status add_network_curvature(const OverlapGeoNetwork *network, OverlapGeo
 }
 
 // What lanes could not find a frame of.
-static Status answer_unfit(Place place) {
+static Status answer_unfit(const OverlapGeoModel *model, Place place) {
   OverlapGeoFrame frame;
-  if (overlap_geo_frame(&frame, place.pair) != OVERLAP_GEO_EMPTY) return fall_back(place);
+  if (overlap_geo_frame(&frame, place.pair) != OVERLAP_GEO_EMPTY) return fall_back(model, place);
   write_empty(place);
   return STATUS_OK;
 }
@@ -219,28 +234,48 @@ static void write_centroid(const OverlapGeoBlock *block, int at, Place place) {
   }
 }
 
-static Status write_column(const OverlapGeoBundle *bundle, int first, const OverlapGeoBlock *block,
-                           const OverlapGeoBends *bends, int at, Place place, Waiting *waiting) {
+static Status write_column(const OverlapGeoModel *model, const OverlapGeoBundle *bundle, int first,
+                           const OverlapGeoBlock *block, const OverlapGeoBends *bends, int at, Place place,
+                           Waiting *waiting) {
   *place.volume = block->factor[at];
-  if (!(block->is_fit[at] > 0)) return answer_unfit(place);
-  if (!(*place.volume > 0 && *place.volume < INFINITY)) return fall_back(place);
+  if (!(block->is_fit[at] > 0)) return answer_unfit(model, place);
+  if (!(*place.volume > 0 && *place.volume < INFINITY)) return fall_back(model, place);
   if (place.gradient) memcpy(place.gradient, block->gradient[at], sizeof block->gradient[at]);
   if (place.hessian) write_hessian(bends, at, place.hessian);
   if (place.centroid) write_centroid(block, at, place);
   if (place.flags) *place.flags = bundle->is_enclosed[first + at] ? OVERLAP_ENCLOSED : 0;
-  if (!(block->is_close[at] > 0)) return STATUS_OK;
+  if (!(block->is_close[at] > 0) || model->is_bound) return STATUS_OK;
   if (place.gradient || place.hessian) return blend_column(bundle, first, block, at, place);
   wait_for_clip(block, at, place, waiting);
   return STATUS_OK;
 }
 
+// Another network beside the model's, asked for a bound of each V.
+typedef struct Beside {
+  const OverlapGeoModel *bound; // NULL: none
+  double *bounds;               // of the batch's pairs
+} Beside;
+
+// Before the model's own network, which takes the place of the other's output.
+static Status write_bounds(const Beside *beside, const OverlapGeoBundle *bundle, int first,
+                           OverlapGeoBlock *block) {
+  TRY(eval_network(beside->bound, block, false, false));
+  for (int at = 0; at < OVERLAP_GEO_BLOCK && first + at < bundle->count; at++)
+    if (block->is_fit[at] > 0)
+      beside->bounds[bundle->pair[first + at]] =
+          block->volume[at] * exp(beside->bound->offset + block->outputs[0][at]);
+  return STATUS_OK;
+}
+
 // V, ∇V, x̄ and ∇²V of a block, as far as they are wanted, in block and bends.
-static Status compute_block(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBundle *bundle,
-                            int first, OverlapGeoBlock *block, OverlapGeoBends *bends) {
+static Status compute_block(const OverlapGeoModel *model, const OverlapBatch *batch, const Beside *beside,
+                            OverlapGeoBundle *bundle, int first, OverlapGeoBlock *block,
+                            OverlapGeoBends *bends) {
   bool wants_gradient = batch->gradient || batch->hessian;
   model->kernel->frame(bundle, first, block);
   if (model->set) {
     model->kernel->features(model->set, block);
+    if (beside->bound) TRY(write_bounds(beside, bundle, first, block));
     TRY(eval_network(model, block, wants_gradient, batch->centroid != NULL));
   } else {
     memset(block->outputs[0], 0, sizeof block->outputs[0]);
@@ -257,45 +292,57 @@ static Status compute_block(const OverlapGeoModel *model, const OverlapBatch *ba
 }
 
 // The pairs of the bundle from `first` on.
-static Status eval_block(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBundle *bundle,
-                         int first, OverlapGeoBlock *block, OverlapGeoBends *bends, Waiting *waiting) {
-  TRY(compute_block(model, batch, bundle, first, block, bends));
+static Status eval_block(const OverlapGeoModel *model, const OverlapBatch *batch, const Beside *beside,
+                         OverlapGeoBundle *bundle, int first, OverlapGeoBlock *block, OverlapGeoBends *bends,
+                         Waiting *waiting) {
+  TRY(compute_block(model, batch, beside, bundle, first, block, bends));
   for (int at = 0; at < OVERLAP_GEO_BLOCK && first + at < bundle->count; at++)
-    TRY(write_column(bundle, first, block, bends, at, place_of(batch, bundle->pair[first + at]), waiting));
+    TRY(write_column(model, bundle, first, block, bends, at, place_of(batch, bundle->pair[first + at]),
+                     waiting));
   return STATUS_OK;
 }
 
-static Status eval_bundle(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBundle *bundle,
-                          OverlapGeoBlock *block, OverlapGeoBends *bends) {
+static Status eval_bundle(const OverlapGeoModel *model, const OverlapBatch *batch, const Beside *beside,
+                          OverlapGeoBundle *bundle, OverlapGeoBlock *block, OverlapGeoBends *bends) {
   model->kernel->gate(batch->pair_count, batch->pairs, bundle);
   for (int i = 0; i < batch->pair_count; i++) {
     if (bundle->outcome[i] == OVERLAP_GEO_EMPTY) write_empty(place_of(batch, i));
-    if (bundle->outcome[i] == OVERLAP_GEO_UNFIT) TRY(answer_flat(place_of(batch, i)));
+    if (bundle->outcome[i] == OVERLAP_GEO_UNFIT) TRY(answer_flat(model, place_of(batch, i)));
   }
   Waiting waiting;
   waiting.count = 0;
   for (int first = 0; first < bundle->count; first += OVERLAP_GEO_BLOCK)
-    TRY(eval_block(model, batch, bundle, first, block, bends, &waiting));
+    TRY(eval_block(model, batch, beside, bundle, first, block, bends, &waiting));
   return blend_waiting(&waiting, batch->centroid != NULL);
 }
 
-static Status eval_bundles(const OverlapGeoModel *model, const OverlapBatch *batch, OverlapGeoBends *bends) {
+static Status eval_bundles(const OverlapGeoModel *model, const OverlapBatch *batch, Beside beside,
+                           OverlapGeoBends *bends) {
   OverlapGeoBundle bundle;
   OverlapGeoBlock block;
   for (int begin = 0; begin < batch->pair_count; begin += OVERLAP_GEO_BUNDLE) {
     OverlapBatch part = overlap_ops_part(batch, begin, OVERLAP_GEO_BUNDLE);
-    TRY(eval_bundle(model, &part, &bundle, &block, bends));
+    TRY(eval_bundle(model, &part, &beside, &bundle, &block, bends));
+    if (beside.bounds) beside.bounds += part.pair_count;
   }
   return STATUS_OK;
 }
 
 static Status eval_with_hessians(const OverlapGeoModel *model, const OverlapBatch *batch) {
   OverlapGeoBends bends;
-  return eval_bundles(model, batch, &bends);
+  return eval_bundles(model, batch, (Beside){NULL, NULL}, &bends);
 }
 
 Status overlap_geo_eval(const OverlapGeoModel *model, const OverlapBatch *batch) {
-  return batch->hessian ? eval_with_hessians(model, batch) : eval_bundles(model, batch, NULL);
+  return batch->hessian ? eval_with_hessians(model, batch)
+                        : eval_bundles(model, batch, (Beside){NULL, NULL}, NULL);
+}
+
+Status overlap_geo_eval_bounded(const OverlapGeoModel *model, const OverlapGeoModel *bound,
+                                const OverlapBatch *batch, double *bounds) {
+  assert(!batch->hessian && bound->set == model->set);
+  memset(bounds, 0, (size_t)batch->pair_count * sizeof *bounds);
+  return eval_bundles(model, batch, (Beside){bound, bounds}, NULL);
 }
 
 OverlapGeoOutcome overlap_geo_features_tangent(const OverlapGeoFeatureSet *set, const double pair[24],

@@ -55,14 +55,24 @@ typedef struct OverlapGeoModel {
   OverlapGeoNetwork network;
   const OverlapGeoBundleKernel *kernel;
   double offset; // ln 1.28 − ρ(f*)
+  // V is not the volume but a bound of another model's error: exp ρ V₀, not pinned, 0 where the frame cannot
+  // be had, and no other model is asked.
+  bool is_bound;
 } OverlapGeoModel;
 
 // `network` NULL: the constant. STATUS_INPUT: there is no feature set of that size; else what ρ(f*) fails
 // with.
 Status overlap_geo_create(OverlapGeoModel *model, const OverlapGeoNetwork *network);
 
+// The bound that a network tells: as is_bound has it.
+Status overlap_geo_create_bound(OverlapGeoModel *model, const OverlapGeoNetwork *network);
+
 // Evaluates the batch in this thread; a failure is the network's.
 Status overlap_geo_eval(const OverlapGeoModel *model, const OverlapBatch *batch);
+
+// The same, and beside each V what `bound` makes of the same features: bounds (pair_count).
+Status overlap_geo_eval_bounded(const OverlapGeoModel *model, const OverlapGeoModel *bound,
+                                const OverlapBatch *batch, double *bounds);
 
 // What training the centroid needs of one pair: features (set->count), for the centroid `centroid` its z
 // (3) in a frame, and Σ_k e_mk q_k (plane_count, 3) in the same. Only with INSIDE anything is written.

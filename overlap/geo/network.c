@@ -101,7 +101,7 @@ static Status curve_columns(const void *self, const double *features, double *se
   return STATUS_OK;
 }
 
-static Status check(const OverlapGeoNet *net, const char *path) {
+static Status check(const OverlapGeoNet *net, const char *path, const char *normalisation) {
   const NetShape *shape = &net->model.plan->shape;
   if (!net_dense_is_possible(shape))
     return status_fail(STATUS_INPUT, "%s: geo needs a dense SiLU network, this is another", path);
@@ -114,9 +114,9 @@ static Status check(const OverlapGeoNet *net, const char *path) {
     return status_fail(STATUS_INPUT,
                        "%s: the network has %d outputs; one, or with the centroid %d, is what geo takes",
                        path, shape->output_count, 1 + planes);
-  if (strcmp(net->card.normalisation, OVERLAP_GEO_NORMALISATION) != 0)
-    return status_fail(STATUS_INPUT, "%s: made for the normalisation '%s', geo has '%s'", path,
-                       net->card.normalisation, OVERLAP_GEO_NORMALISATION);
+  if (strcmp(net->card.normalisation, normalisation) != 0)
+    return status_fail(STATUS_INPUT, "%s: made for the normalisation '%s', here '%s' is needed", path,
+                       net->card.normalisation, normalisation);
   return STATUS_OK;
 }
 
@@ -135,24 +135,32 @@ static Status create_workspaces(OverlapGeoNet *net) {
   return STATUS_OK;
 }
 
-static Status load(OverlapGeoNet *net, const char *path) {
+static Status load(OverlapGeoNet *net, const char *path, const char *normalisation) {
   NetStatus status = net_weights_read_f64(path, &net->model, &net->card);
   if (status != NET_OK) return fail_as_net(status);
-  TRY(check(net, path));
+  TRY(check(net, path, normalisation));
   net->of_first = memory_zeroed((size_t)(OVERLAP_GEO_CHUNK * outputs_of(net)), sizeof *net->of_first);
   if (!net->of_first) return status_no_memory("a network");
   for (int n = 0; n < OVERLAP_GEO_CHUNK; n++) net->of_first[n * outputs_of(net)] = 1;
   return create_workspaces(net);
 }
 
-Status overlap_geo_network_create(OverlapGeoNet **net, const char *path) {
+static Status create(OverlapGeoNet **net, const char *path, const char *normalisation) {
   *net = memory_zeroed(1, sizeof **net);
   if (!*net) return status_no_memory("a network");
-  Status status = load(*net, path);
+  Status status = load(*net, path, normalisation);
   if (status == STATUS_OK) return STATUS_OK;
   overlap_geo_network_destroy(*net);
   *net = NULL;
   return status;
+}
+
+Status overlap_geo_network_create(OverlapGeoNet **net, const char *path) {
+  return create(net, path, OVERLAP_GEO_NORMALISATION);
+}
+
+Status overlap_geo_network_create_bound(OverlapGeoNet **net, const char *path) {
+  return create(net, path, OVERLAP_GEO_BOUND_NORMALISATION);
 }
 
 void overlap_geo_network_destroy(OverlapGeoNet *net) {

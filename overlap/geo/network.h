@@ -9,6 +9,7 @@
 
 // What the card of such a file gives as its normalisation.
 #define OVERLAP_GEO_NORMALISATION "analytic-centre frame"
+#define OVERLAP_GEO_BOUND_NORMALISATION "analytic-centre frame, a bound of the error of V"
 
 typedef struct OverlapGeoNet OverlapGeoNet; // opaque: parameters, and memory of evaluation for every thread
 
@@ -16,6 +17,8 @@ typedef struct OverlapGeoNet OverlapGeoNet; // opaque: parameters, and memory of
 // wanted, with one output, or with as many more as a plane has features, which give the centroid. The message
 // names the file.
 Status overlap_geo_network_create(OverlapGeoNet **net, const char *path);
+// The same of a network that tells a bound of another's error: it has one output, and its card says so.
+Status overlap_geo_network_create_bound(OverlapGeoNet **net, const char *path);
 void overlap_geo_network_destroy(OverlapGeoNet *net);
 
 // Borrows the net.

@@ -13,7 +13,7 @@ enum { SIZE = OVERLAP_PAIR_SIZE, ROWS = OVERLAP_TPN_ROWS };
 enum { STATUS = 1 << 0 }; // the network's first output
 
 OverlapOptions overlap_options_default(void) {
-  return (OverlapOptions){.touch = 0.02, .deep = 0.3, .confidence = 0.95};
+  return (OverlapOptions){.touch = 0.02, .deep = 0.3, .doubt = 0.01, .confidence = 0.95};
 }
 
 void overlap_tpn_model_destroy(void *self) {
@@ -249,7 +249,7 @@ const OverlapOps overlap_tpn_scene_ops = {
     .destroy = overlap_tpn_model_destroy,
 };
 
-const OverlapOps overlap_hybrid_ops = {
+const OverlapOps overlap_tpn_hybrid_ops = {
     .name = "hybrid",
     .help = "the network of tpn-scene where it is confident, shallow and in range; exact elsewhere",
     .has_hessian = has_hessian,

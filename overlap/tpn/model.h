@@ -18,7 +18,8 @@
 //              ghosts  gate    orders  coplanar  beyond the range of the training
 //   tpn        keep    none    one     keep      counted    likewise tpn-published
 //   tpn-scene  fade    status  both    keep      counted
-//   hybrid     –       none    both    clip      exact
+//   hybrid of tpn-scene
+//              –       none    both    clip      exact
 //
 // Why hybrid turns to clipping where faces nearly lie in one plane: meshes whose inner planes coincide have
 // kinks in V there, which cancel between neighbouring pairs. The thin pairs among them are answered by the
@@ -41,9 +42,10 @@
 #include "overlap/ops.h"
 #include "overlap/tpn/network.h"
 
-// The weights that ship under these names; hybrid takes those of tpn-scene unless others are named.
+// The weights that ship under these names; `hybrid` (hybrid/hybrid.h) with such a network is
+// overlap_tpn_hybrid_ops, whose weights are tpn-scene's unless others are named.
 extern const OverlapOps overlap_tpn_ops, overlap_tpn_bf16_ops, overlap_tpn_published_ops,
-    overlap_tpn_scene_ops, overlap_hybrid_ops;
+    overlap_tpn_scene_ops, overlap_tpn_hybrid_ops;
 
 // `path` as tpn; options NULL: its own. STATUS_INPUT: another kind of network; the message names the file.
 Status overlap_tpn_model_create(void **self, const char *path, const OverlapOptions *options);

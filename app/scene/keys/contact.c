@@ -79,13 +79,17 @@ static const SceneKey net_keys[] = {
      .choices = &app_scene_choices_coplanar,
      .help = "tpn, hybrid: pairs with faces that nearly lie in one plane, whose V has kinks"},
     {"touch", SCENE_NUMBER, AT(FemContactDef, net_options.touch), .range = "(0, 1)", .fallback = "0.02",
-     .help = "share of overlap up to which V is faded in; `hybrid` takes exact up to there, the network from "
-             "twice that"},
+     .help = "share of overlap up to which V is faded in; `hybrid` of tpn-scene takes exact up to there, the "
+             "network from twice that"},
+    {"doubt", SCENE_NUMBER, AT(FemContactDef, net_options.doubt), .range = "(0, inf)", .fallback = "0.01",
+     .help = "hybrid of a geo: relative error of V that its bound may reach; from there on `clip` takes "
+             "over, alone from twice that"},
     {"deep", SCENE_NUMBER, AT(FemContactDef, net_options.deep), .range = "(0, 2]", .fallback = "0.3",
-     .help =
-         "hybrid: share of overlap up to which the network is taken, exact from one and a half times that"},
+     .help = "hybrid of tpn-scene: share of overlap up to which the network is taken, exact from one and a "
+             "half times that"},
     {"confidence", SCENE_NUMBER, AT(FemContactDef, net_options.confidence), .range = "(0.5, 1)",
-     .fallback = "0.95", .help = "hybrid: probability of the status head from which the network is taken"},
+     .fallback = "0.95",
+     .help = "hybrid of tpn-scene: probability of the status head from which the network is taken"},
     {0},
 };
 static const SceneSection net = {
@@ -128,8 +132,7 @@ static const SceneKey contact_keys[] = {
      .help = "penalty κ; higher: less overlap, shorter steps (Pa/m with the potential `field`, Pa/m³ with "
              "`body`)"},
     {"potential", SCENE_CHOICE, AT(FemContactDef, potential),
-     .absent_help =
-         "`field`; with an overlap model that gives no centroid (`tpn`, `tpn-scene`, `hybrid`) `nodal`",
+     .absent_help = "`field`; with an overlap model that gives no centroid (`tpn`, `tpn-scene`) `nodal`",
      MARK(FemContactDef, potential_is_given, true), .choices = &app_scene_choices_potentials,
      .help = "how overlaps become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",

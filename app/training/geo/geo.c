@@ -8,10 +8,10 @@
 #include <string.h>
 
 #include "app/training/geo/pool.h"
+#include "app/training/geo/vectors.h"
 #include "app/training/sets.h"
 #include "app/training/start.h"
 #include "app/training/task.h"
-#include "app/training/geo/vectors.h"
 #include "base/memory.h"
 #include "overlap/geo/network.h"
 
