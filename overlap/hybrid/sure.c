@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "overlap/hybrid/sure.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -9,6 +8,7 @@
 #include "overlap/clip/clip.h"
 #include "overlap/geo/coplanar.h"
 #include "overlap/geo/model.h"
+#include "overlap/hybrid/share.h"
 #include "overlap/portions.h"
 #include "overlap/weights.h"
 
@@ -74,19 +74,6 @@ static Status create(void **self, const char *weights, const OverlapOptions *giv
   return status;
 }
 
-// c and its derivatives by u = ln(B/V).
-typedef struct Share {
-  double value, slope, bend;
-} Share;
-
-static Share share_of(const Sure *sure, double bound, double volume) {
-  if (!(bound > 0 && volume > 0)) return (Share){0, 0, 0};
-  double rate = 1 / log(2), x = rate * log(bound / (sure->doubt * volume));
-  if (x >= 1) return (Share){1, 0, 0};
-  if (!(x > 0)) return (Share){0, 0, 0};
-  return (Share){x * x * (3 - 2 * x), 6 * x * (1 - x) * rate, 6 * (1 - 2 * x) * rate * rate};
-}
-
 static unsigned flags_of(unsigned geo, double share) {
   if (geo & (OVERLAP_DISJOINT | OVERLAP_FLAT | OVERLAP_FALLBACK)) return geo;
   if (share >= 1) return (geo & ~(unsigned)OVERLAP_BLENDED) | OVERLAP_FALLBACK;
@@ -123,10 +110,14 @@ static Status eval_values(const Sure *sure, const OverlapBatch *batch) {
   own.flags = flags;
   TRY(overlap_geo_eval_bounded(&sure->geo->model, &sure->bound, &own, bounds));
   for (int i = 0; i < batch->pair_count; i++) {
-    double share = flags[i] & OVERLAP_FALLBACK ? 0 : share_of(sure, bounds[i], batch->volume[i]).value;
+    OverlapHybridSigns signs = {.pair = batch->pairs + SIZE * (ptrdiff_t)i,
+                                .doubt = sure->doubt,
+                                .volume = batch->volume[i],
+                                .bound = bounds[i]};
+    double share = flags[i] & OVERLAP_FALLBACK ? 0 : overlap_hybrid_share(&signs);
     if (batch->flags) batch->flags[i] = flags_of(flags[i], share);
     if (!(share > 0)) continue;
-    memcpy(waiting.pairs + SIZE * waiting.count, batch->pairs + SIZE * (ptrdiff_t)i, SIZE * sizeof(double));
+    memcpy(waiting.pairs + SIZE * waiting.count, signs.pair, SIZE * sizeof(double));
     waiting.share[waiting.count] = share;
     waiting.at[waiting.count++] = i;
   }
@@ -135,45 +126,21 @@ static Status eval_values(const Sure *sure, const OverlapBatch *batch) {
 
 // ---- With derivatives.
 
-// The parts of one pair's answer; gradients, and Hessians unless NULL.
-typedef struct Parts {
-  double net, clip, bound;
-  const double *net_gradient, *clip_gradient, *bound_gradient;
-  const double *net_hessian, *clip_hessian, *bound_hessian;
-} Parts;
-
-// ∇c and, unless NULL, ∇²c: of c(u), u = ln B − ln V.
-static void differentiate_share(const Parts *parts, Share share, double gradient[SIZE], double *hessian) {
-  double by_bound[SIZE], by_net[SIZE], change[SIZE];
-  for (int i = 0; i < SIZE; i++) {
-    by_bound[i] = parts->bound_gradient[i] / parts->bound;
-    by_net[i] = parts->net_gradient[i] / parts->net;
-    change[i] = by_bound[i] - by_net[i];
-    gradient[i] = share.slope * change[i];
-  }
-  for (int i = 0; i < SIZE && hessian; i++)
-    for (int j = 0; j < SIZE; j++)
-      hessian[SIZE * i + j] =
-          share.bend * change[i] * change[j] +
-          share.slope * (parts->bound_hessian[SIZE * i + j] / parts->bound - by_bound[i] * by_bound[j] -
-                         parts->net_hessian[SIZE * i + j] / parts->net + by_net[i] * by_net[j]);
-}
-
-// ∇V = (1 − c) ∇V_net + c ∇V_clip + (V_clip − V_net) ∇c, and ∇²V.
-static void mix_derivatives(const Parts *parts, Share share, double *gradient, double *hessian) {
-  double share_gradient[SIZE], share_hessian[SQUARE], apart[SIZE], difference = parts->clip - parts->net;
-  differentiate_share(parts, share, share_gradient, hessian ? share_hessian : NULL);
-  for (int i = 0; i < SIZE; i++) apart[i] = parts->clip_gradient[i] - parts->net_gradient[i];
+// ∇V = (1 − c) ∇V_net + c ∇V_clip + (V_clip − V_net) ∇c, and ∇²V, in place of the network's; `gradient` only
+// if not NULL.
+static void mix_derivatives(const OverlapHybridSigns *signs, double share, const OverlapAnswer *clip,
+                            const double share_gradient[SIZE], const double *share_hessian, double *gradient,
+                            double *hessian) {
+  double apart[SIZE], difference = *clip->volume - signs->volume;
+  for (int i = 0; i < SIZE; i++) apart[i] = clip->gradient[i] - signs->volume_gradient[i];
   for (int i = 0; i < SIZE && hessian; i++)
     for (int j = i; j < SIZE; j++) {
       int at = SIZE * i + j;
-      hessian[at] =
-          parts->net_hessian[at] + share.value * (parts->clip_hessian[at] - parts->net_hessian[at]) +
-          share_gradient[i] * apart[j] + apart[i] * share_gradient[j] + difference * share_hessian[at];
+      hessian[at] += share * (clip->hessian[at] - hessian[at]) + share_gradient[i] * apart[j] +
+                     apart[i] * share_gradient[j] + difference * share_hessian[at];
       hessian[SIZE * j + i] = hessian[at];
     }
-  for (int i = 0; i < SIZE && gradient; i++)
-    gradient[i] = parts->net_gradient[i] + share.value * apart[i] + difference * share_gradient[i];
+  for (int i = 0; i < SIZE && gradient; i++) gradient[i] += share * apart[i] + difference * share_gradient[i];
 }
 
 // What both networks say of a few pairs.
@@ -184,36 +151,37 @@ typedef struct Told {
   unsigned flags[BENT];
 } Told;
 
-static Status mix_pair(const Sure *sure, const OverlapBatch *batch, const Told *told, int i) {
-  const double *pair = batch->pairs + SIZE * (ptrdiff_t)i;
+static OverlapHybridSigns signs_of(const Sure *sure, const OverlapBatch *batch, const Told *told, int i) {
+  return (OverlapHybridSigns){.pair = batch->pairs + SIZE * (ptrdiff_t)i,
+                              .doubt = sure->doubt,
+                              .volume = told->volume[i],
+                              .bound = told->flags[i] & OVERLAP_FALLBACK ? 0 : told->bound[i],
+                              .volume_gradient = told->gradient + SIZE * i,
+                              .bound_gradient = told->bound_gradient + SIZE * i,
+                              .volume_hessian = told->hessian + SQUARE * i,
+                              .bound_hessian = told->bound_hessian + SQUARE * i};
+}
+
+static Status mix_pair(const OverlapBatch *batch, const OverlapHybridSigns *signs, unsigned geo, int i) {
   double *gradient = batch->gradient ? batch->gradient + SIZE * (ptrdiff_t)i : NULL;
   double *hessian = batch->hessian ? batch->hessian + SQUARE * (ptrdiff_t)i : NULL;
-  Share share = {0, 0, 0};
-  if (!(told->flags[i] & OVERLAP_FALLBACK)) share = share_of(sure, told->bound[i], told->volume[i]);
-  batch->volume[i] = told->volume[i];
-  if (batch->flags) batch->flags[i] = flags_of(told->flags[i], share.value);
-  if (gradient) memcpy(gradient, told->gradient + SIZE * i, SIZE * sizeof(double));
-  if (hessian) memcpy(hessian, told->hessian + SQUARE * i, SQUARE * sizeof(double));
-  if (!(share.value > 0)) return STATUS_OK;
+  double share_gradient[SIZE], share_hessian[SQUARE];
+  double share = overlap_hybrid_share_derive(signs, share_gradient, hessian ? share_hessian : NULL);
+  batch->volume[i] = signs->volume;
+  if (batch->flags) batch->flags[i] = flags_of(geo, share);
+  if (gradient) memcpy(gradient, signs->volume_gradient, SIZE * sizeof(double));
+  if (hessian) memcpy(hessian, signs->volume_hessian, SQUARE * sizeof(double));
+  if (!(share > 0)) return STATUS_OK;
   double volume, clip_gradient[SIZE], clip_hessian[SQUARE], centroid[3];
   unsigned flags;
-  TRY(overlap_clip_ops.eval_pair(NULL, pair,
-                                 &(OverlapAnswer){.volume = &volume,
-                                                  .gradient = clip_gradient,
-                                                  .hessian = hessian ? clip_hessian : NULL,
-                                                  .centroid = batch->centroid ? centroid : NULL,
-                                                  .flags = &flags}));
-  Parts parts = {.net = told->volume[i],
-                 .clip = volume,
-                 .bound = told->bound[i],
-                 .net_gradient = told->gradient + SIZE * i,
-                 .clip_gradient = clip_gradient,
-                 .bound_gradient = told->bound_gradient + SIZE * i,
-                 .net_hessian = told->hessian + SQUARE * i,
-                 .clip_hessian = clip_hessian,
-                 .bound_hessian = told->bound_hessian + SQUARE * i};
-  mix_derivatives(&parts, share, gradient, hessian);
-  overlap_geo_coplanar_mix(share.value, volume, centroid, batch->volume + i,
+  OverlapAnswer clip = {.volume = &volume,
+                        .gradient = clip_gradient,
+                        .hessian = hessian ? clip_hessian : NULL,
+                        .centroid = batch->centroid ? centroid : NULL,
+                        .flags = &flags};
+  TRY(overlap_clip_ops.eval_pair(NULL, signs->pair, &clip));
+  mix_derivatives(signs, share, &clip, share_gradient, share_hessian, gradient, hessian);
+  overlap_geo_coplanar_mix(share, volume, centroid, batch->volume + i,
                            batch->centroid ? batch->centroid + 3 * (ptrdiff_t)i : NULL);
   return STATUS_OK;
 }
@@ -232,7 +200,10 @@ static Status eval_bent(const Sure *sure, const OverlapBatch *batch) {
                                                      .volume = told.bound,
                                                      .gradient = told.bound_gradient,
                                                      .hessian = batch->hessian ? told.bound_hessian : NULL}));
-  for (int i = 0; i < batch->pair_count; i++) TRY(mix_pair(sure, batch, &told, i));
+  for (int i = 0; i < batch->pair_count; i++) {
+    OverlapHybridSigns signs = signs_of(sure, batch, &told, i);
+    TRY(mix_pair(batch, &signs, told.flags[i], i));
+  }
   return STATUS_OK;
 }
 
