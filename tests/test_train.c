@@ -5,6 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/dataset/source.h"
+#include "app/evaluation/bounds.h"
 #include "app/evaluation/evaluation.h"
 #include "app/evaluation/model.h"
 #include "app/training/geo/pool.h"
@@ -18,6 +20,7 @@
 #include "overlap/clip/clip.h"
 #include "overlap/geo/geo.h"
 #include "overlap/geo/network.h"
+#include "overlap/weights.h"
 #include "suite.h"
 
 static char directory[64];
@@ -54,6 +57,15 @@ static const char geo_config[] =
     "data:\n"
     "  training: [{law: scene, mix: scene=1, count: 2000, seed: 11}]\n"
     "  validation: [{name: scene, law: scene, mix: scene=1, count: 300, seed: 12}]\n"
+    "optimiser: {rate: 1e-2, batch: 100, samples: 40000}\n"
+    "validations: 4\n";
+
+static const char bound_config[] =
+    "name: t-bound\n"
+    "model: {kind: bound, of: geo-small, features: 36, width: 8, depth: 1}\n"
+    "data:\n"
+    "  training: [{law: scene, mix: scene=1, count: 4000, seed: 11}]\n"
+    "  validation: [{name: scene, law: scene, mix: scene=1, count: 2000, seed: 12}]\n"
     "optimiser: {rate: 1e-2, batch: 100, samples: 40000}\n"
     "validations: 4\n";
 
@@ -310,13 +322,13 @@ static Status train(const AppTrainingConfig *config, const char *where, int thre
   return app_training_run(config, &options, result);
 }
 
-static void check_resume(const char *text) {
+static void check_resume(const char *text, const char *name) {
   make_directory();
-  char whole[80], parts[80], weights[2][96];
+  char whole[80], parts[80], weights[2][128];
   snprintf(whole, sizeof whole, "%s/whole", directory);
   snprintf(parts, sizeof parts, "%s/parts", directory);
-  snprintf(weights[0], sizeof weights[0], "%s/t.safetensors", whole);
-  snprintf(weights[1], sizeof weights[1], "%s/t.safetensors", parts);
+  snprintf(weights[0], sizeof weights[0], "%s/%s.safetensors", whole, name);
+  snprintf(weights[1], sizeof weights[1], "%s/%s.safetensors", parts, name);
   AppTrainingConfig config = read_config(text);
   AppTrainingResult result;
   Stopper stopper = {.step = 37};
@@ -331,17 +343,17 @@ static void check_resume(const char *text) {
 }
 
 START_TEST(resumed_geo_training_ends_with_the_same_bits) {
-  check_resume(geo_config);
+  check_resume(geo_config, "t");
 }
 END_TEST
 
 START_TEST(resumed_tpn_training_ends_with_the_same_bits) {
-  check_resume(tpn_config);
+  check_resume(tpn_config, "t");
 }
 END_TEST
 
 START_TEST(resumed_training_on_a_plateau_ends_with_the_same_bits) {
-  check_resume(published_config);
+  check_resume(published_config, "t");
 }
 END_TEST
 
@@ -389,6 +401,40 @@ START_TEST(trained_network_is_far_better_than_none) {
   ck_assert(trained.defect_vertex_order < 1e-9 && trained.defect_swap < 1e-9);
   app_training_config_destroy(&config);
   remove_directory();
+}
+END_TEST
+
+// The bound, made beside its network, serves hybrid, and holds of other pairs for the share that was asked.
+START_TEST(trained_bound_holds_of_other_pairs) {
+  make_directory();
+  char command[256], network[4096];
+  AppTrainingConfig config = read_config(bound_config);
+  AppTrainingResult result;
+  ck_assert_ok(train(&config, directory, 2, false, NULL, &result));
+  ck_assert_ok(overlap_weights_find("geo-small", network, sizeof network));
+  snprintf(command, sizeof command, "cp '%.150s' '%s'", network, path_in("t.safetensors"));
+  ck_assert_int_eq(system(command), 0);
+  OverlapModel hybrid;
+  ck_assert_ok(overlap_model_create_with(&hybrid, "hybrid", path_in("t.safetensors"), NULL));
+  DatagenPairs pairs;
+  size_t count;
+  AppSourceDef def = {.law = "scene", .mix = "scene=1", .count = 4000, .seed = 13};
+  ck_assert_ok(app_dataset_source_load(&def, &pairs, &count));
+  AppEvaluationBoundsRun run = {0};
+  ck_assert_ok(app_evaluation_bounds_add(&run, &hybrid, &pairs, count));
+  AppEvaluationBounds bounds = app_evaluation_bounds_finish(&run);
+  ck_assert_near(bounds.coverage, 0.95, 0.02);
+  ck_assert(bounds.width_median < bounds.error_p95); // it tells pairs apart: a constant would be the latter
+  app_evaluation_bounds_end(&run);
+  datagen_pairs_destroy(&pairs);
+  overlap_model_destroy(&hybrid);
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+END_TEST
+
+START_TEST(resumed_bound_training_ends_with_the_same_bits) {
+  check_resume(bound_config, "t-bound");
 }
 END_TEST
 
@@ -549,9 +595,9 @@ START_TEST(wrong_configurations_are_refused_by_name) {
 END_TEST
 
 START_TEST(shipped_configurations_are_read) {
-  static const char *const names[] = {"geo",      "geo-small",     "smoke",    "tpn",
-                                      "tpn-both", "tpn-published", "tpn-scene"};
-  for (int n = 0; n < 7; n++) {
+  static const char *const names[] = {"geo", "geo-small", "geo-small-bound", "smoke",
+                                      "tpn", "tpn-both",  "tpn-published",   "tpn-scene"};
+  for (int n = 0; n < 8; n++) {
     char path[256];
     AppTrainingConfig config;
     snprintf(path, sizeof path, TETLAP_SOURCE_DIR "/examples/train/%s.yaml", names[n]);
@@ -577,6 +623,8 @@ int main(void) {
   tcase_add_test(test_case, resumed_training_on_a_plateau_ends_with_the_same_bits);
   tcase_add_test(test_case, checkpoint_of_another_configuration_is_refused);
   tcase_add_test(test_case, trained_network_is_far_better_than_none);
+  tcase_add_test(test_case, trained_bound_holds_of_other_pairs);
+  tcase_add_test(test_case, resumed_bound_training_ends_with_the_same_bits);
   tcase_add_test(test_case, fine_tuning_begins_where_shipped_weights_ended);
   tcase_add_test(test_case, training_stops_when_it_gets_no_better);
   tcase_add_test(test_case, weights_brought_over_to_another_whitening_are_the_same_function);
