@@ -27,7 +27,10 @@ Status overlap_weights_kind(const char *path, OverlapWeightsKind *kind) {
   NetCard card;
   NetStatus status = net_weights_read_f32(path, &network, &card);
   if (status != NET_OK) // names the path
-    return status_fail(status == NET_BAD_IO ? STATUS_IO : STATUS_INPUT, "%s", net_status_message());
+    return status_fail(status == NET_NO_MEMORY ? STATUS_MEMORY
+                       : status == NET_BAD_IO  ? STATUS_IO
+                                               : STATUS_INPUT,
+                       "%s", net_status_message());
   *kind = network.plan->shape.kind == NET_TPN ? OVERLAP_WEIGHTS_TPN : OVERLAP_WEIGHTS_GEO;
   net_weights_card_destroy(&card);
   net_model_destroy_f32(&network);

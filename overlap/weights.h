@@ -11,7 +11,7 @@
 // Whether a model's name is rather a path to a weights file: it ends in .safetensors.
 bool overlap_weights_is_path(const char *name);
 
-// What a weights file's network is for, by its shape. STATUS_INPUT, STATUS_IO: it cannot be read.
+// What a weights file's network is for, by its shape. STATUS_INPUT, STATUS_IO, STATUS_MEMORY: it cannot be read.
 typedef enum OverlapWeightsKind { OVERLAP_WEIGHTS_GEO, OVERLAP_WEIGHTS_TPN } OverlapWeightsKind;
 Status overlap_weights_kind(const char *path, OverlapWeightsKind *kind);
 
