@@ -72,6 +72,48 @@ START_TEST(an_early_stop_leaves_a_checkpoint_of_what_was_done) {
 }
 END_TEST
 
+// An equilibrium may take minutes: few are done again.
+START_TEST(a_static_run_that_is_stopped_leaves_its_last_equilibria) {
+  SceneRun run;
+  Stopper stopper = {.time = 0.5};
+  FemCheckpoint checkpoint;
+  char path[96];
+  make_folder();
+  scene_open(&run, "patch", (const char *const[]){"output.frames=12", NULL});
+  FemRunOptions options = {
+      .stop = &stopper.flag, .observe = stop_at, .observer = &stopper, .directory = folder};
+  ck_assert_int_eq(fem_run(&run.model, &options, &run.result), STATUS_INTERRUPTED);
+  ck_assert_int_ge((int)run.result.integrator.steps, 6);
+  snprintf(path, sizeof path, "%s/%s", folder, FEM_CHECKPOINT_FILE);
+  ck_assert_ok(fem_checkpoint_read(&checkpoint, path));
+  ck_assert_int_ge((int)checkpoint.so_far.integrator.steps, (int)run.result.integrator.steps - 4);
+  fem_checkpoint_destroy(&checkpoint);
+  scene_close(&run);
+  remove_folder();
+}
+END_TEST
+
+// Where the integrator begins anew for a checkpoint does not hang on them.
+START_TEST(a_run_is_the_same_however_many_frames_it_writes) {
+  double lost[3];
+  long long steps[3];
+  const char *const frames[] = {"output.frames=2", "output.frames=30", "output.frames=173"};
+  for (int k = 0; k < 3; k++) {
+    SceneRun run;
+    scene_run(&run, "drop", (const char *const[]){frames[k], "time.end=0.3", NULL});
+    lost[k] = fem_audit_lost(&run.result.audit);
+    steps[k] = run.result.integrator.steps;
+    ck_assert_double_gt(run.result.contact_force_max, 0);
+    scene_close(&run);
+  }
+  ck_assert_int_gt((int)steps[0], 100);
+  for (int k = 1; k < 3; k++) {
+    ck_assert_int_eq((int)steps[k], (int)steps[0]);
+    ck_assert_double_eq(lost[k], lost[0]);
+  }
+}
+END_TEST
+
 // What a command prints, both streams; returns its exit code.
 static int print(const char *words, char *text, size_t size) {
   char command[1024];
@@ -228,6 +270,8 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("stop");
   tcase_add_test(cases, a_static_run_stops_within_an_evaluation);
+  tcase_add_test(cases, a_static_run_that_is_stopped_leaves_its_last_equilibria);
+  tcase_add_test(cases, a_run_is_the_same_however_many_frames_it_writes);
   tcase_add_test(cases, an_early_stop_leaves_a_checkpoint_of_what_was_done);
   tcase_add_test(cases, a_second_run_into_a_folder_leaves_nothing_of_the_first);
   tcase_add_test(cases, what_cannot_be_printed_is_an_error);

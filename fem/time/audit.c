@@ -27,11 +27,19 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
   audit->scale = fmax(floor, largest_part(audit, energy));
 }
 
-// Of a power that is dissipated in a step. One that falls does so exponentially, as that of a mode which is
-// damped faster than the step is long: the mean of the ends would be many times what there was to lose.
+// Of a power that is dissipated in a step, from its ends. One that swings is what the trapezoidal rule says: over
+// a period its errors cancel, where the logarithmic mean would lack (ω h)²/6 of it. One that falls by much in a
+// step falls exponentially, as that of a mode which is damped faster than the step is long: there the
+// logarithmic mean is right, and the mean of the ends would be many times what there was to lose. Between a
+// fall to a half and one to an eighth the one becomes the other.
+static const double SWINGS = 2, FALLS = 8;
 static double mean_dissipated(double begin, double end) {
-  if (!(begin > end)) return 0.5 * (begin + end);
-  return end > 0 ? (begin - end) / log(begin / end) : 0;
+  const double trapezoid = 0.5 * (begin + end);
+  if (!(begin > SWINGS * end)) return trapezoid;
+  if (!(end > 0)) return 0;
+  double share = fmin(1, log(begin / end / SWINGS) / log(FALLS / SWINGS));
+  double smooth = share * share * (3 - 2 * share);
+  return trapezoid + smooth * ((begin - end) / log(begin / end) - trapezoid);
 }
 
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy) {

@@ -2,7 +2,8 @@
 // The energy audit of a run. The audited total
 //     A = kinetic + elastic + gravity + contact + dissipated − work of driven vertices, obstacles and loads
 // is constant in exact mechanics and falls by the integrator's own damping; a rise is an error. Powers are
-// integrated by the trapezoidal rule over accepted steps.
+// integrated by the trapezoidal rule over accepted steps; a dissipated power that falls to less than half in a
+// step by a mean that goes over to the logarithmic one.
 //
 // Two bounds, as shares of the scene's energy. What one step may gain: more is taken back. What a run may
 // gain in all: more is trouble (fem/run/trouble.h). Where nothing jumps both are far beyond what the error

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The energy audit alone: what it counts as dissipated between accepted states of known powers.
+#include <math.h>
+
+#include "fem/time/audit.h"
+#include "suite.h"
+
+typedef double Power(double time, double rate);
+
+// What the audit counts as dissipated of a power from 0 to `end`, in even steps.
+static double counted(Power *power, double rate, double end, int steps) {
+  FemAudit audit;
+  FemEnergy energy = {.kinetic = 1, .dissipated_power = power(0, rate)};
+  fem_audit_begin(&audit, 0, &energy, 0);
+  for (int i = 1; i <= steps; i++) {
+    double time = end * i / steps;
+    energy.dissipated_power = power(time, rate);
+    audit = fem_audit_next(&audit, time, &energy);
+  }
+  return audit.damped;
+}
+
+// Of a damper between what swings at the angular frequency `rate`.
+static double swing(double time, double rate) {
+  double speed = cos(rate * time);
+  return speed * speed;
+}
+
+static double decay(double time, double rate) {
+  return exp(-2 * rate * time);
+}
+
+// Over whole periods the trapezoidal rule is exact. What is lacking is of steps beside the power's zeros, where it
+// falls by more than to a half: (ω h)³ of a swing, where the logarithmic mean of every fall would lack (ω h)²/6.
+START_TEST(of_a_swing_next_to_nothing_is_lacking) {
+  const double there = 4 * M_PI; // four periods
+  ck_assert_near(counted(swing, 1, 8 * M_PI, 4 * 100), there, 2e-4 * there);
+  ck_assert_near(counted(swing, 1, 8 * M_PI, 4 * 20), there, 2e-2 * there);
+}
+END_TEST
+
+// A mode that is gone within a step had only so much to lose.
+START_TEST(of_what_falls_within_a_step_no_more_is_counted_than_there_was) {
+  for (double rate = 5; rate < 300; rate *= 2) {
+    double there = 0.5 / rate; // ∫ exp(−2 rate t)
+    ck_assert_near(counted(decay, rate, 4, 4), there, 1e-2 * there);
+  }
+}
+END_TEST
+
+// Between both: as good as either, and without a jump.
+START_TEST(from_the_one_to_the_other_it_goes_without_a_jump) {
+  double before = NAN;
+  for (double fall = 1.5; fall < 20; fall *= 1.01) {
+    double rate = 0.5 * log(fall), there = (1 - 1 / fall) / (2 * rate);
+    double error = counted(decay, rate, 1, 1) / there - 1;
+    ck_assert(error >= -1e-12 && error < 0.09);
+    if (!isnan(before)) ck_assert_near(error, before, 4e-3);
+    before = error;
+  }
+}
+END_TEST
+
+START_TEST(a_power_that_ends_at_nothing_counts_in_part) {
+  FemAudit audit, next;
+  FemEnergy energy = {.kinetic = 1, .dissipated_power = 2};
+  fem_audit_begin(&audit, 0, &energy, 0);
+  energy.dissipated_power = 0;
+  next = fem_audit_next(&audit, 1, &energy);
+  ck_assert(next.damped >= 0 && next.damped <= 1);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("audit");
+  tcase_add_test(cases, of_a_swing_next_to_nothing_is_lacking);
+  tcase_add_test(cases, of_what_falls_within_a_step_no_more_is_counted_than_there_was);
+  tcase_add_test(cases, from_the_one_to_the_other_it_goes_without_a_jump);
+  tcase_add_test(cases, a_power_that_ends_at_nothing_counts_in_part);
+  return suite_run("audit", cases, 20);
+}
