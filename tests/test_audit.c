@@ -30,8 +30,9 @@ static double decay(double time, double rate) {
   return exp(-2 * rate * time);
 }
 
-// Over whole periods the trapezoidal rule is exact. What is lacking is of steps beside the power's zeros, where it
-// falls by more than to a half: (ω h)³ of a swing, where the logarithmic mean of every fall would lack (ω h)²/6.
+// Over whole periods the trapezoidal rule is exact. What is lacking is of steps beside the power's zeros,
+// where it falls by more than to a half: (ω h)³ of a swing, where the logarithmic mean of every fall would
+// lack (ω h)²/6.
 START_TEST(of_a_swing_next_to_nothing_is_lacking) {
   const double there = 4 * M_PI; // four periods
   ck_assert_near(counted(swing, 1, 8 * M_PI, 4 * 100), there, 2e-4 * there);

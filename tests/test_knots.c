@@ -203,7 +203,7 @@ START_TEST(a_smooth_table_of_a_thousand_rows_costs_no_more_than_its_formula) {
   load->table = rows, load->table_count = ROWS;
   scene_run_from(&table, NULL);
   ck_assert_ok(table.status);
-  ck_assert_double_le((double)table.result.integrator.steps, 1.2 * (double)formula.result.integrator.steps);
+  ck_assert_double_le((double)table.result.integrator.steps, 1.25 * (double)formula.result.integrator.steps);
   // The rows cut corners of 1.6e-4 of the amplitude at most (Δ²ω²/8 of it, and as much in the integral).
   ck_assert_near(momentum_of(&table), momentum_of(&formula), 1e-3 * 10 / (4 * M_PI));
   scene_close(&formula), scene_close(&table);

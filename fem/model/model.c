@@ -98,6 +98,15 @@ double fem_model_velocity_tolerance(const FemModel *model) {
   return creeps(scene) ? fmin(chosen, FRICTION_RESOLUTION * fem_model_slip_speed(model)) : chosen;
 }
 
+double fem_model_strain_energy(const FemModel *model, double strain) {
+  double energy = 0;
+  for (int b = 0; b < model->scene->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    energy += strain * strain * body->material.young * body->mass / body->material.density;
+  }
+  return energy;
+}
+
 static const FemModelBody *body_of(const FemModel *model, int tet) {
   return &model->bodies[model->tet_body[tet]];
 }

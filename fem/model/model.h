@@ -79,6 +79,9 @@ double fem_model_contact_stiffness(const FemModel *model);
 // t = 0 or √(g L), L the smallest body's diagonal; with friction by the law `velocity` at most 5 ε.
 double fem_model_velocity_tolerance(const FemModel *model);
 
+// E V ε², the energy of a strain in all bodies, twice if it were uniaxial [J].
+double fem_model_strain_energy(const FemModel *model, double strain);
+
 // Share of the fastest body's present speed that a velocity may err by beside that, where there is contact
 // (fem/time/error_weights.h); 0 where the scene says how far, or friction by the law `velocity` needs it.
 double fem_model_speed_share(const FemModel *model);

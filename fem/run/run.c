@@ -23,6 +23,9 @@
 // many times in a row.
 static const double RETRY_FACTOR = 0.2;
 enum { RETRIES_IN_A_ROW = 8 };
+// A scene in motion without contact may begin at rest with long steps. What it gains is judged by the energy
+// of a strain of so many times time.tolerance, which is a length over a body's, at least.
+static const double TOLD_STRAIN = 20;
 // A static run gives up where a step of load becomes shorter than this share of the time between two frames.
 static const double SHORTEST_LOAD_STEP = 1e-4;
 // While all bodies sleep time goes on by this share of the end at most, and by a shorter one where an
@@ -51,8 +54,8 @@ static Status refuse_passage(const FemRunState *run) {
 // Counts what struck in the accepted state; `*has_begun`: something that had not in the state before.
 static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_begun) {
   FemTrouble *trouble = &run->result->trouble;
-  double rise = (run->audit.total - run->audit.lowest) / run->audit.scale;
-  double bound = run->result->energy_bounds.run;
+  const double rise = fem_audit_rise(&run->result->energy_bounds, &run->audit);
+  const double bound = run->result->energy_bounds.run;
   measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= bound);
   *has_begun = fem_trouble_add(trouble, run->time, &measures->trouble);
   if (run->options->is_strict && measures->trouble.count[FEM_TROUBLE_PASSED] > 0) return refuse_passage(run);
@@ -80,6 +83,7 @@ static Status observe(FemRunState *run, FemMeasures *measures) {
                              .active_pairs = measures->active_pairs,
                              .measures = measures,
                              .audit = &run->audit,
+                             .energy_rise = fem_audit_rise(&run->result->energy_bounds, &run->audit),
                              .energy_bound = run->result->energy_bounds.run,
                              .trouble = &run->result->trouble,
                              .has_trouble_begun = has_begun};
@@ -269,20 +273,9 @@ static Status sleep_on(FemRunState *run) {
   return has_changed ? renumber(run) : STATUS_OK;
 }
 
-// A rest state is not judged by rounding: the energy of a strain of 1e-6 in all bodies, E V 1e-12, counts as the
-// scene's at least. Without contact, where a scene may begin at rest with long steps, the kinetic energy at
-// speeds that the error test can tell counts, too: what one of its errors makes of it is far below the bounds.
-static const double STRAIN = 1e-6, TOLD_SPEED = 100; // of the velocity tolerance
-static double energy_floor(const FemModel *model) {
-  double elastic = 0, kinetic = 0, speed = TOLD_SPEED * fem_model_velocity_tolerance(model);
-  for (int b = 0; b < model->scene->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
-    elastic += STRAIN * STRAIN * body->material.young * body->mass / body->material.density;
-    kinetic += 0.5 * body->mass * speed * speed;
-  }
-  bool may_jump = model->scene->contact.is_on || model->scene->is_static;
-  return may_jump ? elastic : fmax(elastic, kinetic);
-}
+// A rest state is not judged by rounding: the energy of a strain of 1e-6 in all bodies counts as the scene's
+// at least.
+static const double ROUNDED_STRAIN = 1e-6;
 
 // Room for the unknowns, however many are released.
 static Status allocate_states(FemRunState *run) {
@@ -314,7 +307,8 @@ static void tell_overlaps(const FemSystem *system) {
 static Status begin_record(FemRunState *run) {
   FemMeasures measures;
   TRY(fem_run_frames_measure(run, run->time, &measures));
-  fem_audit_begin(&run->audit, run->time, &measures.energy, energy_floor(run->model));
+  fem_audit_begin(&run->audit, run->time, &measures.energy,
+                  fem_model_strain_energy(run->model, ROUNDED_STRAIN));
   fem_run_frames_keep_extremes(run->result, &measures);
   fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
   if (!run->options->from) tell_overlaps(&run->system);
@@ -506,7 +500,9 @@ static Status begin_result(FemRunState *run) {
   result->trouble.worst_shape = now.worst_shape;
   result->solver_name = fem_solver_name(fem_run_solver(run->given));
   result->is_static = run->given->scene->is_static;
-  result->energy_bounds = fem_audit_bounds(run->given->scene->contact.is_on);
+  bool has_contact = run->given->scene->contact.is_on;
+  double told = has_contact || result->is_static ? 0 : TOLD_STRAIN * run->given->scene->tolerance;
+  result->energy_bounds = fem_audit_bounds(has_contact, fem_model_strain_energy(run->given, told));
   return STATUS_OK;
 }
 

@@ -42,8 +42,8 @@ long long fem_run_checkpoint_steps(int unknown_count) {
   return (long long)fmax(LEAST, WORK / unknown_count);
 }
 
-// The first checkpoints come sooner, after steps 20, 80, 320 …, so that what is stopped early does not begin at
-// the start again. Steps are counted, not frames: a run does not depend on how many frames are written.
+// The first checkpoints come sooner, after steps 20, 80, 320 …, so that what is stopped early does not begin
+// at the start again. Steps are counted, not frames: a run does not depend on how many frames are written.
 // Equilibria are few and dear, and nothing is lost with an integrator's order.
 enum { EARLY_STEPS = 20, EARLY_GROWTH = 4, STATIC_STEPS = 4 };
 

@@ -16,7 +16,8 @@ typedef struct FemRunProgress {
   int active_pairs;
   const FemMeasures *measures; // of this state; borrowed
   const FemAudit *audit;       // borrowed
-  double energy_bound;         // what the run may gain, as a share of the scene's energy
+  double energy_rise;          // how far the audited total stands above an earlier value, as a share …
+  double energy_bound;         // … of the scene's energy, and what it may
   const FemTrouble *trouble;   // so far; borrowed
   bool has_trouble_begun;      // in this step
 } FemRunProgress;

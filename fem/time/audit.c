@@ -27,11 +27,11 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
   audit->scale = fmax(floor, largest_part(audit, energy));
 }
 
-// Of a power that is dissipated in a step, from its ends. One that swings is what the trapezoidal rule says: over
-// a period its errors cancel, where the logarithmic mean would lack (ω h)²/6 of it. One that falls by much in a
-// step falls exponentially, as that of a mode which is damped faster than the step is long: there the
-// logarithmic mean is right, and the mean of the ends would be many times what there was to lose. Between a
-// fall to a half and one to an eighth the one becomes the other.
+// Of a power that is dissipated in a step, from its ends. One that swings is what the trapezoidal rule says:
+// over a period its errors cancel, where the logarithmic mean would lack (ω h)²/6 of it. One that falls by
+// much in a step falls exponentially, as that of a mode which is damped faster than the step is long: there
+// the logarithmic mean is right, and the mean of the ends would be many times what there was to lose. Between
+// a fall to a half and one to an eighth the one becomes the other.
 static const double SWINGS = 2, FALLS = 8;
 static double mean_dissipated(double begin, double end) {
   const double trapezoid = 0.5 * (begin + end);
@@ -59,15 +59,20 @@ FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *ene
   return next;
 }
 
-FemAuditBounds fem_audit_bounds(bool has_contact) {
-  FemAuditBounds smooth = {.step = 0.1, .run = 2e-2, .near = INFINITY};
-  FemAuditBounds jumping = {.step = 3e-3, .run = 1e-3, .near = 8e-4, .negligible = 1e-6};
+FemAuditBounds fem_audit_bounds(bool has_contact, double least) {
+  FemAuditBounds smooth = {.step = 0.1, .run = 2e-2, .near = INFINITY, .least = least};
+  FemAuditBounds jumping = {.step = 3e-3, .run = 1e-3, .near = 8e-4, .negligible = 1e-6, .least = least};
   return has_contact ? jumping : smooth;
 }
 
+double fem_audit_rise(const FemAuditBounds *bounds, const FemAudit *audit) {
+  return (audit->total - audit->lowest) / fmax(audit->scale, bounds->least);
+}
+
 bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after) {
-  double of_step = (after->total - before->total) / after->scale;
-  double of_run = (after->total - before->lowest) / after->scale;
+  const double scale = fmax(after->scale, bounds->least);
+  double of_step = (after->total - before->total) / scale;
+  double of_run = (after->total - before->lowest) / scale;
   bool is_held = of_step <= bounds->step && (of_run <= bounds->near || of_step <= bounds->negligible);
   return !is_held;
 }

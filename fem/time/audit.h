@@ -2,8 +2,8 @@
 // The energy audit of a run. The audited total
 //     A = kinetic + elastic + gravity + contact + dissipated − work of driven vertices, obstacles and loads
 // is constant in exact mechanics and falls by the integrator's own damping; a rise is an error. Powers are
-// integrated by the trapezoidal rule over accepted steps; a dissipated power that falls to less than half in a
-// step by a mean that goes over to the logarithmic one.
+// integrated by the trapezoidal rule over accepted steps; a dissipated power that falls to less than half in
+// a step by a mean that goes over to the logarithmic one.
 //
 // Two bounds, as shares of the scene's energy. What one step may gain: more is taken back. What a run may
 // gain in all: more is trouble (fem/run/trouble.h). Where nothing jumps both are far beyond what the error
@@ -20,6 +20,7 @@ typedef struct FemAuditBounds {
   double run;        // what a run may gain in all
   double near;       // of the run's gain, from which on a step may not gain more than `negligible`
   double negligible; //
+  double least;      // energy that counts as the scene's at least in these shares [J]
 } FemAuditBounds;
 
 typedef struct FemAudit {
@@ -43,7 +44,10 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
 // The audit as it would be after accepting this state.
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy);
 
-FemAuditBounds fem_audit_bounds(bool has_contact);
+FemAuditBounds fem_audit_bounds(bool has_contact, double least);
+
+// How far A stands above an earlier value, as a share of the scene's energy.
+double fem_audit_rise(const FemAuditBounds *bounds, const FemAudit *audit);
 
 // Whether the step between the two must be taken back.
 bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after);
