@@ -42,10 +42,17 @@ long long fem_run_checkpoint_steps(int unknown_count) {
   return (long long)fmax(LEAST, WORK / unknown_count);
 }
 
-// The first checkpoints come sooner, after steps 20, 80, 320 …, so that what is stopped early does not begin
-// at the start again. Steps are counted, not frames: a run does not depend on how many frames are written.
+// The first checkpoints come sooner, after 2, 8 and 32 % of the time, so that what is stopped early does not
+// begin at the start again. Time is asked, not frames: a run does not depend on how many frames are written.
+static const double EARLY_SHARE = 0.02, EARLY_GROWTH = 4;
+enum { EARLY_STEPS = 20 };
+static bool is_early(const FemRunState *run) {
+  double last = run->checkpoint.time, end = run->model->scene->end;
+  return run->time >= (last > 0 ? EARLY_GROWTH * last : EARLY_SHARE * end);
+}
+
 // Equilibria are few and dear, and nothing is lost with an integrator's order.
-enum { EARLY_STEPS = 20, EARLY_GROWTH = 4, STATIC_STEPS = 4 };
+enum { STATIC_STEPS = 4 };
 
 bool fem_run_checkpoint_is_due(const FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
@@ -53,10 +60,10 @@ bool fem_run_checkpoint_is_due(const FemRunState *run) {
   if (scene->checkpoint_frames >= 0)
     return scene->checkpoint_frames > 0 &&
            run->next_frame >= run->checkpoint.next_frame + scene->checkpoint_frames;
-  long long last = run->checkpoint.so_far.integrator.steps, steps = fem_run_state_stats(run).steps;
-  if (scene->is_static) return steps - last >= STATIC_STEPS;
-  return steps - last >= fem_run_checkpoint_steps(run->given->unknown_count) ||
-         steps >= (last > 0 ? EARLY_GROWTH * last : EARLY_STEPS);
+  long long steps = fem_run_state_stats(run).steps - run->checkpoint.so_far.integrator.steps;
+  if (scene->is_static) return steps >= STATIC_STEPS;
+  return steps >= fem_run_checkpoint_steps(run->given->unknown_count) ||
+         (steps >= EARLY_STEPS && is_early(run));
 }
 
 // Between two parts: what the statics reached stands in the checkpoint already.
