@@ -288,7 +288,7 @@ static void check_packs(const FemPacks *packs, const FemModel *model, int begin,
           }
         }
   }
-  ck_assert_int_eq(total, packs->tet_count);
+  ck_assert_int_eq(total, packs->element_count);
   for (int tet = 0; tet < model->tet_count; tet++) ck_assert_int_eq(seen[tet], tet >= begin && tet < end);
   memory_free(seen), memory_free(chunk_of);
 }
@@ -297,11 +297,11 @@ START_TEST(packs_hold_each_element_of_bodies_once_and_colours_share_no_vertex) {
   Scene scene;
   FemPacks packs;
   build(&scene);
-  ck_assert_ok(fem_packs_create(&packs, &scene.model, NULL));
+  ck_assert_ok(fem_packs_create(&packs, &scene.model, false, NULL));
   ck_assert_int_gt(packs.chunk_count, 8);
   check_packs(&packs, &scene.model, 0, scene.model.bodies[1].tet_end);
   fem_packs_destroy(&packs);
-  ck_assert_ok(fem_packs_create(&packs, &scene.model, has_density_two));
+  ck_assert_ok(fem_packs_create(&packs, &scene.model, false, has_density_two));
   check_packs(&packs, &scene.model, scene.model.bodies[1].tet_begin, scene.model.bodies[1].tet_end);
   fem_packs_destroy(&packs);
   fem_model_destroy(&scene.model);

@@ -8,20 +8,14 @@
 // Elements whose scalars are added one after another by one thread; fixed, so that sums do not depend on how
 // many threads share the work.
 enum { CHUNK = 256 };
-// Coordinates of the largest element.
-enum { MOST = 3 * FEM_QUADRATIC_NODES };
 // Below this many elements one thread does it all: a colour is a barrier, and some thirty of them, on a
 // machine that others use too, take longer than the millisecond of work that a second thread would save.
-enum { FEW_FORCES = 20000, FEW_MATRICES = 4000, FEW_IN_LANES = 60000, FEW_MATRICES_IN_LANES = 16000 };
+enum { FEW_SCALARS = 20000, FEW_FORCES = 60000, FEW_MATRICES = 16000 };
+// A quadratic element is as much work as so many linear ones.
+enum { QUADRATIC_FORCES = 6, QUADRATIC_MATRICES = 16 };
 
 static int chunk_count(const FemAssemblyList *list) {
   return (list->count + CHUNK - 1) / CHUNK;
-}
-
-// Entries of a symmetric matrix of an element.
-static size_t half_of(const FemAssemblyList *list) {
-  size_t n = 3 * (size_t)list->node_count;
-  return n * (n + 1) / 2;
 }
 
 static const int *nodes_of(const FemAssemblyList *list, int i) {
@@ -52,7 +46,7 @@ static Status select_elements(FemAssemblyList *list, const FemModel *model, cons
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
                            bool (*takes)(const FemModelBody *body)) {
   *assembly = (FemAssembly){.model = model};
-  TRY(fem_packs_create(&assembly->packs, model, takes));
+  for (int k = 0; k < 2; k++) TRY(fem_packs_create(&assembly->packs[k], model, k == 1, takes));
   assembly->lists[0] =
       (FemAssemblyList){.node_count = 4, .nodes = (const int *)model->tets, .body = model->tet_body};
   TRY(select_elements(&assembly->lists[0], model, &model->colouring, false, takes));
@@ -63,23 +57,22 @@ Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
 }
 
 void fem_assembly_destroy(FemAssembly *assembly) {
-  fem_packs_destroy(&assembly->packs);
   for (int k = 0; k < 2; k++) {
+    fem_packs_destroy(&assembly->packs[k]);
     FemAssemblyList *list = &assembly->lists[k];
     memory_free(list->colouring.begin);
     memory_free(list->colouring.tets);
     memory_free(list->partial);
-    memory_free(list->slots);
   }
   *assembly = (FemAssembly){0};
 }
 
 size_t fem_assembly_bytes(const FemAssembly *assembly) {
-  size_t bytes = fem_packs_bytes(&assembly->packs);
+  size_t bytes = 0;
   for (int k = 0; k < 2; k++) {
     const FemAssemblyList *list = &assembly->lists[k];
-    bytes += memory_held(list->colouring.begin) + memory_held(list->colouring.tets) +
-             memory_held(list->partial) + memory_held(list->slots);
+    bytes += fem_packs_bytes(&assembly->packs[k]) + memory_held(list->colouring.begin) +
+             memory_held(list->colouring.tets) + memory_held(list->partial);
   }
   return bytes;
 }
@@ -112,25 +105,6 @@ static inline void gather(const FemAssembly *assembly, const FemAssemblyList *li
   }
 }
 
-static void add_forces(const FemAssembly *assembly, const FemAssemblyList *list, const FemState *state,
-                       FemAssemblyForce *kernel, double *force) {
-  const FemColouring *colouring = &list->colouring;
-#pragma omp parallel if (list->count > FEW_FORCES)
-  for (int colour = 0; colour < colouring->colour_count; colour++) {
-#pragma omp for schedule(static)
-    for (int i = colouring->begin[colour]; i < colouring->begin[colour + 1]; i++) {
-      FemAssemblyElement e;
-      double own[MOST];
-      gather(assembly, list, state, i, &e);
-      if (e.body->is_held) continue;
-      kernel(&e, own);
-      const int *nodes = nodes_of(list, i);
-      for (int a = 0; a < list->node_count; a++)
-        for (int c = 0; c < 3; c++) force[3 * (size_t)nodes[a] + (size_t)c] += own[3 * a + c];
-    }
-  }
-}
-
 static FemAssemblyPack pack_of(const FemAssembly *assembly, const FemState *state, int body) {
   return (FemAssemblyPack){.lanes = fem_lanes(),
                            .body = &assembly->model->bodies[body],
@@ -138,79 +112,51 @@ static FemAssemblyPack pack_of(const FemAssembly *assembly, const FemState *stat
                            .velocities = state->velocities};
 }
 
-static void add_chunk_forces(const FemAssembly *assembly, const FemState *state,
+static void add_pack_force(const FemPacks *packs, int p, FemAssemblyPack *pack,
+                           const FemAssemblyKernels *kernels, double *force) {
+  FemLanesRow own[3 * FEM_QUADRATIC_NODES];
+  if (packs->is_quadratic) {
+    pack->quadratics = &packs->quadratics[p];
+    kernels->quadratic_force(pack, own);
+    pack->lanes->scatter_quadratic_force(pack->quadratics, own, force);
+    return;
+  }
+  pack->elements = &packs->packs[p];
+  kernels->force(pack, own);
+  pack->lanes->scatter_force(pack->elements, own, force);
+}
+
+static void add_chunk_forces(const FemAssembly *assembly, const FemPacks *packs, const FemState *state,
                              const FemAssemblyKernels *kernels, int chunk, double *force) {
-  const FemPacks *packs = &assembly->packs;
   FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_body[chunk]);
   if (pack.body->is_held) return;
-  for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++) {
-    FemLanesRow own[12];
-    pack.elements = &packs->packs[p];
-    kernels->pack_force(&pack, own);
-    pack.lanes->scatter_force(pack.elements, own, force);
-  }
+  for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++)
+    add_pack_force(packs, p, &pack, kernels, force);
+}
+
+// As many linear elements.
+static int work_of(const FemPacks *packs, int quadratic) {
+  return packs->is_quadratic ? quadratic * packs->element_count : packs->element_count;
 }
 
 void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state,
                              const FemAssemblyKernels *kernels, double *force) {
-  const FemPacks *packs = &assembly->packs;
-#pragma omp parallel if (packs->tet_count > FEW_IN_LANES)
-  for (int colour = 0; colour < packs->colour_count; colour++) {
+  for (int k = 0; k < 2; k++) {
+    const FemPacks *packs = &assembly->packs[k];
+#pragma omp parallel if (work_of(packs, QUADRATIC_FORCES) > FEW_FORCES)
+    for (int colour = 0; colour < packs->colour_count; colour++) {
 #pragma omp for schedule(static)
-    for (int chunk = packs->colour_begin[colour]; chunk < packs->colour_begin[colour + 1]; chunk++)
-      add_chunk_forces(assembly, state, kernels, chunk, force);
+      for (int chunk = packs->colour_begin[colour]; chunk < packs->colour_begin[colour + 1]; chunk++)
+        add_chunk_forces(assembly, packs, state, kernels, chunk, force);
+    }
   }
-  if (assembly->lists[1].count > 0) add_forces(assembly, &assembly->lists[1], state, kernels->force, force);
-}
-
-// An entry and its mirror image are one number, and at most one of the two has a place in the matrix.
-static void pack_slots(int n, const int *slots, int *packed) {
-  for (int r = 0, k = 0; r < n; r++)
-    for (int c = 0; c <= r; c++, k++) packed[k] = slots[n * r + c] >= 0 ? slots[n * r + c] : slots[n * c + r];
-}
-
-static Status find_slots_of(FemAssemblyList *list, const FemMatrix *matrix) {
-  if (!list->slots) list->slots = memory_zeroed((size_t)list->count, half_of(list) * sizeof *list->slots);
-  if (!list->slots) return status_no_memory("the elements' places in the matrix");
-#pragma omp parallel for schedule(static) if (list->count > FEW_MATRICES)
-  for (int i = 0; i < list->count; i++) {
-    int slots[MOST * MOST];
-    fem_matrix_slots(matrix, list->node_count, nodes_of(list, i), slots);
-    pack_slots(3 * list->node_count, slots, list->slots + half_of(list) * (size_t)i);
-  }
-  return STATUS_OK;
 }
 
 static Status find_slots(FemAssembly *assembly, const FemMatrix *matrix) {
   if (assembly->layout == matrix->layout) return STATUS_OK;
-  TRY(fem_packs_find_slots(&assembly->packs, matrix));
-  TRY(find_slots_of(&assembly->lists[1], matrix));
+  for (int k = 0; k < 2; k++) TRY(fem_packs_find_slots(&assembly->packs[k], matrix));
   assembly->layout = matrix->layout;
   return STATUS_OK;
-}
-
-static inline void scatter_matrix(int n, const double *own, const int *slots, double *value) {
-  for (int r = 0, k = 0; r < n; r++)
-    for (int c = 0; c <= r; c++, k++)
-      if (slots[k] >= 0) value[slots[k]] += own[n * r + c];
-}
-
-static void add_matrices(const FemAssembly *assembly, const FemAssemblyList *list, const FemState *state,
-                         FemAssemblyMatrix *kernel, double stiffness_scale, double damping_scale,
-                         FemMatrix *matrix) {
-  const FemColouring *colouring = &list->colouring;
-#pragma omp parallel if (list->count > FEW_MATRICES)
-  for (int colour = 0; colour < colouring->colour_count; colour++) {
-#pragma omp for schedule(static)
-    for (int i = colouring->begin[colour]; i < colouring->begin[colour + 1]; i++) {
-      FemAssemblyElement e;
-      double own[MOST * MOST];
-      gather(assembly, list, state, i, &e);
-      if (e.body->is_held) continue;
-      kernel(&e, stiffness_scale, damping_scale, own);
-      scatter_matrix(3 * list->node_count, own, list->slots + half_of(list) * (size_t)i, matrix->value);
-    }
-  }
 }
 
 // Elements of which a coordinate is prescribed have no whole blocks.
@@ -226,48 +172,62 @@ static void add_partial_matrices(const FemLanesElements *elements, const int slo
   }
 }
 
-static void add_chunk_matrices(const FemAssembly *assembly, const FemState *state,
-                               const FemAssemblyKernels *kernels, double stiffness_scale,
-                               double damping_scale, int chunk, FemMatrix *matrix) {
-  const FemPacks *packs = &assembly->packs;
+// What a matrix is scaled by.
+typedef struct Scales {
+  double stiffness, damping;
+} Scales;
+
+static void add_pack_matrix(const FemPacks *packs, int p, FemAssemblyPack *pack,
+                            const FemAssemblyKernels *kernels, Scales scales, FemMatrix *matrix) {
+  FemLanesRow own[FEM_LANES_ENTRIES];
+  pack->elements = &packs->packs[p];
+  kernels->matrix(pack, scales.stiffness, scales.damping, own);
+  pack->lanes->scatter_matrix(pack->elements, packs->slots[p], own, matrix->value);
+  add_partial_matrices(pack->elements, packs->slots[p][0], own, matrix);
+}
+
+static void add_quadratic_matrix(const FemPacks *packs, int p, FemAssemblyPack *pack,
+                                 const FemAssemblyKernels *kernels, Scales scales, FemMatrix *matrix) {
+  FemLanesRow own[FEM_LANES_HALF];
+  pack->quadratics = &packs->quadratics[p];
+  kernels->quadratic_matrix(pack, scales.stiffness, scales.damping, own);
+  pack->lanes->scatter_quadratic_matrix(pack->quadratics, packs->half_slots[p], own, matrix->value);
+}
+
+static void add_chunk_matrices(const FemAssembly *assembly, const FemPacks *packs, const FemState *state,
+                               const FemAssemblyKernels *kernels, Scales scales, int chunk,
+                               FemMatrix *matrix) {
   FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_body[chunk]);
   if (pack.body->is_held) return;
   for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++) {
-    FemLanesRow own[FEM_LANES_ENTRIES];
-    pack.elements = &packs->packs[p];
-    kernels->pack_matrix(&pack, stiffness_scale, damping_scale, own);
-    pack.lanes->scatter_matrix(pack.elements, packs->slots[p], own, matrix->value);
-    add_partial_matrices(pack.elements, packs->slots[p][0], own, matrix);
-  }
-}
-
-static void add_packed_matrices(const FemAssembly *assembly, const FemState *state,
-                                const FemAssemblyKernels *kernels, double stiffness_scale,
-                                double damping_scale, FemMatrix *matrix) {
-  const FemPacks *packs = &assembly->packs;
-#pragma omp parallel if (packs->tet_count > FEW_MATRICES_IN_LANES)
-  for (int colour = 0; colour < packs->colour_count; colour++) {
-#pragma omp for schedule(static)
-    for (int chunk = packs->colour_begin[colour]; chunk < packs->colour_begin[colour + 1]; chunk++)
-      add_chunk_matrices(assembly, state, kernels, stiffness_scale, damping_scale, chunk, matrix);
+    if (packs->is_quadratic)
+      add_quadratic_matrix(packs, p, &pack, kernels, scales, matrix);
+    else
+      add_pack_matrix(packs, p, &pack, kernels, scales, matrix);
   }
 }
 
 Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state,
                                  const FemAssemblyKernels *kernels, double stiffness_scale,
                                  double damping_scale, FemMatrix *matrix) {
+  Scales scales = {stiffness_scale, damping_scale};
   TRY(find_slots(assembly, matrix));
-  add_packed_matrices(assembly, state, kernels, stiffness_scale, damping_scale, matrix);
-  if (assembly->lists[1].count > 0)
-    add_matrices(assembly, &assembly->lists[1], state, kernels->matrix, stiffness_scale, damping_scale,
-                 matrix);
+  for (int k = 0; k < 2; k++) {
+    const FemPacks *packs = &assembly->packs[k];
+#pragma omp parallel if (work_of(packs, QUADRATIC_MATRICES) > FEW_MATRICES)
+    for (int colour = 0; colour < packs->colour_count; colour++) {
+#pragma omp for schedule(static)
+      for (int chunk = packs->colour_begin[colour]; chunk < packs->colour_begin[colour + 1]; chunk++)
+        add_chunk_matrices(assembly, packs, state, kernels, scales, chunk, matrix);
+    }
+  }
   return STATUS_OK;
 }
 
 static double sum_list(const FemAssembly *assembly, const FemAssemblyList *list, const FemState *state,
                        FemAssemblyScalar *kernel) {
   int chunks = chunk_count(list);
-#pragma omp parallel for schedule(static) if (list->count > FEW_FORCES)
+#pragma omp parallel for schedule(static) if (list->count > FEW_SCALARS)
   for (int chunk = 0; chunk < chunks; chunk++) {
     int begin = chunk * CHUNK;
     int end = begin + CHUNK < list->count ? begin + CHUNK : list->count;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sums over elements: what an effect that lives on tetrahedra (elasticity, damping) shares. The effect gives
-// kernels; here is the gathering, the adding by colours, and where entries of the matrix lie. Linear elements
-// go through vector lanes where the effect has kernels for them, eight at a time (fem/effect/packs.h). Every
+// kernels; here is the gathering, the adding by colours, and where entries of the matrix lie. Forces and
+// matrices go through vector lanes, eight elements at a time (fem/effect/packs.h). Every
 // sum has a fixed order: results are the same to the last bit for any number of threads.
 #ifndef TETLAP_FEM_EFFECT_ASSEMBLY_H
 #define TETLAP_FEM_EFFECT_ASSEMBLY_H
@@ -20,30 +20,28 @@ typedef struct FemAssemblyElement {
   double x[30], v[30]; // positions [m] and velocities [m/s] of its nodes (n, 3)
 } FemAssemblyElement;
 
-// Eight linear elements of a body.
+// Eight elements of a body, of one kind.
 typedef struct FemAssemblyPack {
   const FemLanes *lanes; // the kernels of this processor
   const FemLanesElements *elements;
+  const FemLanesQuadratics *quadratics;
   const FemModelBody *body;
   const double *positions, *velocities; // of all vertices
 } FemAssemblyPack;
 
 typedef double FemAssemblyScalar(const FemAssemblyElement *e);
-typedef void FemAssemblyForce(const FemAssemblyElement *e, double *force); // (n, 3)
-// matrix = stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, (3n, 3n).
-typedef void FemAssemblyMatrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
-                               double *matrix);
+typedef void FemAssemblyForce(const FemAssemblyPack *pack, FemLanesRow *force); // (12), (30)
+// matrix = stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, as in fem/lanes/lanes.h.
+typedef void FemAssemblyMatrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
+                               FemLanesRow *matrix);
 
-// An effect's kernels: for quadratic elements, and for packs of linear ones.
+// An effect's kernels, of linear elements and of quadratic ones.
 typedef struct FemAssemblyKernels {
-  FemAssemblyForce *force;
-  FemAssemblyMatrix *matrix;
-  void (*pack_force)(const FemAssemblyPack *pack, FemLanesRow force[12]);
-  void (*pack_matrix)(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
-                      FemLanesRow matrix[FEM_LANES_ENTRIES]);
+  FemAssemblyForce *force, *quadratic_force;
+  FemAssemblyMatrix *matrix, *quadratic_matrix;
 } FemAssemblyKernels;
 
-// The elements of one kind.
+// The elements of one kind one by one, for sums.
 typedef struct FemAssemblyList {
   int node_count;         // n
   const int *nodes;       // of the model's elements of this kind, borrowed   (…, n)
@@ -51,14 +49,13 @@ typedef struct FemAssemblyList {
   FemColouring colouring; // the model's, without the bodies that take no part
   int count;
   double *partial; // sums of chunks of elements                                      (chunk_count)
-  int *slots; // quadratic: of the lower half of each matrix, by rows; −1: none  (count, 3n (3n + 1) / 2)
 } FemAssemblyList;
 
 typedef struct FemAssembly {
   const FemModel *model;    // borrowed
-  FemPacks packs;           // the linear ones: forces and matrices
-  FemAssemblyList lists[2]; // linear (sums alone), quadratic
-  long long layout;         // of the matrix that `slots` belong to; 0: not looked up
+  FemPacks packs[2];        // linear, quadratic: forces and matrices
+  FemAssemblyList lists[2]; // the same
+  long long layout;         // of the matrix whose slots the packs have; 0: not looked up
 } FemAssembly;
 
 // All elements of the model's colouring, which leaves out obstacles, whose body `takes` accepts (NULL: all).

@@ -40,47 +40,33 @@ static Status couple(void *self, const FemState *state, FemPattern *pattern, int
   return fem_assembly_couple(self, pattern, has_grown);
 }
 
-static void element_force(const FemAssemblyElement *e, double *force) {
-  if (e->element)
-    fem_element_damping_force(e->element, &e->body->local, e->body->damping, e->x, e->v, force);
-  else
-    fem_quadratic_damping_force(e->quadratic, &e->body->local, e->body->damping, e->x, e->v, force);
-}
-
-static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
-                           double *matrix) {
-  const FemMaterial *material = &e->body->local;
-  if (e->quadratic) {
-    fem_quadratic_damping_matrix(e->quadratic, material, e->body->damping, e->x, e->v, stiffness_scale,
-                                 damping_scale, matrix);
-    return;
-  }
-  double part[144];
-  for (int k = 0; k < 144; k++) matrix[k] = 0;
-  if (stiffness_scale != 0) {
-    fem_element_damping_stiffness(e->element, material, e->body->damping, e->x, e->v, part);
-    for (int k = 0; k < 144; k++) matrix[k] += stiffness_scale * part[k];
-  }
-  if (damping_scale != 0) {
-    fem_element_damping_matrix(e->element, material, e->body->damping, e->x, part);
-    for (int k = 0; k < 144; k++) matrix[k] += damping_scale * part[k];
-  }
-}
-
-static void pack_force(const FemAssemblyPack *pack, FemLanesRow force[12]) {
+static void pack_force(const FemAssemblyPack *pack, FemLanesRow *force) {
   const FemModelBody *body = pack->body;
   pack->lanes->damping_force(&body->local, body->damping, pack->elements, pack->positions, pack->velocities,
                              force);
 }
 
 static void pack_matrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
-                        FemLanesRow matrix[FEM_LANES_ENTRIES]) {
+                        FemLanesRow *matrix) {
   const FemModelBody *body = pack->body;
   pack->lanes->damping_matrix(&body->local, body->damping, pack->elements, pack->positions, pack->velocities,
                               stiffness_scale, damping_scale, matrix);
 }
 
-static const FemAssemblyKernels kernels = {element_force, element_matrix, pack_force, pack_matrix};
+static void quadratic_force(const FemAssemblyPack *pack, FemLanesRow *force) {
+  const FemModelBody *body = pack->body;
+  pack->lanes->quadratic_damping_force(&body->local, body->damping, pack->quadratics, pack->positions,
+                                       pack->velocities, force);
+}
+
+static void quadratic_matrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
+                             FemLanesRow *matrix) {
+  const FemModelBody *body = pack->body;
+  pack->lanes->quadratic_damping_matrix(&body->local, body->damping, pack->quadratics, pack->positions,
+                                        pack->velocities, stiffness_scale, damping_scale, matrix);
+}
+
+static const FemAssemblyKernels kernels = {pack_force, quadratic_force, pack_matrix, quadratic_matrix};
 
 static Status add_force(void *self, const FemState *state, double *force) {
   fem_assembly_add_forces(self, state, &kernels, force);

@@ -33,34 +33,28 @@ static FemQuadraticLaw law_of(const FemModelBody *body) {
   return (FemQuadraticLaw){&body->local, body->bulk};
 }
 
-static void element_force(const FemAssemblyElement *e, double *force) {
-  if (e->element)
-    fem_element_force(e->element, &e->body->local, e->x, force);
-  else
-    fem_quadratic_force(e->quadratic, law_of(e->body), e->x, force);
-}
-
-static void element_matrix(const FemAssemblyElement *e, double stiffness_scale, double damping_scale,
-                           double *matrix) {
-  (void)damping_scale;
-  if (e->element)
-    fem_element_stiffness(e->element, &e->body->local, e->x, matrix);
-  else
-    fem_quadratic_stiffness(e->quadratic, law_of(e->body), e->x, matrix);
-  for (int k = 0; k < (e->element ? 144 : 900); k++) matrix[k] *= stiffness_scale;
-}
-
-static void pack_force(const FemAssemblyPack *pack, FemLanesRow force[12]) {
+static void pack_force(const FemAssemblyPack *pack, FemLanesRow *force) {
   pack->lanes->force(&pack->body->local, pack->elements, pack->positions, force);
 }
 
 static void pack_matrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
-                        FemLanesRow matrix[FEM_LANES_ENTRIES]) {
+                        FemLanesRow *matrix) {
   (void)damping_scale;
   pack->lanes->matrix(&pack->body->local, pack->elements, pack->positions, stiffness_scale, matrix);
 }
 
-static const FemAssemblyKernels kernels = {element_force, element_matrix, pack_force, pack_matrix};
+static void quadratic_force(const FemAssemblyPack *pack, FemLanesRow *force) {
+  pack->lanes->quadratic_force(law_of(pack->body), pack->quadratics, pack->positions, force);
+}
+
+static void quadratic_matrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
+                             FemLanesRow *matrix) {
+  (void)damping_scale;
+  pack->lanes->quadratic_matrix(law_of(pack->body), pack->quadratics, pack->positions, stiffness_scale,
+                                matrix);
+}
+
+static const FemAssemblyKernels kernels = {pack_force, quadratic_force, pack_matrix, quadratic_matrix};
 
 static Status add_force(void *self, const FemState *state, double *force) {
   fem_assembly_add_forces(self, state, &kernels, force);

@@ -15,7 +15,7 @@ enum { COLOUR_WORDS = 8 };
 
 typedef struct Place {
   uint64_t code; // along the curve
-  int tet;
+  int element;
 } Place;
 
 typedef struct ColourSet {
@@ -25,7 +25,10 @@ typedef struct ColourSet {
 // While the packs are made.
 typedef struct Order {
   const FemModel *model;
-  Place *places; // elements by body, then along the curve   (count)
+  bool is_quadratic;
+  int node_count;
+  const int *nodes; // of the model's elements, borrowed          (…, node_count)
+  Place *places;    // elements by body, then along the curve   (count)
   int count;
   int *begin, *body; // of each chunk in `places`                (chunk_count + 1)
   int *colour;       // of each chunk                            (chunk_count)
@@ -38,6 +41,10 @@ static void free_order(Order *order) {
   memory_free(order->colour), memory_free(order->used);
 }
 
+static const int *nodes_of(const Order *order, int element) {
+  return order->nodes + (size_t)order->node_count * (size_t)element;
+}
+
 // Bits of a coordinate with two free places behind each.
 static uint64_t spread_bits(uint64_t x) {
   x &= 0x1fffff;
@@ -48,12 +55,13 @@ static uint64_t spread_bits(uint64_t x) {
   return (x | x << 2) & UINT64_C(0x1249249249249249);
 }
 
-// Of the centroid at rest, in cells of the curve's finest level.
-static uint64_t code_of(const FemModel *model, const double origin[3], double cell, int tet) {
+// Of the centroid of the corners at rest, in cells of the curve's finest level.
+static uint64_t code_of(const Order *order, const double origin[3], double cell, int element) {
+  const int *nodes = nodes_of(order, element);
   uint64_t code = 0;
   for (int c = 0; c < 3; c++) {
     double sum = 0;
-    for (int a = 0; a < 4; a++) sum += model->rest[3 * (size_t)model->tets[tet][a] + (size_t)c];
+    for (int a = 0; a < 4; a++) sum += order->model->rest[3 * (size_t)nodes[a] + (size_t)c];
     double at = fmin(fmax((0.25 * sum - origin[c]) / cell, 0), 0x1fffff);
     code |= spread_bits((uint64_t)at) << c;
   }
@@ -63,7 +71,7 @@ static uint64_t code_of(const FemModel *model, const double origin[3], double ce
 static int compare(const void *left, const void *right) {
   const Place *a = left, *b = right;
   if (a->code != b->code) return a->code < b->code ? -1 : 1;
-  return a->tet < b->tet ? -1 : a->tet > b->tet;
+  return a->element < b->element ? -1 : a->element > b->element;
 }
 
 static void place_body(Order *order, const FemModelBody *body) {
@@ -74,19 +82,22 @@ static void place_body(Order *order, const FemModelBody *body) {
   for (int v = body->vertex_begin; v < body->vertex_end; v++)
     for (int c = 0; c < 3; c++) size = fmax(size, model->rest[3 * (size_t)v + (size_t)c] - low[c]);
   int first = order->count;
-  for (int tet = body->tet_begin; tet < body->tet_end; tet++)
-    order->places[order->count++] = (Place){code_of(model, low, size / 0x1fffff, tet), tet};
+  int begin = order->is_quadratic ? body->quadratic_begin : body->tet_begin;
+  int end = order->is_quadratic ? body->quadratic_end : body->tet_end;
+  for (int e = begin; e < end; e++)
+    order->places[order->count++] = (Place){code_of(order, low, size / 0x1fffff, e), e};
   qsort(order->places + first, (size_t)(order->count - first), sizeof *order->places, compare);
 }
 
-static bool is_taken(const FemModelBody *body, bool (*takes)(const FemModelBody *body)) {
-  return !body->is_obstacle && body->element != FEM_ELEMENT_QUADRATIC && (!takes || takes(body));
+static bool is_taken(const Order *order, const FemModelBody *body, bool (*takes)(const FemModelBody *body)) {
+  bool is_quadratic = body->element == FEM_ELEMENT_QUADRATIC;
+  return !body->is_obstacle && is_quadratic == order->is_quadratic && (!takes || takes(body));
 }
 
 static void cut_chunks(Order *order, bool (*takes)(const FemModelBody *body)) {
   const FemModel *model = order->model;
   for (int b = 0; b < model->body_count; b++) {
-    if (!is_taken(&model->bodies[b], takes)) continue;
+    if (!is_taken(order, &model->bodies[b], takes)) continue;
     int first = order->count;
     place_body(order, &model->bodies[b]);
     for (int at = first; at < order->count; at += CHUNK) {
@@ -102,9 +113,9 @@ static Status choose_colours(Order *order) {
     ColourSet taken = {{0}};
     int begin = order->begin[chunk], end = order->begin[chunk + 1], colour = -1;
     for (int i = begin; i < end; i++)
-      for (int a = 0; a < 4; a++)
+      for (int a = 0; a < order->node_count; a++)
         for (int w = 0; w < COLOUR_WORDS; w++)
-          taken.words[w] |= order->used[order->model->tets[order->places[i].tet][a]].words[w];
+          taken.words[w] |= order->used[nodes_of(order, order->places[i].element)[a]].words[w];
     for (int w = 0; w < COLOUR_WORDS && colour < 0; w++)
       if (~taken.words[w]) colour = 64 * w + __builtin_ctzll(~taken.words[w]);
     if (colour < 0)
@@ -112,9 +123,9 @@ static Status choose_colours(Order *order) {
     order->colour[chunk] = colour;
     if (colour >= order->colour_count) order->colour_count = colour + 1;
     for (int i = begin; i < end; i++)
-      for (int a = 0; a < 4; a++)
-        order->used[order->model->tets[order->places[i].tet][a]].words[colour / 64] |= UINT64_C(1)
-                                                                                       << colour % 64;
+      for (int a = 0; a < order->node_count; a++)
+        order->used[nodes_of(order, order->places[i].element)[a]].words[colour / 64] |= UINT64_C(1)
+                                                                                        << colour % 64;
   }
   return STATUS_OK;
 }
@@ -135,14 +146,41 @@ static void fill_lane(const FemModel *model, int tet, FemLanesElements *pack, in
   pack->tet[lane] = tet;
 }
 
-static void fill_chunk(FemPacks *packs, const Order *order, int chunk) {
-  for (int at = order->begin[chunk]; at < order->begin[chunk + 1]; at += FEM_LANES) {
-    FemLanesElements *pack = &packs->packs[packs->pack_count++];
-    int left = order->begin[chunk + 1] - at;
-    pack->count = left < FEM_LANES ? left : FEM_LANES;
-    for (int l = 0; l < FEM_LANES; l++)
-      fill_lane(order->model, order->places[at + (l < pack->count ? l : pack->count - 1)].tet, pack, l);
+static void fill_quadratic_lane(const FemModel *model, int number, FemLanesQuadratics *pack, int lane) {
+  const FemQuadratic *element = &model->quadratics[number];
+  for (int a = 0; a < FEM_QUADRATIC_NODES; a++) pack->node[a][lane] = model->quadratic_nodes[number][a];
+  for (int p = 0; p < FEM_QUADRATIC_POINTS; p++) {
+    for (int a = 1; a < FEM_QUADRATIC_NODES; a++)
+      for (int j = 0; j < 3; j++) pack->gradient[p][3 * (a - 1) + j][lane] = element->gradient[p][a][j];
+    pack->weight[p][lane] = element->weight[p];
   }
+  pack->volume[lane] = element->volume;
+  pack->element[lane] = number;
+}
+
+static void fill_pack(FemPacks *packs, const Order *order, int begin, int end) {
+  int count = end - begin < FEM_LANES ? end - begin : FEM_LANES, number = packs->pack_count++;
+  for (int l = 0; l < FEM_LANES; l++) {
+    int element = order->places[begin + (l < count ? l : count - 1)].element;
+    if (packs->is_quadratic)
+      fill_quadratic_lane(order->model, element, &packs->quadratics[number], l);
+    else
+      fill_lane(order->model, element, &packs->packs[number], l);
+  }
+  *(packs->is_quadratic ? &packs->quadratics[number].count : &packs->packs[number].count) = count;
+}
+
+static void fill_chunk(FemPacks *packs, const Order *order, int chunk) {
+  for (int at = order->begin[chunk]; at < order->begin[chunk + 1]; at += FEM_LANES)
+    fill_pack(packs, order, at, order->begin[chunk + 1]);
+}
+
+static Status make_room(FemPacks *packs, size_t most) {
+  if (packs->is_quadratic)
+    packs->quadratics = memory_zeroed(most, sizeof *packs->quadratics);
+  else
+    packs->packs = memory_zeroed(most, sizeof *packs->packs);
+  return packs->quadratics || packs->packs ? STATUS_OK : status_no_memory("the elements in packs");
 }
 
 static Status fill(FemPacks *packs, const Order *order) {
@@ -150,10 +188,10 @@ static Status fill(FemPacks *packs, const Order *order) {
   packs->chunk_begin = memory_zeroed(chunks + 1, sizeof *packs->chunk_begin);
   packs->chunk_body = memory_zeroed(chunks, sizeof *packs->chunk_body);
   packs->colour_begin = memory_zeroed((size_t)order->colour_count + 1, sizeof *packs->colour_begin);
-  packs->packs = memory_zeroed((size_t)order->count / FEM_LANES + chunks, sizeof *packs->packs);
-  if (!packs->chunk_begin || !packs->chunk_body || !packs->colour_begin || !packs->packs)
+  if (!packs->chunk_begin || !packs->chunk_body || !packs->colour_begin)
     return status_no_memory("the elements in packs");
-  packs->tet_count = order->count;
+  TRY(make_room(packs, (size_t)order->count / FEM_LANES + chunks));
+  packs->element_count = order->count;
   packs->colour_count = order->colour_count;
   for (int colour = 0; colour < order->colour_count; colour++) {
     packs->colour_begin[colour] = packs->chunk_count;
@@ -171,8 +209,9 @@ static Status fill(FemPacks *packs, const Order *order) {
 
 static Status make_order(Order *order, bool (*takes)(const FemModelBody *body)) {
   const FemModel *model = order->model;
-  size_t chunks = (size_t)model->tet_count / CHUNK + (size_t)model->body_count;
-  order->places = memory_zeroed((size_t)model->tet_count, sizeof *order->places);
+  size_t most = (size_t)(order->is_quadratic ? model->quadratic_count : model->tet_count);
+  size_t chunks = most / CHUNK + (size_t)model->body_count;
+  order->places = memory_zeroed(most, sizeof *order->places);
   order->begin = memory_zeroed(chunks + 1, sizeof *order->begin);
   order->body = memory_zeroed(chunks, sizeof *order->body);
   order->colour = memory_zeroed(chunks, sizeof *order->colour);
@@ -183,9 +222,12 @@ static Status make_order(Order *order, bool (*takes)(const FemModelBody *body)) 
   return choose_colours(order);
 }
 
-Status fem_packs_create(FemPacks *packs, const FemModel *model, bool (*takes)(const FemModelBody *body)) {
-  *packs = (FemPacks){0};
-  Order order = {.model = model};
+Status fem_packs_create(FemPacks *packs, const FemModel *model, bool is_quadratic,
+                        bool (*takes)(const FemModelBody *body)) {
+  *packs = (FemPacks){.is_quadratic = is_quadratic};
+  Order order = {.model = model, .is_quadratic = is_quadratic};
+  order.node_count = is_quadratic ? FEM_QUADRATIC_NODES : 4;
+  order.nodes = is_quadratic ? (const int *)model->quadratic_nodes : (const int *)model->tets;
   Status status = make_order(&order, takes);
   if (!status) status = fill(packs, &order);
   free_order(&order);
@@ -194,27 +236,52 @@ Status fem_packs_create(FemPacks *packs, const FemModel *model, bool (*takes)(co
 
 void fem_packs_destroy(FemPacks *packs) {
   memory_free(packs->packs), memory_free(packs->slots), memory_free(packs->chunk_begin);
+  memory_free(packs->quadratics), memory_free(packs->half_slots);
   memory_free(packs->chunk_body), memory_free(packs->colour_begin);
   *packs = (FemPacks){0};
 }
 
 size_t fem_packs_bytes(const FemPacks *packs) {
-  return memory_held(packs->packs) + memory_held(packs->slots) + memory_held(packs->chunk_begin) +
-         memory_held(packs->chunk_body) + memory_held(packs->colour_begin);
+  return memory_held(packs->packs) + memory_held(packs->slots) + memory_held(packs->quadratics) +
+         memory_held(packs->half_slots) + memory_held(packs->chunk_begin) + memory_held(packs->chunk_body) +
+         memory_held(packs->colour_begin);
+}
+
+static void find_slots(const FemLanesElements *pack, const FemMatrix *matrix,
+                       int slots[FEM_LANES_SLOTS][FEM_LANES]) {
+  for (int l = 0; l < FEM_LANES; l++) {
+    int vertices[4], own[FEM_LANES_SLOTS];
+    for (int a = 0; a < 4; a++) vertices[a] = pack->node[a][l];
+    if (!fem_matrix_block_slots(matrix, vertices, own)) own[0] = -1;
+    for (int s = 0; s < FEM_LANES_SLOTS; s++) slots[s][l] = own[0] < 0 ? -1 : own[s];
+  }
+}
+
+// An entry and its mirror image are one number, and at most one of the two has a place in the matrix.
+static void find_half_slots(const FemLanesQuadratics *pack, const FemMatrix *matrix,
+                            int slots[FEM_LANES_HALF][FEM_LANES]) {
+  enum { N = 3 * FEM_QUADRATIC_NODES };
+  for (int l = 0; l < FEM_LANES; l++) {
+    int nodes[FEM_QUADRATIC_NODES], own[N * N];
+    for (int a = 0; a < FEM_QUADRATIC_NODES; a++) nodes[a] = pack->node[a][l];
+    fem_matrix_slots(matrix, FEM_QUADRATIC_NODES, nodes, own);
+    for (int r = 0, k = 0; r < N; r++)
+      for (int c = 0; c <= r; c++, k++) slots[k][l] = own[N * r + c] >= 0 ? own[N * r + c] : own[N * c + r];
+  }
 }
 
 Status fem_packs_find_slots(FemPacks *packs, const FemMatrix *matrix) {
-  if (!packs->slots) packs->slots = memory_zeroed((size_t)packs->pack_count, sizeof *packs->slots);
-  if (!packs->slots) return status_no_memory("the elements' places in the matrix");
+  size_t count = (size_t)packs->pack_count;
+  if (packs->is_quadratic && !packs->half_slots)
+    packs->half_slots = memory_zeroed(count, sizeof *packs->half_slots);
+  if (!packs->is_quadratic && !packs->slots) packs->slots = memory_zeroed(count, sizeof *packs->slots);
+  if (!packs->half_slots && !packs->slots) return status_no_memory("the elements' places in the matrix");
 #pragma omp parallel for schedule(static)
   for (int p = 0; p < packs->pack_count; p++) {
-    const FemLanesElements *pack = &packs->packs[p];
-    for (int l = 0; l < FEM_LANES; l++) {
-      int vertices[4], slots[FEM_LANES_SLOTS];
-      for (int a = 0; a < 4; a++) vertices[a] = pack->node[a][l];
-      if (!fem_matrix_block_slots(matrix, vertices, slots)) slots[0] = -1;
-      for (int s = 0; s < FEM_LANES_SLOTS; s++) packs->slots[p][s][l] = slots[0] < 0 ? -1 : slots[s];
-    }
+    if (packs->is_quadratic)
+      find_half_slots(&packs->quadratics[p], matrix, packs->half_slots[p]);
+    else
+      find_slots(&packs->packs[p], matrix, packs->slots[p]);
   }
   return STATUS_OK;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Linear tetrahedra in vector lanes: forces and matrices of eight elements of one body at once, a lane an
-// element. The formulas are those of fem/element/element.h and fem/material. The fourth-order tangent is
-// never formed (law.inc): contracted with two nodes' gradients g_a, g_b, its terms are
+// Tetrahedra in vector lanes, linear and quadratic: forces and matrices of eight elements of one body at
+// once, a lane an element. The formulas are those of fem/element/element.h and fem/material. The fourth-order
+// tangent is never formed (law.inc): contracted with two nodes' gradients g_a, g_b, its terms are
 //
 //   ∂P/∂F            between nodes a and b
 //   I                g_a·g_b I
@@ -12,16 +12,20 @@
 //   S on the right   (g_a·S g_b) I
 //   in the axes of F = U σ Vᵀ, U K' Uᵀ with K' of Vᵀ g_a, Vᵀ g_b
 //
-// The same source is compiled for each instruction set. A lane's result depends on its element alone.
+// Between unit vectors they are ∂P/∂F itself, which a point of a quadratic element, with its 45 pairs of
+// nodes, is contracted with. The same source is compiled for each instruction set. A lane's result depends on
+// its element alone.
 #ifndef TETLAP_FEM_LANES_LANES_H
 #define TETLAP_FEM_LANES_LANES_H
 
 #include "fem/element/element.h"
+#include "fem/element/quadratic.h"
 
 enum {
   FEM_LANES = 8,
   FEM_LANES_ENTRIES = 78, // of the lower half of an element's matrix
   FEM_LANES_SLOTS = 14,
+  FEM_LANES_HALF = 465, // of the lower half of a quadratic element's matrix
 };
 
 typedef double FemLanesRow[FEM_LANES];
@@ -35,6 +39,16 @@ typedef struct FemLanesElements {
   int count;  // of elements, 1 … 8
   int tet[8]; // the model's numbers
 } FemLanesElements;
+
+// Eight quadratic elements; lanes as above.
+typedef struct FemLanesQuadratics {
+  FemLanesRow gradient[FEM_QUADRATIC_POINTS][27]; // ∂N_a/∂X_j at 3 (a − 1) + j, a = 1 … 9 [1/m]
+  FemLanesRow weight[FEM_QUADRATIC_POINTS];       // of the volume at rest [m³]
+  FemLanesRow volume;                             // their sum
+  int node[FEM_QUADRATIC_NODES][FEM_LANES];
+  int count;
+  int element[FEM_LANES]; // the model's numbers
+} FemLanesQuadratics;
 
 // The matrix's order: of nodes 0 … 3 the columns of their own lower triangle, then of the pairs 01, 02, 03,
 // 12, 13, 23 the columns of the first, three rows of the second each. A slot is where such a block's first
@@ -56,6 +70,20 @@ typedef struct FemLanes {
   void (*scatter_force)(const FemLanesElements *e, FemLanesRow force[12], double *to);
   void (*scatter_matrix)(const FemLanesElements *e, int slots[FEM_LANES_SLOTS][FEM_LANES],
                          FemLanesRow matrix[FEM_LANES_ENTRIES], double *value);
+  // The same of quadratic elements: force (30), matrix the lower half by rows, a slot for each entry, −1: the
+  // matrix has none.
+  void (*quadratic_force)(FemQuadraticLaw law, const FemLanesQuadratics *e, const double *positions,
+                          FemLanesRow force[30]);
+  void (*quadratic_matrix)(FemQuadraticLaw law, const FemLanesQuadratics *e, const double *positions,
+                           double scale, FemLanesRow matrix[FEM_LANES_HALF]);
+  void (*quadratic_damping_force)(const FemMaterial *material, double beta, const FemLanesQuadratics *e,
+                                  const double *positions, const double *velocities, FemLanesRow force[30]);
+  void (*quadratic_damping_matrix)(const FemMaterial *material, double beta, const FemLanesQuadratics *e,
+                                   const double *positions, const double *velocities, double stiffness_scale,
+                                   double damping_scale, FemLanesRow matrix[FEM_LANES_HALF]);
+  void (*scatter_quadratic_force)(const FemLanesQuadratics *e, FemLanesRow force[30], double *to);
+  void (*scatter_quadratic_matrix)(const FemLanesQuadratics *e, int slots[FEM_LANES_HALF][FEM_LANES],
+                                   FemLanesRow matrix[FEM_LANES_HALF], double *value);
 } FemLanes;
 
 // The widest that this processor has; all that it has, in an array of `*count`.
