@@ -8,6 +8,7 @@
 #include "app/bench/precision/precision.h"
 #include "app/bench/scene/beam.h"
 #include "app/bench/scene/drop.h"
+#include "app/bench/scene/elements.h"
 #include "app/bench/scene/scaling.h"
 #include "app/bench/scene/scene.h"
 #include "app/bench/scene/solver.h"
@@ -19,6 +20,7 @@ static const AppCommand *const benches[] = {
     &app_bench_net,
     &app_bench_datagen,
     &app_bench_train,
+    &app_bench_elements,
     &app_bench_solver,
     &app_bench_beam,
     &app_bench_scene,
