@@ -351,7 +351,7 @@ START_TEST(a_failed_allocation_is_an_error) {
   const FemEffectOps *ops = element_effects[_i];
   void *effect = NULL;
   int failures = 0;
-  for (long k = 1; k < 20; k++) {
+  for (long k = 1; k < 40; k++) {
     memory_fail_at(k);
     Status status = ops->create(&effect, &scene.model);
     memory_fail_at(0);
@@ -362,7 +362,7 @@ START_TEST(a_failed_allocation_is_an_error) {
     ck_assert_int_eq(status, STATUS_MEMORY);
     failures++;
   }
-  ck_assert_int_eq(failures, 16); // the effect, and four lists for each of two kinds of elements
+  ck_assert_int_eq(failures, 25); // the effect; packs and lists of two kinds of elements, each in pieces
   ck_assert_ok(ops->create(&effect, &scene.model));
   lay_out(&scene, ops, effect);
   FemState state = state_of(&scene);

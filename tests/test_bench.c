@@ -272,7 +272,7 @@ static const Promise promises[] = {
      "parameters batch threads samples_per_second samples_per_cpu_second"},
     {"scaling --model clip --pairs 100,1000 --nodes 100,200 --scene press --steps 2 --repeat 1 --solver amg",
      0, "bench subject name spread exponent cpu_seconds", "size seconds seconds_per_item done"},
-    {"elements --passes 1 --repeat 1", 40, "bench element law what spread", "single_s lanes_s ratio"},
+    {"elements --passes 1 --repeat 1", 40, "bench element law what single_s lanes_s ratio spread", "threads"},
     {"solver --nodes 60,100 --repeat 2", 10, "bench solver iterations spread factor_entries",
      "vertices unknowns step slenderness assembly_s factorisation_s solve_s setup_solve_s residual"},
     {"beam --nodes 60 --steps 3", 5, "bench solver linear_iterations spread",

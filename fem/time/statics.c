@@ -147,8 +147,8 @@ static Status relax(FemStatics *statics, double time, double *u) {
   return STATUS_OK;
 }
 
-// What is left at the state that Newton's method ended in: the vertices with the largest forces, the element
-// that is distorted most.
+// What is left at the state that Newton's method ended in: the element that is distorted most, with the law's
+// limit where that may be the reason; then the vertices with the largest forces, since long messages are cut.
 static Status say_why(FemStatics *statics, double time, const double *u) {
   FemSystem *system = statics->equilibrium.system;
   const FemModel *model = system->model;
@@ -157,6 +157,16 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
   snprintf(cause, sizeof cause, "%s", status_message());
   bool is_known = fem_equilibrium_forces(&statics->equilibrium, time, u, statics->force) == STATUS_OK;
   text_append(text, sizeof text, &used, "no equilibrium at t = %.9g: %s", time, cause);
+  int flattest = 0;
+  double smallest = INFINITY;
+  for (int e = 0; e < model->tet_count; e++) {
+    double J = fem_model_det(model, e, system->positions);
+    if (J < smallest) smallest = J, flattest = e;
+  }
+  text_append(text, sizeof text, &used, "; element %d has the smallest det F, %.3g", flattest, smallest);
+  FemMaterialLaw law = model->bodies[model->tet_body[flattest]].material.law;
+  if (smallest < (law == FEM_MATERIAL_STVK ? SQUEEZED_STVK : SQUEEZED))
+    text_append(text, sizeof text, &used, ": %s", fem_material_limit(law));
   for (int k = 0; is_known && k < WORST_COUNT && k < model->unknown_count; k++) {
     int worst = 0;
     for (int i = 1; i < model->unknown_count; i++)
@@ -169,16 +179,6 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
                 x[2]);
     statics->force[worst] = 0;
   }
-  int flattest = 0;
-  double smallest = INFINITY;
-  for (int e = 0; e < model->tet_count; e++) {
-    double J = fem_model_det(model, e, system->positions);
-    if (J < smallest) smallest = J, flattest = e;
-  }
-  text_append(text, sizeof text, &used, "; element %d has the smallest det F, %.3g", flattest, smallest);
-  FemMaterialLaw law = model->bodies[model->tet_body[flattest]].material.law;
-  if (smallest < (law == FEM_MATERIAL_STVK ? SQUEEZED_STVK : SQUEEZED))
-    text_append(text, sizeof text, &used, ": %s", fem_material_limit(law));
   return status_fail(STATUS_RETRY, "%s", text);
 }
 
