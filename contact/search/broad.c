@@ -3,7 +3,7 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "contact/search/bounds.h"
@@ -52,24 +52,46 @@ static void drop(Selection *selection) {
   memory_free(selection->boxes);
 }
 
-static int compare_pairs(const void *left, const void *right) {
-  const int *a = left, *b = right;
-  if (a[0] != b[0]) return a[0] < b[0] ? -1 : 1;
-  return (a[1] > b[1]) - (a[1] < b[1]);
+// Pairs in the order of pairs[.][side] < count; those that are equal there keep theirs. `begin` (count + 1).
+static void order_by(const int (*from)[2], size_t pair_count, int side, int count, size_t *begin,
+                     int (*to)[2]) {
+  memset(begin, 0, ((size_t)count + 1) * sizeof *begin);
+  for (size_t k = 0; k < pair_count; k++) begin[from[k][side] + 1]++;
+  for (int i = 0; i < count; i++) begin[i + 1] += begin[i];
+  for (size_t k = 0; k < pair_count; k++) {
+    int *pair = to[begin[from[k][side]]++];
+    pair[0] = from[k][0], pair[1] = from[k][1];
+  }
 }
 
-static Status append_selected(ContactPairList *list, const ContactBoxPairs *found, const Selection *in_a,
+// By the first, then by the second: two passes of a counting sort.
+static Status sort_found(ContactBoxPairs *found, int count_a, int count_b) {
+  size_t most = (size_t)(count_a > count_b ? count_a : count_b) + 1;
+  int(*between)[2] = memory_zeroed(found->count, sizeof *between);
+  size_t *begin = memory_zeroed(most, sizeof *begin);
+  if (between && begin) {
+    order_by((const int(*)[2])found->pairs, found->count, 1, count_b, begin, between);
+    order_by((const int(*)[2])between, found->count, 0, count_a, begin, found->pairs);
+  }
+  Status status = between && begin ? STATUS_OK : status_no_memory("candidate pairs");
+  memory_free(between);
+  memory_free(begin);
+  return status;
+}
+
+static Status append_selected(ContactPairList *list, ContactBoxPairs *found, const Selection *in_a,
                               const Selection *in_b, int offset_a, int offset_b) {
   size_t wanted = (size_t)list->count + found->count;
+  if (found->count == 0) return STATUS_OK;
   if (wanted > INT_MAX ||
       !memory_reserve((void **)&list->pairs, &list->capacity, wanted, sizeof *list->pairs))
     return status_no_memory("candidate pairs");
+  TRY(sort_found(found, in_a->count, in_b->count));
   int(*pairs)[2] = list->pairs + list->count;
   for (size_t k = 0; k < found->count; k++) {
     pairs[k][0] = offset_a + in_a->tets[found->pairs[k][0]];
     pairs[k][1] = offset_b + in_b->tets[found->pairs[k][1]];
   }
-  qsort(pairs, found->count, sizeof *pairs, compare_pairs);
   list->count += (int)found->count;
   return STATUS_OK;
 }

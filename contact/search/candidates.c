@@ -42,10 +42,10 @@ Status contact_candidates_create(ContactCandidates *candidates, const ContactLay
   candidates->reference = memory_zeroed(3 * (size_t)layout->depth.position_count, sizeof(double));
   candidates->is_listed = memory_zeroed((size_t)layout->depth.cell_count, 1);
   candidates->boxes = memory_zeroed((size_t)layout->def.body_count, sizeof *candidates->boxes);
-  size_t motions = (size_t)layout->party_count + (size_t)layout->def.body_count;
+  size_t parties = (size_t)layout->party_count;
   candidates->is_left_out = memory_zeroed((size_t)layout->facing_count, sizeof *candidates->is_left_out);
-  candidates->motions = memory_zeroed(motions, sizeof(double));
-  candidates->expected = memory_zeroed(motions, sizeof(double));
+  candidates->motions = memory_zeroed(parties, sizeof(ContactMotion));
+  candidates->expected = memory_zeroed(parties, sizeof(ContactMotion));
   bool fits = candidates->reference && candidates->is_listed && candidates->boxes && candidates->motions &&
               candidates->expected && candidates->is_left_out;
   return fits ? STATUS_OK : status_no_memory("the candidate lists");
@@ -64,29 +64,29 @@ void contact_candidates_destroy(ContactCandidates *candidates) {
   *candidates = (ContactCandidates){0};
 }
 
-// The longest of the vectors to − from over vertices begin … end (from NULL: 0); NaN counts as infinite.
-static double longest(const double *to, const double *from, int begin, int end) {
-  double largest = 0;
-  for (size_t v = (size_t)begin; v < (size_t)end; v++) {
-    Vec3 d = from ? vec3_sub(vec3_at(to + 3 * v), vec3_at(from + 3 * v)) : vec3_at(to + 3 * v);
-    double square = vec3_dot(d, d);
-    if (!(square <= largest)) largest = isnan(square) ? INFINITY : square;
-  }
-  return sqrt(largest);
-}
-
-// Twice the longest of to − from, less their mean: no two vertices come nearer to each other by more.
-static double approach(const double *to, const double *from, int begin, int end) {
-  Vec3 mean = {0, 0, 0};
-  double largest = 0, share = 1.0 / (end - begin);
+// How `to` − `from` (NULL: 0) moves over vertices begin … end; NaN counts as infinite.
+static ContactMotion motion_of(const double *to, const double *from, int begin, int end) {
+  ContactMotion motion = {.mean = {0, 0, 0}};
+  double share = 1.0 / (end - begin), spread = 0, longest = 0;
   for (int pass = 0; pass < 2; pass++)
     for (size_t v = (size_t)begin; v < (size_t)end; v++) {
       Vec3 d = from ? vec3_sub(vec3_at(to + 3 * v), vec3_at(from + 3 * v)) : vec3_at(to + 3 * v);
-      if (pass == 0) mean = vec3_add(mean, vec3_scale(share, d));
-      double distance = pass == 0 ? 0 : vec3_length(vec3_sub(d, mean));
-      if (!(distance <= largest)) largest = isnan(distance) ? INFINITY : distance;
+      if (pass == 0) {
+        motion.mean = vec3_add(motion.mean, vec3_scale(share, d));
+        continue;
+      }
+      Vec3 rest = vec3_sub(d, motion.mean);
+      double square = vec3_dot(d, d), apart = vec3_dot(rest, rest);
+      if (!(square <= longest)) longest = isnan(square) ? INFINITY : square;
+      if (!(apart <= spread)) spread = isnan(apart) ? INFINITY : apart;
     }
-  return 2 * largest;
+  motion.longest = sqrt(longest);
+  motion.spread = sqrt(spread);
+  return motion;
+}
+
+static ContactMotion motion_of_shape(double way) {
+  return (ContactMotion){.mean = {0, 0, 0}, .spread = way, .longest = way};
 }
 
 static void measure_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
@@ -94,36 +94,32 @@ static void measure_motions(ContactCandidates *candidates, const ContactLayout *
   const ContactSystemDef *def = &layout->def;
   for (int b = 0; b < def->body_count; b++)
     candidates->motions[b] =
-        longest(positions, candidates->reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
-  for (int b = 0; b < def->body_count; b++)
-    if (def->bodies[b].meets_itself)
-      candidates->motions[layout->party_count + b] =
-          approach(positions, candidates->reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
-  for (int h = 0; h < def->shape_count; h++) {
+        motion_of(positions, candidates->reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+  for (int h = 0; h < def->shape_count; h++)
     candidates->motions[def->body_count + h] =
-        contact_shape_motion(&def->shapes[h], candidates->reference_time, time);
-  }
+        motion_of_shape(contact_shape_motion(&def->shapes[h], candidates->reference_time, time));
 }
 
 static void expect_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
                            const double *velocities, double step) {
   const ContactSystemDef *def = &layout->def;
-  for (int b = 0; b < def->body_count; b++)
-    candidates->expected[b] =
-        step * longest(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
-  for (int b = 0; b < def->body_count; b++)
-    if (def->bodies[b].meets_itself)
-      candidates->expected[layout->party_count + b] =
-          step * approach(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
-  for (int h = 0; h < def->shape_count; h++) {
-    candidates->expected[def->body_count + h] = step * contact_shape_speed(&def->shapes[h], time);
+  for (int b = 0; b < def->body_count; b++) {
+    ContactMotion *motion = &candidates->expected[b];
+    *motion = motion_of(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+    motion->mean = vec3_scale(step, motion->mean);
+    motion->spread *= step, motion->longest *= step;
   }
+  for (int h = 0; h < def->shape_count; h++)
+    candidates->expected[def->body_count + h] =
+        motion_of_shape(step * contact_shape_speed(&def->shapes[h], time));
 }
 
-// By how much the two of a facing may come nearer, of motions laid out like `motions`.
-static double sum_of(const double *motions, const ContactLayout *layout, const ContactFacing *facing) {
-  if (facing->a == facing->b) return motions[layout->party_count + facing->a];
-  return motions[facing->a] + motions[facing->b];
+// By how much the two of a facing may have come nearer: what is common to both does not count.
+static double approach(const ContactMotion *motions, const ContactFacing *facing) {
+  const ContactMotion *a = &motions[facing->a], *b = &motions[facing->b];
+  if (facing->a == facing->b) return 2 * a->spread;
+  double apart = vec3_length(vec3_sub(a->mean, b->mean));
+  return fmin(a->longest + b->longest, a->spread + b->spread + apart);
 }
 
 void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
@@ -139,7 +135,7 @@ bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout
   measure_motions(candidates, layout, time, positions);
   for (int f = 0; f < layout->facing_count; f++)
     if (!candidates->is_left_out[f] &&
-        !(sum_of(candidates->motions, layout, &layout->facings[f]) <= candidates->list.margins[f]))
+        !(approach(candidates->motions, &layout->facings[f]) <= candidates->list.margins[f]))
       return false;
   return true;
 }
@@ -151,9 +147,9 @@ static bool wants_search(const ContactCandidates *candidates, const ContactLayou
   for (int f = 0; f < layout->facing_count; f++) {
     if (candidates->is_left_out[f]) continue;
     const ContactFacing *facing = &layout->facings[f];
-    double margin = candidates->list.margins[f], moved = sum_of(candidates->motions, layout, facing);
+    double margin = candidates->list.margins[f], moved = approach(candidates->motions, facing);
     bool is_empty = candidates->list.begin[f] == candidates->list.begin[f + 1] && facing->a != facing->b;
-    bool may_leave = moved + sum_of(candidates->expected, layout, facing) > margin;
+    bool may_leave = moved + approach(candidates->expected, facing) > margin;
     if (!(moved <= margin / 2) || (may_leave && (is_empty || moved > margin / 4))) return true;
   }
   return false;
@@ -248,8 +244,7 @@ static Status search_facing(ContactCandidates *candidates, const ContactLayout *
     next->margins[f] = distance;
     return STATUS_OK;
   }
-  double wide =
-      fmin(STEPS_AHEAD * sum_of(candidates->expected, layout, facing), WIDEST_TRIAL * layout->margin);
+  double wide = fmin(STEPS_AHEAD * approach(candidates->expected, facing), WIDEST_TRIAL * layout->margin);
   if (wide > layout->margin) {
     TRY(search_with(candidates, layout, f, time, positions, wide));
     if (next->count == begin) return STATUS_OK;
@@ -306,8 +301,8 @@ static double time_left(const ContactCandidates *candidates, const ContactLayout
   for (int f = 0; f < layout->facing_count && step > 0; f++) {
     const ContactFacing *facing = &layout->facings[f];
     if (candidates->is_left_out[f]) continue;
-    double expected = sum_of(candidates->expected, layout, facing),
-           free = candidates->list.margins[f] - sum_of(candidates->motions, layout, facing);
+    double expected = approach(candidates->expected, facing),
+           free = candidates->list.margins[f] - approach(candidates->motions, facing);
     if (expected > 0) left = fmin(left, MARGIN_USED * free / expected * step);
   }
   return left;

@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which pairs may overlap until the next search, for every two that can meet, and how far the parties may
-// move until then: as far as they are apart while no pair is near, half an element once one is, so that
-// nothing can pass through anything unseen.
+// Which pairs may overlap until the next search, for every two that can meet, and by how much the parties may
+// come nearer until then: as far as they are apart while no pair is near, half an element once one is, so
+// that nothing can pass through anything unseen. What two bodies move together, as a stack that falls, does
+// not count.
 #ifndef TETLAP_CONTACT_CANDIDATES_H
 #define TETLAP_CONTACT_CANDIDATES_H
 
+#include "base/vec3.h"
 #include "contact/search/broad.h"
 #include "contact/search/layout.h"
 
-// Valid while the two parties of a facing have together moved by no more than its margin.
+// How the points of a party have moved, as far as it bounds by how much two parties come nearer.
+typedef struct ContactMotion {
+  Vec3 mean;      // [m]
+  double spread;  // the longest difference from that [m]
+  double longest; // [m]
+} ContactMotion;
+
+// Valid while the two parties of a facing have come nearer by no more than its margin.
 typedef struct ContactCandidateList {
   int count;
   size_t capacity;
@@ -34,9 +43,8 @@ typedef struct ContactCandidates {
   ContactPairList found;
   unsigned char *is_listed; // 0 between calls                        (cell_count)
   double (*boxes)[6];       // of each body                                 (body_count)
-  double *motions;          // of each party since the search [m]; then by how much two points of a body that
-                            // meets itself may have come nearer      (party_count + body_count)
-  double *expected;         // the same in the next step [m]          (party_count + body_count)
+  ContactMotion *motions;   // of each party since the search          (party_count)
+  ContactMotion *expected;  // in the next step                        (party_count)
 } ContactCandidates;
 
 Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout);

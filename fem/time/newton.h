@@ -6,16 +6,16 @@
 // predicted from the soft side lands deep in the stiff one, and SUNDIALS' method, which knows one matrix and
 // four iterations, gives the step up. Here
 //
-//   – the step along a direction δ is shortened where the condensed residual g(λ) = δu · r(u + λ δ), the
-//   slope
+// clang-format off
+//   – the step along a direction δ is shortened where the condensed residual g(λ) = δu · r(u + λ δ), the slope
 //     of the step's potential along δ, has changed its sign and grown (a line search by false position:
 //     Matthies and Strang 1979, The solution of nonlinear finite element equations);
-//   – once a new matrix did not help, directions are mixed with those before (mixing.h), so that a matrix
-//   that
-//     leaves something out does not set the rate, and what goes to and fro between two states settles;
+//   – once a new matrix did not help, directions are mixed with those before (mixing.h), so that a
+//     matrix that leaves something out does not set the rate, and what goes to and fro between two states settles;
 //   – where forces cannot be evaluated (beyond the contact margin, no numbers) the step is shortened as well;
-//   – a matrix that makes too little way is made anew where the iteration stands, before the step is given
-//   up; – what has converged by IDA's test must also balance: the caller says by how much the forces do not.
+//   – a matrix that makes too little way is made anew where the iteration stands, before the step is given up;
+//   – what has converged by IDA's test must also balance: the caller says by how much the forces do not.
+// clang-format on
 #ifndef TETLAP_FEM_TIME_NEWTON_H
 #define TETLAP_FEM_TIME_NEWTON_H
 
