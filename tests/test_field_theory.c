@@ -303,6 +303,14 @@ START_TEST(a_pair_has_its_own_friction) {
     if (b == 0) ck_assert(fabs(way) < 1e-3);
     if (b == 1) ck_assert_near(way, 0.5 * pull * end * end, 0.01 * way);
   }
+  // The one without friction slides on the floor, not above it: it presses with its weight and drags with
+  // nothing.
+  int floor = 0;
+  while (!strstr(run.result.interface_names[floor], "two, floor")) floor++;
+  double weight = 9.81 * run.model.bodies[1].mass;
+  const double *force = scene_force(&run, 4, floor);
+  ck_assert_near(fabs(force[2]), weight, 0.1 * weight); // it still bounces a little
+  ck_assert_near(force[0], 0, 1e-9 * weight);
   scene_close(&run);
 }
 END_TEST

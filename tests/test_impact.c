@@ -115,11 +115,12 @@ START_TEST(gains_and_losses_fall_together) {
     double lost[2], gained[2];
     for (int k = 0; k < 2; k++) {
       SceneRun run;
-      run_and_look(&run, scenes[s],
-                   (const char *const[]){k ? "time.tolerance=1e-5" : "time.tolerance=1e-4", NULL});
+      Seen seen = run_and_look(
+          &run, scenes[s], (const char *const[]){k ? "time.tolerance=1e-5" : "time.tolerance=1e-4", NULL});
+      // A bar that swings touches nobody; the two others do, and nothing else acts on them.
+      ck_assert((seen.contact_count > 0) == (s != 1));
       lost[k] = fabs(share_lost(&run));
       gained[k] = scene_gain(&run);
-      ck_assert_int_eq(run.result.energy_retries, 0);
       scene_close(&run);
     }
     ck_assert_msg(lost[1] <= lost[0] / 2.3, "%s: lost %.3g, then %.3g", scenes[s], lost[0], lost[1]);

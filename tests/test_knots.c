@@ -136,6 +136,10 @@ END_TEST
 
 // ---- Runs
 
+// Of the scene's energy. A push gives its impulse to a thousandth, so its energy to two; the audit's rule over
+// the few steps of a push errs by as much again.
+static const double MOST_GAIN = 5e-3;
+
 static double momentum_of(const SceneRun *run) {
   int last = run->result.frame_count - 1; // of a body that does not vibrate
   double span = run->result.frame_times[last] - run->result.frame_times[last - 1], mass = 0, sum = 0;
@@ -151,7 +155,7 @@ static double struck_by(const char *const *overrides) {
   SceneRun run;
   scene_run(&run, "struck", overrides);
   double momentum = momentum_of(&run);
-  ck_assert_double_le(scene_gain(&run), run.result.energy_bounds.run);
+  ck_assert_double_le(scene_gain(&run), MOST_GAIN);
   ck_assert_double_eq(run.result.end_time, 1);
   scene_close(&run);
   return momentum;
@@ -217,7 +221,7 @@ static double pressed_by_tap(bool may_rest, const char *const *overrides) {
   scene_run_from(&run, NULL);
   ck_assert_ok(run.status);
   if (may_rest) ck_assert_double_ge(record_find_number(run.result.counters, "bodies_awakened"), 1);
-  ck_assert_double_le(scene_gain(&run), run.result.energy_bounds.run);
+  ck_assert_double_le(scene_gain(&run), 1e-3); // docs/stability.md
   double most = run.result.contact_force_max;
   scene_close(&run);
   return most;

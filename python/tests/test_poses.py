@@ -34,6 +34,8 @@ class Poses(unittest.TestCase):
         whole = shifts([0.01, -0.02, -0.2], [0, 0.1, -0.3])
         rows = np.concatenate([whole[:, :3, :3].reshape(-1, 9), whole[:, :3, 3]], axis=1)
         expected = tetlap.poses(BLOCKS, whole)
+        # 1 m² by what it is deep: the blocks overlap, so that equal answers say something
+        np.testing.assert_allclose(expected.volume, [0.2, 0.3], atol=1e-12)
         for form in (rows, whole[:, :3]):
             for a, b in zip(expected, tetlap.poses(BLOCKS, form)):
                 np.testing.assert_array_equal(a, b)
@@ -49,7 +51,9 @@ class Poses(unittest.TestCase):
         still = shifts([0, 0, 0])
         options = {"set": {"bodies[0].place.translate": [-0.4, -0.3, -0.3]}}
         upper, lower = (tetlap.poses(BLOCKS, still, body=body, **options) for body in ("upper", "lower"))
-        np.testing.assert_allclose(upper.volume, lower.volume, rtol=1e-13)
+        np.testing.assert_allclose(upper.volume, [0.3], atol=1e-12)  # 1 m² by 0.3 m
+        np.testing.assert_allclose(lower.volume, upper.volume, rtol=1e-13)
+        np.testing.assert_allclose(upper.force, [[0, 0, 1]], atol=1e-12)
         np.testing.assert_allclose(upper.force, -lower.force, atol=1e-13)
 
     def test_what_is_wrong_is_said(self):

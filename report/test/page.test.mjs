@@ -94,6 +94,11 @@ const COLOURS = `(() => {
   });
 })()`;
 
+function assertDrawn(counts) {
+  assert.ok(counts.length > 0, "there is no canvas");
+  for (const count of counts) assert.ok(count > 50, `a canvas of ${count} colours`);
+}
+
 // A number that changes with what the canvases show.
 const PICTURE = `(tetlap.stage.renderNow(), tetlap.stage.views.map(({ canvas }) => canvas.toDataURL()).join())`;
 
@@ -188,7 +193,7 @@ const tests = {
     })()`);
     assert.ok(Math.abs(area - 0.04) < 1e-5, `the lower block's section is ${area}, not 0.2 × 0.2`); // at rest
     assert.ok(depth < 1e-3, `${depth}`);
-    assert.ok((await page.eval(COLOURS)).every((count) => count > 50));
+    assertDrawn(await page.eval(COLOURS));
     await page.eval("tetlap.state.set({ cut: -1 })");
   },
 
@@ -420,7 +425,7 @@ function historyOf(folder, model) {
 const compareTests = {
   async "all models of a comparison are shown, and it opens where their forces differ most"(page, { folder }) {
     assert.deepEqual(await page.eval("tetlap.stage.views.map((view) => view.run.label)"), ["clip", "geo", "clip32"]);
-    assert.ok((await page.eval(COLOURS)).every((count) => count > 50));
+    assertDrawn(await page.eval(COLOURS));
     const clip = historyOf(folder, "clip");
     let [most, moment] = [0, -1];
     for (const other of ["geo", "clip32"])
@@ -481,6 +486,7 @@ const sweepTests = {
     const titles = () => page.eval(`[...document.querySelectorAll("#sweep-steps svg circle title")].map((one) => one.textContent)`);
     for (const steps of table) assert.ok((await titles()).some((text) => text.includes(`: ${steps}`)), `${steps} in ${await titles()}`);
     await page.eval(`(() => { const select = document.querySelector("#along"); select.value = "bodies.upper.material.poisson"; select.dispatchEvent(new Event("change")); })()`);
+    assert.ok((await titles()).length > 0, "no circle has a title");
     assert.ok((await titles()).every((text) => text.startsWith("poisson 0.3")), String(await titles()));
     assert.match(await page.eval(`document.querySelector("#sweep-steps svg").getAttribute("aria-label")`), /Steps against bodies.upper.material.poisson/);
   },
@@ -516,8 +522,9 @@ async function testLive(browser) {
     run.kill("SIGINT");
     await page.until("tetlap.data.live.outcome === 'interrupted'", 300);
     assert.match(await word(), /^Interrupted/);
-    assert.ok((await page.eval(COLOURS)).every((count) => count > 50));
+    assertDrawn(await page.eval(COLOURS));
     assert.deepEqual(page.problems, []);
+    assert.ok(page.requests.length > 0);
     assert.ok(page.requests.every((one) => one.startsWith(url) || one.startsWith("data:")));
   } finally {
     await page.close();
