@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way of many pairs through `geo`, side by side in vector lanes: what geo_gate.h, geo_centre.h,
-// geo_frame.h and geo_features.h do for one.
+// The way of many pairs through `geo`, side by side in vector lanes: what gate.h, centre.h,
+// frame.h and features/features.h do for one. That scalar form serves training and pairs with coplanar faces, and
+// tests hold every instruction set against it: a change to one form is a change to both.
 //
 //   pairs ─ gate ─► those that intersect, moved together ─ frame ─► P ─► features ─► ρ ─ pull ─► ∇ log V
 //                   (OverlapGeoBundle)                    blocks of OVERLAP_GEO_BLOCK columns
