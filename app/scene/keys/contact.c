@@ -132,7 +132,8 @@ static const SceneKey contact_keys[] = {
      .help = "penalty κ; higher: less overlap, shorter steps (Pa/m with the potential `field`, Pa/m³ with "
              "`body`)"},
     {"potential", SCENE_CHOICE, AT(FemContactDef, potential),
-     .absent_help = "`field`; with an overlap model that gives no centroid (`tpn`, `tpn-scene`) `nodal`",
+     .absent_help = "`field`; `nodal` with weights that `net` names, and with an overlap model that gives no "
+                    "centroid (`tpn`, `tpn-bf16`, `tpn-published`, `tpn-scene`)",
      MARK(FemContactDef, potential_is_given, true), .choices = &app_scene_choices_potentials,
      .help = "how overlaps become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Systems small enough to have closed forms, for tests of fem/time/integrator.h: chains of masses under an
+// effect of the tests' own, whose law is a function.
+#ifndef TETLAP_TESTS_TOY_H
+#define TETLAP_TESTS_TOY_H
+
+#include "suite.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "fem/model/build.h"
+#include "fem/time/integrator.h"
+
+static const FemSolverKind KINDS[] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_KLU, FEM_SOLVER_PCG};
+enum { KIND_COUNT = 3, MOST = 3 };
+
+// Masses at vertices that move along x; x = displacement.
+typedef struct Toy {
+  int count;
+  double mass;
+  double wall_stiffness;  // of a spring to the rest position of each mass [N/m]
+  double link_stiffness;  // of springs between neighbours and from the ends to fixed points [N/m]
+  double gravity;         // along x [m/s²]
+  double damper;          // [N s/m], the effect `damping`
+  double floor_stiffness; // one-sided spring at x < 0 [N/m]
+  double friction;        // force against the sign of x: a jump [N]
+  double margin;          // positions further than this from `accepted` are a RETRY; 0: none [m]
+  double accepted;        // position of the first mass at the last prepare [m]
+  double broken_after;    // forces fail from this time on with `failure`; 0: never [s]
+  Status failure;
+  bool is_watching; // the mass was above the floor at the last prepare
+  int evaluations, retries;
+  // The system around it.
+  FemSceneDef scene;
+  FemModelBody body;
+  FemModel model;
+  FemSystem system;
+  double rest[3 * MOST], masses[MOST];
+  int unknown_of_dof[3 * MOST], dof_of_unknown[MOST];
+} Toy;
+
+static inline Status add_force(void *self, const FemState *state, double *force) {
+  Toy *toy = *(Toy **)self;
+  toy->evaluations++;
+  if (toy->broken_after > 0 && state->time > toy->broken_after)
+    return status_fail(toy->failure, "the force broke");
+  double x[MOST + 2] = {0};
+  for (int i = 0; i < toy->count; i++) x[i + 1] = state->positions[3 * i] - toy->rest[3 * i];
+  for (int i = 0; i < toy->count; i++) {
+    double here = x[i + 1];
+    if (toy->margin > 0 && fabs(here - toy->accepted) > toy->margin) {
+      toy->retries++;
+      return status_fail(STATUS_RETRY, "beyond the margin");
+    }
+    force[3 * i] += toy->mass * toy->gravity - toy->wall_stiffness * here -
+                    toy->link_stiffness * (2 * here - x[i] - x[i + 2]) - toy->floor_stiffness * fmin(here, 0);
+    if (here != 0) force[3 * i] -= copysign(toy->friction, here);
+  }
+  return STATUS_OK;
+}
+
+static inline Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
+  Toy *toy = *(Toy **)self;
+  (void)state;
+  int vertices[MOST] = {0, 1, 2};
+  return fem_pattern_add_clique(pattern, toy->count, vertices, has_grown);
+}
+
+static inline Status add_jacobian(void *self, const FemState *state, double stiffness_scale,
+                                  double damping_scale, FemMatrix *matrix) {
+  (void)damping_scale;
+  const Toy *toy = *(Toy **)self;
+  double dense[9 * MOST * MOST] = {0};
+  int vertices[MOST] = {0, 1, 2}, size = 3 * toy->count;
+  for (int i = 0; i < toy->count; i++) {
+    double here = state->positions[3 * i] - toy->rest[3 * i];
+    double stiffness = toy->wall_stiffness + 2 * toy->link_stiffness + (here < 0 ? toy->floor_stiffness : 0);
+    dense[3 * i * size + 3 * i] = stiffness;
+    if (i > 0) dense[3 * i * size + 3 * (i - 1)] = dense[3 * (i - 1) * size + 3 * i] = -toy->link_stiffness;
+  }
+  fem_matrix_add(matrix, toy->count, vertices, dense, stiffness_scale);
+  return STATUS_OK;
+}
+
+static inline Status prepare(void *self, const FemState *state, double step) {
+  Toy *toy = *(Toy **)self;
+  (void)step;
+  toy->accepted = state->positions[0];
+  toy->is_watching = toy->floor_stiffness > 0 && toy->accepted > 1e-9;
+  return STATUS_OK;
+}
+
+static inline Status gap(void *self, const FemState *state, double *gap) {
+  *gap = (*(Toy **)self)->is_watching ? state->positions[0] : 1;
+  return STATUS_OK;
+}
+
+static inline Status add_damper_force(void *self, const FemState *state, double *force) {
+  const Toy *toy = *(Toy **)self;
+  for (int i = 0; i < toy->count; i++) force[3 * i] -= toy->damper * state->velocities[3 * i];
+  return STATUS_OK;
+}
+
+static inline Status add_damper_jacobian(void *self, const FemState *state, double stiffness_scale,
+                                         double damping_scale, FemMatrix *matrix) {
+  (void)state, (void)stiffness_scale;
+  const Toy *toy = *(Toy **)self;
+  double one[MOST] = {1, 1, 1};
+  fem_matrix_add_mass(matrix, one, damping_scale * toy->damper);
+  return STATUS_OK;
+}
+
+static inline void forget(void *self) {
+  memory_free(self);
+}
+
+static const FemEffectOps law = {
+    .name = "law", .couple = couple, .add_force = add_force, .add_jacobian = add_jacobian, .destroy = forget};
+static const FemEffectOps law_with_floor = {.name = "law",
+                                            .couple = couple,
+                                            .prepare = prepare,
+                                            .add_force = add_force,
+                                            .add_jacobian = add_jacobian,
+                                            .gap = gap,
+                                            .destroy = forget};
+static const FemEffectOps damper = {
+    .name = "damping", .add_force = add_damper_force, .add_jacobian = add_damper_jacobian, .destroy = forget};
+
+// What effects keep is memory of their own, which is weighed: a pointer to the toy.
+static inline void add_effect(Toy *toy, const FemEffectOps *ops) {
+  toy->system.effects[toy->system.effect_count++] =
+      (FemEffect){.ops = ops, .self = memory_copy(&toy, 1, sizeof toy)};
+}
+
+// The model and system around a toy whose law is filled in; y and z are prescribed.
+static inline void toy_open(Toy *toy) {
+  static const char name[] = "chain";
+  toy->body = (FemModelBody){.name = name, .vertex_end = toy->count};
+  toy->scene = (FemSceneDef){.solver_tolerance = 1e-12, .threads = 1};
+  for (int i = 0; i < toy->count; i++) {
+    toy->rest[3 * i] = toy->count > 1 ? i : 0;
+    toy->masses[i] = toy->mass;
+    toy->unknown_of_dof[3 * i] = i, toy->unknown_of_dof[3 * i + 1] = toy->unknown_of_dof[3 * i + 2] = -1;
+    toy->dof_of_unknown[i] = 3 * i;
+  }
+  toy->model = (FemModel){.scene = &toy->scene,
+                          .vertex_count = toy->count,
+                          .body_count = 1,
+                          .rest = toy->rest,
+                          .bodies = &toy->body,
+                          .mass = toy->masses,
+                          .unknown_count = toy->count,
+                          .unknown_of_dof = toy->unknown_of_dof,
+                          .dof_of_unknown = toy->dof_of_unknown};
+  FemSystem *system = &toy->system;
+  size_t dofs = 3 * (size_t)toy->count;
+  *system = (FemSystem){.model = &toy->model,
+                        .positions = memory_copy(toy->rest, dofs, sizeof(double)),
+                        .velocities = memory_zeroed(dofs, sizeof(double)),
+                        .forces = memory_zeroed(dofs, sizeof(double))};
+  add_effect(toy, toy->floor_stiffness > 0 || toy->margin > 0 ? &law_with_floor : &law);
+  if (toy->damper > 0) add_effect(toy, &damper);
+  ck_assert_ok(fem_pattern_create(&system->pattern, toy->count));
+  ck_assert_ok(couple(&toy, NULL, system->pattern, NULL));
+  ck_assert_ok(fem_matrix_create(&system->matrix, system->pattern, toy->unknown_of_dof));
+}
+
+static inline FemIntegratorDef def_of(double tolerance, double end) {
+  return (FemIntegratorDef){
+      .displacement_tolerance = tolerance, .velocity_tolerance = tolerance, .max_order = 2, .end = end};
+}
+
+static inline FemIntegrator *start(Toy *toy, FemSolverKind kind, FemIntegratorDef def, const double *u,
+                                   const double *v) {
+  FemIntegrator *integrator;
+  ck_assert_ok(fem_integrator_create(&integrator, &toy->system, fem_solver_ops(kind), &def));
+  ck_assert_ok(fem_integrator_restart(integrator, 0, u, v, 0));
+  return integrator;
+}
+
+// Steps to the end; u, v (count) there.
+static inline void finish(FemIntegrator *integrator, double end, int count, double *u, double *v) {
+  double time = 0;
+  bool is_onset;
+  while (time < end) ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+  const double *u_end, *v_end;
+  ck_assert(time == end);
+  fem_integrator_state(integrator, &time, &u_end, &v_end);
+  ck_assert(time == end);
+  memcpy(u, u_end, (size_t)count * sizeof *u);
+  memcpy(v, v_end, (size_t)count * sizeof *v);
+}
+
+#endif
