@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/bench/bench.h"
+#include "app/cli/ranks.h"
 #include "app/cli/versions.h"
 #include "app/command/about/completion.h"
 #include "app/command/about/devices.h"
@@ -62,12 +63,18 @@ static char *command_of(char *word) {
   return text_lists("-h -? --help", word) ? help : text_lists("-V --version", word) ? version : word;
 }
 
-bool app_program_has_threads(int argument_count, char *const *arguments) {
+// The command that the words call for; NULL: none, or its help.
+static const AppCommand *find_command(int argument_count, char *const *arguments) {
   const AppCommand *command = &app_program_root;
   for (int i = 1; i < argument_count && command; i++) {
-    if (text_lists("-? --help --usage", arguments[i])) return false;
+    if (text_lists("-? --help --usage", arguments[i])) return NULL;
     if (command->children) command = app_cli_command_find(command, arguments[i]);
   }
+  return command && !command->children ? command : NULL;
+}
+
+bool app_program_has_threads(int argument_count, char *const *arguments) {
+  const AppCommand *command = find_command(argument_count, arguments);
   return command && command->has_threads;
 }
 
@@ -78,5 +85,11 @@ int app_program_run(int argument_count, char **arguments) {
   arguments[0] = name;
   app_cli_command_set_root(&app_program_root);
   if (argument_count > 1) arguments[1] = command_of(arguments[1]);
+  const AppCommand *command = find_command(argument_count, arguments);
+  Status status = command ? app_ranks_check(command) : STATUS_OK;
+  if (status) {
+    log_error("%s", status_message());
+    return status_exit_code(status);
+  }
   return app_cli_command_run(&app_program_root, argument_count, arguments);
 }

@@ -14,6 +14,7 @@
 
 #include "base/confine.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 
 char *file_join(const char *directory, const char *name) {
   if (name[0] == '/') return memory_copy(name, strlen(name) + 1, 1);
@@ -45,8 +46,8 @@ Status file_begin(FileWriter *writer, const char *path) {
     file_abandon(writer);
     return status_no_memory("a file name");
   }
-  snprintf(writer->temporary, size, "%s.%ld.part", path, (long)getpid());
-  writer->stream = fopen(writer->temporary, "wb");
+  if (ranks_is_first()) snprintf(writer->temporary, size, "%s.%ld.part", path, (long)getpid());
+  writer->stream = fopen(ranks_is_first() ? writer->temporary : "/dev/null", "wb");
   if (!writer->stream) {
     int reason = errno;
     file_abandon(writer);
@@ -64,7 +65,7 @@ Status file_commit(FileWriter *writer) {
   if (fflush(writer->stream) != 0) failed = 1, reason = errno;
   if (fclose(writer->stream) != 0 && !failed) failed = 1, reason = errno;
   writer->stream = NULL;
-  if (!failed && rename(writer->temporary, writer->path) != 0) failed = 1, reason = errno;
+  if (!failed && ranks_is_first() && rename(writer->temporary, writer->path) != 0) failed = 1, reason = errno;
   Status status = STATUS_OK;
   if (failed)
     status = status_fail(STATUS_IO, "%s: writing failed: %s; nothing was left there", writer->path,
@@ -95,7 +96,7 @@ static bool is_left_over(const char *name) {
 }
 
 void file_remove_parts(const char *directory) {
-  DIR *folder = opendir(directory);
+  DIR *folder = ranks_is_first() ? opendir(directory) : NULL;
   if (!folder) return;
   const struct dirent *entry;
   while ((entry = readdir(folder)))
@@ -112,7 +113,7 @@ static bool is_numbered(const char *name, const char *prefix, const char *suffix
 }
 
 int file_remove_numbered(const char *directory, const char *prefix, const char *suffix) {
-  DIR *folder = opendir(directory);
+  DIR *folder = ranks_is_first() ? opendir(directory) : NULL;
   int count = 0;
   if (!folder) return 0;
   const struct dirent *entry;
@@ -120,6 +121,10 @@ int file_remove_numbered(const char *directory, const char *prefix, const char *
     if (is_numbered(entry->d_name, prefix, suffix)) count += unlinkat(dirfd(folder), entry->d_name, 0) == 0;
   closedir(folder);
   return count;
+}
+
+int file_remove(const char *path) {
+  return ranks_is_first() && remove(path) == 0;
 }
 
 static Status make_one(const char *path) {

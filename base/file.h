@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that appear whole or not at all: written beside their final place under a temporary name, flushed,
-// renamed.
+// renamed. Of several ranks (base/ranks.h) the first writes and removes; what others write goes nowhere.
 #ifndef TETLAP_BASE_FILE_H
 #define TETLAP_BASE_FILE_H
 
@@ -28,6 +28,9 @@ void file_remove_parts(const char *directory);
 // Removes the files of the directory whose names are prefix, a number of five digits or more, suffix; returns
 // how many these were.
 int file_remove_numbered(const char *directory, const char *prefix, const char *suffix);
+
+// Whether the file was there, and is gone.
+int file_remove(const char *path);
 
 Status file_make_directories(const char *path); // like mkdir -p
 int file_exists(const char *path);

@@ -10,6 +10,7 @@
 #include "base/digest.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 
 Status journal_create(Journal *journal, const char *path) {
   *journal = (Journal){.end.digest = DIGEST_START};
@@ -52,7 +53,7 @@ static Status verify(const Journal *journal, JournalMark mark) {
 Status journal_continue(Journal *journal, JournalMark mark) {
   if (mark.size == 0) return STATUS_OK; // the first piece makes a new file
   TRY(verify(journal, mark));
-  if (truncate(journal->path, (off_t)mark.size) != 0)
+  if (ranks_is_first() && truncate(journal->path, (off_t)mark.size) != 0)
     return status_fail(STATUS_IO, "%s: cannot be cut to %lld bytes: %s", journal->path, mark.size,
                        strerror(errno));
   journal->end = mark;
@@ -96,7 +97,8 @@ static Status write_next(const Journal *journal, const void *piece, size_t size)
 }
 
 Status journal_append(Journal *journal, const void *piece, size_t size) {
-  TRY(journal->end.size == 0 ? write_first(journal, piece, size) : write_next(journal, piece, size));
+  bool is_first = journal->end.size == 0;
+  if (ranks_is_first()) TRY(is_first ? write_first(journal, piece, size) : write_next(journal, piece, size));
   journal->end.size += (long long)size;
   journal->end.digest = digest_bytes(journal->end.digest, piece, size);
   return STATUS_OK;

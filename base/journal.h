@@ -5,7 +5,7 @@
 // one write and handed to the system at once. A write that fails is taken back, so the file ends with a whole
 // piece; only a process that is killed within a write may leave a part of one. A mark names what the file
 // holds up to a moment: whoever goes on from there later, in another process, finds it unchanged, and what
-// came after it is cut off, or is refused.
+// came after it is cut off, or is refused. Of several ranks (base/ranks.h) the first writes.
 #ifndef TETLAP_BASE_JOURNAL_H
 #define TETLAP_BASE_JOURNAL_H
 

@@ -9,7 +9,7 @@
 
 #include "base/text.h"
 
-enum { MOST_THREADS = 1024, MOST_WORDS = 64 };
+enum { MOST_RANKS = 4096, MOST_THREADS = 1024, MOST_WORDS = 64 };
 
 long long app_argument_integer(struct argp_state *state, const char *option, const char *text,
                                long long least, long long most) {
@@ -48,6 +48,10 @@ uint64_t app_argument_seed(struct argp_state *state, const char *text) {
   if (end == text || *end || errno || text[0] == '-')
     argp_error(state, "--seed is '%s'; give a whole number from 0 up", text);
   return seed;
+}
+
+int app_argument_ranks(struct argp_state *state, const char *text) {
+  return (int)app_argument_integer(state, "ranks", text, 1, MOST_RANKS);
 }
 
 int app_argument_threads(struct argp_state *state, const char *text) {

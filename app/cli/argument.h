@@ -19,6 +19,9 @@ uint64_t app_argument_seed(struct argp_state *state, const char *text);
 // Of --threads: 1 to 1024.
 int app_argument_threads(struct argp_state *state, const char *text);
 
+// Of --ranks: 1 to 4096.
+int app_argument_ranks(struct argp_state *state, const char *text);
+
 // Of a list such as "clip, geo": cut in place at its commas, blanks around a word left out. Fills `words`
 // (most), which point into `text`, and returns how many there are, at least 1. `example` is a list that would
 // be right.

@@ -68,7 +68,7 @@ Status app_beacon_show(AppBeacon *beacon, const FemRunProgress *progress) {
 
 void app_beacon_end(AppBeacon *beacon) {
   char *path = beacon->is_lit ? file_join(beacon->job->directory, APP_BEACON_FILE) : NULL;
-  if (path) remove(path);
+  if (path) file_remove(path);
   memory_free(path);
   beacon->is_lit = false;
 }

@@ -16,6 +16,7 @@ typedef struct AppCommand {
   int (*run)(int argument_count,
              char **arguments);             // arguments[0]: the words that called it; gives the exit code
   bool has_threads;                         // computes for long, on many threads
+  bool has_ranks;                           // several processes may share it (base/ranks.h)
   const void *rows;                         // what it prints rows of, for `describe_rows`; NULL: no rows
   char *(*describe_rows)(const void *rows); // a line for each key of a row; owned by the caller (free)
   const struct AppCommand *const *children; // of a group, such as `tetlap dataset VERB`; ended by NULL

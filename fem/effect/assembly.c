@@ -33,7 +33,9 @@ static Status select_elements(FemAssemblyList *list, const FemModel *model, cons
     own->begin[colour] = list->count;
     for (int i = all->begin[colour]; i < all->begin[colour + 1]; i++) {
       const FemModelBody *body = &model->bodies[list->body[all->tets[i]]];
+      const int *nodes = list->nodes + (size_t)list->node_count * (size_t)all->tets[i];
       if ((takes && !takes(body)) || (body->element == FEM_ELEMENT_QUADRATIC) != is_quadratic) continue;
+      if (!fem_share_has(model->share, list->node_count, nodes)) continue;
       own->tets[list->count++] = all->tets[i];
     }
   }

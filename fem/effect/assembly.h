@@ -58,7 +58,8 @@ typedef struct FemAssembly {
   long long layout;         // of the matrix whose slots the packs have; 0: not looked up
 } FemAssembly;
 
-// All elements of the model's colouring, which leaves out obstacles, whose body `takes` accepts (NULL: all).
+// All elements of the model's colouring, which leaves out obstacles, that this rank has and whose body
+// `takes` accepts (NULL: all).
 // A zeroed assembly, and one whose creation failed, can be destroyed.
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
                            bool (*takes)(const FemModelBody *body));

@@ -102,6 +102,7 @@ const FemEffectOps fem_effect_damping = {
     .name = "damping",
     .help = "stiffness-proportional damping and viscosity, by the strain rate",
     .dissipates = true,
+    .is_divided = true,
     .is_wanted = is_wanted,
     .create = create,
     .couple = couple,

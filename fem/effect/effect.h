@@ -35,6 +35,7 @@ typedef struct FemEffectOps {
   const char *name;
   const char *help; // one line
   bool dissipates;  // its forces depend on velocities: D is assembled for Newton's matrix
+  bool is_divided;  // over ranks it gives what this rank's elements give: the sum over ranks is the effect's
   bool lags;        // `prepare` changes its forces: the powers are measured anew after it
   bool (*is_wanted)(const FemSceneDef *scene);
   // Why a static scene cannot have it, and the key to blame, as "contact.friction". NULL: it can.

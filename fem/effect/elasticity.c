@@ -88,6 +88,7 @@ static size_t bytes(const void *self) {
 const FemEffectOps fem_effect_elasticity = {
     .name = "elasticity",
     .help = "the elements' elastic forces, by each body's material",
+    .is_divided = true,
     .is_wanted = is_wanted,
     .create = create,
     .couple = couple,

@@ -85,7 +85,8 @@ static void place_body(Order *order, const FemModelBody *body) {
   int begin = order->is_quadratic ? body->quadratic_begin : body->tet_begin;
   int end = order->is_quadratic ? body->quadratic_end : body->tet_end;
   for (int e = begin; e < end; e++)
-    order->places[order->count++] = (Place){code_of(order, low, size / 0x1fffff, e), e};
+    if (fem_share_has(order->model->share, order->node_count, nodes_of(order, e)))
+      order->places[order->count++] = (Place){code_of(order, low, size / 0x1fffff, e), e};
   qsort(order->places + first, (size_t)(order->count - first), sizeof *order->places, compare);
 }
 

@@ -26,8 +26,8 @@ typedef struct FemPacks {
   int *colour_begin; // of each colour among the chunks       (colour_count + 1)
 } FemPacks;
 
-// All elements of one kind of bodies, which obstacles are not, that `takes` accepts (NULL: all). A zeroed
-// one, and one whose creation failed, can be destroyed.
+// All elements of one kind of bodies, which obstacles are not, that this rank has and `takes` accepts (NULL:
+// all). A zeroed one, and one whose creation failed, can be destroyed.
 Status fem_packs_create(FemPacks *packs, const FemModel *model, bool is_quadratic,
                         bool (*takes)(const FemModelBody *body));
 void fem_packs_destroy(FemPacks *packs);

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "base/vec3.h"
 #include "fem/model/drive.h"
 #include "fem/model/drivers.h"
@@ -63,6 +64,8 @@ static Status couple_effects(FemSystem *system, double time, bool only_changing,
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffectOps *ops = system->effects[i].ops;
     if (!ops->couple || (only_changing && !ops->prepare)) continue;
+    // What changes is laid out on every rank, since parts of its cliques may belong to others.
+    fem_pattern_set_share(system->pattern, ops->prepare ? NULL : system->model->share);
     TRY(ops->couple(system->effects[i].self, &state, system->pattern, has_grown));
   }
   return STATUS_OK;
@@ -72,6 +75,7 @@ static Status lay_out(FemSystem *system) {
   fem_matrix_destroy(&system->matrix);
   TRY(fem_matrix_create(&system->matrix, system->pattern, system->model->unknown_of_dof));
   system->matrix.rest = system->model->rest;
+  system->matrix.share = system->model->share;
   system->pattern_version++;
   return STATUS_OK;
 }
@@ -80,7 +84,7 @@ static Status create(FemSystem *system, const FemSystem *old) {
   size_t values = 3 * (size_t)system->model->vertex_count;
   system->positions = memory_copy(system->model->rest, values, sizeof *system->positions);
   system->velocities = memory_copy(system->model->initial_velocity, values, sizeof *system->velocities);
-  system->forces = memory_zeroed(values, sizeof *system->forces);
+  system->forces = memory_zeroed(values + 1, sizeof *system->forces);
   if (!system->positions || !system->velocities || !system->forces) return status_no_memory("the state");
   fem_model_drivers_move(system->model, 0, system->positions, system->velocities);
   TRY(create_effects(system, old));
@@ -155,34 +159,67 @@ Status fem_system_check_state(const FemSystem *system) {
   return check_numbers(system, system->velocities, "velocity of", NULL);
 }
 
+static Status check_stop(const FemSystem *system) {
+  return system->stop && *system->stop ? status_fail(STATUS_INTERRUPTED, "interrupted") : STATUS_OK;
+}
+
+// Effects in two parts where there are ranks: those that each rank gives a part of, and those that each gives
+// whole.
+typedef enum Part { PART_ALL, PART_DIVIDED, PART_WHOLE } Part;
+
+static bool is_of(const FemEffect *effect, Part part) {
+  return part == PART_ALL || effect->ops->is_divided == (part == PART_DIVIDED);
+}
+
+static Status add_forces(FemSystem *system, const FemState *state, Part part) {
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffect *effect = &system->effects[i];
+    if (!effect->ops->add_force || !is_of(effect, part)) continue;
+    double began = clock_wall_s();
+    TRY(effect->ops->add_force(effect->self, state, system->forces));
+    system->costs[i].force_s += clock_wall_s() - began;
+    system->costs[i].force_calls++;
+  }
+  return STATUS_OK;
+}
+
+// Σ over ranks of what each has added, unless one could not.
+static Status sum_forces(FemSystem *system, Status status) {
+  size_t values = 3 * (size_t)system->model->vertex_count;
+  system->forces[values] = status != STATUS_OK;
+  ranks()->sum(system->forces, values + 1);
+  return system->forces[values] > 0 ? ranks()->worst(status) : STATUS_OK;
+}
+
 // Asks the effects one after the other for the force that is no number.
 static Status blame_effect(FemSystem *system, const FemState *state) {
   memset(system->forces, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->forces);
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffect *effect = &system->effects[i];
     if (!effect->ops->add_force) continue;
-    TRY(effect->ops->add_force(effect->self, state, system->forces));
-    TRY(check_numbers(system, system->forces, "force on", effect->ops->name));
+    Status status = effect->ops->add_force(effect->self, state, system->forces);
+    if (!status) status = check_numbers(system, system->forces, "force on", effect->ops->name);
+    TRY(ranks()->worst(status));
   }
   return status_fail(STATUS_RETRY, "a force was not a number once, and is one now");
 }
 
-static Status check_stop(const FemSystem *system) {
-  return system->stop && *system->stop ? status_fail(STATUS_INTERRUPTED, "interrupted") : STATUS_OK;
+// What each rank gives by itself.
+static Status add_own_forces(FemSystem *system, const FemState *state, Part part) {
+  TRY(check_stop(system));
+  memset(system->forces, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->forces);
+  TRY(fem_formulas_check(system->model, state->time));
+  TRY(fem_system_check_state(system));
+  return add_forces(system, state, part);
 }
 
 Status fem_system_forces(FemSystem *system, double time) {
-  TRY(check_stop(system));
-  memset(system->forces, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->forces);
-  TRY(fem_formulas_check(system->model, time));
-  TRY(fem_system_check_state(system));
   FemState state = state_of(system, time);
-  for (int i = 0; i < system->effect_count; i++) {
-    if (!system->effects[i].ops->add_force) continue;
-    double began = clock_wall_s();
-    TRY(system->effects[i].ops->add_force(system->effects[i].self, &state, system->forces));
-    system->costs[i].force_s += clock_wall_s() - began;
-    system->costs[i].force_calls++;
+  if (system->model->share) {
+    TRY(sum_forces(system, add_own_forces(system, &state, PART_DIVIDED)));
+    TRY(add_forces(system, &state, PART_WHOLE));
+  } else {
+    TRY(add_own_forces(system, &state, PART_ALL));
   }
   bool is_finite = fem_solver_is_finite(system->forces, 3 * system->model->vertex_count);
   return is_finite ? STATUS_OK : blame_effect(system, &state);
@@ -191,7 +228,8 @@ Status fem_system_forces(FemSystem *system, double time) {
 Status fem_system_couple(FemSystem *system, double time) {
   int has_grown = 0;
   TRY(couple_effects(system, time, true, &has_grown));
-  return has_grown ? lay_out(system) : STATUS_OK;
+  if (!ranks_any(has_grown)) return STATUS_OK;
+  return ranks()->worst(lay_out(system));
 }
 
 bool fem_system_is_linear(const FemSystem *system) {
@@ -206,7 +244,7 @@ Status fem_system_renumber(FemSystem *system) {
   return lay_out(system);
 }
 
-Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix) {
+static Status assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix) {
   TRY(check_stop(system));
   fem_matrix_zero(matrix);
   FemState state = state_of(system, time);
@@ -219,6 +257,10 @@ Status fem_system_assemble(FemSystem *system, double time, double k, double d, d
   }
   if (m != 0) fem_matrix_add_mass(matrix, system->model->mass, m);
   return STATUS_OK;
+}
+
+Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix) {
+  return ranks()->worst(assemble(system, time, k, d, m, matrix));
 }
 
 Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v) {
@@ -238,7 +280,7 @@ Status fem_system_renew(FemSystem *system, double time, const double *u, const d
   return STATUS_OK;
 }
 
-Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
+static Status accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
   TRY(fem_formulas_check(system->model, time));
   TRY(check_stop(system));
   fem_system_scatter(system, time, u, v);
@@ -252,6 +294,10 @@ Status fem_system_accept(FemSystem *system, double time, const double *u, const 
   }
   weigh_effects(system);
   return STATUS_OK;
+}
+
+Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
+  return ranks()->worst(accept(system, time, u, v, next_step));
 }
 
 static double kinetic_energy(const FemSystem *system) {
@@ -283,6 +329,26 @@ static bool has_moving_driver(const FemModel *model) {
   return false;
 }
 
+static Status add_energies(FemSystem *system, const FemState *state, Part part, FemEnergy *energy) {
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffect *effect = &system->effects[i];
+    if (effect->ops->add_energy && is_of(effect, part))
+      TRY(effect->ops->add_energy(effect->self, state, energy));
+  }
+  return STATUS_OK;
+}
+
+static Status sum_energies(FemSystem *system, const FemState *state, FemEnergy *energy) {
+  enum { PARTS = sizeof(FemEnergy) / sizeof(double) };
+  FemEnergy own = {0};
+  TRY(ranks()->worst(add_energies(system, state, PART_DIVIDED, &own)));
+  double sums[PARTS], *to = &energy->kinetic;
+  memcpy(sums, &own, sizeof sums);
+  ranks()->sum(sums, PARTS);
+  for (int i = 0; i < PARTS; i++) to[i] += sums[i];
+  return add_energies(system, state, PART_WHOLE, energy);
+}
+
 Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
   TRY(fem_formulas_check(system->model, time));
   *energy = (FemEnergy){.kinetic = kinetic_energy(system)};
@@ -291,10 +357,8 @@ Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
     energy->driven_power = driven_power(system);
   }
   FemState state = state_of(system, time);
-  for (int i = 0; i < system->effect_count; i++)
-    if (system->effects[i].ops->add_energy)
-      TRY(system->effects[i].ops->add_energy(system->effects[i].self, &state, energy));
-  return STATUS_OK;
+  return system->model->share ? sum_energies(system, &state, energy)
+                              : add_energies(system, &state, PART_ALL, energy);
 }
 
 static bool has_gap(const FemEffect *effect) {

@@ -24,10 +24,11 @@ typedef struct FemSystem {
   FemEffectCost costs[FEM_MAX_EFFECTS];
   int effect_count;
   FemPattern *pattern;
-  FemMatrix matrix;                        // S, or K for split use
-  long long pattern_version;               // grows whenever matrix has been laid out anew
-  double *positions, *velocities, *forces; // scratch, all vertices   (vertex_count, 3)
-  const volatile sig_atomic_t *stop;       // becomes non-zero: forces, matrices and what effects keep are
+  FemMatrix matrix;                  // S, or K for split use
+  long long pattern_version;         // grows whenever matrix has been laid out anew
+  double *positions, *velocities;    // scratch, all vertices                           (vertex_count, 3)
+  double *forces;                    // the same, and one more for how many ranks failed
+  const volatile sig_atomic_t *stop; // becomes non-zero: forces, matrices and what effects keep are
                                      // STATUS_INTERRUPTED; borrowed, NULL: never
 } FemSystem;
 

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fem/model/division.h"
 #include "fem/model/drivers.h"
 #include "fem/model/meshes.h"
 #include "fem/model/numbering.h"
@@ -239,6 +240,7 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(fem_colouring_create(&model->colouring, model->vertex_count, (const int(*)[4])model->tets,
                            elastic_tets));
   TRY(colour_quadratics(model));
+  TRY(fem_model_divide(model));
   return measure(model, meshes);
 }
 
@@ -279,5 +281,6 @@ void fem_model_destroy(FemModel *model) {
   memory_free(model->unknown_of_dof);
   memory_free(model->dof_of_unknown);
   fem_colouring_destroy(&model->colouring);
+  fem_model_division_destroy(model);
   *model = (FemModel){0};
 }

@@ -11,6 +11,7 @@
 #include "fem/model/load.h"
 #include "fem/model/probe.h"
 #include "fem/model/scene.h"
+#include "fem/sparse/share.h"
 
 typedef struct FemModelBody {
   const char *name; // borrowed from the scene
@@ -63,8 +64,9 @@ typedef struct FemModel {
   int probe_count;
   FemColouring colouring; // of the tetrahedra of bodies, which come first
   FemColouring quadratic_colouring;
-  double length; // the smallest body's bounding box diagonal [m]
-  double edge;   // the smallest mean edge of a body [m]
+  FemShare *share; // which vertices this rank has; NULL: there is one process
+  double length;   // the smallest body's bounding box diagonal [m]
+  double edge;     // the smallest mean edge of a body [m]
 } FemModel;
 
 // For messages: the name of the body that a vertex is of, "?" if it has none; borrowed.

@@ -164,7 +164,7 @@ Status fem_recorder_clear(const FemRecorder *recorder) {
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
     char *path = file_join(recorder->directory, names[k]);
     if (!path) return status_no_memory("a file name");
-    count += remove(path) == 0;
+    count += file_remove(path);
     memory_free(path);
   }
   if (count > 0)

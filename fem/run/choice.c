@@ -44,6 +44,8 @@ static bool is_nearly_incompressible(const FemModel *model) {
 
 static FemSolverKind choose(const FemModel *model, const char **why) {
   const FemSceneDef *scene = model->scene;
+  *why = "ranks share it";
+  if (model->share) return FEM_SOLVER_AMG;
   bool is_large = model->unknown_count > MOST_UNKNOWNS_TO_FACTORISE;
   bool is_linear = fem_model_has_linear_materials(model) && !scene->contact.is_on;
   double cube = equivalent_cube(model);

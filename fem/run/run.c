@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "fem/effect/rest.h"
 #include "fem/model/formulas.h"
 #include "fem/model/numbering.h"
@@ -67,12 +68,16 @@ static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_b
       run->time, rise, bound);
 }
 
+static Status check_stop(const FemRunState *run) {
+  if (!run->options->stop || !*run->options->stop) return STATUS_OK;
+  return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
+                     run->time);
+}
+
 static Status observe(FemRunState *run, FemMeasures *measures) {
   bool has_begun;
   TRY(watch_trouble(run, measures, &has_begun));
-  if (run->options->stop && *run->options->stop)
-    return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
-                       run->time);
+  TRY(ranks()->worst(check_stop(run)));
   if (!run->options->observe) return STATUS_OK;
   FemIntegratorStats stats = fem_run_state_stats(run);
   FemRunProgress progress = {.system = &run->system,
@@ -506,8 +511,17 @@ static Status begin_result(FemRunState *run) {
   return STATUS_OK;
 }
 
+static Status check_ranks(const FemRunState *run) {
+  if (!run->given->share || run->given->scene->solver != FEM_SOLVER_KLU) return STATUS_OK;
+  return status_fail(STATUS_USAGE,
+                     "solver.linear: klu works in one process, and there are %d: write amg, "
+                     "gamg, pcg, or cholmod, which is MUMPS' over ranks",
+                     ranks()->count);
+}
+
 static Status prepare(FemRunState *run) {
   const FemRunOptions *options = run->options;
+  TRY(check_ranks(run));
   if (options->from) {
     TRY(fem_restart_check(options->from, run->given));
     TRY(fem_checkpoint_copy(&run->checkpoint, options->from));

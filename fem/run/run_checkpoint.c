@@ -31,7 +31,7 @@ Status fem_run_checkpoint_remove(const FemRunState *run) {
   if (!run->options->directory) return STATUS_OK;
   char *path = file_join(run->options->directory, FEM_CHECKPOINT_FILE);
   if (!path) return status_no_memory("a file name");
-  remove(path);
+  file_remove(path);
   memory_free(path);
   return STATUS_OK;
 }

@@ -246,6 +246,7 @@ static void add_own_block(FemMatrix *matrix, int v, const double block[9]) {
 }
 
 void fem_matrix_add(FemMatrix *matrix, int count, const int *vertices, const double *dense, double scale) {
+  if (!fem_share_has(matrix->share, count, vertices)) return;
   const signed char *active = matrix->blocks->active;
   for (int i = 0; i < count; i++) {
     int v = vertices[i];
@@ -266,6 +267,7 @@ void fem_matrix_add(FemMatrix *matrix, int count, const int *vertices, const dou
 }
 
 void fem_matrix_add_outer(FemMatrix *matrix, int count, const int *vertices, const double *w, double scale) {
+  if (!fem_share_has(matrix->share, count, vertices)) return;
   const signed char *active = matrix->blocks->active;
   for (int i = 0; i < count; i++) {
     if (!active[vertices[i]]) continue;
@@ -319,8 +321,9 @@ bool fem_matrix_block_slots(const FemMatrix *matrix, const int vertices[4], int 
 
 void fem_matrix_add_mass(FemMatrix *matrix, const double *mass, double scale) {
   for (int dof = 0; dof < 3 * matrix->vertex_count; dof++) {
-    int unknown = matrix->unknown_of_dof[dof];
-    if (unknown >= 0) matrix->value[matrix->col_begin[unknown]] += scale * mass[dof / 3];
+    int unknown = matrix->unknown_of_dof[dof], vertex = dof / 3;
+    if (unknown >= 0 && fem_share_has(matrix->share, 1, &vertex))
+      matrix->value[matrix->col_begin[unknown]] += scale * mass[vertex];
   }
 }
 

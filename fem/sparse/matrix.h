@@ -26,6 +26,7 @@ typedef struct FemMatrix {
   long long layout;
   const int *unknown_of_dof;      // borrowed                                 (3·vertex_count)
   const double *rest;             // of the vertices [m], borrowed; NULL: not known   (vertex_count, 3)
+  const FemShare *share;          // of the cliques that are added here; borrowed; NULL: all
   struct FemMatrixBlocks *blocks; // vertex-pair lookup; owns col_begin and row, shared among copies
 } FemMatrix;
 
@@ -38,8 +39,8 @@ void fem_matrix_destroy(FemMatrix *matrix);
 void fem_matrix_zero(FemMatrix *matrix);
 
 // matrix += scale · dense over the vertices' coordinates; dense (3 count, 3 count) row-major, symmetric; the
-// vertices distinct. Entries that the pattern lacks are a bug (assert). Calls on disjoint vertex sets may run
-// in parallel.
+// vertices distinct. Entries that the pattern lacks are a bug (assert). Where ranks share the matrix, what
+// another has to add is left out. Calls on disjoint vertex sets may run in parallel.
 void fem_matrix_add(FemMatrix *matrix, int count, const int *vertices, const double *dense, double scale);
 // matrix += scale · w wᵀ, w (count, 3), without forming the dense matrix; else as fem_matrix_add.
 void fem_matrix_add_outer(FemMatrix *matrix, int count, const int *vertices, const double *w, double scale);

@@ -15,8 +15,9 @@ typedef struct VertexList {
 
 struct FemPattern {
   int vertex_count;
-  VertexList *above; // of each vertex: its neighbours with a higher number   (vertex_count)
-  VertexList clique; // scratch: the clique that is being added
+  VertexList *above;     // of each vertex: its neighbours with a higher number   (vertex_count)
+  const FemShare *share; // cliques that are taken; NULL: all
+  VertexList clique;     // scratch: the clique that is being added
 };
 
 Status fem_pattern_create(FemPattern **pattern, int vertex_count) {
@@ -112,7 +113,12 @@ static Status merge(VertexList *list, int added_count, const int *added, int mis
   return STATUS_OK;
 }
 
+void fem_pattern_set_share(FemPattern *pattern, const FemShare *share) {
+  pattern->share = share;
+}
+
 Status fem_pattern_add_clique(FemPattern *pattern, int count, const int *vertices, int *has_grown) {
+  if (count == 0 || !fem_share_has(pattern->share, count, vertices)) return STATUS_OK;
   TRY(sort_clique(pattern, count, vertices));
   const VertexList *clique = &pattern->clique;
   for (int i = 0; i + 1 < clique->count; i++) {

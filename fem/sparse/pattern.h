@@ -5,11 +5,15 @@
 #define TETLAP_FEM_SPARSE_PATTERN_H
 
 #include "base/status.h"
+#include "fem/sparse/share.h"
 
 typedef struct FemPattern FemPattern; // opaque
 
 Status fem_pattern_create(FemPattern **pattern, int vertex_count);
 void fem_pattern_destroy(FemPattern *pattern);
+
+// From now on cliques that other ranks have are left out; NULL: none are. Borrowed.
+void fem_pattern_set_share(FemPattern *pattern, const FemShare *share);
 
 // All of these vertices may couple; order and repetitions do not matter. `*has_grown` (may be NULL) is set to
 // 1 if a coupling is new, else left alone. Cheap where nothing is new: a search per pair, no allocation.

@@ -6,15 +6,9 @@
 #include <omp.h>
 #include <stddef.h>
 
-const char *fem_solver_name(FemSolverKind kind) {
-  return kind == FEM_SOLVER_AUTO ? "auto" : fem_solver_ops(kind)->name;
-}
+static const FemSolverOps *const *provided;
 
-const char *fem_solver_help(FemSolverKind kind) {
-  return kind == FEM_SOLVER_AUTO ? "chosen by the scene" : fem_solver_ops(kind)->help;
-}
-
-const FemSolverOps *fem_solver_ops(FemSolverKind kind) {
+static const FemSolverOps *ops_of_one(FemSolverKind kind) {
   switch (kind) {
   case FEM_SOLVER_CHOLMOD:
     return &fem_solver_cholmod;
@@ -31,6 +25,22 @@ const FemSolverOps *fem_solver_ops(FemSolverKind kind) {
   }
   assert(!"a solver that is not in the table");
   return NULL;
+}
+
+const char *fem_solver_name(FemSolverKind kind) {
+  return kind == FEM_SOLVER_AUTO ? "auto" : ops_of_one(kind)->name;
+}
+
+const char *fem_solver_help(FemSolverKind kind) {
+  return kind == FEM_SOLVER_AUTO ? "chosen by the scene" : ops_of_one(kind)->help;
+}
+
+void fem_solver_provide(const FemSolverOps *const table[FEM_SOLVER_COUNT]) {
+  provided = table;
+}
+
+const FemSolverOps *fem_solver_ops(FemSolverKind kind) {
+  return provided && provided[kind] ? provided[kind] : ops_of_one(kind);
 }
 
 double fem_solver_tolerance(const FemSolverOps *ops, double said) {

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "fem/time/direct.h"
 
 struct FemIdaSolver {
@@ -58,9 +59,10 @@ static Status factorise(FemIdaSolver *solver) {
 static void condense(FemIdaSolver *solver, const double *b) {
   int n = solver->system->model->unknown_count;
   double *right = solver->right;
-  if (solver->has_damping)
+  if (solver->has_damping) {
     fem_matrix_multiply(&solver->damping, b, right);
-  else
+    ranks()->sum(right, (size_t)n);
+  } else
     for (int i = 0; i < n; i++) right[i] = 0;
   for (int i = 0; i < n; i++) right[i] += b[n + i] + solver->c * solver->masses[i] * b[i];
 }

@@ -6,6 +6,7 @@
 
 #include "app/cli/argument.h"
 #include "app/cli/origin.h"
+#include "app/cli/ranks.h"
 #include "app/cli/versions.h"
 #include "app/command/scene/run.h"
 #include "base/file.h"
@@ -13,11 +14,12 @@
 #include "base/memory.h"
 #include "fem/run/checkpoint.h"
 
-enum { KEY_STRICT = 256 };
+enum { KEY_STRICT = 256, KEY_RANKS };
 
 static const struct argp_option option_table[] = {
     {"threads", 't', "N", 0, "Use N threads (default: the scene's, else all)", 1},
     {"strict", KEY_STRICT, NULL, 0, "End with an error where energy comes out of nothing", 1},
+    {"ranks", KEY_RANKS, "N", 0, "Share the run among N processes of this machine (tetlap-mpi)", 1},
     {"json", 'j', NULL, 0, "Print the result as JSON on standard output", 2},
     {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
     {"verbose", 'v', NULL, 0, "Say more: a line a step, and why one is taken back", 2},
@@ -32,6 +34,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     break;
   case KEY_STRICT:
     options->is_strict = true;
+    break;
+  case KEY_RANKS:
+    options->rank_count = app_argument_ranks(state, text);
     break;
   case 'j':
     options->job.is_json = true;
@@ -123,11 +128,14 @@ static int run_command(int argument_count, char **arguments) {
   AppRunOptions options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&options.job);
-  return status_exit_code(resume(&options));
+  Status status = app_ranks_start(options.rank_count);
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status ? status : resume(&options));
 }
 
 const AppCommand app_command_resume = {.name = "resume",
                                        .help = "go on with a run that was stopped or killed",
                                        .argp = &argp,
                                        .run = run_command,
-                                       .has_threads = true};
+                                       .has_threads = true,
+                                       .has_ranks = true};

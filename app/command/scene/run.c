@@ -4,18 +4,21 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "app/cli/argument.h"
 #include "app/cli/beacon.h"
 #include "app/cli/origin.h"
+#include "app/cli/ranks.h"
 #include "app/cli/versions.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "datagen/capture.h"
 #include "fem/effect/contact.h"
 #include "fem/run/checkpoint.h"
 
-enum { KEY_CAPTURE = 256, KEY_STRICT };
+enum { KEY_CAPTURE = 256, KEY_STRICT, KEY_RANKS };
 
 static const struct argp_option option_table[] = {
     {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
@@ -23,6 +26,7 @@ static const struct argp_option option_table[] = {
      1},
     {"strict", KEY_STRICT, NULL, 0,
      "Energy gained beyond 0.1 % of the scene's, and bodies that pass through each other, are an error", 1},
+    {"ranks", KEY_RANKS, "N", 0, "Share the run among N processes of this machine (tetlap-mpi)", 1},
     {0},
 };
 
@@ -40,6 +44,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     break;
   case KEY_STRICT:
     options->is_strict = true;
+    break;
+  case KEY_RANKS:
+    options->rank_count = app_argument_ranks(state, text);
     break;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -224,11 +231,23 @@ static const struct argp argp = {.options = option_table,
                                      "Run a scene: frames for ParaView, a history and a summary are written.",
                                  .children = children};
 
+static Status check_capture(const AppRunOptions *options) {
+  if (!options->capture || ranks()->count == 1) return STATUS_OK;
+  return status_fail(STATUS_USAGE,
+                     "--capture writes from one process, and there are %d: leave it out, or --ranks",
+                     ranks()->count);
+}
+
 static int run_command(int argument_count, char **arguments) {
   AppRunOptions options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&options.job);
-  Status status = app_run_execute(&options);
+  Status status = app_ranks_start(options.rank_count);
+  if (!status) status = check_capture(&options);
+  if (status)
+    log_error("%s", status_message());
+  else
+    status = app_run_execute(&options);
   return status_exit_code(status);
 }
 
@@ -236,4 +255,5 @@ const AppCommand app_command_run = {.name = "run",
                                     .help = "run a scene and write frames, history and summary",
                                     .argp = &argp,
                                     .run = run_command,
-                                    .has_threads = true};
+                                    .has_threads = true,
+                                    .has_ranks = true};

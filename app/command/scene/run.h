@@ -10,6 +10,7 @@ typedef struct AppRunOptions {
   AppJobOptions job;
   const char *overlap, *capture; // NULL: the scene's; none
   bool is_strict;
+  int rank_count;                   // --ranks; 0: not said
   const struct FemCheckpoint *from; // to go on from; NULL: from the start
   const char *from_path;            // its file
   const Record *origin;             // what it says of itself (origin.h)

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/cli/ranks.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/data.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/ranks.h"
+
+// Set for the ranks that this program starts itself.
+static const char STARTED[] = "TETLAP_RANKS";
+
+// How many processes mpiexec, or a batch system, has started.
+static int started_count(void) {
+  static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    const char *text = getenv(names[i]);
+    if (text && atoi(text) > 1) return atoi(text);
+  }
+  return 1;
+}
+
+Status app_ranks_check(const AppCommand *command) {
+  int count = ranks()->count;
+  if (count > 1 && !command->has_ranks)
+    return status_fail(
+        STATUS_USAGE,
+        "'%s' runs in one process, and there are %d: call it by itself; over ranks run 'run' and "
+        "'resume'",
+        command->name, count);
+  if (count > 1 || started_count() == 1 || !command->has_threads) return STATUS_OK;
+  return status_fail(
+      STATUS_USAGE,
+      "mpiexec has started this program %d times, and each would do the same: take tetlap-mpi, "
+      "as in mpiexec -n %d tetlap-mpi run SCENE, or tetlap run --ranks %d SCENE",
+      started_count(), started_count(), started_count());
+}
+
+// The program for ranks, beside this one.
+static Status find_program(char path[PATH_MAX]) {
+  ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 16);
+  if (length < 0) return status_fail(STATUS_IO, "/proc/self/exe: cannot be read: %s", strerror(errno));
+  path[length] = 0;
+  char *slash = strrchr(path, '/');
+  snprintf(slash ? slash + 1 : path, 16, "tetlap-mpi");
+  if (file_exists(path)) return STATUS_OK;
+  return status_fail(
+      STATUS_USAGE,
+      "--ranks needs the program tetlap-mpi, and %s is not there: it is built where MPI, PETSc and "
+      "METIS (libmetis-dev) are found",
+      path);
+}
+
+static Status start(int count, const char *program, const char *script) {
+  char *line, number[16];
+  size_t size, word_count = 0;
+  TRY(file_read("/proc/self/cmdline", &line, &size));
+  for (size_t i = 0; i < size; i++) word_count += line[i] == 0;
+  char **words = memory_zeroed(word_count + 3, sizeof *words);
+  if (!words) {
+    memory_free(line);
+    return status_no_memory("the command line");
+  }
+  snprintf(number, sizeof number, "%d", count);
+  words[0] = (char *)script, words[1] = number, words[2] = (char *)program;
+  char *word = line + strlen(line) + 1; // behind this program's own name
+  for (size_t i = 1; i < word_count; i++, word += strlen(word) + 1) words[2 + i] = word;
+  setenv(STARTED, number, 1);
+  execv(script, words);
+  memory_free(words);
+  memory_free(line);
+  return status_fail(STATUS_IO, "%s: cannot be started: %s", script, strerror(errno));
+}
+
+Status app_ranks_start(int count) {
+  char program[PATH_MAX], script[PATH_MAX];
+  if (count <= 1 || ranks()->count == count) return STATUS_OK;
+  if (ranks()->count > 1)
+    return status_fail(STATUS_USAGE, "--ranks %d, but mpiexec has started %d", count, ranks()->count);
+  if (getenv(STARTED))
+    return status_fail(STATUS_USAGE,
+                       "mpiexec has started %d processes that do not find each other: is tetlap-mpi "
+                       "linked to the MPI that mpiexec is of?",
+                       count);
+  TRY(find_program(program));
+  TRY(data_find("tools/ranks", script, sizeof script));
+  return start(count, program, script);
+}

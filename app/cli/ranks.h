@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Commands over several processes: who may, and how one process starts them.
+#ifndef TETLAP_APP_CLI_RANKS_H
+#define TETLAP_APP_CLI_RANKS_H
+
+#include "app/cli/command.h"
+#include "base/status.h"
+
+// STATUS_USAGE: several ranks run this, and the command is for one process; or mpiexec has started several
+// times a program of one process.
+Status app_ranks_check(const AppCommand *command);
+
+// Goes on as `count` ranks: replaces this process by tools/ranks with tetlap-mpi and the same arguments. Does
+// nothing if that has been done, or one rank is asked for. STATUS_USAGE: there is no tetlap-mpi beside this
+// program, or it runs on another number of ranks.
+Status app_ranks_start(int count);
+
+#endif

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The processes (ranks) that share one run, behind one table. Without MPI there is one, and nothing happens.
+//
+// Every rank goes through the same states to the last bit: what it does for the others comes back as sums or
+// pieces that all get, and whatever decides is the same on all. So these functions are called by all ranks,
+// in the same order; only the first rank writes files and speaks.
+#ifndef TETLAP_BASE_RANKS_H
+#define TETLAP_BASE_RANKS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+
+// A graph in compressed rows, both directions of every edge.
+typedef struct RanksGraph {
+  int node_count;
+  int *begin;     // of each node's neighbours                  (node_count + 1)
+  int *neighbour; //                                            (begin[node_count])
+} RanksGraph;
+
+// What was sent and computed for others, of this rank.
+typedef struct RanksStats {
+  long long sums, pieces, decisions; // calls
+  long long bytes;                   // that this rank gave
+  double waiting_s;                  // wall time in these calls
+} RanksStats;
+
+typedef struct Ranks {
+  int number, count; // of this rank, from 0; how many there are
+  // values = Σ over ranks, the same bits on each.
+  void (*sum)(double *values, size_t count);
+  // values = the largest over ranks.
+  void (*most)(double *values, size_t count);
+  // Rank r has filled items begin[r] … begin[r + 1] − 1 of `size` bytes each; then all have all.
+  void (*join)(void *items, size_t size, const int *begin);
+  // What the first rank has, to all.
+  void (*tell)(void *bytes, size_t size);
+  // The worst of all ranks' states, with its message: fatal before retry before ok.
+  Status (*worst)(Status status);
+  // Called by the first rank alone: as many nodes to each rank as to the others, few edges between.
+  Status (*divide)(const RanksGraph *graph, int rank_count, int *rank_of_node);
+  const RanksStats *(*stats)(void);
+} Ranks;
+
+const Ranks *ranks(void);
+// NULL: one process. The table is borrowed. Before a scene is read.
+void ranks_set(const Ranks *table);
+
+// The first rank writes and speaks.
+bool ranks_is_first(void);
+// Whether any rank says so.
+bool ranks_any(bool is_so);
+// Where the shares of `count` items begin, as equal as can be; begin (ranks()->count + 1).
+void ranks_split(int count, int *begin);
+
+#endif
