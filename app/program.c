@@ -88,7 +88,7 @@ int app_program_run(int argument_count, char **arguments) {
   const AppCommand *command = find_command(argument_count, arguments);
   Status status = command ? app_ranks_check(command) : STATUS_OK;
   if (status) {
-    log_error("%s", status_message());
+    if (app_ranks_is_heard()) log_error("%s", status_message());
     return status_exit_code(status);
   }
   return app_cli_command_run(&app_program_root, argument_count, arguments);

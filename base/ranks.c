@@ -58,7 +58,8 @@ bool ranks_any(bool is_so) {
   return value > 0;
 }
 
-void ranks_split(int count, int *begin) {
-  int shares = current->count;
-  for (int r = 0; r <= shares; r++) begin[r] = (int)((long long)count * r / shares);
+const int *ranks_split(int count) {
+  static int begin[RANKS_MOST + 1];
+  for (int r = 0; r <= current->count; r++) begin[r] = (int)((long long)count * r / current->count);
+  return begin;
 }

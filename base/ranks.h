@@ -12,6 +12,8 @@
 
 #include "base/status.h"
 
+enum { RANKS_MOST = 4096 };
+
 // A graph in compressed rows, both directions of every edge.
 typedef struct RanksGraph {
   int node_count;
@@ -51,7 +53,8 @@ void ranks_set(const Ranks *table);
 bool ranks_is_first(void);
 // Whether any rank says so.
 bool ranks_any(bool is_so);
-// Where the shares of `count` items begin, as equal as can be; begin (ranks()->count + 1).
-void ranks_split(int count, int *begin);
+// Where each rank's share of `count` items begins, as equal as can be (ranks()->count + 1); valid until the
+// next call.
+const int *ranks_split(int count);
 
 #endif

@@ -8,12 +8,16 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "contact/pressure/imprint.h"
 #include "contact/pressure/potential.h"
 #include "contact/rest.h"
 #include "contact/search/bounds.h"
 #include "contact/shape/shape.h"
 #include "overlap/separation.h"
+
+// Fewer pairs take less time than to tell other ranks of them.
+enum { FEW_TO_SHARE = 128 };
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout) {
   *evaluation = (ContactEvaluation){0};
@@ -201,9 +205,9 @@ static Status blame_volume(const ContactLayout *layout, const ContactPair *pair,
   return blame(layout, pair, STATUS_SOLVER, why);
 }
 
-// Of a batch that failed, finds the pair for which the model fails again.
+// Of a batch that failed, whose first pair is `first`, finds the pair for which the model fails again.
 static Status blame_failure(const ContactEvaluation *evaluation, const ContactLayout *layout,
-                            const OverlapModel *model, const OverlapBatch *batch, Status failure) {
+                            const OverlapModel *model, const OverlapBatch *batch, int first, Status failure) {
   char why[1024];
   snprintf(why, sizeof why, "%s", status_message());
   for (int k = 0; k < batch->pair_count; k++) {
@@ -211,7 +215,7 @@ static Status blame_failure(const ContactEvaluation *evaluation, const ContactLa
     Status status = overlap_model_eval(model, &one);
     if (status) {
       snprintf(why, sizeof why, "%s", status_message());
-      return blame(layout, &evaluation->pairs[k], status, why);
+      return blame(layout, &evaluation->pairs[first + k], status, why);
     }
   }
   return status_fail(failure, "contact: %s", why);
@@ -225,6 +229,21 @@ static void count_pair(ContactPairCounts *counts, unsigned flags) {
   counts->beyond += (flags & OVERLAP_BEYOND) != 0;
 }
 
+// Each rank asks the model for an equal share of the batch, and all get all.
+static Status ask_model(const ContactEvaluation *evaluation, const ContactLayout *layout,
+                        const OverlapModel *model, const OverlapBatch *batch) {
+  const int *begin = ranks_split(batch->pair_count), first = begin[ranks()->number];
+  OverlapBatch own = overlap_ops_part(batch, first, begin[ranks()->number + 1] - first);
+  Status status = own.pair_count > 0 ? overlap_model_eval(model, &own) : STATUS_OK;
+  if (status) status = blame_failure(evaluation, layout, model, &own, first, status);
+  TRY(ranks()->worst(status));
+  ranks()->join(batch->volume, sizeof *batch->volume, begin);
+  if (batch->gradient) ranks()->join(batch->gradient, 24 * sizeof *batch->gradient, begin);
+  if (batch->centroid) ranks()->join(batch->centroid, 3 * sizeof *batch->centroid, begin);
+  ranks()->join(batch->flags, sizeof *batch->flags, begin);
+  return STATUS_OK;
+}
+
 static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout *layout,
                              const OverlapModel *model) {
   int count = evaluation->mesh_pair_count;
@@ -235,8 +254,11 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
                         .gradient = layout->depth.has_field ? NULL : evaluation->gradients,
                         .centroid = layout->depth.has_field ? evaluation->centroids : NULL,
                         .flags = evaluation->flags};
-  Status status = overlap_model_eval(model, &batch);
-  if (status) return blame_failure(evaluation, layout, model, &batch, status);
+  if (count < FEW_TO_SHARE) {
+    Status status = overlap_model_eval(model, &batch);
+    if (status) return blame_failure(evaluation, layout, model, &batch, 0, status);
+  } else
+    TRY(ask_model(evaluation, layout, model, &batch));
   evaluation->counts.tried = count;
   for (int k = 0; k < count; k++) {
     if (!(evaluation->volumes[k] >= 0 && evaluation->volumes[k] < INFINITY))

@@ -15,7 +15,6 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/memory.h"
 #include "base/ranks.h"
 #include "base/status.h"
 #include "dist/division.h"
@@ -29,10 +28,10 @@ static MPI_Comm world, leaving;
 static Ranks table;
 static RanksStats stats;
 static void (*close_libraries)(void);
-static int heard = -1;    // standard error of a rank that is not heard: the real one
-static Status agreed;     // the fatal state that all have been told of
-static double entered_s;  // a call that waits for others
-static int *piece_counts; // scratch                                (ranks)
+static int heard = -1;   // standard error of a rank that is not heard: the real one
+static Status agreed;    // the fatal state that all have been told of
+static double entered_s; // a call that waits for others
+static int piece_counts[RANKS_MOST];
 
 static void enter(long long *calls) {
   ++*calls;
@@ -189,8 +188,11 @@ void dist_mpi_begin(int *argument_count, char ***arguments, void (*close)(void))
   MPI_Comm_rank(world, &table.number);
   MPI_Comm_size(world, &table.count);
   close_libraries = close;
-  piece_counts = memory_zeroed((size_t)table.count, sizeof *piece_counts);
-  if (!piece_counts) MPI_Abort(world, status_exit_code(STATUS_MEMORY));
+  if (table.count > RANKS_MOST) {
+    if (table.number == 0)
+      fprintf(stderr, "error: %d ranks; at most %d are possible\n", table.count, RANKS_MOST);
+    MPI_Abort(world, status_exit_code(STATUS_USAGE));
+  }
   ranks_set(table.count > 1 ? &table : NULL);
   on_exit(end, NULL);
   if (table.number > 0) fall_silent();

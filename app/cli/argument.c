@@ -7,9 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ranks.h"
 #include "base/text.h"
 
-enum { MOST_RANKS = 4096, MOST_THREADS = 1024, MOST_WORDS = 64 };
+enum { MOST_THREADS = 1024, MOST_WORDS = 64 };
 
 long long app_argument_integer(struct argp_state *state, const char *option, const char *text,
                                long long least, long long most) {
@@ -51,7 +52,7 @@ uint64_t app_argument_seed(struct argp_state *state, const char *text) {
 }
 
 int app_argument_ranks(struct argp_state *state, const char *text) {
-  return (int)app_argument_integer(state, "ranks", text, 1, MOST_RANKS);
+  return (int)app_argument_integer(state, "ranks", text, 1, RANKS_MOST);
 }
 
 int app_argument_threads(struct argp_state *state, const char *text) {

@@ -26,6 +26,15 @@ static int started_count(void) {
   return 1;
 }
 
+bool app_ranks_is_heard(void) {
+  static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    const char *text = getenv(names[i]);
+    if (text) return atoi(text) == 0;
+  }
+  return true;
+}
+
 Status app_ranks_check(const AppCommand *command) {
   int count = ranks()->count;
   if (count > 1 && !command->has_ranks)

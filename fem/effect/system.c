@@ -2,6 +2,7 @@
 #include "fem/effect/system.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -296,7 +297,26 @@ static Status accept(FemSystem *system, double time, const double *u, const doub
   return STATUS_OK;
 }
 
+// Ranks decide alike because their states are the same: a checksum of the unknowns, as two numbers and their
+// negatives, whose largest over ranks must be those.
+static Status compare_states(const FemSystem *system, const double *u, const double *v) {
+  uint64_t sum = 1469598103934665603u, bits;
+  for (int i = 0; i < 2 * system->model->unknown_count; i++) {
+    const double *value = i % 2 ? v + i / 2 : u + i / 2;
+    memcpy(&bits, value, sizeof bits);
+    sum = (sum ^ bits) * 1099511628211u;
+    sum ^= sum >> 29;
+  }
+  double low = (double)(sum & 0xffffffff), high = (double)(sum >> 32), most[4] = {low, -low, high, -high};
+  ranks()->most(most, 4);
+  if (most[0] == -most[1] && most[2] == -most[3]) return STATUS_OK;
+  return status_fail(STATUS_SOLVER,
+                     "the ranks' states are not the same to the last bit: are their processors of different "
+                     "kinds? Take machines of one kind");
+}
+
 Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
+  if (system->model->share) TRY(compare_states(system, u, v));
   return ranks()->worst(accept(system, time, u, v, next_step));
 }
 

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One evaluation over ranks is that of one process to rounding: forces, energies, gap, matrix times vector,
+// and solutions, for every effect, element and potential, however the vertices are divided.
+#include <stdio.h>
+#include <string.h>
+
+#include "app/scene/read.h"
+#include "base/memory.h"
+#include "base/random.h"
+#include "case.h"
+#include "fem/effect/contact.h"
+#include "fem/effect/system.h"
+#include "fem/model/build.h"
+
+static const double SAME = 1e-12; // of the largest entry: sums of some hundred terms in another order
+
+typedef struct Variant {
+  const char *name;
+  const char *overrides[5]; // ended by NULL
+  bool is_folded;           // the lower block's right half lies on its left one
+} Variant;
+
+static const Variant variants[] = {
+    {.name = "field, stick"},
+    {.name = "nodal, friction by speed", .overrides = {"contact.potential=nodal"}},
+    {.name = "linear", .overrides = {"contact.potential=linear", "contact.overlap=exact"}},
+    {.name = "body", .overrides = {"contact.potential=body", "contact.overlap=exact"}},
+    {.name = "element", .overrides = {"contact.potential=element", "contact.overlap=geo"}},
+    {.name = "viscosity, full Hessian",
+     .overrides = {"contact.potential=nodal", "contact.viscosity=1e-4", "contact.hessian=full"}},
+    {.name = "learned", .overrides = {"contact.overlap=tpn"}},
+    {.name = "nodal elements", .overrides = {"bodies.lower.element=nodal", "bodies.upper.element=nodal"}},
+    {.name = "quadratic elements",
+     .overrides = {"bodies.lower.element=quadratic", "bodies.upper.element=nodal"}},
+    {.name = "self-contact", .overrides = {"bodies.lower.self_contact=true"}, .is_folded = true},
+    {.name = "without contact", .overrides = {"contact={}"}},
+};
+enum { VARIANTS = sizeof variants / sizeof *variants };
+
+typedef struct Answer {
+  int unknowns, values;
+  double *forces, *product; // (values), (unknowns)
+  FemEnergy energy;
+  double gap;
+  int pairs;
+} Answer;
+
+static void free_answer(Answer *answer) {
+  memory_free(answer->forces), memory_free(answer->product);
+}
+
+// A state some percent off rest, the same for whoever asks.
+static void displace(const FemModel *model, const Variant *variant, double size, double *u, double *v) {
+  Random random = random_seeded(7, 0);
+  for (int i = 0; i < model->unknown_count; i++) {
+    u[i] = random_between(&random, -size, size) * model->edge;
+    v[i] = random_between(&random, -0.05, 0.05);
+  }
+  for (int i = 0; i < model->unknown_count && variant->is_folded; i++) {
+    int dof = model->dof_of_unknown[i], vertex = dof / 3;
+    const double *x = model->rest + 3 * (size_t)vertex;
+    double beyond = x[0] - 0.1;
+    if (vertex >= model->bodies[0].vertex_end || !(beyond > 0)) continue;
+    if (dof % 3 == 0) u[i] -= 2 * beyond;
+    if (dof % 3 == 2) u[i] += fmin(beyond, 0.05) / 0.05 * 0.098;
+  }
+}
+
+// 2-norm-free: x of the product, without structure.
+static double probe_of(int i) {
+  return sin(1.7 * i) + 0.3 * cos(0.31 * i * i);
+}
+
+static Status multiply(FemSystem *system, double time, Answer *answer) {
+  double *x = memory_zeroed((size_t)answer->unknowns, sizeof *x);
+  if (!x) return status_no_memory("a vector");
+  for (int i = 0; i < answer->unknowns; i++) x[i] = probe_of(i);
+  Status status = fem_system_couple(system, time);
+  if (!status) status = fem_system_assemble(system, time, 1, 30, 1e4, &system->matrix);
+  if (!status) fem_matrix_multiply(&system->matrix, x, answer->product);
+  if (!status) ranks()->sum(answer->product, (size_t)answer->unknowns);
+  memory_free(x);
+  return status;
+}
+
+static Status find_answer(FemSystem *system, const Variant *variant, double *u, double *v, Answer *answer) {
+  const double TIME = 1e-3;
+  displace(system->model, variant, 0.002, u, v);
+  TRY(fem_system_begin(system, 0, u, v));
+  TRY(fem_system_accept(system, 0, u, v, TIME));
+  displace(system->model, variant, 0.0025, u, v);
+  fem_system_scatter(system, TIME, u, v);
+  TRY(fem_system_forces(system, TIME));
+  memcpy(answer->forces, system->forces, (size_t)answer->values * sizeof(double));
+  TRY(fem_system_energy(system, TIME, &answer->energy));
+  TRY(fem_system_gap(system, TIME, &answer->gap));
+  void *contact = fem_system_effect(system, &fem_effect_contact);
+  answer->pairs = contact ? contact_system_active_count(fem_effect_contact_system(contact)) : 0;
+  return multiply(system, TIME, answer);
+}
+
+static Status evaluate(const FemModel *model, const Variant *variant, Answer *answer) {
+  size_t n = (size_t)model->unknown_count, values = 3 * (size_t)model->vertex_count;
+  FemSystem system;
+  TRY(fem_system_create(&system, model));
+  double *u = memory_zeroed(n, sizeof *u), *v = memory_zeroed(n, sizeof *v);
+  *answer = (Answer){.unknowns = (int)n, .values = (int)values};
+  answer->forces = memory_zeroed(values, sizeof(double));
+  answer->product = memory_zeroed(n, sizeof(double));
+  Status status = u && v && answer->forces && answer->product ? find_answer(&system, variant, u, v, answer)
+                                                              : status_no_memory("an answer");
+  memory_free(u), memory_free(v);
+  fem_system_destroy(&system);
+  return status;
+}
+
+// Reads the scene and evaluates it with the table of ranks that is set.
+static Status answer_variant(const Variant *variant, Answer *answer) {
+  FemSceneDef scene = {0};
+  FemModel model = {0};
+  int count = 0;
+  while (variant->overrides[count]) count++;
+  Status status =
+      app_scene_read(TETLAP_SOURCE_DIR "/tests/ranks/press.yaml", variant->overrides, count, &scene);
+  if (!status) status = fem_model_create(&model, &scene);
+  if (!status) status = evaluate(&model, variant, answer);
+  fem_model_destroy(&model);
+  fem_scene_destroy(&scene);
+  return status;
+}
+
+static double difference(const double *a, const double *b, int count) {
+  double most = 0, largest = 0;
+  for (int i = 0; i < count; i++) {
+    most = fmax(most, fabs(a[i]));
+    double off = fabs(a[i] - b[i]);
+    if (!(off <= largest)) largest = off;
+  }
+  return largest / most;
+}
+
+START_TEST(one_evaluation_is_that_of_one_process) {
+  const Variant *variant = &variants[_i / CASE_DIVISIONS];
+  CaseDivision division = (CaseDivision)(_i % CASE_DIVISIONS);
+  Answer whole = {0}, shared = {0};
+  case_alone();
+  Status status = answer_variant(variant, &whole);
+  case_share(division);
+  ck_assert_ok(status);
+  ck_assert_ok(answer_variant(variant, &shared));
+  ck_assert_int_gt(ranks()->count, 1);
+  ck_assert_int_eq(shared.unknowns, whole.unknowns);
+  double forces = case_most(difference(whole.forces, shared.forces, whole.values)),
+         product = case_most(difference(whole.product, shared.product, whole.unknowns)),
+         energy = case_most(difference(&whole.energy.kinetic, &shared.energy.kinetic,
+                                       (int)(sizeof whole.energy / sizeof(double)))),
+         gap = case_most(isinf(whole.gap) && isinf(shared.gap) ? 0 : fabs(whole.gap - shared.gap)),
+         pairs = case_most(abs(whole.pairs - shared.pairs));
+  bool has_contact = strcmp(variant->name, "without contact") != 0;
+  ck_assert_msg(whole.pairs > 0 || !has_contact, "%s: nothing touches", variant->name);
+  ck_assert_msg(forces <= SAME, "%s, division %d: forces differ by %g", variant->name, division, forces);
+  ck_assert_msg(product <= SAME, "%s, division %d: matrices differ by %g", variant->name, division, product);
+  ck_assert_msg(energy <= SAME, "%s, division %d: energies differ by %g", variant->name, division, energy);
+  ck_assert_msg(gap <= SAME, "%s, division %d: gaps differ by %g", variant->name, division, gap);
+  ck_assert_msg(pairs <= 0, "%s, division %d: %g pairs more or less", variant->name, division, pairs);
+  free_answer(&whole), free_answer(&shared);
+}
+END_TEST
+
+int main(int argument_count, char **arguments) {
+  TCase *test_case = tcase_create("evaluation");
+  tcase_add_loop_test(test_case, one_evaluation_is_that_of_one_process, 0, VARIANTS * CASE_DIVISIONS);
+  return case_main(argument_count, arguments, "ranks_evaluation", test_case);
+}
