@@ -213,6 +213,30 @@ START_TEST(separation_is_the_distance_less_the_radius) {
 }
 END_TEST
 
+START_TEST(the_nearest_point_is_as_far_as_the_separation_says) {
+  Random random = random_seeded(9, 0);
+  int corners = 0, inner = 0;
+  for (int trial = 0; trial < 2000; trial++) {
+    double tet[12], weights[4], sum = 0, point[3] = {0, 0, 0};
+    random_tet(&random, 0.7, tet);
+    contact_ball_nearest(tet, CENTRE, weights);
+    for (int v = 0; v < 4; v++) {
+      sum += weights[v];
+      ck_assert_double_ge(weights[v], 0);
+      corners += weights[v] == 1;
+      vec3_accumulate(point, vec3_scale(weights[v], vec3_at(tet + 3 * v)));
+    }
+    ck_assert_near(sum, 1, 1e-14);
+    double separation = contact_ball_separation(tet, CENTRE, 0.8);
+    inner += separation == -0.8;
+    if (separation == -0.8) continue;
+    ck_assert_near(vec3_length(vec3_sub(vec3_at(point), vec3_at(CENTRE))) - 0.8, separation, 1e-12);
+  }
+  ck_assert_int_gt(corners, 10);
+  ck_assert_int_gt(inner, 3);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("ball");
   tcase_add_test(test_case, a_tetrahedron_inside_counts_whole);
@@ -225,5 +249,6 @@ int main(void) {
   tcase_add_test(test_case, planes_and_edges_through_the_centre_are_no_special_case);
   tcase_add_test(test_case, the_hessian_is_the_derivative_of_the_gradient);
   tcase_add_test(test_case, separation_is_the_distance_less_the_radius);
+  tcase_add_test(test_case, the_nearest_point_is_as_far_as_the_separation_says);
   return suite_run("ball", test_case, 60);
 }

@@ -7,7 +7,11 @@
 #include "base/vec3.h"
 #include "contact/evaluation.h"
 #include "contact/pressure/field.h"
+#include "contact/shape/ball.h"
 #include "contact/shape/shape.h"
+
+// Against a ball: where less than this share of a cell overlaps, it rubs where it goes deepest.
+static const double SLIVER = 1e-4;
 
 // ---- Who is slave.
 
@@ -42,6 +46,26 @@ void contact_stick_pairs_laws(const ContactSystem *system, const double *coeffic
 
 // ---- Pairs.
 
+// Where a ball meets a cell. Its closed form adds up terms of the size R³, so of a sliver the middle and the
+// depth are quotients of roundings, and with them the springs: what is left of forces would be no smaller
+// than that. So as V goes to nothing x̄ goes to where the cell is deepest, to which it does anyway.
+static void meet_ball(const ContactShape *shape, double time, const double tet[12],
+                      const ContactFieldPair *field, ContactStickPair *pair) {
+  double centre[3], deepest[4], middle[3] = {0, 0, 0};
+  double whole = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6,
+         share = field->volume / (field->volume + SLIVER * whole);
+  vec3_store(centre, contact_shape_point(shape, time));
+  contact_ball_nearest(tet, centre, deepest);
+  for (int v = 0; v < 4; v++) {
+    pair->lambda[0][v] = share * field->weights[0][v] + (1 - share) * deepest[v];
+    vec3_accumulate(middle, vec3_scale(pair->lambda[0][v], vec3_at(tet + 3 * v)));
+  }
+  double distance = vec3_length(vec3_sub(vec3_at(middle), vec3_at(centre)));
+  double depth = (shape->radius - distance) * (shape->radius + distance) / (2 * shape->radius);
+  pair->area = depth > 0 ? field->volume / (2 * depth) : 0;
+  vec3_store(pair->before, vec3_at(middle));
+}
+
 static void hand_over(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, double before,
                       ContactStickPair *pair) {
   const ContactPair *cells = &evaluation->pairs[k];
@@ -54,9 +78,13 @@ static void hand_over(const ContactLayout *layout, const ContactEvaluation *eval
   }
   memcpy(pair->force, field->force, sizeof pair->force);
   if (shape < 0) return;
-  Vec3 centroid = vec3_at(field->centroid);
+  double tet[12];
+  const ContactShape *obstacle = &layout->def.shapes[shape];
+  contact_layout_gather_whole(layout, cells->tets[0], evaluation->positions, tet);
+  memcpy(pair->before, field->centroid, sizeof pair->before);
+  if (obstacle->kind == CONTACT_SHAPE_BALL) meet_ball(obstacle, evaluation->time, tet, field, pair);
   vec3_store(pair->before,
-             contact_shape_place_before(&layout->def.shapes[shape], evaluation->time, before, centroid));
+             contact_shape_place_before(obstacle, evaluation->time, before, vec3_at(pair->before)));
 }
 
 Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, double before, bool *is_resting) {

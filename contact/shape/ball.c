@@ -324,6 +324,60 @@ static double square_to_triangle(const Vec3 corners[3]) {
   return height * height / vec3_dot(normal, normal);
 }
 
+// The share of b at the point of the segment a b that is nearest to the origin.
+static double share_on_segment(Vec3 a, Vec3 b) {
+  Vec3 edge = vec3_sub(b, a);
+  double square = vec3_dot(edge, edge);
+  return square > 0 ? fmin(fmax(-vec3_dot(a, edge) / square, 0), 1) : 0;
+}
+
+// The weights of a triangle's corners at its point nearest to the origin: at the foot on the plane if that
+// lies inside, else on an edge. Returns the square of the distance.
+static double nearest_on_triangle(const Vec3 corners[3], double weights[3]) {
+  Vec3 normal = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
+  double twice = vec3_dot(normal, normal), nearest = INFINITY;
+  bool is_inside = twice > 0;
+  for (int v = 0; v < 3; v++) {
+    Vec3 next = corners[(v + 1) % 3], edge = vec3_sub(corners[(v + 2) % 3], next);
+    weights[v] = is_inside ? -vec3_dot(vec3_cross(normal, edge), next) / twice : 0;
+  }
+  for (int v = 0; v < 3; v++) is_inside = is_inside && weights[v] >= 0;
+  if (is_inside) return vec3_dot(normal, corners[0]) * vec3_dot(normal, corners[0]) / twice;
+  for (int v = 0; v < 3; v++) {
+    int next = (v + 1) % 3;
+    double square = square_to_segment(corners[v], corners[next]);
+    if (!(square < nearest)) continue;
+    nearest = square;
+    weights[next] = share_on_segment(corners[v], corners[next]);
+    weights[v] = 1 - weights[next];
+    weights[(v + 2) % 3] = 0;
+  }
+  return nearest;
+}
+
+void contact_ball_nearest(const double tet[12], const double centre[3], double weights[4]) {
+  Vec3 x[4];
+  double nearest = INFINITY;
+  for (int v = 0; v < 4; v++) x[v] = vec3_sub(vec3_at(tet + 3 * v), vec3_at(centre));
+  double orientation = vec3_det4(x[0], x[1], x[2], x[3]);
+  bool is_inside = orientation != 0;
+  for (int v = 0; v < 4; v++) weights[v] = 0.25;
+  for (int f = 0; f < 4; f++) {
+    Vec3 corners[3] = {x[FACES[f][0]], x[FACES[f][1]], x[FACES[f][2]]};
+    Vec3 normal = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
+    is_inside = is_inside && vec3_dot(normal, corners[0]) * orientation >= 0;
+  }
+  for (int f = 0; f < 4 && !is_inside; f++) {
+    double own[3];
+    Vec3 corners[3] = {x[FACES[f][0]], x[FACES[f][1]], x[FACES[f][2]]};
+    double square = nearest_on_triangle(corners, own);
+    if (!(square < nearest)) continue;
+    nearest = square;
+    weights[f] = 0;
+    for (int v = 0; v < 3; v++) weights[FACES[f][v]] = own[v];
+  }
+}
+
 double contact_ball_separation(const double tet[12], const double centre[3], double radius) {
   Vec3 x[4];
   for (int v = 0; v < 4; v++) x[v] = vec3_sub(vec3_at(tet + 3 * v), vec3_at(centre));

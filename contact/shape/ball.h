@@ -27,6 +27,10 @@
 
 #include <stdbool.h>
 
+// The weights of the corners (4) at the tetrahedron's point that is nearest to the centre; those of the
+// middle if the centre lies inside. A continuous function of the corners.
+void contact_ball_nearest(const double tet[12], const double centre[3], double weights[4]);
+
 // `tet` (4, 3), of either orientation. `gradient` (4, 3) and `hessian` (12, 12) may be NULL; all outputs are
 // written. The Hessian is made of central differences of the gradient, symmetrised: right to about 1e-8 of
 // its largest entry, except where the sphere touches an edge or a vertex.
