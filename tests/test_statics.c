@@ -204,6 +204,26 @@ END_TEST
 
 // A slender beam turns by far more than it strains; every step is a few full Newton steps, though the first
 // of them raises |f| tenfold.
+// Gravity grows until the first frame: whoever turns it up gives back what the body sinks.
+START_TEST(turning_gravity_up_is_work) {
+  SceneRun run;
+  run_well(&run, "time: {end: 2, static: true}\n"
+                 "effects: {gravity: [0, 0, -9.81]}\n"
+                 "bodies:\n"
+                 "  - name: beam\n"
+                 "    mesh: {box: {size: [0.5, 0.1, 0.1], cells: [10, 2, 2]}}\n"
+                 "    material: {law: linear, young: 3e6, poisson: 0.3, density: 1000}\n"
+                 "    fixed: [{group: x_min}]\n"
+                 "output: {frames: 2}\n");
+  const FemAudit *audit = &run.result.audit;
+  ck_assert_double_gt(audit->scale, 1e-4);
+  ck_assert_near(audit->total, audit->first, 1e-6 * audit->scale);
+  // It stores what gravity did, F u / 2, and has lost F u of its own: half of it was taken.
+  ck_assert_double_lt(audit->driven_work, -0.1 * audit->scale);
+  scene_close(&run);
+}
+END_TEST
+
 START_TEST(a_beam_that_turns_far_takes_few_iterations) {
   SceneRun run;
   run_well(&run, "time: {end: 1, static: true}\n"
@@ -294,6 +314,7 @@ int main(void) {
   tcase_add_test(test_case, rubber_pulled_to_twice_its_length_pulls_back_as_theory_says);
   tcase_add_test(test_case, a_block_comes_to_rest_on_the_ground);
   tcase_add_test(test_case, the_work_of_an_obstacle_is_stored);
+  tcase_add_test(test_case, turning_gravity_up_is_work);
   tcase_add_test(test_case, a_beam_that_turns_far_takes_few_iterations);
   tcase_add_test(test_case, a_pressure_vessel_widens_as_lame_says);
   tcase_add_test(test_case, without_an_equilibrium_the_run_ends_and_says_why);

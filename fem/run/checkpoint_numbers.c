@@ -44,6 +44,8 @@ static const FemCheckpointNumber numbers[] = {
     AUDIT(gravity_at_start, "J"),
     AUDIT(dissipated_power, "W"),
     AUDIT(driven_power, "W"),
+    AUDIT(open, "J"),
+    AUDIT(load_change, "J/s2"),
     RESULT(wall_s, FEM_REAL, "s"),
     RESULT(cpu_s, FEM_REAL, "s"),
     PHASE(broad_phase),
@@ -119,7 +121,7 @@ static const FemCheckpointNumber numbers[] = {
 #undef AT
 
 // Whoever adds a number to one of these adds it to the list above.
-static_assert(sizeof(FemAudit) == 13 * sizeof(double), "numbers[] lists every number of FemAudit");
+static_assert(sizeof(FemAudit) == 15 * sizeof(double), "numbers[] lists every number of FemAudit");
 static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "numbers[] lists every phase");
 static_assert(sizeof(FemIntegratorStats) == 11 * sizeof(double), "numbers[] lists the integrator's counts");
 static_assert(sizeof(FemSolverStats) == 10 * sizeof(double), "numbers[] lists the solver's counts");

@@ -399,6 +399,14 @@ static Status pass_checkpoint(FemRunState *run) {
   return STATUS_OK;
 }
 
+// The work of a step of load, and how far it may be wrong; that of obstacles the audit adds itself.
+static void keep_load_step(FemRunState *run, double step, double work_before, const FemEnergy *energy) {
+  const FemStatics *statics = &run->statics;
+  run->audit.driven_work += statics->driven_work - work_before;
+  fem_audit_load_step(&run->audit, step, statics->work_begin + step * run->audit.driven_power,
+                      statics->work_end + step * energy->driven_power, statics->work_left);
+}
+
 // One step of load, halved where there is no equilibrium; `next_step` is what to try next.
 static Status advance_static(FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
@@ -408,7 +416,7 @@ static Status advance_static(FemRunState *run) {
                             .resolution = SHORTEST_LOAD_STEP * scene->end / scene->frames,
                             .static_share = scene->tolerance};
   double target = fem_scene_frame_time(scene, run->next_frame), to = fmin(run->time + step, target),
-         work_before = run->statics.driven_work;
+         from = run->time, work_before = run->statics.driven_work;
   to = fem_system_horizon(&run->system, &foresight, run->time, to);
   Status status = fem_statics_step(&run->statics, run->time, to, run->u);
   if (status == STATUS_RETRY) {
@@ -420,11 +428,11 @@ static Status advance_static(FemRunState *run) {
   run->time = to;
   run->next_step = 2 * step;
   FemMeasures measures;
-  run->audit.driven_work += run->statics.driven_work - work_before;
   fem_equilibrium_scatter(&run->statics.equilibrium, run->time, run->u);
   TRY(fem_run_frames_measure(run, run->time, &measures));
   TRY(fem_recorder_end_step(&run->recorder, run->time, &measures));
   fem_recorder_accept_step(&run->recorder);
+  keep_load_step(run, run->time - from, work_before, &measures.energy);
   run->audit = fem_audit_next(&run->audit, run->time, &measures.energy);
   fem_run_frames_keep_extremes(run->result, &measures);
   TRY(take_row(run, run->time, &measures, &run->audit));

@@ -233,6 +233,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_number(summary, "energy_gain_allowed", result->energy_bounds.run);
   record_number(summary, "energy_lost_J", fem_audit_lost(&result->audit));
   record_number(summary, "energy_dissipated_J", result->audit.dissipated);
+  if (result->is_static) record_number(summary, "energy_open_J", result->audit.open);
   if (!result->is_static) {
     record_number(summary, "momentum_gap", result->momentum_gap);
     record_number(summary, "momentum_gap_allowed", MOMENTUM_ALLOWED);

@@ -42,6 +42,12 @@ static double mean_dissipated(double begin, double end) {
   return trapezoid + smooth * ((begin - end) / log(begin / end) - trapezoid);
 }
 
+void fem_audit_load_step(FemAudit *audit, double step, double begin, double end, double unbalanced) {
+  double change = end - begin, expected = audit->load_change * step * step;
+  audit->open += unbalanced + 0.5 * fmin(fabs(change), fabs(change - expected));
+  audit->load_change = change / (step * step);
+}
+
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy) {
   FemAudit next = *audit;
   double half_step = 0.5 * (time - audit->time);
@@ -53,7 +59,7 @@ FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *ene
   next.dissipated_power = energy->dissipated_power;
   next.driven_power = energy->driven_power;
   next.total = stored(energy) + next.dissipated - next.work;
-  next.gain = fmax(audit->gain, next.total - audit->lowest);
+  next.gain = fmax(audit->gain, next.total - audit->lowest - audit->open);
   next.lowest = fmin(audit->lowest, next.total);
   next.scale = fmax(audit->scale, largest_part(&next, energy));
   return next;
@@ -66,7 +72,7 @@ FemAuditBounds fem_audit_bounds(bool has_contact, double least) {
 }
 
 double fem_audit_rise(const FemAuditBounds *bounds, const FemAudit *audit) {
-  return (audit->total - audit->lowest) / fmax(audit->scale, bounds->least);
+  return (audit->total - audit->lowest - audit->open) / fmax(audit->scale, bounds->least);
 }
 
 bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after) {

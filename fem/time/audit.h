@@ -32,14 +32,24 @@ typedef struct FemAudit {
   double total;       // A [J]
   double first;       // A at the start [J]
   double lowest;      // smallest A so far [J]
-  double gain;        // largest rise of A above an earlier value [J]
+  double gain;        // largest rise of A above an earlier value, less what is open [J]
   double scale;       // the scene's energy: largest of its parts so far, gravity from its start [J]
   double gravity_at_start;
   double dissipated_power, driven_power; // at `time` [W]
+  double open;                           // of a static scene: fem_audit_load_step [J]
+  double load_change;                    // of its last step of load [J/s²]
 } FemAudit;
 
 // `floor` [J]: what the scale is at least, so that a scene at rest is not judged by rounding.
 void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, double floor);
+
+// Before the audit of a static scene's next state: what its forces at the begin and at the end of a step of
+// load, `step` long, would do along the way of all that is driven [J]. By the trapezoidal rule their mean is
+// the work, which is right where force goes by way. What the step's change is off from that of the step
+// before, or from none, is how far it may be wrong, `open`: contact that begins within the step, friction
+// that begins to slip. So is `unbalanced`, the work of forces that equilibrium leaves [J]. No gain is told of
+// what is open.
+void fem_audit_load_step(FemAudit *audit, double step, double begin, double end, double unbalanced);
 
 // The audit as it would be after accepting this state.
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy);

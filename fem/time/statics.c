@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
+#include "fem/effect/gravity.h"
 #include "fem/time/descent.h"
 #include "fem/time/kinsol.h"
 
@@ -182,16 +183,25 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
   return status_fail(STATUS_RETRY, "%s", text);
 }
 
-// Work of driven vertices: mean force times way.
-static void keep_work(FemStatics *statics) {
+// Work of driven vertices, mean force times way, and of turning gravity up.
+static void keep_work(FemStatics *statics, double time) {
   const FemSystem *system = statics->equilibrium.system;
   const FemModel *model = system->model;
+  double more = fem_gravity_share(model, time) - fem_gravity_share(model, statics->kept_time);
+  double longest = 0;
+  statics->work_begin = fem_gravity_ramp_work(model, more, statics->kept_position);
+  statics->work_end = fem_gravity_ramp_work(model, more, system->positions);
   for (int d = 0; d < model->driver_count; d++)
     for (int i = 0; i < model->drivers[d].dof_count; i++) {
       int dof = model->drivers[d].dofs[i];
-      statics->driven_work -= 0.5 * (statics->kept_force[dof] + system->forces[dof]) *
-                              (system->positions[dof] - statics->kept_position[dof]);
+      double way = system->positions[dof] - statics->kept_position[dof];
+      longest = fmax(longest, fabs(way));
+      statics->work_begin -= statics->kept_force[dof] * way;
+      statics->work_end -= system->forces[dof] * way;
     }
+  statics->driven_work += 0.5 * (statics->work_begin + statics->work_end);
+  statics->work_left = statics->residual * sqrt(model->unknown_count) * longest;
+  statics->kept_time = time;
   size_t bytes = 3 * (size_t)model->vertex_count * sizeof(double);
   memcpy(statics->kept_force, system->forces, bytes);
   memcpy(statics->kept_position, system->positions, bytes);
@@ -237,7 +247,7 @@ Status fem_statics_continue(FemStatics *statics, double time, const double *u, d
   TRY(evaluate(statics, time, u));
   statics->residual =
       fem_equilibrium_largest(statics->force, statics->equilibrium.system->model->unknown_count);
-  keep_work(statics);
+  keep_work(statics, time);
   statics->driven_work = driven_work;
   return STATUS_OK;
 }
@@ -250,7 +260,7 @@ Status fem_statics_step(FemStatics *statics, double from, double to, double *u) 
   if (status == STATUS_OK) {
     statics->residual = fem_equilibrium_largest(statics->force, n);
     statics->steps++;
-    keep_work(statics);
+    keep_work(statics, to);
     return fem_system_accept(equilibrium->system, to, u, equilibrium->still, 0);
   }
   memcpy(u, statics->start, (size_t)n * sizeof *u);

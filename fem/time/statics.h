@@ -22,7 +22,10 @@ typedef struct FemStatics {
   double force_scale;           // that [N]
   double *force, *step, *start; // scratch                     (unknown_count)
   double *kept_force, *kept_position; // at the last equilibrium     (vertex_count, 3)
-  double driven_work;                 // of driven vertices so far [J]
+  double kept_time;                   // of that
+  double driven_work;                 // of driven vertices, and of turning gravity up, so far [J]
+  double work_begin, work_end;        // of the last step, by the forces at its begin and end [J]
+  double work_left;                   // of what is left of forces, along the longest way that is driven [J]
   double residual;                    // largest force on an unknown at the end of the last step [N]
   long long steps, newton_iterations, relaxation_steps, halvings;
 } FemStatics;

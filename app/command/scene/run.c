@@ -73,6 +73,15 @@ static void conclude_network(const ContactPairCounts *pairs) {
       share * (double)pairs->blended, pairs->beyond);
 }
 
+// Of a static scene: what went in, and what of it is found again.
+static void conclude_work(const FemAudit *audit) {
+  double lost = fem_audit_lost(audit);
+  log_info(
+      "energy: of %.3g J of work %.3g J went into friction and plasticity; work and energy differ by %.3g J, "
+      "%.2g %% of the scene's %.3g J, where steps of load this long leave %.3g J open",
+      audit->work, audit->dissipated, fabs(lost), 100 * fabs(lost) / audit->scale, audit->scale, audit->open);
+}
+
 // What was lost, apart into what was asked for and the integrator's own.
 static void conclude_energy(const FemAudit *audit) {
   double lost = fem_audit_lost(audit);
@@ -86,7 +95,10 @@ static void conclude(const AppJob *job, const FemRunResult *result) {
   log_info("t = %g s reached in %.2f s: %lld steps, %lld factorisations, up to %d overlapping pairs",
            result->end_time, result->wall_s, result->integrator.steps, result->solver.factorisations,
            result->pairs_max);
-  conclude_energy(&result->audit);
+  if (result->is_static)
+    conclude_work(&result->audit);
+  else
+    conclude_energy(&result->audit);
   conclude_network(&result->pairs);
   for (int i = 0; i < result->told_count; i++) log_info("contact: %s", result->told[i]);
   char trouble[2048], statistics[1024];
