@@ -71,7 +71,7 @@ static void hand_over(const ContactLayout *layout, const ContactEvaluation *eval
   const ContactPair *cells = &evaluation->pairs[k];
   const ContactFieldPair *field = &evaluation->fields[k];
   int shape = layout->facings[cells->facing].shape;
-  *pair = (ContactStickPair){.interface = cells->facing, .area = contact_field_area(field, shape >= 0)};
+  *pair = (ContactStickPair){.interface = cells->facing, .area = contact_field_area(field)};
   for (int side = 0; side < 2; side++) {
     pair->tets[side] = cells->tets[side] < 0 ? -1 : contact_depth_tet(&layout->depth, cells->tets[side]);
     memcpy(pair->lambda[side], field->weights[side], sizeof pair->lambda[side]);

@@ -32,6 +32,7 @@
 #ifndef TETLAP_CONTACT_FIELD_H
 #define TETLAP_CONTACT_FIELD_H
 
+#include "base/vec3.h"
 #include "contact/search/layout.h"
 
 // A pair with V > 0, for laws that build on it. Side 0 is tets[0] of the pair. Of a shape (side 1) the slope
@@ -49,11 +50,13 @@ typedef struct ContactFieldPair {
   double weights[2][4]; // λ(x̄) of the vertices of the sides' tetrahedra (contact_layout_vertices)
 } ContactFieldPair;
 
-// The area that a pair covers [m²]: exact for flat surfaces, whatever their depth. Of a shape the depth is
-// that of the mean, half of it.
-static inline double contact_field_area(const ContactFieldPair *field, bool is_shape) {
-  double depth = is_shape ? 2 * field->depths[1] : field->depths[0] + field->depths[1];
-  return depth > 0 ? field->volume / depth : 0;
+// The area that a pair covers [m²], V F / (2 U): of a slab of thickness D over an area V = ∫ D dA,
+// F = 2 c ∫ D dA, U = c ∫ D² dA (against a shape F = c ∫ D dA, U = ½ c ∫ D² dA), so that it is
+// (∫ D dA)² / ∫ D² dA. Exact where D is even, also in squeezed cells; ¾ of the area where D falls to 0
+// linearly.
+static inline double contact_field_area(const ContactFieldPair *field) {
+  double force = vec3_length(vec3_at(field->force));
+  return field->energy > 0 ? 0.5 * field->volume * force / field->energy : 0;
 }
 
 // Of a pair of cells with these coordinates (2, 4, 3), V > 0 and x̄. `gradient` (2, 4, 3): minus the force on

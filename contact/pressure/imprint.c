@@ -13,7 +13,7 @@ static void of_field(const ContactImprintSource *source, const ContactPatch *pat
     const ContactFieldPair *field = &source->fields[k];
     double force = vec3_length(vec3_at(field->force));
     if (!(field->energy > 0)) continue;
-    interface->area += 0.5 * field->volume * force / field->energy;
+    interface->area += contact_field_area(field);
     moment = vec3_add(moment, vec3_scale(force, vec3_at(field->centroid)));
     weight += force;
   }

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where two press each other: the area of contact and the centre of pressure, from the pairs of one patch.
 //
-// With the potential `field` a pair's energy, force and volume are those of a slab of thickness D over an
-// area A: V = ∫ D dA, F = 2 c ∫ D dA, U = c ∫ D² dA (against a shape F = c ∫ D dA, U = ½ c ∫ D² dA), so
-//
-//   A ≈ V F / (2 U) = (∫ D dA)² / ∫ D² dA,
-//
-// which is exact where D is even and ¾ of the area in a pair where D falls to 0 linearly: the sum over pairs
-// loses a quarter of the outermost row of cells. The other potentials have ∇V: the area is |Σ ∂V/∂x_A|, the
-// length of the vector area of A's surface inside B, which is the area projected along the mean normal.
+// With the potential `field` the area is the sum of contact_field_area over pairs, which loses a quarter of
+// the outermost row of cells. The other potentials have ∇V: the area is |Σ ∂V/∂x_A|, the length of the vector
+// area of A's surface inside B, which is the area projected along the mean normal.
 #ifndef TETLAP_CONTACT_PRESSURE_IMPRINT_H
 #define TETLAP_CONTACT_PRESSURE_IMPRINT_H
 

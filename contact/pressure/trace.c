@@ -19,7 +19,7 @@ void contact_trace_add(const ContactLayout *layout, const ContactEvaluation *eva
     const ContactFieldPair *field = &evaluation->fields[k];
     if (is_wanted && !is_wanted[pair->facing]) continue;
     ContactTrace trace = {.force = vec3_length(vec3_at(field->force)),
-                          .area = contact_field_area(field, pair->tets[1] < 0),
+                          .area = contact_field_area(field),
                           .volume = field->volume};
     for (int side = 0; side < 2 && pair->tets[side] >= 0; side++)
       for (int v = 0; v < 4; v++)

@@ -84,11 +84,6 @@ void fem_ledger_accept(FemLedger *ledger) {
 
 // ---- Telling.
 
-// κ or c of an interface.
-static double stiffness_of(const FemLedger *ledger, int interface) {
-  return contact_system_layout(contact_of(ledger))->facings[interface].stiffness;
-}
-
 static void record_estimate(const FemEstimate *estimate, Record *record) {
   record_number(record, "give", estimate->give);
   record_number(record, "rim", estimate->rim);
@@ -157,7 +152,7 @@ bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size)
   if (i < 0) return false;
   const FemAccuracyPair *pair = &ledger->accuracy.pairs[i];
   const ContactFacing *facing = &contact_system_layout(contact_of(ledger))->facings[i];
-  FemEstimate estimate = fem_accuracy_estimate(pair, model, stiffness_of(ledger, i));
+  FemEstimate estimate = fem_accuracy_estimate(pair, model, facing->stiffness);
   size_t used = 0;
   text_append(text, size, &used,
               "'%s' and '%s' press with %.4g N at most, at t = %.4g s: the contact gives %.2g %% of the way",
