@@ -134,15 +134,15 @@ START_TEST(contact_reactions_and_loads_are_balanced) {
 }
 END_TEST
 
-// A stack lands on itself and on the ground, with friction. Bodies that move a little count as what may yet
-// be stopped, so that this is a bit above 1e-3.
+// A stack lands on itself and on the ground, with friction, and steps that are too long for that are taken
+// back: or else 8e-3 would be missing here. What the thrown ball may yet stop counts five times as much as
+// what has acted on the stack until then, so 9e-4 of all that is up to 5e-3 of this.
 START_TEST(a_stack_that_lands_is_balanced) {
   SceneRun run;
   scene_run(&run, "../../examples/15_sleepers",
-            (const char *const[]){"time.end=0.12", "bodies.ball.velocity=[0,0,0]",
-                                  "bodies.ball.place.translate=[-1.65,0,0.05]", "output.vtu=false", NULL});
+            (const char *const[]){"time.end=0.065", "output.vtu=false", NULL});
   ck_assert_int_gt(run.result.momentum_retries, 0);
-  ck_assert_msg(run.result.momentum_gap <= 1.3e-3, "%g", run.result.momentum_gap);
+  ck_assert_msg(run.result.momentum_gap <= 5.5e-3, "%g", run.result.momentum_gap);
   ck_assert_double_gt(run.result.contact_force_max, 0);
   scene_close(&run);
 }
