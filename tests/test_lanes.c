@@ -66,6 +66,12 @@ static void check_matrix(FemLanesRow matrix[FEM_LANES_ENTRIES], int lane, const 
                   expected[k]);
 }
 
+// Of second order in the deformation, from terms of first: 1e-16 of those may be lost.
+static void check_scalar(double value, double expected, int round, const char *what) {
+  double tolerance = allowed[round % 4] * fabs(expected) + 2e-15 * amounts[round % 4];
+  ck_assert_msg(fabs(value - expected) <= tolerance, "%s: %.17g for %.17g", what, value, expected);
+}
+
 // A law; beyond them laws with fibres: those that buckle, and such that do not.
 enum { MATERIALS = 3 * FEM_MATERIAL_LAW_COUNT };
 
@@ -93,10 +99,13 @@ START_TEST(elastic_forces_and_matrices_are_those_of_single_elements) {
   for (int round = 0; round < ROUNDS; round++) {
     Eight eight = eight_random(&random, amounts[round % 4]);
     for (int k = 0; k < count; k++) {
-      FemLanesRow force[12], matrix[FEM_LANES_ENTRIES];
+      FemLanesRow force[12], matrix[FEM_LANES_ENTRIES], energy;
       all[k]->force(&material, &eight.lanes, eight.x, force);
       all[k]->matrix(&material, &eight.lanes, eight.x, 2, matrix);
+      all[k]->energy(&material, &eight.lanes, eight.x, energy);
       for (int l = 0; l < FEM_LANES; l++) {
+        check_scalar(energy[l], fem_element_energy(&eight.element[l], &material, eight.x + 12 * l), round,
+                     all[k]->name);
         double expected[144];
         fem_element_force(&eight.element[l], &material, eight.x + 12 * l, expected);
         check_forces(force, l, expected, allowed[round % 4], all[k]->name);
@@ -117,10 +126,14 @@ START_TEST(damping_forces_and_matrices_are_those_of_single_elements) {
   for (int round = 0; round < ROUNDS; round++) {
     Eight eight = eight_random(&random, amounts[round % 4]);
     for (int k = 0; k < count; k++) {
-      FemLanesRow force[12], matrix[FEM_LANES_ENTRIES];
+      FemLanesRow force[12], matrix[FEM_LANES_ENTRIES], power;
       all[k]->damping_force(&material, 0.1, &eight.lanes, eight.x, eight.v, force);
       all[k]->damping_matrix(&material, 0.1, &eight.lanes, eight.x, eight.v, 3, 2, matrix);
+      all[k]->damping_power(&material, 0.1, &eight.lanes, eight.x, eight.v, power);
       for (int l = 0; l < FEM_LANES; l++) {
+        const double *x = eight.x + 12 * l, *v = eight.v + 12 * l;
+        check_scalar(power[l], fem_element_damping_power(&eight.element[l], &material, 0.1, x, v), round,
+                     all[k]->name);
         double expected[144], part[144];
         fem_element_damping_force(&eight.element[l], &material, 0.1, eight.x + 12 * l, eight.v + 12 * l,
                                   expected);

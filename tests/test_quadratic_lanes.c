@@ -79,6 +79,12 @@ static void check_matrix(FemLanesRow matrix[FEM_LANES_HALF], int lane, const dou
                     "%s, %d %d: %.17g for %.17g", what, r, c, matrix[k][lane], expected[DOFS * r + c]);
 }
 
+// Of second order in the deformation, from terms of first: 1e-16 of those may be lost.
+static void check_scalar(double value, double expected, int round, const char *what) {
+  double tolerance = allowed[round % 4] * fabs(expected) + 2e-15 * amounts[round % 4];
+  ck_assert_msg(fabs(value - expected) <= tolerance, "%s: %.17g for %.17g", what, value, expected);
+}
+
 // A law; beyond them laws with fibres.
 enum { MATERIALS = 2 * FEM_MATERIAL_LAW_COUNT };
 
@@ -108,11 +114,14 @@ START_TEST(elastic_forces_and_matrices_are_those_of_single_elements) {
     Eight eight = eight_random(&random, amounts[round % 4]);
     FemQuadraticLaw law = {&material, round % 8 < 4 ? 0 : 1.5};
     for (int k = 0; k < count; k++) {
-      FemLanesRow force[DOFS];
+      FemLanesRow force[DOFS], energy;
+      all[k]->quadratic_energy(law, &eight.lanes, eight.x, energy);
       all[k]->quadratic_force(law, &eight.lanes, eight.x, force);
       all[k]->quadratic_matrix(law, &eight.lanes, eight.x, 2, matrix);
       for (int l = 0; l < FEM_LANES; l++) {
         double expected[DOFS * DOFS];
+        check_scalar(energy[l], fem_quadratic_energy(&eight.element[l], law, eight.x + DOFS * l), round,
+                     all[k]->name);
         fem_quadratic_force(&eight.element[l], law, eight.x + DOFS * l, expected);
         check_forces(force, l, expected, allowed[round % 4], all[k]->name);
         fem_quadratic_stiffness(&eight.element[l], law, eight.x + DOFS * l, expected);
@@ -133,12 +142,15 @@ START_TEST(damping_forces_and_matrices_are_those_of_single_elements) {
   for (int round = 0; round < ROUNDS; round++) {
     Eight eight = eight_random(&random, amounts[round % 4]);
     for (int k = 0; k < count; k++) {
-      FemLanesRow force[DOFS];
+      FemLanesRow force[DOFS], power;
+      all[k]->quadratic_damping_power(&material, 0.1, &eight.lanes, eight.x, eight.v, power);
       all[k]->quadratic_damping_force(&material, 0.1, &eight.lanes, eight.x, eight.v, force);
       all[k]->quadratic_damping_matrix(&material, 0.1, &eight.lanes, eight.x, eight.v, 3, 2, matrix);
       for (int l = 0; l < FEM_LANES; l++) {
         double expected[DOFS * DOFS];
         const double *x = eight.x + DOFS * l, *v = eight.v + DOFS * l;
+        check_scalar(power[l], fem_quadratic_damping_power(&eight.element[l], &material, 0.1, x, v), round,
+                     all[k]->name);
         fem_quadratic_damping_force(&eight.element[l], &material, 0.1, x, v, expected);
         check_forces(force, l, expected, allowed[round % 4], all[k]->name);
         fem_quadratic_damping_matrix(&eight.element[l], &material, 0.1, x, v, 3, 2, expected);

@@ -5,106 +5,56 @@
 
 #include "base/memory.h"
 
-// Elements whose scalars are added one after another by one thread; fixed, so that sums do not depend on how
-// many threads share the work.
-enum { CHUNK = 256 };
 // Below this many elements one thread does it all: a colour is a barrier, and some thirty of them, on a
 // machine that others use too, take longer than the millisecond of work that a second thread would save.
-enum { FEW_SCALARS = 20000, FEW_FORCES = 60000, FEW_MATRICES = 16000 };
+enum { FEW_FORCES = 60000, FEW_MATRICES = 16000 };
 // A quadratic element is as much work as so many linear ones.
 enum { QUADRATIC_FORCES = 6, QUADRATIC_MATRICES = 16 };
-
-static int chunk_count(const FemAssemblyList *list) {
-  return (list->count + CHUNK - 1) / CHUNK;
-}
-
-static const int *nodes_of(const FemAssemblyList *list, int i) {
-  return list->nodes + (size_t)list->node_count * (size_t)list->colouring.tets[i];
-}
-
-static Status select_elements(FemAssemblyList *list, const FemModel *model, const FemColouring *all,
-                              bool is_quadratic, bool (*takes)(const FemModelBody *body)) {
-  FemColouring *own = &list->colouring;
-  size_t most = all->colour_count > 0 ? (size_t)all->begin[all->colour_count] : 0;
-  own->begin = memory_zeroed((size_t)all->colour_count + 1, sizeof *own->begin);
-  own->tets = memory_zeroed(most, sizeof *own->tets);
-  if (!own->begin || !own->tets) return status_no_memory("the list of elements");
-  for (int colour = 0; colour < all->colour_count; colour++) {
-    own->begin[colour] = list->count;
-    for (int i = all->begin[colour]; i < all->begin[colour + 1]; i++) {
-      const FemModelBody *body = &model->bodies[list->body[all->tets[i]]];
-      const int *nodes = list->nodes + (size_t)list->node_count * (size_t)all->tets[i];
-      if ((takes && !takes(body)) || (body->element == FEM_ELEMENT_QUADRATIC) != is_quadratic) continue;
-      if (!fem_share_has(model->share, list->node_count, nodes)) continue;
-      own->tets[list->count++] = all->tets[i];
-    }
-  }
-  own->colour_count = all->colour_count;
-  own->begin[own->colour_count] = list->count;
-  list->partial = memory_zeroed((size_t)chunk_count(list), sizeof *list->partial);
-  return list->partial ? STATUS_OK : status_no_memory("partial sums over elements");
-}
 
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
                            bool (*takes)(const FemModelBody *body)) {
   *assembly = (FemAssembly){.model = model};
-  for (int k = 0; k < 2; k++) TRY(fem_packs_create(&assembly->packs[k], model, k == 1, takes));
-  assembly->lists[0] =
-      (FemAssemblyList){.node_count = 4, .nodes = (const int *)model->tets, .body = model->tet_body};
-  TRY(select_elements(&assembly->lists[0], model, &model->colouring, false, takes));
-  assembly->lists[1] = (FemAssemblyList){.node_count = FEM_QUADRATIC_NODES,
-                                         .nodes = (const int *)model->quadratic_nodes,
-                                         .body = model->quadratic_body};
-  return select_elements(&assembly->lists[1], model, &model->quadratic_colouring, true, takes);
+  for (int k = 0; k < 2; k++) {
+    TRY(fem_packs_create(&assembly->packs[k], model, k == 1, takes));
+    assembly->partial[k] =
+        memory_zeroed((size_t)assembly->packs[k].chunk_count, sizeof *assembly->partial[k]);
+    if (!assembly->partial[k]) return status_no_memory("partial sums over elements");
+  }
+  return STATUS_OK;
 }
 
 void fem_assembly_destroy(FemAssembly *assembly) {
   for (int k = 0; k < 2; k++) {
     fem_packs_destroy(&assembly->packs[k]);
-    FemAssemblyList *list = &assembly->lists[k];
-    memory_free(list->colouring.begin);
-    memory_free(list->colouring.tets);
-    memory_free(list->partial);
+    memory_free(assembly->partial[k]);
   }
   *assembly = (FemAssembly){0};
 }
 
 size_t fem_assembly_bytes(const FemAssembly *assembly) {
   size_t bytes = 0;
-  for (int k = 0; k < 2; k++) {
-    const FemAssemblyList *list = &assembly->lists[k];
-    bytes += fem_packs_bytes(&assembly->packs[k]) + memory_held(list->colouring.begin) +
-             memory_held(list->colouring.tets) + memory_held(list->partial);
-  }
+  for (int k = 0; k < 2; k++)
+    bytes += fem_packs_bytes(&assembly->packs[k]) + memory_held(assembly->partial[k]);
   return bytes;
 }
 
-Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown) {
-  for (int k = 0; k < 2; k++) {
-    const FemAssemblyList *list = &assembly->lists[k];
-    for (int i = 0; i < list->count; i++)
-      TRY(fem_pattern_add_clique(pattern, list->node_count, nodes_of(list, i), has_grown));
-  }
-  return STATUS_OK;
+static Status couple_lane(const FemPacks *packs, int p, int lane, FemPattern *pattern, int *has_grown) {
+  int nodes[FEM_QUADRATIC_NODES], count = packs->is_quadratic ? FEM_QUADRATIC_NODES : 4;
+  for (int a = 0; a < count; a++)
+    nodes[a] = packs->is_quadratic ? packs->quadratics[p].node[a][lane] : packs->packs[p].node[a][lane];
+  return fem_pattern_add_clique(pattern, count, nodes, has_grown);
 }
 
-// The i-th element of the list.
-static inline void gather(const FemAssembly *assembly, const FemAssemblyList *list, const FemState *state,
-                          int i, FemAssemblyElement *e) {
-  const FemModel *model = assembly->model;
-  int number = list->colouring.tets[i];
-  bool is_linear = list->node_count == 4;
-  const int *nodes = list->nodes + (size_t)list->node_count * (size_t)number;
-  e->element = is_linear ? &model->elements[number] : NULL;
-  e->quadratic = is_linear ? NULL : &model->quadratics[number];
-  e->body = &model->bodies[list->body[number]];
-  for (int a = 0; a < list->node_count; a++) {
-    size_t dof = 3 * (size_t)nodes[a];
-    for (int c = 0; c < 3; c++) {
-      e->x[3 * a + c] = state->positions[dof + (size_t)c];
-      e->v[3 * a + c] = state->velocities[dof + (size_t)c];
-    }
-  }
+static int lanes_of(const FemPacks *packs, int p) {
+  return packs->is_quadratic ? packs->quadratics[p].count : packs->packs[p].count;
+}
+
+Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown) {
+  for (int k = 0; k < 2; k++)
+    for (int p = 0; p < assembly->packs[k].pack_count; p++)
+      for (int l = 0; l < lanes_of(&assembly->packs[k], p); l++)
+        TRY(couple_lane(&assembly->packs[k], p, l, pattern, has_grown));
+  return STATUS_OK;
 }
 
 static FemAssemblyPack pack_of(const FemAssembly *assembly, const FemState *state, int body) {
@@ -226,27 +176,30 @@ Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state,
   return STATUS_OK;
 }
 
-static double sum_list(const FemAssembly *assembly, const FemAssemblyList *list, const FemState *state,
-                       FemAssemblyScalar *kernel) {
-  int chunks = chunk_count(list);
-#pragma omp parallel for schedule(static) if (list->count > FEW_SCALARS)
-  for (int chunk = 0; chunk < chunks; chunk++) {
-    int begin = chunk * CHUNK;
-    int end = begin + CHUNK < list->count ? begin + CHUNK : list->count;
-    double sum = 0;
-    for (int i = begin; i < end; i++) {
-      FemAssemblyElement e;
-      gather(assembly, list, state, i, &e);
-      sum += kernel(&e);
-    }
-    list->partial[chunk] = sum;
-  }
+static double sum_chunk(const FemAssembly *assembly, const FemPacks *packs, const FemState *state,
+                        const FemAssemblyKernels *kernels, int chunk) {
+  FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_body[chunk]);
   double sum = 0;
-  for (int chunk = 0; chunk < chunks; chunk++) sum += list->partial[chunk];
+  for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++) {
+    FemLanesRow own;
+    if (packs->is_quadratic)
+      pack.quadratics = &packs->quadratics[p];
+    else
+      pack.elements = &packs->packs[p];
+    (packs->is_quadratic ? kernels->quadratic_scalar : kernels->scalar)(&pack, own);
+    for (int l = 0; l < lanes_of(packs, p); l++) sum += own[l];
+  }
   return sum;
 }
 
-double fem_assembly_sum(FemAssembly *assembly, const FemState *state, FemAssemblyScalar *kernel) {
-  return sum_list(assembly, &assembly->lists[0], state, kernel) +
-         sum_list(assembly, &assembly->lists[1], state, kernel);
+double fem_assembly_sum(FemAssembly *assembly, const FemState *state, const FemAssemblyKernels *kernels) {
+  double sum = 0;
+  for (int k = 0; k < 2; k++) {
+    const FemPacks *packs = &assembly->packs[k];
+#pragma omp parallel for schedule(static) if (work_of(packs, QUADRATIC_FORCES) > FEW_FORCES)
+    for (int chunk = 0; chunk < packs->chunk_count; chunk++)
+      assembly->partial[k][chunk] = sum_chunk(assembly, packs, state, kernels, chunk);
+    for (int chunk = 0; chunk < packs->chunk_count; chunk++) sum += assembly->partial[k][chunk];
+  }
+  return sum;
 }

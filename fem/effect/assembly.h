@@ -12,14 +12,6 @@
 #include "fem/effect/effect.h"
 #include "fem/effect/packs.h"
 
-// One element as a kernel sees it: of n = 4 vertices, or quadratic with n = 10 nodes.
-typedef struct FemAssemblyElement {
-  const FemElement *element;     // NULL: quadratic
-  const FemQuadratic *quadratic; // NULL: linear
-  const FemModelBody *body;
-  double x[30], v[30]; // positions [m] and velocities [m/s] of its nodes (n, 3)
-} FemAssemblyElement;
-
 // Eight elements of a body, of one kind.
 typedef struct FemAssemblyPack {
   const FemLanes *lanes; // the kernels of this processor
@@ -29,7 +21,7 @@ typedef struct FemAssemblyPack {
   const double *positions, *velocities; // of all vertices
 } FemAssemblyPack;
 
-typedef double FemAssemblyScalar(const FemAssemblyElement *e);
+typedef void FemAssemblyScalar(const FemAssemblyPack *pack, FemLanesRow scalar);
 typedef void FemAssemblyForce(const FemAssemblyPack *pack, FemLanesRow *force); // (12), (30)
 // matrix = stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, as in fem/lanes/lanes.h.
 typedef void FemAssemblyMatrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
@@ -39,28 +31,18 @@ typedef void FemAssemblyMatrix(const FemAssemblyPack *pack, double stiffness_sca
 typedef struct FemAssemblyKernels {
   FemAssemblyForce *force, *quadratic_force;
   FemAssemblyMatrix *matrix, *quadratic_matrix;
+  FemAssemblyScalar *scalar, *quadratic_scalar; // what fem_assembly_sum adds up
 } FemAssemblyKernels;
 
-// The elements of one kind one by one, for sums.
-typedef struct FemAssemblyList {
-  int node_count;         // n
-  const int *nodes;       // of the model's elements of this kind, borrowed   (…, n)
-  const int *body;        // of each of them, borrowed
-  FemColouring colouring; // the model's, without the bodies that take no part
-  int count;
-  double *partial; // sums of chunks of elements                                      (chunk_count)
-} FemAssemblyList;
-
 typedef struct FemAssembly {
-  const FemModel *model;    // borrowed
-  FemPacks packs[2];        // linear, quadratic: forces and matrices
-  FemAssemblyList lists[2]; // the same
-  long long layout;         // of the matrix whose slots the packs have; 0: not looked up
+  const FemModel *model; // borrowed
+  FemPacks packs[2];     // linear, quadratic
+  double *partial[2];    // sums of chunks of them                   (chunk_count)
+  long long layout;      // of the matrix whose slots the packs have; 0: not looked up
 } FemAssembly;
 
-// All elements of the model's colouring, which leaves out obstacles, that this rank has and whose body
-// `takes` accepts (NULL: all).
-// A zeroed assembly, and one whose creation failed, can be destroyed.
+// All elements of bodies, which obstacles are not, that this rank has and whose body `takes` accepts (NULL:
+// all). A zeroed assembly, and one whose creation failed, can be destroyed.
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
                            bool (*takes)(const FemModelBody *body));
 void fem_assembly_destroy(FemAssembly *assembly);
@@ -74,6 +56,6 @@ void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state,
 Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state,
                                  const FemAssemblyKernels *kernels, double stiffness_scale,
                                  double damping_scale, FemMatrix *matrix);
-double fem_assembly_sum(FemAssembly *assembly, const FemState *state, FemAssemblyScalar *kernel);
+double fem_assembly_sum(FemAssembly *assembly, const FemState *state, const FemAssemblyKernels *kernels);
 
 #endif

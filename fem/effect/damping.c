@@ -66,7 +66,20 @@ static void quadratic_matrix(const FemAssemblyPack *pack, double stiffness_scale
                                         pack->velocities, stiffness_scale, damping_scale, matrix);
 }
 
-static const FemAssemblyKernels kernels = {pack_force, quadratic_force, pack_matrix, quadratic_matrix};
+static void pack_power(const FemAssemblyPack *pack, FemLanesRow power) {
+  const FemModelBody *body = pack->body;
+  pack->lanes->damping_power(&body->local, body->damping, pack->elements, pack->positions, pack->velocities,
+                             power);
+}
+
+static void quadratic_power(const FemAssemblyPack *pack, FemLanesRow power) {
+  const FemModelBody *body = pack->body;
+  pack->lanes->quadratic_damping_power(&body->local, body->damping, pack->quadratics, pack->positions,
+                                       pack->velocities, power);
+}
+
+static const FemAssemblyKernels kernels = {pack_force,       quadratic_force, pack_matrix,
+                                           quadratic_matrix, pack_power,      quadratic_power};
 
 static Status add_force(void *self, const FemState *state, double *force) {
   fem_assembly_add_forces(self, state, &kernels, force);
@@ -79,14 +92,8 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
   return fem_assembly_add_matrices(self, state, &kernels, stiffness_scale, damping_scale, matrix);
 }
 
-static double element_power(const FemAssemblyElement *e) {
-  return e->element
-             ? fem_element_damping_power(e->element, &e->body->local, e->body->damping, e->x, e->v)
-             : fem_quadratic_damping_power(e->quadratic, &e->body->local, e->body->damping, e->x, e->v);
-}
-
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
-  energy->dissipated_power += fem_assembly_sum(self, state, element_power);
+  energy->dissipated_power += fem_assembly_sum(self, state, &kernels);
   return STATUS_OK;
 }
 

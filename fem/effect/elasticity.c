@@ -54,7 +54,16 @@ static void quadratic_matrix(const FemAssemblyPack *pack, double stiffness_scale
                                 matrix);
 }
 
-static const FemAssemblyKernels kernels = {pack_force, quadratic_force, pack_matrix, quadratic_matrix};
+static void pack_energy(const FemAssemblyPack *pack, FemLanesRow energy) {
+  pack->lanes->energy(&pack->body->local, pack->elements, pack->positions, energy);
+}
+
+static void quadratic_energy(const FemAssemblyPack *pack, FemLanesRow energy) {
+  pack->lanes->quadratic_energy(law_of(pack->body), pack->quadratics, pack->positions, energy);
+}
+
+static const FemAssemblyKernels kernels = {pack_force,       quadratic_force, pack_matrix,
+                                           quadratic_matrix, pack_energy,     quadratic_energy};
 
 static Status add_force(void *self, const FemState *state, double *force) {
   fem_assembly_add_forces(self, state, &kernels, force);
@@ -67,13 +76,8 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
   return fem_assembly_add_matrices(self, state, &kernels, stiffness_scale, damping_scale, matrix);
 }
 
-static double element_energy(const FemAssemblyElement *e) {
-  return e->element ? fem_element_energy(e->element, &e->body->local, e->x)
-                    : fem_quadratic_energy(e->quadratic, law_of(e->body), e->x);
-}
-
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
-  energy->elastic += fem_assembly_sum(self, state, element_energy);
+  energy->elastic += fem_assembly_sum(self, state, &kernels);
   return STATUS_OK;
 }
 

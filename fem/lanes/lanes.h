@@ -66,6 +66,11 @@ typedef struct FemLanes {
   void (*damping_matrix)(const FemMaterial *material, double beta, const FemLanesElements *e,
                          const double *positions, const double *velocities, double stiffness_scale,
                          double damping_scale, FemLanesRow matrix[FEM_LANES_ENTRIES]);
+  // Energy [J] and what damping takes [W], by element.
+  void (*energy)(const FemMaterial *material, const FemLanesElements *e, const double *positions,
+                 FemLanesRow energy);
+  void (*damping_power)(const FemMaterial *material, double beta, const FemLanesElements *e,
+                        const double *positions, const double *velocities, FemLanesRow power);
   // Adds lanes in ascending order. A slot −1 in the first row: that lane is left out.
   void (*scatter_force)(const FemLanesElements *e, FemLanesRow force[12], double *to);
   void (*scatter_matrix)(const FemLanesElements *e, int slots[FEM_LANES_SLOTS][FEM_LANES],
@@ -81,6 +86,10 @@ typedef struct FemLanes {
   void (*quadratic_damping_matrix)(const FemMaterial *material, double beta, const FemLanesQuadratics *e,
                                    const double *positions, const double *velocities, double stiffness_scale,
                                    double damping_scale, FemLanesRow matrix[FEM_LANES_HALF]);
+  void (*quadratic_energy)(FemQuadraticLaw law, const FemLanesQuadratics *e, const double *positions,
+                           FemLanesRow energy);
+  void (*quadratic_damping_power)(const FemMaterial *material, double beta, const FemLanesQuadratics *e,
+                                  const double *positions, const double *velocities, FemLanesRow power);
   void (*scatter_quadratic_force)(const FemLanesQuadratics *e, FemLanesRow force[30], double *to);
   void (*scatter_quadratic_matrix)(const FemLanesQuadratics *e, int slots[FEM_LANES_HALF][FEM_LANES],
                                    FemLanesRow matrix[FEM_LANES_HALF], double *value);
