@@ -216,18 +216,6 @@ static Status measure(FemModel *model, const FemMesh *meshes) {
   return STATUS_OK;
 }
 
-// Those that share a middle share its edge's ends: their corners tell.
-static Status colour_quadratics(FemModel *model) {
-  int(*corners)[4] = memory_zeroed((size_t)model->quadratic_count, sizeof *corners);
-  if (!corners) return status_no_memory("the colouring of the mesh");
-  for (int e = 0; e < model->quadratic_count; e++)
-    memcpy(corners[e], model->quadratic_nodes[e], sizeof corners[e]);
-  Status status = fem_colouring_create(&model->quadratic_colouring, model->vertex_count,
-                                       (const int(*)[4])corners, model->quadratic_count);
-  memory_free(corners);
-  return status;
-}
-
 static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(allocate(model, meshes, mesh_count));
   append_bodies(model, meshes);
@@ -236,10 +224,6 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(mark_inner(model, meshes));
   TRY(add_probes(model, meshes));
   fem_model_numbering_renew(model);
-  int elastic_tets = model->bodies[model->scene->body_count - 1].tet_end;
-  TRY(fem_colouring_create(&model->colouring, model->vertex_count, (const int(*)[4])model->tets,
-                           elastic_tets));
-  TRY(colour_quadratics(model));
   TRY(fem_model_divide(model));
   return measure(model, meshes);
 }
@@ -273,14 +257,12 @@ void fem_model_destroy(FemModel *model) {
   memory_free(model->quadratics);
   memory_free(model->quadratic_nodes);
   memory_free(model->quadratic_body);
-  fem_colouring_destroy(&model->quadratic_colouring);
   memory_free(model->bodies);
   memory_free(model->mass);
   memory_free(model->initial_velocity);
   memory_free(model->inner);
   memory_free(model->unknown_of_dof);
   memory_free(model->dof_of_unknown);
-  fem_colouring_destroy(&model->colouring);
   fem_model_division_destroy(model);
   *model = (FemModel){0};
 }

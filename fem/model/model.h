@@ -7,7 +7,6 @@
 #include "contact/def.h"
 #include "fem/element/element.h"
 #include "fem/element/quadratic.h"
-#include "fem/model/colouring.h"
 #include "fem/model/load.h"
 #include "fem/model/probe.h"
 #include "fem/model/scene.h"
@@ -62,8 +61,6 @@ typedef struct FemModel {
   int load_count;
   FemProbe *probes; //                                                                  (probe_count)
   int probe_count;
-  FemColouring colouring; // of the tetrahedra of bodies, which come first
-  FemColouring quadratic_colouring;
   FemShare *share; // which vertices this rank has; NULL: there is one process
   double length;   // the smallest body's bounding box diagonal [m]
   double edge;     // the smallest mean edge of a body [m]
@@ -77,8 +74,8 @@ const char *fem_model_body_name(const FemModel *model, int vertex);
 double fem_model_contact_stiffness(const FemModel *model);
 
 // Error per step of a velocity [m/s]: the scene's, or its tolerance times 0.03 of the slowest body's wave
-// speed √(E/ρ), all of it where a body rubs on itself, or where that is less times 0.3 of the fastest speed at
-// t = 0 or √(g L), L the smallest body's diagonal; with friction by the law `velocity` at most 5 ε.
+// speed √(E/ρ), all of it where a body rubs on itself, or where that is less times 0.3 of the fastest speed
+// at t = 0 or √(g L), L the smallest body's diagonal; with friction by the law `velocity` at most 5 ε.
 double fem_model_velocity_tolerance(const FemModel *model);
 
 // E V ε², the energy of a strain in all bodies, twice if it were uniaxial [J].
