@@ -70,6 +70,31 @@ const AppUnseenCase app_unseen_cases[] = {
      {.cells = {4, 3, 3}, .cell = {0.8, 0.8, 0.8}, .jitter = 0.05, .turn = 0.2, .tilt = 0.785, BLOCK},
      0.35,
      0.8},
+    {"made",
+     "gmsh's Delaunay meshes",
+     {.is_made = true, .growth = 1, .cells = {5, 5, 3}, .cell = {1, 1, 1}, BLOCK},
+     {.is_made = true,
+      .growth = 1,
+      .cells = {4, 4, 3},
+      .cell = {0.85, 0.85, 0.85},
+      .turn = 0.3,
+      .tilt = 0.03,
+      BLOCK},
+     0.35,
+     0.9},
+    {"adapted",
+     "gmsh's with edges that grow threefold across the body, sheared and pressed",
+     {.is_made = true, .growth = 3, .cells = {10, 10, 5}, .cell = {0.5, 0.5, 0.5}, BLOCK},
+     {.is_made = true,
+      .growth = 3,
+      .cells = {8, 8, 5},
+      .cell = {0.4, 0.4, 0.4},
+      .turn = 0.6,
+      .grading = 1,
+      .shear = 0.4,
+      .push = 0.8},
+     0.2,
+     0.6},
 };
 const int app_unseen_case_count = sizeof app_unseen_cases / sizeof *app_unseen_cases;
 
@@ -78,12 +103,14 @@ void app_unseen_mesh_destroy(AppUnseenMesh *mesh) {
   *mesh = (AppUnseenMesh){0};
 }
 
-static int vertices_of(const AppUnseenBody *body) {
-  return (body->cells[0] + 1) * (body->cells[1] + 1) * (body->cells[2] + 1);
+static int vertices_of(const AppUnseenBody *body, const FemMesh *made) {
+  return body->is_made ? made->vertex_count
+                       : (body->cells[0] + 1) * (body->cells[1] + 1) * (body->cells[2] + 1);
 }
 
-static int tets_of(const AppUnseenBody *body) {
-  return (body->is_five ? 5 : 6) * body->cells[0] * body->cells[1] * body->cells[2];
+static int tets_of(const AppUnseenBody *body, const FemMesh *made) {
+  return body->is_made ? made->tet_count
+                       : (body->is_five ? 5 : 6) * body->cells[0] * body->cells[1] * body->cells[2];
 }
 
 // Where line i of an axis is, and how wide the cells beside it are: from the surface down, and from the
@@ -115,16 +142,18 @@ static Vec3 turned(const AppUnseenBody *body, Vec3 x) {
 }
 
 // `down`: −1 for the lower body, whose layers go down from its surface.
+static void add_vertex(AppUnseenMesh *mesh, const AppUnseenBody *body, double down, Vec3 x) {
+  x.z *= down;
+  Vec3 strained = {x.x + body->shear * x.z, x.y, body->push * x.z};
+  vec3_store(mesh->rest + 3 * mesh->vertex_count, turned(body, x));
+  vec3_store(mesh->x + 3 * mesh->vertex_count++, turned(body, strained));
+}
+
 static void add_vertices(AppUnseenMesh *mesh, const AppUnseenBody *body, double down, Random *random) {
   for (int k = 0; k <= body->cells[2]; k++)
     for (int j = 0; j <= body->cells[1]; j++)
-      for (int i = 0; i <= body->cells[0]; i++) {
-        Vec3 x = place_vertex(body, (int[]){i, j, k}, random);
-        x.z *= down;
-        Vec3 strained = {x.x + body->shear * x.z, x.y, body->push * x.z};
-        vec3_store(mesh->rest + 3 * mesh->vertex_count, turned(body, x));
-        vec3_store(mesh->x + 3 * mesh->vertex_count++, turned(body, strained));
-      }
+      for (int i = 0; i <= body->cells[0]; i++)
+        add_vertex(mesh, body, down, place_vertex(body, (int[]){i, j, k}, random));
 }
 
 static void add_tet(AppUnseenMesh *mesh, const int corners[8], const int which[4]) {
@@ -161,13 +190,28 @@ static void add_cells(AppUnseenMesh *mesh, const AppUnseenBody *body, int first)
       }
 }
 
-static void add_body(AppUnseenMesh *mesh, const AppUnseenBody *body, int number, Random *random) {
+static void add_made(AppUnseenMesh *mesh, const AppUnseenBody *body, const FemMesh *made, double down,
+                     int first) {
+  for (int v = 0; v < made->vertex_count; v++) add_vertex(mesh, body, down, vec3_at(made->rest + 3 * v));
+  for (int t = 0; t < made->tet_count; t++) {
+    int corners[8] = {0};
+    for (int v = 0; v < 4; v++) corners[v] = first + made->tets[t][v];
+    add_tet(mesh, corners, (const int[]){0, 1, 2, 3});
+  }
+}
+
+static void add_body(AppUnseenMesh *mesh, const AppUnseenBody *body, const FemMesh *made, int number,
+                     Random *random) {
   static const char *const names[] = {"lower", "upper"};
   ContactBody *range = &mesh->bodies[number];
   *range =
       (ContactBody){.name = names[number], .vertex_begin = mesh->vertex_count, .tet_begin = mesh->tet_count};
-  add_vertices(mesh, body, number ? 1 : -1, random);
-  add_cells(mesh, body, range->vertex_begin);
+  if (body->is_made) {
+    add_made(mesh, body, made, number ? 1 : -1, range->vertex_begin);
+  } else {
+    add_vertices(mesh, body, number ? 1 : -1, random);
+    add_cells(mesh, body, range->vertex_begin);
+  }
   range->vertex_end = mesh->vertex_count, range->tet_end = mesh->tet_count;
 }
 
@@ -179,9 +223,18 @@ static void lay_on_ground(const AppUnseenMesh *mesh) {
     mesh->x[3 * v + 2] -= lowest, mesh->rest[3 * v + 2] -= lowest;
 }
 
-Status app_unseen_mesh_create(AppUnseenMesh *mesh, const AppUnseenCase *what, uint64_t seed) {
-  size_t vertices = (size_t)(vertices_of(&what->lower) + vertices_of(&what->upper));
-  size_t tets = (size_t)(tets_of(&what->lower) + tets_of(&what->upper));
+static Status make(FemMesh *made, const AppUnseenBody *body, uint64_t seed) {
+  double size[3];
+  for (int c = 0; c < 3; c++) size[c] = body->cells[c] * body->cell[c];
+  return body->is_made ? app_unseen_made_create(made, size, body->cell[0] * (1 + 0.05 * (double)(seed % 5)),
+                                                body->growth)
+                       : STATUS_OK;
+}
+
+static Status put_together(AppUnseenMesh *mesh, const AppUnseenCase *what, const FemMesh made[2],
+                           uint64_t seed) {
+  size_t vertices = (size_t)(vertices_of(&what->lower, &made[0]) + vertices_of(&what->upper, &made[1]));
+  size_t tets = (size_t)(tets_of(&what->lower, &made[0]) + tets_of(&what->upper, &made[1]));
   *mesh = (AppUnseenMesh){.rest = memory_zeroed(3 * vertices, sizeof(double)),
                           .x = memory_zeroed(3 * vertices, sizeof(double)),
                           .tets = memory_zeroed(tets, sizeof *mesh->tets)};
@@ -190,8 +243,18 @@ Status app_unseen_mesh_create(AppUnseenMesh *mesh, const AppUnseenCase *what, ui
     return status_no_memory("a case's meshes");
   }
   Random random = random_seeded(seed, 0);
-  add_body(mesh, &what->lower, 0, &random);
-  add_body(mesh, &what->upper, 1, &random);
+  add_body(mesh, &what->lower, &made[0], 0, &random);
+  add_body(mesh, &what->upper, &made[1], 1, &random);
   lay_on_ground(mesh);
   return STATUS_OK;
+}
+
+Status app_unseen_mesh_create(AppUnseenMesh *mesh, const AppUnseenCase *what, uint64_t seed) {
+  FemMesh made[2] = {{0}};
+  *mesh = (AppUnseenMesh){0};
+  Status status = make(&made[0], &what->lower, seed);
+  if (!status) status = make(&made[1], &what->upper, seed + 1);
+  if (!status) status = put_together(mesh, what, made, seed);
+  fem_mesh_destroy(&made[0]), fem_mesh_destroy(&made[1]);
+  return status;
 }

@@ -25,7 +25,9 @@ typedef struct Options {
 static const struct argp_option option_table[] = {
     {"model", 'm', "NAME,…", 0, "Overlap models or weights files to measure (default: geo,geo-small)", 1},
     {"case", 'k', "NAME,…", 0,
-     "Cases: jittered, aligned, five, graded, slivers, strained, fine, thin, edge (default: all)", 1},
+     "Cases: jittered, aligned, five, graded, slivers, strained, fine, thin, edge, made, adapted "
+     "(default: all)",
+     1},
     {"seeds", 's', "N", 0, "Meshes of each case (default: 3)", 1},
     {"places", 'p', "N", 0, "Places of each path (default: 96)", 1},
     {0},
@@ -125,8 +127,9 @@ static Status measure(const Options *options, const AppUnseenCase *what, const c
   for (int s = 0; s < options->seeds; s++) {
     AppUnseenMesh mesh;
     AppUnseenErrors errors;
-    TRY(app_unseen_mesh_create(&mesh, what, 7001 + (uint64_t)s));
-    Status status = app_unseen_path_measure(what, &mesh, model, clip, options->places, &errors);
+    Status status = app_unseen_mesh_create(&mesh, what, 7001 + (uint64_t)s);
+    if (status) return status_prefix(status, "case '%s' (--case leaves it out)", what->name);
+    status = app_unseen_path_measure(what, &mesh, model, clip, options->places, &errors);
     app_unseen_mesh_destroy(&mesh);
     TRY(status);
     keep_worst(&row->worst, &errors, s == 0);
