@@ -7,7 +7,10 @@
 #include "overlap/tpn/model.h"
 
 Status app_evaluation_model_open(OverlapModel *model, const char *name) {
+  static const char HYBRID[] = "hybrid=";
   *model = (OverlapModel){0};
+  if (strncmp(name, HYBRID, strlen(HYBRID)) == 0)
+    return overlap_model_create_with(model, "hybrid", name + strlen(HYBRID), NULL);
   if (strcmp(name, "geo-constant") != 0) return overlap_model_create(model, name);
   TRY(overlap_geo_model_create(&model->self, NULL));
   model->ops = &overlap_geo_ops;
