@@ -8,7 +8,9 @@
 #include "app/plot/gnuplot.h"
 #include "base/memory.h"
 
-enum { MAX_COLUMNS = 256, MAX_FORCES = 5, MAX_NAME = 160, WIDTH = 640, HEIGHT = 620 };
+enum { MAX_COLUMNS = 256, MAX_FORCES = 5, MAX_NAME = 160, PANEL_WIDTH = 470, LETTER_WIDTH = 7, HEIGHT = 620 };
+
+static const char peak_title[] = "largest since the last row";
 
 typedef struct History {
   char names[MAX_COLUMNS][MAX_NAME];
@@ -99,8 +101,7 @@ static int write_peaks(FILE *script, const History *histories, int run_count, co
     int steps = find(&histories[r], "steps");
     bool misses = steps >= 0 && histories[r].largest[steps] > histories[r].row_count;
     if (misses && is_alive(&histories[r], column))
-      add_curve(script, &count, r, run_count, "column('contact_force_peak_N')", "largest since the last row",
-                labels[r]);
+      add_curve(script, &count, r, run_count, "column('contact_force_peak_N')", peak_title, labels[r]);
   }
   return count - MAX_FORCES * run_count;
 }
@@ -165,21 +166,36 @@ static void write_panels(FILE *script, const History *histories, int run_count, 
   fputs("\nunset multiplot\n", script);
 }
 
+// Characters that the longest entry of a key may have, the forces' own titles among them.
+static int longest_title(const History *histories, int run_count, const char *const *labels) {
+  size_t title = strlen(peak_title), label = 0;
+  for (int k = 0; k < histories[0].count; k++) {
+    char pair[MAX_NAME];
+    if (find_pair(histories[0].names[k], pair) && strlen(pair) > title) title = strlen(pair);
+  }
+  for (int r = 0; run_count > 1 && r < run_count; r++)
+    if (strlen(labels[r]) + 2 > label) label = strlen(labels[r]) + 2;
+  return (int)(title + label);
+}
+
 Status app_plot_history(FILE *script, const char *picture, const AppReportRun *runs, int run_count,
                         const char *const *labels) {
   History *histories = memory_zeroed((size_t)run_count, sizeof *histories);
   Status status = histories ? STATUS_OK : status_no_memory("the histories");
   for (int r = 0; !status && r < run_count; r++) status = read_history(&histories[r], &runs[r]);
+  // The key stands beside the panels, in letters of three quarters of the size that margins are measured in.
+  int margin = status ? 0 : 6 + 3 * longest_title(histories, run_count, labels) / 4;
   if (!status) {
     fputs("# gnuplot script; run it again with: gnuplot THIS_FILE\nset datafile separator ','\n", script);
     write_data(script, runs, run_count);
-    status = app_gnuplot_open(script, picture, WIDTH, HEIGHT);
+    status = app_gnuplot_open(script, picture, PANEL_WIDTH + LETTER_WIDTH * margin, HEIGHT);
   }
   if (!status) {
-    fputs("set border 3\nset tics nomirror\nset grid lc rgb '#e4e4e4' lt 1 lw 0.5\n"
-          "set key at graph 1.03,1 left top Left reverse noenhanced font small samplen 2\n"
-          "set lmargin 11\nset rmargin 26\n",
-          script);
+    fprintf(script,
+            "set border 3\nset tics nomirror\nset grid lc rgb '#e4e4e4' lt 1 lw 0.5\n"
+            "set key at graph 1.03,1 left top Left reverse noenhanced font small samplen 2\n"
+            "set lmargin 11\nset rmargin %d\n",
+            margin);
     write_panels(script, histories, run_count, labels);
   }
   memory_free(histories);

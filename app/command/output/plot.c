@@ -55,10 +55,16 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-// What tells two runs apart: their overlap models, else their directories.
+static const char *last_name(const char *directory) {
+  const char *slash = strrchr(directory, '/');
+  return slash && slash[1] ? slash + 1 : directory;
+}
+
+// What tells two runs apart: their overlap models, else the names of their directories, or their whole paths.
 static void label(const AppReportRun *runs, int count, const char **labels) {
-  for (int r = 0; r < count; r++) labels[r] = runs[r].directory;
+  for (int r = 0; r < count; r++) labels[r] = last_name(runs[r].directory);
   if (count < 2) return;
+  if (strcmp(labels[0], labels[1]) == 0) labels[0] = runs[0].directory, labels[1] = runs[1].directory;
   const char *a = record_find_text(runs[0].summary, "overlap"),
              *b = record_find_text(runs[1].summary, "overlap");
   if (a && b && strcmp(a, b) != 0) labels[0] = a, labels[1] = b;
