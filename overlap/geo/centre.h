@@ -14,16 +14,8 @@
 
 #include <stdbool.h>
 
+#include "overlap/geo/constants.h"
 #include "overlap/geo/lanes.h"
-
-enum { OVERLAP_GEO_MAX_STEPS = 40 };
-
-// Newton's decrement δ = (gᵀ H⁻¹ g)^½: up to FULL_STEP the whole step is taken, and the step from a point
-// with δ < CONVERGED ends at δ² or so.
-#define OVERLAP_GEO_FULL_STEP 0.2
-#define OVERLAP_GEO_CONVERGED 1e-7
-// Of the way to the nearest plane.
-#define OVERLAP_GEO_LONGEST_STEP 0.99
 
 // Moves `slack`, all positive at the start, to the centre. Returns the number of steps, 0 if it did not
 // converge.

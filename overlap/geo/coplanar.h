@@ -20,11 +20,6 @@
 #include "base/status.h"
 #include "overlap/geo/frame.h"
 
-// r₀ of faces that look the same way, and of faces that look at each other. The network's error grows below
-// r ≈ 0.4 for the first; slices it tells well, all that they need is the right start.
-#define OVERLAP_GEO_REACH_SAME 0.3
-#define OVERLAP_GEO_REACH_FACING 0.03
-
 enum { OVERLAP_GEO_MOST_CLOSE = GEO_LANES * GEO_LANES / 2 };
 
 // Two planes that nearly coincide.

@@ -32,11 +32,6 @@
 
 #include "overlap/geo/gate.h"
 
-// How far tr P, which is 3, may be off.
-#define OVERLAP_GEO_TRACE_TOLERANCE 1e-6
-// An overlap this small beside a tetrahedron, 1e-12 wide all around, is the rounding of its coordinates.
-#define OVERLAP_GEO_LEAST_SHARE 1e-36
-
 typedef struct OverlapGeoFrame {
   GeoColumns normal;       // ∇s_k [1/m], by component
   double slack[GEO_LANES]; // s_k at the centre

@@ -18,18 +18,8 @@
 
 #include <stdbool.h>
 
+#include "overlap/geo/constants.h"
 #include "overlap/geo/lanes.h"
-
-// A tetrahedron with det < OVERLAP_GEO_FLATTEST · (longest edge)³ is left to the exact model.
-#define OVERLAP_GEO_FLATTEST 1e-5
-#define OVERLAP_GEO_LEAST_DET 1e-280 // [m³]; below it dividing may overflow
-// Barycentric coordinates carry errors of some ε L³/det, L the tetrahedron's longest edge: the products of
-// three lengths that they are quotients of are rounded, and det is small beside them if it is flat. What is
-// no farther out than OVERLAP_GEO_ROUNDING L³/det, and OVERLAP_GEO_NOISE at least, counts as on the plane.
-#define OVERLAP_GEO_NOISE 1e-13
-#define OVERLAP_GEO_ROUNDING 0x1p-48 // 16 ε: about ten roundings in a height
-// A point this close to a plane is on it.
-#define OVERLAP_GEO_LEAST_SLACK 1e-15
 
 typedef enum OverlapGeoOutcome {
   OVERLAP_GEO_INSIDE, // they intersect, everything asked for is there

@@ -11,7 +11,15 @@
 
 #pragma GCC diagnostic ignored "-Wunused-function" // of single pairs
 
+#include <string.h>
+
+#include "overlap/geo/features/features.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi" // packs are returned by inlined functions only
+
 #include "overlap/geo/features/forward.inc"
+
+#include "overlap/geo/features/change.inc"
 
 #include "overlap/geo/features/backward.inc"
 

@@ -26,9 +26,6 @@ enum {
   OVERLAP_GEO_BUNDLE_ROW = OVERLAP_GEO_BUNDLE + OVERLAP_GEO_BLOCK + GEO_LANES, // and a pack beyond
 };
 
-// The centroid is inside: no slack becomes less than 1 − this of what it is at the centre.
-#define OVERLAP_GEO_LONGEST_SHIFT 0.99
-
 // A number of each of the pairs that intersect.
 typedef double OverlapGeoRow[OVERLAP_GEO_BUNDLE_ROW];
 

@@ -7,9 +7,19 @@
 #pragma GCC target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")
 #endif
 
+#include <string.h>
+
+#include "overlap/geo/features/features.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi" // packs are returned by inlined functions only
+
 #include "overlap/geo/features/forward.inc"
 
+#include "overlap/geo/features/change.inc"
+
 #include "overlap/geo/features/backward.inc"
+
+#include "overlap/geo/features/bend.inc"
 
 #include "overlap/geo/features/planes.inc"
 

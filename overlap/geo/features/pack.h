@@ -5,24 +5,19 @@
 #ifndef TETLAP_OVERLAP_GEO_FEATURES_PACK_H
 #define TETLAP_OVERLAP_GEO_FEATURES_PACK_H
 
+#include <stdbool.h>
+
 #include "overlap/geo/lanes.h"
 
 #ifndef GEO_PACK
 #define GEO_PACK 8
 #endif
 
-enum { GEO_ENTRIES = 36 };
-
 typedef double GeoPack __attribute__((vector_size(GEO_PACK * sizeof(double))));
 
-// The entries of a symmetric 8 × 8 matrix in each lane: the diagonal, then the rows below it.
-typedef struct GeoSymmetric {
-  GeoPack at[GEO_ENTRIES];
-} GeoSymmetric;
+#define GEO_PACK_ZERO ((GeoPack){0})
 
-static inline int geo_entry(int i, int j) {
-  return i == j ? i : i > j ? GEO_LANES + i * (i - 1) / 2 + j : GEO_LANES + j * (j - 1) / 2 + i;
-}
+#include "overlap/geo/features/invariants.h"
 
 // One lane to and from the whole matrix.
 static inline void geo_pack_matrix(const GeoMatrix *matrix, int lane, GeoSymmetric *pack) {
