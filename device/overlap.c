@@ -7,6 +7,8 @@
 
 #include "base/memory.h"
 #include "base/text.h"
+#include "device/overlap_geo.h"
+#include "device/overlap_stage.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 
@@ -15,23 +17,29 @@ enum { SIZE = OVERLAP_PAIR_SIZE, GATHER = 0, SCATTER = 1 };
 typedef struct DeviceOverlapChain {
   const char *model;
   const DeviceProgram *programs[DEVICE_OVERLAP_STAGES];
-  const OverlapOps *last; // answers on the host what is left
-  unsigned flags;         // of what that answers, besides its own
-  const char *weights;    // of a network; NULL: there is none
-  bool has_more;          // ∇V and x̄
+  unsigned flags;      // of what the host answers, besides its own
+  const char *weights; // of a TetrahedronPairNet; NULL: there is none
+  int feature_count;   // of a network of geo; 0: there is none
+  bool has_more;       // ∇V and x̄
 } DeviceOverlapChain;
 
 static const DeviceOverlapChain chains[DEVICE_OVERLAP_MODELS] = {
-    {"clip", {&device_program_clip, &device_program_scalar}, &overlap_clip_scalar_ops, 0, NULL, true},
-    {"clip32",
-     {&device_program_clip32, &device_program_clip, &device_program_scalar},
-     &overlap_clip_scalar_ops,
-     0,
-     NULL,
-     true},
-    {"tpn", {&device_program_tpn}, &overlap_exact_ops, OVERLAP_FALLBACK, "tpn", false},
+    {.model = "clip", .programs = {&device_program_clip, &device_program_scalar}, .has_more = true},
+    {.model = "clip32",
+     .programs = {&device_program_clip32, &device_program_clip, &device_program_scalar},
+     .has_more = true},
+    {.model = "tpn", .programs = {&device_program_tpn}, .flags = OVERLAP_FALLBACK, .weights = "tpn"},
+    {.model = "geo-small",
+     .programs = {&device_program_geo_small, &device_program_clip, &device_program_scalar},
+     .feature_count = 36,
+     .has_more = true},
+    {.model = "geo",
+     .programs = {&device_program_geo, &device_program_clip, &device_program_scalar},
+     .feature_count = 100,
+     .has_more = true},
 };
-const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {"clip", "clip32", "tpn"};
+const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {"clip", "clip32", "tpn", "geo-small",
+                                                                  "geo"};
 
 static const DeviceOverlapChain *find_chain(const char *model) {
   for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
@@ -48,7 +56,12 @@ static Status create(DeviceOverlap *overlap, const DeviceOverlapChain *chain) {
   const Device *device = overlap->device;
   for (int k = 0; k < DEVICE_OVERLAP_STAGES && chain->programs[k]; k++, overlap->stage_count++)
     TRY(device_build(device, chain->programs[k], &overlap->stages[k].module, overlap->stages[k].kernels));
+  overlap->host = (OverlapModel){.ops = chain->weights ? &overlap_exact_ops : &overlap_clip_scalar_ops};
   if (chain->weights) TRY(device_tpn_create(&overlap->tpn, device, chain->weights));
+  if (chain->feature_count > 0) {
+    TRY(device_geo_create(&overlap->geo, device, chain->model, chain->feature_count));
+    overlap->host = overlap->geo.host;
+  }
   TRY(device_build(device, &device_program_gather, &overlap->gather.module, overlap->gather.kernels));
   return device_take(device, 1, sizeof(int), NULL, &overlap->list_count);
 }
@@ -57,8 +70,9 @@ Status device_overlap_create(DeviceOverlap *overlap, const Device *device, const
   *overlap = (DeviceOverlap){.device = device};
   const DeviceOverlapChain *chain = overlap->chain = find_chain(model);
   if (!chain)
-    return status_fail(STATUS_USAGE,
-                       "overlap model '%s' has no kernels for devices; clip, clip32 and tpn have", model);
+    return status_fail(
+        STATUS_USAGE,
+        "overlap model '%s' has no kernels for devices; clip, clip32, tpn, geo-small and geo have", model);
   return create(overlap, chain);
 }
 
@@ -89,6 +103,7 @@ void device_overlap_destroy(DeviceOverlap *overlap) {
   release_rows(overlap), release_answers(overlap), release_inputs(overlap);
   release(overlap, &overlap->list_count);
   device_tpn_destroy(&overlap->tpn, device);
+  device_geo_destroy(&overlap->geo, device);
   for (int k = 0; k < DEVICE_OVERLAP_STAGES; k++)
     device->ops->discard(device->self, overlap->stages[k].module);
   device->ops->discard(device->self, overlap->gather.module);
@@ -143,50 +158,6 @@ Status device_overlap_put_mesh(DeviceOverlap *overlap, int vertex_count, const d
   return STATUS_OK;
 }
 
-// The arguments that all kernels on pairs begin with. `list`: NULL for all.
-static int add_pairs(const DeviceOverlap *overlap, int count, const DeviceMemory *list,
-                     DeviceArgument *arguments) {
-  static const DeviceMemory none = {0};
-  const DeviceArgument given[] = {device_int((int)overlap->kind), device_int(count),
-                                  device_int(overlap->count),     device_memory(&overlap->numbers),
-                                  device_memory(&overlap->tets),  device_memory(&overlap->pairs),
-                                  device_int(list != NULL),       device_memory(list ? list : &none)};
-  memcpy(arguments, given, sizeof given);
-  return sizeof given / sizeof *given;
-}
-
-// Starts the kernel of a stage.
-static Status launch_stage(const DeviceOverlap *overlap, int k, int count, DeviceQuantity quantity,
-                           DeviceArgument *arguments, int n) {
-  const Device *device = overlap->device;
-  const DeviceKernel *kernel = &overlap->stages[k].kernels[quantity];
-  if (!overlap->chain->weights) return device_launch(device, kernel, count, arguments, n);
-  n += device_tpn_arguments(&overlap->tpn, arguments + n);
-  return device->ops->launch(device->self, kernel, device_tpn_groups(count), arguments, n);
-}
-
-// One stage over `count` pairs; how many of them it leaves, in lists[k % 2].
-static Status run_stage(DeviceOverlap *overlap, int k, int count, DeviceQuantity quantity, int *left) {
-  const Device *device = overlap->device;
-  DeviceArgument arguments[DEVICE_MAX_ARGUMENTS];
-  int n = add_pairs(overlap, count, k > 0 ? &overlap->lists[(k + 1) % 2] : NULL, arguments);
-  const int none = 0;
-  double seconds = 0;
-  arguments[n++] = device_memory(&overlap->volume);
-  arguments[n++] = device_memory(&overlap->flags);
-  arguments[n++] = device_memory(&overlap->lists[k % 2]);
-  arguments[n++] = device_memory(&overlap->list_count);
-  if (quantity != DEVICE_VOLUME) arguments[n++] = device_memory(&overlap->more);
-  TRY(device->ops->put(device->self, &overlap->list_count, 0, sizeof none, &none));
-  TRY(device->ops->mark(device->self, DEVICE_BEGIN));
-  TRY(launch_stage(overlap, k, count, quantity, arguments, n));
-  TRY(device->ops->mark(device->self, DEVICE_END));
-  TRY(device->ops->get(device->self, &overlap->list_count, 0, sizeof *left, left));
-  TRY(device->ops->elapsed(device->self, &seconds));
-  overlap->kernel_s += seconds;
-  return STATUS_OK;
-}
-
 // --- What is left to the host.
 
 typedef struct Rows {
@@ -231,7 +202,7 @@ static Status make_rows_room(DeviceOverlap *overlap, int count) {
 static Status fetch_rows(DeviceOverlap *overlap, const DeviceMemory *list, Rows *rows) {
   const Device *device = overlap->device;
   DeviceArgument arguments[DEVICE_MAX_ARGUMENTS];
-  int n = add_pairs(overlap, rows->count, list, arguments);
+  int n = device_overlap_pairs(overlap, rows->count, list, arguments);
   arguments[n++] = device_memory(&overlap->rows);
   TRY(device_launch(device, &overlap->gather.kernels[GATHER], rows->count, arguments, n));
   TRY(device->ops->get(device->self, list, 0, (size_t)rows->count * sizeof(int), rows->numbers));
@@ -239,7 +210,7 @@ static Status fetch_rows(DeviceOverlap *overlap, const DeviceMemory *list, Rows 
                           rows->pairs);
 }
 
-static Status answer_row(const DeviceOverlapChain *chain, Rows *rows, int i, DeviceQuantity quantity) {
+static Status answer_row(const DeviceOverlap *overlap, Rows *rows, int i, DeviceQuantity quantity) {
   const double *pair = rows->pairs + (size_t)i * SIZE;
   for (int c = 0; c < SIZE; c++)
     if (!isfinite(pair[c]))
@@ -252,18 +223,18 @@ static Status answer_row(const DeviceOverlapChain *chain, Rows *rows, int i, Dev
                                     quantity == DEVICE_GRADIENT ? rows->more + (size_t)i * SIZE : NULL,
                                 .centroid = quantity == DEVICE_CENTROID ? rows->more + (size_t)i * 3 : NULL,
                                 .flags = &flags};
-  TRY(chain->last->eval_pair(NULL, pair, &answer));
-  rows->flags[i] = (unsigned char)(flags | chain->flags);
+  TRY(overlap->host.ops->eval_pair(overlap->host.self, pair, &answer));
+  rows->flags[i] = (unsigned char)(flags | overlap->chain->flags);
   return STATUS_OK;
 }
 
-static Status answer_rows(const DeviceOverlapChain *chain, Rows *rows, DeviceQuantity quantity) {
+static Status answer_rows(const DeviceOverlap *overlap, Rows *rows, DeviceQuantity quantity) {
   int first_failed = INT_MAX;
 #pragma omp parallel for schedule(dynamic, 16) reduction(min : first_failed) if (rows->count > 64)
   for (int i = 0; i < rows->count; i++)
-    if (answer_row(chain, rows, i, quantity) != STATUS_OK && i < first_failed) first_failed = i;
+    if (answer_row(overlap, rows, i, quantity) != STATUS_OK && i < first_failed) first_failed = i;
   // the message belongs to the thread that failed: let this one see it too
-  return first_failed == INT_MAX ? STATUS_OK : answer_row(chain, rows, first_failed, quantity);
+  return first_failed == INT_MAX ? STATUS_OK : answer_row(overlap, rows, first_failed, quantity);
 }
 
 static Status send_rows(DeviceOverlap *overlap, const DeviceMemory *list, const Rows *rows,
@@ -297,10 +268,24 @@ static Status answer_on_host(DeviceOverlap *overlap, const DeviceMemory *list, i
   TRY(make_rows_room(overlap, count));
   TRY(create_rows(&rows, count));
   Status status = fetch_rows(overlap, list, &rows);
-  if (status == STATUS_OK) status = answer_rows(overlap->chain, &rows, quantity);
+  if (status == STATUS_OK) status = answer_rows(overlap, &rows, quantity);
   if (status == STATUS_OK) status = send_rows(overlap, list, &rows, quantity);
   destroy_rows(&rows);
   return status;
+}
+
+// Each stage takes what the one before leaves; what is left in the end, in lists[*list].
+static Status run_stages(DeviceOverlap *overlap, DeviceQuantity quantity, int *left, int *list) {
+  *left = overlap->count;
+  for (int k = 0; k<overlap->stage_count && * left> 0; k++) {
+    const DeviceOverlapAnswers answers = {&overlap->volume, &overlap->flags, &overlap->more,
+                                          &overlap->lists[k % 2], &overlap->list_count};
+    TRY(device_overlap_stage(overlap, k, *left, k > 0 ? &overlap->lists[(k + 1) % 2] : NULL, quantity,
+                             &answers, left));
+    overlap->handed_on[k] = *left;
+    *list = k % 2;
+  }
+  return STATUS_OK;
 }
 
 Status device_overlap_run(DeviceOverlap *overlap, DeviceQuantity quantity) {
@@ -313,15 +298,12 @@ Status device_overlap_run(DeviceOverlap *overlap, DeviceQuantity quantity) {
     TRY(device_take(device, room, sizeof(double), NULL, &overlap->more));
   }
   overlap->last = quantity;
-  int left = overlap->count;
   overlap->kernel_s = 0;
   memset(overlap->handed_on, 0, sizeof overlap->handed_on);
-  for (int k = 0; k < overlap->stage_count && left > 0; k++) {
-    TRY(run_stage(overlap, k, left, quantity, &left));
-    overlap->handed_on[k] = left;
-  }
-  if (left == 0) return STATUS_OK;
-  return answer_on_host(overlap, &overlap->lists[(overlap->stage_count + 1) % 2], left, quantity);
+  int left = 0, list = 0;
+  TRY(overlap->chain->feature_count > 0 ? device_overlap_geo_run(overlap, quantity, &left)
+                                        : run_stages(overlap, quantity, &left, &list));
+  return left == 0 ? STATUS_OK : answer_on_host(overlap, &overlap->lists[list], left, quantity);
 }
 
 static Status get_flags(const DeviceOverlap *overlap, unsigned *flags) {

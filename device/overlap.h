@@ -3,15 +3,19 @@
 //
 //   clip    pairs ─► clip ─ doubtful ─► clip-scalar ─ too flat ─► the host's clip-scalar: exact
 //   clip32  pairs ─► clip32 ─ doubtful ─► clip ─ doubtful ─► clip-scalar ─ too flat ─► the host's
+//   geo     pairs ─► gate to network; close pairs ─► clip ─► clip-scalar (overlap_geo.h) ─ no frame ─► the
+//           host's geo; geo-small likewise
 //   tpn     pairs ─► tpn ─ the first is flat ─► the host's exact; V only, and flags without BEYOND
 //
 // What the host answers goes back to the device, so that all answers are there. What a pair gets is to the
-// bit what the model of that name gives on a processor (clip32's doubtful ones: what `clip` gives), and does
-// not depend on which others come with it.
+// bit what the model of that name gives on a processor (clip32's doubtful ones: what `clip` gives; geo's to
+// rounding, for the processor fuses multiplications and additions there), and does not depend on which others
+// come with it.
 #ifndef TETLAP_DEVICE_OVERLAP_H
 #define TETLAP_DEVICE_OVERLAP_H
 
 #include "device/device.h"
+#include "device/geo.h"
 #include "device/tpn.h"
 #include "overlap/ops.h"
 
@@ -22,7 +26,7 @@ typedef enum DevicePairs {
   DEVICE_PAIRS_INDICES, // positions, tetrahedra, and two tetrahedra a pair; gradients (24, count)
 } DevicePairs;
 
-enum { DEVICE_OVERLAP_STAGES = 3, DEVICE_OVERLAP_MODELS = 3 };
+enum { DEVICE_OVERLAP_STAGES = 3, DEVICE_OVERLAP_MODELS = 5 };
 extern const char *const device_overlap_models[DEVICE_OVERLAP_MODELS]; // names
 
 // What is wanted of a batch; as the kernels of a program are listed.
@@ -37,7 +41,9 @@ typedef struct DeviceOverlap {
   const Device *device;                   // borrowed
   const struct DeviceOverlapChain *chain; // borrowed
   int stage_count;
-  DeviceTpn tpn; // the network, where there is one
+  DeviceTpn tpn;     // the network, where there is one
+  DeviceGeo geo;     // likewise
+  OverlapModel host; // answers on the host what is left; self borrowed
   DeviceOverlapStage stages[DEVICE_OVERLAP_STAGES], gather;
   DevicePairs kind;
   DeviceQuantity last; // what was evaluated last

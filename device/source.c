@@ -32,6 +32,21 @@ PIECE(scalar, "device/kernels/scalar.inc");
 PIECE(polytope_types, "overlap/clip/polytope_types.h");
 PIECE(polytope, "overlap/clip/polytope.inc");
 PIECE(clip_sums, "overlap/clip/sums.inc");
+PIECE(geo_lanes, "overlap/geo/lanes.h");
+PIECE(geo_constants, "overlap/geo/constants.h");
+PIECE(geo_invariants, "overlap/geo/features/invariants.h");
+PIECE(geo_gate, "overlap/geo/bundle/gate_steps.inc");
+PIECE(geo_frame, "overlap/geo/bundle/frame_steps.inc");
+PIECE(geo_forward, "overlap/geo/features/forward.inc");
+PIECE(geo_backward, "overlap/geo/features/backward.inc");
+PIECE(geo_centroid, "overlap/geo/bundle/centroid_steps.inc");
+PIECE(geo_coplanar_types, "overlap/geo/coplanar_types.h");
+PIECE(geo_coplanar, "overlap/geo/coplanar.inc");
+PIECE(geo_pack, "device/kernels/geo_pack.inc");
+PIECE(geo_rows, "device/kernels/geo_rows.h");
+PIECE(geo, "device/kernels/geo.inc");
+PIECE(geo_network, "device/kernels/geo_network.inc");
+PIECE(geo_answer, "device/kernels/geo_answer.inc");
 
 const DeviceProgram device_program_clip = {
     .name = "clip",
@@ -81,9 +96,36 @@ const DeviceProgram device_program_tpn = {
     .items = 64,
 };
 
-static const DeviceProgram *const programs[] = {&device_program_clip,   &device_program_clip32,
-                                                &device_program_gather, &device_program_poses,
-                                                &device_program_tpn,    &device_program_scalar};
+#define GEO_PIECES                                                                                           \
+  {                                                                                                          \
+    geo_lanes, geo_pack, geo_constants, geo_invariants, geo_gate, geo_frame, geo_forward, geo_backward,      \
+        geo_centroid, geo_coplanar_types, geo_coplanar, one, pairs, geo_rows, geo, geo_network, geo_answer   \
+  }
+#define GEO_KERNELS                                                                                          \
+  {                                                                                                          \
+    "geo_gate", "geo_frame", "geo_features", "geo_network", "geo_volume", "geo_gradient", "geo_centroid",    \
+        "geo_blend"                                                                                          \
+  }
+
+const DeviceProgram device_program_geo_small = {
+    .name = "geo-small",
+    .defines = "#define GROUPS_AT_ONCE 6\n#define GEO_FEATURES 36\n",
+    .pieces = GEO_PIECES,
+    .kernels = GEO_KERNELS,
+    .items = 64,
+};
+
+const DeviceProgram device_program_geo = {
+    .name = "geo",
+    .defines = "#define GROUPS_AT_ONCE 6\n#define GEO_FEATURES 100\n",
+    .pieces = GEO_PIECES,
+    .kernels = GEO_KERNELS,
+    .items = 64,
+};
+
+static const DeviceProgram *const programs[] = {
+    &device_program_clip, &device_program_clip32, &device_program_gather,    &device_program_poses,
+    &device_program_tpn,  &device_program_scalar, &device_program_geo_small, &device_program_geo};
 
 const DeviceProgram *const *device_source_programs(int *count) {
   *count = sizeof programs / sizeof *programs;

@@ -17,7 +17,7 @@
 
 #include "base/status.h"
 
-enum { DEVICE_MAX_PIECES = 12, DEVICE_MAX_KERNELS = 8 };
+enum { DEVICE_MAX_PIECES = 20, DEVICE_MAX_KERNELS = 8 };
 
 typedef enum DeviceLanguage { DEVICE_OPENCL_C, DEVICE_CUDA_CPP } DeviceLanguage;
 
@@ -30,7 +30,8 @@ typedef struct DeviceProgram {
 } DeviceProgram;
 
 extern const DeviceProgram device_program_clip, device_program_clip32, device_program_gather,
-    device_program_poses, device_program_tpn, device_program_scalar;
+    device_program_poses, device_program_tpn, device_program_scalar, device_program_geo_small,
+    device_program_geo;
 
 // All programs, an array of `*count`.
 const DeviceProgram *const *device_source_programs(int *count);

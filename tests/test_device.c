@@ -17,7 +17,7 @@
 #include "overlap/clip/lanes.h"
 #include "overlap/model.h"
 
-enum { MAX_DEVICES = 4, COUNT = 4099, MEMBERS = 96 };
+enum { MAX_DEVICES = 4, COUNT = 4099, MEMBERS = 96, MODELS = 3 }; // models: those that answer to the bit
 
 static Device devices[MAX_DEVICES];
 static int device_count;
@@ -121,8 +121,8 @@ static void check_batch(const Device *device, const char *model, const double *p
 }
 
 START_TEST(bench_sets_are_answered_to_the_bit) {
-  const Device *device = &devices[_i / DEVICE_OVERLAP_MODELS];
-  const char *model = device_overlap_models[_i % DEVICE_OVERLAP_MODELS];
+  const Device *device = &devices[_i / MODELS];
+  const char *model = device_overlap_models[_i % MODELS];
   double *pairs = memory_zeroed(COUNT * 24, sizeof *pairs);
   for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
     ck_assert_ok(app_bench_pairs_make(app_bench_sets[set], COUNT, 3, pairs));
@@ -133,8 +133,8 @@ START_TEST(bench_sets_are_answered_to_the_bit) {
 END_TEST
 
 START_TEST(hard_pairs_are_answered_to_the_bit) {
-  const Device *device = &devices[_i / DEVICE_OVERLAP_MODELS];
-  const char *model = device_overlap_models[_i % DEVICE_OVERLAP_MODELS];
+  const Device *device = &devices[_i / MODELS];
+  const char *model = device_overlap_models[_i % MODELS];
   int count = DATAGEN_HARD_CLASS_COUNT * MEMBERS;
   double *pairs = memory_zeroed((size_t)count * 24, sizeof *pairs);
   for (int i = 0; i < count; i++)
@@ -259,8 +259,8 @@ int main(void) {
   setenv("CK_FORK", "no", 1); // a driver's threads do not survive a fork
   open_devices();
   TCase *cases = tcase_create("device");
-  tcase_add_loop_test(cases, bench_sets_are_answered_to_the_bit, 0, device_count * DEVICE_OVERLAP_MODELS);
-  tcase_add_loop_test(cases, hard_pairs_are_answered_to_the_bit, 0, device_count * DEVICE_OVERLAP_MODELS);
+  tcase_add_loop_test(cases, bench_sets_are_answered_to_the_bit, 0, device_count * MODELS);
+  tcase_add_loop_test(cases, hard_pairs_are_answered_to_the_bit, 0, device_count * MODELS);
   tcase_add_loop_test(cases, centroids_are_answered_to_the_bit, 0, device_count * 2);
   tcase_add_loop_test(cases, where_the_numbers_lie_does_not_matter, 0, device_count);
   tcase_add_loop_test(cases, doubtful_pairs_are_handed_on_and_counted, 0, device_count);

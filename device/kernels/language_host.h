@@ -8,6 +8,8 @@
 
 // kernels count with int, as the devices' languages do
 #pragma GCC diagnostic ignored "-Wsign-conversion"
+// and take all that kernels of their kind take
+#pragma GCC diagnostic ignored "-Wunused-parameter"
 
 #define KERNEL(items, name, ...) static void name(const int GROUP, __VA_ARGS__)
 #define GLOBAL

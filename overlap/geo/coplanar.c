@@ -7,55 +7,12 @@
 #include "overlap/clip/clip.h"
 #include "overlap/geo/hessian.h"
 
-enum { SIZE = OVERLAP_PAIR_SIZE, ACROSS = GEO_LANES / 2 };
+enum { SIZE = OVERLAP_PAIR_SIZE };
 
-static bool is_close(const GeoMatrix *projector, int k, int l, double side, OverlapGeoClose *close) {
-  double reach = side < 0 ? OVERLAP_GEO_REACH_SAME : OVERLAP_GEO_REACH_FACING;
-  double kk = projector->row[k][k], ll = projector->row[l][l];
-  double apart = kk + ll + 2 * side * projector->row[k][l], measure = kk * ll;
-  if (!(apart < reach * measure)) return false;
-  double ratio = fmax(apart, 0) / measure, left = 1 - ratio / reach;
-  *close = (OverlapGeoClose){.k = k,
-                             .l = l,
-                             .side = side,
-                             .ratio = ratio,
-                             .share = left * left * left,
-                             .slope = -3 * left * left / reach,
-                             .bending = 6 * left / (reach * reach)};
-  return true;
-}
+#include "overlap/geo/coplanar.inc"
 
 void overlap_geo_coplanar_find(const GeoMatrix *projector, OverlapGeoCoplanar *coplanar) {
-  coplanar->count = 0;
-  double kept = 1;
-  for (int k = 0; k < ACROSS; k++)
-    for (int l = ACROSS; l < GEO_LANES; l++)
-      for (int side = -1; side <= 1; side += 2) {
-        OverlapGeoClose *close = &coplanar->close[coplanar->count];
-        if (!is_close(projector, k, l, side, close)) continue;
-        kept *= 1 - close->share;
-        coplanar->count++;
-      }
-  coplanar->share = 1 - kept;
-}
-
-// What the planes other than c and d leave to the network.
-static double left_by_others(const OverlapGeoCoplanar *coplanar, int c, int d) {
-  double kept = 1;
-  for (int o = 0; o < coplanar->count; o++)
-    if (o != c && o != d) kept *= 1 - coplanar->close[o].share;
-  return kept;
-}
-
-// ∂r_kl/∂P, times `factor`.
-static void add_slope(const GeoMatrix *projector, const OverlapGeoClose *close, double factor,
-                      GeoMatrix *slope) {
-  int k = close->k, l = close->l;
-  double kk = projector->row[k][k], ll = projector->row[l][l], inverse = 1 / (kk * ll);
-  slope->row[k][k] += factor * (inverse - close->ratio / kk);
-  slope->row[l][l] += factor * (inverse - close->ratio / ll);
-  slope->row[k][l] += factor * close->side * inverse;
-  slope->row[l][k] += factor * close->side * inverse;
+  find_close(projector, coplanar);
 }
 
 // δr_kl
@@ -82,11 +39,7 @@ static void add_bend(const GeoMatrix *projector, const OverlapGeoClose *close, c
 
 void overlap_geo_coplanar_slope(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,
                                 GeoMatrix *slope) {
-  memset(slope, 0, sizeof *slope);
-  for (int c = 0; c < coplanar->count; c++) {
-    const OverlapGeoClose *close = &coplanar->close[c];
-    add_slope(projector, close, left_by_others(coplanar, c, c) * close->slope, slope);
-  }
+  find_share_slope(coplanar, projector, slope);
 }
 
 void overlap_geo_coplanar_bend(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,

@@ -18,23 +18,8 @@
 #define TETLAP_OVERLAP_GEO_COPLANAR_H
 
 #include "base/status.h"
+#include "overlap/geo/coplanar_types.h"
 #include "overlap/geo/frame.h"
-
-enum { OVERLAP_GEO_MOST_CLOSE = GEO_LANES * GEO_LANES / 2 };
-
-// Two planes that nearly coincide.
-typedef struct OverlapGeoClose {
-  int k, l;
-  double side;                  // −1: they look the same way, +1: at each other
-  double ratio;                 // r_kl
-  double share, slope, bending; // w_kl and its first two derivatives by r_kl
-} OverlapGeoClose;
-
-typedef struct OverlapGeoCoplanar {
-  int count; // 0 as a rule
-  OverlapGeoClose close[OVERLAP_GEO_MOST_CLOSE];
-  double share; // w
-} OverlapGeoCoplanar;
 
 void overlap_geo_coplanar_find(const GeoMatrix *projector, OverlapGeoCoplanar *coplanar);
 

@@ -17,9 +17,9 @@ typedef struct GeoColumns {
 } GeoColumns;
 
 static inline double geo_sum(const double x[GEO_LANES]) {
-  double half[4];
-  for (int l = 0; l < 4; l++) half[l] = x[l] + x[l + 4];
-  return (half[0] + half[2]) + (half[1] + half[3]);
+  double part[4];
+  for (int l = 0; l < 4; l++) part[l] = x[l] + x[l + 4];
+  return (part[0] + part[2]) + (part[1] + part[3]);
 }
 
 static inline double geo_dot(const double x[GEO_LANES], const double y[GEO_LANES]) {

@@ -174,6 +174,10 @@ void overlap_geo_network_destroy(OverlapGeoNet *net) {
   memory_free(net);
 }
 
+const NetModel_f64 *overlap_geo_network_model(const OverlapGeoNet *net) {
+  return &net->model;
+}
+
 OverlapGeoNetwork overlap_geo_network_interface(const OverlapGeoNet *net) {
   return (OverlapGeoNetwork){.self = net,
                              .feature_count = net->model.plan->shape.input_count,

@@ -21,6 +21,9 @@ Status overlap_geo_network_create(OverlapGeoNet **net, const char *path);
 Status overlap_geo_network_create_bound(OverlapGeoNet **net, const char *path);
 void overlap_geo_network_destroy(OverlapGeoNet *net);
 
+// The network itself, the net's.
+const NetModel_f64 *overlap_geo_network_model(const OverlapGeoNet *net);
+
 // Borrows the net.
 OverlapGeoNetwork overlap_geo_network_interface(const OverlapGeoNet *net);
 

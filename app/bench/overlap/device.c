@@ -56,7 +56,7 @@ static const AppBenchColumn columns[] = {
     {"residence", APP_BENCH_TEXT, offsetof(Row, residence), "residence", "where pairs and answers lie"},
     {"batch", APP_BENCH_INTEGER, offsetof(Row, batch), "batch", "pairs a call"},
     {"handed_on", APP_BENCH_NUMBER, offsetof(Row, handed_on), "handed on",
-     "share of the pairs that the first kernel left"},
+     "share of the pairs that the first kernel left; of geo, those that clip answers, too"},
     {"handed_to_host", APP_BENCH_NUMBER, offsetof(Row, to_host), "to host",
      "share of the pairs that the processor answered"},
     {"kernel_pairs_s", APP_BENCH_NUMBER, offsetof(Row, kernel_rate), "kernel pairs/s",
@@ -205,7 +205,8 @@ static Status measure_sets(Bench *bench) {
   if (bench->count == 0)
     return status_fail(
         STATUS_USAGE,
-        "a device answers V, V+grad, V+centroid of clip and clip32, V of tpn: nothing to measure");
+        "a device answers V, V+grad, V+centroid of clip, clip32, geo-small and geo, V of tpn: nothing to "
+        "measure");
   return print(bench);
 }
 
