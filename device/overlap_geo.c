@@ -6,8 +6,8 @@
 #include "device/kernels/geo_rows.h"
 #include "device/overlap_stage.h"
 
-enum { GATE, FRAME, FEATURES, NETWORK, VOLUME, BLEND = 7 }; // of the first stage's program
-enum { CLIP = 1, SCALAR = 2 };                              // stages
+enum { GATE, FRAME, FEATURES, NETWORK, VOLUME, BLEND = 7, PULL }; // of the first stage's program
+enum { CLIP = 1, SCALAR = 2 };                                    // stages
 
 static const int widths[] = {0, 24, 3}; // numbers beside V, of DeviceQuantity
 
@@ -41,7 +41,7 @@ static Status run_gate(DeviceOverlap *overlap, int first, int end, DeviceQuantit
   return device_overlap_count(overlap, &geo->slot_count, inside);
 }
 
-// Frame to the network's outputs, of `count` slots.
+// Frame to the network's outputs, and for ∇V to Φ, of `count` slots.
 static Status run_network(const DeviceOverlap *overlap, int count, DeviceQuantity quantity) {
   const DeviceGeo *geo = &overlap->geo;
   const DeviceArgument frame[] = {
@@ -61,8 +61,10 @@ static Status run_network(const DeviceOverlap *overlap, int count, DeviceQuantit
   const int groups = count / GEO_COLUMNS + (count % GEO_COLUMNS > 0);
   TRY(launch(overlap, FRAME, count, frame, sizeof frame / sizeof *frame));
   TRY(launch(overlap, FEATURES, count, features, sizeof features / sizeof *features));
-  return device->ops->launch(device->self, &overlap->stages[0].kernels[NETWORK], groups, network,
-                             sizeof network / sizeof *network);
+  TRY(device->ops->launch(device->self, &overlap->stages[0].kernels[NETWORK], groups, network,
+                          sizeof network / sizeof *network));
+  if (quantity != DEVICE_GRADIENT) return STATUS_OK;
+  return launch(overlap, PULL, count, features, sizeof features / sizeof *features);
 }
 
 static Status write_answers(const DeviceOverlap *overlap, int count, DeviceQuantity quantity) {

@@ -109,7 +109,7 @@ const DeviceProgram device_program_tpn = {
 
 const DeviceProgram device_program_geo_small = {
     .name = "geo-small",
-    .defines = "#define GROUPS_AT_ONCE 6\n#define GEO_FEATURES 36\n",
+    .defines = "#define GROUPS_AT_ONCE 4\n#define GEO_FEATURES 36\n",
     .pieces = GEO_PIECES,
     .kernels = GEO_KERNELS,
     .items = 64,
@@ -117,7 +117,7 @@ const DeviceProgram device_program_geo_small = {
 
 const DeviceProgram device_program_geo = {
     .name = "geo",
-    .defines = "#define GROUPS_AT_ONCE 6\n#define GEO_FEATURES 100\n",
+    .defines = "#define GROUPS_AT_ONCE 4\n#define GEO_FEATURES 100\n",
     .pieces = GEO_PIECES,
     .kernels = GEO_KERNELS,
     .items = 64,

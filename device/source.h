@@ -17,7 +17,7 @@
 
 #include "base/status.h"
 
-enum { DEVICE_MAX_PIECES = 20, DEVICE_MAX_KERNELS = 8 };
+enum { DEVICE_MAX_PIECES = 20, DEVICE_MAX_KERNELS = 10 };
 
 typedef enum DeviceLanguage { DEVICE_OPENCL_C, DEVICE_CUDA_CPP } DeviceLanguage;
 
