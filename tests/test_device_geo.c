@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/bench/pairs.h"
+#include "app/bench/overlap/pairs.h"
 #include "base/memory.h"
 #include "datagen/hard.h"
 #include "device/overlap.h"
