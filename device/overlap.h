@@ -14,48 +14,10 @@
 #ifndef TETLAP_DEVICE_OVERLAP_H
 #define TETLAP_DEVICE_OVERLAP_H
 
-#include "device/device.h"
-#include "device/geo.h"
-#include "device/tpn.h"
-#include "overlap/ops.h"
+#include "device/overlap_state.h"
 
-// Where a batch's numbers lie; as PAIRS_… in kernels/pairs.inc.
-typedef enum DevicePairs {
-  DEVICE_PAIRS_ROWS,    // (count, 24), gradients likewise
-  DEVICE_PAIRS_COLUMNS, // (24, count), gradients likewise
-  DEVICE_PAIRS_INDICES, // positions, tetrahedra, and two tetrahedra a pair; gradients (24, count)
-} DevicePairs;
-
-enum { DEVICE_OVERLAP_STAGES = 3, DEVICE_OVERLAP_MODELS = 5 };
+enum { DEVICE_OVERLAP_MODELS = 5 };
 extern const char *const device_overlap_models[DEVICE_OVERLAP_MODELS]; // names
-
-// What is wanted of a batch; as the kernels of a program are listed.
-typedef enum DeviceQuantity { DEVICE_VOLUME, DEVICE_GRADIENT, DEVICE_CENTROID } DeviceQuantity;
-
-typedef struct DeviceOverlapStage {
-  void *module; // owned
-  DeviceKernel kernels[DEVICE_MAX_KERNELS];
-} DeviceOverlapStage;
-
-typedef struct DeviceOverlap {
-  const Device *device;                   // borrowed
-  const struct DeviceOverlapChain *chain; // borrowed
-  int stage_count;
-  DeviceTpn tpn;     // the network, where there is one
-  DeviceGeo geo;     // likewise
-  OverlapModel host; // answers on the host what is left; self borrowed
-  DeviceOverlapStage stages[DEVICE_OVERLAP_STAGES], gather;
-  DevicePairs kind;
-  DeviceQuantity last; // what was evaluated last
-  int count, capacity; // pairs: of the batch, and the most there may be
-  DeviceMemory numbers, tets, pairs;
-  DeviceMemory volume, more, flags;                   // answers; more: ∇V or x̄; flags are one byte each
-  DeviceMemory lists[2], list_count;                  // doubtful pairs
-  DeviceMemory rows, row_volume, row_more, row_flags; // what the host answers
-  int row_capacity;
-  double kernel_s;                      // of the last batch: what the stages' kernels took [s]
-  int handed_on[DEVICE_OVERLAP_STAGES]; // of the last batch: pairs that stage k left to the next, or the host
-} DeviceOverlap;
 
 // A zeroed one, and one whose creation failed, can be destroyed. STATUS_USAGE: no kernels for that model.
 Status device_overlap_create(DeviceOverlap *overlap, const Device *device, const char *model);

@@ -9,7 +9,7 @@
 #ifndef TETLAP_DEVICE_OVERLAP_GEO_H
 #define TETLAP_DEVICE_OVERLAP_GEO_H
 
-#include "device/overlap.h"
+#include "device/overlap_state.h"
 
 // All pairs but `*left`, which are listed in lists[0]. handed_on: what clip and clip-scalar answered, too,
 // and what is left.

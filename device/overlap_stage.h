@@ -3,7 +3,7 @@
 #ifndef TETLAP_DEVICE_OVERLAP_STAGE_H
 #define TETLAP_DEVICE_OVERLAP_STAGE_H
 
-#include "device/overlap.h"
+#include "device/overlap_state.h"
 
 // Writes the arguments that all kernels on pairs begin with; how many. `list`: NULL for all pairs.
 int device_overlap_pairs(const DeviceOverlap *overlap, int count, const DeviceMemory *list,

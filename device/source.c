@@ -104,7 +104,7 @@ const DeviceProgram device_program_tpn = {
 #define GEO_KERNELS                                                                                          \
   {                                                                                                          \
     "geo_gate", "geo_frame", "geo_features", "geo_network", "geo_volume", "geo_gradient", "geo_centroid",    \
-        "geo_blend"                                                                                          \
+        "geo_blend", "geo_pull"                                                                              \
   }
 
 const DeviceProgram device_program_geo_small = {
