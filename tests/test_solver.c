@@ -441,6 +441,20 @@ START_TEST(multigrid_gives_the_same_bits_twice_and_on_any_number_of_threads) {
 }
 END_TEST
 
+START_TEST(a_factor_gives_the_same_bits_on_any_number_of_threads) {
+  double residual, *x = memory_zeroed(20000, sizeof *x), *again = memory_zeroed(20000, sizeof *x);
+  bend_bar(&fem_solver_cholmod, 1, &residual, x, true);
+  ck_assert_near(residual, 0, 1e-10);
+  for (int threads = 2; threads <= 4; threads *= 2) {
+    omp_set_num_threads(threads);
+    bend_bar(&fem_solver_cholmod, threads, &residual, again, true);
+    ck_assert_mem_eq(x, again, 20000 * sizeof *x);
+  }
+  omp_set_num_threads(1);
+  memory_free(x), memory_free(again);
+}
+END_TEST
+
 START_TEST(multigrid_needs_far_fewer_iterations_than_blocks_of_vertices) {
   double residual;
   long long blocks = bend_bar(&fem_solver_pcg, 1, &residual, NULL, true);
@@ -594,6 +608,7 @@ int main(void) {
   tcase_add_test(cases, what_cannot_be_solved_is_a_retry_and_the_next_matrix_is_fine);
   tcase_add_test(cases, an_indefinite_matrix_is_found_while_iterating);
   tcase_add_test(cases, multigrid_gives_the_same_bits_twice_and_on_any_number_of_threads);
+  tcase_add_test(cases, a_factor_gives_the_same_bits_on_any_number_of_threads);
   tcase_add_test(cases, multigrid_needs_far_fewer_iterations_than_blocks_of_vertices);
   tcase_add_test(cases, a_hierarchy_that_is_kept_never_touches_the_answer);
   tcase_add_test(cases, a_hierarchy_is_kept_while_c_changes_little);

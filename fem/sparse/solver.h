@@ -44,6 +44,9 @@ typedef struct FemSolverOps {
   // Condensed: solves S x = b, size n. Full: size 2n. After a factorise that went well. RETRY: no
   // convergence, or a solution that is not finite. b and x must not overlap.
   Status (*solve)(void *self, const double *b, double *x);
+  // Optional, of iterative solvers whose tolerance the scene does not say: that of the solves to come, at
+  // least the solver's own, as far as Newton's method needs it. 0: its own again.
+  void (*aim)(void *self, double tolerance);
   // Optional: what was kept for the numbers to come is dropped; the next factorise begins from nothing.
   void (*forget)(void *self);
   void (*destroy)(void *self);

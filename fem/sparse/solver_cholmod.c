@@ -3,10 +3,10 @@
 // neighbours, so the ordering is found on the graph of vertices (a third of the nodes, a ninth of the edges)
 // and carried over.
 //
-// Threads: CHOLMOD opens teams of four for its own loops whatever OpenMP is set to, between calls of OpenBLAS
-// that open teams of another size. Teams that change size thousands of times a factorisation cost more than
-// they give: two to three times at 5,000 vertices, a hundred times on a machine with other work. A host
-// `teams` region with a thread limit gives both the same size, one below LARGE_WORK.
+// Threads: one. OpenBLAS divides its work by their number, and the last bits of a factor with it: a cube of
+// 50,000 vertices had other bits on 1, 2 and 4 threads. CHOLMOD's own loops, in teams of four whatever OpenMP
+// is set to, cost more than they give between calls of it: two to three times at 5,000 vertices, a hundred
+// times on a machine with other work. A host `teams` region with a thread limit holds them.
 #include "fem/sparse/solver.h"
 
 #include <omp.h>
@@ -18,13 +18,7 @@
 
 // Smaller graphs are ordered by minimum degree: nested dissection gains nothing there.
 enum { SMALL_GRAPH = 300 };
-// Below this many floating-point operations (some seconds of one core) one thread factorises.
-static const double LARGE_WORK = 1e11;
-enum { CHOLMOD_TEAM = 4 };
-
 typedef struct CholmodSolver {
-  int threads;
-  int team; // threads that factorise
   cholmod_common common;
   cholmod_factor *factor;   // of the analysed layout; NULL before
   cholmod_dense *x, *y, *e; // kept between solves
@@ -45,11 +39,10 @@ static Status fail_in(const CholmodSolver *solver, const char *what) {
 }
 
 static Status create(void **self, int threads, double tolerance) {
-  (void)tolerance;
+  (void)threads, (void)tolerance;
   CholmodSolver *solver = memory_zeroed(1, sizeof *solver);
   *self = solver;
   if (!solver) return status_no_memory("the solver cholmod");
-  solver->threads = threads;
   cholmod_common *common = &solver->common;
   cholmod_start(common);
   common->print = 0;
@@ -211,8 +204,6 @@ static Status analyse(void *self, const FemMatrix *pattern) {
   solver->size = pattern->size;
   solver->layout = pattern->layout;
   TRY(analyse_matrix(solver, pattern));
-  int threads = solver->threads > 0 ? solver->threads : omp_get_max_threads();
-  solver->team = solver->common.fl < LARGE_WORK ? 1 : threads < CHOLMOD_TEAM ? threads : CHOLMOD_TEAM;
   solver->stats.analyses++;
   solver->stats.factor_entries = solver->common.lnz;
   solver->stats.analyse_s += clock_wall_s() - began;
@@ -224,8 +215,8 @@ static Status refactor(CholmodSolver *solver, const FemMatrix *matrix) {
   if (!fem_solver_is_finite(matrix->value, matrix->entry_count))
     return status_fail(STATUS_RETRY, "the condensed matrix is not finite");
   cholmod_sparse symmetric = view(matrix);
-  int before = fem_solver_use_threads(solver->team), is_ok = 0;
-#pragma omp teams num_teams(1) thread_limit(solver->team)
+  int before = fem_solver_use_threads(1), is_ok = 0;
+#pragma omp teams num_teams(1) thread_limit(1)
   is_ok = cholmod_factorize(&symmetric, solver->factor, common);
   fem_solver_use_threads(before);
   if (common->status == CHOLMOD_NOT_POSDEF || (is_ok && solver->factor->minor < (size_t)solver->size))

@@ -24,6 +24,9 @@ enum { LIMIT_KEPT = 60, LIMIT = 500 };
 static const double WORN_SHARE = 1.5;
 enum { WORN_MORE = 2 };
 
+// However little Newton's method needs: what is left over shows how fast it converges.
+static const double LOOSEST = 0.03;
+
 bool fem_solver_has_multigrid(void) {
   return fem_petsc_library_has_hypre();
 }
@@ -43,7 +46,7 @@ typedef struct PetscSolver {
   Kind kind;
   const FemPetscLibrary *petsc;
   int threads;
-  double tolerance;
+  double tolerance, aimed; // relative: its own, and that of the next solve
   int size;                // unknowns
   int row_count;           // three a vertex that has some
   int *place;              // row of each unknown                             (size)
@@ -55,7 +58,7 @@ typedef struct PetscSolver {
   PC multigrid;            // NULL: none yet
   bool is_worn;            // to be made anew at the next factorise
   bool is_fresh;           // has not solved yet
-  long long new_count;     // iterations of its first solve
+  double new_count;        // iterations a digit of its first solve
   FemCg cg;
   const FemMatrix *current; // borrowed, of the last factorise; NULL: none
   long long layout;         // that was analysed
@@ -156,7 +159,7 @@ static Status create(Kind kind, void **self, int threads, double tolerance) {
   solver->kind = kind;
   solver->petsc = petsc;
   solver->threads = threads;
-  solver->tolerance = tolerance;
+  solver->tolerance = solver->aimed = tolerance;
   return set_options(solver);
 }
 
@@ -403,6 +406,11 @@ static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix 
   return status;
 }
 
+static void aim(void *self, double tolerance) {
+  PetscSolver *solver = self;
+  solver->aimed = fmin(fmax(tolerance, solver->tolerance), LOOSEST);
+}
+
 static Status precondition(void *self, const double *r, double *z) {
   PetscSolver *solver = self;
   const FemPetscLibrary *petsc = solver->petsc;
@@ -422,14 +430,15 @@ static Status iterate(PetscSolver *solver, const double *b, double *x, int limit
                           .precondition = precondition,
                           .self = solver,
                           .name = names[solver->kind],
-                          .tolerance = solver->tolerance,
+                          .tolerance = solver->aimed,
                           .limit = limit};
   long long before = solver->stats.iterations;
   TRY(fem_cg_solve(&solver->cg, &problem, b, x, &solver->stats.iterations, end));
   long long taken = solver->stats.iterations - before;
-  if (solver->is_fresh) solver->new_count = taken;
+  double digits = -log10(solver->aimed);
+  if (solver->is_fresh) solver->new_count = (double)taken / digits;
   solver->is_fresh = false;
-  solver->is_worn = (double)taken > WORN_SHARE * (double)solver->new_count + WORN_MORE;
+  solver->is_worn = (double)taken > WORN_SHARE * solver->new_count * digits + WORN_MORE;
   return STATUS_OK;
 }
 
@@ -474,6 +483,7 @@ const FemSolverOps fem_solver_amg = {
     .factorise = factorise,
     .solve = solve,
     .forget = wear,
+    .aim = aim,
     .destroy = destroy,
     .stats = stats,
 };
@@ -488,6 +498,7 @@ const FemSolverOps fem_solver_gamg = {
     .factorise = factorise,
     .solve = solve,
     .forget = wear,
+    .aim = aim,
     .destroy = destroy,
     .stats = stats,
 };

@@ -185,6 +185,11 @@ const double *fem_ida_solver_right(const FemIdaSolver *solver) {
   return solver->ops->is_condensed ? solver->right : NULL;
 }
 
+void fem_ida_solver_aim(FemIdaSolver *solver, double tolerance) {
+  bool is_said = solver->system->model->scene->solver_tolerance > 0;
+  if (solver->ops->aim && !is_said) solver->ops->aim(solver->solver, tolerance);
+}
+
 const double *fem_ida_solver_masses(const FemIdaSolver *solver) {
   return solver->masses;
 }

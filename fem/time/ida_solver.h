@@ -48,6 +48,9 @@ Status fem_ida_solver_assemble(FemIdaSolver *solver, double time, double c, cons
 // does not condense.
 const double *fem_ida_solver_right(const FemIdaSolver *solver);
 
+// What the next solution may leave (FemSolverOps.aim), unless the scene says a tolerance.
+void fem_ida_solver_aim(FemIdaSolver *solver, double tolerance);
+
 const double *fem_ida_solver_masses(const FemIdaSolver *solver); // of the unknowns [kg]   (unknown_count)
 const FemSolverStats *fem_ida_solver_stats(const FemIdaSolver *solver);
 

@@ -114,6 +114,10 @@ static const double *right_of(void *self) {
   return fem_ida_solver_right(((FemIntegrator *)self)->solver);
 }
 
+static void aim(void *self, double tolerance) {
+  fem_ida_solver_aim(((FemIntegrator *)self)->solver, tolerance);
+}
+
 // Of a body's vertices in contact.
 static double pressed_on(const double *forces, const FemModelBody *body) {
   double sum = 0;
@@ -226,7 +230,8 @@ static Status create(FemIntegrator *integrator, const FemSolverOps *solver) {
   integrator->unbalanced = memory_zeroed(bodies, sizeof(double));
   integrator->wanted = memory_zeroed(bodies, sizeof(double));
   if (!integrator->unbalanced || !integrator->wanted) return status_no_memory("the integrator");
-  FemNewtonUser user = {.self = integrator, .n = integrator->n, .right = right_of, .unbalance = unbalance};
+  FemNewtonUser user = {
+      .self = integrator, .n = integrator->n, .right = right_of, .unbalance = unbalance, .aim = aim};
   TRY(fem_newton_create(&integrator->newton, &user, integrator->y, integrator->context));
   return configure(integrator);
 }

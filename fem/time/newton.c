@@ -9,6 +9,8 @@ enum { MAX_ITERATIONS = 16, MAX_RENEWALS = 5, MAX_CUTS = 6 };
 // A step is shortened where the slope of the potential along it is, at its end, beyond this share of what it
 // was, with the other sign; and not below this share at once.
 static const double SLOPE_ALLOWED = 0.9, SHORTEST_CUT = 0.1;
+// What a linear solution may leave: of what is allowed of the balance, and of a correction by IDA's test.
+static const double AIM_BALANCE = 0.1, AIM_SIZE = 0.05;
 // Where forces cannot be evaluated.
 static const double BLIND_CUT = 0.35;
 // A matrix of elsewhere is made anew once the iterations that are left, at the rate of the last, are more.
@@ -120,10 +122,27 @@ static void find_slope(Solve *solve) {
   solve->settle = solve->slope - balance;
 }
 
+static double unbalance(const FemNewton *newton) {
+  const double *balance = N_VGetArrayPointer(newton->residual) + newton->user.n;
+  return newton->user.unbalance(newton->user.self, balance);
+}
+
+// An iterative linear solver may leave what Newton's test would let pass: a share of what is still allowed of
+// the balance, and of the correction, whose size is that of the last one at most, or of the last step's first
+// one.
+static void aim(Solve *solve) {
+  FemNewton *newton = solve->newton;
+  double size = solve->size > 0 ? solve->size : newton->first_size;
+  double excess = isinf(solve->excess) ? unbalance(newton) : solve->excess;
+  double tolerance = fmin(AIM_BALANCE / excess, AIM_SIZE * solve->tolerance / size);
+  newton->user.aim(newton->user.self, size > 0 && excess > 0 ? tolerance : 0);
+}
+
 // The direction from the residual; once a matrix had to be made anew, mixed with those before unless that
 // leads uphill.
 static int find_direction(Solve *solve) {
   FemNewton *newton = solve->newton;
+  aim(solve);
   N_VScale(-1, newton->residual, newton->direction);
   int flag = newton->solve(newton->direction, solve->memory);
   if (flag != 0) return flag;
@@ -163,11 +182,6 @@ static int take_step(Solve *solve, double *share) {
   }
 }
 
-static double unbalance(const FemNewton *newton) {
-  const double *balance = N_VGetArrayPointer(newton->residual) + newton->user.n;
-  return newton->user.unbalance(newton->user.self, balance);
-}
-
 // Whether at the rate of the last iteration, with a matrix that is not of here, more are left than that is
 // worth.
 static bool is_slow(const Solve *solve, double size, double before, double excess) {
@@ -183,6 +197,7 @@ static int judge(Solve *solve, bool *has_converged) {
   double before = solve->size, excess_before = solve->excess;
   solve->excess = unbalance(newton);
   solve->size = N_VWrmsNorm(newton->direction, solve->weights);
+  if (newton->iterations == 1) newton->first_size = solve->size;
   int verdict = newton->test(newton->solver, solve->correction, newton->direction, solve->tolerance,
                              solve->weights, newton->test_data);
   newton->current++;

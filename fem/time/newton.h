@@ -34,6 +34,8 @@ typedef struct FemNewtonUser {
   const double *(*right)(void *self);
   // How far the balance (n) is from zero, as a share of what is allowed: balanced is ≤ 1.
   double (*unbalance)(void *self, const double *balance);
+  // The relative residual that the next linear solution may leave (FemSolverOps.aim).
+  void (*aim)(void *self, double tolerance);
 } FemNewtonUser;
 
 // Since creation.
@@ -56,7 +58,8 @@ typedef struct FemNewton {
   N_Vector residual, direction, start; // of the size of y
   N_Vector pure;                       // the direction before it was mixed
   FemMixing mixing;
-  long iterations; // of the last solve
+  double first_size; // of the first correction of the last solve that went well, by its weights; 0: none
+  long iterations;   // of the last solve
   long failures;   // of the last solve
   int current;     // iterations since the matrix or the step was changed: what IDA's test counts
 } FemNewton;
