@@ -533,6 +533,35 @@ START_TEST(a_hierarchy_is_kept_while_c_changes_little) {
 }
 END_TEST
 
+// Never tighter than its own tolerance, and its own again when nothing is known.
+START_TEST(multigrid_leaves_what_it_is_told_it_may) {
+  static const double aims[] = {0, 1e-2, 1e-12, 0};
+  Bar bar = bar_create(40, 1);
+  int n = bar.unknown_count;
+  double *b = random_vector(n, 7), *x = memory_zeroed((size_t)n, sizeof *x);
+  const FemSolverOps *const all[] = {&fem_solver_amg, &fem_solver_gamg};
+  for (int k = 0; k < 2; k++) {
+    void *solver;
+    long long taken[4], before = 0;
+    ck_assert_ok(all[k]->create(&solver, 1, 1e-8));
+    ck_assert_ok(all[k]->analyse(solver, &bar.S));
+    for (int i = 0; i < 4; i++) {
+      all[k]->aim(solver, aims[i]);
+      solve_shifted(all[k], solver, &bar, 10, b, x);
+      taken[i] = all[k]->stats(solver)->iterations - before;
+      before = all[k]->stats(solver)->iterations;
+    }
+    ck_assert_msg(2 * taken[1] <= taken[0], "%lld iterations for %lld", taken[1], taken[0]);
+    ck_assert_int_eq(taken[2], taken[0]);
+    ck_assert_int_eq(taken[3], taken[0]);
+    ck_assert_int_eq(all[k]->stats(solver)->hierarchies, 1); // a tighter aim is no sign of wear
+    all[k]->destroy(solver);
+  }
+  memory_free(b), memory_free(x);
+  bar_destroy(&bar);
+}
+END_TEST
+
 START_TEST(a_singular_full_matrix_is_a_retry) {
   const int unknown_of_dof[3] = {0, -1, -1};
   const double no_mass[1] = {0};
@@ -612,6 +641,7 @@ int main(void) {
   tcase_add_test(cases, multigrid_needs_far_fewer_iterations_than_blocks_of_vertices);
   tcase_add_test(cases, a_hierarchy_that_is_kept_never_touches_the_answer);
   tcase_add_test(cases, a_hierarchy_is_kept_while_c_changes_little);
+  tcase_add_test(cases, multigrid_leaves_what_it_is_told_it_may);
   tcase_add_test(cases, a_singular_full_matrix_is_a_retry);
   tcase_add_test(cases, a_grown_pattern_must_be_analysed_anew);
   tcase_add_test(cases, every_failed_allocation_is_an_error);

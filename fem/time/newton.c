@@ -10,7 +10,7 @@ enum { MAX_ITERATIONS = 16, MAX_RENEWALS = 5, MAX_CUTS = 6 };
 // was, with the other sign; and not below this share at once.
 static const double SLOPE_ALLOWED = 0.9, SHORTEST_CUT = 0.1;
 // What a linear solution may leave: of what is allowed of the balance, and of a correction by IDA's test.
-static const double AIM_BALANCE = 0.1, AIM_SIZE = 0.05;
+static const double AIM_BALANCE = 0.03, AIM_SIZE = 0.02;
 // Where forces cannot be evaluated.
 static const double BLIND_CUT = 0.35;
 // A matrix of elsewhere is made anew once the iterations that are left, at the rate of the last, are more.

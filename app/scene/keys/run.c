@@ -55,7 +55,7 @@ static const SceneKey solver_keys[] = {
     {"linear", SCENE_CHOICE, AT(FemSceneDef, solver), .fallback = "auto",
      .choices = &app_scene_choices_solvers, .help = "of the linear systems"},
     {"tolerance", SCENE_NUMBER, AT(FemSceneDef, solver_tolerance), .range = "(0, 1)",
-     .absent_help = "1e-8 for `pcg`, 1e-4 for `amg` and `gamg`",
+     .absent_help = "1e-8 for `pcg`; for `amg` and `gamg` what Newton's method needs, 1e-4 to 0.03, in statics 1e-4",
      .help = "of iterative solvers: the residual over the right-hand side; a looser one costs Newton's method iterations, not the result its accuracy"},
     {"threads", SCENE_INTEGER, AT(FemSceneDef, threads), .range = "[0, 4096]", .fallback = "0",
      .help = "0: one for each core"},
