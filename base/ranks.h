@@ -40,6 +40,7 @@ typedef struct Ranks {
   void (*tell)(void *bytes, size_t size);
   // The worst of all ranks' states, with its message: fatal before retry before ok.
   Status (*worst)(Status status);
+  bool divides; // whether the next one does more than to give all to the first
   // Called by the first rank alone: as many nodes to each rank as to the others, few edges between.
   Status (*divide)(const RanksGraph *graph, int rank_count, int *rank_of_node);
   const RanksStats *(*stats)(void);

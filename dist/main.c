@@ -22,6 +22,7 @@ int main(int argument_count, char **arguments) {
   if (dist_mpi_is_wanted()) {
     dist_mpi_begin(&argument_count, &arguments, dist_solver_close);
     if (ranks()->count > 1) dist_solver_provide();
-  }
+  } else
+    dist_mpi_begin_alone();
   return flush_output(app_program_run(argument_count, arguments));
 }

@@ -52,19 +52,27 @@ static void reduce(double *values, size_t count, MPI_Op operation) {
   }
 }
 
+// All ranks know that the run ends: what they would still say to each other is said.
+static bool is_over(void) {
+  return agreed != STATUS_OK;
+}
+
 static void sum(double *values, size_t count) {
+  if (is_over()) return;
   enter(&stats.sums);
   reduce(values, count, MPI_SUM);
   leave((double)(count * sizeof *values));
 }
 
 static void most(double *values, size_t count) {
+  if (is_over()) return;
   enter(&stats.decisions);
   reduce(values, count, MPI_MAX);
   leave((double)(count * sizeof *values));
 }
 
 static void join(void *items, size_t size, const int *begin) {
+  if (is_over()) return;
   enter(&stats.pieces);
   for (int r = 0; r < table.count; r++) piece_counts[r] = begin[r + 1] - begin[r];
   MPI_Datatype item;
@@ -78,6 +86,7 @@ static void join(void *items, size_t size, const int *begin) {
 static void tell(void *bytes, size_t size) {
   enum { PIECE = 1 << 28 };
   char *at = bytes;
+  if (is_over()) return;
   enter(&stats.pieces);
   for (size_t left = size; left > 0;) {
     int piece = left < PIECE ? (int)left : PIECE;
@@ -88,6 +97,7 @@ static void tell(void *bytes, size_t size) {
 }
 
 static Status worst(Status status) {
+  if (is_over()) return agreed;
   struct {
     int severity, rank;
   } mine = {status == STATUS_OK ? 0 : status > 0 ? 1 : 1 - (int)status, table.number};
@@ -107,7 +117,7 @@ static const RanksStats *get_stats(void) {
   return &stats;
 }
 
-// What a rank that is not heard has said of errors, to standard error.
+// What a rank that is not heard has said of its first error, to standard error.
 static void speak(void) {
   if (heard < 0) return;
   fflush(stderr);
@@ -115,8 +125,11 @@ static void speak(void) {
   char line[2 * MESSAGE_SIZE];
   if (!said || !aloud) return;
   rewind(said);
-  while (fgets(line, sizeof line, said))
-    if (strstr(line, "error: ") || strncmp(line, "tetlap", 6) == 0) fputs(line, aloud);
+  bool is_told = false;
+  while (fgets(line, sizeof line, said) && !is_told) {
+    is_told = strstr(line, "error: ") != NULL;
+    if (is_told || strncmp(line, "tetlap", 6) == 0) fputs(line, aloud);
+  }
   fflush(aloud);
 }
 
@@ -173,6 +186,13 @@ int dist_mpi_is_wanted(void) {
   return 0;
 }
 
+void dist_mpi_begin_alone(void) {
+  table = *ranks();
+  table.divides = true;
+  table.divide = dist_division_divide;
+  ranks_set(&table);
+}
+
 void dist_mpi_begin(int *argument_count, char ***arguments, void (*close)(void)) {
   int provided;
   MPI_Init_thread(argument_count, arguments, MPI_THREAD_FUNNELED, &provided);
@@ -183,6 +203,7 @@ void dist_mpi_begin(int *argument_count, char ***arguments, void (*close)(void))
                   .join = join,
                   .tell = tell,
                   .worst = worst,
+                  .divides = true,
                   .divide = dist_division_divide,
                   .stats = get_stats};
   MPI_Comm_rank(world, &table.number);

@@ -7,6 +7,9 @@
 // Whether mpiexec, or a batch system in its place, has started more than this process.
 int dist_mpi_is_wanted(void);
 
+// One process that can tell how several would divide a mesh. Before a scene is read.
+void dist_mpi_begin_alone(void);
+
 // Starts MPI and sets the table; from here on only the first rank is heard. At exit, however that comes
 // about, all ranks end with one exit code: what all agree on, or that of a rank that failed by itself, which
 // is heard then and ends the others within some two seconds. `close` is called before, where all end in

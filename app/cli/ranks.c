@@ -66,25 +66,31 @@ static Status find_program(char path[PATH_MAX]) {
       path);
 }
 
-static Status start(int count, const char *program, const char *script) {
-  char *line, number[16];
+// Replaces this process by `first` (count), ended by the arguments that it was started with itself.
+static Status replace(int count, char *const *first) {
+  char *line;
   size_t size, word_count = 0;
   TRY(file_read("/proc/self/cmdline", &line, &size));
   for (size_t i = 0; i < size; i++) word_count += line[i] == 0;
-  char **words = memory_zeroed(word_count + 3, sizeof *words);
+  char **words = memory_zeroed(word_count + (size_t)count, sizeof *words);
   if (!words) {
     memory_free(line);
     return status_no_memory("the command line");
   }
-  snprintf(number, sizeof number, "%d", count);
-  words[0] = (char *)script, words[1] = number, words[2] = (char *)program;
+  for (int i = 0; i < count; i++) words[i] = first[i];
   char *word = line + strlen(line) + 1; // behind this program's own name
-  for (size_t i = 1; i < word_count; i++, word += strlen(word) + 1) words[2 + i] = word;
-  setenv(STARTED, number, 1);
-  execv(script, words);
+  for (size_t i = 1; i < word_count; i++, word += strlen(word) + 1) words[(size_t)count + i - 1] = word;
+  execv(words[0], words);
   memory_free(words);
   memory_free(line);
-  return status_fail(STATUS_IO, "%s: cannot be started: %s", script, strerror(errno));
+  return status_fail(STATUS_IO, "%s: cannot be started: %s", first[0], strerror(errno));
+}
+
+Status app_ranks_become(void) {
+  char program[PATH_MAX];
+  if (ranks()->divides) return STATUS_OK;
+  TRY(find_program(program));
+  return replace(1, (char *[]){program});
 }
 
 Status app_ranks_start(int count) {
@@ -99,5 +105,8 @@ Status app_ranks_start(int count) {
                        count);
   TRY(find_program(program));
   TRY(data_find("tools/ranks", script, sizeof script));
-  return start(count, program, script);
+  char number[16];
+  snprintf(number, sizeof number, "%d", count);
+  setenv(STARTED, number, 1);
+  return replace(3, (char *[]){script, number, program});
 }

@@ -13,6 +13,10 @@ Status app_ranks_check(const AppCommand *command);
 // Whether this process is the one whose refusal is heard.
 bool app_ranks_is_heard(void);
 
+// Goes on as tetlap-mpi in this process, with the same arguments, unless it is that already: it alone can
+// tell how ranks would divide a mesh.
+Status app_ranks_become(void);
+
 // Goes on as `count` ranks: replaces this process by tools/ranks with tetlap-mpi and the same arguments. Does
 // nothing if that has been done, or one rank is asked for. STATUS_USAGE: there is no tetlap-mpi beside this
 // program, or it runs on another number of ranks.

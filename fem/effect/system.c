@@ -218,7 +218,7 @@ Status fem_system_forces(FemSystem *system, double time) {
   FemState state = state_of(system, time);
   if (system->model->share) {
     TRY(sum_forces(system, add_own_forces(system, &state, PART_DIVIDED)));
-    TRY(add_forces(system, &state, PART_WHOLE));
+    TRY(ranks()->worst(add_forces(system, &state, PART_WHOLE)));
   } else {
     TRY(add_own_forces(system, &state, PART_ALL));
   }
@@ -264,7 +264,7 @@ Status fem_system_assemble(FemSystem *system, double time, double k, double d, d
   return ranks()->worst(assemble(system, time, k, d, m, matrix));
 }
 
-Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v) {
+static Status begin(FemSystem *system, double time, const double *u, const double *v) {
   TRY(fem_formulas_check(system->model, time));
   fem_system_scatter(system, time, u, v);
   FemState state = state_of(system, time);
@@ -273,12 +273,20 @@ Status fem_system_begin(FemSystem *system, double time, const double *u, const d
   return STATUS_OK;
 }
 
-Status fem_system_renew(FemSystem *system, double time, const double *u, const double *v) {
+Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v) {
+  return ranks()->worst(begin(system, time, u, v));
+}
+
+static Status renew(FemSystem *system, double time, const double *u, const double *v) {
   fem_system_scatter(system, time, u, v);
   FemState state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++)
     if (system->effects[i].ops->renew) TRY(system->effects[i].ops->renew(system->effects[i].self, &state));
   return STATUS_OK;
+}
+
+Status fem_system_renew(FemSystem *system, double time, const double *u, const double *v) {
+  return ranks()->worst(renew(system, time, u, v));
 }
 
 static Status accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
@@ -358,19 +366,22 @@ static Status add_energies(FemSystem *system, const FemState *state, Part part, 
   return STATUS_OK;
 }
 
+// Σ over ranks of what each gives of energies, unless one cannot.
 static Status sum_energies(FemSystem *system, const FemState *state, FemEnergy *energy) {
   enum { PARTS = sizeof(FemEnergy) / sizeof(double) };
   FemEnergy own = {0};
-  TRY(ranks()->worst(add_energies(system, state, PART_DIVIDED, &own)));
-  double sums[PARTS], *to = &energy->kinetic;
-  memcpy(sums, &own, sizeof sums);
-  ranks()->sum(sums, PARTS);
+  double sums[PARTS + 1], *to = &energy->kinetic;
+  Status status = add_energies(system, state, PART_DIVIDED, &own);
+  memcpy(sums, &own, sizeof own);
+  sums[PARTS] = status != STATUS_OK;
+  ranks()->sum(sums, PARTS + 1);
+  if (sums[PARTS] > 0) return ranks()->worst(status);
   for (int i = 0; i < PARTS; i++) to[i] += sums[i];
-  return add_energies(system, state, PART_WHOLE, energy);
+  return ranks()->worst(add_energies(system, state, PART_WHOLE, energy));
 }
 
 Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
-  TRY(fem_formulas_check(system->model, time));
+  TRY(ranks()->worst(fem_formulas_check(system->model, time)));
   *energy = (FemEnergy){.kinetic = kinetic_energy(system)};
   if (has_moving_driver(system->model)) {
     TRY(fem_system_forces(system, time));

@@ -48,13 +48,14 @@ static Status make_graph(const FemPattern *pattern, RanksGraph *graph) {
   return STATUS_OK;
 }
 
-static Status divide(const FemModel *model, int *owner) {
+Status fem_model_division_find(const FemModel *model, int rank_count, int *owner) {
   FemPattern *pattern = NULL;
+  for (int v = 0; v < model->vertex_count; v++) owner[v] = 0;
   RanksGraph graph = {0};
   Status status = fem_pattern_create(&pattern, elastic_vertices(model));
   if (!status) status = couple(model, pattern);
   if (!status) status = make_graph(pattern, &graph);
-  if (!status) status = ranks()->divide(&graph, ranks()->count, owner);
+  if (!status) status = ranks()->divide(&graph, rank_count, owner);
   fem_pattern_destroy(pattern);
   memory_free(graph.begin);
   memory_free(graph.neighbour);
@@ -69,7 +70,7 @@ Status fem_model_divide(FemModel *model) {
   TRY(ranks()->worst(status));
   share->rank = ranks()->number;
   share->rank_count = ranks()->count;
-  if (ranks_is_first()) status = divide(model, share->owner);
+  if (ranks_is_first()) status = fem_model_division_find(model, share->rank_count, share->owner);
   TRY(ranks()->worst(status));
   ranks()->tell(share->owner, (size_t)model->vertex_count * sizeof *share->owner);
   return STATUS_OK;
@@ -81,12 +82,53 @@ void fem_model_division_destroy(FemModel *model) {
   model->share = NULL;
 }
 
-int fem_model_division_elements(const FemModel *model) {
+// What `share` has; *copies: vertices of its elements that are others', marked in `seen` by its rank + 1.
+static int count_elements(const FemModel *model, const FemShare *share, int *seen, int *copies) {
   int count = 0, tets = elastic_tets(model);
-  for (int e = 0; e < tets; e++)
-    count += model->bodies[model->tet_body[e]].element != FEM_ELEMENT_QUADRATIC &&
-             fem_share_has(model->share, 4, model->tets[e]);
-  for (int e = 0; e < model->quadratic_count; e++)
-    count += fem_share_has(model->share, FEM_QUADRATIC_NODES, model->quadratic_nodes[e]);
+  for (int e = 0; e < tets + model->quadratic_count; e++) {
+    bool is_linear = e < tets;
+    if (is_linear && model->bodies[model->tet_body[e]].element == FEM_ELEMENT_QUADRATIC) continue;
+    const int *nodes = is_linear ? model->tets[e] : model->quadratic_nodes[e - tets];
+    int node_count = is_linear ? 4 : FEM_QUADRATIC_NODES;
+    if (!fem_share_has(share, node_count, nodes)) continue;
+    count++;
+    for (int k = 0; k < node_count && seen; k++) {
+      if (share->owner[nodes[k]] == share->rank || seen[nodes[k]] == share->rank + 1) continue;
+      seen[nodes[k]] = share->rank + 1;
+      ++*copies;
+    }
+  }
   return count;
+}
+
+int fem_model_division_elements(const FemModel *model) {
+  return count_elements(model, model->share, NULL, NULL);
+}
+
+static void widen(int range[2], int value, bool is_first) {
+  if (is_first || value < range[0]) range[0] = value;
+  if (is_first || value > range[1]) range[1] = value;
+}
+
+static void make_plan(const FemModel *model, FemShare *share, int *seen, FemDivisionPlan *plan) {
+  for (share->rank = 0; share->rank < share->rank_count; share->rank++) {
+    int vertices = 0, copies = 0;
+    for (int v = 0; v < elastic_vertices(model); v++) vertices += share->owner[v] == share->rank;
+    int elements = count_elements(model, share, seen, &copies);
+    widen(plan->vertices, vertices, share->rank == 0);
+    widen(plan->elements, elements, share->rank == 0);
+    widen(plan->copies, copies, share->rank == 0);
+  }
+}
+
+Status fem_model_division_plan(const FemModel *model, int rank_count, FemDivisionPlan *plan) {
+  size_t vertices = (size_t)model->vertex_count;
+  FemShare share = {.rank_count = rank_count, .owner = memory_zeroed(vertices, sizeof(int))};
+  int *seen = memory_zeroed(vertices, sizeof *seen);
+  *plan = (FemDivisionPlan){.rank_count = rank_count};
+  Status status = share.owner && seen ? STATUS_OK : status_no_memory("the division among ranks");
+  if (!status) status = fem_model_division_find(model, rank_count, share.owner);
+  if (!status) make_plan(model, &share, seen, plan);
+  memory_free(share.owner), memory_free(seen);
+  return status;
 }

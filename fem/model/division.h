@@ -10,6 +10,18 @@
 Status fem_model_divide(FemModel *model);
 void fem_model_division_destroy(FemModel *model);
 
+// Who would have which vertex among so many ranks, obstacles' the first: owner (model->vertex_count).
+Status fem_model_division_find(const FemModel *model, int rank_count, int *owner);
+
+// What ranks would have of a model, least and most of any.
+typedef struct FemDivisionPlan {
+  int rank_count;
+  int vertices[2], elements[2];
+  int copies[2]; // vertices of their elements that are others'
+} FemDivisionPlan;
+
+Status fem_model_division_plan(const FemModel *model, int rank_count, FemDivisionPlan *plan);
+
 // How many linear and quadratic elements of bodies this rank has.
 int fem_model_division_elements(const FemModel *model);
 

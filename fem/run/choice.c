@@ -44,8 +44,6 @@ static bool is_nearly_incompressible(const FemModel *model) {
 
 static FemSolverKind choose(const FemModel *model, const char **why) {
   const FemSceneDef *scene = model->scene;
-  *why = "ranks share it";
-  if (model->share) return FEM_SOLVER_AMG;
   bool is_large = model->unknown_count > MOST_UNKNOWNS_TO_FACTORISE;
   bool is_linear = fem_model_has_linear_materials(model) && !scene->contact.is_on;
   double cube = equivalent_cube(model);
@@ -75,7 +73,28 @@ static double solver_bytes(const FemModel *model, FemSolverKind kind) {
   }
 }
 
+static const double SHARED_BYTES_AN_UNKNOWN = 3000, WHOLE_BYTES_AN_UNKNOWN = 250;
+
+// Measured over ranks: entries on their way to their owners, PETSc's matrix, the levels of BoomerAMG.
+static double shared_solver_bytes(const FemModel *model, FemSolverKind kind, int rank_count) {
+  double own = (double)model->unknown_count / rank_count, all = model->unknown_count;
+  switch (kind) {
+  case FEM_SOLVER_CHOLMOD:
+    return 8e7 + solver_bytes(model, FEM_SOLVER_CHOLMOD) / rank_count;
+  default:
+    return 8e7 + SHARED_BYTES_AN_UNKNOWN * own + WHOLE_BYTES_AN_UNKNOWN * all;
+  }
+}
+
+FemRunChoice fem_run_choice_over(const FemModel *model, int rank_count) {
+  FemRunChoice choice = {.kind = model->scene->solver, .why = ""};
+  if (choice.kind == FEM_SOLVER_AUTO) choice.kind = FEM_SOLVER_AMG, choice.why = "ranks share it";
+  choice.bytes = fem_model_memory_estimate(model) + shared_solver_bytes(model, choice.kind, rank_count);
+  return choice;
+}
+
 FemRunChoice fem_run_choice(const FemModel *model) {
+  if (model->share) return fem_run_choice_over(model, model->share->rank_count);
   FemRunChoice choice = {.kind = model->scene->solver, .why = ""};
   if (choice.kind == FEM_SOLVER_AUTO) choice.kind = choose(model, &choice.why);
   choice.bytes = fem_model_memory_estimate(model) + solver_bytes(model, choice.kind);

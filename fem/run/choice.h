@@ -14,4 +14,7 @@ typedef struct FemRunChoice {
 
 FemRunChoice fem_run_choice(const FemModel *model);
 
+// The same of a run over so many ranks (base/ranks.h); `bytes` of each rank.
+FemRunChoice fem_run_choice_over(const FemModel *model, int rank_count);
+
 #endif

@@ -18,6 +18,7 @@
 #include "fem/run/restart.h"
 #include "fem/run/run_checkpoint.h"
 #include "fem/run/run_frames.h"
+#include "fem/run/spread.h"
 #include "fem/run/start.h"
 
 // A step that gains energy (fem/time/audit.h) is taken back and tried again with a smaller step; at most so
@@ -483,7 +484,7 @@ static Status keep_account(FemRunState *run) {
   return STATUS_OK;
 }
 
-static Status collect(FemRunState *run) {
+static Status collect(FemRunState *run, Status status) {
   FemRunResult *result = run->result;
   end_part(run);
   result->audit = run->audit;
@@ -494,6 +495,7 @@ static Status collect(FemRunState *run) {
   result->phases.factorisation = result->solver.factorise_s;
   result->phases.solve = result->solver.solve_s;
   result->phases.total = result->wall_s;
+  if (!status) fem_run_spread_collect(run, result); // else others may be elsewhere
   if (!run->recorder.system) return STATUS_OK;
   if (run->system.model) TRY(keep_account(run)); // else a new part could not be begun
   return fem_recorder_finish(&run->recorder);
@@ -549,7 +551,7 @@ static Status prepare(FemRunState *run) {
 static Status close_run(FemRunState *run, Status status) {
   char message[2048], closing[1024] = "";
   snprintf(message, sizeof message, "%s", status_message());
-  Status collected = collect(run), left = fem_run_checkpoint_leave(run, status ? status : collected);
+  Status collected = collect(run, status), left = fem_run_checkpoint_leave(run, status ? status : collected);
   if (collected || left) snprintf(closing, sizeof closing, "; besides: %s", status_message());
   fem_recorder_destroy(&run->recorder);
   fem_system_destroy(&run->system);

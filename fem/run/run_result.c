@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/run/run_result.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -215,6 +216,23 @@ static void summarise_status(const ContactStatusCounts *pairs, Record *record) {
   record_integer(record, "false_negative", pairs->false_negatives);
 }
 
+const char *const fem_run_spread_names[] = {
+    "vertices",   "elements",    "matrix_entries",  "peak_rss_bytes", "cpu_s",     "waiting_s",
+    "calls",      "bytes_given", "broad_phase_s",   "overlap_s",      "contact_s", "forces_s",
+    "assembly_s", "analysis_s",  "factorisation_s", "solve_s",        "output_s",
+};
+static_assert(sizeof fem_run_spread_names == FEM_RUN_SPREAD * sizeof *fem_run_spread_names, "one each");
+
+static void summarise_ranks(const FemRunSpread *spread, Record *record) {
+  record_integer(record, "count", spread->rank_count);
+  for (int k = 0; k < FEM_RUN_SPREAD; k++) {
+    Record *row = record_child(record, fem_run_spread_names[k]);
+    record_number(row, "least", spread->least[k]);
+    record_number(row, "mean", spread->mean[k]);
+    record_number(row, "most", spread->most[k]);
+  }
+}
+
 void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_number(summary, "end_time", result->end_time);
   record_number(summary, "wall_s", result->wall_s);
@@ -249,6 +267,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   }
   if (result->has_status) summarise_status(&result->status_pairs, record_child(summary, "status"));
   record_integer(summary, "peak_rss_bytes", (long long)result->peak_rss_bytes);
+  if (result->spread.rank_count > 0) summarise_ranks(&result->spread, record_child(summary, "ranks"));
   record_merge(summary, result->account);
   Record *counters = record_child(summary, "counters");
   summarise_counters(result, counters);

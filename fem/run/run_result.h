@@ -17,7 +17,13 @@ typedef struct FemRunPhases {
   double broad_phase, overlap, contact, forces, assembly, analysis, factorisation, solve, output, total;
 } FemRunPhases;
 
-enum { FEM_RUN_TOLD = 3 };
+enum { FEM_RUN_TOLD = 3, FEM_RUN_SPREAD = 17 };
+
+// Over the ranks that shared the run, of what the names say.
+typedef struct FemRunSpread {
+  int rank_count; // 0: one process
+  double least[FEM_RUN_SPREAD], mean[FEM_RUN_SPREAD], most[FEM_RUN_SPREAD];
+} FemRunSpread;
 
 // Counts of a part of the run between two checkpoints are added to those before. Whoever adds a number adds
 // it to numbers[] in checkpoint_numbers.c and to fem_run_result_add as well.
@@ -49,8 +55,9 @@ typedef struct FemRunResult {
   int momentum_body;         // that body
   double last_contact_force; // largest interface force at the last frame [N]
   size_t peak_rss_bytes;
-  Record *counters; // owned
-  Record *account;  // contacts and probes as in summary.json, owned; NULL: the run has not begun
+  FemRunSpread spread; // since this process began
+  Record *counters;    // owned
+  Record *account;     // contacts and probes as in summary.json, owned; NULL: the run has not begun
   // A line on each of the two that pressed most, on how wrong they may be                 (told_count)
   char told[FEM_RUN_TOLD][512];
   int told_count;
@@ -82,6 +89,9 @@ const char *fem_run_outcome(const FemRunResult *result, Status status);
 void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);
 // What happened and needs no one to act: restarts, retries, extremes.
 void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size);
+
+// As in summary.json: "elements", "cpu_s", …            (FEM_RUN_SPREAD)
+extern const char *const fem_run_spread_names[];
 
 // summary.json of a run.
 void fem_run_summarise(const FemRunResult *result, Record *summary);

@@ -5,7 +5,9 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include "app/cli/argument.h"
 #include "app/cli/job.h"
+#include "app/cli/ranks.h"
 #include "base/cpu.h"
 #include "base/log.h"
 #include "base/record.h"
@@ -13,6 +15,7 @@
 #include "fem/effect/effect.h"
 #include "fem/measure/thickness.h"
 #include "fem/model/compliance.h"
+#include "fem/model/division.h"
 #include "fem/run/choice.h"
 #include "fem/run/start.h"
 #include "fem/sparse/solver.h"
@@ -20,6 +23,11 @@
 enum { MAX_NOTES = 24, MAX_OVERLAPS = 6, MAX_THIN = 6 };
 // Elements through the thickness from which on linear ones bend as they should, roughly.
 static const double ENOUGH_LAYERS = 3.5;
+
+typedef struct Options {
+  AppJobOptions job;
+  int rank_count; // --ranks; 0: not said
+} Options;
 
 // What the scene's author may not have meant.
 typedef struct Notes {
@@ -210,7 +218,18 @@ static void print_memory(double bytes) {
   printf("memory        about %.2g %s\n", bytes / units[is_small], is_small ? "MB" : "GB");
 }
 
-static void print_text(const AppJob *job, const Notes *notes) {
+static void print_plan(const FemModel *model, const FemDivisionPlan *plan) {
+  if (plan->rank_count == 0) return;
+  FemRunChoice choice = fem_run_choice_over(model, plan->rank_count);
+  printf(
+      "ranks         %d: %d … %d vertices, %d … %d elements, %d … %d copies of others' vertices, solver %s\n",
+      plan->rank_count, plan->vertices[0], plan->vertices[1], plan->elements[0], plan->elements[1],
+      plan->copies[0], plan->copies[1], fem_solver_name(choice.kind));
+  printf("              about %.2g GB a rank, %.2g GB in all\n", choice.bytes / 1e9,
+         plan->rank_count * choice.bytes / 1e9);
+}
+
+static void print_text(const AppJob *job, const Notes *notes, const FemDivisionPlan *plan) {
   const FemSceneDef *scene = &job->scene;
   const FemModel *model = &job->model;
   printf("%s%s%s\n", scene->path, scene->title ? ": " : "", scene->title ? scene->title : "");
@@ -228,6 +247,7 @@ static void print_text(const AppJob *job, const Notes *notes) {
   printf("solver        %s%s%s%s, %d threads\n", fem_solver_name(choice.kind),
          choice.why[0] ? " (chosen: " : "", choice.why, choice.why[0] ? ")" : "", cpu_thread_count());
   print_memory(choice.bytes);
+  print_plan(model, plan);
   printf("output        %s: %d frames%s%s\n", job->directory, scene->frames + 1,
          scene->write_vtu ? ", VTU" : "",
          scene->history == FEM_HISTORY_NONE    ? ""
@@ -277,7 +297,23 @@ static void record_contact(const AppJob *job, Record *record) {
   record_text(record, "overlap", app_job_overlap(job));
 }
 
-static void record_job(const AppJob *job, const Notes *notes, Record *record) {
+static void record_range(Record *record, const char *name, const int range[2]) {
+  Record *child = record_child(record, name);
+  record_integer(child, "least", range[0]);
+  record_integer(child, "most", range[1]);
+}
+
+static void record_plan(const FemModel *model, const FemDivisionPlan *plan, Record *record) {
+  FemRunChoice choice = fem_run_choice_over(model, plan->rank_count);
+  record_integer(record, "count", plan->rank_count);
+  record_range(record, "vertices", plan->vertices);
+  record_range(record, "elements", plan->elements);
+  record_range(record, "copies", plan->copies);
+  record_text(record, "solver", fem_solver_name(choice.kind));
+  record_number(record, "memory_bytes", choice.bytes);
+}
+
+static void record_job(const AppJob *job, const Notes *notes, const FemDivisionPlan *plan, Record *record) {
   const FemSceneDef *scene = &job->scene;
   const FemModel *model = &job->model;
   record_text(record, "scene", scene->path);
@@ -301,49 +337,79 @@ static void record_job(const AppJob *job, const Notes *notes, Record *record) {
   record_text(record, "solver_why", choice.why);
   record_integer(record, "threads", cpu_thread_count());
   record_number(record, "memory_bytes", choice.bytes);
+  if (plan->rank_count > 0) record_plan(model, plan, record_child(record, "ranks"));
   record_text(record, "output", job->directory);
   record_integer(record, "frames", scene->frames + 1);
   RecordList *list = record_list(record, "notes");
   for (int i = 0; i < notes->count; i++) record_append_text(list, notes->texts[i]);
 }
 
-static Status print_json(const AppJob *job, const Notes *notes) {
+static Status print_json(const AppJob *job, const Notes *notes, const FemDivisionPlan *plan) {
   Record *record = record_new();
   if (!record) return status_no_memory("the report");
-  record_job(job, notes, record);
+  record_job(job, notes, plan, record);
   Status status = record_print(record, stdout);
   record_destroy(record);
   return status;
 }
 
-static Status check(const AppJobOptions *options) {
+static Status check(const Options *options) {
   AppJob job;
-  TRY(app_job_open(&job, options, NULL, NULL));
+  FemDivisionPlan plan = {0};
+  TRY(app_job_open(&job, &options->job, NULL, NULL));
   Notes notes = take_notes(&job);
-  Status status = job.scene.contact.is_on ? note_overlaps(&job, &notes) : STATUS_OK;
+  Status status =
+      options->rank_count > 0 ? fem_model_division_plan(&job.model, options->rank_count, &plan) : STATUS_OK;
+  if (!status) status = job.scene.contact.is_on ? note_overlaps(&job, &notes) : STATUS_OK;
   if (!status) status = note_thin(&job, &notes);
   if (status) {
     app_job_close(&job);
     return status;
   }
-  if (options->is_json)
-    status = print_json(&job, &notes);
+  if (options->job.is_json)
+    status = print_json(&job, &notes, &plan);
   else
-    print_text(&job, &notes);
+    print_text(&job, &notes, &plan);
   if (!status && fflush(stdout) != 0) status = status_fail(STATUS_IO, "standard output cannot be written");
   app_job_close(&job);
   return status;
 }
 
+enum { KEY_RANKS = 256 };
+
+static const struct argp_option option_table[] = {
+    {"ranks", KEY_RANKS, "N", 0, "Say how N processes would share it, and the memory of each (tetlap-mpi)",
+     1},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  Options *options = state->input;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &options->job;
+    return 0;
+  case KEY_RANKS:
+    options->rank_count = app_argument_ranks(state, text);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
 static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
-static const struct argp argp = {
-    .args_doc = "SCENE", .doc = "Say what a run of SCENE would do, without running.", .children = children};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .args_doc = "SCENE",
+                                 .doc = "Say what a run of SCENE would do, without running.",
+                                 .children = children};
 
 static int run_command(int argument_count, char **arguments) {
-  AppJobOptions options = {0};
+  Options options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  app_job_prepare(&options);
-  Status status = check(&options);
+  app_job_prepare(&options.job);
+  Status status = options.rank_count > 0 ? app_ranks_become() : STATUS_OK;
+  if (!status) status = check(&options);
   if (status) log_error("%s", status_message());
   return status_exit_code(status);
 }

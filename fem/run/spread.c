@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/spread.h"
+
+#include <assert.h>
+#include <string.h>
+
+#include "base/ranks.h"
+#include "fem/model/division.h"
+
+static int own_vertices(const FemModel *model) {
+  int count = 0;
+  for (int v = 0; v < model->vertex_count; v++) count += fem_share_has(model->share, 1, &v);
+  return count;
+}
+
+// In the order of fem_run_spread_names.
+static void measure(const FemRunState *run, double values[FEM_RUN_SPREAD]) {
+  const FemRunResult *result = run->result;
+  const FemRunPhases *phases = &result->phases;
+  const RanksStats *stats = ranks()->stats();
+  const double all[] = {own_vertices(run->given),
+                        fem_model_division_elements(run->given),
+                        run->system.matrix.entry_count,
+                        (double)result->peak_rss_bytes,
+                        result->cpu_s,
+                        stats->waiting_s,
+                        (double)(stats->sums + stats->pieces + stats->decisions),
+                        (double)stats->bytes,
+                        phases->broad_phase,
+                        phases->overlap,
+                        phases->contact,
+                        phases->forces,
+                        phases->assembly,
+                        phases->analysis,
+                        phases->factorisation,
+                        phases->solve,
+                        phases->output};
+  static_assert(sizeof all == FEM_RUN_SPREAD * sizeof *all, "a name for each");
+  memcpy(values, all, sizeof all);
+}
+
+void fem_run_spread_collect(const FemRunState *run, FemRunResult *result) {
+  FemRunSpread *spread = &result->spread;
+  if (!run->given->share) return;
+  spread->rank_count = ranks()->count;
+  measure(run, spread->mean);
+  for (int k = 0; k < FEM_RUN_SPREAD; k++) {
+    spread->most[k] = spread->mean[k];
+    spread->least[k] = -spread->mean[k];
+  }
+  ranks()->sum(spread->mean, FEM_RUN_SPREAD);
+  ranks()->most(spread->most, FEM_RUN_SPREAD);
+  ranks()->most(spread->least, FEM_RUN_SPREAD);
+  for (int k = 0; k < FEM_RUN_SPREAD; k++) {
+    spread->mean[k] /= spread->rank_count;
+    spread->least[k] = -spread->least[k];
+  }
+}
