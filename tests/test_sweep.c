@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "app/sweep/axis.h"
+#include "app/sweep/history.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/record.h"
@@ -239,6 +240,28 @@ START_TEST(a_wrong_key_is_told_at_once) {
 }
 END_TEST
 
+// Times rise, forces are the largest of the rows that an entry stands for, and nothing is lost or invented.
+START_TEST(a_history_is_thinned_by_its_peaks) {
+  char path[128];
+  AppSweepHistory history;
+  snprintf(path, sizeof path, "%s/history.csv", folder);
+  FILE *file = fopen(path, "w");
+  ck_assert_ptr_nonnull(file);
+  fputs("time_s,x,contact_force_peak_N\n", file);
+  for (int k = 0; k < 999; k++) fprintf(file, "%g,-1,%d\n", 0.001 * k, k == 637 ? 50 : k % 7);
+  fputs("1,", file); // cut short
+  ck_assert_int_eq(fclose(file), 0);
+  ck_assert_ok(app_sweep_history_read(&history, folder));
+  ck_assert_int_eq(history.count, 100);
+  for (int k = 0; k < 100; k++) {
+    ck_assert_near(history.time[k], 0.001 * (k == 99 ? 998 : 10 * k + 9), 1e-12);
+    ck_assert_near(history.force[k], k == 63 ? 50 : 6, 0); // seven rows in a row have all remainders
+  }
+  ck_assert_ok(app_sweep_history_read(&history, "/nowhere"));
+  ck_assert_int_eq(history.count, 0);
+}
+END_TEST
+
 static pid_t start_sweep(const char *out) {
   char path[128];
   snprintf(path, sizeof path, "%s/%s", folder, out);
@@ -307,6 +330,7 @@ int main(void) {
   tcase_add_test(cases, a_changed_mesh_or_changed_weights_run_again);
   tcase_add_test(cases, other_keys_have_other_folders);
   tcase_add_test(cases, a_message_is_the_own_process_s);
+  tcase_add_test(cases, a_history_is_thinned_by_its_peaks);
   tcase_add_test(cases, a_wrong_key_is_told_at_once);
   tcase_add_test(cases, a_sweep_that_is_interrupted_goes_on_as_if_it_had_not_been);
   return suite_run("sweep", cases, 60);

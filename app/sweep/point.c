@@ -69,6 +69,7 @@ Status app_sweep_point_create(AppSweepPoint *point, const AppSweepBase *base, in
 void app_sweep_point_destroy(AppSweepPoint *point) {
   for (int a = 0; a < APP_SWEEP_MAX_AXES; a++) memory_free(point->settings[a]);
   memory_free(point->directory);
+  memory_free(point->history);
   record_destroy(point->summary);
   *point = (AppSweepPoint){0};
 }
@@ -145,6 +146,12 @@ static void set_message(AppSweepPoint *point, const char *message) {
   snprintf(point->message, sizeof point->message, "%s", message ? message : "");
 }
 
+// Without memory the page goes without this course.
+static void read_history(AppSweepPoint *point) {
+  if (!point->history) point->history = memory_zeroed(1, sizeof *point->history);
+  if (point->history && app_sweep_history_read(point->history, point->directory)) point->history->count = 0;
+}
+
 // What to do with a folder that is there already.
 static void judge(AppSweepPoint *point, const FemSceneDef *scene, const Record *before, bool again) {
   Record *summary = read_record(point->directory, "summary.json"),
@@ -166,7 +173,10 @@ static void judge(AppSweepPoint *point, const FemSceneDef *scene, const Record *
   bool has_ended = point->state == APP_SWEEP_FINISHED || point->state == APP_SWEEP_FAILED;
   if (point->state == APP_SWEEP_FAILED) set_message(point, record_find_text(summary, "message"));
   point->summary = has_ended ? summary : NULL;
-  if (!has_ended) record_destroy(summary);
+  if (has_ended)
+    read_history(point);
+  else
+    record_destroy(summary);
 }
 
 Status app_sweep_point_examine(AppSweepPoint *point, const AppSweepBase *base, const Record *before,
@@ -210,6 +220,7 @@ void app_sweep_point_conclude(AppSweepPoint *point, int exit_code) {
   point->summary = read_record(point->directory, "summary.json");
   point->state = exit_code == 0 ? APP_SWEEP_FINISHED : APP_SWEEP_FAILED;
   point->message[0] = 0;
+  read_history(point);
   if (exit_code == 0) return;
   const char *message = record_find_text(point->summary, "message");
   if (message)

@@ -7,6 +7,7 @@
 #include <stddef.h>
 
 #include "app/sweep/axis.h"
+#include "app/sweep/history.h"
 #include "base/record.h"
 
 #define APP_SWEEP_LOG "log.txt" // in a point's folder: what its processes print, one after another
@@ -37,10 +38,11 @@ typedef struct AppSweepPoint {
   char folder[APP_SWEEP_FOLDER];      // below the sweep's: its values
   char *directory;                    // owned
   AppSweepState state;
-  int exit_code;     // of a point that has ended
-  size_t log_begin;  // where its log begins to tell of the process that was started last
-  char message[512]; // why it failed
-  Record *summary;   // summary.json, owned; NULL: none
+  int exit_code;            // of a point that has ended
+  size_t log_begin;         // where its log begins to tell of the process that was started last
+  char message[512];        // why it failed
+  Record *summary;          // summary.json, owned; NULL: none
+  AppSweepHistory *history; // of one that has ended, owned; NULL: none
 } AppSweepPoint;
 
 int app_sweep_point_count(const AppSweepBase *base); // of the grid; more than MAX_POINTS: too many

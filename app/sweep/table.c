@@ -91,7 +91,16 @@ static void record_point(const AppSweepGrid *grid, const AppSweepPoint *point, R
   for (int c = 0; c < COLUMN_COUNT; c++) record_number(row, columns[c].name, value_of(point, &columns[c]));
 }
 
-Record *app_sweep_table_record(const AppSweepGrid *grid) {
+static void record_history(const AppSweepPoint *point, Record *row) {
+  const AppSweepHistory *history = point->history;
+  if (!has_ended(point) || !history || history->count < 2) return;
+  Record *course = record_child(row, "history");
+  record_numbers(course, "time_s", history->time, history->count);
+  record_numbers(course, "force_N", history->force, history->count);
+}
+
+// With the courses of the first `history_count` runs.
+static Record *make_record(const AppSweepGrid *grid, int history_count) {
   Record *record = record_new();
   if (!record) return NULL;
   record_text(record, "format", "tetlap-sweep 1");
@@ -100,8 +109,16 @@ Record *app_sweep_table_record(const AppSweepGrid *grid) {
   app_versions_record(record_child(record, "versions"));
   record_axes(grid, record);
   RecordList *runs = record_list(record, "runs");
-  for (int p = 0; p < grid->point_count; p++) record_point(grid, &grid->points[p], record_append(runs));
+  for (int p = 0; p < grid->point_count; p++) {
+    Record *row = record_append(runs);
+    record_point(grid, &grid->points[p], row);
+    if (p < history_count) record_history(&grid->points[p], row);
+  }
   return record;
+}
+
+Record *app_sweep_table_record(const AppSweepGrid *grid) {
+  return make_record(grid, 0);
 }
 
 // In double quotes where a comma, a quote or a line's end stands in it (RFC 4180).
@@ -150,9 +167,11 @@ static Status write_csv(const AppSweepGrid *grid, const char *path) {
   return file_commit(&writer);
 }
 
-// The page takes the record over.
-static Status write_page(Record *table, const char *path) {
-  AppReport report = {.sweep = table};
+// With courses of forces: of so many runs as one can tell apart at most.
+static Status write_page(const AppSweepGrid *grid, const char *path) {
+  enum { MOST_HISTORIES = 200 };
+  AppReport report = {.sweep = make_record(grid, MOST_HISTORIES)};
+  if (!report.sweep) return status_no_memory("the page of a sweep");
   Status status = app_report_write(&report, path);
   app_report_destroy(&report);
   return status;
@@ -166,10 +185,7 @@ Status app_sweep_table_write(const AppSweepGrid *grid) {
   Status status = json && csv && page && table ? STATUS_OK : status_no_memory("the table of a sweep");
   if (!status) status = record_write(table, json);
   if (!status) status = write_csv(grid, csv);
-  if (!status) {
-    status = write_page(table, page);
-    table = NULL;
-  }
+  if (!status) status = write_page(grid, page);
   record_destroy(table);
   memory_free(json);
   memory_free(csv);

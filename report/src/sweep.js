@@ -31,7 +31,8 @@ const COLUMNS = [
 ];
 
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
-const textOf = (value) => (isNumber(value) ? String(Number(value.toPrecision(6))).replace("e+", "e") : String(value));
+const shorten = (number) => (Math.abs(number) >= 1e5 ? number.toExponential() : String(number)).replace("e+", "e");
+const textOf = (value) => (isNumber(value) ? shorten(Number(value.toPrecision(6))) : String(value));
 const shortOf = (key) => key.replace(/^.*\./, "");
 
 // The keys by what tells them apart: their last words, unless two have the same.
@@ -115,6 +116,46 @@ class SweepPlot {
   }
 }
 
+// The courses of forces, a line a run, coloured by its value of the key that is chosen.
+class HistoryPlot {
+  constructor(sweep, choice, state) {
+    Object.assign(this, { sweep, choice, state, runs: sweep.runs.filter((run) => run.history) });
+    this.area = h(".area");
+    this.key = h("p.key-line");
+    this.element = h("figure.plot", { id: "sweep-history" }, h("figcaption", h("h3", "Contact force over time", h("span.unit", "N"))), this.area, this.key);
+    state.on(["theme"], () => this.draw());
+    choice.on(["along"], () => this.draw());
+    new ResizeObserver(() => this.draw()).observe(this.area);
+  }
+
+  draw() {
+    const width = Math.round(this.area.clientWidth);
+    if (width < 50) return;
+    const { along } = this.choice;
+    const hues = HUES[this.state.theme];
+    const values = [...new Set(this.runs.map((run) => textOf(run.set[along])))];
+    const hueOf = (run) => hues[values.indexOf(textOf(run.set[along])) % hues.length];
+    const name = (run) => this.sweep.keys.map((key) => `${shortOf(key)} ${textOf(run.set[key])}`).join(", ");
+    const points = (run) => run.history.time_s.map((time, k) => [time, run.history.force_N[k]]);
+    const chart = Plot.plot({
+      width,
+      height: Math.round(Math.min(Math.max(width * 0.5, 200), 270)),
+      marginLeft: MARGIN.left,
+      marginRight: MARGIN.right,
+      marginTop: MARGIN.top,
+      marginBottom: MARGIN.bottom,
+      style: { background: "transparent", fontFamily: "inherit", fontSize: "11px", overflow: "visible" },
+      x: { label: "time, s", labelAnchor: "right", labelArrow: "none", tickSize: 0, ticks: Math.max(3, Math.round(width / 90)) },
+      y: { label: null, grid: true, nice: true, zero: true, ticks: 5, tickSize: 0, tickFormat: (value) => format(value, "", 3) },
+      marks: this.runs.map((run) => Plot.line(points(run), { stroke: hueOf(run), strokeWidth: 1.3, strokeOpacity: 0.8, title: () => name(run) })),
+    });
+    chart.setAttribute("role", "img");
+    chart.setAttribute("aria-label", `Contact force over time, a line a run, coloured by ${along}`);
+    this.area.replaceChildren(chart);
+    this.key.replaceChildren(...values.map((value, k) => h("span", h("span.dot", { style: `background:${hues[k % hues.length]}` }), `${shortOf(along)} ${value}`)));
+  }
+}
+
 function buildKey(sweep, choice, state) {
   const key = h("p.key-line");
   const show = () => {
@@ -166,7 +207,7 @@ export function buildSweep(given, state, createState) {
     h("p.lead", `${runs.length} runs of ${given.scene}: ${countsOf(runs)}.`),
     sweep.keys.length > 1 && h(".controls", h(".control", h("label", { for: "along" }, "Against"), select)),
     buildKey(sweep, choice, state),
-    h(".plots", shown.map((quantity) => new SweepPlot(sweep, quantity, choice, state).element)),
+    h(".plots", shown.map((quantity) => new SweepPlot(sweep, quantity, choice, state).element), runs.some((run) => run.history) && new HistoryPlot(sweep, choice, state).element),
     h("h3.after", "All runs"),
     buildTable(sweep),
   );

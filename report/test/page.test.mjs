@@ -486,6 +486,10 @@ const sweepTests = {
     const titles = () => page.eval(`[...document.querySelectorAll("#sweep-steps svg circle title")].map((one) => one.textContent)`);
     for (const steps of table) assert.ok((await titles()).some((text) => text.includes(`: ${steps}`)), `${steps} in ${await titles()}`);
     await page.eval(`(() => { const select = document.querySelector("#along"); select.value = "bodies.upper.material.poisson"; select.dispatchEvent(new Event("change")); })()`);
+    const courses = await page.eval("tetlap.data.sweep.runs.filter((run) => run.history).length");
+    assert.ok(courses >= 3, `${courses} courses of forces`);
+    assert.equal(await page.eval(`document.querySelectorAll("#sweep-history svg path[stroke-opacity='0.8'], #sweep-history svg g[stroke-opacity='0.8'] path").length`), courses);
+    assert.ok(await page.eval("Math.max(...tetlap.data.sweep.runs.flatMap((run) => run.history?.force_N ?? [])) > 0"));
     assert.ok((await titles()).length > 0, "no circle has a title");
     assert.ok((await titles()).every((text) => text.startsWith("poisson 0.3")), String(await titles()));
     assert.match(await page.eval(`document.querySelector("#sweep-steps svg").getAttribute("aria-label")`), /Steps against bodies.upper.material.poisson/);
