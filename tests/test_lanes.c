@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "fem/effect/assembly.h"
 #include "fem/effect/packs.h"
 #include "fem/lanes/lanes.h"
 #include "fem/model/build.h"
@@ -321,6 +322,25 @@ START_TEST(packs_hold_each_element_of_bodies_once_and_colours_share_no_vertex) {
 }
 END_TEST
 
+START_TEST(packs_of_the_same_elements_are_held_once) {
+  Scene scene;
+  FemAssembly all, same, fewer;
+  build(&scene);
+  ck_assert_ok(fem_assembly_create(&all, &scene.model, NULL));
+  ck_assert_ok(fem_assembly_create(&same, &scene.model, NULL));
+  ck_assert_ok(fem_assembly_create(&fewer, &scene.model, has_density_two));
+  size_t before = fem_assembly_bytes(&same);
+  fem_assembly_borrow(&same, &all);
+  fem_assembly_borrow(&fewer, &all);
+  ck_assert_ptr_eq(same.packs, all.packs);
+  ck_assert_uint_lt(4 * fem_assembly_bytes(&same), before);
+  ck_assert_ptr_eq(fewer.packs, fewer.own);
+  ck_assert_int_lt(fewer.packs[0].element_count, all.packs[0].element_count);
+  fem_assembly_destroy(&fewer), fem_assembly_destroy(&same), fem_assembly_destroy(&all);
+  fem_model_destroy(&scene.model);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("lanes");
   tcase_add_loop_test(cases, elastic_forces_and_matrices_are_those_of_single_elements, 0, MATERIALS);
@@ -329,5 +349,6 @@ int main(void) {
   tcase_add_loop_test(cases, deformations_of_every_kind_are_those_of_single_elements, 0, MATERIALS);
   tcase_add_loop_test(cases, what_is_not_finite_stays_in_its_lane, 0, MATERIALS);
   tcase_add_test(cases, packs_hold_each_element_of_bodies_once_and_colours_share_no_vertex);
+  tcase_add_test(cases, packs_of_the_same_elements_are_held_once);
   return suite_run("lanes", cases, 20);
 }

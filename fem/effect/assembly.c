@@ -13,9 +13,9 @@ enum { QUADRATIC_FORCES = 6, QUADRATIC_MATRICES = 16 };
 
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
                            bool (*takes)(const FemModelBody *body)) {
-  *assembly = (FemAssembly){.model = model};
+  *assembly = (FemAssembly){.model = model, .packs = assembly->own};
   for (int k = 0; k < 2; k++) {
-    TRY(fem_packs_create(&assembly->packs[k], model, k == 1, takes));
+    TRY(fem_packs_create(&assembly->own[k], model, k == 1, takes));
     assembly->partial[k] =
         memory_zeroed((size_t)assembly->packs[k].chunk_count, sizeof *assembly->partial[k]);
     if (!assembly->partial[k]) return status_no_memory("partial sums over elements");
@@ -23,9 +23,17 @@ Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
   return STATUS_OK;
 }
 
+// Both have elements of the same bodies where they have as many: one takes all that there are.
+void fem_assembly_borrow(FemAssembly *assembly, FemAssembly *from) {
+  for (int k = 0; k < 2; k++)
+    if (assembly->own[k].element_count != from->packs[k].element_count) return;
+  for (int k = 0; k < 2; k++) fem_packs_destroy(&assembly->own[k]);
+  assembly->packs = from->packs;
+}
+
 void fem_assembly_destroy(FemAssembly *assembly) {
   for (int k = 0; k < 2; k++) {
-    fem_packs_destroy(&assembly->packs[k]);
+    fem_packs_destroy(&assembly->own[k]);
     memory_free(assembly->partial[k]);
   }
   *assembly = (FemAssembly){0};
@@ -33,8 +41,7 @@ void fem_assembly_destroy(FemAssembly *assembly) {
 
 size_t fem_assembly_bytes(const FemAssembly *assembly) {
   size_t bytes = 0;
-  for (int k = 0; k < 2; k++)
-    bytes += fem_packs_bytes(&assembly->packs[k]) + memory_held(assembly->partial[k]);
+  for (int k = 0; k < 2; k++) bytes += fem_packs_bytes(&assembly->own[k]) + memory_held(assembly->partial[k]);
   return bytes;
 }
 
@@ -104,13 +111,6 @@ void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state,
   }
 }
 
-static Status find_slots(FemAssembly *assembly, const FemMatrix *matrix) {
-  if (assembly->layout == matrix->layout) return STATUS_OK;
-  for (int k = 0; k < 2; k++) TRY(fem_packs_find_slots(&assembly->packs[k], matrix));
-  assembly->layout = matrix->layout;
-  return STATUS_OK;
-}
-
 // Elements of which a coordinate is prescribed have no whole blocks.
 static void add_partial_matrices(const FemLanesElements *elements, const int slots[FEM_LANES],
                                  FemLanesRow own[FEM_LANES_ENTRIES], FemMatrix *matrix) {
@@ -163,7 +163,7 @@ Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state,
                                  const FemAssemblyKernels *kernels, double stiffness_scale,
                                  double damping_scale, FemMatrix *matrix) {
   Scales scales = {stiffness_scale, damping_scale};
-  TRY(find_slots(assembly, matrix));
+  for (int k = 0; k < 2; k++) TRY(fem_packs_find_slots(&assembly->packs[k], matrix));
   for (int k = 0; k < 2; k++) {
     const FemPacks *packs = &assembly->packs[k];
 #pragma omp parallel if (work_of(packs, QUADRATIC_MATRICES) > FEW_MATRICES)

@@ -36,15 +36,18 @@ typedef struct FemAssemblyKernels {
 
 typedef struct FemAssembly {
   const FemModel *model; // borrowed
-  FemPacks packs[2];     // linear, quadratic
+  FemPacks own[2];       // linear, quadratic; empty where they are borrowed
+  FemPacks *packs;       // (2) these, or another assembly's
   double *partial[2];    // sums of chunks of them                   (chunk_count)
-  long long layout;      // of the matrix whose slots the packs have; 0: not looked up
 } FemAssembly;
 
 // All elements of bodies, which obstacles are not, that this rank has and whose body `takes` accepts (NULL:
 // all). A zeroed assembly, and one whose creation failed, can be destroyed.
+// Must not be moved once it is created.
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
                            bool (*takes)(const FemModelBody *body));
+// Takes the packs of another assembly of the same model, which lives as long, if it has the same elements.
+void fem_assembly_borrow(FemAssembly *assembly, FemAssembly *from);
 void fem_assembly_destroy(FemAssembly *assembly);
 size_t fem_assembly_bytes(const FemAssembly *assembly); // on the heap
 

@@ -3,6 +3,7 @@
 // bodies with β > 0 or a viscosity take part.
 #include "base/memory.h"
 #include "fem/effect/assembly.h"
+#include "fem/effect/system.h"
 
 static bool is_wanted(const FemSceneDef *scene) {
   if (scene->is_static) return false;
@@ -32,6 +33,13 @@ static Status create(void **self, const FemModel *model) {
     return status;
   }
   *self = assembly;
+  return STATUS_OK;
+}
+
+// Where all that is elastic is damped, the elements are the same.
+static Status connect(void *self, const FemSystem *system) {
+  FemAssembly *elasticity = fem_system_effect(system, &fem_effect_elasticity);
+  if (elasticity) fem_assembly_borrow(self, elasticity);
   return STATUS_OK;
 }
 
@@ -112,6 +120,7 @@ const FemEffectOps fem_effect_damping = {
     .is_divided = true,
     .is_wanted = is_wanted,
     .create = create,
+    .connect = connect,
     .couple = couple,
     .add_force = add_force,
     .add_jacobian = add_jacobian,

@@ -273,6 +273,7 @@ static void find_half_slots(const FemLanesQuadratics *pack, const FemMatrix *mat
 
 Status fem_packs_find_slots(FemPacks *packs, const FemMatrix *matrix) {
   size_t count = (size_t)packs->pack_count;
+  if (packs->layout == matrix->layout) return STATUS_OK;
   if (packs->is_quadratic && !packs->half_slots)
     packs->half_slots = memory_zeroed(count, sizeof *packs->half_slots);
   if (!packs->is_quadratic && !packs->slots) packs->slots = memory_zeroed(count, sizeof *packs->slots);
@@ -284,5 +285,6 @@ Status fem_packs_find_slots(FemPacks *packs, const FemMatrix *matrix) {
     else
       find_slots(&packs->packs[p], matrix, packs->slots[p]);
   }
+  packs->layout = matrix->layout;
   return STATUS_OK;
 }

@@ -21,6 +21,7 @@ typedef struct FemPacks {
   // Places in the matrix, of one kind or the other; NULL: not looked up            (pack_count)
   int (*slots)[FEM_LANES_SLOTS][FEM_LANES];
   int (*half_slots)[FEM_LANES_HALF][FEM_LANES];
+  long long layout;  // of the matrix that they are of; 0: not looked up
   int *chunk_begin;  // of each chunk in the packs            (chunk_count + 1)
   int *chunk_body;   //                                       (chunk_count)
   int *colour_begin; // of each colour among the chunks       (colour_count + 1)
@@ -33,7 +34,7 @@ Status fem_packs_create(FemPacks *packs, const FemModel *model, bool is_quadrati
 void fem_packs_destroy(FemPacks *packs);
 size_t fem_packs_bytes(const FemPacks *packs); // on the heap
 
-// Looks up where the elements' entries lie; allocates the first time.
+// Looks up where the elements' entries lie, if the matrix has been laid out anew; allocates the first time.
 Status fem_packs_find_slots(FemPacks *packs, const FemMatrix *matrix);
 
 #endif
