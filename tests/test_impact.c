@@ -74,8 +74,8 @@ START_TEST(a_wall_gives_a_bar_its_impulse) {
 }
 END_TEST
 
-// What a cube of steel bounces off with after a slow impact, against that at a far smaller tolerance: as a share
-// of its momentum before, m √(2 g h), h a tenth of a millimetre.
+// What a cube of steel bounces off with after a slow impact, against that at a far smaller tolerance: as a
+// share of its momentum before, m √(2 g h), h a tenth of a millimetre.
 START_TEST(steel_bounces_off_slowly) {
   double momentum[2];
   const char *const tolerances[] = {"time.tolerance=1e-4", "time.tolerance=1e-6"};
@@ -112,7 +112,7 @@ END_TEST
 START_TEST(gains_and_losses_fall_together) {
   const char *const scenes[] = {"collision", "twang", "impact_bar"};
   for (int s = 0; s < 3; s++) {
-    double lost[2], gained[2];
+    double lost[2], gained[2], allowed = NAN;
     for (int k = 0; k < 2; k++) {
       SceneRun run;
       Seen seen = run_and_look(
@@ -121,12 +121,13 @@ START_TEST(gains_and_losses_fall_together) {
       ck_assert((seen.contact_count > 0) == (s != 1));
       lost[k] = fabs(share_lost(&run));
       gained[k] = scene_gain(&run);
+      allowed = run.result.energy_bounds.run;
       scene_close(&run);
     }
     ck_assert_msg(lost[1] <= lost[0] / 2.3, "%s: lost %.3g, then %.3g", scenes[s], lost[0], lost[1]);
     ck_assert_msg(gained[1] <= gained[0] || gained[1] <= 1e-5, "%s: gained %.3g, then %.3g", scenes[s],
                   gained[0], gained[1]);
-    ck_assert_double_le(gained[0], 1e-3);
+    ck_assert_double_le(gained[0], allowed);
   }
 }
 END_TEST

@@ -177,7 +177,7 @@ static int frame_at(const SceneRun *run, double time) {
 START_TEST(a_stack_sleeps_until_it_is_hit_and_is_hit_as_it_is_without) {
   SceneRun with, without;
   // The force of a blow at one instant is as good as the speed is at which it strikes.
-  const char *const fine[] = {"time.velocity_tolerance=5e-5", NULL};
+  const char *const fine[] = {"time.velocity_tolerance=5e-5", "output.checkpoint.frames=0", NULL};
   scene_run(&with, "asleep", fine);
   scene_open(&without, "asleep", fine);
   without.scene.contact.rest_is_on = false;

@@ -174,7 +174,7 @@ void fem_accuracy_accept(FemAccuracy *accuracy) {
 
 FemEstimate fem_accuracy_estimate(const FemAccuracyPair *pair, const FemModel *model, double stiffness) {
   const FemSceneDef *scene = model->scene;
-  double depth = 2 * pair->energy / pair->estimated, tolerance = scene->tolerance * model->length;
+  double depth = 2 * pair->energy / pair->estimated, tolerance = fem_model_position_tolerance(model);
   FemEstimate estimate = {.give = pair->energy / (pair->energy + pair->elastic[0] + pair->elastic[1]),
                           .rim = pair->rim,
                           .depth_over_edge = depth / pair->edge,

@@ -73,9 +73,14 @@ const char *fem_model_body_name(const FemModel *model, int vertex);
 // over the smallest mean element volume, which gives a comparable pressure.
 double fem_model_contact_stiffness(const FemModel *model);
 
+// Error per step of a position [m]: the scene's tolerance times the smallest body's diagonal, 0.03 of that in
+// motion without contact.
+double fem_model_position_tolerance(const FemModel *model);
+
 // Error per step of a velocity [m/s]: the scene's, or its tolerance times 0.03 of the slowest body's wave
 // speed √(E/ρ), all of it where a body rubs on itself, or where that is less times 0.3 of the fastest speed
-// at t = 0 or √(g L), L the smallest body's diagonal; with friction by the law `velocity` at most 5 ε.
+// at t = 0 or √(g L), L the smallest body's diagonal; with friction by the law `velocity` at most 5 ε;
+// without contact 33 times as much.
 double fem_model_velocity_tolerance(const FemModel *model);
 
 // E V ε², the energy of a strain in all bodies, twice if it were uniaxial [J].

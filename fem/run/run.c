@@ -139,7 +139,7 @@ static Status begin_stage(FemRunState *run, double step) {
   double next = fem_effect_rest_next_change(fem_system_effect(&run->system, &fem_effect_rest));
   run->stage_end = fmin(fmin(scene->end, next), fem_model_numbering_next_release(model, run->time));
   if (model->unknown_count == 0) return STATUS_OK; // all sleep
-  FemIntegratorDef def = {.displacement_tolerance = scene->tolerance * model->length,
+  FemIntegratorDef def = {.displacement_tolerance = fem_model_position_tolerance(model),
                           .velocity_tolerance = fem_model_velocity_tolerance(model),
                           .speed_share = fem_model_speed_share(model),
                           .wave_share = scene->tolerance,
@@ -247,7 +247,7 @@ static Status advance(FemRunState *run) {
 static Status look_ahead(FemRunState *run, double *time, FemMeasures *measures) {
   const FemSceneDef *scene = run->model->scene;
   double longest = scene->max_step > 0 ? scene->max_step : LONGEST_SLEEP * scene->end;
-  FemForesight foresight = {.displacement = scene->tolerance * run->model->length,
+  FemForesight foresight = {.displacement = fem_model_position_tolerance(run->model),
                             .velocity = fem_model_velocity_tolerance(run->model),
                             .resolution = SHORTEST_SLEEP * scene->end};
   double farthest = fmin(run->time + longest, run->stage_end);
@@ -413,7 +413,7 @@ static Status advance_static(FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
   double longest = scene->max_step > 0 ? scene->max_step : scene->end / scene->frames;
   double step = run->next_step > 0 ? fmin(run->next_step, longest) : longest;
-  FemForesight foresight = {.displacement = scene->tolerance * run->model->length,
+  FemForesight foresight = {.displacement = fem_model_position_tolerance(run->model),
                             .resolution = SHORTEST_LOAD_STEP * scene->end / scene->frames,
                             .static_share = scene->tolerance};
   double target = fem_scene_frame_time(scene, run->next_frame), to = fmin(run->time + step, target),

@@ -242,7 +242,7 @@ static void print_text(const AppJob *job, const Notes *notes, const FemDivisionP
   printf("unknowns      %d displacements, %s velocities\n", model->unknown_count,
          scene->is_static ? "no" : "and as many");
   printf("time          0 to %g s, error per step %g m and %g m/s\n", scene->end,
-         scene->tolerance * model->length, fem_model_velocity_tolerance(model));
+         fem_model_position_tolerance(model), fem_model_velocity_tolerance(model));
   FemRunChoice choice = fem_run_choice(model);
   printf("solver        %s%s%s%s, %d threads\n", fem_solver_name(choice.kind),
          choice.why[0] ? " (chosen: " : "", choice.why, choice.why[0] ? ")" : "", cpu_thread_count());

@@ -27,14 +27,17 @@ static const SceneKey time_keys[] = {
      .help =
          "equilibria at the times of the frames: no velocities, no mass; time is a parameter of the loads"},
     {"tolerance", SCENE_NUMBER, AT(FemSceneDef, tolerance), .range = "(0, 1)", .fallback = "1e-4",
-     .help = "error of the positions per step, as a share of the smallest body's size"},
+     .help = "error of the positions per step, as a share of the smallest body's size; without contact 0.03 "
+             "of that"},
     {"velocity_tolerance", SCENE_NUMBER, AT(FemSceneDef, velocity_tolerance), .unit = "m/s",
      .range = "(0, inf)",
      .absent_help =
          "0.03 of `tolerance` times √(E/ρ) of the slowest body (all of it where a body rubs on "
          "itself), or where that is less 0.3 of `tolerance` times the fastest speed at t = 0 or, with "
-         "gravity, √(g L), L the smallest body's size; with contact, where that is more, 5 of `tolerance` times the present speed of the "
-         "fastest body, up to `tolerance` times the body's own √(E/ρ); with friction of the law "
+         "gravity, √(g L), L the smallest body's size; with contact, where that is more, 5 of `tolerance` "
+         "times the present speed of the "
+         "fastest body, up to `tolerance` times the body's own √(E/ρ); without contact 33 times as much; "
+         "with friction of the law "
          "velocity at most 5 of its slip speeds",
      .help = "error of the velocities per step"},
     {"max_step", SCENE_NUMBER, AT(FemSceneDef, max_step), .unit = "s", .range = "(0, inf)",
