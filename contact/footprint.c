@@ -11,7 +11,7 @@ size_t contact_footprint_layout(const ContactLayout *layout) {
   const ContactDepth *depth = &layout->depth;
   return HELD(layout->rest, layout->cell_volumes, depth->cell_begin, depth->own, depth->tets, depth->replaced,
               depth->outer, depth->virtuals, depth->depths, layout->tet_volumes, layout->vertex_volumes,
-              layout->facings, layout->nudges, layout->shifts, self->outer, self->is_outer,
+              layout->facings, layout->nudges, layout->shifts, self->outer, self->cell_begin, self->is_outer,
               self->left_out.pairs);
 }
 

@@ -77,6 +77,9 @@ START_TEST(a_contact_force_that_pulls_is_a_wrong_way_push) {
   apex[2] = -1;
   ck_assert_int_eq(look(&looked).count[FEM_TROUBLE_WRONG_WAY], 0);
   apex[2] = 1;
+  looked.overlap[0] = 0.49 * looked.det_F[0]; // nothing is pierced
+  ck_assert_int_eq(look(&looked).count[FEM_TROUBLE_WRONG_WAY], 0);
+  looked.overlap[0] = 0.51 * looked.det_F[0];
   ck_assert_int_eq(look(&looked).count[FEM_TROUBLE_WRONG_WAY], 1);
   ck_assert_int_eq(look(&looked).first[FEM_TROUBLE_WRONG_WAY], 3);
   ck_assert_int_eq(looked.watch.is_wrongway[3], 1);

@@ -3,6 +3,7 @@
 
 #include <limits.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "contact/search/bounds.h"
@@ -25,20 +26,32 @@ static void list_outer(ContactSelf *self, const ContactDepth *depth, const unsig
   for (int i = 0; i < depth->cell_count; i++) {
     const int *v = depth->cells[i];
     self->is_outer[i] = is_surface[v[0]] || is_surface[v[1]] || is_surface[v[2]] || is_surface[v[3]];
-    if (self->is_outer[i]) self->outer[self->outer_count++] = i;
+    int tet = contact_depth_tet(depth, i);
+    if (self->is_outer[i] && (self->outer_count == 0 || self->outer[self->outer_count - 1] != tet))
+      self->outer[self->outer_count++] = tet;
+  }
+}
+
+static void list_cells(ContactSelf *self, const ContactDepth *depth, int tet_count) {
+  int cell = 0;
+  for (int tet = 0; tet <= tet_count; tet++) {
+    while (cell < depth->cell_count && contact_depth_tet(depth, cell) < tet) cell++;
+    self->cell_begin[tet] = cell;
   }
 }
 
 static Status find_outer(ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth) {
-  self->outer = memory_zeroed((size_t)depth->cell_count, sizeof *self->outer);
+  self->outer = memory_zeroed((size_t)def->tet_count, sizeof *self->outer);
+  self->cell_begin = memory_zeroed((size_t)def->tet_count + 1, sizeof *self->cell_begin);
   self->is_outer = memory_zeroed((size_t)depth->cell_count, 1);
   unsigned char *is_surface = memory_zeroed((size_t)depth->position_count, 1);
-  Status status = self->outer && self->is_outer && is_surface
+  Status status = self->outer && self->cell_begin && self->is_outer && is_surface
                       ? STATUS_OK
                       : status_no_memory("the surface of a body that meets itself");
   for (int b = 0; b < def->body_count && !status; b++)
     if (def->bodies[b].meets_itself) status = mark_surface(def, &def->bodies[b], is_surface);
   if (!status) list_outer(self, depth, is_surface);
+  if (!status) list_cells(self, depth, def->tet_count);
   memory_free(is_surface);
   return status;
 }
@@ -63,97 +76,175 @@ static bool is_left_out(const ContactSelf *self, const int pair[2]) {
          bsearch(pair, list->pairs, (size_t)list->count, sizeof *list->pairs, compare_pairs) != NULL;
 }
 
-// The boxes of the body's outer tetrahedra, and those of all of them.
-typedef struct Boxes {
-  const int *outer;
-  int outer_count, cell_begin, cell_count;
-  double (*of_outer)[6], (*of_all)[6];
-} Boxes;
+// What a search works with. Cells lie in their tetrahedra, so those are searched first.
+typedef struct Search {
+  const ContactSelf *self;
+  const ContactSystemDef *def;
+  const ContactDepth *depth;
+  const double *positions;
+  double margin;
+  const int *outer; // the body's tetrahedra with a vertex on the surface                  (outer_count)
+  int outer_count, tet_begin, tet_count;
+  unsigned char *is_outer;             // of the body's tetrahedra; owned                (tet_count)
+  double (*of_outer)[6], (*of_all)[6]; // boxes, grown by half the margin; owned
+  ContactBoxPairs found;               // boxes, then tetrahedra, then cells that are near; owned
+} Search;
 
-static Status bound(Boxes *boxes, const ContactSelf *self, const ContactDepth *depth, int body,
-                    const double *positions, double grow) {
-  int begin = depth->cell_begin[body], end = depth->cell_begin[body + 1];
+static Status begin_search(Search *search, int body) {
+  const ContactSelf *self = search->self;
+  int begin = search->def->bodies[body].tet_begin, end = search->def->bodies[body].tet_end;
   int first = 0, last = self->outer_count;
   while (first < last && self->outer[first] < begin) first++;
   while (last > first && self->outer[last - 1] >= end) last--;
-  *boxes = (Boxes){.outer = self->outer + first,
-                   .outer_count = last - first,
-                   .cell_begin = begin,
-                   .cell_count = end - begin};
-  boxes->of_outer = memory_zeroed((size_t)boxes->outer_count, sizeof *boxes->of_outer);
-  boxes->of_all = memory_zeroed((size_t)boxes->cell_count, sizeof *boxes->of_all);
-  if (!boxes->of_outer || !boxes->of_all) return status_no_memory("boxes of a body that meets itself");
-  for (int k = 0; k < boxes->cell_count; k++) {
-    double *box = boxes->of_all[k];
-    contact_bounds_of_tet(depth->cells[begin + k], positions, box);
-    for (int c = 0; c < 3; c++) box[c] -= grow, box[c + 3] += grow;
+  search->outer = self->outer + first, search->outer_count = last - first;
+  search->tet_begin = begin, search->tet_count = end - begin;
+  search->is_outer = memory_zeroed((size_t)search->tet_count, 1);
+  search->of_outer = memory_zeroed((size_t)search->outer_count, sizeof *search->of_outer);
+  search->of_all = memory_zeroed((size_t)search->tet_count, sizeof *search->of_all);
+  bool fits = search->is_outer && search->of_outer && search->of_all;
+  return fits ? STATUS_OK : status_no_memory("boxes of a body that meets itself");
+}
+
+static void end_search(Search *search) {
+  contact_boxes_destroy(&search->found);
+  memory_free(search->is_outer);
+  memory_free(search->of_outer);
+  memory_free(search->of_all);
+}
+
+static void bound(Search *search) {
+  for (int k = 0; k < search->tet_count; k++) {
+    double *box = search->of_all[k];
+    contact_bounds_of_tet(search->def->tets[search->tet_begin + k], search->positions, box);
+    for (int c = 0; c < 3; c++) box[c] -= search->margin / 2, box[c + 3] += search->margin / 2;
   }
-  for (int k = 0; k < boxes->outer_count; k++)
-    for (int c = 0; c < 6; c++) boxes->of_outer[k][c] = boxes->of_all[boxes->outer[k] - begin][c];
+  for (int k = 0; k < search->outer_count; k++) {
+    int tet = search->outer[k] - search->tet_begin;
+    search->is_outer[tet] = 1;
+    for (int c = 0; c < 6; c++) search->of_outer[k][c] = search->of_all[tet][c];
+  }
+}
+
+static bool are_near(const Search *search, const int a[4], const int b[4]) {
+  double x[24];
+  for (int v = 0; v < 4; v++)
+    for (int c = 0; c < 3; c++) {
+      x[3 * v + c] = search->positions[3 * (size_t)a[v] + (size_t)c];
+      x[12 + 3 * v + c] = search->positions[3 * (size_t)b[v] + (size_t)c];
+    }
+  return !(overlap_separation_pair(x, search->margin) > search->margin);
+}
+
+// Drops what is marked by a second index of −1.
+static void compact(ContactBoxPairs *found) {
+  size_t kept = 0;
+  for (size_t k = 0; k < found->count; k++) {
+    if (found->pairs[k][1] < 0) continue;
+    int i = found->pairs[k][0], j = found->pairs[k][1];
+    found->pairs[kept][0] = i, found->pairs[kept][1] = j;
+    kept++;
+  }
+  found->count = kept;
+}
+
+// Turns pairs of boxes into pairs i < j of tetrahedra that may meet.
+static void keep_tets(Search *search) {
+  long long count = (long long)search->found.count;
+#pragma omp parallel for schedule(static) if (count > 512)
+  for (long long k = 0; k < count; k++) {
+    int *pair = search->found.pairs[k], i = search->outer[pair[0]], j = search->tet_begin + pair[1];
+    const int *a = search->def->tets[i], *b = search->def->tets[j];
+    bool comes_twice = j < i && search->is_outer[pair[1]];
+    pair[0] = i < j ? i : j, pair[1] = i < j ? j : i;
+    if (comes_twice || shares_vertex(a, b) || !are_near(search, a, b)) pair[1] = -1;
+  }
+  compact(&search->found);
+}
+
+// Turns pairs of tetrahedra into those of their cells, of which one at least is outer.
+static Status cut(Search *search) {
+  const int *begin = search->self->cell_begin;
+  const unsigned char *is_outer = search->self->is_outer;
+  ContactBoxPairs cells = {0};
+  for (size_t k = 0; k < search->found.count; k++) {
+    const int *tets = search->found.pairs[k];
+    int counts[2] = {begin[tets[0] + 1] - begin[tets[0]], begin[tets[1] + 1] - begin[tets[1]]};
+    size_t most = cells.count + (size_t)counts[0] * (size_t)counts[1];
+    if (!memory_reserve((void **)&cells.pairs, &cells.capacity, most, sizeof *cells.pairs)) {
+      contact_boxes_destroy(&cells);
+      return status_no_memory("candidate pairs of a body with itself");
+    }
+    for (int i = begin[tets[0]]; i < begin[tets[0]] + counts[0]; i++)
+      for (int j = begin[tets[1]]; j < begin[tets[1]] + counts[1]; j++)
+        if (is_outer[i] || is_outer[j]) {
+          int *pair = cells.pairs[cells.count++];
+          pair[0] = i, pair[1] = j;
+        }
+  }
+  contact_boxes_destroy(&search->found);
+  search->found = cells;
   return STATUS_OK;
 }
 
-static double separation_of(const ContactDepth *depth, const int pair[2], const double *positions,
-                            double enough) {
-  double x[24];
-  for (int side = 0; side < 2; side++)
-    for (int v = 0; v < 4; v++)
-      for (int c = 0; c < 3; c++)
-        x[12 * side + 3 * v + c] = positions[3 * (size_t)depth->cells[pair[side]][v] + (size_t)c];
-  return overlap_separation_pair(x, enough);
+static bool is_whole(const ContactDepth *depth, int cell) {
+  return !depth->replaced || depth->replaced[cell] < 0;
 }
 
-// Turns pairs of boxes into pairs i < j of tetrahedra; j = −1 where they may not meet or are too far apart.
-static void keep_separated(const ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth,
-                           const Boxes *boxes, const double *positions, double margin,
-                           ContactBoxPairs *found) {
-  long long count = (long long)found->count;
+static void keep_cells(Search *search) {
+  const ContactDepth *depth = search->depth;
+  long long count = (long long)search->found.count;
 #pragma omp parallel for schedule(static) if (count > 512)
   for (long long k = 0; k < count; k++) {
-    int *pair = found->pairs[k], i = boxes->outer[pair[0]], j = boxes->cell_begin + pair[1];
-    bool comes_twice = self->is_outer[j] && j < i;
-    pair[0] = i < j ? i : j, pair[1] = i < j ? j : i;
-    if (comes_twice ||
-        shares_vertex(def->tets[contact_depth_tet(depth, i)], def->tets[contact_depth_tet(depth, j)]) ||
-        is_left_out(self, pair) || separation_of(depth, pair, positions, margin) > margin)
+    int *pair = search->found.pairs[k], i = pair[0], j = pair[1];
+    bool is_known = is_whole(depth, i) && is_whole(depth, j);
+    if (is_left_out(search->self, pair) || (!is_known && !are_near(search, depth->cells[i], depth->cells[j])))
       pair[1] = -1;
   }
+  compact(&search->found);
 }
 
 static Status append_found(ContactPairList *list, const ContactBoxPairs *found) {
-  size_t kept = 0, before = (size_t)list->count;
-  for (size_t k = 0; k < found->count; k++) kept += found->pairs[k][1] >= 0;
-  if (before + kept > INT_MAX ||
-      !memory_reserve((void **)&list->pairs, &list->capacity, before + kept, sizeof *list->pairs))
+  size_t before = (size_t)list->count, count = found->count;
+  if (before + count > INT_MAX ||
+      !memory_reserve((void **)&list->pairs, &list->capacity, before + count, sizeof *list->pairs))
     return status_no_memory("candidate pairs of a body with itself");
-  for (size_t k = 0; k < found->count; k++) {
-    if (found->pairs[k][1] < 0) continue;
-    int *pair = list->pairs[list->count++];
-    pair[0] = found->pairs[k][0], pair[1] = found->pairs[k][1];
-  }
-  if (kept > 1) qsort(list->pairs + before, kept, sizeof *list->pairs, compare_pairs);
+  if (count > 0) memcpy(list->pairs + before, found->pairs, count * sizeof *list->pairs);
+  list->count += (int)count;
+  if (count > 1) qsort(list->pairs + before, count, sizeof *list->pairs, compare_pairs);
   return STATUS_OK;
 }
 
 Status contact_self_append(const ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth,
                            int body, const double *positions, double margin, ContactPairList *list) {
-  Boxes boxes;
-  ContactBoxPairs found = {0};
-  Status status = bound(&boxes, self, depth, body, positions, margin / 2);
-  if (!status)
-    status = contact_boxes_intersect((const double(*)[6])boxes.of_outer, boxes.outer_count,
-                                     (const double(*)[6])boxes.of_all, boxes.cell_count, &found);
+  Search search = {.self = self, .def = def, .depth = depth, .positions = positions, .margin = margin};
+  Status status = begin_search(&search, body);
   if (!status) {
-    keep_separated(self, def, depth, &boxes, positions, margin, &found);
-    status = append_found(list, &found);
+    bound(&search);
+    status = contact_boxes_intersect((const double(*)[6])search.of_outer, search.outer_count,
+                                     (const double(*)[6])search.of_all, search.tet_count, &search.found);
   }
-  contact_boxes_destroy(&found);
-  memory_free(boxes.of_outer);
-  memory_free(boxes.of_all);
+  if (!status) {
+    keep_tets(&search);
+    status = cut(&search);
+  }
+  if (!status) {
+    keep_cells(&search);
+    status = append_found(list, &search.found);
+  }
+  end_search(&search);
   return status;
 }
 
 // ---- Pairs that overlap at rest.
+
+static double separation_at_rest(const ContactDepth *depth, const ContactSystemDef *def, const int pair[2]) {
+  double x[24];
+  for (int side = 0; side < 2; side++)
+    for (int v = 0; v < 4; v++)
+      for (int c = 0; c < 3; c++)
+        x[12 * side + 3 * v + c] = def->rest[3 * (size_t)depth->cells[pair[side]][v] + (size_t)c];
+  return overlap_separation_pair(x, 0);
+}
 
 Status contact_self_create(ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth,
                            double rest_depth) {
@@ -170,7 +261,7 @@ Status contact_self_create(ContactSelf *self, const ContactSystemDef *def, const
   int kept = 0;
   for (int k = 0; k < touching.count; k++) {
     int *pair = touching.pairs[k];
-    if (separation_of(depth, pair, def->rest, 0) > -rest_depth) continue;
+    if (separation_at_rest(depth, def, pair) > -rest_depth) continue;
     touching.pairs[kept][0] = pair[0], touching.pairs[kept][1] = pair[1];
     kept++;
   }
@@ -181,6 +272,7 @@ Status contact_self_create(ContactSelf *self, const ContactSystemDef *def, const
 
 void contact_self_destroy(ContactSelf *self) {
   memory_free(self->outer);
+  memory_free(self->cell_begin);
   memory_free(self->is_outer);
   contact_broad_destroy(&self->left_out);
   *self = (ContactSelf){0};

@@ -14,10 +14,10 @@
 #include "contact/surface/depth.h"
 
 typedef struct ContactSelf {
-  int *outer; // cells with a vertex on the surface, of bodies that meet themselves; ascending
-              // (outer_count)
+  int *outer; // tetrahedra of which a cell is outer; ascending                            (outer_count)
   int outer_count;
-  unsigned char *is_outer;  // of each cell                                                  (cell_count)
+  int *cell_begin;          // the first cell of each tetrahedron                          (tet_count + 1)
+  unsigned char *is_outer;  // of each cell: a vertex on the surface, of a body that meets itself (cell_count)
   ContactPairList left_out; // rule 2
 } ContactSelf;
 

@@ -10,7 +10,7 @@
 #include "fem/mesh/faces.h"
 #include "fem/model/compliance.h"
 
-static const double COVERED = 0.999, PULL = 0.5, FORCE_FLOOR = 1e-3, SLIVER_SHAPE = 1e-3;
+static const double COVERED = 0.999, DEEP = 0.5, PULL = 0.5, FORCE_FLOOR = 1e-3, SLIVER_SHAPE = 1e-3;
 
 static const struct {
   const char *name, *what, *unit, *advice;
@@ -51,7 +51,8 @@ static Status create(FemTroubleWatch *watch) {
   watch->normals = memory_zeroed(3 * (size_t)model->vertex_count, sizeof *watch->normals);
   watch->is_wrongway = memory_zeroed((size_t)model->vertex_count, sizeof *watch->is_wrongway);
   watch->is_corner = memory_zeroed((size_t)model->vertex_count, sizeof *watch->is_corner);
-  if (!watch->normals || !watch->is_wrongway || !watch->is_corner)
+  watch->is_deep = memory_zeroed((size_t)model->vertex_count, sizeof *watch->is_deep);
+  if (!watch->normals || !watch->is_wrongway || !watch->is_corner || !watch->is_deep)
     return status_no_memory("the marks of vertices");
   if (model->scene->contact.potential == CONTACT_POTENTIAL_FIELD)
     for (int e = 0; e < model->quadratic_count; e++)
@@ -72,6 +73,7 @@ void fem_trouble_watch_destroy(FemTroubleWatch *watch) {
   memory_free(watch->marks);
   memory_free(watch->is_wrongway);
   memory_free(watch->is_corner);
+  memory_free(watch->is_deep);
   *watch = (FemTroubleWatch){0};
 }
 
@@ -106,6 +108,14 @@ static void find_normals(FemTroubleWatch *watch, const double *positions) {
   }
 }
 
+static void find_deep(FemTroubleWatch *watch, const double *det_F, const double *overlap) {
+  const FemModel *model = watch->model;
+  memset(watch->is_deep, 0, (size_t)model->vertex_count * sizeof *watch->is_deep);
+  for (int e = 0; e < model->tet_count; e++)
+    if (overlap[e] >= DEEP * fabs(det_F[e]))
+      for (int k = 0; k < 4; k++) watch->is_deep[model->tets[e][k]] = true;
+}
+
 static void look_at_forces(FemTroubleWatch *watch, const double *positions, const double *force,
                            FemTroubleState *state) {
   const FemModel *model = watch->model;
@@ -120,7 +130,7 @@ static void look_at_forces(FemTroubleWatch *watch, const double *positions, cons
     for (int a = model->bodies[b].vertex_begin; a < model->bodies[b].vertex_end; a++) {
       Vec3 f = vec3_at(force + 3 * a), n = vec3_at(watch->normals + 3 * a);
       double size = vec3_length(f), area = vec3_length(n);
-      if (watch->is_corner[a]) continue;
+      if (watch->is_corner[a] || !watch->is_deep[a]) continue;
       if (!(size > FORCE_FLOOR * largest) || !(vec3_dot(f, n) > PULL * size * area)) continue;
       watch->is_wrongway[a] = 1;
       count(state, FEM_TROUBLE_WRONG_WAY, a);
@@ -131,7 +141,9 @@ void fem_trouble_look(FemTroubleWatch *watch, const double *positions, const dou
                       const double *det_F, const double *overlap, FemTroubleState *state) {
   *state = (FemTroubleState){.first = {-1, -1, -1, -1, -1}, .passed = {-1, -1}};
   look_at_elements(watch, det_F, overlap, state);
-  if (force && watch->triangles) look_at_forces(watch, positions, force, state);
+  if (!force || !watch->triangles) return;
+  find_deep(watch, det_F, overlap);
+  look_at_forces(watch, positions, force, state);
 }
 
 // 6 V / (longest edge)³

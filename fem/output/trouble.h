@@ -23,7 +23,9 @@ typedef enum FemTroubleKind {
   FEM_TROUBLE_ENCLOSED, // an element: what is inside has no surface that contact could push out
   // A vertex of a body's surface that contact pulls outwards: f·n > ½ |f|, n the outward normal. Contact only
   // presses; a pull means that the nearest way out of the overlap leads deeper in, as in a body that was
-  // pierced. Forces below a thousandth of the largest are not looked at.
+  // pierced: an element there is half covered, at least. In a body of one element across a pull alone says
+  // nothing, since its elements carry the pressure on one face to all their vertices. Forces below a
+  // thousandth of the largest are not looked at.
   FEM_TROUBLE_WRONG_WAY,
   FEM_TROUBLE_ENERGY, // the audited energy rose by more than a run may gain (fem/time/audit.h)
   FEM_TROUBLE_PASSED, // an element left another body on the side opposite to where it came in
@@ -66,6 +68,7 @@ typedef struct FemTroubleWatch {
   // Of quadratic elements with the potential `field`: pressure leaves next to nothing there, and of either
   // sign.
   bool *is_corner; //                                        (vertex_count)
+  bool *is_deep;   // of an element that is half covered     (vertex_count)
 } FemTroubleWatch;
 
 Status fem_trouble_watch_create(FemTroubleWatch *watch, const FemModel *model);
