@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every rank has added its share to a matrix over all unknowns (fem/sparse/share.h). Here the shares meet: a
-// rank has the rows of its vertices, and entries of others' rows go to their owners (MatSetValuesCOO). Right
-// sides and solutions are whole on every rank.
+// rank has the rows of its vertices; what it adds to rows of others, which is what vertices at the border
+// share, all ranks get and the rows' owners take. Right sides and solutions are whole on every rank.
 //
 // Rows are numbered rank by rank, three to a vertex that has unknowns, as multigrid wants them; prescribed
 // coordinates among these stand alone. A preconditioner is kept for new numbers while iterations stay near
 // what they were when it was new (as in fem/sparse/solver_petsc.c).
 #include "dist/solver.h"
 
+#include <limits.h>
 #include <petscksp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +28,15 @@ enum { LIMIT_KEPT = 60, LIMIT = 2000 };
 static const double WORN_SHARE = 1.5;
 enum { WORN_MORE = 2 };
 
+typedef struct Place {
+  int row, column;
+} Place;
+
+// Where a given value is from, and where it goes.
+typedef struct Taken {
+  int from, slot;
+} Taken;
+
 typedef struct DistSolver {
   Kind kind;
   double tolerance;
@@ -43,10 +53,20 @@ typedef struct DistSolver {
   Mat matrix;
   Vec right, left;
   KSP ksp;
-  PetscCount entry_count; // that this rank gives
-  double *entries;        //                                                   (entry_count)
-  bool has_rows;          // the numbering stands
-  bool has_matrix;        // numbers are there
+  int first, end;       // rows of this rank
+  int *row_begin;       // of each of them in `values`                       (end − first + 2)
+  int *column;          // while they are laid out
+  double *values;       // as PETSc is given them
+  int *slots;           // in `values`, of own entries for own rows, as they are walked
+  int *alone_slots;     // of `alone`                                        (own rows)
+  int *given_begin;     // of each rank's entries for rows of others         (ranks + 1)
+  Place *given;         // those of all ranks, while they are laid out
+  double *given_values; //                                                   (given_begin[ranks])
+  Taken *taken;         // those for rows of this rank                       (taken_count)
+  int taken_count;
+  int given_at, slot_at; // of a walk
+  bool has_rows;         // the numbering stands
+  bool has_matrix;       // numbers are there
   bool is_worn, is_fresh;
   long long new_count; // iterations of its first solve
   long long layout;
@@ -69,6 +89,9 @@ static void fail_in(const DistSolver *solver, const char *what, PetscErrorCode c
     if (code_) fail_in(solver, what, code_);                                                                 \
   } while (0)
 
+// As of one process (fem/sparse/solver_petsc.c), but for the sweeps: across ranks those of Gauss and Seidel
+// need not converge, and with l1 they do (Baker, Falgout, Kolev and Yang 2011); one forward down and one
+// backward up is symmetric.
 static void set_options(void) {
   static const char *const options[][2] = {
       {"-tetlap_amg_pc_type", "hypre"},
@@ -77,6 +100,10 @@ static void set_options(void) {
       {"-tetlap_amg_pc_hypre_boomeramg_interp_type", "ext+i"},
       {"-tetlap_amg_pc_hypre_boomeramg_P_max", "4"},
       {"-tetlap_amg_pc_hypre_boomeramg_strong_threshold", "0.5"},
+      {"-tetlap_amg_pc_hypre_boomeramg_agg_nl", "1"},
+      {"-tetlap_amg_pc_hypre_boomeramg_no_CF", NULL},
+      {"-tetlap_amg_pc_hypre_boomeramg_relax_type_down", "l1-Gauss-Seidel"},
+      {"-tetlap_amg_pc_hypre_boomeramg_relax_type_up", "backward-l1-Gauss-Seidel"},
       {"-tetlap_gamg_pc_type", "gamg"},
       {"-tetlap_mumps_pc_type", "cholesky"},
       {"-tetlap_mumps_pc_factor_mat_solver_type", "mumps"},
@@ -144,8 +171,13 @@ static Status create_blocks(void **self, int threads, double tolerance) {
 
 static void forget_matrix(DistSolver *solver) {
   MatDestroy(&solver->matrix);
-  memory_free(solver->entries);
-  solver->entries = NULL;
+  memory_free(solver->row_begin), memory_free(solver->column), memory_free(solver->values);
+  memory_free(solver->slots), memory_free(solver->given_begin), memory_free(solver->given);
+  memory_free(solver->given_values), memory_free(solver->taken);
+  solver->row_begin = solver->column = solver->slots = solver->given_begin = NULL;
+  solver->values = solver->given_values = NULL;
+  solver->given = NULL;
+  solver->taken = NULL;
   solver->has_matrix = false;
 }
 
@@ -156,11 +188,11 @@ static void forget(DistSolver *solver) {
   VecDestroy(&solver->left);
   memory_free(solver->begin), memory_free(solver->row), memory_free(solver->own);
   memory_free(solver->alone), memory_free(solver->rest), memory_free(solver->all);
-  memory_free(solver->is_touched), memory_free(solver->unknowns);
+  memory_free(solver->is_touched), memory_free(solver->unknowns), memory_free(solver->alone_slots);
   solver->begin = solver->row = solver->own = solver->alone = NULL;
   solver->rest = solver->all = NULL;
   solver->is_touched = NULL;
-  solver->unknowns = NULL;
+  solver->unknowns = solver->alone_slots = NULL;
   solver->has_rows = false;
 }
 
@@ -208,11 +240,14 @@ static Status reserve(DistSolver *solver, const FemMatrix *pattern) {
   size_t own = (size_t)solver->begin[pattern->share->rank + 1];
   for (int r = 0; r < pattern->share->rank_count; r++) solver->begin[r + 1] += solver->begin[r];
   solver->row_count = solver->begin[pattern->share->rank_count];
+  solver->first = solver->begin[pattern->share->rank];
+  solver->end = solver->begin[pattern->share->rank + 1];
   solver->own = memory_zeroed(own, sizeof *solver->own);
   solver->alone = memory_zeroed(own, sizeof *solver->alone);
+  solver->alone_slots = memory_zeroed(own, sizeof *solver->alone_slots);
   solver->rest = memory_zeroed(own, sizeof *solver->rest);
   solver->all = memory_zeroed((size_t)solver->row_count, sizeof *solver->all);
-  bool is_ok = solver->own && solver->alone && solver->rest && solver->all;
+  bool is_ok = solver->own && solver->alone && solver->alone_slots && solver->rest && solver->all;
   return is_ok ? STATUS_OK : status_no_memory("the condensed system");
 }
 
@@ -260,26 +295,158 @@ static void find_touched(DistSolver *solver, const FemMatrix *matrix) {
         solver->is_touched[vertex_of[u]] = solver->is_touched[vertex_of[matrix->row[k]]] = true;
 }
 
-// Hands each entry of the lower triangle that this rank may add to, and its mirror image, to `i`, `j` or, if
-// those are NULL, its number to `values`. How many there are.
-static PetscCount list_entries(const DistSolver *solver, const FemMatrix *matrix, PetscInt *i, PetscInt *j,
-                               double *values) {
-  PetscCount count = 0;
+// What is done with an entry of the whole matrix that this rank adds to.
+typedef void Visit(DistSolver *solver, int row, int column, double value);
+
+// Each entry of the lower triangle that this rank may add to, and its mirror image.
+static void walk(DistSolver *solver, const FemMatrix *matrix, Visit *visit) {
+  solver->given_at = solver->given_begin[ranks()->number];
+  solver->slot_at = 0;
   for (int v = 0; v < matrix->vertex_count; v++) {
     if (!solver->is_touched[v]) continue;
     for (int c = 0; c < 3; c++) {
       int u = matrix->unknown_of_dof[3 * (size_t)v + (size_t)c];
       if (u < 0) continue;
       for (int k = matrix->col_begin[u]; k < matrix->col_begin[u + 1]; k++) {
-        int row = solver->row[matrix->row[k]], column = solver->row[u], copies = row == column ? 1 : 2;
-        for (int copy = 0; copy < copies; copy++, count++) {
-          if (i) i[count] = copy ? column : row, j[count] = copy ? row : column;
-          if (values) values[count] = matrix->value[k];
-        }
+        int row = solver->row[matrix->row[k]], column = solver->row[u];
+        visit(solver, row, column, matrix->value[k]);
+        if (row != column) visit(solver, column, row, matrix->value[k]);
       }
     }
   }
-  return count;
+}
+
+static bool is_own(const DistSolver *solver, int row) {
+  return row >= solver->first && row < solver->end;
+}
+
+// Counts stand two places behind a row, so that sums of them end one behind, where rows are filled from.
+static void count_entry(DistSolver *solver, int row, int column, double value) {
+  (void)column, (void)value;
+  if (is_own(solver, row))
+    solver->row_begin[row - solver->first + 2]++, solver->slot_at++;
+  else
+    solver->given_at++;
+}
+
+static void give_place(DistSolver *solver, int row, int column, double value) {
+  (void)value;
+  if (!is_own(solver, row)) solver->given[solver->given_at++] = (Place){row, column};
+}
+
+static void list_entry(DistSolver *solver, int row, int column, double value) {
+  (void)value;
+  if (is_own(solver, row)) solver->column[solver->row_begin[row - solver->first + 1]++] = column;
+}
+
+static int find_slot(const DistSolver *solver, int row, int column) {
+  int low = solver->row_begin[row - solver->first], high = solver->row_begin[row - solver->first + 1] - 1;
+  while (low < high) {
+    int middle = low + (high - low) / 2;
+    if (solver->column[middle] < column)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static void place_entry(DistSolver *solver, int row, int column, double value) {
+  (void)value;
+  if (is_own(solver, row)) solver->slots[solver->slot_at++] = find_slot(solver, row, column);
+}
+
+static void add_entry(DistSolver *solver, int row, int column, double value) {
+  (void)column;
+  if (is_own(solver, row))
+    solver->values[solver->slots[solver->slot_at++]] += value;
+  else
+    solver->given_values[solver->given_at++] = value;
+}
+
+static Status agree(bool is_ok) {
+  return ranks()->worst(is_ok ? STATUS_OK : status_no_memory("the condensed matrix"));
+}
+
+// How many entries ranks have for rows of others, and where each rank's begin among all of these.
+static Status count_entries(DistSolver *solver, const FemMatrix *pattern, int *own_count) {
+  int rank_count = pattern->share->rank_count;
+  double *counts = memory_zeroed((size_t)rank_count, sizeof *counts);
+  solver->given_begin = memory_zeroed((size_t)rank_count + 1, sizeof *solver->given_begin);
+  solver->row_begin = memory_zeroed((size_t)(solver->end - solver->first) + 2, sizeof *solver->row_begin);
+  Status status = agree(counts && solver->given_begin && solver->row_begin);
+  if (!status) {
+    walk(solver, pattern, count_entry);
+    *own_count = solver->slot_at;
+    counts[ranks()->number] = solver->given_at;
+    ranks()->sum(counts, (size_t)rank_count);
+    for (int r = 0; r < rank_count; r++) solver->given_begin[r + 1] = solver->given_begin[r] + (int)counts[r];
+  }
+  memory_free(counts);
+  return status;
+}
+
+// Places of the entries that ranks have for rows of others: all of them on each, for they are few.
+static Status exchange_places(DistSolver *solver, const FemMatrix *pattern) {
+  size_t all = (size_t)solver->given_begin[pattern->share->rank_count];
+  solver->given = memory_zeroed(all, sizeof *solver->given);
+  solver->given_values = memory_zeroed(all, sizeof *solver->given_values);
+  solver->taken = memory_zeroed(all, sizeof *solver->taken);
+  TRY(agree(solver->given && solver->given_values && solver->taken));
+  walk(solver, pattern, give_place);
+  ranks()->join(solver->given, sizeof *solver->given, solver->given_begin);
+  solver->taken_count = 0;
+  for (int g = 0; g < (int)all; g++) {
+    if (!is_own(solver, solver->given[g].row)) continue;
+    solver->taken[solver->taken_count++].from = g;
+    solver->row_begin[solver->given[g].row - solver->first + 2]++;
+  }
+  return STATUS_OK;
+}
+
+static int compare_ints(const void *a, const void *b) {
+  int x = *(const int *)a, y = *(const int *)b;
+  return (x > y) - (x < y);
+}
+
+// Each row ascending, every column once.
+static void sort_rows(DistSolver *solver) {
+  int to = 0, from = 0, *column = solver->column;
+  for (int row = 0; row < solver->end - solver->first; row++) {
+    int end = solver->row_begin[row + 1], first = to;
+    qsort(column + from, (size_t)(end - from), sizeof *column, compare_ints);
+    for (; from < end; from++)
+      if (to == first || column[from] != column[to - 1]) column[to++] = column[from];
+    solver->row_begin[row + 1] = to;
+  }
+}
+
+// This rank's rows: of its own entries, of those that it is given, and of coordinates that stand alone.
+static Status list_rows(DistSolver *solver, const FemMatrix *pattern, int own_count) {
+  size_t most = (size_t)own_count + (size_t)solver->taken_count + (size_t)solver->alone_count;
+  if (most > INT_MAX) return agree(false); // more than can be numbered
+  int row_count = solver->end - solver->first, *begin = solver->row_begin;
+  solver->column = memory_zeroed(most, sizeof *solver->column);
+  solver->slots = memory_zeroed((size_t)own_count, sizeof *solver->slots);
+  TRY(agree(solver->column && solver->slots));
+  for (int k = 0; k < solver->alone_count; k++) begin[solver->alone[k] - solver->first + 2]++;
+  for (int row = 0; row < row_count; row++) begin[row + 2] += begin[row + 1];
+  walk(solver, pattern, list_entry);
+  for (int k = 0; k < solver->taken_count; k++) {
+    Place place = solver->given[solver->taken[k].from];
+    solver->column[begin[place.row - solver->first + 1]++] = place.column;
+  }
+  for (int k = 0; k < solver->alone_count; k++)
+    solver->column[begin[solver->alone[k] - solver->first + 1]++] = solver->alone[k];
+  sort_rows(solver);
+  walk(solver, pattern, place_entry);
+  for (int k = 0; k < solver->taken_count; k++) {
+    Place place = solver->given[solver->taken[k].from];
+    solver->taken[k].slot = find_slot(solver, place.row, place.column);
+  }
+  for (int k = 0; k < solver->alone_count; k++)
+    solver->alone_slots[k] = find_slot(solver, solver->alone[k], solver->alone[k]);
+  return STATUS_OK;
 }
 
 // As stiff as a neighbour.
@@ -288,35 +455,22 @@ static double stiffness_alone(const DistSolver *solver, const FemMatrix *matrix)
   return value > 0 ? value : 1;
 }
 
-static Status preallocate(DistSolver *solver, const FemMatrix *pattern) {
-  PetscCount shared = list_entries(solver, pattern, NULL, NULL, NULL);
-  solver->entry_count = shared + solver->alone_count;
-  size_t count = (size_t)solver->entry_count;
-  PetscInt *i = memory_zeroed(count, sizeof *i), *j = memory_zeroed(count, sizeof *j);
-  solver->entries = memory_zeroed(count, sizeof *solver->entries);
-  Status status = i && j && solver->entries ? STATUS_OK : status_no_memory("the condensed matrix");
-  status = ranks()->worst(status);
-  PetscErrorCode code = 0;
-  if (!status) {
-    list_entries(solver, pattern, i, j, NULL);
-    for (int k = 0; k < solver->alone_count; k++) i[shared + k] = j[shared + k] = solver->alone[k];
-    code = MatSetPreallocationCOO(solver->matrix, solver->entry_count, i, j);
-  }
-  memory_free(i), memory_free(j);
-  if (code) fail_in(solver, "the matrix", code);
-  return status;
-}
-
 static Status lay_out(DistSolver *solver, const FemMatrix *pattern) {
-  int rank = pattern->share->rank, rows = solver->begin[rank + 1] - solver->begin[rank];
+  int row_count = solver->end - solver->first, own_count = 0;
   find_touched(solver, pattern);
-  PETSC("the matrix", MatCreate(PETSC_COMM_WORLD, &solver->matrix));
-  PETSC("the matrix", MatSetSizes(solver->matrix, rows, rows, solver->row_count, solver->row_count));
-  PETSC("the matrix", MatSetType(solver->matrix, MATMPIAIJ));
+  TRY(count_entries(solver, pattern, &own_count));
+  TRY(exchange_places(solver, pattern));
+  TRY(list_rows(solver, pattern, own_count));
+  solver->values = memory_zeroed((size_t)solver->row_begin[row_count], sizeof *solver->values);
+  TRY(agree(solver->values));
+  PETSC("the matrix", MatCreateMPIAIJWithArrays(PETSC_COMM_WORLD, row_count, row_count, solver->row_count,
+                                                solver->row_count, solver->row_begin, solver->column,
+                                                solver->values, &solver->matrix));
   PETSC("the matrix", MatSetBlockSize(solver->matrix, 3));
-  TRY(preallocate(solver, pattern));
   PETSC("the matrix", MatSetOption(solver->matrix, MAT_SYMMETRIC, PETSC_TRUE));
   PETSC("the matrix", MatSetOption(solver->matrix, MAT_SPD, PETSC_TRUE));
+  memory_free(solver->column), memory_free(solver->given);
+  solver->column = NULL, solver->given = NULL;
   return STATUS_OK;
 }
 
@@ -381,14 +535,24 @@ static Status set_up(DistSolver *solver) {
                      names[solver->kind]);
 }
 
+// Σ of the shares, each in its row's place.
+static void add_shares(DistSolver *solver, const FemMatrix *matrix) {
+  double alone = stiffness_alone(solver, matrix);
+  memset(solver->values, 0, (size_t)solver->row_begin[solver->end - solver->first] * sizeof(double));
+  walk(solver, matrix, add_entry);
+  ranks()->join(solver->given_values, sizeof *solver->given_values, solver->given_begin);
+  for (int k = 0; k < solver->taken_count; k++)
+    solver->values[solver->taken[k].slot] += solver->given_values[solver->taken[k].from];
+  for (int k = 0; k < solver->alone_count; k++) solver->values[solver->alone_slots[k]] = alone;
+}
+
 static Status assemble(DistSolver *solver, const FemMatrix *matrix) {
-  PetscCount shared = list_entries(solver, matrix, NULL, NULL, solver->entries);
-  double alone = stiffness_alone(solver, matrix), least;
-  for (int k = 0; k < solver->alone_count; k++) solver->entries[shared + k] = alone;
+  double least;
   bool is_finite = fem_solver_is_finite(matrix->value, matrix->entry_count);
   TRY(ranks()->worst(is_finite ? STATUS_OK
                                : status_fail(STATUS_RETRY, "the condensed matrix is not finite")));
-  PETSC("the matrix", MatSetValuesCOO(solver->matrix, solver->entries, INSERT_VALUES));
+  add_shares(solver, matrix);
+  PETSC("the matrix", MatUpdateMPIAIJWithArray(solver->matrix, solver->values));
   PETSC("the matrix", MatGetDiagonal(solver->matrix, solver->left));
   PETSC("the matrix", VecMin(solver->left, NULL, &least));
   return least > 0 ? STATUS_OK : status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");

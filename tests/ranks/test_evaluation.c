@@ -13,6 +13,9 @@
 #include "fem/model/build.h"
 
 static const double SAME = 1e-12; // of the largest entry: sums of some hundred terms in another order
+// Solutions: conjugate gradients to 1e-11 of the first residual, and as much again for the matrix's
+// condition.
+static const double SOLVED = 1e-11, SAME_SOLUTION = 1e-7;
 
 typedef struct Variant {
   const char *name;
@@ -39,14 +42,14 @@ enum { VARIANTS = sizeof variants / sizeof *variants };
 
 typedef struct Answer {
   int unknowns, values;
-  double *forces, *product; // (values), (unknowns)
+  double *forces, *product, *solution; // (values), (unknowns), (unknowns)
   FemEnergy energy;
   double gap;
   int pairs;
 } Answer;
 
 static void free_answer(Answer *answer) {
-  memory_free(answer->forces), memory_free(answer->product);
+  memory_free(answer->forces), memory_free(answer->product), memory_free(answer->solution);
 }
 
 // A state some percent off rest, the same for whoever asks.
@@ -83,7 +86,22 @@ static Status multiply(FemSystem *system, double time, Answer *answer) {
   return status;
 }
 
-static Status find_answer(FemSystem *system, const Variant *variant, double *u, double *v, Answer *answer) {
+// S x = b of the matrix that was multiplied, twice: what is kept of the first time must serve the second.
+static Status solve(const FemSystem *system, FemSolverKind kind, Answer *answer) {
+  const FemSolverOps *ops = fem_solver_ops(kind);
+  void *solver;
+  TRY(ops->create(&solver, 1, ops->tolerance > 0 ? SOLVED : 0));
+  Status status = ops->analyse(solver, &system->matrix);
+  for (int time = 0; time < 2 && !status; time++) {
+    status = ops->factorise(solver, &system->matrix, NULL, NULL, 1);
+    if (!status) status = ops->solve(solver, answer->product, answer->solution);
+  }
+  ops->destroy(solver);
+  return status;
+}
+
+static Status find_answer(FemSystem *system, const Variant *variant, FemSolverKind kind, double *u, double *v,
+                          Answer *answer) {
   const double TIME = 1e-3;
   displace(system->model, variant, 0.002, u, v);
   TRY(fem_system_begin(system, 0, u, v));
@@ -96,10 +114,11 @@ static Status find_answer(FemSystem *system, const Variant *variant, double *u, 
   TRY(fem_system_gap(system, TIME, &answer->gap));
   void *contact = fem_system_effect(system, &fem_effect_contact);
   answer->pairs = contact ? contact_system_active_count(fem_effect_contact_system(contact)) : 0;
-  return multiply(system, TIME, answer);
+  TRY(multiply(system, TIME, answer));
+  return kind == FEM_SOLVER_AUTO ? STATUS_OK : solve(system, kind, answer);
 }
 
-static Status evaluate(const FemModel *model, const Variant *variant, Answer *answer) {
+static Status evaluate(const FemModel *model, const Variant *variant, FemSolverKind kind, Answer *answer) {
   size_t n = (size_t)model->unknown_count, values = 3 * (size_t)model->vertex_count;
   FemSystem system;
   TRY(fem_system_create(&system, model));
@@ -107,15 +126,17 @@ static Status evaluate(const FemModel *model, const Variant *variant, Answer *an
   *answer = (Answer){.unknowns = (int)n, .values = (int)values};
   answer->forces = memory_zeroed(values, sizeof(double));
   answer->product = memory_zeroed(n, sizeof(double));
-  Status status = u && v && answer->forces && answer->product ? find_answer(&system, variant, u, v, answer)
-                                                              : status_no_memory("an answer");
+  answer->solution = memory_zeroed(n, sizeof(double));
+  bool is_ok = u && v && answer->forces && answer->product && answer->solution;
+  Status status = is_ok ? find_answer(&system, variant, kind, u, v, answer) : status_no_memory("an answer");
   memory_free(u), memory_free(v);
   fem_system_destroy(&system);
   return status;
 }
 
 // Reads the scene and evaluates it with the table of ranks that is set.
-static Status answer_variant(const Variant *variant, Answer *answer) {
+// The solution by that solver, FEM_SOLVER_AUTO: none.
+static Status answer_variant(const Variant *variant, FemSolverKind kind, Answer *answer) {
   FemSceneDef scene = {0};
   FemModel model = {0};
   int count = 0;
@@ -123,7 +144,7 @@ static Status answer_variant(const Variant *variant, Answer *answer) {
   Status status =
       app_scene_read(TETLAP_SOURCE_DIR "/tests/ranks/press.yaml", variant->overrides, count, &scene);
   if (!status) status = fem_model_create(&model, &scene);
-  if (!status) status = evaluate(&model, variant, answer);
+  if (!status) status = evaluate(&model, variant, kind, answer);
   fem_model_destroy(&model);
   fem_scene_destroy(&scene);
   return status;
@@ -144,10 +165,10 @@ START_TEST(one_evaluation_is_that_of_one_process) {
   CaseDivision division = (CaseDivision)(_i % CASE_DIVISIONS);
   Answer whole = {0}, shared = {0};
   case_alone();
-  Status status = answer_variant(variant, &whole);
+  Status status = answer_variant(variant, FEM_SOLVER_AUTO, &whole);
   case_share(division);
   ck_assert_ok(status);
-  ck_assert_ok(answer_variant(variant, &shared));
+  ck_assert_ok(answer_variant(variant, FEM_SOLVER_AUTO, &shared));
   ck_assert_int_gt(ranks()->count, 1);
   ck_assert_int_eq(shared.unknowns, whole.unknowns);
   double forces = case_most(difference(whole.forces, shared.forces, whole.values)),
@@ -167,8 +188,26 @@ START_TEST(one_evaluation_is_that_of_one_process) {
 }
 END_TEST
 
+START_TEST(solutions_are_those_of_a_factor) {
+  static const FemSolverKind kinds[] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_PCG, FEM_SOLVER_AMG, FEM_SOLVER_GAMG};
+  const Variant *variant = &variants[_i / 4 ? VARIANTS - 3 : 0];
+  FemSolverKind kind = kinds[_i % 4];
+  Answer whole = {0}, shared = {0};
+  case_alone();
+  Status status = answer_variant(variant, FEM_SOLVER_CHOLMOD, &whole);
+  case_share((CaseDivision)(_i % CASE_DIVISIONS));
+  ck_assert_ok(status);
+  ck_assert_ok(answer_variant(variant, kind, &shared));
+  double solution = case_most(difference(whole.solution, shared.solution, whole.unknowns));
+  ck_assert_msg(solution <= SAME_SOLUTION, "%s, %s: solutions differ by %g", variant->name,
+                fem_solver_name(kind), solution);
+  free_answer(&whole), free_answer(&shared);
+}
+END_TEST
+
 int main(int argument_count, char **arguments) {
   TCase *test_case = tcase_create("evaluation");
   tcase_add_loop_test(test_case, one_evaluation_is_that_of_one_process, 0, VARIANTS * CASE_DIVISIONS);
+  tcase_add_loop_test(test_case, solutions_are_those_of_a_factor, 0, 8);
   return case_main(argument_count, arguments, "ranks_evaluation", test_case);
 }
