@@ -11,10 +11,19 @@
 
 #include "device/kernels/tpn.inc"
 
+#define HOST_ANSWERS(a)                                                                                      \
+  HOST_PAIRS(a), device_host_at((a) + 8), device_host_at((a) + 9), device_host_at((a) + 10),                 \
+      device_host_at((a) + 11)
+#define HOST_NETWORK(a)                                                                                      \
+  device_host_at(a), device_host_at((a) + 1), device_host_at((a) + 2), device_host_at((a) + 3), (a)[4].number
+
 static void run_volume(int group, const DeviceArgument *a) {
-  tpn_volume(group, HOST_PAIRS(a), device_host_at(a + 8), device_host_at(a + 9), device_host_at(a + 10),
-             device_host_at(a + 11), device_host_at(a + 12), a[13].integer, device_host_at(a + 14),
-             a[15].integer, device_host_at(a + 16), a[17].integer, a[18].number);
+  tpn_volume(group, HOST_ANSWERS(a), HOST_NETWORK(a + 12));
 }
 
-const DeviceHostKernel device_host_tpn[] = {{"tpn_volume", run_volume}, {NULL, NULL}};
+static void run_gradient(int group, const DeviceArgument *a) {
+  tpn_gradient(group, HOST_ANSWERS(a), device_host_at(a + 12), HOST_NETWORK(a + 13));
+}
+
+const DeviceHostKernel device_host_tpn[] = {
+    {"tpn_volume", run_volume}, {"tpn_gradient", run_gradient}, {NULL, NULL}};

@@ -20,26 +20,30 @@ typedef struct DeviceOverlapChain {
   unsigned flags;      // of what the host answers, besides its own
   const char *weights; // of a TetrahedronPairNet; NULL: there is none
   int feature_count;   // of a network of geo; 0: there is none
-  bool has_more;       // ∇V and x̄
+  bool has_centroid;
 } DeviceOverlapChain;
 
 static const DeviceOverlapChain chains[DEVICE_OVERLAP_MODELS] = {
-    {.model = "clip", .programs = {&device_program_clip, &device_program_scalar}, .has_more = true},
+    {.model = "clip", .programs = {&device_program_clip, &device_program_scalar}, .has_centroid = true},
     {.model = "clip32",
      .programs = {&device_program_clip32, &device_program_clip, &device_program_scalar},
-     .has_more = true},
+     .has_centroid = true},
     {.model = "tpn", .programs = {&device_program_tpn}, .flags = OVERLAP_FALLBACK, .weights = "tpn"},
+    {.model = "tpn-published",
+     .programs = {&device_program_tpn},
+     .flags = OVERLAP_FALLBACK,
+     .weights = "tpn-published"},
     {.model = "geo-small",
      .programs = {&device_program_geo_small, &device_program_clip, &device_program_scalar},
      .feature_count = 36,
-     .has_more = true},
+     .has_centroid = true},
     {.model = "geo",
      .programs = {&device_program_geo, &device_program_clip, &device_program_scalar},
      .feature_count = 100,
-     .has_more = true},
+     .has_centroid = true},
 };
-const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {"clip", "clip32", "tpn", "geo-small",
-                                                                  "geo"};
+const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {"clip",          "clip32",    "tpn",
+                                                                  "tpn-published", "geo-small", "geo"};
 
 static const DeviceOverlapChain *find_chain(const char *model) {
   for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
@@ -47,9 +51,9 @@ static const DeviceOverlapChain *find_chain(const char *model) {
   return NULL;
 }
 
-bool device_overlap_has_more(const char *model) {
+bool device_overlap_gives(const char *model, DeviceQuantity quantity) {
   const DeviceOverlapChain *chain = find_chain(model);
-  return chain && chain->has_more;
+  return chain && (quantity != DEVICE_CENTROID || chain->has_centroid);
 }
 
 static Status create(DeviceOverlap *overlap, const DeviceOverlapChain *chain) {
@@ -70,9 +74,10 @@ Status device_overlap_create(DeviceOverlap *overlap, const Device *device, const
   *overlap = (DeviceOverlap){.device = device};
   const DeviceOverlapChain *chain = overlap->chain = find_chain(model);
   if (!chain)
-    return status_fail(
-        STATUS_USAGE,
-        "overlap model '%s' has no kernels for devices; clip, clip32, tpn, geo-small and geo have", model);
+    return status_fail(STATUS_USAGE,
+                       "overlap model '%s' has no kernels for devices; clip, clip32, tpn, tpn-published, "
+                       "geo-small and geo have",
+                       model);
   return create(overlap, chain);
 }
 
@@ -291,8 +296,8 @@ static Status run_stages(DeviceOverlap *overlap, DeviceQuantity quantity, int *l
 Status device_overlap_run(DeviceOverlap *overlap, DeviceQuantity quantity) {
   const Device *device = overlap->device;
   const size_t room = (size_t)overlap->capacity * SIZE;
-  if (quantity != DEVICE_VOLUME && !overlap->chain->has_more)
-    return status_fail(STATUS_USAGE, "overlap model '%s' gives V only on a device", overlap->chain->model);
+  if (!device_overlap_gives(overlap->chain->model, quantity))
+    return status_fail(STATUS_USAGE, "overlap model '%s' gives no centroid", overlap->chain->model);
   if (quantity != DEVICE_VOLUME && overlap->more.bytes < room * sizeof(double)) {
     release(overlap, &overlap->more);
     TRY(device_take(device, room, sizeof(double), NULL, &overlap->more));

@@ -5,7 +5,8 @@
 //   clip32  pairs ─► clip32 ─ doubtful ─► clip ─ doubtful ─► clip-scalar ─ too flat ─► the host's
 //   geo     pairs ─► gate to network; close pairs ─► clip ─► clip-scalar (overlap_geo.h) ─ no frame ─► the
 //           host's geo; geo-small likewise
-//   tpn     pairs ─► tpn ─ the first is flat ─► the host's exact; V only, and flags without BEYOND
+//   tpn     pairs ─► tpn ─ the first is flat ─► the host's exact; without x̄, and flags without BEYOND;
+//           tpn-published likewise
 //
 // What the host answers goes back to the device, so that all answers are there. What a pair gets is to the
 // bit what the model of that name gives on a processor (clip32's doubtful ones: what `clip` gives; geo's to
@@ -16,15 +17,15 @@
 
 #include "device/overlap_state.h"
 
-enum { DEVICE_OVERLAP_MODELS = 5 };
+enum { DEVICE_OVERLAP_MODELS = 6 };
 extern const char *const device_overlap_models[DEVICE_OVERLAP_MODELS]; // names
 
 // A zeroed one, and one whose creation failed, can be destroyed. STATUS_USAGE: no kernels for that model.
 Status device_overlap_create(DeviceOverlap *overlap, const Device *device, const char *model);
 void device_overlap_destroy(DeviceOverlap *overlap);
 
-// Whether ∇V and x̄ are to be had beside V.
-bool device_overlap_has_more(const char *model);
+// Whether the model gives that on a device: V and ∇V all, x̄ not all.
+bool device_overlap_gives(const char *model, DeviceQuantity quantity);
 
 // What the next evaluations are of: sent to the device, where it stays.
 Status device_overlap_put_rows(DeviceOverlap *overlap, int count, const double *pairs);

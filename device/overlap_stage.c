@@ -46,8 +46,9 @@ static Status launch(const DeviceOverlap *overlap, int k, int count, DeviceQuant
   const Device *device = overlap->device;
   const DeviceKernel *kernel = &overlap->stages[k].kernels[quantity];
   if (!overlap->tpn.parameters.at) return device_launch(device, kernel, count, arguments, n);
-  n += device_tpn_arguments(&overlap->tpn, arguments + n);
-  return device->ops->launch(device->self, kernel, device_tpn_groups(count), arguments, n);
+  const bool has_gradient = quantity == DEVICE_GRADIENT;
+  n += device_tpn_arguments(&overlap->tpn, has_gradient, arguments + n);
+  return device->ops->launch(device->self, kernel, device_tpn_groups(has_gradient, count), arguments, n);
 }
 
 Status device_overlap_stage(DeviceOverlap *overlap, int k, int count, const DeviceMemory *list,

@@ -92,7 +92,7 @@ const DeviceProgram device_program_tpn = {
     .name = "tpn",
     .defines = "#define GROUPS_AT_ONCE 4\n",
     .pieces = {one, pairs, tpn_steps, tpn},
-    .kernels = {"tpn_volume"},
+    .kernels = {"tpn_volume", "tpn_gradient"},
     .items = 64,
 };
 

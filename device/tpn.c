@@ -13,9 +13,10 @@ enum { VOLUME_OUTPUT = 1, MAX_VIEWS = 160 };
 // Which matrices are in the group's memory, and where: rows of TPN_PAIRS numbers.
 typedef struct Layout {
   const NetPlan *plan;
-  int first[NET_MAX_SLOTS]; // −1: not there
-  int last[NET_MAX_SLOTS];  // the last step that needs it, −1: none
-  int largest;              // rows in use at most
+  int first[NET_MAX_SLOTS];              // −1: not there
+  int last[NET_MAX_SLOTS];               // the last step that needs it, −1: none
+  int largest;                           // rows in use at most
+  int slopes[NET_MAX_SLOTS], slope_rows; // of the derivatives, which follow the values; −1: not there
 } Layout;
 
 static bool is_wanted(const NetStep *step) {
@@ -67,19 +68,38 @@ static void place_all(Layout *layout) {
     if (is_wanted(&plan->steps[k])) place(layout, plan->steps[k].output, k);
 }
 
+// All that are needed, one after another; then their derivatives, which some share (net/model/plan.h).
+static void place_with_slopes(Layout *layout) {
+  const NetPlan *plan = layout->plan;
+  find_last_uses(layout);
+  for (int slot = 0; slot < plan->slot_count; slot++) {
+    layout->slopes[slot] = -1;
+    if (layout->last[slot] < 0) continue;
+    layout->first[slot] = layout->largest;
+    layout->largest += rows_of(plan, slot);
+  }
+  for (int slot = 0; slot < plan->slot_count; slot++) {
+    if (layout->first[slot] < 0 || layout->slopes[slot] >= 0) continue;
+    int rows = 0;
+    for (int other = slot; other < plan->slot_count; other++)
+      if (layout->first[other] >= 0 &&
+          plan->slots[other].gradient_offset == plan->slots[slot].gradient_offset) {
+        layout->slopes[other] = layout->largest + layout->slope_rows;
+        rows = rows_of(plan, other) > rows ? rows_of(plan, other) : rows;
+      }
+    layout->slope_rows += rows;
+  }
+}
+
 static Status refuse(const char *what) {
   return status_fail(STATUS_INPUT, "the kernels for devices cannot carry out this network: %s", what);
 }
 
-static Status check(const Layout *layout) {
+static Status check(const Layout *layout, int room) {
   const NetPlan *plan = layout->plan;
   if (plan->shape.activation != NET_RELU || plan->shape.pool != NET_MAX)
     return refuse("they have rectifiers and pools of the largest only");
-  if (layout->largest > TPN_ROOM) return refuse("it is too wide for a group's memory");
-  for (int k = 0; k < plan->step_count; k++)
-    if (plan->steps[k].kind == NET_STEP_LINEAR &&
-        plan->steps[k].part_count != plan->slots[plan->steps[k].output].spread)
-      return refuse("its vertices have a skip each");
+  if (layout->largest + layout->slope_rows > room) return refuse("it is too wide for a group's memory");
   return STATUS_OK;
 }
 
@@ -100,6 +120,10 @@ static void fill_step(const Layout *layout, const NetStep *step, int *to) {
   to[STEP_RELU] = step->has_relu;
   to[STEP_COLUMNS] = out->spread;
   to[STEP_PARTS] = in->spread / out->spread;
+  to[STEP_PART] = step->part;
+  to[STEP_PART_COUNT] = step->part_count;
+  to[STEP_INPUT_SLOPE] = layout->slopes[step->input] + step->input_row * in->spread;
+  to[STEP_OUTPUT_SLOPE] = layout->slopes[step->output] + step->output_row * out->spread;
 }
 
 static int fill_steps(const Layout *layout, int *steps) {
@@ -110,35 +134,54 @@ static int fill_steps(const Layout *layout, int *steps) {
   return count;
 }
 
-// (row, coordinate) of each place that a coordinate goes to.
-static int fill_views(const Layout *layout, int views[2 * MAX_VIEWS]) {
+// Each place that a coordinate goes to.
+static int fill_views(const Layout *layout, int views[TPN_VIEW * MAX_VIEWS]) {
   const NetPlan *plan = layout->plan;
   int count = 0;
   for (int v = 0; v < plan->view_count; v++) {
     const NetView *view = &plan->views[v];
     const int spread = plan->slots[view->slot].spread;
     for (int k = 0; k < view->rows * spread && layout->first[view->slot] >= 0 && count < MAX_VIEWS; k++) {
-      views[2 * count] = layout->first[view->slot] + view->first_row * spread + k;
-      views[2 * count++ + 1] = view->index[k];
+      int *to = views + TPN_VIEW * count++;
+      to[VIEW_ROW] = layout->first[view->slot] + view->first_row * spread + k;
+      to[VIEW_COORDINATE] = view->index[k];
+      to[VIEW_SLOPE] = layout->slopes[view->slot] + view->first_row * spread + k;
     }
   }
   return count;
 }
 
-static Status send(DeviceTpn *tpn, const Device *device, const OverlapTpnNetwork *network) {
+static Status send(DeviceTpnPass *pass, const Device *device, const Layout *layout, int normalisation) {
+  int steps[TPN_STEP * NET_MAX_STEPS], views[TPN_VIEW * MAX_VIEWS], sizes[TPN_PASS];
+  const int output = layout->plan->output_slot;
+  sizes[PASS_STEPS] = fill_steps(layout, steps);
+  sizes[PASS_VIEWS] = fill_views(layout, views);
+  sizes[PASS_OUTPUT] = layout->first[output] + VOLUME_OUTPUT;
+  sizes[PASS_OUTPUT_SLOPE] = layout->slopes[output] + VOLUME_OUTPUT;
+  sizes[PASS_SLOPES] = layout->largest;
+  sizes[PASS_SLOPE_ROWS] = layout->slope_rows;
+  sizes[PASS_NORMALISATION] = normalisation;
+  TRY(device_take(device, (size_t)(TPN_STEP * sizes[PASS_STEPS]), sizeof *steps, steps, &pass->steps));
+  TRY(device_take(device, (size_t)(TPN_VIEW * sizes[PASS_VIEWS]), sizeof *views, views, &pass->views));
+  return device_take(device, TPN_PASS, sizeof *sizes, sizes, &pass->sizes);
+}
+
+static Status send_all(DeviceTpn *tpn, const Device *device, const OverlapTpnNetwork *network) {
   const NetPlan *plan = network->network.plan;
-  int steps[TPN_STEP * NET_MAX_STEPS], views[2 * MAX_VIEWS];
-  Layout layout = {.plan = plan};
-  place_all(&layout);
-  TRY(check(&layout));
-  tpn->step_count = fill_steps(&layout, steps);
-  tpn->view_count = fill_views(&layout, views);
-  tpn->output_row = layout.first[plan->output_slot] + VOLUME_OUTPUT;
+  Layout volume = {.plan = plan}, gradient = {.plan = plan};
+  place_all(&volume);
+  place_with_slopes(&gradient);
+  TRY(check(&volume, TPN_ROOM));
+  TRY(check(&gradient, TPN_SLOPE_ROOM));
   tpn->scale = network->scale;
-  TRY(device_take(device, (size_t)(TPN_STEP * tpn->step_count), sizeof *steps, steps, &tpn->steps));
-  TRY(device_take(device, (size_t)(2 * tpn->view_count), sizeof *views, views, &tpn->views));
+  TRY(send(&tpn->volume, device, &volume, (int)network->kind));
+  TRY(send(&tpn->gradient, device, &gradient, (int)network->kind));
   return device_take(device, plan->parameter_count, sizeof(float), network->network.parameters,
                      &tpn->parameters);
+}
+
+static bool is_known(OverlapTpnNormalisation kind) {
+  return (int)kind == TPN_SORTED || (int)kind == TPN_UNIT || (int)kind == TPN_UNSCALED;
 }
 
 Status device_tpn_create(DeviceTpn *tpn, const Device *device, const char *weights) {
@@ -147,29 +190,34 @@ Status device_tpn_create(DeviceTpn *tpn, const Device *device, const char *weigh
   *tpn = (DeviceTpn){0};
   TRY(overlap_weights_find(weights, path, sizeof path));
   TRY(overlap_tpn_network_create(&network, path, net_kernel_best(), 1));
-  Status status = network.kind == OVERLAP_TPN_NORMALISE_SORTED
-                      ? send(tpn, device, &network)
-                      : refuse("they have the normalisation 'sorted' only");
+  Status status = is_known(network.kind) ? send_all(tpn, device, &network)
+                                         : refuse("they do not have the normalisation 'pca'");
   overlap_tpn_network_destroy(&network);
   return status;
 }
 
+static void destroy_pass(DeviceTpnPass *pass, const Device *device) {
+  device->ops->release(device->self, &pass->sizes);
+  device->ops->release(device->self, &pass->steps);
+  device->ops->release(device->self, &pass->views);
+}
+
 void device_tpn_destroy(DeviceTpn *tpn, const Device *device) {
-  device->ops->release(device->self, &tpn->steps);
-  device->ops->release(device->self, &tpn->views);
+  destroy_pass(&tpn->volume, device), destroy_pass(&tpn->gradient, device);
   device->ops->release(device->self, &tpn->parameters);
   *tpn = (DeviceTpn){0};
 }
 
-int device_tpn_arguments(const DeviceTpn *tpn, DeviceArgument *arguments) {
-  const DeviceArgument given[] = {device_memory(&tpn->steps),      device_int(tpn->step_count),
-                                  device_memory(&tpn->views),      device_int(tpn->view_count),
-                                  device_memory(&tpn->parameters), device_int(tpn->output_row),
+int device_tpn_arguments(const DeviceTpn *tpn, bool has_gradient, DeviceArgument *arguments) {
+  const DeviceTpnPass *pass = has_gradient ? &tpn->gradient : &tpn->volume;
+  const DeviceArgument given[] = {device_memory(&pass->sizes), device_memory(&pass->steps),
+                                  device_memory(&pass->views), device_memory(&tpn->parameters),
                                   device_double(tpn->scale)};
   memcpy(arguments, given, sizeof given);
   return sizeof given / sizeof *given;
 }
 
-int device_tpn_groups(int count) {
-  return count / TPN_PAIRS + (count % TPN_PAIRS > 0);
+int device_tpn_groups(bool has_gradient, int count) {
+  const int pairs = has_gradient ? TPN_SLOPE_PAIRS : TPN_PAIRS;
+  return count / pairs + (count % pairs > 0);
 }

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TetrahedronPairNet as the steps and numbers that kernels/tpn.inc carries out: the shipped `tpn`, folded,
-// with the normalisation `sorted`. Rows of the group's memory are given to the matrices of a pass by how long
-// each is needed.
+// A TetrahedronPairNet as the steps and numbers that kernels/tpn.inc carries out: the shipped `tpn` and
+// `tpn-published`, folded. For V rows of the group's memory are given to the matrices of a pass by how long
+// each is needed; for ∇V all stay, with the derivatives behind them.
 #ifndef TETLAP_DEVICE_TPN_H
 #define TETLAP_DEVICE_TPN_H
 
 #include "device/device.h"
 
+// A pass of kernels/tpn.inc; there, PASS_…, STEP_…, VIEW_….
+typedef struct DeviceTpnPass {
+  DeviceMemory sizes, steps, views;
+} DeviceTpnPass;
+
 typedef struct DeviceTpn {
-  DeviceMemory steps, views, parameters;
-  int step_count, view_count, output_row;
+  DeviceTpnPass volume, gradient;
+  DeviceMemory parameters;
   double scale; // the network tells so much times V'
 } DeviceTpn;
 
@@ -19,9 +24,9 @@ Status device_tpn_create(DeviceTpn *tpn, const Device *device, const char *weigh
 void device_tpn_destroy(DeviceTpn *tpn, const Device *device);
 
 // Writes the network's own arguments; how many.
-int device_tpn_arguments(const DeviceTpn *tpn, DeviceArgument *arguments);
+int device_tpn_arguments(const DeviceTpn *tpn, bool has_gradient, DeviceArgument *arguments);
 
 // Groups that so many pairs take.
-int device_tpn_groups(int count);
+int device_tpn_groups(bool has_gradient, int count);
 
 #endif

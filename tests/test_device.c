@@ -17,7 +17,7 @@
 #include "overlap/clip/lanes.h"
 #include "overlap/model.h"
 
-enum { MAX_DEVICES = 4, COUNT = 4099, MEMBERS = 96, MODELS = 3 }; // models: those that answer to the bit
+enum { MAX_DEVICES = 4, COUNT = 4099, MEMBERS = 96, MODELS = 4 }; // models: those that answer to the bit
 
 static Device devices[MAX_DEVICES];
 static int device_count;
@@ -77,6 +77,18 @@ static bool is_same_answer(const Answers *a, const Answers *b, int i, bool has_g
          (!has_gradient || memcmp(&a->gradient[24 * at], &b->gradient[24 * at], 24 * 8) == 0);
 }
 
+// A driver's exponential rounds otherwise than the processor's: of tpn, where a coordinate is compressed, ∇V
+// is the processor's but for that, times what cancels where the first tetrahedron is flat.
+static bool is_close_slope(const Answers *a, const Answers *b, int i) {
+  const double *p = a->gradient + 24 * (size_t)i, *q = b->gradient + 24 * (size_t)i;
+  double largest = 0, furthest = 0;
+  for (int c = 0; c < 24; c++) {
+    largest = fmax(largest, fabs(q[c]));
+    if (!(fabs(p[c] - q[c]) <= furthest)) furthest = fabs(p[c] - q[c]);
+  }
+  return is_same_answer(a, b, i, false) && furthest <= 1e-12 * largest;
+}
+
 // Without vectors, or fused multiply-adds for networks, the processor's model is another.
 static bool is_comparable(const char *model) {
   bool is_clip = strncmp(model, "clip", 4) == 0;
@@ -86,15 +98,17 @@ static bool is_comparable(const char *model) {
 }
 
 // A doubtful pair of clip32 is answered by clip on a device.
-static void check_same(const char *model, const double *pairs, int count, bool has_gradient,
-                       const Answers *answers, const char *what) {
+static void check_same(const Device *device, const char *model, const double *pairs, int count,
+                       bool has_gradient, const Answers *answers, const char *what) {
   Answers expected = make_answers(count), careful = make_answers(count);
   bool is_single = strcmp(model, "clip32") == 0;
+  bool is_rounded = has_gradient && strcmp(model, "tpn") == 0 && device->ops != &device_host;
   int others = 0;
   ask_processor(model, pairs, count, has_gradient, &expected);
   ask_processor("clip", pairs, count, has_gradient, &careful);
   for (int i = 0; i < count; i++) {
     if (is_same_answer(answers, &expected, i, has_gradient)) continue;
+    if (is_rounded && is_close_slope(answers, &expected, i)) continue;
     ck_assert_msg(is_single && is_same_answer(answers, &careful, i, has_gradient),
                   "%s, pair %d: V = %.17g, flags %u; %s on the processor %.17g, flags %u", what, i,
                   answers->volume[i], answers->flags[i], model, expected.volume[i], expected.flags[i]);
@@ -109,12 +123,12 @@ static void check_batch(const Device *device, const char *model, const double *p
   DeviceOverlap overlap;
   Answers answers = make_answers(count);
   ck_assert_ok(device_overlap_create(&overlap, device, model));
-  for (int has_gradient = 0; has_gradient <= device_overlap_has_more(model); has_gradient++) {
+  for (int has_gradient = 0; has_gradient <= 1; has_gradient++) {
     OverlapBatch batch = batch_of(pairs, count, &answers, has_gradient);
     memset(answers.volume, 0x55, (size_t)count * 8);
     memset(answers.gradient, 0x55, (size_t)count * 24 * 8);
     ck_assert_ok(device_overlap_eval(&overlap, &batch));
-    if (is_comparable(model)) check_same(model, pairs, count, has_gradient, &answers, what);
+    if (is_comparable(model)) check_same(device, model, pairs, count, has_gradient, &answers, what);
   }
   device_overlap_destroy(&overlap);
   destroy_answers(&answers);

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a step of a network is for kernels/tpn.inc; part of the program's text, and of device/tpn.c.
-enum {
-  TPN_ITEMS = 64,
-  TPN_PAIRS = 32,
-  TPN_ROOM = 368,
-  TPN_STEP = 12
-};                                            // TPN_ROOM: rows of the group's memory
-enum { TPN_LINEAR, TPN_POOL, TPN_POOL_WITH }; // kinds of steps
+enum { TPN_ITEMS = 64 };
+enum { TPN_PAIRS = 32, TPN_ROOM = 368 };                 // of a group that wants V: pairs, rows of its memory
+enum { TPN_SLOPE_PAIRS = 4, TPN_SLOPE_ROOM = 2000 };     // that wants ∇V, too
+enum { TPN_LINEAR, TPN_POOL, TPN_POOL_WITH };            // kinds of steps
+enum { TPN_UNIT = 0, TPN_SORTED = 2, TPN_UNSCALED = 3 }; // normalisations, as OVERLAP_TPN_NORMALISE_…
 // What a step's integers are: rows of the group's memory, places in the parameters; −1: none.
 enum {
   STEP_KIND,
@@ -19,6 +17,24 @@ enum {
   STEP_WEIGHT_COLUMNS,
   STEP_BIAS,
   STEP_RELU,
-  STEP_COLUMNS, // groups of TPN_PAIRS in a row of the output
-  STEP_PARTS    // that a pool joins
+  STEP_COLUMNS, // groups of pairs in a row of the output
+  STEP_PARTS,   // that a pool joins
+  STEP_PART,    // of a row's groups, the first that the step is for, and how many
+  STEP_PART_COUNT,
+  STEP_INPUT_SLOPE, // derivatives by input and output
+  STEP_OUTPUT_SLOPE,
+  TPN_STEP
+};
+// Of a place that a coordinate goes to: its row, the coordinate, the row of its derivative.
+enum { VIEW_ROW, VIEW_COORDINATE, VIEW_SLOPE, TPN_VIEW };
+// Of a pass.
+enum {
+  PASS_STEPS,
+  PASS_VIEWS,
+  PASS_OUTPUT,
+  PASS_OUTPUT_SLOPE,
+  PASS_SLOPES,
+  PASS_SLOPE_ROWS,
+  PASS_NORMALISATION,
+  TPN_PASS
 };

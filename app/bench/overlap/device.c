@@ -179,7 +179,7 @@ static void add_contestants(Bench *bench, int set, int batch) {
       for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++) {
         bool is_wanted = def->wants_residence[residence] && def->wants_model[m] &&
                          def->wants_quantity[quantity] &&
-                         (quantity == DEVICE_VOLUME || device_overlap_has_more(device_overlap_models[m]));
+                         device_overlap_gives(device_overlap_models[m], (DeviceQuantity)quantity);
         if (!is_wanted) continue;
         bench->contestants[bench->count++] = (Contestant){.overlap = &bench->overlaps[m],
                                                           .pairs = bench->pairs,
@@ -205,8 +205,8 @@ static Status measure_sets(Bench *bench) {
   if (bench->count == 0)
     return status_fail(
         STATUS_USAGE,
-        "a device answers V, V+grad, V+centroid of clip, clip32, geo-small and geo, V of tpn: nothing to "
-        "measure");
+        "a device answers V and V+grad of clip, clip32, tpn, tpn-published, geo-small and geo, V+centroid of "
+        "all but the tpns: nothing to measure");
   return print(bench);
 }
 
