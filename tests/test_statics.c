@@ -224,6 +224,30 @@ START_TEST(turning_gravity_up_is_work) {
 }
 END_TEST
 
+// The plate stops at once at t = 0.5: what it has done until then is by its speed until then.
+START_TEST(an_obstacle_that_stops_has_worked_until_then) {
+  SceneRun run;
+  run_well(
+      &run,
+      "time: {end: 1, static: true}\n"
+      "bodies:\n"
+      "  - name: block\n"
+      "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 2}}\n"
+      "    fixed: [{group: z_min}]\n"
+      "    material: {young: 1e5, poisson: 0.3, density: 1000}\n"
+      "obstacles:\n"
+      "  - {name: plate, halfspace: {point: [0, 0, 0.1], normal: [0, 0, -1]}, motion: {table: [[0, 0, 0, "
+      "0], [0.5, 0, 0, -0.002], [1, 0, 0, -0.002]]}}\n"
+      "contact: {stiffness: 1e8}\n"
+      "output: {frames: 10}\n");
+  const FemAudit *audit = &run.result.audit;
+  double force = fabs(scene_force(&run, 10, 0)[2]);
+  ck_assert_near(audit->work, 0.5 * force * 0.002, 0.05 * audit->work);
+  ck_assert_near(audit->total, audit->first, 2e-2 * audit->work); // with the speed after, a fifth
+  scene_close(&run);
+}
+END_TEST
+
 START_TEST(a_beam_that_turns_far_takes_few_iterations) {
   SceneRun run;
   run_well(&run, "time: {end: 1, static: true}\n"
@@ -315,6 +339,7 @@ int main(void) {
   tcase_add_test(test_case, a_block_comes_to_rest_on_the_ground);
   tcase_add_test(test_case, the_work_of_an_obstacle_is_stored);
   tcase_add_test(test_case, turning_gravity_up_is_work);
+  tcase_add_test(test_case, an_obstacle_that_stops_has_worked_until_then);
   tcase_add_test(test_case, a_beam_that_turns_far_takes_few_iterations);
   tcase_add_test(test_case, a_pressure_vessel_widens_as_lame_says);
   tcase_add_test(test_case, without_an_equilibrium_the_run_ends_and_says_why);
