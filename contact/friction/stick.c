@@ -133,15 +133,14 @@ static int node_at(ContactStick *stick, int interface, int vertex) {
   return *node = stick->node_count++;
 }
 
-// Adds a pair to the nodes of its slave on that side.
-static void gather_side(ContactStick *stick, int k, int side, const double *positions) {
+// Adds a pair to the nodes of its slave on that side, whose F is given.
+static void gather_side(ContactStick *stick, int k, int side, const double F[9]) {
   const ContactStickPair *pair = &stick->pairs[k];
   const ContactStickLaw *law = &stick->laws[pair->interface];
-  double F[9], sign = side == 0 ? 1 : -1, half = law->weight[side];
+  double sign = side == 0 ? 1 : -1, half = law->weight[side];
   Vec3 force = vec3_scale(sign, vec3_at(pair->force));
   Vec3 gap = vec3_sub(place_before(stick, pair, 1 - side), place_before(stick, pair, side));
   double pressed = vec3_length(force);
-  find_deformation(stick, pair->tets[side], positions, F);
   for (int v = 0; v < 4; v++) {
     double lambda = fmax(pair->lambda[side][v], 0), w = lambda * pressed;
     ContactStickTouch *touch = &stick->touches[k][side][v];
@@ -165,8 +164,10 @@ static void forget_vertices(ContactStick *stick, int node_begin) {
   for (int n = node_begin; n < stick->node_count; n++) stick->node_of_vertex[stick->nodes[n].vertex] = -1;
 }
 
+// Pairs of one tetrahedron stand together: its F is found once.
 static void gather(ContactStick *stick, const double *positions) {
-  int first = 0;
+  int first = 0, last[2] = {-1, -1};
+  double F[2][9];
   stick->node_count = 0;
   for (int k = 0; k < stick->pair_count; k++) {
     if (k > 0 && stick->pairs[k].interface != stick->pairs[k - 1].interface) {
@@ -175,7 +176,11 @@ static void gather(ContactStick *stick, const double *positions) {
     }
     for (int side = 0; side < 2; side++) {
       for (int v = 0; v < 4; v++) stick->touches[k][side][v] = (ContactStickTouch){.node = -1};
-      if (is_slave(stick, &stick->pairs[k], side)) gather_side(stick, k, side, positions);
+      if (!is_slave(stick, &stick->pairs[k], side)) continue;
+      int tet = stick->pairs[k].tets[side];
+      if (tet != last[side]) find_deformation(stick, tet, positions, F[side]);
+      last[side] = tet;
+      gather_side(stick, k, side, F[side]);
     }
   }
   forget_vertices(stick, first);

@@ -164,14 +164,6 @@ static void add_volume(Bend *bend, Sums *sums) {
   }
 }
 
-// matrix(z, w) += scale · a ⊗ b
-static void add_block(double *matrix, int z, int w, double scale, Vec3 a, Vec3 b) {
-  const double p[3] = {a.x, a.y, a.z}, q[3] = {b.x, b.y, b.z};
-  double *block = matrix + 72 * z + 3 * w;
-  for (int r = 0; r < 3; r++)
-    for (int c = 0; c < 3; c++) block[24 * r + c] += scale * p[r] * q[c];
-}
-
 static bool is_outer(const ContactLayout *layout, const ContactPair *pair, int face) {
   return layout->depth.outer[pair->tets[face / 4]] >> face % 4 & 1;
 }
@@ -183,29 +175,36 @@ static void add_main(const Bend *bend, const Sums *sums, int face, double factor
   double length = vec3_length(area), sign = bend->polytope.frame[face / 4].det < 0 ? 1 : -1;
   Vec3 n = vec3_scale(sign / length, area), push = vec3_scale(-1, own->g);
   if (is_outer(bend->layout, bend->pair, face)) push = vec3_scale(vec3_length(own->g), n);
-  for (int z = 0; z < 8; z++)
+  const double p[3] = {n.x, n.y, n.z}, q[3] = {push.x, push.y, push.z};
+  double block[3][24], scales[24];
+  for (int r = 0; r < 3; r++)
+    for (int k = 0; k < 24; k++) block[r][k] = p[r] * q[k % 3] + q[r] * p[k % 3];
+  for (int z = 0; z < 8; z++) {
     for (int w = 0; w < 8; w++) {
       double scale = factor * length / 4 * sums->face[face][z][w] * ((z < 4) == (w < 4) ? 1 : -1);
-      if (scale == 0) continue;
-      add_block(matrix, z, w, scale, n, push);
-      add_block(matrix, z, w, scale, push, n);
+      for (int c = 0; c < 3; c++) scales[3 * w + c] = scale;
     }
+    for (int r = 0; r < 3; r++)
+      for (int k = 0; k < 24; k++) matrix[72 * z + 24 * r + k] += scales[k] * block[r][k];
+  }
 }
 
-// The turning terms of side t's field, felt by the points of the other.
+// The turning terms of side t's field, felt by the points of the other: T + Tᵀ with
+// T(z, w) = ± ∫ λ_z dx · ∇λ_w ⊗ g over w of side t and all z, + where z is of side t as well.
 static void add_turning(const Sums *sums, int t, double factor, const Side *own, const Vec3 slopes[4],
                         double *matrix) {
-  for (int b = 0; b < 4; b++) {
-    for (int a = 0; a < 4; a++) {
-      double scale = -factor * sums->first[4 - 4 * t + a];
-      add_block(matrix, 4 - 4 * t + a, 4 * t + b, scale, slopes[b], own->g);
-      add_block(matrix, 4 * t + b, 4 - 4 * t + a, scale, own->g, slopes[b]);
-    }
-    for (int c = 0; c < 4; c++) {
-      add_block(matrix, 4 * t + b, 4 * t + c, factor * sums->first[4 * t + c], own->g, slopes[b]);
-      add_block(matrix, 4 * t + b, 4 * t + c, factor * sums->first[4 * t + b], slopes[c], own->g);
-    }
+  const double g[3] = {own->g.x, own->g.y, own->g.z};
+  double signs[8], rows[4][24], tiles[3][12];
+  for (int z = 0; z < 8; z++) signs[z] = (z / 4 == t ? factor : -factor) * sums->first[z];
+  for (int w = 0; w < 4; w++) {
+    const double slope[3] = {slopes[w].x, slopes[w].y, slopes[w].z};
+    for (int k = 0; k < 24; k++) rows[w][k] = signs[k / 3] * slope[k % 3];
+    for (int e = 0; e < 9; e++) tiles[e / 3][3 * w + e % 3] = slope[e / 3] * g[e % 3];
   }
+  for (int r = 0; r < 24; r++)
+    for (int k = 0; k < 12; k++) matrix[24 * r + 12 * t + k] += signs[r / 3] * tiles[r % 3][k];
+  for (int r = 0; r < 12; r++)
+    for (int k = 0; k < 24; k++) matrix[24 * (12 * t + r) + k] += g[r % 3] * rows[r / 3][k];
 }
 
 // ∇λ of the tetrahedron's vertices from those of the cell's, which move with it.

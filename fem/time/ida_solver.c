@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/time/ida_solver.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/ranks.h"
@@ -12,6 +14,7 @@ struct FemIdaSolver {
   const FemSolverOps *ops;
   void *solver;           // of ops
   FemIdaFailure *failure; // borrowed
+  double rounding;        // of the kinematics' residual r₁ [m/s]: below, it is zero
   FemDirect direct;
   double *masses; // of the unknowns [kg]                      (unknown_count)
   double *right;  // right-hand side of the condensed system   (unknown_count)
@@ -55,10 +58,15 @@ static Status factorise(FemIdaSolver *solver) {
                                 solver->masses, solver->c);
 }
 
-// r₂ + (c M + D) r₁ for b = (r₁; r₂)
+// r₂ + (c M + D) r₁ for b = (r₁; r₂). u̇ = v is linear: once a whole step has been taken r₁ is rounding.
 static void condense(FemIdaSolver *solver, const double *b) {
   int n = solver->system->model->unknown_count;
-  double *right = solver->right;
+  double *right = solver->right, largest = 0;
+  for (int i = 0; i < n; i++) largest = fmax(largest, fabs(b[i]));
+  if (largest <= solver->rounding) {
+    memcpy(right, b + n, (size_t)n * sizeof *right);
+    return;
+  }
   if (solver->has_damping) {
     fem_matrix_multiply(&solver->damping, b, right);
     ranks()->sum(right, (size_t)n);
@@ -103,12 +111,13 @@ static Status create(FemIdaSolver *solver, SUNContext context) {
 }
 
 Status fem_ida_solver_create(FemIdaSolver **solver, FemSystem *system, const FemSolverOps *ops,
-                             FemIdaFailure *failure, SUNContext context) {
+                             double rounding, FemIdaFailure *failure, SUNContext context) {
   *solver = memory_zeroed(1, sizeof **solver);
   if (!*solver) return status_no_memory("the linear solver");
   **solver = (FemIdaSolver){.system = system,
                             .ops = ops,
                             .failure = failure,
+                            .rounding = rounding,
                             .has_damping = fem_system_dissipates(system),
                             .is_linear = ops->is_condensed && fem_system_is_linear(system)};
   Status status = create(*solver, context);

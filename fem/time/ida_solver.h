@@ -33,9 +33,9 @@ int fem_ida_solver_answer(FemIdaFailure *failure, Status status);
 
 typedef struct FemIdaSolver FemIdaSolver; // opaque
 
-// `system` and `failure` are borrowed.
+// `system` and `failure` are borrowed. A residual of the kinematics up to `rounding` [m/s] counts as zero.
 Status fem_ida_solver_create(FemIdaSolver **solver, FemSystem *system, const FemSolverOps *ops,
-                             FemIdaFailure *failure, SUNContext context);
+                             double rounding, FemIdaFailure *failure, SUNContext context);
 void fem_ida_solver_destroy(FemIdaSolver *solver);
 
 SUNLinearSolver fem_ida_solver_linear(FemIdaSolver *solver); // owned by the solver

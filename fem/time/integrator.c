@@ -24,7 +24,7 @@ enum { MAX_FAILURES = 15 };
 static const double KNOT_RESOLUTION = 1e-12;
 // Forces on a body in contact balance to this share of its weight or, where that is more, to that of what its
 // acceleration takes: what is written of contact is as right.
-static const double BALANCE = 2e-4, BALANCE_OF_INERTIA = 2e-3;
+static const double BALANCE = 2e-4, BALANCE_OF_INERTIA = 5e-3;
 // Nor less than this share of E · edge².
 static const double SMALLEST_FORCE = 1e-10;
 // IDA lengthens a step only where it may double, which saves matrices. Where contact begins and ends steps
@@ -33,6 +33,8 @@ static const double LEAST_GROWTH = 1.2, LEAST_GROWTH_WITHOUT_CONTACT = 2;
 // What a step ended at is taken from the last evaluation where the two differ by less than this share of the
 // tolerance, which is rounding.
 static const double SAME_STATE = 1e-6;
+// What the kinematics lack below this share of the velocities' tolerance is rounding.
+static const double ROUNDING = 1e-7;
 // Roots are found to this share of their step.
 static const double ROOT_RESOLUTION = 1e-9;
 
@@ -224,8 +226,8 @@ static Status create(FemIntegrator *integrator, const FemSolverOps *solver) {
   integrator->min_step =
       def->min_step > 0 ? def->min_step : fmin(SHORTEST_STEP * def->end, integrator->max_step);
   TRY(create_vectors(integrator));
-  TRY(fem_ida_solver_create(&integrator->solver, integrator->system, solver, &integrator->failure,
-                            integrator->context));
+  TRY(fem_ida_solver_create(&integrator->solver, integrator->system, solver,
+                            ROUNDING * def->velocity_tolerance, &integrator->failure, integrator->context));
   size_t bodies = (size_t)integrator->system->model->body_count;
   integrator->unbalanced = memory_zeroed(bodies, sizeof(double));
   integrator->wanted = memory_zeroed(bodies, sizeof(double));
