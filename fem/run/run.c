@@ -23,7 +23,7 @@
 
 // A step that gains energy (fem/time/audit.h) is taken back and tried again with a smaller step; at most so
 // many times in a row.
-static const double RETRY_FACTOR = 0.2;
+static const double RETRY_FACTOR = 0.2, SHORTEST_RETRY = 2e-6;
 enum { RETRIES_IN_A_ROW = 8 };
 // A scene in motion without contact may begin at rest with long steps. What it gains is judged by the energy
 // of a strain of so many times time.tolerance, which is a length over a body's, at least.
@@ -38,12 +38,25 @@ FemSolverKind fem_run_solver(const FemModel *model) {
   return fem_run_choice(model).kind;
 }
 
+// Of a step that is taken back, the one to try: not below SHORTEST_RETRY of the run's end, unless forces
+// could not be evaluated.
+static double retry_step(const FemRunState *run, double shortest) {
+  double last = fem_integrator_stats(run->integrator).last_step;
+  return fmax(RETRY_FACTOR * last, shortest * run->model->scene->end);
+}
+
+// Whether a step that gains energy, or whose forces differ from the motion, may be tried again with a shorter
+// one.
+static bool may_shorten(const FemRunState *run) {
+  double last = fem_integrator_stats(run->integrator).last_step;
+  return run->retries < RETRIES_IN_A_ROW && retry_step(run, SHORTEST_RETRY) < last;
+}
+
 // Back to the last accepted state with a smaller step.
-static Status take_back(FemRunState *run, const char *why) {
+static Status take_back(FemRunState *run, double step, const char *why) {
   log_debug("t = %.9g s: a step of %.3g s is taken back: %s", run->time,
             fem_integrator_stats(run->integrator).last_step, why);
   run->retries++;
-  double step = RETRY_FACTOR * fem_integrator_stats(run->integrator).last_step;
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
 }
 
@@ -204,6 +217,33 @@ static bool differs_from_motion(const FemRunState *run) {
   return fem_momentum_is_refused(&run->recorder.ledger.momentum, scene->end);
 }
 
+// What is dissipated at the step's mean velocity v̄, at its end. A power that is quadratic in velocities is,
+// in the mean over the step, not less (Jensen): what a step gains with it, it has gained for certain.
+static Status find_least_power(FemRunState *run, double time, double *power) {
+  FemEnergy energy;
+  double step = time - run->time, *mean = run->mean_velocity;
+  for (int i = 0; i < run->model->unknown_count; i++) mean[i] = (run->u_new[i] - run->u[i]) / step;
+  fem_system_scatter(&run->system, time, run->u_new, mean);
+  Status status = fem_system_energy(&run->system, time, &energy);
+  fem_system_scatter(&run->system, time, run->u_new, run->v_new);
+  *power = energy.dissipated_power;
+  return status;
+}
+
+// The audit of the step; `*is_refused`: it gains energy, whatever it dissipates.
+static Status judge_energy(FemRunState *run, double time, const FemEnergy *energy, FemAudit *next,
+                           bool *is_refused) {
+  const FemAuditBounds *bounds = &run->result->energy_bounds;
+  *next = fem_audit_next(&run->audit, time, energy);
+  *is_refused = fem_audit_is_refused(bounds, &run->audit, next);
+  if (!*is_refused || !(energy->dissipated_power > 0)) return STATUS_OK;
+  double power;
+  TRY(find_least_power(run, time, &power));
+  *next = fem_audit_next_with(&run->audit, time, energy, power);
+  *is_refused = fem_audit_is_refused(bounds, &run->audit, next);
+  return STATUS_OK;
+}
+
 // One step: taken, judged, shown, accepted.
 static Status advance(FemRunState *run) {
   double time = run->time;
@@ -211,20 +251,24 @@ static Status advance(FemRunState *run) {
   FemMeasures measures;
   Status status = step(run, &time, &is_onset, &measures);
   bool may_retry = run->retries < RETRIES_IN_A_ROW;
-  if (status == STATUS_RETRY && may_retry) return take_back(run, status_message());
+  if (status == STATUS_RETRY && may_retry) return take_back(run, retry_step(run, 0), status_message());
   TRY(status);
-  FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
-  if (fem_audit_is_refused(&run->result->energy_bounds, &run->audit, &next) && may_retry) {
+  FemAudit next;
+  bool is_refused;
+  status = judge_energy(run, time, &measures.energy, &next, &is_refused);
+  if (status == STATUS_RETRY && may_retry) return take_back(run, retry_step(run, 0), status_message());
+  TRY(status);
+  if (is_refused && may_shorten(run)) {
     run->result->energy_retries++;
-    return take_back(run, "it gains energy");
+    return take_back(run, retry_step(run, SHORTEST_RETRY), "it gains energy");
   }
-  if (may_retry && differs_from_motion(run)) {
+  if (may_shorten(run) && differs_from_motion(run)) {
     run->result->momentum_retries++;
-    return take_back(run, "forces and motion differ");
+    return take_back(run, retry_step(run, SHORTEST_RETRY), "forces and motion differ");
   }
   status = take_row(run, time, &measures, &next);
   if (!status) status = fem_run_frames_write_until(run, time);
-  if (status == STATUS_RETRY && may_retry) return take_back(run, status_message());
+  if (status == STATUS_RETRY && may_retry) return take_back(run, retry_step(run, 0), status_message());
   TRY(status);
   TRY(fem_recorder_append_step(&run->recorder));
   run->audit = next;
@@ -285,8 +329,8 @@ static const double ROUNDED_STRAIN = 1e-6;
 
 // Room for the unknowns, however many are released.
 static Status allocate_states(FemRunState *run) {
-  double **states[] = {&run->u, &run->v, &run->u_new, &run->v_new};
-  for (int i = 0; i < 4; i++)
+  double **states[] = {&run->u, &run->v, &run->u_new, &run->v_new, &run->mean_velocity};
+  for (int i = 0; i < 5; i++)
     if (!(*states[i] = memory_zeroed(3 * (size_t)run->model->vertex_count, sizeof(double))))
       return status_no_memory("the state");
   return STATUS_OK;
@@ -571,8 +615,8 @@ static Status close_run(FemRunState *run, Status status) {
   if (collected || left) snprintf(closing, sizeof closing, "; besides: %s", status_message());
   fem_recorder_destroy(&run->recorder);
   fem_system_destroy(&run->system);
-  double *states[] = {run->u, run->v, run->u_new, run->v_new};
-  for (int i = 0; i < 4; i++) memory_free(states[i]);
+  double *states[] = {run->u, run->v, run->u_new, run->v_new, run->mean_velocity};
+  for (int i = 0; i < 5; i++) memory_free(states[i]);
   fem_model_numbering_destroy_copy(&run->own);
   fem_checkpoint_destroy(&run->checkpoint);
   if (status) return status_fail(status, "%s%s", message, closing);

@@ -49,10 +49,15 @@ void fem_audit_load_step(FemAudit *audit, double step, double begin, double end,
 }
 
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy) {
+  return fem_audit_next_with(audit, time, energy, INFINITY);
+}
+
+FemAudit fem_audit_next_with(const FemAudit *audit, double time, const FemEnergy *energy, double most) {
   FemAudit next = *audit;
   double half_step = 0.5 * (time - audit->time);
   next.time = time;
-  next.damped += 2 * half_step * mean_dissipated(audit->dissipated_power, energy->dissipated_power);
+  next.damped +=
+      2 * half_step * fmin(most, mean_dissipated(audit->dissipated_power, energy->dissipated_power));
   next.driven_work += half_step * (audit->driven_power + energy->driven_power);
   next.work = next.driven_work + energy->applied_work;
   next.dissipated = next.damped + energy->plastic_work + energy->friction_work;

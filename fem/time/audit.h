@@ -53,6 +53,8 @@ void fem_audit_load_step(FemAudit *audit, double step, double begin, double end,
 
 // The audit as it would be after accepting this state.
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy);
+// With a mean of the step's dissipated power of `most` at most [W].
+FemAudit fem_audit_next_with(const FemAudit *audit, double time, const FemEnergy *energy, double most);
 
 FemAuditBounds fem_audit_bounds(bool has_contact, double least);
 

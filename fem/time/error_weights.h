@@ -18,8 +18,11 @@ typedef struct FemErrorTolerance {
   double wave_share;   // of a body's √(E/ρ), at most
 } FemErrorTolerance;
 
-// The weights 1/tolerance of u and v (2 · unknown_count) at the velocities v (unknown_count).
+#define FEM_ERROR_PRESSED 2.0
+
+// The weights 1/tolerance of u and v (2 · unknown_count) at the velocities v (unknown_count). `pressed`:
+// contact's forces on vertices (vertex_count, 3), NULL: none is pressed.
 void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model, const double *v,
-                       double *weights);
+                       const double *pressed, double *weights);
 
 #endif
