@@ -9,6 +9,7 @@
 #include "app/bench/scene/beam.h"
 #include "app/bench/scene/drop.h"
 #include "app/bench/scene/elements.h"
+#include "app/bench/scene/ranks.h"
 #include "app/bench/scene/scaling.h"
 #include "app/bench/scene/scene.h"
 #include "app/bench/scene/solver.h"
@@ -27,6 +28,7 @@ static const AppCommand *const benches[] = {
     &app_bench_step,
     &app_bench_precision,
     &app_bench_scaling,
+    &app_bench_ranks,
     &app_bench_drop,
     &app_bench_unseen,
     NULL,
