@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How wrong contact may be, as a run estimates it, against how wrong it is: the same with a stiffness a hundred and more times as
-// large.
+// How wrong contact may be, as a run estimates it, against how wrong it is: the same with a stiffness a
+// hundred and more times as large.
 #include "scene.h"
 
 #include <string.h>
@@ -36,12 +36,13 @@ static void expect_honest(const char *path, const char *const *overrides, double
   Told told = run_with(path, overrides, stiffness), reference = run_with(path, overrides, stiffest);
   double missing = 1 - told.force / reference.force;
   ck_assert_double_gt(missing, 1e-3);
-  ck_assert_msg(told.give > 0.5 * missing && told.give < 2 * missing, "c = %g: told %g, missing %g", stiffness,
-                told.give, missing);
+  ck_assert_msg(told.give > 0.5 * missing && told.give < 2 * missing, "c = %g: told %g, missing %g",
+                stiffness, told.give, missing);
 }
 
 static const char *const pressed[] = {
-    "bodies.upper.loads=[]", "bodies.upper.driven=[{group: z_max, components: [z], velocity: [0, 0, -0.001]}]", NULL};
+    "bodies.upper.loads=[]",
+    "bodies.upper.driven=[{group: z_max, components: [z], velocity: [0, 0, -0.001]}]", NULL};
 
 START_TEST(the_give_of_two_blocks_in_a_press) {
   expect_honest(TETLAP_SOURCE_DIR "/tests/scenes/patch.yaml", pressed, 2e7, 1e10);
@@ -85,11 +86,33 @@ START_TEST(the_advice_leads_to_a_hundredth) {
 }
 END_TEST
 
+// A block that falls gives way long after the blow has pressed its contact most: the way is that of both.
+START_TEST(what_gives_way_after_a_blow_counts) {
+  const char *const overrides[] = {"output.frames=1", NULL};
+  Told told = run_with(TETLAP_SOURCE_DIR "/examples/01_drop.yaml", overrides, 2.5e7);
+  // p/c against p L / 2E of a block under a pressure that falls to 0 at its top: c L / 2E = 25.
+  ck_assert_double_gt(told.give, 0.005);
+  ck_assert_double_lt(told.give, 0.1);
+}
+END_TEST
+
+// Bodies so stiff that the depth is less than a step of a motion can tell need no other stiffness.
+START_TEST(no_stiffness_is_advised_for_a_depth_that_no_step_can_tell) {
+  const char *const overrides[] = {"output.frames=1", "time.end=0.2", NULL};
+  Told told = run_with(TETLAP_SOURCE_DIR "/examples/10_incline.yaml", overrides, 5e8);
+  ck_assert_double_gt(told.force, 0);
+  ck_assert_double_gt(told.give, 0.01);
+  ck_assert(isnan(told.stiffness_for));
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("accuracy");
   tcase_add_test(cases, the_give_of_two_blocks_in_a_press);
   tcase_add_test(cases, the_give_under_a_ball);
   tcase_add_test(cases, what_a_rim_loses_at_a_given_depth);
   tcase_add_test(cases, the_advice_leads_to_a_hundredth);
+  tcase_add_test(cases, what_gives_way_after_a_blow_counts);
+  tcase_add_test(cases, no_stiffness_is_advised_for_a_depth_that_no_step_can_tell);
   return suite_run("accuracy", cases, 60);
 }

@@ -121,12 +121,13 @@ static Status find_rim(const ContactLayout *layout, const ContactEvaluation *eva
   return STATUS_OK;
 }
 
-// Whether the patch presses more than ever; then `found` holds by how much and where.
+// Whether the patch presses more than ever, or bodies give way more while it does; then `found` holds by how
+// much and where.
 static bool is_largest(const FemAccuracy *accuracy, const ContactInterface *interface, int place, double time,
-                       FemAccuracyPair *found) {
+                       double stored, FemAccuracyPair *found) {
   double force = vec3_length(vec3_at(interface->force));
   *found = accuracy->pairs[place];
-  if (!(force > found->force)) return false;
+  if (!(force > found->force)) return force > 0 && stored > GROWN * found->stored;
   found->force = force;
   found->time = time;
   found->area = interface->area;
@@ -134,17 +135,22 @@ static bool is_largest(const FemAccuracy *accuracy, const ContactInterface *inte
   return true;
 }
 
-static Status estimate(FemAccuracy *accuracy, const FemSystem *system, const ContactLayout *layout,
-                       const ContactEvaluation *evaluation, const ContactPatch *patch, double elastic,
-                       FemAccuracyPair *found) {
-  const ContactFacing *facing = &layout->facings[patch->facing];
+// Of the state in which most is stored.
+static void find_way(FemAccuracy *accuracy, const FemSystem *system, const ContactFacing *facing,
+                     double energy, double elastic, FemAccuracyPair *found) {
   const int bodies = system->model->scene->body_count;
   if (!accuracy->has_energies) share_energy(accuracy, system, elastic);
   accuracy->has_energies = true;
-  found->estimated = found->force;
-  found->energy = patch->energy;
   found->elastic[0] = facing->a < bodies ? accuracy->energies[facing->a] : 0;
   found->elastic[1] = facing->b < bodies && facing->b != facing->a ? accuracy->energies[facing->b] : 0;
+  found->with = energy;
+  found->stored = energy + elastic;
+}
+
+static Status estimate(const ContactLayout *layout, const ContactEvaluation *evaluation,
+                       const ContactPatch *patch, FemAccuracyPair *found) {
+  found->estimated = found->force;
+  found->energy = patch->energy;
   found->edge = mean_edge(layout, &evaluation->patches, patch);
   return find_rim(layout, evaluation, patch, &found->rim);
 }
@@ -159,9 +165,12 @@ Status fem_accuracy_look(FemAccuracy *accuracy, const FemSystem *system, Contact
   for (int p = 0; p < evaluation->patches.patch_count; p++) {
     const ContactPatch *patch = &evaluation->patches.patches[p];
     FemAccuracyPair *found = &accuracy->found[accuracy->found_count];
-    if (!is_largest(accuracy, &evaluation->interfaces[patch->facing], patch->facing, time, found)) continue;
-    if (found->force > GROWN * found->estimated)
-      TRY(estimate(accuracy, system, layout, evaluation, patch, elastic, found));
+    if (!is_largest(accuracy, &evaluation->interfaces[patch->facing], patch->facing, time,
+                    patch->energy + elastic, found))
+      continue;
+    if (patch->energy + elastic > GROWN * found->stored)
+      find_way(accuracy, system, &layout->facings[patch->facing], patch->energy, elastic, found);
+    if (found->force > GROWN * found->estimated) TRY(estimate(layout, evaluation, patch, found));
     accuracy->places[accuracy->found_count++] = patch->facing;
   }
   return STATUS_OK;
@@ -175,7 +184,7 @@ void fem_accuracy_accept(FemAccuracy *accuracy) {
 FemEstimate fem_accuracy_estimate(const FemAccuracyPair *pair, const FemModel *model, double stiffness) {
   const FemSceneDef *scene = model->scene;
   double depth = 2 * pair->energy / pair->estimated, tolerance = fem_model_position_tolerance(model);
-  FemEstimate estimate = {.give = pair->energy / (pair->energy + pair->elastic[0] + pair->elastic[1]),
+  FemEstimate estimate = {.give = pair->with / (pair->with + pair->elastic[0] + pair->elastic[1]),
                           .rim = pair->rim,
                           .depth_over_edge = depth / pair->edge,
                           .tolerance_over_depth = scene->is_static ? NAN : tolerance / depth,
@@ -185,6 +194,7 @@ FemEstimate fem_accuracy_estimate(const FemAccuracyPair *pair, const FemModel *m
   double by_give = estimate.give / (1 - estimate.give) * (1 - WANTED) / WANTED;
   double by_rim = isnan(estimate.rim) ? 0 : estimate.rim / WANTED;
   estimate.stiffness_for = stiffness * fmax(1, fmax(by_give, by_rim));
+  if (!isfinite(estimate.stiffness_for) || estimate.tolerance_over_depth > 1) estimate.stiffness_for = NAN;
   if (!scene->is_static)
     estimate.tolerance_for = scene->tolerance * fmin(1, WANTED / estimate.tolerance_over_depth);
   return estimate;

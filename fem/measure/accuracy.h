@@ -31,7 +31,8 @@
 #include "fem/effect/system.h"
 
 // Of one interface, at its largest force so far; what stands below `estimated` at a force that is smaller by
-// a hundredth at most. Numbers only, for checkpoints.
+// a hundredth at most. The way is that of the state in which most is stored while the two touch: a blow
+// presses the interface before the body behind it has given way. Numbers only, for checkpoints.
 typedef struct FemAccuracyPair {
   double force;      // 0: the two never touched [N]
   double time;       // [s]
@@ -40,10 +41,12 @@ typedef struct FemAccuracyPair {
   double estimated;  // at that force [N]
   double energy;     // U [J]
   double elastic[2]; // E_a, E_b [J]
+  double with;       // U of the same state [J]
+  double stored;     // U and the elastic energy of all bodies there [J]
   double edge;       // [m]
   double rim;        // NaN: the potential is not `field`
 } FemAccuracyPair;
-enum { FEM_ACCURACY_KEPT = 12 };
+enum { FEM_ACCURACY_KEPT = 14 };
 
 typedef struct FemAccuracy {
   int count;
@@ -70,7 +73,8 @@ void fem_accuracy_accept(FemAccuracy *accuracy);
 typedef struct FemEstimate {
   double give, rim, depth_over_edge, tolerance_over_depth, elements_across; // NaN: not known
   double stiffness;                                                         // c or κ of the pair
-  double stiffness_for; // that would bring give and rim to 1 %
+  double stiffness_for; // that would bring give and rim to 1 %; NaN: none would, or the depth is no more
+                        // than a step of a motion can tell
   double tolerance_for; // time.tolerance that would bring tolerance_over_depth there; NaN: static
 } FemEstimate;
 FemEstimate fem_accuracy_estimate(const FemAccuracyPair *pair, const FemModel *model, double stiffness);

@@ -84,6 +84,9 @@ void fem_ledger_accept(FemLedger *ledger) {
 
 // ---- Telling.
 
+// A share that is not worth a word.
+static const double NOTHING = 1e-4;
+
 static void record_estimate(const FemEstimate *estimate, Record *record) {
   record_number(record, "give", estimate->give);
   record_number(record, "rim", estimate->rim);
@@ -154,11 +157,13 @@ bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size)
   const ContactFacing *facing = &contact_system_layout(contact_of(ledger))->facings[i];
   FemEstimate estimate = fem_accuracy_estimate(pair, model, facing->stiffness);
   size_t used = 0;
-  text_append(text, size, &used,
-              "'%s' and '%s' press with %.4g N at most, at t = %.4g s: the contact gives %.2g %% of the way",
-              fem_compliance_party_name(model, facing->a), fem_compliance_party_name(model, facing->b),
-              pair->force, pair->time, 100 * estimate.give);
-  if (estimate.rim > 0) text_append(text, size, &used, ", rims lose %.2g %%", 100 * estimate.rim);
+  text_append(
+      text, size, &used,
+      "'%s' and '%s' press with %.4g N at most, at t = %.4g s: the contact gives %.2g m, %.3g %% of the way",
+      fem_compliance_party_name(model, facing->a), fem_compliance_party_name(model, facing->b), pair->force,
+      pair->time, 2 * pair->energy / pair->estimated, 100 * estimate.give);
+  if (estimate.tolerance_over_depth > 1) text_append(text, size, &used, ", less than time.tolerance tells");
+  if (estimate.rim > NOTHING) text_append(text, size, &used, ", rims lose %.2g %%", 100 * estimate.rim);
   text_append(text, size, &used, ", %.1f elements across", estimate.elements_across);
   if (estimate.stiffness_for > estimate.stiffness)
     text_append(text, size, &used, "; 1 %% with a stiffness of %.2g %s in place of %.2g",

@@ -33,7 +33,7 @@ int fem_run_start_overlap(const FemSystem *system, int from, char *text, size_t 
     double deepest = fmax(deepest_of(system, interfaces[i].a), deepest_of(system, interfaces[i].b));
     snprintf(
         text, size,
-        "'%s' and '%s' overlap at the start: %.3g m³ in %d pairs, up to %.2g %% of an element; they will "
+        "'%s' and '%s' overlap at the start: %.3g m³ in %d pairs, up to %.3g %% of an element; they will "
         "be pushed apart at once: move them apart if that is not meant",
         fem_effect_contact_name(effect, interfaces[i].a), fem_effect_contact_name(effect, interfaces[i].b),
         interfaces[i].volume, interfaces[i].active_count, 100 * deepest);

@@ -85,10 +85,10 @@ static void conclude_work(const FemAudit *audit) {
 // What was lost, apart into what was asked for and the integrator's own.
 static void conclude_energy(const FemAudit *audit) {
   double lost = fem_audit_lost(audit);
-  log_info("energy: the integrator itself %s %.3g J, %.2g %% of the scene's %.3g J, and never gained more "
-           "than %.1e of it; %.3g J went into damping, friction and plasticity as asked",
-           lost < 0 ? "gained" : "lost", fabs(lost), 100 * fabs(lost) / audit->scale, audit->scale,
-           audit->gain / audit->scale, audit->dissipated);
+  log_info("energy: of the scene's %.3g J %.3g J went into damping, friction and plasticity as asked; the "
+           "integrator itself %s %.3g J, %.2g %%, and never stood more than %.2g %% above an earlier value",
+           audit->scale, audit->dissipated, lost < 0 ? "gained" : "lost", fabs(lost),
+           100 * fabs(lost) / audit->scale, 100 * audit->gain / audit->scale);
 }
 
 static void conclude(const AppJob *job, const FemRunResult *result) {
