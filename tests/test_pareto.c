@@ -41,9 +41,11 @@ START_TEST(the_frontier_is_what_nothing_beats) {
   add(&pareto, "near", 2, 1e-4);    // the same once more: neither beats the other
   add(&pareto, "near", NAN, 1e-12); // not measured
   add(&pareto, "uniform", 9, 1);    // alone in its set
+  add(&pareto, "near", 0.5, 0);     // of a device: beats none of the processor's
+  pareto.points[8].device = "host";
   app_pareto_finish(&pareto);
-  const bool expected[8] = {true, false, true, false, true, true, false, true};
-  for (int p = 0; p < 8; p++) ck_assert_msg(pareto.points[p].is_frontier == expected[p], "point %d", p);
+  const bool expected[9] = {true, false, true, false, true, true, false, true, true};
+  for (int p = 0; p < 9; p++) ck_assert_msg(pareto.points[p].is_frontier == expected[p], "point %d", p);
   app_pareto_destroy(&pareto);
 }
 END_TEST
@@ -97,6 +99,32 @@ START_TEST(a_comparison_names_both_and_takes_its_ratio_within_a_round) {
   ck_assert_near(comparison->ratio, comparison->fast_rate / comparison->slow_rate, 1e-9 * comparison->ratio);
   ck_assert_double_eq(comparison->fast_error, find(&pareto, "geo", "V+grad")->error);
   ck_assert(isnan(comparison->paper_ratio));
+  app_pareto_destroy(&pareto);
+}
+END_TEST
+
+// clip's kernels give clip's bits, geo's to rounding; exact has none.
+START_TEST(a_device_adds_points_of_the_models_that_have_kernels) {
+  AppPareto pareto = small();
+  pareto.device = "host";
+  ck_assert_ok(app_pareto_create(&pareto));
+  ck_assert_ok(app_pareto_add_model(&pareto, "clip"));
+  ck_assert_ok(app_pareto_add_model(&pareto, "exact"));
+  ck_assert_ok(app_pareto_add_model(&pareto, "geo-small"));
+  ck_assert_ok(app_pareto_pairs_measure(&pareto, "near"));
+  app_pareto_finish(&pareto);
+  ck_assert_int_eq((int)pareto.point_count, 10);
+  static const char *const quantities[] = {"V", "V+grad"};
+  for (int q = 0; q < 2; q++) {
+    const AppParetoPoint *clip = find(&pareto, "clip", quantities[q]),
+                         *kernel = find(&pareto, "clip@host", quantities[q]),
+                         *geo = find(&pareto, "geo-small", quantities[q]),
+                         *network = find(&pareto, "geo-small@host", quantities[q]);
+    ck_assert(!clip->device && strcmp(kernel->device, "host") == 0);
+    ck_assert(kernel->error > 0 && kernel->error < 1e-9);
+    ck_assert_near(network->error, geo->error, 1e-9 * geo->error);
+    ck_assert(kernel->seconds > 0 && kernel->seconds_min <= kernel->seconds);
+  }
   app_pareto_destroy(&pareto);
 }
 END_TEST
@@ -364,6 +392,7 @@ int main(void) {
   tcase_add_test(cases, the_frontier_is_what_nothing_beats);
   tcase_add_test(cases, exact_has_no_error_clip_rounding_and_a_learned_model_its_own);
   tcase_add_test(cases, a_comparison_names_both_and_takes_its_ratio_within_a_round);
+  tcase_add_test(cases, a_device_adds_points_of_the_models_that_have_kernels);
   tcase_add_test(cases, models_of_one_name_are_refused);
   tcase_add_test(cases, a_scene_gives_forces_in_the_same_configurations_and_a_run_of_each_model);
   tcase_add_test(cases, a_weights_file_runs_a_scene_as_its_name_does);

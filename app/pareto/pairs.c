@@ -2,11 +2,13 @@
 #include "app/pareto/pairs.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/bench/contestant.h"
 #include "app/bench/overlap/pairs.h"
+#include "app/pareto/device.h"
 #include "base/memory.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE };
@@ -151,6 +153,44 @@ static Status add_points(Bench *bench, int m) {
   return STATUS_OK;
 }
 
+// A model's points on the device, in the place of its own.
+static Status add_device_points(Bench *bench, const Device *device, int m) {
+  static const char *const quantities[2] = {"V", "V+grad"};
+  AppPareto *pareto = bench->pareto;
+  AppBenchTimer timers[2] = {0};
+  const OverlapBatch batch = {.pair_count = bench->count,
+                              .pairs = bench->pairs,
+                              .volume = bench->volume,
+                              .gradient = bench->gradient,
+                              .flags = bench->flags};
+  TRY(app_pareto_device_measure(device, pareto->models[m].name, &batch, pareto->common.repeats, timers));
+  snprintf(pareto->device_names[m], sizeof pareto->device_names[m], "%s@%.12s", pareto->models[m].name,
+           device->ops->name);
+  for (int q = 0; q < 2; q++) {
+    AppParetoPoint *point = app_pareto_add_point(pareto, m, quantities[q], bench->set);
+    if (!point) return status_no_memory("a point");
+    point->model = pareto->device_names[m];
+    point->device = device->ops->name;
+    fill_errors(bench, bench->count, q == 1, point);
+    fill_times(&timers[q], pareto->common.repeats, point);
+  }
+  return STATUS_OK;
+}
+
+static Status measure_on_device(Bench *bench) {
+  const AppPareto *pareto = bench->pareto;
+  Device device = {0};
+  if (!pareto->device) return STATUS_OK;
+  TRY(device_open(&device, pareto->device));
+  Status status = STATUS_OK;
+  for (int m = 0; m < pareto->model_count && !status; m++)
+    if (strcmp(pareto->models[m].name, pareto->models[m].source) == 0 &&
+        app_pareto_device_knows(pareto->models[m].name))
+      status = add_device_points(bench, &device, m);
+  device_close(&device);
+  return status;
+}
+
 enum { PUBLISHED = 73370 }; // parameters of the paper's network
 
 // The named model, else that of its family with the published size: −1 if there is none.
@@ -221,6 +261,7 @@ static Status measure(Bench *bench) {
   TRY(make(bench));
   TRY(take_turns(bench));
   for (int m = 0; m < bench->pareto->model_count; m++) TRY(add_points(bench, m));
+  TRY(measure_on_device(bench));
   add_comparisons(bench);
   return STATUS_OK;
 }

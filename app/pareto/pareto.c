@@ -45,6 +45,8 @@ static const AppBenchColumn columns[] = {
      "of pairs that a more careful model answered"},
     {"frontier", APP_BENCH_INTEGER, offsetof(AppParetoPoint, frontier), "frontier",
      "1: no other is as fast and as accurate; by processor time with one thread, by wall time else"},
+    {"device", APP_BENCH_TEXT, offsetof(AppParetoPoint, device), "device",
+     "host, opencl or cuda; none: this processor's own way"},
     {"outcome", APP_BENCH_TEXT, offsetof(AppParetoPoint, outcome), "run", "finished, failed or cut short"},
     {"seconds_per_step", APP_BENCH_NUMBER, offsetof(AppParetoPoint, step_s), "s a step",
      "end to end: wall time of the model's own run over its steps [s]"},
@@ -150,7 +152,7 @@ AppParetoPoint *app_pareto_add_point(AppPareto *pareto, int model, const char *q
 }
 
 static bool is_peer(const AppParetoPoint *a, const AppParetoPoint *b) {
-  return strcmp(a->quantity, b->quantity) == 0 && strcmp(a->set, b->set) == 0;
+  return strcmp(a->quantity, b->quantity) == 0 && strcmp(a->set, b->set) == 0 && !a->device == !b->device;
 }
 
 bool app_pareto_beats(const AppParetoPoint *a, const AppParetoPoint *b) {
@@ -160,7 +162,7 @@ bool app_pareto_beats(const AppParetoPoint *a, const AppParetoPoint *b) {
 void app_pareto_finish(AppPareto *pareto) {
   for (size_t p = 0; p < pareto->point_count; p++) {
     AppParetoPoint *point = &pareto->points[p];
-    bool has_cpu = pareto->common.threads == 1 && isfinite(point->cpu_seconds);
+    bool has_cpu = pareto->common.threads == 1 && isfinite(point->cpu_seconds) && !point->device;
     point->cost = has_cpu ? point->cpu_seconds : point->seconds;
   }
   for (size_t p = 0; p < pareto->point_count; p++) {

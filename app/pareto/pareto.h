@@ -25,7 +25,8 @@ typedef struct AppParetoModel {
 // One dot: a model on a set of pairs, or in a scene.
 typedef struct AppParetoPoint {
   const char *model, *family, *quantity,
-      *set; // borrowed; quantity: V, V+grad, force; set: near, uniform or a scene
+      *set;           // borrowed; quantity: V, V+grad, force; set: near, uniform or a scene
+  const char *device; // borrowed; NULL: this processor
   long long features, width, depth, parameters; // 0 where nothing is learned
   double seconds, seconds_min, seconds_max;     // kernel: wall time of the overlap model for a pair [s]
   double cost;                                  // what the frontier goes by [s], see app_pareto_finish
@@ -63,7 +64,9 @@ typedef struct AppPareto {
   int scene_rounds;    // runs of a scene a model
   int audit_every; // steps in contact between configurations in which all models are held against the exact
                    // one
+  const char *device;     // pairs also on this one, as --device has it; NULL: none
   AppParetoModel *models; // (model_count), owned
+  char device_names[APP_PARETO_MAX_MODELS][APP_PARETO_NAME + 16]; // of models on the device: NAME@DEVICE
   int model_count;
   AppParetoPoint *points; // (point_count), owned
   size_t point_count, point_capacity;
@@ -83,9 +86,9 @@ AppParetoPoint *app_pareto_add_point(AppPareto *pareto, int model, const char *q
 // At least as cheap and as accurate, and better in one of both; of points of one set and quantity.
 bool app_pareto_beats(const AppParetoPoint *a, const AppParetoPoint *b);
 
-// Marks the frontier of each set and quantity. Of one thread processor time counts, which other work on the
-// machine hardly changes; of several, and in scenes, wall time. A point is on it unless another one is at
-// least as fast and at least as accurate, and better in one of both.
+// Marks the frontier of each set and quantity, of a device's points by themselves. Of one thread processor
+// time counts, which other work on the machine hardly changes; of several, and in scenes, wall time. A point
+// is on it unless another one is at least as fast and at least as accurate, and better in one of both.
 void app_pareto_finish(AppPareto *pareto);
 
 extern const AppBenchReport app_pareto_report, app_pareto_comparison_report;

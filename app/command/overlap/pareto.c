@@ -43,6 +43,10 @@ static const struct argp_option option_table[] = {
     {"pairs", KEY_SET, "NAME,…", 0, "Sets of pairs: near, uniform (default: both)", 1},
     {"count", 'n', "N", 0, "Pairs that errors are taken over (default: 20000; slow models fewer)", 1},
     {"batch", 'b', "N", 0, "Pairs a call (default: 2048, the paper's)", 1},
+    {"device", 'D', "NAME", 0,
+     "Also the models that have kernels on a device: host, opencl, cuda, auto (`tetlap devices` lists them); "
+     "pairs and answers lie there, --count pairs a call",
+     1},
     {"wall", KEY_WALL, "SECONDS", 0, "Cut a scene's run short that takes longer (default: 60)", 1},
     {"rounds", KEY_ROUNDS, "N", 0, "Runs of each scene with each model, in turns (default: 1)", 1},
     {"audit", KEY_AUDIT, "K", 0, "Hold all models together in every K-th step in contact (default: 20)", 1},
@@ -88,6 +92,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case KEY_SWEEP:
     options->sweep = text;
+    return 0;
+  case 'D':
+    options->pareto.device = text;
     return 0;
   case KEY_SET:
     app_bench_options_choose(state, "pairs", text, app_bench_sets, 2, options->wants_set);
