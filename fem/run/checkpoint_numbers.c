@@ -82,6 +82,7 @@ static const FemCheckpointNumber numbers[] = {
     RESULT(momentum_retries, FEM_LONG, "1"),
     RESULT(relaxation_steps, FEM_LONG, "1"),
     RESULT(halvings, FEM_LONG, "1"),
+    RESULT(loose, FEM_LONG, "1"),
     RESULT(residual, FEM_REAL, "N"),
     RESULT(residual_allowed, FEM_REAL, "N"),
     COUNT(pairs, tried),

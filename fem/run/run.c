@@ -180,6 +180,7 @@ static void end_stage(FemRunState *run) {
     result->residual_allowed = statics->tolerance * statics->force_scale;
     result->relaxation_steps += statics->relaxation_steps;
     result->halvings += statics->halvings;
+    result->loose += statics->loose;
   }
   fem_integrator_destroy(run->integrator);
   run->integrator = NULL;

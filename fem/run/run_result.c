@@ -264,6 +264,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
     record_number(equilibrium, "residual_allowed_N", result->residual_allowed);
     record_integer(equilibrium, "relaxation_steps", result->relaxation_steps);
     record_integer(equilibrium, "halvings", result->halvings);
+    record_integer(equilibrium, "loose", result->loose);
   }
   if (result->has_status) summarise_status(&result->status_pairs, record_child(summary, "status"));
   record_integer(summary, "peak_rss_bytes", (long long)result->peak_rss_bytes);

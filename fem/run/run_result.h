@@ -47,7 +47,7 @@ typedef struct FemRunResult {
   int state_unknowns;               // displacements, and in a motion as many velocities
   bool is_static;
   double residual, residual_allowed; // of the last equilibrium: largest force on an unknown [N]
-  long long relaxation_steps, halvings;
+  long long relaxation_steps, halvings, loose;
   int pairs_max;
   double overlap_volume_max, contact_force_max, min_det_F, deepest_overlap_max;
   double peak_since_row;     // largest interface force in the steps since the last row of the history [N]

@@ -53,6 +53,12 @@ int fem_solver_use_threads(int threads) {
   return before;
 }
 
+double fem_solver_dot(const double *a, const double *b, int count) {
+  double sum = 0;
+  for (int i = 0; i < count; i++) sum += a[i] * b[i];
+  return sum;
+}
+
 bool fem_solver_is_finite(const double *values, int count) {
   int is_bad = 0;
   for (int i = 0; i < count; i++) is_bad |= !isfinite(values[i]);

@@ -79,5 +79,7 @@ double fem_solver_tolerance(const FemSolverOps *ops, double said);
 int fem_solver_use_threads(int threads);
 // For the solvers: no NaN and no infinity among them.
 bool fem_solver_is_finite(const double *values, int count);
+// a · b
+double fem_solver_dot(const double *a, const double *b, int count);
 
 #endif

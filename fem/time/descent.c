@@ -14,8 +14,6 @@ static const double WORK_LEFT = 0.8, WORK_FOUND = 0.3;
 static const double LONGEST_WAY = 0.25;
 // Where K is not positive definite, the first shift, as a share of (c/L)², and by what it rises and falls.
 static const double FIRST_SHIFT = 1e-3, SHIFT_RISE = 10, SHIFT_FALL = 0.1;
-// After this many iterations so many times the tolerance will do: forces of contact may be no more exact.
-enum { PATIENCE = 25, TOLERABLE = 100 };
 enum { MAX_ITERATIONS = 80, MAX_REFUSALS = 30, MAX_SEARCH = 8, MAX_HALVINGS = 8 };
 
 typedef struct Descent {
@@ -26,12 +24,6 @@ typedef struct Descent {
   double *step;         // d
   double *next, *there; // u + s d, and the force there
 } Descent;
-
-static double dot(const double *a, const double *b, int n) {
-  double sum = 0;
-  for (int i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
 
 // K + shift M, the shift such that it is positive definite; d, no longer than the longest way.
 static Status find_step(Descent *descent) {
@@ -54,7 +46,7 @@ static Status find_step(Descent *descent) {
 static Status try_length(Descent *descent, double s, double *work) {
   for (int i = 0; i < descent->n; i++) descent->next[i] = descent->u[i] + s * descent->step[i];
   TRY(fem_equilibrium_forces(descent->equilibrium, descent->time, descent->next, descent->there));
-  *work = dot(descent->there, descent->step, descent->n);
+  *work = fem_solver_dot(descent->there, descent->step, descent->n);
   return STATUS_OK;
 }
 
@@ -91,7 +83,7 @@ static Status search(Descent *descent, double first, double most, double work) {
 static Status iterate(Descent *descent) {
   double length = 1, work;
   TRY(find_step(descent));
-  double first = dot(descent->force, descent->step, descent->n);
+  double first = fem_solver_dot(descent->force, descent->step, descent->n);
   TRY(try_longest(descent, &length, &work));
   if (work < -WORK_LEFT * first) TRY(search(descent, first, length, work));
   memcpy(descent->u, descent->next, (size_t)descent->n * sizeof *descent->u);
@@ -102,14 +94,14 @@ static Status iterate(Descent *descent) {
 static Status descend(Descent *descent, double tolerance, long long *iterations) {
   FemEquilibrium *equilibrium = descent->equilibrium;
   TRY(fem_equilibrium_forces(equilibrium, descent->time, descent->u, descent->force));
-  for (int k = 0; k < MAX_ITERATIONS; k++) {
-    double left = fem_equilibrium_largest(descent->force, descent->n);
-    if (left <= (k < PATIENCE ? 1 : TOLERABLE) * tolerance) return STATUS_OK;
+  double left;
+  for (int k = 0;; k++) {
+    left = fem_equilibrium_largest(descent->force, descent->n);
+    if (left <= (k < FEM_DESCENT_PATIENCE ? 1 : FEM_DESCENT_TOLERABLE) * tolerance) return STATUS_OK;
+    if (k == MAX_ITERATIONS) break;
     TRY(iterate(descent));
     ++*iterations;
   }
-  double left = fem_equilibrium_largest(descent->force, descent->n);
-  if (left <= tolerance) return STATUS_OK;
   return status_fail(
       STATUS_RETRY,
       "Newton's method left a force of %.3g times the tolerance after %d iterations with a search",

@@ -7,8 +7,13 @@
 
 #include "fem/time/equilibrium.h"
 
-// Moves u (unknown_count) until the largest force on an unknown is below `tolerance` [N]. Contact lists
-// follow its way. `*iterations` grows by those taken. RETRY: not reached; the message says why.
+// From the iteration FEM_DESCENT_PATIENCE on FEM_DESCENT_TOLERABLE times the tolerance will do: forces of
+// contact may be no more exact.
+enum { FEM_DESCENT_PATIENCE = 25, FEM_DESCENT_TOLERABLE = 100 };
+
+// Moves u (unknown_count) until the largest force on an unknown is below `tolerance` [N], or, late, below
+// what is tolerable. Contact lists follow its way. `*iterations` grows by those taken. RETRY: not reached;
+// the message says why.
 Status fem_descent_solve(FemEquilibrium *equilibrium, double time, double tolerance, double *u,
                          long long *iterations);
 

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <nvector/nvector_serial.h>
 
+#include "fem/sparse/solver.h"
+
 // Iterations, and matrices made anew, before a step is given up.
 enum { MAX_ITERATIONS = 16, MAX_RENEWALS = 5, MAX_CUTS = 6 };
 // A step is shortened where the slope of the potential along it is, at its end, beyond this share of what it
@@ -101,16 +103,10 @@ static bool renew(Solve *solve) {
   return true;
 }
 
-static double dot(const double *a, const double *b, int n) {
-  double sum = 0;
-  for (int i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 // δu · r of the balance at the correction.
 static double slope_of_balance(const FemNewton *newton) {
   int n = newton->user.n;
-  return dot(N_VGetArrayPointer(newton->direction), N_VGetArrayPointer(newton->residual) + n, n);
+  return fem_solver_dot(N_VGetArrayPointer(newton->direction), N_VGetArrayPointer(newton->residual) + n, n);
 }
 
 // g(0) along the direction. The condensed right-hand side is minus the condensed residual.
@@ -118,7 +114,8 @@ static void find_slope(Solve *solve) {
   const FemNewton *newton = solve->newton;
   const double *right = newton->user.right(newton->user.self);
   double balance = slope_of_balance(newton);
-  solve->slope = right ? -dot(N_VGetArrayPointer(newton->direction), right, newton->user.n) : balance;
+  solve->slope =
+      right ? -fem_solver_dot(N_VGetArrayPointer(newton->direction), right, newton->user.n) : balance;
   solve->settle = solve->slope - balance;
 }
 

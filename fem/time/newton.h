@@ -60,8 +60,8 @@ typedef struct FemNewton {
   FemMixing mixing;
   double first_size; // of the first correction of the last solve that went well, by its weights; 0: none
   long iterations;   // of the last solve
-  long failures;   // of the last solve
-  int current;     // iterations since the matrix or the step was changed: what IDA's test counts
+  long failures;     // of the last solve
+  int current;       // iterations since the matrix or the step was changed: what IDA's test counts
 } FemNewton;
 
 // `like`: a vector of the size of y. A zeroed one, and one whose creation failed, can be destroyed.

@@ -260,6 +260,7 @@ Status fem_statics_step(FemStatics *statics, double from, double to, double *u) 
   if (status == STATUS_OK) {
     statics->residual = fem_equilibrium_largest(statics->force, n);
     statics->steps++;
+    statics->loose += statics->residual > statics->tolerance * statics->force_scale;
     keep_work(statics, to);
     return fem_system_accept(equilibrium->system, to, u, equilibrium->still, 0);
   }

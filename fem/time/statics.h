@@ -28,6 +28,7 @@ typedef struct FemStatics {
   double work_left;                   // of what is left of forces, along the longest way that is driven [J]
   double residual;                    // largest force on an unknown at the end of the last step [N]
   long long steps, newton_iterations, relaxation_steps, halvings;
+  long long loose; // steps that ended where descent.h found what is left of forces tolerable
 } FemStatics;
 
 // STATUS_INPUT: what only a motion can have (friction by velocities, release, an initial velocity).
