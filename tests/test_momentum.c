@@ -135,8 +135,8 @@ START_TEST(contact_reactions_and_loads_are_balanced) {
 END_TEST
 
 // A stack lands on itself and on the ground, with friction, and steps that are too long for that are taken
-// back: or else 8e-3 would be missing here. What the thrown ball may yet stop counts five times as much as
-// what has acted on the stack until then, so 9e-4 of all that is up to 5e-3 of this.
+// back: or else 8e-3 would be missing here. What the thrown ball may yet stop counts more than what has acted
+// on the stack until then, so 9e-4 of that is more of this.
 START_TEST(a_stack_that_lands_is_balanced) {
   SceneRun run;
   scene_run(&run, "../../examples/15_sleepers",

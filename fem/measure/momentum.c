@@ -174,13 +174,14 @@ static Motion motion_of(const FemMomentum *momentum) {
   return motion;
 }
 
-// S of a body at the end of a run, as far as can be known: what was, what its weight will be, what moves now.
+// S of a body at the end of a run, as far as can be known: what was and what its weight will be, or what
+// moves now where that is more.
 static double expected_of(const FemMomentum *momentum, int body, const Motion *motion, double end) {
   const FemModel *model = momentum->system->model;
   double mass = model->bodies[body].mass, left = fmax(end - momentum->next_time, 0);
-  double expected = momentum->next[body].size + weight_of(momentum, body) * left +
-                    fmin(motion->momentum, mass * motion->speed);
-  return fmax(expected, mass * fem_model_velocity_tolerance(model));
+  double acting = momentum->next[body].size + weight_of(momentum, body) * left,
+         moving = fmin(motion->momentum, mass * motion->speed);
+  return fmax(fmax(acting, moving), mass * fem_model_velocity_tolerance(model));
 }
 
 // J − Δp of a body, less what a method of order 1 takes back as the force falls again: where a force rises by
