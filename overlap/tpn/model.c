@@ -13,7 +13,7 @@ enum { SIZE = OVERLAP_PAIR_SIZE, ROWS = OVERLAP_TPN_ROWS };
 enum { STATUS = 1 << 0 }; // the network's first output
 
 OverlapOptions overlap_options_default(void) {
-  return (OverlapOptions){.touch = 0.02, .deep = 0.3, .doubt = 0.01, .confidence = 0.95};
+  return (OverlapOptions){.touch = 0.02, .deep = 0.3, .doubt = 0.005, .confidence = 0.95};
 }
 
 void overlap_tpn_model_destroy(void *self) {

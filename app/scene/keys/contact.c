@@ -81,7 +81,7 @@ static const SceneKey net_keys[] = {
     {"touch", SCENE_NUMBER, AT(FemContactDef, net_options.touch), .range = "(0, 1)", .fallback = "0.02",
      .help = "share of overlap up to which V is faded in; `hybrid` of tpn-scene takes exact up to there, the "
              "network from twice that"},
-    {"doubt", SCENE_NUMBER, AT(FemContactDef, net_options.doubt), .range = "(0, inf)", .fallback = "0.01",
+    {"doubt", SCENE_NUMBER, AT(FemContactDef, net_options.doubt), .range = "(0, inf)", .fallback = "0.005",
      .help = "hybrid of a geo: relative error of V that its bound may reach; from there on `clip` takes "
              "over, alone from twice that"},
     {"deep", SCENE_NUMBER, AT(FemContactDef, net_options.deep), .range = "(0, 2]", .fallback = "0.3",
