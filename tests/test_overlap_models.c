@@ -47,7 +47,7 @@ static const Demand demands[] = {
     {"tpn-bf16", 100, 1, 0, 1e-7, 0, 0, LACKS_ALL_BUT_BALANCE | LACKS_STATUS | LACKS_BOUND, {0, 0}, 0},
     {"tpn-published", 100, 1, 0, 1e-7, 0, 0, LACKS_ALL_BUT_BALANCE | LACKS_STATUS | LACKS_BOUND, {0, 0}, 0},
     {"tpn-scene", 100, 1, 0, 1e-7, 0, 0, LACKS_ALL_BUT_BALANCE, {0, 0}, 0},
-    {"hybrid", 100, 1, 0.25, 1e-12, 1e-6, 1e-4, 0, {0, 0}, 0},
+    {"hybrid", 100, 1, 0.25, 5e-12, 1e-6, 1e-4, 0, {0, 0}, 0},
     {"exact", 100, 1e-6, 0, 1e-14, 1e-7, 0, 0, {0, 0}, 0},
     {"cgal", 3, 1e-5, 0, 1e-14, 1e-7, 0, 0, {0, 0}, 0},
 };
