@@ -14,6 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "app/cli/ranks.h"
 #include "base/clock.h"
 #include "base/ranks.h"
 #include "base/status.h"
@@ -178,12 +179,7 @@ static void fall_silent(void) {
 }
 
 int dist_mpi_is_wanted(void) {
-  static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"};
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    const char *text = getenv(names[i]);
-    if (text && atoi(text) > 1) return 1;
-  }
-  return 0;
+  return app_ranks_started() > 1;
 }
 
 void dist_mpi_begin_alone(void) {

@@ -16,23 +16,24 @@
 // Set for the ranks that this program starts itself.
 static const char STARTED[] = "TETLAP_RANKS";
 
-// How many processes mpiexec, or a batch system, has started.
-static int started_count(void) {
-  static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"};
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+// The first of these variables that is set, which Open MPI, others and Slurm set; −1: none is.
+static int find_number(const char *const names[3]) {
+  for (int i = 0; i < 3; i++) {
     const char *text = getenv(names[i]);
-    if (text && atoi(text) > 1) return atoi(text);
+    if (text) return atoi(text);
   }
-  return 1;
+  return -1;
+}
+
+int app_ranks_started(void) {
+  static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
+  int count = find_number(names);
+  return count > 1 ? count : 1;
 }
 
 bool app_ranks_is_heard(void) {
-  static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK"};
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    const char *text = getenv(names[i]);
-    if (text) return atoi(text) == 0;
-  }
-  return true;
+  static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID"};
+  return app_ranks_started() == 1 || find_number(names) <= 0;
 }
 
 Status app_ranks_check(const AppCommand *command) {
@@ -43,12 +44,12 @@ Status app_ranks_check(const AppCommand *command) {
         "'%s' runs in one process, and there are %d: call it by itself; over ranks run 'run' and "
         "'resume'",
         command->name, count);
-  if (count > 1 || started_count() == 1 || !command->has_threads) return STATUS_OK;
+  if (count > 1 || app_ranks_started() == 1 || !command->has_threads) return STATUS_OK;
   return status_fail(
       STATUS_USAGE,
       "mpiexec has started this program %d times, and each would do the same: take tetlap-mpi, "
       "as in mpiexec -n %d tetlap-mpi run SCENE, or tetlap run --ranks %d SCENE",
-      started_count(), started_count(), started_count());
+      app_ranks_started(), app_ranks_started(), app_ranks_started());
 }
 
 // The program for ranks, beside this one.

@@ -6,6 +6,9 @@
 #include "app/cli/command.h"
 #include "base/status.h"
 
+// How many processes mpiexec, or a batch system, has started of this program.
+int app_ranks_started(void);
+
 // STATUS_USAGE: several ranks run this, and the command is for one process; or mpiexec has started several
 // times a program of one process.
 Status app_ranks_check(const AppCommand *command);
