@@ -73,7 +73,7 @@ static double solver_bytes(const FemModel *model, FemSolverKind kind) {
   }
 }
 
-// Measured, a beam of 47,000 vertices on one, two and four ranks: what each rank has at its start, of the
+// Measured, a beam of 47,000 vertices on one process and on two ranks: what each rank has at its start, of the
 // whole, and of its share with the levels of BoomerAMG [bytes].
 static const double RANK_BYTES = 5.2e7, WHOLE_BYTES_A_VERTEX = 2440, SHARED_BYTES_AN_UNKNOWN = 2820;
 // Without the solver's.
