@@ -11,6 +11,10 @@
 // shape without elements presses with c d in place of 2 c d: against one, c = 50 E/L. The height of a body of
 // any shape is the smaller of √12 times its least radius of inertia, which is the least edge of a box, and
 // six times its volume over its surface, which is the edge of a cube and follows the wall of what is hollow.
+//
+// It is a rule for a press over a height. Where the contact is far smaller than both bodies, of radius a say,
+// they give way by about p a (1/E_A + 1/E_B) only, and the interface by L/a times 2 % of that: who wants such
+// contacts as exact says contact.stiffness, some L/a times the chosen one.
 #ifndef TETLAP_FEM_MODEL_COMPLIANCE_H
 #define TETLAP_FEM_MODEL_COMPLIANCE_H
 
