@@ -32,13 +32,8 @@ static double fastest(const FemModel *model, const double *v) {
   return speed;
 }
 
-static bool is_pressed(const double *forces, int vertex) {
-  const double *force = forces ? forces + 3 * (size_t)vertex : NULL;
-  return force && (force[0] != 0 || force[1] != 0 || force[2] != 0);
-}
-
 void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model, const double *v,
-                       const double *pressed, double *weights) {
+                       double *weights) {
   int n = model->unknown_count;
   double wanted = tolerance->speed_share > 0 ? tolerance->speed_share * fastest(model, v) : 0;
   for (int b = 0, begin = 0, end; b < model->body_count; b++, begin = end) {
@@ -48,8 +43,7 @@ void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model
     double velocity = fmax(tolerance->velocity, fmin(wanted, most));
     for (int i = begin; i < end; i++) {
       weights[i] = 1 / tolerance->displacement;
-      bool is_stiff = is_pressed(pressed, model->dof_of_unknown[i] / 3);
-      weights[n + i] = 1 / (is_stiff ? FEM_ERROR_PRESSED * velocity : velocity);
+      weights[n + i] = 1 / velocity;
     }
   }
 }

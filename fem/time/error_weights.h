@@ -18,11 +18,8 @@ typedef struct FemErrorTolerance {
   double wave_share;   // of a body's √(E/ρ), at most
 } FemErrorTolerance;
 
-#define FEM_ERROR_PRESSED 2.0
-
-// The weights 1/tolerance of u and v (2 · unknown_count) at the velocities v (unknown_count). `pressed`:
-// contact's forces on vertices (vertex_count, 3), NULL: none is pressed.
+// The weights 1/tolerance of u and v (2 · unknown_count) at the velocities v (unknown_count).
 void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model, const double *v,
-                       const double *pressed, double *weights);
+                       double *weights);
 
 #endif

@@ -24,7 +24,7 @@ enum { MAX_FAILURES = 15 };
 static const double KNOT_RESOLUTION = 1e-12;
 // Forces on a body in contact balance to this share of its weight or, where that is more, to that of what its
 // acceleration takes: what is written of contact is as right.
-static const double BALANCE = 2e-4, BALANCE_OF_INERTIA = 2e-3;
+static const double BALANCE = 2e-4, BALANCE_OF_INERTIA = 5e-3;
 // Nor less than this share of E · edge².
 static const double SMALLEST_FORCE = 1e-10;
 // IDA lengthens a step only where it may double, which saves matrices. Where contact begins and ends steps
@@ -48,7 +48,6 @@ struct FemIntegrator {
   FemIdaSolver *solver;
   FemIdaFailure failure;
   FemNewton newton;
-  double *pressed; // contact's forces at the last residual [N]; NULL: no contact (vertex_count, 3)
   double *unbalanced, *wanted; // of each body: Σ |r| and what it is held against [N]   (body_count)
   N_Vector y, y_dot;           // state that the last step or restart ended at
   N_Vector interpolated;       // what `at` returns; scratch
@@ -72,13 +71,6 @@ static double *values_of(N_Vector vector) {
   return N_VGetArrayPointer(vector);
 }
 
-static void keep_pressed(FemIntegrator *integrator) {
-  void *contact = fem_system_effect(integrator->system, &fem_effect_contact);
-  if (!contact || !integrator->pressed) return;
-  memcpy(integrator->pressed, contact_system_forces(fem_effect_contact_system(contact)),
-         3 * (size_t)integrator->system->model->vertex_count * sizeof *integrator->pressed);
-}
-
 // r = [u̇ − v; M v̇ − f(u, v, t)]
 static int residual(realtype time, N_Vector y, N_Vector y_dot, N_Vector r, void *self) {
   FemIntegrator *integrator = self;
@@ -96,7 +88,6 @@ static int residual(realtype time, N_Vector y, N_Vector y_dot, N_Vector r, void 
     kinematics[i] = u_dot[i] - v[i];
     balance[i] = masses[i] * v_dot[i] - system->forces[system->model->dof_of_unknown[i]];
   }
-  keep_pressed(integrator);
   return 0;
 }
 
@@ -117,8 +108,7 @@ static int find_weights(N_Vector y, N_Vector weights, void *self) {
                                  .velocity = def->velocity_tolerance,
                                  .speed_share = def->speed_share,
                                  .wave_share = def->wave_share};
-  fem_error_weights(&tolerance, integrator->system->model, values_of(y) + integrator->n, integrator->pressed,
-                    values_of(weights));
+  fem_error_weights(&tolerance, integrator->system->model, values_of(y) + integrator->n, values_of(weights));
   return 0;
 }
 
@@ -238,12 +228,7 @@ static Status create(FemIntegrator *integrator, const FemSolverOps *solver) {
   TRY(create_vectors(integrator));
   TRY(fem_ida_solver_create(&integrator->solver, integrator->system, solver,
                             ROUNDING * def->velocity_tolerance, &integrator->failure, integrator->context));
-  const FemModel *model = integrator->system->model;
-  size_t bodies = (size_t)model->body_count;
-  if (fem_system_effect(integrator->system, &fem_effect_contact) && def->speed_share > 0) {
-    integrator->pressed = memory_zeroed(3 * (size_t)model->vertex_count, sizeof *integrator->pressed);
-    if (!integrator->pressed) return status_no_memory("the integrator");
-  }
+  size_t bodies = (size_t)integrator->system->model->body_count;
   integrator->unbalanced = memory_zeroed(bodies, sizeof(double));
   integrator->wanted = memory_zeroed(bodies, sizeof(double));
   if (!integrator->unbalanced || !integrator->wanted) return status_no_memory("the integrator");
@@ -272,7 +257,6 @@ void fem_integrator_destroy(FemIntegrator *integrator) {
   if (!integrator) return;
   if (integrator->ida) IDAFree(&integrator->ida);
   fem_newton_destroy(&integrator->newton);
-  memory_free(integrator->pressed);
   memory_free(integrator->unbalanced);
   memory_free(integrator->wanted);
   fem_ida_solver_destroy(integrator->solver);
@@ -299,7 +283,6 @@ static Status find_derivatives(FemIntegrator *integrator, double time) {
     return status_fail(STATUS_SOLVER, "at t = %g s: a position or velocity is not a number", time);
   fem_system_scatter(system, time, u, v);
   TRY(fem_system_forces(system, time));
-  keep_pressed(integrator);
   for (int i = 0; i < n; i++) {
     u_dot[i] = v[i];
     v_dot[i] = system->forces[system->model->dof_of_unknown[i]] / masses[i];
