@@ -112,3 +112,48 @@ double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem 
   }
   return power;
 }
+
+static bool slips(const ContactStick *stick, int k) {
+  for (int side = 0; side < 2; side++)
+    for (int v = 0; v < 4; v++) {
+      int node = stick->touches[k][side][v].node;
+      if (node >= 0 && stick->nodes[node].slips) return true;
+    }
+  return false;
+}
+
+static Vec3 velocity_at(const ContactStick *stick, const ContactStickPair *pair, int side,
+                        const double *velocities) {
+  Vec3 velocity = {0, 0, 0};
+  for (int v = 0; v < 4; v++)
+    velocity =
+        vec3_add(velocity, vec3_scale(pair->lambda[side][v],
+                                      vec3_at(velocities + 3 * (size_t)stick->tets[pair->tets[side]][v])));
+  return velocity;
+}
+
+// Pull times the velocity of side 0 against side 1 [W].
+static double power_of(const ContactStick *stick, const ContactLayout *layout,
+                       const ContactEvaluation *evaluation, int k, const double *velocities) {
+  const ContactStickPair *pair = &stick->pairs[k];
+  int shape = layout->facings[pair->interface].shape;
+  Vec3 x = vec3_at(evaluation->fields[k].centroid);
+  Vec3 other = shape >= 0 ? contact_shape_velocity(&layout->def.shapes[shape], evaluation->time, x)
+                          : velocity_at(stick, pair, 1, velocities);
+  return vec3_dot(vec3_at(stick->pulls[k]), vec3_sub(velocity_at(stick, pair, 0, velocities), other));
+}
+
+double contact_stick_pairs_turned_power(const ContactStick *stick, ContactSystem *system,
+                                        const double *velocities) {
+  const ContactEvaluation *evaluation;
+  const ContactLayout *layout = contact_system_layout(system);
+  if (contact_system_look(system, &evaluation)) return NAN;
+  const double *v = contact_system_spread(system, velocities);
+  double sum = 0, power = 0;
+  for (int k = 0; k < stick->pair_count; k++) {
+    if (slips(stick, k)) power += power_of(stick, layout, evaluation, k, v);
+    bool is_last = k + 1 == stick->pair_count || stick->pairs[k + 1].interface != stick->pairs[k].interface;
+    if (is_last) sum += fmax(power, 0), power = 0;
+  }
+  return sum;
+}

@@ -29,6 +29,7 @@ typedef struct FemEnergy {
   double applied_work;     // of loads since the start [J]
   double plastic_work;     // dissipated by plasticity since the start [J]
   double friction_work;    // dissipated by friction with a history since the start [J]
+  double turned_power;     // of friction that pushes what slips along, as after a turn within a step [W]
 } FemEnergy;
 
 typedef struct FemEffectOps {

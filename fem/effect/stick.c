@@ -165,6 +165,7 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   energy->contact += stick->law.stored;
   energy->friction_work += stick->law.dissipated + stick->law.spent;
   energy->driven_power += contact_stick_pairs_shape_power(&stick->law, stick->contact);
+  energy->turned_power += contact_stick_pairs_turned_power(&stick->law, stick->contact, state->velocities);
   return STATUS_OK;
 }
 

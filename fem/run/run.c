@@ -25,6 +25,8 @@
 // many times in a row.
 static const double RETRY_FACTOR = 0.2, SHORTEST_RETRY = 2e-6;
 enum { RETRIES_IN_A_ROW = 8 };
+// What friction may give in a step to what slips, as a share of the scene's energy.
+static const double TURNED_SHARE = 3e-4;
 // A scene in motion without contact may begin at rest with long steps. What it gains is judged by the energy
 // of a strain of so many times time.tolerance, which is a length over a body's, at least.
 static const double TOLD_STRAIN = 20;
@@ -245,6 +247,11 @@ static Status judge_energy(FemRunState *run, double time, const FemEnergy *energ
   return STATUS_OK;
 }
 
+// Whether something that slips has turned within the step, and friction has pushed it on since.
+static bool has_turned(const FemRunState *run, double time, const FemEnergy *energy) {
+  return energy->turned_power * (time - run->time) > TURNED_SHARE * run->audit.scale;
+}
+
 // One step: taken, judged, shown, accepted.
 static Status advance(FemRunState *run) {
   double time = run->time;
@@ -266,6 +273,10 @@ static Status advance(FemRunState *run) {
   if (may_shorten(run) && differs_from_motion(run)) {
     run->result->momentum_retries++;
     return take_back(run, retry_step(run, SHORTEST_RETRY), "forces and motion differ");
+  }
+  if (may_shorten(run) && has_turned(run, time, &measures.energy)) {
+    run->result->friction_retries++;
+    return take_back(run, retry_step(run, SHORTEST_RETRY), "friction pushes on what has turned");
   }
   status = take_row(run, time, &measures, &next);
   if (!status) status = fem_run_frames_write_until(run, time);
