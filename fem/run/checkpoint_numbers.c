@@ -80,7 +80,7 @@ static const FemCheckpointNumber numbers[] = {
     RESULT(pattern_layouts, FEM_LONG, "1"),
     RESULT(energy_retries, FEM_LONG, "1"),
     RESULT(momentum_retries, FEM_LONG, "1"),
-    RESULT(friction_retries, FEM_LONG, "1"),
+    RESULT(slip_retries, FEM_LONG, "1"),
     RESULT(relaxation_steps, FEM_LONG, "1"),
     RESULT(halvings, FEM_LONG, "1"),
     RESULT(loose, FEM_LONG, "1"),

@@ -22,8 +22,9 @@
 #include "fem/run/start.h"
 
 // A step that gains energy (fem/time/audit.h) is taken back and tried again with a smaller step; at most so
-// many times in a row.
-static const double RETRY_FACTOR = 0.2, SHORTEST_RETRY = 2e-6;
+// many times in a row, and not with less than the smaller of these shares of the run and of the time in which
+// a wave √(E/ρ) crosses the smallest mean edge: a run may be long.
+static const double RETRY_FACTOR = 0.2, SHORTEST_RETRY = 2e-6, SHORTEST_CROSSING = 1e-3;
 enum { RETRIES_IN_A_ROW = 8 };
 // What friction may give in a step to what slips, as a share of the scene's energy.
 static const double TURNED_SHARE = 3e-4;
@@ -40,18 +41,25 @@ FemSolverKind fem_run_solver(const FemModel *model) {
   return fem_run_choice(model).kind;
 }
 
-// Of a step that is taken back, the one to try: not below SHORTEST_RETRY of the run's end, unless forces
-// could not be evaluated.
+// No step that is taken back is tried again with less than this [s], unless forces could not be evaluated.
+static double shortest_retry(const FemRunState *run) {
+  const FemModel *model = run->model;
+  double fastest = 0;
+  for (int b = 0; b < model->scene->body_count; b++)
+    fastest = fmax(fastest, sqrt(model->bodies[b].material.young / model->bodies[b].material.density));
+  return fmin(SHORTEST_RETRY * model->scene->end, SHORTEST_CROSSING * model->edge / fastest);
+}
+
+// Of a step that is taken back, the one to try.
 static double retry_step(const FemRunState *run, double shortest) {
-  double last = fem_integrator_stats(run->integrator).last_step;
-  return fmax(RETRY_FACTOR * last, shortest * run->model->scene->end);
+  return fmax(RETRY_FACTOR * fem_integrator_stats(run->integrator).last_step, shortest);
 }
 
 // Whether a step that gains energy, or whose forces differ from the motion, may be tried again with a shorter
 // one.
 static bool may_shorten(const FemRunState *run) {
   double last = fem_integrator_stats(run->integrator).last_step;
-  return run->retries < RETRIES_IN_A_ROW && retry_step(run, SHORTEST_RETRY) < last;
+  return run->retries < RETRIES_IN_A_ROW && retry_step(run, shortest_retry(run)) < last;
 }
 
 // Back to the last accepted state with a smaller step.
@@ -268,15 +276,15 @@ static Status advance(FemRunState *run) {
   TRY(status);
   if (is_refused && may_shorten(run)) {
     run->result->energy_retries++;
-    return take_back(run, retry_step(run, SHORTEST_RETRY), "it gains energy");
+    return take_back(run, retry_step(run, shortest_retry(run)), "it gains energy");
   }
   if (may_shorten(run) && differs_from_motion(run)) {
     run->result->momentum_retries++;
-    return take_back(run, retry_step(run, SHORTEST_RETRY), "forces and motion differ");
+    return take_back(run, retry_step(run, shortest_retry(run)), "forces and motion differ");
   }
   if (may_shorten(run) && has_turned(run, time, &measures.energy)) {
-    run->result->friction_retries++;
-    return take_back(run, retry_step(run, SHORTEST_RETRY), "friction pushes on what has turned");
+    run->result->slip_retries++;
+    return take_back(run, retry_step(run, shortest_retry(run)), "friction pushes on what has turned");
   }
   status = take_row(run, time, &measures, &next);
   if (!status) status = fem_run_frames_write_until(run, time);

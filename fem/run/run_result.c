@@ -140,7 +140,7 @@ void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size
   } rows[] = {{"onsets", result->integrator.roots},
               {"steps taken back for their energy", result->energy_retries},
               {"steps taken back for their momentum", result->momentum_retries},
-              {"steps taken back for what slipped and turned", result->friction_retries},
+              {"steps taken back for what slipped and turned", result->slip_retries},
               {"steps without convergence", result->integrator.newton_failures},
               {"failed factorisations", result->solver.failed_factorisations},
               {"enclosed pairs", result->pairs.enclosed},
@@ -184,7 +184,7 @@ static void summarise_counters(const FemRunResult *result, Record *record) {
   record_integer(record, "state_unknowns", result->state_unknowns);
   record_integer(record, "energy_retries", result->energy_retries);
   record_integer(record, "momentum_retries", result->momentum_retries);
-  record_integer(record, "friction_retries", result->friction_retries);
+  record_integer(record, "slip_retries", result->slip_retries);
   record_integer(record, "pattern_layouts", result->pattern_layouts);
   record_integer(record, "matrix_assemblies", result->assemblies);
   record_integer(record, "analyses", result->solver.analyses);

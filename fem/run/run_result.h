@@ -37,7 +37,7 @@ typedef struct FemRunResult {
   long long pattern_layouts;  // how often the matrix pattern was laid out
   long long energy_retries;   // steps taken back because they gained energy
   long long momentum_retries; // … because forces and motion differed
-  long long friction_retries; // … because what slipped had turned within them
+  long long slip_retries; // … because what slipped had turned within them
   FemAudit audit;
   FemAuditBounds energy_bounds;
   FemTrouble trouble;

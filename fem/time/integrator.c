@@ -24,7 +24,7 @@ enum { MAX_FAILURES = 15 };
 static const double KNOT_RESOLUTION = 1e-12;
 // Forces on a body in contact balance to this share of its weight or, where that is more, to that of what its
 // acceleration takes: what is written of contact is as right.
-static const double BALANCE = 2e-4, BALANCE_OF_INERTIA = 5e-3;
+static const double BALANCE = 2e-4, BALANCE_OF_INERTIA = 2e-3;
 // Nor less than this share of E · edge².
 static const double SMALLEST_FORCE = 1e-10;
 // IDA lengthens a step only where it may double, which saves matrices. Where contact begins and ends steps
