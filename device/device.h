@@ -5,10 +5,10 @@
 //   opencl  libOpenCL.so.1, looked for at run time: any GPU that has its driver; pocl on a processor
 //   cuda    libcuda.so.1 and libnvrtc.so, looked for at run time
 //
-// Kernels are text in one dialect that C, OpenCL C and CUDA C++ share (source.h), compiled where they run;
-// the machine code is kept (cache.h). A kernel works in groups of items; an item of one group sees only its
-// group's memory and the device's. Everything is done in the order in which it is asked for. A device belongs
-// to one thread at a time.
+// Kernels are text in one dialect that C, OpenCL C and CUDA C++ share (kernels/source.h), compiled where they
+// run; the machine code is kept (backend/cache.h). A kernel works in groups of items; an item of one group
+// sees only its group's memory and the device's. Everything is done in the order in which it is asked for. A
+// device belongs to one thread at a time.
 //
 // Failures are STATUS_DEVICE (no library, no device, a refused build, a device lost), STATUS_MEMORY, or
 // STATUS_USAGE for a name that is none; the message names the device and the driver's own word.
@@ -19,7 +19,7 @@
 #include <stddef.h>
 
 #include "base/status.h"
-#include "device/source.h"
+#include "device/kernels/source.h"
 
 enum { DEVICE_TEXT = 160, DEVICE_MAX_FOUND = 16, DEVICE_MAX_ARGUMENTS = 24 };
 

@@ -10,9 +10,9 @@
 #include <unistd.h>
 
 #include "base/memory.h"
-#include "device/cache.h"
-#include "device/cuda.h"
-#include "device/overlap.h"
+#include "device/backend/cache.h"
+#include "device/backend/cuda.h"
+#include "device/overlap/overlap.h"
 
 typedef struct Outcome {
   int code;

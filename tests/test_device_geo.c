@@ -11,7 +11,7 @@
 #include "app/bench/overlap/pairs.h"
 #include "base/memory.h"
 #include "datagen/hard.h"
-#include "device/overlap.h"
+#include "device/overlap/overlap.h"
 #include "overlap/geo/model.h"
 
 enum { MAX_DEVICES = 3, COUNT = 2051, MEMBERS = 64, MODELS = 2, QUANTITIES = 3 };

@@ -5,7 +5,7 @@
 #define TETLAP_APP_PARETO_DEVICE_H
 
 #include "app/bench/timer.h"
-#include "device/overlap.h"
+#include "device/overlap/overlap.h"
 
 // Whether the model of that name, with the weights that ship, has kernels.
 bool app_pareto_device_knows(const char *model);

@@ -5,7 +5,7 @@
 #define TETLAP_APP_POSES_POSES_H
 
 #include "app/poses/list.h"
-#include "device/poses.h"
+#include "device/poses/poses.h"
 #include "fem/model/model.h"
 
 enum { APP_POSES_BLOCK = 1024 };

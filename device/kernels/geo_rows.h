@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the kernels of geo keep a pair's numbers between them: rows of a table whose columns are the pairs
-// that intersect (slots). Part of the program's text, and of device/geo.c.
+// that intersect (slots). Part of the program's text, and of device/network/geo.c.
 enum {
   GEO_ROW_SLACK = 0,     // s_k
   GEO_ROW_SCALED = 8,    // ∇s_k, then m: component c of plane k in row 8 c + k

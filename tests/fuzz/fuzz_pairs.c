@@ -20,7 +20,7 @@
 #include "base/random.h"
 #include "base/vec3.h"
 #include "datagen/hard.h"
-#include "device/overlap.h"
+#include "device/overlap/overlap.h"
 #include "net/kernel/kernel.h"
 #include "overlap/clip/lanes.h"
 #include "overlap/geo/gate.h"

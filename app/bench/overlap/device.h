@@ -12,7 +12,7 @@
 #include "app/bench/options.h"
 #include "app/bench/overlap/pairs.h"
 #include "base/status.h"
-#include "device/overlap.h"
+#include "device/overlap/overlap.h"
 
 enum { APP_BENCH_RESIDENCES = 3 };
 extern const char *const app_bench_residences[APP_BENCH_RESIDENCES]; // "device", "indices", "host"

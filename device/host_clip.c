@@ -1,3 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-#define HOST_KERNELS device_host_clip
-#include "device/host_clip.inc"

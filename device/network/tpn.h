@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// A TetrahedronPairNet as the steps and numbers that kernels/tpn.inc carries out: the shipped `tpn` and
+// `tpn-published`, folded. For V rows of the group's memory are given to the matrices of a pass by how long
+// each is needed; for ∇V all stay, with the derivatives behind them.
+#ifndef TETLAP_DEVICE_NETWORK_TPN_H
+#define TETLAP_DEVICE_NETWORK_TPN_H
+
+#include "device/device.h"
+
+// A pass of kernels/tpn.inc; there, PASS_…, STEP_…, VIEW_….
+typedef struct DeviceTpnPass {
+  DeviceMemory sizes, steps, views;
+} DeviceTpnPass;
+
+typedef struct DeviceTpn {
+  DeviceTpnPass volume, gradient;
+  DeviceMemory parameters;
+  double scale; // the network tells so much times V'
+} DeviceTpn;
+
+// `weights`: the name of weights that ship. A zeroed one, and one whose creation failed, can be destroyed.
+// STATUS_INPUT: a network that the kernels cannot carry out, and why.
+Status device_tpn_create(DeviceTpn *tpn, const Device *device, const char *weights);
+void device_tpn_destroy(DeviceTpn *tpn, const Device *device);
+
+// Writes the network's own arguments; how many.
+int device_tpn_arguments(const DeviceTpn *tpn, bool has_gradient, DeviceArgument *arguments);
+
+// Groups that so many pairs take.
+int device_tpn_groups(bool has_gradient, int count);
+
+#endif
