@@ -28,3 +28,19 @@
 #define DEVICE_FMA fma
 #define DEVICE_SQRT sqrt
 #define uchar unsigned char
+INLINED unsigned device_bits(float x) {
+  union {
+    float real;
+    unsigned bits;
+  } word = {.real = x};
+  return word.bits;
+}
+INLINED float device_float(unsigned bits) {
+  union {
+    unsigned bits;
+    float real;
+  } word = {.bits = bits};
+  return word.real;
+}
+#define DEVICE_BITS device_bits
+#define DEVICE_FLOAT device_float

@@ -24,6 +24,12 @@ PIECE(clip, "device/kernels/clip.inc");
 PIECE(pose, "device/kernels/pose.inc");
 PIECE(poses, "device/kernels/poses.inc");
 PIECE(tpn_steps, "device/kernels/tpn_steps.h");
+PIECE(bf16, "device/kernels/bf16.inc");
+PIECE(mma, "device/kernels/mma.inc");
+PIECE(mma_cuda, "device/kernels/mma_cuda.inc");
+PIECE(tpn_normalise, "device/kernels/tpn_normalise.inc");
+PIECE(tpn_mma, "device/kernels/tpn_mma.inc");
+PIECE(tpn_network, "device/kernels/tpn_network.inc");
 PIECE(tpn, "device/kernels/tpn.inc");
 PIECE(clip_constants, "overlap/clip/constants.h");
 PIECE(clip_lanes, "overlap/clip/lanes.inc");
@@ -88,11 +94,22 @@ const DeviceProgram device_program_scalar = {
     .items = 64,
 };
 
+#define TPN_KERNELS                                                                                          \
+  { "tpn_gate", "tpn_volume", "tpn_gradient", "tpn_answer", "tpn_pull_back" }
+
 const DeviceProgram device_program_tpn = {
     .name = "tpn",
     .defines = "#define GROUPS_AT_ONCE 4\n",
-    .pieces = {one, pairs, tpn_steps, tpn},
-    .kernels = {"tpn_volume", "tpn_gradient"},
+    .pieces = {one, pairs, tpn_steps, tpn_normalise, tpn_network, tpn},
+    .kernels = TPN_KERNELS,
+    .items = 64,
+};
+
+const DeviceProgram device_program_tpn_bf16 = {
+    .name = "tpn-bf16",
+    .defines = "#define GROUPS_AT_ONCE 4\n#define TPN_BF16\n",
+    .pieces = {one, pairs, tpn_steps, tpn_normalise, bf16, mma, mma_cuda, tpn_mma, tpn_network, tpn},
+    .kernels = TPN_KERNELS,
     .items = 64,
 };
 
@@ -124,8 +141,9 @@ const DeviceProgram device_program_geo = {
 };
 
 static const DeviceProgram *const programs[] = {
-    &device_program_clip, &device_program_clip32, &device_program_gather,    &device_program_poses,
-    &device_program_tpn,  &device_program_scalar, &device_program_geo_small, &device_program_geo};
+    &device_program_clip,   &device_program_clip32,    &device_program_gather,
+    &device_program_poses,  &device_program_tpn,       &device_program_tpn_bf16,
+    &device_program_scalar, &device_program_geo_small, &device_program_geo};
 
 const DeviceProgram *const *device_source_programs(int *count) {
   *count = sizeof programs / sizeof *programs;

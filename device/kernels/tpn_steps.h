@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a step of a network is for kernels/tpn.inc; part of the program's text, and of device/network/tpn.c.
+// What a step of a network is for kernels/tpn_network.inc; part of the program's text, and of
+// device/network/tpn.c.
 enum { TPN_ITEMS = 64 };
 enum { TPN_PAIRS = 32, TPN_ROOM = 368 };                 // of a group that wants V: pairs, rows of its memory
 enum { TPN_SLOPE_PAIRS = 4, TPN_SLOPE_ROOM = 2000 };     // that wants ∇V, too
@@ -23,10 +24,15 @@ enum {
   STEP_PART_COUNT,
   STEP_INPUT_SLOPE, // derivatives by input and output
   STEP_OUTPUT_SLOPE,
+  STEP_IS_RAW,      // of bf16: a factor is a coordinate, nothing is rounded
+  STEP_PACKED,      // of bf16: the weights as fragments (mma.inc), and their transpose
+  STEP_PACKED_BACK,
   TPN_STEP
 };
 // Of a place that a coordinate goes to: its row, the coordinate, the row of its derivative.
 enum { VIEW_ROW, VIEW_COORDINATE, VIEW_SLOPE, TPN_VIEW };
+// Rows of what is known of a pair: 12 coordinates, then the derivatives by them; what the network tells.
+enum { TPN_ROW_TOLD = 12, TPN_ROWS };
 // Of a pass.
 enum {
   PASS_STEPS,
@@ -35,6 +41,5 @@ enum {
   PASS_OUTPUT_SLOPE,
   PASS_SLOPES,
   PASS_SLOPE_ROWS,
-  PASS_NORMALISATION,
   TPN_PASS
 };

@@ -37,7 +37,7 @@ static Status run_gate(DeviceOverlap *overlap, int first, int end, DeviceQuantit
   TRY(device_overlap_reset(overlap, &geo->slot_count));
   TRY(device_overlap_begin(overlap));
   TRY(launch(overlap, GATE, end - first, arguments, n));
-  TRY(device_overlap_end(overlap));
+  TRY(device_overlap_end_gate(overlap));
   return device_overlap_count(overlap, &geo->slot_count, inside);
 }
 

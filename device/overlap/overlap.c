@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "device/overlap/geo.h"
 #include "device/overlap/stage.h"
+#include "device/overlap/tpn.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 
@@ -19,6 +20,7 @@ typedef struct DeviceOverlapChain {
   const DeviceProgram *programs[DEVICE_OVERLAP_STAGES];
   unsigned flags;      // of what the host answers, besides its own
   const char *weights; // of a TetrahedronPairNet; NULL: there is none
+  bool is_bf16;        // whose factors are rounded
   int feature_count;   // of a network of geo; 0: there is none
   bool has_centroid;
 } DeviceOverlapChain;
@@ -33,6 +35,11 @@ static const DeviceOverlapChain chains[DEVICE_OVERLAP_MODELS] = {
      .programs = {&device_program_tpn},
      .flags = OVERLAP_FALLBACK,
      .weights = "tpn-published"},
+    {.model = "tpn-bf16",
+     .programs = {&device_program_tpn_bf16},
+     .flags = OVERLAP_FALLBACK,
+     .weights = "tpn",
+     .is_bf16 = true},
     {.model = "geo-small",
      .programs = {&device_program_geo_small, &device_program_clip, &device_program_scalar},
      .feature_count = 36,
@@ -42,8 +49,8 @@ static const DeviceOverlapChain chains[DEVICE_OVERLAP_MODELS] = {
      .feature_count = 100,
      .has_centroid = true},
 };
-const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {"clip",          "clip32",    "tpn",
-                                                                  "tpn-published", "geo-small", "geo"};
+const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {
+    "clip", "clip32", "tpn", "tpn-published", "tpn-bf16", "geo-small", "geo"};
 
 static const DeviceOverlapChain *find_chain(const char *model) {
   for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
@@ -61,7 +68,7 @@ static Status create(DeviceOverlap *overlap, const DeviceOverlapChain *chain) {
   for (int k = 0; k < DEVICE_OVERLAP_STAGES && chain->programs[k]; k++, overlap->stage_count++)
     TRY(device_build(device, chain->programs[k], &overlap->stages[k].module, overlap->stages[k].kernels));
   overlap->host = (OverlapModel){.ops = chain->weights ? &overlap_exact_ops : &overlap_clip_scalar_ops};
-  if (chain->weights) TRY(device_tpn_create(&overlap->tpn, device, chain->weights));
+  if (chain->weights) TRY(device_tpn_create(&overlap->tpn, device, chain->weights, chain->is_bf16));
   if (chain->feature_count > 0) {
     TRY(device_geo_create(&overlap->geo, device, chain->model, chain->feature_count));
     overlap->host = overlap->geo.host;
@@ -76,7 +83,7 @@ Status device_overlap_create(DeviceOverlap *overlap, const Device *device, const
   if (!chain)
     return status_fail(STATUS_USAGE,
                        "overlap model '%s' has no kernels for devices; clip, clip32, tpn, tpn-published, "
-                       "geo-small and geo have",
+                       "tpn-bf16, geo-small and geo have",
                        model);
   return create(overlap, chain);
 }
@@ -303,10 +310,11 @@ Status device_overlap_run(DeviceOverlap *overlap, DeviceQuantity quantity) {
     TRY(device_take(device, room, sizeof(double), NULL, &overlap->more));
   }
   overlap->last = quantity;
-  overlap->kernel_s = 0;
+  overlap->kernel_s = overlap->gate_s = 0;
   memset(overlap->handed_on, 0, sizeof overlap->handed_on);
   int left = 0, list = 0;
   TRY(overlap->chain->feature_count > 0 ? device_overlap_geo_run(overlap, quantity, &left)
+      : overlap->chain->weights         ? device_overlap_tpn_run(overlap, quantity, &left)
                                         : run_stages(overlap, quantity, &left, &list));
   return left == 0 ? STATUS_OK : answer_on_host(overlap, &overlap->lists[list], left, quantity);
 }

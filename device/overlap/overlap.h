@@ -5,8 +5,8 @@
 //   clip32  pairs ─► clip32 ─ doubtful ─► clip ─ doubtful ─► clip-scalar ─ too flat ─► the host's
 //   geo     pairs ─► gate to network; close pairs ─► clip ─► clip-scalar (geo.h) ─ no frame ─► the
 //           host's geo; geo-small likewise
-//   tpn     pairs ─► tpn ─ the first is flat ─► the host's exact; without x̄, and flags without BEYOND;
-//           tpn-published likewise
+//   tpn     pairs ─► gate ─► network (overlap/tpn.h) ─ the first is flat ─► the host's exact; without x̄, and
+//           flags without BEYOND; tpn-published and tpn-bf16 likewise
 //
 // What the host answers goes back to the device, so that all answers are there. What a pair gets is to the
 // bit what the model of that name gives on a processor (clip32's doubtful ones: what `clip` gives; geo's to
@@ -17,7 +17,7 @@
 
 #include "device/overlap/state.h"
 
-enum { DEVICE_OVERLAP_MODELS = 6 };
+enum { DEVICE_OVERLAP_MODELS = 7 };
 extern const char *const device_overlap_models[DEVICE_OVERLAP_MODELS]; // names
 
 // A zeroed one, and one whose creation failed, can be destroyed. STATUS_USAGE: no kernels for that model.

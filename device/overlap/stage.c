@@ -3,8 +3,6 @@
 
 #include <string.h>
 
-#include "device/network/tpn.h"
-
 int device_overlap_pairs(const DeviceOverlap *overlap, int count, const DeviceMemory *list,
                          DeviceArgument *arguments) {
   static const DeviceMemory none = {0};
@@ -40,15 +38,11 @@ Status device_overlap_end(DeviceOverlap *overlap) {
   return STATUS_OK;
 }
 
-// Starts the kernel of a stage.
-static Status launch(const DeviceOverlap *overlap, int k, int count, DeviceQuantity quantity,
-                     DeviceArgument *arguments, int n) {
-  const Device *device = overlap->device;
-  const DeviceKernel *kernel = &overlap->stages[k].kernels[quantity];
-  if (!overlap->tpn.parameters.at) return device_launch(device, kernel, count, arguments, n);
-  const bool has_gradient = quantity == DEVICE_GRADIENT;
-  n += device_tpn_arguments(&overlap->tpn, has_gradient, arguments + n);
-  return device->ops->launch(device->self, kernel, device_tpn_groups(has_gradient, count), arguments, n);
+Status device_overlap_end_gate(DeviceOverlap *overlap) {
+  const double before = overlap->kernel_s;
+  TRY(device_overlap_end(overlap));
+  overlap->gate_s += overlap->kernel_s - before;
+  return STATUS_OK;
 }
 
 Status device_overlap_stage(DeviceOverlap *overlap, int k, int count, const DeviceMemory *list,
@@ -62,7 +56,7 @@ Status device_overlap_stage(DeviceOverlap *overlap, int k, int count, const Devi
   if (quantity != DEVICE_VOLUME) arguments[n++] = device_memory(answers->more);
   TRY(device_overlap_reset(overlap, answers->doubtful_count));
   TRY(device_overlap_begin(overlap));
-  TRY(launch(overlap, k, count, quantity, arguments, n));
+  TRY(device_launch(overlap->device, &overlap->stages[k].kernels[quantity], count, arguments, n));
   TRY(device_overlap_end(overlap));
   return device_overlap_count(overlap, answers->doubtful_count, left);
 }

@@ -26,5 +26,7 @@ Status device_overlap_count(const DeviceOverlap *overlap, const DeviceMemory *co
 // Around kernels: adds the time between to kernel_s.
 Status device_overlap_begin(const DeviceOverlap *overlap);
 Status device_overlap_end(DeviceOverlap *overlap);
+// Likewise, and to gate_s.
+Status device_overlap_end_gate(DeviceOverlap *overlap);
 
 #endif

@@ -205,8 +205,8 @@ static Status measure_sets(Bench *bench) {
   if (bench->count == 0)
     return status_fail(
         STATUS_USAGE,
-        "a device answers V and V+grad of clip, clip32, tpn, tpn-published, geo-small and geo, V+centroid of "
-        "all but the tpns: nothing to measure");
+        "a device answers V and V+grad of clip, clip32, tpn, tpn-published, tpn-bf16, geo-small and geo, "
+        "V+centroid of all but the tpns: nothing to measure");
   return print(bench);
 }
 
