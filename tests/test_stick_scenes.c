@@ -150,6 +150,11 @@ START_TEST(what_slides_uphill_turns_where_it_stops) {
     scene_run_from(&run, NULL);
     ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
     end[k] = centre(&run, run.result.frame_count - 1);
+    // It went up, turned, slipped down past where it had been, and friction took energy all the while.
+    double start = centre(&run, 0).x, high = centre(&run, 1).x;
+    ck_assert_double_lt(high, start - 0.01);
+    ck_assert_double_gt(end[k].x, high + 0.01);
+    ck_assert_double_gt(run.result.audit.dissipated, 0);
     length = run.model.length;
     scene_close(&run);
   }

@@ -67,6 +67,24 @@ static bool creeps(const FemSceneDef *scene) {
          fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY;
 }
 
+static double wave_of(const FemMaterial *material) {
+  return sqrt(material->young / material->density);
+}
+
+double fem_model_slowest_wave(const FemModel *model) {
+  double slowest = INFINITY;
+  for (int b = 0; b < model->scene->body_count; b++)
+    slowest = fmin(slowest, wave_of(&model->scene->bodies[b].material));
+  return slowest;
+}
+
+double fem_model_fastest_wave(const FemModel *model) {
+  double fastest = 0;
+  for (int b = 0; b < model->scene->body_count; b++)
+    fastest = fmax(fastest, wave_of(&model->scene->bodies[b].material));
+  return fastest;
+}
+
 double fem_model_speed_share(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
   if (scene->velocity_tolerance > 0 || !scene->contact.is_on || creeps(scene)) return 0;
@@ -90,8 +108,7 @@ static double expected_speed(const FemModel *model) {
 }
 
 // Without contact nothing strikes, and what shakes a body are waves that need not be followed: bending needs
-// fine positions, not fine velocities. A beam let go takes 2290 steps for 25,822 at the same error
-// (docs/time.md).
+// fine positions, not fine velocities (docs/time.md).
 static const double POSITION_SHARE_WITHOUT_CONTACT = 0.03;
 
 static bool is_free(const FemSceneDef *scene) {
@@ -106,9 +123,7 @@ double fem_model_position_tolerance(const FemModel *model) {
 double fem_model_velocity_tolerance(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
   if (scene->velocity_tolerance > 0) return scene->velocity_tolerance;
-  double slowest = INFINITY;
-  for (int b = 0; b < scene->body_count; b++)
-    slowest = fmin(slowest, sqrt(scene->bodies[b].material.young / scene->bodies[b].material.density));
+  double slowest = fem_model_slowest_wave(model);
   double share = has_self_friction(scene) ? VELOCITY_SHARE_OF_SELF_FRICTION : VELOCITY_SHARE;
   double chosen = scene->tolerance * fmin(share * slowest, MOTION_SHARE * expected_speed(model));
   if (is_free(scene)) return chosen / VELOCITY_SHARE;
@@ -177,7 +192,7 @@ double fem_model_rest_time(const FemModel *model) {
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     double diagonal = sqrt(3) * cbrt(body->mass / body->material.density);
-    longest = fmax(longest, diagonal / sqrt(body->material.young / body->material.density));
+    longest = fmax(longest, diagonal / wave_of(&body->material));
   }
   return REST_CROSSINGS * longest;
 }
@@ -185,11 +200,7 @@ double fem_model_rest_time(const FemModel *model) {
 // A body that is wrong by the tolerance after a wave has run through it.
 double fem_model_rest_speed(const FemModel *model) {
   double given = model->scene->contact.rest_speed;
-  double slowest = INFINITY;
-  if (given > 0) return given;
-  for (int b = 0; b < model->scene->body_count; b++)
-    slowest = fmin(slowest, sqrt(model->bodies[b].material.young / model->bodies[b].material.density));
-  return model->scene->tolerance * slowest;
+  return given > 0 ? given : model->scene->tolerance * fem_model_slowest_wave(model);
 }
 
 // Less would be asked in vain: the integrator's own errors accelerate a body that lies still by some

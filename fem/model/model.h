@@ -83,6 +83,10 @@ double fem_model_position_tolerance(const FemModel *model);
 // without contact 33 times as much.
 double fem_model_velocity_tolerance(const FemModel *model);
 
+// Slowest and fastest √(E/ρ) of the scene's bodies [m/s]: a stretched bar's waves.
+double fem_model_slowest_wave(const FemModel *model);
+double fem_model_fastest_wave(const FemModel *model);
+
 // E V ε², the energy of a strain in all bodies, twice if it were uniaxial [J].
 double fem_model_strain_energy(const FemModel *model, double strain);
 

@@ -44,10 +44,8 @@ FemSolverKind fem_run_solver(const FemModel *model) {
 // No step that is taken back is tried again with less than this [s], unless forces could not be evaluated.
 static double shortest_retry(const FemRunState *run) {
   const FemModel *model = run->model;
-  double fastest = 0;
-  for (int b = 0; b < model->scene->body_count; b++)
-    fastest = fmax(fastest, sqrt(model->bodies[b].material.young / model->bodies[b].material.density));
-  return fmin(SHORTEST_RETRY * model->scene->end, SHORTEST_CROSSING * model->edge / fastest);
+  return fmin(SHORTEST_RETRY * model->scene->end,
+              SHORTEST_CROSSING * model->edge / fem_model_fastest_wave(model));
 }
 
 // Of a step that is taken back, the one to try.
