@@ -6,7 +6,7 @@
 #include <string.h>
 
 typedef struct Told {
-  double force, give, rim, stiffness_for;
+  double force, give, rim, stiffness_for, by_tolerance, tolerance_for;
 } Told;
 
 // Of the pair that presses most in that scene, at that stiffness.
@@ -26,7 +26,9 @@ static Told run_with(const char *path, const char *const *overrides, double stif
   Told told = {.force = record_find_number(contact, "force_max_N"),
                .give = record_find_number(estimate, "give"),
                .rim = record_find_number(estimate, "rim"),
-               .stiffness_for = record_find_number(estimate, "stiffness_for_1_percent")};
+               .stiffness_for = record_find_number(estimate, "stiffness_for_1_percent"),
+               .by_tolerance = record_find_number(estimate, "tolerance_over_depth"),
+               .tolerance_for = record_find_number(estimate, "tolerance_for_1_percent")};
   scene_close(&run);
   return told;
 }
@@ -106,6 +108,24 @@ START_TEST(no_stiffness_is_advised_for_a_depth_that_no_step_can_tell) {
 }
 END_TEST
 
+// The peak force of a drop errs by three times the estimate at most (docs/contact.md), the estimate falls with the
+// tolerance, and the tolerance that it asks for leads to a hundredth.
+START_TEST(the_tolerance_bounds_the_error_of_a_peak_force) {
+  const char *path = TETLAP_SOURCE_DIR "/examples/01_drop.yaml";
+  Told coarse = run_with(path, (const char *const[]){"output.frames=1", "time.tolerance=1e-3", NULL}, 2.5e7),
+       fine = run_with(path, (const char *const[]){"output.frames=1", "time.tolerance=1e-5", NULL}, 2.5e7);
+  double error = fabs(coarse.force / fine.force - 1);
+  ck_assert_double_gt(error, 1e-3);
+  ck_assert_double_lt(error, 3 * coarse.by_tolerance);
+  ck_assert_near(fine.by_tolerance, 0.01 * coarse.by_tolerance, 0.3 * fine.by_tolerance);
+  char wanted[64];
+  snprintf(wanted, sizeof wanted, "time.tolerance=%g", coarse.tolerance_for);
+  Told advised = run_with(path, (const char *const[]){"output.frames=1", wanted, NULL}, 2.5e7);
+  ck_assert_double_lt(advised.by_tolerance, 0.013);
+  ck_assert_double_lt(fabs(advised.force / fine.force - 1), 0.03);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("accuracy");
   tcase_add_test(cases, the_give_of_two_blocks_in_a_press);
@@ -114,5 +134,6 @@ int main(void) {
   tcase_add_test(cases, the_advice_leads_to_a_hundredth);
   tcase_add_test(cases, what_gives_way_after_a_blow_counts);
   tcase_add_test(cases, no_stiffness_is_advised_for_a_depth_that_no_step_can_tell);
+  tcase_add_test(cases, the_tolerance_bounds_the_error_of_a_peak_force);
   return suite_run("accuracy", cases, 60);
 }

@@ -305,7 +305,10 @@ Status fem_integrator_restart(FemIntegrator *integrator, double time, const doub
   bool is_ok = IDAReInit(ida, time, integrator->y, integrator->y_dot) == IDA_SUCCESS &&
                IDASetInitStep(ida, step) == IDA_SUCCESS;
   if (!is_ok) return status_fail(STATUS_SOLVER, "IDA could not be restarted at t = %g s", time);
-  if (integrator->has_steps && time < integrator->time) fem_stall_take_back(stall_of(integrator));
+  if (integrator->has_steps && time < integrator->time) { // back over the last step
+    fem_stall_take_back(stall_of(integrator));
+    stats.steps--;
+  }
   integrator->before = stats;
   integrator->restart_count += integrator->is_started;
   integrator->time = integrator->step_end = time;

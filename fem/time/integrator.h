@@ -30,7 +30,8 @@ typedef struct FemIntegratorDef {
   FemStall *stall;                         // of the run, borrowed; NULL: of this integrator alone, from t = 0
 } FemIntegratorDef;
 
-// Counted over all restarts.
+// Counted over all restarts. A step that is taken back, by a restart at an earlier time, is no step, but its
+// evaluations count.
 typedef struct FemIntegratorStats {
   long long steps, setups, newton_iterations, error_test_failures;
   long long newton_failures; // steps tried again because Newton, a solver or a force asked for it
