@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#include "fem/time/statics.h"
+#include "fem/statics/statics.h"
 
 static void run_text(SceneRun *run, const char *text) {
   scene_open_text(run, text);

@@ -8,9 +8,9 @@
 #include "fem/run/checkpoint.h"
 #include "fem/run/run_options.h"
 #include "fem/run/run_result.h"
+#include "fem/statics/statics.h"
 #include "fem/time/integrator.h"
 #include "fem/time/stall.h"
-#include "fem/time/statics.h"
 
 typedef struct FemRunState {
   const FemModel *given;        // borrowed

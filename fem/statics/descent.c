@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The line search is that of Matthies and Strang (1979): a step d from u is as long as f(u + s d)·d has at
 // most a share of f(u)·d. It needs no potential, which friction does not have.
-#include "fem/time/descent.h"
+#include "fem/statics/descent.h"
 
 #include <math.h>
 #include <string.h>

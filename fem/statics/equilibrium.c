@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/time/equilibrium.h"
+#include "fem/statics/equilibrium.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #ifndef TETLAP_FEM_TIME_DESCENT_H
 #define TETLAP_FEM_TIME_DESCENT_H
 
-#include "fem/time/equilibrium.h"
+#include "fem/statics/equilibrium.h"
 
 // From the iteration FEM_DESCENT_PATIENCE on FEM_DESCENT_TOLERABLE times the tolerance will do: forces of
 // contact may be no more exact.

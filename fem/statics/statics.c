@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/time/statics.h"
+#include "fem/statics/statics.h"
 
 #include <float.h>
 #include <math.h>
@@ -9,8 +9,8 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "fem/effect/gravity.h"
-#include "fem/time/descent.h"
-#include "fem/time/kinsol.h"
+#include "fem/statics/descent.h"
+#include "fem/statics/kinsol.h"
 
 // Equilibrium: this share of the largest force met, and of E · edge² at least.
 static const double TOLERANCE = 1e-8, SMALLEST_SCALE = 1e-9;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/time/kinsol.h"
+#include "fem/statics/kinsol.h"
 
 #include <kinsol/kinsol.h>
 #include <nvector/nvector_serial.h>

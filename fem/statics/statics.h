@@ -2,7 +2,7 @@
 // Static scenes: the load (or a driven vertex) goes on in steps of `time`, which is no more than a parameter,
 // and every step ends in equilibrium.
 //
-//   Newton (KINSOL; with contact fem/time/descent.h) from the last equilibrium ── ok ──► accept
+//   Newton (KINSOL; with contact fem/statics/descent.h) from the last equilibrium ── ok ──► accept
 //        │ no
 //   relaxation: (K + s M) δ = f, s falling with the force ──► Newton ── ok ──► accept
 //        │ no
@@ -14,7 +14,7 @@
 #ifndef TETLAP_FEM_TIME_STATICS_H
 #define TETLAP_FEM_TIME_STATICS_H
 
-#include "fem/time/equilibrium.h"
+#include "fem/statics/equilibrium.h"
 
 typedef struct FemStatics {
   FemEquilibrium equilibrium;

@@ -2,11 +2,11 @@
 // SUNDIALS KINSOL: Newton's method on f(u, t) = 0, a fresh factorisation in every iteration; first with full
 // steps, then, where these do not converge, with a line search. The order matters: the line search lowers
 // |f|, and where a slender body turns a full step stretches it first, |f| grows tenfold, and the next step is
-// there. It converges from near an equilibrium; fem/time/statics.h brings it there.
+// there. It converges from near an equilibrium; fem/statics/statics.h brings it there.
 #ifndef TETLAP_FEM_TIME_KINSOL_H
 #define TETLAP_FEM_TIME_KINSOL_H
 
-#include "fem/time/equilibrium.h"
+#include "fem/statics/equilibrium.h"
 
 // Moves u (unknown_count) until the largest force on an unknown is below `tolerance` [N]; `length` [m] is the
 // scale of displacements. `*iterations` grows by those taken. RETRY: not reached, u is then undefined; the
