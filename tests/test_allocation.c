@@ -21,7 +21,7 @@
 #include "datagen/run.h"
 #include "fem/mesh/mesh.h"
 #include "fem/model/build.h"
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 #include "fem/run/run.h"
 #include "overlap/model.h"
 #include "suite.h"

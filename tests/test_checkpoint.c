@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The file of a checkpoint: it reads back to the last bit, appears whole or not at all, and damage of any
 // kind is refused by name.
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 
 #include <signal.h>
 #include <stdio.h>

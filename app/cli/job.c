@@ -20,7 +20,7 @@
 #include "base/memory.h"
 #include "fem/effect/contact.h"
 #include "fem/model/build.h"
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 #include "overlap/model.h"
 #include "overlap/weights.h"
 

@@ -14,7 +14,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/temporary.h"
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 
 // run->extra
 enum { STOPPED, KILLED, STOPPED_AT, KILLED_AT, STOPPED_DIFFERENCE, KILLED_DIFFERENCE };

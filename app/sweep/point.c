@@ -15,7 +15,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "fem/model/build.h"
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 
 int app_sweep_point_count(const AppSweepBase *base) {
   int count = 1;

@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "fem/run/restart.h"
+#include "fem/run/checkpoint/restart.h"
 
 static Status write_checkpoint(FemRunState *run) {
   char *path = file_join(run->options->directory, FEM_CHECKPOINT_FILE);

@@ -5,7 +5,7 @@
 #define TETLAP_FEM_RUN_RUN_STATE_H
 
 #include "fem/output/recorder.h"
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 #include "fem/run/run_options.h"
 #include "fem/run/run_result.h"
 #include "fem/statics/statics.h"

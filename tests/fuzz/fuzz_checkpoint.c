@@ -9,7 +9,7 @@
 
 #include "base/digest.h"
 #include "base/memory.h"
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 #include "hdf5_edit.h"
 #include "target.h"
 
@@ -48,7 +48,7 @@ static const FuzzImage *template_image(void) {
   return &image;
 }
 
-// The head of a file in the form that fem/run/checkpoint_file.c writes; a changed form is seen by what the
+// The head of a file in the form that fem/run/checkpoint/checkpoint_file.c writes; a changed form is seen by what the
 // good file becomes without edits (seed 0).
 static const char *put_file(const FuzzImage *good, const FuzzImage *image) {
   char digest[DIGEST_TEXT];

@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 
 enum { KEY_STRICT = 256, KEY_RANKS };
 

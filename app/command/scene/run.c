@@ -16,7 +16,7 @@
 #include "base/ranks.h"
 #include "datagen/capture.h"
 #include "fem/effect/contact.h"
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 
 enum { KEY_CAPTURE = 256, KEY_STRICT, KEY_RANKS };
 

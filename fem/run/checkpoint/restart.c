@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/restart.h"
+#include "fem/run/checkpoint/restart.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #define TETLAP_FEM_RUN_RESTART_H
 
 #include "fem/effect/system.h"
-#include "fem/run/checkpoint.h"
+#include "fem/run/checkpoint/checkpoint.h"
 
 // The checkpoint with which a run begins that is not resumed: initial velocities, and displacements
 // (vertex_count, 3) unless NULL.
