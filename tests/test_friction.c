@@ -10,7 +10,7 @@
 
 #include "base/vec3.h"
 #include "contact/friction/friction.h"
-#include "fem/output/vtu_read.h"
+#include "fem/output/vtk/vtu_read.h"
 
 static const double MU = 0.4, SLIP_SPEED = 1e-3;
 

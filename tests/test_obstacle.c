@@ -10,9 +10,9 @@
 #include "base/vec3.h"
 #include "contact/shape/shape.h"
 #include "fem/model/obstacle.h"
-#include "fem/output/obstacle_surface.h"
-#include "fem/output/pvd.h"
-#include "fem/output/vtu_read.h"
+#include "fem/output/vtk/obstacle_surface.h"
+#include "fem/output/vtk/pvd.h"
+#include "fem/output/vtk/vtu_read.h"
 
 enum { STANDING, MOVING, SET_COUNT };
 

@@ -14,9 +14,9 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/output/base64.h"
-#include "fem/output/pvd.h"
-#include "fem/output/vtu.h"
+#include "fem/output/vtk/base64.h"
+#include "fem/output/vtk/pvd.h"
+#include "fem/output/vtk/vtu.h"
 
 enum { FRAMES = 3, VERTICES = 5, TETS = 2 };
 

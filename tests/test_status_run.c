@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "fem/output/vtu_read.h"
+#include "fem/output/vtk/vtu_read.h"
 #include "scene.h"
 
 enum { FRAMES = 5 };

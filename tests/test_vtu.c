@@ -15,10 +15,10 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/output/base64.h"
-#include "fem/output/pvd.h"
-#include "fem/output/vtu.h"
-#include "fem/output/vtu_read.h"
+#include "fem/output/vtk/base64.h"
+#include "fem/output/vtk/pvd.h"
+#include "fem/output/vtk/vtu.h"
+#include "fem/output/vtk/vtu_read.h"
 
 static char path[64];
 

@@ -6,7 +6,7 @@
 
 #include "base/deflate.h"
 #include "base/memory.h"
-#include "fem/output/base64.h"
+#include "fem/output/vtk/base64.h"
 
 AppReportScale app_report_codes_scale(const double *values, size_t count, size_t stride) {
   AppReportScale scale = {INFINITY, -INFINITY};

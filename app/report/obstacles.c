@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "fem/output/vtu_read.h"
+#include "fem/output/vtk/vtu_read.h"
 
 // The whole numbers of the cells under that name; NULL: there are none.
 static const double *find_numbers(const FemVtuContent *content, const char *name) {

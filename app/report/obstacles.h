@@ -4,7 +4,7 @@
 #define TETLAP_APP_REPORT_OBSTACLES_H
 
 #include "base/status.h"
-#include "fem/output/pvd.h"
+#include "fem/output/vtk/pvd.h"
 
 // One part. What stands has a single row, which holds for all frames.
 typedef struct AppReportObstacles {

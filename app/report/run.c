@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "fem/output/pvd.h"
+#include "fem/output/vtk/pvd.h"
 
 // Whole lines: of a run that goes on, or was killed, the last one may lack its end.
 static Status read_history(AppReportRun *run) {

@@ -9,7 +9,7 @@
 #include "app/report/obstacles.h"
 #include "base/record.h"
 #include "base/status.h"
-#include "fem/output/vtu_read.h"
+#include "fem/output/vtk/vtu_read.h"
 
 // A scalar on vertices or tetrahedra in every frame: an array of the frames, a vector's length, or of a
 // symmetric tensor the pressure, minus a third of its trace.

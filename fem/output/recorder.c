@@ -14,9 +14,9 @@
 #include "fem/effect/plasticity.h"
 #include "fem/effect/volume_effect.h"
 #include "fem/output/columns.h"
-#include "fem/output/pvd.h"
 #include "fem/output/reactions.h"
-#include "fem/output/vtu.h"
+#include "fem/output/vtk/pvd.h"
+#include "fem/output/vtk/vtu.h"
 
 static bool has_column(const FemRecorder *recorder, int column) {
   return fem_columns_is_wanted(column, recorder->system, recorder->has_status);

@@ -10,9 +10,9 @@
 #include "fem/output/columns.h"
 #include "fem/output/forces.h"
 #include "fem/output/history.h"
-#include "fem/output/obstacle_frames.h"
 #include "fem/output/probes.h"
 #include "fem/output/trouble.h"
+#include "fem/output/vtk/obstacle_frames.h"
 #include "fem/time/audit.h"
 
 typedef struct FemRecorder {

@@ -16,8 +16,8 @@
 #include "fem/mesh/reader/header.h"
 #include "fem/mesh/reader/tetgen.h"
 #include "fem/mesh/validate.h"
-#include "fem/output/vtu.h"
-#include "fem/output/vtu_read.h"
+#include "fem/output/vtk/vtu.h"
+#include "fem/output/vtk/vtu_read.h"
 #include "target.h"
 
 static void check_refusal(Status status) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/output/base64.h"
+#include "fem/output/vtk/base64.h"
 
 #include <string.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/output/obstacle_frames.h"
+#include "fem/output/vtk/obstacle_frames.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #include "base/memory.h"
-#include "fem/output/pvd.h"
+#include "fem/output/vtk/pvd.h"
 
 static const char STANDING_FILE[] = "obstacles.vtu";
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/output/obstacle_surface.h"
+#include "fem/output/vtk/obstacle_surface.h"
 
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/model/drive.h"
 #include "fem/model/obstacle.h"
-#include "fem/output/vtu.h"
+#include "fem/output/vtk/vtu.h"
 
 // Triangles along a quarter of a great circle. They lie 0.35 % of the radius within the ball at most.
 enum { BALL_ROWS = 16 };

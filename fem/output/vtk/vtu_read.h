@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames read back: the form that fem/output/vtu.h writes (zlib blocks as base64 text in their elements), no
+// Frames read back: the form that fem/output/vtk/vtu.h writes (zlib blocks as base64 text in their elements), no
 // other of VTK's.
 #ifndef TETLAP_FEM_OUTPUT_VTU_READ_H
 #define TETLAP_FEM_OUTPUT_VTU_READ_H
@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #include "base/status.h"
-#include "fem/output/vtu.h"
+#include "fem/output/vtk/vtu.h"
 
 enum { FEM_VTU_MAX_FIELDS = 48, FEM_VTU_MAX_NAME = 64 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/output/vtu_read.h"
+#include "fem/output/vtk/vtu_read.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -9,7 +9,7 @@
 #include "base/deflate.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "fem/output/base64.h"
+#include "fem/output/vtk/base64.h"
 
 enum { MAX_COMPONENTS = 9, MAX_COUNT = 1 << 28 };
 

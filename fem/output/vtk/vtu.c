@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/output/vtu.h"
+#include "fem/output/vtk/vtu.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -8,8 +8,8 @@
 #include "base/deflate.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "fem/output/base64.h"
-#include "fem/output/xml.h"
+#include "fem/output/vtk/base64.h"
+#include "fem/output/vtk/xml.h"
 
 enum {
   BLOCK_BYTES = 32768, // uncompressed size of a block, VTK's own default

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/output/pvd.h"
+#include "fem/output/vtk/pvd.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "fem/output/xml.h"
+#include "fem/output/vtk/xml.h"
 
 Status fem_pvd_begin(FileWriter *list, const char *path) {
   TRY(file_begin(list, path));

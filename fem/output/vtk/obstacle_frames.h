@@ -5,7 +5,7 @@
 #define TETLAP_FEM_OUTPUT_OBSTACLE_FRAMES_H
 
 #include "base/file.h"
-#include "fem/output/obstacle_surface.h"
+#include "fem/output/vtk/obstacle_surface.h"
 
 typedef struct FemObstacleFrames {
   FemObstacleSurface standing, moving;
