@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/effect/assembly.h"
+#include "fem/effect/elements/assembly.h"
 #include "fem/model/build.h"
 
 // Two boxes of different law and damping, the first with a fixed face, and an obstacle that must stay silent.

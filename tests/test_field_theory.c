@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "curved.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/effect/effect.h"
 #include "fem/model/build.h"
 #include "scene.h"

@@ -2,7 +2,7 @@
 // Area of contact and centre of pressure of each two that press each other.
 #include "scene.h"
 
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 
 typedef struct Pressed {
   SceneRun run;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // fem/lanes on every instruction set that this processor has, against the formulas for one element;
-// and fem/effect/packs, the order in which elements come to them.
+// and fem/effect/elements/packs, the order in which elements come to them.
 #include "suite.h"
 
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/effect/assembly.h"
-#include "fem/effect/packs.h"
+#include "fem/effect/elements/assembly.h"
+#include "fem/effect/elements/packs.h"
 #include "fem/lanes/lanes.h"
 #include "fem/model/build.h"
 

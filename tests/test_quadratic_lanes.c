@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/effect/packs.h"
+#include "fem/effect/elements/packs.h"
 #include "fem/element/quadratic.h"
 #include "fem/lanes/lanes.h"
 #include "fem/model/build.h"

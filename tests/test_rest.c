@@ -5,8 +5,8 @@
 #include "scene.h"
 
 #include "base/vec3.h"
-#include "fem/effect/contact.h"
-#include "fem/effect/rest.h"
+#include "fem/effect/contact/contact.h"
+#include "fem/effect/contact/rest.h"
 #include "fem/model/drive.h"
 
 // ---- contact_system_hold

@@ -6,7 +6,7 @@
 #include "base/record.h"
 #include "base/vec3.h"
 #include "contact/friction/stick.h"
-#include "fem/effect/stick.h"
+#include "fem/effect/contact/stick.h"
 
 // Three blocks on each other, meshed differently.
 static const char *const STACK =

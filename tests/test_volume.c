@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/effect/volume.h"
+#include "fem/effect/elements/volume.h"
 
 static const char *const laws[] = {"linear", "corotational", "stvk", "neo_hookean"};
 enum { LAW_COUNT = sizeof laws / sizeof *laws };

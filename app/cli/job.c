@@ -18,7 +18,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/model/build.h"
 #include "fem/run/checkpoint/checkpoint.h"
 #include "overlap/model.h"

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 
 int app_comparison_common_frames(const FemRunResult *a, const FemRunResult *b) {
   return a->frame_count < b->frame_count ? a->frame_count : b->frame_count;

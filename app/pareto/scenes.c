@@ -10,7 +10,7 @@
 #include "app/scene/overlap.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 
 enum { MAX_OVERRIDES = 64 };
 

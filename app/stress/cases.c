@@ -10,7 +10,7 @@
 #include "app/stress/slabs.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 
 static const double G = 9.81;
 

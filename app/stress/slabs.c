@@ -6,7 +6,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 
 // Elements through a slab's thickness; positions a tenth of the lower slab's element apart.
 enum { LAYERS = 2, SLIDES = 10 };

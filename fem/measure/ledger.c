@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "contact/evaluation.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/model/compliance.h"
 
 // The system's own: it has another one once it began anew from a checkpoint.

@@ -18,7 +18,7 @@ typedef struct FemModelBody {
   int tet_begin, tet_end;
   FemMaterial material; // obstacles: zeroed
   FemMaterial local;    // what an element resists with by itself; the rest of λ is the vertices'
-                        // (fem/effect/volume.h) or the mean's of a quadratic one (fem/element/quadratic.h)
+                        // (fem/effect/elements/volume.h) or the mean's of a quadratic one (fem/element/quadratic.h)
   double bulk;          // that rest, of quadratic ones; else 0 [Pa]
   int quadratic_begin, quadratic_end;
   FemElementKind element;
@@ -107,7 +107,7 @@ double fem_model_det(const FemModel *model, int tet, const double *positions);
 // Cauchy stress [Pa] of a tetrahedron of a body by its law alone.
 void fem_model_stress(const FemModel *model, int tet, const double *positions, double stress[6]);
 
-// What counts as rest (fem/effect/rest.h) [m/s], [m/s²], [s]: the scene's, or chosen.
+// What counts as rest (fem/effect/contact/rest.h) [m/s], [m/s²], [s]: the scene's, or chosen.
 double fem_model_rest_speed(const FemModel *model);
 double fem_model_rest_acceleration(const FemModel *model);
 double fem_model_rest_time(const FemModel *model);

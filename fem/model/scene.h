@@ -74,7 +74,7 @@ typedef struct FemLoadDef {
 // How a body's tetrahedra resist. `nodal` and `quadratic` do not lock as ν → ½.
 typedef enum FemElementKind {
   FEM_ELEMENT_LINEAR,
-  FEM_ELEMENT_NODAL,     // linear, the volume change averaged at the vertices (fem/effect/volume.h)
+  FEM_ELEMENT_NODAL,     // linear, the volume change averaged at the vertices (fem/effect/elements/volume.h)
   FEM_ELEMENT_QUADRATIC, // ten nodes (fem/element/quadratic.h)
 } FemElementKind;
 

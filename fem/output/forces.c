@@ -6,10 +6,10 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/contact.h"
-#include "fem/effect/friction.h"
-#include "fem/effect/stick.h"
-#include "fem/effect/viscosity.h"
+#include "fem/effect/contact/contact.h"
+#include "fem/effect/contact/friction.h"
+#include "fem/effect/contact/stick.h"
+#include "fem/effect/contact/viscosity.h"
 
 bool fem_forces_has_friction(const FemSystem *system) {
   return fem_system_effect(system, &fem_effect_friction) || fem_system_effect(system, &fem_effect_stick);

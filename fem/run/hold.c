@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/run/hold.h"
 
-#include "fem/effect/rest.h"
+#include "fem/effect/contact/rest.h"
 #include "fem/model/numbering.h"
 
 void fem_hold_gather(const FemSystem *system, double *u, double *v) {

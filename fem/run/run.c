@@ -10,7 +10,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/ranks.h"
-#include "fem/effect/rest.h"
+#include "fem/effect/contact/rest.h"
 #include "fem/model/formulas.h"
 #include "fem/model/numbering.h"
 #include "fem/run/checkpoint/restart.h"

@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 
 static void keep_frame(FemRunState *run, double time) {
   FemRunResult *result = run->result;

@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 
 // Steps and order are those of the part.
 void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegratorStats *part) {

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 
 // Overlaps below this share of an element's cube are rounding of places.
 static const double ROUNDING_SHARE = 1e-6;

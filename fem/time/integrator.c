@@ -10,7 +10,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/time/error_weights.h"
 #include "fem/time/ida_solver.h"
 #include "fem/time/newton.h"

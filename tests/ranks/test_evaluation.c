@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "case.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/effect/system.h"
 #include "fem/model/build.h"
 

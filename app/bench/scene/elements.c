@@ -11,7 +11,7 @@
 #include "app/scene/read.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "fem/effect/packs.h"
+#include "fem/effect/elements/packs.h"
 #include "fem/model/build.h"
 
 enum { TEXT_SIZE = 1024, KINDS = 2, MATERIALS = FEM_MATERIAL_LAW_COUNT + 1 };

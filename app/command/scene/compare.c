@@ -14,7 +14,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 
 typedef struct CompareOptions {
   AppJobOptions job;

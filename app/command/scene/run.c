@@ -15,7 +15,7 @@
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "datagen/capture.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/run/checkpoint/checkpoint.h"
 
 enum { KEY_CAPTURE = 256, KEY_STRICT, KEY_RANKS };

@@ -2,7 +2,7 @@
 // Stiffness-proportional damping of the strain rate; rigid motion goes undamped (fem/element/element.h). Only
 // bodies with β > 0 or a viscosity take part.
 #include "base/memory.h"
-#include "fem/effect/assembly.h"
+#include "fem/effect/elements/assembly.h"
 #include "fem/effect/system.h"
 
 static bool is_wanted(const FemSceneDef *scene) {

@@ -9,7 +9,7 @@
 // state: Δα = (q_trial − σ_y − H α)/(3μ + H), ΔE_p = √(3/2) Δα s/|s|. It is the gradient of an incremental
 // energy, ½ (E − E_p):C:(E − E_p) + ½ H α² + σ_y α, whose last part is dissipated. E_p has no trace, so
 // `nodal` volume changes are not concerned, nor mean ones. Each quadrature point has a history of its own.
-#include "fem/effect/plasticity.h"
+#include "fem/effect/elements/plasticity.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact by overlap volumes, as an effect: hands positions to contact/system.h, and its stiffness to the
 // matrix.
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 
 #include <string.h>
 

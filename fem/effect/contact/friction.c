@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Friction as an effect: contact/friction/friction.h on the system of the contact effect.
-#include "fem/effect/friction.h"
+#include "fem/effect/contact/friction.h"
 
 #include <string.h>
 
 #include "base/memory.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/effect/system.h"
 #include "fem/model/compliance.h"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Friction by elastic stick as an effect: contact/friction/stick.h on the system of the contact effect. Its
 // forces depend on positions and on the last accepted state, which `prepare` moves on.
-#include "fem/effect/stick.h"
+#include "fem/effect/contact/stick.h"
 
 #include <string.h>
 
 #include "base/memory.h"
 #include "contact/friction/stick_pairs.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/effect/system.h"
 #include "fem/model/compliance.h"
 

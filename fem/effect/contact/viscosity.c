@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Viscous contact as an effect: contact/friction/viscosity.h on the system of the contact effect, whose
 // couplings are its own.
-#include "fem/effect/viscosity.h"
+#include "fem/effect/contact/viscosity.h"
 
 #include "base/memory.h"
 #include "contact/friction/viscosity.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/effect/system.h"
 
 typedef struct Viscosity {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elasticity: every element's stored energy by its body's law.
 #include "base/memory.h"
-#include "fem/effect/assembly.h"
+#include "fem/effect/elements/assembly.h"
 
 static bool is_wanted(const FemSceneDef *scene) {
   return scene->body_count > 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/effect/packs.h"
+#include "fem/effect/elements/packs.h"
 
 #include <math.h>
 #include <stdint.h>

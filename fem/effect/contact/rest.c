@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/effect/rest.h"
+#include "fem/effect/contact/rest.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/contact.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/effect/system.h"
 #include "fem/model/drive.h"
 

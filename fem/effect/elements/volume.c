@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/effect/volume.h"
+#include "fem/effect/elements/volume.h"
 
 #include <math.h>
 #include <string.h>

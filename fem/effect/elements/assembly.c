@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/effect/assembly.h"
+#include "fem/effect/elements/assembly.h"
 
 #include <stddef.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sums over elements: what an effect that lives on tetrahedra (elasticity, damping) shares. The effect gives
 // kernels; here is the gathering, the adding by colours, and where entries of the matrix lie. Forces and
-// matrices go through vector lanes, eight elements at a time (fem/effect/packs.h). Every
+// matrices go through vector lanes, eight elements at a time (fem/effect/elements/packs.h). Every
 // sum has a fixed order: results are the same to the last bit for any number of threads.
 #ifndef TETLAP_FEM_EFFECT_ASSEMBLY_H
 #define TETLAP_FEM_EFFECT_ASSEMBLY_H
@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 #include "fem/effect/effect.h"
-#include "fem/effect/packs.h"
+#include "fem/effect/elements/packs.h"
 
 // Eight elements of a body, of one kind.
 typedef struct FemAssemblyPack {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nodal volume change of the bodies with `element: nodal`, as an effect: fem/effect/volume.h.
-#include "fem/effect/volume_effect.h"
+// Nodal volume change of the bodies with `element: nodal`, as an effect: fem/effect/elements/volume.h.
+#include "fem/effect/elements/volume_effect.h"
 
 #include "base/memory.h"
 #include "fem/effect/effect.h"
-#include "fem/effect/volume.h"
+#include "fem/effect/elements/volume.h"
 
 static bool is_wanted(const FemSceneDef *scene) {
   for (int b = 0; b < scene->body_count; b++)
