@@ -48,7 +48,7 @@ static const FuzzImage *template_image(void) {
   return &image;
 }
 
-// The head of a file in the form that fem/run/checkpoint/checkpoint_file.c writes; a changed form is seen by what the
+// The head of a file in the form that fem/run/checkpoint/file.c writes; a changed form is seen by what the
 // good file becomes without edits (seed 0).
 static const char *put_file(const FuzzImage *good, const FuzzImage *image) {
   char digest[DIGEST_TEXT];

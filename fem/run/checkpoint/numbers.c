@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/checkpoint/checkpoint_numbers.h"
+#include "fem/run/checkpoint/numbers.h"
 
 #include <assert.h>
 

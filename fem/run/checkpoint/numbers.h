@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every number of a checkpoint that is not an array: its name in the file, and where it stands in the struct.
-// For fem/run/checkpoint/checkpoint_file.c only.
+// For fem/run/checkpoint/file.c only.
 #ifndef TETLAP_FEM_RUN_CHECKPOINT_NUMBERS_H
 #define TETLAP_FEM_RUN_CHECKPOINT_NUMBERS_H
 

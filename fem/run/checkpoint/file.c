@@ -11,7 +11,7 @@
 #include "base/digest.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "fem/run/checkpoint/checkpoint_numbers.h"
+#include "fem/run/checkpoint/numbers.h"
 
 // HDF5 looks for its own beginning at 0, 512, 1024 …
 enum { HEAD_SIZE = 512, FORMAT_VERSION = 8, PATH_SIZE = 96 };
