@@ -4,9 +4,9 @@
 #include "scene.h"
 
 #include "base/memory.h"
-#include "fem/model/drive.h"
-#include "fem/model/load.h"
-#include "fem/model/table.h"
+#include "fem/scene/drive.h"
+#include "fem/scene/load.h"
+#include "fem/scene/table.h"
 
 static const FemForesight foresight = {.displacement = 1e-3, .velocity = 1e-3, .resolution = 1e-9};
 

@@ -8,7 +8,7 @@
 #include "base/random.h"
 #include "base/vec3.h"
 #include "fem/model/build.h"
-#include "fem/model/load.h"
+#include "fem/scene/load.h"
 
 static const double SIZE[3] = {2, 1, 0.5};
 

@@ -17,7 +17,7 @@
 #include "fem/mesh/mesh.h"
 #include "fem/mesh/reader/gmsh_library.h"
 #include "fem/model/build.h"
-#include "fem/model/load.h"
+#include "fem/scene/load.h"
 
 #define MESHES TETLAP_SOURCE_DIR "/meshes/"
 

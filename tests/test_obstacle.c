@@ -9,10 +9,10 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/shape/shape.h"
-#include "fem/model/obstacle.h"
 #include "fem/output/vtk/obstacle_surface.h"
 #include "fem/output/vtk/pvd.h"
 #include "fem/output/vtk/vtu_read.h"
+#include "fem/scene/obstacle.h"
 
 enum { STANDING, MOVING, SET_COUNT };
 

@@ -10,7 +10,7 @@
 #include "fem/element/quadratic.h"
 #include "fem/element/quadratic_face.h"
 #include "fem/mesh/mesh.h"
-#include "fem/model/load.h"
+#include "fem/scene/load.h"
 
 static const double corners[12] = {0.1, -0.2, 0, 1.2, 0.1, -0.1, 0.2, 0.9, 0.1, -0.1, 0.2, 1.1};
 static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

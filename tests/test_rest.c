@@ -7,7 +7,7 @@
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/contact/rest.h"
-#include "fem/model/drive.h"
+#include "fem/scene/drive.h"
 
 // ---- contact_system_hold
 

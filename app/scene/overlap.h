@@ -5,7 +5,7 @@
 #define TETLAP_APP_SCENE_OVERLAP_H
 
 #include "base/status.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 // app_scene_read with `overlap` in the place of the scene's model and weights; NULL: the scene's own.
 // `hybrid` keeps the scene's weights, which are of its network. A weights file (….safetensors) is named from

@@ -6,7 +6,7 @@
 
 #include "app/scene/keys/keys.h"
 #include "app/scene/tree.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 // Reads a scene, YAML or JSON, after putting `overrides` ("contact.stiffness=1e6", "bodies.lower.place=…",
 // see scene_override.h) into it. On failure `scene` is zeroed. STATUS_INPUT: file:line:column, the key, what

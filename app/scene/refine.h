@@ -3,7 +3,7 @@
 #ifndef TETLAP_APP_SCENE_REFINE_H
 #define TETLAP_APP_SCENE_REFINE_H
 
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 // Divides the edges of all bodies by `level`, before the model is built: a box gets so many times its cells
 // (rounded, one at least), a mesh that is made when it is read so much smaller edges. Obstacles stay as they

@@ -5,7 +5,7 @@
 
 #include "app/scene/keys/keys.h"
 #include "base/record.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 // Puts the scene with all its defaults under `name` into `parent`. What it writes is a scene again
 // (app_scene_read_text) with the same definition; mesh paths stay as they were written, relative to

@@ -9,9 +9,9 @@
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "base/vec3.h"
-#include "fem/model/drive.h"
 #include "fem/model/drivers.h"
 #include "fem/model/formulas.h"
+#include "fem/scene/drive.h"
 #include "fem/sparse/solver.h"
 
 static FemState state_of(const FemSystem *system, double time) {

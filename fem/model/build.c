@@ -8,9 +8,9 @@
 #include "base/vec3.h"
 #include "fem/model/division.h"
 #include "fem/model/drivers.h"
-#include "fem/model/meshes.h"
 #include "fem/model/numbering.h"
-#include "fem/model/select.h"
+#include "fem/scene/meshes.h"
+#include "fem/scene/select.h"
 
 static Status allocate(FemModel *model, const FemMesh *meshes, int mesh_count) {
   long long vertices = 0, tets = 0, quadratics = 0;

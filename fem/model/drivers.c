@@ -2,8 +2,8 @@
 #include "fem/model/drivers.h"
 
 #include "base/memory.h"
-#include "fem/model/drive.h"
-#include "fem/model/select.h"
+#include "fem/scene/drive.h"
+#include "fem/scene/select.h"
 
 // Makes the driver of one constraint and marks its coordinates by the driver's number + 1 in `owner`.
 static Status add_driver(FemModel *model, const FemConstraintDef *def, const FemMesh *mesh,

@@ -7,9 +7,9 @@
 #include "contact/def.h"
 #include "fem/element/element.h"
 #include "fem/element/quadratic.h"
-#include "fem/model/load.h"
-#include "fem/model/probe.h"
-#include "fem/model/scene.h"
+#include "fem/scene/load.h"
+#include "fem/scene/probe.h"
+#include "fem/scene/scene.h"
 #include "fem/sparse/share.h"
 
 typedef struct FemModelBody {

@@ -3,7 +3,7 @@
 #ifndef TETLAP_APP_BENCH_BUILTIN_H
 #define TETLAP_APP_BENCH_BUILTIN_H
 
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 // A beam of about `nodes` (≥ 24) vertices, `slenderness` times as long as thick (0.1 m), of cubes cut into
 // tetrahedra, clamped at one end, that falls under gravity: neo-Hookean, E 1 MPa, ν 0.4, 1000 kg/m³, damped;

@@ -2,7 +2,7 @@
 #include "app/scene/keys/table.h"
 
 #include "app/scene/keys/choices.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 static const SceneSection inner = {.help = "faces that are no surface",
                                    .size = sizeof(FemInnerDef),

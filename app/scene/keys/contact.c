@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "app/scene/keys/choices.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 #include "overlap/model.h"
 
 // Whether the model of that name gives the centroid of an overlap, without which there is no `field`.

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "app/scene/keys/table.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 static const SceneKey effect_keys[] = {
     {"gravity", SCENE_VECTOR, AT(FemSceneDef, gravity), .unit = "m/s²", .absent_help = "no gravity",

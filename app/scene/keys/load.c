@@ -2,7 +2,7 @@
 #include "app/scene/keys/table.h"
 
 #include "app/scene/keys/choices.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 static const SceneKey load_keys[] = {
     {"force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "body_force traction pressure", .unit = "N",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/scene/keys/table.h"
 
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 // Bodies and obstacles keep these fields in the same order, so one table serves both.
 #define IN_MESH(field)                                                                                       \

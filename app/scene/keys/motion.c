@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 static const char *finish_fixed(void *self, const char **key) {
   (void)key;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/scene/keys/table.h"
 
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 static const char *finish_obstacle(void *self, const char **key) {
   FemObstacleDef *obstacle = self;

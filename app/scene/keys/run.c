@@ -2,7 +2,7 @@
 #include "app/scene/keys/table.h"
 
 #include "app/scene/keys/choices.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 static const char *finish_time(void *self, const char **key) {
   static const double SHORTEST_SHARE = 1e-9; // of the end: a run of that many steps has no end

@@ -10,8 +10,8 @@
 #include "base/vec3.h"
 #include "fem/effect/effect.h"
 #include "fem/model/compliance.h"
-#include "fem/model/drive.h"
-#include "fem/model/obstacle.h"
+#include "fem/scene/drive.h"
+#include "fem/scene/obstacle.h"
 #include "overlap/weights.h"
 
 typedef struct Contact {

@@ -4,7 +4,7 @@
 #define TETLAP_FEM_EFFECT_CONTACT_H
 
 #include "contact/system.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 // The contact system of the effect that fem_system_effect(system, &fem_effect_contact) returned; borrowed.
 ContactSystem *fem_effect_contact_system(void *effect);

@@ -8,7 +8,7 @@
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/system.h"
-#include "fem/model/drive.h"
+#include "fem/scene/drive.h"
 
 typedef struct Rest {
   const FemModel *model;         // borrowed

@@ -3,9 +3,9 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/model/drive.h"
-#include "fem/model/obstacle.h"
 #include "fem/output/vtk/vtu.h"
+#include "fem/scene/drive.h"
+#include "fem/scene/obstacle.h"
 
 // Triangles along a quarter of a great circle. They lie 0.35 % of the radius within the ball at most.
 enum { BALL_ROWS = 16 };

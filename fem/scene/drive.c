@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/drive.h"
+#include "fem/scene/drive.h"
 
 #include <stddef.h>
 
 #include "base/vec3.h"
-#include "fem/model/table.h"
+#include "fem/scene/table.h"
 
 // Rodrigues' formula about the axis through the centre.
 static void turn_about_axis(const FemConstraintDef *def, double time, double position[3],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/table.h"
+#include "fem/scene/table.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/probe.h"
+#include "fem/scene/probe.h"
 
 #include <stdbool.h>
 
 #include "base/memory.h"
-#include "fem/model/select.h"
+#include "fem/scene/select.h"
 
 // Keeps the triangles whose corners are all selected.
 static Status pick_triangles(FemProbe *probe, const FemMesh *mesh, int vertex_begin) {

@@ -5,7 +5,7 @@
 #define TETLAP_FEM_MODEL_PROBE_H
 
 #include "fem/mesh/mesh.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 typedef struct FemProbe {
   const FemProbeDef *def; // borrowed from the scene

@@ -4,7 +4,7 @@
 #define TETLAP_FEM_MODEL_MESHES_H
 
 #include "fem/mesh/mesh.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 // Those of all bodies, then of the obstacles that have one: `meshes` has room for all; on error, too, the
 // caller destroys them. A file that several are made of is read once. Errors name the body or the obstacle.

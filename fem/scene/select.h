@@ -3,7 +3,7 @@
 #ifndef TETLAP_FEM_MODEL_SELECT_H
 #define TETLAP_FEM_MODEL_SELECT_H
 
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 // The vertices of `mesh` (placed, at rest) that the selection holds, ascending; owned by the caller
 // (memory_free). STATUS_INPUT: it holds none, or the mesh has no such group; the message says what there is.

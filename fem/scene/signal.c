@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/signal.h"
+#include "fem/scene/signal.h"
 
 #include <float.h>
 #include <math.h>

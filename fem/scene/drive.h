@@ -3,8 +3,8 @@
 #ifndef TETLAP_FEM_MODEL_DRIVE_H
 #define TETLAP_FEM_MODEL_DRIVE_H
 
-#include "fem/model/scene.h"
-#include "fem/model/signal.h"
+#include "fem/scene/scene.h"
+#include "fem/scene/signal.h"
 
 // x(t) = centre + R(spin t)(rest − centre) + velocity t + amplitude sin(2π frequency t) + table(t) +
 // formula(t), all frozen from `until` on. Position [m] and velocity [m/s] of the point that rests at `rest`.

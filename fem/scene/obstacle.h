@@ -5,7 +5,7 @@
 
 #include "contact/def.h"
 #include "contact/shape/convex.h"
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 // The shape of a definition that is no mesh; it borrows the definition and `solid`, which is filled for a box
 // and a cylinder.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/meshes.h"
+#include "fem/scene/meshes.h"
 
 #include <string.h>
 

@@ -8,8 +8,8 @@
 #define TETLAP_FEM_MODEL_LOAD_H
 
 #include "fem/mesh/mesh.h"
-#include "fem/model/scene.h"
-#include "fem/model/signal.h"
+#include "fem/scene/scene.h"
+#include "fem/scene/signal.h"
 
 typedef struct FemLoad {
   const FemLoadDef *def; // borrowed from the scene

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/select.h"
+#include "fem/scene/select.h"
 
 #include <stdio.h>
 #include <string.h>

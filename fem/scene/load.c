@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/load.h"
+#include "fem/scene/load.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,8 +9,8 @@
 #include "fem/element/quadratic.h"
 #include "fem/element/quadratic_face.h"
 #include "fem/mesh/faces.h"
-#include "fem/model/select.h"
-#include "fem/model/table.h"
+#include "fem/scene/select.h"
+#include "fem/scene/table.h"
 
 static Vec3 corner(const double *positions, int vertex) {
   return vec3_at(positions + 3 * (size_t)vertex);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/scene.h"
+#include "fem/scene/scene.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/obstacle.h"
+#include "fem/scene/obstacle.h"
 
 #include "base/vec3.h"
-#include "fem/model/drive.h"
+#include "fem/scene/drive.h"
 
 static void move_shape(const void *motion, double time, const double rest[3], double position[3],
                        double velocity[3]) {
