@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap view`: what its server answers, to whom, and what it never gives away; app/cli/beacon.h.
+// `tetlap view`: what its server answers, to whom, and what it never gives away; app/job/beacon.h.
 #include "suite.h"
 
 #include <arpa/inet.h>

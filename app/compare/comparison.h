@@ -5,7 +5,7 @@
 #ifndef TETLAP_APP_COMPARE_COMPARISON_H
 #define TETLAP_APP_COMPARE_COMPARISON_H
 
-#include "app/cli/job.h"
+#include "app/job/job.h"
 
 // The errors that an audit measures, as in ContactAudit.
 typedef enum AppAuditKind {

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/cli/inputs.h"
 #include "app/cli/versions.h"
+#include "app/job/inputs.h"
 #include "app/scene/overlap.h"
 #include "app/scene/write.h"
 #include "base/digest.h"

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "app/cli/beacon.h"
+#include "app/job/beacon.h"
 #include "app/report/page.h"
 #include "app/report/report.h"
 #include "base/confine.h"

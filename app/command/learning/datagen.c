@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
 #include "app/cli/versions.h"
+#include "app/job/job.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "datagen/run.h"

@@ -4,9 +4,9 @@
 #include <omp.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
 #include "app/cli/versions.h"
 #include "app/dataset/import.h"
+#include "app/job/job.h"
 #include "base/log.h"
 
 enum { KEY_TOLERANCE = 256, KEY_GRADIENT, KEY_STRICT, MOST_TEXT = 1024 };

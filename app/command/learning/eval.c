@@ -6,12 +6,12 @@
 #include <stdbool.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
 #include "app/cli/versions.h"
 #include "app/dataset/source.h"
 #include "app/evaluation/model.h"
 #include "app/evaluation/paths.h"
 #include "app/evaluation/report.h"
+#include "app/job/job.h"
 #include "base/clock.h"
 #include "base/log.h"
 

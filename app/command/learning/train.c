@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
+#include "app/job/job.h"
 #include "app/training/log.h"
 #include "app/training/training.h"
 #include "base/log.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
+#include "app/job/job.h"
 #include "app/render/movie.h"
 #include "app/render/render.h"
 #include "app/report/collect.h"

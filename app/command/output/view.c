@@ -9,7 +9,7 @@
 #include <time.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
+#include "app/job/job.h"
 #include "app/view/server.h"
 #include "base/confine.h"
 #include "base/log.h"

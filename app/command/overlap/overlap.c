@@ -4,8 +4,8 @@
 #include <omp.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
 #include "app/evaluation/model.h"
+#include "app/job/job.h"
 #include "app/pairs/reader.h"
 #include "app/pairs/writer.h"
 #include "base/log.h"

@@ -7,7 +7,7 @@
 
 #include "app/bench/overlap/pairs.h"
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
+#include "app/job/job.h"
 #include "app/pareto/pairs.h"
 #include "app/pareto/scenes.h"
 #include "app/plot/gnuplot.h"

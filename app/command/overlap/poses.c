@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
+#include "app/job/job.h"
 #include "app/poses/poses.h"
 #include "app/scene/read.h"
 #include "base/file.h"

@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
 #include "app/cli/ranks.h"
+#include "app/job/job.h"
 #include "base/cpu.h"
 #include "base/log.h"
 #include "base/record.h"

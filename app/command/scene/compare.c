@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
 #include "app/compare/comparison.h"
+#include "app/job/job.h"
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/file.h"

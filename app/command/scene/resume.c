@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/origin.h"
 #include "app/cli/ranks.h"
 #include "app/cli/versions.h"
 #include "app/command/scene/run.h"
+#include "app/job/origin.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"

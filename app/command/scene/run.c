@@ -5,10 +5,10 @@
 #include <stdio.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/beacon.h"
-#include "app/cli/origin.h"
 #include "app/cli/ranks.h"
 #include "app/cli/versions.h"
+#include "app/job/beacon.h"
+#include "app/job/origin.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/log.h"

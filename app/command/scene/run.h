@@ -4,7 +4,7 @@
 #define TETLAP_APP_COMMAND_RUN_H
 
 #include "app/cli/command.h"
-#include "app/cli/job.h"
+#include "app/job/job.h"
 
 typedef struct AppRunOptions {
   AppJobOptions job;

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
 #include "app/cli/versions.h"
+#include "app/job/job.h"
 #include "app/stress/all.h"
 #include "app/stress/stress.h"
 #include "base/cpu.h"

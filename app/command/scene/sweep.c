@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/job.h"
+#include "app/job/job.h"
 #include "app/sweep/child.h"
 #include "app/sweep/crew.h"
 #include "app/sweep/table.h"

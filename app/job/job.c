@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/cli/job.h"
+#include "app/job/job.h"
 
 #include <limits.h>
 #include <math.h>
@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
-#include "app/cli/inputs.h"
 #include "app/cli/versions.h"
+#include "app/job/inputs.h"
 #include "app/scene/overlap.h"
 #include "app/scene/read.h"
 #include "app/scene/write.h"

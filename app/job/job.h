@@ -32,7 +32,7 @@ typedef struct AppJob {
   FemSceneDef scene;
   FemModel model;
   char *directory; // where to write, owned
-  Record *inputs;  // digests of what was read when it was opened (app/cli/inputs.h), owned
+  Record *inputs;  // digests of what was read when it was opened (app/job/inputs.h), owned
 } AppJob;
 
 // Reads and builds. `overlap` (may be NULL) replaces the scene's overlap model; `subdirectory` (may be NULL)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/cli/inputs.h"
+#include "app/job/inputs.h"
 
 #include <limits.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #ifndef TETLAP_APP_CLI_BEACON_H
 #define TETLAP_APP_CLI_BEACON_H
 
-#include "app/cli/job.h"
+#include "app/job/job.h"
 
 #define APP_BEACON_FILE "progress.json"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/cli/beacon.h"
+#include "app/job/beacon.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/cli/origin.h"
+#include "app/job/origin.h"
 
 #include <limits.h>
 #include <stdlib.h>

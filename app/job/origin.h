@@ -5,7 +5,7 @@
 #ifndef TETLAP_APP_CLI_ORIGIN_H
 #define TETLAP_APP_CLI_ORIGIN_H
 
-#include "app/cli/job.h"
+#include "app/job/job.h"
 
 // A new record, owned by the caller. STATUS_MEMORY.
 Status app_origin_make(const AppJob *job, const AppJobOptions *options, const char *overlap, Record **origin);
