@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/stress/all.h"
 
-#include "app/stress/pairs.h"
+#include "app/stress/pairs/pairs.h"
 #include "app/stress/scenes.h"
 
 Status app_stress_all_run(const AppStressOptions *options, AppStress *stress) {

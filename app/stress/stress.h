@@ -4,7 +4,7 @@
 // the verdict follows from it:
 //
 //   all met ───────────────────────────────► held      (better: though app/stress/limits.c knows a limit)
-//   not met, within the model's tolerance ──► tolerance (pairs only, app/stress/tolerances.c)
+//   not met, within the model's tolerance ──► tolerance (pairs only, app/stress/pairs/tolerances.c)
 //   not met, a limit that is known ─────────► limit     (its reason and counter, app/stress/limits.c)
 //   cut: the processor time it was given is spent ► limit (what held until then is judged all the same)
 //   not met otherwise ──────────────────────► failed

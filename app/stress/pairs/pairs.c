@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/stress/pairs.h"
+#include "app/stress/pairs/pairs.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "app/stress/tolerances.h"
-#include "app/stress/traits.h"
+#include "app/stress/pairs/tolerances.h"
+#include "app/stress/pairs/traits.h"
 #include "base/clock.h"
 #include "datagen/hard.h"
 #include "overlap/exact/exact.h"

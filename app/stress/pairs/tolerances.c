@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/stress/tolerances.h"
+#include "app/stress/pairs/tolerances.h"
 
 #include <stddef.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/stress/traits.h"
+#include "app/stress/pairs/traits.h"
 
 #include <float.h>
 #include <math.h>
