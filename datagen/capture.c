@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "datagen/cube.h"
+#include "datagen/draw/cube.h"
+#include "datagen/draw/proof.h"
 #include "datagen/generate.h"
-#include "datagen/proof.h"
 
 enum { BLOCK = 4096, FLAT = 2 };
 

@@ -3,7 +3,7 @@
 #ifndef TETLAP_DATAGEN_CAPTURE_H
 #define TETLAP_DATAGEN_CAPTURE_H
 
-#include "datagen/dataset.h"
+#include "datagen/files/dataset.h"
 
 typedef struct DatagenCapture {
   DatagenWriter *writer; // owned

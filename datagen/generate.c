@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "datagen/sampler.h"
+#include "datagen/draw/sampler.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 

@@ -3,8 +3,8 @@
 #ifndef TETLAP_DATAGEN_GENERATE_H
 #define TETLAP_DATAGEN_GENERATE_H
 
+#include "datagen/law/plan.h"
 #include "datagen/pairs.h"
-#include "datagen/plan.h"
 
 // Makes pairs `first` … `first` + `count` − 1 of the plan over OpenMP threads; the result does not depend on
 // their number. `pairs->gradient` and `pairs->centroid` may be NULL, the other arrays are the caller's. Adds

@@ -3,7 +3,7 @@
 
 #include <stdbool.h>
 
-#include "datagen/dataset.h"
+#include "datagen/files/dataset.h"
 #include "datagen/generate.h"
 
 static bool is_told_to_stop(const DatagenRunOptions *options) {

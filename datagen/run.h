@@ -5,7 +5,7 @@
 
 #include <signal.h>
 
-#include "datagen/plan.h"
+#include "datagen/law/plan.h"
 
 enum { DATAGEN_RUN_BLOCK = 16384 }; // a multiple of the file's chunks
 

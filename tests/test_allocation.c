@@ -17,7 +17,7 @@
 #include "app/scene/read.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "datagen/dataset.h"
+#include "datagen/files/dataset.h"
 #include "datagen/run.h"
 #include "fem/mesh/mesh.h"
 #include "fem/model/build.h"

@@ -14,10 +14,10 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "datagen/capture.h"
-#include "datagen/dataset.h"
+#include "datagen/files/dataset.h"
+#include "datagen/files/merge.h"
 #include "datagen/generate.h"
 #include "datagen/hard.h"
-#include "datagen/merge.h"
 #include "datagen/run.h"
 #include "overlap/invariant.h"
 

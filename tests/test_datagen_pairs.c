@@ -7,9 +7,9 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
+#include "datagen/draw/proof.h"
+#include "datagen/draw/sampler.h"
 #include "datagen/generate.h"
-#include "datagen/proof.h"
-#include "datagen/sampler.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 #include "overlap/separation.h"

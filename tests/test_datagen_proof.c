@@ -5,8 +5,8 @@
 
 #include <string.h>
 
+#include "datagen/draw/proof.h"
 #include "datagen/hard.h"
-#include "datagen/proof.h"
 #include "overlap/exact/exact.h"
 #include "overlap/invariant.h"
 #include "overlap/separation.h"

@@ -7,8 +7,8 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "datagen/draw/proof.h"
 #include "datagen/generate.h"
-#include "datagen/proof.h"
 
 // Of a volume that is nearly none, rounding alone is more: this share of the smaller tetrahedron is let pass.
 static const double rounding_share = 1e-12;

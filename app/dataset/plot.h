@@ -4,7 +4,7 @@
 #ifndef TETLAP_APP_DATASET_PLOT_H
 #define TETLAP_APP_DATASET_PLOT_H
 
-#include "datagen/dataset.h"
+#include "datagen/files/dataset.h"
 
 // Writes `picture`.gp and runs gnuplot on it, which writes `picture` (PNG, or SVG or PDF by its ending).
 // `title` names the data set. STATUS_IO: gnuplot is missing or failed; the script is there all the same.

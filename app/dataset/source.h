@@ -6,8 +6,8 @@
 
 #include <stdint.h>
 
-#include "datagen/dataset.h"
-#include "datagen/plan.h"
+#include "datagen/files/dataset.h"
+#include "datagen/law/plan.h"
 
 // Texts are borrowed; NULL where they are not given.
 typedef struct AppSourceDef {

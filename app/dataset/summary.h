@@ -3,7 +3,7 @@
 #ifndef TETLAP_APP_DATASET_SUMMARY_H
 #define TETLAP_APP_DATASET_SUMMARY_H
 
-#include "datagen/dataset.h"
+#include "datagen/files/dataset.h"
 
 // Histogram of log10 V: bins of a fiftieth of a decade from 1e-20 to 1; beyond goes to the outermost.
 enum { APP_DATASET_DECADES = 20, APP_DATASET_BINS_A_DECADE = 50 };

@@ -13,7 +13,7 @@
 #include <stddef.h>
 
 #include "app/evaluation/bounds.h"
-#include "datagen/kind.h"
+#include "datagen/law/kind.h"
 #include "datagen/pairs.h"
 #include "overlap/model.h"
 

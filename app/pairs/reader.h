@@ -9,8 +9,8 @@
 #include "app/pairs/columns.h"
 #include "app/pairs/csv.h"
 #include "app/pairs/npy.h"
-#include "datagen/array.h"
-#include "datagen/dataset.h"
+#include "datagen/files/array.h"
+#include "datagen/files/dataset.h"
 
 typedef enum AppPairsFormat {
   APP_PAIRS_CSV,

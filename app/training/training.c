@@ -11,7 +11,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "datagen/plan.h"
+#include "datagen/law/plan.h"
 
 enum { MOST_SKIPPED = 100 }; // steps in a row whose gradient was not finite
 

@@ -9,8 +9,8 @@
 #include "app/dataset/summary.h"
 #include "base/log.h"
 #include "base/record.h"
-#include "datagen/dataset.h"
-#include "datagen/merge.h"
+#include "datagen/files/dataset.h"
+#include "datagen/files/merge.h"
 
 enum { MAX_FILES = 65536, KEY_MIX = 256 };
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "datagen/proof.h"
+#include "datagen/draw/proof.h"
 #include "overlap/exact/exact.h"
 #include "overlap/invariant.h"
 

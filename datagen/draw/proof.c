@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/proof.h"
+#include "datagen/draw/proof.h"
 
 #include "overlap/exact/pair.h"
 

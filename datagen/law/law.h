@@ -5,8 +5,8 @@
 
 #include <stddef.h>
 
-#include "datagen/kind.h"
-#include "datagen/volume_law.h"
+#include "datagen/law/kind.h"
+#include "datagen/law/volume_law.h"
 
 enum { DATAGEN_MIX_TEXT = 384 };
 

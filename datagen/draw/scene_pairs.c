@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/scene_pairs.h"
+#include "datagen/draw/scene_pairs.h"
 
 #include <math.h>
 #include <stdint.h>
 
 #include "base/vec3.h"
-#include "datagen/cube.h"
+#include "datagen/draw/cube.h"
 
 static const double JITTER = 0.15, TILT = 0.2;
 static const double LEAST_RATIO = 0.5, LARGEST_RATIO = 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/cube.h"
+#include "datagen/draw/cube.h"
 
 #include <math.h>
 

@@ -4,8 +4,8 @@
 #define TETLAP_DATAGEN_SAMPLER_H
 
 #include "base/random.h"
-#include "datagen/proof.h"
-#include "datagen/volume_law.h"
+#include "datagen/draw/proof.h"
+#include "datagen/law/volume_law.h"
 
 typedef struct DatagenSample {
   double pair[24];    // (2, 4, 3)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/sampler.h"
+#include "datagen/draw/sampler.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/vec3.h"
-#include "datagen/scene_pairs.h"
-#include "datagen/touch.h"
+#include "datagen/draw/scene_pairs.h"
+#include "datagen/draw/touch.h"
 #include "overlap/clip/clip.h"
 #include "overlap/separation.h"
 

@@ -12,7 +12,7 @@
 
 #include <stdbool.h>
 
-#include "datagen/kind.h"
+#include "datagen/law/kind.h"
 
 typedef struct DatagenProof {
   int dimension;  // of P: −1 (empty), 0 … 3

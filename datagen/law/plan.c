@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/plan.h"
+#include "datagen/law/plan.h"
 
 #include "base/random.h"
 

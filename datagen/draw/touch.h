@@ -21,7 +21,7 @@
 #include <stdbool.h>
 
 #include "base/random.h"
-#include "datagen/kind.h"
+#include "datagen/law/kind.h"
 
 // One attempt at a touching kind; false: it came to nothing, try again. In no particular order of vertices:
 // shuffle them.

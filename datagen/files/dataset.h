@@ -16,9 +16,9 @@
 
 #include <stdint.h>
 
-#include "datagen/law.h"
+#include "datagen/law/law.h"
+#include "datagen/law/plan.h"
 #include "datagen/pairs.h"
-#include "datagen/plan.h"
 
 enum { DATAGEN_DATASET_CHUNK = 4096, DATAGEN_NAME_TEXT = 32, DATAGEN_PROGRAM_TEXT = 64 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/kind.h"
+#include "datagen/law/kind.h"
 
 #include <string.h>
 

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "datagen/law.h"
+#include "datagen/law/law.h"
 
 // Raised whenever the same plan gives other pairs.
 enum { DATAGEN_GENERATOR_VERSION = 1 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/array.h"
+#include "datagen/files/array.h"
 
 #include <hdf5.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/dataset.h"
+#include "datagen/files/dataset.h"
 
 #include <hdf5.h>
 #include <math.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/merge.h"
+#include "datagen/files/merge.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "datagen/dataset.h"
+#include "datagen/files/dataset.h"
 
 enum { BLOCK = 16384 };
 

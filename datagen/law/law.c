@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/law.h"
+#include "datagen/law/law.h"
 
 #include <math.h>
 #include <stdbool.h>

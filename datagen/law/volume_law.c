@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/volume_law.h"
+#include "datagen/law/volume_law.h"
 
 #include <math.h>
 #include <stdbool.h>

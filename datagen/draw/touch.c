@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "datagen/touch.h"
+#include "datagen/draw/touch.h"
 
 #include <assert.h>
 #include <math.h>
