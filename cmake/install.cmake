@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` puts where, and the Debian package of it. Nothing that is installed knows where: programs
-# and library find the rest from where they lie (base/data.h), so the tree can be moved.
+# and library find the rest from where they lie (base/files/data.h), so the tree can be moved.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(data ${CMAKE_INSTALL_DATADIR}/tetlap)

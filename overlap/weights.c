@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/data.h"
+#include "base/files/data.h"
 #include "net/files/weights.h"
 
 static const char ENDING[] = ".safetensors";

@@ -15,7 +15,7 @@ bool overlap_weights_is_path(const char *name);
 typedef enum OverlapWeightsKind { OVERLAP_WEIGHTS_GEO, OVERLAP_WEIGHTS_TPN } OverlapWeightsKind;
 Status overlap_weights_kind(const char *path, OverlapWeightsKind *kind);
 
-// The file of a shipped model, found as base/data.h has it. STATUS_IO: it is not there, with what to do;
+// The file of a shipped model, found as base/files/data.h has it. STATUS_IO: it is not there, with what to do;
 // STATUS_INPUT: the path has `size` characters or more.
 Status overlap_weights_find(const char *name, char *path, size_t size);
 

@@ -16,7 +16,7 @@
 
 #include "app/command/scene/run.h"
 #include "app/scene/read.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "fem/model/build.h"
 #include "fem/run/run.h"

@@ -9,7 +9,7 @@
 #include "app/dataset/source.h"
 #include "app/evaluation/bounds.h"
 #include "app/evaluation/model.h"
-#include "base/data.h"
+#include "base/files/data.h"
 #include "base/random.h"
 #include "datagen/hard.h"
 #include "datagen/pairs.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// base/journal: a file that grows by whole pieces, that a later process can go on with, and that no fault
+// base/files/journal: a file that grows by whole pieces, that a later process can go on with, and that no fault
 // leaves with half a piece.
-#include "base/journal.h"
+#include "base/files/journal.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "suite.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/file.h"
+#include "base/files/file.h"
 #include "fem/mesh/reader/gmsh_library.h"
 
 START_TEST(every_format_gives_the_same_box) {

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "app/command/scene/mesh.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/vec3.h"

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "app/command/scene/mesh.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "fem/mesh/reader/gmsh_library.h"
 #include "fem/mesh/reader/worker.h"

@@ -13,7 +13,7 @@
 #include "app/dataset/import.h"
 #include "app/pairs/npy.h"
 #include "app/pairs/reader.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "base/random.h"
 #include "overlap/model.h"

@@ -10,7 +10,7 @@
 #include "app/pareto/pairs.h"
 #include "app/pareto/scenes.h"
 #include "app/training/sweep.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "overlap/weights.h"
 

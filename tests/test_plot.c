@@ -9,7 +9,7 @@
 
 #include "app/plot/gnuplot.h"
 #include "app/plot/plot.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 
 enum { MODELS = 12 };

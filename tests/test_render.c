@@ -15,7 +15,7 @@
 
 #include "app/render/browser.h"
 #include "app/render/movie.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 
 static char folder[] = "/tmp/tetlap_render_XXXXXX";

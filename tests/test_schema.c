@@ -8,7 +8,7 @@
 #include "app/scene/manual.h"
 #include "app/scene/read.h"
 #include "app/scene/schema.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "base/text.h"
 

@@ -3,7 +3,7 @@
 // with either of two as slave.
 #include "static_solve.h"
 
-#include "base/record.h"
+#include "base/files/record.h"
 #include "base/vec3.h"
 #include "contact/friction/stick.h"
 #include "fem/effect/contact/stick.h"

@@ -6,7 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "fem/run/checkpoint/checkpoint.h"
 #include "fem/run/run_checkpoint.h"

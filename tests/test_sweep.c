@@ -11,9 +11,9 @@
 
 #include "app/sweep/axis.h"
 #include "app/sweep/history.h"
-#include "base/file.h"
+#include "base/files/file.h"
+#include "base/files/record.h"
 #include "base/memory.h"
-#include "base/record.h"
 
 static void expect_values(const char *text, const char *key, int count, const char *const *values) {
   AppSweepAxis axis;

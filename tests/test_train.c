@@ -14,7 +14,7 @@
 #include "app/training/rates.h"
 #include "app/training/start.h"
 #include "app/training/training.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "base/random.h"
 #include "overlap/clip/clip.h"

@@ -15,10 +15,10 @@
 #include <unistd.h>
 
 #include "app/view/server.h"
-#include "base/confine.h"
-#include "base/file.h"
+#include "base/files/confine.h"
+#include "base/files/file.h"
+#include "base/files/record.h"
 #include "base/memory.h"
-#include "base/record.h"
 
 static const char secret[] = "the-secret-of-another-folder";
 static char folder[] = "/tmp/tetlap_view_XXXXXX";

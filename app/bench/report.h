@@ -10,7 +10,7 @@
 #include <stdio.h>
 
 #include "app/bench/options.h"
-#include "base/record.h"
+#include "base/files/record.h"
 #include "base/status.h"
 
 typedef enum AppBenchKind {

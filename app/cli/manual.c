@@ -7,7 +7,7 @@
 
 #include "app/cli/options.h"
 #include "app/cli/versions.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 
 // Text that roff shall not read as its own: a backslash, a control character at the start of a line.

@@ -8,8 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/data.h"
-#include "base/file.h"
+#include "base/files/data.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 

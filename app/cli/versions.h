@@ -3,7 +3,7 @@
 #ifndef TETLAP_APP_CLI_VERSIONS_H
 #define TETLAP_APP_CLI_VERSIONS_H
 
-#include "base/record.h"
+#include "base/files/record.h"
 
 // The program's version, "0.1.0".
 const char *app_versions_program(void);

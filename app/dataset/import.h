@@ -7,7 +7,7 @@
 #include <signal.h>
 
 #include "app/pairs/reader.h"
-#include "base/record.h"
+#include "base/files/record.h"
 
 // What can be wrong with a label.
 typedef enum AppImportFault {

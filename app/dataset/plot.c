@@ -8,7 +8,7 @@
 
 #include "app/dataset/summary.h"
 #include "app/plot/gnuplot.h"
-#include "base/file.h"
+#include "base/files/file.h"
 
 enum { BINS_A_STEP = APP_DATASET_BINS_A_DECADE / 5 }; // five steps of the curves a decade
 

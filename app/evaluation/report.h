@@ -7,7 +7,7 @@
 
 #include "app/evaluation/evaluation.h"
 #include "app/evaluation/paths.h"
-#include "base/record.h"
+#include "base/files/record.h"
 
 void app_evaluation_print(const AppEvaluation *evaluation, const char *model, const char *data, FILE *stream);
 

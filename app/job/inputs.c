@@ -4,8 +4,8 @@
 #include <limits.h>
 #include <string.h>
 
-#include "base/digest.h"
-#include "base/file.h"
+#include "base/files/digest.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "overlap/hybrid/hybrid.h"
 #include "overlap/weights.h"

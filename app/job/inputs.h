@@ -4,7 +4,7 @@
 #ifndef TETLAP_APP_CLI_INPUTS_H
 #define TETLAP_APP_CLI_INPUTS_H
 
-#include "base/record.h"
+#include "base/files/record.h"
 #include "fem/model/model.h"
 
 // Adds `meshes` (a digest a body: places, elements, which coordinates are unknown), `weights_file` and

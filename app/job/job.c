@@ -15,7 +15,7 @@
 #include "app/scene/write.h"
 #include "base/clock.h"
 #include "base/cpu.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "fem/effect/contact/contact.h"

@@ -7,7 +7,7 @@
 #include <argp.h>
 #include <stdbool.h>
 
-#include "base/record.h"
+#include "base/files/record.h"
 #include "fem/model/model.h"
 #include "fem/run/run.h"
 

@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "base/file.h"
+#include "base/files/file.h"
 #include "overlap/ops.h"
 
 typedef enum AppPairsForm { APP_PAIRS_FORM_CSV, APP_PAIRS_FORM_JSON, APP_PAIRS_FORM_NPY } AppPairsForm;

@@ -9,7 +9,7 @@
 #include "app/cli/versions.h"
 #include "app/evaluation/model.h"
 #include "base/cpu.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "overlap/weights.h"
 

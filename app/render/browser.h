@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <sys/types.h>
 
-#include "base/record.h"
+#include "base/files/record.h"
 
 typedef struct AppRenderBrowser {
   pid_t process; // 0: none

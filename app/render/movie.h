@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <sys/types.h>
 
-#include "base/file.h"
+#include "base/files/file.h"
 
 typedef struct AppRenderMovie {
   pid_t process; // 0: none

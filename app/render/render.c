@@ -10,10 +10,10 @@
 
 #include "app/render/browser.h"
 #include "app/render/movie.h"
-#include "base/file.h"
+#include "base/files/file.h"
+#include "base/files/temporary.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/temporary.h"
 
 static Status check_stop(const AppRenderOptions *options) {
   return *options->stop ? status_fail(STATUS_INTERRUPTED, "interrupted") : STATUS_OK;

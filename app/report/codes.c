@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "base/deflate.h"
+#include "base/files/deflate.h"
 #include "base/memory.h"
 #include "fem/output/vtk/base64.h"
 

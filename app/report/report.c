@@ -9,7 +9,7 @@
 #include "app/report/codes.h"
 #include "app/report/page.h"
 #include "app/report/surface.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/vec3.h"

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #include "app/report/obstacles.h"
-#include "base/record.h"
+#include "base/files/record.h"
 #include "base/status.h"
 #include "fem/output/vtk/vtu_read.h"
 

@@ -3,7 +3,7 @@
 #ifndef TETLAP_APP_SCENE_SCHEMA_H
 #define TETLAP_APP_SCENE_SCHEMA_H
 
-#include "base/record.h"
+#include "base/files/record.h"
 
 Status app_scene_schema_record(Record *schema);
 

@@ -4,7 +4,7 @@
 #define TETLAP_APP_SCENE_WRITE_H
 
 #include "app/scene/keys/keys.h"
-#include "base/record.h"
+#include "base/files/record.h"
 #include "fem/scene/scene.h"
 
 // Puts the scene with all its defaults under `name` into `parent`. What it writes is a scene again

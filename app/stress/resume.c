@@ -11,9 +11,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/file.h"
+#include "base/files/file.h"
+#include "base/files/temporary.h"
 #include "base/memory.h"
-#include "base/temporary.h"
 #include "fem/run/checkpoint/checkpoint.h"
 
 // run->extra

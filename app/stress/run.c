@@ -8,7 +8,7 @@
 
 #include "app/scene/read.h"
 #include "base/clock.h"
-#include "base/data.h"
+#include "base/files/data.h"
 #include "base/vec3.h"
 #include "fem/model/build.h"
 

@@ -16,7 +16,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "base/record.h"
+#include "base/files/record.h"
 #include "base/status.h"
 
 enum { APP_STRESS_MAX_MEASURES = 12 };

@@ -9,7 +9,7 @@
 #include "app/sweep/child.h"
 #include "app/sweep/table.h"
 #include "base/clock.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 

@@ -8,7 +8,7 @@
 
 #include "app/sweep/axis.h"
 #include "app/sweep/history.h"
-#include "base/record.h"
+#include "base/files/record.h"
 
 #define APP_SWEEP_LOG "log.txt" // in a point's folder: what its processes print, one after another
 

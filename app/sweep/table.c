@@ -7,7 +7,7 @@
 
 #include "app/cli/versions.h"
 #include "app/report/report.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 
 // The numbers of a row: where they stand in summary.json, and what they are called.

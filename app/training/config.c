@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "app/scene/read.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "overlap/geo/features/features.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "app/plot/gnuplot.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 
 static Status append(AppTrainingLog *log, const char *format, ...) __attribute__((format(printf, 2, 3)));

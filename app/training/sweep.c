@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "app/training/training.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 

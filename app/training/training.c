@@ -9,7 +9,7 @@
 #include "app/cli/versions.h"
 #include "app/training/log.h"
 #include "base/clock.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "datagen/law/plan.h"
 

@@ -13,8 +13,8 @@
 #include "app/job/beacon.h"
 #include "app/report/page.h"
 #include "app/report/report.h"
-#include "base/confine.h"
-#include "base/file.h"
+#include "base/files/confine.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 
 static const char *const names[] = {"summary.json", "manifest.json", "history.csv", "frames.pvd",
@@ -22,7 +22,7 @@ static const char *const names[] = {"summary.json", "manifest.json", "history.cs
 enum { NAME_COUNT = sizeof names / sizeof *names };
 
 // A file that the page is made of is refused before it is looked at where it is no plain file; what the lists
-// name, when it is read (base/confine.h).
+// name, when it is read (base/files/confine.h).
 static Status check_file(const char *directory, const char *name) {
   struct stat info;
   char *path = file_join(directory, name);

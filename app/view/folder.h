@@ -4,7 +4,7 @@
 #ifndef TETLAP_APP_VIEW_FOLDER_H
 #define TETLAP_APP_VIEW_FOLDER_H
 
-#include "base/record.h"
+#include "base/files/record.h"
 #include "base/status.h"
 
 typedef struct AppViewFolder {
@@ -14,7 +14,7 @@ typedef struct AppViewFolder {
 
 typedef enum AppViewRefusal { APP_VIEW_ALLOWED, APP_VIEW_MISSING, APP_VIEW_FORBIDDEN } AppViewRefusal;
 
-// To be called before the folder is looked at, each time: confines this process to it (base/confine.h).
+// To be called before the folder is looked at, each time: confines this process to it (base/files/confine.h).
 // STATUS_IO: it is not there; STATUS_INPUT: a file of the page is a link, or none; STATUS_MEMORY. `refusal`
 // tells which.
 Status app_view_folder_open(const AppViewFolder *folder, AppViewRefusal *refusal);

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "base/confine.h"
+#include "base/files/confine.h"
 
 static const char *header_of(const AppViewServer *server, struct MHD_Connection *connection,
                              const char *name) {

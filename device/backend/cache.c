@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/digest.h"
-#include "base/file.h"
+#include "base/files/digest.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 
 uint64_t device_cache_key(int count, const char *const *texts) {

@@ -26,7 +26,7 @@
 #ifndef TETLAP_FEM_MEASURE_ACCURACY_H
 #define TETLAP_FEM_MEASURE_ACCURACY_H
 
-#include "base/record.h"
+#include "base/files/record.h"
 #include "contact/system.h"
 #include "fem/effect/system.h"
 

@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-#include "base/record.h"
+#include "base/files/record.h"
 #include "fem/model/model.h"
 
 // Marks of an element; bits.

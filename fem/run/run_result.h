@@ -3,7 +3,7 @@
 #ifndef TETLAP_FEM_RUN_RUN_RESULT_H
 #define TETLAP_FEM_RUN_RUN_RESULT_H
 
-#include "base/record.h"
+#include "base/files/record.h"
 #include "contact/evaluation.h"
 #include "contact/status.h"
 #include "fem/output/trouble.h"

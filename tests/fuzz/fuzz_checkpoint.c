@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/digest.h"
+#include "base/files/digest.h"
 #include "base/memory.h"
 #include "fem/run/checkpoint/checkpoint.h"
 #include "hdf5_edit.h"

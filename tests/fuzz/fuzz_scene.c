@@ -7,8 +7,8 @@
 #include "app/scene/override.h"
 #include "app/scene/read.h"
 #include "app/scene/write.h"
+#include "base/files/record.h"
 #include "base/memory.h"
-#include "base/record.h"
 #include "target.h"
 
 static const char path[] = "scene.yaml";

@@ -11,8 +11,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/data.h"
-#include "base/temporary.h"
+#include "base/files/data.h"
+#include "base/files/temporary.h"
 
 extern char **environ;
 

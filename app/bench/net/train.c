@@ -14,10 +14,10 @@
 #include "app/cli/argument.h"
 #include "app/training/task.h"
 #include "base/clock.h"
+#include "base/files/temporary.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "base/temporary.h"
 
 enum { MAX_CONFIGS = 8, MAX_OVERRIDES = 64 };
 static const double ROUND_S = 0.5; // what a round shall take

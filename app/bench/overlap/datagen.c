@@ -11,8 +11,8 @@
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
 #include "app/cli/argument.h"
+#include "base/files/temporary.h"
 #include "base/memory.h"
-#include "base/temporary.h"
 #include "datagen/generate.h"
 #include "datagen/run.h"
 

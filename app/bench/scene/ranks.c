@@ -10,11 +10,11 @@
 #include "app/bench/command.h"
 #include "app/bench/report.h"
 #include "app/sweep/child.h"
-#include "base/file.h"
+#include "base/files/file.h"
+#include "base/files/record.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/ranks.h"
-#include "base/record.h"
 
 enum { PATH = 512 };
 static const struct timespec PAUSE = {.tv_nsec = 20 * 1000 * 1000};

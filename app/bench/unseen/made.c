@@ -3,9 +3,9 @@
 
 #include <stdio.h>
 
-#include "base/file.h"
+#include "base/files/file.h"
+#include "base/files/temporary.h"
 #include "base/memory.h"
-#include "base/temporary.h"
 
 // The ground face, drawn up by extrusion.
 static Status write_box(const char *path, const double size[3], double edge, double growth) {

@@ -3,8 +3,8 @@
 
 #include <stdio.h>
 
+#include "base/files/record.h"
 #include "base/log.h"
-#include "base/record.h"
 #include "base/status.h"
 #include "device/device.h"
 

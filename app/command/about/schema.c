@@ -6,8 +6,8 @@
 
 #include "app/scene/manual.h"
 #include "app/scene/schema.h"
+#include "base/files/record.h"
 #include "base/log.h"
-#include "base/record.h"
 
 static const struct argp_option option_table[] = {
     {"markdown", 'm', NULL, 0, "Print the manual's reference page instead", 0},

@@ -2,8 +2,8 @@
 #include "app/command/about/version.h"
 
 #include "app/cli/versions.h"
+#include "base/files/record.h"
 #include "base/log.h"
-#include "base/record.h"
 #include "base/status.h"
 
 static const struct argp argp = {.doc = "Print the versions of the program and its libraries, as JSON."};

@@ -7,8 +7,8 @@
 #include "app/command/learning/dataset_import.h"
 #include "app/dataset/plot.h"
 #include "app/dataset/summary.h"
+#include "base/files/record.h"
 #include "base/log.h"
-#include "base/record.h"
 #include "datagen/files/dataset.h"
 #include "datagen/files/merge.h"
 

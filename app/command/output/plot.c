@@ -7,7 +7,7 @@
 #include "app/cli/argument.h"
 #include "app/plot/gnuplot.h"
 #include "app/plot/plot.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 

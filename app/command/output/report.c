@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 
 #include "app/report/collect.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 

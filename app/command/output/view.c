@@ -11,7 +11,7 @@
 #include "app/cli/argument.h"
 #include "app/job/job.h"
 #include "app/view/server.h"
-#include "base/confine.h"
+#include "base/files/confine.h"
 #include "base/log.h"
 
 enum { KEY_FRAMES = 256, DEFAULT_FRAMES = 150, MOST_FRAMES = 1000000, MOST_PORT = 65535 };

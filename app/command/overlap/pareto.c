@@ -13,7 +13,7 @@
 #include "app/plot/gnuplot.h"
 #include "app/plot/plot.h"
 #include "app/training/sweep.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 

@@ -10,7 +10,7 @@
 #include "app/job/job.h"
 #include "app/poses/poses.h"
 #include "app/scene/read.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "fem/model/build.h"
 

@@ -11,7 +11,7 @@
 #include "app/job/job.h"
 #include "base/clock.h"
 #include "base/cpu.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "fem/effect/contact/contact.h"

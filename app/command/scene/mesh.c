@@ -6,8 +6,8 @@
 #include <stdio.h>
 
 #include "app/cli/argument.h"
+#include "base/files/record.h"
 #include "base/log.h"
-#include "base/record.h"
 #include "fem/mesh/mesh.h"
 
 // Angles below this make the stiffness matrix worse conditioned than its size alone would.

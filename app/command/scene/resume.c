@@ -9,7 +9,7 @@
 #include "app/cli/versions.h"
 #include "app/command/scene/run.h"
 #include "app/job/origin.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "fem/run/checkpoint/checkpoint.h"

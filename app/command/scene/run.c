@@ -10,7 +10,7 @@
 #include "app/job/beacon.h"
 #include "app/job/origin.h"
 #include "base/clock.h"
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/ranks.h"

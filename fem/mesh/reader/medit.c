@@ -8,9 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/file.h"
+#include "base/files/file.h"
+#include "base/files/temporary.h"
 #include "base/memory.h"
-#include "base/temporary.h"
 
 // The end of the word that this line begins with and whose count follows on it; NULL: there is none. Version
 // and dimension are looked for on the line of their word.

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 
 // TetGen's order of the nodes on edges: 23, 03, 01, 12, 13, 02, as numbers of fem_quadratic_edges; what

@@ -4,7 +4,7 @@
 #ifndef TETLAP_FEM_OUTPUT_OBSTACLE_FRAMES_H
 #define TETLAP_FEM_OUTPUT_OBSTACLE_FRAMES_H
 
-#include "base/file.h"
+#include "base/files/file.h"
 #include "fem/output/vtk/obstacle_surface.h"
 
 typedef struct FemObstacleFrames {

@@ -3,10 +3,10 @@
 #ifndef TETLAP_FEM_OUTPUT_PVD_H
 #define TETLAP_FEM_OUTPUT_PVD_H
 
-#include "base/file.h"
+#include "base/files/file.h"
 #include "base/status.h"
 
-// Writes a list whole or not at all: begin, the entries, commit (base/file.h, whose failures these are; a
+// Writes a list whole or not at all: begin, the entries, commit (base/files/file.h, whose failures these are; a
 // list that is not committed is abandoned there).
 Status fem_pvd_begin(FileWriter *list, const char *path);
 // `part` 0, 1 … of the frame at a time [s], the same ones at each; `name` is what ParaView calls it, NULL:

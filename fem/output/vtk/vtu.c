@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/deflate.h"
-#include "base/file.h"
+#include "base/files/deflate.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "fem/output/vtk/base64.h"
 #include "fem/output/vtk/xml.h"

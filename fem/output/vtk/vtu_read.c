@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/deflate.h"
-#include "base/file.h"
+#include "base/files/deflate.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "fem/output/vtk/base64.h"
 

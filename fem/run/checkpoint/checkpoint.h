@@ -12,7 +12,7 @@
 
 #include <stddef.h>
 
-#include "base/journal.h"
+#include "base/files/journal.h"
 #include "fem/run/run_result.h"
 #include "fem/time/audit.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The file of a checkpoint. HDF5 works in memory only; what reaches the disk goes through base/file.h.
+// The file of a checkpoint. HDF5 works in memory only; what reaches the disk goes through base/files/file.h.
 #include <assert.h>
 #include <errno.h>
 #include <hdf5.h>
@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/digest.h"
-#include "base/file.h"
+#include "base/files/digest.h"
+#include "base/files/file.h"
 #include "base/memory.h"
 #include "fem/run/checkpoint/numbers.h"
 

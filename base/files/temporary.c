@@ -2,7 +2,7 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE 1 // mkostemps, nftw
 #endif
-#include "base/temporary.h"
+#include "base/files/temporary.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A file that grows by whole pieces while others read it, and of which nothing is held in memory.
 //
-// The first piece puts a new file in the place of what was there (base/file.h); each later one is appended in
+// The first piece puts a new file in the place of what was there (base/files/file.h); each later one is appended in
 // one write and handed to the system at once. A write that fails is taken back, so the file ends with a whole
 // piece; only a process that is killed within a write may leave a part of one. A mark names what the file
 // holds up to a moment: whoever goes on from there later, in another process, finds it unchanged, and what
@@ -16,7 +16,7 @@
 
 typedef struct JournalMark {
   long long size;  // bytes; 0: there is no file yet
-  uint64_t digest; // of these bytes (base/digest.h)
+  uint64_t digest; // of these bytes (base/files/digest.h)
 } JournalMark;
 
 typedef struct Journal {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/deflate.h"
+#include "base/files/deflate.h"
 
 #include <zlib.h>
 

@@ -2,7 +2,7 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE 1 // dladdr1
 #endif
-#include "base/data.h"
+#include "base/files/data.h"
 
 #include <dlfcn.h>
 #include <limits.h>
@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/file.h"
+#include "base/files/file.h"
 
 // The file that this function is in: the program, or a shared library.
 static bool find_own_file(char path[PATH_MAX]) {

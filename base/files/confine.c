@@ -2,7 +2,7 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE 1 // O_PATH
 #endif
-#include "base/confine.h"
+#include "base/files/confine.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/digest.h"
+#include "base/files/digest.h"
 
 #include <inttypes.h>
 #include <stdio.h>
