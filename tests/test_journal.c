@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// base/files/journal: a file that grows by whole pieces, that a later process can go on with, and that no fault
-// leaves with half a piece.
+// base/files/journal: a file that grows by whole pieces, that a later process can go on with, and that no
+// fault leaves with half a piece.
 #include "base/files/journal.h"
 
 #include <signal.h>

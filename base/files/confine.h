@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keeps a process that shows files to others within one folder: while it is confined, file_read
-// (base/files/file.h) opens regular files beneath that folder alone, by paths that begin with its name, and follows
-// no link on the way. Each component is opened from the one before, so nobody who swaps a folder for a link
-// meanwhile is faster; a pipe cannot make it wait.
+// (base/files/file.h) opens regular files beneath that folder alone, by paths that begin with its name, and
+// follows no link on the way. Each component is opened from the one before, so nobody who swaps a folder for
+// a link meanwhile is faster; a pipe cannot make it wait.
 #ifndef TETLAP_BASE_CONFINE_H
 #define TETLAP_BASE_CONFINE_H
 

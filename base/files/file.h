@@ -34,8 +34,8 @@ int file_remove(const char *path);
 
 Status file_make_directories(const char *path); // like mkdir -p
 int file_exists(const char *path);
-// The whole file as text with a terminating 0, of those that base/files/confine.h allows; `*text` is owned by the
-// caller (memory_free).
+// The whole file as text with a terminating 0, of those that base/files/confine.h allows; `*text` is owned by
+// the caller (memory_free).
 Status file_read(const char *path, char **text, size_t *size);
 // "dir/name" or `name` itself if it is absolute; owned by the caller. NULL: no memory.
 char *file_join(const char *directory, const char *name);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A file that grows by whole pieces while others read it, and of which nothing is held in memory.
 //
-// The first piece puts a new file in the place of what was there (base/files/file.h); each later one is appended in
-// one write and handed to the system at once. A write that fails is taken back, so the file ends with a whole
-// piece; only a process that is killed within a write may leave a part of one. A mark names what the file
-// holds up to a moment: whoever goes on from there later, in another process, finds it unchanged, and what
-// came after it is cut off, or is refused. Of several ranks (base/ranks.h) the first writes.
+// The first piece puts a new file in the place of what was there (base/files/file.h); each later one is
+// appended in one write and handed to the system at once. A write that fails is taken back, so the file ends
+// with a whole piece; only a process that is killed within a write may leave a part of one. A mark names what
+// the file holds up to a moment: whoever goes on from there later, in another process, finds it unchanged,
+// and what came after it is cut off, or is refused. Of several ranks (base/ranks.h) the first writes.
 #ifndef TETLAP_BASE_JOURNAL_H
 #define TETLAP_BASE_JOURNAL_H
 

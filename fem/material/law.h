@@ -29,7 +29,7 @@ typedef struct FemMaterial {
   double damping; // β of stiffness-proportional damping [s]; < 0: the scene's
   // Kelvin–Voigt: a viscous second Piola–Kirchhoff stress 2η dev Ė + ζ tr Ė I beside the elastic one.
   double viscosity, bulk_viscosity; // η, ζ ≥ 0 [Pa s]
-  double yield_stress, hardening;   // σ_y, 0: elastic, and H of J2 plasticity [Pa] (fem/effect/elements/plasticity.c)
+  double yield_stress, hardening;   // σ_y, 0: elastic, and H of the effect plasticity [Pa]
   double mooney;                    // m of mooney_rivlin, in [0, 1]
   double exponents[3], shares[3];   // α_p and shares of ogden's terms; the shares are taken by their sum
   double fibre_stiffness;           // k [Pa]; 0: no fibres

@@ -18,7 +18,7 @@ typedef struct FemModelBody {
   int tet_begin, tet_end;
   FemMaterial material; // obstacles: zeroed
   FemMaterial local;    // what an element resists with by itself; the rest of λ is the vertices'
-                        // (fem/effect/elements/volume.h) or the mean's of a quadratic one (fem/element/quadratic.h)
+                        // (the effect volume) or the mean's of a quadratic one (fem/element/quadratic.h)
   double bulk;          // that rest, of quadratic ones; else 0 [Pa]
   int quadratic_begin, quadratic_end;
   FemElementKind element;

@@ -2,8 +2,8 @@
 // history.csv: one line a frame under one line of column names (RFC 4180, decimal points, numbers that read
 // back to the same double). The columns are the run's to name; docs/output.md lists them.
 //
-// Every line reaches the file at once, whole (base/files/journal.h): others may read it while it grows, and nothing
-// of it is held in memory.
+// Every line reaches the file at once, whole (base/files/journal.h): others may read it while it grows, and
+// nothing of it is held in memory.
 #ifndef TETLAP_FEM_OUTPUT_HISTORY_H
 #define TETLAP_FEM_OUTPUT_HISTORY_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole run of a scene: model → system → integrator (or, in a static scene, fem/statics/statics.h) → frames.
+// A whole run of a scene: model → system → integrator (in a static scene fem/statics/statics.h) → frames.
 //
 //     step ──► energy audit ──► frames up to its time (interpolated) ──► accept: effects renew their lists
 //      ▲            │ gains too much: back to the last accepted state, smaller step, order 1        │

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Data sets of pairs. The input is a list of edits (hdf5_edit.h) of a good file; what is read of the outcome
-// keeps what datagen/files/dataset.h promises. With TETLAP_FUZZ_DAMAGE in the environment edits may also change
-// bytes behind HDF5's back: what breaks then is HDF5's as a rule.
+// keeps what datagen/files/dataset.h promises. With TETLAP_FUZZ_DAMAGE in the environment edits may also
+// change bytes behind HDF5's back: what breaks then is HDF5's as a rule.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

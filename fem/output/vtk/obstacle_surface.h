@@ -30,8 +30,8 @@ void fem_obstacle_surface_destroy(FemObstacleSurface *surface); // a zeroed one,
 // Fills positions and velocities for that time [s].
 void fem_obstacle_surface_place(FemObstacleSurface *surface, double time);
 
-// Writes what was placed last as a frame of triangles (fem/output/vtk/vtu.h) with the arrays `velocity`, `body`
-// and `face`. `time` NaN: at all times. Fails as fem_vtu_write.
+// Writes what was placed last as a frame of triangles (fem/output/vtk/vtu.h) with the arrays `velocity`,
+// `body` and `face`. `time` NaN: at all times. Fails as fem_vtu_write.
 Status fem_obstacle_surface_write(const FemObstacleSurface *surface, const char *path, double time);
 
 #endif

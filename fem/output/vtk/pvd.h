@@ -6,8 +6,8 @@
 #include "base/files/file.h"
 #include "base/status.h"
 
-// Writes a list whole or not at all: begin, the entries, commit (base/files/file.h, whose failures these are; a
-// list that is not committed is abandoned there).
+// Writes a list whole or not at all: begin, the entries, commit (base/files/file.h, whose failures these are;
+// a list that is not committed is abandoned there).
 Status fem_pvd_begin(FileWriter *list, const char *path);
 // `part` 0, 1 … of the frame at a time [s], the same ones at each; `name` is what ParaView calls it, NULL:
 // nothing. `file` is relative to the list's directory and may stand at many times.
