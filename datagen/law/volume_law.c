@@ -20,7 +20,7 @@ enum { SHAPE_COUNT = sizeof shapes / sizeof *shapes };
 
 // Chebyshev series of ln f, f the density of ln V per pair drawn: least squares on a histogram of 3e8 uniform
 // pairs (183,258,689 with V > 0; bins of 0.112 in ln V from 1e-9 to 0.06, weights by counts; χ² per degree of
-// freedom 1.13; largest residual below 0.021: 0.7 %). tests/test_datagen_pairs.c draws anew and compares.
+// freedom 1.13; largest residual below 0.021: 0.7 %). tests/datagen/test_datagen_pairs.c draws anew and compares.
 static const double fit[] = {-4.74658,  -0.127115, -2.27939,   -1.47737,   -0.810055,   -0.428934,
                              -0.225369, -0.116976, -0.0545749, -0.0256999, -0.00844364, -0.00382517};
 enum { FIT_TERMS = sizeof fit / sizeof *fit };

@@ -53,7 +53,7 @@
 // across. `clip`, which sums each face on its own, adds ν/8 λ_f(o) for each face that P has (clip_lanes.h).
 // With |δV| so, the moment V x̄ is off by at most L |δV|: |δx̄| ≤ 1e-9 L where V is more than 1e-6 of the
 // smaller tetrahedron, and x̄ is within the boxes of both in any case. Rounding of well-shaped pairs leaves
-// |δx̄| ≤ 1e-12 L where V is more than 1e-4 of the smaller (tests/test_centroid.c).
+// |δx̄| ≤ 1e-12 L where V is more than 1e-4 of the smaller (tests/overlap/test_centroid.c).
 //
 // Whether there is a volume at all is rounding where V ≤ 64 of this bound's |δV| (without the last part) or Σ φ ≤ 4096 ε:
 // faces that lie on each other but for rounding have φ, and so ∇V, of an overlap. Such pairs are handed on, so

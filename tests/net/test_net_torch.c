@@ -160,8 +160,8 @@ int main(void) {
   tcase_add_test(test_case, networks_and_what_they_compute_are_written);
   if (suite_run("net_torch", test_case, 60) != EXIT_SUCCESS) return EXIT_FAILURE;
   char command[512];
-  snprintf(command, sizeof command, "'%s' '%s/tests/torch_compare.py' %s", TETLAP_PYTHON, TETLAP_SOURCE_DIR,
-           directory);
+  snprintf(command, sizeof command, "'%s' '%s/tests/net/torch_compare.py' %s", TETLAP_PYTHON,
+           TETLAP_SOURCE_DIR, directory);
   fflush(stdout);
   int status = system(command);
   clean();
