@@ -107,6 +107,7 @@ static void set_options(void) {
       {"-tetlap_gamg_pc_type", "gamg"},
       {"-tetlap_mumps_pc_type", "cholesky"},
       {"-tetlap_mumps_pc_factor_mat_solver_type", "mumps"},
+      {"-tetlap_mumps_mat_mumps_icntl_13", "1"}, // no root apart, so that its pivots are counted, too
       {"-tetlap_blocks_pc_type", "bjacobi"},
       {"-tetlap_blocks_sub_pc_type", "icc"},
       {"-tetlap_blocks_sub_pc_factor_shift_type", "positive_definite"},
@@ -518,18 +519,29 @@ static Status analyse(void *self, const FemMatrix *pattern) {
   return STATUS_OK;
 }
 
+// MUMPS goes on over pivots below zero and counts them.
+static bool has_negative_pivots(DistSolver *solver, PC pc) {
+  Mat factor;
+  PetscInt count;
+  PETSC("the factor", PCFactorGetMatrix(pc, &factor));
+  PETSC("the factor", MatMumpsGetInfog(factor, 12, &count));
+  return count > 0;
+}
+
 static Status set_up(DistSolver *solver) {
   bool is_kept = !solver->is_worn && solver->kind != MUMPS;
   PC pc;
   PCFailedReason reason;
   PETSC("the solver", KSPSetReusePreconditioner(solver->ksp, is_kept ? PETSC_TRUE : PETSC_FALSE));
+  // Told anew of its matrix, KSPSetUp looks at it; else the first application would, and find what is wrong.
+  PETSC("the solver", KSPSetOperators(solver->ksp, solver->matrix, solver->matrix));
   PETSC("the solver", KSPSetUp(solver->ksp));
   PETSC("the solver", KSPGetPC(solver->ksp, &pc));
   PETSC("the solver", PCGetFailedReasonRank(pc, &reason));
   if (is_kept) return STATUS_OK;
   solver->is_worn = false;
   solver->is_fresh = true;
-  if (reason == PC_NOERROR) return STATUS_OK;
+  if (reason == PC_NOERROR && !(solver->kind == MUMPS && has_negative_pivots(solver, pc))) return STATUS_OK;
   if (reason == PC_FACTOR_OUTMEMORY) return status_no_memory("the factor of the condensed system");
   return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite (found by %s)",
                      names[solver->kind]);

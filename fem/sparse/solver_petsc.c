@@ -433,7 +433,12 @@ static Status iterate(PetscSolver *solver, const double *b, double *x, int limit
                           .tolerance = solver->aimed,
                           .limit = limit};
   long long before = solver->stats.iterations;
-  TRY(fem_cg_solve(&solver->cg, &problem, b, x, &solver->stats.iterations, end));
+  Status status = fem_cg_solve(&solver->cg, &problem, b, x, &solver->stats.iterations, end);
+  if (status) { // what is kept may be of a matrix that is not positive definite
+    solver->is_fresh = false;
+    solver->is_worn = true;
+    return status;
+  }
   long long taken = solver->stats.iterations - before;
   double digits = -log10(solver->aimed);
   if (solver->is_fresh) solver->new_count = (double)taken / digits;

@@ -25,17 +25,25 @@ typedef struct Descent {
   double *next, *there; // u + s d, and the force there
 } Descent;
 
-// K + shift M, the shift such that it is positive definite; d, no longer than the longest way.
+// d = (K + shift M)⁻¹ f; RETRY: the matrix is not positive definite. Of one that is singular to rounding a
+// solver may not find that, but gives a d, most of it along what nothing holds, against which the force may
+// do work.
+static Status try_step(Descent *descent) {
+  TRY(fem_equilibrium_factorise(descent->equilibrium, descent->time, descent->u, descent->shift));
+  TRY(fem_equilibrium_solve(descent->equilibrium, descent->force, descent->step));
+  if (fem_solver_dot(descent->force, descent->step, descent->n) > 0) return STATUS_OK;
+  return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
+}
+
+// The shift such that the matrix is positive definite; d, no longer than the longest way.
 static Status find_step(Descent *descent) {
-  FemEquilibrium *equilibrium = descent->equilibrium;
-  const FemModel *model = equilibrium->system->model;
-  Status status = fem_equilibrium_factorise(equilibrium, descent->time, descent->u, descent->shift);
+  const FemModel *model = descent->equilibrium->system->model;
+  Status status = try_step(descent);
   while (status == STATUS_RETRY && descent->refusals++ < MAX_REFUSALS) {
     descent->shift = fmax(SHIFT_RISE * descent->shift, FIRST_SHIFT * descent->first_shift);
-    status = fem_equilibrium_factorise(equilibrium, descent->time, descent->u, descent->shift);
+    status = try_step(descent);
   }
   TRY(status);
-  TRY(fem_equilibrium_solve(equilibrium, descent->force, descent->step));
   double way = fem_equilibrium_largest(descent->step, descent->n), most = LONGEST_WAY * model->edge;
   for (int i = 0; i < descent->n && way > most; i++) descent->step[i] *= most / way;
   descent->shift = descent->shift > FIRST_SHIFT * descent->first_shift ? SHIFT_FALL * descent->shift : 0;
