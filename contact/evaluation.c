@@ -56,7 +56,6 @@ void contact_evaluation_destroy(ContactEvaluation *evaluation) {
 static Status reserve(ContactEvaluation *evaluation, const ContactLayout *layout, int count) {
   size_t n = (size_t)count, size = sizeof(double);
   bool fits =
-      memory_reserve((void **)&evaluation->pairs, &evaluation->pair_capacity, n, sizeof(ContactPair)) &&
       memory_reserve((void **)&evaluation->coordinates, &evaluation->coordinate_capacity, 24 * n, size) &&
       memory_reserve((void **)&evaluation->volumes, &evaluation->volume_capacity, n, size) &&
       memory_reserve((void **)&evaluation->gradients, &evaluation->gradient_capacity, 24 * n, size) &&
@@ -129,26 +128,23 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
             : !(contact_bounds_distance(evaluation->boxes[tets[0]], evaluation->boxes[tets[1]]) > apart);
     kept += evaluation->is_kept[k];
   }
-  TRY(reserve(evaluation, layout, kept));
+  if (!memory_reserve((void **)&evaluation->pairs, &evaluation->pair_capacity, (size_t)kept,
+                      sizeof(ContactPair)))
+    return status_no_memory("candidate pairs");
   evaluation->pair_count = 0;
   for (int k = 0; k < count; k++)
     if (evaluation->is_kept[k]) evaluation->pairs[evaluation->pair_count++] = candidates->pairs[k];
   return STATUS_OK;
 }
 
-// Moves pair `from` and its coordinates to the earlier place `to`.
-static void move_pair(ContactEvaluation *evaluation, int from, int to) {
+// Moves pair `from` and its overlap to the earlier place `to`. Of two bodies the field's forces are found
+// later, from the centroid.
+static void move_overlap(ContactEvaluation *evaluation, bool has_field, int from, int to) {
+  bool is_of_shape = evaluation->pairs[from].tets[1] < 0;
   if (from == to) return;
   evaluation->pairs[to] = evaluation->pairs[from];
   memcpy(evaluation->coordinates + 24 * (size_t)to, evaluation->coordinates + 24 * (size_t)from,
          24 * sizeof(double));
-}
-
-// What the overlap of a pair is, too. Of two bodies the field's forces are found later, from the centroid.
-static void move_overlap(ContactEvaluation *evaluation, bool has_field, int from, int to) {
-  bool is_of_shape = evaluation->pairs[from].tets[1] < 0;
-  if (from == to) return;
-  move_pair(evaluation, from, to);
   evaluation->volumes[to] = evaluation->volumes[from];
   if (has_field && !is_of_shape) {
     memcpy(evaluation->centroids + 3 * (size_t)to, evaluation->centroids + 3 * (size_t)from,
@@ -160,31 +156,43 @@ static void move_overlap(ContactEvaluation *evaluation, bool has_field, int from
   if (has_field) evaluation->fields[to] = evaluation->fields[from];
 }
 
-// Gathers the listed pairs and drops those that a face separates for certain, unless the model sees ghosts.
-static void sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *layout, bool keeps_all,
-                          const double *positions) {
+// Marks the listed pairs but those that a face separates for certain, `mesh_count` of them of two meshes.
+static void find_faces_apart(ContactEvaluation *evaluation, const ContactLayout *layout, int mesh_count,
+                             const double *positions) {
   enum { PORTION = 64 };
+#pragma omp parallel for schedule(static) if (mesh_count > 512)
+  for (int begin = 0; begin < mesh_count; begin += PORTION) {
+    bool is_apart[PORTION];
+    double coordinates[24 * PORTION]; // most are not asked for again
+    int count = begin + PORTION < mesh_count ? PORTION : mesh_count - begin;
+    for (int k = 0; k < count; k++)
+      contact_layout_gather_pair(layout, &evaluation->pairs[begin + k], positions,
+                                 coordinates + 24 * (size_t)k);
+    overlap_separation_find(count, coordinates, is_apart);
+    for (int k = 0; k < count; k++) evaluation->is_kept[begin + k] = !is_apart[k];
+  }
+}
+
+// Drops of the listed pairs those that a face separates for certain, unless the model sees ghosts, and
+// gathers the others.
+static Status sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *layout, bool keeps_all,
+                            const double *positions) {
   int count = evaluation->pair_count, mesh_count = count, kept = 0;
   while (mesh_count > 0 && evaluation->pairs[mesh_count - 1].tets[1] < 0) mesh_count--;
-#pragma omp parallel for schedule(static) if (count > 512)
-  for (int begin = 0; begin < count; begin += PORTION) {
-    bool is_apart[PORTION] = {false};
-    int end = begin + PORTION < count ? begin + PORTION : count;
-    int mesh_end = end < mesh_count ? end : mesh_count;
-    double *coordinates = evaluation->coordinates + 24 * (size_t)begin;
-    for (int k = begin; k < end; k++)
-      contact_layout_gather_pair(layout, &evaluation->pairs[k], positions,
-                                 coordinates + 24 * (size_t)(k - begin));
-    if (!keeps_all && mesh_end > begin) overlap_separation_find(mesh_end - begin, coordinates, is_apart);
-    for (int k = begin; k < end; k++) evaluation->is_kept[k] = !is_apart[k - begin];
-  }
+  if (!keeps_all) find_faces_apart(evaluation, layout, mesh_count, positions);
   evaluation->mesh_pair_count = 0;
   for (int k = 0; k < count; k++) {
-    if (!evaluation->is_kept[k]) continue;
+    if (!keeps_all && k < mesh_count && !evaluation->is_kept[k]) continue;
     evaluation->mesh_pair_count += k < mesh_count;
-    move_pair(evaluation, k, kept++);
+    evaluation->pairs[kept++] = evaluation->pairs[k];
   }
   evaluation->pair_count = kept;
+  TRY(reserve(evaluation, layout, kept));
+#pragma omp parallel for schedule(static) if (kept > 512)
+  for (int k = 0; k < kept; k++)
+    contact_layout_gather_pair(layout, &evaluation->pairs[k], positions,
+                               evaluation->coordinates + 24 * (size_t)k);
+  return STATUS_OK;
 }
 
 // Names the tetrahedra, as the frames number them, of a pair that the model refused or answered badly.
@@ -415,7 +423,7 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   double start = clock_wall_s();
   clear(evaluation);
   TRY(sift_by_boxes(evaluation, layout, candidates, with_shapes, positions));
-  sift_by_faces(evaluation, layout, overlap_model_has_ghosts(model), positions);
+  TRY(sift_by_faces(evaluation, layout, overlap_model_has_ghosts(model), positions));
   TRY(overlap_meshes(evaluation, layout, model));
   overlap_shapes(evaluation, layout, time);
   keep_overlapping(evaluation, layout->depth.has_field);

@@ -350,7 +350,54 @@ static void multiply_vertex(const FemMatrix *matrix, int w, const double *x, dou
   for (int c = 0; c < active; c++) y[first + c] = sum[c];
 }
 
+// A vertex with three unknowns and its blocks with higher vertices, each number read once: it is that of two
+// entries.
+static void spread_vertex(const FemMatrix *matrix, int v, const double *x, double *y) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  const int first = blocks->first[v], *begin = matrix->col_begin + first;
+  const double *a = matrix->value + begin[0], *b = matrix->value + begin[1], *c = matrix->value + begin[2];
+  const double *own = x + first;
+  double sum[3] = {a[0] * own[0] + a[1] * own[1] + a[2] * own[2],
+                   a[1] * own[0] + b[0] * own[1] + b[1] * own[2],
+                   a[2] * own[0] + b[1] * own[1] + c[0] * own[2]};
+  a += 3, b += 2, c += 1;
+  for (int k = blocks->above_begin[v]; k < blocks->above_begin[v + 1]; k++) {
+    const int w = blocks->above[k], count = blocks->active[w];
+    const double *at = x + blocks->first[w];
+    double *to = y + blocks->first[w];
+    for (int r = 0; r < count; r++) {
+      sum[0] += a[r] * at[r], sum[1] += b[r] * at[r], sum[2] += c[r] * at[r];
+      to[r] += a[r] * own[0] + b[r] * own[1] + c[r] * own[2];
+    }
+    a += count, b += count, c += count;
+  }
+  for (int r = 0; r < 3; r++) y[first + r] += sum[r];
+}
+
+// The same for any vertex, a column at a time.
+static void spread_columns(const FemMatrix *matrix, int v, const double *x, double *y) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  for (int column = blocks->first[v]; column < blocks->first[v] + blocks->active[v]; column++) {
+    int begin = matrix->col_begin[column];
+    double sum = matrix->value[begin] * x[column];
+    for (int k = begin + 1; k < matrix->col_begin[column + 1]; k++) {
+      sum += matrix->value[k] * x[matrix->row[k]];
+      y[matrix->row[k]] += matrix->value[k] * x[column];
+    }
+    y[column] += sum;
+  }
+}
+
 void fem_matrix_multiply(const FemMatrix *matrix, const double *x, double *y) {
-#pragma omp parallel for schedule(static) if (matrix->size > PARALLEL_SIZE)
+  if (matrix->size <= PARALLEL_SIZE) {
+    memset(y, 0, (size_t)matrix->size * sizeof *y);
+    for (int v = 0; v < matrix->vertex_count; v++)
+      if (matrix->blocks->active[v] == 3)
+        spread_vertex(matrix, v, x, y);
+      else
+        spread_columns(matrix, v, x, y);
+    return;
+  }
+#pragma omp parallel for schedule(static)
   for (int w = 0; w < matrix->vertex_count; w++) multiply_vertex(matrix, w, x, y);
 }

@@ -65,10 +65,14 @@ static void find_shares(const FemMixing *mixing, const double *weights, const do
   gamma[1] = (right_two * a - right * b) / det;
 }
 
-void fem_mixing_mix(FemMixing *mixing, const double *weights, double *d) {
-  double gamma[2];
+void fem_mixing_note(FemMixing *mixing, const double *d) {
   if (mixing->has_last) push(mixing, d);
   memcpy(mixing->last, d, (size_t)mixing->n * sizeof *d);
+}
+
+void fem_mixing_mix(FemMixing *mixing, const double *weights, double *d) {
+  double gamma[2];
+  fem_mixing_note(mixing, d);
   if (mixing->count == 0) return;
   find_shares(mixing, weights, d, gamma);
   if (!isfinite(gamma[0] + gamma[1])) return;

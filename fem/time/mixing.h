@@ -31,6 +31,9 @@ void fem_mixing_destroy(FemMixing *mixing);
 // Another iteration begins.
 void fem_mixing_forget(FemMixing *mixing);
 
+// Keeps the direction d as it is for later, without mixing it.
+void fem_mixing_note(FemMixing *mixing, const double *d);
+
 // From d to the step, in place. `weights` as in the norm (n).
 void fem_mixing_mix(FemMixing *mixing, const double *weights, double *d);
 

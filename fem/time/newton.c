@@ -143,11 +143,15 @@ static int find_direction(Solve *solve) {
   N_VScale(-1, newton->residual, newton->direction);
   int flag = newton->solve(newton->direction, solve->memory);
   if (flag != 0) return flag;
+  if (solve->renewals == 0) {
+    fem_mixing_note(&newton->mixing, N_VGetArrayPointer(newton->direction));
+    find_slope(solve);
+    return 0;
+  }
   N_VScale(1, newton->direction, newton->pure);
   fem_mixing_mix(&newton->mixing, N_VGetArrayPointer(solve->weights), N_VGetArrayPointer(newton->direction));
-  if (solve->renewals == 0) N_VScale(1, newton->pure, newton->direction);
   find_slope(solve);
-  if (solve->slope < 0 || solve->renewals == 0) return 0;
+  if (solve->slope < 0) return 0;
   N_VScale(1, newton->pure, newton->direction);
   find_slope(solve);
   return 0;

@@ -240,7 +240,7 @@ END_TEST
 START_TEST(a_product_has_the_same_bits_with_any_number_of_threads) {
   enum { LENGTH = 3000 };
   static int unknown_of_dof[3 * LENGTH];
-  static double x[3 * LENGTH], one[3 * LENGTH], many[3 * LENGTH];
+  static double x[3 * LENGTH], one[3 * LENGTH], many[3 * LENGTH], expected[3 * LENGTH];
   Random random = random_seeded(8, 0);
   FemPattern *pattern;
   FemMatrix matrix;
@@ -257,6 +257,12 @@ START_TEST(a_product_has_the_same_bits_with_any_number_of_threads) {
   fem_matrix_multiply(&matrix, x, many);
   omp_set_num_threads(before);
   ck_assert_mem_eq(one, many, sizeof one);
+  for (int j = 0; j < matrix.size; j++)
+    for (int k = matrix.col_begin[j]; k < matrix.col_begin[j + 1]; k++) {
+      expected[matrix.row[k]] += matrix.value[k] * x[j];
+      if (matrix.row[k] != j) expected[j] += matrix.value[k] * x[matrix.row[k]];
+    }
+  for (int i = 0; i < matrix.size; i++) ck_assert_near(one[i], expected[i], 1e-12);
   fem_matrix_destroy(&matrix);
   fem_pattern_destroy(pattern);
 }
