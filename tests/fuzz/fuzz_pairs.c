@@ -7,8 +7,6 @@
 //   clip-scalar, clip               V as exact within what clip.h states
 //   clip, geo                       the same bits in whichever lane, beside whichever neighbours; nothing
 //                                   depends on the order of vertices and tetrahedra
-//   clip, tpn, tpn-published        the same bits from the kernels for devices, as plain C
-//   geo                             V to rounding from them, and the same pairs called disjoint
 //   geo                             no overlap is missed, beyond what geo_gate.h calls noise
 //
 // Numbers that are not finite must be refused. Lengths beyond 2^±60 and volumes below 2^−960 are evaluated,
@@ -20,12 +18,10 @@
 #include "base/random.h"
 #include "base/vec3.h"
 #include "datagen/hard.h"
-#include "device/overlap/overlap.h"
-#include "net/kernel/kernel.h"
-#include "overlap/clip/lanes.h"
 #include "overlap/geo/gate.h"
 #include "overlap/invariant.h"
 #include "overlap/model.h"
+#include "pairs.h"
 #include "target.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE, PAIR_BYTES = SIZE * sizeof(double) };
@@ -201,74 +197,7 @@ static void check_orders(Model model, const double x[SIZE], const Answer *answer
   }
 }
 
-static OverlapBatch batch_of(Batch *batch) {
-  return (OverlapBatch){.pair_count = VARIANTS,
-                        .pairs = batch->pairs[0],
-                        .volume = batch->volumes,
-                        .gradient = batch->gradients[0],
-                        .flags = batch->flags};
-}
-
-// The batch by the kernels for devices.
-static void ask_kernels(const char *name, DeviceOverlap *kernels, const Batch *batch, Batch *told) {
-  static Device device;
-  memcpy(told->pairs, batch->pairs, sizeof told->pairs);
-  const OverlapBatch asked = batch_of(told);
-  if (!device.ops) FUZZ_CLAIM(device_open(&device, "host") == STATUS_OK, "%s", status_message());
-  if (!kernels->device)
-    FUZZ_CLAIM(device_overlap_create(kernels, &device, name) == STATUS_OK, "%s", status_message());
-  FUZZ_CLAIM(device_overlap_eval(kernels, &asked) == STATUS_OK, "kernels of %s: %s", name, status_message());
-}
-
-static void check_bits(const char *name, const Batch *batch, const Batch *told, unsigned untold) {
-  for (int k = 0; k < VARIANTS; k++)
-    FUZZ_CLAIM(memcmp(&batch->volumes[k], &told->volumes[k], sizeof(double)) == 0 &&
-                   memcmp(batch->gradients[k], told->gradients[k], PAIR_BYTES) == 0 &&
-                   (batch->flags[k] & ~untold) == told->flags[k],
-               "kernels of %s, place %d: V = %.17g, flags %u; the model %.17g, flags %u", name, k,
-               told->volumes[k], told->flags[k], batch->volumes[k], batch->flags[k]);
-}
-
-static void check_clip_kernels(const Batch *batch) {
-  static DeviceOverlap kernels;
-  static Batch told;
-  ask_kernels("clip", &kernels, batch, &told);
-  check_bits("clip", batch, &told, 0);
-}
-
-// A device does not tell pairs unlike those that a network was trained on.
-static void check_network_kernels(const Batch *batch) {
-  static const char *const networks[] = {"tpn", "tpn-published"};
-  static OverlapModel models[2];
-  static DeviceOverlap kernels[2];
-  static Batch told, expected;
-  for (int n = 0; n < 2; n++) {
-    memcpy(expected.pairs, batch->pairs, sizeof expected.pairs);
-    const OverlapBatch asked = batch_of(&expected);
-    if (!models[n].ops)
-      FUZZ_CLAIM(overlap_model_create(&models[n], networks[n]) == STATUS_OK, "%s", status_message());
-    FUZZ_CLAIM(overlap_model_eval(&models[n], &asked) == STATUS_OK, "%s: %s", networks[n], status_message());
-    ask_kernels(networks[n], &kernels[n], batch, &told);
-    check_bits(networks[n], &expected, &told, OVERLAP_BEYOND);
-  }
-}
-
-static void check_geo_kernels(const double x[SIZE], const Batch *batch) {
-  static DeviceOverlap kernels;
-  static Batch told;
-  const double allowed = 1e-9 * overlap_invariant_smaller_volume(x) + doubt_of_geo(x);
-  ask_kernels("geo", &kernels, batch, &told);
-  for (int k = 0; k < VARIANTS; k++) {
-    FUZZ_CLAIM(fabs(batch->volumes[k] - told.volumes[k]) <= allowed,
-               "kernels of geo, place %d: V = %.17g; geo %.17g", k, told.volumes[k], batch->volumes[k]);
-    FUZZ_CLAIM(((batch->flags[k] ^ told.flags[k]) & OVERLAP_DISJOINT) == 0 ||
-                   fmax(batch->volumes[k], told.volumes[k]) <= allowed,
-               "kernels of geo, place %d: flags %u; geo %u", k, told.flags[k], batch->flags[k]);
-  }
-}
-
-// Whether V, ∇V and their checks stay within what doubles can hold.
-static bool is_moderate(const double x[SIZE]) {
+bool fuzz_pairs_is_moderate(const double x[SIZE]) {
   double largest = 0;
   for (int i = 0; i < SIZE; i++) largest = fmax(largest, fabs(x[i]));
   double least = overlap_invariant_smaller_volume(x); // parts of it are to be normal numbers, too
@@ -293,7 +222,7 @@ static void run(const uint8_t *data, size_t size) {
     return;
   }
   static Batch batch;
-  bool is_checked = is_moderate(x);
+  bool is_checked = fuzz_pairs_is_moderate(x);
   Answer exact = answer_of(EXACT, x);
   if (is_checked) check_answer(EXACT, x, &exact);
   for (Model model = CLIP_SCALAR; model < MODEL_COUNT; model++) {
@@ -305,9 +234,6 @@ static void run(const uint8_t *data, size_t size) {
     ask(model, VARIANTS, batch.pairs[0], batch.volumes, batch.gradients[0], batch.flags);
     check_lanes(model, &answer, &batch);
     check_orders(model, x, &answer, &batch);
-    if (model == CLIP && overlap_clip_lanes()) check_clip_kernels(&batch);
-    if (model == CLIP && net_kernel_best() != NET_KERNEL_BLAS) check_network_kernels(&batch);
-    if (model == GEO) check_geo_kernels(x, &batch);
   }
 }
 

@@ -20,7 +20,7 @@
 #include "target.h"
 
 static const FuzzTarget *const targets[] = {&fuzz_scene,      &fuzz_mesh,  &fuzz_weights, &fuzz_dataset,
-                                            &fuzz_checkpoint, &fuzz_pairs, &fuzz_table};
+                                            &fuzz_checkpoint, &fuzz_pairs, &fuzz_kernels, &fuzz_table};
 enum { TARGET_COUNT = sizeof targets / sizeof *targets, PATH_SIZE = 4096 };
 
 // Exactly as large as the input, so that reading beyond it is seen by whoever watches memory.

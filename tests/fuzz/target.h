@@ -26,7 +26,7 @@ typedef struct FuzzTarget {
 } FuzzTarget;
 
 extern const FuzzTarget fuzz_scene, fuzz_mesh, fuzz_weights, fuzz_dataset, fuzz_checkpoint, fuzz_pairs,
-    fuzz_table;
+    fuzz_kernels, fuzz_table;
 
 // What a target claims of the code that it feeds; `...` is a printf format with what was found instead.
 #define FUZZ_CLAIM(is_true, ...)                                                                             \
