@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A driver for tests in place of libcuda.so.1: one device that takes everything and computes nothing, but for
 // what FAKE_CUDA tells it to refuse: start, device, old, memory, load, launch or lost (a launch is taken,
-// what waits for it fails).
+// what waits for it fails; with FAKE_AFTER=N, of the launch after so many). What is still there when the
+// device is given back is told on standard error.
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +15,7 @@ static int is_told(const char *what) {
   return told && strcmp(told, what) == 0;
 }
 
-static int is_lost;
+static int is_lost, launches, memories, modules, events;
 
 int cuInit(unsigned flags);
 int cuInit(unsigned flags) {
@@ -59,6 +61,8 @@ FUNCTION(cuDevicePrimaryCtxRetain, void **context, int device) {
 }
 FUNCTION(cuDevicePrimaryCtxRelease_v2, int device) {
   (void)device;
+  if (memories || modules || events)
+    fprintf(stderr, "fake driver: %d memories, %d modules, %d events are kept\n", memories, modules, events);
   return 0;
 }
 FUNCTION(cuCtxSetCurrent, void *context) {
@@ -68,10 +72,13 @@ FUNCTION(cuCtxSetCurrent, void *context) {
 FUNCTION(cuModuleLoadData, void **module, const void *code) {
   *module = &is_lost;
   // what NVRTC makes is an ELF file
-  return is_told("load") || memcmp(code, "\177ELF", 4) != 0 ? INVALID_IMAGE : 0;
+  if (is_told("load") || memcmp(code, "\177ELF", 4) != 0) return INVALID_IMAGE;
+  modules++;
+  return 0;
 }
 FUNCTION(cuModuleUnload, void *module) {
   (void)module;
+  modules--;
   return 0;
 }
 FUNCTION(cuModuleGetFunction, void **function, void *module, const char *name) {
@@ -82,9 +89,11 @@ FUNCTION(cuModuleGetFunction, void **function, void *module, const char *name) {
 FUNCTION(cuMemAlloc_v2, uint64_t *address, size_t bytes) {
   if (is_told("memory") && bytes > 1000) return OUT_OF_MEMORY;
   *address = (uint64_t)(uintptr_t)calloc(bytes, 1);
+  memories++;
   return 0;
 }
 FUNCTION(cuMemFree_v2, uint64_t address) {
+  memories--;
   free((void *)(uintptr_t)address);
   return 0;
 }
@@ -100,7 +109,8 @@ FUNCTION(cuLaunchKernel, void *function, unsigned gx, unsigned gy, unsigned gz, 
          unsigned bz, unsigned shared, void *stream, void **parameters, void **extra) {
   (void)function, (void)gx, (void)gy, (void)gz, (void)bx, (void)by, (void)bz, (void)shared;
   (void)stream, (void)parameters, (void)extra;
-  is_lost = is_told("lost");
+  const char *after = getenv("FAKE_AFTER");
+  is_lost = is_told("lost") && launches++ >= (after ? atoi(after) : 0);
   return is_told("launch") ? TOO_MUCH : 0;
 }
 FUNCTION(cuCtxSynchronize, void) {
@@ -109,6 +119,7 @@ FUNCTION(cuCtxSynchronize, void) {
 FUNCTION(cuEventCreate, void **event, unsigned flags) {
   (void)flags;
   *event = &is_lost;
+  events++;
   return 0;
 }
 FUNCTION(cuEventRecord, void *event, void *stream) {
@@ -126,6 +137,7 @@ FUNCTION(cuEventElapsedTime, float *milliseconds, void *begin, void *end) {
 }
 FUNCTION(cuEventDestroy_v2, void *event) {
   (void)event;
+  events--;
   return 0;
 }
 FUNCTION(cuGetErrorName, int code, const char **name) {
