@@ -13,6 +13,7 @@
 #include "datagen/hard.h"
 #include "device/overlap/overlap.h"
 #include "overlap/geo/model.h"
+#include "overlap/invariant.h"
 
 enum { MAX_DEVICES = 3, COUNT = 2051, MEMBERS = 64, MODELS = 2, QUANTITIES = 3 };
 
@@ -54,10 +55,10 @@ static OverlapBatch batch_of(const double *pairs, int count, const Answers *answ
                         .flags = answers->flags};
 }
 
-static void ask_processor(const char *name, const OverlapBatch *batch) {
+static void ask_processor(const char *name, const OverlapBatch *batch, bool is_fused) {
   OverlapModel model;
   ck_assert_ok(overlap_model_create(&model, name));
-  ((OverlapGeoOverlap *)model.self)->model.kernel = &overlap_geo_bundle_kernel_portable;
+  if (!is_fused) ((OverlapGeoOverlap *)model.self)->model.kernel = &overlap_geo_bundle_kernel_portable;
   ck_assert_ok(overlap_model_eval(&model, batch));
   overlap_model_destroy(&model);
 }
@@ -91,7 +92,7 @@ static void check_batch(const Device *device, const char *model, const double *p
     memset(told.volume, 0x55, (size_t)count * 8);
     memset(told.more, 0x55, (size_t)count * 24 * 8);
     ck_assert_ok(device_overlap_eval(&overlap, &batch));
-    ask_processor(model, &other);
+    ask_processor(model, &other, false);
     for (int i = 0; i < count; i++) check_answer(&told, &expected, i, widths[quantity], what);
   }
   for (int i = 0; i < count; i++) {
@@ -112,6 +113,34 @@ START_TEST(bench_sets_are_answered_to_rounding) {
   }
   ck_assert_int_gt(inside, COUNT);
   ck_assert_int_gt(blended, COUNT / 50);
+  memory_free(pairs);
+}
+END_TEST
+
+// By the processor's own kernels, too, which fuse: V to 1e-12 of the smaller tetrahedron's volume, in which
+// coordinates are known to an ulp. Of itself a small V is known less well: an ulp of the coordinates changes
+// it by as much as the two differ.
+START_TEST(fused_kernels_differ_by_what_an_ulp_of_the_coordinates_does) {
+  const Device *device = &devices[_i / MODELS];
+  const char *model = models[_i % MODELS];
+  double *pairs = memory_zeroed(COUNT * 24, sizeof *pairs);
+  Answers told = make_answers(COUNT), expected = make_answers(COUNT);
+  DeviceOverlap overlap;
+  ck_assert_ok(device_overlap_create(&overlap, device, model));
+  for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
+    OverlapBatch batch = batch_of(pairs, COUNT, &told, DEVICE_VOLUME),
+                 other = batch_of(pairs, COUNT, &expected, DEVICE_VOLUME);
+    ck_assert_ok(app_bench_pairs_make(app_bench_sets[set], COUNT, 3, pairs));
+    ck_assert_ok(device_overlap_eval(&overlap, &batch));
+    ask_processor(model, &other, true);
+    for (int i = 0; i < COUNT; i++)
+      ck_assert_msg(fabs(told.volume[i] - expected.volume[i]) <=
+                        1e-12 * overlap_invariant_smaller_volume(pairs + 24 * (size_t)i),
+                    "%s, pair %d: V = %.17g, on the processor %.17g", app_bench_sets[set], i, told.volume[i],
+                    expected.volume[i]);
+  }
+  device_overlap_destroy(&overlap);
+  destroy_answers(&told), destroy_answers(&expected);
   memory_free(pairs);
 }
 END_TEST
@@ -178,6 +207,8 @@ int main(void) {
   open_devices();
   TCase *cases = tcase_create("device_geo");
   tcase_add_loop_test(cases, bench_sets_are_answered_to_rounding, 0, device_count * MODELS);
+  tcase_add_loop_test(cases, fused_kernels_differ_by_what_an_ulp_of_the_coordinates_does, 0,
+                      device_count * MODELS);
   tcase_add_loop_test(cases, hard_pairs_are_answered_to_rounding, 0, device_count * MODELS);
   tcase_add_loop_test(cases, many_pairs_are_answered_in_portions, 0, device_count);
   tcase_add_loop_test(cases, a_pair_that_is_not_finite_is_named, 0, device_count);
