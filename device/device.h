@@ -23,14 +23,23 @@
 
 enum { DEVICE_TEXT = 160, DEVICE_MAX_FOUND = 16, DEVICE_MAX_ARGUMENTS = 24 };
 
+// Kinds of multiplications and additions, by their factors; sums of bf16 are floats.
+typedef enum DeviceArithmetic {
+  DEVICE_IN_FLOAT,
+  DEVICE_IN_DOUBLE,
+  DEVICE_IN_BF16,
+  DEVICE_ARITHMETIC_COUNT
+} DeviceArithmetic;
+
 // What is known of a device before it is opened.
 typedef struct DeviceInfo {
   int index;                // among those of its kind
   char name[DEVICE_TEXT];   // the maker's
   char driver[DEVICE_TEXT]; // platform and version of the driver
   double memory_bytes;
-  int units;     // multiprocessors, or cores
-  int clock_mhz; // the highest that the driver tells; 0: it does not
+  int units;                            // multiprocessors, or cores
+  int clock_mhz;                        // the highest that the driver tells; 0: it does not
+  double peak[DEVICE_ARITHMETIC_COUNT]; // multiplications and additions at most [1/s]; 0: not known
   bool is_gpu;
   char reason[DEVICE_TEXT]; // why it is not usable; "": it is
 } DeviceInfo;

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """PyTorch as a peer of `tetlap bench net` and `tetlap bench train`: the same weights, the same inputs, timed in turns.
 
-    torch_bench.py WEIGHTS PRECISION INPUTS THREADS
+    torch_bench.py WEIGHTS PRECISION INPUTS THREADS [DEVICE]
 
-WEIGHTS is a weights file of net/, PRECISION `float` or `double`, INPUTS raw numbers of it, a sample after another. The first line
-that it writes is PyTorch's version. Each line read is then `WHAT BATCH CALLS`; WHAT is `V` (outputs), `V+grad` (and the
+WEIGHTS is a weights file of net/, PRECISION `float`, `double` or `bf16`, INPUTS raw numbers of it (of `bf16` floats), a sample after another,
+DEVICE PyTorch's name of one (default: cpu). The first line that it writes is PyTorch's version. Each line read is then `WHAT BATCH CALLS`; WHAT is `V` (outputs), `V+grad` (and the
 last output's derivative by the inputs) or `train` (a step of AdamW on the paper's loss); the answer is `WALL CPU CHECK`:
 seconds of all calls, and the mean of the absolute outputs (`V+grad`: of the derivatives; `train`: the loss). Exit status
-77: PyTorch is not installed.
+77: PyTorch is not installed; 78: it finds no such device.
 """
 import pathlib
 import sys
@@ -24,14 +24,18 @@ from torch_network import Network, paper_loss, read  # noqa: E402
 
 
 def main():
-    weights, precision, inputs, threads = sys.argv[1:]
-    dtype = {"float": torch.float32, "double": torch.float64}[precision]
+    weights, precision, inputs, threads = sys.argv[1:5]
+    device = sys.argv[5] if len(sys.argv) > 5 else "cpu"
+    dtype = {"float": torch.float32, "double": torch.float64, "bf16": torch.bfloat16}[precision]
+    if device == "cuda" and not torch.cuda.is_available():
+        sys.exit(78)
     torch.set_num_threads(int(threads))
     tensors, metadata = read(pathlib.Path(weights))
-    network = Network({name: tensor.to(dtype) for name, tensor in tensors.items()}, metadata)
+    network = Network({name: tensor.to(dtype).to(device) for name, tensor in tensors.items()}, metadata)
     columns = network.input_count()
     numbers = bytearray(pathlib.Path(inputs).read_bytes())
-    samples = torch.frombuffer(numbers, dtype=dtype).reshape(-1, columns)
+    given = torch.frombuffer(numbers, dtype=torch.float32 if precision == "bf16" else dtype)
+    samples = given.reshape(-1, columns).to(dtype).to(device)
     parameters = list(network.weights.values())
     optimiser = torch.optim.AdamW(parameters, lr=1e-4, weight_decay=0.01)
     labels = (samples[:, 0] > samples[:, 1]).to(dtype)
@@ -63,8 +67,10 @@ def main():
         wall, cpu = time.perf_counter(), time.process_time()
         for _ in range(int(calls)):
             result = acts[what](x)
+        if device == "cuda":  # which returns before it has computed
+            torch.cuda.synchronize()
         wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-        print(f"{wall:.9g} {cpu:.9g} {result.abs().mean().item():.9g}", flush=True)
+        print(f"{wall:.9g} {cpu:.9g} {result.abs().double().mean().item():.9g}", flush=True)
 
 
 main()

@@ -32,6 +32,13 @@ static Status fill_layers(const NetPlan *plan, int *layers, int *count) {
   return used <= GEO_ROOM ? STATUS_OK : refuse("it is too wide for a group's memory");
 }
 
+static double flops_of(const int *layers, int count) {
+  double flops = 0;
+  for (int k = 0; k < count - 1; k++)
+    flops += 2.0 * layers[GEO_LAYER * k + LAYER_OUTPUT_ROWS] * layers[GEO_LAYER * k + LAYER_INPUT_ROWS];
+  return flops;
+}
+
 static Status send(DeviceGeo *geo, const Device *device, const OverlapGeoOverlap *overlap,
                    int feature_count) {
   const NetModel_f64 *model = overlap_geo_network_model(overlap->net);
@@ -42,6 +49,7 @@ static Status send(DeviceGeo *geo, const Device *device, const OverlapGeoOverlap
   geo->feature_count = plan->shape.input_count;
   geo->output_count = plan->shape.output_count;
   geo->offset = overlap->model.offset;
+  geo->flops = flops_of(layers, geo->layer_count);
   TRY(device_take(device, (size_t)(GEO_LAYER * geo->layer_count), sizeof *layers, layers, &geo->layers));
   return device_take(device, plan->parameter_count, sizeof(double), model->parameters, &geo->parameters);
 }

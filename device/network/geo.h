@@ -13,6 +13,7 @@ typedef struct DeviceGeo {
   OverlapModel host; // answers what is left
   int feature_count, output_count, layer_count;
   double offset; // φ = ρ + offset
+  double flops;  // multiplications and additions of the products of all layers but the last, of a pair
   DeviceMemory layers, parameters;
   DeviceMemory table, slots, slot_count;
   DeviceMemory close, close_count, left, left_count; // pairs that clip answers, too; what it leaves

@@ -63,6 +63,21 @@ bool device_overlap_gives(const char *model, DeviceQuantity quantity) {
   return chain && (quantity != DEVICE_CENTROID || chain->has_centroid);
 }
 
+double device_overlap_flops(const DeviceOverlap *overlap, DeviceQuantity quantity) {
+  const double forward = overlap->tpn.flops + overlap->geo.flops; // there is one at most
+  return quantity == DEVICE_GRADIENT ? 2 * forward : forward;
+}
+
+DeviceArithmetic device_overlap_arithmetic(const DeviceOverlap *overlap) {
+  return overlap->chain->is_bf16   ? DEVICE_IN_BF16
+         : overlap->chain->weights ? DEVICE_IN_FLOAT
+                                   : DEVICE_IN_DOUBLE;
+}
+
+const char *device_overlap_weights(const DeviceOverlap *overlap) {
+  return overlap->chain->feature_count > 0 ? overlap->chain->model : overlap->chain->weights;
+}
+
 static Status create(DeviceOverlap *overlap, const DeviceOverlapChain *chain) {
   const Device *device = overlap->device;
   for (int k = 0; k < DEVICE_OVERLAP_STAGES && chain->programs[k]; k++, overlap->stage_count++)
@@ -311,6 +326,7 @@ Status device_overlap_run(DeviceOverlap *overlap, DeviceQuantity quantity) {
   }
   overlap->last = quantity;
   overlap->kernel_s = overlap->gate_s = 0;
+  overlap->network_pairs = 0;
   memset(overlap->handed_on, 0, sizeof overlap->handed_on);
   int left = 0, list = 0;
   TRY(overlap->chain->feature_count > 0 ? device_overlap_geo_run(overlap, quantity, &left)

@@ -201,8 +201,13 @@ static Status start_torch(Bench *bench) {
   for (int n = 0; n < bench->net_count && bench->options->has_torch; n++)
     for (int t = 0; t < bench->options->common.thread_list_count; t++) {
       const Net *net = &bench->nets[n];
-      Status status = app_torch_peer_start(&bench->torches[n][t], net->path, net->is_float, net->inputs,
-                                           net->input_bytes, bench->options->common.thread_list[t]);
+      const AppTorchDef def = {.weights = net->path,
+                               .precision = net->is_float ? APP_TORCH_FLOAT : APP_TORCH_DOUBLE,
+                               .device = "cpu",
+                               .inputs = net->inputs,
+                               .size = net->input_bytes,
+                               .threads = bench->options->common.thread_list[t]};
+      Status status = app_torch_peer_start(&bench->torches[n][t], &def);
       if (status == STATUS_OK) continue;
       app_torch_peer_stop(&bench->torches[n][t]);
       if (status != STATUS_IO) return status;

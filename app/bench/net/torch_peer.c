@@ -16,7 +16,7 @@
 
 extern char **environ;
 
-enum { NOT_INSTALLED = 77 }; // exit status of the script
+enum { NOT_INSTALLED = 77, NO_DEVICE = 78 }; // exit statuses of the script
 
 static Status write_inputs(AppTorchPeer *peer, const void *inputs, size_t size) {
   TRY(temporary_file("inputs", "", &peer->inputs));
@@ -28,13 +28,15 @@ static Status write_inputs(AppTorchPeer *peer, const void *inputs, size_t size) 
 }
 
 // The child reads from `to` and writes to `from`; what it says to the person is not ours to show.
-static int spawn(AppTorchPeer *peer, char *script, const char *weights, bool is_float, int threads,
-                 const int to[2], const int from[2]) {
-  char python[] = "python3", path[1024], number[16], precision[8];
-  snprintf(path, sizeof path, "%s", weights);
-  snprintf(number, sizeof number, "%d", threads);
-  snprintf(precision, sizeof precision, "%s", is_float ? "float" : "double");
-  char *arguments[] = {python, script, path, precision, peer->inputs, number, NULL};
+static int spawn(AppTorchPeer *peer, char *script, const AppTorchDef *def, const int to[2],
+                 const int from[2]) {
+  static const char *const names[] = {"float", "double", "bf16"};
+  char python[] = "python3", path[1024], number[16], precision[8], device[16];
+  snprintf(path, sizeof path, "%s", def->weights);
+  snprintf(number, sizeof number, "%d", def->threads);
+  snprintf(precision, sizeof precision, "%s", names[def->precision]);
+  snprintf(device, sizeof device, "%s", def->device);
+  char *arguments[] = {python, script, path, precision, peer->inputs, number, device, NULL};
   posix_spawn_file_actions_t actions;
   if (posix_spawn_file_actions_init(&actions) != 0) return ENOMEM;
   int failed = posix_spawn_file_actions_adddup2(&actions, to[0], STDIN_FILENO);
@@ -53,7 +55,7 @@ static Status open_pipe(int ends[2]) {
   return STATUS_OK;
 }
 
-static Status launch(AppTorchPeer *peer, char *script, const char *weights, bool is_float, int threads) {
+static Status launch(AppTorchPeer *peer, char *script, const AppTorchDef *def) {
   int to[2], from[2];
   TRY(open_pipe(to));
   Status status = open_pipe(from);
@@ -61,7 +63,7 @@ static Status launch(AppTorchPeer *peer, char *script, const char *weights, bool
     close(to[0]), close(to[1]);
     return status;
   }
-  int failed = spawn(peer, script, weights, is_float, threads, to, from);
+  int failed = spawn(peer, script, def, to, from);
   close(to[0]), close(from[1]);
   peer->to = fdopen(to[1], "w"), peer->from = fdopen(from[0], "r");
   if (!peer->to) close(to[1]);
@@ -80,16 +82,17 @@ static Status read_version(AppTorchPeer *peer) {
   if (waitpid(peer->child, &ended, 0) == peer->child) peer->child = 0;
   if (WIFEXITED(ended) && WEXITSTATUS(ended) == NOT_INSTALLED)
     return status_fail(STATUS_IO, "it is not installed (Debian: python3-torch)");
+  if (WIFEXITED(ended) && WEXITSTATUS(ended) == NO_DEVICE)
+    return status_fail(STATUS_IO, "it finds no device of that kind");
   return status_fail(STATUS_IO, "tools/torch_bench.py failed; run it by hand to see why");
 }
 
-Status app_torch_peer_start(AppTorchPeer *peer, const char *weights, bool is_float, const void *inputs,
-                            size_t size, int threads) {
+Status app_torch_peer_start(AppTorchPeer *peer, const AppTorchDef *def) {
   char script[PATH_MAX];
   *peer = (AppTorchPeer){0};
   TRY(data_find("tools/torch_bench.py", script, sizeof script));
-  TRY(write_inputs(peer, inputs, size));
-  TRY(launch(peer, script, weights, is_float, threads));
+  TRY(write_inputs(peer, def->inputs, def->size));
+  TRY(launch(peer, script, def));
   return read_version(peer);
 }
 

@@ -14,14 +14,25 @@
 typedef struct AppTorchPeer {
   pid_t child; // 0: none
   FILE *to, *from;
-  char name[64];   // "PyTorch 1.13.1"
-  char *inputs; // temporary file, owned
+  char name[64]; // "PyTorch 1.13.1"
+  char *inputs;  // temporary file, owned
 } AppTorchPeer;
 
-// `inputs`: `size` bytes, samples in float or double, in which the child computes, whatever the file has.
-// STATUS_IO: Python or PyTorch is not there, or the child ended; the message says so. Stop it in any case.
-Status app_torch_peer_start(AppTorchPeer *peer, const char *weights, bool is_float, const void *inputs,
-                            size_t size, int threads);
+typedef enum AppTorchPrecision { APP_TORCH_FLOAT, APP_TORCH_DOUBLE, APP_TORCH_BF16 } AppTorchPrecision;
+
+// What the child computes; all borrowed.
+typedef struct AppTorchDef {
+  const char *weights;         // a file
+  AppTorchPrecision precision; // in which it computes, whatever the file has
+  const char *device;          // PyTorch's name: "cpu", "cuda"
+  const void *inputs;          // samples, in float for bf16
+  size_t size;                 // their bytes
+  int threads;
+} AppTorchDef;
+
+// STATUS_IO: Python, PyTorch or its device is not there, or the child ended; the message says so. Stop it in
+// any case.
+Status app_torch_peer_start(AppTorchPeer *peer, const AppTorchDef *def);
 void app_torch_peer_stop(AppTorchPeer *peer); // a zeroed one is accepted
 
 // What `calls` calls with the first `batch` samples took.

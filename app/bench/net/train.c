@@ -131,8 +131,12 @@ static Status start_torch(Trainer *trainer) {
   Status status = inputs ? trainer->task.ops->write(&trainer->task, &trainer->model, "bench", path)
                          : status_no_memory("the inputs");
   if (!status)
-    status =
-        app_torch_peer_start(&trainer->torch, path, true, inputs, numbers * sizeof *inputs, trainer->threads);
+    status = app_torch_peer_start(&trainer->torch, &(AppTorchDef){.weights = path,
+                                                                  .precision = APP_TORCH_FLOAT,
+                                                                  .device = "cpu",
+                                                                  .inputs = inputs,
+                                                                  .size = numbers * sizeof *inputs,
+                                                                  .threads = trainer->threads});
   memory_free(inputs);
   temporary_remove(path);
   return status;

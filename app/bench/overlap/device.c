@@ -6,9 +6,12 @@
 #include <omp.h>
 #include <stddef.h>
 
+#include "app/bench/overlap/torch.h"
+#include "app/bench/peak.h"
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
 #include "base/clock.h"
+#include "base/log.h"
 #include "base/memory.h"
 
 const char *const app_bench_residences[APP_BENCH_RESIDENCES] = {"device", "indices", "host"};
@@ -28,6 +31,7 @@ typedef struct Contestant {
   DeviceQuantity quantity;
   AppBenchTimer timer;
   double kernel_s[APP_BENCH_MAX_REPEATS]; // of a pair
+  double gate_share, flops; // of kernel_s, of a network: the gate's; products of a pair, in the mean
   int handed_on, to_host;
 } Contestant;
 
@@ -39,13 +43,16 @@ typedef struct Bench {
   double *volume, *gradient;
   int *tets, *ends;
   Contestant *contestants;
-  int count;
+  AppBenchTorch *torches; // beside the contestants of a set and batch
+  int count, torch_count;
+  double host_peak[2]; // multiplications and additions of this processor, in float and double [1/s]
 } Bench;
 
 typedef struct Row {
   const char *model, *set, *quantity, *residence, *device;
   long long batch;
   double handed_on, to_host; // shares of the pairs
+  double gate, of_peak;      // NaN: not told
   double kernel_rate, rate, rate_min, rate_max, spread;
 } Row;
 
@@ -61,6 +68,13 @@ static const AppBenchColumn columns[] = {
      "share of the pairs that the processor answered"},
     {"kernel_pairs_s", APP_BENCH_NUMBER, offsetof(Row, kernel_rate), "kernel pairs/s",
      "pairs over the time of all kernels, median of the rounds"},
+    {"gate", APP_BENCH_NUMBER, offsetof(Row, gate), "gate",
+     "share of the kernels' time that a network's gate takes; clipping has none of its own"},
+    {"of_peak", APP_BENCH_NUMBER, offsetof(Row, of_peak), "of peak",
+     "multiplications and additions of a network's products over the time of all kernels, by what the device "
+     "can do at most: its maker's figure, of a processor what a loop of them is measured to do (bf16 there: "
+     "in "
+     "float)"},
     {"pairs_s", APP_BENCH_NUMBER, offsetof(Row, rate), "pairs/s", "complete answers, of wall time"},
     {"pairs_s_min", APP_BENCH_NUMBER, offsetof(Row, rate_min), NULL, "slowest round"},
     {"pairs_s_max", APP_BENCH_NUMBER, offsetof(Row, rate_max), NULL, "fastest round"},
@@ -122,13 +136,19 @@ static Status take_turn(Contestant *contestant, const Bench *bench, int round) {
   contestant->kernel_s[round] = kernel_s / parts;
   const DeviceOverlap *overlap = contestant->overlap;
   contestant->handed_on = overlap->handed_on[0];
+  contestant->gate_share = overlap->gate_s / overlap->kernel_s;
+  contestant->flops = device_overlap_flops(overlap, contestant->quantity) * (double)overlap->network_pairs /
+                      contestant->batch;
   contestant->to_host = overlap->handed_on[overlap->stage_count - 1];
   return STATUS_OK;
 }
 
-static Status take_rounds(Bench *bench, int first) {
-  for (int round = 0; round < bench->def->common->repeats; round++)
+static Status take_rounds(Bench *bench, int first, int first_torch) {
+  for (int round = 0; round < bench->def->common->repeats; round++) {
     for (int c = first; c < bench->count; c++) TRY(take_turn(&bench->contestants[c], bench, round));
+    for (int t = first_torch; t < bench->torch_count; t++)
+      TRY(app_bench_overlap_torch_take_turn(&bench->torches[t], round, ROUND_S));
+  }
   return STATUS_OK;
 }
 
@@ -143,9 +163,19 @@ static double median_of(double *values, int count) {
   return values[count / 2];
 }
 
+// Of what the device can do at most; NaN: nobody says.
+static double share_of_peak(const Bench *bench, const Contestant *contestant, double rate) {
+  const DeviceArithmetic arithmetic = device_overlap_arithmetic(contestant->overlap);
+  double peak = bench->device.info.peak[arithmetic];
+  if (bench->device.ops == &device_host)
+    peak = bench->host_peak[arithmetic == DEVICE_IN_DOUBLE] * bench->def->common->threads;
+  return contestant->flops > 0 && peak > 0 ? contestant->flops * rate / peak : NAN;
+}
+
 static Row row_of(const Bench *bench, Contestant *contestant) {
   int rounds = bench->def->common->repeats;
   AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
+  const double kernel_rate = 1 / median_of(contestant->kernel_s, rounds);
   return (Row){.model = contestant->model,
                .set = contestant->set,
                .quantity = quantities[contestant->quantity],
@@ -154,7 +184,28 @@ static Row row_of(const Bench *bench, Contestant *contestant) {
                .batch = contestant->batch,
                .handed_on = (double)contestant->handed_on / contestant->batch,
                .to_host = (double)contestant->to_host / contestant->batch,
-               .kernel_rate = 1 / median_of(contestant->kernel_s, rounds),
+               .kernel_rate = kernel_rate,
+               .gate = contestant->flops > 0 ? contestant->gate_share : NAN,
+               .of_peak = share_of_peak(bench, contestant, kernel_rate),
+               .rate = 1 / time.wall,
+               .rate_min = 1 / time.wall_max,
+               .rate_max = 1 / time.wall_min,
+               .spread = time.wall / time.wall_min - time.wall / time.wall_max};
+}
+
+static Row torch_row_of(const Bench *bench, const AppBenchTorch *torch) {
+  AppBenchTime time = app_bench_timer_time(&torch->timer, bench->def->common->repeats);
+  return (Row){.model = torch->model,
+               .set = "network alone",
+               .quantity = quantities[torch->quantity],
+               .residence = "device",
+               .device = torch->name,
+               .batch = torch->batch,
+               .handed_on = NAN,
+               .to_host = NAN,
+               .kernel_rate = NAN,
+               .gate = NAN,
+               .of_peak = NAN,
                .rate = 1 / time.wall,
                .rate_min = 1 / time.wall_max,
                .rate_max = 1 / time.wall_min,
@@ -162,10 +213,13 @@ static Row row_of(const Bench *bench, Contestant *contestant) {
 }
 
 static Status print(const Bench *bench) {
-  Row *rows = memory_zeroed((size_t)bench->count, sizeof *rows);
+  const int count = bench->count + bench->torch_count;
+  Row *rows = memory_zeroed((size_t)count, sizeof *rows);
   if (!rows) return status_no_memory("the rows");
   for (int c = 0; c < bench->count; c++) rows[c] = row_of(bench, &bench->contestants[c]);
-  Status status = app_bench_report_print(&report, bench->def->common, rows, bench->count);
+  for (int t = 0; t < bench->torch_count; t++)
+    rows[bench->count + t] = torch_row_of(bench, &bench->torches[t]);
+  Status status = app_bench_report_print(&report, bench->def->common, rows, count);
   memory_free(rows);
   return status;
 }
@@ -193,15 +247,39 @@ static void add_contestants(Bench *bench, int set, int batch) {
       }
 }
 
+// PyTorch with the networks of the models that are wanted. False: it is not there, and that is said.
+static bool add_torches(Bench *bench, int batch) {
+  const AppBenchDeviceDef *def = bench->def;
+  for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++)
+    for (int quantity = 0; quantity <= DEVICE_GRADIENT && def->wants_model[m]; quantity++) {
+      AppBenchTorch *torch = &bench->torches[bench->torch_count];
+      if (!def->wants_quantity[quantity] || !device_overlap_weights(&bench->overlaps[m])) continue;
+      Status status = app_bench_overlap_torch_start(torch, &bench->overlaps[m], (DeviceQuantity)quantity,
+                                                    batch, def->common->threads);
+      if (status != STATUS_OK) {
+        log_warning("PyTorch is left out: %s", status_message());
+        app_bench_overlap_torch_stop(torch);
+        return false;
+      }
+      torch->model = device_overlap_models[m];
+      bench->torch_count++;
+    }
+  return true;
+}
+
 static Status measure_sets(Bench *bench) {
   const AppBenchDeviceDef *def = bench->def;
-  for (int set = 0; set < APP_BENCH_SET_COUNT; set++)
+  bool wants_torch = def->wants_torch;
+  for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
     for (int b = 0; b < def->batch_count && def->wants_set[set]; b++) {
-      int first = bench->count;
+      int first = bench->count, first_torch = bench->torch_count;
       TRY(app_bench_pairs_fill(app_bench_sets[set], def->batches[b], SEED, bench->pairs));
       add_contestants(bench, set, def->batches[b]);
-      TRY(take_rounds(bench, first));
+      if (wants_torch) wants_torch = add_torches(bench, def->batches[b]);
+      TRY(take_rounds(bench, first, first_torch));
     }
+    wants_torch = wants_torch && !def->wants_set[set]; // once: it is not shown pairs
+  }
   if (bench->count == 0)
     return status_fail(
         STATUS_USAGE,
@@ -218,14 +296,15 @@ static Status make_inputs(Bench *bench) {
   int rows =
       APP_BENCH_SET_COUNT * APP_BENCH_RESIDENCES * QUANTITY_COUNT * DEVICE_OVERLAP_MODELS * def->batch_count;
   bench->contestants = memory_zeroed((size_t)rows, sizeof *bench->contestants);
+  bench->torches = memory_zeroed((size_t)rows, sizeof *bench->torches);
   bench->pairs = memory_zeroed(most * 24, sizeof(double));
   bench->columns = memory_zeroed(most * 24, sizeof(double));
   bench->gradient = memory_zeroed(most * 24, sizeof(double));
   bench->volume = memory_zeroed(most, sizeof(double));
   bench->tets = memory_zeroed(most * 8, sizeof(int));
   bench->ends = memory_zeroed(most * 2, sizeof(int));
-  if (!bench->contestants || !bench->pairs || !bench->columns || !bench->gradient || !bench->volume ||
-      !bench->tets || !bench->ends)
+  if (!bench->contestants || !bench->torches || !bench->pairs || !bench->columns || !bench->gradient ||
+      !bench->volume || !bench->tets || !bench->ends)
     return status_no_memory("the batch (--batch)");
   for (size_t k = 0; k < most * 8; k++) bench->tets[k] = (int)k;
   for (size_t k = 0; k < most * 2; k++) bench->ends[k] = (int)k;
@@ -240,12 +319,16 @@ static Status measure(Bench *bench) {
     if (def->wants_model[m])
       TRY(device_overlap_create(&bench->overlaps[m], &bench->device, device_overlap_models[m]));
   TRY(make_inputs(bench));
+  for (int k = 0; k < 2 && bench->device.ops == &device_host; k++)
+    bench->host_peak[k] = app_bench_peak_measure(k == 0);
   return measure_sets(bench);
 }
 
 static void destroy(Bench *bench) {
   for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++) device_overlap_destroy(&bench->overlaps[m]);
   device_close(&bench->device);
+  for (int t = 0; t < bench->torch_count; t++) app_bench_overlap_torch_stop(&bench->torches[t]);
+  memory_free(bench->torches);
   memory_free(bench->contestants), memory_free(bench->pairs), memory_free(bench->columns);
   memory_free(bench->gradient), memory_free(bench->volume), memory_free(bench->tets);
   memory_free(bench->ends), memory_free(bench);

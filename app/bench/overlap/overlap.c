@@ -28,8 +28,10 @@ typedef struct Options {
   bool wants_model[MAX_MODELS], wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
   int batches[APP_BENCH_MAX_LIST], batch_count;
   const char *device; // NULL: this processor as it is
-  bool wants_residence[APP_BENCH_RESIDENCES];
+  bool wants_residence[APP_BENCH_RESIDENCES], wants_torch;
 } Options;
+
+enum { KEY_TORCH = 0x200 };
 
 static const struct argp_option option_table[] = {
     {"model", 'm', "NAME,…", 0, "Overlap models to measure (default: all)", 1},
@@ -42,6 +44,11 @@ static const struct argp_option option_table[] = {
      1},
     {"residence", 'R', "NAME,…", 0,
      "With --device, where the pairs lie: device, indices, host (default: all)", 1},
+    {"torch", KEY_TORCH, NULL, 0,
+     "With --device, PyTorch beside models with a network, on the same device: the network alone, without "
+     "gate "
+     "and frame",
+     1},
     {0},
 };
 
@@ -74,6 +81,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case 'D':
     options->device = text;
+    return 0;
+  case KEY_TORCH:
+    options->wants_torch = true;
     return 0;
   case 'R':
     app_bench_options_choose(state, "residence", text, app_bench_residences, APP_BENCH_RESIDENCES,
@@ -332,6 +342,7 @@ static Status run_on_device(const Options *options) {
                            .wants_quantity = {[DEVICE_VOLUME] = options->wants_quantity[VOLUME],
                                               [DEVICE_GRADIENT] = options->wants_quantity[GRADIENT],
                                               [DEVICE_CENTROID] = options->wants_quantity[CENTROID]},
+                           .wants_torch = options->wants_torch,
                            .batches = options->batches,
                            .batch_count = options->batch_count};
   const char *names[MAX_MODELS];
