@@ -168,23 +168,23 @@ START_TEST(every_call_that_fails_is_told_and_nothing_is_kept) {
 }
 END_TEST
 
-static void make_pairs(void) {
-  ck_assert_ok(app_bench_pairs_make("uniform", COUNT, 3, pairs));
+static bool make_pairs(void) {
+  if (app_bench_pairs_make("uniform", COUNT, 3, pairs) != STATUS_OK) return false;
   for (int i = 0; i < HARD; i++)
     memcpy(pairs + (size_t)(COUNT + i) * 24, datagen_hard_make(i % DATAGEN_HARD_CLASS_COUNT, i).x,
            24 * sizeof *pairs);
   memset(pairs, 0, 12 * sizeof *pairs); // a flat one: the host's
+  return true;
 }
 
 int main(void) {
   setenv("CK_FORK", "no", 1);
-  ck_assert_ok(device_open(&device, "host"));
+  if (device_open(&device, "host") != STATUS_OK || !make_pairs()) return EXIT_FAILURE;
   faulty = device_host;
   faulty.build = build, faulty.discard = discard, faulty.kernel = kernel;
   faulty.take = take, faulty.release = release, faulty.put = put, faulty.get = get;
   faulty.launch = launch, faulty.mark = mark, faulty.elapsed = elapsed;
   device.ops = &faulty;
-  make_pairs();
   TCase *cases = tcase_create("device_faults");
   tcase_add_loop_test(cases, every_call_that_fails_is_told_and_nothing_is_kept, 0,
                       DEVICE_OVERLAP_MODELS * FAULT_COUNT);

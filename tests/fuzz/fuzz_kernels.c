@@ -8,6 +8,7 @@
 //                                        size: exponentials are of other libraries
 //
 // and a pair gets the same bits in whichever place of a batch. Numbers that are not finite must be refused.
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -111,13 +112,15 @@ static void check_bits(int m, const double *pairs, int quantity, const Batch *to
                expected->flags[i]);
 }
 
-// ∇V to 1e-10 of its largest component, x̄ to 1e-12 of the pair's extent.
+// ∇V to 1e-10 of its largest component, x̄ to 1e-12 of the pair's extent and rounding of coordinates.
 static void check_rounding(int m, const double *pairs, int quantity, const Batch *told,
                            const Batch *expected) {
   const int width = widths[quantity];
   for (int i = 0; i < PLACES; i++) {
     const double *a = told->more + width * i, *b = expected->more + width * i;
-    double allowed = 1e-12 * overlap_invariant_extent(pairs + SIZE * i);
+    double furthest = 0; // a coordinate is rounded to an ulp of itself
+    for (int c = 0; c < SIZE; c++) furthest = fmax(furthest, fabs(pairs[SIZE * i + c]));
+    double allowed = 1e-12 * overlap_invariant_extent(pairs + SIZE * i) + 4 * DBL_EPSILON * furthest;
     for (int c = 0; c < width && quantity == DEVICE_GRADIENT; c++)
       allowed = c == 0 ? 1e-10 * fabs(b[c]) : fmax(allowed, 1e-10 * fabs(b[c]));
     FUZZ_CLAIM(told->flags[i] == expected->flags[i], "kernels of %s, place %d: flags %u; the model %u",
