@@ -10,7 +10,6 @@
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "contact/pressure/imprint.h"
-#include "contact/pressure/patch_call.h"
 #include "contact/pressure/potential.h"
 #include "contact/rest.h"
 #include "contact/search/bounds.h"
@@ -389,10 +388,7 @@ static Status press_pairs(ContactEvaluation *evaluation, const ContactLayout *la
     const double *force = evaluation->fields[k].force;
     if (!isfinite(evaluation->fields[k].energy + force[0] + force[1] + force[2]) && k < bad) bad = k;
   }
-  if (bad == INT_MAX) {
-    contact_patch_call_press(evaluation, layout);
-    return STATUS_OK;
-  }
+  if (bad == INT_MAX) return STATUS_OK;
   return blame(layout, &evaluation->pairs[bad], STATUS_RETRY,
                "a tetrahedron is so flat that its depth has no slope");
 }

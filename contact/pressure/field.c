@@ -2,8 +2,6 @@
 #include "contact/pressure/field.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/vec3.h"
@@ -72,8 +70,6 @@ void contact_field_press(const ContactLayout *layout, const ContactPair *pair, c
 }
 
 // ---- Second derivatives.
-
-static FILE *area_file;
 
 // What the faces and the volume of P add up to, with the lanes of clip_polytope.h folded to the tetrahedra's
 // vertices.
@@ -220,11 +216,8 @@ static void unfold_slopes(const ContactLayout *layout, int cell, const Side *sid
   for (int v = 0; v < 4; v++) slopes[v] = (Vec3){rows[0][v], rows[1][v], rows[2][v]};
 }
 
-static void area_dump(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                      const ContactFieldPair *field, const Sums *sums, const OverlapClipPolytope *polytope);
-
 void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                        bool is_full, const ContactFieldPair *field, double matrix[576]) {
+                        bool is_full, double matrix[576]) {
   Bend bend = {.layout = layout, .pair = pair};
   memset(matrix, 0, 576 * sizeof *matrix);
   unsigned wanted = 0;
@@ -236,7 +229,6 @@ void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, co
   memset(&sums, 0, sizeof sums);
   add_faces(&bend, wanted, &sums);
   if (is_full) add_volume(&bend, &sums);
-  if (field && area_file) area_dump(layout, pair, coordinates, field, &sums, &bend.polytope);
   Side sides[2];
   double stiffness = layout->facings[pair->facing].stiffness;
   for (int t = 0; t < 2; t++) sides[t] = side_of(layout, pair->tets[t], coordinates + 12 * t);
@@ -248,136 +240,6 @@ void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, co
     Vec3 slopes[4];
     unfold_slopes(layout, pair->tets[t], &sides[t], slopes);
     add_turning(&sums, t, factor, &sides[t], slopes, matrix);
-  }
-}
-
-// ---- A network for the matrix.
-//
-// On an outer face f of side t, at the depth h of x̄, the area of P_f is κ V/h: ½ of a slab, ¾ of a cone that stands on f, no
-// more than that of anything convex. κ is what a network tells of how the other seven planes lie about x̄; the moments of u over
-// P_f are taken at x̄.
-enum { AREA_INPUTS = 16, AREA_WIDTH = 16 };
-typedef struct AreaNetwork {
-  float first[AREA_INPUTS][AREA_WIDTH], first_bias[AREA_WIDTH];
-  float second[AREA_WIDTH][AREA_WIDTH], second_bias[AREA_WIDTH];
-  float last[AREA_WIDTH], last_bias;
-} AreaNetwork;
-
-static AreaNetwork area_network;
-static int area_mode = -1; // 0 none, 1 constant, 2 network, 3 main term and a dump
-static double area_constant;
-static FILE *area_file;
-
-static void area_start(void) {
-  const char *word = getenv("TETLAP_AREA"), *dump = getenv("TETLAP_AREA_DUMP");
-  int mode = 0;
-  if (dump) area_file = fopen(dump, "wb"), mode = 3;
-  if (word && (word[0] == '.' || word[0] == '0')) area_constant = atof(word), mode = 1;
-  else if (word) {
-    FILE *file = fopen(word, "rb");
-    if (!file || fread(&area_network, sizeof area_network, 1, file) != 1) abort();
-    fclose(file);
-    mode = 2;
-  }
-  area_mode = mode;
-}
-
-int contact_field_area_mode(void) {
-#pragma omp critical(area)
-  if (area_mode < 0) area_start();
-  return area_mode;
-}
-
-// Plane distances over the length V^(1/3) and cosines with face f, nearest plane first.
-static void area_inputs(const Side sides[2], const double lambda[8], int face, double volume,
-                        float inputs[AREA_INPUTS]) {
-  float distance[7], cosine[7];
-  double inverse = 1 / cbrt(volume);
-  Vec3 own = sides[face / 4].slope[face % 4];
-  double own_inverse = 1 / vec3_length(own);
-  inputs[0] = (float)log(lambda[face] * own_inverse * inverse);
-  inputs[1] = (float)(face / 4 == 0 ? 0 : 0);
-  int count = 0;
-  for (int k = 0; k < 8; k++) {
-    if (k == face) continue;
-    Vec3 slope = sides[k / 4].slope[k % 4];
-    double over = 1 / vec3_length(slope);
-    float d = (float)log(fmax(lambda[k] * over * inverse, 1e-6)), c = (float)(vec3_dot(slope, own) * over * own_inverse);
-    int at = count++;
-    for (; at > 0 && distance[at - 1] > d; at--) distance[at] = distance[at - 1], cosine[at] = cosine[at - 1];
-    distance[at] = d;
-    cosine[at] = c;
-  }
-  for (int k = 0; k < 7; k++) inputs[2 + k] = distance[k], inputs[9 + k] = cosine[k];
-}
-
-__attribute__((target_clones("avx512f", "avx2", "default"), optimize("O3", "fast-math"))) static float
-area_evaluate(const AreaNetwork *network, const float inputs[AREA_INPUTS]) {
-  float a[AREA_WIDTH], b[AREA_WIDTH], sum = network->last_bias;
-  for (int k = 0; k < AREA_WIDTH; k++) a[k] = network->first_bias[k], b[k] = network->second_bias[k];
-  for (int i = 0; i < AREA_INPUTS; i++)
-    for (int k = 0; k < AREA_WIDTH; k++) a[k] += inputs[i] * network->first[i][k];
-  for (int i = 0; i < AREA_WIDTH; i++) {
-    float x = a[i] > 0 ? a[i] : 0;
-    for (int k = 0; k < AREA_WIDTH; k++) b[k] += x * network->second[i][k];
-  }
-  for (int k = 0; k < AREA_WIDTH; k++) sum += (b[k] > 0 ? b[k] : 0) * network->last[k];
-  return 0.75f / (1 + expf(-sum));
-}
-
-static void area_dump(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                      const ContactFieldPair *field, const Sums *sums, const OverlapClipPolytope *polytope) {
-  Side sides[2];
-  double lambda[8];
-  for (int t = 0; t < 2; t++) {
-    sides[t] = side_of(layout, pair->tets[t], coordinates + 12 * t);
-    locate(&sides[t], vec3_at(field->centroid), lambda + 4 * t);
-  }
-  for (int f = 0; f < 8; f++) {
-    if (!is_outer(layout, pair, f) || !(lambda[f] > 0)) continue;
-    float row[AREA_INPUTS + 2];
-    double height = 1 / vec3_length(sides[f / 4].slope[f % 4]), length = vec3_length(polytope->frame[f / 4].normal[f % 4]);
-    area_inputs(sides, lambda, f, field->volume, row);
-    row[AREA_INPUTS] = (float)(sums->fraction[f] * length / 2 * lambda[f] * height / field->volume);
-    row[AREA_INPUTS + 1] = (float)(field->volume / (lambda[f] * height)); // m²
-    static unsigned long counter;
-    counter = counter * 6364136223846793005ul + 1442695040888963407ul;
-    if (counter >> 62) continue;
-#pragma omp critical(area_file)
-    fwrite(row, sizeof row, 1, area_file);
-  }
-}
-
-// ½ c V s … : c s |g| A_f (n·u)² with u at x̄, by the vertices of the two tetrahedra.
-void contact_field_bend_area(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                             const ContactFieldPair *field, double matrix[576]) {
-  memset(matrix, 0, 576 * sizeof *matrix);
-  unsigned outer = (unsigned)layout->depth.outer[pair->tets[0]] | (unsigned)layout->depth.outer[pair->tets[1]] << 4;
-  if (!(outer & 255)) return;
-  double stiffness = layout->facings[pair->facing].stiffness;
-  Side sides[2];
-  double lambda[8];
-  for (int t = 0; t < 2; t++) {
-    sides[t] = side_of(layout, pair->tets[t], coordinates + 12 * t);
-    locate(&sides[t], vec3_at(field->centroid), lambda + 4 * t);
-  }
-  for (int f = 0; f < 8; f++) {
-    if (!(outer >> f & 1) || !(lambda[f] > 0)) continue;
-    double kappa = area_constant;
-    int t = f / 4;
-    if (area_mode == 2) {
-      float inputs[AREA_INPUTS];
-      area_inputs(sides, lambda, f, field->volume, inputs);
-      kappa = area_evaluate(&area_network, inputs);
-    }
-    Vec3 slope = sides[t].slope[f % 4];
-    double over = 1 / vec3_length(slope), area = kappa * field->volume / (lambda[f] * over);
-    double scale = stiffness * sides[1 - t].s * vec3_length(sides[t].g) * area;
-    Vec3 n = vec3_scale(over, slope);
-    double row[24];
-    for (int z = 0; z < 8; z++) vec3_store(row + 3 * z, vec3_scale((z < 4 ? 1 : -1) * field->weights[z / 4][z % 4], n));
-    for (int r = 0; r < 24; r++)
-      for (int k = 0; k < 24; k++) matrix[24 * r + k] += scale * row[r] * row[k];
   }
 }
 

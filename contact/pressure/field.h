@@ -73,11 +73,7 @@ void contact_field_press_shape(const ContactLayout *layout, const ContactPair *p
 // the cells in general position (contact_layout_unsettle_pair). Not full: the main term on outer faces,
 // positive semidefinite. Clipping finds P, whatever model gave V and x̄.
 void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                        bool is_full, const ContactFieldPair *field, double matrix[576]);
-
-int contact_field_area_mode(void);
-void contact_field_bend_area(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                             const ContactFieldPair *field, double matrix[576]);
+                        bool is_full, double matrix[576]);
 
 // The same of a shape and a tetrahedron, (12, 12).
 void contact_field_bend_shape(const ContactLayout *layout, const ContactPair *pair, double time,

@@ -3,9 +3,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/memory.h"
 #include "contact/pressure/field.h"
@@ -140,77 +138,20 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
     contact_field_bend_shape(layout, pair, evaluation->time, coordinates, is_full, matrix);
     return;
   }
-  int mode = contact_field_area_mode();
-  if (!is_full && (mode == 1 || mode == 2)) {
-    contact_field_bend_area(layout, pair, coordinates, &evaluation->fields[k], matrix);
-    return;
-  }
   contact_layout_unsettle_pair(layout, pair, coordinates);
-  contact_field_bend(layout, pair, coordinates, is_full, mode == 3 ? &evaluation->fields[k] : NULL, matrix);
-}
-
-static double spent_bend, spent_all;
-static long asked;
-static double cpu(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-static void tell(void) { fprintf(stderr, "AREA %g %g %ld\n", spent_bend, spent_all, asked); }
-
-// For the study of patches: the mesh once, then at each matrix positions and pairs.
-static void dump_patches(const ContactLayout *layout, const ContactEvaluation *evaluation) {
-  static FILE *file;
-  static int every, calls;
-  const ContactDepth *depth = &layout->depth;
-  if (!getenv("TETLAP_PATCH_DUMP")) return;
-  if (!file) {
-    file = fopen(getenv("TETLAP_PATCH_DUMP"), "wb");
-    every = atoi(getenv("TETLAP_PATCH_EVERY"));
-    int virtual_count = depth->position_count - layout->def.vertex_count;
-    int head[6] = {depth->position_count, depth->cell_count, virtual_count, layout->def.vertex_count, layout->facing_count, layout->def.tet_count};
-    fwrite(head, sizeof head, 1, file);
-    fwrite(depth->cells, 16, (size_t)depth->cell_count, file);
-    fwrite(depth->outer, 1, (size_t)depth->cell_count, file);
-    fwrite(depth->replaced, 1, (size_t)depth->cell_count, file);
-    fwrite(depth->tets, 4, (size_t)depth->cell_count, file);
-    fwrite(layout->def.tets, 16, (size_t)layout->def.tet_count, file);
-    for (int k = 0; k < virtual_count; k++) fwrite(depth->virtuals[k].weights, 8, 4, file);
-    fwrite(depth->depths, 8, (size_t)depth->position_count, file);
-    fwrite(layout->cell_volumes, 8, (size_t)depth->cell_count, file);
-    for (int f = 0; f < layout->facing_count; f++) fwrite(&layout->facings[f].stiffness, 8, 1, file);
-  }
-  if (calls++ % every || evaluation->mesh_pair_count == 0) return;
-  fwrite(&evaluation->mesh_pair_count, 4, 1, file);
-  fwrite(&evaluation->time, 8, 1, file);
-  fwrite(evaluation->positions, 24, (size_t)depth->position_count, file);
-  for (int k = 0; k < evaluation->mesh_pair_count; k++) {
-    const ContactPair *pair = &evaluation->pairs[k];
-    const ContactFieldPair *field = &evaluation->fields[k];
-    int ids[3] = {pair->facing, pair->tets[0], pair->tets[1]};
-    double numbers[4] = {field->volume, field->centroid[0], field->centroid[1], field->centroid[2]};
-    fwrite(ids, sizeof ids, 1, file);
-    fwrite(numbers, sizeof numbers, 1, file);
-  }
-  fflush(file);
+  contact_field_bend(layout, pair, coordinates, is_full, matrix);
 }
 
 Status contact_field_stiffness_add(ContactFieldStiffness *stiffness, const ContactLayout *layout,
                                    const ContactEvaluation *evaluation, void *self, ContactFieldTake take) {
   int count = evaluation->pair_count;
-  dump_patches(layout, evaluation);
-  static int told;
-  if (!told++) atexit(tell);
-  double t0 = cpu();
   TRY(order_pairs(stiffness, layout, count, evaluation->pairs));
-  asked += evaluation->mesh_pair_count;
   const ContactFieldKey *order = stiffness->order;
   for (int first = 0; first < count; first += PORTION) {
     int end = first + PORTION < count ? first + PORTION : count;
-    double t1 = cpu();
+#pragma omp parallel for schedule(static) if (end - first > 64)
     for (int k = first; k < end; k++)
       bend(layout, evaluation, order[k].pair, stiffness->matrices + 576 * (size_t)(k - first));
-    spent_bend += cpu() - t1;
     for (int k = first; k < end; k++) {
       if (k > 0 && !are_alike(&order[k], &order[k - 1])) hand_on(stiffness, self, take);
       add_pair(stiffness, layout, &evaluation->pairs[order[k].pair],
@@ -218,6 +159,5 @@ Status contact_field_stiffness_add(ContactFieldStiffness *stiffness, const Conta
     }
   }
   hand_on(stiffness, self, take);
-  spent_all += cpu() - t0;
   return STATUS_OK;
 }
