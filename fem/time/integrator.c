@@ -10,7 +10,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/contact/contact.h"
+#include "fem/time/balance.h"
 #include "fem/time/error_weights.h"
 #include "fem/time/ida_solver.h"
 #include "fem/time/newton.h"
@@ -22,11 +22,6 @@ enum { MAX_FAILURES = 15 };
 // Knots of prescribed motions and loads closer than this share of the run's end count as one; IDA tells 2e-14
 // apart.
 static const double KNOT_RESOLUTION = 1e-12;
-// Forces on a body in contact balance to this share of its weight or, where that is more, to that of what its
-// acceleration takes: what is written of contact is as right.
-static const double BALANCE = 2e-4, BALANCE_OF_INERTIA = 2e-3;
-// Nor less than this share of E · edge².
-static const double SMALLEST_FORCE = 1e-10;
 // IDA lengthens a step only where it may double, which saves matrices. Where contact begins and ends steps
 // change all the time, and it is longer ones that save.
 static const double LEAST_GROWTH = 1.2, LEAST_GROWTH_WITHOUT_CONTACT = 2;
@@ -48,10 +43,10 @@ struct FemIntegrator {
   FemIdaSolver *solver;
   FemIdaFailure failure;
   FemNewton newton;
-  double *unbalanced, *wanted; // of each body: Σ |r| and what it is held against [N]   (body_count)
-  N_Vector y, y_dot;           // state that the last step or restart ended at
-  N_Vector interpolated;       // what `at` returns; scratch
-  N_Vector evaluated;          // of the last residual
+  FemBalance balance;
+  N_Vector y, y_dot;     // state that the last step or restart ended at
+  N_Vector interpolated; // what `at` returns; scratch
+  N_Vector evaluated;    // of the last residual
   double evaluated_time;
   N_Vector weights;           // scratch: of the error test
   double time;                // of y
@@ -120,47 +115,9 @@ static void aim(void *self, double tolerance) {
   fem_ida_solver_aim(((FemIntegrator *)self)->solver, tolerance);
 }
 
-// Of a body's vertices in contact.
-static double pressed_on(const double *forces, const FemModelBody *body) {
-  double sum = 0;
-  for (int a = body->vertex_begin; a < body->vertex_end; a++)
-    sum += vec3_length(vec3_at(forces + 3 * (size_t)a));
-  return sum;
-}
-
-// Σ |r| of the balance, and Σ m |v̇| = Σ |r + f|, of each body.
-static void sum_balance(FemIntegrator *integrator, const double *balance) {
-  const FemSystem *system = integrator->system;
-  const FemModel *model = system->model;
-  for (int b = 0; b < model->body_count; b++) integrator->unbalanced[b] = integrator->wanted[b] = 0;
-  int body = 0;
-  for (int i = 0; i < integrator->n; i++) {
-    int dof = model->dof_of_unknown[i];
-    while (dof / 3 >= model->bodies[body].vertex_end) body++;
-    integrator->unbalanced[body] += fabs(balance[i]);
-    integrator->wanted[body] += fabs(balance[i] + system->forces[dof]);
-  }
-}
-
-// The largest Σ |r| of a body in contact over what is allowed.
 static double unbalance(void *self, const double *balance) {
   FemIntegrator *integrator = self;
-  const FemModel *model = integrator->system->model;
-  void *contact = fem_system_effect(integrator->system, &fem_effect_contact);
-  if (!contact) return 0;
-  const double *forces = contact_system_forces(fem_effect_contact_system(contact));
-  double worst = 0, gravity = model->scene->has_gravity ? vec3_length(vec3_at(model->scene->gravity)) : 0;
-  sum_balance(integrator, balance);
-  for (int b = 0; b < model->scene->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
-    double pressed = pressed_on(forces, body), weight = gravity > 0 ? gravity * body->mass : pressed;
-    if (!(pressed > 0)) continue;
-    double floor = SMALLEST_FORCE * body->material.young * model->edge * model->edge;
-    double needed = fmax(BALANCE * weight, BALANCE_OF_INERTIA * integrator->wanted[b]);
-    double allowed = fmax(needed, floor);
-    worst = fmax(worst, integrator->unbalanced[b] / allowed);
-  }
-  return worst;
+  return fem_balance_excess(&integrator->balance, integrator->system, integrator->n, balance);
 }
 
 // IDA would print.
@@ -242,10 +199,7 @@ static Status create(FemIntegrator *integrator, const FemSolverOps *solver) {
   TRY(create_vectors(integrator));
   TRY(fem_ida_solver_create(&integrator->solver, integrator->system, solver,
                             ROUNDING * def->velocity_tolerance, &integrator->failure, integrator->context));
-  size_t bodies = (size_t)integrator->system->model->body_count;
-  integrator->unbalanced = memory_zeroed(bodies, sizeof(double));
-  integrator->wanted = memory_zeroed(bodies, sizeof(double));
-  if (!integrator->unbalanced || !integrator->wanted) return status_no_memory("the integrator");
+  TRY(fem_balance_create(&integrator->balance, integrator->system->model->body_count));
   FemNewtonUser user = {
       .self = integrator, .n = integrator->n, .right = right_of, .unbalance = unbalance, .aim = aim};
   TRY(fem_newton_create(&integrator->newton, &user, integrator->y, integrator->context));
@@ -271,8 +225,7 @@ void fem_integrator_destroy(FemIntegrator *integrator) {
   if (!integrator) return;
   if (integrator->ida) IDAFree(&integrator->ida);
   fem_newton_destroy(&integrator->newton);
-  memory_free(integrator->unbalanced);
-  memory_free(integrator->wanted);
+  fem_balance_destroy(&integrator->balance);
   fem_ida_solver_destroy(integrator->solver);
   N_Vector vectors[] = {integrator->y, integrator->y_dot, integrator->interpolated, integrator->evaluated,
                         integrator->weights};
