@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench/options.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -74,6 +75,19 @@ void app_bench_options_choose(struct argp_state *state, const char *option, char
     else
       wanted[found] = true;
   }
+}
+
+int app_bench_options_choose_one(struct argp_state *state, const char *option, char *text,
+                                 const char *const *names, int count) {
+  enum { MOST_NAMES = 64 };
+  bool wanted[MOST_NAMES];
+  int chosen = 0, given = 0;
+  assert(count <= MOST_NAMES);
+  app_bench_options_choose(state, option, text, names, count, wanted);
+  for (int i = 0; i < count; i++)
+    if (wanted[i]) chosen = i, given++;
+  if (given != 1) argp_error(state, "--%s takes one name", option);
+  return chosen;
 }
 
 int app_bench_options_numbers(struct argp_state *state, const char *option, char *text, double smallest,

@@ -36,6 +36,9 @@ extern const struct argp app_bench_options_argp;
 // Marks each name of a comma-separated list in `wanted` (count), the others not.
 void app_bench_options_choose(struct argp_state *state, const char *option, char *text,
                               const char *const *names, int count, bool *wanted);
+// The place of the one name that is given, of `names` (count).
+int app_bench_options_choose_one(struct argp_state *state, const char *option, char *text,
+                                 const char *const *names, int count);
 // Fills `counts` (APP_BENCH_MAX_LIST) with whole numbers from 1 from a comma-separated list; returns how
 // many. 1e6 is one.
 int app_bench_options_counts(struct argp_state *state, const char *option, char *text, int largest,

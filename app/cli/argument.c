@@ -86,3 +86,9 @@ const char *app_argument_words(struct argp_state *state, const char *option, cha
   *end = 0;
   return text;
 }
+
+void app_argument_add(struct argp_state *state, const char *what, const char *text, int most,
+                      const char **list, int *count) {
+  if (*count == most) argp_error(state, "at most %d %s", most, what);
+  list[(*count)++] = text;
+}

@@ -30,4 +30,9 @@ int app_argument_list(struct argp_state *state, const char *option, char *text, 
 // The same list as one text, with nothing but a comma between its words; it stays where it is.
 const char *app_argument_words(struct argp_state *state, const char *option, char *text, const char *example);
 
+// Puts a text that may be given several times behind those given before: `list` (most), `*count`. `what` is
+// how several of them are called, as in "--set" or "scenes".
+void app_argument_add(struct argp_state *state, const char *what, const char *text, int most,
+                      const char **list, int *count);
+
 #endif

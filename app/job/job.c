@@ -68,9 +68,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->is_verbose = true;
     break;
   case 's':
-    if (options->override_count == APP_MAX_OVERRIDES)
-      argp_error(state, "at most %d --set", APP_MAX_OVERRIDES);
-    options->overrides[options->override_count++] = text;
+    app_argument_add(state, "--set", text, APP_MAX_OVERRIDES, options->overrides, &options->override_count);
     break;
   case ARGP_KEY_ARG:
     if (options->scene_path) argp_error(state, "one scene at a time; '%s' is the second", text);

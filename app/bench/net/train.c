@@ -58,12 +58,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->has_torch = false;
     return 0;
   case 's':
-    if (options->override_count == MAX_OVERRIDES) argp_error(state, "at most %d --set", MAX_OVERRIDES);
-    options->overrides[options->override_count++] = text;
+    app_argument_add(state, "--set", text, MAX_OVERRIDES, options->overrides, &options->override_count);
     return 0;
   case ARGP_KEY_ARG:
-    if (options->config_count == MAX_CONFIGS) argp_error(state, "at most %d configurations", MAX_CONFIGS);
-    options->configs[options->config_count++] = text;
+    app_argument_add(state, "configurations", text, MAX_CONFIGS, options->configs, &options->config_count);
     return 0;
   case ARGP_KEY_NO_ARGS:
     argp_error(state, "name training configurations, as in examples/train/sweep/tpn.yaml");

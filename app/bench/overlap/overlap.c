@@ -8,6 +8,7 @@
 
 #include "app/bench/command.h"
 #include "app/bench/contestant.h"
+#include "app/bench/models.h"
 #include "app/bench/overlap/device.h"
 #include "app/bench/overlap/pairs.h"
 #include "app/bench/peak.h"
@@ -16,8 +17,6 @@
 #include "base/log.h"
 #include "base/memory.h"
 
-enum { MAX_MODELS = 32 };
-
 typedef enum Quantity { VOLUME, CENTROID, GRADIENT, HESSIAN, QUANTITY_COUNT } Quantity;
 static const char *const quantities[QUANTITY_COUNT] = {"V", "V+centroid", "V+grad", "V+grad+hess"};
 
@@ -25,7 +24,7 @@ static const uint64_t SEED = 1;
 
 typedef struct Options {
   AppBenchOptions common;
-  bool wants_model[MAX_MODELS], wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
+  bool wants_model[APP_BENCH_MAX_MODELS], wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
   int batches[APP_BENCH_MAX_LIST], batch_count;
   const char *device; // NULL: this processor as it is
   bool wants_residence[APP_BENCH_RESIDENCES], wants_torch;
@@ -52,23 +51,14 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static int list_models(const char *names[MAX_MODELS]) {
-  int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
-  if (count > MAX_MODELS) count = MAX_MODELS;
-  for (int m = 0; m < count; m++) names[m] = models[m]->name;
-  return count;
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
-  const char *models[MAX_MODELS];
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &options->common;
     return 0;
   case 'm':
-    app_bench_options_choose(state, "model", text, models, list_models(models), options->wants_model);
+    app_bench_models_choose(state, "model", text, options->wants_model);
     return 0;
   case 's':
     app_bench_options_choose(state, "set", text, app_bench_sets, APP_BENCH_SET_COUNT, options->wants_set);
@@ -102,8 +92,8 @@ typedef struct Case {
 typedef struct Bench {
   const Options *options;
   int model_count;
-  OverlapModel models[MAX_MODELS]; // owned; ops NULL: not wanted, or not to be had
-  AppModelCard cards[MAX_MODELS];
+  OverlapModel models[APP_BENCH_MAX_MODELS]; // owned; ops NULL: not wanted, or not to be had
+  AppModelCard cards[APP_BENCH_MAX_MODELS];
   double *pairs[APP_BENCH_SET_COUNT]; // (largest batch, 24), owned; NULL: not wanted
   double *volume, *centroid, *gradient, *hessian;
   AppBenchContestant *contestants;
@@ -114,7 +104,7 @@ typedef struct Bench {
 // Models whose weights are not there are left out, by name.
 static Status open_models(Bench *bench) {
   const OverlapOps *const *list = overlap_model_list(&bench->model_count);
-  if (bench->model_count > MAX_MODELS) bench->model_count = MAX_MODELS;
+  if (bench->model_count > APP_BENCH_MAX_MODELS) bench->model_count = APP_BENCH_MAX_MODELS;
   for (int m = 0; m < bench->model_count; m++) {
     if (!bench->options->wants_model[m]) continue;
     Status status = overlap_model_create(&bench->models[m], list[m]->name);
@@ -184,7 +174,7 @@ static Status make_inputs(Bench *bench) {
   const Options *options = bench->options;
   int most = largest_of(options->batches, options->batch_count);
   size_t batch = (size_t)most, pair = OVERLAP_PAIR_SIZE;
-  bench->capacity = APP_BENCH_SET_COUNT * QUANTITY_COUNT * MAX_MODELS * options->batch_count *
+  bench->capacity = APP_BENCH_SET_COUNT * QUANTITY_COUNT * APP_BENCH_MAX_MODELS * options->batch_count *
                     options->common.thread_list_count;
   bench->contestants = memory_zeroed((size_t)bench->capacity, sizeof *bench->contestants);
   bench->cases = memory_zeroed((size_t)bench->capacity, sizeof *bench->cases);
@@ -345,8 +335,8 @@ static Status run_on_device(const Options *options) {
                            .wants_torch = options->wants_torch,
                            .batches = options->batches,
                            .batch_count = options->batch_count};
-  const char *names[MAX_MODELS];
-  int count = list_models(names);
+  const char *names[APP_BENCH_MAX_MODELS];
+  int count = app_bench_models_list(names);
   for (int m = 0; m < count; m++)
     for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
       if (strcmp(names[m], device_overlap_models[k]) == 0) def.wants_model[k] = options->wants_model[m];
@@ -375,7 +365,7 @@ static const struct argp argp = {
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
   options.common.takes_thread_list = true;
-  for (int i = 0; i < MAX_MODELS; i++) options.wants_model[i] = true;
+  for (int i = 0; i < APP_BENCH_MAX_MODELS; i++) options.wants_model[i] = true;
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
   for (int i = 0; i < APP_BENCH_RESIDENCES; i++) options.wants_residence[i] = true;

@@ -51,8 +51,7 @@ static const struct argp_option option_table[] = {
 };
 
 static error_t parse_argument(char *text, Options *options, struct argp_state *state) {
-  if (options->scene_count == MAX_SCENES) argp_error(state, "at most %d scenes", MAX_SCENES);
-  options->scenes[options->scene_count++] = text;
+  app_argument_add(state, "scenes", text, MAX_SCENES, options->scenes, &options->scene_count);
   return 0;
 }
 
@@ -83,8 +82,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->wall_limit_s = app_argument_number(state, "wall", text, 1e-3, 1e7);
     return 0;
   case 's':
-    if (options->override_count == MAX_OVERRIDES) argp_error(state, "at most %d --set", MAX_OVERRIDES);
-    options->overrides[options->override_count++] = text;
+    app_argument_add(state, "--set", text, MAX_OVERRIDES, options->overrides, &options->override_count);
     return 0;
   case ARGP_KEY_ARG:
     return parse_argument(text, options, state);

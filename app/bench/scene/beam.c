@@ -4,18 +4,15 @@
 #include "app/bench/command.h"
 #include "app/bench/report.h"
 #include "app/bench/scene/builtin.h"
+#include "app/bench/scene/solvers.h"
 #include "app/bench/trial.h"
 #include "app/cli/argument.h"
 #include "base/memory.h"
 #include "fem/sparse/solver.h"
 
-enum { SOLVER_COUNT = 5 };
-static const FemSolverKind kinds[SOLVER_COUNT] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_AMG, FEM_SOLVER_GAMG,
-                                                  FEM_SOLVER_PCG, FEM_SOLVER_KLU};
-
 typedef struct Options {
   AppBenchOptions common;
-  bool wants_solver[SOLVER_COUNT];
+  bool wants_solver[APP_BENCH_SOLVER_COUNT];
   int nodes, steps;
   double slenderness;
 } Options;
@@ -30,14 +27,12 @@ static const struct argp_option option_table[] = {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
-  const char *names[SOLVER_COUNT];
-  for (int s = 0; s < SOLVER_COUNT; s++) names[s] = fem_solver_name(kinds[s]);
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &options->common;
     return 0;
   case 's':
-    app_bench_options_choose(state, "solver", text, names, SOLVER_COUNT, options->wants_solver);
+    app_bench_solvers_choose(state, text, options->wants_solver);
     return 0;
   case 'n':
     options->nodes = (int)app_argument_number(state, "nodes", text, 24, 1e7);
@@ -113,15 +108,15 @@ static Row row_of(const AppBenchTrial *trial, const Options *options) {
 
 static Status measure(AppBenchTrial *trials, const Options *options) {
   int count = 0, rounds = options->common.repeats;
-  for (int s = 0; s < SOLVER_COUNT; s++) {
+  for (int s = 0; s < APP_BENCH_SOLVER_COUNT; s++) {
     if (!options->wants_solver[s]) continue;
     AppBenchTrial *trial = &trials[count++];
     TRY(app_bench_builtin_beam(options->nodes, options->slenderness, &trial->scene));
-    trial->scene.solver = kinds[s];
+    trial->scene.solver = app_bench_solvers[s];
     TRY(app_bench_trial_begin(trial, &options->common, options->steps));
   }
   TRY(app_bench_timer_take_turns(trials, sizeof *trials, count, rounds, false, app_bench_trial_run));
-  Row rows[SOLVER_COUNT];
+  Row rows[APP_BENCH_SOLVER_COUNT];
   for (int t = 0; t < count; t++) {
     rows[t] = row_of(&trials[t], options);
     rows[t].ratio = rows[t].wall / rows[0].wall;
@@ -130,10 +125,10 @@ static Status measure(AppBenchTrial *trials, const Options *options) {
 }
 
 static Status run(const Options *options) {
-  AppBenchTrial *trials = memory_zeroed(SOLVER_COUNT, sizeof *trials);
+  AppBenchTrial *trials = memory_zeroed(APP_BENCH_SOLVER_COUNT, sizeof *trials);
   if (!trials) return status_no_memory("the runs");
   Status status = measure(trials, options);
-  for (int t = 0; t < SOLVER_COUNT; t++) app_bench_trial_end(&trials[t]);
+  for (int t = 0; t < APP_BENCH_SOLVER_COUNT; t++) app_bench_trial_end(&trials[t]);
   memory_free(trials);
   return status;
 }

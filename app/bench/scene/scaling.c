@@ -7,6 +7,7 @@
 
 #include "app/bench/command.h"
 #include "app/bench/contestant.h"
+#include "app/bench/models.h"
 #include "app/bench/overlap/pairs.h"
 #include "app/bench/report.h"
 #include "app/bench/scene/builtin.h"
@@ -17,13 +18,13 @@
 #include "base/text.h"
 #include "fem/run/choice.h"
 
-enum { MAX_MODELS = 32, MAX_ROWS = MAX_MODELS * APP_BENCH_MAX_LIST + 16 * APP_BENCH_MAX_LIST };
+enum { MAX_ROWS = APP_BENCH_MAX_MODELS * APP_BENCH_MAX_LIST + 16 * APP_BENCH_MAX_LIST };
 static const double GIB = 1024.0 * 1024 * 1024;
 static const uint64_t SEED = 1;
 
 typedef struct Options {
   AppBenchOptions common;
-  bool wants_model[MAX_MODELS];
+  bool wants_model[APP_BENCH_MAX_MODELS];
   int pairs[APP_BENCH_MAX_LIST], pair_sizes;
   int nodes[APP_BENCH_MAX_LIST], node_sizes;
   int steps;
@@ -49,52 +50,31 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static int list_models(const char *names[MAX_MODELS]) {
-  int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
-  if (count > MAX_MODELS) count = MAX_MODELS;
-  for (int m = 0; m < count; m++) names[m] = models[m]->name;
-  return count;
-}
-
 static int read_sizes(struct argp_state *state, const char *option, char *text, int *sizes) {
   return strcmp(text, "0") == 0 ? 0 : app_bench_options_counts(state, option, text, 100000000, sizes);
 }
 
 static FemSolverKind read_solver(struct argp_state *state, char *text) {
   const char *names[FEM_SOLVER_COUNT];
-  bool wanted[FEM_SOLVER_COUNT] = {false};
   for (int k = 0; k < FEM_SOLVER_COUNT; k++) names[k] = fem_solver_name((FemSolverKind)k);
-  app_bench_options_choose(state, "solver", text, names, FEM_SOLVER_COUNT, wanted);
-  int chosen = 0, count = 0;
-  for (int k = 0; k < FEM_SOLVER_COUNT; k++)
-    if (wanted[k]) chosen = k, count++;
-  if (count != 1) argp_error(state, "--solver takes one name");
-  return (FemSolverKind)chosen;
+  return (FemSolverKind)app_bench_options_choose_one(state, "solver", text, names, FEM_SOLVER_COUNT);
 }
 
 static const AppBenchLarge *read_scene(struct argp_state *state, char *text) {
   const char *names[APP_BENCH_LARGE_COUNT];
-  bool wanted[APP_BENCH_LARGE_COUNT] = {false};
   for (int k = 0; k < APP_BENCH_LARGE_COUNT; k++) names[k] = app_bench_builtin_large[k].name;
-  app_bench_options_choose(state, "scene", text, names, APP_BENCH_LARGE_COUNT, wanted);
-  const AppBenchLarge *chosen = NULL;
-  int count = 0;
-  for (int k = 0; k < APP_BENCH_LARGE_COUNT; k++)
-    if (wanted[k]) chosen = &app_bench_builtin_large[k], count++;
-  if (count != 1) argp_error(state, "--scene takes one name");
-  return chosen;
+  return &app_bench_builtin_large[app_bench_options_choose_one(state, "scene", text, names,
+                                                               APP_BENCH_LARGE_COUNT)];
 }
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
-  const char *models[MAX_MODELS];
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &options->common;
     return 0;
   case 'm':
-    app_bench_options_choose(state, "model", text, models, list_models(models), options->wants_model);
+    app_bench_models_choose(state, "model", text, options->wants_model);
     return 0;
   case 'p':
     options->pair_sizes = read_sizes(state, "pairs", text, options->pairs);
@@ -232,7 +212,7 @@ static Status measure_models(const Options *options, int most, double *arrays[3]
   int count;
   const OverlapOps *const *models = overlap_model_list(&count);
   TRY(app_bench_pairs_fill("near", most, SEED, arrays[0]));
-  for (int m = 0; m < count && m < MAX_MODELS; m++) {
+  for (int m = 0; m < count && m < APP_BENCH_MAX_MODELS; m++) {
     if (!options->wants_model[m]) continue;
     OverlapModel model;
     Status status = overlap_model_create(&model, models[m]->name);
@@ -354,8 +334,8 @@ static int run_command(int argument_count, char **arguments) {
                      .solver = FEM_SOLVER_AUTO,
                      .memory = 6,
                      .seconds = 60};
-  const char *names[MAX_MODELS];
-  int models = list_models(names);
+  const char *names[APP_BENCH_MAX_MODELS];
+  int models = app_bench_models_list(names);
   for (int m = 0; m < models; m++) options.wants_model[m] = text_lists("clip geo-small geo", names[m]);
   app_bench_command_read(&app_bench_scaling, argument_count, arguments, &options);
   return app_bench_command_end(run(&options));

@@ -4,19 +4,21 @@
 #include <stdio.h>
 
 #include "app/bench/command.h"
+#include "app/bench/models.h"
 #include "app/bench/report.h"
 #include "app/bench/trial.h"
+#include "app/cli/argument.h"
 #include "app/scene/overlap.h"
 #include "base/memory.h"
 #include "overlap/model.h"
 
-enum { MAX_SCENES = 16, MAX_OVERLAPS = 16, MAX_OVERRIDES = 64 };
+enum { MAX_SCENES = 16, MAX_OVERRIDES = 64 };
 
 typedef struct Options {
   AppBenchOptions common;
   const char *scenes[MAX_SCENES];
   int scene_count;
-  const char *overlaps[MAX_OVERLAPS]; // none: each scene's own
+  const char *overlaps[APP_BENCH_MAX_MODELS]; // none: each scene's own
   int overlap_count;
   const char *overrides[MAX_OVERRIDES + 1]; // the last place is for the overlap model
   int override_count;
@@ -30,13 +32,10 @@ static const struct argp_option option_table[] = {
 };
 
 static void choose_overlaps(struct argp_state *state, char *text, Options *options) {
-  const char *names[MAX_OVERLAPS];
-  bool wanted[MAX_OVERLAPS];
-  int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
-  if (count > MAX_OVERLAPS) count = MAX_OVERLAPS;
-  for (int m = 0; m < count; m++) names[m] = models[m]->name;
-  app_bench_options_choose(state, "overlap", text, names, count, wanted);
+  const char *names[APP_BENCH_MAX_MODELS];
+  bool wanted[APP_BENCH_MAX_MODELS];
+  int count = app_bench_models_list(names);
+  app_bench_models_choose(state, "overlap", text, wanted);
   options->overlap_count = 0;
   for (int m = 0; m < count; m++)
     if (wanted[m]) options->overlaps[options->overlap_count++] = names[m];
@@ -52,12 +51,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     choose_overlaps(state, text, options);
     return 0;
   case 's':
-    if (options->override_count == MAX_OVERRIDES) argp_error(state, "at most %d --set", MAX_OVERRIDES);
-    options->overrides[options->override_count++] = text;
+    app_argument_add(state, "--set", text, MAX_OVERRIDES, options->overrides, &options->override_count);
     return 0;
   case ARGP_KEY_ARG:
-    if (options->scene_count == MAX_SCENES) argp_error(state, "at most %d scenes", MAX_SCENES);
-    options->scenes[options->scene_count++] = text;
+    app_argument_add(state, "scenes", text, MAX_SCENES, options->scenes, &options->scene_count);
     return 0;
   case ARGP_KEY_NO_ARGS:
     argp_error(state, "name scene files, as in examples/01_drop.yaml");

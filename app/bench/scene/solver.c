@@ -8,16 +8,13 @@
 #include "app/bench/options.h"
 #include "app/bench/report.h"
 #include "app/bench/scene/builtin.h"
+#include "app/bench/scene/solvers.h"
 #include "app/bench/timer.h"
 #include "app/cli/argument.h"
 #include "base/memory.h"
 #include "fem/effect/system.h"
 #include "fem/model/build.h"
 #include "fem/sparse/solver.h"
-
-enum { SOLVER_COUNT = 5 };
-static const FemSolverKind kinds[SOLVER_COUNT] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_AMG, FEM_SOLVER_GAMG,
-                                                  FEM_SOLVER_PCG, FEM_SOLVER_KLU};
 
 // On more vertices the full system takes minutes and gigabytes: it is measured there only if it is asked for.
 static const double LARGEST_KLU = 6000;
@@ -26,7 +23,7 @@ static const double BEND = 0.05;
 
 typedef struct Options {
   AppBenchOptions common;
-  bool has_solvers, wants_solver[SOLVER_COUNT];
+  bool has_solvers, wants_solver[APP_BENCH_SOLVER_COUNT];
   double nodes[APP_BENCH_MAX_LIST];
   int node_count;
   double slenderness;
@@ -43,14 +40,12 @@ static const struct argp_option option_table[] = {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
-  const char *names[SOLVER_COUNT];
-  for (int s = 0; s < SOLVER_COUNT; s++) names[s] = fem_solver_name(kinds[s]);
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &options->common;
     return 0;
   case 's':
-    app_bench_options_choose(state, "solver", text, names, SOLVER_COUNT, options->wants_solver);
+    app_bench_solvers_choose(state, text, options->wants_solver);
     options->has_solvers = true;
     return 0;
   case 'n':
@@ -256,7 +251,7 @@ static Row row_of(const Contestant *contestant, const Options *options) {
 // One beam and the solvers that are measured on it.
 typedef struct Bench {
   Beam beam;
-  Contestant contestants[SOLVER_COUNT];
+  Contestant contestants[APP_BENCH_SOLVER_COUNT];
   int contestant_count;
 } Bench;
 
@@ -273,13 +268,13 @@ static Status add_contestant(Bench *bench, FemSolverKind kind, const Options *op
 
 static bool is_wanted(int solver, double nodes, const Options *options) {
   if (options->has_solvers) return options->wants_solver[solver];
-  return kinds[solver] != FEM_SOLVER_KLU || nodes <= LARGEST_KLU;
+  return app_bench_solvers[solver] != FEM_SOLVER_KLU || nodes <= LARGEST_KLU;
 }
 
 static Status measure_beam(Bench *bench, double nodes, const Options *options, Row *rows, int *row_count) {
   TRY(make_beam(&bench->beam, (int)nodes, options));
-  for (int s = 0; s < SOLVER_COUNT; s++)
-    if (is_wanted(s, nodes, options)) TRY(add_contestant(bench, kinds[s], options));
+  for (int s = 0; s < APP_BENCH_SOLVER_COUNT; s++)
+    if (is_wanted(s, nodes, options)) TRY(add_contestant(bench, app_bench_solvers[s], options));
   TRY(app_bench_timer_take_turns(bench->contestants, sizeof *bench->contestants, bench->contestant_count,
                                  options->common.repeats, true, take_turn));
   for (int c = 0; c < bench->contestant_count; c++)
@@ -297,7 +292,7 @@ static void destroy(Bench *bench) {
 }
 
 static Status run(const Options *options) {
-  Row rows[SOLVER_COUNT * APP_BENCH_MAX_LIST];
+  Row rows[APP_BENCH_SOLVER_COUNT * APP_BENCH_MAX_LIST];
   int row_count = 0;
   Status status = STATUS_OK;
   omp_set_num_threads(options->common.threads);

@@ -32,8 +32,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[0] = &options->common;
     return 0;
   case 's':
-    if (options->override_count == MAX_OVERRIDES) argp_error(state, "at most %d --set", MAX_OVERRIDES);
-    options->overrides[options->override_count++] = text;
+    app_argument_add(state, "--set", text, MAX_OVERRIDES, options->overrides, &options->override_count);
     return 0;
   case 'k':
     options->steps = (int)app_argument_integer(state, "steps", text, 1, 1000000000);

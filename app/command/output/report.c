@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "app/cli/argument.h"
 #include "app/report/collect.h"
 #include "base/files/file.h"
 #include "base/log.h"
@@ -66,14 +67,12 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->pareto = text;
     return 0;
   case KEY_BENCH:
-    if (options->bench_count == APP_REPORT_MAX_BENCHES)
-      argp_error(state, "at most %d results of bench can be shown", APP_REPORT_MAX_BENCHES);
-    options->benches[options->bench_count++] = text;
+    app_argument_add(state, "results of bench", text, APP_REPORT_MAX_BENCHES, options->benches,
+                     &options->bench_count);
     return 0;
   case KEY_STRESS:
-    if (options->stress_count == APP_REPORT_MAX_STRESSES)
-      argp_error(state, "at most %d tables of stress can be shown", APP_REPORT_MAX_STRESSES);
-    options->stresses[options->stress_count++] = text;
+    app_argument_add(state, "tables of stress", text, APP_REPORT_MAX_STRESSES, options->stresses,
+                     &options->stress_count);
     return 0;
   case 'q':
     options->is_quiet = true;

@@ -103,13 +103,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->reference = text;
     return 0;
   case 's':
-    if (options->override_count == MAX_OVERRIDES) argp_error(state, "at most %d --set", MAX_OVERRIDES);
-    options->overrides[options->override_count++] = text;
+    app_argument_add(state, "--set", text, MAX_OVERRIDES, options->overrides, &options->override_count);
     return 0;
   case ARGP_KEY_ARG:
-    if (options->scene_count == APP_PARETO_MAX_SCENES)
-      argp_error(state, "at most %d scenes", APP_PARETO_MAX_SCENES);
-    options->scenes[options->scene_count++] = text;
+    app_argument_add(state, "scenes", text, APP_PARETO_MAX_SCENES, options->scenes, &options->scene_count);
     return 0;
   default:
     return parse_number(key, text, state, &options->pareto);

@@ -70,9 +70,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->device = text;
     break;
   case 's':
-    if (options->override_count == APP_MAX_OVERRIDES)
-      argp_error(state, "at most %d --set", APP_MAX_OVERRIDES);
-    options->overrides[options->override_count++] = text;
+    app_argument_add(state, "--set", text, APP_MAX_OVERRIDES, options->overrides, &options->override_count);
     break;
   case 't':
     options->threads = app_argument_threads(state, text);

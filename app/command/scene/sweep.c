@@ -39,21 +39,15 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static void add_text(struct argp_state *state, const char *option, char *text, const char **list, int *count,
-                     int most) {
-  if (*count == most) argp_error(state, "at most %d --%s", most, option);
-  list[(*count)++] = text;
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   switch (key) {
   case 'V':
-    add_text(state, "vary", text, options->axes, &options->axis_count, APP_SWEEP_MAX_AXES);
+    app_argument_add(state, "--vary", text, APP_SWEEP_MAX_AXES, options->axes, &options->axis_count);
     return 0;
   case 's':
-    add_text(state, "set", text, options->overrides, &options->override_count,
-             APP_MAX_OVERRIDES - APP_SWEEP_MAX_AXES);
+    app_argument_add(state, "--set", text, APP_MAX_OVERRIDES - APP_SWEEP_MAX_AXES, options->overrides,
+                     &options->override_count);
     return 0;
   case 'm':
     options->overlap = text;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The overlap models there are (overlap/model.h), as benches list and choose them.
+#ifndef TETLAP_APP_BENCH_MODELS_H
+#define TETLAP_APP_BENCH_MODELS_H
+
+#include <argp.h>
+#include <stdbool.h>
+
+enum { APP_BENCH_MAX_MODELS = 32 };
+
+// The names of all, in their order, and how many they are.
+int app_bench_models_list(const char *names[APP_BENCH_MAX_MODELS]);
+
+// Marks each model of a comma-separated list in `wanted`, the others not; ends the program where a name is
+// wrong.
+void app_bench_models_choose(struct argp_state *state, const char *option, char *text,
+                             bool wanted[APP_BENCH_MAX_MODELS]);
+
+#endif
