@@ -18,6 +18,8 @@
 #include "fem/run/hold.h"
 #include "fem/run/run_checkpoint.h"
 #include "fem/run/run_frames.h"
+#include "fem/run/run_load.h"
+#include "fem/run/run_watch.h"
 #include "fem/run/spread.h"
 #include "fem/run/start.h"
 
@@ -31,8 +33,6 @@ static const double TURNED_SHARE = 3e-4;
 // A scene in motion without contact may begin at rest with long steps. What it gains is judged by the energy
 // of a strain of so many times time.tolerance, which is a length over a body's, at least.
 static const double TOLD_STRAIN = 20;
-// A static run gives up where a step of load becomes shorter than this share of the time between two frames.
-static const double SHORTEST_LOAD_STEP = 1e-4;
 // While all bodies sleep time goes on by this share of the end at most, and by a shorter one where an
 // obstacle would move too far.
 static const double LONGEST_SLEEP = 0.1, SHORTER_SLEEP = 0.25, SHORTEST_SLEEP = 1e-9;
@@ -66,55 +66,6 @@ static Status take_back(FemRunState *run, double step, const char *why) {
             fem_integrator_stats(run->integrator).last_step, why);
   run->retries++;
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
-}
-
-static Status refuse_passage(const FemRunState *run) {
-  char text[512];
-  fem_trouble_tell(&run->result->trouble, run->model, FEM_TROUBLE_PASSED, text, sizeof text);
-  return status_fail(STATUS_SOLVER, "%s (--strict)", text);
-}
-
-// Counts what struck in the accepted state; `*has_begun`: something that had not in the state before.
-static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_begun) {
-  FemTrouble *trouble = &run->result->trouble;
-  const double rise = fem_audit_rise(&run->result->energy_bounds, &run->audit);
-  const double bound = run->result->energy_bounds.run;
-  measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= bound);
-  *has_begun = fem_trouble_add(trouble, run->time, &measures->trouble);
-  if (run->options->is_strict && measures->trouble.count[FEM_TROUBLE_PASSED] > 0) return refuse_passage(run);
-  if (!run->options->is_strict || !measures->trouble.count[FEM_TROUBLE_ENERGY]) return STATUS_OK;
-  return status_fail(
-      STATUS_SOLVER,
-      "at t = %.9g s: the energy has risen by %.2g of the scene's, the bound is %g (--strict). Try "
-      "a smaller time.tolerance or time.max_step, or a smaller contact.stiffness",
-      run->time, rise, bound);
-}
-
-static Status check_stop(const FemRunState *run) {
-  if (!run->options->stop || !*run->options->stop) return STATUS_OK;
-  return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
-                     run->time);
-}
-
-static Status observe(FemRunState *run, FemMeasures *measures) {
-  bool has_begun;
-  TRY(watch_trouble(run, measures, &has_begun));
-  TRY(ranks()->worst(check_stop(run)));
-  if (!run->options->observe) return STATUS_OK;
-  FemIntegratorStats stats = fem_run_state_stats(run);
-  FemRunProgress progress = {.system = &run->system,
-                             .time = run->time,
-                             .end = run->model->scene->end,
-                             .step = stats.last_step,
-                             .step_count = stats.steps,
-                             .active_pairs = measures->active_pairs,
-                             .measures = measures,
-                             .audit = &run->audit,
-                             .energy_rise = fem_audit_rise(&run->result->energy_bounds, &run->audit),
-                             .energy_bound = run->result->energy_bounds.run,
-                             .trouble = &run->result->trouble,
-                             .has_trouble_begun = has_begun};
-  return run->options->observe(run->options->observer, &progress);
 }
 
 static void keep_state(FemRunState *run, double time) {
@@ -211,13 +162,6 @@ static Status renumber(FemRunState *run) {
   return begin_stage(run, 0);
 }
 
-// The step's row, before frames within the step are measured in its place.
-static Status take_row(FemRunState *run, double time, const FemMeasures *measures, const FemAudit *audit) {
-  FemIntegratorStats stats = fem_run_state_stats(run);
-  return fem_recorder_take_step(&run->recorder, time, measures, audit, stats.last_step, stats.steps,
-                                run->result->trouble.of[FEM_TROUBLE_ENERGY].events);
-}
-
 // Whether the step's forces are too far from the motion. Without contact nothing jumps within a step; of
 // potentials other than the depth field forces jump in steps however short.
 static bool differs_from_motion(const FemRunState *run) {
@@ -284,7 +228,7 @@ static Status advance(FemRunState *run) {
     run->result->slip_retries++;
     return take_back(run, retry_step(run, shortest_retry(run)), "friction pushes on what has turned");
   }
-  status = take_row(run, time, &measures, &next);
+  status = fem_run_frames_take_row(run, time, &measures, &next);
   if (!status) status = fem_run_frames_write_until(run, time);
   if (status == STATUS_RETRY && may_retry) return take_back(run, retry_step(run, 0), status_message());
   TRY(status);
@@ -297,7 +241,7 @@ static Status advance(FemRunState *run) {
     run->result->trouble.smallest_step = fmin(run->result->trouble.smallest_step, stats.last_step);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
   if (fem_system_lags(&run->system) || fem_integrator_is_at_knot(run->integrator)) TRY(renew_powers(run));
-  TRY(observe(run, &measures));
+  TRY(fem_run_watch(run, &measures));
   if (fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest))) return renumber(run);
   if (!is_onset) return STATUS_OK;
   log_debug("t = %.9g s: the integrator starts anew, something begins here", time);
@@ -327,7 +271,7 @@ static Status sleep_on(FemRunState *run) {
   FemMeasures measures;
   TRY(look_ahead(run, &time, &measures));
   FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
-  TRY(take_row(run, time, &measures, &next));
+  TRY(fem_run_frames_take_row(run, time, &measures, &next));
   TRY(fem_run_frames_write_until(run, time));
   TRY(fem_recorder_append_step(&run->recorder));
   run->audit = next;
@@ -336,7 +280,7 @@ static Status sleep_on(FemRunState *run) {
   fem_run_frames_keep_extremes(run->result, &measures);
   TRY(fem_system_accept(&run->system, time, run->u, run->v, time - began));
   TRY(fem_recorder_begin_step(&run->recorder, time, &measures));
-  TRY(observe(run, &measures));
+  TRY(fem_run_watch(run, &measures));
   bool has_changed = fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest));
   return has_changed ? renumber(run) : STATUS_OK;
 }
@@ -462,76 +406,6 @@ static Status pass_checkpoint(FemRunState *run) {
   return STATUS_OK;
 }
 
-// The work of a step of load, and how far it may be wrong; that of obstacles the audit adds itself.
-static void keep_load_step(FemRunState *run, double step, double work_before, const FemEnergy *energy) {
-  const FemStatics *statics = &run->statics;
-  run->audit.driven_work += statics->driven_work - work_before;
-  fem_audit_load_step(&run->audit, step, statics->work_begin + step * run->audit.driven_power,
-                      statics->work_end + step * energy->driven_power, statics->work_left);
-}
-
-// Of obstacles without elements at the equilibrium of a step of load, at a time beside it: where a motion has
-// a knot its speed before is not that after.
-static Status find_power(FemRunState *run, double time, double *power) {
-  FemEnergy energy;
-  *power = 0;
-  if (run->model->scene->obstacle_count == 0) return STATUS_OK;
-  TRY(fem_system_energy(&run->system, time, &energy));
-  *power = energy.driven_power;
-  return STATUS_OK;
-}
-
-// One step of load, halved where there is no equilibrium; `next_step` is what to try next.
-static Status advance_static(FemRunState *run) {
-  const FemSceneDef *scene = run->model->scene;
-  double longest = scene->max_step > 0 ? scene->max_step : scene->end / scene->frames;
-  double step = run->next_step > 0 ? fmin(run->next_step, longest) : longest;
-  FemForesight foresight = {.displacement = fem_model_position_tolerance(run->model),
-                            .resolution = SHORTEST_LOAD_STEP * scene->end / scene->frames,
-                            .static_share = scene->tolerance};
-  double target = fem_scene_frame_time(scene, run->next_frame), to = fmin(run->time + step, target),
-         from = run->time, work_before = run->statics.driven_work;
-  to = fem_system_horizon(&run->system, &foresight, run->time, to);
-  Status status = fem_statics_step(&run->statics, run->time, to, run->u);
-  if (status == STATUS_RETRY) {
-    run->next_step = 0.5 * (to - run->time);
-    bool is_too_short = run->next_step < SHORTEST_LOAD_STEP * scene->end / scene->frames;
-    return is_too_short ? status_fail(STATUS_SOLVER, "%s", status_message()) : STATUS_OK;
-  }
-  TRY(status);
-  run->time = to;
-  run->next_step = 2 * step;
-  FemMeasures measures;
-  double power_before, power_past;
-  fem_equilibrium_scatter(&run->statics.equilibrium, run->time, run->u);
-  TRY(find_power(run, fem_signal_past(run->time), &power_past));
-  TRY(find_power(run, fem_signal_before(run->time), &power_before));
-  TRY(fem_run_frames_measure(run, run->time, &measures));
-  measures.energy.driven_power = power_before;
-  TRY(fem_recorder_end_step(&run->recorder, run->time, &measures));
-  fem_recorder_accept_step(&run->recorder);
-  keep_load_step(run, run->time - from, work_before, &measures.energy);
-  run->audit = fem_audit_next(&run->audit, run->time, &measures.energy);
-  fem_run_frames_keep_extremes(run->result, &measures);
-  TRY(take_row(run, run->time, &measures, &run->audit));
-  if (run->time >= target) TRY(fem_run_frames_write(run, run->time, &measures));
-  TRY(fem_recorder_append_step(&run->recorder));
-  run->audit.driven_power = power_past;
-  return observe(run, &measures);
-}
-
-// At the end: who is beyond the middle of another has passed it, too.
-static Status judge_passages(FemRunState *run) {
-  FemTrouble *trouble = &run->result->trouble;
-  FemTroubleState state = trouble->last;
-  fem_recorder_find_turned(&run->recorder, &state);
-  if (trouble->of[FEM_TROUBLE_PASSED].steps > 0 || state.count[FEM_TROUBLE_PASSED] == 0) return STATUS_OK;
-  for (int kind = 0; kind < FEM_TROUBLE_KIND_COUNT; kind++) // the rest of the last step has been added
-    if (kind != FEM_TROUBLE_PASSED) state.count[kind] = 0;
-  fem_trouble_add(trouble, run->time, &state);
-  return run->options->is_strict ? refuse_passage(run) : STATUS_OK;
-}
-
 static Status march(FemRunState *run) {
   TRY(allocate_states(run));
   TRY(begin_part(run));
@@ -540,14 +414,14 @@ static Status march(FemRunState *run) {
   TRY(fem_run_checkpoint_offer(run));
   while (!fem_run_state_has_ended(run)) {
     if (run->model->scene->is_static) {
-      TRY(advance_static(run));
+      TRY(fem_run_load_advance(run));
     } else {
       if (run->time >= run->stage_end) TRY(renumber(run));
       TRY(run->integrator ? advance(run) : sleep_on(run));
     }
     if (fem_run_checkpoint_is_due(run)) TRY(pass_checkpoint(run));
   }
-  return judge_passages(run);
+  return fem_run_watch_passages(run);
 }
 
 static Status keep_account(FemRunState *run) {

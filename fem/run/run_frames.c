@@ -141,3 +141,10 @@ Status fem_run_frames_open(FemRunState *run) {
   if (from->next_frame > 0) TRY(fem_ledger_load(&run->recorder.ledger, from->ledger, from->ledger_count));
   return fem_recorder_continue(&run->recorder, from->history, from->next_frame);
 }
+
+Status fem_run_frames_take_row(FemRunState *run, double time, const FemMeasures *measures,
+                               const FemAudit *audit) {
+  FemIntegratorStats stats = fem_run_state_stats(run);
+  return fem_recorder_take_step(&run->recorder, time, measures, audit, stats.last_step, stats.steps,
+                                run->result->trouble.of[FEM_TROUBLE_ENERGY].events);
+}

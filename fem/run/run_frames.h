@@ -20,4 +20,8 @@ Status fem_run_frames_write(FemRunState *run, double time, const FemMeasures *me
 // Writes the frames within the last step. RETRY as of measuring.
 Status fem_run_frames_write_until(FemRunState *run, double time);
 
+// The row of the step to `time` in the history, kept before frames within the step are measured in its place.
+Status fem_run_frames_take_row(FemRunState *run, double time, const FemMeasures *measures,
+                               const FemAudit *audit);
+
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run while it goes on, shared by the files that make it up: run.c steps, run_frames.c measures and shows,
-// run_checkpoint.c keeps what a resumed run needs. For those only.
+// A run while it goes on, shared by the files that make it up: run.c steps, run_load.c does so in a static
+// scene, run_frames.c measures and shows, run_watch.c counts trouble and tells, run_checkpoint.c keeps what a
+// resumed run needs. For those only.
 #ifndef TETLAP_FEM_RUN_RUN_STATE_H
 #define TETLAP_FEM_RUN_RUN_STATE_H
 

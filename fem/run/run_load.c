@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/run_load.h"
+
+#include <math.h>
+
+#include "fem/run/run_frames.h"
+#include "fem/run/run_watch.h"
+
+// A static run gives up where a step of load becomes shorter than this share of the time between two frames.
+static const double SHORTEST_LOAD_STEP = 1e-4;
+
+// The work of a step of load, and how far it may be wrong; that of obstacles the audit adds itself.
+static void keep_load_step(FemRunState *run, double step, double work_before, const FemEnergy *energy) {
+  const FemStatics *statics = &run->statics;
+  run->audit.driven_work += statics->driven_work - work_before;
+  fem_audit_load_step(&run->audit, step, statics->work_begin + step * run->audit.driven_power,
+                      statics->work_end + step * energy->driven_power, statics->work_left);
+}
+
+// Of obstacles without elements at the equilibrium of a step of load, at a time beside it: where a motion has
+// a knot its speed before is not that after.
+static Status find_power(FemRunState *run, double time, double *power) {
+  FemEnergy energy;
+  *power = 0;
+  if (run->model->scene->obstacle_count == 0) return STATUS_OK;
+  TRY(fem_system_energy(&run->system, time, &energy));
+  *power = energy.driven_power;
+  return STATUS_OK;
+}
+
+Status fem_run_load_advance(FemRunState *run) {
+  const FemSceneDef *scene = run->model->scene;
+  double longest = scene->max_step > 0 ? scene->max_step : scene->end / scene->frames;
+  double step = run->next_step > 0 ? fmin(run->next_step, longest) : longest;
+  FemForesight foresight = {.displacement = fem_model_position_tolerance(run->model),
+                            .resolution = SHORTEST_LOAD_STEP * scene->end / scene->frames,
+                            .static_share = scene->tolerance};
+  double target = fem_scene_frame_time(scene, run->next_frame), to = fmin(run->time + step, target),
+         from = run->time, work_before = run->statics.driven_work;
+  to = fem_system_horizon(&run->system, &foresight, run->time, to);
+  Status status = fem_statics_step(&run->statics, run->time, to, run->u);
+  if (status == STATUS_RETRY) {
+    run->next_step = 0.5 * (to - run->time);
+    bool is_too_short = run->next_step < SHORTEST_LOAD_STEP * scene->end / scene->frames;
+    return is_too_short ? status_fail(STATUS_SOLVER, "%s", status_message()) : STATUS_OK;
+  }
+  TRY(status);
+  run->time = to;
+  run->next_step = 2 * step;
+  FemMeasures measures;
+  double power_before, power_past;
+  fem_equilibrium_scatter(&run->statics.equilibrium, run->time, run->u);
+  TRY(find_power(run, fem_signal_past(run->time), &power_past));
+  TRY(find_power(run, fem_signal_before(run->time), &power_before));
+  TRY(fem_run_frames_measure(run, run->time, &measures));
+  measures.energy.driven_power = power_before;
+  TRY(fem_recorder_end_step(&run->recorder, run->time, &measures));
+  fem_recorder_accept_step(&run->recorder);
+  keep_load_step(run, run->time - from, work_before, &measures.energy);
+  run->audit = fem_audit_next(&run->audit, run->time, &measures.energy);
+  fem_run_frames_keep_extremes(run->result, &measures);
+  TRY(fem_run_frames_take_row(run, run->time, &measures, &run->audit));
+  if (run->time >= target) TRY(fem_run_frames_write(run, run->time, &measures));
+  TRY(fem_recorder_append_step(&run->recorder));
+  run->audit.driven_power = power_past;
+  return fem_run_watch(run, &measures);
+}

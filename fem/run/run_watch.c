@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/run_watch.h"
+
+#include "base/ranks.h"
+
+static Status refuse_passage(const FemRunState *run) {
+  char text[512];
+  fem_trouble_tell(&run->result->trouble, run->model, FEM_TROUBLE_PASSED, text, sizeof text);
+  return status_fail(STATUS_SOLVER, "%s (--strict)", text);
+}
+
+// Counts what struck in the accepted state; `*has_begun`: something that had not in the state before.
+static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_begun) {
+  FemTrouble *trouble = &run->result->trouble;
+  const double rise = fem_audit_rise(&run->result->energy_bounds, &run->audit);
+  const double bound = run->result->energy_bounds.run;
+  measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= bound);
+  *has_begun = fem_trouble_add(trouble, run->time, &measures->trouble);
+  if (run->options->is_strict && measures->trouble.count[FEM_TROUBLE_PASSED] > 0) return refuse_passage(run);
+  if (!run->options->is_strict || !measures->trouble.count[FEM_TROUBLE_ENERGY]) return STATUS_OK;
+  return status_fail(
+      STATUS_SOLVER,
+      "at t = %.9g s: the energy has risen by %.2g of the scene's, the bound is %g (--strict). Try "
+      "a smaller time.tolerance or time.max_step, or a smaller contact.stiffness",
+      run->time, rise, bound);
+}
+
+static Status check_stop(const FemRunState *run) {
+  if (!run->options->stop || !*run->options->stop) return STATUS_OK;
+  return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
+                     run->time);
+}
+
+Status fem_run_watch(FemRunState *run, FemMeasures *measures) {
+  bool has_begun;
+  TRY(watch_trouble(run, measures, &has_begun));
+  TRY(ranks()->worst(check_stop(run)));
+  if (!run->options->observe) return STATUS_OK;
+  FemIntegratorStats stats = fem_run_state_stats(run);
+  FemRunProgress progress = {.system = &run->system,
+                             .time = run->time,
+                             .end = run->model->scene->end,
+                             .step = stats.last_step,
+                             .step_count = stats.steps,
+                             .active_pairs = measures->active_pairs,
+                             .measures = measures,
+                             .audit = &run->audit,
+                             .energy_rise = fem_audit_rise(&run->result->energy_bounds, &run->audit),
+                             .energy_bound = run->result->energy_bounds.run,
+                             .trouble = &run->result->trouble,
+                             .has_trouble_begun = has_begun};
+  return run->options->observe(run->options->observer, &progress);
+}
+
+Status fem_run_watch_passages(FemRunState *run) {
+  FemTrouble *trouble = &run->result->trouble;
+  FemTroubleState state = trouble->last;
+  fem_recorder_find_turned(&run->recorder, &state);
+  if (trouble->of[FEM_TROUBLE_PASSED].steps > 0 || state.count[FEM_TROUBLE_PASSED] == 0) return STATUS_OK;
+  for (int kind = 0; kind < FEM_TROUBLE_KIND_COUNT; kind++) // the rest of the last step has been added
+    if (kind != FEM_TROUBLE_PASSED) state.count[kind] = 0;
+  fem_trouble_add(trouble, run->time, &state);
+  return run->options->is_strict ? refuse_passage(run) : STATUS_OK;
+}
