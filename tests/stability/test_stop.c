@@ -9,7 +9,7 @@
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "fem/run/checkpoint/checkpoint.h"
-#include "fem/run/run_checkpoint.h"
+#include "fem/run/checkpoint/run_checkpoint.h"
 
 static char folder[64];
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/run_checkpoint.h"
+#include "fem/run/checkpoint/run_checkpoint.h"
 
 #include <math.h>
 #include <stdio.h>
