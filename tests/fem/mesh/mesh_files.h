@@ -34,10 +34,13 @@
 
 static char directory[64];
 
-// A file in the test's own directory; overwritten by the next of the same name.
+// A file in the test's own directory, overwritten by the next of the same name; of the paths the last four
+// last.
 static inline char *scratch(const char *name) {
-  static char path[160];
-  snprintf(path, sizeof path, "%s/%s", directory, name);
+  static char paths[4][160];
+  static int next;
+  char *path = paths[next++ % 4];
+  snprintf(path, sizeof paths[0], "%s/%s", directory, name);
   return path;
 }
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // fem/solver: every solver in the table on small systems by hand and on random ones, against each other, and
 // on matrices that it must refuse.
-#include "suite.h"
+#include "bar.h"
 
 #include <omp.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/random.h"
 #include "fem/element/element.h"
 #include "fem/sparse/solver.h"
 
@@ -17,77 +16,6 @@ enum { KIND_COUNT = 5 };
 
 static bool iterates(FemSolverKind kind) {
   return kind == FEM_SOLVER_PCG || kind == FEM_SOLVER_AMG || kind == FEM_SOLVER_GAMG;
-}
-
-// A bar of cells × 3 × 3 cubes cut into six tetrahedra each; a random positive semi-definite matrix a
-// tetrahedron for K and D, random masses. One end is fixed, some coordinates elsewhere too.
-typedef struct Bar {
-  int vertex_count, unknown_count;
-  int *unknown_of_dof;
-  double *mass, *mass_of_unknown;
-  FemPattern *pattern;
-  FemMatrix K, D, S; // S = K + c D + c² M
-  double c;
-} Bar;
-
-static void add_tet(Bar *bar, Random *random, const int tet[4]) {
-  double dense[144] = {0}, w[12];
-  for (int k = 0; k < 8; k++) {
-    double mean[3] = {0};
-    for (int i = 0; i < 12; i++) w[i] = random_normal(random), mean[i % 3] += 0.25 * w[i];
-    for (int i = 0; i < 12; i++) w[i] -= mean[i % 3]; // no force from a translation
-    for (int i = 0; i < 144; i++) dense[i] += w[i / 12] * w[i % 12];
-  }
-  fem_matrix_add(&bar->K, 4, tet, dense, 1);
-  fem_matrix_add(&bar->D, 4, tet, dense, 0.03);
-}
-
-// Calls add_tet, or with `is_layout` only tells the pattern, for each of the six tetrahedra of every cube.
-static void visit_tets(Bar *bar, int cells, bool is_layout) {
-  static const int paths[6][2] = {{1, 2}, {1, 4}, {2, 1}, {2, 4}, {4, 1}, {4, 2}}; // axis bits of a Kuhn path
-  Random random = random_seeded(42, 0);
-  for (int cube = 0; cube < 9 * cells; cube++) {
-    int corner[8];
-    for (int k = 0; k < 8; k++)
-      corner[k] = (cube / 9 + (k & 1)) * 16 + (cube / 3 % 3 + (k >> 1 & 1)) * 4 + cube % 3 + (k >> 2);
-    for (int p = 0; p < 6; p++) {
-      int tet[4] = {corner[0], corner[paths[p][0]], corner[paths[p][0] | paths[p][1]], corner[7]};
-      if (is_layout)
-        ck_assert_ok(fem_pattern_add_clique(bar->pattern, 4, tet, NULL));
-      else
-        add_tet(bar, &random, tet);
-    }
-  }
-}
-
-static Bar bar_create(int cells, double c) {
-  Bar bar = {.vertex_count = 16 * (cells + 1), .c = c};
-  size_t vertices = (size_t)bar.vertex_count;
-  Random random = random_seeded(43, 0);
-  bar.unknown_of_dof = memory_zeroed(3 * vertices, sizeof *bar.unknown_of_dof);
-  bar.mass = memory_zeroed(vertices, sizeof *bar.mass);
-  bar.mass_of_unknown = memory_zeroed(3 * vertices, sizeof *bar.mass_of_unknown);
-  for (int v = 0; v < bar.vertex_count; v++) bar.mass[v] = random_between(&random, 0.5, 1.5);
-  for (int dof = 0; dof < 3 * bar.vertex_count; dof++) {
-    bool is_free = dof >= 48 && random_uniform(&random) > 0.05;
-    if (is_free) bar.mass_of_unknown[bar.unknown_count] = bar.mass[dof / 3];
-    bar.unknown_of_dof[dof] = is_free ? bar.unknown_count++ : -1;
-  }
-  ck_assert_ok(fem_pattern_create(&bar.pattern, bar.vertex_count));
-  visit_tets(&bar, cells, true);
-  ck_assert_ok(fem_matrix_create(&bar.K, bar.pattern, bar.unknown_of_dof));
-  ck_assert_ok(fem_matrix_copy_layout(&bar.D, &bar.K));
-  ck_assert_ok(fem_matrix_copy_layout(&bar.S, &bar.K));
-  visit_tets(&bar, cells, false);
-  for (int k = 0; k < bar.S.entry_count; k++) bar.S.value[k] = bar.K.value[k] + c * bar.D.value[k];
-  fem_matrix_add_mass(&bar.S, bar.mass, c * c);
-  return bar;
-}
-
-static void bar_destroy(Bar *bar) {
-  fem_matrix_destroy(&bar->K), fem_matrix_destroy(&bar->D), fem_matrix_destroy(&bar->S);
-  fem_pattern_destroy(bar->pattern);
-  memory_free(bar->unknown_of_dof), memory_free(bar->mass), memory_free(bar->mass_of_unknown);
 }
 
 // Newton's full system for right-hand sides r1, r2 by any solver: condensed ones as the integrator does it.
@@ -125,13 +53,6 @@ static double relative_residual(const Bar *bar, const double *r, const double *x
   }
   memory_free(Ku), memory_free(Dv);
   return sqrt(error / norm);
-}
-
-static double *random_vector(int count, uint64_t seed) {
-  Random random = random_seeded(seed, 0);
-  double *values = memory_zeroed((size_t)count, sizeof *values);
-  for (int i = 0; i < count; i++) values[i] = random_normal(&random);
-  return values;
 }
 
 START_TEST(solvers_are_found_by_kind_and_named) {
@@ -467,101 +388,6 @@ START_TEST(multigrid_needs_far_fewer_iterations_than_blocks_of_vertices) {
 }
 END_TEST
 
-// S = K + c D + c² M, its set-up and a solution.
-static void solve_shifted(const FemSolverOps *ops, void *solver, Bar *bar, double c, const double *b,
-                          double *x) {
-  for (int i = 0; i < bar->S.entry_count; i++) bar->S.value[i] = bar->K.value[i] + c * bar->D.value[i];
-  fem_matrix_add_mass(&bar->S, bar->mass, c * c);
-  ck_assert_ok(ops->factorise(solver, &bar->S, NULL, NULL, c));
-  ck_assert_ok(ops->solve(solver, b, x));
-}
-
-// The matrix moves on, ever further: the answer is that of the newest, whenever the hierarchy was made. From
-// one to the next c is a tenth larger, so most bear that it is kept; over all it grows by a factor of 1,000,
-// and then falls at once, where the one that is kept does not do.
-START_TEST(a_hierarchy_that_is_kept_never_touches_the_answer) {
-  Bar bar = bar_create(20, 1);
-  int n = bar.unknown_count;
-  double *b = random_vector(n, 5), *x = memory_zeroed((size_t)n, sizeof *x),
-         *Sx = memory_zeroed((size_t)n, sizeof *x);
-  const FemSolverOps *const all[] = {&fem_solver_amg, &fem_solver_gamg};
-  for (int k = 0; k < 2; k++) {
-    void *solver;
-    ck_assert_ok(all[k]->create(&solver, 1, 1e-10));
-    ck_assert_ok(all[k]->analyse(solver, &bar.S));
-    int count = 0;
-    for (double c = 0.1; count < 76; c *= c < 100 ? 1.1 : 1e-4, count++) {
-      solve_shifted(all[k], solver, &bar, c, b, x);
-      fem_matrix_multiply(&bar.S, x, Sx);
-      double error = 0, norm = 0;
-      for (int i = 0; i < n; i++) error += (Sx[i] - b[i]) * (Sx[i] - b[i]), norm += b[i] * b[i];
-      ck_assert_msg(sqrt(error / norm) <= 1e-7, "%s, c = %g: residual %g", all[k]->name, c,
-                    sqrt(error / norm));
-    }
-    const FemSolverStats *stats = all[k]->stats(solver);
-    ck_assert_int_ge((int)stats->factorisations, count);
-    ck_assert_msg(stats->hierarchies >= 2 && 2 * stats->hierarchies <= count,
-                  "%s: %lld hierarchies for %d matrices", all[k]->name, stats->hierarchies, count);
-    all[k]->destroy(solver);
-  }
-  memory_free(b), memory_free(x), memory_free(Sx);
-  bar_destroy(&bar);
-}
-END_TEST
-
-// c as IDA moves it while it is content with its matrix and beyond: factors of 0.6 to 1.67.
-START_TEST(a_hierarchy_is_kept_while_c_changes_little) {
-  static const double near[] = {10, 9, 11, 7, 12, 16};
-  Bar bar = bar_create(40, 1);
-  int n = bar.unknown_count;
-  double *b = random_vector(n, 6), *x = memory_zeroed((size_t)n, sizeof *x);
-  const FemSolverOps *const all[] = {&fem_solver_amg, &fem_solver_gamg};
-  for (int k = 0; k < 2; k++) {
-    void *solver;
-    ck_assert_ok(all[k]->create(&solver, 1, 1e-4));
-    ck_assert_ok(all[k]->analyse(solver, &bar.S));
-    for (int i = 0; i < 6; i++) solve_shifted(all[k], solver, &bar, near[i], b, x);
-    ck_assert_int_eq(all[k]->stats(solver)->factorisations, 6);
-    ck_assert_int_eq(all[k]->stats(solver)->hierarchies, 1);
-    all[k]->forget(solver); // what a resumed run does not have
-    solve_shifted(all[k], solver, &bar, near[5], b, x);
-    ck_assert_int_eq(all[k]->stats(solver)->hierarchies, 2);
-    all[k]->destroy(solver);
-  }
-  memory_free(b), memory_free(x);
-  bar_destroy(&bar);
-}
-END_TEST
-
-// Never tighter than its own tolerance, and its own again when nothing is known.
-START_TEST(multigrid_leaves_what_it_is_told_it_may) {
-  static const double aims[] = {0, 1e-2, 1e-12, 0};
-  Bar bar = bar_create(40, 1);
-  int n = bar.unknown_count;
-  double *b = random_vector(n, 7), *x = memory_zeroed((size_t)n, sizeof *x);
-  const FemSolverOps *const all[] = {&fem_solver_amg, &fem_solver_gamg};
-  for (int k = 0; k < 2; k++) {
-    void *solver;
-    long long taken[4], before = 0;
-    ck_assert_ok(all[k]->create(&solver, 1, 1e-8));
-    ck_assert_ok(all[k]->analyse(solver, &bar.S));
-    for (int i = 0; i < 4; i++) {
-      all[k]->aim(solver, aims[i]);
-      solve_shifted(all[k], solver, &bar, 10, b, x);
-      taken[i] = all[k]->stats(solver)->iterations - before;
-      before = all[k]->stats(solver)->iterations;
-    }
-    ck_assert_msg(2 * taken[1] <= taken[0], "%lld iterations for %lld", taken[1], taken[0]);
-    ck_assert_int_eq(taken[2], taken[0]);
-    ck_assert_int_eq(taken[3], taken[0]);
-    ck_assert_int_eq(all[k]->stats(solver)->hierarchies, 1); // a tighter aim is no sign of wear
-    all[k]->destroy(solver);
-  }
-  memory_free(b), memory_free(x);
-  bar_destroy(&bar);
-}
-END_TEST
-
 START_TEST(a_singular_full_matrix_is_a_retry) {
   const int unknown_of_dof[3] = {0, -1, -1};
   const double no_mass[1] = {0};
@@ -639,9 +465,6 @@ int main(void) {
   tcase_add_test(cases, multigrid_gives_the_same_bits_twice_and_on_any_number_of_threads);
   tcase_add_test(cases, a_factor_gives_the_same_bits_on_any_number_of_threads);
   tcase_add_test(cases, multigrid_needs_far_fewer_iterations_than_blocks_of_vertices);
-  tcase_add_test(cases, a_hierarchy_that_is_kept_never_touches_the_answer);
-  tcase_add_test(cases, a_hierarchy_is_kept_while_c_changes_little);
-  tcase_add_test(cases, multigrid_leaves_what_it_is_told_it_may);
   tcase_add_test(cases, a_singular_full_matrix_is_a_retry);
   tcase_add_test(cases, a_grown_pattern_must_be_analysed_anew);
   tcase_add_test(cases, every_failed_allocation_is_an_error);
