@@ -81,7 +81,7 @@ static bool send(int to, const char *text, size_t size) {
 // Reads until `text` holds a whole message, which ends with a 0, or `until_s` on the clock.
 static Status receive(AppRenderBrowser *browser, double until_s) {
   enum { PIECE = 1 << 16 };
-  while (!memchr(browser->text, 0, browser->text_size)) {
+  while (browser->text_size == 0 || !memchr(browser->text, 0, browser->text_size)) {
     double left_s = until_s - clock_wall_s();
     struct pollfd ready = {.fd = browser->from, .events = POLLIN};
     if (left_s <= 0 || poll(&ready, 1, (int)fmin(1000 * left_s + 1, 1e9)) == 0)
