@@ -4,8 +4,9 @@
 //
 //   clip, tpn, tpn-published, tpn-bf16   to the bit
 //   clip32                               to the bit: doubtful pairs those of clip
-//   geo-small, geo                       flags to the bit, V to 1e-12 of itself, ∇V and x̄ likewise by their
-//                                        size: exponentials are of other libraries
+//   geo-small, geo                       flags to the bit, V to 1e-12 of itself (where it is a slice: 1e-15
+//   of
+//                                        the smaller tetrahedron's), ∇V and x̄ likewise by their size
 //
 // and a pair gets the same bits in whichever place of a batch. Numbers that are not finite must be refused.
 #include <float.h>
@@ -112,27 +113,38 @@ static void check_bits(int m, const double *pairs, int quantity, const Batch *to
                expected->flags[i]);
 }
 
-// ∇V to 1e-10 of its largest component, x̄ to 1e-12 of the pair's extent and rounding of coordinates.
+// What V of a slice is rounded by, as a share of it: 1e-15 of the smaller volume. ∇V and x̄ divide by how
+// thick the slice is.
+static double doubt_of(const double x[SIZE], double volume) {
+  return volume > 0 ? 1e-15 * overlap_invariant_smaller_volume(x) / volume : 0;
+}
+
+// V, ∇V and x̄ by V, the largest component, and the pair's extent. A coordinate of x̄ is rounded, too.
+static double allowed_of(const double x[SIZE], int quantity, double volume, const double *more) {
+  const double doubt = doubt_of(x, volume);
+  double largest = 0, furthest = 0;
+  for (int c = 0; c < SIZE; c++) furthest = fmax(furthest, fabs(x[c]));
+  if (quantity == DEVICE_CENTROID)
+    return (1e-12 + 100 * doubt) * overlap_invariant_extent(x) + 4 * DBL_EPSILON * furthest;
+  for (int c = 0; c < SIZE; c++) largest = fmax(largest, fabs(more[c]));
+  return (1e-10 + 100 * doubt) * largest;
+}
+
 static void check_rounding(int m, const double *pairs, int quantity, const Batch *told,
                            const Batch *expected) {
   const int width = widths[quantity];
   for (int i = 0; i < PLACES; i++) {
-    const double *a = told->more + width * i, *b = expected->more + width * i;
-    double furthest = 0; // a coordinate is rounded to an ulp of itself
-    for (int c = 0; c < SIZE; c++) furthest = fmax(furthest, fabs(pairs[SIZE * i + c]));
-    double allowed = 1e-12 * overlap_invariant_extent(pairs + SIZE * i) + 4 * DBL_EPSILON * furthest;
-    for (int c = 0; c < width && quantity == DEVICE_GRADIENT; c++)
-      allowed = c == 0 ? 1e-10 * fabs(b[c]) : fmax(allowed, 1e-10 * fabs(b[c]));
+    const double *x = pairs + SIZE * i, *a = told->more + width * i, *b = expected->more + width * i;
+    const double volume = expected->volume[i];
     FUZZ_CLAIM(told->flags[i] == expected->flags[i], "kernels of %s, place %d: flags %u; the model %u",
                name_of(m), i, told->flags[i], expected->flags[i]);
-    FUZZ_CLAIM(fabs(told->volume[i] - expected->volume[i]) <= 1e-12 * expected->volume[i],
-               "kernels of %s, place %d: V = %.17g; the model %.17g", name_of(m), i, told->volume[i],
-               expected->volume[i]);
+    FUZZ_CLAIM(fabs(told->volume[i] - volume) <= (1e-12 + doubt_of(x, volume)) * volume,
+               "kernels of %s, place %d: V = %.17g; the model %.17g", name_of(m), i, told->volume[i], volume);
+    const double allowed = width > 0 ? allowed_of(x, quantity, volume, b) : 0;
     for (int c = 0; c < width; c++)
       FUZZ_CLAIM(fabs(a[c] - b[c]) <= allowed,
-                 "kernels of %s, quantity %d, place %d, number %d: %.17g; "
-                 "the model %.17g",
-                 name_of(m), quantity, i, c, a[c], b[c]);
+                 "kernels of %s, quantity %d, place %d, number %d: %.17g; the model %.17g", name_of(m),
+                 quantity, i, c, a[c], b[c]);
   }
 }
 
