@@ -193,6 +193,16 @@ static bool is_rounded(const NetStep *step) {
   return is_wanted(step) && step->kind == NET_STEP_LINEAR && !step->reads_input;
 }
 
+// Whether a tensor is a factor of coordinates in one step, and of other numbers in another.
+static bool has_mixed_weights(const NetPlan *plan) {
+  for (int k = 0; k < plan->step_count; k++)
+    for (int other = 0; other < plan->step_count && is_rounded(&plan->steps[k]); other++) {
+      const NetStep *step = &plan->steps[other];
+      if (is_wanted(step) && step->reads_input && step->weight == plan->steps[k].weight) return true;
+    }
+  return false;
+}
+
 static const NetTensor *weight_of(const NetPlan *plan, int step) {
   return &plan->tensors[plan->steps[step].weight];
 }
@@ -234,6 +244,8 @@ static Status create_rounded(Rounded *rounded, const NetModel_f32 *model, bool i
   rounded->parameters = memory_copy(model->parameters, plan->parameter_count, sizeof(float));
   if (!rounded->parameters) return status_no_memory("a network's parameters");
   if (!is_bf16) return STATUS_OK;
+  if (has_mixed_weights(plan))
+    return refuse("coordinates share weights with other numbers, which bf16 rounds");
   place_words(plan, rounded);
   if (!(rounded->words = memory_zeroed(rounded->word_count, sizeof *rounded->words)))
     return status_no_memory("a network's parameters");

@@ -284,6 +284,46 @@ START_TEST(the_order_of_sums_matters_less_than_rounding) {
 }
 END_TEST
 
+// What bf16 costs: the network's own error against exact volumes hardly changes, for rounding alone is far
+// below it.
+START_TEST(rounding_costs_little_of_the_accuracy) {
+  Answers exact = make_answers(ALL), wide = make_answers(ALL), narrow = make_answers(ALL);
+  double *pairs = make_pairs();
+  Device device;
+  ck_assert_ok(device_open(&device, "host"));
+  ask(&device, "clip", pairs, ALL, true, &exact);
+  ask(&device, "tpn", pairs, ALL, true, &wide);
+  ask(&device, "tpn-bf16", pairs, ALL, true, &narrow);
+  device_close(&device);
+  for (int set = 0; set < 2; set++) { // near, uniform
+    double all = 0, by_wide = 0, by_narrow = 0, between = 0;
+    double slope = 0, slope_wide = 0, slope_narrow = 0, slope_between = 0;
+    for (int i = set * COUNT; i < (set + 1) * COUNT; i++) {
+      all += exact.volume[i];
+      by_wide += fabs(wide.volume[i] - exact.volume[i]);
+      by_narrow += fabs(narrow.volume[i] - exact.volume[i]);
+      between += fabs(narrow.volume[i] - wide.volume[i]);
+      for (int c = 24 * i; c < 24 * (i + 1); c++) {
+        slope += pow(exact.gradient[c], 2);
+        slope_wide += pow(wide.gradient[c] - exact.gradient[c], 2);
+        slope_narrow += pow(narrow.gradient[c] - exact.gradient[c], 2);
+        slope_between += pow(narrow.gradient[c] - wide.gradient[c], 2);
+      }
+    }
+    printf("%s: of sum V, tpn is off by %.4f, tpn-bf16 by %.4f, they differ by %.4f; gradient %.3f, %.3f, "
+           "%.3f\n",
+           app_bench_sets[set], by_wide / all, by_narrow / all, between / all, sqrt(slope_wide / slope),
+           sqrt(slope_narrow / slope), sqrt(slope_between / slope));
+    ck_assert_double_gt(between, 0);
+    ck_assert_double_le(between, 0.1 * by_wide);
+    ck_assert_double_le(by_narrow, 1.02 * by_wide);
+    ck_assert_double_le(slope_between, 0.1 * slope_wide);
+    ck_assert_double_le(slope_narrow, 1.02 * slope_wide);
+  }
+  destroy_answers(&exact), destroy_answers(&wide), destroy_answers(&narrow), memory_free(pairs);
+}
+END_TEST
+
 int main(void) {
   setenv("CK_FORK", "no", 1); // a driver's threads do not survive a fork
   TCase *cases = tcase_create("device_bf16");
@@ -292,5 +332,6 @@ int main(void) {
   tcase_add_test(cases, rounding_is_the_processors);
   tcase_add_test(cases, kernels_by_warps_give_the_bits_of_the_plain_ones);
   tcase_add_test(cases, the_order_of_sums_matters_less_than_rounding);
+  tcase_add_test(cases, rounding_costs_little_of_the_accuracy);
   return suite_run("device bf16", cases, 300);
 }

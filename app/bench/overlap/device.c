@@ -45,7 +45,7 @@ typedef struct Bench {
   Contestant *contestants;
   AppBenchTorch *torches; // beside the contestants of a set and batch
   int count, torch_count;
-  double host_peak[2]; // multiplications and additions of this processor, in float and double [1/s]
+  double host_peak[2]; // multiplications and additions of a core of this processor, in float, double [1/s]
 } Bench;
 
 typedef struct Row {
@@ -53,7 +53,7 @@ typedef struct Row {
   long long batch;
   double handed_on, to_host; // shares of the pairs
   double gate, of_peak;      // NaN: not told
-  double kernel_rate, rate, rate_min, rate_max, spread;
+  double kernel_rate, rate, rate_min, rate_max, spread, cpu_rate;
 } Row;
 
 static const AppBenchColumn columns[] = {
@@ -72,13 +72,14 @@ static const AppBenchColumn columns[] = {
      "share of the kernels' time that a network's gate takes; clipping has none of its own"},
     {"of_peak", APP_BENCH_NUMBER, offsetof(Row, of_peak), "of peak",
      "multiplications and additions of a network's products over the time of all kernels, by what the device "
-     "can do at most: its maker's figure, of a processor what a loop of them is measured to do (bf16 there: "
-     "in "
-     "float)"},
+     "can do at most: its maker's figure; of `host` over processor time, by what a core is measured to do "
+     "(bf16 there: in float)"},
     {"pairs_s", APP_BENCH_NUMBER, offsetof(Row, rate), "pairs/s", "complete answers, of wall time"},
     {"pairs_s_min", APP_BENCH_NUMBER, offsetof(Row, rate_min), NULL, "slowest round"},
     {"pairs_s_max", APP_BENCH_NUMBER, offsetof(Row, rate_max), NULL, "fastest round"},
     {"spread", APP_BENCH_NUMBER, offsetof(Row, spread), "spread", "(max − min) / median"},
+    {"pairs_cpu_s", APP_BENCH_NUMBER, offsetof(Row, cpu_rate), "pairs/cpu s",
+     "complete answers, of this processor's time: of `host` what counts where others use the machine, too"},
     {"device", APP_BENCH_TEXT, offsetof(Row, device), "device", "as its driver names it"},
 };
 static const AppBenchReport report = {"overlap", columns, sizeof columns / sizeof *columns, sizeof(Row),
@@ -163,12 +164,15 @@ static double median_of(double *values, int count) {
   return values[count / 2];
 }
 
-// Of what the device can do at most; NaN: nobody says.
-static double share_of_peak(const Bench *bench, const Contestant *contestant, double rate) {
+// Of what the device can do at most, at so many pairs over the time of kernels, or of this processor; NaN:
+// nobody says.
+static double share_of_peak(const Bench *bench, const Contestant *contestant, double kernel_rate,
+                            double cpu_rate) {
   const DeviceArithmetic arithmetic = device_overlap_arithmetic(contestant->overlap);
-  double peak = bench->device.info.peak[arithmetic];
-  if (bench->device.ops == &device_host)
-    peak = bench->host_peak[arithmetic == DEVICE_IN_DOUBLE] * bench->def->common->threads;
+  const bool is_host = bench->device.ops == &device_host;
+  const double peak =
+      is_host ? bench->host_peak[arithmetic == DEVICE_IN_DOUBLE] : bench->device.info.peak[arithmetic];
+  const double rate = is_host ? cpu_rate : kernel_rate;
   return contestant->flops > 0 && peak > 0 ? contestant->flops * rate / peak : NAN;
 }
 
@@ -186,11 +190,12 @@ static Row row_of(const Bench *bench, Contestant *contestant) {
                .to_host = (double)contestant->to_host / contestant->batch,
                .kernel_rate = kernel_rate,
                .gate = contestant->flops > 0 ? contestant->gate_share : NAN,
-               .of_peak = share_of_peak(bench, contestant, kernel_rate),
+               .of_peak = share_of_peak(bench, contestant, kernel_rate, 1 / time.cpu),
                .rate = 1 / time.wall,
                .rate_min = 1 / time.wall_max,
                .rate_max = 1 / time.wall_min,
-               .spread = time.wall / time.wall_min - time.wall / time.wall_max};
+               .spread = time.wall / time.wall_min - time.wall / time.wall_max,
+               .cpu_rate = 1 / time.cpu};
 }
 
 static Row torch_row_of(const Bench *bench, const AppBenchTorch *torch) {
@@ -209,7 +214,8 @@ static Row torch_row_of(const Bench *bench, const AppBenchTorch *torch) {
                .rate = 1 / time.wall,
                .rate_min = 1 / time.wall_max,
                .rate_max = 1 / time.wall_min,
-               .spread = time.wall / time.wall_min - time.wall / time.wall_max};
+               .spread = time.wall / time.wall_min - time.wall / time.wall_max,
+               .cpu_rate = 1 / time.cpu};
 }
 
 static Status print(const Bench *bench) {
