@@ -21,6 +21,7 @@
 #define HAS_MMA
 #define MMA_HERE 32
 #define HERE(lane) (lane)
+#define TOGETHER (void)0
 #define EACH_WARP(warp, count) for (int warp = 0; warp < (count); warp++)
 #define EACH_LANE(lane) for (int lane = 0; lane < 32; lane++)
 static unsigned mma_pack(float lower, float upper);
