@@ -1,42 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Kernels on every device that there is, against the models of the same name on this processor: to the bit.
 // Without an OpenCL driver (pocl is one) only `host` runs, and a line says so.
-#include "suite.h"
+#include "devices.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/bench/overlap/pairs.h"
 #include "base/memory.h"
 #include "datagen/hard.h"
 #include "device/backend/cache.h"
 #include "device/backend/cuda.h"
-#include "device/overlap/overlap.h"
 #include "net/kernel/bf16.h"
 #include "overlap/clip/lanes.h"
 #include "overlap/model.h"
 #include "overlap/tpn/portion.h"
 
-enum { MAX_DEVICES = 4, COUNT = 4099, MEMBERS = 96, MODELS = 5 }; // models: those that answer to the bit
-
-static Device devices[MAX_DEVICES];
-static int device_count;
-
-// Usable devices of all kinds, the first of each.
-static void open_devices(void) {
-  static const char *const names[] = {"host", "opencl", "cuda"};
-  for (int k = 0; k < 3; k++) {
-    if (device_open(&devices[device_count], names[k]) == STATUS_OK)
-      device_count++;
-    else
-      printf("%s is not tested: %s\n", names[k], status_message());
-  }
-}
-
-static void close_devices(void) {
-  for (int k = 0; k < device_count; k++) device_close(&devices[k]);
-}
+enum { COUNT = 4099, MEMBERS = 96, MODELS = 5 }; // models: those that answer to the bit
 
 // Answers of a model, to all of a batch.
 typedef struct Answers {
@@ -266,18 +246,7 @@ START_TEST(doubtful_pairs_are_handed_on_and_counted) {
 END_TEST
 
 START_TEST(a_pair_that_is_not_finite_is_named) {
-  DeviceOverlap overlap;
-  double pairs[5 * 24];
-  Answers answers = make_answers(5);
-  OverlapBatch batch = batch_of(pairs, 5, &answers, true);
-  ck_assert_ok(app_bench_pairs_make("near", 5, 3, pairs));
-  pairs[3 * 24 + 14] = NAN;
-  ck_assert_ok(device_overlap_create(&overlap, &devices[_i], "clip"));
-  ck_assert_int_eq(device_overlap_eval(&overlap, &batch), STATUS_INPUT);
-  ck_assert_msg(strstr(status_message(), "pair 3, tetrahedron 1, vertex 0: coordinate z") != NULL, "%s",
-                status_message());
-  device_overlap_destroy(&overlap);
-  destroy_answers(&answers);
+  expect_named(&devices[_i], "clip");
 }
 END_TEST
 

@@ -2,35 +2,20 @@
 // geo and geo-small on every device that there is, against the same models on this processor, carried out by
 // the kernels that fuse no multiplication with an addition: so do devices. What is left are the last bits of
 // exponentials. Without an OpenCL driver (pocl is one) only `host` runs, and a line says so.
-#include "suite.h"
+#include "devices.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/bench/overlap/pairs.h"
 #include "base/memory.h"
 #include "datagen/hard.h"
-#include "device/overlap/overlap.h"
 #include "overlap/geo/model.h"
 #include "overlap/invariant.h"
 
-enum { MAX_DEVICES = 3, COUNT = 2051, MEMBERS = 64, MODELS = 2, QUANTITIES = 3 };
+enum { COUNT = 2051, MEMBERS = 64, MODELS = 2, QUANTITIES = 3 };
 
 static const char *const models[MODELS] = {"geo-small", "geo"};
-
-static Device devices[MAX_DEVICES];
-static int device_count;
-
-static void open_devices(void) {
-  static const char *const names[] = {"host", "opencl", "cuda"};
-  for (int k = 0; k < 3; k++) {
-    if (device_open(&devices[device_count], names[k]) == STATUS_OK)
-      device_count++;
-    else
-      printf("%s is not tested: %s\n", names[k], status_message());
-  }
-}
 
 typedef struct Answers {
   double *volume, *more; // (count), (count, 24) or (count, 3)
@@ -187,18 +172,7 @@ START_TEST(many_pairs_are_answered_in_portions) {
 END_TEST
 
 START_TEST(a_pair_that_is_not_finite_is_named) {
-  DeviceOverlap overlap;
-  double pairs[5 * 24];
-  Answers answers = make_answers(5);
-  OverlapBatch batch = batch_of(pairs, 5, &answers, DEVICE_GRADIENT);
-  ck_assert_ok(app_bench_pairs_make("near", 5, 3, pairs));
-  pairs[3 * 24 + 14] = NAN;
-  ck_assert_ok(device_overlap_create(&overlap, &devices[_i], "geo"));
-  ck_assert_int_eq(device_overlap_eval(&overlap, &batch), STATUS_INPUT);
-  ck_assert_msg(strstr(status_message(), "pair 3, tetrahedron 1, vertex 0: coordinate z") != NULL, "%s",
-                status_message());
-  device_overlap_destroy(&overlap);
-  destroy_answers(&answers);
+  expect_named(&devices[_i], "geo");
 }
 END_TEST
 
@@ -213,6 +187,6 @@ int main(void) {
   tcase_add_loop_test(cases, many_pairs_are_answered_in_portions, 0, device_count);
   tcase_add_loop_test(cases, a_pair_that_is_not_finite_is_named, 0, device_count);
   int result = suite_run("device geo", cases, 300);
-  for (int k = 0; k < device_count; k++) device_close(&devices[k]);
+  close_devices();
   return result;
 }
