@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/training/geo/fold.h"
 #include "app/training/geo/pool.h"
 #include "app/training/sets.h"
 #include "app/training/task.h"
@@ -168,31 +169,27 @@ static double step(AppTrainingTask *task, const NetModel_f32 *model, NetWork_f32
   return loss;
 }
 
-static Status fold_and_write(const Bound *bound, const NetModel_f32 *model, const NetCard *card,
-                             const char *path, NetModel_f64 *folded) {
-  const NetPlan *plan = model->plan;
-  net_model_widen(model, folded);
-  TRY(app_training_task_fail(net_whitening_fold(&bound->pool.whitening, folded)));
-  folded->parameters[plan->tensors[plan->tensor_count - 1].offset] += bound->correction; // the last bias
-  return app_training_task_fail(net_weights_write_f64(path, folded, card));
+static void correct(const void *self, NetModel_f64 *folded) {
+  const NetPlan *plan = folded->plan;
+  const double correction = ((const Bound *)self)->correction;
+  folded->parameters[plan->tensors[plan->tensor_count - 1].offset] += correction; // the last bias
 }
 
 static Status write(const AppTrainingTask *task, const NetModel_f32 *model, const char *provenance,
                     const char *path) {
   const Bound *bound = task->self;
-  char range[256], normalisation[] = OVERLAP_GEO_BOUND_NORMALISATION, *story;
+  char range[256], normalisation[] = OVERLAP_GEO_BOUND_NORMALISATION;
   snprintf(range, sizeof range,
            "of held-out pairs as those of the training, %.15g %% have an error of V below V0 exp b",
            100 * task->config->loss.quantile);
-  story = memory_copy(provenance, strlen(provenance) + 1, 1);
-  if (!story) return status_no_memory("the weights' provenance");
-  NetCard card = {.normalisation = normalisation, .range = range, .provenance = story};
-  NetModel_f64 folded = {0};
-  Status status = app_training_task_fail(net_model_create_f64(&model->plan->shape, &folded));
-  if (!status) status = fold_and_write(bound, model, &card, path, &folded);
-  net_model_destroy_f64(&folded);
-  memory_free(story);
-  return status;
+  AppTrainingFold fold = {.model = model,
+                          .whitening = &bound->pool.whitening,
+                          .normalisation = normalisation,
+                          .range = range,
+                          .provenance = provenance,
+                          .finish = correct,
+                          .self = bound};
+  return app_training_fold_write(&fold, path);
 }
 
 static int compare(const void *a, const void *b) {

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/training/geo/fold.h"
 #include "app/training/geo/pool.h"
 #include "app/training/geo/vectors.h"
 #include "app/training/sets.h"
@@ -172,31 +173,27 @@ static double step(AppTrainingTask *task, const NetModel_f32 *model, NetWork_f32
   return loss;
 }
 
-static Status fold_and_write(const Geo *geo, const NetModel_f32 *model, const NetCard *card, const char *path,
-                             NetModel_f64 *folded) {
-  net_model_widen(model, folded);
-  TRY(app_training_task_fail(net_whitening_fold(&geo->pool.whitening, folded)));
+static void fold_vectors(const void *self, NetModel_f64 *folded) {
+  const Geo *geo = self;
   if (geo->outputs > 1) app_training_vectors_fold(&geo->vectors.whitening, folded);
-  return app_training_task_fail(net_weights_write_f64(path, folded, card));
 }
 
 static Status write(const AppTrainingTask *task, const NetModel_f32 *model, const char *provenance,
                     const char *path) {
   const Geo *geo = task->self;
-  char range[256], normalisation[] = OVERLAP_GEO_NORMALISATION, *story;
+  char range[256], normalisation[] = OVERLAP_GEO_NORMALISATION;
   snprintf(range, sizeof range,
            "any pair of tetrahedra with det / (longest edge)^3 of at least 1e-5 that has an analytic centre; "
            "pinned to ln 1.28 at the onset; feature set '%s'",
            geo->pool.set->name);
-  story = memory_copy(provenance, strlen(provenance) + 1, 1);
-  if (!story) return status_no_memory("the weights' provenance");
-  NetCard card = {.normalisation = normalisation, .range = range, .provenance = story};
-  NetModel_f64 folded = {0};
-  Status status = app_training_task_fail(net_model_create_f64(&model->plan->shape, &folded));
-  if (!status) status = fold_and_write(geo, model, &card, path, &folded);
-  net_model_destroy_f64(&folded);
-  memory_free(story);
-  return status;
+  AppTrainingFold fold = {.model = model,
+                          .whitening = &geo->pool.whitening,
+                          .normalisation = normalisation,
+                          .range = range,
+                          .provenance = provenance,
+                          .finish = fold_vectors,
+                          .self = geo};
+  return app_training_fold_write(&fold, path);
 }
 
 static double score(const AppEvaluation *result, const char *set, AppTrainingScores *scores) {
