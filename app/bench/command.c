@@ -17,8 +17,3 @@ void app_bench_command_read(const AppCommand *command, int argument_count, char 
   ((AppBenchOptions *)options)->report = command->rows;
   argp_parse(command->argp, argument_count, arguments, 0, NULL, options);
 }
-
-int app_bench_command_end(Status status) {
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
-}

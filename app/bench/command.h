@@ -21,7 +21,4 @@ char *app_bench_command_rows(const void *rows);
 // holds the defaults. A wrong line, or --help, ends the program.
 void app_bench_command_read(const AppCommand *command, int argument_count, char **arguments, void *options);
 
-// Says what went wrong, if anything did, and gives the program's exit code.
-int app_bench_command_end(Status status);
-
 #endif

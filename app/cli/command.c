@@ -131,6 +131,11 @@ static int run_group(const AppCommand *group, int argument_count, char **argumen
   return app_cli_command_run(child, argument_count - 1, arguments + 1);
 }
 
+int app_cli_command_end(Status status) {
+  if (status) log_error("%s", status_message());
+  return status_exit_code(status);
+}
+
 int app_cli_command_run(const AppCommand *command, int argument_count, char **arguments) {
   return command->children ? run_group(command, argument_count, arguments)
                            : command->run(argument_count, arguments);

@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "base/status.h"
+
 // A command has `argp` and `run`, a group has `children`. All is constant and borrowed.
 typedef struct AppCommand {
   const char *name;        // the word on the command line
@@ -40,6 +42,9 @@ const AppCommand *app_cli_command_find(const AppCommand *group, const char *name
 // Runs a command, or the child of a group that arguments[1] names. arguments[0] is how it was called, as
 // "tetlap dataset"; it and those behind it are changed. Prints what is wrong; returns the exit code.
 int app_cli_command_run(const AppCommand *command, int argument_count, char **arguments);
+
+// How a command ends: says what went wrong, if anything did, and gives the program's exit code.
+int app_cli_command_end(Status status);
 
 // The usage line of a group and the list of its children.
 void app_cli_command_print(const AppCommand *group, const char *called, FILE *stream);

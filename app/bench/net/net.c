@@ -522,7 +522,7 @@ static int run_command(int argument_count, char **arguments) {
                      .batch_count = 1};
   options.common.takes_thread_list = true;
   app_bench_command_read(&app_bench_net, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_net = {.name = "net",

@@ -320,7 +320,7 @@ static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(3), .pairs = 20000, .has_torch = true};
   options.common.takes_thread_list = true;
   app_bench_command_read(&app_bench_train, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_train = {.name = "train",

@@ -202,7 +202,7 @@ static int run_command(int argument_count, char **arguments) {
   for (int l = 0; l < laws; l++) options.wants_law[l] = strcmp(names[l], "paper-train") == 0;
   options.common.takes_thread_list = true;
   app_bench_command_read(&app_bench_datagen, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_datagen = {.name = "datagen",

@@ -370,7 +370,7 @@ static int run_command(int argument_count, char **arguments) {
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
   for (int i = 0; i < APP_BENCH_RESIDENCES; i++) options.wants_residence[i] = true;
   app_bench_command_read(&app_bench_overlap, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_overlap = {.name = "overlap",

@@ -342,7 +342,7 @@ static int run_command(int argument_count, char **arguments) {
                      .reference_tolerance = 1e-6,
                      .wall_limit_s = 60};
   app_bench_command_read(&app_bench_precision, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_precision = {

@@ -146,7 +146,7 @@ static int run_command(int argument_count, char **arguments) {
                      .slenderness = 5,
                      .steps = 20};
   app_bench_command_read(&app_bench_beam, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_beam = {.name = "beam",

@@ -161,7 +161,7 @@ static int run_command(int argument_count, char **arguments) {
                      .tolerance = {1e-4},
                      .tolerance_count = 1};
   app_bench_command_read(&app_bench_drop, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_drop = {.name = "drop",

@@ -310,7 +310,7 @@ static const struct argp argp = {.options = option_table,
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(5), .passes = 20};
   app_bench_command_read(&app_bench_elements, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_elements = {.name = "elements",

@@ -191,7 +191,7 @@ static const struct argp argp = {
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 1}, .counts = {1, 2}, .count_count = 2};
   app_bench_command_read(&app_bench_ranks, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_ranks = {.name = "ranks",

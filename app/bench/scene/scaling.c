@@ -338,7 +338,7 @@ static int run_command(int argument_count, char **arguments) {
   int models = app_bench_models_list(names);
   for (int m = 0; m < models; m++) options.wants_model[m] = text_lists("clip geo-small geo", names[m]);
   app_bench_command_read(&app_bench_scaling, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_scaling = {.name = "scaling",

@@ -161,7 +161,7 @@ static const struct argp argp = {.options = option_table,
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 3}};
   app_bench_command_read(&app_bench_scene, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_scene = {.name = "scene",

@@ -319,7 +319,7 @@ static int run_command(int argument_count, char **arguments) {
                      .slenderness = 5,
                      .step = 0.005};
   app_bench_command_read(&app_bench_solver, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_solver = {.name = "solver",

@@ -116,7 +116,7 @@ static const struct argp argp = {
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 3}};
   app_bench_command_read(&app_bench_step, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_step = {.name = "step",

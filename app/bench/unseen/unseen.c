@@ -187,7 +187,7 @@ static int run_command(int argument_count, char **arguments) {
                      .places = 96};
   for (int c = 0; c < app_unseen_case_count; c++) options.wants_case[c] = true;
   app_bench_command_read(&app_bench_unseen, argument_count, arguments, &options);
-  return app_bench_command_end(run(&options));
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_bench_unseen = {.name = "unseen",

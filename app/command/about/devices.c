@@ -4,7 +4,6 @@
 #include <stdio.h>
 
 #include "base/files/record.h"
-#include "base/log.h"
 #include "base/status.h"
 #include "device/device.h"
 
@@ -90,9 +89,7 @@ static Status list_devices(bool is_json) {
 static int run_command(int argument_count, char **arguments) {
   bool is_json = false;
   argp_parse(&argp, argument_count, arguments, 0, NULL, &is_json);
-  Status status = list_devices(is_json);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(list_devices(is_json));
 }
 
 const AppCommand app_command_devices = {.name = "devices",

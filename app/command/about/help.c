@@ -2,7 +2,6 @@
 #include "app/command/about/help.h"
 
 #include "app/cli/manual.h"
-#include "base/log.h"
 #include "base/text.h"
 
 enum { KEY_MAN = 256, MOST_WORDS = 8, MOST_MESSAGE = 1024 };
@@ -70,11 +69,6 @@ static Status flush(void) {
   return fflush(stdout) == 0 ? STATUS_OK : status_fail(STATUS_IO, "standard output cannot be written");
 }
 
-static int exit_code_of(Status status) {
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
-}
-
 static int ask(const AppCommand *command, char called[APP_CLI_MAX_CALL]) {
   char option[] = "--help";
   char *asking[] = {called, option, NULL};
@@ -92,11 +86,11 @@ static int run_command(int argument_count, char **arguments) {
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   char called[APP_CLI_MAX_CALL];
   const AppCommand *command = find(&options, called);
-  if (!command) return exit_code_of(STATUS_USAGE);
+  if (!command) return app_cli_command_end(STATUS_USAGE);
   if (!options.wants_page) return ask(command, called);
-  if (options.directory) return exit_code_of(app_cli_manual_write(command, called, options.directory));
+  if (options.directory) return app_cli_command_end(app_cli_manual_write(command, called, options.directory));
   Status status = app_cli_manual_print(command, called, stdout);
-  return exit_code_of(status ? status : flush());
+  return app_cli_command_end(status ? status : flush());
 }
 
 const AppCommand app_command_help = {.name = "help",

@@ -7,7 +7,6 @@
 #include "app/scene/manual.h"
 #include "app/scene/schema.h"
 #include "base/files/record.h"
-#include "base/log.h"
 
 static const struct argp_option option_table[] = {
     {"markdown", 'm', NULL, 0, "Print the manual's reference page instead", 0},
@@ -47,8 +46,7 @@ static int run_command(int argument_count, char **arguments) {
   argp_parse(&argp, argument_count, arguments, 0, NULL, &is_markdown);
   Status status = is_markdown ? app_scene_manual_print(stdout) : print_schema(stdout);
   if (!status && fflush(stdout) != 0) status = status_fail(STATUS_IO, "standard output cannot be written");
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(status);
 }
 
 const AppCommand app_command_schema = {.name = "schema",

@@ -3,7 +3,6 @@
 
 #include "app/cli/versions.h"
 #include "base/files/record.h"
-#include "base/log.h"
 #include "base/status.h"
 
 static const struct argp argp = {.doc = "Print the versions of the program and its libraries, as JSON."};
@@ -17,8 +16,7 @@ static int run_command(int argument_count, char **arguments) {
     status = record_print(versions, stdout);
   }
   record_destroy(versions);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(status);
 }
 
 const AppCommand app_command_version = {.name = "version",

@@ -207,9 +207,7 @@ static int run_command(int argument_count, char **arguments) {
   }
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
   if (options.threads) omp_set_num_threads(options.threads);
-  Status status = make(&options);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(make(&options));
 }
 
 const AppCommand app_command_datagen = {.name = "datagen",

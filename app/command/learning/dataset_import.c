@@ -151,9 +151,7 @@ static int run_command(int argument_count, char **arguments) {
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet, .is_verbose = options.is_verbose});
   if (options.threads) omp_set_num_threads(options.threads);
-  Status status = run(&options);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_command_dataset_import = {.name = "import",

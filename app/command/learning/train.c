@@ -115,9 +115,7 @@ static int run_command(int argument_count, char **arguments) {
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
   if (options.threads) omp_set_num_threads(options.threads);
-  Status status = read_and_train(&options);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(read_and_train(&options));
 }
 
 const AppCommand app_command_train = {.name = "train",

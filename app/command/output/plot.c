@@ -139,8 +139,7 @@ static int run_command(int argument_count, char **arguments) {
     status = plot(&options, script);
   }
   memory_free(script);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(status);
 }
 
 const AppCommand app_command_plot = {.name = "plot",

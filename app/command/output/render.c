@@ -142,9 +142,7 @@ static int run_command(int argument_count, char **arguments) {
                                 .stop = app_job_stop_flag()}};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
-  Status status = render(&options);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(render(&options));
 }
 
 const AppCommand app_command_render = {

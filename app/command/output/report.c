@@ -149,8 +149,7 @@ static int run_command(int argument_count, char **arguments) {
   Status status = collect(&report, &options);
   if (!status) status = write_page(&report, &options);
   app_report_destroy(&report);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(status);
 }
 
 const AppCommand app_command_report = {.name = "report",

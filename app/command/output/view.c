@@ -99,9 +99,7 @@ static int run_command(int argument_count, char **arguments) {
   Options options = {.frames = DEFAULT_FRAMES};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
-  Status status = view(&options);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(view(&options));
 }
 
 const AppCommand app_command_view = {.name = "view",

@@ -239,9 +239,7 @@ static int run_command(int argument_count, char **arguments) {
                      .wants_set = {true, true}};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&(AppJobOptions){0});
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_command_pareto = {.name = "pareto",

@@ -199,9 +199,7 @@ static const struct argp argp = {
 static int run_command(int argument_count, char **arguments) {
   Options options = {.seed = 1, .shift = -1, .turn = 0.2};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = run(&options);
-  if (status != STATUS_OK) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(run(&options));
 }
 
 const AppCommand app_command_poses = {.name = "poses",

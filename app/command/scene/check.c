@@ -10,7 +10,6 @@
 #include "app/job/job.h"
 #include "base/cpu.h"
 #include "base/files/record.h"
-#include "base/log.h"
 #include "base/text.h"
 #include "fem/effect/effect.h"
 #include "fem/measure/thickness.h"
@@ -410,8 +409,7 @@ static int run_command(int argument_count, char **arguments) {
   app_job_prepare(&options.job);
   Status status = options.rank_count > 0 ? app_ranks_become() : STATUS_OK;
   if (!status) status = check(&options);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(status);
 }
 
 const AppCommand app_command_check = {

@@ -207,9 +207,7 @@ static const struct argp argp = {
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  Status status = report(&options);
-  if (status) log_error("%s", status_message());
-  return status_exit_code(status);
+  return app_cli_command_end(report(&options));
 }
 
 const AppCommand app_command_mesh = {.name = "mesh",
