@@ -128,7 +128,7 @@ Status device_overlap_geo_run(DeviceOverlap *overlap, DeviceQuantity quantity, i
     const int rest = overlap->count - first, end = first + (rest < DEVICE_GEO_ROOM ? rest : DEVICE_GEO_ROOM);
     int inside = 0, close = 0;
     TRY(run_gate(overlap, first, end, quantity, &inside));
-    overlap->network_pairs += inside;
+    overlap->flop_pairs += inside;
     if (inside > 0) TRY(run_slots(overlap, inside, quantity, &close));
     if (close == 0) continue;
     TRY(clip_close(overlap, close, quantity));

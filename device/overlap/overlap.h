@@ -27,9 +27,10 @@ void device_overlap_destroy(DeviceOverlap *overlap);
 // Whether the model gives that on a device: V and ∇V all, x̄ not all.
 bool device_overlap_gives(const char *model, DeviceQuantity quantity);
 
-// Of a network: multiplications and additions of its products, of a pair that it is asked, with the way back
-// for ∇V (of geo without the last layer, a hundredth); in which numbers; the name of its weights. 0 and NULL:
-// there is none.
+// What a pair takes: of a network, which not all pairs are asked (flop_pairs), multiplications and additions
+// of its products, with the way back for ∇V (of geo without the last layer, a hundredth); of clipping all
+// arithmetic of the first kernel, a fused operation twice, comparisons and choices not. In which numbers; the
+// name of the network's weights, NULL: there is none.
 double device_overlap_flops(const DeviceOverlap *overlap, DeviceQuantity quantity);
 DeviceArithmetic device_overlap_arithmetic(const DeviceOverlap *overlap);
 const char *device_overlap_weights(const DeviceOverlap *overlap);

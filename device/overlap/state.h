@@ -42,7 +42,7 @@ typedef struct DeviceOverlap {
   DeviceMemory rows, row_volume, row_more, row_flags; // what the host answers
   int row_capacity;
   double kernel_s;                      // of the last batch: what the stages' kernels took [s]
-  long long network_pairs;              // of that batch: pairs that a network was asked
+  long long flop_pairs;                 // of that batch: pairs that took device_overlap_flops
   double gate_s;                        // of that, of a network: the gate, which says whom it is asked
   int handed_on[DEVICE_OVERLAP_STAGES]; // of the last batch: pairs that stage k left to the next, or the host
 } DeviceOverlap;

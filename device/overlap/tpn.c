@@ -53,6 +53,6 @@ Status device_overlap_tpn_run(DeviceOverlap *overlap, DeviceQuantity quantity, i
   TRY(write_answers(overlap, has_gradient));
   TRY(device_overlap_end(overlap));
   overlap->handed_on[0] = *left;
-  overlap->network_pairs = overlap->count - *left;
+  overlap->flop_pairs = overlap->count - *left;
   return STATUS_OK;
 }

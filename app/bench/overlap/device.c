@@ -31,7 +31,7 @@ typedef struct Contestant {
   DeviceQuantity quantity;
   AppBenchTimer timer;
   double kernel_s[APP_BENCH_MAX_REPEATS]; // of a pair
-  double gate_share, flops; // of kernel_s, of a network: the gate's; products of a pair, in the mean
+  double gate_share, flops; // of kernel_s, of a network: the gate's; arithmetic of a pair, in the mean
   int handed_on, to_host;
 } Contestant;
 
@@ -71,9 +71,10 @@ static const AppBenchColumn columns[] = {
     {"gate", APP_BENCH_NUMBER, offsetof(Row, gate), "gate",
      "share of the kernels' time that a network's gate takes; clipping has none of its own"},
     {"of_peak", APP_BENCH_NUMBER, offsetof(Row, of_peak), "of peak",
-     "multiplications and additions of a network's products over the time of all kernels, by what the device "
-     "can do at most: its maker's figure; of `host` over processor time, by what a core is measured to do "
-     "(bf16 there: in float)"},
+     "arithmetic of clipping, or multiplications and additions of a network's products, over the time of all "
+     "kernels, by what the device can do at most: its maker's figure; of `host` over processor time, by what "
+     "a "
+     "core is measured to do (bf16 there: in float)"},
     {"pairs_s", APP_BENCH_NUMBER, offsetof(Row, rate), "pairs/s", "complete answers, of wall time"},
     {"pairs_s_min", APP_BENCH_NUMBER, offsetof(Row, rate_min), NULL, "slowest round"},
     {"pairs_s_max", APP_BENCH_NUMBER, offsetof(Row, rate_max), NULL, "fastest round"},
@@ -138,8 +139,8 @@ static Status take_turn(Contestant *contestant, const Bench *bench, int round) {
   const DeviceOverlap *overlap = contestant->overlap;
   contestant->handed_on = overlap->handed_on[0];
   contestant->gate_share = overlap->gate_s / overlap->kernel_s;
-  contestant->flops = device_overlap_flops(overlap, contestant->quantity) * (double)overlap->network_pairs /
-                      contestant->batch;
+  contestant->flops =
+      device_overlap_flops(overlap, contestant->quantity) * (double)overlap->flop_pairs / contestant->batch;
   contestant->to_host = overlap->handed_on[overlap->stage_count - 1];
   return STATUS_OK;
 }
@@ -189,7 +190,7 @@ static Row row_of(const Bench *bench, Contestant *contestant) {
                .handed_on = (double)contestant->handed_on / contestant->batch,
                .to_host = (double)contestant->to_host / contestant->batch,
                .kernel_rate = kernel_rate,
-               .gate = contestant->flops > 0 ? contestant->gate_share : NAN,
+               .gate = device_overlap_weights(contestant->overlap) ? contestant->gate_share : NAN,
                .of_peak = share_of_peak(bench, contestant, kernel_rate, 1 / time.cpu),
                .rate = 1 / time.wall,
                .rate_min = 1 / time.wall_max,
