@@ -9,11 +9,11 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/vec3.h"
 #include "fem/time/balance.h"
 #include "fem/time/error_weights.h"
 #include "fem/time/ida_solver.h"
 #include "fem/time/newton.h"
+#include "fem/time/reason.h"
 
 // Chosen bounds of the step, as shares of the run's end.
 static const double LONGEST_STEP = 0.1, SHORTEST_STEP = 1e-11;
@@ -361,31 +361,26 @@ static Status look_for_onset(FemIntegrator *integrator, double begin, double gap
   return STATUS_OK;
 }
 
-// What happened, in words, and what may help.
-typedef struct Reason {
-  const char *what, *advice;
-} Reason;
-
-static Reason reason_of(int flag) {
+static FemReason reason_of(int flag) {
   switch (flag) {
   case IDA_ERR_FAIL:
-    return (Reason){"the error of a step stayed above the tolerance however short the step",
-                    "a larger time.tolerance, a smaller contact.stiffness, or some effects.damping"};
+    return (FemReason){"the error of a step stayed above the tolerance however short the step",
+                       "a larger time.tolerance, a smaller contact.stiffness, or some effects.damping"};
   case IDA_CONV_FAIL:
   case IDA_LSETUP_FAIL:
   case IDA_LSOLVE_FAIL:
   case IDA_NLS_FAIL:
-    return (Reason){"Newton's method did not converge however short the step",
-                    "a smaller contact.stiffness, some effects.damping, a smaller time.min_step, or "
-                    "solver.linear: cholmod"};
+    return (FemReason){"Newton's method did not converge however short the step",
+                       "a smaller contact.stiffness, some effects.damping, a smaller time.min_step, or "
+                       "solver.linear: cholmod"};
   case IDA_RES_FAIL:
   case IDA_REP_RES_ERR:
-    return (Reason){"the forces could not be evaluated however short the step",
-                    "a smaller time.max_step, or a larger contact.margin"};
+    return (FemReason){"the forces could not be evaluated however short the step",
+                       "a smaller time.max_step, or a larger contact.margin"};
   case IDA_TOO_MUCH_ACC:
-    return (Reason){"the tolerance is finer than the numbers are", "a larger time.tolerance"};
+    return (FemReason){"the tolerance is finer than the numbers are", "a larger time.tolerance"};
   default:
-    return (Reason){"IDA gave up", "a larger time.tolerance, or a smaller contact.stiffness"};
+    return (FemReason){"IDA gave up", "a larger time.tolerance, or a smaller contact.stiffness"};
   }
 }
 
@@ -419,39 +414,14 @@ static int find_worst(FemIntegrator *integrator, int flag) {
   return 0;
 }
 
-// The element with this vertex that is squeezed most, as text; nothing where there are no elements.
-static void name_element(const FemModel *model, const double *positions, int vertex, char *text,
-                         size_t size) {
-  double least = INFINITY;
-  text[0] = 0;
-  for (int e = 0; e < model->tet_count; e++) {
-    const int *v = model->tets[e];
-    if (v[0] != vertex && v[1] != vertex && v[2] != vertex && v[3] != vertex) continue;
-    Vec3 rest[4], now[4];
-    for (int k = 0; k < 4; k++)
-      rest[k] = vec3_at(model->rest + 3 * v[k]), now[k] = vec3_at(positions + 3 * v[k]);
-    double share = vec3_det4(now[0], now[1], now[2], now[3]) / vec3_det4(rest[0], rest[1], rest[2], rest[3]);
-    if (!(share < least)) continue;
-    least = share;
-    snprintf(text, size, ", in element %d, which has %.3g of its rest volume", e, share);
-  }
-}
-
-static Status say_why(FemIntegrator *integrator, double time, double step, int worst, Reason reason) {
-  const FemSystem *system = integrator->system;
-  const FemModel *model = system->model;
-  int dof = model->dof_of_unknown[worst % integrator->n], vertex = dof / 3;
-  const double *x = system->positions + 3 * vertex;
-  const char *retry = integrator->failure.retry_message;
-  char element[96];
-  name_element(model, system->positions, vertex, element, sizeof element);
-  return status_fail(
-      STATUS_SOLVER,
-      "at t = %.9g s, step %.3g s: %s%s%s%s. Worst: %s of vertex %d of body '%s', now at (%.6g, %.6g, "
-      "%.6g) m, %c%s. Try %s",
-      time, step, reason.what, retry[0] ? " (last: " : "", retry, retry[0] ? ")" : "",
-      worst < integrator->n ? "position" : "velocity", vertex, fem_model_body_name(model, vertex), x[0], x[1],
-      x[2], "xyz"[dof % 3], element, reason.advice);
+static Status say_why(const FemIntegrator *integrator, double time, double step, int worst,
+                      FemReason reason) {
+  FemReasonPlace place = {.time = time,
+                          .step = step,
+                          .unknown = worst % integrator->n,
+                          .is_position = worst < integrator->n,
+                          .retry = integrator->failure.retry_message};
+  return fem_reason_fail(&reason, integrator->system, &place);
 }
 
 static Status give_up(FemIntegrator *integrator, int flag) {
@@ -478,9 +448,9 @@ static Status check_stall(FemIntegrator *integrator) {
   snprintf(what, sizeof what,
            "the run %s: at the pace of the last %d steps the rest of it would take %.2g more",
            verdict == FEM_STALL_STANDS ? "stalls" : "creeps", FEM_STALL_WINDOW, stall->left);
-  Reason reason = {what,
-                   "a smaller contact.stiffness, a contact.potential other than linear, whose force jumps, "
-                   "another contact.overlap than tpn, whose force jumps, too, or some effects.damping"};
+  FemReason reason = {
+      what, "a smaller contact.stiffness, a contact.potential other than linear, whose force jumps, "
+            "another contact.overlap than tpn, whose force jumps, too, or some effects.damping"};
   return say_why(integrator, integrator->time, stats.last_step, find_worst(integrator, IDA_ERR_FAIL), reason);
 }
 

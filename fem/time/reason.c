@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/time/reason.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "base/vec3.h"
+
+// The element with this vertex that is squeezed most, as text; nothing where there are no elements.
+static void name_element(const FemModel *model, const double *positions, int vertex, char *text,
+                         size_t size) {
+  double least = INFINITY;
+  text[0] = 0;
+  for (int e = 0; e < model->tet_count; e++) {
+    const int *v = model->tets[e];
+    if (v[0] != vertex && v[1] != vertex && v[2] != vertex && v[3] != vertex) continue;
+    Vec3 rest[4], now[4];
+    for (int k = 0; k < 4; k++)
+      rest[k] = vec3_at(model->rest + 3 * v[k]), now[k] = vec3_at(positions + 3 * v[k]);
+    double share = vec3_det4(now[0], now[1], now[2], now[3]) / vec3_det4(rest[0], rest[1], rest[2], rest[3]);
+    if (!(share < least)) continue;
+    least = share;
+    snprintf(text, size, ", in element %d, which has %.3g of its rest volume", e, share);
+  }
+}
+
+Status fem_reason_fail(const FemReason *reason, const FemSystem *system, const FemReasonPlace *place) {
+  const FemModel *model = system->model;
+  int dof = model->dof_of_unknown[place->unknown], vertex = dof / 3;
+  const double *x = system->positions + 3 * vertex;
+  const char *retry = place->retry;
+  char element[96];
+  name_element(model, system->positions, vertex, element, sizeof element);
+  return status_fail(
+      STATUS_SOLVER,
+      "at t = %.9g s, step %.3g s: %s%s%s%s. Worst: %s of vertex %d of body '%s', now at (%.6g, %.6g, "
+      "%.6g) m, %c%s. Try %s",
+      place->time, place->step, reason->what, retry[0] ? " (last: " : "", retry, retry[0] ? ")" : "",
+      place->is_position ? "position" : "velocity", vertex, fem_model_body_name(model, vertex), x[0], x[1],
+      x[2], "xyz"[dof % 3], element, reason -> advice);
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Why a step was given up, in words: what happened, where it is worst, and what may help.
+#ifndef TETLAP_FEM_TIME_REASON_H
+#define TETLAP_FEM_TIME_REASON_H
+
+#include "fem/effect/system.h"
+
+typedef struct FemReason {
+  const char *what, *advice;
+} FemReason;
+
+typedef struct FemReasonPlace {
+  double time, step; // [s]
+  int unknown;       // the one that stands in the way most
+  bool is_position;  // its position does, else its velocity
+  const char *retry; // what asked last for a smaller step; empty: nothing did
+} FemReasonPlace;
+
+// STATUS_SOLVER, with a message that names vertex, body, position and, of its elements, the one that is
+// squeezed most, at the positions that the system has.
+Status fem_reason_fail(const FemReason *reason, const FemSystem *system, const FemReasonPlace *place);
+
+#endif
