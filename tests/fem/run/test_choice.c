@@ -18,13 +18,13 @@ typedef struct Case {
 } Case;
 
 static const Case cases_of[] = {
-    {{6, 6, 6}, FEM_SOLVER_CHOLMOD, "cheap"},
-    {{18, 18, 18}, FEM_SOLVER_AMG, "longer"},
-    {{18, 18, 18}, FEM_SOLVER_CHOLMOD, "cheap", .is_static = true},
-    {{18, 18, 18}, FEM_SOLVER_CHOLMOD, "cheap", .is_linear = true},
-    {{18, 18, 18}, FEM_SOLVER_CHOLMOD, "incompressible", .poisson = 0.49},
-    {{140, 6, 6}, FEM_SOLVER_CHOLMOD, "cheap", .length = 20},
-    {{18, 18, 18}, FEM_SOLVER_PCG, "", .said = FEM_SOLVER_PCG},
+    {.cells = {6, 6, 6}, .expected = FEM_SOLVER_CHOLMOD, .why = "cheap"},
+    {.cells = {18, 18, 18}, .expected = FEM_SOLVER_AMG, .why = "longer"},
+    {.cells = {18, 18, 18}, .expected = FEM_SOLVER_CHOLMOD, .why = "cheap", .is_static = true},
+    {.cells = {18, 18, 18}, .expected = FEM_SOLVER_CHOLMOD, .why = "cheap", .is_linear = true},
+    {.cells = {18, 18, 18}, .expected = FEM_SOLVER_CHOLMOD, .why = "incompressible", .poisson = 0.49},
+    {.cells = {140, 6, 6}, .expected = FEM_SOLVER_CHOLMOD, .why = "cheap", .length = 20},
+    {.cells = {18, 18, 18}, .expected = FEM_SOLVER_PCG, .why = "", .said = FEM_SOLVER_PCG},
 };
 
 START_TEST(the_solver_follows_size_shape_and_what_is_solved) {
