@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "contact/shape/definite.h"
 
 // About the centre of a ball many elements wide, terms of the size R³ add up to those of an element: 1e-16 of
 // them is what a force is off by. So they are computed in the processor's widest type.
@@ -259,6 +260,11 @@ static void gradient_of(const Question *question, const double tet[12], double g
     overlap_with_gradient(tet, question->centre, question->radius, gradient);
 }
 
+// What differences may leave of a negative eigenvalue, as a share of the largest diagonal entry. In a flat
+// cell rounding leaves more, for the gradient's own is divided by the step and grows with rest volume over
+// volume.
+static const double ROUGH = 1e-4;
+
 static void differentiate(const Question *question, const double tet[12], double hessian[144]) {
   static const double STEP = 1e-5; // of the longest edge
   double step = STEP * longest_edge(tet), moved[12], high[12], low[12];
@@ -298,7 +304,10 @@ void contact_ball_press(const double tet[12], const double centre[3], double rad
   if (!hessian) return;
   differentiate(&question, tet, hessian);
   double whole = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
-  for (int r = 0; r < 12 && !is_full; r++) hessian[13 * r] += rest_volume / whole / radius * *volume;
+  double bound = rest_volume / whole / radius * *volume; // with it no eigenvalue is negative but by rounding
+  for (int r = 0; r < 12; r++) hessian[13 * r] += bound;
+  contact_definite_mend(hessian, ROUGH);
+  for (int r = 0; r < 12 && is_full; r++) hessian[13 * r] -= bound;
 }
 
 // The square of the distance of the origin from the segment a b.

@@ -10,6 +10,9 @@
 // A body's balance may be out by the first share of all impulses of a run. Beyond it a step adds no more than
 // half of what is left to the second; the third is always allowed.
 static const double NEAR = 6e-4, FAR = 9e-4, NEGLIGIBLE = 1e-5;
+// What a method of order 1 may owe until the force falls again, as a share of the same: it does not take that
+// back where steps change or the order rises before.
+static const double OWED = 3e-4;
 
 Status fem_momentum_create(FemMomentum *momentum, FemSystem *system) {
   size_t bodies = (size_t)system->model->scene->body_count;
@@ -186,12 +189,15 @@ static double expected_of(const FemMomentum *momentum, int body, const Motion *m
 
 // J − Δp of a body, less what a method of order 1 takes back as the force falls again: where a force rises by
 // f in even steps h, forces joined by lines lack h f/2 of the motion.
-static double lasting_of(const FemMomentum *momentum, const FemMomentumBody *body, int number, double step) {
+static double lasting_of(const FemMomentum *momentum, const FemMomentumBody *body, int number, double step,
+                         double expected) {
   const FemModel *model = momentum->system->model;
   Vec3 weight = {0, 0, 0}, missing = missing_of(body);
   if (model->scene->has_gravity)
     weight = vec3_scale(model->bodies[number].mass, vec3_at(model->scene->gravity));
   Vec3 passing = vec3_scale(-0.5 * step, vec3_sub(vec3_at(body->force), weight));
+  double owed = vec3_length(passing);
+  if (owed > OWED * expected) passing = vec3_scale(OWED * expected / owed, passing);
   return fmin(vec3_length(missing), vec3_length(vec3_sub(missing, passing)));
 }
 
@@ -201,7 +207,7 @@ bool fem_momentum_is_refused(const FemMomentum *momentum, double end) {
   for (int b = 0; b < momentum->body_count; b++) {
     const FemMomentumBody *now = &momentum->now[b], *next = &momentum->next[b];
     double expected = expected_of(momentum, b, &motion, end);
-    double before = vec3_length(missing_of(now)), after = lasting_of(momentum, next, b, step);
+    double before = vec3_length(missing_of(now)), after = lasting_of(momentum, next, b, step, expected);
     double room = fmax(0.5 * (FAR * expected - before), NEGLIGIBLE * expected);
     bool is_held = after <= NEAR * expected || after - before <= room;
     if (!is_held) return true;

@@ -7,11 +7,15 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/vec3.h"
 
 // A full step is taken if this share of the first work is left, and a search ends there.
 static const double WORK_LEFT = 0.8, WORK_FOUND = 0.3;
 // No vertex moves further at once, as a share of the mean edge.
 static const double LONGEST_WAY = 0.25;
+// Nor the ends of an edge against each other further than this share of its length at rest: where cells are
+// small beside the rest of the mesh, a longer way would flatten them.
+static const double LONGEST_STRETCH = 0.5;
 // Where K is not positive definite, the first shift, as a share of (c/L)², and by what it rises and falls.
 static const double FIRST_SHIFT = 1e-3, SHIFT_RISE = 10, SHIFT_FALL = 0.1;
 enum { MAX_ITERATIONS = 80, MAX_REFUSALS = 30, MAX_SEARCH = 8, MAX_HALVINGS = 8 };
@@ -25,6 +29,38 @@ typedef struct Descent {
   double *next, *there; // u + s d, and the force there
 } Descent;
 
+static Vec3 move_of(const FemModel *model, const double *step, int vertex) {
+  double move[3];
+  for (int c = 0; c < 3; c++) {
+    int unknown = model->unknown_of_dof[3 * vertex + c];
+    move[c] = unknown < 0 ? 0 : step[unknown];
+  }
+  return vec3_at(move);
+}
+
+// The largest way of an edge's ends against each other, over the edge at rest.
+static double largest_stretch(const FemModel *model, const double *step) {
+  double square = 0;
+  for (int t = 0; t < model->tet_count; t++)
+    for (int v = 1; v < 4; v++)
+      for (int w = 0; w < v; w++) {
+        int a = model->tets[t][v], b = model->tets[t][w];
+        Vec3 way = vec3_sub(move_of(model, step, a), move_of(model, step, b));
+        Vec3 edge = vec3_sub(vec3_at(model->rest + 3 * a), vec3_at(model->rest + 3 * b));
+        square = fmax(square, vec3_dot(way, way) / vec3_dot(edge, edge));
+      }
+  return sqrt(square);
+}
+
+// How much of d may be gone.
+static double longest_share(const Descent *descent) {
+  const FemModel *model = descent->equilibrium->system->model;
+  double way = fem_equilibrium_largest(descent->step, descent->n), most = LONGEST_WAY * model->edge;
+  double stretch = largest_stretch(model, descent->step);
+  return fmin(1,
+              fmin(way > most ? most / way : 1, stretch > LONGEST_STRETCH ? LONGEST_STRETCH / stretch : 1));
+}
+
 // d = (K + shift M)⁻¹ f; RETRY: the matrix is not positive definite. Of one that is singular to rounding a
 // solver may not find that, but gives a d, most of it along what nothing holds, against which the force may
 // do work.
@@ -35,17 +71,16 @@ static Status try_step(Descent *descent) {
   return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
 }
 
-// The shift such that the matrix is positive definite; d, no longer than the longest way.
+// The shift such that the matrix is positive definite; d, no longer than the longest way and stretch.
 static Status find_step(Descent *descent) {
-  const FemModel *model = descent->equilibrium->system->model;
   Status status = try_step(descent);
   while (status == STATUS_RETRY && descent->refusals++ < MAX_REFUSALS) {
     descent->shift = fmax(SHIFT_RISE * descent->shift, FIRST_SHIFT * descent->first_shift);
     status = try_step(descent);
   }
   TRY(status);
-  double way = fem_equilibrium_largest(descent->step, descent->n), most = LONGEST_WAY * model->edge;
-  for (int i = 0; i < descent->n && way > most; i++) descent->step[i] *= most / way;
+  double share = longest_share(descent);
+  for (int i = 0; i < descent->n && share < 1; i++) descent->step[i] *= share;
   descent->shift = descent->shift > FIRST_SHIFT * descent->first_shift ? SHIFT_FALL * descent->shift : 0;
   return STATUS_OK;
 }

@@ -191,6 +191,44 @@ START_TEST(the_hessian_is_the_derivative_of_the_gradient) {
 }
 END_TEST
 
+// Whether matrix + shift has a Cholesky factor.
+static bool is_definite(const double matrix[144], double shift) {
+  double factor[144];
+  for (int i = 0; i < 12; i++)
+    for (int j = 0; j <= i; j++) {
+      double sum = matrix[12 * i + j] + (i == j ? shift : 0);
+      for (int k = 0; k < j; k++) sum -= factor[12 * i + k] * factor[12 * j + k];
+      if (i == j && !(sum > 0)) return false;
+      factor[12 * i + j] = i == j ? sqrt(sum) : sum / factor[12 * j + j];
+    }
+  return true;
+}
+
+// Beside a ball a hundred times as large, cells squashed to a tenth and a hundredth: by differences alone
+// their eigenvalues went down to minus the largest entry.
+START_TEST(flat_tetrahedra_press_along_no_direction_that_pulls) {
+  Random random = random_seeded(11, 0);
+  int met = 0;
+  for (int trial = 0; trial < 1000; trial++) {
+    double tet[12], volume, energy, gradient[12], hessian[144], largest = 0, size = 0.01, rest = 1e-6 / 12;
+    double centre[3] = {random_between(&random, -0.015, 0.015), random_between(&random, -0.015, 0.015),
+                        1 - random_between(&random, 0, 0.0025)};
+    for (int k = 0; k < 12; k++) tet[k] = size * random_between(&random, -0.5, 0.5);
+    for (int c = 0; c < 3; c++) {
+      double mean = 0.3 * tet[c] + 0.3 * tet[3 + c] + 0.4 * tet[6 + c];
+      tet[9 + c] = mean + (trial % 2 ? 0.1 : 0.01) * (tet[9 + c] - mean);
+    }
+    contact_ball_press(tet, centre, 1, rest, &volume, &energy, gradient, hessian, trial % 3 > 0);
+    if (!(volume > 0)) continue;
+    met++;
+    for (int k = 0; k < 144; k++) largest = fmax(largest, fabs(hessian[k]));
+    double bound = trial % 3 > 0 ? rest / whole_volume(tet) * volume : 0;
+    ck_assert(is_definite(hessian, bound + 2e-4 * largest));
+  }
+  ck_assert_int_gt(met, 300);
+}
+END_TEST
+
 START_TEST(separation_is_the_distance_less_the_radius) {
   double tet[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   const double centres[][4] = {// centre, distance from the tetrahedron
@@ -248,6 +286,7 @@ int main(void) {
   tcase_add_test(test_case, a_subdivision_adds_up);
   tcase_add_test(test_case, planes_and_edges_through_the_centre_are_no_special_case);
   tcase_add_test(test_case, the_hessian_is_the_derivative_of_the_gradient);
+  tcase_add_test(test_case, flat_tetrahedra_press_along_no_direction_that_pulls);
   tcase_add_test(test_case, separation_is_the_distance_less_the_radius);
   tcase_add_test(test_case, the_nearest_point_is_as_far_as_the_separation_says);
   return suite_run("ball", test_case, 60);

@@ -148,6 +148,13 @@ START_TEST(a_stack_that_lands_is_balanced) {
 }
 END_TEST
 
+// The first steps are of order 1, and then no more: what they lacked of the motion was not taken back
+// (3.9e-3).
+START_TEST(edges_that_meet_crosswise_are_balanced) {
+  expect_balance("edges", NULL, true);
+}
+END_TEST
+
 START_TEST(viscous_contact_is_part_of_what_is_written) {
   expect_balance("bounce", (const char *const[]){"time.end=0.2", "contact.viscosity=300", NULL}, true);
   expect_balance("bounce",
@@ -166,6 +173,7 @@ int main(void) {
   tcase_add_test(cases, what_a_row_within_a_step_tells_lies_between_its_ends);
   tcase_add_test(cases, a_step_too_long_for_its_forces_is_refused);
   tcase_add_test(cases, a_stack_that_lands_is_balanced);
+  tcase_add_test(cases, edges_that_meet_crosswise_are_balanced);
   tcase_add_test(cases, viscous_contact_is_part_of_what_is_written);
   return suite_run("momentum", cases, 60);
 }

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Symmetric matrices of a tetrahedron's twelve coordinates that are positive semidefinite but for rounding.
+#ifndef TETLAP_CONTACT_DEFINITE_H
+#define TETLAP_CONTACT_DEFINITE_H
+
+enum { CONTACT_DEFINITE_SIZE = 12 };
+
+// Where `matrix` (12, 12), symmetric, has an eigenvalue below about −`tolerance` times its largest diagonal
+// entry, all negative ones become 0: the nearest positive semidefinite matrix in Frobenius' norm (Higham
+// 1988).
+void contact_definite_mend(double matrix[144], double tolerance);
+
+#endif
