@@ -9,9 +9,10 @@
 #include "base/vec3.h"
 #include "contact/surface/surface.h"
 #include "fem/material/svd3.h"
+#include "fem/model/blow.h"
 
-// What the interface may give, over what the bodies do.
-static const double GIVE = 0.02;
+// What the interface may give, over what the bodies do; and how deep, over the height, a blow may press it.
+static const double GIVE = 0.02, BLOW_DEPTH = 0.02;
 
 static Vec3 corner_of(const FemModel *model, int tet, int v) {
   return vec3_at(model->rest + 3 * (size_t)model->tets[tet][v]);
@@ -76,12 +77,15 @@ Status fem_compliance_height(const FemModel *model, int body, double *height) {
 typedef struct Give {
   double height;  // L [m]
   double inverse; // 1/E [1/Pa]
+  double volume;  // V [m³]
 } Give;
 
 static Status measure_bodies(const FemModel *model, Give *gives) {
   for (int b = 0; b < model->scene->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
     TRY(fem_compliance_height(model, b, &gives[b].height));
-    gives[b].inverse = 1 / model->bodies[b].material.young;
+    gives[b].inverse = 1 / body->material.young;
+    gives[b].volume = body->mass / body->material.density;
   }
   return STATUS_OK;
 }
@@ -93,6 +97,20 @@ static double give_of(const Give *a, const Give *b) {
   return fmin(a->height, b->height) * (a->inverse + b->inverse);
 }
 
+// The pressure with which two are squeezed that store a blow between them, evenly strained; E at most.
+static double pressure_of(const Give *a, const Give *b, double blow) {
+  double stored = a->volume * a->inverse + b->volume * b->inverse;
+  return fmin(sqrt(2 * blow / stored), 1 / fmax(a->inverse, b->inverse));
+}
+
+// Between two: stiff enough for a press and for a blow [J]. `terms`: of p = terms · c d.
+static double stiffness_between(const Give *a, const Give *b, double blow, int terms) {
+  double sum = give_of(a, b), height = a->height;
+  if (!(sum > 0)) return 1;
+  if (b->height > 0) height = height > 0 ? fmin(height, b->height) : b->height;
+  return fmax(1 / (terms * GIVE * sum), pressure_of(a, b, blow) / (terms * BLOW_DEPTH * height));
+}
+
 static int count_shapes(const FemSceneDef *scene) {
   int count = 0;
   for (int o = 0; o < scene->obstacle_count; o++) count += scene->obstacles[o].kind != FEM_OBSTACLE_MESH;
@@ -102,11 +120,11 @@ static int count_shapes(const FemSceneDef *scene) {
 static Status choose_for_field(const FemModel *model, int party_count, double *stiffness) {
   Give *gives = memory_zeroed((size_t)party_count, sizeof *gives);
   Status status = gives ? measure_bodies(model, gives) : status_no_memory("contact stiffness");
+  double blow = fem_blow_hardest(model);
   for (int a = 0; a < model->body_count && !status; a++)
-    for (int b = 0; b < party_count; b++) {
-      double sum = give_of(&gives[a], &gives[b]), terms = b < model->body_count ? 2 : 1; // p = terms · c d
-      stiffness[a * party_count + b] = sum > 0 ? 1 / (terms * GIVE * sum) : 1;
-    }
+    for (int b = 0; b < party_count; b++)
+      stiffness[a * party_count + b] =
+          stiffness_between(&gives[a], &gives[b], a == b ? 0 : blow, b < model->body_count ? 2 : 1);
   memory_free(gives);
   return status;
 }

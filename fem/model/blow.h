@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The energy with which a body may strike, told from the scene before it moves: what it has at the start and
+// what gravity gives it on its way down.
+//
+// A body falls as far as the lowest point of any other body or obstacle lies below its own: to a half-space
+// along gravity, of a ball, a box or a cylinder to its centre; not farther than the time until the end lets
+// it, and not at all while some of its coordinates are prescribed. That is an upper bound: what others stop
+// on the way has less.
+#ifndef TETLAP_FEM_MODEL_BLOW_H
+#define TETLAP_FEM_MODEL_BLOW_H
+
+#include "fem/model/model.h"
+
+// Of that body of the scene [J]; 0 in a static scene.
+double fem_blow_energy(const FemModel *model, int body);
+
+// The largest of any body.
+double fem_blow_hardest(const FemModel *model);
+
+#endif

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The energy with which bodies may strike, and the contact stiffness that is chosen for it.
+#include "fem/model/blow.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "fem/model/compliance.h"
+#include "scene.h"
+
+// tests/scenes/cubes.yaml: ten cubes of 0.1 m, E 1e5 Pa, 1 kg, the last one 10 kg; the first 0.01 m above the
+// ground, each next 0.11 m higher.
+enum { CUBES = 10, GROUND = 10 };
+static const double G = 9.81, EDGE = 0.1, YOUNG = 1e5;
+
+static void expect_near(double value, double expected) {
+  ck_assert_near(value, expected, 1e-9 * expected);
+}
+
+START_TEST(a_body_strikes_with_what_it_falls) {
+  SceneRun run;
+  scene_open(&run, "cubes", NULL);
+  for (int b = 0; b < CUBES; b++)
+    expect_near(fem_blow_energy(&run.model, b), (b < 9 ? 1 : 10) * G * (0.01 + 0.11 * b));
+  expect_near(fem_blow_hardest(&run.model), 10 * G);
+  scene_close(&run);
+}
+END_TEST
+
+START_TEST(it_falls_no_farther_than_until_the_end) {
+  SceneRun run;
+  scene_open(&run, "cubes", (const char *const[]){"time.end=0.1", NULL});
+  expect_near(fem_blow_energy(&run.model, 0), G * 0.01);
+  expect_near(fem_blow_energy(&run.model, 9), 10 * G * 0.5 * G * 0.01);
+  scene_close(&run);
+}
+END_TEST
+
+START_TEST(without_gravity_and_speed_nothing_strikes) {
+  SceneRun run;
+  scene_open(&run, "cubes", (const char *const[]){"effects.gravity=[0, 0, 0]", NULL});
+  for (int b = 0; b < CUBES; b++) ck_assert(fem_blow_energy(&run.model, b) == 0);
+  scene_close(&run);
+}
+END_TEST
+
+static double chosen(const SceneRun *run, int a, int b) {
+  double *table, value;
+  int parties;
+  ck_assert_ok(fem_compliance_stiffness(&run->model, &table, &parties));
+  value = table[a * parties + b];
+  memory_free(table);
+  return value;
+}
+
+// p/(2c) and p/c, how deep the blow presses. Alone the ground is met with more than E.
+START_TEST(a_blow_presses_the_interface_by_a_fiftieth_of_the_height) {
+  SceneRun run;
+  double blow = 10 * G * 1, volume = EDGE * EDGE * EDGE, pressure = sqrt(2 * blow / (2 * volume / YOUNG));
+  ck_assert(pressure > YOUNG / 2 && pressure < YOUNG);
+  scene_open(&run, "cubes", NULL);
+  expect_near(pressure / (2 * chosen(&run, 3, 9)), EDGE / 50);
+  expect_near(pressure / (2 * chosen(&run, 4, 3)), EDGE / 50);
+  expect_near(YOUNG / chosen(&run, 9, GROUND), EDGE / 50);
+  scene_close(&run);
+}
+END_TEST
+
+START_TEST(where_blows_are_light_the_press_decides) {
+  SceneRun run;
+  scene_open(&run, "cubes", (const char *const[]){"effects.gravity=[0, 0, -1]", NULL});
+  expect_near(chosen(&run, 3, 9), 12.5 * YOUNG / EDGE);
+  expect_near(chosen(&run, 3, GROUND), 50 * YOUNG / EDGE);
+  scene_close(&run);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("blow");
+  tcase_add_test(cases, a_body_strikes_with_what_it_falls);
+  tcase_add_test(cases, it_falls_no_farther_than_until_the_end);
+  tcase_add_test(cases, without_gravity_and_speed_nothing_strikes);
+  tcase_add_test(cases, a_blow_presses_the_interface_by_a_fiftieth_of_the_height);
+  tcase_add_test(cases, where_blows_are_light_the_press_decides);
+  return suite_run("blow", cases, 30);
+}
