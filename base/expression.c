@@ -101,8 +101,8 @@ static const struct {
     {"exp", do_exp, NULL, NULL, "e to that power"},
     {"log", do_log, NULL, NULL, "natural logarithm; no number at 0 and below"},
     {"sqrt", do_sqrt, NULL, NULL, "square root; no number below 0"},
-    {"abs", do_abs, NULL, to_zero, "size without sign"},
-    {"floor", do_floor, NULL, to_whole, "the next whole number below"},
+    {"abs", do_abs, NULL, to_zero, "absolute value"},
+    {"floor", do_floor, NULL, to_whole, "largest whole number not above it"},
     {"step", do_step, NULL, to_zero, "0 below 0, else 1"},
     {"smooth", do_smooth, NULL, to_zero_or_one,
      "0 below 0, 3x² − 2x³ up to 1, then 1: a rise without a kink"},
@@ -267,7 +267,7 @@ static Status parse_sum(Parser *parser) {
 Status expression_parse(Expression *expression, const char *text) {
   *expression = (Expression){.count = 0};
   if (strlen(text) >= sizeof expression->text)
-    return status_fail(STATUS_INPUT, "a formula may have %d characters at most; give a table",
+    return status_fail(STATUS_INPUT, "a formula has at most %d characters; give a table",
                        EXPRESSION_MAX_TEXT - 1);
   memcpy(expression->text, text, strlen(text) + 1);
   Parser parser = {.expression = expression, .next = expression->text};

@@ -34,7 +34,7 @@ Status status_prefix(Status code, const char *format, ...) {
 
 Status status_no_memory(const char *what) {
   return status_fail(STATUS_MEMORY,
-                     "out of memory: %s did not fit; close other programs or ask for less at once", what);
+                     "out of memory: %s did not fit; close other programs or make the problem smaller", what);
 }
 
 const char *status_message(void) {

@@ -6,20 +6,20 @@
 static const struct {
   const char *name, *help;
 } POTENTIALS[CONTACT_POTENTIAL_COUNT] = {
-    [CONTACT_POTENTIAL_NODAL] = {"nodal",
-                                 "covered over rest volume of each vertex, squared: even pressure, no "
-                                 "false friction [Pa]"},
+    [CONTACT_POTENTIAL_NODAL] =
+        {"nodal",
+         "covered over rest volume of each vertex, squared: uniform pressure, no false friction [Pa]"},
     [CONTACT_POTENTIAL_ELEMENT] = {"element", "covered over rest volume of each element, squared [Pa]"},
     [CONTACT_POTENTIAL_PAIR] = {"pair",
                                 "overlap of each pair, squared: depends on how one mesh cuts the other "
                                 "[Pa]"},
     [CONTACT_POTENTIAL_LINEAR] = {"linear",
-                                  "overlap volume: constant pressure, the force jumps at touch [Pa]"},
+                                  "overlap volume: constant pressure, the force jumps at first contact [Pa]"},
     [CONTACT_POTENTIAL_BODY] = {"body", "overlap volume of two bodies, squared: one pressure for all patches "
                                         "[Pa/m³]"},
     [CONTACT_POTENTIAL_FIELD] =
-        {"field", "depth in the other body, over rest volume: even pressure whatever the meshes, "
-                  "every pair balances; needs a model with the overlap's centroid [Pa/m]"},
+        {"field", "depth in the other body, over rest volume: uniform pressure whatever the meshes, every "
+                  "pair balances; needs a model with the overlap's centroid [Pa/m]"},
 };
 
 const char *contact_def_potential_name(ContactPotential potential) {

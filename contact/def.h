@@ -51,8 +51,8 @@ typedef enum ContactPotential {
   CONTACT_POTENTIAL_ELEMENT, // U = Σ_i ½ κ W_i²/V_i, κ [Pa]
   CONTACT_POTENTIAL_PAIR,    // U = Σ_ij ½ κ V_ij²/V_ref, V_ref the smaller of the two rest volumes (a
                              // half-space: V_i), κ [Pa]
-  CONTACT_POTENTIAL_LINEAR,  // U = κ Σ_ij V_ij, κ [Pa]: constant pressure, the force jumps at touch
-  CONTACT_POTENTIAL_BODY,    // U = ½ κ (Σ_ij V_ij)² a pair of bodies, κ [Pa/m³]
+  CONTACT_POTENTIAL_LINEAR, // U = κ Σ_ij V_ij, κ [Pa]: constant pressure, the force jumps at first contact
+  CONTACT_POTENTIAL_BODY,   // U = ½ κ (Σ_ij V_ij)² a pair of bodies, κ [Pa/m³]
   CONTACT_POTENTIAL_FIELD, // U = κ ∫_A φ_B + κ ∫_B φ_A over rest volumes, φ the depth below the other's
                            // surface (contact/pressure/field.h), κ [Pa/m]; both terms also against a mesh
                            // obstacle

@@ -204,10 +204,9 @@ void contact_system_forget(ContactSystem *system) {
 static Status check_margin(ContactSystem *system, double time, const double *positions) {
   if (contact_candidates_cover(&system->candidates, &system->layout, time, positions)) return STATUS_OK;
   system->counters.beyond_margin++;
-  return status_fail(STATUS_RETRY,
-                     "contact: at t = %g s bodies have moved farther than the last search allows for; "
-                     "take a smaller step",
-                     time);
+  return status_fail(
+      STATUS_RETRY,
+      "contact: at t = %g s bodies have moved farther than the last search allows; use a smaller step", time);
 }
 
 static void count(ContactCounters *counters, const ContactEvaluation *evaluation) {

@@ -44,7 +44,7 @@ static Status open_auto(Device *device) {
     const DeviceInfo *info = choose(implementations[k], -1, true, infos, reason[k]);
     if (info) return open_chosen(device, implementations[k], info);
   }
-  return status_fail(STATUS_DEVICE, "no GPU: cuda: %s; opencl: %s (`tetlap devices` tells more)", reason[0],
+  return status_fail(STATUS_DEVICE, "no GPU: cuda: %s; opencl: %s (see `tetlap devices`)", reason[0],
                      reason[1]);
 }
 
@@ -75,7 +75,7 @@ Status device_open(Device *device, const char *name) {
   DeviceInfo infos[DEVICE_MAX_FOUND];
   char reason[DEVICE_TEXT] = "";
   const DeviceInfo *info = choose(ops, index, false, infos, reason);
-  if (!info) return status_fail(STATUS_DEVICE, "device '%s': %s (`tetlap devices` tells more)", name, reason);
+  if (!info) return status_fail(STATUS_DEVICE, "device '%s': %s (see `tetlap devices`)", name, reason);
   return open_chosen(device, ops, info);
 }
 

@@ -24,7 +24,7 @@ static const AppBenchColumn thread_columns[] = {
     {"threads", APP_BENCH_INTEGER, offsetof(Common, threads), NULL, "threads"},
 };
 static const AppBenchColumn last_columns[] = {
-    {"repeats", APP_BENCH_INTEGER, offsetof(Common, repeats), NULL, "rounds of which the median is told"},
+    {"repeats", APP_BENCH_INTEGER, offsetof(Common, repeats), NULL, "rounds, of which the median is printed"},
     {"processor", APP_BENCH_TEXT, offsetof(Common, processor), NULL, "the processor's model name"},
     {"simd", APP_BENCH_TEXT, offsetof(Common, simd), NULL, "widest vectors that kernels can use here"},
     {"versions", APP_BENCH_TEXT, offsetof(Common, versions), NULL, "of the program, compiler and libraries"},

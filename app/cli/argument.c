@@ -64,7 +64,7 @@ int app_argument_list(struct argp_state *state, const char *option, char *text, 
   char *given = strdup(text);
   int count = text_split(text, words, most);
   if (count < 0)
-    argp_error(state, "--%s names more than the %d that there may be", option, most);
+    argp_error(state, "--%s names more than the %d that are possible", option, most);
   else if (count == 0)
     argp_error(state, "--%s is '%s', in which a name is empty; give names with a comma between, as in %s",
                option, given ? given : "", example);

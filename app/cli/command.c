@@ -85,7 +85,7 @@ void app_cli_command_explain(const AppCommand *group, const char *called, int ar
   const AppCommand *owner = find_owner(group, word);
   bool is_file = !near && !owner && group->child_of_files && looks_like_file(word);
   if (word[0] == '-')
-    text_append(message, size, &used, "%s: the option '%s' stands where a %s is expected", called, word,
+    text_append(message, size, &used, "%s: found the option '%s' where a %s is expected", called, word,
                 group->child_word);
   else if (is_file)
     text_append(message, size, &used, "%s: '%s' is a file, where a %s is expected", called, word,

@@ -45,11 +45,10 @@ Status app_ranks_check(const AppCommand *command) {
         "'resume'",
         command->name, count);
   if (count > 1 || app_ranks_started() == 1 || !command->has_threads) return STATUS_OK;
-  return status_fail(
-      STATUS_USAGE,
-      "mpiexec has started this program %d times, and each would do the same: take tetlap-mpi, "
-      "as in mpiexec -n %d tetlap-mpi run SCENE, or tetlap run --ranks %d SCENE",
-      app_ranks_started(), app_ranks_started(), app_ranks_started());
+  return status_fail(STATUS_USAGE,
+                     "mpiexec has started this program %d times, and each would do the same: use tetlap-mpi, "
+                     "as in mpiexec -n %d tetlap-mpi run SCENE, or tetlap run --ranks %d SCENE",
+                     app_ranks_started(), app_ranks_started(), app_ranks_started());
 }
 
 // The program for ranks, beside this one.
@@ -101,8 +100,8 @@ Status app_ranks_start(int count) {
     return status_fail(STATUS_USAGE, "--ranks %d, but mpiexec has started %d", count, ranks()->count);
   if (getenv(STARTED))
     return status_fail(STATUS_USAGE,
-                       "mpiexec has started %d processes that do not find each other: is tetlap-mpi "
-                       "linked to the MPI that mpiexec is of?",
+                       "mpiexec has started %d processes that do not find each other: do tetlap-mpi and "
+                       "mpiexec belong to the same MPI?",
                        count);
   TRY(find_program(program));
   TRY(data_find("tools/ranks", script, sizeof script));

@@ -41,7 +41,7 @@ static const struct argp_option option_table[] = {
     {"json", 'j', NULL, 0, "Print the result as JSON on standard output", 2},
     {"progress", KEY_PROGRESS, "json", 0, "Progress as a line of JSON twice a second, on standard error", 2},
     {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
-    {"verbose", 'v', NULL, 0, "Say more: a line a step, and why one is taken back", 2},
+    {"verbose", 'v', NULL, 0, "Print a line per step, and why one is taken back", 2},
     {0},
 };
 
@@ -126,10 +126,9 @@ static void warn_of_scale(const AppJob *job) {
   const char *name = app_job_overlap(job);
   for (int i = 0; name && i < count; i++)
     if (strcmp(models[i]->name, name) == 0 && models[i]->lacks_scale)
-      log_warning(
-          "%s: V of the overlap model '%s' does not follow the size of the pair, so forces in a scene mean "
-          "nothing; take 'clip' or 'geo' for forces",
-          job->scene.path, name);
+      log_warning("%s: V of the overlap model '%s' does not scale with the size of the pair, so forces in a "
+                  "scene are meaningless; use 'clip' or 'geo' for forces",
+                  job->scene.path, name);
 }
 
 Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overlap,

@@ -52,16 +52,16 @@ Status app_origin_compare(const Record *was, const Record *is, const char *path)
   static const char advice[] = "put it back, or begin anew with `tetlap run`";
   switch (k) {
   case 0:
-    return status_fail(STATUS_INPUT, "%s: was written by %s; this is %s: resume with that, or begin anew",
-                       path, d.a, d.b);
+    return status_fail(STATUS_INPUT,
+                       "%s: was written by %s; this is %s: resume with that program, or start again", path,
+                       d.a, d.b);
   case 1:
-    return status_fail(STATUS_INPUT, "%s: the scene is another: %s was %s and is now %s; %s", path, d.place,
+    return status_fail(STATUS_INPUT, "%s: the scene has changed: %s was %s and is now %s; %s", path, d.place,
                        d.a, d.b, advice);
   case 2:
-    return status_fail(STATUS_INPUT, "%s: the mesh of '%s' is another than it was; %s", path, d.place,
-                       advice);
+    return status_fail(STATUS_INPUT, "%s: the mesh of '%s' has changed; %s", path, d.place, advice);
   case 3:
-    return status_fail(STATUS_INPUT, "%s: the weights in %s are others than they were; %s", path,
+    return status_fail(STATUS_INPUT, "%s: the weights in %s have changed; %s", path,
                        record_find_text(is, "weights_file"), advice);
   default:
     return STATUS_OK;

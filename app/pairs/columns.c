@@ -34,7 +34,7 @@ Status app_pairs_columns_by_place(AppPairsColumns *columns, int count, bool has_
   if (f == (has_labels ? 5 : 1))
     return status_fail(
         STATUS_INPUT,
-        "%d numbers in a row; expected are 24: tetrahedron 1's four vertices x y z, then tetrahedron "
+        "%d numbers in a row; expected 24: tetrahedron 1's four vertices x y z, then tetrahedron "
         "2's%s, or a header that names the columns (a0x … b3z%s)",
         count,
         has_labels ? "; then, if they are there, status, volume and 24 derivatives (25, 26, 49 or 50 in all)"
@@ -73,8 +73,8 @@ static Status check_whole(const AppPairsColumns *columns) {
   }
   for (int k = 0; derivatives > 0 && k < APP_PAIRS_SIZE; k++)
     if (columns->gradient[k] < 0)
-      return status_fail(STATUS_INPUT, "the header has %d of 24 derivatives; 'dV/d%s' lacks", derivatives,
-                         names[k]);
+      return status_fail(STATUS_INPUT, "the header has %d of 24 derivatives; 'dV/d%s' is missing",
+                         derivatives, names[k]);
   return STATUS_OK;
 }
 

@@ -24,8 +24,8 @@ static Status read_line(AppPairsCsv *csv, bool *is_end) {
     if (length < 0) return ferror(csv->stream) || errno == ENOMEM ? fail_read(csv) : STATUS_OK;
     csv->line_number++;
     if (strlen(csv->line) < (size_t)length)
-      return status_fail(STATUS_INPUT, "%s:%lld:%zu: a byte 0; this is no text, nor a .npy file", csv->name,
-                         csv->line_number, strlen(csv->line) + 1);
+      return status_fail(STATUS_INPUT, "%s:%lld:%zu: a zero byte; this is neither text nor a .npy file",
+                         csv->name, csv->line_number, strlen(csv->line) + 1);
     if (csv->line_number == 1 && strncmp(csv->line, byte_order_mark, 3) == 0) memset(csv->line, ' ', 3);
     csv->line[strcspn(csv->line, "\r\n")] = 0;
     const char *text = csv->line + strspn(csv->line, " \t");

@@ -39,7 +39,7 @@ typedef struct AppParetoPoint {
   const char *outcome; // finished, cut short, failed; NULL: no run
   double step_s;       // wall time of a step, all phases [s]
   double share;        // of the overlap model in the run's wall time
-  double limit;        // Amdahl: how many times faster the run were if the overlap took no time
+  double limit;        // Amdahl: how many times faster the run would be if the overlap took no time
   double trajectory_error, run_force_error; // against the reference's run
   long long steps, rejected;
   long long frontier; // is_frontier, for tables

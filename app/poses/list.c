@@ -54,7 +54,7 @@ static Status check(const double numbers[SIZE + 1], int count, const char *path,
     if (!isfinite(numbers[k]))
       return status_fail(STATUS_INPUT, "%s, line %d: number %d must be finite", path, line, k + 1);
   if (!is_rotation(numbers))
-    return status_fail(STATUS_INPUT, "%s, line %d: the first nine numbers are no rotation (to %g)", path,
+    return status_fail(STATUS_INPUT, "%s, line %d: the first nine numbers are not a rotation (to %g)", path,
                        line, ROUNDING);
   return STATUS_OK;
 }

@@ -86,8 +86,7 @@ static Status receive(AppRenderBrowser *browser, double until_s) {
     struct pollfd ready = {.fd = browser->from, .events = POLLIN};
     if (left_s <= 0 || poll(&ready, 1, (int)fmin(1000 * left_s + 1, 1e9)) == 0)
       return status_fail(
-          STATUS_IO,
-          "Chromium has not answered for %g s; a smaller --size, or a run with fewer frames, takes less",
+          STATUS_IO, "Chromium has not answered for %g s; try a smaller --size, or a run with fewer frames",
           browser->patience_s);
     if (!memory_reserve((void **)&browser->text, &browser->text_room, browser->text_size + PIECE, 1))
       return status_no_memory("an answer of the browser");

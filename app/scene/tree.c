@@ -270,10 +270,10 @@ static Status refuse_features(const Parser *parser, const yaml_event_t *event) {
     break;
   }
   if (anchor)
-    return fail_mark(parser, event->start_mark, "the anchor '&%s'; anchors are not supported: take it away",
+    return fail_mark(parser, event->start_mark, "the anchor '&%s'; anchors are not supported: remove it",
                      (const char *)anchor);
   if (tag)
-    return fail_mark(parser, event->start_mark, "the tag '%s'; tags are not supported: take it away",
+    return fail_mark(parser, event->start_mark, "the tag '%s'; tags are not supported: remove it",
                      (const char *)tag);
   return STATUS_OK;
 }
@@ -303,7 +303,7 @@ static Status parse_entry(Parser *parser, const yaml_event_t *event, SceneNode *
   const char *key = (const char *)event->data.scalar.value;
   const SceneNode *earlier = app_scene_tree_find(map, key);
   if (earlier)
-    return fail_mark(parser, mark, "duplicate key '%.60s'; it stands at line %d, column %d already", key,
+    return fail_mark(parser, mark, "duplicate key '%.60s'; it is already at line %d, column %d", key,
                      earlier->key_line, earlier->key_column);
   if (map->count >= SCENE_TREE_MAX_KEYS)
     return fail_mark(parser, mark, "more than %d keys in one mapping", (int)SCENE_TREE_MAX_KEYS);
@@ -369,7 +369,7 @@ static Status parse_stream(Parser *parser, SceneNode *root) {
       break;
     case YAML_DOCUMENT_START_EVENT:
       if (has_document)
-        status = fail_mark(parser, event.start_mark, "a second document ('---'); one scene a file");
+        status = fail_mark(parser, event.start_mark, "a second document ('---'); a file holds one scene");
       has_document = true;
       break;
     default:

@@ -159,14 +159,14 @@ static Status work(Crew *crew) {
   while (!*crew->options->stop) {
     TRY(fill_slots(crew));
     if (!is_busy(crew)) return STATUS_OK;
-    log_progress("%d of %d runs ended, %d at work", crew->ended, crew->to_do,
+    log_progress("%d of %d runs ended, %d running", crew->ended, crew->to_do,
                  app_sweep_grid_count(crew->grid, APP_SWEEP_RUNNING));
     nanosleep(&PAUSE, NULL);
     TRY(collect(crew));
   }
   return status_fail(STATUS_INTERRUPTED,
-                     "interrupted after %d of %d runs; the same command goes on with the others", crew->ended,
-                     crew->to_do);
+                     "interrupted after %d of %d runs; the same command continues with the others",
+                     crew->ended, crew->to_do);
 }
 
 // Those that were at work when the sweep was stopped: to be gone on with next time.
@@ -189,9 +189,9 @@ static Status run_all(AppSweepGrid *grid, const AppSweepOptions *options) {
   int resumed = app_sweep_grid_count(grid, APP_SWEEP_RESUMABLE),
       new = app_sweep_grid_count(grid, APP_SWEEP_WAITING), unreadable = count_unreadable(grid);
   crew.to_do = resumed + new;
-  log_info("%d runs in %s: %d are there, %d go on, %d begin; %d at once with %d %s each", grid->point_count,
-           grid->base.directory, grid->point_count - crew.to_do - unreadable, resumed, new, options->jobs,
-           options->threads, options->threads == 1 ? "thread" : "threads");
+  log_info("%d runs in %s: %d finished, %d to continue, %d new; %d at once with %d %s each",
+           grid->point_count, grid->base.directory, grid->point_count - crew.to_do - unreadable, resumed, new,
+           options->jobs, options->threads, options->threads == 1 ? "thread" : "threads");
   if (unreadable) log_warning("%d of them cannot be run: the table says what is wrong", unreadable);
   Status status = work(&crew);
   log_progress_end();

@@ -9,7 +9,7 @@ static Status check_keys(const AppSweepBase *base) {
   for (int a = 0; a < base->axis_count; a++)
     for (int b = 0; b < a; b++)
       if (strcmp(base->axes[a].key, base->axes[b].key) == 0)
-        return status_fail(STATUS_USAGE, "--vary: '%s' stands there twice", base->axes[a].key);
+        return status_fail(STATUS_USAGE, "--vary: '%s' is given twice", base->axes[a].key);
   return STATUS_OK;
 }
 

@@ -54,7 +54,7 @@ static Status unfold(const NetWhitening *whitening, NetModel_f64 *model) {
     for (int j = 0; j < n; j++) bias[r] += weight[r * n + j] * whitening->mean[j];
   bool is_solved = solve_rows(n, matrix, rows, weight);
   memory_free(matrix);
-  return is_solved ? STATUS_OK : status_fail(STATUS_INPUT, "the data's whitening cannot be inverted");
+  return is_solved ? STATUS_OK : status_fail(STATUS_INPUT, "the whitening of the data cannot be inverted");
 }
 
 // Coefficients of the vectors become those of the whitened ones: c = Aᵀ ĉ is solved for ĉ, whose rows begin

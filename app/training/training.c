@@ -146,8 +146,8 @@ static Status parse_note(Training *training, const char *note) {
     return status_fail(STATUS_INPUT, "%s: its note is not one of `tetlap train`", training->checkpoint);
   if (strcmp(rest + 1, training->description) != 0)
     return status_fail(STATUS_INPUT,
-                       "%s: of another configuration; resume with the one it was begun with, or train in "
-                       "another directory. It was begun with:\n%s",
+                       "%s: of another configuration; resume with its own, or train in another directory. "
+                       "Its configuration is:\n%s",
                        training->checkpoint, rest + 1);
   return STATUS_OK;
 }
@@ -340,7 +340,7 @@ static Status run_steps(Training *training, AppTrainingResult *result) {
   while (training->counts.step < training->schedule.total_steps) {
     if (options->stop && *options->stop) {
       TRY(write_checkpoint(training));
-      return status_fail(STATUS_INTERRUPTED, "stopped at step %lld of %lld; --resume goes on",
+      return status_fail(STATUS_INTERRUPTED, "stopped at step %lld of %lld; --resume continues",
                          training->counts.step, (long long)training->schedule.total_steps);
     }
     TRY(take_step(training));

@@ -30,7 +30,7 @@ static Status check_file(const char *directory, const char *name) {
   bool is_wrong = lstat(path, &info) == 0 && !S_ISREG(info.st_mode);
   memory_free(path);
   if (!is_wrong) return STATUS_OK;
-  return status_fail(STATUS_INPUT, "%s: is a link or no file, so it is not shown: it may lead out of %s",
+  return status_fail(STATUS_INPUT, "%s: is a link or not a file, so it is not shown: it may lead out of %s",
                      name, directory);
 }
 

@@ -54,7 +54,7 @@ Status data_find(const char *name, char *path, size_t size) {
   if (named && named[0]) return find_in(named, name, path, size);
   char own[PATH_MAX], folder[PATH_MAX];
   if (!find_own_file(own))
-    return status_fail(STATUS_IO, "%s: where this program lies could not be found out; %s", name, REMEDY);
+    return status_fail(STATUS_IO, "%s: the place of this program could not be found; %s", name, REMEDY);
   memcpy(folder, own, sizeof folder);
   for (int above = 0; above < 3 && cut_to_folder(folder); above++) {
     TRY(join(folder, "/share/tetlap", name, path, size));

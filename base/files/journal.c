@@ -24,8 +24,7 @@ void journal_destroy(Journal *journal) {
 }
 
 static Status fail_input(const Journal *journal, const char *what) {
-  return status_fail(STATUS_INPUT,
-                     "%s: %s since it was left to be gone on with; put it back as it was, or begin anew",
+  return status_fail(STATUS_INPUT, "%s: %s since the last checkpoint; restore it, or start again",
                      journal->path, what);
 }
 

@@ -551,7 +551,7 @@ Status datagen_dataset_read(DatagenDataset *dataset, long long first, size_t cou
                             const DatagenPairs *pairs) {
   const DatagenInfo *info = &dataset->info;
   if (first < 0 || first > info->count || (long long)count > info->count - first)
-    return status_fail(STATUS_INPUT, "%s: pairs %lld to %lld were asked for, it has %lld", dataset->path,
+    return status_fail(STATUS_INPUT, "%s: pairs %lld to %lld were requested, it has %lld", dataset->path,
                        first, first + (long long)count - 1, info->count);
   if (pairs->gradient && !info->has_gradient)
     return status_fail(STATUS_INPUT, "%s: has no gradients; make it with `tetlap datagen --gradient exact`",

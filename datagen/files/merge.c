@@ -46,10 +46,10 @@ static Status check_sequence(Part *parts, int count) {
     const DatagenInfo *before = info_of(&parts[p - 1]), *now = info_of(&parts[p]);
     const char *difference = find_difference(before, now);
     if (difference)
-      return status_fail(STATUS_INPUT,
-                         "%s and %s are not shards of one data set: they differ in %s; --mix merges them all "
-                         "the same",
-                         parts[p - 1].path, parts[p].path, difference);
+      return status_fail(
+          STATUS_INPUT,
+          "%s and %s are not shards of one data set: they differ in %s; --mix merges them nevertheless",
+          parts[p - 1].path, parts[p].path, difference);
     long long expected = before->first + before->count;
     if (now->first < expected)
       return status_fail(STATUS_INPUT, "%s and %s both hold pair %lld; give each shard once",

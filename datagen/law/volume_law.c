@@ -94,7 +94,7 @@ static Status check_range(const DatagenVolumeLaw *law) {
   double least = is_logarithmic ? SMALLEST : 0;
   if (!(law->low >= least && law->low < law->high && law->high <= LARGEST))
     return status_fail(STATUS_USAGE,
-                       "volumes from %g to %g cannot be asked for: give two numbers, the lower one first, "
+                       "volumes from %g to %g are not possible: give two numbers, the lower one first, "
                        "from %g to %g",
                        law->low, law->high, least, LARGEST);
   return STATUS_OK;

@@ -61,18 +61,19 @@ static char *log_of(ProgramId program) {
 }
 
 static Status fail_build(ProgramId program, const DeviceProgram *what, const char *target) {
-  char *log = log_of(program), first[1200] = "it says no more";
+  char *log = log_of(program), first[1200] = "no reason given";
   if (log && log[0]) snprintf(first, sizeof first, "%s", log);
   memory_free(log);
-  return status_fail(STATUS_DEVICE, "NVRTC refused program '%s' for %s: %s", what->name, target, first);
+  return status_fail(STATUS_DEVICE, "NVRTC rejected program '%s' for %s: %s", what->name, target, first);
 }
 
 static Status fetch_code(ProgramId program, char **code, size_t *size) {
   int error = nvrtc.code_size(program, size);
   if (error == SUCCESS && !(*code = memory_zeroed(*size, 1))) return status_no_memory("machine code");
   if (error == SUCCESS) error = nvrtc.code(program, *code);
-  return error == SUCCESS ? STATUS_OK
-                          : status_fail(STATUS_DEVICE, "NVRTC gives no machine code: %s", nvrtc.word(error));
+  return error == SUCCESS
+             ? STATUS_OK
+             : status_fail(STATUS_DEVICE, "NVRTC returned no machine code: %s", nvrtc.word(error));
 }
 
 static Status compile(ProgramId program, const DeviceProgram *what, const char *target, bool tells,

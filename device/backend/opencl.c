@@ -246,8 +246,9 @@ static Status fail_build(const OpenCl *opencl, ProgramId program, const DevicePr
     snprintf(log, sizeof log, "%s", whole);
     memory_free(whole);
   }
-  return status_fail(STATUS_DEVICE, "device 'opencl:%d' (%s): the driver's compiler refused program '%s': %s",
-                     opencl->info.index, opencl->info.name, what->name, log[0] ? log : "it says no more");
+  return status_fail(STATUS_DEVICE,
+                     "device 'opencl:%d' (%s): the driver's compiler rejected program '%s': %s",
+                     opencl->info.index, opencl->info.name, what->name, log[0] ? log : "no reason given");
 }
 
 static Status compile(OpenCl *opencl, const DeviceProgram *what, const char *text, const char *options,

@@ -5,7 +5,7 @@
 #include "overlap/geo/model.h"
 
 static Status refuse(const char *what) {
-  return status_fail(STATUS_INPUT, "the kernels for devices cannot carry out this network: %s", what);
+  return status_fail(STATUS_INPUT, "the device kernels cannot evaluate this network: %s", what);
 }
 
 // The layers of a plan: matrices, an activation after each but the last. Rows of the group's memory: the
@@ -29,7 +29,7 @@ static Status fill_layers(const NetPlan *plan, int *layers, int *count) {
     input = used;
     used += is_last ? 0 : 2 * step->output_rows;
   }
-  return used <= GEO_ROOM ? STATUS_OK : refuse("it is too wide for a group's memory");
+  return used <= GEO_ROOM ? STATUS_OK : refuse("it is too wide for the memory of a work group");
 }
 
 static double flops_of(const int *layers, int count) {
@@ -44,7 +44,7 @@ static Status send(DeviceGeo *geo, const Device *device, const OverlapGeoOverlap
   const NetModel_f64 *model = overlap_geo_network_model(overlap->net);
   const NetPlan *plan = model->plan;
   int layers[GEO_LAYER * GEO_MOST_LAYERS];
-  if (plan->shape.input_count != feature_count) return refuse("it has another number of features");
+  if (plan->shape.input_count != feature_count) return refuse("its number of features is not supported");
   TRY(fill_layers(plan, layers, &geo->layer_count));
   geo->feature_count = plan->shape.input_count;
   geo->output_count = plan->shape.output_count;

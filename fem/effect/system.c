@@ -104,7 +104,7 @@ static Status create_from(FemSystem *system, const FemModel *model, const FemSys
   *system = (FemSystem){.model = model};
   if (model->unknown_count == 0)
     return status_fail(STATUS_INPUT,
-                       "every vertex is fixed or driven: nothing is left to solve; free some vertices");
+                       "every vertex is fixed or driven: there is nothing to solve; free some vertices");
   Status status = create(system, old);
   if (status) fem_system_destroy(system);
   return status;
@@ -202,7 +202,7 @@ static Status blame_effect(FemSystem *system, const FemState *state) {
     if (!status) status = check_numbers(system, system->forces, "force on", effect->ops->name);
     TRY(ranks()->worst(status));
   }
-  return status_fail(STATUS_RETRY, "a force was not a number once, and is one now");
+  return status_fail(STATUS_RETRY, "a force was not a number once, but is one now");
 }
 
 // What each rank gives by itself.

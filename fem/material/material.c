@@ -20,12 +20,12 @@ static const struct {
                            "St. Venant-Kirchhoff: large rotations; collapses under strong compression"},
     [FEM_MATERIAL_NEO_HOOKEAN] = {"neo_hookean",
                                   "stable neo-Hookean: large strains, recovers from inversion"},
-    [FEM_MATERIAL_NEO_HOOKEAN_LOG] =
-        {"neo_hookean_log", "neo-Hookean with the logarithm of the volume: no pressure flattens it"},
+    [FEM_MATERIAL_NEO_HOOKEAN_LOG] = {"neo_hookean_log",
+                                      "neo-Hookean with the logarithm of the volume: bears any pressure"},
     [FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC] =
-        {"neo_hookean_isochoric", "neo-Hookean as in CalculiX and Abaqus: shear feels the shape only"},
+        {"neo_hookean_isochoric", "neo-Hookean as in CalculiX and Abaqus, with isochoric shear part"},
     [FEM_MATERIAL_MOONEY_RIVLIN] = {"mooney_rivlin",
-                                    "Mooney-Rivlin rubber: two invariants, `mooney` shares them out"},
+                                    "Mooney-Rivlin rubber: two invariants, in proportions set by `mooney`"},
     [FEM_MATERIAL_OGDEN] = {"ogden", "Ogden rubber: up to three powers of the principal stretches"},
 };
 

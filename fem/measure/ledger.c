@@ -157,12 +157,13 @@ bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size)
   const ContactFacing *facing = &contact_system_layout(contact_of(ledger))->facings[i];
   FemEstimate estimate = fem_accuracy_estimate(pair, model, facing->stiffness);
   size_t used = 0;
-  text_append(
-      text, size, &used,
-      "'%s' and '%s' press with %.4g N at most, at t = %.4g s: the contact gives %.2g m, %.3g %% of the way",
-      fem_compliance_party_name(model, facing->a), fem_compliance_party_name(model, facing->b), pair->force,
-      pair->time, 2 * pair->energy / pair->estimated, 100 * estimate.give);
-  if (estimate.tolerance_over_depth > 1) text_append(text, size, &used, ", less than time.tolerance tells");
+  text_append(text, size, &used,
+              "'%s' and '%s' press with %.4g N at most, at t = %.4g s: mean overlap %.2g m, %.3g %% of the "
+              "total deformation",
+              fem_compliance_party_name(model, facing->a), fem_compliance_party_name(model, facing->b),
+              pair->force, pair->time, 2 * pair->energy / pair->estimated, 100 * estimate.give);
+  if (estimate.tolerance_over_depth > 1)
+    text_append(text, size, &used, ", below the resolution of time.tolerance");
   if (estimate.rim > NOTHING) text_append(text, size, &used, ", rims lose %.2g %%", 100 * estimate.rim);
   text_append(text, size, &used, ", %.1f elements across", estimate.elements_across);
   if (estimate.stiffness_for > estimate.stiffness)

@@ -172,7 +172,7 @@ static Status check_shape(const Builder *builder, int e, const double *rest, boo
         nodes[0], nodes[1], nodes[2]);
   return status_fail(
       STATUS_INPUT,
-      "element %lld at (%g, %g, %g) is so curved that it is inside out (%s); mesh finer or straight, "
+      "element %lld at (%g, %g, %g) is so curved that it is inverted (%s); mesh finer or straight, "
       "or give the body element: linear, which takes the corners alone",
       mesh->tet_tags ? mesh->tet_tags[e] : e, nodes[0], nodes[1], nodes[2],
       jacobian > 0 ? "one of the eight parts that contact sees" : "at a point of integration");

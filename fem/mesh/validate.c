@@ -66,7 +66,7 @@ static Status check_indices(const FemMeshSource *source) {
     for (int k = 0; k < count; k++)
       if (nodes[k] < 0 || nodes[k] >= source->vertex_count)
         return status_fail(STATUS_INPUT,
-                           "element %lld names vertex %d, but there are only the vertices %lld to %lld",
+                           "element %lld refers to vertex %d, but there are only the vertices %lld to %lld",
                            tet_tag(source, t), nodes[k], vertex_tag(source, 0),
                            vertex_tag(source, source->vertex_count - 1));
     for (int k = 0; k < count; k++)
@@ -74,7 +74,7 @@ static Status check_indices(const FemMeshSource *source) {
         if (nodes[k] == nodes[m])
           return status_fail(
               STATUS_INPUT,
-              "element %lld names vertex %lld twice; remove the element or give it %s different vertices",
+              "element %lld has vertex %lld twice; remove the element or give it %s different vertices",
               tet_tag(source, t), vertex_tag(source, nodes[k]), count == 4 ? "four" : "ten");
   }
   return STATUS_OK;

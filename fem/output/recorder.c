@@ -168,7 +168,7 @@ Status fem_recorder_clear(const FemRecorder *recorder) {
     memory_free(path);
   }
   if (count > 0)
-    log_info("%s held an earlier run: it and its %d frames are removed", recorder->directory, frames);
+    log_info("%s held an earlier run: it and its %d frames were removed", recorder->directory, frames);
   return STATUS_OK;
 }
 

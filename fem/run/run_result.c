@@ -140,7 +140,7 @@ void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size
   } rows[] = {{"onsets", result->integrator.roots},
               {"steps taken back for their energy", result->energy_retries},
               {"steps taken back for their momentum", result->momentum_retries},
-              {"steps taken back for what slipped and turned", result->slip_retries},
+              {"steps taken back at a reversal of slip", result->slip_retries},
               {"steps without convergence", result->integrator.newton_failures},
               {"failed factorisations", result->solver.failed_factorisations},
               {"enclosed pairs", result->pairs.enclosed},

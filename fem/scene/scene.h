@@ -54,7 +54,7 @@ typedef struct FemConstraintDef {
 
 // A load on the surface or the vertices of a body: its value times a factor that may depend on time.
 typedef enum FemLoadKind {
-  FEM_LOAD_FORCE,      // in all, shared evenly by the selected vertices [N]
+  FEM_LOAD_FORCE,      // total, distributed evenly over the selected vertices [N]
   FEM_LOAD_BODY_FORCE, // by rest volume [N/m³]
   FEM_LOAD_TRACTION,   // by rest area of the surface triangles whose corners are all selected [N/m²]
   FEM_LOAD_PRESSURE,   // on the same triangles, against their outward normal [Pa]

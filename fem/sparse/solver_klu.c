@@ -242,7 +242,7 @@ static const FemSolverStats *stats(const void *self) {
 
 const FemSolverOps fem_solver_klu = {
     .name = "klu",
-    .help = "full system of displacements and velocities, LU factorisation (KLU); to compare",
+    .help = "full system of displacements and velocities, LU factorisation (KLU); for comparison",
     .is_condensed = false,
     .create = create,
     .analyse = analyse,

@@ -147,7 +147,7 @@ static Status descend(Descent *descent, double tolerance, long long *iterations)
   }
   return status_fail(
       STATUS_RETRY,
-      "Newton's method left a force of %.3g times the tolerance after %d iterations with a search",
+      "Newton's method left a force of %.3g times the tolerance after %d iterations with a line search",
       left / tolerance, MAX_ITERATIONS);
 }
 

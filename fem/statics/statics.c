@@ -31,8 +31,8 @@ enum { MAX_RELAXATIONS = 400, MAX_REFUSALS = 40, WORST_COUNT = 3 };
 static Status check_scene(const FemSceneDef *scene) {
   if (fem_scene_most_friction(&scene->contact) > 0 &&
       fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY)
-    return status_fail(STATUS_INPUT, "friction by the law 'velocity' is a force of motion; take it or "
-                                     "time.static away, or take the potential 'field' and the law 'stick'");
+    return status_fail(STATUS_INPUT, "friction by the law 'velocity' needs motion; remove it or time.static, "
+                                     "or use the potential 'field' and the law 'stick'");
   for (int b = 0; b < scene->body_count; b++) {
     const FemBodyDef *body = &scene->bodies[b];
     for (int i = 0; i < body->fixed_count; i++)
@@ -219,8 +219,8 @@ static Status check_orientation(const FemStatics *statics, double time) {
     if (J > 0) continue;
     const double *x = system->positions + 3 * (size_t)model->tets[e][0];
     return status_fail(STATUS_RETRY,
-                       "no equilibrium at t = %.9g: forces balance only with element %d of body '%s' turned "
-                       "inside out, det F = %.3g, at (%.4g, %.4g, %.4g): %s",
+                       "no equilibrium at t = %.9g: forces balance only with element %d of body '%s' "
+                       "inverted, det F = %.3g, at (%.4g, %.4g, %.4g): %s",
                        time, e, body->name, J, x[0], x[1], x[2], fem_material_limit(body->material.law));
   }
   return STATUS_OK;

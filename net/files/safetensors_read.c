@@ -52,8 +52,8 @@ static NetStatus read_header(const char *path, NetTensorFile *file, size_t size,
     return net_status_fail(NET_BAD_FILE, "%s: %zu bytes are no safetensors file", path, size);
   memcpy(&length, file->bytes, sizeof length);
   if (length > MAX_HEADER || length < 2)
-    return net_status_fail(NET_BAD_FILE, "%s: a header of %llu bytes is absurd: no safetensors file", path,
-                           (unsigned long long)length);
+    return net_status_fail(NET_BAD_FILE, "%s: a header of %llu bytes is impossible: not a safetensors file",
+                           path, (unsigned long long)length);
   if (length > size - sizeof length)
     return net_status_fail(NET_BAD_FILE, "%s: truncated: the header should have %llu bytes, the file has %zu",
                            path, (unsigned long long)length, size);

@@ -14,10 +14,10 @@ Status overlap_api_argument_copy(void *ours, size_t size, size_t first_size, con
                        name, given, first_size, "TETLAP_OVERLAP_…");
   for (size_t at = size; at < given; at++)
     if (((const char *)theirs)[at] != 0)
-      return status_fail(STATUS_INPUT,
-                         "%s: it has %zu bytes, this library knows %zu, and what is set beyond needs a later "
-                         "library",
-                         name, given, size);
+      return status_fail(
+          STATUS_INPUT,
+          "%s: it has %zu bytes, this library knows %zu, and a field set beyond that needs a later library",
+          name, given, size);
   memset(ours, 0, size);
   memcpy(ours, theirs, given < size ? given : size);
   return STATUS_OK;

@@ -47,7 +47,7 @@ static Status open_with(TetlapOverlap **overlap, const TetlapOverlapOptions *giv
   *overlap = NULL;
   TRY(overlap_api_argument_copy(&options, sizeof options, sizeof options, given, "TetlapOverlapOptions"));
   if (!options.model)
-    return status_fail(STATUS_INPUT, "no model is named: \"clip\" is fast and right; tetlap_overlap_model "
+    return status_fail(STATUS_INPUT, "no model is named: \"clip\" is fast and accurate; tetlap_overlap_model "
                                      "lists them");
   if (options.threads < 0)
     return status_fail(STATUS_INPUT, "%d threads: 0 (as many as OpenMP would use) or more are expected",

@@ -58,7 +58,7 @@ static Status eval_pair(const void *self, const double pair[24], const OverlapAn
 
 const OverlapOps overlap_clip_scalar_ops = {
     .name = "clip-scalar",
-    .help = "as clip, one pair at a time: the portable form and the referee of the other",
+    .help = "as clip, one pair at a time: the portable form and the reference for the other",
     .has_hessian = overlap_ops_always,
     .has_centroid = overlap_ops_always,
     .rejects_disjoint = true,

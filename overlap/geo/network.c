@@ -111,8 +111,7 @@ static Status check(const OverlapGeoNet *net, const char *path, const char *norm
                        shape->input_count);
   int planes = overlap_geo_features_plane_count(overlap_geo_features_set(shape->input_count));
   if (shape->output_count != 1 && shape->output_count != 1 + planes)
-    return status_fail(STATUS_INPUT,
-                       "%s: the network has %d outputs; one, or with the centroid %d, is what geo takes",
+    return status_fail(STATUS_INPUT, "%s: the network has %d outputs; geo needs one, or with the centroid %d",
                        path, shape->output_count, 1 + planes);
   if (strcmp(net->card.normalisation, normalisation) != 0)
     return status_fail(STATUS_INPUT, "%s: made for the normalisation '%s', here '%s' is needed", path,

@@ -52,11 +52,10 @@ static Status set_rule(OverlapTpnModel *overlap, const OverlapOptions *options, 
                                    .logit = log(options->confidence / (1 - options->confidence)),
                                    .scale = model->scale};
   if (overlap->rule.keeps_to_range && !model->has_range)
-    return status_fail(
-        STATUS_INPUT,
-        "%s: does not say which pairs it was trained on (range: '%s'), so none can be told to be "
-        "beyond; `tetlap weights --range` writes it into the file",
-        path, model->card.range);
+    return status_fail(STATUS_INPUT,
+                       "%s: does not say which pairs it was trained on (range: '%s'), so pairs beyond it "
+                       "cannot be detected; `tetlap weights --range` writes it into the file",
+                       path, model->card.range);
   return overlap_geo_create(&overlap->closed, NULL);
 }
 
@@ -197,7 +196,7 @@ static bool has_ghosts(const void *self) {
 
 const OverlapOps overlap_tpn_ops = {
     .name = "tpn",
-    .help = "learned, after TetrahedronPairNet; its gradient jumps, disjoint pairs feel ghosts",
+    .help = "learned, after TetrahedronPairNet; its gradient jumps, disjoint pairs get ghost forces",
     .has_hessian = has_hessian,
     .seconds_per_pair = 3e-6,
     .create = create_tpn,
@@ -224,7 +223,7 @@ const OverlapOps overlap_tpn_bf16_ops = {
 
 const OverlapOps overlap_tpn_published_ops = {
     .name = "tpn-published",
-    .help = "learned: TetrahedronPairNet as its authors train it; knows no scale, so V is rough",
+    .help = "learned: TetrahedronPairNet as its authors train it; has no scale as input, so V is inaccurate",
     .has_hessian = has_hessian,
     .seconds_per_pair = 3e-6,
     .create = create_tpn_published,
@@ -238,7 +237,7 @@ const OverlapOps overlap_tpn_published_ops = {
 
 const OverlapOps overlap_tpn_scene_ops = {
     .name = "tpn-scene",
-    .help = "learned, after TetrahedronPairNet, made fit for scenes: gated, in both orders, no ghosts",
+    .help = "learned, after TetrahedronPairNet, adapted to scenes: gated, in both orders, no ghosts",
     .has_hessian = has_hessian,
     .seconds_per_pair = 1.2e-5,
     .create = create_tpn_scene,

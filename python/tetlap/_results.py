@@ -107,7 +107,7 @@ class Run:
     """A run's folder.
 
     frames: a sequence of Frame; frames.array("velocity") is one array of all
-    history: structured array, a row a frame, or None if the scene writes none
+    history: structured array, a row per frame, or None if the scene writes none
     summary, manifest: dicts, or None while the run goes on
 
     A temporary folder lives as long as its `keeper`, to which the run and its frames hold on.

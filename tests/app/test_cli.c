@@ -204,7 +204,7 @@ START_TEST(a_wrong_word_is_told_with_its_place_and_the_nearest_right_call) {
                      "tetlap: there is no command 'merge'; did you mean: tetlap dataset merge a.h5");
   char message[512], *option = (char *)"--json";
   app_cli_command_explain(dataset, "tetlap dataset", 1, &option, message, sizeof message);
-  ck_assert_ptr_nonnull(strstr(message, "the option '--json' stands where a verb is expected; there are: "));
+  ck_assert_ptr_nonnull(strstr(message, "found the option '--json' where a verb is expected; there are: "));
   ck_assert_ptr_nonnull(strstr(message, "info, merge, plot"));
 }
 END_TEST

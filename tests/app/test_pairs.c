@@ -273,7 +273,7 @@ START_TEST(what_is_wrong_is_told_with_line_and_column) {
   put_text("short.csv", CORNERS "\n1,2,3\n");
   expect_fault("short.csv", "short.csv:2:5: 3 numbers; the first line has 24");
   put_text("few.csv", "1,2,3\n");
-  expect_fault("few.csv", "few.csv:1: 3 numbers in a row; expected are 24");
+  expect_fault("few.csv", "few.csv:1: 3 numbers in a row; expected 24");
   put_text("labelled.csv", CORNERS ",0.5\n"); // which of the 25 would be a coordinate?
   expect_fault("labelled.csv", "labelled.csv:1: 25 numbers in a row");
   put_text("head.csv", "a0x,a0y,a0z,a1x\n1,2,3,4\n");
@@ -283,7 +283,7 @@ START_TEST(what_is_wrong_is_told_with_line_and_column) {
   put_text("empty.csv", "\n# nothing\n");
   expect_fault("empty.csv", "empty.csv: is empty");
   put("zero.csv", "1,2\0,3\n", 7);
-  expect_fault("zero.csv", "zero.csv:1:4: a byte 0");
+  expect_fault("zero.csv", "zero.csv:1:4: a zero byte");
 }
 END_TEST
 
@@ -297,7 +297,7 @@ START_TEST(npy_files_that_cannot_be_read_say_what_would_be_right) {
   put_npy("records.npy", "|V192", "(300,)", pairs, sizeof pairs);
   expect_fault("records.npy", "float64 or float32 is expected");
   put_npy("wide.npy", "<f8", "(300, 12)", pairs, sizeof pairs / 2);
-  expect_fault("wide.npy", "12 numbers in a row; expected are 24");
+  expect_fault("wide.npy", "12 numbers in a row; expected 24");
   put_npy("deep.npy", "<f8", "(3, 100, 24)", pairs, sizeof pairs);
   expect_fault("deep.npy", "(n, 24) or (n, 2, 4, 3) is expected");
   put_npy("none.npy", "<f8", "(0, 24)", pairs, 0);

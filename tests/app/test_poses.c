@@ -197,8 +197,8 @@ START_TEST(files_of_poses_are_read_or_refused) {
       {"\n1 0 0 0 1 0 0 0 1 0 0 0 0\n", "line 2: a pose is 12 numbers"},
       {"1 0 0 0 1 0 0 0 1 0 0 x\n", "something else"},
       {"1 0 0 0 1 0 0 0 1 0 0 nan\n", "number 12 must be finite"},
-      {"1 0 0 0 1 0 0 0 -1 0 0 0\n", "no rotation"},
-      {"1 0 0 0 1 0 0 0 2 0 0 0\n", "no rotation"},
+      {"1 0 0 0 1 0 0 0 -1 0 0 0\n", "not a rotation"},
+      {"1 0 0 0 1 0 0 0 2 0 0 0\n", "not a rotation"},
       {"# nothing\n", "no poses"}};
   char path[] = "/tmp/tetlap-poses-XXXXXX";
   int descriptor = mkstemp(path);

@@ -89,7 +89,7 @@ START_TEST(length_and_nesting_are_bounded) {
   for (int i = 0; i < 60; i++) strcat(deep, "(");
   refuse(deep, "nested too deeply");
   while (strlen(longer) < 300) strcat(longer, "+ 1");
-  refuse(longer, "characters at most");
+  refuse(longer, "at most 199 characters");
   while (strlen(wide) < 150) strcat(wide, "+1");
   refuse(wide, "too long");
 }

@@ -296,10 +296,10 @@ START_TEST(volume_laws_that_cannot_be_met_are_refused) {
                {"uniform:a:b", "give natural"},
                {"uniform:nan:0.02", "give natural"},
                {"natural:0:1", "give natural"},
-               {"uniform:0:0.5", "cannot be asked for"},
-               {"uniform:-1:0.02", "cannot be asked for"},
-               {"uniform:0.02:0.01", "cannot be asked for"},
-               {"log-uniform:0:0.01", "cannot be asked for"},
+               {"uniform:0:0.5", "are not possible"},
+               {"uniform:-1:0.02", "are not possible"},
+               {"uniform:0.02:0.01", "are not possible"},
+               {"log-uniform:0:0.01", "are not possible"},
                {"uniform:0.02:0.020001", "so rare"}};
   for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
     DatagenVolumeLaw law;

@@ -190,7 +190,7 @@ END_TEST
 
 START_TEST(what_is_no_safetensors_file_is_refused) {
   static const char *const texts[] = {"", "short", "a text file that is longer than eight bytes"};
-  static const char *const words[] = {"0 bytes", "5 bytes", "absurd"};
+  static const char *const words[] = {"0 bytes", "5 bytes", "impossible"};
   for (int k = 0; k < 3; k++) {
     NetModel_f64 model;
     NetCard card;

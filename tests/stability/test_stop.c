@@ -141,7 +141,7 @@ START_TEST(a_second_run_into_a_folder_leaves_nothing_of_the_first) {
     ck_assert_int_eq(print(words, text, sizeof text), 0);
     ck_assert(has_file("frame_00004.vtu"));
     ck_assert_int_eq(has_file("frame_00012.vtu"), frames == 12);
-    ck_assert_int_eq(strstr(text, "its 13 frames are removed") != NULL, frames == 4);
+    ck_assert_int_eq(strstr(text, "its 13 frames were removed") != NULL, frames == 4);
   }
   remove_folder();
 }
@@ -180,7 +180,7 @@ static int read_column(const char *title, double *values, int most) {
   return rows;
 }
 
-// A row a step holds the run's largest force; a row a frame tells it as the peak since the row before.
+// A row a step holds the run's largest force; a row per frame tells it as the peak since the row before.
 START_TEST(no_peak_of_a_force_is_missed) {
   enum { MOST = 100000 };
   static double force[MOST], steps[MOST];

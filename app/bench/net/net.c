@@ -194,7 +194,7 @@ static Status read_nets_in(Bench *bench) {
       bench->net_count++;
     if (status != STATUS_IO) TRY(status);
   }
-  return bench->net_count > 0 ? STATUS_OK : status_fail(STATUS_IO, "no network is there to be measured");
+  return bench->net_count > 0 ? STATUS_OK : status_fail(STATUS_IO, "there is no network to measure");
 }
 
 static Status start_torch(Bench *bench) {

@@ -11,7 +11,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   AppCliShell *shell = state->input;
   switch (key) {
   case ARGP_KEY_ARG:
-    if (*shell != APP_CLI_SHELL_COUNT) argp_error(state, "'%s' is one too many: name one shell", text);
+    if (*shell != APP_CLI_SHELL_COUNT)
+      argp_error(state, "'%s' is one argument too many: name one shell", text);
     *shell = app_cli_completion_find(text);
     if (*shell == APP_CLI_SHELL_COUNT) argp_error(state, "'%s' is none of: bash, zsh, fish", text);
     return 0;
@@ -39,7 +40,8 @@ static int run_command(int argument_count, char **arguments) {
   return status_exit_code(STATUS_IO);
 }
 
-const AppCommand app_command_completion = {.name = "completion",
-                                           .help = "print what makes a shell complete commands and options",
-                                           .argp = &argp,
-                                           .run = run_command};
+const AppCommand app_command_completion = {
+    .name = "completion",
+    .help = "print a script that makes a shell complete commands and options",
+    .argp = &argp,
+    .run = run_command};

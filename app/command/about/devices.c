@@ -14,7 +14,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     *is_json = true;
     return 0;
   case ARGP_KEY_ARG:
-    argp_error(state, "'%s' is one too many: devices takes no arguments", text);
+    argp_error(state, "'%s' is one argument too many: devices takes no arguments", text);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -26,8 +26,8 @@ static const struct argp_option option_table[] = {{"json", 'j', NULL, 0, "Print 
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
-    .doc = "List the devices that overlap models can be evaluated on (bench overlap --device NAME), what was "
-           "looked for, and why something is not usable."};
+    .doc = "List the devices that overlap models can be evaluated on (bench overlap --device NAME), the "
+           "libraries searched, and why something is not usable."};
 
 static void print_device(const DeviceOps *ops, const DeviceInfo *info) {
   printf("  %s:%d  %s (%s)\n      %s, %d units", ops->name, info->index, info->name, info->driver,

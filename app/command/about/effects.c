@@ -10,7 +10,7 @@
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   if (key != ARGP_KEY_ARG) return ARGP_ERR_UNKNOWN;
-  argp_error(state, "'%s' is one too many: effects takes no arguments", text);
+  argp_error(state, "'%s' is one argument too many: effects takes no arguments", text);
   return 0;
 }
 

@@ -79,7 +79,7 @@ static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .args_doc = "[COMMAND…]",
-    .doc = "List the commands, or tell what one of them does, as in: tetlap help dataset info"};
+    .doc = "List the commands, or describe one of them, as in: tetlap help dataset info"};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
@@ -94,6 +94,6 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_help = {.name = "help",
-                                     .help = "print this; `tetlap COMMAND --help` tells more",
+                                     .help = "print this; `tetlap COMMAND --help` has the details",
                                      .argp = &argp,
                                      .run = run_command};

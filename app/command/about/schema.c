@@ -20,7 +20,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     *is_markdown = true;
     return 0;
   case ARGP_KEY_ARG:
-    argp_error(state, "'%s' is one too many: schema takes no arguments", text);
+    argp_error(state, "'%s' is one argument too many: schema takes no arguments", text);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

@@ -113,7 +113,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->lists = true;
     return 0;
   case ARGP_KEY_ARG:
-    argp_error(state, "'%s' is one too many: the file to write is given with -o", text);
+    argp_error(state, "'%s' is one argument too many: the file to write is given with -o", text);
     return 0;
   case ARGP_KEY_END:
     if (!options->output && !options->lists) argp_error(state, "write where? Give -o FILE");

@@ -37,7 +37,7 @@ static error_t parse_argument(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   switch (key) {
   case ARGP_KEY_ARG:
-    if (options->file) argp_error(state, "'%s' is one too many: give one file of pairs", text);
+    if (options->file) argp_error(state, "'%s' is one argument too many: give one file of pairs", text);
     options->file = text;
     return 0;
   case ARGP_KEY_NO_ARGS:
@@ -142,7 +142,7 @@ static const struct argp argp = {.options = option_table,
                                         "behind them), 26 (status, volume), 49 (volume, "
                                         "24 derivatives), 50 (status, volume, derivatives); or a header "
                                         "names the columns: a0x … b3z, status, volume, "
-                                        "dV/da0x … dV/db3z. docs/data.md tells more."};
+                                        "dV/da0x … dV/db3z. See docs/data.md."};
 
 static int run_command(int argument_count, char **arguments) {
   char program[DATAGEN_PROGRAM_TEXT];
@@ -155,7 +155,7 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_dataset_import = {.name = "import",
-                                               .help = "make a data set of one's own labelled pairs",
+                                               .help = "make a data set of your own labelled pairs",
                                                .argp = &argp,
                                                .run = run_command,
                                                .has_threads = true};

@@ -83,7 +83,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     else if (!options->source.file)
       options->source.file = text;
     else
-      argp_error(state, "'%s' is one too many: give MODEL and FILE", text);
+      argp_error(state, "'%s' is one argument too many: give MODEL and FILE", text);
     return 0;
   case ARGP_KEY_END:
     check(state, options);
@@ -185,7 +185,7 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "MODEL [FILE]",
     .doc = "Evaluate an overlap model, by name or weights file, on labelled pairs: status, volume, "
-           "derivatives, ghosts and symmetries, beside what the paper's Table 4 reports.",
+           "derivatives, ghosts and symmetries, in addition to the paper's Table 4.",
 };
 
 static int run_command(int argument_count, char **arguments) {

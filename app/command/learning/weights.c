@@ -87,8 +87,8 @@ static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .args_doc = "NAME|FILE",
-    .doc = "Print what a weights file says of itself: the network's shape, what it expects of its input, the "
-           "range that it was trained on, and how it came to be."};
+    .doc = "Print the metadata of a weights file: the network's shape, the normalisation of its input, the "
+           "range of its training data, and its provenance."};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
@@ -97,4 +97,4 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_weights = {
-    .name = "weights", .help = "say what a weights file holds", .argp = &argp, .run = run_command};
+    .name = "weights", .help = "print the metadata of a weights file", .argp = &argp, .run = run_command};

@@ -22,7 +22,7 @@ typedef struct Options {
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "FILE", 0,
-     "The picture: FILE.svg, FILE.pdf or FILE.png; its script is FILE with .gp behind", 0},
+     "The picture: FILE.svg, FILE.pdf or FILE.png; its script is FILE with .gp appended", 0},
     {"quantity", KEY_QUANTITY, "NAME,…", 0, "Of a frontier: only V, V+grad or force", 0},
     {"quiet", 'q', NULL, 0, "Say errors only", 0},
     {0},
@@ -42,7 +42,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_ARG:
     if (options->source_count == MAX_SOURCES)
-      argp_error(state, "'%s' is one too many: give one run or two", text);
+      argp_error(state, "'%s' is one argument too many: give one run or two", text);
     options->sources[options->source_count++] = text;
     return 0;
   case ARGP_KEY_END:
@@ -120,9 +120,8 @@ static const struct argp argp = {
     option_table,
     parse,
     "DIR [DIR] | pareto.json",
-    "Draw a picture for a paper: the forces, energies and steps of a run or of two, or the frontier of "
-    "error and "
-    "time.\vThe gnuplot script that drew it is kept beside it and holds the data.",
+    "Draw a figure for a paper: the forces, energies and steps of one or two runs, or the frontier of error "
+    "and time.\vThe gnuplot script that drew it is kept beside it and holds the data.",
     NULL,
     NULL,
     NULL};
@@ -143,6 +142,6 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_plot = {.name = "plot",
-                                     .help = "draw a run or two, or a frontier, for a paper",
+                                     .help = "draw one or two runs, or a frontier, for a paper",
                                      .argp = &argp,
                                      .run = run_command};

@@ -97,7 +97,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_ARG:
     if (options->directory_count == APP_REPORT_MAX_RUNS)
-      argp_error(state, "'%s' is one too many: a picture shows at most %d runs", text, APP_REPORT_MAX_RUNS);
+      argp_error(state, "'%s' is one argument too many: a picture shows at most %d runs", text,
+                 APP_REPORT_MAX_RUNS);
     options->directories[options->directory_count++] = text;
     return 0;
   case ARGP_KEY_END:

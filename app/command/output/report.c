@@ -29,7 +29,7 @@ typedef struct Options {
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "FILE", 0, "Write this file (default: report.html in the first DIR, else here)", 0},
-    {"frames", KEY_FRAMES, "N", 0, "Take at most N frames of a run, at even distances (default: all)", 0},
+    {"frames", KEY_FRAMES, "N", 0, "Take at most N frames of a run, evenly spaced (default: all)", 0},
     {"surface", KEY_SURFACE, NULL, 0,
      "Take the bodies' surfaces only: a smaller page, which cannot cut bodies open", 0},
     {"pareto", KEY_PARETO, "FILE", 0, "Show this result of `tetlap pareto` as well", 0},
@@ -79,7 +79,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_ARG:
     if (options->directory_count == APP_REPORT_MAX_RUNS)
-      argp_error(state, "'%s' is one too many: a page shows at most %d runs", text, APP_REPORT_MAX_RUNS);
+      argp_error(state, "'%s' is one argument too many: a page shows at most %d runs", text,
+                 APP_REPORT_MAX_RUNS);
     options->directories[options->directory_count++] = text;
     return 0;
   case ARGP_KEY_END:

@@ -25,8 +25,7 @@ typedef struct Options {
 static const struct argp_option option_table[] = {
     {"port", 'p', "N", 0, "Take this port (default: any that is free)", 0},
     {"frames", KEY_FRAMES, "N", 0,
-     "Show at most N frames of a run that goes on, at even distances (default: 150); when it has ended, all",
-     0},
+     "While the run goes on, show at most N frames, evenly spaced (default: 150); afterwards all", 0},
     {"quiet", 'q', NULL, 0, "Say nothing but the address, and errors", 0},
     {0},
 };
@@ -87,7 +86,8 @@ static const struct argp argp = {
     option_table,
     parse,
     "DIR",
-    "Show a run in a browser, also while it goes on: the page of `tetlap report`, which follows the run.\v"
+    "Show a run in a browser, also while it is running: the page of `tetlap report`, which is updated during "
+    "the run.\v"
     "DIR is where `tetlap run` writes. The page is served to this machine alone, from an address that is "
     "printed; "
     "no file can be read through it. Ctrl-C ends the server, not the run.",
@@ -103,6 +103,6 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_view = {.name = "view",
-                                     .help = "show a run in a browser, also while it goes on",
+                                     .help = "show a run in a browser, also while it is running",
                                      .argp = &argp,
                                      .run = run_command};

@@ -52,7 +52,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->is_quiet = true;
     return 0;
   case ARGP_KEY_ARG:
-    if (options->file) argp_error(state, "'%s' is one too many: give one file of pairs", text);
+    if (options->file) argp_error(state, "'%s' is one argument too many: give one file of pairs", text);
     options->file = text;
     return 0;
   case ARGP_KEY_NO_ARGS:
@@ -80,7 +80,7 @@ static Status make_answers(Answers *answers) {
   answers->centroid = memory_zeroed(APP_PAIRS_BLOCK, sizeof(double[3]));
   answers->flags = memory_zeroed(APP_PAIRS_BLOCK, sizeof(unsigned));
   bool is_whole = answers->volume && answers->gradient && answers->centroid && answers->flags;
-  return is_whole ? STATUS_OK : status_no_memory("the answers for a block of pairs");
+  return is_whole ? STATUS_OK : status_no_memory("the results for a block of pairs");
 }
 
 static Status answer_block(const OverlapModel *model, const AppPairsBlock *block, const Answers *answers,
@@ -159,14 +159,14 @@ static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .args_doc = "FILE",
-    .doc = "Print the overlap volume of pairs of tetrahedra, its derivatives by the 24 coordinates, its "
-           "centroid and what "
-           "the model says of each pair.\vFILE is text (.csv) of 24 numbers a row, tetrahedron 1's four "
+    .doc = "Print the overlap volume of pairs of tetrahedra, its derivatives with respect to the 24 "
+           "coordinates, its centroid, and the model's flags.\vFILE is text (.csv) of 24 numbers a row, "
+           "tetrahedron 1's four "
            "vertices x y z, "
            "then tetrahedron 2's; or .npy of shape (n, 24) or (n, 2, 4, 3); or .h5, a data set or an array; "
            "- is "
            "standard input. A "
-           "header may name the columns a0x … a3z, b0x … b3z. docs/overlap.md tells more."};
+           "header may name the columns a0x … a3z, b0x … b3z. See docs/overlap.md."};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.model = "clip", .order = 1};
@@ -177,6 +177,6 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_overlap = {.name = "overlap",
-                                        .help = "print overlap volumes of one's own pairs of tetrahedra",
+                                        .help = "print overlap volumes of your own pairs of tetrahedra",
                                         .argp = &argp,
                                         .run = run_command};

@@ -47,9 +47,9 @@ static const struct argp_option option_table[] = {
      "Also the models that have kernels on a device: host, opencl, cuda, auto (`tetlap devices` lists them); "
      "pairs and answers lie there, --count pairs a call",
      1},
-    {"wall", KEY_WALL, "SECONDS", 0, "Cut a scene's run short that takes longer (default: 60)", 1},
+    {"wall", KEY_WALL, "SECONDS", 0, "Stop a scene's run after this wall time (default: 60)", 1},
     {"rounds", KEY_ROUNDS, "N", 0, "Runs of each scene with each model, in turns (default: 1)", 1},
-    {"audit", KEY_AUDIT, "K", 0, "Hold all models together in every K-th step in contact (default: 20)", 1},
+    {"audit", KEY_AUDIT, "K", 0, "Evaluate all models in every K-th step in contact (default: 20)", 1},
     {"reference", KEY_REFERENCE, "NAME", 0, "Overlap model of the scenes' reference run (default: clip)", 1},
     {"set", 's', "KEY=VALUE", 0, "Replace a value of the scenes, as in time.end=0.2; may be repeated", 1},
     {0},

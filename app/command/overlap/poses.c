@@ -27,13 +27,12 @@ enum { KEY_POSES = 256, KEY_RANDOM, KEY_BODY, KEY_SEED, KEY_SHIFT, KEY_TURN };
 static const struct argp_option option_table[] = {
     {"poses", KEY_POSES, "FILE", 0,
      "Poses, a line of 12 numbers each: a rotation R row by row, then a shift t, for x' = R x + t", 1},
-    {"random", KEY_RANDOM, "N", 0, "N poses at random about the one that the scene has", 1},
+    {"random", KEY_RANDOM, "N", 0, "N random poses around that of the scene", 1},
     {"body", KEY_BODY, "NAME", 0, "The body or obstacle that is posed (default: the first)", 1},
     {"shift", KEY_SHIFT, "LENGTH", 0,
-     "With --random: shifts of up to so much in each coordinate [m] (default: a tenth of the smallest body)",
-     2},
-    {"turn", KEY_TURN, "ANGLE", 0, "With --random: turns of up to so much [rad] (default: 0.2)", 2},
-    {"seed", KEY_SEED, "N", 0, "With --random: of the random numbers (default: 1)", 2},
+     "With --random: largest shift in each coordinate [m] (default: a tenth of the smallest body)", 2},
+    {"turn", KEY_TURN, "ANGLE", 0, "With --random: largest rotation [rad] (default: 0.2)", 2},
+    {"seed", KEY_SEED, "N", 0, "With --random: seed of the random numbers (default: 1)", 2},
     {"device", 'D', "NAME", 0,
      "host, opencl, cuda or auto, or with a number (opencl:1); default: this processor's vectors. The "
      "answers are "
@@ -79,7 +78,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->output = text;
     break;
   case ARGP_KEY_ARG:
-    if (options->scene) argp_error(state, "'%s' is one too many: poses takes one scene", text);
+    if (options->scene) argp_error(state, "'%s' is one argument too many: poses takes one scene", text);
     options->scene = text;
     break;
   case ARGP_KEY_END:
@@ -193,8 +192,8 @@ static const struct argp argp = {
     .args_doc = "SCENE",
     .doc = "Evaluate many rigid poses of one of a scene's bodies against all others: a line a pose with the "
            "overlap volume V [m³], the force f = −∂V/∂t [m²] and the moment m [m³] about the body's centre "
-           "that a pressure of 1 Pa would exert on it. Obstacles without elements take no part. "
-           "docs/devices.md tells more."};
+           "that a pressure of 1 Pa would exert on it. Obstacles without elements are left out. "
+           "See docs/devices.md."};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.seed = 1, .shift = -1, .turn = 0.2};

@@ -29,13 +29,13 @@ enum { KEY_REFERENCE = 256, KEY_AUDIT, KEY_AUDIT_ONLY, KEY_WALL };
 
 static const struct argp_option option_table[] = {
     {"overlap", 'm', "NAME,…", 0, "The overlap models to compare", 1},
-    {"reference", KEY_REFERENCE, "NAME", 0, "The model that the others are held against (default: the first)",
-     1},
+    {"reference", KEY_REFERENCE, "NAME", 0,
+     "The model that the others are compared with (default: the first)", 1},
     {"audit", KEY_AUDIT, "K", 0,
      "Evaluate all models in every K-th step in contact of the reference (default 10; 0: never)", 1},
     {"audit-only", KEY_AUDIT_ONLY, "NAME,…", 0,
      "Models that take part in the audit but get no run of their own", 1},
-    {"wall", KEY_WALL, "SECONDS", 0, "Cut a model's run short that takes longer (default: none is)", 1},
+    {"wall", KEY_WALL, "SECONDS", 0, "Stop a model's run after this wall time (default: never)", 1},
     {0},
 };
 
@@ -226,7 +226,7 @@ static double expect_time(const AppComparison *comparison, int first, int m) {
 
 static void announce_time(const AppComparison *comparison, int m, double seconds) {
   if (!(seconds > 0)) return;
-  log_info("%s: about %.3g %s, if it takes as many steps; told again where it does not",
+  log_info("%s: about %.3g %s if it takes as many steps; corrected if it does not",
            comparison->models[m].name, seconds < 120 ? seconds : seconds / 60,
            seconds < 120 ? "s" : "minutes");
 }
@@ -313,8 +313,7 @@ static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
 static const struct argp argp = {.options = option_table,
                                  .parser = parse,
                                  .args_doc = "SCENE",
-                                 .doc =
-                                     "Run a scene with several overlap models and hold the results together.",
+                                 .doc = "Run a scene with several overlap models and compare the results.",
                                  .children = children};
 
 static int run_command(int argument_count, char **arguments) {
@@ -330,7 +329,7 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_compare = {.name = "compare",
-                                        .help = "run a scene with several overlap models and compare",
+                                        .help = "run a scene with several overlap models and compare them",
                                         .argp = &argp,
                                         .run = run_command,
                                         .has_threads = true};

@@ -35,7 +35,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->is_json = true;
     return 0;
   case ARGP_KEY_ARG:
-    if (options->path) argp_error(state, "'%s' is one too many: give one mesh file", text);
+    if (options->path) argp_error(state, "'%s' is one argument too many: give one mesh file", text);
     options->path = text;
     return 0;
   case ARGP_KEY_NO_ARGS:
@@ -201,7 +201,7 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "FILE",
     .doc =
-        "Say what a mesh holds and what is wrong with it: .msh, .mesh, .vtk, .node/.ele; a .stl or .geo is "
+        "Print a mesh's counts, volume, quality and faults: .msh, .mesh, .vtk, .node/.ele; a .stl or .geo is "
         "meshed first. Lengths are taken as metres."};
 
 static int run_command(int argument_count, char **arguments) {
@@ -211,6 +211,6 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_mesh = {.name = "mesh",
-                                     .help = "say what a mesh holds: counts, volume, quality, what is wrong",
+                                     .help = "print a mesh's counts, volume, quality and faults",
                                      .argp = &argp,
                                      .run = run_command};

@@ -18,11 +18,12 @@ enum { KEY_STRICT = 256, KEY_RANKS };
 
 static const struct argp_option option_table[] = {
     {"threads", 't', "N", 0, "Use N threads (default: the scene's, else all)", 1},
-    {"strict", KEY_STRICT, NULL, 0, "End with an error where energy comes out of nothing", 1},
+    {"strict", KEY_STRICT, NULL, 0,
+     "Energy gained beyond 0.1 % of the scene's, and bodies that pass through each other, are an error", 1},
     {"ranks", KEY_RANKS, "N", 0, "Share the run among N processes of this machine (tetlap-mpi)", 1},
     {"json", 'j', NULL, 0, "Print the result as JSON on standard output", 2},
     {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
-    {"verbose", 'v', NULL, 0, "Say more: a line a step, and why one is taken back", 2},
+    {"verbose", 'v', NULL, 0, "Print a line per step, and why one is taken back", 2},
     {0},
 };
 
@@ -62,11 +63,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 static Status read_checkpoint(const char *directory, const char *path, FemCheckpoint *checkpoint) {
   if (file_exists(directory) && !file_exists(path))
-    return status_fail(
-        STATUS_INPUT,
-        "%s: there is no checkpoint.h5 to go on from: the run has reached its end, or was killed "
-        "before the first was written; begin anew with `tetlap run`",
-        directory);
+    return status_fail(STATUS_INPUT,
+                       "%s: there is no checkpoint.h5 to continue from: the run has reached its end, or was "
+                       "killed before the first was written; start again with `tetlap run`",
+                       directory);
   return fem_checkpoint_read(checkpoint, path);
 }
 
@@ -74,8 +74,8 @@ static Status read_checkpoint(const char *directory, const char *path, FemCheckp
 static void warn_of_processor(const Record *origin) {
   const char *was = record_find_text(origin, "instructions");
   if (was && strcmp(was, app_versions_simd()) != 0)
-    log_warning("the run began on a processor with other instructions (%s, here %s): it goes on, but not to "
-                "the last bit as it would have there",
+    log_warning("the run began on a processor with other instructions (%s, here %s): it continues, but the "
+                "last bits may differ",
                 was, app_versions_simd());
 }
 
@@ -94,7 +94,7 @@ static Status go_on(AppRunOptions *options, const char *path, FemCheckpoint *che
   options->from = checkpoint;
   options->from_path = path;
   options->origin = origin;
-  log_info("%s: goes on from t = %g s, frame %d", options->job.directory, checkpoint->time,
+  log_info("%s: continues from t = %g s, frame %d", options->job.directory, checkpoint->time,
            checkpoint->next_frame);
   return app_run_execute(options);
 }
@@ -120,9 +120,9 @@ static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .args_doc = "DIR",
-    .doc = "Go on with a run that was stopped or killed, from its last checkpoint in DIR, as if it had never "
-           "been: the same files to the last bit. The scene, its meshes and weights and the program must be "
-           "those it began with."};
+    .doc = "Continue a run that was stopped or killed, from its last checkpoint in DIR. The files are the "
+           "same, to the last bit, as those of an uninterrupted run. The scene, its meshes and weights and "
+           "the program must be unchanged."};
 
 static int run_command(int argument_count, char **arguments) {
   AppRunOptions options = {0};
@@ -134,7 +134,7 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_resume = {.name = "resume",
-                                       .help = "go on with a run that was stopped or killed",
+                                       .help = "continue a run that was stopped or killed",
                                        .argp = &argp,
                                        .run = run_command,
                                        .has_threads = true,

@@ -76,17 +76,18 @@ static void conclude_network(const ContactPairCounts *pairs) {
 // Of a static scene: what went in, and what of it is found again.
 static void conclude_work(const FemAudit *audit) {
   double lost = fem_audit_lost(audit);
-  log_info(
-      "energy: of %.3g J of work %.3g J went into friction and plasticity; work and energy differ by %.3g J, "
-      "%.2g %% of the scene's %.3g J, where steps of load this long leave %.3g J open",
-      audit->work, audit->dissipated, fabs(lost), 100 * fabs(lost) / audit->scale, audit->scale, audit->open);
+  log_info("energy: of %.3g J of work, %.3g J went into friction and plasticity; work and energy differ by "
+           "%.3g J, "
+           "%.2g %% of the scene's %.3g J, and load steps of this length leave %.3g J undetermined",
+           audit->work, audit->dissipated, fabs(lost), 100 * fabs(lost) / audit->scale, audit->scale,
+           audit->open);
 }
 
 // What was lost, apart into what was asked for and the integrator's own.
 static void conclude_energy(const FemAudit *audit) {
   double lost = fem_audit_lost(audit);
-  log_info("energy: of the scene's %.3g J %.3g J went into damping, friction and plasticity as asked; the "
-           "integrator itself %s %.3g J, %.2g %%, and never stood more than %.2g %% above an earlier value",
+  log_info("energy: of the scene's %.3g J, %.3g J went into damping, friction and plasticity; the integrator "
+           "itself %s %.3g J, %.2g %%, and the total never rose by more than %.2g %%",
            audit->scale, audit->dissipated, lost < 0 ? "gained" : "lost", fabs(lost),
            100 * fabs(lost) / audit->scale, 100 * audit->gain / audit->scale);
 }
@@ -192,7 +193,7 @@ static Status run_captured(const AppRunOptions *options, const AppJob *job, cons
 static void tell_of_checkpoint(const AppJob *job) {
   char *path = file_join(job->directory, FEM_CHECKPOINT_FILE);
   if (path && file_exists(path))
-    log_info("`tetlap resume %s` goes on from the last checkpoint", job->directory);
+    log_info("`tetlap resume %s` continues from the last checkpoint", job->directory);
   memory_free(path);
 }
 

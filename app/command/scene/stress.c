@@ -32,7 +32,7 @@ static const struct argp_option option_table[] = {
     {"scenes", KEY_SCENES, NULL, 0, "Only scenes", 0},
     {"quick", KEY_QUICK, NULL, 0, "Fewer members of each class, and only the scenes that take a moment", 0},
     {"limit", KEY_LIMIT, "SECONDS", 0,
-     "Cut a scene with a model after so much processor time (default: the case's own, 60 or more)", 0},
+     "Stop a scene with a model after this processor time (default: the case's own, 60 or more)", 0},
     {"json", 'j', "FILE", 0, "Write the table and all that was measured to FILE, anew after every row", 0},
     {"quiet", 'q', NULL, 0, "Say errors only", 0},
     {0},
@@ -76,7 +76,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->is_quiet = true;
     return 0;
   case ARGP_KEY_ARG:
-    argp_error(state, "'%s' is one too many: there are only options, as --only %s", text, text);
+    argp_error(state, "'%s' is one argument too many: there are only options, as --only %s", text, text);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -115,8 +115,8 @@ static Status print_and_judge(const Options *options, const AppStress *stress) {
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
-    .doc = "Hard cases: every class of pairs and every hard scene with every overlap model, each held "
-           "against physics. docs/stability.md tells what the verdicts mean."};
+    .doc = "Hard cases: every class of pairs and every hard scene with every overlap model, each checked "
+           "against physics. docs/stability.md explains the verdicts."};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
@@ -138,7 +138,7 @@ static int run_command(int argument_count, char **arguments) {
 
 const AppCommand app_command_stress = {.name = "stress",
                                        .help =
-                                           "hold every hard case against physics, with every overlap model",
+                                           "check every hard case against physics, with every overlap model",
                                        .argp = &argp,
                                        .run = run_command,
                                        .has_threads = true};

@@ -153,10 +153,9 @@ static const struct argp argp = {
     parse,
     "SCENE",
     "Run a scene with every combination of values of some of its keys, side by side: a table and a page with "
-    "plots.\vEach run is a process with a folder of its own, named by its values. The same command again "
-    "goes on with what is not finished and keeps what is; more values may be added. A run that fails is a "
-    "line of "
-    "the table; then the exit code is 70.",
+    "plots.\vEach run is a process with a folder of its own, named by its values. The same command, given "
+    "again, completes what is not finished; more values may be added. A run that fails is a line of the "
+    "table; then the exit code is 70.",
     NULL,
     NULL,
     NULL};

@@ -4,7 +4,7 @@
 #include "app/scene/keys/choices.h"
 #include "fem/scene/scene.h"
 
-static const SceneSection inner = {.help = "faces that are no surface",
+static const SceneSection inner = {.help = "faces that are not contact surface",
                                    .size = sizeof(FemInnerDef),
                                    .keys = (const SceneKey[]){{0}},
                                    .more = &app_scene_keys_select,
@@ -12,10 +12,10 @@ static const SceneSection inner = {.help = "faces that are no surface",
                                    PLACE(FemInnerDef, select.place)};
 
 static const SceneKey probe_keys[] = {
-    {"name", SCENE_LABEL, AT(FemProbeDef, name), .required = "foot", .help = "how its columns are called"},
+    {"name", SCENE_LABEL, AT(FemProbeDef, name), .required = "foot", .help = "its name in columns"},
     {0},
 };
-static const SceneSection probe = {.help = "what is told of a part of a body",
+static const SceneSection probe = {.help = "output for a part of a body",
                                    .size = sizeof(FemProbeDef),
                                    .keys = probe_keys,
                                    .more = &app_scene_keys_select,
@@ -24,16 +24,17 @@ static const SceneSection probe = {.help = "what is told of a part of a body",
 
 static const SceneKey body_keys[] = {
     {"name", SCENE_LABEL, AT(FemBodyDef, name), .required = "block",
-     .help = "how messages and outputs call it"},
+     .help = "its name in messages and outputs"},
     {"mesh", SCENE_SECTION, .offset = offsetof(FemBodyDef, mesh_path), .required = "block.msh",
-     .section = &app_scene_keys_mesh, .help = "its tetrahedra: a file's path, or more in a mapping"},
+     .section = &app_scene_keys_mesh,
+     .help = "its tetrahedra: the path of a file, or a mapping with more options"},
     {"place", SCENE_SECTION, AT(FemBodyDef, placement), .section = &app_scene_keys_mesh_place,
-     .help = "where the mesh stands"},
+     .help = "position of the mesh"},
     {"material", SCENE_SECTION, AT(FemBodyDef, material),
      .required = "{young: 1e6, poisson: 0.4, density: 1000}", .section = &app_scene_keys_material,
-     .help = "what it is made of"},
+     .help = "constitutive law and parameters"},
     {"element", SCENE_CHOICE, AT(FemBodyDef, element), .fallback = "linear",
-     .choices = &app_scene_choices_elements, .help = "how its tetrahedra resist"},
+     .choices = &app_scene_choices_elements, .help = "element formulation"},
     {"self_contact", SCENE_SWITCH, AT(FemBodyDef, self_contact), .fallback = "false",
      .help =
          "its parts may touch each other; needs `contact`. Elements that share a vertex or overlap at rest "
@@ -45,14 +46,13 @@ static const SceneKey body_keys[] = {
     {"fixed", SCENE_LIST, AT(FemBodyDef, fixed), .section = &app_scene_keys_motion_fixed,
      .count_offset = offsetof(FemBodyDef, fixed_count), .help = "vertices that do not move"},
     {"driven", SCENE_LIST, AT(FemBodyDef, driven), .section = &app_scene_keys_motion_driven,
-     .count_offset = offsetof(FemBodyDef, driven_count), .help = "vertices that move as told"},
+     .count_offset = offsetof(FemBodyDef, driven_count), .help = "vertices with prescribed motion"},
     {"loads", SCENE_LIST, AT(FemBodyDef, loads), .section = &app_scene_keys_load,
-     .count_offset = offsetof(FemBodyDef, load_count), .help = "forces and pressures from outside"},
+     .count_offset = offsetof(FemBodyDef, load_count), .help = "external forces and pressures"},
     {"inner_faces", SCENE_LIST, AT(FemBodyDef, inner), .section = &inner,
      .count_offset = offsetof(FemBodyDef, inner_count),
-     .help = "parts of its boundary that contact shall not take for a surface: planes of symmetry, what is "
-             "glued; "
-             "faces with all corners selected. At most 8; matters to the potential `field`"},
+     .help = "parts of its boundary that are not contact surface: planes of symmetry, glued faces; faces "
+             "with all corners selected. At most 8; used by the potential `field`"},
     {"probes", SCENE_LIST, AT(FemBodyDef, probes), .section = &probe,
      .count_offset = offsetof(FemBodyDef, probe_count),
      .help =

@@ -62,11 +62,11 @@ static const char *element_name(int i) {
   return i < 3 ? names[i] : NULL;
 }
 static const char *element_help(int i) {
-  static const char *const helps[] = {"constant strain; too stiff in bending, and from about ν = 0.45 in all",
-                                      "linear, the volume change averaged at the vertices: for ν up to 0.499",
-                                      "ten nodes, strain linear within: bending by few elements, for ν up to "
-                                      "0.499; keeps the curved edges of "
-                                      "second-order files"};
+  static const char *const helps[] = {
+      "constant strain; too stiff in bending, and above about ν = 0.45 altogether",
+      "linear, the volume change averaged at the vertices: for ν up to 0.499",
+      "ten nodes, linear strain: bending with few elements, for ν up to 0.499; keeps the curved edges of "
+      "second-order files"};
   return helps[i];
 }
 const SceneChoices app_scene_choices_elements = {.name = element_name, .help = element_help};
@@ -79,8 +79,9 @@ static const char *friction_name(int i) {
 static const char *friction_help(int i) {
   static const char *const helps[] = {
       "stick with the potential field, velocity with the others",
-      "a spring in the tangent plane, cut at μN: what sticks does not creep, in motion and at rest",
-      "a force that depends on the slip's speed, for potentials without a centroid: what sticks creeps"};
+      "a spring in the tangent plane, limited to μN: sticking contacts do not creep, in motion and in "
+      "statics",
+      "a force that depends on the slip speed, for potentials without a centroid: sticking contacts creep"};
   return helps[i];
 }
 const SceneChoices app_scene_choices_frictions = {.name = friction_name, .help = friction_help};
@@ -102,10 +103,10 @@ static const char *ghosts_name(int i) {
   return i < 4 ? names[i] : NULL;
 }
 static const char *ghosts_help(int i) {
-  static const char *const helps[] = {
-      "as the model has it: tpn keep, tpn-scene fade", "pairs that share no volume get what the network says",
-      "an exact test finds them: they get none, and V jumps where a pair begins to touch",
-      "they get none, and V is faded in over the first overlap"};
+  static const char *const helps[] = {"as the model has it: tpn keep, tpn-scene fade",
+                                      "disjoint pairs have the volume that the network predicts",
+                                      "an exact test sets it to 0, and V jumps at first contact",
+                                      "an exact test sets it to 0, and V is faded in over the first overlap"};
   return helps[i];
 }
 const SceneChoices app_scene_choices_ghosts = {.name = ghosts_name, .help = ghosts_help};
@@ -116,8 +117,8 @@ static const char *gate_name(int i) {
 }
 static const char *gate_help(int i) {
   static const char *const helps[] = {"as the model has it: tpn-scene status, others none",
-                                      "V is what the volume head says",
-                                      "V is multiplied by the probability that the status head says"};
+                                      "V is the output of the volume head",
+                                      "V is multiplied by the probability from the status head"};
   return helps[i];
 }
 const SceneChoices app_scene_choices_gates = {.name = gate_name, .help = gate_help};
@@ -141,7 +142,7 @@ static const char *beyond_name(int i) {
 static const char *beyond_help(int i) {
   static const char *const helps[] = {"as the model has it: hybrid exact, others count",
                                       "they are counted in summary.json",
-                                      "and answered by the exact model, blended over a band"};
+                                      "they are evaluated by the exact model, blended over a band"};
   return helps[i];
 }
 const SceneChoices app_scene_choices_beyond = {.name = beyond_name, .help = beyond_help};
@@ -151,9 +152,9 @@ static const char *coplanar_name(int i) {
   return i < 3 ? names[i] : NULL;
 }
 static const char *coplanar_help(int i) {
-  static const char *const helps[] = {"as the model has it: hybrid clip, others keep",
-                                      "the network answers them as any other",
-                                      "they turn to clipping, the more the nearer the faces"};
+  static const char *const helps[] = {
+      "as the model has it: hybrid clip, others keep", "the network evaluates them like any other",
+      "they are blended with clipping, the more the closer the faces are to coplanar"};
   return helps[i];
 }
 const SceneChoices app_scene_choices_coplanar = {.name = coplanar_name, .help = coplanar_help};
@@ -163,7 +164,7 @@ static const char *history_name(int i) { // the number is FemSceneDef.history
   return i < 3 ? names[i] : NULL;
 }
 static const char *history_help(int i) {
-  static const char *const helps[] = {"no history", "a row a frame", "a row an accepted step"};
+  static const char *const helps[] = {"no history", "a row per frame", "a row per accepted step"};
   return helps[i];
 }
 const SceneChoices app_scene_choices_histories = {history_name, history_help, .takes_switch = true};

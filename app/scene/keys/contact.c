@@ -49,13 +49,13 @@ static const char *finish_contact(void *self, const char **key) {
 
 static const SceneKey friction_keys[] = {
     {"coefficient", SCENE_NUMBER, AT(FemContactDef, friction), .range = "[0, inf)", .required = "0.3",
-     .help = "Coulomb's μ: sliding resists with μ times the normal force"},
+     .help = "Coulomb's μ: friction is at most μ times the normal force"},
     {"law", SCENE_CHOICE, AT(FemContactDef, friction_law), .fallback = "auto",
-     .choices = &app_scene_choices_frictions, .help = "how it resists"},
+     .choices = &app_scene_choices_frictions, .help = "friction law"},
     {"slip_speed", SCENE_NUMBER, AT(FemContactDef, slip_speed), .unit = "m/s", .range = "(0, inf)",
      .absent_help = "1e-3 of the smallest body's size over `end`",
-     .help =
-         "of the law velocity: slower slip counts as sticking: what sticks creeps, more slowly than this"},
+     .help = "of the law velocity: slower slip counts as sticking, so sticking contacts creep, more slowly "
+             "than this"},
     {0},
 };
 static const SceneSection friction = {
@@ -63,51 +63,50 @@ static const SceneSection friction = {
 
 static const SceneKey net_keys[] = {
     {"weights", SCENE_TEXT, AT(FemContactDef, net), .absent_help = "those that ship with the model",
-     .help =
-         "of a learned model: a .safetensors file, path from the scene file, or a name; taken in place of "
-         "`overlap`, or by `hybrid` as its network"},
+     .help = "of a learned model: a .safetensors file, path from the scene file, or a name; used instead of "
+             "`overlap`, or by `hybrid` as its network"},
     {"ghosts", SCENE_CHOICE, AT(FemContactDef, net_options.ghosts), .fallback = "auto",
-     .choices = &app_scene_choices_ghosts, .help = "tpn: volumes of pairs that share none"},
+     .choices = &app_scene_choices_ghosts, .help = "tpn: predicted volumes of disjoint pairs"},
     {"gate", SCENE_CHOICE, AT(FemContactDef, net_options.gate), .fallback = "auto",
-     .choices = &app_scene_choices_gates, .help = "tpn: whether the status head has a say in V"},
+     .choices = &app_scene_choices_gates, .help = "tpn: whether the status head influences V"},
     {"orders", SCENE_CHOICE, AT(FemContactDef, net_options.orders), .fallback = "auto",
      .choices = &app_scene_choices_orders,
-     .help = "tpn, hybrid: in which order the two tetrahedra are shown to the network"},
+     .help = "tpn, hybrid: order of the two tetrahedra in the network's input"},
     {"out_of_range", SCENE_CHOICE, AT(FemContactDef, net_options.beyond), .fallback = "auto",
      .choices = &app_scene_choices_beyond, .help = "tpn: pairs unlike those of the network's training"},
     {"coplanar", SCENE_CHOICE, AT(FemContactDef, net_options.coplanar), .fallback = "auto",
      .choices = &app_scene_choices_coplanar,
-     .help = "tpn, hybrid: pairs with faces that nearly lie in one plane, whose V has kinks"},
+     .help = "tpn, hybrid: pairs with nearly coplanar faces, whose V has kinks"},
     {"touch", SCENE_NUMBER, AT(FemContactDef, net_options.touch), .range = "(0, 1)", .fallback = "0.02",
-     .help = "share of overlap up to which V is faded in; `hybrid` of tpn-scene takes exact up to there, the "
-             "network from twice that"},
+     .help = "overlap share up to which V is faded in; `hybrid` of tpn-scene uses exact below, the network "
+             "above twice that"},
     {"doubt", SCENE_NUMBER, AT(FemContactDef, net_options.doubt), .range = "(0, inf)", .fallback = "0.005",
-     .help = "hybrid of a geo: relative error of V that its bound may reach; from there on `clip` takes "
-             "over, alone from twice that"},
+     .help = "hybrid of a geo: bound of the relative error of V up to which the network is used; above twice "
+             "that only `clip`"},
     {"deep", SCENE_NUMBER, AT(FemContactDef, net_options.deep), .range = "(0, 2]", .fallback = "0.3",
-     .help = "hybrid of tpn-scene: share of overlap up to which the network is taken, exact from one and a "
-             "half times that"},
+     .help = "hybrid of tpn-scene: overlap share up to which the network is used, exact above one and a half "
+             "times that"},
     {"confidence", SCENE_NUMBER, AT(FemContactDef, net_options.confidence), .range = "(0.5, 1)",
      .fallback = "0.95",
-     .help = "hybrid of tpn-scene: probability of the status head from which the network is taken"},
+     .help = "hybrid of tpn-scene: probability of the status head above which the network is used"},
     {0},
 };
 static const SceneSection net = {
-    .help = "how networks that follow the paper are used", .keys = net_keys, .shorthand = "weights"};
+    .help = "use of networks after the paper", .keys = net_keys, .shorthand = "weights"};
 
 static const SceneKey rest_keys[] = {
     {"speed", SCENE_NUMBER, AT(FemContactDef, rest_speed), .unit = "m/s", .range = "(0, inf)",
      .absent_help = "`time.tolerance` times √(E/ρ) of the slowest body",
-     .help = "every vertex of a calm body is slower"},
+     .help = "every vertex of a body at rest is slower"},
     {"acceleration", SCENE_NUMBER, AT(FemContactDef, rest_acceleration), .unit = "m/s²", .range = "(0, inf)",
      .absent_help = "five times `speed` over `time`",
      .help = "its centre of mass is accelerated by less in the step after which it falls asleep"},
     {"time", SCENE_NUMBER, AT(FemContactDef, rest_time), .unit = "s", .range = "(0, inf)",
-     .absent_help = "twenty times what a wave takes through the largest body",
-     .help = "what touches falls asleep together once all of it has been calm for so long"},
+     .absent_help = "twenty times the travel time of a wave through the largest body",
+     .help = "bodies that touch fall asleep together after all of them have been at rest for this time"},
     {0},
 };
-static const SceneSection rest = {.help = "when bodies are at rest", .keys = rest_keys};
+static const SceneSection rest = {.help = "when bodies count as at rest", .keys = rest_keys};
 
 static const SceneKey pair_keys[] = {
     {"bodies", SCENE_TWO, AT(FemContactPairDef, names), .required = "[block, ground]",
@@ -118,7 +117,7 @@ static const SceneKey pair_keys[] = {
      .absent_help = "as between any two", .help = "μ between these two"},
     {0},
 };
-static const SceneSection pair = {.help = "what holds between two",
+static const SceneSection pair = {.help = "values for two bodies",
                                   .size = sizeof(FemContactPairDef),
                                   .keys = pair_keys,
                                   .some_of = "stiffness friction",
@@ -127,38 +126,40 @@ static const SceneSection pair = {.help = "what holds between two",
 static const SceneKey contact_keys[] = {
     {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa", .range = "(0, inf)",
      .absent_help =
-         "E of the softest body (with `body` over its smallest mean element volume); with `field` from "
-         "height and E of each two that meet, such that what touches gives way by 2 % of what they do",
-     .help = "penalty κ; higher: less overlap, shorter steps (Pa/m with the potential `field`, Pa/m³ with "
-             "`body`)"},
+         "with `field` from height and E of each two bodies that meet, so that the overlap is 2 % of their "
+         "compression; otherwise E of the softest body (with `body` over its smallest mean element volume)",
+     .help = "penalty stiffness κ; higher: less overlap, shorter steps (Pa/m with the potential `field`, "
+             "Pa/m³ with `body`)"},
     {"potential", SCENE_CHOICE, AT(FemContactDef, potential),
-     .absent_help = "`field`; `nodal` with weights that `net` names, and with an overlap model that gives no "
+     .absent_help = "`field`; `nodal` with weights that `net` names, and with an overlap model that has no "
                     "centroid (`tpn`, `tpn-bf16`, `tpn-published`, `tpn-scene`)",
      MARK(FemContactDef, potential_is_given, true), .choices = &app_scene_choices_potentials,
      .help = "how overlaps become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",
      .choices = &app_scene_choices_overlaps,
-     .help = "the model that gives the overlap volume of two tetrahedra"},
-    {"net", SCENE_SECTION, .section = &net, .help = "of a learned model: its weights, or more in a mapping"},
+     .help = "the model that computes the overlap volume of two tetrahedra"},
+    {"net", SCENE_SECTION, .section = &net,
+     .help = "of a learned model: its weights, or a mapping with more options"},
     {"margin", SCENE_NUMBER, AT(FemContactDef, margin), .unit = "m", .range = "(0, inf)",
      .absent_help = "half the shortest mean edge of a body",
-     .help = "pairs nearer than this are listed; a step that moves farther is tried again smaller"},
+     .help = "pairs nearer than this are candidates; a step that moves a vertex farther is tried again with "
+             "a smaller step"},
     {"hessian", SCENE_CHOICE, AT(FemContactDef, use_full_hessian), .fallback = "full",
      .choices = &app_scene_choices_hessians, .help = "derivatives of the contact force for Newton's method"},
     {"friction", SCENE_SECTION, .section = &friction, .absent_help = "no friction",
-     .help = "what touches resists sliding; a number alone is its coefficient"},
+     .help = "contacts resist sliding; a number alone is its coefficient"},
     {"pairs", SCENE_LIST, AT(FemContactDef, pairs), .section = &pair,
      .count_offset = offsetof(FemContactDef, pair_count),
-     .help = "what holds between some two in place of the above; of entries for the same two the last one"},
+     .help = "other values for two given bodies; of several entries for the same two the last one is used"},
     {"viscosity", SCENE_NUMBER, AT(FemContactDef, viscosity), .unit = "Pa s", .range = "(0, inf)",
      .absent_help = "none",
-     .help = "η: takes energy out of impacts. With `field` a pressure η d dd/dt beside κ d, d the depth [Pa "
-             "s/m²]; with "
-             "`nodal` η w dw/dt beside κ w, w the covered share of a vertex"},
+     .help = "η: dissipates energy in impacts. With `field` a pressure η d dd/dt in addition to κ d, d the "
+             "depth [Pa s/m²]; with `nodal` η w dw/dt in addition to κ w, w the covered share of a vertex"},
     {"rest", SCENE_SECTION, .section = &rest, .absent_help = "no body sleeps",
      MARK(FemContactDef, rest_is_on, true),
-     .help = "bodies at rest sleep, without unknowns and contact search, until something nears them; `{}` "
-             "for the defaults"},
+     .help =
+         "bodies at rest sleep, without unknowns and contact search, until something approaches them; `{}` "
+         "for the defaults"},
     {0},
 };
 const SceneSection app_scene_keys_contact = {.help = "bodies push each other apart",

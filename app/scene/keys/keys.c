@@ -16,19 +16,19 @@ static const SceneKey effect_keys[] = {
      .fallback = "0", .help = "stiffness-proportional damping β of the bodies whose material gives none"},
     {0},
 };
-static const SceneSection effects = {.help = "what acts on all bodies", .keys = effect_keys};
+static const SceneSection effects = {.help = "acts on all bodies", .keys = effect_keys};
 
 static const SceneKey scene_keys[] = {
-    {"title", SCENE_TEXT, AT(FemSceneDef, title), .help = "a line for people"},
+    {"title", SCENE_TEXT, AT(FemSceneDef, title), .help = "a description"},
     {"time", SCENE_SECTION, .required = "{end: 0.5}", .section = &app_scene_keys_run_time,
-     .help = "how long, and how exactly"},
-    {"effects", SCENE_SECTION, .section = &effects, .help = "what acts on all bodies"},
+     .help = "duration and accuracy"},
+    {"effects", SCENE_SECTION, .section = &effects, .help = "acts on all bodies"},
     {"bodies", SCENE_LIST, AT(FemSceneDef, bodies),
      .required = "[{name: block, mesh: block.msh, material: {young: 1e6, poisson: 0.4, density: 1000}}]",
      .section = &app_scene_keys_body, .count_offset = offsetof(FemSceneDef, body_count),
-     .help = "the elastic bodies, one at least"},
+     .help = "the elastic bodies, at least one"},
     {"obstacles", SCENE_LIST, AT(FemSceneDef, obstacles), .section = &app_scene_keys_obstacle,
-     .count_offset = offsetof(FemSceneDef, obstacle_count), .help = "rigid solids that bodies run into"},
+     .count_offset = offsetof(FemSceneDef, obstacle_count), .help = "rigid solids in contact with bodies"},
     {"contact", SCENE_SECTION, AT(FemSceneDef, contact), .absent_help = "no contact",
      .section = &app_scene_keys_contact, MARK(FemSceneDef, contact.is_on, true),
      .help = "bodies push each other apart; `{}` for the defaults"},

@@ -6,7 +6,7 @@
 
 static const SceneKey load_keys[] = {
     {"force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "body_force traction pressure", .unit = "N",
-     MARK(FemLoadDef, kind, FEM_LOAD_FORCE), .help = "in all, shared evenly by the selected vertices"},
+     MARK(FemLoadDef, kind, FEM_LOAD_FORCE), .help = "total, distributed evenly over the selected vertices"},
     {"body_force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force traction pressure",
      .unit = "N/m³", MARK(FemLoadDef, kind, FEM_LOAD_BODY_FORCE),
      .help = "on the volume (at rest) around the selected vertices"},
@@ -25,7 +25,7 @@ static const SceneKey load_keys[] = {
      .help = "or rows [t, factor], linear between them, constant before and after"},
     {0},
 };
-const SceneSection app_scene_keys_load = {.help = "a load from outside",
+const SceneSection app_scene_keys_load = {.help = "an external load",
                                           .size = sizeof(FemLoadDef),
                                           .keys = load_keys,
                                           .more = &app_scene_keys_select,

@@ -33,9 +33,9 @@ static const char *finish_material(void *self, const char **key) {
 
 static const SceneKey ogden_keys[] = {
     {"exponents", SCENE_VECTOR, AT(FemMaterial, exponents), .fallback = "[2, -2, 4]",
-     .help = "α of three terms; one with a share may not be 0"},
+     .help = "α of three terms; may not be 0 where the share is not"},
     {"shares", SCENE_VECTOR, AT(FemMaterial, shares), .range = "[0, inf)", .fallback = "[1, 0, 0]",
-     .help = "of μ that the terms carry, taken by their sum"},
+     .help = "shares of μ of the terms, normalised to sum 1"},
     {0},
 };
 static const SceneSection ogden = {
@@ -81,7 +81,7 @@ static const SceneKey material_keys[] = {
      .help = "of mooney_rivlin: the second invariant's share c2/(c1 + c2) of μ"},
     {"ogden", SCENE_SECTION, .section = &ogden, .help = "terms of the law ogden"},
     {"plasticity", SCENE_SECTION, .section = &plasticity, .absent_help = "elastic",
-     .help = "beside the law stvk"},
+     .help = "with the law stvk"},
     {"fibre", SCENE_SECTION, .section = &fibre, .absent_help = "no fibres",
      .help = "fibres along one direction"},
     {0},

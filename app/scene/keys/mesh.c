@@ -48,7 +48,7 @@ static const SceneKey rotate_keys[] = {
      .help = "counter-clockwise seen against the axis"},
     {0},
 };
-static const SceneSection rotate = {.help = "a turn about an axis", .keys = rotate_keys};
+static const SceneSection rotate = {.help = "a rotation about an axis", .keys = rotate_keys};
 
 static const SceneKey place_keys[] = {
     {"scale", SCENE_FACTORS, AT(FemPlacement, scale), .fallback = "1",
@@ -58,5 +58,5 @@ static const SceneKey place_keys[] = {
      .help = "last"},
     {0},
 };
-const SceneSection app_scene_keys_mesh_place = {.help = "scaled, then turned, then moved",
+const SceneSection app_scene_keys_mesh_place = {.help = "scaled, then rotated, then translated",
                                                 .keys = place_keys};

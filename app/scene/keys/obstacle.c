@@ -35,7 +35,7 @@ static const SceneKey box_turn_keys[] = {
      .help = "counter-clockwise seen against the axis"},
     {0},
 };
-static const SceneSection box_turn = {.help = "a turn about the centre", .keys = box_turn_keys};
+static const SceneSection box_turn = {.help = "a rotation about the centre", .keys = box_turn_keys};
 
 static const SceneKey box_keys[] = {
     {"centre", SCENE_VECTOR, AT(FemObstacleDef, point), .unit = "m", .required = "[0, 0, 0]",
@@ -63,9 +63,8 @@ static const SceneKey cylinder_keys[] = {
     {"length", SCENE_NUMBER, AT(FemObstacleDef, length), .unit = "m", .range = "(0, inf)", .required = "0.5",
      .help = "along the axis; its ends are flat"},
     {"faces", SCENE_INTEGER, AT(FemObstacleDef, faces), .range = "[8, 64]", .fallback = "48",
-     .help =
-         "of the prism of the same section area that stands for it, an even number; its surface is off by "
-         "0.14 % of the radius at 48, by 3.3/faces² in general"},
+     .help = "side faces, an even number, of the prism of the same section area that represents it; its "
+             "surface deviates by 0.14 % of the radius at 48, by 3.3/faces² in general"},
     {0},
 };
 static const SceneSection cylinder = {
@@ -73,9 +72,9 @@ static const SceneSection cylinder = {
 
 static const SceneKey obstacle_keys[] = {
     {"name", SCENE_LABEL, AT(FemObstacleDef, name), .required = "ground",
-     .help = "how messages and outputs call it"},
+     .help = "its name in messages and outputs"},
     {"halfspace", SCENE_SECTION, .section = &halfspace, MARK(FemObstacleDef, kind, FEM_OBSTACLE_HALFSPACE),
-     .help = "a solid with a flat surface, without end"},
+     .help = "a solid with an infinite plane surface"},
     {"sphere", SCENE_SECTION, .section = &sphere, MARK(FemObstacleDef, kind, FEM_OBSTACLE_BALL),
      .help = "or a ball, exactly round"},
     {"box", SCENE_SECTION, .section = &box, MARK(FemObstacleDef, kind, FEM_OBSTACLE_BOX),
@@ -83,16 +82,16 @@ static const SceneKey obstacle_keys[] = {
     {"cylinder", SCENE_SECTION, .section = &cylinder, MARK(FemObstacleDef, kind, FEM_OBSTACLE_CYLINDER),
      .help = "or a cylinder without elements"},
     {"velocity", SCENE_VECTOR, AT(FemObstacleDef, motion.velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
-     .excludes = "mesh motion", .help = "short for a `motion` of that velocity; of a mesh write `motion`"},
+     .excludes = "mesh motion", .help = "short for a `motion` of that velocity; for a mesh write `motion`"},
     {"mesh", SCENE_SECTION, .offset = offsetof(FemObstacleDef, mesh_path), .section = &app_scene_keys_mesh,
-     .help = "or a solid of tetrahedra: a file, or a box (`cells: 1` will do)"},
+     .help = "or a solid of tetrahedra: a file, or a box (`cells: 1` is enough)"},
     {"place", SCENE_SECTION, AT(FemObstacleDef, placement), .section = &app_scene_keys_mesh_place,
-     .needs = "mesh", .excludes = "halfspace sphere box cylinder", .help = "where the mesh stands"},
+     .needs = "mesh", .excludes = "halfspace sphere box cylinder", .help = "position of the mesh"},
     {"motion", SCENE_SECTION, AT(FemObstacleDef, motion), .absent_help = "it stands still",
      .section = &app_scene_keys_motion, .help = "how it moves; a half-space must not spin"},
     {0},
 };
-const SceneSection app_scene_keys_obstacle = {.help = "a rigid solid that bodies run into",
+const SceneSection app_scene_keys_obstacle = {.help = "a rigid solid in contact with bodies",
                                               .size = sizeof(FemObstacleDef),
                                               .keys = obstacle_keys,
                                               .one_of = "halfspace sphere box cylinder mesh",

@@ -32,13 +32,7 @@ static const SceneKey time_keys[] = {
     {"velocity_tolerance", SCENE_NUMBER, AT(FemSceneDef, velocity_tolerance), .unit = "m/s",
      .range = "(0, inf)",
      .absent_help =
-         "0.03 of `tolerance` times √(E/ρ) of the slowest body (all of it where a body rubs on "
-         "itself), or where that is less 0.3 of `tolerance` times the fastest speed at t = 0 or, with "
-         "gravity, √(g L), L the smallest body's size; with contact, where that is more, 5 of `tolerance` "
-         "times the present speed of the "
-         "fastest body, up to `tolerance` times the body's own √(E/ρ); without contact 33 times as much; "
-         "with friction of the law "
-         "velocity at most 5 of its slip speeds",
+         "0.03 · `tolerance` · √(E/ρ) of the slowest body (factor 1 with friction in self-contact) or, if smaller, 0.3 · `tolerance` times the fastest speed at t = 0 or, with gravity, √(g L), L the smallest body's size; with contact, if larger, 5 · `tolerance` times the present speed of the fastest body, at most `tolerance` · √(E/ρ) of the body itself; without contact 33 times as much; with friction of the law velocity at most 5 · `slip_speed`",
      .help = "error of the velocities per step"},
     {"max_step", SCENE_NUMBER, AT(FemSceneDef, max_step), .unit = "s", .range = "(0, inf)",
      .absent_help = "0.1 of `end`", .help = "longest step"},
@@ -46,20 +40,20 @@ static const SceneKey time_keys[] = {
      .absent_help = "the integrator's choice", .help = "first step"},
     {"min_step", SCENE_NUMBER, AT(FemSceneDef, min_step), .unit = "s", .range = "(0, inf)",
      .absent_help = "1e-11 of `end`",
-     .help = "a run that needs shorter steps gives up; rows of tables closer than this count as one"},
+     .help = "a run that needs shorter steps is given up; rows of tables closer than this count as one"},
     {"max_order", SCENE_INTEGER, AT(FemSceneDef, max_order), .range = "[1, 2]", .fallback = "2",
      .help = "of the backward differentiation formula; 1 damps more"},
     {0},
 };
 const SceneSection app_scene_keys_run_time = {
-    .help = "how long, and how exactly", .keys = time_keys, .finish = finish_time};
+    .help = "duration and accuracy", .keys = time_keys, .finish = finish_time};
 
 static const SceneKey solver_keys[] = {
     {"linear", SCENE_CHOICE, AT(FemSceneDef, solver), .fallback = "auto",
      .choices = &app_scene_choices_solvers, .help = "of the linear systems"},
     {"tolerance", SCENE_NUMBER, AT(FemSceneDef, solver_tolerance), .range = "(0, 1)",
      .absent_help = "1e-8 for `pcg`; for `amg` and `gamg` what Newton's method needs, 1e-4 to 0.03, in statics 1e-4",
-     .help = "of iterative solvers: the residual over the right-hand side; a looser one costs Newton's method iterations, not the result its accuracy"},
+     .help = "of iterative solvers: the residual over the right-hand side; a larger one costs Newton iterations, but no accuracy of the result"},
     {"threads", SCENE_INTEGER, AT(FemSceneDef, threads), .range = "[0, 4096]", .fallback = "0",
      .help = "0: one for each core"},
     {0},
@@ -69,22 +63,21 @@ const SceneSection app_scene_keys_run_solver = {.help = "linear algebra", .keys 
 static const SceneKey checkpoint_keys[] = {
     {"frames", SCENE_INTEGER, AT(FemSceneDef, checkpoint_frames), .range = "[0, 1000000]", .absent = -1,
      .absent_help =
-         "a checkpoint after so many steps that it is not felt: 1e6 over the unknowns, 200 at least",
-     .help = "so many frames lie between two checkpoints, at each of which the integrator begins anew; 0: "
-             "none"},
+         "after 1e6 over the number of unknowns steps, at least 200, so that the cost is negligible",
+     .help = "frames between two checkpoints, at each of which the integrator restarts; 0: none"},
     {"seconds", SCENE_NUMBER, AT(FemSceneDef, checkpoint_seconds), .unit = "s", .range = "[0, inf)",
-     .fallback = "30", .help = "wall time: a checkpoint is written to the disk when the last one is so old"},
+     .fallback = "30", .help = "wall time: a checkpoint is written to disk when the last one is older than this"},
     {0},
 };
 static const SceneSection checkpoint = {
-    .help = "what `tetlap resume` goes on from", .keys = checkpoint_keys, .shorthand = "frames"};
+    .help = "what `tetlap resume` continues from", .keys = checkpoint_keys, .shorthand = "frames"};
 
 static const SceneKey output_keys[] = {
     {"frames", SCENE_INTEGER, AT(FemSceneDef, frames), .range = "[1, 1000000]", .fallback = "50",
      .help = "written at i · end/frames, i = 0 … frames"},
-    {"checkpoint", SCENE_SECTION, .section = &checkpoint, .help = "what `tetlap resume` goes on from"},
+    {"checkpoint", SCENE_SECTION, .section = &checkpoint, .help = "what `tetlap resume` continues from"},
     {"vtu", SCENE_SWITCH, AT(FemSceneDef, write_vtu), .fallback = "true",
-     .help = "a VTU file a frame, for ParaView"},
+     .help = "a VTU file per frame, for ParaView"},
     {"history", SCENE_CHOICE, AT(FemSceneDef, history), .fallback = "frames",
      .choices = &app_scene_choices_histories,
      .help =

@@ -253,7 +253,7 @@ static Status validate(AppTrainingTask *task, const NetModel_f32 *model, const c
 
 static Status start(AppTrainingTask *task, NetModel_f32 *model) {
   (void)model;
-  return status_fail(STATUS_INPUT, "%s: `start` is for networks that tell V", task->config->path);
+  return status_fail(STATUS_INPUT, "%s: `start` is for networks that predict V", task->config->path);
 }
 
 static const NetWhitening *whitening_of(const AppTrainingTask *task) {

@@ -125,7 +125,7 @@ static size_t bytes(const void *self) {
 
 const FemEffectOps fem_effect_friction = {
     .name = "friction",
-    .help = "what touches resists sliding with up to μ times the normal force",
+    .help = "contacts resist sliding with up to μ times the normal force",
     .dissipates = true,
     .lags = true,
     .is_wanted = is_wanted,

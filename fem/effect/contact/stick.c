@@ -217,7 +217,7 @@ static size_t bytes(const void *self) {
 
 const FemEffectOps fem_effect_stick = {
     .name = "stick",
-    .help = "what touches sticks by a spring in the tangent plane that gives way at μ times the normal force",
+    .help = "contacts stick by a spring in the tangent plane that slips at μ times the normal force",
     .is_wanted = is_wanted,
     .create = create,
     .connect = connect,

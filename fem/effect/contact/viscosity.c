@@ -84,7 +84,7 @@ static size_t bytes(const void *self) {
 
 const FemEffectOps fem_effect_viscosity = {
     .name = "contact_viscosity",
-    .help = "what goes into another body is resisted in proportion to its speed",
+    .help = "penetration of another body is resisted in proportion to its speed",
     .dissipates = true,
     .is_wanted = is_wanted,
     .create = create,

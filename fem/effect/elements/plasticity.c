@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Isotropic J2 plasticity with linear hardening, beside the law stvk: S = C : (E − E_p) in the Green strain,
+// Isotropic J2 plasticity with linear hardening, with the law stvk: S = C : (E − E_p) in the Green strain,
 // so that rotations may be large; strains should stay within some percent. Elasticity gives C : E; here is
 // the rest,
 //
@@ -303,7 +303,7 @@ static size_t bytes(const void *self) {
 
 const FemEffectOps fem_effect_plasticity = {
     .name = "plasticity",
-    .help = "isotropic J2 plasticity with linear hardening, beside the law stvk",
+    .help = "isotropic J2 plasticity with linear hardening, with the law stvk",
     .is_wanted = is_wanted,
     .create = create,
     .prepare = prepare,

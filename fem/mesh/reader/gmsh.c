@@ -25,7 +25,7 @@ static const int edge_order[6] = {0, 3, 1, 2, 5, 4};
 
 // Fails with what gmsh logged as its first error; later ones only repeat that it failed.
 static Status fail(const char *doing) {
-  char **lines = NULL, reason[512] = "it gives no reason; perhaps a count in the file is wrong";
+  char **lines = NULL, reason[512] = "no reason given; a count in the file may be wrong";
   size_t count = 0;
   int error = 0;
   gmsh.LoggerGet(&lines, &count, &error);

@@ -71,7 +71,7 @@ Status fem_mesh_read(FemMesh *mesh, const char *path, const FemMeshOptions *opti
   if (status == STATUS_OK) status = fem_mesh_validate(mesh, &source, path, &mended);
   fem_mesh_source_destroy(&source);
   if (mended.reoriented_tets)
-    log_info("%s: tetrahedra that were inside out and have been turned: %d", path, mended.reoriented_tets);
+    log_info("%s: inverted tetrahedra whose orientation was corrected: %d", path, mended.reoriented_tets);
   if (mended.dropped_vertices)
     log_info("%s: vertices that belong to no tetrahedron and have been left out: %d", path,
              mended.dropped_vertices);

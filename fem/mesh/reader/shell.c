@@ -35,7 +35,7 @@ static Status explain(const Faults *faults, const double *positions) {
   return status_fail(
       STATUS_INPUT,
       "the surface is not manifold: edges with more than two triangles: %d, the first from (%g, %g, %g) "
-      "to (%g, %g, %g); separate what touches there",
+      "to (%g, %g, %g); separate the parts that touch there",
       faults->crowded_count, a[0], a[1], a[2], b[0], b[1], b[2]);
 }
 

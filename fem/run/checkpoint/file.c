@@ -238,14 +238,14 @@ static Status check_head(const char *path, const char *text, size_t size) {
     return status_fail(STATUS_INPUT, "%s: is no checkpoint; `tetlap run` writes one named checkpoint.h5",
                        path);
   if (size <= HEAD_SIZE)
-    return status_fail(STATUS_INPUT, "%s: is cut short: it ends after %zu bytes", path, size);
+    return status_fail(STATUS_INPUT, "%s: is truncated: it ends after %zu bytes", path, size);
   if (sscanf(text + sizeof MAGIC - 1, " %d bytes %zu digest %16s", &version, &bytes, found) != 3)
     return status_fail(STATUS_INPUT, "%s: is damaged: its first lines do not say size and digest", path);
   if (version != FORMAT_VERSION)
     return status_fail(STATUS_INPUT, "%s: has version %d of the format, this program reads version %d", path,
                        version, FORMAT_VERSION);
   if (bytes != size - HEAD_SIZE)
-    return status_fail(STATUS_INPUT, "%s: is cut short or damaged: it has %zu bytes, %zu were written", path,
+    return status_fail(STATUS_INPUT, "%s: is truncated or damaged: it has %zu bytes, %zu were written", path,
                        size, bytes + HEAD_SIZE);
   digest_print(digest_bytes(DIGEST_START, text + HEAD_SIZE, bytes), digest);
   char head[HEAD_SIZE];

@@ -81,14 +81,14 @@ END_TEST
 
 START_TEST(an_index_out_of_range_is_refused) {
   const int above[2][4] = {{0, 1, 2, 4}, {1, 2, 4, 10}}, below[4] = {0, 1, 2, -1};
-  expect_refusal(10, cube[0], 2, above[0], "element 1 names vertex 10", "0 to 9");
-  expect_refusal(10, cube[0], 1, below, "element 0 names vertex -1", "0 to 9");
+  expect_refusal(10, cube[0], 2, above[0], "element 1 refers to vertex 10", "0 to 9");
+  expect_refusal(10, cube[0], 1, below, "element 0 refers to vertex -1", "0 to 9");
 }
 END_TEST
 
 START_TEST(a_repeated_vertex_is_refused) {
   const int tet[4] = {0, 1, 2, 1};
-  expect_refusal(8, cube[0], 1, tet, "element 0 names vertex 1 twice", "remove");
+  expect_refusal(8, cube[0], 1, tet, "element 0 has vertex 1 twice", "remove");
 }
 END_TEST
 

@@ -13,7 +13,7 @@
 
 START_TEST(faults_are_told_in_the_numbers_of_the_file) {
   put("a.msh", MSH_NODES MSH_ELEMENTS(2, "7 4 2 1 1 11 12 13 14\n9 4 2 1 1 12 12 13 15\n"));
-  expect_refusal(STATUS_INPUT, scratch("a.msh"), "element 9 names vertex 12 twice", "remove", NULL);
+  expect_refusal(STATUS_INPUT, scratch("a.msh"), "element 9 has vertex 12 twice", "remove", NULL);
   put("a.msh", MSH_NODES MSH_ELEMENTS(2, "7 4 2 1 1 11 12 13 14\n9 4 2 1 1 14 12 13 11\n"));
   expect_refusal(STATUS_INPUT, scratch("a.msh"), "elements 7 and 9 have the same four vertices", "remove",
                  NULL);
@@ -281,7 +281,7 @@ START_TEST(tetgen_faults_are_told_with_their_line) {
   expect_tetgen_refusal(NODES, "2 4 0\n0 0 1 2 3\n", "a.ele:", "complete");
   expect_tetgen_refusal(NODES, "99999999999 4 0\n", "a.ele:1:", "must lie in");
   expect_tetgen_refusal(NODES, "1e3 4 0\n", "a.ele:1:", "not '1e3'");
-  expect_tetgen_refusal(NODES, "1 4 0\n0 0 1 2 2\n", "a.ele: ", "element 0 names vertex 2 twice");
+  expect_tetgen_refusal(NODES, "1 4 0\n0 0 1 2 2\n", "a.ele: ", "element 0 has vertex 2 twice");
   expect_tetgen_refusal("4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 inf\n", "1 4 0\n1 1 2 3 4\n",
                         "a.ele: ", "vertex 4 has the position");
 }

@@ -154,10 +154,10 @@ START_TEST(a_file_cut_short_anywhere_is_refused) {
   read_file(&text, &size);
   for (size_t length = 0; length < size; length += length < 1100 ? 9 : 997) {
     write_file(text, length);
-    expect(STATUS_INPUT, length < sizeof "tetlap checkpoint" ? "is no checkpoint" : "cut short");
+    expect(STATUS_INPUT, length < sizeof "tetlap checkpoint" ? "is no checkpoint" : "truncated");
   }
   write_file(text, size - 1);
-  expect(STATUS_INPUT, "cut short");
+  expect(STATUS_INPUT, "truncated");
   memory_free(text);
   fem_checkpoint_destroy(&written);
 }
