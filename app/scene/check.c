@@ -72,13 +72,13 @@ static Status check_static(const SceneNode *root, const FemSceneDef *scene) {
       const SceneNode *motion = app_scene_tree_find(body, initial[k]);
       const SceneNode *list = app_scene_tree_find(body, lists[k]);
       if (is_nonzero(motion))
-        return app_scene_tree_fail_key(
-            motion, "a static scene has no initial '%s'; take it or time.static away", initial[k]);
+        return app_scene_tree_fail_key(motion, "a static scene has no initial '%s'; remove it or time.static",
+                                       initial[k]);
       for (const SceneNode *item = list ? list->first : NULL; item; item = item->next)
         if (app_scene_tree_find(item, "release"))
-          return app_scene_tree_fail_key(app_scene_tree_find(item, "release"),
-                                         "a static scene cannot release vertices; take 'release' or "
-                                         "time.static away");
+          return app_scene_tree_fail_key(
+              app_scene_tree_find(item, "release"),
+              "a static scene cannot release vertices; remove 'release' or time.static");
     }
   if (scene->solver == FEM_SOLVER_KLU)
     return app_scene_tree_fail(app_scene_tree_find(app_scene_tree_find(root, "solver"), "linear"),

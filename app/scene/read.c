@@ -74,7 +74,7 @@ static Status read_value(const SceneKey *key, const SceneNode *node, void *self)
 static Status read_entry(const SceneKey *key, const SceneNode *node, void *self) {
   if (node->kind == SCENE_NODE_NULL) {
     if (key->mark.size == 0 || node->line == 0) return STATUS_OK;
-    return app_scene_tree_fail_key(node, "nothing stands after '%s:'; %s, or take the key away", key->name,
+    return app_scene_tree_fail_key(node, "there is no value after '%s:'; %s, or remove the key", key->name,
                                    key->type == SCENE_SECTION ? "write '{}' for the defaults"
                                                               : "write a value");
   }
@@ -121,7 +121,7 @@ static Status check_key_rules(const SceneKey *key, const SceneNode *map) {
   const SceneNode *entry = app_scene_tree_find(map, key->name);
   for (const char *rest = text_next(key->needs, word); rest; rest = text_next(rest, word))
     if (!is_given(map, word))
-      return app_scene_tree_fail_key(entry, "'%s' in %s needs '%s' beside it", key->name, path, word);
+      return app_scene_tree_fail_key(entry, "'%s' in %s also needs '%s'", key->name, path, word);
   for (const char *rest = text_next(key->excludes, word); rest; rest = text_next(rest, word))
     if (is_given(map, word))
       return app_scene_tree_fail_key(entry, "'%s' in %s contradicts '%s'; keep one of them", key->name, path,

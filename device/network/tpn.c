@@ -102,14 +102,15 @@ static void place_with_slopes(Layout *layout) {
 }
 
 static Status refuse(const char *what) {
-  return status_fail(STATUS_INPUT, "the kernels for devices cannot carry out this network: %s", what);
+  return status_fail(STATUS_INPUT, "the device kernels cannot evaluate this network: %s", what);
 }
 
 static Status check(const Layout *layout, int room) {
   const NetPlan *plan = layout->plan;
   if (plan->shape.activation != NET_RELU || plan->shape.pool != NET_MAX)
-    return refuse("they have rectifiers and pools of the largest only");
-  if (layout->largest + layout->slope_rows > room) return refuse("it is too wide for a group's memory");
+    return refuse("only ReLU and max pooling are supported");
+  if (layout->largest + layout->slope_rows > room)
+    return refuse("it is too wide for the memory of a work group");
   return STATUS_OK;
 }
 
@@ -296,7 +297,7 @@ Status device_tpn_create(DeviceTpn *tpn, const Device *device, const char *weigh
   TRY(overlap_weights_find(weights, path, sizeof path));
   TRY(overlap_tpn_network_create(&network, path, net_kernel_best(), 1));
   Status status = is_known(network.kind) ? send_network(tpn, device, &network, is_bf16)
-                                         : refuse("they do not have the normalisation 'pca'");
+                                         : refuse("the normalisation 'pca' is not supported");
   overlap_tpn_network_destroy(&network);
   return status;
 }

@@ -226,7 +226,8 @@ static Status advance(FemRunState *run) {
   }
   if (may_shorten(run) && has_turned(run, time, &measures.energy)) {
     run->result->slip_retries++;
-    return take_back(run, retry_step(run, shortest_retry(run)), "friction pushes on what has turned");
+    return take_back(run, retry_step(run, shortest_retry(run)),
+                     "friction acts along the slip that has reversed");
   }
   status = fem_run_frames_take_row(run, time, &measures, &next);
   if (!status) status = fem_run_frames_write_until(run, time);
@@ -244,7 +245,7 @@ static Status advance(FemRunState *run) {
   TRY(fem_run_watch(run, &measures));
   if (fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest))) return renumber(run);
   if (!is_onset) return STATUS_OK;
-  log_debug("t = %.9g s: the integrator starts anew, something begins here", time);
+  log_debug("t = %.9g s: the integrator restarts, something begins here", time);
   return fem_integrator_restart(run->integrator, time, run->u, run->v, 0);
 }
 
@@ -519,7 +520,7 @@ static Status close_run(FemRunState *run, Status status) {
 static Status say_when(const FemRunState *run, Status status) {
   bool is_stopped = run->options->stop && *run->options->stop && status == STATUS_INTERRUPTED;
   if (is_stopped)
-    return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
+    return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; everything written so far is complete",
                        run->time);
   if (status != STATUS_RETRY && status != STATUS_SOLVER) return status;
   bool is_told = strstr(status_message(), "t = ");

@@ -27,7 +27,7 @@ static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_b
 
 static Status check_stop(const FemRunState *run) {
   if (!run->options->stop || !*run->options->stop) return STATUS_OK;
-  return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; what was written until then is whole",
+  return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; everything written so far is complete",
                      run->time);
 }
 

@@ -84,7 +84,7 @@ START_TEST(a_device_that_fails_on_the_way_is_quoted) {
   char bench[300], refused[100];
   snprintf(bench, sizeof bench,
            "bench overlap --model %s --set near --quantity V+grad --batch 200 --repeat 1 --device ", model);
-  snprintf(refused, sizeof refused, "NVRTC refused program '%s' for sm_90", model);
+  snprintf(refused, sizeof refused, "NVRTC rejected program '%s' for sm_90", model);
   char cuda[310], opencl[310];
   snprintf(cuda, sizeof cuda, "%scuda", bench), snprintf(opencl, sizeof opencl, "%sopencl", bench);
   check_refused("TETLAP_OPENCL=/nowhere.so", opencl, 69, "/nowhere.so was not found");

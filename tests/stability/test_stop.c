@@ -180,7 +180,7 @@ static int read_column(const char *title, double *values, int most) {
   return rows;
 }
 
-// A row a step holds the run's largest force; a row per frame tells it as the peak since the row before.
+// A row per step holds the largest force of the run; a row per frame holds it as the peak since the row before.
 START_TEST(no_peak_of_a_force_is_missed) {
   enum { MOST = 100000 };
   static double force[MOST], steps[MOST];

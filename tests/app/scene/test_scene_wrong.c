@@ -188,7 +188,7 @@ static const Wrong wrong[] = {
     {TIME BODY_WITH("driven: [{all: true, amplitude: [0, 0, 1]}]"),
      "s.yaml:6:26: 'amplitude' in bodies[0].driven[0] also needs 'frequency'"},
     {TIME BODY_WITH("driven: [{all: true, spin: 1}]"),
-     "s.yaml:6:26: 'spin' in bodies[0].driven[0] needs 'axis'"},
+     "s.yaml:6:26: 'spin' in bodies[0].driven[0] also needs 'axis'"},
     {TIME "bodies: [{name: a, mesh: {file: a, box: {size: [1, 1, 1], cells: 1}}, " MATERIAL "}]\n",
      "s.yaml:2:36: 'file' and 'box' in bodies[0].mesh contradict each other"},
     {TIME "bodies: [{name: a, mesh: {}, " MATERIAL "}]\n",

@@ -198,7 +198,7 @@ START_TEST(nodes_that_do_not_fit_together_are_refused) {
   put("a.ele", "2 10 0\n1 1 2 3 4  11 9 6 7 10 8\n2 1 3 2 5  4 12 8 7 14 6\n");
   expect_refusal(STATUS_INPUT, scratch("a.ele"), "vertex 4", "a corner elsewhere", NULL);
   put("a.ele", "1 10 0\n1 1 2 3 4  11 9 6 7 10 11\n");
-  expect_refusal(STATUS_INPUT, scratch("a.ele"), "element 1 names vertex 11 twice", "ten different", NULL);
+  expect_refusal(STATUS_INPUT, scratch("a.ele"), "element 1 has vertex 11 twice", "ten different", NULL);
   put("a.ele", "1 10 0\n1 1 2 3 4  11 9 6 7 10 17\n");
   expect_refusal(STATUS_INPUT, scratch("a.ele"), "a.ele:2:", "17; it must lie in 1 … 16", NULL);
   put("a.ele", "1 9 0\n1 1 2 3 4 11 9 6 7 10\n");
