@@ -11,10 +11,10 @@ static const AppCommand *const verbs[] = {&app_command_dataset_import, &app_comm
 
 const AppCommand app_command_dataset = {
     .name = "dataset",
-    .help = "import, tell, join or draw data sets of such pairs",
+    .help = "import, describe, join or draw data sets of such pairs",
     .children = verbs,
     .child_word = "verb",
     .child_of_files = "info",
     .doc = "Works on data sets of labelled pairs of tetrahedra.",
-    .ending = "`tetlap dataset VERB --help` tells more; docs/data.md what the files hold.",
+    .ending = "`tetlap dataset VERB --help` has the details; docs/data.md describes the files.",
 };

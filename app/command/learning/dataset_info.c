@@ -22,7 +22,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->is_json = true;
     return 0;
   case ARGP_KEY_ARG:
-    if (options->file) argp_error(state, "'%s' is one too many: give one data set", text);
+    if (options->file) argp_error(state, "'%s' is one argument too many: give one data set", text);
     options->file = text;
     return 0;
   case ARGP_KEY_NO_ARGS:
@@ -115,7 +115,7 @@ static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .args_doc = "FILE",
-    .doc = "Say what a data set of pairs holds: who made it and how, its kinds of pairs and their volumes."};
+    .doc = "Say what a data set of pairs holds: its origin, its kinds of pairs and their volumes."};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};

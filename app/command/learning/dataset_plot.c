@@ -23,7 +23,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->output = text;
     return 0;
   case ARGP_KEY_ARG:
-    if (options->file) argp_error(state, "'%s' is one too many: give one data set", text);
+    if (options->file) argp_error(state, "'%s' is one argument too many: give one data set", text);
     options->file = text;
     return 0;
   case ARGP_KEY_NO_ARGS:
