@@ -9,11 +9,11 @@ const COLUMNS = [
   ["Largest force", (row) => format(row.force_max_N, "N")],
   ["At", (row) => format(row.force_max_time, "s")],
   ["Area then", (row) => format(row.area_m2, "m²")],
-  ["Its own give", (row) => percent(row.estimate.give), "the interface’s share of the way: by this the force, or the way, is too soft"],
+  ["Interface share", (row) => percent(row.estimate.give), "compliance of the interface over the total compliance: the error of the force, or of the displacement"],
   ["Lost at rims", (row) => percent(row.estimate.rim), "share of the force that edges of bodies lose at this depth"],
   ["Elements across", (row) => format(row.estimate.elements_across, "", 2), "√area over the elements’ mean edge; below about five the pressure’s shape is the mesh’s"],
   ["Stiffness", (row) => format(row.estimate.stiffness, "", 2)],
-  ["For 1 %", (row) => format(row.estimate.stiffness_for_1_percent, "", 2), "the stiffness that would bring give and rims to 1 %"],
+  ["For 1 %", (row) => format(row.estimate.stiffness_for_1_percent, "", 2), "the stiffness that would bring interface share and rims to 1 %"],
 ];
 
 export function buildContacts(runs) {
