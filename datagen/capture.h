@@ -15,8 +15,9 @@ typedef struct DatagenCapture {
 // Begins the file at `path`, with the law "captured" and gradients. `program` as in DatagenInfo.
 Status datagen_capture_begin(DatagenCapture *capture, const char *path, const char *program,
                              DatagenLabel label);
-// Adds pairs (count, 2, 4, 3) in metres, finite: each is scaled and moved into the unit cube (cube.h), proven
-// and labelled there, over OpenMP threads. Rounding in the move may part, or press together, what touched.
+// Adds pairs (count, 2, 4, 3) in metres, finite: each is scaled and moved into the unit cube (draw/cube.h),
+// proven and labelled there, over OpenMP threads. Rounding in the move may part, or press together, what
+// touched.
 Status datagen_capture_append(DatagenCapture *capture, const double *pairs, int count);
 // Puts the file into its place; without pairs there is none. The capture is destroyed, whatever the outcome.
 Status datagen_capture_commit(DatagenCapture *capture);

@@ -30,7 +30,7 @@ typedef struct AppStressScene {
   const char *overrides[APP_STRESS_MAX_OVERRIDES];
 } AppStressScene;
 
-// The table, in stress_cases.c.
+// The table, in cases.c.
 const AppStressScene *app_stress_cases(int *count);
 
 Status app_stress_scenes_run(const AppStressOptions *options, AppStress *stress);

@@ -3,7 +3,7 @@
 // V, from normalised pairs. The network tells V of the normalised pair in a unit of its own (output_scale);
 // before the loss it is brought to 1000 V, so that the loss is about V whatever the normalisation.
 //
-// With loss.sobolev > 0 the loss has a term that the paper has not, of ∇V (training_rates.h).
+// With loss.sobolev > 0 the loss has a term that the paper has not, of ∇V (rates.h).
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Training of a TetrahedronPairNet, as published or after it; the task itself is listed in training_task.h.
+// Training of a TetrahedronPairNet, as published or after it; the task itself is listed in task.h.
 #ifndef TETLAP_APP_TRAINING_TPN_H
 #define TETLAP_APP_TRAINING_TPN_H
 

@@ -71,7 +71,7 @@ void contact_field_press(const ContactLayout *layout, const ContactPair *pair, c
 
 // ---- Second derivatives.
 
-// What the faces and the volume of P add up to, with the lanes of clip_polytope.h folded to the tetrahedra's
+// What the faces and the volume of P add up to, with the lanes of clip/polytope.h folded to the tetrahedra's
 // vertices.
 typedef struct Sums {
   double face[8][8][8]; // ∫_{P_f} ψ_z ψ_w dA / |S_f| of the faces asked for

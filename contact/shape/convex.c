@@ -196,7 +196,7 @@ static void add_turning(const Vec3 x[4], const int face[3], const double share[4
   }
 }
 
-// −∫ β_a β_v ds n_f n_kᵀ / sin θ of an edge of P_f on plane k, by Simpson's rule; see clip_hessian.c for why
+// −∫ β_a β_v ds n_f n_kᵀ / sin θ of an edge of P_f on plane k, by Simpson's rule; see clip/hessian.c for why
 // the antisymmetric part, −½ [s]×, needs no division.
 static void add_segment(const Corner *p, const Corner *q, Vec3 face, Vec3 plane, double hessian[144]) {
   Vec3 step = vec3_sub(q->x, p->x);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbering the unknowns anew while a run goes on: vertices that are released, bodies that fall asleep
-// (effect_rest.h). The state stays where it is.
+// (fem/effect/contact/rest.h). The state stays where it is.
 #ifndef TETLAP_FEM_RUN_HOLD_H
 #define TETLAP_FEM_RUN_HOLD_H
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Batches of pairs on vectors. Groups in which few lanes may overlap wait until there are enough for a full
-// vector, so that disjoint pairs cost only the first part of clip_lanes.h.
+// vector, so that disjoint pairs cost only the first part of lanes.h.
 #include <math.h>
 #include <string.h>
 

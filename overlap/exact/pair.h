@@ -8,7 +8,7 @@
 //
 //     α_m(p) α_n(q) − α_n(p) α_m(q) = ε D [a_i a_j p q].
 //
-// So a point where an edge meets a face has barycentric coordinates made of brackets alone (exact_polygon.c).
+// So a point where an edge meets a face has barycentric coordinates made of brackets alone (polygon.c).
 #ifndef TETLAP_OVERLAP_EXACT_PAIR_H
 #define TETLAP_OVERLAP_EXACT_PAIR_H
 

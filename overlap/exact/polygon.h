@@ -2,7 +2,7 @@
 // The part of a tetrahedron's face that lies in another tetrahedron: a convex polygon, cut out of the face by
 // the other's four planes (Sutherland and Hodgman 1974). No coordinate is ever constructed while cutting: a
 // corner is a name (a vertex; an own edge and the other's plane; the other's edge and the own plane), and on
-// which side of a plane it lies is the sign of a bracket or of a height (exact_pair.h). So zeros are zeros,
+// which side of a plane it lies is the sign of a bracket or of a height (pair.h). So zeros are zeros,
 // a polygon of three corners or more has an area, and one that is a point or a segment has fewer.
 #ifndef TETLAP_OVERLAP_EXACT_POLYGON_H
 #define TETLAP_OVERLAP_EXACT_POLYGON_H
@@ -49,7 +49,7 @@ void overlap_exact_polygon_cut(ExactPolygon *polygon, const ExactPair *pair, int
 // All terms are non-negative integer quotients: relative error of a few 2^-62. Without moments those stay 0.
 ExactMoments overlap_exact_polygon_measure(const ExactPolygon *polygon, ExactArena *arena, bool with_moments);
 
-// How high corner t lies over the planes, as α of exact_pair.h: height[own or other][plane], all ≥ 0 [unit³].
+// How high corner t lies over the planes, as α of pair.h: height[own or other][plane], all ≥ 0 [unit³].
 void overlap_exact_polygon_lift(const ExactPolygon *polygon, ExactArena *arena, int t,
                                 long double height[2][4]);
 

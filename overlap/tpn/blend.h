@@ -15,7 +15,7 @@
 //     m = min(V_A, V_B) − ½ (V_A + V_B) k(d),   d = (V_A − V_B)/(V_A + V_B),
 //     k(d) = (b − |d|)²/(2 b) for |d| < b, 0 beyond.
 //
-// Fading r(q) and weight w are functions of the pair. q is its overlap share (net_share.h). With S the step
+// Fading r(q) and weight w are functions of the pair. q is its overlap share (share.h). With S the step
 // x²(3 − 2x) between 0 and 1:
 //
 //     r = S(q/touch)                                                         where it is asked for
@@ -23,7 +23,7 @@
 //         · Π_o (weight in the training's range of the pair and of u/scale)  where it is asked for
 //
 // z̄ is the mean logit, z₁ that of the confidence that is asked for; c is the share of clipping of pairs whose
-// faces nearly lie in one plane (geo_coplanar.h), 0 where it is not asked for.
+// faces nearly lie in one plane (geo/coplanar.h), 0 where it is not asked for.
 #ifndef TETLAP_OVERLAP_TPN_BLEND_H
 #define TETLAP_OVERLAP_TPN_BLEND_H
 

@@ -7,7 +7,7 @@
 //   clip-scalar, clip               V as exact within what clip.h states
 //   clip, geo                       the same bits in whichever lane, beside whichever neighbours; nothing
 //                                   depends on the order of vertices and tetrahedra
-//   geo                             no overlap is missed, beyond what geo_gate.h calls noise
+//   geo                             no overlap is missed, beyond what geo/gate.h calls noise
 //
 // Numbers that are not finite must be refused. Lengths beyond 2^±60 and volumes below 2^−960 are evaluated,
 // too, but V and ∇V may overflow or underflow there and nothing is claimed of them.

@@ -13,7 +13,7 @@ typedef struct AppRunOptions {
   int rank_count;                   // --ranks; 0: not said
   const struct FemCheckpoint *from; // to go on from; NULL: from the start
   const char *from_path;            // its file
-  const Record *origin;             // what it says of itself (origin.h)
+  const Record *origin;             // what it says of itself (app/job/origin.h)
 } AppRunOptions;
 
 // Opens the scene, runs it, writes summary and manifest; tells the log what went wrong.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Training of a bound of what a `geo`'s V is off: b(w) against e = ln |V − V*| − ln V₀, w the whitened
 // features, by the quantile loss (Koenker, Bassett 1978), and after it the constant that makes the share of
-// held-out pairs with |V − V*| ≤ V₀ exp b the one that is asked for (hybrid/sure.h). The validation data hold
-// them.
+// held-out pairs with |V − V*| ≤ V₀ exp b the one that is asked for (overlap/hybrid/sure.h). The validation
+// data hold them.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packs of four for AVX2; see geo_pack_portable.h. The including file is compiled for that processor.
+// Packs of four for AVX2; see pack_portable.h. The including file is compiled for that processor.
 #ifndef TETLAP_OVERLAP_GEO_FEATURES_PACK_AVX2_H
 #define TETLAP_OVERLAP_GEO_FEATURES_PACK_AVX2_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packs of eight for AVX-512; see geo_pack_portable.h. The including file is compiled for that processor.
+// Packs of eight for AVX-512; see pack_portable.h. The including file is compiled for that processor.
 #ifndef TETLAP_OVERLAP_GEO_FEATURES_PACK_AVX512_H
 #define TETLAP_OVERLAP_GEO_FEATURES_PACK_AVX512_H
 
