@@ -7,8 +7,10 @@
 #include <check.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 
 #include "base/status.h"
@@ -35,6 +37,15 @@ __attribute__((format(printf, 1, 2))) static inline void suite_skip(const char *
   vprintf(format, arguments);
   printf("\n");
   va_end(arguments);
+}
+
+// Whether this run of the tests leaves that overlap model out, which it then says: TETLAP_WITHOUT names one. Under valgrind, which has
+// one mode of rounding, CGAL's predicates recur without end.
+static inline bool suite_leaves_out(const char *model) {
+  const char *without = getenv("TETLAP_WITHOUT");
+  if (!without || strcmp(without, model) != 0) return false;
+  suite_skip("%s: TETLAP_WITHOUT", model);
+  return true;
 }
 
 // The larger one; NaN stays, which fmax would drop.

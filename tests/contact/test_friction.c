@@ -144,6 +144,7 @@ START_TEST(friction_keeps_momentum_with_every_overlap_model) {
   int count;
   const OverlapOps *const *models = overlap_model_list(&count);
   ck_assert_int_lt(_i, count);
+  if (suite_leaves_out(models[_i]->name)) return;
   Fixture *f = pressed_blocks(models[_i]->name, false);
   int middle = f->blocks.bodies[1].vertex_begin;
   for (uint64_t stream = 0; stream < 5; stream++) {
