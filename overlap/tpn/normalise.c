@@ -46,7 +46,8 @@ static bool find_unit(const double pair[24], OverlapTpnNormalised *normalised) {
   Vec3 normal = vec3_cross(edge[1], edge[2]);
   double det = vec3_dot(edge[0], normal);
   double size = vec3_length(edge[0]) * vec3_length(edge[1]) * vec3_length(edge[2]);
-  if (!(fabs(det) > FLATTEST * size)) return false;
+  // of edges so short that their products underflow, 1 / det is no number
+  if (!(fabs(det) > FLATTEST * size && isfinite(1 / det))) return false;
   vec3_store(normalised->origin, origin);
   vec3_store(normalised->matrix, vec3_scale(1 / det, normal));
   vec3_store(normalised->matrix + 3, vec3_scale(1 / det, vec3_cross(edge[2], edge[0])));
