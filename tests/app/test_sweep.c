@@ -136,11 +136,11 @@ END_TEST
 
 START_TEST(what_is_finished_is_kept_and_what_has_changed_runs_again) {
   ck_assert_int_eq(sweep("-s time.end=0.01 -V contact.stiffness=1e5,1e6"), 0);
-  ck_assert(says("0 are there, 0 go on, 2 begin"));
+  ck_assert(says("0 finished, 0 to continue, 2 new"));
   ck_assert_int_eq(sweep("-s time.end=0.01 -V contact.stiffness=1e5,1e6,1e7"), 0);
-  ck_assert(says("2 are there, 0 go on, 1 begin"));
+  ck_assert(says("2 finished, 0 to continue, 1 new"));
   ck_assert_int_eq(sweep("-s time.end=0.012 -V contact.stiffness=1e5,1e6"), 0);
-  ck_assert(says("0 are there, 0 go on, 2 begin"));
+  ck_assert(says("0 finished, 0 to continue, 2 new"));
   Record *table = read_table();
   ck_assert_int_eq(record_count(record_find(table, "runs")), 2);
   record_destroy(table);
@@ -162,7 +162,7 @@ START_TEST(a_changed_mesh_or_changed_weights_run_again) {
       "  - {name: a, mesh: m.msh, material: {law: neo_hookean, young: 1e5, poisson: 0.3, density: 1000}}\n"
       "obstacles:\n  - {name: ground, halfspace: {point: [0, 0, -1], normal: [0, 0, 1]}}\n"
       "contact: {overlap: geo, net: w.safetensors}\n";
-  static const char kept[] = "1 are there, 0 go on, 0 begin", begun[] = "0 are there, 0 go on, 1 begin";
+  static const char kept[] = "1 finished, 0 to continue, 0 new", begun[] = "0 are there, 0 go on, 1 begin";
   static const struct {
     const char *change, *said;
   } cases[] = {
@@ -213,7 +213,7 @@ END_TEST
 START_TEST(a_message_is_the_own_process_s) {
   const char *grid = "-s time.end=0.002 -V bodies.block.material.poisson=0.3,0.7";
   ck_assert_int_eq(sweep(grid), 70);
-  ck_assert(says("0 are there, 0 go on, 1 begin")); // one that cannot be read is not there
+  ck_assert(says("0 finished, 0 to continue, 1 new")); // one that cannot be read is not there
   ck_assert(says("1 of them cannot be run"));
   change("cd out/bodies.block.material.poisson=0.3 && rm summary.json && mkdir -p summary.json/taken && "
          "echo 'tetlap: error: of yesterday' > log.txt");
@@ -231,7 +231,7 @@ START_TEST(a_wrong_key_is_told_at_once) {
   ck_assert_int_eq(sweep("-V contact.stifness=1,2"), 64);
   ck_assert(says("did you mean 'stiffness'"));
   ck_assert_int_eq(sweep("-V contact.stiffness=1,2 -V contact.stiffness=3,4"), 64);
-  ck_assert(says("stands there twice"));
+  ck_assert(says("is given twice"));
   ck_assert_int_eq(sweep(""), 64);
   ck_assert_int_eq(sweep("-V a=1..1000:1000 -V b=1..1000:1000"), 64);
   char path[128];
