@@ -162,7 +162,7 @@ START_TEST(a_changed_mesh_or_changed_weights_run_again) {
       "  - {name: a, mesh: m.msh, material: {law: neo_hookean, young: 1e5, poisson: 0.3, density: 1000}}\n"
       "obstacles:\n  - {name: ground, halfspace: {point: [0, 0, -1], normal: [0, 0, 1]}}\n"
       "contact: {overlap: geo, net: w.safetensors}\n";
-  static const char kept[] = "1 finished, 0 to continue, 0 new", begun[] = "0 are there, 0 go on, 1 begin";
+  static const char kept[] = "1 finished, 0 to continue, 0 new", begun[] = "0 finished, 0 to continue, 1 new";
   static const struct {
     const char *change, *said;
   } cases[] = {
