@@ -86,6 +86,7 @@ int app_program_run(int argument_count, char **arguments) {
   app_cli_command_set_root(&app_program_root);
   if (argument_count > 1) arguments[1] = command_of(arguments[1]);
   const AppCommand *command = find_command(argument_count, arguments);
+  if (command) app_ranks_keep_line();
   Status status = command ? app_ranks_check(command) : STATUS_OK;
   if (status) {
     if (app_ranks_is_heard()) log_error("%s", status_message());

@@ -16,6 +16,16 @@
 // Set for the ranks that this program starts itself.
 static const char STARTED[] = "TETLAP_RANKS";
 
+// What this program was started with, words ended by 0.
+static char *line;
+static size_t line_size;
+
+void app_ranks_keep_line(void) {
+  memory_free(line);
+  line = NULL;
+  if (file_read("/proc/self/cmdline", &line, &line_size)) line = NULL;
+}
+
 // The first of these variables that is set, which Open MPI, others and Slurm set; −1: none is.
 static int find_number(const char *const names[3]) {
   for (int i = 0; i < 3; i++) {
@@ -41,8 +51,8 @@ Status app_ranks_check(const AppCommand *command) {
   if (count > 1 && !command->has_ranks)
     return status_fail(
         STATUS_USAGE,
-        "'%s' runs in one process, and there are %d: call it by itself; over ranks run 'run' and "
-        "'resume'",
+        "'%s' runs in one process, and there are %d: call it by itself; over ranks run 'run', 'resume' "
+        "and 'compare'",
         command->name, count);
   if (count > 1 || app_ranks_started() == 1 || !command->has_threads) return STATUS_OK;
   return status_fail(STATUS_USAGE,
@@ -68,21 +78,16 @@ static Status find_program(char path[PATH_MAX]) {
 
 // Replaces this process by `first` (count), ended by the arguments that it was started with itself.
 static Status replace(int count, char *const *first) {
-  char *line;
-  size_t size, word_count = 0;
-  TRY(file_read("/proc/self/cmdline", &line, &size));
-  for (size_t i = 0; i < size; i++) word_count += line[i] == 0;
+  size_t word_count = 0;
+  if (!line) return status_fail(STATUS_IO, "/proc/self/cmdline: could not be read");
+  for (size_t i = 0; i < line_size; i++) word_count += line[i] == 0;
   char **words = memory_zeroed(word_count + (size_t)count, sizeof *words);
-  if (!words) {
-    memory_free(line);
-    return status_no_memory("the command line");
-  }
+  if (!words) return status_no_memory("the command line");
   for (int i = 0; i < count; i++) words[i] = first[i];
   char *word = line + strlen(line) + 1; // behind this program's own name
   for (size_t i = 1; i < word_count; i++, word += strlen(word) + 1) words[(size_t)count + i - 1] = word;
   execv(words[0], words);
   memory_free(words);
-  memory_free(line);
   return status_fail(STATUS_IO, "%s: cannot be started: %s", first[0], strerror(errno));
 }
 

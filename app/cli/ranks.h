@@ -6,6 +6,9 @@
 #include "app/cli/command.h"
 #include "base/status.h"
 
+// Keeps the command line for app_ranks_start; before arguments are read, which splits lists in place.
+void app_ranks_keep_line(void);
+
 // How many processes mpiexec, or a batch system, has started of this program.
 int app_ranks_started(void);
 

@@ -19,6 +19,14 @@ typedef enum FemSolverKind {
 
 enum { FEM_SOLVER_COUNT = FEM_SOLVER_GAMG + 1 };
 
+// Other names of two of them, which say what they are over ranks (fem_solver_provide).
+typedef enum FemSolverAlias {
+  FEM_SOLVER_MUMPS = FEM_SOLVER_COUNT, // cholmod: an exact factor
+  FEM_SOLVER_BLOCK_JACOBI,             // pcg
+} FemSolverAlias;
+
+enum { FEM_SOLVER_NAMES = FEM_SOLVER_BLOCK_JACOBI + 1 };
+
 typedef struct FemSolverStats {
   long long analyses, factorisations, failed_factorisations, solves, iterations;
   long long hierarchies; // of multigrid, made anew; fewer than factorisations where they are kept

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
+#include "app/cli/ranks.h"
 #include "app/compare/comparison.h"
 #include "app/job/job.h"
 #include "base/clock.h"
@@ -14,6 +15,7 @@
 #include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "fem/effect/contact/contact.h"
 
 typedef struct CompareOptions {
@@ -23,9 +25,10 @@ typedef struct CompareOptions {
   const char *reference;
   int audit_every;
   double wall_s; // a run that takes longer is cut short; 0: none is
+  int rank_count;
 } CompareOptions;
 
-enum { KEY_REFERENCE = 256, KEY_AUDIT, KEY_AUDIT_ONLY, KEY_WALL };
+enum { KEY_REFERENCE = 256, KEY_AUDIT, KEY_AUDIT_ONLY, KEY_WALL, KEY_RANKS };
 
 static const struct argp_option option_table[] = {
     {"overlap", 'm', "NAME,…", 0, "The overlap models to compare", 1},
@@ -36,6 +39,7 @@ static const struct argp_option option_table[] = {
     {"audit-only", KEY_AUDIT_ONLY, "NAME,…", 0,
      "Models that take part in the audit but get no run of their own", 1},
     {"wall", KEY_WALL, "SECONDS", 0, "Stop a model's run after this wall time (default: never)", 1},
+    {"ranks", KEY_RANKS, "N", 0, "Share each run among N processes of this machine (tetlap-mpi)", 1},
     {0},
 };
 
@@ -54,6 +58,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     break;
   case KEY_WALL:
     options->wall_s = app_argument_number(state, "wall", text, 1e-3, 1e7);
+    break;
+  case KEY_RANKS:
+    options->rank_count = app_argument_ranks(state, text);
     break;
   case KEY_AUDIT_ONLY:
     options->audited_count =
@@ -135,7 +142,8 @@ static void tell_estimate(Observer *observer, const FemRunProgress *progress) {
 }
 
 static Status check_wall(Observer *observer, const FemRunProgress *progress) {
-  if (!(observer->wall_s > 0) || clock_wall_s() - observer->began_s <= observer->wall_s) return STATUS_OK;
+  if (!(observer->wall_s > 0)) return STATUS_OK;
+  if (!ranks_any(clock_wall_s() - observer->began_s > observer->wall_s)) return STATUS_OK;
   observer->is_cut = true;
   return status_fail(STATUS_INTERRUPTED, "cut short by --wall: t = %g s of %g s was reached in %g s",
                      progress->time, progress->end, observer->wall_s);
@@ -194,7 +202,9 @@ static Status run_model(AppComparison *comparison, int m, const CompareOptions *
   if (model->status) snprintf(model->message, sizeof model->message, "%s", status_message());
   Status status = app_job_write_summary(&job, &model->result, model->status);
   app_job_close(&job);
-  if (model->status == STATUS_SOLVER || observer.is_cut) {
+  // Ranks that have agreed on a failure share nothing after it.
+  bool goes_on = ranks()->count == 1 && (model->status == STATUS_SOLVER || observer.is_cut);
+  if (goes_on) {
     log_warning("%s: %s", model->name, model->message);
     return status;
   }
@@ -321,7 +331,8 @@ static int run_command(int argument_count, char **arguments) {
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&options.job);
   AppComparison *comparison = memory_zeroed(1, sizeof *comparison);
-  Status status = comparison ? compare(comparison, &options) : status_no_memory("the comparison");
+  Status status = comparison ? app_ranks_start(options.rank_count) : status_no_memory("the comparison");
+  if (!status) status = compare(comparison, &options);
   if (status) log_error("%s", status_message());
   if (comparison) app_comparison_destroy(comparison);
   memory_free(comparison);
@@ -332,4 +343,5 @@ const AppCommand app_command_compare = {.name = "compare",
                                         .help = "run a scene with several overlap models and compare them",
                                         .argp = &argp,
                                         .run = run_command,
-                                        .has_threads = true};
+                                        .has_threads = true,
+                                        .has_ranks = true};

@@ -26,11 +26,17 @@ static const char *potential_help(int i) {
 }
 const SceneChoices app_scene_choices_potentials = {.name = potential_name, .help = potential_help};
 
+// Behind the kinds stand their other names (FemSolverAlias).
 static const char *solver_name(int i) {
-  return i < FEM_SOLVER_COUNT ? fem_solver_name((FemSolverKind)i) : NULL;
+  static const char *const others[] = {"mumps", "block_jacobi"};
+  if (i >= FEM_SOLVER_NAMES) return NULL;
+  return i < FEM_SOLVER_COUNT ? fem_solver_name((FemSolverKind)i) : others[i - FEM_SOLVER_COUNT];
 }
 static const char *solver_help(int i) {
-  return fem_solver_help((FemSolverKind)i);
+  static const char *const others[] = {
+      "an exact factor, by MUMPS over ranks; in one process `cholmod`",
+      "incomplete factors of each rank's block over ranks; in one process `pcg`"};
+  return i < FEM_SOLVER_COUNT ? fem_solver_help((FemSolverKind)i) : others[i - FEM_SOLVER_COUNT];
 }
 const SceneChoices app_scene_choices_solvers = {.name = solver_name, .help = solver_help};
 

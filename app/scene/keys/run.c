@@ -48,6 +48,16 @@ static const SceneKey time_keys[] = {
 const SceneSection app_scene_keys_run_time = {
     .help = "duration and accuracy", .keys = time_keys, .finish = finish_time};
 
+// The other names are of solvers that there are.
+static const char *finish_solver(void *self, const char **key) {
+  FemSceneDef *scene = self;
+  int name = (int)scene->solver;
+  *key = "linear";
+  if (name == FEM_SOLVER_MUMPS) scene->solver = FEM_SOLVER_CHOLMOD;
+  if (name == FEM_SOLVER_BLOCK_JACOBI) scene->solver = FEM_SOLVER_PCG;
+  return NULL;
+}
+
 static const SceneKey solver_keys[] = {
     {"linear", SCENE_CHOICE, AT(FemSceneDef, solver), .fallback = "auto",
      .choices = &app_scene_choices_solvers, .help = "of the linear systems"},
@@ -58,7 +68,8 @@ static const SceneKey solver_keys[] = {
      .help = "0: one for each core"},
     {0},
 };
-const SceneSection app_scene_keys_run_solver = {.help = "linear algebra", .keys = solver_keys};
+const SceneSection app_scene_keys_run_solver = {
+    .help = "linear algebra", .keys = solver_keys, .finish = finish_solver};
 
 static const SceneKey checkpoint_keys[] = {
     {"frames", SCENE_INTEGER, AT(FemSceneDef, checkpoint_frames), .range = "[0, 1000000]", .absent = -1,
