@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene may ask of the models that are a TetrahedronPairNet (net_overlap.h). AUTO: the model's own.
+// What a scene may ask of the models that are a TetrahedronPairNet (tpn/network.h). AUTO: the model's own.
 #ifndef TETLAP_OVERLAP_OPTIONS_H
 #define TETLAP_OVERLAP_OPTIONS_H
 
@@ -23,14 +23,14 @@ typedef enum OverlapOrders {
   OVERLAP_ORDERS_BOTH, // the mean of V(A, B) and V(B, A)
 } OverlapOrders;
 
-// Pairs unlike those of the training (net_range.h).
+// Pairs unlike those of the training (tpn/range.h).
 typedef enum OverlapBeyond {
   OVERLAP_BEYOND_AUTO,
   OVERLAP_BEYOND_COUNT, // are counted
   OVERLAP_BEYOND_EXACT, // and answered by `exact`, blended over a band
 } OverlapBeyond;
 
-// Pairs with faces that nearly lie in one plane (geo_coplanar.h).
+// Pairs with faces that nearly lie in one plane (geo/coplanar.h).
 typedef enum OverlapCoplanar {
   OVERLAP_COPLANAR_AUTO,
   OVERLAP_COPLANAR_KEEP, // are the network's as any other

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a scene file to the definition of a scene: the tree of scene_tree.h is read by the table of
-// scene_keys.h.
+// From a scene file to the definition of a scene: the tree of tree.h is read by the table of
+// keys/keys.h.
 #ifndef TETLAP_APP_SCENE_READ_H
 #define TETLAP_APP_SCENE_READ_H
 
@@ -9,7 +9,7 @@
 #include "fem/scene/scene.h"
 
 // Reads a scene, YAML or JSON, after putting `overrides` ("contact.stiffness=1e6", "bodies.lower.place=…",
-// see scene_override.h) into it. On failure `scene` is zeroed. STATUS_INPUT: file:line:column, the key, what
+// see override.h) into it. On failure `scene` is zeroed. STATUS_INPUT: file:line:column, the key, what
 // was expected and found, and the nearest valid name; STATUS_USAGE: the same of an override; STATUS_IO.
 Status app_scene_read(const char *path, const char *const *overrides, int override_count, FemSceneDef *scene);
 

@@ -26,7 +26,7 @@ typedef struct FemRunSpread {
 } FemRunSpread;
 
 // Counts of a part of the run between two checkpoints are added to those before. Whoever adds a number adds
-// it to numbers[] in checkpoint_numbers.c and to fem_run_result_add as well.
+// it to numbers[] in fem/run/checkpoint/numbers.c and to fem_run_result_add as well.
 typedef struct FemRunResult {
   double wall_s, cpu_s;
   FemRunPhases phases;

@@ -6,7 +6,7 @@
 // a step by a mean that goes over to the logarithmic one.
 //
 // Two bounds, as shares of the scene's energy. What one step may gain: more is taken back. What a run may
-// gain in all: more is trouble (fem/run/trouble.h). Where nothing jumps both are far beyond what the error
+// gain in all: more is trouble (fem/output/trouble.h). Where nothing jumps both are far beyond what the error
 // test lets pass, so that they speak of errors only. Contact jumps within a step, and gains of many steps add
 // up: there a step is also taken back where the run's gain comes near its bound, unless the step gains next
 // to nothing.

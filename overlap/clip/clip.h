@@ -2,12 +2,12 @@
 // The overlap models `clip`, `clip-scalar` and `clip32`: clipping in double precision, with the exact
 // gradient and Hessian of V; `clip32` in single.
 //
-// `clip-scalar` takes one pair at a time (clip_polytope.h) and has the Hessian. `clip` takes as many pairs at
-// once as the processor's vectors have lanes (clip_lanes.h, clip_batch.c) and hands doubtful ones, all where
+// `clip-scalar` takes one pair at a time (polytope.h) and has the Hessian. `clip` takes as many pairs at
+// once as the processor's vectors have lanes (lanes.h, batch.c) and hands doubtful ones, all where
 // a Hessian is asked, and all on a processor without such vectors, to `clip-scalar`; that hands on to
 // `exact`. What one pair gets does not depend on which others come with it.
 //
-// Let A and B intersect in a polyhedron P (clip_polytope.h), o one of its vertices. For face f of A or B with
+// Let A and B intersect in a polyhedron P (polytope.h), o one of its vertices. For face f of A or B with
 // outward area vector S_f, outward unit normal n_f and barycentric coordinates β, let P_f be the part of P's
 // boundary on it. In the face's own parameters everything is a number without unit:
 //
@@ -50,7 +50,7 @@
 //
 // The ones are planes that move along their normals. The rest: λ of a flat tetrahedron tell a point's place
 // along its faces to ν/det of L only, and by so much the other's planes seem to have moved, if they stand
-// across. `clip`, which sums each face on its own, adds ν/8 λ_f(o) for each face that P has (clip_lanes.h).
+// across. `clip`, which sums each face on its own, adds ν/8 λ_f(o) for each face that P has (lanes.h).
 // With |δV| so, the moment V x̄ is off by at most L |δV|: |δx̄| ≤ 1e-9 L where V is more than 1e-6 of the
 // smaller tetrahedron, and x̄ is within the boxes of both in any case. Rounding of well-shaped pairs leaves
 // |δx̄| ≤ 1e-12 L where V is more than 1e-4 of the smaller (tests/overlap/test_centroid.c).
@@ -74,7 +74,7 @@ extern const OverlapOps overlap_clip_ops, overlap_clip_scalar_ops, overlap_clip3
 #define OVERLAP_CLIP_LEAST_SINE 1e-6
 
 
-// ∇²V of a polytope, (24, 24); clip_hessian.c.
+// ∇²V of a polytope, (24, 24); hessian.c.
 void overlap_clip_hessian(const OverlapClipPolytope *polytope, const OverlapClipMoments *moments,
                           const double pair[24], double *hessian);
 

@@ -4,7 +4,7 @@
 //
 // What is exact. The coordinates are taken as the rational numbers that they are. Every decision is the sign
 // of an integer: the four corners' brackets [w x y z] = det(x − w, y − w, z − w) over the pair's vertices are
-// enough to build the intersection (exact_pair.h), so coplanar, touching, nested, identical, sliver-shaped
+// enough to build the intersection (pair.h), so coplanar, touching, nested, identical, sliver-shaped
 // or far-scattered input takes the same path as any other and the flags are always right.
 //
 // What is rounded, and how far. V and each face's part of ∇V are sums of non-negative rationals, each an
@@ -24,8 +24,8 @@
 // else ENCLOSED if every vertex of one is in the other (its boundary included).
 //
 // How it is fast. A face that separates the two beyond doubt in double precision ends it at once. Numbers of
-// few limbs, which ordinary coordinates give, are added and multiplied without GMP (exact_integer.h), and a
-// triangle's area is taken to 127 bits where that is certain to suffice (exact_fixed.h), else to all digits.
+// few limbs, which ordinary coordinates give, are added and multiplied without GMP (integer.h), and a
+// triangle's area is taken to 127 bits where that is certain to suffice (fixed.h), else to all digits.
 //
 // Cost: 6 to 9 µs a pair that overlaps, 0.1 µs one that a face separates; 208 kB of stack, of which ordinary
 // pairs touch a few; no other memory, no state: threads share nothing.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The analytic-centre frame of a pair: what of two tetrahedra no affine map changes, and a first guess of V.
 //
-// At the centre c (geo_centre.h) let m be the 8 × 3 matrix with rows m_k = ∇s_k / s_k, m = Q R with QᵀQ = 1,
+// At the centre c (centre.h) let m be the 8 × 3 matrix with rows m_k = ∇s_k / s_k, m = Q R with QᵀQ = 1,
 // and P = Q Qᵀ. P depends neither on the scale of the planes nor on affine maps of space, and another order
 // of planes only permutes it. V is an affine invariant times 1/det R:
 //

@@ -21,7 +21,7 @@
 enum {
   OVERLAP_GEO_BUNDLE = 128,    // pairs that are taken at once
   OVERLAP_GEO_BLOCK = 16,      // columns of features that a network is given at once
-  OVERLAP_GEO_DIRECTIONS = 12, // along which second derivatives are found: geo_hessian.h
+  OVERLAP_GEO_DIRECTIONS = 12, // along which second derivatives are found: geo/hessian.h
   OVERLAP_GEO_DIRECTION_PAIRS = OVERLAP_GEO_DIRECTIONS * (OVERLAP_GEO_DIRECTIONS + 1) / 2,
   OVERLAP_GEO_BUNDLE_ROW = OVERLAP_GEO_BUNDLE + OVERLAP_GEO_BLOCK + GEO_LANES, // and a pack beyond
 };
@@ -52,7 +52,7 @@ typedef struct OverlapGeoBlock {
   OverlapGeoColumn invariants[sizeof(OverlapGeoInvariants) / sizeof(GeoPack)];
   OverlapGeoColumn volume;   // V₀ [m³]
   OverlapGeoColumn is_fit;   // 1; or 0: the scalar form must say what is wrong
-  OverlapGeoColumn is_close; // 1: coplanar faces give the exact volume a share (geo_coplanar.h)
+  OverlapGeoColumn is_close; // 1: coplanar faces give the exact volume a share (geo/coplanar.h)
   OverlapGeoColumn features[OVERLAP_GEO_MAX_FEATURES];
   OverlapGeoColumn weights[OVERLAP_GEO_MAX_FEATURES]; // dρ/df, from the network
   OverlapGeoColumn factor;                            // what `pull` multiplies with

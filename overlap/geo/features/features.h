@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polynomials in the projector P of a pair (geo_frame.h) that no order of its planes changes, hence neither
+// Polynomials in the projector P of a pair (geo/frame.h) that no order of its planes changes, hence neither
 // that of the vertices nor that of the two tetrahedra. With d_i = P_ii, powers taken entry by entry, and
 // links E^bq_ij = Σ_k d_k^q P_ik^b P_jk^b, in this order:
 //
