@@ -62,7 +62,7 @@ static Remarks find_remarks(const FemMeshQuality *quality, const FemMeshCurvatur
                             const FemMeshRepairs *repairs) {
   Remarks remarks = {0};
   if (repairs->reoriented_tets)
-    remark(&remarks, "tetrahedra that were inside out and have been turned: %.0f", repairs->reoriented_tets);
+    remark(&remarks, "inverted tetrahedra whose orientation was corrected: %.0f", repairs->reoriented_tets);
   if (repairs->dropped_vertices)
     remark(&remarks, "vertices that belong to no tetrahedron and have been left out: %.0f",
            repairs->dropped_vertices);

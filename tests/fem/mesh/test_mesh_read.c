@@ -193,7 +193,7 @@ START_TEST(a_file_of_several_bodies_is_read_once) {
                     "{translate: [3, 0, 0]}}\n"
                     "  - {name: c, mesh: a.ele, material: {young: 1, poisson: 0, density: 1}, place: "
                     "{translate: [6, 0, 0]}}\n");
-  snprintf(command, sizeof command, "%s check %s 2>&1 | grep -c 'have been turned: 1'", TETLAP_PROGRAM,
+  snprintf(command, sizeof command, "%s check %s 2>&1 | grep -c 'orientation was corrected: 1'", TETLAP_PROGRAM,
            scratch("three.yaml"));
   FILE *pipe = popen(command, "r");
   ck_assert_ptr_nonnull(fgets(count, sizeof count, pipe));

@@ -169,7 +169,7 @@ START_TEST(the_command_says_what_is_wrong) {
   snprintf(path, sizeof path, "%s",
            put("a.node", "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 .2 .2 .02\n5 9 9 9\n"));
   ck_assert_int_eq(run_command(2, plain, &text), 0);
-  ck_assert_ptr_nonnull(strstr(text, "inside out and have been turned: 1"));
+  ck_assert_ptr_nonnull(strstr(text, "orientation was corrected: 1"));
   ck_assert_ptr_nonnull(strstr(text, "smallest dihedral angle is"));
   ck_assert_ptr_nonnull(strstr(text, "have been left out: 1"));
   memory_free(text);
