@@ -61,7 +61,7 @@ class Poses(unittest.TestCase):
             tetlap.poses(BLOCKS, np.zeros((3, 3)))
         with self.assertRaisesRegex(TypeError, "either poses or random"):
             tetlap.poses(BLOCKS)
-        with self.assertRaisesRegex(tetlap.RunError, "no rotation"):
+        with self.assertRaisesRegex(tetlap.RunError, "not a rotation"):
             tetlap.poses(BLOCKS, np.zeros((1, 12)))
         with self.assertRaisesRegex(tetlap.RunError, "no body 'none'"):
             tetlap.poses(BLOCKS, random=1, body="none")
