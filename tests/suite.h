@@ -39,8 +39,8 @@ __attribute__((format(printf, 1, 2))) static inline void suite_skip(const char *
   va_end(arguments);
 }
 
-// Whether this run of the tests leaves that overlap model out, which it then says: TETLAP_WITHOUT names one. Under valgrind, which has
-// one mode of rounding, CGAL's predicates recur without end.
+// Whether this run leaves out that overlap model, and says so: TETLAP_WITHOUT names one. Under valgrind,
+// which has one mode of rounding, CGAL's predicates recur without end.
 static inline bool suite_leaves_out(const char *model) {
   const char *without = getenv("TETLAP_WITHOUT");
   if (!without || strcmp(without, model) != 0) return false;

@@ -46,7 +46,7 @@ static double largest_stretch(const FemModel *model, const double *step) {
       for (int w = 0; w < v; w++) {
         int a = model->tets[t][v], b = model->tets[t][w];
         Vec3 way = vec3_sub(move_of(model, step, a), move_of(model, step, b));
-        Vec3 edge = vec3_sub(vec3_at(model->rest + 3 * a), vec3_at(model->rest + 3 * b));
+        Vec3 edge = vec3_sub(vec3_at(model->rest + 3 * (size_t)a), vec3_at(model->rest + 3 * (size_t)b));
         square = fmax(square, vec3_dot(way, way) / vec3_dot(edge, edge));
       }
   return sqrt(square);
