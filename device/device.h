@@ -40,6 +40,7 @@ typedef struct DeviceInfo {
   int units;                            // multiprocessors, or cores
   int clock_mhz;                        // the highest that the driver tells; 0: it does not
   double peak[DEVICE_ARITHMETIC_COUNT]; // multiplications and additions at most [1/s]; 0: not known
+  double issue;                         // instructions at most, of items [1/s]; 0: not known
   bool is_gpu;
   char reason[DEVICE_TEXT]; // why it is not usable; "": it is
 } DeviceInfo;

@@ -8,6 +8,7 @@
 #include "net/files/weights.h"
 
 static const char ENDING[] = ".safetensors";
+static const char KNOWN[] = "geo", KNOWN_FILE[] = "net/weights/geo.safetensors"; // always shipped
 
 bool overlap_weights_is_path(const char *name) {
   return strpbrk(name, "./") != NULL; // names of the program's own models have neither
@@ -19,7 +20,13 @@ Status overlap_weights_find(const char *name, char *path, size_t size) {
   if (length < 0 || (size_t)length >= sizeof file)
     return status_fail(STATUS_INPUT, "%s: the name is too long", name);
   Status status = data_find(file, path, size);
-  return status == STATUS_IO ? status_prefix(status, "the weights of '%s'", name) : status;
+  if (status != STATUS_IO) return status;
+  if (strcmp(name, KNOWN) != 0 && data_find(KNOWN_FILE, path, size) == STATUS_OK) // the folder is there
+    return status_fail(
+        STATUS_IO, "there are no weights '%s' in tetlap; for a file of your own give its path, as in ./%s%s",
+        name, name, ENDING);
+  data_find(file, path, size);
+  return status_prefix(status, "the weights of '%s'", name);
 }
 
 Status overlap_weights_kind(const char *path, OverlapWeightsKind *kind) {

@@ -106,14 +106,19 @@ static void load_library(void) {
   library = NULL;
 }
 
-static int attribute(int device, int which) {
+// 0 where it fails, which `code` keeps.
+static int attribute(int device, int which, int *code) {
   int value = 0;
-  return cu.attribute(&value, which, device) == SUCCESS ? value : 0;
+  const int failure = cu.attribute(&value, which, device);
+  if (failure != SUCCESS) *code = failure;
+  return failure == SUCCESS ? value : 0;
 }
 
 // Fused multiply-adds of a multiprocessor in a cycle: CUDA C++ Programming Guide, "Arithmetic instructions";
 // of dense matrices in bf16 from the makers' figures for the A100 and the H100 (312 and 989 Tflop/s). Others
 // are not known here.
+// Instructions: from 7.0 on a multiprocessor has four schedulers, each of which issues one instruction of a
+// warp, 32 items, in a cycle (the Guide, "Compute capabilities", 7.x to 9.0).
 static void find_peak(int major, int minor, DeviceInfo *info) {
   static const struct {
     int capability;
@@ -121,8 +126,11 @@ static void find_peak(int major, int minor, DeviceInfo *info) {
   } known[] = {{70, {64, 32, 0}}, {75, {64, 2, 0}},  {80, {64, 32, 1024}},
                {86, {128, 2, 0}}, {89, {128, 2, 0}}, {90, {128, 64, 2048}}};
   for (size_t k = 0; k < sizeof known / sizeof *known; k++)
-    for (int a = 0; a < DEVICE_ARITHMETIC_COUNT && known[k].capability == 10 * major + minor; a++)
-      info->peak[a] = 2 * known[k].fused[a] * info->units * 1e6 * info->clock_mhz;
+    if (known[k].capability == 10 * major + minor) {
+      const double cycles = info->units * 1e6 * info->clock_mhz;
+      for (int a = 0; a < DEVICE_ARITHMETIC_COUNT; a++) info->peak[a] = 2 * known[k].fused[a] * cycles;
+      info->issue = 4 * 32 * cycles;
+    }
 }
 
 static void describe(int index, DeviceInfo *info) {
@@ -130,18 +138,20 @@ static void describe(int index, DeviceInfo *info) {
   size_t bytes = 0;
   char reason[DEVICE_TEXT];
   *info = (DeviceInfo){.index = index, .is_gpu = true};
-  cu.get(&device, index);
-  cu.name(info->name, sizeof info->name, device);
-  cu.total_memory(&bytes, device);
-  cu.driver_version(&version);
-  int major = attribute(device, ATTRIBUTE_MAJOR), minor = attribute(device, ATTRIBUTE_MINOR);
+  int code = cu.get(&device, index);
+  if (code == SUCCESS) code = cu.name(info->name, sizeof info->name, device);
+  if (code == SUCCESS) code = cu.total_memory(&bytes, device);
+  if (code == SUCCESS) code = cu.driver_version(&version);
+  int major = attribute(device, ATTRIBUTE_MAJOR, &code), minor = attribute(device, ATTRIBUTE_MINOR, &code);
   snprintf(info->driver, DEVICE_TEXT, "CUDA %d.%d, sm_%d%d", version / 1000, version % 1000 / 10, major,
            minor);
   info->memory_bytes = (double)bytes;
-  info->units = attribute(device, ATTRIBUTE_UNITS);
-  info->clock_mhz = attribute(device, ATTRIBUTE_CLOCK) / 1000;
+  info->units = attribute(device, ATTRIBUTE_UNITS, &code);
+  info->clock_mhz = attribute(device, ATTRIBUTE_CLOCK, &code) / 1000;
   find_peak(major, minor, info);
-  if (major < LEAST_MAJOR)
+  if (code != SUCCESS)
+    snprintf(info->reason, DEVICE_TEXT, "its driver does not describe it: %s", name_of(code));
+  else if (major < LEAST_MAJOR)
     snprintf(info->reason, DEVICE_TEXT, "it is of compute capability %d.%d, %d.0 is needed", major, minor,
              LEAST_MAJOR);
   else if (!device_cuda_compiler(reason))
@@ -156,10 +166,14 @@ static int find(DeviceInfo *infos, char reason[DEVICE_TEXT]) {
     memcpy(reason, library_reason, DEVICE_TEXT);
     return 0;
   }
-  cu.count(&count);
+  const int code = cu.count(&count);
+  if (code != SUCCESS) count = 0;
   if (count > DEVICE_MAX_FOUND) count = DEVICE_MAX_FOUND;
   for (int i = 0; i < count; i++) describe(i, &infos[i]);
-  if (count == 0) snprintf(reason, DEVICE_TEXT, "the driver is there, but no device");
+  if (code != SUCCESS)
+    snprintf(reason, DEVICE_TEXT, "the driver does not count its devices: %s", name_of(code));
+  else if (count == 0)
+    snprintf(reason, DEVICE_TEXT, "the driver is there, but no device");
   return count;
 }
 
@@ -189,8 +203,8 @@ static Status begin(Cuda *cuda) {
   if (code == SUCCESS) code = cu.retain(&cuda->context, cuda->device);
   if (code == SUCCESS) code = cu.set_current(cuda->context);
   for (int k = 0; k < DEVICE_MARK_COUNT && code == SUCCESS; k++) code = cu.event(&cuda->marks[k], 0);
-  cuda->major = attribute(cuda->device, ATTRIBUTE_MAJOR);
-  cuda->minor = attribute(cuda->device, ATTRIBUTE_MINOR);
+  if (code == SUCCESS) cuda->major = attribute(cuda->device, ATTRIBUTE_MAJOR, &code);
+  if (code == SUCCESS) cuda->minor = attribute(cuda->device, ATTRIBUTE_MINOR, &code);
   return code == SUCCESS ? STATUS_OK : fail(cuda, code, "opening it");
 }
 

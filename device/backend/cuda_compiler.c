@@ -10,7 +10,7 @@
 
 typedef struct Program *ProgramId;
 
-enum { SUCCESS = 0, COMPILATION_FAILED = 6 };
+enum { SUCCESS = 0, OUT_OF_MEMORY = 1, COMPILATION_FAILED = 6 };
 
 static struct {
   int (*create)(ProgramId *, const char *, const char *, int, const char *const *, const char *const *);
@@ -51,6 +51,10 @@ bool device_cuda_compiler(char reason[DEVICE_TEXT]) {
   return library != NULL;
 }
 
+static Status status_of(int error) {
+  return error == OUT_OF_MEMORY ? STATUS_MEMORY : STATUS_DEVICE;
+}
+
 // The compiler's log, the caller's; NULL: no memory.
 static char *log_of(ProgramId program) {
   size_t size = 0;
@@ -68,12 +72,14 @@ static Status fail_build(ProgramId program, const DeviceProgram *what, const cha
 }
 
 static Status fetch_code(ProgramId program, char **code, size_t *size) {
+  *code = NULL;
   int error = nvrtc.code_size(program, size);
   if (error == SUCCESS && !(*code = memory_zeroed(*size, 1))) return status_no_memory("machine code");
   if (error == SUCCESS) error = nvrtc.code(program, *code);
-  return error == SUCCESS
-             ? STATUS_OK
-             : status_fail(STATUS_DEVICE, "NVRTC returned no machine code: %s", nvrtc.word(error));
+  if (error == SUCCESS) return STATUS_OK;
+  memory_free(*code);
+  *code = NULL;
+  return status_fail(status_of(error), "NVRTC returned no machine code: %s", nvrtc.word(error));
 }
 
 static Status compile(ProgramId program, const DeviceProgram *what, const char *target, bool tells,
@@ -85,7 +91,7 @@ static Status compile(ProgramId program, const DeviceProgram *what, const char *
   int error = nvrtc.compile(program, tells ? 5 : 4, options);
   if (error == COMPILATION_FAILED) return fail_build(program, what, target);
   if (error != SUCCESS)
-    return status_fail(STATUS_DEVICE, "NVRTC, program '%s' for %s: %s", what->name, target,
+    return status_fail(status_of(error), "NVRTC, program '%s' for %s: %s", what->name, target,
                        nvrtc.word(error));
   TRY(fetch_code(program, code, size));
   if (log) *log = log_of(program);
@@ -100,7 +106,7 @@ Status device_cuda_compile(const DeviceProgram *what, const char *target, bool t
   ProgramId program;
   int error = nvrtc.create(&program, text, what->name, 0, NULL, NULL);
   memory_free(text);
-  if (error != SUCCESS) return status_fail(STATUS_DEVICE, "NVRTC: %s", nvrtc.word(error));
+  if (error != SUCCESS) return status_fail(status_of(error), "NVRTC: %s", nvrtc.word(error));
   Status status = compile(program, what, target, tells, code, size, log);
   nvrtc.destroy(&program);
   return status;

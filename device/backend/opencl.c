@@ -21,7 +21,14 @@ typedef struct Buffer *BufferId;
 
 enum {
   SUCCESS = 0,
+  DEVICE_NOT_FOUND = -1,
+  MEM_OBJECT_ALLOCATION_FAILURE = -4,
+  OUT_OF_RESOURCES = -5,
+  OUT_OF_HOST_MEMORY = -6,
   BUILD_PROGRAM_FAILURE = -11,
+  INVALID_VALUE = -30,
+  INVALID_BUFFER_SIZE = -61,
+  NO_PLATFORM = -1001,
   TYPE_GPU = 1 << 2,
   PROFILING = 0,
   READ_WRITE = 1 << 0,
@@ -111,58 +118,96 @@ static void load(void) {
       device_library_open("TETLAP_OPENCL", names, symbols, sizeof symbols / sizeof *symbols, library_reason);
 }
 
-// Every device of every platform, in their order.
-static int list(DeviceId devices[DEVICE_MAX_FOUND], PlatformId platforms[DEVICE_MAX_FOUND]) {
+typedef struct Word {
+  int code;
+  const char *text;
+} Word;
+
+static const char *word_of(int code) {
+  static const Word words[] = {
+      {-1, "device not found"},           {-2, "device not available"},
+      {-4, "no memory for the object"},   {-5, "out of resources, or the device is lost"},
+      {-6, "out of the host's memory"},   {-11, "the build failed"},
+      {-14, "an earlier command failed"}, {-36, "invalid command queue"},
+      {-46, "invalid kernel name"},       {-54, "invalid work-group size"},
+      {-61, "invalid buffer size"}};
+  for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+    if (words[k].code == code) return words[k].text;
+  return "see cl.h";
+}
+
+// Every device of every platform, in their order. A platform without devices is passed over; what else fails
+// is kept in `code`.
+static int list(DeviceId devices[DEVICE_MAX_FOUND], PlatformId platforms[DEVICE_MAX_FOUND], int *code) {
   PlatformId found[DEVICE_MAX_FOUND];
   unsigned platform_count = 0;
   int count = 0;
-  if (cl.platforms(DEVICE_MAX_FOUND, found, &platform_count) != SUCCESS) return 0;
+  *code = cl.platforms(DEVICE_MAX_FOUND, found, &platform_count);
+  if (*code != SUCCESS) platform_count = 0;
   for (unsigned p = 0; p < platform_count && p < DEVICE_MAX_FOUND && count < DEVICE_MAX_FOUND; p++) {
     unsigned device_count = 0, room = (unsigned)(DEVICE_MAX_FOUND - count);
-    if (cl.devices(found[p], TYPE_ALL, room, devices + count, &device_count) != SUCCESS) continue;
-    for (unsigned d = 0; d < device_count && d < room; d++) platforms[count++] = found[p];
+    const int failure = cl.devices(found[p], TYPE_ALL, room, devices + count, &device_count);
+    if (failure != SUCCESS && failure != DEVICE_NOT_FOUND) *code = failure;
+    for (unsigned d = 0; d < device_count && d < room && failure == SUCCESS; d++)
+      platforms[count++] = found[p];
   }
   return count;
 }
 
-static uint64_t number(DeviceId device, unsigned what) {
+// 0 where the driver does not know the question; if it fails otherwise, `code` keeps that.
+static uint64_t number(DeviceId device, unsigned what, int *code) {
   uint64_t value = 0; // little-endian: 32 bits fit, too
-  return cl.device_info(device, what, sizeof value, &value, NULL) == SUCCESS ? value : 0;
+  const int failure = cl.device_info(device, what, sizeof value, &value, NULL);
+  if (failure != SUCCESS && failure != INVALID_VALUE) *code = failure;
+  return failure == SUCCESS ? value : 0;
+}
+
+static int text(DeviceId device, unsigned what, size_t size, char *answer) {
+  return cl.device_info(device, what, size, answer, NULL);
 }
 
 static void describe(DeviceId device, PlatformId platform, int index, DeviceInfo *info) {
   char platform_name[64] = "", driver[64] = "";
   *info = (DeviceInfo){.index = index};
-  cl.device_info(device, CL_DEVICE_NAME, sizeof info->name, info->name, NULL);
-  cl.device_info(device, CL_DRIVER_VERSION, sizeof driver, driver, NULL);
-  cl.platform_info(platform, CL_PLATFORM_NAME, sizeof platform_name, platform_name, NULL);
+  int code = text(device, CL_DEVICE_NAME, sizeof info->name, info->name);
+  if (code == SUCCESS) code = text(device, CL_DRIVER_VERSION, sizeof driver, driver);
+  if (code == SUCCESS)
+    code = cl.platform_info(platform, CL_PLATFORM_NAME, sizeof platform_name, platform_name, NULL);
   snprintf(info->driver, DEVICE_TEXT, "%s, driver %s", platform_name, driver);
-  info->memory_bytes = (double)number(device, CL_DEVICE_GLOBAL_BYTES);
-  info->units = (int)number(device, CL_DEVICE_UNITS);
-  info->clock_mhz = (int)number(device, CL_DEVICE_CLOCK);
-  info->is_gpu = (number(device, CL_DEVICE_TYPE) & TYPE_GPU) != 0;
-  if (number(device, CL_DEVICE_DOUBLE) == 0)
+  info->memory_bytes = (double)number(device, CL_DEVICE_GLOBAL_BYTES, &code);
+  info->units = (int)number(device, CL_DEVICE_UNITS, &code);
+  info->clock_mhz = (int)number(device, CL_DEVICE_CLOCK, &code);
+  info->is_gpu = (number(device, CL_DEVICE_TYPE, &code) & TYPE_GPU) != 0;
+  const uint64_t has_double = number(device, CL_DEVICE_DOUBLE, &code),
+                 local_bytes = number(device, CL_DEVICE_LOCAL_BYTES, &code),
+                 group_size = number(device, CL_DEVICE_GROUP_SIZE, &code);
+  if (code != SUCCESS)
+    snprintf(info->reason, DEVICE_TEXT, "its driver does not describe it: error %d, %s", code, word_of(code));
+  else if (has_double == 0)
     snprintf(info->reason, DEVICE_TEXT, "it has no double precision");
-  else if (number(device, CL_DEVICE_LOCAL_BYTES) < LEAST_LOCAL_BYTES)
+  else if (local_bytes < LEAST_LOCAL_BYTES)
     snprintf(info->reason, DEVICE_TEXT, "a group has %d KiB of memory, %d are needed",
-             (int)(number(device, CL_DEVICE_LOCAL_BYTES) >> 10), LEAST_LOCAL_BYTES >> 10);
-  else if (number(device, CL_DEVICE_GROUP_SIZE) < LEAST_GROUP)
-    snprintf(info->reason, DEVICE_TEXT, "a group has %d items, %d are needed",
-             (int)number(device, CL_DEVICE_GROUP_SIZE), LEAST_GROUP);
+             (int)(local_bytes >> 10), LEAST_LOCAL_BYTES >> 10);
+  else if (group_size < LEAST_GROUP)
+    snprintf(info->reason, DEVICE_TEXT, "a group has %d items, %d are needed", (int)group_size, LEAST_GROUP);
 }
 
 static int find(DeviceInfo *infos, char reason[DEVICE_TEXT]) {
   DeviceId devices[DEVICE_MAX_FOUND];
   PlatformId platforms[DEVICE_MAX_FOUND];
+  int code;
   reason[0] = 0;
   pthread_once(&once, load);
   if (!library) {
     memcpy(reason, library_reason, DEVICE_TEXT);
     return 0;
   }
-  int count = list(devices, platforms);
+  int count = list(devices, platforms, &code);
   for (int i = 0; i < count; i++) describe(devices[i], platforms[i], i, &infos[i]);
-  if (count == 0) snprintf(reason, DEVICE_TEXT, "OpenCL is there, but no driver offers it a device");
+  if (count == 0 && (code == SUCCESS || code == NO_PLATFORM))
+    snprintf(reason, DEVICE_TEXT, "OpenCL is there, but no driver offers it a device");
+  else if (count == 0)
+    snprintf(reason, DEVICE_TEXT, "OpenCL is there, but lists no device: error %d, %s", code, word_of(code));
   return count;
 }
 
@@ -181,26 +226,14 @@ typedef struct OpenCl {
   double marks[DEVICE_MARK_COUNT]; // [s]
 } OpenCl;
 
-typedef struct Word {
-  int code;
-  const char *text;
-} Word;
-
-static const char *word_of(int code) {
-  static const Word words[] = {
-      {-1, "device not found"},           {-2, "device not available"},     {-4, "no memory for the object"},
-      {-5, "out of resources"},           {-6, "out of the host's memory"}, {-11, "the build failed"},
-      {-14, "an earlier command failed"}, {-36, "invalid command queue"},   {-46, "invalid kernel name"},
-      {-54, "invalid work-group size"},   {-61, "invalid buffer size"}};
-  for (size_t k = 0; k < sizeof words / sizeof *words; k++)
-    if (words[k].code == code) return words[k].text;
-  return "see cl.h";
+static Status fail_as(Status status, const OpenCl *opencl, int code, const char *what) {
+  return status_fail(status, "device 'opencl:%d' (%s): %s: error %d, %s", opencl->info.index,
+                     opencl->info.name, what, code, word_of(code));
 }
 
 static Status fail(const OpenCl *opencl, int code, const char *what) {
-  bool is_memory = code == -4 || code == -5 || code == -6 || code == -61;
-  return status_fail(is_memory ? STATUS_MEMORY : STATUS_DEVICE, "device 'opencl:%d' (%s): %s: error %d, %s",
-                     opencl->info.index, opencl->info.name, what, code, word_of(code));
+  const bool is_memory = code == MEM_OBJECT_ALLOCATION_FAILURE || code == OUT_OF_HOST_MEMORY;
+  return fail_as(is_memory ? STATUS_MEMORY : STATUS_DEVICE, opencl, code, what);
 }
 
 static void close(void *self) {
@@ -214,8 +247,9 @@ static void close(void *self) {
 static Status begin(OpenCl *opencl) {
   DeviceId devices[DEVICE_MAX_FOUND];
   PlatformId platforms[DEVICE_MAX_FOUND];
-  int count = list(devices, platforms), code = SUCCESS;
-  if (opencl->info.index >= count) return fail(opencl, -1, "opening it");
+  int code, count = list(devices, platforms, &code);
+  if (opencl->info.index >= count)
+    return fail(opencl, code != SUCCESS ? code : DEVICE_NOT_FOUND, "opening it");
   opencl->device = devices[opencl->info.index];
   opencl->context = cl.create_context(NULL, 1, &opencl->device, NULL, NULL, &code);
   if (code != SUCCESS) return fail(opencl, code, "making a context");
@@ -255,7 +289,7 @@ static Status compile(OpenCl *opencl, const DeviceProgram *what, const char *tex
                       ProgramId *program) {
   int code;
   *program = cl.create_program(opencl->context, 1, &text, NULL, &code);
-  if (code != SUCCESS) return fail(opencl, code, "taking a program");
+  if (code != SUCCESS) return fail(opencl, code, "handing it a program");
   code = cl.build_program(*program, 1, &opencl->device, options, NULL, NULL);
   if (code == SUCCESS) return STATUS_OK;
   Status status = code == BUILD_PROGRAM_FAILURE ? fail_build(opencl, *program, what)
@@ -274,8 +308,9 @@ static bool recall(OpenCl *opencl, uint64_t key, const char *options, ProgramId 
   const unsigned char *bytes = (const unsigned char *)code;
   *program = cl.create_program_binary(opencl->context, 1, &opencl->device, &size, &bytes, &binary, &error);
   memory_free(code);
-  if (error != SUCCESS || binary != SUCCESS) return false;
-  if (cl.build_program(*program, 1, &opencl->device, options, NULL, NULL) == SUCCESS) return true;
+  if (error != SUCCESS) return false;
+  if (binary == SUCCESS && cl.build_program(*program, 1, &opencl->device, options, NULL, NULL) == SUCCESS)
+    return true;
   cl.release_program(*program);
   *program = NULL;
   return false;
@@ -300,7 +335,9 @@ static void discard(void *self, void *module) {
 }
 
 static Status compile_or_recall(OpenCl *opencl, const DeviceProgram *what, const char *text, Built *built) {
-  const bool rounds = (number(opencl->device, CL_DEVICE_FLOAT) & ROUNDS_DIVISIONS) != 0;
+  int code = SUCCESS;
+  const bool rounds = (number(opencl->device, CL_DEVICE_FLOAT, &code) & ROUNDS_DIVISIONS) != 0;
+  if (code != SUCCESS) return fail(opencl, code, "asking how it rounds");
   const char *options = rounds ? "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt" : "-cl-std=CL1.2";
   const uint64_t key =
       device_cache_key(4, (const char *[]){text, options, opencl->info.name, opencl->info.driver});
@@ -346,6 +383,9 @@ static Status take(void *self, size_t bytes, DeviceMemory *memory) {
   char what[64];
   BufferId buffer = cl.create_buffer(opencl->context, READ_WRITE, bytes > 0 ? bytes : 1, NULL, &code);
   snprintf(what, sizeof what, "taking %.4g GB", 1e-9 * (double)bytes);
+  // Elsewhere that code is what drivers call a device that they lost.
+  const bool is_memory = code == OUT_OF_RESOURCES || code == INVALID_BUFFER_SIZE;
+  if (is_memory) return fail_as(STATUS_MEMORY, opencl, code, what);
   if (code != SUCCESS) return fail(opencl, code, what);
   *memory = (DeviceMemory){.at = buffer, .bytes = bytes};
   return STATUS_OK;

@@ -6,13 +6,13 @@
 
 #include "device/kernels/one.inc"
 
-#include "device/kernels/kept.inc"
+#include "device/kernels/clip/kept.inc"
 
 #include "overlap/clip/lanes.inc"
 
-#include "device/kernels/pose.inc"
+#include "device/kernels/clip/pose.inc"
 
-#include "device/kernels/poses.inc"
+#include "device/kernels/clip/poses.inc"
 
 static void run_clip(int group, const DeviceArgument *a) {
   poses_clip(group, a[0].integer, a[1].integer, a[2].integer, device_host_at(a + 3), device_host_at(a + 4),

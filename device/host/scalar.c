@@ -17,7 +17,7 @@
 
 #include "overlap/clip/sums.inc"
 
-#include "device/kernels/scalar.inc"
+#include "device/kernels/clip/scalar.inc"
 
 static void run_volume(int group, const DeviceArgument *a) {
   scalar_volume(group, HOST_PAIRS(a), device_host_at(a + 8), device_host_at(a + 9), device_host_at(a + 10),

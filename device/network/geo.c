@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/network/geo.h"
 
-#include "device/kernels/geo_rows.h"
+#include "device/kernels/geo/rows.h"
 #include "overlap/geo/model.h"
 
 static Status refuse(const char *what) {

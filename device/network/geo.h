@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the kernels of geo and geo-small need on a device: the network, and memory of a pass. Pairs are taken
-// DEVICE_GEO_ROOM at a time; kernels/geo_rows.h says what is kept of each.
+// DEVICE_GEO_ROOM at a time; kernels/geo/rows.h says what is kept of each.
 #ifndef TETLAP_DEVICE_NETWORK_GEO_H
 #define TETLAP_DEVICE_NETWORK_GEO_H
 

@@ -3,9 +3,9 @@
 
 #include "device/kernels/language_host.h"
 
-#include "device/kernels/bf16.inc"
+#include "device/kernels/tpn/bf16.inc"
 
-#include "device/kernels/mma.inc"
+#include "device/kernels/tpn/mma.inc"
 
 static int tiles_of(int count, int size) {
   return (count + size - 1) / size;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Matrices as the fragments that tensor cores multiply by from the left (kernels/mma.inc): tiles of 16 by 16,
+// Matrices as the fragments that tensor cores multiply by from the left (kernels/tpn/mma.inc): tiles of 16 by 16,
 // row by row, zeros beyond the matrix; of a tile four words for each of 32 lanes, bf16 two a word. Private to
 // device/.
 #ifndef TETLAP_DEVICE_NETWORK_PACK_H

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "device/kernels/tpn_steps.h"
+#include "device/kernels/tpn/steps.h"
 #include "device/network/pack.h"
 #include "overlap/tpn/network.h"
 #include "overlap/weights.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TetrahedronPairNet as the steps and numbers that kernels/tpn.inc carries out: the shipped `tpn` and
+// A TetrahedronPairNet as the steps and numbers that kernels/tpn/tpn.inc carries out: the shipped `tpn` and
 // `tpn-published`, folded. For V rows of the group's memory are given to the matrices of a pass by how long
 // each is needed; for ∇V all stay, with the derivatives behind them.
 #ifndef TETLAP_DEVICE_NETWORK_TPN_H
@@ -7,7 +7,7 @@
 
 #include "device/device.h"
 
-// A pass of kernels/tpn.inc; there, PASS_…, STEP_…, VIEW_….
+// A pass of kernels/tpn/tpn.inc; there, PASS_…, STEP_…, VIEW_….
 typedef struct DeviceTpnPass {
   DeviceMemory sizes, steps, views;
 } DeviceTpnPass;
@@ -15,7 +15,7 @@ typedef struct DeviceTpnPass {
 typedef struct DeviceTpn {
   DeviceTpnPass volume, gradient;
   DeviceMemory parameters, packed; // packed: weights as fragments (pack.h), of bf16
-  DeviceMemory shown, factor;      // of a batch's pairs: rows of kernels/tpn_steps.h, |det E|
+  DeviceMemory shown, factor;      // of a batch's pairs: rows of kernels/tpn/steps.h, |det E|
   int room;                        // numbers of a row
   int normalisation;
   double scale; // the network tells so much times V'

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "device/kernels/geo_rows.h"
+#include "device/kernels/geo/rows.h"
 #include "device/overlap/stage.h"
 
 enum { GATE, FRAME, FEATURES, NETWORK, VOLUME, BLEND = 7, PULL }; // of the first stage's program

@@ -23,21 +23,25 @@ typedef struct DeviceOverlapChain {
   bool is_bf16;        // whose factors are rounded
   int feature_count;   // of a network of geo; 0: there is none
   bool has_centroid;
-  double flops[3]; // of clipping, of DeviceQuantity: tests/device/count_operations.cpp
+  double flops[3], instructions[3]; // of clipping, of DeviceQuantity: tests/device/count_operations.cpp
 } DeviceOverlapChain;
 
 #define CLIP_FLOPS                                                                                           \
   { 1557, 2138, 2114 }
+#define CLIP_INSTRUCTIONS                                                                                    \
+  { 1153, 1582, 1549 }
 
 static const DeviceOverlapChain chains[DEVICE_OVERLAP_MODELS] = {
     {.model = "clip",
      .programs = {&device_program_clip, &device_program_scalar},
      .has_centroid = true,
-     .flops = CLIP_FLOPS},
+     .flops = CLIP_FLOPS,
+     .instructions = CLIP_INSTRUCTIONS},
     {.model = "clip32",
      .programs = {&device_program_clip32, &device_program_clip, &device_program_scalar},
      .has_centroid = true,
-     .flops = CLIP_FLOPS},
+     .flops = CLIP_FLOPS,
+     .instructions = CLIP_INSTRUCTIONS},
     {.model = "tpn", .programs = {&device_program_tpn}, .flags = OVERLAP_FALLBACK, .weights = "tpn"},
     {.model = "tpn-published",
      .programs = {&device_program_tpn},
@@ -74,6 +78,15 @@ bool device_overlap_gives(const char *model, DeviceQuantity quantity) {
 double device_overlap_flops(const DeviceOverlap *overlap, DeviceQuantity quantity) {
   const double forward = overlap->tpn.flops + overlap->geo.flops; // there is one at most
   return overlap->chain->flops[quantity] + (quantity == DEVICE_GRADIENT ? 2 * forward : forward);
+}
+
+double device_overlap_instructions(const DeviceOverlap *overlap, DeviceQuantity quantity) {
+  const DeviceOverlapChain *chain = overlap->chain;
+  const bool is_clip = chain->flops[quantity] > 0;
+  // products of networks are fused multiply-adds
+  return is_clip          ? chain->instructions[quantity]
+         : chain->is_bf16 ? 0
+                          : 0.5 * device_overlap_flops(overlap, quantity);
 }
 
 DeviceArithmetic device_overlap_arithmetic(const DeviceOverlap *overlap) {

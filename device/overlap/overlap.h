@@ -32,6 +32,9 @@ bool device_overlap_gives(const char *model, DeviceQuantity quantity);
 // arithmetic of the first kernel, a fused operation twice, comparisons and choices not. In which numbers; the
 // name of the network's weights, NULL: there is none.
 double device_overlap_flops(const DeviceOverlap *overlap, DeviceQuantity quantity);
+// The instructions that this arithmetic takes at least: a fused operation is one. 0: products are those of
+// tensor cores, which is not counted.
+double device_overlap_instructions(const DeviceOverlap *overlap, DeviceQuantity quantity);
 DeviceArithmetic device_overlap_arithmetic(const DeviceOverlap *overlap);
 const char *device_overlap_weights(const DeviceOverlap *overlap);
 

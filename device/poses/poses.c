@@ -9,7 +9,7 @@
 #include "device/kernels/language_host.h"
 #include "overlap/clip/clip.h"
 
-#include "device/kernels/pose.inc"
+#include "device/kernels/clip/pose.inc"
 
 enum { CLIP, MEND, SUM };                        // kernels of the program
 enum { ITEMS_AT_ONCE = 1 << 21, PORTION = 512 }; // (pose, pair)s of a launch; pairs of a batch

@@ -187,8 +187,7 @@ static bool find_pca(const double pair[24], OverlapTpnNormalised *normalised) {
   return normalised->principal[0] > 0;
 }
 
-bool overlap_tpn_normalise(OverlapTpnNormalisation kind, const double pair[24],
-                           OverlapTpnNormalised *normalised) {
+static bool find(OverlapTpnNormalisation kind, const double pair[24], OverlapTpnNormalised *normalised) {
   normalised->kind = kind;
   switch (kind) {
   case OVERLAP_TPN_NORMALISE_UNIT:
@@ -204,6 +203,15 @@ bool overlap_tpn_normalise(OverlapTpnNormalisation kind, const double pair[24],
   default:
     return false;
   }
+}
+
+// As the kernels of devices have it (device/kernels/tpn/normalise.inc).
+bool overlap_tpn_normalise(OverlapTpnNormalisation kind, const double pair[24],
+                           OverlapTpnNormalised *normalised) {
+  if (!find(kind, pair, normalised)) return false;
+  double sum = 0; // NaN unless all are finite
+  for (int i = 12; i < 24; i++) sum += normalised->pair[i] - normalised->pair[i];
+  return sum == 0;
 }
 
 // With λ_k(b) the barycentric coordinates of vertex b of the second tetrahedron in the first,

@@ -48,7 +48,7 @@ typedef struct OverlapTpnNormalised {
 } OverlapTpnNormalised;
 
 // False: the first tetrahedron is too flat for it (all but pca: |det E| below 1e-14 of the edges'
-// product).
+// product), or what the network would be shown is not finite.
 bool overlap_tpn_normalise(OverlapTpnNormalisation kind, const double pair[24],
                            OverlapTpnNormalised *normalised);
 

@@ -7,7 +7,8 @@
 
 #include "count_operations.h"
 
-static double operations; // multiplications, additions, divisions, roots; fused ones twice
+static double operations;        // multiplications, additions, divisions, roots; fused ones twice
+static double instructions_once; // fused ones once
 
 struct Lanes {
   double value;
@@ -19,6 +20,7 @@ typedef bool Mask;
 
 static Lanes counted(double value, int count) {
   operations += count;
+  instructions_once += 1;
   return value;
 }
 static Lanes operator+(Lanes a, Lanes b) {
@@ -122,20 +124,20 @@ INLINED Lanes lanes_lower(Lanes a, Mask unless, Lanes b) {
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 #include "overlap/clip/constants.h"
 
-#include "device/kernels/kept.inc"
+#include "device/kernels/clip/kept.inc"
 
 #include "overlap/clip/lanes.inc"
 
 #include "device/kernels/pairs.inc"
 
-#include "device/kernels/clip.inc"
+#include "device/kernels/clip/clip.inc"
 
-extern "C" void count_operations(const double pair[24], double counts[3]) {
+extern "C" void count_operations(const double pair[24], double counts[3], double instructions[3]) {
   double volume, more[24];
   unsigned char flags;
   int doubtful, doubtful_count = 0;
   for (int quantity = 0; quantity < 3; quantity++) {
-    operations = 0;
+    operations = instructions_once = 0;
     if (quantity == 0)
       clip_volume(0, PAIRS_ROWS, 1, 1, pair, nullptr, nullptr, 0, nullptr, &volume, &flags, &doubtful,
                   &doubtful_count);
@@ -143,5 +145,6 @@ extern "C" void count_operations(const double pair[24], double counts[3]) {
       (quantity == 1 ? clip_gradient : clip_centroid)(0, PAIRS_ROWS, 1, 1, pair, nullptr, nullptr, 0, nullptr,
                                                       &volume, &flags, &doubtful, &doubtful_count, more);
     counts[quantity] = operations;
+    instructions[quantity] = instructions_once;
   }
 }

@@ -6,9 +6,9 @@
 extern "C" {
 #endif
 
-// Multiplications, additions, divisions and roots (a fused one counts twice) of the kernels of clipping on a
-// pair, for V, V + ∇V, V + x̄.
-void count_operations(const double pair[24], double counts[3]);
+// Multiplications, additions, divisions and roots of the kernels of clipping on a pair, for V, V + ∇V, V + x̄:
+// `counts` with a fused one twice, `instructions` once.
+void count_operations(const double pair[24], double counts[3], double instructions[3]);
 
 #ifdef __cplusplus
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What devices do when something is not there or fails: one message, an exit code. A driver that refuses
-// stands in for libcuda (fake_cuda.c). Where NVRTC is found, every program compiles for GPUs without spills.
+// stands in for libcuda (fake/cuda.c), one for
+// libOpenCL (fake/opencl.c). Where NVRTC is found, every program compiles for GPUs without spills.
 #include "suite.h"
 
 #include <stdio.h>
@@ -58,14 +59,14 @@ START_TEST(what_is_not_there_is_said) {
 }
 END_TEST
 
-#define FAKE                                                                                                 \
-  "TETLAP_NVRTC=" TETLAP_FAKE_NVRTC " TETLAP_CACHE=/dev/null TETLAP_CUDA=" TETLAP_FAKE_CUDA " FAKE_CUDA="
+#define FAKE "TETLAP_NVRTC=" TETLAP_FAKE_NVRTC " TETLAP_CACHE=/dev/null TETLAP_CUDA=" TETLAP_FAKE_CUDA " "
+#define FAKE_OPENCL "TETLAP_CACHE=/dev/null TETLAP_OPENCL=" TETLAP_FAKE_OPENCL " "
 
 START_TEST(a_driver_that_refuses_is_quoted) {
-  check_refused(FAKE "start", BENCH "cuda", 69, "CUDA_ERROR_NOT_INITIALIZED");
-  check_refused(FAKE "device", BENCH "cuda", 69, "no device");
-  check_refused(FAKE "old", BENCH "cuda", 69, "compute capability 5.0");
-  check_refused(FAKE "none TETLAP_NVRTC=/nowhere.so", BENCH "cuda", 69, "/nowhere.so was not found");
+  check_refused(FAKE "FAKE_FAIL=cuInit:0:3", BENCH "cuda", 69, "CUDA_ERROR_NOT_INITIALIZED");
+  check_refused(FAKE "FAKE_CUDA=device", BENCH "cuda", 69, "no device");
+  check_refused(FAKE "FAKE_CUDA=old", BENCH "cuda", 69, "compute capability 5.0");
+  check_refused(FAKE "TETLAP_NVRTC=/nowhere.so", BENCH "cuda", 69, "/nowhere.so was not found");
 }
 END_TEST
 
@@ -88,13 +89,19 @@ START_TEST(a_device_that_fails_on_the_way_is_quoted) {
   char cuda[310], opencl[310];
   snprintf(cuda, sizeof cuda, "%scuda", bench), snprintf(opencl, sizeof opencl, "%sopencl", bench);
   check_refused("TETLAP_OPENCL=/nowhere.so", opencl, 69, "/nowhere.so was not found");
-  check_refused(FAKE "device", cuda, 69, "no device");
-  check_refused(FAKE "none FAKE_NVRTC=refuse", cuda, 69, refused);
-  check_refused(FAKE "load", cuda, 69, "CUDA_ERROR_INVALID_IMAGE");
-  check_refused(FAKE "memory", cuda, 71, "CUDA_ERROR_OUT_OF_MEMORY");
-  check_refused(FAKE "launch", cuda, 69, "CUDA_ERROR_LAUNCH_OUT_OF_RESOURCES");
-  check_refused(FAKE "lost", cuda, 69, "CUDA_ERROR_LAUNCH_FAILED");
-  check_refused(FAKE "lost FAKE_AFTER=3", cuda, 69, "CUDA_ERROR_LAUNCH_FAILED");
+  check_refused(FAKE "FAKE_CUDA=device", cuda, 69, "no device");
+  check_refused(FAKE "FAKE_NVRTC=refuse", cuda, 69, refused);
+  check_refused(FAKE "FAKE_FAIL=cuModuleLoadData:0:200", cuda, 69, "CUDA_ERROR_INVALID_IMAGE");
+  check_refused(FAKE "FAKE_FAIL=cuMemAlloc_v2:3:2", cuda, 71, "CUDA_ERROR_OUT_OF_MEMORY");
+  check_refused(FAKE "FAKE_FAIL=cuLaunchKernel:0:701", cuda, 69, "CUDA_ERROR_LAUNCH_OUT_OF_RESOURCES");
+  check_refused(FAKE "FAKE_FAIL=cuLaunchKernel:0:719:later", cuda, 69, "CUDA_ERROR_LAUNCH_FAILED");
+  check_refused(FAKE "FAKE_FAIL=cuLaunchKernel:3:719:later", cuda, 69, "CUDA_ERROR_LAUNCH_FAILED");
+  snprintf(refused, sizeof refused, "rejected program '%s': kernel.cl:1: error: the compiler of tests",
+           model);
+  check_refused(FAKE_OPENCL "FAKE_FAIL=clBuildProgram:0:-11", opencl, 69, refused);
+  check_refused(FAKE_OPENCL "FAKE_FAIL=clCreateBuffer:3:-4", opencl, 71, "no memory for the object");
+  check_refused(FAKE_OPENCL "FAKE_FAIL=clEnqueueNDRangeKernel:0:-54", opencl, 69, "invalid work-group size");
+  check_refused(FAKE_OPENCL "FAKE_FAIL=clEnqueueNDRangeKernel:3:-5:later", opencl, 69, "the device is lost");
 }
 END_TEST
 
@@ -103,7 +110,7 @@ START_TEST(devices_lists_all_kinds_and_reasons) {
   ck_assert_int_eq(outcome.code, 0);
   ck_assert_ptr_nonnull(strstr(outcome.text, "host:0"));
   ck_assert_ptr_nonnull(strstr(outcome.text, "none: /nowhere.so was not found"));
-  outcome = run(FAKE "none TETLAP_OPENCL=/nowhere.so", "devices --json");
+  outcome = run(FAKE "TETLAP_OPENCL=/nowhere.so", "devices --json");
   ck_assert_int_eq(outcome.code, 0);
   ck_assert_ptr_nonnull(strstr(outcome.text, "\"a device of tests\""));
   ck_assert_ptr_nonnull(strstr(outcome.text, "\"reason\": \"/nowhere.so was not found"));

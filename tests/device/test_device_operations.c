@@ -16,12 +16,14 @@ START_TEST(clipping_takes_the_same_of_every_pair) {
     DeviceOverlap overlap;
     ck_assert_ok(device_overlap_create(&overlap, &device, models[m]));
     for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
-      double pairs[COUNT * 24], counts[3];
+      double pairs[COUNT * 24], counts[3], instructions[3];
       ck_assert_ok(app_bench_pairs_make(app_bench_sets[set], COUNT, 3, pairs));
       for (int i = 0; i < COUNT; i++) {
-        count_operations(pairs + 24 * (size_t)i, counts);
-        for (int q = 0; q < 3; q++)
+        count_operations(pairs + 24 * (size_t)i, counts, instructions);
+        for (int q = 0; q < 3; q++) {
           ck_assert_double_eq(device_overlap_flops(&overlap, (DeviceQuantity)q), counts[q]);
+          ck_assert_double_eq(device_overlap_instructions(&overlap, (DeviceQuantity)q), instructions[q]);
+        }
       }
     }
     device_overlap_destroy(&overlap);
@@ -39,6 +41,8 @@ START_TEST(networks_take_what_their_layers_say) {
   ck_assert_double_eq_tol(device_overlap_flops(&overlap, DEVICE_VOLUME), 102e3, 1e3);
   ck_assert_double_eq(device_overlap_flops(&overlap, DEVICE_GRADIENT),
                       2 * device_overlap_flops(&overlap, DEVICE_VOLUME));
+  ck_assert_double_eq(device_overlap_instructions(&overlap, DEVICE_VOLUME),
+                      0.5 * device_overlap_flops(&overlap, DEVICE_VOLUME));
   device_overlap_destroy(&overlap);
   device_close(&device);
 }

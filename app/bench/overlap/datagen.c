@@ -31,7 +31,7 @@ typedef struct Options {
 enum { KEY_PLANNED = 256 };
 
 static const struct argp_option option_table[] = {
-    {"law", 'l', "NAME,…", 0, "Laws, as of `tetlap datagen --list` (default: paper-train)", 1},
+    {"law", 'l', "NAME,...", 0, "Laws, as of `tetlap datagen --list` (default: paper-train)", 1},
     {"count", 'n', "N", 0, "Pairs a round (default: 20000)", 1},
     {"planned", KEY_PLANNED, "N", 0, "Tell how long so many pairs would take (default: 1.2e7, the paper's)",
      1},

@@ -31,7 +31,8 @@ typedef struct Contestant {
   DeviceQuantity quantity;
   AppBenchTimer timer;
   double kernel_s[APP_BENCH_MAX_REPEATS]; // of a pair
-  double gate_share, flops; // of kernel_s, of a network: the gate's; arithmetic of a pair, in the mean
+  double gate_share;                      // of kernel_s, of a network: the gate's
+  double flops, instructions;             // arithmetic of a pair, in the mean
   int handed_on, to_host;
 } Contestant;
 
@@ -51,8 +52,8 @@ typedef struct Bench {
 typedef struct Row {
   const char *model, *set, *quantity, *residence, *device;
   long long batch;
-  double handed_on, to_host; // shares of the pairs
-  double gate, of_peak;      // NaN: not told
+  double handed_on, to_host;      // shares of the pairs
+  double gate, of_peak, of_issue; // NaN: not told
   double kernel_rate, rate, rate_min, rate_max, spread, cpu_rate;
 } Row;
 
@@ -75,6 +76,10 @@ static const AppBenchColumn columns[] = {
      "kernels, by what the device can do at most: its maker's figure; of `host` over processor time, by what "
      "a "
      "core is measured to do (bf16 there: in float)"},
+    {"of_issue", APP_BENCH_NUMBER, offsetof(Row, of_issue), "of issue",
+     "instructions of that arithmetic (a fused one is one) over the time of all kernels, by what all "
+     "multiprocessors can issue: at least so much, for what compares, chooses and loads is not counted; of "
+     "cuda alone"},
     {"pairs_s", APP_BENCH_NUMBER, offsetof(Row, rate), "pairs/s", "complete answers, of wall time"},
     {"pairs_s_min", APP_BENCH_NUMBER, offsetof(Row, rate_min), NULL, "slowest round"},
     {"pairs_s_max", APP_BENCH_NUMBER, offsetof(Row, rate_max), NULL, "fastest round"},
@@ -141,6 +146,8 @@ static Status take_turn(Contestant *contestant, const Bench *bench, int round) {
   contestant->gate_share = overlap->gate_s / overlap->kernel_s;
   contestant->flops =
       device_overlap_flops(overlap, contestant->quantity) * (double)overlap->flop_pairs / contestant->batch;
+  contestant->instructions = device_overlap_instructions(overlap, contestant->quantity) *
+                             (double)overlap->flop_pairs / contestant->batch;
   contestant->to_host = overlap->handed_on[overlap->stage_count - 1];
   return STATUS_OK;
 }
@@ -177,6 +184,12 @@ static double share_of_peak(const Bench *bench, const Contestant *contestant, do
   return contestant->flops > 0 && peak > 0 ? contestant->flops * rate / peak : NAN;
 }
 
+// Of the instructions that a device can issue; NaN: nobody says how many.
+static double share_of_issue(const Bench *bench, const Contestant *contestant, double kernel_rate) {
+  const double most = bench->device.info.issue;
+  return contestant->instructions > 0 && most > 0 ? contestant->instructions * kernel_rate / most : NAN;
+}
+
 static Row row_of(const Bench *bench, Contestant *contestant) {
   int rounds = bench->def->common->repeats;
   AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
@@ -192,6 +205,7 @@ static Row row_of(const Bench *bench, Contestant *contestant) {
                .kernel_rate = kernel_rate,
                .gate = device_overlap_weights(contestant->overlap) ? contestant->gate_share : NAN,
                .of_peak = share_of_peak(bench, contestant, kernel_rate, 1 / time.cpu),
+               .of_issue = share_of_issue(bench, contestant, kernel_rate),
                .rate = 1 / time.wall,
                .rate_min = 1 / time.wall_max,
                .rate_max = 1 / time.wall_min,
@@ -212,6 +226,7 @@ static Row torch_row_of(const Bench *bench, const AppBenchTorch *torch) {
                .kernel_rate = NAN,
                .gate = NAN,
                .of_peak = NAN,
+               .of_issue = NAN,
                .rate = 1 / time.wall,
                .rate_min = 1 / time.wall_max,
                .rate_max = 1 / time.wall_min,

@@ -33,15 +33,15 @@ typedef struct Options {
 enum { KEY_TORCH = 0x200 };
 
 static const struct argp_option option_table[] = {
-    {"model", 'm', "NAME,…", 0, "Overlap models to measure (default: all)", 1},
-    {"set", 's', "NAME,…", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
-    {"quantity", 'Q', "NAME,…", 0, "V, V+centroid, V+grad, V+grad+hess (default: all that a model has)", 1},
-    {"batch", 'b', "N,…", 0, "Pairs a call (default: 4096); slow models get fewer", 1},
+    {"model", 'm', "NAME,...", 0, "Overlap models to measure (default: all)", 1},
+    {"set", 's', "NAME,...", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
+    {"quantity", 'Q', "NAME,...", 0, "V, V+centroid, V+grad, V+grad+hess (default: all that a model has)", 1},
+    {"batch", 'b', "N,...", 0, "Pairs a call (default: 4096); slow models get fewer", 1},
     {"device", 'D', "NAME", 0,
      "Measure kernels on a device: host, opencl, cuda, auto, or with a number (opencl:1); `tetlap devices` "
      "lists them",
      1},
-    {"residence", 'R', "NAME,…", 0,
+    {"residence", 'R', "NAME,...", 0,
      "With --device, where the pairs lie: device, indices, host (default: all)", 1},
     {"torch", KEY_TORCH, NULL, 0,
      "With --device, PyTorch beside models with a network, on the same device: the network alone, without "

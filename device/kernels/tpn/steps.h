@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a step of a network is for kernels/tpn_network.inc; part of the program's text, and of
+// What a step of a network is for kernels/tpn/network.inc; part of the program's text, and of
 // device/network/tpn.c.
 enum { TPN_ITEMS = 64 };
 enum { TPN_PAIRS = 32, TPN_ROOM = 368 };                 // of a group that wants V: pairs, rows of its memory
