@@ -56,6 +56,13 @@ void memory_trim(void) {
   malloc_trim(0);
 }
 
+void memory_separate(void) {
+  enum { MAPS = 65536, LARGE = 1 << 20 }; // the C library's own number; large enough to be cleared in no time
+  mallopt(M_MMAP_MAX, MAPS);
+  mallopt(M_MMAP_THRESHOLD, LARGE);
+  mallopt(M_TRIM_THRESHOLD, 2 * LARGE);
+}
+
 void memory_fail_at(long k) {
   atomic_store(&fail_countdown, k);
 }

@@ -25,6 +25,11 @@ size_t memory_held_by(size_t count, const void *const *arrays); // of several
 // Hands what is free in the heap back to the system: after much was freed that is not soon needed again.
 void memory_trim(void);
 
+// Large arrays get memory of their own, which goes back to the system when they are freed, and what they do
+// not touch takes none: as the C library begins, and a library that was loaded may have changed
+// (SuperLU_DIST, which PETSc brings, has all come from one heap that never shrinks).
+void memory_separate(void);
+
 // Tests: the k-th allocation from now on (1 = the next) fails once; 0 switches it off.
 void memory_fail_at(long k);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The processes (ranks) that share one run, behind one table. Without MPI there is one, and nothing happens.
 //
-// Every rank goes through the same states to the last bit: what it does for the others comes back as sums or
-// pieces that all get, and whatever decides is the same on all. So these functions are called by all ranks,
-// in the same order; only the first rank writes files and speaks.
+// Every rank goes through the same states to the last bit: its own work is returned to all as sums or pieces,
+// and whatever decides is the same on all. So all ranks call these functions in the same order; only the
+// first rank writes files and messages.
 #ifndef TETLAP_BASE_RANKS_H
 #define TETLAP_BASE_RANKS_H
 

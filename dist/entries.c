@@ -2,8 +2,6 @@
 #include "dist/entries.h"
 
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "base/ranks.h"
@@ -12,74 +10,171 @@ static Status agree(bool is_ok) {
   return ranks()->worst(is_ok ? STATUS_OK : status_no_memory("the condensed matrix"));
 }
 
-// Vertices that are this rank's, or that a clique of its own has: to others it adds nothing.
-static Status find_touched(DistEntries *entries, const FemMatrix *matrix) {
-  const FemShare *share = matrix->share;
-  int *vertex_of = memory_zeroed((size_t)matrix->size, sizeof *vertex_of);
-  entries->is_touched = memory_zeroed((size_t)matrix->vertex_count, sizeof *entries->is_touched);
-  Status status = agree(vertex_of && entries->is_touched);
-  for (int v = 0; v < matrix->vertex_count && !status; v++) {
-    entries->is_touched[v] = share->owner[v] == share->rank;
-    for (int c = 0; c < 3; c++) {
-      int unknown = matrix->unknown_of_dof[3 * (size_t)v + (size_t)c];
-      if (unknown >= 0) vertex_of[unknown] = v;
-    }
-  }
-  for (int u = 0; u < matrix->size && !status; u++)
-    for (int k = matrix->col_begin[u]; k < matrix->col_begin[u + 1]; k++)
-      if (vertex_of[matrix->row[k]] != vertex_of[u])
-        entries->is_touched[vertex_of[u]] = entries->is_touched[vertex_of[matrix->row[k]]] = true;
-  memory_free(vertex_of);
-  return status;
+double dist_entries_alone(const DistRows *rows, const FemMatrix *matrix) {
+  double value = rows->own_count > 0 ? matrix->value[matrix->col_begin[rows->own[0]]] : 1;
+  return value > 0 ? value : 1;
 }
 
-// What is done with an entry of the whole matrix that this rank adds to.
-typedef void Visit(DistEntries *entries, int row, int column, double value);
+static int local(const DistEntries *entries, int row) {
+  return row - entries->rows->first;
+}
 
-// Each entry of the lower triangle that this rank may add to, and its mirror image.
-static void walk(DistEntries *entries, const FemMatrix *matrix, Visit *visit) {
-  entries->given_at = entries->given_begin[ranks()->number];
-  entries->slot_at = 0;
-  for (int v = 0; v < matrix->vertex_count; v++) {
-    if (!entries->is_touched[v]) continue;
+// What this rank has for rows of others; `to` NULL: only how many.
+static size_t give(const DistEntries *entries, const DistReach *reach, DistEntry *to) {
+  const FemMatrix *matrix = entries->matrix;
+  int *columns = entries->columns;
+  double *values = entries->values;
+  size_t given = 0;
+  for (int i = 0; i < reach->vertex_count; i++) {
+    int v = reach->vertices[i];
+    if (matrix->share->owner[v] == matrix->share->rank) continue;
     for (int c = 0; c < 3; c++) {
-      int u = matrix->unknown_of_dof[3 * (size_t)v + (size_t)c];
-      if (u < 0) continue;
-      for (int k = matrix->col_begin[u]; k < matrix->col_begin[u + 1]; k++) {
-        int row = entries->rows->row[matrix->row[k]], column = entries->rows->row[u];
-        visit(entries, row, column, matrix->value[k]);
-        if (row != column) visit(entries, column, row, matrix->value[k]);
+      int unknown = matrix->unknown_of_dof[3 * (size_t)v + (size_t)c];
+      if (unknown < 0) continue;
+      int count = fem_matrix_row(matrix, v, unknown, columns, values);
+      for (int k = 0; k < count; k++) {
+        if (entries->skips_zeros && values[k] == 0) continue;
+        if (to)
+          to[given] = (DistEntry){.row = entries->rows->row[unknown],
+                                  .column = entries->rows->row[columns[k]],
+                                  .value = values[k]};
+        given++;
       }
     }
   }
+  return given;
 }
 
-// Counts stand two places behind a row, so that sums of them end one behind, where rows are filled from.
-static void count_entry(DistEntries *entries, int row, int column, double value) {
-  (void)column, (void)value;
-  if (dist_rows_have(entries->rows, row))
-    entries->row_begin[row - entries->rows->first + 2]++, entries->slot_at++;
-  else
-    entries->given_at++;
+// Where each rank's entries for rows of others begin among those of all.
+static Status count_given(size_t own, int *begin) {
+  int rank_count = ranks()->count;
+  double *counts = memory_zeroed((size_t)rank_count, sizeof *counts), sum = 0;
+  Status status = agree(counts && begin);
+  if (!status) {
+    counts[ranks()->number] = (double)own;
+    ranks()->sum(counts, (size_t)rank_count);
+    for (int r = 0; r < rank_count; r++) {
+      sum += counts[r];
+      begin[r + 1] = sum > INT_MAX ? INT_MAX : (int)sum;
+    }
+    status = agree(sum <= INT_MAX); // more than can be numbered
+  }
+  memory_free(counts);
+  return status;
 }
 
-static void give_place(DistEntries *entries, int row, int column, double value) {
-  (void)value;
-  if (!dist_rows_have(entries->rows, row)) entries->given[entries->given_at++] = (DistPlace){row, column};
+// Those for rows of this rank, by row; counts stand two places behind a row while they are sorted.
+static Status take(DistEntries *entries, const DistEntry *given, int given_count) {
+  const DistRows *rows = entries->rows;
+  int *begin = entries->taken_begin, count = 0;
+  for (int g = 0; g < given_count; g++) {
+    if (!dist_rows_have(rows, given[g].row)) continue;
+    begin[local(entries, given[g].row) + 2]++;
+    count++;
+  }
+  entries->taken = memory_zeroed((size_t)count, sizeof *entries->taken);
+  if (!entries->taken) return status_no_memory("the condensed matrix");
+  for (int row = 0; row < rows->end - rows->first; row++) begin[row + 2] += begin[row + 1];
+  for (int g = 0; g < given_count; g++)
+    if (dist_rows_have(rows, given[g].row))
+      entries->taken[begin[local(entries, given[g].row) + 1]++] = given[g];
+  return STATUS_OK;
 }
 
-static void list_entry(DistEntries *entries, int row, int column, double value) {
-  (void)value;
-  if (dist_rows_have(entries->rows, row))
-    entries->column[entries->row_begin[row - entries->rows->first + 1]++] = column;
+static int count_taken(const DistEntries *entries, int row) {
+  return entries->taken_begin[local(entries, row) + 1] - entries->taken_begin[local(entries, row)];
 }
 
-static int find_slot(const DistEntries *entries, int row, int column) {
-  int low = entries->row_begin[row - entries->rows->first],
-      high = entries->row_begin[row - entries->rows->first + 1] - 1;
+static int unknown_of(const DistEntries *entries, int row) {
+  return entries->matrix->unknown_of_dof[entries->rows->dof[local(entries, row)]];
+}
+
+static int vertex_of(const DistEntries *entries, int row) {
+  return entries->rows->dof[local(entries, row)] / 3;
+}
+
+// The most entries that this rank has in any row.
+static int find_longest(const DistEntries *entries, const DistReach *reach) {
+  const FemMatrix *matrix = entries->matrix;
+  int longest = 1;
+  for (int i = 0; i < reach->vertex_count; i++)
+    for (int c = 0; c < 3; c++) {
+      int v = reach->vertices[i], unknown = matrix->unknown_of_dof[3 * (size_t)v + (size_t)c];
+      int count = unknown >= 0 ? fem_matrix_row(matrix, v, unknown, NULL, NULL) : 0;
+      if (count > longest) longest = count;
+    }
+  return longest;
+}
+
+static Status make_room(DistEntries *entries, size_t longest) {
+  memory_free(entries->columns), memory_free(entries->values);
+  entries->columns = memory_zeroed(longest, sizeof *entries->columns);
+  entries->values = memory_zeroed(longest, sizeof *entries->values);
+  return entries->columns && entries->values ? STATUS_OK : status_no_memory("the condensed matrix");
+}
+
+// Room for what others have beside.
+static Status widen(DistEntries *entries, int longest) {
+  int most = 0;
+  for (int row = entries->rows->first; row < entries->rows->end; row++)
+    if (count_taken(entries, row) > most) most = count_taken(entries, row);
+  return make_room(entries, (size_t)longest + (size_t)most);
+}
+
+static Status exchange(DistEntries *entries, const DistReach *reach, int *begin) {
+  TRY(count_given(give(entries, reach, NULL), begin));
+  int all = begin[ranks()->count];
+  DistEntry *given = memory_zeroed((size_t)all, sizeof *given);
+  Status status = agree(given);
+  if (!status) {
+    give(entries, reach, given + begin[ranks()->number]);
+    ranks()->join(given, sizeof *given, begin);
+    status = take(entries, given, all);
+  }
+  memory_free(given);
+  return status;
+}
+
+Status dist_entries_create(DistEntries *entries, const DistRows *rows, const DistReach *reach,
+                           const FemMatrix *matrix, bool skips_zeros) {
+  *entries = (DistEntries){
+      .rows = rows, .matrix = matrix, .skips_zeros = skips_zeros, .alone = dist_entries_alone(rows, matrix)};
+  int longest = find_longest(entries, reach);
+  int *begin = memory_zeroed((size_t)ranks()->count + 1, sizeof *begin);
+  entries->taken_begin = memory_zeroed((size_t)(rows->end - rows->first) + 2, sizeof *entries->taken_begin);
+  Status status = begin && entries->taken_begin ? make_room(entries, (size_t)longest)
+                                                : status_no_memory("the condensed matrix");
+  status = ranks()->worst(status);
+  if (!status) status = exchange(entries, reach, begin);
+  if (!status) status = widen(entries, longest);
+  memory_free(begin);
+  status = ranks()->worst(status);
+  if (status) dist_entries_destroy(entries);
+  return status;
+}
+
+void dist_entries_destroy(DistEntries *entries) {
+  memory_free(entries->taken_begin), memory_free(entries->taken);
+  memory_free(entries->columns), memory_free(entries->values);
+  *entries = (DistEntries){0};
+}
+
+// Ascending: those of a rank are, and of each rank there is a run.
+static void sort(int *columns, double *values, int count) {
+  for (int i = 1; i < count; i++) {
+    int column = columns[i], k = i;
+    double value = values[i];
+    for (; k > 0 && columns[k - 1] > column; k--) columns[k] = columns[k - 1], values[k] = values[k - 1];
+    columns[k] = column;
+    values[k] = value;
+  }
+}
+
+static int find(const int *columns, int count, int column) {
+  int low = 0, high = count;
   while (low < high) {
     int middle = low + (high - low) / 2;
-    if (entries->column[middle] < column)
+    if (columns[middle] < column)
       low = middle + 1;
     else
       high = middle;
@@ -87,149 +182,38 @@ static int find_slot(const DistEntries *entries, int row, int column) {
   return low;
 }
 
-static void place_entry(DistEntries *entries, int row, int column, double value) {
-  (void)value;
-  if (dist_rows_have(entries->rows, row))
-    entries->slots[entries->slot_at++] = find_slot(entries, row, column);
-}
-
-static void add_entry(DistEntries *entries, int row, int column, double value) {
-  (void)column;
-  if (dist_rows_have(entries->rows, row))
-    entries->values[entries->slots[entries->slot_at++]] += value;
-  else
-    entries->given_values[entries->given_at++] = value;
-}
-
-// How many entries ranks have for rows of others, and where each rank's begin among all of these.
-static Status count_entries(DistEntries *entries, const FemMatrix *pattern, int *own_count) {
-  int rank_count = pattern->share->rank_count;
-  double *counts = memory_zeroed((size_t)rank_count, sizeof *counts);
-  entries->given_begin = memory_zeroed((size_t)rank_count + 1, sizeof *entries->given_begin);
-  entries->row_begin =
-      memory_zeroed((size_t)(entries->rows->end - entries->rows->first) + 2, sizeof *entries->row_begin);
-  Status status = agree(counts && entries->given_begin && entries->row_begin);
-  if (!status) {
-    walk(entries, pattern, count_entry);
-    *own_count = entries->slot_at;
-    counts[ranks()->number] = entries->given_at;
-    ranks()->sum(counts, (size_t)rank_count);
-    for (int r = 0; r < rank_count; r++)
-      entries->given_begin[r + 1] = entries->given_begin[r] + (int)counts[r];
+// Adds one, in its place; how many there are now.
+static int add(DistEntries *entries, int count, const DistEntry *entry) {
+  int at = find(entries->columns, count, entry->column);
+  if (at < count && entries->columns[at] == entry->column) {
+    entries->values[at] += entry->value;
+    return count;
   }
-  memory_free(counts);
-  return status;
-}
-
-// Places of the entries that ranks have for rows of others: all of them on each, for they are few.
-static Status exchange_places(DistEntries *entries, const FemMatrix *pattern) {
-  size_t all = (size_t)entries->given_begin[pattern->share->rank_count];
-  entries->given = memory_zeroed(all, sizeof *entries->given);
-  entries->given_values = memory_zeroed(all, sizeof *entries->given_values);
-  entries->taken = memory_zeroed(all, sizeof *entries->taken);
-  TRY(agree(entries->given && entries->given_values && entries->taken));
-  walk(entries, pattern, give_place);
-  ranks()->join(entries->given, sizeof *entries->given, entries->given_begin);
-  entries->taken_count = 0;
-  for (int g = 0; g < (int)all; g++) {
-    if (!dist_rows_have(entries->rows, entries->given[g].row)) continue;
-    entries->taken[entries->taken_count++].from = g;
-    entries->row_begin[entries->given[g].row - entries->rows->first + 2]++;
+  for (int k = count; k > at; k--) {
+    entries->columns[k] = entries->columns[k - 1];
+    entries->values[k] = entries->values[k - 1];
   }
-  return STATUS_OK;
+  entries->columns[at] = entry->column;
+  entries->values[at] = entry->value;
+  return count + 1;
 }
 
-static int compare_ints(const void *a, const void *b) {
-  int x = *(const int *)a, y = *(const int *)b;
-  return (x > y) - (x < y);
-}
-
-// Each row ascending, every column once.
-static void sort_rows(DistEntries *entries) {
-  int to = 0, from = 0, *column = entries->column;
-  for (int row = 0; row < entries->rows->end - entries->rows->first; row++) {
-    int end = entries->row_begin[row + 1], first = to;
-    qsort(column + from, (size_t)(end - from), sizeof *column, compare_ints);
-    for (; from < end; from++)
-      if (to == first || column[from] != column[to - 1]) column[to++] = column[from];
-    entries->row_begin[row + 1] = to;
+int dist_entries_row(DistEntries *entries, int row) {
+  int unknown = unknown_of(entries, row), *columns = entries->columns;
+  if (unknown < 0) {
+    columns[0] = row;
+    entries->values[0] = entries->alone;
+    return 1;
   }
-}
-
-// This rank's rows: of its own entries, of those that it is given, and of coordinates that stand alone.
-static Status list_rows(DistEntries *entries, const FemMatrix *pattern, int own_count) {
-  const DistRows *rows = entries->rows;
-  size_t most = (size_t)own_count + (size_t)entries->taken_count + (size_t)rows->alone_count;
-  if (most > INT_MAX) return agree(false); // more than can be numbered
-  int row_count = rows->end - rows->first, *begin = entries->row_begin;
-  entries->column = memory_zeroed(most, sizeof *entries->column);
-  entries->slots = memory_zeroed((size_t)own_count, sizeof *entries->slots);
-  entries->alone_slots = memory_zeroed((size_t)rows->alone_count, sizeof *entries->alone_slots);
-  TRY(agree(entries->column && entries->slots && entries->alone_slots));
-  for (int k = 0; k < rows->alone_count; k++) begin[rows->alone[k] - rows->first + 2]++;
-  for (int row = 0; row < row_count; row++) begin[row + 2] += begin[row + 1];
-  walk(entries, pattern, list_entry);
-  for (int k = 0; k < entries->taken_count; k++) {
-    DistPlace place = entries->given[entries->taken[k].from];
-    entries->column[begin[place.row - rows->first + 1]++] = place.column;
+  int all = fem_matrix_row(entries->matrix, vertex_of(entries, row), unknown, columns, entries->values),
+      count = 0;
+  for (int k = 0; k < all; k++) {
+    if (entries->skips_zeros && entries->values[k] == 0 && columns[k] != unknown) continue;
+    entries->values[count] = entries->values[k];
+    columns[count++] = entries->rows->row[columns[k]];
   }
-  for (int k = 0; k < rows->alone_count; k++)
-    entries->column[begin[rows->alone[k] - rows->first + 1]++] = rows->alone[k];
-  sort_rows(entries);
-  walk(entries, pattern, place_entry);
-  for (int k = 0; k < entries->taken_count; k++) {
-    DistPlace place = entries->given[entries->taken[k].from];
-    entries->taken[k].slot = find_slot(entries, place.row, place.column);
-  }
-  for (int k = 0; k < rows->alone_count; k++)
-    entries->alone_slots[k] = find_slot(entries, rows->alone[k], rows->alone[k]);
-  return STATUS_OK;
-}
-
-// As stiff as a neighbour.
-static double stiffness_alone(const DistEntries *entries, const FemMatrix *matrix) {
-  double value = entries->rows->own_count > 0 ? matrix->value[matrix->col_begin[entries->rows->own[0]]] : 1;
-  return value > 0 ? value : 1;
-}
-
-static Status lay_out(DistEntries *entries, const FemMatrix *pattern) {
-  int own_count = 0;
-  TRY(find_touched(entries, pattern));
-  TRY(count_entries(entries, pattern, &own_count));
-  TRY(exchange_places(entries, pattern));
-  TRY(list_rows(entries, pattern, own_count));
-  memory_free(entries->given);
-  entries->given = NULL;
-  size_t count = (size_t)entries->row_begin[entries->rows->end - entries->rows->first];
-  entries->values = memory_zeroed(count, sizeof *entries->values);
-  return agree(entries->values);
-}
-
-Status dist_entries_create(DistEntries *entries, const DistRows *rows, const FemMatrix *pattern) {
-  *entries = (DistEntries){.rows = rows};
-  return lay_out(entries, pattern);
-}
-
-void dist_entries_forget_columns(DistEntries *entries) {
-  memory_free(entries->column);
-  entries->column = NULL;
-}
-
-void dist_entries_destroy(DistEntries *entries) {
-  memory_free(entries->row_begin), memory_free(entries->column), memory_free(entries->values);
-  memory_free(entries->is_touched), memory_free(entries->slots), memory_free(entries->alone_slots);
-  memory_free(entries->given_begin), memory_free(entries->given), memory_free(entries->given_values);
-  memory_free(entries->taken);
-  *entries = (DistEntries){0};
-}
-
-void dist_entries_sum(DistEntries *entries, const FemMatrix *matrix) {
-  const DistRows *rows = entries->rows;
-  double alone = stiffness_alone(entries, matrix);
-  memset(entries->values, 0, (size_t)entries->row_begin[rows->end - rows->first] * sizeof(double));
-  walk(entries, matrix, add_entry);
-  ranks()->join(entries->given_values, sizeof *entries->given_values, entries->given_begin);
-  for (int k = 0; k < entries->taken_count; k++)
-    entries->values[entries->taken[k].slot] += entries->given_values[entries->taken[k].from];
-  for (int k = 0; k < rows->alone_count; k++) entries->values[entries->alone_slots[k]] = alone;
+  sort(columns, entries->values, count);
+  const int *begin = entries->taken_begin + local(entries, row);
+  for (int k = begin[0]; k < begin[1]; k++) count = add(entries, count, &entries->taken[k]);
+  return count;
 }

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "app/program.h"
+#include "base/memory.h"
 #include "base/ranks.h"
 #include "base/status.h"
 #include "dist/mpi.h"
@@ -39,6 +40,7 @@ static void settle(char **arguments) {
 }
 
 int main(int argument_count, char **arguments) {
+  memory_separate();
   if (dist_mpi_is_wanted()) {
     settle(arguments);
     dist_mpi_begin(&argument_count, &arguments, dist_solver_close);

@@ -18,6 +18,7 @@ static void number_vertex(DistRows *rows, const FemMatrix *pattern, int vertex, 
     int unknown = pattern->unknown_of_dof[3 * (size_t)vertex + (size_t)c];
     if (unknown >= 0) rows->row[unknown] = row + c;
     if (!is_own) continue;
+    rows->dof[row + c - rows->first] = 3 * vertex + c;
     if (pattern->rest) rows->rest[row + c - rows->first] = pattern->rest[3 * (size_t)vertex + (size_t)c];
     if (unknown >= 0)
       rows->own[rows->own_count++] = unknown;
@@ -47,7 +48,9 @@ static Status reserve(DistRows *rows, const FemMatrix *pattern) {
   rows->own = memory_zeroed(own, sizeof *rows->own);
   rows->alone = memory_zeroed(own, sizeof *rows->alone);
   rows->rest = memory_zeroed(own, sizeof *rows->rest);
-  return rows->own && rows->alone && rows->rest ? STATUS_OK : status_no_memory("the condensed system");
+  rows->dof = memory_zeroed(own, sizeof *rows->dof);
+  return rows->own && rows->alone && rows->rest && rows->dof ? STATUS_OK
+                                                             : status_no_memory("the condensed system");
 }
 
 Status dist_rows_create(DistRows *rows, const FemMatrix *pattern) {
@@ -67,6 +70,7 @@ Status dist_rows_create(DistRows *rows, const FemMatrix *pattern) {
 void dist_rows_destroy(DistRows *rows) {
   memory_free(rows->begin), memory_free(rows->row), memory_free(rows->unknowns);
   memory_free(rows->own), memory_free(rows->alone), memory_free(rows->rest);
+  memory_free(rows->dof);
   *rows = (DistRows){0};
 }
 

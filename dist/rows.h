@@ -18,6 +18,7 @@ typedef struct DistRows {
   int *own;                // unknowns of this rank                            (own_count)
   int own_count;           //
   int *alone, alone_count; // rows of this rank that no unknown has
+  int *dof;                // 3·vertex + component of each row                 (end − first)
   double *rest;            // of its vertices [m]; zero: not known             (end − first)
 } DistRows;
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A matrix that ranks share (dist/entries.h), solved by PETSc. Right sides and solutions are whole on every
-// rank. A preconditioner is kept for new numbers while iterations stay near what they were when it was new
-// (as in fem/sparse/solver_petsc.c).
+// A matrix that ranks share, solved by PETSc. Right sides and solutions are whole on every rank. Conjugate
+// gradients multiply by what each rank has added (dist/product.h); rows are made of it for a preconditioner
+// alone (dist/entries.h), which is kept for new numbers while iterations stay near what they were when it was
+// new (as in fem/sparse/solver_petsc.c). BoomerAMG takes them as its finest level, so no other copy is left.
 #include "dist/solver.h"
 
 #include <petscksp.h>
@@ -13,6 +14,8 @@
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "dist/entries.h"
+#include "dist/hypre.h"
+#include "dist/product.h"
 #include "dist/rows.h"
 
 typedef enum Kind { BOOMER, GAMG, MUMPS, BLOCKS, KIND_COUNT } Kind;
@@ -29,13 +32,15 @@ typedef struct DistSolver {
   Kind kind;
   double tolerance;
   DistRows rows;
-  DistEntries entries;
-  double *all; // a vector by rows, of all ranks                                      (rows.count)
-  Mat matrix;
+  DistReach reach;
+  DistProduct product;
+  double *all; // a vector by rows, of all ranks; scratch of products                 (rows.count)
   Vec right, left;
-  KSP ksp;
-  bool has_rows;   // the numbering stands
-  bool has_matrix; // numbers are there
+  DistHypre *hypre; // the rows that BoomerAMG has
+  KSP ksp;          // NULL: there is no preconditioner
+  long long made;   // layout of the rows that it was made of
+  bool has_rows;    // the numbering stands
+  bool has_matrix;  // numbers are there
   bool is_worn, is_fresh;
   long long new_count; // iterations of its first solve
   long long layout;
@@ -139,15 +144,21 @@ static Status create_blocks(void **self, int threads, double tolerance) {
   return create(BLOCKS, self, tolerance);
 }
 
-static void forget_matrix(DistSolver *solver) {
-  MatDestroy(&solver->matrix);
-  dist_entries_destroy(&solver->entries);
+static void forget_product(DistSolver *solver) {
+  dist_product_destroy(&solver->product);
+  dist_reach_destroy(&solver->reach);
   solver->has_matrix = false;
 }
 
-static void forget(DistSolver *solver) {
+static void forget_preconditioner(DistSolver *solver) {
   KSPDestroy(&solver->ksp);
-  forget_matrix(solver);
+  dist_hypre_destroy(solver->hypre);
+  solver->hypre = NULL;
+}
+
+static void forget(DistSolver *solver) {
+  forget_preconditioner(solver);
+  forget_product(solver);
   VecDestroy(&solver->right);
   VecDestroy(&solver->left);
   dist_rows_destroy(&solver->rows);
@@ -178,33 +189,10 @@ static Status number_rows(DistSolver *solver, const FemMatrix *pattern) {
   return STATUS_OK;
 }
 
-static Status lay_out(DistSolver *solver, const FemMatrix *pattern) {
-  DistEntries *entries = &solver->entries;
-  int row_count = solver->rows.end - solver->rows.first;
-  TRY(dist_entries_create(entries, &solver->rows, pattern));
-  PETSC("the matrix", MatCreateMPIAIJWithArrays(PETSC_COMM_WORLD, row_count, row_count, solver->rows.count,
-                                                solver->rows.count, entries->row_begin, entries->column,
-                                                entries->values, &solver->matrix));
-  PETSC("the matrix", MatSetBlockSize(solver->matrix, 3));
-  PETSC("the matrix", MatSetOption(solver->matrix, MAT_SYMMETRIC, PETSC_TRUE));
-  PETSC("the matrix", MatSetOption(solver->matrix, MAT_SPD, PETSC_TRUE));
-  dist_entries_forget_columns(entries);
-  return STATUS_OK;
-}
-
-static Status make_ksp(DistSolver *solver) {
-  PC pc;
-  PETSC("the solver", KSPCreate(PETSC_COMM_WORLD, &solver->ksp));
-  PETSC("the solver", KSPSetOptionsPrefix(solver->ksp, prefixes[solver->kind]));
-  PETSC("the solver", KSPSetType(solver->ksp, solver->kind == MUMPS ? KSPPREONLY : KSPCG));
-  if (solver->kind != MUMPS) PETSC("the solver", KSPSetNormType(solver->ksp, KSP_NORM_NATURAL));
-  PETSC("the solver", KSPSetOperators(solver->ksp, solver->matrix, solver->matrix));
-  PETSC("the solver", KSPSetFromOptions(solver->ksp));
-  PETSC("the solver", KSPGetPC(solver->ksp, &pc));
-  if (solver->kind == GAMG)
-    PETSC("the multigrid",
-          PCSetCoordinates(pc, 3, (solver->rows.end - solver->rows.first) / 3, solver->rows.rest));
-  solver->is_worn = true;
+static Status make_product(DistSolver *solver, const FemMatrix *pattern) {
+  TRY(ranks()->worst(dist_reach_create(&solver->reach, pattern)));
+  PETSC("the matrix",
+        dist_product_create(&solver->product, &solver->rows, &solver->reach, solver->right, solver->all));
   return STATUS_OK;
 }
 
@@ -213,10 +201,8 @@ static Status analyse_layout(DistSolver *solver, const FemMatrix *pattern) {
     forget(solver);
     TRY(number_rows(solver, pattern));
   }
-  forget_matrix(solver);
-  TRY(lay_out(solver, pattern));
-  if (!solver->ksp) return make_ksp(solver);
-  PETSC("the solver", KSPSetOperators(solver->ksp, solver->matrix, solver->matrix));
+  forget_product(solver);
+  TRY(make_product(solver, pattern));
   // A factor is of one pattern.
   if (solver->kind == MUMPS || solver->kind == BLOCKS) solver->is_worn = true;
   return STATUS_OK;
@@ -246,13 +232,122 @@ static bool has_negative_pivots(DistSolver *solver, PC pc) {
   return count > 0;
 }
 
-static Status set_up(DistSolver *solver) {
-  bool is_kept = !solver->is_worn && solver->kind != MUMPS;
+// How many entries the rows have, in columns of this rank and of others                        (row, row)
+static Status count_columns(DistSolver *solver, DistEntries *entries, int **own, int **others) {
+  const DistRows *rows = &solver->rows;
+  size_t count = (size_t)(rows->end - rows->first);
+  *own = memory_zeroed(count, sizeof **own);
+  *others = memory_zeroed(count, sizeof **others);
+  if (!*own || !*others) return status_no_memory("the condensed matrix");
+  for (int row = rows->first; row < rows->end; row++) {
+    int entry_count = dist_entries_row(entries, row);
+    for (int k = 0; k < entry_count; k++)
+      (dist_rows_have(rows, entries->columns[k]) ? *own : *others)[row - rows->first]++;
+  }
+  return STATUS_OK;
+}
+
+static Status fill_rows(DistSolver *solver, DistEntries *entries, Mat matrix) {
+  for (int row = solver->rows.first; row < solver->rows.end; row++) {
+    int count = dist_entries_row(entries, row);
+    PETSC("the matrix",
+          MatSetValues(matrix, 1, &row, count, entries->columns, entries->values, INSERT_VALUES));
+  }
+  PETSC("the matrix", MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  PETSC("the matrix", MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  return STATUS_OK;
+}
+
+static Status make_matrix(DistSolver *solver, DistEntries *entries, const int *own, const int *others,
+                          Mat *matrix) {
+  int row_count = solver->rows.end - solver->rows.first, all = solver->rows.count;
+  PETSC("the matrix", MatCreate(PETSC_COMM_WORLD, matrix));
+  PETSC("the matrix", MatSetSizes(*matrix, row_count, row_count, all, all));
+  PETSC("the matrix", MatSetType(*matrix, MATMPIAIJ));
+  PETSC("the matrix", MatSetBlockSize(*matrix, 3));
+  PETSC("the matrix", MatMPIAIJSetPreallocation(*matrix, 0, own, 0, others));
+  return fill_rows(solver, entries, *matrix);
+}
+
+// BoomerAMG takes a matrix of hypre's as its own.
+static Status make_hypre(DistSolver *solver, DistEntries *entries, const int *own, const int *others,
+                         Mat *matrix) {
+  const DistRows *rows = &solver->rows;
+  Status status = dist_hypre_create(&solver->hypre, PETSC_COMM_WORLD, rows->first, rows->end, own, others);
+  TRY(ranks()->worst(status));
+  for (int row = rows->first; row < rows->end && !status; row++) {
+    int count = dist_entries_row(entries, row);
+    status = dist_hypre_set_row(solver->hypre, row, count, entries->columns, entries->values);
+  }
+  TRY(ranks()->worst(status));
+  TRY(ranks()->worst(dist_hypre_end(solver->hypre, matrix)));
+  PETSC("the matrix", MatSetBlockSize(*matrix, 3));
+  return STATUS_OK;
+}
+
+static Status make_rows(DistSolver *solver, DistEntries *entries, Mat *matrix) {
+  int *own = NULL, *others = NULL;
+  Status status = ranks()->worst(count_columns(solver, entries, &own, &others));
+  if (!status)
+    status = (solver->kind == BOOMER ? make_hypre : make_matrix)(solver, entries, own, others, matrix);
+  memory_free(own), memory_free(others);
+  TRY(status);
+  PETSC("the matrix", MatSetOption(*matrix, MAT_SYMMETRIC, PETSC_TRUE));
+  PETSC("the matrix", MatSetOption(*matrix, MAT_SPD, PETSC_TRUE));
+  return STATUS_OK;
+}
+
+static Status make_ksp(DistSolver *solver, Mat rows) {
   PC pc;
+  PETSC("the solver", KSPCreate(PETSC_COMM_WORLD, &solver->ksp));
+  PETSC("the solver", KSPSetOptionsPrefix(solver->ksp, prefixes[solver->kind]));
+  PETSC("the solver", KSPSetType(solver->ksp, solver->kind == MUMPS ? KSPPREONLY : KSPCG));
+  if (solver->kind != MUMPS) PETSC("the solver", KSPSetNormType(solver->ksp, KSP_NORM_NATURAL));
+  PETSC("the solver", KSPSetOperators(solver->ksp, solver->product.shell, rows));
+  PETSC("the solver", KSPSetFromOptions(solver->ksp));
+  PETSC("the solver", KSPGetPC(solver->ksp, &pc));
+  if (solver->kind == GAMG)
+    PETSC("the multigrid",
+          PCSetCoordinates(pc, 3, (solver->rows.end - solver->rows.first) / 3, solver->rows.rest));
+  return STATUS_OK;
+}
+
+// Rows of the newest numbers in place of those that there are: the old preconditioner goes before they are
+// made, but where a factor of the same pattern can be filled again.
+static Status renew_rows(DistSolver *solver, DistEntries *entries) {
+  Mat rows;
+  if (solver->ksp && solver->kind != BOOMER && solver->made == solver->product.matrix->layout) {
+    PETSC("the solver", KSPGetOperators(solver->ksp, NULL, &rows));
+    return fill_rows(solver, entries, rows);
+  }
+  forget_preconditioner(solver);
+  TRY(make_rows(solver, entries, &rows));
+  TRY(make_ksp(solver, rows));
+  MatDestroy(&rows); // the solver has it
+  solver->made = solver->product.matrix->layout;
+  return STATUS_OK;
+}
+
+static Status renew(DistSolver *solver) {
+  DistEntries entries;
+  // Rows that are filled again, or factorised, have all places.
+  TRY(dist_entries_create(&entries, &solver->rows, &solver->reach, solver->product.matrix,
+                          solver->kind == BOOMER));
+  Status status = renew_rows(solver, &entries);
+  dist_entries_destroy(&entries);
+  return status;
+}
+
+static Status set_up(DistSolver *solver) {
+  bool is_kept = solver->ksp && !solver->is_worn && solver->kind != MUMPS;
+  PC pc;
+  Mat rows;
   PCFailedReason reason;
+  if (!is_kept) TRY(renew(solver));
   PETSC("the solver", KSPSetReusePreconditioner(solver->ksp, is_kept ? PETSC_TRUE : PETSC_FALSE));
   // Told anew of its matrix, KSPSetUp looks at it; else the first application would, and find what is wrong.
-  PETSC("the solver", KSPSetOperators(solver->ksp, solver->matrix, solver->matrix));
+  PETSC("the solver", KSPGetOperators(solver->ksp, NULL, &rows));
+  PETSC("the solver", KSPSetOperators(solver->ksp, solver->product.shell, rows));
   PETSC("the solver", KSPSetUp(solver->ksp));
   PETSC("the solver", KSPGetPC(solver->ksp, &pc));
   PETSC("the solver", PCGetFailedReasonRank(pc, &reason));
@@ -265,14 +360,13 @@ static Status set_up(DistSolver *solver) {
                      names[solver->kind]);
 }
 
-static Status assemble(DistSolver *solver, const FemMatrix *matrix) {
+static Status look_at(DistSolver *solver, const FemMatrix *matrix) {
   double least;
   bool is_finite = fem_solver_is_finite(matrix->value, matrix->entry_count);
   TRY(ranks()->worst(is_finite ? STATUS_OK
                                : status_fail(STATUS_RETRY, "the condensed matrix is not finite")));
-  dist_entries_sum(&solver->entries, matrix);
-  PETSC("the matrix", MatUpdateMPIAIJWithArray(solver->matrix, solver->entries.values));
-  PETSC("the matrix", MatGetDiagonal(solver->matrix, solver->left));
+  dist_product_set(&solver->product, matrix);
+  PETSC("the matrix", dist_product_diagonal(&solver->product, solver->left));
   PETSC("the matrix", VecMin(solver->left, NULL, &least));
   return least > 0 ? STATUS_OK : status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
 }
@@ -285,7 +379,7 @@ static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix 
     return status_fail(STATUS_SOLVER, "%s: this layout of the matrix has not been analysed",
                        names[solver->kind]);
   double began = clock_wall_s();
-  Status status = assemble(solver, stiffness);
+  Status status = look_at(solver, stiffness);
   if (!status) status = set_up(solver);
   status = ranks()->worst(status);
   solver->has_matrix = status == STATUS_OK;

@@ -31,14 +31,14 @@ static Status allocate(FemModel *model, const FemMesh *meshes, int mesh_count) {
   model->rest = memory_zeroed(3 * v, sizeof *model->rest);
   model->tets = memory_zeroed(t, sizeof *model->tets);
   model->tet_body = memory_zeroed(t, sizeof *model->tet_body);
-  model->elements = memory_zeroed(t, sizeof *model->elements);
+  model->volumes = memory_zeroed(t, sizeof *model->volumes);
   model->bodies = memory_zeroed((size_t)mesh_count, sizeof *model->bodies);
   model->mass = memory_zeroed(v, sizeof *model->mass);
   model->initial_velocity = memory_zeroed(3 * v, sizeof *model->initial_velocity);
   model->unknown_of_dof = memory_zeroed(3 * v, sizeof *model->unknown_of_dof);
   model->dof_of_unknown = memory_zeroed(3 * v, sizeof *model->dof_of_unknown);
   bool ok = model->quadratics && model->quadratic_nodes && model->quadratic_body;
-  ok = ok && model->rest && model->tets && model->tet_body && model->elements && model->bodies &&
+  ok = ok && model->rest && model->tets && model->tet_body && model->volumes && model->bodies &&
        model->mass && model->initial_velocity && model->unknown_of_dof && model->dof_of_unknown;
   return ok ? STATUS_OK : status_no_memory("the model");
 }
@@ -48,14 +48,10 @@ static void append_mesh(FemModel *model, FemModelBody *body, const FemMesh *mesh
   memcpy(model->rest + 3 * body->vertex_begin, mesh->rest,
          3 * (size_t)mesh->vertex_count * sizeof *mesh->rest);
   for (int e = 0; e < mesh->tet_count; e++) {
-    double corners[12];
     int global = body->tet_begin + e;
-    for (int k = 0; k < 4; k++) {
-      model->tets[global][k] = mesh->tets[e][k] + body->vertex_begin;
-      memcpy(corners + 3 * k, mesh->rest + 3 * mesh->tets[e][k], 3 * sizeof *corners);
-    }
+    for (int k = 0; k < 4; k++) model->tets[global][k] = mesh->tets[e][k] + body->vertex_begin;
     model->tet_body[global] = body_number;
-    fem_element_create(&model->elements[global], corners);
+    model->volumes[global] = fem_model_element(model, global).volume;
   }
   for (int e = 0; e < mesh->quadratic_count; e++) {
     double nodes[3 * FEM_QUADRATIC_NODES];
@@ -84,7 +80,7 @@ static void lump_mass(FemModel *model, FemModelBody *body) {
     return;
   }
   for (int e = body->tet_begin; e < body->tet_end; e++) {
-    double share = 0.25 * body->material.density * model->elements[e].volume;
+    double share = 0.25 * body->material.density * model->volumes[e];
     for (int k = 0; k < 4; k++) model->mass[model->tets[e][k]] += share;
     body->mass += 4 * share;
   }
@@ -253,7 +249,7 @@ void fem_model_destroy(FemModel *model) {
   memory_free(model->rest);
   memory_free(model->tets);
   memory_free(model->tet_body);
-  memory_free(model->elements);
+  memory_free(model->volumes);
   memory_free(model->quadratics);
   memory_free(model->quadratic_nodes);
   memory_free(model->quadratic_body);

@@ -153,12 +153,21 @@ static int quadratic_of(const FemModel *model, int tet) {
   return body->quadratic_begin + (tet - body->tet_begin) / FEM_QUADRATIC_PARTS;
 }
 
+FemElement fem_model_element(const FemModel *model, int tet) {
+  double rest[12];
+  FemElement element;
+  gather(model->tets[tet], 4, model->rest, rest);
+  fem_element_create(&element, rest);
+  return element;
+}
+
 double fem_model_det(const FemModel *model, int tet, const double *positions) {
   const FemModelBody *body = body_of(model, tet);
   int part = (tet - body->tet_begin) % FEM_QUADRATIC_PARTS;
   double x[30], F[9];
   gather(model->tets[tet], 4, positions, x);
-  fem_element_deformation(&model->elements[tet], x, F);
+  const FemElement element = fem_model_element(model, tet);
+  fem_element_deformation(&element, x, F);
   double own = fem_cofactor_det(F);
   if (body->element != FEM_ELEMENT_QUADRATIC || part >= FEM_QUADRATIC_POINTS) return own;
   int quadratic = quadratic_of(model, tet);
@@ -172,7 +181,8 @@ void fem_model_stress(const FemModel *model, int tet, const double *positions, d
   double x[30];
   if (body->element != FEM_ELEMENT_QUADRATIC) {
     gather(model->tets[tet], 4, positions, x);
-    fem_element_cauchy(&model->elements[tet], &body->local, x, stress);
+    const FemElement element = fem_model_element(model, tet);
+    fem_element_cauchy(&element, &body->local, x, stress);
     return;
   }
   int quadratic = quadratic_of(model, tet);
@@ -224,7 +234,7 @@ static double contact_bytes(const FemModel *model) {
 // The constants are of the resident set, measured with `pcg`, which keeps nothing.
 double fem_model_memory_estimate(const FemModel *model) {
   double vertices = model->vertex_count, tets = model->tet_count, unknowns = model->unknown_count;
-  double arrays = vertices * 30 * sizeof(double) + tets * (sizeof(FemElement) + 400);
+  double arrays = vertices * 30 * sizeof(double) + tets * 400;
   arrays += model->quadratic_count * (double)(sizeof(FemQuadratic) + sizeof(FemLanesQuadratics) / FEM_LANES +
                                               FEM_LANES_HALF * sizeof(int));
   double matrix = unknowns * 23 * (sizeof(double) + sizeof(int));

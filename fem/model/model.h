@@ -43,7 +43,7 @@ typedef struct FemModel {
   double *rest;                            // [m]                                       (vertex_count, 3)
   int (*tets)[4];                          //                                           (tet_count)
   int *tet_body;                           //                                           (tet_count)
-  FemElement *elements;                    //                                           (tet_count)
+  double *volumes;                         // at rest [m³]                              (tet_count)
   int quadratic_count;                     // a body's tets are the eighths of its quadratic ones
   FemQuadratic *quadratics;                //                                           (quadratic_count)
   int (*quadratic_nodes)[10];              //                                           (quadratic_count)
@@ -101,6 +101,8 @@ bool fem_model_has_linear_materials(const FemModel *model);
 // body in the whole run.
 double fem_model_slip_speed(const FemModel *model);
 
+// What is constant in a tetrahedron, from its corners at rest: cheaper to find than to keep.
+FemElement fem_model_element(const FemModel *model, int tet);
 // det F of a tetrahedron; of a part of a quadratic one the smaller of its own and that at the point near its
 // corner.
 double fem_model_det(const FemModel *model, int tet, const double *positions);

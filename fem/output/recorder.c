@@ -97,13 +97,9 @@ static Status create(FemRecorder *recorder, const char *directory) {
   recorder->writes_vtu = model->scene->write_vtu;
   recorder->writes_history = model->scene->history;
   recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
-  recorder->displacement = memory_zeroed(3 * vertices, sizeof *recorder->displacement);
   bool has_reactions = fem_reactions_any(model);
   if (has_reactions) recorder->reaction = memory_zeroed(3 * vertices, sizeof *recorder->reaction);
-  recorder->stress = memory_zeroed(6 * tets, sizeof *recorder->stress);
-  recorder->von_mises = memory_zeroed(tets, sizeof *recorder->von_mises);
-  if (!recorder->directory || !recorder->displacement || !recorder->stress || !recorder->von_mises ||
-      (has_reactions && !recorder->reaction))
+  if (!recorder->directory || (has_reactions && !recorder->reaction))
     return status_no_memory("the output arrays");
   if (recorder->writes_vtu) TRY(fem_obstacle_frames_create(&recorder->obstacles, model));
   TRY(file_make_directories(directory));
@@ -142,13 +138,10 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   fem_obstacle_frames_destroy(&recorder->obstacles);
   memory_free(recorder->directory);
   memory_free(recorder->row);
-  memory_free(recorder->displacement);
   fem_forces_destroy(&recorder->forces);
   fem_ledger_destroy(&recorder->ledger);
   fem_probes_destroy(&recorder->probes);
   memory_free(recorder->reaction);
-  memory_free(recorder->stress);
-  memory_free(recorder->von_mises);
   memory_free(recorder->det_F);
   memory_free(recorder->overlap);
   fem_trouble_watch_destroy(&recorder->watch);
@@ -184,7 +177,7 @@ static void measure_elements(FemRecorder *recorder, FemMeasures *measures) {
   measures->min_det_F = INFINITY;
   for (int e = 0; e < system->model->tet_count; e++) {
     recorder->det_F[e] = fem_model_det(system->model, e, system->positions);
-    recorder->overlap[e] = covered ? covered[e] / system->model->elements[e].volume : 0;
+    recorder->overlap[e] = covered ? covered[e] / system->model->volumes[e] : 0;
     if (system->model->bodies[system->model->tet_body[e]].is_obstacle) continue;
     measures->min_det_F = fmin(measures->min_det_F, recorder->det_F[e]);
     measures->deepest_overlap = fmax(measures->deepest_overlap, recorder->overlap[e]);
@@ -294,54 +287,67 @@ static double von_mises(const double s[6]) {
   return sqrt(0.5 * normal + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
-static Status fill_arrays(FemRecorder *recorder, double time) {
-  const FemSystem *system = recorder->system;
+static void fill_displacement(void *self, size_t first, size_t count, double *values) {
+  const FemSystem *system = ((const FemRecorder *)self)->system;
+  for (size_t i = 0; i < 3 * count; i++)
+    values[i] = system->positions[3 * first + i] - system->model->rest[3 * first + i];
+}
+
+// Of an element; 0 of an obstacle's.
+static void find_stress(const FemSystem *system, int e, double stress[6]) {
   const FemModel *model = system->model;
-  for (int i = 0; i < 3 * model->vertex_count; i++)
-    recorder->displacement[i] = system->positions[i] - model->rest[i];
-  if (recorder->reaction) TRY(fem_reactions_measure(recorder->system, time, NULL, recorder->reaction));
-  for (int e = 0; e < model->tet_count; e++) {
-    const FemModelBody *body = &model->bodies[model->tet_body[e]];
-    if (body->is_obstacle) continue;
-    fem_model_stress(model, e, system->positions, recorder->stress + 6 * e);
-    void *volume = body->element == FEM_ELEMENT_NODAL ? fem_system_effect(system, &fem_effect_volume) : NULL;
-    if (volume) {
-      double corners[12];
-      gather(system, e, corners);
-      fem_effect_volume_add_stress(volume, e, corners, recorder->stress + 6 * e);
-    }
-    void *plasticity = fem_system_effect(system, &fem_effect_plasticity);
-    if (plasticity)
-      fem_effect_plasticity_add_stress(plasticity, e, system->positions, recorder->stress + 6 * e);
-    recorder->von_mises[e] = von_mises(recorder->stress + 6 * e);
+  const FemModelBody *body = &model->bodies[model->tet_body[e]];
+  for (int s = 0; s < 6; s++) stress[s] = 0;
+  if (body->is_obstacle) return;
+  fem_model_stress(model, e, system->positions, stress);
+  void *volume = body->element == FEM_ELEMENT_NODAL ? fem_system_effect(system, &fem_effect_volume) : NULL;
+  if (volume) {
+    double corners[12];
+    gather(system, e, corners);
+    fem_effect_volume_add_stress(volume, e, corners, stress);
   }
-  return STATUS_OK;
+  void *plasticity = fem_system_effect(system, &fem_effect_plasticity);
+  if (plasticity) fem_effect_plasticity_add_stress(plasticity, e, system->positions, stress);
+}
+
+static void fill_stress(void *self, size_t first, size_t count, double *values) {
+  const FemSystem *system = ((const FemRecorder *)self)->system;
+  for (size_t i = 0; i < count; i++) find_stress(system, (int)(first + i), values + 6 * i);
+}
+
+static void fill_von_mises(void *self, size_t first, size_t count, double *values) {
+  const FemSystem *system = ((const FemRecorder *)self)->system;
+  for (size_t i = 0; i < count; i++) {
+    double stress[6];
+    find_stress(system, (int)(first + i), stress);
+    values[i] = von_mises(stress);
+  }
 }
 
 // Moves the arrays that have values to the front; how many.
 static int keep_given(FemVtuArray *arrays, size_t count) {
   int kept = 0;
   for (size_t k = 0; k < count; k++)
-    if (arrays[k].reals || arrays[k].integers) arrays[kept++] = arrays[k];
+    if (arrays[k].reals || arrays[k].integers || arrays[k].fill) arrays[kept++] = arrays[k];
   return kept;
 }
 
 static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
-  TRY(fill_arrays(recorder, time));
+  if (recorder->reaction) TRY(fem_reactions_measure(recorder->system, time, NULL, recorder->reaction));
   const ContactStatus *status = recorder->status;
   const int *verdicts[] = {status ? status->predicted : NULL, status ? status->exact : NULL,
                            status ? status->error : NULL, status ? status->wrong_pairs : NULL};
   bool has_contact = contact_of(system) != NULL;
   // Those without values are left out.
   FemVtuArray arrays[] = {
-      {.name = "displacement", .components = 3, .reals = recorder->displacement},
+      {.name = "displacement", .components = 3, .fill = fill_displacement, .self = recorder},
       {.name = "velocity", .components = 3, .reals = system->velocities},
       {.name = "body", .is_cell = true, .components = 1, .integers = model->tet_body},
       {.name = "det_F", .is_cell = true, .components = 1, .reals = recorder->det_F},
-      {.name = "stress", .is_cell = true, .components = 6, .reals = recorder->stress},
-      {.name = "von_mises", .is_cell = true, .components = 1, .reals = recorder->von_mises},
+      {.name = "stress", .is_cell = true, .components = 6, .fill = fill_stress, .self = recorder},
+      {.name = "von_mises", .is_cell = true, .components = 1, .fill = fill_von_mises, .self = recorder},
       {.name = "trouble", .is_cell = true, .components = 1, .integers = recorder->watch.marks},
       {.name = "contact_force", .components = 3, .reals = recorder->forces.now.contact},
       {.name = "contact_pressure", .components = 1, .reals = recorder->forces.now.pressure},

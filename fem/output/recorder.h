@@ -30,9 +30,8 @@ typedef struct FemRecorder {
   FemForces forces;            // as they are written
   FemLedger ledger;
   FemProbes probes;
-  double *displacement;                         // scratch             (vertex_count, 3)
-  double *reaction;                             // scratch; NULL: nothing is prescribed (vertex_count, 3)
-  double *stress, *von_mises, *det_F, *overlap; // scratch     (tet_count, 6), (tet_count)
+  double *reaction;        // scratch; NULL: nothing is prescribed (vertex_count, 3)
+  double *det_F, *overlap; // scratch                          (tet_count)
   FemTroubleWatch watch;
   bool has_status;             // the scene asks for the elements' status
   OverlapModel reference;      // that it is held against

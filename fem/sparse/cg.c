@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "base/ranks.h"
 
 enum { PIECE = 1024, PARALLEL_SIZE = 4000 };
 
@@ -53,9 +54,10 @@ Status fem_cg_solve(FemCg *cg, const FemCgProblem *problem, const double *b, dou
   for (int i = 0; i < size; i++) p[i] = z[i];
   double rz = dot(cg, r, z);
   if (rz == 0) return STATUS_OK; // b = 0
-  double goal = problem->tolerance * problem->tolerance * rz;
+  double goal = problem->tolerance * problem->tolerance * (problem->by_residual ? dot(cg, b, b) : rz);
   for (int k = 0; k < problem->limit; k++) {
     fem_matrix_multiply(problem->matrix, p, Ap);
+    if (problem->matrix->share) ranks()->sum(Ap, (size_t)size);
     double pAp = dot(cg, p, Ap);
     *end = FEM_CG_INDEFINITE;
     if (!(pAp > 0) || isinf(pAp) || !(rz > 0))
@@ -64,11 +66,12 @@ Status fem_cg_solve(FemCg *cg, const FemCgProblem *problem, const double *b, dou
     double step = rz / pAp;
     add_scaled(size, step, p, x);
     add_scaled(size, -step, Ap, r);
-    TRY(problem->precondition(problem->self, r, z));
-    double rz_next = dot(cg, r, z);
     ++*iterations;
     *end = FEM_CG_CONVERGED;
-    if (fabs(rz_next) <= goal) return STATUS_OK;
+    if (problem->by_residual && dot(cg, r, r) <= goal) return STATUS_OK;
+    TRY(problem->precondition(problem->self, r, z));
+    double rz_next = dot(cg, r, z);
+    if (!problem->by_residual && fabs(rz_next) <= goal) return STATUS_OK;
     double ratio = rz_next / rz;
     for (int i = 0; i < size; i++) p[i] = z[i] + ratio * p[i];
     rz = rz_next;

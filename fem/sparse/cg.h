@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Conjugate gradients for a symmetric positive definite matrix, with whatever preconditioner P the caller
-// has. Converged when √(rᵀ P r) ≤ tolerance · √(bᵀ P b). Sums are formed over pieces of fixed length, so that
-// the result does not depend on the number of threads.
+// has. Converged when √(rᵀ P r) ≤ tolerance · √(bᵀ P b), or as soon as |r| ≤ tolerance · |b|, which costs one
+// application of P less. Sums are formed over pieces of fixed length, so that the result does not depend on
+// the number of threads. Where ranks share the matrix, each has all of the vectors.
 #ifndef TETLAP_FEM_SPARSE_CG_H
 #define TETLAP_FEM_SPARSE_CG_H
 
@@ -22,7 +23,8 @@ typedef struct FemCgProblem {
   void *self;
   const char *name; // of the solver, for messages
   double tolerance;
-  int limit; // iterations
+  bool by_residual; // converged by |r|
+  int limit;        // iterations
 } FemCgProblem;
 
 // STATUS_RETRY of fem_cg_solve comes from one of these.

@@ -388,16 +388,61 @@ static void spread_columns(const FemMatrix *matrix, int v, const double *x, doub
   }
 }
 
+static void spread(const FemMatrix *matrix, int v, const double *x, double *y) {
+  if (matrix->blocks->active[v] == 3)
+    spread_vertex(matrix, v, x, y);
+  else
+    spread_columns(matrix, v, x, y);
+}
+
 void fem_matrix_multiply(const FemMatrix *matrix, const double *x, double *y) {
   if (matrix->size <= PARALLEL_SIZE) {
     memset(y, 0, (size_t)matrix->size * sizeof *y);
-    for (int v = 0; v < matrix->vertex_count; v++)
-      if (matrix->blocks->active[v] == 3)
-        spread_vertex(matrix, v, x, y);
-      else
-        spread_columns(matrix, v, x, y);
+    for (int v = 0; v < matrix->vertex_count; v++) spread(matrix, v, x, y);
     return;
   }
 #pragma omp parallel for schedule(static)
   for (int w = 0; w < matrix->vertex_count; w++) multiply_vertex(matrix, w, x, y);
+}
+
+bool fem_matrix_is_coupled(const FemMatrix *matrix, int vertex) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  return blocks->above_begin[vertex] < blocks->above_begin[vertex + 1] ||
+         blocks->below_begin[vertex] < blocks->below_begin[vertex + 1];
+}
+
+void fem_matrix_add_product(const FemMatrix *matrix, int count, const int *vertices, const double *x,
+                            double *y) {
+  for (int i = 0; i < count; i++) spread(matrix, vertices[i], x, y);
+}
+
+// The entries of a row with columns of lower vertices.
+static int copy_below(const FemMatrix *matrix, int vertex, int own, int *columns, double *values) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  int count = 0;
+  for (int b = blocks->below_begin[vertex]; b < blocks->below_begin[vertex + 1]; b++) {
+    int v = blocks->below[b];
+    for (int c = 0; c < blocks->active[v]; c++, count++) {
+      if (!columns) continue;
+      columns[count] = blocks->first[v] + c;
+      values[count] = matrix->value[block_rows(blocks, v, c, blocks->below_offset[b]) + own];
+    }
+  }
+  return count;
+}
+
+int fem_matrix_row(const FemMatrix *matrix, int vertex, int unknown, int *columns, double *values) {
+  const int first = matrix->blocks->first[vertex], own = unknown - first;
+  const int begin = matrix->col_begin[unknown], end = matrix->col_begin[unknown + 1];
+  int count = copy_below(matrix, vertex, own, columns, values);
+  for (int c = 0; c < own && columns; c++) {
+    columns[count + c] = first + c;
+    values[count + c] = matrix->value[matrix->col_begin[first + c] + own - c];
+  }
+  count += own;
+  if (columns) {
+    memcpy(columns + count, matrix->row + begin, (size_t)(end - begin) * sizeof *columns);
+    memcpy(values + count, matrix->value + begin, (size_t)(end - begin) * sizeof *values);
+  }
+  return count + end - begin;
 }

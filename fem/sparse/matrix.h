@@ -59,4 +59,16 @@ void fem_matrix_add_mass(FemMatrix *matrix, const double *mass, double scale);
 // y = A x over the unknowns, deterministic for any number of threads. x and y must not overlap.
 void fem_matrix_multiply(const FemMatrix *matrix, const double *x, double *y);
 
+// What follows is for ranks that share a matrix, of which each has entries at some vertices only.
+
+// Whether a vertex couples with any other.
+bool fem_matrix_is_coupled(const FemMatrix *matrix, int vertex);
+// y += A x over the columns of these vertices and their mirror images, one after another: over all vertices
+// that are coupled, or have entries of their own, the whole product.
+void fem_matrix_add_product(const FemMatrix *matrix, int count, const int *vertices, const double *x,
+                            double *y);
+// A row of the whole matrix, both triangles, columns ascending: that of an unknown of `vertex`. Returns how
+// many entries it has; `columns` and `values` NULL: only that.
+int fem_matrix_row(const FemMatrix *matrix, int vertex, int unknown, int *columns, double *values);
+
 #endif

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 static FemPetscLibrary functions;
 static void *handle;
 static int is_ready;
@@ -19,8 +21,10 @@ static Status find(const char *name, void *pointer) {
   return STATUS_OK;
 }
 
-static int load(void) {
-  if (!handle) handle = dlopen(TETLAP_PETSC_LIBRARY, RTLD_LAZY | RTLD_LOCAL);
+static bool load(void) {
+  if (handle) return true;
+  handle = dlopen(TETLAP_PETSC_LIBRARY, RTLD_LAZY | RTLD_LOCAL);
+  if (handle) memory_separate(); // as before what it has brought
   return handle != NULL;
 }
 

@@ -8,11 +8,14 @@
 #include "base/files/deflate.h"
 #include "base/files/file.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "fem/output/vtk/base64.h"
 #include "fem/output/vtk/xml.h"
 
 enum {
   BLOCK_BYTES = 32768, // uncompressed size of a block, VTK's own default
+  BATCH_BLOCKS = 72,   // compressed at a time: whole tuples of 1, 3, 6 or 9 doubles
+  BATCH_NUMBERS = BATCH_BLOCKS * BLOCK_BYTES / (int)sizeof(double),
 };
 
 int fem_vtu_corner_count(FemVtuCell cell) {
@@ -28,59 +31,93 @@ int fem_vtu_type(FemVtuCell cell) {
 typedef struct Piece {
   const char *type, *name;
   int components;
-  const void *source;
+  const void *source; // NULL: `fill` gives it
   size_t byte_count;
+  FemVtuFill *fill;
+  void *self;
 } Piece;
 
-// A piece on its way to the file: block k compressed into slots + k · slot_bytes, and VTK's header
+// A batch of blocks on its way to the file: block k compressed into slots + k · slot_bytes. VTK's header is
 // [number of blocks, size of a block, size of the last one if it is shorter, compressed size of each].
 typedef struct Packing {
   unsigned char *slots;
   size_t slot_bytes;
+  double *filled; // what `fill` has given                   (BATCH_NUMBERS)
   uint64_t *header;
   uint64_t block_count;
 } Packing;
 
-static bool create(Packing *packing, size_t byte_count) {
-  packing->block_count = (byte_count + BLOCK_BYTES - 1) / BLOCK_BYTES;
+static bool create(Packing *packing, const Piece *piece) {
+  packing->block_count = (piece->byte_count + BLOCK_BYTES - 1) / BLOCK_BYTES;
   packing->slot_bytes = deflate_bound(BLOCK_BYTES);
-  packing->slots = memory_zeroed((size_t)packing->block_count, packing->slot_bytes);
+  packing->slots = memory_zeroed(BATCH_BLOCKS, packing->slot_bytes);
+  packing->filled = memory_zeroed(piece->source ? 0 : BATCH_NUMBERS, sizeof *packing->filled);
   packing->header = memory_zeroed((size_t)packing->block_count + 3, sizeof *packing->header);
-  return packing->slots && packing->header;
+  return packing->slots && packing->filled && packing->header;
 }
 
 static void destroy(Packing *packing) {
   memory_free(packing->slots);
+  memory_free(packing->filled);
   memory_free(packing->header);
 }
 
-// False if there is no memory. Fast, since doubles of a simulation hardly shrink further with more effort.
-static bool compress_blocks(Packing *packing, const unsigned char *source, size_t byte_count) {
-  uint64_t *header = packing->header;
-  header[0] = packing->block_count;
-  header[1] = BLOCK_BYTES;
-  header[2] = byte_count % BLOCK_BYTES;
+// The bytes from block `first` on.
+static const unsigned char *find_source(Packing *packing, const Piece *piece, size_t first) {
+  size_t begin = first * BLOCK_BYTES, bytes = piece->byte_count - begin;
+  if (piece->source) return (const unsigned char *)piece->source + begin;
+  size_t numbers = bytes / sizeof(double) < BATCH_NUMBERS ? bytes / sizeof(double) : BATCH_NUMBERS;
+  size_t components = (size_t)piece->components;
+  piece->fill(piece->self, begin / sizeof(double) / components, numbers / components, packing->filled);
+  return (const unsigned char *)packing->filled;
+}
+
+// Blocks `first` … of a batch; false if there is no memory. Fast, since doubles of a simulation hardly shrink
+// further with more effort.
+static bool compress_batch(Packing *packing, const Piece *piece, size_t first, int count) {
+  const unsigned char *source = find_source(packing, piece, first);
+  const size_t bytes = piece->byte_count - first * BLOCK_BYTES;
   bool ok = true;
 #pragma omp parallel for schedule(static) reduction(&& : ok)
-  for (int64_t k = 0; k < (int64_t)packing->block_count; k++) {
-    const size_t begin = (size_t)k * BLOCK_BYTES, rest = byte_count - begin;
+  for (int k = 0; k < count; k++) {
+    const size_t begin = (size_t)k * BLOCK_BYTES, rest = bytes - begin;
     size_t length;
     ok = deflate_pack(packing->slots + (size_t)k * packing->slot_bytes, &length, source + begin,
                       rest < BLOCK_BYTES ? rest : BLOCK_BYTES, DEFLATE_FAST) &&
          ok;
-    header[3 + k] = length;
+    packing->header[3 + first + (size_t)k] = length;
   }
   return ok;
 }
 
-// The header and the blocks, each a base64 text of its own.
-static void print_packed(FILE *stream, const Packing *packing) {
+static void print_header(FILE *stream, const Packing *packing) {
   FemBase64 text = {.stream = stream};
   fem_base64_write(&text, packing->header, ((size_t)packing->block_count + 3) * sizeof *packing->header);
   fem_base64_end(&text);
-  for (uint64_t k = 0; k < packing->block_count; k++)
-    fem_base64_write(&text, packing->slots + k * packing->slot_bytes, packing->header[3 + k]);
+}
+
+// The header and the blocks, each a base64 text of its own; sizes are known once the blocks are written, so
+// the header is written twice. A file that cannot be written tells when it is committed.
+static bool print_packed(FILE *stream, Packing *packing, const Piece *piece) {
+  uint64_t *header = packing->header;
+  FemBase64 text = {.stream = stream};
+  off_t begin = ftello(stream);
+  print_header(stream, packing);
+  header[0] = packing->block_count;
+  header[1] = BLOCK_BYTES;
+  header[2] = piece->byte_count % BLOCK_BYTES;
+  for (size_t first = 0; first < packing->block_count; first += BATCH_BLOCKS) {
+    size_t left = (size_t)packing->block_count - first;
+    int count = left < BATCH_BLOCKS ? (int)left : BATCH_BLOCKS;
+    if (!compress_batch(packing, piece, first, count)) return false;
+    for (int k = 0; k < count; k++)
+      fem_base64_write(&text, packing->slots + (size_t)k * packing->slot_bytes,
+                       header[3 + first + (size_t)k]);
+  }
   fem_base64_end(&text);
+  if (fseeko(stream, begin, SEEK_SET) == 0) print_header(stream, packing);
+  fseeko(stream, 0, SEEK_END);
+  return true;
 }
 
 // The names under which ParaView lists the components; NULL for a single one.
@@ -111,11 +148,10 @@ static void print_opening(FILE *stream, const Piece *piece) {
 
 static Status print_piece(FILE *stream, const Piece *piece) {
   Packing packing;
-  bool ok =
-      create(&packing, piece->byte_count) && compress_blocks(&packing, piece->source, piece->byte_count);
+  bool ok = create(&packing, piece);
   if (ok) {
     print_opening(stream, piece);
-    print_packed(stream, &packing);
+    ok = print_packed(stream, &packing, piece);
     fprintf(stream, "\n        </DataArray>\n");
   }
   destroy(&packing);
@@ -130,17 +166,25 @@ static Status print_arrays(FILE *stream, const FemVtuFrame *frame, bool is_cell)
     const FemVtuArray *array = &frame->arrays[k];
     if (array->is_cell != is_cell) continue;
     const size_t numbers = tuples * (size_t)array->components;
-    const Piece reals = {"Float64", array->name, array->components, array->reals, numbers * sizeof(double)},
-                integers = {"Int32", array->name, array->components, array->integers, numbers * sizeof(int)};
-    TRY(print_piece(stream, array->reals ? &reals : &integers));
+    Piece piece = {.type = array->integers ? "Int32" : "Float64",
+                   .name = array->name,
+                   .components = array->components,
+                   .byte_count = numbers * (array->integers ? sizeof(int) : sizeof(double)),
+                   .fill = array->fill,
+                   .self = array->self};
+    piece.source = array->integers ? (const void *)array->integers : (const void *)array->reals;
+    TRY(print_piece(stream, &piece));
   }
   fprintf(stream, "      </%s>\n", section);
   return STATUS_OK;
 }
 
 static Status print_points(FILE *stream, const FemVtuFrame *frame) {
-  const Piece points = {"Float64", "Points", 3, frame->positions,
-                        (size_t)frame->vertex_count * 3 * sizeof(double)};
+  const Piece points = {.type = "Float64",
+                        .name = "Points",
+                        .components = 3,
+                        .source = frame->positions,
+                        .byte_count = (size_t)frame->vertex_count * 3 * sizeof(double)};
   fprintf(stream, "      <Points>\n");
   TRY(print_piece(stream, &points));
   fprintf(stream, "      </Points>\n");
@@ -157,9 +201,10 @@ static Status print_cells(FILE *stream, const FemVtuFrame *frame) {
     ends[i] = (int64_t)(corners * (i + 1));
     types[i] = (uint8_t)fem_vtu_type(frame->cell);
   }
-  const Piece pieces[] = {{"Int32", "connectivity", 1, frame->cells, count * corners * sizeof(int)},
-                          {"Int64", "offsets", 1, ends, count * sizeof *ends},
-                          {"UInt8", "types", 1, types, count * sizeof *types}};
+  const Piece pieces[] = {
+      {"Int32", "connectivity", 1, frame->cells, count * corners * sizeof(int), NULL, NULL},
+      {"Int64", "offsets", 1, ends, count * sizeof *ends, NULL, NULL},
+      {"UInt8", "types", 1, types, count * sizeof *types, NULL, NULL}};
   fprintf(stream, "      <Cells>\n");
   for (int p = 0; !status && p < 3; p++) status = print_piece(stream, &pieces[p]);
   fprintf(stream, "      </Cells>\n");
@@ -195,6 +240,7 @@ static Status print_frame(FILE *stream, const FemVtuFrame *frame) {
 
 Status fem_vtu_write(const char *path, const FemVtuFrame *frame) {
   FileWriter writer;
+  if (!ranks_is_first()) return STATUS_OK;
   TRY(file_begin(&writer, path));
   Status status = print_frame(writer.stream, frame);
   if (!status) return file_commit(&writer);

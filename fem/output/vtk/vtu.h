@@ -9,6 +9,7 @@
 #define TETLAP_FEM_OUTPUT_VTU_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "base/status.h"
 
@@ -17,7 +18,10 @@ typedef enum FemVtuCell { FEM_VTU_TETRAHEDRA, FEM_VTU_TRIANGLES } FemVtuCell;
 int fem_vtu_corner_count(FemVtuCell cell);
 int fem_vtu_type(FemVtuCell cell); // VTK's number for it
 
-// One named array over the vertices or the cells; exactly one of `reals` and `integers` is given.
+// Values of `count` tuples from tuple `first` on, one after another.
+typedef void FemVtuFill(void *self, size_t first, size_t count, double *values);
+
+// One named array over the vertices or the cells; exactly one of `reals`, `integers` and `fill` is given.
 // Borrowed.
 typedef struct FemVtuArray {
   const char *name;    // as ParaView will show it
@@ -25,6 +29,8 @@ typedef struct FemVtuArray {
   int components;      // 1; 3: x, y, z; 6: a symmetric tensor xx, yy, zz, xy, yz, xz; 9: row-major
   const double *reals; // written as Float64    (vertex_count or cell_count, components)
   const int *integers; // written as Int32      (vertex_count or cell_count, components)
+  FemVtuFill *fill;    // gives reals that are kept nowhere, in turn and some at a time
+  void *self;          // of `fill`
 } FemVtuArray;
 
 typedef struct FemVtuFrame {

@@ -173,9 +173,10 @@ static void create_large(Large *large, int vertex_count, int tet_count) {
     for (int a = 0; a < 4; a++) large->tets[i][a] = random_below(&random, vertex_count);
     large->body[i] = random_below(&random, 3);
   }
-  large->arrays[0] = (FemVtuArray){"velocity", false, 3, large->vectors, NULL};
-  large->arrays[1] = (FemVtuArray){"stress", true, 6, large->stress, NULL};
-  large->arrays[2] = (FemVtuArray){"body", true, 1, NULL, large->body};
+  large->arrays[0] = (FemVtuArray){.name = "velocity", .components = 3, .reals = large->vectors};
+  large->arrays[1] =
+      (FemVtuArray){.name = "stress", .is_cell = true, .components = 6, .reals = large->stress};
+  large->arrays[2] = (FemVtuArray){.name = "body", .is_cell = true, .components = 1, .integers = large->body};
   large->frame = (FemVtuFrame){.time = 1,
                                .vertex_count = vertex_count,
                                .positions = large->positions,
@@ -247,11 +248,37 @@ START_TEST(arrays_of_many_blocks_read_back_bit_for_bit) {
 }
 END_TEST
 
+static void fill_from(void *self, size_t first, size_t count, double *values) {
+  memcpy(values, (const double *)self + 6 * first, 6 * count * sizeof *values);
+}
+
+// More than is compressed at a time: 2.4 MB.
+START_TEST(values_given_in_turn_are_those_of_an_array) {
+  enum { TETS = 71000 };
+  Large large;
+  create_large(&large, 50, TETS);
+  ck_assert_ok(fem_vtu_write(path, &large.frame));
+  size_t size, size_in_turn;
+  char *whole, *in_turn;
+  ck_assert_ok(file_read(path, &whole, &size));
+  large.arrays[1].reals = NULL;
+  large.arrays[1].fill = fill_from;
+  large.arrays[1].self = large.stress;
+  ck_assert_ok(fem_vtu_write(path, &large.frame));
+  ck_assert_ok(file_read(path, &in_turn, &size_in_turn));
+  ck_assert_uint_eq(size, size_in_turn);
+  ck_assert_mem_eq(whole, in_turn, size);
+  assert_array("stress", "Float64", 6, large.stress, 6 * TETS * sizeof(double));
+  memory_free(whole), memory_free(in_turn);
+  destroy_large(&large);
+}
+END_TEST
+
 START_TEST(an_array_that_ends_with_a_block_reads_back) {
   Large large;
   create_large(&large, 4096, 4096); // scalars of 4096 doubles fill one block, integers half of one
-  const FemVtuArray exact[] = {{"full", false, 1, large.positions, NULL},
-                               {"half", true, 1, NULL, large.body}};
+  const FemVtuArray exact[] = {{.name = "full", .components = 1, .reals = large.positions},
+                               {.name = "half", .is_cell = true, .components = 1, .integers = large.body}};
   large.frame.arrays = exact, large.frame.array_count = 2;
   ck_assert_ok(fem_vtu_write(path, &large.frame));
   assert_array("full", "Float64", 1, large.positions, 32768);
@@ -262,7 +289,7 @@ END_TEST
 
 START_TEST(numbers_that_are_not_finite_survive) {
   const double odd[4] = {NAN, INFINITY, -INFINITY, -0.0};
-  const FemVtuArray array = {"odd", false, 1, odd, NULL};
+  const FemVtuArray array = {.name = "odd", .components = 1, .reals = odd};
   FemVtuFrame frame = single_tetrahedron();
   frame.arrays = &array, frame.array_count = 1;
   ck_assert_ok(fem_vtu_write(path, &frame));
@@ -272,7 +299,8 @@ END_TEST
 
 START_TEST(components_have_their_names) {
   const double nine[9] = {0};
-  const FemVtuArray arrays[] = {{"stress", true, 6, nine, NULL}, {"F", true, 9, nine, NULL}};
+  const FemVtuArray arrays[] = {{.name = "stress", .is_cell = true, .components = 6, .reals = nine},
+                                {.name = "F", .is_cell = true, .components = 9, .reals = nine}};
   FemVtuFrame frame = single_tetrahedron();
   frame.arrays = arrays, frame.array_count = 2;
   ck_assert_ok(fem_vtu_write(path, &frame));
@@ -317,7 +345,7 @@ END_TEST
 
 START_TEST(triangles_read_back_as_triangles_and_a_mixture_is_refused) {
   static const int triangles[2][3] = {{0, 2, 1}, {0, 1, 3}}, marks[2] = {7, 8};
-  const FemVtuArray array = {"face", true, 1, NULL, marks};
+  const FemVtuArray array = {.name = "face", .is_cell = true, .components = 1, .integers = marks};
   const FemVtuFrame frame = {.time = NAN, // at all times
                              .vertex_count = 4,
                              .positions = corner[0],
@@ -360,7 +388,7 @@ END_TEST
 
 START_TEST(a_name_cannot_break_the_xml) {
   const double four[4] = {1, 2, 3, 4};
-  const FemVtuArray array = {"a<b & \"c\">", false, 1, four, NULL};
+  const FemVtuArray array = {.name = "a<b & \"c\">", .components = 1, .reals = four};
   FemVtuFrame frame = single_tetrahedron();
   frame.arrays = &array, frame.array_count = 1;
   ck_assert_ok(fem_vtu_write(path, &frame));
@@ -387,7 +415,7 @@ END_TEST
 
 START_TEST(every_failed_allocation_is_an_error_that_leaves_the_old_frame) {
   const double four[4] = {1, 2, 3, 4};
-  const FemVtuArray array = {"a", false, 1, four, NULL};
+  const FemVtuArray array = {.name = "a", .components = 1, .reals = four};
   FemVtuFrame frame = single_tetrahedron(), later = frame;
   ck_assert_ok(fem_vtu_write(path, &frame));
   char *old;
@@ -516,6 +544,7 @@ int main(void) {
   tcase_add_test(cases, a_single_tetrahedron_reads_back);
   tcase_add_test(cases, the_time_stands_in_the_frame);
   tcase_add_test(cases, arrays_of_many_blocks_read_back_bit_for_bit);
+  tcase_add_test(cases, values_given_in_turn_are_those_of_an_array);
   tcase_add_test(cases, an_array_that_ends_with_a_block_reads_back);
   tcase_add_test(cases, numbers_that_are_not_finite_survive);
   tcase_add_test(cases, components_have_their_names);

@@ -188,6 +188,38 @@ START_TEST(an_outer_product_equals_its_dense_form) {
 }
 END_TEST
 
+// Rows of both triangles, one by one, and a product vertex by vertex, against those of the whole.
+START_TEST(rows_and_vertices_are_parts_of_the_matrix) {
+  Case c;
+  set_up(&c, 53);
+  for (int k = 0; k < c.matrix.entry_count; k++) c.matrix.value[k] = random_normal(&c.random);
+  double x[DOFS], whole[DOFS], by_rows[DOFS], by_vertices[DOFS] = {0}, values[DOFS];
+  int columns[DOFS];
+  for (int i = 0; i < c.matrix.size; i++) x[i] = random_normal(&c.random);
+  fem_matrix_multiply(&c.matrix, x, whole);
+  for (int dof = 0; dof < DOFS; dof++) {
+    int unknown = c.unknown_of_dof[dof];
+    if (unknown < 0) continue;
+    int count = fem_matrix_row(&c.matrix, dof / 3, unknown, columns, values);
+    ck_assert_int_eq(count, fem_matrix_row(&c.matrix, dof / 3, unknown, NULL, NULL));
+    by_rows[unknown] = 0;
+    for (int k = 0; k < count; k++) {
+      if (k > 0) ck_assert_int_lt(columns[k - 1], columns[k]);
+      by_rows[unknown] += values[k] * x[columns[k]];
+    }
+  }
+  for (int v = VERTICES - 1; v >= 0; v--) {
+    fem_matrix_add_product(&c.matrix, 1, &v, x, by_vertices);
+    if (v == 5) ck_assert(!fem_matrix_is_coupled(&c.matrix, v)); // it is prescribed
+  }
+  for (int i = 0; i < c.matrix.size; i++) {
+    ck_assert_near(by_rows[i], whole[i], 1e-12);
+    ck_assert_near(by_vertices[i], whole[i], 1e-12);
+  }
+  tear_down(&c);
+}
+END_TEST
+
 START_TEST(slots_address_the_entries_that_add_fills) {
   Case c;
   set_up(&c, 77);
@@ -324,6 +356,7 @@ int main(void) {
   tcase_add_test(cases, a_chain_is_laid_out_as_by_hand);
   tcase_add_test(cases, sums_equal_a_dense_matrix);
   tcase_add_test(cases, an_outer_product_equals_its_dense_form);
+  tcase_add_test(cases, rows_and_vertices_are_parts_of_the_matrix);
   tcase_add_test(cases, slots_address_the_entries_that_add_fills);
   tcase_add_test(cases, a_product_equals_the_dense_one);
   tcase_add_test(cases, a_product_has_the_same_bits_with_any_number_of_threads);
