@@ -25,6 +25,11 @@ size_t contact_footprint_candidates(const ContactCandidates *candidates) {
               candidates->motions, candidates->expected, candidates->is_left_out);
 }
 
+size_t contact_footprint_near(const ContactNear *near) {
+  return of_list(&near->list) +
+         HELD(near->reference, near->motions, near->blown, near->boxes, near->is_listed);
+}
+
 size_t contact_footprint_rest(const ContactRest *rest) {
   return HELD(rest->is_resting, rest->is_near, rest->forces, rest->covered, rest->interfaces);
 }

@@ -8,10 +8,12 @@
 #include "contact/onset.h"
 #include "contact/pressure/stiffness.h"
 #include "contact/rest.h"
+#include "contact/search/near.h"
 #include "contact/status.h"
 
 size_t contact_footprint_layout(const ContactLayout *layout);
 size_t contact_footprint_candidates(const ContactCandidates *candidates);
+size_t contact_footprint_near(const ContactNear *near);
 size_t contact_footprint_rest(const ContactRest *rest);
 size_t contact_footprint_onset(const ContactOnset *onset);
 size_t contact_footprint_evaluation(const ContactEvaluation *evaluation);

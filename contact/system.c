@@ -13,9 +13,11 @@
 #include "contact/pressure/stiffness.h"
 #include "contact/pressure/trace.h"
 #include "contact/rest.h"
+#include "contact/search/near.h"
 #include "contact/shape/shape.h"
 #include "contact/status.h"
 #include "contact/surface/stars.h"
+#include "overlap/clip/clip.h"
 
 struct ContactSystem {
   ContactStars stars; // what all below works on
@@ -26,6 +28,7 @@ struct ContactSystem {
   // By the vertices and tetrahedra as they were given, of the last evaluation; with stars only.
   double *given_forces, *given_covered, *given_volumes;
   ContactCandidates candidates;
+  ContactNear near;
   ContactRest rest; // made by the first contact_system_hold
   bool has_rest;
   ContactOnset onset;
@@ -82,6 +85,7 @@ static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
   TRY(contact_layout_create(&system->layout, &system->stars.def));
   TRY(reserve(system, def));
   TRY(contact_candidates_create(&system->candidates, &system->layout));
+  TRY(contact_near_create(&system->near, &system->layout));
   TRY(contact_onset_create(&system->onset, &system->layout));
   TRY(contact_evaluation_create(&system->evaluation, &system->layout));
   system->counters.resting = system->layout.self.left_out.count;
@@ -110,6 +114,7 @@ void contact_system_destroy(ContactSystem *system) {
   memory_free(system->given_covered);
   memory_free(system->given_volumes);
   contact_candidates_destroy(&system->candidates);
+  contact_near_destroy(&system->near);
   contact_rest_destroy(&system->rest);
   contact_onset_destroy(&system->onset);
   contact_evaluation_destroy(&system->evaluation);
@@ -181,6 +186,12 @@ static Status choose_watched(ContactSystem *system, double time, const double *p
                               knows ? evaluation->pair_count : 0, time, positions);
 }
 
+// Other models are asked for every pair that no face separates for certain: they may see an overlap where
+// there is none.
+static bool evaluates_near(const ContactSystem *system) {
+  return system->layout.def.model->ops == &overlap_clip_ops;
+}
+
 Status contact_system_update(ContactSystem *system, double time, const double *positions,
                              const double *velocities, double step, bool *has_changed) {
   bool changed;
@@ -190,6 +201,8 @@ Status contact_system_update(ContactSystem *system, double time, const double *p
   system->counters.searches = system->candidates.searches;
   system->counters.broad_s = system->candidates.search_s;
   if (has_changed) *has_changed = changed;
+  if (evaluates_near(system))
+    TRY(contact_near_update(&system->near, &system->layout, &system->candidates, time, positions));
   return choose_watched(system, time, positions);
 }
 
@@ -198,6 +211,7 @@ double contact_system_longest_step(const ContactSystem *system) {
 }
 
 void contact_system_forget(ContactSystem *system) {
+  contact_near_forget(&system->near);
   system->candidates.is_made = false;
 }
 
@@ -226,8 +240,10 @@ static Status evaluate(ContactSystem *system, double time, const double *positio
   ContactEvaluation *evaluation = &system->evaluation;
   if (contact_evaluation_is_at(evaluation, &system->layout, time, positions)) return STATUS_OK;
   TRY(check_margin(system, time, positions));
-  TRY(contact_evaluation_run(evaluation, &system->layout, &system->candidates.list, system->layout.def.model,
-                             true, time, positions));
+  const ContactCandidateList *list =
+      contact_near_choose(&system->near, &system->layout, &system->candidates, time, positions);
+  TRY(contact_evaluation_run(evaluation, &system->layout, list, system->layout.def.model, true, time,
+                             positions));
   count(&system->counters, evaluation);
   if (system->has_rest) system->counters.left_at_rest += system->rest.candidate_count;
   fold_result(system);
@@ -287,6 +303,7 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
   TRY(make_rest(system));
   contact_rest_clear(&system->rest, layout);
   contact_candidates_leave_out(&system->candidates, layout, NULL);
+  contact_near_forget(&system->near);
   contact_evaluation_start_over(&system->evaluation, layout);
   contact_system_forget(system);
   TRY(contact_system_update(system, time, positions, velocities, step, NULL));
@@ -297,6 +314,7 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
                     system->evaluation.interfaces, is_held);
   TRY(keep_traces(system));
   contact_candidates_leave_out(&system->candidates, layout, system->rest.is_resting);
+  contact_near_forget(&system->near);
   contact_evaluation_start_over(&system->evaluation, layout);
   fold_result(system);
   return choose_watched(system, time, positions);
@@ -421,8 +439,9 @@ size_t contact_system_bytes(const ContactSystem *system) {
                memory_held(system->resting_traces) + memory_held(system->given_traces) +
                contact_stars_bytes(&system->stars) + contact_star_sink_bytes(&system->star_sink) +
                contact_footprint_layout(&system->layout) + contact_footprint_candidates(&system->candidates) +
-               contact_footprint_onset(&system->onset) + contact_footprint_stiffness(&system->stiffness) +
-               contact_footprint_status(&system->status) + contact_footprint_rest(&system->rest);
+               contact_footprint_near(&system->near) + contact_footprint_onset(&system->onset) +
+               contact_footprint_stiffness(&system->stiffness) + contact_footprint_status(&system->status) +
+               contact_footprint_rest(&system->rest);
   for (int k = 0; k < 2; k++) sum += contact_footprint_evaluation(&system->audits[k]);
   return sum + contact_footprint_evaluation(&system->evaluation);
 }

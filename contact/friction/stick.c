@@ -205,6 +205,12 @@ static void order_touches(ContactStick *stick) {
 
 // ---- The law.
 
+// The stretch, of this direction, in which a spring of stiffness k stores that energy.
+static Vec3 keep_energy(double energy, double k, Vec3 stretch) {
+  double stored = 0.5 * k * vec3_dot(stretch, stretch);
+  return stored > 0 ? vec3_scale(sqrt(energy / stored), stretch) : stretch;
+}
+
 // From the history to the force of a node; returns what it dissipates since then.
 static double return_radially(const ContactStickHistory *history, ContactStickNode *node) {
   const ContactStickEntry *entry = contact_stick_history_find(history, node->interface, node->vertex);
@@ -214,10 +220,12 @@ static double return_radially(const ContactStickHistory *history, ContactStickNo
   Vec3 normal = pressed > 0 ? vec3_scale(1 / pressed, vec3_at(node->force)) : (Vec3){0, 0, 0};
   for (int r = 0; r < 9; r++) node->deformation[r] /= node->weight;
   node->limit *= pressed;
-  Vec3 carried = project(normal, times(node->deformation, kept));
-  Vec3 trial = vec3_add(carried, project(normal, vec3_scale(1 / node->weight, vec3_at(node->gap))));
-  double length = vec3_length(trial), k = node->stiffness;
+  double k = node->stiffness;
+  Vec3 carried = project(normal, keep_energy(before, k, times(node->deformation, kept)));
+  Vec3 way = project(normal, vec3_scale(1 / node->weight, vec3_at(node->gap))), trial = vec3_add(carried, way);
+  double length = vec3_length(trial);
   node->slips = k * length > node->limit;
+  node->advances = vec3_dot(way, trial) > 0;
   double kept_share = node->slips ? node->limit / (k * length) : 1;
   Vec3 stretch = vec3_scale(kept_share, trial);
   vec3_store(node->normal, normal);

@@ -12,7 +12,8 @@
 //
 //   Δ_a = Σ w Δ_ij / W,   F_a = Σ w F_i / W  (deformation gradients),   f_a = Σ λ_a F_ij,   N_a = |f_a|,
 //   n_a = f_a / N_a,      k_a = c_t Σ λ_a A_ij,      P = 1 − n nᵀ
-//   trial     s = P (F_a S_a + Δ_a),   T_a = −k_a s;   where k_a |s| > μ N_a by radial return
+//   carried   S_a' = F_a S_a √(E_a / (½ k_a |F_a S_a|²)),  E_a what it stored at the last accepted state
+//   trial     s = P (S_a' + Δ_a),   T_a = −k_a s;   where k_a |s| > μ N_a by radial return
 //             s ← s μN_a/(k_a |s|)     (Simo and Hughes, Computational Inelasticity, 1.4: a slider and a
 //             spring)
 //   force     Σ_a (w/W) T_a on the pair, at x̄: by λ on A's vertices, its opposite on B's
@@ -21,8 +22,9 @@
 //
 // Δ is zero to rounding in any common rigid motion and telescopes; only increments are averaged. Force and
 // torque balance pair by pair. The matrix is positive semidefinite; the derivatives of N, n and the weights
-// are left out of it. A change of ½ k_a s² that is no work of a spring (k_a, frame, lift-off) is counted as
-// dissipated, so that the energies add up.
+// are left out of it. An area that grows or shrinks while it sticks does no work: the spring keeps its energy,
+// not its stretch, so nothing is gained, and what grows and shrinks again is where it was. What turning into
+// another tangent plane and lift-off take of ½ k_a s² is counted as dissipated, so that the energies add up.
 //
 // Either side may be slave, or both with half of k and of μ each (weights ½, ½): a body and itself.
 #ifndef TETLAP_CONTACT_STICK_H
@@ -66,6 +68,7 @@ typedef struct ContactStickNode {
   double trial;          // |s_trial| [m]
   double stretch[3];     // s [m]
   bool slips;
+  bool advances; // the way since the last accepted state goes along s_trial
 } ContactStickNode;
 
 // A corner of a pair that is a slave: which node, with which share of it.

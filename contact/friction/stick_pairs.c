@@ -113,11 +113,13 @@ double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem 
   return power;
 }
 
+// Whether a vertex of the pair slips by its motion. One that moves back and slips as its limit falls is drawn
+// by its spring: that friction drives it is no mistake.
 static bool slips(const ContactStick *stick, int k) {
   for (int side = 0; side < 2; side++)
     for (int v = 0; v < 4; v++) {
       int node = stick->touches[k][side][v].node;
-      if (node >= 0 && stick->nodes[node].slips) return true;
+      if (node >= 0 && stick->nodes[node].slips && stick->nodes[node].advances) return true;
     }
   return false;
 }

@@ -64,40 +64,10 @@ void contact_candidates_destroy(ContactCandidates *candidates) {
   *candidates = (ContactCandidates){0};
 }
 
-// How `to` − `from` (NULL: 0) moves over vertices begin … end; NaN counts as infinite.
-static ContactMotion motion_of(const double *to, const double *from, int begin, int end) {
-  ContactMotion motion = {.mean = {0, 0, 0}};
-  double share = 1.0 / (end - begin), spread = 0, longest = 0;
-  for (int pass = 0; pass < 2; pass++)
-    for (size_t v = (size_t)begin; v < (size_t)end; v++) {
-      Vec3 d = from ? vec3_sub(vec3_at(to + 3 * v), vec3_at(from + 3 * v)) : vec3_at(to + 3 * v);
-      if (pass == 0) {
-        motion.mean = vec3_add(motion.mean, vec3_scale(share, d));
-        continue;
-      }
-      Vec3 rest = vec3_sub(d, motion.mean);
-      double square = vec3_dot(d, d), apart = vec3_dot(rest, rest);
-      if (!(square <= longest)) longest = isnan(square) ? INFINITY : square;
-      if (!(apart <= spread)) spread = isnan(apart) ? INFINITY : apart;
-    }
-  motion.longest = sqrt(longest);
-  motion.spread = sqrt(spread);
-  return motion;
-}
-
-static ContactMotion motion_of_shape(double way) {
-  return (ContactMotion){.mean = {0, 0, 0}, .spread = way, .longest = way};
-}
-
-static void measure_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
-                            const double *positions) {
-  const ContactSystemDef *def = &layout->def;
-  for (int b = 0; b < def->body_count; b++)
-    candidates->motions[b] =
-        motion_of(positions, candidates->reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
-  for (int h = 0; h < def->shape_count; h++)
-    candidates->motions[def->body_count + h] =
-        motion_of_shape(contact_shape_motion(&def->shapes[h], candidates->reference_time, time));
+static void measure(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                    const double *positions) {
+  contact_motion_measure(layout, candidates->reference_time, candidates->reference, time, positions,
+                         candidates->motions);
 }
 
 static void expect_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
@@ -105,21 +75,13 @@ static void expect_motions(ContactCandidates *candidates, const ContactLayout *l
   const ContactSystemDef *def = &layout->def;
   for (int b = 0; b < def->body_count; b++) {
     ContactMotion *motion = &candidates->expected[b];
-    *motion = motion_of(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
+    *motion = contact_motion_of(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
     motion->mean = vec3_scale(step, motion->mean);
     motion->spread *= step, motion->longest *= step;
   }
   for (int h = 0; h < def->shape_count; h++)
     candidates->expected[def->body_count + h] =
-        motion_of_shape(step * contact_shape_speed(&def->shapes[h], time));
-}
-
-// By how much the two of a facing may have come nearer: what is common to both does not count.
-static double approach(const ContactMotion *motions, const ContactFacing *facing) {
-  const ContactMotion *a = &motions[facing->a], *b = &motions[facing->b];
-  if (facing->a == facing->b) return 2 * a->spread;
-  double apart = vec3_length(vec3_sub(a->mean, b->mean));
-  return fmin(a->longest + b->longest, a->spread + b->spread + apart);
+        contact_motion_of_shape(step * contact_shape_speed(&def->shapes[h], time));
 }
 
 void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
@@ -132,10 +94,10 @@ void contact_candidates_bound(const ContactCandidateList *list, const ContactLay
 bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
                               const double *positions) {
   if (!candidates->is_made) return false;
-  measure_motions(candidates, layout, time, positions);
+  measure(candidates, layout, time, positions);
   for (int f = 0; f < layout->facing_count; f++)
     if (!candidates->is_left_out[f] &&
-        !(approach(candidates->motions, &layout->facings[f]) <= candidates->list.margins[f]))
+        !(contact_motion_approach(candidates->motions, &layout->facings[f]) <= candidates->list.margins[f]))
       return false;
   return true;
 }
@@ -147,9 +109,9 @@ static bool wants_search(const ContactCandidates *candidates, const ContactLayou
   for (int f = 0; f < layout->facing_count; f++) {
     if (candidates->is_left_out[f]) continue;
     const ContactFacing *facing = &layout->facings[f];
-    double margin = candidates->list.margins[f], moved = approach(candidates->motions, facing);
+    double margin = candidates->list.margins[f], moved = contact_motion_approach(candidates->motions, facing);
     bool is_empty = candidates->list.begin[f] == candidates->list.begin[f + 1] && facing->a != facing->b;
-    bool may_leave = moved + approach(candidates->expected, facing) > margin;
+    bool may_leave = moved + contact_motion_approach(candidates->expected, facing) > margin;
     if (!(moved <= margin / 2) || (may_leave && (is_empty || moved > margin / 4))) return true;
   }
   return false;
@@ -244,7 +206,8 @@ static Status search_facing(ContactCandidates *candidates, const ContactLayout *
     next->margins[f] = distance;
     return STATUS_OK;
   }
-  double wide = fmin(STEPS_AHEAD * approach(candidates->expected, facing), WIDEST_TRIAL * layout->margin);
+  double wide = fmin(STEPS_AHEAD * contact_motion_approach(candidates->expected, facing),
+                     WIDEST_TRIAL * layout->margin);
   if (wide > layout->margin) {
     TRY(search_with(candidates, layout, f, time, positions, wide));
     if (next->count == begin) return STATUS_OK;
@@ -253,16 +216,15 @@ static Status search_facing(ContactCandidates *candidates, const ContactLayout *
   return search_with(candidates, layout, f, time, positions, layout->margin);
 }
 
-static void list_tets(ContactCandidates *candidates) {
-  ContactCandidateList *next = &candidates->next;
-  next->tet_count = 0;
-  for (int k = 0; k < next->count; k++)
-    for (int side = 0; side < 2 && next->pairs[k].tets[1] >= 0; side++) {
-      int tet = next->pairs[k].tets[side];
-      if (!candidates->is_listed[tet]) next->tets[next->tet_count++] = tet;
-      candidates->is_listed[tet] = 1;
+void contact_candidates_list_tets(ContactCandidateList *list, unsigned char *is_listed) {
+  list->tet_count = 0;
+  for (int k = 0; k < list->count; k++)
+    for (int side = 0; side < 2 && list->pairs[k].tets[1] >= 0; side++) {
+      int tet = list->pairs[k].tets[side];
+      if (!is_listed[tet]) list->tets[list->tet_count++] = tet;
+      is_listed[tet] = 1;
     }
-  for (int k = 0; k < next->tet_count; k++) candidates->is_listed[next->tets[k]] = 0;
+  for (int k = 0; k < list->tet_count; k++) is_listed[list->tets[k]] = 0;
 }
 
 // Fills `next`.
@@ -272,7 +234,7 @@ static Status search_all(ContactCandidates *candidates, const ContactLayout *lay
   bound_bodies(candidates, layout, positions);
   for (int f = 0; f < layout->facing_count; f++) TRY(search_facing(candidates, layout, f, time, positions));
   candidates->next.begin[layout->facing_count] = candidates->next.count;
-  list_tets(candidates);
+  contact_candidates_list_tets(&candidates->next, candidates->is_listed);
   return STATUS_OK;
 }
 
@@ -301,8 +263,8 @@ static double time_left(const ContactCandidates *candidates, const ContactLayout
   for (int f = 0; f < layout->facing_count && step > 0; f++) {
     const ContactFacing *facing = &layout->facings[f];
     if (candidates->is_left_out[f]) continue;
-    double expected = approach(candidates->expected, facing),
-           free = candidates->list.margins[f] - approach(candidates->motions, facing);
+    double expected = contact_motion_approach(candidates->expected, facing),
+           free = candidates->list.margins[f] - contact_motion_approach(candidates->motions, facing);
     if (expected > 0) left = fmin(left, MARGIN_USED * free / expected * step);
   }
   return left;
@@ -312,7 +274,7 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
                                  const double *positions, const double *velocities, double step,
                                  bool *has_changed) {
   *has_changed = false;
-  measure_motions(candidates, layout, time, positions);
+  measure(candidates, layout, time, positions);
   step = step > 0 ? step : NO_STEP;
   expect_motions(candidates, layout, time, velocities, step);
   candidates->time_left = time_left(candidates, layout, step);
@@ -327,7 +289,7 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
   memcpy(candidates->reference, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
   candidates->reference_time = time;
   candidates->is_made = true;
-  measure_motions(candidates, layout, time, positions);
+  measure(candidates, layout, time, positions);
   candidates->time_left = time_left(candidates, layout, step);
   candidates->searches++;
   candidates->search_s += clock_wall_s() - start;

@@ -6,16 +6,9 @@
 #ifndef TETLAP_CONTACT_CANDIDATES_H
 #define TETLAP_CONTACT_CANDIDATES_H
 
-#include "base/vec3.h"
 #include "contact/search/broad.h"
 #include "contact/search/layout.h"
-
-// How the points of a party have moved, as far as it bounds by how much two parties come nearer.
-typedef struct ContactMotion {
-  Vec3 mean;      // [m]
-  double spread;  // the longest difference from that [m]
-  double longest; // [m]
-} ContactMotion;
+#include "contact/search/motion.h"
 
 // Valid while the two parties of a facing have come nearer by no more than its margin.
 typedef struct ContactCandidateList {
@@ -68,5 +61,8 @@ bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout
 // left alone.
 void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
                               const double *positions, double (*boxes)[6]);
+
+// Fills `tets` from the list's pairs; is_listed (cell_count): 0 before and after.
+void contact_candidates_list_tets(ContactCandidateList *list, unsigned char *is_listed);
 
 #endif

@@ -36,7 +36,7 @@ double fem_element_damping_power(const FemElement *element, const FemMaterial *m
                                  const double x[12], const double v[12]); // [W]
 void fem_element_damping_matrix(const FemElement *element, const FemMaterial *material, double beta,
                                 const double x[12], double matrix[144]); // [N s/m]
-// The symmetric part of −∂(damping force)/∂x. May be indefinite.
+// The geometric part of −∂(damping force)/∂x (fem/material/viscous.h). May be indefinite.
 void fem_element_damping_stiffness(const FemElement *element, const FemMaterial *material, double beta,
                                    const double x[12], const double v[12], double matrix[144]); // [N/m]
 

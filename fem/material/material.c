@@ -433,21 +433,6 @@ void fem_material_pushed_stiffness(FemLame lame, const double F[9], double dP[81
   push_stiffness(lame, F, dP);
 }
 
-void fem_material_pushed_stiffness_rate(FemLame lame, const double F[9], const double rate[9],
-                                        double dP[81]) {
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) {
-      double left = 0; // of the rate of F Fᵀ
-      for (int m = 0; m < 3; m++) left += rate[3 * i + m] * F[3 * k + m] + F[3 * i + m] * rate[3 * k + m];
-      for (int j = 0; j < 3; j++)
-        for (int l = 0; l < 3; l++) {
-          int ij = 3 * i + j, kl = 3 * k + l, il = 3 * i + l, kj = 3 * k + j;
-          dP[9 * ij + kl] = lame.mu * (rate[il] * F[kj] + F[il] * rate[kj] + (j == l ? left : 0)) +
-                            lame.lambda * (rate[ij] * F[kl] + F[ij] * rate[kl]);
-        }
-    }
-}
-
 // θ by law.
 
 static void volume_rotation(const double F[9], FemSvd3 *svd, double R[9]) {

@@ -80,7 +80,5 @@ FemLame fem_material_viscous(const FemMaterial *material, double beta);
 // F C Fᵀ with the small-strain C of the Lamé parameters: what a strain dE = sym(Fᵀ dF) answers with, dP = F
 // (C : dE). The material part of stvk's tangent, and the matrix of damping.
 void fem_material_pushed_stiffness(FemLame lame, const double F[9], double dP[81]);
-// Its rate of change while F changes with `rate`: rate C Fᵀ + F C rateᵀ.
-void fem_material_pushed_stiffness_rate(FemLame lame, const double F[9], const double rate[9], double dP[81]);
 
 #endif

@@ -44,16 +44,13 @@ void fem_viscous_tangent(const FemMaterial *material, double beta, const double 
   fem_material_pushed_stiffness(fem_material_viscous(material, beta), damped_deformation(material, F), dP);
 }
 
-// P_v = F Σ(F, Ḟ), so ∂P_v = ∂F Σ + F C_v : sym(Ḟᵀ ∂F). The first term is symmetric; the second is, with
-// D(F) = F C_v Fᵀ, the mixed product of F and Ḟ, whose symmetric part is ½ Ḋ.
+// P_v = F Σ(F, Ḟ), so ∂P_v = ∂F Σ + F C_v : sym(Ḟᵀ ∂F). The first term is this.
 void fem_viscous_stiffness(const FemMaterial *material, double beta, const double F[9], const double rate[9],
                            double dP[81]) {
   double strain_rate[9], stress[9];
   memset(dP, 0, 81 * sizeof *dP);
   if (fem_material_is_linear(material)) return;
   find_stress(material, beta, F, rate, strain_rate, stress);
-  fem_material_pushed_stiffness_rate(fem_material_viscous(material, beta), F, rate, dP);
-  for (int r = 0; r < 81; r++) dP[r] *= 0.5;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       for (int l = 0; l < 3; l++) dP[9 * (3 * i + j) + 3 * i + l] += stress[3 * j + l];

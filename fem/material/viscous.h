@@ -14,8 +14,10 @@ void fem_viscous_stress(const FemMaterial *material, double beta, const double F
 double fem_viscous_power(const FemMaterial *material, double beta, const double F[9], const double rate[9]);
 // ∂P_v/∂Ḟ [Pa s], symmetric, ≥ 0.
 void fem_viscous_tangent(const FemMaterial *material, double beta, const double F[9], double dP[81]);
-// The symmetric part of ∂P_v/∂F [Pa]: the geometric part of Σ and half the rate of change of the tangent. May
-// be indefinite; zero for the law linear.
+// The geometric part of ∂P_v/∂F [Pa], ∂F Σ: symmetric, perhaps indefinite, zero for the law linear. The rest,
+// F C_v : sym(Ḟᵀ ∂F), is left out: stress answers a rotation with it, but no force that turns a body answers a
+// strain. Its symmetric half has both, as large as β E Ω in a body that turns with Ω, against which inertia is
+// nothing: with it Newton's method diverges on stiff bodies that turn, without it one more iteration is enough.
 void fem_viscous_stiffness(const FemMaterial *material, double beta, const double F[9], const double rate[9],
                            double dP[81]);
 

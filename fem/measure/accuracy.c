@@ -42,7 +42,8 @@ static double energy_of_tet(const FemModel *model, const FemModelBody *body, int
                             const double *positions) {
   double x[12];
   for (int v = 0; v < 4; v++) memcpy(x + 3 * v, positions + 3 * (size_t)model->tets[tet][v], 3 * sizeof *x);
-  return fem_element_energy(&model->elements[tet], &body->local, x);
+  const FemElement element = fem_model_element(model, tet);
+  return fem_element_energy(&element, &body->local, x);
 }
 
 static double energy_of_quadratic(const FemModel *model, const FemModelBody *body, int e,

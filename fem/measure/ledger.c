@@ -86,6 +86,9 @@ void fem_ledger_accept(FemLedger *ledger) {
 
 // A share that is not worth a word.
 static const double NOTHING = 1e-4;
+// With fewer elements across a patch its pressure has the mesh's shape, whatever the stiffness
+// (docs/contact.md).
+static const double RESOLVED = 5;
 
 static void record_estimate(const FemEstimate *estimate, Record *record) {
   record_number(record, "give", estimate->give);
@@ -165,7 +168,8 @@ bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size)
   if (estimate.tolerance_over_depth > 1)
     text_append(text, size, &used, ", below the resolution of time.tolerance");
   if (estimate.rim > NOTHING) text_append(text, size, &used, ", rims lose %.2g %%", 100 * estimate.rim);
-  text_append(text, size, &used, ", %.1f elements across", estimate.elements_across);
+  text_append(text, size, &used, ", %.1f elements across%s", estimate.elements_across,
+              estimate.elements_across < RESOLVED ? " (refine to 5 or more first)" : "");
   if (estimate.stiffness_for > estimate.stiffness)
     text_append(text, size, &used, "; 1 %% with a stiffness of %.2g %s in place of %.2g",
                 estimate.stiffness_for, contact_def_potential_unit(model->scene->contact.potential),

@@ -6,6 +6,8 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "contact/shape/shape.h"
+#include "fem/effect/contact/contact.h"
 
 // A body's balance may be out by the first share of all impulses of a run. Beyond it a step adds no more than
 // half of what is left to the second; the third is always allowed.
@@ -13,6 +15,9 @@ static const double NEAR = 6e-4, FAR = 9e-4, NEGLIGIBLE = 1e-5;
 // What a method of order 1 may owe until the force falls again, as a share of the same: it does not take that
 // back where steps change or the order rises before.
 static const double OWED = 3e-4;
+// From the first share to the second the tolerance of velocities falls to the third of itself: steps get
+// shorter before they have to be taken back.
+static const double STRICT_FROM = 5e-4, STRICT_TO = 9e-4, STRICTEST = 0.3;
 
 Status fem_momentum_create(FemMomentum *momentum, FemSystem *system) {
   size_t bodies = (size_t)system->model->scene->body_count;
@@ -46,6 +51,37 @@ static void add_motion(const FemSystem *system, const FemModelBody *range, FemMo
 
 static void add_gravity(const FemModel *model, const FemModelBody *range, FemMomentumBody *body) {
   if (model->scene->has_gravity) add(body, vec3_scale(range->mass, vec3_at(model->scene->gravity)));
+}
+
+// How fast an obstacle moves where it presses [m/s]: it may bring a body to that.
+static double speed_of_obstacle(const FemMomentum *momentum, double time, const ContactInterface *interface) {
+  FemSystem *system = momentum->system;
+  const FemModel *model = system->model;
+  int number = interface->b - model->body_count;
+  if (number >= 0) {
+    void *contact = fem_system_effect(system, &fem_effect_contact);
+    const ContactLayout *layout = contact_system_layout(fem_effect_contact_system(contact));
+    const ContactShape *shape = &layout->def.shapes[number];
+    bool has_centre = isfinite(interface->centre[0]);
+    Vec3 centre = has_centre ? vec3_at(interface->centre) : contact_shape_point(shape, time);
+    return vec3_length(contact_shape_velocity(shape, time, centre));
+  }
+  const FemModelBody *body = &model->bodies[interface->b];
+  Vec3 sum = {0, 0, 0};
+  for (int a = body->vertex_begin; a < body->vertex_end; a++)
+    sum = vec3_add(sum, vec3_at(system->velocities + 3 * (size_t)a));
+  return vec3_length(sum) / (body->vertex_end - body->vertex_begin);
+}
+
+static void add_contact(const FemMomentum *momentum, double time, const ContactInterface *interface,
+                        Vec3 force, FemMomentumBody *bodies) {
+  FemMomentumBody *a = &bodies[interface->a];
+  if (interface->a == interface->b || interface->a >= momentum->body_count) return;
+  add(a, force);
+  if (interface->b < momentum->body_count)
+    add(&bodies[interface->b], vec3_scale(-1, force));
+  else if (vec3_length(force) > 0)
+    a->driven = fmax(a->driven, speed_of_obstacle(momentum, time, interface));
 }
 
 static Status add_loads(FemMomentum *momentum, double time, FemMomentumBody *bodies) {
@@ -96,17 +132,12 @@ static Status measure(FemMomentum *momentum, double time, const FemMomentumConta
   const FemModel *model = momentum->system->model;
   for (int b = 0; b < momentum->body_count; b++) {
     for (int c = 0; c < 3; c++) bodies[b].p[c] = bodies[b].force[c] = 0;
-    bodies[b].sum = 0;
+    bodies[b].sum = bodies[b].driven = 0;
     add_motion(momentum->system, &model->bodies[b], &bodies[b]);
     add_gravity(model, &model->bodies[b], &bodies[b]);
   }
-  for (int i = 0; i < contact->count; i++) {
-    const ContactInterface *interface = &contact->interfaces[i];
-    Vec3 force = vec3_at(contact->forces[i]);
-    if (interface->a == interface->b) continue;
-    if (interface->a < momentum->body_count) add(&bodies[interface->a], force);
-    if (interface->b < momentum->body_count) add(&bodies[interface->b], vec3_scale(-1, force));
-  }
+  for (int i = 0; i < contact->count; i++)
+    add_contact(momentum, time, &contact->interfaces[i], vec3_at(contact->forces[i]), bodies);
   TRY(add_loads(momentum, time, bodies));
   TRY(add_reactions(momentum, time, bodies));
   for (int b = 0; b < momentum->body_count; b++) {
@@ -177,13 +208,17 @@ static Motion motion_of(const FemMomentum *momentum) {
   return motion;
 }
 
-// S of a body at the end of a run, as far as can be known: what was and what its weight will be, or what
-// moves now where that is more.
-static double expected_of(const FemMomentum *momentum, int body, const Motion *motion, double end) {
+// S of a body at the end of a run that is `left` away, as far as can be known at a state: what was, what its
+// weight will be, and what a force that brakes it has yet to take. Or what may be handed over by what moves
+// now, an obstacle that presses it included, where that is more.
+static double expected_of(const FemMomentum *momentum, const FemMomentumBody *body, int number, double left,
+                          const Motion *motion) {
   const FemModel *model = momentum->system->model;
-  double mass = model->bodies[body].mass, left = fmax(end - momentum->next_time, 0);
-  double acting = momentum->next[body].size + weight_of(momentum, body) * left,
-         moving = fmin(motion->momentum, mass * motion->speed);
+  Vec3 p = vec3_at(momentum->now[number].p), force = vec3_at(body->force);
+  double mass = model->bodies[number].mass, size = vec3_length(force),
+         braked = size > 0 ? fmax(-vec3_dot(p, force) / size, 0) : 0;
+  double acting = body->size + weight_of(momentum, number) * fmax(left, 0) + braked,
+         moving = fmax(fmin(motion->momentum, mass * motion->speed), mass * body->driven);
   return fmax(fmax(acting, moving), mass * fem_model_velocity_tolerance(model));
 }
 
@@ -203,16 +238,31 @@ static double lasting_of(const FemMomentum *momentum, const FemMomentumBody *bod
 
 bool fem_momentum_is_refused(const FemMomentum *momentum, double end) {
   Motion motion = motion_of(momentum);
-  const double step = momentum->next_time - momentum->time;
+  const double step = momentum->next_time - momentum->time, left = end - momentum->next_time;
   for (int b = 0; b < momentum->body_count; b++) {
     const FemMomentumBody *now = &momentum->now[b], *next = &momentum->next[b];
-    double expected = expected_of(momentum, b, &motion, end);
-    double before = vec3_length(missing_of(now)), after = lasting_of(momentum, next, b, step, expected);
+    double expected = expected_of(momentum, next, b, left, &motion);
+    double before = lasting_of(momentum, now, b, step, expected),
+           after = lasting_of(momentum, next, b, step, expected);
     double room = fmax(0.5 * (FAR * expected - before), NEGLIGIBLE * expected);
     bool is_held = after <= NEAR * expected || after - before <= room;
     if (!is_held) return true;
   }
   return false;
+}
+
+double fem_momentum_strictness(const FemMomentum *momentum, double end) {
+  Motion motion = motion_of(momentum);
+  double share = 0;
+  for (int b = 0; b < momentum->body_count; b++) {
+    const FemMomentumBody *now = &momentum->now[b];
+    bool falls_freely = now->sum <= weight_of(momentum, b);
+    if (falls_freely) continue;
+    double expected = expected_of(momentum, now, b, end - momentum->time, &motion);
+    share = fmax(share, vec3_length(missing_of(now)) / expected);
+  }
+  double beyond = fmin(fmax((share - STRICT_FROM) / (STRICT_TO - STRICT_FROM), 0), 1);
+  return 1 - (1 - STRICTEST) * beyond;
 }
 
 // How much of the last step lies before a time.

@@ -22,6 +22,7 @@ typedef struct FemMomentumBody {
   double p[3];       // [kg m/s]
   double force[3];   // [N]
   double sum;        // Σ |f| [N]
+  double driven;     // of the fastest obstacle that presses it [m/s]
 } FemMomentumBody;
 
 typedef struct FemMomentum {
@@ -53,8 +54,12 @@ Status fem_momentum_end(FemMomentum *momentum, double time, const FemMomentumCon
 void fem_momentum_accept(FemMomentum *momentum);
 // Whether the step that was looked at last is too long for its forces: it leaves a body's balance further out
 // than what the run may end with, `end` its time. S of the whole run is known in part: what was, what the
-// body's weight will be, and what moves now, which something may stop.
+// body's weight will be, and what moves now, which something may stop or hand over.
 bool fem_momentum_is_refused(const FemMomentum *momentum, double end);
+// The share of its tolerance that a velocity may err by in the next step, 1 or less: what is lost in steps of
+// which none is too long adds up. Bodies on which only gravity acts lose nothing. A function of the accepted
+// state, so a resumed run has the same.
+double fem_momentum_strictness(const FemMomentum *momentum, double end);
 
 // J − Δp of a body up to a time in the step that was looked at last [N s].
 void fem_momentum_missing(const FemMomentum *momentum, double time, int body, double missing[3]);

@@ -28,6 +28,9 @@
 // a wave √(E/ρ) crosses the smallest mean edge: a run may be long.
 static const double RETRY_FACTOR = 0.2, SHORTEST_RETRY = 2e-6, SHORTEST_CROSSING = 1e-3;
 enum { RETRIES_IN_A_ROW = 8 };
+// The first step of a start, as a share of the same time, at least: nothing moves in less, whatever
+// accelerations there are.
+static const double SHORTEST_START = 5e-4;
 // What friction may give in a step to what slips, as a share of the scene's energy.
 static const double TURNED_SHARE = 3e-4;
 // A scene in motion without contact may begin at rest with long steps. What it gains is judged by the energy
@@ -41,11 +44,13 @@ FemSolverKind fem_run_solver(const FemModel *model) {
   return fem_run_choice(model).kind;
 }
 
+static double crossing(const FemModel *model) {
+  return model->edge / fem_model_fastest_wave(model);
+}
+
 // No step that is taken back is tried again with less than this [s], unless forces could not be evaluated.
 static double shortest_retry(const FemRunState *run) {
-  const FemModel *model = run->model;
-  return fmin(SHORTEST_RETRY * model->scene->end,
-              SHORTEST_CROSSING * model->edge / fem_model_fastest_wave(model));
+  return fmin(SHORTEST_RETRY * run->model->scene->end, SHORTEST_CROSSING * crossing(run->model));
 }
 
 // Of a step that is taken back, the one to try.
@@ -118,6 +123,7 @@ static Status begin_stage(FemRunState *run, double step) {
                           .initial_step = step,
                           .min_step = scene->min_step,
                           .max_step = scene->max_step,
+                          .least_start = SHORTEST_START * crossing(model),
                           .max_order = scene->max_order,
                           .end = run->stage_end,
                           .stall = &run->stall};
@@ -162,12 +168,17 @@ static Status renumber(FemRunState *run) {
   return begin_stage(run, 0);
 }
 
-// Whether the step's forces are too far from the motion. Without contact nothing jumps within a step; of
-// potentials other than the depth field forces jump in steps however short.
-static bool differs_from_motion(const FemRunState *run) {
+// Whether forces are held to the motion. Without contact nothing jumps within a step; of potentials other
+// than the depth field forces jump in steps however short.
+static bool minds_momentum(const FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
-  if (!scene->contact.is_on || scene->contact.potential != CONTACT_POTENTIAL_FIELD) return false;
-  return fem_momentum_is_refused(&run->recorder.ledger.momentum, scene->end);
+  return scene->contact.is_on && scene->contact.potential == CONTACT_POTENTIAL_FIELD;
+}
+
+// Whether the step's forces are too far from the motion.
+static bool differs_from_motion(const FemRunState *run) {
+  return minds_momentum(run) &&
+         fem_momentum_is_refused(&run->recorder.ledger.momentum, run->model->scene->end);
 }
 
 // What is dissipated at the step's mean velocity v̄, at its end. A power that is quadratic in velocities is,
@@ -207,6 +218,10 @@ static Status advance(FemRunState *run) {
   double time = run->time;
   bool is_onset;
   FemMeasures measures;
+  if (minds_momentum(run)) {
+    double strictness = fem_momentum_strictness(&run->recorder.ledger.momentum, run->model->scene->end);
+    fem_integrator_tighten(run->integrator, strictness);
+  }
   Status status = step(run, &time, &is_onset, &measures);
   bool may_retry = run->retries < RETRIES_IN_A_ROW;
   if (status == STATUS_RETRY && may_retry) return take_back(run, retry_step(run, 0), status_message());

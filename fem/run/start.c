@@ -18,7 +18,7 @@ static double deepest_of(const FemSystem *system, int body) {
   double deepest = 0;
   if (body >= model->scene->body_count) return 0;
   for (int e = model->bodies[body].tet_begin; e < model->bodies[body].tet_end; e++)
-    deepest = fmax(deepest, covered[e] / model->elements[e].volume);
+    deepest = fmax(deepest, covered[e] / model->volumes[e]);
   return deepest;
 }
 

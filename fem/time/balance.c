@@ -4,12 +4,15 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
 
-// Forces on a body in contact balance to this share of its weight or, where that is more, to that of what its
-// acceleration takes.
+// Forces on a body balance to this share of its weight or, where that is more, to that of what its
+// acceleration takes. What is left turns a stiff body that flies, and gives it energy.
 static const double BALANCE = 2e-4, BALANCE_OF_INERTIA = 2e-3;
+// In a scene without contact, times this.
+static const double WITHOUT_CONTACT = 10;
 // Nor less than this share of E · edge².
 static const double SMALLEST_FORCE = 1e-10;
 
@@ -33,32 +36,35 @@ static double pressed_on(const double *forces, const FemModelBody *body) {
 }
 
 // Σ |r|, and Σ m |v̇| = Σ |r + f|, of each body.
-static void sum_up(FemBalance *balance, const FemSystem *system, int n, const double *residual) {
+static void sum_up(FemBalance *balance, const FemSystem *system, const FemPart *part,
+                   const double *residual) {
   const FemModel *model = system->model;
   for (int b = 0; b < model->body_count; b++) balance->unbalanced[b] = balance->needed[b] = 0;
   int body = 0;
-  for (int i = 0; i < n; i++) {
-    int dof = model->dof_of_unknown[i];
+  for (int i = 0; i < part->count; i++) {
+    int dof = model->dof_of_unknown[fem_part_unknown(part, i)];
     while (dof / 3 >= model->bodies[body].vertex_end) body++;
     balance->unbalanced[body] += fabs(residual[i]);
     balance->needed[body] += fabs(residual[i] + system->forces[dof]);
   }
+  ranks()->sum(balance->unbalanced, (size_t)model->body_count);
+  ranks()->sum(balance->needed, (size_t)model->body_count);
 }
 
-double fem_balance_excess(FemBalance *balance, FemSystem *system, int n, const double *residual) {
+double fem_balance_excess(FemBalance *balance, FemSystem *system, const FemPart *part,
+                          const double *residual) {
   const FemModel *model = system->model;
   void *contact = fem_system_effect(system, &fem_effect_contact);
-  if (!contact) return 0;
-  const double *forces = contact_system_forces(fem_effect_contact_system(contact));
+  const double *forces = contact ? contact_system_forces(fem_effect_contact_system(contact)) : NULL;
   double worst = 0, gravity = model->scene->has_gravity ? vec3_length(vec3_at(model->scene->gravity)) : 0;
-  sum_up(balance, system, n, residual);
+  sum_up(balance, system, part, residual);
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
-    double pressed = pressed_on(forces, body), weight = gravity > 0 ? gravity * body->mass : pressed;
-    if (!(pressed > 0)) continue;
-    double floor = SMALLEST_FORCE * body->material.young * model->edge * model->edge;
+    double weight = gravity * body->mass;
+    if (forces && !(gravity > 0)) weight = pressed_on(forces, body);
     double needed = fmax(BALANCE * weight, BALANCE_OF_INERTIA * balance->needed[b]);
-    double allowed = fmax(needed, floor);
+    double floor = SMALLEST_FORCE * body->material.young * model->edge * model->edge;
+    double allowed = fmax(forces ? needed : WITHOUT_CONTACT * needed, floor);
     worst = fmax(worst, balance->unbalanced[b] / allowed);
   }
   return worst;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well the forces on a body in contact balance: what Newton's method of a step is held to beside the size
-// of its corrections, since what is written of contact is as right.
+// How well the forces on a body balance: what Newton's method of a step is held to beside the size of its
+// corrections, since what is written of contact is as right, and what is left works on a body that turns.
 #ifndef TETLAP_FEM_TIME_BALANCE_H
 #define TETLAP_FEM_TIME_BALANCE_H
 
 #include "fem/effect/system.h"
+#include "fem/time/part.h"
 
 // Of each body: Σ |r|, and Σ m |v̇| [N]; both owned.
 typedef struct FemBalance {
@@ -15,8 +16,9 @@ typedef struct FemBalance {
 Status fem_balance_create(FemBalance *balance, int body_count);
 void fem_balance_destroy(FemBalance *balance);
 
-// The largest Σ |r| of a body in contact over what is allowed [1]; 0 without contact. `residual` is M v̇ − f
-// of the `n` unknowns at the state that the system's forces were evaluated at last [N].
-double fem_balance_excess(FemBalance *balance, FemSystem *system, int n, const double *residual);
+// The largest Σ |r| of a body over what is allowed [1]. `residual` is M v̇ − f of this rank's unknowns at the
+// state that the system's forces were evaluated at last [N]. By all ranks.
+double fem_balance_excess(FemBalance *balance, FemSystem *system, const FemPart *part,
+                          const double *residual);
 
 #endif

@@ -9,7 +9,7 @@
 #ifndef TETLAP_FEM_TIME_ERROR_WEIGHTS_H
 #define TETLAP_FEM_TIME_ERROR_WEIGHTS_H
 
-#include "fem/model/model.h"
+#include "fem/time/part.h"
 
 typedef struct FemErrorTolerance {
   double displacement; // [m]
@@ -18,8 +18,8 @@ typedef struct FemErrorTolerance {
   double wave_share;   // of a body's √(E/ρ), at most
 } FemErrorTolerance;
 
-// The weights 1/tolerance of u and v (2 · unknown_count) at the velocities v (unknown_count).
-void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model, const double *v,
-                       double *weights);
+// The weights 1/tolerance of u and v (2 · part->count) at the velocities v (part->count). By all ranks.
+void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model, const FemPart *part,
+                       const double *v, double *weights);
 
 #endif

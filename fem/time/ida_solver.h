@@ -6,6 +6,9 @@
 //        set-up                ──► analyse if the layout is new, factorise
 //        solve J x = b         ──► S du = r₂ + (c M + D) r₁, dv = c du − r₁
 //
+// c changes with every length of step. Where the factor is exact, a solution at another c is had by conjugate
+// gradients with that factor before them, and K and D are assembled anew for their own sake only.
+//
 // Of a linear system K and D are assembled once, and S is factorised only where c is new: once for each step
 // size and order.
 //
@@ -17,6 +20,7 @@
 
 #include "fem/effect/system.h"
 #include "fem/sparse/solver.h"
+#include "fem/time/part.h"
 
 enum { FEM_IDA_MESSAGE_SIZE = 1024 };
 
@@ -33,25 +37,28 @@ int fem_ida_solver_answer(FemIdaFailure *failure, Status status);
 
 typedef struct FemIdaSolver FemIdaSolver; // opaque
 
-// `system` and `failure` are borrowed. A residual of the kinematics up to `rounding` [m/s] counts as zero.
-Status fem_ida_solver_create(FemIdaSolver **solver, FemSystem *system, const FemSolverOps *ops,
-                             double rounding, FemIdaFailure *failure, SUNContext context);
+// `system`, `part` and `failure` are borrowed. A residual of the kinematics up to `rounding` [m/s] counts as
+// zero.
+Status fem_ida_solver_create(FemIdaSolver **solver, FemSystem *system, const FemPart *part,
+                             const FemSolverOps *ops, double rounding, FemIdaFailure *failure,
+                             SUNContext context);
 void fem_ida_solver_destroy(FemIdaSolver *solver);
 
-SUNLinearSolver fem_ida_solver_linear(FemIdaSolver *solver); // owned by the solver
-SUNMatrix fem_ida_solver_matrix(FemIdaSolver *solver);       // owned by the solver
+// Hands IDA the linear solver, its matrix, and how far c may go from the matrix's. False: IDA refuses.
+bool fem_ida_solver_attach(FemIdaSolver *solver, void *ida);
 
-// Scatters (time, u, v), lets effects couple, assembles with c = ∂ẏ/∂y.
+// Scatters (time, u, v) of all unknowns, lets effects couple, assembles with c = ∂ẏ/∂y.
 Status fem_ida_solver_assemble(FemIdaSolver *solver, double time, double c, const double *u, const double *v);
 
-// The right-hand side of the condensed system that was solved last (unknown_count); NULL: the linear solver
+// The right-hand side of the condensed system that was solved last (part->count); NULL: the linear solver
 // does not condense.
 const double *fem_ida_solver_right(const FemIdaSolver *solver);
 
-// What the next solution may leave (FemSolverOps.aim), unless the scene says a tolerance.
-void fem_ida_solver_aim(FemIdaSolver *solver, double tolerance);
+// c of the step now, and what the next solution may leave (FemSolverOps.aim), unless the scene says a
+// tolerance.
+void fem_ida_solver_aim(FemIdaSolver *solver, double c, double tolerance);
 
-const double *fem_ida_solver_masses(const FemIdaSolver *solver); // of the unknowns [kg]   (unknown_count)
+const double *fem_ida_solver_masses(const FemIdaSolver *solver); // of the unknowns [kg]   (part->count)
 const FemSolverStats *fem_ida_solver_stats(const FemIdaSolver *solver);
 
 #endif

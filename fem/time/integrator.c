@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "fem/time/balance.h"
 #include "fem/time/error_weights.h"
 #include "fem/time/ida_solver.h"
@@ -37,7 +38,8 @@ struct FemIntegrator {
   FemSystem *system; // borrowed
   FemIntegratorDef def;
   double min_step, max_step; // [s]
-  int n;                     // unknowns; y and ẏ have 2n
+  FemPart part;
+  int n; // this rank's unknowns; y and ẏ have 2n
   SUNContext context;
   void *ida;
   FemIdaSolver *solver;
@@ -52,6 +54,7 @@ struct FemIntegrator {
   double time;                // of y
   double step_end;            // where IDA stands: later than `time` after an onset
   bool is_started, has_steps; // there was a restart; a step since then
+  double strictness;          // share of the tolerances of velocities that counts
   double stop;                // which the next step does not pass [s]
   bool stops_at_knot;         // that is why
   bool is_at_knot;            // the last step ended there
@@ -66,22 +69,30 @@ static double *values_of(N_Vector vector) {
   return N_VGetArrayPointer(vector);
 }
 
+// To all vertices, of all ranks.
+static void scatter(FemIntegrator *integrator, double time, N_Vector y) {
+  const double *u = fem_part_join(&integrator->part, values_of(y));
+  fem_system_scatter(integrator->system, time, u, u + integrator->part.n);
+}
+
 // r = [u̇ − v; M v̇ − f(u, v, t)]
 static int residual(realtype time, N_Vector y, N_Vector y_dot, N_Vector r, void *self) {
   FemIntegrator *integrator = self;
   FemSystem *system = integrator->system;
+  const FemPart *part = &integrator->part;
   int n = integrator->n;
-  const double *u = values_of(y), *v = u + n, *u_dot = values_of(y_dot), *v_dot = u_dot + n;
+  const double *v = values_of(y) + n, *u_dot = values_of(y_dot), *v_dot = u_dot + n;
   const double *masses = fem_ida_solver_masses(integrator->solver);
   double *kinematics = values_of(r), *balance = kinematics + n;
   N_VScale(1, y, integrator->evaluated);
   integrator->evaluated_time = time;
-  fem_system_scatter(system, time, u, v);
+  scatter(integrator, time, y);
   int answer = fem_ida_solver_answer(&integrator->failure, fem_system_forces(system, time));
   if (answer != 0) return answer;
   for (int i = 0; i < n; i++) {
     kinematics[i] = u_dot[i] - v[i];
-    balance[i] = masses[i] * v_dot[i] - system->forces[system->model->dof_of_unknown[i]];
+    balance[i] =
+        masses[i] * v_dot[i] - system->forces[system->model->dof_of_unknown[fem_part_unknown(part, i)]];
   }
   return 0;
 }
@@ -90,8 +101,8 @@ static int jacobian(realtype time, realtype c, N_Vector y, N_Vector y_dot, N_Vec
                     void *self, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
   (void)y_dot, (void)r, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
   FemIntegrator *integrator = self;
-  const double *u = values_of(y);
-  Status status = fem_ida_solver_assemble(integrator->solver, time, c, u, u + integrator->n);
+  const double *u = fem_part_join(&integrator->part, values_of(y));
+  Status status = fem_ida_solver_assemble(integrator->solver, time, c, u, u + integrator->part.n);
   return fem_ida_solver_answer(&integrator->failure, status);
 }
 
@@ -100,10 +111,11 @@ static int find_weights(N_Vector y, N_Vector weights, void *self) {
   const FemIntegrator *integrator = self;
   const FemIntegratorDef *def = &integrator->def;
   FemErrorTolerance tolerance = {.displacement = def->displacement_tolerance,
-                                 .velocity = def->velocity_tolerance,
-                                 .speed_share = def->speed_share,
-                                 .wave_share = def->wave_share};
-  fem_error_weights(&tolerance, integrator->system->model, values_of(y) + integrator->n, values_of(weights));
+                                 .velocity = integrator->strictness * def->velocity_tolerance,
+                                 .speed_share = integrator->strictness * def->speed_share,
+                                 .wave_share = integrator->strictness * def->wave_share};
+  fem_error_weights(&tolerance, integrator->system->model, &integrator->part, values_of(y) + integrator->n,
+                    values_of(weights));
   return 0;
 }
 
@@ -112,12 +124,15 @@ static const double *right_of(void *self) {
 }
 
 static void aim(void *self, double tolerance) {
-  fem_ida_solver_aim(((FemIntegrator *)self)->solver, tolerance);
+  FemIntegrator *integrator = self;
+  double c = 0;
+  IDAGetCurrentCj(integrator->ida, &c);
+  fem_ida_solver_aim(integrator->solver, c, tolerance);
 }
 
 static double unbalance(void *self, const double *balance) {
   FemIntegrator *integrator = self;
-  return fem_balance_excess(&integrator->balance, integrator->system, integrator->n, balance);
+  return fem_balance_excess(&integrator->balance, integrator->system, &integrator->part, balance);
 }
 
 // IDA would print.
@@ -142,27 +157,16 @@ static Status check_def(const FemIntegratorDef *def) {
   return STATUS_OK;
 }
 
-// √(Σ (x_i w_i)² / n) in eight sums: one would wait for each addition.
-static realtype weighted_norm(N_Vector x_vector, N_Vector weights) {
-  enum { SUMS = 8 };
-  const double *x = values_of(x_vector), *w = values_of(weights);
-  sunindextype n = NV_LENGTH_S(x_vector), i = 0;
-  double sums[SUMS] = {0}, sum = 0;
-  for (; i + SUMS <= n; i += SUMS)
-    for (int k = 0; k < SUMS; k++) sums[k] += x[i + k] * w[i + k] * (x[i + k] * w[i + k]);
-  for (; i < n; i++) sum += x[i] * w[i] * (x[i] * w[i]);
-  for (int k = 0; k < SUMS; k++) sum += sums[k];
-  return sqrt(sum / (double)n);
-}
-
 static Status create_vectors(FemIntegrator *integrator) {
+  TRY(fem_part_create(&integrator->part, integrator->system->model));
+  integrator->n = integrator->part.count;
   if (SUNContext_Create(NULL, &integrator->context) != 0) return status_no_memory("the integrator");
   N_Vector *vectors[] = {&integrator->y, &integrator->y_dot, &integrator->interpolated,
                          &integrator->evaluated, &integrator->weights};
   for (int i = 0; i < 5; i++) {
     *vectors[i] = N_VNew_Serial(2 * (sunindextype)integrator->n, integrator->context);
     if (!*vectors[i]) return status_no_memory("the integrator");
-    (*vectors[i])->ops->nvwrmsnorm = weighted_norm; // IDA's own vectors are clones
+    (*vectors[i])->ops->nvwrmsnorm = fem_newton_norm; // IDA's own vectors are clones
     N_VConst(0, *vectors[i]);
   }
   return STATUS_OK;
@@ -176,12 +180,11 @@ static Status configure(FemIntegrator *integrator) {
   double least_growth = has_contact ? LEAST_GROWTH : LEAST_GROWTH_WITHOUT_CONTACT;
   bool is_ok =
       IDASetErrHandlerFn(ida, be_silent, NULL) == IDA_SUCCESS &&
+      IDASetMaxOrd(ida, integrator->def.max_order) == IDA_SUCCESS && // before vectors are made for more
       IDAInit(ida, residual, 0, integrator->y, integrator->y_dot) == IDA_SUCCESS &&
       IDAWFtolerances(ida, find_weights) == IDA_SUCCESS && IDASetUserData(ida, integrator) == IDA_SUCCESS &&
-      IDASetLinearSolver(ida, fem_ida_solver_linear(solver), fem_ida_solver_matrix(solver)) == IDA_SUCCESS &&
-      IDASetJacFn(ida, jacobian) == IDA_SUCCESS &&
+      fem_ida_solver_attach(solver, ida) && IDASetJacFn(ida, jacobian) == IDA_SUCCESS &&
       IDASetNonlinearSolver(ida, integrator->newton.solver) == IDA_SUCCESS &&
-      IDASetMaxOrd(ida, integrator->def.max_order) == IDA_SUCCESS &&
       IDASetMaxStep(ida, integrator->max_step) == IDA_SUCCESS &&
       IDASetMinStep(ida, integrator->min_step) == IDA_SUCCESS &&
       IDASetEtaFixedStepBounds(ida, 1, least_growth) == IDA_SUCCESS &&
@@ -197,7 +200,7 @@ static Status create(FemIntegrator *integrator, const FemSolverOps *solver) {
   integrator->min_step =
       def->min_step > 0 ? def->min_step : fmin(SHORTEST_STEP * def->end, integrator->max_step);
   TRY(create_vectors(integrator));
-  TRY(fem_ida_solver_create(&integrator->solver, integrator->system, solver,
+  TRY(fem_ida_solver_create(&integrator->solver, integrator->system, &integrator->part, solver,
                             ROUNDING * def->velocity_tolerance, &integrator->failure, integrator->context));
   TRY(fem_balance_create(&integrator->balance, integrator->system->model->body_count));
   FemNewtonUser user = {
@@ -212,8 +215,8 @@ Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, cons
   if (!*integrator) return status_no_memory("the integrator");
   (*integrator)->system = system;
   (*integrator)->def = *def;
+  (*integrator)->strictness = 1;
   (*integrator)->own_stall = fem_stall_begin(0, def->end, def->end);
-  (*integrator)->n = system->model->unknown_count;
   Status status = create(*integrator, solver);
   if (status == STATUS_OK) return STATUS_OK;
   fem_integrator_destroy(*integrator);
@@ -226,6 +229,7 @@ void fem_integrator_destroy(FemIntegrator *integrator) {
   if (integrator->ida) IDAFree(&integrator->ida);
   fem_newton_destroy(&integrator->newton);
   fem_balance_destroy(&integrator->balance);
+  fem_part_destroy(&integrator->part);
   fem_ida_solver_destroy(integrator->solver);
   N_Vector vectors[] = {integrator->y, integrator->y_dot, integrator->interpolated, integrator->evaluated,
                         integrator->weights};
@@ -235,6 +239,10 @@ void fem_integrator_destroy(FemIntegrator *integrator) {
   memory_free(integrator);
 }
 
+void fem_integrator_tighten(FemIntegrator *integrator, double share) {
+  integrator->strictness = share;
+}
+
 static FemStall *stall_of(FemIntegrator *integrator) {
   return integrator->def.stall ? integrator->def.stall : &integrator->own_stall;
 }
@@ -242,31 +250,47 @@ static FemStall *stall_of(FemIntegrator *integrator) {
 // v̇ = M⁻¹ f at (t, y), and ẏ = [v; v̇].
 static Status find_derivatives(FemIntegrator *integrator, double time) {
   FemSystem *system = integrator->system;
+  const FemPart *part = &integrator->part;
   int n = integrator->n;
   const double *u = values_of(integrator->y), *v = u + n;
   const double *masses = fem_ida_solver_masses(integrator->solver);
   double *u_dot = values_of(integrator->y_dot), *v_dot = u_dot + n;
-  if (!fem_solver_is_finite(u, 2 * n))
+  if (ranks_any(!fem_solver_is_finite(u, 2 * n)))
     return status_fail(STATUS_SOLVER, "at t = %g s: a position or velocity is not a number", time);
-  fem_system_scatter(system, time, u, v);
+  scatter(integrator, time, integrator->y);
   TRY(fem_system_forces(system, time));
   for (int i = 0; i < n; i++) {
     u_dot[i] = v[i];
-    v_dot[i] = system->forces[system->model->dof_of_unknown[i]] / masses[i];
+    v_dot[i] = system->forces[system->model->dof_of_unknown[fem_part_unknown(part, i)]] / masses[i];
   }
-  if (fem_solver_is_finite(v_dot, n)) return STATUS_OK;
+  if (!ranks_any(!fem_solver_is_finite(v_dot, n))) return STATUS_OK;
   return status_fail(STATUS_SOLVER, "at t = %g s: an acceleration is not a number", time);
+}
+
+// IDA's own first step: a thousandth of the way to the end, or what changes the state by half of the tolerances
+// where that is shorter (SUNDIALS, IDASolve).
+static const double START_SHARE = 1e-3, START_CHANGE = 0.5;
+
+// The first step of a start that is left to IDA; 0: IDA's own will do. Where something is driven from rest with
+// a jump of its speed, accelerations are large for a time in which nothing moves: they say nothing of how
+// long a step may be, and the error test does.
+static double start_step(FemIntegrator *integrator, double time) {
+  double least = fmin(integrator->def.least_start, START_SHARE * (integrator->def.end - time));
+  if (!(least > 0)) return 0;
+  find_weights(integrator->y, integrator->weights, integrator);
+  double rate = N_VWrmsNorm(integrator->y_dot, integrator->weights);
+  return rate * least > START_CHANGE ? least : 0;
 }
 
 Status fem_integrator_restart(FemIntegrator *integrator, double time, const double *u, const double *v,
                               double step) {
-  size_t bytes = (size_t)integrator->n * sizeof(double);
   double *y = values_of(integrator->y);
   FemIntegratorStats stats = fem_integrator_stats(integrator);
-  memmove(y, u, bytes); // they may be this very array
-  memmove(y + integrator->n, v, bytes);
+  fem_part_take(&integrator->part, u, y);
+  fem_part_take(&integrator->part, v, y + integrator->n);
   TRY(find_derivatives(integrator, time));
   if (step == 0 && !integrator->is_started) step = integrator->def.initial_step;
+  if (step == 0) step = start_step(integrator, time);
   if (step > 0) step = fmin(fmax(step, integrator->min_step), integrator->max_step);
   void *ida = integrator->ida;
   bool is_ok = IDAReInit(ida, time, integrator->y, integrator->y_dot) == IDA_SUCCESS &&
@@ -300,15 +324,15 @@ static Status interpolate(FemIntegrator *integrator, double time) {
 
 Status fem_integrator_at(FemIntegrator *integrator, double time, const double **u, const double **v) {
   TRY(interpolate(integrator, time));
-  *u = values_of(integrator->interpolated);
-  *v = *u + integrator->n;
+  *u = fem_part_join(&integrator->part, values_of(integrator->interpolated));
+  *v = *u + integrator->part.n;
   return STATUS_OK;
 }
 
 void fem_integrator_state(const FemIntegrator *integrator, double *time, const double **u, const double **v) {
   *time = integrator->time;
-  *u = values_of(integrator->y);
-  *v = *u + integrator->n;
+  *u = fem_part_join(&integrator->part, values_of(integrator->y));
+  *v = *u + integrator->part.n;
 }
 
 const double *fem_integrator_acceleration(const FemIntegrator *integrator) {
@@ -317,8 +341,7 @@ const double *fem_integrator_acceleration(const FemIntegrator *integrator) {
 
 static Status gap_at(FemIntegrator *integrator, double time, double *gap) {
   TRY(interpolate(integrator, time));
-  const double *u = values_of(integrator->interpolated);
-  fem_system_scatter(integrator->system, time, u, u + integrator->n);
+  scatter(integrator, time, integrator->interpolated);
   return fem_system_gap(integrator->system, time, gap);
 }
 
@@ -384,33 +407,41 @@ static FemReason reason_of(int flag) {
   }
 }
 
-// The unknown whose value, times its weight unless NULL, is largest; a value that is no number wins.
-static int worst_of(const double *values, const double *weights, int count) {
-  int worst = 0;
+// The number in y of all ranks of this one's i-th value.
+static int number_of(const FemPart *part, int i) {
+  return i < part->count ? fem_part_unknown(part, i) : part->n + fem_part_unknown(part, i - part->count);
+}
+
+// Of values `begin` … `end` − 1 the one which, times its weight unless NULL, is largest, as a number in y of
+// all ranks; a value that is no number wins.
+static int worst_of(const FemPart *part, const double *values, const double *weights, int begin, int end) {
+  int worst = -1;
   double largest = -1;
-  for (int i = 0; i < count; i++) {
+  for (int i = begin; i < end; i++) {
     double size = fabs(weights ? values[i] * weights[i] : values[i]);
-    if (isnan(size)) return i;
+    if (isnan(size)) size = INFINITY;
     if (size > largest) largest = size, worst = i;
   }
-  return worst;
+  double largest_of_all = fem_part_most(largest);
+  return (int)fem_part_most(worst >= 0 && largest == largest_of_all ? number_of(part, worst) : 0);
 }
 
 // The number in y of the unknown that stands in the way: of the largest estimated error if the error test
 // failed, else of the largest unbalanced force.
 static int find_worst(FemIntegrator *integrator, int flag) {
+  const FemPart *part = &integrator->part;
   int n = integrator->n;
   N_Vector errors = integrator->interpolated, weights = integrator->weights;
   if (flag == IDA_ERR_FAIL && IDAGetEstLocalErrors(integrator->ida, errors) == IDA_SUCCESS &&
       IDAGetErrWeights(integrator->ida, weights) == IDA_SUCCESS)
-    return worst_of(values_of(errors), values_of(weights), 2 * n);
+    return worst_of(part, values_of(errors), values_of(weights), 0, 2 * n);
   double time, c;
   N_Vector y, y_dot, y_predicted, y_dot_predicted, r;
   void *self;
   if (IDAGetNonlinearSystemData(integrator->ida, &time, &y_predicted, &y_dot_predicted, &y, &y_dot, &r, &c,
                                 &self) == IDA_SUCCESS &&
       r)
-    return n + worst_of(values_of(r) + n, NULL, n);
+    return worst_of(part, values_of(r), NULL, n, 2 * n);
   return 0;
 }
 
@@ -418,8 +449,8 @@ static Status say_why(const FemIntegrator *integrator, double time, double step,
                       FemReason reason) {
   FemReasonPlace place = {.time = time,
                           .step = step,
-                          .unknown = worst % integrator->n,
-                          .is_position = worst < integrator->n,
+                          .unknown = worst % integrator->part.n,
+                          .is_position = worst < integrator->part.n,
                           .retry = integrator->failure.retry_message};
   return fem_reason_fail(&reason, integrator->system, &place);
 }
@@ -500,9 +531,9 @@ static Status choose_stop(FemIntegrator *integrator) {
 static Status pass_knot(FemIntegrator *integrator) {
   double last = fem_integrator_stats(integrator).last_step;
   if (!integrator->stops_at_knot || integrator->stop - integrator->step_end >= last) return STATUS_OK;
-  const double *u = values_of(integrator->y);
+  const double *u = fem_part_join(&integrator->part, values_of(integrator->y));
   double past = fem_signal_past(integrator->time);
-  TRY(fem_integrator_restart(integrator, past, u, u + integrator->n, 0));
+  TRY(fem_integrator_restart(integrator, past, u, u + integrator->part.n, 0));
   return choose_stop(integrator);
 }
 
@@ -514,7 +545,7 @@ static void take_evaluated(FemIntegrator *integrator, double reached) {
   N_VLinearSum(1, integrator->evaluated, -1, integrator->y, difference);
   if (IDAGetErrWeights(integrator->ida, integrator->weights) != IDA_SUCCESS) return;
   N_VProd(difference, integrator->weights, difference);
-  if (N_VMaxNorm(difference) <= SAME_STATE) N_VScale(1, integrator->evaluated, integrator->y);
+  if (fem_part_most(N_VMaxNorm(difference)) <= SAME_STATE) N_VScale(1, integrator->evaluated, integrator->y);
 }
 
 static Status take_step(FemIntegrator *integrator) {

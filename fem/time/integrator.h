@@ -25,7 +25,8 @@ typedef struct FemIntegratorDef {
   double velocity_tolerance;               // [m/s]; at least, where the next two are given
   double speed_share, wave_share;          // what else a velocity may err by (error_weights.h); 0: nothing
   double initial_step, min_step, max_step; // [s]; 0: chosen
-  int max_order;                           // 1 or 2
+  double least_start; // first step of a start that is left to IDA, at least [s]; 0: as short as it wants
+  int max_order;      // 1 or 2
   double end;                              // [s]
   FemStall *stall;                         // of the run, borrowed; NULL: of this integrator alone, from t = 0
 } FemIntegratorDef;
@@ -56,6 +57,9 @@ void fem_integrator_destroy(FemIntegrator *integrator);
 Status fem_integrator_restart(FemIntegrator *integrator, double time, const double *u, const double *v,
                               double step);
 
+// From the next step on velocities may err by this share of their tolerances, at most 1.
+void fem_integrator_tighten(FemIntegrator *integrator, double share);
+
 // One accepted step, or up to an onset. `*is_onset` tells which; at an onset the state is the one at the root
 // (on its far side), and a step without a restart goes on from the end of the step that was cut.
 // STATUS_SOLVER: gave up; the message says at what time and step size, why, and what to try. A fatal Status
@@ -70,8 +74,8 @@ bool fem_integrator_is_at_knot(const FemIntegrator *integrator);
 // The solution at a time within the last step; u, v of size n, borrowed until the next call.
 Status fem_integrator_at(FemIntegrator *integrator, double time, const double **u, const double **v);
 
-// The state that the last step or restart ended at; u, v, acceleration [m/s²] of size n, borrowed until the
-// next step or restart.
+// The state that the last step or restart ended at; u, v of size n, by all ranks; of accelerations [m/s²]
+// those of this rank's unknowns. Borrowed until the next call.
 void fem_integrator_state(const FemIntegrator *integrator, double *time, const double **u, const double **v);
 const double *fem_integrator_acceleration(const FemIntegrator *integrator);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fem/time/part.h"
 
 // Two changes whose angle has a smaller sine² than this count as one.
 static const double LEAST_SINE_SQUARE = 1e-6;
@@ -36,7 +37,7 @@ void fem_mixing_forget(FemMixing *mixing) {
 static double dot(const FemMixing *mixing, const double *weights, const double *a, const double *b) {
   double sum = 0;
   for (int i = 0; i < mixing->n; i++) sum += weights[i] * weights[i] * a[i] * b[i];
-  return sum;
+  return fem_part_sum(sum);
 }
 
 // The last step and what it changed becomes the newest pair.

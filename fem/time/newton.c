@@ -4,7 +4,9 @@
 #include <math.h>
 #include <nvector/nvector_serial.h>
 
+#include "base/ranks.h"
 #include "fem/sparse/solver.h"
+#include "fem/time/part.h"
 
 // Iterations, and matrices made anew, before a step is given up.
 enum { MAX_ITERATIONS = 16, MAX_RENEWALS = 5, MAX_CUTS = 6 };
@@ -17,6 +19,20 @@ static const double AIM_BALANCE = 0.03, AIM_SIZE = 0.02;
 static const double BLIND_CUT = 0.35;
 // A matrix of elsewhere is made anew once the iterations that are left, at the rate of the last, are more.
 static const double WORTH_A_MATRIX = 3, LEAST_RATE = 0.2, CLOSE = 0.3;
+
+realtype fem_newton_norm(N_Vector x_vector, N_Vector weights) {
+  enum { SUMS = 8 };
+  const double *x = N_VGetArrayPointer(x_vector), *w = N_VGetArrayPointer(weights);
+  sunindextype n = NV_LENGTH_S(x_vector), i = 0;
+  double sums[SUMS] = {0}, sum = 0;
+  for (; i + SUMS <= n; i += SUMS)
+    for (int k = 0; k < SUMS; k++) sums[k] += x[i + k] * w[i + k] * (x[i + k] * w[i + k]);
+  for (; i < n; i++) sum += x[i] * w[i] * (x[i] * w[i]);
+  for (int k = 0; k < SUMS; k++) sum += sums[k];
+  double all[2] = {sum, (double)n};
+  ranks()->sum(all, 2);
+  return sqrt(all[0] / all[1]);
+}
 
 static FemNewton *newton_of(SUNNonlinearSolver solver) {
   return solver->content;
@@ -89,6 +105,7 @@ static int make_matrix(Solve *solve) {
   int is_current = 0;
   int flag = solve->newton->set_up(solve->was_bad, &is_current, solve->memory);
   solve->wants_matrix = solve->was_bad = false;
+  fem_mixing_forget(&solve->newton->mixing);
   solve->size = 0;
   solve->newton->current = 0;
   return flag;
@@ -106,7 +123,8 @@ static bool renew(Solve *solve) {
 // δu · r of the balance at the correction.
 static double slope_of_balance(const FemNewton *newton) {
   int n = newton->user.n;
-  return fem_solver_dot(N_VGetArrayPointer(newton->direction), N_VGetArrayPointer(newton->residual) + n, n);
+  return fem_part_sum(
+      fem_solver_dot(N_VGetArrayPointer(newton->direction), N_VGetArrayPointer(newton->residual) + n, n));
 }
 
 // g(0) along the direction. The condensed right-hand side is minus the condensed residual.
@@ -114,8 +132,10 @@ static void find_slope(Solve *solve) {
   const FemNewton *newton = solve->newton;
   const double *right = newton->user.right(newton->user.self);
   double balance = slope_of_balance(newton);
-  solve->slope =
-      right ? -fem_solver_dot(N_VGetArrayPointer(newton->direction), right, newton->user.n) : balance;
+  solve->slope = balance;
+  if (right)
+    solve->slope =
+        -fem_part_sum(fem_solver_dot(N_VGetArrayPointer(newton->direction), right, newton->user.n));
   solve->settle = solve->slope - balance;
 }
 
@@ -135,8 +155,8 @@ static void aim(Solve *solve) {
   newton->user.aim(newton->user.self, size > 0 && excess > 0 ? tolerance : 0);
 }
 
-// The direction from the residual; once a matrix had to be made anew, mixed with those before unless that
-// leads uphill.
+// The direction from the residual; once a matrix had to be made anew, mixed with those that it gave before
+// unless that leads uphill.
 static int find_direction(Solve *solve) {
   FemNewton *newton = solve->newton;
   aim(solve);
@@ -192,7 +212,8 @@ static bool is_slow(const Solve *solve, double size, double before, double exces
 }
 
 // What IDA's test and the balance say after a whole step. Where the forces jump the balance cannot be had:
-// once IDA's test has passed, iterations go on while each halves what is missing.
+// once IDA's test has passed, iterations go on while each halves what is missing, or a matrix of where they
+// stand may help: one of before a body turned does not balance it.
 static int judge(Solve *solve, bool *has_converged) {
   FemNewton *newton = solve->newton;
   double before = solve->size, excess_before = solve->excess;
@@ -205,7 +226,9 @@ static int judge(Solve *solve, bool *has_converged) {
   if (verdict < 0) return verdict;
   bool passes = verdict == SUN_NLS_SUCCESS, is_stuck = !(solve->excess <= 0.5 * excess_before);
   *has_converged = passes && solve->excess <= 1;
-  if (!*has_converged && solve->is_good_enough && (is_stuck || !passes)) *has_converged = true;
+  bool is_left = !*has_converged && solve->is_good_enough && (is_stuck || !passes);
+  if (is_left && !solve->is_newest && renew(solve)) return 0;
+  *has_converged = *has_converged || is_left;
   if (*has_converged) return 0;
   solve->is_good_enough = solve->is_good_enough || passes;
   newton->stats.polished += passes;

@@ -26,7 +26,7 @@
 #include "fem/time/mixing.h"
 
 // What the method asks of its user. Vectors are (2 n): displacements, velocities; residuals: kinematics,
-// balance.
+// balance. Over ranks each has those of n unknowns (fem/time/part.h), and all go through the same steps.
 typedef struct FemNewtonUser {
   void *self;
   int n;
@@ -63,6 +63,9 @@ typedef struct FemNewton {
   long failures;     // of the last solve
   int current;       // iterations since the matrix or the step was changed: what IDA's test counts
 } FemNewton;
+
+// √(Σ (x_i w_i)² / n) over ranks, in eight sums: one would wait for each addition.
+realtype fem_newton_norm(N_Vector x, N_Vector weights);
 
 // `like`: a vector of the size of y. A zeroed one, and one whose creation failed, can be destroyed.
 Status fem_newton_create(FemNewton *newton, const FemNewtonUser *user, N_Vector like, SUNContext context);

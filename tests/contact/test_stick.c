@@ -21,6 +21,7 @@ typedef struct Fixture {
   ContactStick stick;
   double x[24];
   double meet[3], force[3]; // x̄ and what presses A
+  double area;              // that the pair covers
   bool has_body_below;      // else an obstacle without elements
   double obstacle[3];       // way of that since the last accepted state
 } Fixture;
@@ -40,7 +41,7 @@ static void locate(const double *x, const int tet[4], const double *p, double la
 static void eval(Fixture *f) {
   ck_assert_ok(contact_stick_reserve(&f->stick, 1));
   ContactStickPair *pair = &f->stick.pairs[0];
-  *pair = (ContactStickPair){.tets = {0, f->has_body_below ? 1 : -1}, .area = AREA};
+  *pair = (ContactStickPair){.tets = {0, f->has_body_below ? 1 : -1}, .area = f->area};
   memcpy(pair->force, f->force, sizeof f->force);
   for (int side = 0; side < 2; side++) locate(f->x, TETS[side], f->meet, pair->lambda[side]);
   vec3_store(pair->before, vec3_sub(vec3_at(f->meet), vec3_at(f->obstacle)));
@@ -60,6 +61,7 @@ static Fixture *start(double weight_above, bool has_body_below) {
   memcpy(f->x, REST, sizeof f->x);
   memcpy(f->meet, MEET, sizeof f->meet);
   f->force[2] = PRESS;
+  f->area = AREA;
   f->has_body_below = has_body_below;
   eval(f);
   accept(f);
@@ -109,10 +111,48 @@ START_TEST(the_spring_is_cut_at_the_limit) {
   ck_assert_near(f->stick.stored + f->stick.spent, 0.5 * k * elastic * elastic + MU * PRESS * (way - elastic),
                  1e-12);
   accept(f);
-  shift(f, 0, 0, elastic, 0); // back until the spring is slack
+  shift(f, 0, 0, elastic, 0); // back until the spring is slack, where the same of A touches
+  f->meet[1] += elastic;
   eval(f);
   ck_assert_near(pull_of(f).y, 0, 1e-9 * PRESS);
   ck_assert_int_eq(f->stick.slip_count, 0);
+  finish(f);
+}
+END_TEST
+
+// Nothing moves, so nothing does work: the spring stores the same, none is dissipated, and the pull follows the
+// root of the area. Back at its area it is back at its pull.
+START_TEST(an_area_that_changes_while_it_sticks_keeps_the_energy) {
+  static const double SHARES[] = {2, 9, 3, 0.25, 0.5, 1};
+  Fixture *f = start(1, true);
+  double way = 1e-4, k = STIFFNESS * AREA, stored = 0.5 * k * way * way;
+  shift(f, 0, way, 0, 0);
+  eval(f);
+  accept(f);
+  for (int i = 0; i < 6; i++) {
+    f->area = SHARES[i] * AREA;
+    eval(f);
+    ck_assert_near(pull_of(f).x, -k * way * sqrt(SHARES[i]), 1e-12 * k * way);
+    ck_assert_near(f->stick.stored, stored, 1e-12 * stored);
+    ck_assert_near(f->stick.spent, 0, 1e-12 * stored);
+    accept(f);
+  }
+  finish(f);
+}
+END_TEST
+
+// What an area that grows may pull at most is μN as ever; what is cut goes to dissipation, never back.
+START_TEST(an_area_that_grows_at_the_limit_slips) {
+  Fixture *f = start(1, true);
+  double way = 0.1;
+  shift(f, 0, way, 0, 0);
+  eval(f);
+  accept(f);
+  f->area = 4 * AREA;
+  eval(f);
+  ck_assert_near(pull_of(f).x, -MU * PRESS, 1e-12 * PRESS);
+  ck_assert_int_eq(f->stick.slip_count, 4);
+  ck_assert_double_gt(f->stick.spent, 0);
   finish(f);
 }
 END_TEST
@@ -360,6 +400,8 @@ int main(void) {
   TCase *test_case = tcase_create("stick");
   tcase_add_test(test_case, what_is_moved_a_little_is_held_by_a_spring);
   tcase_add_test(test_case, the_spring_is_cut_at_the_limit);
+  tcase_add_test(test_case, an_area_that_changes_while_it_sticks_keeps_the_energy);
+  tcase_add_test(test_case, an_area_that_grows_at_the_limit_slips);
   tcase_add_test(test_case, a_press_that_grows_while_it_slides_dissipates_by_its_mean);
   tcase_add_test(test_case, forces_and_torques_of_a_pair_balance);
   tcase_add_test(test_case, a_common_rotation_carries_forces_along_however_large_the_step);

@@ -133,7 +133,7 @@ static Status choose_colours(Order *order) {
 
 // Nodes in ascending order, gradients with them.
 static void fill_lane(const FemModel *model, int tet, FemLanesElements *pack, int lane) {
-  const FemElement *element = &model->elements[tet];
+  const FemElement element = fem_model_element(model, tet);
   int order[4] = {0, 1, 2, 3};
   for (int i = 1; i < 4; i++)
     for (int k = i; k > 0 && model->tets[tet][order[k]] < model->tets[tet][order[k - 1]]; k--) {
@@ -142,8 +142,8 @@ static void fill_lane(const FemModel *model, int tet, FemLanesElements *pack, in
     }
   for (int a = 0; a < 4; a++) pack->node[a][lane] = model->tets[tet][order[a]];
   for (int a = 1; a < 4; a++)
-    for (int j = 0; j < 3; j++) pack->gradient[3 * (a - 1) + j][lane] = element->gradient[order[a]][j];
-  pack->volume[lane] = element->volume;
+    for (int j = 0; j < 3; j++) pack->gradient[3 * (a - 1) + j][lane] = element.gradient[order[a]][j];
+  pack->volume[lane] = element.volume;
   pack->tet[lane] = tet;
 }
 

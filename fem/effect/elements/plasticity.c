@@ -33,7 +33,9 @@ typedef struct Site {
 
 typedef struct Plasticity {
   const FemModel *model; // borrowed
-  Site *sites;           //                                          (site_count)
+  FemElement *elements;  // of linear bodies that are plastic        (element_count)
+  int element_count;
+  Site *sites; //                                          (site_count)
   int site_count;
   Plastic *history; // at the last accepted state                    (site_count)
   int *place;       // of a tetrahedron's first site, −1: not plastic   (model->tet_count)
@@ -54,6 +56,7 @@ static bool is_wanted(const FemSceneDef *scene) {
 
 static void destroy(void *self) {
   Plasticity *plasticity = self;
+  memory_free(plasticity->elements);
   memory_free(plasticity->sites);
   memory_free(plasticity->history);
   memory_free(plasticity->place);
@@ -65,7 +68,8 @@ static void add_site(Plasticity *plasticity, FemPoint point, const int *nodes, i
 }
 
 static void add_tet(Plasticity *plasticity, int e) {
-  const FemElement *element = &plasticity->model->elements[e];
+  plasticity->elements[plasticity->element_count] = fem_model_element(plasticity->model, e);
+  const FemElement *element = &plasticity->elements[plasticity->element_count++];
   plasticity->place[e] = plasticity->site_count;
   add_site(plasticity, (FemPoint){4, element->gradient, element->volume}, plasticity->model->tets[e], e);
 }
@@ -91,15 +95,26 @@ static void list_sites(Plasticity *plasticity) {
   }
 }
 
+static size_t count_elements(const FemModel *model) {
+  int count = 0;
+  for (int b = 0; b < model->body_count; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    if (body->material.yield_stress > 0 && body->element != FEM_ELEMENT_QUADRATIC)
+      count += body->tet_end - body->tet_begin;
+  }
+  return (size_t)count;
+}
+
 static Status create(void **self, const FemModel *model) {
   Plasticity *plasticity = memory_zeroed(1, sizeof *plasticity);
   if (!plasticity) return status_no_memory("plasticity");
   size_t tets = (size_t)model->tet_count; // a quadratic element has four points and eight tetrahedra
   plasticity->model = model;
+  plasticity->elements = memory_zeroed(count_elements(model), sizeof *plasticity->elements);
   plasticity->sites = memory_zeroed(tets, sizeof *plasticity->sites);
   plasticity->history = memory_zeroed(tets, sizeof *plasticity->history);
   plasticity->place = memory_zeroed(tets, sizeof *plasticity->place);
-  if (!plasticity->sites || !plasticity->history || !plasticity->place) {
+  if (!plasticity->elements || !plasticity->sites || !plasticity->history || !plasticity->place) {
     destroy(plasticity);
     return status_no_memory("plasticity");
   }
@@ -297,8 +312,8 @@ void fem_effect_plasticity_add_stress(const void *self, int tet, const double *p
 
 static size_t bytes(const void *self) {
   const Plasticity *plasticity = self;
-  return memory_held(self) + memory_held(plasticity->sites) + memory_held(plasticity->history) +
-         memory_held(plasticity->place);
+  return memory_held(self) + memory_held(plasticity->elements) + memory_held(plasticity->sites) +
+         memory_held(plasticity->history) + memory_held(plasticity->place);
 }
 
 const FemEffectOps fem_effect_plasticity = {

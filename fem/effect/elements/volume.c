@@ -19,23 +19,33 @@ static bool takes_part(const FemModelBody *body) {
   return body->element == FEM_ELEMENT_NODAL && !body->is_obstacle;
 }
 
+static size_t count_tets(const FemModel *model) {
+  int count = 0;
+  for (int b = 0; b < model->body_count; b++)
+    if (takes_part(&model->bodies[b])) count += model->bodies[b].tet_end - model->bodies[b].tet_begin;
+  return (size_t)count;
+}
+
 static Status list_parts(FemVolume *volume) {
   const FemModel *model = volume->model;
   size_t vertices = (size_t)model->vertex_count;
-  volume->tets = memory_zeroed((size_t)model->tet_count, sizeof *volume->tets);
+  size_t tets = count_tets(model);
+  volume->tets = memory_zeroed(tets, sizeof *volume->tets);
+  volume->elements = memory_zeroed(tets, sizeof *volume->elements);
   volume->vertices = memory_zeroed(vertices, sizeof *volume->vertices);
   volume->vertex_volume = memory_zeroed(vertices, sizeof *volume->vertex_volume);
   volume->vertex_theta = memory_zeroed(vertices, sizeof *volume->vertex_theta);
   volume->place = memory_zeroed(vertices, sizeof *volume->place);
-  if (!volume->tets || !volume->vertices || !volume->vertex_volume || !volume->vertex_theta || !volume->place)
+  if (!volume->tets || !volume->elements || !volume->vertices || !volume->vertex_volume ||
+      !volume->vertex_theta || !volume->place)
     return status_no_memory("the vertices' volumes");
   for (int b = 0; b < model->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     if (!takes_part(body)) continue;
     for (int e = body->tet_begin; e < body->tet_end; e++) {
+      volume->elements[volume->tet_count] = fem_model_element(model, e);
       volume->tets[volume->tet_count++] = e;
-      for (int k = 0; k < 4; k++)
-        volume->vertex_volume[model->tets[e][k]] += 0.25 * model->elements[e].volume;
+      for (int k = 0; k < 4; k++) volume->vertex_volume[model->tets[e][k]] += 0.25 * model->volumes[e];
     }
     for (int a = body->vertex_begin; a < body->vertex_end; a++) volume->vertices[volume->vertex_count++] = a;
   }
@@ -108,18 +118,20 @@ Status fem_volume_create(FemVolume *volume, const FemModel *model) {
 }
 
 void fem_volume_destroy(FemVolume *volume) {
-  void *arrays[] = {volume->tets,         volume->vertices,     volume->tet_begin,     volume->tet_list,
-                    volume->patch_begin,  volume->patch_list,   volume->vertex_volume, volume->tet_theta,
-                    volume->vertex_theta, volume->tet_gradient, volume->row,           volume->place};
+  void *arrays[] = {volume->tets,      volume->elements,     volume->vertices,     volume->tet_begin,
+                    volume->tet_list,  volume->patch_begin,  volume->patch_list,   volume->vertex_volume,
+                    volume->tet_theta, volume->vertex_theta, volume->tet_gradient, volume->row,
+                    volume->place};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   *volume = (FemVolume){0};
 }
 
 size_t fem_volume_bytes(const FemVolume *volume) {
-  const void *const arrays[] = {volume->tets,          volume->vertices,    volume->tet_begin,
-                                volume->tet_list,      volume->patch_begin, volume->patch_list,
-                                volume->vertex_volume, volume->tet_theta,   volume->vertex_theta,
-                                volume->tet_gradient,  volume->row,         volume->place};
+  const void *const arrays[] = {volume->tets,         volume->elements,      volume->vertices,
+                                volume->tet_begin,    volume->tet_list,      volume->patch_begin,
+                                volume->patch_list,   volume->vertex_volume, volume->tet_theta,
+                                volume->vertex_theta, volume->tet_gradient,  volume->row,
+                                volume->place};
   return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
 }
 
@@ -138,7 +150,7 @@ static void gather(const FemVolume *volume, int tet, const double *positions, do
 
 static void evaluate_tet(FemVolume *volume, int i, const double *positions) {
   int tet = volume->tets[i];
-  const FemElement *element = &volume->model->elements[tet];
+  const FemElement *element = &volume->elements[i];
   double x[12], F[9], gradient[9], *out = volume->tet_gradient + 12 * (size_t)i;
   gather(volume, tet, positions, x);
   fem_element_deformation(element, x, F);
@@ -156,7 +168,7 @@ void fem_volume_evaluate(FemVolume *volume, const double *positions) {
   for (int i = 0; i < volume->tet_count; i++) {
     evaluate_tet(volume, i, positions);
     const int *tet = model->tets[volume->tets[i]];
-    double share = 0.25 * model->elements[volume->tets[i]].volume * volume->tet_theta[i];
+    double share = 0.25 * volume->elements[i].volume * volume->tet_theta[i];
     for (int k = 0; k < 4; k++) volume->vertex_theta[tet[k]] += share / volume->vertex_volume[tet[k]];
   }
 }
@@ -169,8 +181,7 @@ double fem_volume_energy(const FemVolume *volume) {
     const int *tet = model->tets[volume->tets[i]];
     double squares = 0;
     for (int k = 0; k < 4; k++) squares += volume->vertex_theta[tet[k]] * volume->vertex_theta[tet[k]];
-    sum += 0.5 * stiffness_of(body_of(volume, volume->tets[i])) * 0.25 *
-           model->elements[volume->tets[i]].volume * squares;
+    sum += 0.5 * stiffness_of(body_of(volume, volume->tets[i])) * 0.25 * volume->elements[i].volume * squares;
   }
   return sum;
 }
@@ -218,7 +229,7 @@ static void add_patch(FemVolume *volume, int i, double scale, FemMatrix *matrix)
 static void add_curvature(const FemVolume *volume, int i, const double *positions, double scale,
                           FemMatrix *matrix) {
   int tet = volume->tets[i];
-  const FemElement *element = &volume->model->elements[tet];
+  const FemElement *element = &volume->elements[i];
   double x[12], F[9], curvature[81], dense[144];
   gather(volume, tet, positions, x);
   fem_element_deformation(element, x, F);

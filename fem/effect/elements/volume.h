@@ -20,7 +20,8 @@ typedef struct FemVolume {
   const FemModel *model; // borrowed
   int *tets;             // of nodal bodies                                      (tet_count)
   int tet_count;
-  int *vertices; // of nodal bodies                                              (vertex_count)
+  FemElement *elements; // what is constant in those                           (tet_count)
+  int *vertices;        // of nodal bodies                                              (vertex_count)
   int vertex_count;
   int *tet_begin, *tet_list;     // positions in `tets` around each vertex       (vertex_count + 1)
   int *patch_begin, *patch_list; // vertices of those, itself included           (vertex_count + 1)

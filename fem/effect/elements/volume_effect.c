@@ -60,7 +60,8 @@ void fem_effect_volume_add_stress(const void *self, int tet, const double x[12],
   const FemModel *model = volume->model;
   FemMaterialLaw law = model->bodies[model->tet_body[tet]].material.law;
   double F[9], gradient[9], one[6], pressure = fem_volume_pressure(volume, tet);
-  fem_element_deformation(&model->elements[tet], x, F);
+  const FemElement element = fem_model_element(model, tet);
+  fem_element_deformation(&element, x, F);
   fem_material_volume(law, F, gradient);
   fem_material_cauchy(law, F, gradient, one);
   for (int s = 0; s < 6; s++) stress[s] += pressure * one[s];

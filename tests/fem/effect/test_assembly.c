@@ -144,9 +144,10 @@ START_TEST(elastic_forces_and_energy_are_the_sums_over_elements_of_bodies) {
     double x[12], force[12];
     const FemMaterial *material = &model->bodies[model->tet_body[tet]].material;
     gather(&scene, scene.x, tet, x);
-    fem_element_force(&model->elements[tet], material, x, force);
+    const FemElement element = fem_model_element(model, tet);
+    fem_element_force(&element, material, x, force);
     for (int r = 0; r < 12; r++) expected[3 * model->tets[tet][r / 3] + r % 3] += force[r];
-    sum += fem_element_energy(&model->elements[tet], material, x);
+    sum += fem_element_energy(&element, material, x);
   }
   for (size_t i = 0; i < dof_count(&scene); i++) ck_assert_near(scene.force[i], expected[i], 1e-14);
   for (int i = 3 * model->bodies[2].vertex_begin; i < 3 * model->bodies[2].vertex_end; i++)
@@ -267,9 +268,10 @@ START_TEST(damping_adds_both_of_its_matrices) {
     double x[12], v[12], matrix[144];
     gather(&scene, scene.x, tet, x);
     gather(&scene, scene.v, tet, v);
-    fem_element_damping_matrix(&model->elements[tet], &body->material, body->damping, x, matrix);
+    const FemElement element = fem_model_element(model, tet);
+    fem_element_damping_matrix(&element, &body->material, body->damping, x, matrix);
     fem_matrix_add(&expected, 4, model->tets[tet], matrix, 7);
-    fem_element_damping_stiffness(&model->elements[tet], &body->material, body->damping, x, v, matrix);
+    fem_element_damping_stiffness(&element, &body->material, body->damping, x, v, matrix);
     fem_matrix_add(&expected, 4, model->tets[tet], matrix, 3);
   }
   FemState state = state_of(&scene);

@@ -540,15 +540,12 @@ START_TEST(smooth_laws_are_differentiable_at_collapse) {
 END_TEST
 
 // Turned, squeezed, sheared: F C Fᵀ must be stvk's tangent less the geometric part δ_ik S_jl.
-START_TEST(pushed_stiffness_and_its_rate_agree_with_differences) {
+START_TEST(pushed_stiffness_is_the_material_part_of_the_tangent) {
   FemMaterial material = make_material(FEM_MATERIAL_STVK);
   Random random = random_seeded(32, 0);
   for (int k = 0; k < SAMPLES; k++) {
-    double F[9], rate[9], plus[9], minus[9], dP[81], here[81], ahead[81], behind[81], h = 1e-4;
-    for (int r = 0; r < 9; r++) {
-      F[r] = random_normal(&random), rate[r] = random_normal(&random);
-      plus[r] = F[r] + h * rate[r], minus[r] = F[r] - h * rate[r];
-    }
+    double F[9], dP[81], here[81];
+    for (int r = 0; r < 9; r++) F[r] = random_normal(&random);
     fem_material_pushed_stiffness(fem_material_lame(&material), F, here);
     fem_material_tangent(&material, F, dP);
     for (int r = 0; r < 9; r++)
@@ -558,10 +555,6 @@ START_TEST(pushed_stiffness_and_its_rate_agree_with_differences) {
         if (r / 3 == c / 3)
           ck_assert_near(dP[9 * r + c] - here[9 * r + c], dP[shifted] - here[shifted], 1e-12);
       }
-    fem_material_pushed_stiffness(fem_material_lame(&material), plus, ahead);
-    fem_material_pushed_stiffness(fem_material_lame(&material), minus, behind);
-    fem_material_pushed_stiffness_rate(fem_material_lame(&material), F, rate, dP);
-    for (int r = 0; r < 81; r++) ck_assert_near(dP[r], (ahead[r] - behind[r]) / (2 * h), 1e-9);
   }
 }
 END_TEST
@@ -594,6 +587,6 @@ int main(void) {
   tcase_add_test(cases, mooney_rivlin_and_ogden_pull_as_rubber_does);
   tcase_add_test(cases, fibres_resist_along_their_direction_only);
   tcase_add_test(cases, fibres_have_consistent_derivatives);
-  tcase_add_test(cases, pushed_stiffness_and_its_rate_agree_with_differences);
+  tcase_add_test(cases, pushed_stiffness_is_the_material_part_of_the_tangent);
   return suite_run("material", cases, 20);
 }

@@ -6,7 +6,8 @@
 #include <string.h>
 
 typedef struct Told {
-  double force, give, rim, stiffness_for, by_tolerance, tolerance_for;
+  double force, give, rim, stiffness_for, by_tolerance, tolerance_for, elements;
+  bool asks_for_mesh; // in the words of the run
 } Told;
 
 // Of the pair that presses most in that scene, at that stiffness.
@@ -28,7 +29,9 @@ static Told run_with(const char *path, const char *const *overrides, double stif
                .rim = record_find_number(estimate, "rim"),
                .stiffness_for = record_find_number(estimate, "stiffness_for_1_percent"),
                .by_tolerance = record_find_number(estimate, "tolerance_over_depth"),
-               .tolerance_for = record_find_number(estimate, "tolerance_for_1_percent")};
+               .tolerance_for = record_find_number(estimate, "tolerance_for_1_percent"),
+               .elements = record_find_number(estimate, "elements_across"),
+               .asks_for_mesh = strstr(run.result.told[0], "refine") != NULL};
   scene_close(&run);
   return told;
 }
@@ -98,6 +101,20 @@ START_TEST(what_gives_way_after_a_blow_counts) {
 }
 END_TEST
 
+// Four elements across a patch ask for a finer mesh, eight do not.
+START_TEST(a_mesh_too_coarse_for_its_patch_is_to_be_refined) {
+  const char *const coarse[] = {"output.frames=1", "time.end=0.11", NULL},
+                    *const fine[] = {"output.frames=1", "time.end=0.11", "bodies.block.mesh.box.cells=9",
+                                     NULL};
+  const char *path = TETLAP_SOURCE_DIR "/examples/01_drop.yaml";
+  Told four = run_with(path, coarse, 2.5e7), nine = run_with(path, fine, 2.5e7);
+  ck_assert_double_lt(four.elements, 5);
+  ck_assert(four.asks_for_mesh);
+  ck_assert_double_gt(nine.elements, 5);
+  ck_assert(!nine.asks_for_mesh);
+}
+END_TEST
+
 // Bodies so stiff that the depth is less than a step of a motion can tell need no other stiffness.
 START_TEST(no_stiffness_is_advised_for_a_depth_that_no_step_can_tell) {
   const char *const overrides[] = {"output.frames=1", "time.end=0.2", NULL};
@@ -108,8 +125,8 @@ START_TEST(no_stiffness_is_advised_for_a_depth_that_no_step_can_tell) {
 }
 END_TEST
 
-// The peak force of a drop errs by three times the estimate at most (docs/contact.md), the estimate falls with the
-// tolerance, and the tolerance that it asks for leads to a hundredth.
+// The peak force of a drop errs by three times the estimate at most (docs/contact.md), the estimate falls
+// with the tolerance, and the tolerance that it asks for leads to a hundredth.
 START_TEST(the_tolerance_bounds_the_error_of_a_peak_force) {
   const char *path = TETLAP_SOURCE_DIR "/examples/01_drop.yaml";
   Told coarse = run_with(path, (const char *const[]){"output.frames=1", "time.tolerance=1e-3", NULL}, 2.5e7),
@@ -133,6 +150,7 @@ int main(void) {
   tcase_add_test(cases, what_a_rim_loses_at_a_given_depth);
   tcase_add_test(cases, the_advice_leads_to_a_hundredth);
   tcase_add_test(cases, what_gives_way_after_a_blow_counts);
+  tcase_add_test(cases, a_mesh_too_coarse_for_its_patch_is_to_be_refined);
   tcase_add_test(cases, no_stiffness_is_advised_for_a_depth_that_no_step_can_tell);
   tcase_add_test(cases, the_tolerance_bounds_the_error_of_a_peak_force);
   return suite_run("accuracy", cases, 60);

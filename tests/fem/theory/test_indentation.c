@@ -101,7 +101,8 @@ static void find_stress(const SceneRun *run, int tet, double stress[9]) {
   double x[12], F[9], trace = 0, lambda = E * NU / ((1 + NU) * (1 - 2 * NU)), mu = E / (2 * (1 + NU));
   for (int k = 0; k < 4; k++)
     memcpy(x + 3 * k, scene_position(run, 1, run->model.tets[tet][k]), 3 * sizeof *x);
-  fem_element_deformation(&run->model.elements[tet], x, F);
+  const FemElement element = fem_model_element(&run->model, tet);
+  fem_element_deformation(&element, x, F);
   for (int i = 0; i < 3; i++) trace += F[4 * i] - 1;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)

@@ -165,7 +165,8 @@ START_TEST(an_inverted_start_recovers) {
   for (int e = 0; e < run.model.tet_count; e++) {
     double corners[12], F[9];
     for (int k = 0; k < 4; k++) memcpy(corners + 3 * k, scene_position(&run, last, run.model.tets[e][k]), 24);
-    fem_element_deformation(&run.model.elements[e], corners, F);
+    const FemElement element = fem_model_element(&run.model, e);
+    fem_element_deformation(&element, corners, F);
     double det = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
                  F[2] * (F[3] * F[7] - F[4] * F[6]);
     ck_assert_near(det, 1, 0.05);

@@ -93,7 +93,7 @@ START_TEST(a_linear_scene_is_assembled_once) {
   ck_assert_int_gt(once->integrator.setups, 2); // the step did change
   ck_assert_int_eq(once->assemblies, is_damped ? 2 : 1);
   ck_assert_int_le(once->solver.factorisations, once->integrator.setups);
-  ck_assert_int_eq(often->solver.factorisations, often->integrator.setups);
+  ck_assert_int_ge(often->solver.factorisations, often->integrator.setups); // more: one at another c
   ck_assert_int_eq(often->assemblies, (is_damped ? 2 : 1) * often->integrator.setups);
   // It did swing, and as the other law does.
   int last = linear.result.frame_count - 1, tip = linear.model.vertex_count - 1;

@@ -64,6 +64,42 @@ START_TEST(an_onset_restarts_the_integrator_only_where_the_force_may_jump) {
 }
 END_TEST
 
+// A matrix of before it turned does not balance a stiff body: what Newton's method leaves of the balance
+// works on it.
+START_TEST(a_stiff_body_that_turns_freely_keeps_its_energy) {
+  const char *const stiff[] = {"bodies.block.material.young=1e6", "bodies.block.material.young=1e8",
+                               "effects.damping=0"};
+  const double gain[] = {3e-3, 1e-3, 1e-3};
+  for (int k = 0; k < 3; k++) {
+    SceneRun run;
+    scene_run(&run, "turning", (const char *const[]){stiff[k], NULL});
+    ck_assert_double_le(scene_gain(&run), gain[k]);
+    ck_assert_int_le(run.result.integrator.steps, 300);
+    scene_close(&run);
+  }
+}
+END_TEST
+
+// The stiffer, the more the matrix of damping must leave rotations alone.
+START_TEST(how_stiff_a_damped_body_is_does_not_decide_how_many_steps_it_turns_in) {
+  SceneRun run;
+  scene_run(&run, "turning", (const char *const[]){"bodies.block.material.young=1e10", NULL});
+  ck_assert_int_le(run.result.integrator.steps, 400);
+  ck_assert_int_le(run.result.integrator.newton_failures, 10);
+  scene_close(&run);
+}
+END_TEST
+
+START_TEST(a_wedge_is_thrown_out_of_a_gap_and_flies_on_without_short_steps) {
+  SceneRun run;
+  scene_run(&run, "wedge", (const char *const[]){"time.end=0.25", NULL});
+  ck_assert_double_le(scene_gain(&run), 1.2e-3);
+  ck_assert_int_le(run.result.integrator.steps, 1200);
+  ck_assert_double_ge(run.result.trouble.smallest_step, 1e-6);
+  scene_close(&run);
+}
+END_TEST
+
 // Two bodies of one element each, the second ten times as stiff.
 static void open_two(SceneRun *run) {
   scene_open(run, "single_tets", NULL);
@@ -76,6 +112,8 @@ START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_b
   SceneRun run;
   open_two(&run);
   int n = run.model.unknown_count;
+  FemPart part;
+  ck_assert_ok(fem_part_create(&part, &run.model));
   double *v = calloc((size_t)n, sizeof *v), *weights = calloc(2 * (size_t)n, sizeof *weights);
   const FemMaterial *soft = &run.model.bodies[0].material;
   double wave = sqrt(soft->young / soft->density);
@@ -88,7 +126,7 @@ START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_b
       int dof = run.model.dof_of_unknown[i];
       v[i] = dof % 3 == 2 && dof / 3 < run.model.bodies[0].vertex_end ? speeds[k] : 0;
     }
-    fem_error_weights(&tolerance, &run.model, v, weights);
+    fem_error_weights(&tolerance, &run.model, &part, v, weights);
     for (int i = 0; i < n; i++) {
       int body = run.model.dof_of_unknown[i] / 3 >= run.model.bodies[0].vertex_end;
       ck_assert_near(weights[i], 1e5, 1e-6);
@@ -96,7 +134,7 @@ START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_b
     }
   }
   v[0] = NAN;
-  fem_error_weights(&tolerance, &run.model, v, weights);
+  fem_error_weights(&tolerance, &run.model, &part, v, weights);
   for (int i = 0; i < 2 * n; i++) ck_assert(weights[i] > 0 && isfinite(weights[i]));
   free(v), free(weights);
   scene_close(&run);
@@ -118,6 +156,9 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("steps");
   tcase_add_test(cases, a_stack_falls_on_an_incline_and_comes_to_rest_without_short_or_failing_steps);
+  tcase_add_test(cases, a_stiff_body_that_turns_freely_keeps_its_energy);
+  tcase_add_test(cases, how_stiff_a_damped_body_is_does_not_decide_how_many_steps_it_turns_in);
+  tcase_add_test(cases, a_wedge_is_thrown_out_of_a_gap_and_flies_on_without_short_steps);
   tcase_add_test(cases, an_onset_restarts_the_integrator_only_where_the_force_may_jump);
   tcase_add_test(cases, a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_bounds);
   tcase_add_test(cases, a_tolerance_that_the_scene_gives_is_all_there_is);

@@ -19,6 +19,29 @@ START_TEST(free_fall_is_exact_but_for_the_first_steps) {
 }
 END_TEST
 
+// The state changes by half of the tolerance in 1e-8 s, which is what IDA would begin with; what is left to it
+// is lengthened, what it would make longer is not.
+START_TEST(a_start_is_not_shorter_than_asked) {
+  static const double LEAST[] = {0, 1e-6, 1e-12};
+  for (int i = 0; i < 3; i++) {
+    Toy toy = {.count = 1, .mass = 2, .gravity = -9.81};
+    toy_open(&toy);
+    FemIntegratorDef def = def_of(1e-7, 2);
+    def.least_start = LEAST[i];
+    double u = 3, v = 4, time;
+    bool is_onset;
+    FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def, &u, &v);
+    ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+    if (i == 1)
+      ck_assert_near(time, 1e-6, 1e-18);
+    else
+      ck_assert_double_lt(time, 1e-7);
+    fem_integrator_destroy(integrator);
+    fem_system_destroy(&toy.system);
+  }
+}
+END_TEST
+
 // Error at t = 1 of x = cos(10 t) with steps that only max_step limits.
 static double oscillator_error(int max_order, double step) {
   Toy toy = {.count = 1, .mass = 1, .wall_stiffness = 100};
@@ -81,7 +104,8 @@ START_TEST(a_damped_oscillator_decays_as_it_should) {
     ck_assert_near(v, exact_v, 2e-3);
     FemIntegratorStats stats = fem_integrator_stats(integrator);
     ck_assert(stats.setups * 5 < stats.newton_iterations); // a set-up serves many steps
-    ck_assert(stats.setups == fem_integrator_solver_stats(integrator)->factorisations);
+    // Without one, K and D are factorised at another c.
+    ck_assert(stats.setups <= fem_integrator_solver_stats(integrator)->factorisations);
     ck_assert_int_eq((int)fem_integrator_solver_stats(integrator)->analyses, 1);
     fem_integrator_destroy(integrator);
     fem_system_destroy(&toy.system);
@@ -258,6 +282,7 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("integrator");
   tcase_add_test(cases, free_fall_is_exact_but_for_the_first_steps);
+  tcase_add_test(cases, a_start_is_not_shorter_than_asked);
   tcase_add_test(cases, an_oscillator_converges_with_the_order_of_the_method);
   tcase_add_test(cases, an_oscillator_never_gains_energy);
   tcase_add_test(cases, a_damped_oscillator_decays_as_it_should);

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/search/near.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "contact/search/bounds.h"
+#include "overlap/separation.h"
+
+// The skin lasts for so many steps at the speeds of now. As shares of the margin: at least, and what is no
+// longer worth a list.
+static const double STEPS_AHEAD = 3, THINNEST = 1.0 / 64, THICKEST = 0.25;
+// Of the skin, how far parties may come nearer: beyond, rounding might count.
+static const double USABLE = 0.95;
+// How much faster than expected the next step may be.
+static const double HASTE = 1.3;
+
+Status contact_near_create(ContactNear *near, const ContactLayout *layout) {
+  size_t cells = (size_t)layout->depth.cell_count;
+  *near = (ContactNear){0};
+  near->list.begin = memory_zeroed((size_t)layout->facing_count + 1, sizeof(int));
+  near->list.tets = memory_zeroed(cells, sizeof(int));
+  near->reference = memory_zeroed(3 * (size_t)layout->depth.position_count, sizeof(double));
+  near->motions = memory_zeroed((size_t)layout->party_count, sizeof *near->motions);
+  near->blown = memory_zeroed(cells, sizeof *near->blown);
+  near->boxes = memory_zeroed(cells, sizeof *near->boxes);
+  near->is_listed = memory_zeroed(cells, 1);
+  bool fits = near->list.begin && near->list.tets && near->reference && near->motions && near->blown &&
+              near->boxes && near->is_listed;
+  return fits ? STATUS_OK : status_no_memory("the candidate lists");
+}
+
+void contact_near_destroy(ContactNear *near) {
+  memory_free(near->list.pairs);
+  memory_free(near->list.begin);
+  memory_free(near->list.tets);
+  memory_free(near->reference);
+  memory_free(near->motions);
+  memory_free(near->blown);
+  memory_free(near->boxes);
+  memory_free(near->is_listed);
+  *near = (ContactNear){0};
+}
+
+void contact_near_forget(ContactNear *near) {
+  near->is_made = false;
+}
+
+// The longest way by which two parties with candidates come nearer.
+static double longest_approach(const ContactLayout *layout, const ContactCandidates *candidates,
+                               const ContactMotion *motions) {
+  const int *begin = candidates->list.begin;
+  double longest = 0;
+  for (int f = 0; f < layout->facing_count; f++)
+    if (begin[f + 1] > begin[f])
+      longest = fmax(longest, contact_motion_approach(motions, &layout->facings[f]));
+  return longest;
+}
+
+static double used(ContactNear *near, const ContactLayout *layout, const ContactCandidates *candidates,
+                   double time, const double *positions) {
+  contact_motion_measure(layout, near->reference_time, near->reference, time, positions, near->motions);
+  return longest_approach(layout, candidates, near->motions);
+}
+
+// Scaled about the middle of the inscribed sphere, of radius r = 3 V / Σ areas, by 1 + d/r. Infinite or no
+// numbers where a cell is flat: nothing then separates it.
+static void blow_up(const ContactLayout *layout, int cell, const double *positions, double d,
+                    double blown[12]) {
+  double x[12], areas[4], area = 0;
+  Vec3 v[4], middle = {0, 0, 0};
+  contact_layout_gather(layout, cell, positions, x);
+  for (int k = 0; k < 4; k++) v[k] = vec3_at(x + 3 * k);
+  for (int k = 0; k < 4; k++) {
+    Vec3 a = v[(k + 1) % 4], b = vec3_sub(v[(k + 2) % 4], a), c = vec3_sub(v[(k + 3) % 4], a);
+    areas[k] = vec3_length(vec3_cross(b, c)) / 2;
+    area += areas[k];
+  }
+  for (int k = 0; k < 4; k++) middle = vec3_add(middle, vec3_scale(areas[k] / area, v[k]));
+  double radius = fabs(vec3_det4(v[0], v[1], v[2], v[3])) / (2 * area);
+  for (int k = 0; k < 4; k++)
+    vec3_store(blown + 3 * k, vec3_add(middle, vec3_scale(1 + d / radius, vec3_sub(v[k], middle))));
+}
+
+static void bound(const double x[12], double box[6]) {
+  static const int corners[4] = {0, 1, 2, 3};
+  contact_bounds_of_tet(corners, x, box);
+}
+
+static void blow_up_cells(ContactNear *near, const ContactLayout *layout,
+                          const ContactCandidateList *candidates, const double *positions) {
+#pragma omp parallel for schedule(static) if (candidates->tet_count > 512)
+  for (int k = 0; k < candidates->tet_count; k++) {
+    int cell = candidates->tets[k];
+    blow_up(layout, cell, positions, near->skin / 2, near->blown[cell]);
+    bound(near->blown[cell], near->boxes[cell]);
+  }
+}
+
+// Of the portion's pairs those that nothing separates, behind the list's last.
+static void add_portion(ContactNear *near, const ContactPair *pairs, int count) {
+  enum { PORTION = 64 };
+  double coordinates[24 * PORTION];
+  bool is_apart[PORTION];
+  for (int begin = 0; begin < count; begin += PORTION) {
+    int size = count - begin < PORTION ? count - begin : PORTION, asked = 0, from[PORTION];
+    for (int k = 0; k < size; k++) {
+      const int *tets = pairs[begin + k].tets;
+      if (tets[1] >= 0 && contact_bounds_distance(near->boxes[tets[0]], near->boxes[tets[1]]) > 0) continue;
+      for (int side = 0; side < 2 && tets[1] >= 0; side++)
+        memcpy(coordinates + 24 * (size_t)asked + 12 * side, near->blown[tets[side]], sizeof *near->blown);
+      from[asked] = begin + k;
+      if (tets[1] < 0) memset(coordinates + 24 * (size_t)asked, 0, 24 * sizeof(double)); // never apart
+      asked++;
+    }
+    overlap_separation_find(asked, coordinates, is_apart);
+    for (int k = 0; k < asked; k++)
+      if (!is_apart[k]) near->list.pairs[near->list.count++] = pairs[from[k]];
+  }
+}
+
+static Status make(ContactNear *near, const ContactLayout *layout, const ContactCandidateList *candidates,
+                   double time, const double *positions) {
+  ContactCandidateList *list = &near->list;
+  if (!memory_reserve((void **)&list->pairs, &list->capacity, (size_t)candidates->count, sizeof *list->pairs))
+    return status_no_memory("candidate pairs");
+  blow_up_cells(near, layout, candidates, positions);
+  list->count = 0;
+  for (int f = 0; f < layout->facing_count; f++) {
+    list->begin[f] = list->count;
+    add_portion(near, candidates->pairs + candidates->begin[f],
+                candidates->begin[f + 1] - candidates->begin[f]);
+  }
+  list->begin[layout->facing_count] = list->count;
+  contact_candidates_list_tets(list, near->is_listed);
+  memcpy(near->reference, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
+  near->reference_time = time;
+  near->is_made = true;
+  return STATUS_OK;
+}
+
+Status contact_near_update(ContactNear *near, const ContactLayout *layout,
+                           const ContactCandidates *candidates, double time, const double *positions) {
+  double next = longest_approach(layout, candidates, candidates->expected);
+  if (near->searches != candidates->searches) near->is_made = false;
+  if (near->is_made && used(near, layout, candidates, time, positions) + HASTE * next <= USABLE * near->skin)
+    return STATUS_OK;
+  near->is_made = false;
+  near->searches = candidates->searches;
+  double skin = fmax(STEPS_AHEAD * next, THINNEST * layout->margin);
+  if (!(skin <= THICKEST * layout->margin) || candidates->list.count == 0) return STATUS_OK;
+  near->skin = skin;
+  return make(near, layout, &candidates->list, time, positions);
+}
+
+const ContactCandidateList *contact_near_choose(ContactNear *near, const ContactLayout *layout,
+                                                const ContactCandidates *candidates, double time,
+                                                const double *positions) {
+  bool holds = near->is_made && near->searches == candidates->searches &&
+               used(near, layout, candidates, time, positions) <= USABLE * near->skin;
+  return holds ? &near->list : &candidates->list;
+}

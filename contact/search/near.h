@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Of the candidates those that may overlap soon: a list within the list, for evaluations. A pair that is left
+// out is disjoint as long as its parties have come nearer by less than the skin since the list was made, so
+// that a result does not depend on whether it is taken.
+//
+// Every cell is blown up about the middle of its inscribed sphere, so that each of its faces moves out by
+// half of the skin: it then holds all points within that distance. Where a face separates two such cells, the
+// cells themselves are farther apart than the skin. That costs as much as sifting the candidates once.
+#ifndef TETLAP_CONTACT_NEAR_H
+#define TETLAP_CONTACT_NEAR_H
+
+#include "contact/search/candidates.h"
+
+typedef struct ContactNear {
+  ContactCandidateList list; // margins: none
+  bool is_made;
+  double skin;           // [m]
+  long long searches;    // of the candidates that it was made from
+  double *reference;     // where everything was then [m]              (position_count, 3)
+  double reference_time; // [s]
+  // Scratch memory.
+  ContactMotion *motions;   // of each party since then                (party_count)
+  double (*blown)[12];      // cells                                   (cell_count)
+  double (*boxes)[6];       // of those                                (cell_count)
+  unsigned char *is_listed; // 0 between calls                         (cell_count)
+} ContactNear;
+
+Status contact_near_create(ContactNear *near, const ContactLayout *layout);
+void contact_near_destroy(ContactNear *near);
+
+// After contact_candidates_update at these positions: makes the list anew where the candidates are new or the
+// next step may use up the skin.
+Status contact_near_update(ContactNear *near, const ContactLayout *layout,
+                           const ContactCandidates *candidates, double time, const double *positions);
+
+// Whatever it was made from is no longer.
+void contact_near_forget(ContactNear *near);
+
+// The list to evaluate these positions by, which the candidates cover: its own or that of all candidates.
+const ContactCandidateList *contact_near_choose(ContactNear *near, const ContactLayout *layout,
+                                                const ContactCandidates *candidates, double time,
+                                                const double *positions);
+
+#endif

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/time/part.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/ranks.h"
+
+static int owner_of(const FemModel *model, int unknown) {
+  return model->share->owner[model->dof_of_unknown[unknown] / 3];
+}
+
+static void order_unknowns(FemPart *part, const FemModel *model) {
+  int rank_count = model->share->rank_count;
+  for (int u = 0; u < part->n; u++) part->begin[owner_of(model, u) + 1]++;
+  for (int r = 0; r < rank_count; r++) part->begin[r + 1] += part->begin[r];
+  for (int u = 0; u < part->n; u++) part->order[part->begin[owner_of(model, u)]++] = u;
+  for (int r = rank_count; r > 0; r--) part->begin[r] = part->begin[r - 1];
+  part->begin[0] = 0;
+  part->own = part->order + part->begin[model->share->rank];
+  part->count = part->begin[model->share->rank + 1] - part->begin[model->share->rank];
+}
+
+Status fem_part_create(FemPart *part, const FemModel *model) {
+  size_t n = (size_t)model->unknown_count;
+  *part = (FemPart){.n = model->unknown_count, .count = model->unknown_count};
+  if (!model->share) return STATUS_OK;
+  part->order = memory_zeroed(n, sizeof *part->order);
+  part->begin = memory_zeroed((size_t)model->share->rank_count + 1, sizeof *part->begin);
+  part->joined = memory_zeroed(2 * n, sizeof *part->joined);
+  part->whole = memory_zeroed(2 * n, sizeof *part->whole);
+  if (!part->order || !part->begin || !part->joined || !part->whole)
+    return status_no_memory("the integrator");
+  order_unknowns(part, model);
+  return STATUS_OK;
+}
+
+void fem_part_destroy(FemPart *part) {
+  memory_free(part->order), memory_free(part->begin);
+  memory_free(part->joined), memory_free(part->whole);
+  *part = (FemPart){0};
+}
+
+const double *fem_part_join(const FemPart *part, const double *own) {
+  if (!part->order) return own;
+  double *mine = part->joined + 2 * (part->own - part->order);
+  for (int i = 0; i < part->count; i++) {
+    mine[2 * i] = own[i];
+    mine[2 * i + 1] = own[part->count + i];
+  }
+  ranks()->join(part->joined, 2 * sizeof *part->joined, part->begin);
+  for (int p = 0; p < part->n; p++) {
+    part->whole[part->order[p]] = part->joined[2 * (size_t)p];
+    part->whole[part->n + part->order[p]] = part->joined[2 * (size_t)p + 1];
+  }
+  return part->whole;
+}
+
+void fem_part_take(const FemPart *part, const double *all, double *own) {
+  if (part->order)
+    for (int i = 0; i < part->count; i++) own[i] = all[part->own[i]];
+  else
+    memmove(own, all, (size_t)part->n * sizeof *own); // they may be one array
+}
+
+void fem_part_give(const FemPart *part, const double *own, double *all) {
+  for (int i = 0; i < part->count; i++) all[fem_part_unknown(part, i)] = own[i];
+}
+
+double fem_part_sum(double own) {
+  ranks()->sum(&own, 1);
+  return own;
+}
+
+double fem_part_most(double own) {
+  ranks()->most(&own, 1);
+  return own;
+}
