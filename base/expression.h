@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of time written as formulas, "0.1*sin(2*pi*t)": parsed once into a short list of instructions for
-// a stack, then evaluated together with the exact derivative (forward differentiation). Nothing else can be
-// said in one: no names but these, no loops, no files; parsing and evaluation are bounded in time and memory.
+// a stack, then evaluated together with the exact derivative (forward differentiation). A formula has no
+// other names than these, no loops and no files; parsing and evaluation are bounded in time and memory.
 //
 //   numbers, t, pi          + - * / ^ (right to left, before a sign: −t^2 = −(t^2)), ( )
 //   sin cos tan exp log sqrt abs floor

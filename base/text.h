@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names that people mistype: how far two words are apart, and which of the known ones was meant.
+// Mistyped names: the distance of two words, and which known word was meant.
 #ifndef TETLAP_BASE_TEXT_H
 #define TETLAP_BASE_TEXT_H
 

@@ -40,5 +40,5 @@ const AppCommand app_bench_bench = {
     .children = benches,
     .child_word = "bench",
     .doc = "Measures how fast parts of the program and whole runs are.",
-    .ending = "`tetlap bench BENCH --help` tells the options and what a row holds.",
+    .ending = "`tetlap bench BENCH --help` lists the options and the columns of a row.",
 };

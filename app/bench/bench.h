@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap bench NAME`: what is measured, one file a NAME (app/bench/NAME.c).
+// `tetlap bench NAME`: the table of benches.
 #ifndef TETLAP_APP_BENCH_BENCH_H
 #define TETLAP_APP_BENCH_BENCH_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An overlap model that answers a batch of pairs over and over: what the benches let take turns.
+// An overlap model that evaluates a batch of pairs repeatedly; benches measure several in turn.
 #ifndef TETLAP_APP_BENCH_CONTESTANT_H
 #define TETLAP_APP_BENCH_CONTESTANT_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The overlap models there are (overlap/model.h), as benches list and choose them.
+// How benches list and choose overlap models (overlap/model.h).
 #ifndef TETLAP_APP_BENCH_MODELS_H
 #define TETLAP_APP_BENCH_MODELS_H
 

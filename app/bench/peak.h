@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The roof of the roofline (Williams, Waterman, Patterson 2009): what one core of this machine computes at
-// most.
+// The peak of one core of this machine: the roof of the roofline model (Williams, Waterman, Patterson 2009).
 #ifndef TETLAP_APP_BENCH_PEAK_H
 #define TETLAP_APP_BENCH_PEAK_H
 

@@ -38,6 +38,7 @@ typedef struct Group {
 } Group;
 
 enum { GROUP_COUNT = 4 };
+enum { KEY_WIDTH = 22, HELP_WIDTH = 78 }; // of a help text's columns
 
 static void group(const AppBenchReport *report, const Common *common, const void *row,
                   Group groups[GROUP_COUNT]) {
@@ -232,6 +233,21 @@ void app_bench_report_record(const AppBenchReport *report, const void *row, Reco
   for (int c = 0; c < report->column_count; c++) record_cell(record, &report->columns[c], row);
 }
 
+// Words of a text on lines of at most `width` bytes (argp counts bytes), from the second line on behind
+// `indent` blanks; `column` is where it begins.
+static void print_wrapped(FILE *stream, const char *text, int column, int indent, int width) {
+  for (const char *word = text; *word; word += strspn(word, " ")) {
+    int length = (int)strcspn(word, " ");
+    bool is_first = word == text, fits = column + !is_first + length <= width;
+    if (!is_first && !fits) fprintf(stream, "\n%*s", indent, "");
+    if (!is_first && fits) fputc(' ', stream);
+    fprintf(stream, "%.*s", length, word);
+    column = fits ? column + !is_first + length : indent + length;
+    word += length;
+  }
+  fputc('\n', stream);
+}
+
 char *app_bench_report_help(const AppBenchReport *report, int argp_key, const char *text) {
   if (argp_key != ARGP_KEY_HELP_POST_DOC) return (char *)(uintptr_t)text; // argp's own way: it is not changed
   char *help = NULL;
@@ -240,10 +256,12 @@ char *app_bench_report_help(const AppBenchReport *report, int argp_key, const ch
   if (!stream) return NULL;
   Group groups[GROUP_COUNT];
   group(report, NULL, NULL, groups);
-  fputs("A row (JSON, CSV) tells:\n", stream);
+  fputs("Columns of a row (JSON, CSV):\n", stream);
   for (int g = 0; g < GROUP_COUNT; g++)
     for (int c = 0; c < groups[g].count; c++)
-      fprintf(stream, "  %-22s %s\n", groups[g].columns[c].key, groups[g].columns[c].help);
+      print_wrapped(stream, groups[g].columns[c].help,
+                    fprintf(stream, "  %-*s ", KEY_WIDTH, groups[g].columns[c].key), KEY_WIDTH + 3,
+                    HELP_WIDTH);
   fclose(stream);
   return help;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Times taken over and over. All contestants take turns in every round, in the opposite order every other
-// round, so that a machine that changes its pace, or a contestant that leaves the caches cold for the next,
-// does so to all; of the rounds the median counts.
+// Repeated measurements of time. All contestants are measured in turn in every round, in the opposite order
+// every other round, so that changes in the machine's speed and cold caches affect all alike; the median over
+// the rounds counts.
 #ifndef TETLAP_APP_BENCH_TIMER_H
 #define TETLAP_APP_BENCH_TIMER_H
 

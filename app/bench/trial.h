@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene that is run over and over, without writing anything.
+// A scene that is run repeatedly, without writing anything.
 #ifndef TETLAP_APP_BENCH_TRIAL_H
 #define TETLAP_APP_BENCH_TRIAL_H
 

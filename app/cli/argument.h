@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Readers of one option's text, for all commands. Each ends the program with what would be right (argp_error,
-// exit code 64) if the text is wrong; `option` is its long name.
+// Readers of an option's text, for all commands. If the text is wrong, each ends the program (exit code 64)
+// with a message that says what would be right; `option` is the long name.
 #ifndef TETLAP_APP_CLI_ARGUMENT_H
 #define TETLAP_APP_CLI_ARGUMENT_H
 

@@ -41,9 +41,9 @@ static int widest_of(const AppCommand *group) {
 }
 
 void app_cli_command_print(const AppCommand *group, const char *called, FILE *stream) {
-  fprintf(stream, "usage: %s ", called);
+  fprintf(stream, "Usage: %s ", called);
   for (const char *letter = group->child_word; *letter; letter++) fputc(*letter - 'a' + 'A', stream);
-  fprintf(stream, " [OPTION…]\n\n%s\n\n", group->doc);
+  fprintf(stream, " [OPTION...]\n%s\n\n", group->doc);
   for (const AppCommand *const *child = group->children; *child; child++)
     fprintf(stream, "  %-*s  %s\n", widest_of(group), (*child)->name, (*child)->help);
   fprintf(stream, "\n%s\n", group->ending);

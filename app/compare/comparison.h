@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs of one scene that differ in the overlap model, held against a reference: trajectories and contact
+// Runs of one scene that differ in the overlap model, compared with a reference: trajectories and contact
 // forces over time, and the audit, which evaluates the models in the same configurations of the reference's
 // run.
 #ifndef TETLAP_APP_COMPARE_COMPARISON_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Labelled pairs of one's own as a data set: every status and every volume is found anew in exact arithmetic,
-// and what the file said otherwise is counted and named.
+// The user's labelled pairs as a data set: every status and volume is computed again in exact arithmetic;
+// labels of the file that differ are counted and named.
 #ifndef TETLAP_APP_DATASET_IMPORT_H
 #define TETLAP_APP_DATASET_IMPORT_H
 

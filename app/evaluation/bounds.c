@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-static bool has_bounds(const OverlapModel *model) {
+bool app_evaluation_bounds_are_told(const OverlapModel *model) {
   const OverlapOps *ops = model->ops;
   return ops->eval_bounds && (!ops->has_bounds || ops->has_bounds(model->self));
 }
@@ -27,7 +27,7 @@ static Status add(AppEvaluationBoundsRun *run, const OverlapModel *model, const 
 
 Status app_evaluation_bounds_add(AppEvaluationBoundsRun *run, const OverlapModel *model,
                                  const DatagenPairs *pairs, size_t count) {
-  if (!has_bounds(model)) return STATUS_OK;
+  if (!app_evaluation_bounds_are_told(model)) return STATUS_OK;
   double *volumes = memory_zeroed(count, sizeof *volumes), *bounds = memory_zeroed(count, sizeof *bounds);
   Status status =
       volumes && bounds ? add(run, model, pairs, count, volumes, bounds) : status_no_memory("an evaluation");

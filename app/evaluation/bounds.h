@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well a model's bound of its own error holds (overlap/ops.h: eval_bounds): with ε = |V − V*|/V of the network
-// alone and w = B/V, the share of pairs with ε ≤ w and how wide w is beside ε.
+// How well a model's bound of its own error holds (overlap/ops.h: eval_bounds): with ε = |V − V*|/V of the
+// network alone and w = B/V, the share of pairs with ε ≤ w and how wide w is beside ε.
 #ifndef TETLAP_APP_EVALUATION_BOUNDS_H
 #define TETLAP_APP_EVALUATION_BOUNDS_H
 
@@ -19,6 +19,9 @@ typedef struct AppEvaluationBoundsRun {
   double *widths, *errors; // (count), owned
   size_t count, width_capacity, error_capacity;
 } AppEvaluationBoundsRun;
+
+// Whether the model tells a bound of its error.
+bool app_evaluation_bounds_are_told(const OverlapModel *model);
 
 // Does nothing for a model that tells no bounds.
 Status app_evaluation_bounds_add(AppEvaluationBoundsRun *run, const OverlapModel *model,

@@ -180,6 +180,8 @@ static void add_inside(AppEvaluationRun *run, const Block *block, size_t i) {
   const double *truth = block->true_gradient + i * SIZE, *told = block->gradient + i * SIZE;
   double volume = block->pairs->volume[i], error = fabs(block->volume[i] - volume);
   int bin = bin_of(volume);
+  sums->handed_on += (block->flags[i] & OVERLAP_FALLBACK) != 0;
+  sums->handed_on_in_part += (block->flags[i] & OVERLAP_BLENDED) != 0;
   sums->mae += error;
   sums->bin_mae[bin] += error;
   sums->bin_accuracy[bin] += block->volume[i] > 0 && bin_of(block->volume[i]) == bin;
@@ -358,6 +360,8 @@ void app_evaluation_finish(AppEvaluationRun *run, AppEvaluation *result) {
   }
   result->volume_error_sum = divide(result->mae, run->true_volume);
   result->mae = divide(result->mae, inside);
+  result->handed_on = divide(result->handed_on, inside);
+  result->handed_on_in_part = divide(result->handed_on_in_part, inside);
   result->gradient_error = divide(result->gradient_error, run->true_gradient);
   result->moment_error = divide(result->moment_error, run->true_moments);
   result->moment_error_own = divide(result->moment_error_own, run->true_moments);

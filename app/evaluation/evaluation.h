@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well an overlap model answers labelled pairs: the paper's Table 4, and what it does not ask, the
-// derivatives, ghosts on disjoint pairs, and symmetries that the true volume has.
+// The accuracy of an overlap model on labelled pairs: the paper's Table 4 and, beyond it, derivatives, ghosts
+// on disjoint pairs, and symmetries of the true volume.
 //
 //   begin ─► add, block by block ─► finish ─► AppEvaluation
 //
@@ -38,6 +38,7 @@ typedef struct AppEvaluation {
   long long count;  // pairs
   long long inside; // with V > 0: what mae … angle_p90_deg are taken over
   long long fallbacks, blended;
+  double handed_on, handed_on_in_part; // shares of those with V > 0 that a more careful model answers
   AppEvaluationKind kinds[DATAGEN_KIND_COUNT];
   double accuracy_mean, accuracy_swapped_mean;      // mean over the kinds that there are
   double mae;                                       // mean |ΔV|
@@ -56,7 +57,7 @@ typedef struct AppEvaluation {
   // Σ|V(changed pair) − V| / ΣV over the first APP_EVALUATION_SYMMETRY_PAIRS pairs with V > 0: another order
   // of either's vertices, the two exchanged, a rotation about the cube's centre
   double defect_vertex_order, defect_swap, defect_rotation;
-  bool has_status;          // the model tells a status of its own, a logit
+  bool has_status; // the model tells a status of its own, a logit
   AppEvaluationBounds bounds;
   double calibration_error; // Σ over bins of share · |predicted probability − frequency| (Naeini et al. 2015)
 } AppEvaluation;

@@ -95,6 +95,8 @@ void app_evaluation_print(const AppEvaluation *evaluation, const char *model, co
     print_row(stream, "bound / V, 95 %", "%.3g %%", 100 * bounds->width_p95, NAN);
     print_row(stream, "error / V, median", "%.3g %%", 100 * bounds->error_median, NAN);
     print_row(stream, "error / V, 95 %", "%.3g %%", 100 * bounds->error_p95, NAN);
+    print_row(stream, "handed on", "%.2f %%", 100 * evaluation->handed_on, NAN);
+    print_row(stream, "handed on in part", "%.2f %%", 100 * evaluation->handed_on_in_part, NAN);
   }
   if (evaluation->has_status)
     print_row(stream, "calibration of status", "%.3g", evaluation->calibration_error, NAN);
@@ -152,6 +154,8 @@ void app_evaluation_record(const AppEvaluation *evaluation, Record *record) {
   record_number(record, "bound_width_p95", evaluation->bounds.width_p95);
   record_number(record, "bound_error_median", evaluation->bounds.error_median);
   record_number(record, "bound_error_p95", evaluation->bounds.error_p95);
+  record_number(record, "handed_on", evaluation->handed_on);
+  record_number(record, "handed_on_in_part", evaluation->handed_on_in_part);
 }
 
 void app_evaluation_print_paths(const AppEvaluationPaths *paths, const char *model, FILE *stream) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an overlap model answers of pairs, as text (a line a pair, a header), JSON (an object a line), or
+// The results of an overlap model for pairs, as text (a line a pair, a header), JSON (an object a line), or
 // NumPy's .npy (a record a pair, with fields volume, gradient, centroid, flags).
 #ifndef TETLAP_APP_PAIRS_WRITER_H
 #define TETLAP_APP_PAIRS_WRITER_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact forces of whole scenes: all models held against the exact one in the same configurations of one
-// run, and a run of each model's own, whose time says what the scene gains from a faster overlap.
+// Contact forces of whole scenes: all models compared with the exact one in the same configurations of one
+// run; and a run with each model, whose time shows what the scene gains from a faster overlap.
 #ifndef TETLAP_APP_PARETO_SCENES_H
 #define TETLAP_APP_PARETO_SCENES_H
 

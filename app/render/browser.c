@@ -84,7 +84,10 @@ static Status receive(AppRenderBrowser *browser, double until_s) {
   while (browser->text_size == 0 || !memchr(browser->text, 0, browser->text_size)) {
     double left_s = until_s - clock_wall_s();
     struct pollfd ready = {.fd = browser->from, .events = POLLIN};
-    if (left_s <= 0 || poll(&ready, 1, (int)fmin(1000 * left_s + 1, 1e9)) == 0)
+    int found = left_s > 0 ? poll(&ready, 1, (int)fmin(1000 * left_s + 1, 1e9)) : 0;
+    if (found < 0)
+      return status_fail(STATUS_IO, "waiting for Chromium: %s", strerror(errno)); // a signal, as by Ctrl-C
+    if (found == 0)
       return status_fail(
           STATUS_IO, "Chromium has not answered for %g s; try a smaller --size, or a run with fewer frames",
           browser->patience_s);

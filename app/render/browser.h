@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A Chromium without a window, spoken to over a pipe (the DevTools protocol): it opens one page, runs scripts
-// in it and takes its picture. It has no network.
+// A headless Chromium, controlled over a pipe (the DevTools protocol): it opens one page, runs scripts in it
+// and captures pictures. It has no network.
 #ifndef TETLAP_APP_RENDER_BROWSER_H
 #define TETLAP_APP_RENDER_BROWSER_H
 

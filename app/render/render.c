@@ -44,6 +44,14 @@ static Status present(AppRenderBrowser *browser, const AppRenderOptions *options
     record_text(wishes, "cut", options->cut);
     record_number(wishes, "share", options->cut_share);
   }
+  if (options->range) {
+    record_number(wishes, "low", options->range[0]);
+    record_number(wishes, "high", options->range[1]);
+  }
+  if (options->view) {
+    record_number(wishes, "azimuth", options->view[0]);
+    record_number(wishes, "elevation", options->view[1]);
+  }
   if (options->theme) record_text(wishes, "theme", options->theme);
   if (options->hides_edges) record_bool(wishes, "edges", false);
   char *text = wishes ? record_text_of(wishes) : NULL, *script = NULL, *count = NULL;

@@ -9,13 +9,16 @@
 #include "app/report/report.h"
 
 typedef struct AppRenderOptions {
-  const char *picture;               // FILE.png; NULL: none
-  const char *movie;                 // FILE.mp4 or FILE.gif; NULL: none
-  int frame;                         // of the picture; negative: from the end
-  int per_second;                    // frames of a movie
-  int width, height;                 // in pixels
-  const char *field, *cut, *theme;   // NULL: the page's own
-  double cut_share;                  // place of the cut, 0 … 1
+  const char *picture;             // FILE.png; NULL: none
+  const char *movie;               // FILE.mp4 or FILE.gif; NULL: none
+  int frame;                       // of the picture; negative: from the end
+  int per_second;                  // frames of a movie
+  int width, height;               // in pixels
+  const char *field, *cut, *theme; // NULL: the page's own
+  double cut_share;                // place of the cut, 0 … 1
+  const double *range; // (2): ends of the colours' scale, in the field's unit; NULL: those of its values
+  const double
+      *view; // (2): azimuth about z from x, and elevation, of the camera [degrees]; NULL: the page's own
   bool hides_edges;                  // of elements
   const volatile sig_atomic_t *stop; // ends it when it is raised
 } AppRenderOptions;

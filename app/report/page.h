@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The web page without its data, report/page.html, which is part of the program: a binary that was moved
-// still has it.
+// The web page without its data, report/page.html, compiled into the program.
 #ifndef TETLAP_APP_REPORT_PAGE_H
 #define TETLAP_APP_REPORT_PAGE_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A web page about a run or several, or about measurements: one file without any other, for a browser.
+// A web page about one or several runs, or about measurements, as a single file.
 #ifndef TETLAP_APP_REPORT_REPORT_H
 #define TETLAP_APP_REPORT_REPORT_H
 

@@ -21,7 +21,7 @@ static Status read_section(const SceneSection *section, const SceneNode *node, v
 
 static Status read_list(const SceneKey *key, const SceneNode *node, void *self) {
   if (node->kind != SCENE_NODE_LIST) return app_scene_value_fail(key, node, "");
-  if (node->count == 0) return key->required ? app_scene_value_fail(key, node, ", one at least") : STATUS_OK;
+  if (node->count == 0) return key->required ? app_scene_value_fail(key, node, "; give at least one") : STATUS_OK;
   if (node->count > MAX_ITEMS) return app_scene_value_fail(key, node, "; that is too long");
   char *items = memory_zeroed((size_t)node->count, key->section->size);
   if (!items) return status_no_memory("the scene");
@@ -103,9 +103,11 @@ static Status fail_unknown(const SceneSection *section, const SceneNode *entry) 
   if (guess.best)
     return app_scene_tree_fail_key(entry, "unknown key '%.60s' in %s; did you mean '%s'?", entry->key, path,
                                    guess.best);
-  if (app_scene_keys_locate(&app_scene_keys_root, entry->key, other, sizeof other))
-    return app_scene_tree_fail_key(entry, "unknown key '%.60s' in %s; there is %s, and here %s", entry->key,
-                                   path, other, names);
+  // One of the scene's own keys is unknown only where the file is no scene.
+  if (app_scene_keys_locate(&app_scene_keys_root, entry->key, other, sizeof other) &&
+      strcmp(other, entry->key) != 0)
+    return app_scene_tree_fail_key(entry, "unknown key '%.60s' in %s; did you mean %s? The keys here are %s",
+                                   entry->key, path, other, names);
   return app_scene_tree_fail_key(entry, "unknown key '%.60s' in %s; the keys here are %s", entry->key, path,
                                  names);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known not to hold: each limit with how far it was measured to go, its physical or numerical reason
-// and the counter of summary.json that makes it visible in a run. A case that is better than asked in spite
-// of its limit says so; one that is worse than its limit fails.
+// The known limits: each with its measured size, its physical or numerical reason and the counter of
+// summary.json that shows it in a run. A case that meets its requirement in spite of a limit says so; one
+// that is worse than its limit fails.
 #ifndef TETLAP_APP_STRESS_LIMITS_H
 #define TETLAP_APP_STRESS_LIMITS_H
 

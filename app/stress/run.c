@@ -139,7 +139,7 @@ double app_stress_run_distortion(const AppStressRun *run, int frame) {
     if (run->model.bodies[run->model.tet_body[e]].is_obstacle) continue;
     Vec3 x[4];
     for (int k = 0; k < 4; k++) x[k] = vec3_at(app_stress_run_position(run, frame, run->model.tets[e][k]));
-    double det = vec3_det4(x[0], x[1], x[2], x[3]) / (6 * run->model.elements[e].volume);
+    double det = vec3_det4(x[0], x[1], x[2], x[3]) / (6 * run->model.volumes[e]);
     worst = fmax(worst, fabs(det - 1));
   }
   return worst;

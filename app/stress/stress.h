@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hard cases, held against physics: every class of pairs and every scene with every overlap model. A row is a
-// case with a model. It asserts that the case did occur and what must hold; what was measured is kept, and
-// the verdict follows from it:
+// Hard cases, checked against physics: every class of pairs and every scene with every overlap model. A row
+// is a case with a model. It asserts that the case did occur and what must hold; what was measured is kept,
+// and the verdict follows from it:
 //
 //   all met ───────────────────────────────► held      (better: though app/stress/limits.c knows a limit)
 //   not met, within the model's tolerance ──► tolerance (pairs only, app/stress/pairs/tolerances.c)

@@ -147,7 +147,8 @@ static Status check_distinct(const AppSweepAxis *axis, const char *text) {
 Status app_sweep_axis_parse(AppSweepAxis *axis, const char *text) {
   *axis = (AppSweepAxis){0};
   const char *equals = strchr(text, '=');
-  if (!equals || equals == text) return fail(text, "no key before a '='");
+  if (!equals) return fail(text, "no '='");
+  if (equals == text) return fail(text, "no key before the '='");
   Range range;
   axis->key = copy(text, (size_t)(equals - text));
   Status status = axis->key ? STATUS_OK : status_no_memory("the key of --vary");

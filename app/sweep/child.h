@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This program again, as a child process: it ends with its parent, a Ctrl-C of the terminal does not reach
-// it.
+// This program as a child process: it ends with its parent, and a Ctrl-C of the terminal does not reach it.
 #ifndef TETLAP_APP_SWEEP_CHILD_H
 #define TETLAP_APP_SWEEP_CHILD_H
 

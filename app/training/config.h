@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `tetlap train` is told: a YAML or JSON file, read by a table of keys as scene files are.
+// The configuration of `tetlap train`: a YAML or JSON file, read by a table of keys as scene files are.
 #ifndef TETLAP_APP_TRAINING_CONFIG_H
 #define TETLAP_APP_TRAINING_CONFIG_H
 

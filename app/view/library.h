@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The functions of GNU libmicrohttpd that we call, found when a server is first started: the program is not
-// linked to it, so that other commands start without it and the libraries that it brings along.
+// The functions of GNU libmicrohttpd that the server calls, loaded when it starts: the program is not linked
+// to it, so other commands start without it and its dependencies.
 #ifndef TETLAP_APP_VIEW_LIBRARY_H
 #define TETLAP_APP_VIEW_LIBRARY_H
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps a process that shows files to others within one folder: while it is confined, file_read
-// (base/files/file.h) opens regular files beneath that folder alone, by paths that begin with its name, and
-// follows no link on the way. Each component is opened from the one before, so nobody who swaps a folder for
-// a link meanwhile is faster; a pipe cannot make it wait.
+// Confines a process that serves files to one folder: file_read (base/files/file.h) then opens only regular
+// files beneath that folder, by paths that begin with its name, and follows no link. Each component is opened
+// from the one before, so a folder that is replaced by a link meanwhile is not followed; a pipe cannot block
+// it.
 #ifndef TETLAP_BASE_CONFINE_H
 #define TETLAP_BASE_CONFINE_H
 

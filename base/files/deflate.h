@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bytes made smaller and back: zlib's format (RFC 1950), which browsers and VTK read too. The one place where
-// zlib is used.
+// Compression and decompression in zlib's format (RFC 1950), which browsers and VTK read too. The one place
+// where zlib is used.
 #ifndef TETLAP_BASE_DEFLATE_H
 #define TETLAP_BASE_DEFLATE_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A number that tells contents apart: against accidents, not against forgers.
+// A digest of contents: detects accidental changes, not forgery.
 #ifndef TETLAP_BASE_DIGEST_H
 #define TETLAP_BASE_DIGEST_H
 

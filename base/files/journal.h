@@ -3,9 +3,9 @@
 //
 // The first piece puts a new file in the place of what was there (base/files/file.h); each later one is
 // appended in one write and handed to the system at once. A write that fails is taken back, so the file ends
-// with a whole piece; only a process that is killed within a write may leave a part of one. A mark names what
-// the file holds up to a moment: whoever goes on from there later, in another process, finds it unchanged,
-// and what came after it is cut off, or is refused. Of several ranks (base/ranks.h) the first writes.
+// with a whole piece; only a process that is killed during a write may leave a part of one. A mark describes
+// the file up to a moment. A process that continues from it later checks that this part is unchanged and cuts
+// off what came after it, or refuses the file. Of several ranks (base/ranks.h) the first writes.
 #ifndef TETLAP_BASE_JOURNAL_H
 #define TETLAP_BASE_JOURNAL_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files and folders for a while, in $TMPDIR, or in /tmp where that is not set.
+// Temporary files and folders, in $TMPDIR or, if that is not set, in /tmp.
 #ifndef TETLAP_BASE_TEMPORARY_H
 #define TETLAP_BASE_TEMPORARY_H
 

@@ -355,8 +355,8 @@ struct DatagenDataset {
 
 static Status fail_foreign(const char *path, const char *what) {
   return status_fail(STATUS_INPUT,
-                     "%s: is no data set of pairs: %s; `tetlap datagen` makes one, `tetlap dataset import` "
-                     "of your own pairs",
+                     "%s is not a data set of pairs: %s; `tetlap datagen` makes one, `tetlap dataset import` "
+                     "one of your own pairs",
                      path, what);
 }
 

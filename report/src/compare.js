@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// compare.json (docs/output.md) as tables: the audit, which holds the models against the reference in the same
-// configurations, and their own runs. A run that did not reach the end looks like it.
+// compare.json (docs/output.md) as tables: the audit, which compares the models with the reference in the same
+// configurations, and their own runs. A run that did not reach the end is marked.
 
-import { count, format, h, swatchOf } from "./dom.js";
+import { count, format, h, scrolled, swatchOf } from "./dom.js";
 
 const AUDITS = [
   ["audit_volume_error", "Volumes V"],
@@ -17,12 +17,12 @@ const RUNS = [
   ["Reached", (row) => percent(row.share_reached)],
   ["Frames", (row) => count(row.frames_compared)],
   ["Force error", (row) => format(row.force_error_l2), "‖Δf‖ / ‖f‖ over these frames, each model on its own trajectory"],
-  ["at most", (row) => format(row.force_error_max), "largest difference over the largest force"],
+  ["max", (row) => format(row.force_error_max), "largest difference over the largest force"],
   ["Path error", (row) => format(row.trajectory_error), "root mean square over vertices and frames, over the smallest body’s diagonal"],
   ["Energy gain", (row) => format(row.energy_gain_relative)],
   ["Steps", (row) => count(row.summary?.steps)],
   ["Wall time", (row) => format(row.wall_s, "s")],
-  ["of it overlaps", (row) => percent(row.summary?.phases && row.summary.phases.overlap / row.wall_s)],
+  ["Overlap share", (row) => percent(row.summary?.phases && row.summary.phases.overlap / row.wall_s), "of the overlap model in the wall time"],
 ];
 
 function nameOf(row, runs) {
@@ -32,13 +32,13 @@ function nameOf(row, runs) {
 
 function table(caption, heads, rows, cells) {
   const head = h("tr", heads.map(([label, isText, help]) => h(isText ? "th" : "th.number", { scope: "col", title: help }, label)));
-  return h(".scroll", { tabindex: 0, role: "region", "aria-label": caption }, h("table", h("caption", caption), h("thead", head), h("tbody", rows.map((row) => h("tr", cells(row))))));
+  return scrolled(caption, h("caption", caption), h("thead", head), h("tbody", rows.map((row) => h("tr", cells(row)))));
 }
 
 function auditTable(rows, runs) {
   const audited = rows.filter((row) => row.audits > 0);
   if (audited.length === 0) return null;
-  const heads = [["Model", true], ...AUDITS.flatMap(([, label]) => [[label, false, "mean"], ["at most", false, `largest, ${label}`]]), ["Audits", false]];
+  const heads = [["Model", true], ...AUDITS.flatMap(([, label]) => [[label, false, "mean"], ["max", false, `largest, ${label}`]]), ["Audits", false]];
   return table(`Audit: relative errors against ${audited[0].reference} in the same configurations`, heads, audited, (row) => [
     h("th", { scope: "row" }, nameOf(row, runs)),
     AUDITS.flatMap(([key]) => [h("td.number", format(row[key])), h("td.number", format(row[`${key}_max`]))]),
@@ -49,7 +49,7 @@ function auditTable(rows, runs) {
 function runTable(rows, runs) {
   const driven = rows.filter((row) => row.summary);
   const heads = [["Model", true], ["Outcome", true], ...RUNS.map(([label, , help]) => [label, false, help])];
-  return table("Runs of their own", heads, driven, (row) => [
+  return table("Own runs: each model on its own trajectory", heads, driven, (row) => [
     h("th", { scope: "row" }, nameOf(row, runs)),
     h("td.outcome", { "data-outcome": row.outcome, title: row.message }, row.outcome),
     RUNS.map(([, value]) => h("td.number", value(row))),

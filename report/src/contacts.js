@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What presses what, how much, and how wrong that may be: a row for each two that touched.
+// Contact forces and their estimated errors: a row for each two that touched.
 
-import { format, h, swatchOf } from "./dom.js";
+import { format, h, scrolled, swatchOf } from "./dom.js";
 
 const percent = (share) => format(share == null ? NaN : 100 * share, "%", 2);
 
 const COLUMNS = [
   ["Largest force", (row) => format(row.force_max_N, "N")],
-  ["At", (row) => format(row.force_max_time, "s")],
-  ["Area then", (row) => format(row.area_m2, "m²")],
+  ["Time", (row) => format(row.force_max_time, "s"), "of the largest force"],
+  ["Area", (row) => format(row.area_m2, "m²"), "in contact at that time"],
   ["Interface share", (row) => percent(row.estimate.give), "compliance of the interface over the total compliance: the error of the force, or of the displacement"],
-  ["Lost at rims", (row) => percent(row.estimate.rim), "share of the force that edges of bodies lose at this depth"],
+  ["Rim loss", (row) => percent(row.estimate.rim), "share of the force that is missing at edges of bodies at this depth"],
   ["Elements across", (row) => format(row.estimate.elements_across, "", 2), "√area over the elements’ mean edge; below about five the pressure’s shape is the mesh’s"],
   ["Stiffness", (row) => format(row.estimate.stiffness, "", 2)],
-  ["For 1 %", (row) => format(row.estimate.stiffness_for_1_percent, "", 2), "the stiffness that would bring interface share and rims to 1 %"],
+  ["Stiffness for 1 %", (row) => format(row.estimate.stiffness_for_1_percent, "", 2), "the stiffness at which interface share and rim loss are 1 %"],
 ];
 
 export function buildContacts(runs) {
   const rows = runs.flatMap((run) => (run.summary?.contacts ?? []).map((row) => ({ run, row })));
   if (rows.length === 0) return null;
-  rows.sort((a, b) => b.row.force_max_N - a.row.force_max_N);
+  const pairOf = ({ row }) => `${row.a} – ${row.b}`;
+  const most = {}; // of two, over all runs
+  for (const one of rows) most[pairOf(one)] = Math.max(most[pairOf(one)] ?? 0, one.row.force_max_N);
+  rows.sort((a, b) => most[pairOf(b)] - most[pairOf(a)] || a.run.index - b.run.index);
   const names = runs.length > 1;
   const header = h(
     "tr",
@@ -30,7 +33,7 @@ export function buildContacts(runs) {
   const line = ({ run, row }) =>
     h(
       "tr",
-      h("th", { scope: "row" }, `${row.a} – ${row.b}`),
+      h("th", { scope: "row" }, pairOf({ row })),
       names && h("td", swatchOf(run), run.label),
       COLUMNS.map(([, show]) => h("td.number", show(row))),
     );
@@ -38,7 +41,7 @@ export function buildContacts(runs) {
     "section.block",
     { id: "contacts" },
     h("h2", "How wrong the contact may be"),
-    h(".scroll", h("table", h("thead", header), h("tbody", rows.map(line)))),
-    h("p.note", "Estimated where the two pressed each other most; the manual’s page on contact has the formulas."),
+    scrolled("Contact forces and their estimated errors", h("thead", header), h("tbody", rows.map(line))),
+    h("p.note", "Estimated at the largest force. Formulas: docs/contact.md."),
   );
 }

@@ -23,6 +23,9 @@ export function svg(tag, attributes = {}, ...children) {
   return element;
 }
 
+// A table that scrolls sideways where it is too wide, by keyboard too; `label` names it.
+export const scrolled = (label, ...children) => h(".scroll", { tabindex: 0, role: "region", "aria-label": label }, h("table", { "aria-label": label }, ...children));
+
 // The mark of a run, in its colour (style.css has the first two; main.js sets them all).
 export const swatchOf = (run) => h("span.swatch.run", { style: `background:var(--run-${run.letter})` });
 

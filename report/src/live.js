@@ -10,11 +10,11 @@ const PATIENCE = 4; // times as long as the last newer page took
 const WORDS = {
   waiting: "Waiting for the run to begin",
   running: "Running",
-  gone: "The run’s process is gone; it left no last word. `tetlap resume` goes on from its last checkpoint",
+  gone: "The run was killed. `tetlap resume` continues from its last checkpoint",
   finished: "Finished",
   failed: "Failed",
-  interrupted: "Interrupted; `tetlap resume` goes on from its last checkpoint",
-  lost: "The server has ended: what is shown is the last that was seen",
+  interrupted: "Interrupted; `tetlap resume` continues from its last checkpoint",
+  lost: "The server has ended; this is the last state that it sent",
 };
 
 export const durationOf = (seconds) => {

@@ -95,9 +95,10 @@ function worldSize(runs) {
   return Math.hypot(...high.map((value, k) => value - low[k]));
 }
 
-// Where a page opens: of runs that are compared, where they differ most; else at the start.
+// Where a page opens: of runs that are compared, where they differ most; of one that goes on, or failed, at its end; else at the start.
 function openingTime(data, times) {
-  const moment = data.runs.length > 1 ? momentOf(data) : undefined;
+  const isAtEnd = data.live?.outcome === "running" || data.runs[0]?.summary?.outcome === "failed";
+  const moment = data.runs.length > 1 ? momentOf(data) : isAtEnd ? times.at(-1) : undefined;
   return times[moment === undefined ? 0 : indexAt(times, moment)] ?? 0;
 }
 
@@ -136,11 +137,12 @@ function build(data, kept) {
   };
   const plots = transport ? listPlots(data, worldSize(runs)).map((plot) => new TimePlot(plot, runs, state, seek)) : [];
   const live = data.live ? (kept?.live ?? new LiveBar()) : null;
+  const place = h("span", { hidden: true }); // of the bar, which stays in the page that is seen until this one is
   live?.show(data.live);
   const page = h(
     "main",
-    buildHeader(runs, title),
-    live?.element,
+    buildHeader(runs, title, !!live),
+    kept?.live ? place : live?.element,
     buildOverview(runs),
     stage?.element,
     transport?.element,
@@ -154,7 +156,7 @@ function build(data, kept) {
     data.benches && buildBenches(data.benches),
     buildManifest(runs),
   );
-  return { state, transport, stage, plots, data, live, times, page, bar: buildBar(state, data.version), present, showFrame };
+  return { state, transport, stage, plots, data, live, place, times, page, bar: buildBar(state, data.version), present, showFrame };
 }
 
 // A newer page in the place of this one, once it is ready to be seen: same camera, field, cut and scroll.
@@ -167,6 +169,7 @@ async function replace(data) {
   document.body.insertBefore(next.page, old.page.nextSibling);
   await next.stage?.load(old.stage?.view());
   old.bar.replaceWith(next.bar);
+  if (next.place.isConnected) next.place.replaceWith(next.live.element);
   old.page.remove();
   next.page.classList.remove("arriving");
   next.stage?.resize();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The figures that one looks for first, of one run or of both.
+// The most important figures, of one run or of several.
 
-import { count, format, h, swatchOf } from "./dom.js";
+import { count, format, h, scrolled, swatchOf } from "./dom.js";
 
 const hasEnded = (summary) => summary.outcome === "finished";
 
@@ -11,8 +11,8 @@ const FIGURES = [
   ["Steps", (s) => count(s.steps)],
   ["Largest contact force", (s) => s.overlap && format(s.contact_force_max, "N")],
   ["Deepest overlap", (s) => s.overlap && format(100 * s.deepest_overlap_max, "%"), "largest share of an element that another body covers"],
-  ["Overlapping pairs, most", (s) => s.overlap && count(s.pairs_max)],
-  ["Forces against motion", (s) => s.momentum_gap != null && format(100 * s.momentum_gap, "%", 2), "by how much the impulse of all written forces differs from the change of momentum, at worst of a body"],
+  ["Overlapping pairs", (s) => s.overlap && count(s.pairs_max), "largest number after a step"],
+  ["Forces against motion", (s) => s.momentum_gap != null && format(100 * s.momentum_gap, "%", 2), "difference of the impulse of all written forces from the change of momentum, of the worst body"],
   ["Energy gained", (s) => format(s.energy_gain_relative), "largest rise of the audited total energy, over the scene’s energy"],
 ];
 
@@ -22,7 +22,9 @@ function buildTable(runs) {
   const shown = FIGURES.filter(([, value]) => runs.some((run) => value(run.summary, all)));
   const head = h("tr", h("th", { scope: "col" }, "Run"), shown.map(([label, , help]) => h("th.number", { scope: "col", title: help }, label)));
   const line = (run) => h("tr", h("th", { scope: "row" }, swatchOf(run), run.label), shown.map(([, value]) => h("td.number", value(run.summary, all) || "–")));
-  return h(".scroll.overview", { tabindex: 0, role: "region", "aria-label": "Figures of the runs" }, h("table", h("thead", head), h("tbody", runs.map(line))));
+  const table = scrolled("Figures of the runs", h("thead", head), h("tbody", runs.map(line)));
+  table.classList.add("overview");
+  return table;
 }
 
 export function buildOverview(runs) {
@@ -42,14 +44,20 @@ export function buildOverview(runs) {
   return h("dl.figures", tiles);
 }
 
-export function buildHeader(runs, title) {
+// "failed at t = 0.1 s: …", "interrupted at t = …"
+function whatHappened({ outcome, message = "" }) {
+  return message.startsWith(outcome) ? message : `${outcome}${message.startsWith("at t") ? "" : "."} ${message}`;
+}
+
+// `isLive`: a bar beside it says how the run ended.
+export function buildHeader(runs, title, isLive) {
   const { summary } = runs[0] ?? {};
   const models = [...new Set(runs.map((run) => run.summary?.overlap).filter(Boolean))];
   const facts = summary
     ? [summary.scene, `${count(summary.tetrahedra)} tetrahedra`, `${count(summary.vertices)} vertices`, models.length && `overlap: ${models.join(", ")}`]
     : [];
   const trouble = runs
-    .filter((run) => run.summary && run.summary.outcome !== "finished")
-    .map((run) => h("p.warning", { role: "note" }, `${runs.length > 1 ? `${run.label}: ` : ""}${run.summary.outcome}. ${run.summary.message ?? ""}`));
+    .filter((run) => !isLive && run.summary && run.summary.outcome !== "finished")
+    .map((run) => h("p.warning", { role: "note" }, `${runs.length > 1 ? `${run.label}: ` : ""}${whatHappened(run.summary)}`));
   return h(".title", h("h1", title), facts.length > 0 && h("p.facts", facts.filter(Boolean).map((fact) => h("span", fact))), trouble);
 }

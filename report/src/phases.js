@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a run's time went: a bar of phases, and the seconds beside their names.
 
-import { count, format, h, swatchOf } from "./dom.js";
+import { count, format, h, scrolled, swatchOf } from "./dom.js";
 import { buildEffects } from "./effects.js";
 
 const PHASES = [
   ["overlap", "Overlap volumes", "contact"],
   ["broad_phase", "Broad phase", "contact"],
-  ["contact", "Contact, the rest", "contact"],
+  ["contact", "Other contact", "contact"],
   ["assembly", "Assembly", "solver"],
   ["analysis", "Analysis", "solver"],
   ["factorisation", "Factorisation", "solver"],
   ["solve", "Solve", "solver"],
   ["forces", "Other forces", "rest"],
   ["output", "Output", "rest"],
-  ["other", "Everything else", "rest"],
+  ["other", "Other", "rest"],
 ];
 
 // "1,444 steps", and whether the run got to its end.
@@ -76,7 +76,7 @@ export function buildPhases(runs) {
       ".bars",
       known.map((run) => h(".row", known.length > 1 && h(".name", swatchOf(run), run.label, h("span.steps", stepsOf(run))), bar(run, most))),
     ),
-    h("details.more", { open: true }, h("summary", "In numbers"), h(".scroll", h("table", h("thead", header), h("tbody", keys.map(row), sum)))),
+    h("details.more", { open: true }, h("summary", "In numbers"), scrolled("Wall time by phase", h("thead", header), h("tbody", keys.map(row), sum))),
     buildEffects(known),
   );
 }

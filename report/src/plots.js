@@ -126,9 +126,10 @@ function distanceSeries({ runs, differences = [] }, size) {
 // What compare's audit measured in single configurations of the reference's run.
 function auditSeries({ comparison, runs }, kind) {
   const rows = (comparison ?? []).filter((row) => row.audit_series?.[kind]);
-  return rows.map((row, k) => {
+  let last = HUES.light.length; // models without a run have the last hues, grey first
+  return rows.map((row) => {
     const run = runs.find((one) => one.summary?.overlap === row.model);
-    return { run: run ?? null, label: row.model, hue: run ? null : runs.length + k, values: positive(row.audit_series[kind]), times: row.audit_series.time_s };
+    return { run: run ?? null, label: row.model, hue: run ? null : --last, values: positive(row.audit_series[kind]), times: row.audit_series.time_s };
   });
 }
 
@@ -195,12 +196,14 @@ export function momentOf(data) {
 export class TimePlot {
   constructor(plot, runs, state, seek) {
     Object.assign(this, { plot, runs, state, seek });
+    const times = [...runs, ...plot.series].flatMap((one) => [one.times[0], one.times.at(-1)]).filter(Number.isFinite);
+    this.extent = [Math.min(...times), Math.max(...times)]; // the same for all plots of the page
     this.area = h(".area");
     this.rows = plot.series.map((one) => this.buildRow(one));
     this.element = h(
       "figure.plot",
       { id: `plot-${plot.id}` },
-      h("figcaption", h("h3", plot.title, plot.unit && h("span.unit", plot.unit))),
+      h("figcaption", h("h3", plot.title, plot.unit && [" ", h("span.unit", plot.unit)])),
       this.area,
       h(".readings", this.rows.map((row) => row.element)),
       ...(plot.note ? [h("p.note", plot.note)] : []),
@@ -221,7 +224,7 @@ export class TimePlot {
 
   buildRow(one) {
     const line = svg("svg", { class: "key", viewBox: "0 0 18 8", "aria-hidden": "true" }, svg("line", { x1: 1, x2: 17, y1: 4, y2: 4 }));
-    const value = h("output");
+    const value = h("output", { "aria-live": "off" }); // it changes with every frame
     const owner = one.hue !== null && this.runs.length > 1 && one.run && !one.label.includes("−") ? h("span.owner", one.run.label) : null;
     return { one, line, value, element: h("span.reading", line, h("span", one.label), owner, value) };
   }
@@ -252,7 +255,7 @@ export class TimePlot {
       marginTop: MARGIN.top,
       marginBottom: MARGIN.bottom,
       style: { background: "transparent", fontFamily: "inherit", fontSize: "11px", overflow: "visible" },
-      x: { label: null, ticks: Math.max(3, Math.round(width / 110)), tickSize: 0, tickPadding: 8, tickFormat: (t) => format(t, "", 4) },
+      x: { domain: this.extent, label: null, ticks: Math.max(3, Math.round(width / 110)), tickSize: 0, tickPadding: 8, tickFormat: (t) => format(t, "", 4) },
       y: {
         label: null,
         type: plot.isLog ? "log" : "linear",
@@ -264,7 +267,7 @@ export class TimePlot {
       marks: [plot.isLog ? null : Plot.ruleY([0], { strokeOpacity: 0.35 }), ...bands, ...marks],
     });
     chart.setAttribute("role", "img");
-    chart.setAttribute("aria-label", `${plot.title} over time`);
+    chart.setAttribute("aria-label", `${plot.title} over time: ${plot.series.map((one) => one.label).join(", ")}`);
     this.x = chart.scale("x");
     this.y = chart.scale("y");
     this.addCursor(chart, width, height);

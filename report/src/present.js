@@ -5,8 +5,15 @@ import { h } from "./dom.js";
 
 const AXES = ["x", "y", "z"];
 
-// {field, cut: "x", share, theme, edges}, all may be missing. Returns how many frames there are.
-export async function present(page, { field, cut, share, theme, edges }) {
+// Towards a place at these angles about z, from x, and above the ground.
+function directionOf(azimuth, elevation) {
+  const [around, up] = [azimuth, elevation].map((angle) => (angle * Math.PI) / 180);
+  return [Math.cos(up) * Math.cos(around), Math.cos(up) * Math.sin(around), Math.sin(up)];
+}
+
+// {field, cut: "x", share, low, high, azimuth, elevation, theme, edges}, all may be missing; low and high are the ends of the colour scale, angles
+// are in degrees. Returns how many frames there are.
+export async function present(page, { field, cut, share, low, high, azimuth, elevation, theme, edges }) {
   const { state, stage, times } = page;
   if (!stage) throw new Error("this run has no frames to be drawn");
   if (field && !stage.fieldNames.includes(field)) throw new Error(`there is no field '${field}'; there are ${stage.fieldNames.join(", ")}`);
@@ -14,6 +21,8 @@ export async function present(page, { field, cut, share, theme, edges }) {
   stage.element.append(h("p.picture-line", h("span.picture-field", ""), stage.legend, page.caption));
   document.body.classList.add("bare");
   state.set({ field: field ?? state.field, cut: cut ? AXES.indexOf(cut) : state.cut, cutShare: share ?? state.cutShare, theme: theme ?? state.theme, edges: edges ?? state.edges });
+  if (low !== undefined) stage.range = { low, high };
+  if (azimuth !== undefined) stage.away = directionOf(azimuth, elevation);
   await stage.showField();
   stage.element.querySelector(".picture-field").textContent = stage.select.selectedOptions[0]?.textContent ?? "";
   stage.isSized = stage.isPlaced = false;

@@ -87,7 +87,7 @@ export class Stage {
       min: 0,
       max: 1000,
       value: 500,
-      "aria-label": "Place of the cut",
+      "aria-label": "Position of the cut",
       input: () => state.set({ cutShare: this.cutRange.valueAsNumber / 1000 }),
     });
     this.edges = h("input", { type: "checkbox", checked: true, change: () => state.set({ edges: this.edges.checked }) });
@@ -174,7 +174,7 @@ export class Stage {
 
   // From the front, a little from above, so near that all frames just fit.
   resetCamera() {
-    const away = new Vector3(0.6, -0.95, 0.42).normalize();
+    const away = new Vector3(...(this.away ?? [0.6, -0.95, 0.42])).normalize();
     const right = new Vector3().crossVectors(this.camera.up, away).normalize();
     const up = new Vector3().crossVectors(away, right);
     const slope = Math.tan((this.camera.fov * Math.PI) / 360);
@@ -251,7 +251,7 @@ export class Stage {
     const known = fields.filter(Boolean);
     if (known.length === 0) return;
     this.info = describe(known[0]);
-    this.scale = scaleOf(known, this.info);
+    this.scale = this.range && !this.info.isClass ? { ...this.range, isOpen: known.some((field) => field.high > this.range.high) } : scaleOf(known, this.info);
     this.fields = fields;
     this.paint();
   }
@@ -306,6 +306,7 @@ export class Stage {
     for (const button of this.cutButtons) button.setAttribute("aria-pressed", String(Number(button.dataset.axis) === cut));
     this.cutRange.disabled = cut < 0;
     this.cutRange.value = Math.round(1000 * cutShare);
+    this.cutRange.setAttribute("aria-valuetext", `${Math.round(100 * cutShare)} %`);
     const { low, high, origin } = this.world;
     const place = cut < 0 ? 0 : low[cut] + cutShare * (high[cut] - low[cut]) - origin[cut];
     this.cutSide = cut < 0 ? 0 : this.sideOf(cut);

@@ -457,6 +457,22 @@ const compareTests = {
     assert.deepEqual(await lines("audit"), ["geo", "clip32", "exact"]);
     assert.ok((await page.eval(`document.querySelectorAll("#plot-distance svg [aria-label=area] path").length`)) >= 1);
     assert.equal(await page.eval(`document.querySelectorAll("#phases .bar").length`), 3);
+    const hues = await page.eval(`[...document.querySelectorAll("#plot-audit .reading line")].map((one) => one.getAttribute("stroke"))`);
+    const clip = await page.eval(`document.querySelector("#plot-force .reading line").getAttribute("stroke")`);
+    assert.equal(new Set([...hues, clip]).size, 4, `${hues} and the reference's ${clip}`);
+  },
+
+  async "all plots have the same axis of time"(page) {
+    const extents = await page.eval("tetlap.plots.map((plot) => plot.x.domain.join())");
+    assert.ok(extents.length > 4);
+    assert.deepEqual([...new Set(extents)], ["0,0.06"]);
+  },
+
+  async "contacts stand together by bodies, in the order of the runs"(page) {
+    const rows = await page.eval(`[...document.querySelectorAll("#contacts tbody tr")].map((row) => [row.cells[0].textContent, row.cells[1].textContent])`);
+    const pairs = [...new Set(rows.map(([pair]) => pair))];
+    assert.deepEqual(rows, pairs.flatMap((pair) => ["clip", "geo", "clip32"].filter((run) => rows.some((row) => row[0] === pair && row[1] === run)).map((run) => [pair, run])));
+    assert.ok(rows.length > 2, String(rows));
   },
 
   async "one camera turns them all, by keys as well, and all has a name"(page) {
@@ -518,6 +534,12 @@ async function testLive(browser) {
     const run = spawn(tetlap, ["run", scene, "-q", "-o", folder, "-t", "1", "-s", "time.end=20", "-s", "output.frames=2000"], { stdio: ["ignore", "ignore", "inherit"] });
     await page.until("tetlap.times.length > 5 && !!tetlap.stage?.camera", 300);
     assert.equal(await word(), "Running");
+    const later = await browser.open(url, { width: 1280, height: 900 }); // opened while the run goes on: at its last frame
+    assert.ok(await later.eval("tetlap.state.time > 0 && tetlap.state.time === tetlap.times.at(-1)"));
+    await later.eval(`(tetlap.absent = 0, new MutationObserver(() => (tetlap.absent += !document.querySelector("main:not(.arriving) .live"))).observe(document.body, { childList: true, subtree: true }), window.first = tetlap, 0)`);
+    await later.until("window.first !== tetlap", 300); // a newer page: the bar was never away
+    assert.equal(await later.eval("window.first.absent"), 0);
+    await later.close();
     await page.eval("(tetlap.state.set({ cut: 1, theme: 'dark' }), tetlap.stage.controls.target.set(0.01, 0, 0), tetlap.stage.controls.update(), tetlap.before = tetlap.stage, 0)");
     const frames = await page.eval("tetlap.times.length");
     await page.until(`tetlap.times.length > ${frames} && tetlap.stage.views.length === 1`, 300);
@@ -547,9 +569,13 @@ async function testFailed(browser, runs) {
   const page = await browser.open(`file://${resolve(out, "failed.html")}`, { width: 1280, height: 900 });
   const figures = await page.eval(`[...document.querySelectorAll(".figures dd.failed")].map((one) => one.textContent)`);
   assert.deepEqual(figures, ["failed"]);
-  assert.match(await page.eval(`document.querySelector(".warning").textContent`), /: failed. at t = 0.1 s: it gave up/);
+  assert.match(await page.eval(`document.querySelector(".warning").textContent`), /: failed at t = 0.1 s: it gave up/);
   assert.deepEqual(page.problems, []);
   await page.close();
+  execFileSync(tetlap, ["report", "-q", failed, "-o", join(out, "failed-alone.html")]);
+  const alone = await browser.open(`file://${resolve(out, "failed-alone.html")}`, { width: 1280, height: 900 });
+  assert.ok(await alone.eval("tetlap.state.time === tetlap.times.at(-1) && tetlap.state.time > 0")); // it opens where it failed
+  await alone.close();
 }
 
 async function shoot(browser, url, name, view, script) {

@@ -100,6 +100,38 @@ START_TEST(every_option_of_every_help_is_in_the_manual) {
 }
 END_TEST
 
+static int columns_of(const char *from, const char *to) {
+  int count = 0;
+  for (; from < to; from++) count += ((unsigned char)*from & 0xC0) != 0x80; // not within a character of UTF-8
+  return count;
+}
+
+// Descriptions of options begin in column 29 or, behind a longer option, later; a list goes on behind blanks.
+static void check_layout(const AppCommand *command, const char *called) {
+  if (command->children) return;
+  output_for("%s %s --help", called);
+  bool is_in_list = false;
+  for (const char *line = text; *line; line += *line == '\n') {
+    const char *end = line + strcspn(line, "\n");
+    ck_assert_msg(columns_of(line, end) <= 79, "%s --help is too wide: %.*s", called, (int)(end - line),
+                  line);
+    ck_assert_msg(!is_in_list || line == end || *line == ' ', "%s --help: %.*s", called, (int)(end - line),
+                  line);
+    is_in_list = *line == ' ';
+    const char *gap = line + strspn(line, " ");
+    bool is_option = *gap == '-' && gap - line <= 6;
+    if (is_option && (gap = strstr(gap + 3, "  ")) && gap < end)
+      ck_assert_msg(columns_of(line, gap + strspn(gap, " ")) >= 29, "%s --help: %.*s", called,
+                    (int)(end - line), line);
+    line = end;
+  }
+}
+
+START_TEST(every_help_is_laid_out_in_columns) {
+  visit_all(&app_program_root, "tetlap", check_layout);
+}
+END_TEST
+
 // What bash offers behind the words that call a command: its options, or a group's children.
 static void check_bash(const AppCommand *command, const char *called) {
   static char options[MOST_OPTIONS][MOST_NAME];
@@ -209,6 +241,35 @@ START_TEST(a_wrong_word_is_told_with_its_place_and_the_nearest_right_call) {
 }
 END_TEST
 
+// What cannot be written, read or begun is named, with the code of its kind.
+START_TEST(a_command_that_fails_says_why) {
+  static const struct {
+    const char *words;
+    int code;
+    const char *named;
+  } failures[] = {
+      {"run " TETLAP_SOURCE_DIR "/examples/01_drop.yaml -o /tmp/tetlap_cli --capture /nowhere/x.h5", 74,
+       "/nowhere/x.h5"},
+      {"run " TETLAP_SOURCE_DIR "/examples/01_drop.yaml -o /proc/nowhere", 74, "/proc/nowhere"},
+      {"datagen -n 10 -o /nowhere/x.h5", 74, "/nowhere/x.h5"},
+      {"report /nowhere", 74, "/nowhere"},
+      {"view /nowhere", 74, "/nowhere"},
+      {"weights nowhere", 74, "'nowhere'"},
+      {"overlap " TETLAP_SOURCE_DIR "/README.md", 65, "README.md:"},
+      {"stress --only nowhere", 64, "'nowhere'"},
+  };
+  for (size_t k = 0; k < sizeof failures / sizeof *failures; k++) {
+    char command[1024], code[32];
+    snprintf(command, sizeof command, "%s %s 2>&1; echo code $?", TETLAP_PROGRAM, failures[k].words);
+    output_of(command, text);
+    snprintf(code, sizeof code, "code %d\n", failures[k].code);
+    ck_assert_msg(strstr(text, "error: ") && strstr(text, failures[k].named) && strstr(text, code), "%s: %s",
+                  failures[k].words, text);
+  }
+  output_of("rm -rf /tmp/tetlap_cli", text);
+}
+END_TEST
+
 // gmsh brings a hundred libraries along: they belong to the process that meshes.
 START_TEST(the_program_starts_without_gmsh) {
   output_of("LD_TRACE_LOADED_OBJECTS=1 " TETLAP_PROGRAM, text);
@@ -244,11 +305,13 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("cli");
   tcase_add_test(cases, every_option_of_every_help_is_in_the_manual);
+  tcase_add_test(cases, every_help_is_laid_out_in_columns);
   tcase_add_test(cases, bash_completes_every_option_of_every_help);
   tcase_add_test(cases, bash_completes_models_where_an_option_takes_them_and_nothing_for_numbers);
   tcase_add_test(cases, zsh_completes_every_option_of_every_help);
   tcase_add_test(cases, fish_completes_every_option_of_every_help);
   tcase_add_test(cases, a_wrong_word_is_told_with_its_place_and_the_nearest_right_call);
+  tcase_add_test(cases, a_command_that_fails_says_why);
   tcase_add_test(cases, the_program_starts_without_gmsh);
   tcase_add_test(cases, only_commands_with_threads_start_the_program_again);
   return suite_run("cli", cases, 60);

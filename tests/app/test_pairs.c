@@ -480,6 +480,13 @@ START_TEST(eval_takes_an_imported_set_and_right_labels_are_not_doubted) {
   ck_assert_int_eq(run("eval clip rows.h5 --json", text), 0);
   ck_assert_ptr_nonnull(strstr(text, "\"mae\""));
   ck_assert_int_eq(run("eval geo rows.h5", text), 0);
+  ck_assert_int_eq(run("eval hybrid rows.h5 --json --doubt 0.01", text), 0);
+  ck_assert_ptr_nonnull(strstr(text, "\"doubt\": 0.01"));
+  ck_assert_ptr_nonnull(strstr(text, "\"bound_coverage\": 0."));
+  ck_assert_ptr_nonnull(strstr(text, "\"handed_on_in_part\": 0."));
+  ck_assert_int_eq(run("eval hybrid rows.h5", text), 0);
+  ck_assert_ptr_nonnull(strstr(text, "error within its bound"));
+  ck_assert_ptr_nonnull(strstr(text, "handed on in part"));
   expect_volumes(scratch("rows.h5"), volumes, 0);
   rows[4][30] += 1e-3;
   put_npy("rows.npy", "<f8", "(300, 49)", rows, sizeof rows);

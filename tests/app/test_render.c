@@ -62,6 +62,10 @@ START_TEST(what_cannot_be_drawn_is_a_usage_error) {
   ck_assert_int_eq(render("-o x.png --cut w"), 64);
   ck_assert_int_eq(render("-o x.png --cut x:2"), 64);
   ck_assert_int_eq(render("-o x.png --theme blue"), 64);
+  ck_assert_int_eq(render("-o x.png --range 3"), 64);
+  ck_assert_int_eq(render("-o x.png --range 8,0"), 64);
+  ck_assert_int_eq(render("-o x.png --view 10,95"), 64);
+  ck_assert(says("between -90 and 90"));
 }
 END_TEST
 
@@ -146,9 +150,9 @@ START_TEST(a_browser_that_fails_leaves_no_descriptor_open) {
 }
 END_TEST
 
-// Ctrl-C reaches the whole group of the terminal: here this program and what it started.
+// Ctrl-C reaches the whole group of the terminal, and does not wait for a browser that answers nothing.
 START_TEST(ctrl_c_ends_it_as_interrupted) {
-  char *kept = put_program("chromium", "touch \"$0.began\"; exec sleep 100"), began[128], directory[128],
+  char *kept = put_program("chromium", "touch \"$0.began\"; exec sleep 1000"), began[128], directory[128],
        picture[128];
   int state;
   snprintf(began, sizeof began, "%s/chromium.began", folder);
@@ -251,6 +255,30 @@ START_TEST(a_picture_has_the_size_that_was_asked_for) {
 }
 END_TEST
 
+// The bytes of a picture drawn with these options, owned.
+static char *picture(const char *more, size_t *size) {
+  char options[256], path[128], *bytes;
+  snprintf(path, sizeof path, "%s/y.png", folder);
+  snprintf(options, sizeof options, "-q -o %s --frame 1 --size 320x200 --field displacement %s", path, more);
+  ck_assert_int_eq(render(options), 0);
+  ck_assert_ok(file_read(path, &bytes, size));
+  return bytes;
+}
+
+START_TEST(a_picture_shows_the_range_and_the_view_that_were_asked_for) {
+  if (!has_program("chromium", "no picture can be drawn")) return;
+  size_t size, other_size;
+  char *plain = picture("", &size);
+  const char *const wishes[] = {"--range 0,1", "--view 20,60"};
+  for (int k = 0; k < 2; k++) {
+    char *other = picture(wishes[k], &other_size);
+    ck_assert_msg(size != other_size || memcmp(plain, other, size) != 0, "%s changed nothing", wishes[k]);
+    memory_free(other);
+  }
+  memory_free(plain);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("render");
   tcase_add_checked_fixture(cases, make_run, remove_folder);
@@ -262,5 +290,6 @@ int main(void) {
   tcase_add_test(cases, a_movie_appears_whole_or_not_at_all);
   tcase_add_test(cases, a_movie_may_have_any_name);
   tcase_add_test(cases, a_picture_has_the_size_that_was_asked_for);
+  tcase_add_test(cases, a_picture_shows_the_range_and_the_view_that_were_asked_for);
   return suite_run("render", cases, 60);
 }

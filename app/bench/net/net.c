@@ -37,10 +37,10 @@ typedef struct Options {
 enum { KEY_NO_TORCH = 256 };
 
 static const struct argp_option option_table[] = {
-    {"net", 'm', "NAME,…", 0, "Networks, by shipped name or weights file (default: tpn,geo,geo-small)", 1},
-    {"quantity", 'Q', "NAME,…", 0, "V, V+grad: outputs, and their derivative by the inputs (default: both)",
+    {"net", 'm', "NAME,...", 0, "Networks, by shipped name or weights file (default: tpn,geo,geo-small)", 1},
+    {"quantity", 'Q', "NAME,...", 0, "V, V+grad: outputs, and their derivative by the inputs (default: both)",
      1},
-    {"batch", 'b', "N,…", 0, "Samples a call (default: 2048, the paper's)", 1},
+    {"batch", 'b', "N,...", 0, "Samples a call (default: 2048, the paper's)", 1},
     {"no-torch", KEY_NO_TORCH, NULL, 0, "Leave PyTorch out", 1},
     {0},
 };

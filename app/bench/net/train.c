@@ -35,7 +35,7 @@ typedef struct Options {
 enum { KEY_PAIRS = 256, KEY_NO_TORCH };
 
 static const struct argp_option option_table[] = {
-    {"batch", 'b', "N,…", 0, "Samples a step (default: as the configuration says)", 1},
+    {"batch", 'b', "N,...", 0, "Samples a step (default: as the configuration says)", 1},
     {"pairs", KEY_PAIRS, "N", 0, "Pairs of each source that are made at most (default: 20000)", 1},
     {"set", 's', "KEY=VALUE", 0, "Replace a value of the configurations; may be repeated", 1},
     {"no-torch", KEY_NO_TORCH, NULL, 0, "Leave PyTorch out", 1},

@@ -36,12 +36,13 @@ typedef struct Options {
 enum { KEY_REFERENCE = 256, KEY_REFERENCE_TOLERANCE, KEY_WALL };
 
 static const struct argp_option option_table[] = {
-    {"overlap", 'm', "NAME,…", 0,
+    {"overlap", 'm', "NAME,...", 0,
      "Overlap models, by name or weights file; the first is what the summary holds the others against "
      "(default: clip,geo,geo-small)",
      1},
-    {"tolerance", 'e', "SHARE,…", 0, "Tolerances of the time integration (default: 1e-3,3e-4,1e-4,3e-5)", 1},
-    {"level", 'l', "FACTOR,…", 0, "Mesh levels: edges are divided by it (default: 1)", 1},
+    {"tolerance", 'e', "SHARE,...", 0, "Tolerances of the time integration (default: 1e-3,3e-4,1e-4,3e-5)",
+     1},
+    {"level", 'l', "FACTOR,...", 0, "Mesh levels: edges are divided by it (default: 1)", 1},
     {"reference", KEY_REFERENCE, "NAME", 0, "Overlap model of the reference (default: clip)", 1},
     {"reference-tolerance", KEY_REFERENCE_TOLERANCE, "SHARE", 0, "Tolerance of the reference (default: 1e-6)",
      1},

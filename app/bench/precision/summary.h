@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether an overlap model saves steps: each run is held against the run of the first model on the same
-// scene, mesh and tolerance, and the ratios are told with their spread.
+// Whether an overlap model saves steps: each run is compared with that of the first model on the same scene,
+// mesh and tolerance; the ratios and their spread.
 #ifndef TETLAP_APP_BENCH_PRECISION_SUMMARY_H
 #define TETLAP_APP_BENCH_PRECISION_SUMMARY_H
 

@@ -18,7 +18,7 @@ typedef struct Options {
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"solver", 's', "NAME,…", 0, "Solvers to measure (default: all)", 1},
+    {"solver", 's', "NAME,...", 0, "Solvers to measure (default: all)", 1},
     {"nodes", 'n', "N", 0, "Vertices of the beam (default: 5000)", 1},
     {"slenderness", 'l', "RATIO", 0, "Length over thickness (default: 5)", 1},
     {"steps", 'k', "N", 0, "Steps of a run (default: 20)", 1},

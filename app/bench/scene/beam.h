@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap bench beam`: the same run of a beam with each linear solver, whole: forces, assembly,
-// factorisations, solutions, and all that the integrator does between them, up to a number of steps. A row's
+// `tetlap bench beam`: the same whole run of a beam with each linear solver: forces, assembly,
+// factorisations, solutions, and the integrator's own work, up to a number of steps. A row's
 // ratio is its wall time over that of the first row.
 #ifndef TETLAP_APP_BENCH_BEAM_H
 #define TETLAP_APP_BENCH_BEAM_H

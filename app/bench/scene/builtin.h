@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scenes that benches bring along, so that they need no file.
+// Scenes of the benches that need no file.
 #ifndef TETLAP_APP_BENCH_BUILTIN_H
 #define TETLAP_APP_BENCH_BUILTIN_H
 

@@ -19,8 +19,8 @@ typedef struct Options {
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"stiffness", 'k', "PA,…", 0, "Contact stiffnesses (default: 1e5,1e6,1e7,1e8,1e9)", 1},
-    {"tolerance", 'e', "SHARE,…", 0, "Tolerances of the time integration (default: 1e-4)", 1},
+    {"stiffness", 'k', "PA,...", 0, "Contact stiffnesses (default: 1e5,1e6,1e7,1e8,1e9)", 1},
+    {"tolerance", 'e', "SHARE,...", 0, "Tolerances of the time integration (default: 1e-4)", 1},
     {"scene", 's', "FILE", 0, "Take this scene (default: a block falls flat onto the ground)", 1},
     {0},
 };

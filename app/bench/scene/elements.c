@@ -49,6 +49,7 @@ typedef struct Block {
   FemSceneDef scene;
   FemModel model;
   FemPacks packs;
+  FemElement *elements; // one by one, as many as there are tetrahedra
   double *positions, *velocities;
 } Block;
 
@@ -84,9 +85,11 @@ static Status block_create(Block *block, int kind) {
   TRY(fem_model_create(&block->model, &block->scene));
   TRY(fem_packs_create(&block->packs, &block->model, kind == 1, NULL));
   int count = 3 * block->model.vertex_count;
+  block->elements = memory_zeroed((size_t)block->model.tet_count, sizeof *block->elements);
   block->positions = memory_zeroed((size_t)count, sizeof(double));
   block->velocities = memory_zeroed((size_t)count, sizeof(double));
-  if (!block->positions || !block->velocities) return status_no_memory("the block");
+  if (!block->elements || !block->positions || !block->velocities) return status_no_memory("the block");
+  for (int e = 0; e < block->model.tet_count; e++) block->elements[e] = fem_model_element(&block->model, e);
   Random random = random_seeded(1, 0);
   for (int k = 0; k < count; k++) {
     block->positions[k] = block->model.rest[k] + amount * random_between(&random, -1, 1);
@@ -96,7 +99,7 @@ static Status block_create(Block *block, int kind) {
 }
 
 static void block_destroy(Block *block) {
-  memory_free(block->positions), memory_free(block->velocities);
+  memory_free(block->elements), memory_free(block->positions), memory_free(block->velocities);
   fem_packs_destroy(&block->packs);
   fem_model_destroy(&block->model);
   fem_scene_destroy(&block->scene);
@@ -113,7 +116,7 @@ static void gather(const Block *block, const int *nodes, int count, double *x, d
 static void pass_linear(const Contestant *contestant, const FemMaterial *material) {
   const FemModel *model = &contestant->block->model;
   for (int e = 0; e < model->tet_count; e++) {
-    const FemElement *element = &model->elements[e];
+    const FemElement *element = &contestant->block->elements[e];
     double x[12], v[12], own[144];
     gather(contestant->block, model->tets[e], 4, x, v);
     switch (contestant->what) {

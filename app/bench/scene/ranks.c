@@ -26,7 +26,7 @@ typedef struct Options {
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"ranks", 'n', "N,…", 0, "Numbers of processes (default: 1,2)", 1},
+    {"ranks", 'n', "N,...", 0, "Numbers of processes (default: 1,2)", 1},
     {0},
 };
 

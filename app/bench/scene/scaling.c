@@ -36,9 +36,9 @@ typedef struct Options {
 enum { KEY_MEMORY = 256, KEY_SECONDS, KEY_SOLVER, KEY_SCENE };
 
 static const struct argp_option option_table[] = {
-    {"model", 'm', "NAME,…", 0, "Overlap models (default: clip,geo-small,geo)", 1},
-    {"pairs", 'p', "N,…", 0, "Pairs a call, V + ∇V (default: 1e3,1e4,1e5,1e6; 0: none)", 1},
-    {"nodes", 'n', "N,…", 0, "Vertices of the scene (default: 1e3,3e3,1e4; 0: none)", 1},
+    {"model", 'm', "NAME,...", 0, "Overlap models (default: clip,geo-small,geo)", 1},
+    {"pairs", 'p', "N,...", 0, "Pairs a call, V + ∇V (default: 1e3,1e4,1e5,1e6; 0: none)", 1},
+    {"nodes", 'n', "N,...", 0, "Vertices of the scene (default: 1e3,3e3,1e4; 0: none)", 1},
     {"scene", KEY_SCENE, "NAME", 0, "blocks (the default), pressed, ball, press or floating (static)", 1},
     {"steps", 'k', "N", 0, "Steps of each run (default: 10)", 1},
     {"solver", KEY_SOLVER, "NAME", 0, "Linear solver of the runs (default: auto)", 1},

@@ -25,7 +25,7 @@ typedef struct Options {
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"overlap", 'm', "NAME,…", 0, "Take these overlap models in turns (default: the scene's)", 1},
+    {"overlap", 'm', "NAME,...", 0, "Take these overlap models in turns (default: the scene's)", 1},
     {"set", 's', "KEY=VALUE", 0,
      "Replace a value of the scenes, as in contact.stiffness=1e6; may be repeated", 1},
     {0},

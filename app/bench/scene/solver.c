@@ -31,8 +31,8 @@ typedef struct Options {
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"solver", 's', "NAME,…", 0, "Solvers to measure (default: all; klu up to 6000 vertices)", 1},
-    {"nodes", 'n', "N,…", 0, "Vertices of the beams (default: 5000,20000)", 1},
+    {"solver", 's', "NAME,...", 0, "Solvers to measure (default: all; klu up to 6000 vertices)", 1},
+    {"nodes", 'n', "N,...", 0, "Vertices of the beams (default: 5000,20000)", 1},
     {"slenderness", 'l', "RATIO", 0, "Length over thickness (default: 5)", 1},
     {"step", 'h', "SECONDS", 0, "Time step that the matrix belongs to (default: 0.005)", 1},
     {0},

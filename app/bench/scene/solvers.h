@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The linear solvers that benches set against each other.
+// The linear solvers that benches compare.
 #ifndef TETLAP_APP_BENCH_SCENE_SOLVERS_H
 #define TETLAP_APP_BENCH_SCENE_SOLVERS_H
 

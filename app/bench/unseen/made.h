@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies of a maker that training knows nothing of: boxes that gmsh fills.
+// Bodies from a mesh generator that is not in the training data: boxes filled by gmsh.
 #ifndef TETLAP_APP_BENCH_UNSEEN_MADE_H
 #define TETLAP_APP_BENCH_UNSEEN_MADE_H
 

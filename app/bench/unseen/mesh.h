@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two bodies of tetrahedra as no training makes them: other splits of cells, gradings, slivers, large strain,
-// thin parts, edges. The lower one is below z = 0 and stays; the upper one, whose lowest vertex is at z = 0,
-// is moved by whoever asks.
+// Two bodies of tetrahedra unlike those in the training data: other splits of cells, gradings, slivers, large
+// strain, thin parts, edges. The lower one is below z = 0 and fixed; the caller moves the upper one, whose
+// lowest vertex is at z = 0.
 #ifndef TETLAP_APP_BENCH_UNSEEN_MESH_H
 #define TETLAP_APP_BENCH_UNSEEN_MESH_H
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An overlap model along a closed path of two bodies that stay in contact, beside clipping at the same
-// places.
+// An overlap model along a closed path of two bodies in contact, compared with clipping at the same places.
 #ifndef TETLAP_APP_BENCH_UNSEEN_PATH_H
 #define TETLAP_APP_BENCH_UNSEEN_PATH_H
 

@@ -23,8 +23,8 @@ typedef struct Options {
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"model", 'm', "NAME,…", 0, "Overlap models or weights files to measure (default: geo,geo-small)", 1},
-    {"case", 'k', "NAME,…", 0,
+    {"model", 'm', "NAME,...", 0, "Overlap models or weights files to measure (default: geo,geo-small)", 1},
+    {"case", 'k', "NAME,...", 0,
      "Cases: jittered, aligned, five, graded, slivers, strained, fine, thin, edge, made, adapted "
      "(default: all)",
      1},

@@ -17,7 +17,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (*shell == APP_CLI_SHELL_COUNT) argp_error(state, "'%s' is none of: bash, zsh, fish", text);
     return 0;
   case ARGP_KEY_NO_ARGS:
-    argp_error(state, "for which shell? there are: bash, zsh, fish");
+    argp_error(state, "name a shell: bash, zsh or fish");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

@@ -37,7 +37,7 @@ static const struct argp_option option_table[] = {
     {"shard", KEY_SHARD, "I/N", 0, "Make part I of N only, I from 1; `tetlap dataset merge` joins them", 0},
     {"gradient", KEY_GRADIENT, "MODEL", 0, "Also the 24 derivatives of V: none (default), clip, exact", 0},
     {"label", KEY_LABEL, "MODEL", 0, "What V is computed with: exact (default), clip", 0},
-    {"mix", KEY_MIX, "KIND=SHARE,…", 0, "Shares of the kinds, instead of the law's", 0},
+    {"mix", KEY_MIX, "KIND=SHARE,...", 0, "Shares of the kinds, instead of the law's", 0},
     {"volume", KEY_VOLUME, "LAW", 0,
      "Law of the volumetric pairs' V: log-uniform:LOW:HIGH, uniform:LOW:HIGH, natural", 0},
     {"swap", KEY_SWAP, "SHARE", 0, "Exchange the two tetrahedra in this share of the pairs (default: 0)", 0},
@@ -116,7 +116,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     argp_error(state, "'%s' is one argument too many: the file to write is given with -o", text);
     return 0;
   case ARGP_KEY_END:
-    if (!options->output && !options->lists) argp_error(state, "write where? Give -o FILE");
+    if (!options->output && !options->lists) argp_error(state, "name the file to write, as in -o pairs.h5");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

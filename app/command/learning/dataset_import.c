@@ -41,10 +41,10 @@ static error_t parse_argument(int key, char *text, struct argp_state *state) {
     options->file = text;
     return 0;
   case ARGP_KEY_NO_ARGS:
-    argp_error(state, "which pairs? as in: tetlap dataset import pairs.csv -o pairs.h5");
+    argp_error(state, "name a file of pairs, as in pairs.csv, or - for standard input");
     return 0;
   case ARGP_KEY_END:
-    if (!options->import.output) argp_error(state, "write where? give -o FILE.h5");
+    if (!options->import.output) argp_error(state, "name the file to write, as in -o pairs.h5");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

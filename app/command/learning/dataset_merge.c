@@ -39,7 +39,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     argp_error(state, "which files? as in: tetlap dataset merge part-*.h5 -o all.h5");
     return 0;
   case ARGP_KEY_END:
-    if (!options->output) argp_error(state, "write where? give -o FILE");
+    if (!options->output) argp_error(state, "name the file to write, as in -o pairs.h5");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

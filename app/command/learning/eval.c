@@ -15,13 +15,14 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-enum { KEY_MIX = 256, KEY_VOLUME, KEY_PATHS, BLOCK = 16384 };
+enum { KEY_MIX = 256, KEY_VOLUME, KEY_PATHS, KEY_DOUBT, BLOCK = 16384 };
 
 typedef struct Options {
   const char *model;
   AppSourceDef source;
-  int threads; // 0: all
-  int paths;   // to look for jumps along; 0: none
+  int threads;  // 0: all
+  int paths;    // to look for jumps along; 0: none
+  double doubt; // of a hybrid; 0: its own
   bool is_json, is_quiet;
 } Options;
 
@@ -29,9 +30,13 @@ static const struct argp_option option_table[] = {
     {"law", 'l', "NAME", 0, "Make the pairs by this law, as `tetlap datagen` does, instead of a FILE", 0},
     {"count", 'n', "N", 0, "Pairs (default: all of the file; the law's)", 0},
     {"seed", 's', "S", 0, "The law's seed (default: 1)", 0},
-    {"mix", KEY_MIX, "KIND=SHARE,…", 0, "Shares of the kinds, instead of the law's", 0},
+    {"mix", KEY_MIX, "KIND=SHARE,...", 0, "Shares of the kinds, instead of the law's", 0},
     {"volume", KEY_VOLUME, "LAW", 0, "Law of the volumetric pairs' V, instead of the law's", 0},
     {"paths", KEY_PATHS, "N", 0, "Look for jumps of V and of its gradient along N paths; needs no data", 0},
+    {"doubt", KEY_DOUBT, "T", 0,
+     "Of hybrid: the bound of V's relative error from which clipping begins, as contact.net.doubt "
+     "(default: 0.005)",
+     0},
     {"threads", 't', "N", 0, "Threads (default: all); the result does not depend on it", 0},
     {"json", 'j', NULL, 0, "Print the result as JSON", 0},
     {"quiet", 'q', NULL, 0, "Say errors only", 0},
@@ -67,6 +72,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case KEY_PATHS:
     options->paths = (int)app_argument_integer(state, "paths", text, 1, INT_MAX);
+    return 0;
+  case KEY_DOUBT:
+    options->doubt = app_argument_positive(state, "doubt", text);
     return 0;
   case 't':
     options->threads = app_argument_threads(state, text);
@@ -129,6 +137,7 @@ static Status record(const Options *options, const Findings *findings) {
   if (!record) return status_no_memory("the result");
   record_text(record, "model", options->model);
   record_text(record, "program", app_versions_program());
+  if (options->doubt > 0) record_number(record, "doubt", options->doubt);
   if (findings->has_evaluation) {
     record_text(record, "data", findings->data);
     app_evaluation_record(&findings->evaluation, record);
@@ -174,8 +183,15 @@ static Status evaluate_all(const Options *options, const OverlapModel *model) {
 
 static Status open_and_evaluate(const Options *options) {
   OverlapModel model;
-  TRY(app_evaluation_model_open(&model, options->model));
-  Status status = evaluate_all(options, &model);
+  OverlapOptions wanted = overlap_options_default();
+  if (options->doubt > 0) wanted.doubt = options->doubt;
+  TRY(app_evaluation_model_open_with(&model, options->model, options->doubt > 0 ? &wanted : NULL));
+  Status status = options->doubt > 0 && !app_evaluation_bounds_are_told(&model)
+                      ? status_fail(STATUS_USAGE,
+                                    "--doubt: the model '%s' tells no bound of its error; hybrid and "
+                                    "hybrid=NETWORK of a geo do",
+                                    options->model)
+                      : evaluate_all(options, &model);
   overlap_model_destroy(&model);
   return status;
 }

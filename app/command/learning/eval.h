@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap eval`: how well an overlap model answers a data set.
+// `tetlap eval`: the accuracy of an overlap model on a data set.
 #ifndef TETLAP_APP_COMMAND_EVAL_H
 #define TETLAP_APP_COMMAND_EVAL_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap weights`: what a weights file says of itself.
+// `tetlap weights`: the metadata of a weights file.
 #ifndef TETLAP_APP_COMMAND_WEIGHTS_H
 #define TETLAP_APP_COMMAND_WEIGHTS_H
 

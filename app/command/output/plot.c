@@ -23,7 +23,7 @@ typedef struct Options {
 static const struct argp_option option_table[] = {
     {"output", 'o', "FILE", 0,
      "The picture: FILE.svg, FILE.pdf or FILE.png; its script is FILE with .gp appended", 0},
-    {"quantity", KEY_QUANTITY, "NAME,…", 0, "Of a frontier: only V, V+grad or force", 0},
+    {"quantity", KEY_QUANTITY, "NAME,...", 0, "Of a frontier: only V, V+grad or force", 0},
     {"quiet", 'q', NULL, 0, "Say errors only", 0},
     {0},
 };

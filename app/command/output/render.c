@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/output/render.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,13 +13,25 @@
 #include "app/report/collect.h"
 #include "base/log.h"
 
-enum { KEY_FRAME = 256, KEY_MOVIE, KEY_FIELD, KEY_CUT, KEY_THEME, KEY_SIZE, KEY_RATE, KEY_EDGES };
+enum {
+  KEY_FRAME = 256,
+  KEY_MOVIE,
+  KEY_FIELD,
+  KEY_CUT,
+  KEY_THEME,
+  KEY_SIZE,
+  KEY_RATE,
+  KEY_EDGES,
+  KEY_RANGE,
+  KEY_VIEW
+};
 enum { LEAST_SIZE = 64, MOST_SIZE = 8192, MOST_FRAME = 10000000 };
 
 typedef struct Options {
   const char *directories[APP_REPORT_MAX_RUNS];
   int directory_count;
   AppRenderOptions render;
+  double range[2], view[2];
   bool is_quiet;
 } Options;
 
@@ -29,6 +42,10 @@ static const struct argp_option option_table[] = {
     {"rate", KEY_RATE, "N", 0, "Frames a second of the movie (default: 20)", 0},
     {"size", KEY_SIZE, "WxH", 0, "Pixels (default: 1280x720)", 0},
     {"field", KEY_FIELD, "NAME", 0, "Colour by this array of the frames, such as von_mises or body", 0},
+    {"range", KEY_RANGE, "LOW,HIGH", 0, "Ends of the colour scale (default: from the values of all frames)",
+     0},
+    {"view", KEY_VIEW, "AZIMUTH,ELEVATION", 0,
+     "Where the camera stands, in degrees: about z from x, and above the ground (default: -58,20)", 0},
     {"cut", KEY_CUT, "AXIS[:PLACE]", 0,
      "Cut open along x, y or z, at 0 … 1 of the bodies' extent (default: .5)", 0},
     {"theme", KEY_THEME, "light|dark", 0, "Colours (default: light)", 0},
@@ -57,6 +74,16 @@ static void read_cut(struct argp_state *state, char *text, AppRenderOptions *ren
   render->cut = text;
 }
 
+// "A,B", each from `least` to `most`.
+static const double *read_two(struct argp_state *state, const char *option, char *text, const char *example,
+                              double least, double most, double two[2]) {
+  const char *words[2];
+  if (app_argument_list(state, option, text, example, 2, words) != 2)
+    argp_error(state, "--%s needs two numbers, as in %s", option, example);
+  for (int k = 0; k < 2; k++) two[k] = app_argument_number(state, option, words[k], least, most);
+  return two;
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   AppRenderOptions *render = &options->render;
@@ -83,6 +110,17 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case KEY_CUT:
     read_cut(state, text, render);
+    return 0;
+  case KEY_RANGE:
+    render->range = read_two(state, "range", text, "0,8", -1e300, 1e300, options->range);
+    if (!(render->range[0] < render->range[1]))
+      argp_error(state, "--range is %g,%g; the second number must be larger", render->range[0],
+                 render->range[1]);
+    return 0;
+  case KEY_VIEW:
+    render->view = read_two(state, "view", text, "-58,20", -360, 360, options->view);
+    if (!(fabs(render->view[1]) < 90))
+      argp_error(state, "--view has the elevation %g; give one between -90 and 90 degrees", render->view[1]);
     return 0;
   case KEY_THEME:
     if (strcmp(text, "light") != 0 && strcmp(text, "dark") != 0)

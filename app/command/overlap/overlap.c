@@ -56,7 +56,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->file = text;
     return 0;
   case ARGP_KEY_NO_ARGS:
-    argp_error(state, "which pairs? give a file, or - for standard input, as in: tetlap overlap pairs.csv");
+    argp_error(state, "name a file of pairs, as in pairs.csv, or - for standard input");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

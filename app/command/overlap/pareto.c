@@ -35,12 +35,12 @@ enum { KEY_SWEEP = 256, KEY_SET, KEY_COUNT, KEY_BATCH, KEY_WALL, KEY_ROUNDS, KEY
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Write pareto.json, pareto.csv and pictures here (default: out/pareto)", 1},
-    {"model", 'm', "NAME,…", 0, "Models, by name or weights file (default: all that there are)", 1},
+    {"model", 'm', "NAME,...", 0, "Models, by name or weights file (default: all that there are)", 1},
     {"sweep", KEY_SWEEP, "DIR", 0,
      "Also the networks of this sweep, as in examples/train/sweep; what is not in DIR/weights of the output "
      "is trained first",
      1},
-    {"pairs", KEY_SET, "NAME,…", 0, "Sets of pairs: near, uniform (default: both)", 1},
+    {"pairs", KEY_SET, "NAME,...", 0, "Sets of pairs: near, uniform (default: both)", 1},
     {"count", 'n', "N", 0, "Pairs that errors are taken over (default: 20000; slow models fewer)", 1},
     {"batch", 'b', "N", 0, "Pairs a call (default: 2048, the paper's)", 1},
     {"device", 'D', "NAME", 0,

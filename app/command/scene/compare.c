@@ -31,12 +31,12 @@ typedef struct CompareOptions {
 enum { KEY_REFERENCE = 256, KEY_AUDIT, KEY_AUDIT_ONLY, KEY_WALL, KEY_RANKS };
 
 static const struct argp_option option_table[] = {
-    {"overlap", 'm', "NAME,…", 0, "The overlap models to compare", 1},
+    {"overlap", 'm', "NAME,...", 0, "The overlap models to compare", 1},
     {"reference", KEY_REFERENCE, "NAME", 0,
      "The model that the others are compared with (default: the first)", 1},
     {"audit", KEY_AUDIT, "K", 0,
      "Evaluate all models in every K-th step in contact of the reference (default 10; 0: never)", 1},
-    {"audit-only", KEY_AUDIT_ONLY, "NAME,…", 0,
+    {"audit-only", KEY_AUDIT_ONLY, "NAME,...", 0,
      "Models that take part in the audit but get no run of their own", 1},
     {"wall", KEY_WALL, "SECONDS", 0, "Stop a model's run after this wall time (default: never)", 1},
     {"ranks", KEY_RANKS, "N", 0, "Share each run among N processes of this machine (tetlap-mpi)", 1},

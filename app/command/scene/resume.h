@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap resume`: goes on with a run from its last checkpoint.
+// `tetlap resume`: continues a run from its last checkpoint.
 #ifndef TETLAP_APP_COMMAND_RESUME_H
 #define TETLAP_APP_COMMAND_RESUME_H
 

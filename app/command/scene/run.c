@@ -167,8 +167,13 @@ static Status observe(void *self, const FemRunProgress *progress) {
 static Status run_captured(const AppRunOptions *options, const AppJob *job, const char *origin,
                            FemRunResult *result) {
   DatagenCapture capture = {0};
-  if (options->capture)
-    TRY(datagen_capture_begin(&capture, options->capture, app_versions_program(), DATAGEN_LABEL_EXACT));
+  Status begun = options->capture ? datagen_capture_begin(&capture, options->capture, app_versions_program(),
+                                                          DATAGEN_LABEL_EXACT)
+                                  : STATUS_OK;
+  if (begun) {
+    log_error("%s", status_message());
+    return begun;
+  }
   Observer observer = {
       .progress = {.began_s = clock_wall_s(), .label = "", .is_json = options->job.is_progress_json},
       .capture = options->capture ? &capture : NULL,

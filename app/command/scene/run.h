@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tetlap run SCENE`: runs a scene and writes what a person can open.
+// `tetlap run SCENE`: runs a scene and writes its results.
 #ifndef TETLAP_APP_COMMAND_RUN_H
 #define TETLAP_APP_COMMAND_RUN_H
 

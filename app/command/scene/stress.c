@@ -22,7 +22,7 @@ typedef struct Options {
 
 static const struct argp_option option_table[] = {
     {"only", KEY_ONLY, "NAME", 0, "Only cases with NAME in their name", 0},
-    {"overlap", 'm', "NAME,…", 0,
+    {"overlap", 'm', "NAME,...", 0,
      "Only these overlap models; any: scenes in which none takes part (default: all; with --quick clip and "
      "geo)",
      0},

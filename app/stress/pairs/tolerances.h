@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How exact each overlap model is on hard pairs, as measured over 100 members a class: what `tetlap stress`
-// accepts of it beyond the standard of double precision.
+// The accuracy of each overlap model on hard pairs, measured over 100 members a class: what `tetlap stress`
+// accepts beyond the standard of double precision.
 #ifndef TETLAP_APP_STRESS_TOLERANCES_H
 #define TETLAP_APP_STRESS_TOLERANCES_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What makes each class of hard pairs hard, proven of every member: that the case did occur.
+// The property that makes a class of pairs hard, proven for every member, so that the case did occur.
 #ifndef TETLAP_APP_STRESS_TRAITS_H
 #define TETLAP_APP_STRESS_TRAITS_H
 

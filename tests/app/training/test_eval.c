@@ -292,6 +292,36 @@ START_TEST(shipped_weights_do_not_jump) {
 }
 END_TEST
 
+// The bound is the network's, whatever is asked of it; what is handed on is clipping's, without error.
+START_TEST(a_smaller_doubt_hands_more_on_and_errs_less) {
+  static const double doubts[] = {1e-9, 0.005, 0.01, 1e9};
+  enum { COUNT = 3000, DOUBTS = 4 };
+  DatagenPairs pairs;
+  AppEvaluation found[DOUBTS];
+  load("scene", NULL, COUNT, &pairs);
+  for (int k = 0; k < DOUBTS; k++) {
+    OverlapModel model;
+    OverlapOptions options = overlap_options_default();
+    options.doubt = doubts[k];
+    ck_assert_ok(app_evaluation_model_open_with(&model, "hybrid", &options));
+    ck_assert(app_evaluation_bounds_are_told(&model));
+    found[k] = evaluate(&model, &pairs, COUNT);
+    overlap_model_destroy(&model);
+    ck_assert_int_gt(found[k].inside, COUNT / 2);
+    ck_assert_near(found[k].bounds.coverage, 0.95, 0.015);
+    ck_assert_double_eq(found[k].bounds.width_median, found[0].bounds.width_median);
+    ck_assert_double_le(found[k].handed_on * (double)found[k].inside, (double)found[k].fallbacks + 1e-9);
+    ck_assert(k == 0 || found[k].handed_on < found[k - 1].handed_on);
+    ck_assert(k == 0 || found[k].volume_error_sum > found[k - 1].volume_error_sum);
+  }
+  ck_assert_double_eq(found[0].handed_on, 1);
+  ck_assert(found[0].volume_error_sum <= 1e-9);
+  ck_assert(found[1].handed_on_in_part > 0.1 && found[1].handed_on > 0.2 && found[1].handed_on < 0.6);
+  ck_assert(found[3].handed_on < 0.05);
+  datagen_pairs_destroy(&pairs);
+}
+END_TEST
+
 START_TEST(unknown_models_are_named) {
   OverlapModel model;
   ck_assert(app_evaluation_model_open(&model, "clap") != STATUS_OK);
@@ -315,6 +345,7 @@ int main(void) {
   tcase_add_test(test_case, shipped_weights_keep_their_promise);
   tcase_add_test(test_case, jumps_along_paths_are_found_and_measured);
   tcase_add_test(test_case, shipped_weights_do_not_jump);
+  tcase_add_test(test_case, a_smaller_doubt_hands_more_on_and_errs_less);
   tcase_add_test(test_case, unknown_models_are_named);
   return suite_run("eval", test_case, 30);
 }
