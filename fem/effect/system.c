@@ -392,6 +392,23 @@ Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
                               : add_energies(system, &state, PART_ALL, energy);
 }
 
+static Status add_damping(FemSystem *system, const FemState *state, FemEnergy *energy) {
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops == &fem_effect_damping)
+      return fem_effect_damping.add_energy(system->effects[i].self, state, energy);
+  return STATUS_OK;
+}
+
+Status fem_system_damping_power(FemSystem *system, double time, double *power) {
+  FemState state = state_of(system, time);
+  FemEnergy own = {0};
+  Status status = add_damping(system, &state, &own);
+  double sums[2] = {own.dissipated_power, status != STATUS_OK};
+  if (system->model->share) ranks()->sum(sums, 2);
+  *power = sums[0];
+  return sums[1] > 0 ? ranks()->worst(status) : STATUS_OK;
+}
+
 static bool has_gap(const FemEffect *effect) {
   if (!effect->ops->gap) return false;
   return !effect->ops->has_gap || effect->ops->has_gap(effect->self);

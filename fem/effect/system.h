@@ -70,6 +70,8 @@ Status fem_system_accept(FemSystem *system, double time, const double *u, const 
 
 // Energies and powers at the scattered state; evaluates the forces where driven vertices need them.
 Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy);
+// Of the damping of materials alone [W], at the scattered state. Over ranks the sum.
+Status fem_system_damping_power(FemSystem *system, double time, double *power);
 // Smallest onset function of all effects; +INFINITY if there is none.
 Status fem_system_gap(FemSystem *system, double time, double *gap);
 bool fem_system_has_gap(const FemSystem *system);

@@ -27,7 +27,8 @@ typedef struct FemRunState {
   double time;           // of the last accepted state
   double *u, *v;         // the last accepted state         (unknown_count)
   double *u_new, *v_new; // the state under judgement  (unknown_count)
-  double *mean_velocity; // of a step, scratch
+  double *mean_velocity; // of a step, scratch           (unknown_count)
+  double *middle;        // displacements halfway, scratch   (unknown_count)
   int next_frame;
   int retries;              // in a row
   double next_step;         // to be tried; 0: the integrator's choice [s]
