@@ -15,13 +15,13 @@
 #include "fem/model/numbering.h"
 #include "fem/run/checkpoint/restart.h"
 #include "fem/run/checkpoint/run_checkpoint.h"
-#include "fem/run/choice.h"
+#include "fem/run/check/choice.h"
 #include "fem/run/hold.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_load.h"
 #include "fem/run/run_watch.h"
 #include "fem/run/spread.h"
-#include "fem/run/start.h"
+#include "fem/run/check/start.h"
 
 // A step that gains energy (fem/time/audit.h) is taken back and tried again with a smaller step; at most so
 // many times in a row, and not with less than the smaller of these shares of the run and of the time in which

@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
-#include "fem/time/direct.h"
+#include "fem/time/newton/direct.h"
 
 enum { MAX_FULL_STEPS = 12, MAX_ITERATIONS = 40, MESSAGE_SIZE = 512 };
 

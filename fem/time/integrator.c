@@ -10,10 +10,10 @@
 
 #include "base/memory.h"
 #include "base/ranks.h"
-#include "fem/time/balance.h"
 #include "fem/time/error_weights.h"
-#include "fem/time/ida_solver.h"
-#include "fem/time/newton.h"
+#include "fem/time/newton/balance.h"
+#include "fem/time/newton/ida_solver.h"
+#include "fem/time/newton/newton.h"
 #include "fem/time/reason.h"
 
 // Chosen bounds of the step, as shares of the run's end.
@@ -267,13 +267,13 @@ static Status find_derivatives(FemIntegrator *integrator, double time) {
   return status_fail(STATUS_SOLVER, "at t = %g s: an acceleration is not a number", time);
 }
 
-// IDA's own first step: a thousandth of the way to the end, or what changes the state by half of the tolerances
-// where that is shorter (SUNDIALS, IDASolve).
+// IDA's own first step: a thousandth of the way to the end, or what changes the state by half of the
+// tolerances where that is shorter (SUNDIALS, IDASolve).
 static const double START_SHARE = 1e-3, START_CHANGE = 0.5;
 
-// The first step of a start that is left to IDA; 0: IDA's own will do. Where something is driven from rest with
-// a jump of its speed, accelerations are large for a time in which nothing moves: they say nothing of how
-// long a step may be, and the error test does.
+// The first step of a start that is left to IDA; 0: IDA's own will do. Where something is driven from rest
+// with a jump of its speed, accelerations are large for a time in which nothing moves: they say nothing of
+// how long a step may be, and the error test does.
 static double start_step(FemIntegrator *integrator, double time) {
   double least = fmin(integrator->def.least_start, START_SHARE * (integrator->def.end - time));
   if (!(least > 0)) return 0;
@@ -407,25 +407,6 @@ static FemReason reason_of(int flag) {
   }
 }
 
-// The number in y of all ranks of this one's i-th value.
-static int number_of(const FemPart *part, int i) {
-  return i < part->count ? fem_part_unknown(part, i) : part->n + fem_part_unknown(part, i - part->count);
-}
-
-// Of values `begin` … `end` − 1 the one which, times its weight unless NULL, is largest, as a number in y of
-// all ranks; a value that is no number wins.
-static int worst_of(const FemPart *part, const double *values, const double *weights, int begin, int end) {
-  int worst = -1;
-  double largest = -1;
-  for (int i = begin; i < end; i++) {
-    double size = fabs(weights ? values[i] * weights[i] : values[i]);
-    if (isnan(size)) size = INFINITY;
-    if (size > largest) largest = size, worst = i;
-  }
-  double largest_of_all = fem_part_most(largest);
-  return (int)fem_part_most(worst >= 0 && largest == largest_of_all ? number_of(part, worst) : 0);
-}
-
 // The number in y of the unknown that stands in the way: of the largest estimated error if the error test
 // failed, else of the largest unbalanced force.
 static int find_worst(FemIntegrator *integrator, int flag) {
@@ -434,14 +415,14 @@ static int find_worst(FemIntegrator *integrator, int flag) {
   N_Vector errors = integrator->interpolated, weights = integrator->weights;
   if (flag == IDA_ERR_FAIL && IDAGetEstLocalErrors(integrator->ida, errors) == IDA_SUCCESS &&
       IDAGetErrWeights(integrator->ida, weights) == IDA_SUCCESS)
-    return worst_of(part, values_of(errors), values_of(weights), 0, 2 * n);
+    return fem_part_worst(part, values_of(errors), values_of(weights), 0, 2 * n);
   double time, c;
   N_Vector y, y_dot, y_predicted, y_dot_predicted, r;
   void *self;
   if (IDAGetNonlinearSystemData(integrator->ida, &time, &y_predicted, &y_dot_predicted, &y, &y_dot, &r, &c,
                                 &self) == IDA_SUCCESS &&
       r)
-    return worst_of(part, values_of(r), NULL, n, 2 * n);
+    return fem_part_worst(part, values_of(r), NULL, n, 2 * n);
   return 0;
 }
 

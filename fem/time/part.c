@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/time/part.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -75,4 +76,21 @@ double fem_part_sum(double own) {
 double fem_part_most(double own) {
   ranks()->most(&own, 1);
   return own;
+}
+
+// Among the 2·n of all ranks, of this one's i-th value.
+static int number_of(const FemPart *part, int i) {
+  return i < part->count ? fem_part_unknown(part, i) : part->n + fem_part_unknown(part, i - part->count);
+}
+
+int fem_part_worst(const FemPart *part, const double *values, const double *weights, int begin, int end) {
+  int worst = -1;
+  double largest = -1;
+  for (int i = begin; i < end; i++) {
+    double size = fabs(weights ? values[i] * weights[i] : values[i]);
+    if (isnan(size)) size = INFINITY;
+    if (size > largest) largest = size, worst = i;
+  }
+  double largest_of_all = fem_part_most(largest);
+  return (int)fem_part_most(worst >= 0 && largest == largest_of_all ? number_of(part, worst) : 0);
 }

@@ -3,7 +3,7 @@
 
 #include <assert.h>
 
-#include "net/pass/drive.h"
+#include "net/thread.h"
 #include "net/pass/pass.h"
 
 #include "net/real_f32.h"

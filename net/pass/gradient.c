@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <string.h>
 
-#include "net/pass/drive.h"
+#include "net/thread.h"
 #include "net/pass/pass.h"
 
 #include "net/real_f32.h"

@@ -16,7 +16,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "fem/run/choice.h"
+#include "fem/run/check/choice.h"
 
 enum { MAX_ROWS = APP_BENCH_MAX_MODELS * APP_BENCH_MAX_LIST + 16 * APP_BENCH_MAX_LIST };
 static const double GIB = 1024.0 * 1024 * 1024;

@@ -15,8 +15,8 @@
 #include "fem/measure/thickness.h"
 #include "fem/model/compliance.h"
 #include "fem/model/division.h"
-#include "fem/run/choice.h"
-#include "fem/run/start.h"
+#include "fem/run/check/choice.h"
+#include "fem/run/check/start.h"
 #include "fem/sparse/solver.h"
 
 enum { MAX_NOTES = 24, MAX_OVERLAPS = 6, MAX_THIN = 6 };

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "fem/model/build.h"
-#include "fem/run/choice.h"
+#include "fem/run/check/choice.h"
 
 // A box of length `length` (0: 1), 1 and 1, neo-Hookean with ν = 0.3 unless it says otherwise.
 typedef struct Case {

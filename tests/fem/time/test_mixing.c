@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps of an iteration, mixed with those before.
-#include "fem/time/mixing.h"
+#include "fem/time/newton/mixing.h"
 
 #include <math.h>
 

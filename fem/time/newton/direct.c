@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/time/direct.h"
+#include "fem/time/newton/direct.h"
 
 static SUNLinearSolver_Type type_of(SUNLinearSolver linear) {
   (void)linear;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which linear solver a run gets, why, and the memory that it will take.
-#ifndef TETLAP_FEM_RUN_CHOICE_H
-#define TETLAP_FEM_RUN_CHOICE_H
+#ifndef TETLAP_FEM_RUN_CHECK_CHOICE_H
+#define TETLAP_FEM_RUN_CHECK_CHOICE_H
 
 #include "fem/model/model.h"
 #include "fem/sparse/solver.h"

@@ -10,7 +10,7 @@
 #pragma GCC target("avx2,fma")
 #endif
 
-#include "overlap/clip/vectors_avx2.inc"
+#include "overlap/clip/lanes/vectors_avx2.inc"
 
 #include "overlap/clip/answer.inc"
 

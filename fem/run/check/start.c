@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/start.h"
+#include "fem/run/check/start.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 // √(WH)/L) vertices. Measured, two cubes in contact: `amg` takes less processor time than `cholmod` from
 // 2,500 vertices on in motion, PETSc's start of 0.2 s included, from 5,000 in statics. The bounds below are
 // twice that, since a factor cannot fail to converge.
-#include "fem/run/choice.h"
+#include "fem/run/check/choice.h"
 
 #include <math.h>
 

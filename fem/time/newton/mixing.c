@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/time/mixing.h"
+#include "fem/time/newton/mixing.h"
 
 #include <math.h>
 #include <string.h>

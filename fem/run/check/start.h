@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a scene begins with that its author may not have meant: bodies that overlap.
-#ifndef TETLAP_FEM_RUN_START_H
-#define TETLAP_FEM_RUN_START_H
+#ifndef TETLAP_FEM_RUN_CHECK_START_H
+#define TETLAP_FEM_RUN_CHECK_START_H
 
 #include <stddef.h>
 

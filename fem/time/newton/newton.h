@@ -16,14 +16,14 @@
 //   – a matrix that makes too little way is made anew where the iteration stands, before the step is given up;
 //   – what has converged by IDA's test must also balance: the caller says by how much the forces do not.
 // clang-format on
-#ifndef TETLAP_FEM_TIME_NEWTON_H
-#define TETLAP_FEM_TIME_NEWTON_H
+#ifndef TETLAP_FEM_TIME_NEWTON_NEWTON_H
+#define TETLAP_FEM_TIME_NEWTON_NEWTON_H
 
 #include <stdbool.h>
 #include <sundials/sundials_nonlinearsolver.h>
 
 #include "base/status.h"
-#include "fem/time/mixing.h"
+#include "fem/time/newton/mixing.h"
 
 // What the method asks of its user. Vectors are (2 n): displacements, velocities; residuals: kinematics,
 // balance. Over ranks each has those of n unknowns (fem/time/part.h), and all go through the same steps.

@@ -11,7 +11,7 @@
 #endif
 
 #define LANES_SINGLE
-#include "overlap/clip/vectors_avx512.inc"
+#include "overlap/clip/lanes/vectors_avx512.inc"
 
 #include "overlap/clip/answer.inc"
 

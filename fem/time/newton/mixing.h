@@ -7,8 +7,8 @@
 // the changes of d that they brought,
 //     γ = argmin ‖d − Σ γ_j Δd_j‖,     step = d − Σ γ_j (Δx_j + Δd_j)
 // which is what GMRES would do where d is linear. The norm is that of the error weights.
-#ifndef TETLAP_FEM_TIME_MIXING_H
-#define TETLAP_FEM_TIME_MIXING_H
+#ifndef TETLAP_FEM_TIME_NEWTON_MIXING_H
+#define TETLAP_FEM_TIME_NEWTON_MIXING_H
 
 #include <stdbool.h>
 

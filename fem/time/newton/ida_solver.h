@@ -13,8 +13,8 @@
 // size and order.
 //
 // Not matrix-embedded: IDA would then factorise in every Newton iteration.
-#ifndef TETLAP_FEM_TIME_IDA_SOLVER_H
-#define TETLAP_FEM_TIME_IDA_SOLVER_H
+#ifndef TETLAP_FEM_TIME_NEWTON_IDA_SOLVER_H
+#define TETLAP_FEM_TIME_NEWTON_IDA_SOLVER_H
 
 #include <sundials/sundials_linearsolver.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/time/newton.h"
+#include "fem/time/newton/newton.h"
 
 #include <math.h>
 #include <nvector/nvector_serial.h>

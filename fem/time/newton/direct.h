@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A linear solver of our own as SUNDIALS sees it: custom and direct, over a matrix without content, since
 // what is assembled and factorised stays with the caller.
-#ifndef TETLAP_FEM_TIME_DIRECT_H
-#define TETLAP_FEM_TIME_DIRECT_H
+#ifndef TETLAP_FEM_TIME_NEWTON_DIRECT_H
+#define TETLAP_FEM_TIME_NEWTON_DIRECT_H
 
 #include <sundials/sundials_linearsolver.h>
 

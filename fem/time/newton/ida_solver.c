@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/time/ida_solver.h"
+#include "fem/time/newton/ida_solver.h"
 
 #include <ida/ida.h>
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "fem/sparse/cg.h"
-#include "fem/time/direct.h"
+#include "fem/time/newton/direct.h"
 
 // Solutions at another c than the factor's: iterations at most, and how many together are worth a factor at
 // that c, which costs as much as 40 solutions. What they leave, at most and at least.

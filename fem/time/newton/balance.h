@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How well the forces on a body balance: what Newton's method of a step is held to beside the size of its
 // corrections, since what is written of contact is as right, and what is left works on a body that turns.
-#ifndef TETLAP_FEM_TIME_BALANCE_H
-#define TETLAP_FEM_TIME_BALANCE_H
+#ifndef TETLAP_FEM_TIME_NEWTON_BALANCE_H
+#define TETLAP_FEM_TIME_NEWTON_BALANCE_H
 
 #include "fem/effect/system.h"
 #include "fem/time/part.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/time/balance.h"
+#include "fem/time/newton/balance.h"
 
 #include <math.h>
 

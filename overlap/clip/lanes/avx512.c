@@ -10,7 +10,7 @@
 #pragma GCC target("avx512f,avx512dq,avx512vl,fma,prefer-vector-width=512")
 #endif
 
-#include "overlap/clip/vectors_avx512.inc"
+#include "overlap/clip/lanes/vectors_avx512.inc"
 
 #include "overlap/clip/answer.inc"
 
