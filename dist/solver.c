@@ -17,6 +17,7 @@
 #include "dist/hypre.h"
 #include "dist/product.h"
 #include "dist/rows.h"
+#include "fem/sparse/wear.h"
 
 typedef enum Kind { BOOMER, GAMG, MUMPS, BLOCKS, KIND_COUNT } Kind;
 static const char *const names[] = {"amg", "gamg", "mumps", "block_jacobi"};
@@ -24,13 +25,10 @@ static const char *const prefixes[] = {"tetlap_amg_", "tetlap_gamg_", "tetlap_mu
 
 // Iterations before what is kept is made anew at once, and before what is new gives up.
 enum { LIMIT_KEPT = 60, LIMIT = 2000 };
-// Worn: iterations are more than this share beyond those of when it was new, and some.
-static const double WORN_SHARE = 1.5;
-enum { WORN_MORE = 2 };
 
 typedef struct DistSolver {
   Kind kind;
-  double tolerance;
+  double tolerance, aimed; // relative: its own, and that of the next solve
   DistRows rows;
   DistReach reach;
   DistProduct product;
@@ -41,8 +39,7 @@ typedef struct DistSolver {
   long long made;   // layout of the rows that it was made of
   bool has_rows;    // the numbering stands
   bool has_matrix;  // numbers are there
-  bool is_worn, is_fresh;
-  long long new_count; // iterations of its first solve
+  FemWear wear;     // of the preconditioner
   long long layout;
   FemSolverStats stats;
 } DistSolver;
@@ -122,7 +119,7 @@ static Status create(Kind kind, void **self, double tolerance) {
   TRY(ranks()->worst(initialize()));
   DistSolver *solver = memory_zeroed(1, sizeof *solver);
   if (!solver) return status_no_memory("the linear solver");
-  *solver = (DistSolver){.kind = kind, .tolerance = tolerance};
+  *solver = (DistSolver){.kind = kind, .tolerance = tolerance, .aimed = tolerance};
   *self = solver;
   return STATUS_OK;
 }
@@ -174,7 +171,12 @@ static void destroy(void *self) {
 }
 
 static void wear(void *self) {
-  ((DistSolver *)self)->is_worn = true;
+  ((DistSolver *)self)->wear.is_worn = true;
+}
+
+static void aim(void *self, double tolerance) {
+  DistSolver *solver = self;
+  solver->aimed = fem_wear_aim(solver->tolerance, tolerance);
 }
 
 static Status number_rows(DistSolver *solver, const FemMatrix *pattern) {
@@ -196,6 +198,12 @@ static Status make_product(DistSolver *solver, const FemMatrix *pattern) {
   return STATUS_OK;
 }
 
+// Factors of the same pattern are filled again. Multigrid is not: GAMG, set up a second time for another c,
+// was indefinite.
+static bool is_refilled(const DistSolver *solver) {
+  return solver->kind == MUMPS || solver->kind == BLOCKS;
+}
+
 static Status analyse_layout(DistSolver *solver, const FemMatrix *pattern) {
   if (!solver->has_rows || !dist_rows_match(&solver->rows, pattern)) {
     forget(solver);
@@ -204,7 +212,7 @@ static Status analyse_layout(DistSolver *solver, const FemMatrix *pattern) {
   forget_product(solver);
   TRY(make_product(solver, pattern));
   // A factor is of one pattern.
-  if (solver->kind == MUMPS || solver->kind == BLOCKS) solver->is_worn = true;
+  if (is_refilled(solver)) solver->wear.is_worn = true;
   return STATUS_OK;
 }
 
@@ -312,11 +320,11 @@ static Status make_ksp(DistSolver *solver, Mat rows) {
   return STATUS_OK;
 }
 
-// Rows of the newest numbers in place of those that there are: the old preconditioner goes before they are
-// made, but where a factor of the same pattern can be filled again.
+// Rows of the newest numbers in place of those that there are. What cannot be filled again goes before they
+// are made.
 static Status renew_rows(DistSolver *solver, DistEntries *entries) {
   Mat rows;
-  if (solver->ksp && solver->kind != BOOMER && solver->made == solver->product.matrix->layout) {
+  if (solver->ksp && is_refilled(solver) && solver->made == solver->product.matrix->layout) {
     PETSC("the solver", KSPGetOperators(solver->ksp, NULL, &rows));
     return fill_rows(solver, entries, rows);
   }
@@ -330,16 +338,16 @@ static Status renew_rows(DistSolver *solver, DistEntries *entries) {
 
 static Status renew(DistSolver *solver) {
   DistEntries entries;
-  // Rows that are filled again, or factorised, have all places.
+  // Rows that are filled again have all places.
   TRY(dist_entries_create(&entries, &solver->rows, &solver->reach, solver->product.matrix,
-                          solver->kind == BOOMER));
+                          !is_refilled(solver)));
   Status status = renew_rows(solver, &entries);
   dist_entries_destroy(&entries);
   return status;
 }
 
 static Status set_up(DistSolver *solver) {
-  bool is_kept = solver->ksp && !solver->is_worn && solver->kind != MUMPS;
+  bool is_kept = solver->ksp && !solver->wear.is_worn && solver->kind != MUMPS;
   PC pc;
   Mat rows;
   PCFailedReason reason;
@@ -352,8 +360,8 @@ static Status set_up(DistSolver *solver) {
   PETSC("the solver", KSPGetPC(solver->ksp, &pc));
   PETSC("the solver", PCGetFailedReasonRank(pc, &reason));
   if (is_kept) return STATUS_OK;
-  solver->is_worn = false;
-  solver->is_fresh = true;
+  fem_wear_renew(&solver->wear);
+  if (solver->kind == BOOMER || solver->kind == GAMG) solver->stats.hierarchies++;
   if (reason == PC_NOERROR && !(solver->kind == MUMPS && has_negative_pivots(solver, pc))) return STATUS_OK;
   if (reason == PC_FACTOR_OUTMEMORY) return status_no_memory("the factor of the condensed system");
   return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite (found by %s)",
@@ -383,7 +391,7 @@ static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix 
   if (!status) status = set_up(solver);
   status = ranks()->worst(status);
   solver->has_matrix = status == STATUS_OK;
-  if (status) solver->is_worn = true;
+  if (status) solver->wear.is_worn = true;
   *(status ? &solver->stats.failed_factorisations : &solver->stats.factorisations) += 1;
   solver->stats.factorise_s += clock_wall_s() - began;
   return status;
@@ -415,16 +423,15 @@ static Status iterate(DistSolver *solver, int limit, bool *is_limit) {
   static const double DIVERGED = 1e30, SMALLEST = 1e-290;
   KSPConvergedReason reason;
   PetscInt taken;
-  PETSC("the solver", KSPSetTolerances(solver->ksp, solver->tolerance, SMALLEST, DIVERGED, limit));
+  PETSC("the solver", KSPSetTolerances(solver->ksp, solver->aimed, SMALLEST, DIVERGED, limit));
   PETSC("the solver", KSPSolve(solver->ksp, solver->right, solver->left));
   PETSC("the solver", KSPGetConvergedReason(solver->ksp, &reason));
   PETSC("the solver", KSPGetIterationNumber(solver->ksp, &taken));
   solver->stats.iterations += solver->kind == MUMPS ? 0 : taken;
   *is_limit = reason == KSP_DIVERGED_ITS;
-  if (solver->is_fresh) solver->new_count = taken;
-  solver->is_fresh = false;
-  solver->is_worn = (double)taken > WORN_SHARE * (double)solver->new_count + WORN_MORE;
+  if (solver->kind != MUMPS) fem_wear_note(&solver->wear, taken, solver->aimed);
   if (reason > 0) return STATUS_OK;
+  solver->wear.is_worn = true;
   if (*is_limit)
     return status_fail(
         STATUS_RETRY,
@@ -437,10 +444,10 @@ static Status iterate(DistSolver *solver, int limit, bool *is_limit) {
 
 // With the preconditioner that there is, and where that is of another matrix and does not do, with a new one.
 static Status solve_by(DistSolver *solver) {
-  bool was_fresh = solver->is_fresh, is_limit;
+  bool was_fresh = solver->wear.is_fresh, is_limit;
   Status status = iterate(solver, was_fresh ? LIMIT : LIMIT_KEPT, &is_limit);
   if (status != STATUS_RETRY || was_fresh || solver->kind == MUMPS) return status;
-  solver->is_worn = true;
+  solver->wear.is_worn = true;
   TRY(ranks()->worst(set_up(solver)));
   return iterate(solver, LIMIT, &is_limit);
 }
@@ -465,18 +472,18 @@ static const FemSolverStats *stats(const void *self) {
   return &((const DistSolver *)self)->stats;
 }
 
-#define DIST_SOLVER(kind, words, create_one, share)                                                          \
+#define DIST_SOLVER(kind, words, create_one, share, aim_one)                                                 \
   {                                                                                                          \
     .name = kind, .help = words, .is_condensed = true, .tolerance = share, .create = create_one,             \
-    .analyse = analyse, .factorise = factorise, .solve = solve, .forget = wear, .destroy = destroy,          \
-    .stats = stats                                                                                           \
+    .analyse = analyse, .factorise = factorise, .solve = solve, .aim = aim_one, .forget = wear,              \
+    .destroy = destroy, .stats = stats                                                                       \
   }
 
-static const FemSolverOps amg = DIST_SOLVER("amg", "over ranks: BoomerAMG of hypre", create_amg, 1e-4),
-                          gamg = DIST_SOLVER("gamg", "over ranks: GAMG of PETSc", create_gamg, 1e-4),
-                          mumps = DIST_SOLVER("mumps", "over ranks: an exact factor", create_mumps, 0),
+static const FemSolverOps amg = DIST_SOLVER("amg", "over ranks: BoomerAMG of hypre", create_amg, 1e-4, aim),
+                          gamg = DIST_SOLVER("gamg", "over ranks: GAMG of PETSc", create_gamg, 1e-4, aim),
+                          mumps = DIST_SOLVER("mumps", "over ranks: an exact factor", create_mumps, 0, NULL),
                           blocks = DIST_SOLVER("block_jacobi", "over ranks: ICC(0) of each rank's block",
-                                               create_blocks, 1e-8);
+                                               create_blocks, 1e-8, NULL);
 
 static const FemSolverOps *const table[FEM_SOLVER_COUNT] = {[FEM_SOLVER_CHOLMOD] = &mumps,
                                                             [FEM_SOLVER_PCG] = &blocks,

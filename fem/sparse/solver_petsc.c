@@ -17,15 +17,10 @@
 #include "fem/sparse/cg.h"
 #include "fem/sparse/petsc_library.h"
 #include "fem/sparse/solver.h"
+#include "fem/sparse/wear.h"
 
 // Iterations before a kept hierarchy is made anew at once, and before a new one gives up.
 enum { LIMIT_KEPT = 60, LIMIT = 500 };
-// A hierarchy is worn where iterations are more than this share beyond those of when it was new, and some.
-static const double WORN_SHARE = 1.5;
-enum { WORN_MORE = 2 };
-
-// However little Newton's method needs: what is left over shows how fast it converges.
-static const double LOOSEST = 0.03;
 
 bool fem_solver_has_multigrid(void) {
   return fem_petsc_library_has_hypre();
@@ -56,9 +51,7 @@ typedef struct PetscSolver {
   Rows rows;               // kept by gamg, whose matrix they are
   Mat matrix;              // of gamg
   PC multigrid;            // NULL: none yet
-  bool is_worn;            // to be made anew at the next factorise
-  bool is_fresh;           // has not solved yet
-  double new_count;        // iterations a digit of its first solve
+  FemWear wear;            // of the multigrid
   FemCg cg;
   const FemMatrix *current; // borrowed, of the last factorise; NULL: none
   long long layout;         // that was analysed
@@ -67,7 +60,7 @@ typedef struct PetscSolver {
 } PetscSolver;
 
 static void wear(void *self) {
-  ((PetscSolver *)self)->is_worn = true;
+  ((PetscSolver *)self)->wear.is_worn = true;
 }
 
 // Errors that a matrix can be the cause of, so that another one may do. hypre's are all of one kind.
@@ -355,8 +348,7 @@ static Status build_gamg(PetscSolver *solver, const FemMatrix *matrix) {
 
 // A new hierarchy, by one thread of the BLAS in it.
 static Status build(PetscSolver *solver, const FemMatrix *matrix) {
-  solver->is_worn = false;
-  solver->is_fresh = true;
+  fem_wear_renew(&solver->wear);
   int before = fem_solver_use_threads(1);
   Status status = solver->kind == BOOMER ? build_boomer(solver, matrix) : build_gamg(solver, matrix);
   fem_solver_use_threads(before);
@@ -378,7 +370,7 @@ static Status renew(PetscSolver *solver, const FemMatrix *matrix) {
     return status_fail(STATUS_RETRY, "the condensed matrix is not finite");
   if (!has_positive_diagonal(matrix))
     return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
-  if (solver->multigrid && !solver->is_worn) return STATUS_OK;
+  if (solver->multigrid && !solver->wear.is_worn) return STATUS_OK;
   return build(solver, matrix);
 }
 
@@ -408,7 +400,7 @@ static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix 
 
 static void aim(void *self, double tolerance) {
   PetscSolver *solver = self;
-  solver->aimed = fmin(fmax(tolerance, solver->tolerance), LOOSEST);
+  solver->aimed = fem_wear_aim(solver->tolerance, tolerance);
 }
 
 static Status precondition(void *self, const double *r, double *z) {
@@ -435,22 +427,18 @@ static Status iterate(PetscSolver *solver, const double *b, double *x, int limit
   long long before = solver->stats.iterations;
   Status status = fem_cg_solve(&solver->cg, &problem, b, x, &solver->stats.iterations, end);
   if (status) { // what is kept may be of a matrix that is not positive definite
-    solver->is_fresh = false;
-    solver->is_worn = true;
+    solver->wear.is_fresh = false;
+    solver->wear.is_worn = true;
     return status;
   }
-  long long taken = solver->stats.iterations - before;
-  double digits = -log10(solver->aimed);
-  if (solver->is_fresh) solver->new_count = (double)taken / digits;
-  solver->is_fresh = false;
-  solver->is_worn = (double)taken > WORN_SHARE * solver->new_count * digits + WORN_MORE;
+  fem_wear_note(&solver->wear, solver->stats.iterations - before, solver->aimed);
   return STATUS_OK;
 }
 
 // With the hierarchy that there is, and where that is of another matrix and does not do, with a new one.
 static Status solve_by(PetscSolver *solver, const double *b, double *x) {
   FemCgEnd end = FEM_CG_CONVERGED;
-  bool was_fresh = solver->is_fresh;
+  bool was_fresh = solver->wear.is_fresh;
   Status status = iterate(solver, b, x, was_fresh ? LIMIT : LIMIT_KEPT, &end);
   if (status != STATUS_RETRY || was_fresh) return status;
   double began = clock_wall_s();

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How well a preconditioner that was made of earlier numbers still serves: by the iterations for a digit of
+// the residual, against those of when it was new. Solutions of different accuracy are compared so.
+#ifndef TETLAP_FEM_SPARSE_WEAR_H
+#define TETLAP_FEM_SPARSE_WEAR_H
+
+#include <math.h>
+#include <stdbool.h>
+
+// However little Newton's method needs: what is left over shows how fast it converges.
+static const double FEM_WEAR_LOOSEST = 0.03;
+
+typedef struct FemWear {
+  bool is_worn;     // to be made anew at the next factorise
+  bool is_fresh;    // has not solved yet
+  double new_count; // iterations a digit of its first solve
+} FemWear;
+
+// The relative residual of the next solution, of a solver whose own is `tolerance` (FemSolverOps.aim).
+static inline double fem_wear_aim(double tolerance, double aim) {
+  return fmin(fmax(aim, tolerance), FEM_WEAR_LOOSEST);
+}
+
+// Made anew.
+static inline void fem_wear_renew(FemWear *wear) {
+  *wear = (FemWear){.is_fresh = true, .new_count = wear->new_count};
+}
+
+// After a solution to the relative residual `tolerance`. Worn: iterations are more than half beyond those of
+// when it was new, and some.
+static inline void fem_wear_note(FemWear *wear, long long iterations, double tolerance) {
+  const double SHARE = 1.5, MORE = 2;
+  double digits = -log10(tolerance);
+  if (wear->is_fresh) wear->new_count = (double)iterations / digits;
+  wear->is_fresh = false;
+  wear->is_worn = (double)iterations > SHARE * wear->new_count * digits + MORE;
+}
+
+#endif
