@@ -13,24 +13,23 @@
 #include "fem/effect/contact/rest.h"
 #include "fem/model/formulas.h"
 #include "fem/model/numbering.h"
+#include "fem/run/check/choice.h"
+#include "fem/run/check/start.h"
 #include "fem/run/checkpoint/restart.h"
 #include "fem/run/checkpoint/run_checkpoint.h"
-#include "fem/run/check/choice.h"
 #include "fem/run/hold.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_load.h"
 #include "fem/run/run_watch.h"
 #include "fem/run/spread.h"
-#include "fem/run/check/start.h"
 
 // A step that gains energy (fem/time/audit.h) is taken back and tried again with a smaller step; at most so
-// many times in a row, and not with less than the smaller of these shares of the run and of the time in which
-// a wave √(E/ρ) crosses the smallest mean edge: a run may be long.
-static const double RETRY_FACTOR = 0.2, SHORTEST_RETRY = 2e-6, SHORTEST_CROSSING = 1e-3;
+// many times in a row.
+static const double RETRY_FACTOR = 0.2;
 enum { RETRIES_IN_A_ROW = 8 };
-// The first step of a start, as a share of the same time, at least: nothing moves in less, whatever
-// accelerations there are.
-static const double SHORTEST_START = 5e-4;
+// Of the time in which a wave √(E/ρ) crosses the smallest mean edge: what is tried again, and the first step
+// of a start, are not shorter than these. Nothing moves in less, whatever accelerations there are.
+static const double SHORTEST_RETRY = 2e-3, SHORTEST_START = 5e-4;
 // What friction may give in a step to what slips, as a share of the scene's energy.
 static const double TURNED_SHARE = 3e-4;
 // A scene in motion without contact may begin at rest with long steps. What it gains is judged by the energy
@@ -50,7 +49,7 @@ static double crossing(const FemModel *model) {
 
 // No step that is taken back is tried again with less than this [s], unless forces could not be evaluated.
 static double shortest_retry(const FemRunState *run) {
-  return fmin(SHORTEST_RETRY * run->model->scene->end, SHORTEST_CROSSING * crossing(run->model));
+  return SHORTEST_RETRY * crossing(run->model);
 }
 
 // Of a step that is taken back, the one to try.

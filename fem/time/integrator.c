@@ -466,6 +466,15 @@ static Status check_stall(FemIntegrator *integrator) {
   return say_why(integrator, integrator->time, stats.last_step, find_worst(integrator, IDA_ERR_FAIL), reason);
 }
 
+// Where a step of `planned` [s] would leave less than itself to the stop, two equal ones go there: one that
+// is short would have to grow again.
+static void halve(FemIntegrator *integrator, double begin, double planned, double least) {
+  double half = 0.5 * (integrator->stop - begin);
+  if (!(2 * half > planned && half < planned && half > least)) return;
+  integrator->stop = begin + half;
+  integrator->stops_at_knot = false;
+}
+
 // No step longer than effects can follow (contact lists hold so far), nor one that changes with each step by
 // a little: of the lengths 2^(k/2) s the longest that will do, for a matrix serves steps of one length.
 static void limit_step(FemIntegrator *integrator, double begin, double planned, double least) {
@@ -476,14 +485,14 @@ static void limit_step(FemIntegrator *integrator, double begin, double planned, 
   }
   double even = fmax(exp2(0.5 * floor(2 * log2(longest))), least);
   IDASetMaxStep(integrator->ida, even);
+  halve(integrator, begin, fmin(planned, even), least);
   if (!(planned > longest) || !(integrator->stop - begin > even)) return;
   integrator->stop = begin + even;
   integrator->stops_at_knot = false;
 }
 
 // The next step ends at def.end at the latest, or just before the knot that what is prescribed has to be
-// followed to. Where the step that is planned would leave less than itself to the knot, two equal ones go
-// there: one that is short would have to grow again.
+// followed to.
 static Status choose_stop(FemIntegrator *integrator) {
   double begin = integrator->step_end, end = integrator->def.end, step = integrator->max_step;
   if (integrator->has_steps) IDAGetCurrentStep(integrator->ida, &step);
@@ -496,11 +505,7 @@ static Status choose_stop(FemIntegrator *integrator) {
   bool has_knot = knot < farthest && end - knot > least;
   integrator->stop = has_knot ? fem_signal_before(knot) : end;
   integrator->stops_at_knot = has_knot;
-  double half = 0.5 * (integrator->stop - begin);
-  if (has_knot && integrator->has_steps && 2 * half > step && half > least) {
-    integrator->stop = begin + half;
-    integrator->stops_at_knot = false;
-  }
+  if (integrator->has_steps) halve(integrator, begin, step, least);
   limit_step(integrator, begin, step, least);
   if (IDASetStopTime(integrator->ida, integrator->stop) == IDA_SUCCESS) return STATUS_OK;
   return status_fail(STATUS_SOLVER, "IDA cannot stop at t = %.17g s from t = %.17g s", integrator->stop,

@@ -89,6 +89,29 @@ START_TEST(an_oscillator_never_gains_energy) {
 END_TEST
 
 // m ẍ + d ẋ + k x = 0, x(0) = 1, ẋ(0) = 0, by every solver.
+// Steps of one length leave a rest to the end: two equal ones take it.
+START_TEST(no_step_to_the_end_is_short_because_little_is_left) {
+  static const double LONGEST = 1e-2, LEFT[] = {1e-9, 1e-6, 1e-3, 5e-3, 9.99e-3};
+  for (int i = 0; i < 5; i++) {
+    Toy toy = {.count = 1, .mass = 1, .wall_stiffness = 1};
+    toy_open(&toy);
+    double end = 20 * LONGEST + LEFT[i], u = 1, v = 0, time = 0, before = 0, last = 0;
+    FemIntegratorDef def = def_of(1, end); // loose: never refuses a step
+    def.max_step = def.initial_step = LONGEST;
+    FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def, &u, &v);
+    for (bool is_onset; time < end; before = time) {
+      ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+      last = time - before;
+      ck_assert_double_ge(last, 0.499 * LONGEST);
+      ck_assert_double_le(last, 1.001 * LONGEST);
+    }
+    ck_assert_int_eq((int)fem_integrator_stats(integrator).steps, 21);
+    fem_integrator_destroy(integrator);
+    fem_system_destroy(&toy.system);
+  }
+}
+END_TEST
+
 START_TEST(a_damped_oscillator_decays_as_it_should) {
   double m = 2, k = 200, d = 4, end = 1.5;
   double decay = d / (2 * m), omega = sqrt(k / m - decay * decay);
@@ -285,6 +308,7 @@ int main(void) {
   tcase_add_test(cases, a_start_is_not_shorter_than_asked);
   tcase_add_test(cases, an_oscillator_converges_with_the_order_of_the_method);
   tcase_add_test(cases, an_oscillator_never_gains_energy);
+  tcase_add_test(cases, no_step_to_the_end_is_short_because_little_is_left);
   tcase_add_test(cases, a_damped_oscillator_decays_as_it_should);
   tcase_add_test(cases, a_chain_swings_in_its_modes);
   tcase_add_test(cases, interpolation_meets_the_steps_and_keeps_to_the_last_one);
