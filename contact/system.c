@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "contact/audit.h"
 #include "contact/footprint.h"
@@ -43,8 +44,7 @@ struct ContactSystem {
   ContactCounters counters;
 };
 
-// The potential `field` asks for more than other potentials.
-static Status check_model(const ContactSystemDef *def, const OverlapModel *model) {
+Status contact_system_check(const ContactSystemDef *def, const OverlapModel *model) {
   if (def->potential != CONTACT_POTENTIAL_FIELD || overlap_model_has_centroid(model)) return STATUS_OK;
   return status_fail(
       STATUS_INPUT,
@@ -80,7 +80,7 @@ static Status reserve(ContactSystem *system, const ContactSystemDef *def) {
 }
 
 static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
-  TRY(check_model(def, def->model));
+  TRY(contact_system_check(def, def->model));
   TRY(contact_stars_create(&system->stars, def));
   TRY(contact_layout_create(&system->layout, &system->stars.def));
   TRY(reserve(system, def));
@@ -192,18 +192,28 @@ static bool evaluates_near(const ContactSystem *system) {
   return system->layout.def.model->ops == &overlap_clip_ops;
 }
 
-Status contact_system_update(ContactSystem *system, double time, const double *positions,
-                             const double *velocities, double step, bool *has_changed) {
+static Status update(ContactSystem *system, double time, const double *positions, const double *velocities,
+                     double step, bool *has_changed) {
   bool changed;
   positions = place(system, positions);
   TRY(contact_candidates_update(&system->candidates, &system->layout, time, positions,
                                 contact_system_spread(system, velocities), step, &changed));
   system->counters.searches = system->candidates.searches;
-  system->counters.broad_s = system->candidates.search_s;
   if (has_changed) *has_changed = changed;
   if (evaluates_near(system))
     TRY(contact_near_update(&system->near, &system->layout, &system->candidates, time, positions));
   return choose_watched(system, time, positions);
+}
+
+Status contact_system_update(ContactSystem *system, double time, const double *positions,
+                             const double *velocities, double step, bool *has_changed) {
+  ContactCounters *counters = &system->counters;
+  double began = clock_wall_s(), searched_s = system->candidates.search_s;
+  Status status = update(system, time, positions, velocities, step, has_changed);
+  searched_s = system->candidates.search_s - searched_s;
+  counters->broad_s += searched_s;
+  counters->update_s += clock_wall_s() - began - searched_s;
+  return status;
 }
 
 double contact_system_longest_step(const ContactSystem *system) {
@@ -306,7 +316,7 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
   contact_near_forget(&system->near);
   contact_evaluation_start_over(&system->evaluation, layout);
   contact_system_forget(system);
-  TRY(contact_system_update(system, time, positions, velocities, step, NULL));
+  TRY(update(system, time, positions, velocities, step, NULL));
   if (!is_held) return STATUS_OK;
   positions = place(system, positions);
   TRY(evaluate(system, time, positions));
@@ -474,8 +484,8 @@ static Status create_audits(ContactSystem *system) {
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,
                             const OverlapModel *candidate, const OverlapModel *reference,
                             ContactAudit *audit) {
-  TRY(check_model(&system->layout.def, candidate));
-  TRY(check_model(&system->layout.def, reference));
+  TRY(contact_system_check(&system->layout.def, candidate));
+  TRY(contact_system_check(&system->layout.def, reference));
   positions = place(system, positions);
   TRY(check_margin(system, time, positions));
   TRY(create_audits(system));

@@ -38,10 +38,14 @@ typedef struct ContactCounters {
   long long resting;                  // pairs within a body left out because they overlap at rest
   long long left_at_rest;             // candidate pairs that evaluations left out (contact_system_hold)
   long long beyond_margin;            // evaluations refused because a vertex left the margin
-  double broad_s, overlap_s, force_s; // wall time by phase [s]
+  double update_s;                    // wall time of contact_system_update, searches left out [s]
+  double broad_s, overlap_s, force_s; // of searches, and of evaluations by phase [s]
 } ContactCounters;
 
 typedef struct ContactSystem ContactSystem; // opaque: lists, scratch memory and the last evaluation
+
+// Whether that overlap model gives what the potential needs: `field` asks for centroids.
+Status contact_system_check(const ContactSystemDef *def, const OverlapModel *model);
 
 Status contact_system_create(ContactSystem **system, const ContactSystemDef *def);
 void contact_system_destroy(ContactSystem *system);

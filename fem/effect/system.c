@@ -18,12 +18,18 @@ static FemState state_of(const FemSystem *system, double time) {
   return (FemState){.time = time, .positions = system->positions, .velocities = system->velocities};
 }
 
+// A message about the scene begins with its place there.
+static Status name_effect(Status status, const FemEffectOps *ops) {
+  return status == STATUS_OK || status == STATUS_INPUT ? status
+                                                       : status_prefix(status, "effect '%s'", ops->name);
+}
+
 // An effect of `old` (NULL: there is none) gives what it can to the new one of that place.
 static Status create_effect(FemEffect *effect, const FemModel *model, const FemSystem *old, int place) {
   bool takes_over = old && effect->ops->create_again;
   Status status = takes_over ? effect->ops->create_again(&effect->self, model, old->effects[place].self)
                              : effect->ops->create(&effect->self, model);
-  return status ? status_prefix(status, "effect '%s'", effect->ops->name) : STATUS_OK;
+  return name_effect(status, effect->ops);
 }
 
 static Status create_effects(FemSystem *system, const FemSystem *old) {
@@ -38,8 +44,7 @@ static Status create_effects(FemSystem *system, const FemSystem *old) {
   }
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffectOps *ops = system->effects[i].ops;
-    Status status = ops->connect ? ops->connect(system->effects[i].self, system) : STATUS_OK;
-    if (status) return status_prefix(status, "effect '%s'", ops->name);
+    TRY(name_effect(ops->connect ? ops->connect(system->effects[i].self, system) : STATUS_OK, ops));
   }
   return STATUS_OK;
 }

@@ -46,7 +46,7 @@ static void add_pairs(ContactPairCounts *total, const ContactPairCounts *part) {
 static void add_contact(FemRunResult *result, const ContactCounters *counters) {
   result->phases.broad_phase += counters->broad_s;
   result->phases.overlap += counters->overlap_s;
-  result->phases.contact += counters->force_s - counters->broad_s;
+  result->phases.contact += counters->force_s + counters->update_s;
   add_pairs(&result->pairs, &counters->pairs);
 }
 
@@ -60,7 +60,7 @@ void fem_run_result_add_system(FemRunResult *result, const FemSystem *system) {
     const FemEffect *effect = &system->effects[i];
     if (effect->self != contact) result->phases.forces += system->costs[i].force_s;
     result->phases.assembly += system->costs[i].jacobian_s;
-    result->phases.contact += system->costs[i].prepare_s;
+    if (effect->self != contact) result->phases.contact += system->costs[i].prepare_s;
     result->effects[i].name = effect->ops->name;
     add_cost(&result->effects[i].cost, &system->costs[i]);
     if (result->effects[i].cost.jacobian_calls > result->assemblies)

@@ -103,11 +103,26 @@ START_TEST(a_verbose_run_has_a_line_for_every_step) {
 }
 END_TEST
 
+START_TEST(a_run_names_the_files_that_it_wrote) {
+  ck_assert(run_says("", "wrote .*: frames.pvd (ParaView), history.csv, summary.json, manifest.json$"));
+  ck_assert(run_says("--set output.vtu=false", "wrote [^ ]*: history.csv, summary.json, manifest.json$"));
+  ck_assert(run_says("--set output.history=none", "wrote [^ ]*: frames.pvd (ParaView), summary.json"));
+}
+END_TEST
+
+START_TEST(what_two_keys_of_a_scene_do_not_allow_together_is_told_with_its_place) {
+  ck_assert(run_says("--set contact.overlap=tpn --set contact.potential=field",
+                     "^error: .*/examples/01_drop.yaml:[0-9]*:[0-9]*: contact: the potential .field. needs"));
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("program");
   tcase_add_test(cases, exit_codes_say_who_is_to_blame);
   tcase_add_test(cases, an_option_that_is_no_number_in_its_range_is_a_usage_error);
   tcase_add_test(cases, a_list_with_an_empty_name_is_a_usage_error_and_blanks_are_none);
   tcase_add_test(cases, a_verbose_run_has_a_line_for_every_step);
+  tcase_add_test(cases, a_run_names_the_files_that_it_wrote);
+  tcase_add_test(cases, what_two_keys_of_a_scene_do_not_allow_together_is_told_with_its_place);
   return suite_run("program", cases, 60);
 }

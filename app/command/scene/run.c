@@ -106,7 +106,10 @@ static void conclude(const AppJob *job, const FemRunResult *result) {
   fem_run_tell_statistics(result, statistics, sizeof statistics);
   log_info("statistics: %s", statistics);
   fem_run_tell_trouble(result, &job->model, trouble, sizeof trouble);
-  log_info("wrote %s: frames.pvd (ParaView), history.csv, summary.json, manifest.json", job->directory);
+  const FemSceneDef *scene = job->model.scene;
+  log_info("wrote %s: %s%ssummary.json, manifest.json", job->directory,
+           scene->write_vtu ? "frames.pvd (ParaView), " : "",
+           scene->history == FEM_HISTORY_NONE ? "" : "history.csv, ");
   log_info("trouble: %s", trouble);
 }
 

@@ -118,6 +118,13 @@ Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *n
                        place->column);
 }
 
+static Status check(const FemSceneDef *scene, const ContactSystemDef *system) {
+  const FemScenePlace *place = &scene->contact.place;
+  Status status = contact_system_check(system, system->model);
+  if (!status || place->line == 0) return status;
+  return status_prefix(status, "%s:%d:%d", scene->path ? scene->path : "scene", place->line, place->column);
+}
+
 static Status build(Contact *contact, Contact *old) {
   const FemModel *model = contact->model;
   const FemContactDef *def = &model->scene->contact;
@@ -151,7 +158,8 @@ static Status build(Contact *contact, Contact *old) {
                              .margin = def->margin,
                              .use_full_hessian = def->use_full_hessian,
                              .model = &contact->overlap};
-  Status status = contact_system_create(&contact->system, &system);
+  Status status = check(model->scene, &system);
+  if (!status) status = contact_system_create(&contact->system, &system);
   memory_free(stiffness);
   return status;
 }

@@ -153,6 +153,18 @@ START_TEST(a_tolerance_that_the_scene_gives_is_all_there_is) {
 }
 END_TEST
 
+// The first search, before any step, is longer than all other contact.
+START_TEST(no_phase_of_a_run_takes_less_than_no_time) {
+  SceneRun run;
+  scene_run(&run, "stack", (const char *const[]){"time.end=1e-5", NULL});
+  const FemRunPhases *phases = &run.result.phases;
+  ck_assert_double_gt(phases->broad_phase, 0);
+  ck_assert_double_gt(phases->contact, 0);
+  ck_assert_double_ge(phases->total, phases->broad_phase + phases->overlap + phases->contact);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("steps");
   tcase_add_test(cases, a_stack_falls_on_an_incline_and_comes_to_rest_without_short_or_failing_steps);
@@ -162,5 +174,6 @@ int main(void) {
   tcase_add_test(cases, an_onset_restarts_the_integrator_only_where_the_force_may_jump);
   tcase_add_test(cases, a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_bounds);
   tcase_add_test(cases, a_tolerance_that_the_scene_gives_is_all_there_is);
+  tcase_add_test(cases, no_phase_of_a_run_takes_less_than_no_time);
   return suite_run("steps", cases, 120);
 }
