@@ -15,6 +15,7 @@ typedef enum AppNormalisation {
   APP_NORMALISATION_PCA,
   APP_NORMALISATION_SORTED,
   APP_NORMALISATION_UNSCALED,
+  APP_NORMALISATION_SEPARATED,
 } AppNormalisation;
 typedef enum AppReading {
   APP_READING_A,

@@ -50,7 +50,9 @@ static OverlapTpnNormalisation normalisation_of(const AppTrainingConfig *config)
                                                   [APP_NORMALISATION_PCA] = OVERLAP_TPN_NORMALISE_PCA,
                                                   [APP_NORMALISATION_SORTED] = OVERLAP_TPN_NORMALISE_SORTED,
                                                   [APP_NORMALISATION_UNSCALED] =
-                                                      OVERLAP_TPN_NORMALISE_UNSCALED};
+                                                      OVERLAP_TPN_NORMALISE_UNSCALED,
+                                                  [APP_NORMALISATION_SEPARATED] =
+                                                      OVERLAP_TPN_NORMALISE_SEPARATED};
   return kinds[config->model.normalisation];
 }
 

@@ -287,7 +287,7 @@ static Status send_network(DeviceTpn *tpn, const Device *device, const OverlapTp
 }
 
 static bool is_known(OverlapTpnNormalisation kind) {
-  return (int)kind == TPN_SORTED || (int)kind == TPN_UNIT || (int)kind == TPN_UNSCALED;
+  return kind != OVERLAP_TPN_NORMALISE_PCA;
 }
 
 Status device_tpn_create(DeviceTpn *tpn, const Device *device, const char *weights, bool is_bf16) {

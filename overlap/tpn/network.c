@@ -87,8 +87,8 @@ static Status load(OverlapTpnNetwork *model, const char *path, NetKernelKind ker
   if (!overlap_tpn_network_parse(model->card.normalisation, &model->kind, &model->scale))
     return status_fail(
         STATUS_INPUT,
-        "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER', 'pca, …', 'sorted, …' or "
-        "'unscaled, …'",
+        "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER', 'pca, …', 'sorted, …', "
+        "'unscaled, …' or 'separated, …'",
         path, model->card.normalisation);
   model->has_range = overlap_tpn_range_parse(model->card.range, &model->range);
   TRY(fold(model, path));

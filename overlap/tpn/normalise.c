@@ -6,10 +6,11 @@
 
 #include "base/vec3.h"
 
-static const double FLATTEST = 1e-14, SOFTEST = 1e-6, LINEAR = 3;
+static const double FLATTEST = 1e-14, SOFTEST = 1e-6, LINEAR = 3, SAME = 1e-9;
 
 const char *overlap_tpn_normalise_name(OverlapTpnNormalisation kind) {
-  static const char *const names[OVERLAP_TPN_NORMALISE_COUNT] = {"unit", "pca", "sorted", "unscaled"};
+  static const char *const names[OVERLAP_TPN_NORMALISE_COUNT] = {"unit", "pca", "sorted", "unscaled",
+                                                                 "separated"};
   return names[kind];
 }
 
@@ -77,12 +78,11 @@ static void arrange_first(const double pair[24], const int order[4], double arra
   memcpy(arranged + 12, pair + 12, 12 * sizeof(double));
 }
 
-// By the second's centroid (times four) in the first, which is in the unit frame.
-static void order_first(const double unit[24], int order[4]) {
-  double value[4] = {4, 0, 0, 0};
+// The barycentric coordinates of the second's centroid (times four) in the first, which is in the unit frame.
+static void find_centroid(const double unit[24], double centroid[4]) {
+  centroid[0] = 4, centroid[1] = centroid[2] = centroid[3] = 0;
   for (int b = 4; b < 8; b++)
-    for (int k = 0; k < 3; k++) value[k + 1] += unit[3 * b + k], value[0] -= unit[3 * b + k];
-  sort_places(value, order);
+    for (int k = 0; k < 3; k++) centroid[k + 1] += unit[3 * b + k], centroid[0] -= unit[3 * b + k];
 }
 
 static void order_second(const double unit[24], int order[4]) {
@@ -102,19 +102,96 @@ static double expand(double c) {
   return fabs(c) <= LINEAR ? c : copysign(LINEAR * exp(fabs(c) / LINEAR - 1), c);
 }
 
+// The second's vertices in the order `second`, compressed.
+static void arrange_second(const int second[4], OverlapTpnNormalised *normalised) {
+  double unit[12];
+  memcpy(unit, normalised->pair + 12, sizeof unit);
+  for (int v = 0; v < 4; v++) {
+    normalised->order[4 + v] = 4 + second[v];
+    for (int k = 0; k < 3; k++) normalised->pair[12 + 3 * v + k] = compress(unit[3 * second[v] + k]);
+  }
+}
+
 static bool find_sorted(const double pair[24], OverlapTpnNormalised *normalised) {
-  double arranged[24];
-  int *order = normalised->order, second[4];
+  double arranged[24], centroid[4];
+  int second[4];
   if (!find_unit(pair, normalised)) return false;
-  order_first(normalised->pair, order);
-  arrange_first(pair, order, arranged);
+  find_centroid(normalised->pair, centroid);
+  sort_places(centroid, normalised->order);
+  arrange_first(pair, normalised->order, arranged);
   if (!find_unit(arranged, normalised)) return false;
   order_second(normalised->pair, second);
-  memcpy(arranged + 12, normalised->pair + 12, 12 * sizeof(double));
-  for (int v = 0; v < 4; v++) {
-    order[4 + v] = 4 + second[v];
-    for (int k = 0; k < 3; k++) normalised->pair[12 + 3 * v + k] = compress(arranged[12 + 3 * second[v] + k]);
+  arrange_second(second, normalised);
+  return true;
+}
+
+// How a tetrahedron would do as the first of a pair.
+typedef struct Candidate {
+  bool stands;        // it is not flat
+  double centroid[4]; // the other's, as find_centroid has it
+  double reach[4];    // how far the other reaches into the half-spaces of its faces: its largest barycentric
+                      // coordinates
+  int face;           // of the least reach
+  double det;
+} Candidate;
+
+static Candidate find_candidate(const double pair[24], OverlapTpnNormalised *normalised) {
+  Candidate candidate = {.stands = find_unit(pair, normalised)};
+  if (!candidate.stands) return candidate;
+  find_centroid(normalised->pair, candidate.centroid);
+  for (int k = 0; k < 4; k++) candidate.reach[k] = -INFINITY;
+  for (int b = 4; b < 8; b++) {
+    const double *y = normalised->pair + 3 * b;
+    candidate.reach[0] = fmax(candidate.reach[0], 1 - y[0] - y[1] - y[2]);
+    for (int k = 0; k < 3; k++) candidate.reach[k + 1] = fmax(candidate.reach[k + 1], y[k]);
   }
+  for (int k = 1; k < 4; k++)
+    if (candidate.reach[k] < candidate.reach[candidate.face]) candidate.face = k;
+  candidate.det = normalised->factor;
+  return candidate;
+}
+
+// Of points, by x, then y, then z.
+static bool is_greater(const double *x, const double *y) {
+  int c = 0;
+  while (c < 2 && x[c] == y[c]) c++;
+  return x[c] > y[c];
+}
+
+// Of the greatest vertices of both.
+static bool is_second_greater(const double pair[24]) {
+  int greatest[2] = {0, 4};
+  for (int t = 0; t < 2; t++)
+    for (int v = 4 * t + 1; v < 4 * t + 4; v++)
+      if (is_greater(pair + 3 * v, pair + 3 * greatest[t])) greatest[t] = v;
+  return is_greater(pair + 3 * greatest[1], pair + 3 * greatest[0]);
+}
+
+static bool is_exchanged(const double pair[24], const Candidate *first, const Candidate *second) {
+  if (!first->stands || !second->stands) return second->stands;
+  double reach = first->reach[first->face], other = second->reach[second->face];
+  if (fabs(reach - other) > SAME) return other < reach;
+  if (fabs(first->det - second->det) > SAME * (first->det + second->det)) return second->det > first->det;
+  return is_second_greater(pair);
+}
+
+static bool find_separated(const double pair[24], OverlapTpnNormalised *normalised) {
+  double exchanged[24], arranged[24], height[4];
+  int second[4];
+  memcpy(exchanged, pair + 12, 12 * sizeof(double));
+  memcpy(exchanged + 12, pair, 12 * sizeof(double));
+  Candidate candidates[2] = {find_candidate(pair, normalised), find_candidate(exchanged, normalised)};
+  bool first = is_exchanged(pair, &candidates[0], &candidates[1]);
+  Candidate *chosen = &candidates[first];
+  if (!chosen->stands) return false;
+  chosen->centroid[chosen->face] = -INFINITY;
+  sort_places(chosen->centroid, normalised->order);
+  arrange_first(first ? exchanged : pair, normalised->order, arranged);
+  if (!find_unit(arranged, normalised)) return false;
+  for (int b = 0; b < 4; b++) height[b] = normalised->pair[12 + 3 * b + 2];
+  sort_places(height, second);
+  arrange_second(second, normalised);
+  for (int v = 0; v < 8 && first; v++) normalised->order[v] ^= 4;
   return true;
 }
 
@@ -196,6 +273,8 @@ static bool find(OverlapTpnNormalisation kind, const double pair[24], OverlapTpn
     return find_pca(pair, normalised);
   case OVERLAP_TPN_NORMALISE_SORTED:
     return find_sorted(pair, normalised);
+  case OVERLAP_TPN_NORMALISE_SEPARATED:
+    return find_separated(pair, normalised);
   case OVERLAP_TPN_NORMALISE_UNSCALED:
     if (!find_unit(pair, normalised)) return false;
     normalised->factor = 1;
@@ -339,7 +418,8 @@ void overlap_tpn_normalise_pull(const OverlapTpnNormalised *normalised, double v
     pull_unit(normalised, volume, inner, gradient);
   else if (normalised->kind == OVERLAP_TPN_NORMALISE_UNSCALED)
     pull_unit(normalised, 0, inner, gradient);
-  else if (normalised->kind == OVERLAP_TPN_NORMALISE_SORTED)
+  else if (normalised->kind == OVERLAP_TPN_NORMALISE_SORTED ||
+           normalised->kind == OVERLAP_TPN_NORMALISE_SEPARATED)
     pull_sorted(normalised, volume, inner, gradient);
   else
     pull_pca(normalised, inner, gradient);

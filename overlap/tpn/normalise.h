@@ -14,10 +14,19 @@
 //         by its barycentric coordinates of the other's centroid, the largest first; then the other's by
 //         their barycentric coordinate of the first's first vertex. Coordinates beyond 3 are compressed: ±3
 //         (1 + ln(|x|/3)), so that a flat first tetrahedron gives no huge numbers.
+//   separated  as sorted, but the order of the two tetrahedra does not depend on how they came, either.
+//         The reach into a face is the other's largest barycentric coordinate there: where it is not
+//         positive, the face's plane separates the two. First comes the tetrahedron that has the face of
+//         least reach, the vertex opposite to that face as its last one, the others as in sorted; the
+//         other's vertices are in the order of their coordinate of that vertex, the largest first. So the
+//         face is the plane x₃ = 0, and the fifth vertex's x₃ is the reach. Where both reaches are equal to
+//         1e-9, the larger tetrahedron comes first, of equally large ones that with the greatest vertex, by
+//         x, then y, then z. A flat one does not come first.
 //
-// The paper has the first two, the code that its authors published trains the third. The last is ours: a
-// network on it cannot tell the order of vertices, and learns one twenty-fourth of the cases twice over;
-// where two coordinates tie, its value jumps.
+// The paper has the first two, the code that its authors published trains the third. The last two are ours: a
+// network on them cannot tell the order of vertices, and learns one twenty-fourth of the cases twice over;
+// on the last it cannot tell the order of the two, either. Where two values that decide are equal, its value
+// jumps.
 //
 // All are functions of the pair: a network's V = factor · V'(normalised) has a gradient that goes through
 // them, including the turning of the axes. A principal axis turns by D_ij / (λ_j − λ_i), D the change of the
@@ -34,6 +43,7 @@ typedef enum OverlapTpnNormalisation {
   OVERLAP_TPN_NORMALISE_PCA,
   OVERLAP_TPN_NORMALISE_SORTED,
   OVERLAP_TPN_NORMALISE_UNSCALED,
+  OVERLAP_TPN_NORMALISE_SEPARATED,
   OVERLAP_TPN_NORMALISE_COUNT,
 } OverlapTpnNormalisation;
 
@@ -44,11 +54,11 @@ typedef struct OverlapTpnNormalised {
   double matrix[9]; // normalised = matrix · (x − origin), row-major
   double origin[3];
   double principal[3]; // pca: principal values, falling
-  int order[8];        // sorted: which of the pair's eight vertices stands in each place
+  int order[8];        // sorted, separated: which of the pair's eight vertices stands in each place
 } OverlapTpnNormalised;
 
 // False: the first tetrahedron is too flat for it (all but pca: |det E| below 1e-14 of the edges'
-// product), or what the network would be shown is not finite.
+// product; of separated, both are), or what the network would be shown is not finite.
 bool overlap_tpn_normalise(OverlapTpnNormalisation kind, const double pair[24],
                            OverlapTpnNormalised *normalised);
 

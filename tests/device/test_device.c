@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/memory.h"
 #include "datagen/hard.h"
@@ -15,6 +17,7 @@
 #include "overlap/clip/lanes.h"
 #include "overlap/model.h"
 #include "overlap/tpn/portion.h"
+#include "overlap/weights.h"
 
 enum { COUNT = 4099, MEMBERS = 96, MODELS = 5 }; // models: those that answer to the bit
 
@@ -150,6 +153,59 @@ START_TEST(hard_pairs_are_answered_to_the_bit) {
 }
 END_TEST
 
+static const char *const normalisations[] = {"unit", "unscaled", "sorted", "separated"};
+enum { NORMALISATIONS = 4 };
+
+// The network of tpn behind another normalisation, as net/weights/tpn.safetensors in `folder`.
+static void write_normalised(const char *normalisation, const char *folder) {
+  char path[4096], text[64];
+  NetModel_f32 network;
+  NetCard card;
+  ck_assert_ok(overlap_weights_find("tpn", path, sizeof path));
+  ck_assert_int_eq(net_weights_read_f32(path, &network, &card), NET_OK);
+  snprintf(text, sizeof text, "%s, V times 33", normalisation);
+  NetCard written = {.normalisation = text, .range = card.range, .provenance = card.provenance};
+  snprintf(path, sizeof path, "%s/net/weights/tpn.safetensors", folder);
+  ck_assert_int_eq(net_weights_write_f32(path, &network, &written), NET_OK);
+  net_weights_card_destroy(&card);
+  net_model_destroy_f32(&network);
+}
+
+static void make_folder(const char *root, const char *name, char path[64]) {
+  snprintf(path, 64, "%s%s", root, name);
+  ck_assert_int_eq(mkdir(path, 0700), 0);
+}
+
+// Which of the two tetrahedra is flat decides differently by normalisation; the bench sets' pairs have
+// faces that nearly separate them.
+START_TEST(normalisations_are_answered_to_the_bit) {
+  const Device *device = &devices[_i / NORMALISATIONS];
+  const char *normalisation = normalisations[_i % NORMALISATIONS];
+  const int hard = DATAGEN_HARD_CLASS_COUNT * MEMBERS, count = hard + COUNT;
+  char root[] = "/tmp/tetlap-normalised-XXXXXX", net[64], weights[64], file[96];
+  char *kept = getenv("TETLAP_DATA");
+  double *pairs = memory_zeroed((size_t)count * 24, sizeof *pairs);
+  ck_assert_ptr_nonnull(mkdtemp(root));
+  make_folder(root, "/net", net);
+  make_folder(root, "/net/weights", weights);
+  snprintf(file, sizeof file, "%s/tpn.safetensors", weights);
+  if (kept) ck_assert_ptr_nonnull(kept = strdup(kept));
+  write_normalised(normalisation, root);
+  ck_assert_ok(app_bench_pairs_make("near", COUNT, 4, pairs));
+  for (int i = 0; i < hard; i++)
+    memcpy(pairs + (size_t)(COUNT + i) * 24, datagen_hard_make(i / MEMBERS, i % MEMBERS).x,
+           24 * sizeof *pairs);
+  setenv("TETLAP_DATA", root, 1);
+  check_batch(device, "tpn", pairs, count, normalisation);
+  if (kept)
+    setenv("TETLAP_DATA", kept, 1);
+  else
+    unsetenv("TETLAP_DATA");
+  unlink(file), rmdir(weights), rmdir(net), rmdir(root);
+  free(kept), memory_free(pairs);
+}
+END_TEST
+
 // Pairs of a set as two meshes: each tetrahedron has vertices of its own.
 static void check_residences(const Device *device, const double *pairs) {
   DeviceOverlap overlap;
@@ -256,6 +312,7 @@ int main(void) {
   TCase *cases = tcase_create("device");
   tcase_add_loop_test(cases, bench_sets_are_answered_to_the_bit, 0, device_count * MODELS);
   tcase_add_loop_test(cases, hard_pairs_are_answered_to_the_bit, 0, device_count * MODELS);
+  tcase_add_loop_test(cases, normalisations_are_answered_to_the_bit, 0, device_count * NORMALISATIONS);
   tcase_add_loop_test(cases, centroids_are_answered_to_the_bit, 0, device_count * 2);
   tcase_add_loop_test(cases, where_the_numbers_lie_does_not_matter, 0, device_count);
   tcase_add_loop_test(cases, doubtful_pairs_are_handed_on_and_counted, 0, device_count);

@@ -9,7 +9,9 @@
 
 // The two that are maps of space come first.
 static const OverlapTpnNormalisation kinds[] = {OVERLAP_TPN_NORMALISE_UNIT, OVERLAP_TPN_NORMALISE_PCA,
-                                                OVERLAP_TPN_NORMALISE_SORTED, OVERLAP_TPN_NORMALISE_UNSCALED};
+                                                OVERLAP_TPN_NORMALISE_SORTED, OVERLAP_TPN_NORMALISE_UNSCALED,
+                                                OVERLAP_TPN_NORMALISE_SEPARATED};
+enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static void draw_pair(Random *random, double pair[24]) {
   for (int i = 0; i < 24; i++) pair[i] = random_uniform(random);
@@ -82,7 +84,7 @@ START_TEST(rigid_motion_leaves_all_normalised_pairs_unchanged) {
   Random random = random_seeded(2, 0);
   double pair[24], moved[24], r[9];
   for (int n = 0; n < 200; n++)
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < KINDS; k++) {
       OverlapTpnNormalised before, after;
       draw_pair(&random, pair);
       random_rotation(&random, r);
@@ -101,6 +103,8 @@ START_TEST(rigid_motion_leaves_all_normalised_pairs_unchanged) {
 END_TEST
 
 START_TEST(sorted_pair_does_not_depend_on_the_order_of_vertices) {
+  static const OverlapTpnNormalisation sorting[] = {OVERLAP_TPN_NORMALISE_SORTED,
+                                                    OVERLAP_TPN_NORMALISE_SEPARATED};
   static const int orders[4][4] = {{1, 2, 3, 0}, {2, 0, 3, 1}, {3, 2, 1, 0}, {0, 2, 1, 3}};
   Random random = random_seeded(6, 0);
   double pair[24], shuffled[24];
@@ -112,9 +116,11 @@ START_TEST(sorted_pair_does_not_depend_on_the_order_of_vertices) {
       memcpy(shuffled + 3 * v, pair + 3 * first[v], 3 * sizeof(double));
       memcpy(shuffled + 12 + 3 * v, pair + 12 + 3 * second[v], 3 * sizeof(double));
     }
-    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SORTED, pair, &before));
-    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SORTED, shuffled, &after));
-    for (int i = 0; i < 24; i++) ck_assert_near(after.pair[i], before.pair[i], 1e-9);
+    for (int k = 0; k < 2; k++) {
+      ck_assert(overlap_tpn_normalise(sorting[k], pair, &before));
+      ck_assert(overlap_tpn_normalise(sorting[k], shuffled, &after));
+      for (int i = 0; i < 24; i++) ck_assert_near(after.pair[i], before.pair[i], 1e-9);
+    }
   }
 }
 END_TEST
@@ -133,6 +139,86 @@ START_TEST(sorted_pair_by_hand) {
   double first = 0;
   for (int i = 12; i < 15; i++) first = fmin(first, normalised.pair[i]);
   ck_assert_near(first, -3 * (1 + log(1.5)), 1e-14);
+}
+END_TEST
+
+static void exchange(const double pair[24], double exchanged[24]) {
+  memcpy(exchanged, pair + 12, 12 * sizeof(double));
+  memcpy(exchanged + 12, pair, 12 * sizeof(double));
+}
+
+// Equal to the bit; each place holds the same vertex.
+static void check_exchange(const double pair[24]) {
+  OverlapTpnNormalised before, after;
+  double exchanged[24];
+  exchange(pair, exchanged);
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, pair, &before));
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, exchanged, &after));
+  ck_assert_mem_eq(after.pair, before.pair, sizeof before.pair);
+  ck_assert_double_eq(after.factor, before.factor);
+  for (int v = 0; v < 8; v++) ck_assert_int_eq(after.order[v], before.order[v] ^ 4);
+}
+
+START_TEST(separated_pair_does_not_depend_on_which_comes_first) {
+  Random random = random_seeded(7, 0);
+  double pair[24];
+  int exchanged = 0;
+  for (int n = 0; n < 200; n++) {
+    OverlapTpnNormalised normalised;
+    draw_pair(&random, pair);
+    check_exchange(pair);
+    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, pair, &normalised));
+    exchanged += normalised.order[0] >= 4;
+  }
+  ck_assert(exchanged > 50 && exchanged < 150);
+  // the second is a mirror image of the first: both reach equally far and are equally large; mirrors at x = ½
+  // and z = ½
+  for (int c = 0; c < 3; c += 2) {
+    draw_pair(&random, pair);
+    memcpy(pair + 12, pair, 12 * sizeof(double));
+    for (int v = 4; v < 8; v++) pair[3 * v + c] = 1 - pair[3 * v + c];
+    check_exchange(pair);
+  }
+  // the greatest vertices have the same x and y
+  check_exchange((double[]){0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, -.5, 0, 1, 0, 0, 0, -1});
+}
+END_TEST
+
+// Of two that a plane of a face separates, the first has that face, and it is the plane of the third
+// coordinate, on whose far side all of the second lies.
+START_TEST(separating_face_is_the_first_plane_of_the_third_coordinate) {
+  Random random = random_seeded(8, 0);
+  double pair[24], other[24];
+  for (int n = 0; n < 100; n++) {
+    OverlapTpnNormalised normalised;
+    draw_pair(&random, pair);
+    double gap = n % 2 ? random_uniform(&random) : 0;
+    // the first's last three vertices are in the plane z = 0, the second touches or is beyond it with a
+    // vertex
+    pair[2] = 1, pair[5] = pair[8] = pair[11] = 0;
+    for (int v = 4; v < 8; v++) pair[3 * v + 2] = -gap - random_uniform(&random);
+    for (int i = 12; i < 15; i++)
+      pair[i] = i == 14 ? -gap : (pair[3 + i - 12] + pair[6 + i - 12] + pair[9 + i - 12]) / 3;
+    exchange(pair, other);
+    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, n % 3 ? pair : other, &normalised));
+    if (gap == 0) ck_assert_int_eq(normalised.order[0] / 4, n % 3 ? 0 : 1);
+    ck_assert(gap == 0 ? fabs(normalised.pair[14]) < 1e-12 : normalised.pair[14] < 0);
+    for (int v = 5; v < 8; v++) ck_assert(normalised.pair[3 * v + 2] <= normalised.pair[3 * v - 1]);
+  }
+}
+END_TEST
+
+START_TEST(flat_tetrahedron_does_not_come_first_in_a_separated_pair) {
+  double pair[24] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, exchanged[24];
+  OverlapTpnNormalised normalised;
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, pair, &normalised));
+  for (int v = 0; v < 4; v++) ck_assert_int_ge(normalised.order[v], 4);
+  exchange(pair, exchanged);
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, exchanged, &normalised));
+  for (int v = 0; v < 4; v++) ck_assert_int_lt(normalised.order[v], 4);
+  memcpy(exchanged, pair, 12 * sizeof(double));
+  memcpy(exchanged + 12, pair, 12 * sizeof(double));
+  ck_assert(!overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, exchanged, &normalised));
 }
 END_TEST
 
@@ -157,7 +243,7 @@ START_TEST(gradient_is_that_of_the_whole_chain) {
   Random random = random_seeded(3, 0);
   double pair[24], inner[24], gradient[24];
   for (int n = 0; n < 50; n++)
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < KINDS; k++) {
       OverlapTpnNormalised normalised;
       do draw_pair(&random, pair);
       while (!overlap_tpn_normalise(kinds[k], pair, &normalised) || !(normalised.matrix[0] < 10) ||
@@ -213,6 +299,9 @@ int main(void) {
   tcase_add_test(test_case, unscaled_is_unit_with_a_factor_of_one);
   tcase_add_test(test_case, sorted_pair_does_not_depend_on_the_order_of_vertices);
   tcase_add_test(test_case, sorted_pair_by_hand);
+  tcase_add_test(test_case, separated_pair_does_not_depend_on_which_comes_first);
+  tcase_add_test(test_case, separating_face_is_the_first_plane_of_the_third_coordinate);
+  tcase_add_test(test_case, flat_tetrahedron_does_not_come_first_in_a_separated_pair);
   tcase_add_test(test_case, rigid_motion_leaves_all_normalised_pairs_unchanged);
   tcase_add_test(test_case, gradient_is_that_of_the_whole_chain);
   tcase_add_test(test_case, gradient_is_bounded_where_principal_values_are_equal);
