@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "base/status.h"
 
 // Threads that wait shall sleep: on a machine that others use too, spinning ones held a matrix product of 20
@@ -27,6 +28,7 @@ static int flush_output(int exit_code) {
 }
 
 int main(int argument_count, char **arguments) {
+  memory_separate();
   if (app_program_has_threads(argument_count, arguments)) let_threads_sleep(arguments);
   return flush_output(app_program_run(argument_count, arguments));
 }

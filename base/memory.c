@@ -8,6 +8,9 @@
 #include <string.h>
 #include <sys/resource.h>
 
+// From this size on an array gets memory of its own, large enough to be cleared in no time. [bytes]
+enum { LARGE = 1 << 20 };
+
 static atomic_long fail_countdown;
 
 static int fails_now(void) {
@@ -25,14 +28,37 @@ void *memory_copy(const void *source, size_t count, size_t size) {
   return copy;
 }
 
+// Into zeroed memory, pages of zeros left out: what an array does not use takes no memory.
+static void copy_used(char *to, const char *from, size_t bytes) {
+  enum { PAGE = 4096 };
+  static const char zeros[PAGE];
+  for (size_t begin = 0; begin < bytes; begin += PAGE) {
+    size_t count = bytes - begin < PAGE ? bytes - begin : PAGE;
+    if (memcmp(from + begin, zeros, count) != 0) memcpy(to + begin, from + begin, count);
+  }
+}
+
+// NULL if it does not fit; else the old one is gone.
+static void *grow(void *array, size_t old_bytes, size_t bytes) {
+  if (bytes < LARGE) {
+    char *larger = realloc(array, bytes);
+    if (larger) memset(larger + old_bytes, 0, bytes - old_bytes);
+    return larger;
+  }
+  char *larger = calloc(1, bytes);
+  if (!larger) return NULL;
+  if (array) copy_used(larger, array, old_bytes);
+  free(array);
+  return larger;
+}
+
 int memory_reserve(void **array, size_t *capacity, size_t wanted, size_t size) {
   if (wanted <= *capacity && *array) return 1;
   size_t grown = *capacity + *capacity / 2 + 8;
   if (grown < wanted) grown = wanted;
   if (fails_now() || grown > SIZE_MAX / size) return 0;
-  char *larger = realloc(*array, grown * size);
+  void *larger = grow(*array, *capacity * size, grown * size);
   if (!larger) return 0;
-  memset(larger + *capacity * size, 0, (grown - *capacity) * size);
   *array = larger;
   *capacity = grown;
   return 1;
@@ -57,7 +83,7 @@ void memory_trim(void) {
 }
 
 void memory_separate(void) {
-  enum { MAPS = 65536, LARGE = 1 << 20 }; // the C library's own number; large enough to be cleared in no time
+  enum { MAPS = 65536 }; // the C library's own number
   mallopt(M_MMAP_MAX, MAPS);
   mallopt(M_MMAP_THRESHOLD, LARGE);
   mallopt(M_TRIM_THRESHOLD, 2 * LARGE);

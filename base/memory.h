@@ -26,8 +26,9 @@ size_t memory_held_by(size_t count, const void *const *arrays); // of several
 void memory_trim(void);
 
 // Large arrays get memory of their own, which goes back to the system when they are freed, and what they do
-// not touch takes none: as the C library begins, and a library that was loaded may have changed
-// (SuperLU_DIST, which PETSc brings, has all come from one heap that never shrinks).
+// not touch takes none. The C library begins so, but puts ever larger ones into its heap once such were
+// freed, and a library that was loaded may have changed it (SuperLU_DIST, which PETSc brings, has all come
+// from one heap that never shrinks). A program begins with it.
 void memory_separate(void);
 
 // Tests: the k-th allocation from now on (1 = the next) fails once; 0 switches it off.

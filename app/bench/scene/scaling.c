@@ -113,15 +113,17 @@ static const AppBenchColumn columns[] = {
     {"subject", APP_BENCH_TEXT, offsetof(Row, subject), "of",
      "overlap (size: pairs) or step (size: vertices)"},
     {"name", APP_BENCH_TEXT, offsetof(Row, of), "",
-     "overlap model, or phase of a step; `factorisation` is told a "
-     "set-up"},
+     "overlap model, or of a step `total`, `Newton` (an iteration of Newton's method, everything in it) and "
+     "its "
+     "phases; `factorisation` is told a set-up"},
     {"size", APP_BENCH_INTEGER, offsetof(Row, size), "size", "pairs of a call, or vertices of the scene"},
     {"seconds", APP_BENCH_NUMBER, offsetof(Row, seconds), "s", "wall time of a call or a step [s]"},
     {"cpu_seconds", APP_BENCH_NUMBER, offsetof(Row, cpu), "cpu s", "processor time of it; not of phases [s]"},
     {"spread", APP_BENCH_NUMBER, offsetof(Row, spread), "spread", "(max − min) / median; not of phases"},
     {"seconds_per_item", APP_BENCH_NUMBER, offsetof(Row, each), "s each", "a pair or a vertex [s]"},
     {"exponent", APP_BENCH_NUMBER, offsetof(Row, exponent), "exponent",
-     "p of the power law seconds ~ sizeᵖ that fits all sizes of this name best"},
+     "p of the power law time ~ sizeᵖ that fits all sizes of this name best; of processor time, for phases "
+     "of wall time"},
     {"newton_iterations", APP_BENCH_NUMBER, offsetof(Row, newton), "Newton", "of the run"},
     {"set_ups", APP_BENCH_NUMBER, offsetof(Row, set_ups), "set-ups",
      "factors or hierarchies made in the run"},
@@ -158,7 +160,7 @@ static void fit(Table *table) {
       const Row *row = &table->rows[other];
       if (strcmp(row->subject, table->rows[r].subject) != 0 || strcmp(row->of, table->rows[r].of) != 0)
         continue;
-      sizes[count] = (double)row->size, seconds[count++] = row->seconds;
+      sizes[count] = (double)row->size, seconds[count++] = isnan(row->cpu) ? row->seconds : row->cpu;
     }
     table->rows[r].exponent = app_bench_scaling_exponent(sizes, seconds, count);
   }
@@ -269,7 +271,10 @@ static void add_phases(const AppBenchTrial *trial, int rounds, Table *table) {
       result->solver.solves ? (double)result->solver.iterations / (double)result->solver.solves : NAN;
   row.peak = (double)result->peak_rss_bytes;
   table->rows[table->count++] = row;
+  double share = fmax(row.newton, 1) / steps; // Newton's iterations a step
   row.newton = row.set_ups = row.iterations = row.peak = NAN;
+  row.of = "Newton", row.seconds /= share, row.cpu /= share, row.each /= share;
+  table->rows[table->count++] = row;
   app_bench_trial_split(&phases, seconds);
   for (int p = 0; p < APP_BENCH_PHASE_COUNT; p++) {
     bool is_factor = strcmp(app_bench_phases[p], "factorisation") == 0;
