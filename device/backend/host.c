@@ -41,7 +41,7 @@ static Status build(void *self, const DeviceProgram *program, void **module) {
       {&device_program_gather, device_host_gather}, {&device_program_poses, device_host_poses},
       {&device_program_tpn, device_host_tpn},       {&device_program_tpn_bf16, device_host_tpn_bf16},
       {&device_program_scalar, device_host_scalar}, {&device_program_geo_small, device_host_geo_small},
-      {&device_program_geo, device_host_geo}};
+      {&device_program_geo, device_host_geo},       {&device_program_peak, device_host_peak}};
   for (size_t k = 0; k < sizeof known / sizeof *known; k++)
     if (known[k].program == program) {
       *module = (void *)(size_t)known[k].kernels;

@@ -16,7 +16,7 @@ typedef struct DeviceHostKernel {
 // Ends with a name that is NULL.
 extern const DeviceHostKernel device_host_clip[], device_host_clip32[], device_host_gather[],
     device_host_poses[], device_host_tpn[], device_host_tpn_bf16[], device_host_scalar[],
-    device_host_geo_small[], device_host_geo[];
+    device_host_geo_small[], device_host_geo[], device_host_peak[];
 
 static inline void *device_host_at(const DeviceArgument *argument) {
   return argument->memory->at;

@@ -19,6 +19,7 @@ PIECE(language_cuda, "device/kernels/language_cuda.inc");
 PIECE(one, "device/kernels/one.inc");
 PIECE(kept, "device/kernels/clip/kept.inc");
 PIECE(pairs, "device/kernels/pairs.inc");
+PIECE(peak, "device/kernels/peak.inc");
 PIECE(gather, "device/kernels/gather.inc");
 PIECE(clip, "device/kernels/clip/clip.inc");
 PIECE(pose, "device/kernels/clip/pose.inc");
@@ -75,6 +76,14 @@ const DeviceProgram device_program_gather = {
     .defines = "#define GROUPS_AT_ONCE 1\n",
     .pieces = {one, pairs, gather},
     .kernels = {"gather_pairs", "scatter_answers"},
+    .items = 64,
+};
+
+const DeviceProgram device_program_peak = {
+    .name = "peak",
+    .defines = "#define GROUPS_AT_ONCE 4\n",
+    .pieces = {peak},
+    .kernels = {"peak_float", "peak_double"},
     .items = 64,
 };
 
@@ -141,9 +150,9 @@ const DeviceProgram device_program_geo = {
 };
 
 static const DeviceProgram *const programs[] = {
-    &device_program_clip,   &device_program_clip32,    &device_program_gather,
-    &device_program_poses,  &device_program_tpn,       &device_program_tpn_bf16,
-    &device_program_scalar, &device_program_geo_small, &device_program_geo};
+    &device_program_clip, &device_program_clip32,   &device_program_gather, &device_program_poses,
+    &device_program_tpn,  &device_program_tpn_bf16, &device_program_scalar, &device_program_geo_small,
+    &device_program_geo,  &device_program_peak};
 
 const DeviceProgram *const *device_source_programs(int *count) {
   *count = sizeof programs / sizeof *programs;

@@ -31,7 +31,7 @@ typedef struct DeviceProgram {
 
 extern const DeviceProgram device_program_clip, device_program_clip32, device_program_gather,
     device_program_poses, device_program_tpn, device_program_tpn_bf16, device_program_scalar,
-    device_program_geo_small, device_program_geo;
+    device_program_geo_small, device_program_geo, device_program_peak;
 
 // All programs, an array of `*count`.
 const DeviceProgram *const *device_source_programs(int *count);

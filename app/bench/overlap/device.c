@@ -5,6 +5,7 @@
 #include <math.h>
 #include <omp.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "app/bench/overlap/torch.h"
 #include "app/bench/peak.h"
@@ -13,6 +14,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "device/peak/peak.h"
 
 const char *const app_bench_residences[APP_BENCH_RESIDENCES] = {"device", "indices", "host"};
 enum { DEVICE_COLUMNS, INDICES, HOST, QUANTITY_COUNT = 3 };
@@ -46,7 +48,8 @@ typedef struct Bench {
   Contestant *contestants;
   AppBenchTorch *torches; // beside the contestants of a set and batch
   int count, torch_count;
-  double host_peak[2]; // multiplications and additions of a core of this processor, in float, double [1/s]
+  double
+      peak[DEVICE_ARITHMETIC_COUNT]; // multiplications and additions [1/s], of a processor those of one core
 } Bench;
 
 typedef struct Row {
@@ -73,9 +76,9 @@ static const AppBenchColumn columns[] = {
      "share of the kernels' time that a network's gate takes; clipping has none of its own"},
     {"of_peak", APP_BENCH_NUMBER, offsetof(Row, of_peak), "of peak",
      "arithmetic of clipping, or multiplications and additions of a network's products, over the time of all "
-     "kernels, by what the device can do at most: its maker's figure; of `host` over processor time, by what "
-     "a "
-     "core is measured to do (bf16 there: in float)"},
+     "kernels, by what the device can do at most: its maker's figure (cuda) or a kernel of fused "
+     "multiply-adds (opencl); of a processor over its time, by what one core is measured to do. Where there "
+     "is no product in bf16, tpn-bf16 is compared with float"},
     {"of_issue", APP_BENCH_NUMBER, offsetof(Row, of_issue), "of issue",
      "instructions of that arithmetic (a fused one is one) over the time of all kernels, by what all "
      "multiprocessors can issue: at least so much, for what compares, chooses and loads is not counted; of "
@@ -172,15 +175,12 @@ static double median_of(double *values, int count) {
   return values[count / 2];
 }
 
-// Of what the device can do at most, at so many pairs over the time of kernels, or of this processor; NaN:
-// nobody says.
+// Of what the device can do at most, over the time of its kernels; of a processor, of what a core can, over
+// processor time. NaN: nobody says.
 static double share_of_peak(const Bench *bench, const Contestant *contestant, double kernel_rate,
                             double cpu_rate) {
-  const DeviceArithmetic arithmetic = device_overlap_arithmetic(contestant->overlap);
-  const bool is_host = bench->device.ops == &device_host;
-  const double peak =
-      is_host ? bench->host_peak[arithmetic == DEVICE_IN_DOUBLE] : bench->device.info.peak[arithmetic];
-  const double rate = is_host ? cpu_rate : kernel_rate;
+  const double peak = bench->peak[device_overlap_arithmetic(contestant->overlap)];
+  const double rate = bench->device.info.is_gpu ? kernel_rate : cpu_rate;
   return contestant->flops > 0 && peak > 0 ? contestant->flops * rate / peak : NAN;
 }
 
@@ -333,6 +333,21 @@ static Status make_inputs(Bench *bench) {
   return STATUS_OK;
 }
 
+// The maker's figure where the driver tells the kind of GPU; else what is measured.
+static Status find_peak(Bench *bench) {
+  const DeviceInfo *info = &bench->device.info;
+  double *peak = bench->peak;
+  memcpy(peak, info->peak, sizeof info->peak);
+  if (peak[DEVICE_IN_DOUBLE] > 0) return STATUS_OK;
+  if (info->is_gpu)
+    TRY(device_peak_measure(&bench->device, peak));
+  else
+    for (int k = 0; k < 2; k++)
+      peak[k == 0 ? DEVICE_IN_FLOAT : DEVICE_IN_DOUBLE] = app_bench_peak_measure(k == 0);
+  peak[DEVICE_IN_BF16] = peak[DEVICE_IN_FLOAT]; // an emulated product is some in float
+  return STATUS_OK;
+}
+
 static Status measure(Bench *bench) {
   const AppBenchDeviceDef *def = bench->def;
   omp_set_num_threads(def->common->threads);
@@ -341,8 +356,7 @@ static Status measure(Bench *bench) {
     if (def->wants_model[m])
       TRY(device_overlap_create(&bench->overlaps[m], &bench->device, device_overlap_models[m]));
   TRY(make_inputs(bench));
-  for (int k = 0; k < 2 && bench->device.ops == &device_host; k++)
-    bench->host_peak[k] = app_bench_peak_measure(k == 0);
+  TRY(find_peak(bench));
   return measure_sets(bench);
 }
 
