@@ -18,8 +18,7 @@ static const char FINER[] =
     "the finer slab is pressed deep in its own elements: by 1.2 of them at the last depth";
 static const char BY_ELEMENT[] = "pressure by element, which depends on how the other mesh covers it; "
                                  "`nodal` evens it out at the vertices";
-static const char BY_PAIR[] =
-    "pressure by pair, which depends on how one mesh happens to cut the other: why `nodal` is the default";
+static const char BY_PAIR[] = "pressure by pair, which depends on how one mesh happens to cut the other";
 static const char SIDEWAYS[] =
     "sideways parts of dV/dx cancel between neighbouring pairs; a learned one errs by some per cent in each, "
     "and what is left is 4 to 14 % of the normal force";
@@ -48,6 +47,9 @@ static const char COARSE[] = "elements of 12.5 mm along the beam: 17 % off with 
 static const char NESTED[] = "grad V of a network is not 0 where one tetrahedron is inside another: it is "
                              "pushed somewhere, and nothing "
                              "tells that from a force that means something";
+static const char LEARNED_APART[] = "V and the centroid are learned apart from each other: their forces are "
+                                    "not quite the gradient of a potential";
+static const char LEARNED_VOLUME[] = "the error of the learned V";
 static const char ROUNDED[] =
     "a clearance of 5e-7 m is a rounding of single precision: contact comes and goes";
 static const char AUDIT[] = "tetlap compare --audit-only exact: force error";
@@ -97,8 +99,12 @@ static const AppStressLimit limits[] = {
 // With the potential `field`.
 static const AppStressLimit limits_of_field[] = {
     {"spikes", NULL, "asymmetry in y", 0.09, TIPS, NULL},
-    {"spike and wedge", NULL, "asymmetry in x", 0.007, TIPS, NULL},
+    {"spike and wedge", NULL, "asymmetry in x", 0.05, TIPS, NULL},
     {"flat slabs, edge ratio 1/2", NULL, "pressure against 2 c depth", 0.25, MEDIAL, NULL},
+    {"flat slabs*", LEARNED, "pressure against 2 c depth", 0.006, LEARNED_VOLUME, AUDIT},
+    {"vertex on vertex", LEARNED, "energy gain", 0.004, LEARNED_APART,
+     "trouble.energy, history.csv: energy_gain"},
+    {"spike*", LEARNED, "energy gain", 0.003, LEARNED_APART, "trouble.energy, history.csv: energy_gain"},
 };
 
 static bool is_named(const char *pattern, const char *name) {

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/def.h"
 #include "overlap/model.h"
 
 static const double LIMIT_S = 60;
@@ -62,6 +63,22 @@ static Status run_open(const AppStressScene *scene, const AppStressOptions *opti
   return STATUS_OK;
 }
 
+// What scenes that name `nodal` are run with, unless the options say: the default of the program.
+static const char DEFAULT[] = "field";
+
+static bool has_centroid(const char *model) {
+  OverlapModel created;
+  if (overlap_model_create(&created, model)) return false;
+  bool has = overlap_model_has_centroid(&created);
+  overlap_model_destroy(&created);
+  return has;
+}
+
+static const char *potential_of(const AppStressOptions *options, const char *model) {
+  if (options->potential) return options->potential;
+  return model == ANY || has_centroid(model) ? DEFAULT : NULL;
+}
+
 static Status open_with(const AppStressScene *scene, const AppStressOptions *options, const char *model,
                         AppStressRun *run) {
   const char *overrides[APP_STRESS_MAX_OVERRIDES + 1];
@@ -71,13 +88,14 @@ static Status open_with(const AppStressScene *scene, const AppStressOptions *opt
     overrides[count] = scene->overrides[count];
   snprintf(overlap, sizeof overlap, "contact.overlap=%s", model);
   if (model != ANY) overrides[count++] = overlap;
-  return app_stress_run_open(run, scene->file, overrides, count, options->potential);
+  return app_stress_run_open(run, scene->file, overrides, count, potential_of(options, model));
 }
 
 static Status run_case(const AppStressScene *scene, const AppStressOptions *options, const char *model,
                        AppStressRow *row) {
   AppStressRun run;
   TRY(open_with(scene, options, model, &run));
+  if (run.scene.contact.is_on) row->potential = contact_def_potential_name(run.scene.contact.potential);
   Status status = run_open(scene, options, &run, row);
   app_stress_run_close(&run);
   return status;
@@ -100,7 +118,7 @@ static bool is_able(const AppStressScene *scene, const AppStressOptions *options
                     AppStressRow *row) {
   OverlapModel model;
   Status created = overlap_model_create(&model, ops->name);
-  bool has_centroid = !created && overlap_model_has_centroid(&model);
+  bool gives_centroid = !created && overlap_model_has_centroid(&model);
   overlap_model_destroy(&model);
   if (created) {
     app_stress_excuse(row, "%s", status_message());
@@ -110,7 +128,7 @@ static bool is_able(const AppStressScene *scene, const AppStressOptions *options
     app_stress_excuse(row, "its V does not follow the size of the pair: no forces");
     return false;
   }
-  if (options->potential && strcmp(options->potential, "field") == 0 && !has_centroid) {
+  if (options->potential && strcmp(options->potential, "field") == 0 && !gives_centroid) {
     app_stress_excuse(row, "gives no centroid, which the potential field needs");
     return false;
   }
@@ -127,7 +145,6 @@ static Status run_row(const AppStressScene *scene, const AppStressOptions *optio
   if (options->stop && *options->stop) return status_fail(STATUS_INTERRUPTED, "interrupted");
   AppStressRow *row = app_stress_add(stress, "scenes", scene->name, ops ? ops->name : ANY);
   if (!row) return status_no_memory("the table of hard cases");
-  row->potential = options->potential;
   if (!ops || is_able(scene, options, ops, row)) {
     Status status = run_case(scene, options, row->model, row);
     if (status) {

@@ -43,7 +43,7 @@ typedef struct AppStressMeasure {
 typedef struct AppStressRow {
   const char *group; // "pairs" or "scenes"
   const char *name, *model;
-  const char *potential; // of a scene, in place of its own; NULL: that
+  const char *potential; // of a scene with contact; NULL: none, or absent
   AppStressOutcome outcome;
   AppStressMeasure measures[APP_STRESS_MAX_MEASURES];
   int measure_count;
@@ -66,7 +66,8 @@ typedef struct AppStressOptions {
   bool has_pairs, has_scenes, is_quick;
   const char *only;   // part of a case's name; NULL: all
   const char *models; // comma-separated; NULL: all, with `is_quick` clip, geo and any
-  // In place of `nodal`, which scenes name, at its default stiffness; NULL: as they say.
+  // In place of `nodal`, which scenes name, at its default stiffness; NULL: `field` for models that give a
+  // centroid.
   const char *potential;
   double limit_s; // processor time of a scene with a model; 0: the case's own
   const volatile sig_atomic_t *stop;

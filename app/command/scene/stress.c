@@ -27,7 +27,10 @@ static const struct argp_option option_table[] = {
      "geo)",
      0},
     {"potential", KEY_POTENTIAL, "NAME", 0,
-     "Scenes with this contact potential (field, …) and its default stiffness where they name nodal", 0},
+     "Contact potential of the scenes, at its default stiffness; nodal: as their files say (default: field, "
+     "for "
+     "models without a centroid nodal)",
+     0},
     {"pairs", KEY_PAIRS, NULL, 0, "Only classes of pairs", 0},
     {"scenes", KEY_SCENES, NULL, 0, "Only scenes", 0},
     {"quick", KEY_QUICK, NULL, 0, "Fewer members of each class, and only the scenes that take a moment", 0},
