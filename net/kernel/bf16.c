@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include "net/kernel/real.h"
+
 enum { COLUMNS = 4 * NET_COLUMN_UNIT };
 
 bool net_kernel_bf16_is_native(void) {
@@ -27,7 +29,7 @@ float net_kernel_bf16_round(float x) {
 }
 
 static const NetKernel_f32 *floats(void) {
-  return net_kernel_f32(net_kernel_best());
+  return net_kernel_real_f32(net_kernel_real_best());
 }
 
 // One block, a few columns at a time.

@@ -2,39 +2,14 @@
 #include "net/kernel/kernel.h"
 
 #include "net/kernel/bf16.h"
-
-static const NetKernel_f32 *bf16_kernel_f32(void) {
-#if defined(__x86_64__)
-  if (net_kernel_bf16_is_native()) return &net_kernel_bf16_native;
-#endif
-  return &net_kernel_bf16_emulated;
-}
-
-static const NetKernel_f64 *bf16_kernel_f64(void) {
-  return NULL;
-}
+#include "net/kernel/real.h"
 
 bool net_kernel_is_available(NetKernelKind kind) {
-  switch (kind) {
-  case NET_KERNEL_BLAS:
-  case NET_KERNEL_BF16:
-    return true;
-#if defined(__x86_64__)
-  case NET_KERNEL_AVX2:
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  case NET_KERNEL_AVX512:
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
-#endif
-  default:
-    return false;
-  }
+  return kind == NET_KERNEL_BF16 || net_kernel_real_is_available(kind);
 }
 
 NetKernelKind net_kernel_best(void) {
-  int kind = NET_KERNEL_AVX512;
-  while (kind > 0 && !net_kernel_is_available((NetKernelKind)kind)) kind--;
-  return (NetKernelKind)kind;
+  return net_kernel_real_best();
 }
 
 const char *net_kernel_name(NetKernelKind kind) {
@@ -42,10 +17,14 @@ const char *net_kernel_name(NetKernelKind kind) {
   return names[kind];
 }
 
-#include "net/real_f32.h"
+const NetKernel_f32 *net_kernel_f32(NetKernelKind kind) {
+  if (kind != NET_KERNEL_BF16) return net_kernel_real_f32(kind);
+#if defined(__x86_64__)
+  if (net_kernel_bf16_is_native()) return &net_kernel_bf16_native;
+#endif
+  return &net_kernel_bf16_emulated;
+}
 
-#include "net/kernel/choice.inc"
-
-#include "net/real_f64.h"
-
-#include "net/kernel/choice.inc"
+const NetKernel_f64 *net_kernel_f64(NetKernelKind kind) {
+  return net_kernel_real_f64(kind);
+}
