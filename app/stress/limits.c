@@ -32,7 +32,7 @@ static const char BALANCED[] =
     "an edge balanced on an edge is an unstable equilibrium: rounding decides to which side it slides off";
 static const char TIPS[] =
     "a tip balanced on a tip or an edge is an unstable equilibrium, and the chosen stiffness "
-    "lets it go deeper";
+    "lets it go deeper: rounding decides to which side it slides off";
 static const char MEDIAL[] =
     "pressed in deeper than half of the finer slab's thickness, from where the other side is "
     "nearer";
@@ -98,8 +98,10 @@ static const AppStressLimit limits[] = {
 
 // With the potential `field`.
 static const AppStressLimit limits_of_field[] = {
+    {"spikes", NULL, "asymmetry in x", 0.09, TIPS, NULL},
     {"spikes", NULL, "asymmetry in y", 0.09, TIPS, NULL},
     {"spike and wedge", NULL, "asymmetry in x", 0.05, TIPS, NULL},
+    {"spike and wedge", NULL, "asymmetry in y", 0.05, TIPS, NULL},
     {"flat slabs, edge ratio 1/2", NULL, "pressure against 2 c depth", 0.25, MEDIAL, NULL},
     {"flat slabs*", LEARNED, "pressure against 2 c depth", 0.006, LEARNED_VOLUME, AUDIT},
     {"vertex on vertex", LEARNED, "energy gain", 0.004, LEARNED_APART,
