@@ -11,6 +11,7 @@
 #include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -33,6 +34,7 @@ static void become(int commands, int answers, const char *profile) {
   int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
   setpgid(0, 0); // a Ctrl-C of the terminal is the parent's to answer
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setenv("TMPDIR", profile, 1); // its own folders would be left where it is killed
   dup2(nothing, STDIN_FILENO), dup2(nothing, STDOUT_FILENO), dup2(nothing, STDERR_FILENO);
   if (dup2(in, TO_BROWSER) < 0 || dup2(out, FROM_BROWSER) < 0) _exit(127);
   const char *sandbox = geteuid() == 0 ? "--no-sandbox" : "--no-first-run"; // root has none

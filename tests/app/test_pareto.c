@@ -381,7 +381,9 @@ START_TEST(wrong_arguments_are_usage_errors) {
   ck_assert_int_eq(run("--model clap"), 64);
   ck_assert_int_eq(run("--pairs disjoint"), 64);
   ck_assert_int_eq(run("--count 0"), 64);
-  ck_assert_int_eq(run("--sweep /nowhere --model clip -o /tmp"), 74);
+  char arguments[512];
+  snprintf(arguments, sizeof arguments, "--sweep /nowhere --model clip -o '%s'", directory);
+  ck_assert_int_eq(run(arguments), 74);
 }
 END_TEST
 
