@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays of a run as text inside a web page: numbers as 16-bit codes, differences from a prediction, bytes
-// sorted by weight, deflated, base64. report/src/codes.js decodes them.
+// sorted by weight, deflated, base64. report/src/data/codes.js decodes them.
 #ifndef TETLAP_APP_REPORT_CODES_H
 #define TETLAP_APP_REPORT_CODES_H
 

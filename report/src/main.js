@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import "./style.css";
-import { buildBenches } from "./bench.js";
-import { HUES, listFields } from "./colour.js";
-import { buildComparison } from "./compare.js";
-import { buildContacts } from "./contacts.js";
-import { RUNS, indexAt, readData, unionTimes } from "./data.js";
+import { buildBenches } from "./table/bench.js";
+import { HUES, listFields } from "./view/colour.js";
+import { buildComparison } from "./table/compare.js";
+import { buildContacts } from "./table/contacts.js";
+import { RUNS, indexAt, readData, unionTimes } from "./data/data.js";
 import { h } from "./dom.js";
-import { buildFrontier } from "./frontier.js";
+import { buildFrontier } from "./plot/frontier.js";
 import { LiveBar, follow } from "./live.js";
-import { buildManifest } from "./manifest.js";
-import { buildHeader, buildOverview } from "./overview.js";
-import { buildPhases } from "./phases.js";
-import { TimePlot, listPlots, momentOf } from "./plots.js";
+import { buildManifest } from "./table/manifest.js";
+import { buildHeader, buildOverview } from "./table/overview.js";
+import { buildPhases } from "./table/phases.js";
+import { TimePlot, listPlots, momentOf } from "./plot/plots.js";
 import { present, showFrame } from "./present.js";
-import { Stage } from "./stage.js";
+import { Stage } from "./view/stage.js";
 import { createState } from "./state.js";
-import { buildStress } from "./stress.js";
-import { buildSweep, sweepTitle } from "./sweep.js";
-import { Transport } from "./transport.js";
+import { buildStress } from "./table/stress.js";
+import { buildSweep, sweepTitle } from "./plot/sweep.js";
+import { Transport } from "./view/transport.js";
 
 const KEYS = [
   ["Space", "play, pause"],

@@ -2,7 +2,7 @@
 // compare.json (docs/output.md) as tables: the audit, which compares the models with the reference in the same
 // configurations, and their own runs. A run that did not reach the end is marked.
 
-import { count, format, h, scrolled, swatchOf } from "./dom.js";
+import { count, format, h, scrolled, swatchOf } from "../dom.js";
 
 const AUDITS = [
   ["audit_volume_error", "Volumes V"],

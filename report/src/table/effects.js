@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What each effect of a run cost: time, calls and memory. An effect that a run does not have has no cell.
 
-import { count, format, h, scrolled, swatchOf } from "./dom.js";
+import { count, format, h, scrolled, swatchOf } from "../dom.js";
 
 const COLUMNS = [
   ["Forces", "force_s", (row) => format(row.force_s, "s")],

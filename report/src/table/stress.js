@@ -2,7 +2,7 @@
 // The table of hard cases (`tetlap stress --json`): case × model, a mark for each verdict, and what was
 // measured beside the mark that is pointed at.
 
-import { format, h, svg } from "./dom.js";
+import { format, h, svg } from "../dom.js";
 
 const VERDICTS = {
   held: "held",

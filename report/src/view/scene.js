@@ -26,7 +26,7 @@ import {
   WebGLRenderer,
 } from "three";
 import { createRoom, outlineOf, sectionOf } from "./cut.js";
-import { LEVELS, NO_CODE, decode } from "./codes.js";
+import { LEVELS, NO_CODE, decode } from "../data/codes.js";
 
 const VERTEX = `
   in float code;

@@ -2,9 +2,9 @@
 // Quantities over time, each with a cursor at the page's time; dragging in a plot moves it.
 
 import * as Plot from "@observablehq/plot";
-import { HUES } from "./colour.js";
-import { indexAt } from "./data.js";
-import { format, h, raise, svg } from "./dom.js";
+import { HUES } from "../view/colour.js";
+import { indexAt } from "../data/data.js";
+import { format, h, raise, svg } from "../dom.js";
 
 const MARGIN = { left: 52, right: 12, top: 10, bottom: 26 };
 const MAX_FORCES = 5;

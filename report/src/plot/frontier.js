@@ -2,8 +2,8 @@
 // Error against time: every model a labelled point, and the frontier of those that none beats in both.
 
 import * as Plot from "@observablehq/plot";
-import { HUES } from "./colour.js";
-import { format, h, svg } from "./dom.js";
+import { HUES } from "../view/colour.js";
+import { format, h, svg } from "../dom.js";
 import { panelsOf } from "./pareto.js";
 import { powerOf } from "./plots.js";
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a run's time went: a bar of phases, and the seconds beside their names.
 
-import { count, format, h, scrolled, swatchOf } from "./dom.js";
+import { count, format, h, scrolled, swatchOf } from "../dom.js";
 import { buildEffects } from "./effects.js";
 
 const PHASES = [

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of `tetlap bench --json` as a table: columns as they come, those that are the same in all rows above it.
 
-import { format, h } from "./dom.js";
+import { format, h } from "../dom.js";
 
 const isNumber = (value) => typeof value === "number";
 

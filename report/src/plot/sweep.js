@@ -3,8 +3,8 @@
 // that failed as crosses at the foot; and the whole table.
 
 import * as Plot from "@observablehq/plot";
-import { HUES } from "./colour.js";
-import { format, h, raise } from "./dom.js";
+import { HUES } from "../view/colour.js";
+import { format, h, raise } from "../dom.js";
 import { powerOf } from "./plots.js";
 
 const MARGIN = { left: 56, right: 16, top: 12, bottom: 42 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What it takes to do the same again.
 
-import { h, swatchOf } from "./dom.js";
+import { h, swatchOf } from "../dom.js";
 
 const text = (value) => (typeof value === "object" && value !== null ? JSON.stringify(value) : String(value));
 

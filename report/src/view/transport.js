@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Time: play, step, scrub. One for all views and plots.
 
-import { indexAt } from "./data.js";
-import { format, h, svg } from "./dom.js";
+import { indexAt } from "../data/data.js";
+import { format, h, svg } from "../dom.js";
 
 const SECONDS = 8; // that a whole run takes at speed 1
 const SPEEDS = [0.25, 0.5, 1, 2];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // pareto.json (docs/output.md) as panels of points.
 
-import { format } from "./dom.js";
+import { format } from "../dom.js";
 
 const QUANTITIES = {
   V: ["Volume", "error of V"],

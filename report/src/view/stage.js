@@ -3,10 +3,10 @@
 
 import { PerspectiveCamera, Spherical, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { NO_CODE, decode } from "./codes.js";
+import { NO_CODE, decode } from "../data/codes.js";
 import { bytesOf, describe, listFields, neutralOf, rampOf, tintsOf } from "./colour.js";
-import { indexAt, readFrames } from "./data.js";
-import { format, h, swatchOf } from "./dom.js";
+import { indexAt, readFrames } from "../data/data.js";
+import { format, h, swatchOf } from "../dom.js";
 import { PALETTE, View } from "./scene.js";
 
 const AXES = ["x", "y", "z"];

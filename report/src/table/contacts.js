@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact forces and their estimated errors: a row for each two that touched.
 
-import { format, h, scrolled, swatchOf } from "./dom.js";
+import { format, h, scrolled, swatchOf } from "../dom.js";
 
 const percent = (share) => format(share == null ? NaN : 100 * share, "%", 2);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The most important figures, of one run or of several.
 
-import { count, format, h, scrolled, swatchOf } from "./dom.js";
+import { count, format, h, scrolled, swatchOf } from "../dom.js";
 
 const hasEnded = (summary) => summary.outcome === "finished";
 
