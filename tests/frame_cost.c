@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the effects that a scene does not call for cost it: two programs of this source, one with the registry
 // of fem/effect/effect.c, the other (FRAME_COST_FEW) with elasticity alone, run one scene and print the
-// processor time of a step [s]. tools/frame_cost builds both and compares them in turns.
+// processor time of a step [s]. tools/measure/frame_cost builds both and compares them in turns.
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
