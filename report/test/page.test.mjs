@@ -462,6 +462,30 @@ const compareTests = {
     assert.equal(new Set([...hues, clip]).size, 4, `${hues} and the reference's ${clip}`);
   },
 
+  async "curves that coincide are striped, and named"(page) {
+    const [named, label, dashes, offsets] = await page.eval(`(() => { const plot = document.querySelector("#plot-force"), lines = [...plot.querySelectorAll("svg [aria-label=line] path")];
+      return [plot.querySelector(".together").textContent, plot.querySelector("svg[role=img]").getAttribute("aria-label"),
+        lines.map((line) => line.getAttribute("stroke-dasharray")), lines.map((line) => line.getAttribute("stroke-dashoffset"))]; })()`);
+    const members = /^Curves that coincide: (.*)\.$/.exec(named)?.[1].split(", ");
+    assert.ok(members?.includes("clip") && members.includes("clip32"), named); // 1e-5 of the force apart
+    assert.ok(label.endsWith(named), label);
+    const order = ["clip", "geo", "clip32"].filter((one) => members.includes(one));
+    ["clip", "geo", "clip32"].forEach((one, k) => {
+      assert.equal(dashes[k], members.includes(one) ? `6 ${6 * (members.length - 1)}` : null, one);
+      if (members.includes(one)) assert.equal(Math.abs(offsets[k]), 6 * order.indexOf(one), one);
+    });
+    assert.deepEqual(await page.eval(`[...document.querySelectorAll(".together")].map((one) => one.hidden === (one.textContent === ""))`), await page.eval("tetlap.plots.map(() => true)"));
+    const apart = await page.eval(`document.querySelector("#plot-audit .together").textContent`);
+    assert.ok(!/geo/.test(apart), apart); // its error is a hundred times clip32's
+  },
+
+  async "what is the same of all runs stands in the manifest once"(page) {
+    const names = await page.eval(`[...document.querySelectorAll("#manifest .manifest")].map((one) => [...one.querySelectorAll("dt")].map((dt) => dt.textContent))`);
+    assert.equal(names.length, 4); // all runs, and three
+    for (const name of ["Processor", "tetlap", "compiler"]) assert.deepEqual(names.map((list) => list.includes(name)), [true, false, false, false], name);
+    assert.deepEqual(names.map((list) => list.includes("Command")), [false, true, true, true]); // clip32's is another
+  },
+
   async "all plots have the same axis of time"(page) {
     const extents = await page.eval("tetlap.plots.map((plot) => plot.x.domain.join())");
     assert.ok(extents.length > 4);

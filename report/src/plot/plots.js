@@ -5,6 +5,7 @@ import * as Plot from "@observablehq/plot";
 import { HUES } from "../view/colour.js";
 import { indexAt } from "../data/data.js";
 import { format, h, raise, svg } from "../dom.js";
+import { groupsOf, stripe } from "./coincide.js";
 
 const MARGIN = { left: 52, right: 12, top: 10, bottom: 26 };
 const MAX_FORCES = 5;
@@ -199,6 +200,7 @@ export class TimePlot {
     const times = [...runs, ...plot.series].flatMap((one) => [one.times[0], one.times.at(-1)]).filter(Number.isFinite);
     this.extent = [Math.min(...times), Math.max(...times)]; // the same for all plots of the page
     this.area = h(".area");
+    this.together = h("p.note.together", { hidden: true });
     this.rows = plot.series.map((one) => this.buildRow(one));
     this.element = h(
       "figure.plot",
@@ -206,6 +208,7 @@ export class TimePlot {
       h("figcaption", h("h3", plot.title, plot.unit && [" ", h("span.unit", plot.unit)])),
       this.area,
       h(".readings", this.rows.map((row) => row.element)),
+      this.together,
       ...(plot.note ? [h("p.note", plot.note)] : []),
     );
     state.on(["time"], () => this.showTime());
@@ -266,10 +269,11 @@ export class TimePlot {
       },
       marks: [plot.isLog ? null : Plot.ruleY([0], { strokeOpacity: 0.35 }), ...bands, ...marks],
     });
-    chart.setAttribute("role", "img");
-    chart.setAttribute("aria-label", `${plot.title} over time: ${plot.series.map((one) => one.label).join(", ")}`);
     this.x = chart.scale("x");
     this.y = chart.scale("y");
+    this.showTogether(chart);
+    chart.setAttribute("role", "img");
+    chart.setAttribute("aria-label", `${plot.title} over time: ${plot.series.map((one) => one.label).join(", ")}. ${this.together.textContent}`.trim());
     this.addCursor(chart, width, height);
     this.area.replaceChildren(chart);
     for (const { one, line } of this.rows) {
@@ -277,6 +281,29 @@ export class TimePlot {
       line.firstChild.setAttribute("stroke-dasharray", this.isDashed(one) ? DASH : "none");
     }
     this.showTime();
+  }
+
+  nameOf(one) {
+    return one.hue !== null && this.runs.length > 1 && one.run && !one.label.includes("−") ? `${one.label} ${one.run.label}` : one.label;
+  }
+
+  // Curves that would hide each other, in stripes where their hues differ, and in words.
+  showTogether(chart) {
+    const { series } = this.plot;
+    const groups = groupsOf(series, (time) => this.x.apply(time), (value) => this.y.apply(value));
+    const lines = [...chart.querySelectorAll("[aria-label=line]")].map((mark) => mark.querySelector("path") ?? mark);
+    for (const group of groups) {
+      const hues = [...new Set(group.map((k) => this.hueOf(series[k])))];
+      if (hues.length < 2) continue;
+      for (const k of group) {
+        const { array, offset } = stripe(hues.indexOf(this.hueOf(series[k])), hues.length);
+        lines[k].setAttribute("stroke-dasharray", array);
+        lines[k].setAttribute("stroke-dashoffset", offset);
+        lines[k].setAttribute("stroke-linecap", "butt");
+      }
+    }
+    this.together.hidden = groups.length === 0;
+    this.together.textContent = groups.map((group) => `Curves that coincide: ${group.map((k) => this.nameOf(series[k])).join(", ")}.`).join(" ");
   }
 
   addCursor(chart, width, height) {

@@ -41,18 +41,30 @@ function counters(run) {
   return h("details.more", h("summary", "Counters of the run"), h(".scroll", h("table", h("tbody", rows))));
 }
 
-function manifestOf(run, isNamed) {
+const listOf = (rows) => (rows.length > 0 ? h("dl", rows.flatMap(([name, value]) => [h("dt", name), h("dd", text(value))])) : null);
+
+function manifestOf(run, rows, isNamed) {
   return h(
     ".manifest",
     isNamed && h("h3", swatchOf(run), run.label),
-    h("dl", rowsOf(run).flatMap(([name, value]) => [h("dt", name), h("dd", text(value))])),
+    listOf(rows),
     run.manifest?.scene && h("details.more", h("summary", "Scene, with every default filled in"), h("pre", { tabindex: 0 }, yamlOf(run.manifest.scene).trimStart())),
     counters(run),
   );
 }
 
+// What is the same of all runs stands there once.
 export function buildManifest(runs) {
   const known = runs.filter((run) => run.manifest || run.summary);
   if (known.length === 0) return null;
-  return h("section.block", { id: "manifest" }, h("h2", "Manifest"), h(".columns", known.map((run) => manifestOf(run, runs.length > 1))));
+  const rows = known.map(rowsOf);
+  const isIn = (list, [name, value]) => list.some((row) => row[0] === name && text(row[1]) === text(value));
+  const common = known.length > 1 ? rows[0].filter((row) => rows.every((list) => isIn(list, row))) : [];
+  return h(
+    "section.block",
+    { id: "manifest" },
+    h("h2", "Manifest"),
+    common.length > 0 && h(".manifest.common", h("h3", "All runs"), listOf(common)),
+    h(".columns", known.map((run, k) => manifestOf(run, rows[k].filter((row) => !isIn(common, row)), runs.length > 1))),
+  );
 }
