@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A digest of contents: detects accidental changes, not forgery.
 #ifndef TETLAP_BASE_DIGEST_H
 #define TETLAP_BASE_DIGEST_H

@@ -58,6 +58,7 @@ enum {
   TETLAP_OVERLAP_NO_FILE = 2,  /* a weights file could not be read */
   TETLAP_OVERLAP_MEMORY = 3,   /* no memory */
   TETLAP_OVERLAP_INTERNAL = 4, /* the model gave up on a pair */
+  TETLAP_OVERLAP_DEVICE = 5,   /* an accelerator is not there, or failed */
 };
 
 /* What went wrong in this thread's last call that failed, in English; "" if none did. Until its next failure.
@@ -178,6 +179,31 @@ TETLAP_OVERLAP_API int tetlap_overlap_meshes(const TetlapOverlap *overlap, const
 
 /* NULL is fine. */
 TETLAP_OVERLAP_API void tetlap_overlap_list_free(TetlapOverlapList *list);
+
+/* ---- Poses */
+
+/* Rigid poses x' = R x + t of one mesh. Of each
+ *
+ *   V = sum of V_ij,   f = -dV/dt,   m = -dV/d(omega), omega a turn about the moved centre R c + t,
+ *
+ * a force and a moment for a pressure of 1 Pa. All sums have one order, so that the processor and every
+ * accelerator give the same bits, with any number of threads. */
+typedef struct TetlapOverlapPoses {
+  size_t size;         /* sizeof(TetlapOverlapPoses) */
+  size_t count;        /* poses, at most INT_MAX; 0 is fine */
+  const double *poses; /* R row by row, then t                         (count, 12) */
+  double *sums;        /* out: V, f, m                                 (count, 7) */
+  double centre[3];    /* c, in the moved mesh as it is given */
+  const char *device;  /* NULL: this processor's vectors; "auto": the first GPU; "cuda", "opencl", "host" */
+} TetlapOverlapPoses;
+#define TETLAP_OVERLAP_POSES_INIT                                                                            \
+  { sizeof(TetlapOverlapPoses), 0, NULL, NULL, {0, 0, 0}, NULL }
+
+/* Meshes stay on the device for a call: pass many poses in one. The handle must be of `clip`. DEVICE: the
+   device is not there or failed; the message quotes its driver. INVALID: as for meshes, or a pose is not
+   finite. */
+TETLAP_OVERLAP_API int tetlap_overlap_poses(const TetlapOverlap *overlap, const TetlapOverlapMesh *moved,
+                                            const TetlapOverlapMesh *others, const TetlapOverlapPoses *poses);
 
 #ifdef __cplusplus
 }

@@ -16,23 +16,6 @@ enum { PORTION = 16384 };
 
 // ---- What is given.
 
-static Status check_mesh(const TetlapOverlapMesh *mesh, int number) {
-  if (mesh->tet_count > INT_MAX || mesh->point_count > INT_MAX)
-    return status_fail(STATUS_INPUT, "mesh %d: at most %d points and tetrahedra are expected", number,
-                       INT_MAX);
-  if ((mesh->tet_count > 0 && !mesh->tets) || (mesh->point_count > 0 && !mesh->points))
-    return status_fail(STATUS_INPUT, "mesh %d: `%s` is NULL", number, mesh->points ? "tets" : "points");
-  for (size_t k = 0; k < 3 * mesh->point_count; k++)
-    if (!isfinite(mesh->points[k]))
-      return status_fail(STATUS_INPUT, "mesh %d, point %zu: coordinate %c is %g, it must be a finite number",
-                         number, k / 3, "xyz"[k % 3], mesh -> points[k]);
-  for (size_t k = 0; k < 4 * mesh->tet_count; k++)
-    if (mesh->tets[k] < 0 || (size_t)mesh->tets[k] >= mesh->point_count)
-      return status_fail(STATUS_INPUT, "mesh %d, tetrahedron %zu: there is no point %d, of 0 to %zd", number,
-                         k / 4, (int)mesh->tets[k], (ptrdiff_t)mesh->point_count - 1);
-  return STATUS_OK;
-}
-
 static void load_tet(const TetlapOverlapMesh *mesh, int tet, double x[HALF]) {
   for (int a = 0; a < 4; a++)
     memcpy(x + 3 * a, mesh->points + 3 * (size_t)mesh->tets[4 * (size_t)tet + (size_t)a], 3 * sizeof *x);
@@ -191,11 +174,7 @@ static Status overlap_meshes(const TetlapOverlap *overlap, const TetlapOverlapMe
   if (!shown) return status_fail(STATUS_INPUT, "the list's place is NULL");
   *shown = NULL;
   TRY(check_wanted(overlap, wanted));
-  for (int m = 0; m < 2; m++) {
-    TRY(overlap_api_argument_copy(&meshes[m], sizeof meshes[m], sizeof meshes[m], given[m],
-                                  "TetlapOverlapMesh"));
-    TRY(check_mesh(&meshes[m], m + 1));
-  }
+  for (int m = 0; m < 2; m++) TRY(overlap_api_argument_mesh(&meshes[m], given[m], m + 1));
   List *list = memory_zeroed(1, sizeof *list);
   if (!list) return status_no_memory("the list of overlaps");
   list->shown.size = sizeof list->shown;

@@ -367,6 +367,109 @@ START_TEST(a_covered_mesh_is_covered_once) {
 }
 END_TEST
 
+// ---- Poses.
+
+enum { POSES = 5 };
+
+// Turns about z and shifts, the last far away.
+static void make_poses(double poses[POSES][12]) {
+  for (int i = 0; i < POSES; i++) {
+    const double a = 0.3 * i, far = i == POSES - 1 ? 10 : 0;
+    const double pose[12] = {cos(a), -sin(a), 0, sin(a),        cos(a), 0,
+                             0,      0,       1, 0.1 * i + far, 0.05,   0.2 - 0.1 * i};
+    memcpy(poses[i], pose, sizeof pose);
+  }
+}
+
+// V, and force and moment by ∇V of the pairs of the mesh that has been moved.
+static void find_sums(const TetlapOverlap *overlap, const Grid *grid, const TetlapOverlapMesh *others,
+                      const double pose[12], const double centre[3], double sums[7]) {
+  TetlapOverlapMesh moved = mesh_of(grid);
+  double *points = malloc(3 * moved.point_count * sizeof *points), c[3];
+  TetlapOverlapList *list;
+  for (size_t v = 0; v <= moved.point_count; v++) {
+    const double *x = v < moved.point_count ? grid->points + 3 * v : centre;
+    for (int k = 0; k < 3; k++)
+      (v < moved.point_count ? points + 3 * v : c)[k] =
+          pose[3 * k] * x[0] + pose[3 * k + 1] * x[1] + pose[3 * k + 2] * x[2] + pose[9 + k];
+  }
+  moved.points = points;
+  ck_assert_int_eq(tetlap_overlap_meshes(overlap, &moved, others, TETLAP_OVERLAP_GRADIENT, &list),
+                   TETLAP_OVERLAP_OK);
+  memset(sums, 0, 7 * sizeof *sums);
+  for (size_t k = 0; k < list->count; k++) {
+    sums[0] += list->volume[k];
+    for (int v = 0; v < 4; v++) {
+      const double *x = points + 3 * grid->tets[4 * list->first[k] + v], *g = list->gradient + 24 * k + 3 * v;
+      for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, l = (i + 2) % 3;
+        sums[1 + i] -= g[i];
+        sums[4 + i] -= (x[j] - c[j]) * g[l] - (x[l] - c[l]) * g[j];
+      }
+    }
+  }
+  tetlap_overlap_list_free(list), free(points);
+}
+
+// The list of two meshes is the oracle; a kernel gives the bits of the processor's vectors.
+START_TEST(poses_sum_what_the_meshes_share) {
+  static const char *const devices[] = {"host", "opencl"};
+  TetlapOverlap *overlap = open_model("clip");
+  Grid grids[2] = {make_grid(3, 1, 0, 0), make_grid(4, 1.1, 0.3, 0.4)};
+  const TetlapOverlapMesh a = mesh_of(&grids[0]), b = mesh_of(&grids[1]);
+  double poses[POSES][12], sums[POSES][7], again[POSES][7], wanted[7];
+  make_poses(poses);
+  TetlapOverlapPoses asked = TETLAP_OVERLAP_POSES_INIT;
+  asked.count = POSES, asked.poses = poses[0], asked.sums = sums[0];
+  asked.centre[0] = 0.5, asked.centre[1] = 0.4, asked.centre[2] = 0.3;
+  ck_assert_msg(tetlap_overlap_poses(overlap, &a, &b, &asked) == TETLAP_OVERLAP_OK, "%s",
+                tetlap_overlap_message());
+  for (int i = 0; i < POSES; i++) {
+    find_sums(overlap, &grids[0], &b, poses[i], asked.centre, wanted);
+    for (int k = 0; k < 7; k++) ck_assert_near(sums[i][k], wanted[k], 1e-13);
+    ck_assert(i == POSES - 1 ? sums[i][0] == 0 : sums[i][0] > 0.05);
+  }
+  for (int d = 0; d < 2; d++) {
+    asked.device = devices[d], asked.sums = again[0];
+    const int status = tetlap_overlap_poses(overlap, &a, &b, &asked);
+    if (d == 1 && status == TETLAP_OVERLAP_DEVICE) {
+      printf("opencl is not tested: %s\n", tetlap_overlap_message());
+      continue;
+    }
+    ck_assert_msg(status == TETLAP_OVERLAP_OK, "%s", tetlap_overlap_message());
+    ck_assert_mem_eq(again, sums, sizeof sums);
+  }
+  tetlap_overlap_close(overlap);
+  destroy_grid(&grids[0]), destroy_grid(&grids[1]);
+}
+END_TEST
+
+START_TEST(poses_that_are_wrong_or_none) {
+  TetlapOverlap *overlap = open_model("clip"), *exact = open_model("exact");
+  Grid grid = make_grid(2, 1, 0, 0);
+  const TetlapOverlapMesh a = mesh_of(&grid);
+  double poses[POSES][12], sums[POSES][7];
+  make_poses(poses);
+  TetlapOverlapPoses asked = TETLAP_OVERLAP_POSES_INIT;
+  ck_assert_int_eq(tetlap_overlap_poses(overlap, &a, &a, &asked), TETLAP_OVERLAP_OK); // none
+  asked.count = POSES, asked.poses = poses[0], asked.sums = sums[0];
+  ck_assert_int_eq(tetlap_overlap_poses(exact, &a, &a, &asked), TETLAP_OVERLAP_INVALID);
+  ck_assert_msg(strstr(tetlap_overlap_message(), "model 'clip', not by 'exact'") != NULL, "%s",
+                tetlap_overlap_message());
+  asked.device = "gpu";
+  ck_assert_int_eq(tetlap_overlap_poses(overlap, &a, &a, &asked), TETLAP_OVERLAP_INVALID);
+  asked.device = "opencl:99";
+  ck_assert_int_eq(tetlap_overlap_poses(overlap, &a, &a, &asked), TETLAP_OVERLAP_DEVICE);
+  asked.device = NULL, asked.sums = NULL;
+  ck_assert_int_eq(tetlap_overlap_poses(overlap, &a, &a, &asked), TETLAP_OVERLAP_INVALID);
+  asked.sums = sums[0], poses[3][7] = NAN;
+  ck_assert_int_eq(tetlap_overlap_poses(overlap, &a, &a, &asked), TETLAP_OVERLAP_INVALID);
+  ck_assert_msg(strstr(tetlap_overlap_message(), "pose 3, number 7") != NULL, "%s", tetlap_overlap_message());
+  tetlap_overlap_close(overlap), tetlap_overlap_close(exact);
+  destroy_grid(&grid);
+}
+END_TEST
+
 START_TEST(meshes_that_are_wrong_or_empty) {
   TetlapOverlap *overlap = open_model("tpn-scene");
   Grid grids[2] = {make_grid(1, 1, 0, 0), make_grid(1, 1, 5, 0)};
@@ -428,6 +531,13 @@ void *realloc(void *memory, size_t size) {
 START_TEST(each_allocation_that_fails_is_told) {
   Grid grids[2] = {make_grid(2, 1, 0, 0), make_grid(2, 1.1, 0.3, 0.4)};
   TetlapOverlapMesh a = mesh_of(&grids[0]), b = mesh_of(&grids[1]);
+  double poses[POSES][12], sums[POSES][7];
+  make_poses(poses);
+  TetlapOverlapPoses asked = TETLAP_OVERLAP_POSES_INIT;
+  asked.count = POSES, asked.poses = poses[0], asked.sums = sums[0], asked.device = "host";
+  TetlapOverlap *first = open_model("clip"); // OpenMP takes its memory once, and ends the process without it
+  ck_assert_int_eq(tetlap_overlap_poses(first, &a, &b, &asked), TETLAP_OVERLAP_OK);
+  tetlap_overlap_close(first);
   long failed = 0;
   for (bool is_done = false; !is_done; failed++) {
     TetlapOverlap *overlap = NULL;
@@ -437,10 +547,12 @@ START_TEST(each_allocation_that_fails_is_told) {
     if (status == TETLAP_OVERLAP_OK)
       status =
           tetlap_overlap_meshes(overlap, &a, &b, TETLAP_OVERLAP_GRADIENT | TETLAP_OVERLAP_CENTROID, &list);
+    const bool has_list = status == TETLAP_OVERLAP_OK;
+    if (has_list) status = tetlap_overlap_poses(overlap, &a, &b, &asked);
     is_done = fail_at > 0;
     fail_at = 0;
     ck_assert_int_eq(status, is_done ? TETLAP_OVERLAP_OK : TETLAP_OVERLAP_MEMORY);
-    ck_assert_int_eq(list != NULL, is_done);
+    ck_assert_int_eq(list != NULL, has_list);
     tetlap_overlap_list_free(list), tetlap_overlap_close(overlap);
   }
   ck_assert_int_ge(failed, 15);
@@ -461,6 +573,8 @@ int main(void) {
   tcase_add_loop_test(cases, two_meshes_overlap_where_their_tetrahedra_do, 0, 3);
   tcase_add_test(cases, a_covered_mesh_is_covered_once);
   tcase_add_test(cases, meshes_that_are_wrong_or_empty);
+  tcase_add_test(cases, poses_sum_what_the_meshes_share);
+  tcase_add_test(cases, poses_that_are_wrong_or_none);
 #if HAS_FAILING_MEMORY
   tcase_add_test(cases, each_allocation_that_fails_is_told);
 #endif
