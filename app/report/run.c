@@ -6,6 +6,7 @@
 
 #include "base/files/file.h"
 #include "base/memory.h"
+#include "fem/output/vtk/pieces_read.h"
 #include "fem/output/vtk/pvd.h"
 
 // Whole lines: of a run that goes on, or was killed, the last one may lack its end.
@@ -89,7 +90,7 @@ static Status read_frame(AppReportRun *run, int frame, const char *name) {
   char *path = file_join(run->directory, name);
   if (!path) return status_no_memory("a file name");
   FemVtuContent content;
-  Status status = fem_vtu_read(path, &content);
+  Status status = fem_vtu_pieces_read(path, &content);
   if (!status) {
     status = take_frame(run, frame, &content);
     if (status == STATUS_INPUT) status = status_prefix(status, "%s", path);

@@ -37,8 +37,8 @@ int file_exists(const char *path) {
   return access(path, F_OK) == 0;
 }
 
-Status file_begin(FileWriter *writer, const char *path) {
-  *writer = (FileWriter){0};
+static Status begin(FileWriter *writer, const char *path, bool is_real) {
+  *writer = (FileWriter){.is_real = is_real};
   size_t size = strlen(path) + 32;
   writer->path = memory_copy(path, strlen(path) + 1, 1);
   writer->temporary = memory_zeroed(size, 1);
@@ -46,14 +46,22 @@ Status file_begin(FileWriter *writer, const char *path) {
     file_abandon(writer);
     return status_no_memory("a file name");
   }
-  if (ranks_is_first()) snprintf(writer->temporary, size, "%s.%ld.part", path, (long)getpid());
-  writer->stream = fopen(ranks_is_first() ? writer->temporary : "/dev/null", "wb");
+  if (is_real) snprintf(writer->temporary, size, "%s.%ld.part", path, (long)getpid());
+  writer->stream = fopen(is_real ? writer->temporary : "/dev/null", "wb");
   if (!writer->stream) {
     int reason = errno;
     file_abandon(writer);
     return status_fail(STATUS_IO, "%s: cannot be written: %s", path, strerror(reason));
   }
   return STATUS_OK;
+}
+
+Status file_begin(FileWriter *writer, const char *path) {
+  return begin(writer, path, ranks_is_first());
+}
+
+Status file_begin_own(FileWriter *writer, const char *path) {
+  return begin(writer, path, true);
 }
 
 Status file_commit(FileWriter *writer) {
@@ -65,7 +73,7 @@ Status file_commit(FileWriter *writer) {
   if (fflush(writer->stream) != 0) failed = 1, reason = errno;
   if (fclose(writer->stream) != 0 && !failed) failed = 1, reason = errno;
   writer->stream = NULL;
-  if (!failed && ranks_is_first() && rename(writer->temporary, writer->path) != 0) failed = 1, reason = errno;
+  if (!failed && writer->is_real && rename(writer->temporary, writer->path) != 0) failed = 1, reason = errno;
   Status status = STATUS_OK;
   if (failed)
     status = status_fail(STATUS_IO, "%s: writing failed: %s; nothing was left there", writer->path,
@@ -104,12 +112,16 @@ void file_remove_parts(const char *directory) {
   closedir(folder);
 }
 
-static bool is_numbered(const char *name, const char *prefix, const char *suffix) {
+static bool is_numbered(const char *name, const char *prefix, const char *suffix, bool *is_piece) {
   enum { FEWEST_DIGITS = 5 };
+  static const char digits[] = "0123456789";
   size_t begin = strlen(prefix);
   if (strncmp(name, prefix, begin) != 0) return false;
-  size_t digits = strspn(name + begin, "0123456789");
-  return digits >= FEWEST_DIGITS && strcmp(name + begin + digits, suffix) == 0;
+  size_t count = strspn(name + begin, digits);
+  const char *end = name + begin + count;
+  size_t piece_count = *end == '_' ? strspn(end + 1, digits) : 0;
+  *is_piece = piece_count > 0;
+  return count >= FEWEST_DIGITS && strcmp(*is_piece ? end + 1 + piece_count : end, suffix) == 0;
 }
 
 int file_remove_numbered(const char *directory, const char *prefix, const char *suffix) {
@@ -117,8 +129,10 @@ int file_remove_numbered(const char *directory, const char *prefix, const char *
   int count = 0;
   if (!folder) return 0;
   const struct dirent *entry;
+  bool is_piece;
   while ((entry = readdir(folder)))
-    if (is_numbered(entry->d_name, prefix, suffix)) count += unlinkat(dirfd(folder), entry->d_name, 0) == 0;
+    if (is_numbered(entry->d_name, prefix, suffix, &is_piece))
+      count += unlinkat(dirfd(folder), entry->d_name, 0) == 0 && !is_piece;
   closedir(folder);
   return count;
 }

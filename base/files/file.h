@@ -4,6 +4,7 @@
 #ifndef TETLAP_BASE_FILE_H
 #define TETLAP_BASE_FILE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -13,10 +14,13 @@ typedef struct FileWriter {
   FILE *stream;    // write here; an error is found at commit
   char *path;      // final place, owned
   char *temporary; // where it grows, owned
+  bool is_real;    // else what is written goes nowhere
 } FileWriter;
 
 // Opens a temporary file beside `path`. STATUS_IO names the path and the system's reason.
 Status file_begin(FileWriter *writer, const char *path);
+// The same where every rank has a file of its own.
+Status file_begin_own(FileWriter *writer, const char *path);
 // Flushes and renames; on failure nothing is left at `path` that was not there before.
 Status file_commit(FileWriter *writer);
 // Drops what was written; allowed after a commit and on a zeroed writer.
@@ -26,7 +30,8 @@ void file_abandon(FileWriter *writer);
 // is gone.
 void file_remove_parts(const char *directory);
 // Removes the files of the directory whose names are prefix, a number of five digits or more, suffix; returns
-// how many these were.
+// how many these were. Those with _ and another number before the suffix, which are pieces, are removed and
+// not counted.
 int file_remove_numbered(const char *directory, const char *prefix, const char *suffix);
 
 // Whether the file was there, and is gone.

@@ -9,6 +9,7 @@
 #include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/elements/plasticity.h"
@@ -95,6 +96,10 @@ static Status create(FemRecorder *recorder, const char *directory) {
                         (directory && model->scene->write_vtu) || model->probe_count > 0));
   if (!directory) return STATUS_OK;
   recorder->writes_vtu = model->scene->write_vtu;
+  recorder->writes_pieces = recorder->writes_vtu && model->scene->write_pieces;
+  if (recorder->writes_pieces)
+    TRY(ranks()->worst(fem_vtu_part_create(&recorder->part, model->vertex_count, model->tet_count,
+                                           (const int(*)[4])model->tets, model->share)));
   recorder->writes_history = model->scene->history;
   recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
   bool has_reactions = fem_reactions_any(model);
@@ -146,13 +151,15 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   memory_free(recorder->overlap);
   fem_trouble_watch_destroy(&recorder->watch);
   overlap_model_destroy(&recorder->reference);
+  fem_vtu_part_destroy(&recorder->part);
   *recorder = (FemRecorder){0};
 }
 
 Status fem_recorder_clear(const FemRecorder *recorder) {
   static const char *const names[] = {"frames.pvd", "history.csv", "summary.json"};
   if (!recorder->directory) return STATUS_OK;
-  int frames = file_remove_numbered(recorder->directory, "frame_", ".vtu");
+  int frames = file_remove_numbered(recorder->directory, "frame_", ".vtu") +
+               file_remove_numbered(recorder->directory, "frame_", ".pvtu");
   int count = frames + file_remove_numbered(recorder->directory, "obstacles_", ".vtu");
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
     char *path = file_join(recorder->directory, names[k]);
@@ -324,6 +331,8 @@ static void fill_von_mises(void *self, size_t first, size_t count, double *value
   }
 }
 
+enum { NAME_SIZE = 32 };
+
 // Moves the arrays that have values to the front; how many.
 static int keep_given(FemVtuArray *arrays, size_t count) {
   int kept = 0;
@@ -332,7 +341,16 @@ static int keep_given(FemVtuArray *arrays, size_t count) {
   return kept;
 }
 
-static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
+static Status write_whole(const FemRecorder *recorder, const char *name, const FemVtuFrame *frame) {
+  char *path = file_join(recorder->directory, name);
+  if (!path) return status_no_memory("a file name");
+  Status status = fem_vtu_write(path, frame);
+  memory_free(path);
+  return status;
+}
+
+// `name` without its ending.
+static Status write_vtu(FemRecorder *recorder, const char *name, double time) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
   if (recorder->reaction) TRY(fem_reactions_measure(recorder->system, time, NULL, recorder->reaction));
@@ -371,7 +389,11 @@ static Status write_vtu(FemRecorder *recorder, const char *path, double time) {
                              .cells = model->tets[0],
                              .arrays = arrays,
                              .array_count = keep_given(arrays, sizeof arrays / sizeof *arrays)};
-  return fem_vtu_write(path, &frame);
+  if (recorder->writes_pieces)
+    return fem_vtu_pieces_write(recorder->directory, name, &frame, &recorder->part);
+  char file[NAME_SIZE + 8];
+  snprintf(file, sizeof file, "%s.vtu", name);
+  return write_whole(recorder, file, &frame);
 }
 
 Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int frame_count) {
@@ -381,20 +403,10 @@ Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int fra
   return STATUS_OK;
 }
 
-enum { NAME_SIZE = 32 };
-
-static void name_frame(int frame, char name[NAME_SIZE]) {
-  snprintf(name, NAME_SIZE, "frame_%05d.vtu", frame);
-}
-
 static Status write_frame(FemRecorder *recorder, double time) {
   char name[NAME_SIZE];
-  name_frame(recorder->frame_count, name);
-  char *path = file_join(recorder->directory, name);
-  if (!path) return status_no_memory("a file name");
-  Status status = write_vtu(recorder, path, time);
-  memory_free(path);
-  TRY(status);
+  snprintf(name, sizeof name, "frame_%05d", recorder->frame_count);
+  TRY(write_vtu(recorder, name, time));
   TRY(fem_obstacle_frames_write(&recorder->obstacles, recorder->directory, recorder->frame_count, time));
   recorder->frame_count++;
   return STATUS_OK;
@@ -411,7 +423,7 @@ static Status write_list(FemRecorder *recorder) {
   for (int frame = 0; frame < recorder->frame_count; frame++) {
     char file[NAME_SIZE];
     double time = fem_scene_frame_time(recorder->system->model->scene, frame);
-    name_frame(frame, file);
+    snprintf(file, sizeof file, "frame_%05d.%s", frame, recorder->writes_pieces ? "pvtu" : "vtu");
     fem_pvd_add(&list, time, 0, fem_obstacle_frames_any(&recorder->obstacles) ? "bodies" : NULL, file);
     fem_obstacle_frames_list(&recorder->obstacles, &list, frame, time);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run writes frame by frame: frame_NNNNN.vtu with frames.pvd, and history.csv; and the measures that
-// go with a frame. docs/output.md describes every array and column.
+// What a run writes frame by frame: frame_NNNNN.vtu (or .pvtu) with frames.pvd, and history.csv; and the
+// measures that go with a frame. docs/output.md describes every array and column.
 #ifndef TETLAP_FEM_OUTPUT_RECORDER_H
 #define TETLAP_FEM_OUTPUT_RECORDER_H
 
@@ -13,12 +13,14 @@
 #include "fem/output/probes.h"
 #include "fem/output/trouble.h"
 #include "fem/output/vtk/obstacle_frames.h"
+#include "fem/output/vtk/pieces.h"
 #include "fem/time/audit.h"
 
 typedef struct FemRecorder {
   FemSystem *system; // borrowed
   char *directory;   // owned; NULL: nothing is written
-  bool writes_vtu;
+  bool writes_vtu, writes_pieces;
+  FemVtuPart part; // what this rank writes of frames in pieces
   FemHistoryRows writes_history;
   FemHistory history;
   double *row; // one line of the history

@@ -214,6 +214,7 @@ typedef struct FemSceneDef {
   int checkpoint_frames;     // between two checkpoints; 0: none; −1: chosen
   double checkpoint_seconds; // wall time between two that are written [s]
   bool write_vtu;
+  bool write_pieces;      // of each rank one
   FemHistoryRows history; // rows of history.csv
   char *status_reference; // the overlap model that elements' status is held against; NULL: none
 } FemSceneDef;

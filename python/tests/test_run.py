@@ -59,6 +59,16 @@ class RunsOfTheProgram(unittest.TestCase):
         self.assertEqual(frame["body"].tolist(), [0] * 48)
         self.assertEqual(frame.obstacles[0].cells.shape[1], 3)
 
+    def test_a_frame_in_pieces_is_that_of_one_file(self):
+        whole = tetlap.run(DROP, self.directory / "whole").frames[-1]
+        frame = tetlap.run(DROP, self.directory / "pieces", set={"output.pieces": True}).frames[-1]
+        self.assertEqual(frame.path.name, "frame_00005.pvtu")
+        self.assertEqual(frame.names, whole.names)
+        np.testing.assert_array_equal(frame.cells, whole.cells)
+        np.testing.assert_array_equal(frame.points, whole.points)
+        for name in whole.names:
+            np.testing.assert_array_equal(frame[name], whole[name])
+
     def test_frames_and_history_tell_the_same(self):
         """The centre of mass from the points by hand: elements of one density, a quarter of each to its vertices."""
         run = tetlap.run(DROP, self.directory)

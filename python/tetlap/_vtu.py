@@ -9,6 +9,7 @@ import base64
 import binascii
 import struct
 import zlib
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -83,11 +84,48 @@ def _read_piece(root):
     }
 
 
+def _take_numbers(piece):
+    """The numbers of a piece's vertices and elements in the whole."""
+    return piece["point_data"].pop("vertex"), piece["cell_data"].pop("element")
+
+
+def _place(parts, numbers):
+    """What each part has at its numbers."""
+    whole = np.empty((1 + max(own.max(initial=-1) for own in numbers), *parts[0].shape[1:]), parts[0].dtype)
+    for part, own in zip(parts, numbers):
+        whole[own] = part
+    return whole
+
+
+def _join(pieces):
+    numbers = [_take_numbers(piece) for piece in pieces]
+    vertices, elements = [own for own, _ in numbers], [own for _, own in numbers]
+    if any(len(np.unique(np.concatenate(own))) != 1 + max(part.max(initial=-1) for part in own)
+           for own in (vertices, elements)):
+        raise ValueError("vertices or elements are in none of the pieces")
+    return {
+        "time": pieces[0]["time"],
+        "points": _place([piece["points"] for piece in pieces], vertices),
+        "cells": _place([own[piece["cells"]] for piece, own in zip(pieces, vertices)], elements),
+        "point_data": {name: _place([piece["point_data"][name] for piece in pieces], vertices)
+                       for name in pieces[0]["point_data"]},
+        "cell_data": {name: _place([piece["cell_data"][name] for piece in pieces], elements)
+                      for name in pieces[0]["cell_data"]},
+    }
+
+
+def _read_pieces(path):
+    sources = [piece.get("Source") for piece in _root(path, "PUnstructuredGrid").iter("Piece")]
+    if not sources or any(source is None or "/" in source for source in sources):
+        raise ValueError("expected pieces beside the list")
+    return _join([_read_piece(_root(Path(path).with_name(source), "UnstructuredGrid")) for source in sources])
+
+
 def read_vtu(path):
-    """time (or None), points (n, 3), cells (m, 4) or (m, 3), point_data and cell_data by name, in a dict."""
-    root = _root(path, "UnstructuredGrid")
+    """time (or None), points (n, 3), cells (m, 4) or (m, 3), point_data and cell_data by name, in a dict; also of a
+    frame in pieces (.pvtu)."""
     try:
-        return _read_piece(root)
+        return _read_pieces(path) if Path(path).suffix == ".pvtu" else _read_piece(_root(path, "UnstructuredGrid"))
     except (ValueError, KeyError, IndexError, struct.error, binascii.Error, zlib.error) as error:
         raise Error(f"{path}: is no frame as tetlap writes it: {error}") from None
 

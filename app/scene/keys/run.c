@@ -89,6 +89,8 @@ static const SceneKey output_keys[] = {
     {"checkpoint", SCENE_SECTION, .section = &checkpoint, .help = "what `tetlap resume` continues from"},
     {"vtu", SCENE_SWITCH, AT(FemSceneDef, write_vtu), .fallback = "true",
      .help = "a VTU file per frame, for ParaView"},
+    {"pieces", SCENE_SWITCH, AT(FemSceneDef, write_pieces), .fallback = "false",
+     .help = "each rank writes a VTU file of its own elements, and a PVTU file per frame lists them"},
     {"history", SCENE_CHOICE, AT(FemSceneDef, history), .fallback = "frames",
      .choices = &app_scene_choices_histories,
      .help =

@@ -239,9 +239,12 @@ static Status print_frame(FILE *stream, const FemVtuFrame *frame) {
 }
 
 Status fem_vtu_write(const char *path, const FemVtuFrame *frame) {
+  return ranks_is_first() ? fem_vtu_write_own(path, frame) : STATUS_OK;
+}
+
+Status fem_vtu_write_own(const char *path, const FemVtuFrame *frame) {
   FileWriter writer;
-  if (!ranks_is_first()) return STATUS_OK;
-  TRY(file_begin(&writer, path));
+  TRY(file_begin_own(&writer, path));
   Status status = print_frame(writer.stream, frame);
   if (!status) return file_commit(&writer);
   file_abandon(&writer);

@@ -46,6 +46,9 @@ typedef struct FemVtuFrame {
 
 // Writes the frame whole or not at all. STATUS_IO names the path and the system's reason; STATUS_MEMORY.
 // Blocks are compressed in parallel; the bytes do not depend on the number of threads.
+// The first rank alone writes.
 Status fem_vtu_write(const char *path, const FemVtuFrame *frame);
+// Whichever rank calls it.
+Status fem_vtu_write_own(const char *path, const FemVtuFrame *frame);
 
 #endif
