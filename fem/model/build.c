@@ -151,8 +151,8 @@ static Status add_loads(FemModel *model, const FemMesh *meshes) {
       Status status =
           fem_load_create(&model->loads[model->load_count], def, &meshes[b], model->bodies[b].vertex_begin);
       if (status)
-        return status_prefix(status, "%s:%d:%d: body '%s', loads[%d]", scene->path ? scene->path : "scene",
-                             def->select.place.line, def->select.place.column, scene->bodies[b].name, i);
+        return status_prefix(status, "%s: body '%s', loads[%d]",
+                             fem_scene_where(scene, &def->select.place).text, scene->bodies[b].name, i);
       model->load_count++;
     }
   return STATUS_OK;
@@ -170,8 +170,8 @@ static Status add_probes(FemModel *model, const FemMesh *meshes) {
       Status status = fem_probe_create(&model->probes[model->probe_count], def, &meshes[b], b,
                                        model->bodies[b].vertex_begin);
       if (status)
-        return status_prefix(status, "%s:%d:%d: body '%s', probe '%s'", scene->path ? scene->path : "scene",
-                             def->select.place.line, def->select.place.column, scene->bodies[b].name,
+        return status_prefix(status, "%s: body '%s', probe '%s'",
+                             fem_scene_where(scene, &def->select.place).text, scene->bodies[b].name,
                              def->name);
       model->probe_count++;
     }
@@ -190,9 +190,8 @@ static Status mark_inner(FemModel *model, const FemMesh *meshes) {
                           ? fem_select_vertices(select, &meshes[b], &vertices, &count)
                           : status_fail(STATUS_INPUT, "one too many; %d at most", FEM_MAX_INNER);
       if (status)
-        return status_prefix(status, "%s:%d:%d: body '%s', inner_faces[%d]",
-                             scene->path ? scene->path : "scene", select->place.line, select->place.column,
-                             scene->bodies[b].name, i);
+        return status_prefix(status, "%s: body '%s', inner_faces[%d]",
+                             fem_scene_where(scene, &select->place).text, scene->bodies[b].name, i);
       for (int v = 0; v < count; v++)
         model->inner[model->bodies[b].vertex_begin + vertices[v]] |= (unsigned char)(1 << i);
       memory_free(vertices);

@@ -13,8 +13,8 @@
 
 // What the interface may give, over what the bodies do; and how deep, over the height, a blow may press it.
 static const double GIVE = 0.02, BLOW_DEPTH = 0.02;
-// Pressed between faces that hold it, a body is stiffer than E by 1/(1 − HELD ν⁴): a fit, not above what cubes
-// have (1.048 at ν = .3, 1.169 at .45), that keeps the give below 2 % at any ν.
+// Pressed between faces that hold it, a body is stiffer than E by 1/(1 − HELD ν⁴): a fit, not above what
+// cubes have (1.048 at ν = .3, 1.169 at .45), that keeps the give below 2 % at any ν.
 static const double HELD = 3.5;
 
 static Vec3 corner_of(const FemModel *model, int tet, int v) {
@@ -160,9 +160,8 @@ const char *fem_compliance_party_name(const FemModel *model, int party) {
 static Status check_pair(const FemModel *model, const FemContactPairDef *pair) {
   for (int k = 0; k < 2; k++)
     if (fem_compliance_party(model, pair->names[k]) < 0)
-      return status_fail(STATUS_INPUT, "%s:%d:%d: contact.pairs: no body or obstacle has the name '%s'",
-                         model->scene->path ? model->scene->path : "scene", pair->place.line,
-                         pair->place.column, pair->names[k]);
+      return status_fail(STATUS_INPUT, "%s: contact.pairs: no body or obstacle has the name '%s'",
+                         fem_scene_where(model->scene, &pair->place).text, pair->names[k]);
   return STATUS_OK;
 }
 

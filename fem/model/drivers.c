@@ -43,9 +43,9 @@ static Status add_drivers_of_body(FemModel *model, int b, const FemMesh *mesh, i
     for (int i = 0; i < count; i++) {
       Status status = add_driver(model, &list[i], mesh, &model->bodies[b], owner);
       if (status)
-        return status_prefix(status, "%s:%d:%d: body '%s', %s[%d]",
-                             model->scene->path ? model->scene->path : "scene", list[i].select.place.line,
-                             list[i].select.place.column, def->name, kind == 0 ? "fixed" : "driven", i);
+        return status_prefix(status, "%s: body '%s', %s[%d]",
+                             fem_scene_where(model->scene, &list[i].select.place).text, def->name,
+                             kind == 0 ? "fixed" : "driven", i);
     }
   }
   return STATUS_OK;

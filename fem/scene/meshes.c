@@ -79,9 +79,7 @@ static Status load_mesh(FemMesh *mesh, const FemSceneDef *scene, const char *pat
 // With the mesh's place in the scene.
 static Status fail_at(Status status, const FemSceneDef *scene, const FemScenePlace *place, const char *what,
                       const char *name) {
-  if (place->line == 0) return status_prefix(status, "%s '%s'", what, name);
-  return status_prefix(status, "%s:%d:%d: %s '%s'", scene->path ? scene->path : "scene", place->line,
-                       place->column, what, name);
+  return status_prefix(status, "%s: %s '%s'", fem_scene_where(scene, place).text, what, name);
 }
 
 // The meshes of all bodies, then of the obstacles that have one. `meshes` has room for all, `kept` for one

@@ -2,6 +2,7 @@
 #include "fem/scene/scene.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "base/memory.h"
 
@@ -75,4 +76,13 @@ double fem_scene_most_friction(const FemContactDef *contact) {
 
 double fem_scene_frame_time(const FemSceneDef *scene, int frame) {
   return frame == scene->frames ? scene->end : scene->end * frame / scene->frames;
+}
+
+FemSceneWhere fem_scene_where(const FemSceneDef *scene, const FemScenePlace *place) {
+  FemSceneWhere where = {"scene"};
+  if (scene->path && place->line > 0)
+    snprintf(where.text, sizeof where.text, "%s:%d:%d", scene->path, place->line, place->column);
+  else if (scene->path)
+    snprintf(where.text, sizeof where.text, "%s with --set", scene->path);
+  return where;
 }

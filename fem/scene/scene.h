@@ -12,7 +12,7 @@
 #include "fem/mesh/mesh.h"
 #include "fem/sparse/solver.h"
 
-// A place in the scene file, for messages; line 0: not from a file.
+// A place in the scene file, for messages; line 0: not from the file, but given by --set or made by a program.
 typedef struct FemScenePlace {
   int line, column;
 } FemScenePlace;
@@ -220,6 +220,12 @@ typedef struct FemSceneDef {
 } FemSceneDef;
 
 // Frees everything that the scene owns and zeroes it.
+// The place in words: "scene.yaml:3:7", "scene.yaml with --set", or "scene" of one that has no file.
+typedef struct FemSceneWhere {
+  char text[512];
+} FemSceneWhere;
+FemSceneWhere fem_scene_where(const FemSceneDef *scene, const FemScenePlace *place);
+
 void fem_scene_destroy(FemSceneDef *scene);
 
 // When frame 0 … frames is due [s].

@@ -251,6 +251,9 @@ START_TEST(a_command_that_fails_says_why) {
       {"run " TETLAP_SOURCE_DIR "/examples/01_drop.yaml -o /tmp/tetlap_cli --capture /nowhere/x.h5", 74,
        "/nowhere/x.h5"},
       {"run " TETLAP_SOURCE_DIR "/examples/01_drop.yaml -o /proc/nowhere", 74, "/proc/nowhere"},
+      {"run " TETLAP_SOURCE_DIR
+       "/examples/01_drop.yaml -o /tmp/tetlap_cli -s 'contact.pairs=[{bodies: [none, such], friction: 1}]'",
+       65, "01_drop.yaml with --set: contact.pairs: no body or obstacle has the name 'none'"},
       {"datagen -n 10 -o /nowhere/x.h5", 74, "/nowhere/x.h5"},
       {"report /nowhere", 74, "/nowhere"},
       {"view /nowhere", 74, "/nowhere"},

@@ -112,17 +112,14 @@ Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *n
                                            : net,
                                is_hybrid ? net : NULL, overlap);
   memory_free(net);
-  const FemScenePlace *place = &scene->contact.place;
-  if (!status || place->line == 0) return status;
-  return status_prefix(status, "%s:%d:%d: contact.net", scene->path ? scene->path : "scene", place->line,
-                       place->column);
+  if (!status) return status;
+  return status_prefix(status, "%s: contact.net", fem_scene_where(scene, &scene->contact.place).text);
 }
 
 static Status check(const FemSceneDef *scene, const ContactSystemDef *system) {
-  const FemScenePlace *place = &scene->contact.place;
   Status status = contact_system_check(system, system->model);
-  if (!status || place->line == 0) return status;
-  return status_prefix(status, "%s:%d:%d", scene->path ? scene->path : "scene", place->line, place->column);
+  if (!status) return status;
+  return status_prefix(status, "%s", fem_scene_where(scene, &scene->contact.place).text);
 }
 
 static Status build(Contact *contact, Contact *old) {
