@@ -27,6 +27,7 @@ enum {
 typedef struct Point {
   const char *name, *family; // borrowed
   double x, y;               // time [s] and error; an error of 0 stands below the others
+  double cpu;                // processor time [s]; 0: of a device, or not measured
   bool is_exact, is_frontier, is_placed;
   double px, py; // on the picture, from the panel's lower left corner [pixels]
   double lx, ly; // where its label begins, and the label's middle [pixels]
@@ -36,6 +37,7 @@ typedef struct Panel {
   const char *quantity, *set; // borrowed
   Point *points;              // (count), owned
   int count;
+  bool is_cpu; // x are processor times
   double x_low, x_high, y_low, y_high;
 } Panel;
 
@@ -81,10 +83,23 @@ static Status add_point(Frontier *frontier, const Record *row, const char *quant
   if (!panel) return STATUS_OK;
   if (!panel->points) panel->points = memory_zeroed((size_t)room, sizeof *panel->points);
   if (!panel->points) return status_no_memory("the frontier");
+  const char *device = record_find_text(row, "device");
+  const double cpu = record_find_number(row, "cpu_seconds_per_pair");
   family_of(frontier, family);
-  panel->points[panel->count++] =
-      (Point){.name = name, .family = family, .x = seconds, .y = error, .is_exact = error == 0};
+  panel->points[panel->count++] = (Point){.name = name,
+                                          .family = family,
+                                          .x = seconds,
+                                          .y = error,
+                                          .cpu = cpu > 0 && !(device && *device) ? cpu : 0,
+                                          .is_exact = error == 0};
   return STATUS_OK;
+}
+
+// On one thread processor time says more than the clock, which other load on the machine slows.
+static void choose_time(Panel *panel, bool is_single) {
+  panel->is_cpu = is_single;
+  for (int i = 0; i < panel->count; i++) panel->is_cpu = panel->is_cpu && panel->points[i].cpu > 0;
+  for (int i = 0; i < panel->count && panel->is_cpu; i++) panel->points[i].x = panel->points[i].cpu;
 }
 
 // Nothing else is as fast and as accurate, and better in one of both.
@@ -225,7 +240,7 @@ static void write_panel(FILE *script, Frontier *frontier, int p, double width, d
   char title[192];
   snprintf(title, sizeof title, "%s, %s", panel->quantity, panel->set);
   app_gnuplot_quote(script, title);
-  fputs(" noenhanced\nset ylabel ", script);
+  fprintf(script, " noenhanced\nset xlabel '%stime a pair'\nset ylabel ", panel->is_cpu ? "processor " : "");
   app_gnuplot_quote(script, words_of(panel->quantity));
   fprintf(script, "\nplot $f%d using 1:2 with steps lc rgb '#999999' dt 2 notitle", p);
   for (int f = 0; f < frontier->family_count; f++)
@@ -243,6 +258,7 @@ static Status collect(Frontier *frontier, const Record *pareto, const char *quan
                        quantities ? " of these quantities" : "");
   for (int p = 0; p < frontier->panel_count; p++) {
     Panel *panel = &frontier->panels[p];
+    choose_time(panel, record_find_number(pareto, "threads") == 1);
     mark_frontier(panel);
     qsort(panel->points, (size_t)panel->count, sizeof *panel->points, compare);
     lay_out(panel);
@@ -259,7 +275,7 @@ static Status write(FILE *script, Frontier *frontier, const char *picture) {
   TRY(app_gnuplot_open(script, picture, width, height));
   fputs("set multiplot\nset logscale xy\nset border 3\nset tics nomirror\nset grid lc rgb '#e4e4e4' lt 1 lw "
         "0.5\n"
-        "set format x '%.0s %cs'\nset format y '10^{%T}'\nset xlabel 'time a pair'\nunset key\nunset "
+        "set format x '%.0s %cs'\nset format y '10^{%T}'\nunset key\nunset "
         "mxtics\nunset mytics\n",
         script);
   for (int p = 0; p < frontier->panel_count; p++) write_panel(script, frontier, p, width, height);

@@ -132,6 +132,35 @@ START_TEST(every_point_of_a_frontier_has_a_label_of_its_own_place) {
 }
 END_TEST
 
+// Of one thread, unless a row lacks it or is a device's.
+START_TEST(a_frontier_is_of_processor_time_where_there_is) {
+  for (int k = 0; k < 3; k++) {
+    Record *pareto = make_pareto();
+    record_integer(pareto, "threads", k == 1 ? 2 : 1);
+    RecordList *points = record_list(pareto, "points");
+    for (int i = 0; i < 2; i++) {
+      Record *point = record_append(points);
+      record_text(point, "model", i ? "slow" : "quick");
+      record_text(point, "family", "even");
+      record_text(point, "quantity", "V+grad");
+      record_text(point, "set", "near");
+      record_number(point, "seconds_per_pair", i ? 8e-6 : 4e-6);
+      record_number(point, "cpu_seconds_per_pair", i ? 3e-6 : 1e-6);
+      record_number(point, "error", i ? 1e-4 : 1e-3);
+      if (k == 2 && i) record_text(point, "device", "opencl");
+    }
+    ck_assert_ok(write_frontier(pareto, "V+grad"));
+    char *text = read_script();
+    double x = 0;
+    ck_assert_int_eq(sscanf(strstr(text, "$f0 << END\n") + strlen("$f0 << END\n"), "%lf", &x), 1);
+    ck_assert_near(x, k == 0 ? 1e-6 : 4e-6, 1e-12);
+    ck_assert_int_eq(strstr(text, "set xlabel 'processor time a pair'") != NULL, k == 0);
+    memory_free(text);
+    record_destroy(pareto);
+  }
+}
+END_TEST
+
 START_TEST(points_on_the_frontier_are_filled) {
   Record *pareto = make_pareto();
   ck_assert_ok(write_frontier(pareto, "V"));
@@ -183,6 +212,7 @@ int main(void) {
   tcase_add_test(test_case, a_run_without_history_is_refused);
   tcase_add_test(test_case, another_ending_than_svg_pdf_and_png_is_refused);
   tcase_add_test(test_case, every_point_of_a_frontier_has_a_label_of_its_own_place);
+  tcase_add_test(test_case, a_frontier_is_of_processor_time_where_there_is);
   tcase_add_test(test_case, points_on_the_frontier_are_filled);
   tcase_add_test(test_case, a_file_without_such_points_is_refused);
   tcase_add_test(test_case, gnuplot_draws_both);
