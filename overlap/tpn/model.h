@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // TetrahedronPairNet as an overlap model: `tpn-published` as its authors train it, `tpn` after it (reading a,
-// vertices sorted, V over the determinant), `tpn-scene` made fit for scenes, and `hybrid`, section 5
+// vertices and tetrahedra in an order of their own, V over the determinant), `tpn-scene` made fit for scenes, and `hybrid`, section 5
 // of the paper. `tpn-bf16` is tpn computed with less precision.
 //
 //   pair ─ disjoint, by an exact test? ─► V = 0                                       (ghosts: cut, fade)
