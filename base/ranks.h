@@ -26,6 +26,7 @@ typedef struct RanksStats {
   long long sums, pieces, decisions; // calls
   long long bytes;                   // that this rank gave
   double waiting_s;                  // wall time in these calls
+  double inside_s;                   // processor time within MPI, also of libraries that call it
 } RanksStats;
 
 typedef struct Ranks {

@@ -19,6 +19,7 @@
 #include "base/ranks.h"
 #include "base/status.h"
 #include "dist/division.h"
+#include "dist/inside.h"
 
 enum { MESSAGE_SIZE = 2048, POLL_NS = 2000000 };
 // A rank that failed and finds the others elsewhere ends the run after this time [s]; later ones wait longer,
@@ -115,6 +116,7 @@ static Status worst(Status status) {
 }
 
 static const RanksStats *get_stats(void) {
+  stats.inside_s = dist_inside_s();
   return &stats;
 }
 

@@ -418,11 +418,13 @@ static void end_part(FemRunState *run) {
   if (run->system.model) fem_run_result_add_system(result, &run->system);
   result->phases.output += run->recorder.seconds;
   run->recorder.seconds = 0;
-  const double wall = clock_wall_s(), cpu = clock_cpu_s();
+  const double wall = clock_wall_s(), cpu = clock_cpu_s(), inside = ranks()->stats()->inside_s;
   result->wall_s += wall - run->began_s;
   result->cpu_s += cpu - run->cpu_began_s;
+  result->work_s += cpu - run->cpu_began_s - (inside - run->inside_began_s);
   run->began_s = wall;
   run->cpu_began_s = cpu;
+  run->inside_began_s = inside;
 }
 
 // Collects a checkpoint and begins anew from it.
@@ -562,7 +564,8 @@ Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult
                      .options = options,
                      .result = result,
                      .began_s = clock_wall_s(),
-                     .cpu_began_s = clock_cpu_s()};
+                     .cpu_began_s = clock_cpu_s(),
+                     .inside_began_s = ranks()->stats()->inside_s};
   run.written_s = run.began_s;
   Status status = prepare(&run);
   if (!status) status = march(&run);

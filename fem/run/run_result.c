@@ -219,9 +219,9 @@ static void summarise_status(const ContactStatusCounts *pairs, Record *record) {
 }
 
 const char *const fem_run_spread_names[] = {
-    "vertices",   "elements",    "matrix_entries",  "peak_rss_bytes", "cpu_s",     "waiting_s",
-    "calls",      "bytes_given", "broad_phase_s",   "overlap_s",      "contact_s", "forces_s",
-    "assembly_s", "analysis_s",  "factorisation_s", "solve_s",        "output_s",
+    "vertices",  "elements",   "matrix_entries", "peak_rss_bytes",  "cpu_s",     "work_s",
+    "waiting_s", "calls",      "bytes_given",    "broad_phase_s",   "overlap_s", "contact_s",
+    "forces_s",  "assembly_s", "analysis_s",     "factorisation_s", "solve_s",   "output_s",
 };
 static_assert(sizeof fem_run_spread_names == FEM_RUN_SPREAD * sizeof *fem_run_spread_names, "one each");
 

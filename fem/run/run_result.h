@@ -17,7 +17,7 @@ typedef struct FemRunPhases {
   double broad_phase, overlap, contact, forces, assembly, analysis, factorisation, solve, output, total;
 } FemRunPhases;
 
-enum { FEM_RUN_TOLD = 3, FEM_RUN_SPREAD = 17 };
+enum { FEM_RUN_TOLD = 3, FEM_RUN_SPREAD = 18 };
 
 // Over the ranks that shared the run, of what the names say.
 typedef struct FemRunSpread {
@@ -29,6 +29,7 @@ typedef struct FemRunSpread {
 // it to numbers[] in fem/run/checkpoint/numbers.c and to fem_run_result_add as well.
 typedef struct FemRunResult {
   double wall_s, cpu_s;
+  double work_s; // processor time outside of MPI, since a checkpoint that the run was resumed from
   FemRunPhases phases;
   FemIntegratorStats integrator;
   FemSolverStats solver;
@@ -37,7 +38,7 @@ typedef struct FemRunResult {
   long long pattern_layouts;  // how often the matrix pattern was laid out
   long long energy_retries;   // steps taken back because they gained energy
   long long momentum_retries; // … because forces and motion differed
-  long long slip_retries; // … because what slipped had turned within them
+  long long slip_retries;     // … because what slipped had turned within them
   FemAudit audit;
   FemAuditBounds energy_bounds;
   FemTrouble trouble;

@@ -37,7 +37,8 @@ typedef struct FemRunState {
   FemCheckpoint checkpoint; // where this part began
   bool is_written;          // is that in the file
   int interval;             // frames between two checkpoints; 0: none
-  double began_s, cpu_began_s, written_s; // clocks: of this part, and when a checkpoint was written
+  // Clocks: of this part, time within MPI then (base/ranks.h), and when a checkpoint was written.
+  double began_s, cpu_began_s, inside_began_s, written_s;
 } FemRunState;
 
 // Counted over all parts and stages.

@@ -23,6 +23,7 @@ static void measure(const FemRunState *run, double values[FEM_RUN_SPREAD]) {
                         run->system.matrix.entry_count,
                         (double)result->peak_rss_bytes,
                         result->cpu_s,
+                        result->work_s,
                         stats->waiting_s,
                         (double)(stats->sums + stats->pieces + stats->decisions),
                         (double)stats->bytes,
