@@ -310,7 +310,7 @@ class TheLibrary(unittest.TestCase):
     def test_constants_are_those_of_the_header(self):
         constants = {name: eval(value) for name, value in re.findall(r"TETLAP_OVERLAP_(\w+) = ([0-9 <]+),", self.header)}
         self.assertEqual({flag.name: constants[flag.name] for flag in tetlap.Flag}, {flag.name: int(flag) for flag in tetlap.Flag})
-        mirrored = ("INVALID", "NO_FILE", "MEMORY", "INTERNAL", "VOLUME", "GRADIENT", "HESSIAN", "CENTROID")
+        mirrored = ("INVALID", "NO_FILE", "MEMORY", "INTERNAL", "DEVICE", "VOLUME", "GRADIENT", "HESSIAN", "CENTROID")
         self.assertEqual({name: getattr(_library, name) for name in mirrored}, {name: constants[name] for name in mirrored})
         self.assertEqual(set(constants), {*mirrored, "OK", *(flag.name for flag in tetlap.Flag)})
 

@@ -12,7 +12,7 @@ import numpy as np
 from . import _locate
 from ._errors import Error
 
-INVALID, NO_FILE, MEMORY, INTERNAL = 1, 2, 3, 4
+INVALID, NO_FILE, MEMORY, INTERNAL, DEVICE = 1, 2, 3, 4, 5
 VOLUME, GRADIENT, HESSIAN, CENTROID = 1 << 0, 1 << 1, 1 << 2, 1 << 3
 _MOST = 2**31 - 1  # pairs in a batch
 
