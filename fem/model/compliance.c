@@ -12,7 +12,7 @@
 #include "fem/model/blow.h"
 
 // What the interface may give, over what the bodies do; and how deep, over the height, a blow may press it.
-static const double GIVE = 0.02, BLOW_DEPTH = 0.02;
+static const double GIVE = 0.02, BLOW_DEPTH = 0.01;
 // Pressed between faces that hold it, a body is stiffer than E by 1/(1 − HELD ν⁴): a fit, not above what
 // cubes have (1.048 at ν = .3, 1.169 at .45), that keeps the give below 2 % at any ν.
 static const double HELD = 3.5;

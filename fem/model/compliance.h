@@ -16,10 +16,10 @@
 // A blow may squeeze bodies that are far from it in a scene, too, and by as much as their height. Two that
 // store the hardest blow W of the scene (blow.h) between them press each other with p = √(2 W / (V_A/E_A +
 // V_B/E_B)), V their volumes; beyond p = E, where they would have no height left, they grow stiffer
-// themselves. c is such that this presses the interface in by 2 % of L at most, where that needs more than a
+// themselves. c is such that this presses the interface in by 1 % of L at most, where that needs more than a
 // press:
 //
-//   c = 25 min(p, E) / L, against a shape without elements 50 min(p, E) / L,     E of the softer one
+//   c = 50 min(p, E) / L, against a shape without elements 100 min(p, E) / L,     E of the softer one
 //
 // It is a rule for a press over a height. Where the contact is far smaller than both bodies, of radius a say,
 // they give way by about p a (1/E_A + 1/E_B) only, and the interface by L/a times 2 % of that: who wants such

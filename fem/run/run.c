@@ -30,6 +30,9 @@ enum { RETRIES_IN_A_ROW = 8 };
 // Of the time in which a wave √(E/ρ) crosses the smallest mean edge: what is tried again, and the first step
 // of a start, are not shorter than these. Nothing moves in less, whatever accelerations there are.
 static const double SHORTEST_RETRY = 2e-3, SHORTEST_START = 5e-4;
+// Of √(E/ρ) what a velocity may err by at most, as a share of time.tolerance, which is a length over a
+// body's.
+static const double WAVE_SHARE = 3;
 // What friction may give in a step to what slips, as a share of the scene's energy.
 static const double TURNED_SHARE = 3e-4;
 // A scene in motion without contact may begin at rest with long steps. What it gains is judged by the energy
@@ -118,7 +121,7 @@ static Status begin_stage(FemRunState *run, double step) {
   FemIntegratorDef def = {.displacement_tolerance = fem_model_position_tolerance(model),
                           .velocity_tolerance = fem_model_velocity_tolerance(model),
                           .speed_share = fem_model_speed_share(model),
-                          .wave_share = scene->tolerance,
+                          .wave_share = WAVE_SHARE * scene->tolerance,
                           .initial_step = step,
                           .min_step = scene->min_step,
                           .max_step = scene->max_step,
