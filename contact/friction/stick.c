@@ -152,9 +152,7 @@ static void gather_side(ContactStick *stick, int k, int side, const double F[9])
     node->end++;
     node->weight += w;
     node->stiffness += half * law->stiffness * lambda * pair->area;
-    node->depth += w / (pair->tets[1] < 0 ? 1 : 2); // over c A: once the law is known
     node->limit = half * law->friction; // times N once it is known
-    node->half = half;
     vec3_accumulate(node->force, vec3_scale(lambda, force));
     vec3_accumulate(node->gap, vec3_scale(w, gap));
     for (int r = 0; r < 9; r++) node->deformation[r] += w * F[r];
@@ -213,13 +211,6 @@ static Vec3 keep_energy(double energy, double k, Vec3 stretch) {
   return stored > 0 ? vec3_scale(sqrt(energy / stored), stretch) : stretch;
 }
 
-// Of the way since the last accepted state the share that a vertex that had not touched then went in touch:
-// its depth over how far it has come nearer.
-static double touching_share(const ContactStickNode *node, double nearer) {
-  double depth = node->depth * node->half / node->stiffness;
-  return nearer > depth ? depth / nearer : 1;
-}
-
 // From the history to the force of a node; returns what it dissipates since then.
 static double return_radially(const ContactStickHistory *history, ContactStickNode *node) {
   const ContactStickEntry *entry = contact_stick_history_find(history, node->interface, node->vertex);
@@ -231,9 +222,7 @@ static double return_radially(const ContactStickHistory *history, ContactStickNo
   node->limit *= pressed;
   double k = node->stiffness;
   Vec3 carried = project(normal, keep_energy(before, k, times(node->deformation, kept)));
-  Vec3 moved = vec3_scale(1 / node->weight, vec3_at(node->gap));
-  double touching = entry ? 1 : touching_share(node, -vec3_dot(normal, moved));
-  Vec3 way = vec3_scale(touching, project(normal, moved)), trial = vec3_add(carried, way);
+  Vec3 way = project(normal, vec3_scale(1 / node->weight, vec3_at(node->gap))), trial = vec3_add(carried, way);
   double length = vec3_length(trial);
   node->slips = k * length > node->limit;
   node->advances = vec3_dot(way, trial) > 0;

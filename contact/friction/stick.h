@@ -64,7 +64,6 @@ typedef struct ContactStickNode {
   double deformation[9]; // F_a
   double stiffness;      // k_a [N/m]
   double limit;          // μ N_a [N]
-  double depth, half;    // Σ w / (c times that is the depth's); the side's share of k
   double gap[3];         // Δ_a, then s_trial [m]
   double trial;          // |s_trial| [m]
   double stretch[3];     // s [m]
