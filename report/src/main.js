@@ -107,22 +107,28 @@ const licences = () => document.getElementById("tetlap-licences")?.textContent.t
 const titleOf = ({ runs, sweep, stress, pareto, live }) =>
   runs[0]?.summary?.title || runs[0]?.manifest?.scene?.title || runs[0]?.name || (sweep && sweepTitle(sweep)) || (stress && !pareto ? "Stability" : live ? "A run to come" : "Overlap models");
 
+// What the reader has chosen in a page, for a newer one. Who looks at the last frame goes on to what is the last then.
+function choicesOf({ state, times: old }, times, fields) {
+  const isFollowing = !old.length || state.time === old.at(-1);
+  const { theme, cut, cutShare, edges } = state;
+  return { theme, cut, cutShare, edges, time: isFollowing ? (times.at(-1) ?? 0) : state.time, field: fields.includes(state.field) ? state.field : fields[0] };
+}
+
 // A whole page about these data, not yet in the document. `kept`: the page that it takes the place of.
 function build(data, kept) {
   const { runs } = data;
   const framed = runs.filter((run) => run.frames);
   const times = unionTimes(runs);
   const fields = listFields(framed);
-  const before = kept?.state;
-  const isFollowing = kept && (!kept.times.length || before.time === kept.times.at(-1));
   const state = createState({
-    theme: before?.theme ?? themeOf(),
-    time: (kept && (isFollowing ? times.at(-1) : before.time)) ?? openingTime(data, times),
+    theme: themeOf(),
+    time: openingTime(data, times),
     isPlaying: false,
-    field: fields.includes(before?.field) ? before.field : fields[0],
-    cut: before?.cut ?? -1,
-    cutShare: before?.cutShare ?? 0.5,
-    edges: before?.edges ?? true,
+    field: fields[0],
+    cut: -1,
+    cutShare: 0.5,
+    edges: true,
+    ...(kept && choicesOf(kept, times, fields)),
   });
   const title = titleOf(data);
   document.title = `${title} · tetlap`;
@@ -156,7 +162,7 @@ function build(data, kept) {
     data.benches && buildBenches(data.benches),
     buildManifest(runs),
   );
-  return { state, transport, stage, plots, data, live, place, times, page, bar: buildBar(state, data.version), present, showFrame };
+  return { state, transport, stage, plots, data, live, place, times, fields, page, bar: buildBar(state, data.version), present, showFrame };
 }
 
 // A newer page in the place of this one, once it is ready to be seen: same camera, field, cut and scroll.
@@ -168,6 +174,9 @@ async function replace(data) {
   next.page.classList.add("arriving");
   document.body.insertBefore(next.page, old.page.nextSibling);
   await next.stage?.load(old.stage?.view());
+  next.state.set(choicesOf(old, next.times, next.fields)); // chosen while it was made
+  const view = old.stage?.view();
+  if (view) next.stage?.setView(view);
   old.bar.replaceWith(next.bar);
   if (next.place.isConnected) next.place.replaceWith(next.live.element);
   old.page.remove();

@@ -226,6 +226,10 @@ const tests = {
     }
   },
 
+  async "what both runs have the same curve of is named once"(page) {
+    assert.match(await page.eval(`document.querySelector("#plot-energy .together").textContent`), /^The same curve for both runs: kinetic, elastic/);
+  },
+
   async "a plot sets the time where it is pressed"(page) {
     const place = await page.eval(`(() => { const plot = tetlap.plots[0]; plot.area.scrollIntoView({ block: "center" });
       const box = plot.area.querySelector("svg").getBoundingClientRect(); return [box.left + plot.x.apply(0.05), box.top + box.height / 2]; })()`);
@@ -564,6 +568,8 @@ async function testLive(browser) {
     await later.until("window.first !== tetlap", 300); // a newer page: the bar was never away
     assert.equal(await later.eval("window.first.absent"), 0);
     await later.close();
+    // chosen while the newer page is made, or just before
+    await page.eval(`new Promise((done) => new MutationObserver((_, watch) => document.querySelector("main.arriving") && (watch.disconnect(), done(0))).observe(document.body, { childList: true }))`);
     await page.eval("(tetlap.state.set({ cut: 1, theme: 'dark' }), tetlap.stage.controls.target.set(0.01, 0, 0), tetlap.stage.controls.update(), tetlap.before = tetlap.stage, 0)");
     const frames = await page.eval("tetlap.times.length");
     await page.until(`tetlap.times.length > ${frames} && tetlap.stage.views.length === 1`, 300);

@@ -287,6 +287,15 @@ export class TimePlot {
     return one.hue !== null && this.runs.length > 1 && one.run && !one.label.includes("−") ? `${one.label} ${one.run.label}` : one.label;
   }
 
+  // One quantity of both runs of a pair is named once for all such groups.
+  describe(groups) {
+    const { series } = this.plot;
+    const isOfBoth = (group) => group.length === 2 && group.every((k) => series[k].hue !== null && series[k].label === series[group[0]].label);
+    const both = groups.filter(isOfBoth).map(([k]) => series[k].label);
+    const others = groups.filter((group) => !isOfBoth(group)).map((group) => `Curves that coincide: ${group.map((k) => this.nameOf(series[k])).join(", ")}.`);
+    return [...(both.length ? [`The same curve for both runs: ${both.join(", ")}.`] : []), ...others].join(" ");
+  }
+
   // Curves that would hide each other, in stripes where their hues differ, and in words.
   showTogether(chart) {
     const { series } = this.plot;
@@ -303,7 +312,7 @@ export class TimePlot {
       }
     }
     this.together.hidden = groups.length === 0;
-    this.together.textContent = groups.map((group) => `Curves that coincide: ${group.map((k) => this.nameOf(series[k])).join(", ")}.`).join(" ");
+    this.together.textContent = this.describe(groups);
   }
 
   addCursor(chart, width, height) {

@@ -58,6 +58,6 @@ export function buildHeader(runs, title, isLive) {
     : [];
   const trouble = runs
     .filter((run) => !isLive && run.summary && run.summary.outcome !== "finished")
-    .map((run) => h("p.warning", { role: "note" }, `${runs.length > 1 ? `${run.label}: ` : ""}${whatHappened(run.summary)}`));
+    .map((run) => h(runs.length > 1 ? "p.warning" : "p.warning.sentence", { role: "note" }, `${runs.length > 1 ? `${run.label}: ` : ""}${whatHappened(run.summary)}`));
   return h(".title", h("h1", title), facts.length > 0 && h("p.facts", facts.filter(Boolean).map((fact) => h("span", fact))), trouble);
 }
