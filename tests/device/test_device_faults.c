@@ -173,7 +173,9 @@ static bool make_pairs(void) {
   for (int i = 0; i < HARD; i++)
     memcpy(pairs + (size_t)(COUNT + i) * 24, datagen_hard_make(i % DATAGEN_HARD_CLASS_COUNT, i).x,
            24 * sizeof *pairs);
-  memset(pairs, 0, 12 * sizeof *pairs); // a flat one: the host's
+  // The first flat: the host's, except for networks that choose which one comes first. Both flat: the host's.
+  memset(pairs, 0, 12 * sizeof *pairs);
+  memset(pairs + 24, 0, 24 * sizeof *pairs);
   return true;
 }
 
