@@ -388,7 +388,8 @@ static FemReason reason_of(int flag) {
   switch (flag) {
   case IDA_ERR_FAIL:
     return (FemReason){"the error of a step stayed above the tolerance however short the step",
-                       "a larger time.tolerance, a smaller contact.stiffness, or some effects.damping"};
+                       "a larger time.tolerance, a smaller contact.stiffness, some effects.damping, or a "
+                       "smaller time.min_step if the scene names one"};
   case IDA_CONV_FAIL:
   case IDA_LSETUP_FAIL:
   case IDA_LSOLVE_FAIL:

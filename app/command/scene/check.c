@@ -204,8 +204,8 @@ static void print_contact(const AppJob *job) {
   double range[2];
   char most[32] = "";
   if (fem_compliance_range(&job->model, range)) return;
-  if (range[1] > range[0]) snprintf(most, sizeof most, " … %g", range[1]);
-  printf("contact       potential %s, κ = %g%s %s%s, overlap model %s\n",
+  if (range[1] > range[0]) snprintf(most, sizeof most, " … %.3g", range[1]);
+  printf("contact       potential %s, stiffness %.3g%s %s%s, overlap model %s\n",
          contact_def_potential_name(contact->potential), range[0], most,
          contact_def_potential_unit(contact->potential), contact->stiffness > 0 ? "" : " (chosen)",
          app_job_overlap(job));
