@@ -25,7 +25,7 @@ static const char *const activation_helps[] = {"as published; its gradient is pi
 static const char *const pools[] = {"max", "sum", NULL};
 static const char *const pool_helps[] = {"as published; the gradient jumps where another vertex takes over",
                                          "smooth"};
-static const char *const normalisations[] = {"unit", "pca", "sorted", "unscaled", "separated", NULL};
+static const char *const normalisations[] = {"unit", "pca", "sorted", "unscaled", "axis", NULL};
 static const char *const normalisation_helps[] = {"the first tetrahedron becomes the unit simplex",
                                                   "the first tetrahedron's principal axes become the axes",
                                                   "unit, vertices in an order of their own",
@@ -94,7 +94,7 @@ static const char *finish_model(void *self, const char **key) {
   *key = "normalisation";
   if (model->kind == APP_MODEL_TPN && model->reading == APP_READING_C &&
       model->normalisation == APP_NORMALISATION_PCA)
-    return "reading c is shown the second tetrahedron alone: unit, sorted, unscaled or separated";
+    return "reading c is shown the second tetrahedron alone: unit, sorted, unscaled or axis";
   return NULL;
 }
 

@@ -51,8 +51,7 @@ static OverlapTpnNormalisation normalisation_of(const AppTrainingConfig *config)
                                                   [APP_NORMALISATION_SORTED] = OVERLAP_TPN_NORMALISE_SORTED,
                                                   [APP_NORMALISATION_UNSCALED] =
                                                       OVERLAP_TPN_NORMALISE_UNSCALED,
-                                                  [APP_NORMALISATION_SEPARATED] =
-                                                      OVERLAP_TPN_NORMALISE_SEPARATED};
+                                                  [APP_NORMALISATION_AXIS] = OVERLAP_TPN_NORMALISE_AXIS};
   return kinds[config->model.normalisation];
 }
 

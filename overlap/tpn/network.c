@@ -88,7 +88,7 @@ static Status load(OverlapTpnNetwork *model, const char *path, NetKernelKind ker
     return status_fail(
         STATUS_INPUT,
         "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER', 'pca, …', 'sorted, …', "
-        "'unscaled, …' or 'separated, …'",
+        "'unscaled, …' or 'axis, …'",
         path, model->card.normalisation);
   model->has_range = overlap_tpn_range_parse(model->card.range, &model->range);
   TRY(fold(model, path));

@@ -5,12 +5,12 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "overlap/tpn/axis.h"
 
 static const double FLATTEST = 1e-14, SOFTEST = 1e-6, LINEAR = 3, SAME = 1e-9;
 
 const char *overlap_tpn_normalise_name(OverlapTpnNormalisation kind) {
-  static const char *const names[OVERLAP_TPN_NORMALISE_COUNT] = {"unit", "pca", "sorted", "unscaled",
-                                                                 "separated"};
+  static const char *const names[OVERLAP_TPN_NORMALISE_COUNT] = {"unit", "pca", "sorted", "unscaled", "axis"};
   return names[kind];
 }
 
@@ -125,30 +125,16 @@ static bool find_sorted(const double pair[24], OverlapTpnNormalised *normalised)
   return true;
 }
 
-// How a tetrahedron would do as the first of a pair.
-typedef struct Candidate {
-  bool stands;        // it is not flat
-  double centroid[4]; // the other's, as find_centroid has it
-  double reach[4];    // how far the other reaches into the half-spaces of its faces: its largest barycentric
-                      // coordinates
-  int face;           // of the least reach
-  double det;
-} Candidate;
-
-static Candidate find_candidate(const double pair[24], OverlapTpnNormalised *normalised) {
-  Candidate candidate = {.stands = find_unit(pair, normalised)};
-  if (!candidate.stands) return candidate;
-  find_centroid(normalised->pair, candidate.centroid);
-  for (int k = 0; k < 4; k++) candidate.reach[k] = -INFINITY;
-  for (int b = 4; b < 8; b++) {
-    const double *y = normalised->pair + 3 * b;
-    candidate.reach[0] = fmax(candidate.reach[0], 1 - y[0] - y[1] - y[2]);
-    for (int k = 0; k < 3; k++) candidate.reach[k + 1] = fmax(candidate.reach[k + 1], y[k]);
+static OverlapTpnAxisSide find_side(const double pair[24], OverlapTpnNormalised *normalised) {
+  OverlapTpnAxisSide side = {.stands = find_unit(pair, normalised)};
+  if (!side.stands) return side;
+  for (int b = 0; b < 4; b++) {
+    const double *y = normalised->pair + 12 + 3 * b;
+    side.lambda[b][0] = 1 - y[0] - y[1] - y[2];
+    memcpy(side.lambda[b] + 1, y, 3 * sizeof *y);
   }
-  for (int k = 1; k < 4; k++)
-    if (candidate.reach[k] < candidate.reach[candidate.face]) candidate.face = k;
-  candidate.det = normalised->factor;
-  return candidate;
+  side.det = normalised->factor;
+  return side;
 }
 
 // Of points, by x, then y, then z.
@@ -167,29 +153,68 @@ static bool is_second_greater(const double pair[24]) {
   return is_greater(pair + 3 * greatest[1], pair + 3 * greatest[0]);
 }
 
-static bool is_exchanged(const double pair[24], const Candidate *first, const Candidate *second) {
-  if (!first->stands || !second->stands) return second->stands;
-  double reach = first->reach[first->face], other = second->reach[second->face];
-  if (fabs(reach - other) > SAME) return other < reach;
-  if (fabs(first->det - second->det) > SAME * (first->det + second->det)) return second->det > first->det;
+static bool is_second_larger(const double pair[24], const OverlapTpnAxisSide sides[2]) {
+  if (!sides[0].stands || !sides[1].stands) return sides[1].stands;
+  double difference = sides[1].det - sides[0].det;
+  if (fabs(difference) > SAME * (sides[0].det + sides[1].det)) return difference > 0;
   return is_second_greater(pair);
 }
 
-static bool find_separated(const double pair[24], OverlapTpnNormalised *normalised) {
-  double exchanged[24], arranged[24], height[4];
+// The vertices of an edge, the one of the larger value first, then the other two as they are.
+static void order_edge(const int edge[4], const double value[4], int order[4]) {
+  memcpy(order, edge, 4 * sizeof *edge);
+  if (value[edge[1]] > value[edge[0]]) order[0] = edge[1], order[1] = edge[0];
+}
+
+// Of the side's tetrahedron, by the other's centroid.
+static void order_first(const OverlapTpnAxisSide *side, const OverlapTpnAxis *axis, bool tet, int order[4]) {
+  double centroid[4];
+  for (int k = 0; k < 4; k++)
+    centroid[k] = side->lambda[0][k] + side->lambda[1][k] + side->lambda[2][k] + side->lambda[3][k];
+  if (axis->is_edges) {
+    order_edge(axis->edge[tet], centroid, order);
+  } else {
+    centroid[axis->face] = -INFINITY;
+    sort_places(centroid, order);
+  }
+}
+
+// Of the tetrahedron `tet`, the second, in the first's unit frame.
+static void order_along(const OverlapTpnAxis *axis, bool tet, const double unit[24], int order[4]) {
+  double value[4];
+  for (int b = 0; b < 4; b++) value[b] = axis->is_edges ? -unit[12 + 3 * b + 1] : unit[12 + 3 * b + 2];
+  if (axis->is_edges)
+    order_edge(axis->edge[tet], value, order);
+  else
+    sort_places(value, order);
+}
+
+// x₃ becomes the height above the plane through the first's edge along the second's, of which the slope from
+// the x₁x₂-plane is 0 to 1. Both ends of the second's edge have the same height: that of the other end is
+// replaced by it plus the slope.
+static void shear(const int second[4], OverlapTpnNormalised *normalised) {
+  double *y = normalised->pair + 12, *p = y + 3 * second[0], *q = y + 3 * second[1];
+  normalised->run = q[1] - p[1];
+  normalised->slope = -(q[2] - p[2]) / normalised->run;
+  for (int b = 0; b < 4; b++) y[3 * b + 2] += normalised->slope * y[3 * b + 1];
+  q[2] = p[2] + normalised->slope;
+}
+
+static bool find_along_axis(const double pair[24], OverlapTpnNormalised *normalised) {
+  double exchanged[24], arranged[24];
   int second[4];
   memcpy(exchanged, pair + 12, 12 * sizeof(double));
   memcpy(exchanged + 12, pair, 12 * sizeof(double));
-  Candidate candidates[2] = {find_candidate(pair, normalised), find_candidate(exchanged, normalised)};
-  bool first = is_exchanged(pair, &candidates[0], &candidates[1]);
-  Candidate *chosen = &candidates[first];
-  if (!chosen->stands) return false;
-  chosen->centroid[chosen->face] = -INFINITY;
-  sort_places(chosen->centroid, normalised->order);
+  const OverlapTpnAxisSide sides[2] = {find_side(pair, normalised), find_side(exchanged, normalised)};
+  bool larger = is_second_larger(pair, sides);
+  if (!sides[larger].stands) return false;
+  OverlapTpnAxis axis = overlap_tpn_axis_find(sides, larger);
+  bool first = axis.tet;
+  order_first(&sides[first], &axis, first, normalised->order);
   arrange_first(first ? exchanged : pair, normalised->order, arranged);
   if (!find_unit(arranged, normalised)) return false;
-  for (int b = 0; b < 4; b++) height[b] = normalised->pair[12 + 3 * b + 2];
-  sort_places(height, second);
+  order_along(&axis, !first, normalised->pair, second);
+  if (axis.is_edges) shear(second, normalised);
   arrange_second(second, normalised);
   for (int v = 0; v < 8 && first; v++) normalised->order[v] ^= 4;
   return true;
@@ -266,6 +291,7 @@ static bool find_pca(const double pair[24], OverlapTpnNormalised *normalised) {
 
 static bool find(OverlapTpnNormalisation kind, const double pair[24], OverlapTpnNormalised *normalised) {
   normalised->kind = kind;
+  normalised->run = 0;
   switch (kind) {
   case OVERLAP_TPN_NORMALISE_UNIT:
     return find_unit(pair, normalised);
@@ -273,8 +299,8 @@ static bool find(OverlapTpnNormalisation kind, const double pair[24], OverlapTpn
     return find_pca(pair, normalised);
   case OVERLAP_TPN_NORMALISE_SORTED:
     return find_sorted(pair, normalised);
-  case OVERLAP_TPN_NORMALISE_SEPARATED:
-    return find_separated(pair, normalised);
+  case OVERLAP_TPN_NORMALISE_AXIS:
+    return find_along_axis(pair, normalised);
   case OVERLAP_TPN_NORMALISE_UNSCALED:
     if (!find_unit(pair, normalised)) return false;
     normalised->factor = 1;
@@ -368,6 +394,21 @@ void overlap_tpn_normalise_bend_unit(const OverlapTpnNormalised *normalised, con
   bend_columns(normal, lambda, gradient, 0, hessian);
 }
 
+// Back through `shear`: y and the derivatives by it. slope = −(y₅ − y₂)/run, run = y₄ − y₁.
+static void pull_shear(double slope, double run, double y[12], double slopes[12]) {
+  double by_slope = slopes[5];
+  y[5] = y[2];
+  slopes[2] += slopes[5], slopes[5] = 0;
+  for (int b = 0; b < 4; b++) {
+    y[3 * b + 2] -= slope * y[3 * b + 1];
+    by_slope += slopes[3 * b + 2] * y[3 * b + 1];
+    slopes[3 * b + 1] += slope * slopes[3 * b + 2];
+  }
+  double along = by_slope / run;
+  slopes[2] += along, slopes[5] -= along;
+  slopes[1] += slope * along, slopes[4] -= slope * along;
+}
+
 static void pull_sorted(const OverlapTpnNormalised *normalised, double volume, const double inner[24],
                         double gradient[24]) {
   OverlapTpnNormalised unit = *normalised;
@@ -376,6 +417,7 @@ static void pull_sorted(const OverlapTpnNormalised *normalised, double volume, c
     double y = unit.pair[i] = expand(normalised->pair[i]);
     slopes[i] = inner[i] * (fabs(y) <= LINEAR ? 1 : LINEAR / fabs(y));
   }
+  if (unit.run > 0) pull_shear(unit.slope, unit.run, unit.pair + 12, slopes + 12);
   pull_unit(&unit, volume, slopes, arranged);
   for (int v = 0; v < 8; v++)
     memcpy(gradient + 3 * normalised->order[v], arranged + 3 * v, 3 * sizeof(double));
@@ -418,8 +460,7 @@ void overlap_tpn_normalise_pull(const OverlapTpnNormalised *normalised, double v
     pull_unit(normalised, volume, inner, gradient);
   else if (normalised->kind == OVERLAP_TPN_NORMALISE_UNSCALED)
     pull_unit(normalised, 0, inner, gradient);
-  else if (normalised->kind == OVERLAP_TPN_NORMALISE_SORTED ||
-           normalised->kind == OVERLAP_TPN_NORMALISE_SEPARATED)
+  else if (normalised->kind == OVERLAP_TPN_NORMALISE_SORTED || normalised->kind == OVERLAP_TPN_NORMALISE_AXIS)
     pull_sorted(normalised, volume, inner, gradient);
   else
     pull_pca(normalised, inner, gradient);

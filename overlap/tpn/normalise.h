@@ -14,19 +14,25 @@
 //         by its barycentric coordinates of the other's centroid, the largest first; then the other's by
 //         their barycentric coordinate of the first's first vertex. Coordinates beyond 3 are compressed: ±3
 //         (1 + ln(|x|/3)), so that a flat first tetrahedron gives no huge numbers.
-//   separated  as sorted, but the order of the two tetrahedra does not depend on how they came, either.
-//         The reach into a face is the other's largest barycentric coordinate there: where it is not
-//         positive, the face's plane separates the two. First comes the tetrahedron that has the face of
-//         least reach, the vertex opposite to that face as its last one, the others as in sorted; the
-//         other's vertices are in the order of their coordinate of that vertex, the largest first. So the
-//         face is the plane x₃ = 0, and the fifth vertex's x₃ is the reach. Where both reaches are equal to
-//         1e-9, the larger tetrahedron comes first, of equally large ones that with the greatest vertex, by
-//         x, then y, then z. A flat one does not come first.
+//   axis  as sorted, but the order of the two tetrahedra does not depend on how they came, either. Of the
+//         axes that can separate the two, the one of least reach (overlap/tpn/axis.h) decides.
+//           A face: its tetrahedron comes first, the vertex opposite to the face as its last one, the others
+//         as in sorted; the other's vertices are in the order of their coordinate of that vertex, the largest
+//         first. So the face is the plane x₃ = 0, and the fifth vertex has the greatest x₃.
+//           Two edges: the larger tetrahedron comes first. Its edge's ends, as in sorted, come before the
+//         other two, the nearer to the plane along both edges first: that plane is x₃ + slope x₂ = 0 with
+//         0 ≤ slope ≤ 1. Of the other, the edge's ends come first, by rising x₂, then the nearer of the other
+//         two. x₃ + slope x₂, the height, takes the place of x₃: again 0 on a plane that supports the first,
+//         and greatest at the fifth vertex. The sixth has the same and is given that plus the slope: so the
+//         sixth above the fifth says that it is edges, and by how much, the slope.
+//           In both cases the axis separates if the fifth vertex's x₃ is not positive. Of equally large ones
+//         (|det E| equal to 1e-9), the larger is that with the greatest vertex, by x, then y, then z. A flat
+//         one does not come first.
 //
 // The paper has the first two, the code that its authors published trains the third. The last two are ours: a
 // network on them cannot tell the order of vertices, and learns one twenty-fourth of the cases twice over;
-// on the last it cannot tell the order of the two, either. Where two values that decide are equal, its value
-// jumps.
+// on the last it cannot tell the order of the two, either, and whether they are disjoint is the sign of one
+// number. Where two values that decide are equal, its value jumps.
 //
 // All are functions of the pair: a network's V = factor · V'(normalised) has a gradient that goes through
 // them, including the turning of the axes. A principal axis turns by D_ij / (λ_j − λ_i), D the change of the
@@ -43,7 +49,7 @@ typedef enum OverlapTpnNormalisation {
   OVERLAP_TPN_NORMALISE_PCA,
   OVERLAP_TPN_NORMALISE_SORTED,
   OVERLAP_TPN_NORMALISE_UNSCALED,
-  OVERLAP_TPN_NORMALISE_SEPARATED,
+  OVERLAP_TPN_NORMALISE_AXIS,
   OVERLAP_TPN_NORMALISE_COUNT,
 } OverlapTpnNormalisation;
 
@@ -54,11 +60,13 @@ typedef struct OverlapTpnNormalised {
   double matrix[9]; // normalised = matrix · (x − origin), row-major
   double origin[3];
   double principal[3]; // pca: principal values, falling
-  int order[8];        // sorted, separated: which of the pair's eight vertices stands in each place
+  double slope, run; // axis, of two edges: of the plane along both, change of x₂ along the second's; run 0:
+                     // of a face
+  int order[8]; // sorted, axis: which of the pair's eight vertices stands in each place
 } OverlapTpnNormalised;
 
 // False: the first tetrahedron is too flat for it (all but pca: |det E| below 1e-14 of the edges'
-// product; of separated, both are), or what the network would be shown is not finite.
+// product; of axis, both are), or what the network would be shown is not finite.
 bool overlap_tpn_normalise(OverlapTpnNormalisation kind, const double pair[24],
                            OverlapTpnNormalised *normalised);
 

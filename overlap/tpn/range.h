@@ -7,7 +7,9 @@
 //
 // Each measure's range leaves out the rarest pairs at either end: the normalised coordinates of random pairs
 // have heavy tails, and a box around all of them would refuse nothing. The measures do not depend on the
-// order of vertices, and have derivatives wherever a tetrahedron has a volume.
+// order of vertices, and have derivatives wherever a tetrahedron has a volume. Of `axis` they are those of
+// the coordinates that the network is shown, where two edges separate best not of the second tetrahedron
+// itself.
 #ifndef TETLAP_OVERLAP_TPN_RANGE_H
 #define TETLAP_OVERLAP_TPN_RANGE_H
 

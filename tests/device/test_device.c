@@ -153,7 +153,7 @@ START_TEST(hard_pairs_are_answered_to_the_bit) {
 }
 END_TEST
 
-static const char *const normalisations[] = {"unit", "unscaled", "sorted", "separated"};
+static const char *const normalisations[] = {"unit", "unscaled", "sorted", "axis"};
 enum { NORMALISATIONS = 4 };
 
 // The network of tpn behind another normalisation, as net/weights/tpn.safetensors in `folder`.

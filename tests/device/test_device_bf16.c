@@ -318,8 +318,10 @@ START_TEST(rounding_costs_little_of_the_accuracy) {
     ck_assert_double_gt(between, 0);
     ck_assert_double_le(between, 0.1 * by_wide);
     ck_assert_double_le(by_narrow, 1.02 * by_wide);
-    ck_assert_double_le(slope_between, 0.1 * slope_wide);
-    ck_assert_double_le(slope_narrow, 1.02 * slope_wide);
+    // along two edges the derivative by the slope is divided by what may be small (overlap_tpn_normalise), and
+    // its rounding with it
+    ck_assert_double_le(slope_between, 0.15 * slope_wide);
+    ck_assert_double_le(slope_narrow, 1.1 * slope_wide);
   }
   destroy_answers(&exact), destroy_answers(&wide), destroy_answers(&narrow), memory_free(pairs);
 }

@@ -10,7 +10,7 @@
 // The two that are maps of space come first.
 static const OverlapTpnNormalisation kinds[] = {OVERLAP_TPN_NORMALISE_UNIT, OVERLAP_TPN_NORMALISE_PCA,
                                                 OVERLAP_TPN_NORMALISE_SORTED, OVERLAP_TPN_NORMALISE_UNSCALED,
-                                                OVERLAP_TPN_NORMALISE_SEPARATED};
+                                                OVERLAP_TPN_NORMALISE_AXIS};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static void draw_pair(Random *random, double pair[24]) {
@@ -103,8 +103,7 @@ START_TEST(rigid_motion_leaves_all_normalised_pairs_unchanged) {
 END_TEST
 
 START_TEST(sorted_pair_does_not_depend_on_the_order_of_vertices) {
-  static const OverlapTpnNormalisation sorting[] = {OVERLAP_TPN_NORMALISE_SORTED,
-                                                    OVERLAP_TPN_NORMALISE_SEPARATED};
+  static const OverlapTpnNormalisation sorting[] = {OVERLAP_TPN_NORMALISE_SORTED, OVERLAP_TPN_NORMALISE_AXIS};
   static const int orders[4][4] = {{1, 2, 3, 0}, {2, 0, 3, 1}, {3, 2, 1, 0}, {0, 2, 1, 3}};
   Random random = random_seeded(6, 0);
   double pair[24], shuffled[24];
@@ -152,14 +151,14 @@ static void check_exchange(const double pair[24]) {
   OverlapTpnNormalised before, after;
   double exchanged[24];
   exchange(pair, exchanged);
-  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, pair, &before));
-  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, exchanged, &after));
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_AXIS, pair, &before));
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_AXIS, exchanged, &after));
   ck_assert_mem_eq(after.pair, before.pair, sizeof before.pair);
   ck_assert_double_eq(after.factor, before.factor);
   for (int v = 0; v < 8; v++) ck_assert_int_eq(after.order[v], before.order[v] ^ 4);
 }
 
-START_TEST(separated_pair_does_not_depend_on_which_comes_first) {
+START_TEST(pair_along_its_axis_does_not_depend_on_which_comes_first) {
   Random random = random_seeded(7, 0);
   double pair[24];
   int exchanged = 0;
@@ -167,7 +166,7 @@ START_TEST(separated_pair_does_not_depend_on_which_comes_first) {
     OverlapTpnNormalised normalised;
     draw_pair(&random, pair);
     check_exchange(pair);
-    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, pair, &normalised));
+    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_AXIS, pair, &normalised));
     exchanged += normalised.order[0] >= 4;
   }
   ck_assert(exchanged > 50 && exchanged < 150);
@@ -184,8 +183,8 @@ START_TEST(separated_pair_does_not_depend_on_which_comes_first) {
 }
 END_TEST
 
-// Of two that a plane of a face separates, the first has that face, and it is the plane of the third
-// coordinate, on whose far side all of the second lies.
+// Of two that touch in a face, the first has that face, and it is the plane of the third coordinate, on whose
+// far side all of the second lies. With a gap another axis may separate them better.
 START_TEST(separating_face_is_the_first_plane_of_the_third_coordinate) {
   Random random = random_seeded(8, 0);
   double pair[24], other[24];
@@ -200,25 +199,61 @@ START_TEST(separating_face_is_the_first_plane_of_the_third_coordinate) {
     for (int i = 12; i < 15; i++)
       pair[i] = i == 14 ? -gap : (pair[3 + i - 12] + pair[6 + i - 12] + pair[9 + i - 12]) / 3;
     exchange(pair, other);
-    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, n % 3 ? pair : other, &normalised));
+    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_AXIS, n % 3 ? pair : other, &normalised));
     if (gap == 0) ck_assert_int_eq(normalised.order[0] / 4, n % 3 ? 0 : 1);
     ck_assert(gap == 0 ? fabs(normalised.pair[14]) < 1e-12 : normalised.pair[14] < 0);
-    for (int v = 5; v < 8; v++) ck_assert(normalised.pair[3 * v + 2] <= normalised.pair[3 * v - 1]);
+    for (int v = 5; v < 8 && gap == 0; v++)
+      ck_assert(normalised.pair[3 * v + 2] <= normalised.pair[3 * v - 1]);
   }
 }
 END_TEST
 
-START_TEST(flat_tetrahedron_does_not_come_first_in_a_separated_pair) {
+// Where no face's plane separates, that along two edges does: the height is 0 on the first's edge, 1 at its
+// farther vertex, and the nearer one has the slope.
+START_TEST(separating_edges_have_one_height) {
+  const double pair[24] = {.5,  -.5, -2,  1,  0,   0,  .5,  .5, -1,  0,  0,    0,
+                           .75, 0,   2.1, .5, .25, .1, .25, 0,  1.1, .5, -.25, .1};
+  static const int first[4] = {1, 3, 2, 0};
+  OverlapTpnNormalised normalised;
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_AXIS, pair, &normalised));
+  ck_assert_int_eq(normalised.order[0] + normalised.order[1], first[0] + first[1]);
+  for (int v = 2; v < 4; v++) ck_assert_int_eq(normalised.order[v], first[v]);
+  ck_assert_int_eq(normalised.order[6], 6);
+  ck_assert_int_eq(normalised.order[7], 4);
+  const double height[4] = {-.05, -.05 + .5, -.55, -1.05};
+  for (int v = 0; v < 4; v++) ck_assert_near(normalised.pair[14 + 3 * v], height[v], 1e-14);
+}
+END_TEST
+
+// By the separating axis theorem, and only then.
+START_TEST(pair_is_disjoint_where_the_fifth_height_is_not_positive) {
+  Random random = random_seeded(10, 0);
+  double pair[24];
+  int disjoint[2] = {0}, overlapping[2] = {0};
+  for (int n = 0; n < 2000; n++) {
+    OverlapTpnNormalised normalised;
+    draw_pair(&random, pair);
+    ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_AXIS, pair, &normalised));
+    bool is_edges = normalised.run > 0, is_disjoint = volume_of(pair) <= 0;
+    ck_assert_int_eq(normalised.pair[14] <= 0, is_disjoint);
+    ck_assert_int_eq(normalised.pair[17] > normalised.pair[14], is_edges);
+    disjoint[is_edges] += is_disjoint, overlapping[is_edges] += !is_disjoint;
+  }
+  for (int k = 0; k < 2; k++) ck_assert(disjoint[k] > 100 && overlapping[k] > 100);
+}
+END_TEST
+
+START_TEST(flat_tetrahedron_does_not_come_first_along_an_axis) {
   double pair[24] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, exchanged[24];
   OverlapTpnNormalised normalised;
-  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, pair, &normalised));
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_AXIS, pair, &normalised));
   for (int v = 0; v < 4; v++) ck_assert_int_ge(normalised.order[v], 4);
   exchange(pair, exchanged);
-  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, exchanged, &normalised));
+  ck_assert(overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_AXIS, exchanged, &normalised));
   for (int v = 0; v < 4; v++) ck_assert_int_lt(normalised.order[v], 4);
   memcpy(exchanged, pair, 12 * sizeof(double));
   memcpy(exchanged + 12, pair, 12 * sizeof(double));
-  ck_assert(!overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_SEPARATED, exchanged, &normalised));
+  ck_assert(!overlap_tpn_normalise(OVERLAP_TPN_NORMALISE_AXIS, exchanged, &normalised));
 }
 END_TEST
 
@@ -299,9 +334,11 @@ int main(void) {
   tcase_add_test(test_case, unscaled_is_unit_with_a_factor_of_one);
   tcase_add_test(test_case, sorted_pair_does_not_depend_on_the_order_of_vertices);
   tcase_add_test(test_case, sorted_pair_by_hand);
-  tcase_add_test(test_case, separated_pair_does_not_depend_on_which_comes_first);
+  tcase_add_test(test_case, pair_along_its_axis_does_not_depend_on_which_comes_first);
   tcase_add_test(test_case, separating_face_is_the_first_plane_of_the_third_coordinate);
-  tcase_add_test(test_case, flat_tetrahedron_does_not_come_first_in_a_separated_pair);
+  tcase_add_test(test_case, separating_edges_have_one_height);
+  tcase_add_test(test_case, pair_is_disjoint_where_the_fifth_height_is_not_positive);
+  tcase_add_test(test_case, flat_tetrahedron_does_not_come_first_along_an_axis);
   tcase_add_test(test_case, rigid_motion_leaves_all_normalised_pairs_unchanged);
   tcase_add_test(test_case, gradient_is_that_of_the_whole_chain);
   tcase_add_test(test_case, gradient_is_bounded_where_principal_values_are_equal);

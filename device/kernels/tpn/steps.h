@@ -6,7 +6,7 @@ enum { TPN_PAIRS = 32, TPN_ROOM = 368 };             // of a group that wants V:
 enum { TPN_SLOPE_PAIRS = 4, TPN_SLOPE_ROOM = 2000 }; // that wants ∇V, too
 enum { TPN_LINEAR, TPN_POOL, TPN_POOL_WITH };        // kinds of steps
 // Normalisations, as OVERLAP_TPN_NORMALISE_….
-enum { TPN_UNIT = 0, TPN_SORTED = 2, TPN_UNSCALED = 3, TPN_SEPARATED = 4 };
+enum { TPN_UNIT = 0, TPN_SORTED = 2, TPN_UNSCALED = 3, TPN_AXIS = 4 };
 // What a step's integers are: rows of the group's memory, places in the parameters; −1: none.
 enum {
   STEP_KIND,
