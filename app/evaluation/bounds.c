@@ -6,6 +6,9 @@
 
 #include "base/memory.h"
 
+// What clip, which has a part in pairs with nearly coplanar faces, may be off, over V.
+static const double CLIP_ERROR = 1e-9;
+
 bool app_evaluation_bounds_are_told(const OverlapModel *model) {
   const OverlapOps *ops = model->ops;
   return ops->eval_bounds && (!ops->has_bounds || ops->has_bounds(model->self));
@@ -43,7 +46,7 @@ static int compare(const void *a, const void *b) {
 AppEvaluationBounds app_evaluation_bounds_finish(AppEvaluationBoundsRun *run) {
   if (run->count == 0) return (AppEvaluationBounds){0, NAN, NAN, NAN, NAN, NAN};
   size_t kept = 0, half = run->count / 2, most = (size_t)(0.95 * (double)(run->count - 1) + 0.5);
-  for (size_t i = 0; i < run->count; i++) kept += run->errors[i] <= run->widths[i];
+  for (size_t i = 0; i < run->count; i++) kept += run->errors[i] <= run->widths[i] + CLIP_ERROR;
   qsort(run->errors, run->count, sizeof(double), compare);
   qsort(run->widths, run->count, sizeof(double), compare);
   return (AppEvaluationBounds){.count = run->count,

@@ -85,9 +85,10 @@ static const char *finish_model(void *self, const char **key) {
   const AppTrainingModelDef *model = self;
   *key = "features";
   if (model->kind == APP_MODEL_GEO && !overlap_geo_features_set(model->features))
-    return "there is no set of so many features: 36, 70, 100";
+    return "there is no set of so many features: " OVERLAP_GEO_FEATURE_COUNTS;
   if (model->kind == APP_MODEL_BOUND && !overlap_geo_features_set(model->features))
-    return "there is no set of so many features: those of the network that is bounded, 36, 70, 100";
+    return "there is no set of so many features: those of the network that is "
+           "bounded, " OVERLAP_GEO_FEATURE_COUNTS;
   *key = "of";
   if (model->kind == APP_MODEL_BOUND && !model->of) return "name the geo whose error is bounded";
   if (model->kind != APP_MODEL_BOUND && model->of) return "only a bound is of another network";

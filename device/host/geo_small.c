@@ -1,4 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#define GEO_FEATURES 36
+#define GEO_FEATURES 56
 #define HOST_KERNELS device_host_geo_small
 #include "device/host/geo.inc"

@@ -135,7 +135,7 @@ const DeviceProgram device_program_tpn_bf16 = {
 
 const DeviceProgram device_program_geo_small = {
     .name = "geo-small",
-    .defines = "#define GROUPS_AT_ONCE 4\n#define GEO_FEATURES 36\n",
+    .defines = "#define GROUPS_AT_ONCE 4\n#define GEO_FEATURES 56\n",
     .pieces = GEO_PIECES,
     .kernels = GEO_KERNELS,
     .items = 64,
@@ -143,7 +143,7 @@ const DeviceProgram device_program_geo_small = {
 
 const DeviceProgram device_program_geo = {
     .name = "geo",
-    .defines = "#define GROUPS_AT_ONCE 4\n#define GEO_FEATURES 100\n",
+    .defines = "#define GROUPS_AT_ONCE 4\n#define GEO_FEATURES 120\n",
     .pieces = GEO_PIECES,
     .kernels = GEO_KERNELS,
     .items = 64,

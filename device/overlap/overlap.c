@@ -54,11 +54,11 @@ static const DeviceOverlapChain chains[DEVICE_OVERLAP_MODELS] = {
      .is_bf16 = true},
     {.model = "geo-small",
      .programs = {&device_program_geo_small, &device_program_clip, &device_program_scalar},
-     .feature_count = 36,
+     .feature_count = 56,
      .has_centroid = true},
     {.model = "geo",
      .programs = {&device_program_geo, &device_program_clip, &device_program_scalar},
-     .feature_count = 100,
+     .feature_count = 120,
      .has_centroid = true},
 };
 const char *const device_overlap_models[DEVICE_OVERLAP_MODELS] = {

@@ -97,7 +97,7 @@ NetStatus net_whitening_fit(int count, int sample_count, const double *samples, 
   diagonalise(count, correlation, whitening->matrix);
   for (size_t i = 0; i < n; i++) {
     double variance = correlation[i * n + i];
-    double scale = variance > 0 ? 1 / sqrt(variance + 1e-8) : 1;
+    double scale = variance > 0 ? 1 / sqrt(variance + 1e-6) : 1;
     for (size_t j = 0; j < n; j++) whitening->matrix[i * n + j] *= scale / deviation[j];
   }
   net_memory_free(deviation), net_memory_free(correlation);

@@ -118,6 +118,18 @@ void overlap_geo_coplanar_mix(double share, double clip_volume, const double cli
     centroid[c] = *volume > 0 ? centroid[c] + part * (clip_centroid[c] - centroid[c]) : 0;
 }
 
+// Turns the network's gradient and Hessian to the blend's; either may be NULL. The blend has `part` of w.
+static void blend_derivatives(const OverlapGeoFrame *frame, const OverlapGeoCoplanar *coplanar, double part,
+                              Blend *blend, double *gradient, double *hessian) {
+  if (!gradient) return;
+  for (int i = 0; i < SIZE; i++) blend->gradient_difference[i] = blend->gradient[i] - gradient[i];
+  overlap_geo_coplanar_pull(frame, coplanar, blend->share_gradient, hessian ? blend->share_hessian : NULL);
+  for (int i = 0; i < SIZE; i++) blend->share_gradient[i] *= part;
+  for (int i = 0; i < SIZE * SIZE && hessian; i++) blend->share_hessian[i] *= part;
+  blend_gradient(blend, gradient);
+  if (hessian) blend_hessian(blend, hessian);
+}
+
 Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pair[24], double *volume,
                                   double *gradient, double *hessian, double *centroid, unsigned *flags) {
   OverlapGeoCoplanar coplanar;
@@ -136,10 +148,16 @@ Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pai
   blend.difference = blend.volume - *volume;
   overlap_geo_coplanar_mix(blend.share, blend.volume, clip_centroid, volume, centroid);
   if (flags) *flags |= OVERLAP_BLENDED;
-  if (!gradient) return STATUS_OK;
-  for (int i = 0; i < SIZE; i++) blend.gradient_difference[i] = blend.gradient[i] - gradient[i];
-  overlap_geo_coplanar_pull(frame, &coplanar, blend.share_gradient, hessian ? blend.share_hessian : NULL);
-  blend_gradient(&blend, gradient);
-  if (hessian) blend_hessian(&blend, hessian);
+  blend_derivatives(frame, &coplanar, 1, &blend, gradient, hessian);
   return STATUS_OK;
+}
+
+void overlap_geo_coplanar_fade(const OverlapGeoFrame *frame, double *bound, double *gradient,
+                               double *hessian) {
+  OverlapGeoCoplanar coplanar;
+  overlap_geo_coplanar_find(&frame->projector, &coplanar);
+  if (!(coplanar.share > 0)) return;
+  Blend blend = {.share = OVERLAP_GEO_COPLANAR_FADE * coplanar.share, .difference = -*bound};
+  *bound *= 1 - blend.share;
+  blend_derivatives(frame, &coplanar, OVERLAP_GEO_COPLANAR_FADE, &blend, gradient, hessian);
 }

@@ -24,8 +24,10 @@ static void find_features(const OverlapGeoModel *model, const GeoMatrix *project
 static Status take_network(OverlapGeoModel *model, const OverlapGeoNetwork *network) {
   model->set = overlap_geo_features_set(network->feature_count);
   if (!model->set)
-    return status_fail(STATUS_INPUT, "the network has %d inputs: the features of a pair are 36, 70 or 100",
-                       network->feature_count);
+    return status_fail(
+        STATUS_INPUT,
+        "the network has %d inputs; expected a number of a pair's features: " OVERLAP_GEO_FEATURE_COUNTS,
+        network->feature_count);
   model->network = *network;
   return STATUS_OK;
 }
@@ -55,6 +57,7 @@ typedef struct Place {
   const double *pair;
   double *volume, *gradient, *hessian, *centroid;
   unsigned *flags;
+  double *bound; // another network's, of this pair's V
 } Place;
 
 static Place place_of(const OverlapBatch *batch, int i) {
@@ -159,8 +162,8 @@ static Status answer_unfit(const OverlapGeoModel *model, Place place) {
   return STATUS_OK;
 }
 
-static Status blend_column(const OverlapGeoBundle *bundle, int first, const OverlapGeoBlock *block, int at,
-                           Place place) {
+static Status blend_column(const OverlapGeoModel *model, const OverlapGeoBundle *bundle, int first,
+                           const OverlapGeoBlock *block, int at, Place place) {
   OverlapGeoFrame frame;
   for (int k = 0; k < GEO_LANES; k++) {
     frame.slack[k] = block->slack[k][at];
@@ -172,13 +175,14 @@ static Status blend_column(const OverlapGeoBundle *bundle, int first, const Over
     for (int l = 0; l < GEO_LANES; l++) frame.projector.row[k][l] = block->projector[geo_entry(k, l)][at];
   }
   for (int i = 0; i < 32; i++) frame.across[i / 16][i / 4 % 4][i % 4] = bundle->across[i][first + at];
-  double gradient[SIZE]; // the Hessian's blend needs it
-  memcpy(gradient, block->gradient[at], sizeof gradient);
-  return overlap_geo_coplanar_blend(&frame, place.pair, place.volume,
-                                    place.gradient  ? place.gradient
-                                    : place.hessian ? gradient
-                                                    : NULL,
-                                    place.hessian, place.centroid, place.flags);
+  double own[SIZE], *gradient = place.gradient;
+  if (place.hessian && !gradient)
+    gradient = memcpy(own, block->gradient[at], sizeof own); // its blend needs it
+  if (!model->is_bound)
+    return overlap_geo_coplanar_blend(&frame, place.pair, place.volume, gradient, place.hessian,
+                                      place.centroid, place.flags);
+  overlap_geo_coplanar_fade(&frame, place.volume, gradient, place.hessian);
+  return STATUS_OK;
 }
 
 // Pairs of a bundle that only want the blend's V and x̄: clipping takes them side by side.
@@ -211,6 +215,7 @@ static Status blend_waiting(const Waiting *waiting, bool wants_centroid) {
     Place place = waiting->place[i];
     overlap_geo_coplanar_mix(waiting->share[i], volume[i], centroid + 3 * i, place.volume, place.centroid);
     if (place.flags) *place.flags |= OVERLAP_BLENDED;
+    if (place.bound) *place.bound *= 1 - OVERLAP_GEO_COPLANAR_FADE * waiting->share[i];
   }
   return STATUS_OK;
 }
@@ -244,8 +249,9 @@ static Status write_column(const OverlapGeoModel *model, const OverlapGeoBundle 
   if (place.hessian) write_hessian(bends, at, place.hessian);
   if (place.centroid) write_centroid(block, at, place);
   if (place.flags) *place.flags = bundle->is_enclosed[first + at] ? OVERLAP_ENCLOSED : 0;
-  if (!(block->is_close[at] > 0) || model->is_bound) return STATUS_OK;
-  if (place.gradient || place.hessian) return blend_column(bundle, first, block, at, place);
+  if (!(block->is_close[at] > 0) || model->is_alone) return STATUS_OK;
+  if (place.gradient || place.hessian || model->is_bound)
+    return blend_column(model, bundle, first, block, at, place);
   wait_for_clip(block, at, place, waiting);
   return STATUS_OK;
 }
@@ -296,14 +302,18 @@ static Status eval_block(const OverlapGeoModel *model, const OverlapBatch *batch
                          OverlapGeoBundle *bundle, int first, OverlapGeoBlock *block, OverlapGeoBends *bends,
                          Waiting *waiting) {
   TRY(compute_block(model, batch, beside, bundle, first, block, bends));
-  for (int at = 0; at < OVERLAP_GEO_BLOCK && first + at < bundle->count; at++)
-    TRY(write_column(model, bundle, first, block, bends, at, place_of(batch, bundle->pair[first + at]),
-                     waiting));
+  for (int at = 0; at < OVERLAP_GEO_BLOCK && first + at < bundle->count; at++) {
+    int pair = bundle->pair[first + at];
+    Place place = place_of(batch, pair);
+    place.bound = beside->bounds ? beside->bounds + pair : NULL;
+    TRY(write_column(model, bundle, first, block, bends, at, place, waiting));
+  }
   return STATUS_OK;
 }
 
 static Status eval_bundle(const OverlapGeoModel *model, const OverlapBatch *batch, const Beside *beside,
                           OverlapGeoBundle *bundle, OverlapGeoBlock *block, OverlapGeoBends *bends) {
+  bundle->has_across = batch->gradient || batch->hessian || model->is_bound;
   model->kernel->gate(batch->pair_count, batch->pairs, bundle);
   for (int i = 0; i < batch->pair_count; i++) {
     if (bundle->outcome[i] == OVERLAP_GEO_EMPTY) write_empty(place_of(batch, i));

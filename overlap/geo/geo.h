@@ -56,8 +56,9 @@ typedef struct OverlapGeoModel {
   const OverlapGeoBundleKernel *kernel;
   double offset; // ln 1.28 − ρ(f*)
   // V is not the volume but a bound of another model's error: exp ρ V₀, not pinned, 0 where the frame cannot
-  // be had, and no other model is asked.
+  // be had, and no other model is asked; where that one is blended with clip, it fades (geo/coplanar.h).
   bool is_bound;
+  bool is_alone; // pairs with nearly coplanar faces are not blended
 } OverlapGeoModel;
 
 // `network` NULL: the constant. STATUS_INPUT: there is no feature set of that size; else what ρ(f*) fails

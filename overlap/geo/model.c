@@ -77,7 +77,7 @@ static Status create_geo_small(void **self, const char *weights, const OverlapOp
 
 const OverlapOps overlap_geo_ops = {
     .name = "geo",
-    .help = "learned: analytic-centre frame and 100 symmetric features; smooth, no ghost forces",
+    .help = "learned: analytic-centre frame and 120 symmetric features; smooth, no ghost forces",
     .has_hessian = overlap_ops_always,
     .has_centroid = has_centroid,
     .checks_finite = true,
@@ -90,7 +90,7 @@ const OverlapOps overlap_geo_ops = {
 
 const OverlapOps overlap_geo_small_ops = {
     .name = "geo-small",
-    .help = "learned: as geo, with 36 features and a smaller network",
+    .help = "learned: as geo, with 56 features and a smaller network",
     .has_hessian = overlap_ops_always,
     .has_centroid = has_centroid,
     .checks_finite = true,

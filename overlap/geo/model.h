@@ -11,7 +11,7 @@ typedef struct OverlapGeoOverlap {
   OverlapGeoNet *net; // owned; NULL: no network, φ = ln 1.28
 } OverlapGeoOverlap;
 
-// The shipped models: `geo` (100 features, 32 × 3), `geo-small` (36 features, 16 × 2).
+// The shipped models: `geo` (120 features, 48 × 2), `geo-small` (56 features, 16 × 2).
 extern const OverlapOps overlap_geo_ops;
 extern const OverlapOps overlap_geo_small_ops;
 

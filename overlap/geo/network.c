@@ -106,9 +106,10 @@ static Status check(const OverlapGeoNet *net, const char *path, const char *norm
   if (!net_dense_is_possible(shape))
     return status_fail(STATUS_INPUT, "%s: geo needs a dense SiLU network, this is another", path);
   if (!overlap_geo_features_set(shape->input_count))
-    return status_fail(STATUS_INPUT,
-                       "%s: the network has %d inputs, the features of a pair are 36, 70 or 100", path,
-                       shape->input_count);
+    return status_fail(
+        STATUS_INPUT,
+        "%s: the network has %d inputs; expected a number of a pair's features: " OVERLAP_GEO_FEATURE_COUNTS,
+        path, shape->input_count);
   int planes = overlap_geo_features_plane_count(overlap_geo_features_set(shape->input_count));
   if (shape->output_count != 1 && shape->output_count != 1 + planes)
     return status_fail(STATUS_INPUT, "%s: the network has %d outputs; geo needs one, or with the centroid %d",

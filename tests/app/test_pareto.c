@@ -75,7 +75,7 @@ START_TEST(exact_has_no_error_clip_rounding_and_a_learned_model_its_own) {
     ck_assert_msg(clip->error > 0 && clip->error < 1e-9, "%g", clip->error);
     ck_assert_msg(geo->error > 1e-4 && geo->error < 0.1, "%g", geo->error);
     ck_assert_msg(geo->error_median > 0 && geo->error_median <= geo->error_p90, "%g", geo->error_median);
-    ck_assert_int_eq((int)geo->parameters, 1646);
+    ck_assert_int_eq((int)geo->parameters, 1966);
     ck_assert_int_eq((int)geo->samples, 200);
     ck_assert(clip->seconds > 0 && clip->seconds_min <= clip->seconds && clip->cpu_seconds > 0);
     ck_assert(isnan(clip->step_s) && !clip->outcome);

@@ -37,6 +37,7 @@ START_TEST(the_gate_decides_as_the_scalar_one_to_the_bit) {
   if (!kernel) return;
   double pairs[24 * COUNT];
   OverlapGeoBundle bundle;
+  bundle.has_across = true;
   int inside = 0;
   for (int round = 0; round < 60; round++) {
     draw_pairs(7 * round, pairs);
@@ -67,6 +68,7 @@ START_TEST(frames_and_gradients_are_the_scalar_ones) {
   if (!kernel) return;
   double pairs[24 * COUNT];
   OverlapGeoBundle bundle;
+  bundle.has_across = true;
   OverlapGeoBlock block;
   int seen = 0;
   for (int round = 0; round < 30; round++) {
@@ -109,14 +111,15 @@ END_TEST
 
 // Against the kernel for single pairs, by random weights.
 START_TEST(features_and_their_gradients_are_the_scalar_ones) {
-  const OverlapGeoBundleKernel *kernel = kernel_number(_i / 3);
+  const OverlapGeoBundleKernel *kernel = kernel_number(_i / 5);
   if (!kernel) return;
-  static const int set_sizes[] = {36, 70, 100};
-  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i % 3]);
+  static const int set_sizes[] = {36, 56, 70, 100, 120};
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i % 5]);
   const OverlapGeoKernel *one = &overlap_geo_features_kernel_portable;
   Random random = random_seeded(21, 0);
   double pairs[24 * COUNT];
   OverlapGeoBundle bundle;
+  bundle.has_across = true;
   OverlapGeoBlock block;
   draw_pairs(5, pairs);
   kernel->gate(COUNT, pairs, &bundle);
@@ -155,14 +158,15 @@ END_TEST
 // Σ_m c_m e_mk by the kernel for single pairs, which lists the planes' features one by one. The coefficients
 // are such that some centroids would leave the overlap.
 START_TEST(centroids_are_the_scalar_ones) {
-  const OverlapGeoBundleKernel *kernel = kernel_number(_i / 3);
+  const OverlapGeoBundleKernel *kernel = kernel_number(_i / 5);
   if (!kernel) return;
-  static const int set_sizes[] = {36, 70, 100};
-  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i % 3]);
+  static const int set_sizes[] = {36, 56, 70, 100, 120};
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i % 5]);
   int count = overlap_geo_features_plane_count(set), held = 0;
   Random random = random_seeded(22, 0);
   double pairs[24 * COUNT];
   OverlapGeoBundle bundle;
+  bundle.has_across = true;
   OverlapGeoBlock block;
   draw_pairs(5, pairs);
   kernel->gate(COUNT, pairs, &bundle);
@@ -258,13 +262,14 @@ static void check_bends(const OverlapGeoFeatureSet *set, const OverlapGeoBlock *
 // The changes of features and, with random weights, the Hessian of V. Thin overlaps, where rounding counts by
 // their thickness, are left out.
 START_TEST(second_derivatives_are_the_scalar_ones) {
-  const OverlapGeoBundleKernel *kernel = kernel_number(_i / 3);
+  const OverlapGeoBundleKernel *kernel = kernel_number(_i / 5);
   if (!kernel) return;
-  static const int set_sizes[] = {36, 70, 100};
-  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i % 3]);
+  static const int set_sizes[] = {36, 56, 70, 100, 120};
+  const OverlapGeoFeatureSet *set = overlap_geo_features_set(set_sizes[_i % 5]);
   Random random = random_seeded(22, 0);
   double pairs[24 * COUNT];
   OverlapGeoBundle bundle;
+  bundle.has_across = true;
   OverlapGeoBlock block;
   OverlapGeoBends bends;
   int seen[2] = {0};
@@ -301,6 +306,7 @@ START_TEST(a_pair_gives_the_same_bits_in_every_lane) {
   const OverlapGeoFeatureSet *set = overlap_geo_features_set(100);
   double pairs[24 * COUNT];
   OverlapGeoBundle bundle[2];
+  bundle[0].has_across = bundle[1].has_across = true;
   OverlapGeoBlock block[2];
   OverlapGeoBends bends[2];
   draw_pairs(3, pairs);
@@ -332,9 +338,9 @@ int main(void) {
   TCase *cases = tcase_create("geo_bundle");
   tcase_add_loop_test(cases, the_gate_decides_as_the_scalar_one_to_the_bit, 0, 3);
   tcase_add_loop_test(cases, frames_and_gradients_are_the_scalar_ones, 0, 3);
-  tcase_add_loop_test(cases, features_and_their_gradients_are_the_scalar_ones, 0, 9);
-  tcase_add_loop_test(cases, centroids_are_the_scalar_ones, 0, 9);
-  tcase_add_loop_test(cases, second_derivatives_are_the_scalar_ones, 0, 9);
+  tcase_add_loop_test(cases, features_and_their_gradients_are_the_scalar_ones, 0, 15);
+  tcase_add_loop_test(cases, centroids_are_the_scalar_ones, 0, 15);
+  tcase_add_loop_test(cases, second_derivatives_are_the_scalar_ones, 0, 15);
   tcase_add_loop_test(cases, a_pair_gives_the_same_bits_in_every_lane, 0, 3);
   return suite_run("geo_bundle", cases, 60);
 }

@@ -47,7 +47,7 @@ static void *create(int inputs) {
 }
 
 START_TEST(gradient_and_hessian_of_a_loaded_network_are_derivatives) {
-  const int inputs[] = {36, 70, 100};
+  const int inputs[] = {36, 56, 70, 100, 120};
   void *self = create(inputs[_i]);
   int seen = 0;
   for (int member = 0; member < 40; member++) {
@@ -183,7 +183,7 @@ END_TEST
 
 int main(void) {
   TCase *cases = tcase_create("geo_net");
-  tcase_add_loop_test(cases, gradient_and_hessian_of_a_loaded_network_are_derivatives, 0, 3);
+  tcase_add_loop_test(cases, gradient_and_hessian_of_a_loaded_network_are_derivatives, 0, 5);
   tcase_add_test(cases, a_vanishing_overlap_is_true_with_any_weights);
   tcase_add_test(cases, any_number_of_threads_gives_the_same_bits);
   tcase_add_test(cases, weights_of_another_kind_are_refused_by_name);

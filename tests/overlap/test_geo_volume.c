@@ -16,7 +16,7 @@
 #include "overlap/geo/model.h"
 #include "overlap/invariant.h"
 
-enum { MODEL_COUNT = 4 };
+enum { MODEL_COUNT = 6 };
 
 typedef struct Subject {
   GeoNetwork network;
@@ -25,7 +25,7 @@ typedef struct Subject {
 
 // The constant, then a network for each feature set.
 static void make_subject(int index, Subject *subject) {
-  const int sizes[MODEL_COUNT] = {0, 36, 70, 100};
+  const int sizes[MODEL_COUNT] = {0, 36, 56, 70, 100, 120};
   if (index == 0) {
     ck_assert_ok(overlap_geo_create(&subject->overlap.model, NULL));
     return;
@@ -408,13 +408,13 @@ END_TEST
 // t = ln V − ln V₀ and its changes along directions, as a loss is made of them, are those of the model.
 START_TEST(what_training_is_given_is_what_the_model_computes) {
   Subject subject;
-  make_subject(3, &subject);
+  make_subject(MODEL_COUNT - 1, &subject);
   const OverlapGeoFeatureSet *set = subject.overlap.model.set;
   Random random = random_seeded(51, 0);
   int seen = 0;
   for (int member = 0; member < 60; member++) {
     DatagenHardPair pair = datagen_hard_make(class_named("uniform"), member);
-    double directions[2 * 24], features[100], changes[2 * 100], log_volume, log_changes[2], rho, slope[100];
+    double directions[2 * 24], features[120], changes[2 * 120], log_volume, log_changes[2], rho, slope[120];
     for (int i = 0; i < 48; i++) directions[i] = random_normal(&random);
     Answer answer = ask(&subject, pair.x, false);
     OverlapGeoOutcome outcome =
@@ -427,7 +427,7 @@ START_TEST(what_training_is_given_is_what_the_model_computes) {
                    1e-13 * fabs(log_volume));
     for (int d = 0; d < 2; d++) {
       double change = log_changes[d], along = 0, size = 0;
-      for (int f = 0; f < 100; f++) change += slope[f] * changes[100 * d + f];
+      for (int f = 0; f < set->count; f++) change += slope[f] * changes[set->count * d + f];
       for (int i = 0; i < 24; i++) {
         along += answer.gradient[i] * directions[24 * d + i] / answer.volume;
         size += fabs(answer.gradient[i] * directions[24 * d + i] / answer.volume);
@@ -450,7 +450,7 @@ START_TEST(a_batch_gives_what_its_pairs_give_alone) {
   static double pairs[COUNT * 24], volumes[COUNT], gradients[COUNT * 24], hessians[COUNT * 576];
   static unsigned flags[COUNT];
   Subject subject;
-  make_subject(3, &subject);
+  make_subject(MODEL_COUNT - 1, &subject);
   for (int n = 0; n < COUNT; n++)
     memcpy(pairs + 24 * n, datagen_hard_make(n % DATAGEN_HARD_CLASS_COUNT, n).x, 24 * sizeof *pairs);
   OverlapBatch batch = {.pair_count = COUNT,

@@ -9,11 +9,11 @@
 static const AppStressTolerance tolerances[] = {
     {"clip32", {3.8e-6, 6.6e-7, 4.7e-7, 1.6e-5, 7.2e-6, 3.8e-6, 5.1e-3, 0, 0}, "single precision", NULL},
     {"geo-small",
-     {5.5e-2, 3.4e-2, 1e-14, 3e-12, 6.5e-13, 5.3e-2, 1e-7, 0, 0},
+     {6.2e-2, 3.4e-2, 1e-14, 7.8e-12, 3.5e-12, 5.3e-2, 1e-7, 0, 0},
      "a learned volume; its gradient is its own derivative",
      "overlap_fallbacks"},
     {"geo",
-     {2.6e-2, 2.4e-2, 1e-14, 3.1e-12, 1.5e-12, 2.4e-2, 1e-7, 0, 0},
+     {2.6e-2, 2.4e-2, 1e-14, 3.1e-12, 1.5e-12, 2.5e-2, 1e-7, 0, 0},
      "a learned volume; its gradient is its own derivative",
      "overlap_fallbacks"},
     {"tpn",
@@ -36,7 +36,7 @@ static const AppStressTolerance tolerances[] = {
      "a network of the paper's kind: it knows volumes of its training only and sees vertices in an order",
      "beyond_range_pairs"},
     {"hybrid",
-     {4.5e-3, 4e-16, 1e-14, 1e-12, 1e-12, 4.5e-3, 1e-7, 0, 0},
+     {4.6e-3, 4e-16, 1e-14, 3.5e-12, 1e-12, 4.6e-3, 1e-7, 0, 0},
      "a learned volume where a bound of its error is small, blended into clip where it is not",
      "overlap_blended"},
 };

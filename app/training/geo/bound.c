@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Training of a bound of what a `geo`'s V is off: b(w) against e = ln |V − V*| − ln V₀, w the whitened
-// features, by the quantile loss (Koenker, Bassett 1978), and after it the constant that makes the share of
-// held-out pairs with |V − V*| ≤ V₀ exp b the one that is asked for (overlap/hybrid/sure.h). The validation
-// data hold them.
+// Training of a bound of what a `geo`'s V is off: b(w) against e = ln |V − V*| − ln V₀, V before any blend
+// with clip, w the whitened features, by the quantile loss (Koenker, Bassett 1978), and after it the constant
+// that makes the share of held-out pairs with |V − V*| ≤ V₀ exp b the one that is asked for
+// (overlap/hybrid/sure.h). The validation data hold them.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -77,11 +77,12 @@ static Status find_errors(const Bound *bound, DatagenPairs *pairs, size_t count)
   double *told = memory_zeroed(count, sizeof *told);
   unsigned *flags = memory_zeroed(count, sizeof *flags);
   Status status = told && flags ? STATUS_OK : status_no_memory("the errors of a network");
+  OverlapGeoModel alone = bound->of->model;
+  alone.is_alone = true;
   if (!status)
-    status = overlap_geo_model_eval_batch(bound->of, &(OverlapBatch){.pair_count = (int)count,
-                                                                     .pairs = pairs->coordinates,
-                                                                     .volume = told,
-                                                                     .flags = flags});
+    status = overlap_geo_eval(
+        &alone, &(OverlapBatch){
+                    .pair_count = (int)count, .pairs = pairs->coordinates, .volume = told, .flags = flags});
   for (size_t i = 0; i < count && !status; i++) {
     double volume = pairs->volume[i];
     bool is_answered = volume > 0 && told[i] > 0 && !(flags[i] & OVERLAP_FALLBACK);

@@ -9,7 +9,7 @@ enum {
   GEO_ROW_FEATURES = 57, // then dρ/df; the network's outputs follow
 };
 
-enum { GEO_ITEMS = 64, GEO_COLUMNS = 16, GEO_ROOM = 300 }; // pairs of a group in the network, its rows
+enum { GEO_ITEMS = 64, GEO_COLUMNS = 16, GEO_ROOM = 320 }; // pairs of a group in the network, its rows
 
 // What a layer of the network is: rows of the group's memory, places in the parameters. −1: none.
 enum {

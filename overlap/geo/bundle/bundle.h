@@ -30,6 +30,7 @@ enum {
 typedef double OverlapGeoRow[OVERLAP_GEO_BUNDLE_ROW];
 
 typedef struct OverlapGeoBundle {
+  bool has_across; // given to the gate: derivatives and what is blended with them need `across`
   int count;
   int pair[OVERLAP_GEO_BUNDLE];                  // which of those given
   bool is_enclosed[OVERLAP_GEO_BUNDLE];          //

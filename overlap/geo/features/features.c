@@ -5,19 +5,14 @@
 
 #include "base/cpu.h"
 
+#define LINKS .link_count = 4, .links = {{1, 1}, {2, 0}, {1, 2}, {2, 1}}
+
 static const OverlapGeoFeatureSet sets[] = {
     {.name = "pairs", .count = 36, .power_count = 4},
-    {.name = "wedges",
-     .count = 70,
-     .power_count = 4,
-     .link_count = 4,
-     .links = {{1, 1}, {2, 0}, {1, 2}, {2, 1}}},
-    {.name = "squares",
-     .count = 100,
-     .power_count = 4,
-     .link_count = 4,
-     .links = {{1, 1}, {2, 0}, {1, 2}, {2, 1}},
-     .has_squares = true},
+    {.name = "high pairs", .count = 56, .power_count = 6},
+    {.name = "wedges", .count = 70, .power_count = 4, LINKS},
+    {.name = "squares", .count = 100, .power_count = 4, LINKS, .has_squares = true},
+    {.name = "high squares", .count = 120, .power_count = 6, LINKS, .has_squares = true},
 };
 
 const OverlapGeoFeatureSet *overlap_geo_features_set(int count) {
@@ -28,7 +23,7 @@ const OverlapGeoFeatureSet *overlap_geo_features_set(int count) {
 
 int overlap_geo_features_plane_count(const OverlapGeoFeatureSet *set) {
   int count = OVERLAP_GEO_PLANE_DEGREE;
-  for (int n = 1; n <= set->power_count; n++)
+  for (int n = 1; n <= OVERLAP_GEO_PLANE_POWER; n++)
     for (int b = n <= 2; b < OVERLAP_GEO_MIXED; b++)
       for (int a = n == 1; a < OVERLAP_GEO_MIXED && a + b <= OVERLAP_GEO_PLANE_DEGREE; a++) count++;
   for (int e = 0; e < set->link_count; e++)

@@ -15,7 +15,7 @@
 // row of Q, weighted by them and summed over the planes is a vector of the frame):
 //
 //   degrees   d_k^a, a = 1 … 4
-//   rows      d_k^a Σ_j P_kj^n d_j^b, for n = 1 … power_count, b = 0 … 3, a = 0 … 3, a + b ≤ 4; those with
+//   rows      d_k^a Σ_j P_kj^n d_j^b, for n = 1 … 4, b = 0 … 3, a = 0 … 3, a + b ≤ 4; those with
 //             b = 0 for n ≤ 2 and a = 0 for n = 1 say nothing new
 //   links     Σ_j E_kj P_kj^a d_j^s, for each link, a = 1 … 3, s = 0, 1, without s = 1 for a = 3, and s = 0
 //   for
@@ -29,7 +29,9 @@
 #include "overlap/geo/constants.h"
 #include "overlap/geo/features/pack.h"
 
-// The set with so many features (36: degrees and pairs; 70: wedges too; 100: all), NULL if there is none.
+// The set with so many features, NULL if there is none: 36: degrees and pairs; 70: wedges too; 100: all; 56
+// and 120: as 36 and 100, the pairs up to n = 6 for 4.
+#define OVERLAP_GEO_FEATURE_COUNTS "36, 56, 70, 100, 120"
 const OverlapGeoFeatureSet *overlap_geo_features_set(int count);
 
 // How many features each plane has.

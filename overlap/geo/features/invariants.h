@@ -24,13 +24,14 @@ enum {
   OVERLAP_GEO_WEDGE_POWER = 3,  // of P in wedges
   OVERLAP_GEO_SQUARE_POWER = 2, // of P in squares
   OVERLAP_GEO_PLANE_DEGREE = 4, // of d in the features of a plane
+  OVERLAP_GEO_PLANE_POWER = 4,  // of P in them
   OVERLAP_GEO_MAX_PLANE_FEATURES = 64,
 };
 
 typedef struct OverlapGeoFeatureSet {
   const char *name;
   int count;       // of features
-  int power_count; // highest n of the pairs, at least 3
+  int power_count; // highest n of the pairs, at least OVERLAP_GEO_PLANE_POWER
   int link_count;  // OVERLAP_GEO_MAX_LINKS; 0: neither wedges nor squares
   struct {
     int power;  // b: 1 or 2

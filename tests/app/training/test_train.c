@@ -59,7 +59,7 @@ static const char geo_config[] =
 
 static const char bound_config[] =
     "name: t-bound\n"
-    "model: {kind: bound, of: geo-small, features: 36, width: 8, depth: 1}\n"
+    "model: {kind: bound, of: geo-small, features: 56, width: 8, depth: 1}\n"
     "data:\n"
     "  training: [{law: scene, mix: scene=1, count: 4000, seed: 11}]\n"
     "  validation: [{name: scene, law: scene, mix: scene=1, count: 2000, seed: 12}]\n"
@@ -308,7 +308,7 @@ START_TEST(fine_tuning_begins_where_shipped_weights_ended) {
   make_directory();
   AppTrainingConfig config = read_config("name: t\n"
                                          "start: geo-small\n"
-                                         "model: {kind: geo, features: 36, width: 16, depth: 2}\n"
+                                         "model: {kind: geo, features: 56, width: 16, depth: 2}\n"
                                          "data:\n"
                                          "  training: [{law: scene, mix: scene=1, count: 2000, seed: 11}]\n"
                                          "  validation: [{law: scene, mix: scene=1, count: 300, seed: 12}]\n"
@@ -443,7 +443,7 @@ START_TEST(wrong_configurations_are_refused_by_name) {
   make_directory();
   check_refusal("name: t\n", "model");
   check_refusal("name: t\nmodel: {kind: gio}\n", "geo");
-  check_refusal("name: t\nmodel: {kind: geo, features: 37}\n", "36, 70, 100");
+  check_refusal("name: t\nmodel: {kind: geo, features: 37}\n", "36, 56, 70, 100, 120");
   check_refusal("name: t\nmodel: {kind: geo, width: 0}\n", "width");
   check_refusal("name: t\nmodel: {kind: geo}\ndata: {training: [{law: scene, file: x}]}\n", "file");
   check_refusal("name: t\nmodel: {kind: geo}\ndata: {training: [{law: scene, swap: 2}]}\n", "swap");
