@@ -50,7 +50,7 @@ static void ask_processor(const char *name, const OverlapBatch *batch, bool is_f
 
 // V to 1e-12 of itself, ∇V and x̄ by their largest component.
 static void check_answer(const Answers *told, const Answers *expected, int i, int width, const char *what) {
-  const double tolerance = width == 24 ? 1e-10 : 1e-12;
+  const double tolerance = width == 24 ? 1e-9 : 1e-12;
   const double *a = told->more + (size_t)(width * i), *b = expected->more + (size_t)(width * i);
   double largest = 0;
   ck_assert_msg(fabs(told->volume[i] - expected->volume[i]) <= 1e-12 * expected->volume[i],
@@ -102,7 +102,7 @@ START_TEST(bench_sets_are_answered_to_rounding) {
 }
 END_TEST
 
-// By the processor's own kernels, too, which fuse: V to 1e-12 of the smaller tetrahedron's volume, in which
+// By the processor's own kernels, too, which fuse: V to 1e-11 of the smaller tetrahedron's volume, in which
 // coordinates are known to an ulp. Of itself a small V is known less well: an ulp of the coordinates changes
 // it by as much as the two differ.
 START_TEST(fused_kernels_differ_by_what_an_ulp_of_the_coordinates_does) {
@@ -120,7 +120,7 @@ START_TEST(fused_kernels_differ_by_what_an_ulp_of_the_coordinates_does) {
     ask_processor(model, &other, true);
     for (int i = 0; i < COUNT; i++)
       ck_assert_msg(fabs(told.volume[i] - expected.volume[i]) <=
-                        1e-12 * overlap_invariant_smaller_volume(pairs + 24 * (size_t)i),
+                        1e-11 * overlap_invariant_smaller_volume(pairs + 24 * (size_t)i),
                     "%s, pair %d: V = %.17g, on the processor %.17g", app_bench_sets[set], i, told.volume[i],
                     expected.volume[i]);
   }
