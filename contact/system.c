@@ -352,6 +352,12 @@ Status contact_system_eval(ContactSystem *system, double time, const double *pos
   return STATUS_OK;
 }
 
+void contact_system_add_resting(const ContactSystem *system, double *force) {
+  if (!system->has_rest || system->rest.resting_count == 0) return;
+  for (int v = 0; v < system->layout.def.vertex_count; v++)
+    contact_stars_push(&system->stars, v, vec3_at(system->rest.forces + 3 * (size_t)v), force);
+}
+
 Status contact_system_stiffness(ContactSystem *system, double time, const double *positions,
                                 const ContactStiffnessSink *sink) {
   TRY(evaluate(system, time, place(system, positions)));

@@ -82,6 +82,9 @@ bool contact_system_is_near(const ContactSystem *system, int interface);
 Status contact_system_eval(ContactSystem *system, double time, const double *positions, double *energy,
                            double *force);
 
+// Adds the forces of interfaces at rest [N], which contact_system_eval leaves out, to `force`.
+void contact_system_add_resting(const ContactSystem *system, double *force);
+
 // Adds ∂²U/∂x² at those positions to the sink (evaluates first if they are not the last ones).
 Status contact_system_stiffness(ContactSystem *system, double time, const double *positions,
                                 const ContactStiffnessSink *sink);

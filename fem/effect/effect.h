@@ -18,6 +18,7 @@ typedef struct FemState {
   double time;              // [s]
   const double *positions;  // [m]     (vertex_count, 3)
   const double *velocities; // [m/s]   (vertex_count, 3)
+  bool with_held;           // forces are wanted on bodies that are held, too, and between them
 } FemState;
 
 // Energies by kind [J] and powers [W]; each effect adds its own.
@@ -60,8 +61,8 @@ typedef struct FemEffectOps {
   // At a state that is not accepted: renews lists and nothing else, so that forces can be evaluated there.
   // NULL: there are none.
   Status (*renew)(void *self, const FemState *state);
-  // Adds forces [N] to `force` (vertex_count, 3); those on bodies that are held may be left out. RETRY: take
-  // a smaller step. NULL: none.
+  // Adds forces [N] to `force` (vertex_count, 3); unless the state is `with_held`, those on bodies that are
+  // held may be left out. RETRY: take a smaller step. NULL: none.
   Status (*add_force)(void *self, const FemState *state, double *force);
   // Adds stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, to the matrix. NULL: none.
   Status (*add_jacobian)(void *self, const FemState *state, double stiffness_scale, double damping_scale,

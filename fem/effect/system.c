@@ -219,16 +219,26 @@ static Status add_own_forces(FemSystem *system, const FemState *state, Part part
   return add_forces(system, state, part);
 }
 
-Status fem_system_forces(FemSystem *system, double time) {
-  FemState state = state_of(system, time);
+static Status find_forces(FemSystem *system, const FemState *state) {
   if (system->model->share) {
-    TRY(sum_forces(system, add_own_forces(system, &state, PART_DIVIDED)));
-    TRY(ranks()->worst(add_forces(system, &state, PART_WHOLE)));
+    TRY(sum_forces(system, add_own_forces(system, state, PART_DIVIDED)));
+    TRY(ranks()->worst(add_forces(system, state, PART_WHOLE)));
   } else {
-    TRY(add_own_forces(system, &state, PART_ALL));
+    TRY(add_own_forces(system, state, PART_ALL));
   }
   bool is_finite = fem_solver_is_finite(system->forces, 3 * system->model->vertex_count);
-  return is_finite ? STATUS_OK : blame_effect(system, &state);
+  return is_finite ? STATUS_OK : blame_effect(system, state);
+}
+
+Status fem_system_forces(FemSystem *system, double time) {
+  FemState state = state_of(system, time);
+  return find_forces(system, &state);
+}
+
+Status fem_system_forces_of_all(FemSystem *system, double time) {
+  FemState state = state_of(system, time);
+  state.with_held = true;
+  return find_forces(system, &state);
 }
 
 Status fem_system_couple(FemSystem *system, double time) {

@@ -46,7 +46,10 @@ Status fem_system_check_state(const FemSystem *system);
 
 // Forces on all vertices into system->forces at the scattered state. RETRY as the effects say, and where the
 // state or a force is no number: the message names the vertex, and the effect that the force is from.
+// On bodies that are held they may be left out.
 Status fem_system_forces(FemSystem *system, double time);
+// The same, and the forces on bodies that are held.
+Status fem_system_forces_of_all(FemSystem *system, double time);
 
 // Lays system->matrix out anew if an effect couples more at the scattered state than the pattern has; then
 // pattern_version has grown. Call it before assembling into system->matrix or a copy of its layout.

@@ -86,7 +86,8 @@ static void add_contact(const FemMomentum *momentum, double time, const ContactI
 
 static Status add_loads(FemMomentum *momentum, double time, FemMomentumBody *bodies) {
   const FemModel *model = momentum->system->model;
-  const FemState state = {time, momentum->system->positions, momentum->system->velocities};
+  const FemState state = {
+      .time = time, .positions = momentum->system->positions, .velocities = momentum->system->velocities};
   if (!momentum->loads) return STATUS_OK;
   memset(momentum->loads, 0, 3 * (size_t)model->vertex_count * sizeof(double));
   TRY(fem_effect_loads.add_force(fem_system_effect(momentum->system, &fem_effect_loads), &state,

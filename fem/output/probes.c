@@ -40,7 +40,7 @@ static void add(size_t count, const double *from, double *to) {
 
 static Status find_external(FemProbes *probes, double time, const FemForcesAt *contact) {
   FemSystem *system = probes->system;
-  const FemState state = {time, system->positions, system->velocities};
+  const FemState state = {.time = time, .positions = system->positions, .velocities = system->velocities};
   size_t count = values_of(probes);
   memset(probes->external, 0, count * sizeof *probes->external);
   void *loads = fem_system_effect(system, &fem_effect_loads);

@@ -44,7 +44,7 @@ Status fem_reactions_add_columns(FemHistory *history, const FemModel *model) {
 
 Status fem_reactions_measure(FemSystem *system, double time, double **sums, double *at) {
   const FemModel *model = system->model;
-  TRY(fem_system_forces(system, time));
+  TRY(fem_system_forces_of_all(system, time));
   if (at) memset(at, 0, 3 * (size_t)model->vertex_count * sizeof *at);
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];

@@ -209,7 +209,9 @@ static Status couple(void *self, const FemState *state, FemPattern *pattern, int
 static Status add_force(void *self, const FemState *state, double *force) {
   Contact *contact = self;
   double energy;
-  return contact_system_eval(contact->system, state->time, state->positions, &energy, force);
+  TRY(contact_system_eval(contact->system, state->time, state->positions, &energy, force));
+  if (state->with_held) contact_system_add_resting(contact->system, force);
+  return STATUS_OK;
 }
 
 typedef struct MatrixSink {

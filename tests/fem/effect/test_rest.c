@@ -4,6 +4,10 @@
 #include "blocks.h"
 #include "scene.h"
 
+#include <unistd.h>
+
+#include "base/files/file.h"
+#include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/contact/rest.h"
@@ -245,6 +249,47 @@ START_TEST(an_obstacle_that_comes_awakes_what_it_nears) {
 }
 END_TEST
 
+// The last value of a column of history.csv in that folder.
+static double last_in_history(const char *folder, const char *column) {
+  char path[128], *text, *save;
+  size_t size;
+  snprintf(path, sizeof path, "%s/history.csv", folder);
+  ck_assert_ok(file_read(path, &text, &size));
+  text[strlen(text) - 1] = 0;
+  char *last = strrchr(text, '\n') + 1, *cell = text;
+  *strchr(text, '\n') = 0;
+  int place = 0;
+  for (cell = strtok_r(text, ",", &save); cell && strcmp(cell, column) != 0;
+       cell = strtok_r(NULL, ",", &save))
+    place++;
+  ck_assert_msg(cell != NULL, "history.csv has no column %s", column);
+  cell = strtok_r(last, ",", &save);
+  for (int k = 0; k < place; k++) cell = strtok_r(NULL, ",", &save);
+  double value = atof(cell);
+  memory_free(text);
+  return value;
+}
+
+START_TEST(what_holds_a_sleeper_bears_what_lies_on_it) {
+  char folder[] = "/tmp/tetlap_rest_XXXXXX", path[128];
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  SceneRun run;
+  scene_open(&run, "rest_held", NULL);
+  FemRunOptions options = {.directory = folder};
+  ck_assert_msg(fem_run(&run.model, &options, &run.result) == STATUS_OK, "%s", status_message());
+  ck_assert_int_eq((int)counted(&run, "bodies_put_to_rest"), 2);
+  ck_assert_int_eq((int)counted(&run, "bodies_awakened"), 0);
+  // All forces of a block of 1 kg on a pillar of 4 kg; the bound on the acceleration is 0.16 m/s².
+  ck_assert_near(last_in_history(folder, "reaction_pillar_fixed_0_x_N"), -5 * 1, 5 * 0.16);
+  ck_assert_near(last_in_history(folder, "reaction_pillar_fixed_0_z_N"), 5 * 9.81, 5 * 0.16);
+  ck_assert_near(last_in_history(folder, "probe_sole_force_z_N"), 9.81, 0.16);
+  snprintf(path, sizeof path, "%s/history.csv", folder), unlink(path);
+  snprintf(path, sizeof path, "%s/frames.pvd", folder), unlink(path);
+  ck_assert_int_eq(rmdir(folder), 0);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("rest");
   tcase_add_test(test_case, what_is_held_stays_in_the_results);
@@ -253,5 +298,6 @@ int main(void) {
   tcase_add_test(test_case, a_stack_sleeps_until_it_is_hit_and_is_hit_as_it_is_without);
   tcase_add_test(test_case, a_load_that_begins_awakes_what_it_acts_on);
   tcase_add_test(test_case, an_obstacle_that_comes_awakes_what_it_nears);
+  tcase_add_test(test_case, what_holds_a_sleeper_bears_what_lies_on_it);
   return suite_run("rest", test_case, 120);
 }
