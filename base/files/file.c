@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/files/confine.h"
+#include "base/files/temporary.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 
@@ -37,23 +38,36 @@ int file_exists(const char *path) {
   return access(path, F_OK) == 0;
 }
 
+// The name of the temporary file: beside the target, so that it can be renamed.
+static Status name_temporary(FileWriter *writer) {
+  if (writer->target.is_through) return temporary_file("output", "", &writer->temporary);
+  size_t size = strlen(writer->target.path) + 32;
+  writer->temporary = memory_zeroed(size, 1);
+  if (!writer->temporary) return status_no_memory("a file name");
+  snprintf(writer->temporary, size, "%s.%ld.part", writer->target.path, (long)getpid());
+  return STATUS_OK;
+}
+
+static Status open_stream(FileWriter *writer, const char *path) {
+  writer->path = memory_copy(path, strlen(path) + 1, 1);
+  if (!writer->path) return status_no_memory("a file name");
+  if (writer->is_real) {
+    TRY(file_target_find(&writer->target, path));
+    TRY(name_temporary(writer));
+  } else {
+    writer->temporary = memory_zeroed(1, 1);
+    if (!writer->temporary) return status_no_memory("a file name");
+  }
+  writer->stream = fopen(writer->is_real ? writer->temporary : "/dev/null", "wb");
+  if (writer->stream) return STATUS_OK;
+  return status_fail(STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
+}
+
 static Status begin(FileWriter *writer, const char *path, bool is_real) {
   *writer = (FileWriter){.is_real = is_real};
-  size_t size = strlen(path) + 32;
-  writer->path = memory_copy(path, strlen(path) + 1, 1);
-  writer->temporary = memory_zeroed(size, 1);
-  if (!writer->path || !writer->temporary) {
-    file_abandon(writer);
-    return status_no_memory("a file name");
-  }
-  if (is_real) snprintf(writer->temporary, size, "%s.%ld.part", path, (long)getpid());
-  writer->stream = fopen(is_real ? writer->temporary : "/dev/null", "wb");
-  if (!writer->stream) {
-    int reason = errno;
-    file_abandon(writer);
-    return status_fail(STATUS_IO, "%s: cannot be written: %s", path, strerror(reason));
-  }
-  return STATUS_OK;
+  Status status = open_stream(writer, path);
+  if (status) file_abandon(writer);
+  return status;
 }
 
 Status file_begin(FileWriter *writer, const char *path) {
@@ -64,22 +78,29 @@ Status file_begin_own(FileWriter *writer, const char *path) {
   return begin(writer, path, true);
 }
 
+// What was written goes to its place; 0, or the system's reason.
+static int deliver(FileWriter *writer) {
+  if (!writer->is_real) return 0;
+  if (writer->target.is_through) return file_target_copy(&writer->target, writer->temporary);
+  if (rename(writer->temporary, writer->target.path) != 0) return errno;
+  writer->temporary[0] = 0;
+  return 0;
+}
+
 Status file_commit(FileWriter *writer) {
   // Of a write that failed before, the reason is still there, unless it shows again.
-  int reason = ferror(writer->stream) ? errno : 0;
+  int failed = ferror(writer->stream), reason = failed ? errno : 0;
   // Renaming makes the file whole for whoever looks, and after a kill. Against a power cut it would have to
   // be synced as well, which costs more than a step of a small scene.
-  int failed = ferror(writer->stream);
   if (fflush(writer->stream) != 0) failed = 1, reason = errno;
   if (fclose(writer->stream) != 0 && !failed) failed = 1, reason = errno;
   writer->stream = NULL;
-  if (!failed && writer->is_real && rename(writer->temporary, writer->path) != 0) failed = 1, reason = errno;
+  if (!failed) reason = deliver(writer), failed = reason != 0;
   Status status = STATUS_OK;
   if (failed)
-    status = status_fail(STATUS_IO, "%s: writing failed: %s; nothing was left there", writer->path,
-                         reason ? strerror(reason) : "write error");
-  else
-    writer->temporary[0] = 0;
+    status = status_fail(
+        STATUS_IO, "%s: writing failed: %s; %s", writer->path, reason ? strerror(reason) : "write error",
+        writer->target.is_through ? "what it got may be incomplete" : "nothing was left there");
   file_abandon(writer);
   return status;
 }
@@ -89,6 +110,7 @@ void file_abandon(FileWriter *writer) {
   if (writer->temporary && writer->temporary[0]) unlink(writer->temporary);
   memory_free(writer->path);
   memory_free(writer->temporary);
+  file_target_close(&writer->target);
   *writer = (FileWriter){0};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that appear whole or not at all: written beside their final place under a temporary name, flushed,
-// renamed. Of several ranks (base/ranks.h) the first writes and removes; what others write goes nowhere.
+// renamed. What is no file, as a pipe or /dev/stdout, gets what was written as soon as all is there. Of
+// several ranks (base/ranks.h) the first writes and removes; what others write goes nowhere.
 #ifndef TETLAP_BASE_FILE_H
 #define TETLAP_BASE_FILE_H
 
@@ -8,16 +9,19 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "base/files/target.h"
 #include "base/status.h"
 
 typedef struct FileWriter {
-  FILE *stream;    // write here; an error is found at commit
-  char *path;      // final place, owned
-  char *temporary; // where it grows, owned
-  bool is_real;    // else what is written goes nowhere
+  FILE *stream;      // write here; an error is found at commit
+  char *path;        // as it was asked for, owned
+  char *temporary;   // where it grows, owned
+  FileTarget target; // the final place, behind all links
+  bool is_real;      // else what is written goes nowhere
 } FileWriter;
 
-// Opens a temporary file beside `path`. STATUS_IO names the path and the system's reason.
+// Opens a temporary file beside `path`, or, if that is no file, in $TMPDIR. STATUS_IO names the path and the
+// system's reason.
 Status file_begin(FileWriter *writer, const char *path);
 // The same where every rank has a file of its own.
 Status file_begin_own(FileWriter *writer, const char *path);

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE 1 // realpath
+#endif
 #include "net/files/safetensors.h"
 
 #include <errno.h>
+#include <limits.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "net/memory.h"
@@ -53,25 +59,40 @@ static bool put(FILE *stream, const char *header, int count, const NetEntry *ent
     size_t bytes = net_safetensors_bytes(&entries[k]);
     ok = fwrite(entries[k].data, 1, bytes, stream) == bytes;
   }
-  return ok && fflush(stream) == 0 && fsync(fileno(stream)) == 0;
+  struct stat info;
+  bool is_file = fstat(fileno(stream), &info) == 0 && S_ISREG(info.st_mode);
+  return ok && fflush(stream) == 0 && (!is_file || fsync(fileno(stream)) == 0);
+}
+
+// What is no file, as a pipe or /dev/stdout, is written into; a file is written beside and renamed.
+static bool is_replaced(const char *path) {
+  struct stat info;
+  bool is_descriptor = strncmp(path, "/dev/", 5) == 0 || strncmp(path, "/proc/", 6) == 0;
+  return !is_descriptor && (stat(path, &info) != 0 || S_ISREG(info.st_mode));
 }
 
 NetStatus net_safetensors_write(const char *path, int count, const NetEntry *entries,
                                 const NetJson *metadata) {
-  size_t size = strlen(path) + 32;
+  char real[PATH_MAX];
+  bool is_through = !is_replaced(path);
+  const char *place = !is_through && realpath(path, real) ? real : path; // behind all links
+  size_t size = strlen(place) + 32;
   char *beside = net_memory_zeroed(size, 1);
   char *header = beside ? print_header(count, entries, metadata) : NULL;
   NetStatus status = header ? NET_OK : net_status_no_memory("a header of tensors");
   if (status == NET_OK) {
-    snprintf(beside, size, "%s.partial-%ld", path, (long)getpid());
+    if (is_through)
+      snprintf(beside, size, "%s", place);
+    else
+      snprintf(beside, size, "%s.partial-%ld", place, (long)getpid());
     errno = 0;
     FILE *stream = fopen(beside, "wb");
     bool ok = stream && put(stream, header, count, entries);
     int error = errno;
     if (stream && fclose(stream) != 0) ok = false, error = errno;
-    if (ok && rename(beside, path) != 0) ok = false, error = errno;
+    if (ok && !is_through && rename(beside, place) != 0) ok = false, error = errno;
     if (!ok) {
-      if (stream) unlink(beside);
+      if (stream && !is_through) unlink(beside);
       status = net_status_fail(NET_BAD_IO, "%s: cannot be written: %s", path, strerror(error));
     }
   }

@@ -2,7 +2,9 @@
 // base/: messages, memory that fails on request, files that appear whole, reproducible random numbers.
 #include "suite.h"
 
+#include <fcntl.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/files/file.h"
@@ -55,6 +57,70 @@ START_TEST(an_abandoned_file_leaves_the_old_one) {
 }
 END_TEST
 
+static void write_text(const char *path, const char *text) {
+  FileWriter writer;
+  ck_assert_ok(file_begin(&writer, path));
+  fputs(text, writer.stream);
+  ck_assert_ok(file_commit(&writer));
+}
+
+static void expect_text(const char *path, const char *expected) {
+  char *text;
+  size_t size;
+  ck_assert_ok(file_read(path, &text, &size));
+  ck_assert_str_eq(text, expected);
+  memory_free(text);
+}
+
+static bool is_kind(const char *path, mode_t kind) {
+  struct stat info;
+  return lstat(path, &info) == 0 && (info.st_mode & S_IFMT) == kind;
+}
+
+START_TEST(a_link_is_written_through_to_the_file_that_it_names) {
+  char folder[] = "/tmp/tetlap_link_XXXXXX";
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  ck_assert_int_eq(chdir(folder), 0);
+  ck_assert_int_eq(symlink("target", "link"), 0);
+  ck_assert_int_eq(symlink("link", "far"), 0);
+  write_text("far", "made"); // of a link to a file that is not there yet
+  expect_text("target", "made");
+  write_text("link", "changed");
+  expect_text("target", "changed");
+  ck_assert(is_kind("link", S_IFLNK) && is_kind("far", S_IFLNK) && is_kind("target", S_IFREG));
+  ck_assert_int_eq(symlink("loop", "loop"), 0);
+  FileWriter writer;
+  ck_assert_int_eq(file_begin(&writer, "loop"), STATUS_IO);
+  ck_assert_int_eq(unlink("loop") | unlink("far") | unlink("link") | unlink("target"), 0);
+  ck_assert_int_eq(rmdir(folder), 0);
+}
+END_TEST
+
+START_TEST(a_pipe_and_a_descriptor_get_what_is_written_and_stay) {
+  char folder[] = "/tmp/tetlap_pipe_XXXXXX", text[16] = "", name[32];
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  ck_assert_int_eq(chdir(folder), 0);
+  ck_assert_int_eq(mkfifo("pipe", 0600), 0);
+  int reader = open("pipe", O_RDONLY | O_NONBLOCK);
+  write_text("pipe", "in");
+  ck_assert_int_eq(read(reader, text, sizeof text), 2);
+  ck_assert_str_eq(text, "in");
+  ck_assert(is_kind("pipe", S_IFIFO));
+  FILE *file = fopen("file", "w");
+  fputs("before ", file);
+  fflush(file);
+  snprintf(name, sizeof name, "/dev/fd/%d", fileno(file));
+  write_text(name, "behind");
+  fclose(file);
+  expect_text("file", "before behind");
+  write_text("/dev/null", "gone");
+  ck_assert(is_kind("/dev/null", S_IFCHR));
+  close(reader);
+  ck_assert_int_eq(unlink("pipe") | unlink("file"), 0);
+  ck_assert_int_eq(rmdir(folder), 0);
+}
+END_TEST
+
 START_TEST(a_full_disk_is_an_error_with_the_path) {
   FileWriter writer;
   ck_assert_int_eq(file_begin(&writer, "/proc/no/such/place"), STATUS_IO);
@@ -90,6 +156,8 @@ int main(void) {
   tcase_add_test(cases, a_failure_carries_its_message_and_code);
   tcase_add_test(cases, the_kth_allocation_fails_once);
   tcase_add_test(cases, an_abandoned_file_leaves_the_old_one);
+  tcase_add_test(cases, a_link_is_written_through_to_the_file_that_it_names);
+  tcase_add_test(cases, a_pipe_and_a_descriptor_get_what_is_written_and_stay);
   tcase_add_test(cases, a_full_disk_is_an_error_with_the_path);
   tcase_add_test(cases, random_rotations_are_rotations);
   tcase_add_test(cases, random_streams_repeat_and_differ);
