@@ -130,3 +130,8 @@ size_t text_utf8_valid(const char *text, size_t size) {
   }
   return size;
 }
+
+size_t text_mark_length(const char *text, size_t size) {
+  static const char mark[] = {'\xef', '\xbb', '\xbf'};
+  return size >= sizeof mark && memcmp(text, mark, sizeof mark) == 0 ? sizeof mark : 0;
+}

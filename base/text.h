@@ -46,4 +46,8 @@ void text_place(const char *text, size_t offset, int *line, int *column);
 // The offset of the first byte that is not UTF-8 (RFC 3629), `size` if all are.
 size_t text_utf8_valid(const char *text, size_t size);
 
+// The length of a UTF-8 byte order mark that a text begins with, else 0: editors put it there, and it says
+// nothing.
+size_t text_mark_length(const char *text, size_t size);
+
 #endif

@@ -12,6 +12,7 @@
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "base/random.h"
+#include "base/text.h"
 
 enum { SIZE = 12 };
 static const double ROUNDING = 1e-6; // of a rotation in a file
@@ -90,7 +91,7 @@ Status app_poses_list_read(AppPosesList *list, const char *path) {
   size_t size;
   *list = (AppPosesList){0};
   TRY(file_read(path, &text, &size));
-  Status status = read_text(list, path, text);
+  Status status = read_text(list, path, text + text_mark_length(text, size));
   memory_free(text);
   if (status != STATUS_OK) app_poses_list_destroy(list);
   return status;

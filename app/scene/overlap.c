@@ -27,13 +27,30 @@ static Status read_with(const char *path, const char *const *overrides, int coun
   return status;
 }
 
+// A scene without contact stays one: the choice of a model is no wish for contact. A scene that cannot be
+// read as it stands is read with the choice, which says what is wrong.
+static Status check_contact(const char *path, const char *const *overrides, int override_count,
+                            const char *overlap) {
+  FemSceneDef scene;
+  if (app_scene_read(path, overrides, override_count, &scene) != STATUS_OK) return STATUS_OK;
+  bool is_on = scene.contact.is_on;
+  fem_scene_destroy(&scene);
+  if (is_on) return STATUS_OK;
+  return status_fail(
+      STATUS_INPUT,
+      "%s: has no section 'contact', so there is nothing for the overlap model '%s'; leave the "
+      "model out, or write 'contact: {}' into the scene",
+      path, overlap);
+}
+
 Status app_scene_overlap_read(const char *path, const char *const *overrides, int override_count,
                               const char *overlap, FemSceneDef *scene) {
   if (!overlap) return app_scene_read(path, overrides, override_count, scene);
+  TRY(check_contact(path, overrides, override_count, overlap));
   char choice[PATH_MAX + 32], weights[PATH_MAX];
   bool is_path = overlap_weights_is_path(overlap) && realpath(overlap, weights);
   snprintf(choice, sizeof choice, "contact.overlap=%s", is_path ? "geo" : overlap);
   TRY(read_with(path, overrides, override_count, choice, scene));
-  if (strcmp(overlap, "hybrid") == 0 || !scene->contact.is_on) return STATUS_OK;
+  if (strcmp(overlap, "hybrid") == 0) return STATUS_OK;
   return replace_net(scene, is_path ? weights : NULL);
 }

@@ -396,7 +396,8 @@ static Status check_text(const Parser *parser) {
 
 Status app_scene_tree_parse(const char *origin, const char *text, size_t size, SceneNode **root) {
   *root = NULL;
-  Parser parser = {.origin = origin, .text = text, .size = size};
+  size_t mark = text_mark_length(text, size);
+  Parser parser = {.origin = origin, .text = text + mark, .size = size - mark};
   TRY(check_text(&parser));
   SceneNode *node = memory_zeroed(1, sizeof *node);
   if (!node || !yaml_parser_initialize(&parser.yaml)) {
@@ -405,7 +406,7 @@ Status app_scene_tree_parse(const char *origin, const char *text, size_t size, S
   }
   *node = (SceneNode){.origin = origin, .line = 1, .column = 1};
   yaml_parser_set_encoding(&parser.yaml, YAML_UTF8_ENCODING);
-  yaml_parser_set_input_string(&parser.yaml, (const unsigned char *)text, size);
+  yaml_parser_set_input_string(&parser.yaml, (const unsigned char *)parser.text, parser.size);
   Status status = parse_stream(&parser, node);
   yaml_parser_delete(&parser.yaml);
   if (status) {

@@ -144,7 +144,8 @@ Status record_list_write(const RecordList *root, const char *path) {
 
 Status record_parse(Record **root, const char *text, size_t size, const char *name) {
   json_error_t error;
-  *root = (Record *)json_loadb(text, size, JSON_REJECT_DUPLICATES, &error);
+  size_t mark = text_mark_length(text, size);
+  *root = (Record *)json_loadb(text + mark, size - mark, JSON_REJECT_DUPLICATES, &error);
   if (*root) return STATUS_OK;
   return status_fail(STATUS_INPUT, "%s:%d:%d: is not JSON: %s", name, error.line, error.column, error.text);
 }

@@ -193,6 +193,9 @@ typedef struct File {
 START_TEST(files_of_poses_are_read_or_refused) {
   static const File files[] = {
       {"1 0 0 0 1 0 0 0 1 0 0 0\n# a word\n1,0,0, 0,1,0, 0,0,1, 1e-3,-2,0 # why\n", NULL},
+      {"\xef\xbb\xbf"
+       "1 0 0 0 1 0 0 0 1 0 0 0\n1 0 0 0 1 0 0 0 1 1e-3 -2 0",
+       NULL},
       {"1 0 0 0 1 0 0 0 1 0 0\n", "line 1: a pose is 12 numbers"},
       {"\n1 0 0 0 1 0 0 0 1 0 0 0 0\n", "line 2: a pose is 12 numbers"},
       {"1 0 0 0 1 0 0 0 1 0 0 x\n", "something else"},
@@ -228,7 +231,7 @@ int main(void) {
   tcase_add_test(cases, the_wrench_is_minus_the_slope_of_v);
   tcase_add_loop_test(cases, every_device_gives_the_same_bits, 0, 3);
   tcase_add_test(cases, no_pair_that_overlaps_is_left_out);
-  tcase_add_loop_test(cases, files_of_poses_are_read_or_refused, 0, 8);
+  tcase_add_loop_test(cases, files_of_poses_are_read_or_refused, 0, 9);
   int result = suite_run("poses", cases, 300);
   fem_model_destroy(&model);
   fem_scene_destroy(&scene);

@@ -6,8 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/scene/overlap.h"
 #include "app/scene/read.h"
 #include "app/scene/write.h"
+#include "base/files/record.h"
 #include "base/memory.h"
 
 static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.yaml";
@@ -452,6 +454,31 @@ START_TEST(a_history_is_of_frames_or_steps_or_none) {
 }
 END_TEST
 
+START_TEST(a_byte_order_mark_is_read_over) {
+  const char *text = "\xef\xbb\xbf"
+                     "time: {end: 1}\n"
+                     "bodies: [{name: a, mesh: a.msh, material: {young: 1, poisson: 0, density: 1}}]\n";
+  FemSceneDef scene;
+  ck_assert_ok(app_scene_read_text("s.yaml", text, strlen(text), &scene));
+  fem_scene_destroy(&scene);
+  Record *record;
+  ck_assert_ok(record_parse(&record, "\xef\xbb\xbf{\"a\": 1}", 11, "a.json"));
+  record_destroy(record);
+}
+END_TEST
+
+START_TEST(another_overlap_model_does_not_turn_contact_on) {
+  static const char *const on[] = {"contact.potential=pair"};
+  const char *path = TETLAP_SOURCE_DIR "/examples/04_cantilever.yaml";
+  FemSceneDef scene;
+  ck_assert_int_eq(app_scene_overlap_read(path, NULL, 0, "clip", &scene), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "has no section 'contact'"));
+  ck_assert_ok(app_scene_overlap_read(path, on, 1, "exact", &scene));
+  ck_assert_str_eq(scene.contact.overlap, "exact");
+  fem_scene_destroy(&scene);
+}
+END_TEST
+
 START_TEST(an_override_turns_contact_off_and_on) {
   static const char *const off[] = {"contact=null"};
   static const char *const on[] = {"contact=null", "contact.potential=pair"};
@@ -472,6 +499,8 @@ int main(void) {
   tcase_add_test(cases, a_scene_with_every_key_is_read);
   tcase_add_test(cases, json_means_the_same);
   tcase_add_test(cases, absent_keys_take_their_defaults);
+  tcase_add_test(cases, a_byte_order_mark_is_read_over);
+  tcase_add_test(cases, another_overlap_model_does_not_turn_contact_on);
   tcase_add_test(cases, an_empty_contact_section_turns_contact_on);
   tcase_add_test(cases, a_resolved_scene_is_the_same_scene);
   tcase_add_test(cases, a_resolved_scene_names_what_was_left_out);
