@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/program.h"
 
+#include <signal.h>
 #include <string.h>
 
 #include "app/bench/bench.h"
@@ -81,6 +82,7 @@ bool app_program_has_threads(int argument_count, char *const *arguments) {
 int app_program_run(int argument_count, char **arguments) {
   static char name[] = "tetlap";
   log_set_level(LOG_INFO);
+  signal(SIGXFSZ, SIG_IGN); // a limit of file sizes is then an error of writing, with a message
   app_versions_set_command(argument_count, arguments);
   arguments[0] = name;
   app_cli_command_set_root(&app_program_root);

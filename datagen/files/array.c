@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "datagen/files/hdf5.h"
 
 enum { PAIR_SIZE = 24, MOST_RANK = 8, MOST_NAME = 256 };
 
@@ -85,7 +86,7 @@ static Status open_array(DatagenArray *array) {
 }
 
 Status datagen_array_open(DatagenArray **result, const char *path) {
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); // else HDF5 prints what fails
+  datagen_hdf5_begin();
   *result = NULL;
   DatagenArray *array = memory_zeroed(1, sizeof *array);
   if (!array) return status_no_memory("an array of pairs");

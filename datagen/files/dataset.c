@@ -9,31 +9,12 @@
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "datagen/files/hdf5.h"
 
 static const char *const FORMAT = "tetlap pairs";
 static const char *const UNITS =
     "coordinates and centroid in edges of the unit cube, volume in its cube, gradient in its square";
 static const long long FORMAT_VERSION = 1;
-
-static herr_t keep_description(unsigned level, const H5E_error2_t *error, void *text) {
-  (void)level;
-  if (error->desc) snprintf(text, 160, "%s", error->desc);
-  return 0;
-}
-
-// A failure with the cause that HDF5 gives.
-static Status fail_hdf5(Status code, const char *path, const char *what) {
-  char reason[160] = "no reason given";
-  // from the call that failed down to its cause: the last description stays
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, keep_description, reason);
-  H5Eclear2(H5E_DEFAULT);
-  return status_fail(code, "%s: %s: %s", path, what, reason);
-}
-
-// HDF5 prints what fails to stderr unless it is told not to.
-static void silence(void) {
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-}
 
 typedef enum Column { COORDINATES, STATUS, KIND, VOLUME, GRADIENT, CENTROID, COLUMN_COUNT } Column;
 
@@ -264,17 +245,17 @@ static hid_t create_column(hid_t file, int column, hsize_t rows) {
 static Status create_contents(DatagenWriter *writer) {
   const char *path = writer->place.path;
   writer->file = create_file(writer->place.temporary);
-  if (writer->file < 0) return fail_hdf5(STATUS_IO, path, "cannot be written");
+  if (writer->file < 0) return datagen_hdf5_fail(STATUS_IO, path, "cannot be written");
   for (int c = 0; c < COLUMN_COUNT; c++) {
     if (!is_wanted(&writer->info, c)) continue;
     writer->datasets[c] = create_column(writer->file, c, chunk_rows(&writer->info));
-    if (writer->datasets[c] < 0) return fail_hdf5(STATUS_IO, path, "cannot be written");
+    if (writer->datasets[c] < 0) return datagen_hdf5_fail(STATUS_IO, path, "cannot be written");
   }
   return STATUS_OK;
 }
 
 Status datagen_dataset_writer_begin(DatagenWriter **result, const char *path, const DatagenInfo *info) {
-  silence();
+  datagen_hdf5_begin();
   *result = NULL;
   DatagenWriter *writer = memory_zeroed(1, sizeof *writer);
   if (!writer) return status_no_memory("a data set");
@@ -297,6 +278,7 @@ Status datagen_dataset_writer_append(DatagenWriter *writer, const DatagenPairs *
   DatagenInfo *info = &writer->info;
   const hsize_t first = (hsize_t)info->count;
   bool works = true;
+  datagen_hdf5_begin();
   TRY(check_pairs(writer->place.path, info->count, count, pairs));
   for (int c = 0; c < COLUMN_COUNT && works; c++) {
     if (!is_wanted(info, c)) continue;
@@ -306,7 +288,7 @@ Status datagen_dataset_writer_append(DatagenWriter *writer, const DatagenPairs *
             transfer(writer->datasets[c], c, first, count, column_of(pairs, c), true);
   }
   if (!works || H5Fflush(writer->file, H5F_SCOPE_LOCAL) < 0)
-    return fail_hdf5(STATUS_IO, writer->place.path, "writing failed");
+    return datagen_hdf5_fail(STATUS_IO, writer->place.path, "writing failed");
   info->count += (long long)count;
   for (size_t i = 0; i < count; i++) info->kind_counts[pairs->kind[i]]++;
   for (int k = 0; k < DATAGEN_KIND_COUNT && attempts; k++) info->attempts[k] += attempts[k];
@@ -331,10 +313,11 @@ static bool close_contents(DatagenWriter *writer) {
 
 Status datagen_dataset_writer_commit(DatagenWriter *writer) {
   DatagenInfo *info = &writer->info;
+  datagen_hdf5_begin();
   if (!info->planned) info->planned = info->total = info->count;
   bool works = write_fields(writer->file, info);
   works = close_contents(writer) && works;
-  Status status = works ? STATUS_OK : fail_hdf5(STATUS_IO, writer->place.path, "writing failed");
+  Status status = works ? STATUS_OK : datagen_hdf5_fail(STATUS_IO, writer->place.path, "writing failed");
   if (!status) status = file_commit(&writer->place);
   datagen_dataset_writer_abandon(writer);
   return status;
@@ -468,7 +451,8 @@ static Status open_column(DatagenDataset *dataset, int column) {
     return status_fail(STATUS_INPUT, "%s: has no array '%s'", path, name);
   }
   dataset->datasets[column] = H5Dopen2(dataset->file, name, H5P_DEFAULT);
-  if (dataset->datasets[column] < 0) return fail_hdf5(STATUS_INPUT, path, "an array cannot be opened");
+  if (dataset->datasets[column] < 0)
+    return datagen_hdf5_fail(STATUS_INPUT, path, "an array cannot be opened");
   long long count;
   if (!check_column(dataset->datasets[column], column, &count))
     return status_fail(STATUS_INPUT, "%s: array '%s' should be %s of shape (n%s)", path, name,
@@ -521,14 +505,14 @@ static Status open_contents(DatagenDataset *dataset) {
     return fail_foreign(dataset->path, "it is not an HDF5 file");
   }
   dataset->file = H5Fopen(dataset->path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (dataset->file < 0) return fail_hdf5(STATUS_INPUT, dataset->path, "is damaged");
+  if (dataset->file < 0) return datagen_hdf5_fail(STATUS_INPUT, dataset->path, "is damaged");
   TRY(read_info(dataset));
   for (int c = 0; c < COLUMN_COUNT; c++) TRY(open_column(dataset, c));
   return check_counts(dataset);
 }
 
 Status datagen_dataset_open(DatagenDataset **result, const char *path) {
-  silence();
+  datagen_hdf5_begin();
   *result = NULL;
   DatagenDataset *dataset = memory_zeroed(1, sizeof *dataset);
   if (!dataset) return status_no_memory("a data set");
@@ -550,6 +534,7 @@ const DatagenInfo *datagen_dataset_info(const DatagenDataset *dataset) {
 Status datagen_dataset_read(DatagenDataset *dataset, long long first, size_t count,
                             const DatagenPairs *pairs) {
   const DatagenInfo *info = &dataset->info;
+  datagen_hdf5_begin();
   if (first < 0 || first > info->count || (long long)count > info->count - first)
     return status_fail(STATUS_INPUT, "%s: pairs %lld to %lld were requested, it has %lld", dataset->path,
                        first, first + (long long)count - 1, info->count);
@@ -562,7 +547,7 @@ Status datagen_dataset_read(DatagenDataset *dataset, long long first, size_t cou
     if (array && !transfer(dataset->datasets[c], c, (hsize_t)first, count, array, false)) {
       char what[80];
       snprintf(what, sizeof what, "array '%s' is damaged", layouts[c].name);
-      return fail_hdf5(STATUS_INPUT, dataset->path, what);
+      return datagen_hdf5_fail(STATUS_INPUT, dataset->path, what);
     }
   }
   return check_pairs(dataset->path, first, count, pairs);
