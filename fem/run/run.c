@@ -415,8 +415,6 @@ static Status begin_part(FemRunState *run) {
 // Counts what the part has done; the system stays, for the next to take over from.
 static void end_part(FemRunState *run) {
   FemRunResult *result = run->result;
-  run->checkpoint.force_scale = run->statics.force_scale;
-  run->checkpoint.driven_work = run->statics.driven_work;
   end_stage(run);
   if (run->system.model) fem_run_result_add_system(result, &run->system);
   result->phases.output += run->recorder.seconds;
@@ -432,8 +430,9 @@ static void end_part(FemRunState *run) {
 
 // Collects a checkpoint and begins anew from it.
 static Status pass_checkpoint(FemRunState *run) {
+  const double force_scale = run->statics.force_scale, driven_work = run->statics.driven_work;
   end_part(run);
-  TRY(fem_run_checkpoint_take(run));
+  TRY(fem_run_checkpoint_take(run, force_scale, driven_work));
   TRY(begin_part(run));
   memory_trim();
   return STATUS_OK;

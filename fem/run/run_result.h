@@ -29,7 +29,7 @@ typedef struct FemRunSpread {
 // it to numbers[] in fem/run/checkpoint/numbers.c and to fem_run_result_add as well.
 typedef struct FemRunResult {
   double wall_s, cpu_s;
-  double work_s; // processor time outside of MPI, since a checkpoint that the run was resumed from
+  double work_s; // processor time outside of MPI
   FemRunPhases phases;
   FemIntegratorStats integrator;
   FemSolverStats solver;

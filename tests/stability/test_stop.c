@@ -93,6 +93,38 @@ START_TEST(a_static_run_that_is_stopped_leaves_its_last_equilibria) {
 }
 END_TEST
 
+// A checkpoint is of one state, however long after it the run is stopped.
+START_TEST(a_checkpoint_has_nothing_of_what_came_after_it) {
+  FemCheckpoint checkpoints[2];
+  char path[96];
+  for (int k = 0; k < 2; k++) {
+    SceneRun run;
+    Stopper stopper = {.time = k ? 0.45 : 0.4};
+    make_folder();
+    scene_open(&run, "patch",
+               (const char *const[]){
+                   "output.frames=12", "bodies.upper.loads=[]",
+                   "bodies.upper.driven=[{group: z_max, components: [z], velocity: [0, 0, -1e-4]}]", NULL});
+    FemRunOptions options = {
+        .stop = &stopper.flag, .observe = stop_at, .observer = &stopper, .directory = folder};
+    ck_assert_int_eq(fem_run(&run.model, &options, &run.result), STATUS_INTERRUPTED);
+    snprintf(path, sizeof path, "%s/%s", folder, FEM_CHECKPOINT_FILE);
+    ck_assert_ok(fem_checkpoint_read(&checkpoints[k], path));
+    scene_close(&run);
+    remove_folder();
+  }
+  const FemCheckpoint *early = &checkpoints[0], *late = &checkpoints[1];
+  ck_assert_double_gt(early->driven_work, 0);
+  ck_assert_double_gt(early->so_far.work_s, 0);
+  ck_assert_double_eq(late->time, early->time);
+  ck_assert_double_eq(late->force_scale, early->force_scale);
+  ck_assert_double_eq(late->driven_work, early->driven_work);
+  ck_assert_int_eq((int)late->so_far.integrator.steps, (int)early->so_far.integrator.steps);
+  ck_assert_mem_eq(&late->audit, &early->audit, sizeof early->audit);
+  for (int k = 0; k < 2; k++) fem_checkpoint_destroy(&checkpoints[k]);
+}
+END_TEST
+
 // Where the integrator begins anew for a checkpoint does not hang on them.
 START_TEST(a_run_is_the_same_however_many_frames_it_writes) {
   double lost[3];
@@ -180,7 +212,8 @@ static int read_column(const char *title, double *values, int most) {
   return rows;
 }
 
-// A row per step holds the largest force of the run; a row per frame holds it as the peak since the row before.
+// A row per step holds the largest force of the run; a row per frame holds it as the peak since the row
+// before.
 START_TEST(no_peak_of_a_force_is_missed) {
   enum { MOST = 100000 };
   static double force[MOST], steps[MOST];
@@ -273,6 +306,7 @@ int main(void) {
   TCase *cases = tcase_create("stop");
   tcase_add_test(cases, a_static_run_stops_within_an_evaluation);
   tcase_add_test(cases, a_static_run_that_is_stopped_leaves_its_last_equilibria);
+  tcase_add_test(cases, a_checkpoint_has_nothing_of_what_came_after_it);
   tcase_add_test(cases, a_run_is_the_same_however_many_frames_it_writes);
   tcase_add_test(cases, an_early_stop_leaves_a_checkpoint_of_what_was_done);
   tcase_add_test(cases, a_second_run_into_a_folder_leaves_nothing_of_the_first);

@@ -48,6 +48,7 @@ static const FemCheckpointNumber numbers[] = {
     AUDIT(load_change, "J/s2"),
     RESULT(wall_s, FEM_REAL, "s"),
     RESULT(cpu_s, FEM_REAL, "s"),
+    RESULT(work_s, FEM_REAL, "s"),
     PHASE(broad_phase),
     PHASE(overlap),
     PHASE(contact),

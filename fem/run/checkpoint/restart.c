@@ -60,20 +60,12 @@ static Status save_counts(FemCheckpoint *checkpoint, const FemRunResult *so_far)
 
 Status fem_restart_collect(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
                            const double *v, const FemRunResult *so_far) {
-  FemCheckpoint next;
-  TRY(fem_checkpoint_create(&next, system->model->vertex_count));
-  save_state(&next, system, time, u, v);
-  Status status = save_effects(&next, system);
-  if (!status) status = save_counts(&next, so_far);
-  if (status) {
-    fem_checkpoint_destroy(&next);
-    return status;
-  }
-  next.origin = checkpoint->origin;
-  checkpoint->origin = NULL;
-  fem_checkpoint_destroy(checkpoint);
-  *checkpoint = next;
-  return STATUS_OK;
+  TRY(fem_checkpoint_create(checkpoint, system->model->vertex_count));
+  save_state(checkpoint, system, time, u, v);
+  Status status = save_effects(checkpoint, system);
+  if (!status) status = save_counts(checkpoint, so_far);
+  if (status) fem_checkpoint_destroy(checkpoint);
+  return status;
 }
 
 Status fem_restart_check(const FemCheckpoint *checkpoint, const FemModel *model) {

@@ -10,8 +10,9 @@
 // (vertex_count, 3) unless NULL.
 Status fem_restart_begin(FemCheckpoint *checkpoint, const FemModel *model, const double *displacement);
 
-// Takes over the state (time; u, v of the unknowns), the effects' histories and the counts so far, which
-// include those of the system. `checkpoint` was made for this model; it is as it was after a failure.
+// Makes a checkpoint with the state (time; u, v of the unknowns), the effects' histories and the counts so
+// far, which include those of the system; the rest is the caller's. After a failure there is nothing to
+// destroy.
 Status fem_restart_collect(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
                            const double *v, const FemRunResult *so_far);
 

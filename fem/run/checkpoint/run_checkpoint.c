@@ -76,22 +76,34 @@ bool fem_run_checkpoint_is_due(const FemRunState *run) {
   return steps >= PATIENCE * enough || (is_wanted && is_calm(run, &stats));
 }
 
-// Between two parts: what the statics reached stands in the checkpoint already.
-Status fem_run_checkpoint_take(FemRunState *run) {
-  FemCheckpoint *checkpoint = &run->checkpoint;
-  const double force_scale = checkpoint->force_scale, driven_work = checkpoint->driven_work;
-  TRY(fem_restart_collect(checkpoint, &run->system, run->time, run->u, run->v, run->result));
-  memory_free(checkpoint->ledger);
-  checkpoint->ledger = NULL;
-  checkpoint->ledger_count = 0;
-  TRY(fem_ledger_save(&run->recorder.ledger, &checkpoint->ledger, &checkpoint->ledger_count));
+static Status keep_ledger(const FemRunState *run, FemCheckpoint *next) {
+  double *ledger = NULL;
+  TRY(fem_ledger_save(&run->recorder.ledger, &ledger, &next->ledger_count));
+  memory_free(next->ledger);
+  next->ledger = ledger;
+  return STATUS_OK;
+}
+
+// The former checkpoint stands until the next one is whole: a run that fails on the way leaves that one.
+Status fem_run_checkpoint_take(FemRunState *run, double force_scale, double driven_work) {
+  FemCheckpoint next;
+  TRY(fem_restart_collect(&next, &run->system, run->time, run->u, run->v, run->result));
+  Status status = keep_ledger(run, &next);
+  if (status) {
+    fem_checkpoint_destroy(&next);
+    return status;
+  }
   // 0: IDA's choice. At order 1 a step as long as the last one would let what sticks creep.
-  checkpoint->step = run->model->scene->is_static ? run->next_step : 0;
-  checkpoint->next_frame = run->next_frame;
-  checkpoint->history = run->recorder.history.file.end;
-  checkpoint->audit = run->audit;
-  checkpoint->force_scale = force_scale;
-  checkpoint->driven_work = driven_work;
+  next.step = run->model->scene->is_static ? run->next_step : 0;
+  next.next_frame = run->next_frame;
+  next.history = run->recorder.history.file.end;
+  next.audit = run->audit;
+  next.force_scale = force_scale;
+  next.driven_work = driven_work;
+  next.origin = run->checkpoint.origin;
+  run->checkpoint.origin = NULL;
+  fem_checkpoint_destroy(&run->checkpoint);
+  run->checkpoint = next;
   run->is_written = false;
   return fem_run_checkpoint_offer(run);
 }

@@ -7,8 +7,9 @@
 
 bool fem_run_checkpoint_is_due(const FemRunState *run);
 
-// Takes the state between two parts as the checkpoint that the next one begins from, and offers it.
-Status fem_run_checkpoint_take(FemRunState *run);
+// Takes the state between two parts as the checkpoint that the next one begins from, and offers it; what a
+// static part reached is given. After a failure the former checkpoint stands.
+Status fem_run_checkpoint_take(FemRunState *run, double force_scale, double driven_work);
 
 // Writes the checkpoint if the last one that was written is old enough.
 Status fem_run_checkpoint_offer(FemRunState *run);

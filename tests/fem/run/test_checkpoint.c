@@ -47,7 +47,7 @@ static FemCheckpoint example(void) {
   checkpoint.audit = (FemAudit){.time = 0.1, .damped = 1, .dissipated = 2, .driven_work = 3, .work = 4};
   checkpoint.audit.total = -0.0, checkpoint.audit.lowest = -7, checkpoint.audit.gain = 1e-300;
   checkpoint.audit.driven_power = 11, checkpoint.audit.first = 12;
-  checkpoint.so_far.min_det_F = INFINITY;
+  checkpoint.so_far.min_det_F = INFINITY, checkpoint.so_far.work_s = 1.25;
   checkpoint.so_far.integrator.steps = 1LL << 60;
   checkpoint.so_far.pairs.beyond = 5;
   checkpoint.so_far.pairs_max = 6;
@@ -75,6 +75,7 @@ static void check_equal(const FemCheckpoint *a, const FemCheckpoint *b) {
   ck_assert_mem_eq(&a->so_far.pairs, &b->so_far.pairs, sizeof a->so_far.pairs);
   ck_assert_int_eq(a->so_far.pairs_max, b->so_far.pairs_max);
   ck_assert(a->so_far.min_det_F == b->so_far.min_det_F);
+  ck_assert_double_eq(a->so_far.work_s, b->so_far.work_s);
   RecordDifference difference;
   ck_assert(!record_differ(a->so_far.counters, b->so_far.counters, &difference));
   ck_assert_int_eq(a->effect_count, b->effect_count);
@@ -200,7 +201,7 @@ END_TEST
 START_TEST(a_right_head_does_not_make_a_checkpoint) {
   char file[560], digest[DIGEST_TEXT];
   static const char *const heads[] = {
-      "tetlap checkpoint 8\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
+      "tetlap checkpoint 9\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
       "tetlap checkpoint 2\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n"};
   static const char *const words[] = {"is damaged", "version 2"};
   for (int k = 0; k < 2; k++) {
