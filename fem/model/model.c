@@ -53,12 +53,6 @@ double fem_model_slip_speed(const FemModel *model) {
   return given > 0 ? given : CREEP * model->length / model->scene->end;
 }
 
-static bool has_self_friction(const FemSceneDef *scene) {
-  bool is_wanted = false;
-  for (int b = 0; b < scene->body_count; b++) is_wanted = is_wanted || scene->bodies[b].self_contact;
-  return is_wanted && scene->contact.friction > 0;
-}
-
 // Of time.tolerance.
 static const double SPEED_SHARE = 5;
 
@@ -124,7 +118,7 @@ double fem_model_velocity_tolerance(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
   if (scene->velocity_tolerance > 0) return scene->velocity_tolerance;
   double slowest = fem_model_slowest_wave(model);
-  double share = has_self_friction(scene) ? VELOCITY_SHARE_OF_SELF_FRICTION : VELOCITY_SHARE;
+  double share = fem_scene_has_self_friction(scene) ? VELOCITY_SHARE_OF_SELF_FRICTION : VELOCITY_SHARE;
   double chosen = scene->tolerance * fmin(share * slowest, MOTION_SHARE * expected_speed(model));
   if (is_free(scene)) return chosen / VELOCITY_SHARE;
   return creeps(scene) ? fmin(chosen, FRICTION_RESOLUTION * fem_model_slip_speed(model)) : chosen;

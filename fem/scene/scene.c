@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/memory.h"
 
@@ -72,6 +73,24 @@ double fem_scene_most_friction(const FemContactDef *contact) {
   double most = contact->friction;
   for (int i = 0; i < contact->pair_count; i++) most = fmax(most, contact->pairs[i].friction);
   return most;
+}
+
+// μ of a body with itself; the last pair stands.
+static double self_friction(const FemContactDef *contact, const char *name) {
+  double friction = contact->friction;
+  for (int i = 0; i < contact->pair_count; i++) {
+    const FemContactPairDef *pair = &contact->pairs[i];
+    bool is_its = strcmp(pair->names[0], name) == 0 && strcmp(pair->names[1], name) == 0;
+    if (is_its && pair->friction >= 0) friction = pair->friction;
+  }
+  return friction;
+}
+
+bool fem_scene_has_self_friction(const FemSceneDef *scene) {
+  for (int b = 0; b < scene->body_count; b++)
+    if (scene->bodies[b].self_contact && self_friction(&scene->contact, scene->bodies[b].name) > 0)
+      return true;
+  return false;
 }
 
 double fem_scene_frame_time(const FemSceneDef *scene, int frame) {

@@ -235,5 +235,7 @@ double fem_scene_frame_time(const FemSceneDef *scene, int frame);
 FemFrictionLaw fem_scene_friction_law(const FemContactDef *contact);
 // The largest μ between any two; 0: nothing rubs.
 double fem_scene_most_friction(const FemContactDef *contact);
+// Whether a body rubs on itself, by the scene's μ or by its own of `contact.pairs`.
+bool fem_scene_has_self_friction(const FemSceneDef *scene);
 
 #endif

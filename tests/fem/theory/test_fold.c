@@ -102,6 +102,26 @@ static bool is_inverted(const SceneRun *run, int frame, int tet) {
 
 // The hard case is 20 × 20 and turns longer: `tetlap run tests/scenes/mat_twist.yaml --set time.end=3.4`,
 // minutes.
+// Tolerances of what rubs on itself do not depend on where its friction stands in the scene.
+START_TEST(own_friction_of_a_body_with_itself_is_friction_too) {
+  const char *const contacts[] = {"contact={friction: 0.5}",
+                                  "contact={pairs: [{bodies: [mat, mat], friction: 0.5}]}", "contact={}",
+                                  "contact={friction: 0.5, pairs: [{bodies: [mat, mat], friction: 0}]}",
+                                  "contact={friction: 0.5, pairs: [{bodies: [mat, floor], friction: 0}]}"};
+  double tolerances[5];
+  for (int k = 0; k < 5; k++) {
+    SceneRun run;
+    scene_open(&run, "fold", (const char *const[]){contacts[k], NULL});
+    tolerances[k] = fem_model_velocity_tolerance(&run.model);
+    scene_close(&run);
+  }
+  ck_assert_double_eq(tolerances[1], tolerances[0]);
+  ck_assert_double_lt(tolerances[2], tolerances[0]);
+  ck_assert_double_eq(tolerances[3], tolerances[2]);
+  ck_assert_double_eq(tolerances[4], tolerances[0]);
+}
+END_TEST
+
 START_TEST(a_mat_is_twisted_around_itself) {
   SceneRun run;
   scene_run(&run, "mat_twist", (const char *const[]){"bodies.mat.mesh.box.cells=[10,10,1]", NULL});
@@ -121,6 +141,7 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("fold");
   tcase_add_test(cases, a_folded_mat_carries_its_own_upper_half);
+  tcase_add_test(cases, own_friction_of_a_body_with_itself_is_friction_too);
   tcase_add_test(cases, a_mat_is_twisted_around_itself);
   return suite_run("fold", cases, 300);
 }
