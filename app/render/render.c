@@ -15,6 +15,13 @@
 #include "base/log.h"
 #include "base/memory.h"
 
+bool app_render_is_picture(const char *path) {
+  static const char ending[] = ".png";
+  size_t length = strlen(path);
+  return strncmp(path, "/dev/", 5) == 0 ||
+         (length > strlen(ending) && strcmp(path + length - strlen(ending), ending) == 0);
+}
+
 static Status check_stop(const AppRenderOptions *options) {
   return *options->stop ? status_fail(STATUS_INTERRUPTED, "interrupted") : STATUS_OK;
 }
@@ -62,6 +69,9 @@ static Status present(AppRenderBrowser *browser, const AppRenderOptions *options
   if (!status) {
     snprintf(script, size, "tetlap.present(tetlap, %s)", text);
     status = app_render_browser_run(browser, script, &count);
+    // the page's own words where it has no such field
+    if (status == STATUS_IO && options->field && strstr(status_message(), "there is no field"))
+      status = status_prefix(STATUS_USAGE, "--field");
   }
   *frame_count = count ? atoi(count) : 0;
   memory_free(count);
@@ -77,10 +87,14 @@ static Status draw(AppRenderBrowser *browser, int frame, unsigned char **png, si
   return app_render_browser_capture(browser, png, size);
 }
 
-static Status draw_picture(AppRenderBrowser *browser, const AppRenderOptions *options) {
+static Status draw_picture(AppRenderBrowser *browser, const AppRenderOptions *options, int frame_count) {
   unsigned char *png;
   size_t size;
   FileWriter writer;
+  if (options->frame >= frame_count || options->frame < -frame_count)
+    return status_fail(STATUS_USAGE,
+                       "--frame: there is no frame %d; there are %d, from 0 to %d, or from the end -1 to -%d",
+                       options->frame, frame_count, frame_count - 1, frame_count);
   TRY(draw(browser, options->frame, &png, &size));
   Status status = file_begin(&writer, options->picture);
   if (!status) {
@@ -119,7 +133,7 @@ static Status draw_all(AppRenderBrowser *browser, const AppRenderOptions *option
   int frame_count;
   TRY(wait_until_ready(browser, options));
   TRY(present(browser, options, &frame_count));
-  if (options->picture) TRY(draw_picture(browser, options));
+  if (options->picture) TRY(draw_picture(browser, options, frame_count));
   return options->movie ? draw_movie(browser, options, frame_count) : STATUS_OK;
 }
 

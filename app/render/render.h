@@ -23,8 +23,11 @@ typedef struct AppRenderOptions {
   const volatile sig_atomic_t *stop; // ends it when it is raised
 } AppRenderOptions;
 
-// Draws the runs of the report, whose records it takes. STATUS_IO: Chromium or ffmpeg is missing, no such
-// frame or field.
+// Whether a picture may have that name: FILE.png, or a device such as /dev/stdout.
+bool app_render_is_picture(const char *path);
+
+// Draws the runs of the report, whose records it takes. STATUS_USAGE: no such frame or field, with those that
+// there are. STATUS_IO: Chromium or ffmpeg is missing.
 Status app_render(AppReport *report, const AppRenderOptions *options);
 
 #endif

@@ -32,7 +32,7 @@ typedef struct Options {
   int directory_count;
   AppRenderOptions render;
   double range[2], view[2];
-  bool is_quiet;
+  bool has_frame, has_rate, is_quiet;
 } Options;
 
 static const struct argp_option option_table[] = {
@@ -89,10 +89,12 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   AppRenderOptions *render = &options->render;
   switch (key) {
   case 'o':
+    if (!app_render_is_picture(text)) argp_error(state, "-o is '%s'; pictures are PNG: give FILE.png", text);
     render->picture = text;
     return 0;
   case KEY_FRAME:
     render->frame = (int)app_argument_integer(state, "frame", text, -MOST_FRAME, MOST_FRAME);
+    options->has_frame = true;
     return 0;
   case KEY_MOVIE:
     if (!app_render_movie_is_known(text))
@@ -101,6 +103,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case KEY_RATE:
     render->per_second = (int)app_argument_integer(state, "rate", text, 1, 120);
+    options->has_rate = true;
     return 0;
   case KEY_SIZE:
     read_size(state, text, render);
@@ -143,6 +146,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (options->directory_count == 0) argp_error(state, "name the directory of a run or of a comparison");
     if (!render->picture && !render->movie)
       argp_error(state, "name what to write, as in -o picture.png or --movie run.mp4");
+    if (options->has_frame && !render->picture)
+      argp_error(state,
+                 "--frame is of a picture, and a movie has all frames; leave it out, or add -o FILE.png");
+    if (options->has_rate && !render->movie)
+      argp_error(state, "--rate is of a movie; leave it out, or add --movie FILE.mp4");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
