@@ -75,6 +75,15 @@ static double rate_of(const Training *training, long long step) {
   return net_schedule_rate(schedule, step);
 }
 
+static const char CHECKPOINT[] = "checkpoint.safetensors";
+
+bool app_training_has_checkpoint(const char *directory) {
+  char *path = file_join(directory, CHECKPOINT);
+  bool is_there = path && file_exists(path);
+  memory_free(path);
+  return is_there;
+}
+
 static Status name_files(Training *training) {
   const char *directory = training->options->directory;
   char name[256];
@@ -82,7 +91,7 @@ static Status name_files(Training *training) {
   snprintf(name, sizeof name, "%s.safetensors", training->config->name);
   training->weights = file_join(directory, name);
   training->candidate = file_join(directory, "candidate.safetensors");
-  training->checkpoint = file_join(directory, "checkpoint.safetensors");
+  training->checkpoint = file_join(directory, CHECKPOINT);
   training->description = app_training_config_print(training->config);
   bool fits = training->weights && training->candidate && training->checkpoint && training->description;
   return fits ? STATUS_OK : status_no_memory("a training");

@@ -40,6 +40,9 @@ typedef struct AppTrainingResult {
   bool has_stopped_early;
 } AppTrainingResult;
 
+// Whether a training in that directory has kept a checkpoint.
+bool app_training_has_checkpoint(const char *directory);
+
 // STATUS_INTERRUPTED: told to stop. STATUS_INPUT: data, or a checkpoint of another configuration.
 // STATUS_SOLVER: the loss is no longer finite.
 Status app_training_run(const AppTrainingConfig *config, const AppTrainingOptions *options,

@@ -14,6 +14,7 @@
 #include "app/job/job.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "overlap/weights.h"
 
 enum { KEY_MIX = 256, KEY_VOLUME, KEY_PATHS, KEY_DOUBT, BLOCK = 16384 };
 
@@ -23,7 +24,7 @@ typedef struct Options {
   int threads;  // 0: all
   int paths;    // to look for jumps along; 0: none
   double doubt; // of a hybrid; 0: its own
-  bool is_json, is_quiet;
+  bool has_seed, is_json, is_quiet;
 } Options;
 
 static const struct argp_option option_table[] = {
@@ -50,6 +51,16 @@ static void check(struct argp_state *state, const Options *options) {
     argp_error(state, "name a data set's file, a --law, or a number of --paths");
   if (options->source.file && options->source.law)
     argp_error(state, "a file and --law contradict each other; give one of them");
+  const AppSourceDef *source = &options->source;
+  const char *lawless = source->mix ? "mix" : source->volume ? "volume" : NULL;
+  if (lawless && !source->law)
+    argp_error(state, "--%s changes a law, and there is none; add --law%s", lawless,
+               source->file ? " in place of the file" : "");
+  if (options->has_seed && !source->law && !options->paths)
+    argp_error(state,
+               "--seed is of the pairs of a --law or of --paths, and a file has its own; leave it out");
+  if (source->count && !source->law && !source->file)
+    argp_error(state, "--count is of the pairs of a file or a --law, and there is neither; leave it out");
 }
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -63,6 +74,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case 's':
     options->source.seed = app_argument_seed(state, text);
+    options->has_seed = true;
     return 0;
   case KEY_MIX:
     options->source.mix = app_argument_words(state, "mix", text, "none=50,volumetric=50");
@@ -185,7 +197,9 @@ static Status open_and_evaluate(const Options *options) {
   OverlapModel model;
   OverlapOptions wanted = overlap_options_default();
   if (options->doubt > 0) wanted.doubt = options->doubt;
-  TRY(app_evaluation_model_open_with(&model, options->model, options->doubt > 0 ? &wanted : NULL));
+  Status opened = app_evaluation_model_open_with(&model, options->model, options->doubt > 0 ? &wanted : NULL);
+  if (opened == STATUS_INPUT && !overlap_weights_is_path(options->model)) return STATUS_USAGE; // no such name
+  TRY(opened);
   Status status = options->doubt > 0 && !app_evaluation_bounds_are_told(&model)
                       ? status_fail(STATUS_USAGE,
                                     "--doubt: the model '%s' tells no bound of its error; hybrid and "

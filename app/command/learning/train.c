@@ -83,6 +83,12 @@ static Status train(const Options *options, const AppTrainingConfig *config) {
                             .observe = show_progress,
                             .tell = log_line};
   AppTrainingResult result;
+  if (options->resumes && !app_training_has_checkpoint(run.directory))
+    return status_fail(
+        STATUS_USAGE,
+        "%s: there is nothing to resume, as it holds no checkpoint; leave out --resume, or name "
+        "the training's directory by -o",
+        run.directory);
   Status status = app_training_run(config, &run, &result);
   log_progress_end();
   if (!status)

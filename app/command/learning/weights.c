@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/learning/weights.h"
 
+#include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "app/training/task.h"
 #include "app/training/tpn.h"
 #include "base/log.h"
+#include "overlap/model.h"
 #include "overlap/weights.h"
 
 typedef struct Options {
@@ -67,11 +70,35 @@ static Status stamp(const char *path, const char *config_path, const NetModel_f3
   return STATUS_OK;
 }
 
+static const OverlapOps *find_model(const char *name) {
+  int count;
+  const OverlapOps *const *models = overlap_model_list(&count);
+  for (int m = 0; m < count; m++)
+    if (strcmp(models[m]->name, name) == 0) return models[m];
+  return NULL;
+}
+
+// Of the program's own: a name that has none is a wrong word, weights that are lost are a missing file.
+static Status find(const char *name, char *path, size_t size) {
+  const OverlapOps *model = find_model(name);
+  if (model && (!model->create || strcmp(name, "hybrid") == 0))
+    return status_fail(STATUS_USAGE,
+                       "the overlap model '%s' has no weights of its own; give geo, geo-small, tpn "
+                       "or the path of a file",
+                       name);
+  Status status = overlap_weights_find(model && model->weights ? model->weights : name, path, size);
+  if (status != STATUS_IO || model) return status;
+  char other[4096];
+  bool is_lost = overlap_weights_find("geo", other, sizeof other) != STATUS_OK;
+  overlap_weights_find(name, path, size); // for its message
+  return is_lost ? STATUS_IO : STATUS_USAGE;
+}
+
 static Status print_weights(const Options *options) {
   char found[4096];
   const char *path = options->name;
   if (!overlap_weights_is_path(path)) {
-    TRY(overlap_weights_find(path, found, sizeof found));
+    TRY(find(path, found, sizeof found));
     path = found;
   }
   NetModel_f32 model;

@@ -103,6 +103,11 @@ static bool is_run_named(const char *source) {
 
 static Status plot(const Options *options, const char *path) {
   bool is_run = is_run_named(options->sources[0]);
+  if (is_run && options->quantities)
+    return status_fail(STATUS_USAGE,
+                       "--quantity chooses from a frontier, and %s is a run; leave it out, or name a "
+                       "pareto.json",
+                       options->sources[0]);
   FileWriter writer;
   TRY(file_begin(&writer, path));
   Status status = is_run ? write_history(writer.stream, options) : write_frontier(writer.stream, options);

@@ -18,6 +18,7 @@ typedef struct Options {
   const char *scene, *file, *body, *device, *output;
   const char *overrides[APP_MAX_OVERRIDES];
   int override_count, random_count, threads;
+  const char *drawing; // an option that says how --random draws; NULL: none is given
   uint64_t seed;
   double shift, turn; // shift < 0: a tenth of the body's length
 } Options;
@@ -58,12 +59,15 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     break;
   case KEY_SEED:
     options->seed = app_argument_seed(state, text);
+    options->drawing = "seed";
     break;
   case KEY_SHIFT:
     options->shift = app_argument_number(state, "shift", text, 0, 1e300);
+    options->drawing = "shift";
     break;
   case KEY_TURN:
     options->turn = app_argument_number(state, "turn", text, 0, 1e3);
+    options->drawing = "turn";
     break;
   case 'D':
     options->device = text;
@@ -85,6 +89,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (!options->scene)
       argp_error(state, "name a scene, as in tetlap poses examples/02_two_blocks.yaml --random 100");
     if (!options->file == !options->random_count) argp_error(state, "give either --poses FILE or --random N");
+    if (options->drawing && !options->random_count)
+      argp_error(state,
+                 "--%s is of random poses, and those of --poses are as in its file; leave it out, or give "
+                 "--random N",
+                 options->drawing);
     break;
   default:
     return ARGP_ERR_UNKNOWN;
