@@ -76,6 +76,10 @@ Status datagen_capture_append(DatagenCapture *capture, const double *pairs, int 
   return STATUS_OK;
 }
 
+long long datagen_capture_count(const DatagenCapture *capture) {
+  return datagen_dataset_writer_count(capture->writer);
+}
+
 Status datagen_capture_commit(DatagenCapture *capture) {
   DatagenWriter *writer = capture->writer;
   capture->writer = NULL;

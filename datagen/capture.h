@@ -20,6 +20,7 @@ Status datagen_capture_begin(DatagenCapture *capture, const char *path, const ch
 // touched.
 Status datagen_capture_append(DatagenCapture *capture, const double *pairs, int count);
 // Puts the file into its place; without pairs there is none. The capture is destroyed, whatever the outcome.
+long long datagen_capture_count(const DatagenCapture *capture); // pairs so far
 Status datagen_capture_commit(DatagenCapture *capture);
 void datagen_capture_abandon(DatagenCapture *capture); // a zeroed one is accepted
 

@@ -63,6 +63,12 @@ static Status open_stream(FileWriter *writer, const char *path) {
   return status_fail(STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
 }
 
+bool file_is_same(const char *a, const char *b) {
+  struct stat left, right;
+  return stat(a, &left) == 0 && stat(b, &right) == 0 && left.st_dev == right.st_dev &&
+         left.st_ino == right.st_ino;
+}
+
 static Status begin(FileWriter *writer, const char *path, bool is_real) {
   *writer = (FileWriter){.is_real = is_real};
   Status status = open_stream(writer, path);

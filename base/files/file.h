@@ -43,6 +43,8 @@ int file_remove(const char *path);
 
 Status file_make_directories(const char *path); // like mkdir -p
 int file_exists(const char *path);
+// Whether both names are of one file or folder that is there, through links as well.
+bool file_is_same(const char *a, const char *b);
 // The whole file as text with a terminating 0, of those that base/files/confine.h allows; `*text` is owned by
 // the caller (memory_free).
 Status file_read(const char *path, char **text, size_t *size);

@@ -58,9 +58,69 @@ START_TEST(a_data_set_that_finds_no_room_is_one_message_with_the_system_s_reason
 }
 END_TEST
 
+START_TEST(a_name_that_is_none_is_a_usage_error) {
+  ck_assert_refused(64, "$tetlap eval nope --law scene -n 10", "there is no overlap model 'nope'");
+  ck_assert_refused(64, "$tetlap weights clip", "has no weights of its own");
+  ck_assert_refused(64, "$tetlap weights nope", "there are no weights 'nope'");
+  ck_assert_refused(74, "$tetlap weights ./nope.safetensors", "cannot be opened");
+  ck_assert_refused(0, "$tetlap weights tpn-bf16", "tpn.safetensors");
+}
+END_TEST
+
+START_TEST(an_option_without_effect_is_a_usage_error) {
+  ck_assert_refused(64, "$tetlap eval clip a.h5 --mix none=1", "--mix changes a law");
+  ck_assert_refused(64, "$tetlap eval clip a.h5 --volume natural", "--volume changes a law");
+  ck_assert_refused(64, "$tetlap eval clip a.h5 --seed 1", "--seed is of the pairs of a --law");
+  ck_assert_refused(64, "$tetlap eval clip --paths 2 --count 1", "--count is of the pairs");
+  ck_assert_refused(64, "$tetlap poses $examples/02_two_blocks.yaml --poses p.txt --seed 2",
+                    "--seed is of random");
+  ck_assert_refused(64, "$tetlap poses $examples/02_two_blocks.yaml --poses p.txt --turn 1",
+                    "--turn is of random");
+  ck_assert_refused(64, "mkdir run; $tetlap plot run -o x.svg --quantity V",
+                    "--quantity chooses from a frontier");
+  ck_assert_refused(64, "$tetlap train $examples/train/smoke.yaml --resume -o empty",
+                    "there is nothing to resume");
+}
+END_TEST
+
+// A short run of a scene in the folder, whose block touches nothing.
+static void run_drop(void) {
+  ck_assert_refused(0,
+                    "cp $examples/01_drop.yaml scene.yaml && "
+                    "$tetlap run scene.yaml -q -o run -s time.end=0.01 -s output.frames=1",
+                    "");
+}
+
+START_TEST(what_a_run_reads_or_wrote_is_not_written_over) {
+  run_drop();
+  ck_assert_refused(64, "$tetlap run scene.yaml -q -o run --capture ./scene.yaml", "is the scene itself");
+  static const char *const files[] = {"run/history.csv", "run/summary.json", "run/frames.pvd", "scene.yaml"};
+  for (int i = 0; i < 4; i++) {
+    char line[200];
+    snprintf(line, sizeof line, "cp %s kept; ln -sf %s link; $tetlap report run -o link", files[i], files[i]);
+    ck_assert_refused(64, line, "would replace a file that it is made from");
+    snprintf(line, sizeof line, "cmp kept %s", files[i]);
+    ck_assert_refused(0, line, "");
+  }
+  ck_assert_refused(0, "$tetlap report run -q -o run/r.html && $tetlap report run -q -o run/r.html", "");
+}
+END_TEST
+
+START_TEST(a_capture_of_no_pairs_is_told) {
+  run_drop();
+  ck_assert_refused(0, "$tetlap run scene.yaml -o run -s time.end=0.01 --capture a.h5",
+                    "no two elements overlapped");
+  ck_assert_int_ne(access("a.h5", F_OK), 0);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("refusals");
   tcase_add_checked_fixture(cases, enter_folder, leave_folder);
   tcase_add_test(cases, a_data_set_that_finds_no_room_is_one_message_with_the_system_s_reason);
+  tcase_add_test(cases, a_name_that_is_none_is_a_usage_error);
+  tcase_add_test(cases, an_option_without_effect_is_a_usage_error);
+  tcase_add_test(cases, what_a_run_reads_or_wrote_is_not_written_over);
+  tcase_add_test(cases, a_capture_of_no_pairs_is_told);
   return suite_run("refusals", cases, 120);
 }

@@ -2,6 +2,7 @@
 #include "app/command/output/report.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -117,6 +118,52 @@ static Status collect(AppReport *report, const Options *options) {
   return STATUS_OK;
 }
 
+// The folder of a file as the system has it; "": there is none.
+static void find_folder(const char *path, char folder[PATH_MAX]) {
+  if (!realpath(path, folder)) {
+    folder[0] = 0;
+    return;
+  }
+  char *slash = strrchr(folder, '/');
+  if (slash) slash[slash == folder] = 0;
+}
+
+static bool is_page(const char *path) {
+  const char *dot = strrchr(path, '.');
+  return dot && (strcmp(dot, ".html") == 0 || strcmp(dot, ".htm") == 0);
+}
+
+// Whether a page there would take the place of what a run wrote, or of its scene.
+static bool is_of_run(const AppReportRun *run, const char *output) {
+  char folder[PATH_MAX];
+  struct stat info;
+  if (stat(output, &info) != 0 || !S_ISREG(info.st_mode)) return false;
+  const char *scene = record_find_text(run->summary, "scene");
+  if (scene && file_is_same(scene, output)) return true;
+  find_folder(output, folder);
+  return !is_page(output) && folder[0] && file_is_same(folder, run->directory);
+}
+
+static bool is_input(const Options *options, const char *output) {
+  bool is_one = options->pareto && file_is_same(options->pareto, output);
+  for (int k = 0; k < options->bench_count; k++) is_one = is_one || file_is_same(options->benches[k], output);
+  for (int k = 0; k < options->stress_count; k++)
+    is_one = is_one || file_is_same(options->stresses[k], output);
+  return is_one;
+}
+
+static Status check_output(const AppReport *report, const Options *options) {
+  if (!options->output) return STATUS_OK;
+  bool is_taken = is_input(options, options->output);
+  for (int r = 0; r < report->run_count; r++)
+    is_taken = is_taken || is_of_run(&report->runs[r], options->output);
+  if (!is_taken) return STATUS_OK;
+  return status_fail(STATUS_USAGE,
+                     "-o %s: the page would replace a file that it is made from; name another, as in "
+                     "-o report.html",
+                     options->output);
+}
+
 static Status write_page(AppReport *report, const Options *options) {
   char *path = options->output            ? memory_copy(options->output, strlen(options->output) + 1, 1)
                : options->directory_count ? file_join(options->directories[0], "report.html")
@@ -148,6 +195,7 @@ static int run_command(int argument_count, char **arguments) {
   if (options.is_quiet) log_set_level(LOG_ERROR);
   AppReport report = {0};
   Status status = collect(&report, &options);
+  if (!status) status = check_output(&report, &options);
   if (!status) status = write_page(&report, &options);
   app_report_destroy(&report);
   return app_cli_command_end(status);

@@ -192,7 +192,9 @@ static Status run_captured(const AppRunOptions *options, const AppJob *job, cons
   log_progress_end();
   app_beacon_end(&observer.beacon);
   if (status) log_error("%s", status_message());
+  const char *empty = options->capture && datagen_capture_count(&capture) == 0 ? options->capture : NULL;
   Status kept = options->capture ? datagen_capture_commit(&capture) : STATUS_OK;
+  if (empty) log_warning("%s: not written, since no two elements overlapped", empty);
   if (kept) log_error("%s", status_message());
   return status ? status : kept;
 }
@@ -253,6 +255,10 @@ static const struct argp argp = {.options = option_table,
                                  .children = children};
 
 static Status check_capture(const AppRunOptions *options) {
+  if (options->capture && file_is_same(options->capture, options->job.scene_path))
+    return status_fail(STATUS_USAGE,
+                       "--capture %s is the scene itself; name another file, as in --capture pairs.h5",
+                       options->capture);
   if (!options->capture || ranks()->count == 1) return STATUS_OK;
   return status_fail(STATUS_USAGE,
                      "--capture writes from one process, and there are %d: leave it out, or --ranks",
