@@ -209,16 +209,16 @@ static Status find_least_power(FemRunState *run, double time, double *power) {
   return status;
 }
 
-// The audit of the step; `*is_refused`: it gains energy, whatever it dissipates.
+// The audit of the step; `*is_refused`: it gains energy, for certain.
 static Status judge_energy(FemRunState *run, double time, const FemEnergy *energy, FemAudit *next,
                            bool *is_refused) {
   const FemAuditBounds *bounds = &run->result->energy_bounds;
   *next = fem_audit_next(&run->audit, time, energy);
-  *is_refused = fem_audit_is_refused(bounds, &run->audit, next);
-  if (!*is_refused || !(energy->dissipated_power > 0)) return STATUS_OK;
-  double power;
-  TRY(find_least_power(run, time, &power));
-  *next = fem_audit_next_with(&run->audit, time, energy, power);
+  run->least_power = INFINITY;
+  if (fem_audit_is_doubtful(bounds, &run->audit, next) && energy->dissipated_power > 0) {
+    TRY(find_least_power(run, time, &run->least_power));
+    *next = fem_audit_next_within(&run->audit, time, energy, run->least_power);
+  }
   *is_refused = fem_audit_is_refused(bounds, &run->audit, next);
   return STATUS_OK;
 }
@@ -302,6 +302,7 @@ static Status sleep_on(FemRunState *run) {
   FemMeasures measures;
   TRY(look_ahead(run, &time, &measures));
   FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
+  run->least_power = INFINITY;
   TRY(fem_run_frames_take_row(run, time, &measures, &next));
   TRY(fem_run_frames_write_until(run, time));
   TRY(fem_recorder_append_step(&run->recorder));
@@ -398,6 +399,7 @@ static Status begin_part(FemRunState *run) {
   run->next_frame = from->next_frame;
   run->next_step = from->step;
   run->retries = 0;
+  run->least_power = INFINITY;
   TRY(fem_formulas_check(run->given, run->time));
   TRY(number(run));
   TRY(is_first ? fem_system_create(&run->system, run->model)

@@ -49,7 +49,8 @@ static void keep_status(FemRunState *run) {
 
 Status fem_run_frames_write(FemRunState *run, double time, const FemMeasures *measures) {
   FemIntegratorStats stats = fem_run_state_stats(run);
-  FemAudit audit = time > run->audit.time ? fem_audit_next(&run->audit, time, &measures->energy) : run->audit;
+  FemAudit audit = run->audit;
+  if (time > audit.time) audit = fem_audit_next_within(&audit, time, &measures->energy, run->least_power);
   FemMeasures shown = *measures;
   shown.peak_force = run->result->peak_since_row;
   run->result->peak_since_row = 0;

@@ -255,6 +255,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_number(summary, "energy_dissipated_J", result->audit.dissipated);
   if (result->is_static) record_number(summary, "energy_open_J", result->audit.open);
   if (!result->is_static) {
+    record_number(summary, "energy_uncertain_J", result->audit.uncertain);
     record_number(summary, "momentum_gap", result->momentum_gap);
     record_number(summary, "momentum_gap_allowed", MOMENTUM_ALLOWED);
   }

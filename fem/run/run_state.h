@@ -31,6 +31,7 @@ typedef struct FemRunState {
   double *middle;        // displacements halfway, scratch   (unknown_count)
   int next_frame;
   int retries;              // in a row
+  double least_power;       // of the step under judgement, dissipated at least; INFINITY: no doubt [W]
   double next_step;         // to be tried; 0: the integrator's choice [s]
   FemStall stall;           // over all stages
   double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]

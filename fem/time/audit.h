@@ -4,6 +4,8 @@
 // is constant in exact mechanics and falls by the integrator's own damping; a rise is an error. Powers are
 // integrated by the trapezoidal rule over accepted steps; a dissipated power that falls to less than half in
 // a step by a mean that goes over to the logarithmic one.
+// In steps of order 1 the ends of a step may tell more than damping dissipates in it. Where a step seems to
+// gain energy, what it dissipates at least is found from its middle, and gains are told of A with that.
 //
 // Two bounds, as shares of the scene's energy. What one step may gain: more is taken back. What a run may
 // gain in all: more is trouble (fem/output/trouble.h). Where nothing jumps both are far beyond what the error
@@ -30,9 +32,10 @@ typedef struct FemAudit {
   double driven_work; // of driven vertices and obstacles [J]
   double work;        // driven_work and the loads' [J]
   double total;       // A [J]
+  double uncertain;   // of `damped`, what steps that seemed to gain energy may not have dissipated [J]
   double first;       // A at the start [J]
-  double lowest;      // smallest A so far [J]
-  double gain;        // largest rise of A above an earlier value, less what is open [J]
+  double lowest;      // smallest A − uncertain so far [J]
+  double gain;        // largest rise of A − uncertain above an earlier value, less what is open [J]
   double scale;       // the scene's energy: largest of its parts so far, gravity from its start [J]
   double gravity_at_start;
   double dissipated_power, driven_power; // at `time` [W]
@@ -53,13 +56,17 @@ void fem_audit_load_step(FemAudit *audit, double step, double begin, double end,
 
 // The audit as it would be after accepting this state.
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy);
-// With a mean of the step's dissipated power of `most` at most [W].
-FemAudit fem_audit_next_with(const FemAudit *audit, double time, const FemEnergy *energy, double most);
+// The same where the step's mean of the dissipated power is known to be `least` at least [W]: what `next` has
+// beyond that is uncertain.
+FemAudit fem_audit_next_within(const FemAudit *audit, double time, const FemEnergy *energy, double least);
 
 FemAuditBounds fem_audit_bounds(bool has_contact, double least);
 
-// How far A stands above an earlier value, as a share of the scene's energy.
+// How far A stands above an earlier value, for certain, as a share of the scene's energy.
 double fem_audit_rise(const FemAuditBounds *bounds, const FemAudit *audit);
+
+// Whether the step between the two seems to gain more energy than rounding: `next_within` may tell less.
+bool fem_audit_is_doubtful(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after);
 
 // Whether the step between the two must be taken back.
 bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after);

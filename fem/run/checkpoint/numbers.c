@@ -37,6 +37,7 @@ static const FemCheckpointNumber numbers[] = {
     AUDIT(driven_work, "J"),
     AUDIT(work, "J"),
     AUDIT(total, "J"),
+    AUDIT(uncertain, "J"),
     AUDIT(first, "J"),
     AUDIT(lowest, "J"),
     AUDIT(gain, "J"),
@@ -124,7 +125,7 @@ static const FemCheckpointNumber numbers[] = {
 #undef AT
 
 // Whoever adds a number to one of these adds it to the list above.
-static_assert(sizeof(FemAudit) == 15 * sizeof(double), "numbers[] lists every number of FemAudit");
+static_assert(sizeof(FemAudit) == 16 * sizeof(double), "numbers[] lists every number of FemAudit");
 static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "numbers[] lists every phase");
 static_assert(sizeof(FemIntegratorStats) == 11 * sizeof(double), "numbers[] lists the integrator's counts");
 static_assert(sizeof(FemSolverStats) == 10 * sizeof(double), "numbers[] lists the solver's counts");
