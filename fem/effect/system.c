@@ -10,6 +10,7 @@
 #include "base/ranks.h"
 #include "base/vec3.h"
 #include "fem/model/drivers.h"
+#include "fem/model/floating.h"
 #include "fem/model/formulas.h"
 #include "fem/scene/drive.h"
 #include "fem/sparse/solver.h"
@@ -353,6 +354,18 @@ static double kinetic_energy(const FemSystem *system) {
   return sum;
 }
 
+// Of the centre of mass.
+static double common_kinetic(const FemSystem *system) {
+  const FemModel *model = system->model;
+  const double mass = fem_model_mass(model);
+  double p[3] = {0};
+  for (int i = 0; i < model->unknown_count; i++) {
+    int dof = model->dof_of_unknown[i];
+    p[dof % 3] += model->mass[dof / 3] * system->velocities[dof];
+  }
+  return mass > 0 ? 0.5 * vec3_dot(vec3_at(p), vec3_at(p)) / mass : 0;
+}
+
 // Whoever moves a prescribed coordinate gives it minus the force that acts on it.
 static double driven_power(const FemSystem *system) {
   const FemModel *model = system->model;
@@ -403,8 +416,12 @@ Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
     energy->driven_power = driven_power(system);
   }
   FemState state = state_of(system, time);
-  return system->model->share ? sum_energies(system, &state, energy)
-                              : add_energies(system, &state, PART_ALL, energy);
+  TRY(system->model->share ? sum_energies(system, &state, energy)
+                           : add_energies(system, &state, PART_ALL, energy));
+  if (!fem_model_floats(system->model)) return STATUS_OK;
+  energy->common_kinetic = common_kinetic(system);
+  energy->common_gravity = energy->gravity;
+  return STATUS_OK;
 }
 
 static Status add_damping(FemSystem *system, const FemState *state, FemEnergy *energy) {

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/evaluation.h"
+#include "fem/model/tolerance.h"
 
 static_assert(sizeof(FemAccuracyPair) == FEM_ACCURACY_KEPT * sizeof(double), "numbers only");
 

@@ -8,6 +8,8 @@
 #include "base/vec3.h"
 #include "contact/shape/shape.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/model/floating.h"
+#include "fem/model/tolerance.h"
 
 // A body's balance may be out by the first share of all impulses of a run. Beyond it a step adds no more than
 // half of what is left to the second; the third is always allowed.
@@ -195,14 +197,29 @@ static double weight_of(const FemMomentum *momentum, int body) {
 
 // What another may stop or hand over.
 typedef struct Motion {
+  Vec3 common;     // to which all is relative [m/s]
   double momentum; // Σ |p| of all bodies [kg m/s]
   double speed;    // of the fastest [m/s]
 } Motion;
 
+// The velocity of the centre of mass at the last accepted state, where nothing else is there to tell it.
+static Vec3 common_of(const FemMomentum *momentum) {
+  const FemModel *model = momentum->system->model;
+  Vec3 p = {0, 0, 0};
+  if (!fem_model_floats(model)) return p;
+  for (int b = 0; b < momentum->body_count; b++) p = vec3_add(p, vec3_at(momentum->now[b].p));
+  return vec3_scale(1 / fem_model_mass(model), p);
+}
+
+static Vec3 momentum_of(const FemMomentum *momentum, const Motion *motion, int body) {
+  double mass = momentum->system->model->bodies[body].mass;
+  return vec3_sub(vec3_at(momentum->now[body].p), vec3_scale(mass, motion->common));
+}
+
 static Motion motion_of(const FemMomentum *momentum) {
-  Motion motion = {0, 0};
+  Motion motion = {.common = common_of(momentum)};
   for (int b = 0; b < momentum->body_count; b++) {
-    double p = vec3_length(vec3_at(momentum->now[b].p));
+    double p = vec3_length(momentum_of(momentum, &motion, b));
     motion.momentum += p;
     motion.speed = fmax(motion.speed, p / momentum->system->model->bodies[b].mass);
   }
@@ -215,7 +232,7 @@ static Motion motion_of(const FemMomentum *momentum) {
 static double expected_of(const FemMomentum *momentum, const FemMomentumBody *body, int number, double left,
                           const Motion *motion) {
   const FemModel *model = momentum->system->model;
-  Vec3 p = vec3_at(momentum->now[number].p), force = vec3_at(body->force);
+  Vec3 p = momentum_of(momentum, motion, number), force = vec3_at(body->force);
   double mass = model->bodies[number].mass, size = vec3_length(force),
          braked = size > 0 ? fmax(-vec3_dot(p, force) / size, 0) : 0;
   double acting = body->size + weight_of(momentum, number) * fmax(left, 0) + braked,

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/vec3.h"
+#include "fem/model/floating.h"
 
 // How far down the lowest vertex of a body lies.
 static double lowest_of(const FemModel *model, const FemModelBody *body, Vec3 down) {
@@ -43,7 +44,7 @@ typedef struct Gravity {
 static Gravity gravity_of(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
   Gravity gravity = {.bottom = -INFINITY};
-  if (!scene->has_gravity || scene->is_static) return gravity;
+  if (!scene->has_gravity || scene->is_static || fem_model_floats(model)) return gravity;
   gravity.g = vec3_length(vec3_at(scene->gravity));
   if (!(gravity.g > 0)) return gravity;
   gravity.down = vec3_scale(1 / gravity.g, vec3_at(scene->gravity));
@@ -68,9 +69,10 @@ static double fall_of(const FemModel *model, const FemModelBody *body, const Gra
 }
 
 static double energy_at_start(const FemModel *model, const FemModelBody *body) {
+  const Vec3 common = fem_model_floats(model) ? fem_model_common_start(model) : (Vec3){0, 0, 0};
   double energy = 0;
   for (int v = body->vertex_begin; v < body->vertex_end; v++) {
-    Vec3 velocity = vec3_at(model->initial_velocity + 3 * (size_t)v);
+    Vec3 velocity = vec3_sub(vec3_at(model->initial_velocity + 3 * (size_t)v), common);
     energy += 0.5 * model->mass[v] * vec3_dot(velocity, velocity);
   }
   return energy;

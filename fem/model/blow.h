@@ -4,7 +4,8 @@
 //
 // A body falls as far as the lowest point of any other body or obstacle lies below its own: to a half-space
 // along gravity, of a ball, a box or a cylinder to its centre; not farther than the time until the end lets
-// it, and not at all while some of its coordinates are prescribed. That is an upper bound: what others stop
+// it, and not at all while some of its coordinates are prescribed, or while all bodies float: then energies
+// are relative to the centre of mass. That is an upper bound: what others stop
 // on the way has less.
 #ifndef TETLAP_FEM_MODEL_BLOW_H
 #define TETLAP_FEM_MODEL_BLOW_H

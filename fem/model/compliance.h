@@ -2,16 +2,16 @@
 // How stiff contact is: κ of each two that can meet, as the scene says or as chosen from the bodies.
 //
 // For the potential `field` the choice does not depend on the mesh. Two that press each other with p give way
-// by p/(2c) where they touch and by about p L (1/E_A' + 1/E_B') in themselves, L the height of the smaller one:
-// no patch is larger than that, and what lies farther away feels little of it. So
+// by p/(2c) where they touch and by about p L (1/E_A' + 1/E_B') in themselves, L the height of the smaller
+// one: no patch is larger than that, and what lies farther away feels little of it. So
 //
 //   c = 25 / (L (1/E_A' + 1/E_B')),     E' = E/(1 − 3.5 ν⁴)
 //
-// keeps the first at 2 % of the second: 12.5 E'/L for two that are alike. E' is a fit of what cubes resist with
-// that are held on the face that is pressed. Obstacles do not give way, and a shape without elements presses
-// with c d in place of 2 c d: against one, c = 50 E'/L. The height of a body of
-// any shape is the smaller of √12 times its least radius of inertia, which is the least edge of a box, and
-// six times its volume over its surface, which is the edge of a cube and follows the wall of what is hollow.
+// keeps the first at 2 % of the second: 12.5 E'/L for two that are alike. E' is a fit of what cubes resist
+// with that are held on the face that is pressed. Obstacles do not give way, and a shape without elements
+// presses with c d in place of 2 c d: against one, c = 50 E'/L. The height of a body of any shape is the
+// smaller of √12 times its least radius of inertia, which is the least edge of a box, and six times its
+// volume over its surface, which is the edge of a cube and follows the wall of what is hollow.
 //
 // A blow may squeeze bodies that are far from it in a scene, too, and by as much as their height. Two that
 // store the hardest blow W of the scene (blow.h) between them press each other with p = √(2 W / (V_A/E_A +

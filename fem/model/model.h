@@ -73,33 +73,18 @@ const char *fem_model_body_name(const FemModel *model, int vertex);
 // over the smallest mean element volume, which gives a comparable pressure.
 double fem_model_contact_stiffness(const FemModel *model);
 
-// Error per step of a position [m]: the scene's tolerance times the smallest body's diagonal, 0.03 of that in
-// motion without contact.
-double fem_model_position_tolerance(const FemModel *model);
+// √(E/ρ), the speed of a stretched bar's waves [m/s].
+double fem_model_wave(const FemMaterial *material);
 
-// Error per step of a velocity [m/s]: the scene's, or its tolerance times 0.03 of the slowest body's wave
-// speed √(E/ρ), all of it where a body rubs on itself, or where that is less times 0.3 of the fastest speed
-// at t = 0 or √(g L), L the smallest body's diagonal; with friction by the law `velocity` at most 5 ε;
-// without contact 33 times as much.
-double fem_model_velocity_tolerance(const FemModel *model);
-
-// Slowest and fastest √(E/ρ) of the scene's bodies [m/s]: a stretched bar's waves.
+// Slowest and fastest √(E/ρ) of the scene's bodies [m/s].
 double fem_model_slowest_wave(const FemModel *model);
 double fem_model_fastest_wave(const FemModel *model);
 
 // E V ε², the energy of a strain in all bodies, twice if it were uniaxial [J].
 double fem_model_strain_energy(const FemModel *model, double strain);
 
-// Share of the fastest body's present speed that a velocity may err by beside that, where there is contact
-// (fem/time/error_weights.h); 0 where the scene says how far, or friction by the law `velocity` needs it.
-double fem_model_speed_share(const FemModel *model);
-
 // Every body's law is linear, without fibres.
 bool fem_model_has_linear_materials(const FemModel *model);
-
-// ε of friction [m/s]: the scene's, or such that nothing creeps by more than a thousandth of the smallest
-// body in the whole run.
-double fem_model_slip_speed(const FemModel *model);
 
 // What is constant in a tetrahedron, from its corners at rest: cheaper to find than to keep.
 FemElement fem_model_element(const FemModel *model, int tet);
@@ -108,11 +93,6 @@ FemElement fem_model_element(const FemModel *model, int tet);
 double fem_model_det(const FemModel *model, int tet, const double *positions);
 // Cauchy stress [Pa] of a tetrahedron of a body by its law alone.
 void fem_model_stress(const FemModel *model, int tet, const double *positions, double stress[6]);
-
-// What counts as rest (fem/effect/contact/rest.h) [m/s], [m/s²], [s]: the scene's, or chosen.
-double fem_model_rest_speed(const FemModel *model);
-double fem_model_rest_acceleration(const FemModel *model);
-double fem_model_rest_time(const FemModel *model);
 
 // The memory that a run of this model will take, roughly, without its linear solver [bytes].
 double fem_model_memory_estimate(const FemModel *model);

@@ -13,6 +13,7 @@
 #include "fem/effect/contact/rest.h"
 #include "fem/model/formulas.h"
 #include "fem/model/numbering.h"
+#include "fem/model/tolerance.h"
 #include "fem/run/check/choice.h"
 #include "fem/run/check/start.h"
 #include "fem/run/checkpoint/restart.h"

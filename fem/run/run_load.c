@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "fem/model/tolerance.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_watch.h"
 

@@ -8,8 +8,9 @@ static double stored(const FemEnergy *energy) {
 }
 
 static double largest_part(const FemAudit *audit, const FemEnergy *energy) {
-  double moving = fmax(fabs(energy->kinetic), fabs(energy->elastic));
-  double held = fmax(fabs(energy->contact), fabs(energy->gravity - audit->gravity_at_start));
+  double moving = fmax(fabs(energy->kinetic - energy->common_kinetic), fabs(energy->elastic));
+  double fallen = energy->gravity - energy->common_gravity - audit->gravity_at_start;
+  double held = fmax(fabs(energy->contact), fabs(fallen));
   return fmax(fmax(moving, held), fmax(fabs(audit->work), audit->dissipated));
 }
 
@@ -21,7 +22,7 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
                       .first = total,
                       .lowest = total,
                       .scale = floor,
-                      .gravity_at_start = energy->gravity,
+                      .gravity_at_start = energy->gravity - energy->common_gravity,
                       .dissipated_power = energy->dissipated_power,
                       .driven_power = energy->driven_power};
   audit->scale = fmax(floor, largest_part(audit, energy));

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/ranks.h"
+#include "fem/model/floating.h"
 
 static int dof_of(const FemModel *model, const FemPart *part, int i) {
   return model->dof_of_unknown[fem_part_unknown(part, i)];
@@ -15,12 +16,26 @@ static void find_end(const FemModel *model, const FemPart *part, int body, int b
   while (*end < part->count && dof_of(model, part, *end) / 3 < model->bodies[body].vertex_end) (*end)++;
 }
 
-// √(Σ m v² / Σ m) over unknowns of a body; 0 without any, INFINITY where a velocity is no number.
-static double speed_of(const FemModel *model, const FemPart *part, const double *v, int begin, int end) {
-  double sums[2] = {0}; // Σ m v², Σ m
+Vec3 fem_error_weights_common(const FemModel *model, const FemPart *part, const double *v) {
+  double momentum[3] = {0};
+  if (vec3_length(fem_model_common_part(model, (Vec3){1, 1, 1})) == 0) return (Vec3){0, 0, 0};
+  for (int i = 0; i < part->count; i++) {
+    int dof = dof_of(model, part, i);
+    momentum[dof % 3] += model->mass[dof / 3] * v[i];
+  }
+  ranks()->sum(momentum, 3);
+  return fem_model_common_part(model, vec3_scale(1 / fem_model_mass(model), vec3_at(momentum)));
+}
+
+// √(Σ m (v − v̂)² / Σ m) over unknowns of a body, v̂ the common velocity; 0 without any, INFINITY where a
+// velocity is no number.
+static double speed_of(const FemModel *model, const FemPart *part, const double *v, const double common[3],
+                       int begin, int end) {
+  double sums[2] = {0}; // Σ m (v − v̂)², Σ m
   for (int i = begin; i < end; i++) {
-    double m = model->mass[dof_of(model, part, i) / 3];
-    sums[0] += m * v[i] * v[i];
+    int dof = dof_of(model, part, i);
+    double m = model->mass[dof / 3], relative = v[i] - common[dof % 3];
+    sums[0] += m * relative * relative;
     sums[1] += m;
   }
   ranks()->sum(sums, 2);
@@ -30,10 +45,11 @@ static double speed_of(const FemModel *model, const FemPart *part, const double 
 }
 
 static double fastest(const FemModel *model, const FemPart *part, const double *v) {
-  double speed = 0;
+  double speed = 0, common[3];
+  vec3_store(common, fem_error_weights_common(model, part, v));
   for (int b = 0, begin = 0, end; b < model->body_count; b++, begin = end) {
     find_end(model, part, b, begin, &end);
-    speed = fmax(speed, speed_of(model, part, v, begin, end));
+    speed = fmax(speed, speed_of(model, part, v, common, begin, end));
   }
   return speed;
 }

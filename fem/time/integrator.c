@@ -271,15 +271,33 @@ static Status find_derivatives(FemIntegrator *integrator, double time) {
 // tolerances where that is shorter (SUNDIALS, IDASolve).
 static const double START_SHARE = 1e-3, START_CHANGE = 0.5;
 
-// The first step of a start that is left to IDA; 0: IDA's own will do. Where something is driven from rest
+// ‖ẏ‖ in the norm of the error test, without the velocity that nothing can notice.
+static double rate_of_change(FemIntegrator *integrator, bool *has_common) {
+  const FemModel *model = integrator->system->model;
+  N_Vector rates = integrator->interpolated;
+  double common[3];
+  vec3_store(common,
+             fem_error_weights_common(model, &integrator->part, values_of(integrator->y) + integrator->n));
+  *has_common = vec3_length(vec3_at(common)) > 0;
+  N_VScale(1, integrator->y_dot, rates);
+  for (int i = 0; i < integrator->n && *has_common; i++)
+    values_of(rates)[i] -= common[model->dof_of_unknown[fem_part_unknown(&integrator->part, i)] % 3];
+  find_weights(integrator->y, integrator->weights, integrator);
+  return N_VWrmsNorm(rates, integrator->weights);
+}
+
+// The first step of a start that is left to IDA; 0: IDA's own will do, unless it would go by a velocity that
+// nothing can notice. Where something is driven from rest
 // with a jump of its speed, accelerations are large for a time in which nothing moves: they say nothing of
 // how long a step may be, and the error test does.
 static double start_step(FemIntegrator *integrator, double time) {
-  double least = fmin(integrator->def.least_start, START_SHARE * (integrator->def.end - time));
-  if (!(least > 0)) return 0;
-  find_weights(integrator->y, integrator->weights, integrator);
-  double rate = N_VWrmsNorm(integrator->y_dot, integrator->weights);
-  return rate * least > START_CHANGE ? least : 0;
+  bool has_common;
+  const double longest = START_SHARE * (integrator->def.end - time),
+               least = fmin(integrator->def.least_start, longest),
+               rate = rate_of_change(integrator, &has_common);
+  if (least > 0 && rate * least > START_CHANGE) return least;
+  if (!has_common) return 0;
+  return rate * longest > START_CHANGE ? START_CHANGE / rate : longest;
 }
 
 Status fem_integrator_restart(FemIntegrator *integrator, double time, const double *u, const double *v,

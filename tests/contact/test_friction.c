@@ -10,6 +10,7 @@
 
 #include "base/vec3.h"
 #include "contact/friction/friction.h"
+#include "fem/model/tolerance.h"
 #include "fem/output/vtk/vtu_read.h"
 
 static const double MU = 0.4, SLIP_SPEED = 1e-3;

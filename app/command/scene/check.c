@@ -15,6 +15,7 @@
 #include "fem/measure/thickness.h"
 #include "fem/model/compliance.h"
 #include "fem/model/division.h"
+#include "fem/model/tolerance.h"
 #include "fem/run/check/choice.h"
 #include "fem/run/check/start.h"
 #include "fem/sparse/solver.h"

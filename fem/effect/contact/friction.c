@@ -8,6 +8,7 @@
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/system.h"
 #include "fem/model/compliance.h"
+#include "fem/model/tolerance.h"
 
 typedef struct Friction {
   const FemModel *model;  // borrowed

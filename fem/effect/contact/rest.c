@@ -8,6 +8,7 @@
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/system.h"
+#include "fem/model/tolerance.h"
 #include "fem/scene/drive.h"
 
 typedef struct Rest {

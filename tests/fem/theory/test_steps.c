@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "fem/model/tolerance.h"
 #include "fem/time/error_weights.h"
 
 // Of a stack that falls and comes to rest.
