@@ -30,8 +30,8 @@ typedef struct FemEnergy {
   double applied_work;     // of loads since the start [J]
   double plastic_work;     // dissipated by plasticity since the start [J]
   double friction_work;    // dissipated by friction with a history since the start [J]
-  double common_kinetic;   // of `kinetic`, the centre of mass's where bodies float (fem/model/floating.h)
-  double common_gravity;   // likewise: all of `gravity`, or nothing
+  double common_kinetic;   // of `kinetic`, what nothing can notice (fem/model/floating.h)
+  double common_gravity;   // likewise: all of `gravity` where bodies float, else nothing
   double turned_power;     // of friction that pushes what slips along, as after a turn within a step [W]
 } FemEnergy;
 

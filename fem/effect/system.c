@@ -354,7 +354,7 @@ static double kinetic_energy(const FemSystem *system) {
   return sum;
 }
 
-// Of the centre of mass.
+// Of the motion that nothing can notice.
 static double common_kinetic(const FemSystem *system) {
   const FemModel *model = system->model;
   const double mass = fem_model_mass(model);
@@ -363,7 +363,8 @@ static double common_kinetic(const FemSystem *system) {
     int dof = model->dof_of_unknown[i];
     p[dof % 3] += model->mass[dof / 3] * system->velocities[dof];
   }
-  return mass > 0 ? 0.5 * vec3_dot(vec3_at(p), vec3_at(p)) / mass : 0;
+  Vec3 common = fem_model_common_part(model, vec3_scale(1 / mass, vec3_at(p)));
+  return 0.5 * mass * vec3_dot(common, common);
 }
 
 // Whoever moves a prescribed coordinate gives it minus the force that acts on it.
@@ -418,9 +419,8 @@ Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
   FemState state = state_of(system, time);
   TRY(system->model->share ? sum_energies(system, &state, energy)
                            : add_energies(system, &state, PART_ALL, energy));
-  if (!fem_model_floats(system->model)) return STATUS_OK;
   energy->common_kinetic = common_kinetic(system);
-  energy->common_gravity = energy->gravity;
+  if (fem_model_floats(system->model)) energy->common_gravity = energy->gravity;
   return STATUS_OK;
 }
 

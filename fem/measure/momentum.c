@@ -202,13 +202,12 @@ typedef struct Motion {
   double speed;    // of the fastest [m/s]
 } Motion;
 
-// The velocity of the centre of mass at the last accepted state, where nothing else is there to tell it.
+// The velocity that nothing can notice, of the last accepted state.
 static Vec3 common_of(const FemMomentum *momentum) {
   const FemModel *model = momentum->system->model;
   Vec3 p = {0, 0, 0};
-  if (!fem_model_floats(model)) return p;
   for (int b = 0; b < momentum->body_count; b++) p = vec3_add(p, vec3_at(momentum->now[b].p));
-  return vec3_scale(1 / fem_model_mass(model), p);
+  return fem_model_common_part(model, vec3_scale(1 / fem_model_mass(model), p));
 }
 
 static Vec3 momentum_of(const FemMomentum *momentum, const Motion *motion, int body) {

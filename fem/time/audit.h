@@ -36,8 +36,8 @@ typedef struct FemAudit {
   double first;       // A at the start [J]
   double lowest;      // smallest A − uncertain so far [J]
   double gain;        // largest rise of A − uncertain above an earlier value, less what is open [J]
-  double scale;       // the scene's energy: largest of its parts so far, gravity from its start; where bodies
-                      // float without what their centre of mass has [J]
+  double scale;       // the scene's energy: largest of its parts so far, gravity from its start, without what
+                      // nothing can notice (fem/model/floating.h) [J]
   double gravity_at_start;
   double dissipated_power, driven_power; // at `time` [W]
   double open;                           // of a static scene: fem_audit_load_step [J]
