@@ -7,6 +7,7 @@
 
 #include "base/vec3.h"
 #include "contact/search/bounds.h"
+#include "fem/model/tolerance.h"
 #include "overlap/model.h"
 
 static bool share_vertex(const int a[4], const int b[4]) {

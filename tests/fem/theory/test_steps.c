@@ -155,9 +155,9 @@ START_TEST(a_tolerance_that_the_scene_gives_is_all_there_is) {
 END_TEST
 
 // Two runs of a scene whose bodies share a velocity in the second: as many steps, and the same places but for
-// the way of it.
+// the way of it and what rounding makes of them, within a distance.
 static void compare_frames(const char *scene, const char *const *still, const char *const *moving,
-                           const double common[3]) {
+                           const double common[3], double distance) {
   SceneRun a, b;
   scene_run(&a, scene, still);
   scene_run(&b, scene, moving);
@@ -170,7 +170,7 @@ static void compare_frames(const char *scene, const char *const *still, const ch
   for (int v = 0; v < a.model.vertex_count; v++)
     for (int c = 0; c < 3; c++) {
       double way = common[c] * a.result.frame_times[last];
-      ck_assert_near(scene_position(&b, last, v)[c] - way, scene_position(&a, last, v)[c], 1e-6);
+      ck_assert_near(scene_position(&b, last, v)[c] - way, scene_position(&a, last, v)[c], distance);
     }
   scene_close(&a), scene_close(&b);
 }
@@ -179,13 +179,15 @@ START_TEST(a_common_velocity_of_bodies_that_float_changes_nothing) {
   const char *const still[] = {"bodies.left.velocity=[3, 0, 0]", NULL};
   const char *const moving[] = {"bodies.left.velocity=[13, 5, -3]", "bodies.right.velocity=[10, 5, -3]",
                                 NULL};
-  compare_frames("collision", still, moving, (const double[]){10, 5, -3});
+  compare_frames("collision", still, moving, (const double[]){10, 5, -3}, 1e-6);
 }
 END_TEST
 
+// The block rings undamped after its blow: rounding alone changes its steps, and its places by a thousandth
+// of its size.
 START_TEST(a_common_velocity_along_a_plane_changes_nothing) {
   const char *const moving[] = {"bodies.block.velocity=[10, -4, 0]", NULL};
-  compare_frames("drop", NULL, moving, (const double[]){10, -4, 0});
+  compare_frames("drop", NULL, moving, (const double[]){10, -4, 0}, 2e-4);
 }
 END_TEST
 
