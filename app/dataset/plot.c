@@ -78,9 +78,9 @@ static void write_script(FILE *stream, const AppDatasetSummary *summary, const c
   write_counts(stream, summary);
   for (int k = 0; k < DATAGEN_KIND_COUNT; k++)
     if (summary->kinds[k].with_volume) write_volumes(stream, k, &summary->kinds[k]);
-  fprintf(stream, "set terminal %s\nset output ", terminal_of(picture));
-  app_gnuplot_quote(stream, picture);
-  fprintf(stream, "\nset multiplot layout 1,%d title ", has_volumes(summary) ? 3 : 1);
+  fprintf(stream, "set terminal %s\n", terminal_of(picture));
+  app_gnuplot_output(stream, picture);
+  fprintf(stream, "set multiplot layout 1,%d title ", has_volumes(summary) ? 3 : 1);
   app_gnuplot_quote(stream, title);
   fputs(" noenhanced\nset style fill solid 0.5\nset boxwidth 0.8\nset grid y\nset xtics rotate by 35 right\n"
         "set ylabel 'pairs'\nset yrange [0:*]\nplot $counts using 0:2:xtic(1) with boxes notitle\n",
@@ -108,5 +108,5 @@ Status app_dataset_plot(DatagenDataset *dataset, const char *title, const char *
   TRY(file_begin(&writer, script));
   write_script(writer.stream, &summary, title, picture);
   TRY(file_commit(&writer));
-  return app_gnuplot_run(script);
+  return app_gnuplot_run(script, picture);
 }

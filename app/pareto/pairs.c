@@ -67,25 +67,38 @@ static void destroy(Bench *bench) {
   for (int q = 0; q < 2; q++) memory_free(bench->contestants[q]);
 }
 
+typedef struct Turn {
+  AppBenchContestant contestant;
+  const AppPareto *pareto;
+} Turn;
+
+static Status take_turn(void *self, int round) {
+  Turn *turn = self;
+  TRY(app_pareto_go_on(turn->pareto));
+  return app_bench_contestant_take_turn(&turn->contestant, round);
+}
+
 // Every model at both quantities takes its turn in the same rounds.
 static Status take_turns(Bench *bench) {
   const AppPareto *pareto = bench->pareto;
   size_t models = (size_t)pareto->model_count;
-  AppBenchContestant *all = memory_zeroed(2 * models, sizeof *all);
+  Turn *all = memory_zeroed(2 * models, sizeof *all);
   if (!all) return status_no_memory("the contestants");
   for (size_t c = 0; c < 2 * models; c++) {
     const OverlapModel *model = &pareto->models[c % models].overlap;
     int batch = app_bench_contestant_batch(model, false, pareto->common.threads, pareto->batch);
-    all[c] = (AppBenchContestant){.model = model,
-                                  .threads = pareto->common.threads,
-                                  .batch = {.pair_count = batch < bench->count ? batch : bench->count,
-                                            .pairs = bench->pairs,
-                                            .volume = bench->volume,
-                                            .gradient = c < models ? NULL : bench->gradient}};
+    all[c].pareto = pareto;
+    all[c].contestant =
+        (AppBenchContestant){.model = model,
+                             .threads = pareto->common.threads,
+                             .batch = {.pair_count = batch < bench->count ? batch : bench->count,
+                                       .pairs = bench->pairs,
+                                       .volume = bench->volume,
+                                       .gradient = c < models ? NULL : bench->gradient}};
   }
   Status status = app_bench_timer_take_turns(all, sizeof *all, 2 * pareto->model_count,
-                                             pareto->common.repeats, true, app_bench_contestant_take_turn);
-  for (int q = 0; q < 2; q++) memcpy(bench->contestants[q], all + (size_t)q * models, models * sizeof *all);
+                                             pareto->common.repeats, true, take_turn);
+  for (size_t c = 0; c < 2 * models; c++) bench->contestants[c / models][c % models] = all[c].contestant;
   memory_free(all);
   return status;
 }
@@ -260,7 +273,10 @@ static void add_comparisons(Bench *bench) {
 static Status measure(Bench *bench) {
   TRY(make(bench));
   TRY(take_turns(bench));
-  for (int m = 0; m < bench->pareto->model_count; m++) TRY(add_points(bench, m));
+  for (int m = 0; m < bench->pareto->model_count; m++) {
+    TRY(app_pareto_go_on(bench->pareto));
+    TRY(add_points(bench, m));
+  }
   TRY(measure_on_device(bench));
   add_comparisons(bench);
   return STATUS_OK;

@@ -92,6 +92,11 @@ Status app_pareto_create(AppPareto *pareto) {
   return pareto->models ? STATUS_OK : status_no_memory("the models");
 }
 
+Status app_pareto_go_on(const AppPareto *pareto) {
+  if (!pareto->stop || !*pareto->stop) return STATUS_OK;
+  return status_fail(STATUS_INTERRUPTED, "interrupted; nothing was written");
+}
+
 void app_pareto_destroy(AppPareto *pareto) {
   for (int m = 0; m < pareto->model_count; m++) overlap_model_destroy(&pareto->models[m].overlap);
   memory_free(pareto->models), memory_free(pareto->points);

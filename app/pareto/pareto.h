@@ -10,6 +10,8 @@
 #ifndef TETLAP_APP_PARETO_PARETO_H
 #define TETLAP_APP_PARETO_PARETO_H
 
+#include <signal.h>
+
 #include "app/bench/report.h"
 #include "app/evaluation/card.h"
 
@@ -64,8 +66,9 @@ typedef struct AppPareto {
   int scene_rounds;    // runs of a scene a model
   int audit_every; // steps in contact between configurations in which all models are held against the exact
                    // one
-  const char *device;     // pairs also on this one, as --device has it; NULL: none
-  AppParetoModel *models; // (model_count), owned
+  const volatile sig_atomic_t *stop; // not 0: measuring ends; NULL: it cannot be stopped
+  const char *device;                // pairs also on this one, as --device has it; NULL: none
+  AppParetoModel *models;            // (model_count), owned
   char device_names[APP_PARETO_MAX_MODELS][APP_PARETO_NAME + 16]; // of models on the device: NAME@DEVICE
   int model_count;
   AppParetoPoint *points; // (point_count), owned
@@ -75,6 +78,8 @@ typedef struct AppPareto {
 } AppPareto;
 
 Status app_pareto_create(AppPareto *pareto);
+// STATUS_INTERRUPTED where `stop` is set.
+Status app_pareto_go_on(const AppPareto *pareto);
 void app_pareto_destroy(AppPareto *pareto); // a zeroed one is accepted
 
 // By name or weights file. STATUS_IO: weights that are not there.

@@ -46,6 +46,7 @@ static Status audit_model(Bench *bench, int m, ContactSystem *contact, const Fem
 // All models in a configuration of the reference's run.
 static Status watch(void *self, const FemRunProgress *progress) {
   Bench *bench = self;
+  TRY(app_pareto_go_on(bench->pareto));
   void *effect = fem_system_effect(progress->system, &fem_effect_contact);
   if (!effect || progress->active_pairs == 0) return STATUS_OK;
   if (bench->step_in_contact++ % bench->pareto->audit_every != 0) return STATUS_OK;
@@ -62,6 +63,12 @@ static void agree_on_potential(const AppPareto *pareto, FemSceneDef *scene) {
       scene->contact.potential = CONTACT_POTENTIAL_NODAL;
 }
 
+static Status watch_signal(void *self, const FemRunProgress *progress) {
+  (void)progress;
+  const Bench *bench = self;
+  return app_pareto_go_on(bench->pareto);
+}
+
 static Status begin(Bench *bench, AppBenchTrial *trial, const char *overlap) {
   TRY(app_scene_overlap_read(bench->scene, bench->overrides, bench->override_count, overlap, &trial->scene));
   agree_on_potential(bench->pareto, &trial->scene);
@@ -70,6 +77,7 @@ static Status begin(Bench *bench, AppBenchTrial *trial, const char *overlap) {
                        "%s: has no contact, so overlap models cannot differ; add a 'contact' section",
                        bench->scene);
   trial->keeps_trajectory = trial->accepts_failure = true;
+  trial->watch = watch_signal, trial->watcher = bench;
   AppBenchOptions options = bench->pareto->common;
   options.repeats = bench->pareto->scene_rounds;
   return app_bench_trial_begin(trial, &options, 0);
@@ -77,10 +85,11 @@ static Status begin(Bench *bench, AppBenchTrial *trial, const char *overlap) {
 
 static Status run_reference(Bench *bench, const char *reference) {
   TRY(begin(bench, bench->reference, reference));
-  bench->reference->watch = watch, bench->reference->watcher = bench;
+  bench->reference->watch = watch;
   log_progress("%s: the reference's run, all models in its configurations", bench->scene);
   TRY(app_bench_trial_run(bench->reference, 0));
   log_progress_end();
+  TRY(app_pareto_go_on(bench->pareto));
   if (bench->reference->outcome != STATUS_OK)
     return status_fail(STATUS_SOLVER, "%s, the reference %s: %s", bench->scene, reference,
                        bench->reference->message);
@@ -93,7 +102,10 @@ static Status run_reference(Bench *bench, const char *reference) {
 // A model that a scene cannot use is a result as well.
 static Status take_turn(void *self, int round) {
   AppBenchTrial *trial = self;
+  const Bench *bench = trial->watcher;
+  TRY(app_pareto_go_on(bench->pareto));
   Status status = app_bench_trial_run(trial, round);
+  if (!status) return app_pareto_go_on(bench->pareto);
   if (status != STATUS_INPUT) return status;
   trial->outcome = status;
   snprintf(trial->message, sizeof trial->message, "%s", status_message());
@@ -169,6 +181,17 @@ static Status measure(Bench *bench, const char *reference) {
   TRY(overlap_model_create(&bench->exact, "exact"));
   TRY(run_reference(bench, reference));
   return run_models(bench);
+}
+
+Status app_pareto_scenes_check(AppPareto *pareto, const char *scene, const char *reference,
+                               const char *const *overrides, int override_count) {
+  Bench bench = {.pareto = pareto, .scene = scene, .overrides = overrides, .override_count = override_count};
+  AppBenchTrial *trial = memory_zeroed(1, sizeof *trial);
+  if (!trial) return status_no_memory("the runs");
+  Status status = begin(&bench, trial, reference);
+  app_bench_trial_end(trial);
+  memory_free(trial);
+  return status;
 }
 
 Status app_pareto_scenes_measure(AppPareto *pareto, const char *scene, const char *reference,

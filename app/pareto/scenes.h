@@ -6,6 +6,11 @@
 
 #include "app/pareto/pareto.h"
 
+// Whether the scene can be read, has contact and meshes that can be built: for all scenes before anything is
+// measured.
+Status app_pareto_scenes_check(AppPareto *pareto, const char *scene, const char *reference,
+                               const char *const *overrides, int override_count);
+
 // Adds a point a model. `reference`: the overlap model of the run that configurations are taken from and that
 // the other runs are compared with. A run that fails or takes too long is a result: its point says so.
 Status app_pareto_scenes_measure(AppPareto *pareto, const char *scene, const char *reference,

@@ -30,13 +30,25 @@ static void read_names(History *history, const char *line, size_t length) {
   }
 }
 
-static void read_row(History *history, const char *line) {
+// A row has a number in every column: nan, inf and nothing at all count as numbers that are not there.
+static Status read_row(History *history, const char *line, const char *directory) {
+  const int number = history->row_count + 2; // in the file, the first is that of the names
   for (int k = 0; k < history->count; k++) {
     char *end;
+    const char *expected = k + 1 < history->count ? "," : history->count < MAX_COLUMNS ? "\r\n" : ",\r\n";
     double value = fabs(strtod(line, &end));
+    size_t size = strcspn(line, ",\r\n");
+    if (end < line || (size_t)(end - line) != size)
+      return status_fail(STATUS_INPUT, "%s/history.csv:%d: %s is '%.*s'; expected a number", directory,
+                         number, history->names[k], (int)(size < 40 ? size : 40), line);
+    if (!*end || !strchr(expected, *end))
+      return status_fail(STATUS_INPUT, "%s/history.csv:%d: %s columns than the %d of the first line",
+                         directory, number, *end == ',' ? "more" : "fewer", history->count);
     if (isfinite(value)) history->largest[k] = fmax(history->largest[k], value);
-    line = *end == ',' ? end + 1 : end;
+    line = end + 1;
   }
+  history->row_count++;
+  return STATUS_OK;
 }
 
 static Status read_history(History *history, const AppReportRun *run) {
@@ -44,9 +56,11 @@ static Status read_history(History *history, const AppReportRun *run) {
   if (!text || !strchr(text, '\n'))
     return status_fail(STATUS_INPUT, "%s: has no history.csv to plot", run->directory);
   read_names(history, text, strcspn(text, "\n"));
-  for (text = strchr(text, '\n'); text && text[1]; text = strchr(text + 1, '\n')) {
-    read_row(history, text + 1);
-    history->row_count++;
+  for (text = strchr(text, '\n'); text[1]; text = strchr(text + 1, '\n')) {
+    if (!strchr(text + 1, '\n'))
+      return status_fail(STATUS_INPUT, "%s/history.csv:%d: the line does not end; the file is cut short",
+                         run->directory, history->row_count + 2);
+    TRY(read_row(history, text + 1, run->directory));
   }
   return STATUS_OK;
 }

@@ -73,7 +73,8 @@ static Status write_script(const char *path, const char *directory, const char *
   fprintf(writer.stream,
           "# gnuplot script; run it again with: gnuplot THIS_FILE\n"
           "directory = \"%s\"\n"
-          "set terminal pngcairo size 900,540\nset output directory.\"/learning.png\"\n"
+          "set terminal pngcairo size 900,540\n"
+          "if (!exists('picture')) picture = directory.\"/learning.png\"\nset output picture\n"
           "set datafile separator ','\nset title \"%s\" noenhanced\nset key above noenhanced\nset grid\n"
           "set linetype 5 linecolor rgb '#7f6000'\n" // the default is a yellow that white swallows
           "set logscale y\nset format y '10^{%%T}'\nset xlabel 'samples seen'\n"
@@ -86,10 +87,9 @@ static Status write_script(const char *path, const char *directory, const char *
 }
 
 Status app_training_log_plot(const char *directory, const char *name) {
-  char *script = file_join(directory, "learning.gp");
-  if (!script) return status_no_memory("the plot");
-  Status status = write_script(script, directory, name);
-  if (!status) status = app_gnuplot_run(script);
-  memory_free(script);
+  char *script = file_join(directory, "learning.gp"), *picture = file_join(directory, "learning.png");
+  Status status = script && picture ? write_script(script, directory, name) : status_no_memory("the plot");
+  if (!status) status = app_gnuplot_run(script, picture);
+  memory_free(script), memory_free(picture);
   return status;
 }

@@ -387,6 +387,27 @@ START_TEST(wrong_arguments_are_usage_errors) {
 }
 END_TEST
 
+// A second scene that is not there is told before the first is run, which would take hours.
+START_TEST(all_scenes_are_opened_before_anything_is_measured) {
+  ck_assert_int_eq(run("examples/02_two_blocks.yaml nowhere.yaml --model cgal -n 1000000 --wall 100000"), 74);
+}
+END_TEST
+
+START_TEST(a_signal_ends_it) {
+  volatile sig_atomic_t stop = 1;
+  AppPareto pareto = small();
+  pareto.stop = &stop;
+  ck_assert_ok(app_pareto_create(&pareto));
+  ck_assert_ok(app_pareto_add_model(&pareto, "clip"));
+  ck_assert_int_eq(app_pareto_pairs_measure(&pareto, "near"), STATUS_INTERRUPTED);
+  ck_assert_int_eq(
+      app_pareto_scenes_measure(&pareto, TETLAP_SOURCE_DIR "/tests/scenes/collision.yaml", "clip", NULL, 0),
+      STATUS_INTERRUPTED);
+  ck_assert_int_eq((int)pareto.point_count, 0);
+  app_pareto_destroy(&pareto);
+}
+END_TEST
+
 int main(void) {
   snprintf(directory, sizeof directory, "/tmp/tetlap_pareto_%ld", (long)getpid());
   if (file_make_directories(directory) != STATUS_OK) return EXIT_FAILURE;
@@ -405,6 +426,8 @@ int main(void) {
   tcase_add_test(cases, a_sweep_names_the_line_that_is_wrong);
   tcase_add_test(cases, the_command_writes_the_promised_keys);
   tcase_add_test(cases, wrong_arguments_are_usage_errors);
+  tcase_add_test(cases, all_scenes_are_opened_before_anything_is_measured);
+  tcase_add_test(cases, a_signal_ends_it);
   int failed = suite_run("pareto", cases, 60);
   char command[128];
   snprintf(command, sizeof command, "rm -r '%s'", directory);

@@ -186,16 +186,58 @@ START_TEST(a_file_without_such_points_is_refused) {
 }
 END_TEST
 
+// Its line and column are named.
+START_TEST(a_damaged_history_is_refused) {
+  static const struct {
+    char text[64];
+    const char *word;
+  } cases[] = {{"time_s,step_s\n0,0\n1,abc\n", "history.csv:3: step_s is 'abc'"},
+               {"time_s,step_s\n0,0\n1\n", "history.csv:3: fewer columns"},
+               {"time_s,step_s\n0,0,0\n", "history.csv:2: more columns"},
+               {"time_s,step_s\n0,0\n1,0.2", "history.csv:3: the line does not end"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    char text[64];
+    memcpy(text, cases[k].text, sizeof text);
+    AppReportRun run = {.directory = name_a, .history = text};
+    ck_assert_int_eq(write_history(&run, 1), STATUS_INPUT);
+    ck_assert_msg(strstr(status_message(), cases[k].word) != NULL, "%s", status_message());
+  }
+}
+END_TEST
+
+// A picture that was there stays as it was, and nothing is left beside it.
+START_TEST(a_picture_that_gnuplot_does_not_end_is_none) {
+  FileWriter writer;
+  ck_assert_ok(file_begin(&writer, picture));
+  fputs("of before", writer.stream);
+  ck_assert_ok(file_commit(&writer));
+  static const char *const scripts[] = {"exit status 3", "set print picture\nprint '<svg>'"};
+  for (int k = 0; k < 2; k++) {
+    ck_assert_ok(file_begin(&writer, script));
+    app_gnuplot_output(writer.stream, picture);
+    fprintf(writer.stream, "%s\n", scripts[k]);
+    ck_assert_ok(file_commit(&writer));
+    ck_assert_int_eq(app_gnuplot_run(script, picture), STATUS_IO);
+    ck_assert_ptr_nonnull(strstr(status_message(), k ? "did not draw all" : "failed"));
+    char *text;
+    size_t size;
+    ck_assert_ok(file_read(picture, &text, &size));
+    ck_assert_str_eq(text, "of before");
+    memory_free(text);
+  }
+}
+END_TEST
+
 START_TEST(gnuplot_draws_both) {
   AppReportRun run = {.directory = name_a, .history = history};
   struct stat info;
   ck_assert_ok(write_history(&run, 1));
-  ck_assert_ok(app_gnuplot_run(script));
+  ck_assert_ok(app_gnuplot_run(script, picture));
   ck_assert_int_eq(stat(picture, &info), 0);
   ck_assert_int_gt((int)info.st_size, 4000);
   Record *pareto = make_pareto();
   ck_assert_ok(write_frontier(pareto, NULL));
-  ck_assert_ok(app_gnuplot_run(script));
+  ck_assert_ok(app_gnuplot_run(script, picture));
   char *text;
   size_t size;
   ck_assert_ok(file_read(picture, &text, &size));
@@ -215,6 +257,8 @@ int main(void) {
   tcase_add_test(test_case, a_frontier_is_of_processor_time_where_there_is);
   tcase_add_test(test_case, points_on_the_frontier_are_filled);
   tcase_add_test(test_case, a_file_without_such_points_is_refused);
+  tcase_add_test(test_case, a_damaged_history_is_refused);
+  tcase_add_test(test_case, a_picture_that_gnuplot_does_not_end_is_none);
   tcase_add_test(test_case, gnuplot_draws_both);
   return suite_run("plot", test_case, 20);
 }

@@ -116,7 +116,7 @@ static Status plot(const Options *options, const char *path) {
     return status;
   }
   TRY(file_commit(&writer));
-  TRY(app_gnuplot_run(path));
+  TRY(app_gnuplot_run(path, options->picture));
   log_info("wrote %s and its script %s", options->picture, path);
   return STATUS_OK;
 }

@@ -152,6 +152,9 @@ static Status add_sweep(AppPareto *pareto, const Options *options) {
 static Status measure(AppPareto *pareto, const Options *options) {
   TRY(app_pareto_create(pareto));
   TRY(options->model_count ? add_named(pareto, options) : add_all(pareto));
+  for (int s = 0; s < options->scene_count; s++)
+    TRY(app_pareto_scenes_check(pareto, options->scenes[s], options->reference, options->overrides,
+                                options->override_count));
   if (options->sweep) TRY(add_sweep(pareto, options));
   for (int set = 0; set < 2; set++)
     if (options->wants_set[set]) TRY(app_pareto_pairs_measure(pareto, app_bench_sets[set]));
@@ -179,7 +182,7 @@ static Status draw(const Record *points, const char *picture, const char *script
     return status;
   }
   TRY(file_commit(&writer));
-  return app_gnuplot_run(script);
+  return app_gnuplot_run(script, picture);
 }
 
 // pareto.svg and pareto.png, with the scripts that drew them, as `tetlap plot` would.
@@ -233,7 +236,8 @@ static int run_command(int argument_count, char **arguments) {
                                 .error_pairs = 20000,
                                 .scene_wall_s = 60,
                                 .scene_rounds = 1,
-                                .audit_every = 20},
+                                .audit_every = 20,
+                                .stop = app_job_stop_flag()},
                      .directory = "out/pareto",
                      .reference = "clip",
                      .wants_set = {true, true}};
