@@ -49,11 +49,6 @@ void fem_audit_load_step(FemAudit *audit, double step, double begin, double end,
   audit->load_change = change / (step * step);
 }
 
-// What is certain of A.
-static double certain(const FemAudit *audit) {
-  return audit->total - audit->uncertain;
-}
-
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy) {
   return fem_audit_next_within(audit, time, energy, INFINITY);
 }
@@ -61,18 +56,19 @@ FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *ene
 FemAudit fem_audit_next_within(const FemAudit *audit, double time, const FemEnergy *energy, double least) {
   FemAudit next = *audit;
   const double half_step = 0.5 * (time - audit->time),
-               mean = mean_dissipated(audit->dissipated_power, energy->dissipated_power);
+               mean = mean_dissipated(audit->dissipated_power, energy->dissipated_power),
+               certain = fmin(mean, least);
   next.time = time;
-  next.damped += 2 * half_step * mean;
-  next.uncertain += 2 * half_step * fmax(mean - least, 0);
+  next.damped += 2 * half_step * certain;
+  next.uncertain += 2 * half_step * (mean - certain);
   next.driven_work += half_step * (audit->driven_power + energy->driven_power);
   next.work = next.driven_work + energy->applied_work;
   next.dissipated = next.damped + energy->plastic_work + energy->friction_work;
   next.dissipated_power = energy->dissipated_power;
   next.driven_power = energy->driven_power;
   next.total = stored(energy) + next.dissipated - next.work;
-  next.gain = fmax(audit->gain, certain(&next) - audit->lowest - audit->open);
-  next.lowest = fmin(audit->lowest, certain(&next));
+  next.gain = fmax(audit->gain, next.total - audit->lowest - audit->open);
+  next.lowest = fmin(audit->lowest, next.total);
   next.scale = fmax(audit->scale, largest_part(&next, energy));
   return next;
 }
@@ -84,20 +80,20 @@ FemAuditBounds fem_audit_bounds(bool has_contact, double least) {
 }
 
 double fem_audit_rise(const FemAuditBounds *bounds, const FemAudit *audit) {
-  return (certain(audit) - audit->lowest - audit->open) / fmax(audit->scale, bounds->least);
+  return (audit->total - audit->lowest - audit->open) / fmax(audit->scale, bounds->least);
 }
 
 // Of the scene's energy; what a step gains beyond it is no rounding.
 static const double ROUNDING = 1e-6;
 
 bool fem_audit_is_doubtful(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after) {
-  return !(certain(after) - certain(before) <= ROUNDING * fmax(after->scale, bounds->least));
+  return !(after->total - before->total <= ROUNDING * fmax(after->scale, bounds->least));
 }
 
 bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after) {
   const double scale = fmax(after->scale, bounds->least);
-  double of_step = (certain(after) - certain(before)) / scale;
-  double of_run = (certain(after) - before->lowest) / scale;
+  double of_step = (after->total - before->total) / scale;
+  double of_run = (after->total - before->lowest) / scale;
   bool is_held = of_step <= bounds->step && (of_run <= bounds->near || of_step <= bounds->negligible);
   return !is_held;
 }

@@ -5,7 +5,8 @@
 // integrated by the trapezoidal rule over accepted steps; a dissipated power that falls to less than half in
 // a step by a mean that goes over to the logarithmic one.
 // In steps of order 1 the ends of a step may tell more than damping dissipates in it. Where a step seems to
-// gain energy, what it dissipates at least is found from its middle, and gains are told of A with that.
+// gain energy, what it dissipates at least is found from its middle, and A takes that. So a rise of A is a
+// certain gain, and what the integrator lost is at most what A has fallen by.
 //
 // Two bounds, as shares of the scene's energy. What one step may gain: more is taken back. What a run may
 // gain in all: more is trouble (fem/output/trouble.h). Where nothing jumps both are far beyond what the error
@@ -27,15 +28,15 @@ typedef struct FemAuditBounds {
 
 typedef struct FemAudit {
   double time;        // of the last accepted state [s]
-  double damped;      // by dissipated_power so far [J]
+  double damped;      // by dissipated_power so far, at least [J]
   double dissipated;  // damped, plastic work and friction with a history [J]
   double driven_work; // of driven vertices and obstacles [J]
   double work;        // driven_work and the loads' [J]
   double total;       // A [J]
-  double uncertain;   // of `damped`, what steps that seemed to gain energy may not have dissipated [J]
+  double uncertain;   // what steps that seemed to gain energy may have dissipated beyond `damped` [J]
   double first;       // A at the start [J]
-  double lowest;      // smallest A − uncertain so far [J]
-  double gain;        // largest rise of A − uncertain above an earlier value, less what is open [J]
+  double lowest;      // smallest A so far [J]
+  double gain;        // largest rise of A above an earlier value, less what is open [J]
   double scale;       // the scene's energy: largest of its parts so far, gravity from its start, without what
                       // nothing can notice (fem/model/floating.h) [J]
   double gravity_at_start;
@@ -57,13 +58,13 @@ void fem_audit_load_step(FemAudit *audit, double step, double begin, double end,
 
 // The audit as it would be after accepting this state.
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy);
-// The same where the step's mean of the dissipated power is known to be `least` at least [W]: what `next` has
-// beyond that is uncertain.
+// The same where the step's mean of the dissipated power is known to be `least` at least [W]: what its ends
+// tell beyond that is uncertain and not counted.
 FemAudit fem_audit_next_within(const FemAudit *audit, double time, const FemEnergy *energy, double least);
 
 FemAuditBounds fem_audit_bounds(bool has_contact, double least);
 
-// How far A stands above an earlier value, for certain, as a share of the scene's energy.
+// How far A stands above an earlier value, as a share of the scene's energy.
 double fem_audit_rise(const FemAuditBounds *bounds, const FemAudit *audit);
 
 // Whether the step between the two seems to gain more energy than rounding: `next_within` may tell less.
@@ -72,8 +73,8 @@ bool fem_audit_is_doubtful(const FemAuditBounds *bounds, const FemAudit *before,
 // Whether the step between the two must be taken back.
 bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after);
 
-// What the integrator itself has lost since the start, apart from all damping that was asked for [J];
-// negative: gained.
+// What the integrator itself has lost since the start at most, apart from all damping that was asked for [J];
+// at least it is `uncertain` less. Negative: gained.
 double fem_audit_lost(const FemAudit *audit);
 
 // Coordinates that were driven have been set free: from now on their kinetic energy counts, and whoever drove

@@ -86,10 +86,11 @@ static void conclude_work(const FemAudit *audit) {
 // What was lost, apart into what was asked for and the integrator's own.
 static void conclude_energy(const FemAudit *audit) {
   double lost = fem_audit_lost(audit);
+  const bool is_bound = lost > 0 && audit->uncertain > 0.1 * lost;
   log_info("energy: of the scene's %.3g J, %.3g J went into damping, friction and plasticity; the integrator "
-           "itself %s %.3g J, %.2g %%, and the total never rose by more than %.2g %%",
-           audit->scale, audit->dissipated, lost < 0 ? "gained" : "lost", fabs(lost),
-           100 * fabs(lost) / audit->scale, 100 * audit->gain / audit->scale);
+           "itself %s%s %.3g J, %.2g %%, and the total never rose by more than %.2g %%",
+           audit->scale, audit->dissipated, lost < 0 ? "gained" : "lost", is_bound ? " at most" : "",
+           fabs(lost), 100 * fabs(lost) / audit->scale, 100 * audit->gain / audit->scale);
 }
 
 static void conclude(const AppJob *job, const FemRunResult *result) {

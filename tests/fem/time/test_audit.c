@@ -72,6 +72,30 @@ START_TEST(a_power_that_ends_at_nothing_counts_in_part) {
 }
 END_TEST
 
+// What is lost is what the ends of a step tell that was dissipated, or what it was at least: A falls with the
+// latter, and tells no gain.
+START_TEST(where_only_a_bound_of_what_is_dissipated_is_certain_the_total_takes_it) {
+  FemEnergy energy = {.kinetic = 1, .dissipated_power = 2};
+  const FemAuditBounds bounds = fem_audit_bounds(true, 0);
+  FemAudit audit;
+  fem_audit_begin(&audit, 0, &energy, 0);
+  energy.kinetic = 0.9;
+  FemAudit ends = fem_audit_next(&audit, 0.1, &energy), within;
+  ck_assert(fem_audit_is_doubtful(&bounds, &audit, &ends));
+  ck_assert_near(ends.damped, 0.2, 1e-14);
+  within = fem_audit_next_within(&audit, 0.1, &energy, 0.5);
+  ck_assert(!fem_audit_is_doubtful(&bounds, &audit, &within));
+  ck_assert_near(within.damped, 0.05, 1e-14);
+  ck_assert_near(within.dissipated, 0.05, 1e-14);
+  ck_assert_near(within.total, 0.95, 1e-14);
+  ck_assert_near(within.uncertain, 0.15, 1e-14);
+  ck_assert_double_eq(within.gain, 0);
+  ck_assert_near(fem_audit_lost(&within), 0.05, 1e-14);
+  within = fem_audit_next_within(&audit, 0.1, &energy, 5);
+  ck_assert_double_eq(within.damped, ends.damped);
+}
+END_TEST
+
 // A force that rises by way is known from its ends. Where it stops to rise within a step, as friction does
 // that slips, half of the change of force times way is open, and no gain is told of it.
 START_TEST(of_steps_of_load_that_are_open_no_gain_is_told) {
@@ -102,6 +126,7 @@ int main(void) {
   tcase_add_test(cases, of_what_falls_within_a_step_no_more_is_counted_than_there_was);
   tcase_add_test(cases, from_the_one_to_the_other_it_goes_without_a_jump);
   tcase_add_test(cases, a_power_that_ends_at_nothing_counts_in_part);
+  tcase_add_test(cases, where_only_a_bound_of_what_is_dissipated_is_certain_the_total_takes_it);
   tcase_add_test(cases, of_steps_of_load_that_are_open_no_gain_is_told);
   return suite_run("audit", cases, 20);
 }
