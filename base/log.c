@@ -97,6 +97,16 @@ void log_progress(const char *format, ...) {
   progress_is_shown = true;
 }
 
+bool log_pace_is_due(LogPace *pace, double share) {
+  static const double LONGEST_SILENCE_S = 60;
+  double now = clock_wall_s();
+  int tenth = (int)(10 * share);
+  bool is_due = tenth > pace->tenth || (pace->due_s > 0 && now >= pace->due_s);
+  if (is_due || !(pace->due_s > 0)) pace->due_s = now + LONGEST_SILENCE_S;
+  pace->tenth = tenth;
+  return is_due && share < 1 && !log_has_terminal();
+}
+
 void log_progress_end(void) {
   if (!progress_is_shown) return;
   fputs("\r\033[K", stderr);

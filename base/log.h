@@ -27,6 +27,13 @@ void log_debug(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // Whether the progress line is seen: standard error is a terminal.
 bool log_has_terminal(void);
+// Where standard error is no terminal, progress is lines: one is due at each tenth of the way, and a minute
+// after the last. None is due on a terminal or at the end (`share` 1), of which the caller tells anyway.
+typedef struct LogPace {
+  int tenth;    // that the last line was in
+  double due_s; // by the wall clock; 0: nothing has been asked yet
+} LogPace;      // zeroed: at the beginning
+bool log_pace_is_due(LogPace *pace, double share);
 // Removes the progress line, before other output or at the end.
 void log_progress_end(void);
 

@@ -187,11 +187,9 @@ Status app_job_show_progress(void *self, const FemRunProgress *state) {
   log_progress("%s%3.0f %%  t %.4g of %.4g s  step %lld  h %.1e s  pairs %d  left %d:%02d", progress->label,
                100 * share, state->time, state->end, state->step_count, state->step, state->active_pairs,
                (int)(left / 60), (int)fmod(left, 60));
-  int tenth = (int)(10 * share);
-  if (tenth > progress->tenth && tenth < 10 && !log_has_terminal())
-    log_info("%s%d %%: t = %.4g of %.4g s, step %lld, about %.3g s left", progress->label, 10 * tenth,
-             state->time, state->end, state->step_count, left);
-  progress->tenth = tenth;
+  if (log_pace_is_due(&progress->pace, share))
+    log_info("%s%.0f %%: t = %.4g of %.4g s, step %lld, about %.3g s left", progress->label,
+             floor(100 * share), state->time, state->end, state->step_count, left);
   return STATUS_OK;
 }
 

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 
 #include "base/files/record.h"
+#include "base/log.h"
 #include "fem/model/model.h"
 #include "fem/run/run.h"
 
@@ -52,13 +53,13 @@ const volatile sig_atomic_t *app_job_stop_flag(void);
 const char *app_job_overlap(const AppJob *job);
 
 // An observer of fem_run that draws the progress line: time, step, step size, pairs, time left. Where
-// standard error is no terminal, a line a tenth of the time; as JSON, an object a line on standard error,
-// twice a second.
+// standard error is no terminal, lines at the pace of base/log.h; as JSON, an object a line on standard
+// error, twice a second.
 typedef struct AppProgress {
   double began_s;
   const char *label; // in front; "" for none
   bool is_json;
-  int tenth;        // told last
+  LogPace pace;     // of lines
   double told_at_s; // of JSON; 0: never
 } AppProgress;
 Status app_job_show_progress(void *progress, const FemRunProgress *state);

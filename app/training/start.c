@@ -6,7 +6,9 @@
 #include <string.h>
 
 #include "app/training/task.h"
+#include "base/files/record.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "net/files/weights.h"
 #include "overlap/weights.h"
 
@@ -82,14 +84,54 @@ static Status unfold_vectors(const NetWhitening *vectors, NetModel_f64 *model) {
   return STATUS_OK;
 }
 
+// "mlp: 56 inputs, hidden layers 16 16, 1 output, 1201 parameters".
+static void describe(const NetPlan *plan, char *text, size_t size) {
+  const NetShape *shape = &plan->shape;
+  size_t used = 0;
+  text_append(text, size, &used, "%s: %d inputs, ", shape->kind == NET_MLP ? "mlp" : "tpn",
+              shape->input_count);
+  if (shape->kind == NET_MLP) {
+    text_append(text, size, &used, "hidden layers");
+    for (int k = 0; k < shape->hidden.count; k++)
+      text_append(text, size, &used, " %d", shape->hidden.width[k]);
+    text_append(text, size, &used, ", ");
+  }
+  text_append(text, size, &used, "%d %s, %zu parameters", shape->output_count,
+              shape->output_count == 1 ? "output" : "outputs", plan->parameter_count);
+}
+
+static Record *record_shape(const NetShape *shape) {
+  char text[NET_SHAPE_TEXT];
+  Record *record;
+  if (net_shape_print(shape, text) != NET_OK) return NULL;
+  return record_parse(&record, text, strlen(text), "shape") == STATUS_OK ? record : NULL;
+}
+
+// Both shapes, and the first of their keys that differs.
+static Status fail_shape(const char *path, const NetPlan *found, const NetPlan *wanted) {
+  char of_file[256], of_model[256];
+  RecordDifference d = {{0}, {0}, {0}};
+  Record *a = record_shape(&found->shape), *b = record_shape(&wanted->shape);
+  bool is_told = a && b && record_differ(a, b, &d);
+  record_destroy(a), record_destroy(b);
+  if (!is_told) return status_no_memory("the difference of two shapes");
+  describe(found, of_file, sizeof of_file);
+  describe(wanted, of_model, sizeof of_model);
+  return status_fail(
+      STATUS_INPUT,
+      "%s: holds another network than `model` describes: the file has %s; `model` describes %s; '%s' "
+      "is %s in the file and %s by `model`. Describe in `model` what the file holds, or name "
+      "another `start`",
+      path, of_file, of_model, d.place, d.a, d.b);
+}
+
 static Status bring_over(const char *path, const char *normalisation, const NetWhitening *whitening,
                          const NetWhitening *vectors, const NetModel_f32 *model, NetModel_f64 *from,
                          const NetCard *card) {
   NetShape shape = model->plan->shape;
   bool lacks_centroid = vectors && from->plan->shape.output_count == 1;
   if (lacks_centroid) shape.output_count = 1;
-  if (!net_shape_equal(&from->plan->shape, &shape))
-    return status_fail(STATUS_INPUT, "%s: a network of another shape than `model` describes", path);
+  if (!net_shape_equal(&from->plan->shape, &shape)) return fail_shape(path, from->plan, model->plan);
   if (strcmp(card->normalisation, normalisation) != 0)
     return status_fail(STATUS_INPUT, "%s: made for the normalisation '%s', the training has '%s'", path,
                        card->normalisation, normalisation);

@@ -262,8 +262,10 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   TRY(load_sets(tpn, task->config));
   TRY(app_training_order_create(&tpn->order, tpn->training.count));
   task->sample_count = tpn->training.count;
-  snprintf(task->summary, sizeof task->summary, "%d pairs to train on, %d left out", tpn->training.count,
-           tpn->training.left_out);
+  snprintf(task->summary, sizeof task->summary,
+           tpn->training.left_out ? "%d pairs to train on; %d left out: too flat to be normalised"
+                                  : "%d pairs to train on",
+           tpn->training.count, tpn->training.left_out);
   TRY(create_tangents(tpn, task->config));
   return create_batch(tpn, task->config);
 }

@@ -39,6 +39,7 @@ typedef struct Training {
   Counts counts;
   double began_s;                         // wall clock, less what was spent before
   int skipped;                            // in a row
+  double loss;                            // mean before the last validation
   char *description;                      // of the configuration, owned
   char *weights, *candidate, *checkpoint; // paths, owned
 } Training;
@@ -288,6 +289,7 @@ static Status validate(Training *training) {
                         .gradient_norm = counts->norm_sum / count,
                         .scores = &scores};
   TRY(app_training_log_add(&training->log, &row));
+  training->loss = row.loss;
   counts->loss_sum = counts->norm_sum = 0;
   counts->loss_count = 0;
   net_plateau_add(&training->plateau, scores.score);
@@ -330,7 +332,7 @@ static void report_progress(const Training *training, double first_step) {
       .samples = batch * (double)counts->step,
       .samples_per_s = batch * rate,
       .seconds_left = rate > 0 ? ((double)training->schedule.total_steps - (double)counts->step) / rate : 0,
-      .loss = counts->loss_count ? counts->loss_sum / (double)counts->loss_count : NAN,
+      .loss = counts->loss_count ? counts->loss_sum / (double)counts->loss_count : training->loss,
       .score = training->score,
       .best_score = training->best_score};
   training->options->observe(training->options->observer, &progress);

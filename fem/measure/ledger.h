@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run keeps account of from one accepted state to the next: momentum's balance (momentum.h), who
-// passed through whom (contact/passage.h), how wrong contact may be (accuracy.h), what probes read
-// (reading.h). A step that is taken back leaves no trace.
+// What a run keeps account of from one accepted state to the next: the balance of momentum (momentum.h),
+// elements that passed through bodies (contact/passage.h), the error of contact (accuracy.h), the readings of
+// probes (reading.h). A step that is taken back leaves no trace.
 #ifndef TETLAP_FEM_MEASURE_LEDGER_H
 #define TETLAP_FEM_MEASURE_LEDGER_H
 
@@ -19,7 +19,7 @@ typedef struct FemLedger {
   FemReadings *readings, *next_readings; //                         (probe_count)
 } FemLedger;
 
-// What it is told of a state: contact forces, the elastic energy of all bodies [J], what the probes read
+// What it needs of a state: contact forces, the elastic energy of all bodies [J], what the probes read
 // (probe_count).
 typedef struct FemLedgerState {
   FemMomentumContact contact;
@@ -40,7 +40,7 @@ void fem_ledger_accept(FemLedger *ledger);
 
 // Into summary.json: `contacts`, a row for each two that touched, and `probes`.
 void fem_ledger_record(const FemLedger *ledger, Record *record);
-// One line for people of the pair with that rank by force, 0 first: what presses, and how wrong it may be.
+// Lines for people on the pair with that rank by force, 0 first: what presses, and how wrong it may be.
 // False: there is none.
 bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size);
 

@@ -16,14 +16,15 @@ static const struct {
   const char *name, *what, *unit, *advice;
 } kinds[FEM_TROUBLE_KIND_COUNT] = {
     {"inverted", "inverted elements", "element",
-     "refine the mesh there, load more slowly, or take law: neo_hookean_log"},
+     "refine the mesh there, load more slowly, or write law: neo_hookean_log"},
     {"enclosed", "elements wholly inside another body, which nothing pushes out", "element",
-     "a larger contact.stiffness, a finer mesh or a shorter time.max_step, and bodies apart at the start"},
+     "try a larger contact.stiffness, a finer mesh or a shorter time.max_step, and bodies apart at the "
+     "start"},
     {"wrong_way", "contact pushing the wrong way", "vertex",
-     "a body is pierced there: a larger contact.stiffness, or a shorter time.max_step"},
-    {"energy", "energy out of nothing", NULL, "a smaller time.tolerance, or a smaller contact.stiffness"},
+     "a body is pierced there: try a larger contact.stiffness, or a shorter time.max_step"},
+    {"energy", "energy out of nothing", NULL, "try a smaller time.tolerance, or a smaller contact.stiffness"},
     {"passed", "bodies passed through each other", "element",
-     "a larger contact.stiffness, a shorter time.max_step, or a thicker or finer body"},
+     "try a larger contact.stiffness, a shorter time.max_step, or a thicker or finer body"},
 };
 
 static Status list_surface(FemTroubleWatch *watch) {
@@ -193,26 +194,39 @@ static const char *body_of_element(const FemModel *model, int tet) {
   return model->bodies[model->tet_body[tet]].name;
 }
 
-void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
-                      size_t size) {
+const char *fem_trouble_what(FemTroubleKind kind) {
+  return kinds[kind].what;
+}
+
+const char *fem_trouble_advice(FemTroubleKind kind) {
+  return kinds[kind].advice;
+}
+
+void fem_trouble_place(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
+                       size_t size) {
   int first = trouble->of[kind].first;
+  double time = trouble->of[kind].first_time;
   if (kind == FEM_TROUBLE_ENERGY) {
-    snprintf(text, size, "%s: first at t = %.6g s, %lld times in all (try %s)", kinds[kind].what,
-             trouble->of[kind].first_time, trouble->of[kind].events, kinds[kind].advice);
+    snprintf(text, size, "first at t = %.6g s, %lld times in all", time, trouble->of[kind].events);
     return;
   }
   if (kind == FEM_TROUBLE_PASSED) {
-    snprintf(text, size, "%s: '%s' and '%s' at t = %.6g s, element %d first (%s)", kinds[kind].what,
+    snprintf(text, size, "'%s' and '%s' at t = %.6g s, element %d first",
              fem_compliance_party_name(model, trouble->passed[0]),
-             fem_compliance_party_name(model, trouble->passed[1]), trouble->of[kind].first_time, first,
-             kinds[kind].advice);
+             fem_compliance_party_name(model, trouble->passed[1]), time, first);
     return;
   }
   const char *body =
       kind == FEM_TROUBLE_WRONG_WAY ? fem_model_body_name(model, first) : body_of_element(model, first);
-  snprintf(text, size, "%s: first at t = %.6g s, %s %d of body '%s'; %d at once at most, in %lld steps (%s)",
-           kinds[kind].what, trouble->of[kind].first_time, kinds[kind].unit, first, body,
-           trouble->of[kind].most, trouble->of[kind].steps, kinds[kind].advice);
+  snprintf(text, size, "first at t = %.6g s, %s %d of body '%s'; %d at once at most, in %lld steps", time,
+           kinds[kind].unit, first, body, trouble->of[kind].most, trouble->of[kind].steps);
+}
+
+void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
+                      size_t size) {
+  char place[256];
+  fem_trouble_place(trouble, model, kind, place, sizeof place);
+  snprintf(text, size, "%s: %s (%s)", kinds[kind].what, place, kinds[kind].advice);
 }
 
 void fem_trouble_record(const FemTrouble *trouble, Record *record) {

@@ -83,7 +83,13 @@ FemTrouble fem_trouble_begin(const FemModel *model);
 // Adds an accepted state; whether trouble began in it that was not there in the state before.
 bool fem_trouble_add(FemTrouble *trouble, double time, const FemTroubleState *state);
 
-// "wrong-way push: from t = 0.1 s on, vertex 12 of body 'ball', at most 3 at a time" for what began.
+// What a kind of trouble is, and what to do against it.
+const char *fem_trouble_what(FemTroubleKind kind);
+const char *fem_trouble_advice(FemTroubleKind kind);
+// When and where it began: "first at t = 0.1 s, vertex 12 of body 'ball'; 3 at once at most, in 7 steps".
+void fem_trouble_place(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
+                       size_t size);
+// All three on one line: "what: place (advice)".
 void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
                       size_t size);
 void fem_trouble_record(const FemTrouble *trouble, Record *record);

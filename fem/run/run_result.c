@@ -83,16 +83,23 @@ void fem_run_result_destroy(FemRunResult *result) {
   *result = (FemRunResult){0};
 }
 
-// Appends "; text" to what was told.
-static void append_clause(char *text, size_t size, size_t *used, const char *format, ...)
+// Appends a line.
+static void append_line(char *text, size_t size, size_t *used, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-static void append_clause(char *text, size_t size, size_t *used, const char *format, ...) {
+static void append_line(char *text, size_t size, size_t *used, const char *format, ...) {
   char piece[512];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(piece, sizeof piece, format, arguments);
   va_end(arguments);
-  text_append(text, size, used, "%s%s", *used > 0 ? "; " : "", piece);
+  text_append(text, size, used, "%s%s", *used > 0 ? "\n" : "", piece);
+}
+
+static void append_trouble(char *text, size_t size, size_t *used, const char *what, const char *place,
+                           const char *advice) {
+  append_line(text, size, used, "%s", what);
+  append_line(text, size, used, "  %s", place);
+  append_line(text, size, used, "  what to do: %s", advice);
 }
 
 const char *fem_run_outcome(const FemRunResult *result, Status status) {
@@ -112,25 +119,30 @@ void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, cha
   size_t used = 0;
   text[0] = 0;
   for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) {
-    char piece[512];
+    char place[256];
     if (trouble->of[k].steps == 0) continue;
-    fem_trouble_tell(trouble, model, (FemTroubleKind)k, piece, sizeof piece);
-    append_clause(text, size, &used, "%s", piece);
+    fem_trouble_place(trouble, model, (FemTroubleKind)k, place, sizeof place);
+    append_trouble(text, size, &used, fem_trouble_what((FemTroubleKind)k), place,
+                   fem_trouble_advice((FemTroubleKind)k));
   }
-  if (trouble->sliver_count > 0)
-    append_clause(text, size, &used, "slivers: %d elements, the worst %d (mesh it anew)",
-                  trouble->sliver_count, trouble->worst_sliver);
-  if (!(result->momentum_gap <= MOMENTUM_ALLOWED))
-    append_clause(
-        text, size, &used,
-        "forces and motion differ: of body '%s' by %.2g %% of all impulses (a smaller time.tolerance or "
-        "time.max_step)",
-        model->bodies[result->momentum_body].name, 100 * result->momentum_gap);
-  if ((double)result->pairs.beyond > BEYOND_ALLOWED * (double)result->pairs.tried)
-    append_clause(text, size, &used,
-                  "pairs beyond the network's training: %lld of %lld (take contact.overlap: clip)",
-                  result->pairs.beyond, result->pairs.tried);
-  if (used == 0) append_clause(text, size, &used, "none");
+  char place[256];
+  if (trouble->sliver_count > 0) {
+    snprintf(place, sizeof place, "%d elements, the worst is element %d", trouble->sliver_count,
+             trouble->worst_sliver);
+    append_trouble(text, size, &used, "slivers in the mesh", place, "mesh it anew");
+  }
+  if (!(result->momentum_gap <= MOMENTUM_ALLOWED)) {
+    snprintf(place, sizeof place, "of body '%s' by %.2g %% of all impulses",
+             model->bodies[result->momentum_body].name, 100 * result->momentum_gap);
+    append_trouble(text, size, &used, "forces and motion differ", place,
+                   "try a smaller time.tolerance or time.max_step");
+  }
+  if ((double)result->pairs.beyond > BEYOND_ALLOWED * (double)result->pairs.tried) {
+    snprintf(place, sizeof place, "%lld of %lld", result->pairs.beyond, result->pairs.tried);
+    append_trouble(text, size, &used, "pairs beyond the network's training", place,
+                   "try contact.overlap: clip");
+  }
+  if (used == 0) append_line(text, size, &used, "none");
 }
 
 void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size) {
@@ -148,13 +160,14 @@ void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size
               {"pairs beyond the network's training", result->pairs.beyond}};
   size_t used = 0;
   text[0] = 0;
-  append_clause(text, size, &used, "smallest det F %.3f", result->min_det_F);
+  append_line(text, size, &used, "smallest det F %.3f (1: undeformed, 0: an element is flat)",
+              result->min_det_F);
   if (!result->is_static)
-    append_clause(text, size, &used, "forces and motion agree to %.1e of all impulses", result->momentum_gap);
+    append_line(text, size, &used, "forces and motion agree to %.1e of all impulses", result->momentum_gap);
   if (isfinite(result->trouble.smallest_step))
-    append_clause(text, size, &used, "smallest step %.1e s", result->trouble.smallest_step);
+    append_line(text, size, &used, "shortest step %.1e s", result->trouble.smallest_step);
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
-    if (rows[k].count > 0) append_clause(text, size, &used, "%s: %lld", rows[k].what, rows[k].count);
+    if (rows[k].count > 0) append_line(text, size, &used, "%s: %lld", rows[k].what, rows[k].count);
 }
 
 static void summarise_phases(const FemRunPhases *phases, Record *record) {

@@ -60,7 +60,7 @@ typedef struct FemRunResult {
   FemRunSpread spread; // since this process began
   Record *counters;    // owned
   Record *account;     // contacts and probes as in summary.json, owned; NULL: the run has not begun
-  // A line on each of the two that pressed most, on how wrong they may be                 (told_count)
+  // On each of the two that pressed most, lines that say how wrong they may be             (told_count)
   char told[FEM_RUN_TOLD][512];
   int told_count;
   int effect_count; // those that the scene called for
@@ -87,9 +87,9 @@ void fem_run_result_destroy(FemRunResult *result);
 // other.
 const char *fem_run_outcome(const FemRunResult *result, Status status);
 
-// The run's last line: what trouble struck, or that none did. `model`: the one that ran.
+// What trouble struck, three lines each: what, where, what to do; or "none". `model`: the one that ran.
 void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);
-// What happened and needs no one to act: restarts, retries, extremes.
+// What happened and needs no action, a line each: restarts, retries, extremes.
 void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size);
 
 // As in summary.json: "elements", "cpu_s", …            (FEM_RUN_SPREAD)

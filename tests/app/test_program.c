@@ -104,9 +104,68 @@ START_TEST(a_verbose_run_has_a_line_for_every_step) {
 END_TEST
 
 START_TEST(a_run_names_the_files_that_it_wrote) {
-  ck_assert(run_says("", "wrote .*: frames.pvd (ParaView), history.csv, summary.json, manifest.json$"));
-  ck_assert(run_says("--set output.vtu=false", "wrote [^ ]*: history.csv, summary.json, manifest.json$"));
-  ck_assert(run_says("--set output.history=none", "wrote [^ ]*: frames.pvd (ParaView), summary.json"));
+  ck_assert(run_says("", "^files: .*: frames.pvd (ParaView), history.csv, summary.json, manifest.json$"));
+  ck_assert(run_says("--set output.vtu=false", "^files: *[^ ]*: history.csv, summary.json, manifest.json$"));
+  ck_assert(run_says("--set output.history=none", "^files: *[^ ]*: frames.pvd (ParaView), summary.json"));
+}
+END_TEST
+
+// What that command prints on standard error.
+static void read_messages(const char *arguments, char *text, size_t size) {
+  char command[768];
+  snprintf(command, sizeof command,
+           "folder=$(mktemp -d) && cd $folder && %s %s 2>&1 > /dev/null; rm -r $folder", TETLAP_PROGRAM,
+           arguments);
+  FILE *stream = popen(command, "r");
+  ck_assert_ptr_nonnull(stream);
+  text[fread(text, 1, size - 1, stream)] = 0;
+  ck_assert_int_eq(pclose(stream), 0);
+}
+
+static bool is_among(const char *word, size_t length, const char *const *words) {
+  for (; *words; words++)
+    if (strlen(*words) == length && memcmp(*words, word, length) == 0) return true;
+  return false;
+}
+
+// A label or none in twelve columns, then one fact that fits a terminal and is no enumeration.
+static void check_closing_line(const char *line, const char *const *labels) {
+  size_t label = strcspn(line, " ");
+  ck_assert_msg(label == 0 || is_among(line, label, labels), "'%s'", line);
+  ck_assert_msg(strlen(line) > 13 && line[12] == ' ' && line[13] != ' ', "'%s'", line);
+  ck_assert_msg(!strchr(line, ';'), "'%s'", line);
+  if (strncmp(line, "trouble:", 8) != 0 && !strstr(line, "/"))
+    ck_assert_msg(strlen(line) <= 100, "'%s'", line);
+}
+
+START_TEST(a_run_ends_in_lines_of_one_fact_each) {
+  static const char *const labels[] = {"reached:", "steps:",      "overlaps:", "contact:", "network:",
+                                       "energy:",  "statistics:", "files:",    "trouble:", NULL};
+  static const char *const scenes[] = {
+      "examples/02_two_blocks.yaml --set time.end=0.06 --set contact.overlap=clip",
+      "examples/01_drop.yaml --set time.end=0.16 --set contact.overlap=tpn", "tests/scenes/patch.yaml"};
+  char text[1 << 14], command[512];
+  for (int k = 0; k < 3; k++) {
+    snprintf(command, sizeof command, "run %s/%s -o out", TETLAP_SOURCE_DIR, scenes[k]);
+    read_messages(command, text, sizeof text);
+    char *line = strstr(text, "\nreached:"), *last = "";
+    ck_assert_msg(line, "%s", text);
+    int count = 0;
+    for (line = strtok(line, "\n"); line; line = strtok(NULL, "\n"), count++)
+      check_closing_line(last = line, labels);
+    ck_assert_int_ge(count, 12);
+    ck_assert_msg(strncmp(last, "trouble:     none", 17) == 0, "%s", last);
+  }
+}
+END_TEST
+
+START_TEST(training_in_a_pipe_tells_progress_in_lines) {
+  char text[1 << 14];
+  read_messages("train " TETLAP_SOURCE_DIR "/examples/train/smoke.yaml -o out --set optimiser.samples=5120",
+                text, sizeof text);
+  ck_assert_msg(strstr(text, "\n50 %: step 10 of 20, loss "), "%s", text);
+  ck_assert_msg(strstr(text, "\n90 %: step 18 of 20, loss "), "%s", text);
+  ck_assert_msg(!strchr(text, '\r') && !strstr(text, "nan"), "%s", text);
 }
 END_TEST
 
@@ -123,6 +182,8 @@ int main(void) {
   tcase_add_test(cases, a_list_with_an_empty_name_is_a_usage_error_and_blanks_are_none);
   tcase_add_test(cases, a_verbose_run_has_a_line_for_every_step);
   tcase_add_test(cases, a_run_names_the_files_that_it_wrote);
+  tcase_add_test(cases, a_run_ends_in_lines_of_one_fact_each);
+  tcase_add_test(cases, training_in_a_pipe_tells_progress_in_lines);
   tcase_add_test(cases, what_two_keys_of_a_scene_do_not_allow_together_is_told_with_its_place);
   return suite_run("program", cases, 60);
 }

@@ -60,11 +60,20 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 static void show_progress(void *observer, const AppTrainingProgress *progress) {
-  (void)observer;
+  LogPace *pace = observer;
+  double share = (double)progress->step / (double)progress->step_count;
   log_progress("%3.0f %%  %.3g M samples  loss %.3g  score %.4g, best %.4g  %.0f samples/s  %.0f s left",
-               100 * (double)progress->step / (double)progress->step_count, progress->samples / 1e6,
-               progress->loss, progress->score, progress->best_score, progress->samples_per_s,
-               progress->seconds_left);
+               100 * share, progress->samples / 1e6, progress->loss, progress->score, progress->best_score,
+               progress->samples_per_s, progress->seconds_left);
+  if (!log_pace_is_due(pace, share)) return;
+  if (isfinite(progress->score))
+    log_info("%.0f %%: step %lld of %lld, loss %.3g, score %.4g, best %.4g, about %.3g s left",
+             floor(100 * share), progress->step, progress->step_count, progress->loss, progress->score,
+             progress->best_score, progress->seconds_left);
+  else
+    log_info("%.0f %%: step %lld of %lld, loss %.3g, not validated yet, about %.3g s left",
+             floor(100 * share), progress->step, progress->step_count, progress->loss,
+             progress->seconds_left);
 }
 
 static void log_line(void *observer, const char *text) {
@@ -76,12 +85,14 @@ static void log_line(void *observer, const char *text) {
 static Status train(const Options *options, const AppTrainingConfig *config) {
   char directory[512];
   snprintf(directory, sizeof directory, "out/train/%s", config->name);
+  LogPace pace = {0};
   AppTrainingOptions run = {.directory = options->directory ? options->directory : directory,
                             .threads = omp_get_max_threads(),
                             .resumes = options->resumes,
                             .stop = app_job_stop_flag(),
                             .observe = show_progress,
-                            .tell = log_line};
+                            .tell = log_line,
+                            .observer = &pace};
   AppTrainingResult result;
   if (options->resumes && !app_training_has_checkpoint(run.directory))
     return status_fail(

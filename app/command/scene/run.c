@@ -8,6 +8,7 @@
 #include "app/cli/ranks.h"
 #include "app/cli/versions.h"
 #include "app/job/beacon.h"
+#include "app/job/closing.h"
 #include "app/job/origin.h"
 #include "base/clock.h"
 #include "base/files/file.h"
@@ -60,58 +61,6 @@ static void announce(const AppJob *job) {
            job->scene.body_count, job->scene.body_count == 1 ? "body" : "bodies", job->model.vertex_count,
            job->model.tet_count, job->model.unknown_count, fem_solver_name(fem_run_solver(&job->model)),
            overlap ? ", overlap " : "", overlap ? overlap : "");
-}
-
-// Who answered the pairs, where a network took part.
-static void conclude_network(const ContactPairCounts *pairs) {
-  if (pairs->by_net == 0 && pairs->beyond == 0) return;
-  double share = 100.0 / (double)pairs->tried;
-  log_info(
-      "of %lld pairs the network answered %.1f %%, the exact model %.1f %%, both together %.1f %%; %lld are "
-      "beyond the range of its training",
-      pairs->tried, share * (double)(pairs->by_net - pairs->blended), share * (double)pairs->fallbacks,
-      share * (double)pairs->blended, pairs->beyond);
-}
-
-// Of a static scene: what went in, and what of it is found again.
-static void conclude_work(const FemAudit *audit) {
-  double lost = fem_audit_lost(audit);
-  log_info("energy: of %.3g J of work, %.3g J went into friction and plasticity; work and energy differ by "
-           "%.3g J, "
-           "%.2g %% of the scene's %.3g J, and load steps of this length leave %.3g J undetermined",
-           audit->work, audit->dissipated, fabs(lost), 100 * fabs(lost) / audit->scale, audit->scale,
-           audit->open);
-}
-
-// What was lost, apart into what was asked for and the integrator's own.
-static void conclude_energy(const FemAudit *audit) {
-  double lost = fem_audit_lost(audit);
-  const bool is_bound = lost > 0 && audit->uncertain > 0.1 * lost;
-  log_info("energy: of the scene's %.3g J, %.3g J went into damping, friction and plasticity; the integrator "
-           "itself %s%s %.3g J, %.2g %%, and the total never rose by more than %.2g %%",
-           audit->scale, audit->dissipated, lost < 0 ? "gained" : "lost", is_bound ? " at most" : "",
-           fabs(lost), 100 * fabs(lost) / audit->scale, 100 * audit->gain / audit->scale);
-}
-
-static void conclude(const AppJob *job, const FemRunResult *result) {
-  log_info("t = %g s reached in %.2f s: %lld steps, %lld factorisations, up to %d overlapping pairs",
-           result->end_time, result->wall_s, result->integrator.steps, result->solver.factorisations,
-           result->pairs_max);
-  if (result->is_static)
-    conclude_work(&result->audit);
-  else
-    conclude_energy(&result->audit);
-  conclude_network(&result->pairs);
-  for (int i = 0; i < result->told_count; i++) log_info("contact: %s", result->told[i]);
-  char trouble[2048], statistics[1024];
-  fem_run_tell_statistics(result, statistics, sizeof statistics);
-  log_info("statistics: %s", statistics);
-  fem_run_tell_trouble(result, &job->model, trouble, sizeof trouble);
-  const FemSceneDef *scene = job->model.scene;
-  log_info("wrote %s: %s%ssummary.json, manifest.json", job->directory,
-           scene->write_vtu ? "frames.pvd (ParaView), " : "",
-           scene->history == FEM_HISTORY_NONE ? "" : "history.csv, ");
-  log_info("trouble: %s", trouble);
 }
 
 static Status print_summary(const AppJob *job, const FemRunResult *result, Status status) {
@@ -226,7 +175,7 @@ static Status run_opened(const AppRunOptions *options, const AppJob *job, const 
   if (status) tell_of_checkpoint(job);
   // The summary tells of a run that failed, too, unless nothing can be written.
   Status written = status == STATUS_IO ? STATUS_OK : app_job_write_summary(job, &result, status);
-  if (!status && !written) conclude(job, &result);
+  if (!status && !written) app_closing_tell(job, &result);
   if (options->job.is_json && !written) written = print_summary(job, &result, status);
   fem_run_result_destroy(&result);
   if (written) log_error("%s", status_message());

@@ -27,6 +27,7 @@ typedef struct Held {
 typedef struct Bound {
   OverlapGeoOverlap *of; // owned
   AppTrainingPool pool;  // its targets are e
+  long long unanswered;  // pairs that overlap and that the network leaves to another model
   AppTrainingOrder order;
   AppTrainingSets sets;
   Held held[APP_TRAINING_MAX_SETS];
@@ -73,7 +74,7 @@ static Status open_network(Bound *bound, const AppTrainingConfig *config) {
 }
 
 // The errors take the volumes' place; pairs that the network does not answer have none.
-static Status find_errors(const Bound *bound, DatagenPairs *pairs, size_t count) {
+static Status find_errors(Bound *bound, DatagenPairs *pairs, size_t count) {
   double *told = memory_zeroed(count, sizeof *told);
   unsigned *flags = memory_zeroed(count, sizeof *flags);
   Status status = told && flags ? STATUS_OK : status_no_memory("the errors of a network");
@@ -86,6 +87,7 @@ static Status find_errors(const Bound *bound, DatagenPairs *pairs, size_t count)
   for (size_t i = 0; i < count && !status; i++) {
     double volume = pairs->volume[i];
     bool is_answered = volume > 0 && told[i] > 0 && !(flags[i] & OVERLAP_FALLBACK);
+    bound->unanswered += volume > 0 && !is_answered;
     pairs->volume[i] = is_answered ? fmax(fabs(told[i] - volume), LEAST_ERROR * volume) : 0;
   }
   memory_free(told), memory_free(flags);
@@ -137,8 +139,10 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   TRY(load_sets(task));
   TRY(app_training_order_create(&bound->order, bound->pool.count));
   task->sample_count = bound->pool.count;
-  snprintf(task->summary, sizeof task->summary, "errors of %s in %d pairs to train on, %lld left out",
-           task->config->model.of, bound->pool.count, bound->pool.left_out);
+  int used = snprintf(task->summary, sizeof task->summary, "errors of %s in ", task->config->model.of);
+  if (used < (int)sizeof task->summary)
+    app_training_pool_tell(&bound->pool, bound->unanswered, task->summary + used,
+                           sizeof task->summary - (size_t)used);
   return create_batch(bound, task->config);
 }
 

@@ -99,8 +99,7 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   TRY(app_training_sets_load(&geo->sets, task->config));
   TRY(app_training_order_create(&geo->order, geo->pool.count));
   task->sample_count = geo->pool.count;
-  snprintf(task->summary, sizeof task->summary, "%d pairs to train on, %lld left out", geo->pool.count,
-           geo->pool.left_out);
+  app_training_pool_tell(&geo->pool, 0, task->summary, sizeof task->summary);
   return create_batch(geo, task->config);
 }
 

@@ -2,9 +2,11 @@
 #include "app/training/geo/pool.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "overlap/geo/geo.h"
 
 enum { SIZE = 24, RATES = APP_POOL_RATES, MAX = OVERLAP_GEO_MAX_FEATURES };
@@ -66,6 +68,7 @@ void app_training_pool_basis(const double pair[24], double basis[APP_POOL_RATES 
 // The pairs that have a frame, by their number, and their features.
 typedef struct Kept {
   int count;
+  long long apart;  // pairs that share no volume
   int *index;       // (count)
   double *features; // (count, features)
 } Kept;
@@ -86,6 +89,7 @@ static Status keep_features(Kept *kept, const OverlapGeoFeatureSet *set, const D
 #pragma omp parallel for schedule(dynamic, 64)
   for (size_t i = 0; i < count; i++) kept->index[i] = is_kept(set, pairs, i, kept->features + i * n);
   for (size_t i = 0; i < count; i++) {
+    kept->apart += !(pairs->volume[i] > 0);
     if (!kept->index[i]) continue;
     memmove(kept->features + (size_t)kept->count * n, kept->features + i * n, n * sizeof(double));
     kept->index[kept->count++] = (int)i;
@@ -189,7 +193,8 @@ static Status create(AppTrainingPool *pool, const DatagenPairs *pairs, size_t co
                      const NetWhitening *whitening, Kept *kept) {
   TRY(keep_features(kept, pool->set, pairs, count));
   pool->count = kept->count;
-  pool->left_out = (long long)count - kept->count;
+  pool->apart = kept->apart;
+  pool->unfit = (long long)count - kept->count - kept->apart;
   if (whitening->count) {
     TRY(copy_whitening(whitening, &pool->whitening));
   } else {
@@ -197,6 +202,25 @@ static Status create(AppTrainingPool *pool, const DatagenPairs *pairs, size_t co
     if (status != NET_OK) return fail_as_net(status);
   }
   return fill_all(pool, pairs, kept);
+}
+
+void app_training_pool_tell(const AppTrainingPool *pool, long long unanswered, char *text, size_t size) {
+  const struct {
+    long long count;
+    const char *reason;
+  } causes[] = {{pool->apart - unanswered, "share no volume"},
+                {unanswered, "are not answered by the network that is bounded"},
+                {pool->unfit, "are too flat for the features"}};
+  long long left_out = pool->apart + pool->unfit;
+  size_t used = 0;
+  text_append(text, size, &used, "%d pairs to train on", pool->count);
+  if (left_out > 0) text_append(text, size, &used, "; %lld left out", left_out);
+  const char *before = ": ";
+  for (int k = 0; k < 3; k++) {
+    if (causes[k].count == 0) continue;
+    text_append(text, size, &used, "%s%lld %s", before, causes[k].count, causes[k].reason);
+    before = ", ";
+  }
 }
 
 Status app_training_pool_create(AppTrainingPool *pool, const OverlapGeoFeatureSet *set,

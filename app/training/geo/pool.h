@@ -25,7 +25,8 @@ typedef struct AppTrainingPool {
   float *target_rates;    // V/‖∇V‖ · change of t               (count, 12)
   float *onset;           // w at the onset of an overlap       (features)
   NetWhitening whitening; // owned
-  long long left_out;     // pairs without volume, or left to the exact model
+  long long apart;        // pairs left out: they share no volume, so there is no ln V to learn
+  long long unfit; // pairs left out: too flat for the frame, so that `geo` leaves them to the exact model
 } AppTrainingPool;
 
 // From the pairs (with ∇V) that have a frame. `whitening` with count 0 is fitted to them, else copied.
@@ -33,6 +34,10 @@ typedef struct AppTrainingPool {
 Status app_training_pool_create(AppTrainingPool *pool, const OverlapGeoFeatureSet *set,
                                 const DatagenPairs *pairs, size_t count, const NetWhitening *whitening);
 void app_training_pool_destroy(AppTrainingPool *pool); // a zeroed one is accepted
+
+// "3000 pairs to train on; 1000 left out: 990 share no volume, 10 are too flat for the features".
+// `unanswered` of those without volume are left out since the network that is bounded does not answer them.
+void app_training_pool_tell(const AppTrainingPool *pool, long long unanswered, char *text, size_t size);
 
 // An orthonormal basis (12, 24) of the directions that no affine map of space makes.
 void app_training_pool_basis(const double pair[24], double basis[APP_POOL_RATES * 24]);

@@ -69,7 +69,7 @@ START_TEST(pool_holds_whitened_inputs) {
   AppTrainingPool pool;
   NetWhitening none = {0};
   ck_assert_ok(app_training_pool_create(&pool, overlap_geo_features_set(36), &pairs, count, &none));
-  ck_assert_int_eq((long long)pool.count + pool.left_out, 600);
+  ck_assert_int_eq((long long)pool.count + pool.apart + pool.unfit, 600);
   for (int i = 0; i < 36; i++) {
     double mean = 0, square = 0;
     for (int k = 0; k < pool.count; k++) {

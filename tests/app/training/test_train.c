@@ -327,6 +327,71 @@ START_TEST(fine_tuning_begins_where_shipped_weights_ended) {
 }
 END_TEST
 
+static void check_start(const char *text, const char *const *words) {
+  AppTrainingConfig config = read_config(text);
+  AppTrainingResult result;
+  ck_assert_int_eq(train(&config, directory, 1, false, NULL, &result), STATUS_INPUT);
+  for (; *words; words++)
+    ck_assert_msg(strstr(status_message(), *words) != NULL, "'%s' does not say '%s'", status_message(),
+                  *words);
+  app_training_config_destroy(&config);
+}
+
+#define SMALL_DATA                                                                                           \
+  "data:\n  training: [{law: scene, mix: scene=1, count: 200, seed: 11}]\n"                                  \
+  "  validation: [{law: scene, mix: scene=1, count: 100, seed: 12}]\noptimiser: {samples: 1000}\n"
+
+START_TEST(a_start_of_another_shape_is_refused_with_both_shapes) {
+  make_directory();
+  check_start("name: t\nstart: geo-small\nmodel: {kind: geo, features: 36, width: 8, depth: 1}\n" SMALL_DATA,
+              (const char *const[]){"56 inputs, hidden layers 16 16,", "36 inputs, hidden layers 8,",
+                                    "'inputs' is 56 in the file and 36 by `model`", NULL});
+  check_start("name: t\nstart: geo-small\nmodel: {kind: tpn}\n" SMALL_DATA,
+              (const char *const[]){"mlp: 56 inputs", "tpn: 24 inputs", "73370 parameters", NULL});
+  check_start("name: t\nstart: tpn\nmodel: {kind: tpn, pool: sum, activation: silu, scale: 2}\n" SMALL_DATA,
+              (const char *const[]){"the file has tpn: 24 inputs", "'activation' is", NULL});
+  remove_directory();
+}
+END_TEST
+
+static void keep_summary(void *observer, const char *text) {
+  if (strstr(text, "to train on")) snprintf(observer, 512, "%s", text);
+}
+
+static void summarise(const char *text, char summary[512]) {
+  AppTrainingConfig config = read_config(text);
+  AppTrainingResult result;
+  AppTrainingOptions options = {
+      .directory = directory, .threads = 1, .tell = keep_summary, .observer = summary};
+  ck_assert_ok(app_training_run(&config, &options, &result));
+  app_training_config_destroy(&config);
+}
+
+// 200 uniform pairs are mostly apart.
+START_TEST(pairs_that_are_left_out_are_told_with_the_reason) {
+  make_directory();
+  char summary[512];
+  int kept, left_out, apart;
+  summarise("name: t\nmodel: {kind: geo, features: 36, width: 4, depth: 1}\ndata:\n"
+            "  training: [{law: paper-train, count: 300, seed: 11}]\n"
+            "  validation: [{law: scene, mix: scene=1, count: 100, seed: 12}]\n"
+            "optimiser: {batch: 10, samples: 20}\nvalidations: 1\n",
+            summary);
+  ck_assert_msg(
+      sscanf(summary, "%d pairs to train on; %d left out: %d share no volume", &kept, &left_out, &apart) == 3,
+      "%s", summary);
+  ck_assert_int_eq(kept + left_out, 300);
+  ck_assert(apart > 0 && apart <= left_out);
+  summarise("name: t\nmodel: {kind: tpn}\ndata:\n"
+            "  training: [{law: paper-train, count: 300, seed: 11}]\n"
+            "  validation: [{law: scene, mix: scene=1, count: 100, seed: 12}]\n"
+            "optimiser: {batch: 10, samples: 20}\nvalidations: 1\n",
+            summary);
+  ck_assert_str_eq(summary, "300 pairs to train on");
+  remove_directory();
+}
+END_TEST
+
 START_TEST(training_stops_when_it_gets_no_better) {
   make_directory();
   AppTrainingConfig config = read_config(geo_config);
@@ -487,6 +552,8 @@ int main(void) {
   tcase_add_test(test_case, trained_bound_holds_of_other_pairs);
   tcase_add_test(test_case, resumed_bound_training_ends_with_the_same_bits);
   tcase_add_test(test_case, fine_tuning_begins_where_shipped_weights_ended);
+  tcase_add_test(test_case, a_start_of_another_shape_is_refused_with_both_shapes);
+  tcase_add_test(test_case, pairs_that_are_left_out_are_told_with_the_reason);
   tcase_add_test(test_case, training_stops_when_it_gets_no_better);
   tcase_add_test(test_case, weights_brought_over_to_another_whitening_are_the_same_function);
   tcase_add_test(test_case, wrong_configurations_are_refused_by_name);

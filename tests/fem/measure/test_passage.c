@@ -18,7 +18,7 @@ static void expect_passage(const char *const *overrides, bool has_passed) {
   ck_assert(has_passed == (trouble->of[FEM_TROUBLE_PASSED].steps > 0));
   ck_assert_str_eq(fem_run_outcome(&run.result, run.status), has_passed ? "passed through" : "finished");
   fem_run_tell_trouble(&run.result, &run.model, text, sizeof text);
-  ck_assert(has_passed == (strstr(text, "passed through each other: 'plate' and 'stone' at t = ") != NULL));
+  ck_assert(has_passed == (strstr(text, "passed through each other\n  'plate' and 'stone' at t = ") != NULL));
   scene_close(&run);
 }
 
