@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "app/cli/format.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
@@ -159,6 +160,7 @@ void app_comparison_record(const AppComparison *comparison, const char *scene_pa
     const AppComparisonModel *model = &comparison->models[m];
     Row row = row_of(comparison, m);
     Record *record = record_append(list);
+    app_format_record(record);
     record_text(record, "model", row.model);
     record_text(record, "reference", row.reference);
     record_text(record, "scene", scene_path);

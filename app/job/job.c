@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
+#include "app/cli/format.h"
 #include "app/cli/versions.h"
 #include "app/job/inputs.h"
 #include "app/scene/overlap.h"
@@ -200,6 +201,7 @@ const char *app_job_overlap(const AppJob *job) {
 Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status status) {
   Record *summary = record_new();
   if (!summary) return NULL;
+  app_format_record(summary);
   record_text(summary, "scene", job->scene.path);
   record_text(summary, "title", job->scene.title);
   record_text(summary, "overlap", app_job_overlap(job));
@@ -233,6 +235,7 @@ static Status write_record(const char *directory, const char *name, const Record
 Status app_job_write_manifest(const AppJob *job) {
   Record *manifest = record_new();
   if (!manifest) return status_no_memory("the manifest");
+  app_format_record(manifest);
   app_versions_record(record_child(manifest, "versions"));
   record_text(manifest, "processor", cpu_name());
   record_integer(manifest, "threads", cpu_thread_count());

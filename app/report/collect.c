@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "app/cli/format.h"
 #include "base/files/file.h"
 #include "base/memory.h"
 
@@ -30,6 +31,7 @@ static Status add_model(AppReport *report, const char *directory, const char *mo
 // All runs of a comparison; models of its audit have none.
 static Status add_comparison(AppReport *report, const char *directory, int max_frames) {
   const Record *rows = report->comparison;
+  TRY(app_format_check(record_at(rows, 0), directory, "compare.json", NULL));
   for (int k = 0; k < record_count(rows); k++) {
     const Record *row = record_at(rows, k);
     const char *model = record_find_text(row, "model"), *reference = record_find_text(row, "reference");

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "app/cli/format.h"
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "fem/output/vtk/pieces_read.h"
@@ -141,9 +142,16 @@ static Status read_frames(AppReportRun *run, int max_frames) {
   return status;
 }
 
+static Status check_format(const AppReportRun *run) {
+  const char *program = record_find_text(record_find(run->manifest, "versions"), "tetlap");
+  TRY(app_format_check(run->manifest, run->directory, "manifest.json", program));
+  return app_format_check(run->summary, run->directory, "summary.json", program);
+}
+
 static Status read_all(AppReportRun *run, int max_frames) {
   TRY(record_read_in(&run->summary, run->directory, "summary.json"));
   TRY(record_read_in(&run->manifest, run->directory, "manifest.json"));
+  TRY(check_format(run));
   TRY(read_history(run));
   TRY(read_frames(run, max_frames));
   if (!run->summary && !run->manifest && !run->history && run->frame_count == 0)

@@ -39,8 +39,8 @@ typedef struct AppReportRun {
 } AppReportRun;
 
 // Reads the directory, of its frames at most `max_frames` at even distances (the first and the last among
-// them; 0: all). STATUS_INPUT: not the directory of a run, or frames that do not belong together; STATUS_IO;
-// STATUS_MEMORY. After a failure there is nothing to destroy.
+// them; 0: all). STATUS_INPUT: not the directory of a run, files of another format (app/cli/format.h), or
+// frames that do not belong together; STATUS_IO; STATUS_MEMORY. After a failure there is nothing to destroy.
 Status app_report_run_read(AppReportRun *run, const char *directory, int max_frames);
 void app_report_run_destroy(AppReportRun *run);
 

@@ -209,7 +209,8 @@ Status app_sweep_crew_run(AppSweepGrid *grid, const AppSweepOptions *options) {
   if (file_exists(path) && record_read(&before, path))
     log_warning("%s; it is written anew", status_message());
   memory_free(path);
-  Status status = examine(grid, before, options->again);
+  Status status = app_sweep_table_check(before, grid->base.directory);
+  if (!status) status = examine(grid, before, options->again);
   record_destroy(before);
   if (status) return status;
   TRY(file_make_directories(grid->base.directory));

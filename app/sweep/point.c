@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/cli/format.h"
 #include "app/cli/versions.h"
 #include "app/job/inputs.h"
 #include "app/scene/overlap.h"
@@ -110,6 +111,7 @@ static bool is_same_scene(const Record *manifest, const FemSceneDef *scene) {
   Record *now = record_new();
   RecordDifference difference;
   bool is_same = now && version && strcmp(version, app_versions_program()) == 0 &&
+                 record_find_number(manifest, "format") == APP_FORMAT &&
                  app_scene_write_resolved(&same, now, "scene") == STATUS_OK &&
                  !record_differ(was, record_find(now, "scene"), &difference);
   record_destroy(now);

@@ -35,6 +35,20 @@ static const struct Column {
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
+static const char FORMAT[] = "tetlap-sweep 1";
+
+Status app_sweep_table_check(const Record *table, const char *directory) {
+  if (!table) return STATUS_OK;
+  const char *format = record_find_text(table, "format");
+  const char *program = record_find_text(record_find(table, "versions"), "tetlap");
+  if (format && strcmp(format, FORMAT) == 0) return STATUS_OK;
+  return status_fail(
+      STATUS_INPUT,
+      "%s/sweep.json: is of format '%s', written by tetlap %s; this program writes '%s': continue with "
+      "the program that wrote it, or sweep into another folder (-o)",
+      directory, format ? format : "none", program ? program : "of an unknown version", FORMAT);
+}
+
 static double value_of(const AppSweepPoint *point, const struct Column *column) {
   const Record *section = column->section ? record_find(point->summary, column->section) : point->summary;
   return record_find_number(section, column->key);
@@ -103,7 +117,7 @@ static void record_history(const AppSweepPoint *point, Record *row) {
 static Record *make_record(const AppSweepGrid *grid, int history_count) {
   Record *record = record_new();
   if (!record) return NULL;
-  record_text(record, "format", "tetlap-sweep 1");
+  record_text(record, "format", FORMAT);
   record_text(record, "scene", grid->base.scene_path);
   record_text(record, "command", app_versions_command());
   app_versions_record(record_child(record, "versions"));

@@ -7,6 +7,10 @@
 
 #include "app/sweep/grid.h"
 
+// Whether this program reads a sweep.json that is in the folder already (NULL: none is). STATUS_INPUT: its
+// format is another one.
+Status app_sweep_table_check(const Record *table, const char *directory);
+
 // sweep.json as a record, owned by the caller; NULL: no memory.
 Record *app_sweep_table_record(const AppSweepGrid *grid);
 

@@ -202,6 +202,16 @@ class WhatIsWrong(unittest.TestCase):
         with self.assertRaisesRegex(FileNotFoundError, "no such folder"):
             tetlap.read(self.directory / "none")
 
+    def test_a_folder_of_another_format_is_refused(self):
+        summary = tetlap.run(DROP, self.directory).directory / "summary.json"
+        text = summary.read_text()
+        for old, found in ((text.replace('"format": 1,', ""), "has no format number"),
+                           (text.replace('"format": 1,', '"format": 7,'), "is of format 7")):
+            self.assertNotEqual(old, text)
+            summary.write_text(old)
+            with self.assertRaisesRegex(tetlap.Error, f"summary.json: {found}, expected 1: read it with"):
+                tetlap.read(self.directory)
+
     def test_a_torn_frame_is_refused(self):
         run = tetlap.run(DROP, self.directory)
         frame = run.frames[0].path

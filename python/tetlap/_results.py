@@ -94,13 +94,22 @@ def read_history(path):
     return rows
 
 
+FORMAT = 1  # of summary.json and manifest.json
+
+
 def _read_json(path):
     if not path.exists():
         return None
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        record = json.loads(path.read_text(encoding="utf-8"))
     except ValueError as error:
         raise Error(f"{path}: is no JSON ({error})") from None
+    found = record.get("format") if isinstance(record, dict) else None
+    if found != FORMAT:
+        kind = "has no format number" if found is None else f"is of format {found}"
+        raise Error(f"{path}: {kind}, expected {FORMAT}: read it with the package of the program that wrote it, or run "
+                    "the scene again")
+    return record
 
 
 class Run:

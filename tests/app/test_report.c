@@ -79,7 +79,7 @@ static void write_run(void) {
   for (int k = 0; k < FRAMES; k++) fem_pvd_add(&list, times[k], 0, NULL, names[k]);
   ck_assert_ok(fem_pvd_commit(&list));
   memory_free(path);
-  write_text("summary.json", "{\"title\": \"</script><b>&\", \"wall_s\": 1.5}\n");
+  write_text("summary.json", "{\"format\": 1, \"title\": \"</script><b>&\", \"wall_s\": 1.5}\n");
   write_text("history.csv", "time_s,kinetic_J\n0,0\n1,0.5\n2,1\n");
 }
 
@@ -406,7 +406,7 @@ END_TEST
 START_TEST(the_page_without_frames_stays_below_five_megabytes) {
   ck_assert_uint_lt(strlen(app_report_page_text()), 5000000);
   AppReport report = {.run_count = 1};
-  write_text("summary.json", "{\"title\": \"no frames\"}\n");
+  write_text("summary.json", "{\"format\": 1, \"title\": \"no frames\"}\n");
   ck_assert_ok(app_report_run_read(&report.runs[0], directory, 0));
   char *page = write_page(&report);
   ck_assert_uint_lt(strlen(page), 5000000);
@@ -477,6 +477,25 @@ START_TEST(frames_of_another_mesh_are_refused) {
 }
 END_TEST
 
+START_TEST(a_folder_of_another_format_is_refused_with_the_program_that_reads_it) {
+  static const struct {
+    const char *name, *text, *says;
+  } cases[] = {
+      {"summary.json", "{\"title\": \"old\"}", "/summary.json: has no format number; tetlap 0.0.9 wrote it"},
+      {"summary.json", "{\"format\": 2}", "/summary.json: is of format 2; tetlap 0.0.9 wrote it"},
+      {"manifest.json", "{\"title\": \"old\"}",
+       "has no format number; a program that is not known wrote it"}};
+  AppReportRun run;
+  write_text("manifest.json", "{\"format\": 1, \"versions\": {\"tetlap\": \"0.0.9\"}}");
+  for (int k = 0; k < 3; k++) {
+    write_text(cases[k].name, cases[k].text);
+    ck_assert_int_eq(app_report_run_read(&run, directory, 0), STATUS_INPUT);
+    ck_assert_msg(strstr(status_message(), cases[k].says) != NULL, "%s", status_message());
+    ck_assert_ptr_nonnull(strstr(status_message(), "reads format 1: "));
+  }
+}
+END_TEST
+
 START_TEST(broken_json_is_told_with_its_line) {
   AppReportRun run;
   write_text("summary.json", "{\n  \"title\": oops\n}\n");
@@ -526,6 +545,7 @@ int main(void) {
   tcase_add_test(test_case, a_directory_that_is_no_run_is_named_and_told_what_to_give);
   tcase_add_test(test_case, a_foreign_or_damaged_frame_is_refused_by_name);
   tcase_add_test(test_case, frames_of_another_mesh_are_refused);
+  tcase_add_test(test_case, a_folder_of_another_format_is_refused_with_the_program_that_reads_it);
   tcase_add_test(test_case, broken_json_is_told_with_its_line);
   tcase_add_test(test_case, a_page_is_written_whole_or_not_at_all);
   return suite_run("report", test_case, 20);

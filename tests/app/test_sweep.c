@@ -192,6 +192,15 @@ START_TEST(a_changed_mesh_or_changed_weights_run_again) {
 }
 END_TEST
 
+START_TEST(a_table_of_another_format_is_refused_and_kept) {
+  ck_assert_int_eq(sweep("-s time.end=0.002 -V bodies[0].material.poisson=0.3"), 0);
+  change("sed -i 's/tetlap-sweep 1/tetlap-sweep 0/' out/sweep.json && cp out/sweep.json before.json");
+  ck_assert_int_eq(sweep("-s time.end=0.002 -V bodies[0].material.poisson=0.3"), 65);
+  ck_assert(says("is of format 'tetlap-sweep 0', written by tetlap "));
+  change("cmp out/sweep.json before.json");
+}
+END_TEST
+
 // Two bodies' keys that end alike, in two sweeps into one folder.
 START_TEST(other_keys_have_other_folders) {
   ck_assert_int_eq(sweep("-s time.end=0.002 -V bodies[0].material.poisson=0.3"), 0);
@@ -329,6 +338,7 @@ int main(void) {
   tcase_add_test(cases, what_is_finished_is_kept_and_what_has_changed_runs_again);
   tcase_add_test(cases, a_changed_mesh_or_changed_weights_run_again);
   tcase_add_test(cases, other_keys_have_other_folders);
+  tcase_add_test(cases, a_table_of_another_format_is_refused_and_kept);
   tcase_add_test(cases, a_message_is_the_own_process_s);
   tcase_add_test(cases, a_history_is_thinned_by_its_peaks);
   tcase_add_test(cases, a_wrong_key_is_told_at_once);

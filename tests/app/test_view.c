@@ -331,7 +331,7 @@ START_TEST(it_tells_how_far_a_run_is) {
   expect_outcome("gone");
   snprintf(text, sizeof text, "%s/run/progress.json", folder);
   ck_assert_int_eq(unlink(text), 0);
-  write_text("run/summary.json", "{\"outcome\": \"finished\"}");
+  write_text("run/summary.json", "{\"format\": 1, \"outcome\": \"finished\"}");
   expect_outcome("finished");
   ck_assert_int_eq(end(server), 0);
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A checkpoint: all that a run needs to go on, and its file.
 //
-// Nobody can save what an integrator, a factorisation or a contact list keeps inside, so none of it is saved:
-// at a checkpoint the run that goes on throws all that away as well and begins anew from these data, exactly
-// as a run does that is resumed from the file. What comes after is therefore the same to the last bit.
+// The inner state of the integrator, a factorisation and contact lists cannot be saved. So at a checkpoint
+// the running run discards it, too, and begins anew from these data, exactly as a run does that is resumed
+// from the file. What follows is therefore the same to the last bit.
 //
-// The file is HDF5 (h5dump and h5py read it) behind a block of 512 bytes of text that holds the size and the
-// digest of the rest, so that damage is found before HDF5 sees it. Every number has an attribute `unit`.
+// The file is HDF5 (h5dump and h5py read it) behind a block of 512 bytes of text that holds the format, the
+// size and the digest of the rest, so that damage is found before HDF5 sees it. Every number has an attribute
+// `unit`, the root the attribute `format`.
 #ifndef TETLAP_FEM_RUN_CHECKPOINT_H
 #define TETLAP_FEM_RUN_CHECKPOINT_H
 
@@ -52,7 +53,7 @@ void fem_checkpoint_destroy(FemCheckpoint *checkpoint); // also of a zeroed one
 // Whole or not at all. STATUS_IO names the file and the system's reason.
 Status fem_checkpoint_write(const FemCheckpoint *checkpoint, const char *path);
 
-// STATUS_IO: cannot be read; STATUS_INPUT: is none, of another version, cut short, damaged, or lacks
+// STATUS_IO: cannot be read; STATUS_INPUT: is none, of another format, cut short, damaged, or lacks
 // something, which the message names. After a failure there is nothing to destroy.
 Status fem_checkpoint_read(FemCheckpoint *checkpoint, const char *path);
 

@@ -14,7 +14,7 @@
 #include "fem/run/checkpoint/numbers.h"
 
 // HDF5 looks for its own beginning at 0, 512, 1024 …
-enum { HEAD_SIZE = 512, FORMAT_VERSION = 10, PATH_SIZE = 96 };
+enum { HEAD_SIZE = 512, FORMAT = 11, PATH_SIZE = 96 };
 static const char MAGIC[] = "tetlap checkpoint";
 
 // An effect's cost, one array.
@@ -163,10 +163,30 @@ static bool write_effects(hid_t file, const FemCheckpoint *checkpoint) {
   return works;
 }
 
+static bool write_format(hid_t file) {
+  const int format = FORMAT;
+  hid_t space = H5Screate(H5S_SCALAR);
+  hid_t attribute = H5Acreate2(file, "format", H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT);
+  bool works = attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_INT, &format) >= 0;
+  close_id(attribute);
+  close_id(space);
+  return works;
+}
+
+static bool has_format(hid_t file) {
+  int format = 0;
+  hid_t attribute = H5Aopen(file, "format", H5P_DEFAULT),
+        space = attribute >= 0 ? H5Aget_space(attribute) : -1;
+  bool works = space >= 0 && H5Sget_simple_extent_npoints(space) == 1 &&
+               H5Aread(attribute, H5T_NATIVE_INT, &format) >= 0;
+  close_id(space);
+  close_id(attribute);
+  return works && format == FORMAT;
+}
+
 static bool write_contents(hid_t file, const FemCheckpoint *checkpoint, const char *counters) {
   const hsize_t shape[2] = {(hsize_t)checkpoint->vertex_count, 3};
-  const int version = FORMAT_VERSION;
-  bool works = write_values(file, "format_version", FEM_INTEGER, 0, NULL, &version, "1") &&
+  bool works = write_format(file) &&
                write_values(file, "displacement", FEM_REAL, 2, shape, checkpoint->displacement, "m") &&
                write_values(file, "velocity", FEM_REAL, 2, shape, checkpoint->velocity, "m/s") &&
                write_text(file, "origin", checkpoint->origin ? checkpoint->origin : "") &&
@@ -200,7 +220,7 @@ static void print_head(const void *image, size_t size, char head[HEAD_SIZE]) {
   digest_print(digest_bytes(DIGEST_START, image, size), digest);
   memset(head, ' ', HEAD_SIZE);
   int used = snprintf(head, HEAD_SIZE, "%s %d\nbytes %zu\ndigest %s\nHDF5 follows: h5dump reads this file\n",
-                      MAGIC, FORMAT_VERSION, size, digest);
+                      MAGIC, FORMAT, size, digest);
   head[used] = ' ';
   head[HEAD_SIZE - 1] = '\n';
 }
@@ -230,27 +250,23 @@ Status fem_checkpoint_write(const FemCheckpoint *checkpoint, const char *path) {
   return status;
 }
 
-static Status check_head(const char *path, const char *text, size_t size) {
+static Status check_head(const char *path, const char *text, size_t size, int *format) {
   char digest[DIGEST_TEXT], found[DIGEST_TEXT] = "";
-  int version = 0;
   size_t bytes = 0;
   if (size < sizeof MAGIC || memcmp(text, MAGIC, sizeof MAGIC - 1) != 0)
     return status_fail(STATUS_INPUT, "%s: is no checkpoint; `tetlap run` writes one named checkpoint.h5",
                        path);
   if (size <= HEAD_SIZE)
     return status_fail(STATUS_INPUT, "%s: is truncated: it ends after %zu bytes", path, size);
-  if (sscanf(text + sizeof MAGIC - 1, " %d bytes %zu digest %16s", &version, &bytes, found) != 3)
+  if (sscanf(text + sizeof MAGIC - 1, " %d bytes %zu digest %16s", format, &bytes, found) != 3)
     return status_fail(STATUS_INPUT, "%s: is damaged: its first lines do not say size and digest", path);
-  if (version != FORMAT_VERSION)
-    return status_fail(STATUS_INPUT, "%s: has version %d of the format, this program reads version %d", path,
-                       version, FORMAT_VERSION);
   if (bytes != size - HEAD_SIZE)
     return status_fail(STATUS_INPUT, "%s: is truncated or damaged: it has %zu bytes, %zu were written", path,
                        size, bytes + HEAD_SIZE);
   digest_print(digest_bytes(DIGEST_START, text + HEAD_SIZE, bytes), digest);
   char head[HEAD_SIZE];
   print_head(text + HEAD_SIZE, bytes, head);
-  if (strcmp(digest, found) != 0 || memcmp(head, text, HEAD_SIZE) != 0)
+  if (strcmp(digest, found) != 0 || (*format == FORMAT && memcmp(head, text, HEAD_SIZE) != 0))
     return status_fail(STATUS_INPUT, "%s: is damaged: its content does not agree with its digest", path);
   return STATUS_OK;
 }
@@ -392,14 +408,35 @@ static Status read_contents(hid_t file, FemCheckpoint *checkpoint, const char *p
   return read_effects(file, checkpoint, path);
 }
 
+// Of another format: which program wrote it is in the origin, if that can be read.
+static Status fail_format(hid_t file, const char *path, int format) {
+  char *text = NULL;
+  Record *origin = NULL;
+  if (file >= 0 && read_text(file, path, "origin", &text) == STATUS_OK)
+    (void)record_parse(&origin, text, strlen(text), path);
+  const char *program = record_find_text(origin, "program");
+  int length = program ? (int)strcspn(program, ";") : 0;
+  status_fail(
+      STATUS_INPUT,
+      "%s: is of format %d, written by %.*s; this program reads format %d: resume it with the program that "
+      "wrote it, or start again with `tetlap run`",
+      path, format, program ? length : 99, program ? program : "another program", FORMAT);
+  memory_free(text);
+  record_destroy(origin);
+  return STATUS_INPUT;
+}
+
 Status fem_checkpoint_read(FemCheckpoint *checkpoint, const char *path) {
   char *text;
   size_t size;
+  int format = 0;
   *checkpoint = (FemCheckpoint){0};
   TRY(file_read(path, &text, &size));
-  Status status = check_head(path, text, size);
+  Status status = check_head(path, text, size, &format);
   hid_t file = status ? -1 : open_memory(text + HEAD_SIZE, size - HEAD_SIZE);
+  if (!status && format != FORMAT) status = fail_format(file, path, format);
   if (!status && file < 0) status = fail_hdf5(STATUS_INPUT, path, "is damaged");
+  if (!status && !has_format(file)) status = fail_lacking(path, "format");
   if (!status) status = read_contents(file, checkpoint, path);
   close_id(file);
   forget_buffers();

@@ -197,13 +197,13 @@ START_TEST(foreign_files_are_refused_by_name) {
 }
 END_TEST
 
-// A head that is right about a content that is not HDF5, or of another version.
+// A head that is right about a content that is not HDF5, or of another format.
 START_TEST(a_right_head_does_not_make_a_checkpoint) {
   char file[560], digest[DIGEST_TEXT];
   static const char *const heads[] = {
-      "tetlap checkpoint 10\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
+      "tetlap checkpoint 11\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
       "tetlap checkpoint 2\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n"};
-  static const char *const words[] = {"is damaged", "version 2"};
+  static const char *const words[] = {"is damaged", "is of format 2, written by another program"};
   for (int k = 0; k < 2; k++) {
     memset(file, ' ', sizeof file);
     digest_print(digest_bytes(DIGEST_START, file + 512, 48), digest);
@@ -212,6 +212,23 @@ START_TEST(a_right_head_does_not_make_a_checkpoint) {
     write_file(file, sizeof file);
     expect(STATUS_INPUT, words[k]);
   }
+}
+END_TEST
+
+START_TEST(a_checkpoint_of_another_format_names_the_program_that_wrote_it) {
+  FemCheckpoint written = example();
+  char *text;
+  size_t size;
+  memory_free(written.origin);
+  written.origin = copy_text("{\"program\": \"tetlap 0.0.9; GNU 12\"}");
+  ck_assert_ok(fem_checkpoint_write(&written, path));
+  read_file(&text, &size);
+  char *number = strstr(text, "checkpoint ") + strlen("checkpoint ");
+  memcpy(number, "10", 2);
+  write_file(text, size);
+  expect(STATUS_INPUT, "is of format 10, written by tetlap 0.0.9; this program reads format 11");
+  memory_free(text);
+  fem_checkpoint_destroy(&written);
 }
 END_TEST
 
@@ -326,6 +343,7 @@ int main(void) {
   tcase_add_test(test_case, a_flipped_bit_anywhere_is_refused);
   tcase_add_test(test_case, foreign_files_are_refused_by_name);
   tcase_add_test(test_case, a_right_head_does_not_make_a_checkpoint);
+  tcase_add_test(test_case, a_checkpoint_of_another_format_names_the_program_that_wrote_it);
   tcase_add_test(test_case, seconds_that_no_effect_can_have_taken_are_refused);
   tcase_add_test(test_case, a_disk_that_is_full_leaves_the_last_checkpoint_whole);
   tcase_add_test(test_case, a_folder_that_is_not_there_is_named);
