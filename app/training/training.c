@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "app/cli/versions.h"
+#include "app/training/guard.h"
 #include "app/training/log.h"
 #include "base/clock.h"
 #include "base/files/file.h"
@@ -76,10 +77,8 @@ static double rate_of(const Training *training, long long step) {
   return net_schedule_rate(schedule, step);
 }
 
-static const char CHECKPOINT[] = "checkpoint.safetensors";
-
 bool app_training_has_checkpoint(const char *directory) {
-  char *path = file_join(directory, CHECKPOINT);
+  char *path = file_join(directory, APP_TRAINING_CHECKPOINT);
   bool is_there = path && file_exists(path);
   memory_free(path);
   return is_there;
@@ -88,11 +87,10 @@ bool app_training_has_checkpoint(const char *directory) {
 static Status name_files(Training *training) {
   const char *directory = training->options->directory;
   char name[256];
-  TRY(file_make_directories(directory));
   snprintf(name, sizeof name, "%s.safetensors", training->config->name);
   training->weights = file_join(directory, name);
   training->candidate = file_join(directory, "candidate.safetensors");
-  training->checkpoint = file_join(directory, CHECKPOINT);
+  training->checkpoint = file_join(directory, APP_TRAINING_CHECKPOINT);
   training->description = app_training_config_print(training->config);
   bool fits = training->weights && training->candidate && training->checkpoint && training->description;
   return fits ? STATUS_OK : status_no_memory("a training");
@@ -220,6 +218,14 @@ static Status begin(Training *training) {
   return app_training_log_open(&training->log, training->options->directory, -1);
 }
 
+// A checkpoint that is resumed from is compared when it is read.
+static Status guard_files(const Training *training, bool resumes) {
+  TRY(app_training_guard_inputs(training->config, training->weights));
+  if (resumes || training->options->replaces) return STATUS_OK;
+  return app_training_guard_files(training->config, training->description, training->options->directory,
+                                  training->weights);
+}
+
 static Status prepare(Training *training) {
   training->schedule = schedule_of(training->config);
   training->best_score = INFINITY;
@@ -230,9 +236,11 @@ static Status prepare(Training *training) {
   training->task = (AppTrainingTask){.config = training->config,
                                      .ops = app_training_task_find(training->config->model.kind)};
   TRY(name_files(training));
-  TRY(create_network(training));
   bool resumes = training->options->resumes && file_exists(training->checkpoint);
+  TRY(guard_files(training, resumes));
+  TRY(create_network(training));
   TRY(resumes ? resume(training) : begin(training));
+  TRY(file_make_directories(training->options->directory));
   TRY(copy_config(training));
   training->began_s = clock_wall_s() - training->counts.seconds;
   return STATUS_OK;

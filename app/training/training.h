@@ -28,6 +28,7 @@ typedef struct AppTrainingOptions {
   const char *directory;             // made if it is not there
   int threads;                       // ≥ 1
   bool resumes;                      // from the directory's checkpoint, if there is one
+  bool replaces;                     // files in the directory that this training did not make
   const volatile sig_atomic_t *stop; // may be NULL; not 0: write a checkpoint and return
   void (*observe)(void *observer, const AppTrainingProgress *progress); // after each step; may be NULL
   void (*tell)(void *observer, const char *text);                       // what happens; may be NULL
@@ -43,8 +44,9 @@ typedef struct AppTrainingResult {
 // Whether a training in that directory has kept a checkpoint.
 bool app_training_has_checkpoint(const char *directory);
 
-// STATUS_INTERRUPTED: told to stop. STATUS_INPUT: data, or a checkpoint of another configuration.
-// STATUS_SOLVER: the loss is no longer finite.
+// STATUS_INTERRUPTED: told to stop. STATUS_USAGE: it would write over files that are not of this training
+// (app/training/guard.h). STATUS_INPUT: data, or a checkpoint of another configuration. STATUS_SOLVER: the
+// loss is no longer finite.
 Status app_training_run(const AppTrainingConfig *config, const AppTrainingOptions *options,
                         AppTrainingResult *result);
 

@@ -11,13 +11,13 @@
 #include "app/training/training.h"
 #include "base/log.h"
 
-enum { KEY_RESUME = 256 };
+enum { KEY_RESUME = 256, KEY_FORCE };
 
 typedef struct Options {
   const char *config, *directory;
   const char *overrides[APP_MAX_OVERRIDES];
   int override_count, threads; // 0: all
-  bool resumes, is_quiet;
+  bool resumes, replaces, is_quiet;
 } Options;
 
 static const struct argp_option option_table[] = {
@@ -25,6 +25,7 @@ static const struct argp_option option_table[] = {
     {"set", 's', "KEY=VALUE", 0, "Replace a value of the configuration, as in optimiser.rate=1e-3", 0},
     {"threads", 't', "N", 0, "Threads (default: all); the result does not depend on it", 0},
     {"resume", KEY_RESUME, NULL, 0, "Go on from the checkpoint in DIR", 0},
+    {"force", KEY_FORCE, NULL, 0, "Replace files in DIR that are not of this training", 0},
     {"quiet", 'q', NULL, 0, "Say errors only", 0},
     {0},
 };
@@ -43,6 +44,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case KEY_RESUME:
     options->resumes = true;
+    return 0;
+  case KEY_FORCE:
+    options->replaces = true;
     return 0;
   case 'q':
     options->is_quiet = true;
@@ -89,6 +93,7 @@ static Status train(const Options *options, const AppTrainingConfig *config) {
   AppTrainingOptions run = {.directory = options->directory ? options->directory : directory,
                             .threads = omp_get_max_threads(),
                             .resumes = options->resumes,
+                            .replaces = options->replaces,
                             .stop = app_job_stop_flag(),
                             .observe = show_progress,
                             .tell = log_line,

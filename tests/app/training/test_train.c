@@ -237,6 +237,80 @@ START_TEST(checkpoint_of_another_configuration_is_refused) {
 }
 END_TEST
 
+static Status train_over(const AppTrainingConfig *config, bool replaces) {
+  AppTrainingResult result;
+  AppTrainingOptions options = {.directory = directory, .threads = 1, .replaces = replaces};
+  return app_training_run(config, &options, &result);
+}
+
+// What a training of this configuration would write over, and leaves as it is.
+static void check_kept(const AppTrainingConfig *config, const char *name) {
+  char *before, *after;
+  size_t size, size_after;
+  ck_assert_ok(file_read(path_in(name), &before, &size));
+  ck_assert_int_eq(train_over(config, false), STATUS_USAGE);
+  ck_assert_ptr_nonnull(strstr(status_message(), name));
+  ck_assert_ptr_nonnull(strstr(status_message(), "--force"));
+  ck_assert_ok(file_read(path_in(name), &after, &size_after));
+  ck_assert_uint_eq(size, size_after);
+  ck_assert_int_eq(memcmp(before, after, size), 0);
+  memory_free(before), memory_free(after);
+}
+
+START_TEST(training_writes_over_its_own_files_alone) {
+  make_directory();
+  AppTrainingConfig config = read_config(geo_config);
+  config.optimiser.samples = 2000, config.validations = 1;
+  ck_assert_ok(train_over(&config, false));
+  ck_assert_ok(train_over(&config, false)); // the same training once more
+  config.seed++;
+  check_kept(&config, "t.safetensors"); // of another seed
+  ck_assert_int_eq(remove(path_in("t.safetensors")), 0);
+  check_kept(&config, "checkpoint.safetensors");
+  ck_assert_int_eq(remove(path_in("checkpoint.safetensors")), 0);
+  ck_assert_int_eq(remove(path_in("config.yaml")), 0);
+  check_kept(&config, "log.csv");
+  ck_assert_ok(train_over(&config, true));
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+END_TEST
+
+// A bound, or a network that begins from another one, by the name of the file that it reads.
+START_TEST(training_never_writes_over_the_network_that_it_reads) {
+  make_directory();
+  char command[256], network[4096];
+  ck_assert_ok(overlap_weights_find("geo-small", network, sizeof network));
+  snprintf(command, sizeof command, "cp '%.150s' '%s'", network, path_in("t-bound.safetensors"));
+  ck_assert_int_eq(system(command), 0);
+  AppTrainingConfig config = read_config(bound_config);
+  memory_free(config.model.of);
+  config.model.of =
+      memory_copy(path_in("t-bound.safetensors"), strlen(path_in("t-bound.safetensors")) + 1, 1);
+  ck_assert_int_eq(train_over(&config, true), STATUS_USAGE);
+  ck_assert_ptr_nonnull(strstr(status_message(), "model.of"));
+  snprintf(command, sizeof command, "cmp '%.150s' '%s'", network, path_in("t-bound.safetensors"));
+  ck_assert_int_eq(system(command), 0);
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+END_TEST
+
+START_TEST(a_refused_training_leaves_no_folder) {
+  make_directory();
+  AppTrainingConfig config = read_config(geo_config);
+  AppTrainingResult result;
+  memory_free(config.start);
+  config.start = memory_copy("goe", 4, 1);
+  char home[80];
+  snprintf(home, sizeof home, "%s/new/home", directory);
+  ck_assert(train(&config, home, 1, false, NULL, &result) != STATUS_OK);
+  ck_assert(!file_exists(path_in("new")));
+  app_training_config_destroy(&config);
+  remove_directory();
+}
+END_TEST
+
 static AppEvaluation evaluate(const char *model_name) {
   AppSourceDef def = {.law = "scene", .count = 1000, .seed = 77};
   DatagenPairs pairs;
@@ -320,7 +394,7 @@ START_TEST(fine_tuning_begins_where_shipped_weights_ended) {
   ck_assert_near(tuned.gradient_error, shipped.gradient_error, 0.05 * shipped.gradient_error);
   memory_free(config.start);
   config.start = memory_copy("goe", 4, 1);
-  ck_assert(train(&config, directory, 1, false, NULL, &result) != STATUS_OK);
+  ck_assert(train(&config, path_in("other"), 1, false, NULL, &result) != STATUS_OK);
   ck_assert(strstr(status_message(), "goe"));
   app_training_config_destroy(&config);
   remove_directory();
@@ -550,6 +624,9 @@ int main(void) {
   tcase_add_test(test_case, checkpoint_of_another_configuration_is_refused);
   tcase_add_test(test_case, trained_network_is_far_better_than_none);
   tcase_add_test(test_case, trained_bound_holds_of_other_pairs);
+  tcase_add_test(test_case, training_writes_over_its_own_files_alone);
+  tcase_add_test(test_case, training_never_writes_over_the_network_that_it_reads);
+  tcase_add_test(test_case, a_refused_training_leaves_no_folder);
   tcase_add_test(test_case, resumed_bound_training_ends_with_the_same_bits);
   tcase_add_test(test_case, fine_tuning_begins_where_shipped_weights_ended);
   tcase_add_test(test_case, a_start_of_another_shape_is_refused_with_both_shapes);
