@@ -2,6 +2,7 @@
 #include "app/compare/comparison.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "app/cli/format.h"
 #include "base/memory.h"
@@ -160,8 +161,10 @@ void app_comparison_record(const AppComparison *comparison, const char *scene_pa
     const AppComparisonModel *model = &comparison->models[m];
     Row row = row_of(comparison, m);
     Record *record = record_append(list);
+    char path[PATH_MAX];
     app_format_record(record);
     record_text(record, "model", row.model);
+    record_text(record, "weights", app_model_names_locate(model->source, path) ? path : NULL);
     record_text(record, "reference", row.reference);
     record_text(record, "scene", scene_path);
     record_text(record, "outcome", row.outcome);
@@ -214,16 +217,27 @@ static void print_figure(FILE *stream, const char *format, double value) {
   fprintf(stream, isnan(value) ? "  %10s" : "  %8s", isnan(value) ? "–" : text); // the dash has three bytes
 }
 
+// Of the column with the models' names.
+static int name_width(const AppComparison *comparison) {
+  int width = 12;
+  for (int m = 0; m < comparison->model_count; m++) {
+    int length = (int)strlen(comparison->models[m].name);
+    if (length > width) width = length;
+  }
+  return width;
+}
+
 void app_comparison_print_table(const AppComparison *comparison, FILE *stream) {
+  int width = name_width(comparison);
   fprintf(stream, "reference: %s\n", comparison->models[comparison->reference].name);
-  fprintf(stream, "%-12s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "", "audit", "audit",
-          "audit", "audit", "frames", "force", "force", "path", "energy", "wall", "overlap", "");
+  fprintf(stream, "%-*s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", width, "", "audit",
+          "audit", "audit", "audit", "frames", "force", "force", "path", "energy", "wall", "overlap", "");
   // Δ and ∇ have two and three bytes.
-  fprintf(stream, "%-12s  %9s  %11s  %9s  %9s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", "model", "ΔV", "Δ∇V",
-          "Δf", "ΔF", "shared", "L2", "max", "RMS/L", "gain", "s", "s", "");
+  fprintf(stream, "%-*s  %9s  %11s  %9s  %9s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", width, "model", "ΔV",
+          "Δ∇V", "Δf", "ΔF", "shared", "L2", "max", "RMS/L", "gain", "s", "s", "");
   for (int m = 0; m < comparison->model_count; m++) {
     Row row = row_of(comparison, m);
-    fprintf(stream, "%-12s", row.model);
+    fprintf(stream, "%-*s", width, row.model);
     for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) print_figure(stream, "%.1e", row.audit[k]);
     print_figure(stream, "%.0f", row.frames < 0 ? NAN : (double)row.frames);
     print_figure(stream, "%.1e", row.force.l2);

@@ -31,8 +31,9 @@ typedef struct AppAuditSums {
 } AppAuditSums;
 
 typedef struct AppComparisonModel {
-  const char *name;
-  bool is_driven; // has a run of its own; else audit only
+  const char *source; // what the command line says, borrowed
+  AppModelName name;  // what it is called (app/cli/model_names.h); its run's folder below the comparison's
+  bool is_driven;     // has a run of its own; else audit only
   bool has_run;
   Status status;        // of its run
   char message[512];    // why it failed

@@ -4,6 +4,7 @@
 #include <limits.h>
 #include <string.h>
 
+#include "app/scene/overlap.h"
 #include "base/files/digest.h"
 #include "base/files/file.h"
 #include "base/memory.h"
@@ -32,18 +33,12 @@ static void record_meshes(const FemModel *model, Record *record) {
 
 // The file with the weights of the scene's overlap model; "": it has none.
 static void find_weights(const FemSceneDef *scene, char path[PATH_MAX]) {
-  const FemContactDef *contact = &scene->contact;
+  static const char HYBRID[] = "hybrid";
+  char source[PATH_MAX];
   path[0] = 0;
-  if (!contact->is_on) return;
-  if (contact->net && overlap_weights_is_path(contact->net)) {
-    char *directory = file_directory_of(scene->path),
-         *file = directory ? file_join(directory, contact->net) : NULL;
-    if (file) snprintf(path, PATH_MAX, "%s", file);
-    memory_free(directory), memory_free(file);
-    return;
-  }
-  const char *name = contact->net ? contact->net : contact->overlap;
-  if (!contact->net && strcmp(name, "hybrid") == 0) name = OVERLAP_HYBRID_NETWORK;
+  if (!app_scene_overlap_source(scene, source) || app_model_names_locate(source, path)) return;
+  const char *name = source, *network = strchr(source, '=');
+  if (strncmp(source, HYBRID, strlen(HYBRID)) == 0) name = network ? network + 1 : OVERLAP_HYBRID_NETWORK;
   if (overlap_weights_find(name, path, PATH_MAX) != STATUS_OK) path[0] = 0;
 }
 

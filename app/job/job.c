@@ -19,7 +19,6 @@
 #include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "fem/effect/contact/contact.h"
 #include "fem/model/build.h"
 #include "fem/run/checkpoint/checkpoint.h"
 #include "overlap/model.h"
@@ -139,6 +138,8 @@ Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overl
                                          overlap, &job->scene);
   if (!status) status = choose_directory(job, options, subdirectory);
   if (!status) {
+    char source[PATH_MAX];
+    if (app_scene_overlap_source(&job->scene, source)) app_model_names_find_one(source, job->overlap);
     if (options->threads) job->scene.threads = options->threads;
     if (job->scene.threads) omp_set_num_threads(job->scene.threads);
     status = fem_model_create(&job->model, &job->scene);
@@ -195,7 +196,25 @@ Status app_job_show_progress(void *self, const FemRunProgress *state) {
 }
 
 const char *app_job_overlap(const AppJob *job) {
-  return fem_effect_contact_overlap(&job->scene);
+  return job->overlap[0] ? job->overlap : NULL;
+}
+
+const char *app_job_potential(const AppJob *job) {
+  const FemContactDef *contact = &job->scene.contact;
+  return contact->is_on ? contact_def_potential_name(contact->potential) : NULL;
+}
+
+const char *app_job_weights(const AppJob *job, char path[PATH_MAX]) {
+  char source[PATH_MAX];
+  return app_scene_overlap_source(&job->scene, source) && app_model_names_locate(source, path) ? path : NULL;
+}
+
+void app_job_tell_contact(const AppJob *job) {
+  char path[PATH_MAX];
+  if (!job->scene.contact.is_on) return;
+  const char *weights = app_job_weights(job, path);
+  log_info("contact: overlap model %s%s%s%s, potential %s", app_job_overlap(job), weights ? " (" : "",
+           weights ? weights : "", weights ? ")" : "", app_job_potential(job));
 }
 
 Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status status) {
@@ -204,7 +223,10 @@ Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status st
   app_format_record(summary);
   record_text(summary, "scene", job->scene.path);
   record_text(summary, "title", job->scene.title);
+  char weights[PATH_MAX];
   record_text(summary, "overlap", app_job_overlap(job));
+  record_text(summary, "weights", app_job_weights(job, weights));
+  record_text(summary, "potential", app_job_potential(job));
   record_text(summary, "outcome", fem_run_outcome(result, status));
   if (status) record_text(summary, "message", status_message());
   if (!status && result->trouble.of[FEM_TROUBLE_PASSED].steps > 0) {

@@ -7,6 +7,7 @@
 #include <argp.h>
 #include <stdbool.h>
 
+#include "app/cli/model_names.h"
 #include "base/files/record.h"
 #include "base/log.h"
 #include "fem/model/model.h"
@@ -32,8 +33,9 @@ extern const struct argp app_job_argp;
 typedef struct AppJob {
   FemSceneDef scene;
   FemModel model;
-  char *directory; // where to write, owned
-  Record *inputs;  // digests of what was read when it was opened (app/job/inputs.h), owned
+  char *directory;      // where to write, owned
+  AppModelName overlap; // what its overlap model is called; "": the scene has no contact
+  Record *inputs;       // digests of what was read when it was opened (app/job/inputs.h), owned
 } AppJob;
 
 // Reads and builds. `overlap` (may be NULL) replaces the scene's overlap model; `subdirectory` (may be NULL)
@@ -49,8 +51,14 @@ char *app_job_default_directory(const char *scene_path, const char *ending);
 void app_job_prepare(const AppJobOptions *options);
 const volatile sig_atomic_t *app_job_stop_flag(void);
 
-// The overlap model's name or weights file; NULL: the scene has no contact.
+// What the overlap model is called, its potential, and the absolute path of its weights file, if it is one of
+// the user's; each NULL where there is none.
 const char *app_job_overlap(const AppJob *job);
+const char *app_job_potential(const AppJob *job);
+const char *app_job_weights(const AppJob *job, char path[PATH_MAX]);
+
+// A line of the log: the overlap model, its weights file, the potential. Nothing without contact.
+void app_job_tell_contact(const AppJob *job);
 
 // An observer of fem_run that draws the progress line: time, step, step size, pairs, time left. Where
 // standard error is no terminal, lines at the pace of base/log.h; as JSON, an object a line on standard

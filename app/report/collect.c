@@ -18,10 +18,9 @@ static Status add_run(AppReport *report, const char *directory, int max_frames) 
   return STATUS_OK;
 }
 
-// The directory in which `tetlap compare` kept the run of a model: its name, or that of its weights file.
+// The run of a model: its folder below that of `tetlap compare` is called like it.
 static Status add_model(AppReport *report, const char *directory, const char *model, int max_frames) {
-  const char *slash = strrchr(model, '/');
-  char *path = file_join(directory, slash ? slash + 1 : model);
+  char *path = file_join(directory, model);
   if (!path) return status_no_memory("a file name");
   Status status = add_run(report, path, max_frames);
   memory_free(path);

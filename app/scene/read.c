@@ -21,7 +21,8 @@ static Status read_section(const SceneSection *section, const SceneNode *node, v
 
 static Status read_list(const SceneKey *key, const SceneNode *node, void *self) {
   if (node->kind != SCENE_NODE_LIST) return app_scene_value_fail(key, node, "");
-  if (node->count == 0) return key->required ? app_scene_value_fail(key, node, "; give at least one") : STATUS_OK;
+  if (node->count == 0)
+    return key->required ? app_scene_value_fail(key, node, "; give at least one") : STATUS_OK;
   if (node->count > MAX_ITEMS) return app_scene_value_fail(key, node, "; that is too long");
   char *items = memory_zeroed((size_t)node->count, key->section->size);
   if (!items) return status_no_memory("the scene");
@@ -239,9 +240,9 @@ static Status read_tree(const char *path, const SceneNode *root, FemSceneDef *sc
   return app_scene_check(root, scene);
 }
 
-// Takes the tree over.
-static Status read_and_destroy(const char *path, SceneNode *root, const char *const *overrides,
-                               int override_count, FemSceneDef *scene) {
+Status app_scene_read_tree(const char *path, SceneNode *root, const char *const *overrides,
+                           int override_count, FemSceneDef *scene) {
+  *scene = (FemSceneDef){0};
   Status status = STATUS_OK;
   for (int i = 0; i < override_count && !status; i++) status = app_scene_override_apply(root, overrides[i]);
   if (!status) status = read_tree(path, root, scene);
@@ -255,7 +256,7 @@ Status app_scene_read(const char *path, const char *const *overrides, int overri
   *scene = (FemSceneDef){0};
   SceneNode *root;
   TRY(app_scene_tree_read(path, &root));
-  return read_and_destroy(path, root, overrides, override_count, scene);
+  return app_scene_read_tree(path, root, overrides, override_count, scene);
 }
 
 static Status read_root(const SceneNode *root, const SceneSection *section, void *self) {
@@ -284,5 +285,5 @@ Status app_scene_read_text(const char *path, const char *text, size_t size, FemS
   *scene = (FemSceneDef){0};
   SceneNode *root;
   TRY(app_scene_tree_parse(path, text, size, &root));
-  return read_and_destroy(path, root, NULL, 0, scene);
+  return app_scene_read_tree(path, root, NULL, 0, scene);
 }

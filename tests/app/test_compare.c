@@ -85,10 +85,115 @@ START_TEST(a_run_that_takes_too_long_is_cut_and_looks_it) {
 }
 END_TEST
 
+// A folder with two networks of one base name, and a scene of two blocks that names one of them.
+static char home[64], run_text[1 << 16];
+
+static void run_shell(const char *format, ...) __attribute__((format(printf, 1, 2)));
+static void run_shell(const char *format, ...) {
+  char command[1024];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(command, sizeof command, format, arguments);
+  va_end(arguments);
+  ck_assert_msg(system(command) == 0, "%s", command);
+}
+
+static void make_home(void) {
+  snprintf(home, sizeof home, "/tmp/tetlap_compare_XXXXXX");
+  ck_assert_ptr_nonnull(mkdtemp(home));
+  run_shell("cd %s && mkdir a b && cp " TETLAP_SOURCE_DIR
+            "/net/weights/geo-small.safetensors a/net.safetensors && "
+            "cp " TETLAP_SOURCE_DIR "/net/weights/geo.safetensors b/net.safetensors && "
+            "sed 's|^contact:.*|contact: {net: a/net.safetensors}|' " TETLAP_SOURCE_DIR
+            "/examples/02_two_blocks.yaml > scene.yaml",
+            home);
+}
+
+static void remove_home(void) {
+  run_shell("rm -r %s", home);
+}
+
+static const char SHORT[] = "-t 1 -s output.vtu=false -s output.frames=2 -s time.end=0.11";
+
+// Runs the program in that folder, as a user would.
+static void run_there(const char *words) {
+  char command[1024];
+  snprintf(command, sizeof command, "cd %s && %s %s %s 2>&1", home, TETLAP_PROGRAM, words, SHORT);
+  FILE *pipe = popen(command, "r");
+  ck_assert_ptr_nonnull(pipe);
+  size_t count = fread(run_text, 1, sizeof run_text - 1, pipe);
+  run_text[count] = 0;
+  ck_assert_msg(pclose(pipe) == 0, "%s", run_text);
+}
+
+static Record *read_there(const char *folder, const char *name) {
+  char path[256];
+  Record *record;
+  snprintf(path, sizeof path, "%s/%s/%s", home, folder, name);
+  ck_assert_ok(record_read(&record, path));
+  return record;
+}
+
+static void check_text(const Record *record, const char *key, const char *expected) {
+  const char *found = record_find_text(record, key);
+  ck_assert_msg(found && strcmp(found, expected) == 0, "%s: %s, not %s", key, found ? found : "none",
+                expected);
+}
+
+// The run of a network has its own folder, and says whose it is.
+static void check_run_of(const char *folder, const char *name) {
+  char path[256];
+  snprintf(path, sizeof path, "%s/%s.safetensors", home, name);
+  Record *summary = read_there(folder, "summary.json"), *manifest = read_there(folder, "manifest.json");
+  check_text(summary, "overlap", name);
+  check_text(summary, "weights", path);
+  check_text(summary, "potential", "field");
+  check_text(record_find(manifest, "inputs"), "weights_file", path);
+  record_destroy(summary), record_destroy(manifest);
+}
+
+START_TEST(two_networks_of_one_base_name_share_neither_folder_nor_name) {
+  make_home();
+  run_there("compare scene.yaml --overlap clip,a/net.safetensors,b/net.safetensors -o out --reference b/net");
+  check_run_of("out/a/net", "a/net");
+  check_run_of("out/b/net", "b/net");
+  Record *rows = read_there("out", "compare.json");
+  static const char *const names[] = {"clip", "a/net", "b/net"};
+  ck_assert_int_eq(record_count(rows), 3);
+  for (int k = 0; k < 3; k++) {
+    check_text(record_at(rows, k), "model", names[k]);
+    check_text(record_at(rows, k), "reference", "b/net");
+  }
+  record_destroy(rows);
+  remove_home();
+}
+END_TEST
+
+// What differs between two runs is where they were written and how the file was named.
+START_TEST(a_weights_file_means_the_same_on_the_command_line_and_in_the_scene) {
+  static const char *const keys[] = {"overlap", "weights", "potential"};
+  static const char *const numbers[] = {"steps", "contact_force_max", "pairs_max"};
+  make_home();
+  run_there("run scene.yaml -o by-scene");
+  ck_assert_ptr_nonnull(strstr(run_text, "overlap model net ("));
+  ck_assert_ptr_nonnull(strstr(run_text, "potential field"));
+  run_there("run scene.yaml -m ./b/../a/net.safetensors -s contact={} -o by-option");
+  Record *a = read_there("by-scene", "summary.json"), *b = read_there("by-option", "summary.json");
+  for (int k = 0; k < 3; k++) check_text(b, keys[k], record_find_text(a, keys[k]));
+  for (int k = 0; k < 3; k++)
+    ck_assert(record_find_number(a, numbers[k]) == record_find_number(b, numbers[k]));
+  ck_assert(record_find_number(a, "contact_force_max") > 0);
+  record_destroy(a), record_destroy(b);
+  remove_home();
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("compare");
   tcase_add_test(cases, errors_are_over_the_frames_that_both_have_reached);
   tcase_add_test(cases, a_run_that_fails_before_it_touches_has_no_force_error);
   tcase_add_test(cases, a_run_that_takes_too_long_is_cut_and_looks_it);
+  tcase_add_test(cases, two_networks_of_one_base_name_share_neither_folder_nor_name);
+  tcase_add_test(cases, a_weights_file_means_the_same_on_the_command_line_and_in_the_scene);
   return suite_run("compare", cases, 120);
 }

@@ -78,19 +78,26 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-static Status add_model(AppComparison *comparison, const FemSceneDef *scene, const char *name,
+static Status add_model(AppComparison *comparison, const FemSceneDef *scene, const char *source,
                         bool is_driven) {
-  for (int m = 0; m < comparison->model_count; m++)
-    if (strcmp(comparison->models[m].name, name) == 0)
-      return status_fail(STATUS_USAGE, "the model '%s' is named twice; name it once", name);
   if (comparison->model_count == APP_MAX_MODELS)
     return status_fail(STATUS_USAGE, "at most %d models can be compared", APP_MAX_MODELS);
   AppComparisonModel *model = &comparison->models[comparison->model_count];
-  Status status = fem_effect_contact_create_overlap(scene, name, &model->overlap);
+  Status status = fem_effect_contact_create_overlap(scene, source, &model->overlap);
   if (status) return status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "--overlap") : status;
-  model->name = name;
+  model->source = source;
   model->is_driven = is_driven;
   comparison->model_count++;
+  return STATUS_OK;
+}
+
+static Status name_models(AppComparison *comparison) {
+  const char *sources[APP_MAX_MODELS];
+  AppModelName names[APP_MAX_MODELS];
+  for (int m = 0; m < comparison->model_count; m++) sources[m] = comparison->models[m].source;
+  TRY(app_model_names_find(comparison->model_count, sources, names));
+  for (int m = 0; m < comparison->model_count; m++)
+    memcpy(comparison->models[m].name, names[m], sizeof names[m]);
   return STATUS_OK;
 }
 
@@ -99,7 +106,12 @@ static Status add_models(AppComparison *comparison, const FemSceneDef *scene, co
     TRY(add_model(comparison, scene, options->overlaps[m], true));
   for (int m = 0; m < options->audited_count; m++)
     TRY(add_model(comparison, scene, options->audited[m], false));
-  return STATUS_OK;
+  return name_models(comparison);
+}
+
+// By what the command line says, or by what it is called.
+static bool is_called(const AppComparisonModel *model, const char *text) {
+  return strcmp(model->source, text) == 0 || strcmp(model->name, text) == 0;
 }
 
 static Status choose_models(AppComparison *comparison, const FemSceneDef *scene,
@@ -108,7 +120,7 @@ static Status choose_models(AppComparison *comparison, const FemSceneDef *scene,
   comparison->audit_every = options->audit_every;
   if (!options->reference) return STATUS_OK;
   for (int m = 0; m < comparison->model_count; m++)
-    if (strcmp(comparison->models[m].name, options->reference) == 0 && comparison->models[m].is_driven) {
+    if (is_called(&comparison->models[m], options->reference) && comparison->models[m].is_driven) {
       comparison->reference = m;
       return STATUS_OK;
     }
@@ -159,12 +171,6 @@ static Status observe(void *self, const FemRunProgress *progress) {
              : STATUS_OK;
 }
 
-// The folder of a model's run below the output directory: its name, or that of its weights file.
-static const char *folder_of(const char *name) {
-  const char *slash = strrchr(name, '/');
-  return slash ? slash + 1 : name;
-}
-
 // Estimates of runs shorter than this are not mended.
 static const double SHORT_RUN_S = 5;
 
@@ -173,16 +179,18 @@ static const double SHORT_RUN_S = 5;
 static Status run_model(AppComparison *comparison, int m, const CompareOptions *options, double expected_s) {
   AppComparisonModel *model = &comparison->models[m];
   AppJob job;
-  TRY(app_job_open(&job, &options->job, model->name, folder_of(model->name)));
+  TRY(app_job_open(&job, &options->job, model->source, model->name));
   if (!job.scene.contact.is_on) {
     app_job_close(&job);
     return status_fail(STATUS_INPUT,
                        "%s: has no contact, so overlap models cannot differ; add a 'contact' section",
                        options->job.scene_path);
   }
+  memcpy(job.overlap, model->name, sizeof job.overlap); // beside the others it may be a longer one
+  app_job_tell_contact(&job);
   comparison->length = job.model.length;
   comparison->end = job.scene.end;
-  char label[64];
+  char label[APP_MODEL_NAME + 1];
   snprintf(label, sizeof label, "%s ", model->name);
   Observer observer = {
       .progress = {.began_s = clock_wall_s(), .label = label, .is_json = options->job.is_progress_json},

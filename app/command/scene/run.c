@@ -56,11 +56,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 static void announce(const AppJob *job) {
-  const char *overlap = app_job_overlap(job);
-  log_info("%s: %d %s, %d vertices, %d tetrahedra, %d unknowns, solver %s%s%s", job->scene.path,
+  log_info("%s: %d %s, %d vertices, %d tetrahedra, %d unknowns, solver %s", job->scene.path,
            job->scene.body_count, job->scene.body_count == 1 ? "body" : "bodies", job->model.vertex_count,
-           job->model.tet_count, job->model.unknown_count, fem_solver_name(fem_run_solver(&job->model)),
-           overlap ? ", overlap " : "", overlap ? overlap : "");
+           job->model.tet_count, job->model.unknown_count, fem_solver_name(fem_run_solver(&job->model)));
+  app_job_tell_contact(job);
 }
 
 static Status print_summary(const AppJob *job, const FemRunResult *result, Status status) {

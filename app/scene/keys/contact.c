@@ -21,7 +21,7 @@ static const char *finish_contact(void *self, const char **key) {
   FemContactDef *contact = self;
   if (!contact->potential_is_given)
     contact->potential =
-        !contact->net && has_centroid(contact->overlap) ? CONTACT_POTENTIAL_FIELD : CONTACT_POTENTIAL_NODAL;
+        contact->net || has_centroid(contact->overlap) ? CONTACT_POTENTIAL_FIELD : CONTACT_POTENTIAL_NODAL;
   if (!contact->potential_is_given && contact->potential == CONTACT_POTENTIAL_NODAL &&
       contact->stiffness > 0) {
     *key = "stiffness";
@@ -131,8 +131,8 @@ static const SceneKey contact_keys[] = {
      .help = "penalty stiffness κ; higher: less overlap, shorter steps (Pa/m with the potential `field`, "
              "Pa/m³ with `body`)"},
     {"potential", SCENE_CHOICE, AT(FemContactDef, potential),
-     .absent_help = "`field`; `nodal` with weights that `net` names, and with an overlap model that has no "
-                    "centroid (`tpn`, `tpn-bf16`, `tpn-published`, `tpn-scene`)",
+     .absent_help = "`field`; `nodal` with an overlap model that has no centroid (`tpn`, `tpn-bf16`, "
+                    "`tpn-published`, `tpn-scene`)",
      MARK(FemContactDef, potential_is_given, true), .choices = &app_scene_choices_potentials,
      .help = "how overlaps become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",

@@ -77,10 +77,13 @@ static void list_sides(Contact *contact) {
   }
 }
 
-// The model of that name or weights file; hybrid's network is the scene's.
+// The model of that name or weights file; hybrid's network is the scene's, unless the name has one.
 static Status create_named(const FemSceneDef *scene, const char *name, const char *weights,
                            OverlapModel *overlap) {
+  static const char HYBRID[] = "hybrid=";
   const OverlapOptions *options = scene->contact.is_on ? &scene->contact.net_options : NULL;
+  if (strncmp(name, HYBRID, strlen(HYBRID)) == 0)
+    return overlap_model_create_with(overlap, "hybrid", name + strlen(HYBRID), options);
   return overlap_model_create_with(overlap, name, strcmp(name, "hybrid") == 0 ? weights : NULL, options);
 }
 
@@ -92,12 +95,6 @@ static char *locate_net(const FemSceneDef *scene) {
   char *path = directory ? file_join(directory, net) : NULL;
   memory_free(directory);
   return path;
-}
-
-const char *fem_effect_contact_overlap(const FemSceneDef *scene) {
-  const FemContactDef *contact = &scene->contact;
-  if (!contact->is_on) return NULL;
-  return contact->net && strcmp(contact->overlap, "hybrid") != 0 ? contact->net : contact->overlap;
 }
 
 Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *name, OverlapModel *overlap) {

@@ -12,9 +12,6 @@ ContactSystem *fem_effect_contact_system(void *effect);
 // The name of side `number` of an interface: a body, a mesh obstacle or a half-space.
 const char *fem_effect_contact_name(const void *effect, int number);
 
-// The name or weights file of the scene's overlap model; NULL: the scene has no contact.
-const char *fem_effect_contact_overlap(const FemSceneDef *scene);
-
 // Makes the overlap model of that name or weights file (seen from the program), NULL: the scene's, with what
 // the scene says of networks. Destroy it with overlap_model_destroy.
 Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *name, OverlapModel *overlap);
