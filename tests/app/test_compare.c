@@ -175,7 +175,7 @@ START_TEST(a_weights_file_means_the_same_on_the_command_line_and_in_the_scene) {
   static const char *const numbers[] = {"steps", "contact_force_max", "pairs_max"};
   make_home();
   run_there("run scene.yaml -o by-scene");
-  ck_assert_ptr_nonnull(strstr(run_text, "overlap model net ("));
+  ck_assert_ptr_nonnull(strstr(run_text, "net ("));
   ck_assert_ptr_nonnull(strstr(run_text, "potential field"));
   run_there("run scene.yaml -m ./b/../a/net.safetensors -s contact={} -o by-option");
   Record *a = read_there("by-scene", "summary.json"), *b = read_there("by-option", "summary.json");

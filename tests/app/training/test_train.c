@@ -436,7 +436,7 @@ static void summarise(const char *text, char summary[512]) {
   AppTrainingConfig config = read_config(text);
   AppTrainingResult result;
   AppTrainingOptions options = {
-      .directory = directory, .threads = 1, .tell = keep_summary, .observer = summary};
+      .directory = directory, .threads = 1, .replaces = true, .tell = keep_summary, .observer = summary};
   ck_assert_ok(app_training_run(&config, &options, &result));
   app_training_config_destroy(&config);
 }
