@@ -24,7 +24,7 @@ typedef struct ExpressionCode {
 
 typedef struct Expression {
   char text[EXPRESSION_MAX_TEXT]; // as it was written
-  int line, column;               // where, in the file that it is from; 0: nowhere; the user's
+  int line, column;               // where it stands in its file, set by the caller; 0: in none
   int count;
   ExpressionCode codes[EXPRESSION_MAX_CODES]; // in the order of evaluation  (count)
 } Expression;

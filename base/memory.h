@@ -25,10 +25,10 @@ size_t memory_held_by(size_t count, const void *const *arrays); // of several
 // Hands what is free in the heap back to the system: after much was freed that is not soon needed again.
 void memory_trim(void);
 
-// Large arrays get memory of their own, which goes back to the system when they are freed, and what they do
-// not touch takes none. The C library begins so, but puts ever larger ones into its heap once such were
-// freed, and a library that was loaded may have changed it (SuperLU_DIST, which PETSc brings, has all come
-// from one heap that never shrinks). A program begins with it.
+// Gives large arrays memory of their own, which takes no room before it is used and goes back to the system
+// when the array is freed. The C library does so by default, but moves the limit up as large arrays are
+// freed, and a loaded library may have switched it off (SuperLU_DIST, part of PETSc, does). To be called
+// first in a program.
 void memory_separate(void);
 
 // Tests: the k-th allocation from now on (1 = the next) fails once; 0 switches it off.

@@ -21,7 +21,7 @@ typedef struct RanksGraph {
   int *neighbour; //                                            (begin[node_count])
 } RanksGraph;
 
-// What was sent and computed for others, of this rank.
+// The traffic of this rank.
 typedef struct RanksStats {
   long long sums, pieces, decisions; // calls
   long long bytes;                   // that this rank gave
@@ -41,7 +41,7 @@ typedef struct Ranks {
   void (*tell)(void *bytes, size_t size);
   // The worst of all ranks' states, with its message: fatal before retry before ok.
   Status (*worst)(Status status);
-  bool divides; // whether the next one does more than to give all to the first
+  bool divides; // whether the next operation divides; else all nodes go to the first rank
   // Called by the first rank alone: as many nodes to each rank as to the others, few edges between.
   Status (*divide)(const RanksGraph *graph, int rank_count, int *rank_of_node);
   const RanksStats *(*stats)(void);
@@ -51,7 +51,7 @@ const Ranks *ranks(void);
 // NULL: one process. The table is borrowed. Before a scene is read.
 void ranks_set(const Ranks *table);
 
-// The first rank writes and speaks.
+// Whether this is the first rank, which writes files and messages.
 bool ranks_is_first(void);
 // Whether any rank says so.
 bool ranks_any(bool is_so);

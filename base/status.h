@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How every function of tetlap says that it failed.
+// How every function of tetlap reports a failure.
 //
 // 0 is ok, positive is recoverable (take a smaller step), negative is fatal: IDA's own convention, so our
 // callbacks hand a Status straight through. A fatal Status is minus the program's exit code. A failure
@@ -32,7 +32,7 @@ Status status_no_memory(const char *what);
 // The message of the thread's last failure, "" if there was none.
 const char *status_message(void);
 
-// The program's exit code for a Status; a retry that nobody took counts as the solver's failure.
+// The program's exit code for a Status; an unhandled STATUS_RETRY counts as the solver's failure.
 int status_exit_code(Status status);
 
 #define TRY(call)                                                                                            \

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mistyped names: the distance of two words, and which known word was meant.
+// Texts: mistyped names (the distance of two words, and which known word was meant), lists of words, places
+// in a text, UTF-8.
 #ifndef TETLAP_BASE_TEXT_H
 #define TETLAP_BASE_TEXT_H
 
@@ -46,8 +47,7 @@ void text_place(const char *text, size_t offset, int *line, int *column);
 // The offset of the first byte that is not UTF-8 (RFC 3629), `size` if all are.
 size_t text_utf8_valid(const char *text, size_t size);
 
-// The length of a UTF-8 byte order mark that a text begins with, else 0: editors put it there, and it says
-// nothing.
+// The length of a UTF-8 byte order mark that a text begins with, else 0. Editors write it; it has no meaning.
 size_t text_mark_length(const char *text, size_t size);
 
 #endif

@@ -237,7 +237,7 @@ static void count_pair(ContactPairCounts *counts, unsigned flags) {
   counts->beyond += (flags & OVERLAP_BEYOND) != 0;
 }
 
-// Each rank asks the model for an equal share of the batch, and all get all.
+// Each rank evaluates the model for an equal share of the batch, and all receive all results.
 static Status ask_model(const ContactEvaluation *evaluation, const ContactLayout *layout,
                         const OverlapModel *model, const OverlapBatch *batch) {
   const int *begin = ranks_split(batch->pair_count), first = begin[ranks()->number];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who passed through whom. A deep overlap is no passage, and neither is one that is pushed back out: what is
-// looked for are elements that came into another body on one side and leave it on another.
+// Elements that have passed through another body: they entered it on one side and leave it on the opposite
+// one. A deep overlap that is pushed back out is no passage.
 //
 // An element i meets another body or shape B with the direction
 //
@@ -9,13 +9,13 @@
 // (contact/pressure/field.h): inwards from the surface of B that is nearest to what of i is inside; |h| = 1
 // where it sees one side of B only, about 0 where it reaches as far into either half. Other potentials have
 // no depth: there h is the direction of Σ_j ∂V_ij/∂x_i. The element keeps the direction in which it came in.
-// That follows h while h turns by less than a right angle and a bit from one accepted state to the next and
-// |h| > 0.4, as it does for what slides round a drum or over an edge, or turns together with B. Where h comes
-// to point against it while the element reaches at least a tenth of B's own depth into B (without a depth:
-// while what overlaps is a tenth of the element or of what it meets), the element has gone beyond the middle
-// of B and is being pushed out on the other side: it is turned. Above that, cells along an edge of B's mesh,
-// whose slope is any, have no say. One that leaves B while it is turned has passed through it; one that comes
-// back is turned no more.
+// The kept direction follows h from one accepted state to the next while |h| > 0.4 and h turns by less than
+// 104°: so it does where an element slides round a drum or over an edge, or turns together with B. Where h
+// points against the kept direction, the element has gone beyond the middle of B and is pushed out on the
+// other side: it is called turned. That is judged only for elements that reach at least a tenth of B's depth
+// into B (without a depth: that overlap with a tenth of their own volume or of what they meet), since cells
+// along an edge of B's mesh can have any slope. An element that leaves B while it is turned has passed
+// through; one that comes back is no longer turned.
 #ifndef TETLAP_CONTACT_PASSAGE_H
 #define TETLAP_CONTACT_PASSAGE_H
 
@@ -29,7 +29,7 @@ typedef struct ContactPassageEntry {
   int facing, tet;
   bool is_turned;
   double direction[3]; // in which it came in; 0: not known yet
-  double reach;        // scratch: of what it meets now
+  double reach;        // scratch: as in ContactPassageMeeting, now
 } ContactPassageEntry;
 
 typedef struct ContactPassageList {
@@ -46,7 +46,7 @@ typedef struct ContactPassageMeeting {
 } ContactPassageMeeting;
 
 typedef struct ContactPassage {
-  ContactPassageList now, next;    // at the last accepted state, and at the one that is looked at
+  ContactPassageList now, next;    // at the last accepted state, and at the one that is evaluated
   int passed;                      // elements that have left turned, from `now` to `next`
   ContactPassageEntry first;       // of them
   ContactPassageMeeting *meetings; // scratch                             (elements of the patches)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What two that lie still keep: the result of their last evaluation. A facing whose parties are all held, so
-// that nothing of it can change, is neither searched nor evaluated; its forces, covered volumes and energy
-// stand in every evaluation as they were when it was put to rest.
+// Contact between parties that are held in place. Nothing can change between two held parties, so their
+// facing is neither searched nor evaluated. Its forces, covered volumes and energy are kept from the moment
+// at which it was put to rest, and are part of every later result.
 #ifndef TETLAP_CONTACT_REST_H
 #define TETLAP_CONTACT_REST_H
 
@@ -14,9 +14,9 @@ typedef struct ContactRest {
   bool *is_near;    // of a resting one: it has candidate pairs              (facing_count)
   int resting_count;
   long long candidate_count, pair_count; // of resting facings: candidate pairs, and those with V > 0
-  double energy;                         // theirs [J]
-  double *forces;                        // theirs [N]                      (vertex_count, 3)
-  double *covered;                       // theirs, Σ W_i [m³]              (tet_count)
+  double energy;                         // of all resting facings [J]
+  double *forces;                        // of them [N]                     (vertex_count, 3)
+  double *covered;                       // of them, Σ W_i [m³]             (tet_count)
   ContactInterface *interfaces;          // of resting facings              (facing_count)
 } ContactRest;
 

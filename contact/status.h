@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who overlaps, as a model tells it and as a reference does: the paper's first figure for two meshes in a
-// scene. Asked are all pairs of elements whose boxes meet; half-spaces and balls ask no model.
+// Which elements overlap, by a model and by a reference, and where the two differ: the classification that
+// TetrahedronPairNet is judged by, here for the meshes of a scene. All pairs of elements whose boxes meet are
+// classified; half-spaces and balls need no model.
 //
-// A model's word is its status head's where it has one, else V > 0. Where a model has an exact test for
-// disjoint pairs, that has the last word.
+// A model's answer is that of its status head if it has one, else V > 0. Where a model has an exact test for
+// disjoint pairs, that decides.
 #ifndef TETLAP_CONTACT_STATUS_H
 #define TETLAP_CONTACT_STATUS_H
 
@@ -11,8 +12,8 @@
 
 typedef enum ContactVerdict {
   CONTACT_VERDICT_RIGHT,
-  CONTACT_VERDICT_FALSE_POSITIVE, // said to overlap, and does not
-  CONTACT_VERDICT_FALSE_NEGATIVE, // overlaps, and is not said to
+  CONTACT_VERDICT_FALSE_POSITIVE, // called overlapping, and is not
+  CONTACT_VERDICT_FALSE_NEGATIVE, // overlaps, and is not called so
 } ContactVerdict;
 
 // Of pairs, or of elements.
@@ -25,7 +26,7 @@ typedef struct ContactStatusCounts {
 typedef struct ContactStatus {
   int *predicted, *exact;              // 0 or 1                                       (tet_count)
   int *error;                          // ContactVerdict                               (tet_count)
-  int *wrong_pairs;                    // of its pairs, how many are told wrongly      (tet_count)
+  int *wrong_pairs;                    // its wrongly classified pairs                 (tet_count)
   ContactStatusCounts pairs, elements; // pairs of cells of the contact mesh
   // Scratch memory for a portion of the pairs.
   ContactPair *portion;
@@ -38,7 +39,7 @@ typedef struct ContactStatus {
 Status contact_status_create(ContactStatus *status, const ContactLayout *layout);
 void contact_status_destroy(ContactStatus *status);
 
-// Asks both at these positions, which the candidates must cover.
+// Runs both at these positions, which the candidates must cover.
 Status contact_status_run(ContactStatus *status, const ContactLayout *layout,
                           const ContactCandidateList *candidates, const OverlapModel *model,
                           const OverlapModel *reference, const double *positions);

@@ -30,7 +30,7 @@
 #include "contact/status.h"
 #include "contact/surface/stars.h"
 
-// What struck, since creation; for summary and warnings.
+// Counts and times since creation, for summary and warnings.
 typedef struct ContactCounters {
   long long evaluations; // of the whole system
   ContactPairCounts pairs;
@@ -62,13 +62,14 @@ Status contact_system_update(ContactSystem *system, double time, const double *p
 // last update [s].
 double contact_system_longest_step(const ContactSystem *system);
 
-// The next update searches anew: what a run does at its checkpoints, so that nothing depends on older ones.
+// Makes the next update search anew. A run does so at its checkpoints: what follows then does not depend on
+// the lists of before.
 void contact_system_forget(ContactSystem *system);
 
-// Who is held where it is from now on (bodies, then shapes), NULL: nobody. Two that are held keep the forces,
-// covered volumes and energy that they have at these positions (those of the interfaces and of every vertex
-// and element stay in the results), and are neither searched nor evaluated; they must not move until the next
-// call. All is searched and evaluated anew, and as by an update the onsets to watch are chosen.
+// Sets which parties (bodies, then shapes) are held in place from now on; NULL: none. Held parties must not
+// move until the next call. The interface of two held parties is neither searched nor evaluated: its forces,
+// covered volumes and energy at these positions stay in the results. This call searches and evaluates
+// everything anew and, like an update, chooses the onsets to watch.
 Status contact_system_hold(ContactSystem *system, double time, const double *positions,
                            const double *velocities, double step, const bool *is_held);
 bool contact_system_is_resting(const ContactSystem *system, int interface);
@@ -94,16 +95,15 @@ Status contact_system_stiffness(ContactSystem *system, double time, const double
 Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
                              Status (*visit)(void *visitor, int count, const int *vertices));
 
-// Whether contact begins with a jump that an integrator had better stop at. The force of the potential
-// `field` begins at zero, wherever that is.
+// Whether contact begins with a jump of the force, at which an integrator should stop. With the potential
+// `field` it does not: that force begins at zero.
 bool contact_system_has_onset(const ContactSystem *system);
 
 // The smallest separation of the pairs watched since the last update [m]: negative once one of them overlaps;
 // at most, and without any pair, +margin. Its root is the onset of a new contact; contact/onset.h says which
 // pairs are watched (after a root, the next update leaves that pair out). Separation of two tetrahedra is the
 // largest over the 44 separating axes of their projections' distance (exactly the distance for face
-// contacts).
-// Without an onset, see above: +margin.
+// contacts). Where contact_system_has_onset is false: +margin.
 Status contact_system_gap(ContactSystem *system, double time, const double *positions, double *gap);
 
 // Of the last evaluation. Pointers are the system's, valid until the next call.
@@ -114,7 +114,7 @@ const double *contact_system_covered(const ContactSystem *system);
 // Pressure [Pa] and depth [m] at the surface by contact/pressure/trace.h, those at rest included
 // (vertex_count). With another potential than `field` zeros.
 Status contact_system_trace(ContactSystem *system, double *pressures, double *depths);
-// What the definition's maker calls an element of the contact mesh (contact/surface/stars.h).
+// The number that the definition gives an element of the contact mesh (`origin`, contact/surface/stars.h).
 int contact_system_origin(const ContactSystem *system, int tet);
 int contact_system_active_count(const ContactSystem *system); // pairs with V > 0, those at rest included
 // The pairs of the last evaluation with V > 0, as handed to the model (in general position); for audits and
@@ -125,14 +125,14 @@ double contact_system_shape_power(const ContactSystem *system);
 const ContactCounters *contact_system_counters(const ContactSystem *system);
 // What it holds on the heap [bytes], the overlap model left out.
 size_t contact_system_bytes(const ContactSystem *system);
-// What laws that build on the potential (friction.h) look at: contact/evaluation.h, contact/search/layout.h.
-// `look` indexes the last evaluation's patches; the result is the system's, valid until the next evaluation.
+// What laws that build on the potential read (contact/friction): the last evaluation, whose patches `look`
+// indexes, and the layout. Both are the system's; the evaluation is valid until the next one.
 Status contact_system_look(ContactSystem *system, const ContactEvaluation **evaluation);
 const ContactLayout *contact_system_layout(const ContactSystem *system);
-// The layout's vertices are those of the definition but where elements are quadratic
-// (contact/surface/stars.h): there such laws take positions and velocities by the first two, give forces by
-// contact_stars_push, stiffness to the sink that is given in place of the caller's, and cliques of vertices
-// by those that carry them. Results are the system's, valid until the next call.
+// The layout's vertices are those of the definition, except where elements are quadratic: there the contact
+// mesh has vertices of its own (contact/surface/stars.h). Laws convert positions by `place`, velocities by
+// `spread`, forces by contact_stars_push, stiffness by the sink that `sink` returns, and lists of vertices by
+// `carriers`. Results are the system's, valid until the next call.
 const double *contact_system_place(ContactSystem *system, const double *positions);
 const double *contact_system_spread(ContactSystem *system, const double *velocities);
 const ContactStars *contact_system_stars(const ContactSystem *system);

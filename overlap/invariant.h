@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the overlap volume V of two tetrahedra and its gradient must obey, whoever computes them: by how much
-// an answer misses it, relative to the pair's own size, so that each model can have its own tolerance. A NaN
+// Invariants of the overlap volume V of two tetrahedra and its gradient, whatever the model: by how much a
+// result violates each, relative to the pair's own size, so that each model can have its own tolerance. A NaN
 // stays a NaN. Pairs x (2, 4, 3) [m].
 #ifndef TETLAP_OVERLAP_INVARIANT_H
 #define TETLAP_OVERLAP_INVARIANT_H

@@ -3,18 +3,18 @@
 #ifndef TETLAP_OVERLAP_OPTIONS_H
 #define TETLAP_OVERLAP_OPTIONS_H
 
-// What becomes of the volumes that the network tells of pairs that share none.
+// What is done with volumes that the network gives to disjoint pairs.
 typedef enum OverlapGhosts {
   OVERLAP_GHOSTS_AUTO,
   OVERLAP_GHOSTS_KEEP, // they stay
-  OVERLAP_GHOSTS_CUT,  // an exact test says who is disjoint: V = 0; V jumps where two begin to touch
+  OVERLAP_GHOSTS_CUT,  // V = 0 of pairs that an exact test finds disjoint; V jumps where two begin to touch
   OVERLAP_GHOSTS_FADE, // and V is faded in over the first overlap, continuously differentiable
 } OverlapGhosts;
 
 typedef enum OverlapGate {
   OVERLAP_GATE_AUTO,
   OVERLAP_GATE_NONE,   // V is the volume head's
-  OVERLAP_GATE_STATUS, // times the probability that the status head tells, and max(0, v) rounded off
+  OVERLAP_GATE_STATUS, // times the status head's probability, and max(0, v) smoothed
 } OverlapGate;
 
 typedef enum OverlapOrders {

@@ -16,7 +16,7 @@ double overlap_separation_pair(const double pair[24], double enough);
 double overlap_separation_halfspace(const double tet[12], const double point[3], const double normal[3]);
 
 // Whether both certainly have volume and a face certainly separates them: all of one lies beyond a face plane
-// of the other by more than rounding. Cheaper than any overlap model; false says nothing.
+// of the other by more than rounding. Cheaper than any overlap model; false: not known.
 bool overlap_separation_is_certain(const double pair[24]);
 
 // The same of `count` pairs (count, 2, 4, 3), several at once where the processor can: is_apart (count). What

@@ -18,8 +18,8 @@ typedef struct AppRenderOptions {
   double cut_share;                // place of the cut, 0 … 1
   const double *range; // (2): ends of the colours' scale, in the field's unit; NULL: those of its values
   const double
-      *view; // (2): azimuth about z from x, and elevation, of the camera [degrees]; NULL: the page's own
-  bool hides_edges;                  // of elements
+      *view;        // the camera's azimuth about z from x, and elevation [degrees] (2); NULL: the page's own
+  bool hides_edges; // of elements
   const volatile sig_atomic_t *stop; // ends it when it is raised
 } AppRenderOptions;
 

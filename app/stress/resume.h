@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A run that is stopped at a checkpoint, and one that is killed with SIGKILL between two, go on to the same
-// bits as the run that nobody touched.
+// bits as the uninterrupted run.
 #ifndef TETLAP_APP_STRESS_RESUME_H
 #define TETLAP_APP_STRESS_RESUME_H
 

@@ -15,7 +15,7 @@
 #include "base/status.h"
 
 // The path of a file by its name in the source tree, as "net/weights/geo.safetensors". STATUS_IO: it is
-// nowhere, with what to do; STATUS_INPUT: its path has `size` characters or more.
+// not found; the message says what to do; STATUS_INPUT: its path has `size` characters or more.
 Status data_find(const char *name, char *path, size_t size);
 
 #endif

@@ -96,7 +96,7 @@ static int deliver(FileWriter *writer) {
 Status file_commit(FileWriter *writer) {
   // Of a write that failed before, the reason is still there, unless it shows again.
   int failed = ferror(writer->stream), reason = failed ? errno : 0;
-  // Renaming makes the file whole for whoever looks, and after a kill. Against a power cut it would have to
+  // By renaming, readers see the whole file or none, also after a kill. Against a power cut it would have to
   // be synced as well, which costs more than a step of a small scene.
   if (fflush(writer->stream) != 0) failed = 1, reason = errno;
   if (fclose(writer->stream) != 0 && !failed) failed = 1, reason = errno;

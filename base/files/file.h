@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that appear whole or not at all: written beside their final place under a temporary name, flushed,
-// renamed. What is no file, as a pipe or /dev/stdout, gets what was written as soon as all is there. Of
-// several ranks (base/ranks.h) the first writes and removes; what others write goes nowhere.
+// renamed. A pipe or a device, as /dev/stdout, receives the whole content at the end. Of several ranks
+// (base/ranks.h) the first writes and removes; what others write is discarded.
 #ifndef TETLAP_BASE_FILE_H
 #define TETLAP_BASE_FILE_H
 
@@ -30,15 +30,15 @@ Status file_commit(FileWriter *writer);
 // Drops what was written; allowed after a commit and on a zeroed writer.
 void file_abandon(FileWriter *writer);
 
-// Removes what writers left in a folder that were killed: files named as file_begin names them whose process
-// is gone.
+// Removes the temporary files that killed processes left in a folder: those named as by file_begin whose
+// process is gone.
 void file_remove_parts(const char *directory);
 // Removes the files of the directory whose names are prefix, a number of five digits or more, suffix; returns
 // how many these were. Those with _ and another number before the suffix, which are pieces, are removed and
 // not counted.
 int file_remove_numbered(const char *directory, const char *prefix, const char *suffix);
 
-// Whether the file was there, and is gone.
+// Removes a file; whether there was one and it is gone.
 int file_remove(const char *path);
 
 Status file_make_directories(const char *path); // like mkdir -p

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where what is written to a path shall go: a link is followed, also to a file that is not there yet. A file
-// is to be replaced as a whole; a pipe, a terminal, a device or a descriptor (/dev/stdout, /dev/fd/3) is
+// The place that a path to be written stands for: a link is followed, also to a file that does not exist yet.
+// A file is replaced as a whole; a pipe, a terminal, a device or a descriptor (/dev/stdout, /dev/fd/3) is
 // written into.
 #ifndef TETLAP_BASE_TARGET_H
 #define TETLAP_BASE_TARGET_H

@@ -10,8 +10,8 @@
 //
 // φ(y) = y (2 − y) below 1 and 1 beyond: once continuously differentiable (Li et al. 2020, Incremental
 // Potential Contact, eq. 16). So where all slips, each vertex feels μ times its own normal force. Momentum is
-// kept to rounding, angular momentum up to the friction times the depth of the overlap. What "sticks" creeps,
-// slower than ε.
+// conserved to rounding, angular momentum up to the friction times the depth of the overlap. Contact that
+// sticks creeps, slower than ε.
 //
 // Why not pair by pair: the boundary of a pair's overlap has parts of faces between elements of one body,
 // where nothing touches. Those of A cancel in F, those of B in F up to differences of pressure, and nearly so
@@ -29,7 +29,7 @@
 
 #include "contact/system.h"
 
-// What holds one element until the next update.
+// What holds one element by friction until the next update.
 typedef struct ContactGrip {
   int interface;      // number in contact_system_interfaces
   int side;           // of the interface that the element is on: 0 or 1

@@ -22,11 +22,12 @@
 //
 // Δ is zero to rounding in any common rigid motion and telescopes; only increments are averaged. Force and
 // torque balance pair by pair. The matrix is positive semidefinite; the derivatives of N, n and the weights
-// are left out of it. An area that grows or shrinks while it sticks does no work: the spring keeps its energy,
-// not its stretch, so nothing is gained, and what grows and shrinks again is where it was. What turning into
-// another tangent plane and lift-off take of ½ k_a s² is counted as dissipated, so that the energies add up.
+// are left out of it. An area that grows or shrinks while it sticks does no work: the spring keeps its
+// energy, not its stretch, so nothing is gained, and what grows and shrinks again is where it was. What
+// turning into another tangent plane and lift-off take of ½ k_a s² is counted as dissipated, so that the
+// energies add up.
 //
-// Either side may be slave, or both with half of k and of μ each (weights ½, ½): a body and itself.
+// Either side may be the slave, or, in self-contact, both with half of k and of μ each (weights ½, ½).
 #ifndef TETLAP_CONTACT_STICK_H
 #define TETLAP_CONTACT_STICK_H
 
@@ -43,8 +44,7 @@ typedef struct ContactStickPair {
   double lambda[2][4]; // weights at x̄ of the tetrahedra's vertices; their sum is 1
   double force[3];     // F_ij on side 0 [N]
   double area;         // A_ij [m²]
-  double
-      before[3]; // of an obstacle without elements: where its point at x̄ was at the last accepted state [m]
+  double before[3];    // an obstacle's point at x̄, at the last accepted state [m]; bodies have none
 } ContactStickPair;
 
 // An interface's law.
@@ -120,8 +120,8 @@ size_t contact_stick_bytes(const ContactStick *stick); // on the heap
 Status contact_stick_reserve(ContactStick *stick, int pair_count);
 
 // The friction at these positions (vertex_count, 3), from stick->pairs of which there are pair_count. Changes
-// nothing that is kept. `is_resting` (interface_count), NULL: none: those have no pairs, and keep what they
-// have.
+// nothing that is kept. `is_resting` (interface_count; NULL: none) marks interfaces at rest, which have no
+// pairs and keep their forces and areas.
 Status contact_stick_eval(ContactStick *stick, int pair_count, const double *positions,
                           const bool *is_resting);
 
@@ -134,7 +134,7 @@ Status contact_stick_add_stiffness(ContactStick *stick, const ContactStiffnessSi
 Status contact_stick_couple(ContactStick *stick, void *visitor,
                             Status (*visit)(void *visitor, int count, const int *vertices));
 
-// Where history counts from: the gaps that follow are ways from here.
+// Begins the history: the gaps that follow are measured from these positions.
 void contact_stick_begin(ContactStick *stick, const double *positions);
 // The last evaluation, which was at these positions, is accepted.
 Status contact_stick_accept(ContactStick *stick, const double *positions, const bool *is_resting);

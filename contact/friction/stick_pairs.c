@@ -13,7 +13,7 @@
 // Against a ball: where less than this share of a cell overlaps, it rubs where it goes deepest.
 static const double SLIVER = 1e-4;
 
-// ---- Who is slave.
+// ---- Which side is the slave.
 
 static double volume_of(const ContactLayout *layout, int body) {
   double sum = 0;

@@ -19,10 +19,10 @@ Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, doub
 // The power that moving obstacles without elements put in by friction at the last evaluation [W].
 double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem *system);
 
-// What friction does to what slips at these velocities (vertex_count, 3; as given) where that is to push it
-// along: the sum over interfaces of the powers of their slipping pairs, where it is positive [W]. Slip goes
-// by the way since the last accepted state. What has turned since then is pushed on by the friction from
-// before its turn: the step was too long.
+// The power by which friction drives slip at these velocities (vertex_count, 3; as given): the sum over
+// interfaces of the powers of their slipping pairs, where it is positive [W]. Friction acts against the
+// displacement since the last accepted state. Where the velocity has reversed since then it acts along the
+// velocity: the step was too long.
 double contact_stick_pairs_turned_power(const ContactStick *stick, ContactSystem *system,
                                         const double *velocities);
 

@@ -13,9 +13,8 @@
 //
 //   −η V (s_i g_B g_Bᵀ + s_j g_A g_Aᵀ) w   on A at x̄, its opposite on B,   η [Pa s/m²].
 //
-// Both begin and end alike: A rigid motion of both bodies together has Ẇ = 0 and feels nothing,
-// and forces and torques balance, because those of ∇V do. Parts that leave faster than κ/η (in shares a
-// second) pull.
+// Both have this in common: a rigid motion of both bodies together has Ẇ = 0 and no viscous force, and forces
+// and torques balance, because those of ∇V do. Parts that separate faster than κ/η (in shares a second) pull.
 #ifndef TETLAP_CONTACT_VISCOSITY_H
 #define TETLAP_CONTACT_VISCOSITY_H
 

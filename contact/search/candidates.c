@@ -14,7 +14,8 @@
 // tried, bounded so that the trial costs little more than a search.
 enum { STEPS_AHEAD = 4, WIDEST_TRIAL = 4 };
 
-// Of the margin, for a body with itself: elements that are neighbours but one are always near.
+// The margin of self-contact as a share of the usual one: second neighbours in a mesh are always near, so a
+// wide margin would list them all.
 static const double SELF_MARGIN = 0.5;
 
 // The share of a margin that the next step may use up, and the step by which speeds are measured where the

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which pairs may overlap until the next search, for every two that can meet, and by how much the parties may
-// come nearer until then: as far as they are apart while no pair is near, half an element once one is, so
-// that nothing can pass through anything unseen. What two bodies move together, as a stack that falls, does
-// not count.
+// The pairs that may overlap until the next search, facing by facing, and a margin for each facing: by how
+// much its two parties may come nearer before a new search. While no pair is near the margin is the distance
+// of the parties, then half an element, so that no element passes through another between two searches.
+// Motion that two bodies have in common, as in a falling stack, does not use the margin up.
 #ifndef TETLAP_CONTACT_CANDIDATES_H
 #define TETLAP_CONTACT_CANDIDATES_H
 
@@ -24,7 +24,7 @@ typedef struct ContactCandidateList {
 typedef struct ContactCandidates {
   ContactCandidateList list;
   bool is_made;
-  bool *is_left_out; // facings that are not looked at: at rest (contact/rest.h)   (facing_count)
+  bool *is_left_out; // facings that are not searched: at rest (contact/rest.h)   (facing_count)
   long long searches;
   double search_s;
   // Where everything was when the list was made.
@@ -48,8 +48,8 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
                                  const double *positions, const double *velocities, double step,
                                  bool *has_changed);
 
-// Which facings are not looked at from now on (facing_count), NULL: none. The list loses their pairs; for
-// those of facings that are looked at again it must be made anew.
+// Sets which facings are not searched from now on (facing_count); NULL: all are. Their pairs leave the list;
+// when a facing is searched again the list must be made anew.
 void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLayout *layout,
                                   const bool *is_left_out);
 

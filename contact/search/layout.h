@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stays constant of a contact system: the definition, rest volumes, and who can meet whom.
+// The constant part of a contact system: the definition, rest volumes, and which parties can meet.
 #ifndef TETLAP_CONTACT_LAYOUT_H
 #define TETLAP_CONTACT_LAYOUT_H
 
@@ -47,8 +47,7 @@ typedef struct ContactLayout {
   int facing_count;
   double nudge;        // length of a nudge [m]
   double (*nudges)[3]; // of each body, see above [m]                       (body_count)
-  double
-      *shifts; // of each vertex in pairs of a body with itself; NULL: there are none [m] (position_count, 3)
+  double *shifts;      // of each vertex, for self-contact [m]; NULL: no body has it (position_count, 3)
   ContactSelf self;
   int party_count; // bodies, then shapes
   double margin;   // def.margin, or its default [m]
@@ -63,8 +62,8 @@ static inline const int *contact_layout_vertices(const ContactLayout *layout, in
   return layout->def.tets[contact_depth_tet(&layout->depth, cell)];
 }
 
-// What the definition's maker calls that tetrahedron; of a star (contact/surface/stars.h) the element's first
-// eighth.
+// The number that the definition gives that tetrahedron; of a star (contact/surface/stars.h) the element's
+// first eighth.
 static inline int contact_layout_origin(const ContactLayout *layout, int cell) {
   int tet = contact_depth_tet(&layout->depth, cell);
   return layout->def.origin ? layout->def.origin[tet] : tet;
@@ -90,7 +89,7 @@ static inline void contact_layout_gather_whole(const ContactLayout *layout, int 
     for (int c = 0; c < 3; c++) coordinates[3 * v + c] = positions[3 * (size_t)vertices[v] + (size_t)c];
 }
 
-// Shifts a cell's vertices as self-contact wants them.
+// Adds the shifts of self-contact to a cell's vertices.
 static inline void contact_layout_warp(const ContactLayout *layout, int cell, double coordinates[12]) {
   for (int v = 0; v < 4; v++)
     for (int c = 0; c < 3; c++)

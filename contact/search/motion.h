@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How bodies and shapes move, as far as it bounds by how much two of them come nearer.
+// Bounds of by how much two parties, bodies or shapes, come nearer.
 #ifndef TETLAP_CONTACT_MOTION_H
 #define TETLAP_CONTACT_MOTION_H
 
 #include "base/vec3.h"
 #include "contact/search/layout.h"
 
-// How the points of a party have moved, as far as it bounds by how much two parties come nearer.
+// The displacements of a party's points: their mean, the largest difference from it, and the longest.
 typedef struct ContactMotion {
   Vec3 mean;      // [m]
   double spread;  // the longest difference from that [m]

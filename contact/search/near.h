@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Of the candidates those that may overlap soon: a list within the list, for evaluations. A pair that is left
-// out is disjoint as long as its parties have come nearer by less than the skin since the list was made, so
-// that a result does not depend on whether it is taken.
+// The candidates that may overlap soon: a shorter list for evaluations. A candidate that is not in it stays
+// disjoint while its parties have come nearer by less than the skin since the list was made. So the result is
+// the same with either list.
 //
-// Every cell is blown up about the middle of its inscribed sphere, so that each of its faces moves out by
-// half of the skin: it then holds all points within that distance. Where a face separates two such cells, the
-// cells themselves are farther apart than the skin. That costs as much as sifting the candidates once.
+// To choose them, every cell is enlarged about the centre of its inscribed sphere until each face has moved
+// out by half of the skin; it then holds all points within that distance. Where a face separates two enlarged
+// cells, the cells themselves are farther apart than the skin. This costs as much as one pass over the
+// candidates.
 #ifndef TETLAP_CONTACT_NEAR_H
 #define TETLAP_CONTACT_NEAR_H
 
@@ -33,7 +34,7 @@ void contact_near_destroy(ContactNear *near);
 Status contact_near_update(ContactNear *near, const ContactLayout *layout,
                            const ContactCandidates *candidates, double time, const double *positions);
 
-// Whatever it was made from is no longer.
+// The candidates that it was made from are gone.
 void contact_near_forget(ContactNear *near);
 
 // The list to evaluate these positions by, which the candidates cover: its own or that of all candidates.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who of one body may meet the same body: pairs of its cells (contact/surface/depth.h) that
-//   1. are of tetrahedra without a common vertex: topological neighbours meet always;
-//   2. do not overlap at rest by more than rounding: what the mesh begins with is no contact, now or later;
-//   3. have a vertex on the surface, one of the two at least: others only overlap once a whole layer of
-//      elements has gone through another, or where the bulk itself is turned inside out.
+// Self-contact: which cells (contact/surface/depth.h) of a body may meet each other. They are pairs that
+//   1. belong to tetrahedra without a common vertex: neighbours always touch;
+//   2. do not overlap at rest by more than rounding: what overlaps in the mesh itself is never contact;
+//   3. have a vertex on the surface, at least one of the two: others overlap only after a whole layer of
+//      elements has gone through another, or where the interior is turned inside out.
 // Bodies that do not meet themselves cost nothing here.
 #ifndef TETLAP_CONTACT_SELF_H
 #define TETLAP_CONTACT_SELF_H

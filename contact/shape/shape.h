@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Obstacles without elements: what the rest of contact asks of a half-space, a ball or a convex solid that
-// stands or moves. A kind is one `case` in each of these functions.
+// Obstacles without elements: half-spaces, balls and convex solids, at rest or moving. Each function has one
+// `case` a kind.
 #ifndef TETLAP_CONTACT_SHAPE_H
 #define TETLAP_CONTACT_SHAPE_H
 

@@ -54,7 +54,7 @@ static inline int contact_depth_tet(const ContactDepth *depth, int cell) {
   return depth->tets ? depth->tets[cell] : cell;
 }
 
-// Whether the cell stands for its tetrahedron where that is met as a whole: the first of its cells does.
+// Whether the cell is the first of its tetrahedron: it stands for the tetrahedron where that is used whole.
 static inline bool contact_depth_leads(const ContactDepth *depth, int cell) {
   return !depth->tets || cell == 0 || depth->tets[cell - 1] != depth->tets[cell];
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An effect: one module that a scene calls for (elasticity, damping, gravity, contact …). A scene pays for
-// what it names and for nothing else: an effect that is absent is never created. Each is one file with one
+// An effect: one module that a scene calls for (elasticity, damping, gravity, contact …). An effect
+// that a scene does not call for is never created and costs nothing. Each is one file with one
 // table of operations, and one line in effect.c.
 #ifndef TETLAP_FEM_EFFECT_EFFECT_H
 #define TETLAP_FEM_EFFECT_EFFECT_H
@@ -30,9 +30,9 @@ typedef struct FemEnergy {
   double applied_work;     // of loads since the start [J]
   double plastic_work;     // dissipated by plasticity since the start [J]
   double friction_work;    // dissipated by friction with a history since the start [J]
-  double common_kinetic;   // of `kinetic`, what nothing can notice (fem/model/floating.h)
+  double common_kinetic;   // of `kinetic`, that of the common velocity (fem/model/floating.h)
   double common_gravity;   // likewise: all of `gravity` where bodies float, else nothing
-  double turned_power;     // of friction that pushes what slips along, as after a turn within a step [W]
+  double turned_power;     // of friction that drives slip, since it has reversed within a step [W]
 } FemEnergy;
 
 typedef struct FemEffectOps {
@@ -46,7 +46,7 @@ typedef struct FemEffectOps {
   const char *static_refusal, *static_key;
   Status (*create)(void **self, const FemModel *model);
   // The same as create for a run that begins anew: takes over from `old`, which is destroyed next, what never
-  // changes and is dear to make or lies in a file (weights). NULL: create.
+  // changes and is expensive to make or was read from a file (weights). NULL: create.
   Status (*create_again)(void **self, const FemModel *model, void *old);
   // Once all effects are there: to find one that this effect builds on, by fem_system_effect. NULL: none.
   Status (*connect)(void *self, const struct FemSystem *system);
@@ -80,7 +80,7 @@ typedef struct FemEffectOps {
   // most to `farthest`. NULL: that far.
   double (*horizon)(const void *self, const FemForesight *foresight, double time, double farthest);
   // How long the next step may be, at the speeds of the last accepted state, so that forces can be evaluated
-  // at its end [s]. NULL: as long as it likes.
+  // at its end [s]. NULL: any length.
   double (*longest_step)(const void *self);
   // Adds counters to summary.json; NULL: none. Whole numbers count what happened since creation and are
   // summed over the parts of a run between two checkpoints; of other numbers the last stands.

@@ -122,7 +122,7 @@ Status fem_system_create(FemSystem *system, const FemModel *model) {
 
 Status fem_system_create_again(FemSystem *system, const FemModel *model) {
   FemSystem old = *system;
-  fem_matrix_destroy(&old.matrix); // the largest part, which nobody takes over
+  fem_matrix_destroy(&old.matrix); // the largest part, which is not taken over
   fem_pattern_destroy(old.pattern);
   old.pattern = NULL;
   Status status = create_from(system, model, &old);
@@ -367,7 +367,7 @@ static double common_kinetic(const FemSystem *system) {
   return 0.5 * mass * vec3_dot(common, common);
 }
 
-// Whoever moves a prescribed coordinate gives it minus the force that acts on it.
+// A prescribed coordinate is moved by minus the force that acts on it.
 static double driven_power(const FemSystem *system) {
   const FemModel *model = system->model;
   double sum = 0;

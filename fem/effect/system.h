@@ -33,7 +33,7 @@ typedef struct FemSystem {
 } FemSystem;
 
 Status fem_system_create(FemSystem *system, const FemModel *model);
-// The same anew in place: everything that depends on what has happened is forgotten. After a failure there is
+// Creates it anew in place: everything that depends on earlier states is discarded. After a failure there is
 // nothing to destroy.
 Status fem_system_create_again(FemSystem *system, const FemModel *model);
 void fem_system_destroy(FemSystem *system);
@@ -84,7 +84,7 @@ bool fem_system_has_gap(const FemSystem *system);
 double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,
                           double farthest);
 
-// How long the next step may be so that its forces can be evaluated [s]; INFINITY: nobody minds.
+// How long the next step may be so that its forces can be evaluated [s]; INFINITY: no effect limits it.
 double fem_system_longest_step(const FemSystem *system);
 
 // Whether an effect's forces depend on velocities.
@@ -92,7 +92,7 @@ bool fem_system_dissipates(const FemSystem *system);
 // Whether an effect's forces change when it is prepared.
 bool fem_system_lags(const FemSystem *system);
 
-// What the effect of that table keeps, NULL if the scene has none.
+// The `self` of the effect with that table; NULL: the scene does not have it.
 void *fem_system_effect(const FemSystem *system, const FemEffectOps *effect);
 
 #endif

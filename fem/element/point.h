@@ -14,7 +14,7 @@ typedef struct FemPoint {
 // F = Σ_a x_a ⊗ ∂N_a/∂X, positions taken relative to node 0; Ḟ from velocities in the same way. x (n, 3).
 void fem_point_deformation(const FemPoint *point, const double *x, double F[9]);
 
-// force_a −= weight P ∂N_a/∂X; what is added has no sum, to the last bit where force was zero. force (n, 3).
+// force_a −= weight P ∂N_a/∂X; their sum is zero, to the last bit where `force` was zero. force (n, 3).
 void fem_point_add_force(const FemPoint *point, const double P[9], double *force);
 
 // K_ai,bk += weight Σ_jl ∂N_a/∂X_j ∂P_ij/∂F_kl ∂N_b/∂X_l for symmetric ∂P/∂F, in the upper half (node a ≤ b);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The quadratic tetrahedron: ten nodes, the corners 0 … 3 and the middles 4 … 9 of the edges 01, 02, 03, 12,
-// 13, 23. With the barycentric coordinates L its shape functions are L_i (2 L_i − 1) and 4
-// L_i L_j. Four quadrature points of equal weight, L = (a, b, b, b), a = (5 + 3√5)/20, b = (5 − √5)/20
+// 13, 23. With the barycentric coordinates L its shape functions are L_i (2 L_i − 1) and 4 L_i L_j. Four
+// quadrature points of equal weight, L = (a, b, b, b), a = (5 + 3√5)/20, b = (5 − √5)/20
 // (Hammer, Marlowe and Stroud 1956), integrate products of gradients exactly: at rest the stiffness is that
 // of exact integration, and only rigid motions cost no energy (4 points × 6 strains = 30 coordinates − 6).
 // At rest an edge may be curved (isoparametric): the same shape functions give the positions X(L), and each

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The neo-Hookean law of CalculiX and Abaqus, in which shear feels the shape only (formulas in
-// fem/material/material.h). For fem/material/material.c alone.
+// The neo-Hookean law of CalculiX and Abaqus, whose deviatoric part depends on the change of shape alone
+// (formulas in fem/material/material.h). For fem/material/material.c alone.
 #ifndef TETLAP_FEM_MATERIAL_ISOCHORIC_H
 #define TETLAP_FEM_MATERIAL_ISOCHORIC_H
 

@@ -31,7 +31,7 @@ typedef struct FemMaterial {
   double viscosity, bulk_viscosity; // η, ζ ≥ 0 [Pa s]
   double yield_stress, hardening;   // σ_y, 0: elastic, and H of the effect plasticity [Pa]
   double mooney;                    // m of mooney_rivlin, in [0, 1]
-  double exponents[3], shares[3];   // α_p and shares of ogden's terms; the shares are taken by their sum
+  double exponents[3], shares[3];   // α_p and shares of ogden's terms; the shares are divided by their sum
   double fibre_stiffness;           // k [Pa]; 0: no fibres
   double fibre_direction[3];        // need not have unit length
   bool fibres_buckle;

@@ -123,8 +123,8 @@ static Status find_rim(const ContactLayout *layout, const ContactEvaluation *eva
   return STATUS_OK;
 }
 
-// Whether the patch presses more than ever, or bodies give way more while it does; then `found` holds by how
-// much and where.
+// Whether the force of the patch is the largest so far, or more energy is stored at about that force; then
+// `found` holds the values and places.
 static bool is_largest(const FemAccuracy *accuracy, const ContactInterface *interface, int place, double time,
                        double stored, FemAccuracyPair *found) {
   double force = vec3_length(vec3_at(interface->force));

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How wrong contact may be, pair of bodies by pair, estimated at the state in which the two pressed each
+// An estimate of the error of contact for each pair of bodies, at the state in which the two pressed each
 // other most.
 //
 // give    The interface is a spring in series with the bodies: with the potential U of the pair and the
-//         elastic energies E_a, E_b of the two (0 of an obstacle), each of them ½ force · way,
+//         elastic energies E_a, E_b of the two (0 of an obstacle), each of them ½ force · displacement,
 //
 //           give = U / (U + E_a + E_b)
 //
-//         is the interface's share of the way. What is pressed by a prescribed way is too soft by that
-//         share of the force, what is pressed by a prescribed force by that share of the way. U goes with
-//         1/c, so the stiffness that brings it to 1 % is c · 99 give / (1 − give).
-// rim     Beside an edge of a body the nearest surface is its side, and what lies there is pushed
-//         sideways: the share of the force that is lost at this depth. With F_k the pairs of an element,
+//         is the interface's share of the displacement. Under a prescribed displacement the force is too
+//         small by that share; under a prescribed force the displacement is too large by it. U is
+//         proportional to 1/c, so the stiffness that brings it to 1 % is c · 99 give / (1 − give).
+// rim     Near an edge of a body the nearest surface is its side, and material there is pushed sideways:
+//         the share of the force that is lost by that at this depth. With F_k the pairs of an element,
 //         w_k and g_k their weights and slopes (contact/pressure/field.h), n = Σ F_k / |Σ F_k| of the
 //         element,
 //
 //           rim = Σ [ c (w_i |g_B| + w_j |g_A|) − F_k · n ] / Σ F_k · n.
 //
-//         It goes with the depth, so with 1/c.
+//         It is proportional to the depth, so to 1/c.
 // depth   D = 2 U / F, the mean depth of the overlap, over the mean edge of the elements that take part:
-//         how much of what should be a surface is a volume.
+//         how thick the layer of contact is in elements.
 // known   the position tolerance of a time step over D: by how much the depth is undetermined in one step
 //         of a motion. Forces at rest are balanced more closely than that (docs/time.md).
 // across  √area over that edge: how many elements resolve the patch.
@@ -31,8 +31,8 @@
 #include "fem/effect/system.h"
 
 // Of one interface, at its largest force so far; what stands below `estimated` at a force that is smaller by
-// a hundredth at most. The way is that of the state in which most is stored while the two touch: a blow
-// presses the interface before the body behind it has given way. Numbers only, for checkpoints.
+// a hundredth at most. `give` is taken at the state in which most energy is stored while the two touch: an
+// impact compresses the interface before the body behind it. Numbers only, for checkpoints.
 typedef struct FemAccuracyPair {
   double force;      // 0: the two never touched [N]
   double time;       // [s]
@@ -51,7 +51,7 @@ enum { FEM_ACCURACY_KEPT = 14 };
 typedef struct FemAccuracy {
   int count;
   FemAccuracyPair *pairs; // in the order of contact_system_interfaces     (count)
-  FemAccuracyPair *found; // in the state that is looked at               (found_count)
+  FemAccuracyPair *found; // in the state that is evaluated               (found_count)
   int *places;            // whose they are                               (found_count)
   int found_count;
   double *energies;  // scratch: of bodies                                (body_count)
@@ -62,11 +62,11 @@ typedef struct FemAccuracy {
 Status fem_accuracy_create(FemAccuracy *accuracy, const FemModel *model, const ContactSystem *contact);
 void fem_accuracy_destroy(FemAccuracy *accuracy);
 
-// Looks for pairs that press more than ever at contact's last evaluation, that of the scattered state;
+// Finds pairs that press more than ever before at contact's last evaluation, that of the scattered state;
 // `elastic`: the elastic energy of all bodies [J].
 Status fem_accuracy_look(FemAccuracy *accuracy, const FemSystem *system, ContactSystem *contact, double time,
                          double elastic);
-// What was looked at is accepted.
+// The evaluated state is accepted.
 void fem_accuracy_accept(FemAccuracy *accuracy);
 
 // What follows for one pair.

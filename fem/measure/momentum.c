@@ -14,8 +14,8 @@
 // A body's balance may be out by the first share of all impulses of a run. Beyond it a step adds no more than
 // half of what is left to the second; the third is always allowed.
 static const double NEAR = 6e-4, FAR = 9e-4, NEGLIGIBLE = 1e-5;
-// What a method of order 1 may owe until the force falls again, as a share of the same: it does not take that
-// back where steps change or the order rises before.
+// The imbalance that a method of order 1 may add while a force rises, as a share of the same impulses. It
+// takes that back when the force falls, but not if the step size or the order has changed in between.
 static const double OWED = 3e-4;
 // From the first share to the second the tolerance of velocities falls to the third of itself: steps get
 // shorter before they have to be taken back.

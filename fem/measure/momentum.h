@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Momentum's balance: whether the forces that are written are those that moved the bodies. Of each body, over
-// its coordinates that are free,
+// The balance of momentum: whether the forces in the output are those that moved the bodies. Of each body,
+// over its coordinates that are free,
 //
 //   Δp = Σ m Δv,     J = ∫ (Σ contact + M g + Σ loads + Σ reactions) dt,     S = ∫ Σ |each of them| dt,
 //
 // by the trapezoidal rule over accepted steps; contact between two as history.csv has it
 // (fem/output/forces.h), reactions are those of `fixed` and `driven`. In exact mechanics J = Δp. The gap is
-// |J − Δp| over the larger of S and M times the velocity tolerance of one step, which is all that is known of
-// a body on which next to nothing acts. Within a step J, Δp and S are interpolated, as forces are.
+// |J − Δp| over the larger of S and M times the velocity tolerance of one step; the latter is the resolution
+// for a body on which almost no force acts. Within a step J, Δp and S are interpolated, as forces are.
 #ifndef TETLAP_FEM_MEASURE_MOMENTUM_H
 #define TETLAP_FEM_MEASURE_MOMENTUM_H
 

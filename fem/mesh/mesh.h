@@ -34,7 +34,7 @@ typedef struct FemMesh {
   int quadratic_count;  // tet_count / 8
 } FemMesh;
 
-// What reading mended, for `tetlap mesh` and the log.
+// What reading repaired, for `tetlap mesh` and the log.
 typedef struct FemMeshRepairs {
   int reoriented_tets;
   int dropped_vertices; // not used by any tetrahedron (gmsh drops some itself, uncounted, as in .msh 2.2)
@@ -49,7 +49,7 @@ typedef struct FemPlacement {
 } FemPlacement;
 
 FemPlacement fem_mesh_placement_identity(void);
-// Where the turn takes the three axes of space: row k is that of axis k.
+// The rotated axes of space: row k is the image of axis k.
 void fem_mesh_placement_axes(const FemPlacement *placement, double axes[3][3]);
 
 // Options of meshing surfaces (.stl, .geo) in place.

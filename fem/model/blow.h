@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The energy with which a body may strike, told from the scene before it moves: what it has at the start and
-// what gravity gives it on its way down.
+// An upper bound of the energy with which a body may strike another, from the scene alone: what it has at the
+// start and what gravity gives it on its way down.
 //
 // A body falls as far as the lowest point of any other body or obstacle lies below its own: to a half-space
 // along gravity, of a ball, a box or a cylinder to its centre; not farther than the time until the end lets
 // it, and not at all while some of its coordinates are prescribed, or while all bodies float: then energies
-// are relative to the centre of mass. That is an upper bound: what others stop
-// on the way has less.
+// are relative to the centre of mass. A body that another one stops on the way has less.
 #ifndef TETLAP_FEM_MODEL_BLOW_H
 #define TETLAP_FEM_MODEL_BLOW_H
 

@@ -11,7 +11,8 @@
 #include "fem/material/svd3.h"
 #include "fem/model/blow.h"
 
-// What the interface may give, over what the bodies do; and how deep, over the height, a blow may press it.
+// The deformation of the interface over that of the bodies, and its depth over the height in an impact, at
+// most.
 static const double GIVE = 0.02, BLOW_DEPTH = 0.01;
 // Pressed between faces that hold it, a body is stiffer than E by 1/(1 − HELD ν⁴): a fit, not above what
 // cubes have (1.048 at ν = .3, 1.169 at .45), that keeps the give below 2 % at any ν.
@@ -96,20 +97,20 @@ static Status measure_bodies(const FemModel *model, Give *gives) {
   return STATUS_OK;
 }
 
-// What two give by for each Pa between them [m/Pa]: no patch is larger than the smaller one, and what lies
-// farther away than its height feels little of it.
+// By how much two bodies yield for each Pa between them [m/Pa]: no patch of contact is larger than the
+// smaller one, and material farther away than its height deforms little.
 static double give_of(const Give *a, const Give *b) {
   if (!(a->give > 0) || !(b->give > 0)) return a->height * a->give + b->height * b->give;
   return fmin(a->height, b->height) * (a->give + b->give);
 }
 
-// The pressure with which two are squeezed that store a blow between them, evenly strained; E at most.
+// The pressure between two bodies that store the energy of an impact, evenly strained; E at most.
 static double pressure_of(const Give *a, const Give *b, double blow) {
   double stored = a->volume * a->inverse + b->volume * b->inverse;
   return fmin(sqrt(2 * blow / stored), 1 / fmax(a->inverse, b->inverse));
 }
 
-// Between two: stiff enough for a press and for a blow [J]. `terms`: of p = terms · c d.
+// Between two bodies: stiff enough for a press and for an impact [J]. `terms`: of p = terms · c d.
 static double stiffness_between(const Give *a, const Give *b, double blow, int terms) {
   double sum = give_of(a, b), height = a->height;
   if (!(sum > 0)) return 1;

@@ -1,29 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How stiff contact is: κ of each two that can meet, as the scene says or as chosen from the bodies.
 //
-// For the potential `field` the choice does not depend on the mesh. Two that press each other with p give way
-// by p/(2c) where they touch and by about p L (1/E_A' + 1/E_B') in themselves, L the height of the smaller
-// one: no patch is larger than that, and what lies farther away feels little of it. So
+// For the potential `field` the choice does not depend on the mesh. Under a pressure p the interface of two
+// bodies yields by p/(2c) and the bodies by about p L (1/E_A' + 1/E_B'), L the height of the smaller one: a
+// patch of contact is no larger than that, and material farther away deforms little. So
 //
 //   c = 25 / (L (1/E_A' + 1/E_B')),     E' = E/(1 − 3.5 ν⁴)
 //
-// keeps the first at 2 % of the second: 12.5 E'/L for two that are alike. E' is a fit of what cubes resist
-// with that are held on the face that is pressed. Obstacles do not give way, and a shape without elements
-// presses with c d in place of 2 c d: against one, c = 50 E'/L. The height of a body of any shape is the
-// smaller of √12 times its least radius of inertia, which is the least edge of a box, and six times its
-// volume over its surface, which is the edge of a cube and follows the wall of what is hollow.
+// keeps the first at 2 % of the second: 12.5 E'/L for two equal bodies. E' is a fit to the stiffness of cubes
+// that are held on the pressed face. Obstacles do not yield, and a shape without elements presses with c d in
+// place of 2 c d: against one, c = 50 E'/L. The height of a body of any shape is the smaller of √12 times its
+// least radius of inertia, which is the least edge of a box, and six times its volume over its surface, which
+// is the edge of a cube and follows the wall of what is hollow.
 //
-// A blow may squeeze bodies that are far from it in a scene, too, and by as much as their height. Two that
-// store the hardest blow W of the scene (blow.h) between them press each other with p = √(2 W / (V_A/E_A +
-// V_B/E_B)), V their volumes; beyond p = E, where they would have no height left, they grow stiffer
-// themselves. c is such that this presses the interface in by 1 % of L at most, where that needs more than a
-// press:
+// An impact may compress bodies by as much as their height. Two bodies that store the energy W of the hardest
+// impact of the scene (blow.h) press each other with p = √(2 W / (V_A/E_A + V_B/E_B)), V their volumes.
+// Beyond p = E they would have no height left; there their own stiffness grows. Where it is more than the
+// value above, c is such that this p compresses the interface by 1 % of L:
 //
 //   c = 50 min(p, E) / L, against a shape without elements 100 min(p, E) / L,     E of the softer one
 //
-// It is a rule for a press over a height. Where the contact is far smaller than both bodies, of radius a say,
-// they give way by about p a (1/E_A + 1/E_B) only, and the interface by L/a times 2 % of that: who wants such
-// contacts as exact says contact.stiffness, some L/a times the chosen one.
+// The rule assumes contact over the whole width. Where the contact is far smaller than both bodies, of radius
+// a, they yield by about p a (1/E_A + 1/E_B) only, and the interface by L/a times 2 % of that. For such
+// contacts set contact.stiffness to about L/a times the chosen value.
 #ifndef TETLAP_FEM_MODEL_COMPLIANCE_H
 #define TETLAP_FEM_MODEL_COMPLIANCE_H
 

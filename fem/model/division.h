@@ -10,7 +10,7 @@
 Status fem_model_divide(FemModel *model);
 void fem_model_division_destroy(FemModel *model);
 
-// Who would have which vertex among so many ranks, obstacles' the first: owner (model->vertex_count).
+// The rank of each vertex among so many ranks; obstacles' the first: owner (model->vertex_count).
 Status fem_model_division_find(const FemModel *model, int rank_count, int *owner);
 
 // What ranks would have of a model, least and most of any.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The formulas of a scene, held to be numbers: one that is none would be a position, or a force, that is
-// none.
+// Checks that the formulas of a scene give numbers: their values become positions and forces.
 #ifndef TETLAP_FEM_MODEL_FORMULAS_H
 #define TETLAP_FEM_MODEL_FORMULAS_H
 

@@ -100,7 +100,7 @@ double fem_model_rest_speed(const FemModel *model) {
   return given > 0 ? given : model->scene->tolerance * fem_model_slowest_wave(model);
 }
 
-// Less would be asked in vain: the integrator's own errors accelerate a body that lies still by some
+// A smaller value would never be met: the integrator's own errors accelerate a body at rest by some
 // hundredths of a tolerance's speed in the time of a crossing.
 static const double REST_ACCELERATION = 5; // speeds in the time it is watched
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A load of the scene on a body's vertices. All kinds but a pressure that follows its surface are dead: fixed
 // nodal forces times the factor of time; those of a surface are the integrals of the shape functions, also on
-// the faces of quadratic tetrahedra, where the corners take nothing; a body force is shared as the mass is.
+// the faces of quadratic tetrahedra, whose corners get nothing; a body force is distributed as the mass is.
 // The following pressure p on a triangle with the area vector A = ½ (b − a) × (c − a), outward, gives each
 // corner −p A/3; it is −p ∂V/∂x of the volume that the surface bounds.
 #ifndef TETLAP_FEM_MODEL_LOAD_H

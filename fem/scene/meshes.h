@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The meshes that a scene is made of, read or made and put in their places.
+// The meshes of a scene, read or generated, and placed.
 #ifndef TETLAP_FEM_MODEL_MESHES_H
 #define TETLAP_FEM_MODEL_MESHES_H
 
@@ -7,7 +7,7 @@
 #include "fem/scene/scene.h"
 
 // Those of all bodies, then of the obstacles that have one: `meshes` has room for all; on error, too, the
-// caller destroys them. A file that several are made of is read once. Errors name the body or the obstacle.
+// caller destroys them. A file that several use is read once. Errors name the body or the obstacle.
 Status fem_model_meshes_load(const FemSceneDef *scene, FemMesh *meshes);
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A part of a body that the scene wants to be told of: vertices, and the triangles of its surface all of
-// whose corners are among them.
+// A part of a body whose force and motion the scene asks for: vertices, and the triangles of its surface all
+// of whose corners are among them.
 #ifndef TETLAP_FEM_MODEL_PROBE_H
 #define TETLAP_FEM_MODEL_PROBE_H
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A function of time that the scene prescribes (a motion, the factor of a load), and how far a step may go
-// along it. An integrator sees such a function where its steps end and takes it for smooth between: what
-// lasts for less than a step could be stepped over. So a step may end only where the function between is
-// followed by the cubic through values and rates at both ends; if it is not, it ends at an earlier knot,
-// a time at which the function has a kink or a jump.
+// A function of time that the scene prescribes (a motion, the factor of a load), and how long a step along it
+// may be. An integrator evaluates such a function only where its steps end, so it could miss what lasts for
+// less than a step. Therefore a step may end only where the cubic through values and rates at both ends
+// follows the function in between. If it does not, the step ends at an earlier knot: a time at which the
+// function has a kink or a jump.
 #ifndef TETLAP_FEM_MODEL_SIGNAL_H
 #define TETLAP_FEM_MODEL_SIGNAL_H
 
 #include <stdbool.h>
 
-// What may go by unseen in a step.
+// The largest change that a step may miss.
 typedef struct FemForesight {
   double displacement; // of what is moved [m]
   double velocity;     // that a load gives a vertex [m/s]

@@ -55,7 +55,7 @@ static void keep_mpi_to_itself(void) {
       {"OMPI_MCA_mpi_warn_on_fork", "0"},
       {"OMPI_MCA_opal_signal", ""},
       {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
-      // hwloc would ask accelerators who is there, and load an OpenCL compiler for it: 36 MB of heap
+      // hwloc would look for accelerators, and load an OpenCL compiler to do so: 36 MB of heap
       {"HWLOC_COMPONENTS", "-opencl,-cuda,-nvml,-rsmi,-levelzero,-gl"},
   };
   for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) setenv(settings[i][0], settings[i][1], 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which vertices a rank has, where several share a run (base/ranks.h). A clique of vertices belongs to the
-// rank that has its lowest vertex: it alone adds what the clique gives. Sums over ranks are then the whole.
+// rank that has its lowest vertex: it alone adds the clique's part. Sums over ranks are then the whole.
 #ifndef TETLAP_FEM_SPARSE_SHARE_H
 #define TETLAP_FEM_SPARSE_SHARE_H
 

@@ -3,9 +3,9 @@
 // unknowns of a vertex kept apart by their direction (Henson and Yang 2002), `gamg` PETSc's smoothed
 // aggregation with the rigid motions as near-null space (Vaněk, Mandel and Brezina 1996; Adams et al. 2004).
 //
-// A hierarchy is dear (some five iterations) and bears that the matrix moves on: it is kept for new numbers
-// while iterations stay near what they were when it was new. Conjugate gradients see the newest matrix
-// always, so this never touches the answer. Only counts decide, no clock: a run repeats itself.
+// A hierarchy costs as much as some five iterations and still serves after small changes of the matrix: it is
+// kept while the number of iterations stays near that of when it was new. Conjugate gradients always use the
+// newest matrix, so the solution does not depend on it. Counts decide and no clock, so a run is reproducible.
 //
 // The multigrid sees three coordinates of every vertex that has an unknown; prescribed ones stand alone, with
 // nothing but a diagonal.

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well a preconditioner that was made of earlier numbers still serves: by the iterations for a digit of
-// the residual, against those of when it was new. Solutions of different accuracy are compared so.
+// Whether a preconditioner that was made from earlier matrix entries still serves: the iterations that it
+// needs for a digit of the residual, compared with those when it was new. Per digit, solutions of different
+// accuracy can be compared.
 #ifndef TETLAP_FEM_SPARSE_WEAR_H
 #define TETLAP_FEM_SPARSE_WEAR_H
 
 #include <math.h>
 #include <stdbool.h>
 
-// However little Newton's method needs: what is left over shows how fast it converges.
+// The largest relative residual that is allowed, even where Newton's method would accept a larger one: the
+// rate at which Newton's method converges must stay visible.
 static const double FEM_WEAR_LOOSEST = 0.03;
 
 typedef struct FemWear {

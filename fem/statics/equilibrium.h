@@ -29,7 +29,7 @@ Status fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, doubl
 
 // The largest absolute value.
 double fem_equilibrium_largest(const double *values, int count);
-// (c/L)² of the slowest body: a shift that its lowest modes feel.
+// (c/L)² of the slowest body: a shift of the size of its lowest eigenvalues.
 double fem_equilibrium_first_shift(const FemEquilibrium *equilibrium);
 
 #endif

@@ -28,11 +28,12 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
   audit->scale = fmax(floor, largest_part(audit, energy));
 }
 
-// Of a power that is dissipated in a step, from its ends. One that swings is what the trapezoidal rule says:
-// over a period its errors cancel, where the logarithmic mean would lack (ω h)²/6 of it. One that falls by
-// much in a step falls exponentially, as that of a mode which is damped faster than the step is long: there
-// the logarithmic mean is right, and the mean of the ends would be many times what there was to lose. Between
-// a fall to a half and one to an eighth the one becomes the other.
+// The mean of a dissipated power over a step, from its values at both ends. For a power that oscillates the
+// trapezoidal rule is right: its errors cancel over a period, and the logarithmic mean would be too small by
+// (ω h)²/6. A power that falls by much in a step falls exponentially, as that of a mode which is damped
+// faster than the step is long: there the logarithmic mean is right, and the mean of the ends would be many
+// times the energy that there was. The first is used up to a fall by SWINGS, the second from FALLS on, a
+// blend in between.
 static const double SWINGS = 2, FALLS = 8;
 static double mean_dissipated(double begin, double end) {
   const double trapezoid = 0.5 * (begin + end);

@@ -10,9 +10,9 @@
 //
 // Two bounds, as shares of the scene's energy. What one step may gain: more is taken back. What a run may
 // gain in all: more is trouble (fem/output/trouble.h). Where nothing jumps both are far beyond what the error
-// test lets pass, so that they speak of errors only. Contact jumps within a step, and gains of many steps add
-// up: there a step is also taken back where the run's gain comes near its bound, unless the step gains next
-// to nothing.
+// test lets pass, so that exceeding them shows an error. Contact jumps within a step, and gains of many steps
+// add up: there a step is also taken back where the run's gain comes near its bound, unless the step gains
+// next to nothing.
 #ifndef TETLAP_FEM_TIME_AUDIT_H
 #define TETLAP_FEM_TIME_AUDIT_H
 
@@ -37,8 +37,8 @@ typedef struct FemAudit {
   double first;       // A at the start [J]
   double lowest;      // smallest A so far [J]
   double gain;        // largest rise of A above an earlier value, less what is open [J]
-  double scale;       // the scene's energy: largest of its parts so far, gravity from its start, without what
-                      // nothing can notice (fem/model/floating.h) [J]
+  double scale;       // the scene's energy: largest of its parts so far, gravity from its start, without that
+                      // of the common velocity (fem/model/floating.h) [J]
   double gravity_at_start;
   double dissipated_power, driven_power; // at `time` [W]
   double open;                           // of a static scene: fem_audit_load_step [J]

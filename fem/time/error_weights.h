@@ -5,7 +5,7 @@
 // speed v, their surfaces change theirs by v, and an error far below that costs steps and changes nothing. So
 // a velocity may err by `speed_share` of the present speed of the fastest body (root mean square over its
 // mass), at least by the `velocity` tolerance and at most by `wave_share` of the body's own √(E/ρ), the speed
-// of its waves. Speeds are relative to the velocity that nothing can notice (fem/model/floating.h). This is a
+// of its waves. Speeds are relative to the common velocity (fem/model/floating.h). This is a
 // function of the state, so a resumed run has the same weights.
 #ifndef TETLAP_FEM_TIME_ERROR_WEIGHTS_H
 #define TETLAP_FEM_TIME_ERROR_WEIGHTS_H
@@ -24,7 +24,7 @@ typedef struct FemErrorTolerance {
 void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model, const FemPart *part,
                        const double *v, double *weights);
 
-// The velocity common to all bodies that nothing can notice, of velocities v (part->count). By all ranks.
+// The common velocity (fem/model/floating.h) of velocities v (part->count). By all ranks.
 Vec3 fem_error_weights_common(const FemModel *model, const FemPart *part, const double *v);
 
 #endif

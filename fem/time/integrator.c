@@ -23,13 +23,13 @@ enum { MAX_FAILURES = 15 };
 // Knots of prescribed motions and loads closer than this share of the run's end count as one; IDA tells 2e-14
 // apart.
 static const double KNOT_RESOLUTION = 1e-12;
-// IDA lengthens a step only where it may double, which saves matrices. Where contact begins and ends steps
-// change all the time, and it is longer ones that save.
+// The least factor by which a step is lengthened. IDA's own is 2, which saves factorisations. Where contact
+// begins and ends the step size changes often, and longer steps save more.
 static const double LEAST_GROWTH = 1.2, LEAST_GROWTH_WITHOUT_CONTACT = 2;
-// What a step ended at is taken from the last evaluation where the two differ by less than this share of the
-// tolerance, which is rounding.
+// Where the end of a step and the last evaluation differ by less than this share of the tolerance, which is
+// rounding, the values of the evaluation are used.
 static const double SAME_STATE = 1e-6;
-// What the kinematics lack below this share of the velocities' tolerance is rounding.
+// A residual of u̇ = v below this share of the velocities' tolerance is rounding.
 static const double ROUNDING = 1e-7;
 // Roots are found to this share of their step.
 static const double ROOT_RESOLUTION = 1e-9;
@@ -426,8 +426,8 @@ static FemReason reason_of(int flag) {
   }
 }
 
-// The number in y of the unknown that stands in the way: of the largest estimated error if the error test
-// failed, else of the largest unbalanced force.
+// The number in y of the unknown with the largest estimated error if the error test failed, else with the
+// largest unbalanced force.
 static int find_worst(FemIntegrator *integrator, int flag) {
   const FemPart *part = &integrator->part;
   int n = integrator->n;
@@ -531,8 +531,8 @@ static Status choose_stop(FemIntegrator *integrator) {
                      begin);
 }
 
-// Where a knot lies behind and the next is nearer than the last step was long, that step says nothing of what
-// comes: the method begins anew.
+// After a knot whose successor is nearer than the last step was long, that step cannot predict the next one:
+// the method begins anew.
 static Status pass_knot(FemIntegrator *integrator) {
   double last = fem_integrator_stats(integrator).last_step;
   if (!integrator->stops_at_knot || integrator->stop - integrator->step_end >= last) return STATUS_OK;

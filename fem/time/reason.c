@@ -28,7 +28,7 @@ Status fem_reason_fail(const FemReason *reason, const FemSystem *system, const F
   const FemModel *model = system->model;
   int dof = model->dof_of_unknown[place->unknown], vertex = dof / 3;
   const double *x = system->positions + 3 * vertex;
-  const char *retry = place->retry;
+  const char *retry = place->retry, *advice = reason->advice;
   char element[96];
   name_element(model, system->positions, vertex, element, sizeof element);
   return status_fail(
@@ -37,5 +37,5 @@ Status fem_reason_fail(const FemReason *reason, const FemSystem *system, const F
       "%.6g) m, %c%s. Try %s",
       place->time, place->step, reason->what, retry[0] ? " (last: " : "", retry, retry[0] ? ")" : "",
       place->is_position ? "position" : "velocity", vertex, fem_model_body_name(model, vertex), x[0], x[1],
-      x[2], "xyz"[dof % 3], element, reason -> advice);
+      x[2], "xyz"[dof % 3], element, advice);
 }

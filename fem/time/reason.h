@@ -11,8 +11,8 @@ typedef struct FemReason {
 
 typedef struct FemReasonPlace {
   double time, step; // [s]
-  int unknown;       // the one that stands in the way most
-  bool is_position;  // its position does, else its velocity
+  int unknown;       // the one with the largest error or unbalanced force
+  bool is_position;  // of its position, else of its velocity
   const char *retry; // what asked last for a smaller step; empty: nothing did
 } FemReasonPlace;
 

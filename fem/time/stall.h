@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a run makes way. Under a force that jumps, or a matrix that is not the force's derivative, an
+// Whether a run makes progress. Under a force that jumps, or a matrix that is not the force's derivative, an
 // integrator with error control does not fail: it cuts its steps again and again and would go on for days.
 //
 // Tries are counted in windows of 2000, over all the integrators of a run: steps, those that the energy audit

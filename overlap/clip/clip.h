@@ -35,8 +35,8 @@
 //   ∂²V/∂x_a∂x_v −= 1/sin θ ∫_s β_a β_v ds n_f n_gᵀ,    ∂²V/∂x_a∂y_b += 1/sin θ ∫_s β_a γ_b ds n_f n_gᵀ.
 //
 // The integrands are quadratic along s: Simpson's rule is exact. dS_f and the segments are symmetric only
-// together; what is not symmetric of a segment, n_f n_gᵀ − n_g n_fᵀ = −sin θ [t]× with t its direction, knows
-// no sin θ.
+// together. The antisymmetric part of a segment, n_f n_gᵀ − n_g n_fᵀ = −sin θ [t]× with t its direction,
+// divided by sin θ does not depend on θ.
 //
 // Where faces f and g coincide V has one-sided derivatives only: ∇V is that of one side, and 1/sin θ grows
 // without bound as they get parallel. In the symmetric part of n_f n_gᵀ, sin θ is taken as at least
@@ -55,9 +55,9 @@
 // smaller tetrahedron, and x̄ is within the boxes of both in any case. Rounding of well-shaped pairs leaves
 // |δx̄| ≤ 1e-12 L where V is more than 1e-4 of the smaller (tests/overlap/test_centroid.c).
 //
-// Whether there is a volume at all is rounding where V ≤ 64 of this bound's |δV| (without the last part) or Σ φ ≤ 4096 ε:
-// faces that lie on each other but for rounding have φ, and so ∇V, of an overlap. Such pairs are handed on, so
-// that V = 0 and ∇V = 0 where `exact` says so.
+// Rounding decides whether there is a volume at all where V ≤ 64 of this bound's |δV| (without the last part)
+// or Σ φ ≤ 4096 ε: faces that lie on each other but for rounding have φ, and so ∇V, of an overlap. Such pairs
+// are handed on, so that V = 0 and ∇V = 0 where `exact` says so.
 //
 // Where V is small and a tetrahedron flat, φ may be as wrong as V, and nothing is concluded. Pairs for which
 // this bound does not do (slivers, mostly) are answered by overlap_exact_ops and flagged FALLBACK; their
@@ -72,7 +72,6 @@
 extern const OverlapOps overlap_clip_ops, overlap_clip_scalar_ops, overlap_clip32_ops;
 
 #define OVERLAP_CLIP_LEAST_SINE 1e-6
-
 
 // ∇²V of a polytope, (24, 24); hessian.c.
 void overlap_clip_hessian(const OverlapClipPolytope *polytope, const OverlapClipMoments *moments,

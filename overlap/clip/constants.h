@@ -8,19 +8,19 @@
 #define CONSTANT static const
 #endif
 
-// Beyond this error of a barycentric coordinate not even ∇V is worth computing here.
+// Where a barycentric coordinate has a larger error than this, ∇V is not computed here.
 #define OVERLAP_CLIP_FLATTEST 1e-10
 
-// What rounding may do to det · λ, over the cube of the longest difference of coordinates. Over the classes
-// of the tests the error of V asked for at most 0.065 ε where this has 0.25.
+// The rounding error of det · λ, over the cube of the longest difference of coordinates. In the classes of
+// the tests the errors of V correspond to at most 0.065 ε; this is 0.25.
 #define OVERLAP_CLIP_NOISE (0.25 * DBL_EPSILON)
 
 // How far λ of a flat tetrahedron may slide along its faces, as clip.h has it: times noise, over det. Six
-// times what a search of bad pairs asked for.
+// times the largest found in a search for bad pairs.
 #define OVERLAP_CLIP_SLIDE (1 / (256 * OVERLAP_CLIP_NOISE))
 
-// A volume may be none at all if it is no thicker than so many times what rounding may move its faces by, or if
-// its faces are no larger in all than that, in units of whole faces.
+// An overlap may be rounding alone if it is no thicker than so many times the displacement of its faces by
+// rounding, or if its faces together are no larger than that, in units of whole faces.
 #define OVERLAP_CLIP_THINNEST 64.0
 #define OVERLAP_CLIP_SMALLEST (4096 * DBL_EPSILON)
 

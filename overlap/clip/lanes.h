@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clipping of several pairs at once, one a lane of the processor's vectors, without a branch that hangs on a
-// pair: what `clip` and `clip32` do with batches.
+// Clipping of several pairs at once, one a lane of the processor's vectors, without a branch that depends on
+// a pair: how `clip` and `clip32` evaluate batches.
 //
 // The intersection P is bounded by eight polygons. Each is made of segments that are either part of an own
 // edge of its tetrahedron or lie where a face of the one crosses a face of the other:
@@ -15,14 +15,14 @@
 //   4. each segment p q adds p × q to the areas of the two polygons that it bounds, and (p × q)(p + q) to
 //                 their first moments; then clip.h's formulas for V, ∇V and x̄
 //
-// Every number of a corner is a convex combination with the same weights, so wrong decisions on what is only
-// rounding move the corner by no more than rounding does. What they may spoil is that polygons close; that is
-// seen: a segment has one start and one end, or neither. Where an edge of A meets one of B, rounding may find
-// a part of each within the other though by the way the faces stand only one can be: a start then is found
-// twice, on either edge. Doubtful, and left to careful clipping, is a lane where it has not; where a vertex
-// is closer to a plane of the other than about 1e-9 (identical tetrahedra would each count as inside the
-// other); where edges meet and V is not positive; where rounding may spoil V (clip.h); where a tetrahedron is
-// too flat.
+// Every number of a corner is a convex combination with the same weights, so a wrong decision where rounding
+// decides moves the corner by no more than rounding does. It may leave a polygon open, which is detected: a
+// segment must have one start and one end, or neither. (Where an edge of A meets one of B, rounding may put a
+// part of each inside the other, though by the orientation of the faces only one can be. Then a start is
+// found twice, once on either edge.) A lane is doubtful, and left to careful clipping, where a segment has
+// another number of ends; where a vertex is closer to a plane of the other than about 1e-9 (identical
+// tetrahedra would each count as inside the other); where edges meet and V is not positive; where rounding
+// may spoil V (clip.h); where a tetrahedron is too flat.
 //
 // A lane's result depends on its pair alone, and is the same for every instruction set.
 #ifndef TETLAP_OVERLAP_CLIP_LANES_H
@@ -32,7 +32,7 @@
 
 enum { OVERLAP_CLIP_MAX_LANES = 16 };
 
-// What became of each lane: bit k is lane k.
+// The outcome of each lane: bit k is lane k.
 typedef struct OverlapClipLanesOutcome {
   uint32_t doubtful; // ask a more careful method; the numbers mean nothing
   uint32_t disjoint; // V = 0, ∇V = 0

@@ -3,10 +3,9 @@
 #ifndef TETLAP_OVERLAP_CLIP_POLYTOPE_TYPES_H
 #define TETLAP_OVERLAP_CLIP_POLYTOPE_TYPES_H
 
-// Every vertex ends three edges. A cut with c crossings, at most one an edge, replaces the c or more ends
-// outside (each ends three edges: at least c/3 vertices) by c new vertices: 4 vertices become at most 8, 16,
-// 32,
-// 64. With e = 3/2 v edges: at most 96 edges, and at most 4 + 6 + 12 + 24 + 48 = 94 vertices made in all.
+// Every vertex ends three edges, so v vertices have e = 3/2 v edges. A cut with c crossings, at most one an
+// edge, replaces the vertices outside, at least c/3 of them, by c new ones: 4 vertices become at most 8, 16,
+// 32, 64. So there are at most 96 edges, and 4 + 6 + 12 + 24 + 48 = 94 vertices are made at most.
 enum { OVERLAP_CLIP_VERTICES = 96, OVERLAP_CLIP_EDGES = 96 };
 
 // A tetrahedron's planes.
@@ -23,8 +22,7 @@ typedef struct OverlapClipEdge {
 
 typedef struct OverlapClipPolytope {
   OverlapClipFrame frame[2];
-  int subject;  // the tetrahedron that was clipped, 0 or 1: edges turn outward as seen in its barycentric
-                // space
+  int subject;  // the tetrahedron that was clipped, 0 or 1; in its barycentric space edges turn outward
   double noise; // what rounding may do to det · λ of any vertex in any plane [m³]
   int vertex_count, edge_count;
   OverlapClipEdge edge[OVERLAP_CLIP_EDGES];

@@ -5,10 +5,11 @@
 // s_k (1 + α r_k), r = P 1 with P the projector onto the columns of m: slacks are scaled, never subtracted,
 // and the point itself is not needed.
 //
-// Where the overlap is a slice between planes 1e-9 apart, m has rows 1e9 times larger than others, and what
-// rounding of those makes of the others' slacks adds up: the four of a tetrahedron sum to 1 + 1e-8. That
-// would be the net force of the pair. So in the end the sum is made 1 by the least relative changes, each
-// slack's in proportion to itself: those of the slice, which the volume hangs on, stay as they are.
+// Where the overlap is a slice between planes 1e-9 apart, m has rows 1e9 times larger than others. Their
+// rounding errors enter the other slacks and add up: the four slacks of a tetrahedron sum to 1 + 1e-8. The
+// pair would have a net force of that size. So at the end the sum is made 1 by the least relative changes,
+// each slack's in proportion to itself; the small slacks of the slice, which determine the volume, hardly
+// change.
 #ifndef TETLAP_OVERLAP_GEO_CENTRE_H
 #define TETLAP_OVERLAP_GEO_CENTRE_H
 

@@ -36,8 +36,8 @@ enum { OVERLAP_GEO_MAX_STEPS = 40 };
 #define OVERLAP_GEO_LEAST_SHARE 1e-36
 
 // --- Coplanar faces.
-// r₀ of faces that look the same way, and of faces that look at each other. The network's error grows below
-// r ≈ 0.4 for the first; slices it tells well, all that they need is the right start.
+// r₀ of faces that look the same way, and of faces that look at each other. For the first the network's error
+// grows below r ≈ 0.4. For the second it is small, and only the begin of the overlap needs the exact volume.
 #define OVERLAP_GEO_REACH_SAME 0.3
 #define OVERLAP_GEO_REACH_FACING 0.03
 

@@ -43,12 +43,13 @@ void overlap_geo_coplanar_mix(double share, double clip_volume, const double cli
 Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pair[24], double *volume,
                                   double *gradient, double *hessian, double *centroid, unsigned *flags);
 
-// A bound of the network's error is one of the blend's if it is lessened by the share of clip. Where that is
-// nearly 1, it would promise more than was learned: of meshes whose planes coincide, of which the training
-// has none, it then covers 84 to 89 of 100 pairs for 95. So by this part of the share only: 96 of 100.
+// A bound of the network's error, times 1 − share of clip, is a bound of the blend's error. Where the share
+// is nearly 1 that would be too small: for meshes whose planes coincide, which the training does not contain,
+// it would hold for 84 to 89 % of the pairs instead of 95 %. So only this part of the share is used: it holds
+// for 96 %.
 #define OVERLAP_GEO_COPLANAR_FADE 0.9
 
-// Lessens a bound, with gradient and Hessian (each may be NULL), by that.
+// Reduces a bound, with gradient and Hessian (each may be NULL), by that.
 void overlap_geo_coplanar_fade(const OverlapGeoFrame *frame, double *bound, double *gradient,
                                double *hessian);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The analytic-centre frame of a pair: what of two tetrahedra no affine map changes, and a first guess of V.
+// The analytic-centre frame of a pair: the affine invariants of two tetrahedra, and a first estimate of V.
 //
 // At the centre c (centre.h) let m be the 8 × 3 matrix with rows m_k = ∇s_k / s_k, m = Q R with QᵀQ = 1,
 // and P = Q Qᵀ. P depends neither on the scale of the planes nor on affine maps of space, and another order

@@ -65,7 +65,7 @@ typedef struct OverlapGeoModel {
 // with.
 Status overlap_geo_create(OverlapGeoModel *model, const OverlapGeoNetwork *network);
 
-// The bound that a network tells: as is_bound has it.
+// The bound that a network gives: see is_bound.
 Status overlap_geo_create_bound(OverlapGeoModel *model, const OverlapGeoNetwork *network);
 
 // Evaluates the batch in this thread; a failure is the network's.

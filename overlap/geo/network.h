@@ -17,7 +17,7 @@ typedef struct OverlapGeoNet OverlapGeoNet; // opaque: parameters, and memory of
 // has features is wanted, with one output, or with as many more as a plane has features, which give the
 // centroid. The message names the file.
 Status overlap_geo_network_create(OverlapGeoNet **net, const char *path);
-// The same of a network that tells a bound of another's error: it has one output, and its card says so.
+// The same of a network that gives a bound of another's error: it has one output, and its card says so.
 Status overlap_geo_network_create_bound(OverlapGeoNet **net, const char *path);
 void overlap_geo_network_destroy(OverlapGeoNet *net);
 

@@ -16,9 +16,9 @@
 //     V_hybrid = (1 − c) V + c V_clip,   V x̄ likewise.
 //
 // B is as smooth as V, and so is what comes out, with all its derivatives by the vertices. Where the frame
-// cannot be had, `geo` itself has turned to `exact` before; where faces nearly lie in one plane, it has given
-// clip the share w (geo/coplanar.h), and B is 1 − .9 w times what the second network tells. Flags: NET where
-// the network has a part, BLENDED where clipping has one too, FALLBACK where the network has none.
+// cannot be computed, `geo` itself has used `exact` before; where faces nearly lie in one plane, it has given
+// clip the share w (geo/coplanar.h), and B is 1 − .9 w times the output of the second network. Flags: NET
+// where the network has a part, BLENDED where clipping has one too, FALLBACK where the network has none.
 #ifndef TETLAP_OVERLAP_HYBRID_SURE_H
 #define TETLAP_OVERLAP_HYBRID_SURE_H
 

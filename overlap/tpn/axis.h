@@ -18,9 +18,9 @@
 
 #include <stdbool.h>
 
-// A tetrahedron of the two and what it knows of the other.
+// One of the two tetrahedra, and the other in its coordinates.
 typedef struct OverlapTpnAxisSide {
-  bool stands;         // it is not flat; else nothing below counts
+  bool stands;         // it is not flat; else nothing below is valid
   double lambda[4][4]; // [b][k]: of the other's vertex b, the barycentric coordinate of vertex k
   double det;          // |det E|
 } OverlapTpnAxisSide;

@@ -101,7 +101,7 @@ static void answer_disjoint(const OverlapBatch *batch, int i, unsigned flags) {
   if (batch->flags) batch->flags[i] = flags;
 }
 
-// V₀ of all pairs, or who is disjoint.
+// V₀ of all pairs, or which pairs are disjoint.
 static Status find_disjoint(Portion *portion) {
   const OverlapBatch *batch = portion->batch;
   memset(portion->flags, 0, sizeof portion->flags);

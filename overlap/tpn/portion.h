@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What model.h does with one portion of pairs: who is asked about each, and how V, ∇V and ∇²V come of
-// the answers.
+// The evaluation of one portion of pairs (model.h): which model answers each, and how V, ∇V and ∇²V follow
+// from the answers.
 //
 // clang-format off
 //   pairs ─ find_disjoint ─► disjoint or flat: nothing
-//             ├─► the blend wants no network: exact
+//             ├─► the blend needs no network: exact
 //             └─► a slot ─ network ─► z, v ─► blend (blend.h) ─► V and its derivatives by what it is made of
 //                                                                 └─ times theirs by the pair ─► ∇V, ∇²V
 // clang-format on

@@ -130,9 +130,9 @@ const FemEffectOps fem_effect_friction = {
     .dissipates = true,
     .lags = true,
     .is_wanted = is_wanted,
-    .static_refusal =
-        "friction of the law velocity is a force of motion; take it or time.static away, or take the "
-        "potential field and the law stick",
+    .static_refusal = "the friction law velocity has no force at rest: in a static scene write "
+                      "contact.potential: field and "
+                      "contact.friction.law: stick, or remove contact.friction or time.static",
     .static_key = "contact.friction",
     .create = create,
     .connect = connect,

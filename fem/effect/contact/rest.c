@@ -19,7 +19,7 @@ typedef struct Rest {
   bool *is_held;                 // asleep, or an obstacle that stands still     (party_count)
   double *calm_since;            // INFINITY: it is not calm [s]                 (body_count)
   double next_change;            // of what is held, while a body sleeps [s]
-  bool has_changed, is_restored; // who sleeps; by a checkpoint, of which contact is yet to be told
+  bool has_changed, is_restored; // of bodies asleep; by a checkpoint, not yet passed to contact
   double *before;                // velocities at the state before [m/s]        (vertex_count, 3)
   double before_time;            // [s]; NAN: there is none
   double decided_at;             // the last time that was decided for [s]; NAN: none
@@ -131,7 +131,7 @@ static double next_change(const Rest *rest, int party, double time) {
   return fem_drive_next_change(&obstacle_of(rest, party)->motion, time);
 }
 
-// ---- Who is calm.
+// ---- Which bodies are calm.
 
 static double fastest(const FemModelBody *body, const double *velocities) {
   double largest = 0;
@@ -195,7 +195,7 @@ static unsigned char state_of(const Rest *rest, int body, double time) {
   return is_ready ? IS_AWAKE : IS_AWAKE | IS_UNREADY;
 }
 
-// Who is to be held, by what is near whom now.
+// Decides which bodies to hold, by what is near them now.
 static void decide(Rest *rest, double time) {
   int count;
   const ContactInterface *facings = contact_system_interfaces(rest->contact, &count);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies that have come to rest are left out until something changes for them.
+// Sleep: bodies that have come to rest take no part in the computation until something acts on them.
 //
 // A body is calm while every vertex is slower than `speed`. Bodies that touch, or are nearer than the contact
 // margin, make an island. An island falls asleep as a whole once each of its bodies has been calm for `time`,
 // the forces on each balance (its centre of mass was accelerated by no more than `acceleration` in the last
-// step), and nothing that acts on it is changing:
-// its vertices stay where they are and carry no unknowns, and
+// step), and nothing that acts on it is changing: its vertices stay where they are and carry no unknowns, and
 // contact within it is neither searched nor evaluated. It awakes, from velocity 0, when
 //   – a body that is awake, or an obstacle that moves, comes within the margin of one of its bodies,
 //   – a load, a driven vertex or a release on it, or an obstacle near it, begins to change.
@@ -24,11 +23,12 @@
 
 struct FemSystem;
 
-// Whether who sleeps has changed since the last call; then the unknowns are to be numbered anew. NULL: false.
+// Whether a body has fallen asleep or awoken since the last call; then the unknowns must be numbered anew.
+// NULL: false.
 bool fem_effect_rest_has_changed(void *effect);
 // Whether a body sleeps. NULL: false.
 bool fem_effect_rest_is_asleep(const void *effect, int body);
-// When something begins to change for what sleeps or rests; INFINITY: never. NULL: INFINITY.
+// The time at which something that acts on a sleeping body begins to change; INFINITY: never. NULL: INFINITY.
 double fem_effect_rest_next_change(const void *effect);
 // Counts the kinetic energy that was taken from what fell asleep [J].
 void fem_effect_rest_add_loss(void *effect, double energy);

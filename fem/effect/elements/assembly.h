@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sums over elements: what an effect that lives on tetrahedra (elasticity, damping) shares. The effect gives
-// kernels; here is the gathering, the adding by colours, and where entries of the matrix lie. Forces and
-// matrices go through vector lanes, eight elements at a time (fem/effect/elements/packs.h). Every
-// sum has a fixed order: results are the same to the last bit for any number of threads.
+// Sums over elements, shared by the effects on tetrahedra (elasticity, damping). An effect gives kernels;
+// this file gathers vertices, adds by colours, and finds the entries of the matrix. Forces and matrices go
+// through vector lanes, eight elements at a time (fem/effect/elements/packs.h). Every sum has a fixed order:
+// results are the same to the last bit for any number of threads.
 #ifndef TETLAP_FEM_EFFECT_ASSEMBLY_H
 #define TETLAP_FEM_EFFECT_ASSEMBLY_H
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the recorder asks of the effect `plasticity`.
+// The inside of the effect `plasticity`, for output.
 #ifndef TETLAP_FEM_EFFECT_PLASTICITY_H
 #define TETLAP_FEM_EFFECT_PLASTICITY_H
 
-// Adds what the plastic strain of a tetrahedron takes off, at these positions of all vertices, to its Cauchy
-// stress [Pa] (xx, yy, zz, xy, yz, xz): at the point near its corner, or the mean, as in
+// Adds the reduction of stress by the plastic strain of a tetrahedron, at these positions of all vertices, to
+// its Cauchy stress [Pa] (xx, yy, zz, xy, yz, xz): at the point near its corner, or the mean, as in
 // fem/element/quadratic.h.
 void fem_effect_plasticity_add_stress(const void *self, int tet, const double *positions, double stress[6]);
 

@@ -8,8 +8,8 @@
 //
 // It is the average nodal pressure tetrahedron (Bonet and Burton 1998, Comm. Num. Meth. Eng. 14), stabilised
 // by what the elements keep (as Puso and Solberg 2006 do), for any law. Its vertices are those of the mesh,
-// so contact, loads and constraints do not know of it. The price: a vertex couples with its neighbours'
-// neighbours.
+// so contact, loads and constraints are as for linear tetrahedra. The cost: a vertex couples with its
+// neighbours' neighbours.
 #ifndef TETLAP_FEM_EFFECT_VOLUME_H
 #define TETLAP_FEM_EFFECT_VOLUME_H
 

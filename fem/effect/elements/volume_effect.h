@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the recorder asks of the effect `volume`.
+// The inside of the effect `volume`, for output.
 #ifndef TETLAP_FEM_EFFECT_VOLUME_EFFECT_H
 #define TETLAP_FEM_EFFECT_VOLUME_EFFECT_H
 

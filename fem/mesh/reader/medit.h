@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MEDIT files with a word and its count on one line ("Vertices 4"), which the format allows and gmsh, who
-// looks for the count on the next line, reads as something else.
+// MEDIT files with a word and its count on one line ("Vertices 4"). The format allows that, but gmsh looks
+// for the count on the next line and misreads them.
 #ifndef TETLAP_FEM_MESH_READER_MEDIT_H
 #define TETLAP_FEM_MESH_READER_MEDIT_H
 

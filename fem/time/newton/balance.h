@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well the forces on a body balance: what Newton's method of a step is held to beside the size of its
-// corrections, since what is written of contact is as right, and what is left works on a body that turns.
+// How well the forces on a body balance: a criterion of Newton's method beside the size of its corrections.
+// Contact forces in the output are as accurate as that, and an unbalanced rest does work on a body that
+// turns.
 #ifndef TETLAP_FEM_TIME_NEWTON_BALANCE_H
 #define TETLAP_FEM_TIME_NEWTON_BALANCE_H
 

@@ -6,8 +6,8 @@
 //        set-up                ──► analyse if the layout is new, factorise
 //        solve J x = b         ──► S du = r₂ + (c M + D) r₁, dv = c du − r₁
 //
-// c changes with every length of step. Where the factor is exact, a solution at another c is had by conjugate
-// gradients with that factor before them, and K and D are assembled anew for their own sake only.
+// c changes with every step size. Where the factor is exact, a solution at another c is found by conjugate
+// gradients preconditioned with that factor, and a new matrix is assembled only where K and D have changed.
 //
 // Of a linear system K and D are assembled once, and S is factorised only where c is new: once for each step
 // size and order.

@@ -211,9 +211,9 @@ static bool is_slow(const Solve *solve, double size, double before, double exces
   return rate > LEAST_RATE && (rate >= 1 || log(beyond) / -log(rate) > WORTH_A_MATRIX);
 }
 
-// What IDA's test and the balance say after a whole step. Where the forces jump the balance cannot be had:
-// once IDA's test has passed, iterations go on while each halves what is missing, or a matrix of where they
-// stand may help: one of before a body turned does not balance it.
+// Decides after a whole step by IDA's test and the balance. Where the forces jump they cannot be balanced:
+// once IDA's test has passed, iterations go on only while each halves the excess, or while a new matrix may
+// help (one from before a body turned does not balance it).
 static int judge(Solve *solve, bool *has_converged) {
   FemNewton *newton = solve->newton;
   double before = solve->size, excess_before = solve->excess;

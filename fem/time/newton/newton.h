@@ -25,8 +25,9 @@
 #include "base/status.h"
 #include "fem/time/newton/mixing.h"
 
-// What the method asks of its user. Vectors are (2 n): displacements, velocities; residuals: kinematics,
-// balance. Over ranks each has those of n unknowns (fem/time/part.h), and all go through the same steps.
+// The functions that the user of the method provides. Vectors are (2 n): displacements, velocities;
+// residuals: kinematics, balance. Over ranks each has those of n unknowns (fem/time/part.h), and all go
+// through the same steps.
 typedef struct FemNewtonUser {
   void *self;
   int n;

@@ -7,8 +7,7 @@
 //   pairs     Σ_ij d_i^a d_j^b P_ij^n, for n = 1 … power_count, a = 0 … 3, b = a … 3; those with a = 0 and
 //             n ≤ 2 say nothing new and are left out
 //   wedges    Σ_ij d_i^r d_j^s E_ij P_ij^a, for each link, a = 1 … 3, (r, s) = (0, 0), (0, 1), (1, 1);
-//   without
-//             (0, 0) for b = a = 1, which is a degree
+//             without (0, 0) for b = a = 1, which is a degree
 //   squares   Σ_ij E_ij E'_ij P_ij^a, for each link E and each E' up to it, a = 0 … 2
 //
 // What a plane k has of its own, which another order of the planes only permutes (for the centroid: q_k, a
@@ -17,9 +16,8 @@
 //   degrees   d_k^a, a = 1 … 4
 //   rows      d_k^a Σ_j P_kj^n d_j^b, for n = 1 … 4, b = 0 … 3, a = 0 … 3, a + b ≤ 4; those with
 //             b = 0 for n ≤ 2 and a = 0 for n = 1 say nothing new
-//   links     Σ_j E_kj P_kj^a d_j^s, for each link, a = 1 … 3, s = 0, 1, without s = 1 for a = 3, and s = 0
-//   for
-//             b = a = 1, which is a row
+//   links     Σ_j E_kj P_kj^a d_j^s, for each link, a = 1 … 3, s = 0, 1; without s = 1 for a = 3, and
+//             without s = 0 for b = a = 1, which is a row
 //
 // The derivative of φ(features) by P is found by one backward sweep; its change along a direction by
 // differentiating that sweep once more. All of it eight pairs, or eight directions of a pair, at a time.

@@ -16,7 +16,7 @@
 typedef double GeoPack __attribute__((vector_size(GEO_PACK * sizeof(double))));
 
 #define GEO_PACK_ZERO ((GeoPack){0})
-#define GEO_ROLLED // a loop that a device shall not unroll: it has too few registers
+#define GEO_ROLLED // a loop that must not be unrolled on a device, which has too few registers
 
 #include "overlap/geo/features/invariants.h"
 

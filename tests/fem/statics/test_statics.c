@@ -122,8 +122,8 @@ START_TEST(a_block_comes_to_rest_on_the_ground) {
 }
 END_TEST
 
-// Nothing holds the upper block before it touches the lower one: its matrix is singular to rounding, which not
-// every solver finds. It goes down, not up, and a Newton iteration a decade of force or two does.
+// Nothing holds the upper block before it touches the lower one: its matrix is singular to rounding, which
+// not every solver finds. It goes down, not up, and a Newton iteration a decade of force or two does.
 START_TEST(what_nothing_holds_yet_is_pressed_down_by_every_solver) {
   static const char *const linear[] = {"solver.linear=cholmod", "solver.linear=pcg", "solver.linear=amg",
                                        "solver.linear=gamg"};
@@ -302,7 +302,7 @@ START_TEST(what_only_a_motion_has_is_refused_with_its_place) {
          "cannot release");
   refuse("", "contact: {friction: {coefficient: 0.5, law: velocity}}\n", "test.yaml:2:11: ");
   refuse("", "contact: {potential: nodal, friction: 0.5}\n",
-         "friction of the law velocity is a force of motion");
+         "the friction law velocity has no force at rest");
   refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "test.yaml:2:18: ");
   refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "cholmod, amg or pcg");
 }
