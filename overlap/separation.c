@@ -4,6 +4,7 @@
 #include <float.h>
 #include <stddef.h>
 
+#include "base/tet.h"
 #include "base/vec3.h"
 #include "overlap/clip/lanes.h"
 
@@ -53,7 +54,6 @@ static double distance_across(const Pair *pair, Vec3 e, Vec3 f) {
   return distance_along(pair, axis) / sqrt(square);
 }
 
-static const int FACES[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 static const int EDGES[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
 static double separation_by_faces(const Pair *pair, double enough) {
@@ -61,9 +61,9 @@ static double separation_by_faces(const Pair *pair, double enough) {
   for (int t = 0; t < 2; t++)
     for (int f = 0; f < 4 && !(best > enough); f++) {
       const Vec3 *x = pair->x[t];
-      Vec3 corner = x[FACES[f][0]];
-      best = larger(
-          best, distance_across(pair, vec3_sub(x[FACES[f][1]], corner), vec3_sub(x[FACES[f][2]], corner)));
+      Vec3 corner = x[tet_faces[f][0]];
+      best = larger(best, distance_across(pair, vec3_sub(x[tet_faces[f][1]], corner),
+                                          vec3_sub(x[tet_faces[f][2]], corner)));
     }
   return best;
 }
@@ -101,8 +101,8 @@ typedef struct Side {
 } Side;
 
 static inline Side side_of(const Vec3 x[4], int f) {
-  Side side = {.corner = x[FACES[f][0]]};
-  side.e = vec3_sub(x[FACES[f][1]], side.corner), side.g = vec3_sub(x[FACES[f][2]], side.corner);
+  Side side = {.corner = x[tet_faces[f][0]]};
+  side.e = vec3_sub(x[tet_faces[f][1]], side.corner), side.g = vec3_sub(x[tet_faces[f][2]], side.corner);
   side.normal = vec3_cross(side.e, side.g);
   side.top = -vec3_dot(vec3_sub(x[f], side.corner), side.normal);
   if (side.top < 0) side.normal = vec3_scale(-1, side.normal), side.top = -side.top;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run reads beside its scene file, as digests: the meshes of its bodies and the weights of its overlap
 // model. Kept in manifests and checkpoints, so that a later process sees whether they are still the same.
-#ifndef TETLAP_APP_CLI_INPUTS_H
-#define TETLAP_APP_CLI_INPUTS_H
+#ifndef TETLAP_APP_JOB_INPUTS_H
+#define TETLAP_APP_JOB_INPUTS_H
 
 #include "base/files/record.h"
 #include "fem/model/model.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scene that is ready to run: read, overridden, its model built; and the options that `run` and `compare`
 // share.
-#ifndef TETLAP_APP_CLI_JOB_H
-#define TETLAP_APP_CLI_JOB_H
+#ifndef TETLAP_APP_JOB_JOB_H
+#define TETLAP_APP_JOB_JOB_H
 
 #include <argp.h>
 #include <stdbool.h>

@@ -2,8 +2,8 @@
 // What a run was started with, kept in its checkpoints: the way to the scene and what was said on the command
 // line, to read it all again; the scene as it was understood and digests of meshes and weights, to see that
 // it is still the same.
-#ifndef TETLAP_APP_CLI_ORIGIN_H
-#define TETLAP_APP_CLI_ORIGIN_H
+#ifndef TETLAP_APP_JOB_ORIGIN_H
+#define TETLAP_APP_JOB_ORIGIN_H
 
 #include "app/job/job.h"
 

@@ -4,12 +4,13 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tet.h"
 #include "fem/mesh/faces.h"
 
 // A face with one entry in the list is on the surface.
 static void take_face(AppReportSurface *surface, const FemMeshFace *face, const int *tets) {
   int *triangle = surface->triangles + 4 * (size_t)surface->triangle_count++;
-  const int *corners = fem_mesh_face_vertices[face->local];
+  const int *corners = tet_faces[face->local];
   for (int k = 0; k < 3; k++) triangle[k] = tets[4 * (size_t)face->tet + (size_t)corners[k]];
   triangle[3] = face->tet;
 }

@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "base/tet.h"
 #include "base/vec3.h"
 #include "contact/shape/definite.h"
 
@@ -43,9 +44,6 @@ static inline Real vec_length(Vec a) {
 static inline Real vec_det4(Vec a, Vec b, Vec c, Vec d) {
   return vec_dot(vec_sub(b, a), vec_cross(vec_sub(c, a), vec_sub(d, a)));
 }
-
-// The faces, their vertices counter-clockwise from outside if the tetrahedron is positively oriented.
-static const int FACES[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 // What the edges of a face add up to, about the foot of the centre on its plane.
 typedef struct Section {
@@ -196,7 +194,7 @@ static Sums sum_faces(const double tet[12], const double centre[3], double radiu
   for (int v = 0; v < 4; v++) x[v] = vec_sub(vec_at(tet + 3 * v), vec_at(centre));
   bool is_flipped = vec_det4(x[0], x[1], x[2], x[3]) < 0;
   for (int f = 0; f < 4; f++) {
-    int order[3] = {FACES[f][0], FACES[f][1 + is_flipped], FACES[f][2 - is_flipped]};
+    int order[3] = {tet_faces[f][0], tet_faces[f][1 + is_flipped], tet_faces[f][2 - is_flipped]};
     Vec corners[3] = {x[order[0]], x[order[1]], x[order[2]]}, own[3] = {{0, 0, 0}};
     Vec doubled = vec_cross(vec_sub(corners[1], corners[0]), vec_sub(corners[2], corners[0]));
     if (!(vec_length(doubled) > 0)) continue;
@@ -372,18 +370,18 @@ void contact_ball_nearest(const double tet[12], const double centre[3], double w
   bool is_inside = orientation != 0;
   for (int v = 0; v < 4; v++) weights[v] = 0.25;
   for (int f = 0; f < 4; f++) {
-    Vec3 corners[3] = {x[FACES[f][0]], x[FACES[f][1]], x[FACES[f][2]]};
+    Vec3 corners[3] = {x[tet_faces[f][0]], x[tet_faces[f][1]], x[tet_faces[f][2]]};
     Vec3 normal = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
     is_inside = is_inside && vec3_dot(normal, corners[0]) * orientation >= 0;
   }
   for (int f = 0; f < 4 && !is_inside; f++) {
     double own[3];
-    Vec3 corners[3] = {x[FACES[f][0]], x[FACES[f][1]], x[FACES[f][2]]};
+    Vec3 corners[3] = {x[tet_faces[f][0]], x[tet_faces[f][1]], x[tet_faces[f][2]]};
     double square = nearest_on_triangle(corners, own);
     if (!(square < nearest)) continue;
     nearest = square;
     weights[f] = 0;
-    for (int v = 0; v < 3; v++) weights[FACES[f][v]] = own[v];
+    for (int v = 0; v < 3; v++) weights[tet_faces[f][v]] = own[v];
   }
 }
 
@@ -393,7 +391,7 @@ double contact_ball_separation(const double tet[12], const double centre[3], dou
   double orientation = vec3_det4(x[0], x[1], x[2], x[3]), nearest = INFINITY;
   bool is_inside = orientation != 0;
   for (int f = 0; f < 4; f++) {
-    Vec3 corners[3] = {x[FACES[f][0]], x[FACES[f][1]], x[FACES[f][2]]};
+    Vec3 corners[3] = {x[tet_faces[f][0]], x[tet_faces[f][1]], x[tet_faces[f][2]]};
     Vec3 normal = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
     is_inside = is_inside && vec3_dot(normal, corners[0]) * orientation >= 0;
     nearest = fmin(nearest, square_to_triangle(corners));

@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "base/tet.h"
 #include "overlap/clip/clip.h"
 
 // ---- The solids.
@@ -123,9 +124,6 @@ static Corner corner_of(const Vec3 x[4], int vertex) {
   return corner;
 }
 
-// The faces, counter-clockwise from outside if the tetrahedron is positively oriented.
-static const int FACES[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-
 static void make_face(Polygon *polygon, const ContactConvex *convex, const Cutting *cutting, const Vec3 x[4],
                       const int face[3]) {
   polygon->count = 3;
@@ -238,7 +236,7 @@ typedef struct Face {
 } Face;
 
 static Face face_of(const Vec3 x[4], int f, bool is_mirrored) {
-  Face face = {.corners = {FACES[f][0], FACES[f][1 + is_mirrored], FACES[f][2 - is_mirrored]}};
+  Face face = {.corners = {tet_faces[f][0], tet_faces[f][1 + is_mirrored], tet_faces[f][2 - is_mirrored]}};
   const int *c = face.corners;
   Vec3 doubled = vec3_cross(vec3_sub(x[c[1]], x[c[0]]), vec3_sub(x[c[2]], x[c[0]]));
   double length = vec3_length(doubled);
@@ -466,7 +464,7 @@ double contact_convex_separation(const ContactConvex *convex, const double tet[1
   }
   if (best > enough) return best;
   for (int f = 0; f < 4; f++) {
-    const int *c = FACES[f];
+    const int *c = tet_faces[f];
     best =
         fmax(best, gap_along(convex, x, vec3_cross(vec3_sub(x[c[1]], x[c[0]]), vec3_sub(x[c[2]], x[c[0]]))));
   }

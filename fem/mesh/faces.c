@@ -4,8 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-
-const int fem_mesh_face_vertices[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+#include "base/tet.h"
 
 static void swap(FemMeshFace *face, int i, int j) {
   if (face->vertices[i] <= face->vertices[j]) return;
@@ -16,7 +15,7 @@ static void swap(FemMeshFace *face, int i, int j) {
 }
 
 static FemMeshFace face_of(const int tet[4], int index, int local) {
-  const int *corners = fem_mesh_face_vertices[local];
+  const int *corners = tet_faces[local];
   FemMeshFace face = {{tet[corners[0]], tet[corners[1]], tet[corners[2]]}, index, local, true};
   swap(&face, 0, 1), swap(&face, 1, 2), swap(&face, 0, 1);
   return face;

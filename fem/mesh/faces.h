@@ -11,12 +11,9 @@
 typedef struct FemMeshFace {
   int vertices[3]; // increasing
   int tet;
-  int local;    // the face opposite this vertex (0 … 3) of the tetrahedron
+  int local;    // the face opposite this vertex (0 … 3) of the tetrahedron (base/tet.h)
   bool is_even; // the outward order is an even permutation of `vertices`: neighbours differ in it
 } FemMeshFace;
-
-// The outward order of the vertices of face `local` of a positively oriented tetrahedron.
-extern const int fem_mesh_face_vertices[4][3];
 
 // All 4 · tet_count faces, ordered by vertices, then tetrahedron; `*faces` is owned by the caller.
 Status fem_mesh_faces_list(FemMeshFace **faces, int vertex_count, int tet_count, const int (*tets)[4]);

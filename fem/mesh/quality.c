@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/tet.h"
 #include "base/vec3.h"
 #include "fem/mesh/faces.h"
 #include "fem/mesh/mesh.h"
@@ -20,8 +21,7 @@ Status fem_mesh_surface(const FemMesh *mesh, int (**triangles)[3], int *triangle
   }
   int(*list)[3] = memory_zeroed((size_t)count, sizeof *list);
   for (int n = 0; list && n < count; n++)
-    for (int k = 0; k < 3; k++)
-      list[n][k] = mesh->tets[faces[n].tet][fem_mesh_face_vertices[faces[n].local][k]];
+    for (int k = 0; k < 3; k++) list[n][k] = mesh->tets[faces[n].tet][tet_faces[faces[n].local][k]];
   memory_free(faces);
   if (!list) return status_no_memory("the surface of a mesh");
   *triangles = list;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tet.h"
 #include "base/vec3.h"
 #include "fem/mesh/faces.h"
 #include "fem/model/compliance.h"
@@ -37,7 +38,7 @@ static Status list_surface(FemTroubleWatch *watch) {
     end = fem_mesh_faces_end(faces, face_count, f);
     if (end - f != 1) continue;
     int *triangle = watch->triangles[watch->triangle_count++];
-    const int *tet = model->tets[faces[f].tet], *order = fem_mesh_face_vertices[faces[f].local];
+    const int *tet = model->tets[faces[f].tet], *order = tet_faces[faces[f].local];
     for (int k = 0; k < 3; k++) triangle[k] = tet[order[k]];
   }
   memory_free(faces);

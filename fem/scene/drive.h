@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Prescribed motion: where a driven point is, and how fast, at a time.
-#ifndef TETLAP_FEM_MODEL_DRIVE_H
-#define TETLAP_FEM_MODEL_DRIVE_H
+#ifndef TETLAP_FEM_SCENE_DRIVE_H
+#define TETLAP_FEM_SCENE_DRIVE_H
 
 #include "fem/scene/scene.h"
 #include "fem/scene/signal.h"

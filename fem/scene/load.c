@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tet.h"
 #include "base/vec3.h"
 #include "fem/element/quadratic.h"
 #include "fem/element/quadratic_face.h"
@@ -83,7 +84,7 @@ static Status pick_faces(Builder *builder, const int (*corners)[4]) {
   for (int begin = 0, end; builder->faces && begin < all; begin = end) {
     end = fem_mesh_faces_end(faces, all, begin);
     if (end - begin > 1) continue;
-    const int *nodes = mesh->quadratic[faces[begin].tet], *order = fem_mesh_face_vertices[faces[begin].local];
+    const int *nodes = mesh->quadratic[faces[begin].tet], *order = tet_faces[faces[begin].local];
     int *face = builder->faces[builder->face_count];
     bool is_whole = true;
     for (int k = 0; k < 3; k++) {

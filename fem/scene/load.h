@@ -4,8 +4,8 @@
 // the faces of quadratic tetrahedra, whose corners get nothing; a body force is distributed as the mass is.
 // The following pressure p on a triangle with the area vector A = ½ (b − a) × (c − a), outward, gives each
 // corner −p A/3; it is −p ∂V/∂x of the volume that the surface bounds.
-#ifndef TETLAP_FEM_MODEL_LOAD_H
-#define TETLAP_FEM_MODEL_LOAD_H
+#ifndef TETLAP_FEM_SCENE_LOAD_H
+#define TETLAP_FEM_SCENE_LOAD_H
 
 #include "fem/mesh/mesh.h"
 #include "fem/scene/scene.h"

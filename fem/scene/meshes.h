@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The meshes of a scene, read or generated, and placed.
-#ifndef TETLAP_FEM_MODEL_MESHES_H
-#define TETLAP_FEM_MODEL_MESHES_H
+#ifndef TETLAP_FEM_SCENE_MESHES_H
+#define TETLAP_FEM_SCENE_MESHES_H
 
 #include "fem/mesh/mesh.h"
 #include "fem/scene/scene.h"

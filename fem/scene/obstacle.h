@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An obstacle without a mesh, as contact sees it.
-#ifndef TETLAP_FEM_MODEL_OBSTACLE_H
-#define TETLAP_FEM_MODEL_OBSTACLE_H
+#ifndef TETLAP_FEM_SCENE_OBSTACLE_H
+#define TETLAP_FEM_SCENE_OBSTACLE_H
 
 #include "contact/def.h"
 #include "contact/shape/convex.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scene as its file says it: the definition from which a model is built. Plain data with defaults; reading
 // the file is app/scene/read.c. Strings and arrays are owned by the scene.
-#ifndef TETLAP_FEM_MODEL_SCENE_H
-#define TETLAP_FEM_MODEL_SCENE_H
+#ifndef TETLAP_FEM_SCENE_SCENE_H
+#define TETLAP_FEM_SCENE_SCENE_H
 
 #include <stdbool.h>
 
@@ -12,7 +12,8 @@
 #include "fem/mesh/mesh.h"
 #include "fem/sparse/solver.h"
 
-// A place in the scene file, for messages; line 0: not from the file, but given by --set or made by a program.
+// A place in the scene file, for messages; line 0: not from the file, but given by --set or made by a
+// program.
 typedef struct FemScenePlace {
   int line, column;
 } FemScenePlace;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which vertices a selection of the scene means.
-#ifndef TETLAP_FEM_MODEL_SELECT_H
-#define TETLAP_FEM_MODEL_SELECT_H
+#ifndef TETLAP_FEM_SCENE_SELECT_H
+#define TETLAP_FEM_SCENE_SELECT_H
 
 #include "fem/scene/scene.h"
 

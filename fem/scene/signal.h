@@ -4,8 +4,8 @@
 // less than a step. Therefore a step may end only where the cubic through values and rates at both ends
 // follows the function in between. If it does not, the step ends at an earlier knot: a time at which the
 // function has a kink or a jump.
-#ifndef TETLAP_FEM_MODEL_SIGNAL_H
-#define TETLAP_FEM_MODEL_SIGNAL_H
+#ifndef TETLAP_FEM_SCENE_SIGNAL_H
+#define TETLAP_FEM_SCENE_SIGNAL_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A function of time given by rows (time, values …): linear between them, constant outside.
-#ifndef TETLAP_FEM_MODEL_TABLE_H
-#define TETLAP_FEM_MODEL_TABLE_H
+#ifndef TETLAP_FEM_SCENE_TABLE_H
+#define TETLAP_FEM_SCENE_TABLE_H
 
 typedef struct FemTable {
   const double *rows; // times increasing; borrowed    (count, width)

@@ -11,10 +11,8 @@
 
 // A full step is taken if this share of the first work is left, and a search ends there.
 static const double WORK_LEFT = 0.8, WORK_FOUND = 0.3;
-// No vertex moves further at once, as a share of the mean edge.
-static const double LONGEST_WAY = 0.25;
-// Nor the ends of an edge against each other further than this share of its length at rest: where cells are
-// small beside the rest of the mesh, a longer way would flatten them.
+// The ends of an edge move against each other no further at once than this share of its length at rest: where
+// cells are small beside the rest of the mesh, a longer way would flatten them.
 static const double LONGEST_STRETCH = 0.5;
 // Where K is not positive definite, the first shift, as a share of (c/L)², and by what it rises and falls.
 static const double FIRST_SHIFT = 1e-3, SHIFT_RISE = 10, SHIFT_FALL = 0.1;
@@ -52,13 +50,12 @@ static double largest_stretch(const FemModel *model, const double *step) {
   return sqrt(square);
 }
 
-// How much of d may be gone.
+// The share of d that a step may take at most.
 static double longest_share(const Descent *descent) {
   const FemModel *model = descent->equilibrium->system->model;
-  double way = fem_equilibrium_largest(descent->step, descent->n), most = LONGEST_WAY * model->edge;
+  double share = fem_equilibrium_longest_share(descent->equilibrium, descent->step);
   double stretch = largest_stretch(model, descent->step);
-  return fmin(1,
-              fmin(way > most ? most / way : 1, stretch > LONGEST_STRETCH ? LONGEST_STRETCH / stretch : 1));
+  return fmin(share, stretch > LONGEST_STRETCH ? LONGEST_STRETCH / stretch : 1);
 }
 
 // d = (K + shift M)⁻¹ f; RETRY: the matrix is not positive definite. Of one that is singular to rounding a

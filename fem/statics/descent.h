@@ -2,8 +2,8 @@
 // Newton's method on f(u, t) = 0 by the work that the force does along a step: what a step overshoots is
 // found by a change of its sign, so this converges where |f| does not fall on the way, as where many vertices
 // change between stick and slip, whose force has a bend and whose matrix lacks a part.
-#ifndef TETLAP_FEM_TIME_DESCENT_H
-#define TETLAP_FEM_TIME_DESCENT_H
+#ifndef TETLAP_FEM_STATICS_DESCENT_H
+#define TETLAP_FEM_STATICS_DESCENT_H
 
 #include "fem/statics/equilibrium.h"
 

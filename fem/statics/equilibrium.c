@@ -65,6 +65,13 @@ double fem_equilibrium_largest(const double *values, int count) {
   return largest;
 }
 
+double fem_equilibrium_longest_share(const FemEquilibrium *equilibrium, const double *step) {
+  static const double LONGEST_WAY = 0.25;
+  const FemModel *model = equilibrium->system->model;
+  double way = fem_equilibrium_largest(step, model->unknown_count), most = LONGEST_WAY * model->edge;
+  return way > most ? most / way : 1;
+}
+
 double fem_equilibrium_first_shift(const FemEquilibrium *equilibrium) {
   const FemModel *model = equilibrium->system->model;
   double shift = INFINITY;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Equilibrium of a system at rest: f(u, t) = 0 in the displacements alone, no velocities, no mass; half the
 // unknowns of a motion. What Newton's method and relaxation share: forces, K + s M, its factors.
-#ifndef TETLAP_FEM_TIME_EQUILIBRIUM_H
-#define TETLAP_FEM_TIME_EQUILIBRIUM_H
+#ifndef TETLAP_FEM_STATICS_EQUILIBRIUM_H
+#define TETLAP_FEM_STATICS_EQUILIBRIUM_H
 
 #include "fem/effect/system.h"
 #include "fem/sparse/solver.h"
@@ -29,6 +29,8 @@ Status fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, doubl
 
 // The largest absolute value.
 double fem_equilibrium_largest(const double *values, int count);
+// The share of a step that moves no coordinate further than a quarter of the mean edge; 1: all of it.
+double fem_equilibrium_longest_share(const FemEquilibrium *equilibrium, const double *step);
 // (c/L)² of the slowest body: a shift of the size of its lowest eigenvalues.
 double fem_equilibrium_first_shift(const FemEquilibrium *equilibrium);
 

@@ -3,8 +3,8 @@
 // steps, then, where these do not converge, with a line search. The order matters: the line search lowers
 // |f|, and where a slender body turns a full step stretches it first, |f| grows tenfold, and the next step is
 // there. It converges from near an equilibrium; fem/statics/statics.h brings it there.
-#ifndef TETLAP_FEM_TIME_KINSOL_H
-#define TETLAP_FEM_TIME_KINSOL_H
+#ifndef TETLAP_FEM_STATICS_KINSOL_H
+#define TETLAP_FEM_STATICS_KINSOL_H
 
 #include "fem/statics/equilibrium.h"
 

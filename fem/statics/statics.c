@@ -17,8 +17,6 @@ static const double TOLERANCE = 1e-8, SMALLEST_SCALE = 1e-9;
 // Nor less than what rounding of a coordinate x makes of forces, ε x · edge · E / (1 − 2ν), this many times:
 // a body that nothing loads is in equilibrium.
 static const double ROUNDING = 2;
-// Relaxation moves no vertex further at once, as a share of the mean edge.
-static const double LONGEST_WAY = 0.25;
 // Relaxation hands over to Newton once the force has fallen to this share.
 static const double HAND_OVER = 1e-3;
 // By this the shift falls while the force stays: large elements are heavy beside soft, and a shift that only
@@ -112,13 +110,12 @@ static Status newton(FemStatics *statics, double time, double *u) {
 // One step of relaxation from u, whose forces are in `force`; RETRY: a larger shift is needed.
 static Status relax_once(FemStatics *statics, double time, double shift, double *u) {
   FemEquilibrium *equilibrium = &statics->equilibrium;
-  const FemModel *model = equilibrium->system->model;
-  int n = model->unknown_count;
+  int n = equilibrium->system->model->unknown_count;
   double *step = statics->step;
   TRY(fem_equilibrium_factorise(equilibrium, time, u, shift));
   TRY(fem_equilibrium_solve(equilibrium, statics->force, step));
-  double way = fem_equilibrium_largest(step, n), most = LONGEST_WAY * model->edge;
-  for (int i = 0; i < n; i++) u[i] += step[i] *= way > most ? most / way : 1;
+  double share = fem_equilibrium_longest_share(equilibrium, step);
+  for (int i = 0; i < n; i++) u[i] += step[i] *= share;
   Status status = evaluate(statics, time, u);
   if (!status) status = fem_system_renew(equilibrium->system, time, u, equilibrium->still);
   if (status == STATUS_RETRY)

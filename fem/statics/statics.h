@@ -11,8 +11,8 @@
 // Relaxation is pseudo-transient continuation (Kelley and Keyes 1998; s by switched evolution relaxation,
 // Mulder and van Leer 1985): implicit Euler on M u̇ = f, overdamped motion, which also brings a body that
 // nothing holds down to what it falls on. History variables and contact lists follow its way.
-#ifndef TETLAP_FEM_TIME_STATICS_H
-#define TETLAP_FEM_TIME_STATICS_H
+#ifndef TETLAP_FEM_STATICS_STATICS_H
+#define TETLAP_FEM_STATICS_STATICS_H
 
 #include "fem/statics/equilibrium.h"
 

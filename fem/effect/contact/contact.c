@@ -8,6 +8,7 @@
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fem/effect/contact/sink.h"
 #include "fem/effect/effect.h"
 #include "fem/model/compliance.h"
 #include "fem/scene/drive.h"
@@ -211,30 +212,14 @@ static Status add_force(void *self, const FemState *state, double *force) {
   return STATUS_OK;
 }
 
-typedef struct MatrixSink {
-  FemMatrix *matrix;
-  double scale;
-} MatrixSink;
-
-static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
-  MatrixSink *sink = self;
-  fem_matrix_add_outer(sink->matrix, count, vertices, w, sink->scale * scale);
-}
-
-static void add_dense(void *self, int count, const int *vertices, const double *matrix) {
-  MatrixSink *sink = self;
-  fem_matrix_add(sink->matrix, count, vertices, matrix, sink->scale);
-}
-
 static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
                            FemMatrix *matrix) {
   (void)damping_scale; // contact does not damp
   Contact *contact = self;
   if (stiffness_scale == 0) return STATUS_OK;
-  MatrixSink sink = {.matrix = matrix, .scale = stiffness_scale};
-  return contact_system_stiffness(
-      contact->system, state->time, state->positions,
-      &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer, .add_dense = add_dense});
+  FemContactSink sink = {.matrix = matrix, .scale = stiffness_scale};
+  const ContactStiffnessSink to = fem_contact_sink_of(&sink);
+  return contact_system_stiffness(contact->system, state->time, state->positions, &to);
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {

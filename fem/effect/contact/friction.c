@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/effect/contact/sink.h"
 #include "fem/effect/system.h"
 #include "fem/model/compliance.h"
 #include "fem/model/tolerance.h"
@@ -69,23 +70,13 @@ static Status add_force(void *self, const FemState *state, double *force) {
   return STATUS_OK;
 }
 
-typedef struct MatrixSink {
-  FemMatrix *matrix;
-  double scale;
-} MatrixSink;
-
-static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
-  MatrixSink *sink = self;
-  fem_matrix_add_outer(sink->matrix, count, vertices, w, sink->scale * scale);
-}
-
 static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
                            FemMatrix *matrix) {
   (void)stiffness_scale; // normals and normal forces are those of the last accepted state
   if (damping_scale == 0) return STATUS_OK;
-  MatrixSink sink = {.matrix = matrix, .scale = damping_scale};
-  contact_friction_add_damping(&((Friction *)self)->law, state->velocities,
-                               &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer});
+  FemContactSink sink = {.matrix = matrix, .scale = damping_scale};
+  const ContactStiffnessSink to = fem_contact_sink_of(&sink);
+  contact_friction_add_damping(&((Friction *)self)->law, state->velocities, &to);
   return STATUS_OK;
 }
 

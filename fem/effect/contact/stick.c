@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "contact/friction/stick_pairs.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/effect/contact/sink.h"
 #include "fem/effect/system.h"
 #include "fem/model/compliance.h"
 
@@ -137,26 +138,15 @@ static Status add_force(void *self, const FemState *state, double *force) {
   return STATUS_OK;
 }
 
-typedef struct MatrixSink {
-  FemMatrix *matrix;
-  double scale;
-} MatrixSink;
-
-static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
-  MatrixSink *sink = self;
-  fem_matrix_add_outer(sink->matrix, count, vertices, w, sink->scale * scale);
-}
-
 static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
                            FemMatrix *matrix) {
   (void)damping_scale; // it depends on positions only
   Stick *stick = self;
   if (stiffness_scale == 0) return STATUS_OK;
   TRY(evaluate(stick, state));
-  MatrixSink sink = {.matrix = matrix, .scale = stiffness_scale};
-  return contact_stick_add_stiffness(
-      &stick->law,
-      contact_system_sink(stick->contact, &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer}));
+  FemContactSink sink = {.matrix = matrix, .scale = stiffness_scale};
+  const ContactStiffnessSink to = fem_contact_sink_of(&sink);
+  return contact_stick_add_stiffness(&stick->law, contact_system_sink(stick->contact, &to));
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {

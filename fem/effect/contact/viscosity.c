@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "contact/friction/viscosity.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/effect/contact/sink.h"
 #include "fem/effect/system.h"
 
 typedef struct Viscosity {
@@ -51,21 +52,14 @@ static Status add_force(void *self, const FemState *state, double *force) {
   return contact_viscosity_add_force(&viscosity->law, state->velocities, force);
 }
 
-typedef struct MatrixSink {
-  FemMatrix *matrix;
-} MatrixSink;
-
-static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
-  fem_matrix_add_outer(((MatrixSink *)self)->matrix, count, vertices, w, scale);
-}
-
 static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
                            FemMatrix *matrix) {
   Viscosity *viscosity = self;
-  MatrixSink sink = {matrix};
+  FemContactSink sink = {.matrix = matrix, .scale = 1};
+  const ContactStiffnessSink to = fem_contact_sink_of(&sink);
   TRY(evaluate(viscosity, state));
   return contact_viscosity_add_jacobian(&viscosity->law, state->velocities, stiffness_scale, damping_scale,
-                                        &(ContactStiffnessSink){.self = &sink, .add_outer = add_outer});
+                                        &to);
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
