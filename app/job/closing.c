@@ -47,8 +47,8 @@ static void tell_energy(const FemAudit *audit, const FemAuditBounds *bounds) {
   const bool is_bound = lost > 0 && audit->uncertain > 0.1 * lost;
   tell("energy:", "%.3g J in the scene (the largest of its parts)", audit->scale);
   tell("", "%.3g J went into damping, friction and plasticity", audit->dissipated);
-  tell("", "%.3g J (%.2g %%) %s%s by the integrator", fabs(lost), 100 * fabs(lost) / audit->scale,
-       is_bound ? "at most " : "", lost < 0 ? "gained" : "lost");
+  tell("", "%.3g J (%.2g %%) %s by the integrator%s", fabs(lost), 100 * fabs(lost) / audit->scale,
+       lost < 0 ? "gained" : "lost", is_bound ? ", at most" : "");
   tell("", "%.2g %% is the largest rise of the total, %.2g %% is allowed", 100 * audit->gain / audit->scale,
        100 * bounds->run);
 }

@@ -163,21 +163,21 @@ bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size)
   text_append(text, size, &used,
               "'%s' and '%s'\n"
               "largest force %.4g N, at t = %.4g s\n"
-              "mean overlap %.2g m then, %.3g %% of the total deformation",
+              "mean overlap %.2g m then\n"
+              "%.3g %% of the total deformation is overlap",
               fem_compliance_party_name(model, facing->a), fem_compliance_party_name(model, facing->b),
               pair->force, pair->time, 2 * pair->energy / pair->estimated, 100 * estimate.give);
   if (estimate.tolerance_over_depth > 1)
-    text_append(text, size, &used, "\nthat overlap is below the resolution of time.tolerance");
+    text_append(text, size, &used, "\nthe overlap is below the resolution of time.tolerance");
   if (estimate.rim > NOTHING)
     text_append(text, size, &used, "\n%.2g %% of the force is lost along edges of the bodies",
                 100 * estimate.rim);
   text_append(text, size, &used, "\n%.1f elements across the contact%s", estimate.elements_across,
               estimate.elements_across < RESOLVED ? " (too few: first refine the meshes to 5 or more)" : "");
   if (estimate.stiffness_for > estimate.stiffness)
-    text_append(text, size, &used,
-                "\n1 %% of the total deformation with contact.stiffness %.2g %s instead of %.2g",
+    text_append(text, size, &used, "\ncontact.stiffness %.2g %s instead of %.2g brings %s to 1 %%",
                 estimate.stiffness_for, contact_def_potential_unit(model->scene->contact.potential),
-                estimate.stiffness);
+                estimate.stiffness, estimate.rim > NOTHING ? "overlap and loss" : "the overlap");
   return true;
 }
 

@@ -209,7 +209,7 @@ class WhatIsWrong(unittest.TestCase):
                            (text.replace('"format": 1,', '"format": 7,'), "is of format 7")):
             self.assertNotEqual(old, text)
             summary.write_text(old)
-            with self.assertRaisesRegex(tetlap.Error, f"summary.json: {found}, expected 1: read it with"):
+            with self.assertRaisesRegex(tetlap.Error, f"summary.json: {found}, expected format 1: use the package"):
                 tetlap.read(self.directory)
 
     def test_a_torn_frame_is_refused(self):

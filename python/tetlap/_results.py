@@ -107,8 +107,8 @@ def _read_json(path):
     found = record.get("format") if isinstance(record, dict) else None
     if found != FORMAT:
         kind = "has no format number" if found is None else f"is of format {found}"
-        raise Error(f"{path}: {kind}, expected {FORMAT}: read it with the package of the program that wrote it, or run "
-                    "the scene again")
+        raise Error(f"{path}: {kind}, expected format {FORMAT}: use the package of the program that wrote the file, or "
+                    "run the scene again")
     return record
 
 

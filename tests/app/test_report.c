@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "app/report/codes.h"
+#include "app/report/collect.h"
 #include "app/report/page.h"
 #include "app/report/report.h"
 #include "app/report/surface.h"
@@ -481,10 +482,10 @@ START_TEST(a_folder_of_another_format_is_refused_with_the_program_that_reads_it)
   static const struct {
     const char *name, *text, *says;
   } cases[] = {
-      {"summary.json", "{\"title\": \"old\"}", "/summary.json: has no format number; tetlap 0.0.9 wrote it"},
-      {"summary.json", "{\"format\": 2}", "/summary.json: is of format 2; tetlap 0.0.9 wrote it"},
-      {"manifest.json", "{\"title\": \"old\"}",
-       "has no format number; a program that is not known wrote it"}};
+      {"summary.json", "{\"title\": \"old\"}",
+       "/summary.json: has no format number, so it is older than format 1; it was written by tetlap 0.0.9."},
+      {"summary.json", "{\"format\": 2}", "/summary.json: is of format 2; it was written by tetlap 0.0.9."},
+      {"manifest.json", "{\"title\": \"old\"}", "it was written by an unknown program."}};
   AppReportRun run;
   write_text("manifest.json", "{\"format\": 1, \"versions\": {\"tetlap\": \"0.0.9\"}}");
   for (int k = 0; k < 3; k++) {
@@ -493,6 +494,16 @@ START_TEST(a_folder_of_another_format_is_refused_with_the_program_that_reads_it)
     ck_assert_msg(strstr(status_message(), cases[k].says) != NULL, "%s", status_message());
     ck_assert_ptr_nonnull(strstr(status_message(), "reads format 1: "));
   }
+}
+END_TEST
+
+START_TEST(a_comparison_of_another_format_is_refused) {
+  AppReport report = {0};
+  write_text("compare.json", "[{\"model\": \"clip\", \"reference\": \"clip\", \"summary\": {}}]");
+  ck_assert_int_eq(app_report_collect(&report, directory, true, 0), STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), "/compare.json: has no format number") != NULL, "%s",
+                status_message());
+  app_report_destroy(&report);
 }
 END_TEST
 
@@ -546,6 +557,7 @@ int main(void) {
   tcase_add_test(test_case, a_foreign_or_damaged_frame_is_refused_by_name);
   tcase_add_test(test_case, frames_of_another_mesh_are_refused);
   tcase_add_test(test_case, a_folder_of_another_format_is_refused_with_the_program_that_reads_it);
+  tcase_add_test(test_case, a_comparison_of_another_format_is_refused);
   tcase_add_test(test_case, broken_json_is_told_with_its_line);
   tcase_add_test(test_case, a_page_is_written_whole_or_not_at_all);
   return suite_run("report", test_case, 20);
