@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pairs of tetrahedra that are hard for overlap models, by class: what `tetlap stress` and the tests ask
+// Pairs of tetrahedra that are hard for overlap models, by class. `tetlap stress` and the tests give them to
 // every model.
 //
 // "On the grid" below: coordinates are small multiples of 2⁻¹², so that points made of them with dyadic

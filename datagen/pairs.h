@@ -9,8 +9,8 @@
 
 #include "base/status.h"
 
-// Lengths are in edges of the unit cube. Arrays are owned by whoever made them; functions that fill or write
-// some of them say what NULL means to them.
+// Lengths are in edges of the unit cube. Arrays are owned by their creator; functions that fill or write some
+// of them say what NULL means to them.
 typedef struct DatagenPairs {
   double *coordinates; // vertices                                              (n, 2, 4, 3)
   uint8_t *status;     // 1: the closed tetrahedra have a point in common       (n)

@@ -27,8 +27,8 @@ typedef struct AppCommand {
   const char *doc, *ending;                 // of a group: above and below the list of children
 } AppCommand;
 
-// The group of all commands, borrowed: set once, as the program begins, for the commands that tell of all
-// others.
+// The group of all commands, borrowed: set once, as the program begins, for the commands that describe
+// all others.
 void app_cli_command_set_root(const AppCommand *root);
 const AppCommand *app_cli_command_root(void);
 

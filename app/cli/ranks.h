@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands over several processes: who may, and how one process starts them.
+// Commands over several processes: which commands may, and how one process starts the others.
 #ifndef TETLAP_APP_CLI_RANKS_H
 #define TETLAP_APP_CLI_RANKS_H
 
@@ -16,11 +16,11 @@ int app_ranks_started(void);
 // times a program of one process.
 Status app_ranks_check(const AppCommand *command);
 
-// Whether this process is the one whose refusal is heard.
+// Whether this process is the one that prints refusals.
 bool app_ranks_is_heard(void);
 
-// Goes on as tetlap-mpi in this process, with the same arguments, unless it is that already: it alone can
-// tell how ranks would divide a mesh.
+// Goes on as tetlap-mpi in this process, with the same arguments, unless it is that already: only it can
+// compute how ranks would divide a mesh.
 Status app_ranks_become(void);
 
 // Goes on as `count` ranks: replaces this process by tools/ranks with tetlap-mpi and the same arguments. Does

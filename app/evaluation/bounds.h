@@ -20,10 +20,10 @@ typedef struct AppEvaluationBoundsRun {
   size_t count, width_capacity, error_capacity;
 } AppEvaluationBoundsRun;
 
-// Whether the model tells a bound of its error.
+// Whether the model gives a bound of its error.
 bool app_evaluation_bounds_are_told(const OverlapModel *model);
 
-// Does nothing for a model that tells no bounds.
+// Does nothing for a model without bounds.
 Status app_evaluation_bounds_add(AppEvaluationBoundsRun *run, const OverlapModel *model,
                                  const DatagenPairs *pairs, size_t count);
 // NaN where nothing was seen.

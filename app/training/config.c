@@ -29,7 +29,7 @@ static const char *const normalisations[] = {"unit", "pca", "sorted", "unscaled"
 static const char *const normalisation_helps[] = {"the first tetrahedron becomes the unit simplex",
                                                   "the first tetrahedron's principal axes become the axes",
                                                   "unit, vertices in an order of their own",
-                                                  "unit, but the network tells V of the pair as it was",
+                                                  "unit, but the network's output is V of the pair as it was",
                                                   "sorted, the two tetrahedra in an order of their own too"};
 static const char *const schedules[] = {"cosine", "plateau", NULL};
 static const char *const schedule_helps[] = {"half a cosine from rate to final_rate",
@@ -155,7 +155,7 @@ static const SceneKey model_keys[] = {
     {"normalisation", SCENE_CHOICE, AT(AppTrainingModelDef, normalisation), .choices = &normalisation_choices,
      .fallback = "unit", .help = "tpn: of the input"},
     {"output_scale", SCENE_NUMBER, AT(AppTrainingModelDef, output_scale), .range = "(0, inf)",
-     .fallback = "1000", .help = "tpn: the network tells this times V of the normalised pair"},
+     .fallback = "1000", .help = "tpn: the network's output is this times V of the normalised pair"},
     {0},
 };
 static const SceneSection model = {.help = "what is trained", .keys = model_keys, .finish = finish_model};
@@ -181,7 +181,7 @@ static const SceneKey loss_keys[] = {
     {"centroid", SCENE_NUMBER, AT(AppTrainingLossDef, centroid), .range = "(0, inf)", .fallback = "1",
      .help = "geo: weight of the centroid's errors"},
     {"quantile", SCENE_NUMBER, AT(AppTrainingLossDef, quantile), .range = "(0, 1)", .fallback = "0.95",
-     .help = "bound: share of the pairs whose error it shall hold"},
+     .help = "bound: share of the pairs whose error it bounds"},
     {"volume_scale", SCENE_NUMBER, AT(AppTrainingLossDef, volume_scale), .range = "(0, inf)", .fallback = "1000",
      .help = "tpn: factor of V"},
     {"sobolev", SCENE_NUMBER, AT(AppTrainingLossDef, sobolev), .range = "[0, inf)", .fallback = "0",

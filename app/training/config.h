@@ -46,7 +46,7 @@ typedef struct AppTrainingModelDef {
   AppNormalisation normalisation; // tpn
   double scale;                   // tpn: factor of all published widths
   int layers;                     // tpn: of the vertex, the tetrahedron and the combiner block
-  double output_scale;            // tpn: the network tells this times V of the normalised pair
+  double output_scale;            // tpn: the network's output is this times V
 } AppTrainingModelDef;
 
 typedef struct AppTrainingLossDef {
@@ -55,7 +55,7 @@ typedef struct AppTrainingLossDef {
   double tangent_scale; // geo: factor of the tangents' term inside Huber's function
   double centroid;      // geo: weight of the centroid's errors
   double volume_scale;  // tpn: V is multiplied by it
-  double quantile;      // bound: share of pairs whose error it shall hold
+  double quantile;      // bound: share of pairs whose error it bounds
   double sobolev;       // tpn: weight of errors of ∇V; 0: the paper's loss
 } AppTrainingLossDef;
 
@@ -63,7 +63,7 @@ typedef struct AppTrainingOptimiserDef {
   double rate, final_rate; // of AdamW, at the peak and at the end
   AppSchedule schedule;
   double plateau_factor; // plateau: of the rate at each cut
-  int plateau_patience;  // plateau: validations without gain that are borne
+  int plateau_patience;  // plateau: validations without gain before a cut
   double warmup;         // share of the steps until the peak
   double beta1, beta2, weight_decay;
   double clip; // largest norm of a gradient

@@ -27,7 +27,7 @@ typedef struct AppTrainingRates {
 Status app_training_rates_create(AppTrainingRates *rates, size_t count);
 void app_training_rates_destroy(AppTrainingRates *rates); // a zeroed one is accepted
 
-// The pair at `at`: normalised by Unit, ∇V of the pair as it came; the network tells scale · V'.
+// The pair at `at`: normalised by Unit, ∇V of the pair as it came; the network's output is scale · V'.
 void app_training_rates_set(AppTrainingRates *rates, int at, const OverlapTpnNormalised *normalised,
                             const double gradient[24], double scale);
 // After the last of them.

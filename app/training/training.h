@@ -19,7 +19,7 @@
 typedef struct AppTrainingProgress {
   long long step, step_count;
   double samples, samples_per_s, seconds_left;
-  double loss;       // mean of late
+  double loss;       // mean since the last validation; that before it, until the next step
   double score;      // of the last validation; NaN before
   double best_score; // NaN before
 } AppTrainingProgress;

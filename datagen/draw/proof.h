@@ -24,7 +24,7 @@ typedef struct DatagenProof {
 // stack, no other memory.
 DatagenProof datagen_proof_of(const double pair[24]);
 
-// Whether the proof bears out what the kind claims. CAPTURED claims only that neither is flat.
+// Whether the proof confirms what the kind claims. CAPTURED claims only that neither is flat.
 bool datagen_proof_confirms(const DatagenProof *proof, DatagenKind kind);
 
 #endif

@@ -23,7 +23,7 @@
 #include "base/random.h"
 #include "datagen/law/kind.h"
 
-// One attempt at a touching kind; false: it came to nothing, try again. In no particular order of vertices:
+// One attempt at a touching kind; false: it failed, try again. In no particular order of vertices:
 // shuffle them.
 bool datagen_touch_try(DatagenKind kind, Random *random, double pair[24]);
 

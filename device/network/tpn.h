@@ -18,7 +18,7 @@ typedef struct DeviceTpn {
   DeviceMemory shown, factor;      // of a batch's pairs: rows of kernels/tpn/steps.h, |det E|
   int room;                        // numbers of a row
   int normalisation;
-  double scale; // the network tells so much times V'
+  double scale; // the network's output is this times V'
   double flops; // multiplications and additions of the products of a pair's V
 } DeviceTpn;
 

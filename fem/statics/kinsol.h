@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // SUNDIALS KINSOL: Newton's method on f(u, t) = 0, a fresh factorisation in every iteration; first with full
 // steps, then, where these do not converge, with a line search. The order matters: the line search lowers
-// |f|, and where a slender body turns a full step stretches it first, |f| grows tenfold, and the next step is
-// there. It converges from near an equilibrium; fem/statics/statics.h brings it there.
+// |f|, but where a slender body turns a full step stretches it first, so |f| grows tenfold, and the next step
+// converges. It converges from near an equilibrium; fem/statics/statics.h brings it there.
 #ifndef TETLAP_FEM_STATICS_KINSOL_H
 #define TETLAP_FEM_STATICS_KINSOL_H
 

@@ -23,12 +23,12 @@ typedef struct FemStatics {
   double *force, *step, *start; // scratch                     (unknown_count)
   double *kept_force, *kept_position; // at the last equilibrium     (vertex_count, 3)
   double kept_time;                   // of that
-  double driven_work;                 // of driven vertices, and of turning gravity up, so far [J]
+  double driven_work;                 // of driven vertices, and of increasing gravity, so far [J]
   double work_begin, work_end;        // of the last step, by the forces at its begin and end [J]
-  double work_left;                   // of what is left of forces, along the longest way that is driven [J]
+  double work_left;                   // of the unbalanced forces, along the longest driven displacement [J]
   double residual;                    // largest force on an unknown at the end of the last step [N]
   long long steps, newton_iterations, relaxation_steps, halvings;
-  long long loose; // steps that ended where descent.h found what is left of forces tolerable
+  long long loose; // steps whose unbalanced forces were only tolerable (descent.h)
 } FemStatics;
 
 // STATUS_INPUT: what only a motion can have (friction by velocities, release, an initial velocity).

@@ -23,10 +23,10 @@
 typedef struct FemIntegratorDef {
   double displacement_tolerance;           // error per step of every unknown [m]
   double velocity_tolerance;               // [m/s]; at least, where the next two are given
-  double speed_share, wave_share;          // what else a velocity may err by (error_weights.h); 0: nothing
+  double speed_share, wave_share;          // further tolerances of a velocity (error_weights.h); 0: none
   double initial_step, min_step, max_step; // [s]; 0: chosen
-  double least_start; // first step of a start that is left to IDA, at least [s]; 0: as short as it wants
-  int max_order;      // 1 or 2
+  double least_start;                      // first step of a start that IDA chooses, at least [s]; 0: any
+  int max_order;                           // 1 or 2
   double end;                              // [s]
   FemStall *stall;                         // of the run, borrowed; NULL: of this integrator alone, from t = 0
 } FemIntegratorDef;

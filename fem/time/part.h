@@ -36,8 +36,8 @@ void fem_part_give(const FemPart *part, const double *own, double *all);
 // Of this rank's numbers the sum and the largest over ranks; by all ranks.
 double fem_part_sum(double own);
 double fem_part_most(double own);
-// Of this rank's values `begin` … `end` − 1 of 2·count and those of the others the one which, times its weight
-// unless NULL, is largest: its number among the 2·n. A value that is no number wins. By all ranks.
+// The largest of the values `begin` … `end` − 1 of all ranks' 2·count, each times its weight (NULL: 1): its
+// number among the 2·n. NaN counts as the largest. By all ranks.
 int fem_part_worst(const FemPart *part, const double *values, const double *weights, int begin, int end);
 
 #endif

@@ -3,8 +3,8 @@
 // integrator with error control does not fail: it cuts its steps again and again and would go on for days.
 //
 // Tries are counted in windows of 2000, over all the integrators of a run: steps, those that the energy audit
-// takes back too, and what failed before it became a step. Those that led to no accepted step are in vain. A
-// run is given up
+// takes back too, and tries that failed before they became a step. Those that led to no accepted step are
+// counted as vain. A run is given up
 //   standing: at the pace of one window the whole run would take a million tries;
 //   creeping: in two windows in a row a quarter of the tries was in vain, what is left of the run would take
 //             a hundred thousand more, the pace was below a tenth of that of the fastest window before, and

@@ -73,7 +73,7 @@ static void weigh_confidence(const OverlapTpnRule *rule, const OverlapTpnInputs 
   overlap_tpn_jet_multiply(weight, &mean);
 }
 
-// The range's weights of order o: of the normalised pair, and of the volume that the network tells.
+// The range's weights of order o: of the normalised pair, and of the network's volume.
 static void weigh_range(const OverlapTpnRule *rule, const OverlapTpnInputs *inputs, int o,
                         OverlapTpnJet *weight) {
   OverlapTpnJet part;

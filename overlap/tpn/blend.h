@@ -44,7 +44,7 @@ typedef struct OverlapTpnRule {
   int order_count;
   double touch, deep; // overlap shares
   double logit;       // z₁
-  double scale;       // the network tells scale · V'
+  double scale;       // the network's output is scale · V'
 } OverlapTpnRule;
 
 // The quantities that V is made of; the first four have one place for each order.

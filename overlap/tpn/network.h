@@ -40,7 +40,7 @@ typedef struct OverlapTpnNetwork {
                         // tetrahedron
   NetCard card;
   OverlapTpnNormalisation kind;
-  double scale; // the network tells scale · V' of the normalised pair
+  double scale; // the network's output is scale · V' of the normalised pair
   bool has_range;
   OverlapTpnRange range; // that it was trained on, where the card says it
   int workspace_count;

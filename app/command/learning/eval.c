@@ -202,7 +202,7 @@ static Status open_and_evaluate(const Options *options) {
   TRY(opened);
   Status status = options->doubt > 0 && !app_evaluation_bounds_are_told(&model)
                       ? status_fail(STATUS_USAGE,
-                                    "--doubt: the model '%s' tells no bound of its error; hybrid and "
+                                    "--doubt: the model '%s' gives no bound of its error; hybrid and "
                                     "hybrid=NETWORK of a geo do",
                                     options->model)
                       : evaluate_all(options, &model);

@@ -313,7 +313,7 @@ static Status prepare(AppComparison *comparison, CompareOptions *options) {
 static Status compare(AppComparison *comparison, CompareOptions *options) {
   TRY(prepare(comparison, options));
   int first = cheapest_waiting(comparison);
-  log_info("%s runs first: its time tells how long the others will take", comparison->models[first].name);
+  log_info("%s runs first: the time of the others is estimated from its own", comparison->models[first].name);
   for (int m = first; m >= 0; m = cheapest_waiting(comparison)) {
     double expected_s = expect_time(comparison, first, m);
     announce_time(comparison, m, expected_s);

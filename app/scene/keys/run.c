@@ -32,7 +32,11 @@ static const SceneKey time_keys[] = {
     {"velocity_tolerance", SCENE_NUMBER, AT(FemSceneDef, velocity_tolerance), .unit = "m/s",
      .range = "(0, inf)",
      .absent_help =
-         "0.03 · `tolerance` · √(E/ρ) of the slowest body (factor 1 with friction in self-contact) or, if smaller, 0.3 · `tolerance` times the fastest speed at t = 0 or, with gravity, √(g L), L the smallest body's size; with contact, if larger, 5 · `tolerance` times the present speed of the fastest body, at most `tolerance` · √(E/ρ) of the body itself; without contact 33 times as much; with friction of the law velocity at most 5 · `slip_speed`",
+         "0.03 · `tolerance` · √(E/ρ) of the slowest body (factor 1 with friction in self-contact) or, if "
+         "smaller, 0.3 · `tolerance` times the fastest speed at t = 0 or, with gravity, √(g L), L the "
+         "smallest body's size; with contact, if larger, 5 · `tolerance` times the present speed of the "
+         "fastest body, at most `tolerance` · √(E/ρ) of the body itself; without contact 33 times as much; "
+         "with friction of the law velocity at most 5 · `slip_speed`",
      .help = "error of the velocities per step"},
     {"max_step", SCENE_NUMBER, AT(FemSceneDef, max_step), .unit = "s", .range = "(0, inf)",
      .absent_help = "0.1 of `end`", .help = "longest step"},
@@ -62,8 +66,10 @@ static const SceneKey solver_keys[] = {
     {"linear", SCENE_CHOICE, AT(FemSceneDef, solver), .fallback = "auto",
      .choices = &app_scene_choices_solvers, .help = "of the linear systems"},
     {"tolerance", SCENE_NUMBER, AT(FemSceneDef, solver_tolerance), .range = "(0, 1)",
-     .absent_help = "1e-8 for `pcg`; for `amg` and `gamg` what Newton's method needs, 1e-4 to 0.03, in statics 1e-4",
-     .help = "of iterative solvers: the residual over the right-hand side; a larger one costs Newton iterations, but no accuracy of the result"},
+     .absent_help =
+         "1e-8 for `pcg`; for `amg` and `gamg` what Newton's method needs, 1e-4 to 0.03, in statics 1e-4",
+     .help = "of iterative solvers: the residual over the right-hand side; a larger one costs Newton "
+             "iterations, but no accuracy of the result"},
     {"threads", SCENE_INTEGER, AT(FemSceneDef, threads), .range = "[0, 4096]", .fallback = "0",
      .help = "0: one for each core"},
     {0},
@@ -77,7 +83,8 @@ static const SceneKey checkpoint_keys[] = {
          "after 1e6 over the number of unknowns steps, at least 200, so that the cost is negligible",
      .help = "frames between two checkpoints, at each of which the integrator restarts; 0: none"},
     {"seconds", SCENE_NUMBER, AT(FemSceneDef, checkpoint_seconds), .unit = "s", .range = "[0, inf)",
-     .fallback = "30", .help = "wall time: a checkpoint is written to disk when the last one is older than this"},
+     .fallback = "30",
+     .help = "wall time: a checkpoint is written to disk when the last one is older than this"},
     {0},
 };
 static const SceneSection checkpoint = {
@@ -96,7 +103,7 @@ static const SceneKey output_keys[] = {
      .help =
          "history.csv: energies, momentum, contact forces per frame or per step; true: frames, false: none"},
     {"status", SCENE_NAME, AT(FemSceneDef, status_reference), .choices = &app_scene_choices_overlaps,
-     .absent_help = "not asked",
+     .absent_help = "not classified",
      .help = "which elements overlap by the scene's overlap model and by this one, at every frame"},
     {0},
 };

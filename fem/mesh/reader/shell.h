@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a surface of triangles encloses something, before a mesher is asked to fill it.
+// Whether a surface of triangles encloses a volume, before a mesher fills it.
 #ifndef TETLAP_FEM_MESH_READER_SHELL_H
 #define TETLAP_FEM_MESH_READER_SHELL_H
 
