@@ -48,7 +48,7 @@ static bool are_same(const ContactPair *a, const ContactPair *b) {
 }
 
 // The candidates that are among the known pairs, and only those, are engaged.
-static void take_known(ContactOnset *onset, const ContactCandidateList *candidates, const ContactPair *known,
+static void mark_known(ContactOnset *onset, const ContactCandidateList *candidates, const ContactPair *known,
                        int known_count) {
   for (int k = 0, next = 0; k < candidates->count; k++) {
     onset->is_engaged[k] = next < known_count && are_same(&candidates->pairs[k], &known[next]);
@@ -101,7 +101,7 @@ Status contact_onset_choose(ContactOnset *onset, const ContactLayout *layout,
       !memory_reserve((void **)&onset->is_engaged, &onset->engaged_capacity, most, 1))
     return status_no_memory("watched pairs");
   onset->count = 0;
-  take_known(onset, candidates, known, known_count);
+  mark_known(onset, candidates, known, known_count);
   find_engaged(onset, layout, candidates, time, positions);
   for (int f = 0; f < layout->facing_count; f++)
     watch_facing(onset, layout, candidates->pairs, candidates->begin[f], candidates->begin[f + 1]);

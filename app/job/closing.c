@@ -11,7 +11,7 @@
 #include "fem/run/run_result.h"
 
 // The lines of a text, the first of them behind a label ("": none).
-static void tell_lines(const char *label, const char *text) {
+static void print_block(const char *label, const char *text) {
   while (text) {
     const char *end = strchr(text, '\n');
     log_info("%-12s %.*s", label, end ? (int)(end - text) : (int)strlen(text), text);
@@ -20,72 +20,73 @@ static void tell_lines(const char *label, const char *text) {
   }
 }
 
-static void tell(const char *label, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void print_line(const char *label, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-static void tell(const char *label, const char *format, ...) {
+static void print_line(const char *label, const char *format, ...) {
   char text[1024];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  tell_lines(label, text);
+  print_block(label, text);
 }
 
 // Of a static scene: what went in, and what of it is found again.
-static void tell_work(const FemAudit *audit) {
+static void print_work(const FemAudit *audit) {
   double lost = fabs(fem_audit_lost(audit));
-  tell("energy:", "%.3g J in the scene (the largest of its parts)", audit->scale);
-  tell("", "%.3g J of work was done on the bodies", audit->work);
-  tell("", "%.3g J of it went into friction and plasticity", audit->dissipated);
-  tell("", "%.3g J (%.2g %%) is the difference of work and energy", lost, 100 * lost / audit->scale);
-  tell("", "%.3g J of that is undetermined: shorter load steps reduce it", audit->open);
+  print_line("energy:", "%.3g J in the scene (the largest of its parts)", audit->scale);
+  print_line("", "%.3g J of work was done on the bodies", audit->work);
+  print_line("", "%.3g J of it went into friction and plasticity", audit->dissipated);
+  print_line("", "%.3g J (%.2g %%) is the difference of work and energy", lost, 100 * lost / audit->scale);
+  print_line("", "%.3g J of that is undetermined: shorter load steps reduce it", audit->open);
 }
 
 // What was lost, apart into what was asked for and the integrator's own.
-static void tell_energy(const FemAudit *audit, const FemAuditBounds *bounds) {
+static void print_energy(const FemAudit *audit, const FemAuditBounds *bounds) {
   double lost = fem_audit_lost(audit);
   const bool is_bound = lost > 0 && audit->uncertain > 0.1 * lost;
-  tell("energy:", "%.3g J in the scene (the largest of its parts)", audit->scale);
-  tell("", "%.3g J went into damping, friction and plasticity", audit->dissipated);
-  tell("", "%.3g J (%.2g %%) %s by the integrator%s", fabs(lost), 100 * fabs(lost) / audit->scale,
-       lost < 0 ? "gained" : "lost", is_bound ? ", at most" : "");
-  tell("", "%.2g %% is the largest rise of the total, %.2g %% is allowed", 100 * audit->gain / audit->scale,
-       100 * bounds->run);
+  print_line("energy:", "%.3g J in the scene (the largest of its parts)", audit->scale);
+  print_line("", "%.3g J went into damping, friction and plasticity", audit->dissipated);
+  print_line("", "%.3g J (%.2g %%) %s by the integrator%s", fabs(lost), 100 * fabs(lost) / audit->scale,
+             lost < 0 ? "gained" : "lost", is_bound ? ", at most" : "");
+  print_line("", "%.2g %% is the largest rise of the total, %.2g %% is allowed",
+             100 * audit->gain / audit->scale, 100 * bounds->run);
 }
 
 // Who answered the pairs, where a network took part.
-static void tell_network(const ContactPairCounts *pairs) {
+static void print_network(const ContactPairCounts *pairs) {
   if (pairs->by_net == 0 && pairs->beyond == 0) return;
   double share = 100.0 / (double)pairs->tried;
-  tell("network:", "%lld pairs were asked for", pairs->tried);
-  tell("", "%.1f %% were answered by the network", share * (double)(pairs->by_net - pairs->blended));
-  if (pairs->fallbacks > 0) tell("", "%.1f %% by the exact model", share * (double)pairs->fallbacks);
-  if (pairs->blended > 0) tell("", "%.1f %% by both together", share * (double)pairs->blended);
-  tell("", "%lld pairs are beyond the range of its training", pairs->beyond);
+  print_line("network:", "%lld pairs were asked for", pairs->tried);
+  print_line("", "%.1f %% were answered by the network", share * (double)(pairs->by_net - pairs->blended));
+  if (pairs->fallbacks > 0) print_line("", "%.1f %% by the exact model", share * (double)pairs->fallbacks);
+  if (pairs->blended > 0) print_line("", "%.1f %% by both together", share * (double)pairs->blended);
+  print_line("", "%lld pairs are beyond the range of its training", pairs->beyond);
 }
 
-static void tell_files(const AppJob *job) {
-  tell("files:", "%s: %s%ssummary.json, manifest.json", job->directory,
-       job->scene.write_vtu ? "frames.pvd (ParaView), " : "",
-       job->scene.history == FEM_HISTORY_NONE ? "" : "history.csv, ");
-  tell("", "`tetlap report %s` makes a web page of them", job->directory);
+static void print_files(const AppJob *job) {
+  print_line("files:", "%s: %s%ssummary.json, manifest.json", job->directory,
+             job->scene.write_vtu ? "frames.pvd (ParaView), " : "",
+             job->scene.history == FEM_HISTORY_NONE ? "" : "history.csv, ");
+  print_line("", "`tetlap report %s` makes a web page of them", job->directory);
 }
 
-void app_closing_tell(const AppJob *job, const FemRunResult *result) {
+void app_closing_print(const AppJob *job, const FemRunResult *result) {
   char text[4096];
-  tell("reached:", "t = %g s in %.2f s of computing", result->end_time, result->wall_s);
-  tell("steps:", "%lld", result->integrator.steps);
-  tell("", "factorisations of the matrix: %lld", result->solver.factorisations);
-  if (job->scene.contact.is_on) tell("overlaps:", "%d pairs of elements at once, at most", result->pairs_max);
-  for (int i = 0; i < result->told_count; i++) tell_lines("contact:", result->told[i]);
-  tell_network(&result->pairs);
+  print_line("reached:", "t = %g s in %.2f s of computing", result->end_time, result->wall_s);
+  print_line("steps:", "%lld", result->integrator.steps);
+  print_line("", "factorisations of the matrix: %lld", result->solver.factorisations);
+  if (job->scene.contact.is_on)
+    print_line("overlaps:", "%d pairs of elements at once, at most", result->pairs_max);
+  for (int i = 0; i < result->told_count; i++) print_block("contact:", result->told[i]);
+  print_network(&result->pairs);
   if (result->is_static)
-    tell_work(&result->audit);
+    print_work(&result->audit);
   else
-    tell_energy(&result->audit, &result->energy_bounds);
+    print_energy(&result->audit, &result->energy_bounds);
   fem_run_tell_statistics(result, text, sizeof text);
-  tell_lines("statistics:", text);
-  tell_files(job);
+  print_block("statistics:", text);
+  print_files(job);
   fem_run_tell_trouble(result, &job->model, text, sizeof text);
-  tell_lines("trouble:", text);
+  print_block("trouble:", text);
 }

@@ -7,6 +7,6 @@
 #include "app/job/job.h"
 
 // Logs them, of a run that has ended well.
-void app_closing_tell(const AppJob *job, const FemRunResult *result);
+void app_closing_print(const AppJob *job, const FemRunResult *result);
 
 #endif

@@ -149,8 +149,8 @@ static Status call(AppRenderBrowser *browser, const char *method, Record *params
   return status;
 }
 
-// A call whose answer says nothing.
-static Status tell(AppRenderBrowser *browser, const char *method, Record *params) {
+// A call whose answer has no content.
+static Status command_browser(AppRenderBrowser *browser, const char *method, Record *params) {
   Record *answer;
   TRY(call(browser, method, params, &answer));
   record_destroy(answer);
@@ -173,7 +173,7 @@ static Status open_page(AppRenderBrowser *browser, const char *url) {
   if (!browser->session) return fail_gone();
   params = record_new();
   record_text(params, "url", url);
-  return tell(browser, "Page.navigate", params);
+  return command_browser(browser, "Page.navigate", params);
 }
 
 static Status set_size(AppRenderBrowser *browser, int width, int height) {
@@ -182,7 +182,7 @@ static Status set_size(AppRenderBrowser *browser, int width, int height) {
   record_integer(params, "height", height);
   record_number(params, "deviceScaleFactor", 1);
   record_bool(params, "mobile", false);
-  return tell(browser, "Emulation.setDeviceMetricsOverride", params);
+  return command_browser(browser, "Emulation.setDeviceMetricsOverride", params);
 }
 
 Status app_render_browser_start(AppRenderBrowser *browser, const char *url, int width, int height,

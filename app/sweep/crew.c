@@ -110,7 +110,7 @@ static Status fill_slots(Crew *crew) {
   return STATUS_OK;
 }
 
-static void tell(const Crew *crew, const AppSweepPoint *point) {
+static void log_outcome(const Crew *crew, const AppSweepPoint *point) {
   double left = (clock_wall_s() - crew->began_s) * (crew->to_do - crew->ended) / crew->ended;
   char what[600];
   if (point->state == APP_SWEEP_FINISHED)
@@ -137,7 +137,7 @@ static Status conclude(Crew *crew, int slot, int exit_code) {
   }
   app_sweep_point_conclude(point, exit_code);
   crew->ended++;
-  tell(crew, point);
+  log_outcome(crew, point);
   return app_sweep_table_write(crew->grid);
 }
 

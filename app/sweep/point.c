@@ -155,7 +155,7 @@ static void read_history(AppSweepPoint *point) {
 }
 
 // What to do with a folder that is there already.
-static void judge(AppSweepPoint *point, const FemSceneDef *scene, const Record *before, bool again) {
+static void decide_state(AppSweepPoint *point, const FemSceneDef *scene, const Record *before, bool again) {
   Record *summary = read_record(point->directory, "summary.json"),
          *manifest = read_record(point->directory, "manifest.json");
   const char *outcome = record_find_text(summary, "outcome");
@@ -191,7 +191,7 @@ Status app_sweep_point_examine(AppSweepPoint *point, const AppSweepBase *base, c
     set_message(point, status_message());
     return status;
   }
-  judge(point, &scene, before, again);
+  decide_state(point, &scene, before, again);
   fem_scene_destroy(&scene);
   return STATUS_OK;
 }

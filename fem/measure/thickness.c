@@ -31,7 +31,7 @@ static double meet(const FemModel *model, const int vertices[3], Vec3 x, Vec3 d)
   return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : INFINITY;
 }
 
-static Sample take(const FemModel *model, const ContactSurface *surface, int f) {
+static Sample measure_sample(const FemModel *model, const ContactSurface *surface, int f) {
   const ContactSurfaceFace *face = &surface->faces[f];
   Vec3 a = place(model, face->vertices[0]), b = place(model, face->vertices[1]),
        c = place(model, face->vertices[2]), apex = place(model, model->tets[face->tet][face->corner]);
@@ -80,7 +80,7 @@ static const Sample *median(const Sample *samples, int count) {
   return &samples[count - 1];
 }
 
-static void judge(Sample *samples, int count, double extent, FemThickness *thickness) {
+static void find_medians(Sample *samples, int count, double extent, FemThickness *thickness) {
   double all = 0, thin = 0;
   int kept = 0;
   for (int i = 0; i < count; i++) {
@@ -105,8 +105,8 @@ Status fem_thickness_find(const FemModel *model, int body, FemThickness *thickne
   int count = surface.count < MOST_SAMPLES ? surface.count : MOST_SAMPLES;
   Sample *samples = memory_zeroed((size_t)count, sizeof *samples);
   for (int i = 0; samples && i < count; i++)
-    samples[i] = take(model, &surface, (int)((long long)i * surface.count / count));
-  if (samples) judge(samples, count, largest_extent(model, range), thickness);
+    samples[i] = measure_sample(model, &surface, (int)((long long)i * surface.count / count));
+  if (samples) find_medians(samples, count, largest_extent(model, range), thickness);
   memory_free(samples);
   contact_surface_destroy(&surface);
   return samples ? STATUS_OK : status_no_memory("the thickness of a body");

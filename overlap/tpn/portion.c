@@ -328,7 +328,7 @@ static double *meet(Chain *chain, int quantity) {
   return chain->slope[quantity];
 }
 
-static void add_bend(Chain *chain, double factor, const double hessian[SQUARE], bool is_swapped) {
+static void add_curvature(Chain *chain, double factor, const double hessian[SQUARE], bool is_swapped) {
   for (int i = 0; i < SIZE; i++)
     for (int j = 0; j < SIZE; j++)
       chain->sum[SIZE * i + j] +=
@@ -358,7 +358,7 @@ static void chain_outputs(Chain *chain, const Slot *slot, int o, const float *ra
                       slot->partials[OVERLAP_TPN_VOLUME + o] * (double)rates[2 * t + 1];
   for (int e = 0; e < TANGENTS * TANGENTS; e++) bend[e] = (double)second[e];
   overlap_tpn_normalise_bend_unit(normalised, inner, bend, gradient, hessian);
-  add_bend(chain, 1, hessian, o);
+  add_curvature(chain, 1, hessian, o);
 }
 
 // The factor of order o: |det E|, E of the first tetrahedron.
@@ -368,7 +368,7 @@ static void chain_factor(Chain *chain, const Slot *slot, const double pair[SIZE]
   overlap_tpn_simplex_add_outer(lambda, factor, -factor, SIZE, hessian);
   for (int i = 0; i < HALF; i++) lambda[i] *= factor;
   keep_slope(chain, OVERLAP_TPN_FACTOR + o, lambda, o);
-  add_bend(chain, slot->partials[OVERLAP_TPN_FACTOR + o], hessian, o);
+  add_curvature(chain, slot->partials[OVERLAP_TPN_FACTOR + o], hessian, o);
 }
 
 static void chain_size(Chain *chain, const Slot *slot, const double pair[SIZE], int t) {
@@ -376,7 +376,7 @@ static void chain_size(Chain *chain, const Slot *slot, const double pair[SIZE], 
   overlap_tpn_simplex_volume(pair + HALF * t, lambda);
   overlap_tpn_simplex_add_outer(lambda, volume, -volume, SIZE, hessian + (SIZE + 1) * HALF * t);
   size_slope(slot, pair, t, meet(chain, OVERLAP_TPN_SIZE + t));
-  add_bend(chain, slot->partials[OVERLAP_TPN_SIZE + t], hessian, false);
+  add_curvature(chain, slot->partials[OVERLAP_TPN_SIZE + t], hessian, false);
 }
 
 static void chain_range(Chain *chain, const OverlapTpnRule *rule, const Slot *slot, int o) {
@@ -386,7 +386,7 @@ static void chain_range(Chain *chain, const OverlapTpnRule *rule, const Slot *sl
     for (int j = 0; j < HALF; j++) bend[HALF * i + j] = whole[SIZE * (HALF + i) + HALF + j];
   overlap_tpn_normalise_bend_unit(&slot->normalised[o], inner, bend, gradient, hessian);
   keep_slope(chain, OVERLAP_TPN_INSIDE + o, gradient, o);
-  add_bend(chain, slot->partials[OVERLAP_TPN_INSIDE + o], hessian, o);
+  add_curvature(chain, slot->partials[OVERLAP_TPN_INSIDE + o], hessian, o);
 }
 
 static void chain_share(Chain *chain, const Portion *portion, const Slot *slot) {
@@ -394,7 +394,7 @@ static void chain_share(Chain *chain, const Portion *portion, const Slot *slot) 
   ptrdiff_t at = slot->pair;
   overlap_tpn_share_bend(pair_of(portion, slot), portion->closed[at], portion->closed_gradient + SIZE * at,
                          portion->closed_hessian + SQUARE * at, meet(chain, OVERLAP_TPN_SHARE), hessian);
-  add_bend(chain, slot->partials[OVERLAP_TPN_SHARE], hessian, false);
+  add_curvature(chain, slot->partials[OVERLAP_TPN_SHARE], hessian, false);
 }
 
 static Status chain_careful(Chain *chain, const Slot *slot, const double pair[SIZE]) {
@@ -403,7 +403,7 @@ static Status chain_careful(Chain *chain, const Slot *slot, const double pair[SI
   bool is_near = slot->inputs.of[OVERLAP_TPN_PLANE] > 0;
   if (is_near) {
     pull_plane(pair, meet(chain, OVERLAP_TPN_PLANE), hessian);
-    add_bend(chain, slot->partials[OVERLAP_TPN_PLANE], hessian, false);
+    add_curvature(chain, slot->partials[OVERLAP_TPN_PLANE], hessian, false);
     keep_slope(chain, OVERLAP_TPN_CLIP, slot->clip_gradient, false);
   }
   if (slot->partials[OVERLAP_TPN_EXACT] != 0)
@@ -412,7 +412,7 @@ static Status chain_careful(Chain *chain, const Slot *slot, const double pair[SI
   if (factor == 0) return STATUS_OK;
   TRY(overlap_clip_ops.eval_pair(NULL, pair,
                                  &(OverlapAnswer){.volume = &volume, .hessian = hessian, .flags = &flags}));
-  add_bend(chain, factor, hessian, false);
+  add_curvature(chain, factor, hessian, false);
   return STATUS_OK;
 }
 
@@ -433,7 +433,7 @@ static void finish_chain(const Chain *chain, const OverlapTpnJet *volume, double
       hessian[SIZE * i + j] = hessian[SIZE * j + i] = (hessian[SIZE * i + j] + hessian[SIZE * j + i]) / 2;
 }
 
-static Status bend(const Portion *portion, int s) {
+static Status write_hessian(const Portion *portion, int s) {
   const Slot *slot = &portion->slots[s];
   const OverlapTpnRule *rule = &portion->overlap->rule;
   Chain chain = {.is_met = {false}};
@@ -477,7 +477,7 @@ static Status eval_bent(Portion *portion, OverlapTpnWorkspace *workspace) {
   set_directions(portion, workspace->row_count);
   net_tangent_second_f32(&workspace->work, &model->network, workspace->row_count, TANGENTS, workspace->x,
                          portion->directions, workspace->c, NULL, portion->rates, NULL, portion->second);
-  for (int s = 0; s < portion->slot_count; s++) TRY(bend(portion, s));
+  for (int s = 0; s < portion->slot_count; s++) TRY(write_hessian(portion, s));
   return STATUS_OK;
 }
 

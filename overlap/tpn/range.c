@@ -114,7 +114,8 @@ static void find_radius_slope(const double pair[24], double slope[24]) {
 
 // hessian += scale · ∇² ln radius, from ∇² of the square R of the radius, which is constant: ∇²R/2R − 2 ∇ln
 // ∇lnᵀ.
-static void add_radius_bend(const double pair[24], const double slope[24], double scale, double *hessian) {
+static void add_radius_curvature(const double pair[24], const double slope[24], double scale,
+                                 double *hessian) {
   double factor = scale / (16 * square_radius(pair));
   for (int i = 0; i < SIZE; i++)
     for (int j = 0; j < SIZE; j++) hessian[SIZE * i + j] -= 2 * scale * slope[i] * slope[j];
@@ -150,7 +151,7 @@ static double others(const Weights *weights, int m, int n) {
   return product;
 }
 
-static void bend(const double pair[24], const Weights *weights, double *hessian) {
+static void add_curvature(const double pair[24], const Weights *weights, double *hessian) {
   for (int i = 0; i < SIZE * SIZE; i++) hessian[i] = 0;
   for (int m = 0; m < MEASURES; m++)
     for (int n = 0; n < MEASURES; n++) {
@@ -162,7 +163,7 @@ static void bend(const double pair[24], const Weights *weights, double *hessian)
           hessian[SIZE * i + j] += factor * weights->slope[m][i] * weights->slope[n][j];
     }
   double by_radius = others(weights, 0, 0) * weights->of[0].slope;
-  if (by_radius != 0) add_radius_bend(pair, weights->slope[0], by_radius, hessian);
+  if (by_radius != 0) add_radius_curvature(pair, weights->slope[0], by_radius, hessian);
   for (int t = 0; t < 2; t++) {
     double by_volume = others(weights, 1 + t, 1 + t) * weights->of[1 + t].slope;
     if (by_volume != 0)
@@ -181,7 +182,7 @@ double overlap_tpn_range_weight(const OverlapTpnRange *range, const double pair[
       if (factor != 0) gradient[i] += factor * weights.slope[m][i]; // the slope of a flat one may be infinite
     }
   }
-  if (hessian) bend(pair, &weights, hessian);
+  if (hessian) add_curvature(pair, &weights, hessian);
   return others(&weights, -1, -1);
 }
 

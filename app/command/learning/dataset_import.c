@@ -83,7 +83,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-static void tell(const AppPairsReader *reader, const AppImport *import) {
+static void log_counts(const AppPairsReader *reader, const AppImport *import) {
   for (int f = 0; f < APP_IMPORT_FAULT_COUNT; f++) {
     char text[MOST_TEXT];
     if (import->findings[f].count == 0) continue;
@@ -121,7 +121,7 @@ static Status run(const Options *options) {
     status = status_fail(STATUS_INPUT, "%s: is a data set already", options->file);
   if (!status) {
     status = app_dataset_import_run(&reader, &options->import, &import);
-    tell(&reader, &import);
+    log_counts(&reader, &import);
   }
   if (!status) conclude(&reader, &options->import, &import);
   app_pairs_reader_close(&reader);

@@ -140,7 +140,7 @@ static Status write_table(const AppPosesResult *result, int count, const char *p
   return status;
 }
 
-static void tell(const AppPosesResult *result, int count, const Device *device) {
+static void log_result(const AppPosesResult *result, int count, const Device *device) {
   const double pairs = (double)result->pair_count;
   log_info("%d poses of %.4g pairs by %s: %.3g s, %.3g poses/s, %.3g pairs/s (%.3g a processor second)",
            count, pairs / count, device ? device->info.name : "this processor's vectors", result->eval_s,
@@ -169,7 +169,7 @@ static Status run_model(const Options *options, const FemModel *model, const Dev
   TRY(make_list(options, model, body, &list));
   Status status = app_poses_run(&result, model, body, &list, device);
   if (!status) status = write_table(&result, list.count, options->output);
-  if (!status) tell(&result, list.count, device);
+  if (!status) log_result(&result, list.count, device);
   app_poses_destroy(&result);
   app_poses_list_destroy(&list);
   return status;

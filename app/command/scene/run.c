@@ -174,7 +174,7 @@ static Status run_opened(const AppRunOptions *options, const AppJob *job, const 
   if (status) tell_of_checkpoint(job);
   // The summary tells of a run that failed, too, unless nothing can be written.
   Status written = status == STATUS_IO ? STATUS_OK : app_job_write_summary(job, &result, status);
-  if (!status && !written) app_closing_tell(job, &result);
+  if (!status && !written) app_closing_print(job, &result);
   if (options->job.is_json && !written) written = print_summary(job, &result, status);
   fem_run_result_destroy(&result);
   if (written) log_error("%s", status_message());

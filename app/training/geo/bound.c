@@ -141,8 +141,8 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   task->sample_count = bound->pool.count;
   int used = snprintf(task->summary, sizeof task->summary, "errors of %s in ", task->config->model.of);
   if (used < (int)sizeof task->summary)
-    app_training_pool_tell(&bound->pool, bound->unanswered, task->summary + used,
-                           sizeof task->summary - (size_t)used);
+    app_training_pool_describe(&bound->pool, bound->unanswered, task->summary + used,
+                               sizeof task->summary - (size_t)used);
   return create_batch(bound, task->config);
 }
 
@@ -202,8 +202,8 @@ static int compare(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-// What both networks say of all held-out pairs that have volume; returns how many. As eval_batch does.
-static Status tell(const Bound *bound, const char *path) {
+// V and bound of all held-out pairs, by both networks.
+static Status evaluate_networks(const Bound *bound, const char *path) {
   OverlapGeoNet *net;
   TRY(overlap_geo_network_create_bound(&net, path));
   OverlapGeoNetwork network = overlap_geo_network_interface(net);
@@ -224,10 +224,10 @@ static size_t gather(const Bound *bound) {
   for (int s = 0; s < bound->sets.count; s++) {
     const AppTrainingSet *set = &bound->sets.set[s];
     for (size_t i = 0; i < set->count; i++) {
-      double truth = set->pairs.volume[i], told = bound->held[s].volume[i], width = bound->held[s].bound[i];
-      if (!(truth > 0 && told > 0 && width > 0)) continue;
-      bound->log_widths[count] = log(width / told);
-      bound->log_errors[count++] = log(fmax(fabs(told - truth), LEAST_ERROR * truth) / width);
+      double truth = set->pairs.volume[i], found = bound->held[s].volume[i], width = bound->held[s].bound[i];
+      if (!(truth > 0 && found > 0 && width > 0)) continue;
+      bound->log_widths[count] = log(width / found);
+      bound->log_errors[count++] = log(fmax(fabs(found - truth), LEAST_ERROR * truth) / width);
     }
   }
   return count;
@@ -239,7 +239,7 @@ static Status validate(AppTrainingTask *task, const NetModel_f32 *model, const c
   Bound *bound = task->self;
   bound->correction = 0;
   TRY(write(task, model, "a training in progress", path));
-  TRY(tell(bound, path));
+  TRY(evaluate_networks(bound, path));
   size_t count = gather(bound), place = (size_t)ceil((double)(count + 1) * task->config->loss.quantile);
   if (place > count || count == 0)
     return status_fail(STATUS_INPUT, "%s: %zu held-out pairs with volume are too few for a share of %g",

@@ -99,7 +99,7 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   TRY(app_training_sets_load(&geo->sets, task->config));
   TRY(app_training_order_create(&geo->order, geo->pool.count));
   task->sample_count = geo->pool.count;
-  app_training_pool_tell(&geo->pool, 0, task->summary, sizeof task->summary);
+  app_training_pool_describe(&geo->pool, 0, task->summary, sizeof task->summary);
   return create_batch(geo, task->config);
 }
 

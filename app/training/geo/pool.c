@@ -204,7 +204,7 @@ static Status create(AppTrainingPool *pool, const DatagenPairs *pairs, size_t co
   return fill_all(pool, pairs, kept);
 }
 
-void app_training_pool_tell(const AppTrainingPool *pool, long long unanswered, char *text, size_t size) {
+void app_training_pool_describe(const AppTrainingPool *pool, long long unanswered, char *text, size_t size) {
   const struct {
     long long count;
     const char *reason;

@@ -37,7 +37,7 @@ void app_training_pool_destroy(AppTrainingPool *pool); // a zeroed one is accept
 
 // "3000 pairs to train on; 1000 left out: 990 share no volume, 10 are too flat for the features".
 // `unanswered` of those without volume are left out since the network that is bounded does not answer them.
-void app_training_pool_tell(const AppTrainingPool *pool, long long unanswered, char *text, size_t size);
+void app_training_pool_describe(const AppTrainingPool *pool, long long unanswered, char *text, size_t size);
 
 // An orthonormal basis (12, 24) of the directions that no affine map of space makes.
 void app_training_pool_basis(const double pair[24], double basis[APP_POOL_RATES * 24]);

@@ -15,14 +15,14 @@ static const FemModelBody *body_of(const FemVolume *volume, int tet) {
   return &volume->model->bodies[volume->model->tet_body[tet]];
 }
 
-static bool takes_part(const FemModelBody *body) {
+static bool is_nodal(const FemModelBody *body) {
   return body->element == FEM_ELEMENT_NODAL && !body->is_obstacle;
 }
 
 static size_t count_tets(const FemModel *model) {
   int count = 0;
   for (int b = 0; b < model->body_count; b++)
-    if (takes_part(&model->bodies[b])) count += model->bodies[b].tet_end - model->bodies[b].tet_begin;
+    if (is_nodal(&model->bodies[b])) count += model->bodies[b].tet_end - model->bodies[b].tet_begin;
   return (size_t)count;
 }
 
@@ -41,7 +41,7 @@ static Status list_parts(FemVolume *volume) {
     return status_no_memory("the vertices' volumes");
   for (int b = 0; b < model->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
-    if (!takes_part(body)) continue;
+    if (!is_nodal(body)) continue;
     for (int e = body->tet_begin; e < body->tet_end; e++) {
       volume->elements[volume->tet_count] = fem_model_element(model, e);
       volume->tets[volume->tet_count++] = e;
