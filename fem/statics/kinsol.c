@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "fem/time/newton/direct.h"
+#include "fem/time/sundials.h"
 
 enum { MAX_FULL_STEPS = 12, MAX_ITERATIONS = 40, MESSAGE_SIZE = 512 };
 
@@ -51,9 +52,9 @@ static int jacobian(N_Vector u, N_Vector r, SUNMatrix matrix, void *self, N_Vect
 // Factorised when the Jacobian was asked for.
 static int set_up(SUNLinearSolver linear, SUNMatrix matrix) {
   (void)linear, (void)matrix;
-  return SUNLS_SUCCESS;
+  return SUN_SUCCESS;
 }
-static int solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b, realtype tolerance) {
+static int solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance) {
   (void)matrix, (void)tolerance;
   Newton *newton = linear->content;
   int flag = answer(newton,
@@ -61,13 +62,8 @@ static int solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector 
   return fem_direct_flag(flag);
 }
 
-// KINSOL would print.
-static void be_silent(int code, const char *module, const char *function, char *message, void *self) {
-  (void)code, (void)module, (void)function, (void)message, (void)self;
-}
-
 static Status create(Newton *newton, double tolerance, double length) {
-  if (SUNContext_Create(NULL, &newton->context) != 0) return status_no_memory("KINSOL");
+  if (!fem_sundials_create(&newton->context)) return status_no_memory("KINSOL");
   N_Vector *vectors[] = {&newton->u, &newton->u_scale, &newton->f_scale};
   for (int i = 0; i < 3; i++)
     if (!(*vectors[i] = N_VNew_Serial(newton->n, newton->context))) return status_no_memory("KINSOL");
@@ -77,13 +73,13 @@ static Status create(Newton *newton, double tolerance, double length) {
   newton->kinsol = KINCreate(newton->context);
   if (!newton->kinsol) return status_no_memory("KINSOL");
   void *kinsol = newton->kinsol;
-  bool is_ok =
-      KINSetErrHandlerFn(kinsol, be_silent, NULL) == KIN_SUCCESS &&
-      KINInit(kinsol, residual, newton->u) == KIN_SUCCESS && KINSetUserData(kinsol, newton) == KIN_SUCCESS &&
-      KINSetLinearSolver(kinsol, newton->direct.linear, newton->direct.matrix) == KIN_SUCCESS &&
-      KINSetJacFn(kinsol, jacobian) == KIN_SUCCESS && KINSetMaxSetupCalls(kinsol, 1) == KIN_SUCCESS &&
-      KINSetFuncNormTol(kinsol, 1) == KIN_SUCCESS && // of the force over `tolerance`
-      KINSetScaledStepTol(kinsol, 1e-14) == KIN_SUCCESS;
+  bool is_ok = FEM_SUNDIALS_SILENCE(KIN, kinsol) && KINInit(kinsol, residual, newton->u) == KIN_SUCCESS &&
+               KINSetUserData(kinsol, newton) == KIN_SUCCESS &&
+               KINSetLinearSolver(kinsol, newton->direct.linear, newton->direct.matrix) == KIN_SUCCESS &&
+               KINSetJacFn(kinsol, jacobian) == KIN_SUCCESS &&
+               KINSetMaxSetupCalls(kinsol, 1) == KIN_SUCCESS &&
+               KINSetFuncNormTol(kinsol, 1) == KIN_SUCCESS && // of the force over `tolerance`
+               KINSetScaledStepTol(kinsol, 1e-14) == KIN_SUCCESS;
   return is_ok ? STATUS_OK : status_fail(STATUS_SOLVER, "KINSOL could not be set up");
 }
 

@@ -15,6 +15,7 @@
 #include "fem/time/newton/ida_solver.h"
 #include "fem/time/newton/newton.h"
 #include "fem/time/reason.h"
+#include "fem/time/sundials.h"
 
 // Chosen bounds of the step, as shares of the run's end.
 static const double LONGEST_STEP = 0.1, SHORTEST_STEP = 1e-11;
@@ -76,7 +77,7 @@ static void scatter(FemIntegrator *integrator, double time, N_Vector y) {
 }
 
 // r = [u̇ − v; M v̇ − f(u, v, t)]
-static int residual(realtype time, N_Vector y, N_Vector y_dot, N_Vector r, void *self) {
+static int residual(sunrealtype time, N_Vector y, N_Vector y_dot, N_Vector r, void *self) {
   FemIntegrator *integrator = self;
   FemSystem *system = integrator->system;
   const FemPart *part = &integrator->part;
@@ -97,7 +98,7 @@ static int residual(realtype time, N_Vector y, N_Vector y_dot, N_Vector r, void 
   return 0;
 }
 
-static int jacobian(realtype time, realtype c, N_Vector y, N_Vector y_dot, N_Vector r, SUNMatrix matrix,
+static int jacobian(sunrealtype time, sunrealtype c, N_Vector y, N_Vector y_dot, N_Vector r, SUNMatrix matrix,
                     void *self, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
   (void)y_dot, (void)r, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
   FemIntegrator *integrator = self;
@@ -135,11 +136,6 @@ static double unbalance(void *self, const double *balance) {
   return fem_balance_excess(&integrator->balance, integrator->system, &integrator->part, balance);
 }
 
-// IDA would print.
-static void be_silent(int code, const char *module, const char *function, char *message, void *self) {
-  (void)code, (void)module, (void)function, (void)message, (void)self;
-}
-
 static Status check_def(const FemIntegratorDef *def) {
   if (!(def->displacement_tolerance > 0) || !(def->velocity_tolerance > 0) ||
       isinf(def->displacement_tolerance) || isinf(def->velocity_tolerance))
@@ -160,7 +156,7 @@ static Status check_def(const FemIntegratorDef *def) {
 static Status create_vectors(FemIntegrator *integrator) {
   TRY(fem_part_create(&integrator->part, integrator->system->model));
   integrator->n = integrator->part.count;
-  if (SUNContext_Create(NULL, &integrator->context) != 0) return status_no_memory("the integrator");
+  if (!fem_sundials_create(&integrator->context)) return status_no_memory("the integrator");
   N_Vector *vectors[] = {&integrator->y, &integrator->y_dot, &integrator->interpolated,
                          &integrator->evaluated, &integrator->weights};
   for (int i = 0; i < 5; i++) {
@@ -179,7 +175,7 @@ static Status configure(FemIntegrator *integrator) {
   bool has_contact = fem_system_effect(integrator->system, &fem_effect_contact);
   double least_growth = has_contact ? LEAST_GROWTH : LEAST_GROWTH_WITHOUT_CONTACT;
   bool is_ok =
-      IDASetErrHandlerFn(ida, be_silent, NULL) == IDA_SUCCESS &&
+      FEM_SUNDIALS_SILENCE(IDA, ida) &&
       IDASetMaxOrd(ida, integrator->def.max_order) == IDA_SUCCESS && // before vectors are made for more
       IDAInit(ida, residual, 0, integrator->y, integrator->y_dot) == IDA_SUCCESS &&
       IDAWFtolerances(ida, find_weights) == IDA_SUCCESS && IDASetUserData(ida, integrator) == IDA_SUCCESS &&

@@ -49,7 +49,7 @@ static Status set_option(const char *name, double value) {
 
 static Status start(void) {
   int error = 0;
-  gmsh.Initialize(0, NULL, 0, &error);
+  fem_mesh_gmsh_library_start(&gmsh, &error);
   if (error) return fail("start");
   gmsh.LoggerStart(&error);
   static const struct {

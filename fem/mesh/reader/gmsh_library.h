@@ -44,6 +44,16 @@ typedef struct FemMeshGmshLibrary {
 #undef FEM_GMSH_FIELD
 } FemMeshGmshLibrary;
 
+// Without command line, configuration files and windows. gmsh 4.8 (Debian 12) cannot be asked to run as its
+// own program would; later ones can.
+static inline void fem_mesh_gmsh_library_start(const FemMeshGmshLibrary *library, int *error) {
+#if GMSH_API_VERSION_MAJOR == 4 && GMSH_API_VERSION_MINOR < 9
+  library->Initialize(0, NULL, 0, error);
+#else
+  library->Initialize(0, NULL, 0, 0, error);
+#endif
+}
+
 // The library stays loaded until the process ends. STATUS_IO: it is not installed, or is another than the one
 // whose header tetlap was compiled with; the message names it.
 Status fem_mesh_gmsh_library_load(FemMeshGmshLibrary *library);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/time/newton/direct.h"
 
+#include "fem/time/sundials.h"
+
 static SUNLinearSolver_Type type_of(SUNLinearSolver linear) {
   (void)linear;
   return SUNLINEARSOLVER_DIRECT;
@@ -19,7 +21,7 @@ static SUNMatrix_ID matrix_id_of(SUNMatrix matrix) {
 // Assembly zeroes its matrices itself.
 static int zero_matrix(SUNMatrix matrix) {
   (void)matrix;
-  return SUNMAT_SUCCESS;
+  return SUN_SUCCESS;
 }
 
 Status fem_direct_create(FemDirect *direct, SUNContext context, void *content, FemDirectSetUp *set_up,
@@ -43,5 +45,5 @@ void fem_direct_destroy(FemDirect *direct) {
 }
 
 int fem_direct_flag(int answer) {
-  return answer == 0 ? SUNLS_SUCCESS : answer > 0 ? SUNLS_PACKAGE_FAIL_REC : SUNLS_PACKAGE_FAIL_UNREC;
+  return answer == 0 ? SUN_SUCCESS : answer > 0 ? SUNLS_PACKAGE_FAIL_REC : SUNLS_PACKAGE_FAIL_UNREC;
 }

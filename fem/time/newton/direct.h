@@ -16,7 +16,7 @@ typedef struct FemDirect {
 // SUNDIALS' own signatures; both end in fem_direct_flag.
 typedef int FemDirectSetUp(SUNLinearSolver linear, SUNMatrix matrix);
 typedef int FemDirectSolve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b,
-                           realtype tolerance);
+                           sunrealtype tolerance);
 
 // `content` is borrowed. A zeroed one, and one whose creation failed, can be destroyed.
 Status fem_direct_create(FemDirect *direct, SUNContext context, void *content, FemDirectSetUp *set_up,

@@ -199,7 +199,7 @@ static int set_up_callback(SUNLinearSolver linear, SUNMatrix matrix) {
 }
 
 static int solve_callback(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b,
-                          realtype tolerance) {
+                          sunrealtype tolerance) {
   (void)matrix, (void)tolerance;
   FemIdaSolver *solver = linear->content;
   Status status = solve(solver, N_VGetArrayPointer(b), N_VGetArrayPointer(x));

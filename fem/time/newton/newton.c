@@ -7,6 +7,7 @@
 #include "base/ranks.h"
 #include "fem/sparse/solver.h"
 #include "fem/time/part.h"
+#include "fem/time/sundials.h"
 
 // Iterations, and matrices made anew, before a step is given up.
 enum { MAX_ITERATIONS = 16, MAX_RENEWALS = 5, MAX_CUTS = 6 };
@@ -20,7 +21,7 @@ static const double BLIND_CUT = 0.35;
 // A matrix of elsewhere is made anew once the iterations that are left, at the rate of the last, are more.
 static const double WORTH_A_MATRIX = 3, LEAST_RATE = 0.2, CLOSE = 0.3;
 
-realtype fem_newton_norm(N_Vector x_vector, N_Vector weights) {
+sunrealtype fem_newton_norm(N_Vector x_vector, N_Vector weights) {
   enum { SUMS = 8 };
   const double *x = N_VGetArrayPointer(x_vector), *w = N_VGetArrayPointer(weights);
   sunindextype n = NV_LENGTH_S(x_vector), i = 0;
@@ -44,40 +45,40 @@ static SUNNonlinearSolver_Type type_of(SUNNonlinearSolver solver) {
 }
 static int initialize(SUNNonlinearSolver solver) {
   (void)solver;
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 static int set_system(SUNNonlinearSolver solver, SUNNonlinSolSysFn evaluate) {
   newton_of(solver)->evaluate = evaluate;
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 static int set_set_up(SUNNonlinearSolver solver, SUNNonlinSolLSetupFn set_up) {
   newton_of(solver)->set_up = set_up;
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 static int set_solve(SUNNonlinearSolver solver, SUNNonlinSolLSolveFn solve) {
   newton_of(solver)->solve = solve;
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 static int set_test(SUNNonlinearSolver solver, SUNNonlinSolConvTestFn test, void *data) {
   newton_of(solver)->test = test;
   newton_of(solver)->test_data = data;
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 static int set_most(SUNNonlinearSolver solver, int most) {
   (void)solver, (void)most; // ours
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 static int get_iterations(SUNNonlinearSolver solver, long int *count) {
   *count = newton_of(solver)->iterations;
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 static int get_current(SUNNonlinearSolver solver, int *current) {
   *current = newton_of(solver)->current;
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 static int get_failures(SUNNonlinearSolver solver, long int *count) {
   *count = newton_of(solver)->failures;
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 
 // A solve while it goes on.
@@ -224,7 +225,7 @@ static int judge(Solve *solve, bool *has_converged) {
                              solve->weights, newton->test_data);
   newton->current++;
   if (verdict < 0) return verdict;
-  bool passes = verdict == SUN_NLS_SUCCESS, is_stuck = !(solve->excess <= 0.5 * excess_before);
+  bool passes = verdict == SUN_SUCCESS, is_stuck = !(solve->excess <= 0.5 * excess_before);
   *has_converged = passes && solve->excess <= 1;
   bool is_left = !*has_converged && solve->is_good_enough && (is_stuck || !passes);
   if (is_left && !solve->is_newest && renew(solve)) return 0;
@@ -265,11 +266,11 @@ static int run(Solve *solve) {
   while (flag == 0 && !has_converged && solve->newton->iterations < MAX_ITERATIONS)
     flag = iterate(solve, &has_converged);
   if (flag != 0) return flag;
-  return has_converged || solve->is_good_enough ? SUN_NLS_SUCCESS : SUN_NLS_CONV_RECVR;
+  return has_converged || solve->is_good_enough ? SUN_SUCCESS : SUN_NLS_CONV_RECVR;
 }
 
 static int solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Vector correction, N_Vector weights,
-                      realtype tolerance, booleantype wants_matrix, void *memory) {
+                      sunrealtype tolerance, sunbooleantype wants_matrix, void *memory) {
   (void)predicted;
   FemNewton *newton = newton_of(solver);
   Solve solve = {.newton = newton,
@@ -282,7 +283,7 @@ static int solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Vector co
   newton->iterations = newton->failures = newton->current = 0;
   fem_mixing_forget(&newton->mixing);
   int flag = run(&solve);
-  newton->failures = flag != SUN_NLS_SUCCESS;
+  newton->failures = flag != SUN_SUCCESS;
   newton->stats.solves++;
   newton->stats.iterations += newton->iterations;
   newton->stats.failures += newton->failures;
