@@ -5,7 +5,6 @@
 // new (as in fem/sparse/solver_petsc.c). BoomerAMG takes them as its finest level, so no other copy is left.
 #include "dist/solver.h"
 
-#include <petscksp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,6 +14,7 @@
 #include "base/ranks.h"
 #include "dist/entries.h"
 #include "dist/hypre.h"
+#include "dist/petsc.h"
 #include "dist/product.h"
 #include "dist/rows.h"
 #include "fem/sparse/wear.h"
@@ -358,7 +358,7 @@ static Status set_up(DistSolver *solver) {
   PETSC("the solver", KSPSetOperators(solver->ksp, solver->product.shell, rows));
   PETSC("the solver", KSPSetUp(solver->ksp));
   PETSC("the solver", KSPGetPC(solver->ksp, &pc));
-  PETSC("the solver", PCGetFailedReasonRank(pc, &reason));
+  PETSC("the solver", dist_petsc_failure(pc, &reason));
   if (is_kept) return STATUS_OK;
   fem_wear_renew(&solver->wear);
   if (solver->kind == BOOMER || solver->kind == GAMG) solver->stats.hierarchies++;

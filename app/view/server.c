@@ -8,7 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "base/files/confine.h"
 
@@ -149,18 +151,27 @@ static Status fail_port(int port, int reason) {
                            : "");
 }
 
+// Why no socket of ours can have the address, an errno; 0: one can. The library's own is lost when it cleans
+// up.
+static int find_reason(const struct sockaddr_in *address) {
+  int found = socket(AF_INET, SOCK_STREAM, 0), reason = errno;
+  if (found < 0) return reason;
+  reason = bind(found, (const struct sockaddr *)address, sizeof *address) == 0 ? 0 : errno;
+  close(found);
+  return reason;
+}
+
 Status app_view_server_start(AppViewServer *server, const AppViewFolder *folder, int port) {
   *server = (AppViewServer){.folder = *folder};
   TRY(app_view_library_load(&server->library));
   struct sockaddr_in address = {
       .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
   enum { SECONDS = 30, MOST_CONNECTIONS = 32 };
-  errno = 0;
   server->daemon = server->library.start_daemon(
       MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_AUTO, (uint16_t)port, NULL, NULL, answer, server,
       MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned int)SECONDS,
       MHD_OPTION_CONNECTION_LIMIT, (unsigned int)MOST_CONNECTIONS, MHD_OPTION_END);
-  if (!server->daemon) return fail_port(port, errno);
+  if (!server->daemon) return fail_port(port, find_reason(&address));
   server->port = port ? port : port_of(server);
   return STATUS_OK;
 }

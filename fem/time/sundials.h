@@ -12,6 +12,8 @@
 
 // What a callback answers when it succeeded; 6.4 has a name for it in each module.
 enum { SUN_SUCCESS = 0 };
+// What a linear solver answers when it failed for good.
+#define SUN_ERR_EXT_FAIL SUNLS_PACKAGE_FAIL_UNREC
 
 static inline void fem_sundials_ignore(int code, const char *module, const char *function, char *message,
                                        void *self) {

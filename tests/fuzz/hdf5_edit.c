@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hdf5_edit.h"
 
+#define H5_USE_110_API // what later versions have of the same name takes more arguments
 #include <hdf5.h>
 #include <math.h>
 #include <stdio.h>

@@ -45,5 +45,5 @@ void fem_direct_destroy(FemDirect *direct) {
 }
 
 int fem_direct_flag(int answer) {
-  return answer == 0 ? SUN_SUCCESS : answer > 0 ? SUNLS_PACKAGE_FAIL_REC : SUNLS_PACKAGE_FAIL_UNREC;
+  return answer == 0 ? SUN_SUCCESS : answer > 0 ? SUNLS_PACKAGE_FAIL_REC : SUN_ERR_EXT_FAIL;
 }
