@@ -57,7 +57,7 @@ void contact_passage_destroy(ContactPassage *passage); // also of a zeroed one, 
 
 // At the system's last evaluation: fills `next`, `passed` and `first`.
 Status contact_passage_look(ContactPassage *passage, ContactSystem *system);
-// What was looked at is accepted.
+// The evaluated state is accepted.
 void contact_passage_accept(ContactPassage *passage);
 
 // How many elements are turned at the accepted state, and the first of them.

@@ -7,7 +7,7 @@
 #include "contact/search/bounds.h"
 #include "overlap/separation.h"
 
-// Pairs that are asked at a time.
+// Pairs that are evaluated at a time.
 enum { PORTION = 2048 };
 
 // As they were given.
@@ -52,8 +52,8 @@ void contact_status_destroy(ContactStatus *status) {
   *status = (ContactStatus){0};
 }
 
-// The pairs of the portion that a model is asked: all where it sees ghosts, else those that no face
-// separates.
+// The pairs of the portion that a model evaluates: all where it may give a volume to disjoint pairs, else
+// those that no face separates.
 static int choose(ContactStatus *status, const OverlapModel *model, int count) {
   bool sees_ghosts = overlap_model_has_ghosts(model);
   int chosen = 0;

@@ -186,7 +186,7 @@ static Status choose_watched(ContactSystem *system, double time, const double *p
                               knows ? evaluation->pair_count : 0, time, positions);
 }
 
-// Other models are asked for every pair that no face separates for certain: they may see an overlap where
+// Other models evaluate every pair that no face certainly separates, since they may give an overlap where
 // there is none.
 static bool evaluates_near(const ContactSystem *system) {
   return system->layout.def.model->ops == &overlap_clip_ops;

@@ -159,7 +159,7 @@ static void gather_side(ContactStick *stick, int k, int side, const double F[9])
   }
 }
 
-// Vertices are told apart within an interface; the next one has nodes of its own.
+// A vertex has one node in each interface.
 static void forget_vertices(ContactStick *stick, int node_begin) {
   for (int n = node_begin; n < stick->node_count; n++) stick->node_of_vertex[stick->nodes[n].vertex] = -1;
 }
@@ -222,7 +222,8 @@ static double return_radially(const ContactStickHistory *history, ContactStickNo
   node->limit *= pressed;
   double k = node->stiffness;
   Vec3 carried = project(normal, keep_energy(before, k, times(node->deformation, kept)));
-  Vec3 way = project(normal, vec3_scale(1 / node->weight, vec3_at(node->gap))), trial = vec3_add(carried, way);
+  Vec3 way = project(normal, vec3_scale(1 / node->weight, vec3_at(node->gap))),
+       trial = vec3_add(carried, way);
   double length = vec3_length(trial);
   node->slips = k * length > node->limit;
   node->advances = vec3_dot(way, trial) > 0;

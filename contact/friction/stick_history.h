@@ -32,7 +32,7 @@ void contact_stick_history_destroy(ContactStickHistory *history);
 const ContactStickEntry *contact_stick_history_find(const ContactStickHistory *history, int interface,
                                                     int vertex);
 
-// Appends; the list must be sorted before it is asked.
+// Appends; the list must be sorted before entries are looked up.
 Status contact_stick_history_add(ContactStickHistory *history, const ContactStickEntry *entry);
 void contact_stick_history_sort(ContactStickHistory *history);
 

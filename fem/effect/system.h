@@ -79,8 +79,8 @@ Status fem_system_damping_power(FemSystem *system, double time, double *power);
 Status fem_system_gap(FemSystem *system, double time, double *gap);
 bool fem_system_has_gap(const FemSystem *system);
 
-// How far a step from `time` may go, at most to `farthest`, so that all that is prescribed by functions of
-// time is seen (signal.h).
+// How far a step from `time` may go, at most to `farthest`, so that no function of time is
+// missed (signal.h).
 double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,
                           double farthest);
 

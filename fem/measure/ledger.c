@@ -62,8 +62,8 @@ static void accept(FemLedger *ledger) {
   fem_accuracy_accept(&ledger->accuracy);
 }
 
-// The effects are made anew at a checkpoint, so contact is looked up whenever a part begins. What was
-// accepted already is looked at once more, which changes nothing.
+// The effects are made anew at a checkpoint, so contact is looked up whenever a part begins. The
+// accepted state is evaluated once more, which changes nothing.
 Status fem_ledger_begin(FemLedger *ledger, double time, const FemLedgerState *state) {
   ledger->contact = contact_of(ledger);
   if (!is_static(ledger)) TRY(fem_momentum_begin(&ledger->momentum, time, &state->contact));

@@ -52,16 +52,16 @@ Status fem_momentum_begin(FemMomentum *momentum, double time, const FemMomentumC
 Status fem_momentum_end(FemMomentum *momentum, double time, const FemMomentumContact *contact);
 // … and does.
 void fem_momentum_accept(FemMomentum *momentum);
-// Whether the step that was looked at last is too long for its forces: it leaves a body's balance further out
-// than what the run may end with, `end` its time. S of the whole run is known in part: what was, what the
-// body's weight will be, and what moves now, which something may stop or hand over.
+// Whether the step that was evaluated last is too long for its forces: the gap of a body exceeds what is
+// allowed at the end of the run, at the time `end`. S of the whole run is estimated: S so far, the impulse of
+// the body's weight until then, and the present momentum, which something may stop or pass on.
 bool fem_momentum_is_refused(const FemMomentum *momentum, double end);
-// The share of its tolerance that a velocity may err by in the next step, 1 or less: what is lost in steps of
-// which none is too long adds up. Bodies on which only gravity acts lose nothing. A function of the accepted
-// state, so a resumed run has the same.
+// The factor, at most 1, of the velocities' tolerance in the next step: imbalances of steps of which none is
+// too long add up. Bodies on which only gravity acts add nothing. It is a function of the accepted state, so
+// a resumed run has the same.
 double fem_momentum_strictness(const FemMomentum *momentum, double end);
 
-// J − Δp of a body up to a time in the step that was looked at last [N s].
+// J − Δp of a body up to a time in the step that was evaluated last [N s].
 void fem_momentum_missing(const FemMomentum *momentum, double time, int body, double missing[3]);
 // Its gap, and the largest of all bodies, `*body` (may be NULL) whose it is.
 double fem_momentum_gap(const FemMomentum *momentum, double time, int body);

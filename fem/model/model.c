@@ -114,8 +114,8 @@ void fem_model_stress(const FemModel *model, int tet, const double *positions, d
                        stress);
 }
 
-// What contact keeps goes by the surfaces: six faces of a cube of n vertices have 6 n^(2/3). Measured on
-// cubes that touch with one of them.
+// The memory of contact is proportional to the surfaces: six faces of a cube of n vertices have 6 n^(2/3).
+// Measured on cubes that touch with one face.
 static double contact_bytes(const FemModel *model) {
   double surface = 0;
   for (int b = 0; b < model->body_count; b++)

@@ -14,13 +14,13 @@
 
 // Equilibrium: this share of the largest force met, and of E · edge² at least.
 static const double TOLERANCE = 1e-8, SMALLEST_SCALE = 1e-9;
-// Nor less than what rounding of a coordinate x makes of forces, ε x · edge · E / (1 − 2ν), this many times:
-// a body that nothing loads is in equilibrium.
+// And not less than this many times the forces that rounding of a coordinate x causes, ε x · edge · E / (1 −
+// 2ν): so a body without load is in equilibrium.
 static const double ROUNDING = 2;
 // Relaxation hands over to Newton once the force has fallen to this share.
 static const double HAND_OVER = 1e-3;
-// By this the shift falls while the force stays: large elements are heavy beside soft, and a shift that only
-// follows the force waits for them forever.
+// The shift falls by this factor while the force stays the same: a shift that only follows the force would
+// stay too large for elements that are heavy and soft.
 static const double SHIFT_FALL = 0.5;
 // Where no equilibrium is found and an element has less than this of its volume, the law may be the reason.
 static const double SQUEEZED = 0.3, SQUEEZED_STVK = 0.8;

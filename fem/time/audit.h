@@ -48,18 +48,18 @@ typedef struct FemAudit {
 // `floor` [J]: what the scale is at least, so that a scene at rest is not judged by rounding.
 void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, double floor);
 
-// Before the audit of a static scene's next state: what its forces at the begin and at the end of a step of
-// load, `step` long, would do along the way of all that is driven [J]. By the trapezoidal rule their mean is
-// the work, which is right where force goes by way. What the step's change is off from that of the step
-// before, or from none, is how far it may be wrong, `open`: contact that begins within the step, friction
-// that begins to slip. So is `unbalanced`, the work of forces that equilibrium leaves [J]. No gain is told of
-// what is open.
+// Before the audit of a static scene's next state. `begin` and `end` [J]: the work that the forces at the
+// begin and at the end of a load step, `step` long, would do along the displacements of all that is driven.
+// The work is their mean (trapezoidal rule), exact where force is proportional to displacement. Its
+// uncertainty, `open`, is the difference of this step's change from that of the step before, or from none
+// (contact or slip may begin within the step), plus `unbalanced`, the work of the forces that equilibrium
+// leaves [J]. A gain below `open` is not reported.
 void fem_audit_load_step(FemAudit *audit, double step, double begin, double end, double unbalanced);
 
 // The audit as it would be after accepting this state.
 FemAudit fem_audit_next(const FemAudit *audit, double time, const FemEnergy *energy);
 // The same where the step's mean of the dissipated power is known to be `least` at least [W]: what its ends
-// tell beyond that is uncertain and not counted.
+// give beyond that is uncertain and not counted.
 FemAudit fem_audit_next_within(const FemAudit *audit, double time, const FemEnergy *energy, double least);
 
 FemAuditBounds fem_audit_bounds(bool has_contact, double least);
@@ -67,7 +67,7 @@ FemAuditBounds fem_audit_bounds(bool has_contact, double least);
 // How far A stands above an earlier value, as a share of the scene's energy.
 double fem_audit_rise(const FemAuditBounds *bounds, const FemAudit *audit);
 
-// Whether the step between the two seems to gain more energy than rounding: `next_within` may tell less.
+// Whether the step between the two seems to gain more energy than rounding; `next_within` may find less.
 bool fem_audit_is_doubtful(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after);
 
 // Whether the step between the two must be taken back.

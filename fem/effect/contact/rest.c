@@ -33,7 +33,7 @@ typedef struct Rest {
   double asleep_s, lost; // bodies' time asleep, summed [s]; kinetic energy [J]
 } Rest;
 
-// What holds for a body, or for one of an island at least.
+// Marks of a body, or of an island if one of its bodies has it.
 enum { IS_AWAKE = 1, IS_UNREADY = 2, IS_DISTURBED = 4 };
 
 static bool is_wanted(const FemSceneDef *scene) {
@@ -155,7 +155,7 @@ static double acceleration_of(const Rest *rest, const FemModelBody *body, const 
   return vec3_length(sum) / (mass * (state->time - rest->before_time));
 }
 
-// Something began to act, or to act otherwise, since the last decision, or is changing now.
+// Whether something began to act, or changed, since the last decision, or is changing now.
 static bool is_disturbed(const Rest *rest, int body, double time) {
   return next_change(rest, body, rest->decided_at) <= time || next_change(rest, body, time) <= time;
 }
@@ -182,7 +182,7 @@ static int root_of(const Rest *rest, int party) {
   return party;
 }
 
-// The lower number stands for both.
+// The lower number represents both.
 static void join(Rest *rest, int a, int b) {
   int p = root_of(rest, a), q = root_of(rest, b);
   rest->root[p > q ? p : q] = p > q ? q : p;
@@ -229,7 +229,7 @@ static bool has_sleeper(const Rest *rest, const bool *is_held) {
   return has;
 }
 
-// ---- Adopting it.
+// ---- Applying the decision.
 
 static Status tell_contact(const Rest *rest, const FemState *state, double step, const bool *is_held) {
   return contact_system_hold(rest->contact, state->time, state->positions, state->velocities, step, is_held);
@@ -257,7 +257,8 @@ static void adopt(Rest *rest, double time) {
   find_next_change(rest, time);
 }
 
-// The lists that contact keeps may be old: before anything is changed all is searched where it is now.
+// The lists of contact may be old: everything is searched at the present positions before anything is
+// changed.
 static Status change(Rest *rest, const FemState *state, double step) {
   bool concerns_contact = has_sleeper(rest, rest->is_held) || has_sleeper(rest, rest->next_held);
   if (concerns_contact) {
@@ -274,7 +275,7 @@ static void count_time(Rest *rest, double time) {
       if (rest->is_held[b]) rest->asleep_s += time - rest->decided_at;
 }
 
-// Takes up what a checkpoint says.
+// Restores the state from a checkpoint.
 static Status restore(Rest *rest, const FemState *state, double step) {
   rest->is_restored = false;
   for (int p = rest->body_count; p < rest->party_count; p++)

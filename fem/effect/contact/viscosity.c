@@ -40,7 +40,7 @@ static void destroy(void *self) {
   memory_free(viscosity);
 }
 
-// Contact has evaluated these positions already, unless it is asked for energies only.
+// Contact has evaluated these positions already, except where only energies are computed.
 static Status evaluate(const Viscosity *viscosity, const FemState *state) {
   double energy;
   return contact_system_eval(viscosity->contact, state->time, state->positions, &energy, NULL);

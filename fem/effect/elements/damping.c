@@ -36,7 +36,7 @@ static Status create(void **self, const FemModel *model) {
   return STATUS_OK;
 }
 
-// Where all that is elastic is damped, the elements are the same.
+// Where all elastic elements are damped, the elements are those of elasticity.
 static Status connect(void *self, const FemSystem *system) {
   FemAssembly *elasticity = fem_system_effect(system, &fem_effect_elasticity);
   if (elasticity) fem_assembly_borrow(self, elasticity);

@@ -2,9 +2,9 @@
 // Anderson's mixing of the steps of an iteration (D. G. Anderson, J. ACM 12 (1965) 547; H. F. Walker and P.
 // Ni, SIAM J. Numer. Anal. 49 (2011) 1715), of depth two at most.
 //
-// An iteration x ← x + d(x) whose matrix is old, or leaves out what it cannot have (friction's coupling of
-// slip and pressure), converges at a rate of its own or goes to and fro. With Δx_j the steps taken and Δd_j
-// the changes of d that they brought,
+// An iteration x ← x + d(x) whose matrix is old, or incomplete (friction's coupling of slip and pressure is
+// left out), converges slowly or oscillates. With Δx_j the steps taken and Δd_j the changes of d that they
+// brought,
 //     γ = argmin ‖d − Σ γ_j Δd_j‖,     step = d − Σ γ_j (Δx_j + Δd_j)
 // which is what GMRES would do where d is linear. The norm is that of the error weights.
 #ifndef TETLAP_FEM_TIME_NEWTON_MIXING_H
