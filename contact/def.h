@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a contact system is made of, as its maker describes it: bodies, obstacles without elements, the
+// The definition of a contact system, as its creator gives it: bodies, obstacles without elements, the
 // potential. Plain data; contact/system.h says what is done with it.
 #ifndef TETLAP_CONTACT_DEF_H
 #define TETLAP_CONTACT_DEF_H
@@ -71,7 +71,7 @@ typedef struct ContactSystemDef {
   // Quadratic tetrahedra, of ten nodes: the corners, then the middles of the edges 01, 02, 03, 12, 13, 23.
   // Each is eight of its body's tets, one after another. NULL: there are none. Read in creation.
   const int (*quadratics)[10]; // borrowed
-  // What a tet is called elsewhere (contact/surface/stars.h), below origin_count; NULL: its number.
+  // The number of a tet in the caller's mesh (contact/surface/stars.h), below origin_count; NULL: the same.
   const int *origin; //                                                     (tet_count)
   int origin_count;
   const ContactBody *bodies; // borrowed                                    (body_count)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the parts of a contact system hold on the heap [bytes]: the lists grow with what is near, the rest
-// with the meshes. An overlap model's own data (weights) are not among them.
+// The heap memory of the parts of a contact system [bytes]: the lists grow with the number of near pairs, the
+// rest with the meshes. An overlap model's own data (weights) are not among them.
 #ifndef TETLAP_CONTACT_FOOTPRINT_H
 #define TETLAP_CONTACT_FOOTPRINT_H
 

@@ -23,9 +23,9 @@
 // Δ is zero to rounding in any common rigid motion and telescopes; only increments are averaged. Force and
 // torque balance pair by pair. The matrix is positive semidefinite; the derivatives of N, n and the weights
 // are left out of it. An area that grows or shrinks while it sticks does no work: the spring keeps its
-// energy, not its stretch, so nothing is gained, and what grows and shrinks again is where it was. What
-// turning into another tangent plane and lift-off take of ½ k_a s² is counted as dissipated, so that the
-// energies add up.
+// energy, not its stretch, so no energy is gained, and an area that grows and shrinks again leaves the spring
+// as it was. What turning into another tangent plane and lift-off take of ½ k_a s² is counted as dissipated,
+// so that the energies add up.
 //
 // Either side may be the slave, or, in self-contact, both with half of k and of μ each (weights ½, ½).
 #ifndef TETLAP_CONTACT_STICK_H
@@ -37,7 +37,7 @@
 #include "contact/pressure/stiffness.h"
 #include "contact/surface/stars.h"
 
-// What the normal law hands over, interface by interface.
+// A pair of the normal law, as friction needs it; ordered by interface.
 typedef struct ContactStickPair {
   int interface;
   int tets[2];         // [1] −1: an obstacle without elements

@@ -57,7 +57,7 @@ typedef struct ContactLayout {
 Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def);
 void contact_layout_destroy(ContactLayout *layout);
 
-// The vertices of the tetrahedron that a cell is part of: those that feel what acts on the cell.
+// The vertices of the tetrahedron that a cell is part of: those on which the forces of the cell act.
 static inline const int *contact_layout_vertices(const ContactLayout *layout, int cell) {
   return layout->def.tets[contact_depth_tet(&layout->depth, cell)];
 }

@@ -39,8 +39,8 @@ void contact_ball_overlap(const double tet[12], const double centre[3], double r
 
 // The overlap V [m³], and of the potential `field` (contact/pressure/field.h) with c = 1 Pa/m the energy of a
 // tetrahedron of that rest volume [m⁴], its gradient [m³] and, where not NULL, the Hessian [m²], of
-// differences as above. What of it is negative is −s/R ∫ |δu|² ≥ −s/R V Σ |δu_v|²; not full: as much is
-// added. What rounding makes of a flat tetrahedron beyond that is taken away (contact/shape/definite.h).
+// differences as above. Its negative part is −s/R ∫ |δu|² ≥ −s/R V Σ |δu_v|²; not full: as much is added.
+// Negative eigenvalues by rounding, of flat tetrahedra, are removed (contact/shape/definite.h).
 void contact_ball_press(const double tet[12], const double centre[3], double radius, double rest_volume,
                         double *volume, double *energy, double gradient[12], double hessian[144],
                         bool is_full);

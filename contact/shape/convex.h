@@ -10,8 +10,8 @@
 //   V = ⅓ Σ_f n_f·(p_f − o) |P_f| + ⅓ Σ_k n_k·(p_k − o) |Q_k|,
 //
 // ∂V/∂x_a = Σ_{f∋a} n_f ∫_{P_f} β_a dA, β the barycentric coordinates, and ∂²V/∂x² as derived in
-// overlap/clip/clip.h: what turns with the faces, and what the edges of P_f that lie on a plane k sweep.
-// Every polygon is clipped for itself, so no sign of a distance that is only rounding can tear the surface
+// overlap/clip/clip.h: a part by the rotation of the faces, and one by the edges of P_f that lie on a plane
+// k. Every polygon is clipped for itself, so no sign of a distance that is only rounding can tear the surface
 // open: an error ε of a distance moves a polygon's edge by ε.
 #ifndef TETLAP_CONTACT_CONVEX_H
 #define TETLAP_CONTACT_CONVEX_H

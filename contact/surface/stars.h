@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The mesh that the potential `field` works on where a body's tetrahedra are quadratic.
 //
-// On the eighths of a quadratic tetrahedron an even pressure p would put p area/12 onto each corner of a face
-// and p area/4 onto each middle of an edge. What the element wants of an even pressure is ∫ N_a dA: nothing
-// on the corners of a straight face, a third of the area on each middle. So an element with a face on the
-// surface is cut anew: that face into a fan of six triangles about a vertex
+// If contact worked on the eighths of a quadratic tetrahedron, an even pressure p would act with p area/12 on
+// each corner of a face and with p area/4 on each middle of an edge. The element's own nodal forces are p ∫
+// N_a dA: zero on the corners of a straight face, a third of the area on each middle. So an element with a
+// face on the surface is cut anew: that face into a fan of six triangles about a vertex
 //
 //   x = Σ_corners −⅓ x_c + Σ_middles ⅔ x_m,
 //
@@ -16,8 +16,8 @@
 // on the surface, ¼ for the others, δ as in contact/surface/depth.h, and follows all ten nodes by their shape
 // functions there.
 //
-// The vertices that others carry are vertices of a definition of its own. Positions go there by the weights,
-// forces and stiffness come back by them, so what is exact there is exact for the nodes.
+// The mesh with stars is a definition of its own. Its positions follow from the nodes by the weights, and
+// forces and stiffness return to the nodes by the same weights, so balance there is balance for the nodes.
 #ifndef TETLAP_CONTACT_STARS_H
 #define TETLAP_CONTACT_STARS_H
 
@@ -57,7 +57,8 @@ void contact_stars_push(const ContactStars *stars, int vertex, Vec3 force, doubl
 void contact_stars_cover(const ContactStars *stars, const double *covered, const double *given_volumes,
                          double *given);
 
-// What the first eighth of a star has, to all eight; by given tetrahedra. Without stars nothing.
+// Copies the value of the first eighth of each star to all eight; by given tetrahedra. Without stars:
+// nothing.
 void contact_stars_spread(const ContactStars *stars, int *values);
 
 size_t contact_stars_bytes(const ContactStars *stars); // on the heap

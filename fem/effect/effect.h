@@ -57,7 +57,7 @@ typedef struct FemEffectOps {
   // After creation and after every accepted step; `step` [s] is the length expected next. The only place
   // where an effect may change what it keeps. NULL: nothing to keep.
   Status (*prepare)(void *self, const FemState *state, double step);
-  // The run begins, or goes on from a checkpoint, at this state, after `load`: what is kept of ways counts
+  // The run begins, or goes on from a checkpoint, at this state, after `load`: displacements are counted
   // from here. NULL: nothing to do.
   Status (*begin)(void *self, const FemState *state);
   // At a state that is not accepted: renews lists and nothing else, so that forces can be evaluated there.
@@ -90,7 +90,7 @@ typedef struct FemEffectOps {
   // `prepare` at the checkpoint's state. STATUS_INPUT: it does not fit. NULL: no history.
   Status (*save)(const void *self, double **values, size_t *count);
   Status (*load)(void *self, const double *values, size_t count);
-  // What it holds on the heap, `self` included [bytes], by memory_held; NULL: not told.
+  // What it holds on the heap, `self` included [bytes], by memory_held; NULL: not known.
   size_t (*bytes)(const void *self);
   void (*destroy)(void *self);
 } FemEffectOps;
