@@ -11,9 +11,9 @@ static int compare_pairs(const ContactPair *a, const ContactPair *b) {
   return (a->tets[1] > b->tets[1]) - (a->tets[1] < b->tets[1]);
 }
 
-static double relative(double difference, double size) {
-  if (difference == 0) return 0;
-  return size == 0 ? INFINITY : difference / size;
+double contact_audit_error(ContactAuditTerm term) {
+  if (term.difference == 0) return 0;
+  return term.size == 0 ? INFINITY : term.difference / term.size;
 }
 
 // The length of the difference of two pairs' ∇V; NULL: zero.
@@ -28,24 +28,20 @@ static double gradient_length(const double *gradient, const double *other) {
 
 // V and ∇V over the union of two sorted lists.
 static void compare_overlaps(const ContactEvaluation *a, const ContactEvaluation *b, ContactAudit *audit) {
-  double volume = 0, volume_difference = 0, gradient = 0, gradient_difference = 0;
-  audit->pair_count = 0;
   for (int i = 0, j = 0; i < a->pair_count || j < b->pair_count; audit->pair_count++) {
     int order = i == a->pair_count ? 1 : j == b->pair_count ? -1 : compare_pairs(&a->pairs[i], &b->pairs[j]);
     const double *left = order <= 0 ? a->gradients + OVERLAP_PAIR_SIZE * (size_t)i : NULL,
                  *right = order >= 0 ? b->gradients + OVERLAP_PAIR_SIZE * (size_t)j : NULL;
     double left_volume = order <= 0 ? a->volumes[i++] : 0, right_volume = order >= 0 ? b->volumes[j++] : 0;
-    volume_difference += fabs(left_volume - right_volume);
-    volume += right_volume;
-    gradient_difference += gradient_length(left, right);
-    gradient += gradient_length(right, NULL);
+    audit->volume.difference += fabs(left_volume - right_volume);
+    audit->volume.size += right_volume;
+    audit->gradient.difference += gradient_length(left, right);
+    audit->gradient.size += gradient_length(right, NULL);
   }
-  audit->volume_error = relative(volume_difference, volume);
-  audit->gradient_error = relative(gradient_difference, gradient);
 }
 
-static double compare_totals(const ContactLayout *layout, const ContactEvaluation *a,
-                             const ContactEvaluation *b) {
+static ContactAuditTerm compare_totals(const ContactLayout *layout, const ContactEvaluation *a,
+                                       const ContactEvaluation *b) {
   double difference = 0, total = 0;
   for (int f = 0; f < layout->facing_count; f++) {
     Vec3 left = vec3_at(a->interfaces[f].force), right = vec3_at(b->interfaces[f].force);
@@ -53,25 +49,25 @@ static double compare_totals(const ContactLayout *layout, const ContactEvaluatio
     difference += vec3_dot(d, d);
     total += vec3_dot(right, right);
   }
-  return relative(sqrt(difference), sqrt(total));
+  return (ContactAuditTerm){sqrt(difference), sqrt(total)};
 }
 
-static double compare_forces(const ContactLayout *layout, const ContactEvaluation *a,
-                             const ContactEvaluation *b) {
+static ContactAuditTerm compare_forces(const ContactLayout *layout, const ContactEvaluation *a,
+                                       const ContactEvaluation *b) {
   double difference = 0, total = 0;
   for (size_t k = 0; k < 3 * (size_t)layout->def.vertex_count; k++) {
     double d = a->forces[k] - b->forces[k];
     difference += d * d;
     total += b->forces[k] * b->forces[k];
   }
-  return relative(sqrt(difference), sqrt(total));
+  return (ContactAuditTerm){sqrt(difference), sqrt(total)};
 }
 
 ContactAudit contact_audit_compare(const ContactLayout *layout, const ContactEvaluation *candidate,
                                    const ContactEvaluation *reference) {
-  ContactAudit audit;
+  ContactAudit audit = {0};
   compare_overlaps(candidate, reference, &audit);
-  audit.force_error = compare_forces(layout, candidate, reference);
-  audit.total_error = compare_totals(layout, candidate, reference);
+  audit.force = compare_forces(layout, candidate, reference);
+  audit.total = compare_totals(layout, candidate, reference);
   return audit;
 }

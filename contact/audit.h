@@ -5,17 +5,22 @@
 
 #include "contact/evaluation.h"
 
-// Relative differences against the reference.
+// A difference against the reference, and the size of the reference. Both can be summed over configurations.
+typedef struct ContactAuditTerm {
+  double difference, size;
+} ContactAuditTerm;
+
 typedef struct ContactAudit {
-  double volume_error;   // Σ|ΔV| / ΣV over the union of pairs
-  double gradient_error; // Σ|Δ∇V| / Σ|∇V|, lengths of all 24 components
-  double force_error;    // ‖Δf‖₂/‖f‖₂ of the nodal forces
-  double total_error;    // ‖ΔF‖₂/‖F‖₂ of the total forces of all interfaces
-  int pair_count;
+  ContactAuditTerm volume;   // Σ|ΔV|, ΣV over the union of pairs [m³]
+  ContactAuditTerm gradient; // Σ|Δ∇V|, Σ|∇V|, lengths of all 24 components [m²]
+  ContactAuditTerm force;    // ‖Δf‖₂, ‖f‖₂ of the nodal forces [N]
+  ContactAuditTerm total;    // ‖ΔF‖₂, ‖F‖₂ of the total forces of all interfaces [N]
+  int pair_count;            // of meshes, that either model gives a volume; 0: nothing was asked of them
 } ContactAudit;
 
-// Differences of the two evaluations, relative to the reference: 0 where both are 0, INFINITY where only the
-// reference is.
+// Difference over size: 0 where both are 0, INFINITY where only the size is.
+double contact_audit_error(ContactAuditTerm term);
+
 ContactAudit contact_audit_compare(const ContactLayout *layout, const ContactEvaluation *candidate,
                                    const ContactEvaluation *reference);
 

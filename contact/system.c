@@ -487,6 +487,16 @@ static Status create_audits(ContactSystem *system) {
   return STATUS_OK;
 }
 
+bool contact_system_asks_model(const ContactSystem *system) {
+  for (int f = 0; f < system->layout.facing_count; f++)
+    if (system->layout.facings[f].shape < 0) return true;
+  return false;
+}
+
+int contact_system_mesh_pair_count(const ContactSystem *system) {
+  return system->evaluation.mesh_pair_count;
+}
+
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,
                             const OverlapModel *candidate, const OverlapModel *reference,
                             ContactAudit *audit) {

@@ -142,7 +142,12 @@ void contact_system_carriers(ContactSystem *system, int *count, const int **vert
 Status contact_system_add_nodes(ContactSystem *system, const double *coefficients,
                                 const ContactStiffnessSink *sink);
 
-// Audit: the same configuration with another overlap model: relative differences against `reference`.
+// Whether bodies can meet each other or themselves. Of shapes alone no overlap model is asked.
+bool contact_system_asks_model(const ContactSystem *system);
+// Pairs of meshes with V > 0 at the last evaluation, those at rest left out.
+int contact_system_mesh_pair_count(const ContactSystem *system);
+
+// Audit: the same configuration with another overlap model: differences against `reference`.
 // Half-spaces are left out: no model takes part in them. Changes nothing but scratch memory.
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,
                             const OverlapModel *candidate, const OverlapModel *reference,

@@ -71,6 +71,7 @@ static void write_cell(const AppBenchColumn *column, const void *row, int digits
     snprintf(cell, CELL_SIZE, "%lld", integer_at(column, row));
     return;
   case APP_BENCH_NUMBER:
+  case APP_BENCH_COUNT:
     cell[0] = 0;
     if (!isnan(number_at(column, row))) snprintf(cell, CELL_SIZE, "%.*g", digits, number_at(column, row));
     return;
@@ -84,6 +85,9 @@ static void record_cell(Record *record, const AppBenchColumn *column, const void
     return;
   case APP_BENCH_INTEGER:
     record_integer(record, column->key, integer_at(column, row));
+    return;
+  case APP_BENCH_COUNT:
+    record_whole(record, column->key, number_at(column, row));
     return;
   case APP_BENCH_NUMBER:
     record_number(record, column->key, number_at(column, row));

@@ -17,6 +17,7 @@ typedef enum AppBenchKind {
   APP_BENCH_TEXT,    // const char *; NULL: empty
   APP_BENCH_INTEGER, // long long
   APP_BENCH_NUMBER,  // double; NaN: not measured (null in JSON)
+  APP_BENCH_COUNT,   // likewise, a whole number
 } AppBenchKind;
 
 typedef struct AppBenchColumn {

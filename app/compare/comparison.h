@@ -16,19 +16,32 @@ typedef enum AppAuditKind {
   APP_AUDIT_KIND_COUNT
 } AppAuditKind;
 
-// One audited configuration.
+// One audited state.
 typedef struct AppAuditRow {
   double time; // [s]
-  double errors[APP_AUDIT_KIND_COUNT];
+  ContactAuditTerm terms[APP_AUDIT_KIND_COUNT];
 } AppAuditRow;
 
-// Of contact_system_audit over the audited configurations. Zeroed: none.
-typedef struct AppAuditSums {
-  double sum[APP_AUDIT_KIND_COUNT], max[APP_AUDIT_KIND_COUNT];
+// Those of a model, in the order of time. Zeroed: none.
+typedef struct AppAudit {
   int count;
   AppAuditRow *rows; // (count), owned
   size_t capacity;
-} AppAuditSums;
+} AppAudit;
+
+// Fewer states than these say little.
+enum { APP_AUDIT_FEW = 10 };
+
+// Relative errors over all audited states; NaN: there are none. INFINITY: the reference is 0 there.
+typedef struct AppAuditFigure {
+  double error;             // of the sums: Σ differences / Σ sizes, so states weigh by their size
+  double median;            // of the states' relative errors
+  double worst, worst_time; // the largest of them, and when [s]
+} AppAuditFigure;
+
+// Nothing is added for a state in which no two elements overlap. STATUS_MEMORY.
+Status app_audit_add(AppAudit *audit, double time, const ContactAudit *state);
+Status app_audit_figure(const AppAudit *audit, AppAuditKind kind, AppAuditFigure *figure);
 
 typedef struct AppComparisonModel {
   const char *source; // what the command line says, borrowed
@@ -39,7 +52,8 @@ typedef struct AppComparisonModel {
   char message[512];    // why it failed
   OverlapModel overlap; // for the audit
   FemRunResult result;
-  AppAuditSums audit;
+  AppAudit audit;
+  AppAuditFigure figures[APP_AUDIT_KIND_COUNT]; // of the audit, by app_comparison_conclude
 } AppComparisonModel;
 
 enum { APP_MAX_MODELS = 16 };
@@ -48,7 +62,8 @@ typedef struct AppComparison {
   AppComparisonModel models[APP_MAX_MODELS];
   int model_count;
   int reference;   // its index; it is driven
-  int audit_every; // every k-th accepted step in contact; 0: never
+  int audit_every; // every k-th accepted step with overlapping elements; 0: never
+  bool asks_model; // bodies can meet each other or themselves, not only obstacles without elements
   double length;   // the scene's, for relative trajectories [m]
   double end;      // of the scene [s]
 } AppComparison;
@@ -69,16 +84,21 @@ AppForceError app_comparison_interface_error(const FemRunResult *result, const F
 // Root mean square over frames and vertices of |x − x_ref| [m]; NaN: no frames.
 double app_comparison_trajectory_error(const FemRunResult *result, const FemRunResult *reference);
 
-// An observer's part: every audit_every-th step with overlap, all models against the reference in this
-// configuration. `step_in_contact` counts them.
+// An observer's part: every audit_every-th step with overlapping elements, all models against the reference
+// in this state. `step_in_contact` counts them.
 Status app_comparison_audit(AppComparison *comparison, const FemRunProgress *progress,
                             long long *step_in_contact);
+
+// After all runs: fills what the audits come to. STATUS_MEMORY.
+Status app_comparison_conclude(AppComparison *comparison);
+// Why there is no audit, or that it is of few states; empty: neither.
+void app_comparison_tell_audit(const AppComparison *comparison, char *text, size_t size);
 
 // One object a model. `list` is the top of compare.json.
 void app_comparison_record(const AppComparison *comparison, const char *scene_path, RecordList *list);
 // A line a model under one line of names.
 void app_comparison_print_csv(const AppComparison *comparison, FILE *stream);
-// The table for a terminal.
+// The tables for a terminal: of the audit, and of the models' own runs.
 void app_comparison_print_table(const AppComparison *comparison, FILE *stream);
 
 void app_comparison_destroy(AppComparison *comparison);

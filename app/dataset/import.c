@@ -243,7 +243,7 @@ void app_dataset_import_record(const AppImport *import, Record *record) {
     record_integer(row, "count", finding->count);
     RecordList *places = record_list(row, "places");
     for (int n = 0; n < finding->count && n < APP_IMPORT_NAMED; n++)
-      record_append_number(places, (double)finding->places[n]);
+      record_append_integer(places, finding->places[n]);
     if (!faults[f].has_size || finding->count == 0) continue;
     record_number(row, "largest", finding->largest);
     record_integer(row, "largest_place", finding->largest_place);

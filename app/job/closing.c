@@ -78,6 +78,8 @@ void app_closing_print(const AppJob *job, const FemRunResult *result) {
   print_line("", "factorisations of the matrix: %lld", result->solver.factorisations);
   if (job->scene.contact.is_on)
     print_line("overlaps:", "%d pairs of elements at once, at most", result->pairs_max);
+  if (result->has_contact && !result->asks_model)
+    print_line("", "contact is with obstacles without elements only: its forces use no overlap model");
   for (int i = 0; i < result->told_count; i++) print_block("contact:", result->told[i]);
   print_network(&result->pairs);
   if (result->is_static)

@@ -14,8 +14,9 @@
 
 enum { MAX_OVERRIDES = 64 };
 
-// Relative errors of a model's forces in the configurations so far.
+// Errors of a model's forces in the configurations so far: relative ones, and their terms' sums.
 typedef struct Errors {
+  ContactAuditTerm sum;
   double *values; // owned
   size_t count, capacity;
 } Errors;
@@ -39,7 +40,8 @@ static Status audit_model(Bench *bench, int m, ContactSystem *contact, const Fem
                            &bench->pareto->models[m].overlap, &bench->exact, &audit));
   if (!memory_reserve((void **)&errors->values, &errors->capacity, errors->count + 1, sizeof(double)))
     return status_no_memory("the errors");
-  errors->values[errors->count++] = audit.force_error;
+  errors->values[errors->count++] = contact_audit_error(audit.force);
+  errors->sum.difference += audit.force.difference, errors->sum.size += audit.force.size;
   return STATUS_OK;
 }
 
@@ -48,10 +50,11 @@ static Status watch(void *self, const FemRunProgress *progress) {
   Bench *bench = self;
   TRY(app_pareto_go_on(bench->pareto));
   void *effect = fem_system_effect(progress->system, &fem_effect_contact);
-  if (!effect || progress->active_pairs == 0) return STATUS_OK;
+  if (!effect) return STATUS_OK;
+  ContactSystem *contact = fem_effect_contact_system(effect);
+  if (contact_system_mesh_pair_count(contact) == 0) return STATUS_OK;
   if (bench->step_in_contact++ % bench->pareto->audit_every != 0) return STATUS_OK;
-  for (int m = 0; m < bench->pareto->model_count; m++)
-    TRY(audit_model(bench, m, fem_effect_contact_system(effect), progress));
+  for (int m = 0; m < bench->pareto->model_count; m++) TRY(audit_model(bench, m, contact, progress));
   return STATUS_OK;
 }
 
@@ -94,7 +97,7 @@ static Status run_reference(Bench *bench, const char *reference) {
     return status_fail(STATUS_SOLVER, "%s, the reference %s: %s", bench->scene, reference,
                        bench->reference->message);
   if (bench->step_in_contact == 0)
-    return status_fail(STATUS_INPUT, "%s: nothing came into contact; choose a scene in which bodies meet",
+    return status_fail(STATUS_INPUT, "%s: no two elements overlapped; choose a scene in which bodies meet",
                        bench->scene);
   return STATUS_OK;
 }
@@ -118,11 +121,9 @@ static int compare(const void *a, const void *b) {
 }
 
 static void fill_errors(const Errors *errors, AppParetoPoint *point) {
-  double sum = 0;
   qsort(errors->values, errors->count, sizeof *errors->values, compare);
-  for (size_t i = 0; i < errors->count; i++) sum += errors->values[i];
   point->samples = (long long)errors->count;
-  point->error = sum / (double)errors->count;
+  point->error = contact_audit_error(errors->sum);
   point->error_median = errors->values[errors->count / 2];
   point->error_p90 = errors->values[(size_t)(0.9 * (double)(errors->count - 1))];
 }

@@ -49,9 +49,12 @@ Status app_sweep_table_check(const Record *table, const char *directory) {
       directory, format ? format : "none", program ? program : "of an unknown version", FORMAT);
 }
 
+static const Record *section_of(const AppSweepPoint *point, const struct Column *column) {
+  return column->section ? record_find(point->summary, column->section) : point->summary;
+}
+
 static double value_of(const AppSweepPoint *point, const struct Column *column) {
-  const Record *section = column->section ? record_find(point->summary, column->section) : point->summary;
-  return record_find_number(section, column->key);
+  return record_find_number(section_of(point, column), column->key);
 }
 
 static const char *outcome_of(const AppSweepPoint *point) {
@@ -72,8 +75,13 @@ static const char *value_text(const AppSweepGrid *grid, const AppSweepPoint *poi
 }
 
 // A number as such, anything else as text.
-static void record_value(Record *record, const char *key, const char *text) {
+static void record_setting(Record *record, const char *key, const char *text) {
   char *end;
+  long long whole = strtoll(text, &end, 10);
+  if (end != text && !*end) {
+    record_integer(record, key, whole);
+    return;
+  }
   double value = strtod(text, &end);
   if (end != text && !*end && isfinite(value))
     record_number(record, key, value);
@@ -96,13 +104,14 @@ static void record_point(const AppSweepGrid *grid, const AppSweepPoint *point, R
   record_text(row, "folder", point->folder);
   Record *set = record_child(row, "set");
   for (int a = 0; a < grid->base.axis_count; a++)
-    record_value(set, grid->base.axes[a].key, value_text(grid, point, a));
+    record_setting(set, grid->base.axes[a].key, value_text(grid, point, a));
   record_text(row, "outcome", outcome_of(point));
   if (!has_ended(point)) return;
   record_integer(row, "exit_code", point->exit_code);
   if (point->message[0]) record_text(row, "message", point->message);
   if (!point->summary) return;
-  for (int c = 0; c < COLUMN_COUNT; c++) record_number(row, columns[c].name, value_of(point, &columns[c]));
+  for (int c = 0; c < COLUMN_COUNT; c++)
+    record_value(row, columns[c].name, record_find(section_of(point, &columns[c]), columns[c].key));
 }
 
 static void record_history(const AppSweepPoint *point, Record *row) {

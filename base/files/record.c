@@ -37,6 +37,19 @@ void record_integer(Record *record, const char *key, long long value) {
   json_object_set_new(node_of(record), key, json_integer(value));
 }
 
+void record_whole(Record *record, const char *key, double value) {
+  bool is_whole = value >= -0x1p62 && value <= 0x1p62;
+  json_object_set_new(node_of(record), key, is_whole ? json_integer(llround(value)) : json_null());
+}
+
+void record_add(Record *record, const char *key, long long value) {
+  record_integer(record, key, json_integer_value(json_object_get(node_of(record), key)) + value);
+}
+
+void record_value(Record *record, const char *key, const Record *value) {
+  json_object_set_new(node_of(record), key, value ? json_deep_copy((const json_t *)value) : json_null());
+}
+
 void record_text(Record *record, const char *key, const char *value) {
   json_object_set_new(node_of(record), key, value ? json_string(value) : json_null());
 }
@@ -52,19 +65,6 @@ void record_numbers(Record *record, const char *key, const double *values, int c
 
 void record_merge(Record *record, const Record *other) {
   json_object_update(node_of(record), (json_t *)other);
-}
-
-void record_accumulate(Record *total, const Record *part) {
-  const char *key;
-  json_t *value;
-  json_object_foreach((json_t *)part, key, value) {
-    json_t *before = json_object_get(node_of(total), key);
-    if (json_is_integer(before) && json_is_integer(value))
-      json_object_set_new(node_of(total), key,
-                          json_integer(json_integer_value(before) + json_integer_value(value)));
-    else
-      json_object_set(node_of(total), key, value);
-  }
 }
 
 Record *record_child(Record *record, const char *key) {
@@ -84,6 +84,10 @@ Record *record_append(RecordList *list) {
 
 void record_append_number(RecordList *list, double value) {
   json_array_append_new((json_t *)list, number_or_null(value));
+}
+
+void record_append_integer(RecordList *list, long long value) {
+  json_array_append_new((json_t *)list, json_integer(value));
 }
 
 void record_append_text(RecordList *list, const char *value) {

@@ -19,19 +19,24 @@ void record_destroy(Record *root);
 
 void record_number(Record *record, const char *key, double value);
 void record_integer(Record *record, const char *key, long long value);
+// A whole number that is computed as a double: bytes, counts that may be unknown (NaN).
+void record_whole(Record *record, const char *key, double value);
+// Adds to the whole number that stands there; without one it is the first.
+void record_add(Record *record, const char *key, long long value);
+// What stands elsewhere, a whole number as such; NULL: null.
+void record_value(Record *record, const char *key, const Record *value);
 void record_text(Record *record, const char *key, const char *value);
 void record_bool(Record *record, const char *key, bool value);
 void record_numbers(Record *record, const char *key, const double *values, int count);
 void record_merge(Record *record,
                   const Record *other); // copies what `other` has into `record`; NULL: nothing
-// Adds the whole numbers of `part` to those of `total`; everything else in `part` replaces what was there.
-void record_accumulate(Record *total, const Record *part);
 Record *record_child(Record *record, const char *key);
 RecordList *record_list(Record *record, const char *key);
 Record *record_append(RecordList *list);
 RecordList *record_list_new(void); // a list as the root; NULL: no memory
 void record_list_destroy(RecordList *root);
 void record_append_number(RecordList *list, double value);
+void record_append_integer(RecordList *list, long long value);
 void record_append_text(RecordList *list, const char *value);
 
 // Indented, keys in the order of insertion, a newline at the end.

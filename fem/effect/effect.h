@@ -82,8 +82,8 @@ typedef struct FemEffectOps {
   // How long the next step may be, at the speeds of the last accepted state, so that forces can be evaluated
   // at its end [s]. NULL: any length.
   double (*longest_step)(const void *self);
-  // Adds counters to summary.json; NULL: none. Whole numbers count what happened since creation and are
-  // summed over the parts of a run between two checkpoints; of other numbers the last stands.
+  // Puts its counters into those of the run's parts before, between two checkpoints; NULL: none. What counts
+  // what happened since creation is added (record_add); of all else the last stands.
   void (*report)(void *self, Record *counters);
   // History: what the effect keeps that is no function of time, positions and velocities (lists that
   // `prepare` renews are none). `save` makes a new array, the caller's; `load` comes before the first

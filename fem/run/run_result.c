@@ -43,7 +43,10 @@ static void add_pairs(ContactPairCounts *total, const ContactPairCounts *part) {
   total->blended += part->blended, total->beyond += part->beyond;
 }
 
-static void add_contact(FemRunResult *result, const ContactCounters *counters) {
+static void add_contact(FemRunResult *result, const ContactSystem *system) {
+  const ContactCounters *counters = contact_system_counters(system);
+  result->has_contact = true;
+  result->asks_model = contact_system_asks_model(system);
   result->phases.broad_phase += counters->broad_s;
   result->phases.overlap += counters->overlap_s;
   result->phases.contact += counters->force_s + counters->update_s;
@@ -52,7 +55,7 @@ static void add_contact(FemRunResult *result, const ContactCounters *counters) {
 
 void fem_run_result_add_system(FemRunResult *result, const FemSystem *system) {
   void *contact = fem_system_effect(system, &fem_effect_contact);
-  if (contact) add_contact(result, contact_system_counters(fem_effect_contact_system(contact)));
+  if (contact) add_contact(result, fem_effect_contact_system(contact));
   result->pattern_layouts += system->pattern_version;
   result->effect_count = system->effect_count;
   result->assemblies = 0;
@@ -65,10 +68,7 @@ void fem_run_result_add_system(FemRunResult *result, const FemSystem *system) {
     add_cost(&result->effects[i].cost, &system->costs[i]);
     if (result->effects[i].cost.jacobian_calls > result->assemblies)
       result->assemblies = result->effects[i].cost.jacobian_calls;
-    Record *counters = effect->ops->report ? record_new() : NULL;
-    if (counters) effect->ops->report(effect->self, counters);
-    if (counters) record_accumulate(result->counters, counters);
-    if (counters) record_destroy(counters);
+    if (effect->ops->report) effect->ops->report(effect->self, result->counters);
   }
 }
 
@@ -206,7 +206,7 @@ static void summarise_counters(const FemRunResult *result, Record *record) {
   record_integer(record, "hierarchies", result->solver.hierarchies);
   record_integer(record, "linear_solves", result->solver.solves);
   record_integer(record, "linear_iterations", result->solver.iterations);
-  record_number(record, "factor_entries", result->solver.factor_entries);
+  record_whole(record, "factor_entries", result->solver.factor_entries);
 }
 
 // A row for each effect that there was.
@@ -257,6 +257,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   summarise_phases(&result->phases, record_child(summary, "phases"));
   summarise_effects(result, record_child(summary, "effects"));
   record_integer(summary, "pairs_max", result->pairs_max);
+  if (result->has_contact) record_bool(summary, "uses_overlap_model", result->asks_model);
   record_number(summary, "overlap_volume_max", result->overlap_volume_max);
   record_number(summary, "deepest_overlap_max", result->deepest_overlap_max);
   record_number(summary, "contact_force_max", result->contact_force_max);

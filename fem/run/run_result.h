@@ -46,6 +46,7 @@ typedef struct FemRunResult {
   bool has_status;                  // the scene asked who overlaps
   ContactStatusCounts status_pairs; // summed over the frames
   ContactPairCounts pairs;          // handed to the overlap model over the whole run
+  bool has_contact, asks_model;     // of contact; whether any of it asks an overlap model
   int state_unknowns;               // displacements, and in a motion as many velocities
   bool is_static;
   double residual, residual_allowed; // of the last equilibrium: largest force on an unknown [N]

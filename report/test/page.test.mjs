@@ -466,6 +466,17 @@ const compareTests = {
     assert.equal(new Set([...hues, clip]).size, 4, `${hues} and the reference's ${clip}`);
   },
 
+  async "the audit says sums, median and worst state, and errors have a floor"(page) {
+    const heads = await page.eval(`[...document.querySelectorAll("#compare table")[0].querySelectorAll("thead th")].map((one) => one.textContent)`);
+    assert.deepEqual(heads.slice(0, 5), ["Model", "Volumes V", "median", "worst", "Gradients ∇V"]);
+    const row = await page.eval("tetlap.data.comparison[1]");
+    assert.ok(row.audit_force_error_worst >= row.audit_force_error_median && row.audit_force_error_worst_time > 0);
+    // the exact model differs from clip by rounding, the network by percents
+    const ends = await page.eval(`(() => { const ticks = [...document.querySelectorAll("#plot-audit svg [aria-label='y-axis tick label'] text")]; return [ticks[0].textContent, ticks.at(-1).textContent]; })()`);
+    const [low, high] = ends.map((text) => Math.log10(Number(text)) || -Number([..."⁰¹²³⁴⁵⁶⁷⁸⁹"].reduce((t, digit, k) => t.replaceAll(digit, k), text.replace("10⁻", ""))));
+    assert.ok(high - low <= 8, `the axis spans ${ends}`);
+  },
+
   async "curves that coincide are striped, and named"(page) {
     const [named, label, dashes, offsets] = await page.eval(`(() => { const plot = document.querySelector("#plot-force"), lines = [...plot.querySelectorAll("svg [aria-label=line] path")];
       return [plot.querySelector(".together").textContent, plot.querySelector("svg[role=img]").getAttribute("aria-label"),

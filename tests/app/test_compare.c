@@ -54,10 +54,38 @@ START_TEST(a_run_that_fails_before_it_touches_has_no_force_error) {
 }
 END_TEST
 
+static ContactAudit state_of(double difference, double size) {
+  ContactAuditTerm term = {difference, size};
+  return (ContactAudit){.volume = term, .gradient = term, .force = term, .total = term, .pair_count = 3};
+}
+
+// Of forces that begin at next to nothing the first state has any relative error.
+START_TEST(audited_states_weigh_by_their_size) {
+  AppAudit audit = {0};
+  AppAuditFigure figure;
+  ContactAudit onset = state_of(5, 1e-9), later = state_of(0.7, 100), none = {0};
+  ck_assert_ok(app_audit_add(&audit, 0.01, &none)); // no two elements overlap: no state
+  ck_assert_ok(app_audit_figure(&audit, APP_AUDIT_FORCE, &figure));
+  ck_assert(isnan(figure.error) && isnan(figure.median) && isnan(figure.worst) && isnan(figure.worst_time));
+  ck_assert_ok(app_audit_add(&audit, 0.02, &later));
+  ck_assert_ok(app_audit_add(&audit, 0.03, &onset));
+  for (int i = 0; i < 8; i++) ck_assert_ok(app_audit_add(&audit, 0.04, &later));
+  ck_assert_int_eq(audit.count, 10);
+  for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) {
+    ck_assert_ok(app_audit_figure(&audit, (AppAuditKind)k, &figure));
+    ck_assert_near(figure.error, (5 + 9 * 0.7) / 900, 1e-9);
+    ck_assert_near(figure.median, 0.007, 1e-15);
+    ck_assert_near(figure.worst, 5e9, 1e-3);
+    ck_assert_near(figure.worst_time, 0.03, 0);
+  }
+  memory_free(audit.rows);
+}
+END_TEST
+
 // What a command prints, both streams.
 static int print(const char *words, char *text, size_t size) {
   char command[1024];
-  snprintf(command, sizeof command, "%s %s 2>&1", TETLAP_PROGRAM, words);
+  snprintf(command, sizeof command, "{ %s %s ; } 2>&1", TETLAP_PROGRAM, words);
   FILE *pipe = popen(command, "r");
   ck_assert_ptr_nonnull(pipe);
   size_t count = fread(text, 1, size - 1, pipe);
@@ -188,12 +216,63 @@ START_TEST(a_weights_file_means_the_same_on_the_command_line_and_in_the_scene) {
 }
 END_TEST
 
+// Compares clip and exact; what is told, and compare.json, NULL: not asked for.
+static void compare(const char *words, char *text, size_t size, Record **list) {
+  char folder[] = "/tmp/tetlap_compare_XXXXXX", command[1024];
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(command, sizeof command,
+           "compare " TETLAP_SOURCE_DIR "/%s -o %s --overlap clip,exact -s output.vtu=false", words, folder);
+  ck_assert_int_eq(print(command, text, size), 0);
+  snprintf(command, sizeof command, "%s/compare.json", folder);
+  ck_assert_ok(record_read(list, command));
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  ck_assert_int_eq(system(command), 0);
+}
+
+// A half-space has no elements: no model is asked, so none can be judged by it.
+START_TEST(contact_with_obstacles_alone_has_no_audit) {
+  static char text[1 << 16];
+  Record *list;
+  compare("examples/01_drop.yaml -s time.end=0.3 --audit 1", text, sizeof text, &list);
+  ck_assert_msg(strstr(text, "audit: –; contact is with obstacles without elements only") != NULL, "%s",
+                text);
+  const Record *exact = record_at(list, 1);
+  ck_assert_near(record_find_number(exact, "audits"), 0, 0);
+  ck_assert(isnan(record_find_number(exact, "audit_force_error")));
+  ck_assert(isnan(record_find_number(exact, "audit_force_error_worst")));
+  ck_assert_ptr_nonnull(strstr(record_find_text(exact, "audit_told"), "use no overlap model"));
+  ck_assert(record_find_number(record_find(exact, "summary"), "contact_force_max") > 0);
+  record_destroy(list);
+  ck_assert_int_eq(print("run " TETLAP_SOURCE_DIR "/examples/01_drop.yaml -s time.end=0.01 -s "
+                         "output.vtu=false -o /tmp/tetlap_compare_alone && rm -r /tmp/tetlap_compare_alone",
+                         text, sizeof text),
+                   0);
+  ck_assert_msg(strstr(text, "its forces use no overlap model") != NULL, "%s", text);
+}
+END_TEST
+
+START_TEST(an_audit_of_few_states_says_so) {
+  static char text[1 << 16];
+  Record *list;
+  compare("tests/scenes/onset.yaml --audit 1000", text, sizeof text, &list);
+  ck_assert_msg(strstr(text, "audited, which is few") != NULL, "%s", text);
+  const Record *exact = record_at(list, 1);
+  ck_assert_near(record_find_number(exact, "audits"), 1, 0);
+  ck_assert(record_find_number(exact, "audit_force_error") < 1e-6);
+  ck_assert(record_find_number(exact, "audit_force_error_worst_time") > 0);
+  record_destroy(list);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("compare");
   tcase_add_test(cases, errors_are_over_the_frames_that_both_have_reached);
   tcase_add_test(cases, a_run_that_fails_before_it_touches_has_no_force_error);
+  tcase_add_test(cases, audited_states_weigh_by_their_size);
   tcase_add_test(cases, a_run_that_takes_too_long_is_cut_and_looks_it);
   tcase_add_test(cases, two_networks_of_one_base_name_share_neither_folder_nor_name);
   tcase_add_test(cases, a_weights_file_means_the_same_on_the_command_line_and_in_the_scene);
+  tcase_add_test(cases, contact_with_obstacles_alone_has_no_audit);
+  tcase_add_test(cases, an_audit_of_few_states_says_so);
   return suite_run("compare", cases, 120);
 }

@@ -415,6 +415,13 @@ START_TEST(wrong_labels_are_counted_named_and_replaced) {
   ck_assert_str_eq(
       text,
       "1 of 5 pairs: the label's V is 0, but the tetrahedra overlap (line 3); at most by 0.0572, in line 3");
+  // in JSON places are whole numbers
+  Record *record = record_new();
+  app_dataset_import_record(&result, record);
+  char *json = record_text_of(record);
+  ck_assert_ptr_nonnull(strstr(json, "\"places\": [\n        3\n      ]"));
+  memory_free(json);
+  record_destroy(record);
   // the set has the right ones
   static AppPairsReader reader;
   ck_assert_ok(app_pairs_reader_open(&reader, set, false));

@@ -121,6 +121,12 @@ START_TEST(runs_are_rows_and_one_that_fails_is_a_row_too) {
       ck_assert_ptr_nonnull(strstr(record_find_text(row, "message"), "poisson"));
   }
   record_destroy(table);
+  // what is counted has no decimal point
+  char *json = read_text("out/sweep.json"), *steps = strstr(json, "\"steps\": ");
+  ck_assert_ptr_nonnull(steps);
+  steps += strlen("\"steps\": ");
+  ck_assert_int_eq(steps[strspn(steps, "0123456789")], ',');
+  memory_free(json);
 
   char *csv = read_text("out/sweep.csv");
   int lines = 0;

@@ -27,7 +27,7 @@ static const AppBenchColumn columns[] = {
     {"newton_ratio_max", APP_BENCH_NUMBER, offsetof(AppPrecisionSummary, newton_max), NULL, "largest"},
     {"setups_ratio", APP_BENCH_NUMBER, offsetof(AppPrecisionSummary, setups), NULL,
      "matrices over those of the base, geometric mean"},
-    {"rejected", APP_BENCH_NUMBER, offsetof(AppPrecisionSummary, rejected), "rejected", "steps, sum"},
+    {"rejected", APP_BENCH_COUNT, offsetof(AppPrecisionSummary, rejected), "rejected", "steps, sum"},
     {"rejected_base", APP_BENCH_NUMBER, offsetof(AppPrecisionSummary, rejected_base), "of base",
      "steps of the base, sum"},
     {"rejected_share", APP_BENCH_NUMBER, offsetof(AppPrecisionSummary, rejected_share), NULL,

@@ -124,12 +124,11 @@ static const AppBenchColumn columns[] = {
     {"exponent", APP_BENCH_NUMBER, offsetof(Row, exponent), "exponent",
      "p of the power law time ~ sizeᵖ that fits all sizes of this name best; of processor time, for phases "
      "of wall time"},
-    {"newton_iterations", APP_BENCH_NUMBER, offsetof(Row, newton), "Newton", "of the run"},
-    {"set_ups", APP_BENCH_NUMBER, offsetof(Row, set_ups), "set-ups",
-     "factors or hierarchies made in the run"},
+    {"newton_iterations", APP_BENCH_COUNT, offsetof(Row, newton), "Newton", "of the run"},
+    {"set_ups", APP_BENCH_COUNT, offsetof(Row, set_ups), "set-ups", "factors or hierarchies made in the run"},
     {"iterations_per_solve", APP_BENCH_NUMBER, offsetof(Row, iterations), "its",
      "iterations of an iterative linear solver, the mean of a solve"},
-    {"peak_bytes", APP_BENCH_NUMBER, offsetof(Row, peak), "peak B",
+    {"peak_bytes", APP_BENCH_COUNT, offsetof(Row, peak), "peak B",
      "largest resident set of the process so far, so sizes should ascend"},
     {"done", APP_BENCH_INTEGER, offsetof(Row, done), NULL, "steps of the run; calls of a round"},
 };

@@ -217,7 +217,7 @@ static const AppBenchColumn columns[] = {
     {"setup_solve_cpu_s", APP_BENCH_NUMBER, offsetof(Row, set_up_and_solve_cpu), "cpu s",
      "processor time of both"},
     {"spread", APP_BENCH_NUMBER, offsetof(Row, spread), "spread", "of both: (max − min) / median"},
-    {"factor_entries", APP_BENCH_NUMBER, offsetof(Row, factor_entries), "factor entries",
+    {"factor_entries", APP_BENCH_COUNT, offsetof(Row, factor_entries), "factor entries",
      "numbers in the factor"},
     {"iterations", APP_BENCH_INTEGER, offsetof(Row, iterations), "iterations",
      "of a solution, if the solver iterates"},

@@ -81,7 +81,7 @@ typedef struct Row {
 static const AppBenchColumn columns[] = {
     {"case", APP_BENCH_TEXT, offsetof(Row, what), "case", "the bodies: `tetlap bench unseen --help`"},
     {"model", APP_BENCH_TEXT, offsetof(Row, model), "model", "overlap model"},
-    {"potential", APP_BENCH_TEXT, offsetof(Row, potential), NULL,
+    {"potential", APP_BENCH_TEXT, offsetof(Row, potential), "potential",
      "field; nodal for models without a centroid"},
     {"seeds", APP_BENCH_INTEGER, offsetof(Row, seeds), NULL, "meshes; each error is the largest over them"},
     {"pairs", APP_BENCH_INTEGER, offsetof(Row, pairs), "pairs",

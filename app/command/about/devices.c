@@ -51,7 +51,7 @@ static void record_device(const DeviceInfo *info, Record *record) {
   record_bool(record, "is_gpu", info->is_gpu);
   record_integer(record, "units", info->units);
   record_integer(record, "clock_mhz", info->clock_mhz);
-  record_number(record, "memory_bytes", info->memory_bytes);
+  record_whole(record, "memory_bytes", info->memory_bytes);
   record_bool(record, "is_usable", info->reason[0] == 0);
   if (info->reason[0]) record_text(record, "reason", info->reason);
 }

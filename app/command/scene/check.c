@@ -310,7 +310,7 @@ static void record_plan(const FemModel *model, const FemDivisionPlan *plan, Reco
   record_range(record, "elements", plan->elements);
   record_range(record, "copies", plan->copies);
   record_text(record, "solver", fem_solver_name(choice.kind));
-  record_number(record, "memory_bytes", choice.bytes);
+  record_whole(record, "memory_bytes", choice.bytes);
 }
 
 static void record_job(const AppJob *job, const Notes *notes, const FemDivisionPlan *plan, Record *record) {
@@ -336,7 +336,7 @@ static void record_job(const AppJob *job, const Notes *notes, const FemDivisionP
   record_text(record, "solver", fem_solver_name(choice.kind));
   record_text(record, "solver_why", choice.why);
   record_integer(record, "threads", cpu_thread_count());
-  record_number(record, "memory_bytes", choice.bytes);
+  record_whole(record, "memory_bytes", choice.bytes);
   if (plan->rank_count > 0) record_plan(model, plan, record_child(record, "ranks"));
   record_text(record, "output", job->directory);
   record_integer(record, "frames", scene->frames + 1);

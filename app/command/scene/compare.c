@@ -35,7 +35,9 @@ static const struct argp_option option_table[] = {
     {"reference", KEY_REFERENCE, "NAME", 0,
      "The model that the others are compared with (default: the first)", 1},
     {"audit", KEY_AUDIT, "K", 0,
-     "Evaluate all models in every K-th step in contact of the reference (default 10; 0: never)", 1},
+     "Evaluate all models in every K-th step of the reference with overlapping elements (default 10; 0: "
+     "never)",
+     1},
     {"audit-only", KEY_AUDIT_ONLY, "NAME,...", 0,
      "Models that take part in the audit but get no run of their own", 1},
     {"wall", KEY_WALL, "SECONDS", 0, "Stop a model's run after this wall time (default: never)", 1},
@@ -319,6 +321,7 @@ static Status compare(AppComparison *comparison, CompareOptions *options) {
     announce_time(comparison, m, expected_s);
     TRY(run_model(comparison, m, options, expected_s));
   }
+  TRY(app_comparison_conclude(comparison));
   TRY(write_results(comparison, options));
   for (int m = 0; m < comparison->model_count; m++)
     if (comparison->models[m].status)

@@ -248,16 +248,16 @@ static double longest_step(const void *self) {
 static void report(void *self, Record *counters) {
   Contact *contact = self;
   const ContactCounters *count = contact_system_counters(contact->system);
-  record_integer(counters, "contact_evaluations", count->evaluations);
-  record_integer(counters, "contact_pairs", count->pairs.tried);
-  record_integer(counters, "contact_searches", count->searches);
-  record_integer(counters, "enclosed_pairs", count->pairs.enclosed);
-  record_integer(counters, "overlap_fallbacks", count->pairs.fallbacks);
-  record_integer(counters, "net_pairs", count->pairs.by_net);
-  record_integer(counters, "overlap_blended", count->pairs.blended);
-  record_integer(counters, "beyond_range_pairs", count->pairs.beyond);
-  record_integer(counters, "beyond_margin", count->beyond_margin);
-  if (contact->has_self) record_integer(counters, "self_pairs_left_out", count->resting);
+  record_add(counters, "contact_evaluations", count->evaluations);
+  record_add(counters, "contact_pairs", count->pairs.tried);
+  record_add(counters, "contact_searches", count->searches);
+  record_add(counters, "enclosed_pairs", count->pairs.enclosed);
+  record_add(counters, "overlap_fallbacks", count->pairs.fallbacks);
+  record_add(counters, "net_pairs", count->pairs.by_net);
+  record_add(counters, "overlap_blended", count->pairs.blended);
+  record_add(counters, "beyond_range_pairs", count->pairs.beyond);
+  record_add(counters, "beyond_margin", count->beyond_margin);
+  if (contact->has_self) record_add(counters, "self_pairs_left_out", count->resting);
 }
 
 static size_t bytes(const void *self) {

@@ -89,9 +89,9 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
 
 static void report(void *self, Record *counters) {
   const ContactFriction *law = &((Friction *)self)->law;
-  record_integer(counters, "friction_updates", law->updates);
-  record_integer(counters, "friction_pairs", law->taken);
-  record_integer(counters, "friction_pairs_dropped", law->dropped);
+  record_add(counters, "friction_updates", law->updates);
+  record_add(counters, "friction_pairs", law->taken);
+  record_add(counters, "friction_pairs_dropped", law->dropped);
 }
 
 // The forces by interface, of which those at rest are still told.

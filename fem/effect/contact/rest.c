@@ -299,9 +299,9 @@ static Status prepare(void *self, const FemState *state, double step) {
 static void report(void *self, Record *counters) {
   const Rest *rest = self;
   const ContactCounters *contact = contact_system_counters(rest->contact);
-  record_integer(counters, "bodies_put_to_rest", rest->sleeps);
-  record_integer(counters, "bodies_awakened", rest->wakes);
-  record_integer(counters, "pairs_left_at_rest", contact->left_at_rest);
+  record_add(counters, "bodies_put_to_rest", rest->sleeps);
+  record_add(counters, "bodies_awakened", rest->wakes);
+  record_add(counters, "pairs_left_at_rest", contact->left_at_rest);
   record_number(counters, "body_seconds_at_rest", rest->asleep_s);
   record_number(counters, "energy_put_to_rest_J", rest->lost);
 }

@@ -161,9 +161,9 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
 
 static void report(void *self, Record *counters) {
   const Stick *stick = self;
-  record_integer(counters, "friction_updates", stick->accepted);
-  record_number(counters, "friction_vertices", stick->law.node_count);
-  record_number(counters, "friction_slipping", stick->law.slip_count);
+  record_add(counters, "friction_updates", stick->accepted);
+  record_integer(counters, "friction_vertices", stick->law.node_count);
+  record_integer(counters, "friction_slipping", stick->law.slip_count);
   record_number(counters, "friction_work", stick->law.dissipated);
 }
 

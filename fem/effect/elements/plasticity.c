@@ -286,7 +286,7 @@ static void report(void *self, Record *counters) {
     last = element;
   }
   record_number(counters, "plastic_strain_max", most);
-  record_number(counters, "yielded_elements", yielded);
+  record_integer(counters, "yielded_elements", yielded);
 }
 
 void fem_effect_plasticity_add_stress(const void *self, int tet, const double *positions, double stress[6]) {

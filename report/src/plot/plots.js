@@ -124,13 +124,17 @@ function distanceSeries({ runs, differences = [] }, size) {
   }));
 }
 
-// What compare's audit measured in single configurations of the reference's run.
+// What compare's audit measured in single states of the reference's run, over the largest of its forces there: where a
+// force begins, its relative error says nothing.
 function auditSeries({ comparison, runs }, kind) {
   const rows = (comparison ?? []).filter((row) => row.audit_series?.[kind]);
   let last = HUES.light.length; // models without a run have the last hues, grey first
   return rows.map((row) => {
     const run = runs.find((one) => one.summary?.overlap === row.model);
-    return { run: run ?? null, label: row.model, hue: run ? null : --last, values: positive(row.audit_series[kind]), times: row.audit_series.time_s };
+    const { time_s, force_N, [kind]: errors } = row.audit_series;
+    const most = force_N?.reduce((a, b) => Math.max(a, b), 0);
+    const values = positive(most > 0 ? errors.map((error, i) => (error * force_N[i]) / most) : errors);
+    return { run: run ?? null, label: row.model, hue: run ? null : --last, values, times: time_s };
   });
 }
 
@@ -157,7 +161,7 @@ function energyPlots(runs) {
 
 function errorPlots(data, size) {
   const { runs, reference = 0 } = data;
-  const log = { unit: "", isLog: true };
+  const log = { unit: "", isLog: true, isError: true };
   const drift = { ...log, id: "drift", title: "Drift of the total energy", note: "over the scene’s energy", series: driftSeries(runs) };
   if (runs.length < 2) return [{ ...drift, id: "error", title: "Error", note: "drift of the total energy over the scene’s energy" }];
   if (isPair(runs)) {
@@ -179,7 +183,7 @@ export function listPlots(data, size) {
     ...forcePlots(runs),
     ...energyPlots(runs),
     ...errorPlots(data, size),
-    { id: "audit", title: "Audit: nodal forces", note: "relative error in the same configurations, those of the reference’s run", unit: "", isLog: true, series: auditSeries(data, "force") },
+    { id: "audit", title: "Audit: nodal forces", note: "difference in the same states, those of the reference’s run, over its largest force in them", unit: "", isLog: true, isError: true, series: auditSeries(data, "force") },
     { id: "step", title: "Step size", unit: "s", isLog: true, series: stepSeries(runs) },
   ];
   return plots.filter((plot) => plot.series.some((one) => one.values.some(Number.isFinite)));
@@ -263,7 +267,7 @@ export class TimePlot {
         label: null,
         type: plot.isLog ? "log" : "linear",
         grid: true,
-        ...(plot.isLog ? logScale(plot.series) : { ticks: 5, nice: true }),
+        ...(plot.isLog ? logScale(plot.series, plot.isError) : { ticks: 5, nice: true }),
         tickSize: 0,
         tickFormat: plot.isLog ? powerOf : (value) => format(value, "", 3),
       },
@@ -354,15 +358,22 @@ export class TimePlot {
   }
 }
 
+// Errors are shares of a largest value: what is this small a share of the largest error, or rounding of that value, is
+// drawn at the lower end.
+const ERROR_DECADES = 8;
+const ROUNDING_POWER = -16;
+
 // From a power of ten to a power of ten, with at most six of them labelled.
-function logScale(series) {
+export function logScale(series, isError) {
   const values = series.flatMap((one) => [...one.values, ...(one.upper ?? [])]).filter((value) => value > 0);
-  const low = Math.floor(Math.log10(values.reduce((a, b) => Math.min(a, b))));
-  const high = Math.max(Math.ceil(Math.log10(values.reduce((a, b) => Math.max(a, b)))), low + 1);
+  const top = Math.ceil(Math.log10(values.reduce((a, b) => Math.max(a, b))));
+  const bottom = Math.floor(Math.log10(values.reduce((a, b) => Math.min(a, b))));
+  const low = isError ? Math.max(bottom, Math.min(Math.max(top - ERROR_DECADES, ROUNDING_POWER), top - 1)) : bottom;
+  const high = Math.max(top, low + 1);
   const step = Math.max(1, Math.ceil((high - low) / 5));
   const ticks = [];
   for (let power = high; power >= low; power -= step) ticks.unshift(10 ** power);
-  return { domain: [10 ** low, 10 ** high], ticks };
+  return { domain: [10 ** low, 10 ** high], ticks, clamp: isError };
 }
 
 export function powerOf(value) {

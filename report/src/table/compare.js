@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // compare.json (docs/output.md) as tables: the audit, which compares the models with the reference in the same
-// configurations, and their own runs. A run that did not reach the end is marked.
+// states, and their own runs. A run that did not reach the end is marked.
 
 import { count, format, h, scrolled, swatchOf } from "../dom.js";
 
@@ -10,6 +10,9 @@ const AUDITS = [
   ["audit_force_error", "Nodal forces"],
   ["audit_total_force_error", "Total forces"],
 ];
+
+const SUMS = "sum of differences over sum of sizes, over all audited states, which weigh by their size";
+const WORST = "the largest relative error of a state, and its time; it may belong to a state with next to no force";
 
 const percent = (share) => (share == null ? "–" : `${format(100 * share, "%", 3)}`);
 
@@ -35,13 +38,19 @@ function table(caption, heads, rows, cells) {
   return scrolled(caption, h("caption", caption), h("thead", head), h("tbody", rows.map((row) => h("tr", cells(row)))));
 }
 
+// Why there is no audit, or that it is of few states.
+function auditNote(rows) {
+  const row = rows.find((one) => one.audit_told);
+  return row ? h("p.note", { id: "audit-told" }, `Audit: ${row.audits > 0 || rows.some((one) => one.audits > 0) ? "" : "–; "}${row.audit_told}.`) : null;
+}
+
 function auditTable(rows, runs) {
   const audited = rows.filter((row) => row.audits > 0);
   if (audited.length === 0) return null;
-  const heads = [["Model", true], ...AUDITS.flatMap(([, label]) => [[label, false, "mean"], ["max", false, `largest, ${label}`]]), ["Audits", false]];
-  return table(`Audit: relative errors against ${audited[0].reference} in the same configurations`, heads, audited, (row) => [
+  const heads = [["Model", true], ...AUDITS.flatMap(([, label]) => [[label, false, SUMS], ["median", false, `${label}, the median state`], ["worst", false, `${label}: ${WORST}`]]), ["States", false]];
+  return table(`Audit: errors of sums against ${audited[0].reference} in the same states of its run; median and worst state`, heads, audited, (row) => [
     h("th", { scope: "row" }, nameOf(row, runs)),
-    AUDITS.flatMap(([key]) => [h("td.number", format(row[key])), h("td.number", format(row[`${key}_max`]))]),
+    AUDITS.flatMap(([key]) => [row[key], row[`${key}_median`], row[`${key}_worst`]].map((value, k) => h("td.number", k < 2 ? format(value) : `${format(value)} at ${format(row[`${key}_worst_time`], "s")}`))),
     h("td.number", count(row.audits)),
   ]);
 }
@@ -62,6 +71,7 @@ export function buildComparison({ comparison, runs }) {
     "section.block",
     { id: "compare" },
     h("h2", "The models side by side"),
+    auditNote(comparison),
     auditTable(comparison, runs),
     runTable(comparison, runs),
   );

@@ -240,8 +240,8 @@ static const char *value_of(const char *row, const char *key) {
   return found + strlen(quoted);
 }
 
-// Infinite for null where a rate by processor time may be so: a bench this short can fall between two ticks of
-// that clock.
+// Infinite for null where a rate by processor time may be so: a bench this short can fall between two ticks
+// of that clock.
 static double number_of(const char *row, const char *key) {
   char *end;
   const char *value = value_of(row, key);
@@ -295,6 +295,21 @@ static const Promise promises[] = {
 };
 enum { PROMISE_COUNT = sizeof promises / sizeof *promises };
 
+// What is counted is written without a decimal point.
+static void check_counts(const char *row) {
+  static const char keys[] = "vertices unknowns steps threads newton_iterations linear_iterations set_ups "
+                             "factor_entries peak_bytes";
+  char key[TEXT_MAX_WORD], quoted[TEXT_MAX_WORD + 4];
+  for (const char *rest = text_next(keys, key); rest; rest = text_next(rest, key)) {
+    snprintf(quoted, sizeof quoted, "\"%s\":", key);
+    const char *at = strstr(row, quoted);
+    if (!at) continue;
+    at += strlen(quoted);
+    at += strncmp(at, "null", 4) == 0 ? 4 : strspn(at, "-0123456789");
+    ck_assert_msg(*at == ',' || *at == '}', "%s is no whole number in %s", key, row);
+  }
+}
+
 static void check_row(const char *row, const Promise *promise) {
   char key[TEXT_MAX_WORD];
   ck_assert_int_eq(row[0], '{');
@@ -303,6 +318,7 @@ static void check_row(const char *row, const Promise *promise) {
     value_of(row, key);
   for (const char *rest = text_next(promise->positive, key); rest; rest = text_next(rest, key))
     ck_assert_msg(number_of(row, key) > 0, "%s is not positive in %s", key, row);
+  check_counts(row);
   value_of(row, "processor");
   value_of(row, "simd");
   value_of(row, "versions");
@@ -354,8 +370,8 @@ START_TEST(direct_solvers_solve_to_rounding_and_agree_on_the_run) {
   const char *cholmod = strtok(output, "\n"), *klu = strtok(NULL, "\n");
   ck_assert_double_eq(number_of(cholmod, "steps"), 10);
   ck_assert_double_eq(number_of(cholmod, "ratio"), 1);
-  // cholmod's solutions follow c, klu's are scaled by IDA: corrections, and with them errors and steps, are not
-  // the same, but Newton's method has as little to do.
+  // cholmod's solutions follow c, klu's are scaled by IDA: corrections, and with them errors and steps, are
+  // not the same, but Newton's method has as little to do.
   ck_assert_double_eq(number_of(klu, "steps"), number_of(cholmod, "steps"));
   ck_assert_near(number_of(klu, "newton_iterations"), number_of(cholmod, "newton_iterations"), 3);
   ck_assert_near(number_of(klu, "end_time"), number_of(cholmod, "end_time"),
