@@ -437,6 +437,13 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   return STATUS_OK;
 }
 
+Status contact_evaluation_list(ContactEvaluation *evaluation, const ContactLayout *layout,
+                               const ContactCandidateList *candidates, const double *positions) {
+  clear(evaluation);
+  TRY(sift_by_boxes(evaluation, layout, candidates, false, positions));
+  return sift_by_faces(evaluation, layout, true, positions);
+}
+
 bool contact_evaluation_is_at(const ContactEvaluation *evaluation, const ContactLayout *layout, double time,
                               const double *positions) {
   size_t size = 3 * (size_t)layout->def.vertex_count * sizeof(double);

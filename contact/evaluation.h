@@ -63,6 +63,11 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
                               const ContactCandidateList *candidates, const OverlapModel *model,
                               bool with_shapes, double time, const double *positions);
 
+// Forgets the last result and lists instead, without asking a model, the pairs of meshes whose boxes meet:
+// pairs, coordinates and mesh_pair_count. It is what a model that sees ghosts is asked.
+Status contact_evaluation_list(ContactEvaluation *evaluation, const ContactLayout *layout,
+                               const ContactCandidateList *candidates, const double *positions);
+
 // Whether the result is that of these positions.
 bool contact_evaluation_is_at(const ContactEvaluation *evaluation, const ContactLayout *layout, double time,
                               const double *positions);

@@ -487,6 +487,17 @@ static Status create_audits(ContactSystem *system) {
   return STATUS_OK;
 }
 
+Status contact_system_near_pairs(ContactSystem *system, int *count, const double **pairs) {
+  *count = 0, *pairs = NULL;
+  if (!system->evaluation.is_valid) return STATUS_OK;
+  TRY(create_audits(system));
+  ContactEvaluation *listed = &system->audits[0];
+  TRY(contact_evaluation_list(listed, &system->layout, &system->candidates.list,
+                              system->evaluation.positions));
+  *count = listed->mesh_pair_count, *pairs = listed->coordinates;
+  return STATUS_OK;
+}
+
 bool contact_system_asks_model(const ContactSystem *system) {
   for (int f = 0; f < system->layout.facing_count; f++)
     if (system->layout.facings[f].shape < 0) return true;

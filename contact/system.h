@@ -120,6 +120,9 @@ int contact_system_active_count(const ContactSystem *system); // pairs with V > 
 // The pairs of the last evaluation with V > 0, as handed to the model (in general position); for audits and
 // capture. Owned by the caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).
 Status contact_system_active_pairs(const ContactSystem *system, int *count, double **pairs, int **tets);
+// Likewise the pairs whose boxes meet, with volume or without: near misses, too. Changes nothing but scratch
+// memory. `pairs` (count, 2, 4, 3) is the system's, valid until the next call.
+Status contact_system_near_pairs(ContactSystem *system, int *count, const double **pairs);
 // The power that moving shapes put in at the last evaluation [W]: ∂U/∂t at fixed positions.
 double contact_system_shape_power(const ContactSystem *system);
 const ContactCounters *contact_system_counters(const ContactSystem *system);

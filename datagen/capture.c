@@ -38,7 +38,7 @@ static Status add_pair(const DatagenCapture *capture, const double *source, int 
   datagen_cube_fit(pair, middle);
   DatagenProof proof = datagen_proof_of(pair);
   pairs->status[place] = proof.is_flat || datagen_proof_of(source).is_flat ? FLAT : proof.dimension >= 0;
-  pairs->kind[place] = DATAGEN_CAPTURED;
+  pairs->kind[place] = (uint8_t)(proof.dimension < 0 ? DATAGEN_SCENE_NONE : DATAGEN_CAPTURED);
   return datagen_generate_label(capture->label, pair, proof.dimension, pairs->volume + place,
                                 pairs->gradient + 24 * (size_t)place, pairs->centroid + 3 * (size_t)place);
 }
@@ -66,6 +66,7 @@ static Status append_block(DatagenCapture *capture, const double *source, int co
   if (failed) return status_fail(STATUS_SOLVER, "%d captured pairs could not be labelled", failed);
   int kept = drop_flat(&capture->pairs, count);
   capture->flat += count - kept;
+  for (int i = 0; i < kept; i++) capture->apart += capture->pairs.status[i] == 0;
   return kept ? datagen_dataset_writer_append(capture->writer, &capture->pairs, (size_t)kept, NULL)
               : STATUS_OK;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pairs from a run: what a scene's contact asked the overlap model, as a data set to fine-tune on.
+// Pairs from a run, as a data set to fine-tune on and to judge by: what a scene's contact may ask an overlap
+// model, near misses included. Those that share nothing are of the kind SCENE_NONE, the others CAPTURED.
 #ifndef TETLAP_DATAGEN_CAPTURE_H
 #define TETLAP_DATAGEN_CAPTURE_H
 
@@ -9,6 +10,7 @@ typedef struct DatagenCapture {
   DatagenWriter *writer; // owned
   DatagenLabel label;
   DatagenPairs pairs; // a block of them, owned
+  long long apart;    // pairs so far that share nothing
   long long flat;     // pairs that were left out because a tetrahedron had no volume
 } DatagenCapture;
 

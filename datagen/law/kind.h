@@ -23,8 +23,8 @@ typedef enum DatagenKind {
   DATAGEN_VERTEX_EDGE, // a vertex of the second inside an edge of the first
   DATAGEN_EDGE_EDGE,   // edges that cross in one inner point of either
   DATAGEN_SCENE,       // elements of two jittered meshes pressed together, intersecting
-  DATAGEN_SCENE_NONE,  // the same, disjoint although their boxes overlap
-  DATAGEN_CAPTURED,    // from a run of a scene; claims nothing
+  DATAGEN_SCENE_NONE,  // the same or from a run, disjoint although their boxes overlap
+  DATAGEN_CAPTURED,    // from a run of a scene, not disjoint; or none of the others: claims nothing
   DATAGEN_KIND_COUNT,
 } DatagenKind;
 

@@ -6,6 +6,7 @@
 #include <hdf5.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -505,6 +506,32 @@ START_TEST(eval_takes_an_imported_set_and_right_labels_are_not_doubted) {
 }
 END_TEST
 
+// The number behind the first `key` after `section`.
+static double number_behind(const char *text, const char *section, const char *key) {
+  const char *at = strstr(text, section);
+  ck_assert_msg(at && (at = strstr(at, key)), "no %s of %s in %s", key, section, text);
+  return strtod(at + strlen(key), NULL);
+}
+
+// A block just lands on another: most elements that are near share nothing. tpn takes some of them for
+// overlapping, geo none.
+START_TEST(a_capture_has_near_misses_by_which_ghosts_are_found) {
+  static char text[MOST_TEXT];
+  ck_assert_int_eq(run("run " TETLAP_SOURCE_DIR "/tests/scenes/onset.yaml -o out -m clip -s time.end=0.065 "
+                       "-s output.vtu=false --capture a.h5",
+                       text),
+                   0);
+  ck_assert_msg(strstr(text, "them near misses, which share nothing"), "%s", text);
+  ck_assert_int_eq(run("eval tpn a.h5 --json", text), 0);
+  ck_assert(number_behind(text, "\"accuracy\"", "\"captured\": ") > 0.9);
+  double near = number_behind(text, "\"accuracy\"", "\"scene-none\": ");
+  ck_assert_msg(near > 0.5 && near < 0.999, "%g", near);
+  ck_assert(number_behind(text, "\"ghost_volume\"", ": ") > 0);
+  ck_assert_int_eq(run("eval geo a.h5 --json", text), 0);
+  ck_assert_near(number_behind(text, "\"accuracy\"", "\"scene-none\": "), 1, 0);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("pairs");
   tcase_add_checked_fixture(cases, NULL, remove_scratch);
@@ -521,5 +548,6 @@ int main(void) {
   tcase_add_test(cases, a_strict_import_of_wrong_labels_writes_nothing);
   tcase_add_test(cases, flat_pairs_are_left_out_and_told);
   tcase_add_test(cases, eval_takes_an_imported_set_and_right_labels_are_not_doubted);
+  tcase_add_test(cases, a_capture_has_near_misses_by_which_ghosts_are_found);
   return suite_run("pairs", cases, 60);
 }

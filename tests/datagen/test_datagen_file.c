@@ -404,11 +404,13 @@ START_TEST(captured_pairs_are_scaled_proven_and_labelled) {
   DatagenInfo info;
   DatagenPairs held = read_all("a.h5", &info);
   ck_assert_int_eq(info.count, ALL - flat);
-  ck_assert_int_eq(info.kind_counts[DATAGEN_CAPTURED], ALL - flat);
+  ck_assert_int_gt(info.kind_counts[DATAGEN_SCENE_NONE], 0);
+  ck_assert_int_eq(info.kind_counts[DATAGEN_CAPTURED] + info.kind_counts[DATAGEN_SCENE_NONE], ALL - flat);
   ck_assert(info.total == info.count && info.planned == info.count && info.has_gradient);
   int intersecting = 0;
   for (int i = 0; i < info.count; i++) {
     intersecting += held.volume[i] > 0;
+    ck_assert_int_eq(held.kind[i], held.status[i] ? DATAGEN_CAPTURED : DATAGEN_SCENE_NONE);
     for (int c = 0; c < 24; c++)
       ck_assert(held.coordinates[24 * i + c] >= 0 && held.coordinates[24 * i + c] <= 1);
   }

@@ -23,8 +23,8 @@ enum { KEY_CAPTURE = 256, KEY_STRICT, KEY_RANKS };
 
 static const struct argp_option option_table[] = {
     {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
-    {"capture", KEY_CAPTURE, "FILE", 0, "Keep the overlapping pairs of every step, labelled, as a data set",
-     1},
+    {"capture", KEY_CAPTURE, "FILE", 0,
+     "Keep the pairs of every step whose boxes meet, labelled, as a data set", 1},
     {"strict", KEY_STRICT, NULL, 0,
      "Energy gained beyond 0.1 % of the scene's, and bodies that pass through each other, are an error", 1},
     {"ranks", KEY_RANKS, "N", 0, "Share the run among N processes of this machine (tetlap-mpi)", 1},
@@ -81,13 +81,10 @@ typedef struct Observer {
 static Status capture_pairs(DatagenCapture *capture, FemSystem *system) {
   void *effect = fem_system_effect(system, &fem_effect_contact);
   if (!effect) return STATUS_OK;
-  int count, *tets;
-  double *pairs;
-  TRY(contact_system_active_pairs(fem_effect_contact_system(effect), &count, &pairs, &tets));
-  Status status = count > 0 ? datagen_capture_append(capture, pairs, count) : STATUS_OK;
-  memory_free(pairs);
-  memory_free(tets);
-  return status;
+  int count;
+  const double *pairs;
+  TRY(contact_system_near_pairs(fem_effect_contact_system(effect), &count, &pairs));
+  return datagen_capture_append(capture, pairs, count);
 }
 
 // The first time that a kind of trouble strikes, and every event of energy.
@@ -141,9 +138,14 @@ static Status run_captured(const AppRunOptions *options, const AppJob *job, cons
   log_progress_end();
   app_beacon_end(&observer.beacon);
   if (status) log_error("%s", status_message());
-  const char *empty = options->capture && datagen_capture_count(&capture) == 0 ? options->capture : NULL;
+  long long count = options->capture ? datagen_capture_count(&capture) : 0, apart = capture.apart;
   Status kept = options->capture ? datagen_capture_commit(&capture) : STATUS_OK;
-  if (empty) log_warning("%s: not written, since no two elements overlapped", empty);
+  if (options->capture && count == 0)
+    log_warning("%s: not written, since no two elements came so near that their boxes meet",
+                options->capture);
+  else if (options->capture && !kept)
+    log_info("%s: %lld pairs, %.1f %% of them near misses, which share nothing", options->capture, count,
+             100 * (double)apart / (double)count);
   if (kept) log_error("%s", status_message());
   return status ? status : kept;
 }
