@@ -175,10 +175,12 @@ static bool write_format(hid_t file) {
 
 static bool has_format(hid_t file) {
   int format = 0;
-  hid_t attribute = H5Aopen(file, "format", H5P_DEFAULT),
-        space = attribute >= 0 ? H5Aget_space(attribute) : -1;
-  bool works = space >= 0 && H5Sget_simple_extent_npoints(space) == 1 &&
+  hid_t attribute = H5Aopen(file, "format", H5P_DEFAULT);
+  if (attribute < 0) return false;
+  hid_t space = H5Aget_space(attribute), type = H5Aget_type(attribute);
+  bool works = H5Sget_simple_extent_npoints(space) == 1 && H5Tget_class(type) == H5T_INTEGER &&
                H5Aread(attribute, H5T_NATIVE_INT, &format) >= 0;
+  close_id(type);
   close_id(space);
   close_id(attribute);
   return works && format == FORMAT;
