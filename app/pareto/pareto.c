@@ -11,7 +11,6 @@
 #include "base/cpu.h"
 #include "base/files/file.h"
 #include "base/memory.h"
-#include "overlap/weights.h"
 
 static const AppBenchColumn columns[] = {
     {"model", APP_BENCH_TEXT, offsetof(AppParetoPoint, model), "model",
@@ -103,11 +102,16 @@ void app_pareto_destroy(AppPareto *pareto) {
   *pareto = (AppPareto){0};
 }
 
-// "geo-36-8x1" of "…/geo-36-8x1.safetensors".
-static void name_model(const char *source, char name[APP_PARETO_NAME]) {
-  const char *slash = strrchr(source, '/'), *stem = slash ? slash + 1 : source;
-  const char *ending = overlap_weights_is_path(source) ? strrchr(stem, '.') : stem + strlen(stem);
-  snprintf(name, APP_PARETO_NAME, "%.*s", (int)(ending - stem), stem);
+// All anew, since the last one may have made another's name longer.
+static Status name_models(AppPareto *pareto, int count) {
+  const char *sources[APP_PARETO_MAX_MODELS];
+  AppModelName *names = memory_zeroed((size_t)count, sizeof *names);
+  if (!names) return status_no_memory("the models");
+  for (int m = 0; m < count; m++) sources[m] = pareto->models[m].source;
+  Status status = app_model_names_find(count, sources, names);
+  for (int m = 0; m < count && !status; m++) memcpy(pareto->models[m].name, names[m], sizeof *names);
+  memory_free(names);
+  return status;
 }
 
 Status app_pareto_add_model(AppPareto *pareto, const char *source) {
@@ -116,10 +120,7 @@ Status app_pareto_add_model(AppPareto *pareto, const char *source) {
   AppParetoModel *model = &pareto->models[pareto->model_count];
   if (snprintf(model->source, sizeof model->source, "%s", source) >= (int)sizeof model->source)
     return status_fail(STATUS_USAGE, "the path of the weights %s is too long", source);
-  name_model(source, model->name);
-  for (int m = 0; m < pareto->model_count; m++)
-    if (strcmp(pareto->models[m].name, model->name) == 0)
-      return status_fail(STATUS_USAGE, "two models are called '%s'; name each once", model->name);
+  TRY(name_models(pareto, pareto->model_count + 1));
   TRY(app_evaluation_model_open(&model->overlap, source));
   pareto->model_count++;
   return app_evaluation_card_read(&model->overlap, source, &model->card);
@@ -194,10 +195,20 @@ static void record_machine(const AppPareto *pareto, Record *record) {
   record_text(record, "reference", "exact");
 }
 
+static void record_models(const AppPareto *pareto, RecordList *list) {
+  for (int m = 0; m < pareto->model_count; m++) {
+    char path[PATH_MAX];
+    Record *record = record_append(list);
+    record_text(record, "model", pareto->models[m].name);
+    record_text(record, "weights", app_model_names_locate(pareto->models[m].source, path) ? path : NULL);
+  }
+}
+
 static Status write_json(const AppPareto *pareto, const char *path) {
   Record *record = record_new();
   if (!record) return status_no_memory("the frontier");
   record_machine(pareto, record);
+  record_models(pareto, record_list(record, "models"));
   RecordList *points = record_list(record, "points");
   for (size_t p = 0; p < pareto->point_count; p++)
     app_bench_report_record(&app_pareto_report, &pareto->points[p], record_append(points));

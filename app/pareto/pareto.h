@@ -13,14 +13,15 @@
 #include <signal.h>
 
 #include "app/bench/report.h"
+#include "app/cli/model_names.h"
 #include "app/evaluation/card.h"
 
-enum { APP_PARETO_MAX_MODELS = 96, APP_PARETO_MAX_SCENES = 8, APP_PARETO_NAME = 64 };
+enum { APP_PARETO_MAX_MODELS = 96, APP_PARETO_MAX_SCENES = 8 };
 
 typedef struct AppParetoModel {
-  char name[APP_PARETO_NAME]; // of the model, or of the weights file without its ending
-  char source[512];           // what a scene names: the same, or the file's path
-  OverlapModel overlap;       // owned
+  AppModelName name;    // what it is called beside the others (app/cli/model_names.h)
+  char source[512];     // what a scene names: a name, or a file's path
+  OverlapModel overlap; // owned
   AppModelCard card;
 } AppParetoModel;
 
@@ -69,7 +70,7 @@ typedef struct AppPareto {
   const volatile sig_atomic_t *stop; // not 0: measuring ends; NULL: it cannot be stopped
   const char *device;                // pairs also on this one, as --device has it; NULL: none
   AppParetoModel *models;            // (model_count), owned
-  char device_names[APP_PARETO_MAX_MODELS][APP_PARETO_NAME + 16]; // of models on the device: NAME@DEVICE
+  char device_names[APP_PARETO_MAX_MODELS][APP_MODEL_NAME + 16]; // of models on the device: NAME@DEVICE
   int model_count;
   AppParetoPoint *points; // (point_count), owned
   size_t point_count, point_capacity;

@@ -295,9 +295,14 @@ static Status print_data(AppReport *report, Record *data, AppReportSurface *surf
   record_text(data, "version", app_versions_program());
   record_differences(report, data); // needs all vertices
   RecordList *runs = record_list(data, "runs");
+  AppModelName models[APP_REPORT_MAX_RUNS];
+  // A comparison has named the models of its runs.
+  bool has_models = !report->comparison && app_report_run_models(report->runs, report->run_count, models);
   for (int r = 0; r < report->run_count; r++) {
     TRY(find_surface(report, r, &surfaces[r]));
-    record_run(&report->runs[r], &surfaces[r], record_append(runs));
+    Record *record = record_append(runs);
+    if (has_models) record_text(record, "model", models[r]);
+    record_run(&report->runs[r], &surfaces[r], record);
   }
   record_rest(report, data);
   TRY(print_record(data, stream));

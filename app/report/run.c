@@ -2,6 +2,7 @@
 #include "app/report/run.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "app/cli/format.h"
@@ -181,4 +182,26 @@ void app_report_run_destroy(AppReportRun *run) {
   memory_free(run->tets);
   memory_free(run->directory);
   *run = (AppReportRun){0};
+}
+
+// As a command line would name the model that a summary tells of. False: it tells of none.
+static bool find_source(const Record *summary, char source[PATH_MAX + 8]) {
+  const char *overlap = record_find_text(summary, "overlap"), *weights = record_find_text(summary, "weights");
+  if (!overlap) return false;
+  const char *prefix = weights && strncmp(overlap, "hybrid=", 7) == 0 ? "hybrid=" : "";
+  snprintf(source, PATH_MAX + 8, "%s%s", prefix, weights ? weights : overlap);
+  return true;
+}
+
+bool app_report_run_models(const AppReportRun *runs, int count, AppModelName *names) {
+  char(*texts)[PATH_MAX + 8] = memory_zeroed((size_t)count + 1, sizeof *texts);
+  const char **sources = memory_zeroed((size_t)count + 1, sizeof *sources);
+  bool is_known = texts && sources;
+  for (int r = 0; r < count && is_known; r++) {
+    is_known = find_source(runs[r].summary, texts[r]);
+    sources[r] = texts[r];
+  }
+  is_known = is_known && app_model_names_find(count, sources, names) == STATUS_OK;
+  memory_free(texts), memory_free(sources);
+  return is_known;
 }

@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 
+#include "app/cli/model_names.h"
 #include "app/report/obstacles.h"
 #include "base/files/record.h"
 #include "base/status.h"
@@ -43,5 +44,9 @@ typedef struct AppReportRun {
 // frames that do not belong together; STATUS_IO; STATUS_MEMORY. After a failure there is nothing to destroy.
 Status app_report_run_read(AppReportRun *run, const char *directory, int max_frames);
 void app_report_run_destroy(AppReportRun *run);
+
+// What the runs' overlap models are called beside each other (app/cli/model_names.h). False: they tell the
+// runs not apart.
+bool app_report_run_models(const AppReportRun *runs, int count, AppModelName *names);
 
 #endif

@@ -2,6 +2,7 @@
 #include "net/files/safetensors.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,14 +47,33 @@ typedef struct Source {
   size_t data_size;
 } Source;
 
+// A file of torch.save: a zip archive, or before PyTorch 1.6 a pickle of protocol 2 and later.
+static bool is_pytorch(const char *bytes, size_t size) {
+  bool is_zip = size >= 4 && memcmp(bytes, "PK\3\4", 4) == 0;
+  return is_zip || (size >= 2 && (unsigned char)bytes[0] == 0x80 && bytes[1] >= 2 && bytes[1] <= 5);
+}
+
+static NetStatus fail_foreign(const char *path, const char *bytes, size_t size) {
+  if (is_pytorch(bytes, size))
+    return net_status_fail(NET_BAD_FILE,
+                           "%s: is a file of PyTorch, and weights are read from safetensors files: in "
+                           "Python, load its state_dict and "
+                           "write it with safetensors.torch.save_file, with the names and the metadata that "
+                           "docs/training.md lists",
+                           path);
+  return net_status_fail(
+      NET_BAD_FILE,
+      "%s: is not a safetensors file: that begins with eight bytes that say how long its header "
+      "is; give the NAME.safetensors that `tetlap train` wrote",
+      path);
+}
+
 static NetStatus read_header(const char *path, NetTensorFile *file, size_t size, Source *source) {
   uint64_t length;
   if (size < sizeof length)
     return net_status_fail(NET_BAD_FILE, "%s: %zu bytes are no safetensors file", path, size);
   memcpy(&length, file->bytes, sizeof length);
-  if (length > MAX_HEADER || length < 2)
-    return net_status_fail(NET_BAD_FILE, "%s: a header of %llu bytes is impossible: not a safetensors file",
-                           path, (unsigned long long)length);
+  if (length > MAX_HEADER || length < 2) return fail_foreign(path, file->bytes, size);
   if (length > size - sizeof length)
     return net_status_fail(NET_BAD_FILE, "%s: truncated: the header should have %llu bytes, the file has %zu",
                            path, (unsigned long long)length, size);

@@ -129,6 +129,28 @@ START_TEST(a_device_adds_points_of_the_models_that_have_kernels) {
 }
 END_TEST
 
+START_TEST(files_of_one_base_name_have_names_of_their_own) {
+  char home[] = "/tmp/tetlap_pareto_XXXXXX", weights[4096], command[3 * 4096], paths[2][64];
+  ck_assert_ptr_nonnull(mkdtemp(home));
+  ck_assert_ok(overlap_weights_find("geo-small", weights, sizeof weights));
+  snprintf(command, sizeof command,
+           "cd %s && mkdir a b && cp %s a/net.safetensors && cp %s b/net.safetensors", home, weights,
+           weights);
+  ck_assert_int_eq(system(command), 0);
+  AppPareto pareto = small();
+  ck_assert_ok(app_pareto_create(&pareto));
+  for (int k = 0; k < 2; k++) {
+    snprintf(paths[k], sizeof paths[k], "%s/%c/net.safetensors", home, 'a' + k);
+    ck_assert_ok(app_pareto_add_model(&pareto, paths[k]));
+  }
+  ck_assert_str_eq(pareto.models[0].name, "a/net");
+  ck_assert_str_eq(pareto.models[1].name, "b/net");
+  app_pareto_destroy(&pareto);
+  snprintf(command, sizeof command, "rm -r %s", home);
+  ck_assert_int_eq(system(command), 0);
+}
+END_TEST
+
 START_TEST(models_of_one_name_are_refused) {
   AppPareto pareto = small();
   ck_assert_ok(app_pareto_create(&pareto));
@@ -167,7 +189,8 @@ END_TEST
 START_TEST(a_weights_file_runs_a_scene_as_its_name_does) {
   char path[1024];
   ck_assert_ok(overlap_weights_find("geo-small", path, sizeof path));
-  const char *sources[] = {"geo-small", path}, *overrides[] = {"time.end=0.03"};
+  const char *sources[] = {"geo-small", path}, *names[] = {"geo-small", "weights/geo-small"},
+             *overrides[] = {"time.end=0.03"};
   double errors[2];
   for (int k = 0; k < 2; k++) {
     AppPareto pareto = small();
@@ -175,7 +198,7 @@ START_TEST(a_weights_file_runs_a_scene_as_its_name_does) {
     ck_assert_ok(app_pareto_add_model(&pareto, sources[k]));
     ck_assert_ok(app_pareto_scenes_measure(&pareto, TETLAP_SOURCE_DIR "/tests/scenes/collision.yaml", "clip",
                                            overrides, 1));
-    const AppParetoPoint *point = find(&pareto, "geo-small", "force");
+    const AppParetoPoint *point = find(&pareto, names[k], "force");
     ck_assert_str_eq(point->outcome, "finished");
     errors[k] = point->trajectory_error;
     app_pareto_destroy(&pareto);
@@ -416,6 +439,7 @@ int main(void) {
   tcase_add_test(cases, exact_has_no_error_clip_rounding_and_a_learned_model_its_own);
   tcase_add_test(cases, a_comparison_names_both_and_takes_its_ratio_within_a_round);
   tcase_add_test(cases, a_device_adds_points_of_the_models_that_have_kernels);
+  tcase_add_test(cases, files_of_one_base_name_have_names_of_their_own);
   tcase_add_test(cases, models_of_one_name_are_refused);
   tcase_add_test(cases, a_scene_gives_forces_in_the_same_configurations_and_a_run_of_each_model);
   tcase_add_test(cases, a_weights_file_runs_a_scene_as_its_name_does);

@@ -114,6 +114,21 @@ START_TEST(a_capture_of_no_pairs_is_told) {
 }
 END_TEST
 
+START_TEST(stress_names_the_model_that_is_none) {
+  ck_assert_refused(64, "$tetlap stress -m clpi --pairs", "did you mean 'clip'");
+  ck_assert_refused(64, "$tetlap stress -m clip,my.safetensors --pairs", "weights files");
+}
+END_TEST
+
+// Weights that are no safetensors file, by every way to name them.
+START_TEST(a_file_of_pytorch_is_refused_with_what_to_do) {
+  ck_assert_refused(0, "printf 'PK\\003\\004 as torch.save writes it' > net.pt", "");
+  ck_assert_refused(65, "$tetlap eval ./net.pt --law scene -n 10", "safetensors.torch.save_file");
+  ck_assert_refused(65, "$tetlap run $examples/02_two_blocks.yaml -m ./net.pt -o out", "file of PyTorch");
+  ck_assert_int_ne(access("out", F_OK), 0);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("refusals");
   tcase_add_checked_fixture(cases, enter_folder, leave_folder);
@@ -122,5 +137,7 @@ int main(void) {
   tcase_add_test(cases, an_option_without_effect_is_a_usage_error);
   tcase_add_test(cases, what_a_run_reads_or_wrote_is_not_written_over);
   tcase_add_test(cases, a_capture_of_no_pairs_is_told);
+  tcase_add_test(cases, stress_names_the_model_that_is_none);
+  tcase_add_test(cases, a_file_of_pytorch_is_refused_with_what_to_do);
   return suite_run("refusals", cases, 120);
 }

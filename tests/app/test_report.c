@@ -533,6 +533,29 @@ START_TEST(a_page_is_written_whole_or_not_at_all) {
 }
 END_TEST
 
+static Record *summary_of(const char *overlap, const char *weights) {
+  Record *summary = record_new();
+  record_text(summary, "overlap", overlap);
+  record_text(summary, "weights", weights);
+  return summary;
+}
+
+START_TEST(runs_of_networks_of_one_base_name_are_told_apart) {
+  AppReportRun runs[3] = {{.summary = summary_of("net", "/x/a/net.safetensors")},
+                          {.summary = summary_of("net", "/x/b/net.safetensors")},
+                          {.summary = summary_of("clip", NULL)}};
+  AppModelName names[3];
+  ck_assert(app_report_run_models(runs, 3, names));
+  ck_assert_str_eq(names[0], "a/net");
+  ck_assert_str_eq(names[1], "b/net");
+  ck_assert_str_eq(names[2], "clip");
+  record_destroy(runs[1].summary);
+  runs[1].summary = summary_of("net", "/x/a/net.safetensors"); // of the same network: by their folders
+  ck_assert(!app_report_run_models(runs, 3, names));
+  for (int r = 0; r < 3; r++) record_destroy(runs[r].summary);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("report");
   tcase_add_checked_fixture(test_case, make_directory, remove_directory);
@@ -558,6 +581,7 @@ int main(void) {
   tcase_add_test(test_case, frames_of_another_mesh_are_refused);
   tcase_add_test(test_case, a_folder_of_another_format_is_refused_with_the_program_that_reads_it);
   tcase_add_test(test_case, a_comparison_of_another_format_is_refused);
+  tcase_add_test(test_case, runs_of_networks_of_one_base_name_are_told_apart);
   tcase_add_test(test_case, broken_json_is_told_with_its_line);
   tcase_add_test(test_case, a_page_is_written_whole_or_not_at_all);
   return suite_run("report", test_case, 20);

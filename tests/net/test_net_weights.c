@@ -189,9 +189,11 @@ START_TEST(a_foreign_file_is_refused_by_what_is_wrong) {
 END_TEST
 
 START_TEST(what_is_no_safetensors_file_is_refused) {
-  static const char *const texts[] = {"", "short", "a text file that is longer than eight bytes"};
-  static const char *const words[] = {"0 bytes", "5 bytes", "impossible"};
-  for (int k = 0; k < 3; k++) {
+  static const char *const texts[] = {"", "short", "a text file that is longer than eight bytes",
+                                      "PK\3\4 as torch.save writes it", "\x80\2 as it once did"};
+  static const char *const words[] = {"0 bytes", "5 bytes", "is not a safetensors file",
+                                      "safetensors.torch.save_file", "safetensors.torch.save_file"};
+  for (int k = 0; k < 5; k++) {
     NetModel_f64 model;
     NetCard card;
     FILE *stream = fopen(temporary(), "wb");

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "app/cli/argument.h"
+#include "app/cli/model_names.h"
 #include "app/cli/versions.h"
 #include "app/dataset/source.h"
 #include "app/evaluation/model.h"
@@ -139,15 +140,20 @@ typedef struct Findings {
 } Findings;
 
 static void print(const Options *options, const Findings *findings) {
-  if (findings->has_evaluation)
-    app_evaluation_print(&findings->evaluation, options->model, findings->data, stdout);
-  if (findings->has_paths) app_evaluation_print_paths(&findings->paths, options->model, stdout);
+  AppModelName name;
+  app_model_names_find_one(options->model, name);
+  if (findings->has_evaluation) app_evaluation_print(&findings->evaluation, name, findings->data, stdout);
+  if (findings->has_paths) app_evaluation_print_paths(&findings->paths, name, stdout);
 }
 
 static Status record(const Options *options, const Findings *findings) {
   Record *record = record_new();
   if (!record) return status_no_memory("the result");
-  record_text(record, "model", options->model);
+  AppModelName name;
+  char path[PATH_MAX];
+  app_model_names_find_one(options->model, name);
+  record_text(record, "model", name);
+  record_text(record, "weights", app_model_names_locate(options->model, path) ? path : NULL);
   record_text(record, "program", app_versions_program());
   if (options->doubt > 0) record_number(record, "doubt", options->doubt);
   if (findings->has_evaluation) {

@@ -61,23 +61,22 @@ static const char *last_name(const char *directory) {
 }
 
 // What tells two runs apart: their overlap models, else the names of their directories, or their whole paths.
-static void label(const AppReportRun *runs, int count, const char **labels) {
+static void label(const AppReportRun *runs, int count, const char **labels, AppModelName *models) {
   for (int r = 0; r < count; r++) labels[r] = last_name(runs[r].directory);
   if (count < 2) return;
   if (strcmp(labels[0], labels[1]) == 0) labels[0] = runs[0].directory, labels[1] = runs[1].directory;
-  const char *a = record_find_text(runs[0].summary, "overlap"),
-             *b = record_find_text(runs[1].summary, "overlap");
-  if (a && b && strcmp(a, b) != 0) labels[0] = a, labels[1] = b;
+  if (app_report_run_models(runs, count, models)) labels[0] = models[0], labels[1] = models[1];
 }
 
 static Status write_history(FILE *script, const Options *options) {
   AppReportRun runs[MAX_SOURCES] = {{0}};
   const char *labels[MAX_SOURCES];
+  AppModelName models[MAX_SOURCES];
   Status status = STATUS_OK;
   for (int r = 0; !status && r < options->source_count; r++)
     status = app_report_run_read(&runs[r], options->sources[r], 1);
   if (!status) {
-    label(runs, options->source_count, labels);
+    label(runs, options->source_count, labels, models);
     status = app_plot_history(script, options->picture, runs, options->source_count, labels);
   }
   for (int r = 0; r < options->source_count; r++) app_report_run_destroy(&runs[r]);

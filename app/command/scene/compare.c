@@ -9,6 +9,7 @@
 #include "app/cli/argument.h"
 #include "app/cli/ranks.h"
 #include "app/compare/comparison.h"
+#include "app/job/folder.h"
 #include "app/job/job.h"
 #include "base/clock.h"
 #include "base/cpu.h"
@@ -206,11 +207,14 @@ static Status run_model(AppComparison *comparison, int m, const CompareOptions *
                                .observe = observe,
                                .observer = &observer,
                                .keep_trajectory = true};
+  int missing = app_job_folder_missing(job.directory);
   model->status = fem_run(&job.model, &run_options, &model->result);
   log_progress_end();
   model->has_run = true;
   if (model->status) snprintf(model->message, sizeof model->message, "%s", status_message());
-  Status status = app_job_write_summary(&job, &model->result, model->status);
+  bool is_refused = app_job_folder_is_refused(model->status, &model->result);
+  if (is_refused) app_job_folder_remove(job.directory, missing);
+  Status status = is_refused ? STATUS_OK : app_job_write_summary(&job, &model->result, model->status);
   app_job_close(&job);
   // Ranks that have agreed on a failure share nothing after it.
   bool goes_on = ranks()->count == 1 && (model->status == STATUS_SOLVER || observer.is_cut);

@@ -9,6 +9,7 @@
 #include "app/cli/versions.h"
 #include "app/job/beacon.h"
 #include "app/job/closing.h"
+#include "app/job/folder.h"
 #include "app/job/origin.h"
 #include "base/clock.h"
 #include "base/files/file.h"
@@ -172,10 +173,14 @@ static Status make_origin(const AppRunOptions *options, const AppJob *job, char 
 static Status run_opened(const AppRunOptions *options, const AppJob *job, const char *origin) {
   announce(job);
   FemRunResult result = {0};
+  int missing = app_job_folder_missing(job->directory);
   Status status = run_captured(options, job, origin, &result);
-  if (status) tell_of_checkpoint(job);
+  bool is_refused = app_job_folder_is_refused(status, &result);
+  if (status && !is_refused) tell_of_checkpoint(job);
+  if (is_refused) app_job_folder_remove(job->directory, missing);
   // The summary tells of a run that failed, too, unless nothing can be written.
-  Status written = status == STATUS_IO ? STATUS_OK : app_job_write_summary(job, &result, status);
+  Status written =
+      status == STATUS_IO || is_refused ? STATUS_OK : app_job_write_summary(job, &result, status);
   if (!status && !written) app_closing_print(job, &result);
   if (options->job.is_json && !written) written = print_summary(job, &result, status);
   fem_run_result_destroy(&result);

@@ -57,7 +57,7 @@ const areDistinct = (names) => names.every(Boolean) && new Set(names).size === n
 
 // Runs are called by what tells them apart: their overlap models, else their folders.
 function labelRuns(runs) {
-  const models = runs.map((run) => run.summary?.overlap);
+  const models = runs.map((run) => run.model ?? run.summary?.overlap);
   const names = runs.length > 1 && areDistinct(models) ? models : runs.map((run, k) => run.name ?? RUNS[k]);
   runs.forEach((run, k) => {
     run.letter = RUNS[k];
