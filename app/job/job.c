@@ -209,7 +209,7 @@ const char *app_job_weights(const AppJob *job, char path[PATH_MAX]) {
   return app_scene_overlap_source(&job->scene, source) && app_model_names_locate(source, path) ? path : NULL;
 }
 
-void app_job_tell_contact(const AppJob *job) {
+void app_job_log_contact(const AppJob *job) {
   char path[PATH_MAX];
   if (!job->scene.contact.is_on) return;
   const char *weights = app_job_weights(job, path);

@@ -58,7 +58,7 @@ const char *app_job_potential(const AppJob *job);
 const char *app_job_weights(const AppJob *job, char path[PATH_MAX]);
 
 // A line of the log: the overlap model, its weights file, the potential. Nothing without contact.
-void app_job_tell_contact(const AppJob *job);
+void app_job_log_contact(const AppJob *job);
 
 // An observer of fem_run that draws the progress line: time, step, step size, pairs, time left. Where
 // standard error is no terminal, lines at the pace of base/log.h; as JSON, an object a line on standard

@@ -190,7 +190,7 @@ static Status run_model(AppComparison *comparison, int m, const CompareOptions *
                        options->job.scene_path);
   }
   memcpy(job.overlap, model->name, sizeof job.overlap); // beside the others it may be a longer one
-  app_job_tell_contact(&job);
+  app_job_log_contact(&job);
   comparison->length = job.model.length;
   comparison->end = job.scene.end;
   char label[APP_MODEL_NAME + 1];

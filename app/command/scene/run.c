@@ -60,7 +60,7 @@ static void announce(const AppJob *job) {
   log_info("%s: %d %s, %d vertices, %d tetrahedra, %d unknowns, solver %s", job->scene.path,
            job->scene.body_count, job->scene.body_count == 1 ? "body" : "bodies", job->model.vertex_count,
            job->model.tet_count, job->model.unknown_count, fem_solver_name(fem_run_solver(&job->model)));
-  app_job_tell_contact(job);
+  app_job_log_contact(job);
 }
 
 static Status print_summary(const AppJob *job, const FemRunResult *result, Status status) {
