@@ -53,6 +53,9 @@ static const SceneNode *find_path(const SceneNode *root, const char *path) {
 
 static Status check_static_effects(const SceneNode *root, const FemSceneDef *scene) {
   int count;
+  if (scene->contact.rest_is_on)
+    return app_scene_tree_fail_key(find_path(root, "contact.rest"),
+                                   "a static scene is at rest always; remove 'rest' or time.static");
   const FemEffectOps *const *effects = fem_effect_list(&count);
   for (int i = 0; i < count; i++)
     if (effects[i]->static_refusal && effects[i]->is_wanted(scene))

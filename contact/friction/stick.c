@@ -32,33 +32,29 @@ Status contact_stick_create(ContactStick *stick, int vertex_count, const double 
   for (int i = 0; i < interface_count; i++) TRY(check_law(&laws[i]));
   size_t vertices = (size_t)vertex_count, interfaces = (size_t)interface_count;
   stick->laws = memory_copy(laws, interfaces, sizeof *laws);
-  stick->before = memory_copy(rest, 3 * vertices, sizeof *stick->before);
   stick->forces = memory_zeroed(interfaces, sizeof *stick->forces);
   stick->areas = memory_zeroed(interfaces, sizeof *stick->areas);
   stick->node_of_vertex = memory_zeroed(vertices, sizeof *stick->node_of_vertex);
   stick->place = memory_zeroed(vertices, sizeof *stick->place);
-  if (!stick->laws || !stick->before || !stick->forces || !stick->areas || !stick->node_of_vertex ||
-      !stick->place)
+  if (!stick->laws || !stick->forces || !stick->areas || !stick->node_of_vertex || !stick->place)
     return status_no_memory("friction");
   for (size_t v = 0; v < vertices; v++) stick->node_of_vertex[v] = -1;
   return STATUS_OK;
 }
 
 void contact_stick_destroy(ContactStick *stick) {
-  void *arrays[] = {stick->laws,  stick->before, stick->pairs,          stick->nodes, stick->touches,
-                    stick->order, stick->pulls,  stick->forces,         stick->place, stick->clique,
-                    stick->outer, stick->shares, stick->node_of_vertex, stick->areas};
+  void *arrays[] = {stick->laws,   stick->pairs,  stick->nodes,         stick->touches, stick->order,
+                    stick->pulls,  stick->forces, stick->place,         stick->clique,  stick->outer,
+                    stick->shares, stick->areas,  stick->node_of_vertex};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
-  contact_stick_history_destroy(&stick->history);
-  contact_stick_history_destroy(&stick->next);
   *stick = (ContactStick){0};
 }
 
 size_t contact_stick_bytes(const ContactStick *stick) {
-  const void *const arrays[] = {stick->laws,    stick->before,          stick->pairs,          stick->nodes,
-                                stick->touches, stick->order,           stick->pulls,          stick->forces,
-                                stick->place,   stick->clique,          stick->node_of_vertex, stick->outer,
-                                stick->shares,  stick->history.entries, stick->next.entries,   stick->areas};
+  const void *const arrays[] = {stick->laws,          stick->pairs, stick->nodes,  stick->touches,
+                                stick->order,         stick->pulls, stick->forces, stick->place,
+                                stick->clique,        stick->outer, stick->shares, stick->areas,
+                                stick->node_of_vertex};
   return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
 }
 
@@ -112,12 +108,13 @@ static Vec3 project(Vec3 normal, Vec3 x) {
 // ---- Gathering.
 
 // Where what is at x̄ now was at the last accepted state.
-static Vec3 place_before(const ContactStick *stick, const ContactStickPair *pair, int side) {
+static Vec3 place_before(const ContactStick *stick, const ContactStickLast *last,
+                         const ContactStickPair *pair, int side) {
   if (pair->tets[side] < 0) return vec3_at(pair->before);
   Vec3 x = {0, 0, 0};
   for (int v = 0; v < 4; v++)
     x = vec3_add(x, vec3_scale(pair->lambda[side][v],
-                               vec3_at(stick->before + 3 * (size_t)stick->tets[pair->tets[side]][v])));
+                               vec3_at(last->positions + 3 * (size_t)stick->tets[pair->tets[side]][v])));
   return x;
 }
 
@@ -134,12 +131,13 @@ static int node_at(ContactStick *stick, int interface, int vertex) {
 }
 
 // Adds a pair to the nodes of its slave on that side, whose F is given.
-static void gather_side(ContactStick *stick, int k, int side, const double F[9]) {
+static void gather_side(ContactStick *stick, const ContactStickLast *last, int k, int side,
+                        const double F[9]) {
   const ContactStickPair *pair = &stick->pairs[k];
   const ContactStickLaw *law = &stick->laws[pair->interface];
   double sign = side == 0 ? 1 : -1, half = law->weight[side];
   Vec3 force = vec3_scale(sign, vec3_at(pair->force));
-  Vec3 gap = vec3_sub(place_before(stick, pair, 1 - side), place_before(stick, pair, side));
+  Vec3 gap = vec3_sub(place_before(stick, last, pair, 1 - side), place_before(stick, last, pair, side));
   double pressed = vec3_length(force);
   for (int v = 0; v < 4; v++) {
     double lambda = fmax(pair->lambda[side][v], 0), w = lambda * pressed;
@@ -165,8 +163,8 @@ static void forget_vertices(ContactStick *stick, int node_begin) {
 }
 
 // Pairs of one tetrahedron stand together: its F is found once.
-static void gather(ContactStick *stick, const double *positions) {
-  int first = 0, last[2] = {-1, -1};
+static void gather(ContactStick *stick, const ContactStickLast *last, const double *positions) {
+  int first = 0, former[2] = {-1, -1};
   double F[2][9];
   stick->node_count = 0;
   for (int k = 0; k < stick->pair_count; k++) {
@@ -178,9 +176,9 @@ static void gather(ContactStick *stick, const double *positions) {
       for (int v = 0; v < 4; v++) stick->touches[k][side][v] = (ContactStickTouch){.node = -1};
       if (!is_slave(stick, &stick->pairs[k], side)) continue;
       int tet = stick->pairs[k].tets[side];
-      if (tet != last[side]) find_deformation(stick, tet, positions, F[side]);
-      last[side] = tet;
-      gather_side(stick, k, side, F[side]);
+      if (tet != former[side]) find_deformation(stick, tet, positions, F[side]);
+      former[side] = tet;
+      gather_side(stick, last, k, side, F[side]);
     }
   }
   forget_vertices(stick, first);
@@ -238,32 +236,35 @@ static double return_radially(const ContactStickHistory *history, ContactStickNo
   return before - 0.5 * k * vec3_dot(carried, carried) + cut;
 }
 
+static bool rests(const ContactStickEntry *entry, const bool *is_resting) {
+  return is_resting && is_resting[(int)entry->interface];
+}
+
 // A vertex that nothing presses any more, or no longer so that it is found: what it stored is lost.
-static double energy_of_left(const ContactStick *stick, const bool *is_resting) {
+static double energy_of_left(const ContactStick *stick, const ContactStickHistory *history,
+                             const bool *is_resting) {
   double left = 0;
-  for (int i = 0; i < stick->history.count; i++) {
-    const ContactStickEntry *entry = &stick->history.entries[i];
-    if (!is_resting || !is_resting[entry->interface]) left += entry->energy;
-  }
+  for (int i = 0; i < history->entry_count; i++)
+    if (!rests(&history->entries[i], is_resting)) left += history->entries[i].energy;
   for (int n = 0; n < stick->node_count; n++) {
     const ContactStickEntry *entry =
-        contact_stick_history_find(&stick->history, stick->nodes[n].interface, stick->nodes[n].vertex);
+        contact_stick_history_find(history, stick->nodes[n].interface, stick->nodes[n].vertex);
     if (entry) left -= entry->energy;
   }
   return left;
 }
 
-static double energy_at_rest(const ContactStick *stick, const bool *is_resting) {
+static double energy_at_rest(const ContactStickHistory *history, const bool *is_resting) {
   double sum = 0;
-  for (int i = 0; is_resting && i < stick->history.count; i++)
-    if (is_resting[stick->history.entries[i].interface]) sum += stick->history.entries[i].energy;
+  for (int i = 0; i < history->entry_count; i++)
+    if (rests(&history->entries[i], is_resting)) sum += history->entries[i].energy;
   return sum;
 }
 
 // Σ (w/W) T_a of each pair, on its side 0, and of each interface.
-static void share_forces(ContactStick *stick, const bool *is_resting) {
+static void share_forces(ContactStick *stick, const ContactStickHistory *history, const bool *is_resting) {
   for (int i = 0; i < stick->interface_count; i++)
-    if (!is_resting || !is_resting[i]) vec3_store(stick->forces[i], (Vec3){0, 0, 0});
+    vec3_store(stick->forces[i], is_resting && is_resting[i] ? vec3_at(history->forces[i]) : (Vec3){0, 0, 0});
   for (int k = 0; k < stick->pair_count; k++) {
     Vec3 pull = {0, 0, 0};
     for (int side = 0; side < 2; side++)
@@ -280,9 +281,9 @@ static void share_forces(ContactStick *stick, const bool *is_resting) {
 
 // What sticks and what slides, k_a / c_t of the vertices. Where the press grows a little, what slides sticks
 // for a step at nearly all of its limit: that counts as sliding.
-static void share_areas(ContactStick *stick, const bool *is_resting) {
+static void share_areas(ContactStick *stick, const ContactStickHistory *history, const bool *is_resting) {
   for (int i = 0; i < stick->interface_count; i++)
-    if (!is_resting || !is_resting[i]) stick->areas[i][0] = stick->areas[i][1] = 0;
+    for (int k = 0; k < 2; k++) stick->areas[i][k] = is_resting && is_resting[i] ? history->areas[i][k] : 0;
   for (int n = 0; n < stick->node_count; n++) {
     const ContactStickNode *node = &stick->nodes[n];
     double pull = vec3_length(vec3_at(node->force));
@@ -291,23 +292,24 @@ static void share_areas(ContactStick *stick, const bool *is_resting) {
   }
 }
 
-Status contact_stick_eval(ContactStick *stick, int pair_count, const double *positions,
-                          const bool *is_resting) {
+Status contact_stick_eval(ContactStick *stick, const ContactStickLast *last, int pair_count,
+                          const double *positions, const bool *is_resting) {
+  const ContactStickHistory *history = &last->history;
   stick->pair_count = pair_count;
   TRY(contact_stick_reserve(stick, pair_count));
-  gather(stick, positions);
+  gather(stick, last, positions);
   order_touches(stick);
   stick->slip_count = 0;
-  stick->spent = energy_of_left(stick, is_resting);
-  stick->stored = energy_at_rest(stick, is_resting);
+  stick->spent = energy_of_left(stick, history, is_resting);
+  stick->stored = energy_at_rest(history, is_resting);
   for (int n = 0; n < stick->node_count; n++) {
     ContactStickNode *node = &stick->nodes[n];
-    stick->spent += return_radially(&stick->history, node);
+    stick->spent += return_radially(history, node);
     stick->stored += 0.5 * node->stiffness * vec3_dot(vec3_at(node->stretch), vec3_at(node->stretch));
     stick->slip_count += node->slips;
   }
-  share_forces(stick, is_resting);
-  share_areas(stick, is_resting);
+  share_forces(stick, history, is_resting);
+  share_areas(stick, history, is_resting);
   return STATUS_OK;
 }
 
@@ -397,41 +399,39 @@ Status contact_stick_couple(ContactStick *stick, void *visitor,
 
 // ---- Accepting.
 
-void contact_stick_begin(ContactStick *stick, const double *positions) {
-  memcpy(stick->before, positions, 3 * (size_t)stick->vertex_count * sizeof *positions);
+static bool is_kept(const ContactStickNode *node) {
+  return node->limit > 0;
 }
 
-static Status keep_resting(ContactStick *stick, const bool *is_resting) {
-  for (int i = 0; is_resting && i < stick->history.count; i++)
-    if (is_resting[stick->history.entries[i].interface])
-      TRY(contact_stick_history_add(&stick->next, &stick->history.entries[i]));
-  return STATUS_OK;
+size_t contact_stick_next_count(const ContactStick *stick, const ContactStickHistory *history,
+                                const bool *is_resting) {
+  int entries = 0;
+  for (int i = 0; i < history->entry_count; i++) entries += rests(&history->entries[i], is_resting);
+  for (int n = 0; n < stick->node_count; n++) entries += is_kept(&stick->nodes[n]);
+  return contact_stick_history_count(stick->interface_count, entries);
 }
 
-static Status keep_nodes(ContactStick *stick) {
-  for (int n = 0; n < stick->node_count; n++) {
-    const ContactStickNode *node = &stick->nodes[n];
-    Vec3 stretch = vec3_at(node->stretch);
-    if (!(node->limit > 0)) continue;
-    ContactStickEntry entry = {.interface = node->interface,
-                               .vertex = node->vertex,
-                               .energy = 0.5 * node->stiffness * vec3_dot(stretch, stretch),
-                               .limit = node->limit};
-    vec3_store(entry.stretch, divide(node->deformation, stretch));
-    TRY(contact_stick_history_add(&stick->next, &entry));
-  }
-  return STATUS_OK;
+static ContactStickEntry entry_of(const ContactStickNode *node) {
+  Vec3 stretch = vec3_at(node->stretch);
+  ContactStickEntry entry = {.interface = node->interface,
+                             .vertex = node->vertex,
+                             .energy = 0.5 * node->stiffness * vec3_dot(stretch, stretch),
+                             .limit = node->limit};
+  vec3_store(entry.stretch, divide(node->deformation, stretch));
+  return entry;
 }
 
-Status contact_stick_accept(ContactStick *stick, const double *positions, const bool *is_resting) {
-  stick->next.count = 0;
-  TRY(keep_resting(stick, is_resting));
-  TRY(keep_nodes(stick));
-  contact_stick_history_sort(&stick->next);
-  ContactStickHistory old = stick->history;
-  stick->history = stick->next;
-  stick->next = old;
-  stick->dissipated += stick->spent;
-  contact_stick_begin(stick, positions);
-  return STATUS_OK;
+void contact_stick_advance(const ContactStick *stick, const ContactStickHistory *history,
+                           const bool *is_resting, double *values) {
+  size_t count = contact_stick_next_count(stick, history, is_resting);
+  ContactStickHistory next = contact_stick_history_view(stick->interface_count, values, count);
+  *next.dissipated = *history->dissipated + stick->spent;
+  memcpy(next.forces, stick->forces, (size_t)stick->interface_count * sizeof *next.forces);
+  memcpy(next.areas, stick->areas, (size_t)stick->interface_count * sizeof *next.areas);
+  int entries = 0;
+  for (int i = 0; i < history->entry_count; i++)
+    if (rests(&history->entries[i], is_resting)) next.entries[entries++] = history->entries[i];
+  for (int n = 0; n < stick->node_count; n++)
+    if (is_kept(&stick->nodes[n])) next.entries[entries++] = entry_of(&stick->nodes[n]);
+  contact_stick_history_sort(&next);
 }

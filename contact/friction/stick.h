@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Coulomb friction by elastic stick: a spring in the tangent plane, cut at μN. Its stretch is a vector per
-// vertex of one of the two bodies, the slave, kept in that body's rest frame and moved on only in accepted
-// states, so a force is a function of positions: nothing creeps, and a step that is refused leaves no trace.
+// vertex of one of the two bodies, the slave, kept in that body's rest frame (stick_history.h). A force is a
+// function of positions and of the last accepted state: nothing creeps, and a step that is refused leaves no
+// trace.
 //
 // Of a pair (i of A, j of B) it needs the force F_ij on A, the area A_ij that it covers and the weights λ at
 // the centroid x̄ of the overlap of the mesh vertices of either side. With xⁿ of the last accepted state:
@@ -18,7 +19,7 @@
 //             spring)
 //   force     Σ_a (w/W) T_a on the pair, at x̄: by λ on A's vertices, its opposite on B's
 //   matrix    D_a ⊗ ω ωᵀ,  ω = Σ (w/W)(λ_A, −λ_B);   D = k P in stick, μN/|s_trial| (P − ŝŝᵀ) in slip
-//   accepted  S_a ← F_a⁻¹ s,  xⁿ ← x;   dissipated += mean of μN_a then and now · length cut off
+//   accepted  S_a ← F_a⁻¹ s;   dissipated += mean of μN_a then and now · length cut off
 //
 // Δ is zero to rounding in any common rigid motion and telescopes; only increments are averaged. Force and
 // torque balance pair by pair. The matrix is positive semidefinite; the derivatives of N, n and the weights
@@ -77,16 +78,18 @@ typedef struct ContactStickTouch {
   double share; // w, then w/W
 } ContactStickTouch;
 
+// The last accepted state.
+typedef struct ContactStickLast {
+  const double *positions; // xⁿ [m], borrowed                      (vertex_count, 3)
+  ContactStickHistory history;
+} ContactStickLast;
+
 typedef struct ContactStick {
   int vertex_count, interface_count;
   const double *rest;        // borrowed                                (vertex_count, 3)
   const int (*tets)[4];      // borrowed
   const ContactStars *stars; // what carries the vertices; borrowed. NULL, as created: they are as given
   ContactStickLaw *laws;     //                                         (interface_count)
-  // The last accepted state.
-  double *before; // xⁿ [m]                                         (vertex_count, 3)
-  ContactStickHistory history;
-  double dissipated; // until then [J]
   // The last evaluation.
   ContactStickPair *pairs; // as given, for the caller to fill      (pair_count)
   int pair_count;
@@ -106,7 +109,6 @@ typedef struct ContactStick {
   double *shares, *outer;
   size_t pair_capacity, node_capacity, touch_capacity, order_capacity, pull_capacity;
   size_t clique_capacity, share_capacity, outer_capacity;
-  ContactStickHistory next;
 } ContactStick;
 
 // The laws are copied. STATUS_INPUT: a μ, stiffness or weight that makes no sense. A zeroed stick, and one
@@ -119,11 +121,11 @@ size_t contact_stick_bytes(const ContactStick *stick); // on the heap
 // Room for so many pairs in stick->pairs, which the caller fills before it evaluates.
 Status contact_stick_reserve(ContactStick *stick, int pair_count);
 
-// The friction at these positions (vertex_count, 3), from stick->pairs of which there are pair_count. Changes
-// nothing that is kept. `is_resting` (interface_count; NULL: none) marks interfaces at rest, which have no
-// pairs and keep their forces and areas.
-Status contact_stick_eval(ContactStick *stick, int pair_count, const double *positions,
-                          const bool *is_resting);
+// The friction at these positions (vertex_count, 3), from stick->pairs of which there are pair_count.
+// `is_resting` (interface_count; NULL: none) marks interfaces at rest, which have no pairs and keep their
+// forces and areas.
+Status contact_stick_eval(ContactStick *stick, const ContactStickLast *last, int pair_count,
+                          const double *positions, const bool *is_resting);
 
 // Of the last evaluation.
 // By the vertices as given: (vertex_count, 3) without stars.
@@ -134,9 +136,11 @@ Status contact_stick_add_stiffness(ContactStick *stick, const ContactStiffnessSi
 Status contact_stick_couple(ContactStick *stick, void *visitor,
                             Status (*visit)(void *visitor, int count, const int *vertices));
 
-// Begins the history: the gaps that follow are measured from these positions.
-void contact_stick_begin(ContactStick *stick, const double *positions);
-// The last evaluation, which was at these positions, is accepted.
-Status contact_stick_accept(ContactStick *stick, const double *positions, const bool *is_resting);
+// What history is once the last evaluation, from that last accepted state, is accepted in turn: how many
+// numbers, and these.
+size_t contact_stick_next_count(const ContactStick *stick, const ContactStickHistory *history,
+                                const bool *is_resting);
+void contact_stick_advance(const ContactStick *stick, const ContactStickHistory *history,
+                           const bool *is_resting, double *values);
 
 #endif

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What friction by elastic stick (contact/friction/stick.h) keeps between accepted states: a short list of
-// vertices in contact, each with its stretch in the rest frame of its body.
+// What friction by elastic stick (contact/friction/stick.h) remembers of the last accepted state: what was
+// dissipated until then, what acted in each interface, and the vertices in contact with their stretch in the
+// rest frame of their body. It is one array of numbers, so it can be copied and written as it is:
+//
+//   dissipated [J]
+//   forces [N] on side 0, areas [m²] that stick and that slide    (interface_count, 3), (interface_count, 2)
+//   entries, by interface, then by vertex                         (entry_count, 7)
 #ifndef TETLAP_CONTACT_STICK_HISTORY_H
 #define TETLAP_CONTACT_STICK_HISTORY_H
 
@@ -11,35 +16,35 @@
 
 // A vertex of a slave body that was pressed in the last accepted state.
 typedef struct ContactStickEntry {
-  int interface, vertex;
-  double stretch[3]; // S_a, in the rest frame [m]
-  double energy;     // ½ k_a s² as it was stored [J]
-  double limit;      // μ N_a then [N]
+  double interface, vertex; // their numbers
+  double stretch[3];        // S_a, in the rest frame [m]
+  double energy;            // ½ k_a s² as it was stored [J]
+  double limit;             // μ N_a then [N]
 } ContactStickEntry;
 
-// By interface, then by vertex.
+// A view of such an array.
 typedef struct ContactStickHistory {
-  ContactStickEntry *entries; //                                    (count)
-  int count;
-  size_t capacity;
+  double *dissipated;
+  double (*forces)[3];        //                                   (interface_count)
+  double (*areas)[2];         //                                   (interface_count)
+  ContactStickEntry *entries; //                                   (entry_count)
+  int interface_count, entry_count;
 } ContactStickHistory;
 
-enum { CONTACT_STICK_ENTRY_SIZE = 7 }; // numbers an entry is kept as
+// How many numbers a history with so many interfaces and entries has.
+size_t contact_stick_history_count(int interface_count, int entry_count);
 
-void contact_stick_history_destroy(ContactStickHistory *history);
+// The view of an array of `count` numbers, which is borrowed.
+ContactStickHistory contact_stick_history_view(int interface_count, double *values, size_t count);
 
 // The entry of that vertex, NULL: there is none.
 const ContactStickEntry *contact_stick_history_find(const ContactStickHistory *history, int interface,
                                                     int vertex);
 
-// Appends; the list must be sorted before entries are looked up.
-Status contact_stick_history_add(ContactStickHistory *history, const ContactStickEntry *entry);
+// Orders entries, which contact_stick_history_find needs.
 void contact_stick_history_sort(ContactStickHistory *history);
 
-// As numbers for a checkpoint, a new array of the caller's (count, CONTACT_STICK_ENTRY_SIZE), and back, to
-// the bit. STATUS_INPUT: these are no entries of so many interfaces and vertices.
-Status contact_stick_history_save(const ContactStickHistory *history, double **values, size_t *count);
-Status contact_stick_history_load(ContactStickHistory *history, const double *values, size_t count,
-                                  int interface_count, int vertex_count);
+// STATUS_INPUT: `count` numbers that are no history of so many interfaces and vertices.
+Status contact_stick_history_check(int interface_count, int vertex_count, const double *values, size_t count);
 
 #endif

@@ -87,15 +87,16 @@ static void hand_over(const ContactLayout *layout, const ContactEvaluation *eval
              contact_shape_place_before(obstacle, evaluation->time, before, vec3_at(pair->before)));
 }
 
-Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, double before, bool *is_resting) {
+Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, const ContactStickLast *last,
+                                double last_time, bool *is_resting) {
   const ContactEvaluation *evaluation;
   const ContactLayout *layout = contact_system_layout(system);
   TRY(contact_system_look(system, &evaluation));
   int count = evaluation->pair_count;
   TRY(contact_stick_reserve(stick, count));
   for (int i = 0; i < layout->facing_count; i++) is_resting[i] = contact_system_is_resting(system, i);
-  for (int k = 0; k < count; k++) hand_over(layout, evaluation, k, before, &stick->pairs[k]);
-  return contact_stick_eval(stick, count, evaluation->positions, is_resting);
+  for (int k = 0; k < count; k++) hand_over(layout, evaluation, k, last_time, &stick->pairs[k]);
+  return contact_stick_eval(stick, last, count, evaluation->positions, is_resting);
 }
 
 double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem *system) {

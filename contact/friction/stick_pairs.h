@@ -12,9 +12,10 @@
 // the one with more vertices; of a body and itself both halves. `laws` (interface_count).
 void contact_stick_pairs_laws(const ContactSystem *system, const double *coefficients, ContactStickLaw *laws);
 
-// Evaluates the friction for the system's last evaluation; `before`: the time of the last accepted state.
-// `is_resting` (interface_count) is filled.
-Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, double before, bool *is_resting);
+// Evaluates the friction for the system's last evaluation, from the last accepted state, which was at
+// `last_time` [s]. `is_resting` (interface_count) is filled.
+Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, const ContactStickLast *last,
+                                double last_time, bool *is_resting);
 
 // The power that moving obstacles without elements put in by friction at the last evaluation [W].
 double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem *system);

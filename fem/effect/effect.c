@@ -14,7 +14,6 @@ static const FemEffectOps *const effects[] = {
     &fem_effect_friction,
     &fem_effect_stick,
     &fem_effect_viscosity,
-    &fem_effect_rest,
 };
 // clang-format on
 

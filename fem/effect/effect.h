@@ -8,18 +8,11 @@
 #include <stdbool.h>
 
 #include "base/files/record.h"
+#include "fem/effect/state.h"
 #include "fem/model/model.h"
 #include "fem/sparse/matrix.h"
 
 struct FemSystem;
-
-// Positions and velocities of all vertices at a time; borrowed.
-typedef struct FemState {
-  double time;              // [s]
-  const double *positions;  // [m]     (vertex_count, 3)
-  const double *velocities; // [m/s]   (vertex_count, 3)
-  bool with_held;           // forces are wanted on bodies that are held, too, and between them
-} FemState;
 
 // Energies by kind [J] and powers [W]; each effect adds its own.
 typedef struct FemEnergy {
@@ -37,10 +30,11 @@ typedef struct FemEnergy {
 
 typedef struct FemEffectOps {
   const char *name;
-  const char *help; // one line
-  bool dissipates;  // its forces depend on velocities: D is assembled for Newton's matrix
-  bool is_divided;  // over ranks it gives what this rank's elements give: the sum over ranks is the effect's
-  bool lags;        // `prepare` changes its forces: the powers are measured anew after it
+  const char *help;  // one line
+  bool couples_anew; // its couplings change, or are not those of elements
+  bool dissipates;   // its forces depend on velocities: D is assembled for Newton's matrix
+  bool is_divided;   // over ranks it gives what this rank's elements give: the sum over ranks is the effect's
+  bool lags;         // `advance` changes its forces: the powers are measured anew after it
   bool (*is_wanted)(const FemSceneDef *scene);
   // Why a static scene cannot have it, and the key to blame, as "contact.friction". NULL: it can.
   const char *static_refusal, *static_key;
@@ -51,18 +45,19 @@ typedef struct FemEffectOps {
   // Once all effects are there: to find one that this effect builds on, by fem_system_effect. NULL: none.
   Status (*connect)(void *self, const struct FemSystem *system);
   // Tells the matrix pattern which vertices this effect couples at that state; *has_grown (may be NULL) as in
-  // matrix.h. Called once, and before every assembly for effects that have `prepare`. NULL: none, or only a
+  // matrix.h. Called once, and for effects that `couples_anew` before every assembly. NULL: none, or only a
   // vertex with itself.
   Status (*couple)(void *self, const FemState *state, FemPattern *pattern, int *has_grown);
-  // After creation and after every accepted step; `step` [s] is the length expected next. The only place
-  // where an effect may change what it keeps. NULL: nothing to keep.
-  Status (*prepare)(void *self, const FemState *state, double step);
-  // The run begins, or goes on from a checkpoint, at this state, after `load`: displacements are counted
-  // from here. NULL: nothing to do.
-  Status (*begin)(void *self, const FemState *state);
-  // At a state that is not accepted: renews lists and nothing else, so that forces can be evaluated there.
-  // NULL: there are none.
-  Status (*renew)(void *self, const FemState *state);
+  // Renews the lists that evaluations near this state need; `step` [s] is the length expected next. Results
+  // do not depend on lists. NULL: there are none.
+  Status (*renew)(void *self, const FemState *state, double step);
+  // What the effect remembers (FemEffectHistory): where a run begins, at this state, whose `last` is itself;
+  // and once a state is accepted, from what it remembered at state->last. Evaluations read
+  // state->last->histories at the effect's place. NULL: nothing.
+  Status (*start)(void *self, const FemState *state, FemEffectHistory *history);
+  Status (*advance)(void *self, const FemState *state, FemEffectHistory *next);
+  // STATUS_INPUT: numbers from a checkpoint that are no history of this scene. NULL: any are.
+  Status (*check_history)(const void *self, const double *values, size_t count);
   // Adds forces [N] to `force` (vertex_count, 3); unless the state is `with_held`, those on bodies that are
   // held may be left out. RETRY: take a smaller step. NULL: none.
   Status (*add_force)(void *self, const FemState *state, double *force);
@@ -82,14 +77,10 @@ typedef struct FemEffectOps {
   // How long the next step may be, at the speeds of the last accepted state, so that forces can be evaluated
   // at its end [s]. NULL: any length.
   double (*longest_step)(const void *self);
-  // Puts its counters into those of the run's parts before, between two checkpoints; NULL: none. What counts
-  // what happened since creation is added (record_add); of all else the last stands.
-  void (*report)(void *self, Record *counters);
-  // History: what the effect keeps that is no function of time, positions and velocities (lists that
-  // `prepare` renews are none). `save` makes a new array, the caller's; `load` comes before the first
-  // `prepare` at the checkpoint's state. STATUS_INPUT: it does not fit. NULL: no history.
-  Status (*save)(const void *self, double **values, size_t *count);
-  Status (*load)(void *self, const double *values, size_t count);
+  // Puts its counters, at the last accepted state, into those of the run's parts before, between two
+  // checkpoints; NULL: none. What counts what happened since creation is added (record_add); of all else the
+  // last stands.
+  void (*report)(void *self, const FemState *state, Record *counters);
   // What it holds on the heap, `self` included [bytes], by memory_held; NULL: not known.
   size_t (*bytes)(const void *self);
   void (*destroy)(void *self);
@@ -114,6 +105,5 @@ extern const FemEffectOps fem_effect_contact;
 extern const FemEffectOps fem_effect_friction;
 extern const FemEffectOps fem_effect_stick;
 extern const FemEffectOps fem_effect_viscosity;
-extern const FemEffectOps fem_effect_rest;
 
 #endif

@@ -6,17 +6,14 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/effect.h"
+#include "fem/effect/system.h"
 #include "fem/element/quadratic_face.h"
 
 typedef struct Loads {
   const FemModel *model; // borrowed
-  double *kept_force;    // at the last accepted state [N]     (vertex_count, 3)
-  double *kept_position; // [m]                                (vertex_count, 3)
-  double *force;         // scratch                            (vertex_count, 3)
+  int place;             // of its history: the work until the last accepted state [J]
+  double *force, *last;  // scratch: now, and at that state [N]        (vertex_count, 3)
   double *acceleration;  // the largest at factor 1, at rest [m/s²]    (model->load_count)
-  double kept_work;      // until then [J]
-  bool is_started;
 } Loads;
 
 static bool is_wanted(const FemSceneDef *scene) {
@@ -27,9 +24,8 @@ static bool is_wanted(const FemSceneDef *scene) {
 
 static void destroy(void *self) {
   Loads *loads = self;
-  memory_free(loads->kept_force);
-  memory_free(loads->kept_position);
   memory_free(loads->force);
+  memory_free(loads->last);
   memory_free(loads->acceleration);
   memory_free(loads);
 }
@@ -50,11 +46,10 @@ static Status create(void **self, const FemModel *model) {
   if (!loads) return status_no_memory("loads");
   size_t values = 3 * (size_t)model->vertex_count;
   loads->model = model;
-  loads->kept_force = memory_zeroed(values, sizeof(double));
-  loads->kept_position = memory_zeroed(values, sizeof(double));
   loads->force = memory_zeroed(values, sizeof(double));
+  loads->last = memory_zeroed(values, sizeof(double));
   loads->acceleration = memory_zeroed((size_t)model->load_count, sizeof(double));
-  if (!loads->kept_force || !loads->kept_position || !loads->force || !loads->acceleration) {
+  if (!loads->force || !loads->last || !loads->acceleration) {
     destroy(loads);
     return status_no_memory("loads");
   }
@@ -74,29 +69,41 @@ static Status add_force(void *self, const FemState *state, double *force) {
   return STATUS_OK;
 }
 
-static Status find_forces(Loads *loads, const FemState *state) {
-  memset(loads->force, 0, 3 * (size_t)loads->model->vertex_count * sizeof *loads->force);
-  return add_force(loads, state, loads->force);
-}
-
-// Work until `state`, whose forces are in `force`.
-static double work_until(const Loads *loads, const FemState *state) {
-  double work = loads->kept_work;
-  for (int i = 0; loads->is_started && i < 3 * loads->model->vertex_count; i++)
-    work += 0.5 * (loads->kept_force[i] + loads->force[i]) * (state->positions[i] - loads->kept_position[i]);
-  return work;
-}
-
-static Status prepare(void *self, const FemState *state, double step) {
-  (void)step;
-  Loads *loads = self;
-  size_t bytes = 3 * (size_t)loads->model->vertex_count * sizeof(double);
-  TRY(find_forces(loads, state));
-  loads->kept_work = work_until(loads, state);
-  memcpy(loads->kept_force, loads->force, bytes);
-  memcpy(loads->kept_position, state->positions, bytes);
-  loads->is_started = true;
+static Status connect(void *self, const FemSystem *system) {
+  ((Loads *)self)->place = fem_system_place(system, &fem_effect_loads);
   return STATUS_OK;
+}
+
+static Status find_forces(Loads *loads, const FemState *state, double *force) {
+  memset(force, 0, 3 * (size_t)loads->model->vertex_count * sizeof *force);
+  return add_force(loads, state, force);
+}
+
+// Until a state, over the step to it: mean force times way.
+static Status find_work(Loads *loads, const FemState *state, double *work) {
+  const FemState *last = state->last;
+  *work = last->histories[loads->place].values[0];
+  TRY(find_forces(loads, state, loads->force));
+  TRY(find_forces(loads, last, loads->last));
+  for (int i = 0; i < 3 * loads->model->vertex_count; i++)
+    *work += 0.5 * (loads->last[i] + loads->force[i]) * (state->positions[i] - last->positions[i]);
+  return STATUS_OK;
+}
+
+static Status start(void *self, const FemState *state, FemEffectHistory *history) {
+  (void)self, (void)state;
+  return fem_effect_history_set(history, &(double){0}, 1);
+}
+
+static Status advance(void *self, const FemState *state, FemEffectHistory *next) {
+  TRY(fem_effect_history_resize(next, 1));
+  return find_work(self, state, next->values);
+}
+
+static Status check_history(const void *self, const double *values, size_t count) {
+  (void)self, (void)values;
+  if (count == 1) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "the checkpoint has %zu numbers of the loads' work, not one", count);
 }
 
 static double horizon(const void *self, const FemForesight *foresight, double time, double farthest) {
@@ -156,33 +163,14 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
-  Loads *loads = self;
-  TRY(find_forces(loads, state));
-  energy->applied_work += work_until(loads, state);
+  double work;
+  TRY(find_work(self, state, &work));
+  energy->applied_work += work;
   return STATUS_OK;
 }
 
-static void report(void *self, Record *counters) {
-  record_number(counters, "load_work_J", ((const Loads *)self)->kept_work);
-}
-
-// The work until now.
-static Status save(const void *self, double **values, size_t *count) {
-  *count = 1;
-  *values = memory_zeroed(*count, sizeof **values);
-  if (!*values) return status_no_memory("a checkpoint");
-  (*values)[0] = ((const Loads *)self)->kept_work;
-  return STATUS_OK;
-}
-
-// The way from there on begins at the state that is prepared next.
-static Status load(void *self, const double *values, size_t count) {
-  Loads *loads = self;
-  if (count != 1)
-    return status_fail(STATUS_INPUT, "the checkpoint has %zu numbers of the loads' work, not one", count);
-  loads->kept_work = values[0];
-  loads->is_started = false;
-  return STATUS_OK;
+static void report(void *self, const FemState *state, Record *counters) {
+  record_number(counters, "load_work_J", state->histories[((Loads *)self)->place].values[0]);
 }
 
 // A pressure that follows its surface has a stiffness.
@@ -195,25 +183,27 @@ static bool is_linear(void *self) {
 
 static size_t bytes(const void *self) {
   const Loads *loads = self;
-  return memory_held(self) + memory_held(loads->kept_force) + memory_held(loads->kept_position) +
-         memory_held(loads->force) + memory_held(loads->acceleration);
+  return memory_held(self) + memory_held(loads->force) + memory_held(loads->last) +
+         memory_held(loads->acceleration);
 }
 
 const FemEffectOps fem_effect_loads = {
     .name = "loads",
     .help = "forces, body forces, tractions and pressures from outside, by functions of time",
+    .couples_anew = true,
     .is_wanted = is_wanted,
     .create = create,
+    .connect = connect,
     .couple = couple,
-    .prepare = prepare,
+    .start = start,
+    .advance = advance,
+    .check_history = check_history,
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .horizon = horizon,
     .report = report,
     .is_linear = is_linear,
-    .save = save,
-    .load = load,
     .bytes = bytes,
     .destroy = destroy,
 };

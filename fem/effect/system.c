@@ -15,8 +15,11 @@
 #include "fem/scene/drive.h"
 #include "fem/sparse/solver.h"
 
-static FemState state_of(const FemSystem *system, double time) {
-  return (FemState){.time = time, .positions = system->positions, .velocities = system->velocities};
+// The scattered state, at that time.
+static FemState *state_of(FemSystem *system, double time) {
+  if (time != system->trial.time) system->trial.version = ++system->version_count;
+  system->trial.time = time;
+  return &system->trial;
 }
 
 // A message about the scene begins with its place there.
@@ -67,13 +70,13 @@ static Status couple_vertices(FemSystem *system) {
 
 // Lets effects tell their couplings: all of them, or only those that may have changed.
 static Status couple_effects(FemSystem *system, double time, bool only_changing, int *has_grown) {
-  FemState state = state_of(system, time);
+  const FemState *state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffectOps *ops = system->effects[i].ops;
-    if (!ops->couple || (only_changing && !ops->prepare)) continue;
+    if (!ops->couple || (only_changing && !ops->couples_anew)) continue;
     // What changes is laid out on every rank, since parts of its cliques may belong to others.
-    fem_pattern_set_share(system->pattern, ops->prepare ? NULL : system->model->share);
-    TRY(ops->couple(system->effects[i].self, &state, system->pattern, has_grown));
+    fem_pattern_set_share(system->pattern, ops->couples_anew ? NULL : system->model->share);
+    TRY(ops->couple(system->effects[i].self, state, system->pattern, has_grown));
   }
   return STATUS_OK;
 }
@@ -87,20 +90,62 @@ static Status lay_out(FemSystem *system) {
   return STATUS_OK;
 }
 
+// The lists of effects, for evaluations near a state.
+static Status renew_lists(FemSystem *system, const FemState *state, double step) {
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffect *effect = &system->effects[i];
+    if (!effect->ops->renew) continue;
+    double began = clock_wall_s();
+    TRY(effect->ops->renew(effect->self, state, step));
+    system->costs[i].prepare_s += clock_wall_s() - began;
+    system->costs[i].prepare_calls++;
+  }
+  return STATUS_OK;
+}
+
+// What effects remember where a run begins.
+static Status start_histories(FemSystem *system) {
+  FemState *state = &system->accepted;
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffect *effect = &system->effects[i];
+    state->histories[i].count = 0;
+    if (effect->ops->start) TRY(effect->ops->start(effect->self, state, &state->histories[i]));
+  }
+  return STATUS_OK;
+}
+
+// The scattered state is accepted, but for what effects remember.
+static void take_state(FemSystem *system) {
+  size_t bytes = 3 * (size_t)system->model->vertex_count * sizeof(double);
+  memcpy(system->accepted.positions, system->trial.positions, bytes);
+  memcpy(system->accepted.velocities, system->trial.velocities, bytes);
+  system->accepted.time = system->trial.time;
+  system->accepted.version = system->trial.version;
+}
+
+static Status create_states(FemSystem *system) {
+  const FemModel *model = system->model;
+  TRY(fem_state_create(&system->accepted, model->vertex_count, model->rest, model->initial_velocity));
+  fem_model_drivers_move(model, 0, system->accepted.positions, system->accepted.velocities);
+  TRY(fem_state_create(&system->trial, model->vertex_count, system->accepted.positions,
+                       system->accepted.velocities));
+  system->trial.last = &system->accepted;
+  system->accepted.version = system->trial.version = ++system->version_count;
+  system->positions = system->trial.positions;
+  system->velocities = system->trial.velocities;
+  return STATUS_OK;
+}
+
 static Status create(FemSystem *system, const FemSystem *old) {
   size_t values = 3 * (size_t)system->model->vertex_count;
-  system->positions = memory_copy(system->model->rest, values, sizeof *system->positions);
-  system->velocities = memory_copy(system->model->initial_velocity, values, sizeof *system->velocities);
+  TRY(create_states(system));
   system->forces = memory_zeroed(values + 1, sizeof *system->forces);
-  if (!system->positions || !system->velocities || !system->forces) return status_no_memory("the state");
-  fem_model_drivers_move(system->model, 0, system->positions, system->velocities);
+  if (!system->forces) return status_no_memory("the state");
   TRY(create_effects(system, old));
   TRY(fem_pattern_create(&system->pattern, system->model->vertex_count));
   TRY(couple_vertices(system));
-  FemState state = state_of(system, 0);
-  for (int i = 0; i < system->effect_count; i++)
-    if (system->effects[i].ops->prepare)
-      TRY(system->effects[i].ops->prepare(system->effects[i].self, &state, 0));
+  TRY(renew_lists(system, &system->accepted, 0));
+  TRY(start_histories(system));
   TRY(couple_effects(system, 0, false, NULL));
   weigh_effects(system);
   return lay_out(system);
@@ -134,19 +179,24 @@ void fem_system_destroy(FemSystem *system) {
   for (int i = 0; i < system->effect_count; i++) system->effects[i].ops->destroy(system->effects[i].self);
   fem_matrix_destroy(&system->matrix);
   fem_pattern_destroy(system->pattern);
-  memory_free(system->positions);
-  memory_free(system->velocities);
+  fem_state_destroy(&system->accepted);
+  fem_state_destroy(&system->trial);
   memory_free(system->forces);
   *system = (FemSystem){0};
 }
 
 void fem_system_scatter(FemSystem *system, double time, const double *u, const double *v) {
   const FemModel *model = system->model;
+  bool is_another = false;
   for (int i = 0; i < model->unknown_count; i++) {
     int dof = model->dof_of_unknown[i];
-    system->positions[dof] = model->rest[dof] + u[i];
+    double position = model->rest[dof] + u[i];
+    is_another = is_another || system->positions[dof] != position || system->velocities[dof] != v[i];
+    system->positions[dof] = position;
     system->velocities[dof] = v[i];
   }
+  if (is_another) system->trial.version = ++system->version_count;
+  state_of(system, time);
   fem_model_drivers_move(model, time, system->positions, system->velocities);
 }
 
@@ -232,14 +282,15 @@ static Status find_forces(FemSystem *system, const FemState *state) {
 }
 
 Status fem_system_forces(FemSystem *system, double time) {
-  FemState state = state_of(system, time);
-  return find_forces(system, &state);
+  return find_forces(system, state_of(system, time));
 }
 
 Status fem_system_forces_of_all(FemSystem *system, double time) {
-  FemState state = state_of(system, time);
-  state.with_held = true;
-  return find_forces(system, &state);
+  FemState *state = state_of(system, time);
+  state->with_held = true;
+  Status status = find_forces(system, state);
+  state->with_held = false;
+  return status;
 }
 
 Status fem_system_couple(FemSystem *system, double time) {
@@ -264,11 +315,11 @@ Status fem_system_renumber(FemSystem *system) {
 static Status assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix) {
   TRY(check_stop(system));
   fem_matrix_zero(matrix);
-  FemState state = state_of(system, time);
+  const FemState *state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {
     if (!system->effects[i].ops->add_jacobian) continue;
     double began = clock_wall_s();
-    TRY(system->effects[i].ops->add_jacobian(system->effects[i].self, &state, k, d, matrix));
+    TRY(system->effects[i].ops->add_jacobian(system->effects[i].self, state, k, d, matrix));
     system->costs[i].jacobian_s += clock_wall_s() - began;
     system->costs[i].jacobian_calls++;
   }
@@ -280,43 +331,64 @@ Status fem_system_assemble(FemSystem *system, double time, double k, double d, d
   return ranks()->worst(assemble(system, time, k, d, m, matrix));
 }
 
-static Status begin(FemSystem *system, double time, const double *u, const double *v) {
+static Status begin(FemSystem *system, double time, const double *u, const double *v, double next_step) {
   TRY(fem_formulas_check(system->model, time));
   fem_system_scatter(system, time, u, v);
-  FemState state = state_of(system, time);
-  for (int i = 0; i < system->effect_count; i++)
-    if (system->effects[i].ops->begin) TRY(system->effects[i].ops->begin(system->effects[i].self, &state));
-  return STATUS_OK;
+  take_state(system);
+  TRY(renew_lists(system, &system->accepted, next_step));
+  return start_histories(system);
 }
 
-Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v) {
-  return ranks()->worst(begin(system, time, u, v));
+Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v, double next_step) {
+  return ranks()->worst(begin(system, time, u, v, next_step));
+}
+
+Status fem_system_remember(FemSystem *system, int place, const double *values, size_t count) {
+  const FemEffect *effect = &system->effects[place];
+  if (effect->ops->check_history) TRY(effect->ops->check_history(effect->self, values, count));
+  fem_system_forget(system);
+  return fem_effect_history_set(&system->accepted.histories[place], values, count);
+}
+
+void fem_system_forget(FemSystem *system) {
+  system->accepted.version = ++system->version_count;
+  system->trial.version = ++system->version_count;
 }
 
 static Status renew(FemSystem *system, double time, const double *u, const double *v) {
   fem_system_scatter(system, time, u, v);
-  FemState state = state_of(system, time);
-  for (int i = 0; i < system->effect_count; i++)
-    if (system->effects[i].ops->renew) TRY(system->effects[i].ops->renew(system->effects[i].self, &state));
-  return STATUS_OK;
+  return renew_lists(system, &system->trial, 0);
 }
 
 Status fem_system_renew(FemSystem *system, double time, const double *u, const double *v) {
   return ranks()->worst(renew(system, time, u, v));
 }
 
+// What effects remember at the scattered state, once it is accepted.
+static Status advance(FemSystem *system) {
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffect *effect = &system->effects[i];
+    if (!effect->ops->advance) continue;
+    double began = clock_wall_s();
+    TRY(effect->ops->advance(effect->self, &system->trial, &system->trial.histories[i]));
+    system->costs[i].prepare_s += clock_wall_s() - began;
+    system->costs[i].prepare_calls++;
+  }
+  return STATUS_OK;
+}
+
 static Status accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
   TRY(fem_formulas_check(system->model, time));
   TRY(check_stop(system));
   fem_system_scatter(system, time, u, v);
-  FemState state = state_of(system, time);
+  TRY(renew_lists(system, &system->trial, next_step));
+  TRY(advance(system));
   for (int i = 0; i < system->effect_count; i++) {
-    if (!system->effects[i].ops->prepare) continue;
-    double began = clock_wall_s();
-    TRY(system->effects[i].ops->prepare(system->effects[i].self, &state, next_step));
-    system->costs[i].prepare_s += clock_wall_s() - began;
-    system->costs[i].prepare_calls++;
+    FemEffectHistory before = system->accepted.histories[i];
+    system->accepted.histories[i] = system->trial.histories[i];
+    system->trial.histories[i] = before;
   }
+  take_state(system);
   weigh_effects(system);
   return STATUS_OK;
 }
@@ -416,9 +488,9 @@ Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
     TRY(fem_system_forces(system, time));
     energy->driven_power = driven_power(system);
   }
-  FemState state = state_of(system, time);
-  TRY(system->model->share ? sum_energies(system, &state, energy)
-                           : add_energies(system, &state, PART_ALL, energy));
+  const FemState *state = state_of(system, time);
+  TRY(system->model->share ? sum_energies(system, state, energy)
+                           : add_energies(system, state, PART_ALL, energy));
   energy->common_kinetic = common_kinetic(system);
   if (fem_model_floats(system->model)) energy->common_gravity = energy->gravity;
   return STATUS_OK;
@@ -432,9 +504,9 @@ static Status add_damping(FemSystem *system, const FemState *state, FemEnergy *e
 }
 
 Status fem_system_damping_power(FemSystem *system, double time, double *power) {
-  FemState state = state_of(system, time);
+  const FemState *state = state_of(system, time);
   FemEnergy own = {0};
-  Status status = add_damping(system, &state, &own);
+  Status status = add_damping(system, state, &own);
   double sums[2] = {own.dissipated_power, status != STATUS_OK};
   if (system->model->share) ranks()->sum(sums, 2);
   *power = sums[0];
@@ -448,11 +520,11 @@ static bool has_gap(const FemEffect *effect) {
 
 Status fem_system_gap(FemSystem *system, double time, double *gap) {
   *gap = INFINITY;
-  FemState state = state_of(system, time);
+  const FemState *state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {
     if (!has_gap(&system->effects[i])) continue;
     double one;
-    TRY(system->effects[i].ops->gap(system->effects[i].self, &state, &one));
+    TRY(system->effects[i].ops->gap(system->effects[i].self, state, &one));
     *gap = fmin(*gap, one);
   }
   return STATUS_OK;
@@ -497,8 +569,13 @@ bool fem_system_lags(const FemSystem *system) {
   return false;
 }
 
-void *fem_system_effect(const FemSystem *system, const FemEffectOps *effect) {
+int fem_system_place(const FemSystem *system, const FemEffectOps *effect) {
   for (int i = 0; i < system->effect_count; i++)
-    if (system->effects[i].ops == effect) return system->effects[i].self;
-  return NULL;
+    if (system->effects[i].ops == effect) return i;
+  return -1;
+}
+
+void *fem_system_effect(const FemSystem *system, const FemEffectOps *effect) {
+  int place = fem_system_place(system, effect);
+  return place < 0 ? NULL : system->effects[place].self;
 }

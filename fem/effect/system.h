@@ -9,8 +9,6 @@
 #include "fem/effect/effect.h"
 #include "fem/model/model.h"
 
-enum { FEM_MAX_EFFECTS = 32 };
-
 // Wall time, calls and memory of one effect.
 typedef struct FemEffectCost {
   double force_s, jacobian_s, prepare_s;
@@ -26,8 +24,10 @@ typedef struct FemSystem {
   FemPattern *pattern;
   FemMatrix matrix;                  // S, or K for split use
   long long pattern_version;         // grows whenever matrix has been laid out anew
-  double *positions, *velocities;    // scratch, all vertices                           (vertex_count, 3)
-  double *forces;                    // the same, and one more for how many ranks failed
+  FemState accepted, trial;          // the last accepted state, and the scattered one
+  long long version_count;           // of states until now
+  double *positions, *velocities;    // of `trial`                                      (vertex_count, 3)
+  double *forces;                    // scratch, and one more for how many ranks failed (vertex_count, 3)
   const volatile sig_atomic_t *stop; // becomes non-zero: forces, matrices and what effects keep are
                                      // STATUS_INTERRUPTED; borrowed, NULL: never
 } FemSystem;
@@ -64,11 +64,17 @@ Status fem_system_renumber(FemSystem *system);
 // matrix = k·K + d·D + m·M at the scattered state.
 Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix);
 
-// Once the state from which a run begins or goes on is known (scatters it itself).
-Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v);
+// A run begins, or goes on, at this state (scatters it itself), which is accepted: effects begin to remember,
+// and renew their lists for a step of that length [s].
+Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v, double next_step);
+// What the effect at that place remembers at the accepted state, from a checkpoint. STATUS_INPUT: it does not
+// fit.
+Status fem_system_remember(FemSystem *system, int place, const double *values, size_t count);
+// What is held has changed (contact_system_hold): nothing that was evaluated stands.
+void fem_system_forget(FemSystem *system);
 // At a state that is not accepted (scatters it itself): lets effects renew their lists.
 Status fem_system_renew(FemSystem *system, double time, const double *u, const double *v);
-// After an accepted step (scatters it itself): lets effects renew what they keep.
+// Accepts a step (scatters it itself): effects renew their lists, and histories go on.
 Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step);
 
 // Energies and powers at the scattered state; evaluates the forces where driven vertices need them.
@@ -89,9 +95,11 @@ double fem_system_longest_step(const FemSystem *system);
 
 // Whether an effect's forces depend on velocities.
 bool fem_system_dissipates(const FemSystem *system);
-// Whether an effect's forces change when it is prepared.
+// Whether an effect's forces change when a state is accepted.
 bool fem_system_lags(const FemSystem *system);
 
+// The effect's place among those of the system, −1: the scene has none.
+int fem_system_place(const FemSystem *system, const FemEffectOps *effect);
 // The `self` of the effect with that table; NULL: the scene does not have it.
 void *fem_system_effect(const FemSystem *system, const FemEffectOps *effect);
 

@@ -314,7 +314,7 @@ static void find_stress(const FemSystem *system, int e, double stress[6]) {
     fem_effect_volume_add_stress(volume, e, corners, stress);
   }
   void *plasticity = fem_system_effect(system, &fem_effect_plasticity);
-  if (plasticity) fem_effect_plasticity_add_stress(plasticity, e, system->positions, stress);
+  if (plasticity) fem_effect_plasticity_add_stress(plasticity, e, &system->trial, stress);
 }
 
 static void fill_stress(void *self, size_t first, size_t count, double *values) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/run/hold.h"
 
-#include "fem/effect/contact/rest.h"
 #include "fem/model/numbering.h"
 
 void fem_hold_gather(const FemSystem *system, double *u, double *v) {
@@ -24,11 +23,10 @@ static double stop_body(const FemModel *model, const FemModelBody *body, double 
   return energy;
 }
 
-Status fem_hold_sleepers(FemModel *model, FemSystem *system, double *u, double *v) {
-  void *rest = fem_system_effect(system, &fem_effect_rest);
+Status fem_hold_sleepers(FemModel *model, FemSystem *system, FemRest *rest, double *u, double *v) {
   for (int b = 0; b < model->body_count; b++) {
-    bool is_asleep = fem_effect_rest_is_asleep(rest, b);
-    if (is_asleep) fem_effect_rest_add_loss(rest, stop_body(model, &model->bodies[b], system->velocities));
+    bool is_asleep = fem_rest_is_asleep(rest, b);
+    if (is_asleep) fem_rest_add_loss(rest, stop_body(model, &model->bodies[b], system->velocities));
     model->bodies[b].is_held = is_asleep;
   }
   fem_model_numbering_renew(model);
@@ -36,13 +34,13 @@ Status fem_hold_sleepers(FemModel *model, FemSystem *system, double *u, double *
   return model->unknown_count > 0 ? fem_system_renumber(system) : STATUS_OK;
 }
 
-Status fem_hold_renumber(FemModel *model, FemSystem *system, double time, FemAudit *audit, double *u,
-                         double *v) {
+Status fem_hold_renumber(FemModel *model, FemSystem *system, FemRest *rest, double time, FemAudit *audit,
+                         double *u, double *v) {
   FemEnergy before, after;
   fem_system_scatter(system, time, u, v);
   TRY(fem_system_energy(system, time, &before));
   fem_model_numbering_release(model, time);
   TRY(fem_system_energy(system, time, &after));
   fem_audit_release(audit, after.kinetic - before.kinetic);
-  return fem_hold_sleepers(model, system, u, v);
+  return fem_hold_sleepers(model, system, rest, u, v);
 }

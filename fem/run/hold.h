@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbering the unknowns anew while a run goes on: vertices that are released, bodies that fall asleep
-// (fem/effect/contact/rest.h). The state stays where it is.
+// (rest.h). The state stays where it is.
 #ifndef TETLAP_FEM_RUN_HOLD_H
 #define TETLAP_FEM_RUN_HOLD_H
 
 #include "fem/effect/system.h"
+#include "fem/run/rest.h"
 #include "fem/time/audit.h"
 
 // The unknowns u, v (unknown_count) of the system's scattered state.
 void fem_hold_gather(const FemSystem *system, double *u, double *v);
 
 // Takes the unknowns of bodies that sleep and gives them to those that awoke; `model` is the system's own.
-// What falls asleep stands still from now on; its kinetic energy is counted by the effect. Fills u and v.
-Status fem_hold_sleepers(FemModel *model, FemSystem *system, double *u, double *v);
+// What falls asleep stands still from now on; its kinetic energy is counted by `rest`. Fills u and v.
+Status fem_hold_sleepers(FemModel *model, FemSystem *system, FemRest *rest, double *u, double *v);
 
 // Releases what is due at `time`, with the place and the velocity that it was driven to, for which the audit
 // accounts, and then as above.
-Status fem_hold_renumber(FemModel *model, FemSystem *system, double time, FemAudit *audit, double *u,
-                         double *v);
+Status fem_hold_renumber(FemModel *model, FemSystem *system, FemRest *rest, double time, FemAudit *audit,
+                         double *u, double *v);
 
 #endif

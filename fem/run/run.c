@@ -10,7 +10,6 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/ranks.h"
-#include "fem/effect/contact/rest.h"
 #include "fem/model/formulas.h"
 #include "fem/model/numbering.h"
 #include "fem/model/tolerance.h"
@@ -116,7 +115,7 @@ static Status renew_powers(FemRunState *run) {
 static Status begin_stage(FemRunState *run, double step) {
   const FemModel *model = run->model;
   const FemSceneDef *scene = model->scene;
-  double next = fem_effect_rest_next_change(fem_system_effect(&run->system, &fem_effect_rest));
+  double next = fem_rest_next_change(run->rest);
   run->stage_end = fmin(fmin(scene->end, next), fem_model_numbering_next_release(model, run->time));
   if (model->unknown_count == 0) return STATUS_OK; // all sleep
   FemIntegratorDef def = {.displacement_tolerance = fem_model_position_tolerance(model),
@@ -166,7 +165,7 @@ static Status begin_account(FemRunState *run) {
 // Vertices come free, bodies fall asleep or awake: with other unknowns from here on.
 static Status renumber(FemRunState *run) {
   end_stage(run);
-  TRY(fem_hold_renumber(&run->own, &run->system, run->time, &run->audit, run->u, run->v));
+  TRY(fem_hold_renumber(&run->own, &run->system, run->rest, run->time, &run->audit, run->u, run->v));
   TRY(begin_account(run));
   return begin_stage(run, 0);
 }
@@ -229,6 +228,12 @@ static bool has_turned(const FemRunState *run, double time, const FemEnergy *ene
   return energy->turned_power * (time - run->time) > TURNED_SHARE * run->audit.scale;
 }
 
+// The run's state is accepted.
+static Status accept(FemRunState *run, double next_step) {
+  TRY(fem_system_accept(&run->system, run->time, run->u, run->v, next_step));
+  return fem_rest_decide(run->rest, next_step);
+}
+
 // One step: taken, judged, shown, accepted.
 static Status advance(FemRunState *run) {
   double time = run->time;
@@ -271,10 +276,10 @@ static Status advance(FemRunState *run) {
   FemIntegratorStats stats = fem_run_state_stats(run);
   if (!is_onset)
     run->result->trouble.smallest_step = fmin(run->result->trouble.smallest_step, stats.last_step);
-  TRY(fem_system_accept(&run->system, time, run->u, run->v, stats.current_step));
+  TRY(accept(run, stats.current_step));
   if (fem_system_lags(&run->system) || fem_integrator_is_at_knot(run->integrator)) TRY(renew_powers(run));
   TRY(fem_run_watch(run, &measures));
-  if (fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest))) return renumber(run);
+  if (fem_rest_has_changed(run->rest)) return renumber(run);
   if (!is_onset) return STATUS_OK;
   log_debug("t = %.9g s: the integrator restarts, something begins here", time);
   return fem_integrator_restart(run->integrator, time, run->u, run->v, 0);
@@ -311,11 +316,10 @@ static Status sleep_on(FemRunState *run) {
   run->time = time;
   fem_stall_pass(&run->stall, time - began);
   fem_run_frames_keep_extremes(run->result, &measures);
-  TRY(fem_system_accept(&run->system, time, run->u, run->v, time - began));
+  TRY(accept(run, time - began));
   TRY(fem_recorder_begin_step(&run->recorder, time, &measures));
   TRY(fem_run_watch(run, &measures));
-  bool has_changed = fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest));
-  return has_changed ? renumber(run) : STATUS_OK;
+  return fem_rest_has_changed(run->rest) ? renumber(run) : STATUS_OK;
 }
 
 // A rest state is not judged by rounding: the energy of a strain of 1e-6 in all bodies counts as the scene's
@@ -365,9 +369,15 @@ static Status begin_record(FemRunState *run) {
   return fem_run_frames_write(run, run->time, &measures);
 }
 
+// The checkpoint's state is accepted, with what effects remembered then.
+static Status begin_system(FemRunState *run, double next_step) {
+  TRY(fem_system_begin(&run->system, run->time, run->u, run->v, next_step));
+  TRY(fem_restart_remember(&run->checkpoint, &run->system));
+  return fem_rest_decide(run->rest, next_step);
+}
+
 static Status begin_motion(FemRunState *run) {
-  TRY(fem_system_begin(&run->system, run->time, run->u, run->v));
-  TRY(fem_system_accept(&run->system, run->time, run->u, run->v, run->next_step));
+  TRY(begin_system(run, run->next_step));
   if (run->next_frame == 0) TRY(begin_record(run));
   FemMeasures measures;
   TRY(fem_run_frames_measure(run, run->time, &measures));
@@ -379,16 +389,25 @@ static Status begin_motion(FemRunState *run) {
 static Status begin_statics(FemRunState *run) {
   const FemCheckpoint *from = &run->checkpoint;
   TRY(fem_statics_create(&run->statics, &run->system, fem_solver_ops(fem_run_solver(run->model))));
-  TRY(fem_system_begin(&run->system, run->time, run->u, run->v));
+  TRY(begin_system(run, 0));
   if (run->next_frame == 0) {
     fem_system_scatter(&run->system, run->time, run->u, run->v);
     return begin_record(run);
   }
-  TRY(fem_system_accept(&run->system, run->time, run->u, run->v, 0));
   TRY(fem_statics_continue(&run->statics, run->time, run->u, from->force_scale, from->driven_work));
   FemMeasures measures;
   TRY(fem_run_frames_measure(run, run->time, &measures));
   return fem_recorder_begin_step(&run->recorder, run->time, &measures);
+}
+
+static Status begin_rest(FemRunState *run) {
+  const FemCheckpoint *from = &run->checkpoint;
+  if (!fem_rest_is_wanted(run->model->scene)) return STATUS_OK;
+  TRY(fem_rest_create(&run->rest, &run->system));
+  if (from->next_frame > 0) TRY(fem_rest_load(run->rest, from->rest, from->rest_count));
+  if (!fem_rest_has_changed(run->rest)) return STATUS_OK;
+  fem_system_scatter(&run->system, run->time, run->u, run->v);
+  return fem_hold_sleepers(&run->own, &run->system, run->rest, run->u, run->v);
 }
 
 // Everything anew from the checkpoint: the same whether the run goes on, is resumed, or begins.
@@ -406,11 +425,8 @@ static Status begin_part(FemRunState *run) {
   TRY(is_first ? fem_system_create(&run->system, run->model)
                : fem_system_create_again(&run->system, run->model));
   run->system.stop = run->options->stop;
-  TRY(fem_restart_load(from, &run->system, run->u, run->v));
-  if (fem_effect_rest_has_changed(fem_system_effect(&run->system, &fem_effect_rest))) {
-    fem_system_scatter(&run->system, run->time, run->u, run->v);
-    TRY(fem_hold_sleepers(&run->own, &run->system, run->u, run->v));
-  }
+  fem_restart_load(from, run->model, run->u, run->v);
+  TRY(begin_rest(run));
   if (is_first) TRY(fem_run_frames_open(run));
   return run->model->scene->is_static ? begin_statics(run) : begin_motion(run);
 }
@@ -420,6 +436,7 @@ static void end_part(FemRunState *run) {
   FemRunResult *result = run->result;
   end_stage(run);
   if (run->system.model) fem_run_result_add_system(result, &run->system);
+  fem_run_result_add_rest(result, run->rest);
   result->phases.output += run->recorder.seconds;
   run->recorder.seconds = 0;
   const double wall = clock_wall_s(), cpu = clock_cpu_s(), inside = ranks()->stats()->inside_s;
@@ -436,6 +453,8 @@ static Status pass_checkpoint(FemRunState *run) {
   const double force_scale = run->statics.force_scale, driven_work = run->statics.driven_work;
   end_part(run);
   TRY(fem_run_checkpoint_take(run, force_scale, driven_work));
+  fem_rest_destroy(run->rest);
+  run->rest = NULL;
   TRY(begin_part(run));
   memory_trim();
   return STATUS_OK;
@@ -541,6 +560,7 @@ static Status close_run(FemRunState *run, Status status) {
   Status collected = collect(run, status), left = fem_run_checkpoint_leave(run, status ? status : collected);
   if (collected || left) snprintf(closing, sizeof closing, "; besides: %s", status_message());
   fem_recorder_destroy(&run->recorder);
+  fem_rest_destroy(run->rest);
   fem_system_destroy(&run->system);
   double *states[] = {run->u, run->v, run->u_new, run->v_new, run->mean_velocity, run->middle};
   for (size_t i = 0; i < sizeof states / sizeof *states; i++) memory_free(states[i]);

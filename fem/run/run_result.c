@@ -68,8 +68,12 @@ void fem_run_result_add_system(FemRunResult *result, const FemSystem *system) {
     add_cost(&result->effects[i].cost, &system->costs[i]);
     if (result->effects[i].cost.jacobian_calls > result->assemblies)
       result->assemblies = result->effects[i].cost.jacobian_calls;
-    if (effect->ops->report) effect->ops->report(effect->self, result->counters);
+    if (effect->ops->report) effect->ops->report(effect->self, &system->accepted, result->counters);
   }
+}
+
+void fem_run_result_add_rest(FemRunResult *result, const FemRest *rest) {
+  fem_rest_report(rest, result->counters);
 }
 
 void fem_run_result_destroy(FemRunResult *result) {

@@ -7,6 +7,7 @@
 #include "contact/evaluation.h"
 #include "contact/status.h"
 #include "fem/output/trouble.h"
+#include "fem/run/rest.h"
 #include "fem/time/audit.h"
 #include "fem/time/integrator.h"
 
@@ -80,6 +81,8 @@ typedef struct FemRunResult {
 // Adds what a system and a solver have counted since they were made. `contact` of the phases is what effects
 // took to prepare, without the broad phase.
 void fem_run_result_add_system(FemRunResult *result, const FemSystem *system);
+// Of bodies at rest; NULL: none may be.
+void fem_run_result_add_rest(FemRunResult *result, const FemRest *rest);
 void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegratorStats *part);
 void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part);
 void fem_run_result_destroy(FemRunResult *result);

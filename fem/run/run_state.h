@@ -7,6 +7,7 @@
 
 #include "fem/output/recorder.h"
 #include "fem/run/checkpoint/checkpoint.h"
+#include "fem/run/rest.h"
 #include "fem/run/run_options.h"
 #include "fem/run/run_result.h"
 #include "fem/statics/statics.h"
@@ -20,6 +21,7 @@ typedef struct FemRunState {
   const FemRunOptions *options; // borrowed
   FemRunResult *result;         // borrowed; counts of what is over: closed parts and stages
   FemSystem system;
+  FemRest *rest;             // NULL: nobody may sleep
   FemIntegrator *integrator; // NULL in a static scene
   FemStatics statics;        // of a static scene
   FemRecorder recorder;

@@ -177,13 +177,9 @@ static Status create(void **self, const FemModel *model) {
   return create_again(self, model, NULL);
 }
 
-static Status prepare(void *self, const FemState *state, double step) {
+static Status renew(void *self, const FemState *state, double step) {
   Contact *contact = self;
   return contact_system_update(contact->system, state->time, state->positions, state->velocities, step, NULL);
-}
-
-static Status renew(void *self, const FemState *state) {
-  return prepare(self, state, 0);
 }
 
 typedef struct Coupling {
@@ -245,7 +241,8 @@ static double longest_step(const void *self) {
   return contact_system_longest_step(((const Contact *)self)->system);
 }
 
-static void report(void *self, Record *counters) {
+static void report(void *self, const FemState *state, Record *counters) {
+  (void)state;
   Contact *contact = self;
   const ContactCounters *count = contact_system_counters(contact->system);
   record_add(counters, "contact_evaluations", count->evaluations);
@@ -269,11 +266,11 @@ static size_t bytes(const void *self) {
 const FemEffectOps fem_effect_contact = {
     .name = "contact",
     .help = "bodies and obstacles that overlap are pushed apart by a penalty on the overlap volume",
+    .couples_anew = true,
     .is_wanted = is_wanted,
     .create = create,
     .create_again = create_again,
     .couple = couple,
-    .prepare = prepare,
     .renew = renew,
     .add_force = add_force,
     .add_jacobian = add_jacobian,

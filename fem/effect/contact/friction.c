@@ -49,8 +49,8 @@ static void destroy(void *self) {
   memory_free(friction);
 }
 
-static Status prepare(void *self, const FemState *state, double step) {
-  (void)step;
+static Status start(void *self, const FemState *state, FemEffectHistory *history) {
+  (void)history;
   Friction *friction = self;
   double energy;
   TRY(contact_system_eval(friction->contact, state->time, state->positions, &energy, NULL));
@@ -87,28 +87,12 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
-static void report(void *self, Record *counters) {
+static void report(void *self, const FemState *state, Record *counters) {
+  (void)state;
   const ContactFriction *law = &((Friction *)self)->law;
   record_add(counters, "friction_updates", law->updates);
   record_add(counters, "friction_pairs", law->taken);
   record_add(counters, "friction_pairs_dropped", law->dropped);
-}
-
-// The forces by interface, of which those at rest are still told.
-static Status save(const void *self, double **values, size_t *count) {
-  const ContactFriction *law = &((const Friction *)self)->law;
-  *count = 3 * (size_t)law->interface_count;
-  *values = memory_copy(law->forces, *count, sizeof **values);
-  return *values ? STATUS_OK : status_no_memory("a checkpoint");
-}
-
-static Status load(void *self, const double *values, size_t count) {
-  ContactFriction *law = &((Friction *)self)->law;
-  if (count != 3 * (size_t)law->interface_count)
-    return status_fail(STATUS_INPUT, "the checkpoint has friction of %zu interfaces, this scene has %d",
-                       count / 3, law->interface_count);
-  memcpy(law->forces, values, count * sizeof *values);
-  return STATUS_OK;
 }
 
 static size_t bytes(const void *self) {
@@ -120,6 +104,7 @@ const FemEffectOps fem_effect_friction = {
     .help = "contacts resist sliding with up to μ times the normal force",
     .dissipates = true,
     .lags = true,
+    .couples_anew = true,
     .is_wanted = is_wanted,
     .static_refusal = "the friction law velocity has no force at rest: in a static scene write "
                       "contact.potential: field and "
@@ -128,13 +113,12 @@ const FemEffectOps fem_effect_friction = {
     .create = create,
     .connect = connect,
     .couple = couple,
-    .prepare = prepare,
+    .start = start,
+    .advance = start,
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .report = report,
-    .save = save,
-    .load = load,
     .bytes = bytes,
     .destroy = destroy,
 };

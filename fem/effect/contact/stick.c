@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Friction by elastic stick as an effect: contact/friction/stick.h on the system of the contact effect. Its
-// forces depend on positions and on the last accepted state, which `prepare` moves on.
+// forces depend on positions and on the last accepted state. Its history is contact/friction/stick_history.h.
 #include "fem/effect/contact/stick.h"
-
-#include <string.h>
 
 #include "base/memory.h"
 #include "contact/friction/stick_pairs.h"
@@ -16,11 +14,10 @@ typedef struct Stick {
   const FemModel *model;  // borrowed
   ContactSystem *contact; // borrowed
   ContactStick law;
-  bool *is_resting;     // each interface                            (law.interface_count)
-  bool has_begun;       // there is a state from which gaps count
-  double time;          // of that [s]
-  long long evaluation; // of the contact system that the law was evaluated for; −1: none
-  long long accepted;   // states
+  bool *is_resting;                // each interface                   (law.interface_count)
+  int place;                       // of this effect in its system
+  long long version, last_version; // of the state that the law was evaluated for, and of its last; 0: none
+  long long accepted;              // states
 } Stick;
 
 static bool is_wanted(const FemSceneDef *scene) {
@@ -32,7 +29,6 @@ static Status create(void **self, const FemModel *model) {
   Stick *stick = memory_zeroed(1, sizeof *stick);
   if (!stick) return status_no_memory("friction");
   stick->model = model;
-  stick->evaluation = -1;
   *self = stick;
   return STATUS_OK;
 }
@@ -52,6 +48,7 @@ static Status create_law(Stick *stick, int count, double *coefficients, ContactS
 static Status connect(void *self, const FemSystem *system) {
   Stick *stick = self;
   int count;
+  stick->place = fem_system_place(system, &fem_effect_stick);
   stick->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
   contact_system_interfaces(stick->contact, &count);
   stick->is_resting = memory_zeroed((size_t)count, sizeof *stick->is_resting);
@@ -71,45 +68,47 @@ static void destroy(void *self) {
   memory_free(stick);
 }
 
-// The friction at a state; once for each evaluation of the contact system.
+static ContactStickHistory history_of(const Stick *stick, const FemState *accepted) {
+  const FemEffectHistory *history = &accepted->histories[stick->place];
+  return contact_stick_history_view(stick->law.interface_count, history->values, history->count);
+}
+
+// The friction at a state, which is evaluated once.
 static Status evaluate(Stick *stick, const FemState *state) {
+  const FemState *last = state->last;
   double energy;
   TRY(contact_system_eval(stick->contact, state->time, state->positions, &energy, NULL));
-  long long evaluation = contact_system_counters(stick->contact)->evaluations;
-  if (stick->evaluation == evaluation) return STATUS_OK;
-  TRY(contact_stick_pairs_eval(&stick->law, stick->contact, stick->time, stick->is_resting));
-  stick->evaluation = evaluation;
+  if (stick->version == state->version && stick->last_version == last->version) return STATUS_OK;
+  ContactStickLast before = {.positions = contact_system_place(stick->contact, last->positions),
+                             .history = history_of(stick, last)};
+  stick->version = 0;
+  TRY(contact_stick_pairs_eval(&stick->law, stick->contact, &before, last->time, stick->is_resting));
+  stick->version = state->version;
+  stick->last_version = last->version;
   return STATUS_OK;
 }
 
-static Status begin(void *self, const FemState *state) {
-  Stick *stick = self;
-  contact_stick_begin(&stick->law, contact_system_place(stick->contact, state->positions));
-  stick->has_begun = true;
-  stick->time = state->time;
-  stick->evaluation = -1;
+static Status start(void *self, const FemState *state, FemEffectHistory *history) {
+  (void)state;
+  size_t count = contact_stick_history_count(((Stick *)self)->law.interface_count, 0);
+  TRY(fem_effect_history_resize(history, count));
+  for (size_t i = 0; i < count; i++) history->values[i] = 0;
   return STATUS_OK;
 }
 
-// A state is accepted once, or its history would be rounded anew each time.
-static bool is_at_last(const Stick *stick, const FemState *state) {
-  size_t bytes = 3 * (size_t)stick->law.vertex_count * sizeof(double);
-  return state->time == stick->time &&
-         memcmp(contact_system_place(stick->contact, state->positions), stick->law.before, bytes) == 0;
-}
-
-static Status prepare(void *self, const FemState *state, double step) {
-  (void)step;
+static Status advance(void *self, const FemState *state, FemEffectHistory *next) {
   Stick *stick = self;
-  if (!stick->has_begun) return begin(self, state);
-  if (is_at_last(stick, state)) return STATUS_OK;
   TRY(evaluate(stick, state));
-  TRY(contact_stick_accept(&stick->law, contact_system_place(stick->contact, state->positions),
-                           stick->is_resting));
-  stick->time = state->time;
-  stick->evaluation = -1;
+  const ContactStickHistory history = history_of(stick, state->last);
+  TRY(fem_effect_history_resize(next, contact_stick_next_count(&stick->law, &history, stick->is_resting)));
+  contact_stick_advance(&stick->law, &history, stick->is_resting, next->values);
   stick->accepted++;
   return STATUS_OK;
+}
+
+static Status check_history(const void *self, const double *values, size_t count) {
+  const ContactStick *law = &((const Stick *)self)->law;
+  return contact_stick_history_check(law->interface_count, law->vertex_count, values, count);
 }
 
 typedef struct Coupling {
@@ -153,51 +152,18 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   Stick *stick = self;
   TRY(evaluate(stick, state));
   energy->contact += stick->law.stored;
-  energy->friction_work += stick->law.dissipated + stick->law.spent;
+  energy->friction_work += *history_of(stick, state->last).dissipated + stick->law.spent;
   energy->driven_power += contact_stick_pairs_shape_power(&stick->law, stick->contact);
   energy->turned_power += contact_stick_pairs_turned_power(&stick->law, stick->contact, state->velocities);
   return STATUS_OK;
 }
 
-static void report(void *self, Record *counters) {
+static void report(void *self, const FemState *state, Record *counters) {
   const Stick *stick = self;
   record_add(counters, "friction_updates", stick->accepted);
   record_integer(counters, "friction_vertices", stick->law.node_count);
   record_integer(counters, "friction_slipping", stick->law.slip_count);
-  record_number(counters, "friction_work", stick->law.dissipated);
-}
-
-// What was dissipated, the forces and areas by interface, of which those at rest are still told, and the
-// history.
-static Status save(const void *self, double **values, size_t *count) {
-  const ContactStick *law = &((const Stick *)self)->law;
-  size_t forces = 3 * (size_t)law->interface_count, areas = 2 * (size_t)law->interface_count, entries;
-  double *history;
-  TRY(contact_stick_history_save(&law->history, &history, &entries));
-  *count = 1 + forces + areas + entries;
-  *values = memory_zeroed(*count, sizeof **values);
-  if (*values) {
-    (*values)[0] = law->dissipated;
-    memcpy(*values + 1, law->forces, forces * sizeof **values);
-    memcpy(*values + 1 + forces, law->areas, areas * sizeof **values);
-    memcpy(*values + 1 + forces + areas, history, entries * sizeof **values);
-  }
-  memory_free(history);
-  return *values ? STATUS_OK : status_no_memory("a checkpoint");
-}
-
-static Status load(void *self, const double *values, size_t count) {
-  ContactStick *law = &((Stick *)self)->law;
-  size_t forces = 3 * (size_t)law->interface_count, areas = 2 * (size_t)law->interface_count,
-         own = 1 + forces + areas;
-  if (count < own)
-    return status_fail(STATUS_INPUT, "the checkpoint has friction of another scene: %zu numbers, not %zu",
-                       count, own);
-  law->dissipated = values[0];
-  memcpy(law->forces, values + 1, forces * sizeof *values);
-  memcpy(law->areas, values + 1 + forces, areas * sizeof *values);
-  return contact_stick_history_load(&law->history, values + own, count - own, law->interface_count,
-                                    law->vertex_count);
+  record_number(counters, "friction_work", *history_of(stick, state).dissipated);
 }
 
 static size_t bytes(const void *self) {
@@ -208,18 +174,18 @@ static size_t bytes(const void *self) {
 const FemEffectOps fem_effect_stick = {
     .name = "stick",
     .help = "contacts stick by a spring in the tangent plane that slips at μ times the normal force",
+    .couples_anew = true,
     .is_wanted = is_wanted,
     .create = create,
     .connect = connect,
-    .begin = begin,
     .couple = couple,
-    .prepare = prepare,
+    .start = start,
+    .advance = advance,
+    .check_history = check_history,
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .report = report,
-    .save = save,
-    .load = load,
     .bytes = bytes,
     .destroy = destroy,
 };

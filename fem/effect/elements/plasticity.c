@@ -16,9 +16,9 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/effect.h"
+#include "fem/effect/system.h"
 
-// The history of a quadrature point.
+// What a quadrature point remembers; numbers only, as a history keeps them.
 typedef struct Plastic {
   double strain[9]; // E_p
   double alpha;     // accumulated plastic strain
@@ -37,8 +37,8 @@ typedef struct Plasticity {
   int element_count;
   Site *sites; //                                          (site_count)
   int site_count;
-  Plastic *history; // at the last accepted state                    (site_count)
-  int *place;       // of a tetrahedron's first site, −1: not plastic   (model->tet_count)
+  int history; // place of its history, Plastic by Plastic        (site_count)
+  int *place;  // of a tetrahedron's first site, −1: not plastic   (model->tet_count)
 } Plasticity;
 
 // A return from the history to E: the new plastic state, and its derivative ∂E_p/∂E = along n ⊗ n + across
@@ -58,7 +58,6 @@ static void destroy(void *self) {
   Plasticity *plasticity = self;
   memory_free(plasticity->elements);
   memory_free(plasticity->sites);
-  memory_free(plasticity->history);
   memory_free(plasticity->place);
   memory_free(plasticity);
 }
@@ -112,9 +111,8 @@ static Status create(void **self, const FemModel *model) {
   plasticity->model = model;
   plasticity->elements = memory_zeroed(count_elements(model), sizeof *plasticity->elements);
   plasticity->sites = memory_zeroed(tets, sizeof *plasticity->sites);
-  plasticity->history = memory_zeroed(tets, sizeof *plasticity->history);
   plasticity->place = memory_zeroed(tets, sizeof *plasticity->place);
-  if (!plasticity->elements || !plasticity->sites || !plasticity->history || !plasticity->place) {
+  if (!plasticity->elements || !plasticity->sites || !plasticity->place) {
     destroy(plasticity);
     return status_no_memory("plasticity");
   }
@@ -163,18 +161,36 @@ static Return return_to(const FemMaterial *material, const Plastic *history, con
   return r;
 }
 
-static Return evaluate(const Plasticity *plasticity, int i, const double *positions, double F[9],
-                       double E[9]) {
-  find_strain(&plasticity->sites[i], positions, F, E);
-  return return_to(material_of(plasticity, i), &plasticity->history[i], E);
+static const Plastic *history_of(const Plasticity *plasticity, const FemState *accepted) {
+  return (const Plastic *)accepted->histories[plasticity->history].values;
 }
 
-static Status prepare(void *self, const FemState *state, double step) {
-  (void)step;
-  Plasticity *plasticity = self;
+static Return evaluate(const Plasticity *plasticity, int i, const FemState *state, double F[9], double E[9]) {
+  find_strain(&plasticity->sites[i], state->positions, F, E);
+  return return_to(material_of(plasticity, i), &history_of(plasticity, state->last)[i], E);
+}
+
+enum { PLASTIC_SIZE = sizeof(Plastic) / sizeof(double) };
+
+static Status connect(void *self, const FemSystem *system) {
+  ((Plasticity *)self)->history = fem_system_place(system, &fem_effect_plasticity);
+  return STATUS_OK;
+}
+
+static Status start(void *self, const FemState *state, FemEffectHistory *history) {
+  (void)state;
+  size_t count = PLASTIC_SIZE * (size_t)((Plasticity *)self)->site_count;
+  TRY(fem_effect_history_resize(history, count));
+  for (size_t i = 0; i < count; i++) history->values[i] = 0;
+  return STATUS_OK;
+}
+
+static Status advance(void *self, const FemState *state, FemEffectHistory *next) {
+  const Plasticity *plasticity = self;
+  TRY(fem_effect_history_resize(next, PLASTIC_SIZE * (size_t)plasticity->site_count));
   for (int i = 0; i < plasticity->site_count; i++) {
     double F[9], E[9];
-    plasticity->history[i] = evaluate(plasticity, i, state->positions, F, E).plastic;
+    ((Plastic *)next->values)[i] = evaluate(plasticity, i, state, F, E).plastic;
   }
   return STATUS_OK;
 }
@@ -192,7 +208,7 @@ static Status add_force(void *self, const FemState *state, double *force) {
   for (int i = 0; i < plasticity->site_count; i++) {
     const Site *site = &plasticity->sites[i];
     double F[9], E[9], P[9], own[3 * FEM_QUADRATIC_NODES] = {0};
-    Return r = evaluate(plasticity, i, state->positions, F, E);
+    Return r = evaluate(plasticity, i, state, F, E);
     find_stress(fem_material_lame(material_of(plasticity, i)).mu, F, &r.plastic, P);
     fem_point_add_force(&site->point, P, own);
     for (int a = 0; a < site->point.node_count; a++)
@@ -234,7 +250,7 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
     const Site *site = &plasticity->sites[i];
     int nodes = site->point.node_count;
     double F[9], E[9], dP[81], dense[9 * FEM_QUADRATIC_NODES * FEM_QUADRATIC_NODES] = {0};
-    Return r = evaluate(plasticity, i, state->positions, F, E);
+    Return r = evaluate(plasticity, i, state, F, E);
     find_tangent(fem_material_lame(material_of(plasticity, i)).mu, F, &r, dP);
     fem_point_add_tangent(&site->point, dP, dense);
     fem_point_mirror(nodes, dense);
@@ -249,7 +265,7 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   for (int i = 0; i < plasticity->site_count; i++) {
     const FemMaterial *material = material_of(plasticity, i);
     double F[9], E[9], product = 0, volume = plasticity->sites[i].point.weight;
-    Plastic plastic = evaluate(plasticity, i, state->positions, F, E).plastic;
+    Plastic plastic = evaluate(plasticity, i, state, F, E).plastic;
     for (int k = 0; k < 9; k++) product += plastic.strain[k] * (plastic.strain[k] - 2 * E[k]);
     energy->elastic += volume * (fem_material_lame(material).mu * product +
                                  0.5 * material->hardening * plastic.alpha * plastic.alpha);
@@ -258,30 +274,23 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
-static Status save(const void *self, double **values, size_t *count) {
-  const Plasticity *plasticity = self;
-  *count = (size_t)plasticity->site_count * sizeof *plasticity->history / sizeof **values;
-  *values = memory_copy(plasticity->history, *count, sizeof **values);
-  return *values ? STATUS_OK : status_no_memory("the plastic strains");
+static Status check_history(const void *self, const double *values, size_t count) {
+  (void)values;
+  int sites = ((const Plasticity *)self)->site_count;
+  if (count == PLASTIC_SIZE * (size_t)sites) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "plasticity: there are %zu numbers of history for %d plastic points",
+                     count, sites);
 }
 
-static Status load(void *self, const double *values, size_t count) {
-  Plasticity *plasticity = self;
-  if (count * sizeof *values != (size_t)plasticity->site_count * sizeof *plasticity->history)
-    return status_fail(STATUS_INPUT, "plasticity: there are %zu numbers of history for %d plastic points",
-                       count, plasticity->site_count);
-  memcpy(plasticity->history, values, count * sizeof *values);
-  return STATUS_OK;
-}
-
-static void report(void *self, Record *counters) {
+static void report(void *self, const FemState *state, Record *counters) {
   const Plasticity *plasticity = self;
+  const Plastic *history = history_of(plasticity, state);
   double most = 0;
   int yielded = 0, last = -1;
   for (int i = 0; i < plasticity->site_count; i++) {
     int element = plasticity->place[plasticity->sites[i].tet];
-    most = fmax(most, plasticity->history[i].alpha);
-    if (!(plasticity->history[i].alpha > 0) || element == last) continue;
+    most = fmax(most, history[i].alpha);
+    if (!(history[i].alpha > 0) || element == last) continue;
     yielded++;
     last = element;
   }
@@ -289,7 +298,7 @@ static void report(void *self, Record *counters) {
   record_integer(counters, "yielded_elements", yielded);
 }
 
-void fem_effect_plasticity_add_stress(const void *self, int tet, const double *positions, double stress[6]) {
+void fem_effect_plasticity_add_stress(const void *self, int tet, const FemState *state, double stress[6]) {
   const Plasticity *plasticity = self;
   int begin = plasticity->place[tet], end = begin + 1;
   if (begin < 0) return;
@@ -303,8 +312,8 @@ void fem_effect_plasticity_add_stress(const void *self, int tet, const double *p
   }
   for (int i = begin; i < end; i++) {
     double F[9], E[9], P[9], one[6];
-    find_strain(&plasticity->sites[i], positions, F, E);
-    find_stress(fem_material_lame(material_of(plasticity, i)).mu, F, &plasticity->history[i], P);
+    Plastic plastic = evaluate(plasticity, i, state, F, E).plastic;
+    find_stress(fem_material_lame(material_of(plasticity, i)).mu, F, &plastic, P);
     fem_material_cauchy(FEM_MATERIAL_STVK, F, P, one);
     for (int s = 0; s < 6; s++) stress[s] += one[s] / (end - begin);
   }
@@ -313,7 +322,7 @@ void fem_effect_plasticity_add_stress(const void *self, int tet, const double *p
 static size_t bytes(const void *self) {
   const Plasticity *plasticity = self;
   return memory_held(self) + memory_held(plasticity->elements) + memory_held(plasticity->sites) +
-         memory_held(plasticity->history) + memory_held(plasticity->place);
+         memory_held(plasticity->place);
 }
 
 const FemEffectOps fem_effect_plasticity = {
@@ -321,13 +330,14 @@ const FemEffectOps fem_effect_plasticity = {
     .help = "isotropic J2 plasticity with linear hardening, with the law stvk",
     .is_wanted = is_wanted,
     .create = create,
-    .prepare = prepare,
+    .connect = connect,
+    .start = start,
+    .advance = advance,
+    .check_history = check_history,
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
     .report = report,
-    .save = save,
-    .load = load,
     .bytes = bytes,
     .destroy = destroy,
 };

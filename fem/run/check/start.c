@@ -47,8 +47,7 @@ Status fem_run_start_evaluate(FemSystem *system) {
   double *zero = memory_zeroed(n, sizeof *zero);
   FemEnergy energy;
   if (!zero) return status_no_memory("the state");
-  Status status = fem_system_begin(system, 0, zero, zero);
-  if (!status) status = fem_system_accept(system, 0, zero, zero, 0);
+  Status status = fem_system_begin(system, 0, zero, zero, 0);
   fem_system_scatter(system, 0, zero, zero);
   if (!status) status = fem_system_energy(system, 0, &energy);
   memory_free(zero);

@@ -12,8 +12,10 @@ Status fem_checkpoint_create(FemCheckpoint *checkpoint, int vertex_count) {
   checkpoint->displacement = memory_zeroed(values, sizeof(double));
   checkpoint->velocity = memory_zeroed(values, sizeof(double));
   checkpoint->ledger = memory_zeroed(0, sizeof(double));
+  checkpoint->rest = memory_zeroed(0, sizeof(double));
   checkpoint->so_far.counters = record_new();
-  if (checkpoint->displacement && checkpoint->velocity && checkpoint->ledger && checkpoint->so_far.counters)
+  if (checkpoint->displacement && checkpoint->velocity && checkpoint->ledger && checkpoint->rest &&
+      checkpoint->so_far.counters)
     return STATUS_OK;
   fem_checkpoint_destroy(checkpoint);
   return status_no_memory("a checkpoint");
@@ -40,11 +42,12 @@ Status fem_checkpoint_copy(FemCheckpoint *copy, const FemCheckpoint *checkpoint)
   copy->origin = NULL;
   copy->effect_count = 0;
   copy->ledger = memory_copy(checkpoint->ledger, checkpoint->ledger_count, sizeof(double));
+  copy->rest = memory_copy(checkpoint->rest, checkpoint->rest_count, sizeof(double));
   copy->displacement = memory_copy(checkpoint->displacement, values, sizeof(double));
   copy->velocity = memory_copy(checkpoint->velocity, values, sizeof(double));
   copy->so_far.counters = record_new();
   record_merge(copy->so_far.counters, checkpoint->so_far.counters);
-  if (copy->displacement && copy->velocity && copy->ledger && copy->so_far.counters &&
+  if (copy->displacement && copy->velocity && copy->ledger && copy->rest && copy->so_far.counters &&
       copy_origin(copy, checkpoint->origin) && copy_effects(copy, checkpoint))
     return STATUS_OK;
   fem_checkpoint_destroy(copy);
@@ -56,6 +59,7 @@ void fem_checkpoint_destroy(FemCheckpoint *checkpoint) {
   memory_free(checkpoint->displacement);
   memory_free(checkpoint->velocity);
   memory_free(checkpoint->ledger);
+  memory_free(checkpoint->rest);
   if (checkpoint->so_far.counters) record_destroy(checkpoint->so_far.counters);
   for (int i = 0; i < checkpoint->effect_count; i++) memory_free(checkpoint->effects[i].values);
   *checkpoint = (FemCheckpoint){0};

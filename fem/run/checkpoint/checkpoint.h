@@ -20,7 +20,7 @@
 enum { FEM_CHECKPOINT_NAME = 32 };
 static const char FEM_CHECKPOINT_FILE[] = "checkpoint.h5"; // in the run's folder
 
-// What an effect keeps that is no function of time, positions and velocities.
+// What an effect remembers (fem/effect/state.h).
 typedef struct FemCheckpointEffect {
   char name[FEM_CHECKPOINT_NAME];
   double *values; // owned                                         (count)
@@ -43,6 +43,8 @@ typedef struct FemCheckpoint {
   int effect_count;
   double *ledger; // what a run keeps account of (fem/measure/ledger.h), owned       (ledger_count)
   size_t ledger_count;
+  double *rest; // bodies at rest (fem/run/rest.h), owned                            (rest_count)
+  size_t rest_count;
 } FemCheckpoint;
 
 // A run's beginning: everything zero. STATUS_MEMORY.

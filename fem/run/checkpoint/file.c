@@ -196,6 +196,9 @@ static bool write_contents(hid_t file, const FemCheckpoint *checkpoint, const ch
   const hsize_t ledger_count = checkpoint->ledger_count;
   works = works &&
           write_values(file, "ledger", FEM_REAL, 1, &ledger_count, checkpoint->ledger, "the ledger's own");
+  const hsize_t rest_count = checkpoint->rest_count;
+  works =
+      works && write_values(file, "rest", FEM_REAL, 1, &rest_count, checkpoint->rest, "of bodies at rest");
   int count;
   const FemCheckpointNumber *numbers = fem_checkpoint_numbers(&count);
   for (int k = 0; k < count && works; k++)
@@ -388,6 +391,8 @@ static Status read_arrays(hid_t file, FemCheckpoint *checkpoint, const char *pat
   checkpoint->vertex_count = (int)shape[0];
   TRY(read_array(file, path, "ledger", 1, shape, &checkpoint->ledger));
   checkpoint->ledger_count = (size_t)shape[0];
+  TRY(read_array(file, path, "rest", 1, shape, &checkpoint->rest));
+  checkpoint->rest_count = (size_t)shape[0];
   return read_text(file, path, "origin", &checkpoint->origin);
 }
 

@@ -14,16 +14,17 @@ Status fem_restart_begin(FemCheckpoint *checkpoint, const FemModel *model, const
   return STATUS_OK;
 }
 
-static Status save_effect(FemCheckpointEffect *saved, const FemEffect *effect) {
+static Status save_effect(FemCheckpointEffect *saved, const FemEffect *effect,
+                          const FemEffectHistory *history) {
   snprintf(saved->name, sizeof saved->name, "%s", effect->ops->name);
-  if (effect->ops->save) return effect->ops->save(effect->self, &saved->values, &saved->count);
-  saved->values = memory_zeroed(0, sizeof(double));
+  saved->count = history->count;
+  saved->values = memory_copy(history->values, history->count, sizeof *history->values);
   return saved->values ? STATUS_OK : status_no_memory("a checkpoint");
 }
 
 static Status save_effects(FemCheckpoint *checkpoint, const FemSystem *system) {
   for (int i = 0; i < system->effect_count; i++) {
-    TRY(save_effect(&checkpoint->effects[i], &system->effects[i]));
+    TRY(save_effect(&checkpoint->effects[i], &system->effects[i], &system->accepted.histories[i]));
     checkpoint->effect_count++;
   }
   return STATUS_OK;
@@ -79,25 +80,26 @@ Status fem_restart_check(const FemCheckpoint *checkpoint, const FemModel *model)
   return STATUS_OK;
 }
 
-static Status load_effect(const FemCheckpointEffect *saved, FemEffect *effect) {
-  if (strcmp(saved->name, effect->ops->name) != 0)
-    return status_fail(STATUS_INPUT, "the checkpoint has the effect '%s' where this scene has '%s'",
-                       saved->name, effect->ops->name);
-  if (effect->ops->load) return effect->ops->load(effect->self, saved->values, saved->count);
-  return STATUS_OK;
-}
-
-Status fem_restart_load(const FemCheckpoint *checkpoint, FemSystem *system, double *u, double *v) {
-  const FemModel *model = system->model;
+void fem_restart_load(const FemCheckpoint *checkpoint, const FemModel *model, double *u, double *v) {
   for (int i = 0; i < model->unknown_count; i++) {
     u[i] = checkpoint->displacement[model->dof_of_unknown[i]];
     v[i] = checkpoint->velocity[model->dof_of_unknown[i]];
   }
+}
+
+static Status remember(const FemCheckpointEffect *saved, FemSystem *system, int place) {
+  const char *name = system->effects[place].ops->name;
+  if (strcmp(saved->name, name) != 0)
+    return status_fail(STATUS_INPUT, "the checkpoint has the effect '%s' where this scene has '%s'",
+                       saved->name, name);
+  return fem_system_remember(system, place, saved->values, saved->count);
+}
+
+Status fem_restart_remember(const FemCheckpoint *checkpoint, FemSystem *system) {
   if (checkpoint->next_frame == 0) return STATUS_OK; // a beginning
   if (checkpoint->effect_count != system->effect_count)
     return status_fail(STATUS_INPUT, "the checkpoint has %d effects, this scene has %d",
                        checkpoint->effect_count, system->effect_count);
-  for (int i = 0; i < system->effect_count; i++)
-    TRY(load_effect(&checkpoint->effects[i], &system->effects[i]));
+  for (int i = 0; i < system->effect_count; i++) TRY(remember(&checkpoint->effects[i], system, i));
   return STATUS_OK;
 }

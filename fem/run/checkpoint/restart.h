@@ -19,7 +19,8 @@ Status fem_restart_collect(FemCheckpoint *checkpoint, FemSystem *system, double 
 // Whether the checkpoint belongs to a run of that model. STATUS_INPUT says what does not fit.
 Status fem_restart_check(const FemCheckpoint *checkpoint, const FemModel *model);
 
-// The other way: the unknowns u, v and the effects' histories, for a new system.
-Status fem_restart_load(const FemCheckpoint *checkpoint, FemSystem *system, double *u, double *v);
+// The other way: the unknowns u, v; and, once a system has begun there, what its effects remember.
+void fem_restart_load(const FemCheckpoint *checkpoint, const FemModel *model, double *u, double *v);
+Status fem_restart_remember(const FemCheckpoint *checkpoint, FemSystem *system);
 
 #endif

@@ -81,7 +81,9 @@ static Status keep_ledger(const FemRunState *run, FemCheckpoint *next) {
   TRY(fem_ledger_save(&run->recorder.ledger, &ledger, &next->ledger_count));
   memory_free(next->ledger);
   next->ledger = ledger;
-  return STATUS_OK;
+  memory_free(next->rest);
+  next->rest = NULL;
+  return fem_rest_save(run->rest, &next->rest, &next->rest_count);
 }
 
 // The former checkpoint stands until the next one is whole: a run that fails on the way leaves that one.

@@ -26,10 +26,10 @@ typedef struct Toy {
   double floor_stiffness; // one-sided spring at x < 0 [N/m]
   double friction;        // force against the sign of x: a jump [N]
   double margin;          // positions further than this from `accepted` are a RETRY; 0: none [m]
-  double accepted;        // position of the first mass at the last prepare [m]
+  double accepted;        // position of the first mass at the last renewal of lists [m]
   double broken_after;    // forces fail from this time on with `failure`; 0: never [s]
   Status failure;
-  bool is_watching; // the mass was above the floor at the last prepare
+  bool is_watching; // the mass was above the floor at the last renewal of lists
   int evaluations, retries;
   // The system around it.
   FemSceneDef scene;
@@ -83,7 +83,7 @@ static inline Status add_jacobian(void *self, const FemState *state, double stif
   return STATUS_OK;
 }
 
-static inline Status prepare(void *self, const FemState *state, double step) {
+static inline Status renew(void *self, const FemState *state, double step) {
   Toy *toy = *(Toy **)self;
   (void)step;
   toy->accepted = state->positions[0];
@@ -119,7 +119,7 @@ static const FemEffectOps law = {
     .name = "law", .couple = couple, .add_force = add_force, .add_jacobian = add_jacobian, .destroy = forget};
 static const FemEffectOps law_with_floor = {.name = "law",
                                             .couple = couple,
-                                            .prepare = prepare,
+                                            .renew = renew,
                                             .add_force = add_force,
                                             .add_jacobian = add_jacobian,
                                             .gap = gap,
@@ -155,10 +155,13 @@ static inline void toy_open(Toy *toy) {
                           .dof_of_unknown = toy->dof_of_unknown};
   FemSystem *system = &toy->system;
   size_t dofs = 3 * (size_t)toy->count;
-  *system = (FemSystem){.model = &toy->model,
-                        .positions = memory_copy(toy->rest, dofs, sizeof(double)),
-                        .velocities = memory_zeroed(dofs, sizeof(double)),
-                        .forces = memory_zeroed(dofs, sizeof(double))};
+  const double still[3 * MOST] = {0};
+  *system = (FemSystem){.model = &toy->model, .forces = memory_zeroed(dofs, sizeof(double))};
+  ck_assert_ok(fem_state_create(&system->accepted, toy->count, toy->rest, still));
+  ck_assert_ok(fem_state_create(&system->trial, toy->count, toy->rest, still));
+  system->trial.last = &system->accepted;
+  system->positions = system->trial.positions;
+  system->velocities = system->trial.velocities;
   add_effect(toy, toy->floor_stiffness > 0 || toy->margin > 0 ? &law_with_floor : &law);
   if (toy->damper > 0) add_effect(toy, &damper);
   ck_assert_ok(fem_pattern_create(&system->pattern, toy->count));

@@ -13,24 +13,40 @@
 // moves are continuous; when an island awakes its forces are those with which it fell asleep. Of the energy
 // only the kinetic energy of what falls asleep is lost, at most ½ m speed², and none is ever gained.
 //
-// All is decided in `prepare`, from accepted states, and goes through checkpoints.
-#ifndef TETLAP_FEM_EFFECT_REST_H
-#define TETLAP_FEM_EFFECT_REST_H
+// All is decided from accepted states, and goes through checkpoints.
+#ifndef TETLAP_FEM_RUN_REST_H
+#define TETLAP_FEM_RUN_REST_H
 
 #include <stdbool.h>
 
-#include "fem/model/model.h"
+#include "base/files/record.h"
+#include "fem/effect/system.h"
 
-struct FemSystem;
+typedef struct FemRest FemRest; // opaque
 
+bool fem_rest_is_wanted(const FemSceneDef *scene);
+
+// For a system whose contact is on and which it may change; both borrowed.
+Status fem_rest_create(FemRest **rest, FemSystem *system);
+void fem_rest_destroy(FemRest *rest); // NULL: nothing
+
+// Decides which bodies sleep, at the system's accepted state; `step` [s] is the expected length of the next
+// one. NULL, here and below: no body may sleep.
+Status fem_rest_decide(FemRest *rest, double step);
 // Whether a body has fallen asleep or awoken since the last call; then the unknowns must be numbered anew.
-// NULL: false.
-bool fem_effect_rest_has_changed(void *effect);
-// Whether a body sleeps. NULL: false.
-bool fem_effect_rest_is_asleep(const void *effect, int body);
-// The time at which something that acts on a sleeping body begins to change; INFINITY: never. NULL: INFINITY.
-double fem_effect_rest_next_change(const void *effect);
+bool fem_rest_has_changed(FemRest *rest);
+bool fem_rest_is_asleep(const FemRest *rest, int body);
+// The time at which something that acts on a sleeping body begins to change; INFINITY: never.
+double fem_rest_next_change(const FemRest *rest);
 // Counts the kinetic energy that was taken from what fell asleep [J].
-void fem_effect_rest_add_loss(void *effect, double energy);
+void fem_rest_add_loss(FemRest *rest, double energy);
+
+// Adds counters to summary.json.
+void fem_rest_report(const FemRest *rest, Record *counters);
+
+// For checkpoints: a new array, the caller's; and back, before the first decision. STATUS_INPUT: it does not
+// fit.
+Status fem_rest_save(const FemRest *rest, double **values, size_t *count);
+Status fem_rest_load(FemRest *rest, const double *values, size_t count);
 
 #endif

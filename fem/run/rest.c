@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/effect/contact/rest.h"
+#include "fem/run/rest.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,11 +7,11 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
-#include "fem/effect/system.h"
 #include "fem/model/tolerance.h"
 #include "fem/scene/drive.h"
 
-typedef struct Rest {
+struct FemRest {
+  FemSystem *system;             // borrowed
   const FemModel *model;         // borrowed
   ContactSystem *contact;        // borrowed
   int body_count;                // with unknowns
@@ -31,17 +31,17 @@ typedef struct Rest {
   // What happened; the last two of the whole run.
   long long sleeps, wakes;
   double asleep_s, lost; // bodies' time asleep, summed [s]; kinetic energy [J]
-} Rest;
+};
 
 // Marks of a body, or of an island if one of its bodies has it.
 enum { IS_AWAKE = 1, IS_UNREADY = 2, IS_DISTURBED = 4 };
 
-static bool is_wanted(const FemSceneDef *scene) {
-  return scene->contact.is_on && scene->contact.rest_is_on;
+bool fem_rest_is_wanted(const FemSceneDef *scene) {
+  return scene->contact.is_on && scene->contact.rest_is_on && !scene->is_static;
 }
 
-static void destroy(void *self) {
-  Rest *rest = self;
+void fem_rest_destroy(FemRest *rest) {
+  if (!rest) return;
   memory_free(rest->is_held);
   memory_free(rest->calm_since);
   memory_free(rest->before);
@@ -52,23 +52,19 @@ static void destroy(void *self) {
   memory_free(rest);
 }
 
-static size_t bytes(const void *self) {
-  const Rest *rest = self;
-  const void *const arrays[] = {rest->is_held,   rest->calm_since, rest->before,     rest->root,
-                                rest->next_held, rest->state,      rest->is_balanced};
-  return memory_held(self) + memory_held_by(sizeof arrays / sizeof *arrays, arrays);
-}
-
 static int count_shapes(const FemSceneDef *scene) {
   int count = 0;
   for (int o = 0; o < scene->obstacle_count; o++) count += scene->obstacles[o].kind != FEM_OBSTACLE_MESH;
   return count;
 }
 
-static Status create(void **self, const FemModel *model) {
-  Rest *rest = memory_zeroed(1, sizeof *rest);
+Status fem_rest_create(FemRest **made, FemSystem *system) {
+  FemRest *rest = memory_zeroed(1, sizeof *rest);
   if (!rest) return status_no_memory("bodies at rest");
+  const FemModel *model = system->model;
+  rest->system = system;
   rest->model = model;
+  rest->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
   rest->body_count = model->scene->body_count;
   rest->party_count = model->body_count + count_shapes(model->scene);
   size_t parties = (size_t)rest->party_count, values = 3 * (size_t)model->vertex_count;
@@ -85,15 +81,10 @@ static Status create(void **self, const FemModel *model) {
   bool fits = rest->is_held && rest->next_held && rest->root && rest->state && rest->calm_since &&
               rest->before && rest->is_balanced;
   if (!fits) {
-    destroy(rest);
+    fem_rest_destroy(rest);
     return status_no_memory("bodies at rest");
   }
-  *self = rest;
-  return STATUS_OK;
-}
-
-static Status connect(void *self, const FemSystem *system) {
-  ((Rest *)self)->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
+  *made = rest;
   return STATUS_OK;
 }
 
@@ -103,7 +94,7 @@ static double next_release(const FemConstraintDef *def, double time) {
   return def->release > time ? def->release : INFINITY;
 }
 
-static double next_change_of_body(const Rest *rest, int body, double time) {
+static double next_change_of_body(const FemRest *rest, int body, double time) {
   const FemBodyDef *def = &rest->model->scene->bodies[body];
   double next = INFINITY;
   for (int i = 0; i < def->fixed_count; i++) next = fmin(next, next_release(&def->fixed[i], time));
@@ -117,7 +108,7 @@ static double next_change_of_body(const Rest *rest, int body, double time) {
 }
 
 // The obstacle that is that party.
-static const FemObstacleDef *obstacle_of(const Rest *rest, int party) {
+static const FemObstacleDef *obstacle_of(const FemRest *rest, int party) {
   const FemSceneDef *scene = rest->model->scene;
   int mesh = rest->body_count, shape = rest->model->body_count;
   for (int o = 0; o < scene->obstacle_count; o++)
@@ -126,7 +117,7 @@ static const FemObstacleDef *obstacle_of(const Rest *rest, int party) {
   return NULL;
 }
 
-static double next_change(const Rest *rest, int party, double time) {
+static double next_change(const FemRest *rest, int party, double time) {
   if (party < rest->body_count) return next_change_of_body(rest, party, time);
   return fem_drive_next_change(&obstacle_of(rest, party)->motion, time);
 }
@@ -144,7 +135,7 @@ static double fastest(const FemModelBody *body, const double *velocities) {
 }
 
 // Of its centre of mass, over the step to this state: net force by mass.
-static double acceleration_of(const Rest *rest, const FemModelBody *body, const FemState *state) {
+static double acceleration_of(const FemRest *rest, const FemModelBody *body, const FemState *state) {
   Vec3 sum = {0, 0, 0};
   double mass = 0;
   for (size_t v = (size_t)body->vertex_begin; v < (size_t)body->vertex_end; v++) {
@@ -156,11 +147,11 @@ static double acceleration_of(const Rest *rest, const FemModelBody *body, const 
 }
 
 // Whether something began to act, or changed, since the last decision, or is changing now.
-static bool is_disturbed(const Rest *rest, int body, double time) {
+static bool is_disturbed(const FemRest *rest, int body, double time) {
   return next_change(rest, body, rest->decided_at) <= time || next_change(rest, body, time) <= time;
 }
 
-static void judge_bodies(Rest *rest, const FemState *state) {
+static void judge_bodies(FemRest *rest, const FemState *state) {
   double speed = fem_model_rest_speed(rest->model), acceleration = fem_model_rest_acceleration(rest->model);
   bool has_step = state->time > rest->before_time;
   for (int b = 0; b < rest->body_count; b++) {
@@ -177,18 +168,18 @@ static void judge_bodies(Rest *rest, const FemState *state) {
 
 // ---- Islands.
 
-static int root_of(const Rest *rest, int party) {
+static int root_of(const FemRest *rest, int party) {
   while (rest->root[party] != party) party = rest->root[party];
   return party;
 }
 
 // The lower number represents both.
-static void join(Rest *rest, int a, int b) {
+static void join(FemRest *rest, int a, int b) {
   int p = root_of(rest, a), q = root_of(rest, b);
   rest->root[p > q ? p : q] = p > q ? q : p;
 }
 
-static unsigned char state_of(const Rest *rest, int body, double time) {
+static unsigned char state_of(const FemRest *rest, int body, double time) {
   if (rest->is_held[body]) return is_disturbed(rest, body, time) ? IS_DISTURBED : 0;
   bool is_ready =
       rest->calm_since[body] + fem_model_rest_time(rest->model) <= time && rest->is_balanced[body];
@@ -196,7 +187,7 @@ static unsigned char state_of(const Rest *rest, int body, double time) {
 }
 
 // Decides which bodies to hold, by what is near them now.
-static void decide(Rest *rest, double time) {
+static void decide(FemRest *rest, double time) {
   int count;
   const ContactInterface *facings = contact_system_interfaces(rest->contact, &count);
   for (int p = 0; p < rest->party_count; p++) {
@@ -219,11 +210,11 @@ static void decide(Rest *rest, double time) {
     rest->next_held[b] = !(rest->state[root_of(rest, b)] & (IS_UNREADY | IS_DISTURBED));
 }
 
-static bool differs(const Rest *rest, int count) {
+static bool differs(const FemRest *rest, int count) {
   return memcmp(rest->is_held, rest->next_held, (size_t)count * sizeof *rest->is_held) != 0;
 }
 
-static bool has_sleeper(const Rest *rest, const bool *is_held) {
+static bool has_sleeper(const FemRest *rest, const bool *is_held) {
   bool has = false;
   for (int b = 0; b < rest->body_count; b++) has = has || is_held[b];
   return has;
@@ -231,11 +222,12 @@ static bool has_sleeper(const Rest *rest, const bool *is_held) {
 
 // ---- Applying the decision.
 
-static Status tell_contact(const Rest *rest, const FemState *state, double step, const bool *is_held) {
+static Status tell_contact(const FemRest *rest, const FemState *state, double step, const bool *is_held) {
+  fem_system_forget(rest->system);
   return contact_system_hold(rest->contact, state->time, state->positions, state->velocities, step, is_held);
 }
 
-static void count_changes(Rest *rest) {
+static void count_changes(FemRest *rest) {
   for (int b = 0; b < rest->body_count; b++) {
     rest->sleeps += rest->next_held[b] && !rest->is_held[b];
     rest->wakes += !rest->next_held[b] && rest->is_held[b];
@@ -243,14 +235,14 @@ static void count_changes(Rest *rest) {
   }
 }
 
-static void find_next_change(Rest *rest, double time) {
+static void find_next_change(FemRest *rest, double time) {
   rest->next_change = INFINITY;
   if (!has_sleeper(rest, rest->is_held)) return;
   for (int p = 0; p < rest->party_count; p++)
     if (rest->is_held[p]) rest->next_change = fmin(rest->next_change, next_change(rest, p, time));
 }
 
-static void adopt(Rest *rest, double time) {
+static void adopt(FemRest *rest, double time) {
   rest->has_changed = rest->has_changed || differs(rest, rest->body_count);
   count_changes(rest);
   memcpy(rest->is_held, rest->next_held, (size_t)rest->party_count * sizeof *rest->is_held);
@@ -259,7 +251,7 @@ static void adopt(Rest *rest, double time) {
 
 // The lists of contact may be old: everything is searched at the present positions before anything is
 // changed.
-static Status change(Rest *rest, const FemState *state, double step) {
+static Status change(FemRest *rest, const FemState *state, double step) {
   bool concerns_contact = has_sleeper(rest, rest->is_held) || has_sleeper(rest, rest->next_held);
   if (concerns_contact) {
     TRY(tell_contact(rest, state, step, NULL));
@@ -269,14 +261,14 @@ static Status change(Rest *rest, const FemState *state, double step) {
   return has_sleeper(rest, rest->is_held) ? tell_contact(rest, state, step, rest->is_held) : STATUS_OK;
 }
 
-static void count_time(Rest *rest, double time) {
+static void count_time(FemRest *rest, double time) {
   if (time > rest->decided_at)
     for (int b = 0; b < rest->body_count; b++)
       if (rest->is_held[b]) rest->asleep_s += time - rest->decided_at;
 }
 
 // Restores the state from a checkpoint.
-static Status restore(Rest *rest, const FemState *state, double step) {
+static Status restore(FemRest *rest, const FemState *state, double step) {
   rest->is_restored = false;
   for (int p = rest->body_count; p < rest->party_count; p++)
     rest->is_held[p] = next_change(rest, p, state->time) > state->time;
@@ -284,8 +276,9 @@ static Status restore(Rest *rest, const FemState *state, double step) {
   return has_sleeper(rest, rest->is_held) ? tell_contact(rest, state, step, rest->is_held) : STATUS_OK;
 }
 
-static Status prepare(void *self, const FemState *state, double step) {
-  Rest *rest = self;
+Status fem_rest_decide(FemRest *rest, double step) {
+  if (!rest) return STATUS_OK;
+  const FemState *state = &rest->system->accepted;
   if (rest->is_restored) TRY(restore(rest, state, step));
   if (isnan(rest->decided_at)) rest->decided_at = state->time;
   count_time(rest, state->time);
@@ -296,8 +289,8 @@ static Status prepare(void *self, const FemState *state, double step) {
   return status;
 }
 
-static void report(void *self, Record *counters) {
-  const Rest *rest = self;
+void fem_rest_report(const FemRest *rest, Record *counters) {
+  if (!rest) return;
   const ContactCounters *contact = contact_system_counters(rest->contact);
   record_add(counters, "bodies_put_to_rest", rest->sleeps);
   record_add(counters, "bodies_awakened", rest->wakes);
@@ -307,12 +300,12 @@ static void report(void *self, Record *counters) {
 }
 
 // asleep_s, lost; then of each body whether it sleeps, and since when it is calm (INFINITY: it is not).
-static Status save(const void *self, double **values, size_t *count) {
-  const Rest *rest = self;
-  size_t bodies = (size_t)rest->body_count;
-  *count = 2 + 2 * bodies;
+Status fem_rest_save(const FemRest *rest, double **values, size_t *count) {
+  size_t bodies = rest ? (size_t)rest->body_count : 0;
+  *count = rest ? 2 + 2 * bodies : 0;
   *values = memory_zeroed(*count, sizeof **values);
   if (!*values) return status_no_memory("a checkpoint");
+  if (!rest) return STATUS_OK;
   (*values)[0] = rest->asleep_s, (*values)[1] = rest->lost;
   for (size_t b = 0; b < bodies; b++) {
     (*values)[2 + b] = rest->is_held[b];
@@ -321,12 +314,12 @@ static Status save(const void *self, double **values, size_t *count) {
   return STATUS_OK;
 }
 
-static Status load(void *self, const double *values, size_t count) {
-  Rest *rest = self;
-  size_t bodies = (size_t)rest->body_count;
-  if (count != 2 + 2 * bodies)
+Status fem_rest_load(FemRest *rest, const double *values, size_t count) {
+  size_t bodies = rest ? (size_t)rest->body_count : 0, wanted = rest ? 2 + 2 * bodies : 0;
+  if (count != wanted)
     return status_fail(STATUS_INPUT, "the checkpoint has %zu numbers of bodies at rest, this scene has %zu",
-                       count, 2 + 2 * bodies);
+                       count, wanted);
+  if (!rest) return STATUS_OK;
   rest->asleep_s = values[0], rest->lost = values[1];
   for (size_t b = 0; b < bodies; b++) {
     rest->is_held[b] = values[2 + b] != 0;
@@ -337,41 +330,21 @@ static Status load(void *self, const double *values, size_t count) {
   return STATUS_OK;
 }
 
-const FemEffectOps fem_effect_rest = {
-    .name = "rest",
-    .help =
-        "bodies that have come to rest carry no unknowns and no contact search until something nears them",
-    .is_wanted = is_wanted,
-    .static_refusal = "a static scene is at rest always; take 'rest' or time.static away",
-    .static_key = "contact.rest",
-    .create = create,
-    .connect = connect,
-    .prepare = prepare,
-    .report = report,
-    .save = save,
-    .load = load,
-    .bytes = bytes,
-    .destroy = destroy,
-};
-
-bool fem_effect_rest_has_changed(void *effect) {
-  Rest *rest = effect;
+bool fem_rest_has_changed(FemRest *rest) {
   if (!rest) return false;
   bool has_changed = rest->has_changed;
   rest->has_changed = false;
   return has_changed;
 }
 
-bool fem_effect_rest_is_asleep(const void *effect, int body) {
-  const Rest *rest = effect;
+bool fem_rest_is_asleep(const FemRest *rest, int body) {
   return rest && body < rest->body_count && rest->is_held[body];
 }
 
-double fem_effect_rest_next_change(const void *effect) {
-  const Rest *rest = effect;
+double fem_rest_next_change(const FemRest *rest) {
   return rest ? rest->next_change : INFINITY;
 }
 
-void fem_effect_rest_add_loss(void *effect, double energy) {
-  ((Rest *)effect)->lost += energy;
+void fem_rest_add_loss(FemRest *rest, double energy) {
+  rest->lost += energy;
 }
