@@ -23,7 +23,7 @@ double fem_model_speed_share(const FemModel *model);
 // body in the whole run.
 double fem_model_slip_speed(const FemModel *model);
 
-// What counts as rest (fem/effect/contact/rest.h) [m/s], [m/s²], [s]: the scene's, or chosen.
+// What counts as rest (fem/run/rest.h) [m/s], [m/s²], [s]: the scene's, or chosen.
 double fem_model_rest_speed(const FemModel *model);
 double fem_model_rest_acceleration(const FemModel *model);
 double fem_model_rest_time(const FemModel *model);

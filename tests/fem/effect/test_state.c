@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// fem/effect/state: forces, energies and matrices are functions of a state and of the last accepted one,
+// whatever was evaluated before; and what effects remember can be copied.
+#include <string.h>
+
+#include "base/random.h"
+#include "fem/effect/system.h"
+#include "scene.h"
+#include "suite.h"
+
+// Steps that are accepted before anything is compared, so that what effects remember is not nothing.
+enum { STEPS = 3, STATES = 4 };
+static const double STEP = 1e-4;
+
+typedef struct Walk {
+  SceneRun run;
+  FemSystem system;
+  int n;
+  double *u[STATES], *v[STATES]; // states under trial, each near the last accepted one
+} Walk;
+
+// Displacements and velocities of a body that is sheared, pressed and shaken a little.
+static void displace(const FemModel *model, int k, double *u, double *v) {
+  Random random = random_seeded(5, (uint64_t)k);
+  for (int i = 0; i < model->unknown_count; i++) {
+    int dof = model->dof_of_unknown[i];
+    double shear = dof % 3 == 0 ? 3e-3 * model->rest[dof + 2] : 0;
+    u[i] = (1 + 0.2 * k) * shear + 2e-6 * random_normal(&random);
+    v[i] = model->initial_velocity[dof] + 1e-3 * random_normal(&random);
+  }
+}
+
+static void open_walk(Walk *walk, const char *setting) {
+  scene_open(&walk->run, "everything", (const char *const[]){setting, NULL});
+  const FemModel *model = &walk->run.model;
+  walk->n = model->unknown_count;
+  ck_assert_ok(fem_system_create(&walk->system, model));
+  for (int k = 0; k < STATES; k++) {
+    walk->u[k] = calloc((size_t)walk->n, sizeof(double));
+    walk->v[k] = calloc((size_t)walk->n, sizeof(double));
+  }
+  ck_assert_ok(fem_system_begin(&walk->system, 0, walk->u[0], walk->v[0], STEP));
+  for (int k = 1; k <= STEPS; k++) {
+    displace(model, k, walk->u[0], walk->v[0]);
+    ck_assert_ok(fem_system_renew(&walk->system, k * STEP, walk->u[0], walk->v[0]));
+    ck_assert_ok(fem_system_accept(&walk->system, k * STEP, walk->u[0], walk->v[0], STEP));
+  }
+  for (int k = 1; k < STATES; k++) displace(model, STEPS + k, walk->u[k], walk->v[k]);
+}
+
+static void close_walk(Walk *walk) {
+  for (int k = 0; k < STATES; k++) free(walk->u[k]), free(walk->v[k]);
+  fem_system_destroy(&walk->system);
+  scene_close(&walk->run);
+}
+
+typedef struct Values {
+  double *forces, *product; // f, and K times a vector of ones          (3 vertices), (n)
+  FemEnergy energy;
+} Values;
+
+static double time_of(int k) {
+  return (STEPS + 0.25 * k) * STEP;
+}
+
+static Values evaluate(Walk *walk, int k) {
+  FemSystem *system = &walk->system;
+  size_t forces = 3 * (size_t)system->model->vertex_count;
+  double time = time_of(k), *ones = malloc((size_t)walk->n * sizeof *ones);
+  Values values = {.forces = malloc(forces * sizeof(double)),
+                   .product = calloc((size_t)walk->n, sizeof(double))};
+  for (int i = 0; i < walk->n; i++) ones[i] = 1;
+  fem_system_scatter(system, time, walk->u[k], walk->v[k]);
+  ck_assert_ok(fem_system_forces(system, time));
+  memcpy(values.forces, system->forces, forces * sizeof(double));
+  ck_assert_ok(fem_system_energy(system, time, &values.energy));
+  ck_assert_ok(fem_system_couple(system, time));
+  ck_assert_ok(fem_system_assemble(system, time, 1, 0, 0, &system->matrix));
+  fem_matrix_multiply(&system->matrix, ones, values.product);
+  free(ones);
+  return values;
+}
+
+static void forget(Values *values) {
+  free(values->forces), free(values->product);
+}
+
+static void compare(const Walk *walk, const Values *one, const Values *other) {
+  size_t forces = 3 * (size_t)walk->system.model->vertex_count * sizeof(double);
+  ck_assert_mem_eq(one->forces, other->forces, forces);
+  ck_assert_mem_eq(&one->energy, &other->energy, sizeof one->energy);
+  ck_assert_mem_eq(one->product, other->product, (size_t)walk->n * sizeof(double));
+}
+
+#define SMALL_CONTACT "contact={overlap: clip, friction: 0.3}"
+#define VISCOUS "contact={overlap: clip, viscosity: 5e4}"
+static const char *const settings[] = {SMALL_CONTACT, VISCOUS};
+
+START_TEST(states_give_the_same_in_any_order_and_any_number_of_times) {
+  static const int ORDER[] = {3, 1, 2, 2, 1, 3, 2, 3, 1};
+  Walk walk;
+  Values first[STATES];
+  open_walk(&walk, settings[_i]);
+  for (int k = 1; k < STATES; k++) first[k] = evaluate(&walk, k);
+  ck_assert(first[1].energy.contact > 0 && first[1].energy.plastic_work > 0);
+  ck_assert(_i > 0 || first[1].energy.friction_work > 0);
+  ck_assert(memcmp(&first[1].energy, &first[2].energy, sizeof first[1].energy) != 0);
+  for (size_t i = 0; i < sizeof ORDER / sizeof *ORDER; i++) {
+    Values again = evaluate(&walk, ORDER[i]);
+    compare(&walk, &first[ORDER[i]], &again);
+    forget(&again);
+  }
+  for (int k = 1; k < STATES; k++) forget(&first[k]);
+  close_walk(&walk);
+}
+END_TEST
+
+// What was remembered is taken to a system that began at the last accepted state, and has been nowhere else.
+START_TEST(histories_that_are_copied_give_the_same) {
+  Walk walk, other;
+  open_walk(&walk, settings[_i]);
+  open_walk(&other, settings[_i]);
+  fem_system_destroy(&other.system);
+  ck_assert_ok(fem_system_create(&other.system, &other.run.model));
+  ck_assert_ok(fem_system_begin(&other.system, STEPS * STEP, walk.u[0], walk.v[0], STEP));
+  Values without = evaluate(&other, 1);
+  for (int i = 0; i < walk.system.effect_count; i++) {
+    const FemEffectHistory *history = &walk.system.accepted.histories[i];
+    ck_assert_ok(fem_system_remember(&other.system, i, history->values, history->count));
+  }
+  for (int k = 1; k < STATES; k++) {
+    Values one = evaluate(&walk, k), copied = evaluate(&other, k);
+    compare(&walk, &one, &copied);
+    if (k == 1) ck_assert(memcmp(&one.energy, &without.energy, sizeof one.energy) != 0);
+    forget(&one), forget(&copied);
+  }
+  forget(&without);
+  close_walk(&walk), close_walk(&other);
+}
+END_TEST
+
+START_TEST(a_history_of_another_scene_is_refused) {
+  Walk walk;
+  open_walk(&walk, settings[0]);
+  int checked = 0;
+  for (int i = 0; i < walk.system.effect_count; i++) {
+    const FemEffectHistory *history = &walk.system.accepted.histories[i];
+    if (history->count == 0) continue;
+    checked++;
+    ck_assert_int_eq(fem_system_remember(&walk.system, i, history->values, history->count - 1), STATUS_INPUT);
+  }
+  ck_assert_int_eq(checked, 3); // plasticity, loads, stick
+  close_walk(&walk);
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("state");
+  tcase_add_loop_test(test_case, states_give_the_same_in_any_order_and_any_number_of_times, 0, 2);
+  tcase_add_loop_test(test_case, histories_that_are_copied_give_the_same, 0, 2);
+  tcase_add_test(test_case, a_history_of_another_scene_is_refused);
+  return suite_run("state", test_case, 60);
+}
