@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE 1 // dladdr
+#endif
 #include "fem/sparse/petsc_library.h"
 
 #include <dlfcn.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/files/file.h"
 #include "base/memory.h"
 
 static FemPetscLibrary functions;
@@ -61,6 +66,21 @@ static void keep_mpi_to_itself(void) {
   for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) setenv(settings[i][0], settings[i][1], 0);
 }
 
+// Open MPI and hwloc look for their parts where they were built to lie; a bundle (tools/bundle) has those of
+// Open MPI beside PETSc's library, and must not take the machine's, which may be of other versions.
+static void tell_mpi_its_place(void) {
+  Dl_info info;
+  char path[PATH_MAX];
+  const char *slash =
+      dladdr((void *)(size_t)functions.PetscInitialize, &info) ? strrchr(info.dli_fname, '/') : NULL;
+  if (!slash) return;
+  int folder = (int)(slash - info.dli_fname);
+  int length = snprintf(path, sizeof path, "%.*s/openmpi-components", folder, info.dli_fname);
+  if (length < 0 || (size_t)length >= sizeof path || !file_exists(path)) return;
+  setenv("OMPI_MCA_mca_base_component_path", path, 0);
+  setenv("HWLOC_PLUGINS_PATH", path, 0);
+}
+
 static void finalize(void) {
   functions.PetscFinalize();
 }
@@ -76,6 +96,7 @@ static Status initialize(void) {
   char **arguments = own;
   int count = 5;
   keep_mpi_to_itself();
+  tell_mpi_its_place();
   if (functions.PetscInitialize(&count, &arguments, "", NULL) != 0)
     return status_fail(STATUS_SOLVER, "PETSc could not be initialised: use solver.linear: cholmod");
   MPI_Comm *world = NULL;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the program and the library are: what the environment says, beside this package, in its checkout, in the
-system."""
+"""Where the program and the library are: what the environment says, beside this package (the program as the package
+tetlap-program), in its checkout, in the system."""
 
 import os
 import shutil
@@ -35,12 +35,13 @@ def program():
     named = _named_by("TETLAP_PROGRAM")
     if named:
         return named
-    for place in (_prefix() / "bin" / "tetlap", _build() / "tetlap"):
+    for place in (_PACKAGE.parent / "tetlap_program" / "bin" / "tetlap", _prefix() / "bin" / "tetlap", _build() / "tetlap"):
         if os.access(place, os.X_OK) and place.is_file():
             return str(place)
     found = shutil.which("tetlap")
     if not found:
-        raise Error("the program 'tetlap' is not on PATH; install it, or name it by TETLAP_PROGRAM")
+        raise Error("the program 'tetlap' is not on PATH; install it, as by the wheel tetlap-program, or name it by "
+                    "TETLAP_PROGRAM")
     return found
 
 
