@@ -9,17 +9,8 @@
 #include "contact/shape/shape.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/model/floating.h"
+#include "fem/model/limits.h"
 #include "fem/model/tolerance.h"
-
-// A body's balance may be out by the first share of all impulses of a run. Beyond it a step adds no more than
-// half of what is left to the second; the third is always allowed.
-static const double NEAR = 6e-4, FAR = 9e-4, NEGLIGIBLE = 1e-5;
-// The imbalance that a method of order 1 may add while a force rises, as a share of the same impulses. It
-// takes that back when the force falls, but not if the step size or the order has changed in between.
-static const double OWED = 3e-4;
-// From the first share to the second the tolerance of velocities falls to the third of itself: steps get
-// shorter before they have to be taken back.
-static const double STRICT_FROM = 5e-4, STRICT_TO = 9e-4, STRICTEST = 0.3;
 
 Status fem_momentum_create(FemMomentum *momentum, FemSystem *system) {
   size_t bodies = (size_t)system->model->scene->body_count;
@@ -248,8 +239,8 @@ static double lasting_of(const FemMomentum *momentum, const FemMomentumBody *bod
   if (model->scene->has_gravity)
     weight = vec3_scale(model->bodies[number].mass, vec3_at(model->scene->gravity));
   Vec3 passing = vec3_scale(-0.5 * step, vec3_sub(vec3_at(body->force), weight));
-  double owed = vec3_length(passing);
-  if (owed > OWED * expected) passing = vec3_scale(OWED * expected / owed, passing);
+  double owed = vec3_length(passing), most = fem_limits.momentum_owed * expected;
+  if (owed > most) passing = vec3_scale(most / owed, passing);
   return fmin(vec3_length(missing), vec3_length(vec3_sub(missing, passing)));
 }
 
@@ -261,8 +252,9 @@ bool fem_momentum_is_refused(const FemMomentum *momentum, double end) {
     double expected = expected_of(momentum, next, b, left, &motion);
     double before = lasting_of(momentum, now, b, step, expected),
            after = lasting_of(momentum, next, b, step, expected);
-    double room = fmax(0.5 * (FAR * expected - before), NEGLIGIBLE * expected);
-    bool is_held = after <= NEAR * expected || after - before <= room;
+    double room =
+        fmax(0.5 * (fem_limits.momentum_far * expected - before), fem_limits.momentum_step * expected);
+    bool is_held = after <= fem_limits.momentum_near * expected || after - before <= room;
     if (!is_held) return true;
   }
   return false;
@@ -278,8 +270,9 @@ double fem_momentum_strictness(const FemMomentum *momentum, double end) {
     double expected = expected_of(momentum, now, b, end - momentum->time, &motion);
     share = fmax(share, vec3_length(missing_of(now)) / expected);
   }
-  double beyond = fmin(fmax((share - STRICT_FROM) / (STRICT_TO - STRICT_FROM), 0), 1);
-  return 1 - (1 - STRICTEST) * beyond;
+  double from = fem_limits.momentum_strict, to = fem_limits.momentum_far,
+         beyond = fmin(fmax((share - from) / (to - from), 0), 1);
+  return 1 - (1 - fem_limits.strictest) * beyond;
 }
 
 // How much of the last step lies before a time.

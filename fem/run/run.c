@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "fem/model/formulas.h"
+#include "fem/model/limits.h"
 #include "fem/model/numbering.h"
 #include "fem/model/tolerance.h"
 #include "fem/run/check/choice.h"
@@ -33,8 +34,6 @@ static const double SHORTEST_RETRY = 2e-3, SHORTEST_START = 5e-4;
 // Of √(E/ρ) what a velocity may err by at most, as a share of time.tolerance, which is a length over a
 // body's.
 static const double WAVE_SHARE = 3;
-// What friction may give in a step to what slips, as a share of the scene's energy.
-static const double TURNED_SHARE = 3e-4;
 // A scene in motion without contact may begin at rest with long steps. What it gains is judged by the energy
 // of a strain of so many times time.tolerance, which is a length over a body's, at least.
 static const double TOLD_STRAIN = 20;
@@ -225,7 +224,7 @@ static Status judge_energy(FemRunState *run, double time, const FemEnergy *energ
 
 // Whether something that slips has turned within the step, and friction has pushed it on since.
 static bool has_turned(const FemRunState *run, double time, const FemEnergy *energy) {
-  return energy->turned_power * (time - run->time) > TURNED_SHARE * run->audit.scale;
+  return energy->turned_power * (time - run->time) > fem_limits.turned * run->audit.scale;
 }
 
 // The run's state is accepted.

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/model/limits.h"
 
 // Steps and order are those of the part.
 void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegratorStats *part) {
@@ -112,9 +113,6 @@ const char *fem_run_outcome(const FemRunResult *result, Status status) {
   return result->trouble.of[FEM_TROUBLE_PASSED].steps > 0 ? "passed through" : "finished";
 }
 
-// Over a run, the share of all impulses by which forces and motion may differ (fem/measure/momentum.h).
-static const double MOMENTUM_ALLOWED = 1e-3;
-
 // Share of pairs that a network may be asked beyond its training before it is trouble.
 static const double BEYOND_ALLOWED = 0.01;
 
@@ -135,7 +133,7 @@ void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, cha
              trouble->worst_sliver);
     append_trouble(text, size, &used, "slivers in the mesh", place, "mesh it anew");
   }
-  if (!(result->momentum_gap <= MOMENTUM_ALLOWED)) {
+  if (!(result->momentum_gap <= fem_limits.momentum)) {
     snprintf(place, sizeof place, "of body '%s' by %.2g %% of all impulses",
              model->bodies[result->momentum_body].name, 100 * result->momentum_gap);
     append_trouble(text, size, &used, "forces and motion differ", place,
@@ -275,7 +273,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   if (!result->is_static) {
     record_number(summary, "energy_uncertain_J", result->audit.uncertain);
     record_number(summary, "momentum_gap", result->momentum_gap);
-    record_number(summary, "momentum_gap_allowed", MOMENTUM_ALLOWED);
+    record_number(summary, "momentum_gap_allowed", fem_limits.momentum);
   }
   record_number(summary, "min_det_F", result->min_det_F);
   fem_trouble_record(&result->trouble, record_child(summary, "trouble"));

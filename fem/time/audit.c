@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "fem/model/limits.h"
+
 static double stored(const FemEnergy *energy) {
   return energy->kinetic + energy->elastic + energy->gravity + energy->contact;
 }
@@ -75,27 +77,29 @@ FemAudit fem_audit_next_within(const FemAudit *audit, double time, const FemEner
 }
 
 FemAuditBounds fem_audit_bounds(bool has_contact, double least) {
-  FemAuditBounds smooth = {.step = 0.1, .run = 2e-2, .near = INFINITY, .least = least};
-  FemAuditBounds jumping = {.step = 3e-3, .run = 1e-3, .near = 8e-4, .negligible = 1e-6, .least = least};
-  return has_contact ? jumping : smooth;
+  const FemLimits *limits = &fem_limits;
+  FemAuditBounds bounds = {.run = limits->energy_without_contact,
+                           .near = limits->energy_without_contact,
+                           .step = limits->energy_step_without_contact,
+                           .least = least};
+  if (has_contact)
+    bounds.run = limits->energy, bounds.near = limits->energy_near, bounds.step = limits->energy_step;
+  return bounds;
 }
 
 double fem_audit_rise(const FemAuditBounds *bounds, const FemAudit *audit) {
   return (audit->total - audit->lowest - audit->open) / fmax(audit->scale, bounds->least);
 }
 
-// Of the scene's energy; what a step gains beyond it is no rounding.
-static const double ROUNDING = 1e-6;
-
 bool fem_audit_is_doubtful(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after) {
-  return !(after->total - before->total <= ROUNDING * fmax(after->scale, bounds->least));
+  return !(after->total - before->total <= fem_limits.energy_step * fmax(after->scale, bounds->least));
 }
 
 bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after) {
   const double scale = fmax(after->scale, bounds->least);
   double of_step = (after->total - before->total) / scale;
   double of_run = (after->total - before->lowest) / scale;
-  bool is_held = of_step <= bounds->step && (of_run <= bounds->near || of_step <= bounds->negligible);
+  bool is_held = of_run <= bounds->near || of_step <= bounds->step;
   return !is_held;
 }
 

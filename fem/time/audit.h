@@ -8,22 +8,19 @@
 // gain energy, what it dissipates at least is found from its middle, and A takes that. So a rise of A is a
 // certain gain, and what the integrator lost is at most what A has fallen by.
 //
-// Two bounds, as shares of the scene's energy. What one step may gain: more is taken back. What a run may
-// gain in all: more is trouble (fem/output/trouble.h). Where nothing jumps both are far beyond what the error
-// test lets pass, so that exceeding them shows an error. Contact jumps within a step, and gains of many steps
-// add up: there a step is also taken back where the run's gain comes near its bound, unless the step gains
-// next to nothing.
+// The bounds are those of fem/model/limits.h. A step is taken back where the run's gain comes near its bound,
+// unless the step gains next to nothing. A run that gains more than its bound is trouble
+// (fem/output/trouble.h).
 #ifndef TETLAP_FEM_TIME_AUDIT_H
 #define TETLAP_FEM_TIME_AUDIT_H
 
 #include "fem/effect/effect.h"
 
 typedef struct FemAuditBounds {
-  double step;       // what one step may gain
-  double run;        // what a run may gain in all
-  double near;       // of the run's gain, from which on a step may not gain more than `negligible`
-  double negligible; //
-  double least;      // energy that counts as the scene's at least in these shares [J]
+  double run;   // what a run may gain in all
+  double near;  // of the run's gain, from which on a step may not gain more than `step`
+  double step;  // what one step may always gain
+  double least; // energy that counts as the scene's at least in these shares [J]
 } FemAuditBounds;
 
 typedef struct FemAudit {

@@ -2,6 +2,7 @@
 // The energy audit alone: what it counts as dissipated between accepted states of known powers.
 #include <math.h>
 
+#include "fem/model/limits.h"
 #include "fem/time/audit.h"
 #include "suite.h"
 
@@ -120,8 +121,65 @@ START_TEST(of_steps_of_load_that_are_open_no_gain_is_told) {
 }
 END_TEST
 
+// The audit after a step by which the total rises by that share of the scene's energy.
+static FemAudit rises_by(const FemAudit *audit, double share) {
+  const FemEnergy energy = {.elastic = audit->total + share};
+  FemAudit next = fem_audit_next(audit, audit->time + 1, &energy);
+  next.scale = 1;
+  return next;
+}
+
+// At the edge of both bounds: a step that just stands, and one that just does not. With and without contact.
+START_TEST(a_step_is_refused_where_it_and_the_run_gain_more_than_their_bounds) {
+  const FemAuditBounds bounds = fem_audit_bounds(_i == 0, 0);
+  static const double LESS = 1 - 1e-6, MORE = 1 + 1e-6;
+  const FemEnergy none = {.elastic = 1};
+  FemAudit start, run, next;
+  fem_audit_begin(&start, 0, &none, 0);
+  // The run has gained just less, or just more, than what is near its bound; the step just more than its own.
+  for (int is_more = 0; is_more < 2; is_more++) {
+    double near =
+        (is_more ? MORE : LESS) * fmax(bounds.near, bounds.step) - (is_more ? 0 : MORE * bounds.step);
+    run = rises_by(&start, fmax(near, 0));
+    next = rises_by(&run, MORE * bounds.step);
+    ck_assert_int_eq(fem_audit_is_refused(&bounds, &run, &next), is_more || bounds.step > bounds.near);
+    next = rises_by(&run, LESS * bounds.step);
+    ck_assert(!fem_audit_is_refused(&bounds, &run, &next));
+  }
+  next = rises_by(&start, NAN);
+  ck_assert(fem_audit_is_refused(&bounds, &start, &next));
+}
+END_TEST
+
+START_TEST(a_gain_is_doubtful_beyond_what_a_step_may_always_gain) {
+  const FemAuditBounds bounds = fem_audit_bounds(true, 0);
+  const FemEnergy none = {.elastic = 1};
+  FemAudit start;
+  fem_audit_begin(&start, 0, &none, 0);
+  FemAudit less = rises_by(&start, 0.999 * fem_limits.energy_step),
+           more = rises_by(&start, 1.001 * fem_limits.energy_step);
+  ck_assert(!fem_audit_is_doubtful(&bounds, &start, &less));
+  ck_assert(fem_audit_is_doubtful(&bounds, &start, &more));
+}
+END_TEST
+
+// What steps may use up lies within what the run promises.
+START_TEST(bounds_of_steps_keep_the_promises_of_runs) {
+  const FemLimits *limits = &fem_limits;
+  ck_assert_double_lt(limits->energy_near + limits->turned, 1.2 * limits->energy);
+  ck_assert_double_lt(limits->energy_near, limits->energy);
+  ck_assert_double_le(limits->energy_step, 0.01 * limits->energy);
+  ck_assert_double_lt(limits->momentum_near, limits->momentum_far);
+  ck_assert_double_lt(limits->momentum_far + limits->momentum_step, limits->momentum);
+  ck_assert_double_lt(limits->momentum_strict, limits->momentum_near);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("audit");
+  tcase_add_loop_test(cases, a_step_is_refused_where_it_and_the_run_gain_more_than_their_bounds, 0, 2);
+  tcase_add_test(cases, a_gain_is_doubtful_beyond_what_a_step_may_always_gain);
+  tcase_add_test(cases, bounds_of_steps_keep_the_promises_of_runs);
   tcase_add_test(cases, of_a_swing_next_to_nothing_is_lacking);
   tcase_add_test(cases, of_what_falls_within_a_step_no_more_is_counted_than_there_was);
   tcase_add_test(cases, from_the_one_to_the_other_it_goes_without_a_jump);
