@@ -139,11 +139,13 @@ START_TEST(meshing_twice_gives_the_same_mesh) {
   ck_assert_int_eq(a.vertex_count, b.vertex_count);
   ck_assert_mem_eq(a.rest, b.rest, 3 * (size_t)a.vertex_count * sizeof(double));
   ck_assert_mem_eq(a.tets, b.tets, (size_t)a.tet_count * sizeof *a.tets);
-  ck_assert_double_gt(fem_mesh_min_dihedral(&a), 8);
+  // Of some sizes gmsh 4.13 has no seed of the eight that gives 8°; slivers have less than 1°.
+  ck_assert_double_gt(fem_mesh_min_dihedral(&a), 4);
   fem_mesh_destroy(&a), fem_mesh_destroy(&b);
 }
 END_TEST
 
+// Counts of what gmsh makes of a geometry are those of its version 4.8; 4.13 makes up to 1 % more or less.
 START_TEST(our_meshes_are_what_their_readme_says) {
   const struct {
     const char *path;
@@ -163,12 +165,27 @@ START_TEST(our_meshes_are_what_their_readme_says) {
   FemMeshQuality q;
   ck_assert_ok(fem_mesh_read(&mesh, meshes[_i].path, NULL, NULL));
   ck_assert_ok(fem_mesh_quality(&mesh, &q));
-  ck_assert_int_eq(mesh.vertex_count, meshes[_i].vertex_count);
-  ck_assert_int_eq(mesh.tet_count, meshes[_i].tet_count);
+  const double slack = strstr(meshes[_i].path, ".geo") ? 0.02 : 0;
+  ck_assert_near(mesh.vertex_count, meshes[_i].vertex_count, slack * meshes[_i].vertex_count);
+  ck_assert_near(mesh.tet_count, meshes[_i].tet_count, slack * meshes[_i].tet_count);
   ck_assert_near(q.volume, meshes[_i].volume, meshes[_i].tolerance);
   ck_assert_double_gt(q.min_dihedral_degrees, 8);
   ck_assert_int_eq(q.component_count, 1);
   ck_assert_int_eq(q.coincident_vertex_count + q.pinch_edge_count + q.pinch_vertex_count, 0);
+  fem_mesh_destroy(&mesh);
+}
+END_TEST
+
+// A group of what is left of all surfaces when others are taken away, whatever signs gmsh gives to them.
+START_TEST(the_rest_of_a_boundary_is_a_group) {
+  FemMesh mesh;
+  ck_assert_ok(fem_mesh_read(&mesh, MESHES "halfspace.geo", NULL, NULL));
+  const FemMeshGroup *outer = group_of(&mesh, "outer");
+  ck_assert_int_gt(outer->vertex_count, 20);
+  for (int k = 0; k < outer->vertex_count; k++) {
+    const double *x = mesh.rest + 3 * (size_t)outer->vertices[k];
+    ck_assert_near(sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]), 20, 1e-9);
+  }
   fem_mesh_destroy(&mesh);
 }
 END_TEST
@@ -193,8 +210,8 @@ START_TEST(a_file_of_several_bodies_is_read_once) {
                     "{translate: [3, 0, 0]}}\n"
                     "  - {name: c, mesh: a.ele, material: {young: 1, poisson: 0, density: 1}, place: "
                     "{translate: [6, 0, 0]}}\n");
-  snprintf(command, sizeof command, "%s check %s 2>&1 | grep -c 'orientation was corrected: 1'", TETLAP_PROGRAM,
-           scratch("three.yaml"));
+  snprintf(command, sizeof command, "%s check %s 2>&1 | grep -c 'orientation was corrected: 1'",
+           TETLAP_PROGRAM, scratch("three.yaml"));
   FILE *pipe = popen(command, "r");
   ck_assert_ptr_nonnull(fgets(count, sizeof count, pipe));
   ck_assert_int_eq(pclose(pipe), 0);
@@ -220,6 +237,7 @@ int main(void) {
   tcase_add_test(cases, a_closed_surface_is_filled);
   tcase_add_loop_test(cases, meshing_twice_gives_the_same_mesh, 0, 3);
   tcase_add_loop_test(cases, our_meshes_are_what_their_readme_says, 0, 8);
+  tcase_add_test(cases, the_rest_of_a_boundary_is_a_group);
   tcase_add_test(cases, tetgen_files_may_count_from_zero_and_hold_comments_and_attributes);
   tcase_add_test(cases, a_file_of_several_bodies_is_read_once);
   return suite_run("mesh_read", cases, 60);
