@@ -7,7 +7,7 @@
 // by the trapezoidal rule over accepted steps; contact between two as history.csv has it
 // (fem/output/forces.h), reactions are those of `fixed` and `driven`. In exact mechanics J = Δp. The gap is
 // |J − Δp| over the larger of S and M times the velocity tolerance of one step; the latter is the resolution
-// for a body on which almost no force acts. Within a step J, Δp and S are interpolated, as forces are.
+// for a body on which almost no force acts. Within a step J, Δp and S are interpolated.
 #ifndef TETLAP_FEM_MEASURE_MOMENTUM_H
 #define TETLAP_FEM_MEASURE_MOMENTUM_H
 

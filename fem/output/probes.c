@@ -38,7 +38,7 @@ static void add(size_t count, const double *from, double *to) {
   for (size_t k = 0; k < count && from; k++) to[k] += from[k];
 }
 
-static Status find_external(FemProbes *probes, double time, const FemForcesAt *contact) {
+static Status find_external(FemProbes *probes, double time, const FemForces *contact) {
   FemSystem *system = probes->system;
   const FemState state = {.time = time, .positions = system->positions, .velocities = system->velocities};
   size_t count = values_of(probes);
@@ -54,7 +54,7 @@ static Status find_external(FemProbes *probes, double time, const FemForcesAt *c
   return STATUS_OK;
 }
 
-Status fem_probes_measure(FemProbes *probes, double time, const FemForcesAt *contact) {
+Status fem_probes_measure(FemProbes *probes, double time, const FemForces *contact) {
   const FemModel *model = probes->system->model;
   if (!probes->readings) return STATUS_OK;
   TRY(find_external(probes, time, contact));

@@ -211,7 +211,7 @@ static void measure_contact(const FemRecorder *recorder, FemMeasures *measures) 
   for (int i = 0; i < count; i++) {
     measures->overlap_volume += interfaces[i].volume;
     double force[3];
-    vec3_store(force, vec3_at(recorder->forces.now.interfaces[i]));
+    vec3_store(force, vec3_at(recorder->forces.interfaces[i]));
     measures->contact_force = fmax(measures->contact_force, vec3_length(vec3_at(force)));
   }
   measures->active_pairs = contact_system_active_count(contact);
@@ -227,7 +227,7 @@ Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *mea
   TRY(fem_system_energy(recorder->system, time, &measures->energy));
   measure_elements(recorder, measures);
   measure_motion(recorder->system, measures);
-  TRY(fem_forces_set(&recorder->forces, time));
+  TRY(fem_forces_take(&recorder->forces));
   measure_contact(recorder, measures);
   measure_steps(recorder, time, measures);
   ContactSystem *contact = contact_of(recorder->system);
@@ -237,11 +237,11 @@ Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *mea
   return STATUS_OK;
 }
 
-// What the ledger is told of a state with these forces of contact.
-static Status describe(FemRecorder *recorder, double time, const FemForcesAt *at, const FemMeasures *measures,
+// What the ledger is told of the state that was measured last.
+static Status describe(FemRecorder *recorder, double time, const FemMeasures *measures,
                        FemLedgerState *state) {
-  TRY(fem_probes_measure(&recorder->probes, time, at));
-  *state = (FemLedgerState){.contact = {.forces = (const double(*)[3])at->interfaces},
+  TRY(fem_probes_measure(&recorder->probes, time, &recorder->forces));
+  *state = (FemLedgerState){.contact = {.forces = (const double(*)[3])recorder->forces.interfaces},
                             .elastic = measures->energy.elastic,
                             .readings = recorder->probes.readings};
   state->contact.interfaces = interfaces_of(recorder->system, &state->contact.count);
@@ -250,8 +250,7 @@ static Status describe(FemRecorder *recorder, double time, const FemForcesAt *at
 
 Status fem_recorder_begin_step(FemRecorder *recorder, double time, const FemMeasures *measures) {
   FemLedgerState state;
-  TRY(fem_forces_begin(&recorder->forces, time));
-  TRY(describe(recorder, time, &recorder->forces.begin, measures, &state));
+  TRY(describe(recorder, time, measures, &state));
   return fem_ledger_begin(&recorder->ledger, time, &state);
 }
 
@@ -268,9 +267,8 @@ static void tell_passages(const FemRecorder *recorder, int count, const ContactP
 
 Status fem_recorder_end_step(FemRecorder *recorder, double time, FemMeasures *measures) {
   const ContactPassage *passage = &recorder->ledger.passage;
-  TRY(fem_forces_end(&recorder->forces, time));
   FemLedgerState state;
-  TRY(describe(recorder, time, &recorder->forces.end, measures, &state));
+  TRY(describe(recorder, time, measures, &state));
   TRY(fem_ledger_end(&recorder->ledger, time, &state));
   measure_steps(recorder, time, measures);
   tell_passages(recorder, passage->passed, &passage->first, &measures->trouble);
@@ -284,7 +282,6 @@ void fem_recorder_find_turned(const FemRecorder *recorder, FemTroubleState *stat
 }
 
 void fem_recorder_accept_step(FemRecorder *recorder) {
-  fem_forces_accept(&recorder->forces);
   fem_ledger_accept(&recorder->ledger);
 }
 
@@ -349,6 +346,11 @@ static Status write_whole(const FemRecorder *recorder, const char *name, const F
   return status;
 }
 
+// Whether forces depend on more than positions and velocities: on what the last accepted state has left.
+static bool has_history(const FemSystem *system) {
+  return fem_forces_has_friction(system) || fem_system_effect(system, &fem_effect_plasticity);
+}
+
 // `name` without its ending.
 static Status write_vtu(FemRecorder *recorder, const char *name, double time) {
   const FemSystem *system = recorder->system;
@@ -367,22 +369,23 @@ static Status write_vtu(FemRecorder *recorder, const char *name, double time) {
       {.name = "stress", .is_cell = true, .components = 6, .fill = fill_stress, .self = recorder},
       {.name = "von_mises", .is_cell = true, .components = 1, .fill = fill_von_mises, .self = recorder},
       {.name = "trouble", .is_cell = true, .components = 1, .integers = recorder->watch.marks},
-      {.name = "contact_force", .components = 3, .reals = recorder->forces.now.contact},
-      {.name = "contact_pressure", .components = 1, .reals = recorder->forces.now.pressure},
-      {.name = "contact_depth", .components = 1, .reals = recorder->forces.now.depth},
+      {.name = "contact_force", .components = 3, .reals = recorder->forces.contact},
+      {.name = "contact_pressure", .components = 1, .reals = recorder->forces.pressure},
+      {.name = "contact_depth", .components = 1, .reals = recorder->forces.depth},
       {.name = "overlap_fraction",
        .is_cell = true,
        .components = 1,
        .reals = has_contact ? recorder->overlap : NULL},
       {.name = "wrong_way", .components = 1, .integers = has_contact ? recorder->watch.is_wrongway : NULL},
       {.name = "reaction", .components = 3, .reals = recorder->reaction},
-      {.name = "friction_force", .components = 3, .reals = recorder->forces.now.friction},
+      {.name = "friction_force", .components = 3, .reals = recorder->forces.friction},
       {.name = "status_predicted", .is_cell = true, .components = 1, .integers = verdicts[0]},
       {.name = "status_exact", .is_cell = true, .components = 1, .integers = verdicts[1]},
       {.name = "status_error", .is_cell = true, .components = 1, .integers = verdicts[2]},
       {.name = "status_wrong_pairs", .is_cell = true, .components = 1, .integers = verdicts[3]},
   };
   const FemVtuFrame frame = {.time = time,
+                             .history_time = has_history(system) ? &system->accepted.time : NULL,
                              .vertex_count = model->vertex_count,
                              .positions = system->positions,
                              .cell_count = model->tet_count,
@@ -454,7 +457,7 @@ static double *append_centres(const FemSystem *system, double *row) {
 }
 
 static double *append_friction(const FemRecorder *recorder, double *row) {
-  const FemRubbing *rubbing = recorder->forces.now.rubbing;
+  const FemRubbing *rubbing = recorder->forces.rubbing;
   for (int i = 0; rubbing && i < recorder->forces.interface_count; i++) {
     vec3_store(row, vec3_at(rubbing[i].force));
     row += 3;
@@ -472,15 +475,15 @@ static Status fill_row(FemRecorder *recorder, const FemColumnSource *source) {
   row = append_centres(recorder->system, row);
   int count;
   interfaces_of(recorder->system, &count);
-  for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->forces.now.interfaces[i]));
+  for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->forces.interfaces[i]));
   if (fem_reactions_any(recorder->system->model))
     TRY(fem_reactions_measure(recorder->system, source->time, &row, NULL));
   const FemSceneDef *scene = recorder->system->model->scene;
   for (int b = 0; b < scene->body_count && !scene->is_static; b++, row += 3)
     fem_momentum_missing(&recorder->ledger.momentum, source->time, b, row);
   for (int i = 0; i < count; i++, row += 4) {
-    row[0] = recorder->forces.now.areas[i];
-    vec3_store(row + 1, vec3_at(recorder->forces.now.centres[i]));
+    row[0] = recorder->forces.areas[i];
+    vec3_store(row + 1, vec3_at(recorder->forces.centres[i]));
   }
   row = append_friction(recorder, row);
   fem_probes_fill(&recorder->probes, row);
@@ -528,7 +531,7 @@ Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures 
                                   .status = recorder->status};
   bool is_first = recorder->history.file.end.size == 0;
   if (recorder->writes_history == FEM_HISTORY_FRAMES || (recorder->writes_history && is_first)) {
-    TRY(fem_probes_measure(&recorder->probes, time, &recorder->forces.now));
+    TRY(fem_probes_measure(&recorder->probes, time, &recorder->forces));
     TRY(fill_row(recorder, &source));
     TRY(fem_history_add_row(&recorder->history, recorder->row));
   }

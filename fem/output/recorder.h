@@ -29,7 +29,7 @@ typedef struct FemRecorder {
   int listed_count;            // of these in frames.pvd
   double listed_at_s;          // wall clock when it was written
   FemObstacleFrames obstacles; // those without a mesh, beside the frames
-  FemForces forces;            // as they are written
+  FemForces forces;            // of the state that was measured last
   FemLedger ledger;
   FemProbes probes;
   double *reaction;        // scratch; NULL: nothing is prescribed (vertex_count, 3)
@@ -52,7 +52,7 @@ void fem_recorder_destroy(FemRecorder *recorder);
 // Called once the first state is known, so that a run that fails before it takes nothing away.
 Status fem_recorder_clear(const FemRecorder *recorder);
 
-// The measures at the system's scattered state, with contact forces as they are written (forces.h).
+// The measures of the scattered state, and its forces of contact (forces.h).
 Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures);
 
 // A run begins, or goes on, at the scattered state, which was measured last.

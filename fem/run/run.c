@@ -93,7 +93,6 @@ static Status step(FemRunState *run, double *time, bool *is_onset, FemMeasures *
   memcpy(run->u_new, u, bytes);
   memcpy(run->v_new, v, bytes);
   fem_system_scatter(&run->system, *time, run->u_new, run->v_new);
-  run->recorder.forces.has_end = false;
   TRY(fem_run_frames_measure(run, *time, measures));
   return fem_recorder_end_step(&run->recorder, *time, measures);
 }
@@ -306,6 +305,7 @@ static Status sleep_on(FemRunState *run) {
   double time, began = run->time;
   FemMeasures measures;
   TRY(look_ahead(run, &time, &measures));
+  TRY(fem_recorder_begin_step(&run->recorder, time, &measures));
   FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
   run->least_power = INFINITY;
   TRY(fem_run_frames_take_row(run, time, &measures, &next));
@@ -316,7 +316,6 @@ static Status sleep_on(FemRunState *run) {
   fem_stall_pass(&run->stall, time - began);
   fem_run_frames_keep_extremes(run->result, &measures);
   TRY(accept(run, time - began));
-  TRY(fem_recorder_begin_step(&run->recorder, time, &measures));
   TRY(fem_run_watch(run, &measures));
   return fem_rest_has_changed(run->rest) ? renumber(run) : STATUS_OK;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A whole run of a scene: model → system → integrator (in a static scene fem/statics/statics.h) → frames.
 //
-//     step ──► energy audit ──► frames up to its time (interpolated) ──► accept: effects renew their lists
+//     step ──► energy audit ──► frames up to its time (within the step) ──► accept: effects renew their lists
 //      ▲            │ gains too much: back to the last accepted state, smaller step, order 1        │
 //      ├────────────┴───────────────────────────── onset of a contact: restart at the root ◄─────────┤
 //      └── system and integrator begin anew from the checkpoint (checkpoint.h) ◄─── when one is due ───┘

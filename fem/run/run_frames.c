@@ -22,7 +22,7 @@ static void keep_frame(FemRunState *run, double time) {
   contact_system_interfaces(fem_effect_contact_system(effect), &count);
   for (int i = 0; i < count; i++)
     vec3_store(result->interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i),
-               vec3_at(run->recorder.forces.now.interfaces[i]));
+               vec3_at(run->recorder.forces.interfaces[i]));
 }
 
 void fem_run_frames_keep_extremes(FemRunResult *result, const FemMeasures *measures) {

@@ -124,6 +124,7 @@ static Status take_part(Piece *piece, const FemVtuFrame *frame, const FemVtuPart
     memcpy(piece->positions + 3 * (size_t)k, frame->positions + 3 * (size_t)part->vertices[k],
            3 * sizeof(double));
   piece->frame = (FemVtuFrame){.time = frame->time,
+                               .history_time = frame->history_time,
                                .vertex_count = part->vertex_count,
                                .positions = piece->positions,
                                .cell_count = part->cell_count,

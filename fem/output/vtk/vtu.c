@@ -213,6 +213,22 @@ static Status print_cells(FILE *stream, const FemVtuFrame *frame) {
   return status;
 }
 
+static void print_field(FILE *stream, const char *name, double value) {
+  fprintf(stream,
+          "      <DataArray type=\"Float64\" Name=\"%s\" NumberOfTuples=\"1\" format=\"ascii\">"
+          "%.17g</DataArray>\n",
+          name, value);
+}
+
+// The time comes first: readers look for it there.
+static void print_fields(FILE *stream, const FemVtuFrame *frame) {
+  if (isnan(frame->time)) return;
+  fprintf(stream, "    <FieldData>\n");
+  print_field(stream, "TimeValue", frame->time);
+  if (frame->history_time) print_field(stream, "history_time", *frame->history_time);
+  fprintf(stream, "    </FieldData>\n");
+}
+
 static Status print_frame(FILE *stream, const FemVtuFrame *frame) {
   const bool is_little = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
   fprintf(stream,
@@ -221,13 +237,7 @@ static Status print_frame(FILE *stream, const FemVtuFrame *frame) {
           " compressor=\"vtkZLibDataCompressor\">\n"
           "  <UnstructuredGrid>\n",
           is_little ? "LittleEndian" : "BigEndian");
-  if (!isnan(frame->time))
-    fprintf(stream,
-            "    <FieldData>\n"
-            "      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
-            "%.17g</DataArray>\n"
-            "    </FieldData>\n",
-            frame->time);
+  print_fields(stream, frame);
   fprintf(stream, "    <Piece NumberOfPoints=\"%d\" NumberOfCells=\"%d\">\n", frame->vertex_count,
           frame->cell_count);
   TRY(print_arrays(stream, frame, false));

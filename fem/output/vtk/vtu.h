@@ -34,7 +34,8 @@ typedef struct FemVtuArray {
 } FemVtuArray;
 
 typedef struct FemVtuFrame {
-  double time; // [s]; the field TimeValue; NaN: holds at all times and has no such field
+  double time;                // [s]; the field TimeValue; NaN: holds at all times and has no fields
+  const double *history_time; // [s]; the field history_time; NULL: there is none
   int vertex_count;
   const double *positions; // current [m]          (vertex_count, 3)
   FemVtuCell cell;
