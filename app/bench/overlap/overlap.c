@@ -13,7 +13,9 @@
 #include "app/bench/overlap/pairs.h"
 #include "app/bench/peak.h"
 #include "app/bench/report.h"
+#include "app/cli/model_names.h"
 #include "app/evaluation/card.h"
+#include "app/evaluation/model.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -24,7 +26,9 @@ static const uint64_t SEED = 1;
 
 typedef struct Options {
   AppBenchOptions common;
-  bool wants_model[APP_BENCH_MAX_MODELS], wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
+  const char *models[APP_BENCH_MAX_MODELS]; // names and weights files (model_count)
+  int model_count;
+  bool wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
   int batches[APP_BENCH_MAX_LIST], batch_count;
   const char *device; // NULL: this processor as it is
   bool wants_residence[APP_BENCH_RESIDENCES], wants_torch;
@@ -33,7 +37,7 @@ typedef struct Options {
 enum { KEY_TORCH = 0x200 };
 
 static const struct argp_option option_table[] = {
-    {"model", 'm', "NAME,...", 0, "Overlap models to measure (default: all)", 1},
+    {"model", 'm', "NAME,...", 0, "Overlap models or weights files to measure (default: all models)", 1},
     {"set", 's', "NAME,...", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
     {"quantity", 'Q', "NAME,...", 0, "V, V+centroid, V+grad, V+grad+hess (default: all that a model has)", 1},
     {"batch", 'b', "N,...", 0, "Pairs a call (default: 4096); slow models get fewer", 1},
@@ -58,7 +62,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[0] = &options->common;
     return 0;
   case 'm':
-    app_bench_models_choose(state, "model", text, options->wants_model);
+    options->model_count = app_bench_models_read(state, "model", text, options->models);
     return 0;
   case 's':
     app_bench_options_choose(state, "set", text, app_bench_sets, APP_BENCH_SET_COUNT, options->wants_set);
@@ -92,7 +96,8 @@ typedef struct Case {
 typedef struct Bench {
   const Options *options;
   int model_count;
-  OverlapModel models[APP_BENCH_MAX_MODELS]; // owned; ops NULL: not wanted, or not to be had
+  AppModelName names[APP_BENCH_MAX_MODELS];
+  OverlapModel models[APP_BENCH_MAX_MODELS]; // owned; ops NULL: not to be had
   AppModelCard cards[APP_BENCH_MAX_MODELS];
   double *pairs[APP_BENCH_SET_COUNT]; // (largest batch, 24), owned; NULL: not wanted
   double *volume, *centroid, *gradient, *hessian;
@@ -101,19 +106,21 @@ typedef struct Bench {
   int count, capacity;
 } Bench;
 
-// Models whose weights are not there are left out, by name.
+// Models of the program whose weights are not there are left out, by name.
 static Status open_models(Bench *bench) {
-  const OverlapOps *const *list = overlap_model_list(&bench->model_count);
-  if (bench->model_count > APP_BENCH_MAX_MODELS) bench->model_count = APP_BENCH_MAX_MODELS;
-  for (int m = 0; m < bench->model_count; m++) {
-    if (!bench->options->wants_model[m]) continue;
-    Status status = overlap_model_create(&bench->models[m], list[m]->name);
-    if (status == STATUS_IO) {
+  const Options *options = bench->options;
+  bench->model_count = options->model_count;
+  TRY(app_model_names_find(options->model_count, options->models, bench->names));
+  for (int m = 0; m < options->model_count; m++) {
+    const char *source = options->models[m];
+    char path[PATH_MAX];
+    Status status = app_evaluation_model_open(&bench->models[m], source);
+    if (status == STATUS_IO && !app_model_names_locate(source, path)) {
       log_warning("left out: %s", status_message());
       continue;
     }
     TRY(status);
-    TRY(app_evaluation_card_read(&bench->models[m], list[m]->name, &bench->cards[m]));
+    TRY(app_evaluation_card_read(&bench->models[m], source, &bench->cards[m]));
   }
   return STATUS_OK;
 }
@@ -268,16 +275,17 @@ static Row row_of(const Bench *bench, int c, const double peaks[2]) {
   int rounds = bench->options->common.repeats;
   Case single = *what;
   single.threads = bench->options->common.thread_list[0];
-  const AppBenchContestant *reference = &bench->contestants[find_reference(bench, *what)],
+  const int first = find_reference(bench, *what);
+  const AppBenchContestant *reference = &bench->contestants[first],
                            *narrow = &bench->contestants[find(bench, single)];
   AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
   AppBenchRatio ratio = app_bench_timer_ratio(&contestant->timer, &reference->timer, rounds);
   double cpu_ratio = app_bench_timer_cpu_ratio(&contestant->timer, &reference->timer, rounds).median;
   double flops = flops_of(bench, what);
-  return (Row){.model = contestant->model->ops->name,
+  return (Row){.model = bench->names[what->model],
                .set = app_bench_sets[what->set],
                .quantity = quantities[what->quantity],
-               .reference = reference->model->ops->name,
+               .reference = bench->names[bench->cases[first].model],
                .batch = contestant->batch.pair_count,
                .threads = what->threads,
                .rate = 1 / time.wall,
@@ -326,6 +334,21 @@ static Status measure(Bench *bench) {
   return print(bench);
 }
 
+// A model without a kernel is left out.
+static Status choose_kernels(const Options *options, bool wanted[DEVICE_OVERLAP_MODELS]) {
+  for (int m = 0; m < options->model_count; m++) {
+    char path[PATH_MAX];
+    if (app_model_names_locate(options->models[m], path))
+      return status_fail(STATUS_USAGE,
+                         "--model %s: with --device only the program's own models are measured; leave "
+                         "--device out for a weights file",
+                         options->models[m]);
+    for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
+      wanted[k] = wanted[k] || strcmp(options->models[m], device_overlap_models[k]) == 0;
+  }
+  return STATUS_OK;
+}
+
 static Status run_on_device(const Options *options) {
   AppBenchDeviceDef def = {.common = &options->common,
                            .device = options->device,
@@ -335,11 +358,7 @@ static Status run_on_device(const Options *options) {
                            .wants_torch = options->wants_torch,
                            .batches = options->batches,
                            .batch_count = options->batch_count};
-  const char *names[APP_BENCH_MAX_MODELS];
-  int count = app_bench_models_list(names);
-  for (int m = 0; m < count; m++)
-    for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
-      if (strcmp(names[m], device_overlap_models[k]) == 0) def.wants_model[k] = options->wants_model[m];
+  TRY(choose_kernels(options, def.wants_model));
   memcpy(def.wants_set, options->wants_set, sizeof def.wants_set);
   memcpy(def.wants_residence, options->wants_residence, sizeof def.wants_residence);
   return app_bench_overlap_device_run(&def);
@@ -365,7 +384,7 @@ static const struct argp argp = {
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
   options.common.takes_thread_list = true;
-  for (int i = 0; i < APP_BENCH_MAX_MODELS; i++) options.wants_model[i] = true;
+  options.model_count = app_bench_models_list(options.models);
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
   for (int i = 0; i < APP_BENCH_RESIDENCES; i++) options.wants_residence[i] = true;

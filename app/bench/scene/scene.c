@@ -2,15 +2,16 @@
 #include "app/bench/scene/scene.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "app/bench/command.h"
 #include "app/bench/models.h"
 #include "app/bench/report.h"
 #include "app/bench/trial.h"
 #include "app/cli/argument.h"
+#include "app/cli/model_names.h"
 #include "app/scene/overlap.h"
 #include "base/memory.h"
-#include "overlap/model.h"
 
 enum { MAX_SCENES = 16, MAX_OVERRIDES = 64 };
 
@@ -18,28 +19,19 @@ typedef struct Options {
   AppBenchOptions common;
   const char *scenes[MAX_SCENES];
   int scene_count;
-  const char *overlaps[APP_BENCH_MAX_MODELS]; // none: each scene's own
+  const char *overlaps[APP_BENCH_MAX_MODELS]; // names and weights files; none: each scene's own
   int overlap_count;
   const char *overrides[MAX_OVERRIDES + 1]; // the last place is for the overlap model
   int override_count;
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"overlap", 'm', "NAME,...", 0, "Take these overlap models in turns (default: the scene's)", 1},
+    {"overlap", 'm', "NAME,...", 0,
+     "Take these overlap models, or weights files, in turns (default: the scene's)", 1},
     {"set", 's', "KEY=VALUE", 0,
      "Replace a value of the scenes, as in contact.stiffness=1e6; may be repeated", 1},
     {0},
 };
-
-static void choose_overlaps(struct argp_state *state, char *text, Options *options) {
-  const char *names[APP_BENCH_MAX_MODELS];
-  bool wanted[APP_BENCH_MAX_MODELS];
-  int count = app_bench_models_list(names);
-  app_bench_models_choose(state, "overlap", text, wanted);
-  options->overlap_count = 0;
-  for (int m = 0; m < count; m++)
-    if (wanted[m]) options->overlaps[options->overlap_count++] = names[m];
-}
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
@@ -48,7 +40,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[0] = &options->common;
     return 0;
   case 'm':
-    choose_overlaps(state, text, options);
+    options->overlap_count = app_bench_models_read(state, "overlap", text, options->overlaps);
     return 0;
   case 's':
     app_argument_add(state, "--set", text, MAX_OVERRIDES, options->overrides, &options->override_count);
@@ -104,11 +96,11 @@ static const AppBenchColumn columns[] = {
 };
 static const AppBenchReport report = {"scene", columns, sizeof columns / sizeof *columns, sizeof(Row), false};
 
-static Row row_of(const AppBenchTrial *trial, int rounds) {
+static Row row_of(const AppBenchTrial *trial, const char *overlap, int rounds) {
   AppBenchTime time = app_bench_timer_time(&trial->timer, rounds);
   const FemRunResult *result = &trial->result;
   Row row = {.scene = trial->scene.path,
-             .overlap = trial->scene.contact.is_on ? trial->scene.contact.overlap : NULL,
+             .overlap = trial->scene.contact.is_on ? overlap : NULL,
              .solver = result->solver_name,
              .vertices = trial->model.vertex_count,
              .tetrahedra = trial->model.tet_count,
@@ -131,23 +123,42 @@ static Status begin(AppBenchTrial *trial, Options *options, const char *path, co
   return app_bench_trial_begin(trial, &options->common, 0);
 }
 
-static Status measure(AppBenchTrial *trials, Row *rows, int count, Options *options) {
+// What each run's overlap model is called: those that were asked for in a list, a scene's own by itself.
+static Status name_overlaps(const AppBenchTrial *trials, AppModelName *names, int count,
+                            const Options *options) {
+  if (options->overlap_count) {
+    TRY(app_model_names_find(options->overlap_count, options->overlaps, names));
+    for (int t = options->overlap_count; t < count; t++)
+      memcpy(names[t], names[t % options->overlap_count], sizeof *names);
+    return STATUS_OK;
+  }
+  for (int t = 0; t < count; t++) {
+    char source[PATH_MAX];
+    if (app_scene_overlap_source(&trials[t].scene, source)) app_model_names_find_one(source, names[t]);
+  }
+  return STATUS_OK;
+}
+
+static Status measure(AppBenchTrial *trials, AppModelName *names, Row *rows, int count, Options *options) {
   int rounds = options->common.repeats, models = options->overlap_count ? options->overlap_count : 1;
   for (int t = 0; t < count; t++)
     TRY(begin(&trials[t], options, options->scenes[t / models],
               options->overlap_count ? options->overlaps[t % models] : NULL));
+  TRY(name_overlaps(trials, names, count, options));
   TRY(app_bench_timer_take_turns(trials, sizeof *trials, count, rounds, false, app_bench_trial_run));
-  for (int t = 0; t < count; t++) rows[t] = row_of(&trials[t], rounds);
+  for (int t = 0; t < count; t++) rows[t] = row_of(&trials[t], names[t], rounds);
   return app_bench_report_print(&report, &options->common, rows, count);
 }
 
 static Status run(Options *options) {
   int count = options->scene_count * (options->overlap_count ? options->overlap_count : 1);
   AppBenchTrial *trials = memory_zeroed((size_t)count, sizeof *trials);
+  AppModelName *names = memory_zeroed((size_t)count, sizeof *names);
   Row *rows = memory_zeroed((size_t)count, sizeof *rows);
-  Status status = trials && rows ? measure(trials, rows, count, options) : status_no_memory("the runs");
+  Status status =
+      trials && names && rows ? measure(trials, names, rows, count, options) : status_no_memory("the runs");
   for (int t = 0; t < count && trials; t++) app_bench_trial_end(&trials[t]);
-  memory_free(trials), memory_free(rows);
+  memory_free(trials), memory_free(names), memory_free(rows);
   return status;
 }
 

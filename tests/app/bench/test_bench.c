@@ -401,11 +401,41 @@ START_TEST(a_table_of_two_potentials_says_whose_row_is_whose) {
 }
 END_TEST
 
+// Two weights files of one name, in folders of their own.
+START_TEST(weights_files_are_measured_under_names_of_their_own) {
+  static char output[OUTPUT_SIZE];
+  char folder[] = "/tmp/tetlap_bench_XXXXXX", words[512];
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(words, sizeof words,
+           "cd %s && mkdir a b && cp '%s/net/weights/geo-small.safetensors' a/net.safetensors && "
+           "cp '%s/net/weights/geo.safetensors' b/net.safetensors",
+           folder, TETLAP_SOURCE_DIR, TETLAP_SOURCE_DIR);
+  ck_assert_int_eq(system(words), 0);
+  const char *kinds[] = {"overlap -s near -Q V -b 10 -r 1 -j -m", "scene -r 1 -s time.end=0.02 -j -m"};
+  const char *keys[] = {"model", "overlap"}, *scenes[] = {"", "examples/01_drop.yaml"};
+  for (int k = 0; k < 2; k++) {
+    snprintf(words, sizeof words, "%s clip,%s/a/net.safetensors,%s/b/net.safetensors %s", kinds[k], folder,
+             folder, scenes[k]);
+    ck_assert_msg(run_bench(words, output) == 0, "%s", words);
+    const char *names[] = {"clip", "a/net", "b/net"};
+    for (int m = 0; m < 3; m++) {
+      char expected[64];
+      snprintf(expected, sizeof expected, "\"%s\":\"%s\"", keys[k], names[m]);
+      ck_assert_msg(strstr(output, expected) != NULL, "no %s in %s", expected, output);
+    }
+  }
+  snprintf(words, sizeof words, "rm -r %s", folder);
+  ck_assert_int_eq(system(words), 0);
+}
+END_TEST
+
 START_TEST(wrong_arguments_are_usage_errors) {
   static char output[OUTPUT_SIZE];
   const char *wrong[] = {"",
                          "everything",
                          "overlap --model clap",
+                         "overlap --model clip,clip",
+                         "overlap --device host --model net/weights/geo.safetensors",
                          "overlap --set far",
                          "overlap --quantity W",
                          "overlap --batch 0",
@@ -466,6 +496,7 @@ int main(void) {
   tcase_add_test(cases, direct_solvers_solve_to_rounding_and_agree_on_the_run);
   tcase_add_test(cases, shares_of_a_run_sum_to_one);
   tcase_add_test(cases, a_table_of_two_potentials_says_whose_row_is_whose);
+  tcase_add_test(cases, weights_files_are_measured_under_names_of_their_own);
   tcase_add_test(cases, wrong_arguments_are_usage_errors);
   tcase_add_test(cases, an_unknown_bench_gets_the_nearest_name);
   return suite_run("bench", cases, 60);
