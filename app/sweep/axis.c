@@ -2,12 +2,13 @@
 #include "app/sweep/axis.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/files/file.h"
 #include "base/memory.h"
+#include "overlap/weights.h"
 
 enum { NUMBER_SIZE = 32 };
 
@@ -160,9 +161,46 @@ Status app_sweep_axis_parse(AppSweepAxis *axis, const char *text) {
   return status;
 }
 
+bool app_sweep_axis_locate(const AppSweepAxis *axis, int k, const char *scene_path, char path[PATH_MAX]) {
+  if (!overlap_weights_is_path(axis->values[k])) return false;
+  char *directory = file_directory_of(scene_path);
+  char *file = directory ? file_join(directory, axis->values[k]) : NULL;
+  bool is_file = file && app_model_names_locate(file, path);
+  memory_free(directory), memory_free(file);
+  return is_file;
+}
+
+static Status find_labels(AppSweepAxis *axis, const char *scene_path, char (*paths)[PATH_MAX],
+                          const char **sources) {
+  bool has_files = false;
+  for (int k = 0; k < axis->value_count; k++) {
+    bool is_file = app_sweep_axis_locate(axis, k, scene_path, paths[k]);
+    sources[k] = is_file ? paths[k] : axis->values[k];
+    has_files = has_files || is_file;
+  }
+  if (!has_files) return STATUS_OK;
+  axis->labels = memory_zeroed((size_t)axis->value_count, sizeof *axis->labels);
+  if (!axis->labels) return status_no_memory("the values of --vary");
+  return app_model_names_find(axis->value_count, sources, axis->labels);
+}
+
+Status app_sweep_axis_label(AppSweepAxis *axis, const char *scene_path) {
+  char(*paths)[PATH_MAX] = memory_zeroed((size_t)axis->value_count, sizeof *paths);
+  const char **sources = memory_zeroed((size_t)axis->value_count, sizeof *sources);
+  Status status = paths && sources ? find_labels(axis, scene_path, paths, sources)
+                                   : status_no_memory("the values of --vary");
+  memory_free(paths), memory_free(sources);
+  return status;
+}
+
+const char *app_sweep_axis_name(const AppSweepAxis *axis, int k) {
+  return axis->labels ? axis->labels[k] : axis->values[k];
+}
+
 void app_sweep_axis_destroy(AppSweepAxis *axis) {
   for (int k = 0; k < axis->value_count; k++) memory_free(axis->values[k]);
   memory_free(axis->values);
+  memory_free(axis->labels);
   memory_free(axis->key);
   *axis = (AppSweepAxis){0};
 }

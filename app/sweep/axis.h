@@ -7,6 +7,9 @@
 #ifndef TETLAP_APP_SWEEP_AXIS_H
 #define TETLAP_APP_SWEEP_AXIS_H
 
+#include <stdbool.h>
+
+#include "app/cli/model_names.h"
 #include "base/status.h"
 
 enum { APP_SWEEP_MAX_VALUES = 1000 };
@@ -15,10 +18,20 @@ typedef struct AppSweepAxis {
   char *key;     // owned
   char **values; // as `--set` takes them (value_count), owned
   int value_count;
+  AppModelName *labels; // what the values are called (value_count), owned; NULL: as they stand
 } AppSweepAxis;
 
 // STATUS_USAGE says what would be right. After a failure there is nothing to destroy.
 Status app_sweep_axis_parse(AppSweepAxis *axis, const char *text);
+
+// Gives values that are weights files the names of models (app/cli/model_names.h). Paths are relative to the
+// scene, as there. STATUS_USAGE: two are one file.
+Status app_sweep_axis_label(AppSweepAxis *axis, const char *scene_path);
+
+// What value k is called, and the absolute path of its weights file; false: it is none.
+const char *app_sweep_axis_name(const AppSweepAxis *axis, int k);
+bool app_sweep_axis_locate(const AppSweepAxis *axis, int k, const char *scene_path, char path[PATH_MAX]);
+
 void app_sweep_axis_destroy(AppSweepAxis *axis);
 
 #endif

@@ -20,6 +20,7 @@ Status app_sweep_grid_create(AppSweepGrid *grid, const AppSweepBase *base) {
   if (count > APP_SWEEP_MAX_POINTS)
     return status_fail(STATUS_USAGE, "--vary: the grid has more than %d points; take fewer values",
                        APP_SWEEP_MAX_POINTS);
+  for (int a = 0; a < base->axis_count; a++) TRY(app_sweep_axis_label(&grid->base.axes[a], base->scene_path));
   grid->points = memory_zeroed((size_t)count, sizeof *grid->points);
   if (!grid->points) return status_no_memory("the points of a sweep");
   for (; grid->point_count < count; grid->point_count++)

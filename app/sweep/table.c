@@ -9,6 +9,7 @@
 #include "app/report/report.h"
 #include "base/files/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 // The numbers of a row: where they stand in summary.json, and what they are called.
 static const struct Column {
@@ -71,11 +72,15 @@ static bool has_ended(const AppSweepPoint *point) {
 }
 
 static const char *value_text(const AppSweepGrid *grid, const AppSweepPoint *point, int axis) {
-  return grid->base.axes[axis].values[point->values[axis]];
+  return app_sweep_axis_name(&grid->base.axes[axis], point->values[axis]);
 }
 
-// A number as such, anything else as text.
-static void record_setting(Record *record, const char *key, const char *text) {
+// A number as such, anything else, names among them, as text.
+static void record_setting(Record *record, const char *key, const char *text, bool is_name) {
+  if (is_name) {
+    record_text(record, key, text);
+    return;
+  }
   char *end;
   long long whole = strtoll(text, &end, 10);
   if (end != text && !*end) {
@@ -89,6 +94,13 @@ static void record_setting(Record *record, const char *key, const char *text) {
     record_text(record, key, text);
 }
 
+// The absolute path of each value's weights file; "": it has none.
+static void record_files(const AppSweepAxis *axis, const char *scene_path, RecordList *list) {
+  char path[PATH_MAX];
+  for (int k = 0; k < axis->value_count; k++)
+    record_append_text(list, app_sweep_axis_locate(axis, k, scene_path, path) ? path : "");
+}
+
 static void record_axes(const AppSweepGrid *grid, Record *record) {
   RecordList *list = record_list(record, "axes");
   for (int a = 0; a < grid->base.axis_count; a++) {
@@ -96,7 +108,8 @@ static void record_axes(const AppSweepGrid *grid, Record *record) {
     Record *row = record_append(list);
     record_text(row, "key", axis->key);
     RecordList *values = record_list(row, "values");
-    for (int k = 0; k < axis->value_count; k++) record_append_text(values, axis->values[k]);
+    for (int k = 0; k < axis->value_count; k++) record_append_text(values, app_sweep_axis_name(axis, k));
+    if (axis->labels) record_files(axis, grid->base.scene_path, record_list(row, "weights"));
   }
 }
 
@@ -104,7 +117,8 @@ static void record_point(const AppSweepGrid *grid, const AppSweepPoint *point, R
   record_text(row, "folder", point->folder);
   Record *set = record_child(row, "set");
   for (int a = 0; a < grid->base.axis_count; a++)
-    record_setting(set, grid->base.axes[a].key, value_text(grid, point, a));
+    record_setting(set, grid->base.axes[a].key, value_text(grid, point, a),
+                   grid->base.axes[a].labels != NULL);
   record_text(row, "outcome", outcome_of(point));
   if (!has_ended(point)) return;
   record_integer(row, "exit_code", point->exit_code);
@@ -216,17 +230,31 @@ Status app_sweep_table_write(const AppSweepGrid *grid) {
   return status;
 }
 
+// What a row is called: by its folder, or, where a folder's name cannot say it, by names of models.
+static void name_row(const AppSweepGrid *grid, const AppSweepPoint *point, char *text, size_t size) {
+  size_t used = 0;
+  bool has_names = false;
+  for (int a = 0; a < grid->base.axis_count; a++) {
+    const AppSweepAxis *axis = &grid->base.axes[a];
+    text_append(text, size, &used, "%s%s=%s", a ? "," : "", axis->key, value_text(grid, point, a));
+    has_names = has_names || axis->labels;
+  }
+  if (!has_names) snprintf(text, size, "%s", point->folder);
+}
+
 void app_sweep_table_print(const AppSweepGrid *grid, FILE *stream) {
   int width = (int)strlen("run");
+  char name[1024];
   for (int p = 0; p < grid->point_count; p++) {
-    int length = (int)strlen(grid->points[p].folder);
-    if (length > width) width = length;
+    name_row(grid, &grid->points[p], name, sizeof name);
+    if ((int)strlen(name) > width) width = (int)strlen(name);
   }
   fprintf(stream, "%-*s  %-11s  %8s  %7s  %9s  %9s  %9s\n", width, "run", "outcome", "wall s", "steps",
           "force N", "deepest", "gain");
   for (int p = 0; p < grid->point_count; p++) {
     const AppSweepPoint *point = &grid->points[p];
-    fprintf(stream, "%-*s  %-11s", width, point->folder, outcome_of(point));
+    name_row(grid, point, name, sizeof name);
+    fprintf(stream, "%-*s  %-11s", width, name, outcome_of(point));
     if (point->summary)
       fprintf(stream, "  %8.3g  %7.0f  %9.3g  %9.3g  %9.1e", record_find_number(point->summary, "wall_s"),
               record_find_number(point->summary, "steps"),

@@ -29,6 +29,13 @@ export const scrolled = (label, ...children) => h(".scroll", { tabindex: 0, role
 // The mark of a run, in its colour (style.css has the first two; main.js sets them all).
 export const swatchOf = (run) => h("span.swatch.run", { style: `background:var(--run-${run.letter})` });
 
+// The same of what has no run: of one of the hues.
+export const swatchOfHue = (hue) => h("span.swatch.run", { style: `background:var(--hue-${hue})` });
+
+// A name in a table; a long one is set in several lines.
+const LONG = 26;
+export const nameCell = (name) => (name.length > LONG ? h("span.long", name) : name);
+
 const PREFIXES = [
   [1e9, "G"],
   [1e6, "M"],

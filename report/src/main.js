@@ -42,6 +42,7 @@ function buildBar(state, version) {
   const toggle = h("button.plain", { type: "button", click: () => state.set({ theme: state.theme === "dark" ? "light" : "dark" }) });
   const show = () => {
     document.documentElement.dataset.theme = state.theme;
+    HUES[state.theme].forEach((hue, k) => document.documentElement.style.setProperty(`--hue-${k}`, hue));
     RUNS.forEach((letter, k) => document.documentElement.style.setProperty(`--run-${letter}`, HUES[state.theme][k % HUES.light.length]));
     toggle.textContent = state.theme === "dark" ? "Light" : "Dark";
     toggle.setAttribute("aria-label", `Switch to ${toggle.textContent.toLowerCase()} colours`);

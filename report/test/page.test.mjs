@@ -66,6 +66,22 @@ function makeComparison() {
   return folder;
 }
 
+// Two weights files of one base name, with long names, and two models of the audit alone.
+const LONG = "a-network-whose-name-is-long-as-those-of-a-search-are";
+function makeFiles() {
+  const folder = join(out, "files");
+  const files = ["geo-small", "geo"].map((network, k) => {
+    const place = join(out, `networks-of-search-${k}`);
+    mkdirSync(place, { recursive: true });
+    cpSync(join("net/weights", `${network}.safetensors`), join(place, `${LONG}.safetensors`));
+    return join(place, `${LONG}.safetensors`);
+  });
+  const words = ["compare", scene, "-q", "-t", "1", "--overlap", ["clip", ...files].join(), "--audit-only", "exact,clip-scalar", "--audit", "3", "-o", folder, "-s", "time.end=0.06", "-s", "output.frames=12", "-s", "bodies.upper.velocity=[0, 0, -1]"];
+  execFileSync(tetlap, words, { stdio: "ignore" });
+  execFileSync(tetlap, ["report", "-q", folder, "-o", join(out, "files.html")]);
+  execFileSync(tetlap, ["report", "-q", ...[0, 1].map((k) => join(folder, `networks-of-search-${k}`, LONG)), "-o", join(out, "files-two.html")]);
+}
+
 function makePages() {
   const run = (...args) => execFileSync(tetlap, args, { stdio: ["ignore", "inherit", "inherit"] });
   const runs = ["clip", "geo"].map((model) => join(out, model));
@@ -77,10 +93,11 @@ function makePages() {
   run("report", "-q", join(out, "obstacles"), "-o", join(out, "obstacles.html"));
   makeSweep();
   const models = makeComparison();
+  makeFiles();
   writeFileSync(join(out, "stress.json"), JSON.stringify(STRESS));
   writeFileSync(join(out, "later.json"), JSON.stringify(STRESS_LATER));
   run("report", "-q", "--stress", join(out, "stress.json"), "--stress", join(out, "later.json"), "-o", join(out, "stress.html"));
-  return { models: `file://${resolve(out, "models.html")}`, folder: models, sweep: `file://${resolve(out, "sweep", "sweep.html")}`, obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
+  return { files: `file://${resolve(out, "files.html")}`, filesTwo: `file://${resolve(out, "files-two.html")}`, models: `file://${resolve(out, "models.html")}`, folder: models, sweep: `file://${resolve(out, "sweep", "sweep.html")}`, obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
 }
 
 // Different colours in each canvas, read right after it was drawn: 1 is an empty one.
@@ -443,7 +460,7 @@ const compareTests = {
 
   async "the tables have every model, and what failed looks failed"(page) {
     const rows = (n) => page.eval(`[...document.querySelectorAll("#compare table")][${n}].querySelectorAll("tbody tr").length`);
-    assert.equal(await rows(0), 3); // geo, clip32, exact against clip
+    assert.equal(await rows(0), 12); // four quantities of geo, clip32, exact against clip
     assert.equal(await rows(1), 3);
     const [text, colour, plain] = await page.eval(`(() => { const cells = [...document.querySelectorAll("#compare td.outcome")]; return [cells[2].textContent, getComputedStyle(cells[2]).color, getComputedStyle(cells[0]).color]; })()`);
     assert.equal(text, "failed");
@@ -468,7 +485,7 @@ const compareTests = {
 
   async "the audit says sums, median and worst state, and errors have a floor"(page) {
     const heads = await page.eval(`[...document.querySelectorAll("#compare table")[0].querySelectorAll("thead th")].map((one) => one.textContent)`);
-    assert.deepEqual(heads.slice(0, 5), ["Model", "Volumes V", "median", "worst", "Gradients ∇V"]);
+    assert.deepEqual(heads, ["Model", "Errors of", "Sums", "Median", "Worst", "at", "States"]);
     const row = await page.eval("tetlap.data.comparison[1]");
     assert.ok(row.audit_force_error_worst >= row.audit_force_error_median && row.audit_force_error_worst_time > 0);
     // the exact model differs from clip by rounding, the network by percents
@@ -524,6 +541,50 @@ const compareTests = {
     assert.equal(nameless, 0);
   },
 };
+
+// What a reading says stands beside its number, not below or on it.
+const CROWDED = `[...document.querySelectorAll(".reading")].filter((one) => {
+  const [name, value] = [one.querySelector(".name"), one.querySelector("output")].map((part) => part.getBoundingClientRect());
+  return name.right > value.left + 0.5 || value.right > one.getBoundingClientRect().right + 0.5;
+}).map((one) => one.textContent)`;
+
+const fileTests = {
+  async "weights files have one name everywhere, and no path is above the page"(page) {
+    const names = ["clip", `networks-of-search-0/${LONG}`, `networks-of-search-1/${LONG}`];
+    assert.deepEqual(await page.eval("tetlap.stage.views.map((view) => view.run.label)"), names);
+    const texts = (selector) => page.eval(`[...document.querySelectorAll('${selector}')].map((one) => one.textContent)`);
+    assert.deepEqual(await texts("#plot-force .reading .name"), names);
+    assert.deepEqual(await texts("#compare th[scope=rowgroup]"), [...names.slice(1), "exact", "clip-scalar"]);
+    assert.deepEqual(await texts("#plot-audit .reading .name"), [...names.slice(1), "exact", "clip-scalar"]);
+    assert.deepEqual(await texts("#compare tr > th[scope=row]:first-child"), ["clip (reference)", ...names.slice(1)].flatMap((name) => name)); // of their own runs
+    const facts = await texts(".facts span");
+    assert.equal(facts[0], "02_two_blocks.yaml");
+    assert.equal(facts.at(-1), `overlap: ${names.join(", ")}`);
+  },
+
+  async "a model has one colour in tables and curves, with a run and without"(page) {
+    const [rows, curves] = await page.eval(`(() => { const colour = (text) => { const one = document.createElement("i"); one.style.color = text; document.body.append(one); const value = getComputedStyle(one).color; one.remove(); return value; };
+      return [[...document.querySelectorAll("#compare th[scope=rowgroup] .swatch")].map((one) => getComputedStyle(one).backgroundColor), [...document.querySelectorAll("#plot-audit .reading line")].map((one) => colour(one.getAttribute("stroke")))]; })()`);
+    assert.equal(new Set(rows).size, 4, String(rows));
+    assert.deepEqual(rows, curves);
+  },
+
+  async "nothing is cut off: the audit's table fits, and every number stands beside its name"(page) {
+    assert.deepEqual(await page.eval(`[...document.querySelectorAll("#compare .scroll")].map((one) => one.scrollWidth <= one.clientWidth)`), [true, true]);
+    assert.deepEqual(await page.eval(CROWDED), []);
+    const errors = await page.eval(`[...document.querySelectorAll("#compare table")[0].querySelectorAll("tbody:first-of-type td.number")].map((one) => one.textContent)`);
+    assert.match(errors[0], /^0\.\d\d\u2009%$/); // of geo-small's volumes
+  },
+};
+
+async function testFilesTwo(browser, url) {
+  const page = await browser.open(url, { width: 1280, height: 900 });
+  const text = await page.eval(`document.querySelector("#plot-error").textContent`);
+  assert.ok(text.includes(`networks-of-search-1/${LONG} against networks-of-search-0/${LONG}`), text);
+  assert.ok(text.includes("forces apart") && !text.includes("B − A"), text); // letters stand nowhere else
+  assert.deepEqual(await page.eval(CROWDED), []);
+  await page.close();
+}
 
 const sweepTests = {
   async "a sweep's page has a plot of each quantity, and a row of each run"(page) {
@@ -667,6 +728,12 @@ try {
   await models.close();
   for (const [width, theme] of [[1280, "light"], [420, "light"], [420, "dark"]])
     await attempt(`three models fit ${width} pixels, ${theme}`, () => shoot(browser, pages.models, `models-${theme}-${width}`, { width, height: 1000, theme, isMobile: width < 600 }, "0"));
+  const files = await browser.open(pages.files, { width: 1280, height: 900 });
+  for (const [name, test] of Object.entries(fileTests)) await attempt(name, () => test(files));
+  await files.close();
+  await attempt("two files are told apart in words", () => testFilesTwo(browser, pages.filesTwo));
+  for (const width of [1280, 420])
+    await attempt(`long names fit ${width} pixels`, () => shoot(browser, pages.files, `files-${width}`, { width, height: 1000, isMobile: width < 600 }, "0"));
   const sweep = await browser.open(pages.sweep, { width: 1280, height: 900 });
   for (const [name, test] of Object.entries(sweepTests)) await attempt(name, () => test(sweep));
   await attempt("no complaint after all of it", () => assert.deepEqual(sweep.problems, []));

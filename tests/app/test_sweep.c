@@ -198,6 +198,42 @@ START_TEST(a_changed_mesh_or_changed_weights_run_again) {
 }
 END_TEST
 
+// Paths are relative to the scene. The names are those of compare.
+START_TEST(weights_files_have_the_names_of_models) {
+  static const char scene[] =
+      "title: t\ntime: {end: 0.002}\nbodies:\n"
+      "  - {name: a, mesh: m.msh, material: {law: neo_hookean, young: 1e5, poisson: 0.3, density: 1000}}\n"
+      "obstacles:\n  - {name: ground, halfspace: {point: [0, 0, -1], normal: [0, 0, 1]}}\n"
+      "contact: {overlap: geo}\n";
+  char path[128], file[128];
+  snprintf(path, sizeof path, "%s/scene.yaml", folder);
+  FileWriter writer;
+  ck_assert_ok(file_begin(&writer, path));
+  fputs(scene, writer.stream);
+  ck_assert_ok(file_commit(&writer));
+  change("mkdir A B && cp " TETLAP_SOURCE_DIR "/meshes/block.msh m.msh && cp " TETLAP_SOURCE_DIR
+         "/net/weights/geo.safetensors A/1.safetensors && cp " TETLAP_SOURCE_DIR
+         "/net/weights/geo-small.safetensors B/1.safetensors");
+  ck_assert_int_eq(sweep_scene(path, "-V contact.net=A/1.safetensors,./B/1.safetensors"), 0);
+  ck_assert_msg(says("contact.net=A/1") && says("contact.net=B/1"), "the table of the terminal");
+  Record *table = read_table();
+  const Record *axis = record_at(record_find(table, "axes"), 0), *runs = record_find(table, "runs");
+  const char *names[] = {"A/1", "B/1"};
+  for (int k = 0; k < 2; k++) {
+    snprintf(file, sizeof file, "%s/%s.safetensors", folder, names[k]);
+    ck_assert_str_eq(record_text_value(record_at(record_find(axis, "values"), k)), names[k]);
+    ck_assert_str_eq(record_text_value(record_at(record_find(axis, "weights"), k)), file);
+    ck_assert_str_eq(record_find_text(record_find(record_at(runs, k), "set"), "contact.net"), names[k]);
+  }
+  record_destroy(table);
+  char *csv = read_text("out/sweep.csv");
+  ck_assert_ptr_nonnull(strstr(csv, ",A/1,finished,"));
+  memory_free(csv);
+  ck_assert_int_eq(sweep_scene(path, "-V contact.net=A/1.safetensors,./A/1.safetensors"), 64);
+  ck_assert(says("named twice"));
+}
+END_TEST
+
 START_TEST(a_table_of_another_format_is_refused_and_kept) {
   ck_assert_int_eq(sweep("-s time.end=0.002 -V bodies[0].material.poisson=0.3"), 0);
   change("sed -i 's/tetlap-sweep 1/tetlap-sweep 0/' out/sweep.json && cp out/sweep.json before.json");
@@ -344,6 +380,7 @@ int main(void) {
   tcase_add_test(cases, what_is_finished_is_kept_and_what_has_changed_runs_again);
   tcase_add_test(cases, a_changed_mesh_or_changed_weights_run_again);
   tcase_add_test(cases, other_keys_have_other_folders);
+  tcase_add_test(cases, weights_files_have_the_names_of_models);
   tcase_add_test(cases, a_table_of_another_format_is_refused_and_kept);
   tcase_add_test(cases, a_message_is_the_own_process_s);
   tcase_add_test(cases, a_history_is_thinned_by_its_peaks);

@@ -55,12 +55,19 @@ export function solidsOf(run) {
 
 const areDistinct = (names) => names.every(Boolean) && new Set(names).size === names.length;
 
+// Overlap models as the runs themselves call them; if two have one name, by the longer names that the report gives.
+function modelsOf(runs) {
+  const own = runs.map((run) => run.summary?.overlap);
+  return areDistinct(own) ? own : runs.map((run, k) => run.model ?? own[k]);
+}
+
 // Runs are called by what tells them apart: their overlap models, else their folders.
 function labelRuns(runs) {
-  const models = runs.map((run) => run.model ?? run.summary?.overlap);
+  const models = modelsOf(runs);
   const names = runs.length > 1 && areDistinct(models) ? models : runs.map((run, k) => run.name ?? RUNS[k]);
   runs.forEach((run, k) => {
     run.letter = RUNS[k];
+    run.overlap = models[k];
     run.label = runs.length > 1 && !areDistinct(names) ? `${names[k]} (${RUNS[k]})` : names[k];
   });
 }
@@ -77,6 +84,17 @@ export function readData(source = document) {
   const runs = (data.runs ?? []).map((run, index) => prepare(run, index, source));
   labelRuns(runs);
   return { ...data, runs };
+}
+
+// Of each row of a comparison its run, or, without one, which of `count` hues is its own, from the last on.
+export function ownersOf({ comparison, runs }, count) {
+  const owners = new Map();
+  let without = 0;
+  for (const row of comparison ?? []) {
+    const run = runs.find((one) => one.summary?.overlap === row.model) ?? runs.find((one) => one.name === row.model.replace(/^.*\//, "")) ?? null;
+    owners.set(row, { run, hue: run ? null : count - 1 - (without++ % count) });
+  }
+  return owners;
 }
 
 // The arrays of a run's frames. Fields are read when they are first asked for.

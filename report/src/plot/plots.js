@@ -3,7 +3,7 @@
 
 import * as Plot from "@observablehq/plot";
 import { HUES } from "../view/colour.js";
-import { indexAt } from "../data/data.js";
+import { indexAt, ownersOf } from "../data/data.js";
 import { format, h, raise, svg } from "../dom.js";
 import { groupsOf, stripe } from "./coincide.js";
 
@@ -71,7 +71,7 @@ function driftSeries(runs) {
     const scale = run.summary?.energy_scale;
     if (!total || !(scale > 0)) return [];
     const values = positive(total.map((value) => Math.abs(value - total[0]) / scale));
-    const label = runs.length === 2 ? `energy, ${run.label}` : runs.length > 2 ? run.label : "energy";
+    const label = runs.length === 2 ? `energy of ${run.label}` : runs.length > 2 ? run.label : "energy";
     return [{ run, label, hue: null, values, times: run.times }];
   });
 }
@@ -107,7 +107,7 @@ function forceDifferences({ runs, reference = 0 }) {
 const isPair = (runs) => runs.length === 2;
 
 function forceErrorSeries(data) {
-  return forceDifferences(data).map(({ run, times, values }) => ({ run: isPair(data.runs) ? data.runs[0] : run, label: isPair(data.runs) ? "force, B − A" : run.label, hue: isPair(data.runs) ? 2 : null, values: positive(values), times }));
+  return forceDifferences(data).map(({ run, times, values }) => ({ run: isPair(data.runs) ? null : run, label: isPair(data.runs) ? "forces apart" : run.label, hue: isPair(data.runs) ? 2 : null, values: positive(values), times }));
 }
 
 // The band reaches from the root mean square to the farthest vertex.
@@ -116,7 +116,7 @@ function distanceSeries({ runs, differences = [] }, size) {
   const over = (values) => positive(values.map((value) => value / size));
   return differences.map(({ run, time_s, rms_m, max_m }) => ({
     run: isPair(runs) ? null : runs[run],
-    label: isPair(runs) ? "vertices, B − A" : runs[run].label,
+    label: isPair(runs) ? "vertices apart" : runs[run].label,
     hue: isPair(runs) ? 3 : null,
     values: over(rms_m),
     upper: over(max_m),
@@ -126,15 +126,14 @@ function distanceSeries({ runs, differences = [] }, size) {
 
 // What compare's audit measured in single states of the reference's run, over the largest of its forces there: where a
 // force begins, its relative error says nothing.
-function auditSeries({ comparison, runs }, kind) {
-  const rows = (comparison ?? []).filter((row) => row.audit_series?.[kind]);
-  let last = HUES.light.length; // models without a run have the last hues, grey first
+function auditSeries(data, kind) {
+  const owners = ownersOf(data, HUES.light.length);
+  const rows = (data.comparison ?? []).filter((row) => row.audit_series?.[kind]);
   return rows.map((row) => {
-    const run = runs.find((one) => one.summary?.overlap === row.model);
     const { time_s, force_N, [kind]: errors } = row.audit_series;
     const most = force_N?.reduce((a, b) => Math.max(a, b), 0);
     const values = positive(most > 0 ? errors.map((error, i) => (error * force_N[i]) / most) : errors);
-    return { run: run ?? null, label: row.model, hue: run ? null : --last, values, times: time_s };
+    return { ...owners.get(row), label: row.model, values, times: time_s };
   });
 }
 
@@ -165,7 +164,8 @@ function errorPlots(data, size) {
   const drift = { ...log, id: "drift", title: "Drift of the total energy", note: "over the scene’s energy", series: driftSeries(runs) };
   if (runs.length < 2) return [{ ...drift, id: "error", title: "Error", note: "drift of the total energy over the scene’s energy" }];
   if (isPair(runs)) {
-    const note = "drift of the total energy; B against A: force over the largest, vertices (root mean square; the band reaches to the farthest) over the scene’s size";
+    const [first, other] = [runs[reference], runs[1 - reference]];
+    const note = `drift of the total energy over the scene’s; ${other.label} against ${first.label}: forces over the largest, vertices (root mean square; the band reaches to the farthest) over the scene’s size`;
     return [{ ...log, id: "error", title: "Error", note, series: [...driftSeries(runs), ...forceErrorSeries(data), ...distanceSeries(data, size)] }];
   }
   const than = runs[reference].label;
@@ -232,8 +232,8 @@ export class TimePlot {
   buildRow(one) {
     const line = svg("svg", { class: "key", viewBox: "0 0 18 8", "aria-hidden": "true" }, svg("line", { x1: 1, x2: 17, y1: 4, y2: 4 }));
     const value = h("output", { "aria-live": "off" }); // it changes with every frame
-    const owner = one.hue !== null && this.runs.length > 1 && one.run && !one.label.includes("−") ? h("span.owner", one.run.label) : null;
-    return { one, line, value, element: h("span.reading", line, h("span", one.label), owner, value) };
+    const owner = one.hue !== null && this.runs.length > 1 && one.run ? h("span.owner", one.run.label) : null;
+    return { one, line, value, element: h("span.reading", line, h("span.name", one.label, owner), value) };
   }
 
   draw() {
@@ -288,7 +288,7 @@ export class TimePlot {
   }
 
   nameOf(one) {
-    return one.hue !== null && this.runs.length > 1 && one.run && !one.label.includes("−") ? `${one.label} ${one.run.label}` : one.label;
+    return one.hue !== null && this.runs.length > 1 && one.run ? `${one.label} ${one.run.label}` : one.label;
   }
 
   // One quantity of both runs of a pair is named once for all such groups.

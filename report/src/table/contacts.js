@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact forces and their estimated errors: a row for each two that touched.
 
-import { format, h, scrolled, swatchOf } from "../dom.js";
+import { format, h, nameCell, scrolled, swatchOf } from "../dom.js";
 
-const percent = (share) => format(share == null ? NaN : 100 * share, "%", 2);
+// Below a thousandth of a per cent it is rounding, or as good as nothing.
+const percent = (share) => (share > 0 && share < 1e-5 ? "< 0.001\u2009%" : format(share == null ? NaN : 100 * share, "%", 2));
 
 const COLUMNS = [
   ["Largest force", (row) => format(row.force_max_N, "N")],
@@ -34,7 +35,7 @@ export function buildContacts(runs) {
     h(
       "tr",
       h("th", { scope: "row" }, pairOf({ row })),
-      names && h("td", swatchOf(run), run.label),
+      names && h("td", swatchOf(run), nameCell(run.label)),
       COLUMNS.map(([, show]) => h("td.number", show(row))),
     );
   return h(

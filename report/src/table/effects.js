@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What each effect of a run cost: time, calls and memory. An effect that a run does not have has no cell.
 
-import { count, format, h, scrolled, swatchOf } from "../dom.js";
+import { count, format, h, nameCell, scrolled, swatchOf } from "../dom.js";
 
 const COLUMNS = [
   ["Forces", "force_s", (row) => format(row.force_s, "s")],
@@ -29,7 +29,7 @@ export function buildEffects(runs) {
       "tr",
       { "data-effect": name },
       h("th", { scope: "row" }, name),
-      names && h("td", swatchOf(run), run.label),
+      names && h("td", swatchOf(run), nameCell(run.label)),
       COLUMNS.map(([, key, show]) => h("td.number", row[key] === undefined ? "" : show(row))),
     );
   return h("details.more", h("summary", "By effect"), scrolled("Cost of each effect", h("thead", header), h("tbody", rows.map(line))));

@@ -27,6 +27,8 @@ function rowsOf(run) {
   const { manifest, summary } = run;
   return [
     ["Command", manifest?.command],
+    ["Scene file", summary?.scene],
+    ["Weights file", manifest?.inputs?.weights_file],
     ["Processor", manifest?.processor],
     ["Threads", summary?.threads ?? manifest?.threads],
     ["Linear solver", summary?.solver],

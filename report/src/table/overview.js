@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The most important figures, of one run or of several.
 
-import { count, format, h, scrolled, swatchOf } from "../dom.js";
+import { count, format, h, nameCell, scrolled, swatchOf } from "../dom.js";
 
 const hasEnded = (summary) => summary.outcome === "finished";
 
@@ -21,7 +21,7 @@ function buildTable(runs) {
   const all = runs.map((run) => run.summary);
   const shown = FIGURES.filter(([, value]) => runs.some((run) => value(run.summary, all)));
   const head = h("tr", h("th", { scope: "col" }, "Run"), shown.map(([label, , help]) => h("th.number", { scope: "col", title: help }, label)));
-  const line = (run) => h("tr", h("th", { scope: "row" }, swatchOf(run), run.label), shown.map(([, value]) => h("td.number", value(run.summary, all) || "–")));
+  const line = (run) => h("tr", h("th", { scope: "row" }, swatchOf(run), nameCell(run.label)), shown.map(([, value]) => h("td.number", value(run.summary, all) || "–")));
   const table = scrolled("Figures of the runs", h("thead", head), h("tbody", runs.map(line)));
   table.classList.add("overview");
   return table;
@@ -52,9 +52,9 @@ function whatHappened({ outcome, message = "" }) {
 // `isLive`: a bar beside it says how the run ended.
 export function buildHeader(runs, title, isLive) {
   const { summary } = runs[0] ?? {};
-  const models = [...new Set(runs.map((run) => run.summary?.overlap).filter(Boolean))];
+  const models = [...new Set(runs.map((run) => run.overlap).filter(Boolean))];
   const facts = summary
-    ? [summary.scene, `${count(summary.tetrahedra)} tetrahedra`, `${count(summary.vertices)} vertices`, models.length && `overlap: ${models.join(", ")}`]
+    ? [summary.scene?.replace(/^.*\//, ""), `${count(summary.tetrahedra)} tetrahedra`, `${count(summary.vertices)} vertices`, models.length && `overlap: ${models.join(", ")}`]
     : [];
   const trouble = runs
     .filter((run) => !isLive && run.summary && run.summary.outcome !== "finished")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a run's time went: a bar of phases, and the seconds beside their names.
 
-import { count, format, h, scrolled, swatchOf } from "../dom.js";
+import { count, format, h, nameCell, scrolled, swatchOf } from "../dom.js";
 import { buildEffects } from "./effects.js";
 
 const PHASES = [
@@ -57,8 +57,8 @@ export function buildPhases(runs) {
   const header = h(
     "tr",
     h("th", { scope: "col" }, "Phase"),
-    known.map((run) => h("th.number", { scope: "col" }, known.length > 1 ? run.label : "Wall time")),
-    !isMany && known.map((run) => h("th.number", { scope: "col" }, known.length > 1 ? `${run.label}, share` : "Share")),
+    known.map((run) => h("th.number", { scope: "col" }, known.length > 1 ? nameCell(run.label) : "Wall time")),
+    !isMany && known.map((run) => h("th.number", { scope: "col" }, known.length > 1 ? nameCell(`${run.label}, share`) : "Share")),
   );
   const row = ([key, label, group]) =>
     h(
