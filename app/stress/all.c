@@ -6,9 +6,9 @@
 
 #include "app/stress/pairs/pairs.h"
 #include "app/stress/scenes.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "overlap/model.h"
-#include "overlap/weights.h"
 
 static const char ANY[] = "any";
 
@@ -17,12 +17,6 @@ static Status fail_model(const char *word) {
   size_t used = 0;
   int count;
   const OverlapOps *const *models = overlap_model_list(&count);
-  if (overlap_weights_is_path(word))
-    return status_fail(
-        STATUS_USAGE,
-        "--overlap %s: hard cases are asked of the program's own models; `tetlap eval` and `tetlap "
-        "compare` take weights files",
-        word);
   TextGuess guess = text_guess_of(word);
   text_guess_offer(&guess, ANY);
   text_append(known, sizeof known, &used, "%s", ANY);
@@ -43,11 +37,29 @@ static bool is_known(const char *word) {
   return strcmp(ANY, word) == 0;
 }
 
+static Status check_model(const AppStressOptions *options, const char *word) {
+  char path[PATH_MAX];
+  if (!app_model_names_locate(word, path)) return is_known(word) ? STATUS_OK : fail_model(word);
+  if (!options->has_scenes) return STATUS_OK;
+  return status_fail(
+      STATUS_USAGE,
+      "--overlap %s: of weights files only the pairs are measured; add --pairs, and see `tetlap "
+      "compare` for scenes",
+      word);
+}
+
 static Status check_models(const AppStressOptions *options) {
-  char word[TEXT_MAX_WORD];
-  for (const char *rest = text_next(options->models, word); rest; rest = text_next(rest, word))
-    if (!is_known(word)) return fail_model(word);
-  return STATUS_OK;
+  if (!options->models) return STATUS_OK;
+  const char *words[APP_STRESS_MAX_MODELS];
+  char *list = memory_copy(options->models, strlen(options->models) + 1, 1);
+  if (!list) return status_no_memory("the models");
+  int count = text_split(list, words, APP_STRESS_MAX_MODELS);
+  Status status =
+      count < 0 ? status_fail(STATUS_USAGE, "--overlap names more than %d models", APP_STRESS_MAX_MODELS)
+                : STATUS_OK;
+  for (int w = 0; w < count && !status; w++) status = check_model(options, words[w]);
+  memory_free(list);
+  return status;
 }
 
 Status app_stress_all_run(const AppStressOptions *options, AppStress *stress) {

@@ -27,6 +27,7 @@ bool app_stress_wants_model(const AppStressOptions *options, const char *model) 
 
 void app_stress_destroy(AppStress *stress) {
   memory_free(stress->rows);
+  memory_free(stress->names);
   *stress = (AppStress){0};
 }
 

@@ -16,10 +16,11 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "app/cli/model_names.h"
 #include "base/files/record.h"
 #include "base/status.h"
 
-enum { APP_STRESS_MAX_MEASURES = 12 };
+enum { APP_STRESS_MAX_MEASURES = 12, APP_STRESS_MAX_MODELS = 64 };
 
 typedef enum AppStressOutcome {
   APP_STRESS_HELD,
@@ -57,15 +58,17 @@ typedef struct AppStressRow {
 } AppStressRow;
 
 typedef struct AppStress {
-  AppStressRow *rows; // owned
+  AppStressRow *rows;  // owned
+  AppModelName *names; // of the models that are weights files, owned
   int count;
   size_t capacity;
 } AppStress;
 
 typedef struct AppStressOptions {
   bool has_pairs, has_scenes, is_quick;
-  const char *only;   // part of a case's name; NULL: all
-  const char *models; // comma-separated; NULL: all, with `is_quick` clip, geo and any
+  const char *only; // part of a case's name; NULL: all
+  // Comma-separated; NULL: all, with `is_quick` clip, geo and any. Weights files only without scenes.
+  const char *models;
   // In place of `nodal`, which scenes name, at its default stiffness; NULL: `field` for models that give a
   // centroid.
   const char *potential;

@@ -556,10 +556,11 @@ const fileTests = {
     assert.deepEqual(await texts("#plot-force .reading .name"), names);
     assert.deepEqual(await texts("#compare th[scope=rowgroup]"), [...names.slice(1), "exact", "clip-scalar"]);
     assert.deepEqual(await texts("#plot-audit .reading .name"), [...names.slice(1), "exact", "clip-scalar"]);
-    assert.deepEqual(await texts("#compare tr > th[scope=row]:first-child"), ["clip (reference)", ...names.slice(1)].flatMap((name) => name)); // of their own runs
+    assert.deepEqual(await texts("#compare .scroll:last-of-type th[scope=row]"), ["clip (reference)", ...names.slice(1)]); // of their own runs
     const facts = await texts(".facts span");
     assert.equal(facts[0], "02_two_blocks.yaml");
     assert.equal(facts.at(-1), `overlap: ${names.join(", ")}`);
+    assert.deepEqual(await page.eval(`[...document.querySelectorAll("#manifest dt")].filter((one) => one.textContent === "Weights file").map((one) => one.nextSibling.textContent.startsWith("/"))`), [true, true]);
   },
 
   async "a model has one colour in tables and curves, with a run and without"(page) {

@@ -116,7 +116,8 @@ END_TEST
 
 START_TEST(stress_names_the_model_that_is_none) {
   ck_assert_refused(64, "$tetlap stress -m clpi --pairs", "did you mean 'clip'");
-  ck_assert_refused(64, "$tetlap stress -m clip,my.safetensors --pairs", "weights files");
+  ck_assert_refused(64, "$tetlap stress -m clip,my.safetensors", "add --pairs");
+  ck_assert_refused(74, "$tetlap stress -m my.safetensors --pairs", "my.safetensors: cannot be opened");
 }
 END_TEST
 

@@ -49,6 +49,28 @@ START_TEST(every_class_of_pairs_holds_with_every_model) {
 }
 END_TEST
 
+// The weights of `geo` as a file: its own name, the measures and the verdict of `geo`.
+START_TEST(the_pairs_of_a_weights_file_are_measured_under_its_name) {
+  static const char models[] = "geo," TETLAP_SOURCE_DIR "/net/weights/geo.safetensors";
+  AppStress stress;
+  run(&stress, &(AppStressOptions){.has_pairs = true, .is_quick = true, .only = "uniform", .models = models});
+  ck_assert_int_ge(stress.count, 2);
+  ck_assert_int_eq(stress.count % 2, 0);
+  for (int r = 0; r < stress.count / 2; r++) {
+    const AppStressRow *own = &stress.rows[r], *file = &stress.rows[stress.count / 2 + r];
+    ck_assert_str_eq(own->model, "geo");
+    ck_assert_str_eq(file->model, "weights/geo");
+    ck_assert_str_eq(file->name, own->name);
+    ck_assert_int_eq(file->outcome, own->outcome);
+    ck_assert_int_eq(file->measure_count, own->measure_count);
+    for (int m = 0; m < own->measure_count; m++)
+      ck_assert_double_eq(file->measures[m].value, own->measures[m].value);
+  }
+  expect_no_failure(&stress);
+  app_stress_destroy(&stress);
+}
+END_TEST
+
 START_TEST(the_quick_scenes_hold) {
   AppStress stress;
   run(&stress, &(AppStressOptions){.has_scenes = true, .is_quick = true});
@@ -207,6 +229,7 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("stress");
   tcase_add_test(cases, every_class_of_pairs_holds_with_every_model);
+  tcase_add_test(cases, the_pairs_of_a_weights_file_are_measured_under_its_name);
   tcase_add_test(cases, the_quick_scenes_hold);
   tcase_add_test(cases, scenes_have_the_potential_of_the_program_unless_another_is_asked_for);
   tcase_add_test(cases, a_stiffness_that_a_case_names_goes_with_the_potential);

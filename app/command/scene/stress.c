@@ -23,8 +23,8 @@ typedef struct Options {
 static const struct argp_option option_table[] = {
     {"only", KEY_ONLY, "NAME", 0, "Only cases with NAME in their name", 0},
     {"overlap", 'm', "NAME,...", 0,
-     "Only these overlap models; any: scenes in which none takes part (default: all; with --quick clip and "
-     "geo)",
+     "Only these overlap models, with --pairs weights files, too; any: scenes in which none takes part "
+     "(default: all; with --quick clip and geo)",
      0},
     {"potential", KEY_POTENTIAL, "NAME", 0,
      "Contact potential of the scenes, at its default stiffness; nodal: as their files say (default: field, "

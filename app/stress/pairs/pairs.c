@@ -5,9 +5,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "app/evaluation/model.h"
 #include "app/stress/pairs/tolerances.h"
 #include "app/stress/pairs/traits.h"
 #include "base/clock.h"
+#include "base/memory.h"
+#include "base/text.h"
 #include "datagen/hard.h"
 #include "overlap/exact/exact.h"
 #include "overlap/invariant.h"
@@ -198,10 +201,10 @@ static void ask_tolerance(const Asked *asked, const AppStressPairErrors *most, A
   app_stress_ask_most(row, "missed", worst->missed, most->missed);
 }
 
-// The verdict: held by the standard, else by the model's own tolerance.
+// The verdict: held by the standard, else by the tolerance of the model, a weights file's of its kind.
 static void judge_class(const Asked *asked, AppStressRow *row) {
   const AppStressPairErrors *worst = &asked->worst;
-  const AppStressTolerance *own = app_stress_tolerances_find(row->model);
+  const AppStressTolerance *own = app_stress_tolerances_find(asked->model->ops->name);
   bool is_held = asked->misfit <= 1 && worst->bounds <= BOUNDS && worst->balance <= BALANCE &&
                  worst->gradient <= GRADIENT && worst->flags == 0 && worst->missed == 0;
   app_stress_ask_occurred(row, "members that are what the class says", (double)asked->true_count,
@@ -271,13 +274,13 @@ static void run_not_numbers(const OverlapModel *model, AppStressRow *row) {
   app_stress_judge(row);
 }
 
-static Status run_case(const AppStressOptions *options, AppStress *stress, const OverlapOps *ops,
+static Status run_case(const AppStressOptions *options, AppStress *stress, const char *model_name,
                        const OverlapModel *model, int class_index) {
   bool is_class = class_index < DATAGEN_HARD_CLASS_COUNT;
   const char *name = is_class ? datagen_hard_classes[class_index].name : NOT_A_NUMBER;
   if (!app_stress_wants(options, name)) return STATUS_OK;
   if (options->stop && *options->stop) return status_fail(STATUS_INTERRUPTED, "interrupted");
-  AppStressRow *row = app_stress_add(stress, "pairs", name, ops->name);
+  AppStressRow *row = app_stress_add(stress, "pairs", name, model_name);
   if (!row) return status_no_memory("the table of hard cases");
   if (!model)
     app_stress_excuse(row, "%s", status_message());
@@ -289,20 +292,41 @@ static Status run_case(const AppStressOptions *options, AppStress *stress, const
   return STATUS_OK;
 }
 
-static Status run_model(const AppStressOptions *options, AppStress *stress, const OverlapOps *ops) {
+// A model of the program whose weights are not there is absent; a weights file is asked for, and an error.
+static Status run_model(const AppStressOptions *options, AppStress *stress, const char *source,
+                        const char *name) {
   OverlapModel model;
-  Status created = overlap_model_create(&model, ops->name), status = STATUS_OK;
-  if (created && created != STATUS_IO) return created;
+  Status created = app_evaluation_model_open(&model, source), status = STATUS_OK;
+  if (created && (created != STATUS_IO || source != name)) return created;
   for (int c = 0; c <= DATAGEN_HARD_CLASS_COUNT && !status; c++)
-    status = run_case(options, stress, ops, created ? NULL : &model, c);
+    status = run_case(options, stress, name, created ? NULL : &model, c);
   overlap_model_destroy(&model);
   return status;
+}
+
+static Status run_files(const AppStressOptions *options, AppStress *stress, char *models) {
+  const char *sources[APP_STRESS_MAX_MODELS];
+  char path[PATH_MAX];
+  int words = text_split(models, sources, APP_STRESS_MAX_MODELS), count = 0;
+  for (int w = 0; w < words; w++)
+    if (app_model_names_locate(sources[w], path)) sources[count++] = sources[w];
+  stress->names = memory_zeroed((size_t)count + 1, sizeof *stress->names);
+  if (!stress->names) return status_no_memory("the models");
+  TRY(app_model_names_find(count, sources, stress->names));
+  for (int f = 0; f < count; f++) TRY(run_model(options, stress, sources[f], stress->names[f]));
+  return STATUS_OK;
 }
 
 Status app_stress_pairs_run(const AppStressOptions *options, AppStress *stress) {
   int count;
   const OverlapOps *const *models = overlap_model_list(&count);
-  for (int m = 0; m < count; m++)
-    if (app_stress_wants_model(options, models[m]->name)) TRY(run_model(options, stress, models[m]));
-  return STATUS_OK;
+  for (int m = 0; m < count; m++) {
+    const char *name = models[m]->name;
+    if (app_stress_wants_model(options, name)) TRY(run_model(options, stress, name, name));
+  }
+  if (!options->models) return STATUS_OK;
+  char *words = memory_copy(options->models, strlen(options->models) + 1, 1);
+  Status status = words ? run_files(options, stress, words) : status_no_memory("the models");
+  memory_free(words);
+  return status;
 }

@@ -28,7 +28,7 @@ function rowsOf(run) {
   return [
     ["Command", manifest?.command],
     ["Scene file", summary?.scene],
-    ["Weights file", manifest?.inputs?.weights_file],
+    ["Weights file", manifest?.inputs?.weights_file || null],
     ["Processor", manifest?.processor],
     ["Threads", summary?.threads ?? manifest?.threads],
     ["Linear solver", summary?.solver],
