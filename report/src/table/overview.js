@@ -41,7 +41,8 @@ export function buildOverview(runs) {
       known.map((run, k) => h(hasEnded(run.summary) || label !== "Outcome" ? "dd" : "dd.failed", known.length > 1 && swatchOf(run), values[k] || "–")),
     );
   });
-  return h("dl.figures", tiles);
+  const key = known.length > 1 && h("p.key-line", known.map((run) => h("span", swatchOf(run), run.label)));
+  return h(".overview", key, h("dl.figures", tiles));
 }
 
 // "failed at t = 0.1 s: …", "interrupted at t = …"
