@@ -200,7 +200,7 @@ static const Wrong wrong[] = {
      "s.yaml:3:99: obstacles[0].cylinder: the number of faces must be even"},
     {"bodies: [{name: b, mesh: m.msh, material: {young: 1, poisson: 0, density: 1}}]\ntime: {end: 1, static: "
      "true}\ncontact: {rest: {}}\n",
-     "s.yaml:3:11: a static scene is at rest always; take 'rest' or time.static away"},
+     "s.yaml:3:11: a static scene is at rest always; remove 'rest' or time.static"},
     {TIME BODY "obstacles: [{name: g}]\n",
      "s.yaml:3:13: obstacles[0] needs one of these keys: halfspace sphere box cylinder mesh"},
     {TIME BODY "obstacles: [{name: g, mesh: g.msh, velocity: [0, 0, 1]}]\n",
