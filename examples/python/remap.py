@@ -70,7 +70,7 @@ def slopes(values, points, tets):
     sums = at_vertices[tets].sum(axis=1)
     means = sums[:, 0, 1:] / sums[:, :1, 0]
     spread = sums[:, 1:, 1:] - sums[:, :1, :1] * np.einsum("ta,tb->tab", means, means)
-    return np.linalg.solve(spread[:, :3, :3], spread[:, :3, 3])
+    return np.linalg.solve(spread[:, :3, :3], spread[:, :3, 3:])[:, :, 0]
 
 
 def remap(values, mesh_a, mesh_b, order):
