@@ -19,7 +19,7 @@ static const struct {
                                         "[Pa/m³]"},
     [CONTACT_POTENTIAL_FIELD] =
         {"field", "depth in the other body, over rest volume: uniform pressure whatever the meshes, every "
-                  "pair balances; needs a model with the overlap's centroid [Pa/m]"},
+                  "pair balances [Pa/m]"},
 };
 
 const char *contact_def_potential_name(ContactPotential potential) {

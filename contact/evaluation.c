@@ -256,10 +256,11 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
                              const OverlapModel *model) {
   int count = evaluation->mesh_pair_count;
   if (count == 0) return STATUS_OK;
+  bool wants_gradient = !layout->depth.has_field || !overlap_model_has_own_centroid(model);
   OverlapBatch batch = {.pair_count = count,
                         .pairs = evaluation->coordinates,
                         .volume = evaluation->volumes,
-                        .gradient = layout->depth.has_field ? NULL : evaluation->gradients,
+                        .gradient = wants_gradient ? evaluation->gradients : NULL,
                         .centroid = layout->depth.has_field ? evaluation->centroids : NULL,
                         .flags = evaluation->flags};
   if (count < FEW_TO_SHARE) {

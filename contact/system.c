@@ -44,15 +44,6 @@ struct ContactSystem {
   ContactCounters counters;
 };
 
-Status contact_system_check(const ContactSystemDef *def, const OverlapModel *model) {
-  if (def->potential != CONTACT_POTENTIAL_FIELD || overlap_model_has_centroid(model)) return STATUS_OK;
-  return status_fail(
-      STATUS_INPUT,
-      "contact: the potential 'field' needs the centroid of each overlap, which the overlap model "
-      "'%s' does not give; take 'clip', or the potential 'nodal'",
-      model->ops->name);
-}
-
 static void measure_given(const ContactSystemDef *def, double *volumes) {
   for (int i = 0; i < def->tet_count; i++) {
     Vec3 x[4];
@@ -80,7 +71,6 @@ static Status reserve(ContactSystem *system, const ContactSystemDef *def) {
 }
 
 static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
-  TRY(contact_system_check(def, def->model));
   TRY(contact_stars_create(&system->stars, def));
   TRY(contact_layout_create(&system->layout, &system->stars.def));
   TRY(reserve(system, def));
@@ -511,8 +501,6 @@ int contact_system_mesh_pair_count(const ContactSystem *system) {
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,
                             const OverlapModel *candidate, const OverlapModel *reference,
                             ContactAudit *audit) {
-  TRY(contact_system_check(&system->layout.def, candidate));
-  TRY(contact_system_check(&system->layout.def, reference));
   positions = place(system, positions);
   TRY(check_margin(system, time, positions));
   TRY(create_audits(system));

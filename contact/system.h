@@ -44,9 +44,6 @@ typedef struct ContactCounters {
 
 typedef struct ContactSystem ContactSystem; // opaque: lists, scratch memory and the last evaluation
 
-// Whether that overlap model gives what the potential needs: `field` asks for centroids.
-Status contact_system_check(const ContactSystemDef *def, const OverlapModel *model);
-
 Status contact_system_create(ContactSystem **system, const ContactSystemDef *def);
 void contact_system_destroy(ContactSystem *system);
 

@@ -4,7 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/text.h"
+#include "overlap/centroid.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/model.h"
@@ -84,7 +86,7 @@ bool overlap_model_has_hessian(const OverlapModel *model) {
   return model->ops->has_hessian && model->ops->has_hessian(model->self);
 }
 
-bool overlap_model_has_centroid(const OverlapModel *model) {
+bool overlap_model_has_own_centroid(const OverlapModel *model) {
   return model->ops->has_centroid && model->ops->has_centroid(model->self);
 }
 
@@ -165,17 +167,33 @@ static Status eval_each(const OverlapModel *model, const OverlapBatch *batch) {
   return overlap_portions_eval(batch, PORTION, is_much, eval_portion, model);
 }
 
+static Status ask(const OverlapModel *model, const OverlapBatch *batch) {
+  return model->ops->eval_batch ? model->ops->eval_batch(model->self, batch) : eval_each(model, batch);
+}
+
+// Centroids from V and ∇V.
+static Status eval_with_centroid(const OverlapModel *model, const OverlapBatch *batch) {
+  enum { SIZE = OVERLAP_PAIR_SIZE };
+  OverlapBatch asked = *batch;
+  asked.centroid = NULL;
+  if (!batch->gradient) asked.gradient = memory_zeroed((size_t)batch->pair_count, SIZE * sizeof(double));
+  if (!asked.gradient) return status_no_memory("gradients of overlaps");
+  Status status = ask(model, &asked);
+#pragma omp parallel for schedule(static) if (batch->pair_count > 2000)
+  for (int i = 0; i < batch->pair_count; i++)
+    if (!status)
+      overlap_centroid_derive(batch->pairs + (size_t)i * SIZE, batch->volume[i],
+                              asked.gradient + (size_t)i * SIZE, batch->centroid + 3 * (size_t)i);
+  if (!batch->gradient) memory_free(asked.gradient);
+  return status;
+}
+
 Status overlap_model_eval(const OverlapModel *model, const OverlapBatch *batch) {
   if (batch->hessian && !overlap_model_has_hessian(model))
     return status_fail(STATUS_INPUT, "overlap model '%s' has no Hessian", model->ops->name);
-  if (batch->centroid && !overlap_model_has_centroid(model))
-    return status_fail(STATUS_INPUT,
-                       "overlap model '%s' gives no centroid of the intersection: `clip`, `clip32`, `exact` "
-                       "and `cgal` do",
-                       model->ops->name);
   if (!model->ops->checks_finite) TRY(check_finite(batch));
-  Status status =
-      model->ops->eval_batch ? model->ops->eval_batch(model->self, batch) : eval_each(model, batch);
+  Status status = batch->centroid && !overlap_model_has_own_centroid(model) ? eval_with_centroid(model, batch)
+                                                                            : ask(model, batch);
   if (status != STATUS_OK && model->ops->checks_finite) TRY(check_finite(batch)); // which says more
   return status;
 }

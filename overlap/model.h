@@ -28,11 +28,12 @@ bool overlap_model_has_ghosts(const OverlapModel *model);
 // Whether it has second derivatives.
 bool overlap_model_has_hessian(const OverlapModel *model);
 
-// Whether it gives the centroid of the intersection.
-bool overlap_model_has_centroid(const OverlapModel *model);
+// Whether it has a centroid of its own; that of others follows from V and ∇V (overlap/centroid.h).
+bool overlap_model_has_own_centroid(const OverlapModel *model);
 
 // Evaluates all pairs of the batch with OpenMP. STATUS_INPUT: a coordinate is NaN or infinite; the message
-// names the pair. STATUS_INPUT: a Hessian or a centroid is asked of a model that has none.
+// names the pair. STATUS_INPUT: a Hessian is asked of a model that has none. Where x̄ follows from ∇V and the
+// batch has no place for ∇V, that is allocated for the call.
 Status overlap_model_eval(const OverlapModel *model, const OverlapBatch *batch);
 
 void overlap_model_destroy(OverlapModel *model);

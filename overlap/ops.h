@@ -9,8 +9,8 @@
 // Σ ∇V = 0, Σ x × ∇V = 0, Σ x·∇V = 3V, and the sum of ∇V over one tetrahedron's vertices is minus the
 // integral of the other's outward normal over its part of the boundary: contact normal times area.
 //
-// V x̄ is the integral of x over the intersection. Where V is 0, x̄ is written as (0, 0, 0): a number that any
-// weight V makes vanish.
+// V x̄ is the integral of x over the intersection; of a model that has no x̄ of its own it follows from V and
+// ∇V (overlap/centroid.h). Where V is 0, x̄ is written as (0, 0, 0): a number that any weight V makes vanish.
 #ifndef TETLAP_OVERLAP_OPS_H
 #define TETLAP_OVERLAP_OPS_H
 
@@ -74,11 +74,11 @@ typedef struct OverlapOps {
   bool rejects_disjoint;
   // Logits of "the two intersect" of pairs (count, 24), where a model tells them apart from V; NULL: V > 0.
   Status (*eval_logits)(const void *self, int count, const double *pairs, double *logits);
-  // V of pairs (count, 24) by its network alone, and a bound of what each is off at a stated confidence; NULL:
-  // it tells none. `has_bounds`: whether it does as it was made; NULL: always.
+  // V of pairs (count, 24) by its network alone, and a bound of what each is off at a stated confidence;
+  // NULL: it tells none. `has_bounds`: whether it does as it was made; NULL: always.
   Status (*eval_bounds)(const void *self, int count, const double *pairs, double *volumes, double *bounds);
   bool (*has_bounds)(const void *self);
-  // Whether it has second derivatives, and the centroid, as it was made; NULL: never.
+  // Whether it has second derivatives, and a centroid of its own, as it was made; NULL: never.
   bool (*has_hessian)(const void *self);
   bool (*has_centroid)(const void *self);
   // eval_batch fails where a coordinate is not finite; without it, all are looked through before.

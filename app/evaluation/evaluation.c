@@ -26,7 +26,7 @@ typedef struct Block {
   double *true_centroid; // (count, 3); owned unless it is the pairs'
   double *volume;        // (count), owned
   double *gradient;      // (count, 24), owned
-  double *centroid;      // (count, 3), owned; NULL: the model has none
+  double *centroid;      // (count, 3), owned
   unsigned *flags;       // (count), owned
   double *logits;        // (count), owned; NULL: the model tells none
   double *swapped;       // (count), owned: what the status hangs on, V or logit, the two exchanged
@@ -109,13 +109,12 @@ static Status block_evaluate(Block *block, const OverlapModel *model) {
   block->volume = memory_zeroed(count, sizeof *block->volume);
   block->gradient = memory_zeroed(count * SIZE, sizeof *block->gradient);
   block->flags = memory_zeroed(count, sizeof *block->flags);
-  bool has_centroid = overlap_model_has_centroid(model);
-  if (has_centroid) block->centroid = memory_zeroed(count * 3, sizeof *block->centroid);
+  block->centroid = memory_zeroed(count * 3, sizeof *block->centroid);
   block->true_gradient = block->pairs->gradient, block->true_centroid = block->pairs->centroid;
   if (!block->true_gradient) block->true_gradient = memory_zeroed(count * SIZE, sizeof(double));
   if (!block->true_centroid) block->true_centroid = memory_zeroed(count * 3, sizeof(double));
-  if (!block->volume || !block->gradient || !block->flags || !block->true_gradient || !block->true_centroid ||
-      (has_centroid && !block->centroid))
+  if (!block->volume || !block->gradient || !block->centroid || !block->flags || !block->true_gradient ||
+      !block->true_centroid)
     return status_no_memory("an evaluation");
   if (!block->pairs->gradient || !block->pairs->centroid)
     TRY(complete(block->pairs, count, block->pairs->gradient ? NULL : block->true_gradient,
@@ -192,7 +191,7 @@ static void add_inside(AppEvaluationRun *run, const Block *block, size_t i) {
   sums->gradient_error += difference;
   run->gradient_errors[sums->inside++] = difference / size;
   add_angle(run, truth, told);
-  if (block->centroid) add_moments(run, block, i);
+  add_moments(run, block, i);
 }
 
 static void add_outside(AppEvaluationRun *run, const Block *block, size_t i) {

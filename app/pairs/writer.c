@@ -35,24 +35,21 @@ static void write_csv_head(FILE *stream, const AppPairsWriter *writer) {
   fputs("volume", stream);
   for (int k = 0; writer->has_gradient && k < APP_PAIRS_SIZE; k++)
     fprintf(stream, ",dV/d%s", app_pairs_columns_name(k));
-  if (writer->has_centroid) fputs(",centroid_x,centroid_y,centroid_z", stream);
+  fputs(",centroid_x,centroid_y,centroid_z", stream);
   fputs(",flags\n", stream);
 }
 
 static void write_npy_head(FILE *stream, const AppPairsWriter *writer) {
   const char order = app_pairs_npy_order();
-  char type[MOST_TYPE], gradient[48] = "", centroid[48] = "";
+  char type[MOST_TYPE], gradient[48] = "";
   if (writer->has_gradient) snprintf(gradient, sizeof gradient, ", ('gradient', '%cf8', (2, 4, 3))", order);
-  if (writer->has_centroid) snprintf(centroid, sizeof centroid, ", ('centroid', '%cf8', (3,))", order);
-  snprintf(type, sizeof type, "[('volume', '%cf8')%s%s, ('flags', '%cu4')]", order, gradient, centroid,
-           order);
+  snprintf(type, sizeof type, "[('volume', '%cf8')%s, ('centroid', '%cf8', (3,)), ('flags', '%cu4')]", order,
+           gradient, order, order);
   app_pairs_npy_write_head(stream, type, writer->count);
 }
 
-Status app_pairs_writer_open(AppPairsWriter *writer, const char *path, AppPairsForm form, bool has_gradient,
-                             bool has_centroid) {
-  *writer = (AppPairsWriter){
-      .form = form, .has_gradient = has_gradient, .has_centroid = has_centroid, .stream = stdout};
+Status app_pairs_writer_open(AppPairsWriter *writer, const char *path, AppPairsForm form, bool has_gradient) {
+  *writer = (AppPairsWriter){.form = form, .has_gradient = has_gradient, .stream = stdout};
   if (path) {
     TRY(file_begin(&writer->file, path));
     writer->stream = writer->file.stream;
@@ -83,10 +80,8 @@ static void write_csv(FILE *stream, const AppPairsWriter *writer, const OverlapB
     fputc(',', stream);
     write_numbers(stream, batch->gradient + APP_PAIRS_SIZE * (size_t)i, APP_PAIRS_SIZE);
   }
-  if (writer->has_centroid) {
-    fputc(',', stream);
-    write_numbers(stream, batch->centroid + 3 * (size_t)i, 3);
-  }
+  fputc(',', stream);
+  write_numbers(stream, batch->centroid + 3 * (size_t)i, 3);
   fputc(',', stream);
   write_flags(stream, batch->flags[i], " ", "");
   fputc('\n', stream);
@@ -99,12 +94,9 @@ static void write_json(FILE *stream, const AppPairsWriter *writer, const Overlap
     write_numbers(stream, batch->gradient + APP_PAIRS_SIZE * (size_t)i, APP_PAIRS_SIZE);
     fputc(']', stream);
   }
-  if (writer->has_centroid) {
-    fputs(",\"centroid\":[", stream);
-    write_numbers(stream, batch->centroid + 3 * (size_t)i, 3);
-    fputc(']', stream);
-  }
-  fputs(",\"flags\":[", stream);
+  fputs(",\"centroid\":[", stream);
+  write_numbers(stream, batch->centroid + 3 * (size_t)i, 3);
+  fputs("],\"flags\":[", stream);
   write_flags(stream, batch->flags[i], ",", "\"");
   fputs("]}\n", stream);
 }
@@ -114,7 +106,7 @@ static void write_npy(FILE *stream, const AppPairsWriter *writer, const OverlapB
   fwrite(batch->volume + i, sizeof(double), 1, stream);
   if (writer->has_gradient)
     fwrite(batch->gradient + APP_PAIRS_SIZE * (size_t)i, sizeof(double), APP_PAIRS_SIZE, stream);
-  if (writer->has_centroid) fwrite(batch->centroid + 3 * (size_t)i, sizeof(double), 3, stream);
+  fwrite(batch->centroid + 3 * (size_t)i, sizeof(double), 3, stream);
   fwrite(&flags, sizeof flags, 1, stream);
 }
 

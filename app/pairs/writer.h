@@ -13,7 +13,7 @@ typedef enum AppPairsForm { APP_PAIRS_FORM_CSV, APP_PAIRS_FORM_JSON, APP_PAIRS_F
 
 typedef struct AppPairsWriter {
   AppPairsForm form;
-  bool has_gradient, has_centroid;
+  bool has_gradient;
   FILE *stream;
   FileWriter file; // zero: standard output
   long long count; // pairs written
@@ -23,9 +23,8 @@ typedef struct AppPairsWriter {
 Status app_pairs_writer_form(const char *path, AppPairsForm *form);
 
 // `path` NULL: standard output. STATUS_USAGE: .npy there, whose head tells a number that is known at the end.
-Status app_pairs_writer_open(AppPairsWriter *writer, const char *path, AppPairsForm form, bool has_gradient,
-                             bool has_centroid);
-// Of a batch with volumes and flags, and gradients and centroids if they are to be written.
+Status app_pairs_writer_open(AppPairsWriter *writer, const char *path, AppPairsForm form, bool has_gradient);
+// Of a batch with volumes, centroids and flags, and gradients if they are to be written.
 void app_pairs_writer_append(AppPairsWriter *writer, const OverlapBatch *batch);
 // Puts the file into its place. STATUS_IO.
 Status app_pairs_writer_commit(AppPairsWriter *writer);

@@ -58,14 +58,6 @@ static Status watch(void *self, const FemRunProgress *progress) {
   return STATUS_OK;
 }
 
-// One potential for all: where the scene names none, `nodal` if a model gives no centroid, which `field`
-// needs.
-static void agree_on_potential(const AppPareto *pareto, FemSceneDef *scene) {
-  for (int m = 0; m < pareto->model_count && !scene->contact.potential_is_given; m++)
-    if (!overlap_model_has_centroid(&pareto->models[m].overlap))
-      scene->contact.potential = CONTACT_POTENTIAL_NODAL;
-}
-
 static Status watch_signal(void *self, const FemRunProgress *progress) {
   (void)progress;
   const Bench *bench = self;
@@ -74,7 +66,6 @@ static Status watch_signal(void *self, const FemRunProgress *progress) {
 
 static Status begin(Bench *bench, AppBenchTrial *trial, const char *overlap) {
   TRY(app_scene_overlap_read(bench->scene, bench->overrides, bench->override_count, overlap, &trial->scene));
-  agree_on_potential(bench->pareto, &trial->scene);
   if (!trial->scene.contact.is_on)
     return status_fail(STATUS_INPUT,
                        "%s: has no contact, so overlap models cannot differ; add a 'contact' section",

@@ -66,19 +66,6 @@ static Status run_open(const AppStressScene *scene, const AppStressOptions *opti
 // What scenes that name `nodal` are run with, unless the options say: the default of the program.
 static const char DEFAULT[] = "field";
 
-static bool has_centroid(const char *model) {
-  OverlapModel created;
-  if (overlap_model_create(&created, model)) return false;
-  bool has = overlap_model_has_centroid(&created);
-  overlap_model_destroy(&created);
-  return has;
-}
-
-static const char *potential_of(const AppStressOptions *options, const char *model) {
-  if (options->potential) return options->potential;
-  return model == ANY || has_centroid(model) ? DEFAULT : NULL;
-}
-
 static Status open_with(const AppStressScene *scene, const AppStressOptions *options, const char *model,
                         AppStressRun *run) {
   const char *overrides[APP_STRESS_MAX_OVERRIDES + 1];
@@ -88,7 +75,8 @@ static Status open_with(const AppStressScene *scene, const AppStressOptions *opt
     overrides[count] = scene->overrides[count];
   snprintf(overlap, sizeof overlap, "contact.overlap=%s", model);
   if (model != ANY) overrides[count++] = overlap;
-  return app_stress_run_open(run, scene->file, overrides, count, potential_of(options, model));
+  return app_stress_run_open(run, scene->file, overrides, count,
+                             options->potential ? options->potential : DEFAULT);
 }
 
 static Status run_case(const AppStressScene *scene, const AppStressOptions *options, const char *model,
@@ -118,7 +106,6 @@ static bool is_able(const AppStressScene *scene, const AppStressOptions *options
                     AppStressRow *row) {
   OverlapModel model;
   Status created = overlap_model_create(&model, ops->name);
-  bool gives_centroid = !created && overlap_model_has_centroid(&model);
   overlap_model_destroy(&model);
   if (created) {
     app_stress_excuse(row, "%s", status_message());
@@ -126,10 +113,6 @@ static bool is_able(const AppStressScene *scene, const AppStressOptions *options
   }
   if (ops->lacks_scale) {
     app_stress_excuse(row, "its V does not follow the size of the pair: no forces");
-    return false;
-  }
-  if (options->potential && strcmp(options->potential, "field") == 0 && !gives_centroid) {
-    app_stress_excuse(row, "gives no centroid, which the potential field needs");
     return false;
   }
   if (ops->seconds_per_pair < 1e-4) return true;

@@ -69,8 +69,7 @@ typedef struct AppStressOptions {
   const char *only; // part of a case's name; NULL: all
   // Comma-separated; NULL: all, with `is_quick` clip, geo and any. Weights files only without scenes.
   const char *models;
-  // In place of `nodal`, which scenes name, at its default stiffness; NULL: `field` for models that give a
-  // centroid.
+  // In place of `nodal`, which scenes name, at its default stiffness; NULL: `field`.
   const char *potential;
   double limit_s; // processor time of a scene with a model; 0: the case's own
   const volatile sig_atomic_t *stop;

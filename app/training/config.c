@@ -141,7 +141,7 @@ static const SceneKey model_keys[] = {
     {"of", SCENE_TEXT, AT(AppTrainingModelDef, of), .absent_help = "of a bound it must be there",
      .help = "bound: the geo whose errors are learned, a file or the name of one that ships"},
     {"centroid", SCENE_SWITCH, AT(AppTrainingModelDef, has_centroid), .fallback = "true",
-     .help = "geo: the network gives the centroid of the overlap too, which the potential `field` needs"},
+     .help = "geo: the network gives the centroid of the overlap too; without, it follows from the volume's gradient"},
     {"reading", SCENE_CHOICE, AT(AppTrainingModelDef, reading), .choices = &reading_choices, .fallback = "a",
      .help = "tpn: of the paper's table of layers"},
     {"scale", SCENE_NUMBER, AT(AppTrainingModelDef, scale), .range = "(0, 16]", .fallback = "1",

@@ -168,7 +168,6 @@ typedef struct FemContactDef {
   FemScenePlace place;
   double stiffness; // κ; 0: chosen (the softest body's Young's modulus; `body`: that over its volume²…)
   ContactPotential potential;
-  bool potential_is_given;  // else it is chosen by the overlap model
   FemContactPairDef *pairs; //                                (pair_count)
   int pair_count;
   char *overlap; // name of the overlap model

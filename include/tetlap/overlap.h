@@ -24,7 +24,7 @@
  * L sum of dV/dx         = 0, and sum of x cross dV/dx, to 1e-14 L^2 and L^3
  *
  * `exact` has V within 1 ulp. `clip32`: V within 1e-3 V, or 1e-4 v where V is below v/10. Learned models
- * (`geo`, `geo-small`, `tpn`, ...) have V, and the centroid where they give one, within a few tenths of a
+ * (`geo`, `geo-small`, `tpn`, ...) have V, and the centroid where they predict one, within a few tenths of a
  * per cent of ordinary pairs: docs/models.md.
  *
  * Errors are a status and a message: nothing is printed, no process ended. Functions that fail leave what

@@ -85,9 +85,8 @@ static Status describe(const TetlapOverlap *overlap, TetlapOverlapInfo *info) {
   const OverlapModel *model = &overlap->model;
   known.name = model->ops->name;
   known.description = model->ops->help;
-  known.gives = TETLAP_OVERLAP_VOLUME | TETLAP_OVERLAP_GRADIENT |
-                (overlap_model_has_hessian(model) ? (unsigned)TETLAP_OVERLAP_HESSIAN : 0) |
-                (overlap_model_has_centroid(model) ? (unsigned)TETLAP_OVERLAP_CENTROID : 0);
+  known.gives = TETLAP_OVERLAP_VOLUME | TETLAP_OVERLAP_GRADIENT | TETLAP_OVERLAP_CENTROID |
+                (overlap_model_has_hessian(model) ? (unsigned)TETLAP_OVERLAP_HESSIAN : 0);
   known.threads = overlap->threads > 0 ? overlap->threads : omp_get_max_threads();
   known.seconds_per_pair = model->ops->seconds_per_pair;
   memcpy(info, &known, known.size < sizeof known ? known.size : sizeof known);

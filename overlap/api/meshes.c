@@ -161,9 +161,6 @@ static Status check_wanted(const TetlapOverlap *overlap, unsigned wanted) {
   if (!overlap) return status_fail(STATUS_INPUT, "the handle is NULL");
   if (wanted & ~known)
     return status_fail(STATUS_INPUT, "meshes: only VOLUME, GRADIENT and CENTROID can be requested");
-  if (wanted & TETLAP_OVERLAP_CENTROID && !overlap_model_has_centroid(&overlap->model))
-    return status_fail(STATUS_INPUT, "overlap model '%s' gives no centroid of the intersection",
-                       overlap->model.ops->name);
   return STATUS_OK;
 }
 

@@ -108,7 +108,7 @@ class Model:
     weights: of a learned model, a file or the name of one that ships; None: its own
     threads: how many evaluate a batch; 0: all
 
-    name, description: of the model; has_hessian, has_centroid: whether it gives them
+    name, description: of the model; has_hessian: whether it gives that
     """
 
     def __init__(self, model="clip", *, weights=None, threads=0):
@@ -121,7 +121,7 @@ class Model:
         _call("info", handle, byref(info))
         self._handle = handle
         self.name, self.description = info.name.decode(), info.description.decode()
-        self.has_hessian, self.has_centroid = bool(info.gives & HESSIAN), bool(info.gives & CENTROID)
+        self.has_hessian = bool(info.gives & HESSIAN)
         self.threads = info.threads
 
     def __repr__(self):

@@ -57,12 +57,10 @@ def _model(model, threads):
     return _model_of_name(os.fspath(model), threads)
 
 
-def _check_model(model, wants_hessian, wants_centroid):
-    for is_wanted, what in ((wants_hessian, "hessian"), (wants_centroid, "centroid")):
-        if is_wanted and not getattr(model, f"has_{what}"):
-            able = [other.name for other in _library.models() if getattr(other, f"has_{what}")]
-            raise ValueError(f"model '{model.name}' has no {what}; expected one of {', '.join(able)}")
-    return model
+def _check_hessian(model):
+    if not model.has_hessian:
+        able = [other.name for other in _library.models() if other.has_hessian]
+        raise ValueError(f"model '{model.name}' has no hessian; expected one of {', '.join(able)}")
 
 
 def _real(array, name):
@@ -121,7 +119,7 @@ def overlap(x, model="clip", order=1, *, vector=None, centroid=False, threads=0,
     model: a name (tetlap.models() lists them), a weights file, or a tetlap.Model
     order: 0: V; 1: and ∇V; 2: and ∇²V, of models that have it
     vector: (…, 2, 4, 3): also the product of ∇²V with it, without making ∇²V
-    centroid: also the centroids of the common parts, of models that have them
+    centroid: also the centroids of the common parts
     threads: 0: all
     out: what an earlier call with the same shape and wishes returned: its arrays are filled anew and returned
 
@@ -135,7 +133,9 @@ def overlap(x, model="clip", order=1, *, vector=None, centroid=False, threads=0,
         vector = _pairs(vector, "vector")
         if vector.shape != x.shape:
             raise ValueError(f"vector has shape {vector.shape}; expected that of x, {x.shape}")
-    model = _check_model(_model(model, threads), order == 2 or vector is not None, centroid)
+    model = _model(model, threads)
+    if order == 2 or vector is not None:
+        _check_hessian(model)
     outputs = _outputs(x.shape[:-3], order, vector is not None, centroid)
     if out is None:
         out = Overlap(**{name: np.empty(*shape_and_dtype) for name, shape_and_dtype in outputs.items()})
@@ -189,7 +189,7 @@ def mesh_pairs(points_a, tets_a, points_b, tets_b, model="clip", order=0, *, cen
     """
     if order not in (0, 1):
         raise ValueError(f"order is {order!r}; expected 0 (V) or 1 (and the gradient)")
-    model = _check_model(_model(model, threads), False, centroid)
+    model = _model(model, threads)
     a, b = _mesh(points_a, tets_a, "a"), _mesh(points_b, tets_b, "b")
     wanted = _library.VOLUME | (_library.GRADIENT if order else 0) | (_library.CENTROID if centroid else 0)
     found = model.evaluate_meshes(*a, *b, wanted)

@@ -169,12 +169,6 @@ START_TEST(training_in_a_pipe_tells_progress_in_lines) {
 }
 END_TEST
 
-START_TEST(what_two_keys_of_a_scene_do_not_allow_together_is_told_with_its_place) {
-  ck_assert(run_says("--set contact.overlap=tpn --set contact.potential=field",
-                     "^error: .*/examples/01_drop.yaml:[0-9]*:[0-9]*: contact: the potential .field. needs"));
-}
-END_TEST
-
 int main(void) {
   TCase *cases = tcase_create("program");
   tcase_add_test(cases, exit_codes_say_who_is_to_blame);
@@ -184,6 +178,5 @@ int main(void) {
   tcase_add_test(cases, a_run_names_the_files_that_it_wrote);
   tcase_add_test(cases, a_run_ends_in_lines_of_one_fact_each);
   tcase_add_test(cases, training_in_a_pipe_tells_progress_in_lines);
-  tcase_add_test(cases, what_two_keys_of_a_scene_do_not_allow_together_is_told_with_its_place);
   return suite_run("program", cases, 60);
 }

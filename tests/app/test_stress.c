@@ -91,10 +91,9 @@ static const char *potential_of(const char *name, const char *model, const char 
   return potential;
 }
 
-// As the program's default, but for models that the depth field cannot ask.
 START_TEST(scenes_have_the_potential_of_the_program_unless_another_is_asked_for) {
   ck_assert_str_eq(potential_of("deep start", "clip", NULL), "field");
-  ck_assert_str_eq(potential_of("deep start", "tpn", NULL), "nodal");
+  ck_assert_str_eq(potential_of("deep start", "tpn", NULL), "field");
   ck_assert_str_eq(potential_of("deep start", "clip", "nodal"), "nodal");
   ck_assert_str_eq(potential_of("mat twist, 3.2", "clip", NULL), "pair");
   ck_assert_ptr_null(potential_of("incompressible, 0.45", "any", NULL));

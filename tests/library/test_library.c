@@ -85,7 +85,7 @@ END_TEST
 START_TEST(each_model_says_what_it_gives_and_gives_it) {
   double x[24], volume, gradient[24], hessian[576], centroid[3];
   make_pair(0.3, x);
-  int count = 0, with_centroid = 0;
+  int count = 0;
   for (const char *name; (name = tetlap_overlap_model(count)); count++) {
     TetlapOverlap *overlap = open_model(name);
     TetlapOverlapInfo info = TETLAP_OVERLAP_INFO_INIT;
@@ -99,15 +99,11 @@ START_TEST(each_model_says_what_it_gives_and_gives_it) {
     ck_assert_int_eq(tetlap_overlap_eval(overlap, &batch),
                      info.gives & TETLAP_OVERLAP_HESSIAN ? TETLAP_OVERLAP_OK : TETLAP_OVERLAP_INVALID);
     batch.hessian = NULL, batch.centroid = centroid;
-    ck_assert_int_eq(tetlap_overlap_eval(overlap, &batch),
-                     info.gives & TETLAP_OVERLAP_CENTROID ? TETLAP_OVERLAP_OK : TETLAP_OVERLAP_INVALID);
-    if (!(info.gives & TETLAP_OVERLAP_CENTROID))
-      ck_assert_ptr_nonnull(strstr(tetlap_overlap_message(), name));
-    with_centroid += (info.gives & TETLAP_OVERLAP_CENTROID) != 0;
+    ck_assert_uint_eq(info.gives & TETLAP_OVERLAP_CENTROID, TETLAP_OVERLAP_CENTROID);
+    ck_assert_eval(overlap, &batch);
     tetlap_overlap_close(overlap);
   }
   ck_assert_int_ge(count, 10);
-  ck_assert_int_ge(with_centroid, 4);
 }
 END_TEST
 
@@ -482,10 +478,6 @@ START_TEST(meshes_that_are_wrong_or_empty) {
                    TETLAP_OVERLAP_OK);
   ck_assert_uint_eq(list->count, 0);
   tetlap_overlap_list_free(list), tetlap_overlap_list_free(NULL);
-  ck_assert_int_eq(tetlap_overlap_meshes(overlap, &a, &b, TETLAP_OVERLAP_CENTROID, &list),
-                   TETLAP_OVERLAP_INVALID);
-  ck_assert_ptr_null(list);
-  ck_assert_ptr_nonnull(strstr(tetlap_overlap_message(), "'tpn-scene'"));
   grids[1].tets[7] = 8;
   ck_assert_int_eq(tetlap_overlap_meshes(overlap, &a, &b, TETLAP_OVERLAP_VOLUME, &list),
                    TETLAP_OVERLAP_INVALID);

@@ -9,6 +9,7 @@
 
 #include "datagen/hard.h"
 #include "net/files/weights.h"
+#include "overlap/centroid.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/model.h"
 #include "overlap/geo/network.h"
@@ -33,7 +34,7 @@ static OverlapModel random_model(int inputs, double strength) {
   OverlapModel model;
   ck_assert_ok(overlap_model_create(&model, path));
   unlink(path);
-  ck_assert(overlap_model_has_centroid(&model));
+  ck_assert(overlap_model_has_own_centroid(&model));
   return model;
 }
 
@@ -178,16 +179,18 @@ START_TEST(asking_for_it_changes_nothing_else) {
 }
 END_TEST
 
-START_TEST(a_network_of_one_output_gives_none) {
+START_TEST(of_a_network_of_one_output_it_follows_from_the_gradient) {
   void *self;
   ck_assert_ok(overlap_geo_model_create(&self, NULL));
   OverlapModel model = {.ops = &overlap_geo_ops, .self = self};
-  ck_assert(!overlap_model_has_centroid(&model));
-  double x[24] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, volume, centroid[3];
+  ck_assert(!overlap_model_has_own_centroid(&model));
+  double x[24] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, volume, gradient[24], centroid[3], derived[3];
   for (int i = 0; i < 12; i++) x[12 + i] = x[i] + 0.1;
-  OverlapBatch batch = {.pair_count = 1, .pairs = x, .volume = &volume, .centroid = centroid};
-  ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_INPUT);
-  ck_assert_ptr_nonnull(strstr(status_message(), "gives no centroid"));
+  OverlapBatch batch = {
+      .pair_count = 1, .pairs = x, .volume = &volume, .gradient = gradient, .centroid = centroid};
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  overlap_centroid_derive(x, volume, gradient, derived);
+  ck_assert_mem_eq(centroid, derived, sizeof derived);
   overlap_model_destroy(&model);
 }
 END_TEST
@@ -198,6 +201,6 @@ int main(void) {
   tcase_add_loop_test(cases, it_goes_along_with_affine_maps_and_any_order, 0, 5);
   tcase_add_loop_test(cases, it_is_true_at_the_onset_with_any_weights, 0, 5);
   tcase_add_loop_test(cases, asking_for_it_changes_nothing_else, 0, 5);
-  tcase_add_test(cases, a_network_of_one_output_gives_none);
+  tcase_add_test(cases, of_a_network_of_one_output_it_follows_from_the_gradient);
   return suite_run("geo_centroid", cases, 60);
 }

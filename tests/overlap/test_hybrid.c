@@ -214,13 +214,13 @@ START_TEST(a_bound_is_no_model_and_a_network_without_one_no_hybrid) {
 END_TEST
 
 // Another network of the scene: what hybrid was with it.
-START_TEST(with_the_network_of_tpn_scene_there_is_no_centroid) {
+START_TEST(with_the_network_of_tpn_scene_the_centroid_is_not_its_own) {
   OverlapModel model;
   ck_assert_ok(overlap_model_create_with(&model, "hybrid", "tpn-scene", NULL));
-  ck_assert(!overlap_model_has_centroid(&model) && overlap_model_has_hessian(&model));
+  ck_assert(!overlap_model_has_own_centroid(&model) && overlap_model_has_hessian(&model));
   overlap_model_destroy(&model);
   ck_assert_ok(overlap_model_create(&model, "hybrid"));
-  ck_assert(overlap_model_has_centroid(&model) && overlap_model_has_hessian(&model));
+  ck_assert(overlap_model_has_own_centroid(&model) && overlap_model_has_hessian(&model));
   overlap_model_destroy(&model);
 }
 END_TEST
@@ -233,6 +233,6 @@ int main(void) {
   tcase_add_test(cases, volumes_stay_below_the_smaller_tetrahedron);
   tcase_add_loop_test(cases, the_bound_holds_for_the_share_it_promises, 0, 2);
   tcase_add_test(cases, a_bound_is_no_model_and_a_network_without_one_no_hybrid);
-  tcase_add_test(cases, with_the_network_of_tpn_scene_there_is_no_centroid);
+  tcase_add_test(cases, with_the_network_of_tpn_scene_the_centroid_is_not_its_own);
   return suite_run("hybrid", cases, 20);
 }

@@ -142,8 +142,7 @@ static void add(Bench *bench, const Case *what) {
 }
 
 static bool gives(const OverlapModel *model, int quantity) {
-  return (quantity != HESSIAN || overlap_model_has_hessian(model)) &&
-         (quantity != CENTROID || overlap_model_has_centroid(model));
+  return quantity != HESSIAN || overlap_model_has_hessian(model);
 }
 
 static void add_models(Bench *bench, Case what) {

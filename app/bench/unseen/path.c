@@ -28,7 +28,6 @@ typedef struct Walker {
 typedef struct Walk {
   const AppUnseenCase *what;
   const AppUnseenMesh *mesh;
-  bool has_centroid;
   double *x, *velocity; // of this place                                  (vertex_count, 3)
   Walker told, truth;
   int capacity;                    // of the pairs' answers
@@ -47,7 +46,7 @@ static Status start(Walker *walker, const Walk *walk, const OverlapModel *model)
                           .tet_count = mesh->tet_count,
                           .bodies = mesh->bodies,
                           .body_count = 2,
-                          .potential = walk->has_centroid ? CONTACT_POTENTIAL_FIELD : CONTACT_POTENTIAL_NODAL,
+                          .potential = CONTACT_POTENTIAL_FIELD,
                           .stiffness = 1,
                           .model = model};
   walker->model = model;
@@ -81,7 +80,7 @@ static Status evaluate(Walker *walker, const Walk *walk, const double along[3], 
   TRY(contact_system_eval(walker->system, 0, walk->x, &energy, walker->force));
   TRY(contact_system_look(walker->system, &evaluation));
   walker->normal_sum = 0;
-  for (int i = 0; i < evaluation->mesh_pair_count && walk->has_centroid; i++)
+  for (int i = 0; i < evaluation->mesh_pair_count; i++)
     walker->normal_sum += vec3_length(vec3_at(evaluation->fields[i].force));
   Vec3 total = {0, 0, 0};
   for (int v = mesh->bodies[1].vertex_begin; v < mesh->bodies[1].vertex_end; v++)
@@ -92,13 +91,11 @@ static Status evaluate(Walker *walker, const Walk *walk, const double along[3], 
   return STATUS_OK;
 }
 
-static Status answer(Walker *walker, const Walk *walk, int count, const double *pairs, double *volume,
-                     double *centroid) {
+static Status answer(Walker *walker, int count, const double *pairs, double *volume, double *centroid) {
   double began = clock_cpu_s();
-  TRY(overlap_model_eval(walker->model, &(OverlapBatch){.pair_count = count,
-                                                        .pairs = pairs,
-                                                        .volume = volume,
-                                                        .centroid = walk->has_centroid ? centroid : NULL}));
+  TRY(overlap_model_eval(
+      walker->model,
+      &(OverlapBatch){.pair_count = count, .pairs = pairs, .volume = volume, .centroid = centroid}));
   walker->seconds += clock_cpu_s() - began;
   return STATUS_OK;
 }
@@ -106,7 +103,7 @@ static Status answer(Walker *walker, const Walk *walk, int count, const double *
 static void add_pair(Walk *walk, const double pair[24], int i) {
   double truth[8], told[8], volume = walk->volume[1][i], other = walk->volume[0][i];
   walk->volumes[0] += fabs(other - volume), walk->volumes[1] += volume;
-  if (!walk->has_centroid || !app_evaluation_coordinates(pair, walk->centroid[1] + 3 * i, truth) ||
+  if (!app_evaluation_coordinates(pair, walk->centroid[1] + 3 * i, truth) ||
       !app_evaluation_coordinates(pair, walk->centroid[0] + 3 * i, told))
     return;
   for (int z = 0; z < 8; z++) {
@@ -124,8 +121,8 @@ static Status compare_pairs(Walk *walk) {
   for (int first = 0; first < count && !status; first += walk->capacity) {
     int some = count - first < walk->capacity ? count - first : walk->capacity;
     const double *block = pairs + 24 * (size_t)first;
-    status = answer(&walk->told, walk, some, block, walk->volume[0], walk->centroid[0]);
-    if (!status) status = answer(&walk->truth, walk, some, block, walk->volume[1], walk->centroid[1]);
+    status = answer(&walk->told, some, block, walk->volume[0], walk->centroid[0]);
+    if (!status) status = answer(&walk->truth, some, block, walk->volume[1], walk->centroid[1]);
     for (int i = 0; i < some && !status; i++) add_pair(walk, block + 24 * (size_t)i, i);
   }
   walk->pairs += count;
@@ -208,8 +205,7 @@ static void finish(const Walk *walk, AppUnseenErrors *errors) {
 Status app_unseen_path_measure(const AppUnseenCase *what, const AppUnseenMesh *mesh,
                                const OverlapModel *model, const OverlapModel *clip, int places,
                                AppUnseenErrors *errors) {
-  Walk walk = {
-      .what = what, .mesh = mesh, .has_centroid = overlap_model_has_centroid(model), .capacity = 4096};
+  Walk walk = {.what = what, .mesh = mesh, .capacity = 4096};
   Status status = create(&walk);
   if (!status) status = go(&walk, model, clip, places);
   if (!status) finish(&walk, errors);

@@ -71,7 +71,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 typedef struct Row {
-  const char *model, *what, *potential;
+  const char *model, *what;
   long long seeds, pairs;
   AppUnseenErrors worst; // over the seeds
   double time_ratio;
@@ -81,8 +81,6 @@ typedef struct Row {
 static const AppBenchColumn columns[] = {
     {"case", APP_BENCH_TEXT, offsetof(Row, what), "case", "the bodies: `tetlap bench unseen --help`"},
     {"model", APP_BENCH_TEXT, offsetof(Row, model), "model", "overlap model"},
-    {"potential", APP_BENCH_TEXT, offsetof(Row, potential), "potential",
-     "field; nodal for models without a centroid"},
     {"seeds", APP_BENCH_INTEGER, offsetof(Row, seeds), NULL, "meshes; each error is the largest over them"},
     {"pairs", APP_BENCH_INTEGER, offsetof(Row, pairs), "pairs",
      "that share volume, over all places and meshes"},
@@ -95,13 +93,13 @@ static const AppBenchColumn columns[] = {
     {"tangential_error", APP_BENCH_NUMBER, ERROR(tangential), "tangential",
      "largest error of the total force along the surface over the largest force across it: false friction"},
     {"normal_sum_error", APP_BENCH_NUMBER, ERROR(normal_sum), "sum of N",
-     "of the pairs' forces, which bounds friction, likewise; null with nodal"},
+     "of the pairs' forces, which bounds friction, likewise"},
     {"path_work", APP_BENCH_NUMBER, ERROR(path_work), "closed path",
      "work of the total force round the closed path over the work turned over"},
     {"path_work_clip", APP_BENCH_NUMBER, ERROR(path_work_clip), "by clip",
      "the same of clipping: what the steps of the path leave"},
     {"time_ratio", APP_BENCH_NUMBER, offsetof(Row, time_ratio), "× time",
-     "processor time of volumes, with centroids for field, over that of clipping"},
+     "processor time of volumes and centroids over that of clipping"},
 };
 static const AppBenchReport report = {"unseen", columns, sizeof columns / sizeof *columns, sizeof(Row),
                                       false};
@@ -120,10 +118,7 @@ static void keep_worst(AppUnseenErrors *worst, const AppUnseenErrors *errors, bo
 
 static Status measure(const Options *options, const AppUnseenCase *what, const char *name,
                       const OverlapModel *model, const OverlapModel *clip, Row *row) {
-  *row = (Row){.model = name,
-               .what = what->name,
-               .potential = overlap_model_has_centroid(model) ? "field" : "nodal",
-               .seeds = options->seeds};
+  *row = (Row){.model = name, .what = what->name, .seeds = options->seeds};
   for (int s = 0; s < options->seeds; s++) {
     AppUnseenMesh mesh;
     AppUnseenErrors errors;

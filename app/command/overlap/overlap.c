@@ -89,7 +89,7 @@ static Status answer_block(const OverlapModel *model, const AppPairsBlock *block
                         .pairs = block->coordinates,
                         .volume = answers->volume,
                         .gradient = writer->has_gradient ? answers->gradient : NULL,
-                        .centroid = writer->has_centroid ? answers->centroid : NULL,
+                        .centroid = answers->centroid,
                         .flags = answers->flags};
   TRY(overlap_model_eval(model, &batch));
   for (int i = 0; i < block->count; i++) *overlapping += answers->volume[i] > 0;
@@ -128,8 +128,7 @@ static Status run_opened(const Options *options, AppPairsReader *reader, const O
   AppPairsWriter writer;
   long long overlapping = 0;
   TRY(choose_form(options, &form));
-  TRY(app_pairs_writer_open(&writer, options->output, form, options->order > 0,
-                            overlap_model_has_centroid(model)));
+  TRY(app_pairs_writer_open(&writer, options->output, form, options->order > 0));
   Status status = answer_all(reader, model, &writer, &overlapping);
   if (!status) status = app_pairs_writer_commit(&writer);
   app_pairs_writer_abandon(&writer);

@@ -283,35 +283,11 @@ static Status write_results(const AppComparison *comparison, const CompareOption
   return status;
 }
 
-// One potential for all: where the scene names none, `nodal` if a model gives no centroid, which `field`
-// needs.
-static Status agree_on_potential(const AppComparison *comparison, const FemSceneDef *scene,
-                                 AppJobOptions *job) {
-  if (!scene->contact.is_on || scene->contact.potential_is_given) return STATUS_OK;
-  for (int m = 0; m < comparison->model_count; m++) {
-    if (overlap_model_has_centroid(&comparison->models[m].overlap)) continue;
-    if (scene->contact.stiffness > 0)
-      return status_fail(
-          STATUS_INPUT,
-          "'%s' gives no centroid, which the potential field needs; contact.stiffness is in Pa/m "
-          "with field and in Pa with nodal: name contact.potential, as by --set",
-          comparison->models[m].name);
-    if (job->override_count == APP_MAX_OVERRIDES)
-      return status_fail(STATUS_USAGE, "--set: %d at most", APP_MAX_OVERRIDES - 1);
-    job->overrides[job->override_count++] = "contact.potential=nodal";
-    log_info("all models run with the potential nodal: '%s' gives no centroid, which field needs",
-             comparison->models[m].name);
-    return STATUS_OK;
-  }
-  return STATUS_OK;
-}
-
 // The models are made as the scene wants them.
 static Status prepare(AppComparison *comparison, CompareOptions *options) {
   AppJob job;
   TRY(app_job_open(&job, &options->job, NULL, NULL));
   Status status = choose_models(comparison, &job.scene, options);
-  if (!status) status = agree_on_potential(comparison, &job.scene, &options->job);
   app_job_close(&job);
   return status;
 }

@@ -27,9 +27,7 @@ static const struct argp_option option_table[] = {
      "(default: all; with --quick clip and geo)",
      0},
     {"potential", KEY_POTENTIAL, "NAME", 0,
-     "Contact potential of the scenes, at its default stiffness; nodal: as their files say (default: field, "
-     "for "
-     "models without a centroid nodal)",
+     "Contact potential of the scenes, at its default stiffness; nodal: as their files say (default: field)",
      0},
     {"pairs", KEY_PAIRS, NULL, 0, "Only classes of pairs", 0},
     {"scenes", KEY_SCENES, NULL, 0, "Only scenes", 0},

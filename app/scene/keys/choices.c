@@ -87,7 +87,7 @@ static const char *friction_help(int i) {
       "stick with the potential field, velocity with the others",
       "a spring in the tangent plane, limited to μN: sticking contacts do not creep, in motion and in "
       "statics",
-      "a force that depends on the slip speed, for potentials without a centroid: sticking contacts creep"};
+      "a force that depends on the slip speed, for potentials other than field: sticking contacts creep"};
   return helps[i];
 }
 const SceneChoices app_scene_choices_frictions = {.name = friction_name, .help = friction_help};

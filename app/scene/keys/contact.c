@@ -2,33 +2,12 @@
 #include "app/scene/keys/table.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "app/scene/keys/choices.h"
 #include "fem/scene/scene.h"
-#include "overlap/model.h"
-
-// Whether the model of that name gives the centroid of an overlap, without which there is no `field`.
-static bool has_centroid(const char *overlap) {
-  int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
-  for (int i = 0; i < count; i++)
-    if (strcmp(models[i]->name, overlap) == 0) return models[i]->has_centroid != NULL;
-  return false;
-}
 
 static const char *finish_contact(void *self, const char **key) {
   FemContactDef *contact = self;
-  if (!contact->potential_is_given)
-    contact->potential =
-        contact->net || has_centroid(contact->overlap) ? CONTACT_POTENTIAL_FIELD : CONTACT_POTENTIAL_NODAL;
-  if (!contact->potential_is_given && contact->potential == CONTACT_POTENTIAL_NODAL &&
-      contact->stiffness > 0) {
-    *key = "stiffness";
-    return "the overlap model gives no centroid, so the potential would be nodal, whose stiffness is in Pa, "
-           "not field, "
-           "whose stiffness is in Pa/m; name the potential";
-  }
   if (contact->viscosity > 0 && contact->potential != CONTACT_POTENTIAL_NODAL &&
       contact->potential != CONTACT_POTENTIAL_FIELD) {
     *key = "viscosity";
@@ -130,11 +109,8 @@ static const SceneKey contact_keys[] = {
          "compression; otherwise E of the softest body (with `body` over its smallest mean element volume)",
      .help = "penalty stiffness κ; higher: less overlap, shorter steps (Pa/m with the potential `field`, "
              "Pa/m³ with `body`)"},
-    {"potential", SCENE_CHOICE, AT(FemContactDef, potential),
-     .absent_help = "`field`; `nodal` with an overlap model that has no centroid (`tpn`, `tpn-bf16`, "
-                    "`tpn-published`, `tpn-scene`)",
-     MARK(FemContactDef, potential_is_given, true), .choices = &app_scene_choices_potentials,
-     .help = "how overlaps become pressure"},
+    {"potential", SCENE_CHOICE, AT(FemContactDef, potential), .fallback = "field",
+     .choices = &app_scene_choices_potentials, .help = "how overlaps become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",
      .choices = &app_scene_choices_overlaps,
      .help = "the model that computes the overlap volume of two tetrahedra"},

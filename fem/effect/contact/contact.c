@@ -114,12 +114,6 @@ Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *n
   return status_prefix(status, "%s: contact.net", fem_scene_where(scene, &scene->contact.place).text);
 }
 
-static Status check(const FemSceneDef *scene, const ContactSystemDef *system) {
-  Status status = contact_system_check(system, system->model);
-  if (!status) return status;
-  return status_prefix(status, "%s", fem_scene_where(scene, &scene->contact.place).text);
-}
-
 static Status build(Contact *contact, Contact *old) {
   const FemModel *model = contact->model;
   const FemContactDef *def = &model->scene->contact;
@@ -153,8 +147,7 @@ static Status build(Contact *contact, Contact *old) {
                              .margin = def->margin,
                              .use_full_hessian = def->use_full_hessian,
                              .model = &contact->overlap};
-  Status status = check(model->scene, &system);
-  if (!status) status = contact_system_create(&contact->system, &system);
+  Status status = contact_system_create(&contact->system, &system);
   memory_free(stiffness);
   return status;
 }

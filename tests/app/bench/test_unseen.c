@@ -83,9 +83,9 @@ START_TEST(learned_volumes_keep_their_promise) {
 }
 END_TEST
 
-START_TEST(without_a_centroid_it_is_nodal) {
+START_TEST(a_model_without_its_own_centroid_is_measured_too) {
   AppUnseenErrors errors = measure(0, "tpn-scene");
-  ck_assert(isnan(errors.moment) && isnan(errors.normal_sum));
+  ck_assert(errors.moment > 0 && errors.normal_sum > 0);
   ck_assert(errors.nodal_force > 0 && errors.nodal_force < 0.5);
 }
 END_TEST
@@ -95,6 +95,6 @@ int main(void) {
   tcase_add_loop_test(cases, bodies_fill_their_boxes_and_are_not_inverted, 0, app_unseen_case_count);
   tcase_add_loop_test(cases, clipping_pair_by_pair_makes_no_errors, 0, 2);
   tcase_add_loop_test(cases, learned_volumes_keep_their_promise, 0, PROMISED);
-  tcase_add_test(cases, without_a_centroid_it_is_nodal);
+  tcase_add_test(cases, a_model_without_its_own_centroid_is_measured_too);
   return suite_run("unseen", cases, 60);
 }
