@@ -14,8 +14,7 @@ typedef struct AppStressLimit {
   const char *counter; // NULL: none
 } AppStressLimit;
 
-// The first line that fits; NULL: none is known. `potential`: of the row; those of `field` come first.
-const AppStressLimit *app_stress_limits_find(const char *name, const char *model, const char *potential,
-                                             const char *measure);
+// The first line that fits; NULL: none is known.
+const AppStressLimit *app_stress_limits_find(const char *name, const char *model, const char *measure);
 
 #endif

@@ -12,46 +12,13 @@
 #include "base/vec3.h"
 #include "fem/model/build.h"
 
-// Whether the scene's `nodal` has been replaced; the stiffness is then the one that is chosen.
-static bool replace_potential(FemContactDef *contact, const char *name) {
-  if (!name || !contact->is_on || contact->potential != CONTACT_POTENTIAL_NODAL) return false;
-  for (int p = 0; p < CONTACT_POTENTIAL_COUNT; p++) {
-    if (p == CONTACT_POTENTIAL_NODAL || strcmp(contact_def_potential_name((ContactPotential)p), name) != 0)
-      continue;
-    contact->potential = (ContactPotential)p;
-    contact->stiffness = 0;
-    return true;
-  }
-  return false;
-}
-
-static bool sets_stiffness(const char *const *overrides, int count) {
-  static const char KEY[] = "contact.stiffness=";
-  for (int k = 0; k < count; k++)
-    if (strncmp(overrides[k], KEY, sizeof KEY - 1) == 0) return true;
-  return false;
-}
-
-static Status create_model(AppStressRun *run, const char *const *overrides, int count,
-                           const char *potential) {
-  FemContactDef *contact = &run->scene.contact;
-  double stiffness = contact->stiffness;
-  bool is_replaced = replace_potential(contact, potential);
-  TRY(fem_model_create(&run->model, &run->scene));
-  if (!is_replaced || !sets_stiffness(overrides, count)) return STATUS_OK;
-  contact->stiffness = stiffness / run->model.edge;
-  fem_model_destroy(&run->model);
-  return fem_model_create(&run->model, &run->scene);
-}
-
-Status app_stress_run_open(AppStressRun *run, const char *file, const char *const *overrides, int count,
-                           const char *potential) {
+Status app_stress_run_open(AppStressRun *run, const char *file, const char *const *overrides, int count) {
   char path[PATH_MAX], name[128];
   *run = (AppStressRun){0};
   snprintf(name, sizeof name, "app/stress/scenes/%s.yaml", file);
   TRY(data_find(name, path, sizeof path));
   Status status = app_scene_read(path, overrides, count, &run->scene);
-  if (!status) status = create_model(run, overrides, count, potential);
+  if (!status) status = fem_model_create(&run->model, &run->scene);
   if (status) app_stress_run_close(run);
   return status;
 }

@@ -25,11 +25,8 @@ typedef struct AppStressRun {
   double extra[16]; // what a case's own `run` measures
 } AppStressRun;
 
-// Reads app/stress/scenes/FILE.yaml with overrides and builds its model. `potential`: in place of `nodal`
-// where the scene has that, with the stiffness that is chosen for it or, where an override gives κ [Pa], with
-// κ over the length of an edge [Pa/m]; NULL: as the scene says.
-Status app_stress_run_open(AppStressRun *run, const char *file, const char *const *overrides, int count,
-                           const char *potential);
+// Reads app/stress/scenes/FILE.yaml with overrides and builds its model.
+Status app_stress_run_open(AppStressRun *run, const char *file, const char *const *overrides, int count);
 // Runs it, without files; the trajectory is kept. Only a lack of memory is a Status, all else a result.
 Status app_stress_run_scene(AppStressRun *run);
 void app_stress_run_close(AppStressRun *run);

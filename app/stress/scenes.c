@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/def.h"
 #include "overlap/model.h"
 
 static const double LIMIT_S = 60;
@@ -63,11 +62,7 @@ static Status run_open(const AppStressScene *scene, const AppStressOptions *opti
   return STATUS_OK;
 }
 
-// What scenes that name `nodal` are run with, unless the options say: the default of the program.
-static const char DEFAULT[] = "field";
-
-static Status open_with(const AppStressScene *scene, const AppStressOptions *options, const char *model,
-                        AppStressRun *run) {
+static Status open_with(const AppStressScene *scene, const char *model, AppStressRun *run) {
   const char *overrides[APP_STRESS_MAX_OVERRIDES + 1];
   char overlap[64];
   int count = 0;
@@ -75,15 +70,13 @@ static Status open_with(const AppStressScene *scene, const AppStressOptions *opt
     overrides[count] = scene->overrides[count];
   snprintf(overlap, sizeof overlap, "contact.overlap=%s", model);
   if (model != ANY) overrides[count++] = overlap;
-  return app_stress_run_open(run, scene->file, overrides, count,
-                             options->potential ? options->potential : DEFAULT);
+  return app_stress_run_open(run, scene->file, overrides, count);
 }
 
 static Status run_case(const AppStressScene *scene, const AppStressOptions *options, const char *model,
                        AppStressRow *row) {
   AppStressRun run;
-  TRY(open_with(scene, options, model, &run));
-  if (run.scene.contact.is_on) row->potential = contact_def_potential_name(run.scene.contact.potential);
+  TRY(open_with(scene, model, &run));
   Status status = run_open(scene, options, &run, row);
   app_stress_run_close(&run);
   return status;
@@ -92,7 +85,7 @@ static Status run_case(const AppStressScene *scene, const AppStressOptions *opti
 // Pairs that the scene asks of clip; 0: it could not be run.
 static long long pairs_of(const AppStressScene *scene, const AppStressOptions *options) {
   AppStressRun run;
-  if (open_with(scene, options, "clip", &run)) return 0;
+  if (open_with(scene, "clip", &run)) return 0;
   run.limit_s = LIMIT_S;
   run.asked_to_stop = options->stop;
   Status status = scene->run ? scene->run(&run) : app_stress_run_scene(&run);

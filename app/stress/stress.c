@@ -88,8 +88,7 @@ void app_stress_judge(AppStressRow *row) {
   row->outcome = row->is_cut ? APP_STRESS_LIMIT : APP_STRESS_HELD;
   for (int m = 0; m < row->measure_count; m++) {
     const AppStressMeasure *measure = &row->measures[m];
-    const AppStressLimit *limit =
-        app_stress_limits_find(row->name, row->model, row->potential, measure->name);
+    const AppStressLimit *limit = app_stress_limits_find(row->name, row->model, measure->name);
     AppStressOutcome outcome = verdict_of(row, measure, limit);
     if (!measure->is_met && !first) first = limit;
     if (outcome > row->outcome) row->outcome = outcome;
@@ -146,7 +145,6 @@ static void record_row(const AppStressRow *row, Record *record) {
   record_text(record, "group", row->group);
   record_text(record, "case", row->name);
   record_text(record, "model", row->model);
-  if (row->potential) record_text(record, "potential", row->potential);
   record_text(record, "outcome", row->outcome == APP_STRESS_FAILED ? "failed" : outcome_names[row->outcome]);
   record_text(record, "remark", row->remark);
   record_text(record, "counter", row->counter);

@@ -44,7 +44,6 @@ typedef struct AppStressMeasure {
 typedef struct AppStressRow {
   const char *group; // "pairs" or "scenes"
   const char *name, *model;
-  const char *potential; // of a scene with contact; NULL: none, or absent
   AppStressOutcome outcome;
   AppStressMeasure measures[APP_STRESS_MAX_MEASURES];
   int measure_count;
@@ -69,8 +68,6 @@ typedef struct AppStressOptions {
   const char *only; // part of a case's name; NULL: all
   // Comma-separated; NULL: all, with `is_quick` clip, geo and any. Weights files only without scenes.
   const char *models;
-  // In place of `nodal`, which scenes name, at its default stiffness; NULL: `field`.
-  const char *potential;
   double limit_s; // processor time of a scene with a model; 0: the case's own
   const volatile sig_atomic_t *stop;
   void (*observe)(void *observer, const AppStress *stress); // after each row, the last; may be NULL

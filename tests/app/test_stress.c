@@ -81,41 +81,6 @@ START_TEST(the_quick_scenes_hold) {
 }
 END_TEST
 
-static const char *potential_of(const char *name, const char *model, const char *asked) {
-  AppStress stress;
-  run(&stress, &(AppStressOptions){
-                   .has_scenes = true, .only = name, .models = model, .potential = asked, .limit_s = 1e-9});
-  ck_assert_int_ge(stress.count, 1);
-  const char *potential = stress.rows[0].potential;
-  app_stress_destroy(&stress);
-  return potential;
-}
-
-START_TEST(scenes_have_the_potential_of_the_program_unless_another_is_asked_for) {
-  ck_assert_str_eq(potential_of("deep start", "clip", NULL), "field");
-  ck_assert_str_eq(potential_of("deep start", "tpn", NULL), "field");
-  ck_assert_str_eq(potential_of("deep start", "clip", "nodal"), "nodal");
-  ck_assert_str_eq(potential_of("mat twist, 3.2", "clip", NULL), "pair");
-  ck_assert_ptr_null(potential_of("incompressible, 0.45", "any", NULL));
-}
-END_TEST
-
-// κ over an edge: the depth field's compliance is that of `nodal`.
-START_TEST(a_stiffness_that_a_case_names_goes_with_the_potential) {
-  const char *overrides[] = {"contact.stiffness=1e7"};
-  AppStressRun nodal, field, chosen;
-  ck_assert_ok(app_stress_run_open(&nodal, "drop", overrides, 1, "nodal"));
-  ck_assert_ok(app_stress_run_open(&field, "drop", overrides, 1, "field"));
-  ck_assert_ok(app_stress_run_open(&chosen, "drop", NULL, 0, "field"));
-  ck_assert_double_eq(nodal.scene.contact.stiffness, 1e7);
-  ck_assert_double_eq_tol(field.scene.contact.stiffness, 1e7 / nodal.model.edge, 1e-6);
-  ck_assert_double_eq(chosen.scene.contact.stiffness, 0);
-  app_stress_run_close(&nodal);
-  app_stress_run_close(&field);
-  app_stress_run_close(&chosen);
-}
-END_TEST
-
 START_TEST(a_name_picks_cases_and_an_unknown_one_is_an_error) {
   AppStress stress;
   run(&stress, &(AppStressOptions){.has_pairs = true, .is_quick = true, .only = "sliver", .models = "exact"});
@@ -135,8 +100,7 @@ START_TEST(a_verdict_follows_from_the_measures) {
   app_stress_ask_least(&row, "large", NAN, 2);
   app_stress_judge(&row);
   ck_assert_int_eq(row.outcome, APP_STRESS_FAILED);
-  const AppStressLimit *limit =
-      app_stress_limits_find("two spheres", "clip", NULL, "change of angular momentum");
+  const AppStressLimit *limit = app_stress_limits_find("two spheres", "clip", "change of angular momentum");
   ck_assert_ptr_nonnull(limit);
   row = (AppStressRow){.group = "scenes", .name = limit->name, .model = "clip"};
   app_stress_ask_most(&row, limit->measure, limit->worst / 2, 0);
@@ -230,8 +194,6 @@ int main(void) {
   tcase_add_test(cases, every_class_of_pairs_holds_with_every_model);
   tcase_add_test(cases, the_pairs_of_a_weights_file_are_measured_under_its_name);
   tcase_add_test(cases, the_quick_scenes_hold);
-  tcase_add_test(cases, scenes_have_the_potential_of_the_program_unless_another_is_asked_for);
-  tcase_add_test(cases, a_stiffness_that_a_case_names_goes_with_the_potential);
   tcase_add_test(cases, a_name_picks_cases_and_an_unknown_one_is_an_error);
   tcase_add_test(cases, a_verdict_follows_from_the_measures);
   tcase_add_test(cases, a_run_that_was_cut_is_a_limit_but_still_judged_by_what_it_did);

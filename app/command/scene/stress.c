@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/scene/stress.h"
 
-#include <string.h>
-
 #include "app/cli/argument.h"
 #include "app/cli/versions.h"
 #include "app/job/job.h"
@@ -10,9 +8,8 @@
 #include "app/stress/stress.h"
 #include "base/cpu.h"
 #include "base/log.h"
-#include "contact/def.h"
 
-enum { KEY_ONLY = 256, KEY_PAIRS, KEY_SCENES, KEY_QUICK, KEY_LIMIT, KEY_POTENTIAL };
+enum { KEY_ONLY = 256, KEY_PAIRS, KEY_SCENES, KEY_QUICK, KEY_LIMIT };
 
 typedef struct Options {
   AppStressOptions stress;
@@ -26,9 +23,6 @@ static const struct argp_option option_table[] = {
      "Only these overlap models, with --pairs weights files, too; any: scenes in which none takes part "
      "(default: all; with --quick clip and geo)",
      0},
-    {"potential", KEY_POTENTIAL, "NAME", 0,
-     "Contact potential of the scenes, at its default stiffness; nodal: as their files say (default: field)",
-     0},
     {"pairs", KEY_PAIRS, NULL, 0, "Only classes of pairs", 0},
     {"scenes", KEY_SCENES, NULL, 0, "Only scenes", 0},
     {"quick", KEY_QUICK, NULL, 0, "Fewer members of each class, and only the scenes that take a moment", 0},
@@ -39,13 +33,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static const char *potential_of(struct argp_state *state, const char *text) {
-  for (int p = 0; p < CONTACT_POTENTIAL_COUNT; p++)
-    if (strcmp(contact_def_potential_name((ContactPotential)p), text) == 0) return text;
-  argp_error(state, "--potential '%s' is none of them: field, nodal, element, pair, linear, body", text);
-  return NULL;
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   switch (key) {
@@ -54,9 +41,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case 'm':
     options->stress.models = app_argument_words(state, "overlap", text, "clip,geo");
-    return 0;
-  case KEY_POTENTIAL:
-    options->stress.potential = potential_of(state, text);
     return 0;
   case KEY_PAIRS:
     options->stress.has_pairs = true;
