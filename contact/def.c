@@ -9,14 +9,6 @@ static const struct {
     [CONTACT_POTENTIAL_NODAL] =
         {"nodal",
          "covered over rest volume of each vertex, squared: uniform pressure, no false friction [Pa]"},
-    [CONTACT_POTENTIAL_ELEMENT] = {"element", "covered over rest volume of each element, squared [Pa]"},
-    [CONTACT_POTENTIAL_PAIR] = {"pair",
-                                "overlap of each pair, squared: depends on how one mesh cuts the other "
-                                "[Pa]"},
-    [CONTACT_POTENTIAL_LINEAR] = {"linear",
-                                  "overlap volume: constant pressure, the force jumps at first contact [Pa]"},
-    [CONTACT_POTENTIAL_BODY] = {"body", "overlap volume of two bodies, squared: one pressure for all patches "
-                                        "[Pa/m³]"},
     [CONTACT_POTENTIAL_FIELD] =
         {"field", "depth in the other body, over rest volume: uniform pressure whatever the meshes, every "
                   "pair balances [Pa/m]"},
@@ -28,7 +20,7 @@ const char *contact_def_potential_name(ContactPotential potential) {
 }
 
 const char *contact_def_potential_unit(ContactPotential potential) {
-  return potential == CONTACT_POTENTIAL_BODY ? "Pa/m³" : potential == CONTACT_POTENTIAL_FIELD ? "Pa/m" : "Pa";
+  return potential == CONTACT_POTENTIAL_FIELD ? "Pa/m" : "Pa";
 }
 
 const char *contact_def_potential_help(ContactPotential potential) {

@@ -42,23 +42,18 @@ typedef struct ContactShape {
                double velocity[3]); // NULL: by `velocity`
 } ContactShape;
 
-// The potentials, by the name a scene uses. W_i: what the other body covers of element i [m³]; V_i its rest
-// volume; W_a, V_a their shares of vertex a (a quarter of each adjacent element). κ: stiffness.
-// Between two bodies each side's sum gets a leading ½; against an obstacle only the body's side counts,
-// without ½.
+// The potentials, by the name a scene uses. W_i: what the other body covers of element i [m³]; W_a, V_a the
+// shares of vertex a in that and in the rest volume (a quarter of each adjacent element). κ: stiffness.
+// Between two bodies each side's sum of `nodal` gets a leading ½; against an obstacle only the body's side
+// counts, without ½.
 typedef enum ContactPotential {
-  CONTACT_POTENTIAL_NODAL,   // U = Σ_a ½ κ W_a²/V_a, κ [Pa]: even pressure, no false friction
-  CONTACT_POTENTIAL_ELEMENT, // U = Σ_i ½ κ W_i²/V_i, κ [Pa]
-  CONTACT_POTENTIAL_PAIR,    // U = Σ_ij ½ κ V_ij²/V_ref, V_ref the smaller of the two rest volumes (a
-                             // half-space: V_i), κ [Pa]
-  CONTACT_POTENTIAL_LINEAR, // U = κ Σ_ij V_ij, κ [Pa]: constant pressure, the force jumps at first contact
-  CONTACT_POTENTIAL_BODY,   // U = ½ κ (Σ_ij V_ij)² a pair of bodies, κ [Pa/m³]
+  CONTACT_POTENTIAL_NODAL, // U = Σ_a ½ κ W_a²/V_a, κ [Pa]: even pressure, no false friction
   CONTACT_POTENTIAL_FIELD, // U = κ ∫_A φ_B + κ ∫_B φ_A over rest volumes, φ the depth below the other's
                            // surface (contact/pressure/field.h), κ [Pa/m]; both terms also against a mesh
                            // obstacle
 } ContactPotential;
 
-enum { CONTACT_POTENTIAL_COUNT = 6 };
+enum { CONTACT_POTENTIAL_COUNT = 2 };
 const char *contact_def_potential_name(ContactPotential potential); // "nodal", …
 const char *contact_def_potential_help(ContactPotential potential); // one line
 const char *contact_def_potential_unit(ContactPotential potential); // of κ

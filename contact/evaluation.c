@@ -409,8 +409,7 @@ static Status apply_potential(ContactEvaluation *evaluation, const ContactLayout
     ContactPatch *patch = &patches->patches[p];
     patch->energy = layout->depth.has_field
                         ? sum_energies(evaluation, patch)
-                        : contact_potential_apply(layout, patches, patch, evaluation->pairs,
-                                                  evaluation->volumes, evaluation->pressures);
+                        : contact_potential_apply(layout, patches, patch, evaluation->pressures);
     evaluation->energy += patch->energy;
   }
   push_apart(evaluation);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "app/scene/check.h"
+#include "app/scene/keys/removed.h"
 #include "app/scene/override.h"
 #include "app/scene/value.h"
 #include "base/memory.h"
@@ -93,6 +94,9 @@ static bool is_given(const SceneNode *map, const char *name) {
 
 static Status fail_unknown(const SceneSection *section, const SceneNode *entry) {
   char path[MESSAGE_SIZE], other[MESSAGE_SIZE], names[MESSAGE_SIZE];
+  app_scene_tree_path(entry, path, sizeof path);
+  const char *advice = app_scene_keys_removed(path);
+  if (advice) return app_scene_tree_fail_key(entry, "%s: there is no such key any more; %s", path, advice);
   app_scene_tree_path(entry->parent, path, sizeof path);
   TextGuess guess = text_guess_of(entry->key);
   size_t used = 0;

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/scene/keys/removed.h"
 #include "base/expression.h"
 #include "base/memory.h"
 #include "base/text.h"
@@ -81,8 +82,13 @@ static Status find_choice(const SceneKey *key, const SceneNode *node, int *choic
   TextGuess guess = text_guess_of(node->text);
   const char *name;
   for (int i = 0; (name = key->choices->name(i)); i++) text_guess_offer(&guess, name);
-  char hint[128] = "";
-  if (guess.best) snprintf(hint, sizeof hint, "; did you mean '%s'?", guess.best);
+  char hint[MESSAGE_SIZE] = "", path[MESSAGE_SIZE];
+  app_scene_tree_path(node, path, sizeof path);
+  const char *advice = app_scene_keys_removed_value(path, node->text);
+  if (advice)
+    snprintf(hint, sizeof hint, ", which there is no longer; %s", advice);
+  else if (guess.best)
+    snprintf(hint, sizeof hint, "; did you mean '%s'?", guess.best);
   return app_scene_value_fail(key, node, hint);
 }
 

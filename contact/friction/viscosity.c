@@ -12,10 +12,7 @@ Status contact_viscosity_create(ContactViscosity *viscosity, ContactSystem *syst
   *viscosity = (ContactViscosity){.system = system, .viscosity = coefficient};
   if (!(coefficient > 0 && isfinite(coefficient)))
     return status_fail(STATUS_INPUT, "contact: the viscosity is %g Pa s; it must be positive", coefficient);
-  ContactPotential potential = contact_system_layout(system)->def.potential;
-  if (potential == CONTACT_POTENTIAL_NODAL || potential == CONTACT_POTENTIAL_FIELD) return STATUS_OK;
-  return status_fail(STATUS_INPUT, "contact: viscosity needs the potential 'nodal' or 'field', not '%s'",
-                     contact_def_potential_name(potential));
+  return STATUS_OK;
 }
 
 void contact_viscosity_destroy(ContactViscosity *viscosity) {

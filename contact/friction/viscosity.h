@@ -29,8 +29,7 @@ typedef struct ContactViscosity {
   size_t rate_capacity;
 } ContactViscosity;
 
-// STATUS_INPUT: η ≤ 0, or the system's potential is neither `nodal` nor `field`. A zeroed one can be
-// destroyed.
+// STATUS_INPUT: η ≤ 0. A zeroed one can be destroyed.
 Status contact_viscosity_create(ContactViscosity *viscosity, ContactSystem *system, double coefficient);
 void contact_viscosity_destroy(ContactViscosity *viscosity);
 size_t contact_viscosity_bytes(const ContactViscosity *viscosity); // on the heap

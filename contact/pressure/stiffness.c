@@ -108,50 +108,18 @@ static Status walk_nodes(ContactStiffness *stiffness, const Walk *walk, const Co
     if (!(walk->facing->weight[node->side] > 0)) continue;
     empty(stiffness);
     collect_node(stiffness, walk, n);
-    TRY(take(self, stiffness, contact_potential_node_curvature(walk->layout, walk->facing, node)));
+    TRY(take(self, stiffness, contact_potential_curvature(walk->layout, walk->facing, node)));
   }
   return STATUS_OK;
 }
 
-static Status walk_elements(ContactStiffness *stiffness, const Walk *walk, const ContactPatch *patch,
-                            void *self, TakeClique take) {
-  for (int e = patch->element_begin; e < patch->element_end; e++) {
-    const ContactElement *element = &walk->patches->elements[e];
-    if (!(walk->facing->weight[element->side] > 0)) continue;
-    empty(stiffness);
-    collect_element(stiffness, walk, e, 1);
-    TRY(take(self, stiffness, contact_potential_element_curvature(walk->layout, walk->facing, element)));
-  }
-  return STATUS_OK;
-}
-
+// Of `field`, whose matrix has a part of its own: the pairs couple.
 static Status walk_pairs(ContactStiffness *stiffness, const Walk *walk, const ContactPatch *patch, void *self,
                          TakeClique take) {
-  bool is_linear = walk->layout->def.potential == CONTACT_POTENTIAL_LINEAR;
   for (int k = patch->pair_begin; k < patch->pair_end; k++) {
     empty(stiffness);
     collect_pair(stiffness, walk, k, 1);
-    TRY(take(self, stiffness,
-             is_linear ? 0 : contact_potential_pair_curvature(walk->layout, &walk->pairs[k])));
-  }
-  return STATUS_OK;
-}
-
-static Status walk_patch(ContactStiffness *stiffness, const Walk *walk, const ContactPatch *patch, void *self,
-                         TakeClique take) {
-  switch (walk->layout->def.potential) {
-  case CONTACT_POTENTIAL_NODAL:
-    return walk_nodes(stiffness, walk, patch, self, take);
-  case CONTACT_POTENTIAL_ELEMENT:
-    return walk_elements(stiffness, walk, patch, self, take);
-  case CONTACT_POTENTIAL_PAIR:
-  case CONTACT_POTENTIAL_LINEAR:
-  case CONTACT_POTENTIAL_FIELD:
-    return walk_pairs(stiffness, walk, patch, self, take);
-  case CONTACT_POTENTIAL_BODY:
-    empty(stiffness);
-    for (int k = patch->pair_begin; k < patch->pair_end; k++) collect_pair(stiffness, walk, k, 1);
-    return take(self, stiffness, walk->facing->stiffness);
+    TRY(take(self, stiffness, 0));
   }
   return STATUS_OK;
 }
@@ -163,7 +131,7 @@ static Status walk_all(ContactStiffness *stiffness, const ContactLayout *layout,
   for (int p = 0; p < patches->patch_count; p++) {
     const ContactPatch *patch = &patches->patches[p];
     Walk walk = {layout, patches, &layout->facings[patch->facing], pairs, gradients};
-    TRY(walk_patch(stiffness, &walk, patch, self, take));
+    TRY((layout->depth.has_field ? walk_pairs : walk_nodes)(stiffness, &walk, patch, self, take));
   }
   empty(stiffness);
   return STATUS_OK;
@@ -234,11 +202,9 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
   if (layout->depth.has_field)
     return contact_field_stiffness_add(&stiffness->field, layout, evaluation, sink->self, sink->add_dense);
   ContactStiffnessSink borrowed = *sink;
-  if (layout->def.potential != CONTACT_POTENTIAL_LINEAR) {
-    TRY(contact_patches_index(&evaluation->patches));
-    TRY(walk_all(stiffness, layout, &evaluation->patches, evaluation->pairs, evaluation->gradients, &borrowed,
-                 give_outer));
-  }
+  TRY(contact_patches_index(&evaluation->patches));
+  TRY(walk_all(stiffness, layout, &evaluation->patches, evaluation->pairs, evaluation->gradients, &borrowed,
+               give_outer));
   if (!layout->def.use_full_hessian) return STATUS_OK;
   add_shape_pairs(layout, evaluation, sink);
   // Newton's matrix may be another model's: that changes how fast the method converges, not what it finds

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Second derivatives of the contact potential, handed out term by term, and which vertices they couple.
 //
-//   ∂²U/∂x² = Σ c ∇w ∇wᵀ  (curvatures of contact/pressure/potential.h)  +  Σ p_ij ∇²V_ij  (geometric,
+//   ∂²U/∂x² = Σ c ∇w ∇wᵀ  (curvature of contact/pressure/potential.h)  +  Σ p_ij ∇²V_ij  (geometric,
 //   indefinite)
 //
 // A model without second derivatives borrows those of clipping: exact for `exact` and `cgal`, near for

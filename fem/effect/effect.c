@@ -11,7 +11,6 @@ static const FemEffectOps *const effects[] = {
     &fem_effect_gravity,
     &fem_effect_loads,
     &fem_effect_contact,
-    &fem_effect_friction,
     &fem_effect_stick,
     &fem_effect_viscosity,
 };

@@ -34,7 +34,6 @@ typedef struct FemEffectOps {
   bool couples_anew; // its couplings change, or are not those of elements
   bool dissipates;   // its forces depend on velocities: D is assembled for Newton's matrix
   bool is_divided;   // over ranks it gives what this rank's elements give: the sum over ranks is the effect's
-  bool lags;         // `advance` changes its forces: the powers are measured anew after it
   bool (*is_wanted)(const FemSceneDef *scene);
   // Why a static scene cannot have it, and the key to blame, as "contact.friction". NULL: it can.
   const char *static_refusal, *static_key;
@@ -102,7 +101,6 @@ extern const FemEffectOps fem_effect_damping;
 extern const FemEffectOps fem_effect_gravity;
 extern const FemEffectOps fem_effect_loads;
 extern const FemEffectOps fem_effect_contact;
-extern const FemEffectOps fem_effect_friction;
 extern const FemEffectOps fem_effect_stick;
 extern const FemEffectOps fem_effect_viscosity;
 

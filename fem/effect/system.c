@@ -563,12 +563,6 @@ bool fem_system_dissipates(const FemSystem *system) {
   return false;
 }
 
-bool fem_system_lags(const FemSystem *system) {
-  for (int i = 0; i < system->effect_count; i++)
-    if (system->effects[i].ops->lags) return true;
-  return false;
-}
-
 int fem_system_place(const FemSystem *system, const FemEffectOps *effect) {
   for (int i = 0; i < system->effect_count; i++)
     if (system->effects[i].ops == effect) return i;

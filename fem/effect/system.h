@@ -95,8 +95,6 @@ double fem_system_longest_step(const FemSystem *system);
 
 // Whether an effect's forces depend on velocities.
 bool fem_system_dissipates(const FemSystem *system);
-// Whether an effect's forces change when a state is accepted.
-bool fem_system_lags(const FemSystem *system);
 
 // The effect's place among those of the system, −1: the scene has none.
 int fem_system_place(const FemSystem *system, const FemEffectOps *effect);

@@ -18,14 +18,9 @@ const char *fem_model_body_name(const FemModel *model, int vertex) {
 double fem_model_contact_stiffness(const FemModel *model) {
   const FemContactDef *contact = &model->scene->contact;
   if (contact->stiffness > 0) return contact->stiffness;
-  double softest = INFINITY, smallest_element = INFINITY;
-  for (int b = 0; b < model->scene->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
-    softest = fmin(softest, body->material.young);
-    double volume = body->mass / body->material.density;
-    smallest_element = fmin(smallest_element, volume / (body->tet_end - body->tet_begin));
-  }
-  return contact->potential == CONTACT_POTENTIAL_BODY ? softest / smallest_element : softest;
+  double softest = INFINITY;
+  for (int b = 0; b < model->scene->body_count; b++) softest = fmin(softest, model->bodies[b].material.young);
+  return softest;
 }
 
 bool fem_model_has_linear_materials(const FemModel *model) {

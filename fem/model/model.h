@@ -69,8 +69,7 @@ typedef struct FemModel {
 // For messages: the name of the body that a vertex is of, "?" if it has none; borrowed.
 const char *fem_model_body_name(const FemModel *model, int vertex);
 
-// κ as the scene says, or as chosen for it: the softest body's Young's modulus E; for the `body` potential E
-// over the smallest mean element volume, which gives a comparable pressure.
+// κ as the scene says, or as chosen for the potential `nodal`: the softest body's Young's modulus E.
 double fem_model_contact_stiffness(const FemModel *model);
 
 // √(E/ρ), the speed of a stretched bar's waves [m/s].

@@ -6,10 +6,6 @@
 #include "base/vec3.h"
 #include "fem/model/floating.h"
 
-// What sticks moves by less than ε, which an integrator that tolerates more than a few ε does not see.
-// Measured on a block that slides on a block: at 1, 2 and 7 ε as good, at 23 ε four times the steps.
-static const double FRICTION_RESOLUTION = 5;
-
 // Of the slowest wave's speed. An impact's waves carry the speed of the impact, hundredths of that: at 1 a
 // ball at 0.5 m/s loses 13 % of its energy in a contact, at 0.1 0.3 %, at 0.03 0.1 % (docs/time.md).
 static const double VELOCITY_SHARE = 0.03;
@@ -17,25 +13,12 @@ static const double VELOCITY_SHARE = 0.03;
 // of 180 tetrahedra stalls at 0.3 and below.
 static const double VELOCITY_SHARE_OF_SELF_FRICTION = 1;
 
-// How far what sticks may creep in a whole run, as a share of the smallest body.
-static const double CREEP = 1e-3;
-
-double fem_model_slip_speed(const FemModel *model) {
-  double given = model->scene->contact.slip_speed;
-  return given > 0 ? given : CREEP * model->length / model->scene->end;
-}
-
 // Of time.tolerance.
 static const double SPEED_SHARE = 5;
 
-static bool creeps(const FemSceneDef *scene) {
-  return fem_scene_most_friction(&scene->contact) > 0 &&
-         fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY;
-}
-
 double fem_model_speed_share(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
-  if (scene->velocity_tolerance > 0 || !scene->contact.is_on || creeps(scene)) return 0;
+  if (scene->velocity_tolerance > 0 || !scene->contact.is_on) return 0;
   return SPEED_SHARE * scene->tolerance;
 }
 
@@ -75,8 +58,7 @@ double fem_model_velocity_tolerance(const FemModel *model) {
   double slowest = fem_model_slowest_wave(model);
   double share = fem_scene_has_self_friction(scene) ? VELOCITY_SHARE_OF_SELF_FRICTION : VELOCITY_SHARE;
   double chosen = scene->tolerance * fmin(share * slowest, MOTION_SHARE * expected_speed(model));
-  if (is_free(scene)) return chosen / VELOCITY_SHARE;
-  return creeps(scene) ? fmin(chosen, FRICTION_RESOLUTION * fem_model_slip_speed(model)) : chosen;
+  return is_free(scene) ? chosen / VELOCITY_SHARE : chosen;
 }
 
 // A body rings with periods of the time that a wave takes through it and back; some periods, and calm is no

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What may err, creep and count as rest in a run: the scene's numbers, or those chosen for it.
+// What may err and count as rest in a run: the scene's numbers, or those chosen for it.
 #ifndef TETLAP_FEM_MODEL_TOLERANCE_H
 #define TETLAP_FEM_MODEL_TOLERANCE_H
 
@@ -12,16 +12,12 @@ double fem_model_position_tolerance(const FemModel *model);
 // Error per step of a velocity [m/s]: the scene's, or its tolerance times 0.03 of the slowest body's wave
 // speed √(E/ρ), all of it where a body rubs on itself, or where that is less times 0.3 of the fastest speed
 // at t = 0 (without what nothing notices of it, fem/model/floating.h) or √(g L), L the smallest body's
-// diagonal; with friction by the law `velocity` at most 5 ε; without contact 33 times as much.
+// diagonal; without contact 33 times as much.
 double fem_model_velocity_tolerance(const FemModel *model);
 
 // Share of the fastest body's present speed that a velocity may err by beside that, where there is contact
-// (fem/time/error_weights.h); 0 where the scene says how far, or friction by the law `velocity` needs it.
+// (fem/time/error_weights.h); 0 where the scene says how far.
 double fem_model_speed_share(const FemModel *model);
-
-// ε of friction [m/s]: the scene's, or such that nothing creeps by more than a thousandth of the smallest
-// body in the whole run.
-double fem_model_slip_speed(const FemModel *model);
 
 // What counts as rest (fem/run/rest.h) [m/s], [m/s²], [s]: the scene's, or chosen.
 double fem_model_rest_speed(const FemModel *model);

@@ -6,15 +6,10 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
-#include "fem/effect/contact/friction.h"
 #include "fem/effect/contact/stick.h"
 #include "fem/effect/contact/viscosity.h"
 
 bool fem_forces_has_friction(const FemSystem *system) {
-  return fem_system_effect(system, &fem_effect_friction) || fem_system_effect(system, &fem_effect_stick);
-}
-
-bool fem_forces_has_stick(const FemSystem *system) {
   return fem_system_effect(system, &fem_effect_stick) != NULL;
 }
 
@@ -68,13 +63,8 @@ void fem_forces_destroy(FemForces *forces) {
 }
 
 static void take_rubbing(const FemSystem *system, int count, FemRubbing *rubbing) {
-  void *friction = fem_system_effect(system, &fem_effect_friction),
-       *stick = fem_system_effect(system, &fem_effect_stick);
-  const ContactStick *law = stick ? fem_effect_stick_of(stick) : NULL;
+  const ContactStick *law = fem_effect_stick_of(fem_system_effect(system, &fem_effect_stick));
   for (int i = 0; i < count; i++) {
-    rubbing[i] = (FemRubbing){0};
-    if (friction) vec3_store(rubbing[i].force, vec3_at(fem_effect_friction_of(friction)->forces[i]));
-    if (!law) continue;
     vec3_store(rubbing[i].force, vec3_at(law->forces[i]));
     rubbing[i].stuck = law->areas[i][0];
     rubbing[i].slides = law->areas[i][1];
@@ -96,12 +86,9 @@ static void take_interfaces(FemForces *forces) {
 
 static void take_friction(FemForces *forces) {
   const FemSystem *system = forces->system;
-  void *friction = fem_system_effect(system, &fem_effect_friction),
-       *stick = fem_system_effect(system, &fem_effect_stick);
   memset(forces->friction, 0, values_of(forces) * sizeof *forces->friction);
-  if (friction)
-    contact_friction_add_force(fem_effect_friction_of(friction), system->velocities, forces->friction);
-  if (stick) contact_stick_add_force(fem_effect_stick_of(stick), forces->friction);
+  contact_stick_add_force(fem_effect_stick_of(fem_system_effect(system, &fem_effect_stick)),
+                          forces->friction);
 }
 
 Status fem_forces_take(FemForces *forces) {

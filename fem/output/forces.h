@@ -11,8 +11,8 @@
 
 // Friction between two [N], and the areas that stick and that slide [m²].
 typedef struct FemRubbing {
-  double force[3];      // on the first side; part of the force between the two
-  double stuck, slides; // 0 with friction by velocities
+  double force[3]; // on the first side; part of the force between the two
+  double stuck, slides;
 } FemRubbing;
 
 typedef struct FemForces {
@@ -34,7 +34,6 @@ Status fem_forces_create(FemForces *forces, const FemSystem *system, bool with_v
 void fem_forces_destroy(FemForces *forces);
 
 bool fem_forces_has_friction(const FemSystem *system);
-bool fem_forces_has_stick(const FemSystem *system); // friction that knows what sticks
 
 // Of the scattered state, whose energy was asked for last (fem_system_energy evaluates all laws).
 Status fem_forces_take(FemForces *forces);

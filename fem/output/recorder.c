@@ -43,7 +43,6 @@ static Status add_friction_columns(FemRecorder *recorder) {
     const char *a = fem_effect_contact_name(effect, interfaces[i].a),
                *b = fem_effect_contact_name(effect, interfaces[i].b);
     for (int c = 0; c < 3; c++) TRY(fem_history_add_column(history, "friction_%s_%s_%c_N", a, b, "xyz"[c]));
-    if (!fem_forces_has_stick(recorder->system)) continue;
     TRY(fem_history_add_column(history, "stuck_%s_%s_m2", a, b));
     TRY(fem_history_add_column(history, "slides_%s_%s_m2", a, b));
   }
@@ -461,7 +460,6 @@ static double *append_friction(const FemRecorder *recorder, double *row) {
   for (int i = 0; rubbing && i < recorder->forces.interface_count; i++) {
     vec3_store(row, vec3_at(rubbing[i].force));
     row += 3;
-    if (!fem_forces_has_stick(recorder->system)) continue;
     *row++ = rubbing[i].stuck;
     *row++ = rubbing[i].slides;
   }

@@ -275,7 +275,7 @@ static Status advance(FemRunState *run) {
   if (!is_onset)
     run->result->trouble.smallest_step = fmin(run->result->trouble.smallest_step, stats.last_step);
   TRY(accept(run, stats.current_step));
-  if (fem_system_lags(&run->system) || fem_integrator_is_at_knot(run->integrator)) TRY(renew_powers(run));
+  if (fem_integrator_is_at_knot(run->integrator)) TRY(renew_powers(run));
   TRY(fem_run_watch(run, &measures));
   if (fem_rest_has_changed(run->rest)) return renumber(run);
   if (!is_onset) return STATUS_OK;
@@ -380,7 +380,6 @@ static Status begin_motion(FemRunState *run) {
   FemMeasures measures;
   TRY(fem_run_frames_measure(run, run->time, &measures));
   TRY(fem_recorder_begin_step(&run->recorder, run->time, &measures));
-  if (fem_system_lags(&run->system)) TRY(renew_powers(run));
   return begin_stage(run, run->next_step);
 }
 

@@ -64,11 +64,6 @@ void fem_scene_destroy(FemSceneDef *scene) {
   *scene = (FemSceneDef){0};
 }
 
-FemFrictionLaw fem_scene_friction_law(const FemContactDef *contact) {
-  if (contact->friction_law != FEM_FRICTION_AUTO) return contact->friction_law;
-  return contact->potential == CONTACT_POTENTIAL_FIELD ? FEM_FRICTION_STICK : FEM_FRICTION_VELOCITY;
-}
-
 double fem_scene_most_friction(const FemContactDef *contact) {
   double most = contact->friction;
   for (int i = 0; i < contact->pair_count; i++) most = fmax(most, contact->pairs[i].friction);

@@ -148,13 +148,6 @@ typedef struct FemObstacleDef {
   FemScenePlace place;
 } FemObstacleDef;
 
-// How friction resists.
-typedef enum FemFrictionLaw {
-  FEM_FRICTION_AUTO,     // stick with the potential `field`, else velocity
-  FEM_FRICTION_STICK,    // contact/friction/stick.h
-  FEM_FRICTION_VELOCITY, // contact/friction/friction.h
-} FemFrictionLaw;
-
 // What holds between two in place of what holds between any two.
 typedef struct FemContactPairDef {
   char *names[2];   // of bodies or obstacles
@@ -166,7 +159,7 @@ typedef struct FemContactPairDef {
 typedef struct FemContactDef {
   bool is_on;
   FemScenePlace place;
-  double stiffness; // κ; 0: chosen (the softest body's Young's modulus; `body`: that over its volume²…)
+  double stiffness; // κ; 0: chosen (fem/model/compliance.h, or the softest body's E)
   ContactPotential potential;
   FemContactPairDef *pairs; //                                (pair_count)
   int pair_count;
@@ -175,10 +168,8 @@ typedef struct FemContactDef {
   OverlapOptions net_options;
   double margin; // [m]; 0: chosen
   bool use_full_hessian;
-  double friction; // coefficient μ between any two; 0: none
-  FemFrictionLaw friction_law;
+  double friction;                      // coefficient μ between any two; 0: none
   double viscosity;                     // η [Pa s]; 0: none
-  double slip_speed;                    // ε: slower slip counts as sticking [m/s]; 0: chosen
   bool rest_is_on;                      // bodies at rest are left out
   double rest_speed, rest_acceleration; // below them a body is calm [m/s], [m/s²]; 0: chosen
   double rest_time;                     // so long, and it is at rest [s]; 0: chosen
@@ -231,8 +222,6 @@ void fem_scene_destroy(FemSceneDef *scene);
 // When frame 0 … frames is due [s].
 double fem_scene_frame_time(const FemSceneDef *scene, int frame);
 
-// The law that `auto` stands for, or the one that the scene names.
-FemFrictionLaw fem_scene_friction_law(const FemContactDef *contact);
 // The largest μ between any two; 0: nothing rubs.
 double fem_scene_most_friction(const FemContactDef *contact);
 // Whether a body rubs on itself, by the scene's μ or by its own of `contact.pairs`.

@@ -27,10 +27,6 @@ static const double SQUEEZED = 0.3, SQUEEZED_STVK = 0.8;
 enum { MAX_RELAXATIONS = 400, MAX_REFUSALS = 40, WORST_COUNT = 3 };
 
 static Status check_scene(const FemSceneDef *scene) {
-  if (fem_scene_most_friction(&scene->contact) > 0 &&
-      fem_scene_friction_law(&scene->contact) == FEM_FRICTION_VELOCITY)
-    return status_fail(STATUS_INPUT, "friction by the law 'velocity' needs motion; remove it or time.static, "
-                                     "or use the potential 'field' and the law 'stick'");
   for (int b = 0; b < scene->body_count; b++) {
     const FemBodyDef *body = &scene->bodies[b];
     for (int i = 0; i < body->fixed_count; i++)

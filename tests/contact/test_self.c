@@ -5,7 +5,6 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "contact/friction/friction.h"
 #include "contact/search/layout.h"
 #include "overlap/separation.h"
 
@@ -130,35 +129,6 @@ START_TEST(parts_of_a_body_press_each_other_as_two_bodies_would) {
   for (int c = 0; c < 3; c++)
     ck_assert_near(own->force[c], between->force[c], 1e-5 * vec3_length(vec3_at(between->force)));
   free(force), free(expected), free(d), free(product), free(product_of_two), destroy(one), destroy(two);
-}
-END_TEST
-
-START_TEST(friction_within_a_body_is_that_of_two_bodies) {
-  double *force[2], power[2];
-  for (int as_one = 0; as_one < 2; as_one++) {
-    Fixture *f = pressed_blocks(CONTACT_POTENTIAL_NODAL, as_one);
-    ContactFriction friction;
-    double *velocity = random_motion(f, 3);
-    force[as_one] = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
-    ck_assert_ptr_nonnull(force[as_one]);
-    ck_assert_ok(contact_friction_create(&friction, f->system, 0.4, 1e-3));
-    eval(f, f->x, NULL);
-    ck_assert_ok(contact_friction_update(&friction));
-    ck_assert_int_gt(friction.grip_count, 10);
-    contact_friction_add_force(&friction, velocity, force[as_one]);
-    power[as_one] = contact_friction_power(&friction, velocity).dissipated;
-    if (as_one) {
-      int n = 3 * f->blocks.vertex_count;
-      double size = sqrt(product_dot(force[0], force[0], n));
-      ck_assert_double_gt(size, 0);
-      for (int k = 0; k < n; k++) ck_assert_near(force[1][k], force[0][k], 1e-5 * size);
-      ck_assert_near(power[1], power[0], 1e-5 * power[0]);
-      ck_assert_near(power[1], -product_dot(force[1], velocity, n), 1e-9 * power[0]);
-    }
-    contact_friction_destroy(&friction);
-    free(velocity), destroy(f);
-  }
-  free(force[0]), free(force[1]);
 }
 END_TEST
 
@@ -351,7 +321,6 @@ int main(void) {
   TCase *tcase = tcase_create("self");
   tcase_add_loop_test(tcase, parts_of_a_body_press_each_other_as_two_bodies_would, 0,
                       CONTACT_POTENTIAL_COUNT);
-  tcase_add_test(tcase, friction_within_a_body_is_that_of_two_bodies);
   tcase_add_loop_test(tcase, forces_within_a_body_are_minus_the_gradient_and_balance, 0,
                       CONTACT_POTENTIAL_COUNT);
   tcase_add_loop_test(tcase, stiffness_within_a_body_is_minus_the_derivative_of_the_forces, 0,

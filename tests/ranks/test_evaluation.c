@@ -25,12 +25,11 @@ typedef struct Variant {
 
 static const Variant variants[] = {
     {.name = "field, stick"},
-    {.name = "nodal, friction by speed", .overrides = {"contact.potential=nodal"}},
-    {.name = "linear", .overrides = {"contact.potential=linear", "contact.overlap=exact"}},
-    {.name = "body", .overrides = {"contact.potential=body", "contact.overlap=exact"}},
-    {.name = "element", .overrides = {"contact.potential=element", "contact.overlap=geo"}},
+    {.name = "exact", .overrides = {"contact.overlap=exact"}},
+    {.name = "learned, with its own centroid", .overrides = {"contact.overlap=geo"}},
+    {.name = "nodal", .overrides = {"contact={potential: nodal}"}},
     {.name = "viscosity, full Hessian",
-     .overrides = {"contact.potential=nodal", "contact.viscosity=1e-4", "contact.hessian=full"}},
+     .overrides = {"contact={potential: nodal, viscosity: 1e-4, hessian: full}"}},
     {.name = "learned", .overrides = {"contact.overlap=tpn"}},
     {.name = "nodal elements", .overrides = {"bodies.lower.element=nodal", "bodies.upper.element=nodal"}},
     {.name = "quadratic elements",

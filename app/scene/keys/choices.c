@@ -77,21 +77,6 @@ static const char *element_help(int i) {
 }
 const SceneChoices app_scene_choices_elements = {.name = element_name, .help = element_help};
 
-// The numbers are those of FemFrictionLaw.
-static const char *friction_name(int i) {
-  static const char *const names[] = {"auto", "stick", "velocity"};
-  return i < 3 ? names[i] : NULL;
-}
-static const char *friction_help(int i) {
-  static const char *const helps[] = {
-      "stick with the potential field, velocity with the others",
-      "a spring in the tangent plane, limited to μN: sticking contacts do not creep, in motion and in "
-      "statics",
-      "a force that depends on the slip speed, for potentials other than field: sticking contacts creep"};
-  return helps[i];
-}
-const SceneChoices app_scene_choices_frictions = {.name = friction_name, .help = friction_help};
-
 static const char *following_name(int i) { // the number is FemLoadDef.is_dead
   static const char *const names[] = {"surface", "nothing"};
   return i < 2 ? names[i] : NULL;

@@ -8,20 +8,11 @@
 
 static const char *finish_contact(void *self, const char **key) {
   FemContactDef *contact = self;
-  if (contact->viscosity > 0 && contact->potential != CONTACT_POTENTIAL_NODAL &&
-      contact->potential != CONTACT_POTENTIAL_FIELD) {
-    *key = "viscosity";
-    return "viscosity builds on the potential field or nodal; take one of the two keys away";
-  }
-  FemFrictionLaw law = fem_scene_friction_law(contact);
-  if (fem_scene_most_friction(contact) > 0 && law == FEM_FRICTION_STICK &&
-      contact->potential != CONTACT_POTENTIAL_FIELD) {
+  if (fem_scene_most_friction(contact) > 0 && contact->potential != CONTACT_POTENTIAL_FIELD) {
     *key = "friction";
-    return "the law stick builds on the potential field; take that, or the law velocity";
-  }
-  if (contact->friction > 0 && law == FEM_FRICTION_STICK && contact->slip_speed > 0) {
-    *key = "friction";
-    return "slip_speed belongs to the law velocity; with stick nothing creeps: take slip_speed away";
+    return "friction builds on the potential field; remove 'potential' and 'stiffness', whose unit differs, "
+           "or the "
+           "friction";
   }
   return NULL;
 }
@@ -29,12 +20,6 @@ static const char *finish_contact(void *self, const char **key) {
 static const SceneKey friction_keys[] = {
     {"coefficient", SCENE_NUMBER, AT(FemContactDef, friction), .range = "[0, inf)", .required = "0.3",
      .help = "Coulomb's μ: friction is at most μ times the normal force"},
-    {"law", SCENE_CHOICE, AT(FemContactDef, friction_law), .fallback = "auto",
-     .choices = &app_scene_choices_frictions, .help = "friction law"},
-    {"slip_speed", SCENE_NUMBER, AT(FemContactDef, slip_speed), .unit = "m/s", .range = "(0, inf)",
-     .absent_help = "1e-3 of the smallest body's size over `end`",
-     .help = "of the law velocity: slower slip counts as sticking, so sticking contacts creep, more slowly "
-             "than this"},
     {0},
 };
 static const SceneSection friction = {
@@ -106,9 +91,8 @@ static const SceneKey contact_keys[] = {
     {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa", .range = "(0, inf)",
      .absent_help =
          "with `field` from height and E of each two bodies that meet, so that the overlap is 2 % of their "
-         "compression; otherwise E of the softest body (with `body` over its smallest mean element volume)",
-     .help = "penalty stiffness κ; higher: less overlap, shorter steps (Pa/m with the potential `field`, "
-             "Pa/m³ with `body`)"},
+         "compression; otherwise E of the softest body",
+     .help = "penalty stiffness κ; higher: less overlap, shorter steps (Pa/m with the potential `field`)"},
     {"potential", SCENE_CHOICE, AT(FemContactDef, potential), .fallback = "field",
      .choices = &app_scene_choices_potentials, .help = "how overlaps become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",

@@ -21,8 +21,7 @@ typedef struct Stick {
 } Stick;
 
 static bool is_wanted(const FemSceneDef *scene) {
-  return scene->contact.is_on && fem_scene_most_friction(&scene->contact) > 0 &&
-         fem_scene_friction_law(&scene->contact) == FEM_FRICTION_STICK;
+  return scene->contact.is_on && fem_scene_most_friction(&scene->contact) > 0;
 }
 
 static Status create(void **self, const FemModel *model) {

@@ -179,12 +179,10 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_int_eq(scene->max_order, 1);
   ck_assert(scene->contact.is_on && !scene->contact.use_full_hessian);
   ck_assert_double_eq(scene->contact.stiffness, 3e6);
-  ck_assert_int_eq(scene->contact.potential, CONTACT_POTENTIAL_NODAL);
+  ck_assert_int_eq(scene->contact.potential, CONTACT_POTENTIAL_FIELD);
   ck_assert_str_eq(scene->contact.overlap, "exact");
   ck_assert_double_eq(scene->contact.margin, 0.02);
   ck_assert_double_eq(scene->contact.friction, 0.3);
-  ck_assert_int_eq(scene->contact.friction_law, FEM_FRICTION_VELOCITY);
-  ck_assert_double_eq(scene->contact.slip_speed, 1e-4);
   ck_assert_double_eq(scene->contact.viscosity, 11);
   ck_assert_int_eq(scene->contact.pair_count, 2);
   ck_assert_str_eq(scene->contact.pairs[0].names[0], "lower");
@@ -468,7 +466,7 @@ START_TEST(a_byte_order_mark_is_read_over) {
 END_TEST
 
 START_TEST(another_overlap_model_does_not_turn_contact_on) {
-  static const char *const on[] = {"contact.potential=pair"};
+  static const char *const on[] = {"contact.potential=nodal"};
   const char *path = TETLAP_SOURCE_DIR "/examples/04_cantilever.yaml";
   FemSceneDef scene;
   ck_assert_int_eq(app_scene_overlap_read(path, NULL, 0, "clip", &scene), STATUS_INPUT);
@@ -481,14 +479,14 @@ END_TEST
 
 START_TEST(an_override_turns_contact_off_and_on) {
   static const char *const off[] = {"contact=null"};
-  static const char *const on[] = {"contact=null", "contact.potential=pair"};
+  static const char *const on[] = {"contact=null", "contact.potential=nodal"};
   FemSceneDef scene;
   ck_assert_ok(app_scene_read(full_yaml, off, 1, &scene));
   ck_assert(!scene.contact.is_on);
   fem_scene_destroy(&scene);
   ck_assert_ok(app_scene_read(full_yaml, on, 2, &scene));
   ck_assert(scene.contact.is_on);
-  ck_assert_int_eq(scene.contact.potential, CONTACT_POTENTIAL_PAIR);
+  ck_assert_int_eq(scene.contact.potential, CONTACT_POTENTIAL_NODAL);
   ck_assert_str_eq(scene.contact.overlap, "clip");
   fem_scene_destroy(&scene);
 }

@@ -51,8 +51,8 @@ static const Wrong wrong[] = {
     {"time: {End: 1}\n", "s.yaml:1:8: unknown key 'End' in time; did you mean 'end'?"},
     {"time: {end: 1}\nkappa: 3\n",
      "s.yaml:2:1: unknown key 'kappa' in the scene; the keys here are title, time"},
-    {"stiffness: 3\n",
-     "s.yaml:1:1: unknown key 'stiffness' in the scene; did you mean contact.stiffness? The keys here are title, time"},
+    {"stiffness: 3\n", "s.yaml:1:1: unknown key 'stiffness' in the scene; did you mean contact.stiffness? "
+                       "The keys here are title, time"},
     {TIME "bodies:\n  - name: a\n    mesh: a.msh\n    material:\n      yong: 1e6\n",
      "s.yaml:6:7: unknown key 'yong' in bodies[0].material; did you mean 'young'?"},
     {BODY, "s.yaml:1:1: the scene needs 'time', for example time: {end: 0.5}"},
@@ -61,7 +61,8 @@ static const Wrong wrong[] = {
     {"time:\n" BODY, "s.yaml:1:1: the scene needs 'time'"},
     {TIME "bodies: [{name: a, mesh: a.msh, material: {young: 1, poisson: 0}}]\n",
      "s.yaml:2:43: bodies[0].material needs 'density', for example density: 1000"},
-    {TIME "bodies: []\n", "s.yaml:2:9: bodies: expected a list of mappings, found a list of 0; give at least one"},
+    {TIME "bodies: []\n",
+     "s.yaml:2:9: bodies: expected a list of mappings, found a list of 0; give at least one"},
     {TIME BODY "contact:\n", "s.yaml:3:1: there is no value after 'contact:'; write '{}' for the defaults"},
     {TIME BODY "effects: {gravity: }\n", "s.yaml:3:11: there is no value after 'gravity:'; write a value"},
     // Types.
@@ -107,13 +108,27 @@ static const Wrong wrong[] = {
      "s.yaml:3:21: contact.friction: expected a number in [0, inf), found the number -1"},
     {TIME BODY "contact: {friction: much}\n",
      "s.yaml:3:21: contact.friction: expected a mapping {key: value} or a number (its 'coefficient'), found"},
-    {TIME BODY "contact: {potential: pair, viscosity: 1}\n",
-     "s.yaml:3:39: contact: viscosity builds on the potential field or nodal"},
-    {TIME BODY "contact: {friction: {slip_speed: 1}}\n", "s.yaml:3:21: contact.friction needs 'coefficient'"},
+    {TIME BODY "contact: {potential: nodal, friction: 1}\n",
+     "s.yaml:3:39: contact: friction builds on the potential field; remove 'potential' and 'stiffness'"},
+    {TIME BODY "contact: {friction: {}}\n", "s.yaml:3:21: contact.friction needs 'coefficient'"},
+    {TIME BODY "contact: {friction: {coefficient: 1, law: stick}}\n",
+     "s.yaml:3:38: contact.friction.law: there is no such key any more; remove it and write the coefficient "
+     "alone, "
+     "as friction: 0.3"},
+    {TIME BODY "contact: {friction: {coefficient: 1, slip_speed: 1}}\n",
+     "s.yaml:3:38: contact.friction.slip_speed: there is no such key any more; remove it"},
+    {TIME BODY "contact: {potential: pair}\n",
+     "s.yaml:3:22: contact.potential: expected one of nodal, field, found the text 'pair', which there is no "
+     "longer; remove 'potential' and 'stiffness': the default potential is 'field', whose stiffness is "
+     "chosen from "
+     "the bodies; if you set it, it is in Pa/m"},
+    {TIME BODY "contact: {potential: linear}\n",
+     "s.yaml:3:22: contact.potential: expected one of nodal, field, found the text "
+     "'linear', which there is no longer; remove"},
     {TIME BODY "contact: {friction: 1}\ncontact: {}\n",
      "s.yaml:4:1: duplicate key 'contact'; it is already at line 3, column 1"},
     {TIME BODY "contact: {potential: nodel}\n", "s.yaml:3:22: contact.potential: expected one of nodal, "
-                                                "element, pair, linear, body, field, found the text 'nodel'; "
+                                                "field, found the text 'nodel'; "
                                                 "did you mean 'nodal'?"},
     {TIME BODY "contact: {overlap: clop}\n", "s.yaml:3:20: contact.overlap: expected one of clip"},
     {TIME BODY "contact: {hessian: true}\n",

@@ -132,7 +132,6 @@ static void compare_forces(Replay *replay, const FemVtuContent *frame) {
   add(replay, &fem_effect_contact, replay->force);
   add(replay, &fem_effect_viscosity, replay->force);
   add(replay, &fem_effect_stick, replay->friction);
-  add(replay, &fem_effect_friction, replay->friction);
   ck_assert_ok(contact_system_trace(contact_of(replay), replay->pressure, replay->depth));
   compare(replay, frame, "contact_force", 3 * vertices, replay->force);
   compare(replay, frame, "friction_force", 3 * vertices, replay->friction);

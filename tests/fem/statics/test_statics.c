@@ -300,9 +300,6 @@ START_TEST(what_only_a_motion_has_is_refused_with_its_place) {
   refuse("    fixed: [{group: x_min, release: 0.5}]\n", "", "test.yaml:6:28: ");
   refuse("    fixed: [{group: x_min}]\n    driven: [{group: x_max, velocity: [1, 0, 0], release: 0.5}]\n", "",
          "cannot release");
-  refuse("", "contact: {friction: {coefficient: 0.5, law: velocity}}\n", "test.yaml:2:11: ");
-  refuse("", "contact: {potential: nodal, friction: 0.5}\n",
-         "the friction law velocity has no force at rest");
   refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "test.yaml:2:18: ");
   refuse("    fixed: [{group: x_min}]\n", "solver: {linear: klu}\n", "cholmod, amg or pcg");
 }
