@@ -28,6 +28,10 @@ static const char TIPS[] =
 static const char MEDIAL[] =
     "pressed in deeper than half of the finer slab's thickness, from where the other side is "
     "nearer";
+static const char NO_POTENTIAL[] =
+    "the force is made of a V with an error of 13 % and a centroid that follows from its grad V, which errs "
+    "by "
+    "tens of per cent: it is not the gradient of a potential, and energy comes from nowhere";
 static const char UNSYMMETRIC[] =
     "V of a network is not the same for mirror images, nor for another order of vertices: its forces err "
     "sideways, and what stands on a tip slides off";
@@ -65,7 +69,8 @@ static const AppStressLimit limits[] = {
     {"spike and wedge", NULL, "asymmetry in x", 0.05, TIPS, NULL},
     {"spike and wedge", NULL, "asymmetry in y", 0.05, TIPS, NULL},
     {"flat slabs, edge ratio 1/2", NULL, "pressure against 2 c depth", 0.25, MEDIAL, NULL},
-    {"flat slabs*", LEARNED, "pressure against 2 c depth", 0.006, LEARNED_VOLUME, AUDIT},
+    {"flat slabs*", NETWORKS, "pressure against 2 c depth", 0.45, ROUGH, AUDIT},
+    {"flat slabs*", LEARNED, "pressure against 2 c depth", 0.013, LEARNED_VOLUME, AUDIT},
     {"vertex on vertex", LEARNED, "energy gain", 0.004, LEARNED_APART,
      "trouble.energy, history.csv: energy_gain"},
     {"spike*", LEARNED, "energy gain", 0.003, LEARNED_APART, "trouble.energy, history.csv: energy_gain"},
@@ -80,6 +85,7 @@ static const AppStressLimit limits[] = {
     {"tetrahedron inside", PAPERS, "enclosed pairs", 0, NESTED,
      "trouble.enclosed stays 0; tetlap compare --audit-only exact"},
     {"tight fit", "clip32", "time reached", 4e-3, ROUNDED, "summary.json: steps, trouble.smallest_step"},
+    {"*", INTEGRABLE, "energy gain", 1.7, NO_POTENTIAL, "trouble.energy, history.csv: energy_gain"},
     {"*", PAPERS, "energy gain", 1.5, LEAPING, "trouble.energy, history.csv: energy_gain"},
     {"*", PAPERS, "time reached", 4e-5, PIECEWISE, "newton_failures, restarts, beyond_range_pairs"},
     {"two spheres", NULL, "change of angular momentum", 1.2e-5,
