@@ -66,8 +66,8 @@ static void keep_mpi_to_itself(void) {
   for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) setenv(settings[i][0], settings[i][1], 0);
 }
 
-// Open MPI and hwloc look for their parts where they were built to lie; a bundle (tools/bundle) has those of
-// Open MPI beside PETSc's library, and must not take the machine's, which may be of other versions.
+// Open MPI, its PMIx and hwloc look for their parts where they were built to lie; a bundle (tools/bundle) has
+// those of Open MPI beside PETSc's library, and must not take the machine's, which may be of other versions.
 static void tell_mpi_its_place(void) {
   Dl_info info;
   char path[PATH_MAX];
@@ -78,6 +78,7 @@ static void tell_mpi_its_place(void) {
   int length = snprintf(path, sizeof path, "%.*s/openmpi-components", folder, info.dli_fname);
   if (length < 0 || (size_t)length >= sizeof path || !file_exists(path)) return;
   setenv("OMPI_MCA_mca_base_component_path", path, 0);
+  setenv("PMIX_MCA_mca_base_component_path", path, 0);
   setenv("HWLOC_PLUGINS_PATH", path, 0);
 }
 
