@@ -392,15 +392,6 @@ START_TEST(shares_of_a_run_sum_to_one) {
 }
 END_TEST
 
-// Errors of two potentials are not of one kind.
-START_TEST(a_table_of_two_potentials_says_whose_row_is_whose) {
-  static char output[OUTPUT_SIZE];
-  ck_assert_int_eq(run_bench("unseen -m geo,tpn-scene -k thin -s 1 -p 8", output), 0);
-  ck_assert_msg(strstr(output, "potential") && strstr(output, "field") && strstr(output, "nodal"), "%s",
-                output);
-}
-END_TEST
-
 // Two weights files of one name, in folders of their own.
 START_TEST(weights_files_are_measured_under_names_of_their_own) {
   static char output[OUTPUT_SIZE];
@@ -495,7 +486,6 @@ int main(void) {
   tcase_add_test(cases, csv_and_markdown_have_as_many_cells_in_every_line);
   tcase_add_test(cases, direct_solvers_solve_to_rounding_and_agree_on_the_run);
   tcase_add_test(cases, shares_of_a_run_sum_to_one);
-  tcase_add_test(cases, a_table_of_two_potentials_says_whose_row_is_whose);
   tcase_add_test(cases, weights_files_are_measured_under_names_of_their_own);
   tcase_add_test(cases, wrong_arguments_are_usage_errors);
   tcase_add_test(cases, an_unknown_bench_gets_the_nearest_name);
