@@ -60,13 +60,16 @@ static void keep_mpi_to_itself(void) {
       {"OMPI_MCA_mpi_warn_on_fork", "0"},
       {"OMPI_MCA_opal_signal", ""},
       {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
+      // PMIx of Open MPI 5 would load a part, wherever it was built to lie, that compresses messages to
+      // others
+      {"PMIX_MCA_pcompress", "^zlib"},
       // hwloc would look for accelerators, and load an OpenCL compiler to do so: 36 MB of heap
       {"HWLOC_COMPONENTS", "-opencl,-cuda,-nvml,-rsmi,-levelzero,-gl"},
   };
   for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) setenv(settings[i][0], settings[i][1], 0);
 }
 
-// Open MPI, its PMIx and hwloc look for their parts where they were built to lie; a bundle (tools/bundle) has
+// Open MPI and hwloc look for their parts where they were built to lie; a bundle (tools/bundle) has
 // those of Open MPI beside PETSc's library, and must not take the machine's, which may be of other versions.
 static void tell_mpi_its_place(void) {
   Dl_info info;
@@ -78,7 +81,6 @@ static void tell_mpi_its_place(void) {
   int length = snprintf(path, sizeof path, "%.*s/openmpi-components", folder, info.dli_fname);
   if (length < 0 || (size_t)length >= sizeof path || !file_exists(path)) return;
   setenv("OMPI_MCA_mca_base_component_path", path, 0);
-  setenv("PMIX_MCA_mca_base_component_path", path, 0);
   setenv("HWLOC_PLUGINS_PATH", path, 0);
 }
 
