@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/scene/check.h"
 
-#include <stdio.h>
 #include <string.h>
-
-#include "fem/effect/effect.h"
 
 // Bodies and obstacles share one set of names.
 static Status check_names(const SceneNode *root) {
@@ -43,32 +40,13 @@ static bool is_nonzero(const SceneNode *node) {
   return node && node->kind == SCENE_NODE_NUMBER && node->number != 0;
 }
 
-// The value at "section.key".
-static const SceneNode *find_path(const SceneNode *root, const char *path) {
-  const char *point = strchr(path, '.');
-  char section[64];
-  snprintf(section, sizeof section, "%.*s", (int)(point - path), path);
-  return app_scene_tree_find(app_scene_tree_find(root, section), point + 1);
-}
-
-static Status check_static_effects(const SceneNode *root, const FemSceneDef *scene) {
-  int count;
-  if (scene->contact.rest_is_on)
-    return app_scene_tree_fail_key(find_path(root, "contact.rest"),
-                                   "a static scene is at rest always; remove 'rest' or time.static");
-  const FemEffectOps *const *effects = fem_effect_list(&count);
-  for (int i = 0; i < count; i++)
-    if (effects[i]->static_refusal && effects[i]->is_wanted(scene))
-      return app_scene_tree_fail_key(find_path(root, effects[i]->static_key), "%s",
-                                     effects[i]->static_refusal);
-  return STATUS_OK;
-}
-
 // What only a motion can have.
 static Status check_static(const SceneNode *root, const FemSceneDef *scene) {
   static const char *const initial[] = {"velocity", "spin"}, *const lists[] = {"fixed", "driven"};
   if (!scene->is_static) return STATUS_OK;
-  TRY(check_static_effects(root, scene));
+  if (scene->contact.rest_is_on)
+    return app_scene_tree_fail_key(app_scene_tree_find(app_scene_tree_find(root, "contact"), "rest"),
+                                   "a static scene is at rest always; remove 'rest' or time.static");
   const SceneNode *bodies = app_scene_tree_find(root, "bodies");
   for (const SceneNode *body = bodies->first; body; body = body->next)
     for (int k = 0; k < 2; k++) {

@@ -35,8 +35,6 @@ typedef struct FemEffectOps {
   bool dissipates;   // its forces depend on velocities: D is assembled for Newton's matrix
   bool is_divided;   // over ranks it gives what this rank's elements give: the sum over ranks is the effect's
   bool (*is_wanted)(const FemSceneDef *scene);
-  // Why a static scene cannot have it, and the key to blame, as "contact.friction". NULL: it can.
-  const char *static_refusal, *static_key;
   Status (*create)(void **self, const FemModel *model);
   // The same as create for a run that begins anew: takes over from `old`, which is destroyed next, what never
   // changes and is expensive to make or was read from a file (weights). NULL: create.
