@@ -6,9 +6,9 @@
 #include "base/vec3.h"
 
 static int compare_pairs(const ContactPair *a, const ContactPair *b) {
-  if (a->facing != b->facing) return a->facing < b->facing ? -1 : 1;
-  if (a->tets[0] != b->tets[0]) return a->tets[0] < b->tets[0] ? -1 : 1;
-  return (a->tets[1] > b->tets[1]) - (a->tets[1] < b->tets[1]);
+  if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
+  if (a->cells[0] != b->cells[0]) return a->cells[0] < b->cells[0] ? -1 : 1;
+  return (a->cells[1] > b->cells[1]) - (a->cells[1] < b->cells[1]);
 }
 
 double contact_audit_error(ContactAuditTerm term) {
@@ -43,7 +43,7 @@ static void compare_overlaps(const ContactEvaluation *a, const ContactEvaluation
 static ContactAuditTerm compare_totals(const ContactLayout *layout, const ContactEvaluation *a,
                                        const ContactEvaluation *b) {
   double difference = 0, total = 0;
-  for (int f = 0; f < layout->facing_count; f++) {
+  for (int f = 0; f < layout->interface_count; f++) {
     Vec3 left = vec3_at(a->interfaces[f].force), right = vec3_at(b->interfaces[f].force);
     Vec3 d = vec3_sub(left, right);
     difference += vec3_dot(d, d);

@@ -21,16 +21,17 @@ enum { FEW_TO_SHARE = 128 };
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout) {
   *evaluation = (ContactEvaluation){0};
-  evaluation->positions = memory_zeroed((size_t)layout->depth.position_count, 3 * sizeof(double));
+  evaluation->positions = memory_zeroed((size_t)layout->mesh.position_count, 3 * sizeof(double));
   evaluation->forces = memory_zeroed((size_t)layout->def.vertex_count, 3 * sizeof(double));
   evaluation->covered = memory_zeroed((size_t)layout->def.tet_count, sizeof(double));
-  evaluation->interfaces = memory_zeroed((size_t)layout->facing_count, sizeof(ContactInterface));
-  evaluation->boxes = memory_zeroed((size_t)layout->depth.cell_count, sizeof *evaluation->boxes);
+  evaluation->interfaces = memory_zeroed((size_t)layout->interface_count, sizeof(ContactInterface));
+  evaluation->boxes = memory_zeroed((size_t)layout->mesh.cell_count, sizeof *evaluation->boxes);
   if (!evaluation->boxes || !evaluation->positions || !evaluation->forces || !evaluation->covered ||
       !evaluation->interfaces)
     return status_no_memory("contact forces");
-  for (int f = 0; f < layout->facing_count; f++)
-    evaluation->interfaces[f] = (ContactInterface){.a = layout->facings[f].a, .b = layout->facings[f].b};
+  for (int f = 0; f < layout->interface_count; f++)
+    evaluation->interfaces[f] =
+        (ContactInterface){.a = layout->interfaces[f].a, .b = layout->interfaces[f].b};
   return contact_patches_create(&evaluation->patches, layout);
 }
 
@@ -61,7 +62,7 @@ static Status reserve(ContactEvaluation *evaluation, const ContactLayout *layout
       memory_reserve((void **)&evaluation->gradients, &evaluation->gradient_capacity, 24 * n, size) &&
       memory_reserve((void **)&evaluation->pressures, &evaluation->pressure_capacity, n, size) &&
       memory_reserve((void **)&evaluation->flags, &evaluation->flag_capacity, n, sizeof(unsigned));
-  if (layout->depth.has_field)
+  if (layout->mesh.has_field)
     fits = fits &&
            memory_reserve((void **)&evaluation->centroids, &evaluation->centroid_capacity, 3 * n, size) &&
            memory_reserve((void **)&evaluation->fields, &evaluation->field_capacity, n,
@@ -121,11 +122,11 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
   contact_candidates_bound(candidates, layout, positions, evaluation->boxes);
 #pragma omp parallel for schedule(static) reduction(+ : kept) if (count > 512)
   for (int k = 0; k < count; k++) {
-    const int *tets = candidates->pairs[k].tets;
+    const int *cells = candidates->pairs[k].cells;
     evaluation->is_kept[k] =
-        tets[1] < 0
+        cells[1] < 0
             ? with_shapes
-            : !(contact_bounds_distance(evaluation->boxes[tets[0]], evaluation->boxes[tets[1]]) > apart);
+            : !(contact_bounds_distance(evaluation->boxes[cells[0]], evaluation->boxes[cells[1]]) > apart);
     kept += evaluation->is_kept[k];
   }
   if (!memory_reserve((void **)&evaluation->pairs, &evaluation->pair_capacity, (size_t)kept,
@@ -140,7 +141,7 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
 // Moves pair `from` and its overlap to the earlier place `to`. Of two bodies the field's forces are found
 // later, from the centroid.
 static void move_overlap(ContactEvaluation *evaluation, bool has_field, int from, int to) {
-  bool is_of_shape = evaluation->pairs[from].tets[1] < 0;
+  bool is_of_shape = evaluation->pairs[from].cells[1] < 0;
   if (from == to) return;
   evaluation->pairs[to] = evaluation->pairs[from];
   memcpy(evaluation->coordinates + 24 * (size_t)to, evaluation->coordinates + 24 * (size_t)from,
@@ -178,7 +179,7 @@ static void find_faces_apart(ContactEvaluation *evaluation, const ContactLayout 
 static Status sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *layout, bool keeps_all,
                             const double *positions) {
   int count = evaluation->pair_count, mesh_count = count, kept = 0;
-  while (mesh_count > 0 && evaluation->pairs[mesh_count - 1].tets[1] < 0) mesh_count--;
+  while (mesh_count > 0 && evaluation->pairs[mesh_count - 1].cells[1] < 0) mesh_count--;
   if (!keeps_all) find_faces_apart(evaluation, layout, mesh_count, positions);
   evaluation->mesh_pair_count = 0;
   for (int k = 0; k < count; k++) {
@@ -197,14 +198,15 @@ static Status sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *
 
 // Names the tetrahedra, as the frames number them, of a pair that the model refused or answered badly.
 static Status blame(const ContactLayout *layout, const ContactPair *pair, Status status, const char *why) {
-  const ContactFacing *facing = &layout->facings[pair->facing];
-  int element = contact_layout_origin(layout, pair->tets[0]);
-  const char *name = layout->def.bodies[facing->a].name;
-  if (facing->shape >= 0)
+  const ContactInterfaceDef *interface = &layout->interfaces[pair->interface];
+  int element = contact_layout_origin(layout, pair->cells[0]);
+  const char *name = layout->def.bodies[interface->a].name;
+  if (interface->shape >= 0)
     return status_fail(status, "contact of element %d of '%s' and '%s': %s", element, name,
-                       layout->def.shapes[facing->shape].name, why);
+                       layout->def.shapes[interface->shape].name, why);
   return status_fail(status, "contact of element %d of '%s' and element %d of '%s': %s", element, name,
-                     contact_layout_origin(layout, pair->tets[1]), layout->def.bodies[facing->b].name, why);
+                     contact_layout_origin(layout, pair->cells[1]), layout->def.bodies[interface->b].name,
+                     why);
 }
 
 static Status blame_volume(const ContactLayout *layout, const ContactPair *pair, double volume) {
@@ -256,12 +258,12 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
                              const OverlapModel *model) {
   int count = evaluation->mesh_pair_count;
   if (count == 0) return STATUS_OK;
-  bool wants_gradient = !layout->depth.has_field || !overlap_model_has_own_centroid(model);
+  bool wants_gradient = !layout->mesh.has_field || !overlap_model_has_own_centroid(model);
   OverlapBatch batch = {.pair_count = count,
                         .pairs = evaluation->coordinates,
                         .volume = evaluation->volumes,
                         .gradient = wants_gradient ? evaluation->gradients : NULL,
-                        .centroid = layout->depth.has_field ? evaluation->centroids : NULL,
+                        .centroid = layout->mesh.has_field ? evaluation->centroids : NULL,
                         .flags = evaluation->flags};
   if (count < FEW_TO_SHARE) {
     Status status = overlap_model_eval(model, &batch);
@@ -280,10 +282,10 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
 static void overlap_shapes(ContactEvaluation *evaluation, const ContactLayout *layout, double time) {
 #pragma omp parallel for schedule(static) if (evaluation->pair_count - evaluation->mesh_pair_count > 512)
   for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
-    const ContactShape *shape = &layout->def.shapes[layout->facings[evaluation->pairs[k].facing].shape];
+    const ContactShape *shape = &layout->def.shapes[layout->interfaces[evaluation->pairs[k].interface].shape];
     double *gradient = evaluation->gradients + 24 * (size_t)k;
     const double *tet = evaluation->coordinates + 24 * (size_t)k;
-    if (layout->depth.has_field) {
+    if (layout->mesh.has_field) {
       ContactFieldPair *field = &evaluation->fields[k];
       contact_field_press_shape(layout, &evaluation->pairs[k], time, tet, field, gradient);
       evaluation->volumes[k] = field->volume;
@@ -340,7 +342,7 @@ static void push_apart(ContactEvaluation *evaluation) {
   }
 }
 
-// The force on tets[0] of each pair of a patch.
+// The force on cells[0] of each pair of a patch.
 static void sum_lower(const ContactEvaluation *evaluation, const ContactPatch *patch, double force[3]) {
   for (int k = patch->pair_begin; k < patch->pair_end; k++)
     for (int v = 0; v < 12; v++)
@@ -350,18 +352,18 @@ static void sum_lower(const ContactEvaluation *evaluation, const ContactPatch *p
 static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout) {
   const ContactPatches *patches = &evaluation->patches;
   const ContactRest *rest = evaluation->rest;
-  for (int f = 0; f < layout->facing_count; f++)
+  for (int f = 0; f < layout->interface_count; f++)
     evaluation->interfaces[f] = rest && rest->is_resting[f] ? rest->interfaces[f]
-                                                            : (ContactInterface){.a = layout->facings[f].a,
-                                                                                 .b = layout->facings[f].b,
+                                                            : (ContactInterface){.a = layout->interfaces[f].a,
+                                                                                 .b = layout->interfaces[f].b,
                                                                                  .centre = {NAN, NAN, NAN}};
   const ContactImprintSource source = {.patches = patches,
-                                       .fields = layout->depth.has_field ? evaluation->fields : NULL,
+                                       .fields = layout->mesh.has_field ? evaluation->fields : NULL,
                                        .gradients = evaluation->gradients,
                                        .positions = evaluation->positions};
   for (int p = 0; p < patches->patch_count; p++) {
     const ContactPatch *patch = &patches->patches[p];
-    ContactInterface *interface = &evaluation->interfaces[patch->facing];
+    ContactInterface *interface = &evaluation->interfaces[patch->interface];
     interface->active_count = patch->pair_end - patch->pair_begin;
     for (int k = patch->pair_begin; k < patch->pair_end; k++) interface->volume += evaluation->volumes[k];
     contact_imprint_find(&source, patch, interface);
@@ -404,10 +406,10 @@ static Status apply_potential(ContactEvaluation *evaluation, const ContactLayout
   ContactPatches *patches = &evaluation->patches;
   TRY(contact_patches_build(patches, layout, evaluation->pair_count, evaluation->pairs));
   cover(evaluation);
-  if (layout->depth.has_field) TRY(press_pairs(evaluation, layout));
+  if (layout->mesh.has_field) TRY(press_pairs(evaluation, layout));
   for (int p = 0; p < patches->patch_count; p++) {
     ContactPatch *patch = &patches->patches[p];
-    patch->energy = layout->depth.has_field
+    patch->energy = layout->mesh.has_field
                         ? sum_energies(evaluation, patch)
                         : contact_potential_apply(layout, patches, patch, evaluation->pressures);
     evaluation->energy += patch->energy;
@@ -426,9 +428,9 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   TRY(sift_by_faces(evaluation, layout, overlap_model_has_ghosts(model), positions));
   TRY(overlap_meshes(evaluation, layout, model));
   overlap_shapes(evaluation, layout, time);
-  keep_overlapping(evaluation, layout->depth.has_field);
+  keep_overlapping(evaluation, layout->mesh.has_field);
   double overlapped = clock_wall_s();
-  memcpy(evaluation->positions, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
+  memcpy(evaluation->positions, positions, 3 * (size_t)layout->mesh.position_count * sizeof(double));
   TRY(apply_potential(evaluation, layout));
   evaluation->time = time;
   evaluation->is_valid = true;

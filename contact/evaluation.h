@@ -39,8 +39,8 @@ typedef struct ContactEvaluation {
   ContactFieldPair *fields;     // `field` only                          (pair_count)
   ContactPatches patches;       // with W_i, W_a and forces per node
   double *forces;               // −∂U/∂x [N]                            (vertex_count, 3)
-  double *covered;              // Σ over facings of W_i [m³]            (tet_count)
-  ContactInterface *interfaces; //                                       (facing_count)
+  double *covered;              // Σ over interfaces of W_i [m³]            (tet_count)
+  ContactInterface *interfaces; //                                       (interface_count)
   ContactPairCounts counts;     // of the pairs given to the model
   double overlap_s, force_s;    // wall time [s]
   // Scratch memory.

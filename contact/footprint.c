@@ -8,15 +8,15 @@
 
 size_t contact_footprint_layout(const ContactLayout *layout) {
   const ContactSelf *self = &layout->self;
-  const ContactDepth *depth = &layout->depth;
-  return HELD(layout->rest, layout->cell_volumes, depth->cell_begin, depth->own, depth->tets, depth->replaced,
-              depth->outer, depth->virtuals, depth->depths, layout->tet_volumes, layout->vertex_volumes,
-              layout->facings, layout->nudges, layout->shifts, self->outer, self->cell_begin, self->is_outer,
-              self->left_out.pairs);
+  const ContactMesh *mesh = &layout->mesh;
+  return HELD(layout->rest, layout->cell_volumes, mesh->cell_begin, mesh->own, mesh->tets, mesh->replaced,
+              mesh->outer, mesh->virtuals, mesh->depths, layout->tet_volumes, layout->vertex_volumes,
+              layout->interfaces, layout->nudges, layout->shifts, self->outer, self->cell_begin,
+              self->is_outer, self->left_out.pairs);
 }
 
 static size_t of_list(const ContactCandidateList *list) {
-  return HELD(list->pairs, list->begin, list->margins, list->tets);
+  return HELD(list->pairs, list->begin, list->margins, list->cells);
 }
 
 size_t contact_footprint_candidates(const ContactCandidates *candidates) {

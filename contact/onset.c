@@ -10,8 +10,8 @@
 
 Status contact_onset_create(ContactOnset *onset, const ContactLayout *layout) {
   *onset = (ContactOnset){0};
-  onset->is_marked = memory_zeroed((size_t)layout->depth.position_count, 1);
-  onset->boxes = memory_zeroed((size_t)layout->depth.cell_count, sizeof *onset->boxes);
+  onset->is_marked = memory_zeroed((size_t)layout->mesh.position_count, 1);
+  onset->boxes = memory_zeroed((size_t)layout->mesh.cell_count, sizeof *onset->boxes);
   return onset->is_marked && onset->boxes ? STATUS_OK : status_no_memory("watched pairs");
 }
 
@@ -26,25 +26,26 @@ void contact_onset_destroy(ContactOnset *onset) {
 static double separation_of(const ContactLayout *layout, const ContactPair *pair, double time,
                             const double *positions, double enough) {
   double x[24];
-  if (pair->tets[1] >= 0) {
-    contact_layout_gather(layout, pair->tets[0], positions, x);
-    contact_layout_gather(layout, pair->tets[1], positions, x + 12);
+  if (pair->cells[1] >= 0) {
+    contact_layout_gather(layout, pair->cells[0], positions, x);
+    contact_layout_gather(layout, pair->cells[1], positions, x + 12);
     return overlap_separation_pair(x, enough);
   }
-  contact_layout_gather_whole(layout, pair->tets[0], positions, x);
-  return contact_shape_separation(&layout->def.shapes[layout->facings[pair->facing].shape], time, x, enough);
+  contact_layout_gather_whole(layout, pair->cells[0], positions, x);
+  return contact_shape_separation(&layout->def.shapes[layout->interfaces[pair->interface].shape], time, x,
+                                  enough);
 }
 
 static bool is_engaged(const ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,
                        double time, const double *positions, double touch) {
-  if (pair->tets[1] >= 0 &&
-      contact_bounds_distance(onset->boxes[pair->tets[0]], onset->boxes[pair->tets[1]]) > touch)
+  if (pair->cells[1] >= 0 &&
+      contact_bounds_distance(onset->boxes[pair->cells[0]], onset->boxes[pair->cells[1]]) > touch)
     return false;
   return !(separation_of(layout, pair, time, positions, touch) > touch);
 }
 
 static bool are_same(const ContactPair *a, const ContactPair *b) {
-  return a->facing == b->facing && a->tets[0] == b->tets[0] && a->tets[1] == b->tets[1];
+  return a->interface == b->interface && a->cells[0] == b->cells[0] && a->cells[1] == b->cells[1];
 }
 
 // The candidates that are among the known pairs, and only those, are engaged.
@@ -68,9 +69,9 @@ static void find_engaged(ContactOnset *onset, const ContactLayout *layout,
 
 static void mark(ContactOnset *onset, const ContactLayout *layout, const ContactPair *pair,
                  unsigned char value) {
-  for (int side = 0; side < 2 && pair->tets[side] >= 0; side++)
+  for (int side = 0; side < 2 && pair->cells[side] >= 0; side++)
     for (int v = 0; v < 4; v++)
-      onset->is_marked[contact_layout_vertices(layout, pair->tets[side])[v]] = value;
+      onset->is_marked[contact_layout_vertices(layout, pair->cells[side])[v]] = value;
 }
 
 static bool is_near_patch(const ContactOnset *onset, const ContactLayout *layout, int tet) {
@@ -79,14 +80,14 @@ static bool is_near_patch(const ContactOnset *onset, const ContactLayout *layout
   return onset->is_marked[v[0]] || onset->is_marked[v[1]] || onset->is_marked[v[2]] || onset->is_marked[v[3]];
 }
 
-// Rule 2 for the candidates begin … end of one facing.
-static void watch_facing(ContactOnset *onset, const ContactLayout *layout, const ContactPair *pairs,
-                         int begin, int end) {
+// Rule 2 for the candidates begin … end of one interface.
+static void watch_interface(ContactOnset *onset, const ContactLayout *layout, const ContactPair *pairs,
+                            int begin, int end) {
   for (int k = begin; k < end; k++)
     if (onset->is_engaged[k]) mark(onset, layout, &pairs[k], 1);
   for (int k = begin; k < end; k++) {
     bool widens =
-        is_near_patch(onset, layout, pairs[k].tets[0]) && is_near_patch(onset, layout, pairs[k].tets[1]);
+        is_near_patch(onset, layout, pairs[k].cells[0]) && is_near_patch(onset, layout, pairs[k].cells[1]);
     if (!onset->is_engaged[k] && !widens) onset->watched[onset->count++] = pairs[k];
   }
   for (int k = begin; k < end; k++)
@@ -103,8 +104,8 @@ Status contact_onset_choose(ContactOnset *onset, const ContactLayout *layout,
   onset->count = 0;
   mark_known(onset, candidates, known, known_count);
   find_engaged(onset, layout, candidates, time, positions);
-  for (int f = 0; f < layout->facing_count; f++)
-    watch_facing(onset, layout, candidates->pairs, candidates->begin[f], candidates->begin[f + 1]);
+  for (int f = 0; f < layout->interface_count; f++)
+    watch_interface(onset, layout, candidates->pairs, candidates->begin[f], candidates->begin[f + 1]);
   return STATUS_OK;
 }
 

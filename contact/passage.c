@@ -32,9 +32,9 @@ static double depth_of_shape(const ContactShape *shape) {
 }
 
 // The most that a point of the cell can be deep [m].
-static double depth_of_cell(const ContactDepth *depth, int cell) {
+static double depth_of_cell(const ContactMesh *mesh, int cell) {
   double most = 0;
-  for (int v = 0; v < 4; v++) most = fmax(most, depth->depths[depth->cells[cell][v]]);
+  for (int v = 0; v < 4; v++) most = fmax(most, mesh->depths[mesh->cells[cell][v]]);
   return most;
 }
 
@@ -43,9 +43,9 @@ static void add_field(const ContactLayout *layout, const ContactEvaluation *eval
                       ContactPassageMeeting *meeting) {
   const ContactFieldPair *field = &evaluation->fields[k];
   const ContactPair *pair = &evaluation->pairs[k];
-  int other = pair->tets[1 - side];
-  double most = other < 0 ? depth_of_shape(&layout->def.shapes[layout->facings[pair->facing].shape])
-                          : depth_of_cell(&layout->depth, other);
+  int other = pair->cells[1 - side];
+  double most = other < 0 ? depth_of_shape(&layout->def.shapes[layout->interfaces[pair->interface].shape])
+                          : depth_of_cell(&layout->mesh, other);
   Vec3 slope = vec3_at(field->slopes[1 - side]);
   vec3_accumulate(meeting->slope, vec3_scale(field->weighed[side], slope));
   meeting->size += field->weighed[side] * vec3_length(slope);
@@ -55,7 +55,7 @@ static void add_field(const ContactLayout *layout, const ContactEvaluation *eval
 static void add_gradient(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, int side,
                          ContactPassageMeeting *meeting) {
   const double *gradient = evaluation->gradients + 24 * (size_t)k + 12 * side;
-  int other = evaluation->pairs[k].tets[1 - side];
+  int other = evaluation->pairs[k].cells[1 - side];
   for (int v = 0; v < 4; v++) vec3_accumulate(meeting->slope, vec3_at(gradient + 3 * v));
   meeting->covered += evaluation->volumes[k];
   meeting->other += other < 0 ? INFINITY : layout->cell_volumes[other];
@@ -64,7 +64,7 @@ static void add_gradient(const ContactLayout *layout, const ContactEvaluation *e
 static void find_meetings(ContactPassage *passage, const ContactLayout *layout,
                           const ContactEvaluation *evaluation) {
   const ContactPatches *patches = &evaluation->patches;
-  bool has_field = layout->depth.has_field;
+  bool has_field = layout->mesh.has_field;
   for (int e = 0; e < patches->element_count; e++) passage->meetings[e] = (ContactPassageMeeting){0};
   for (int k = 0; k < evaluation->pair_count; k++)
     for (int side = 0; side < 2; side++) {
@@ -81,7 +81,7 @@ static void find_meetings(ContactPassage *passage, const ContactLayout *layout,
 
 static int compare_entries(const void *first, const void *second) {
   const ContactPassageEntry *a = first, *b = second;
-  if (a->facing != b->facing) return a->facing < b->facing ? -1 : 1;
+  if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
   return (a->tet > b->tet) - (a->tet < b->tet);
 }
 
@@ -115,8 +115,9 @@ static void list_elements(ContactPassage *passage, const ContactPatches *patches
       const ContactPassageMeeting *meeting = &passage->meetings[e];
       Vec3 h = meeting->size > 0 ? vec3_scale(1 / meeting->size, vec3_at(meeting->slope)) : (Vec3){0, 0, 0};
       ContactPassageEntry *entry = &next->entries[next->count++];
-      *entry = (ContactPassageEntry){
-          .facing = patches->patches[p].facing, .tet = patches->elements[e].tet, .reach = meeting->reach};
+      *entry = (ContactPassageEntry){.interface = patches->patches[p].interface,
+                                     .tet = patches->elements[e].tet,
+                                     .reach = meeting->reach};
       vec3_store(entry->direction, h);
     }
   sort(next);
@@ -131,11 +132,11 @@ static void leave(ContactPassage *passage, const ContactPassageEntry *entry) {
 static void match(ContactPassage *passage, const ContactSystem *system) {
   ContactPassageList *now = &passage->now, *next = &passage->next;
   int listed = next->count, i = 0;
-  double turned = contact_system_layout(system)->depth.has_field ? TURNED : TURNED_WITHOUT_DEPTH;
+  double turned = contact_system_layout(system)->mesh.has_field ? TURNED : TURNED_WITHOUT_DEPTH;
   for (int k = 0; k < listed; k++) {
     ContactPassageEntry *entry = &next->entries[k], meeting = *entry;
     for (; i < now->count && compare_entries(&now->entries[i], entry) < 0; i++) {
-      if (contact_system_is_resting(system, now->entries[i].facing))
+      if (contact_system_is_resting(system, now->entries[i].interface))
         next->entries[next->count++] = now->entries[i];
       else
         leave(passage, &now->entries[i]);
@@ -145,7 +146,7 @@ static void match(ContactPassage *passage, const ContactSystem *system) {
     meet(entry, vec3_at(meeting.direction), meeting.reach, turned);
   }
   for (; i < now->count; i++) {
-    if (contact_system_is_resting(system, now->entries[i].facing))
+    if (contact_system_is_resting(system, now->entries[i].interface))
       next->entries[next->count++] = now->entries[i];
     else
       leave(passage, &now->entries[i]);
@@ -187,7 +188,7 @@ int contact_passage_turned(const ContactPassage *passage, ContactPassageEntry *f
 void contact_passage_save(const ContactPassage *passage, double *values) {
   for (int i = 0; i < passage->now.count; i++, values += CONTACT_PASSAGE_KEPT) {
     const ContactPassageEntry *entry = &passage->now.entries[i];
-    values[0] = entry->facing, values[1] = entry->tet, values[2] = entry->is_turned;
+    values[0] = entry->interface, values[1] = entry->tet, values[2] = entry->is_turned;
     memcpy(values + 3, entry->direction, sizeof entry->direction);
   }
 }
@@ -196,8 +197,8 @@ Status contact_passage_load(ContactPassage *passage, int count, const double *va
   TRY(reserve(&passage->now, (size_t)count));
   passage->now.count = count;
   for (int i = 0; i < count; i++, values += CONTACT_PASSAGE_KEPT) {
-    passage->now.entries[i] =
-        (ContactPassageEntry){.facing = (int)values[0], .tet = (int)values[1], .is_turned = values[2] != 0};
+    passage->now.entries[i] = (ContactPassageEntry){
+        .interface = (int)values[0], .tet = (int)values[1], .is_turned = values[2] != 0};
     memcpy(passage->now.entries[i].direction, values + 3, 3 * sizeof *values);
   }
   return STATUS_OK;

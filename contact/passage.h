@@ -26,14 +26,14 @@
 
 // An element in another's body.
 typedef struct ContactPassageEntry {
-  int facing, tet;
+  int interface, tet;
   bool is_turned;
   double direction[3]; // in which it came in; 0: not known yet
   double reach;        // scratch: as in ContactPassageMeeting, now
 } ContactPassageEntry;
 
 typedef struct ContactPassageList {
-  ContactPassageEntry *entries; // by facing, then tet                     (count)
+  ContactPassageEntry *entries; // by interface, then tet                     (count)
   int count;
   size_t capacity;
 } ContactPassageList;

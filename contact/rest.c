@@ -6,13 +6,13 @@
 #include "base/memory.h"
 
 Status contact_rest_create(ContactRest *rest, const ContactLayout *layout) {
-  size_t facings = (size_t)layout->facing_count;
+  size_t interfaces = (size_t)layout->interface_count;
   *rest = (ContactRest){0};
-  rest->is_resting = memory_zeroed(facings, sizeof *rest->is_resting);
-  rest->is_near = memory_zeroed(facings, sizeof *rest->is_near);
+  rest->is_resting = memory_zeroed(interfaces, sizeof *rest->is_resting);
+  rest->is_near = memory_zeroed(interfaces, sizeof *rest->is_near);
   rest->forces = memory_zeroed(3 * (size_t)layout->def.vertex_count, sizeof(double));
   rest->covered = memory_zeroed((size_t)layout->def.tet_count, sizeof(double));
-  rest->interfaces = memory_zeroed(facings, sizeof *rest->interfaces);
+  rest->interfaces = memory_zeroed(interfaces, sizeof *rest->interfaces);
   bool fits = rest->is_resting && rest->is_near && rest->forces && rest->covered && rest->interfaces;
   return fits ? STATUS_OK : status_no_memory("contact at rest");
 }
@@ -27,8 +27,8 @@ void contact_rest_destroy(ContactRest *rest) {
 }
 
 void contact_rest_clear(ContactRest *rest, const ContactLayout *layout) {
-  memset(rest->is_resting, 0, (size_t)layout->facing_count * sizeof *rest->is_resting);
-  memset(rest->is_near, 0, (size_t)layout->facing_count * sizeof *rest->is_near);
+  memset(rest->is_resting, 0, (size_t)layout->interface_count * sizeof *rest->is_resting);
+  memset(rest->is_near, 0, (size_t)layout->interface_count * sizeof *rest->is_near);
   memset(rest->forces, 0, 3 * (size_t)layout->def.vertex_count * sizeof(double));
   memset(rest->covered, 0, (size_t)layout->def.tet_count * sizeof(double));
   rest->resting_count = 0;
@@ -50,10 +50,10 @@ void contact_rest_keep(ContactRest *rest, const ContactLayout *layout, const Con
                        const ContactPatches *patches, const ContactInterface *interfaces,
                        const bool *is_held) {
   contact_rest_clear(rest, layout);
-  for (int f = 0; f < layout->facing_count; f++) {
-    const ContactFacing *facing = &layout->facings[f];
+  for (int f = 0; f < layout->interface_count; f++) {
+    const ContactInterfaceDef *interface = &layout->interfaces[f];
     int pairs = candidates->begin[f + 1] - candidates->begin[f];
-    rest->is_resting[f] = is_held[facing->a] && is_held[facing->b];
+    rest->is_resting[f] = is_held[interface->a] && is_held[interface->b];
     if (!rest->is_resting[f]) continue;
     rest->resting_count++;
     rest->is_near[f] = pairs > 0;
@@ -61,5 +61,5 @@ void contact_rest_keep(ContactRest *rest, const ContactLayout *layout, const Con
     rest->interfaces[f] = interfaces[f];
   }
   for (int p = 0; p < patches->patch_count; p++)
-    if (rest->is_resting[patches->patches[p].facing]) keep_patch(rest, patches, &patches->patches[p]);
+    if (rest->is_resting[patches->patches[p].interface]) keep_patch(rest, patches, &patches->patches[p]);
 }

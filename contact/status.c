@@ -28,7 +28,7 @@ Status contact_status_create(ContactStatus *status, const ContactLayout *layout)
   status->volumes = memory_zeroed(PORTION, sizeof *status->volumes);
   status->places = memory_zeroed(PORTION, sizeof *status->places);
   for (int k = 0; k < 2; k++) status->says[k] = memory_zeroed(PORTION, 1);
-  status->boxes = memory_zeroed((size_t)layout->depth.cell_count, sizeof *status->boxes);
+  status->boxes = memory_zeroed((size_t)layout->mesh.cell_count, sizeof *status->boxes);
   if (status->predicted && status->exact && status->error && status->wrong_pairs && status->portion &&
       status->coordinates && status->asked && status->volumes && status->places && status->says[0] &&
       status->says[1] && status->boxes)
@@ -93,7 +93,7 @@ static void compare_verdicts(ContactStatus *status, const ContactLayout *layout,
     pairs->false_positives += predicted && !exact;
     pairs->false_negatives += exact && !predicted;
     for (int side = 0; side < 2; side++) {
-      int tet = contact_layout_origin(layout, status->portion[k].tets[side]);
+      int tet = contact_layout_origin(layout, status->portion[k].cells[side]);
       status->predicted[tet] |= predicted;
       status->exact[tet] |= exact;
       status->wrong_pairs[tet] += predicted != exact;
@@ -143,8 +143,9 @@ Status contact_status_run(ContactStatus *status, const ContactLayout *layout,
   contact_candidates_bound(candidates, layout, positions, status->boxes);
   for (int k = 0; k < candidates->count; k++) {
     const ContactPair *pair = &candidates->pairs[k];
-    if (pair->tets[1] < 0) continue;
-    if (contact_bounds_distance(status->boxes[pair->tets[0]], status->boxes[pair->tets[1]]) > apart) continue;
+    if (pair->cells[1] < 0) continue;
+    if (contact_bounds_distance(status->boxes[pair->cells[0]], status->boxes[pair->cells[1]]) > apart)
+      continue;
     status->portion[count] = *pair;
     contact_layout_gather_pair(layout, pair, positions,
                                status->coordinates + OVERLAP_PAIR_SIZE * (size_t)count);

@@ -18,7 +18,6 @@
 #include "contact/shape/shape.h"
 #include "contact/status.h"
 #include "contact/surface/stars.h"
-#include "overlap/clip/clip.h"
 
 struct ContactSystem {
   ContactStars stars; // what all below works on
@@ -55,8 +54,8 @@ static void measure_given(const ContactSystemDef *def, double *volumes) {
 // Room for what stands between the contact mesh and the definition as it was given.
 static Status reserve(ContactSystem *system, const ContactSystemDef *def) {
   size_t vector = 3 * sizeof(double);
-  if (system->layout.depth.position_count > def->vertex_count) {
-    system->positions = memory_zeroed((size_t)system->layout.depth.position_count, vector);
+  if (system->layout.mesh.position_count > def->vertex_count) {
+    system->positions = memory_zeroed((size_t)system->layout.mesh.position_count, vector);
     if (!system->positions) return status_no_memory("a contact system");
   }
   if (!system->stars.is_needed) return STATUS_OK;
@@ -124,7 +123,7 @@ static const double *place(ContactSystem *system, const double *positions) {
     contact_stars_place(&system->stars, positions, system->positions);
   else
     memcpy(system->positions, positions, 3 * (size_t)system->layout.def.vertex_count * sizeof(double));
-  contact_depth_place(&system->layout.depth, &system->layout.def, system->positions);
+  contact_mesh_place(&system->layout.mesh, &system->layout.def, system->positions);
   return system->positions;
 }
 
@@ -163,7 +162,7 @@ static void fold_result(ContactSystem *system) {
 }
 
 bool contact_system_has_onset(const ContactSystem *system) {
-  return !system->layout.depth.has_field;
+  return !system->layout.mesh.has_field;
 }
 
 // What the last evaluation found to overlap need not be separated once more.
@@ -176,10 +175,9 @@ static Status choose_watched(ContactSystem *system, double time, const double *p
                               knows ? evaluation->pair_count : 0, time, positions);
 }
 
-// Other models evaluate every pair that no face certainly separates, since they may give an overlap where
-// there is none.
+// Whether pairs that are known to stay apart need not be asked for.
 static bool evaluates_near(const ContactSystem *system) {
-  return system->layout.def.model->ops == &overlap_clip_ops;
+  return system->layout.def.model->ops->is_zero_apart;
 }
 
 static Status update(ContactSystem *system, double time, const double *positions, const double *velocities,
@@ -267,7 +265,7 @@ static bool reserve_traces(ContactTrace **traces, int count) {
 // Of what is put to rest by an evaluation.
 static Status keep_traces(ContactSystem *system) {
   const ContactLayout *layout = &system->layout;
-  if (!layout->depth.has_field) return STATUS_OK;
+  if (!layout->mesh.has_field) return STATUS_OK;
   if (!reserve_traces(&system->resting_traces, layout->def.vertex_count))
     return status_no_memory("contact at rest");
   memset(system->resting_traces, 0, (size_t)layout->def.vertex_count * sizeof(ContactTrace));
@@ -280,7 +278,7 @@ Status contact_system_trace(ContactSystem *system, double *pressures, double *de
   size_t count = (size_t)layout->def.vertex_count, given = (size_t)system->stars.given_vertex_count;
   memset(pressures, 0, given * sizeof *pressures);
   memset(depths, 0, given * sizeof *depths);
-  if (!layout->depth.has_field) return STATUS_OK;
+  if (!layout->mesh.has_field) return STATUS_OK;
   if (!reserve_traces(&system->traces, layout->def.vertex_count) ||
       !reserve_traces(&system->given_traces, system->stars.given_vertex_count))
     return status_no_memory("pressures at the surface");
@@ -383,7 +381,7 @@ Status contact_system_gap(ContactSystem *system, double time, const double *posi
 }
 
 const ContactInterface *contact_system_interfaces(const ContactSystem *system, int *interface_count) {
-  *interface_count = system->layout.facing_count;
+  *interface_count = system->layout.interface_count;
   return system->evaluation.interfaces;
 }
 
@@ -412,7 +410,8 @@ Status contact_system_active_pairs(const ContactSystem *system, int *pair_count,
   }
   for (size_t k = 0; k < active; k++)
     for (int side = 0; side < 2; side++)
-      (*tets)[2 * k + (size_t)side] = contact_layout_origin(&system->layout, evaluation->pairs[k].tets[side]);
+      (*tets)[2 * k + (size_t)side] =
+          contact_layout_origin(&system->layout, evaluation->pairs[k].cells[side]);
   return STATUS_OK;
 }
 
@@ -422,7 +421,7 @@ double contact_system_shape_power(const ContactSystem *system) {
   const ContactPatches *patches = &system->evaluation.patches;
   double power = 0;
   for (int p = 0; p < patches->patch_count; p++) {
-    int s = layout->facings[patches->patches[p].facing].shape;
+    int s = layout->interfaces[patches->patches[p].interface].shape;
     if (s < 0) continue;
     for (int n = patches->patches[p].node_begin; n < patches->patches[p].node_end; n++) {
       const ContactNode *node = &patches->nodes[n];
@@ -489,8 +488,8 @@ Status contact_system_near_pairs(ContactSystem *system, int *count, const double
 }
 
 bool contact_system_asks_model(const ContactSystem *system) {
-  for (int f = 0; f < system->layout.facing_count; f++)
-    if (system->layout.facings[f].shape < 0) return true;
+  for (int f = 0; f < system->layout.interface_count; f++)
+    if (system->layout.interfaces[f].shape < 0) return true;
   return false;
 }
 

@@ -88,6 +88,8 @@ typedef struct OverlapOps {
   bool lacks_scale;
   // The shipped weights that it takes, where they go by another name than its own; NULL: no others.
   const char *weights;
+  // V is exactly 0 of every pair that is apart: such a pair need not be asked for.
+  bool is_zero_apart;
 } OverlapOps;
 
 // A capability that a model has however it was made.

@@ -86,7 +86,7 @@ static void inspect(const Slabs *slabs, int body) {
   double pressure = (sum + inner) / count / (edge * edge), *extra = slabs->run->extra;
   keep_worst(&extra[UNEVEN + body], sqrt(variance) / mean);
   keep_worst(&extra[TANGENTIAL + body], tangential / (sum + inner));
-  double stiffness = contact_system_layout(slabs->contact)->facings[0].stiffness;
+  double stiffness = contact_system_layout(slabs->contact)->interfaces[0].stiffness;
   if (body == 0) keep_worst(&extra[PRESSURE_ERROR], fabs(pressure / (2 * stiffness * slabs->depth) - 1));
 }
 

@@ -17,16 +17,16 @@ static const double SLIVER = 1e-4;
 
 static double volume_of(const ContactLayout *layout, int body) {
   double sum = 0;
-  for (int c = layout->depth.cell_begin[body]; c < layout->depth.cell_begin[body + 1]; c++)
+  for (int c = layout->mesh.cell_begin[body]; c < layout->mesh.cell_begin[body + 1]; c++)
     sum += layout->cell_volumes[c];
   return sum;
 }
 
 // Whether side 0 is the better slave of two bodies.
-static bool is_first_slave(const ContactLayout *layout, const ContactFacing *facing) {
-  const ContactBody *a = &layout->def.bodies[facing->a], *b = &layout->def.bodies[facing->b];
+static bool is_first_slave(const ContactLayout *layout, const ContactInterfaceDef *interface) {
+  const ContactBody *a = &layout->def.bodies[interface->a], *b = &layout->def.bodies[interface->b];
   if (a->is_obstacle != b->is_obstacle) return b->is_obstacle;
-  double volumes[2] = {volume_of(layout, facing->a), volume_of(layout, facing->b)};
+  double volumes[2] = {volume_of(layout, interface->a), volume_of(layout, interface->b)};
   if (fabs(volumes[0] - volumes[1]) > 1e-6 * volumes[0]) return volumes[0] < volumes[1];
   return a->vertex_end - a->vertex_begin >= b->vertex_end - b->vertex_begin;
 }
@@ -34,11 +34,11 @@ static bool is_first_slave(const ContactLayout *layout, const ContactFacing *fac
 void contact_stick_pairs_laws(const ContactSystem *system, const double *coefficients,
                               ContactStickLaw *laws) {
   const ContactLayout *layout = contact_system_layout(system);
-  for (int i = 0; i < layout->facing_count; i++) {
-    const ContactFacing *facing = &layout->facings[i];
-    laws[i] = (ContactStickLaw){.friction = coefficients[i], .stiffness = facing->stiffness};
-    double first = facing->shape >= 0 || is_first_slave(layout, facing);
-    if (facing->shape < 0 && facing->a == facing->b) first = 0.5;
+  for (int i = 0; i < layout->interface_count; i++) {
+    const ContactInterfaceDef *interface = &layout->interfaces[i];
+    laws[i] = (ContactStickLaw){.friction = coefficients[i], .stiffness = interface->stiffness};
+    double first = interface->shape >= 0 || is_first_slave(layout, interface);
+    if (interface->shape < 0 && interface->a == interface->b) first = 0.5;
     laws[i].weight[0] = first;
     laws[i].weight[1] = 1 - first;
   }
@@ -70,17 +70,17 @@ static void hand_over(const ContactLayout *layout, const ContactEvaluation *eval
                       ContactStickPair *pair) {
   const ContactPair *cells = &evaluation->pairs[k];
   const ContactFieldPair *field = &evaluation->fields[k];
-  int shape = layout->facings[cells->facing].shape;
-  *pair = (ContactStickPair){.interface = cells->facing, .area = contact_field_area(field)};
+  int shape = layout->interfaces[cells->interface].shape;
+  *pair = (ContactStickPair){.interface = cells->interface, .area = contact_field_area(field)};
   for (int side = 0; side < 2; side++) {
-    pair->tets[side] = cells->tets[side] < 0 ? -1 : contact_depth_tet(&layout->depth, cells->tets[side]);
+    pair->tets[side] = cells->cells[side] < 0 ? -1 : contact_mesh_tet(&layout->mesh, cells->cells[side]);
     memcpy(pair->lambda[side], field->weights[side], sizeof pair->lambda[side]);
   }
   memcpy(pair->force, field->force, sizeof pair->force);
   if (shape < 0) return;
   double tet[12];
   const ContactShape *obstacle = &layout->def.shapes[shape];
-  contact_layout_gather_whole(layout, cells->tets[0], evaluation->positions, tet);
+  contact_layout_gather_whole(layout, cells->cells[0], evaluation->positions, tet);
   memcpy(pair->before, field->centroid, sizeof pair->before);
   if (obstacle->kind == CONTACT_SHAPE_BALL) meet_ball(obstacle, evaluation->time, tet, field, pair);
   vec3_store(pair->before,
@@ -94,7 +94,7 @@ Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, cons
   TRY(contact_system_look(system, &evaluation));
   int count = evaluation->pair_count;
   TRY(contact_stick_reserve(stick, count));
-  for (int i = 0; i < layout->facing_count; i++) is_resting[i] = contact_system_is_resting(system, i);
+  for (int i = 0; i < layout->interface_count; i++) is_resting[i] = contact_system_is_resting(system, i);
   for (int k = 0; k < count; k++) hand_over(layout, evaluation, k, last_time, &stick->pairs[k]);
   return contact_stick_eval(stick, last, count, evaluation->positions, is_resting);
 }
@@ -105,7 +105,7 @@ double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem 
   double power = 0;
   if (contact_system_look(system, &evaluation)) return NAN;
   for (int k = 0; k < stick->pair_count; k++) {
-    int shape = layout->facings[stick->pairs[k].interface].shape;
+    int shape = layout->interfaces[stick->pairs[k].interface].shape;
     if (shape < 0) continue;
     Vec3 x = vec3_at(evaluation->fields[k].centroid);
     Vec3 velocity = contact_shape_velocity(&layout->def.shapes[shape], evaluation->time, x);
@@ -139,7 +139,7 @@ static Vec3 velocity_at(const ContactStick *stick, const ContactStickPair *pair,
 static double power_of(const ContactStick *stick, const ContactLayout *layout,
                        const ContactEvaluation *evaluation, int k, const double *velocities) {
   const ContactStickPair *pair = &stick->pairs[k];
-  int shape = layout->facings[pair->interface].shape;
+  int shape = layout->interfaces[pair->interface].shape;
   Vec3 x = vec3_at(evaluation->fields[k].centroid);
   Vec3 other = shape >= 0 ? contact_shape_velocity(&layout->def.shapes[shape], evaluation->time, x)
                           : velocity_at(stick, pair, 1, velocities);

@@ -36,10 +36,10 @@ typedef struct View {
 static double rate_of_pair(const View *view, int k) {
   double rate = 0;
   const ContactPair *pair = &view->evaluation->pairs[k];
-  int s = view->layout->facings[pair->facing].shape;
-  for (int side = 0; side < 2 && pair->tets[side] >= 0; side++)
+  int s = view->layout->interfaces[pair->interface].shape;
+  for (int side = 0; side < 2 && pair->cells[side] >= 0; side++)
     for (int v = 0; v < 4; v++) {
-      size_t vertex = (size_t)contact_layout_vertices(view->layout, pair->tets[side])[v];
+      size_t vertex = (size_t)contact_layout_vertices(view->layout, pair->cells[side])[v];
       Vec3 velocity = vec3_at(view->velocities + 3 * vertex);
       if (s >= 0)
         velocity =
@@ -73,7 +73,7 @@ static Status measure(ContactViscosity *viscosity, const double *velocities, Vie
 static double resistance(const ContactViscosity *viscosity, const View *view, const ContactPatch *patch,
                          const ContactNode *node) {
   double volume = view->layout->vertex_volumes[node->vertex];
-  double weight = view->layout->facings[patch->facing].weight[node->side];
+  double weight = view->layout->interfaces[patch->interface].weight[node->side];
   return weight * viscosity->viscosity * node->covered / (volume * volume);
 }
 
@@ -100,7 +100,7 @@ static double pressure_of_pair(const ContactViscosity *viscosity, const View *vi
 
 // One of a pair's two terms: points of one side in the field of the other.
 typedef struct Term {
-  int facing;
+  int interface;
   int count;                // of vertices: 8, with a shape 4
   int free_begin, free_end; // of those on sides that carry unknowns
   int vertices[8];
@@ -114,19 +114,19 @@ typedef struct Term {
 static bool term_of(const ContactViscosity *viscosity, const View *view, int k, int t, Term *term) {
   const ContactFieldPair *field = &view->evaluation->fields[k];
   const ContactPair *pair = &view->evaluation->pairs[k];
-  int s = view->layout->facings[pair->facing].shape;
+  int s = view->layout->interfaces[pair->interface].shape;
   if (s >= 0 && t == 1) return false;
   double sign = t == 0 ? 1 : -1; // the points of A go deeper by g_B · w, those of B by −g_A · w
   Vec3 g = vec3_at(field->slopes[1 - t]);
-  const double *weight_of = view->layout->facings[pair->facing].weight;
-  *term = (Term){.facing = pair->facing,
+  const double *weight_of = view->layout->interfaces[pair->interface].weight;
+  *term = (Term){.interface = pair->interface,
                  .count = s >= 0 ? 4 : 8,
                  .free_begin = weight_of[0] > 0 ? 0 : 4,
                  .free_end = weight_of[1] > 0 ? 8 : 4,
                  .resistance = viscosity->viscosity * field->weighed[t]};
   for (int v = 0; v < term->count; v++) {
     int side = v / 4;
-    term->vertices[v] = contact_layout_vertices(view->layout, pair->tets[side])[v % 4];
+    term->vertices[v] = contact_layout_vertices(view->layout, pair->cells[side])[v % 4];
     double weight = (side == 0 ? sign : -sign) * field->weights[side][v % 4];
     vec3_store(term->along + 3 * v, vec3_scale(weight, g));
     term->rate +=
@@ -168,7 +168,7 @@ static void push_term(void *self, const Term *term) {
 static void sum_term(void *self, const Term *term) {
   double(*resultants)[3] = self;
   for (int v = 0; v < 4; v++)
-    vec3_accumulate(resultants[term->facing],
+    vec3_accumulate(resultants[term->interface],
                     vec3_scale(-term->resistance * term->rate, vec3_at(term->along + 3 * v)));
 }
 
@@ -190,7 +190,7 @@ static void measure_term(void *self, const Term *term) {
 }
 
 static bool has_field(const ContactViscosity *viscosity) {
-  return contact_system_layout(viscosity->system)->depth.has_field;
+  return contact_system_layout(viscosity->system)->mesh.has_field;
 }
 
 // ---- What both potentials answer.
@@ -205,9 +205,9 @@ Status contact_viscosity_add_force(ContactViscosity *viscosity, const double *ve
   for (int k = 0; k < view.evaluation->pair_count; k++) {
     double pressure = pressure_of_pair(viscosity, &view, k);
     const ContactPair *pair = &view.evaluation->pairs[k];
-    for (int side = 0; side < 2 && pair->tets[side] >= 0; side++)
+    for (int side = 0; side < 2 && pair->cells[side] >= 0; side++)
       for (int v = 0; v < 4; v++)
-        vec3_accumulate(force + 3 * (size_t)contact_layout_vertices(view.layout, pair->tets[side])[v],
+        vec3_accumulate(force + 3 * (size_t)contact_layout_vertices(view.layout, pair->cells[side])[v],
                         vec3_scale(-pressure, vec3_at(view.evaluation->gradients + 24 * (size_t)k +
                                                       (size_t)(12 * side + 3 * v))));
   }
@@ -223,7 +223,7 @@ Status contact_viscosity_add_resultants(ContactViscosity *viscosity, const doubl
   for (int k = 0; k < view.evaluation->pair_count; k++) {
     double pressure = pressure_of_pair(viscosity, &view, k);
     for (int v = 0; v < 4; v++)
-      vec3_accumulate(resultants[view.evaluation->pairs[k].facing],
+      vec3_accumulate(resultants[view.evaluation->pairs[k].interface],
                       vec3_scale(-pressure, vec3_at(view.evaluation->gradients + 24 * (size_t)k + 3 * v)));
   }
   return STATUS_OK;
@@ -265,10 +265,10 @@ Status contact_viscosity_power(ContactViscosity *viscosity, const double *veloci
   for (int k = view.evaluation->mesh_pair_count; k < view.evaluation->pair_count; k++) {
     double pressure = pressure_of_pair(viscosity, &view, k);
     const ContactPair *pair = &view.evaluation->pairs[k];
-    const ContactShape *shape = &view.layout->def.shapes[view.layout->facings[pair->facing].shape];
+    const ContactShape *shape = &view.layout->def.shapes[view.layout->interfaces[pair->interface].shape];
     for (int v = 0; v < 4; v++) {
       Vec3 x = vec3_at(view.evaluation->positions +
-                       3 * (size_t)contact_layout_vertices(view.layout, pair->tets[0])[v]);
+                       3 * (size_t)contact_layout_vertices(view.layout, pair->cells[0])[v]);
       power->driven -=
           pressure * vec3_dot(vec3_at(view.evaluation->gradients + 24 * (size_t)k + 3 * (size_t)v),
                               contact_shape_velocity(shape, view.evaluation->time, x));

@@ -30,7 +30,7 @@ static Side side_of(const ContactLayout *layout, int cell, const double coordina
   side.slope[0] = vec3_scale(-1, vec3_add(side.slope[1], vec3_add(side.slope[2], side.slope[3])));
   side.g = (Vec3){0, 0, 0};
   for (int v = 0; v < 4; v++) {
-    side.depths[v] = layout->depth.depths[layout->depth.cells[cell][v]];
+    side.depths[v] = layout->mesh.depths[layout->mesh.cells[cell][v]];
     side.g = vec3_add(side.g, vec3_scale(side.depths[v], side.slope[v]));
   }
   side.s = 6 * layout->cell_volumes[cell] * fabs(inverse);
@@ -51,13 +51,13 @@ void contact_field_press(const ContactLayout *layout, const ContactPair *pair, c
   *field = (ContactFieldPair){.volume = volume, .centroid = {centroid[0], centroid[1], centroid[2]}};
   for (int t = 0; t < 2; t++) {
     double *weights = field->weights[t];
-    sides[t] = side_of(layout, pair->tets[t], coordinates + 12 * t);
+    sides[t] = side_of(layout, pair->cells[t], coordinates + 12 * t);
     locate(&sides[t], vec3_at(centroid), weights);
     for (int v = 0; v < 4; v++) field->depths[t] += weights[v] * sides[t].depths[v];
-    contact_depth_fold(&layout->depth, &layout->def, pair->tets[t], weights);
+    contact_mesh_fold(&layout->mesh, &layout->def, pair->cells[t], weights);
     vec3_store(field->slopes[t], sides[t].g);
   }
-  double stiffness = layout->facings[pair->facing].stiffness;
+  double stiffness = layout->interfaces[pair->interface].stiffness;
   for (int t = 0; t < 2; t++) field->weighed[t] = sides[t].s * volume;
   field->energy = stiffness * (field->weighed[0] * field->depths[1] + field->weighed[1] * field->depths[0]);
   Vec3 force = vec3_scale(-stiffness, vec3_sub(vec3_scale(field->weighed[0], sides[1].g),
@@ -91,8 +91,8 @@ static const double *folded(Bend *bend, int vertex) {
   if (!bend->is_folded[vertex]) {
     memcpy(bend->lanes[vertex], bend->polytope.vertex[vertex], sizeof bend->lanes[vertex]);
     for (int t = 0; t < 2; t++)
-      contact_depth_fold(&bend->layout->depth, &bend->layout->def, bend->pair->tets[t],
-                         bend->lanes[vertex] + 4 * t);
+      contact_mesh_fold(&bend->layout->mesh, &bend->layout->def, bend->pair->cells[t],
+                        bend->lanes[vertex] + 4 * t);
     bend->is_folded[vertex] = true;
   }
   return bend->lanes[vertex];
@@ -165,7 +165,7 @@ static void add_volume(Bend *bend, Sums *sums) {
 }
 
 static bool is_outer(const ContactLayout *layout, const ContactPair *pair, int face) {
-  return layout->depth.outer[pair->tets[face / 4]] >> face % 4 & 1;
+  return layout->mesh.outer[pair->cells[face / 4]] >> face % 4 & 1;
 }
 
 // The main term on one face: c s ∫ (u·n)(−g·u), its symmetric part; on an outer face exactly |g| (u·n)².
@@ -212,7 +212,7 @@ static void unfold_slopes(const ContactLayout *layout, int cell, const Side *sid
   double rows[3][4];
   for (int v = 0; v < 4; v++)
     rows[0][v] = side->slope[v].x, rows[1][v] = side->slope[v].y, rows[2][v] = side->slope[v].z;
-  for (int c = 0; c < 3; c++) contact_depth_fold(&layout->depth, &layout->def, cell, rows[c]);
+  for (int c = 0; c < 3; c++) contact_mesh_fold(&layout->mesh, &layout->def, cell, rows[c]);
   for (int v = 0; v < 4; v++) slopes[v] = (Vec3){rows[0][v], rows[1][v], rows[2][v]};
 }
 
@@ -230,15 +230,15 @@ void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, co
   add_faces(&bend, wanted, &sums);
   if (is_full) add_volume(&bend, &sums);
   Side sides[2];
-  double stiffness = layout->facings[pair->facing].stiffness;
-  for (int t = 0; t < 2; t++) sides[t] = side_of(layout, pair->tets[t], coordinates + 12 * t);
+  double stiffness = layout->interfaces[pair->interface].stiffness;
+  for (int t = 0; t < 2; t++) sides[t] = side_of(layout, pair->cells[t], coordinates + 12 * t);
   for (int t = 0; t < 2; t++) {
     double factor = stiffness * sides[1 - t].s;
     for (int f = 4 * t; f < 4 * t + 4; f++)
       if (wanted >> f & 1 && sums.fraction[f] != 0) add_main(&bend, &sums, f, factor, &sides[t], matrix);
     if (!is_full) continue;
     Vec3 slopes[4];
-    unfold_slopes(layout, pair->tets[t], &sides[t], slopes);
+    unfold_slopes(layout, pair->cells[t], &sides[t], slopes);
     add_turning(&sums, t, factor, &sides[t], slopes, matrix);
   }
 }
@@ -247,16 +247,16 @@ void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, co
 
 void contact_field_press_shape(const ContactLayout *layout, const ContactPair *pair, double time,
                                const double tet[12], ContactFieldPair *field, double gradient[24]) {
-  const ContactFacing *facing = &layout->facings[pair->facing];
-  double rest = contact_layout_tet_volume(layout, pair->tets[0]);
+  const ContactInterfaceDef *interface = &layout->interfaces[pair->interface];
+  double rest = contact_layout_tet_volume(layout, pair->cells[0]);
   *field = (ContactFieldPair){0};
   memset(gradient, 0, 24 * sizeof *gradient);
-  contact_shape_press(&layout->def.shapes[facing->shape], time, tet, rest, &field->volume, &field->energy,
+  contact_shape_press(&layout->def.shapes[interface->shape], time, tet, rest, &field->volume, &field->energy,
                       gradient, NULL, true);
   if (!(field->volume > 0)) return;
-  field->energy *= facing->stiffness;
+  field->energy *= interface->stiffness;
   Vec3 force = {0, 0, 0};
-  for (int k = 0; k < 12; k++) gradient[k] *= facing->stiffness;
+  for (int k = 0; k < 12; k++) gradient[k] *= interface->stiffness;
   for (int v = 0; v < 4; v++) force = vec3_sub(force, vec3_at(gradient + 3 * v));
   double square = vec3_dot(force, force);
   vec3_store(field->force, force);
@@ -267,16 +267,16 @@ void contact_field_press_shape(const ContactLayout *layout, const ContactPair *p
   }
   double present = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
   field->weighed[0] = field->volume * rest / present;
-  field->depths[1] = field->energy / (facing->stiffness * field->weighed[0]);
-  vec3_store(field->slopes[1], vec3_scale(-1 / (facing->stiffness * field->weighed[0]), force));
+  field->depths[1] = field->energy / (interface->stiffness * field->weighed[0]);
+  vec3_store(field->slopes[1], vec3_scale(-1 / (interface->stiffness * field->weighed[0]), force));
 }
 
 void contact_field_bend_shape(const ContactLayout *layout, const ContactPair *pair, double time,
                               const double tet[12], bool is_full, double matrix[144]) {
-  const ContactFacing *facing = &layout->facings[pair->facing];
+  const ContactInterfaceDef *interface = &layout->interfaces[pair->interface];
   double volume, energy, gradient[12];
-  contact_shape_press(&layout->def.shapes[facing->shape], time, tet,
-                      contact_layout_tet_volume(layout, pair->tets[0]), &volume, &energy, gradient, matrix,
+  contact_shape_press(&layout->def.shapes[interface->shape], time, tet,
+                      contact_layout_tet_volume(layout, pair->cells[0]), &volume, &energy, gradient, matrix,
                       is_full);
-  for (int e = 0; e < 144; e++) matrix[e] *= facing->stiffness;
+  for (int e = 0; e < 144; e++) matrix[e] *= interface->stiffness;
 }

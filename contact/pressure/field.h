@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The potential `field`: every material point of A that is inside B has the energy c φ_B per rest volume, φ_B
-// its depth in B (contact/surface/depth.h), and the other way round. It is buoyancy: each body floats in the
+// its depth in B (contact/surface/mesh.h), and the other way round. It is buoyancy: each body floats in the
 // other's field.
 //
 //   U = c ∫_{A at rest} φ_B(x(X)) dX + c ∫_{B at rest} φ_A(y(Y)) dY,   c [Pa/m]
@@ -35,7 +35,7 @@
 #include "base/vec3.h"
 #include "contact/search/layout.h"
 
-// A pair with V > 0, for laws that build on it. Side 0 is tets[0] of the pair. Of a shape (side 1) the slope
+// A pair with V > 0, for laws that build on it. Side 0 is cells[0] of the pair. Of a shape (side 1) the slope
 // is minus its outward normal, the depth that of the mean, both as the force sees them; φ_A and g_A are 0
 // there, and x̄ and the weights of side 0 are those of the force: what is left of a shape's force is its
 // resultant.

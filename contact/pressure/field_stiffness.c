@@ -14,7 +14,7 @@ enum { PORTION = 512, MOST = 32, STRIDE = 3 * MOST };
 
 Status contact_field_stiffness_create(ContactFieldStiffness *stiffness, const ContactLayout *layout) {
   *stiffness = (ContactFieldStiffness){0};
-  if (!layout->depth.has_field) return STATUS_OK;
+  if (!layout->mesh.has_field) return STATUS_OK;
   stiffness->matrices = memory_zeroed((size_t)PORTION * 576, sizeof(double));
   stiffness->vertices = memory_zeroed(MOST, sizeof(int));
   stiffness->place = memory_zeroed((size_t)layout->def.vertex_count, sizeof(int));
@@ -45,14 +45,14 @@ size_t contact_field_stiffness_bytes(const ContactFieldStiffness *stiffness) {
 
 static int compare(const void *left, const void *right) {
   const ContactFieldKey *a = left, *b = right;
-  if (a->facing != b->facing) return a->facing < b->facing ? -1 : 1;
+  if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
   for (int side = 0; side < 2; side++)
     if (a->elements[side] != b->elements[side]) return a->elements[side] < b->elements[side] ? -1 : 1;
   return (a->pair > b->pair) - (a->pair < b->pair);
 }
 
 static bool are_alike(const ContactFieldKey *a, const ContactFieldKey *b) {
-  return a->facing == b->facing && a->elements[0] == b->elements[0] && a->elements[1] == b->elements[1];
+  return a->interface == b->interface && a->elements[0] == b->elements[0] && a->elements[1] == b->elements[1];
 }
 
 static Status order_pairs(ContactFieldStiffness *stiffness, const ContactLayout *layout, int count,
@@ -61,8 +61,8 @@ static Status order_pairs(ContactFieldStiffness *stiffness, const ContactLayout 
                       sizeof *stiffness->order))
     return status_no_memory("contact stiffness");
   for (int k = 0; k < count; k++) {
-    const int *cells = pairs[k].tets;
-    stiffness->order[k] = (ContactFieldKey){pairs[k].facing,
+    const int *cells = pairs[k].cells;
+    stiffness->order[k] = (ContactFieldKey){pairs[k].interface,
                                             {contact_layout_origin(layout, cells[0]),
                                              cells[1] < 0 ? -1 : contact_layout_origin(layout, cells[1])},
                                             k};
@@ -78,9 +78,9 @@ Status contact_field_stiffness_thin(ContactFieldStiffness *stiffness, const Cont
   // pairs are told by their place: one of each kind is marked, then all others are dropped in their own order
   for (int k = 0; k < *count; k++)
     if (k > 0 && are_alike(&stiffness->order[k], &stiffness->order[k - 1]))
-      pairs[stiffness->order[k].pair].facing = -1;
+      pairs[stiffness->order[k].pair].interface = -1;
   for (int k = 0; k < *count; k++)
-    if (pairs[k].facing >= 0) pairs[kept++] = pairs[k];
+    if (pairs[k].interface >= 0) pairs[kept++] = pairs[k];
   *count = kept;
   return STATUS_OK;
 }
@@ -100,11 +100,11 @@ static int place_of(ContactFieldStiffness *stiffness, int vertex) {
 // The part of a pair's matrix, of `width` rows, that belongs to sides which carry unknowns.
 static void add_pair(ContactFieldStiffness *stiffness, const ContactLayout *layout, const ContactPair *pair,
                      const double *matrix) {
-  const double *weight = layout->facings[pair->facing].weight;
-  int places[8], count = pair->tets[1] < 0 ? 4 : 8, width = 3 * count;
+  const double *weight = layout->interfaces[pair->interface].weight;
+  int places[8], count = pair->cells[1] < 0 ? 4 : 8, width = 3 * count;
   for (int v = 0; v < count; v++)
     places[v] = weight[v / 4] > 0
-                    ? place_of(stiffness, contact_layout_vertices(layout, pair->tets[v / 4])[v % 4])
+                    ? place_of(stiffness, contact_layout_vertices(layout, pair->cells[v / 4])[v % 4])
                     : -1;
   for (int v = 0; v < count; v++)
     for (int w = 0; w < count; w++) {
@@ -134,7 +134,7 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
   const ContactPair *pair = &evaluation->pairs[k];
   double coordinates[OVERLAP_PAIR_SIZE];
   memcpy(coordinates, evaluation->coordinates + OVERLAP_PAIR_SIZE * (size_t)k, sizeof coordinates);
-  if (pair->tets[1] < 0) {
+  if (pair->cells[1] < 0) {
     contact_field_bend_shape(layout, pair, evaluation->time, coordinates, is_full, matrix);
     return;
   }

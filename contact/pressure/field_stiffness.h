@@ -9,7 +9,7 @@
 
 // A pair's place in the order in which elements stand together.
 typedef struct ContactFieldKey {
-  int facing;
+  int interface;
   int elements[2]; // [1] −1: a shape
   int pair;
 } ContactFieldKey;
@@ -37,7 +37,7 @@ size_t contact_field_stiffness_bytes(const ContactFieldStiffness *stiffness); //
 Status contact_field_stiffness_add(ContactFieldStiffness *stiffness, const ContactLayout *layout,
                                    const ContactEvaluation *evaluation, void *self, ContactFieldTake take);
 
-// Keeps of the pairs one for any two elements, in an order in which facings stand together; how many.
+// Keeps of the pairs one for any two elements, in an order in which interfaces stand together; how many.
 // STATUS_MEMORY possible.
 Status contact_field_stiffness_thin(ContactFieldStiffness *stiffness, const ContactLayout *layout, int *count,
                                     ContactPair *pairs);

@@ -31,10 +31,10 @@ void contact_patches_destroy(ContactPatches *patches) {
 }
 
 // Room for the most that these pairs can bring, so that adding cannot fail halfway.
-static Status reserve(ContactPatches *patches, int facing_count, int pair_count) {
+static Status reserve(ContactPatches *patches, int interface_count, int pair_count) {
   size_t pairs = (size_t)pair_count;
   bool fits =
-      memory_reserve((void **)&patches->patches, &patches->patch_capacity, (size_t)facing_count,
+      memory_reserve((void **)&patches->patches, &patches->patch_capacity, (size_t)interface_count,
                      sizeof(ContactPatch)) &&
       memory_reserve((void **)&patches->elements, &patches->element_capacity, 2 * pairs,
                      sizeof(ContactElement)) &&
@@ -55,7 +55,7 @@ static int node_at(ContactPatches *patches, int vertex, int side) {
 
 static int element_at(ContactPatches *patches, const ContactLayout *layout, int cell, int side) {
   if (cell < 0) return -1;
-  int tet = contact_depth_tet(&layout->depth, cell);
+  int tet = contact_mesh_tet(&layout->mesh, cell);
   int *element = &patches->element_of_tet[tet];
   if (*element < 0) {
     *element = patches->element_count++;
@@ -79,16 +79,16 @@ static void close_patch(ContactPatches *patches, ContactPatch *patch) {
 Status contact_patches_build(ContactPatches *patches, const ContactLayout *layout, int pair_count,
                              const ContactPair *pairs) {
   patches->patch_count = patches->element_count = patches->node_count = patches->pair_count = 0;
-  TRY(reserve(patches, layout->facing_count, pair_count));
+  TRY(reserve(patches, layout->interface_count, pair_count));
   for (int k = 0; k < pair_count;) {
     ContactPatch *patch = &patches->patches[patches->patch_count++];
-    *patch = (ContactPatch){.facing = pairs[k].facing,
+    *patch = (ContactPatch){.interface = pairs[k].interface,
                             .pair_begin = k,
                             .element_begin = patches->element_count,
                             .node_begin = patches->node_count};
-    for (; k < pair_count && pairs[k].facing == patch->facing; k++, patches->pair_count++)
+    for (; k < pair_count && pairs[k].interface == patch->interface; k++, patches->pair_count++)
       for (int side = 0; side < 2; side++)
-        patches->pair_elements[k][side] = element_at(patches, layout, pairs[k].tets[side], side);
+        patches->pair_elements[k][side] = element_at(patches, layout, pairs[k].cells[side], side);
     close_patch(patches, patch);
   }
   return STATUS_OK;

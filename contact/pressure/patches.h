@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The neighbourhoods of a list of pairs: per facing one patch with its elements (tetrahedra that take part)
-// and nodes (their vertices), numbered in order of first appearance, and who touches whom.
+// The neighbourhoods of a list of pairs: per interface one patch with its elements (tetrahedra that take
+// part) and nodes (their vertices), numbered in order of first appearance, and who touches whom.
 //
 //     pair ──► 2 elements ──► 4 nodes each          after contact_patches_index also
 //     node ──► elements   ──► pairs
@@ -13,7 +13,7 @@
 
 typedef struct ContactElement {
   int tet;
-  int side;       // of the facing: 0 or 1; of a body and itself: in the first of its pairs
+  int side;       // of the interface: 0 or 1; of a body and itself: in the first of its pairs
   int nodes[4];   // of its vertices
   double covered; // W_i [m³]; the user's
 } ContactElement;
@@ -25,9 +25,9 @@ typedef struct ContactNode {
   double force[3]; // [N]; the user's
 } ContactNode;
 
-// A facing that has pairs.
+// A interface that has pairs.
 typedef struct ContactPatch {
-  int facing;
+  int interface;
   int pair_begin, pair_end;
   int element_begin, element_end;
   int node_begin, node_end;
@@ -58,7 +58,8 @@ typedef struct ContactPatches {
 Status contact_patches_create(ContactPatches *patches, const ContactLayout *layout);
 void contact_patches_destroy(ContactPatches *patches);
 
-// Builds the patches of `pairs`, which come facing by facing. Elements' and nodes' own numbers are zeroed.
+// Builds the patches of `pairs`, which come interface by interface. Elements' and nodes' own numbers are
+// zeroed.
 Status contact_patches_build(ContactPatches *patches, const ContactLayout *layout, int pair_count,
                              const ContactPair *pairs);
 

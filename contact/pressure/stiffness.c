@@ -66,7 +66,7 @@ static double *gradient_of(ContactStiffness *stiffness, const ContactPatches *pa
 typedef struct Walk {
   const ContactLayout *layout;
   const ContactPatches *patches;
-  const ContactFacing *facing; // of the patch that is walked
+  const ContactInterfaceDef *interface; // of the patch that is walked
   const ContactPair *pairs;
   const double *gradients; // NULL: couple only
 } Walk;
@@ -74,7 +74,7 @@ typedef struct Walk {
 // w += scale · V of pair k, and its vertices.
 static void collect_pair(ContactStiffness *stiffness, const Walk *walk, int k, double scale) {
   for (int side = 0; side < 2; side++) {
-    if (!(walk->facing->weight[side] > 0)) continue;
+    if (!(walk->interface->weight[side] > 0)) continue;
     const ContactElement *element = &walk->patches->elements[walk->patches->pair_elements[k][side]];
     for (int v = 0; v < 4; v++) {
       double *gradient = gradient_of(stiffness, walk->patches, element->nodes[v]);
@@ -105,10 +105,10 @@ static Status walk_nodes(ContactStiffness *stiffness, const Walk *walk, const Co
                          TakeClique take) {
   for (int n = patch->node_begin; n < patch->node_end; n++) {
     const ContactNode *node = &walk->patches->nodes[n];
-    if (!(walk->facing->weight[node->side] > 0)) continue;
+    if (!(walk->interface->weight[node->side] > 0)) continue;
     empty(stiffness);
     collect_node(stiffness, walk, n);
-    TRY(take(self, stiffness, contact_potential_curvature(walk->layout, walk->facing, node)));
+    TRY(take(self, stiffness, contact_potential_curvature(walk->layout, walk->interface, node)));
   }
   return STATUS_OK;
 }
@@ -130,8 +130,8 @@ static Status walk_all(ContactStiffness *stiffness, const ContactLayout *layout,
   TRY(reserve(stiffness, patches->node_count));
   for (int p = 0; p < patches->patch_count; p++) {
     const ContactPatch *patch = &patches->patches[p];
-    Walk walk = {layout, patches, &layout->facings[patch->facing], pairs, gradients};
-    TRY((layout->depth.has_field ? walk_pairs : walk_nodes)(stiffness, &walk, patch, self, take));
+    Walk walk = {layout, patches, &layout->interfaces[patch->interface], pairs, gradients};
+    TRY((layout->mesh.has_field ? walk_pairs : walk_nodes)(stiffness, &walk, patch, self, take));
   }
   empty(stiffness);
   return STATUS_OK;
@@ -150,9 +150,9 @@ static void add_side(const ContactStiffnessSink *sink, const int vertices[4], co
 
 static void add_mesh_pair(const ContactStiffnessSink *sink, const ContactLayout *layout,
                           const ContactPair *pair, double pressure, double *hessian) {
-  const double *weight = layout->facings[pair->facing].weight;
-  const int *a = contact_layout_vertices(layout, pair->tets[0]),
-            *b = contact_layout_vertices(layout, pair->tets[1]);
+  const double *weight = layout->interfaces[pair->interface].weight;
+  const int *a = contact_layout_vertices(layout, pair->cells[0]),
+            *b = contact_layout_vertices(layout, pair->cells[1]);
   for (int k = 0; k < 576; k++) hessian[k] *= pressure;
   if (weight[0] > 0 && weight[1] > 0)
     sink->add_dense(sink->self, 8, (int[]){a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]}, hessian);
@@ -181,12 +181,12 @@ static void add_shape_pairs(const ContactLayout *layout, const ContactEvaluation
                             const ContactStiffnessSink *sink) {
   for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
     const ContactPair *pair = &evaluation->pairs[k];
-    const ContactShape *shape = &layout->def.shapes[layout->facings[pair->facing].shape];
+    const ContactShape *shape = &layout->def.shapes[layout->interfaces[pair->interface].shape];
     double x[12], volume, gradient[12], hessian[144];
-    contact_layout_gather_whole(layout, pair->tets[0], evaluation->positions, x);
+    contact_layout_gather_whole(layout, pair->cells[0], evaluation->positions, x);
     contact_shape_overlap(shape, evaluation->time, x, &volume, gradient, hessian);
     for (int e = 0; e < 144; e++) hessian[e] *= evaluation->pressures[k];
-    sink->add_dense(sink->self, 4, contact_layout_vertices(layout, pair->tets[0]), hessian);
+    sink->add_dense(sink->self, 4, contact_layout_vertices(layout, pair->cells[0]), hessian);
   }
 }
 
@@ -199,7 +199,7 @@ static Status give_outer(void *self, const ContactStiffness *stiffness, double c
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
                              ContactEvaluation *evaluation, const OverlapModel *model,
                              const ContactStiffnessSink *sink) {
-  if (layout->depth.has_field)
+  if (layout->mesh.has_field)
     return contact_field_stiffness_add(&stiffness->field, layout, evaluation, sink->self, sink->add_dense);
   ContactStiffnessSink borrowed = *sink;
   TRY(contact_patches_index(&evaluation->patches));
@@ -221,10 +221,10 @@ Status contact_stiffness_add_nodes(ContactStiffness *stiffness, const ContactLay
   TRY(reserve(stiffness, patches->node_count));
   for (int p = 0; p < patches->patch_count; p++) {
     const ContactPatch *patch = &patches->patches[p];
-    const ContactFacing *facing = &layout->facings[patch->facing];
-    Walk walk = {layout, patches, facing, evaluation->pairs, evaluation->gradients};
+    const ContactInterfaceDef *interface = &layout->interfaces[patch->interface];
+    Walk walk = {layout, patches, interface, evaluation->pairs, evaluation->gradients};
     for (int n = patch->node_begin; n < patch->node_end; n++) {
-      if (!(facing->weight[patches->nodes[n].side] > 0)) continue;
+      if (!(interface->weight[patches->nodes[n].side] > 0)) continue;
       empty(stiffness);
       collect_node(stiffness, &walk, n);
       sink->add_outer(sink->self, stiffness->count, stiffness->vertices, stiffness->gradient,
@@ -239,15 +239,15 @@ Status contact_stiffness_add_nodes(ContactStiffness *stiffness, const ContactLay
 
 static bool is_within(const ContactLayout *layout, const ContactPair *pair, double time,
                       const double *positions, double reach) {
-  if (pair->tets[1] >= 0) {
+  if (pair->cells[1] >= 0) {
     double box_a[6], box_b[6];
-    contact_bounds_of_tet(layout->depth.cells[pair->tets[0]], positions, box_a);
-    contact_bounds_of_tet(layout->depth.cells[pair->tets[1]], positions, box_b);
+    contact_bounds_of_tet(layout->mesh.cells[pair->cells[0]], positions, box_a);
+    contact_bounds_of_tet(layout->mesh.cells[pair->cells[1]], positions, box_b);
     return contact_bounds_distance(box_a, box_b) <= reach + 3 * layout->nudge;
   }
   double x[12];
-  contact_layout_gather_whole(layout, pair->tets[0], positions, x);
-  const ContactShape *shape = &layout->def.shapes[layout->facings[pair->facing].shape];
+  contact_layout_gather_whole(layout, pair->cells[0], positions, x);
+  const ContactShape *shape = &layout->def.shapes[layout->interfaces[pair->interface].shape];
   return contact_shape_separation(shape, time, x, reach) <= reach;
 }
 
@@ -273,7 +273,7 @@ Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout
   for (int k = 0; k < candidates->count; k++)
     if (is_within(layout, &candidates->pairs[k], time, positions, reach))
       stiffness->near_pairs[count++] = candidates->pairs[k];
-  if (layout->depth.has_field)
+  if (layout->mesh.has_field)
     TRY(contact_field_stiffness_thin(&stiffness->field, layout, &count, stiffness->near_pairs));
   TRY(contact_patches_build(&stiffness->near, layout, count, stiffness->near_pairs));
   TRY(contact_patches_index(&stiffness->near));

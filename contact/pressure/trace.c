@@ -17,13 +17,13 @@ void contact_trace_add(const ContactLayout *layout, const ContactEvaluation *eva
   for (int k = 0; k < evaluation->pair_count; k++) {
     const ContactPair *pair = &evaluation->pairs[k];
     const ContactFieldPair *field = &evaluation->fields[k];
-    if (is_wanted && !is_wanted[pair->facing]) continue;
+    if (is_wanted && !is_wanted[pair->interface]) continue;
     ContactTrace trace = {.force = vec3_length(vec3_at(field->force)),
                           .area = contact_field_area(field),
                           .volume = field->volume};
-    for (int side = 0; side < 2 && pair->tets[side] >= 0; side++)
+    for (int side = 0; side < 2 && pair->cells[side] >= 0; side++)
       for (int v = 0; v < 4; v++)
-        add(&traces[contact_layout_vertices(layout, pair->tets[side])[v]], fmax(field->weights[side][v], 0),
+        add(&traces[contact_layout_vertices(layout, pair->cells[side])[v]], fmax(field->weights[side][v], 0),
             &trace);
   }
 }
@@ -33,7 +33,7 @@ void contact_trace_divide(const ContactLayout *layout, const ContactStars *stars
   int count = stars->given_vertex_count;
   memset(sums, 0, (size_t)count * sizeof *sums);
   for (int v = 0; v < layout->def.vertex_count; v++) {
-    if (layout->depth.depths[v] > 0 || !(traces[v].area > 0)) continue;
+    if (layout->mesh.depths[v] > 0 || !(traces[v].area > 0)) continue;
     if (!stars->is_needed) {
       add(&sums[v], 1, &traces[v]);
       continue;

@@ -21,7 +21,7 @@ typedef struct ContactTrace {
 } ContactTrace;
 
 // Adds those of the evaluation's pairs to the traces of the contact mesh (vertex_count). `is_wanted` by
-// facings; NULL: all.
+// interfaces; NULL: all.
 void contact_trace_add(const ContactLayout *layout, const ContactEvaluation *evaluation,
                        const bool *is_wanted, ContactTrace *traces);
 

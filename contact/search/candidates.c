@@ -23,28 +23,28 @@ static const double SELF_MARGIN = 0.5;
 static const double MARGIN_USED = 0.8, NO_STEP = 1e-9;
 
 static Status create_list(ContactCandidateList *list, const ContactLayout *layout) {
-  list->begin = memory_zeroed((size_t)layout->facing_count + 1, sizeof(int));
-  list->margins = memory_zeroed((size_t)layout->facing_count, sizeof(double));
-  list->tets = memory_zeroed((size_t)layout->depth.cell_count, sizeof(int));
-  return list->begin && list->margins && list->tets ? STATUS_OK : status_no_memory("the candidate lists");
+  list->begin = memory_zeroed((size_t)layout->interface_count + 1, sizeof(int));
+  list->margins = memory_zeroed((size_t)layout->interface_count, sizeof(double));
+  list->cells = memory_zeroed((size_t)layout->mesh.cell_count, sizeof(int));
+  return list->begin && list->margins && list->cells ? STATUS_OK : status_no_memory("the candidate lists");
 }
 
 static void destroy_list(ContactCandidateList *list) {
   memory_free(list->pairs);
   memory_free(list->begin);
   memory_free(list->margins);
-  memory_free(list->tets);
+  memory_free(list->cells);
 }
 
 Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout) {
   *candidates = (ContactCandidates){0};
   TRY(create_list(&candidates->list, layout));
   TRY(create_list(&candidates->next, layout));
-  candidates->reference = memory_zeroed(3 * (size_t)layout->depth.position_count, sizeof(double));
-  candidates->is_listed = memory_zeroed((size_t)layout->depth.cell_count, 1);
+  candidates->reference = memory_zeroed(3 * (size_t)layout->mesh.position_count, sizeof(double));
+  candidates->is_listed = memory_zeroed((size_t)layout->mesh.cell_count, 1);
   candidates->boxes = memory_zeroed((size_t)layout->def.body_count, sizeof *candidates->boxes);
   size_t parties = (size_t)layout->party_count;
-  candidates->is_left_out = memory_zeroed((size_t)layout->facing_count, sizeof *candidates->is_left_out);
+  candidates->is_left_out = memory_zeroed((size_t)layout->interface_count, sizeof *candidates->is_left_out);
   candidates->motions = memory_zeroed(parties, sizeof(ContactMotion));
   candidates->expected = memory_zeroed(parties, sizeof(ContactMotion));
   bool fits = candidates->reference && candidates->is_listed && candidates->boxes && candidates->motions &&
@@ -87,18 +87,19 @@ static void expect_motions(ContactCandidates *candidates, const ContactLayout *l
 
 void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
                               const double *positions, double (*boxes)[6]) {
-#pragma omp parallel for schedule(static) if (list->tet_count > 512)
-  for (int k = 0; k < list->tet_count; k++)
-    contact_bounds_of_tet(layout->depth.cells[list->tets[k]], positions, boxes[list->tets[k]]);
+#pragma omp parallel for schedule(static) if (list->cell_count > 512)
+  for (int k = 0; k < list->cell_count; k++)
+    contact_bounds_of_tet(layout->mesh.cells[list->cells[k]], positions, boxes[list->cells[k]]);
 }
 
 bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
                               const double *positions) {
   if (!candidates->is_made) return false;
   measure(candidates, layout, time, positions);
-  for (int f = 0; f < layout->facing_count; f++)
+  for (int f = 0; f < layout->interface_count; f++)
     if (!candidates->is_left_out[f] &&
-        !(contact_motion_approach(candidates->motions, &layout->facings[f]) <= candidates->list.margins[f]))
+        !(contact_motion_approach(candidates->motions, &layout->interfaces[f]) <=
+          candidates->list.margins[f]))
       return false;
   return true;
 }
@@ -107,12 +108,14 @@ bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout
 // search right after the last one, unless nothing was near and the margin may grow.
 static bool wants_search(const ContactCandidates *candidates, const ContactLayout *layout) {
   if (!candidates->is_made) return true;
-  for (int f = 0; f < layout->facing_count; f++) {
+  for (int f = 0; f < layout->interface_count; f++) {
     if (candidates->is_left_out[f]) continue;
-    const ContactFacing *facing = &layout->facings[f];
-    double margin = candidates->list.margins[f], moved = contact_motion_approach(candidates->motions, facing);
-    bool is_empty = candidates->list.begin[f] == candidates->list.begin[f + 1] && facing->a != facing->b;
-    bool may_leave = moved + contact_motion_approach(candidates->expected, facing) > margin;
+    const ContactInterfaceDef *interface = &layout->interfaces[f];
+    double margin = candidates->list.margins[f],
+           moved = contact_motion_approach(candidates->motions, interface);
+    bool is_empty =
+        candidates->list.begin[f] == candidates->list.begin[f + 1] && interface->a != interface->b;
+    bool may_leave = moved + contact_motion_approach(candidates->expected, interface) > margin;
     if (!(moved <= margin / 2) || (may_leave && (is_empty || moved > margin / 4))) return true;
   }
   return false;
@@ -133,12 +136,12 @@ static void bound_bodies(ContactCandidates *candidates, const ContactLayout *lay
 
 // A lower bound of the distance of the two parties: nothing meets until they have moved that far.
 static double clearance(const ContactCandidates *candidates, const ContactLayout *layout,
-                        const ContactFacing *facing, double time, const double *positions) {
-  const ContactBody *a = &layout->def.bodies[facing->a];
-  if (facing->shape >= 0)
-    return contact_shape_clearance(&layout->def.shapes[facing->shape], time, positions, a->vertex_begin,
+                        const ContactInterfaceDef *interface, double time, const double *positions) {
+  const ContactBody *a = &layout->def.bodies[interface->a];
+  if (interface->shape >= 0)
+    return contact_shape_clearance(&layout->def.shapes[interface->shape], time, positions, a->vertex_begin,
                                    a->vertex_end);
-  return contact_bounds_distance(candidates->boxes[facing->a], candidates->boxes[facing->b]);
+  return contact_bounds_distance(candidates->boxes[interface->a], candidates->boxes[interface->b]);
 }
 
 static Status push(ContactCandidateList *list, ContactPair pair) {
@@ -149,36 +152,36 @@ static Status push(ContactCandidateList *list, ContactPair pair) {
 }
 
 static ContactBroadSide side_of(const ContactLayout *layout, int body) {
-  const ContactDepth *depth = &layout->depth;
-  int begin = depth->cell_begin[body], end = depth->cell_begin[body + 1];
-  return (ContactBroadSide){depth->cells + begin, end - begin, begin};
+  const ContactMesh *mesh = &layout->mesh;
+  int begin = mesh->cell_begin[body], end = mesh->cell_begin[body + 1];
+  return (ContactBroadSide){mesh->cells + begin, end - begin, begin};
 }
 
 static Status search_bodies(ContactCandidates *candidates, const ContactLayout *layout, int f,
                             const double *positions, double margin) {
-  const ContactFacing *facing = &layout->facings[f];
-  ContactBroadSide a = side_of(layout, facing->a), b = side_of(layout, facing->b);
+  const ContactInterfaceDef *interface = &layout->interfaces[f];
+  ContactBroadSide a = side_of(layout, interface->a), b = side_of(layout, interface->b);
   candidates->found.count = 0;
-  if (facing->a == facing->b)
-    TRY(contact_self_append(&layout->self, &layout->def, &layout->depth, facing->a, positions, margin,
+  if (interface->a == interface->b)
+    TRY(contact_self_append(&layout->self, &layout->def, &layout->mesh, interface->a, positions, margin,
                             &candidates->found));
   else
     TRY(contact_broad_append(&candidates->found, &a, &b, positions, margin));
   for (int k = 0; k < candidates->found.count; k++) {
-    const int *tets = candidates->found.pairs[k];
-    TRY(push(&candidates->next, (ContactPair){f, {tets[0], tets[1]}}));
+    const int *cells = candidates->found.pairs[k];
+    TRY(push(&candidates->next, (ContactPair){f, {cells[0], cells[1]}}));
   }
   return STATUS_OK;
 }
 
 static Status search_shape(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
                            const double *positions, double margin) {
-  const ContactFacing *facing = &layout->facings[f];
-  const ContactShape *shape = &layout->def.shapes[facing->shape];
-  const int *begin = layout->depth.cell_begin;
-  for (int i = begin[facing->a]; i < begin[facing->a + 1]; i++) {
+  const ContactInterfaceDef *interface = &layout->interfaces[f];
+  const ContactShape *shape = &layout->def.shapes[interface->shape];
+  const int *begin = layout->mesh.cell_begin;
+  for (int i = begin[interface->a]; i < begin[interface->a + 1]; i++) {
     double x[12];
-    if (!contact_depth_leads(&layout->depth, i)) continue;
+    if (!contact_mesh_leads(&layout->mesh, i)) continue;
     contact_layout_gather_whole(layout, i, positions, x);
     if (contact_shape_separation(shape, time, x, margin) <= margin)
       TRY(push(&candidates->next, (ContactPair){f, {i, -1}}));
@@ -189,25 +192,25 @@ static Status search_shape(ContactCandidates *candidates, const ContactLayout *l
 static Status search_with(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
                           const double *positions, double margin) {
   candidates->next.margins[f] = margin;
-  if (layout->facings[f].shape < 0) return search_bodies(candidates, layout, f, positions, margin);
+  if (layout->interfaces[f].shape < 0) return search_bodies(candidates, layout, f, positions, margin);
   return search_shape(candidates, layout, f, time, positions, margin);
 }
 
 // A margin wider than the layout's is kept only where it holds no pair.
-static Status search_facing(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
-                            const double *positions) {
-  const ContactFacing *facing = &layout->facings[f];
+static Status search_interface(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
+                               const double *positions) {
+  const ContactInterfaceDef *interface = &layout->interfaces[f];
   ContactCandidateList *next = &candidates->next;
   int begin = next->begin[f] = next->count;
   if (candidates->is_left_out[f]) return STATUS_OK;
-  if (facing->a == facing->b)
+  if (interface->a == interface->b)
     return search_with(candidates, layout, f, time, positions, SELF_MARGIN * layout->margin);
-  double distance = clearance(candidates, layout, facing, time, positions);
+  double distance = clearance(candidates, layout, interface, time, positions);
   if (distance > layout->margin && isfinite(distance)) {
     next->margins[f] = distance;
     return STATUS_OK;
   }
-  double wide = fmin(STEPS_AHEAD * contact_motion_approach(candidates->expected, facing),
+  double wide = fmin(STEPS_AHEAD * contact_motion_approach(candidates->expected, interface),
                      WIDEST_TRIAL * layout->margin);
   if (wide > layout->margin) {
     TRY(search_with(candidates, layout, f, time, positions, wide));
@@ -217,15 +220,15 @@ static Status search_facing(ContactCandidates *candidates, const ContactLayout *
   return search_with(candidates, layout, f, time, positions, layout->margin);
 }
 
-void contact_candidates_list_tets(ContactCandidateList *list, unsigned char *is_listed) {
-  list->tet_count = 0;
+void contact_candidates_list_cells(ContactCandidateList *list, unsigned char *is_listed) {
+  list->cell_count = 0;
   for (int k = 0; k < list->count; k++)
-    for (int side = 0; side < 2 && list->pairs[k].tets[1] >= 0; side++) {
-      int tet = list->pairs[k].tets[side];
-      if (!is_listed[tet]) list->tets[list->tet_count++] = tet;
-      is_listed[tet] = 1;
+    for (int side = 0; side < 2 && list->pairs[k].cells[1] >= 0; side++) {
+      int cell = list->pairs[k].cells[side];
+      if (!is_listed[cell]) list->cells[list->cell_count++] = cell;
+      is_listed[cell] = 1;
     }
-  for (int k = 0; k < list->tet_count; k++) is_listed[list->tets[k]] = 0;
+  for (int k = 0; k < list->cell_count; k++) is_listed[list->cells[k]] = 0;
 }
 
 // Fills `next`.
@@ -233,9 +236,10 @@ static Status search_all(ContactCandidates *candidates, const ContactLayout *lay
                          const double *positions) {
   candidates->next.count = 0;
   bound_bodies(candidates, layout, positions);
-  for (int f = 0; f < layout->facing_count; f++) TRY(search_facing(candidates, layout, f, time, positions));
-  candidates->next.begin[layout->facing_count] = candidates->next.count;
-  contact_candidates_list_tets(&candidates->next, candidates->is_listed);
+  for (int f = 0; f < layout->interface_count; f++)
+    TRY(search_interface(candidates, layout, f, time, positions));
+  candidates->next.begin[layout->interface_count] = candidates->next.count;
+  contact_candidates_list_cells(&candidates->next, candidates->is_listed);
   return STATUS_OK;
 }
 
@@ -243,13 +247,13 @@ void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLa
                                   const bool *is_left_out) {
   ContactCandidateList *list = &candidates->list;
   int kept = 0;
-  for (int f = 0; f < layout->facing_count; f++) {
+  for (int f = 0; f < layout->interface_count; f++) {
     int begin = list->begin[f], end = list->begin[f + 1];
     candidates->is_left_out[f] = is_left_out && is_left_out[f];
     list->begin[f] = kept;
     for (int k = begin; k < end && !candidates->is_left_out[f]; k++) list->pairs[kept++] = list->pairs[k];
   }
-  list->begin[layout->facing_count] = list->count = kept;
+  list->begin[layout->interface_count] = list->count = kept;
 }
 
 static bool lists_are_equal(const ContactCandidateList *a, const ContactCandidateList *b) {
@@ -261,11 +265,11 @@ static bool lists_are_equal(const ContactCandidateList *a, const ContactCandidat
 // what accelerates; a new list, for longer.
 static double time_left(const ContactCandidates *candidates, const ContactLayout *layout, double step) {
   double left = INFINITY;
-  for (int f = 0; f < layout->facing_count && step > 0; f++) {
-    const ContactFacing *facing = &layout->facings[f];
+  for (int f = 0; f < layout->interface_count && step > 0; f++) {
+    const ContactInterfaceDef *interface = &layout->interfaces[f];
     if (candidates->is_left_out[f]) continue;
-    double expected = contact_motion_approach(candidates->expected, facing),
-           free = candidates->list.margins[f] - contact_motion_approach(candidates->motions, facing);
+    double expected = contact_motion_approach(candidates->expected, interface),
+           free = candidates->list.margins[f] - contact_motion_approach(candidates->motions, interface);
     if (expected > 0) left = fmin(left, MARGIN_USED * free / expected * step);
   }
   return left;
@@ -287,7 +291,7 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
   ContactCandidateList previous = candidates->list;
   candidates->list = candidates->next;
   candidates->next = previous;
-  memcpy(candidates->reference, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
+  memcpy(candidates->reference, positions, 3 * (size_t)layout->mesh.position_count * sizeof(double));
   candidates->reference_time = time;
   candidates->is_made = true;
   measure(candidates, layout, time, positions);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pairs that may overlap until the next search, facing by facing, and a margin for each facing: by how
-// much its two parties may come nearer before a new search. While no pair is near the margin is the distance
-// of the parties, then half an element, so that no element passes through another between two searches.
-// Motion that two bodies have in common, as in a falling stack, does not use the margin up.
+// The pairs that may overlap until the next search, interface by interface, and a margin for each interface:
+// by how much its two parties may come nearer before a new search. While no pair is near the margin is the
+// distance of the parties, then half an element, so that no element passes through another between two
+// searches. Motion that two bodies have in common, as in a falling stack, does not use the margin up.
 #ifndef TETLAP_CONTACT_CANDIDATES_H
 #define TETLAP_CONTACT_CANDIDATES_H
 
@@ -10,21 +10,21 @@
 #include "contact/search/layout.h"
 #include "contact/search/motion.h"
 
-// Valid while the two parties of a facing have come nearer by no more than its margin.
+// Valid while the two parties of a interface have come nearer by no more than its margin.
 typedef struct ContactCandidateList {
   int count;
   size_t capacity;
-  ContactPair *pairs; // by facing, then by tets                      (count)
-  int *begin;         // of each facing                               (facing_count + 1)
-  double *margins;    // of each facing [m]                           (facing_count)
-  int *tets;          // those of mesh pairs, distinct                (cell_count)
-  int tet_count;
+  ContactPair *pairs; // by interface, then by cells                      (count)
+  int *begin;         // of each interface                               (interface_count + 1)
+  double *margins;    // of each interface [m]                           (interface_count)
+  int *cells;         // those of mesh pairs, distinct                (cell_count)
+  int cell_count;
 } ContactCandidateList;
 
 typedef struct ContactCandidates {
   ContactCandidateList list;
   bool is_made;
-  bool *is_left_out; // facings that are not searched: at rest (contact/rest.h)   (facing_count)
+  bool *is_left_out; // interfaces that are not searched: at rest (contact/rest.h)   (interface_count)
   long long searches;
   double search_s;
   // Where everything was when the list was made.
@@ -48,8 +48,8 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
                                  const double *positions, const double *velocities, double step,
                                  bool *has_changed);
 
-// Sets which facings are not searched from now on (facing_count); NULL: all are. Their pairs leave the list;
-// when a facing is searched again the list must be made anew.
+// Sets which interfaces are not searched from now on (interface_count); NULL: all are. Their pairs leave the
+// list; when a interface is searched again the list must be made anew.
 void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLayout *layout,
                                   const bool *is_left_out);
 
@@ -62,7 +62,7 @@ bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout
 void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
                               const double *positions, double (*boxes)[6]);
 
-// Fills `tets` from the list's pairs; is_listed (cell_count): 0 before and after.
-void contact_candidates_list_tets(ContactCandidateList *list, unsigned char *is_listed);
+// Fills `cells` from the list's pairs; is_listed (cell_count): 0 before and after.
+void contact_candidates_list_cells(ContactCandidateList *list, unsigned char *is_listed);
 
 #endif

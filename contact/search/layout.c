@@ -31,15 +31,15 @@ static Status measure_volumes(ContactLayout *layout) {
 // The contact mesh, where it is at rest, and its volumes.
 static Status make_cells(ContactLayout *layout) {
   ContactSystemDef *def = &layout->def;
-  TRY(contact_depth_create(&layout->depth, def));
-  layout->rest = memory_zeroed((size_t)layout->depth.position_count, 3 * sizeof(double));
-  layout->cell_volumes = memory_zeroed((size_t)layout->depth.cell_count, sizeof(double));
+  TRY(contact_mesh_create(&layout->mesh, def));
+  layout->rest = memory_zeroed((size_t)layout->mesh.position_count, 3 * sizeof(double));
+  layout->cell_volumes = memory_zeroed((size_t)layout->mesh.cell_count, sizeof(double));
   if (!layout->rest || !layout->cell_volumes) return status_no_memory("the contact mesh");
   memcpy(layout->rest, def->rest, 3 * (size_t)def->vertex_count * sizeof(double));
-  contact_depth_place(&layout->depth, def, layout->rest);
+  contact_mesh_place(&layout->mesh, def, layout->rest);
   def->rest = layout->rest;
-  for (int i = 0; i < layout->depth.cell_count; i++)
-    layout->cell_volumes[i] = volume_of(layout->depth.cells[i], layout->rest);
+  for (int i = 0; i < layout->mesh.cell_count; i++)
+    layout->cell_volumes[i] = volume_of(layout->mesh.cells[i], layout->rest);
   return STATUS_OK;
 }
 
@@ -66,33 +66,34 @@ static double stiffness_of(const ContactSystemDef *def, int a, int b) {
                              : def->stiffness;
 }
 
-static ContactFacing facing_of_bodies(const ContactSystemDef *def, int a, int b) {
+static ContactInterfaceDef interface_of_bodies(const ContactSystemDef *def, int a, int b) {
   bool one_sided = def->bodies[a].is_obstacle || def->bodies[b].is_obstacle;
-  return (ContactFacing){.a = a,
-                         .b = b,
-                         .shape = -1,
-                         .stiffness = stiffness_of(def, a, b),
-                         .weight = {one_sided ? !def->bodies[a].is_obstacle : 0.5,
-                                    one_sided ? !def->bodies[b].is_obstacle : 0.5}};
+  return (ContactInterfaceDef){.a = a,
+                               .b = b,
+                               .shape = -1,
+                               .stiffness = stiffness_of(def, a, b),
+                               .weight = {one_sided ? !def->bodies[a].is_obstacle : 0.5,
+                                          one_sided ? !def->bodies[b].is_obstacle : 0.5}};
 }
 
-static void list_facings(ContactLayout *layout) {
+static void list_interfaces(ContactLayout *layout) {
   const ContactSystemDef *def = &layout->def;
   int count = 0;
   for (int a = 0; a < def->body_count; a++)
     for (int b = a; b < def->body_count; b++)
       if (a == b ? def->bodies[a].meets_itself && !def->bodies[a].is_obstacle
                  : !def->bodies[a].is_obstacle || !def->bodies[b].is_obstacle)
-        layout->facings[count++] = facing_of_bodies(def, a, b);
+        layout->interfaces[count++] = interface_of_bodies(def, a, b);
   for (int a = 0; a < def->body_count; a++)
     for (int h = 0; h < def->shape_count; h++)
       if (!def->bodies[a].is_obstacle)
-        layout->facings[count++] = (ContactFacing){.a = a,
-                                                   .b = def->body_count + h,
-                                                   .shape = h,
-                                                   .stiffness = stiffness_of(def, a, def->body_count + h),
-                                                   .weight = {1, 0}};
-  layout->facing_count = count;
+        layout->interfaces[count++] =
+            (ContactInterfaceDef){.a = a,
+                                  .b = def->body_count + h,
+                                  .shape = h,
+                                  .stiffness = stiffness_of(def, a, def->body_count + h),
+                                  .weight = {1, 0}};
+  layout->interface_count = count;
 }
 
 static const double NUDGE = 1e-9; // of the margin
@@ -129,13 +130,13 @@ static void warp_body(ContactLayout *layout, int b) {
 static const double REST_DEPTH = 1e-9; // of the margin: rounding
 
 static Status prepare_self(ContactLayout *layout) {
-  TRY(contact_self_create(&layout->self, &layout->def, &layout->depth, REST_DEPTH * layout->margin));
+  TRY(contact_self_create(&layout->self, &layout->def, &layout->mesh, REST_DEPTH * layout->margin));
   if (!layout->self.outer) return STATUS_OK;
-  layout->shifts = memory_zeroed((size_t)layout->depth.position_count, 3 * sizeof(double));
+  layout->shifts = memory_zeroed((size_t)layout->mesh.position_count, 3 * sizeof(double));
   if (!layout->shifts) return status_no_memory("the contact system's volumes");
   for (int b = 0; b < layout->def.body_count; b++)
     if (layout->def.bodies[b].meets_itself) warp_body(layout, b);
-  contact_depth_place(&layout->depth, &layout->def, layout->shifts);
+  contact_mesh_place(&layout->mesh, &layout->def, layout->shifts);
   return STATUS_OK;
 }
 
@@ -156,15 +157,15 @@ static Status check(const ContactSystemDef *def) {
 Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def) {
   *layout = (ContactLayout){.def = *def, .party_count = def->body_count + def->shape_count};
   TRY(check(def));
-  size_t most_facings = (size_t)def->body_count * (size_t)layout->party_count;
+  size_t most_interfaces = (size_t)def->body_count * (size_t)layout->party_count;
   layout->tet_volumes = memory_zeroed((size_t)def->tet_count, sizeof(double));
   layout->vertex_volumes = memory_zeroed((size_t)def->vertex_count, sizeof(double));
-  layout->facings = memory_zeroed(most_facings, sizeof(ContactFacing));
+  layout->interfaces = memory_zeroed(most_interfaces, sizeof(ContactInterfaceDef));
   layout->nudges = memory_zeroed((size_t)def->body_count, sizeof *layout->nudges);
-  if (!layout->tet_volumes || !layout->vertex_volumes || !layout->facings || !layout->nudges)
+  if (!layout->tet_volumes || !layout->vertex_volumes || !layout->interfaces || !layout->nudges)
     return status_no_memory("the contact system's volumes");
-  list_facings(layout);
-  for (int f = 0; f < layout->facing_count; f++) TRY(check_stiffness(layout->facings[f].stiffness));
+  list_interfaces(layout);
+  for (int f = 0; f < layout->interface_count; f++) TRY(check_stiffness(layout->interfaces[f].stiffness));
   layout->margin = def->margin > 0 ? def->margin : default_margin(def);
   nudge_bodies(layout);
   TRY(measure_volumes(layout));
@@ -177,10 +178,10 @@ void contact_layout_destroy(ContactLayout *layout) {
   memory_free(layout->tet_volumes);
   memory_free(layout->cell_volumes);
   memory_free(layout->vertex_volumes);
-  memory_free(layout->facings);
+  memory_free(layout->interfaces);
   memory_free(layout->nudges);
   memory_free(layout->shifts);
   contact_self_destroy(&layout->self);
-  contact_depth_destroy(&layout->depth);
+  contact_mesh_destroy(&layout->mesh);
   *layout = (ContactLayout){0};
 }

@@ -7,24 +7,25 @@
 
 #include "contact/def.h"
 #include "contact/search/self.h"
-#include "contact/surface/depth.h"
+#include "contact/surface/mesh.h"
 
-// Two that can meet: bodies a < b, a body and itself, or body a and a half-space. Side 0 is a, side 1 is b.
-// Of a body and itself an element may be tets[0] of one pair and tets[1] of another; both weights are ½ then.
-typedef struct ContactFacing {
-  int a, b;         // b = body_count + half-space, as in ContactInterface
-  int shape;        // −1: two bodies
+// What is constant of an interface, where two can meet; contact/interface.h is what acts there. Bodies a < b,
+// a body and itself, or body a and a shape. Side 0 is a, side 1 is b. Of a body and itself an element may be
+// cells[0] of one pair and cells[1] of another; both weights are ½ then.
+typedef struct ContactInterfaceDef {
+  int a, b;         // b = body_count + shape, as in ContactInterface
+  int shape;        // its number; −1: two bodies
   double weight[2]; // of each side's sum in U: ½ and ½ between bodies; 1 and 0 against an obstacle, so that
                     // > 0 also says that the side carries unknowns; `field` asks only that
   double stiffness; // κ
-} ContactFacing;
+} ContactInterfaceDef;
 
-// A cell of the contact mesh (contact/surface/depth.h) of side 0 and one of side 1. Without the potential
+// A cell of the contact mesh (contact/surface/mesh.h) of side 0 and one of side 1. Without the potential
 // `field` cells are tetrahedra. −1: a shape, which meets whole tetrahedra; the first cell of one stands for
 // it.
 typedef struct ContactPair {
-  int facing;
-  int tets[2];
+  int interface;
+  int cells[2];
 } ContactPair;
 
 // General position. The overlap models see each body shifted as a whole by a fixed random nudge of a
@@ -39,12 +40,13 @@ typedef struct ContactPair {
 typedef struct ContactLayout {
   ContactSystemDef def;   // its arrays are borrowed, but for `rest`, which has the virtual vertices as well
   double *rest;           // rest positions [m]                               (position_count, 3)
-  ContactDepth depth;     // the mesh that all below and all lists of pairs work on
+  ContactMesh mesh;       // the mesh that all below and all lists of pairs work on
   double *tet_volumes;    // of whole tetrahedra, rest [m³]                   (tet_count)
   double *cell_volumes;   // V_i, rest [m³]                                   (cell_count)
   double *vertex_volumes; // V_a = ¼ Σ_{i∋a} V_i [m³]                         (vertex_count)
-  ContactFacing *facings; // bodies with bodies and themselves first, then with half-spaces  (facing_count)
-  int facing_count;
+  ContactInterfaceDef
+      *interfaces; // bodies with bodies and themselves first, then with half-spaces  (interface_count)
+  int interface_count;
   double nudge;        // length of a nudge [m]
   double (*nudges)[3]; // of each body, see above [m]                       (body_count)
   double *shifts;      // of each vertex, for self-contact [m]; NULL: no body has it (position_count, 3)
@@ -59,18 +61,18 @@ void contact_layout_destroy(ContactLayout *layout);
 
 // The vertices of the tetrahedron that a cell is part of: those on which the forces of the cell act.
 static inline const int *contact_layout_vertices(const ContactLayout *layout, int cell) {
-  return layout->def.tets[contact_depth_tet(&layout->depth, cell)];
+  return layout->def.tets[contact_mesh_tet(&layout->mesh, cell)];
 }
 
 // The number that the definition gives that tetrahedron; of a star (contact/surface/stars.h) the element's
 // first eighth.
 static inline int contact_layout_origin(const ContactLayout *layout, int cell) {
-  int tet = contact_depth_tet(&layout->depth, cell);
+  int tet = contact_mesh_tet(&layout->mesh, cell);
   return layout->def.origin ? layout->def.origin[tet] : tet;
 }
 
 static inline double contact_layout_tet_volume(const ContactLayout *layout, int cell) {
-  return layout->tet_volumes[contact_depth_tet(&layout->depth, cell)];
+  return layout->tet_volumes[contact_mesh_tet(&layout->mesh, cell)];
 }
 
 // The 12 coordinates of a cell.
@@ -78,7 +80,7 @@ static inline void contact_layout_gather(const ContactLayout *layout, int cell, 
                                          double coordinates[12]) {
   for (int v = 0; v < 4; v++)
     for (int c = 0; c < 3; c++)
-      coordinates[3 * v + c] = positions[3 * (size_t)layout->depth.cells[cell][v] + (size_t)c];
+      coordinates[3 * v + c] = positions[3 * (size_t)layout->mesh.cells[cell][v] + (size_t)c];
 }
 
 // The 12 coordinates of its tetrahedron.
@@ -93,21 +95,21 @@ static inline void contact_layout_gather_whole(const ContactLayout *layout, int 
 static inline void contact_layout_warp(const ContactLayout *layout, int cell, double coordinates[12]) {
   for (int v = 0; v < 4; v++)
     for (int c = 0; c < 3; c++)
-      coordinates[3 * v + c] += layout->shifts[3 * (size_t)layout->depth.cells[cell][v] + (size_t)c];
+      coordinates[3 * v + c] += layout->shifts[3 * (size_t)layout->mesh.cells[cell][v] + (size_t)c];
 }
 
 // Puts a pair of cells into general position.
 static inline void contact_layout_unsettle_pair(const ContactLayout *layout, const ContactPair *pair,
                                                 double coordinates[24]) {
-  const ContactFacing *facing = &layout->facings[pair->facing];
-  if (facing->a == facing->b) {
+  const ContactInterfaceDef *interface = &layout->interfaces[pair->interface];
+  if (interface->a == interface->b) {
     for (int side = 0; side < 2; side++)
-      contact_layout_warp(layout, pair->tets[side], coordinates + 12 * side);
+      contact_layout_warp(layout, pair->cells[side], coordinates + 12 * side);
     return;
   }
   for (int k = 0; k < 12; k++) {
-    coordinates[k] += layout->nudges[facing->a][k % 3];
-    coordinates[12 + k] += layout->nudges[facing->b][k % 3];
+    coordinates[k] += layout->nudges[interface->a][k % 3];
+    coordinates[12 + k] += layout->nudges[interface->b][k % 3];
   }
 }
 
@@ -115,13 +117,13 @@ static inline void contact_layout_unsettle_pair(const ContactLayout *layout, con
 // `field`; a shape has none: 12, of the whole tetrahedron.
 static inline void contact_layout_gather_pair(const ContactLayout *layout, const ContactPair *pair,
                                               const double *positions, double coordinates[24]) {
-  if (pair->tets[1] < 0) {
-    contact_layout_gather_whole(layout, pair->tets[0], positions, coordinates);
+  if (pair->cells[1] < 0) {
+    contact_layout_gather_whole(layout, pair->cells[0], positions, coordinates);
     return;
   }
-  contact_layout_gather(layout, pair->tets[0], positions, coordinates);
-  contact_layout_gather(layout, pair->tets[1], positions, coordinates + 12);
-  if (!layout->depth.has_field) contact_layout_unsettle_pair(layout, pair, coordinates);
+  contact_layout_gather(layout, pair->cells[0], positions, coordinates);
+  contact_layout_gather(layout, pair->cells[1], positions, coordinates + 12);
+  if (!layout->mesh.has_field) contact_layout_unsettle_pair(layout, pair, coordinates);
 }
 
 #endif

@@ -40,9 +40,9 @@ void contact_motion_measure(const ContactLayout *layout, double reference_time, 
         contact_motion_of_shape(contact_shape_motion(&def->shapes[h], reference_time, time));
 }
 
-double contact_motion_approach(const ContactMotion *motions, const ContactFacing *facing) {
-  const ContactMotion *a = &motions[facing->a], *b = &motions[facing->b];
-  if (facing->a == facing->b) return 2 * a->spread;
+double contact_motion_approach(const ContactMotion *motions, const ContactInterfaceDef *interface) {
+  const ContactMotion *a = &motions[interface->a], *b = &motions[interface->b];
+  if (interface->a == interface->b) return 2 * a->spread;
   double apart = vec3_length(vec3_sub(a->mean, b->mean));
   return fmin(a->longest + b->longest, a->spread + b->spread + apart);
 }

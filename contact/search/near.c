@@ -17,16 +17,16 @@ static const double USABLE = 0.95;
 static const double HASTE = 1.3;
 
 Status contact_near_create(ContactNear *near, const ContactLayout *layout) {
-  size_t cells = (size_t)layout->depth.cell_count;
+  size_t cells = (size_t)layout->mesh.cell_count;
   *near = (ContactNear){0};
-  near->list.begin = memory_zeroed((size_t)layout->facing_count + 1, sizeof(int));
-  near->list.tets = memory_zeroed(cells, sizeof(int));
-  near->reference = memory_zeroed(3 * (size_t)layout->depth.position_count, sizeof(double));
+  near->list.begin = memory_zeroed((size_t)layout->interface_count + 1, sizeof(int));
+  near->list.cells = memory_zeroed(cells, sizeof(int));
+  near->reference = memory_zeroed(3 * (size_t)layout->mesh.position_count, sizeof(double));
   near->motions = memory_zeroed((size_t)layout->party_count, sizeof *near->motions);
   near->blown = memory_zeroed(cells, sizeof *near->blown);
   near->boxes = memory_zeroed(cells, sizeof *near->boxes);
   near->is_listed = memory_zeroed(cells, 1);
-  bool fits = near->list.begin && near->list.tets && near->reference && near->motions && near->blown &&
+  bool fits = near->list.begin && near->list.cells && near->reference && near->motions && near->blown &&
               near->boxes && near->is_listed;
   return fits ? STATUS_OK : status_no_memory("the candidate lists");
 }
@@ -34,7 +34,7 @@ Status contact_near_create(ContactNear *near, const ContactLayout *layout) {
 void contact_near_destroy(ContactNear *near) {
   memory_free(near->list.pairs);
   memory_free(near->list.begin);
-  memory_free(near->list.tets);
+  memory_free(near->list.cells);
   memory_free(near->reference);
   memory_free(near->motions);
   memory_free(near->blown);
@@ -52,9 +52,9 @@ static double longest_approach(const ContactLayout *layout, const ContactCandida
                                const ContactMotion *motions) {
   const int *begin = candidates->list.begin;
   double longest = 0;
-  for (int f = 0; f < layout->facing_count; f++)
+  for (int f = 0; f < layout->interface_count; f++)
     if (begin[f + 1] > begin[f])
-      longest = fmax(longest, contact_motion_approach(motions, &layout->facings[f]));
+      longest = fmax(longest, contact_motion_approach(motions, &layout->interfaces[f]));
   return longest;
 }
 
@@ -90,9 +90,9 @@ static void bound(const double x[12], double box[6]) {
 
 static void blow_up_cells(ContactNear *near, const ContactLayout *layout,
                           const ContactCandidateList *candidates, const double *positions) {
-#pragma omp parallel for schedule(static) if (candidates->tet_count > 512)
-  for (int k = 0; k < candidates->tet_count; k++) {
-    int cell = candidates->tets[k];
+#pragma omp parallel for schedule(static) if (candidates->cell_count > 512)
+  for (int k = 0; k < candidates->cell_count; k++) {
+    int cell = candidates->cells[k];
     blow_up(layout, cell, positions, near->skin / 2, near->blown[cell]);
     bound(near->blown[cell], near->boxes[cell]);
   }
@@ -106,12 +106,13 @@ static void add_portion(ContactNear *near, const ContactPair *pairs, int count) 
   for (int begin = 0; begin < count; begin += PORTION) {
     int size = count - begin < PORTION ? count - begin : PORTION, asked = 0, from[PORTION];
     for (int k = 0; k < size; k++) {
-      const int *tets = pairs[begin + k].tets;
-      if (tets[1] >= 0 && contact_bounds_distance(near->boxes[tets[0]], near->boxes[tets[1]]) > 0) continue;
-      for (int side = 0; side < 2 && tets[1] >= 0; side++)
-        memcpy(coordinates + 24 * (size_t)asked + 12 * side, near->blown[tets[side]], sizeof *near->blown);
+      const int *cells = pairs[begin + k].cells;
+      if (cells[1] >= 0 && contact_bounds_distance(near->boxes[cells[0]], near->boxes[cells[1]]) > 0)
+        continue;
+      for (int side = 0; side < 2 && cells[1] >= 0; side++)
+        memcpy(coordinates + 24 * (size_t)asked + 12 * side, near->blown[cells[side]], sizeof *near->blown);
       from[asked] = begin + k;
-      if (tets[1] < 0) memset(coordinates + 24 * (size_t)asked, 0, 24 * sizeof(double)); // never apart
+      if (cells[1] < 0) memset(coordinates + 24 * (size_t)asked, 0, 24 * sizeof(double)); // never apart
       asked++;
     }
     overlap_separation_find(asked, coordinates, is_apart);
@@ -127,14 +128,14 @@ static Status make(ContactNear *near, const ContactLayout *layout, const Contact
     return status_no_memory("candidate pairs");
   blow_up_cells(near, layout, candidates, positions);
   list->count = 0;
-  for (int f = 0; f < layout->facing_count; f++) {
+  for (int f = 0; f < layout->interface_count; f++) {
     list->begin[f] = list->count;
     add_portion(near, candidates->pairs + candidates->begin[f],
                 candidates->begin[f + 1] - candidates->begin[f]);
   }
-  list->begin[layout->facing_count] = list->count;
-  contact_candidates_list_tets(list, near->is_listed);
-  memcpy(near->reference, positions, 3 * (size_t)layout->depth.position_count * sizeof(double));
+  list->begin[layout->interface_count] = list->count;
+  contact_candidates_list_cells(list, near->is_listed);
+  memcpy(near->reference, positions, 3 * (size_t)layout->mesh.position_count * sizeof(double));
   near->reference_time = time;
   near->is_made = true;
   return STATUS_OK;

@@ -22,36 +22,36 @@ static Status mark_surface(const ContactSystemDef *def, const ContactBody *body,
   return STATUS_OK;
 }
 
-static void list_outer(ContactSelf *self, const ContactDepth *depth, const unsigned char *is_surface) {
-  for (int i = 0; i < depth->cell_count; i++) {
-    const int *v = depth->cells[i];
+static void list_outer(ContactSelf *self, const ContactMesh *mesh, const unsigned char *is_surface) {
+  for (int i = 0; i < mesh->cell_count; i++) {
+    const int *v = mesh->cells[i];
     self->is_outer[i] = is_surface[v[0]] || is_surface[v[1]] || is_surface[v[2]] || is_surface[v[3]];
-    int tet = contact_depth_tet(depth, i);
+    int tet = contact_mesh_tet(mesh, i);
     if (self->is_outer[i] && (self->outer_count == 0 || self->outer[self->outer_count - 1] != tet))
       self->outer[self->outer_count++] = tet;
   }
 }
 
-static void list_cells(ContactSelf *self, const ContactDepth *depth, int tet_count) {
+static void list_cells(ContactSelf *self, const ContactMesh *mesh, int tet_count) {
   int cell = 0;
   for (int tet = 0; tet <= tet_count; tet++) {
-    while (cell < depth->cell_count && contact_depth_tet(depth, cell) < tet) cell++;
+    while (cell < mesh->cell_count && contact_mesh_tet(mesh, cell) < tet) cell++;
     self->cell_begin[tet] = cell;
   }
 }
 
-static Status find_outer(ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth) {
+static Status find_outer(ContactSelf *self, const ContactSystemDef *def, const ContactMesh *mesh) {
   self->outer = memory_zeroed((size_t)def->tet_count, sizeof *self->outer);
   self->cell_begin = memory_zeroed((size_t)def->tet_count + 1, sizeof *self->cell_begin);
-  self->is_outer = memory_zeroed((size_t)depth->cell_count, 1);
-  unsigned char *is_surface = memory_zeroed((size_t)depth->position_count, 1);
+  self->is_outer = memory_zeroed((size_t)mesh->cell_count, 1);
+  unsigned char *is_surface = memory_zeroed((size_t)mesh->position_count, 1);
   Status status = self->outer && self->cell_begin && self->is_outer && is_surface
                       ? STATUS_OK
                       : status_no_memory("the surface of a body that meets itself");
   for (int b = 0; b < def->body_count && !status; b++)
     if (def->bodies[b].meets_itself) status = mark_surface(def, &def->bodies[b], is_surface);
-  if (!status) list_outer(self, depth, is_surface);
-  if (!status) list_cells(self, depth, def->tet_count);
+  if (!status) list_outer(self, mesh, is_surface);
+  if (!status) list_cells(self, mesh, def->tet_count);
   memory_free(is_surface);
   return status;
 }
@@ -80,7 +80,7 @@ static bool is_left_out(const ContactSelf *self, const int pair[2]) {
 typedef struct Search {
   const ContactSelf *self;
   const ContactSystemDef *def;
-  const ContactDepth *depth;
+  const ContactMesh *mesh;
   const double *positions;
   double margin;
   const int *outer; // the body's tetrahedra with a vertex on the surface                  (outer_count)
@@ -186,18 +186,18 @@ static Status cut(Search *search) {
   return STATUS_OK;
 }
 
-static bool is_whole(const ContactDepth *depth, int cell) {
-  return !depth->replaced || depth->replaced[cell] < 0;
+static bool is_whole(const ContactMesh *mesh, int cell) {
+  return !mesh->replaced || mesh->replaced[cell] < 0;
 }
 
 static void keep_cells(Search *search) {
-  const ContactDepth *depth = search->depth;
+  const ContactMesh *mesh = search->mesh;
   long long count = (long long)search->found.count;
 #pragma omp parallel for schedule(static) if (count > 512)
   for (long long k = 0; k < count; k++) {
     int *pair = search->found.pairs[k], i = pair[0], j = pair[1];
-    bool is_known = is_whole(depth, i) && is_whole(depth, j);
-    if (is_left_out(search->self, pair) || (!is_known && !are_near(search, depth->cells[i], depth->cells[j])))
+    bool is_known = is_whole(mesh, i) && is_whole(mesh, j);
+    if (is_left_out(search->self, pair) || (!is_known && !are_near(search, mesh->cells[i], mesh->cells[j])))
       pair[1] = -1;
   }
   compact(&search->found);
@@ -214,9 +214,9 @@ static Status append_found(ContactPairList *list, const ContactBoxPairs *found) 
   return STATUS_OK;
 }
 
-Status contact_self_append(const ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth,
+Status contact_self_append(const ContactSelf *self, const ContactSystemDef *def, const ContactMesh *mesh,
                            int body, const double *positions, double margin, ContactPairList *list) {
-  Search search = {.self = self, .def = def, .depth = depth, .positions = positions, .margin = margin};
+  Search search = {.self = self, .def = def, .mesh = mesh, .positions = positions, .margin = margin};
   Status status = begin_search(&search, body);
   if (!status) {
     bound(&search);
@@ -237,31 +237,31 @@ Status contact_self_append(const ContactSelf *self, const ContactSystemDef *def,
 
 // ---- Pairs that overlap at rest.
 
-static double separation_at_rest(const ContactDepth *depth, const ContactSystemDef *def, const int pair[2]) {
+static double separation_at_rest(const ContactMesh *mesh, const ContactSystemDef *def, const int pair[2]) {
   double x[24];
   for (int side = 0; side < 2; side++)
     for (int v = 0; v < 4; v++)
       for (int c = 0; c < 3; c++)
-        x[12 * side + 3 * v + c] = def->rest[3 * (size_t)depth->cells[pair[side]][v] + (size_t)c];
+        x[12 * side + 3 * v + c] = def->rest[3 * (size_t)mesh->cells[pair[side]][v] + (size_t)c];
   return overlap_separation_pair(x, 0);
 }
 
-Status contact_self_create(ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth,
+Status contact_self_create(ContactSelf *self, const ContactSystemDef *def, const ContactMesh *mesh,
                            double rest_depth) {
   *self = (ContactSelf){0};
   bool is_wanted = false;
   for (int b = 0; b < def->body_count; b++) is_wanted = is_wanted || def->bodies[b].meets_itself;
   if (!is_wanted) return STATUS_OK;
-  TRY(find_outer(self, def, depth));
+  TRY(find_outer(self, def, mesh));
   ContactPairList touching = {0};
   Status status = STATUS_OK;
   for (int b = 0; b < def->body_count && !status; b++)
     if (def->bodies[b].meets_itself)
-      status = contact_self_append(self, def, depth, b, def->rest, 0, &touching);
+      status = contact_self_append(self, def, mesh, b, def->rest, 0, &touching);
   int kept = 0;
   for (int k = 0; k < touching.count; k++) {
     int *pair = touching.pairs[k];
-    if (separation_at_rest(depth, def, pair) > -rest_depth) continue;
+    if (separation_at_rest(mesh, def, pair) > -rest_depth) continue;
     touching.pairs[kept][0] = pair[0], touching.pairs[kept][1] = pair[1];
     kept++;
   }

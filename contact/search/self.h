@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Self-contact: which cells (contact/surface/depth.h) of a body may meet each other. They are pairs that
+// Self-contact: which cells (contact/surface/mesh.h) of a body may meet each other. They are pairs that
 //   1. belong to tetrahedra without a common vertex: neighbours always touch;
 //   2. do not overlap at rest by more than rounding: what overlaps in the mesh itself is never contact;
 //   3. have a vertex on the surface, at least one of the two: others overlap only after a whole layer of
@@ -11,7 +11,7 @@
 #include "contact/def.h"
 #include "contact/search/boxes.h"
 #include "contact/search/broad.h"
-#include "contact/surface/depth.h"
+#include "contact/surface/mesh.h"
 
 typedef struct ContactSelf {
   int *outer; // tetrahedra of which a cell is outer; ascending                            (outer_count)
@@ -23,13 +23,13 @@ typedef struct ContactSelf {
 
 // `rest_depth` [m]: how deep a pair may overlap at rest and still count as apart. A zeroed one, and one whose
 // creation failed, can be destroyed.
-Status contact_self_create(ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth,
+Status contact_self_create(ContactSelf *self, const ContactSystemDef *def, const ContactMesh *mesh,
                            double rest_depth);
 void contact_self_destroy(ContactSelf *self);
 
 // Appends the pairs (i < j, sorted) of cells of `body` that may meet and are apart by no more than
 // `margin` at these positions.
-Status contact_self_append(const ContactSelf *self, const ContactSystemDef *def, const ContactDepth *depth,
+Status contact_self_append(const ContactSelf *self, const ContactSystemDef *def, const ContactMesh *mesh,
                            int body, const double *positions, double margin, ContactPairList *list);
 
 #endif

@@ -13,7 +13,7 @@
 // area/9 + ⅔ · area/3 = area/3 at a middle: the nodal forces of an even pressure are those of the element,
 // the volume below the fan is that below the curved face (to first order in its curvature), and rigid motion
 // and balance are kept, since the weights reproduce linear fields. o lies at λ_f = δ/height_f for the faces
-// on the surface, ¼ for the others, δ as in contact/surface/depth.h, and follows all ten nodes by their shape
+// on the surface, ¼ for the others, δ as in contact/surface/mesh.h, and follows all ten nodes by their shape
 // functions there.
 //
 // The mesh with stars is a definition of its own. Its positions follow from the nodes by the weights, and

@@ -91,10 +91,10 @@ typedef struct Push {
 
 static void add_push(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, Push *push) {
   const ContactFieldPair *field = &evaluation->fields[k];
-  const ContactFacing *facing = &layout->facings[evaluation->pairs[k].facing];
+  const ContactInterfaceDef *interface = &layout->interfaces[evaluation->pairs[k].interface];
   vec3_accumulate(push->force, vec3_at(field->force));
-  push->full += facing->stiffness * (field->weighed[0] * vec3_length(vec3_at(field->slopes[1])) +
-                                     field->weighed[1] * vec3_length(vec3_at(field->slopes[0])));
+  push->full += interface->stiffness * (field->weighed[0] * vec3_length(vec3_at(field->slopes[1])) +
+                                        field->weighed[1] * vec3_length(vec3_at(field->slopes[0])));
 }
 
 // The pairs of an element are not beside each other, so its sums are kept in `pushes` (elements of the
@@ -115,7 +115,7 @@ static double lost_at_rim(const ContactLayout *layout, const ContactEvaluation *
 static Status find_rim(const ContactLayout *layout, const ContactEvaluation *evaluation,
                        const ContactPatch *patch, double *rim) {
   *rim = NAN;
-  if (!layout->depth.has_field) return STATUS_OK;
+  if (!layout->mesh.has_field) return STATUS_OK;
   Push *pushes = memory_zeroed((size_t)(patch->element_end - patch->element_begin), sizeof *pushes);
   if (!pushes) return status_no_memory("the accuracy of contact");
   *rim = fmax(0, lost_at_rim(layout, evaluation, patch, pushes));
@@ -138,13 +138,14 @@ static bool is_largest(const FemAccuracy *accuracy, const ContactInterface *inte
 }
 
 // Of the state in which most is stored.
-static void find_way(FemAccuracy *accuracy, const FemSystem *system, const ContactFacing *facing,
+static void find_way(FemAccuracy *accuracy, const FemSystem *system, const ContactInterfaceDef *interface,
                      double energy, double elastic, FemAccuracyPair *found) {
   const int bodies = system->model->scene->body_count;
   if (!accuracy->has_energies) share_energy(accuracy, system, elastic);
   accuracy->has_energies = true;
-  found->elastic[0] = facing->a < bodies ? accuracy->energies[facing->a] : 0;
-  found->elastic[1] = facing->b < bodies && facing->b != facing->a ? accuracy->energies[facing->b] : 0;
+  found->elastic[0] = interface->a < bodies ? accuracy->energies[interface->a] : 0;
+  found->elastic[1] =
+      interface->b < bodies && interface->b != interface->a ? accuracy->energies[interface->b] : 0;
   found->with = energy;
   found->stored = energy + elastic;
 }
@@ -167,13 +168,13 @@ Status fem_accuracy_look(FemAccuracy *accuracy, const FemSystem *system, Contact
   for (int p = 0; p < evaluation->patches.patch_count; p++) {
     const ContactPatch *patch = &evaluation->patches.patches[p];
     FemAccuracyPair *found = &accuracy->found[accuracy->found_count];
-    if (!is_largest(accuracy, &evaluation->interfaces[patch->facing], patch->facing, time,
+    if (!is_largest(accuracy, &evaluation->interfaces[patch->interface], patch->interface, time,
                     patch->energy + elastic, found))
       continue;
     if (patch->energy + elastic > GROWN * found->stored)
-      find_way(accuracy, system, &layout->facings[patch->facing], patch->energy, elastic, found);
+      find_way(accuracy, system, &layout->interfaces[patch->interface], patch->energy, elastic, found);
     if (found->force > GROWN * found->estimated) TRY(estimate(layout, evaluation, patch, found));
-    accuracy->places[accuracy->found_count++] = patch->facing;
+    accuracy->places[accuracy->found_count++] = patch->interface;
   }
   return STATUS_OK;
 }

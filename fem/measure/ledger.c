@@ -104,10 +104,10 @@ static void record_estimate(const FemEstimate *estimate, Record *record) {
 static void record_contact(const FemLedger *ledger, int i, Record *record) {
   const FemModel *model = ledger->system->model;
   const FemAccuracyPair *pair = &ledger->accuracy.pairs[i];
-  const ContactFacing *facing = &contact_system_layout(contact_of(ledger))->facings[i];
-  FemEstimate estimate = fem_accuracy_estimate(pair, model, facing->stiffness);
-  record_text(record, "a", fem_compliance_party_name(model, facing->a));
-  record_text(record, "b", fem_compliance_party_name(model, facing->b));
+  const ContactInterfaceDef *interface = &contact_system_layout(contact_of(ledger))->interfaces[i];
+  FemEstimate estimate = fem_accuracy_estimate(pair, model, interface->stiffness);
+  record_text(record, "a", fem_compliance_party_name(model, interface->a));
+  record_text(record, "b", fem_compliance_party_name(model, interface->b));
   record_number(record, "force_max_N", pair->force);
   record_number(record, "force_max_time", pair->time);
   record_number(record, "area_m2", pair->area);
@@ -157,15 +157,15 @@ bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size)
   int i = contact_of(ledger) ? find_rank(&ledger->accuracy, rank) : -1;
   if (i < 0) return false;
   const FemAccuracyPair *pair = &ledger->accuracy.pairs[i];
-  const ContactFacing *facing = &contact_system_layout(contact_of(ledger))->facings[i];
-  FemEstimate estimate = fem_accuracy_estimate(pair, model, facing->stiffness);
+  const ContactInterfaceDef *interface = &contact_system_layout(contact_of(ledger))->interfaces[i];
+  FemEstimate estimate = fem_accuracy_estimate(pair, model, interface->stiffness);
   size_t used = 0;
   text_append(text, size, &used,
               "'%s' and '%s'\n"
               "largest force %.4g N, at t = %.4g s\n"
               "mean overlap %.2g m then\n"
               "%.3g %% of the total deformation is overlap",
-              fem_compliance_party_name(model, facing->a), fem_compliance_party_name(model, facing->b),
+              fem_compliance_party_name(model, interface->a), fem_compliance_party_name(model, interface->b),
               pair->force, pair->time, 2 * pair->energy / pair->estimated, 100 * estimate.give);
   if (estimate.tolerance_over_depth > 1)
     text_append(text, size, &used, "\nthe overlap is below the resolution of time.tolerance");

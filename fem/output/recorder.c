@@ -258,7 +258,7 @@ static void tell_passages(const FemRecorder *recorder, int count, const ContactP
   int interface_count;
   state->count[FEM_TROUBLE_PASSED] = count;
   if (count == 0) return;
-  const ContactInterface *interface = &interfaces_of(recorder->system, &interface_count)[first->facing];
+  const ContactInterface *interface = &interfaces_of(recorder->system, &interface_count)[first->interface];
   state->first[FEM_TROUBLE_PASSED] = contact_system_origin(contact_of(recorder->system), first->tet);
   state->passed[0] = interface->a;
   state->passed[1] = interface->b;

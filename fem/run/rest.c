@@ -189,7 +189,7 @@ static unsigned char state_of(const FemRest *rest, int body, double time) {
 // Decides which bodies to hold, by what is near them now.
 static void decide(FemRest *rest, double time) {
   int count;
-  const ContactInterface *facings = contact_system_interfaces(rest->contact, &count);
+  const ContactInterface *interfaces = contact_system_interfaces(rest->contact, &count);
   for (int p = 0; p < rest->party_count; p++) {
     bool is_obstacle = p >= rest->body_count;
     rest->root[p] = p;
@@ -197,8 +197,8 @@ static void decide(FemRest *rest, double time) {
     rest->next_held[p] = is_obstacle && next_change(rest, p, time) > time;
   }
   for (int f = 0; f < count; f++) {
-    int low = facings[f].a < facings[f].b ? facings[f].a : facings[f].b,
-        high = facings[f].a + facings[f].b - low;
+    int low = interfaces[f].a < interfaces[f].b ? interfaces[f].a : interfaces[f].b,
+        high = interfaces[f].a + interfaces[f].b - low;
     if (!contact_system_is_near(rest->contact, f)) continue;
     if (high < rest->body_count)
       join(rest, low, high);

@@ -219,4 +219,5 @@ extern "C" const OverlapOps overlap_cgal_ops = {
     false,              // checks_finite
     false,              // lacks_scale
     nullptr,            // weights
+    true,               // is_zero_apart
 };

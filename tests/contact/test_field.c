@@ -213,7 +213,7 @@ START_TEST(every_pair_balances_with_every_model) {
     Vec3 sum = {0, 0, 0}, torque = {0, 0, 0};
     double norms = 0;
     for (int v = 0; v < 8; v++) {
-      int vertex = contact_layout_vertices(layout, evaluation->pairs[k].tets[v / 4])[v % 4];
+      int vertex = contact_layout_vertices(layout, evaluation->pairs[k].cells[v / 4])[v % 4];
       Vec3 force = vec3_at(evaluation->gradients + 24 * k + 3 * v), x = vec3_at(scene.blocks.x + 3 * vertex);
       sum = vec3_add(sum, force), torque = vec3_add(torque, vec3_cross(x, force));
       norms += vec3_length(force);
@@ -253,16 +253,16 @@ START_TEST(cells_fill_the_bodies_and_slope_by_one_on_every_outer_face) {
   press_blocks(&scene, false);
   start(&scene, "clip", true);
   const ContactLayout *layout = contact_system_layout(scene.system);
-  const ContactDepth *depth = &layout->depth;
+  const ContactMesh *mesh = &layout->mesh;
   int outer = 0;
   double *volumes = calloc((size_t)scene.blocks.tet_count, sizeof *volumes);
-  ck_assert_int_gt(depth->cell_count, scene.blocks.tet_count);
-  for (int cell = 0; cell < depth->cell_count; cell++) {
-    volumes[contact_depth_tet(depth, cell)] += layout->cell_volumes[cell];
+  ck_assert_int_gt(mesh->cell_count, scene.blocks.tet_count);
+  for (int cell = 0; cell < mesh->cell_count; cell++) {
+    volumes[contact_mesh_tet(mesh, cell)] += layout->cell_volumes[cell];
     Vec3 x[4], slope = {0, 0, 0};
     double phi[4];
     for (int v = 0; v < 4; v++) {
-      x[v] = vec3_at(layout->rest + 3 * depth->cells[cell][v]), phi[v] = depth->depths[depth->cells[cell][v]];
+      x[v] = vec3_at(layout->rest + 3 * mesh->cells[cell][v]), phi[v] = mesh->depths[mesh->cells[cell][v]];
       ck_assert(phi[v] >= 0);
     }
     double det = vec3_det4(x[0], x[1], x[2], x[3]);
@@ -272,7 +272,7 @@ START_TEST(cells_fill_the_bodies_and_slope_by_one_on_every_outer_face) {
       slope = vec3_add(slope, vec3_scale(sign * phi[v] / det, vec3_cross(vec3_sub(b, a), vec3_sub(c, a))));
     }
     for (int f = 0; f < 4; f++) {
-      if (!(depth->outer[cell] >> f & 1)) continue;
+      if (!(mesh->outer[cell] >> f & 1)) continue;
       outer++;
       ck_assert_near(vec3_length(slope), 1, 0.0201);
     }

@@ -276,7 +276,7 @@ START_TEST(a_body_without_self_contact_costs_nothing) {
   start(f, CONTACT_POTENTIAL_NODAL);
   update(f);
   const ContactLayout *layout = contact_system_layout(f->system);
-  ck_assert_int_eq(layout->facing_count, 0);
+  ck_assert_int_eq(layout->interface_count, 0);
   ck_assert_ptr_null(layout->shifts);
   ck_assert_ptr_null(layout->self.outer);
   eval(f, f->x, NULL);

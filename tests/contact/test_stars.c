@@ -220,7 +220,7 @@ START_TEST(pairs_and_nodes_balance_with_every_model) {
     Vec3 sum = {0, 0, 0}, torque = {0, 0, 0};
     double own = 0;
     for (int v = 0; v < 8; v++) {
-      int vertex = contact_layout_vertices(layout, evaluation->pairs[k].tets[v / 4])[v % 4];
+      int vertex = contact_layout_vertices(layout, evaluation->pairs[k].cells[v / 4])[v % 4];
       Vec3 f = vec3_at(evaluation->gradients + 24 * k + 3 * v),
            x = vec3_at(evaluation->positions + 3 * vertex);
       sum = vec3_add(sum, f), torque = vec3_add(torque, vec3_cross(x, f)), own += vec3_length(f);

@@ -3,6 +3,7 @@
 // `exact`, whose own oracles are cases with a known volume and `cgal`.
 #include "suite.h"
 
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,6 +12,7 @@
 #include "overlap/exact/exact.h"
 #include "overlap/invariant.h"
 #include "overlap/model.h"
+#include "overlap/separation.h"
 
 // What a model may lack. Networks that follow the paper see vertices in an order, know volumes roughly and
 // compute in float32.
@@ -378,6 +380,41 @@ START_TEST(a_tetrahedron_inside_another_is_flagged) {
 }
 END_TEST
 
+// Moves the second tetrahedron away from the first until the two are apart by at least `gap`, and by little
+// more where they overlapped before.
+static void part(double x[24], double gap) {
+  double way[3], length = 0;
+  for (int c = 0; c < 3; c++) {
+    way[c] = 0;
+    for (int v = 0; v < 4; v++) way[c] += (x[12 + 3 * v + c] - x[3 * v + c]) / 4;
+    length += way[c] * way[c];
+  }
+  for (int c = 0; c < 3; c++) way[c] = length > 0 ? way[c] / sqrt(length) : c == 0;
+  for (double left = gap - overlap_separation_pair(x, INFINITY); left > 0;
+       left = gap - overlap_separation_pair(x, INFINITY))
+    for (int v = 0; v < 4; v++)
+      for (int c = 0; c < 3; c++) x[12 + 3 * v + c] += fmax(left, gap / 8) * way[c];
+}
+
+START_TEST(a_model_that_is_zero_apart_gives_no_volume_where_nothing_is_shared) {
+  if (!model_at(_i)->is_zero_apart) {
+    suite_skip("%s does not promise it", model_at(_i)->name);
+    return;
+  }
+  OverlapModel model = open_model(_i);
+  int members = demand_of(model_at(_i)->name)->members, wrong = 0, asked = 0;
+  for (int c = 0; c < DATAGEN_HARD_CLASS_COUNT; c++)
+    for (int member = 0; member < members; member++, asked++) {
+      DatagenHardPair pair = datagen_hard_make(c, member);
+      part(pair.x, 1e-9 * overlap_invariant_extent(pair.x));
+      wrong += ask(&model, pair.x).volume != 0;
+    }
+  ck_assert_int_gt(asked, 0);
+  ck_assert_int_eq(wrong, 0);
+  overlap_model_destroy(&model);
+}
+END_TEST
+
 START_TEST(a_coordinate_that_is_no_number_is_an_error_that_names_the_pair) {
   const double bad[3] = {NAN, INFINITY, -INFINITY};
   OverlapModel model = open_model(_i);
@@ -486,6 +523,7 @@ int main(void) {
   tcase_add_loop_test(cases, the_gradient_is_the_derivative_of_the_volume, 0, count);
   tcase_add_loop_test(cases, the_hessian_is_symmetric_and_the_derivative_of_the_gradient, 0, count);
   tcase_add_loop_test(cases, a_tetrahedron_inside_another_is_flagged, 0, count);
+  tcase_add_loop_test(cases, a_model_that_is_zero_apart_gives_no_volume_where_nothing_is_shared, 0, count);
   tcase_add_loop_test(cases, a_coordinate_that_is_no_number_is_an_error_that_names_the_pair, 0, count);
   tcase_add_loop_test(cases, results_do_not_depend_on_the_number_of_threads, 0, count);
   tcase_add_loop_test(cases, a_batch_says_what_each_pair_says, 0, count);

@@ -15,8 +15,8 @@
 // acts on the cell acts on the four vertices of that.
 //
 // For the other potentials the cells are the tetrahedra.
-#ifndef TETLAP_CONTACT_DEPTH_H
-#define TETLAP_CONTACT_DEPTH_H
+#ifndef TETLAP_CONTACT_MESH_H
+#define TETLAP_CONTACT_MESH_H
 
 #include <stddef.h>
 
@@ -28,7 +28,7 @@ typedef struct ContactVirtual {
   double weights[4]; // of the tetrahedron's vertices
 } ContactVirtual;
 
-typedef struct ContactDepth {
+typedef struct ContactMesh {
   bool has_field;
   int cell_count;
   const int (*cells)[4]; // vertices, those of body b's from cell_begin[b] on             (cell_count)
@@ -42,32 +42,32 @@ typedef struct ContactDepth {
   unsigned char *outer;     // bit f: the cell's face opposite to its vertex f is on the surface  (cell_count)
   ContactVirtual *virtuals; //                                           (position_count − vertex_count)
   double *depths;           // φ at rest [m]                             (position_count)
-} ContactDepth;
+} ContactMesh;
 
 // Finds surfaces and depths where the definition's potential is `field`. Tetrahedra need a volume. A zeroed
 // one can be destroyed.
-Status contact_depth_create(ContactDepth *depth, const ContactSystemDef *def);
-void contact_depth_destroy(ContactDepth *depth);
+Status contact_mesh_create(ContactMesh *mesh, const ContactSystemDef *def);
+void contact_mesh_destroy(ContactMesh *mesh);
 
 // The tetrahedron that a cell is part of.
-static inline int contact_depth_tet(const ContactDepth *depth, int cell) {
-  return depth->tets ? depth->tets[cell] : cell;
+static inline int contact_mesh_tet(const ContactMesh *mesh, int cell) {
+  return mesh->tets ? mesh->tets[cell] : cell;
 }
 
 // Whether the cell is the first of its tetrahedron: it stands for the tetrahedron where that is used whole.
-static inline bool contact_depth_leads(const ContactDepth *depth, int cell) {
-  return !depth->tets || cell == 0 || depth->tets[cell - 1] != depth->tets[cell];
+static inline bool contact_mesh_leads(const ContactMesh *mesh, int cell) {
+  return !mesh->tets || cell == 0 || mesh->tets[cell - 1] != mesh->tets[cell];
 }
 
 // Fills the virtual vertices of positions (position_count, 3) from the others.
-void contact_depth_place(const ContactDepth *depth, const ContactSystemDef *def, double *positions);
+void contact_mesh_place(const ContactMesh *mesh, const ContactSystemDef *def, double *positions);
 
 // Barycentric coordinates in a cell to those in its tetrahedron.
-static inline void contact_depth_fold(const ContactDepth *depth, const ContactSystemDef *def, int cell,
-                                      double lambda[4]) {
-  int replaced = depth->replaced[cell];
+static inline void contact_mesh_fold(const ContactMesh *mesh, const ContactSystemDef *def, int cell,
+                                     double lambda[4]) {
+  int replaced = mesh->replaced[cell];
   if (replaced < 0) return;
-  const double *weights = depth->virtuals[depth->own[cell][replaced] - def->vertex_count].weights;
+  const double *weights = mesh->virtuals[mesh->own[cell][replaced] - def->vertex_count].weights;
   double share = lambda[replaced];
   lambda[replaced] = 0;
   for (int v = 0; v < 4; v++) lambda[v] += share * weights[v];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/surface/depth.h"
+#include "contact/surface/mesh.h"
 
 #include <math.h>
 
@@ -13,7 +13,7 @@ static const double SLOPE_TOLERANCE = 0.02;
 // What creation works on.
 typedef struct Work {
   const ContactSystemDef *def;
-  ContactDepth *depth;
+  ContactMesh *mesh;
   unsigned char *outer; // of each tetrahedron, bit f: its face opposite to vertex f  (tet_count)
 } Work;
 
@@ -42,7 +42,7 @@ static Status measure_body(Work *work, int b) {
   ContactSurface surface;
   Status status = find_surface(def, b, &surface);
   if (!status) {
-    double *depths = work->depth->depths;
+    double *depths = work->mesh->depths;
     for (int v = body->vertex_begin; v < body->vertex_end; v++) depths[v] = 1;
     for (int f = 0; f < surface.count; f++) {
       const ContactSurfaceFace *face = &surface.faces[f];
@@ -72,7 +72,7 @@ static void inverse_heights(const ContactSystemDef *def, int tet, double inverse
 
 static bool is_split(const Work *work, int tet) {
   const int *vertices = work->def->tets[tet];
-  const double *depths = work->depth->depths;
+  const double *depths = work->mesh->depths;
   double inverse[4], deepest = 0;
   for (int v = 0; v < 4; v++) deepest = fmax(deepest, depths[vertices[v]]);
   if (!(deepest > 0)) return true;
@@ -106,30 +106,29 @@ static int count_split(const Work *work) {
   return count;
 }
 
-static Status reserve(ContactDepth *depth, const ContactSystemDef *def, int split_count) {
+static Status reserve(ContactMesh *mesh, const ContactSystemDef *def, int split_count) {
   size_t cells = (size_t)def->tet_count + 3 * (size_t)split_count;
-  double *depths = depth->depths;
-  depth->position_count = def->vertex_count + split_count;
-  depth->depths = memory_zeroed((size_t)depth->position_count, sizeof *depth->depths);
-  for (int v = 0; depth->depths && v < def->vertex_count; v++) depth->depths[v] = depths[v];
+  double *depths = mesh->depths;
+  mesh->position_count = def->vertex_count + split_count;
+  mesh->depths = memory_zeroed((size_t)mesh->position_count, sizeof *mesh->depths);
+  for (int v = 0; mesh->depths && v < def->vertex_count; v++) mesh->depths[v] = depths[v];
   memory_free(depths);
-  depth->own = memory_zeroed(cells, sizeof *depth->own);
-  depth->tets = memory_zeroed(cells, sizeof *depth->tets);
-  depth->replaced = memory_zeroed(cells, 1);
-  depth->outer = memory_zeroed(cells, 1);
-  depth->virtuals = memory_zeroed((size_t)split_count, sizeof *depth->virtuals);
-  bool fits =
-      depth->depths && depth->own && depth->tets && depth->replaced && depth->outer && depth->virtuals;
+  mesh->own = memory_zeroed(cells, sizeof *mesh->own);
+  mesh->tets = memory_zeroed(cells, sizeof *mesh->tets);
+  mesh->replaced = memory_zeroed(cells, 1);
+  mesh->outer = memory_zeroed(cells, 1);
+  mesh->virtuals = memory_zeroed((size_t)split_count, sizeof *mesh->virtuals);
+  bool fits = mesh->depths && mesh->own && mesh->tets && mesh->replaced && mesh->outer && mesh->virtuals;
   return fits ? STATUS_OK : status_no_memory("the contact mesh");
 }
 
 static void add_cell(Work *work, int tet, int replaced, int virtual) {
-  ContactDepth *depth = work->depth;
-  int cell = depth->cell_count++;
-  for (int v = 0; v < 4; v++) depth->own[cell][v] = v == replaced ? virtual : work->def->tets[tet][v];
-  depth->tets[cell] = tet;
-  depth->replaced[cell] = (signed char)replaced;
-  depth->outer[cell] = replaced < 0 ? work->outer[tet] : work->outer[tet] & (unsigned char)(1 << replaced);
+  ContactMesh *mesh = work->mesh;
+  int cell = mesh->cell_count++;
+  for (int v = 0; v < 4; v++) mesh->own[cell][v] = v == replaced ? virtual : work->def->tets[tet][v];
+  mesh->tets[cell] = tet;
+  mesh->replaced[cell] = (signed char)replaced;
+  mesh->outer[cell] = replaced < 0 ? work->outer[tet] : work->outer[tet] & (unsigned char)(1 << replaced);
 }
 
 static void add_tet(Work *work, int tet, int *virtual) {
@@ -137,8 +136,8 @@ static void add_tet(Work *work, int tet, int *virtual) {
     add_cell(work, tet, -1, -1);
     return;
   }
-  ContactVirtual *own = &work->depth->virtuals[*virtual - work->def->vertex_count];
-  *own = virtual_of(work, tet, &work->depth->depths[*virtual]);
+  ContactVirtual *own = &work->mesh->virtuals[*virtual - work->def->vertex_count];
+  *own = virtual_of(work, tet, &work->mesh->depths[*virtual]);
   for (int f = 0; f < 4; f++) add_cell(work, tet, f, *virtual);
   (*virtual)++;
 }
@@ -146,19 +145,19 @@ static void add_tet(Work *work, int tet, int *virtual) {
 // The centroids among the virtual vertices of a body.
 static Status measure_centroids(Work *work, int b, int begin, int end) {
   const ContactSystemDef *def = work->def;
-  ContactDepth *depth = work->depth;
+  ContactMesh *mesh = work->mesh;
   ContactSurface surface = {0};
   Status status = STATUS_OK;
   for (int u = begin; u < end && !status; u++) {
-    if (depth->depths[u] < INFINITY) continue;
+    if (mesh->depths[u] < INFINITY) continue;
     if (!surface.faces) {
       status = find_surface(def, b, &surface);
       if (status) break;
     }
-    const int *vertices = def->tets[depth->virtuals[u - def->vertex_count].tet];
+    const int *vertices = def->tets[mesh->virtuals[u - def->vertex_count].tet];
     Vec3 middle = {0, 0, 0};
     for (int v = 0; v < 4; v++) middle = vec3_add(middle, vec3_scale(0.25, rest_of(def, vertices[v])));
-    depth->depths[u] = contact_surface_distance(&surface, middle);
+    mesh->depths[u] = contact_surface_distance(&surface, middle);
   }
   contact_surface_destroy(&surface);
   return status;
@@ -166,63 +165,63 @@ static Status measure_centroids(Work *work, int b, int begin, int end) {
 
 static Status cut_cells(Work *work) {
   const ContactSystemDef *def = work->def;
-  ContactDepth *depth = work->depth;
+  ContactMesh *mesh = work->mesh;
   int virtual = def->vertex_count;
-  TRY(reserve(depth, def, count_split(work)));
+  TRY(reserve(mesh, def, count_split(work)));
   for (int b = 0; b < def->body_count; b++) {
     int begin = virtual;
-    depth->cell_begin[b] = depth->cell_count;
+    mesh->cell_begin[b] = mesh->cell_count;
     for (int i = def->bodies[b].tet_begin; i < def->bodies[b].tet_end; i++) add_tet(work, i, &virtual);
     TRY(measure_centroids(work, b, begin, virtual));
   }
-  depth->cell_begin[def->body_count] = depth->cell_count;
-  depth->cells = (const int(*)[4])depth->own;
+  mesh->cell_begin[def->body_count] = mesh->cell_count;
+  mesh->cells = (const int(*)[4])mesh->own;
   return STATUS_OK;
 }
 
 static Status make_field(Work *work) {
   const ContactSystemDef *def = work->def;
-  work->depth->has_field = true;
-  work->depth->depths = memory_zeroed((size_t)def->vertex_count, sizeof(double));
+  work->mesh->has_field = true;
+  work->mesh->depths = memory_zeroed((size_t)def->vertex_count, sizeof(double));
   work->outer = memory_zeroed((size_t)def->tet_count, 1);
-  if (!work->depth->depths || !work->outer) return status_no_memory("the contact mesh");
+  if (!work->mesh->depths || !work->outer) return status_no_memory("the contact mesh");
   for (int b = 0; b < def->body_count; b++) TRY(measure_body(work, b));
   return cut_cells(work);
 }
 
-Status contact_depth_create(ContactDepth *depth, const ContactSystemDef *def) {
-  *depth =
-      (ContactDepth){.cell_count = def->tet_count, .cells = def->tets, .position_count = def->vertex_count};
-  depth->cell_begin = memory_zeroed((size_t)def->body_count + 1, sizeof *depth->cell_begin);
-  if (!depth->cell_begin) return status_no_memory("the contact mesh");
+Status contact_mesh_create(ContactMesh *mesh, const ContactSystemDef *def) {
+  *mesh =
+      (ContactMesh){.cell_count = def->tet_count, .cells = def->tets, .position_count = def->vertex_count};
+  mesh->cell_begin = memory_zeroed((size_t)def->body_count + 1, sizeof *mesh->cell_begin);
+  if (!mesh->cell_begin) return status_no_memory("the contact mesh");
   for (int b = 0; b < def->body_count; b++) {
-    depth->cell_begin[b] = def->bodies[b].tet_begin;
-    depth->cell_begin[b + 1] = def->bodies[b].tet_end;
+    mesh->cell_begin[b] = def->bodies[b].tet_begin;
+    mesh->cell_begin[b + 1] = def->bodies[b].tet_end;
   }
   if (def->potential != CONTACT_POTENTIAL_FIELD) return STATUS_OK;
-  depth->cell_count = 0;
-  Work work = {.def = def, .depth = depth};
+  mesh->cell_count = 0;
+  Work work = {.def = def, .mesh = mesh};
   Status status = make_field(&work);
   memory_free(work.outer);
   return status;
 }
 
-void contact_depth_destroy(ContactDepth *depth) {
-  memory_free(depth->cell_begin);
-  memory_free(depth->own);
-  memory_free(depth->tets);
-  memory_free(depth->replaced);
-  memory_free(depth->outer);
-  memory_free(depth->virtuals);
-  memory_free(depth->depths);
-  *depth = (ContactDepth){0};
+void contact_mesh_destroy(ContactMesh *mesh) {
+  memory_free(mesh->cell_begin);
+  memory_free(mesh->own);
+  memory_free(mesh->tets);
+  memory_free(mesh->replaced);
+  memory_free(mesh->outer);
+  memory_free(mesh->virtuals);
+  memory_free(mesh->depths);
+  *mesh = (ContactMesh){0};
 }
 
-void contact_depth_place(const ContactDepth *depth, const ContactSystemDef *def, double *positions) {
-  int count = depth->position_count - def->vertex_count;
+void contact_mesh_place(const ContactMesh *mesh, const ContactSystemDef *def, double *positions) {
+  int count = mesh->position_count - def->vertex_count;
 #pragma omp parallel for schedule(static) if (count > 4096)
   for (int u = 0; u < count; u++) {
-    const ContactVirtual *virtual = &depth->virtuals[u];
+    const ContactVirtual *virtual = &mesh->virtuals[u];
     const int *vertices = def->tets[virtual->tet];
     Vec3 x = {0, 0, 0};
     for (int v = 0; v < 4; v++)
