@@ -12,7 +12,6 @@ install(FILES include/tetlap/overlap.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/t
 # Data, under the names of the source tree.
 install(DIRECTORY net/weights DESTINATION ${data}/net)
 install(DIRECTORY app/stress/scenes DESTINATION ${data}/app/stress)
-install(FILES tools/torch_bench.py tools/torch_network.py DESTINATION ${data}/tools)
 install(PROGRAMS tools/ranks DESTINATION ${data}/tools)
 install(DIRECTORY examples meshes DESTINATION ${data})
 install(FILES docs/scene.schema.json DESTINATION ${data}/docs)

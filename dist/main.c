@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // tetlap-mpi: the program of app/main.c, which mpiexec may start several times. By itself it is that program.
-#include <errno.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "app/program.h"
 #include "base/memory.h"
 #include "base/ranks.h"
-#include "base/status.h"
 #include "dist/mpi.h"
 #include "dist/solver.h"
-
-// What was printed must have arrived.
-static int flush_output(int exit_code) {
-  bool is_whole = fflush(stdout) == 0 && !ferror(stdout);
-  if (is_whole || exit_code != 0) return exit_code;
-  fprintf(stderr, "error: standard output cannot be written: %s\n", strerror(errno));
-  return status_exit_code(STATUS_IO);
-}
 
 // A rank a core, with one thread unless asked, and threads that wait sleep; MPI looks for processors, not for
 // displays. What is set already stays. OpenMP reads its part before main: so the program starts itself once
@@ -47,5 +35,5 @@ int main(int argument_count, char **arguments) {
     if (ranks()->count > 1) dist_solver_provide();
   } else
     dist_mpi_begin_alone();
-  return flush_output(app_program_run(argument_count, arguments));
+  return app_program_run(&app_program_root, argument_count, arguments);
 }

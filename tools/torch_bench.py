@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""PyTorch as a peer of `tetlap bench net` and `tetlap bench train`: the same weights, the same inputs, timed in turns.
+"""PyTorch as a peer of `tetlap-lab net` and `tetlap-lab train`: the same weights, the same inputs, timed in turns.
 
     torch_bench.py WEIGHTS PRECISION INPUTS THREADS [DEVICE]
 

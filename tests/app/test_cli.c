@@ -300,7 +300,7 @@ START_TEST(only_commands_with_threads_start_the_program_again) {
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     int count = 0;
     while (count < 4 && cases[i].words[count]) count++;
-    ck_assert_msg(app_program_has_threads(count, cases[i].words) == cases[i].has_threads, "case %zu", i);
+    ck_assert_msg(app_program_has_threads(&app_program_root, count, cases[i].words) == cases[i].has_threads, "case %zu", i);
   }
 }
 END_TEST

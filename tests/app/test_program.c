@@ -19,7 +19,7 @@ static int run_program(const char *first, const char *second, const char *third)
   ck_assert_ptr_nonnull(freopen("/dev/null", "w", stderr));
   char *kept[4];
   memcpy(kept, arguments, sizeof kept);
-  int code = app_program_run(count, arguments);
+  int code = app_program_run(&app_program_root, count, arguments);
   for (int i = 0; i < count; i++) free(kept[i]);
   return code;
 }
@@ -64,12 +64,8 @@ START_TEST(a_list_with_an_empty_name_is_a_usage_error_and_blanks_are_none) {
   static const char *const wrong[] = {"compare %s --overlap \"\"",
                                       "compare %s --overlap ,",
                                       "compare %s --overlap clip --audit-only ,",
-                                      "pareto -m \"\"",
-                                      "pareto -m clip,,geo",
                                       "bench overlap --model \"\"",
-                                      "bench net --net ,",
                                       "bench overlap -b 4,,8",
-                                      "bench precision %s --overlap \"\"",
                                       "stress --quick --overlap \"\"",
                                       "datagen --list --mix ,",
                                       "plot pareto.json -o x.svg --quantity ,",

@@ -269,23 +269,21 @@ static int file_count(void) {
   return count - 2; // . and ..
 }
 
-// `arguments`, in that folder; the exit code.
-static int run(const char *environment, const char *arguments) {
+// The command, in that folder; the exit code.
+static int run(const char *environment, const char *words) {
   char command[3000];
-  snprintf(command, sizeof command, "cd %s && %s %s %s > out.txt 2> error.txt", folder, environment,
-           TETLAP_PROGRAM, arguments);
+  snprintf(command, sizeof command, "cd %s && %s %s > out.txt 2> error.txt", folder, environment, words);
   const int status = system(command);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-#define POSES "poses scene.yaml --poses poses.txt -t 1 -o table.csv --device "
-#define BENCH                                                                                                \
-  "bench overlap --model clip --set near --quantity V --batch 200 --repeat 1 --json -t 1 --device "
+#define POSES TETLAP_PROGRAM " poses scene.yaml --poses poses.txt -t 1 -o table.csv --device "
+#define BENCH TETLAP_LAB " device --model clip --set near --quantity V --batch 200 --repeat 1 --json -t 1 "
 
 // A command on a device whose driver fails. What it ends with, and what it leaves.
 static void check_command(const Driver *driver, const char *arguments, const char *function, int call, int k,
                           const char *kind, const char *expected) {
-  char environment[200], command[300], what[1000];
+  char environment[200], command[600], what[1300];
   snprintf(environment, sizeof environment, "FAKE_FAIL=%s:%d:%d:%s", function, call, driver->codes[k], kind);
   snprintf(command, sizeof command, "%s%s", arguments, driver->device);
   write_file("table.csv", "an earlier one\n");
@@ -312,7 +310,7 @@ static void check_command(const Driver *driver, const char *arguments, const cha
 
 // The functions that a command calls and how often, of the driver: lines of FAKE_CALLS.
 static int count_calls(const Driver *driver, const char *arguments, char names[][64], int counts[]) {
-  char command[300];
+  char command[600];
   snprintf(command, sizeof command, "%s%s", arguments, driver->device);
   ck_assert_int_eq(run("FAKE_CALLS=calls.txt", command), 0);
   char *lines = read_file("calls.txt"), *rest = lines;
@@ -380,14 +378,14 @@ START_TEST(shares_of_peak_and_issue_are_of_what_the_device_can_do) {
   static const struct {
     const char *arguments;
     double flops, instructions, peak; // instructions 0: not told
-  } wanted[WANTED] = {{"--device cuda --model clip --quantity V", 1557, 1153, 128e9},
-                      {"--device cuda --model clip32 --quantity V+grad", 2138, 1582, 256e9},
-                      {"--device opencl --model clip --quantity V", 0, 0, 1},
-                      {"--device host --model clip --quantity V", 0, 0, 1}};
+  } wanted[WANTED] = {{"cuda --model clip --quantity V", 1557, 1153, 128e9},
+                      {"cuda --model clip32 --quantity V+grad", 2138, 1582, 256e9},
+                      {"opencl --model clip --quantity V", 0, 0, 1},
+                      {"host --model clip --quantity V", 0, 0, 1}};
   for (int k = 0; k < WANTED; k++) {
-    char arguments[300];
+    char arguments[600];
     snprintf(arguments, sizeof arguments,
-             "bench overlap --set near --residence device --batch 200 --repeat 1 --json -t 1 %s",
+             TETLAP_LAB " device --set near --residence device --batch 200 --repeat 1 --json -t 1 %s",
              wanted[k].arguments);
     ck_assert_int_eq(run("", arguments), 0);
     char *output = read_file("out.txt");
@@ -403,7 +401,7 @@ START_TEST(shares_of_peak_and_issue_are_of_what_the_device_can_do) {
 END_TEST
 
 START_TEST(devices_are_listed_though_a_driver_fails) {
-  ck_assert_int_eq(run("FAKE_FAIL=clGetDeviceInfo:2:-2", "devices"), 0);
+  ck_assert_int_eq(run("FAKE_FAIL=clGetDeviceInfo:2:-2", TETLAP_PROGRAM " devices"), 0);
   char *output = read_file("out.txt");
   ck_assert_msg(strstr(output, "not usable: its driver does not describe it: error -2, device not available"),
                 "%s", output);

@@ -23,7 +23,7 @@ typedef struct Outcome {
 static Outcome run(const char *environment, const char *arguments) {
   char command[6000];
   Outcome outcome;
-  snprintf(command, sizeof command, "%s %s %s 2>&1", environment, TETLAP_PROGRAM, arguments);
+  snprintf(command, sizeof command, "%s %s 2>&1", environment, arguments);
   FILE *pipe = popen(command, "r");
   ck_assert_ptr_nonnull(pipe);
   size_t size = fread(outcome.text, 1, sizeof outcome.text - 1, pipe);
@@ -47,7 +47,7 @@ static void check_refused(const char *environment, const char *arguments, int co
   ck_assert_msg(lines_of(outcome.text) == 1, "%s: more than one line: %s", environment, outcome.text);
 }
 
-#define BENCH "bench overlap --model clip --set near --quantity V --batch 200 --repeat 1 --device "
+#define BENCH TETLAP_LAB " device --model clip --set near --quantity V --batch 200 --repeat 1 "
 
 START_TEST(what_is_not_there_is_said) {
   check_refused("TETLAP_CUDA=/nowhere.so", BENCH "cuda", 69, "/nowhere.so was not found");
@@ -82,11 +82,11 @@ static bool has_compiler(void) {
 START_TEST(a_device_that_fails_on_the_way_is_quoted) {
   static const char *const models[] = {"clip", "tpn", "tpn-bf16", "geo"};
   const char *model = models[_i];
-  char bench[300], refused[100];
+  char bench[600], refused[100];
   snprintf(bench, sizeof bench,
-           "bench overlap --model %s --set near --quantity V+grad --batch 200 --repeat 1 --device ", model);
+           TETLAP_LAB " device --model %s --set near --quantity V+grad --batch 200 --repeat 1 ", model);
   snprintf(refused, sizeof refused, "NVRTC rejected program '%s' for sm_90", model);
-  char cuda[310], opencl[310];
+  char cuda[620], opencl[620];
   snprintf(cuda, sizeof cuda, "%scuda", bench), snprintf(opencl, sizeof opencl, "%sopencl", bench);
   check_refused("TETLAP_OPENCL=/nowhere.so", opencl, 69, "/nowhere.so was not found");
   check_refused(FAKE "FAKE_CUDA=device", cuda, 69, "no device");
@@ -106,11 +106,11 @@ START_TEST(a_device_that_fails_on_the_way_is_quoted) {
 END_TEST
 
 START_TEST(devices_lists_all_kinds_and_reasons) {
-  Outcome outcome = run("TETLAP_CUDA=/nowhere.so TETLAP_OPENCL=/nowhere.so", "devices");
+  Outcome outcome = run("TETLAP_CUDA=/nowhere.so TETLAP_OPENCL=/nowhere.so", TETLAP_PROGRAM " devices");
   ck_assert_int_eq(outcome.code, 0);
   ck_assert_ptr_nonnull(strstr(outcome.text, "host:0"));
   ck_assert_ptr_nonnull(strstr(outcome.text, "none: /nowhere.so was not found"));
-  outcome = run(FAKE "TETLAP_OPENCL=/nowhere.so", "devices --json");
+  outcome = run(FAKE "TETLAP_OPENCL=/nowhere.so", TETLAP_PROGRAM " devices --json");
   ck_assert_int_eq(outcome.code, 0);
   ck_assert_ptr_nonnull(strstr(outcome.text, "\"a device of tests\""));
   ck_assert_ptr_nonnull(strstr(outcome.text, "\"reason\": \"/nowhere.so was not found"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much arithmetic a pair takes, of which `tetlap bench overlap --device` tells the share of the peak.
+// How much arithmetic a pair takes, of which `tetlap-lab device` tells the share of the peak.
 #include "suite.h"
 
 #include "app/bench/overlap/pairs.h"

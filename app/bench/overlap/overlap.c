@@ -9,7 +9,6 @@
 #include "app/bench/command.h"
 #include "app/bench/contestant.h"
 #include "app/bench/models.h"
-#include "app/bench/overlap/device.h"
 #include "app/bench/overlap/pairs.h"
 #include "app/bench/peak.h"
 #include "app/bench/report.h"
@@ -30,28 +29,13 @@ typedef struct Options {
   int model_count;
   bool wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
   int batches[APP_BENCH_MAX_LIST], batch_count;
-  const char *device; // NULL: this processor as it is
-  bool wants_residence[APP_BENCH_RESIDENCES], wants_torch;
 } Options;
-
-enum { KEY_TORCH = 0x200 };
 
 static const struct argp_option option_table[] = {
     {"model", 'm', "NAME,...", 0, "Overlap models or weights files to measure (default: all models)", 1},
     {"set", 's', "NAME,...", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
     {"quantity", 'Q', "NAME,...", 0, "V, V+centroid, V+grad, V+grad+hess (default: all that a model has)", 1},
     {"batch", 'b', "N,...", 0, "Pairs a call (default: 4096); slow models get fewer", 1},
-    {"device", 'D', "NAME", 0,
-     "Measure kernels on a device: host, opencl, cuda, auto, or with a number (opencl:1); `tetlap devices` "
-     "lists them",
-     1},
-    {"residence", 'R', "NAME,...", 0,
-     "With --device, where the pairs lie: device, indices, host (default: all)", 1},
-    {"torch", KEY_TORCH, NULL, 0,
-     "With --device, PyTorch beside models with a network, on the same device: the network alone, without "
-     "gate "
-     "and frame",
-     1},
     {0},
 };
 
@@ -72,16 +56,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case 'b':
     options->batch_count = app_bench_options_counts(state, "batch", text, 10000000, options->batches);
-    return 0;
-  case 'D':
-    options->device = text;
-    return 0;
-  case KEY_TORCH:
-    options->wants_torch = true;
-    return 0;
-  case 'R':
-    app_bench_options_choose(state, "residence", text, app_bench_residences, APP_BENCH_RESIDENCES,
-                             options->wants_residence);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -258,8 +232,8 @@ static int find_reference(const Bench *bench, Case what) {
 }
 
 // A gradient by the input takes the products once more, transposed. How many a network of the paper's kind
-// takes depends on what its normalisation lets it leave out; `bench net` tells that. Disjoint pairs do not
-// reach it.
+// takes depends on what its normalisation lets it leave out; `tetlap-lab net` tells that. Disjoint pairs do
+// not reach it.
 static double flops_of(const Bench *bench, const Case *what) {
   const AppModelCard *card = &bench->cards[what->model];
   bool is_known =
@@ -333,38 +307,7 @@ static Status measure(Bench *bench) {
   return print(bench);
 }
 
-// A model without a kernel is left out.
-static Status choose_kernels(const Options *options, bool wanted[DEVICE_OVERLAP_MODELS]) {
-  for (int m = 0; m < options->model_count; m++) {
-    char path[PATH_MAX];
-    if (app_model_names_locate(options->models[m], path))
-      return status_fail(STATUS_USAGE,
-                         "--model %s: with --device only the program's own models are measured; leave "
-                         "--device out for a weights file",
-                         options->models[m]);
-    for (int k = 0; k < DEVICE_OVERLAP_MODELS; k++)
-      wanted[k] = wanted[k] || strcmp(options->models[m], device_overlap_models[k]) == 0;
-  }
-  return STATUS_OK;
-}
-
-static Status run_on_device(const Options *options) {
-  AppBenchDeviceDef def = {.common = &options->common,
-                           .device = options->device,
-                           .wants_quantity = {[DEVICE_VOLUME] = options->wants_quantity[VOLUME],
-                                              [DEVICE_GRADIENT] = options->wants_quantity[GRADIENT],
-                                              [DEVICE_CENTROID] = options->wants_quantity[CENTROID]},
-                           .wants_torch = options->wants_torch,
-                           .batches = options->batches,
-                           .batch_count = options->batch_count};
-  TRY(choose_kernels(options, def.wants_model));
-  memcpy(def.wants_set, options->wants_set, sizeof def.wants_set);
-  memcpy(def.wants_residence, options->wants_residence, sizeof def.wants_residence);
-  return app_bench_overlap_device_run(&def);
-}
-
 static Status run(const Options *options) {
-  if (options->device) return run_on_device(options);
   Bench *bench = memory_zeroed(1, sizeof *bench);
   if (!bench) return status_no_memory("the bench");
   bench->options = options;
@@ -386,7 +329,6 @@ static int run_command(int argument_count, char **arguments) {
   options.model_count = app_bench_models_list(options.models);
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
-  for (int i = 0; i < APP_BENCH_RESIDENCES; i++) options.wants_residence[i] = true;
   app_bench_command_read(&app_bench_overlap, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
