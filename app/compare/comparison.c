@@ -128,7 +128,7 @@ Status app_comparison_audit(AppComparison *comparison, const FemRunProgress *pro
   for (int m = 0; m < comparison->model_count; m++) {
     if (m == comparison->reference) continue;
     ContactAudit state;
-    TRY(contact_system_audit(contact, progress->time, progress->system->positions,
+    TRY(contact_system_audit(contact, progress->time, progress->system->accepted.positions,
                              &comparison->models[m].overlap,
                              &comparison->models[comparison->reference].overlap, &state));
     TRY(app_audit_add(&comparison->models[m].audit, progress->time, &state));

@@ -243,7 +243,6 @@ static void judge_beam(const AppStressRun *run, AppStressRow *row) {
 
 typedef struct Rejection {
   long long trials, refused;
-  double *trial, *energies; // scratch: positions, what they were
 } Rejection;
 
 // Evaluates forces at a state that is then rejected: far from the accepted one, so that other pairs overlap
@@ -251,14 +250,15 @@ typedef struct Rejection {
 static Status try_and_reject(void *self, const FemRunProgress *progress) {
   Rejection *rejection = self;
   FemSystem *system = progress->system;
-  size_t count = 3 * (size_t)system->model->vertex_count;
-  memcpy(rejection->trial, system->positions, count * sizeof(double));
+  FemState trial;
+  Status status = fem_system_create_state(system, &trial);
   double reach = (rejection->trials % 3 == 2 ? 2.0 : 0.05) * system->model->edge;
-  for (size_t i = 0; i < count; i++) system->positions[i] += reach * sin((double)(i + 1));
-  Status status = fem_system_forces(system, progress->time);
+  for (int i = 0; i < 3 * system->model->vertex_count && !status; i++)
+    trial.positions[i] += reach * sin(i + 1.0);
+  if (!status) status = fem_system_forces(system, &trial);
+  fem_state_destroy(&trial);
   rejection->trials++;
   rejection->refused += status == STATUS_RETRY;
-  memcpy(system->positions, rejection->trial, count * sizeof(double));
   return status == STATUS_RETRY ? STATUS_OK : status;
 }
 
@@ -268,8 +268,6 @@ static Status run_rejected(AppStressRun *run) {
   TRY(app_stress_run_scene(run));
   if (run->is_cut) return STATUS_OK;
   Rejection rejection = {0};
-  rejection.trial = memory_zeroed(3 * (size_t)run->model.vertex_count, sizeof(double));
-  if (!rejection.trial) return status_no_memory("a trial state");
   FemRunOptions options = {
       .observe = try_and_reject, .observer = &rejection, .keep_trajectory = true, .stop = run->asked_to_stop};
   FemRunResult result;
@@ -279,7 +277,6 @@ static Status run_rejected(AppStressRun *run) {
   for (size_t i = 0; i < count && difference >= 0; i++)
     difference = fmax(difference, fabs(result.trajectory[i] - run->result.trajectory[i]));
   fem_run_result_destroy(&result);
-  memory_free(rejection.trial);
   run->extra[0] = (double)rejection.trials, run->extra[1] = (double)rejection.refused;
   run->extra[2] = difference;
   return status == STATUS_MEMORY ? status : STATUS_OK;

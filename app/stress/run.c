@@ -33,14 +33,14 @@ void app_stress_run_close(AppStressRun *run) {
 static Status watch(void *self, const FemRunProgress *progress) {
   AppStressRun *run = self;
   const FemModel *model = progress->system->model;
+  const double *velocities = progress->system->accepted.velocities;
   int which = progress->step_count <= 1 ? 0 : 1;
   for (int c = 0; c < 3; c++) {
     run->momentum[which][c] = progress->measures->momentum[c];
     run->angular[which][c] = progress->measures->angular_momentum[c];
   }
   for (int a = 0; a < model->bodies[model->scene->body_count - 1].vertex_end; a++)
-    run->flight =
-        fmax(run->flight, progress->step * vec3_length(vec3_at(progress->system->velocities + 3 * a)));
+    run->flight = fmax(run->flight, progress->step * vec3_length(vec3_at(velocities + 3 * a)));
   run->is_cut = clock_cpu_s() - run->began_s > run->limit_s;
   if (run->is_cut || (run->asked_to_stop && *run->asked_to_stop)) run->stop = 1;
   return STATUS_OK;

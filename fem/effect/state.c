@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/effect/state.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -8,7 +9,7 @@
 Status fem_state_create(FemState *state, int vertex_count, const double *positions,
                         const double *velocities) {
   size_t values = 3 * (size_t)vertex_count;
-  *state = (FemState){.last = state};
+  *state = (FemState){.last = state, .version = fem_state_new_version()};
   state->positions = memory_copy(positions, values, sizeof *positions);
   state->velocities = memory_copy(velocities, values, sizeof *velocities);
   return state->positions && state->velocities ? STATUS_OK : status_no_memory("the state");
@@ -19,6 +20,18 @@ void fem_state_destroy(FemState *state) {
   memory_free(state->velocities);
   for (int i = 0; i < FEM_MAX_EFFECTS; i++) fem_effect_history_destroy(&state->histories[i]);
   *state = (FemState){0};
+}
+
+long long fem_state_new_version(void) {
+  static atomic_llong count;
+  return ++count;
+}
+
+FemState fem_state_beside(const FemState *state, double time) {
+  FemState beside = *state;
+  if (time != state->time) beside.version = fem_state_new_version();
+  beside.time = time;
+  return beside;
 }
 
 Status fem_effect_history_resize(FemEffectHistory *history, size_t count) {

@@ -2,8 +2,9 @@
 // The state of a run: what forces, matrices and energies are functions of.
 //
 // An accepted state is whole: time, positions, velocities, and what effects remember by then. A state under
-// trial is a step from the last accepted one, `last`; effects look there for what has been, and change
-// nothing. Once it is accepted (fem_system_accept) its own histories are those that follow.
+// trial is a step from the last accepted one, `last`: effects look there for what has been, and change
+// nothing. It belongs to whoever integrates or solves, who fills it by fem_system_scatter. A system keeps the
+// last accepted one (fem_system_accept).
 #ifndef TETLAP_FEM_EFFECT_STATE_H
 #define TETLAP_FEM_EFFECT_STATE_H
 
@@ -22,19 +23,23 @@ typedef struct FemEffectHistory {
 } FemEffectHistory;
 
 typedef struct FemState {
-  double time;        // [s]
-  double *positions;  // [m]                        (vertex_count, 3)
-  double *velocities; // [m/s]                      (vertex_count, 3)
-  FemEffectHistory
-      histories[FEM_MAX_EFFECTS]; // by the effects' places in their system; filled once it is accepted
-  const struct FemState *last;    // the last accepted state, borrowed; itself where it is accepted
-  long long version;              // the same number: the same time, positions and velocities
-  bool with_held;                 // forces are wanted on bodies that are held, too, and between them
+  double time;                                 // [s]
+  double *positions;                           // [m]                        (vertex_count, 3)
+  double *velocities;                          // [m/s]                      (vertex_count, 3)
+  FemEffectHistory histories[FEM_MAX_EFFECTS]; // of an accepted state, by the effects' places in their system
+  const struct FemState *last; // the last accepted state, borrowed; itself where it is accepted
+  long long version;           // the same number: the same time and positions, in any states
+  bool with_held;              // forces are wanted on bodies that are held, too, and between them
 } FemState;
 
 // Room for so many vertices, with copies of these positions and velocities, at time 0. It is its own `last`.
 Status fem_state_create(FemState *state, int vertex_count, const double *positions, const double *velocities);
 void fem_state_destroy(FemState *state); // also of a zeroed one
+
+// A version that no state of this process has had.
+long long fem_state_new_version(void);
+// The state at another time, its arrays borrowed.
+FemState fem_state_beside(const FemState *state, double time);
 
 // Room for that many numbers, whose values are then anything.
 Status fem_effect_history_resize(FemEffectHistory *history, size_t count);

@@ -15,13 +15,6 @@
 #include "fem/scene/drive.h"
 #include "fem/sparse/solver.h"
 
-// The scattered state, at that time.
-static FemState *state_of(FemSystem *system, double time) {
-  if (time != system->trial.time) system->trial.version = ++system->version_count;
-  system->trial.time = time;
-  return &system->trial;
-}
-
 // A message about the scene begins with its place there.
 static Status name_effect(Status status, const FemEffectOps *ops) {
   return status == STATUS_OK || status == STATUS_INPUT ? status
@@ -69,8 +62,7 @@ static Status couple_vertices(FemSystem *system) {
 }
 
 // Lets effects tell their couplings: all of them, or only those that may have changed.
-static Status couple_effects(FemSystem *system, double time, bool only_changing, int *has_grown) {
-  const FemState *state = state_of(system, time);
+static Status couple_effects(FemSystem *system, const FemState *state, bool only_changing, int *has_grown) {
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffectOps *ops = system->effects[i].ops;
     if (!ops->couple || (only_changing && !ops->couples_anew)) continue;
@@ -114,31 +106,25 @@ static Status start_histories(FemSystem *system) {
   return STATUS_OK;
 }
 
-// The scattered state is accepted, but for what effects remember.
-static void take_state(FemSystem *system) {
+// The state is accepted, but for what effects remember.
+static void take_state(FemSystem *system, const FemState *state) {
   size_t bytes = 3 * (size_t)system->model->vertex_count * sizeof(double);
-  memcpy(system->accepted.positions, system->trial.positions, bytes);
-  memcpy(system->accepted.velocities, system->trial.velocities, bytes);
-  system->accepted.time = system->trial.time;
-  system->accepted.version = system->trial.version;
+  memcpy(system->accepted.positions, state->positions, bytes);
+  memcpy(system->accepted.velocities, state->velocities, bytes);
+  system->accepted.time = state->time;
+  system->accepted.version = state->version;
 }
 
-static Status create_states(FemSystem *system) {
+static Status create_accepted(FemSystem *system) {
   const FemModel *model = system->model;
   TRY(fem_state_create(&system->accepted, model->vertex_count, model->rest, model->initial_velocity));
   fem_model_drivers_move(model, 0, system->accepted.positions, system->accepted.velocities);
-  TRY(fem_state_create(&system->trial, model->vertex_count, system->accepted.positions,
-                       system->accepted.velocities));
-  system->trial.last = &system->accepted;
-  system->accepted.version = system->trial.version = ++system->version_count;
-  system->positions = system->trial.positions;
-  system->velocities = system->trial.velocities;
   return STATUS_OK;
 }
 
 static Status create(FemSystem *system, const FemSystem *old) {
   size_t values = 3 * (size_t)system->model->vertex_count;
-  TRY(create_states(system));
+  TRY(create_accepted(system));
   system->forces = memory_zeroed(values + 1, sizeof *system->forces);
   if (!system->forces) return status_no_memory("the state");
   TRY(create_effects(system, old));
@@ -146,7 +132,7 @@ static Status create(FemSystem *system, const FemSystem *old) {
   TRY(couple_vertices(system));
   TRY(renew_lists(system, &system->accepted, 0));
   TRY(start_histories(system));
-  TRY(couple_effects(system, 0, false, NULL));
+  TRY(couple_effects(system, &system->accepted, false, NULL));
   weigh_effects(system);
   return lay_out(system);
 }
@@ -180,24 +166,43 @@ void fem_system_destroy(FemSystem *system) {
   fem_matrix_destroy(&system->matrix);
   fem_pattern_destroy(system->pattern);
   fem_state_destroy(&system->accepted);
-  fem_state_destroy(&system->trial);
+  for (int i = 0; i < FEM_MAX_EFFECTS; i++) fem_effect_history_destroy(&system->next[i]);
   memory_free(system->forces);
   *system = (FemSystem){0};
 }
 
-void fem_system_scatter(FemSystem *system, double time, const double *u, const double *v) {
+Status fem_system_create_state(const FemSystem *system, FemState *state) {
+  const FemState *accepted = &system->accepted;
+  TRY(fem_state_create(state, system->model->vertex_count, accepted->positions, accepted->velocities));
+  state->time = accepted->time;
+  state->last = accepted;
+  return STATUS_OK;
+}
+
+void fem_system_scatter(const FemSystem *system, double time, const double *u, const double *v,
+                        FemState *state) {
   const FemModel *model = system->model;
-  bool is_another = false;
+  bool is_another = time != state->time;
   for (int i = 0; i < model->unknown_count; i++) {
     int dof = model->dof_of_unknown[i];
     double position = model->rest[dof] + u[i];
-    is_another = is_another || system->positions[dof] != position || system->velocities[dof] != v[i];
-    system->positions[dof] = position;
-    system->velocities[dof] = v[i];
+    is_another = is_another || state->positions[dof] != position;
+    state->positions[dof] = position;
+    if (v) state->velocities[dof] = v[i];
   }
-  if (is_another) system->trial.version = ++system->version_count;
-  state_of(system, time);
-  fem_model_drivers_move(model, time, system->positions, system->velocities);
+  if (is_another) state->version = fem_state_new_version();
+  state->time = time;
+  fem_model_drivers_move(model, time, state->positions, state->velocities);
+  if (!v) memset(state->velocities, 0, 3 * (size_t)model->vertex_count * sizeof *state->velocities);
+}
+
+void fem_system_gather(const FemSystem *system, const FemState *state, double *u, double *v) {
+  const FemModel *model = system->model;
+  for (int i = 0; i < model->unknown_count; i++) {
+    int dof = model->dof_of_unknown[i];
+    u[i] = state->positions[dof] - model->rest[dof];
+    v[i] = state->velocities[dof];
+  }
 }
 
 // `what`: of which array the first value that is no number is told. RETRY if there is one.
@@ -211,9 +216,9 @@ static Status check_numbers(const FemSystem *system, const double *values, const
                      from ? "')" : "");
 }
 
-Status fem_system_check_state(const FemSystem *system) {
-  TRY(check_numbers(system, system->positions, "position of", NULL));
-  return check_numbers(system, system->velocities, "velocity of", NULL);
+Status fem_system_check_state(const FemSystem *system, const FemState *state) {
+  TRY(check_numbers(system, state->positions, "position of", NULL));
+  return check_numbers(system, state->velocities, "velocity of", NULL);
 }
 
 static Status check_stop(const FemSystem *system) {
@@ -266,11 +271,11 @@ static Status add_own_forces(FemSystem *system, const FemState *state, Part part
   TRY(check_stop(system));
   memset(system->forces, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->forces);
   TRY(fem_formulas_check(system->model, state->time));
-  TRY(fem_system_check_state(system));
+  TRY(fem_system_check_state(system, state));
   return add_forces(system, state, part);
 }
 
-static Status find_forces(FemSystem *system, const FemState *state) {
+Status fem_system_forces(FemSystem *system, const FemState *state) {
   if (system->model->share) {
     TRY(sum_forces(system, add_own_forces(system, state, PART_DIVIDED)));
     TRY(ranks()->worst(add_forces(system, state, PART_WHOLE)));
@@ -281,21 +286,15 @@ static Status find_forces(FemSystem *system, const FemState *state) {
   return is_finite ? STATUS_OK : blame_effect(system, state);
 }
 
-Status fem_system_forces(FemSystem *system, double time) {
-  return find_forces(system, state_of(system, time));
+Status fem_system_forces_of_all(FemSystem *system, const FemState *state) {
+  FemState with_held = *state;
+  with_held.with_held = true;
+  return fem_system_forces(system, &with_held);
 }
 
-Status fem_system_forces_of_all(FemSystem *system, double time) {
-  FemState *state = state_of(system, time);
-  state->with_held = true;
-  Status status = find_forces(system, state);
-  state->with_held = false;
-  return status;
-}
-
-Status fem_system_couple(FemSystem *system, double time) {
+Status fem_system_couple(FemSystem *system, const FemState *state) {
   int has_grown = 0;
-  TRY(couple_effects(system, time, true, &has_grown));
+  TRY(couple_effects(system, state, true, &has_grown));
   if (!ranks_any(has_grown)) return STATUS_OK;
   return ranks()->worst(lay_out(system));
 }
@@ -312,10 +311,10 @@ Status fem_system_renumber(FemSystem *system) {
   return lay_out(system);
 }
 
-static Status assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix) {
+static Status assemble(FemSystem *system, const FemState *state, double k, double d, double m,
+                       FemMatrix *matrix) {
   TRY(check_stop(system));
   fem_matrix_zero(matrix);
-  const FemState *state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {
     if (!system->effects[i].ops->add_jacobian) continue;
     double began = clock_wall_s();
@@ -327,20 +326,20 @@ static Status assemble(FemSystem *system, double time, double k, double d, doubl
   return STATUS_OK;
 }
 
-Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix) {
-  return ranks()->worst(assemble(system, time, k, d, m, matrix));
+Status fem_system_assemble(FemSystem *system, const FemState *state, double k, double d, double m,
+                           FemMatrix *matrix) {
+  return ranks()->worst(assemble(system, state, k, d, m, matrix));
 }
 
-static Status begin(FemSystem *system, double time, const double *u, const double *v, double next_step) {
-  TRY(fem_formulas_check(system->model, time));
-  fem_system_scatter(system, time, u, v);
-  take_state(system);
+static Status begin(FemSystem *system, const FemState *state, double next_step) {
+  TRY(fem_formulas_check(system->model, state->time));
+  take_state(system, state);
   TRY(renew_lists(system, &system->accepted, next_step));
   return start_histories(system);
 }
 
-Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v, double next_step) {
-  return ranks()->worst(begin(system, time, u, v, next_step));
+Status fem_system_begin(FemSystem *system, const FemState *state, double next_step) {
+  return ranks()->worst(begin(system, state, next_step));
 }
 
 Status fem_system_remember(FemSystem *system, int place, const double *values, size_t count) {
@@ -351,54 +350,47 @@ Status fem_system_remember(FemSystem *system, int place, const double *values, s
 }
 
 void fem_system_forget(FemSystem *system) {
-  system->accepted.version = ++system->version_count;
-  system->trial.version = ++system->version_count;
+  system->accepted.version = fem_state_new_version();
 }
 
-static Status renew(FemSystem *system, double time, const double *u, const double *v) {
-  fem_system_scatter(system, time, u, v);
-  return renew_lists(system, &system->trial, 0);
+Status fem_system_renew(FemSystem *system, const FemState *state) {
+  return ranks()->worst(renew_lists(system, state, 0));
 }
 
-Status fem_system_renew(FemSystem *system, double time, const double *u, const double *v) {
-  return ranks()->worst(renew(system, time, u, v));
-}
-
-// What effects remember at the scattered state, once it is accepted.
-static Status advance(FemSystem *system) {
+// What effects remember at the state, once it is accepted.
+static Status advance(FemSystem *system, const FemState *state) {
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffect *effect = &system->effects[i];
     if (!effect->ops->advance) continue;
     double began = clock_wall_s();
-    TRY(effect->ops->advance(effect->self, &system->trial, &system->trial.histories[i]));
+    TRY(effect->ops->advance(effect->self, state, &system->next[i]));
     system->costs[i].prepare_s += clock_wall_s() - began;
     system->costs[i].prepare_calls++;
   }
   return STATUS_OK;
 }
 
-static Status accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
-  TRY(fem_formulas_check(system->model, time));
+static Status accept(FemSystem *system, const FemState *state, double next_step) {
+  TRY(fem_formulas_check(system->model, state->time));
   TRY(check_stop(system));
-  fem_system_scatter(system, time, u, v);
-  TRY(renew_lists(system, &system->trial, next_step));
-  TRY(advance(system));
+  TRY(renew_lists(system, state, next_step));
+  TRY(advance(system, state));
   for (int i = 0; i < system->effect_count; i++) {
     FemEffectHistory before = system->accepted.histories[i];
-    system->accepted.histories[i] = system->trial.histories[i];
-    system->trial.histories[i] = before;
+    system->accepted.histories[i] = system->next[i];
+    system->next[i] = before;
   }
-  take_state(system);
+  take_state(system, state);
   weigh_effects(system);
   return STATUS_OK;
 }
 
-// Ranks decide alike because their states are the same: a checksum of the unknowns, as two numbers and their
-// negatives, whose largest over ranks must be those.
-static Status compare_states(const FemSystem *system, const double *u, const double *v) {
+// Ranks decide alike because their states are the same: a checksum of positions and velocities, as two
+// numbers and their negatives, whose largest over ranks must be those.
+static Status compare_states(const FemSystem *system, const FemState *state) {
   uint64_t sum = 1469598103934665603u, bits;
-  for (int i = 0; i < 2 * system->model->unknown_count; i++) {
-    const double *value = i % 2 ? v + i / 2 : u + i / 2;
+  for (int i = 0; i < 6 * system->model->vertex_count; i++) {
+    const double *value = i % 2 ? state->velocities + i / 2 : state->positions + i / 2;
     memcpy(&bits, value, sizeof bits);
     sum = (sum ^ bits) * 1099511628211u;
     sum ^= sum >> 29;
@@ -411,43 +403,41 @@ static Status compare_states(const FemSystem *system, const double *u, const dou
                      "kinds? Take machines of one kind");
 }
 
-Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step) {
-  if (system->model->share) TRY(compare_states(system, u, v));
-  return ranks()->worst(accept(system, time, u, v, next_step));
+Status fem_system_accept(FemSystem *system, const FemState *state, double next_step) {
+  if (system->model->share) TRY(compare_states(system, state));
+  return ranks()->worst(accept(system, state, next_step));
 }
 
-static double kinetic_energy(const FemSystem *system) {
-  const FemModel *model = system->model;
+static double kinetic_energy(const FemModel *model, const double *velocities) {
   double sum = 0;
   for (int i = 0; i < model->unknown_count; i++) {
     int dof = model->dof_of_unknown[i];
-    sum += 0.5 * model->mass[dof / 3] * system->velocities[dof] * system->velocities[dof];
+    sum += 0.5 * model->mass[dof / 3] * velocities[dof] * velocities[dof];
   }
   return sum;
 }
 
 // Of the motion that nothing can notice.
-static double common_kinetic(const FemSystem *system) {
-  const FemModel *model = system->model;
+static double common_kinetic(const FemModel *model, const double *velocities) {
   const double mass = fem_model_mass(model);
   double p[3] = {0};
   for (int i = 0; i < model->unknown_count; i++) {
     int dof = model->dof_of_unknown[i];
-    p[dof % 3] += model->mass[dof / 3] * system->velocities[dof];
+    p[dof % 3] += model->mass[dof / 3] * velocities[dof];
   }
   Vec3 common = fem_model_common_part(model, vec3_scale(1 / mass, vec3_at(p)));
   return 0.5 * mass * vec3_dot(common, common);
 }
 
 // A prescribed coordinate is moved by minus the force that acts on it.
-static double driven_power(const FemSystem *system) {
+static double driven_power(const FemSystem *system, const double *velocities) {
   const FemModel *model = system->model;
   double sum = 0;
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
     if (driver->is_fixed || driver->is_released) continue;
     for (int i = 0; i < driver->dof_count; i++)
-      sum -= system->forces[driver->dofs[i]] * system->velocities[driver->dofs[i]];
+      sum -= system->forces[driver->dofs[i]] * velocities[driver->dofs[i]];
   }
   return sum;
 }
@@ -481,18 +471,17 @@ static Status sum_energies(FemSystem *system, const FemState *state, FemEnergy *
   return ranks()->worst(add_energies(system, state, PART_WHOLE, energy));
 }
 
-Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy) {
-  TRY(ranks()->worst(fem_formulas_check(system->model, time)));
-  *energy = (FemEnergy){.kinetic = kinetic_energy(system)};
-  if (has_moving_driver(system->model)) {
-    TRY(fem_system_forces(system, time));
-    energy->driven_power = driven_power(system);
+Status fem_system_energy(FemSystem *system, const FemState *state, FemEnergy *energy) {
+  const FemModel *model = system->model;
+  TRY(ranks()->worst(fem_formulas_check(model, state->time)));
+  *energy = (FemEnergy){.kinetic = kinetic_energy(model, state->velocities)};
+  if (has_moving_driver(model)) {
+    TRY(fem_system_forces(system, state));
+    energy->driven_power = driven_power(system, state->velocities);
   }
-  const FemState *state = state_of(system, time);
-  TRY(system->model->share ? sum_energies(system, state, energy)
-                           : add_energies(system, state, PART_ALL, energy));
-  energy->common_kinetic = common_kinetic(system);
-  if (fem_model_floats(system->model)) energy->common_gravity = energy->gravity;
+  TRY(model->share ? sum_energies(system, state, energy) : add_energies(system, state, PART_ALL, energy));
+  energy->common_kinetic = common_kinetic(model, state->velocities);
+  if (fem_model_floats(model)) energy->common_gravity = energy->gravity;
   return STATUS_OK;
 }
 
@@ -503,8 +492,7 @@ static Status add_damping(FemSystem *system, const FemState *state, FemEnergy *e
   return STATUS_OK;
 }
 
-Status fem_system_damping_power(FemSystem *system, double time, double *power) {
-  const FemState *state = state_of(system, time);
+Status fem_system_damping_power(FemSystem *system, const FemState *state, double *power) {
   FemEnergy own = {0};
   Status status = add_damping(system, state, &own);
   double sums[2] = {own.dissipated_power, status != STATUS_OK};
@@ -518,9 +506,8 @@ static bool has_gap(const FemEffect *effect) {
   return !effect->ops->has_gap || effect->ops->has_gap(effect->self);
 }
 
-Status fem_system_gap(FemSystem *system, double time, double *gap) {
+Status fem_system_gap(FemSystem *system, const FemState *state, double *gap) {
   *gap = INFINITY;
-  const FemState *state = state_of(system, time);
   for (int i = 0; i < system->effect_count; i++) {
     if (!has_gap(&system->effects[i])) continue;
     double one;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The mechanical system of a run: model + the effects that its scene calls for. Evaluates forces, the
-// condensed or split Jacobian, energies; owns the matrix pattern.
+// condensed or split Jacobian and energies at any state; owns the matrix pattern and the last accepted state.
 #ifndef TETLAP_FEM_EFFECT_SYSTEM_H
 #define TETLAP_FEM_EFFECT_SYSTEM_H
 
@@ -22,14 +22,13 @@ typedef struct FemSystem {
   FemEffectCost costs[FEM_MAX_EFFECTS];
   int effect_count;
   FemPattern *pattern;
-  FemMatrix matrix;                  // S, or K for split use
-  long long pattern_version;         // grows whenever matrix has been laid out anew
-  FemState accepted, trial;          // the last accepted state, and the scattered one
-  long long version_count;           // of states until now
-  double *positions, *velocities;    // of `trial`                                      (vertex_count, 3)
-  double *forces;                    // scratch, and one more for how many ranks failed (vertex_count, 3)
-  const volatile sig_atomic_t *stop; // becomes non-zero: forces, matrices and what effects keep are
-                                     // STATUS_INTERRUPTED; borrowed, NULL: never
+  FemMatrix matrix;                       // S, or K for split use
+  long long pattern_version;              // grows whenever matrix has been laid out anew
+  FemState accepted;                      // the last accepted state
+  FemEffectHistory next[FEM_MAX_EFFECTS]; // scratch of fem_system_accept
+  double *forces;                         // scratch, and one more for how many ranks failed (vertex_count, 3)
+  const volatile sig_atomic_t *stop;      // becomes non-zero: forces, matrices and what effects keep are
+                                          // STATUS_INTERRUPTED; borrowed, NULL: never
 } FemSystem;
 
 Status fem_system_create(FemSystem *system, const FemModel *model);
@@ -38,22 +37,28 @@ Status fem_system_create(FemSystem *system, const FemModel *model);
 Status fem_system_create_again(FemSystem *system, const FemModel *model);
 void fem_system_destroy(FemSystem *system);
 
-// Unknowns (displacement u = x − X, velocity v; size n each) to full arrays in system->positions, velocities.
-void fem_system_scatter(FemSystem *system, double time, const double *u, const double *v);
+// A state to try steps from the accepted one with, the caller's; it begins as a copy of that.
+Status fem_system_create_state(const FemSystem *system, FemState *state);
+// Fills it: unknowns (displacement u = x − X, velocity v; n each) as given, prescribed coordinates as they
+// are at that time, others stay as they are. v NULL: all is at rest, what is driven, too.
+void fem_system_scatter(const FemSystem *system, double time, const double *u, const double *v,
+                        FemState *state);
+// The unknowns of a state, the inverse.
+void fem_system_gather(const FemSystem *system, const FemState *state, double *u, double *v);
 
-// Whether the scattered state is made of numbers. RETRY: it is not; the message names the first vertex.
-Status fem_system_check_state(const FemSystem *system);
+// Whether the state is made of numbers. RETRY: it is not; the message names the first vertex.
+Status fem_system_check_state(const FemSystem *system, const FemState *state);
 
-// Forces on all vertices into system->forces at the scattered state. RETRY as the effects say, and where the
-// state or a force is no number: the message names the vertex, and the effect that the force is from.
-// On bodies that are held they may be left out.
-Status fem_system_forces(FemSystem *system, double time);
+// Forces on all vertices into system->forces. RETRY as the effects say, and where the state or a force is no
+// number: the message names the vertex, and the effect that the force is from. On bodies that are held they
+// may be left out.
+Status fem_system_forces(FemSystem *system, const FemState *state);
 // The same, and the forces on bodies that are held.
-Status fem_system_forces_of_all(FemSystem *system, double time);
+Status fem_system_forces_of_all(FemSystem *system, const FemState *state);
 
-// Lays system->matrix out anew if an effect couples more at the scattered state than the pattern has; then
+// Lays system->matrix out anew if an effect couples more at the state than the pattern has; then
 // pattern_version has grown. Call it before assembling into system->matrix or a copy of its layout.
-Status fem_system_couple(FemSystem *system, double time);
+Status fem_system_couple(FemSystem *system, const FemState *state);
 
 // Every effect is linear: K and D are constant.
 bool fem_system_is_linear(const FemSystem *system);
@@ -61,28 +66,29 @@ bool fem_system_is_linear(const FemSystem *system);
 // After unknowns of the model were numbered anew (fem/run/hold.h): lays the matrix out again.
 Status fem_system_renumber(FemSystem *system);
 
-// matrix = k·K + d·D + m·M at the scattered state.
-Status fem_system_assemble(FemSystem *system, double time, double k, double d, double m, FemMatrix *matrix);
+// matrix = k·K + d·D + m·M.
+Status fem_system_assemble(FemSystem *system, const FemState *state, double k, double d, double m,
+                           FemMatrix *matrix);
 
-// A run begins, or goes on, at this state (scatters it itself), which is accepted: effects begin to remember,
-// and renew their lists for a step of that length [s].
-Status fem_system_begin(FemSystem *system, double time, const double *u, const double *v, double next_step);
+// A run begins, or goes on, at this state, which is accepted: effects begin to remember, and renew their
+// lists for a step of that length [s].
+Status fem_system_begin(FemSystem *system, const FemState *state, double next_step);
 // What the effect at that place remembers at the accepted state, from a checkpoint. STATUS_INPUT: it does not
 // fit.
 Status fem_system_remember(FemSystem *system, int place, const double *values, size_t count);
 // What is held has changed (contact_system_hold): nothing that was evaluated stands.
 void fem_system_forget(FemSystem *system);
-// At a state that is not accepted (scatters it itself): lets effects renew their lists.
-Status fem_system_renew(FemSystem *system, double time, const double *u, const double *v);
-// Accepts a step (scatters it itself): effects renew their lists, and histories go on.
-Status fem_system_accept(FemSystem *system, double time, const double *u, const double *v, double next_step);
+// Lets effects renew their lists near a state that is not accepted.
+Status fem_system_renew(FemSystem *system, const FemState *state);
+// Accepts a state: effects renew their lists, and histories go on.
+Status fem_system_accept(FemSystem *system, const FemState *state, double next_step);
 
-// Energies and powers at the scattered state; evaluates the forces where driven vertices need them.
-Status fem_system_energy(FemSystem *system, double time, FemEnergy *energy);
-// Of the damping of materials alone [W], at the scattered state. Over ranks the sum.
-Status fem_system_damping_power(FemSystem *system, double time, double *power);
+// Energies and powers; evaluates the forces where driven vertices need them.
+Status fem_system_energy(FemSystem *system, const FemState *state, FemEnergy *energy);
+// Of the damping of materials alone [W]. Over ranks the sum.
+Status fem_system_damping_power(FemSystem *system, const FemState *state, double *power);
 // Smallest onset function of all effects; +INFINITY if there is none.
-Status fem_system_gap(FemSystem *system, double time, double *gap);
+Status fem_system_gap(FemSystem *system, const FemState *state, double *gap);
 bool fem_system_has_gap(const FemSystem *system);
 
 // How far a step from `time` may go, at most to `farthest`, so that no function of time is

@@ -57,18 +57,18 @@ static double energy_of_quadratic(const FemModel *model, const FemModelBody *bod
 
 // Of every body, scaled so that the sum is `elastic`: what the elements' own law leaves out is shared as the
 // rest.
-static void share_energy(FemAccuracy *accuracy, const FemSystem *system, double elastic) {
-  const FemModel *model = system->model;
+static void share_energy(FemAccuracy *accuracy, const FemModel *model, const double *positions,
+                         double elastic) {
   double sum = 0;
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     double energy = 0;
     if (body->quadratic_end > body->quadratic_begin)
       for (int e = body->quadratic_begin; e < body->quadratic_end; e++)
-        energy += energy_of_quadratic(model, body, e, system->positions);
+        energy += energy_of_quadratic(model, body, e, positions);
     else
       for (int e = body->tet_begin; e < body->tet_end; e++)
-        energy += energy_of_tet(model, body, e, system->positions);
+        energy += energy_of_tet(model, body, e, positions);
     accuracy->energies[b] = energy;
     sum += energy;
   }
@@ -138,10 +138,11 @@ static bool is_largest(const FemAccuracy *accuracy, const ContactInterface *inte
 }
 
 // Of the state in which most is stored.
-static void find_way(FemAccuracy *accuracy, const FemSystem *system, const ContactInterfaceDef *interface,
-                     double energy, double elastic, FemAccuracyPair *found) {
-  const int bodies = system->model->scene->body_count;
-  if (!accuracy->has_energies) share_energy(accuracy, system, elastic);
+static void find_way(FemAccuracy *accuracy, const FemModel *model, const double *positions,
+                     const ContactInterfaceDef *interface, double energy, double elastic,
+                     FemAccuracyPair *found) {
+  const int bodies = model->scene->body_count;
+  if (!accuracy->has_energies) share_energy(accuracy, model, positions, elastic);
   accuracy->has_energies = true;
   found->elastic[0] = interface->a < bodies ? accuracy->energies[interface->a] : 0;
   found->elastic[1] =
@@ -158,8 +159,8 @@ static Status estimate(const ContactLayout *layout, const ContactEvaluation *eva
   return find_rim(layout, evaluation, patch, &found->rim);
 }
 
-Status fem_accuracy_look(FemAccuracy *accuracy, const FemSystem *system, ContactSystem *contact, double time,
-                         double elastic) {
+Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, ContactSystem *contact,
+                         const FemState *state, double elastic) {
   const ContactEvaluation *evaluation;
   const ContactLayout *layout = contact_system_layout(contact);
   TRY(contact_system_look(contact, &evaluation));
@@ -168,11 +169,12 @@ Status fem_accuracy_look(FemAccuracy *accuracy, const FemSystem *system, Contact
   for (int p = 0; p < evaluation->patches.patch_count; p++) {
     const ContactPatch *patch = &evaluation->patches.patches[p];
     FemAccuracyPair *found = &accuracy->found[accuracy->found_count];
-    if (!is_largest(accuracy, &evaluation->interfaces[patch->interface], patch->interface, time,
+    if (!is_largest(accuracy, &evaluation->interfaces[patch->interface], patch->interface, state->time,
                     patch->energy + elastic, found))
       continue;
     if (patch->energy + elastic > GROWN * found->stored)
-      find_way(accuracy, system, &layout->interfaces[patch->interface], patch->energy, elastic, found);
+      find_way(accuracy, model, state->positions, &layout->interfaces[patch->interface], patch->energy,
+               elastic, found);
     if (found->force > GROWN * found->estimated) TRY(estimate(layout, evaluation, patch, found));
     accuracy->places[accuracy->found_count++] = patch->interface;
   }

@@ -62,10 +62,10 @@ typedef struct FemAccuracy {
 Status fem_accuracy_create(FemAccuracy *accuracy, const FemModel *model, const ContactSystem *contact);
 void fem_accuracy_destroy(FemAccuracy *accuracy);
 
-// Finds pairs that press more than ever before at contact's last evaluation, that of the scattered state;
-// `elastic`: the elastic energy of all bodies [J].
-Status fem_accuracy_look(FemAccuracy *accuracy, const FemSystem *system, ContactSystem *contact, double time,
-                         double elastic);
+// Finds pairs that press more than ever before at contact's last evaluation, that of this state; `elastic`:
+// the elastic energy of all bodies [J].
+Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, ContactSystem *contact,
+                         const FemState *state, double elastic);
 // The evaluated state is accepted.
 void fem_accuracy_accept(FemAccuracy *accuracy);
 

@@ -43,14 +43,14 @@ void fem_ledger_destroy(FemLedger *ledger) {
   *ledger = (FemLedger){0};
 }
 
-static Status look(FemLedger *ledger, double time, const FemLedgerState *state) {
+static Status look(FemLedger *ledger, const FemState *state, const FemLedgerEntry *entry) {
   for (int p = 0; p < probe_count(ledger); p++) {
     ledger->next_readings[p] = ledger->readings[p];
-    fem_readings_add(&ledger->next_readings[p], &state->readings[p], time);
+    fem_readings_add(&ledger->next_readings[p], &entry->readings[p], state->time);
   }
   if (!ledger->contact) return STATUS_OK;
   TRY(contact_passage_look(&ledger->passage, ledger->contact));
-  return fem_accuracy_look(&ledger->accuracy, ledger->system, ledger->contact, time, state->elastic);
+  return fem_accuracy_look(&ledger->accuracy, ledger->system->model, ledger->contact, state, entry->elastic);
 }
 
 static void accept(FemLedger *ledger) {
@@ -64,17 +64,17 @@ static void accept(FemLedger *ledger) {
 
 // The effects are made anew at a checkpoint, so contact is looked up whenever a part begins. The
 // accepted state is evaluated once more, which changes nothing.
-Status fem_ledger_begin(FemLedger *ledger, double time, const FemLedgerState *state) {
+Status fem_ledger_begin(FemLedger *ledger, const FemState *state, const FemLedgerEntry *entry) {
   ledger->contact = contact_of(ledger);
-  if (!is_static(ledger)) TRY(fem_momentum_begin(&ledger->momentum, time, &state->contact));
-  TRY(look(ledger, time, state));
+  if (!is_static(ledger)) TRY(fem_momentum_begin(&ledger->momentum, state, &entry->contact));
+  TRY(look(ledger, state, entry));
   accept(ledger);
   return STATUS_OK;
 }
 
-Status fem_ledger_end(FemLedger *ledger, double time, const FemLedgerState *state) {
-  TRY(look(ledger, time, state));
-  return is_static(ledger) ? STATUS_OK : fem_momentum_end(&ledger->momentum, time, &state->contact);
+Status fem_ledger_end(FemLedger *ledger, const FemState *state, const FemLedgerEntry *entry) {
+  TRY(look(ledger, state, entry));
+  return is_static(ledger) ? STATUS_OK : fem_momentum_end(&ledger->momentum, state, &entry->contact);
 }
 
 void fem_ledger_accept(FemLedger *ledger) {

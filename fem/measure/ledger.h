@@ -19,22 +19,22 @@ typedef struct FemLedger {
   FemReadings *readings, *next_readings; //                         (probe_count)
 } FemLedger;
 
-// What it needs of a state: contact forces, the elastic energy of all bodies [J], what the probes read
-// (probe_count).
-typedef struct FemLedgerState {
+// What it needs to know of a state: contact forces, the elastic energy of all bodies [J], what the probes
+// read (probe_count).
+typedef struct FemLedgerEntry {
   FemMomentumContact contact;
   double elastic;
   const FemReading *readings;
-} FemLedgerState;
+} FemLedgerEntry;
 
 // A zeroed one, and one whose creation failed, can be destroyed.
 Status fem_ledger_create(FemLedger *ledger, FemSystem *system);
 void fem_ledger_destroy(FemLedger *ledger);
 
-// As those of momentum.h: a run begins or goes on at the scattered state, which has been evaluated …
-Status fem_ledger_begin(FemLedger *ledger, double time, const FemLedgerState *state);
+// As those of momentum.h: a run begins or goes on at a state, which has been evaluated …
+Status fem_ledger_begin(FemLedger *ledger, const FemState *state, const FemLedgerEntry *entry);
 // … a step may end there …
-Status fem_ledger_end(FemLedger *ledger, double time, const FemLedgerState *state);
+Status fem_ledger_end(FemLedger *ledger, const FemState *state, const FemLedgerEntry *entry);
 // … and does.
 void fem_ledger_accept(FemLedger *ledger);
 

@@ -36,10 +36,10 @@ static void add(FemMomentumBody *body, Vec3 force) {
   body->sum += vec3_length(force);
 }
 
-static void add_motion(const FemSystem *system, const FemModelBody *range, FemMomentumBody *body) {
+static void add_motion(const FemModel *model, const FemState *state, const FemModelBody *range,
+                       FemMomentumBody *body) {
   for (int dof = 3 * range->vertex_begin; dof < 3 * range->vertex_end; dof++)
-    if (system->model->unknown_of_dof[dof] >= 0)
-      body->p[dof % 3] += system->model->mass[dof / 3] * system->velocities[dof];
+    if (model->unknown_of_dof[dof] >= 0) body->p[dof % 3] += model->mass[dof / 3] * state->velocities[dof];
 }
 
 static void add_gravity(const FemModel *model, const FemModelBody *range, FemMomentumBody *body) {
@@ -47,7 +47,8 @@ static void add_gravity(const FemModel *model, const FemModelBody *range, FemMom
 }
 
 // How fast an obstacle moves where it presses [m/s]: it may bring a body to that.
-static double speed_of_obstacle(const FemMomentum *momentum, double time, const ContactInterface *interface) {
+static double speed_of_obstacle(const FemMomentum *momentum, const FemState *state,
+                                const ContactInterface *interface) {
   FemSystem *system = momentum->system;
   const FemModel *model = system->model;
   int number = interface->b - model->body_count;
@@ -56,17 +57,17 @@ static double speed_of_obstacle(const FemMomentum *momentum, double time, const 
     const ContactLayout *layout = contact_system_layout(fem_effect_contact_system(contact));
     const ContactShape *shape = &layout->def.shapes[number];
     bool has_centre = isfinite(interface->centre[0]);
-    Vec3 centre = has_centre ? vec3_at(interface->centre) : contact_shape_point(shape, time);
-    return vec3_length(contact_shape_velocity(shape, time, centre));
+    Vec3 centre = has_centre ? vec3_at(interface->centre) : contact_shape_point(shape, state->time);
+    return vec3_length(contact_shape_velocity(shape, state->time, centre));
   }
   const FemModelBody *body = &model->bodies[interface->b];
   Vec3 sum = {0, 0, 0};
   for (int a = body->vertex_begin; a < body->vertex_end; a++)
-    sum = vec3_add(sum, vec3_at(system->velocities + 3 * (size_t)a));
+    sum = vec3_add(sum, vec3_at(state->velocities + 3 * (size_t)a));
   return vec3_length(sum) / (body->vertex_end - body->vertex_begin);
 }
 
-static void add_contact(const FemMomentum *momentum, double time, const ContactInterface *interface,
+static void add_contact(const FemMomentum *momentum, const FemState *state, const ContactInterface *interface,
                         Vec3 force, FemMomentumBody *bodies) {
   FemMomentumBody *a = &bodies[interface->a];
   if (interface->a == interface->b || interface->a >= momentum->body_count) return;
@@ -74,16 +75,14 @@ static void add_contact(const FemMomentum *momentum, double time, const ContactI
   if (interface->b < momentum->body_count)
     add(&bodies[interface->b], vec3_scale(-1, force));
   else if (vec3_length(force) > 0)
-    a->driven = fmax(a->driven, speed_of_obstacle(momentum, time, interface));
+    a->driven = fmax(a->driven, speed_of_obstacle(momentum, state, interface));
 }
 
-static Status add_loads(FemMomentum *momentum, double time, FemMomentumBody *bodies) {
+static Status add_loads(FemMomentum *momentum, const FemState *state, FemMomentumBody *bodies) {
   const FemModel *model = momentum->system->model;
-  const FemState state = {
-      .time = time, .positions = momentum->system->positions, .velocities = momentum->system->velocities};
   if (!momentum->loads) return STATUS_OK;
   memset(momentum->loads, 0, 3 * (size_t)model->vertex_count * sizeof(double));
-  TRY(fem_effect_loads.add_force(fem_system_effect(momentum->system, &fem_effect_loads), &state,
+  TRY(fem_effect_loads.add_force(fem_system_effect(momentum->system, &fem_effect_loads), state,
                                  momentum->loads));
   for (int b = 0; b < momentum->body_count; b++) {
     Vec3 sum = {0, 0, 0};
@@ -103,7 +102,7 @@ static int body_of(const FemModel *model, const FemModelDriver *driver) {
 }
 
 // What holds and drives: minus all other forces on those coordinates.
-static Status add_reactions(const FemMomentum *momentum, double time, FemMomentumBody *bodies) {
+static Status add_reactions(const FemMomentum *momentum, const FemState *state, FemMomentumBody *bodies) {
   FemSystem *system = momentum->system;
   const FemModel *model = system->model;
   bool is_evaluated = false;
@@ -111,7 +110,7 @@ static Status add_reactions(const FemMomentum *momentum, double time, FemMomentu
     const FemModelDriver *driver = &model->drivers[d];
     int b = driver->is_released ? -1 : body_of(model, driver);
     if (b < 0 || model->bodies[b].is_held) continue;
-    if (!is_evaluated) TRY(fem_system_forces(system, time));
+    if (!is_evaluated) TRY(fem_system_forces(system, state));
     is_evaluated = true;
     double sum[3] = {0, 0, 0};
     for (int i = 0; i < driver->dof_count; i++) sum[driver->dofs[i] % 3] -= system->forces[driver->dofs[i]];
@@ -120,20 +119,20 @@ static Status add_reactions(const FemMomentum *momentum, double time, FemMomentu
   return STATUS_OK;
 }
 
-// Momenta and forces of the scattered state; of what sleeps nothing.
-static Status measure(FemMomentum *momentum, double time, const FemMomentumContact *contact,
+// Momenta and forces; of what sleeps nothing.
+static Status measure(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact,
                       FemMomentumBody *bodies) {
   const FemModel *model = momentum->system->model;
   for (int b = 0; b < momentum->body_count; b++) {
     for (int c = 0; c < 3; c++) bodies[b].p[c] = bodies[b].force[c] = 0;
     bodies[b].sum = bodies[b].driven = 0;
-    add_motion(momentum->system, &model->bodies[b], &bodies[b]);
+    add_motion(model, state, &model->bodies[b], &bodies[b]);
     add_gravity(model, &model->bodies[b], &bodies[b]);
   }
   for (int i = 0; i < contact->count; i++)
-    add_contact(momentum, time, &contact->interfaces[i], vec3_at(contact->forces[i]), bodies);
-  TRY(add_loads(momentum, time, bodies));
-  TRY(add_reactions(momentum, time, bodies));
+    add_contact(momentum, state, &contact->interfaces[i], vec3_at(contact->forces[i]), bodies);
+  TRY(add_loads(momentum, state, bodies));
+  TRY(add_reactions(momentum, state, bodies));
   for (int b = 0; b < momentum->body_count; b++) {
     if (!model->bodies[b].is_held) continue;
     for (int c = 0; c < 3; c++) bodies[b].p[c] = bodies[b].force[c] = 0;
@@ -146,18 +145,18 @@ static void copy(const FemMomentum *momentum, const FemMomentumBody *from, FemMo
   memcpy(to, from, (size_t)momentum->body_count * sizeof *to);
 }
 
-Status fem_momentum_begin(FemMomentum *momentum, double time, const FemMomentumContact *contact) {
-  TRY(measure(momentum, time, contact, momentum->now));
+Status fem_momentum_begin(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact) {
+  TRY(measure(momentum, state, contact, momentum->now));
   copy(momentum, momentum->now, momentum->next);
-  momentum->time = momentum->next_time = time;
+  momentum->time = momentum->next_time = state->time;
   return STATUS_OK;
 }
 
-Status fem_momentum_end(FemMomentum *momentum, double time, const FemMomentumContact *contact) {
-  double half = 0.5 * (time - momentum->time);
+Status fem_momentum_end(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact) {
+  double half = 0.5 * (state->time - momentum->time);
   copy(momentum, momentum->now, momentum->next);
-  TRY(measure(momentum, time, contact, momentum->next));
-  momentum->next_time = time;
+  TRY(measure(momentum, state, contact, momentum->next));
+  momentum->next_time = state->time;
   for (int b = 0; b < momentum->body_count; b++) {
     const FemMomentumBody *now = &momentum->now[b];
     FemMomentumBody *next = &momentum->next[b];

@@ -46,10 +46,10 @@ typedef struct FemMomentumContact {
   const double (*forces)[3];          //                                    (count)
 } FemMomentumContact;
 
-// The next step begins at the scattered state: with other free coordinates, or where forces have jumped.
-Status fem_momentum_begin(FemMomentum *momentum, double time, const FemMomentumContact *contact);
-// A step may end at the scattered state …
-Status fem_momentum_end(FemMomentum *momentum, double time, const FemMomentumContact *contact);
+// The next step begins at this state: with other free coordinates, or where forces have jumped.
+Status fem_momentum_begin(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact);
+// A step may end at this state …
+Status fem_momentum_end(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact);
 // … and does.
 void fem_momentum_accept(FemMomentum *momentum);
 // Whether the step that was evaluated last is too long for its forces: the gap of a body exceeds what is

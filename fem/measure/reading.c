@@ -35,24 +35,25 @@ static Vec3 add_areas(const FemProbe *probe, const double *positions, double *ar
   return sum;
 }
 
-FemReading fem_reading_take(const FemProbe *probe, const FemSystem *system, const double *external) {
+FemReading fem_reading_take(const FemProbe *probe, const double *rest, const double *positions,
+                            const double *external) {
   FemReading reading = {0};
-  Vec3 centre = {0, 0, 0}, rest = {0, 0, 0}, force = {0, 0, 0}, moment = {0, 0, 0};
+  Vec3 centre = {0, 0, 0}, start = {0, 0, 0}, force = {0, 0, 0}, moment = {0, 0, 0};
   double share = 1.0 / probe->vertex_count;
   for (int i = 0; i < probe->vertex_count; i++) {
-    centre = vec3_add(centre, vec3_scale(share, place(system->positions, probe->vertices[i])));
-    rest = vec3_add(rest, vec3_scale(share, place(system->model->rest, probe->vertices[i])));
+    centre = vec3_add(centre, vec3_scale(share, place(positions, probe->vertices[i])));
+    start = vec3_add(start, vec3_scale(share, place(rest, probe->vertices[i])));
   }
   for (int i = 0; i < probe->vertex_count; i++) {
     Vec3 one = place(external, probe->vertices[i]),
-         arm = vec3_sub(place(system->positions, probe->vertices[i]), centre);
+         arm = vec3_sub(place(positions, probe->vertices[i]), centre);
     force = vec3_add(force, one);
     moment = vec3_add(moment, vec3_cross(arm, one));
   }
-  Vec3 normal = add_areas(probe, system->positions, &reading.area);
+  Vec3 normal = add_areas(probe, positions, &reading.area);
   vec3_store(reading.force, force);
   vec3_store(reading.moment, moment);
-  vec3_store(reading.displacement, vec3_sub(centre, rest));
+  vec3_store(reading.displacement, vec3_sub(centre, start));
   reading.pressure = -vec3_dot(force, normal) / (vec3_length(normal) * reading.area);
   return reading;
 }

@@ -22,8 +22,9 @@ typedef struct FemReading {
 enum { FEM_READING_COUNT = 11 };
 const char *fem_reading_title(int value); // "force_x_N" …
 
-// At the scattered state. `external` (vertex_count, 3): the force from outside on every vertex [N].
-FemReading fem_reading_take(const FemProbe *probe, const FemSystem *system, const double *external);
+// `external` (vertex_count, 3): the force from outside on every vertex [N].
+FemReading fem_reading_take(const FemProbe *probe, const double *rest, const double *positions,
+                            const double *external);
 
 // What a run has read after accepted steps.
 typedef struct FemReadings {

@@ -4,7 +4,7 @@
 #include <math.h>
 
 static double time_s(const FemColumnSource *s) {
-  return s->time;
+  return s->state->time;
 }
 static double kinetic_J(const FemColumnSource *s) {
   return s->measures->energy.kinetic;

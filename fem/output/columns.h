@@ -27,11 +27,12 @@ typedef struct FemMeasures {
 
 // What a row is made from. `status` NULL: the scene does not ask for the elements' status.
 typedef struct FemColumnSource {
-  double time, step; // [s]
+  const FemState *state;
+  double step; // the integrator's [s]
   const FemMeasures *measures;
   const FemAudit *audit;
   long long step_count, energy_events;
-  const ContactStatus *status;
+  const ContactStatus *status; // the recorder's
 } FemColumnSource;
 
 int fem_columns_count(void);

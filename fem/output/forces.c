@@ -91,7 +91,7 @@ static void take_friction(FemForces *forces) {
                           forces->friction);
 }
 
-Status fem_forces_take(FemForces *forces) {
+Status fem_forces_take(FemForces *forces, const FemState *state) {
   const FemSystem *system = forces->system;
   ContactSystem *contact = contact_of(system);
   void *viscosity = fem_system_effect(system, &fem_effect_viscosity);
@@ -100,7 +100,7 @@ Status fem_forces_take(FemForces *forces) {
   if (forces->contact)
     memcpy(forces->contact, contact_system_forces(contact), values_of(forces) * sizeof *forces->contact);
   if (viscosity)
-    TRY(fem_effect_viscosity_add(viscosity, system->velocities, forces->interfaces, forces->contact));
+    TRY(fem_effect_viscosity_add(viscosity, state->velocities, forces->interfaces, forces->contact));
   if (forces->friction) take_friction(forces);
   return forces->pressure ? contact_system_trace(contact, forces->pressure, forces->depth) : STATUS_OK;
 }

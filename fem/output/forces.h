@@ -35,7 +35,7 @@ void fem_forces_destroy(FemForces *forces);
 
 bool fem_forces_has_friction(const FemSystem *system);
 
-// Of the scattered state, whose energy was asked for last (fem_system_energy evaluates all laws).
-Status fem_forces_take(FemForces *forces);
+// Of the state whose energy was asked for last (fem_system_energy evaluates all laws).
+Status fem_forces_take(FemForces *forces, const FemState *state);
 
 #endif

@@ -38,15 +38,14 @@ static void add(size_t count, const double *from, double *to) {
   for (size_t k = 0; k < count && from; k++) to[k] += from[k];
 }
 
-static Status find_external(FemProbes *probes, double time, const FemForces *contact) {
+static Status find_external(FemProbes *probes, const FemState *state, const FemForces *contact) {
   FemSystem *system = probes->system;
-  const FemState state = {.time = time, .positions = system->positions, .velocities = system->velocities};
   size_t count = values_of(probes);
   memset(probes->external, 0, count * sizeof *probes->external);
   void *loads = fem_system_effect(system, &fem_effect_loads);
-  if (loads) TRY(fem_effect_loads.add_force(loads, &state, probes->external));
+  if (loads) TRY(fem_effect_loads.add_force(loads, state, probes->external));
   if (fem_reactions_any(system->model)) {
-    TRY(fem_reactions_measure(system, time, NULL, probes->reaction));
+    TRY(fem_reactions_measure(system, state, NULL, probes->reaction));
     add(count, probes->reaction, probes->external);
   }
   add(count, contact->contact, probes->external);
@@ -54,12 +53,13 @@ static Status find_external(FemProbes *probes, double time, const FemForces *con
   return STATUS_OK;
 }
 
-Status fem_probes_measure(FemProbes *probes, double time, const FemForces *contact) {
+Status fem_probes_measure(FemProbes *probes, const FemState *state, const FemForces *contact) {
   const FemModel *model = probes->system->model;
   if (!probes->readings) return STATUS_OK;
-  TRY(find_external(probes, time, contact));
+  TRY(find_external(probes, state, contact));
   for (int p = 0; p < model->probe_count; p++)
-    probes->readings[p] = fem_reading_take(&model->probes[p], probes->system, probes->external);
+    probes->readings[p] =
+        fem_reading_take(&model->probes[p], model->rest, state->positions, probes->external);
   return STATUS_OK;
 }
 

@@ -22,8 +22,8 @@ void fem_probes_destroy(FemProbes *probes);
 
 Status fem_probes_add_columns(FemHistory *history, const FemModel *model);
 
-// Reads all probes at the scattered state, whose forces of contact are given.
-Status fem_probes_measure(FemProbes *probes, double time, const FemForces *contact);
+// Reads all probes at a state, whose forces of contact are given.
+Status fem_probes_measure(FemProbes *probes, const FemState *state, const FemForces *contact);
 
 // The columns' values; returns the end of them.
 double *fem_probes_fill(const FemProbes *probes, double *row);

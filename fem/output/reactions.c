@@ -42,9 +42,9 @@ Status fem_reactions_add_columns(FemHistory *history, const FemModel *model) {
   return STATUS_OK;
 }
 
-Status fem_reactions_measure(FemSystem *system, double time, double **sums, double *at) {
+Status fem_reactions_measure(FemSystem *system, const FemState *state, double **sums, double *at) {
   const FemModel *model = system->model;
-  TRY(fem_system_forces_of_all(system, time));
+  TRY(fem_system_forces_of_all(system, state));
   if (at) memset(at, 0, 3 * (size_t)model->vertex_count * sizeof *at);
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];

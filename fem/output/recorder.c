@@ -171,18 +171,13 @@ Status fem_recorder_clear(const FemRecorder *recorder) {
   return STATUS_OK;
 }
 
-static void gather(const FemSystem *system, int tet, double corners[12]) {
-  for (int k = 0; k < 4; k++)
-    memcpy(corners + 3 * k, system->positions + 3 * system->model->tets[tet][k], 3 * sizeof *corners);
-}
-
-static void measure_elements(FemRecorder *recorder, FemMeasures *measures) {
+static void measure_elements(FemRecorder *recorder, const double *positions, FemMeasures *measures) {
   const FemSystem *system = recorder->system;
   ContactSystem *contact = contact_of(system);
   const double *covered = contact ? contact_system_covered(contact) : NULL;
   measures->min_det_F = INFINITY;
   for (int e = 0; e < system->model->tet_count; e++) {
-    recorder->det_F[e] = fem_model_det(system->model, e, system->positions);
+    recorder->det_F[e] = fem_model_det(system->model, e, positions);
     recorder->overlap[e] = covered ? covered[e] / system->model->volumes[e] : 0;
     if (system->model->bodies[system->model->tet_body[e]].is_obstacle) continue;
     measures->min_det_F = fmin(measures->min_det_F, recorder->det_F[e]);
@@ -190,12 +185,12 @@ static void measure_elements(FemRecorder *recorder, FemMeasures *measures) {
   }
 }
 
-static void measure_motion(const FemSystem *system, FemMeasures *measures) {
+static void measure_motion(const FemModel *model, const FemState *state, FemMeasures *measures) {
   Vec3 momentum = {0, 0, 0}, angular = {0, 0, 0};
-  for (int a = 0; a < system->model->vertex_count; a++) {
-    Vec3 p = vec3_scale(system->model->mass[a], vec3_at(system->velocities + 3 * a));
+  for (int a = 0; a < model->vertex_count; a++) {
+    Vec3 p = vec3_scale(model->mass[a], vec3_at(state->velocities + 3 * a));
     momentum = vec3_add(momentum, p);
-    angular = vec3_add(angular, vec3_cross(vec3_at(system->positions + 3 * a), p));
+    angular = vec3_add(angular, vec3_cross(vec3_at(state->positions + 3 * a), p));
   }
   vec3_store(measures->momentum, momentum);
   vec3_store(measures->angular_momentum, angular);
@@ -221,36 +216,35 @@ static void measure_steps(const FemRecorder *recorder, double time, FemMeasures 
   measures->momentum_gap = fem_momentum_largest_gap(momentum, time, &measures->momentum_body);
 }
 
-Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures) {
+Status fem_recorder_measure(FemRecorder *recorder, const FemState *state, FemMeasures *measures) {
   *measures = (FemMeasures){0};
-  TRY(fem_system_energy(recorder->system, time, &measures->energy));
-  measure_elements(recorder, measures);
-  measure_motion(recorder->system, measures);
-  TRY(fem_forces_take(&recorder->forces));
+  TRY(fem_system_energy(recorder->system, state, &measures->energy));
+  measure_elements(recorder, state->positions, measures);
+  measure_motion(recorder->system->model, state, measures);
+  TRY(fem_forces_take(&recorder->forces, state));
   measure_contact(recorder, measures);
-  measure_steps(recorder, time, measures);
+  measure_steps(recorder, state->time, measures);
   ContactSystem *contact = contact_of(recorder->system);
-  fem_trouble_look(&recorder->watch, recorder->system->positions,
-                   contact ? contact_system_forces(contact) : NULL, recorder->det_F, recorder->overlap,
-                   &measures->trouble);
+  fem_trouble_look(&recorder->watch, state->positions, contact ? contact_system_forces(contact) : NULL,
+                   recorder->det_F, recorder->overlap, &measures->trouble);
   return STATUS_OK;
 }
 
 // What the ledger is told of the state that was measured last.
-static Status describe(FemRecorder *recorder, double time, const FemMeasures *measures,
-                       FemLedgerState *state) {
-  TRY(fem_probes_measure(&recorder->probes, time, &recorder->forces));
-  *state = (FemLedgerState){.contact = {.forces = (const double(*)[3])recorder->forces.interfaces},
+static Status describe(FemRecorder *recorder, const FemState *state, const FemMeasures *measures,
+                       FemLedgerEntry *entry) {
+  TRY(fem_probes_measure(&recorder->probes, state, &recorder->forces));
+  *entry = (FemLedgerEntry){.contact = {.forces = (const double(*)[3])recorder->forces.interfaces},
                             .elastic = measures->energy.elastic,
                             .readings = recorder->probes.readings};
-  state->contact.interfaces = interfaces_of(recorder->system, &state->contact.count);
+  entry->contact.interfaces = interfaces_of(recorder->system, &entry->contact.count);
   return STATUS_OK;
 }
 
-Status fem_recorder_begin_step(FemRecorder *recorder, double time, const FemMeasures *measures) {
-  FemLedgerState state;
-  TRY(describe(recorder, time, measures, &state));
-  return fem_ledger_begin(&recorder->ledger, time, &state);
+Status fem_recorder_begin_step(FemRecorder *recorder, const FemState *state, const FemMeasures *measures) {
+  FemLedgerEntry entry;
+  TRY(describe(recorder, state, measures, &entry));
+  return fem_ledger_begin(&recorder->ledger, state, &entry);
 }
 
 static void tell_passages(const FemRecorder *recorder, int count, const ContactPassageEntry *first,
@@ -264,12 +258,12 @@ static void tell_passages(const FemRecorder *recorder, int count, const ContactP
   state->passed[1] = interface->b;
 }
 
-Status fem_recorder_end_step(FemRecorder *recorder, double time, FemMeasures *measures) {
+Status fem_recorder_end_step(FemRecorder *recorder, const FemState *state, FemMeasures *measures) {
   const ContactPassage *passage = &recorder->ledger.passage;
-  FemLedgerState state;
-  TRY(describe(recorder, time, measures, &state));
-  TRY(fem_ledger_end(&recorder->ledger, time, &state));
-  measure_steps(recorder, time, measures);
+  FemLedgerEntry entry;
+  TRY(describe(recorder, state, measures, &entry));
+  TRY(fem_ledger_end(&recorder->ledger, state, &entry));
+  measure_steps(recorder, state->time, measures);
   tell_passages(recorder, passage->passed, &passage->first, &measures->trouble);
   return STATUS_OK;
 }
@@ -291,38 +285,39 @@ static double von_mises(const double s[6]) {
 }
 
 static void fill_displacement(void *self, size_t first, size_t count, double *values) {
-  const FemSystem *system = ((const FemRecorder *)self)->system;
-  for (size_t i = 0; i < 3 * count; i++)
-    values[i] = system->positions[3 * first + i] - system->model->rest[3 * first + i];
+  const FemRecorder *recorder = self;
+  for (size_t i = 3 * first; i < 3 * (first + count); i++)
+    *values++ = recorder->state->positions[i] - recorder->system->model->rest[i];
 }
 
 // Of an element; 0 of an obstacle's.
-static void find_stress(const FemSystem *system, int e, double stress[6]) {
+static void find_stress(const FemRecorder *recorder, int e, double stress[6]) {
+  const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
+  const FemState *state = recorder->state;
   const FemModelBody *body = &model->bodies[model->tet_body[e]];
   for (int s = 0; s < 6; s++) stress[s] = 0;
   if (body->is_obstacle) return;
-  fem_model_stress(model, e, system->positions, stress);
+  fem_model_stress(model, e, state->positions, stress);
   void *volume = body->element == FEM_ELEMENT_NODAL ? fem_system_effect(system, &fem_effect_volume) : NULL;
   if (volume) {
     double corners[12];
-    gather(system, e, corners);
+    for (int k = 0; k < 4; k++)
+      memcpy(corners + 3 * k, state->positions + 3 * (size_t)model->tets[e][k], 3 * sizeof *corners);
     fem_effect_volume_add_stress(volume, e, corners, stress);
   }
   void *plasticity = fem_system_effect(system, &fem_effect_plasticity);
-  if (plasticity) fem_effect_plasticity_add_stress(plasticity, e, &system->trial, stress);
+  if (plasticity) fem_effect_plasticity_add_stress(plasticity, e, state, stress);
 }
 
 static void fill_stress(void *self, size_t first, size_t count, double *values) {
-  const FemSystem *system = ((const FemRecorder *)self)->system;
-  for (size_t i = 0; i < count; i++) find_stress(system, (int)(first + i), values + 6 * i);
+  for (size_t i = 0; i < count; i++) find_stress(self, (int)(first + i), values + 6 * i);
 }
 
 static void fill_von_mises(void *self, size_t first, size_t count, double *values) {
-  const FemSystem *system = ((const FemRecorder *)self)->system;
   for (size_t i = 0; i < count; i++) {
     double stress[6];
-    find_stress(system, (int)(first + i), stress);
+    find_stress(self, (int)(first + i), stress);
     values[i] = von_mises(stress);
   }
 }
@@ -351,10 +346,11 @@ static bool has_history(const FemSystem *system) {
 }
 
 // `name` without its ending.
-static Status write_vtu(FemRecorder *recorder, const char *name, double time) {
+static Status write_vtu(FemRecorder *recorder, const char *name) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
-  if (recorder->reaction) TRY(fem_reactions_measure(recorder->system, time, NULL, recorder->reaction));
+  const FemState *state = recorder->state;
+  if (recorder->reaction) TRY(fem_reactions_measure(recorder->system, state, NULL, recorder->reaction));
   const ContactStatus *status = recorder->status;
   const int *verdicts[] = {status ? status->predicted : NULL, status ? status->exact : NULL,
                            status ? status->error : NULL, status ? status->wrong_pairs : NULL};
@@ -362,7 +358,7 @@ static Status write_vtu(FemRecorder *recorder, const char *name, double time) {
   // Those without values are left out.
   FemVtuArray arrays[] = {
       {.name = "displacement", .components = 3, .fill = fill_displacement, .self = recorder},
-      {.name = "velocity", .components = 3, .reals = system->velocities},
+      {.name = "velocity", .components = 3, .reals = state->velocities},
       {.name = "body", .is_cell = true, .components = 1, .integers = model->tet_body},
       {.name = "det_F", .is_cell = true, .components = 1, .reals = recorder->det_F},
       {.name = "stress", .is_cell = true, .components = 6, .fill = fill_stress, .self = recorder},
@@ -383,10 +379,10 @@ static Status write_vtu(FemRecorder *recorder, const char *name, double time) {
       {.name = "status_error", .is_cell = true, .components = 1, .integers = verdicts[2]},
       {.name = "status_wrong_pairs", .is_cell = true, .components = 1, .integers = verdicts[3]},
   };
-  const FemVtuFrame frame = {.time = time,
-                             .history_time = has_history(system) ? &system->accepted.time : NULL,
+  const FemVtuFrame frame = {.time = state->time,
+                             .history_time = has_history(system) ? &state->last->time : NULL,
                              .vertex_count = model->vertex_count,
-                             .positions = system->positions,
+                             .positions = state->positions,
                              .cell_count = model->tet_count,
                              .cells = model->tets[0],
                              .arrays = arrays,
@@ -405,11 +401,12 @@ Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int fra
   return STATUS_OK;
 }
 
-static Status write_frame(FemRecorder *recorder, double time) {
+static Status write_frame(FemRecorder *recorder) {
   char name[NAME_SIZE];
   snprintf(name, sizeof name, "frame_%05d", recorder->frame_count);
-  TRY(write_vtu(recorder, name, time));
-  TRY(fem_obstacle_frames_write(&recorder->obstacles, recorder->directory, recorder->frame_count, time));
+  TRY(write_vtu(recorder, name));
+  TRY(fem_obstacle_frames_write(&recorder->obstacles, recorder->directory, recorder->frame_count,
+                                recorder->state->time));
   recorder->frame_count++;
   return STATUS_OK;
 }
@@ -442,13 +439,12 @@ static bool is_list_due(const FemRecorder *recorder) {
   return recorder->frame_count <= SHORT || clock_wall_s() - recorder->listed_at_s >= PERIOD_S;
 }
 
-static double *append_centres(const FemSystem *system, double *row) {
-  const FemModel *model = system->model;
+static double *append_centres(const FemModel *model, const double *positions, double *row) {
   for (int b = 0; b < model->scene->body_count; b++) {
     Vec3 centre = {0, 0, 0};
     for (int a = model->bodies[b].vertex_begin; a < model->bodies[b].vertex_end; a++)
-      centre = vec3_add(
-          centre, vec3_scale(model->mass[a] / model->bodies[b].mass, vec3_at(system->positions + 3 * a)));
+      centre =
+          vec3_add(centre, vec3_scale(model->mass[a] / model->bodies[b].mass, vec3_at(positions + 3 * a)));
     vec3_store(row, centre);
     row += 3;
   }
@@ -466,19 +462,20 @@ static double *append_friction(const FemRecorder *recorder, double *row) {
   return row;
 }
 
-static Status fill_row(FemRecorder *recorder, const FemColumnSource *source) {
+static Status fill_row(FemRecorder *recorder, FemColumnSource source) {
   double *row = recorder->row;
+  source.status = recorder->status;
   for (int i = 0; i < fem_columns_count(); i++)
-    if (has_column(recorder, i)) *row++ = fem_columns_value(i, source);
-  row = append_centres(recorder->system, row);
+    if (has_column(recorder, i)) *row++ = fem_columns_value(i, &source);
+  row = append_centres(recorder->system->model, source.state->positions, row);
   int count;
   interfaces_of(recorder->system, &count);
   for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->forces.interfaces[i]));
   if (fem_reactions_any(recorder->system->model))
-    TRY(fem_reactions_measure(recorder->system, source->time, &row, NULL));
+    TRY(fem_reactions_measure(recorder->system, source.state, &row, NULL));
   const FemSceneDef *scene = recorder->system->model->scene;
   for (int b = 0; b < scene->body_count && !scene->is_static; b++, row += 3)
-    fem_momentum_missing(&recorder->ledger.momentum, source->time, b, row);
+    fem_momentum_missing(&recorder->ledger.momentum, source.state->time, b, row);
   for (int i = 0; i < count; i++, row += 4) {
     row[0] = recorder->forces.areas[i];
     vec3_store(row + 1, vec3_at(recorder->forces.centres[i]));
@@ -488,17 +485,8 @@ static Status fill_row(FemRecorder *recorder, const FemColumnSource *source) {
   return STATUS_OK;
 }
 
-Status fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,
-                              const FemAudit *audit, double step, long long step_count,
-                              long long energy_events) {
-  const FemColumnSource source = {.time = time,
-                                  .measures = measures,
-                                  .audit = audit,
-                                  .step = step,
-                                  .step_count = step_count,
-                                  .energy_events = energy_events,
-                                  .status = recorder->status};
-  return recorder->writes_history == FEM_HISTORY_STEPS ? fill_row(recorder, &source) : STATUS_OK;
+Status fem_recorder_take_step(FemRecorder *recorder, const FemColumnSource *source) {
+  return recorder->writes_history == FEM_HISTORY_STEPS ? fill_row(recorder, *source) : STATUS_OK;
 }
 
 Status fem_recorder_append_step(FemRecorder *recorder) {
@@ -506,31 +494,23 @@ Status fem_recorder_append_step(FemRecorder *recorder) {
   return fem_history_add_row(&recorder->history, recorder->row);
 }
 
-static Status find_status(FemRecorder *recorder, double time) {
+static Status find_status(FemRecorder *recorder, const FemState *state) {
   if (!recorder->has_status) return STATUS_OK;
-  const FemSystem *system = recorder->system;
-  return contact_system_status(contact_of(system), time, system->positions, &recorder->reference,
-                               &recorder->status);
+  return contact_system_status(contact_of(recorder->system), state->time, state->positions,
+                               &recorder->reference, &recorder->status);
 }
 
-Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
-                          const FemAudit *audit, double step, long long step_count, long long energy_events) {
+Status fem_recorder_write(FemRecorder *recorder, const FemColumnSource *source) {
   double began = clock_wall_s();
-  TRY(find_status(recorder, time));
+  TRY(find_status(recorder, source->state));
   if (!recorder->directory) return STATUS_OK;
-  if (recorder->writes_vtu) TRY(write_frame(recorder, time));
+  recorder->state = source->state;
+  if (recorder->writes_vtu) TRY(write_frame(recorder));
   if (recorder->writes_vtu && is_list_due(recorder)) TRY(write_list(recorder));
-  const FemColumnSource source = {.time = time,
-                                  .measures = measures,
-                                  .audit = audit,
-                                  .step = step,
-                                  .step_count = step_count,
-                                  .energy_events = energy_events,
-                                  .status = recorder->status};
   bool is_first = recorder->history.file.end.size == 0;
   if (recorder->writes_history == FEM_HISTORY_FRAMES || (recorder->writes_history && is_first)) {
-    TRY(fem_probes_measure(&recorder->probes, time, &recorder->forces));
-    TRY(fill_row(recorder, &source));
+    TRY(fem_probes_measure(&recorder->probes, source->state, &recorder->forces));
+    TRY(fill_row(recorder, *source));
     TRY(fem_history_add_row(&recorder->history, recorder->row));
   }
   recorder->seconds += clock_wall_s() - began;

@@ -38,6 +38,7 @@ typedef struct FemRecorder {
   bool has_status;             // the scene asks for the elements' status
   OverlapModel reference;      // that it is held against
   const ContactStatus *status; // of the frame being written; borrowed
+  const FemState *state;       // likewise
   double seconds;              // spent writing
 } FemRecorder;
 
@@ -52,14 +53,13 @@ void fem_recorder_destroy(FemRecorder *recorder);
 // Called once the first state is known, so that a run that fails before it takes nothing away.
 Status fem_recorder_clear(const FemRecorder *recorder);
 
-// The measures of the scattered state, and its forces of contact (forces.h).
-Status fem_recorder_measure(FemRecorder *recorder, double time, FemMeasures *measures);
+// The measures of a state, and its forces of contact (forces.h).
+Status fem_recorder_measure(FemRecorder *recorder, const FemState *state, FemMeasures *measures);
 
-// A run begins, or goes on, at the scattered state, which was measured last.
-Status fem_recorder_begin_step(FemRecorder *recorder, double time, const FemMeasures *measures);
-// A step may end at the scattered state, which was measured last; adds to the measures what only whole steps
-// know.
-Status fem_recorder_end_step(FemRecorder *recorder, double time, FemMeasures *measures);
+// A run begins, or goes on, at the state that was measured last.
+Status fem_recorder_begin_step(FemRecorder *recorder, const FemState *state, const FemMeasures *measures);
+// A step may end at the state that was measured last; adds to the measures what only whole steps know.
+Status fem_recorder_end_step(FemRecorder *recorder, const FemState *state, FemMeasures *measures);
 // It does: its end is the next one's beginning.
 void fem_recorder_accept_step(FemRecorder *recorder);
 
@@ -67,16 +67,12 @@ void fem_recorder_accept_step(FemRecorder *recorder);
 // they had passed through it.
 void fem_recorder_find_turned(const FemRecorder *recorder, FemTroubleState *state);
 
-// Writes one frame of the scattered state. `step` [s] and `step_count` are the integrator's, `energy_events`
-// those so far (fem/output/trouble.h).
-Status fem_recorder_write(FemRecorder *recorder, double time, const FemMeasures *measures,
-                          const FemAudit *audit, double step, long long step_count, long long energy_events);
+// Writes one frame.
+Status fem_recorder_write(FemRecorder *recorder, const FemColumnSource *source);
 
 // A row of a history of steps: taken at the state that was measured last, while it is there, and appended
 // once the step is accepted; nothing where the history is another.
-Status fem_recorder_take_step(FemRecorder *recorder, double time, const FemMeasures *measures,
-                              const FemAudit *audit, double step, long long step_count,
-                              long long energy_events);
+Status fem_recorder_take_step(FemRecorder *recorder, const FemColumnSource *source);
 Status fem_recorder_append_step(FemRecorder *recorder);
 
 // Writes the list of frames if it lacks some: at the end, since in between long lists are written at most

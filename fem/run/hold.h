@@ -8,16 +8,15 @@
 #include "fem/run/rest.h"
 #include "fem/time/audit.h"
 
-// The unknowns u, v (unknown_count) of the system's scattered state.
-void fem_hold_gather(const FemSystem *system, double *u, double *v);
-
 // Takes the unknowns of bodies that sleep and gives them to those that awoke; `model` is the system's own.
-// What falls asleep stands still from now on; its kinetic energy is counted by `rest`. Fills u and v.
-Status fem_hold_sleepers(FemModel *model, FemSystem *system, FemRest *rest, double *u, double *v);
+// What falls asleep stands still in the state from now on; its kinetic energy is counted by `rest`. u and v
+// (unknown_count) are the state's.
+Status fem_hold_sleepers(FemModel *model, FemSystem *system, FemRest *rest, FemState *state, double *u,
+                         double *v);
 
-// Releases what is due at `time`, with the place and the velocity that it was driven to, for which the audit
-// accounts, and then as above.
-Status fem_hold_renumber(FemModel *model, FemSystem *system, FemRest *rest, double time, FemAudit *audit,
+// Releases what is due at the state's time, with the place and the velocity that it was driven to, for which
+// the audit accounts, and then as above.
+Status fem_hold_renumber(FemModel *model, FemSystem *system, FemRest *rest, FemState *state, FemAudit *audit,
                          double *u, double *v);
 
 #endif

@@ -92,9 +92,14 @@ static Status step(FemRunState *run, double *time, bool *is_onset, FemMeasures *
   size_t bytes = (size_t)run->model->unknown_count * sizeof(double);
   memcpy(run->u_new, u, bytes);
   memcpy(run->v_new, v, bytes);
-  fem_system_scatter(&run->system, *time, run->u_new, run->v_new);
-  TRY(fem_run_frames_measure(run, *time, measures));
-  return fem_recorder_end_step(&run->recorder, *time, measures);
+  fem_system_scatter(&run->system, *time, run->u_new, run->v_new, &run->trial);
+  TRY(fem_run_frames_measure(run, measures));
+  return fem_recorder_end_step(&run->recorder, &run->trial, measures);
+}
+
+// The last accepted state, under trial.
+static void scatter_accepted(FemRunState *run) {
+  fem_system_scatter(&run->system, run->time, run->u, run->v, &run->trial);
 }
 
 // The powers with which the next step begins, where they are not those with which the last one ended.
@@ -102,8 +107,8 @@ static Status renew_powers(FemRunState *run) {
   FemEnergy energy;
   bool is_at_knot = run->integrator && fem_integrator_is_at_knot(run->integrator);
   double time = is_at_knot ? fem_signal_past(run->time) : run->time;
-  fem_system_scatter(&run->system, time, run->u, run->v);
-  TRY(fem_system_energy(&run->system, time, &energy));
+  fem_system_scatter(&run->system, time, run->u, run->v, &run->trial);
+  TRY(fem_system_energy(&run->system, &run->trial, &energy));
   run->audit.dissipated_power = energy.dissipated_power;
   run->audit.driven_power = energy.driven_power;
   return STATUS_OK;
@@ -128,7 +133,7 @@ static Status begin_stage(FemRunState *run, double step) {
                           .end = run->stage_end,
                           .stall = &run->stall};
   const FemSolverOps *solver = fem_solver_ops(fem_run_solver(model));
-  TRY(fem_integrator_create(&run->integrator, &run->system, solver, &def));
+  TRY(fem_integrator_create(&run->integrator, &run->system, &run->trial, solver, &def));
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
 }
 
@@ -155,15 +160,16 @@ static void end_stage(FemRunState *run) {
 // With the coordinates that are free from here on.
 static Status begin_account(FemRunState *run) {
   FemMeasures measures;
-  fem_system_scatter(&run->system, run->time, run->u, run->v);
-  TRY(fem_run_frames_measure(run, run->time, &measures));
-  return fem_recorder_begin_step(&run->recorder, run->time, &measures);
+  scatter_accepted(run);
+  TRY(fem_run_frames_measure(run, &measures));
+  return fem_recorder_begin_step(&run->recorder, &run->trial, &measures);
 }
 
 // Vertices come free, bodies fall asleep or awake: with other unknowns from here on.
 static Status renumber(FemRunState *run) {
   end_stage(run);
-  TRY(fem_hold_renumber(&run->own, &run->system, run->rest, run->time, &run->audit, run->u, run->v));
+  scatter_accepted(run);
+  TRY(fem_hold_renumber(&run->own, &run->system, run->rest, &run->trial, &run->audit, run->u, run->v));
   TRY(begin_account(run));
   return begin_stage(run, 0);
 }
@@ -185,10 +191,10 @@ static bool differs_from_motion(const FemRunState *run) {
 // strain, E₁ − E₀ = sym(½(F₀ + F₁)ᵀ (F₁ − F₀)), and none in a body that has only turned.
 static Status find_damping_at_middle(FemRunState *run, double time, double *power) {
   const double *mean = run->mean_velocity;
-  double back = 0.5 * (time - run->time), *middle = run->middle;
-  for (int i = 0; i < run->model->unknown_count; i++) middle[i] = run->u_new[i] - back * mean[i];
-  fem_system_scatter(&run->system, time - back, middle, mean);
-  return fem_system_damping_power(&run->system, time - back, power);
+  double back = 0.5 * (time - run->time), *halfway = run->halfway;
+  for (int i = 0; i < run->model->unknown_count; i++) halfway[i] = run->u_new[i] - back * mean[i];
+  fem_system_scatter(&run->system, time - back, halfway, mean, &run->middle);
+  return fem_system_damping_power(&run->system, &run->middle, power);
 }
 
 // What the step's mean velocity v̄ dissipates: by damping at its middle, else at its end. A power that is
@@ -198,11 +204,11 @@ static Status find_least_power(FemRunState *run, double time, double *power) {
   FemEnergy energy;
   double step = time - run->time, *mean = run->mean_velocity, at_end = 0, at_middle = 0;
   for (int i = 0; i < run->model->unknown_count; i++) mean[i] = (run->u_new[i] - run->u[i]) / step;
-  fem_system_scatter(&run->system, time, run->u_new, mean);
-  Status status = fem_system_energy(&run->system, time, &energy);
-  if (!status) status = fem_system_damping_power(&run->system, time, &at_end);
+  fem_system_scatter(&run->system, time, run->u_new, mean, &run->trial);
+  Status status = fem_system_energy(&run->system, &run->trial, &energy);
+  if (!status) status = fem_system_damping_power(&run->system, &run->trial, &at_end);
   if (!status) status = find_damping_at_middle(run, time, &at_middle);
-  fem_system_scatter(&run->system, time, run->u_new, run->v_new);
+  fem_system_scatter(&run->system, time, run->u_new, run->v_new, &run->trial);
   *power = energy.dissipated_power - at_end + at_middle;
   return status;
 }
@@ -228,7 +234,8 @@ static bool has_turned(const FemRunState *run, double time, const FemEnergy *ene
 
 // The run's state is accepted.
 static Status accept(FemRunState *run, double next_step) {
-  TRY(fem_system_accept(&run->system, run->time, run->u, run->v, next_step));
+  scatter_accepted(run); // a frame has been shown since, perhaps
+  TRY(fem_system_accept(&run->system, &run->trial, next_step));
   return fem_rest_decide(run->rest, next_step);
 }
 
@@ -263,7 +270,7 @@ static Status advance(FemRunState *run) {
     return take_back(run, retry_step(run, shortest_retry(run)),
                      "friction acts along the slip that has reversed");
   }
-  status = fem_run_frames_take_row(run, time, &measures, &next);
+  status = fem_run_frames_take_row(run, &measures, &next);
   if (!status) status = fem_run_frames_write_until(run, time);
   if (status == STATUS_RETRY && may_retry) return take_back(run, retry_step(run, 0), status_message());
   TRY(status);
@@ -295,8 +302,8 @@ static Status look_ahead(FemRunState *run, double *time, FemMeasures *measures) 
   farthest = fem_system_horizon(&run->system, &foresight, run->time, farthest);
   for (double step = farthest - run->time;; step *= SHORTER_SLEEP) {
     *time = step < run->stage_end - run->time ? run->time + step : run->stage_end;
-    fem_system_scatter(&run->system, *time, run->u, run->v);
-    Status status = fem_run_frames_measure(run, *time, measures);
+    fem_system_scatter(&run->system, *time, run->u, run->v, &run->trial);
+    Status status = fem_run_frames_measure(run, measures);
     if (status != STATUS_RETRY || step < SHORTEST_SLEEP * scene->end) return status;
   }
 }
@@ -305,10 +312,10 @@ static Status sleep_on(FemRunState *run) {
   double time, began = run->time;
   FemMeasures measures;
   TRY(look_ahead(run, &time, &measures));
-  TRY(fem_recorder_begin_step(&run->recorder, time, &measures));
+  TRY(fem_recorder_begin_step(&run->recorder, &run->trial, &measures));
   FemAudit next = fem_audit_next(&run->audit, time, &measures.energy);
   run->least_power = INFINITY;
-  TRY(fem_run_frames_take_row(run, time, &measures, &next));
+  TRY(fem_run_frames_take_row(run, &measures, &next));
   TRY(fem_run_frames_write_until(run, time));
   TRY(fem_recorder_append_step(&run->recorder));
   run->audit = next;
@@ -326,7 +333,7 @@ static const double ROUNDED_STRAIN = 1e-6;
 
 // Room for the unknowns, however many are released.
 static Status allocate_states(FemRunState *run) {
-  double **states[] = {&run->u, &run->v, &run->u_new, &run->v_new, &run->mean_velocity, &run->middle};
+  double **states[] = {&run->u, &run->v, &run->u_new, &run->v_new, &run->mean_velocity, &run->halfway};
   for (size_t i = 0; i < sizeof states / sizeof *states; i++)
     if (!(*states[i] = memory_zeroed(3 * (size_t)run->model->vertex_count, sizeof(double))))
       return status_no_memory("the state");
@@ -353,7 +360,7 @@ static void tell_overlaps(const FemSystem *system) {
 // The first frame, and the audit from there on.
 static Status begin_record(FemRunState *run) {
   FemMeasures measures;
-  TRY(fem_run_frames_measure(run, run->time, &measures));
+  TRY(fem_run_frames_measure(run, &measures));
   fem_audit_begin(&run->audit, run->time, &measures.energy,
                   fem_model_strain_energy(run->model, ROUNDED_STRAIN));
   fem_run_frames_keep_extremes(run->result, &measures);
@@ -369,7 +376,8 @@ static Status begin_record(FemRunState *run) {
 
 // The checkpoint's state is accepted, with what effects remembered then.
 static Status begin_system(FemRunState *run, double next_step) {
-  TRY(fem_system_begin(&run->system, run->time, run->u, run->v, next_step));
+  scatter_accepted(run);
+  TRY(fem_system_begin(&run->system, &run->trial, next_step));
   TRY(fem_restart_remember(&run->checkpoint, &run->system));
   return fem_rest_decide(run->rest, next_step);
 }
@@ -378,23 +386,21 @@ static Status begin_motion(FemRunState *run) {
   TRY(begin_system(run, run->next_step));
   if (run->next_frame == 0) TRY(begin_record(run));
   FemMeasures measures;
-  TRY(fem_run_frames_measure(run, run->time, &measures));
-  TRY(fem_recorder_begin_step(&run->recorder, run->time, &measures));
+  TRY(fem_run_frames_measure(run, &measures));
+  TRY(fem_recorder_begin_step(&run->recorder, &run->trial, &measures));
   return begin_stage(run, run->next_step);
 }
 
 static Status begin_statics(FemRunState *run) {
   const FemCheckpoint *from = &run->checkpoint;
-  TRY(fem_statics_create(&run->statics, &run->system, fem_solver_ops(fem_run_solver(run->model))));
+  TRY(fem_statics_create(&run->statics, &run->system, &run->trial,
+                         fem_solver_ops(fem_run_solver(run->model))));
   TRY(begin_system(run, 0));
-  if (run->next_frame == 0) {
-    fem_system_scatter(&run->system, run->time, run->u, run->v);
-    return begin_record(run);
-  }
+  if (run->next_frame == 0) return begin_record(run);
   TRY(fem_statics_continue(&run->statics, run->time, run->u, from->force_scale, from->driven_work));
   FemMeasures measures;
-  TRY(fem_run_frames_measure(run, run->time, &measures));
-  return fem_recorder_begin_step(&run->recorder, run->time, &measures);
+  TRY(fem_run_frames_measure(run, &measures));
+  return fem_recorder_begin_step(&run->recorder, &run->trial, &measures);
 }
 
 static Status begin_rest(FemRunState *run) {
@@ -403,8 +409,8 @@ static Status begin_rest(FemRunState *run) {
   TRY(fem_rest_create(&run->rest, &run->system));
   if (from->next_frame > 0) TRY(fem_rest_load(run->rest, from->rest, from->rest_count));
   if (!fem_rest_has_changed(run->rest)) return STATUS_OK;
-  fem_system_scatter(&run->system, run->time, run->u, run->v);
-  return fem_hold_sleepers(&run->own, &run->system, run->rest, run->u, run->v);
+  scatter_accepted(run);
+  return fem_hold_sleepers(&run->own, &run->system, run->rest, &run->trial, run->u, run->v);
 }
 
 // Everything anew from the checkpoint: the same whether the run goes on, is resumed, or begins.
@@ -422,6 +428,8 @@ static Status begin_part(FemRunState *run) {
   TRY(is_first ? fem_system_create(&run->system, run->model)
                : fem_system_create_again(&run->system, run->model));
   run->system.stop = run->options->stop;
+  if (is_first) TRY(fem_system_create_state(&run->system, &run->trial));
+  if (is_first) TRY(fem_system_create_state(&run->system, &run->middle));
   fem_restart_load(from, run->model, run->u, run->v);
   TRY(begin_rest(run));
   if (is_first) TRY(fem_run_frames_open(run));
@@ -558,8 +566,10 @@ static Status close_run(FemRunState *run, Status status) {
   if (collected || left) snprintf(closing, sizeof closing, "; besides: %s", status_message());
   fem_recorder_destroy(&run->recorder);
   fem_rest_destroy(run->rest);
+  fem_state_destroy(&run->trial);
+  fem_state_destroy(&run->middle);
   fem_system_destroy(&run->system);
-  double *states[] = {run->u, run->v, run->u_new, run->v_new, run->mean_velocity, run->middle};
+  double *states[] = {run->u, run->v, run->u_new, run->v_new, run->mean_velocity, run->halfway};
   for (size_t i = 0; i < sizeof states / sizeof *states; i++) memory_free(states[i]);
   fem_model_numbering_destroy_copy(&run->own);
   fem_checkpoint_destroy(&run->checkpoint);

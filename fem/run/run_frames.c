@@ -15,7 +15,7 @@ static void keep_frame(FemRunState *run, double time) {
   int frame = result->frame_count++;
   size_t values = 3 * (size_t)result->vertex_count;
   result->frame_times[frame] = time;
-  memcpy(result->trajectory + (size_t)frame * values, run->system.positions, values * sizeof(double));
+  memcpy(result->trajectory + (size_t)frame * values, run->trial.positions, values * sizeof(double));
   void *effect = fem_system_effect(&run->system, &fem_effect_contact);
   if (!effect) return;
   int count;
@@ -47,6 +47,16 @@ static void keep_status(FemRunState *run) {
   result->status_pairs.false_negatives += pairs->false_negatives;
 }
 
+static FemColumnSource source_of(const FemRunState *run, const FemState *state, const FemMeasures *measures,
+                                 const FemAudit *audit, const FemIntegratorStats *stats) {
+  return (FemColumnSource){.state = state,
+                           .measures = measures,
+                           .audit = audit,
+                           .step = stats->last_step,
+                           .step_count = stats->steps,
+                           .energy_events = run->result->trouble.of[FEM_TROUBLE_ENERGY].events};
+}
+
 Status fem_run_frames_write(FemRunState *run, double time, const FemMeasures *measures) {
   FemIntegratorStats stats = fem_run_state_stats(run);
   FemAudit audit = run->audit;
@@ -54,8 +64,9 @@ Status fem_run_frames_write(FemRunState *run, double time, const FemMeasures *me
   FemMeasures shown = *measures;
   shown.peak_force = run->result->peak_since_row;
   run->result->peak_since_row = 0;
-  TRY(fem_recorder_write(&run->recorder, time, &shown, &audit, stats.last_step, stats.steps,
-                         run->result->trouble.of[FEM_TROUBLE_ENERGY].events));
+  const FemState state = fem_state_beside(&run->trial, time);
+  const FemColumnSource source = source_of(run, &state, &shown, &audit, &stats);
+  TRY(fem_recorder_write(&run->recorder, &source));
   run->result->last_contact_force = measures->contact_force;
   keep_status(run);
   keep_frame(run, time);
@@ -63,9 +74,9 @@ Status fem_run_frames_write(FemRunState *run, double time, const FemMeasures *me
   return STATUS_OK;
 }
 
-Status fem_run_frames_measure(FemRunState *run, double time, FemMeasures *measures) {
-  TRY(fem_system_check_state(&run->system));
-  TRY(fem_recorder_measure(&run->recorder, time, measures));
+Status fem_run_frames_measure(FemRunState *run, FemMeasures *measures) {
+  TRY(fem_system_check_state(&run->system, &run->trial));
+  TRY(fem_recorder_measure(&run->recorder, &run->trial, measures));
   const FemEnergy *energy = &measures->energy;
   const double parts[] = {energy->kinetic,      energy->elastic,      energy->gravity,
                           energy->contact,      energy->applied_work, energy->dissipated_power,
@@ -83,12 +94,12 @@ Status fem_run_frames_measure(FemRunState *run, double time, FemMeasures *measur
 static Status measure_within_step(FemRunState *run, double time, FemMeasures *measures) {
   const double *u = run->u, *v = run->v;
   if (run->integrator) TRY(fem_integrator_at(run->integrator, time, &u, &v));
-  fem_system_scatter(&run->system, time, u, v);
-  Status status = fem_run_frames_measure(run, time, measures);
+  fem_system_scatter(&run->system, time, u, v, &run->trial);
+  Status status = fem_run_frames_measure(run, measures);
   if (status != STATUS_RETRY) return status;
-  TRY(fem_system_check_state(&run->system)); // a wider list does not help what is no number
-  TRY(fem_system_renew(&run->system, time, u, v));
-  return fem_run_frames_measure(run, time, measures);
+  TRY(fem_system_check_state(&run->system, &run->trial)); // a wider list does not help what is no number
+  TRY(fem_system_renew(&run->system, &run->trial));
+  return fem_run_frames_measure(run, measures);
 }
 
 Status fem_run_frames_write_until(FemRunState *run, double time) {
@@ -143,9 +154,8 @@ Status fem_run_frames_open(FemRunState *run) {
   return fem_recorder_continue(&run->recorder, from->history, from->next_frame);
 }
 
-Status fem_run_frames_take_row(FemRunState *run, double time, const FemMeasures *measures,
-                               const FemAudit *audit) {
+Status fem_run_frames_take_row(FemRunState *run, const FemMeasures *measures, const FemAudit *audit) {
   FemIntegratorStats stats = fem_run_state_stats(run);
-  return fem_recorder_take_step(&run->recorder, time, measures, audit, stats.last_step, stats.steps,
-                                run->result->trouble.of[FEM_TROUBLE_ENERGY].events);
+  const FemColumnSource source = source_of(run, &run->trial, measures, audit, &stats);
+  return fem_recorder_take_step(&run->recorder, &source);
 }

@@ -24,7 +24,8 @@ static Status find_power(FemRunState *run, double time, double *power) {
   FemEnergy energy;
   *power = 0;
   if (run->model->scene->obstacle_count == 0) return STATUS_OK;
-  TRY(fem_system_energy(&run->system, time, &energy));
+  const FemState state = fem_state_beside(&run->trial, time);
+  TRY(fem_system_energy(&run->system, &state, &energy));
   *power = energy.driven_power;
   return STATUS_OK;
 }
@@ -50,17 +51,16 @@ Status fem_run_load_advance(FemRunState *run) {
   run->next_step = 2 * step;
   FemMeasures measures;
   double power_before, power_past;
-  fem_equilibrium_scatter(&run->statics.equilibrium, run->time, run->u);
   TRY(find_power(run, fem_signal_past(run->time), &power_past));
   TRY(find_power(run, fem_signal_before(run->time), &power_before));
-  TRY(fem_run_frames_measure(run, run->time, &measures));
+  TRY(fem_run_frames_measure(run, &measures));
   measures.energy.driven_power = power_before;
-  TRY(fem_recorder_end_step(&run->recorder, run->time, &measures));
+  TRY(fem_recorder_end_step(&run->recorder, &run->trial, &measures));
   fem_recorder_accept_step(&run->recorder);
   keep_load_step(run, run->time - from, work_before, &measures.energy);
   run->audit = fem_audit_next(&run->audit, run->time, &measures.energy);
   fem_run_frames_keep_extremes(run->result, &measures);
-  TRY(fem_run_frames_take_row(run, run->time, &measures, &run->audit));
+  TRY(fem_run_frames_take_row(run, &measures, &run->audit));
   if (run->time >= target) TRY(fem_run_frames_write(run, run->time, &measures));
   TRY(fem_recorder_append_step(&run->recorder));
   run->audit.driven_power = power_past;

@@ -9,7 +9,7 @@
 
 // What an observer sees after every accepted step.
 typedef struct FemRunProgress {
-  FemSystem *system; // scattered at `time`; an observer may evaluate, not change it
+  FemSystem *system; // its accepted state is that at `time`; an observer may evaluate, not change it
   double time, end;  // [s]
   double step;       // last step size [s]
   long long step_count;

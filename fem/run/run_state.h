@@ -29,8 +29,10 @@ typedef struct FemRunState {
   double time;           // of the last accepted state
   double *u, *v;         // the last accepted state         (unknown_count)
   double *u_new, *v_new; // the state under judgement  (unknown_count)
+  FemState trial;        // the state that was evaluated last; the integrator's, or statics', too
+  FemState middle;       // of a step, scratch
   double *mean_velocity; // of a step, scratch           (unknown_count)
-  double *middle;        // displacements halfway, scratch   (unknown_count)
+  double *halfway;       // displacements there, scratch     (unknown_count)
   int next_frame;
   int retries;              // in a row
   double least_power;       // of the step under judgement, dissipated at least; INFINITY: no doubt [W]

@@ -96,7 +96,7 @@ static Status try_longest(Descent *descent, double *s, double *work) {
   if (status != STATUS_RETRY) return status;
   FemEquilibrium *equilibrium = descent->equilibrium;
   TRY(fem_equilibrium_forces(equilibrium, descent->time, descent->u, descent->there));
-  TRY(fem_system_renew(equilibrium->system, descent->time, descent->u, equilibrium->still));
+  TRY(fem_equilibrium_renew(equilibrium, descent->time, descent->u));
   for (int k = 0; k < MAX_HALVINGS; k++, *s *= 0.5)
     if ((status = try_length(descent, *s, work)) != STATUS_RETRY) return status;
   return status;

@@ -2,19 +2,15 @@
 #include "fem/statics/equilibrium.h"
 
 #include <math.h>
-#include <string.h>
 
-#include "base/memory.h"
-
-Status fem_equilibrium_create(FemEquilibrium *equilibrium, FemSystem *system, const FemSolverOps *ops) {
-  *equilibrium = (FemEquilibrium){.system = system, .ops = ops};
+Status fem_equilibrium_create(FemEquilibrium *equilibrium, FemSystem *system, FemState *state,
+                              const FemSolverOps *ops) {
+  *equilibrium = (FemEquilibrium){.system = system, .state = state, .ops = ops};
   if (!ops->is_condensed)
     return status_fail(STATUS_INPUT,
                        "solver.linear: %s solves motions only; write cholmod, amg or pcg for a static scene",
                        ops->name);
   const FemSceneDef *scene = system->model->scene;
-  equilibrium->still = memory_zeroed((size_t)system->model->unknown_count, sizeof *equilibrium->still);
-  if (!equilibrium->still) return status_no_memory("the equilibrium");
   Status status =
       ops->create(&equilibrium->solver, scene->threads, fem_solver_tolerance(ops, scene->solver_tolerance));
   if (status) fem_equilibrium_destroy(equilibrium);
@@ -23,20 +19,18 @@ Status fem_equilibrium_create(FemEquilibrium *equilibrium, FemSystem *system, co
 
 void fem_equilibrium_destroy(FemEquilibrium *equilibrium) {
   if (equilibrium->solver) equilibrium->ops->destroy(equilibrium->solver);
-  memory_free(equilibrium->still);
   *equilibrium = (FemEquilibrium){0};
 }
 
-void fem_equilibrium_scatter(FemEquilibrium *equilibrium, double time, const double *u) {
-  FemSystem *system = equilibrium->system;
-  fem_system_scatter(system, time, u, equilibrium->still);
-  memset(system->velocities, 0, 3 * (size_t)system->model->vertex_count * sizeof *system->velocities);
+Status fem_equilibrium_renew(FemEquilibrium *equilibrium, double time, const double *u) {
+  fem_system_scatter(equilibrium->system, time, u, NULL, equilibrium->state);
+  return fem_system_renew(equilibrium->system, equilibrium->state);
 }
 
 Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const double *u, double *force) {
   FemSystem *system = equilibrium->system;
-  fem_equilibrium_scatter(equilibrium, time, u);
-  TRY(fem_system_forces(system, time));
+  fem_system_scatter(system, time, u, NULL, equilibrium->state);
+  TRY(fem_system_forces(system, equilibrium->state));
   for (int i = 0; i < system->model->unknown_count; i++)
     force[i] = system->forces[system->model->dof_of_unknown[i]];
   if (fem_solver_is_finite(force, system->model->unknown_count)) return STATUS_OK;
@@ -45,9 +39,9 @@ Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const do
 
 Status fem_equilibrium_factorise(FemEquilibrium *equilibrium, double time, const double *u, double shift) {
   FemSystem *system = equilibrium->system;
-  fem_equilibrium_scatter(equilibrium, time, u);
-  TRY(fem_system_couple(system, time));
-  TRY(fem_system_assemble(system, time, 1, 0, shift, &system->matrix));
+  fem_system_scatter(system, time, u, NULL, equilibrium->state);
+  TRY(fem_system_couple(system, equilibrium->state));
+  TRY(fem_system_assemble(system, equilibrium->state, 1, 0, shift, &system->matrix));
   if (equilibrium->layout != system->matrix.layout) {
     TRY(equilibrium->ops->analyse(equilibrium->solver, &system->matrix));
     equilibrium->layout = system->matrix.layout;

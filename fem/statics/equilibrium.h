@@ -9,18 +9,19 @@
 
 typedef struct FemEquilibrium {
   FemSystem *system; // borrowed
+  FemState *state;   // the one that was evaluated last, borrowed
   const FemSolverOps *ops;
   void *solver;     // of ops
   long long layout; // that was analysed; 0: none
-  double *still;    // velocities, zero                  (unknown_count)
 } FemEquilibrium;
 
 // STATUS_INPUT: a solver that is not condensed (klu).
-Status fem_equilibrium_create(FemEquilibrium *equilibrium, FemSystem *system, const FemSolverOps *ops);
+Status fem_equilibrium_create(FemEquilibrium *equilibrium, FemSystem *system, FemState *state,
+                              const FemSolverOps *ops);
 void fem_equilibrium_destroy(FemEquilibrium *equilibrium); // also of a zeroed one
 
-// Scatters (time, u) with everything at rest, driven vertices included.
-void fem_equilibrium_scatter(FemEquilibrium *equilibrium, double time, const double *u);
+// Lets effects renew their lists near (time, u).
+Status fem_equilibrium_renew(FemEquilibrium *equilibrium, double time, const double *u);
 // Forces on the unknowns [N]. RETRY as the effects say, or if one is not a number.
 Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const double *u, double *force);
 // Factorises K + shift · M at (time, u). RETRY: not positive definite.

@@ -57,7 +57,7 @@ static double smallest_scale(const FemModel *model) {
   return fmax(SMALLEST_SCALE * softest * model->edge * model->edge, rounding / TOLERANCE);
 }
 
-Status fem_statics_create(FemStatics *statics, FemSystem *system, const FemSolverOps *ops) {
+Status fem_statics_create(FemStatics *statics, FemSystem *system, FemState *state, const FemSolverOps *ops) {
   *statics = (FemStatics){.tolerance = TOLERANCE};
   const FemModel *model = system->model;
   TRY(check_scene(model->scene));
@@ -71,7 +71,7 @@ Status fem_statics_create(FemStatics *statics, FemSystem *system, const FemSolve
   bool is_ok =
       statics->force && statics->step && statics->start && statics->kept_force && statics->kept_position;
   Status status =
-      is_ok ? fem_equilibrium_create(&statics->equilibrium, system, ops) : status_no_memory("statics");
+      is_ok ? fem_equilibrium_create(&statics->equilibrium, system, state, ops) : status_no_memory("statics");
   if (status) fem_statics_destroy(statics);
   return status;
 }
@@ -113,7 +113,7 @@ static Status relax_once(FemStatics *statics, double time, double shift, double 
   double share = fem_equilibrium_longest_share(equilibrium, step);
   for (int i = 0; i < n; i++) u[i] += step[i] *= share;
   Status status = evaluate(statics, time, u);
-  if (!status) status = fem_system_renew(equilibrium->system, time, u, equilibrium->still);
+  if (!status) status = fem_equilibrium_renew(equilibrium, time, u);
   if (status == STATUS_RETRY)
     for (int i = 0; i < n; i++) u[i] -= step[i];
   return status;
@@ -148,13 +148,14 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
   const FemModel *model = system->model;
   char cause[512], text[1024];
   size_t used = 0;
+  const double *positions = statics->equilibrium.state->positions;
   snprintf(cause, sizeof cause, "%s", status_message());
   bool is_known = fem_equilibrium_forces(&statics->equilibrium, time, u, statics->force) == STATUS_OK;
   text_append(text, sizeof text, &used, "no equilibrium at t = %.9g: %s", time, cause);
   int flattest = 0;
   double smallest = INFINITY;
   for (int e = 0; e < model->tet_count; e++) {
-    double J = fem_model_det(model, e, system->positions);
+    double J = fem_model_det(model, e, positions);
     if (J < smallest) smallest = J, flattest = e;
   }
   text_append(text, sizeof text, &used, "; element %d has the smallest det F, %.3g", flattest, smallest);
@@ -166,7 +167,7 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
     for (int i = 1; i < model->unknown_count; i++)
       if (fabs(statics->force[i]) > fabs(statics->force[worst])) worst = i;
     int dof = model->dof_of_unknown[worst], vertex = dof / 3;
-    const double *x = system->positions + 3 * (size_t)vertex;
+    const double *x = positions + 3 * (size_t)vertex;
     text_append(text, sizeof text, &used,
                 "%s %.3g N along %c on vertex %d of body '%s' at (%.4g, %.4g, %.4g)", k ? "," : ". Left are",
                 statics->force[worst], "xyz"[dof % 3], vertex, fem_model_body_name(model, vertex), x[0], x[1],
@@ -180,14 +181,15 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
 static void keep_work(FemStatics *statics, double time) {
   const FemSystem *system = statics->equilibrium.system;
   const FemModel *model = system->model;
+  const double *positions = statics->equilibrium.state->positions;
   double more = fem_gravity_share(model, time) - fem_gravity_share(model, statics->kept_time);
   double longest = 0;
   statics->work_begin = fem_gravity_ramp_work(model, more, statics->kept_position);
-  statics->work_end = fem_gravity_ramp_work(model, more, system->positions);
+  statics->work_end = fem_gravity_ramp_work(model, more, positions);
   for (int d = 0; d < model->driver_count; d++)
     for (int i = 0; i < model->drivers[d].dof_count; i++) {
       int dof = model->drivers[d].dofs[i];
-      double way = system->positions[dof] - statics->kept_position[dof];
+      double way = positions[dof] - statics->kept_position[dof];
       longest = fmax(longest, fabs(way));
       statics->work_begin -= statics->kept_force[dof] * way;
       statics->work_end -= system->forces[dof] * way;
@@ -197,20 +199,20 @@ static void keep_work(FemStatics *statics, double time) {
   statics->kept_time = time;
   size_t bytes = 3 * (size_t)model->vertex_count * sizeof(double);
   memcpy(statics->kept_force, system->forces, bytes);
-  memcpy(statics->kept_position, system->positions, bytes);
+  memcpy(statics->kept_position, positions, bytes);
 }
 
 // A state that turns an element inside out is no equilibrium of a body. The linear law knows no deformed
 // state.
 static Status check_orientation(const FemStatics *statics, double time) {
-  const FemSystem *system = statics->equilibrium.system;
-  const FemModel *model = system->model;
+  const FemModel *model = statics->equilibrium.system->model;
+  const double *positions = statics->equilibrium.state->positions;
   for (int e = 0; e < model->tet_count; e++) {
     const FemModelBody *body = &model->bodies[model->tet_body[e]];
     if (body->is_obstacle || body->material.law == FEM_MATERIAL_LINEAR) continue;
-    double J = fem_model_det(model, e, system->positions);
+    double J = fem_model_det(model, e, positions);
     if (J > 0) continue;
-    const double *x = system->positions + 3 * (size_t)model->tets[e][0];
+    const double *x = positions + 3 * (size_t)model->tets[e][0];
     return status_fail(STATUS_RETRY,
                        "no equilibrium at t = %.9g: forces balance only with element %d of body '%s' "
                        "inverted, det F = %.3g, at (%.4g, %.4g, %.4g): %s",
@@ -255,13 +257,13 @@ Status fem_statics_step(FemStatics *statics, double from, double to, double *u) 
     statics->steps++;
     statics->loose += statics->residual > statics->tolerance * statics->force_scale;
     keep_work(statics, to);
-    return fem_system_accept(equilibrium->system, to, u, equilibrium->still, 0);
+    return fem_system_accept(equilibrium->system, equilibrium->state, 0);
   }
   memcpy(u, statics->start, (size_t)n * sizeof *u);
   if (status < 0) return status;
   char why[1024];
   snprintf(why, sizeof why, "%s", status_message());
   statics->halvings++;
-  TRY(fem_system_renew(equilibrium->system, from, u, equilibrium->still));
+  TRY(fem_equilibrium_renew(equilibrium, from, u));
   return status_fail(STATUS_RETRY, "%s", why);
 }

@@ -31,8 +31,9 @@ typedef struct FemStatics {
   long long loose; // steps whose unbalanced forces were only tolerable (descent.h)
 } FemStatics;
 
+// `system` is borrowed, and `state`, which each evaluation fills; after a step it is the equilibrium.
 // STATUS_INPUT: what only a motion can have (friction by velocities, release, an initial velocity).
-Status fem_statics_create(FemStatics *statics, FemSystem *system, const FemSolverOps *ops);
+Status fem_statics_create(FemStatics *statics, FemSystem *system, FemState *state, const FemSolverOps *ops);
 // Goes on from an equilibrium u at `time`, with the largest force met and the work done until then.
 Status fem_statics_continue(FemStatics *statics, double time, const double *u, double force_scale,
                             double driven_work);

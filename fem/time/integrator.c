@@ -37,6 +37,7 @@ static const double ROOT_RESOLUTION = 1e-9;
 
 struct FemIntegrator {
   FemSystem *system; // borrowed
+  FemState *state;   // the one that was evaluated last, borrowed
   FemIntegratorDef def;
   double min_step, max_step; // [s]
   FemPart part;
@@ -73,7 +74,7 @@ static double *values_of(N_Vector vector) {
 // To all vertices, of all ranks.
 static void scatter(FemIntegrator *integrator, double time, N_Vector y) {
   const double *u = fem_part_join(&integrator->part, values_of(y));
-  fem_system_scatter(integrator->system, time, u, u + integrator->part.n);
+  fem_system_scatter(integrator->system, time, u, u + integrator->part.n, integrator->state);
 }
 
 // r = [u̇ − v; M v̇ − f(u, v, t)]
@@ -88,7 +89,7 @@ static int residual(sunrealtype time, N_Vector y, N_Vector y_dot, N_Vector r, vo
   N_VScale(1, y, integrator->evaluated);
   integrator->evaluated_time = time;
   scatter(integrator, time, y);
-  int answer = fem_ida_solver_answer(&integrator->failure, fem_system_forces(system, time));
+  int answer = fem_ida_solver_answer(&integrator->failure, fem_system_forces(system, integrator->state));
   if (answer != 0) return answer;
   for (int i = 0; i < n; i++) {
     kinematics[i] = u_dot[i] - v[i];
@@ -102,8 +103,8 @@ static int jacobian(sunrealtype time, sunrealtype c, N_Vector y, N_Vector y_dot,
                     void *self, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
   (void)y_dot, (void)r, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
   FemIntegrator *integrator = self;
-  const double *u = fem_part_join(&integrator->part, values_of(y));
-  Status status = fem_ida_solver_assemble(integrator->solver, time, c, u, u + integrator->part.n);
+  scatter(integrator, time, y);
+  Status status = fem_ida_solver_assemble(integrator->solver, integrator->state, c);
   return fem_ida_solver_answer(&integrator->failure, status);
 }
 
@@ -205,11 +206,12 @@ static Status create(FemIntegrator *integrator, const FemSolverOps *solver) {
   return configure(integrator);
 }
 
-Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, const FemSolverOps *solver,
-                             const FemIntegratorDef *def) {
+Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, FemState *state,
+                             const FemSolverOps *solver, const FemIntegratorDef *def) {
   *integrator = memory_zeroed(1, sizeof **integrator);
   if (!*integrator) return status_no_memory("the integrator");
   (*integrator)->system = system;
+  (*integrator)->state = state;
   (*integrator)->def = *def;
   (*integrator)->strictness = 1;
   (*integrator)->own_stall = fem_stall_begin(0, def->end, def->end);
@@ -254,7 +256,7 @@ static Status find_derivatives(FemIntegrator *integrator, double time) {
   if (ranks_any(!fem_solver_is_finite(u, 2 * n)))
     return status_fail(STATUS_SOLVER, "at t = %g s: a position or velocity is not a number", time);
   scatter(integrator, time, integrator->y);
-  TRY(fem_system_forces(system, time));
+  TRY(fem_system_forces(system, integrator->state));
   for (int i = 0; i < n; i++) {
     u_dot[i] = v[i];
     v_dot[i] = system->forces[system->model->dof_of_unknown[fem_part_unknown(part, i)]] / masses[i];
@@ -356,7 +358,7 @@ const double *fem_integrator_acceleration(const FemIntegrator *integrator) {
 static Status gap_at(FemIntegrator *integrator, double time, double *gap) {
   TRY(interpolate(integrator, time));
   scatter(integrator, time, integrator->interpolated);
-  return fem_system_gap(integrator->system, time, gap);
+  return fem_system_gap(integrator->system, integrator->state, gap);
 }
 
 // Illinois' variant of false position between low (gap > 0) and high (gap ≤ 0), whose end `high` is
@@ -445,6 +447,7 @@ static Status say_why(const FemIntegrator *integrator, double time, double step,
                       FemReason reason) {
   FemReasonPlace place = {.time = time,
                           .step = step,
+                          .positions = integrator->state->positions,
                           .unknown = worst % integrator->part.n,
                           .is_position = worst < integrator->part.n,
                           .retry = integrator->failure.retry_message};

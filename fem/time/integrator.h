@@ -45,10 +45,11 @@ typedef struct FemIntegratorStats {
 
 typedef struct FemIntegrator FemIntegrator; // opaque: IDA hides behind
 
-// `system` is borrowed. The linear solver takes its threads and tolerance from the system's scene.
+// `system` is borrowed, and `state`, which each evaluation fills. The linear solver takes its threads and
+// tolerance from the system's scene.
 // STATUS_INPUT: a tolerance, step or end that makes no sense.
-Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, const FemSolverOps *solver,
-                             const FemIntegratorDef *def);
+Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, FemState *state,
+                             const FemSolverOps *solver, const FemIntegratorDef *def);
 void fem_integrator_destroy(FemIntegrator *integrator);
 
 // Begins (anew) from any (time, u, v), at order 1, with accelerations computed from the forces; `step` 0:

@@ -27,10 +27,10 @@ static void name_element(const FemModel *model, const double *positions, int ver
 Status fem_reason_fail(const FemReason *reason, const FemSystem *system, const FemReasonPlace *place) {
   const FemModel *model = system->model;
   int dof = model->dof_of_unknown[place->unknown], vertex = dof / 3;
-  const double *x = system->positions + 3 * vertex;
+  const double *x = place->positions + 3 * vertex;
   const char *retry = place->retry, *advice = reason->advice;
   char element[96];
-  name_element(model, system->positions, vertex, element, sizeof element);
+  name_element(model, place->positions, vertex, element, sizeof element);
   return status_fail(
       STATUS_SOLVER,
       "at t = %.9g s, step %.3g s: %s%s%s%s. Worst: %s of vertex %d of body '%s', now at (%.6g, %.6g, "

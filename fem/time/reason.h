@@ -11,13 +11,14 @@ typedef struct FemReason {
 
 typedef struct FemReasonPlace {
   double time, step; // [s]
+  const double *positions;
   int unknown;       // the one with the largest error or unbalanced force
   bool is_position;  // of its position, else of its velocity
   const char *retry; // what asked last for a smaller step; empty: nothing did
 } FemReasonPlace;
 
 // STATUS_SOLVER, with a message that names vertex, body, position and, of its elements, the one that is
-// squeezed most, at the positions that the system has.
+// squeezed most.
 Status fem_reason_fail(const FemReason *reason, const FemSystem *system, const FemReasonPlace *place);
 
 #endif

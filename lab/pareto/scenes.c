@@ -36,7 +36,7 @@ typedef struct Bench {
 static Status audit_model(Bench *bench, int m, ContactSystem *contact, const FemRunProgress *progress) {
   ContactAudit audit;
   Errors *errors = &bench->errors[m];
-  TRY(contact_system_audit(contact, progress->time, progress->system->positions,
+  TRY(contact_system_audit(contact, progress->time, progress->system->accepted.positions,
                            &bench->pareto->models[m].overlap, &bench->exact, &audit));
   if (!memory_reserve((void **)&errors->values, &errors->capacity, errors->count + 1, sizeof(double)))
     return status_no_memory("the errors");

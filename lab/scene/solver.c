@@ -67,6 +67,7 @@ typedef struct Beam {
   FemSceneDef scene;
   FemModel model;
   FemSystem system;
+  FemState state; // bent
   double c;
   FemMatrix condensed, stiffness, damping;
   double *mass;     // of the unknowns                          (n)
@@ -104,15 +105,16 @@ static Status fill_beam(Beam *beam) {
   TRY(fem_matrix_copy_layout(&beam->condensed, &beam->system.matrix));
   TRY(fem_matrix_copy_layout(&beam->stiffness, &beam->system.matrix));
   TRY(fem_matrix_copy_layout(&beam->damping, &beam->system.matrix));
-  double *u = beam->residual, *v = beam->right; // v is zero
+  double *u = beam->residual;
   bend(model, u);
-  fem_system_scatter(&beam->system, 0, u, v);
-  TRY(fem_system_forces(&beam->system, 0));
+  TRY(fem_system_create_state(&beam->system, &beam->state));
+  fem_system_scatter(&beam->system, 0, u, NULL, &beam->state);
+  TRY(fem_system_forces(&beam->system, &beam->state));
   for (size_t i = 0; i < n; i++) {
     beam->mass[i] = model->mass[model->dof_of_unknown[i] / 3];
     beam->force[i] = beam->right[n + i] = beam->system.forces[model->dof_of_unknown[i]];
   }
-  return fem_system_assemble(&beam->system, 0, 1, beam->c, beam->c * beam->c, &beam->condensed);
+  return fem_system_assemble(&beam->system, &beam->state, 1, beam->c, beam->c * beam->c, &beam->condensed);
 }
 
 static Status make_beam(Beam *beam, int nodes, const Options *options) {
@@ -126,6 +128,7 @@ static Status make_beam(Beam *beam, int nodes, const Options *options) {
 static void destroy_beam(Beam *beam) {
   fem_matrix_destroy(&beam->condensed), fem_matrix_destroy(&beam->stiffness);
   fem_matrix_destroy(&beam->damping);
+  fem_state_destroy(&beam->state);
   fem_system_destroy(&beam->system);
   fem_model_destroy(&beam->model);
   fem_scene_destroy(&beam->scene);
@@ -136,10 +139,10 @@ static void destroy_beam(Beam *beam) {
 // What a Newton set-up assembles: D, and S or K.
 static Status assemble(Contestant *contestant) {
   Beam *beam = contestant->beam;
-  TRY(fem_system_assemble(&beam->system, 0, 0, 1, 0, &beam->damping));
+  TRY(fem_system_assemble(&beam->system, &beam->state, 0, 1, 0, &beam->damping));
   if (contestant->ops->is_condensed)
-    return fem_system_assemble(&beam->system, 0, 1, beam->c, beam->c * beam->c, &beam->condensed);
-  return fem_system_assemble(&beam->system, 0, 1, 0, 0, &beam->stiffness);
+    return fem_system_assemble(&beam->system, &beam->state, 1, beam->c, beam->c * beam->c, &beam->condensed);
+  return fem_system_assemble(&beam->system, &beam->state, 1, 0, 0, &beam->stiffness);
 }
 
 static Status factorise(Contestant *contestant) {

@@ -73,12 +73,12 @@ static double probe_of(int i) {
   return sin(1.7 * i) + 0.3 * cos(0.31 * i * i);
 }
 
-static Status multiply(FemSystem *system, double time, Answer *answer) {
+static Status multiply(FemSystem *system, const FemState *state, Answer *answer) {
   double *x = memory_zeroed((size_t)answer->unknowns, sizeof *x);
   if (!x) return status_no_memory("a vector");
   for (int i = 0; i < answer->unknowns; i++) x[i] = probe_of(i);
-  Status status = fem_system_couple(system, time);
-  if (!status) status = fem_system_assemble(system, time, 1, 30, 1e4, &system->matrix);
+  Status status = fem_system_couple(system, state);
+  if (!status) status = fem_system_assemble(system, state, 1, 30, 1e4, &system->matrix);
   if (!status) fem_matrix_multiply(&system->matrix, x, answer->product);
   if (!status) ranks()->sum(answer->product, (size_t)answer->unknowns);
   memory_free(x);
@@ -99,26 +99,29 @@ static Status solve(const FemSystem *system, FemSolverKind kind, Answer *answer)
   return status;
 }
 
-static Status find_answer(FemSystem *system, const Variant *variant, FemSolverKind kind, double *u, double *v,
-                          Answer *answer) {
+static Status find_answer(FemSystem *system, FemState *state, const Variant *variant, FemSolverKind kind,
+                          double *u, double *v, Answer *answer) {
   const double TIME = 1e-3;
   displace(system->model, variant, 0.002, u, v);
-  TRY(fem_system_begin(system, 0, u, v, TIME));
+  TRY(fem_system_create_state(system, state));
+  fem_system_scatter(system, 0, u, v, state);
+  TRY(fem_system_begin(system, state, TIME));
   displace(system->model, variant, 0.0025, u, v);
-  fem_system_scatter(system, TIME, u, v);
-  TRY(fem_system_forces(system, TIME));
+  fem_system_scatter(system, TIME, u, v, state);
+  TRY(fem_system_forces(system, state));
   memcpy(answer->forces, system->forces, (size_t)answer->values * sizeof(double));
-  TRY(fem_system_energy(system, TIME, &answer->energy));
-  TRY(fem_system_gap(system, TIME, &answer->gap));
+  TRY(fem_system_energy(system, state, &answer->energy));
+  TRY(fem_system_gap(system, state, &answer->gap));
   void *contact = fem_system_effect(system, &fem_effect_contact);
   answer->pairs = contact ? contact_system_active_count(fem_effect_contact_system(contact)) : 0;
-  TRY(multiply(system, TIME, answer));
+  TRY(multiply(system, state, answer));
   return kind == FEM_SOLVER_AUTO ? STATUS_OK : solve(system, kind, answer);
 }
 
 static Status evaluate(const FemModel *model, const Variant *variant, FemSolverKind kind, Answer *answer) {
   size_t n = (size_t)model->unknown_count, values = 3 * (size_t)model->vertex_count;
   FemSystem system;
+  FemState state = {0};
   TRY(fem_system_create(&system, model));
   double *u = memory_zeroed(n, sizeof *u), *v = memory_zeroed(n, sizeof *v);
   *answer = (Answer){.unknowns = (int)n, .values = (int)values};
@@ -126,8 +129,10 @@ static Status evaluate(const FemModel *model, const Variant *variant, FemSolverK
   answer->product = memory_zeroed(n, sizeof(double));
   answer->solution = memory_zeroed(n, sizeof(double));
   bool is_ok = u && v && answer->forces && answer->product && answer->solution;
-  Status status = is_ok ? find_answer(&system, variant, kind, u, v, answer) : status_no_memory("an answer");
+  Status status =
+      is_ok ? find_answer(&system, &state, variant, kind, u, v, answer) : status_no_memory("an answer");
   memory_free(u), memory_free(v);
+  fem_state_destroy(&state);
   fem_system_destroy(&system);
   return status;
 }

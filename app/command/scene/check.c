@@ -82,7 +82,8 @@ static double machine_memory(void) {
 static Status note_overlaps(const AppJob *job, Notes *notes) {
   FemSystem system = {0};
   TRY(fem_system_create(&system, &job->model));
-  Status status = fem_run_start_evaluate(&system);
+  FemEnergy energy;
+  Status status = fem_system_energy(&system, &system.accepted, &energy);
   for (int k = 0, i = 0; !status && k < MAX_OVERLAPS; k++, i++) {
     i = fem_run_start_overlap(&system, i, notes->overlaps[k], sizeof notes->overlaps[k]);
     if (i < 0) break;

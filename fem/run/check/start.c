@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "base/memory.h"
 #include "fem/effect/contact/contact.h"
 
 // Overlaps below this share of an element's cube are rounding of places.
@@ -40,16 +39,4 @@ int fem_run_start_overlap(const FemSystem *system, int from, char *text, size_t 
     return i;
   }
   return -1;
-}
-
-Status fem_run_start_evaluate(FemSystem *system) {
-  size_t n = (size_t)system->model->unknown_count;
-  double *zero = memory_zeroed(n, sizeof *zero);
-  FemEnergy energy;
-  if (!zero) return status_no_memory("the state");
-  Status status = fem_system_begin(system, 0, zero, zero, 0);
-  fem_system_scatter(system, 0, zero, zero);
-  if (!status) status = fem_system_energy(system, 0, &energy);
-  memory_free(zero);
-  return status;
 }

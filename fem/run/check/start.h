@@ -7,11 +7,8 @@
 
 #include "fem/effect/system.h"
 
-// The next two that overlap at the evaluated state, from interface `from` on, in words; returns its number,
-// −1: no more.
+// The next two that overlap at the state that was evaluated last, from interface `from` on, in words; returns
+// its number, −1: no more.
 int fem_run_start_overlap(const FemSystem *system, int from, char *text, size_t size);
-
-// The same for a model before a run of it: evaluates the state at t = 0.
-Status fem_run_start_evaluate(FemSystem *system);
 
 #endif

@@ -30,18 +30,16 @@ static Status save_effects(FemCheckpoint *checkpoint, const FemSystem *system) {
   return STATUS_OK;
 }
 
-// Driven coordinates as they are scattered, for whoever reads the file; unknowns as they are, which adding
+// Driven coordinates as the state has them, for whoever reads the file; unknowns as they are, which adding
 // and subtracting the place at rest would round.
-static void save_state(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
-                       const double *v) {
-  const FemModel *model = system->model;
-  fem_system_scatter(system, time, u, v);
+static void save_state(FemCheckpoint *checkpoint, const FemModel *model, const FemState *state,
+                       const double *u, const double *v) {
   for (int i = 0; i < 3 * model->vertex_count; i++) {
     int unknown = model->unknown_of_dof[i];
-    checkpoint->displacement[i] = unknown < 0 ? system->positions[i] - model->rest[i] : u[unknown];
-    checkpoint->velocity[i] = unknown < 0 ? system->velocities[i] : v[unknown];
+    checkpoint->displacement[i] = unknown < 0 ? state->positions[i] - model->rest[i] : u[unknown];
+    checkpoint->velocity[i] = unknown < 0 ? state->velocities[i] : v[unknown];
   }
-  checkpoint->time = time;
+  checkpoint->time = state->time;
 }
 
 // Numbers, and a copy of the counters.
@@ -59,10 +57,10 @@ static Status save_counts(FemCheckpoint *checkpoint, const FemRunResult *so_far)
   return STATUS_OK;
 }
 
-Status fem_restart_collect(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
-                           const double *v, const FemRunResult *so_far) {
+Status fem_restart_collect(FemCheckpoint *checkpoint, const FemSystem *system, const FemState *state,
+                           const double *u, const double *v, const FemRunResult *so_far) {
   TRY(fem_checkpoint_create(checkpoint, system->model->vertex_count));
-  save_state(checkpoint, system, time, u, v);
+  save_state(checkpoint, system->model, state, u, v);
   Status status = save_effects(checkpoint, system);
   if (!status) status = save_counts(checkpoint, so_far);
   if (status) fem_checkpoint_destroy(checkpoint);

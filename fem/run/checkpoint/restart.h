@@ -10,11 +10,11 @@
 // (vertex_count, 3) unless NULL.
 Status fem_restart_begin(FemCheckpoint *checkpoint, const FemModel *model, const double *displacement);
 
-// Makes a checkpoint with the state (time; u, v of the unknowns), the effects' histories and the counts so
+// Makes a checkpoint with the state, whose unknowns are u and v, the effects' histories and the counts so
 // far, which include those of the system; the rest is the caller's. After a failure there is nothing to
 // destroy.
-Status fem_restart_collect(FemCheckpoint *checkpoint, FemSystem *system, double time, const double *u,
-                           const double *v, const FemRunResult *so_far);
+Status fem_restart_collect(FemCheckpoint *checkpoint, const FemSystem *system, const FemState *state,
+                           const double *u, const double *v, const FemRunResult *so_far);
 
 // Whether the checkpoint belongs to a run of that model. STATUS_INPUT says what does not fit.
 Status fem_restart_check(const FemCheckpoint *checkpoint, const FemModel *model);

@@ -89,7 +89,8 @@ static Status keep_ledger(const FemRunState *run, FemCheckpoint *next) {
 // The former checkpoint stands until the next one is whole: a run that fails on the way leaves that one.
 Status fem_run_checkpoint_take(FemRunState *run, double force_scale, double driven_work) {
   FemCheckpoint next;
-  TRY(fem_restart_collect(&next, &run->system, run->time, run->u, run->v, run->result));
+  fem_system_scatter(&run->system, run->time, run->u, run->v, &run->trial);
+  TRY(fem_restart_collect(&next, &run->system, &run->trial, run->u, run->v, run->result));
   Status status = keep_ledger(run, &next);
   if (status) {
     fem_checkpoint_destroy(&next);

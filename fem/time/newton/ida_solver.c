@@ -268,24 +268,24 @@ bool fem_ida_solver_attach(FemIdaSolver *solver, void *ida) {
          (!solver->follows || IDASetDeltaCjLSetup(ida, FOLLOWED_CHANGE) == IDA_SUCCESS);
 }
 
-static Status assemble_damping(FemIdaSolver *solver, double time) {
+static Status assemble_damping(FemIdaSolver *solver, const FemState *state) {
   const FemMatrix *matrix = &solver->system->matrix;
   if (solver->damping.layout != matrix->layout) {
     fem_matrix_destroy(&solver->damping);
     TRY(fem_matrix_copy_layout(&solver->damping, matrix));
   }
-  return fem_system_assemble(solver->system, time, 0, 1, 0, &solver->damping);
+  return fem_system_assemble(solver->system, state, 0, 1, 0, &solver->damping);
 }
 
 // S = K + c D + c² M from K and D, which are assembled once.
-static Status combine(FemIdaSolver *solver, double time) {
+static Status combine(FemIdaSolver *solver, const FemState *state) {
   FemSystem *system = solver->system;
   FemMatrix *matrix = &system->matrix;
   if (solver->stiffness.layout != matrix->layout) {
     fem_matrix_destroy(&solver->stiffness);
     TRY(fem_matrix_copy_layout(&solver->stiffness, matrix));
-    TRY(fem_system_assemble(system, time, 1, 0, 0, &solver->stiffness));
-    if (solver->has_damping) TRY(assemble_damping(solver, time));
+    TRY(fem_system_assemble(system, state, 1, 0, 0, &solver->stiffness));
+    if (solver->has_damping) TRY(assemble_damping(solver, state));
   }
   for (int i = 0; i < matrix->entry_count; i++) {
     matrix->value[i] = solver->stiffness.value[i];
@@ -295,16 +295,14 @@ static Status combine(FemIdaSolver *solver, double time) {
   return STATUS_OK;
 }
 
-Status fem_ida_solver_assemble(FemIdaSolver *solver, double time, double c, const double *u,
-                               const double *v) {
+Status fem_ida_solver_assemble(FemIdaSolver *solver, const FemState *state, double c) {
   FemSystem *system = solver->system;
-  fem_system_scatter(system, time, u, v);
-  TRY(fem_system_couple(system, time));
+  TRY(fem_system_couple(system, state));
   solver->c = solver->matrix_c = c;
-  if (solver->is_linear) return combine(solver, time);
-  if (solver->has_damping) TRY(assemble_damping(solver, time));
+  if (solver->is_linear) return combine(solver, state);
+  if (solver->has_damping) TRY(assemble_damping(solver, state));
   bool is_condensed = solver->ops->is_condensed;
-  TRY(fem_system_assemble(system, time, 1, 0, is_condensed ? c * c : 0, &system->matrix));
+  TRY(fem_system_assemble(system, state, 1, 0, is_condensed ? c * c : 0, &system->matrix));
   // D is there already: its elements are not visited again for S.
   if (is_condensed && solver->has_damping)
     for (int i = 0; i < system->matrix.entry_count; i++)

@@ -47,8 +47,8 @@ void fem_ida_solver_destroy(FemIdaSolver *solver);
 // Hands IDA the linear solver, its matrix, and how far c may go from the matrix's. False: IDA refuses.
 bool fem_ida_solver_attach(FemIdaSolver *solver, void *ida);
 
-// Scatters (time, u, v) of all unknowns, lets effects couple, assembles with c = ∂ẏ/∂y.
-Status fem_ida_solver_assemble(FemIdaSolver *solver, double time, double c, const double *u, const double *v);
+// Lets effects couple at a state, assembles with c = ∂ẏ/∂y.
+Status fem_ida_solver_assemble(FemIdaSolver *solver, const FemState *state, double c);
 
 // The right-hand side of the condensed system that was solved last (part->count); NULL: the linear solver
 // does not condense.

@@ -16,11 +16,13 @@ typedef struct Walk {
   SceneRun run;
   FemSystem system;
   int n;
-  double *u[STATES], *v[STATES]; // states under trial, each near the last accepted one
+  FemState states[STATES]; // under trial, each near the last accepted one
 } Walk;
 
-// Displacements and velocities of a body that is sheared, pressed and shaken a little.
-static void displace(const FemModel *model, int k, double *u, double *v) {
+// A body that is sheared, pressed and shaken a little.
+static void displace(const Walk *walk, double time, int k, FemState *state) {
+  const FemModel *model = walk->system.model;
+  double *u = malloc((size_t)walk->n * sizeof *u), *v = malloc((size_t)walk->n * sizeof *v);
   Random random = random_seeded(5, (uint64_t)k);
   for (int i = 0; i < model->unknown_count; i++) {
     int dof = model->dof_of_unknown[i];
@@ -28,6 +30,8 @@ static void displace(const FemModel *model, int k, double *u, double *v) {
     u[i] = (1 + 0.2 * k) * shear + 2e-6 * random_normal(&random);
     v[i] = model->initial_velocity[dof] + 1e-3 * random_normal(&random);
   }
+  fem_system_scatter(&walk->system, time, u, v, state);
+  free(u), free(v);
 }
 
 static void open_walk(Walk *walk, const char *setting) {
@@ -35,21 +39,18 @@ static void open_walk(Walk *walk, const char *setting) {
   const FemModel *model = &walk->run.model;
   walk->n = model->unknown_count;
   ck_assert_ok(fem_system_create(&walk->system, model));
-  for (int k = 0; k < STATES; k++) {
-    walk->u[k] = calloc((size_t)walk->n, sizeof(double));
-    walk->v[k] = calloc((size_t)walk->n, sizeof(double));
-  }
-  ck_assert_ok(fem_system_begin(&walk->system, 0, walk->u[0], walk->v[0], STEP));
+  for (int k = 0; k < STATES; k++) ck_assert_ok(fem_system_create_state(&walk->system, &walk->states[k]));
+  ck_assert_ok(fem_system_begin(&walk->system, &walk->states[0], STEP));
   for (int k = 1; k <= STEPS; k++) {
-    displace(model, k, walk->u[0], walk->v[0]);
-    ck_assert_ok(fem_system_renew(&walk->system, k * STEP, walk->u[0], walk->v[0]));
-    ck_assert_ok(fem_system_accept(&walk->system, k * STEP, walk->u[0], walk->v[0], STEP));
+    displace(walk, k * STEP, k, &walk->states[0]);
+    ck_assert_ok(fem_system_renew(&walk->system, &walk->states[0]));
+    ck_assert_ok(fem_system_accept(&walk->system, &walk->states[0], STEP));
   }
-  for (int k = 1; k < STATES; k++) displace(model, STEPS + k, walk->u[k], walk->v[k]);
+  for (int k = 1; k < STATES; k++) displace(walk, (STEPS + 0.25 * k) * STEP, STEPS + k, &walk->states[k]);
 }
 
 static void close_walk(Walk *walk) {
-  for (int k = 0; k < STATES; k++) free(walk->u[k]), free(walk->v[k]);
+  for (int k = 0; k < STATES; k++) fem_state_destroy(&walk->states[k]);
   fem_system_destroy(&walk->system);
   scene_close(&walk->run);
 }
@@ -59,23 +60,18 @@ typedef struct Values {
   FemEnergy energy;
 } Values;
 
-static double time_of(int k) {
-  return (STEPS + 0.25 * k) * STEP;
-}
-
-static Values evaluate(Walk *walk, int k) {
+static Values evaluate(Walk *walk, const FemState *state) {
   FemSystem *system = &walk->system;
   size_t forces = 3 * (size_t)system->model->vertex_count;
-  double time = time_of(k), *ones = malloc((size_t)walk->n * sizeof *ones);
+  double *ones = malloc((size_t)walk->n * sizeof *ones);
   Values values = {.forces = malloc(forces * sizeof(double)),
                    .product = calloc((size_t)walk->n, sizeof(double))};
   for (int i = 0; i < walk->n; i++) ones[i] = 1;
-  fem_system_scatter(system, time, walk->u[k], walk->v[k]);
-  ck_assert_ok(fem_system_forces(system, time));
+  ck_assert_ok(fem_system_forces(system, state));
   memcpy(values.forces, system->forces, forces * sizeof(double));
-  ck_assert_ok(fem_system_energy(system, time, &values.energy));
-  ck_assert_ok(fem_system_couple(system, time));
-  ck_assert_ok(fem_system_assemble(system, time, 1, 0, 0, &system->matrix));
+  ck_assert_ok(fem_system_energy(system, state, &values.energy));
+  ck_assert_ok(fem_system_couple(system, state));
+  ck_assert_ok(fem_system_assemble(system, state, 1, 0, 0, &system->matrix));
   fem_matrix_multiply(&system->matrix, ones, values.product);
   free(ones);
   return values;
@@ -101,12 +97,12 @@ START_TEST(states_give_the_same_in_any_order_and_any_number_of_times) {
   Walk walk;
   Values first[STATES];
   open_walk(&walk, settings[_i]);
-  for (int k = 1; k < STATES; k++) first[k] = evaluate(&walk, k);
+  for (int k = 1; k < STATES; k++) first[k] = evaluate(&walk, &walk.states[k]);
   ck_assert(first[1].energy.contact > 0 && first[1].energy.plastic_work > 0);
   ck_assert(_i > 0 || first[1].energy.friction_work > 0);
   ck_assert(memcmp(&first[1].energy, &first[2].energy, sizeof first[1].energy) != 0);
   for (size_t i = 0; i < sizeof ORDER / sizeof *ORDER; i++) {
-    Values again = evaluate(&walk, ORDER[i]);
+    Values again = evaluate(&walk, &walk.states[ORDER[i]]);
     compare(&walk, &first[ORDER[i]], &again);
     forget(&again);
   }
@@ -122,14 +118,14 @@ START_TEST(histories_that_are_copied_give_the_same) {
   open_walk(&other, settings[_i]);
   fem_system_destroy(&other.system);
   ck_assert_ok(fem_system_create(&other.system, &other.run.model));
-  ck_assert_ok(fem_system_begin(&other.system, STEPS * STEP, walk.u[0], walk.v[0], STEP));
-  Values without = evaluate(&other, 1);
+  ck_assert_ok(fem_system_begin(&other.system, &walk.states[0], STEP));
+  Values without = evaluate(&other, &other.states[1]);
   for (int i = 0; i < walk.system.effect_count; i++) {
     const FemEffectHistory *history = &walk.system.accepted.histories[i];
     ck_assert_ok(fem_system_remember(&other.system, i, history->values, history->count));
   }
   for (int k = 1; k < STATES; k++) {
-    Values one = evaluate(&walk, k), copied = evaluate(&other, k);
+    Values one = evaluate(&walk, &walk.states[k]), copied = evaluate(&other, &other.states[k]);
     compare(&walk, &one, &copied);
     if (k == 1) ck_assert(memcmp(&one.energy, &without.energy, sizeof one.energy) != 0);
     forget(&one), forget(&copied);

@@ -110,22 +110,24 @@ START_TEST(a_linear_field_passes_the_patch_test) {
   open_ball(&run, laws[_i % LAW_COUNT], elements[_i / LAW_COUNT]);
   const FemModel *model = &run.model;
   FemSystem system;
+  FemState state;
   FemEnergy energy;
   ck_assert_ok(fem_system_create(&system, model));
+  ck_assert_ok(fem_system_create_state(&system, &state));
   ck_assert_int_eq(fem_system_effect(&system, &fem_effect_volume) != NULL, _i / LAW_COUNT == 1);
   bool *on_surface = calloc((size_t)model->vertex_count, sizeof *on_surface);
   mark_surface(model, on_surface);
   for (int a = 0; a < model->vertex_count; a++)
     for (int i = 0; i < 3; i++)
-      system.positions[3 * a + i] = F[3 * i] * model->rest[3 * a] + F[3 * i + 1] * model->rest[3 * a + 1] +
-                                    F[3 * i + 2] * model->rest[3 * a + 2];
-  ck_assert_ok(fem_system_energy(&system, 0, &energy));
+      state.positions[3 * a + i] = F[3 * i] * model->rest[3 * a] + F[3 * i + 1] * model->rest[3 * a + 1] +
+                                   F[3 * i + 2] * model->rest[3 * a + 2];
+  ck_assert_ok(fem_system_energy(&system, &state, &energy));
   double volume = model->bodies[0].mass;
   ck_assert_near(energy.elastic, volume * fem_material_energy(&model->bodies[0].material, F), 1e-12 * volume);
   // The forces are those of the stress on the surface: Σ −f X_x = V P e_x.
   double P[9], sum[3] = {0};
   int inside = 0;
-  ck_assert_ok(fem_system_forces(&system, 0));
+  ck_assert_ok(fem_system_forces(&system, &state));
   fem_material_stress(&model->bodies[0].material, F, P);
   for (int a = 0; a < model->vertex_count; a++) {
     inside += !on_surface[a];
@@ -137,6 +139,7 @@ START_TEST(a_linear_field_passes_the_patch_test) {
   ck_assert_int_gt(inside, 30);
   for (int c = 0; c < 3; c++) ck_assert_near(sum[c], volume * P[3 * c], 1e-12 * volume);
   free(on_surface);
+  fem_state_destroy(&state);
   fem_system_destroy(&system);
   scene_close(&run);
 }

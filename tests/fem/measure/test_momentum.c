@@ -9,6 +9,7 @@
 typedef struct Falling {
   SceneRun run;
   FemSystem system;
+  FemState state;
   FemMomentum momentum;
   double *u, *v;
 } Falling;
@@ -24,21 +25,23 @@ static void open_falling(Falling *falling) {
   for (int i = 0; i < model->unknown_count; i++)
     falling->v[i] = model->initial_velocity[model->dof_of_unknown[i]];
   ck_assert_ok(fem_system_create(&falling->system, model));
+  ck_assert_ok(fem_system_create_state(&falling->system, &falling->state));
   ck_assert_ok(fem_momentum_create(&falling->momentum, &falling->system));
-  fem_system_scatter(&falling->system, 0, falling->u, falling->v);
-  ck_assert_ok(fem_momentum_begin(&falling->momentum, 0, &nothing));
+  fem_system_scatter(&falling->system, 0, falling->u, falling->v, &falling->state);
+  ck_assert_ok(fem_momentum_begin(&falling->momentum, &falling->state, &nothing));
 }
 
 // After 0.1 s at another speed downwards.
 static void step(Falling *falling, double faster) {
   for (int i = 0; i < falling->run.model.unknown_count; i++)
     if (falling->run.model.dof_of_unknown[i] % 3 == 2) falling->v[i] -= faster;
-  fem_system_scatter(&falling->system, 0.1, falling->u, falling->v);
-  ck_assert_ok(fem_momentum_end(&falling->momentum, 0.1, &nothing));
+  fem_system_scatter(&falling->system, 0.1, falling->u, falling->v, &falling->state);
+  ck_assert_ok(fem_momentum_end(&falling->momentum, &falling->state, &nothing));
 }
 
 static void close_falling(Falling *falling) {
   fem_momentum_destroy(&falling->momentum);
+  fem_state_destroy(&falling->state);
   fem_system_destroy(&falling->system);
   free(falling->u);
   free(falling->v);
@@ -114,7 +117,7 @@ START_TEST(a_step_too_long_for_its_forces_is_refused) {
   ck_assert(fem_momentum_is_refused(&falling.momentum, 0.1));
   ck_assert(!fem_momentum_is_refused(&falling.momentum, 1)); // a third of what a second allows
   fem_momentum_accept(&falling.momentum);                    // a step that adds nothing is not to blame
-  ck_assert_ok(fem_momentum_end(&falling.momentum, 0.1, &nothing));
+  ck_assert_ok(fem_momentum_end(&falling.momentum, &falling.state, &nothing));
   ck_assert(!fem_momentum_is_refused(&falling.momentum, 0.1));
   close_falling(&falling);
 }
@@ -128,8 +131,8 @@ START_TEST(velocities_are_held_the_closer_the_more_is_missing) {
     Falling falling;
     open_falling(&falling);
     memset(falling.v, 0, (size_t)falling.run.model.unknown_count * sizeof *falling.v);
-    fem_system_scatter(&falling.system, 0, falling.u, falling.v);
-    ck_assert_ok(fem_momentum_begin(&falling.momentum, 0, &nothing));
+    fem_system_scatter(&falling.system, 0, falling.u, falling.v, &falling.state);
+    ck_assert_ok(fem_momentum_begin(&falling.momentum, &falling.state, &nothing));
     step(&falling, (1 - MISSING[i]) * 0.981);
     ck_assert_double_eq(fem_momentum_strictness(&falling.momentum, 0.1), 1);
     fem_momentum_accept(&falling.momentum);

@@ -47,7 +47,8 @@ enum { MOST_FRAMES = 512 };
 
 typedef struct Replay {
   FemSystem system;
-  double time; // of the last accepted state; < 0: there is none [s]
+  FemState state; // under trial
+  double time;    // of the last accepted state; < 0: there is none [s]
   int next_frame;
   double *u, *v;                               // of the unknowns, scratch
   double *force, *friction, *pressure, *depth; // scratch
@@ -61,6 +62,7 @@ static void replay_create(Replay *replay, const FemModel *model) {
   size_t vertices = (size_t)model->vertex_count;
   *replay = (Replay){.time = -1};
   ck_assert_ok(fem_system_create(&replay->system, model));
+  ck_assert_ok(fem_system_create_state(&replay->system, &replay->state));
   double **arrays[] = {&replay->u, &replay->v, &replay->force, &replay->friction};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
     *arrays[k] = memory_zeroed(3 * vertices, sizeof(double));
@@ -69,6 +71,7 @@ static void replay_create(Replay *replay, const FemModel *model) {
 }
 
 static void replay_destroy(Replay *replay) {
+  fem_state_destroy(&replay->state);
   fem_system_destroy(&replay->system);
   memory_free(replay->u), memory_free(replay->v);
   memory_free(replay->force), memory_free(replay->friction);
@@ -79,27 +82,28 @@ static ContactSystem *contact_of(const Replay *replay) {
   return fem_effect_contact_system(fem_system_effect(&replay->system, &fem_effect_contact));
 }
 
-static void gather(Replay *replay, const double *positions, const double *velocities) {
+static void take(Replay *replay, double time, const double *positions, const double *velocities) {
   const FemModel *model = replay->system.model;
   for (int i = 0; i < model->unknown_count; i++) {
     int dof = model->dof_of_unknown[i];
     replay->u[i] = positions[dof] - model->rest[dof];
     replay->v[i] = velocities[dof];
   }
+  fem_system_scatter(&replay->system, time, replay->u, replay->v, &replay->state);
 }
 
 static void accept(Replay *replay, double time, const double *positions, const double *velocities) {
-  gather(replay, positions, velocities);
+  take(replay, time, positions, velocities);
   if (replay->time < 0)
-    ck_assert_ok(fem_system_begin(&replay->system, time, replay->u, replay->v, 0));
+    ck_assert_ok(fem_system_begin(&replay->system, &replay->state, 0));
   else
-    ck_assert_ok(fem_system_accept(&replay->system, time, replay->u, replay->v, 0));
+    ck_assert_ok(fem_system_accept(&replay->system, &replay->state, 0));
   replay->time = time;
 }
 
 static void add(const Replay *replay, const FemEffectOps *ops, double *force) {
   void *effect = fem_system_effect(&replay->system, ops);
-  if (effect) ck_assert_ok(ops->add_force(effect, &replay->system.trial, force));
+  if (effect) ck_assert_ok(ops->add_force(effect, &replay->state, force));
 }
 
 static void compare(Replay *replay, const FemVtuContent *frame, const char *name, size_t count,
@@ -119,7 +123,7 @@ static void compare_reactions(Replay *replay, const FemVtuContent *frame) {
   size_t values = 3 * (size_t)replay->system.model->vertex_count;
   const double *written = find_field(frame, "reaction");
   if (!written) return;
-  ck_assert_ok(fem_system_forces_of_all(&replay->system, frame->time));
+  ck_assert_ok(fem_system_forces_of_all(&replay->system, &replay->state));
   for (size_t k = 0; k < values; k++) replay->force[k] = written[k] != 0 ? -replay->system.forces[k] : 0;
   compare(replay, frame, "reaction", values, replay->force);
 }
@@ -151,8 +155,8 @@ static void sum_first_body(Replay *replay) {
 }
 
 static void check_frame(Replay *replay, const FemVtuContent *frame) {
-  gather(replay, frame->positions, find_field(frame, "velocity"));
-  ck_assert_ok(fem_system_renew(&replay->system, frame->time, replay->u, replay->v));
+  take(replay, frame->time, frame->positions, find_field(frame, "velocity"));
+  ck_assert_ok(fem_system_renew(&replay->system, &replay->state));
   compare_forces(replay, frame);
   sum_first_body(replay);
   compare_reactions(replay, frame);
@@ -172,7 +176,8 @@ static Status follow(void *self, const FemRunProgress *progress) {
     check_frame(replay, &frame);
     fem_vtu_read_destroy(&frame);
   }
-  accept(replay, progress->time, progress->system->positions, progress->system->velocities);
+  const FemState *now = &progress->system->accepted;
+  accept(replay, now->time, now->positions, now->velocities);
   return STATUS_OK;
 }
 

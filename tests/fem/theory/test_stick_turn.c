@@ -53,18 +53,21 @@ START_TEST(what_sticks_and_is_turned_as_a_whole_feels_the_same_forces) {
   const FemModel *model = &run.model;
   const size_t values = 3 * (size_t)model->vertex_count;
   ck_assert_int_eq((int)values, model->unknown_count);
-  double *x = malloc(values * sizeof *x), *u = calloc(values, sizeof *u), *still = calloc(values, sizeof *u),
+  double *x = malloc(values * sizeof *x), *u = calloc(values, sizeof *u),
          *before = malloc(values * sizeof *x);
   FemSystem system;
+  FemState state;
   memcpy(x, model->rest, values * sizeof *x);
   ck_assert_ok(fem_system_create(&system, model));
-  ck_assert_ok(fem_system_begin(&system, 0, u, still, 0));
+  ck_assert_ok(fem_system_create_state(&system, &state));
+  fem_system_scatter(&system, 0, u, NULL, &state);
+  ck_assert_ok(fem_system_begin(&system, &state, 0));
   shear(model, x);
   set(model, x, u);
-  ck_assert_ok(fem_system_renew(&system, 0.01, u, still));
-  ck_assert_ok(fem_system_accept(&system, 0.01, u, still, 0));
-  fem_system_scatter(&system, 0.01, u, still);
-  ck_assert_ok(fem_system_forces(&system, 0.01));
+  fem_system_scatter(&system, 0.01, u, NULL, &state);
+  ck_assert_ok(fem_system_renew(&system, &state));
+  ck_assert_ok(fem_system_accept(&system, &state, 0));
+  ck_assert_ok(fem_system_forces(&system, &state));
   memcpy(before, system.forces, values * sizeof *before);
   const ContactStick *law = fem_effect_stick_of(fem_system_effect(&system, &fem_effect_stick));
   double pull = 0;
@@ -79,14 +82,15 @@ START_TEST(what_sticks_and_is_turned_as_a_whole_feels_the_same_forces) {
       vec3_store(before + 3 * (size_t)v, turned(axis, M_PI / 6, vec3_at(before + 3 * (size_t)v)));
     }
     set(model, x, u);
-    ck_assert_ok(fem_system_renew(&system, time, u, still));
-    fem_system_scatter(&system, time, u, still);
-    ck_assert_ok(fem_system_forces(&system, time));
+    fem_system_scatter(&system, time, u, NULL, &state);
+    ck_assert_ok(fem_system_renew(&system, &state));
+    ck_assert_ok(fem_system_forces(&system, &state));
     for (size_t i = 0; i < values; i++) worst = fmax(worst, fabs(system.forces[i] - before[i]));
     ck_assert_msg(worst <= 1e-9 * pull, "after %d degrees by %.2e N of %.2e N", 30 * k, worst, pull);
-    ck_assert_ok(fem_system_accept(&system, time, u, still, 0));
+    ck_assert_ok(fem_system_accept(&system, &state, 0));
   }
-  free(x), free(u), free(still), free(before);
+  free(x), free(u), free(before);
+  fem_state_destroy(&state);
   fem_system_destroy(&system);
   scene_close(&run);
 }

@@ -16,7 +16,7 @@ START_TEST(a_refused_evaluation_changes_nothing_but_the_step) {
     while (time < 1) {
       bool is_onset;
       const double *u_now, *v_now;
-      ck_assert_ok(fem_system_accept(&toy.system, time, &u, &v, 0));
+      toy_accept(&toy, time, &u, &v);
       ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
       fem_integrator_state(integrator, &time, &u_now, &v_now);
       u = u_now[0], v = v_now[0];
@@ -27,7 +27,7 @@ START_TEST(a_refused_evaluation_changes_nothing_but_the_step) {
     ck_assert((toy.retries > 10) == (k == 1));
     ck_assert(stats.newton_failures >= toy.retries);
     fem_integrator_destroy(integrator);
-    fem_system_destroy(&toy.system);
+    toy_close(&toy);
   }
   ck_assert(steps[1] > steps[0]);
 }
@@ -49,7 +49,7 @@ START_TEST(a_force_that_keeps_refusing_ends_the_run_with_its_reason) {
   ck_assert_ptr_nonnull(strstr(status_message(), "of body 'chain'"));
   ck_assert_ptr_nonnull(strstr(status_message(), "max_step"));
   fem_integrator_destroy(integrator);
-  fem_system_destroy(&toy.system);
+  toy_close(&toy);
 }
 END_TEST
 
@@ -65,7 +65,7 @@ START_TEST(a_fatal_force_comes_out_as_it_is) {
   ck_assert_ptr_nonnull(strstr(status_message(), "the force broke"));
   ck_assert_int_eq(fem_integrator_step(integrator, &time, &is_onset), STATUS_SOLVER); // and stays so
   fem_integrator_destroy(integrator);
-  fem_system_destroy(&toy.system);
+  toy_close(&toy);
 }
 END_TEST
 
@@ -87,7 +87,7 @@ START_TEST(a_jump_of_the_force_never_hangs) {
   }
   ck_assert(time > 0.01); // it got as far as the jump
   fem_integrator_destroy(integrator);
-  fem_system_destroy(&toy.system);
+  toy_close(&toy);
 }
 END_TEST
 
@@ -104,7 +104,7 @@ START_TEST(a_run_that_crawls_is_given_up) {
   ck_assert_int_eq(status, STATUS_SOLVER);
   ck_assert(time < 1e-5);
   fem_integrator_destroy(integrator);
-  fem_system_destroy(&toy.system);
+  toy_close(&toy);
 }
 END_TEST
 
@@ -124,7 +124,7 @@ START_TEST(a_run_whose_steps_are_taken_back_is_given_up) {
   ck_assert_int_eq(status, STATUS_SOLVER);
   ck_assert_ptr_nonnull(strstr(status_message(), "stalls"));
   fem_integrator_destroy(integrator);
-  fem_system_destroy(&toy.system);
+  toy_close(&toy);
 }
 END_TEST
 
@@ -139,7 +139,7 @@ START_TEST(a_crawl_through_many_integrators_is_given_up) {
   Status status = STATUS_OK;
   for (int part = 0; part < 20 && status == STATUS_OK; part++) {
     FemIntegrator *integrator;
-    ck_assert_ok(fem_integrator_create(&integrator, &toy.system, &fem_solver_cholmod, &def));
+    ck_assert_ok(fem_integrator_create(&integrator, &toy.system, &toy.state, &fem_solver_cholmod, &def));
     ck_assert_ok(fem_integrator_restart(integrator, time, &u, &v, 0));
     bool is_onset;
     for (int k = 0; k < 300 && status == STATUS_OK; k++)
@@ -152,7 +152,7 @@ START_TEST(a_crawl_through_many_integrators_is_given_up) {
   ck_assert_int_eq(status, STATUS_SOLVER);
   ck_assert_msg(strstr(status_message(), "stalls") != NULL, "%s", status_message());
   ck_assert(time < 0.6);
-  fem_system_destroy(&toy.system);
+  toy_close(&toy);
 }
 END_TEST
 
@@ -170,7 +170,7 @@ START_TEST(a_matrix_that_is_not_positive_definite_shortens_the_step) {
     ck_assert_int_gt((int)fem_integrator_stats(integrator).newton_failures, 0);
     ck_assert_near(u, 1e-6 * exp(6), 2e-5);
     fem_integrator_destroy(integrator);
-    fem_system_destroy(&toy.system);
+    toy_close(&toy);
   }
 }
 END_TEST

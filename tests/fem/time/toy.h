@@ -36,6 +36,7 @@ typedef struct Toy {
   FemModelBody body;
   FemModel model;
   FemSystem system;
+  FemState state; // under trial
   double rest[3 * MOST], masses[MOST];
   int unknown_of_dof[3 * MOST], dof_of_unknown[MOST];
 } Toy;
@@ -158,15 +159,22 @@ static inline void toy_open(Toy *toy) {
   const double still[3 * MOST] = {0};
   *system = (FemSystem){.model = &toy->model, .forces = memory_zeroed(dofs, sizeof(double))};
   ck_assert_ok(fem_state_create(&system->accepted, toy->count, toy->rest, still));
-  ck_assert_ok(fem_state_create(&system->trial, toy->count, toy->rest, still));
-  system->trial.last = &system->accepted;
-  system->positions = system->trial.positions;
-  system->velocities = system->trial.velocities;
+  ck_assert_ok(fem_system_create_state(system, &toy->state));
   add_effect(toy, toy->floor_stiffness > 0 || toy->margin > 0 ? &law_with_floor : &law);
   if (toy->damper > 0) add_effect(toy, &damper);
   ck_assert_ok(fem_pattern_create(&system->pattern, toy->count));
   ck_assert_ok(couple(&toy, NULL, system->pattern, NULL));
   ck_assert_ok(fem_matrix_create(&system->matrix, system->pattern, toy->unknown_of_dof));
+}
+
+static inline void toy_close(Toy *toy) {
+  fem_state_destroy(&toy->state);
+  fem_system_destroy(&toy->system);
+}
+
+static inline void toy_accept(Toy *toy, double time, const double *u, const double *v) {
+  fem_system_scatter(&toy->system, time, u, v, &toy->state);
+  ck_assert_ok(fem_system_accept(&toy->system, &toy->state, 0));
 }
 
 static inline FemIntegratorDef def_of(double tolerance, double end) {
@@ -177,7 +185,7 @@ static inline FemIntegratorDef def_of(double tolerance, double end) {
 static inline FemIntegrator *start(Toy *toy, FemSolverKind kind, FemIntegratorDef def, const double *u,
                                    const double *v) {
   FemIntegrator *integrator;
-  ck_assert_ok(fem_integrator_create(&integrator, &toy->system, fem_solver_ops(kind), &def));
+  ck_assert_ok(fem_integrator_create(&integrator, &toy->system, &toy->state, fem_solver_ops(kind), &def));
   ck_assert_ok(fem_integrator_restart(integrator, 0, u, v, 0));
   return integrator;
 }
