@@ -9,16 +9,28 @@
 #include "base/vec3.h"
 #include "contact/evaluation.h"
 #include "contact/shape/convex.h"
+#include "contact/surface/middle.h"
 
 // |h| from which on a direction is one; how far h may turn at once and be followed (cosines); where an
-// element is turned, and how deep it must reach for that.
-static const double CLEAR = 0.4, FOLLOWED = -0.25, TURNED = -0.3, TURNED_WITHOUT_DEPTH = -0.8, BACK = 0.3,
-                    REACH = 0.1;
+// element is turned, or no longer so, along and against the direction.
+static const double CLEAR = 0.4, FOLLOWED = -0.25, TURNED = 0.3, TURNED_WITHOUT_DEPTH = 0.8;
+// The least reach of what is turned, and, by its cube, the least covered share.
+static const double REACH = 0.1;
+
+static double cube(double side) {
+  return side * side * side;
+}
+
+// The share of a volume below which all is rounding.
+static double rounding(void) {
+  return cube(REACH * REACH);
+}
 
 void contact_passage_destroy(ContactPassage *passage) {
   memory_free(passage->now.entries);
   memory_free(passage->next.entries);
   memory_free(passage->meetings);
+  memory_free(passage->middles);
   *passage = (ContactPassage){0};
 }
 
@@ -31,34 +43,37 @@ static double depth_of_shape(const ContactShape *shape) {
   return least;
 }
 
-// The most that a point of the cell can be deep [m].
-static double depth_of_cell(const ContactMesh *mesh, int cell) {
-  double most = 0;
-  for (int v = 0; v < 4; v++) most = fmax(most, mesh->depths[mesh->cells[cell][v]]);
-  return most;
+// Of the cell, or of the shape that stands for it.
+static double volume_of(const ContactLayout *layout, int cell) {
+  return cell < 0 ? INFINITY : layout->cell_volumes[cell];
 }
 
 // What the element on side `side` of pair k meets in it.
-static void add_field(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, int side,
-                      ContactPassageMeeting *meeting) {
+static void add_field(const ContactPassage *passage, const ContactLayout *layout,
+                      const ContactEvaluation *evaluation, int k, int side, ContactPassageMeeting *meeting) {
   const ContactFieldPair *field = &evaluation->fields[k];
   const ContactPair *pair = &evaluation->pairs[k];
-  int other = pair->cells[1 - side];
-  double most = other < 0 ? depth_of_shape(&layout->def.shapes[layout->interfaces[pair->interface].shape])
-                          : depth_of_cell(&layout->mesh, other);
+  int own = pair->cells[side], other = pair->cells[1 - side];
+  double lesser =
+      fmin(other < 0 ? layout->tet_volumes[contact_mesh_tet(&layout->mesh, own)] : layout->cell_volumes[own],
+           volume_of(layout, other));
+  meeting->volume += field->volume;
+  meeting->other += volume_of(layout, other);
+  if (!(field->volume >= rounding() * lesser)) return;
+  double middle = other < 0 ? depth_of_shape(&layout->def.shapes[layout->interfaces[pair->interface].shape])
+                            : passage->middles[other];
   Vec3 slope = vec3_at(field->slopes[1 - side]);
   vec3_accumulate(meeting->slope, vec3_scale(field->weighed[side], slope));
   meeting->size += field->weighed[side] * vec3_length(slope);
-  meeting->reach = fmax(meeting->reach, field->depths[1 - side] / most);
+  meeting->reach = fmax(meeting->reach, field->depths[1 - side] / middle);
 }
 
 static void add_gradient(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, int side,
                          ContactPassageMeeting *meeting) {
   const double *gradient = evaluation->gradients + 24 * (size_t)k + 12 * side;
-  int other = evaluation->pairs[k].cells[1 - side];
   for (int v = 0; v < 4; v++) vec3_accumulate(meeting->slope, vec3_at(gradient + 3 * v));
-  meeting->covered += evaluation->volumes[k];
-  meeting->other += other < 0 ? INFINITY : layout->cell_volumes[other];
+  meeting->volume += evaluation->volumes[k];
+  meeting->other += volume_of(layout, evaluation->pairs[k].cells[1 - side]);
 }
 
 static void find_meetings(ContactPassage *passage, const ContactLayout *layout,
@@ -70,12 +85,15 @@ static void find_meetings(ContactPassage *passage, const ContactLayout *layout,
     for (int side = 0; side < 2; side++) {
       int e = patches->pair_elements[k][side];
       if (e < 0) continue;
-      (has_field ? add_field : add_gradient)(layout, evaluation, k, side, &passage->meetings[e]);
+      if (has_field)
+        add_field(passage, layout, evaluation, k, side, &passage->meetings[e]);
+      else
+        add_gradient(layout, evaluation, k, side, &passage->meetings[e]);
     }
-  for (int e = 0; e < patches->element_count && !has_field; e++) {
+  for (int e = 0; e < patches->element_count; e++) {
     ContactPassageMeeting *meeting = &passage->meetings[e];
-    meeting->size = vec3_length(vec3_at(meeting->slope));
-    meeting->reach = meeting->covered / fmin(layout->tet_volumes[patches->elements[e].tet], meeting->other);
+    if (!has_field) meeting->size = vec3_length(vec3_at(meeting->slope));
+    meeting->covered = meeting->volume / fmin(layout->tet_volumes[patches->elements[e].tet], meeting->other);
   }
 }
 
@@ -89,13 +107,23 @@ static void sort(ContactPassageList *list) {
   if (list->count > 1) qsort(list->entries, (size_t)list->count, sizeof *list->entries, compare_entries);
 }
 
-// What the element becomes at the direction h, |h| ≤ 1.
-static void meet(ContactPassageEntry *entry, Vec3 h, double reach, double turned) {
-  Vec3 kept = vec3_at(entry->direction);
+// Whether it is deep enough in the other one to be turned there.
+static bool is_inside(const ContactPassageEntry *meeting, bool has_field) {
+  if (!has_field) return meeting->covered > REACH;
+  return meeting->reach > REACH && meeting->covered > cube(REACH);
+}
+
+// What the element becomes where it meets the other one like this; the meeting's direction is h, |h| ≤ 1.
+static void meet(ContactPassageEntry *entry, const ContactPassageEntry *meeting, bool has_field) {
+  Vec3 kept = vec3_at(entry->direction), h = vec3_at(meeting->direction);
   double length = vec3_length(h), along = vec3_dot(h, kept);
+  double turned = has_field ? TURNED : TURNED_WITHOUT_DEPTH;
   bool is_known = vec3_length(kept) > 0;
-  if (is_known && along < turned && reach > REACH) entry->is_turned = true;
-  if (is_known && along > BACK) entry->is_turned = false;
+  entry->reach = meeting->reach;
+  entry->covered = meeting->covered;
+  if (!(meeting->covered >= rounding())) return;
+  if (is_known && along < -turned && is_inside(meeting, has_field)) entry->is_turned = true;
+  if (is_known && along > TURNED) entry->is_turned = false;
   bool is_followed = !is_known || (!entry->is_turned && along > FOLLOWED * length);
   if (length > CLEAR && is_followed) vec3_store(entry->direction, vec3_scale(1 / length, h));
 }
@@ -117,7 +145,8 @@ static void list_elements(ContactPassage *passage, const ContactPatches *patches
       ContactPassageEntry *entry = &next->entries[next->count++];
       *entry = (ContactPassageEntry){.interface = patches->patches[p].interface,
                                      .tet = patches->elements[e].tet,
-                                     .reach = meeting->reach};
+                                     .reach = meeting->reach,
+                                     .covered = meeting->covered};
       vec3_store(entry->direction, h);
     }
   sort(next);
@@ -132,7 +161,7 @@ static void leave(ContactPassage *passage, const ContactPassageEntry *entry) {
 static void match(ContactPassage *passage, const ContactSystem *system) {
   ContactPassageList *now = &passage->now, *next = &passage->next;
   int listed = next->count, i = 0;
-  double turned = contact_system_layout(system)->mesh.has_field ? TURNED : TURNED_WITHOUT_DEPTH;
+  bool has_field = contact_system_layout(system)->mesh.has_field;
   for (int k = 0; k < listed; k++) {
     ContactPassageEntry *entry = &next->entries[k], meeting = *entry;
     for (; i < now->count && compare_entries(&now->entries[i], entry) < 0; i++) {
@@ -143,7 +172,7 @@ static void match(ContactPassage *passage, const ContactSystem *system) {
     }
     vec3_store(entry->direction, (Vec3){0, 0, 0});
     if (i < now->count && compare_entries(&now->entries[i], entry) == 0) *entry = now->entries[i++];
-    meet(entry, vec3_at(meeting.direction), meeting.reach, turned);
+    meet(entry, &meeting, has_field);
   }
   for (; i < now->count; i++) {
     if (contact_system_is_resting(system, now->entries[i].interface))
@@ -152,6 +181,11 @@ static void match(ContactPassage *passage, const ContactSystem *system) {
       leave(passage, &now->entries[i]);
   }
   if (next->count > listed) sort(next);
+}
+
+static Status find_middles(ContactPassage *passage, const ContactLayout *layout) {
+  if (passage->middles || !layout->mesh.has_field) return STATUS_OK;
+  return contact_middle_find(&layout->mesh, layout->def.tets, layout->rest, &passage->middles);
 }
 
 Status contact_passage_look(ContactPassage *passage, ContactSystem *system) {
@@ -163,6 +197,7 @@ Status contact_passage_look(ContactPassage *passage, ContactSystem *system) {
                       sizeof *passage->meetings))
     return status_no_memory("who passes through whom");
   TRY(reserve(&passage->next, elements + (size_t)passage->now.count));
+  TRY(find_middles(passage, contact_system_layout(system)));
   find_meetings(passage, contact_system_layout(system), evaluation);
   list_elements(passage, &evaluation->patches);
   match(passage, system);

@@ -12,10 +12,18 @@
 // The kept direction follows h from one accepted state to the next while |h| > 0.4 and h turns by less than
 // 104°: so it does where an element slides round a drum or over an edge, or turns together with B. Where h
 // points against the kept direction, the element has gone beyond the middle of B and is pushed out on the
-// other side: it is called turned. That is judged only for elements that reach at least a tenth of B's depth
-// into B (without a depth: that overlap with a tenth of their own volume or of what they meet), since cells
-// along an edge of B's mesh can have any slope. An element that leaves B while it is turned has passed
-// through; one that comes back is no longer turned.
+// other side: it is called turned. An element that leaves B while it is turned has passed through; one that
+// comes back is no longer turned.
+//
+// Whether an element is turned is judged by two shares, so the unit of length does not matter:
+//
+//   reach    the largest depth, over the depth of B's middle at that place (contact/surface/middle.h): at
+//            least a tenth, since cells along an edge of B's mesh can have any slope;
+//   covered  the volume that the two share, over that of the element or of the cells that it meets, whichever
+//            is less: at least a thousandth; without a depth a tenth.
+//
+// Below a millionth the centroid and the depth of an overlap are those of rounding: such a pair counts for
+// nothing, and such an element keeps no direction.
 #ifndef TETLAP_CONTACT_PASSAGE_H
 #define TETLAP_CONTACT_PASSAGE_H
 
@@ -28,8 +36,8 @@
 typedef struct ContactPassageEntry {
   int interface, tet;
   bool is_turned;
-  double direction[3]; // in which it came in; 0: not known yet
-  double reach;        // scratch: as in ContactPassageMeeting, now
+  double direction[3];   // in which it came in; 0: not known yet
+  double reach, covered; // scratch: the shares, now
 } ContactPassageEntry;
 
 typedef struct ContactPassageList {
@@ -41,8 +49,9 @@ typedef struct ContactPassageList {
 // What an element of the patches meets.
 typedef struct ContactPassageMeeting {
   double slope[3], size; // Σ w g, Σ w |g|
-  double reach;          // largest depth as a share of the most that there is where it is
-  double covered, other; // Σ V_ij, Σ V_j of the cells that it meets [m³]
+  double reach;          // largest depth as a share of that of the middle there; without a depth 0
+  double volume, other;  // Σ V_ij, Σ V_j of the cells that it meets [m³]
+  double covered;        // share of the lesser volume
 } ContactPassageMeeting;
 
 typedef struct ContactPassage {
@@ -51,6 +60,7 @@ typedef struct ContactPassage {
   ContactPassageEntry first;       // of them
   ContactPassageMeeting *meetings; // scratch                             (elements of the patches)
   size_t meeting_capacity;
+  double *middles; // of each cell: the depth of the middle there [m]; `field` only
 } ContactPassage;
 
 void contact_passage_destroy(ContactPassage *passage); // also of a zeroed one, which is a beginning

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which elements have passed through a body: on blocks that are moved by hand, in any unit of length.
+#include "blocks.h"
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "contact/passage.h"
+#include "contact/surface/middle.h"
+
+typedef struct Scene {
+  Blocks blocks;
+  double *rest, *still;
+  ContactShape shape;
+  int shape_count;
+  OverlapModel model;
+  ContactSystem *system;
+  ContactPassage passage;
+  int passed, most_turned;
+} Scene;
+
+static void start(Scene *scene) {
+  scene->rest = blocks_copy(&scene->blocks);
+  scene->still = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
+  ck_assert_ptr_nonnull(scene->still);
+  ck_assert_ok(overlap_model_create(&scene->model, "clip"));
+  ContactSystemDef def = blocks_def(&scene->blocks, scene->rest, &scene->model);
+  def.potential = CONTACT_POTENTIAL_FIELD;
+  def.shapes = &scene->shape, def.shape_count = scene->shape_count;
+  ck_assert_ok(contact_system_create(&scene->system, &def));
+}
+
+static void destroy(Scene *scene) {
+  contact_passage_destroy(&scene->passage);
+  contact_system_destroy(scene->system);
+  overlap_model_destroy(&scene->model);
+  blocks_destroy(&scene->blocks);
+  free(scene->rest), free(scene->still);
+}
+
+// The present positions are the next accepted state.
+static void accept(Scene *scene) {
+  double energy;
+  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01, NULL));
+  ck_assert_ok(contact_system_eval(scene->system, 0, scene->blocks.x, &energy, NULL));
+  ck_assert_ok(contact_passage_look(&scene->passage, scene->system));
+  scene->passed += scene->passage.passed;
+  contact_passage_accept(&scene->passage);
+  ContactPassageEntry first;
+  scene->most_turned = (int)fmax(scene->most_turned, contact_passage_turned(&scene->passage, &first));
+}
+
+// The last block moves on, in so many steps.
+static void move(Scene *scene, int steps, const double way[3]) {
+  const double by[3] = {way[0] / steps, way[1] / steps, way[2] / steps};
+  for (int i = 0; i < steps; i++) {
+    blocks_shift(&scene->blocks, scene->blocks.x, scene->blocks.body_count - 1, by);
+    accept(scene);
+  }
+}
+
+// A plate, one cell thick, and a block above it.
+static void start_plate_and_block(Scene *scene, double unit) {
+  *scene = (Scene){.shape_count = 0};
+  blocks_add(&scene->blocks,
+             &(BlockDef){.cell = {unit, unit, 0.3 * unit}, .cells = {4, 4, 1}, .jitter = 0.1});
+  blocks_add(&scene->blocks, &(BlockDef){.corner = {1.61 * unit, 1.57 * unit, 0.5 * unit},
+                                         .cell = {0.4 * unit, 0.4 * unit, 0.4 * unit},
+                                         .cells = {2, 2, 2},
+                                         .jitter = 0.1});
+  start(scene);
+}
+
+static const double UNITS[] = {1, 1e-3, 1e3};
+
+START_TEST(what_crosses_a_plate_has_passed_in_any_unit) {
+  int passed[3];
+  for (int u = 0; u < 3; u++) {
+    Scene scene;
+    start_plate_and_block(&scene, UNITS[u]);
+    move(&scene, 40, (const double[]){0, 0, -2 * UNITS[u]});
+    passed[u] = scene.passed;
+    destroy(&scene);
+  }
+  ck_assert_int_gt(passed[0], 0);
+  ck_assert_int_eq(passed[1], passed[0]);
+  ck_assert_int_eq(passed[2], passed[0]);
+}
+END_TEST
+
+START_TEST(what_enters_by_a_third_and_comes_back_has_not) {
+  for (int u = 0; u < 3; u++) {
+    Scene scene;
+    start_plate_and_block(&scene, UNITS[u]);
+    move(&scene, 15, (const double[]){0, 0, -0.3 * UNITS[u]});
+    move(&scene, 15, (const double[]){0, 0, 0.3 * UNITS[u]});
+    ck_assert_int_eq(scene.passed, 0);
+    ck_assert_int_eq(scene.most_turned, 0);
+    destroy(&scene);
+  }
+}
+END_TEST
+
+// Turns the last block from where it rests by that angle about each axis, so that its lowest vertex comes to
+// lie at `to`.
+static void place(Scene *scene, double angle, const double to[3]) {
+  const ContactBody *body = &scene->blocks.bodies[scene->blocks.body_count - 1];
+  int lowest = body->vertex_begin;
+  for (int v = body->vertex_begin; v < body->vertex_end; v++) {
+    double *x = scene->blocks.x + 3 * v;
+    memcpy(x, scene->rest + 3 * v, 3 * sizeof *x);
+    for (int axis = 0; axis < 3; axis++) {
+      double *a = &x[(axis + 1) % 3], *b = &x[(axis + 2) % 3], c = cos(angle), s = sin(angle), old = *a;
+      *a = c * old - s * *b, *b = s * old + c * *b;
+    }
+    if (x[2] < scene->blocks.x[3 * lowest + 2]) lowest = v;
+  }
+  double by[3];
+  vec3_store(by, vec3_sub(vec3_at(to), vec3_at(scene->blocks.x + 3 * lowest)));
+  blocks_shift(&scene->blocks, scene->blocks.x, scene->blocks.body_count - 1, by);
+}
+
+// From 1e-14 of its size on a block dips into a ball with a corner, or a face: what they share has a volume
+// then, but no direction and no depth that are more than rounding.
+START_TEST(what_touches_by_rounding_has_no_direction) {
+  Scene scene = {.shape = {.kind = CONTACT_SHAPE_BALL, .point = {0, 0, -2}, .radius = 2}, .shape_count = 1};
+  blocks_add(&scene.blocks, &(BlockDef){.cell = {0.4, 0.4, 0.4}, .cells = {2, 2, 2}, .jitter = 0.1});
+  start(&scene);
+  int touching = 0;
+  for (int i = 0; i < 400; i++) {
+    place(&scene, 0.3 * (i % 9), (const double[]){0.1, 0, sqrt(4 - 0.01) - 2 - pow(10, -14 + 0.02 * i)});
+    accept(&scene);
+    for (int k = 0; k < scene.passage.now.count; k++) {
+      const ContactPassageEntry *entry = &scene.passage.now.entries[k];
+      if (!(entry->covered < 1e-9)) continue;
+      touching++;
+      ck_assert_double_eq(entry->reach, 0);
+      ck_assert_double_eq(vec3_length(vec3_at(entry->direction)), 0);
+    }
+    contact_passage_destroy(&scene.passage);
+  }
+  ck_assert_int_gt(touching, 50);
+  destroy(&scene);
+}
+END_TEST
+
+// Depths of the middle below a plate of thickness t, a cube of four cells a side, and a wedge that is ten
+// times as thick at one end as at the other.
+static void middles_of(const Scene *scene, double *least, double *most) {
+  const ContactLayout *layout = contact_system_layout(scene->system);
+  double *middles;
+  ck_assert_ok(contact_middle_find(&layout->mesh, layout->def.tets, layout->rest, &middles));
+  *least = INFINITY, *most = 0;
+  for (int cell = 0; cell < layout->mesh.cell_count; cell++)
+    *least = fmin(*least, middles[cell]), *most = fmax(*most, middles[cell]);
+  memory_free(middles);
+}
+
+START_TEST(the_middle_is_half_of_the_thickness_at_that_place) {
+  double least, most;
+  for (int layers = 1; layers <= 4; layers += 3) {
+    Scene plate = {.shape_count = 0};
+    blocks_add(&plate.blocks, &(BlockDef){.cell = {1, 1, 0.4 / layers}, .cells = {6, 6, layers}});
+    start(&plate);
+    middles_of(&plate, &least, &most);
+    ck_assert_double_ge(least, 0.5 * 0.2);
+    ck_assert_double_le(most, 2 * 0.2);
+    destroy(&plate);
+  }
+  Scene cube = {.shape_count = 0};
+  blocks_add(&cube.blocks, &(BlockDef){.cell = {1, 1, 1}, .cells = {4, 4, 4}});
+  start(&cube);
+  middles_of(&cube, &least, &most);
+  ck_assert_double_ge(least, 1); // the diagonals of cells lead to the middle from some of the corners only
+  ck_assert_near(most, 2, 1e-9);
+  destroy(&cube);
+}
+END_TEST
+
+START_TEST(the_middle_of_a_wedge_is_near_at_its_thin_end) {
+  Scene wedge = {.shape_count = 0};
+  double least, most;
+  blocks_add(&wedge.blocks, &(BlockDef){.cell = {0.25, 0.25, 0.1}, .cells = {40, 8, 10}});
+  for (int v = 0; v < wedge.blocks.vertex_count; v++) {
+    double *x = wedge.blocks.x + 3 * v;
+    x[2] = (x[2] - 0.5) * (0.1 + 0.09 * x[0]);
+  }
+  start(&wedge);
+  middles_of(&wedge, &least, &most);
+  ck_assert_double_lt(least, 0.1);
+  ck_assert_near(most, 0.5, 0.05);
+  destroy(&wedge);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("contact passage");
+  tcase_add_test(cases, what_crosses_a_plate_has_passed_in_any_unit);
+  tcase_add_test(cases, what_enters_by_a_third_and_comes_back_has_not);
+  tcase_add_test(cases, what_touches_by_rounding_has_no_direction);
+  tcase_add_test(cases, the_middle_is_half_of_the_thickness_at_that_place);
+  tcase_add_test(cases, the_middle_of_a_wedge_is_near_at_its_thin_end);
+  return suite_run("contact passage", cases, 60);
+}
