@@ -23,17 +23,17 @@ static inline void scene_open_text(SceneRun *run, const char *text) {
 static inline double *solve_linear_static(const FemModel *model) {
   FemSystem system;
   void *solver;
-  size_t n = (size_t)model->unknown_count, values = 3 * (size_t)model->vertex_count;
+  size_t n = (size_t)model->free_count, values = 3 * (size_t)model->vertex_count;
   double *right = calloc(n, sizeof *right), *u = calloc(n, sizeof *u), *all = calloc(values, sizeof *all);
   ck_assert_ok(fem_system_create(&system, model));
   ck_assert_ok(fem_system_forces(&system, &system.accepted));
-  for (size_t i = 0; i < n; i++) right[i] = system.forces[model->dof_of_unknown[i]];
+  for (size_t i = 0; i < n; i++) right[i] = system.forces[system.numbering.dof_of_unknown[i]];
   ck_assert_ok(fem_system_assemble(&system, &system.accepted, 1, 0, 0, &system.matrix));
   ck_assert_ok(fem_solver_cholmod.create(&solver, 1, 1e-8));
   ck_assert_ok(fem_solver_cholmod.analyse(solver, &system.matrix));
   ck_assert_ok(fem_solver_cholmod.factorise(solver, &system.matrix, NULL, NULL, 0));
   ck_assert_ok(fem_solver_cholmod.solve(solver, right, u));
-  for (size_t i = 0; i < n; i++) all[model->dof_of_unknown[i]] = u[i];
+  for (size_t i = 0; i < n; i++) all[system.numbering.dof_of_unknown[i]] = u[i];
   fem_solver_cholmod.destroy(solver);
   fem_system_destroy(&system);
   free(right);

@@ -17,7 +17,7 @@ static void record_digest(Record *record, const char *key, uint64_t digest) {
   record_text(record, key, text);
 }
 
-// Places, elements and which coordinates are unknown, of each body or obstacle with a mesh.
+// Places, elements and which coordinates are prescribed, of each body or obstacle with a mesh.
 static void record_meshes(const FemModel *model, Record *record) {
   for (int b = 0; b < model->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
@@ -26,7 +26,7 @@ static void record_meshes(const FemModel *model, Record *record) {
     uint64_t digest = digest_bytes(DIGEST_START, model->rest + first, values * sizeof *model->rest);
     digest = digest_bytes(digest, model->tets[body->tet_begin],
                           (size_t)(body->tet_end - body->tet_begin) * sizeof *model->tets);
-    digest = digest_bytes(digest, model->unknown_of_dof + first, values * sizeof *model->unknown_of_dof);
+    digest = digest_bytes(digest, model->is_prescribed + first, values * sizeof *model->is_prescribed);
     record_digest(record, body->name ? body->name : "?", digest);
   }
 }

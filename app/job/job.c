@@ -238,7 +238,7 @@ Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status st
   record_integer(summary, "bodies", job->scene.body_count);
   record_integer(summary, "vertices", job->model.vertex_count);
   record_integer(summary, "tetrahedra", job->model.tet_count);
-  record_integer(summary, "unknowns", job->model.unknown_count);
+  record_integer(summary, "unknowns", job->model.free_count);
   record_integer(summary, "threads", cpu_thread_count());
   fem_run_summarise(result, summary);
   return summary;

@@ -55,8 +55,8 @@ typedef struct FemEffectOps {
   Status (*advance)(void *self, const FemState *state, FemEffectHistory *next);
   // STATUS_INPUT: numbers from a checkpoint that are no history of this scene. NULL: any are.
   Status (*check_history)(const void *self, const double *values, size_t count);
-  // Adds forces [N] to `force` (vertex_count, 3); unless the state is `with_held`, those on bodies that are
-  // held may be left out. RETRY: take a smaller step. NULL: none.
+  // Adds forces [N] to `force` (vertex_count, 3); those on bodies that the state says are held may be left
+  // out. RETRY: take a smaller step. NULL: none.
   Status (*add_force)(void *self, const FemState *state, double *force);
   // Adds stiffness_scale · (−∂f/∂x) + damping_scale · (−∂f/∂v), symmetric, to the matrix. NULL: none.
   Status (*add_jacobian)(void *self, const FemState *state, double stiffness_scale, double damping_scale,

@@ -29,7 +29,8 @@ typedef struct FemState {
   FemEffectHistory histories[FEM_MAX_EFFECTS]; // of an accepted state, by the effects' places in their system
   const struct FemState *last; // the last accepted state, borrowed; itself where it is accepted
   long long version;           // the same number: the same time and positions, in any states
-  bool with_held;              // forces are wanted on bodies that are held, too, and between them
+  const bool *is_held; // bodies that sleep: forces on them and between them may be left out; borrowed,
+                       // NULL: forces on all are wanted                                   (body_count)
 } FemState;
 
 // Room for so many vertices, with copies of these positions and velocities, at time 0. It is its own `last`.

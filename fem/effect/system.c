@@ -75,7 +75,7 @@ static Status couple_effects(FemSystem *system, const FemState *state, bool only
 
 static Status lay_out(FemSystem *system) {
   fem_matrix_destroy(&system->matrix);
-  TRY(fem_matrix_create(&system->matrix, system->pattern, system->model->unknown_of_dof));
+  TRY(fem_matrix_create(&system->matrix, system->pattern, system->numbering.unknown_of_dof));
   system->matrix.rest = system->model->rest;
   system->matrix.share = system->model->share;
   system->pattern_version++;
@@ -118,12 +118,17 @@ static void take_state(FemSystem *system, const FemState *state) {
 static Status create_accepted(FemSystem *system) {
   const FemModel *model = system->model;
   TRY(fem_state_create(&system->accepted, model->vertex_count, model->rest, model->initial_velocity));
-  fem_model_drivers_move(model, 0, system->accepted.positions, system->accepted.velocities);
+  system->accepted.is_held = system->numbering.is_held;
+  fem_model_drivers_move(model, 0, 0, system->accepted.positions, system->accepted.velocities);
   return STATUS_OK;
 }
 
 static Status create(FemSystem *system, const FemSystem *old) {
   size_t values = 3 * (size_t)system->model->vertex_count;
+  TRY(fem_numbering_create(&system->numbering, system->model));
+  if (system->numbering.count == 0)
+    return status_fail(STATUS_INPUT,
+                       "every vertex is fixed or driven: there is nothing to solve; free some vertices");
   TRY(create_accepted(system));
   system->forces = memory_zeroed(values + 1, sizeof *system->forces);
   if (!system->forces) return status_no_memory("the state");
@@ -139,9 +144,6 @@ static Status create(FemSystem *system, const FemSystem *old) {
 
 static Status create_from(FemSystem *system, const FemModel *model, const FemSystem *old) {
   *system = (FemSystem){.model = model};
-  if (model->unknown_count == 0)
-    return status_fail(STATUS_INPUT,
-                       "every vertex is fixed or driven: there is nothing to solve; free some vertices");
   Status status = create(system, old);
   if (status) fem_system_destroy(system);
   return status;
@@ -165,6 +167,7 @@ void fem_system_destroy(FemSystem *system) {
   for (int i = 0; i < system->effect_count; i++) system->effects[i].ops->destroy(system->effects[i].self);
   fem_matrix_destroy(&system->matrix);
   fem_pattern_destroy(system->pattern);
+  fem_numbering_destroy(&system->numbering);
   fem_state_destroy(&system->accepted);
   for (int i = 0; i < FEM_MAX_EFFECTS; i++) fem_effect_history_destroy(&system->next[i]);
   memory_free(system->forces);
@@ -176,15 +179,17 @@ Status fem_system_create_state(const FemSystem *system, FemState *state) {
   TRY(fem_state_create(state, system->model->vertex_count, accepted->positions, accepted->velocities));
   state->time = accepted->time;
   state->last = accepted;
+  state->is_held = accepted->is_held;
   return STATUS_OK;
 }
 
 void fem_system_scatter(const FemSystem *system, double time, const double *u, const double *v,
                         FemState *state) {
   const FemModel *model = system->model;
+  const FemNumbering *numbering = &system->numbering;
   bool is_another = time != state->time;
-  for (int i = 0; i < model->unknown_count; i++) {
-    int dof = model->dof_of_unknown[i];
+  for (int i = 0; i < numbering->count; i++) {
+    int dof = numbering->dof_of_unknown[i];
     double position = model->rest[dof] + u[i];
     is_another = is_another || state->positions[dof] != position;
     state->positions[dof] = position;
@@ -192,15 +197,14 @@ void fem_system_scatter(const FemSystem *system, double time, const double *u, c
   }
   if (is_another) state->version = fem_state_new_version();
   state->time = time;
-  fem_model_drivers_move(model, time, state->positions, state->velocities);
+  fem_model_drivers_move(model, numbering->released, time, state->positions, state->velocities);
   if (!v) memset(state->velocities, 0, 3 * (size_t)model->vertex_count * sizeof *state->velocities);
 }
 
 void fem_system_gather(const FemSystem *system, const FemState *state, double *u, double *v) {
-  const FemModel *model = system->model;
-  for (int i = 0; i < model->unknown_count; i++) {
-    int dof = model->dof_of_unknown[i];
-    u[i] = state->positions[dof] - model->rest[dof];
+  for (int i = 0; i < system->numbering.count; i++) {
+    int dof = system->numbering.dof_of_unknown[i];
+    u[i] = state->positions[dof] - system->model->rest[dof];
     v[i] = state->velocities[dof];
   }
 }
@@ -287,9 +291,9 @@ Status fem_system_forces(FemSystem *system, const FemState *state) {
 }
 
 Status fem_system_forces_of_all(FemSystem *system, const FemState *state) {
-  FemState with_held = *state;
-  with_held.with_held = true;
-  return fem_system_forces(system, &with_held);
+  FemState all = *state;
+  all.is_held = NULL;
+  return fem_system_forces(system, &all);
 }
 
 Status fem_system_couple(FemSystem *system, const FemState *state) {
@@ -308,7 +312,7 @@ bool fem_system_is_linear(const FemSystem *system) {
 }
 
 Status fem_system_renumber(FemSystem *system) {
-  return lay_out(system);
+  return system->numbering.count > 0 ? lay_out(system) : STATUS_OK;
 }
 
 static Status assemble(FemSystem *system, const FemState *state, double k, double d, double m,
@@ -408,25 +412,30 @@ Status fem_system_accept(FemSystem *system, const FemState *state, double next_s
   return ranks()->worst(accept(system, state, next_step));
 }
 
-static double kinetic_energy(const FemModel *model, const double *velocities) {
+static double kinetic_energy(const FemSystem *system, const double *velocities) {
   double sum = 0;
-  for (int i = 0; i < model->unknown_count; i++) {
-    int dof = model->dof_of_unknown[i];
-    sum += 0.5 * model->mass[dof / 3] * velocities[dof] * velocities[dof];
+  for (int i = 0; i < system->numbering.count; i++) {
+    int dof = system->numbering.dof_of_unknown[i];
+    sum += 0.5 * system->model->mass[dof / 3] * velocities[dof] * velocities[dof];
   }
   return sum;
 }
 
 // Of the motion that nothing can notice.
-static double common_kinetic(const FemModel *model, const double *velocities) {
+static double common_kinetic(const FemSystem *system, const double *velocities) {
+  const FemModel *model = system->model;
   const double mass = fem_model_mass(model);
   double p[3] = {0};
-  for (int i = 0; i < model->unknown_count; i++) {
-    int dof = model->dof_of_unknown[i];
+  for (int i = 0; i < system->numbering.count; i++) {
+    int dof = system->numbering.dof_of_unknown[i];
     p[dof % 3] += model->mass[dof / 3] * velocities[dof];
   }
-  Vec3 common = fem_model_common_part(model, vec3_scale(1 / mass, vec3_at(p)));
+  Vec3 common = fem_model_common_part(model, system->numbering.released, vec3_scale(1 / mass, vec3_at(p)));
   return 0.5 * mass * vec3_dot(common, common);
+}
+
+static bool moves(const FemSystem *system, const FemModelDriver *driver) {
+  return !driver->is_fixed && !fem_model_is_released(driver, system->numbering.released);
 }
 
 // A prescribed coordinate is moved by minus the force that acts on it.
@@ -435,16 +444,16 @@ static double driven_power(const FemSystem *system, const double *velocities) {
   double sum = 0;
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
-    if (driver->is_fixed || driver->is_released) continue;
+    if (!moves(system, driver)) continue;
     for (int i = 0; i < driver->dof_count; i++)
       sum -= system->forces[driver->dofs[i]] * velocities[driver->dofs[i]];
   }
   return sum;
 }
 
-static bool has_moving_driver(const FemModel *model) {
-  for (int d = 0; d < model->driver_count; d++)
-    if (!model->drivers[d].is_fixed && !model->drivers[d].is_released) return true;
+static bool has_moving_driver(const FemSystem *system) {
+  for (int d = 0; d < system->model->driver_count; d++)
+    if (moves(system, &system->model->drivers[d])) return true;
   return false;
 }
 
@@ -474,14 +483,14 @@ static Status sum_energies(FemSystem *system, const FemState *state, FemEnergy *
 Status fem_system_energy(FemSystem *system, const FemState *state, FemEnergy *energy) {
   const FemModel *model = system->model;
   TRY(ranks()->worst(fem_formulas_check(model, state->time)));
-  *energy = (FemEnergy){.kinetic = kinetic_energy(model, state->velocities)};
-  if (has_moving_driver(model)) {
+  *energy = (FemEnergy){.kinetic = kinetic_energy(system, state->velocities)};
+  if (has_moving_driver(system)) {
     TRY(fem_system_forces(system, state));
     energy->driven_power = driven_power(system, state->velocities);
   }
   TRY(model->share ? sum_energies(system, state, energy) : add_energies(system, state, PART_ALL, energy));
-  energy->common_kinetic = common_kinetic(model, state->velocities);
-  if (fem_model_floats(model)) energy->common_gravity = energy->gravity;
+  energy->common_kinetic = common_kinetic(system, state->velocities);
+  if (fem_model_floats(model, system->numbering.released)) energy->common_gravity = energy->gravity;
   return STATUS_OK;
 }
 
@@ -527,8 +536,7 @@ double fem_system_horizon(const FemSystem *system, const FemForesight *foresight
                           double farthest) {
   for (int d = 0; d < system->model->driver_count; d++) {
     const FemModelDriver *driver = &system->model->drivers[d];
-    if (!driver->is_fixed && !driver->is_released)
-      farthest = fem_drive_horizon(driver->def, foresight, time, farthest);
+    if (moves(system, driver)) farthest = fem_drive_horizon(driver->def, foresight, time, farthest);
   }
   for (int i = 0; i < system->effect_count; i++)
     if (system->effects[i].ops->horizon)

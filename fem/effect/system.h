@@ -7,7 +7,7 @@
 #include <signal.h>
 
 #include "fem/effect/effect.h"
-#include "fem/model/model.h"
+#include "fem/effect/numbering.h"
 
 // Wall time, calls and memory of one effect.
 typedef struct FemEffectCost {
@@ -18,6 +18,7 @@ typedef struct FemEffectCost {
 
 typedef struct FemSystem {
   const FemModel *model; // borrowed
+  FemNumbering numbering;
   FemEffect effects[FEM_MAX_EFFECTS];
   FemEffectCost costs[FEM_MAX_EFFECTS];
   int effect_count;
@@ -63,7 +64,7 @@ Status fem_system_couple(FemSystem *system, const FemState *state);
 // Every effect is linear: K and D are constant.
 bool fem_system_is_linear(const FemSystem *system);
 
-// After unknowns of the model were numbered anew (fem/run/hold.h): lays the matrix out again.
+// After the numbering was renewed: lays the matrix out again, unless there are no unknowns.
 Status fem_system_renumber(FemSystem *system);
 
 // matrix = k·K + d·D + m·M.

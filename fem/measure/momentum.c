@@ -36,10 +36,11 @@ static void add(FemMomentumBody *body, Vec3 force) {
   body->sum += vec3_length(force);
 }
 
-static void add_motion(const FemModel *model, const FemState *state, const FemModelBody *range,
+static void add_motion(const FemSystem *system, const FemState *state, const FemModelBody *range,
                        FemMomentumBody *body) {
   for (int dof = 3 * range->vertex_begin; dof < 3 * range->vertex_end; dof++)
-    if (model->unknown_of_dof[dof] >= 0) body->p[dof % 3] += model->mass[dof / 3] * state->velocities[dof];
+    if (system->numbering.unknown_of_dof[dof] >= 0)
+      body->p[dof % 3] += system->model->mass[dof / 3] * state->velocities[dof];
 }
 
 static void add_gravity(const FemModel *model, const FemModelBody *range, FemMomentumBody *body) {
@@ -108,8 +109,8 @@ static Status add_reactions(const FemMomentum *momentum, const FemState *state, 
   bool is_evaluated = false;
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
-    int b = driver->is_released ? -1 : body_of(model, driver);
-    if (b < 0 || model->bodies[b].is_held) continue;
+    int b = fem_model_is_released(driver, system->numbering.released) ? -1 : body_of(model, driver);
+    if (b < 0 || system->numbering.is_held[b]) continue;
     if (!is_evaluated) TRY(fem_system_forces(system, state));
     is_evaluated = true;
     double sum[3] = {0, 0, 0};
@@ -126,7 +127,7 @@ static Status measure(FemMomentum *momentum, const FemState *state, const FemMom
   for (int b = 0; b < momentum->body_count; b++) {
     for (int c = 0; c < 3; c++) bodies[b].p[c] = bodies[b].force[c] = 0;
     bodies[b].sum = bodies[b].driven = 0;
-    add_motion(model, state, &model->bodies[b], &bodies[b]);
+    add_motion(momentum->system, state, &model->bodies[b], &bodies[b]);
     add_gravity(model, &model->bodies[b], &bodies[b]);
   }
   for (int i = 0; i < contact->count; i++)
@@ -134,7 +135,7 @@ static Status measure(FemMomentum *momentum, const FemState *state, const FemMom
   TRY(add_loads(momentum, state, bodies));
   TRY(add_reactions(momentum, state, bodies));
   for (int b = 0; b < momentum->body_count; b++) {
-    if (!model->bodies[b].is_held) continue;
+    if (!momentum->system->numbering.is_held[b]) continue;
     for (int c = 0; c < 3; c++) bodies[b].p[c] = bodies[b].force[c] = 0;
     bodies[b].sum = 0;
   }
@@ -197,7 +198,8 @@ static Vec3 common_of(const FemMomentum *momentum) {
   const FemModel *model = momentum->system->model;
   Vec3 p = {0, 0, 0};
   for (int b = 0; b < momentum->body_count; b++) p = vec3_add(p, vec3_at(momentum->now[b].p));
-  return fem_model_common_part(model, vec3_scale(1 / fem_model_mass(model), p));
+  return fem_model_common_part(model, momentum->system->numbering.released,
+                               vec3_scale(1 / fem_model_mass(model), p));
 }
 
 static Vec3 momentum_of(const FemMomentum *momentum, const Motion *motion, int body) {

@@ -14,10 +14,9 @@ static double lowest_of(const FemModel *model, const FemModelBody *body, Vec3 do
   return lowest;
 }
 
-// Whether a coordinate of the body is prescribed.
-static bool is_held(const FemModel *model, const FemModelBody *body) {
+static bool is_prescribed(const FemModel *model, const FemModelBody *body) {
   for (int dof = 3 * body->vertex_begin; dof < 3 * body->vertex_end; dof++)
-    if (model->unknown_of_dof[dof] < 0) return true;
+    if (model->is_prescribed[dof]) return true;
   return false;
 }
 
@@ -44,7 +43,7 @@ typedef struct Gravity {
 static Gravity gravity_of(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
   Gravity gravity = {.bottom = -INFINITY};
-  if (!scene->has_gravity || scene->is_static || fem_model_floats(model)) return gravity;
+  if (!scene->has_gravity || scene->is_static || fem_model_floats(model, 0)) return gravity;
   gravity.g = vec3_length(vec3_at(scene->gravity));
   if (!(gravity.g > 0)) return gravity;
   gravity.down = vec3_scale(1 / gravity.g, vec3_at(scene->gravity));
@@ -69,7 +68,7 @@ static double fall_of(const FemModel *model, const FemModelBody *body, const Gra
 }
 
 static double energy_at_start(const FemModel *model, const FemModelBody *body) {
-  const Vec3 common = fem_model_floats(model) ? fem_model_common_start(model) : (Vec3){0, 0, 0};
+  const Vec3 common = fem_model_floats(model, 0) ? fem_model_common_start(model) : (Vec3){0, 0, 0};
   double energy = 0;
   for (int v = body->vertex_begin; v < body->vertex_end; v++) {
     Vec3 velocity = vec3_sub(vec3_at(model->initial_velocity + 3 * (size_t)v), common);
@@ -82,7 +81,7 @@ static double energy_of(const FemModel *model, const FemModelBody *body, const G
   const double end = model->scene->end;
   if (model->scene->is_static) return 0;
   double energy = energy_at_start(model, body), g = gravity->g;
-  if (!(g > 0) || is_held(model, body)) return energy;
+  if (!(g > 0) || is_prescribed(model, body)) return energy;
   double speed = sqrt(2 * energy / body->mass), farthest = (speed + 0.5 * g * end) * end;
   return energy + body->mass * g * fmin(fall_of(model, body, gravity), farthest);
 }

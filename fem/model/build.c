@@ -8,7 +8,6 @@
 #include "base/vec3.h"
 #include "fem/model/division.h"
 #include "fem/model/drivers.h"
-#include "fem/model/numbering.h"
 #include "fem/scene/meshes.h"
 #include "fem/scene/select.h"
 
@@ -35,11 +34,10 @@ static Status allocate(FemModel *model, const FemMesh *meshes, int mesh_count) {
   model->bodies = memory_zeroed((size_t)mesh_count, sizeof *model->bodies);
   model->mass = memory_zeroed(v, sizeof *model->mass);
   model->initial_velocity = memory_zeroed(3 * v, sizeof *model->initial_velocity);
-  model->unknown_of_dof = memory_zeroed(3 * v, sizeof *model->unknown_of_dof);
-  model->dof_of_unknown = memory_zeroed(3 * v, sizeof *model->dof_of_unknown);
+  model->is_prescribed = memory_zeroed(3 * v, sizeof *model->is_prescribed);
   bool ok = model->quadratics && model->quadratic_nodes && model->quadratic_body;
   ok = ok && model->rest && model->tets && model->tet_body && model->volumes && model->bodies &&
-       model->mass && model->initial_velocity && model->unknown_of_dof && model->dof_of_unknown;
+       model->mass && model->initial_velocity && model->is_prescribed;
   return ok ? STATUS_OK : status_no_memory("the model");
 }
 
@@ -218,7 +216,6 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(add_loads(model, meshes));
   TRY(mark_inner(model, meshes));
   TRY(add_probes(model, meshes));
-  fem_model_numbering_renew(model);
   TRY(fem_model_divide(model));
   return measure(model, meshes);
 }
@@ -256,8 +253,7 @@ void fem_model_destroy(FemModel *model) {
   memory_free(model->mass);
   memory_free(model->initial_velocity);
   memory_free(model->inner);
-  memory_free(model->unknown_of_dof);
-  memory_free(model->dof_of_unknown);
+  memory_free(model->is_prescribed);
   fem_model_division_destroy(model);
   *model = (FemModel){0};
 }

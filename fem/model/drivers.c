@@ -29,7 +29,10 @@ static Status add_driver(FemModel *model, const FemConstraintDef *def, const Fem
         break;
       }
       owner[dof] = model->driver_count;
-      if (!other) driver->dofs[driver->dof_count++] = dof;
+      if (other) continue;
+      model->is_prescribed[dof] = true;
+      model->free_count--;
+      driver->dofs[driver->dof_count++] = dof;
     }
   memory_free(vertices);
   return status;
@@ -56,6 +59,7 @@ Status fem_model_drivers_create(FemModel *model, const FemMesh *meshes) {
   size_t most = (size_t)scene->obstacle_count;
   for (int b = 0; b < scene->body_count; b++)
     most += (size_t)scene->bodies[b].fixed_count + (size_t)scene->bodies[b].driven_count;
+  model->free_count = 3 * model->vertex_count;
   int *owner = memory_zeroed(3 * (size_t)model->vertex_count, sizeof *owner);
   model->drivers = memory_zeroed(most, sizeof *model->drivers);
   Status status = owner && model->drivers ? STATUS_OK : status_no_memory("the prescribed vertices");
@@ -71,10 +75,11 @@ Status fem_model_drivers_create(FemModel *model, const FemMesh *meshes) {
   return status;
 }
 
-void fem_model_drivers_move(const FemModel *model, double time, double *positions, double *velocities) {
+void fem_model_drivers_move(const FemModel *model, double released, double time, double *positions,
+                            double *velocities) {
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
-    for (int i = 0; i < driver->dof_count && !driver->is_released; i++) {
+    for (int i = 0; i < driver->dof_count && !fem_model_is_released(driver, released); i++) {
       int dof = driver->dofs[i];
       double position[3], velocity[3];
       if (driver->is_fixed) {

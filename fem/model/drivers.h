@@ -10,7 +10,9 @@
 // selection is empty, or a vertex is prescribed twice in a component; the message names body and key.
 Status fem_model_drivers_create(FemModel *model, const FemMesh *meshes);
 
-// Positions and velocities of all prescribed coordinates at time t; the others are left alone.
-void fem_model_drivers_move(const FemModel *model, double time, double *positions, double *velocities);
+// Positions and velocities of all coordinates that are prescribed once what is due until `released` has been
+// released, at a time; the others are left alone.
+void fem_model_drivers_move(const FemModel *model, double released, double time, double *positions,
+                            double *velocities);
 
 #endif

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/model/floating.h"
 
-static bool is_prescribed(const FemModel *model) {
+static bool is_prescribed(const FemModel *model, double released) {
   for (int d = 0; d < model->driver_count; d++)
-    if (!model->drivers[d].is_released && model->drivers[d].dof_count > 0) return true;
+    if (!fem_model_is_released(&model->drivers[d], released) && model->drivers[d].dof_count > 0) return true;
   return false;
 }
 
 // Nothing but half-spaces, if anything, notices a velocity.
-static bool notices_planes_alone(const FemModel *model) {
+static bool notices_planes_alone(const FemModel *model, double released) {
   const FemSceneDef *scene = model->scene;
   for (int o = 0; o < scene->obstacle_count; o++)
     if (scene->obstacles[o].kind != FEM_OBSTACLE_HALFSPACE) return false;
-  return !scene->is_static && model->load_count == 0 && !is_prescribed(model);
+  return !scene->is_static && model->load_count == 0 && !is_prescribed(model, released);
 }
 
-bool fem_model_floats(const FemModel *model) {
-  return model->scene->obstacle_count == 0 && notices_planes_alone(model);
+bool fem_model_floats(const FemModel *model, double released) {
+  return model->scene->obstacle_count == 0 && notices_planes_alone(model, released);
 }
 
 double fem_model_mass(const FemModel *model) {
@@ -44,10 +44,10 @@ static Vec3 without_normals(const FemSceneDef *scene, Vec3 velocity) {
   return velocity;
 }
 
-Vec3 fem_model_common_part(const FemModel *model, Vec3 velocity) {
-  if (fem_model_floats(model)) return velocity;
+Vec3 fem_model_common_part(const FemModel *model, double released, Vec3 velocity) {
+  if (fem_model_floats(model, released)) return velocity;
   bool rubs = fem_scene_most_friction(&model->scene->contact) > 0;
-  if (rubs || !notices_planes_alone(model)) return (Vec3){0, 0, 0};
+  if (rubs || !notices_planes_alone(model, released)) return (Vec3){0, 0, 0};
   return without_normals(model->scene, velocity);
 }
 
@@ -57,5 +57,5 @@ Vec3 fem_model_common_start(const FemModel *model) {
     Vec3 velocity = vec3_at(model->scene->bodies[b].velocity);
     momentum = vec3_add(momentum, vec3_scale(model->bodies[b].mass, velocity));
   }
-  return fem_model_common_part(model, vec3_scale(1 / fem_model_mass(model), momentum));
+  return fem_model_common_part(model, 0, vec3_scale(1 / fem_model_mass(model), momentum));
 }

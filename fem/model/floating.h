@@ -9,16 +9,18 @@
 #include "base/vec3.h"
 #include "fem/model/model.h"
 
+// `released` [s]: what is due until then has been released; 0: nothing.
+
 // Whether no body is held, driven, loaded or obstructed: then gravity accelerates all alike and moves only
 // their centre of mass.
-bool fem_model_floats(const FemModel *model);
+bool fem_model_floats(const FemModel *model, double released);
 
 // Of all bodies [kg].
 double fem_model_mass(const FemModel *model);
 
 // The part of the velocity of the centre of mass that changes nothing: all of it where bodies float; the part
 // along the planes where half-spaces without friction are the only obstacles; else none.
-Vec3 fem_model_common_part(const FemModel *model, Vec3 velocity);
+Vec3 fem_model_common_part(const FemModel *model, double released, Vec3 velocity);
 
 // That of the velocities at the start [m/s].
 Vec3 fem_model_common_start(const FemModel *model);

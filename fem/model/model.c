@@ -120,7 +120,7 @@ static double contact_bytes(const FemModel *model) {
 
 // The constants are of the resident set, measured with `pcg`, which keeps nothing.
 double fem_model_memory_estimate(const FemModel *model) {
-  double vertices = model->vertex_count, tets = model->tet_count, unknowns = model->unknown_count;
+  double vertices = model->vertex_count, tets = model->tet_count, unknowns = model->free_count;
   double arrays = vertices * 30 * sizeof(double) + tets * 400;
   arrays += model->quadratic_count * (double)(sizeof(FemQuadratic) + sizeof(FemLanesQuadratics) / FEM_LANES +
                                               FEM_LANES_HALF * sizeof(int));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What stays constant in a run: all bodies' meshes one after another, masses, elements, materials,
-// constraints, and which of the 3·vertex_count coordinates are unknowns. fem/model/build.h makes it.
+// and constraints. fem/model/build.h makes it. Which coordinates are unknowns changes in a run:
+// fem/effect/numbering.h.
 #ifndef TETLAP_FEM_MODEL_MODEL_H
 #define TETLAP_FEM_MODEL_MODEL_H
 
@@ -25,14 +26,12 @@ typedef struct FemModelBody {
   double damping; // β [s]
   double mass;    // [kg]
   bool is_obstacle;
-  bool is_held; // it sleeps: its vertices carry no unknowns for now
 } FemModelBody;
 
-// Coordinates whose motion is prescribed by one constraint.
+// Coordinates whose motion is prescribed by one constraint, until it is released.
 typedef struct FemModelDriver {
   const FemConstraintDef *def; // borrowed from the scene
   bool is_fixed;               // no motion at all
-  bool is_released;            // the coordinates are unknowns now
   int *dofs;                   // 3·vertex + component   (dof_count)
   int dof_count;
 } FemModelDriver;
@@ -52,9 +51,8 @@ typedef struct FemModel {
   double *mass;                            // lumped, obstacles 0 [kg]                  (vertex_count)
   unsigned char *inner;     // bit k: on the k-th part of the boundary that is no surface (vertex_count)
   double *initial_velocity; // [m/s]                                     (vertex_count, 3)
-  int unknown_count;        // n
-  int *unknown_of_dof;      // number of the unknown, −1: prescribed     (3·vertex_count)
-  int *dof_of_unknown;      //                                           (unknown_count)
+  int free_count;           // of coordinates that nothing prescribes
+  bool *is_prescribed;      // by a driver                               (3·vertex_count)
   FemModelDriver *drivers;  //                                           (driver_count)
   int driver_count;
   FemLoad *loads; //                                                                    (load_count)
@@ -65,6 +63,11 @@ typedef struct FemModel {
   double length;   // the smallest body's bounding box diagonal [m]
   double edge;     // the smallest mean edge of a body [m]
 } FemModel;
+
+// Whether the driver has been released at a time.
+static inline bool fem_model_is_released(const FemModelDriver *driver, double time) {
+  return driver->def->release > 0 && driver->def->release <= time;
+}
 
 // For messages: the name of the body that a vertex is of, "?" if it has none; borrowed.
 const char *fem_model_body_name(const FemModel *model, int vertex);

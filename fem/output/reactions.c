@@ -51,7 +51,8 @@ Status fem_reactions_measure(FemSystem *system, const FemState *state, double **
     Entry entry;
     if (!find_entry(model, driver, &entry)) continue;
     double sum[3] = {0, 0, 0};
-    for (int i = 0; i < driver->dof_count && !driver->is_released; i++) {
+    for (int i = 0; i < driver->dof_count && !fem_model_is_released(driver, system->numbering.released);
+         i++) {
       int dof = driver->dofs[i];
       sum[dof % 3] -= system->forces[dof];
       if (at) at[dof] = -system->forces[dof];

@@ -8,15 +8,14 @@
 #include "fem/run/rest.h"
 #include "fem/time/audit.h"
 
-// Takes the unknowns of bodies that sleep and gives them to those that awoke; `model` is the system's own.
+// Takes the unknowns of bodies that sleep and gives them to those that awoke.
 // What falls asleep stands still in the state from now on; its kinetic energy is counted by `rest`. u and v
 // (unknown_count) are the state's.
-Status fem_hold_sleepers(FemModel *model, FemSystem *system, FemRest *rest, FemState *state, double *u,
-                         double *v);
+Status fem_hold_sleepers(FemSystem *system, FemRest *rest, FemState *state, double *u, double *v);
 
 // Releases what is due at the state's time, with the place and the velocity that it was driven to, for which
 // the audit accounts, and then as above.
-Status fem_hold_renumber(FemModel *model, FemSystem *system, FemRest *rest, FemState *state, FemAudit *audit,
-                         double *u, double *v);
+Status fem_hold_renumber(FemSystem *system, FemRest *rest, FemState *state, FemAudit *audit, double *u,
+                         double *v);
 
 #endif

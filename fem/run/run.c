@@ -12,7 +12,6 @@
 #include "base/ranks.h"
 #include "fem/model/formulas.h"
 #include "fem/model/limits.h"
-#include "fem/model/numbering.h"
 #include "fem/model/tolerance.h"
 #include "fem/run/check/choice.h"
 #include "fem/run/check/start.h"
@@ -40,10 +39,6 @@ static const double TOLD_STRAIN = 20;
 // While all bodies sleep time goes on by this share of the end at most, and by a shorter one where an
 // obstacle would move too far.
 static const double LONGEST_SLEEP = 0.1, SHORTER_SLEEP = 0.25, SHORTEST_SLEEP = 1e-9;
-
-FemSolverKind fem_run_solver(const FemModel *model) {
-  return fem_run_choice(model).kind;
-}
 
 static double crossing(const FemModel *model) {
   return model->edge / fem_model_fastest_wave(model);
@@ -89,7 +84,7 @@ static Status step(FemRunState *run, double *time, bool *is_onset, FemMeasures *
   TRY(fem_integrator_step(run->integrator, time, is_onset));
   const double *u, *v;
   TRY(fem_integrator_at(run->integrator, *time, &u, &v));
-  size_t bytes = (size_t)run->model->unknown_count * sizeof(double);
+  size_t bytes = (size_t)run->system.numbering.count * sizeof(double);
   memcpy(run->u_new, u, bytes);
   memcpy(run->v_new, v, bytes);
   fem_system_scatter(&run->system, *time, run->u_new, run->v_new, &run->trial);
@@ -119,8 +114,8 @@ static Status begin_stage(FemRunState *run, double step) {
   const FemModel *model = run->model;
   const FemSceneDef *scene = model->scene;
   double next = fem_rest_next_change(run->rest);
-  run->stage_end = fmin(fmin(scene->end, next), fem_model_numbering_next_release(model, run->time));
-  if (model->unknown_count == 0) return STATUS_OK; // all sleep
+  run->stage_end = fmin(fmin(scene->end, next), fem_numbering_next_release(model, run->time));
+  if (run->system.numbering.count == 0) return STATUS_OK; // all sleep
   FemIntegratorDef def = {.displacement_tolerance = fem_model_position_tolerance(model),
                           .velocity_tolerance = fem_model_velocity_tolerance(model),
                           .speed_share = fem_model_speed_share(model),
@@ -132,7 +127,7 @@ static Status begin_stage(FemRunState *run, double step) {
                           .max_order = scene->max_order,
                           .end = run->stage_end,
                           .stall = &run->stall};
-  const FemSolverOps *solver = fem_solver_ops(fem_run_solver(model));
+  const FemSolverOps *solver = fem_solver_ops(fem_run_choice(model, &run->system.numbering).kind);
   TRY(fem_integrator_create(&run->integrator, &run->system, &run->trial, solver, &def));
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
 }
@@ -169,7 +164,7 @@ static Status begin_account(FemRunState *run) {
 static Status renumber(FemRunState *run) {
   end_stage(run);
   scatter_accepted(run);
-  TRY(fem_hold_renumber(&run->own, &run->system, run->rest, &run->trial, &run->audit, run->u, run->v));
+  TRY(fem_hold_renumber(&run->system, run->rest, &run->trial, &run->audit, run->u, run->v));
   TRY(begin_account(run));
   return begin_stage(run, 0);
 }
@@ -192,7 +187,7 @@ static bool differs_from_motion(const FemRunState *run) {
 static Status find_damping_at_middle(FemRunState *run, double time, double *power) {
   const double *mean = run->mean_velocity;
   double back = 0.5 * (time - run->time), *halfway = run->halfway;
-  for (int i = 0; i < run->model->unknown_count; i++) halfway[i] = run->u_new[i] - back * mean[i];
+  for (int i = 0; i < run->system.numbering.count; i++) halfway[i] = run->u_new[i] - back * mean[i];
   fem_system_scatter(&run->system, time - back, halfway, mean, &run->middle);
   return fem_system_damping_power(&run->system, &run->middle, power);
 }
@@ -203,7 +198,7 @@ static Status find_damping_at_middle(FemRunState *run, double time, double *powe
 static Status find_least_power(FemRunState *run, double time, double *power) {
   FemEnergy energy;
   double step = time - run->time, *mean = run->mean_velocity, at_end = 0, at_middle = 0;
-  for (int i = 0; i < run->model->unknown_count; i++) mean[i] = (run->u_new[i] - run->u[i]) / step;
+  for (int i = 0; i < run->system.numbering.count; i++) mean[i] = (run->u_new[i] - run->u[i]) / step;
   fem_system_scatter(&run->system, time, run->u_new, mean, &run->trial);
   Status status = fem_system_energy(&run->system, &run->trial, &energy);
   if (!status) status = fem_system_damping_power(&run->system, &run->trial, &at_end);
@@ -340,15 +335,21 @@ static Status allocate_states(FemRunState *run) {
   return STATUS_OK;
 }
 
-// A numbering of our own where vertices are released, with what has been released until now.
-static Status number(FemRunState *run) {
-  bool may_rest = run->given->scene->contact.rest_is_on && !run->given->scene->is_static;
-  if (!may_rest && !isfinite(fem_model_numbering_next_release(run->given, 0))) return STATUS_OK;
-  fem_model_numbering_destroy_copy(&run->own);
-  TRY(fem_model_numbering_copy(&run->own, run->given));
-  fem_model_numbering_release(&run->own, run->time);
-  run->model = &run->own;
-  return STATUS_OK;
+// The states to try steps with, of the system as it is made anew.
+static Status create_states(FemRunState *run) {
+  fem_state_destroy(&run->trial);
+  fem_state_destroy(&run->middle);
+  TRY(fem_system_create_state(&run->system, &run->trial));
+  return fem_system_create_state(&run->system, &run->middle);
+}
+
+// What has been released until now.
+static Status release(FemRunState *run) {
+  FemNumbering *numbering = &run->system.numbering;
+  int count = numbering->count;
+  numbering->released = run->time;
+  fem_numbering_renew(numbering, run->model);
+  return numbering->count == count ? STATUS_OK : fem_system_renumber(&run->system);
 }
 
 static void tell_overlaps(const FemSystem *system) {
@@ -394,7 +395,7 @@ static Status begin_motion(FemRunState *run) {
 static Status begin_statics(FemRunState *run) {
   const FemCheckpoint *from = &run->checkpoint;
   TRY(fem_statics_create(&run->statics, &run->system, &run->trial,
-                         fem_solver_ops(fem_run_solver(run->model))));
+                         fem_solver_ops(fem_run_choice(run->model, &run->system.numbering).kind)));
   TRY(begin_system(run, 0));
   if (run->next_frame == 0) return begin_record(run);
   TRY(fem_statics_continue(&run->statics, run->time, run->u, from->force_scale, from->driven_work));
@@ -410,7 +411,7 @@ static Status begin_rest(FemRunState *run) {
   if (from->next_frame > 0) TRY(fem_rest_load(run->rest, from->rest, from->rest_count));
   if (!fem_rest_has_changed(run->rest)) return STATUS_OK;
   scatter_accepted(run);
-  return fem_hold_sleepers(&run->own, &run->system, run->rest, &run->trial, run->u, run->v);
+  return fem_hold_sleepers(&run->system, run->rest, &run->trial, run->u, run->v);
 }
 
 // Everything anew from the checkpoint: the same whether the run goes on, is resumed, or begins.
@@ -423,14 +424,13 @@ static Status begin_part(FemRunState *run) {
   run->next_step = from->step;
   run->retries = 0;
   run->least_power = INFINITY;
-  TRY(fem_formulas_check(run->given, run->time));
-  TRY(number(run));
+  TRY(fem_formulas_check(run->model, run->time));
   TRY(is_first ? fem_system_create(&run->system, run->model)
                : fem_system_create_again(&run->system, run->model));
   run->system.stop = run->options->stop;
-  if (is_first) TRY(fem_system_create_state(&run->system, &run->trial));
-  if (is_first) TRY(fem_system_create_state(&run->system, &run->middle));
-  fem_restart_load(from, run->model, run->u, run->v);
+  TRY(create_states(run));
+  TRY(release(run));
+  fem_restart_load(from, &run->system.numbering, run->u, run->v);
   TRY(begin_rest(run));
   if (is_first) TRY(fem_run_frames_open(run));
   return run->model->scene->is_static ? begin_statics(run) : begin_motion(run);
@@ -468,7 +468,7 @@ static Status pass_checkpoint(FemRunState *run) {
 static Status march(FemRunState *run) {
   TRY(allocate_states(run));
   TRY(begin_part(run));
-  const FemSceneDef *scene = run->given->scene;
+  const FemSceneDef *scene = run->model->scene;
   run->stall = fem_stall_begin(run->time, scene->end, scene->end / scene->frames);
   TRY(fem_run_checkpoint_offer(run));
   while (!fem_run_state_has_ended(run)) {
@@ -501,7 +501,7 @@ static Status collect(FemRunState *run, Status status) {
   result->audit = run->audit;
   result->end_time = run->time;
   result->peak_rss_bytes = memory_peak_bytes();
-  result->state_unknowns = (result->is_static ? 1 : 2) * run->model->unknown_count;
+  result->state_unknowns = (result->is_static ? 1 : 2) * run->system.numbering.count;
   result->phases.analysis = result->solver.analyse_s;
   result->phases.factorisation = result->solver.factorise_s;
   result->phases.solve = result->solver.solve_s;
@@ -519,21 +519,21 @@ static Status begin_result(FemRunState *run) {
   result->counters = record_new();
   if (!result->counters) return status_no_memory("the counters");
   record_merge(result->counters, run->checkpoint.so_far.counters);
-  FemTrouble now = fem_trouble_begin(run->given);
+  FemTrouble now = fem_trouble_begin(run->model);
   if (run->checkpoint.next_frame == 0) result->trouble = now;
   result->trouble.sliver_count = now.sliver_count;
   result->trouble.worst_sliver = now.worst_sliver;
   result->trouble.worst_shape = now.worst_shape;
-  result->solver_name = fem_solver_name(fem_run_solver(run->given));
-  result->is_static = run->given->scene->is_static;
-  bool has_contact = run->given->scene->contact.is_on;
-  double told = has_contact || result->is_static ? 0 : TOLD_STRAIN * run->given->scene->tolerance;
-  result->energy_bounds = fem_audit_bounds(has_contact, fem_model_strain_energy(run->given, told));
+  result->solver_name = fem_solver_name(fem_run_choice(run->model, NULL).kind);
+  result->is_static = run->model->scene->is_static;
+  bool has_contact = run->model->scene->contact.is_on;
+  double told = has_contact || result->is_static ? 0 : TOLD_STRAIN * run->model->scene->tolerance;
+  result->energy_bounds = fem_audit_bounds(has_contact, fem_model_strain_energy(run->model, told));
   return STATUS_OK;
 }
 
 static Status check_ranks(const FemRunState *run) {
-  if (!run->given->share || run->given->scene->solver != FEM_SOLVER_KLU) return STATUS_OK;
+  if (!run->model->share || run->model->scene->solver != FEM_SOLVER_KLU) return STATUS_OK;
   return status_fail(STATUS_USAGE,
                      "solver.linear: klu works in one process, and there are %d: write amg, "
                      "gamg, pcg, or cholmod, which is MUMPS' over ranks",
@@ -544,11 +544,11 @@ static Status prepare(FemRunState *run) {
   const FemRunOptions *options = run->options;
   TRY(check_ranks(run));
   if (options->from) {
-    TRY(fem_restart_check(options->from, run->given));
+    TRY(fem_restart_check(options->from, run->model));
     TRY(fem_checkpoint_copy(&run->checkpoint, options->from));
   } else {
-    TRY(fem_restart_begin(&run->checkpoint, run->given, options->initial_displacement));
-    run->checkpoint.step = run->given->scene->is_static ? 0 : run->given->scene->initial_step;
+    TRY(fem_restart_begin(&run->checkpoint, run->model, options->initial_displacement));
+    run->checkpoint.step = run->model->scene->is_static ? 0 : run->model->scene->initial_step;
   }
   if (options->origin && !run->checkpoint.origin) {
     run->checkpoint.origin = memory_copy(options->origin, strlen(options->origin) + 1, 1);
@@ -571,7 +571,6 @@ static Status close_run(FemRunState *run, Status status) {
   fem_system_destroy(&run->system);
   double *states[] = {run->u, run->v, run->u_new, run->v_new, run->mean_velocity, run->halfway};
   for (size_t i = 0; i < sizeof states / sizeof *states; i++) memory_free(states[i]);
-  fem_model_numbering_destroy_copy(&run->own);
   fem_checkpoint_destroy(&run->checkpoint);
   if (status) return status_fail(status, "%s%s", message, closing);
   return collected ? collected : left;
@@ -592,7 +591,6 @@ static Status say_when(const FemRunState *run, Status status) {
 Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult *result) {
   *result = (FemRunResult){.min_det_F = INFINITY};
   FemRunState run = {.model = model,
-                     .given = model,
                      .options = options,
                      .result = result,
                      .began_s = clock_wall_s(),

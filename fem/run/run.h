@@ -16,9 +16,6 @@
 #include "fem/run/run_options.h"
 #include "fem/run/run_result.h"
 
-// The solver that a model gets: the scene's, or by size for `auto`.
-FemSolverKind fem_run_solver(const FemModel *model);
-
 // Runs the model to its end. `result` is filled as far as the run came also when it fails; destroy it always.
 Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult *result);
 #endif

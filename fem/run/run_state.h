@@ -15,9 +15,7 @@
 #include "fem/time/stall.h"
 
 typedef struct FemRunState {
-  const FemModel *given;        // borrowed
-  const FemModel *model;        // that, or `own`
-  FemModel own;                 // where vertices are released while the run goes on
+  const FemModel *model;        // borrowed
   const FemRunOptions *options; // borrowed
   FemRunResult *result;         // borrowed; counts of what is over: closed parts and stages
   FemSystem system;

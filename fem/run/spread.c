@@ -18,8 +18,8 @@ static void measure(const FemRunState *run, double values[FEM_RUN_SPREAD]) {
   const FemRunResult *result = run->result;
   const FemRunPhases *phases = &result->phases;
   const RanksStats *stats = ranks()->stats();
-  const double all[] = {own_vertices(run->given),
-                        fem_model_division_elements(run->given),
+  const double all[] = {own_vertices(run->model),
+                        fem_model_division_elements(run->model),
                         run->system.matrix.entry_count,
                         (double)result->peak_rss_bytes,
                         result->cpu_s,
@@ -42,7 +42,7 @@ static void measure(const FemRunState *run, double values[FEM_RUN_SPREAD]) {
 
 void fem_run_spread_collect(const FemRunState *run, FemRunResult *result) {
   FemRunSpread *spread = &result->spread;
-  if (!run->given->share) return;
+  if (!run->model->share) return;
   spread->rank_count = ranks()->count;
   measure(run, spread->mean);
   for (int k = 0; k < FEM_RUN_SPREAD; k++) {

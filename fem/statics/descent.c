@@ -27,23 +27,24 @@ typedef struct Descent {
   double *next, *there; // u + s d, and the force there
 } Descent;
 
-static Vec3 move_of(const FemModel *model, const double *step, int vertex) {
+static Vec3 move_of(const FemNumbering *numbering, const double *step, int vertex) {
   double move[3];
   for (int c = 0; c < 3; c++) {
-    int unknown = model->unknown_of_dof[3 * vertex + c];
+    int unknown = numbering->unknown_of_dof[3 * vertex + c];
     move[c] = unknown < 0 ? 0 : step[unknown];
   }
   return vec3_at(move);
 }
 
 // The largest way of an edge's ends against each other, over the edge at rest.
-static double largest_stretch(const FemModel *model, const double *step) {
+static double largest_stretch(const FemSystem *system, const double *step) {
+  const FemModel *model = system->model;
   double square = 0;
   for (int t = 0; t < model->tet_count; t++)
     for (int v = 1; v < 4; v++)
       for (int w = 0; w < v; w++) {
         int a = model->tets[t][v], b = model->tets[t][w];
-        Vec3 way = vec3_sub(move_of(model, step, a), move_of(model, step, b));
+        Vec3 way = vec3_sub(move_of(&system->numbering, step, a), move_of(&system->numbering, step, b));
         Vec3 edge = vec3_sub(vec3_at(model->rest + 3 * (size_t)a), vec3_at(model->rest + 3 * (size_t)b));
         square = fmax(square, vec3_dot(way, way) / vec3_dot(edge, edge));
       }
@@ -52,9 +53,8 @@ static double largest_stretch(const FemModel *model, const double *step) {
 
 // The share of d that a step may take at most.
 static double longest_share(const Descent *descent) {
-  const FemModel *model = descent->equilibrium->system->model;
   double share = fem_equilibrium_longest_share(descent->equilibrium, descent->step);
-  double stretch = largest_stretch(model, descent->step);
+  double stretch = largest_stretch(descent->equilibrium->system, descent->step);
   return fmin(share, stretch > LONGEST_STRETCH ? LONGEST_STRETCH / stretch : 1);
 }
 
@@ -150,7 +150,7 @@ static Status descend(Descent *descent, double tolerance, long long *iterations)
 
 Status fem_descent_solve(FemEquilibrium *equilibrium, double time, double tolerance, double *u,
                          long long *iterations) {
-  int n = equilibrium->system->model->unknown_count;
+  int n = equilibrium->system->numbering.count;
   double *room = memory_zeroed(4 * (size_t)n, sizeof *room);
   if (!room) return status_no_memory("Newton's method");
   Descent descent = {.equilibrium = equilibrium,

@@ -31,9 +31,9 @@ Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const do
   FemSystem *system = equilibrium->system;
   fem_system_scatter(system, time, u, NULL, equilibrium->state);
   TRY(fem_system_forces(system, equilibrium->state));
-  for (int i = 0; i < system->model->unknown_count; i++)
-    force[i] = system->forces[system->model->dof_of_unknown[i]];
-  if (fem_solver_is_finite(force, system->model->unknown_count)) return STATUS_OK;
+  const FemNumbering *numbering = &system->numbering;
+  for (int i = 0; i < numbering->count; i++) force[i] = system->forces[numbering->dof_of_unknown[i]];
+  if (fem_solver_is_finite(force, numbering->count)) return STATUS_OK;
   return status_fail(STATUS_RETRY, "a force is not a number");
 }
 
@@ -61,8 +61,8 @@ double fem_equilibrium_largest(const double *values, int count) {
 
 double fem_equilibrium_longest_share(const FemEquilibrium *equilibrium, const double *step) {
   static const double LONGEST_WAY = 0.25;
-  const FemModel *model = equilibrium->system->model;
-  double way = fem_equilibrium_largest(step, model->unknown_count), most = LONGEST_WAY * model->edge;
+  double way = fem_equilibrium_largest(step, equilibrium->system->numbering.count);
+  double most = LONGEST_WAY * equilibrium->system->model->edge;
   return way > most ? most / way : 1;
 }
 

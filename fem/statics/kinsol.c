@@ -115,7 +115,7 @@ static Status run(Newton *newton, int strategy, int most, const double *start, d
 
 Status fem_kinsol_solve(FemEquilibrium *equilibrium, double time, double tolerance, double length, double *u,
                         long long *iterations) {
-  Newton newton = {.equilibrium = equilibrium, .time = time, .n = equilibrium->system->model->unknown_count};
+  Newton newton = {.equilibrium = equilibrium, .time = time, .n = equilibrium->system->numbering.count};
   double *start = memory_copy(u, (size_t)newton.n, sizeof *u);
   Status status = start ? create(&newton, tolerance, length) : status_no_memory("KINSOL");
   if (!status) status = run(&newton, KIN_NONE, MAX_FULL_STEPS, start, u, iterations);

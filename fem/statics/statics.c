@@ -61,7 +61,7 @@ Status fem_statics_create(FemStatics *statics, FemSystem *system, FemState *stat
   *statics = (FemStatics){.tolerance = TOLERANCE};
   const FemModel *model = system->model;
   TRY(check_scene(model->scene));
-  size_t n = (size_t)model->unknown_count, values = 3 * (size_t)model->vertex_count;
+  size_t n = (size_t)system->numbering.count, values = 3 * (size_t)model->vertex_count;
   statics->force_scale = smallest_scale(model);
   statics->force = memory_zeroed(n, sizeof(double));
   statics->step = memory_zeroed(n, sizeof(double));
@@ -106,7 +106,7 @@ static Status newton(FemStatics *statics, double time, double *u) {
 // One step of relaxation from u, whose forces are in `force`; RETRY: a larger shift is needed.
 static Status relax_once(FemStatics *statics, double time, double shift, double *u) {
   FemEquilibrium *equilibrium = &statics->equilibrium;
-  int n = equilibrium->system->model->unknown_count;
+  int n = equilibrium->system->numbering.count;
   double *step = statics->step;
   TRY(fem_equilibrium_factorise(equilibrium, time, u, shift));
   TRY(fem_equilibrium_solve(equilibrium, statics->force, step));
@@ -121,7 +121,7 @@ static Status relax_once(FemStatics *statics, double time, double shift, double 
 
 // Until the force has fallen far enough for Newton's method.
 static Status relax(FemStatics *statics, double time, double *u) {
-  int n = statics->equilibrium.system->model->unknown_count, refusals = 0;
+  int n = statics->equilibrium.system->numbering.count, refusals = 0;
   double shift = fem_equilibrium_first_shift(&statics->equilibrium);
   TRY(evaluate(statics, time, u));
   double first = fem_equilibrium_largest(statics->force, n), before = first;
@@ -162,11 +162,11 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
   FemMaterialLaw law = model->bodies[model->tet_body[flattest]].material.law;
   if (smallest < (law == FEM_MATERIAL_STVK ? SQUEEZED_STVK : SQUEEZED))
     text_append(text, sizeof text, &used, ": %s", fem_material_limit(law));
-  for (int k = 0; is_known && k < WORST_COUNT && k < model->unknown_count; k++) {
+  for (int k = 0; is_known && k < WORST_COUNT && k < system->numbering.count; k++) {
     int worst = 0;
-    for (int i = 1; i < model->unknown_count; i++)
+    for (int i = 1; i < system->numbering.count; i++)
       if (fabs(statics->force[i]) > fabs(statics->force[worst])) worst = i;
-    int dof = model->dof_of_unknown[worst], vertex = dof / 3;
+    int dof = system->numbering.dof_of_unknown[worst], vertex = dof / 3;
     const double *x = positions + 3 * (size_t)vertex;
     text_append(text, sizeof text, &used,
                 "%s %.3g N along %c on vertex %d of body '%s' at (%.4g, %.4g, %.4g)", k ? "," : ". Left are",
@@ -195,7 +195,7 @@ static void keep_work(FemStatics *statics, double time) {
       statics->work_end -= system->forces[dof] * way;
     }
   statics->driven_work += 0.5 * (statics->work_begin + statics->work_end);
-  statics->work_left = statics->residual * sqrt(model->unknown_count) * longest;
+  statics->work_left = statics->residual * sqrt(system->numbering.count) * longest;
   statics->kept_time = time;
   size_t bytes = 3 * (size_t)model->vertex_count * sizeof(double);
   memcpy(statics->kept_force, system->forces, bytes);
@@ -223,7 +223,7 @@ static Status check_orientation(const FemStatics *statics, double time) {
 
 static Status find_equilibrium(FemStatics *statics, double time, double *u) {
   FemEquilibrium *equilibrium = &statics->equilibrium;
-  size_t bytes = (size_t)equilibrium->system->model->unknown_count * sizeof *u;
+  size_t bytes = (size_t)equilibrium->system->numbering.count * sizeof *u;
   Status status = evaluate(statics, time, u);
   if (!status) status = newton(statics, time, u);
   if (status == STATUS_RETRY) {
@@ -240,8 +240,7 @@ Status fem_statics_continue(FemStatics *statics, double time, const double *u, d
                             double driven_work) {
   statics->force_scale = force_scale;
   TRY(evaluate(statics, time, u));
-  statics->residual =
-      fem_equilibrium_largest(statics->force, statics->equilibrium.system->model->unknown_count);
+  statics->residual = fem_equilibrium_largest(statics->force, statics->equilibrium.system->numbering.count);
   keep_work(statics, time);
   statics->driven_work = driven_work;
   return STATUS_OK;
@@ -249,7 +248,7 @@ Status fem_statics_continue(FemStatics *statics, double time, const double *u, d
 
 Status fem_statics_step(FemStatics *statics, double from, double to, double *u) {
   FemEquilibrium *equilibrium = &statics->equilibrium;
-  int n = equilibrium->system->model->unknown_count;
+  int n = equilibrium->system->numbering.count;
   memcpy(statics->start, u, (size_t)n * sizeof *u);
   Status status = find_equilibrium(statics, to, u);
   if (status == STATUS_OK) {

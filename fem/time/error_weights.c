@@ -6,25 +6,23 @@
 #include "base/ranks.h"
 #include "fem/model/floating.h"
 
-static int dof_of(const FemModel *model, const FemPart *part, int i) {
-  return model->dof_of_unknown[fem_part_unknown(part, i)];
-}
-
 // This rank's unknowns of a body: begin … *end, in the order of the bodies.
 static void find_end(const FemModel *model, const FemPart *part, int body, int begin, int *end) {
   *end = begin;
-  while (*end < part->count && dof_of(model, part, *end) / 3 < model->bodies[body].vertex_end) (*end)++;
+  while (*end < part->count && fem_part_dof(part, *end) / 3 < model->bodies[body].vertex_end) (*end)++;
 }
 
 Vec3 fem_error_weights_common(const FemModel *model, const FemPart *part, const double *v) {
   double momentum[3] = {0};
-  if (vec3_length(fem_model_common_part(model, (Vec3){1, 1, 1})) == 0) return (Vec3){0, 0, 0};
+  if (vec3_length(fem_model_common_part(model, part->numbering->released, (Vec3){1, 1, 1})) == 0)
+    return (Vec3){0, 0, 0};
   for (int i = 0; i < part->count; i++) {
-    int dof = dof_of(model, part, i);
+    int dof = fem_part_dof(part, i);
     momentum[dof % 3] += model->mass[dof / 3] * v[i];
   }
   ranks()->sum(momentum, 3);
-  return fem_model_common_part(model, vec3_scale(1 / fem_model_mass(model), vec3_at(momentum)));
+  return fem_model_common_part(model, part->numbering->released,
+                               vec3_scale(1 / fem_model_mass(model), vec3_at(momentum)));
 }
 
 // √(Σ m (v − v̂)² / Σ m) over unknowns of a body, v̂ the common velocity; 0 without any, INFINITY where a
@@ -33,7 +31,7 @@ static double speed_of(const FemModel *model, const FemPart *part, const double 
                        int begin, int end) {
   double sums[2] = {0}; // Σ m (v − v̂)², Σ m
   for (int i = begin; i < end; i++) {
-    int dof = dof_of(model, part, i);
+    int dof = fem_part_dof(part, i);
     double m = model->mass[dof / 3], relative = v[i] - common[dof % 3];
     sums[0] += m * relative * relative;
     sums[1] += m;

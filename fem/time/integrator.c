@@ -93,8 +93,7 @@ static int residual(sunrealtype time, N_Vector y, N_Vector y_dot, N_Vector r, vo
   if (answer != 0) return answer;
   for (int i = 0; i < n; i++) {
     kinematics[i] = u_dot[i] - v[i];
-    balance[i] =
-        masses[i] * v_dot[i] - system->forces[system->model->dof_of_unknown[fem_part_unknown(part, i)]];
+    balance[i] = masses[i] * v_dot[i] - system->forces[fem_part_dof(part, i)];
   }
   return 0;
 }
@@ -155,7 +154,7 @@ static Status check_def(const FemIntegratorDef *def) {
 }
 
 static Status create_vectors(FemIntegrator *integrator) {
-  TRY(fem_part_create(&integrator->part, integrator->system->model));
+  TRY(fem_part_create(&integrator->part, integrator->system->model, &integrator->system->numbering));
   integrator->n = integrator->part.count;
   if (!fem_sundials_create(&integrator->context)) return status_no_memory("the integrator");
   N_Vector *vectors[] = {&integrator->y, &integrator->y_dot, &integrator->interpolated,
@@ -259,7 +258,7 @@ static Status find_derivatives(FemIntegrator *integrator, double time) {
   TRY(fem_system_forces(system, integrator->state));
   for (int i = 0; i < n; i++) {
     u_dot[i] = v[i];
-    v_dot[i] = system->forces[system->model->dof_of_unknown[fem_part_unknown(part, i)]] / masses[i];
+    v_dot[i] = system->forces[fem_part_dof(part, i)] / masses[i];
   }
   if (!ranks_any(!fem_solver_is_finite(v_dot, n))) return STATUS_OK;
   return status_fail(STATUS_SOLVER, "at t = %g s: an acceleration is not a number", time);
@@ -279,7 +278,7 @@ static double rate_of_change(FemIntegrator *integrator, bool *has_common) {
   *has_common = vec3_length(vec3_at(common)) > 0;
   N_VScale(1, integrator->y_dot, rates);
   for (int i = 0; i < integrator->n && *has_common; i++)
-    values_of(rates)[i] -= common[model->dof_of_unknown[fem_part_unknown(&integrator->part, i)] % 3];
+    values_of(rates)[i] -= common[fem_part_dof(&integrator->part, i) % 3];
   find_weights(integrator->y, integrator->weights, integrator);
   return N_VWrmsNorm(rates, integrator->weights);
 }

@@ -7,24 +7,24 @@
 #include "base/memory.h"
 #include "base/ranks.h"
 
-static int owner_of(const FemModel *model, int unknown) {
-  return model->share->owner[model->dof_of_unknown[unknown] / 3];
+static int owner_of(const FemPart *part, const FemShare *share, int unknown) {
+  return share->owner[part->numbering->dof_of_unknown[unknown] / 3];
 }
 
-static void order_unknowns(FemPart *part, const FemModel *model) {
-  int rank_count = model->share->rank_count;
-  for (int u = 0; u < part->n; u++) part->begin[owner_of(model, u) + 1]++;
+static void order_unknowns(FemPart *part, const FemShare *share) {
+  int rank_count = share->rank_count;
+  for (int u = 0; u < part->n; u++) part->begin[owner_of(part, share, u) + 1]++;
   for (int r = 0; r < rank_count; r++) part->begin[r + 1] += part->begin[r];
-  for (int u = 0; u < part->n; u++) part->order[part->begin[owner_of(model, u)]++] = u;
+  for (int u = 0; u < part->n; u++) part->order[part->begin[owner_of(part, share, u)]++] = u;
   for (int r = rank_count; r > 0; r--) part->begin[r] = part->begin[r - 1];
   part->begin[0] = 0;
-  part->own = part->order + part->begin[model->share->rank];
-  part->count = part->begin[model->share->rank + 1] - part->begin[model->share->rank];
+  part->own = part->order + part->begin[share->rank];
+  part->count = part->begin[share->rank + 1] - part->begin[share->rank];
 }
 
-Status fem_part_create(FemPart *part, const FemModel *model) {
-  size_t n = (size_t)model->unknown_count;
-  *part = (FemPart){.n = model->unknown_count, .count = model->unknown_count};
+Status fem_part_create(FemPart *part, const FemModel *model, const FemNumbering *numbering) {
+  size_t n = (size_t)numbering->count;
+  *part = (FemPart){.numbering = numbering, .n = numbering->count, .count = numbering->count};
   if (!model->share) return STATUS_OK;
   part->order = memory_zeroed(n, sizeof *part->order);
   part->begin = memory_zeroed((size_t)model->share->rank_count + 1, sizeof *part->begin);
@@ -32,7 +32,7 @@ Status fem_part_create(FemPart *part, const FemModel *model) {
   part->whole = memory_zeroed(2 * n, sizeof *part->whole);
   if (!part->order || !part->begin || !part->joined || !part->whole)
     return status_no_memory("the integrator");
-  order_unknowns(part, model);
+  order_unknowns(part, model->share);
   return STATUS_OK;
 }
 

@@ -5,25 +5,31 @@
 #ifndef TETLAP_FEM_TIME_PART_H
 #define TETLAP_FEM_TIME_PART_H
 
-#include "fem/model/model.h"
+#include "fem/effect/numbering.h"
 
 typedef struct FemPart {
-  int n;          // unknowns of all ranks
-  int count;      // of this one: vectors have 2·count numbers, displacements and velocities
-  int *order;     // unknowns by ranks; NULL: one process                     (n)
-  int *begin;     // of each rank's in `order`                                (ranks + 1)
-  const int *own; // this rank's in `order`                                   (count)
-  double *joined; // by ranks: scratch                                        (n, 2)
-  double *whole;  // by unknowns: what fem_part_join gives                    (2·n)
+  const FemNumbering *numbering; // borrowed
+  int n;                         // unknowns of all ranks
+  int count;                     // of this one: vectors have 2·count numbers, displacements and velocities
+  int *order;                    // unknowns by ranks; NULL: one process                     (n)
+  int *begin;                    // of each rank's in `order`                                (ranks + 1)
+  const int *own;                // this rank's in `order`                                   (count)
+  double *joined;                // by ranks: scratch                                        (n, 2)
+  double *whole;                 // by unknowns: what fem_part_join gives                    (2·n)
 } FemPart;
 
 // A zeroed one, and one whose creation failed, can be destroyed.
-Status fem_part_create(FemPart *part, const FemModel *model);
+Status fem_part_create(FemPart *part, const FemModel *model, const FemNumbering *numbering);
 void fem_part_destroy(FemPart *part);
 
 // The number among all unknowns of this rank's i-th.
 static inline int fem_part_unknown(const FemPart *part, int i) {
   return part->order ? part->own[i] : i;
+}
+
+// The coordinate of this rank's i-th unknown: 3·vertex + component.
+static inline int fem_part_dof(const FemPart *part, int i) {
+  return part->numbering->dof_of_unknown[fem_part_unknown(part, i)];
 }
 
 // All displacements and velocities (2·n) from each rank's (2·count): its own array in one process, else

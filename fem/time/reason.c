@@ -26,7 +26,7 @@ static void name_element(const FemModel *model, const double *positions, int ver
 
 Status fem_reason_fail(const FemReason *reason, const FemSystem *system, const FemReasonPlace *place) {
   const FemModel *model = system->model;
-  int dof = model->dof_of_unknown[place->unknown], vertex = dof / 3;
+  int dof = system->numbering.dof_of_unknown[place->unknown], vertex = dof / 3;
   const double *x = place->positions + 3 * vertex;
   const char *retry = place->retry, *advice = reason->advice;
   char element[96];

@@ -89,7 +89,7 @@ static Row row_of(const LabTrial *trial, const Options *options) {
   return (Row){.solver = result->solver_name,
                .vertices = trial->model.vertex_count,
                .slenderness = options->slenderness,
-               .unknowns = trial->model.unknown_count,
+               .unknowns = trial->model.free_count,
                .steps = result->integrator.steps,
                .newton_iterations = result->integrator.newton_iterations,
                .factorisations = result->solver.factorisations,

@@ -291,7 +291,8 @@ static Status measure_nodes(const Options *options, LabTrial *trial, int nodes, 
   trial->scene.solver = options->solver;
   trial->wall_limit_s = options->seconds;
   TRY(lab_trial_begin(trial, &options->common, options->steps));
-  if (!is_affordable(options, "vertices", nodes, fem_run_choice(&trial->model).bytes, 0)) return STATUS_OK;
+  if (!is_affordable(options, "vertices", nodes, fem_run_choice(&trial->model, NULL).bytes, 0))
+    return STATUS_OK;
   TRY(app_bench_timer_take_turns(trial, sizeof *trial, 1, rounds, false, lab_trial_run));
   add_phases(trial, rounds, table);
   return STATUS_OK;

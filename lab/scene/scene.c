@@ -104,7 +104,7 @@ static Row row_of(const LabTrial *trial, const char *overlap, int rounds) {
              .solver = result->solver_name,
              .vertices = trial->model.vertex_count,
              .tetrahedra = trial->model.tet_count,
-             .unknowns = trial->model.unknown_count,
+             .unknowns = trial->model.free_count,
              .steps = result->integrator.steps,
              .factorisations = result->solver.factorisations,
              .pairs_max = result->pairs_max,

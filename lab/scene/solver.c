@@ -86,19 +86,20 @@ typedef struct Contestant {
 } Contestant;
 
 // u_z = −BEND · x²/L: clamped where x = 0.
-static void bend(const FemModel *model, double *u) {
+static void bend(const FemSystem *system, double *u) {
+  const FemModel *model = system->model;
   double length = 0;
   for (int v = 0; v < model->vertex_count; v++) length = fmax(length, model->rest[3 * v]);
-  for (int i = 0; i < model->unknown_count; i++) {
-    int dof = model->dof_of_unknown[i];
+  for (int i = 0; i < system->numbering.count; i++) {
+    int dof = system->numbering.dof_of_unknown[i];
     double x = model->rest[dof - dof % 3];
     u[i] = dof % 3 == 2 ? -BEND * x * x / length : 0;
   }
 }
 
 static Status fill_beam(Beam *beam) {
-  const FemModel *model = &beam->model;
-  size_t n = (size_t)model->unknown_count;
+  const FemNumbering *numbering = &beam->system.numbering;
+  size_t n = (size_t)numbering->count;
   double **arrays[] = {&beam->mass, &beam->force, &beam->right, &beam->residual};
   for (int i = 0; i < 4; i++)
     if (!(*arrays[i] = memory_zeroed(2 * n, sizeof(double)))) return status_no_memory("the beam");
@@ -106,13 +107,13 @@ static Status fill_beam(Beam *beam) {
   TRY(fem_matrix_copy_layout(&beam->stiffness, &beam->system.matrix));
   TRY(fem_matrix_copy_layout(&beam->damping, &beam->system.matrix));
   double *u = beam->residual;
-  bend(model, u);
+  bend(&beam->system, u);
   TRY(fem_system_create_state(&beam->system, &beam->state));
   fem_system_scatter(&beam->system, 0, u, NULL, &beam->state);
   TRY(fem_system_forces(&beam->system, &beam->state));
   for (size_t i = 0; i < n; i++) {
-    beam->mass[i] = model->mass[model->dof_of_unknown[i] / 3];
-    beam->force[i] = beam->right[n + i] = beam->system.forces[model->dof_of_unknown[i]];
+    beam->mass[i] = beam->model.mass[numbering->dof_of_unknown[i] / 3];
+    beam->force[i] = beam->right[n + i] = beam->system.forces[numbering->dof_of_unknown[i]];
   }
   return fem_system_assemble(&beam->system, &beam->state, 1, beam->c, beam->c * beam->c, &beam->condensed);
 }
@@ -165,7 +166,7 @@ static double residual_of(const Contestant *contestant) {
   const Beam *beam = contestant->beam;
   double error = 0, size = 0;
   fem_matrix_multiply(&beam->condensed, contestant->solution, beam->residual);
-  for (int i = 0; i < beam->model.unknown_count; i++) {
+  for (int i = 0; i < beam->model.free_count; i++) {
     error += (beam->residual[i] - beam->force[i]) * (beam->residual[i] - beam->force[i]);
     size += beam->force[i] * beam->force[i];
   }
@@ -237,7 +238,7 @@ static Row row_of(const Contestant *contestant, const Options *options) {
   return (Row){.solver = contestant->ops->name,
                .vertices = contestant->beam->model.vertex_count,
                .slenderness = options->slenderness,
-               .unknowns = contestant->beam->model.unknown_count,
+               .unknowns = contestant->beam->model.free_count,
                .iterations = stats->iterations / stats->solves,
                .step = options->step,
                .assembly = app_bench_timer_time(&contestant->assembly, rounds).wall,
@@ -261,7 +262,7 @@ typedef struct Bench {
 static Status add_contestant(Bench *bench, FemSolverKind kind, const Options *options) {
   Contestant *contestant = &bench->contestants[bench->contestant_count];
   *contestant = (Contestant){.beam = &bench->beam, .ops = fem_solver_ops(kind)};
-  contestant->solution = memory_zeroed(2 * (size_t)bench->beam.model.unknown_count, sizeof(double));
+  contestant->solution = memory_zeroed(2 * (size_t)bench->beam.model.free_count, sizeof(double));
   if (!contestant->solution) return status_no_memory("a solution");
   bench->contestant_count++;
   TRY(contestant->ops->create(&contestant->solver, options->common.threads,

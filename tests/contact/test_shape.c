@@ -255,7 +255,7 @@ START_TEST(a_block_rests_on_a_box_and_a_cylinder) {
   int last = run.result.frame_count - 1;
   double weight = run.model.bodies[0].mass * 9.81;
   ck_assert_int_eq(run.result.interface_count, 2);
-  ck_assert_int_eq(run.model.unknown_count, 3 * (run.model.bodies[0].vertex_end));
+  ck_assert_int_eq(run.model.free_count, 3 * (run.model.bodies[0].vertex_end));
   Vec3 sum = {0, 0, 0};
   for (int i = 0; i < 2; i++) {
     ck_assert_near(scene_force(&run, last, i)[2], weight / 2, 0.03 * weight);

@@ -70,8 +70,8 @@ START_TEST(the_beam_has_about_the_vertices_that_were_asked_for) {
     ck_assert_ok(fem_model_create(&model, &scene));
     ck_assert_int_ge(model.vertex_count, wanted[i] * 9 / 10);
     ck_assert_int_le(model.vertex_count, wanted[i] * 11 / 10);
-    ck_assert_int_gt(model.unknown_count, 0);
-    ck_assert_int_lt(model.unknown_count, 3 * model.vertex_count); // one end is clamped
+    ck_assert_int_gt(model.free_count, 0);
+    ck_assert_int_lt(model.free_count, 3 * model.vertex_count); // one end is clamped
     fem_model_destroy(&model);
     fem_scene_destroy(&scene);
   }

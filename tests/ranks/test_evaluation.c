@@ -52,14 +52,15 @@ static void free_answer(Answer *answer) {
 }
 
 // A state some percent off rest, the same for whoever asks.
-static void displace(const FemModel *model, const Variant *variant, double size, double *u, double *v) {
+static void displace(const FemSystem *system, const Variant *variant, double size, double *u, double *v) {
+  const FemModel *model = system->model;
   Random random = random_seeded(7, 0);
-  for (int i = 0; i < model->unknown_count; i++) {
+  for (int i = 0; i < model->free_count; i++) {
     u[i] = random_between(&random, -size, size) * model->edge;
     v[i] = random_between(&random, -0.05, 0.05);
   }
-  for (int i = 0; i < model->unknown_count && variant->is_folded; i++) {
-    int dof = model->dof_of_unknown[i], vertex = dof / 3;
+  for (int i = 0; i < model->free_count && variant->is_folded; i++) {
+    int dof = system->numbering.dof_of_unknown[i], vertex = dof / 3;
     const double *x = model->rest + 3 * (size_t)vertex;
     double beyond = x[0] - 0.1;
     if (vertex >= model->bodies[0].vertex_end || !(beyond > 0)) continue;
@@ -102,11 +103,11 @@ static Status solve(const FemSystem *system, FemSolverKind kind, Answer *answer)
 static Status find_answer(FemSystem *system, FemState *state, const Variant *variant, FemSolverKind kind,
                           double *u, double *v, Answer *answer) {
   const double TIME = 1e-3;
-  displace(system->model, variant, 0.002, u, v);
+  displace(system, variant, 0.002, u, v);
   TRY(fem_system_create_state(system, state));
   fem_system_scatter(system, 0, u, v, state);
   TRY(fem_system_begin(system, state, TIME));
-  displace(system->model, variant, 0.0025, u, v);
+  displace(system, variant, 0.0025, u, v);
   fem_system_scatter(system, TIME, u, v, state);
   TRY(fem_system_forces(system, state));
   memcpy(answer->forces, system->forces, (size_t)answer->values * sizeof(double));
@@ -119,7 +120,7 @@ static Status find_answer(FemSystem *system, FemState *state, const Variant *var
 }
 
 static Status evaluate(const FemModel *model, const Variant *variant, FemSolverKind kind, Answer *answer) {
-  size_t n = (size_t)model->unknown_count, values = 3 * (size_t)model->vertex_count;
+  size_t n = (size_t)model->free_count, values = 3 * (size_t)model->vertex_count;
   FemSystem system;
   FemState state = {0};
   TRY(fem_system_create(&system, model));

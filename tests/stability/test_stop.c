@@ -61,7 +61,7 @@ START_TEST(an_early_stop_leaves_a_checkpoint_of_what_was_done) {
   FemRunOptions options = {
       .stop = &stopper.flag, .observe = stop_at, .observer = &stopper, .directory = folder};
   ck_assert_int_eq(fem_run(&run.model, &options, &run.result), STATUS_INTERRUPTED);
-  ck_assert_int_lt((int)run.result.integrator.steps, (int)fem_run_checkpoint_steps(run.model.unknown_count));
+  ck_assert_int_lt((int)run.result.integrator.steps, (int)fem_run_checkpoint_steps(run.model.free_count));
   snprintf(path, sizeof path, "%s/%s", folder, FEM_CHECKPOINT_FILE);
   ck_assert_ok(fem_checkpoint_read(&checkpoint, path));
   ck_assert_int_ge(checkpoint.next_frame, 4);

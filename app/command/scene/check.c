@@ -125,8 +125,8 @@ static Notes take_notes(const AppJob *job) {
   note(&notes, is_locking(scene),
        "linear tetrahedra are too stiff at a Poisson's ratio of 0.45 and above: bending is underestimated; "
        "try element: quadratic or nodal");
-  note(&notes, job->model.unknown_count == 0, "every vertex is prescribed: there is nothing to solve");
-  note(&notes, fem_run_choice(&job->model).bytes > machine_memory(),
+  note(&notes, job->model.free_count == 0, "every vertex is prescribed: there is nothing to solve");
+  note(&notes, fem_run_choice(&job->model, NULL).bytes > machine_memory(),
        "the run needs more memory than this machine has");
   return notes;
 }
@@ -240,11 +240,11 @@ static void print_text(const AppJob *job, const Notes *notes, const FemDivisionP
   for (int o = 0; o < scene->obstacle_count; o++) print_obstacle(job, o);
   print_effects(scene);
   print_contact(job);
-  printf("unknowns      %d displacements, %s velocities\n", model->unknown_count,
+  printf("unknowns      %d displacements, %s velocities\n", model->free_count,
          scene->is_static ? "no" : "and as many");
   printf("time          0 to %g s, error per step %g m and %g m/s\n", scene->end,
          fem_model_position_tolerance(model), fem_model_velocity_tolerance(model));
-  FemRunChoice choice = fem_run_choice(model);
+  FemRunChoice choice = fem_run_choice(model, NULL);
   printf("solver        %s%s%s%s, %d threads\n", fem_solver_name(choice.kind),
          choice.why[0] ? " (chosen: " : "", choice.why, choice.why[0] ? ")" : "", cpu_thread_count());
   print_memory(choice.bytes);
@@ -327,13 +327,13 @@ static void record_job(const AppJob *job, const Notes *notes, const FemDivisionP
   if (scene->contact.is_on) record_contact(job, record_child(record, "contact"));
   record_integer(record, "vertices", model->vertex_count);
   record_integer(record, "tetrahedra", model->tet_count);
-  record_integer(record, "unknowns", model->unknown_count);
+  record_integer(record, "unknowns", model->free_count);
   record_number(record, "end", scene->end);
   record_bool(record, "is_static", scene->is_static);
   record_number(record, "length_m", model->length);
   record_number(record, "tolerance", scene->tolerance);
   record_number(record, "velocity_tolerance_m_s", fem_model_velocity_tolerance(model));
-  FemRunChoice choice = fem_run_choice(model);
+  FemRunChoice choice = fem_run_choice(model, NULL);
   record_text(record, "solver", fem_solver_name(choice.kind));
   record_text(record, "solver_why", choice.why);
   record_integer(record, "threads", cpu_thread_count());

@@ -18,6 +18,7 @@
 #include "base/ranks.h"
 #include "datagen/capture.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/run/check/choice.h"
 #include "fem/run/checkpoint/checkpoint.h"
 
 enum { KEY_CAPTURE = 256, KEY_STRICT, KEY_RANKS };
@@ -59,7 +60,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static void announce(const AppJob *job) {
   log_info("%s: %d %s, %d vertices, %d tetrahedra, %d unknowns, solver %s", job->scene.path,
            job->scene.body_count, job->scene.body_count == 1 ? "body" : "bodies", job->model.vertex_count,
-           job->model.tet_count, job->model.unknown_count, fem_solver_name(fem_run_solver(&job->model)));
+           job->model.tet_count, job->model.free_count,
+           fem_solver_name(fem_run_choice(&job->model, NULL).kind));
   app_job_log_contact(job);
 }
 

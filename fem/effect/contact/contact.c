@@ -197,7 +197,7 @@ static Status add_force(void *self, const FemState *state, double *force) {
   Contact *contact = self;
   double energy;
   TRY(contact_system_eval(contact->system, state->time, state->positions, &energy, force));
-  if (state->with_held) contact_system_add_resting(contact->system, force);
+  if (!state->is_held) contact_system_add_resting(contact->system, force);
   return STATUS_OK;
 }
 

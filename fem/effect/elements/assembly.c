@@ -88,7 +88,7 @@ static void add_pack_force(const FemPacks *packs, int p, FemAssemblyPack *pack,
 static void add_chunk_forces(const FemAssembly *assembly, const FemPacks *packs, const FemState *state,
                              const FemAssemblyKernels *kernels, int chunk, double *force) {
   FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_body[chunk]);
-  if (pack.body->is_held && !state->with_held) return;
+  if (state->is_held && state->is_held[packs->chunk_body[chunk]]) return;
   for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++)
     add_pack_force(packs, p, &pack, kernels, force);
 }
@@ -150,7 +150,7 @@ static void add_chunk_matrices(const FemAssembly *assembly, const FemPacks *pack
                                const FemAssemblyKernels *kernels, Scales scales, int chunk,
                                FemMatrix *matrix) {
   FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_body[chunk]);
-  if (pack.body->is_held) return;
+  if (state->is_held && state->is_held[packs->chunk_body[chunk]]) return;
   for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++) {
     if (packs->is_quadratic)
       add_quadratic_matrix(packs, p, &pack, kernels, scales, matrix);

@@ -29,10 +29,10 @@ static double hardness(const FemModel *model, const FemModelBody *body) {
   return count * count * sqrt(size[0] * size[1] * size[2] / longest) / longest;
 }
 
-static double equivalent_cube(const FemModel *model) {
+static double equivalent_cube(const FemModel *model, const FemNumbering *now) {
   double sum = 0;
   for (int b = 0; b < model->body_count; b++)
-    if (!model->bodies[b].is_obstacle && !model->bodies[b].is_held) sum += hardness(model, &model->bodies[b]);
+    if (!model->bodies[b].is_obstacle && !(now && now->is_held[b])) sum += hardness(model, &model->bodies[b]);
   return sqrt(sum);
 }
 
@@ -42,11 +42,11 @@ static bool is_nearly_incompressible(const FemModel *model) {
   return false;
 }
 
-static FemSolverKind choose(const FemModel *model, const char **why) {
+static FemSolverKind choose(const FemModel *model, const FemNumbering *now, const char **why) {
   const FemSceneDef *scene = model->scene;
-  bool is_large = model->unknown_count > MOST_UNKNOWNS_TO_FACTORISE;
+  bool is_large = (now ? now->count : model->free_count) > MOST_UNKNOWNS_TO_FACTORISE;
   bool is_linear = fem_model_has_linear_materials(model) && !scene->contact.is_on;
-  double cube = equivalent_cube(model);
+  double cube = equivalent_cube(model, now);
   double most = is_linear ? MOST_IF_LINEAR : scene->is_static ? MOST_IN_STATICS : MOST_IN_MOTION;
   *why = "its factor is cheap";
   if (!is_large && cube <= most) return FEM_SOLVER_CHOLMOD;
@@ -59,7 +59,7 @@ static FemSolverKind choose(const FemModel *model, const char **why) {
 }
 
 static double solver_bytes(const FemModel *model, FemSolverKind kind) {
-  double unknowns = model->unknown_count;
+  double unknowns = model->free_count;
   switch (kind) {
   case FEM_SOLVER_AMG:
   case FEM_SOLVER_GAMG: // measured: PETSc itself, and what the levels take beyond what assembly took before
@@ -73,8 +73,8 @@ static double solver_bytes(const FemModel *model, FemSolverKind kind) {
   }
 }
 
-// Measured, a ball in a block of 22,000 vertices on two and four ranks (a beam of 47,000 on two: 3 % less): what
-// each rank has at its start, of the whole, and of its share with the levels of BoomerAMG [bytes].
+// Measured, a ball in a block of 22,000 vertices on two and four ranks (a beam of 47,000 on two: 3 % less):
+// what each rank has at its start, of the whole, and of its share with the levels of BoomerAMG [bytes].
 static const double RANK_BYTES = 5.2e7, WHOLE_BYTES_A_VERTEX = 1750, SHARED_BYTES_AN_UNKNOWN = 1670;
 // Without the solver's.
 static const double ADDED_BYTES_AN_UNKNOWN = 1200;
@@ -83,16 +83,16 @@ FemRunChoice fem_run_choice_over(const FemModel *model, int rank_count) {
   FemRunChoice choice = {.kind = model->scene->solver, .why = ""};
   if (choice.kind == FEM_SOLVER_AUTO) choice.kind = FEM_SOLVER_AMG, choice.why = "ranks share it";
   double shared = choice.kind == FEM_SOLVER_CHOLMOD
-                      ? ADDED_BYTES_AN_UNKNOWN * model->unknown_count + solver_bytes(model, choice.kind)
-                      : SHARED_BYTES_AN_UNKNOWN * model->unknown_count;
+                      ? ADDED_BYTES_AN_UNKNOWN * model->free_count + solver_bytes(model, choice.kind)
+                      : SHARED_BYTES_AN_UNKNOWN * model->free_count;
   choice.bytes = RANK_BYTES + WHOLE_BYTES_A_VERTEX * model->vertex_count + shared / rank_count;
   return choice;
 }
 
-FemRunChoice fem_run_choice(const FemModel *model) {
+FemRunChoice fem_run_choice(const FemModel *model, const FemNumbering *now) {
   if (model->share) return fem_run_choice_over(model, model->share->rank_count);
   FemRunChoice choice = {.kind = model->scene->solver, .why = ""};
-  if (choice.kind == FEM_SOLVER_AUTO) choice.kind = choose(model, &choice.why);
+  if (choice.kind == FEM_SOLVER_AUTO) choice.kind = choose(model, now, &choice.why);
   choice.bytes = fem_model_memory_estimate(model) + solver_bytes(model, choice.kind);
   return choice;
 }

@@ -3,7 +3,7 @@
 #ifndef TETLAP_FEM_RUN_CHECK_CHOICE_H
 #define TETLAP_FEM_RUN_CHECK_CHOICE_H
 
-#include "fem/model/model.h"
+#include "fem/effect/numbering.h"
 #include "fem/sparse/solver.h"
 
 typedef struct FemRunChoice {
@@ -12,7 +12,8 @@ typedef struct FemRunChoice {
   double bytes;       // of the whole run, roughly
 } FemRunChoice;
 
-FemRunChoice fem_run_choice(const FemModel *model);
+// Of a run as it begins; `now` not NULL: of one whose unknowns are those.
+FemRunChoice fem_run_choice(const FemModel *model, const FemNumbering *now);
 
 // The same of a run over so many ranks (base/ranks.h); `bytes` of each rank.
 FemRunChoice fem_run_choice_over(const FemModel *model, int rank_count);

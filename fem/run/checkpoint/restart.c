@@ -32,11 +32,11 @@ static Status save_effects(FemCheckpoint *checkpoint, const FemSystem *system) {
 
 // Driven coordinates as the state has them, for whoever reads the file; unknowns as they are, which adding
 // and subtracting the place at rest would round.
-static void save_state(FemCheckpoint *checkpoint, const FemModel *model, const FemState *state,
+static void save_state(FemCheckpoint *checkpoint, const FemSystem *system, const FemState *state,
                        const double *u, const double *v) {
-  for (int i = 0; i < 3 * model->vertex_count; i++) {
-    int unknown = model->unknown_of_dof[i];
-    checkpoint->displacement[i] = unknown < 0 ? state->positions[i] - model->rest[i] : u[unknown];
+  for (int i = 0; i < 3 * system->model->vertex_count; i++) {
+    int unknown = system->numbering.unknown_of_dof[i];
+    checkpoint->displacement[i] = unknown < 0 ? state->positions[i] - system->model->rest[i] : u[unknown];
     checkpoint->velocity[i] = unknown < 0 ? state->velocities[i] : v[unknown];
   }
   checkpoint->time = state->time;
@@ -60,7 +60,7 @@ static Status save_counts(FemCheckpoint *checkpoint, const FemRunResult *so_far)
 Status fem_restart_collect(FemCheckpoint *checkpoint, const FemSystem *system, const FemState *state,
                            const double *u, const double *v, const FemRunResult *so_far) {
   TRY(fem_checkpoint_create(checkpoint, system->model->vertex_count));
-  save_state(checkpoint, system->model, state, u, v);
+  save_state(checkpoint, system, state, u, v);
   Status status = save_effects(checkpoint, system);
   if (!status) status = save_counts(checkpoint, so_far);
   if (status) fem_checkpoint_destroy(checkpoint);
@@ -78,10 +78,10 @@ Status fem_restart_check(const FemCheckpoint *checkpoint, const FemModel *model)
   return STATUS_OK;
 }
 
-void fem_restart_load(const FemCheckpoint *checkpoint, const FemModel *model, double *u, double *v) {
-  for (int i = 0; i < model->unknown_count; i++) {
-    u[i] = checkpoint->displacement[model->dof_of_unknown[i]];
-    v[i] = checkpoint->velocity[model->dof_of_unknown[i]];
+void fem_restart_load(const FemCheckpoint *checkpoint, const FemNumbering *numbering, double *u, double *v) {
+  for (int i = 0; i < numbering->count; i++) {
+    u[i] = checkpoint->displacement[numbering->dof_of_unknown[i]];
+    v[i] = checkpoint->velocity[numbering->dof_of_unknown[i]];
   }
 }
 

@@ -20,7 +20,7 @@ Status fem_restart_collect(FemCheckpoint *checkpoint, const FemSystem *system, c
 Status fem_restart_check(const FemCheckpoint *checkpoint, const FemModel *model);
 
 // The other way: the unknowns u, v; and, once a system has begun there, what its effects remember.
-void fem_restart_load(const FemCheckpoint *checkpoint, const FemModel *model, double *u, double *v);
+void fem_restart_load(const FemCheckpoint *checkpoint, const FemNumbering *numbering, double *u, double *v);
 Status fem_restart_remember(const FemCheckpoint *checkpoint, FemSystem *system);
 
 #endif

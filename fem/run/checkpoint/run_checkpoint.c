@@ -71,7 +71,7 @@ bool fem_run_checkpoint_is_due(const FemRunState *run) {
   const FemIntegratorStats stats = fem_run_state_stats(run);
   long long steps = stats.steps - run->checkpoint.so_far.integrator.steps;
   if (scene->is_static) return steps >= STATIC_STEPS;
-  long long enough = fem_run_checkpoint_steps(run->given->unknown_count);
+  long long enough = fem_run_checkpoint_steps(run->model->free_count);
   bool is_wanted = steps >= enough || (steps >= EARLY_STEPS && is_early(run));
   return steps >= PATIENCE * enough || (is_wanted && is_calm(run, &stats));
 }
@@ -115,6 +115,6 @@ Status fem_run_checkpoint_leave(FemRunState *run, Status status) {
   bool may_go_on = status == STATUS_INTERRUPTED || status == STATUS_IO || status == STATUS_MEMORY;
   if (!run->options->directory || !run->recorder.system) return STATUS_OK;
   if (status == STATUS_OK) return fem_run_checkpoint_remove(run);
-  return may_go_on && run->given->scene->checkpoint_frames != 0 && !run->is_written ? write_checkpoint(run)
+  return may_go_on && run->model->scene->checkpoint_frames != 0 && !run->is_written ? write_checkpoint(run)
                                                                                     : STATUS_OK;
 }

@@ -43,7 +43,7 @@ static void sum_up(FemBalance *balance, const FemSystem *system, const FemPart *
   for (int b = 0; b < model->body_count; b++) balance->unbalanced[b] = balance->needed[b] = 0;
   int body = 0;
   for (int i = 0; i < part->count; i++) {
-    int dof = model->dof_of_unknown[fem_part_unknown(part, i)];
+    int dof = fem_part_dof(part, i);
     while (dof / 3 >= model->bodies[body].vertex_end) body++;
     balance->unbalanced[body] += fabs(residual[i]);
     balance->needed[body] += fabs(residual[i] + system->forces[dof]);
@@ -58,7 +58,7 @@ double fem_balance_excess(FemBalance *balance, FemSystem *system, const FemPart 
   void *contact = fem_system_effect(system, &fem_effect_contact);
   const double *forces = contact ? contact_system_forces(fem_effect_contact_system(contact)) : NULL;
   double worst = 0, gravity = model->scene->has_gravity ? vec3_length(vec3_at(model->scene->gravity)) : 0;
-  const bool is_strict = forces || fem_model_floats(model);
+  const bool is_strict = forces || fem_model_floats(model, part->numbering->released);
   sum_up(balance, system, part, residual);
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];

@@ -216,8 +216,7 @@ static Status create(FemIdaSolver *solver, SUNContext context) {
   solver->masses = memory_zeroed(n, sizeof *solver->masses);
   solver->right = memory_zeroed(n, sizeof *solver->right);
   if (!solver->masses || !solver->right || !solver->all) return status_no_memory("the linear solver");
-  for (int i = 0; i < part->count; i++)
-    solver->masses[i] = model->mass[model->dof_of_unknown[fem_part_unknown(part, i)] / 3];
+  for (int i = 0; i < part->count; i++) solver->masses[i] = model->mass[fem_part_dof(part, i) / 3];
   if (solver->follows) {
     TRY(fem_cg_create(&solver->cg, part->n));
     solver->piece = memory_zeroed(part->order ? n : 0, sizeof *solver->piece);

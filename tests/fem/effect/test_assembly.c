@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "fem/effect/elements/assembly.h"
+#include "fem/effect/numbering.h"
 #include "fem/model/build.h"
 
 // Two boxes of different law and damping, the first with a fixed face, and an obstacle that must stay silent.
@@ -18,6 +19,7 @@ typedef struct Scene {
   FemObstacleDef obstacle;
   FemConstraintDef fixed;
   FemModel model;
+  FemNumbering numbering;
   FemPattern *pattern;
   FemMatrix matrix;
   double *x, *v, *force;
@@ -70,6 +72,7 @@ static void describe(Scene *scene, int cells) {
 static void build(Scene *scene, int cells) {
   describe(scene, cells);
   ck_assert_ok(fem_model_create(&scene->model, &scene->def));
+  ck_assert_ok(fem_numbering_create(&scene->numbering, &scene->model));
   size_t n = dof_count(scene);
   scene->x = memory_zeroed(n, sizeof(double));
   scene->v = memory_zeroed(n, sizeof(double));
@@ -90,10 +93,11 @@ static void lay_out(Scene *scene, const FemEffectOps *ops, void *effect) {
     ck_assert_ok(fem_pattern_add_clique(scene->pattern, 1, &a, NULL));
   ck_assert_ok(ops->couple(effect, &state, scene->pattern, &has_grown));
   ck_assert_int_eq(has_grown, 1);
-  ck_assert_ok(fem_matrix_create(&scene->matrix, scene->pattern, scene->model.unknown_of_dof));
+  ck_assert_ok(fem_matrix_create(&scene->matrix, scene->pattern, scene->numbering.unknown_of_dof));
 }
 
 static void clear(Scene *scene) {
+  fem_numbering_destroy(&scene->numbering);
   fem_matrix_destroy(&scene->matrix);
   fem_pattern_destroy(scene->pattern);
   memory_free(scene->x);
@@ -189,8 +193,8 @@ END_TEST
 // y = A·direction against the force difference along it, over the unknowns. The damping matrix lacks the
 // unsymmetric part of ∂f/∂x, so damping is compared in v.
 static void check_jacobian(Scene *scene, const FemEffectOps *ops, void *effect, bool in_velocity) {
-  const FemModel *model = &scene->model;
-  size_t n = (size_t)model->unknown_count;
+  const FemNumbering *numbering = &scene->numbering;
+  size_t n = (size_t)numbering->count;
   double *direction = memory_zeroed(n, sizeof *direction), *product = memory_zeroed(n, sizeof *product);
   double *change = memory_zeroed(n, sizeof *change), *field = in_velocity ? scene->v : scene->x;
   FemState state = state_of(scene);
@@ -202,11 +206,11 @@ static void check_jacobian(Scene *scene, const FemEffectOps *ops, void *effect, 
   for (size_t i = 0; i < n; i++) direction[i] = random_normal(&random);
   fem_matrix_multiply(&scene->matrix, direction, product);
   for (int side = -1; side <= 1; side += 2) {
-    for (size_t i = 0; i < n; i++) field[model->dof_of_unknown[i]] += side * h * direction[i];
+    for (size_t i = 0; i < n; i++) field[numbering->dof_of_unknown[i]] += side * h * direction[i];
     find_force(scene, ops, effect);
     for (size_t i = 0; i < n; i++) {
-      change[i] -= scale * side * scene->force[model->dof_of_unknown[i]] / (2 * h);
-      field[model->dof_of_unknown[i]] -= side * h * direction[i];
+      change[i] -= scale * side * scene->force[numbering->dof_of_unknown[i]] / (2 * h);
+      field[numbering->dof_of_unknown[i]] -= side * h * direction[i];
     }
   }
   for (size_t i = 0; i < n; i++) {
@@ -226,7 +230,7 @@ START_TEST(assembled_matrices_are_the_derivatives_of_the_forces) {
   void *effect;
   ck_assert_ok(ops->create(&effect, &scene.model));
   lay_out(&scene, ops, effect);
-  ck_assert_int_lt(scene.model.unknown_count, 3 * scene.model.bodies[1].vertex_end); // some are fixed
+  ck_assert_int_lt(scene.numbering.count, 3 * scene.model.bodies[1].vertex_end); // some are fixed
   check_jacobian(&scene, ops, effect, _i == 1);
   ops->destroy(effect);
   clear(&scene);
@@ -246,7 +250,7 @@ START_TEST(a_matrix_laid_out_anew_is_filled_correctly) {
   ck_assert_ok(fem_pattern_add_clique(scene.pattern, 2, far_apart, &has_grown));
   ck_assert_int_eq(has_grown, 1);
   fem_matrix_destroy(&scene.matrix);
-  ck_assert_ok(fem_matrix_create(&scene.matrix, scene.pattern, scene.model.unknown_of_dof));
+  ck_assert_ok(fem_matrix_create(&scene.matrix, scene.pattern, scene.numbering.unknown_of_dof));
   check_jacobian(&scene, &fem_effect_elasticity, effect, false);
   fem_effect_elasticity.destroy(effect);
   clear(&scene);
@@ -262,7 +266,7 @@ START_TEST(damping_adds_both_of_its_matrices) {
   ck_assert_ok(fem_effect_damping.create(&effect, model));
   lay_out(&scene, &fem_effect_damping, effect);
   FemMatrix expected;
-  ck_assert_ok(fem_matrix_create(&expected, scene.pattern, model->unknown_of_dof));
+  ck_assert_ok(fem_matrix_create(&expected, scene.pattern, scene.numbering.unknown_of_dof));
   for (int tet = 0; tet < model->bodies[0].tet_end; tet++) {
     const FemModelBody *body = &model->bodies[0];
     double x[12], v[12], matrix[144];

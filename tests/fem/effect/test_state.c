@@ -24,8 +24,8 @@ static void displace(const Walk *walk, double time, int k, FemState *state) {
   const FemModel *model = walk->system.model;
   double *u = malloc((size_t)walk->n * sizeof *u), *v = malloc((size_t)walk->n * sizeof *v);
   Random random = random_seeded(5, (uint64_t)k);
-  for (int i = 0; i < model->unknown_count; i++) {
-    int dof = model->dof_of_unknown[i];
+  for (int i = 0; i < model->free_count; i++) {
+    int dof = walk->system.numbering.dof_of_unknown[i];
     double shear = dof % 3 == 0 ? 3e-3 * model->rest[dof + 2] : 0;
     u[i] = (1 + 0.2 * k) * shear + 2e-6 * random_normal(&random);
     v[i] = model->initial_velocity[dof] + 1e-3 * random_normal(&random);
@@ -37,7 +37,7 @@ static void displace(const Walk *walk, double time, int k, FemState *state) {
 static void open_walk(Walk *walk, const char *setting) {
   scene_open(&walk->run, "everything", (const char *const[]){setting, NULL});
   const FemModel *model = &walk->run.model;
-  walk->n = model->unknown_count;
+  walk->n = model->free_count;
   ck_assert_ok(fem_system_create(&walk->system, model));
   for (int k = 0; k < STATES; k++) ck_assert_ok(fem_system_create_state(&walk->system, &walk->states[k]));
   ck_assert_ok(fem_system_begin(&walk->system, &walk->states[0], STEP));

@@ -83,10 +83,10 @@ static ContactSystem *contact_of(const Replay *replay) {
 }
 
 static void take(Replay *replay, double time, const double *positions, const double *velocities) {
-  const FemModel *model = replay->system.model;
-  for (int i = 0; i < model->unknown_count; i++) {
-    int dof = model->dof_of_unknown[i];
-    replay->u[i] = positions[dof] - model->rest[dof];
+  const FemNumbering *numbering = &replay->system.numbering;
+  for (int i = 0; i < numbering->count; i++) {
+    int dof = numbering->dof_of_unknown[i];
+    replay->u[i] = positions[dof] - replay->system.model->rest[dof];
     replay->v[i] = velocities[dof];
   }
   fem_system_scatter(&replay->system, time, replay->u, replay->v, &replay->state);

@@ -41,7 +41,7 @@ START_TEST(the_solver_follows_size_shape_and_what_is_solved) {
   FemSceneDef scene = {.bodies = &body, .body_count = 1, .is_static = c->is_static, .solver = c->said};
   FemModel model;
   ck_assert_ok(fem_model_create(&model, &scene));
-  FemRunChoice choice = fem_run_choice(&model);
+  FemRunChoice choice = fem_run_choice(&model, NULL);
   ck_assert_msg(choice.kind == c->expected, "%s, because: %s", fem_solver_name(choice.kind), choice.why);
   ck_assert_ptr_nonnull(strstr(choice.why, c->why));
   ck_assert(choice.bytes > fem_model_memory_estimate(&model));

@@ -223,7 +223,7 @@ START_TEST(released_vertices_fly_on) {
           "0.25}]\n",
           "output: {frames: 8}\n");
   int vertices = run.model.vertex_count;
-  ck_assert_int_eq(run.model.unknown_count, 2 * vertices);
+  ck_assert_int_eq(run.model.free_count, 2 * vertices);
   for (int frame = 0; frame <= 8; frame++)
     ck_assert_near(mean_of(&run, frame, 0), 2 * run.result.frame_times[frame], 1e-7);
   ck_assert_near(run.result.audit.work, 2, 1e-6);

@@ -34,7 +34,7 @@ START_TEST(a_static_scene_has_half_the_unknowns) {
   snprintf(text, sizeof text, "time: {end: 1e-3}\n%s", BEAM);
   run_text(&moving, text);
   ck_assert_int_eq(moving.status, STATUS_OK);
-  ck_assert_int_eq(still.result.state_unknowns, still.model.unknown_count);
+  ck_assert_int_eq(still.result.state_unknowns, still.model.free_count);
   ck_assert_int_eq(moving.result.state_unknowns, 2 * still.result.state_unknowns);
   scene_close(&still);
   scene_close(&moving);

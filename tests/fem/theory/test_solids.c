@@ -176,7 +176,7 @@ START_TEST(the_tangent_of_plastic_flow_is_consistent) {
   FemState state;
   ck_assert_ok(fem_system_create(&system, &run.model));
   ck_assert_ok(fem_system_create_state(&system, &state));
-  int n = run.model.unknown_count;
+  int n = run.model.free_count;
   double *u = calloc((size_t)n, sizeof *u), *d = calloc((size_t)n, sizeof *d);
   double *Kd = calloc((size_t)n, sizeof *d), *above = calloc((size_t)n, sizeof *d), h = 1e-6;
   Random random = random_seeded(21, 0);

@@ -112,9 +112,11 @@ static void open_two(SceneRun *run) {
 START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_bounds) {
   SceneRun run;
   open_two(&run);
-  int n = run.model.unknown_count;
+  int n = run.model.free_count;
   FemPart part;
-  ck_assert_ok(fem_part_create(&part, &run.model));
+  FemNumbering numbering;
+  ck_assert_ok(fem_numbering_create(&numbering, &run.model));
+  ck_assert_ok(fem_part_create(&part, &run.model, &numbering));
   double *v = calloc((size_t)n, sizeof *v), *weights = calloc(2 * (size_t)n, sizeof *weights);
   const FemMaterial *soft = &run.model.bodies[0].material;
   double wave = sqrt(soft->young / soft->density);
@@ -124,12 +126,12 @@ START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_b
   const double expected[][2] = {{1e-6, 1e-6}, {2e-5, 2e-5}, {1e-4, 1e-3}};
   for (int k = 0; k < 3; k++) {
     for (int i = 0; i < n; i++) {
-      int dof = run.model.dof_of_unknown[i];
+      int dof = numbering.dof_of_unknown[i];
       v[i] = dof % 3 == 2 && dof / 3 < run.model.bodies[0].vertex_end ? speeds[k] : 0;
     }
     fem_error_weights(&tolerance, &run.model, &part, v, weights);
     for (int i = 0; i < n; i++) {
-      int body = run.model.dof_of_unknown[i] / 3 >= run.model.bodies[0].vertex_end;
+      int body = numbering.dof_of_unknown[i] / 3 >= run.model.bodies[0].vertex_end;
       ck_assert_near(weights[i], 1e5, 1e-6);
       ck_assert_near(1 / weights[n + i], expected[k][body] * wave, 1e-9 * wave);
     }
@@ -138,6 +140,7 @@ START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_b
   fem_error_weights(&tolerance, &run.model, &part, v, weights);
   for (int i = 0; i < 2 * n; i++) ck_assert(weights[i] > 0 && isfinite(weights[i]));
   free(v), free(weights);
+  fem_numbering_destroy(&numbering);
   scene_close(&run);
 }
 END_TEST

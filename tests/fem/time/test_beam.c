@@ -56,7 +56,7 @@ START_TEST(all_solvers_bend_a_beam_alike) {
     for (int s = 0; s < KIND_COUNT; s++) {
       Beam beam;
       beam_open(&beam, damped ? 5e-3 : 0);
-      int n = beam.model.unknown_count;
+      int n = beam.model.free_count;
       double *u = memory_zeroed((size_t)n, sizeof *u), *v = memory_zeroed((size_t)n, sizeof *v);
       FemIntegratorDef def = {
           .displacement_tolerance = 1e-5, .velocity_tolerance = 1e-3, .max_order = 2, .end = 0.1};
@@ -86,7 +86,7 @@ START_TEST(two_runs_have_the_same_bits) {
   for (int k = 0; k < 2; k++) {
     Beam beam;
     beam_open(&beam, 1e-3);
-    n = beam.model.unknown_count;
+    n = beam.model.free_count;
     double *u = memory_zeroed((size_t)n, sizeof *u), *v = memory_zeroed((size_t)n, sizeof *v);
     FemIntegratorDef def = {
         .displacement_tolerance = 1e-4, .velocity_tolerance = 1e-2, .max_order = 2, .end = 0.05};

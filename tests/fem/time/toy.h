@@ -38,7 +38,9 @@ typedef struct Toy {
   FemSystem system;
   FemState state; // under trial
   double rest[3 * MOST], masses[MOST];
-  int unknown_of_dof[3 * MOST], dof_of_unknown[MOST];
+  FemConstraintDef constraint;
+  FemModelDriver driver; // y and z are held
+  int dofs[2 * MOST];
 } Toy;
 
 static inline Status add_force(void *self, const FemState *state, double *force) {
@@ -142,29 +144,30 @@ static inline void toy_open(Toy *toy) {
   for (int i = 0; i < toy->count; i++) {
     toy->rest[3 * i] = toy->count > 1 ? i : 0;
     toy->masses[i] = toy->mass;
-    toy->unknown_of_dof[3 * i] = i, toy->unknown_of_dof[3 * i + 1] = toy->unknown_of_dof[3 * i + 2] = -1;
-    toy->dof_of_unknown[i] = 3 * i;
+    toy->dofs[2 * i] = 3 * i + 1, toy->dofs[2 * i + 1] = 3 * i + 2;
   }
+  toy->driver = (FemModelDriver){
+      .def = &toy->constraint, .is_fixed = true, .dofs = toy->dofs, .dof_count = 2 * toy->count};
   toy->model = (FemModel){.scene = &toy->scene,
                           .vertex_count = toy->count,
                           .body_count = 1,
                           .rest = toy->rest,
                           .bodies = &toy->body,
                           .mass = toy->masses,
-                          .unknown_count = toy->count,
-                          .unknown_of_dof = toy->unknown_of_dof,
-                          .dof_of_unknown = toy->dof_of_unknown};
+                          .drivers = &toy->driver,
+                          .driver_count = 1};
   FemSystem *system = &toy->system;
   size_t dofs = 3 * (size_t)toy->count;
   const double still[3 * MOST] = {0};
   *system = (FemSystem){.model = &toy->model, .forces = memory_zeroed(dofs, sizeof(double))};
+  ck_assert_ok(fem_numbering_create(&system->numbering, &toy->model));
   ck_assert_ok(fem_state_create(&system->accepted, toy->count, toy->rest, still));
   ck_assert_ok(fem_system_create_state(system, &toy->state));
   add_effect(toy, toy->floor_stiffness > 0 || toy->margin > 0 ? &law_with_floor : &law);
   if (toy->damper > 0) add_effect(toy, &damper);
   ck_assert_ok(fem_pattern_create(&system->pattern, toy->count));
   ck_assert_ok(couple(&toy, NULL, system->pattern, NULL));
-  ck_assert_ok(fem_matrix_create(&system->matrix, system->pattern, toy->unknown_of_dof));
+  ck_assert_ok(fem_matrix_create(&system->matrix, system->pattern, system->numbering.unknown_of_dof));
 }
 
 static inline void toy_close(Toy *toy) {
