@@ -3,26 +3,12 @@
 
 #include "app/command/about/help.h"
 #include "app/command/about/version.h"
-#include "lab/net/net.h"
-#include "lab/net/train.h"
-#include "lab/overlap/datagen.h"
-#include "lab/overlap/device.h"
-#include "lab/pareto/command.h"
-#include "lab/precision/precision.h"
-#include "lab/scene/beam.h"
-#include "lab/scene/drop.h"
-#include "lab/scene/elements.h"
-#include "lab/scene/ranks.h"
-#include "lab/scene/scaling.h"
-#include "lab/scene/scene.h"
-#include "lab/scene/solver.h"
-#include "lab/scene/step.h"
+#include "lab/device.h"
+#include "lab/elements.h"
+#include "lab/net.h"
 
 static const AppCommand *const commands[] = {
-    &lab_pareto_command, &lab_device,  &lab_net,   &lab_datagen, &lab_train,
-    &lab_elements,       &lab_solver,  &lab_beam,  &lab_scene,   &lab_step,
-    &lab_precision,      &lab_scaling, &lab_ranks, &lab_drop,    &app_command_version,
-    &app_command_help,   NULL,
+    &lab_device, &lab_net, &lab_elements, &app_command_version, &app_command_help, NULL,
 };
 
 const AppCommand lab_program_root = {

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""PyTorch as a peer of `tetlap-lab net` and `tetlap-lab train`: the same weights, the same inputs, timed in turns.
+"""PyTorch as a peer of `tetlap-lab net` and `tetlap-lab device`: the same weights, the same inputs, timed in turns.
 
     torch_bench.py WEIGHTS PRECISION INPUTS THREADS [DEVICE]
 
 WEIGHTS is a weights file of net/, PRECISION `float`, `double` or `bf16`, INPUTS raw numbers of it (of `bf16` floats), a sample after another,
-DEVICE PyTorch's name of one (default: cpu). The first line that it writes is PyTorch's version. Each line read is then `WHAT BATCH CALLS`; WHAT is `V` (outputs), `V+grad` (and the
-last output's derivative by the inputs) or `train` (a step of AdamW on the paper's loss); the answer is `WALL CPU CHECK`:
-seconds of all calls, and the mean of the absolute outputs (`V+grad`: of the derivatives; `train`: the loss). Exit status
+DEVICE PyTorch's name of one (default: cpu). The first line that it writes is PyTorch's version. Each line read is then `WHAT BATCH CALLS`; WHAT is `V` (outputs) or `V+grad` (and the
+last output's derivative by the inputs); the answer is `WALL CPU CHECK`:
+seconds of all calls, and the mean of the absolute outputs (`V+grad`: of the derivatives). Exit status
 77: PyTorch is not installed; 78: it finds no such device.
 """
 import pathlib
@@ -20,7 +20,7 @@ except ImportError:
     sys.exit(77)
 
 sys.dont_write_bytecode = True
-from torch_network import Network, paper_loss, read  # noqa: E402
+from torch_network import Network, read  # noqa: E402
 
 
 def main():
@@ -36,10 +36,6 @@ def main():
     numbers = bytearray(pathlib.Path(inputs).read_bytes())
     given = torch.frombuffer(numbers, dtype=torch.float32 if precision == "bf16" else dtype)
     samples = given.reshape(-1, columns).to(dtype).to(device)
-    parameters = list(network.weights.values())
-    optimiser = torch.optim.AdamW(parameters, lr=1e-4, weight_decay=0.01)
-    labels = (samples[:, 0] > samples[:, 1]).to(dtype)
-    targets = samples[:, 2].abs()
 
     def outputs(x):
         with torch.inference_mode():
@@ -50,19 +46,10 @@ def main():
         (gx,) = torch.autograd.grad(network(x)[:, -1].sum(), x)
         return gx
 
-    def train(x):
-        optimiser.zero_grad()
-        loss = paper_loss(network(x), labels[: len(x)], targets[: len(x)])
-        loss.backward()
-        optimiser.step()
-        return loss.detach()
-
-    acts = {"V": outputs, "V+grad": gradient, "train": train}
+    acts = {"V": outputs, "V+grad": gradient}
     print(torch.__version__, flush=True)
     for line in sys.stdin:
         what, batch, calls = line.split()
-        for parameter in parameters:  # as PyTorch's users do who do not train
-            parameter.requires_grad_(what == "train")
         x = samples[: int(batch)]
         wall, cpu = time.perf_counter(), time.process_time()
         for _ in range(int(calls)):

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench/options.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,13 +35,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->repeats = (int)app_argument_integer(state, "repeat", text, 1, APP_BENCH_MAX_REPEATS);
     return 0;
   case 'j':
-    options->format = APP_BENCH_FORMAT_JSON;
+    options->format = APP_TABLE_JSON;
     return 0;
   case 'c':
-    options->format = APP_BENCH_FORMAT_CSV;
+    options->format = APP_TABLE_CSV;
     return 0;
   case 'M':
-    options->format = APP_BENCH_FORMAT_MARKDOWN;
+    options->format = APP_TABLE_MARKDOWN;
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -77,36 +76,15 @@ void app_bench_options_choose(struct argp_state *state, const char *option, char
   }
 }
 
-int app_bench_options_choose_one(struct argp_state *state, const char *option, char *text,
-                                 const char *const *names, int count) {
-  enum { MOST_NAMES = 64 };
-  bool wanted[MOST_NAMES];
-  int chosen = 0, given = 0;
-  assert(count <= MOST_NAMES);
-  app_bench_options_choose(state, option, text, names, count, wanted);
-  for (int i = 0; i < count; i++)
-    if (wanted[i]) chosen = i, given++;
-  if (given != 1) argp_error(state, "--%s takes one name", option);
-  return chosen;
-}
-
-int app_bench_options_numbers(struct argp_state *state, const char *option, char *text, double smallest,
-                              double largest, double *numbers) {
-  const char *words[APP_BENCH_MAX_LIST];
-  int count = app_argument_list(state, option, text, "1,2", APP_BENCH_MAX_LIST, words);
-  for (int w = 0; w < count; w++)
-    numbers[w] = app_argument_number(state, option, words[w], smallest, largest);
-  return count;
-}
-
 int app_bench_options_counts(struct argp_state *state, const char *option, char *text, int largest,
                              int *counts) {
-  double numbers[APP_BENCH_MAX_LIST];
-  int count = app_bench_options_numbers(state, option, text, 1, largest, numbers);
-  for (int i = 0; i < count; i++) {
-    if (numbers[i] != floor(numbers[i]))
-      argp_error(state, "--%s has %g; give whole numbers from 1 to %d", option, numbers[i], largest);
-    counts[i] = (int)numbers[i];
+  const char *words[APP_BENCH_MAX_LIST];
+  int count = app_argument_list(state, option, text, "1,2", APP_BENCH_MAX_LIST, words);
+  for (int w = 0; w < count; w++) {
+    double number = app_argument_number(state, option, words[w], 1, largest);
+    if (number != floor(number))
+      argp_error(state, "--%s has %g; give whole numbers from 1 to %d", option, number, largest);
+    counts[w] = (int)number;
   }
   return count;
 }

@@ -6,14 +6,9 @@
 #include <argp.h>
 #include <stdbool.h>
 
-enum { APP_BENCH_MAX_REPEATS = 1000, APP_BENCH_MAX_LIST = 16 };
+#include "app/table/table.h"
 
-typedef enum AppBenchFormat {
-  APP_BENCH_FORMAT_TABLE,
-  APP_BENCH_FORMAT_JSON,
-  APP_BENCH_FORMAT_CSV,
-  APP_BENCH_FORMAT_MARKDOWN,
-} AppBenchFormat;
+enum { APP_BENCH_MAX_REPEATS = 1000, APP_BENCH_MAX_LIST = 16 };
 
 typedef struct AppBenchOptions {
   int threads;            // of OpenMP and the solvers; the first, where a bench takes a list of them
@@ -21,7 +16,7 @@ typedef struct AppBenchOptions {
   bool takes_thread_list; // the bench measures several numbers of threads
   int thread_list[APP_BENCH_MAX_LIST]; // (thread_list_count)
   int thread_list_count;
-  AppBenchFormat format;
+  AppTableFormat format;
   const struct AppBenchReport *report; // of the bench (app/bench/command.h)
 } AppBenchOptions;
 
@@ -36,15 +31,9 @@ extern const struct argp app_bench_options_argp;
 // Marks each name of a comma-separated list in `wanted` (count), the others not.
 void app_bench_options_choose(struct argp_state *state, const char *option, char *text,
                               const char *const *names, int count, bool *wanted);
-// The place of the one name that is given, of `names` (count).
-int app_bench_options_choose_one(struct argp_state *state, const char *option, char *text,
-                                 const char *const *names, int count);
 // Fills `counts` (APP_BENCH_MAX_LIST) with whole numbers from 1 from a comma-separated list; returns how
 // many. 1e6 is one.
 int app_bench_options_counts(struct argp_state *state, const char *option, char *text, int largest,
                              int *counts);
-// The same of any numbers.
-int app_bench_options_numbers(struct argp_state *state, const char *option, char *text, double smallest,
-                              double largest, double *numbers);
 
 #endif

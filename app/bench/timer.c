@@ -56,19 +56,10 @@ AppBenchRatio app_bench_timer_cpu_ratio(const AppBenchTimer *timer, const AppBen
   return ratio_of(timer->cpu, reference->cpu, rounds);
 }
 
-int app_bench_timer_median_round(const AppBenchTimer *timer, int rounds) {
-  double sorted[APP_BENCH_MAX_REPEATS];
-  sort(timer->wall, rounds, sorted);
-  int round = 0;
-  while (timer->wall[round] != sorted[(rounds - 1) / 2]) round++;
-  return round;
-}
-
-Status app_bench_timer_take_turns(void *contestants, size_t size, int count, int rounds, bool is_warmed,
-                                  AppBenchAct *act) {
+Status app_bench_timer_take_turns(void *contestants, size_t size, int count, int rounds, AppBenchAct *act) {
   char *first = contestants;
   Status status = STATUS_OK;
-  for (int c = 0; c < count && is_warmed && status == STATUS_OK; c++) {
+  for (int c = 0; c < count && status == STATUS_OK; c++) {
     log_progress("warm-up %d of %d", c + 1, count);
     status = act(first + (size_t)c * size, 0);
   }

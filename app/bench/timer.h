@@ -35,14 +35,11 @@ AppBenchRatio app_bench_timer_ratio(const AppBenchTimer *timer, const AppBenchTi
 // The same of processor times.
 AppBenchRatio app_bench_timer_cpu_ratio(const AppBenchTimer *timer, const AppBenchTimer *reference,
                                         int rounds);
-// The round whose wall time is the median (the lower of the two middle ones).
-int app_bench_timer_median_round(const AppBenchTimer *timer, int rounds);
 
 // Does a contestant's part of a round. A warm-up is round 0, done once more afterwards.
 typedef Status AppBenchAct(void *contestant, int round);
 
-// Lets `count` contestants, elements of `size` bytes, take turns, after a warm-up of each if `is_warmed`.
-Status app_bench_timer_take_turns(void *contestants, size_t size, int count, int rounds, bool is_warmed,
-                                  AppBenchAct *act);
+// Lets `count` contestants, elements of `size` bytes, take turns, after a warm-up of each.
+Status app_bench_timer_take_turns(void *contestants, size_t size, int count, int rounds, AppBenchAct *act);
 
 #endif

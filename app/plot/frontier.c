@@ -254,7 +254,7 @@ static Status collect(Frontier *frontier, const Record *pareto, const char *quan
   int count = record_count(rows);
   for (int k = 0; k < count; k++) TRY(add_point(frontier, record_at(rows, k), quantities, count));
   if (frontier->panel_count == 0)
-    return status_fail(STATUS_INPUT, "holds no point%s to plot; expected the pareto.json of `tetlap-lab pareto`",
+    return status_fail(STATUS_INPUT, "holds no point%s to plot; expected the pareto.json of tools/measure/frontier",
                        quantities ? " of these quantities" : "");
   for (int p = 0; p < frontier->panel_count; p++) {
     Panel *panel = &frontier->panels[p];

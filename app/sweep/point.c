@@ -19,7 +19,7 @@
 #include "fem/run/checkpoint/checkpoint.h"
 
 int app_sweep_point_count(const AppSweepBase *base) {
-  int count = 1;
+  int count = base->repeat_count;
   for (int a = 0; a < base->axis_count && count <= APP_SWEEP_MAX_POINTS; a++)
     count *= base->axes[a].value_count;
   return count;
@@ -37,6 +37,11 @@ static void name_folder(AppSweepPoint *point, const AppSweepBase *base) {
     text_append(whole, sizeof whole, &used, "%s%s=%s", a ? "," : "", axis->key,
                 axis->values[point->values[a]]);
     digest = digest_bytes(digest, point->settings[a], strlen(point->settings[a]) + 1);
+  }
+  if (base->axis_count == 0) text_append(whole, sizeof whole, &used, "run");
+  if (point->repeat > 0) {
+    text_append(whole, sizeof whole, &used, ",repeat=%d", point->repeat + 1);
+    digest = digest_bytes(digest, &point->repeat, sizeof point->repeat);
   }
   bool is_plain = used < ROOM;
   size_t length = is_plain ? used : ROOM;
@@ -62,6 +67,7 @@ Status app_sweep_point_create(AppSweepPoint *point, const AppSweepBase *base, in
     if (!point->settings[a]) return status_no_memory("the points of a sweep");
     snprintf(point->settings[a], size, "%s=%s", axis->key, value);
   }
+  point->repeat = index;
   name_folder(point, base);
   point->directory = file_join(base->directory, point->folder);
   return point->directory ? STATUS_OK : status_no_memory("the points of a sweep");

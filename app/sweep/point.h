@@ -12,7 +12,12 @@
 
 #define APP_SWEEP_LOG "log.txt" // in a point's folder: what its processes print, one after another
 
-enum { APP_SWEEP_MAX_AXES = 8, APP_SWEEP_MAX_POINTS = 10000, APP_SWEEP_FOLDER = 128 };
+enum {
+  APP_SWEEP_MAX_AXES = 8,
+  APP_SWEEP_MAX_POINTS = 10000,
+  APP_SWEEP_FOLDER = 128,
+  APP_SWEEP_MAX_REPEATS = 100
+};
 
 // What all points share; all borrowed but the axes, which belong to the sweep.
 typedef struct AppSweepBase {
@@ -22,6 +27,7 @@ typedef struct AppSweepBase {
   int override_count;
   AppSweepAxis axes[APP_SWEEP_MAX_AXES];
   int axis_count;
+  int repeat_count; // runs of each combination of values, for times
 } AppSweepBase;
 
 typedef enum AppSweepState {
@@ -35,6 +41,7 @@ typedef enum AppSweepState {
 typedef struct AppSweepPoint {
   int values[APP_SWEEP_MAX_AXES];     // of each axis, by number
   char *settings[APP_SWEEP_MAX_AXES]; // "key=value" (axis_count), owned
+  int repeat;                         // which run of its values, from 0
   char folder[APP_SWEEP_FOLDER];      // below the sweep's: its values
   char *directory;                    // owned
   AppSweepState state;
@@ -47,7 +54,7 @@ typedef struct AppSweepPoint {
 
 int app_sweep_point_count(const AppSweepBase *base); // of the grid; more than MAX_POINTS: too many
 
-// Point `index` of the grid, the last axis fastest.
+// Point `index` of the grid, the last axis fastest, repeats slowest: so repeats take turns.
 Status app_sweep_point_create(AppSweepPoint *point, const AppSweepBase *base, int index);
 void app_sweep_point_destroy(AppSweepPoint *point);
 

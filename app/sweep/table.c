@@ -11,28 +11,42 @@
 #include "base/memory.h"
 #include "base/text.h"
 
-// The numbers of a row: where they stand in summary.json, and what they are called.
+// The numbers of a row: where they stand in summary.json, what they are called, and above their column of the
+// terminal's table (NULL: there is none).
 static const struct Column {
   const char *section, *key; // section NULL: at its top
-  const char *name;
+  const char *name, *head;
 } columns[] = {
-    {NULL, "end_time", "end_time_s"},
-    {NULL, "wall_s", "wall_s"},
-    {NULL, "cpu_s", "cpu_s"},
-    {NULL, "unknowns", "unknowns"},
-    {NULL, "steps", "steps"},
-    {"counters", "newton_iterations", "newton_iterations"},
-    {"counters", "newton_failures", "newton_failures"},
-    {"counters", "energy_retries", "energy_retries"},
-    {NULL, "contact_force_max", "contact_force_max_N"},
-    {NULL, "contact_force_last", "contact_force_last_N"},
-    {NULL, "pairs_max", "pairs_max"},
-    {NULL, "overlap_volume_max", "overlap_volume_max_m3"},
-    {NULL, "deepest_overlap_max", "deepest_overlap_max"},
-    {NULL, "energy_gain_relative", "energy_gain_relative"},
-    {NULL, "energy_lost_J", "energy_lost_J"},
-    {NULL, "min_det_F", "min_det_F"},
-    {NULL, "peak_rss_bytes", "peak_rss_bytes"},
+    {NULL, "end_time", "end_time_s", NULL},
+    {NULL, "wall_s", "wall_s", "wall s"},
+    {NULL, "cpu_s", "cpu_s", "cpu s"},
+    {NULL, "unknowns", "unknowns", NULL},
+    {NULL, "steps", "steps", "steps"},
+    {"counters", "newton_iterations", "newton_iterations", "Newton"},
+    {"counters", "newton_failures", "newton_failures", NULL},
+    {"counters", "energy_retries", "energy_retries", NULL},
+    {"counters", "factorisations", "factorisations", NULL},
+    {"counters", "linear_solves", "linear_solves", NULL},
+    {"counters", "linear_iterations", "linear_iterations", NULL},
+    {"phases", "broad_phase", "broad_phase_s", NULL},
+    {"phases", "overlap", "overlap_s", NULL},
+    {"phases", "contact", "contact_s", NULL},
+    {"phases", "forces", "forces_s", NULL},
+    {"phases", "assembly", "assembly_s", NULL},
+    {"phases", "analysis", "analysis_s", NULL},
+    {"phases", "factorisation", "factorisation_s", NULL},
+    {"phases", "solve", "solve_s", NULL},
+    {"phases", "output", "output_s", NULL},
+    {"phases", "other", "other_s", NULL},
+    {NULL, "contact_force_max", "contact_force_max_N", "force N"},
+    {NULL, "contact_force_last", "contact_force_last_N", NULL},
+    {NULL, "pairs_max", "pairs_max", NULL},
+    {NULL, "overlap_volume_max", "overlap_volume_max_m3", NULL},
+    {NULL, "deepest_overlap_max", "deepest_overlap_max", "deepest"},
+    {NULL, "energy_gain_relative", "energy_gain_relative", "gain"},
+    {NULL, "energy_lost_J", "energy_lost_J", NULL},
+    {NULL, "min_det_F", "min_det_F", NULL},
+    {NULL, "peak_rss_bytes", "peak_rss_bytes", NULL},
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
@@ -119,6 +133,7 @@ static void record_point(const AppSweepGrid *grid, const AppSweepPoint *point, R
   for (int a = 0; a < grid->base.axis_count; a++)
     record_setting(set, grid->base.axes[a].key, value_text(grid, point, a),
                    grid->base.axes[a].labels != NULL);
+  if (grid->base.repeat_count > 1) record_integer(row, "repeat", point->repeat + 1);
   record_text(row, "outcome", outcome_of(point));
   if (!has_ended(point)) return;
   record_integer(row, "exit_code", point->exit_code);
@@ -136,8 +151,8 @@ static void record_history(const AppSweepPoint *point, Record *row) {
   record_numbers(course, "force_N", history->force, history->count);
 }
 
-// With the courses of the first `history_count` runs.
-static Record *make_record(const AppSweepGrid *grid, int history_count) {
+// The first `count` runs, with the courses of the first `history_count`.
+static Record *make_record(const AppSweepGrid *grid, int count, int history_count) {
   Record *record = record_new();
   if (!record) return NULL;
   record_text(record, "format", FORMAT);
@@ -146,7 +161,7 @@ static Record *make_record(const AppSweepGrid *grid, int history_count) {
   app_versions_record(record_child(record, "versions"));
   record_axes(grid, record);
   RecordList *runs = record_list(record, "runs");
-  for (int p = 0; p < grid->point_count; p++) {
+  for (int p = 0; p < count; p++) {
     Record *row = record_append(runs);
     record_point(grid, &grid->points[p], row);
     if (p < history_count) record_history(&grid->points[p], row);
@@ -155,59 +170,105 @@ static Record *make_record(const AppSweepGrid *grid, int history_count) {
 }
 
 Record *app_sweep_table_record(const AppSweepGrid *grid) {
-  return make_record(grid, 0);
+  return make_record(grid, grid->point_count, 0);
 }
 
-// In double quotes where a comma, a quote or a line's end stands in it (RFC 4180).
-static void print_text(const char *text, FILE *stream) {
-  if (!strpbrk(text, ",\"\n")) {
-    fputs(text, stream);
-    return;
-  }
-  fputc('"', stream);
-  for (; *text; text++) {
-    if (*text == '"') fputc('"', stream);
-    fputc(*text, stream);
-  }
-  fputc('"', stream);
+// A table whose columns are the axes and what comes out: its rows are cells, each a text or a number.
+typedef union Cell {
+  const char *text;
+  double number;
+} Cell;
+
+typedef struct Cells {
+  AppTableColumn *columns; // (most), owned
+  Cell *cells;             // (row_count, most), owned
+  int most, column_count, row_count;
+} Cells;
+
+static void cells_destroy(Cells *cells) {
+  memory_free(cells->columns), memory_free(cells->cells);
 }
 
-static void print_csv_row(const AppSweepGrid *grid, const AppSweepPoint *point, FILE *stream) {
-  print_text(point->folder, stream);
+static Status cells_create(Cells *cells, const AppSweepGrid *grid, int row_count) {
+  int most = grid->base.axis_count + COLUMN_COUNT + 5;
+  *cells = (Cells){.columns = memory_zeroed((size_t)most, sizeof *cells->columns),
+                   .cells = memory_zeroed((size_t)row_count * (size_t)most, sizeof *cells->cells),
+                   .most = most,
+                   .row_count = row_count};
+  return cells->columns && cells->cells ? STATUS_OK : status_no_memory("the table of a sweep");
+}
+
+// The first cell of a new column; the next row's is `most` further.
+static Cell *add_column(Cells *cells, const char *key, AppTableKind kind, const char *head) {
+  int column = cells->column_count++;
+  cells->columns[column] =
+      (AppTableColumn){.key = key, .kind = kind, .offset = (size_t)column * sizeof(Cell), .head = head};
+  return cells->cells + column;
+}
+
+static Status print_cells(const Cells *cells, AppTableFormat format, FILE *stream) {
+  const AppTablePart part = {cells->columns, cells->column_count, cells->cells,
+                             (size_t)cells->most * sizeof(Cell)};
+  return app_table_print(&(AppTable){&part, 1, cells->row_count}, format, stream);
+}
+
+// What a row is called: by its folder, or, where a folder's name cannot say it, by names of models.
+static void name_row(const AppSweepGrid *grid, const AppSweepPoint *point, char *text, size_t size) {
+  size_t used = 0;
+  bool has_names = false;
   for (int a = 0; a < grid->base.axis_count; a++) {
-    fputc(',', stream);
-    print_text(value_text(grid, point, a), stream);
+    const AppSweepAxis *axis = &grid->base.axes[a];
+    text_append(text, size, &used, "%s%s=%s", a ? "," : "", axis->key, value_text(grid, point, a));
+    has_names = has_names || axis->labels;
   }
-  fprintf(stream, ",%s", outcome_of(point));
+  if (!has_names) snprintf(text, size, "%s", point->folder);
+}
+
+static void fill_csv(const AppSweepGrid *grid, Cells *cells) {
+  const AppSweepPoint *points = grid->points;
+  int n = cells->row_count, most = cells->most;
+  Cell *cell = add_column(cells, "folder", APP_TABLE_TEXT, NULL);
+  for (int p = 0; p < n; p++) cell[p * most].text = points[p].folder;
+  for (int a = 0; a < grid->base.axis_count; a++) {
+    cell = add_column(cells, grid->base.axes[a].key, APP_TABLE_TEXT, NULL);
+    for (int p = 0; p < n; p++) cell[p * most].text = value_text(grid, &points[p], a);
+  }
+  if (grid->base.repeat_count > 1) {
+    cell = add_column(cells, "repeat", APP_TABLE_NUMBER, NULL);
+    for (int p = 0; p < n; p++) cell[p * most].number = points[p].repeat + 1;
+  }
+  cell = add_column(cells, "outcome", APP_TABLE_TEXT, NULL);
+  for (int p = 0; p < n; p++) cell[p * most].text = outcome_of(&points[p]);
   for (int c = 0; c < COLUMN_COUNT; c++) {
-    double value = value_of(point, &columns[c]);
-    fputc(',', stream);
-    if (isfinite(value)) fprintf(stream, "%.17g", value);
+    cell = add_column(cells, columns[c].name, APP_TABLE_NUMBER, NULL);
+    for (int p = 0; p < n; p++) cell[p * most].number = value_of(&points[p], &columns[c]);
   }
-  fputc(',', stream);
-  print_text(point->message, stream);
-  fputc('\n', stream);
+  cell = add_column(cells, "message", APP_TABLE_TEXT, NULL);
+  for (int p = 0; p < n; p++) cell[p * most].text = points[p].message;
 }
 
 static Status write_csv(const AppSweepGrid *grid, const char *path) {
+  Cells cells;
   FileWriter writer;
-  TRY(file_begin(&writer, path));
-  fputs("folder", writer.stream);
-  for (int a = 0; a < grid->base.axis_count; a++) {
-    fputc(',', writer.stream);
-    print_text(grid->base.axes[a].key, writer.stream);
+  Status status = cells_create(&cells, grid, grid->point_count);
+  if (!status) fill_csv(grid, &cells);
+  if (!status) status = file_begin(&writer, path);
+  if (!status) {
+    status = print_cells(&cells, APP_TABLE_CSV, writer.stream);
+    if (status)
+      file_abandon(&writer);
+    else
+      status = file_commit(&writer);
   }
-  fputs(",outcome", writer.stream);
-  for (int c = 0; c < COLUMN_COUNT; c++) fprintf(writer.stream, ",%s", columns[c].name);
-  fputs(",message\n", writer.stream);
-  for (int p = 0; p < grid->point_count; p++) print_csv_row(grid, &grid->points[p], writer.stream);
-  return file_commit(&writer);
+  cells_destroy(&cells);
+  return status;
 }
 
-// With courses of forces: of so many runs as one can tell apart at most.
+// Without repeated runs; with courses of forces, of so many runs as one can tell apart at most.
 static Status write_page(const AppSweepGrid *grid, const char *path) {
   enum { MOST_HISTORIES = 200 };
-  AppReport report = {.sweep = make_record(grid, MOST_HISTORIES)};
+  AppReport report = {.sweep =
+                          make_record(grid, grid->point_count / grid->base.repeat_count, MOST_HISTORIES)};
   if (!report.sweep) return status_no_memory("the page of a sweep");
   Status status = app_report_write(&report, path);
   app_report_destroy(&report);
@@ -230,37 +291,60 @@ Status app_sweep_table_write(const AppSweepGrid *grid) {
   return status;
 }
 
-// What a row is called: by its folder, or, where a folder's name cannot say it, by names of models.
-static void name_row(const AppSweepGrid *grid, const AppSweepPoint *point, char *text, size_t size) {
-  size_t used = 0;
-  bool has_names = false;
-  for (int a = 0; a < grid->base.axis_count; a++) {
-    const AppSweepAxis *axis = &grid->base.axes[a];
-    text_append(text, size, &used, "%s%s=%s", a ? "," : "", axis->key, value_text(grid, point, a));
-    has_names = has_names || axis->labels;
-  }
-  if (!has_names) snprintf(text, size, "%s", point->folder);
+static int compare(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
 }
 
-void app_sweep_table_print(const AppSweepGrid *grid, FILE *stream) {
-  int width = (int)strlen("run");
-  char name[1024];
-  for (int p = 0; p < grid->point_count; p++) {
-    name_row(grid, &grid->points[p], name, sizeof name);
-    if ((int)strlen(name) > width) width = (int)strlen(name);
+// The median of a column over the runs of one combination of values, and how far they are apart over it.
+static double median_of(const AppSweepGrid *grid, int row, const struct Column *column, double *spread) {
+  double values[APP_SWEEP_MAX_REPEATS];
+  int count = 0, rows = grid->point_count / grid->base.repeat_count;
+  for (int p = row; p < grid->point_count; p += rows) {
+    double value = value_of(&grid->points[p], column);
+    if (isfinite(value)) values[count++] = value;
   }
-  fprintf(stream, "%-*s  %-11s  %8s  %7s  %9s  %9s  %9s\n", width, "run", "outcome", "wall s", "steps",
-          "force N", "deepest", "gain");
-  for (int p = 0; p < grid->point_count; p++) {
-    const AppSweepPoint *point = &grid->points[p];
-    name_row(grid, point, name, sizeof name);
-    fprintf(stream, "%-*s  %-11s", width, name, outcome_of(point));
-    if (point->summary)
-      fprintf(stream, "  %8.3g  %7.0f  %9.3g  %9.3g  %9.1e", record_find_number(point->summary, "wall_s"),
-              record_find_number(point->summary, "steps"),
-              record_find_number(point->summary, "contact_force_max"),
-              record_find_number(point->summary, "deepest_overlap_max"),
-              record_find_number(point->summary, "energy_gain_relative"));
-    fprintf(stream, "%s%s\n", point->message[0] ? "  " : "", point->message);
+  *spread = NAN;
+  if (count == 0) return NAN;
+  qsort(values, (size_t)count, sizeof *values, compare);
+  double median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+  if (count > 1) *spread = (values[count - 1] - values[0]) / median;
+  return median;
+}
+
+static void fill_table(const AppSweepGrid *grid, char (*names)[1024], Cells *cells) {
+  int n = cells->row_count, most = cells->most;
+  Cell *cell = add_column(cells, "run", APP_TABLE_TEXT, "run");
+  for (int p = 0; p < n; p++) {
+    name_row(grid, &grid->points[p], names[p], sizeof names[p]);
+    cell[p * most].text = names[p];
   }
+  cell = add_column(cells, "outcome", APP_TABLE_TEXT, "outcome");
+  for (int p = 0; p < n; p++) cell[p * most].text = outcome_of(&grid->points[p]);
+  for (int c = 0; c < COLUMN_COUNT; c++) {
+    double spread;
+    if (!columns[c].head) continue;
+    cell = add_column(cells, columns[c].name, APP_TABLE_NUMBER, columns[c].head);
+    for (int p = 0; p < n; p++) cell[p * most].number = median_of(grid, p, &columns[c], &spread);
+    if (grid->base.repeat_count == 1 || strcmp(columns[c].name, "cpu_s") != 0) continue;
+    cell = add_column(cells, "cpu_s_spread", APP_TABLE_NUMBER, "spread");
+    for (int p = 0; p < n; p++) median_of(grid, p, &columns[c], &cell[p * most].number);
+  }
+  cell = add_column(cells, "message", APP_TABLE_TEXT, "");
+  for (int p = 0; p < n; p++) cell[p * most].text = grid->points[p].message;
+}
+
+Status app_sweep_table_print(const AppSweepGrid *grid, AppTableFormat format, FILE *stream) {
+  Cells cells;
+  int rows = grid->point_count / grid->base.repeat_count;
+  char(*names)[1024] = memory_zeroed((size_t)rows, sizeof *names);
+  Status status = cells_create(&cells, grid, rows);
+  if (!names) status = status_no_memory("the table of a sweep");
+  if (!status) {
+    fill_table(grid, names, &cells);
+    status = print_cells(&cells, format, stream);
+  }
+  cells_destroy(&cells);
+  memory_free(names);
+  return status;
 }

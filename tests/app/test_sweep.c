@@ -102,6 +102,12 @@ static const char *outcome_of(const Record *table, int k) {
   return record_find_text(record_at(record_find(table, "runs"), k), "outcome");
 }
 
+static int lines_of(const char *text) {
+  int lines = 0;
+  for (; *text; text++) lines += *text == '\n';
+  return lines;
+}
+
 // A value that a scene cannot have fails alone.
 START_TEST(runs_are_rows_and_one_that_fails_is_a_row_too) {
   const char *grid = "-s time.end=0.02 -V bodies[0].material.poisson=0.3,0.7 -V contact.stiffness=1e5,1e6";
@@ -129,14 +135,39 @@ START_TEST(runs_are_rows_and_one_that_fails_is_a_row_too) {
   memory_free(json);
 
   char *csv = read_text("out/sweep.csv");
-  int lines = 0;
-  for (const char *at = csv; *at; at++) lines += *at == '\n';
-  ck_assert_int_eq(lines, 5);
+  ck_assert_int_eq(lines_of(csv), 5);
   ck_assert_ptr_nonnull(strstr(csv, "folder,bodies[0].material.poisson,contact.stiffness,outcome,"));
   memory_free(csv);
   char *page = read_text("out/sweep.html");
   ck_assert_ptr_nonnull(strstr(page, "tetlap-sweep 1"));
   memory_free(page);
+}
+END_TEST
+
+// In turns: all values once, then all again. Every run is a row of the files, every combination one of the
+// terminal.
+START_TEST(repeated_runs_are_rows_and_their_medians_a_table) {
+  ck_assert_int_eq(sweep("-r 3 -J 1 -s time.end=0.01 -V contact.stiffness=1e5,1e6 --markdown -q"), 0);
+  Record *table = read_table();
+  const Record *runs = record_find(table, "runs");
+  ck_assert_int_eq(record_count(runs), 6);
+  for (int k = 0; k < 6; k++) {
+    const Record *row = record_at(runs, k);
+    ck_assert_near(record_find_number(row, "repeat"), k / 2 + 1, 0);
+    ck_assert_near(record_find_number(record_find(row, "set"), "contact.stiffness"), k % 2 ? 1e6 : 1e5, 0);
+    ck_assert_near(record_find_number(row, "steps"), record_find_number(record_at(runs, k % 2), "steps"), 0);
+    ck_assert_double_gt(record_find_number(row, "factorisation_s"), 0);
+  }
+  record_destroy(table);
+  char *csv = read_text("out/sweep.csv"), *said = read_text("said");
+  ck_assert_ptr_nonnull(strstr(csv, "folder,contact.stiffness,repeat,outcome,"));
+  ck_assert_int_eq(lines_of(csv), 7);
+  ck_assert_msg(lines_of(said) == 4 && strstr(said, "| spread |"), "%s", said); // heads, rule, two rows
+  memory_free(csv), memory_free(said);
+  ck_assert_int_eq(sweep("-r 2 -s time.end=0.01"), 0); // nothing varies
+  table = read_table();
+  ck_assert_int_eq(record_count(record_find(table, "runs")), 2);
+  record_destroy(table);
 }
 END_TEST
 
@@ -377,6 +408,7 @@ int main(void) {
   tcase_add_test(cases, ranges_have_both_ends_and_lists_their_words);
   tcase_add_test(cases, an_axis_that_makes_no_sense_is_a_usage_error);
   tcase_add_test(cases, runs_are_rows_and_one_that_fails_is_a_row_too);
+  tcase_add_test(cases, repeated_runs_are_rows_and_their_medians_a_table);
   tcase_add_test(cases, what_is_finished_is_kept_and_what_has_changed_runs_again);
   tcase_add_test(cases, a_changed_mesh_or_changed_weights_run_again);
   tcase_add_test(cases, other_keys_have_other_folders);

@@ -8,24 +8,26 @@
 
 #include "app/bench/command.h"
 #include "app/bench/contestant.h"
-#include "app/bench/models.h"
+#include "app/bench/overlap/errors.h"
 #include "app/bench/overlap/pairs.h"
-#include "app/bench/peak.h"
 #include "app/bench/report.h"
+#include "app/cli/argument.h"
 #include "app/cli/model_names.h"
 #include "app/evaluation/card.h"
 #include "app/evaluation/model.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 typedef enum Quantity { VOLUME, CENTROID, GRADIENT, HESSIAN, QUANTITY_COUNT } Quantity;
 static const char *const quantities[QUANTITY_COUNT] = {"V", "V+centroid", "V+grad", "V+grad+hess"};
 
+enum { MAX_MODELS = 64, MOST_ERRORS = 20000 }; // pairs that errors are taken over
 static const uint64_t SEED = 1;
 
 typedef struct Options {
   AppBenchOptions common;
-  const char *models[APP_BENCH_MAX_MODELS]; // names and weights files (model_count)
+  const char *models[MAX_MODELS]; // names and weights files (model_count)
   int model_count;
   bool wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
   int batches[APP_BENCH_MAX_LIST], batch_count;
@@ -39,6 +41,37 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
+static int list_models(const char *names[MAX_MODELS]) {
+  int count;
+  const OverlapOps *const *models = overlap_model_list(&count);
+  for (int m = 0; m < count; m++) names[m] = models[m]->name;
+  return count;
+}
+
+static bool is_source(const char *word, const char *const *names, int count) {
+  static const char HYBRID[] = "hybrid=";
+  char path[PATH_MAX];
+  if (app_model_names_locate(word, path)) return true;
+  if (strncmp(word, HYBRID, strlen(HYBRID)) == 0) word += strlen(HYBRID);
+  for (int m = 0; m < count; m++)
+    if (strcmp(names[m], word) == 0) return true;
+  return false;
+}
+
+// Names of models, weights files, and `hybrid=` with one of both.
+static void read_models(struct argp_state *state, char *text, Options *options) {
+  const char *names[MAX_MODELS];
+  char known[256] = "";
+  size_t used = 0;
+  int count = list_models(names);
+  for (int m = 0; m < count; m++) text_append(known, sizeof known, &used, "%s%s", m ? ", " : "", names[m]);
+  options->model_count = app_argument_list(state, "model", text, names[0], MAX_MODELS, options->models);
+  for (int m = 0; m < options->model_count; m++)
+    if (!is_source(options->models[m], names, count))
+      argp_error(state, "--model has '%s'; give some of: %s; or weights files (….safetensors)",
+                 options->models[m], known);
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   switch (key) {
@@ -46,7 +79,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[0] = &options->common;
     return 0;
   case 'm':
-    options->model_count = app_bench_models_read(state, "model", text, options->models);
+    read_models(state, text, options);
     return 0;
   case 's':
     app_bench_options_choose(state, "set", text, app_bench_sets, APP_BENCH_SET_COUNT, options->wants_set);
@@ -70,10 +103,11 @@ typedef struct Case {
 typedef struct Bench {
   const Options *options;
   int model_count;
-  AppModelName names[APP_BENCH_MAX_MODELS];
-  OverlapModel models[APP_BENCH_MAX_MODELS]; // owned; ops NULL: not to be had
-  AppModelCard cards[APP_BENCH_MAX_MODELS];
+  AppModelName names[MAX_MODELS];
+  OverlapModel models[MAX_MODELS]; // owned; ops NULL: not to be had
+  AppModelCard cards[MAX_MODELS];
   double *pairs[APP_BENCH_SET_COUNT]; // (largest batch, 24), owned; NULL: not wanted
+  AppBenchTruth truths[APP_BENCH_SET_COUNT];
   double *volume, *centroid, *gradient, *hessian;
   AppBenchContestant *contestants;
   Case *cases; // of the contestants
@@ -154,7 +188,7 @@ static Status make_inputs(Bench *bench) {
   const Options *options = bench->options;
   int most = largest_of(options->batches, options->batch_count);
   size_t batch = (size_t)most, pair = OVERLAP_PAIR_SIZE;
-  bench->capacity = APP_BENCH_SET_COUNT * QUANTITY_COUNT * APP_BENCH_MAX_MODELS * options->batch_count *
+  bench->capacity = APP_BENCH_SET_COUNT * QUANTITY_COUNT * MAX_MODELS * options->batch_count *
                     options->common.thread_list_count;
   bench->contestants = memory_zeroed((size_t)bench->capacity, sizeof *bench->contestants);
   bench->cases = memory_zeroed((size_t)bench->capacity, sizeof *bench->cases);
@@ -171,45 +205,55 @@ static Status make_inputs(Bench *bench) {
     if (!(bench->pairs[set] = memory_zeroed(batch * pair, sizeof *bench->pairs[set])))
       return status_no_memory("the batch (--batch)");
     TRY(app_bench_pairs_fill(app_bench_sets[set], most, SEED, bench->pairs[set]));
+    TRY(app_bench_truth_create(&bench->truths[set], most < MOST_ERRORS ? most : MOST_ERRORS,
+                               bench->pairs[set]));
   }
   return STATUS_OK;
 }
 
 typedef struct Row {
-  const char *model, *set, *quantity, *reference;
-  long long batch, threads;
+  const char *model, *family, *set, *quantity, *reference;
+  long long batch, threads, parameters, frontier;
   double rate, cpu_rate, rate_min, rate_max; // pairs a second
   double spread;
   double ratio, ratio_min, ratio_max, cpu_ratio; // speed over the reference's
   double thread_gain;                            // speed over that on the first number of threads
-  double flops, share;
+  AppBenchErrors errors;
 } Row;
 
-static const AppBenchColumn columns[] = {
-    {"model", APP_BENCH_TEXT, offsetof(Row, model), "model", "overlap model"},
-    {"set", APP_BENCH_TEXT, offsetof(Row, set), "set", "set of pairs: near, uniform, disjoint"},
-    {"quantity", APP_BENCH_TEXT, offsetof(Row, quantity), "quantity", "V, V+centroid, V+grad or V+grad+hess"},
-    {"batch", APP_BENCH_INTEGER, offsetof(Row, batch), "batch", "pairs a call"},
-    {"threads", APP_BENCH_INTEGER, offsetof(Row, threads), "threads", "threads"},
-    {"pairs_per_second", APP_BENCH_NUMBER, offsetof(Row, rate), "pairs/s", "of wall time"},
-    {"pairs_per_cpu_second", APP_BENCH_NUMBER, offsetof(Row, cpu_rate), "pairs/cpu s", "of processor time"},
-    {"pairs_per_second_min", APP_BENCH_NUMBER, offsetof(Row, rate_min), NULL, "slowest round"},
-    {"pairs_per_second_max", APP_BENCH_NUMBER, offsetof(Row, rate_max), NULL, "fastest round"},
-    {"spread", APP_BENCH_NUMBER, offsetof(Row, spread), "spread", "(max − min) / median"},
-    {"ratio", APP_BENCH_NUMBER, offsetof(Row, ratio), "ratio",
+static const AppTableColumn columns[] = {
+    {"model", APP_TABLE_TEXT, offsetof(Row, model), "model", "overlap model"},
+    {"set", APP_TABLE_TEXT, offsetof(Row, set), "set", "set of pairs: near, uniform, disjoint"},
+    {"quantity", APP_TABLE_TEXT, offsetof(Row, quantity), "quantity", "V, V+centroid, V+grad or V+grad+hess"},
+    {"batch", APP_TABLE_INTEGER, offsetof(Row, batch), "batch", "pairs a call"},
+    {"threads", APP_TABLE_INTEGER, offsetof(Row, threads), "threads", "threads"},
+    {"pairs_per_second", APP_TABLE_NUMBER, offsetof(Row, rate), "pairs/s", "of wall time"},
+    {"pairs_per_cpu_second", APP_TABLE_NUMBER, offsetof(Row, cpu_rate), "pairs/cpu s", "of processor time"},
+    {"pairs_per_second_min", APP_TABLE_NUMBER, offsetof(Row, rate_min), NULL, "slowest round"},
+    {"pairs_per_second_max", APP_TABLE_NUMBER, offsetof(Row, rate_max), NULL, "fastest round"},
+    {"spread", APP_TABLE_NUMBER, offsetof(Row, spread), "spread", "(max − min) / median"},
+    {"ratio", APP_TABLE_NUMBER, offsetof(Row, ratio), "ratio",
      "speed over that of `reference` in the same round, median of the rounds"},
-    {"ratio_min", APP_BENCH_NUMBER, offsetof(Row, ratio_min), NULL, "smallest of the rounds"},
-    {"ratio_max", APP_BENCH_NUMBER, offsetof(Row, ratio_max), NULL, "largest of the rounds"},
-    {"cpu_ratio", APP_BENCH_NUMBER, offsetof(Row, cpu_ratio), NULL,
+    {"ratio_min", APP_TABLE_NUMBER, offsetof(Row, ratio_min), NULL, "smallest of the rounds"},
+    {"ratio_max", APP_TABLE_NUMBER, offsetof(Row, ratio_max), NULL, "largest of the rounds"},
+    {"cpu_ratio", APP_TABLE_NUMBER, offsetof(Row, cpu_ratio), NULL,
      "the same of processor times, median of the rounds"},
-    {"reference", APP_BENCH_TEXT, offsetof(Row, reference), NULL,
+    {"reference", APP_TABLE_TEXT, offsetof(Row, reference), NULL,
      "the first model, same set, quantity, threads"},
-    {"thread_gain", APP_BENCH_NUMBER, offsetof(Row, thread_gain), "× threads",
+    {"thread_gain", APP_TABLE_NUMBER, offsetof(Row, thread_gain), "× threads",
      "speed over that of the same row on the first number of threads, median of the rounds"},
-    {"flops_per_pair", APP_BENCH_NUMBER, offsetof(Row, flops), NULL,
-     "of a network's matrix products: multiplications and additions"},
-    {"peak_share", APP_BENCH_NUMBER, offsetof(Row, share), "of peak",
-     "those a processor second over what one core can do (measured in this run)"},
+    {"error", APP_TABLE_NUMBER, offsetof(Row, errors.error), "error",
+     "against the exact model, of V: Σ|ΔV|/ΣV; of V+grad: Σ‖Δ∇V‖/Σ‖∇V‖"},
+    {"error_median", APP_TABLE_NUMBER, offsetof(Row, errors.median), NULL, "of the pairs' relative errors"},
+    {"error_p90", APP_TABLE_NUMBER, offsetof(Row, errors.p90), NULL, "90th percentile of the same"},
+    {"samples", APP_TABLE_INTEGER, offsetof(Row, errors.samples), NULL, "pairs that errors are taken over"},
+    {"fallback_share", APP_TABLE_NUMBER, offsetof(Row, errors.fallbacks), NULL,
+     "of these pairs, answered by a more careful model"},
+    {"frontier", APP_TABLE_INTEGER, offsetof(Row, frontier), "frontier",
+     "1: no other row of this set, quantity and number of threads is as fast and as accurate, and better in "
+     "one of both; by processor time"},
+    {"family", APP_TABLE_TEXT, offsetof(Row, family), NULL, "geo, tpn, or the model's own name"},
+    {"parameters", APP_TABLE_INTEGER, offsetof(Row, parameters), NULL, "of the network, 0: none"},
 };
 static const AppBenchReport report = {"overlap", columns, sizeof columns / sizeof *columns, sizeof(Row),
                                       .has_own_threads = true};
@@ -231,18 +275,21 @@ static int find_reference(const Bench *bench, Case what) {
   return found;
 }
 
-// A gradient by the input takes the products once more, transposed. How many a network of the paper's kind
-// takes depends on what its normalisation lets it leave out; `tetlap-lab net` tells that. Disjoint pairs do
-// not reach it.
-static double flops_of(const Bench *bench, const Case *what) {
-  const AppModelCard *card = &bench->cards[what->model];
-  bool is_known =
-      card->is_learned && !card->is_float && what->quantity != HESSIAN && what->set != APP_BENCH_DISJOINT;
-  if (!is_known) return NAN;
-  return card->flops * (what->quantity == VOLUME ? 1 : 2);
+static bool has_error(int quantity) {
+  return quantity == VOLUME || quantity == GRADIENT;
 }
 
-static Row row_of(const Bench *bench, int c, const double peaks[2]) {
+static Status measure_errors(const Bench *bench, int c, AppBenchErrors *errors) {
+  const AppBenchContestant *contestant = &bench->contestants[c];
+  const Case *what = &bench->cases[c];
+  const AppBenchTruth *truth = &bench->truths[what->set];
+  int count = contestant->batch.pair_count < truth->count ? contestant->batch.pair_count : truth->count;
+  *errors = (AppBenchErrors){NAN, NAN, NAN, NAN, 0};
+  if (!has_error(what->quantity)) return STATUS_OK;
+  return app_bench_errors_measure(truth, contestant->model, count, what->quantity == GRADIENT, errors);
+}
+
+static Row row_of(const Bench *bench, int c) {
   const AppBenchContestant *contestant = &bench->contestants[c];
   const Case *what = &bench->cases[c];
   int rounds = bench->options->common.repeats;
@@ -254,8 +301,10 @@ static Row row_of(const Bench *bench, int c, const double peaks[2]) {
   AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
   AppBenchRatio ratio = app_bench_timer_ratio(&contestant->timer, &reference->timer, rounds);
   double cpu_ratio = app_bench_timer_cpu_ratio(&contestant->timer, &reference->timer, rounds).median;
-  double flops = flops_of(bench, what);
+  const AppModelCard *card = &bench->cards[what->model];
   return (Row){.model = bench->names[what->model],
+               .family = card->family,
+               .parameters = card->parameters,
                .set = app_bench_sets[what->set],
                .quantity = quantities[what->quantity],
                .reference = bench->names[bench->cases[first].model],
@@ -270,25 +319,47 @@ static Row row_of(const Bench *bench, int c, const double peaks[2]) {
                .ratio_min = ratio.min,
                .ratio_max = ratio.max,
                .cpu_ratio = cpu_ratio,
-               .thread_gain = app_bench_timer_ratio(&contestant->timer, &narrow->timer, rounds).median,
-               .flops = flops,
-               .share = flops / time.cpu / peaks[bench->cards[what->model].is_float]};
+               .thread_gain = app_bench_timer_ratio(&contestant->timer, &narrow->timer, rounds).median};
+}
+
+static bool beats(const Row *a, const Row *b) {
+  bool is_peer = a->set == b->set && a->quantity == b->quantity && a->threads == b->threads;
+  return is_peer && a->cpu_rate >= b->cpu_rate && a->errors.error <= b->errors.error &&
+         (a->cpu_rate > b->cpu_rate || a->errors.error < b->errors.error);
+}
+
+static void mark_frontier(Row *rows, int count) {
+  for (int r = 0; r < count; r++) {
+    rows[r].frontier = isfinite(rows[r].errors.error);
+    for (int other = 0; other < count; other++)
+      if (beats(&rows[other], &rows[r])) rows[r].frontier = 0;
+  }
+}
+
+static Status fill_rows(const Bench *bench, Row *rows) {
+  for (int c = 0; c < bench->count; c++) {
+    rows[c] = row_of(bench, c);
+    TRY(measure_errors(bench, c, &rows[c].errors));
+  }
+  mark_frontier(rows, bench->count);
+  return STATUS_OK;
 }
 
 static Status print(const Bench *bench) {
   Row *rows = memory_zeroed((size_t)bench->count, sizeof *rows);
   if (!rows) return status_no_memory("the rows");
-  const AppBenchOptions *common = &bench->options->common;
-  const double peaks[2] = {app_bench_peak_measure(false), app_bench_peak_measure(true)};
-  for (int c = 0; c < bench->count; c++) rows[c] = row_of(bench, c, peaks);
-  Status status = app_bench_report_print(&report, common, rows, bench->count);
+  Status status = fill_rows(bench, rows);
+  if (!status) status = app_bench_report_print(&report, &bench->options->common, rows, bench->count);
   memory_free(rows);
   return status;
 }
 
 static void destroy(Bench *bench) {
   for (int m = 0; m < bench->model_count; m++) overlap_model_destroy(&bench->models[m]);
-  for (int set = 0; set < APP_BENCH_SET_COUNT; set++) memory_free(bench->pairs[set]);
+  for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
+    memory_free(bench->pairs[set]);
+    app_bench_truth_destroy(&bench->truths[set]);
+  }
   memory_free(bench->contestants), memory_free(bench->cases), memory_free(bench->volume);
   memory_free(bench->centroid);
   memory_free(bench->gradient), memory_free(bench->hessian);
@@ -303,7 +374,7 @@ static Status measure(Bench *bench) {
   TRY(make_inputs(bench));
   TRY(add_contestants(bench));
   TRY(app_bench_timer_take_turns(bench->contestants, sizeof *bench->contestants, bench->count,
-                                 common->repeats, true, app_bench_contestant_take_turn));
+                                 common->repeats, app_bench_contestant_take_turn));
   return print(bench);
 }
 
@@ -319,14 +390,14 @@ static Status run(const Options *options) {
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
-    .doc = "Measure how many pairs of tetrahedra a second the overlap models answer.",
+    .doc = "Measure how many pairs of tetrahedra a second the overlap models answer, and how accurately.",
     .children = app_bench_command_children,
     .help_filter = app_bench_command_help};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
   options.common.takes_thread_list = true;
-  options.model_count = app_bench_models_list(options.models);
+  options.model_count = list_models(options.models);
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
   app_bench_command_read(&app_bench_overlap, argument_count, arguments, &options);

@@ -2,8 +2,6 @@
 #include "app/bench/unseen/unseen.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "app/bench/command.h"
 #include "app/bench/unseen/path.h"
@@ -17,7 +15,7 @@ enum { MAX_MODELS = 16, MAX_CASES = 16 };
 typedef struct Options {
   AppBenchOptions common;
   bool wants_case[MAX_CASES];
-  char *models[MAX_MODELS]; // borrowed
+  const char *models[MAX_MODELS]; // borrowed
   int model_count;
   int seeds, places;
 } Options;
@@ -38,14 +36,6 @@ static int list_cases(const char *names[MAX_CASES]) {
   return app_unseen_case_count;
 }
 
-static void read_models(struct argp_state *state, Options *options, char *text) {
-  options->model_count = 0;
-  for (char *rest, *name = strtok_r(text, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
-    if (options->model_count == MAX_MODELS) argp_error(state, "--model: at most %d", MAX_MODELS);
-    options->models[options->model_count++] = name;
-  }
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   const char *names[MAX_CASES];
@@ -54,7 +44,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[0] = &options->common;
     return 0;
   case 'm':
-    read_models(state, options, text);
+    options->model_count = app_argument_list(state, "model", text, "geo,clip32", MAX_MODELS, options->models);
     return 0;
   case 'k':
     app_bench_options_choose(state, "case", text, names, list_cases(names), options->wants_case);
@@ -78,27 +68,27 @@ typedef struct Row {
 } Row;
 
 #define ERROR(field) offsetof(Row, worst) + offsetof(AppUnseenErrors, field)
-static const AppBenchColumn columns[] = {
-    {"case", APP_BENCH_TEXT, offsetof(Row, what), "case", "the bodies: `tetlap bench unseen --help`"},
-    {"model", APP_BENCH_TEXT, offsetof(Row, model), "model", "overlap model"},
-    {"seeds", APP_BENCH_INTEGER, offsetof(Row, seeds), NULL, "meshes; each error is the largest over them"},
-    {"pairs", APP_BENCH_INTEGER, offsetof(Row, pairs), "pairs",
+static const AppTableColumn columns[] = {
+    {"case", APP_TABLE_TEXT, offsetof(Row, what), "case", "the bodies: `tetlap bench unseen --help`"},
+    {"model", APP_TABLE_TEXT, offsetof(Row, model), "model", "overlap model"},
+    {"seeds", APP_TABLE_INTEGER, offsetof(Row, seeds), NULL, "meshes; each error is the largest over them"},
+    {"pairs", APP_TABLE_INTEGER, offsetof(Row, pairs), "pairs",
      "that share volume, over all places and meshes"},
-    {"volume_error", APP_BENCH_NUMBER, ERROR(volume), "V", "sum of errors of V over the sum of V"},
-    {"moment_error", APP_BENCH_NUMBER, ERROR(moment), "moments",
+    {"volume_error", APP_TABLE_NUMBER, ERROR(volume), "V", "sum of errors of V over the sum of V"},
+    {"moment_error", APP_TABLE_NUMBER, ERROR(moment), "moments",
      "sum of errors of V λ(centroid) at the eight vertices over the sum of those"},
-    {"nodal_force_error", APP_BENCH_NUMBER, ERROR(nodal_force), "nodal forces",
+    {"nodal_force_error", APP_TABLE_NUMBER, ERROR(nodal_force), "nodal forces",
      "of all vertices along the path, root of squares, relative"},
-    {"total_force_error", APP_BENCH_NUMBER, ERROR(total_force), "total force", "of the upper body, likewise"},
-    {"tangential_error", APP_BENCH_NUMBER, ERROR(tangential), "tangential",
+    {"total_force_error", APP_TABLE_NUMBER, ERROR(total_force), "total force", "of the upper body, likewise"},
+    {"tangential_error", APP_TABLE_NUMBER, ERROR(tangential), "tangential",
      "largest error of the total force along the surface over the largest force across it: false friction"},
-    {"normal_sum_error", APP_BENCH_NUMBER, ERROR(normal_sum), "sum of N",
+    {"normal_sum_error", APP_TABLE_NUMBER, ERROR(normal_sum), "sum of N",
      "of the pairs' forces, which bounds friction, likewise"},
-    {"path_work", APP_BENCH_NUMBER, ERROR(path_work), "closed path",
+    {"path_work", APP_TABLE_NUMBER, ERROR(path_work), "closed path",
      "work of the total force round the closed path over the work turned over"},
-    {"path_work_clip", APP_BENCH_NUMBER, ERROR(path_work_clip), "by clip",
+    {"path_work_clip", APP_TABLE_NUMBER, ERROR(path_work_clip), "by clip",
      "the same of clipping: what the steps of the path leave"},
-    {"time_ratio", APP_BENCH_NUMBER, offsetof(Row, time_ratio), "× time",
+    {"time_ratio", APP_TABLE_NUMBER, offsetof(Row, time_ratio), "× time",
      "processor time of volumes and centroids over that of clipping"},
 };
 static const AppBenchReport report = {"unseen", columns, sizeof columns / sizeof *columns, sizeof(Row),
@@ -174,9 +164,8 @@ static const struct argp argp = {.options = option_table,
                                  .help_filter = app_bench_command_help};
 
 static int run_command(int argument_count, char **arguments) {
-  static char geo[] = "geo", geo_small[] = "geo-small";
   Options options = {.common = {.threads = 1, .repeats = 1},
-                     .models = {geo, geo_small},
+                     .models = {"geo", "geo-small"},
                      .model_count = 2,
                      .seeds = 3,
                      .places = 96};

@@ -33,7 +33,7 @@ static const struct argp_option option_table[] = {
     {"frames", KEY_FRAMES, "N", 0, "Take at most N frames of a run, evenly spaced (default: all)", 0},
     {"surface", KEY_SURFACE, NULL, 0,
      "Take the bodies' surfaces only: a smaller page, which cannot cut bodies open", 0},
-    {"pareto", KEY_PARETO, "FILE", 0, "Show this result of `tetlap-lab pareto` as well", 0},
+    {"pareto", KEY_PARETO, "FILE", 0, "Show this result of tools/measure/frontier as well", 0},
     {"bench", KEY_BENCH, "FILE", 0, "Show this result of `tetlap bench --json` as well; may be repeated", 0},
     {"stress", KEY_STRESS, "FILE", 0,
      "Show this table of `tetlap stress --json` as well; may be repeated: a later one replaces the same "

@@ -20,7 +20,8 @@ typedef struct Options {
   const char *overrides[APP_MAX_OVERRIDES], *axes[APP_SWEEP_MAX_AXES];
   int override_count, axis_count;
   int jobs, threads; // 0: by what the machine has
-  bool again, is_json, is_quiet;
+  int repeats;
+  bool again, is_json, is_markdown, is_quiet;
 } Options;
 
 static const struct argp_option option_table[] = {
@@ -33,8 +34,11 @@ static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Write into DIR (default: out/ and the scene's name, -sweep)", 1},
     {"jobs", 'J', "N", 0, "Runs at once (default: one a core)", 1},
     {"threads", 't', "N", 0, "Threads of each run (default: the cores shared among the runs)", 1},
+    {"repeat", 'r', "N", 0, "Run each N times, in turns, for times: the table has medians (with --jobs 1)",
+     1},
     {"again", KEY_AGAIN, NULL, 0, "Try again the runs that the solver gave up in an earlier sweep", 1},
     {"json", 'j', NULL, 0, "Print the table as JSON on standard output", 2},
+    {"markdown", 'M', NULL, 0, "Print the table as Markdown", 2},
     {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
     {0},
 };
@@ -61,11 +65,17 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 't':
     options->threads = app_argument_threads(state, text);
     return 0;
+  case 'r':
+    options->repeats = (int)app_argument_integer(state, "repeat", text, 1, APP_SWEEP_MAX_REPEATS);
+    return 0;
   case KEY_AGAIN:
     options->again = true;
     return 0;
   case 'j':
     options->is_json = true;
+    return 0;
+  case 'M':
+    options->is_markdown = true;
     return 0;
   case 'q':
     options->is_quiet = true;
@@ -76,8 +86,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_END:
     if (!options->scene_path) argp_error(state, "name a scene file, as in examples/01_drop.yaml");
-    if (!options->axis_count)
-      argp_error(state, "say what varies, as in --vary contact.stiffness=1e5..1e9:5,log");
+    if (!options->axis_count && options->repeats == 1)
+      argp_error(state,
+                 "say what varies, as in --vary contact.stiffness=1e5..1e9:5,log, or how often to --repeat");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -104,11 +115,9 @@ static AppSweepOptions share_cores(const Options *options, int point_count) {
                            .stop = app_job_stop_flag()};
 }
 
-static Status print_table(const AppSweepGrid *grid, bool is_json) {
-  if (!is_json) {
-    app_sweep_table_print(grid, stdout);
-    return STATUS_OK;
-  }
+static Status print_table(const AppSweepGrid *grid, const Options *options) {
+  if (!options->is_json)
+    return app_sweep_table_print(grid, options->is_markdown ? APP_TABLE_MARKDOWN : APP_TABLE_PLAIN, stdout);
   Record *table = app_sweep_table_record(grid);
   if (!table) return status_no_memory("the table of a sweep");
   Status status = record_print(table, stdout);
@@ -118,7 +127,7 @@ static Status print_table(const AppSweepGrid *grid, bool is_json) {
 
 // A sweep with failed runs is one that the solver gave up in part.
 static Status conclude(const AppSweepGrid *grid, const Options *options) {
-  TRY(print_table(grid, options->is_json));
+  TRY(print_table(grid, options));
   log_info("wrote %s: sweep.html, sweep.csv, sweep.json; the runs are in the folders beside them",
            grid->base.directory);
   int failed = app_sweep_grid_count(grid, APP_SWEEP_FAILED);
@@ -132,7 +141,8 @@ static Status sweep(const Options *options, const char *directory) {
                        .directory = directory,
                        .overlap = options->overlap,
                        .overrides = options->overrides,
-                       .override_count = options->override_count};
+                       .override_count = options->override_count,
+                       .repeat_count = options->repeats};
   Status status = parse_axes(options, &base);
   if (status) {
     for (int a = 0; a < base.axis_count; a++) app_sweep_axis_destroy(&base.axes[a]);
@@ -161,7 +171,7 @@ static const struct argp argp = {
     NULL};
 
 static int run_command(int argument_count, char **arguments) {
-  Options options = {0};
+  Options options = {.repeats = 1};
   argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
   char *directory = options.directory ? memory_copy(options.directory, strlen(options.directory) + 1, 1)

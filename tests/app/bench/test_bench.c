@@ -36,8 +36,6 @@ START_TEST(the_median_of_rounds_counts) {
   ck_assert_double_eq(even.cpu, 5.5);
   ck_assert_double_eq(even.wall_min, 1);
   ck_assert_double_eq(even.wall_max, 5);
-  ck_assert_int_eq(app_bench_timer_median_round(&timer, 3), 2);
-  ck_assert_int_eq(app_bench_timer_median_round(&timer, 4), 3); // 2, the lower of 2 and 4
 }
 END_TEST
 
@@ -100,7 +98,7 @@ static Status note_turn(void *self, int round) {
 START_TEST(contestants_take_turns_to_and_fro_after_a_warm_up) {
   char diary[64] = "";
   Contestant contestants[] = {{'a', diary}, {'b', diary}, {'c', diary}};
-  ck_assert_ok(app_bench_timer_take_turns(contestants, sizeof *contestants, 3, 3, true, note_turn));
+  ck_assert_ok(app_bench_timer_take_turns(contestants, sizeof *contestants, 3, 3, note_turn));
   ck_assert_str_eq(diary, "a0b0c0"
                           "a0b0c0"
                           "c1b1a1"
@@ -111,7 +109,7 @@ END_TEST
 START_TEST(a_failure_ends_the_turns) {
   char diary[64] = "";
   Contestant contestants[] = {{'a', diary}, {'x', diary}, {'c', diary}};
-  ck_assert_int_eq(app_bench_timer_take_turns(contestants, sizeof *contestants, 3, 2, false, note_turn),
+  ck_assert_int_eq(app_bench_timer_take_turns(contestants, sizeof *contestants, 3, 2, note_turn),
                    STATUS_SOLVER);
   ck_assert_str_eq(diary, "a0x0");
 }
@@ -120,15 +118,43 @@ END_TEST
 static const Promise promises[] = {
     {"overlap --model clip,exact --set near,uniform --quantity V+grad --batch 100,200 --repeat 1 --threads "
      "1,2",
-     16, "bench model set quantity spread reference flops_per_pair peak_share",
-     "pairs_per_second pairs_per_cpu_second batch threads ratio ratio_min ratio_max thread_gain"},
+     16,
+     "bench model family set quantity spread reference error error_median error_p90 fallback_share frontier "
+     "parameters",
+     "pairs_per_second pairs_per_cpu_second batch threads ratio ratio_min ratio_max thread_gain samples"},
     {"overlap --model geo --set near --quantity V --batch 4096 --repeat 1", 1, "bench",
-     "flops_per_pair peak_share"},
+     "error error_median error_p90 parameters frontier samples"},
 };
 enum { PROMISE_COUNT = sizeof promises / sizeof *promises };
 
 START_TEST(rows_carry_the_promised_keys) {
   check_promise(BENCH, &promises[_i]);
+}
+END_TEST
+
+START_TEST(exact_has_no_error_clip_rounding_and_a_learned_model_its_own) {
+  static char output[OUTPUT_SIZE];
+  ck_assert_int_eq(run_bench(BENCH,
+                             "overlap -m exact,clip,geo-small -s near -Q V,V+grad,V+centroid -b 200 -r 1 -j",
+                             output),
+                   0);
+  for (char *row = strtok(output, "\n"); row; row = strtok(NULL, "\n")) {
+    if (strstr(row, "V+centroid")) {
+      ck_assert_int_eq(strncmp(value_of(row, "error"), "null", 4), 0);
+      continue;
+    }
+    double error = number_of(row, "error");
+    if (strstr(row, "\"model\":\"exact\"")) {
+      ck_assert_double_eq(error, 0);
+      ck_assert_double_eq(number_of(row, "frontier"), 1); // nothing beats no error
+    } else if (strstr(row, "\"model\":\"clip\"")) {
+      ck_assert_msg(error > 0 && error < 1e-9, "%g", error);
+    } else {
+      ck_assert_msg(error > 1e-4 && error < 0.1, "%g", error);
+      ck_assert_double_le(number_of(row, "error_median"), number_of(row, "error_p90"));
+      ck_assert_double_gt(number_of(row, "parameters"), 1000);
+    }
+  }
 }
 END_TEST
 
@@ -194,6 +220,7 @@ int main(void) {
   tcase_add_test(cases, contestants_take_turns_to_and_fro_after_a_warm_up);
   tcase_add_test(cases, a_failure_ends_the_turns);
   tcase_add_loop_test(cases, rows_carry_the_promised_keys, 0, PROMISE_COUNT);
+  tcase_add_test(cases, exact_has_no_error_clip_rounding_and_a_learned_model_its_own);
   tcase_add_test(cases, weights_files_are_measured_under_names_of_their_own);
   tcase_add_test(cases, wrong_arguments_are_usage_errors);
   tcase_add_test(cases, an_unknown_bench_gets_the_nearest_name);

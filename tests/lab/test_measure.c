@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tools/measure/frontier and precision: that they measure what they say and write what plot and report read.
+#include "suite.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#include "base/files/file.h"
+#include "base/files/record.h"
+#include "base/memory.h"
+
+static char folder[] = "/tmp/tetlap_measure_XXXXXX";
+
+static void make_folder(void) {
+  strcpy(folder, "/tmp/tetlap_measure_XXXXXX");
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+}
+
+static void remove_folder(void) {
+  char command[128];
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  ck_assert_int_eq(system(command), 0);
+}
+
+// The exit code; what is printed goes to the file `said` in the folder. −1: Python is not installed.
+static int run_tool(const char *tool, const char *arguments) {
+  char command[1024];
+  if (system(TETLAP_PYTHON " -c pass 2>/dev/null") != 0) return -1;
+  snprintf(command, sizeof command,
+           "cd %s && " TETLAP_PYTHON " tools/measure/%s --program %s %s > %s/said 2>%s/errors",
+           TETLAP_SOURCE_DIR, tool, TETLAP_PROGRAM, arguments, folder, folder);
+  return WEXITSTATUS(system(command));
+}
+
+static char *read_text(const char *name) {
+  char path[256], *text;
+  size_t size;
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  ck_assert_ok(file_read(path, &text, &size));
+  return text;
+}
+
+static const Record *find(const Record *points, const char *model, const char *quantity) {
+  for (int k = 0; k < record_count(points); k++) {
+    const Record *point = record_at(points, k);
+    if (strcmp(record_find_text(point, "model"), model) == 0 &&
+        strcmp(record_find_text(point, "quantity"), quantity) == 0)
+      return point;
+  }
+  ck_abort_msg("no point %s %s", model, quantity);
+  return NULL;
+}
+
+static double number_of(const Record *points, const char *model, const char *quantity, const char *key) {
+  return record_find_number(find(points, model, quantity), key);
+}
+
+// Pairs and a scene: exact has no error, clip that of rounding, a learned model its own; what has no error is
+// beaten by nothing.
+START_TEST(the_frontier_has_every_model_s_error_and_time) {
+  char arguments[256], path[128];
+  Record *pareto;
+  snprintf(arguments, sizeof arguments,
+           "-m clip,exact,geo-small --pairs near -b 200 -r 1 --audit 2 -o %s/out "
+           "examples/precision/edge.yaml",
+           folder);
+  int code = run_tool("frontier", arguments);
+  if (code == -1) {
+    suite_skip("python3 is not installed");
+    return;
+  }
+  ck_assert_int_eq(code, 0);
+  snprintf(path, sizeof path, "%s/out/pareto.json", folder);
+  ck_assert_ok(record_read(&pareto, path));
+  ck_assert_str_eq(record_find_text(pareto, "format"), "tetlap-pareto 1");
+  const Record *points = record_find(pareto, "points");
+  ck_assert_int_eq(record_count(points), 9);
+  static const char *const quantities[] = {"V", "V+grad", "force"};
+  for (int q = 0; q < 3; q++) {
+    double rounding = number_of(points, q < 2 ? "clip" : "exact", quantities[q], "error");
+    double learned = number_of(points, "geo-small", quantities[q], "error");
+    ck_assert_double_eq(number_of(points, q < 2 ? "exact" : "clip", quantities[q], "error"), 0);
+    ck_assert_msg(rounding < 1e-9, "%g", rounding);
+    ck_assert_msg(learned > 1e-4 && learned < 0.2, "%g", learned);
+    ck_assert_double_gt(number_of(points, "geo-small", quantities[q], "seconds_per_pair"), 0);
+  }
+  ck_assert_double_eq(number_of(points, "exact", "V", "frontier"), 1);
+  ck_assert_double_gt(number_of(points, "geo-small", "force", "overlap_share"), 0);
+  record_destroy(pareto);
+}
+END_TEST
+
+// Errors fall with the tolerance.
+START_TEST(precision_measures_errors_of_whole_runs) {
+  double centres[2] = {0}, forces[2] = {0};
+  int rows = 0, code = run_tool("precision", "-m clip -e 3e-3,1e-4 --reference-tolerance 1e-5 "
+                                             "examples/precision/edge.yaml");
+  if (code == -1) {
+    suite_skip("python3 is not installed");
+    return;
+  }
+  ck_assert_int_eq(code, 0);
+  char *said = read_text("said");
+  for (char *line = strtok(said, "\n"); line; line = strtok(NULL, "\n"))
+    if (rows < 2 && sscanf(line, "| edge | clip | %*g | %lf | %lf |", &centres[rows], &forces[rows]) == 2)
+      rows++;
+  memory_free(said);
+  ck_assert_int_eq(rows, 2);
+  ck_assert_msg(centres[1] > 0 && centres[1] < centres[0], "%g, %g", centres[0], centres[1]);
+  ck_assert_msg(forces[1] > 0 && forces[1] < forces[0], "%g, %g", forces[0], forces[1]);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("measure");
+  tcase_add_checked_fixture(cases, make_folder, remove_folder);
+  tcase_add_test(cases, the_frontier_has_every_model_s_error_and_time);
+  tcase_add_test(cases, precision_measures_errors_of_whole_runs);
+  return suite_run("measure", cases, 120);
+}
