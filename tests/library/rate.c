@@ -90,7 +90,7 @@ static Status open_all(Contestant contestants[3], const char *name) {
 
 static Status measure(Contestant contestants[3], const char *name) {
   TRY(open_all(contestants, name));
-  TRY(app_bench_timer_take_turns(contestants, sizeof *contestants, 3, ROUNDS, true, take_turn));
+  TRY(app_bench_timer_take_turns(contestants, sizeof *contestants, 3, ROUNDS, take_turn));
   const AppBenchTimer *model = &contestants[0].timer, *one = &contestants[1].timer,
                       *two = &contestants[2].timer;
   printf("%s, V+grad, set near, %d pairs a call, one thread\n", name, PAIRS);
