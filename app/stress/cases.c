@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "app/stress/linking.h"
-#include "app/stress/resume.h"
 #include "app/stress/scenes.h"
 #include "app/stress/slabs.h"
 #include "base/memory.h"
@@ -241,53 +240,6 @@ static void judge_beam(const AppStressRun *run, AppStressRow *row) {
   app_stress_ask_most(row, "error of the deflection", fabs(tip / count / theory - 1), 0.1);
 }
 
-typedef struct Rejection {
-  long long trials, refused;
-} Rejection;
-
-// Evaluates forces at a state that is then rejected: far from the accepted one, so that other pairs overlap
-// or the margin is left.
-static Status try_and_reject(void *self, const FemRunProgress *progress) {
-  Rejection *rejection = self;
-  FemSystem *system = progress->system;
-  FemState trial;
-  Status status = fem_system_create_state(system, &trial);
-  double reach = (rejection->trials % 3 == 2 ? 2.0 : 0.05) * system->model->edge;
-  for (int i = 0; i < 3 * system->model->vertex_count && !status; i++)
-    trial.positions[i] += reach * sin(i + 1.0);
-  if (!status) status = fem_system_forces(system, &trial);
-  fem_state_destroy(&trial);
-  rejection->trials++;
-  rejection->refused += status == STATUS_RETRY;
-  return status == STATUS_RETRY ? STATUS_OK : status;
-}
-
-// Runs twice, once with rejected evaluations after every step; extra: trials, refused ones, largest
-// difference.
-static Status run_rejected(AppStressRun *run) {
-  TRY(app_stress_run_scene(run));
-  if (run->is_cut) return STATUS_OK;
-  Rejection rejection = {0};
-  FemRunOptions options = {
-      .observe = try_and_reject, .observer = &rejection, .keep_trajectory = true, .stop = run->asked_to_stop};
-  FemRunResult result;
-  Status status = fem_run(&run->model, &options, &result);
-  double difference = status || result.frame_count != run->result.frame_count ? NAN : 0;
-  size_t count = 3 * (size_t)result.vertex_count * (size_t)result.frame_count;
-  for (size_t i = 0; i < count && difference >= 0; i++)
-    difference = fmax(difference, fabs(result.trajectory[i] - run->result.trajectory[i]));
-  fem_run_result_destroy(&result);
-  run->extra[0] = (double)rejection.trials, run->extra[1] = (double)rejection.refused;
-  run->extra[2] = difference;
-  return status == STATUS_MEMORY ? status : STATUS_OK;
-}
-
-static void judge_rejected(const AppStressRun *run, AppStressRow *row) {
-  app_stress_ask_occurred(row, "rejected evaluations", run->extra[0], 10);
-  app_stress_ask_occurred(row, "of them beyond the margin", run->extra[1], 1);
-  app_stress_ask_most(row, "largest difference [m]", run->extra[2], 0);
-}
-
 // `least`: elements of 2 cm flown through in the longest step.
 static void judge_tunnel(const AppStressRun *run, AppStressRow *row, double least) {
   double plate[3], target[3];
@@ -416,10 +368,6 @@ static const AppStressScene cases[] = {
     {"nearly incompressible, 0.499, quadratic", "beam", APP_STRESS_ENDS, .judge = judge_beam, .is_any = true,
      .overrides = {"bodies.beam.material.poisson=0.499", "bodies.beam.element=quadratic",
                    "bodies.beam.mesh.box.cells=[10, 2, 2]"}},
-    {"rejected step", "deep", APP_STRESS_TOUCHES, .judge = judge_rejected, .is_quick = true,
-     .run = run_rejected},
-    {"resume", "cliff", UPRIGHT, .judge = app_stress_resume_judge, .is_quick = true,
-     .run = app_stress_resume_run, .overrides = {"output.checkpoint={frames: 1, seconds: 0}"}},
     {"tunnelling, 1 element a step", "tunnel", SOUND, .judge = judge_tunnel_1,
      .overrides = {FIRED("0.055", "0.02", "0.1")}},
     {"tunnelling, 10 elements a step", "tunnel", SOUND, .judge = judge_tunnel_10,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// app/plot: the scripts hold every curve and every point, labels keep apart, gnuplot draws them.
+// app/plot: the scripts hold every curve, and gnuplot draws them.
 #include "suite.h"
 
 #include <stdio.h>
@@ -11,8 +11,6 @@
 #include "app/plot/plot.h"
 #include "base/files/file.h"
 #include "base/memory.h"
-
-enum { MODELS = 12 };
 
 static char picture[80], script[96];
 
@@ -82,110 +80,6 @@ START_TEST(another_ending_than_svg_pdf_and_png_is_refused) {
 }
 END_TEST
 
-// A dozen models close to each other, the last one exact.
-static Record *make_pareto(void) {
-  Record *pareto = record_new();
-  RecordList *points = record_list(pareto, "points");
-  for (int k = 0; k < MODELS; k++) {
-    Record *point = record_append(points);
-    char name[32];
-    snprintf(name, sizeof name, "model-%d", k);
-    record_text(point, "model", name);
-    record_text(point, "family", k % 2 ? "odd" : "even");
-    record_text(point, "quantity", "V");
-    record_text(point, "set", "near");
-    record_number(point, "seconds_per_pair", 1e-6 * (1 + 0.02 * k));
-    record_number(point, "error", k == MODELS - 1 ? 0 : 1e-3 * (1 + 0.01 * k));
-  }
-  return pareto;
-}
-
-static Status write_frontier(const Record *pareto, const char *quantities) {
-  FileWriter writer;
-  ck_assert_ok(file_begin(&writer, script));
-  Status status = app_plot_frontier(writer.stream, picture, pareto, quantities);
-  if (!status) return file_commit(&writer);
-  file_abandon(&writer);
-  return status;
-}
-
-START_TEST(every_point_of_a_frontier_has_a_label_of_its_own_place) {
-  Record *pareto = make_pareto();
-  ck_assert_ok(write_frontier(pareto, NULL));
-  char *text = read_script();
-  double x[MODELS], y[MODELS];
-  int count = 0;
-  for (const char *at = text; (at = strstr(at, "set label \"")); at++) {
-    ck_assert_int_lt(count, MODELS);
-    ck_assert_int_eq(sscanf(strstr(at, "at screen "), "at screen %lf,%lf", &x[count], &y[count]), 2);
-    ck_assert(x[count] > 0 && x[count] < 1 && y[count] > 0 && y[count] < 1);
-    count++;
-  }
-  ck_assert_int_eq(count, MODELS);
-  for (int i = 0; i < count; i++) // of a picture 520 × 380, letters 6 × 12
-    for (int j = 0; j < i; j++)
-      ck_assert_msg(fabs(x[i] - x[j]) * 520 > 7 * 6 - 0.1 || fabs(y[i] - y[j]) * 380 > 12 - 0.1,
-                    "%d meets %d", i, j);
-  ck_assert_ptr_nonnull(strstr(text, "\"model-11 (no error)\""));
-  memory_free(text);
-  record_destroy(pareto);
-}
-END_TEST
-
-// Of one thread, unless a row lacks it or is a device's.
-START_TEST(a_frontier_is_of_processor_time_where_there_is) {
-  for (int k = 0; k < 3; k++) {
-    Record *pareto = make_pareto();
-    record_integer(pareto, "threads", k == 1 ? 2 : 1);
-    RecordList *points = record_list(pareto, "points");
-    for (int i = 0; i < 2; i++) {
-      Record *point = record_append(points);
-      record_text(point, "model", i ? "slow" : "quick");
-      record_text(point, "family", "even");
-      record_text(point, "quantity", "V+grad");
-      record_text(point, "set", "near");
-      record_number(point, "seconds_per_pair", i ? 8e-6 : 4e-6);
-      record_number(point, "cpu_seconds_per_pair", i ? 3e-6 : 1e-6);
-      record_number(point, "error", i ? 1e-4 : 1e-3);
-      if (k == 2 && i) record_text(point, "device", "opencl");
-    }
-    ck_assert_ok(write_frontier(pareto, "V+grad"));
-    char *text = read_script();
-    double x = 0;
-    ck_assert_int_eq(sscanf(strstr(text, "$f0 << END\n") + strlen("$f0 << END\n"), "%lf", &x), 1);
-    ck_assert_near(x, k == 0 ? 1e-6 : 4e-6, 1e-12);
-    ck_assert_int_eq(strstr(text, "set xlabel 'processor time a pair'") != NULL, k == 0);
-    memory_free(text);
-    record_destroy(pareto);
-  }
-}
-END_TEST
-
-START_TEST(points_on_the_frontier_are_filled) {
-  Record *pareto = make_pareto();
-  ck_assert_ok(write_frontier(pareto, "V"));
-  char *text = read_script(), *front = strstr(text, "$f0 << END\n");
-  ck_assert_ptr_nonnull(front);
-  double x[2], y[2];
-  // The fastest, which is more accurate than all but the last, and the exact one.
-  ck_assert_int_eq(sscanf(front, "$f0 << END\n%lf %lf\n%lf %lf\nEND", &x[0], &y[0], &x[1], &y[1]), 4);
-  ck_assert_near(x[0], 1e-6, 1e-13);
-  ck_assert_near(x[1], 1.22e-6, 1e-13);
-  ck_assert(y[1] < y[0]);
-  memory_free(text);
-  record_destroy(pareto);
-}
-END_TEST
-
-START_TEST(a_file_without_such_points_is_refused) {
-  Record *pareto = make_pareto(), *other = record_new();
-  ck_assert_int_eq(write_frontier(pareto, "force"), STATUS_INPUT);
-  ck_assert_int_eq(write_frontier(other, NULL), STATUS_INPUT);
-  record_destroy(pareto);
-  record_destroy(other);
-}
-END_TEST
-
 // Its line and column are named.
 START_TEST(a_damaged_history_is_refused) {
   static const struct {
@@ -228,22 +122,13 @@ START_TEST(a_picture_that_gnuplot_does_not_end_is_none) {
 }
 END_TEST
 
-START_TEST(gnuplot_draws_both) {
+START_TEST(gnuplot_draws_a_history) {
   AppReportRun run = {.directory = name_a, .history = history};
   struct stat info;
   ck_assert_ok(write_history(&run, 1));
   ck_assert_ok(app_gnuplot_run(script, picture));
   ck_assert_int_eq(stat(picture, &info), 0);
   ck_assert_int_gt((int)info.st_size, 4000);
-  Record *pareto = make_pareto();
-  ck_assert_ok(write_frontier(pareto, NULL));
-  ck_assert_ok(app_gnuplot_run(script, picture));
-  char *text;
-  size_t size;
-  ck_assert_ok(file_read(picture, &text, &size));
-  ck_assert_int_ge(count_of(text, "model-"), MODELS);
-  memory_free(text);
-  record_destroy(pareto);
 }
 END_TEST
 
@@ -253,12 +138,8 @@ int main(void) {
   tcase_add_test(test_case, a_history_has_a_curve_for_each_force_energy_and_step_that_is_not_zero);
   tcase_add_test(test_case, a_run_without_history_is_refused);
   tcase_add_test(test_case, another_ending_than_svg_pdf_and_png_is_refused);
-  tcase_add_test(test_case, every_point_of_a_frontier_has_a_label_of_its_own_place);
-  tcase_add_test(test_case, a_frontier_is_of_processor_time_where_there_is);
-  tcase_add_test(test_case, points_on_the_frontier_are_filled);
-  tcase_add_test(test_case, a_file_without_such_points_is_refused);
   tcase_add_test(test_case, a_damaged_history_is_refused);
   tcase_add_test(test_case, a_picture_that_gnuplot_does_not_end_is_none);
-  tcase_add_test(test_case, gnuplot_draws_both);
+  tcase_add_test(test_case, gnuplot_draws_a_history);
   return suite_run("plot", test_case, 20);
 }

@@ -68,7 +68,6 @@ START_TEST(a_list_with_an_empty_name_is_a_usage_error_and_blanks_are_none) {
                                       "bench overlap -b 4,,8",
                                       "stress --quick --overlap \"\"",
                                       "datagen --list --mix ,",
-                                      "plot pareto.json -o x.svg --quantity ,",
                                       "bench overlap --model clip,cilp"};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     char arguments[400];

@@ -90,6 +90,11 @@ START_TEST(the_frontier_has_every_model_s_error_and_time) {
   ck_assert_double_eq(number_of(points, "exact", "V", "frontier"), 1);
   ck_assert_double_gt(number_of(points, "geo-small", "force", "overlap_share"), 0);
   record_destroy(pareto);
+  char *picture = read_text("out/pareto.svg");
+  ck_assert_ptr_nonnull(strstr(picture, ">geo-small<"));
+  ck_assert_ptr_nonnull(strstr(picture, ">exact (no error)<"));
+  ck_assert_ptr_nonnull(strstr(picture, "</svg>"));
+  memory_free(picture);
 }
 END_TEST
 

@@ -2,7 +2,6 @@
 #include "app/command/output/plot.h"
 
 #include <string.h>
-#include <sys/stat.h>
 
 #include "app/cli/argument.h"
 #include "app/plot/gnuplot.h"
@@ -11,19 +10,18 @@
 #include "base/log.h"
 #include "base/memory.h"
 
-enum { KEY_QUANTITY = 256, MAX_SOURCES = 2 };
+enum { MAX_SOURCES = 2 };
 
 typedef struct Options {
   const char *sources[MAX_SOURCES];
   int source_count;
-  const char *picture, *quantities;
+  const char *picture;
   bool is_quiet;
 } Options;
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "FILE", 0,
      "The picture: FILE.svg, FILE.pdf or FILE.png; its script is FILE with .gp appended", 0},
-    {"quantity", KEY_QUANTITY, "NAME,...", 0, "Of a frontier: only V, V+grad or force", 0},
     {"quiet", 'q', NULL, 0, "Say errors only", 0},
     {0},
 };
@@ -34,9 +32,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'o':
     options->picture = text;
     return 0;
-  case KEY_QUANTITY:
-    options->quantities = app_argument_words(state, "quantity", text, "V,force");
-    return 0;
   case 'q':
     options->is_quiet = true;
     return 0;
@@ -46,8 +41,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     options->sources[options->source_count++] = text;
     return 0;
   case ARGP_KEY_END:
-    if (options->source_count == 0)
-      argp_error(state, "name the directory of a run, of two, or a pareto.json");
+    if (options->source_count == 0) argp_error(state, "name the directory of a run, or of two");
     if (!options->picture) argp_error(state, "name the picture, as in -o forces.svg");
     return 0;
   default:
@@ -83,33 +77,10 @@ static Status write_history(FILE *script, const Options *options) {
   return status;
 }
 
-static Status write_frontier(FILE *script, const Options *options) {
-  if (options->source_count > 1) return status_fail(STATUS_USAGE, "a frontier is plotted of one file");
-  Record *pareto;
-  TRY(record_read(&pareto, options->sources[0]));
-  Status status = app_plot_frontier(script, options->picture, pareto, options->quantities);
-  record_destroy(pareto);
-  return status == STATUS_INPUT ? status_prefix(status, "%s", options->sources[0]) : status;
-}
-
-// A directory, also one that is not there; a name that ends in .json is that of a frontier.
-static bool is_run_named(const char *source) {
-  struct stat info;
-  if (stat(source, &info) == 0) return S_ISDIR(info.st_mode);
-  size_t length = strlen(source), ending = strlen(".json");
-  return length < ending || strcmp(source + length - ending, ".json") != 0;
-}
-
 static Status plot(const Options *options, const char *path) {
-  bool is_run = is_run_named(options->sources[0]);
-  if (is_run && options->quantities)
-    return status_fail(STATUS_USAGE,
-                       "--quantity chooses from a frontier, and %s is a run; leave it out, or name a "
-                       "pareto.json",
-                       options->sources[0]);
   FileWriter writer;
   TRY(file_begin(&writer, path));
-  Status status = is_run ? write_history(writer.stream, options) : write_frontier(writer.stream, options);
+  Status status = write_history(writer.stream, options);
   if (status) {
     file_abandon(&writer);
     return status;
@@ -123,9 +94,9 @@ static Status plot(const Options *options, const char *path) {
 static const struct argp argp = {
     option_table,
     parse,
-    "DIR [DIR] | pareto.json",
-    "Draw a figure for a paper: the forces, energies and steps of one or two runs, or the frontier of error "
-    "and time.\vThe gnuplot script that drew it is kept beside it and holds the data.",
+    "DIR [DIR]",
+    "Draw a figure for a paper: the forces, energies and steps of one or two runs.\vThe gnuplot script that "
+    "drew it is kept beside it and holds the data.",
     NULL,
     NULL,
     NULL};
@@ -145,7 +116,5 @@ static int run_command(int argument_count, char **arguments) {
   return app_cli_command_end(status);
 }
 
-const AppCommand app_command_plot = {.name = "plot",
-                                     .help = "draw one or two runs, or a frontier, for a paper",
-                                     .argp = &argp,
-                                     .run = run_command};
+const AppCommand app_command_plot = {
+    .name = "plot", .help = "draw one or two runs for a paper", .argp = &argp, .run = run_command};
