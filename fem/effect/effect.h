@@ -8,25 +8,12 @@
 #include <stdbool.h>
 
 #include "base/files/record.h"
+#include "fem/effect/energy.h"
 #include "fem/effect/state.h"
 #include "fem/model/model.h"
 #include "fem/sparse/matrix.h"
 
 struct FemSystem;
-
-// Energies by kind [J] and powers [W]; each effect adds its own.
-typedef struct FemEnergy {
-  double kinetic; // of the unknown coordinates
-  double elastic, gravity, contact;
-  double dissipated_power; // ≥ 0
-  double driven_power;     // of whatever moves prescribed coordinates and obstacles
-  double applied_work;     // of loads since the start [J]
-  double plastic_work;     // dissipated by plasticity since the start [J]
-  double friction_work;    // dissipated by friction with a history since the start [J]
-  double common_kinetic;   // of `kinetic`, that of the common velocity (fem/model/floating.h)
-  double common_gravity;   // likewise: all of `gravity` where bodies float, else nothing
-  double turned_power;     // of friction that drives slip, since it has reversed within a step [W]
-} FemEnergy;
 
 typedef struct FemEffectOps {
   const char *name;

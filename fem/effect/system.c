@@ -468,15 +468,15 @@ static Status add_energies(FemSystem *system, const FemState *state, Part part, 
 
 // Σ over ranks of what each gives of energies, unless one cannot.
 static Status sum_energies(FemSystem *system, const FemState *state, FemEnergy *energy) {
-  enum { PARTS = sizeof(FemEnergy) / sizeof(double) };
   FemEnergy own = {0};
-  double sums[PARTS + 1], *to = &energy->kinetic;
+  double sums[FEM_ENERGY_TERMS + 1]; // one more for how many could not
   Status status = add_energies(system, state, PART_DIVIDED, &own);
-  memcpy(sums, &own, sizeof own);
-  sums[PARTS] = status != STATUS_OK;
-  ranks()->sum(sums, PARTS + 1);
-  if (sums[PARTS] > 0) return ranks()->worst(status);
-  for (int i = 0; i < PARTS; i++) to[i] += sums[i];
+  memcpy(sums, own.terms, sizeof own.terms);
+  sums[FEM_ENERGY_TERMS] = status != STATUS_OK;
+  ranks()->sum(sums, FEM_ENERGY_TERMS + 1);
+  if (sums[FEM_ENERGY_TERMS] > 0) return ranks()->worst(status);
+  memcpy(own.terms, sums, sizeof own.terms);
+  fem_energy_add(energy, &own);
   return ranks()->worst(add_energies(system, state, PART_WHOLE, energy));
 }
 

@@ -77,16 +77,8 @@ Status fem_run_frames_write(FemRunState *run, double time, const FemMeasures *me
 Status fem_run_frames_measure(FemRunState *run, FemMeasures *measures) {
   TRY(fem_system_check_state(&run->system, &run->trial));
   TRY(fem_recorder_measure(&run->recorder, &run->trial, measures));
-  const FemEnergy *energy = &measures->energy;
-  const double parts[] = {energy->kinetic,      energy->elastic,      energy->gravity,
-                          energy->contact,      energy->applied_work, energy->dissipated_power,
-                          energy->driven_power, energy->plastic_work, energy->friction_work};
-  static const char *const names[] = {"kinetic energy",    "elastic energy", "energy of gravity",
-                                      "energy of contact", "work of loads",  "dissipated power",
-                                      "driven power",      "plastic work",   "work of friction"};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
-    if (!isfinite(parts[k])) return status_fail(STATUS_RETRY, "the %s is not a number", names[k]);
-  return STATUS_OK;
+  const char *faulty = fem_energy_faulty_term(&measures->energy);
+  return faulty ? status_fail(STATUS_RETRY, "the %s is not a number", faulty) : STATUS_OK;
 }
 
 // Measures at a frame within the last step; the contact lists are renewed there if it lies beyond their
