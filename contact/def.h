@@ -16,6 +16,7 @@ typedef struct ContactBody {
   int quadratic_begin, quadratic_end; // equal: its tetrahedra are linear
   bool is_obstacle;                   // carries no unknowns: static or driven
   bool meets_itself;                  // parts of it may touch each other (contact/search/self.h)
+  int smooth; // of linear tetrahedra: the level of contact/surface/smooth.h; 0: facets as they are
 } ContactBody;
 
 // Obstacles without elements.
@@ -76,6 +77,9 @@ typedef struct ContactSystemDef {
   // Bit k of a vertex: it lies on the k-th part of the boundary that is no surface (a plane of symmetry, what
   // is glued). Faces whose three vertices share a bit have no depth below them. NULL: none; read in creation.
   const unsigned char *inner; //                                            (vertex_count)
+  double crease; // between faces that make more, an edge stays sharp where a body is smooth [rad]
+  // Depth of a vertex at rest where its creator knows it [m]; NaN: it is measured. NULL: none; borrowed.
+  const double *heights; //                                                 (vertex_count)
   ContactPotential potential;
   double stiffness; // κ
   // κ of each body (row) with each party, bodies then shapes; NULL: `stiffness` for all. Read in creation.

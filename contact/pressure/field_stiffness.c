@@ -8,18 +8,58 @@
 #include "base/memory.h"
 #include "contact/pressure/field.h"
 
-// Pairs whose matrices are held at once; vertices that two elements have at most: of a star ten, four and
-// one.
-enum { PORTION = 512, MOST = 32, STRIDE = 3 * MOST };
+enum { PORTION = 512 }; // pairs whose matrices are held at once
+
+// ---- The vertices of an element.
+
+static int element_of(const ContactLayout *layout, int tet) {
+  return layout->def.origin ? layout->def.origin[tet] : tet;
+}
+
+static int place_of(ContactFieldStiffness *stiffness, int vertex) {
+  int *place = &stiffness->place[vertex];
+  if (*place == 0) {
+    assert(stiffness->count < stiffness->most);
+    stiffness->vertices[stiffness->count] = vertex;
+    *place = ++stiffness->count;
+  }
+  return *place - 1;
+}
+
+static void forget_vertices(ContactFieldStiffness *stiffness) {
+  for (int k = 0; k < stiffness->count; k++) stiffness->place[stiffness->vertices[k]] = 0;
+  stiffness->count = 0;
+}
+
+// Those of all that the contact mesh has in place of one element, which stands together.
+static void list_element(ContactFieldStiffness *stiffness, const ContactLayout *layout, int tet) {
+  int element = element_of(layout, tet), begin = tet, end = tet + 1;
+  while (begin > 0 && element_of(layout, begin - 1) == element) begin--;
+  while (end < layout->def.tet_count && element_of(layout, end) == element) end++;
+  for (int i = begin; i < end; i++)
+    for (int v = 0; v < 4; v++) place_of(stiffness, layout->def.tets[i][v]);
+}
+
+// How many vertices two elements have at most.
+static int most_of(const ContactLayout *layout) {
+  int cells = 0, most = 1;
+  for (int i = 0; i < layout->def.tet_count; i++) {
+    cells = i > 0 && element_of(layout, i) == element_of(layout, i - 1) ? cells + 1 : 1;
+    if (cells > most) most = cells;
+  }
+  return 2 * (most + 3 < 4 * most ? 3 + most : 4 * most);
+}
 
 Status contact_field_stiffness_create(ContactFieldStiffness *stiffness, const ContactLayout *layout) {
   *stiffness = (ContactFieldStiffness){0};
   if (!layout->mesh.has_field) return STATUS_OK;
+  stiffness->most = most_of(layout);
+  size_t width = 3 * (size_t)stiffness->most;
   stiffness->matrices = memory_zeroed((size_t)PORTION * 576, sizeof(double));
-  stiffness->vertices = memory_zeroed(MOST, sizeof(int));
+  stiffness->vertices = memory_zeroed((size_t)stiffness->most, sizeof(int));
   stiffness->place = memory_zeroed((size_t)layout->def.vertex_count, sizeof(int));
-  stiffness->sum = memory_zeroed((size_t)STRIDE * STRIDE, sizeof(double));
-  stiffness->dense = memory_zeroed((size_t)STRIDE * STRIDE, sizeof(double));
+  stiffness->sum = memory_zeroed(width * width, sizeof(double));
+  stiffness->dense = memory_zeroed(width * width, sizeof(double));
   bool fits =
       stiffness->matrices && stiffness->vertices && stiffness->place && stiffness->sum && stiffness->dense;
   return fits ? STATUS_OK : status_no_memory("contact stiffness");
@@ -71,36 +111,30 @@ static Status order_pairs(ContactFieldStiffness *stiffness, const ContactLayout 
   return STATUS_OK;
 }
 
-Status contact_field_stiffness_thin(ContactFieldStiffness *stiffness, const ContactLayout *layout, int *count,
-                                    ContactPair *pairs) {
-  int kept = 0;
-  TRY(order_pairs(stiffness, layout, *count, pairs));
-  // pairs are told by their place: one of each kind is marked, then all others are dropped in their own order
-  for (int k = 0; k < *count; k++)
-    if (k > 0 && are_alike(&stiffness->order[k], &stiffness->order[k - 1]))
-      pairs[stiffness->order[k].pair].interface = -1;
-  for (int k = 0; k < *count; k++)
-    if (pairs[k].interface >= 0) pairs[kept++] = pairs[k];
-  *count = kept;
-  return STATUS_OK;
+Status contact_field_stiffness_couple(ContactFieldStiffness *stiffness, const ContactLayout *layout,
+                                      int count, const ContactPair *pairs, void *visitor,
+                                      Status (*visit)(void *visitor, int count, const int *vertices)) {
+  Status status = STATUS_OK;
+  TRY(order_pairs(stiffness, layout, count, pairs));
+  for (int k = 0; k < count && !status; k++) {
+    if (k > 0 && are_alike(&stiffness->order[k], &stiffness->order[k - 1])) continue;
+    const ContactPair *pair = &pairs[stiffness->order[k].pair];
+    for (int side = 0; side < 2; side++)
+      if (layout->interfaces[pair->interface].weight[side] > 0)
+        list_element(stiffness, layout, contact_mesh_tet(&layout->mesh, pair->cells[side]));
+    status = visit(visitor, stiffness->count, stiffness->vertices);
+    forget_vertices(stiffness);
+  }
+  return status;
 }
 
 // ---- The sum over the cells of two elements.
-
-static int place_of(ContactFieldStiffness *stiffness, int vertex) {
-  int *place = &stiffness->place[vertex];
-  if (*place == 0) {
-    assert(stiffness->count < MOST);
-    stiffness->vertices[stiffness->count] = vertex;
-    *place = ++stiffness->count;
-  }
-  return *place - 1;
-}
 
 // The part of a pair's matrix, of `width` rows, that belongs to sides which carry unknowns.
 static void add_pair(ContactFieldStiffness *stiffness, const ContactLayout *layout, const ContactPair *pair,
                      const double *matrix) {
   const double *weight = layout->interfaces[pair->interface].weight;
+  size_t stride = 3 * (size_t)stiffness->most;
   int places[8], count = pair->cells[1] < 0 ? 4 : 8, width = 3 * count;
   for (int v = 0; v < count; v++)
     places[v] = weight[v / 4] > 0
@@ -109,22 +143,21 @@ static void add_pair(ContactFieldStiffness *stiffness, const ContactLayout *layo
   for (int v = 0; v < count; v++)
     for (int w = 0; w < count; w++) {
       if (places[v] < 0 || places[w] < 0) continue;
-      double *to = stiffness->sum + 3 * places[v] * STRIDE + 3 * places[w];
+      double *to = stiffness->sum + 3 * (size_t)places[v] * stride + 3 * places[w];
       const double *from = matrix + 3 * v * width + 3 * w;
       for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) to[STRIDE * r + c] += from[width * r + c];
+        for (int c = 0; c < 3; c++) to[stride * (size_t)r + (size_t)c] += from[width * r + c];
     }
 }
 
 static void hand_on(ContactFieldStiffness *stiffness, void *self, ContactFieldTake take) {
-  int width = 3 * stiffness->count;
-  for (int r = 0; r < width; r++) {
-    memcpy(stiffness->dense + r * width, stiffness->sum + r * STRIDE, (size_t)width * sizeof(double));
-    memset(stiffness->sum + r * STRIDE, 0, (size_t)width * sizeof(double));
+  size_t width = 3 * (size_t)stiffness->count, stride = 3 * (size_t)stiffness->most;
+  for (size_t r = 0; r < width; r++) {
+    memcpy(stiffness->dense + r * width, stiffness->sum + r * stride, width * sizeof(double));
+    memset(stiffness->sum + r * stride, 0, width * sizeof(double));
   }
   if (width > 0) take(self, stiffness->count, stiffness->vertices, stiffness->dense);
-  for (int k = 0; k < stiffness->count; k++) stiffness->place[stiffness->vertices[k]] = 0;
-  stiffness->count = 0;
+  forget_vertices(stiffness);
 }
 
 // ---- All of it.

@@ -19,6 +19,7 @@ typedef struct ContactFieldStiffness {
   size_t order_capacity;
   double *matrices; // of a portion of the pairs                     (PORTION, 24, 24)
   // Two elements being summed.
+  int most; // vertices that two elements have at most
   int count;
   int *vertices; // of the contact mesh                              (count)
   int *place;    // 1 + place among them, 0: none                    (vertex_count)
@@ -37,9 +38,9 @@ size_t contact_field_stiffness_bytes(const ContactFieldStiffness *stiffness); //
 Status contact_field_stiffness_add(ContactFieldStiffness *stiffness, const ContactLayout *layout,
                                    const ContactEvaluation *evaluation, void *self, ContactFieldTake take);
 
-// Keeps of the pairs one for any two elements, in an order in which interfaces stand together; how many.
-// STATUS_MEMORY possible.
-Status contact_field_stiffness_thin(ContactFieldStiffness *stiffness, const ContactLayout *layout, int *count,
-                                    ContactPair *pairs);
+// Calls `visit` with the vertices of the contact mesh that any two elements with a pair among these couple.
+Status contact_field_stiffness_couple(ContactFieldStiffness *stiffness, const ContactLayout *layout,
+                                      int count, const ContactPair *pairs, void *visitor,
+                                      Status (*visit)(void *visitor, int count, const int *vertices));
 
 #endif

@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/pressure/star_sink.h"
 
-#include <assert.h>
 #include <string.h>
 
 #include "base/memory.h"
 
-// Those that carry two tetrahedra: the ten nodes of an element each.
-enum { DENSE_MAX = 20 };
+// The most that carry two tetrahedra.
+static int most_carriers(const ContactStars *stars) {
+  int most = 0;
+  for (int i = 0; i < stars->def.tet_count; i++) {
+    int count = 0;
+    for (int v = 0; v < 4; v++)
+      count += stars->begin[stars->def.tets[i][v] + 1] - stars->begin[stars->def.tets[i][v]];
+    most = count > most ? count : most;
+  }
+  return 2 * most < stars->given_vertex_count ? 2 * most : stars->given_vertex_count;
+}
 
 Status contact_star_sink_create(ContactStarSink *sink, const ContactStars *stars) {
   *sink = (ContactStarSink){.stars = stars};
@@ -15,7 +23,8 @@ Status contact_star_sink_create(ContactStarSink *sink, const ContactStars *stars
   sink->place = memory_zeroed(count, sizeof *sink->place);
   sink->vertices = memory_zeroed(count, sizeof *sink->vertices);
   sink->outer = memory_zeroed(3 * count, sizeof *sink->outer);
-  sink->dense = memory_zeroed((size_t)9 * DENSE_MAX * DENSE_MAX, sizeof *sink->dense);
+  size_t width = 3 * (size_t)most_carriers(stars);
+  sink->dense = memory_zeroed(width * width, sizeof *sink->dense);
   return sink->place && sink->vertices && sink->outer && sink->dense ? STATUS_OK
                                                                      : status_no_memory("contact stiffness");
 }
@@ -86,7 +95,6 @@ static void add_dense(void *self, int count, const int *vertices, const double *
   ContactStarSink *sink = self;
   size_t stride = 3 * (size_t)count;
   list_carriers(sink, count, vertices);
-  assert(sink->count <= DENSE_MAX);
   memset(sink->dense, 0, 9 * (size_t)sink->count * (size_t)sink->count * sizeof(double));
   for (int v = 0; v < count; v++)
     for (int w = 0; w < count; w++)

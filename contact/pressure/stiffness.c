@@ -113,17 +113,6 @@ static Status walk_nodes(ContactStiffness *stiffness, const Walk *walk, const Co
   return STATUS_OK;
 }
 
-// Of `field`, whose matrix has a part of its own: the pairs couple.
-static Status walk_pairs(ContactStiffness *stiffness, const Walk *walk, const ContactPatch *patch, void *self,
-                         TakeClique take) {
-  for (int k = patch->pair_begin; k < patch->pair_end; k++) {
-    empty(stiffness);
-    collect_pair(stiffness, walk, k, 1);
-    TRY(take(self, stiffness, 0));
-  }
-  return STATUS_OK;
-}
-
 static Status walk_all(ContactStiffness *stiffness, const ContactLayout *layout,
                        const ContactPatches *patches, const ContactPair *pairs, const double *gradients,
                        void *self, TakeClique take) {
@@ -131,7 +120,7 @@ static Status walk_all(ContactStiffness *stiffness, const ContactLayout *layout,
   for (int p = 0; p < patches->patch_count; p++) {
     const ContactPatch *patch = &patches->patches[p];
     Walk walk = {layout, patches, &layout->interfaces[patch->interface], pairs, gradients};
-    TRY((layout->mesh.has_field ? walk_pairs : walk_nodes)(stiffness, &walk, patch, self, take));
+    TRY(walk_nodes(stiffness, &walk, patch, self, take));
   }
   empty(stiffness);
   return STATUS_OK;
@@ -274,7 +263,8 @@ Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout
     if (is_within(layout, &candidates->pairs[k], time, positions, reach))
       stiffness->near_pairs[count++] = candidates->pairs[k];
   if (layout->mesh.has_field)
-    TRY(contact_field_stiffness_thin(&stiffness->field, layout, &count, stiffness->near_pairs));
+    return contact_field_stiffness_couple(&stiffness->field, layout, count, stiffness->near_pairs, visitor,
+                                          visit);
   TRY(contact_patches_build(&stiffness->near, layout, count, stiffness->near_pairs));
   TRY(contact_patches_index(&stiffness->near));
   Visit self = {visitor, visit};

@@ -36,6 +36,10 @@ static Status find_surface(const ContactSystemDef *def, int b, ContactSurface *s
   return contact_surface_index(surface, def->rest);
 }
 
+static bool has_height(const ContactSystemDef *def, int vertex) {
+  return def->heights && !isnan(def->heights[vertex]);
+}
+
 static Status measure_body(Work *work, int b) {
   const ContactSystemDef *def = work->def;
   const ContactBody *body = &def->bodies[b];
@@ -51,7 +55,9 @@ static Status measure_body(Work *work, int b) {
     }
 #pragma omp parallel for schedule(static) if (body->vertex_end - body->vertex_begin > 512)
     for (int v = body->vertex_begin; v < body->vertex_end; v++)
-      if (depths[v] > 0) depths[v] = contact_surface_distance(&surface, rest_of(def, v));
+      if (depths[v] > 0)
+        depths[v] =
+            has_height(def, v) ? def->heights[v] : contact_surface_distance(&surface, rest_of(def, v));
   }
   contact_surface_destroy(&surface);
   return status;
@@ -79,7 +85,8 @@ static bool is_split(const Work *work, int tet) {
   if (!work->outer[tet]) return false;
   inverse_heights(work->def, tet, inverse);
   for (int f = 0; f < 4; f++)
-    if (work->outer[tet] >> f & 1 && !(fabs(depths[vertices[f]] * inverse[f] - 1) <= SLOPE_TOLERANCE))
+    if (work->outer[tet] >> f & 1 && !has_height(work->def, vertices[f]) &&
+        !(fabs(depths[vertices[f]] * inverse[f] - 1) <= SLOPE_TOLERANCE))
       return true;
   return false;
 }

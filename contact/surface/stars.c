@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "contact/surface/fit.h"
+#include "contact/surface/smooth.h"
 #include "contact/surface/surface.h"
 
 enum { NODES = 10, EIGHTHS = 8, MOST_CELLS = 24 };
@@ -219,33 +221,41 @@ static Status find_outer(const ContactSystemDef *def, const ContactBody *body, c
 typedef struct Work {
   const ContactSystemDef *given;
   ContactStars *stars;
-  unsigned char *outer; // of each quadratic element
+  unsigned char *outer;   // of each quadratic element
+  ContactSmooth *smooths; // (body_count)
   int tet_count, vertex_count, row_count;
 } Work;
 
 static Status no_memory(void) {
-  return status_no_memory("the contact mesh of quadratic elements");
+  return status_no_memory("the contact mesh of curved bodies");
 }
 
-// Room for one vertex more that follows ten at most.
-static bool reserve_vertex(Work *work) {
+// Room for one vertex more.
+static bool reserve_vertex(Work *work, int count) {
   ContactStars *stars = work->stars;
-  size_t rows = (size_t)work->row_count + NODES;
-  return memory_reserve((void **)&stars->begin, &stars->begin_capacity, (size_t)work->vertex_count + 2,
-                        sizeof(int)) &&
+  size_t rows = (size_t)(work->row_count + count), vertices = (size_t)work->vertex_count + 1;
+  return memory_reserve((void **)&stars->begin, &stars->begin_capacity, vertices + 1, sizeof(int)) &&
+         memory_reserve((void **)&stars->heights, &stars->height_capacity, vertices, sizeof(double)) &&
+         memory_reserve((void **)&stars->inner, &stars->inner_capacity, vertices, 1) &&
          memory_reserve((void **)&stars->nodes, &stars->row_capacity, rows, sizeof(int)) &&
          memory_reserve((void **)&stars->weights, &stars->weight_capacity, rows, sizeof(double));
 }
 
-static Status add_vertex(Work *work, int count, const int *nodes, const double *weights, int *number) {
+// Between the first `own` nodes, which say whether it is on a part of the boundary that is no surface.
+static Status add_vertex(Work *work, int count, const int *nodes, const double *weights, int own,
+                         int *number) {
   ContactStars *stars = work->stars;
-  if (!reserve_vertex(work)) return no_memory();
+  const unsigned char *inner = work->given->inner;
+  if (!reserve_vertex(work, count)) return no_memory();
+  *number = work->vertex_count++;
+  stars->heights[*number] = NAN;
+  stars->inner[*number] = inner ? 0xff : 0;
   for (int k = 0; k < count; k++) {
     if (weights[k] == 0) continue;
     stars->nodes[work->row_count] = nodes[k];
     stars->weights[work->row_count++] = weights[k];
+    if (inner && k < own) stars->inner[*number] &= inner[nodes[k]];
   }
-  *number = work->vertex_count++;
   stars->begin[work->vertex_count] = work->row_count;
   return STATUS_OK;
 }
@@ -274,7 +284,7 @@ static Status add_star(Work *work, const int nodes[NODES], const Star *star, int
   for (int a = 0; a < NODES; a++) numbers[a] = work->stars->place[nodes[a]];
   for (int k = NODES; k < NODES + 5; k++)
     if (k == INSIDE || star->outer >> (k - NODES) & 1)
-      TRY(add_vertex(work, NODES, nodes, star->weights[k], &numbers[k]));
+      TRY(add_vertex(work, NODES, nodes, star->weights[k], NODES, &numbers[k]));
   for (int c = 0; c < star->count; c++) {
     int vertices[4];
     for (int v = 0; v < 4; v++) vertices[v] = numbers[star->cells[c][v]];
@@ -296,26 +306,63 @@ static Status add_element(Work *work, const ContactBody *body, int element) {
   return STATUS_OK;
 }
 
+// The points of a smooth surface; that of number p becomes vertex first + p.
+static Status add_points(Work *work, const ContactSmooth *smooth, int *first) {
+  *first = work->vertex_count;
+  for (int p = 0; p < smooth->point_count; p++) {
+    double weights[CONTACT_FIT_MOST_COUNT];
+    const int *nodes;
+    int number, count = contact_smooth_carry(smooth, p, &nodes, weights);
+    TRY(add_vertex(work, count, nodes, weights, smooth->owns[p], &number));
+  }
+  return STATUS_OK;
+}
+
+static Status add_cut(Work *work, int tet, const ContactSmoothCut *cut, int first) {
+  int inside = -1;
+  if (cut->has_inside) {
+    TRY(add_vertex(work, 4, work->given->tets[tet], cut->inside, 4, &inside));
+    if (cut->depth < INFINITY) work->stars->heights[inside] = cut->depth;
+  }
+  for (int c = 0; c < cut->count; c++) {
+    int vertices[4];
+    for (int v = 0; v < 4; v++) {
+      int from = cut->cells[c][v], given_count = work->given->vertex_count;
+      vertices[v] = from == CONTACT_SMOOTH_INSIDE ? inside
+                    : from < given_count          ? work->stars->place[from]
+                                                  : first + from - given_count;
+    }
+    TRY(add_tet(work, tet, false, vertices));
+  }
+  return STATUS_OK;
+}
+
+static Status add_linear(Work *work, int b) {
+  const ContactBody *body = &work->given->bodies[b];
+  const ContactSmooth *smooth = &work->smooths[b];
+  ContactSmoothCut cut;
+  int first = 0;
+  if (smooth->curved_count > 0) TRY(add_points(work, smooth, &first));
+  for (int i = body->tet_begin; i < body->tet_end; i++) {
+    if (smooth->curved_count > 0 && contact_smooth_cut(smooth, i, &cut))
+      TRY(add_cut(work, i, &cut, first));
+    else
+      TRY(keep_tet(work, i));
+  }
+  return STATUS_OK;
+}
+
 static Status add_body(Work *work, int b) {
   const ContactBody *given = &work->given->bodies[b];
   ContactBody *body = &work->stars->bodies[b];
   body->vertex_begin = work->vertex_count, body->tet_begin = work->tet_count;
   for (int v = given->vertex_begin; v < given->vertex_end; v++)
-    TRY(add_vertex(work, 1, &v, &(double){1}, &work->stars->place[v]));
-  if (given->quadratic_begin == given->quadratic_end)
-    for (int i = given->tet_begin; i < given->tet_end; i++) TRY(keep_tet(work, i));
+    TRY(add_vertex(work, 1, &v, &(double){1}, 1, &work->stars->place[v]));
+  if (given->quadratic_begin == given->quadratic_end) TRY(add_linear(work, b));
   for (int e = given->quadratic_begin; e < given->quadratic_end; e++) TRY(add_element(work, given, e));
   body->vertex_end = work->vertex_count, body->tet_end = work->tet_count;
   body->quadratic_begin = body->quadratic_end = 0;
   return STATUS_OK;
-}
-
-// A carried vertex lies on a part of the boundary that is no surface where all do that it follows.
-static void mark_inner(ContactStars *stars, const unsigned char *given) {
-  for (int v = 0; v < stars->def.vertex_count; v++) {
-    stars->inner[v] = 0xff;
-    for (int r = stars->begin[v]; r < stars->begin[v + 1]; r++) stars->inner[v] &= given[stars->nodes[r]];
-  }
 }
 
 static Status finish(Work *work) {
@@ -324,11 +371,10 @@ static Status finish(Work *work) {
   ContactSystemDef *def = &stars->def;
   def->vertex_count = work->vertex_count, def->tet_count = work->tet_count;
   stars->rest = memory_zeroed((size_t)work->vertex_count, 3 * sizeof(double));
-  stars->inner = given->inner ? memory_zeroed((size_t)work->vertex_count, 1) : NULL;
-  if (!stars->rest || (given->inner && !stars->inner)) return no_memory();
+  if (!stars->rest) return no_memory();
   contact_stars_place(stars, given->rest, stars->rest);
-  if (given->inner) mark_inner(stars, given->inner);
-  def->rest = stars->rest, def->inner = stars->inner, def->bodies = stars->bodies;
+  def->rest = stars->rest, def->bodies = stars->bodies, def->heights = stars->heights;
+  def->inner = given->inner ? stars->inner : NULL;
   def->tets = (const int(*)[4])stars->tets, def->origin = stars->origin;
   def->origin_count = given->tet_count;
   def->quadratics = NULL;
@@ -349,32 +395,57 @@ static Status build(Work *work, int quadratic_count, int (*corners)[4]) {
   return finish(work);
 }
 
-Status contact_stars_create(ContactStars *stars, const ContactSystemDef *def) {
+// The surfaces of linear bodies that are wanted smooth; whether one is curved.
+static Status find_smooth(Work *work, bool *has_curved) {
+  const ContactSystemDef *given = work->given;
+  for (int b = 0; b < given->body_count; b++) {
+    const ContactBody *body = &given->bodies[b];
+    if (body->smooth == 0 || body->quadratic_end > body->quadratic_begin) continue;
+    TRY(contact_smooth_create(&work->smooths[b], given, body, body->smooth, given->crease));
+    if (work->smooths[b].curved_count > 0) *has_curved = true;
+  }
+  return STATUS_OK;
+}
+
+static Status create(Work *work) {
+  const ContactSystemDef *given = work->given;
   int quadratic_count = 0;
+  work->smooths = memory_zeroed((size_t)given->body_count, sizeof *work->smooths);
+  if (!work->smooths) return no_memory();
+  for (int b = 0; b < given->body_count; b++)
+    if (given->bodies[b].quadratic_end > quadratic_count) quadratic_count = given->bodies[b].quadratic_end;
+  work->stars->is_needed = quadratic_count > 0;
+  TRY(find_smooth(work, &work->stars->is_needed));
+  if (!work->stars->is_needed) return STATUS_OK;
+  int(*corners)[4] = memory_zeroed((size_t)quadratic_count, sizeof *corners);
+  Status status = build(work, quadratic_count, corners);
+  memory_free(corners);
+  return status;
+}
+
+Status contact_stars_create(ContactStars *stars, const ContactSystemDef *def) {
   *stars =
       (ContactStars){.def = *def, .given_vertex_count = def->vertex_count, .given_tet_count = def->tet_count};
-  for (int b = 0; b < def->body_count; b++)
-    if (def->bodies[b].quadratic_end > quadratic_count) quadratic_count = def->bodies[b].quadratic_end;
-  if (quadratic_count == 0 || def->potential != CONTACT_POTENTIAL_FIELD) return STATUS_OK;
-  stars->is_needed = true;
-  int(*corners)[4] = memory_zeroed((size_t)quadratic_count, sizeof *corners);
+  if (def->potential != CONTACT_POTENTIAL_FIELD) return STATUS_OK;
   Work work = {.given = def, .stars = stars};
-  Status status = build(&work, quadratic_count, corners);
-  memory_free(corners);
+  Status status = create(&work);
+  for (int b = 0; b < def->body_count && work.smooths; b++) contact_smooth_destroy(&work.smooths[b]);
+  memory_free(work.smooths);
   memory_free(work.outer);
   return status;
 }
 
 void contact_stars_destroy(ContactStars *stars) {
-  void *arrays[] = {stars->bodies,  stars->rest,  stars->inner, stars->tets,  stars->origin,
+  void *arrays[] = {stars->bodies,  stars->rest,  stars->inner, stars->tets,  stars->origin, stars->heights,
                     stars->is_star, stars->place, stars->begin, stars->nodes, stars->weights};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   *stars = (ContactStars){0};
 }
 
 size_t contact_stars_bytes(const ContactStars *stars) {
-  const void *const arrays[] = {stars->bodies,  stars->rest,  stars->inner, stars->tets,  stars->origin,
-                                stars->is_star, stars->place, stars->begin, stars->nodes, stars->weights};
+  const void *const arrays[] = {stars->bodies, stars->rest,    stars->inner,   stars->tets,
+                                stars->origin, stars->heights, stars->is_star, stars->place,
+                                stars->begin,  stars->nodes,   stars->weights};
   return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
 }
 

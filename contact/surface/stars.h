@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mesh that the potential `field` works on where a body's tetrahedra are quadratic.
+// The mesh that the potential `field` works on where a body is curved: of a body of linear tetrahedra the
+// cells of contact/surface/smooth.h, of quadratic ones stars.
 //
 // If contact worked on the eighths of a quadratic tetrahedron, an even pressure p would act with p area/12 on
 // each corner of a face and with p area/4 on each middle of an edge. The element's own nodal forces are p ∫
@@ -16,7 +17,7 @@
 // on the surface, ¼ for the others, δ as in contact/surface/mesh.h, and follows all ten nodes by their shape
 // functions there.
 //
-// The mesh with stars is a definition of its own. Its positions follow from the nodes by the weights, and
+// The mesh so made is a definition of its own. Its positions follow from the nodes by the weights, and
 // forces and stiffness return to the nodes by the same weights, so balance there is balance for the nodes.
 #ifndef TETLAP_CONTACT_STARS_H
 #define TETLAP_CONTACT_STARS_H
@@ -30,6 +31,7 @@ typedef struct ContactStars {
   ContactBody *bodies;
   double *rest;
   unsigned char *inner;
+  double *heights; // as in the definition                               (def.vertex_count)
   int (*tets)[4];
   int *origin;   // of each tet: the given one, of a star's the first eighth             (def.tet_count)
   bool *is_star; //                                                                      (def.tet_count)
@@ -39,10 +41,12 @@ typedef struct ContactStars {
   int *begin; //                                                                    (def.vertex_count + 1)
   int *nodes; //                                                                    (begin[def.vertex_count])
   double *weights; // their sum is 1 for each vertex
-  size_t tet_capacity, row_capacity, weight_capacity, begin_capacity, origin_capacity, star_capacity;
+  size_t tet_capacity, row_capacity, weight_capacity, begin_capacity, origin_capacity, star_capacity,
+      height_capacity, inner_capacity;
 } ContactStars;
 
-// Makes them where the potential is `field` and a body is quadratic. A zeroed one can be destroyed.
+// Makes them where the potential is `field` and a body is quadratic, or curved and wanted smooth. A zeroed
+// one can be destroyed.
 Status contact_stars_create(ContactStars *stars, const ContactSystemDef *def);
 void contact_stars_destroy(ContactStars *stars);
 

@@ -167,6 +167,8 @@ typedef struct FemContactDef {
   char *net;     // weights in its place, or hybrid's: a file, relative to the scene's, or a name; NULL: none
   OverlapOptions net_options;
   double margin; // [m]; 0: chosen
+  int smooth;    // how often the edges of curved surfaces are halved for contact; 0: facets as they are
+  double crease; // edges between faces that make more stay sharp [°]
   bool use_full_hessian;
   double friction;                      // coefficient μ between any two; 0: none
   double viscosity;                     // η [Pa s]; 0: none

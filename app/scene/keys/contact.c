@@ -14,6 +14,12 @@ static const char *finish_contact(void *self, const char **key) {
            "or the "
            "friction";
   }
+  if (contact->smooth > 0 && contact->potential != CONTACT_POTENTIAL_FIELD) {
+    *key = "smooth";
+    return "only the potential field works on smooth surfaces; remove 'potential' and 'stiffness', whose "
+           "unit "
+           "differs, or 'smooth'";
+  }
   return NULL;
 }
 
@@ -104,6 +110,11 @@ static const SceneKey contact_keys[] = {
      .absent_help = "half the shortest mean edge of a body",
      .help = "pairs nearer than this are candidates; a step that moves a vertex farther is tried again with "
              "a smaller step"},
+    {"smooth", SCENE_INTEGER, AT(FemContactDef, smooth), .range = "[0, 2]", .fallback = "0",
+     .help = "how often the edges of a curved surface of linear elements are halved for contact, new points "
+             "on a smooth surface through the vertices; needs the potential `field`"},
+    {"crease", SCENE_NUMBER, AT(FemContactDef, crease), .unit = "°", .range = "(0, 90]", .fallback = "30",
+     .help = "`smooth`: edges between faces that make a larger angle stay sharp"},
     {"hessian", SCENE_CHOICE, AT(FemContactDef, use_full_hessian), .fallback = "full",
      .choices = &app_scene_choices_hessians, .help = "derivatives of the contact force for Newton's method"},
     {"friction", SCENE_SECTION, .section = &friction, .absent_help = "no friction",

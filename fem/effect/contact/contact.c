@@ -3,6 +3,7 @@
 // matrix.
 #include "fem/effect/contact/contact.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/files/file.h"
@@ -29,6 +30,7 @@ typedef struct Contact {
 
 // A pair this close, as a share of the mean edge, is expected to touch soon.
 static const double COUPLING_REACH = 0.1;
+static const double RADIANS = M_PI / 180; // of a degree
 
 static bool is_wanted(const FemSceneDef *scene) {
   return scene->contact.is_on;
@@ -66,6 +68,7 @@ static void list_sides(Contact *contact) {
                       .quadratic_begin = body->quadratic_begin,
                       .quadratic_end = body->quadratic_end,
                       .is_obstacle = body->is_obstacle,
+                      .smooth = model->scene->contact.smooth,
                       .meets_itself = b < model->scene->body_count && model->scene->bodies[b].self_contact};
   }
   for (int b = 0; b < model->body_count; b++)
@@ -141,6 +144,7 @@ static Status build(Contact *contact, Contact *old) {
                              .shapes = contact->shapes,
                              .shape_count = contact->shape_count,
                              .inner = model->inner,
+                             .crease = def->crease * RADIANS,
                              .potential = def->potential,
                              .stiffness = fem_model_contact_stiffness(model),
                              .pair_stiffness = stiffness,

@@ -182,6 +182,8 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_int_eq(scene->contact.potential, CONTACT_POTENTIAL_FIELD);
   ck_assert_str_eq(scene->contact.overlap, "exact");
   ck_assert_double_eq(scene->contact.margin, 0.02);
+  ck_assert_int_eq(scene->contact.smooth, 2);
+  ck_assert_double_eq(scene->contact.crease, 25);
   ck_assert_double_eq(scene->contact.friction, 0.3);
   ck_assert_double_eq(scene->contact.viscosity, 11);
   ck_assert_int_eq(scene->contact.pair_count, 2);
