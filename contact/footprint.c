@@ -34,10 +34,6 @@ size_t contact_footprint_rest(const ContactRest *rest) {
   return HELD(rest->is_resting, rest->is_near, rest->forces, rest->covered, rest->interfaces);
 }
 
-size_t contact_footprint_onset(const ContactOnset *onset) {
-  return HELD(onset->watched, onset->is_engaged, onset->boxes, onset->is_marked);
-}
-
 static size_t of_patches(const ContactPatches *patches) {
   return HELD(patches->patches, patches->elements, patches->nodes, patches->pair_elements,
               patches->element_pairs.begin, patches->element_pairs.items, patches->node_elements.begin,

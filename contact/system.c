@@ -9,7 +9,6 @@
 #include "base/memory.h"
 #include "contact/audit.h"
 #include "contact/footprint.h"
-#include "contact/onset.h"
 #include "contact/pressure/star_sink.h"
 #include "contact/pressure/stiffness.h"
 #include "contact/pressure/trace.h"
@@ -31,7 +30,6 @@ struct ContactSystem {
   ContactNear near;
   ContactRest rest; // made by the first contact_system_hold
   bool has_rest;
-  ContactOnset onset;
   ContactEvaluation evaluation; // the last one
   ContactStiffness stiffness;
   ContactEvaluation audits[2]; // candidate, reference; made by the first audit
@@ -75,7 +73,6 @@ static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
   TRY(reserve(system, def));
   TRY(contact_candidates_create(&system->candidates, &system->layout));
   TRY(contact_near_create(&system->near, &system->layout));
-  TRY(contact_onset_create(&system->onset, &system->layout));
   TRY(contact_evaluation_create(&system->evaluation, &system->layout));
   system->counters.resting = system->layout.self.left_out.count;
   return contact_stiffness_create(&system->stiffness, &system->layout);
@@ -105,7 +102,6 @@ void contact_system_destroy(ContactSystem *system) {
   contact_candidates_destroy(&system->candidates);
   contact_near_destroy(&system->near);
   contact_rest_destroy(&system->rest);
-  contact_onset_destroy(&system->onset);
   contact_evaluation_destroy(&system->evaluation);
   contact_stiffness_destroy(&system->stiffness);
   for (int k = 0; k < 2; k++) contact_evaluation_destroy(&system->audits[k]);
@@ -161,20 +157,6 @@ static void fold_result(ContactSystem *system) {
   contact_stars_cover(&system->stars, evaluation->covered, system->given_volumes, system->given_covered);
 }
 
-bool contact_system_has_onset(const ContactSystem *system) {
-  return !system->layout.mesh.has_field;
-}
-
-// What the last evaluation found to overlap need not be separated once more.
-static Status choose_watched(ContactSystem *system, double time, const double *positions) {
-  if (!contact_system_has_onset(system)) return STATUS_OK;
-  const ContactEvaluation *evaluation = &system->evaluation;
-  bool knows = contact_evaluation_is_at(evaluation, &system->layout, time, positions) &&
-               !overlap_model_has_ghosts(system->layout.def.model);
-  return contact_onset_choose(&system->onset, &system->layout, &system->candidates.list, evaluation->pairs,
-                              knows ? evaluation->pair_count : 0, time, positions);
-}
-
 // Whether pairs that are known to stay apart need not be asked for.
 static bool evaluates_near(const ContactSystem *system) {
   return system->layout.def.model->ops->is_zero_apart;
@@ -190,7 +172,7 @@ static Status update(ContactSystem *system, double time, const double *positions
   if (has_changed) *has_changed = changed;
   if (evaluates_near(system))
     TRY(contact_near_update(&system->near, &system->layout, &system->candidates, time, positions));
-  return choose_watched(system, time, positions);
+  return STATUS_OK;
 }
 
 Status contact_system_update(ContactSystem *system, double time, const double *positions,
@@ -315,7 +297,7 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
   contact_near_forget(&system->near);
   contact_evaluation_start_over(&system->evaluation, layout);
   fold_result(system);
-  return choose_watched(system, time, positions);
+  return STATUS_OK;
 }
 
 bool contact_system_is_resting(const ContactSystem *system, int interface) {
@@ -373,11 +355,6 @@ Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
   assert(evaluation->is_valid);
   return contact_stiffness_couple(&system->stiffness, &system->layout, &system->candidates.list,
                                   evaluation->time, evaluation->positions, reach, &given, visit_given);
-}
-
-Status contact_system_gap(ContactSystem *system, double time, const double *positions, double *gap) {
-  *gap = contact_onset_gap(&system->onset, &system->layout, time, place(system, positions));
-  return STATUS_OK;
 }
 
 const ContactInterface *contact_system_interfaces(const ContactSystem *system, int *interface_count) {
@@ -444,9 +421,8 @@ size_t contact_system_bytes(const ContactSystem *system) {
                memory_held(system->resting_traces) + memory_held(system->given_traces) +
                contact_stars_bytes(&system->stars) + contact_star_sink_bytes(&system->star_sink) +
                contact_footprint_layout(&system->layout) + contact_footprint_candidates(&system->candidates) +
-               contact_footprint_near(&system->near) + contact_footprint_onset(&system->onset) +
-               contact_footprint_stiffness(&system->stiffness) + contact_footprint_status(&system->status) +
-               contact_footprint_rest(&system->rest);
+               contact_footprint_near(&system->near) + contact_footprint_stiffness(&system->stiffness) +
+               contact_footprint_status(&system->status) + contact_footprint_rest(&system->rest);
   for (int k = 0; k < 2; k++) sum += contact_footprint_evaluation(&system->audits[k]);
   return sum + contact_footprint_evaluation(&system->evaluation);
 }

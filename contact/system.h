@@ -48,7 +48,7 @@ Status contact_system_create(ContactSystem **system, const ContactSystemDef *def
 void contact_system_destroy(ContactSystem *system);
 
 // After an accepted step (and once before the first evaluation): rebuilds the candidate lists where the
-// motion asks for it and chooses the pairs whose onset is watched. `velocities` (vertex, 3) and `step` [s]
+// motion asks for it. `velocities` (vertex, 3) and `step` [s]
 // (the next step's expected length) size the margin: as wide as two bodies are apart while no pair is near,
 // at most def.margin otherwise, so that nothing passes through anything within one step. `*has_changed` (may
 // be NULL): the list of candidates differs from the one before.
@@ -66,7 +66,7 @@ void contact_system_forget(ContactSystem *system);
 // Sets which parties (bodies, then shapes) are held in place from now on; NULL: none. Held parties must not
 // move until the next call. The interface of two held parties is neither searched nor evaluated: its forces,
 // covered volumes and energy at these positions stay in the results. This call searches and evaluates
-// everything anew and, like an update, chooses the onsets to watch.
+// everything anew.
 Status contact_system_hold(ContactSystem *system, double time, const double *positions,
                            const double *velocities, double step, const bool *is_held);
 bool contact_system_is_resting(const ContactSystem *system, int interface);
@@ -91,17 +91,6 @@ Status contact_system_stiffness(ContactSystem *system, double time, const double
 // pairs that are apart by less than `reach` [m] included, so that a matrix pattern can be laid out ahead.
 Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
                              Status (*visit)(void *visitor, int count, const int *vertices));
-
-// Whether contact begins with a jump of the force, at which an integrator should stop. With the potential
-// `field` it does not: that force begins at zero.
-bool contact_system_has_onset(const ContactSystem *system);
-
-// The smallest separation of the pairs watched since the last update [m]: negative once one of them overlaps;
-// at most, and without any pair, +margin. Its root is the onset of a new contact; contact/onset.h says which
-// pairs are watched (after a root, the next update leaves that pair out). Separation of two tetrahedra is the
-// largest over the 44 separating axes of their projections' distance (exactly the distance for face
-// contacts). Where contact_system_has_onset is false: +margin.
-Status contact_system_gap(ContactSystem *system, double time, const double *positions, double *gap);
 
 // Of the last evaluation. Pointers are the system's, valid until the next call.
 const ContactInterface *contact_system_interfaces(const ContactSystem *system, int *count);

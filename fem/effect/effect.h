@@ -51,10 +51,6 @@ typedef struct FemEffectOps {
   Status (*add_energy)(void *self, const FemState *state, FemEnergy *energy); // NULL: none
   // Forces are linear in positions and velocities: one Jacobian for the whole run. NULL: they are not.
   bool (*is_linear)(void *self);
-  // Onset function whose root restarts the integrator (contact touching); NULL: none.
-  Status (*gap)(void *self, const FemState *state, double *gap);
-  // Whether there is such a function in this scene. NULL: there is one wherever there is `gap`.
-  bool (*has_gap)(const void *self);
   // How far a step from `time` may go along what the effect prescribes by functions of time (signal.h): at
   // most to `farthest`. NULL: that far.
   double (*horizon)(const void *self, const FemForesight *foresight, double time, double farthest);

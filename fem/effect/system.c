@@ -510,28 +510,6 @@ Status fem_system_damping_power(FemSystem *system, const FemState *state, double
   return sums[1] > 0 ? ranks()->worst(status) : STATUS_OK;
 }
 
-static bool has_gap(const FemEffect *effect) {
-  if (!effect->ops->gap) return false;
-  return !effect->ops->has_gap || effect->ops->has_gap(effect->self);
-}
-
-Status fem_system_gap(FemSystem *system, const FemState *state, double *gap) {
-  *gap = INFINITY;
-  for (int i = 0; i < system->effect_count; i++) {
-    if (!has_gap(&system->effects[i])) continue;
-    double one;
-    TRY(system->effects[i].ops->gap(system->effects[i].self, state, &one));
-    *gap = fmin(*gap, one);
-  }
-  return STATUS_OK;
-}
-
-bool fem_system_has_gap(const FemSystem *system) {
-  for (int i = 0; i < system->effect_count; i++)
-    if (has_gap(&system->effects[i])) return true;
-  return false;
-}
-
 double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,
                           double farthest) {
   for (int d = 0; d < system->model->driver_count; d++) {

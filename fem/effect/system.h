@@ -88,10 +88,6 @@ Status fem_system_accept(FemSystem *system, const FemState *state, double next_s
 Status fem_system_energy(FemSystem *system, const FemState *state, FemEnergy *energy);
 // Of the damping of materials alone [W]. Over ranks the sum.
 Status fem_system_damping_power(FemSystem *system, const FemState *state, double *power);
-// Smallest onset function of all effects; +INFINITY if there is none.
-Status fem_system_gap(FemSystem *system, const FemState *state, double *gap);
-bool fem_system_has_gap(const FemSystem *system);
-
 // How far a step from `time` may go, at most to `farthest`, so that no function of time is
 // missed (signal.h).
 double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,

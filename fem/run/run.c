@@ -80,8 +80,8 @@ static void keep_state(FemRunState *run, double time) {
 
 // Steps, and measures the state that the step leads to, kept in u_new, v_new. RETRY: too far for the contact
 // lists, or no numbers.
-static Status step(FemRunState *run, double *time, bool *is_onset, FemMeasures *measures) {
-  TRY(fem_integrator_step(run->integrator, time, is_onset));
+static Status step(FemRunState *run, double *time, FemMeasures *measures) {
+  TRY(fem_integrator_step(run->integrator, time));
   const double *u, *v;
   TRY(fem_integrator_at(run->integrator, *time, &u, &v));
   size_t bytes = (size_t)run->system.numbering.count * sizeof(double);
@@ -169,8 +169,8 @@ static Status renumber(FemRunState *run) {
   return begin_stage(run, 0);
 }
 
-// Whether forces are held to the motion. Without contact nothing jumps within a step; of potentials other
-// than the depth field forces jump in steps however short.
+// Whether forces are held to the motion. Without contact nothing jumps within a step; the force of the
+// potential `nodal` does in steps however short, where a pair's ∇V is one-sided.
 static bool minds_momentum(const FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
   return scene->contact.is_on && scene->contact.potential == CONTACT_POTENTIAL_FIELD;
@@ -237,13 +237,12 @@ static Status accept(FemRunState *run, double next_step) {
 // One step: taken, judged, shown, accepted.
 static Status advance(FemRunState *run) {
   double time = run->time;
-  bool is_onset;
   FemMeasures measures;
   if (minds_momentum(run)) {
     double strictness = fem_momentum_strictness(&run->recorder.ledger.momentum, run->model->scene->end);
     fem_integrator_tighten(run->integrator, strictness);
   }
-  Status status = step(run, &time, &is_onset, &measures);
+  Status status = step(run, &time, &measures);
   bool may_retry = run->retries < RETRIES_IN_A_ROW;
   if (status == STATUS_RETRY && may_retry) return take_back(run, retry_step(run, 0), status_message());
   TRY(status);
@@ -274,15 +273,11 @@ static Status advance(FemRunState *run) {
   keep_state(run, time);
   fem_run_frames_keep_extremes(run->result, &measures);
   FemIntegratorStats stats = fem_run_state_stats(run);
-  if (!is_onset)
-    run->result->trouble.smallest_step = fmin(run->result->trouble.smallest_step, stats.last_step);
+  run->result->trouble.smallest_step = fmin(run->result->trouble.smallest_step, stats.last_step);
   TRY(accept(run, stats.current_step));
   if (fem_integrator_is_at_knot(run->integrator)) TRY(renew_powers(run));
   TRY(fem_run_watch(run, &measures));
-  if (fem_rest_has_changed(run->rest)) return renumber(run);
-  if (!is_onset) return STATUS_OK;
-  log_debug("t = %.9g s: the integrator restarts, something begins here", time);
-  return fem_integrator_restart(run->integrator, time, run->u, run->v, 0);
+  return fem_rest_has_changed(run->rest) ? renumber(run) : STATUS_OK;
 }
 
 // The next state while all bodies sleep: as late as contact lists allow for obstacles that move, and not

@@ -3,7 +3,7 @@
 //
 //     step ──► energy audit ──► frames up to its time (within the step) ──► accept: effects renew their lists
 //      ▲            │ gains too much: back to the last accepted state, smaller step, order 1        │
-//      ├────────────┴───────────────────────────── onset of a contact: restart at the root ◄─────────┤
+//      ├────────────┴───────────────────────────────────────────────────────────────────────────────┤
 //      └── system and integrator begin anew from the checkpoint (checkpoint.h) ◄─── when one is due ───┘
 //
 // A checkpoint is due after so many frames, whatever the clock says, so that two runs of a scene are the

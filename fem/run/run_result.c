@@ -16,7 +16,7 @@ void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegrato
   total->steps += part->steps, total->setups += part->setups, total->residuals += part->residuals;
   total->newton_iterations += part->newton_iterations, total->newton_failures += part->newton_failures;
   total->error_test_failures += part->error_test_failures;
-  total->restarts += part->restarts, total->roots += part->roots;
+  total->restarts += part->restarts;
   total->last_step = part->last_step, total->current_step = part->current_step;
   total->last_order = part->last_order;
 }
@@ -151,8 +151,7 @@ void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size
   const struct {
     const char *what;
     long long count;
-  } rows[] = {{"onsets", result->integrator.roots},
-              {"steps taken back for their energy", result->energy_retries},
+  } rows[] = {{"steps taken back for their energy", result->energy_retries},
               {"steps taken back for their momentum", result->momentum_retries},
               {"steps taken back at a reversal of slip", result->slip_retries},
               {"steps without convergence", result->integrator.newton_failures},
@@ -194,7 +193,6 @@ static void summarise_counters(const FemRunResult *result, Record *record) {
   record_integer(record, "newton_failures", stats->newton_failures);
   record_integer(record, "error_test_failures", stats->error_test_failures);
   record_integer(record, "residuals", stats->residuals);
-  record_integer(record, "onsets", stats->roots);
   record_integer(record, "restarts", stats->restarts);
   record_integer(record, "state_unknowns", result->state_unknowns);
   record_integer(record, "energy_retries", result->energy_retries);

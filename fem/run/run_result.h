@@ -11,7 +11,7 @@
 #include "fem/time/audit.h"
 #include "fem/time/integrator.h"
 
-// `contact`: candidate lists, watched onsets, pressures and forces, without broad phase and overlap volumes.
+// `contact`: candidate lists, pressures and forces, without broad phase and overlap volumes.
 // What no phase names (the energy audit, the integrator's vectors) is the difference to the total.
 // All of them wall [s].
 typedef struct FemRunPhases {

@@ -32,8 +32,6 @@ static const double LEAST_GROWTH = 1.2, LEAST_GROWTH_WITHOUT_CONTACT = 2;
 static const double SAME_STATE = 1e-6;
 // A residual of u̇ = v below this share of the velocities' tolerance is rounding.
 static const double ROUNDING = 1e-7;
-// Roots are found to this share of their step.
-static const double ROOT_RESOLUTION = 1e-9;
 
 struct FemIntegrator {
   FemSystem *system; // borrowed
@@ -54,7 +52,6 @@ struct FemIntegrator {
   double evaluated_time;
   N_Vector weights;           // scratch: of the error test
   double time;                // of y
-  double step_end;            // where IDA stands: later than `time` after an onset
   bool is_started, has_steps; // there was a restart; a step since then
   double strictness;          // share of the tolerances of velocities that counts
   double stop;                // which the next step does not pass [s]
@@ -62,7 +59,7 @@ struct FemIntegrator {
   bool is_at_knot;            // the last step ended there
   double wanted_step;         // handed to the last restart [s]
   FemIntegratorStats before;  // counted before the last restart
-  long long onset_count, restart_count;
+  long long restart_count;
   FemStall own_stall;         // where the caller has none
   long long failures_counted; // told to the stall
 };
@@ -317,7 +314,7 @@ Status fem_integrator_restart(FemIntegrator *integrator, double time, const doub
   }
   integrator->before = stats;
   integrator->restart_count += integrator->is_started;
-  integrator->time = integrator->step_end = time;
+  integrator->time = time;
   integrator->is_started = true;
   integrator->has_steps = integrator->is_at_knot = false;
   integrator->wanted_step = step;
@@ -333,7 +330,7 @@ static Status interpolate(FemIntegrator *integrator, double time) {
   if (!integrator->has_steps || IDAGetDky(integrator->ida, time, 0, integrator->interpolated) != IDA_SUCCESS)
     return status_fail(STATUS_SOLVER,
                        "the solution at t = %.17g s was asked for, which is not in the step to %.17g s", time,
-                       integrator->step_end);
+                       integrator->time);
   return STATUS_OK;
 }
 
@@ -352,51 +349,6 @@ void fem_integrator_state(const FemIntegrator *integrator, double *time, const d
 
 const double *fem_integrator_acceleration(const FemIntegrator *integrator) {
   return values_of(integrator->y_dot) + integrator->n;
-}
-
-static Status gap_at(FemIntegrator *integrator, double time, double *gap) {
-  TRY(interpolate(integrator, time));
-  scatter(integrator, time, integrator->interpolated);
-  return fem_system_gap(integrator->system, integrator->state, gap);
-}
-
-// Illinois' variant of false position between low (gap > 0) and high (gap ≤ 0), whose end `high` is
-// returned: there the contact has begun.
-static Status find_root(FemIntegrator *integrator, double low, double gap_low, double high, double gap_high,
-                        double *root) {
-  double resolution = fmax(ROOT_RESOLUTION * (high - low), 8 * DBL_EPSILON * fabs(high));
-  int last_side = 0;
-  while (high - low > resolution) {
-    double share = gap_low / (gap_low - gap_high);
-    double middle = isfinite(share) ? low + share * (high - low) : 0.5 * (low + high), gap;
-    middle = fmin(fmax(middle, low + 0.5 * resolution), high - 0.5 * resolution);
-    TRY(gap_at(integrator, middle, &gap));
-    int side = gap > 0 ? -1 : 1;
-    if (side < 0)
-      low = middle, gap_low = gap;
-    else
-      high = middle, gap_high = gap;
-    if (side == last_side) *(side < 0 ? &gap_high : &gap_low) *= 0.5;
-    last_side = side;
-  }
-  *root = high;
-  return STATUS_OK;
-}
-
-// Looks for an onset in the step from `begin`, where the gap was `gap`; moves the state there.
-static Status look_for_onset(FemIntegrator *integrator, double begin, double gap, bool *is_onset) {
-  double gap_end, root;
-  TRY(gap_at(integrator, integrator->step_end, &gap_end));
-  if (!(gap > 0) || gap_end > 0) return STATUS_OK;
-  TRY(find_root(integrator, begin, gap, integrator->step_end, gap_end, &root));
-  if (IDAGetDky(integrator->ida, root, 0, integrator->y) != IDA_SUCCESS ||
-      IDAGetDky(integrator->ida, root, 1, integrator->y_dot) != IDA_SUCCESS)
-    return status_fail(STATUS_SOLVER, "the state at the onset at t = %.17g s could not be interpolated",
-                       root);
-  integrator->time = root;
-  integrator->onset_count++;
-  *is_onset = true;
-  return STATUS_OK;
 }
 
 static FemReason reason_of(int flag) {
@@ -511,7 +463,7 @@ static void limit_step(FemIntegrator *integrator, double begin, double planned, 
 // The next step ends at def.end at the latest, or just before the knot that what is prescribed has to be
 // followed to.
 static Status choose_stop(FemIntegrator *integrator) {
-  double begin = integrator->step_end, end = integrator->def.end, step = integrator->max_step;
+  double begin = integrator->time, end = integrator->def.end, step = integrator->max_step;
   if (integrator->has_steps) IDAGetCurrentStep(integrator->ida, &step);
   double least = fmax(integrator->min_step, KNOT_RESOLUTION * end);
   FemForesight foresight = {.displacement = integrator->def.displacement_tolerance,
@@ -533,7 +485,7 @@ static Status choose_stop(FemIntegrator *integrator) {
 // the method begins anew.
 static Status pass_knot(FemIntegrator *integrator) {
   double last = fem_integrator_stats(integrator).last_step;
-  if (!integrator->stops_at_knot || integrator->stop - integrator->step_end >= last) return STATUS_OK;
+  if (!integrator->stops_at_knot || integrator->stop - integrator->time >= last) return STATUS_OK;
   const double *u = fem_part_join(&integrator->part, values_of(integrator->y));
   double past = fem_signal_past(integrator->time);
   TRY(fem_integrator_restart(integrator, past, u, u + integrator->part.n, 0));
@@ -560,38 +512,33 @@ static Status take_step(FemIntegrator *integrator) {
                       IDA_ONE_STEP);
   if (flag < 0) return give_up(integrator, flag);
   take_evaluated(integrator, reached);
-  integrator->time = integrator->step_end = reached;
+  integrator->time = reached;
   integrator->has_steps = true;
   integrator->is_at_knot = integrator->stops_at_knot && reached == integrator->stop;
   return STATUS_OK;
 }
 
-Status fem_integrator_step(FemIntegrator *integrator, double *time, bool *is_onset) {
-  *is_onset = false;
+Status fem_integrator_step(FemIntegrator *integrator, double *time) {
   *time = integrator->time;
   if (!integrator->is_started || integrator->failure.fatal != STATUS_OK)
     return status_fail(STATUS_SOLVER, "a step was asked for before a start or after a fatal failure");
-  double begin = integrator->step_end, end = integrator->def.end, gap = 0;
+  double begin = integrator->time, end = integrator->def.end;
   if (end - begin <= 4 * DBL_EPSILON * end) { // nothing that a step could resolve
-    *time = integrator->time = integrator->step_end = end;
+    *time = integrator->time = end;
     return STATUS_OK;
   }
-  bool has_gap = fem_system_has_gap(integrator->system);
-  if (has_gap) TRY(gap_at(integrator, begin, &gap));
   TRY(take_step(integrator));
-  if (has_gap) TRY(look_for_onset(integrator, begin, gap, is_onset));
   *time = integrator->time;
   return check_stall(integrator);
 }
 
 bool fem_integrator_is_at_knot(const FemIntegrator *integrator) {
-  return integrator->is_at_knot && integrator->time == integrator->step_end;
+  return integrator->is_at_knot;
 }
 
 FemIntegratorStats fem_integrator_stats(const FemIntegrator *integrator) {
   FemIntegratorStats stats = integrator->before;
   stats.restarts = integrator->restart_count;
-  stats.roots = integrator->onset_count;
   stats.current_step = integrator->wanted_step;
   long steps = 0, residuals = 0, setups = 0, error_failures = 0, iterations = 0, failures = 0;
   if (!integrator->is_started) return stats;

@@ -5,13 +5,8 @@
 // S = K + c D + c² M (ida_solver.h). Frames are interpolated, never stopped at. A step ends at the end and,
 // where what is prescribed could not be followed otherwise, just before a knot of it (signal.h).
 //
-// A contact onset is a root of the system's gap from + to −. It is searched here on the interpolant of each
-// step and not by IDA's root finder: after a step the system chooses anew which pairs it watches, so the gap
-// at the start of a step is another function than it was at the end of the step before. The caller restarts
-// the method at the root with recomputed accelerations.
-//
 //   create ─► restart (first state) ─► step ─► at … ─► (accept) ─► step ─► …
-//                  ▲                    │ onset, or a state to go back to
+//                  ▲                    │ a state to go back to
 //                  └────────────────────┘
 #ifndef TETLAP_FEM_TIME_INTEGRATOR_H
 #define TETLAP_FEM_TIME_INTEGRATOR_H
@@ -38,7 +33,6 @@ typedef struct FemIntegratorStats {
   long long newton_failures; // steps tried again because Newton, a solver or a force asked for it
   long long residuals;
   long long restarts;             // without the first
-  long long roots;                // onsets returned
   double last_step, current_step; // taken, and to be tried next [s]
   int last_order;
 } FemIntegratorStats;
@@ -61,12 +55,9 @@ Status fem_integrator_restart(FemIntegrator *integrator, double time, const doub
 // From the next step on velocities may err by this share of their tolerances, at most 1.
 void fem_integrator_tighten(FemIntegrator *integrator, double share);
 
-// One accepted step, or up to an onset. `*is_onset` tells which; at an onset the state is the one at the root
-// (on its far side), and a step without a restart goes on from the end of the step that was cut.
-// STATUS_SOLVER: gave up; the message says at what time and step size, why, and what to try. A fatal Status
-// of an effect or a solver comes out as it is. RETRY: the gap could not be evaluated; restart from an earlier
-// state with a smaller step.
-Status fem_integrator_step(FemIntegrator *integrator, double *time, bool *is_onset);
+// One accepted step. STATUS_SOLVER: gave up; the message says at what time and step size, why, and what to
+// try. A fatal Status of an effect or a solver comes out as it is.
+Status fem_integrator_step(FemIntegrator *integrator, double *time);
 
 // Whether that step ended just before a knot of what is prescribed (signal.h): velocities and forces may be
 // others from there on.

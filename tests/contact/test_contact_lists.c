@@ -162,14 +162,11 @@ END_TEST
 
 START_TEST(one_thread_and_two_give_the_same_bits) {
   Fixture *f = two_blocks(-0.2, 0.1);
-  double *x = moved(f, 0.01, 0, 0), gaps[2];
+  double *x = moved(f, 0.01, 0, 0);
   omp_set_num_threads(1);
   Result one = result_at(f, f->system, 0, f->blocks.x);
-  ck_assert_ok(contact_system_gap(f->system, 0, x, &gaps[0]));
   free(result_at(f, f->system, 0, x).force); // leaves the cached result
   omp_set_num_threads(2);
-  ck_assert_ok(contact_system_gap(f->system, 0, x, &gaps[1]));
-  ck_assert_mem_eq(&gaps[0], &gaps[1], sizeof gaps[0]);
   check_same(f, one, result_at(f, f->system, 0, f->blocks.x));
   free(x), destroy(f);
 }
@@ -245,68 +242,6 @@ START_TEST(a_halfspace_that_rises_beyond_the_margin_is_refused) {
   ck_assert_int_gt(after.active_count, 0);
   ck_assert_near(after.interface.volume, 4 * 0.02, 1e-12);
   free(below.force), free(above.force), free(after.force), destroy(f);
-}
-END_TEST
-
-// ---- Onset
-
-static double gap_at(const Fixture *f, const double *x) {
-  double gap;
-  ck_assert_ok(contact_system_gap(f->system, 0, x, &gap));
-  return gap;
-}
-
-START_TEST(the_gap_is_the_distance_of_two_flat_faces_and_changes_sign) {
-  Fixture *f = two_blocks(0.25, 0);
-  ck_assert_near(gap_at(f, f->blocks.x), 0.25, 1e-14);
-  for (int k = 0; k < 9; k++) {
-    double *x = moved(f, 0, 0, -0.05 * k);
-    ck_assert_near(gap_at(f, x), 0.25 - 0.05 * k, 1e-13);
-    free(x);
-  }
-  destroy(f);
-}
-END_TEST
-
-START_TEST(without_a_near_pair_the_gap_is_the_margin) {
-  Fixture *f = two_blocks(50, 0);
-  ck_assert_near(gap_at(f, f->blocks.x), default_margin(f), 1e-14);
-  destroy(f);
-}
-END_TEST
-
-START_TEST(what_touches_has_begun) {
-  Fixture *f = two_blocks(0, 0);
-  double *x = moved(f, 0, 0, -0.01);
-  ck_assert(gap_at(f, f->blocks.x) > 0);
-  ck_assert(gap_at(f, x) > 0); // all of the surface touched: no pair of it is watched
-  free(x), destroy(f);
-}
-END_TEST
-
-// A table with two legs of different length above the ground: the second leg is a new patch, the rest of the
-// first leg is not.
-START_TEST(a_new_patch_is_an_onset_and_a_growing_one_is_not) {
-  static ContactShape ground = {.name = "ground", .normal = {0, 0, 1}};
-  Fixture *f = calloc(1, sizeof *f);
-  blocks_add(&f->blocks, &(BlockDef){.corner = {0, 0, -0.1}, .cell = {1, 1, 1}, .cells = {6, 1, 1}});
-  // The bottom rises from −0.1 at x = 0 to 0.2 at x = 3 and falls to 0.05 at x = 6.
-  for (int v = 0; v < f->blocks.vertex_count; v++) {
-    double *x = f->blocks.x + 3 * v;
-    if (x[2] < 0.5) x[2] = x[0] <= 3 ? -0.1 + 0.1 * x[0] : 0.2 - 0.05 * (x[0] - 3);
-  }
-  start(f);
-  contact_system_destroy(f->system);
-  f->def.shapes = &ground, f->def.shape_count = 1;
-  ck_assert_ok(contact_system_create(&f->system, &f->def));
-  update(f, 0, f->blocks.x);
-  ck_assert_near(gap_at(f, f->blocks.x), 0.05, 1e-14); // x = 1 at height 0 belongs to the first leg
-  double *x = blocks_copy(&f->blocks);
-  blocks_shift(&f->blocks, x, 0, (double[]){0, 0, -0.06});
-  ck_assert_near(gap_at(f, x), -0.01, 1e-14);
-  update(f, 0, x);
-  ck_assert(gap_at(f, x) > 0);
-  free(x), destroy(f);
 }
 END_TEST
 
@@ -402,10 +337,6 @@ int main(void) {
   tcase_add_test(cases, bodies_far_apart_may_move_as_far_as_they_are_apart);
   tcase_add_test(cases, a_fast_body_is_stopped_at_the_surface_and_not_behind_it);
   tcase_add_test(cases, a_halfspace_that_rises_beyond_the_margin_is_refused);
-  tcase_add_test(cases, the_gap_is_the_distance_of_two_flat_faces_and_changes_sign);
-  tcase_add_test(cases, without_a_near_pair_the_gap_is_the_margin);
-  tcase_add_test(cases, what_touches_has_begun);
-  tcase_add_test(cases, a_new_patch_is_an_onset_and_a_growing_one_is_not);
   tcase_add_loop_test(cases, couplings_hold_the_stiffness_here_and_within_reach, 0, CONTACT_POTENTIAL_COUNT);
   tcase_add_test(cases, a_visitor_that_fails_ends_the_visit);
   return suite_run("contact_lists", cases, 60);

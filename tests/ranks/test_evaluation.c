@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One evaluation over ranks is that of one process to rounding: forces, energies, gap, matrix times vector,
+// One evaluation over ranks is that of one process to rounding: forces, energies, matrix times vector,
 // and solutions, for every effect, element and potential, however the vertices are divided.
 #include <stdio.h>
 #include <string.h>
@@ -43,7 +43,6 @@ typedef struct Answer {
   int unknowns, values;
   double *forces, *product, *solution; // (values), (unknowns), (unknowns)
   FemEnergy energy;
-  double gap;
   int pairs;
 } Answer;
 
@@ -112,7 +111,6 @@ static Status find_answer(FemSystem *system, FemState *state, const Variant *var
   TRY(fem_system_forces(system, state));
   memcpy(answer->forces, system->forces, (size_t)answer->values * sizeof(double));
   TRY(fem_system_energy(system, state, &answer->energy));
-  TRY(fem_system_gap(system, state, &answer->gap));
   void *contact = fem_system_effect(system, &fem_effect_contact);
   answer->pairs = contact ? contact_system_active_count(fem_effect_contact_system(contact)) : 0;
   TRY(multiply(system, state, answer));
@@ -179,14 +177,12 @@ START_TEST(one_evaluation_is_that_of_one_process) {
          product = case_most(difference(whole.product, shared.product, whole.unknowns)),
          energy = case_most(difference(&whole.energy.kinetic, &shared.energy.kinetic,
                                        (int)(sizeof whole.energy / sizeof(double)))),
-         gap = case_most(isinf(whole.gap) && isinf(shared.gap) ? 0 : fabs(whole.gap - shared.gap)),
          pairs = case_most(abs(whole.pairs - shared.pairs));
   bool has_contact = strcmp(variant->name, "without contact") != 0;
   ck_assert_msg(whole.pairs > 0 || !has_contact, "%s: nothing touches", variant->name);
   ck_assert_msg(forces <= SAME, "%s, division %d: forces differ by %g", variant->name, division, forces);
   ck_assert_msg(product <= SAME, "%s, division %d: matrices differ by %g", variant->name, division, product);
   ck_assert_msg(energy <= SAME, "%s, division %d: energies differ by %g", variant->name, division, energy);
-  ck_assert_msg(gap <= SAME, "%s, division %d: gaps differ by %g", variant->name, division, gap);
   ck_assert_msg(pairs <= 0, "%s, division %d: %g pairs more or less", variant->name, division, pairs);
   free_answer(&whole), free_answer(&shared);
 }

@@ -225,15 +225,6 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
-static Status gap(void *self, const FemState *state, double *smallest) {
-  Contact *contact = self;
-  return contact_system_gap(contact->system, state->time, state->positions, smallest);
-}
-
-static bool has_gap(const void *self) {
-  return contact_system_has_onset(((const Contact *)self)->system);
-}
-
 static double longest_step(const void *self) {
   return contact_system_longest_step(((const Contact *)self)->system);
 }
@@ -272,8 +263,6 @@ const FemEffectOps fem_effect_contact = {
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
-    .gap = gap,
-    .has_gap = has_gap,
     .horizon = horizon,
     .longest_step = longest_step,
     .report = report,

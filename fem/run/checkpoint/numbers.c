@@ -67,7 +67,6 @@ static const FemCheckpointNumber numbers[] = {
     COUNT(integrator, newton_failures),
     COUNT(integrator, residuals),
     COUNT(integrator, restarts),
-    COUNT(integrator, roots),
     COUNT(solver, analyses),
     COUNT(solver, factorisations),
     COUNT(solver, failed_factorisations),
@@ -127,7 +126,7 @@ static const FemCheckpointNumber numbers[] = {
 // Whoever adds a number to one of these adds it to the list above.
 static_assert(sizeof(FemAudit) == 16 * sizeof(double), "numbers[] lists every number of FemAudit");
 static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "numbers[] lists every phase");
-static_assert(sizeof(FemIntegratorStats) == 11 * sizeof(double), "numbers[] lists the integrator's counts");
+static_assert(sizeof(FemIntegratorStats) == 10 * sizeof(double), "numbers[] lists the integrator's counts");
 static_assert(sizeof(FemSolverStats) == 10 * sizeof(double), "numbers[] lists the solver's counts");
 static_assert(sizeof(ContactPairCounts) == 6 * sizeof(long long), "numbers[] lists the counts of pairs");
 static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long),

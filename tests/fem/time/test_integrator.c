@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/time/integrator.h: orders, states between steps, restarts and onsets, on systems with closed forms.
+// fem/time/integrator.h: orders, states between steps, restarts, on systems with closed forms.
 #include "toy.h"
 
 START_TEST(free_fall_is_exact_but_for_the_first_steps) {
@@ -29,9 +29,8 @@ START_TEST(a_start_is_not_shorter_than_asked) {
     FemIntegratorDef def = def_of(1e-7, 2);
     def.least_start = LEAST[i];
     double u = 3, v = 4, time;
-    bool is_onset;
     FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def, &u, &v);
-    ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+    ck_assert_ok(fem_integrator_step(integrator, &time));
     if (i == 1)
       ck_assert_near(time, 1e-6, 1e-18);
     else
@@ -72,10 +71,9 @@ START_TEST(an_oscillator_never_gains_energy) {
   toy_open(&toy);
   double u = 1, v = 0, time = 0, energy = 50;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-4, 10), &u, &v);
-  bool is_onset;
   while (time < 10) {
     const double *u_now, *v_now;
-    ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+    ck_assert_ok(fem_integrator_step(integrator, &time));
     fem_integrator_state(integrator, &time, &u_now, &v_now);
     double now = 50 * u_now[0] * u_now[0] + 0.5 * v_now[0] * v_now[0];
     ck_assert_msg(now <= energy * (1 + 2e-5), "at t = %g the energy rose from %.9g to %.9g", time, energy,
@@ -99,8 +97,8 @@ START_TEST(no_step_to_the_end_is_short_because_little_is_left) {
     FemIntegratorDef def = def_of(1, end); // loose: never refuses a step
     def.max_step = def.initial_step = LONGEST;
     FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def, &u, &v);
-    for (bool is_onset; time < end; before = time) {
-      ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+    for (; time < end; before = time) {
+      ck_assert_ok(fem_integrator_step(integrator, &time));
       last = time - before;
       ck_assert_double_ge(last, 0.499 * LONGEST);
       ck_assert_double_le(last, 1.001 * LONGEST);
@@ -164,11 +162,10 @@ START_TEST(interpolation_meets_the_steps_and_keeps_to_the_last_one) {
   const double *u_at, *v_at, *u_now, *v_now;
   double u = 1, v = 0, time = 0, before = 0, u_before = 1;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-6, 1), &u, &v);
-  bool is_onset;
   ck_assert_ok(fem_integrator_at(integrator, 0, &u_at, &v_at));
   ck_assert(u_at[0] == 1 && v_at[0] == 0);
   while (time < 1) {
-    ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+    ck_assert_ok(fem_integrator_step(integrator, &time));
     ck_assert_ok(fem_integrator_at(integrator, time, &u_at, &v_at));
     fem_integrator_state(integrator, &time, &u_now, &v_now);
     ck_assert(u_at[0] == u_now[0] && v_at[0] == v_now[0]);
@@ -191,18 +188,17 @@ START_TEST(a_restart_from_an_earlier_state_repeats_the_run) {
   toy_open(&toy);
   double u = 1, v = 0, time = 0;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-7, 1), &u, &v);
-  bool is_onset;
-  while (time < 0.3) ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+  while (time < 0.3) ck_assert_ok(fem_integrator_step(integrator, &time));
   const double *u_now, *v_now;
   double kept_time;
   fem_integrator_state(integrator, &kept_time, &u_now, &v_now);
   double kept_u = u_now[0], kept_v = v_now[0];
-  while (time < 0.7) ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+  while (time < 0.7) ck_assert_ok(fem_integrator_step(integrator, &time));
   FemIntegratorStats before = fem_integrator_stats(integrator);
   ck_assert_ok(fem_integrator_restart(integrator, kept_time, &kept_u, &kept_v, 1e-5));
   ck_assert_near(fem_integrator_acceleration(integrator)[0], -100 * kept_u, 1e-12);
   ck_assert_near(fem_integrator_stats(integrator).current_step, 1e-5, 0);
-  ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+  ck_assert_ok(fem_integrator_step(integrator, &time));
   ck_assert_near(time, kept_time + 1e-5, 1e-14);
   fem_integrator_state(integrator, &time, &u_now, &v_now);
   ck_assert_ok(fem_integrator_restart(integrator, time, u_now, v_now, 0)); // its own arrays
@@ -217,35 +213,30 @@ START_TEST(a_restart_from_an_earlier_state_repeats_the_run) {
 }
 END_TEST
 
-// A ball falls from 1 m on a one-sided spring. With the onset found, a bounce gains no energy.
-START_TEST(a_bouncing_ball_is_stopped_at_each_touch) {
+// A ball falls from 1 m on a one-sided spring, whose stiffness jumps at touch: the error test alone meets it.
+START_TEST(a_bouncing_ball_gains_no_energy) {
   for (double stiffness = 1e4; stiffness <= 1e8; stiffness *= 100) {
     Toy toy = {.count = 1, .mass = 1, .gravity = -9.81, .floor_stiffness = stiffness};
     toy_open(&toy);
     double u = 1, v = 0, time = 0, highest_energy = 0, lowest = 1, end = 2, first_touch = 0;
     int touches = 0, steps = 0;
     FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-5, end), &u, &v);
-    toy_accept(&toy, 0, &u, &v);
     while (time < end) {
-      bool is_onset;
       const double *u_now, *v_now;
-      ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+      double before = u;
+      ck_assert_ok(fem_integrator_step(integrator, &time));
       fem_integrator_state(integrator, &time, &u_now, &v_now);
       u = u_now[0], v = v_now[0];
       double spring = 0.5 * stiffness * fmin(u, 0) * fmin(u, 0);
       highest_energy = suite_larger(highest_energy, 0.5 * v * v + 9.81 * u + spring);
       lowest = fmin(lowest, u);
       ck_assert_int_lt(++steps, 20000);
-      toy_accept(&toy, time, &u, &v);
-      if (!is_onset) continue;
-      touches++;
-      if (first_touch == 0) first_touch = time;
-      ck_assert(u <= 0 && u > -1e-6 && v < 0);
-      ck_assert_ok(fem_integrator_restart(integrator, time, &u, &v, 0));
+      touches += before > 0 && u <= 0;
+      if (touches == 1 && first_touch == 0) first_touch = time;
     }
-    ck_assert_near(first_touch, sqrt(2 / 9.81), 1e-4);
+    printf("k = %g: %d steps, gain %.2g\n", stiffness, steps, highest_energy / 9.81 - 1);
+    ck_assert_near(first_touch, sqrt(2 / 9.81), 1e-3);
     ck_assert_int_eq(touches, 2); // the second about 2 √(2h/g) after the first
-    ck_assert_int_eq((int)fem_integrator_stats(integrator).roots, touches);
     ck_assert_near(lowest, -sqrt(2 * 9.81 / stiffness),
                    0.05 * sqrt(2 * 9.81 / stiffness) + 2 * 9.81 / stiffness);
     ck_assert_msg(highest_energy <= 9.81 * (1 + 1e-3), "gain %.3g at κ = %g", highest_energy / 9.81 - 1,
@@ -253,26 +244,6 @@ START_TEST(a_bouncing_ball_is_stopped_at_each_touch) {
     fem_integrator_destroy(integrator);
     toy_close(&toy);
   }
-}
-END_TEST
-
-START_TEST(an_onset_that_is_not_restarted_is_stepped_over) {
-  Toy toy = {.count = 1, .mass = 1, .gravity = -9.81, .floor_stiffness = 100};
-  toy_open(&toy);
-  double u = 0.1, v = 0, time = 0, last = 0;
-  FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-5, 0.25), &u, &v);
-  toy_accept(&toy, 0, &u, &v);
-  int touches = 0;
-  while (time < 0.25) {
-    bool is_onset;
-    ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
-    ck_assert(time > last);
-    last = time;
-    touches += is_onset;
-  }
-  ck_assert_int_eq(touches, 1);
-  fem_integrator_destroy(integrator);
-  toy_close(&toy);
 }
 END_TEST
 
@@ -314,8 +285,7 @@ int main(void) {
   tcase_add_test(cases, a_chain_swings_in_its_modes);
   tcase_add_test(cases, interpolation_meets_the_steps_and_keeps_to_the_last_one);
   tcase_add_test(cases, a_restart_from_an_earlier_state_repeats_the_run);
-  tcase_add_test(cases, a_bouncing_ball_is_stopped_at_each_touch);
-  tcase_add_test(cases, an_onset_that_is_not_restarted_is_stepped_over);
+  tcase_add_test(cases, a_bouncing_ball_gains_no_energy);
   tcase_add_test(cases, what_makes_no_sense_is_refused);
   return suite_run("integrator", cases, 60);
 }

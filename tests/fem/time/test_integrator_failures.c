@@ -14,10 +14,9 @@ START_TEST(a_refused_evaluation_changes_nothing_but_the_step) {
     double u = 1, v = 0, time = 0;
     FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-5, 1), &u, &v);
     while (time < 1) {
-      bool is_onset;
       const double *u_now, *v_now;
       toy_accept(&toy, time, &u, &v);
-      ck_assert_ok(fem_integrator_step(integrator, &time, &is_onset));
+      ck_assert_ok(fem_integrator_step(integrator, &time));
       fem_integrator_state(integrator, &time, &u_now, &v_now);
       u = u_now[0], v = v_now[0];
       ck_assert_near(u, cos(10 * time), 5e-3);
@@ -38,11 +37,9 @@ START_TEST(a_force_that_keeps_refusing_ends_the_run_with_its_reason) {
   toy_open(&toy);
   double u[3] = {0.1, 0, 0}, v[3] = {0}, time = 0;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-6, 1), u, v);
-  bool is_onset;
   Status status;
   int steps = 0;
-  while ((status = fem_integrator_step(integrator, &time, &is_onset)) == STATUS_OK)
-    ck_assert_int_lt(++steps, 10000);
+  while ((status = fem_integrator_step(integrator, &time)) == STATUS_OK) ck_assert_int_lt(++steps, 10000);
   ck_assert_int_eq(status, STATUS_SOLVER);
   ck_assert(time > 0.45 && time <= 0.5);
   ck_assert_ptr_nonnull(strstr(status_message(), "the force broke"));
@@ -58,12 +55,11 @@ START_TEST(a_fatal_force_comes_out_as_it_is) {
   toy_open(&toy);
   double u = 0.1, v = 0, time = 0;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-6, 1), &u, &v);
-  bool is_onset;
   Status status;
-  while ((status = fem_integrator_step(integrator, &time, &is_onset)) == STATUS_OK) ck_assert(time <= 0.5);
+  while ((status = fem_integrator_step(integrator, &time)) == STATUS_OK) ck_assert(time <= 0.5);
   ck_assert_int_eq(status, STATUS_IO);
   ck_assert_ptr_nonnull(strstr(status_message(), "the force broke"));
-  ck_assert_int_eq(fem_integrator_step(integrator, &time, &is_onset), STATUS_SOLVER); // and stays so
+  ck_assert_int_eq(fem_integrator_step(integrator, &time), STATUS_SOLVER); // and stays so
   fem_integrator_destroy(integrator);
   toy_close(&toy);
 }
@@ -75,10 +71,9 @@ START_TEST(a_jump_of_the_force_never_hangs) {
   toy_open(&toy);
   double u = 0.1, v = 0, time = 0;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-6, 10), &u, &v);
-  bool is_onset;
   Status status = STATUS_OK;
   long long steps = 0;
-  while (time < 10 && (status = fem_integrator_step(integrator, &time, &is_onset)) == STATUS_OK)
+  while (time < 10 && (status = fem_integrator_step(integrator, &time)) == STATUS_OK)
     ck_assert_int_lt((int)++steps, 1000000);
   if (status != STATUS_OK) {
     ck_assert_int_eq(status, STATUS_SOLVER);
@@ -96,11 +91,9 @@ START_TEST(a_run_that_crawls_is_given_up) {
   toy_open(&toy);
   double u = 1, v = 0, time = 0;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-9, 1), &u, &v);
-  bool is_onset;
   Status status;
   long long steps = 0;
-  while ((status = fem_integrator_step(integrator, &time, &is_onset)) == STATUS_OK)
-    ck_assert_int_lt((int)++steps, 3000);
+  while ((status = fem_integrator_step(integrator, &time)) == STATUS_OK) ck_assert_int_lt((int)++steps, 3000);
   ck_assert_int_eq(status, STATUS_SOLVER);
   ck_assert(time < 1e-5);
   fem_integrator_destroy(integrator);
@@ -114,10 +107,9 @@ START_TEST(a_run_whose_steps_are_taken_back_is_given_up) {
   toy_open(&toy);
   double u = 1, v = 0, time = 0;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-4, 1), &u, &v);
-  bool is_onset;
   Status status;
   long long steps = 0;
-  while ((status = fem_integrator_step(integrator, &time, &is_onset)) == STATUS_OK) {
+  while ((status = fem_integrator_step(integrator, &time)) == STATUS_OK) {
     ck_assert_int_lt((int)++steps, 3000);
     ck_assert_ok(fem_integrator_restart(integrator, 0, &u, &v, 0));
   }
@@ -141,9 +133,7 @@ START_TEST(a_crawl_through_many_integrators_is_given_up) {
     FemIntegrator *integrator;
     ck_assert_ok(fem_integrator_create(&integrator, &toy.system, &toy.state, &fem_solver_cholmod, &def));
     ck_assert_ok(fem_integrator_restart(integrator, time, &u, &v, 0));
-    bool is_onset;
-    for (int k = 0; k < 300 && status == STATUS_OK; k++)
-      status = fem_integrator_step(integrator, &time, &is_onset);
+    for (int k = 0; k < 300 && status == STATUS_OK; k++) status = fem_integrator_step(integrator, &time);
     const double *u_now, *v_now;
     fem_integrator_state(integrator, &time, &u_now, &v_now);
     u = *u_now, v = *v_now;
