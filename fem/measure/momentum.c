@@ -240,7 +240,7 @@ static double lasting_of(const FemMomentum *momentum, const FemMomentumBody *bod
   if (model->scene->has_gravity)
     weight = vec3_scale(model->bodies[number].mass, vec3_at(model->scene->gravity));
   Vec3 passing = vec3_scale(-0.5 * step, vec3_sub(vec3_at(body->force), weight));
-  double owed = vec3_length(passing), most = fem_limits.momentum_owed * expected;
+  double owed = vec3_length(passing), most = FEM_MOMENTUM_OWED * expected;
   if (owed > most) passing = vec3_scale(most / owed, passing);
   return fmin(vec3_length(missing), vec3_length(vec3_sub(missing, passing)));
 }
@@ -253,9 +253,8 @@ bool fem_momentum_is_refused(const FemMomentum *momentum, double end) {
     double expected = expected_of(momentum, next, b, left, &motion);
     double before = lasting_of(momentum, now, b, step, expected),
            after = lasting_of(momentum, next, b, step, expected);
-    double room =
-        fmax(0.5 * (fem_limits.momentum_far * expected - before), fem_limits.momentum_step * expected);
-    bool is_held = after <= fem_limits.momentum_near * expected || after - before <= room;
+    double room = fmax(0.5 * (FEM_MOMENTUM_FAR * expected - before), FEM_MOMENTUM_STEP * expected);
+    bool is_held = after <= FEM_MOMENTUM_NEAR * expected || after - before <= room;
     if (!is_held) return true;
   }
   return false;
@@ -271,9 +270,9 @@ double fem_momentum_strictness(const FemMomentum *momentum, double end) {
     double expected = expected_of(momentum, now, b, end - momentum->time, &motion);
     share = fmax(share, vec3_length(missing_of(now)) / expected);
   }
-  double from = fem_limits.momentum_strict, to = fem_limits.momentum_far,
+  double from = FEM_MOMENTUM_STRICT, to = FEM_MOMENTUM_FAR,
          beyond = fmin(fmax((share - from) / (to - from), 0), 1);
-  return 1 - (1 - fem_limits.strictest) * beyond;
+  return 1 - (1 - FEM_RESERVE) * beyond;
 }
 
 // How much of the last step lies before a time.

@@ -1,36 +1,149 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run promises, and every bound that keeps a promise, as a share of it.
-//
-//   energy    the audited total (fem/time/audit.h) rises by no more than this share of the scene's energy
-//   momentum  written forces and motion of a body differ by no more than this share of all its impulses
-//             (fem/measure/momentum.h)
-//
-// A run that breaks a promise is told as trouble. So that none is broken, a step that would use up what is
-// left of one is taken back, and tried again with a shorter step, before that. Where nothing jumps, without
-// contact, steps are bounded by the error test alone: the bounds of energy are then so wide that exceeding
-// them shows an error of the program or of the scene.
+// The promises of a run, and the numbers that keep them. docs/limits.md is made from this page by
+// tools/limits; each entry ends with the tests or scenes that fail, or that change beyond their own
+// tolerance, where the number is another.
 #ifndef TETLAP_FEM_MODEL_LIMITS_H
 #define TETLAP_FEM_MODEL_LIMITS_H
 
-typedef struct FemLimits {
-  // Energy, as shares of the scene's.
-  double energy;      // a run's gain: the promise
-  double energy_near; // of a run's gain, from which on a step may not gain more than `energy_step`
-  double energy_step; // what a step may always gain; below it a gain is rounding
-  double energy_without_contact, energy_step_without_contact; // the first and the third where nothing jumps
-  double turned; // what friction may give in a step to what has turned round within it
-  // Momentum, as shares of a body's impulses.
-  double momentum;      // of a run: the promise
-  double momentum_near; // what may always be missing
-  double momentum_far;  // beyond `momentum_near` a step adds no more than half of what is left to this
-  double momentum_step; // what a step may always add
-  double momentum_owed; // what a method of order 1 may lack while a force rises, which it makes up for as the
-                        // force falls, but not if the length of steps or the order has changed in between
-  // From the first share to `momentum_far` the tolerance of velocities falls to the second share of itself:
-  // steps get shorter before they have to be taken back.
-  double momentum_strict, strictest;
-} FemLimits;
+// ---- Promises. A run that breaks one is reported as trouble.
 
-extern const FemLimits fem_limits;
+// The audited total (fem/time/audit.h) rises by no more than this share of the scene's energy.
+// Held by test_audit, test_momentum, test_scenes.
+#define FEM_ENERGY 1e-3
+
+// Written forces and motion of a body differ by no more than this share of all its impulses
+// (fem/measure/momentum.h).
+// Held by test_momentum.
+#define FEM_MOMENTUM 1e-3
+
+// Where nothing jumps, without contact, BDF 2 keeps a modified energy that differs from the audited total by
+// a term of second order in the step; so many times the promise of energy shows an error of the program or
+// of the scene. Likewise the energy of a strain of so many times time.tolerance counts as the scene's at
+// least.
+// Held by test_audit, test_beam.
+#define FEM_WITHOUT_CONTACT 20
+
+// A difference of this share of what it is compared with is rounding: of the scene's energy, of a tolerance
+// of Newton's method, of an element's cube.
+// Held by test_audit, test_integrator.
+#define FEM_ROUNDING 1e-6
+
+// Times that differ by this share of the run's end are one: knots of what is prescribed, frames, the
+// shortest step. IDA distinguishes 2e-14.
+// Held by test_knots, test_integrator_failures.
+#define FEM_TIME_RESOLUTION 1e-12
+
+// ---- What a step may use up. It is taken back before it breaks a promise of the run.
+
+// Share of a promise that is kept for steps that cannot be shortened, for what a single step may lose by
+// friction at a reversal, and for what Newton's method leaves.
+// Held by test_audit, test_momentum, test_verdict, test_balance.
+#define FEM_RESERVE 0.2
+
+// Of a run's gain of energy: beyond it a step may gain rounding only.
+// Held by test_audit.
+#define FEM_ENERGY_NEAR ((1 - FEM_RESERVE) * FEM_ENERGY)
+
+// What a step may always gain of the scene's energy.
+// Held by test_audit.
+#define FEM_ENERGY_STEP FEM_ROUNDING
+
+// What friction may give in a step to a slip that has reversed within it, of the scene's energy.
+// Held by test_verdict.
+#define FEM_ENERGY_REVERSED (FEM_RESERVE * FEM_ENERGY)
+
+// What may always be missing in the balance of momentum.
+// Held by test_momentum.
+#define FEM_MOMENTUM_NEAR ((1 - 2 * FEM_RESERVE) * FEM_MOMENTUM)
+
+// Beyond FEM_MOMENTUM_NEAR a step adds no more than half of what is left to this.
+// Held by test_momentum.
+#define FEM_MOMENTUM_FAR ((1 - 0.5 * FEM_RESERVE) * FEM_MOMENTUM)
+
+// What a method of order 1 may lack while a force rises and recovers as the force falls.
+// Held by test_momentum.
+#define FEM_MOMENTUM_OWED (FEM_MOMENTUM_FAR - FEM_MOMENTUM_NEAR)
+
+// What a step may always add, as a share of the promise of momentum.
+// Held by test_momentum.
+#define FEM_MOMENTUM_STEP (0.01 * FEM_MOMENTUM)
+
+// From this share of the impulses on the tolerance of velocities falls, to FEM_RESERVE of itself at
+// FEM_MOMENTUM_FAR: steps get shorter before they have to be taken back.
+// Held by test_momentum.
+#define FEM_MOMENTUM_STRICT (0.5 * FEM_MOMENTUM)
+
+// The forces on a body balance to this share of its weight …
+// Held by test_balance, test_field_theory.
+#define FEM_BALANCE (FEM_RESERVE * FEM_MOMENTUM)
+
+// … or to this share of what its acceleration takes, if that is more. What is left turns a stiff body that
+// flies, and gives it energy.
+// Held by test_balance, test_scenes.
+#define FEM_BALANCE_OF_INERTIA (2 * FEM_MOMENTUM)
+
+// ---- What a step may err by: the tolerances of IDA's error test, beside time.tolerance.
+
+// Share of time.tolerance that velocities may err by with contact, over the slowest wave's speed, and
+// positions without contact, over the smallest body's length. The waves of an impact carry the speed of the
+// impact, hundredths of √(E/ρ); without contact bending needs accurate positions.
+// Held by test_tolerance, test_beam, test_impact.
+#define FEM_FINE 0.03
+
+// So many times the speed that is expected in the scene counts instead of the waves' if it is less: in stiff
+// bodies that move slowly waves carry far less than a hundredth of √(E/ρ).
+// Held by test_tolerance, test_impact.
+#define FEM_OF_EXPECTED_SPEED 10
+
+// With contact velocities may err by so many times time.tolerance of the fastest body's present speed.
+// Held by test_tolerance, test_steps; 13_dead_bounce takes 869 steps instead of 336 with a third of it.
+#define FEM_OF_PRESENT_SPEED 5
+
+// ---- Rest (fem/run/rest.h).
+
+// A body rests once it has been calm for so many times the time that a wave takes through the body of the
+// slowest: it rings with twice that period, and some periods without motion are no turning point.
+// Held by test_tolerance, test_rest.
+#define FEM_REST_CROSSINGS 20
+
+// It is balanced if its acceleration is below so many times the speed of rest in that time: the integrator's
+// own errors accelerate a body at rest by some hundredths.
+// Held by test_tolerance, test_rest.
+#define FEM_REST_ACCELERATION 5
+
+// ---- Lengths of steps.
+
+// Of the run's end: the longest step, also of a run whose bodies all sleep.
+// Held by test_steps.
+#define FEM_LONGEST_STEP 0.1
+
+// A step is lengthened with contact only if it can grow by this factor; a change of length costs a factor of
+// the matrix. IDA's own is 2, which holds without contact.
+// Held by 13_dead_bounce: 464 steps instead of 336 without it.
+#define FEM_LEAST_GROWTH 1.2
+
+// A step that does not stand is tried again with this share of its length; the time that sleeping bodies
+// pass, and a step of Newton's method that leads nowhere, likewise.
+// Held by test_verdict; wedge takes back 335 steps instead of 240 with 0.25.
+#define FEM_CUT 0.2
+
+// Of the time in which a wave √(E/ρ) crosses the smallest mean edge: what is tried again is not shorter,
+// since nothing moves in less; nor, times FEM_CUT, the first step of a start.
+// Held by test_verdict, test_integrator.
+#define FEM_SHORTEST_RETRY 2.5e-3
+
+// ---- Newton's method.
+
+// Iterations before a step is given up, and cuts of one of its own steps.
+// Held by 10_incline, 01_drop.
+#define FEM_NEWTON_ITERATIONS 16
+
+// What a linear solution may leave: of what Newton's test lets pass, and of the right-hand side.
+// Held by test_scenes.
+#define FEM_SOLVED 0.02
+
+// A factor of the matrix costs as many solutions.
+// Held by test_scenes: iterations with an old factor.
+#define FEM_FACTOR_SOLUTIONS 40
 
 #endif

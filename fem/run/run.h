@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A whole run of a scene: model → system → integrator (in a static scene fem/statics/statics.h) → frames.
 //
-//     step ──► energy audit ──► frames up to its time (within the step) ──► accept: effects renew their lists
-//      ▲            │ gains too much: back to the last accepted state, smaller step, order 1        │
-//      ├────────────┴───────────────────────────────────────────────────────────────────────────────┤
-//      └── system and integrator begin anew from the checkpoint (checkpoint.h) ◄─── when one is due ───┘
+//     one step (run_step.h) ─► accept: effects renew their lists (run_stage.h)
+//       ▲                                  │
+//       ├──── other unknowns: new stage ◄──┤
+//       └──── system and integrator begin anew from the checkpoint (checkpoint.h) ◄── when one is due
 //
 // A checkpoint is due after so many frames, whatever the clock says, so that two runs of a scene are the
 // same; the clock only says whether it is written to checkpoint.h5. A run that is stopped, or that fails

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/model/limits.h"
 
 static void keep_frame(FemRunState *run, double time) {
   FemRunResult *result = run->result;
@@ -96,7 +97,7 @@ static Status measure_within_step(FemRunState *run, double time, FemMeasures *me
 
 Status fem_run_frames_write_until(FemRunState *run, double time) {
   const FemSceneDef *scene = run->model->scene;
-  double slack = 1e-12 * scene->end;
+  double slack = FEM_TIME_RESOLUTION * scene->end;
   while (run->next_frame <= scene->frames) {
     double frame = fem_scene_frame_time(scene, run->next_frame);
     if (frame > time + slack) break;

@@ -133,7 +133,7 @@ void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, cha
              trouble->worst_sliver);
     append_trouble(text, size, &used, "slivers in the mesh", place, "mesh it anew");
   }
-  if (!(result->momentum_gap <= fem_limits.momentum)) {
+  if (!(result->momentum_gap <= FEM_MOMENTUM)) {
     snprintf(place, sizeof place, "of body '%s' by %.2g %% of all impulses",
              model->bodies[result->momentum_body].name, 100 * result->momentum_gap);
     append_trouble(text, size, &used, "forces and motion differ", place,
@@ -271,7 +271,7 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
   if (!result->is_static) {
     record_number(summary, "energy_uncertain_J", result->audit.uncertain);
     record_number(summary, "momentum_gap", result->momentum_gap);
-    record_number(summary, "momentum_gap_allowed", fem_limits.momentum);
+    record_number(summary, "momentum_gap_allowed", FEM_MOMENTUM);
   }
   record_number(summary, "min_det_F", result->min_det_F);
   fem_trouble_record(&result->trouble, record_child(summary, "trouble"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run while it goes on, shared by the files that make it up: run.c steps, run_load.c does so in a static
-// scene, run_frames.c measures and shows, run_watch.c counts trouble and tells, run_checkpoint.c keeps what a
-// resumed run needs. For those only.
+// A run while it goes on, shared by the files that make it up: run.c runs, run_stage.c begins anew where what
+// is free changes, run_step.c steps, run_load.c does so in a static scene, run_frames.c measures and shows,
+// run_watch.c counts trouble and tells, run_checkpoint.c keeps what a resumed run needs. For those only.
 #ifndef TETLAP_FEM_RUN_RUN_STATE_H
 #define TETLAP_FEM_RUN_RUN_STATE_H
 
@@ -26,14 +26,13 @@ typedef struct FemRunState {
   FemAudit audit;
   double time;           // of the last accepted state
   double *u, *v;         // the last accepted state         (unknown_count)
-  double *u_new, *v_new; // the state under judgement  (unknown_count)
+  double *u_new, *v_new; // the state that is proposed       (unknown_count)
   FemState trial;        // the state that was evaluated last; the integrator's, or statics', too
   FemState middle;       // of a step, scratch
   double *mean_velocity; // of a step, scratch           (unknown_count)
   double *halfway;       // displacements there, scratch     (unknown_count)
   int next_frame;
-  int retries;              // in a row
-  double least_power;       // of the step under judgement, dissipated at least; INFINITY: no doubt [W]
+  double least_power;       // of the step that is proposed, dissipated at least; INFINITY: no doubt [W]
   double next_step;         // to be tried; 0: the integrator's choice [s]
   FemStall stall;           // over all stages
   double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]

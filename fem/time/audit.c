@@ -36,12 +36,12 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
 // faster than the step is long: there the logarithmic mean is right, and the mean of the ends would be many
 // times the energy that there was. The first is used up to a fall by SWINGS, the second from FALLS on, a
 // blend in between.
-static const double SWINGS = 2, FALLS = 8;
+enum { SWINGS = 2, FALLS = SWINGS * SWINGS * SWINGS };
 static double mean_dissipated(double begin, double end) {
   const double trapezoid = 0.5 * (begin + end);
   if (!(begin > SWINGS * end)) return trapezoid;
   if (!(end > 0)) return 0;
-  double share = fmin(1, log(begin / end / SWINGS) / log(FALLS / SWINGS));
+  double share = fmin(1, log(begin / end / SWINGS) / log((double)FALLS / SWINGS));
   double smooth = share * share * (3 - 2 * share);
   return trapezoid + smooth * ((begin - end) / log(begin / end) - trapezoid);
 }
@@ -77,14 +77,8 @@ FemAudit fem_audit_next_within(const FemAudit *audit, double time, const FemEner
 }
 
 FemAuditBounds fem_audit_bounds(bool has_contact, double least) {
-  const FemLimits *limits = &fem_limits;
-  FemAuditBounds bounds = {.run = limits->energy_without_contact,
-                           .near = limits->energy_without_contact,
-                           .step = limits->energy_step_without_contact,
-                           .least = least};
-  if (has_contact)
-    bounds.run = limits->energy, bounds.near = limits->energy_near, bounds.step = limits->energy_step;
-  return bounds;
+  double run = has_contact ? FEM_ENERGY : FEM_WITHOUT_CONTACT * FEM_ENERGY;
+  return (FemAuditBounds){.run = run, .near = has_contact ? FEM_ENERGY_NEAR : INFINITY, .least = least};
 }
 
 double fem_audit_rise(const FemAuditBounds *bounds, const FemAudit *audit) {
@@ -92,14 +86,14 @@ double fem_audit_rise(const FemAuditBounds *bounds, const FemAudit *audit) {
 }
 
 bool fem_audit_is_doubtful(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after) {
-  return !(after->total - before->total <= fem_limits.energy_step * fmax(after->scale, bounds->least));
+  return !(after->total - before->total <= FEM_ENERGY_STEP * fmax(after->scale, bounds->least));
 }
 
 bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after) {
   const double scale = fmax(after->scale, bounds->least);
   double of_step = (after->total - before->total) / scale;
   double of_run = (after->total - before->lowest) / scale;
-  bool is_held = of_run <= bounds->near || of_step <= bounds->step;
+  bool is_held = of_run <= bounds->near || of_step <= FEM_ENERGY_STEP;
   return !is_held;
 }
 

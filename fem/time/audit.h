@@ -17,9 +17,8 @@
 #include "fem/effect/effect.h"
 
 typedef struct FemAuditBounds {
-  double run;   // what a run may gain in all
-  double near;  // of the run's gain, from which on a step may not gain more than `step`
-  double step;  // what one step may always gain
+  double run;  // what a run may gain in all
+  double near; // of the run's gain, from which on a step may gain rounding only; INFINITY: no step is refused
   double least; // energy that counts as the scene's at least in these shares [J]
 } FemAuditBounds;
 

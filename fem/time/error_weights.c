@@ -54,12 +54,12 @@ static double fastest(const FemModel *model, const FemPart *part, const double *
 
 void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model, const FemPart *part,
                        const double *v, double *weights) {
-  double wanted = tolerance->speed_share > 0 ? tolerance->speed_share * fastest(model, part, v) : 0;
+  double speed = tolerance->speed_share > 0 ? fastest(model, part, v) : 0;
   for (int b = 0, begin = 0, end; b < model->body_count; b++, begin = end) {
     find_end(model, part, b, begin, &end);
     const FemMaterial *material = &model->bodies[b].material;
-    double most = tolerance->wave_share * sqrt(material->young / material->density);
-    double velocity = fmax(tolerance->velocity, fmin(wanted, most));
+    double wave = sqrt(material->young / material->density);
+    double velocity = fmax(tolerance->velocity, tolerance->speed_share * fmin(speed, wave));
     for (int i = begin; i < end; i++) {
       weights[i] = 1 / tolerance->displacement;
       weights[part->count + i] = 1 / velocity;

@@ -4,8 +4,8 @@
 // Positions may err by a length. Velocities by a share of what moves: where bodies strike each other at a
 // speed v, their surfaces change theirs by v, and an error far below that costs steps and changes nothing. So
 // a velocity may err by `speed_share` of the present speed of the fastest body (root mean square over its
-// mass), at least by the `velocity` tolerance and at most by `wave_share` of the body's own √(E/ρ), the speed
-// of its waves. Speeds are relative to the common velocity (fem/model/floating.h). This is a
+// mass), which counts up to the body's own √(E/ρ), the speed of its waves, and at least by the `velocity`
+// tolerance. Speeds are relative to the common velocity (fem/model/floating.h). This is a
 // function of the state, so a resumed run has the same weights.
 #ifndef TETLAP_FEM_TIME_ERROR_WEIGHTS_H
 #define TETLAP_FEM_TIME_ERROR_WEIGHTS_H
@@ -17,7 +17,6 @@ typedef struct FemErrorTolerance {
   double displacement; // [m]
   double velocity;     // at least [m/s]
   double speed_share;  // of the fastest body's speed; 0: `velocity` is all
-  double wave_share;   // of a body's √(E/ρ), at most
 } FemErrorTolerance;
 
 // The weights 1/tolerance of u and v (2 · part->count) at the velocities v (part->count). By all ranks.

@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "base/ranks.h"
+#include "fem/model/limits.h"
 #include "fem/time/error_weights.h"
 #include "fem/time/newton/balance.h"
 #include "fem/time/newton/ida_solver.h"
@@ -17,21 +18,8 @@
 #include "fem/time/reason.h"
 #include "fem/time/sundials.h"
 
-// Chosen bounds of the step, as shares of the run's end.
-static const double LONGEST_STEP = 0.1, SHORTEST_STEP = 1e-11;
-// A step is given up after so many failures in a row; each cuts it to a quarter at least.
-enum { MAX_FAILURES = 15 };
-// Knots of prescribed motions and loads closer than this share of the run's end count as one; IDA tells 2e-14
-// apart.
-static const double KNOT_RESOLUTION = 1e-12;
-// The least factor by which a step is lengthened. IDA's own is 2, which saves factorisations. Where contact
-// begins and ends the step size changes often, and longer steps save more.
-static const double LEAST_GROWTH = 1.2, LEAST_GROWTH_WITHOUT_CONTACT = 2;
-// Where the end of a step and the last evaluation differ by less than this share of the tolerance, which is
-// rounding, the values of the evaluation are used.
-static const double SAME_STATE = 1e-6;
-// A residual of u̇ = v below this share of the velocities' tolerance is rounding.
-static const double ROUNDING = 1e-7;
+// Without contact a step is lengthened only if it can double (IDA's own), which saves factorisations.
+static const double LEAST_GROWTH_WITHOUT_CONTACT = 2;
 
 struct FemIntegrator {
   FemSystem *system; // borrowed
@@ -110,8 +98,7 @@ static int find_weights(N_Vector y, N_Vector weights, void *self) {
   const FemIntegratorDef *def = &integrator->def;
   FemErrorTolerance tolerance = {.displacement = def->displacement_tolerance,
                                  .velocity = integrator->strictness * def->velocity_tolerance,
-                                 .speed_share = integrator->strictness * def->speed_share,
-                                 .wave_share = integrator->strictness * def->wave_share};
+                                 .speed_share = integrator->strictness * def->speed_share};
   fem_error_weights(&tolerance, integrator->system->model, &integrator->part, values_of(y) + integrator->n,
                     values_of(weights));
   return 0;
@@ -165,12 +152,19 @@ static Status create_vectors(FemIntegrator *integrator) {
   return STATUS_OK;
 }
 
+// After so many failures in a row the longest step has become the shortest: from the third on each cuts it to
+// a quarter at least.
+static int most_failures(const FemIntegrator *integrator) {
+  return 2 + (int)ceil(0.5 * log2(integrator->max_step / integrator->min_step));
+}
+
 static Status configure(FemIntegrator *integrator) {
   void *ida = integrator->ida = IDACreate(integrator->context);
   if (!ida) return status_no_memory("the integrator");
   FemIdaSolver *solver = integrator->solver;
   bool has_contact = fem_system_effect(integrator->system, &fem_effect_contact);
-  double least_growth = has_contact ? LEAST_GROWTH : LEAST_GROWTH_WITHOUT_CONTACT;
+  int failures = most_failures(integrator);
+  double least_growth = has_contact ? FEM_LEAST_GROWTH : LEAST_GROWTH_WITHOUT_CONTACT;
   bool is_ok =
       FEM_SUNDIALS_SILENCE(IDA, ida) &&
       IDASetMaxOrd(ida, integrator->def.max_order) == IDA_SUCCESS && // before vectors are made for more
@@ -181,20 +175,21 @@ static Status configure(FemIntegrator *integrator) {
       IDASetMaxStep(ida, integrator->max_step) == IDA_SUCCESS &&
       IDASetMinStep(ida, integrator->min_step) == IDA_SUCCESS &&
       IDASetEtaFixedStepBounds(ida, 1, least_growth) == IDA_SUCCESS &&
-      IDASetMaxErrTestFails(ida, MAX_FAILURES) == IDA_SUCCESS &&
-      IDASetMaxConvFails(ida, MAX_FAILURES) == IDA_SUCCESS && IDASetMaxNumSteps(ida, -1) == IDA_SUCCESS;
+      IDASetMaxErrTestFails(ida, failures) == IDA_SUCCESS &&
+      IDASetMaxConvFails(ida, failures) == IDA_SUCCESS && IDASetMaxNumSteps(ida, -1) == IDA_SUCCESS;
   return is_ok ? STATUS_OK : status_fail(STATUS_SOLVER, "IDA could not be set up");
 }
 
 static Status create(FemIntegrator *integrator, const FemSolverOps *solver) {
   const FemIntegratorDef *def = &integrator->def;
   TRY(check_def(def));
-  integrator->max_step = def->max_step > 0 ? def->max_step : fmax(LONGEST_STEP * def->end, def->min_step);
+  integrator->max_step = def->max_step > 0 ? def->max_step : fmax(FEM_LONGEST_STEP * def->end, def->min_step);
   integrator->min_step =
-      def->min_step > 0 ? def->min_step : fmin(SHORTEST_STEP * def->end, integrator->max_step);
+      def->min_step > 0 ? def->min_step : fmin(FEM_TIME_RESOLUTION * def->end, integrator->max_step);
   TRY(create_vectors(integrator));
   TRY(fem_ida_solver_create(&integrator->solver, integrator->system, &integrator->part, solver,
-                            ROUNDING * def->velocity_tolerance, &integrator->failure, integrator->context));
+                            FEM_ROUNDING * def->velocity_tolerance, &integrator->failure,
+                            integrator->context));
   TRY(fem_balance_create(&integrator->balance, integrator->system->model->body_count));
   FemNewtonUser user = {
       .self = integrator, .n = integrator->n, .right = right_of, .unbalance = unbalance, .aim = aim};
@@ -231,6 +226,10 @@ void fem_integrator_destroy(FemIntegrator *integrator) {
     if (vectors[i]) N_VDestroy(vectors[i]);
   if (integrator->context) SUNContext_Free(&integrator->context);
   memory_free(integrator);
+}
+
+double fem_integrator_shortest_step(const FemIntegrator *integrator) {
+  return integrator->min_step;
 }
 
 void fem_integrator_tighten(FemIntegrator *integrator, double share) {
@@ -465,7 +464,7 @@ static void limit_step(FemIntegrator *integrator, double begin, double planned, 
 static Status choose_stop(FemIntegrator *integrator) {
   double begin = integrator->time, end = integrator->def.end, step = integrator->max_step;
   if (integrator->has_steps) IDAGetCurrentStep(integrator->ida, &step);
-  double least = fmax(integrator->min_step, KNOT_RESOLUTION * end);
+  double least = fmax(integrator->min_step, FEM_TIME_RESOLUTION * end);
   FemForesight foresight = {.displacement = integrator->def.displacement_tolerance,
                             .velocity = integrator->def.velocity_tolerance,
                             .resolution = least};
@@ -492,15 +491,16 @@ static Status pass_knot(FemIntegrator *integrator) {
   return choose_stop(integrator);
 }
 
-// IDA hands out the step's end from its differences, rounded otherwise than where forces were evaluated last:
-// what has been found there would be found anew.
+// IDA computes the step's end from its differences. Where that is the state whose forces were evaluated last,
+// but for rounding, the values of the evaluation are used, so that nothing is evaluated twice.
 static void take_evaluated(FemIntegrator *integrator, double reached) {
   if (integrator->evaluated_time != reached) return;
   N_Vector difference = integrator->interpolated;
   N_VLinearSum(1, integrator->evaluated, -1, integrator->y, difference);
   if (IDAGetErrWeights(integrator->ida, integrator->weights) != IDA_SUCCESS) return;
   N_VProd(difference, integrator->weights, difference);
-  if (fem_part_most(N_VMaxNorm(difference)) <= SAME_STATE) N_VScale(1, integrator->evaluated, integrator->y);
+  if (fem_part_most(N_VMaxNorm(difference)) <= FEM_ROUNDING)
+    N_VScale(1, integrator->evaluated, integrator->y);
 }
 
 static Status take_step(FemIntegrator *integrator) {

@@ -17,8 +17,8 @@
 
 typedef struct FemIntegratorDef {
   double displacement_tolerance;           // error per step of every unknown [m]
-  double velocity_tolerance;               // [m/s]; at least, where the next two are given
-  double speed_share, wave_share;          // further tolerances of a velocity (error_weights.h); 0: none
+  double velocity_tolerance;               // [m/s]; at least, where the next is given
+  double speed_share;                      // a further tolerance of a velocity (error_weights.h); 0: none
   double initial_step, min_step, max_step; // [s]; 0: chosen
   double least_start;                      // first step of a start that IDA chooses, at least [s]; 0: any
   int max_order;                           // 1 or 2
@@ -51,6 +51,9 @@ void fem_integrator_destroy(FemIntegrator *integrator);
 // forces cannot be evaluated there.
 Status fem_integrator_restart(FemIntegrator *integrator, double time, const double *u, const double *v,
                               double step);
+
+// The shortest step that it takes [s].
+double fem_integrator_shortest_step(const FemIntegrator *integrator);
 
 // From the next step on velocities may err by this share of their tolerances, at most 1.
 void fem_integrator_tighten(FemIntegrator *integrator, double share);

@@ -5,9 +5,7 @@
 #include <stdio.h>
 
 #include "fem/effect/contact/contact.h"
-
-// Overlaps below this share of an element's cube are rounding of places.
-static const double ROUNDING_SHARE = 1e-6;
+#include "fem/model/limits.h"
 
 // The largest covered share of an element of a body; 0 for what has no elements.
 static double deepest_of(const FemSystem *system, int body) {
@@ -26,7 +24,7 @@ int fem_run_start_overlap(const FemSystem *system, int from, char *text, size_t 
   if (!effect) return -1;
   int count;
   const ContactInterface *interfaces = contact_system_interfaces(fem_effect_contact_system(effect), &count);
-  double least = ROUNDING_SHARE * pow(system->model->edge, 3);
+  double least = FEM_ROUNDING * pow(system->model->edge, 3);
   for (int i = from; i < count; i++) {
     if (!(interfaces[i].volume > least)) continue;
     double deepest = fmax(deepest_of(system, interfaces[i].a), deepest_of(system, interfaces[i].b));

@@ -7,15 +7,7 @@
 #include "base/ranks.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
-#include "fem/model/floating.h"
-
-// Forces on a body balance to this share of its weight or, where that is more, to that of what its
-// acceleration takes. What is left turns a stiff body that flies, and gives it energy.
-static const double BALANCE = 2e-4, BALANCE_OF_INERTIA = 2e-3;
-// In a scene without contact whose bodies are held, times this: they cannot turn on.
-static const double WITHOUT_CONTACT = 10;
-// Nor less than this share of E · edge².
-static const double SMALLEST_FORCE = 1e-10;
+#include "fem/model/limits.h"
 
 Status fem_balance_create(FemBalance *balance, int body_count) {
   balance->unbalanced = memory_zeroed((size_t)body_count, sizeof(double));
@@ -58,16 +50,15 @@ double fem_balance_excess(FemBalance *balance, FemSystem *system, const FemPart 
   void *contact = fem_system_effect(system, &fem_effect_contact);
   const double *forces = contact ? contact_system_forces(fem_effect_contact_system(contact)) : NULL;
   double worst = 0, gravity = model->scene->has_gravity ? vec3_length(vec3_at(model->scene->gravity)) : 0;
-  const bool is_strict = forces || fem_model_floats(model, part->numbering->released);
   sum_up(balance, system, part, residual);
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     double weight = gravity * body->mass;
     if (forces && !(gravity > 0)) weight = pressed_on(forces, body);
-    double needed = fmax(BALANCE * weight, BALANCE_OF_INERTIA * balance->needed[b]);
-    double floor = SMALLEST_FORCE * body->material.young * model->edge * model->edge;
-    double allowed = fmax(is_strict ? needed : WITHOUT_CONTACT * needed, floor);
-    worst = fmax(worst, balance->unbalanced[b] / allowed);
+    double needed = fmax(FEM_BALANCE * weight, FEM_BALANCE_OF_INERTIA * balance->needed[b]);
+    // Without either: rounding of the force by which an element is strained by time.tolerance.
+    double least = FEM_ROUNDING * model->scene->tolerance * body->material.young * model->edge * model->edge;
+    worst = fmax(worst, balance->unbalanced[b] / fmax(needed, least));
   }
   return worst;
 }

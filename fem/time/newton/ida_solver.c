@@ -8,13 +8,10 @@
 
 #include "base/memory.h"
 #include "base/ranks.h"
+#include "fem/model/limits.h"
 #include "fem/sparse/cg.h"
 #include "fem/time/newton/direct.h"
 
-// Solutions at another c than the factor's: iterations at most, and how many together are worth a factor at
-// that c, which costs as much as 40 solutions. What they leave, at most and at least.
-enum { MOST_FOLLOWED = 20, WORTH_A_FACTOR = 40 };
-static const double FOLLOWED = 1e-2, CLOSEST_FOLLOWED = 1e-6;
 // IDA asks for a matrix where c is beyond (1 + x)/(1 − x) of the matrix's, either way: three times. Its own
 // is 0.25.
 static const double FOLLOWED_CHANGE = 0.5;
@@ -41,7 +38,7 @@ struct FemIdaSolver {
   // Where the factor is exact and assembling costs, the solutions follow c without a new factor.
   bool follows;
   double factor_c, matrix_c; // of the factor, of the system's matrix as it stands [1/s]
-  double goal;               // of the next solution; 0: FOLLOWED
+  double goal;               // of the next solution; 0: FEM_SOLVED
   int followed;              // iterations since the last factor
   FemCg cg;
   double *piece; // scratch, over ranks                        (part->count)
@@ -153,20 +150,20 @@ static Status catch_up(FemIdaSolver *solver) {
 
 // S(c) x = right. With the factor of S(c₀) as the preconditioner all eigenvalues lie between 1 and (c/c₀)².
 static Status solve_following(FemIdaSolver *solver, double *x) {
-  double goal = solver->goal > 0 ? solver->goal : FOLLOWED;
+  double goal = solver->goal > 0 ? solver->goal : FEM_SOLVED;
   long long iterations = 0;
   FemCgEnd end;
   FemCgProblem problem = {.matrix = &solver->system->matrix,
                           .precondition = solve_by_factor,
                           .self = solver,
                           .name = solver->ops->name,
-                          .tolerance = fmax(fmin(goal, FOLLOWED), CLOSEST_FOLLOWED),
+                          .tolerance = fmax(fmin(goal, FEM_SOLVED), FEM_ROUNDING),
                           .by_residual = true,
-                          .limit = MOST_FOLLOWED};
+                          .limit = FEM_FACTOR_SOLUTIONS / 2};
   const FemPart *part = solver->part;
   double *right = solver->right, *left = x;
   shift(solver);
-  if (solver->followed >= WORTH_A_FACTOR) {
+  if (solver->followed >= FEM_FACTOR_SOLUTIONS) {
     TRY(catch_up(solver));
     return solve_condensed(solver, x);
   }

@@ -5,10 +5,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fem/model/limits.h"
 #include "fem/time/part.h"
-
-// Two changes whose angle has a smaller sine² than this count as one.
-static const double LEAST_SINE_SQUARE = 1e-6;
 
 Status fem_mixing_create(FemMixing *mixing, int n) {
   *mixing = (FemMixing){.n = n};
@@ -61,7 +59,7 @@ static void find_shares(const FemMixing *mixing, const double *weights, const do
   if (mixing->count < 2) return;
   double b = dot(mixing, weights, one, two), c = dot(mixing, weights, two, two),
          right_two = dot(mixing, weights, two, d), det = a * c - b * b;
-  if (!(det > LEAST_SINE_SQUARE * a * c)) return;
+  if (!(det > FEM_ROUNDING * a * c)) return; // sine² of their angle: they count as one
   gamma[0] = (right * c - right_two * b) / det;
   gamma[1] = (right_two * a - right * b) / det;
 }

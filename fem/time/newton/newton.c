@@ -5,21 +5,14 @@
 #include <nvector/nvector_serial.h>
 
 #include "base/ranks.h"
+#include "fem/model/limits.h"
 #include "fem/sparse/solver.h"
 #include "fem/time/part.h"
 #include "fem/time/sundials.h"
 
-// Iterations, and matrices made anew, before a step is given up.
-enum { MAX_ITERATIONS = 16, MAX_RENEWALS = 5, MAX_CUTS = 6 };
-// A step is shortened where the slope of the potential along it is, at its end, beyond this share of what it
-// was, with the other sign; and not below this share at once.
-static const double SLOPE_ALLOWED = 0.9, SHORTEST_CUT = 0.1;
-// What a linear solution may leave: of what is allowed of the balance, and of a correction by IDA's test.
-static const double AIM_BALANCE = 0.03, AIM_SIZE = 0.02;
-// Where forces cannot be evaluated.
-static const double BLIND_CUT = 0.35;
-// A matrix of elsewhere is made anew once the iterations that are left, at the rate of the last, are more.
-static const double WORTH_A_MATRIX = 3, LEAST_RATE = 0.2, CLOSE = 0.3;
+// A matrix of an earlier iteration is renewed once the iterations that are left, at the rate of the last one,
+// are more: a new one costs about as much.
+static const double WORTH_A_MATRIX = 2;
 
 sunrealtype fem_newton_norm(N_Vector x_vector, N_Vector weights) {
   enum { SUMS = 8 };
@@ -112,13 +105,11 @@ static int make_matrix(Solve *solve) {
   return flag;
 }
 
-// Asks for a matrix of where the iteration stands; false: there were enough.
-static bool renew(Solve *solve) {
-  if (solve->renewals >= MAX_RENEWALS) return false;
+// Asks for a matrix of where the iteration stands.
+static void renew(Solve *solve) {
   solve->renewals++;
   solve->newton->stats.renewed++;
   solve->wants_matrix = solve->was_bad = true;
-  return true;
 }
 
 // δu · r of the balance at the correction.
@@ -152,7 +143,7 @@ static void aim(Solve *solve) {
   FemNewton *newton = solve->newton;
   double size = solve->size > 0 ? solve->size : newton->first_size;
   double excess = isinf(solve->excess) ? unbalance(newton) : solve->excess;
-  double tolerance = fmin(AIM_BALANCE / excess, AIM_SIZE * solve->tolerance / size);
+  double tolerance = FEM_SOLVED * fmin(1 / excess, solve->tolerance / size);
   newton->user.aim(newton->user.self, size > 0 && excess > 0 ? tolerance : 0);
 }
 
@@ -182,7 +173,7 @@ static int find_direction(Solve *solve) {
 // have is never cut.
 static bool overshoots(const Solve *solve, double share, double end) {
   double size = share * N_VWrmsNorm(solve->newton->direction, solve->weights);
-  return size > 1 && solve->slope < 0 && end > -SLOPE_ALLOWED * solve->slope;
+  return size > 1 && solve->slope < 0 && end > -solve->slope;
 }
 
 // Takes the step, shortened as far as it must be; *share: what of it. The residual is that of its end.
@@ -193,14 +184,14 @@ static int take_step(Solve *solve, double *share) {
   for (int cut = 0;; cut++) {
     N_VLinearSum(1, newton->start, *share, newton->direction, solve->correction);
     int flag = evaluate(solve);
-    if (flag < 0 || (flag > 0 && cut >= MAX_CUTS)) return flag;
+    if (flag < 0 || (flag > 0 && cut >= FEM_NEWTON_ITERATIONS)) return flag;
     if (flag > 0) {
-      *share *= BLIND_CUT;
+      *share *= FEM_CUT;
       continue;
     }
     double end = slope_of_balance(newton) + (1 - *share) * solve->settle;
-    if (cut >= MAX_CUTS || !overshoots(solve, *share, end)) return 0;
-    *share *= fmax(solve->slope / (solve->slope - end), SHORTEST_CUT);
+    if (cut >= FEM_NEWTON_ITERATIONS || !overshoots(solve, *share, end)) return 0;
+    *share *= fmax(solve->slope / (solve->slope - end), FEM_CUT);
   }
 }
 
@@ -208,8 +199,8 @@ static int take_step(Solve *solve, double *share) {
 // worth.
 static bool is_slow(const Solve *solve, double size, double before, double excess) {
   if (!(size > 0 && before > 0)) return false;
-  double rate = size / before, beyond = fmax(size / (CLOSE * solve->tolerance), excess);
-  return rate > LEAST_RATE && (rate >= 1 || log(beyond) / -log(rate) > WORTH_A_MATRIX);
+  double rate = size / before, beyond = fmax(size / solve->tolerance, excess);
+  return rate >= 1 || log(beyond) / -log(rate) > WORTH_A_MATRIX;
 }
 
 // Decides after a whole step by IDA's test and the balance. Where the forces jump they cannot be balanced:
@@ -228,13 +219,16 @@ static int judge(Solve *solve, bool *has_converged) {
   bool passes = verdict == SUN_SUCCESS, is_stuck = !(solve->excess <= 0.5 * excess_before);
   *has_converged = passes && solve->excess <= 1;
   bool is_left = !*has_converged && solve->is_good_enough && (is_stuck || !passes);
-  if (is_left && !solve->is_newest && renew(solve)) return 0;
+  if (is_left && !solve->is_newest) {
+    renew(solve);
+    return 0;
+  }
   *has_converged = *has_converged || is_left;
   if (*has_converged) return 0;
   solve->is_good_enough = solve->is_good_enough || passes;
   newton->stats.polished += passes;
-  if (!passes && verdict != SUN_NLS_CONTINUE) return renew(solve) ? 0 : SUN_NLS_CONV_RECVR;
-  if (!solve->is_newest && is_slow(solve, solve->size, before, solve->excess)) renew(solve);
+  bool diverges = !passes && verdict != SUN_NLS_CONTINUE;
+  if (diverges || (!solve->is_newest && is_slow(solve, solve->size, before, solve->excess))) renew(solve);
   return 0;
 }
 
@@ -248,7 +242,10 @@ static int iterate(Solve *solve, bool *has_converged) {
     if (flag != 0) return flag;
   }
   int flag = find_direction(solve);
-  if (flag > 0 && !solve->is_newest && renew(solve)) return 0;
+  if (flag > 0 && !solve->is_newest) {
+    renew(solve);
+    return 0;
+  }
   if (flag != 0) return flag;
   newton->iterations++;
   flag = take_step(solve, &share);
@@ -257,13 +254,14 @@ static int iterate(Solve *solve, bool *has_converged) {
   if (share == 1) return judge(solve, has_converged);
   newton->stats.shortened++;
   solve->size = 0;
-  return renew(solve) ? 0 : SUN_NLS_CONV_RECVR;
+  renew(solve);
+  return 0;
 }
 
 static int run(Solve *solve) {
   bool has_converged = false;
   int flag = evaluate(solve);
-  while (flag == 0 && !has_converged && solve->newton->iterations < MAX_ITERATIONS)
+  while (flag == 0 && !has_converged && solve->newton->iterations < FEM_NEWTON_ITERATIONS)
     flag = iterate(solve, &has_converged);
   if (flag != 0) return flag;
   return has_converged || solve->is_good_enough ? SUN_SUCCESS : SUN_NLS_CONV_RECVR;

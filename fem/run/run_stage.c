@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/run/run_stage.h"
+
+#include <math.h>
+
+#include "fem/model/limits.h"
+#include "fem/model/tolerance.h"
+#include "fem/run/check/choice.h"
+#include "fem/run/hold.h"
+#include "fem/run/run_frames.h"
+
+double fem_run_stage_resolved(const FemModel *model) {
+  return FEM_SHORTEST_RETRY * model->edge / fem_model_fastest_wave(model);
+}
+
+void fem_run_stage_scatter(FemRunState *run) {
+  fem_system_scatter(&run->system, run->time, run->u, run->v, &run->trial);
+}
+
+Status fem_run_stage_begin(FemRunState *run, double step) {
+  const FemModel *model = run->model;
+  const FemSceneDef *scene = model->scene;
+  double next = fem_rest_next_change(run->rest);
+  run->stage_end = fmin(fmin(scene->end, next), fem_numbering_next_release(model, run->time));
+  if (run->system.numbering.count == 0) return STATUS_OK; // all sleep
+  FemIntegratorDef def = {.displacement_tolerance = fem_model_position_tolerance(model),
+                          .velocity_tolerance = fem_model_velocity_tolerance(model),
+                          .speed_share = fem_model_speed_share(model),
+                          .initial_step = step,
+                          .min_step = scene->min_step,
+                          .max_step = scene->max_step,
+                          .least_start = FEM_CUT * fem_run_stage_resolved(model),
+                          .max_order = scene->max_order,
+                          .end = run->stage_end,
+                          .stall = &run->stall};
+  const FemSolverOps *solver = fem_solver_ops(fem_run_choice(model, &run->system.numbering).kind);
+  TRY(fem_integrator_create(&run->integrator, &run->system, &run->trial, solver, &def));
+  return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
+}
+
+void fem_run_stage_end(FemRunState *run) {
+  FemRunResult *result = run->result;
+  const FemStatics *statics = &run->statics;
+  result->integrator = fem_run_state_stats(run);
+  if (run->integrator)
+    fem_run_result_add_solver(&result->solver, fem_integrator_solver_stats(run->integrator));
+  if (statics->equilibrium.solver) {
+    fem_run_result_add_solver(&result->solver, statics->equilibrium.ops->stats(statics->equilibrium.solver));
+    result->residual = statics->residual;
+    result->residual_allowed = statics->tolerance * statics->force_scale;
+    result->relaxation_steps += statics->relaxation_steps;
+    result->halvings += statics->halvings;
+    result->loose += statics->loose;
+  }
+  fem_integrator_destroy(run->integrator);
+  run->integrator = NULL;
+  fem_statics_destroy(&run->statics);
+}
+
+// With the coordinates that are free from here on.
+static Status begin_account(FemRunState *run) {
+  FemMeasures measures;
+  fem_run_stage_scatter(run);
+  TRY(fem_run_frames_measure(run, &measures));
+  return fem_recorder_begin_step(&run->recorder, &run->trial, &measures);
+}
+
+Status fem_run_stage_change(FemRunState *run) {
+  fem_run_stage_end(run);
+  fem_run_stage_scatter(run);
+  TRY(fem_hold_renumber(&run->system, run->rest, &run->trial, &run->audit, run->u, run->v));
+  TRY(begin_account(run));
+  return fem_run_stage_begin(run, 0);
+}
+
+Status fem_run_stage_accept(FemRunState *run, double next_step) {
+  fem_run_stage_scatter(run); // a frame has been shown since, perhaps
+  TRY(fem_system_accept(&run->system, &run->trial, next_step));
+  return fem_rest_decide(run->rest, next_step);
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A stage of a run: from one change of what is free to the next. An integrator lasts for a stage.
+#ifndef TETLAP_FEM_RUN_RUN_STAGE_H
+#define TETLAP_FEM_RUN_RUN_STAGE_H
+
+#include "fem/run/run_state.h"
+
+// In less than this nothing moves, whatever accelerations there are [s].
+double fem_run_stage_resolved(const FemModel *model);
+
+// The last accepted state, under trial.
+void fem_run_stage_scatter(FemRunState *run);
+
+// The integrator of the stage that begins at the run's time with u and v, none where all bodies sleep; `step`
+// [s] is tried first, 0: chosen.
+Status fem_run_stage_begin(FemRunState *run, double step);
+
+// Counts what the integrator, or statics, has done, and destroys it.
+void fem_run_stage_end(FemRunState *run);
+
+// Vertices come free, bodies fall asleep or awake: the next stage, with other unknowns.
+Status fem_run_stage_change(FemRunState *run);
+
+// The run's state is accepted; `next_step` [s] is the expected length of the next one.
+Status fem_run_stage_accept(FemRunState *run, double next_step);
+
+#endif

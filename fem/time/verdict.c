@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/time/verdict.h"
+
+#include <math.h>
+
+#include "fem/model/limits.h"
+
+static FemCause cause_of(const FemFindings *findings) {
+  if (!findings->is_evaluated) return FEM_CAUSE_FORCES;
+  if (findings->gains_energy) return FEM_CAUSE_ENERGY;
+  if (findings->differs_from_motion) return FEM_CAUSE_MOMENTUM;
+  return findings->reversed <= FEM_ENERGY_REVERSED ? FEM_CAUSE_NONE : FEM_CAUSE_REVERSAL;
+}
+
+FemVerdict fem_verdict_of(const FemFindings *findings) {
+  const FemCause cause = cause_of(findings);
+  double least =
+             cause == FEM_CAUSE_FORCES ? findings->shortest : fmax(findings->shortest, findings->resolved),
+         step = fmax(FEM_CUT * findings->length, least);
+  if (cause == FEM_CAUSE_NONE || !(step < findings->length)) step = 0;
+  bool has_way = cause != FEM_CAUSE_FORCES;
+  return (FemVerdict){.stands = has_way && step == 0, .cause = cause, .step = step};
+}
+
+const char *fem_verdict_words(FemCause cause) {
+  static const char *const words[] = {"", "its forces cannot be evaluated", "it gains energy",
+                                      "forces and motion differ",
+                                      "friction acts along the slip that has reversed"};
+  return words[cause];
+}
