@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/cli/format.h"
+#include "app/table/table.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
@@ -141,8 +142,10 @@ static const char *const audit_words[APP_AUDIT_KIND_COUNT] = {"volume", "gradien
 // What is said of one model, NaN where it does not apply.
 typedef struct Row {
   const char *model, *reference, *outcome;
-  int frames;   // that both have reached; −1: no run
-  double share; // of the scene's time that was reached
+  long long audits;
+  AppAuditFigure figures[APP_AUDIT_KIND_COUNT];
+  double frames; // that both have reached
+  double share;  // of the scene's time that was reached
   AppForceError force;
   double trajectory; // relative to the scene's length
   double energy_gain, wall_s, overlap_s;
@@ -157,13 +160,15 @@ static Row row_of(const AppComparison *comparison, int m) {
                         : model->status == STATUS_INTERRUPTED
                             ? "cut short"
                             : fem_run_outcome(&model->result, model->status),
-             .frames = -1,
+             .audits = model->audit.count,
+             .frames = NAN,
              .share = NAN,
              .force = {NAN, NAN},
              .trajectory = NAN,
              .energy_gain = NAN,
              .wall_s = NAN,
              .overlap_s = NAN};
+  memcpy(row.figures, model->figures, sizeof row.figures);
   if (!model->has_run) return row;
   row.frames = app_comparison_common_frames(&model->result, &reference->result);
   row.share = model->result.end_time / comparison->end;
@@ -174,6 +179,43 @@ static Row row_of(const AppComparison *comparison, int m) {
   row.overlap_s = model->result.phases.overlap;
   return row;
 }
+
+#define AUDITED(kind, part)                                                                                  \
+  offsetof(Row, figures) + (kind) * sizeof(AppAuditFigure) + offsetof(AppAuditFigure, part)
+#define AUDIT(key, kind)                                                                                     \
+  {"audit_" key "_error", APP_TABLE_NUMBER, AUDITED(kind, error), NULL, NULL},                               \
+      {"audit_" key "_error_median", APP_TABLE_NUMBER, AUDITED(kind, median), NULL, NULL},                   \
+      {"audit_" key "_error_worst", APP_TABLE_NUMBER, AUDITED(kind, worst), NULL, NULL}, {                   \
+    "audit_" key "_error_worst_time", APP_TABLE_NUMBER, AUDITED(kind, worst_time), NULL, NULL                \
+  }
+
+static const AppTableColumn name_columns[] = {
+    {"model", APP_TABLE_TEXT, offsetof(Row, model), "model", NULL},
+    {"reference", APP_TABLE_TEXT, offsetof(Row, reference), NULL, NULL},
+    {"outcome", APP_TABLE_TEXT, offsetof(Row, outcome), "outcome", NULL},
+};
+static const AppTableColumn audit_columns[] = {
+    {"audits", APP_TABLE_INTEGER, offsetof(Row, audits), NULL, NULL},
+    AUDIT("volume", APP_AUDIT_VOLUME),
+    AUDIT("gradient", APP_AUDIT_GRADIENT),
+    AUDIT("force", APP_AUDIT_FORCE),
+    AUDIT("total_force", APP_AUDIT_TOTAL),
+};
+static const AppTableColumn run_columns[] = {
+    {"frames_compared", APP_TABLE_COUNT, offsetof(Row, frames), "frames", NULL},
+    {"share_reached", APP_TABLE_NUMBER, offsetof(Row, share), "share of time", NULL},
+    {"force_error_l2", APP_TABLE_NUMBER, offsetof(Row, force.l2), "force L2", NULL},
+    {"force_error_max", APP_TABLE_NUMBER, offsetof(Row, force.max), "force max", NULL},
+    {"trajectory_error", APP_TABLE_NUMBER, offsetof(Row, trajectory), "path RMS/L", NULL},
+    {"energy_gain_relative", APP_TABLE_NUMBER, offsetof(Row, energy_gain), "energy gain", NULL},
+    {"wall_s", APP_TABLE_NUMBER, offsetof(Row, wall_s), "wall s", NULL},
+    {"overlap_s", APP_TABLE_NUMBER, offsetof(Row, overlap_s), "overlap s", NULL},
+};
+enum {
+  NAME_COUNT = sizeof name_columns / sizeof *name_columns,
+  AUDIT_COUNT = sizeof audit_columns / sizeof *audit_columns,
+  RUN_COUNT = sizeof run_columns / sizeof *run_columns,
+};
 
 static void record_interfaces(const AppComparison *comparison, int m, Record *record) {
   const FemRunResult *result = &comparison->models[m].result,
@@ -204,30 +246,6 @@ static void record_series(const AppAudit *audit, Record *record) {
   }
 }
 
-enum { AUDIT_PARTS = 4 };
-static const char *const audit_parts[AUDIT_PARTS] = {"", "_median", "_worst", "_worst_time"};
-
-// In the order of audit_parts.
-static void list_parts(const AppAuditFigure *figure, double parts[AUDIT_PARTS]) {
-  parts[0] = figure->error, parts[1] = figure->median;
-  parts[2] = figure->worst, parts[3] = figure->worst_time;
-}
-
-static void record_audit(const AppComparisonModel *model, const char *told, Record *record) {
-  record_integer(record, "audits", model->audit.count);
-  record_text(record, "audit_told", *told ? told : NULL);
-  for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) {
-    double parts[AUDIT_PARTS];
-    list_parts(&model->figures[k], parts);
-    for (int p = 0; p < AUDIT_PARTS; p++) {
-      char key[64];
-      snprintf(key, sizeof key, "audit_%s_error%s", audit_words[k], audit_parts[p]);
-      record_number(record, key, parts[p]);
-    }
-  }
-  record_series(&model->audit, record);
-}
-
 void app_comparison_record(const AppComparison *comparison, const char *scene_path, RecordList *list) {
   char told[512];
   app_comparison_tell_audit(comparison, told, sizeof told);
@@ -243,14 +261,10 @@ void app_comparison_record(const AppComparison *comparison, const char *scene_pa
     record_text(record, "scene", scene_path);
     record_text(record, "outcome", row.outcome);
     if (model->status) record_text(record, "message", model->message);
-    record_audit(model, told, record);
-    if (model->has_run) record_integer(record, "frames_compared", row.frames);
-    record_number(record, "share_reached", row.share);
-    record_number(record, "force_error_l2", row.force.l2);
-    record_number(record, "force_error_max", row.force.max);
-    record_number(record, "trajectory_error", row.trajectory);
-    record_number(record, "energy_gain_relative", row.energy_gain);
-    record_number(record, "wall_s", row.wall_s);
+    record_text(record, "audit_told", *told ? told : NULL);
+    app_table_record(&(AppTablePart){audit_columns, AUDIT_COUNT, &row, sizeof row}, 0, record);
+    record_series(&model->audit, record);
+    app_table_record(&(AppTablePart){run_columns, RUN_COUNT, &row, sizeof row}, 0, record);
     if (!model->has_run) continue;
     record_interfaces(comparison, m, record);
     Record *summary = record_child(record, "summary");
@@ -258,99 +272,60 @@ void app_comparison_record(const AppComparison *comparison, const char *scene_pa
   }
 }
 
-void app_comparison_print_csv(const AppComparison *comparison, FILE *stream) {
-  fputs("model,reference,outcome,audits", stream);
-  for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++)
-    for (int p = 0; p < AUDIT_PARTS; p++)
-      fprintf(stream, ",audit_%s_error%s", audit_words[k], audit_parts[p]);
-  fputs(",frames_compared,share_reached,force_error_l2,force_error_max,trajectory_error,energy_gain_relative,"
-        "wall_s,"
-        "overlap_s\n",
-        stream);
-  for (int m = 0; m < comparison->model_count; m++) {
-    Row row = row_of(comparison, m);
-    fprintf(stream, "%s,%s,%s,%d", row.model, row.reference, row.outcome, comparison->models[m].audit.count);
-    for (int k = 0; k < APP_AUDIT_KIND_COUNT; k++) {
-      double parts[AUDIT_PARTS];
-      list_parts(&comparison->models[m].figures[k], parts);
-      for (int p = 0; p < AUDIT_PARTS; p++) fprintf(stream, isnan(parts[p]) ? "," : ",%.9g", parts[p]);
-    }
-    fprintf(stream, ",%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", row.frames, row.share, row.force.l2,
-            row.force.max, row.trajectory, row.energy_gain, row.wall_s, row.overlap_s);
-  }
+Status app_comparison_print_csv(const AppComparison *comparison, FILE *stream) {
+  Row rows[APP_MAX_MODELS];
+  for (int m = 0; m < comparison->model_count; m++) rows[m] = row_of(comparison, m);
+  const AppTablePart parts[] = {{name_columns, NAME_COUNT, rows, sizeof *rows},
+                                {audit_columns, AUDIT_COUNT, rows, sizeof *rows},
+                                {run_columns, RUN_COUNT, rows, sizeof *rows}};
+  return app_table_print(&(AppTable){parts, 3, comparison->model_count}, APP_TABLE_CSV, stream);
 }
 
-// A figure in eight columns, "–" where there is none.
-static void print_figure(FILE *stream, const char *format, double value) {
-  char text[32];
-  snprintf(text, sizeof text, format, value);
-  fprintf(stream, isnan(value) ? "  %10s" : "  %8s", isnan(value) ? "–" : text); // the dash has three bytes
-}
+// One kind of error of one model.
+typedef struct AuditLine {
+  const char *model, *quantity;
+  AppAuditFigure figure;
+} AuditLine;
 
-// Of the column with the models' names.
-static int name_width(const AppComparison *comparison) {
-  int width = 12;
-  for (int m = 0; m < comparison->model_count; m++) {
-    int length = (int)strlen(comparison->models[m].name);
-    if (length > width) width = length;
-  }
-  return width;
-}
+static const AppTableColumn line_columns[] = {
+    {"model", APP_TABLE_TEXT, offsetof(AuditLine, model), "model", NULL},
+    {"quantity", APP_TABLE_TEXT, offsetof(AuditLine, quantity), "", NULL},
+    {"error", APP_TABLE_NUMBER, offsetof(AuditLine, figure.error), "of sums", NULL},
+    {"median", APP_TABLE_NUMBER, offsetof(AuditLine, figure.median), "median", NULL},
+    {"worst", APP_TABLE_NUMBER, offsetof(AuditLine, figure.worst), "worst", NULL},
+    {"worst_time", APP_TABLE_NUMBER, offsetof(AuditLine, figure.worst_time), "at t [s]", NULL},
+};
 
-static void print_audit(const AppComparison *comparison, FILE *stream) {
+static Status print_audit(const AppComparison *comparison, FILE *stream) {
   static const char *const quantities[APP_AUDIT_KIND_COUNT] = {"volumes V", "gradients ∇V", "nodal forces",
                                                                "total forces"};
   char told[512];
+  AuditLine lines[APP_MAX_MODELS * APP_AUDIT_KIND_COUNT];
+  int count = 0;
   app_comparison_tell_audit(comparison, told, sizeof told);
   if (*told) fprintf(stream, "audit: %s%s\n", audited_states(comparison) ? "" : "–; ", told);
-  if (audited_states(comparison) == 0) return;
+  if (audited_states(comparison) == 0) return STATUS_OK;
   fprintf(stream, "audit: errors against %s in the same %d %s of its run; sums weigh states by their size\n",
           comparison->models[comparison->reference].name, audited_states(comparison),
           audited_states(comparison) == 1 ? "state" : "states");
-  int width = name_width(comparison);
-  fprintf(stream, "%-*s  %-12s  %8s  %8s  %8s  %10s\n", width, "model", "", "of sums", "median", "worst",
-          "at t [s]");
   for (int m = 0; m < comparison->model_count; m++) {
     const AppComparisonModel *model = &comparison->models[m];
-    for (int k = 0; k < APP_AUDIT_KIND_COUNT && model->audit.count > 0; k++) {
-      const AppAuditFigure *figure = &model->figures[k];
-      fprintf(stream, "%-*s  %-*s", width, k ? "" : model->name, k == APP_AUDIT_GRADIENT ? 14 : 12,
-              quantities[k]);
-      print_figure(stream, "%.1e", figure->error);
-      print_figure(stream, "%.1e", figure->median);
-      print_figure(stream, "%.1e", figure->worst);
-      fprintf(stream, "  %10.6g\n", figure->worst_time);
-    }
+    for (int k = 0; k < APP_AUDIT_KIND_COUNT && model->audit.count > 0; k++)
+      lines[count++] = (AuditLine){k ? "" : model->name, quantities[k], model->figures[k]};
   }
+  const AppTablePart part = {line_columns, sizeof line_columns / sizeof *line_columns, lines, sizeof *lines};
+  return app_table_print(&(AppTable){&part, 1, count}, APP_TABLE_PLAIN, stream);
 }
 
-static void print_runs(const AppComparison *comparison, FILE *stream) {
-  int width = name_width(comparison);
-  fprintf(stream, "%-*s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", width, "", "frames", "force", "force",
-          "path", "energy", "wall", "overlap", "");
-  fprintf(stream, "%-*s  %8s  %8s  %8s  %8s  %8s  %8s  %8s  %s\n", width, "model", "shared", "L2", "max",
-          "RMS/L", "gain", "s", "s", "");
-  for (int m = 0; m < comparison->model_count; m++) {
-    Row row = row_of(comparison, m);
-    fprintf(stream, "%-*s", width, row.model);
-    print_figure(stream, "%.0f", row.frames < 0 ? NAN : (double)row.frames);
-    print_figure(stream, "%.1e", row.force.l2);
-    print_figure(stream, "%.1e", row.force.max);
-    print_figure(stream, "%.1e", row.trajectory);
-    print_figure(stream, "%.1e", row.energy_gain);
-    print_figure(stream, "%.2f", row.wall_s);
-    print_figure(stream, "%.2f", row.overlap_s);
-    fprintf(stream, "  %s", row.outcome);
-    if (row.share < 1) fprintf(stream, " at %.3g %% of the time", 100 * row.share);
-    fputc('\n', stream);
-  }
-}
-
-void app_comparison_print_table(const AppComparison *comparison, FILE *stream) {
-  print_audit(comparison, stream);
+Status app_comparison_print_table(const AppComparison *comparison, FILE *stream) {
+  Row rows[APP_MAX_MODELS];
+  for (int m = 0; m < comparison->model_count; m++) rows[m] = row_of(comparison, m);
+  TRY(print_audit(comparison, stream));
   fprintf(stream, "own runs: each model on its own trajectory; reference: %s\n",
           comparison->models[comparison->reference].name);
-  print_runs(comparison, stream);
+  const AppTablePart parts[] = {{name_columns, NAME_COUNT, rows, sizeof *rows},
+                                {run_columns, RUN_COUNT, rows, sizeof *rows}};
+  return app_table_print(&(AppTable){parts, 2, comparison->model_count}, APP_TABLE_PLAIN, stream);
 }
 
 void app_comparison_destroy(AppComparison *comparison) {

@@ -96,10 +96,10 @@ void app_comparison_tell_audit(const AppComparison *comparison, char *text, size
 
 // One object a model. `list` is the top of compare.json.
 void app_comparison_record(const AppComparison *comparison, const char *scene_path, RecordList *list);
-// A line a model under one line of names.
-void app_comparison_print_csv(const AppComparison *comparison, FILE *stream);
+// A line a model under one line of names. STATUS_MEMORY, as of the tables.
+Status app_comparison_print_csv(const AppComparison *comparison, FILE *stream);
 // The tables for a terminal: of the audit, and of the models' own runs.
-void app_comparison_print_table(const AppComparison *comparison, FILE *stream);
+Status app_comparison_print_table(const AppComparison *comparison, FILE *stream);
 
 void app_comparison_destroy(AppComparison *comparison);
 

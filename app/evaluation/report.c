@@ -2,10 +2,13 @@
 #include "app/evaluation/report.h"
 
 #include <math.h>
+#include <stddef.h>
+
+#include "app/table/table.h"
 
 static const char *const bin_names[APP_EVALUATION_BINS] = {"small", "medium", "large"};
 
-// Table 4 of the paper; NaN where it says nothing.
+// Table 4 of the paper.
 static const struct {
   DatagenKind kind;
   double accuracy, mae;
@@ -14,95 +17,154 @@ static const struct {
     {DATAGEN_EDGE_FACE, 0.9997, 4.72e-9},  {DATAGEN_FACE_FACE, 0.9992, 1.65e-9},
     {DATAGEN_VOLUMETRIC, 0.9907, 2.88e-3},
 };
-static const double paper_accuracy_mean = 0.9937, paper_mae = 2.88e-3;
 static const double paper_bin_mae[APP_EVALUATION_BINS] = {1.47e-3, 2.80e-3, 4.44e-3};
 static const double paper_bin_accuracy[APP_EVALUATION_BINS] = {0.88, 0.60, 0.41};
 
-// A value and what the paper has for it, "–" where there is none.
-static void print_pair(FILE *stream, const char *format, double value, double paper) {
-  char text[2][32];
-  const double numbers[2] = {value, paper};
-  for (int i = 0; i < 2; i++)
-    if (isnan(numbers[i]))
-      snprintf(text[i], sizeof text[i], "-");
-    else
-      snprintf(text[i], sizeof text[i], format, numbers[i]);
-  fprintf(stream, "  %12s %10s", text[0], text[1]);
+// The figures of an evaluation: their keys in JSON; what is printed of them, in `unit`, and what the paper
+// has (NaN: nothing).
+static const struct Figure {
+  const char *key;
+  size_t offset;
+  const char *label, *unit;
+  double paper; // in the unit
+} figures[] = {
+#define FIGURE(field, label, unit, paper)                                                                    \
+  { #field, offsetof(AppEvaluation, field), label, unit, paper }
+#define BOUND(key, field, label)                                                                             \
+  { key, offsetof(AppEvaluation, bounds.field), label, "%", NAN }
+    FIGURE(accuracy_mean, "mean of the kinds' status", "%", 99.37),
+    FIGURE(accuracy_swapped_mean, "the two exchanged", "%", NAN),
+    FIGURE(mae, "mean |dV|", "", 2.88e-3),
+    FIGURE(volume_error_sum, "sum |dV| / sum V", "%", NAN),
+    FIGURE(gradient_error, "gradient, aggregate", "%", NAN),
+    FIGURE(gradient_error_median, "gradient, median", "%", NAN),
+    FIGURE(gradient_error_p90, "gradient, 90 %", "%", NAN),
+    FIGURE(moment_error, "moments by the centroid", "%", NAN),
+    FIGURE(moment_error_own, "moments by V and centroid", "%", NAN),
+    FIGURE(angle_median_deg, "force angle, median", "deg", NAN),
+    FIGURE(angle_p90_deg, "force angle, 90 %", "deg", NAN),
+    FIGURE(ghost_volume, "ghost volume", "", NAN),
+    FIGURE(ghost_gradient, "ghost gradient", "", NAN),
+    FIGURE(defect_vertex_order, "defect, vertex order", "", NAN),
+    FIGURE(defect_swap, "defect, swap", "", NAN),
+    FIGURE(defect_rotation, "defect, rotation", "", NAN),
+    FIGURE(calibration_error, "calibration of status", "", NAN),
+    BOUND("bound_coverage", coverage, "error within its bound"),
+    BOUND("bound_width_median", width_median, "bound / V, median"),
+    BOUND("bound_width_p95", width_p95, "bound / V, 95 %"),
+    BOUND("bound_error_median", error_median, "error / V, median"),
+    BOUND("bound_error_p95", error_p95, "error / V, 95 %"),
+    FIGURE(handed_on, "handed on", "%", NAN),
+    FIGURE(handed_on_in_part, "handed on in part", "%", NAN),
+};
+enum { FIGURE_COUNT = sizeof figures / sizeof *figures };
+
+static double figure_of(const AppEvaluation *evaluation, const struct Figure *figure) {
+  return *(const double *)((const char *)evaluation + figure->offset);
 }
 
-static void print_row(FILE *stream, const char *name, const char *format, double value, double paper) {
-  fprintf(stream, "  %-26s", name);
-  print_pair(stream, format, value, paper);
+// A row of the three tables.
+typedef struct Row {
+  const char *name, *unit;
+  double count, right, paper_right, mae, paper_mae, swapped; // shares in %
+  double value, paper;
+} Row;
+
+#define TEXT(field, head)                                                                                    \
+  { #field, APP_TABLE_TEXT, offsetof(Row, field), head, NULL }
+#define NUMBER(field, head)                                                                                  \
+  { #field, APP_TABLE_NUMBER, offsetof(Row, field), head, NULL }
+static const AppTableColumn kind_columns[] = {
+    TEXT(name, "kind"),
+    NUMBER(count, "pairs"),
+    NUMBER(right, "status right %"),
+    NUMBER(paper_right, "paper"),
+    NUMBER(mae, "mean |dV|"),
+    NUMBER(paper_mae, "paper"),
+    NUMBER(swapped, "exchanged %"),
+};
+static const AppTableColumn bin_columns[] = {
+    TEXT(name, "V"),
+    NUMBER(count, "share %"),
+    NUMBER(right, "right bin %"),
+    NUMBER(paper_right, "paper"),
+    NUMBER(mae, "mean |dV|"),
+    NUMBER(paper_mae, "paper"),
+};
+static const AppTableColumn figure_columns[] = {
+    TEXT(name, ""),
+    NUMBER(value, ""),
+    TEXT(unit, ""),
+    NUMBER(paper, "paper"),
+};
+
+static Status print_rows(const AppTableColumn *columns, int column_count, const Row *rows, int count,
+                         FILE *stream) {
+  const AppTablePart part = {columns, column_count, rows, sizeof *rows};
   fputc('\n', stream);
+  return app_table_print(&(AppTable){&part, 1, count}, APP_TABLE_PLAIN, stream);
 }
 
-static void print_kinds(FILE *stream, const AppEvaluation *evaluation) {
-  fprintf(stream, "\n  %-16s %8s  %12s %10s  %12s %10s  %10s\n", "kind", "pairs", "status right", "paper",
-          "mean |dV|", "paper", "exchanged");
+static Status print_kinds(const AppEvaluation *evaluation, FILE *stream) {
+  Row rows[DATAGEN_KIND_COUNT];
+  int count = 0;
   for (int k = 0; k < DATAGEN_KIND_COUNT; k++) {
     const AppEvaluationKind *kind = &evaluation->kinds[k];
     if (!kind->count) continue;
-    double accuracy = NAN, mae = NAN;
+    Row *row = &rows[count++];
+    *row = (Row){.name = datagen_kind_info(k)->name,
+                 .count = (double)kind->count,
+                 .right = 100 * kind->accuracy,
+                 .paper_right = NAN,
+                 .mae = kind->volume_mae,
+                 .paper_mae = NAN,
+                 .swapped = 100 * kind->accuracy_swapped};
     for (size_t p = 0; p < sizeof paper_kinds / sizeof *paper_kinds; p++)
-      if (paper_kinds[p].kind == (DatagenKind)k) accuracy = paper_kinds[p].accuracy, mae = paper_kinds[p].mae;
-    fprintf(stream, "  %-16s %8lld", datagen_kind_info(k)->name, kind->count);
-    print_pair(stream, "%.2f %%", 100 * kind->accuracy, 100 * accuracy);
-    print_pair(stream, "%.3g", kind->volume_mae, mae);
-    fprintf(stream, "  %8.2f %%\n", 100 * kind->accuracy_swapped);
+      if (paper_kinds[p].kind == (DatagenKind)k)
+        row->paper_right = 100 * paper_kinds[p].accuracy, row->paper_mae = paper_kinds[p].mae;
   }
+  return print_rows(kind_columns, sizeof kind_columns / sizeof *kind_columns, rows, count, stream);
 }
 
-static void print_bins(FILE *stream, const AppEvaluation *evaluation) {
-  fprintf(stream, "\n  %-16s %8s  %12s %10s  %12s %10s\n", "V", "share", "right bin", "paper", "mean |dV|",
-          "paper");
-  for (int b = 0; b < APP_EVALUATION_BINS; b++) {
-    fprintf(stream, "  %-16s %6.1f %%", bin_names[b], 100 * evaluation->bin_share[b]);
-    print_pair(stream, "%.1f %%", 100 * evaluation->bin_accuracy[b], 100 * paper_bin_accuracy[b]);
-    print_pair(stream, "%.3g", evaluation->bin_mae[b], paper_bin_mae[b]);
-    fputc('\n', stream);
-  }
+static Status print_bins(const AppEvaluation *evaluation, FILE *stream) {
+  Row rows[APP_EVALUATION_BINS];
+  for (int b = 0; b < APP_EVALUATION_BINS; b++)
+    rows[b] = (Row){.name = bin_names[b],
+                    .count = 100 * evaluation->bin_share[b],
+                    .right = 100 * evaluation->bin_accuracy[b],
+                    .paper_right = 100 * paper_bin_accuracy[b],
+                    .mae = evaluation->bin_mae[b],
+                    .paper_mae = paper_bin_mae[b]};
+  return print_rows(bin_columns, sizeof bin_columns / sizeof *bin_columns, rows, APP_EVALUATION_BINS, stream);
 }
 
-void app_evaluation_print(const AppEvaluation *evaluation, const char *model, const char *data,
-                          FILE *stream) {
+// What the model does not give is left out.
+static Status print_figures(const AppEvaluation *evaluation, FILE *stream) {
+  Row rows[FIGURE_COUNT];
+  int count = 0;
+  for (int f = 0; f < FIGURE_COUNT; f++) {
+    double value = figure_of(evaluation, &figures[f]);
+    if (!isfinite(value)) continue;
+    rows[count++] = (Row){.name = figures[f].label,
+                          .unit = figures[f].unit,
+                          .value = figures[f].unit[0] == '%' ? 100 * value : value,
+                          .paper = figures[f].paper};
+  }
+  return print_rows(figure_columns, sizeof figure_columns / sizeof *figure_columns, rows, count, stream);
+}
+
+Status app_evaluation_print(const AppEvaluation *evaluation, const char *model, const char *data,
+                            FILE *stream) {
   fprintf(stream,
           "%s on %s\n%lld pairs, %lld share volume, %lld answered by a more careful model, %lld in part\n",
           model, data, evaluation->count, evaluation->inside, evaluation->fallbacks, evaluation->blended);
-  print_kinds(stream, evaluation);
-  if (evaluation->inside) print_bins(stream, evaluation);
-  fprintf(stream, "\n  %-26s  %12s %10s\n", "", "", "paper");
-  print_row(stream, "mean of the kinds' status", "%.2f %%", 100 * evaluation->accuracy_mean,
-            100 * paper_accuracy_mean);
-  print_row(stream, "the two exchanged", "%.2f %%", 100 * evaluation->accuracy_swapped_mean, NAN);
-  print_row(stream, "mean |dV|", "%.3g", evaluation->mae, paper_mae);
-  print_row(stream, "sum |dV| / sum V", "%.3g %%", 100 * evaluation->volume_error_sum, NAN);
-  print_row(stream, "gradient, aggregate", "%.3g %%", 100 * evaluation->gradient_error, NAN);
-  print_row(stream, "gradient, median", "%.3g %%", 100 * evaluation->gradient_error_median, NAN);
-  print_row(stream, "gradient, 90 %", "%.3g %%", 100 * evaluation->gradient_error_p90, NAN);
-  print_row(stream, "moments by the centroid", "%.3g %%", 100 * evaluation->moment_error, NAN);
-  print_row(stream, "moments by V and centroid", "%.3g %%", 100 * evaluation->moment_error_own, NAN);
-  print_row(stream, "force angle, median", "%.3g deg", evaluation->angle_median_deg, NAN);
-  print_row(stream, "force angle, 90 %", "%.3g deg", evaluation->angle_p90_deg, NAN);
-  print_row(stream, "ghost volume", "%.3g", evaluation->ghost_volume, NAN);
-  print_row(stream, "ghost gradient", "%.3g", evaluation->ghost_gradient, NAN);
-  print_row(stream, "defect, vertex order", "%.3g", evaluation->defect_vertex_order, NAN);
-  print_row(stream, "defect, swap", "%.3g", evaluation->defect_swap, NAN);
-  print_row(stream, "defect, rotation", "%.3g", evaluation->defect_rotation, NAN);
-  if (evaluation->bounds.count) {
-    const AppEvaluationBounds *bounds = &evaluation->bounds;
-    print_row(stream, "error within its bound", "%.2f %%", 100 * bounds->coverage, NAN);
-    print_row(stream, "bound / V, median", "%.3g %%", 100 * bounds->width_median, NAN);
-    print_row(stream, "bound / V, 95 %", "%.3g %%", 100 * bounds->width_p95, NAN);
-    print_row(stream, "error / V, median", "%.3g %%", 100 * bounds->error_median, NAN);
-    print_row(stream, "error / V, 95 %", "%.3g %%", 100 * bounds->error_p95, NAN);
-    print_row(stream, "handed on", "%.2f %%", 100 * evaluation->handed_on, NAN);
-    print_row(stream, "handed on in part", "%.2f %%", 100 * evaluation->handed_on_in_part, NAN);
-  }
-  if (evaluation->has_status)
-    print_row(stream, "calibration of status", "%.3g", evaluation->calibration_error, NAN);
+  TRY(print_kinds(evaluation, stream));
+  if (evaluation->inside) TRY(print_bins(evaluation, stream));
+  TRY(print_figures(evaluation, stream));
   fputs(evaluation->has_status ? "\nstatus: the sign of the logit, right if the closed tetrahedra meet\n"
                                : "\nstatus: V > 0, right if the pair shares volume; a touch counts as none\n",
         stream);
+  return STATUS_OK;
 }
 
 static void record_bins(const AppEvaluation *evaluation, Record *record) {
@@ -122,6 +184,7 @@ void app_evaluation_record(const AppEvaluation *evaluation, Record *record) {
   record_integer(record, "count_with_volume", evaluation->inside);
   record_integer(record, "fallbacks", evaluation->fallbacks);
   record_integer(record, "blended", evaluation->blended);
+  record_bool(record, "has_status", evaluation->has_status);
   Record *accuracy = record_child(record, "accuracy"), *mae = record_child(record, "mae_by_kind");
   Record *swapped = record_child(record, "accuracy_swapped");
   for (int k = 0; k < DATAGEN_KIND_COUNT; k++) {
@@ -130,32 +193,9 @@ void app_evaluation_record(const AppEvaluation *evaluation, Record *record) {
     record_number(swapped, datagen_kind_info(k)->name, evaluation->kinds[k].accuracy_swapped);
     record_number(mae, datagen_kind_info(k)->name, evaluation->kinds[k].volume_mae);
   }
-  record_number(record, "accuracy_mean", evaluation->accuracy_mean);
-  record_number(record, "accuracy_swapped_mean", evaluation->accuracy_swapped_mean);
-  record_number(record, "mae", evaluation->mae);
+  for (int f = 0; f < FIGURE_COUNT; f++)
+    record_number(record, figures[f].key, figure_of(evaluation, &figures[f]));
   record_bins(evaluation, record);
-  record_number(record, "volume_error_sum", evaluation->volume_error_sum);
-  record_number(record, "gradient_error", evaluation->gradient_error);
-  record_number(record, "gradient_error_median", evaluation->gradient_error_median);
-  record_number(record, "gradient_error_p90", evaluation->gradient_error_p90);
-  record_number(record, "moment_error", evaluation->moment_error);
-  record_number(record, "moment_error_own", evaluation->moment_error_own);
-  record_number(record, "angle_median_deg", evaluation->angle_median_deg);
-  record_number(record, "angle_p90_deg", evaluation->angle_p90_deg);
-  record_number(record, "ghost_volume", evaluation->ghost_volume);
-  record_number(record, "ghost_gradient", evaluation->ghost_gradient);
-  record_number(record, "defect_vertex_order", evaluation->defect_vertex_order);
-  record_number(record, "defect_swap", evaluation->defect_swap);
-  record_number(record, "defect_rotation", evaluation->defect_rotation);
-  record_bool(record, "has_status", evaluation->has_status);
-  record_number(record, "calibration_error", evaluation->calibration_error);
-  record_number(record, "bound_coverage", evaluation->bounds.coverage);
-  record_number(record, "bound_width_median", evaluation->bounds.width_median);
-  record_number(record, "bound_width_p95", evaluation->bounds.width_p95);
-  record_number(record, "bound_error_median", evaluation->bounds.error_median);
-  record_number(record, "bound_error_p95", evaluation->bounds.error_p95);
-  record_number(record, "handed_on", evaluation->handed_on);
-  record_number(record, "handed_on_in_part", evaluation->handed_on_in_part);
 }
 
 void app_evaluation_print_paths(const AppEvaluationPaths *paths, const char *model, FILE *stream) {

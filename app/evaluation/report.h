@@ -9,7 +9,9 @@
 #include "app/evaluation/paths.h"
 #include "base/files/record.h"
 
-void app_evaluation_print(const AppEvaluation *evaluation, const char *model, const char *data, FILE *stream);
+// STATUS_MEMORY.
+Status app_evaluation_print(const AppEvaluation *evaluation, const char *model, const char *data,
+                            FILE *stream);
 
 // The keys that others script against: accuracy (kind → share), accuracy_mean, mae, mae_small, … ; what could
 // not be measured is null.

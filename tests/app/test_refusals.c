@@ -76,8 +76,6 @@ START_TEST(an_option_without_effect_is_a_usage_error) {
                     "--seed is of random");
   ck_assert_refused(64, "$tetlap poses $examples/02_two_blocks.yaml --poses p.txt --turn 1",
                     "--turn is of random");
-  ck_assert_refused(64, "mkdir run; $tetlap plot run -o x.svg --quantity V",
-                    "--quantity chooses from a frontier");
   ck_assert_refused(64, "$tetlap train $examples/train/smoke.yaml --resume -o empty",
                     "there is nothing to resume");
 }

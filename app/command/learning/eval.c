@@ -139,11 +139,13 @@ typedef struct Findings {
   AppEvaluationPaths paths;
 } Findings;
 
-static void print(const Options *options, const Findings *findings) {
+static Status print(const Options *options, const Findings *findings) {
   AppModelName name;
   app_model_names_find_one(options->model, name);
-  if (findings->has_evaluation) app_evaluation_print(&findings->evaluation, name, findings->data, stdout);
+  if (findings->has_evaluation)
+    TRY(app_evaluation_print(&findings->evaluation, name, findings->data, stdout));
   if (findings->has_paths) app_evaluation_print_paths(&findings->paths, name, stdout);
+  return STATUS_OK;
 }
 
 static Status record(const Options *options, const Findings *findings) {
@@ -195,8 +197,7 @@ static Status evaluate_all(const Options *options, const OverlapModel *model) {
   if (findings.has_paths)
     TRY(app_evaluation_paths(model, options->paths, options->source.seed, &findings.paths));
   if (options->is_json) return record(options, &findings);
-  print(options, &findings);
-  return STATUS_OK;
+  return print(options, &findings);
 }
 
 static Status open_and_evaluate(const Options *options) {

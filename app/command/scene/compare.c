@@ -258,8 +258,10 @@ static void announce_time(const AppComparison *comparison, int m, double seconds
 static Status write_csv(const AppComparison *comparison, const char *path) {
   FileWriter writer;
   TRY(file_begin(&writer, path));
-  app_comparison_print_csv(comparison, writer.stream);
-  return file_commit(&writer);
+  Status status = app_comparison_print_csv(comparison, writer.stream);
+  if (!status) return file_commit(&writer);
+  file_abandon(&writer);
+  return status;
 }
 
 static Status write_results(const AppComparison *comparison, const CompareOptions *options) {
@@ -274,7 +276,7 @@ static Status write_results(const AppComparison *comparison, const CompareOption
   }
   if (!status) status = write_csv(comparison, csv);
   if (!status && options->job.is_json) status = record_list_print(list, stdout);
-  if (!status && !options->job.is_json) app_comparison_print_table(comparison, stdout);
+  if (!status && !options->job.is_json) status = app_comparison_print_table(comparison, stdout);
   if (!status) log_info("wrote %s and compare.csv; the runs are in the folders beside them", json);
   record_list_destroy(list);
   memory_free(json);
