@@ -8,14 +8,13 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/evaluation.h"
+#include "fem/model/limits.h"
 #include "fem/model/tolerance.h"
 
 static_assert(sizeof(FemAccuracyPair) == FEM_ACCURACY_KEPT * sizeof(double), "numbers only");
 
-// A pair is estimated anew where its force has grown by so much.
-static const double GROWN = 1.01;
-// What an estimate should be below.
-static const double WANTED = 0.01;
+// A pair is estimated anew where its force has grown by as much as an estimate may err.
+static const double GROWN = 1 + FEM_DOUBT;
 
 Status fem_accuracy_create(FemAccuracy *accuracy, const FemModel *model, const ContactSystem *contact) {
   *accuracy = (FemAccuracy){0};
@@ -196,11 +195,11 @@ FemEstimate fem_accuracy_estimate(const FemAccuracyPair *pair, const FemModel *m
                           .elements_across = sqrt(pair->area) / pair->edge,
                           .stiffness = stiffness,
                           .tolerance_for = NAN};
-  double by_give = estimate.give / (1 - estimate.give) * (1 - WANTED) / WANTED;
-  double by_rim = isnan(estimate.rim) ? 0 : estimate.rim / WANTED;
+  double by_give = estimate.give / (1 - estimate.give) * (1 - FEM_DOUBT) / FEM_DOUBT;
+  double by_rim = isnan(estimate.rim) ? 0 : estimate.rim / FEM_DOUBT;
   estimate.stiffness_for = stiffness * fmax(1, fmax(by_give, by_rim));
   if (!isfinite(estimate.stiffness_for) || estimate.tolerance_over_depth > 1) estimate.stiffness_for = NAN;
   if (!scene->is_static)
-    estimate.tolerance_for = scene->tolerance * fmin(1, WANTED / estimate.tolerance_over_depth);
+    estimate.tolerance_for = scene->tolerance * fmin(1, FEM_DOUBT / estimate.tolerance_over_depth);
   return estimate;
 }

@@ -8,6 +8,7 @@
 #include "contact/evaluation.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/model/compliance.h"
+#include "fem/model/limits.h"
 
 // The system's own: it has another one once it began anew from a checkpoint.
 static ContactSystem *contact_of(const FemLedger *ledger) {
@@ -84,8 +85,8 @@ void fem_ledger_accept(FemLedger *ledger) {
 
 // ---- Telling.
 
-// A share that is not worth a word.
-static const double NOTHING = 1e-4;
+// A share of the doubt itself is not reported.
+static const double NOTHING = FEM_DOUBT * FEM_DOUBT;
 // With fewer elements across a patch its pressure has the mesh's shape, whatever the stiffness
 // (docs/contact.md).
 static const double RESOLVED = 5;

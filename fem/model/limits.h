@@ -33,6 +33,10 @@
 // Held by test_knots, test_integrator_failures.
 #define FEM_TIME_RESOLUTION 1e-12
 
+// From this share on a doubt is reported: the estimated error of a contact, pairs of elements that a network
+// was asked beyond its training. Held by test_accuracy.
+#define FEM_DOUBT 0.01
+
 // ---- What a step may use up. It is taken back before it breaks a promise of the run.
 
 // Share of a promise that is kept for steps that cannot be shortened, for what a single step may lose by
@@ -66,7 +70,7 @@
 
 // What a step may always add, as a share of the promise of momentum.
 // Held by test_momentum.
-#define FEM_MOMENTUM_STEP (0.01 * FEM_MOMENTUM)
+#define FEM_MOMENTUM_STEP (FEM_DOUBT * FEM_MOMENTUM)
 
 // From this share of the impulses on the tolerance of velocities falls, to FEM_RESERVE of itself at
 // FEM_MOMENTUM_FAR: steps get shorter before they have to be taken back.

@@ -34,7 +34,7 @@ struct FemRest {
 };
 
 // Marks of a body, or of an island if one of its bodies has it.
-enum { IS_AWAKE = 1, IS_UNREADY = 2, IS_DISTURBED = 4 };
+enum { IS_AWAKE = 1, IS_UNREADY = 2, IS_DISTURBED = 1 << 2 };
 
 bool fem_rest_is_wanted(const FemSceneDef *scene) {
   return scene->contact.is_on && scene->contact.rest_is_on && !scene->is_static;

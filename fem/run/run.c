@@ -225,7 +225,7 @@ static Status keep_account(FemRunState *run) {
   result->account = record_new();
   if (!result->account) return status_no_memory("the summary");
   fem_ledger_record(ledger, result->account);
-  while (result->told_count < FEM_RUN_TOLD &&
+  while (result->told_count < FEM_RUN_TOLD_COUNT &&
          fem_ledger_tell(ledger, result->told_count, result->told[result->told_count], sizeof *result->told))
     result->told_count++;
   return STATUS_OK;

@@ -113,9 +113,6 @@ const char *fem_run_outcome(const FemRunResult *result, Status status) {
   return result->trouble.of[FEM_TROUBLE_PASSED].steps > 0 ? "passed through" : "finished";
 }
 
-// Share of pairs that a network may be asked beyond its training before it is trouble.
-static const double BEYOND_ALLOWED = 0.01;
-
 void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size) {
   const FemTrouble *trouble = &result->trouble;
   size_t used = 0;
@@ -139,7 +136,7 @@ void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, cha
     append_trouble(text, size, &used, "forces and motion differ", place,
                    "try a smaller time.tolerance or time.max_step");
   }
-  if ((double)result->pairs.beyond > BEYOND_ALLOWED * (double)result->pairs.tried) {
+  if ((double)result->pairs.beyond > FEM_DOUBT * (double)result->pairs.tried) {
     snprintf(place, sizeof place, "%lld of %lld", result->pairs.beyond, result->pairs.tried);
     append_trouble(text, size, &used, "pairs beyond the network's training", place,
                    "try contact.overlap: clip");
@@ -236,11 +233,11 @@ const char *const fem_run_spread_names[] = {
     "waiting_s", "calls",      "bytes_given",    "broad_phase_s",   "overlap_s", "contact_s",
     "forces_s",  "assembly_s", "analysis_s",     "factorisation_s", "solve_s",   "output_s",
 };
-static_assert(sizeof fem_run_spread_names == FEM_RUN_SPREAD * sizeof *fem_run_spread_names, "one each");
+static_assert(sizeof fem_run_spread_names == FEM_RUN_SPREAD_COUNT * sizeof *fem_run_spread_names, "one each");
 
 static void summarise_ranks(const FemRunSpread *spread, Record *record) {
   record_integer(record, "count", spread->rank_count);
-  for (int k = 0; k < FEM_RUN_SPREAD; k++) {
+  for (int k = 0; k < FEM_RUN_SPREAD_COUNT; k++) {
     Record *row = record_child(record, fem_run_spread_names[k]);
     record_number(row, "least", spread->least[k]);
     record_number(row, "mean", spread->mean[k]);

@@ -18,12 +18,12 @@ typedef struct FemRunPhases {
   double broad_phase, overlap, contact, forces, assembly, analysis, factorisation, solve, output, total;
 } FemRunPhases;
 
-enum { FEM_RUN_TOLD = 3, FEM_RUN_SPREAD = 18 };
+enum { FEM_RUN_TOLD_COUNT = 3, FEM_RUN_SPREAD_COUNT = 18 };
 
 // Over the ranks that shared the run, of what the names say.
 typedef struct FemRunSpread {
   int rank_count; // 0: one process
-  double least[FEM_RUN_SPREAD], mean[FEM_RUN_SPREAD], most[FEM_RUN_SPREAD];
+  double least[FEM_RUN_SPREAD_COUNT], mean[FEM_RUN_SPREAD_COUNT], most[FEM_RUN_SPREAD_COUNT];
 } FemRunSpread;
 
 // Counts of a part of the run between two checkpoints are added to those before. Whoever adds a number adds
@@ -63,7 +63,7 @@ typedef struct FemRunResult {
   Record *counters;    // owned
   Record *account;     // contacts and probes as in summary.json, owned; NULL: the run has not begun
   // On each of the two that pressed most, lines that say how wrong they may be             (told_count)
-  char told[FEM_RUN_TOLD][512];
+  char told[FEM_RUN_TOLD_COUNT][512];
   int told_count;
   int effect_count; // those that the scene called for
   struct {
@@ -96,7 +96,7 @@ void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, cha
 // What happened and needs no action, a line each: restarts, retries, extremes.
 void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size);
 
-// As in summary.json: "elements", "cpu_s", …            (FEM_RUN_SPREAD)
+// As in summary.json: "elements", "cpu_s", …            (FEM_RUN_SPREAD_COUNT)
 extern const char *const fem_run_spread_names[];
 
 // summary.json of a run.

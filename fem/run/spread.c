@@ -14,7 +14,7 @@ static int own_vertices(const FemModel *model) {
 }
 
 // In the order of fem_run_spread_names.
-static void measure(const FemRunState *run, double values[FEM_RUN_SPREAD]) {
+static void measure(const FemRunState *run, double values[FEM_RUN_SPREAD_COUNT]) {
   const FemRunResult *result = run->result;
   const FemRunPhases *phases = &result->phases;
   const RanksStats *stats = ranks()->stats();
@@ -36,7 +36,7 @@ static void measure(const FemRunState *run, double values[FEM_RUN_SPREAD]) {
                         phases->factorisation,
                         phases->solve,
                         phases->output};
-  static_assert(sizeof all == FEM_RUN_SPREAD * sizeof *all, "a name for each");
+  static_assert(sizeof all == FEM_RUN_SPREAD_COUNT * sizeof *all, "a name for each");
   memcpy(values, all, sizeof all);
 }
 
@@ -45,14 +45,14 @@ void fem_run_spread_collect(const FemRunState *run, FemRunResult *result) {
   if (!run->model->share) return;
   spread->rank_count = ranks()->count;
   measure(run, spread->mean);
-  for (int k = 0; k < FEM_RUN_SPREAD; k++) {
+  for (int k = 0; k < FEM_RUN_SPREAD_COUNT; k++) {
     spread->most[k] = spread->mean[k];
     spread->least[k] = -spread->mean[k];
   }
-  ranks()->sum(spread->mean, FEM_RUN_SPREAD);
-  ranks()->most(spread->most, FEM_RUN_SPREAD);
-  ranks()->most(spread->least, FEM_RUN_SPREAD);
-  for (int k = 0; k < FEM_RUN_SPREAD; k++) {
+  ranks()->sum(spread->mean, FEM_RUN_SPREAD_COUNT);
+  ranks()->most(spread->most, FEM_RUN_SPREAD_COUNT);
+  ranks()->most(spread->least, FEM_RUN_SPREAD_COUNT);
+  for (int k = 0; k < FEM_RUN_SPREAD_COUNT; k++) {
     spread->mean[k] /= spread->rank_count;
     spread->least[k] = -spread->least[k];
   }

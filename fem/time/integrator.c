@@ -493,7 +493,7 @@ static Status pass_knot(FemIntegrator *integrator) {
 
 // IDA computes the step's end from its differences. Where that is the state whose forces were evaluated last,
 // but for rounding, the values of the evaluation are used, so that nothing is evaluated twice.
-static void take_evaluated(FemIntegrator *integrator, double reached) {
+static void use_evaluated(FemIntegrator *integrator, double reached) {
   if (integrator->evaluated_time != reached) return;
   N_Vector difference = integrator->interpolated;
   N_VLinearSum(1, integrator->evaluated, -1, integrator->y, difference);
@@ -503,7 +503,7 @@ static void take_evaluated(FemIntegrator *integrator, double reached) {
     N_VScale(1, integrator->evaluated, integrator->y);
 }
 
-static Status take_step(FemIntegrator *integrator) {
+static Status step_ida(FemIntegrator *integrator) {
   double reached;
   TRY(choose_stop(integrator));
   if (fem_integrator_is_at_knot(integrator)) TRY(pass_knot(integrator));
@@ -511,7 +511,7 @@ static Status take_step(FemIntegrator *integrator) {
   int flag = IDASolve(integrator->ida, integrator->def.end, &reached, integrator->y, integrator->y_dot,
                       IDA_ONE_STEP);
   if (flag < 0) return give_up(integrator, flag);
-  take_evaluated(integrator, reached);
+  use_evaluated(integrator, reached);
   integrator->time = reached;
   integrator->has_steps = true;
   integrator->is_at_knot = integrator->stops_at_knot && reached == integrator->stop;
@@ -527,7 +527,7 @@ Status fem_integrator_step(FemIntegrator *integrator, double *time) {
     *time = integrator->time = end;
     return STATUS_OK;
   }
-  TRY(take_step(integrator));
+  TRY(step_ida(integrator));
   *time = integrator->time;
   return check_stall(integrator);
 }

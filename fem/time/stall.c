@@ -4,9 +4,10 @@
 #include <math.h>
 #include <stdbool.h>
 
-// Of `end` in a window, and of the longest steps that the window could have made.
-static const double LEAST_ADVANCE = 2e-3, LEAST_OF_LONGEST = 0.1;
-static const double MOST_LEFT = 1e5, MOST_VAIN = 0.25, SLOWED = 0.1;
+// Tries that no run may take; a tenth of those a run that creeps; and a tenth of the pace that was possible.
+static const double MOST_TRIES = 1e6, TENTH = 0.1;
+// Of a window's tries, without a step.
+static const double MOST_VAIN = 0.25;
 enum { STRIKES = 2 };
 
 FemStall fem_stall_begin(double time, double end, double frame) {
@@ -22,13 +23,13 @@ void fem_stall_pass(FemStall *stall, double duration) {
 }
 
 static bool has_not_advanced(const FemStall *stall, double advance, double max_step) {
-  double needed = fmin(LEAST_ADVANCE * stall->end, LEAST_OF_LONGEST * FEM_STALL_WINDOW * max_step);
+  double needed = FEM_STALL_WINDOW * fmin(stall->end / MOST_TRIES, TENTH * max_step);
   return !(advance >= needed);
 }
 
 static bool creeps(const FemStall *stall, double advance, double pace) {
-  return (double)stall->vain > MOST_VAIN * (double)stall->tries && stall->left > MOST_LEFT &&
-         pace < SLOWED * stall->fastest && advance < stall->frame;
+  return (double)stall->vain > MOST_VAIN * (double)stall->tries && stall->left > TENTH * MOST_TRIES &&
+         pace < TENTH * stall->fastest && advance < stall->frame;
 }
 
 FemStallVerdict fem_stall_add(FemStall *stall, long long tries, long long vain, double time,

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-static const double MOST_IN_MOTION = 5000, MOST_IN_STATICS = 10000; // vertices of a cube
+enum { MOST_IN_MOTION = 5000, MOST_IN_STATICS = 2 * MOST_IN_MOTION }; // vertices of a cube
 // A scene whose matrix never changes is factorised once a step size.
 static const double MOST_IF_LINEAR = 40000;
 // As volumes become incompressible multigrid takes ever more iterations.

@@ -54,10 +54,10 @@ static Status fail_hdf5(Status code, const char *path, const char *what) {
 
 // A file in memory; with an image, of that content. −1: it is none, or no memory.
 static hid_t open_memory(const void *image, size_t size) {
-  enum { GROWTH = 65536 };
+  enum { GROWTH_SIZE = 65536 };
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL); // HDF5 prints unless it is told not to
   hid_t access = H5Pcreate(H5P_FILE_ACCESS), creation = H5Pcreate(H5P_FILE_CREATE), file = -1;
-  bool works = access >= 0 && creation >= 0 && H5Pset_fapl_core(access, GROWTH, false) >= 0;
+  bool works = access >= 0 && creation >= 0 && H5Pset_fapl_core(access, GROWTH_SIZE, false) >= 0;
   if (works && image) works = H5Pset_file_image(access, (void *)image, size) >= 0;
   if (works && image) file = H5Fopen("checkpoint", H5F_ACC_RDONLY, access);
   if (works && !image) file = H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation, access);

@@ -139,7 +139,7 @@ static double unbalance(const FemNewton *newton) {
 // An iterative linear solver may leave what Newton's test would let pass: a share of what is still allowed of
 // the balance, and of the correction, whose size is that of the last one at most, or of the last step's first
 // one.
-static void aim(Solve *solve) {
+static void set_accuracy(Solve *solve) {
   FemNewton *newton = solve->newton;
   double size = solve->size > 0 ? solve->size : newton->first_size;
   double excess = isinf(solve->excess) ? unbalance(newton) : solve->excess;
@@ -151,7 +151,7 @@ static void aim(Solve *solve) {
 // unless that leads uphill.
 static int find_direction(Solve *solve) {
   FemNewton *newton = solve->newton;
-  aim(solve);
+  set_accuracy(solve);
   N_VScale(-1, newton->residual, newton->direction);
   int flag = newton->solve(newton->direction, solve->memory);
   if (flag != 0) return flag;
@@ -177,7 +177,7 @@ static bool overshoots(const Solve *solve, double share, double end) {
 }
 
 // Takes the step, shortened as far as it must be; *share: what of it. The residual is that of its end.
-static int take_step(Solve *solve, double *share) {
+static int step_along_direction(Solve *solve, double *share) {
   FemNewton *newton = solve->newton;
   N_VScale(1, solve->correction, newton->start);
   *share = 1;
@@ -206,7 +206,7 @@ static bool is_slow(const Solve *solve, double size, double before, double exces
 // Decides after a whole step by IDA's test and the balance. Where the forces jump they cannot be balanced:
 // once IDA's test has passed, iterations go on only while each halves the excess, or while a new matrix may
 // help (one from before a body turned does not balance it).
-static int judge(Solve *solve, bool *has_converged) {
+static int check_convergence(Solve *solve, bool *has_converged) {
   FemNewton *newton = solve->newton;
   double before = solve->size, excess_before = solve->excess;
   solve->excess = unbalance(newton);
@@ -248,10 +248,10 @@ static int iterate(Solve *solve, bool *has_converged) {
   }
   if (flag != 0) return flag;
   newton->iterations++;
-  flag = take_step(solve, &share);
+  flag = step_along_direction(solve, &share);
   if (flag != 0) return flag;
   fem_mixing_take(&newton->mixing, share, N_VGetArrayPointer(newton->direction));
-  if (share == 1) return judge(solve, has_converged);
+  if (share == 1) return check_convergence(solve, has_converged);
   newton->stats.shortened++;
   solve->size = 0;
   renew(solve);
