@@ -105,11 +105,13 @@ static int make_matrix(Solve *solve) {
   return flag;
 }
 
-// Asks for a matrix of where the iteration stands.
-static void renew(Solve *solve) {
+// Asks for a matrix of where the iteration stands; false: there were enough.
+static bool renew(Solve *solve) {
+  if (solve->renewals >= FEM_NEWTON_RENEWALS) return false;
   solve->renewals++;
   solve->newton->stats.renewed++;
   solve->wants_matrix = solve->was_bad = true;
+  return true;
 }
 
 // δu · r of the balance at the correction.
@@ -191,7 +193,7 @@ static int step_along_direction(Solve *solve, double *share) {
     }
     double end = slope_of_balance(newton) + (1 - *share) * solve->settle;
     if (cut >= FEM_NEWTON_ITERATIONS || !overshoots(solve, *share, end)) return 0;
-    *share *= fmax(solve->slope / (solve->slope - end), FEM_CUT);
+    *share *= fmax(solve->slope / (solve->slope - end), 0.5 * FEM_CUT);
   }
 }
 
@@ -219,16 +221,13 @@ static int check_convergence(Solve *solve, bool *has_converged) {
   bool passes = verdict == SUN_SUCCESS, is_stuck = !(solve->excess <= 0.5 * excess_before);
   *has_converged = passes && solve->excess <= 1;
   bool is_left = !*has_converged && solve->is_good_enough && (is_stuck || !passes);
-  if (is_left && !solve->is_newest) {
-    renew(solve);
-    return 0;
-  }
+  if (is_left && !solve->is_newest && renew(solve)) return 0;
   *has_converged = *has_converged || is_left;
   if (*has_converged) return 0;
   solve->is_good_enough = solve->is_good_enough || passes;
   newton->stats.polished += passes;
-  bool diverges = !passes && verdict != SUN_NLS_CONTINUE;
-  if (diverges || (!solve->is_newest && is_slow(solve, solve->size, before, solve->excess))) renew(solve);
+  if (!passes && verdict != SUN_NLS_CONTINUE) return renew(solve) ? 0 : SUN_NLS_CONV_RECVR;
+  if (!solve->is_newest && is_slow(solve, solve->size, before, solve->excess)) renew(solve);
   return 0;
 }
 
@@ -242,10 +241,7 @@ static int iterate(Solve *solve, bool *has_converged) {
     if (flag != 0) return flag;
   }
   int flag = find_direction(solve);
-  if (flag > 0 && !solve->is_newest) {
-    renew(solve);
-    return 0;
-  }
+  if (flag > 0 && !solve->is_newest && renew(solve)) return 0;
   if (flag != 0) return flag;
   newton->iterations++;
   flag = step_along_direction(solve, &share);
@@ -254,8 +250,7 @@ static int iterate(Solve *solve, bool *has_converged) {
   if (share == 1) return check_convergence(solve, has_converged);
   newton->stats.shortened++;
   solve->size = 0;
-  renew(solve);
-  return 0;
+  return renew(solve) ? 0 : SUN_NLS_CONV_RECVR;
 }
 
 static int run(Solve *solve) {
