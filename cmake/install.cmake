@@ -7,11 +7,12 @@ set(data ${CMAKE_INSTALL_DATADIR}/tetlap)
 
 install(TARGETS tetlap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS tetlap-overlap EXPORT tetlap-overlap LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(FILES include/tetlap/overlap.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tetlap)
+install(FILES include/tetlap/overlap.h include/tetlap/model.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tetlap)
 
 # Data, under the names of the source tree.
 install(DIRECTORY net/weights DESTINATION ${data}/net)
 install(DIRECTORY app/stress/scenes DESTINATION ${data}/app/stress)
+install(FILES python/tetlap/serve.py DESTINATION ${data}/python/tetlap)
 install(PROGRAMS tools/ranks DESTINATION ${data}/tools)
 install(DIRECTORY examples meshes DESTINATION ${data})
 install(FILES docs/scene.schema.json DESTINATION ${data}/docs)

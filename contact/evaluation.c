@@ -237,6 +237,7 @@ static void count_pair(ContactPairCounts *counts, unsigned flags) {
   counts->blended += (flags & OVERLAP_BLENDED) != 0;
   counts->by_net += (flags & OVERLAP_NET) != 0;
   counts->beyond += (flags & OVERLAP_BEYOND) != 0;
+  counts->unsound += (flags & OVERLAP_UNSOUND) != 0;
 }
 
 // Each rank evaluates the model for an equal share of the batch, and all receive all results.

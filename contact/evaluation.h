@@ -18,6 +18,7 @@ typedef struct ContactPairCounts {
   long long by_net;    // flagged NET
   long long blended;   // flagged BLENDED
   long long beyond;    // flagged BEYOND
+  long long unsound;   // flagged UNSOUND
 } ContactPairCounts;
 
 typedef struct ContactEvaluation {

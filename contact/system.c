@@ -212,6 +212,7 @@ static void count(ContactCounters *counters, const ContactEvaluation *evaluation
   counters->pairs.by_net += counts->by_net;
   counters->pairs.blended += counts->blended;
   counters->pairs.beyond += counts->beyond;
+  counters->pairs.unsound += counts->unsound;
   counters->overlap_s += evaluation->overlap_s;
   counters->force_s += evaluation->force_s;
 }

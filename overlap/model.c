@@ -9,10 +9,12 @@
 #include "overlap/centroid.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
+#include "overlap/foreign/foreign.h"
 #include "overlap/geo/model.h"
 #include "overlap/hybrid/hybrid.h"
 #include "overlap/portions.h"
 #include "overlap/separation.h"
+#include "overlap/source.h"
 #include "overlap/tpn/model.h"
 #include "overlap/weights.h"
 
@@ -61,7 +63,11 @@ static Status find_by_file(const char *path, const OverlapOps **ops) {
 Status overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
                                  const OverlapOptions *options) {
   *model = (OverlapModel){0};
+  if (overlap_source_is_foreign(name))
+    return overlap_foreign_create(&model->self, &model->ops, name, options);
   const OverlapOps *ops = NULL;
+  const char *network = overlap_source_network(name);
+  if (network) name = "hybrid", weights = network;
   for (int m = 0; m < model_count(); m++)
     if (strcmp(models[m]->name, name) == 0) ops = models[m];
   if (!ops && overlap_weights_is_path(name)) {
@@ -88,6 +94,10 @@ bool overlap_model_has_hessian(const OverlapModel *model) {
 
 bool overlap_model_has_own_centroid(const OverlapModel *model) {
   return model->ops->has_centroid && model->ops->has_centroid(model->self);
+}
+
+bool overlap_model_has_gradient(const OverlapModel *model) {
+  return !model->ops->has_gradient || model->ops->has_gradient(model->self);
 }
 
 void overlap_model_destroy(OverlapModel *model) {
@@ -191,6 +201,12 @@ static Status eval_with_centroid(const OverlapModel *model, const OverlapBatch *
 Status overlap_model_eval(const OverlapModel *model, const OverlapBatch *batch) {
   if (batch->hessian && !overlap_model_has_hessian(model))
     return status_fail(STATUS_INPUT, "overlap model '%s' has no Hessian", model->ops->name);
+  if (batch->gradient && !overlap_model_has_gradient(model))
+    return status_fail(STATUS_INPUT, "overlap model '%s' gives no gradient", model->ops->name);
+  if (batch->centroid && !overlap_model_has_own_centroid(model) && !overlap_model_has_gradient(model))
+    return status_fail(STATUS_INPUT,
+                       "overlap model '%s' gives V alone: a centroid needs one of its own, or its gradient",
+                       model->ops->name);
   if (!model->ops->checks_finite) TRY(check_finite(batch));
   Status status = batch->centroid && !overlap_model_has_own_centroid(model) ? eval_with_centroid(model, batch)
                                                                             : ask(model, batch);

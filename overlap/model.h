@@ -14,11 +14,12 @@ typedef struct OverlapModel {
 // The models there are, and how many.
 const OverlapOps *const *overlap_model_list(int *count);
 
-// Makes the model of that name, or of that weights file (….safetensors), which says what it is. STATUS_INPUT:
-// unknown name; the message lists the known ones and the nearest.
+// Makes the model that a word names (overlap/source.h). STATUS_INPUT: unknown name; the message lists the
+// known ones and the nearest.
 Status overlap_model_create(OverlapModel *model, const char *name);
 
-// The same with options for networks, and for `hybrid` the name or file of its network; both may be NULL.
+// The same with options for networks, and for `hybrid` the name or file of its network, which `hybrid=WORD` has
+// itself; both may be NULL.
 Status overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
                                  const OverlapOptions *options);
 
@@ -31,8 +32,11 @@ bool overlap_model_has_hessian(const OverlapModel *model);
 // Whether it has a centroid of its own; that of others follows from V and ∇V (overlap/centroid.h).
 bool overlap_model_has_own_centroid(const OverlapModel *model);
 
+// Whether it has first derivatives.
+bool overlap_model_has_gradient(const OverlapModel *model);
+
 // Evaluates all pairs of the batch with OpenMP. STATUS_INPUT: a coordinate is NaN or infinite; the message
-// names the pair. STATUS_INPUT: a Hessian is asked of a model that has none. Where x̄ follows from ∇V and the
+// names the pair. STATUS_INPUT: a gradient, centroid or Hessian is asked of a model that has none. Where x̄ follows from ∇V and the
 // batch has no place for ∇V, that is allocated for the call.
 Status overlap_model_eval(const OverlapModel *model, const OverlapBatch *batch);
 

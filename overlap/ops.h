@@ -30,6 +30,7 @@ typedef enum OverlapFlag {
   OVERLAP_BLENDED = 1 << 4,  // answered partly by a more careful model
   OVERLAP_NET = 1 << 5,      // a TetrahedronPairNet's volume is part of the answer
   OVERLAP_BEYOND = 1 << 6,   // the pair is unlike those that network was trained on
+  OVERLAP_UNSOUND = 1 << 7,  // the model's V was negative, and became 0, or is above the smaller tetrahedron
 } OverlapFlag;
 
 // A batch of pairs; all arrays are the caller's.
@@ -81,6 +82,8 @@ typedef struct OverlapOps {
   // Whether it has second derivatives, and a centroid of its own, as it was made; NULL: never.
   bool (*has_hessian)(const void *self);
   bool (*has_centroid)(const void *self);
+  // Whether it has ∇V; NULL: always.
+  bool (*has_gradient)(const void *self);
   // eval_batch fails where a coordinate is not finite; without it, all are looked through before.
   bool checks_finite;
   // V does not follow the size of the pair: it means something of pairs as large as those of its training, a

@@ -7,13 +7,12 @@
 
 #include "base/memory.h"
 #include "overlap/model.h"
-#include "overlap/weights.h"
+#include "overlap/source.h"
 
-static const char HYBRID[] = "hybrid=", ENDING[] = ".safetensors";
-
-// The length of the prefix `hybrid=`; 0: the source has none.
+// What stands before the file or name: `hybrid=`, or nothing.
 static size_t prefix_of(const char *source) {
-  return strncmp(source, HYBRID, sizeof HYBRID - 1) == 0 ? sizeof HYBRID - 1 : 0;
+  const char *network = overlap_source_network(source);
+  return network ? (size_t)(network - source) : 0;
 }
 
 // Takes "." and "..", and what they undo, out of an absolute path.
@@ -35,21 +34,33 @@ static void fold(char *path) {
   *end = 0;
 }
 
-bool app_model_names_locate(const char *source, char path[PATH_MAX]) {
-  const char *file = source + prefix_of(source);
-  if (!overlap_weights_is_path(file)) return false;
+// The absolute path of the source's file alone. False: it names no file.
+static bool find_path(const char *source, char path[PATH_MAX]) {
+  const char *file;
   char here[PATH_MAX] = "";
+  size_t length = overlap_source_path(source, &file);
+  if (length == 0) return false;
   if (file[0] != '/' && !getcwd(here, sizeof here)) here[0] = 0;
-  if (snprintf(path, PATH_MAX, "%s/%s", here, file) >= PATH_MAX) return false;
+  if (snprintf(path, PATH_MAX, "%s/%.*s", here, (int)length, file) >= PATH_MAX) return false;
   fold(path);
   return true;
+}
+
+bool app_model_names_settle(const char *source, char word[PATH_MAX]) {
+  char path[PATH_MAX];
+  return find_path(source, path) && overlap_source_with_path(source, path, word, PATH_MAX);
+}
+
+bool app_model_names_locate(const char *source, char path[PATH_MAX]) {
+  return app_model_names_settle(source + prefix_of(source), path);
 }
 
 // A source, and how much of its path is in its name.
 typedef struct Entry {
   const char *source;
-  char path[PATH_MAX]; // without its ending; "": it is no file
-  int parts, most;     // names of the path that are taken, that there are
+  char path[PATH_MAX];  // without its ending; "": it is no file
+  const char *function; // what follows the path: ":name", or ""
+  int parts, most;      // names of the path that are taken, that there are
   AppModelName name;
 } Entry;
 
@@ -61,25 +72,53 @@ static bool is_known(const char *name) {
   return false;
 }
 
+// The program that a command begins with, without its folder.
+static int program_of(const char *command, const char **name) {
+  size_t length = strcspn(command, " ");
+  *name = command;
+  for (size_t c = 0; c < length; c++)
+    if (command[c] == '/') *name = command + c + 1;
+  return (int)(command + length - *name);
+}
+
 // False: the name is too long, and cut.
 static bool write_name(Entry *entry) {
   const char *from = entry->source;
-  int prefix = (int)prefix_of(from);
+  int prefix = (int)prefix_of(from), length = INT_MAX;
   if (entry->path[0]) {
     from = entry->path + strlen(entry->path);
     for (int parts = 0; parts < entry->parts && from > entry->path; parts += *from == '/') from--;
     from += *from == '/';
+  } else if (overlap_source_of(from) == OVERLAP_SOURCE_COMMAND) {
+    length = program_of(strchr(from, ':') + 1, &from);
   } else {
     from += prefix;
   }
-  return snprintf(entry->name, APP_MODEL_NAME, "%.*s%s", prefix, entry->source, from) < APP_MODEL_NAME;
+  return snprintf(entry->name, APP_MODEL_NAME, "%.*s%.*s%s", prefix, entry->source, length, from,
+                  entry->function) < APP_MODEL_NAME;
+}
+
+// Takes the ending off the path, which says no more than what the file is.
+static void cut_ending(char *path) {
+  static const char *const endings[] = {".safetensors", ".so", ".py"};
+  size_t length = strlen(path);
+  for (int e = 0; e < 3; e++) {
+    size_t ending = strlen(endings[e]);
+    if (length <= ending || strcmp(path + length - ending, endings[e]) != 0) continue;
+    path[length - ending] = 0;
+    return;
+  }
 }
 
 static void begin(Entry *entry, const char *source) {
-  *entry = (Entry){.source = source, .parts = 1};
-  if (!app_model_names_locate(source, entry->path)) entry->path[0] = 0;
-  size_t length = strlen(entry->path), ending = sizeof ENDING - 1;
-  if (length > ending && strcmp(entry->path + length - ending, ENDING) == 0) entry->path[length - ending] = 0;
+  const char *path;
+  *entry = (Entry){.source = source, .parts = 1, .function = ""};
+  if (!find_path(source, entry->path)) entry->path[0] = 0;
+  if (entry->path[0]) {
+    size_t length = overlap_source_path(source, &path);
+    entry->function = path + length;
+  }
+  cut_ending(entry->path);
   for (const char *c = entry->path; *c; c++) entry->most += *c == '/';
 }
 

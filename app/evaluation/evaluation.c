@@ -119,11 +119,15 @@ static Status block_evaluate(Block *block, const OverlapModel *model) {
   if (!block->pairs->gradient || !block->pairs->centroid)
     TRY(complete(block->pairs, count, block->pairs->gradient ? NULL : block->true_gradient,
                  block->pairs->centroid ? NULL : block->true_centroid));
+  const bool has_gradient = overlap_model_has_gradient(model),
+             has_centroid = has_gradient || overlap_model_has_own_centroid(model);
+  for (size_t k = 0; k < count * SIZE && !has_gradient; k++) block->gradient[k] = NAN;
+  for (size_t k = 0; k < count * 3 && !has_centroid; k++) block->centroid[k] = NAN;
   OverlapBatch batch = {.pair_count = (int)count,
                         .pairs = block->pairs->coordinates,
                         .volume = block->volume,
-                        .gradient = block->gradient,
-                        .centroid = block->centroid,
+                        .gradient = has_gradient ? block->gradient : NULL,
+                        .centroid = has_centroid ? block->centroid : NULL,
                         .flags = block->flags};
   return overlap_model_eval(model, &batch);
 }
@@ -154,7 +158,7 @@ bool app_evaluation_coordinates(const double pair[24], const double x[3], double
 static void add_angle(AppEvaluationRun *run, const double truth[SIZE], const double told[SIZE]) {
   Vec3 a = force_of(truth), b = force_of(told);
   // of a tetrahedron inside the other nothing but rounding is left
-  if (!(vec3_length(a) > 1e-9 * length_of(truth, SIZE))) return;
+  if (!(vec3_length(a) > 1e-9 * length_of(truth, SIZE)) || isnan(told[0])) return;
   double angle = atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
   run->angles[run->angle_count++] = vec3_length(b) > 0 ? DEGREES * angle : 180;
 }

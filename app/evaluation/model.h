@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Overlap models as commands name them: one of the table of overlap/model.h, a weights file, `hybrid=` with
-// the name or file of its network, or `geo-constant`, the frame of `geo` without a network.
+// Overlap models as commands name them (overlap/source.h); here `geo-constant` too, the frame of `geo` without
+// a network.
 #ifndef TETLAP_APP_EVALUATION_MODEL_H
 #define TETLAP_APP_EVALUATION_MODEL_H
 

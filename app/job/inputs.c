@@ -9,6 +9,7 @@
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "overlap/hybrid/hybrid.h"
+#include "overlap/source.h"
 #include "overlap/weights.h"
 
 static void record_digest(Record *record, const char *key, uint64_t digest) {
@@ -36,7 +37,12 @@ static void find_weights(const FemSceneDef *scene, char path[PATH_MAX]) {
   static const char HYBRID[] = "hybrid";
   char source[PATH_MAX];
   path[0] = 0;
-  if (!app_scene_overlap_source(scene, source) || app_model_names_locate(source, path)) return;
+  if (!app_scene_overlap_source(scene, source)) return;
+  if (app_model_names_locate(source, path)) {
+    const char *file;
+    path[overlap_source_path(path, &file)] = 0; // a Python file without the function's name
+    return;
+  }
   const char *name = source, *network = strchr(source, '=');
   if (strncmp(source, HYBRID, strlen(HYBRID)) == 0) name = network ? network + 1 : OVERLAP_HYBRID_NETWORK;
   if (overlap_weights_find(name, path, PATH_MAX) != STATUS_OK) path[0] = 0;

@@ -4,9 +4,9 @@
 #include <limits.h>
 #include <stdlib.h>
 
+#include "app/cli/model_names.h"
 #include "app/cli/versions.h"
 #include "app/scene/write.h"
-#include "overlap/weights.h"
 
 // The absolute path, or as it is if that cannot be found.
 static void record_path(Record *record, const char *key, const char *path) {
@@ -32,10 +32,8 @@ Status app_origin_make(const AppJob *job, const AppJobOptions *options, const ch
   record_path(record, "scene_file", options->scene_path);
   RecordList *overrides = record_list(record, "set");
   for (int i = 0; i < options->override_count; i++) record_append_text(overrides, options->overrides[i]);
-  if (overlap && overlap_weights_is_path(overlap))
-    record_path(record, "overlap", overlap);
-  else
-    record_text(record, "overlap", overlap);
+  char word[PATH_MAX];
+  record_text(record, "overlap", overlap && app_model_names_settle(overlap, word) ? word : overlap);
   record_merge(record, job->inputs);
   Status status = record_scene(&job->scene, record);
   if (!status) return STATUS_OK;

@@ -181,6 +181,7 @@ static void print_choices(FILE *stream, const SceneKey *key) {
     print_cell(stream, key->choices->help(i));
     fputs(" |\n", stream);
   }
+  if (key->choices->accepts) fprintf(stream, "\nor %s.\n", key->choices->accepts_help);
 }
 
 static void print_rules(FILE *stream, const SceneSection *section) {

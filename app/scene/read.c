@@ -54,7 +54,14 @@ static Status read_subsection(const SceneKey *key, const SceneNode *node, void *
   const SceneKey *meant = section->shorthand ? app_scene_keys_find(section, section->shorthand) : NULL;
   bool is_number = meant && (meant->type == SCENE_NUMBER || meant->type == SCENE_INTEGER);
   bool is_meant = meant && node->kind == (is_number ? SCENE_NODE_NUMBER : SCENE_NODE_TEXT);
-  if (!is_meant) return app_scene_value_fail(key, node, "");
+  if (!is_meant) {
+    char path[MESSAGE_SIZE], hint[MESSAGE_SIZE];
+    app_scene_tree_path(node, path, sizeof path);
+    const char *advice =
+        node->kind == SCENE_NODE_TEXT ? app_scene_keys_removed_value(path, node->text) : NULL;
+    snprintf(hint, sizeof hint, "%s%s", advice ? "; " : "", advice ? advice : "");
+    return app_scene_value_fail(key, node, hint);
+  }
   keep_place(section, node, field);
   return read_value(meant, node, field);
 }

@@ -68,13 +68,13 @@ static void put_names(RecordList *list, const SceneChoices *choices) {
 }
 
 static void put_choices(const SceneChoices *choices, Record *record) {
-  if (!choices->takes_switch) {
+  if (!choices->takes_switch && !choices->accepts) {
     put_names(record_list(record, "enum"), choices);
     return;
   }
   RecordList *any = record_list(record, "anyOf");
   put_names(record_list(record_append(any), "enum"), choices);
-  put_type(record_append(any), "boolean", false);
+  put_type(record_append(any), choices->accepts ? "string" : "boolean", false);
 }
 
 static void put_two(bool is_nullable, Record *record) {

@@ -94,7 +94,8 @@ static Status find_choice(const SceneKey *key, const SceneNode *node, int *choic
 
 static Status read_name(const SceneKey *key, const SceneNode *node, char **field) {
   int choice;
-  TRY(find_choice(key, node, &choice));
+  bool is_other = node->kind == SCENE_NODE_TEXT && key->choices->accepts && key->choices->accepts(node->text);
+  if (!is_other) TRY(find_choice(key, node, &choice));
   return read_text(key, node, field);
 }
 

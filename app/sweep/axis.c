@@ -8,7 +8,7 @@
 
 #include "base/files/file.h"
 #include "base/memory.h"
-#include "overlap/weights.h"
+#include "overlap/source.h"
 
 enum { NUMBER_SIZE = 32 };
 
@@ -162,11 +162,10 @@ Status app_sweep_axis_parse(AppSweepAxis *axis, const char *text) {
 }
 
 bool app_sweep_axis_locate(const AppSweepAxis *axis, int k, const char *scene_path, char path[PATH_MAX]) {
-  if (!overlap_weights_is_path(axis->values[k])) return false;
-  char *directory = file_directory_of(scene_path);
-  char *file = directory ? file_join(directory, axis->values[k]) : NULL;
-  bool is_file = file && app_model_names_locate(file, path);
-  memory_free(directory), memory_free(file);
+  char from[PATH_MAX], *folder = file_directory_of(scene_path);
+  bool is_file = folder && overlap_source_from(axis->values[k], folder, from, sizeof from) &&
+                 app_model_names_settle(from, path);
+  memory_free(folder);
   return is_file;
 }
 

@@ -42,6 +42,7 @@ static void add_pairs(ContactPairCounts *total, const ContactPairCounts *part) {
   total->tried += part->tried, total->enclosed += part->enclosed;
   total->fallbacks += part->fallbacks, total->by_net += part->by_net;
   total->blended += part->blended, total->beyond += part->beyond;
+  total->unsound += part->unsound;
 }
 
 static void add_contact(FemRunResult *result, const ContactSystem *system) {
@@ -155,7 +156,8 @@ void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size
               {"failed factorisations", result->solver.failed_factorisations},
               {"enclosed pairs", result->pairs.enclosed},
               {"pairs answered by a more careful model", result->pairs.fallbacks},
-              {"pairs beyond the network's training", result->pairs.beyond}};
+              {"pairs beyond the network's training", result->pairs.beyond},
+              {"pairs with a volume that no two such tetrahedra share", result->pairs.unsound}};
   size_t used = 0;
   text[0] = 0;
   append_line(text, size, &used, "smallest det F %.3f (1: undeformed, 0: an element is flat)",

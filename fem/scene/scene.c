@@ -57,7 +57,6 @@ void fem_scene_destroy(FemSceneDef *scene) {
     for (int k = 0; k < 2; k++) memory_free(scene->contact.pairs[i].names[k]);
   memory_free(scene->contact.pairs);
   memory_free(scene->contact.overlap);
-  memory_free(scene->contact.net);
   memory_free(scene->status_reference);
   memory_free(scene->path);
   memory_free(scene->title);

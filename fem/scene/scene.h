@@ -164,7 +164,6 @@ typedef struct FemContactDef {
   FemContactPairDef *pairs; //                                (pair_count)
   int pair_count;
   char *overlap; // name of the overlap model
-  char *net;     // weights in its place, or hybrid's: a file, relative to the scene's, or a name; NULL: none
   OverlapOptions net_options;
   double margin; // [m]; 0: chosen
   int smooth;    // how often the edges of curved surfaces are halved for contact; 0: facets as they are

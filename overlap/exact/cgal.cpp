@@ -216,6 +216,7 @@ extern "C" const OverlapOps overlap_cgal_ops = {
     nullptr,            // has_bounds
     nullptr,            // has_hessian
     overlap_ops_always, // has_centroid
+    nullptr,            // has_gradient
     false,              // checks_finite
     false,              // lacks_scale
     nullptr,            // weights

@@ -132,7 +132,7 @@ static void make_home(void) {
   run_shell("cd %s && mkdir a b && cp " TETLAP_SOURCE_DIR
             "/net/weights/geo-small.safetensors a/net.safetensors && "
             "cp " TETLAP_SOURCE_DIR "/net/weights/geo.safetensors b/net.safetensors && "
-            "sed 's|^contact:.*|contact: {net: a/net.safetensors}|' " TETLAP_SOURCE_DIR
+            "sed 's|^contact:.*|contact: {overlap: a/net.safetensors}|' " TETLAP_SOURCE_DIR
             "/examples/02_two_blocks.yaml > scene.yaml",
             home);
 }

@@ -495,7 +495,7 @@ static const char from_files[] =
     ".1202]},\n"
     "     material: {young: 1e5, poisson: .3, density: 1000, damping: .01}}\n"
     "effects: {gravity: [0, 0, -9.81]}\n"
-    "contact: {potential: nodal, stiffness: 2e5, overlap: geo, net: w.safetensors}\n"
+    "contact: {potential: nodal, stiffness: 2e5, overlap: w.safetensors}\n"
     "time: {end: .03}\n"
     "output: {frames: 4, checkpoint: {frames: 1}}\n";
 

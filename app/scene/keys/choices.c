@@ -7,6 +7,7 @@
 #include "fem/material/material.h"
 #include "fem/sparse/solver.h"
 #include "overlap/model.h"
+#include "overlap/source.h"
 
 // The names that other layers own.
 
@@ -49,7 +50,11 @@ static const char *overlap_help(int i) {
   int count;
   return overlap_model_list(&count)[i]->help;
 }
-const SceneChoices app_scene_choices_overlaps = {.name = overlap_name, .help = overlap_help};
+const SceneChoices app_scene_choices_overlaps = {
+    .name = overlap_name,
+    .help = overlap_help,
+    .accepts = overlap_source_has_form,
+    .accepts_help = "a file NET.safetensors, MINE.so, MINE.py:NAME, or hybrid=NETWORK, exec:COMMAND"};
 
 // Names of numbers and switches in a scene's definition.
 

@@ -32,9 +32,6 @@ static const SceneSection friction = {
     .help = "Coulomb friction", .keys = friction_keys, .shorthand = "coefficient"};
 
 static const SceneKey net_keys[] = {
-    {"weights", SCENE_TEXT, AT(FemContactDef, net), .absent_help = "those that ship with the model",
-     .help = "of a learned model: a .safetensors file, path from the scene file, or a name; used instead of "
-             "`overlap`, or by `hybrid` as its network"},
     {"ghosts", SCENE_CHOICE, AT(FemContactDef, net_options.ghosts), .fallback = "auto",
      .choices = &app_scene_choices_ghosts, .help = "tpn: predicted volumes of disjoint pairs"},
     {"gate", SCENE_CHOICE, AT(FemContactDef, net_options.gate), .fallback = "auto",
@@ -61,8 +58,7 @@ static const SceneKey net_keys[] = {
      .help = "hybrid of tpn-scene: probability of the status head above which the network is used"},
     {0},
 };
-static const SceneSection net = {
-    .help = "use of networks after the paper", .keys = net_keys, .shorthand = "weights"};
+static const SceneSection net = {.help = "use of networks after the paper", .keys = net_keys};
 
 static const SceneKey rest_keys[] = {
     {"speed", SCENE_NUMBER, AT(FemContactDef, rest_speed), .unit = "m/s", .range = "(0, inf)",
@@ -103,7 +99,8 @@ static const SceneKey contact_keys[] = {
      .choices = &app_scene_choices_potentials, .help = "how overlaps become pressure"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",
      .choices = &app_scene_choices_overlaps,
-     .help = "the model that computes the overlap volume of two tetrahedra"},
+     .help = "the model that computes the overlap volume of two tetrahedra: a name, or a file of yours, from "
+             "the scene file: net.safetensors, mine.so, mine.py:name, hybrid=net.safetensors, exec:COMMAND"},
     {"net", SCENE_SECTION, .section = &net,
      .help = "of a learned model: its weights, or a mapping with more options"},
     {"margin", SCENE_NUMBER, AT(FemContactDef, margin), .unit = "m", .range = "(0, inf)",

@@ -149,6 +149,8 @@ void app_scene_keys_expect(const SceneKey *key, char *text, size_t size) {
   const char *name;
   for (int i = 0; key->choices && (name = key->choices->name(i)); i++)
     text_append(text, size, &used, "%s%s", i ? ", " : "", name);
+  if (key->choices && key->choices->accepts)
+    text_append(text, size, &used, ", or %s", key->choices->accepts_help);
   if (key->section && key->section->shorthand)
     text_append(text, size, &used, " or %s (its '%s')",
                 type_text(app_scene_keys_find(key->section, key->section->shorthand)->type),

@@ -34,6 +34,9 @@ typedef struct SceneChoices {
   const char *(*name)(int index);
   const char *(*help)(int index);
   bool takes_switch; // true stands for the second name, false for the first
+  // Words of NAME that are none of the names, and may stand there; NULL: there are none.
+  bool (*accepts)(const char *word);
+  const char *accepts_help; // what they are, after "or"
 } SceneChoices;
 
 // What giving a key sets besides its own value: a flag, or which way was chosen.

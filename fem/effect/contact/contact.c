@@ -3,6 +3,7 @@
 // matrix.
 #include "fem/effect/contact/contact.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +15,7 @@
 #include "fem/model/compliance.h"
 #include "fem/scene/drive.h"
 #include "fem/scene/obstacle.h"
-#include "overlap/weights.h"
+#include "overlap/source.h"
 
 typedef struct Contact {
   const FemModel *model; // borrowed
@@ -81,40 +82,36 @@ static void list_sides(Contact *contact) {
   }
 }
 
-// The model of that name or weights file; hybrid's network is the scene's, unless the name has one.
-static Status create_named(const FemSceneDef *scene, const char *name, const char *weights,
-                           OverlapModel *overlap) {
-  static const char HYBRID[] = "hybrid=";
-  const OverlapOptions *options = scene->contact.is_on ? &scene->contact.net_options : NULL;
-  if (strncmp(name, HYBRID, strlen(HYBRID)) == 0)
-    return overlap_model_create_with(overlap, "hybrid", name + strlen(HYBRID), options);
-  return overlap_model_create_with(overlap, name, strcmp(name, "hybrid") == 0 ? weights : NULL, options);
-}
-
-// What `contact.net` says, a file's path seen from here; owned. NULL: no memory.
-static char *locate_net(const FemSceneDef *scene) {
-  const char *net = scene->contact.net;
-  if (!overlap_weights_is_path(net)) return memory_copy(net, strlen(net) + 1, 1);
-  char *directory = file_directory_of(scene->path ? scene->path : ".");
-  char *path = directory ? file_join(directory, net) : NULL;
-  memory_free(directory);
-  return path;
+// The scene's word with its file as seen from here.
+static Status locate(const FemSceneDef *scene, char word[PATH_MAX]) {
+  char *folder = file_directory_of(scene->path ? scene->path : ".");
+  bool fits = folder && overlap_source_from(scene->contact.overlap, folder, word, PATH_MAX);
+  memory_free(folder);
+  return fits ? STATUS_OK : status_fail(STATUS_INPUT, "contact.overlap: the path is too long");
 }
 
 Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *name, OverlapModel *overlap) {
+  char word[PATH_MAX];
+  const OverlapOptions *options = scene->contact.is_on ? &scene->contact.net_options : NULL;
   *overlap = (OverlapModel){0};
-  if (!scene->contact.net) return create_named(scene, name ? name : scene->contact.overlap, NULL, overlap);
-  char *net = locate_net(scene);
-  if (!net) return status_no_memory("a file name");
-  bool is_scenes = name == NULL, is_hybrid = strcmp(scene->contact.overlap, "hybrid") == 0;
-  Status status = create_named(scene,
-                               !is_scenes  ? name
-                               : is_hybrid ? scene->contact.overlap
-                                           : net,
-                               is_hybrid ? net : NULL, overlap);
-  memory_free(net);
+  if (name) return overlap_model_create_with(overlap, name, NULL, options);
+  TRY(locate(scene, word));
+  Status status = overlap_model_create_with(overlap, word, NULL, options);
   if (!status) return status;
-  return status_prefix(status, "%s: contact.net", fem_scene_where(scene, &scene->contact.place).text);
+  return status_prefix(status, "%s: contact.overlap", fem_scene_where(scene, &scene->contact.place).text);
+}
+
+// Forces need more than V.
+static Status check_model(const FemSceneDef *scene, const OverlapModel *model) {
+  bool has_gradient = overlap_model_has_gradient(model);
+  bool is_field = scene->contact.potential == CONTACT_POTENTIAL_FIELD;
+  if (has_gradient || (is_field && overlap_model_has_own_centroid(model))) return STATUS_OK;
+  return status_fail(
+      STATUS_INPUT,
+      "%s: contact.overlap: '%s' gives %s: forces need its %s. `tetlap eval` grades it on pairs",
+      fem_scene_where(scene, &scene->contact.place).text, model->ops->name,
+      overlap_model_has_own_centroid(model) ? "V and the centroid" : "V alone",
+      is_field ? "centroid or its gradient" : "gradient");
 }
 
 static Status build(Contact *contact, Contact *old) {
@@ -125,6 +122,7 @@ static Status build(Contact *contact, Contact *old) {
     old->overlap = (OverlapModel){0};
   } else {
     TRY(fem_effect_contact_create_overlap(model->scene, NULL, &contact->overlap));
+    TRY(check_model(model->scene, &contact->overlap));
   }
   contact->bodies = memory_zeroed((size_t)model->body_count, sizeof *contact->bodies);
   contact->shapes = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->shapes);
@@ -241,6 +239,7 @@ static void report(void *self, const FemState *state, Record *counters) {
   record_add(counters, "net_pairs", count->pairs.by_net);
   record_add(counters, "overlap_blended", count->pairs.blended);
   record_add(counters, "beyond_range_pairs", count->pairs.beyond);
+  record_add(counters, "unsound_pairs", count->pairs.unsound);
   record_add(counters, "beyond_margin", count->beyond_margin);
   if (contact->has_self) record_add(counters, "self_pairs_left_out", count->resting);
 }

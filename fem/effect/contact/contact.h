@@ -12,8 +12,8 @@ ContactSystem *fem_effect_contact_system(void *effect);
 // The name of side `number` of an interface: a body, a mesh obstacle or a half-space.
 const char *fem_effect_contact_name(const void *effect, int number);
 
-// Makes the overlap model of that name or weights file (seen from the program), NULL: the scene's, with what
-// the scene says of networks. Destroy it with overlap_model_destroy.
+// Makes the overlap model that the word names (overlap/source.h), its file seen from the program; NULL: the
+// scene's. Either with what the scene says of networks. Destroy it with overlap_model_destroy.
 Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *name, OverlapModel *overlap);
 
 #endif

@@ -93,6 +93,7 @@ static const FemCheckpointNumber numbers[] = {
     COUNT(pairs, by_net),
     COUNT(pairs, blended),
     COUNT(pairs, beyond),
+    COUNT(pairs, unsound),
     COUNT(status_pairs, asked),
     COUNT(status_pairs, overlapping),
     COUNT(status_pairs, false_positives),
@@ -128,7 +129,7 @@ static_assert(sizeof(FemAudit) == 16 * sizeof(double), "numbers[] lists every nu
 static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "numbers[] lists every phase");
 static_assert(sizeof(FemIntegratorStats) == 10 * sizeof(double), "numbers[] lists the integrator's counts");
 static_assert(sizeof(FemSolverStats) == 10 * sizeof(double), "numbers[] lists the solver's counts");
-static_assert(sizeof(ContactPairCounts) == 6 * sizeof(long long), "numbers[] lists the counts of pairs");
+static_assert(sizeof(ContactPairCounts) == 7 * sizeof(long long), "numbers[] lists the counts of pairs");
 static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long),
               "numbers[] lists the counts of the status");
 

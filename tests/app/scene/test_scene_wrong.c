@@ -132,6 +132,9 @@ static const Wrong wrong[] = {
     {TIME BODY "contact: {potential: nodel}\n", "s.yaml:3:22: contact.potential: expected one of nodal, "
                                                 "field, found the text 'nodel'; "
                                                 "did you mean 'nodal'?"},
+    {TIME BODY "contact: {net: a.safetensors}\n", "s.yaml:3:16: contact.net: expected a mapping {key: value}, found the text 'a.safetensors'; write the weights"},
+    {TIME BODY "contact: {net: {weights: geo}}\n",
+     "s.yaml:3:17: contact.net.weights: there is no such key any more; write the weights"},
     {TIME BODY "contact: {overlap: clop}\n", "s.yaml:3:20: contact.overlap: expected one of clip"},
     {TIME BODY "contact: {hessian: true}\n",
      "s.yaml:3:20: contact.hessian: expected one of gauss_newton, full, found true"},

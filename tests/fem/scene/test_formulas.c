@@ -90,8 +90,8 @@ START_TEST(a_mesh_that_is_not_there) {
 END_TEST
 
 START_TEST(weights_that_are_not_there) {
-  write_scene(BOX, "    self_contact: true\ncontact: {net: none.safetensors}\n");
-  expect(STATUS_IO, ":7:10: contact.net", "none.safetensors", "cannot be opened");
+  write_scene(BOX, "    self_contact: true\ncontact: {overlap: none.safetensors}\n");
+  expect(STATUS_IO, ":7:10: contact.overlap", "none.safetensors", "cannot be opened");
 }
 END_TEST
 

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "overlap/foreign/library.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+
+typedef struct Library {
+  void *handle;
+  const TetlapModel *model;
+  void *self;  // the model's own
+  char path[]; // as it was named, for messages
+} Library;
+
+static void close_library(void *self) {
+  Library *library = self;
+  if (library->model && library->model->close) library->model->close(library->self);
+  if (library->handle) dlclose(library->handle);
+  memory_free(library);
+}
+
+static Status ask(void *self, const TetlapModelBatch *batch) {
+  Library *library = self;
+  char why[1024] = "";
+  int failed = library->model->evaluate(library->self, batch, why, sizeof why);
+  why[sizeof why - 1] = 0;
+  if (!failed) return STATUS_OK;
+  return status_fail(STATUS_SOLVER, "%s: the model failed with %d%s%s", library->path, failed,
+                     why[0] ? ": " : "", why);
+}
+
+// A path without a slash would be looked for where the system's libraries are.
+static Status load(Library *library) {
+  char here[4096];
+  if (access(library->path, R_OK) != 0)
+    return status_fail(STATUS_IO, "%s: cannot be opened: %s", library->path, strerror(errno));
+  if (snprintf(here, sizeof here, "%s%s", strchr(library->path, '/') ? "" : "./", library->path) >=
+      (int)sizeof here)
+    return status_fail(STATUS_INPUT, "%s: the path is too long", library->path);
+  library->handle = dlopen(here, RTLD_NOW | RTLD_LOCAL);
+  if (library->handle) return STATUS_OK;
+  return status_fail(STATUS_INPUT,
+                     "%s: cannot be loaded: %s. Build it with `cc -shared -fPIC`, for this machine",
+                     library->path, dlerror());
+}
+
+static Status check(const Library *library) {
+  const TetlapModel *model = library->model;
+  if (!model) return status_fail(STATUS_INPUT, "%s: tetlap_model gave NULL", library->path);
+  if (model->abi != TETLAP_MODEL_ABI)
+    return status_fail(STATUS_INPUT,
+                       "%s: was built for version %u of tetlap/model.h, this program has %d: build it again",
+                       library->path, (unsigned)model->abi, TETLAP_MODEL_ABI);
+  if (model->size < sizeof *model || !model->evaluate)
+    return status_fail(STATUS_INPUT, "%s: its TetlapModel has %s", library->path,
+                       model->evaluate ? "no `size = sizeof(TetlapModel)`" : "no `evaluate`");
+  return STATUS_OK;
+}
+
+static Status open_model(Library *library) {
+  char why[1024] = "";
+  if (!library->model->open) return STATUS_OK;
+  int failed = library->model->open(&library->self, why, sizeof why);
+  why[sizeof why - 1] = 0;
+  if (!failed) return STATUS_OK;
+  library->model = NULL; // nothing to close
+  return status_fail(STATUS_INPUT, "%s: the model could not be opened (%d)%s%s", library->path, failed,
+                     why[0] ? ": " : "", why);
+}
+
+static Status find_model(Library *library) {
+  const TetlapModel *(*find)(void);
+  TRY(load(library));
+  *(void **)&find = dlsym(library->handle, "tetlap_model");
+  if (!find)
+    return status_fail(
+        STATUS_INPUT,
+        "%s: exports no function 'tetlap_model': tetlap/model.h says what a model's library has",
+        library->path);
+  library->model = find();
+  Status status = check(library);
+  if (!status) return open_model(library);
+  library->model = NULL; // not to be called
+  return status;
+}
+
+Status overlap_foreign_library_open(OverlapForeignPort *port, const char *path) {
+  size_t length = strlen(path) + 1;
+  Library *library = memory_zeroed(1, sizeof *library + length);
+  if (!library) return status_no_memory("a model's library");
+  memcpy(library->path, path, length);
+  Status status = find_model(library);
+  if (status) {
+    close_library(library);
+    return status;
+  }
+  *port = (OverlapForeignPort){
+      .self = library, .gives = library->model->gives, .ask = ask, .close = close_library};
+  return STATUS_OK;
+}

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE // memfd_create, mremap
+#endif
+#include "overlap/foreign/process.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/files/data.h"
+#include "base/memory.h"
+
+enum { HELLO = 1, EVALUATE = 2, VERSION = 1, WORDS = 4, PAIR_BYTES = 432, LEAST_CAPACITY = 1024 };
+enum { SOCKET_FOR_IT = 3, MEMORY_FOR_IT = 4 };
+static const double SECONDS_TO_END = 2; // once its socket is closed, and to answer after a signal
+
+typedef struct Process {
+  char *name;          // for messages
+  const char *missing; // what is told where there is no such program
+  pid_t pid;           // 0: the process is not ours
+  int socket, memory;
+  double limit; // of a reply [s]
+  char *map;
+  size_t capacity; // pairs
+} Process;
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// Waits until it has ended; false: it has not by then.
+static bool reap(Process *process, double seconds, int *how) {
+  for (double end = now() + seconds; process->pid > 0;) {
+    if (waitpid(process->pid, how, WNOHANG) != 0) {
+      process->pid = 0;
+      return true;
+    }
+    if (now() > end) return false;
+    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+  }
+  return true;
+}
+
+static void stop(Process *process) {
+  int how;
+  if (process->pid == 0 || reap(process, 0, &how)) return;
+  kill(-process->pid, SIGKILL); // it leads a group of its own
+  kill(process->pid, SIGKILL);
+  waitpid(process->pid, &how, 0);
+  process->pid = 0;
+}
+
+static void close_process(void *self) {
+  Process *process = self;
+  int how;
+  if (process->map) munmap(process->map, process->capacity * PAIR_BYTES);
+  if (process->socket >= 0) close(process->socket);
+  if (process->memory >= 0) close(process->memory);
+  if (!reap(process, SECONDS_TO_END, &how)) stop(process);
+  memory_free(process->name);
+  memory_free(process);
+}
+
+// What is told where the other side has closed its end.
+static Status fail_ended(Process *process) {
+  int how = 0;
+  const pid_t pid = process->pid;
+  if (pid == 0) return status_fail(STATUS_SOLVER, "%s: the process with the model has ended", process->name);
+  if (!reap(process, SECONDS_TO_END, &how)) {
+    stop(process);
+    return status_fail(STATUS_SOLVER, "%s: the model's process closed its socket", process->name);
+  }
+  if (WIFSIGNALED(how))
+    return status_fail(STATUS_SOLVER, "%s: the model's process was ended by signal %d (%s)", process->name,
+                       WTERMSIG(how), strsignal(WTERMSIG(how)));
+  if (WEXITSTATUS(how) == 127) return status_fail(STATUS_INPUT, "%s: %s", process->name, process->missing);
+  return status_fail(STATUS_SOLVER,
+                     "%s: the model's process ended with exit code %d; what it said stands above",
+                     process->name, WEXITSTATUS(how));
+}
+
+static Status fail_late(Process *process) {
+  stop(process);
+  return status_fail(STATUS_SOLVER,
+                     "%s: the model has not answered within %g s, so its process was ended. Where it needs "
+                     "longer, set TETLAP_MODEL_SECONDS",
+                     process->name, process->limit);
+}
+
+static Status fail_interrupted(Process *process) {
+  stop(process);
+  return status_fail(STATUS_INTERRUPTED, "%s: interrupted while it was computing", process->name);
+}
+
+static Status send_all(Process *process, const void *bytes, size_t size) {
+  for (const char *at = bytes; size > 0;) {
+    ssize_t sent = send(process->socket, at, size, MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) return fail_ended(process);
+    at += sent, size -= (size_t)sent;
+  }
+  return STATUS_OK;
+}
+
+// A signal may be the wish to end, which the program sees to once the model has answered; soon, then.
+static Status receive_all(Process *process, void *bytes, size_t size, double end) {
+  bool is_signalled = false;
+  for (char *at = bytes; size > 0;) {
+    struct pollfd it = {.fd = process->socket, .events = POLLIN};
+    const double left = 1e3 * (end - now());
+    int ready = left > 0 ? poll(&it, 1, left > INT_MAX ? INT_MAX : (int)left + 1) : 0;
+    if (ready < 0 && errno == EINTR) {
+      end = fmin(end, now() + SECONDS_TO_END), is_signalled = true;
+      continue;
+    }
+    if (ready == 0) return is_signalled ? fail_interrupted(process) : fail_late(process);
+    ssize_t got = recv(process->socket, at, size, 0);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return fail_ended(process);
+    at += got, size -= (size_t)got;
+  }
+  return STATUS_OK;
+}
+
+// One request and its reply; `text`, of `size` bytes, gets what fits of the reply's, and a 0.
+static Status exchange(Process *process, const uint64_t request[WORDS], uint64_t reply[WORDS], char *text,
+                       size_t size) {
+  const double end = now() + process->limit;
+  char rest[256];
+  TRY(send_all(process, request, WORDS * sizeof *request));
+  TRY(receive_all(process, reply, WORDS * sizeof *reply, end));
+  size_t length = reply[1], taken = length < size ? length : size - 1;
+  TRY(receive_all(process, text, taken, end));
+  text[taken] = 0;
+  for (size_t left = length - taken; left > 0;) {
+    size_t part = left < sizeof rest ? left : sizeof rest;
+    TRY(receive_all(process, rest, part, end));
+    left -= part;
+  }
+  return STATUS_OK;
+}
+
+static Status fail_told(const Process *process, Status code, const char *text) {
+  return status_fail(code, "%s: %s", process->name, text[0] ? text : "the model failed, without a reason");
+}
+
+// The largest room there can be in a process's part of an address space.
+static const size_t MOST_CAPACITY = (size_t)1 << 32;
+
+static Status reserve(Process *process, size_t count) {
+  size_t capacity = process->capacity ? process->capacity : LEAST_CAPACITY;
+  if (count > MOST_CAPACITY) return status_no_memory("pairs for a model");
+  while (capacity < count) capacity *= 2;
+  if (capacity == process->capacity) return STATUS_OK;
+  const size_t old = process->capacity * PAIR_BYTES, size = capacity * PAIR_BYTES;
+  if (posix_fallocate(process->memory, 0, (off_t)size) != 0)
+    return status_no_memory("pairs shared with a model's process");
+  char *map = process->map ? mremap(process->map, old, size, MREMAP_MAYMOVE)
+                           : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, process->memory, 0);
+  if (map == MAP_FAILED) return status_no_memory("pairs shared with a model's process");
+  process->map = map, process->capacity = capacity;
+  return STATUS_OK;
+}
+
+// An array of the shared memory.
+typedef struct Part {
+  size_t place, width; // bytes before it and numbers of it, a pair
+} Part;
+static const Part VOLUME = {192, 1}, GRADIENT = {200, 24}, CENTROID = {392, 3}, LOGIT = {416, 1},
+                  DOUBT = {424, 1};
+
+static void take(const Process *process, Part part, size_t count, double *array) {
+  if (array) memcpy(array, process->map + part.place * process->capacity, count * part.width * sizeof *array);
+}
+
+static Status ask(void *self, const TetlapModelBatch *batch) {
+  Process *process = self;
+  char text[4096];
+  uint64_t reply[WORDS];
+  TRY(reserve(process, batch->count));
+  memcpy(process->map, batch->pairs, batch->count * 24 * sizeof *batch->pairs);
+  const uint64_t wants = (batch->gradient ? TETLAP_MODEL_GRADIENT : 0u) |
+                         (batch->centroid ? TETLAP_MODEL_CENTROID : 0u) |
+                         (batch->logit ? TETLAP_MODEL_LOGIT : 0u) | (batch->doubt ? TETLAP_MODEL_DOUBT : 0u);
+  const uint64_t request[WORDS] = {EVALUATE, batch->count, process->capacity, wants};
+  TRY(exchange(process, request, reply, text, sizeof text));
+  if (reply[0]) return fail_told(process, STATUS_SOLVER, text);
+  take(process, VOLUME, batch->count, batch->volume);
+  take(process, GRADIENT, batch->count, batch->gradient);
+  take(process, CENTROID, batch->count, batch->centroid);
+  take(process, LOGIT, batch->count, batch->logit);
+  take(process, DOUBT, batch->count, batch->doubt);
+  return STATUS_OK;
+}
+
+static Status greet(Process *process, OverlapForeignPort *port) {
+  const uint64_t request[WORDS] = {HELLO, VERSION, process->capacity, 0};
+  uint64_t reply[WORDS];
+  char text[4096];
+  TRY(exchange(process, request, reply, text, sizeof text));
+  if (reply[0]) return fail_told(process, STATUS_INPUT, text);
+  *port =
+      (OverlapForeignPort){.self = process, .gives = (uint32_t)reply[2], .ask = ask, .close = close_process};
+  return STATUS_OK;
+}
+
+static Status create(Process **created, const char *name) {
+  Process *process = *created = memory_zeroed(1, sizeof *process);
+  if (!process) return status_no_memory("a model's process");
+  const char *limit = getenv("TETLAP_MODEL_SECONDS");
+  process->socket = process->memory = -1;
+  process->limit = limit ? strtod(limit, NULL) : 300;
+  process->name = memory_copy(name, strlen(name) + 1, 1);
+  Status status = process->name ? STATUS_OK : status_no_memory("a model's process");
+  if (!status && !(process->limit > 0))
+    status = status_fail(STATUS_USAGE, "TETLAP_MODEL_SECONDS is '%s'; it must be a number of seconds", limit);
+  if (status) close_process(process);
+  return status;
+}
+
+// In the new process, before the other program: only what may be called there.
+static void become(int socket, int memory, char *const arguments[], bool dies_with_us) {
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, NULL);
+  setpgid(0, 0); // a Ctrl-C is the program's, which ends the model when it ends
+  if (dies_with_us) prctl(PR_SET_PDEATHSIG, SIGKILL);
+  int nothing = open("/dev/null", O_RDONLY);
+  // Neither of the two may be overwritten before it is moved.
+  socket = fcntl(socket, F_DUPFD, 10), memory = fcntl(memory, F_DUPFD, 10);
+  if (dup2(nothing, 0) < 0 || dup2(2, 1) < 0 || dup2(socket, SOCKET_FOR_IT) < 0 ||
+      dup2(memory, MEMORY_FOR_IT) < 0)
+    _exit(126);
+  close(socket), close(memory);
+  execvp(arguments[0], arguments);
+  _exit(127);
+}
+
+static Status start(Process *process, char *const arguments[]) {
+  int ends[2];
+  process->memory = memfd_create("tetlap-model", MFD_CLOEXEC);
+  if (process->memory < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+    return status_fail(STATUS_IO, "%s: no socket or memory to share with the model: %s", process->name,
+                       strerror(errno));
+  process->socket = ends[0];
+  TRY(reserve(process, 1));
+  fflush(NULL);
+  // The kernel ties a process's end to the thread that started it; others than the first may end earlier.
+  const bool dies_with_us = gettid() == getpid();
+  pid_t pid = fork();
+  if (pid == 0) become(ends[1], process->memory, arguments, dies_with_us);
+  close(ends[1]);
+  if (pid < 0)
+    return status_fail(STATUS_IO, "%s: no process for the model: %s", process->name, strerror(errno));
+  setpgid(pid, pid);
+  process->pid = pid;
+  return STATUS_OK;
+}
+
+static Status launch(OverlapForeignPort *port, const char *name, const char *missing,
+                     char *const arguments[]) {
+  Process *process;
+  TRY(create(&process, name));
+  process->missing = missing;
+  Status status = start(process, arguments);
+  if (!status) status = greet(process, port);
+  if (status) close_process(process);
+  return status;
+}
+
+Status overlap_foreign_process_open(OverlapForeignPort *port, const char *command) {
+  char shell[] = "sh", option[] = "-c", line[8192];
+  if (snprintf(line, sizeof line, "exec %s", command) >= (int)sizeof line)
+    return status_fail(STATUS_INPUT, "exec: the command is too long");
+  char *const arguments[] = {shell, option, line, NULL};
+  return launch(port, command, "the command was not found: look at its spelling and at PATH", arguments);
+}
+
+Status overlap_foreign_process_open_python(OverlapForeignPort *port, const char *word) {
+  const char *chosen = getenv("TETLAP_PYTHON");
+  char python[PATH_MAX], script[PATH_MAX], file[PATH_MAX];
+  if (snprintf(python, sizeof python, "%s", chosen && *chosen ? chosen : "python3") >= (int)sizeof python ||
+      snprintf(file, sizeof file, "%s", word) >= (int)sizeof file)
+    return status_fail(STATUS_INPUT, "%.200s: the path is too long", word);
+  TRY(data_find("python/tetlap/serve.py", script, sizeof script));
+  char *const arguments[] = {python, script, file, NULL};
+  return launch(port, word, "there is no `python3` to run it: set TETLAP_PYTHON to a Python with NumPy",
+                arguments);
+}
+
+Status overlap_foreign_process_attach(OverlapForeignPort *port, const char *word) {
+  int ends[2], used = 0;
+  if (sscanf(word, "channel:%d,%d%n", &ends[0], &ends[1], &used) != 2 || word[used])
+    return status_fail(STATUS_INPUT, "%s: expected channel:SOCKET,MEMORY, two descriptors", word);
+  Process *process;
+  TRY(create(&process, "the model of the calling program"));
+  process->socket = ends[0], process->memory = ends[1];
+  for (int e = 0; e < 2; e++) fcntl(ends[e], F_SETFD, FD_CLOEXEC);
+  Status status = reserve(process, 1);
+  if (!status) status = greet(process, port);
+  if (status) close_process(process);
+  return status;
+}

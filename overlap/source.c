@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "overlap/source.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char COMMAND[] = "exec:", CHANNEL[] = "channel:", HYBRID[] = "hybrid=";
+
+static bool ends_in(const char *word, size_t length, const char *ending) {
+  size_t size = strlen(ending);
+  return length > size && memcmp(word + length - size, ending, size) == 0;
+}
+
+// The length of a Python file's path in `path`, or in `path:name`; 0: it is none.
+static size_t python_path(const char *word) {
+  const char *colon = strrchr(word, ':');
+  if (colon && strchr(colon, '/')) colon = NULL; // a colon in a folder's name
+  size_t length = colon ? (size_t)(colon - word) : strlen(word);
+  return ends_in(word, length, ".py") ? length : 0;
+}
+
+const char *overlap_source_network(const char *word) {
+  return strncmp(word, HYBRID, sizeof HYBRID - 1) == 0 ? word + sizeof HYBRID - 1 : NULL;
+}
+
+OverlapSource overlap_source_of(const char *word) {
+  if (overlap_source_network(word)) return OVERLAP_SOURCE_NAME; // one of ours, whose network it names
+  if (strncmp(word, COMMAND, sizeof COMMAND - 1) == 0) return OVERLAP_SOURCE_COMMAND;
+  if (strncmp(word, CHANNEL, sizeof CHANNEL - 1) == 0) return OVERLAP_SOURCE_CHANNEL;
+  size_t length = strlen(word);
+  if (ends_in(word, length, ".safetensors")) return OVERLAP_SOURCE_WEIGHTS;
+  if (ends_in(word, length, ".so")) return OVERLAP_SOURCE_LIBRARY;
+  return python_path(word) > 0 ? OVERLAP_SOURCE_PYTHON : OVERLAP_SOURCE_NAME;
+}
+
+size_t overlap_source_path(const char *word, const char **path) {
+  const char *network = overlap_source_network(word);
+  *path = network ? network : word;
+  switch (overlap_source_of(*path)) {
+  case OVERLAP_SOURCE_WEIGHTS:
+  case OVERLAP_SOURCE_LIBRARY:
+    return strlen(*path);
+  case OVERLAP_SOURCE_PYTHON:
+    return python_path(*path);
+  case OVERLAP_SOURCE_NAME:
+  case OVERLAP_SOURCE_COMMAND:
+  case OVERLAP_SOURCE_CHANNEL:
+    break;
+  }
+  return 0;
+}
+
+bool overlap_source_with_path(const char *word, const char *path, char *text, size_t size) {
+  const char *own;
+  size_t length = overlap_source_path(word, &own);
+  return snprintf(text, size, "%.*s%s%s", (int)(own - word), word, path, own + length) < (int)size;
+}
+
+bool overlap_source_from(const char *word, const char *folder, char *text, size_t size) {
+  const char *path;
+  if (overlap_source_path(word, &path) == 0 || path[0] == '/')
+    return snprintf(text, size, "%s", word) < (int)size;
+  return snprintf(text, size, "%.*s%s/%s", (int)(path - word), word, folder, path) < (int)size;
+}
+
+bool overlap_source_has_form(const char *word) {
+  return overlap_source_of(word) != OVERLAP_SOURCE_NAME || overlap_source_network(word) != NULL;
+}
+
+bool overlap_source_is_foreign(const char *word) {
+  OverlapSource source = overlap_source_of(word);
+  return source != OVERLAP_SOURCE_NAME && source != OVERLAP_SOURCE_WEIGHTS;
+}

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A Python function as an overlap model of the program: `contact.overlap: mine.py:name` in a scene, or `--overlap mine.py:name`.
+
+The program starts this file with the word as argument, a socket as descriptor 3 and shared memory as 4; overlap/foreign/process.h in
+the sources of tetlap has the protocol. It needs NumPy, and PyTorch for a torch.nn.Module.
+
+A model is called with pairs, float64 (n, 2, 4, 3) [m], and returns V (n) [m³], or a dict of float64 arrays:
+
+    volume    (n)             V >= 0 [m³]
+    centroid  (n, 3)          of the intersection [m]; of a pair with V = 0 anything finite
+    gradient  (n, 2, 4, 3)    dV/dx [m²]
+    logit     (n)             of "the two intersect": > 0 yes
+    doubt     (n)             how far V may be off [m³]
+
+It may be any callable, which gets a NumPy array, or a torch.nn.Module, which gets a tensor and whose gradient comes by autograd where it
+gives none. A class is called first, without arguments.
+"""
+
+import importlib.util
+import mmap
+import os
+import socket
+import struct
+import sys
+import traceback
+from pathlib import Path
+
+try:
+    import numpy as np
+except ImportError as error:  # told when the program asks
+    np, _without_numpy = None, error
+
+_HELLO, _EVALUATE, _VERSION = 1, 2, 1
+_WORDS = struct.Struct("=4Q")
+_PAIR_BYTES = 432
+# Of an array: its bit in what is given or wanted, its place in the memory [bytes a pair], its numbers a pair.
+_ARRAYS = {"volume": (0, 192, ()), "gradient": (1, 200, (2, 4, 3)), "centroid": (2, 392, (3,)), "logit": (4, 416, ()),
+           "doubt": (8, 424, ())}
+# Two tetrahedra that share a part of both.
+_PROBE = [[[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0.1, 0.1, 0.1], [1.1, 0.1, 0.1], [0.1, 1.1, 0.1], [0.1, 0.1, 1.1]]]]
+
+
+class ModelError(Exception):
+    """What is wrong with a model, in words for the person who wrote it."""
+
+
+class Model:
+    """A callable as the protocol wants it: arrays in, a dict of float64 arrays out."""
+
+    def __init__(self, function, name):
+        self.name = name
+        if isinstance(function, type):
+            function = function()
+        if not callable(function):
+            raise ModelError(f"{name} is {type(function).__name__}, expected a callable or a torch.nn.Module")
+        torch = sys.modules.get("torch")
+        self._module = function if torch is not None and isinstance(function, torch.nn.Module) else None
+        self._function = function
+        answer = self(np.array(_PROBE, dtype=np.float64), ("gradient",) if self._module is not None else ())
+        self.gives = sum(_ARRAYS[key][0] for key in answer)
+
+    def __call__(self, pairs, wants=()):
+        """The arrays of these pairs; `wants` names those that are needed."""
+        answer = self._ask_module(pairs, wants) if self._module is not None else self._function(pairs)
+        if not isinstance(answer, dict):
+            answer = {"volume": answer}
+        return {key: self._check(key, value, len(pairs)) for key, value in answer.items()}
+
+    def _ask_module(self, pairs, wants):
+        import torch
+
+        parameter = next(iter(self._module.parameters()), None)
+        needs = "gradient" in wants
+        x = torch.from_numpy(pairs.copy())
+        if parameter is not None:
+            x = x.to(parameter.device, parameter.dtype)
+        x.requires_grad_(needs)
+        with torch.set_grad_enabled(needs):
+            answer = self._module(x)
+            answer = dict(answer) if isinstance(answer, dict) else {"volume": answer}
+            volume = answer.get("volume")
+            if needs and "gradient" not in answer and volume is not None:
+                answer["gradient"] = self._differentiate(volume, x)
+        return answer
+
+    def _differentiate(self, volume, x):
+        import torch
+
+        if not volume.requires_grad:  # it does not follow x
+            return torch.zeros_like(x)
+        return torch.autograd.grad(volume.sum(), x)[0]
+
+    def _check(self, key, value, count):
+        if key not in _ARRAYS:
+            raise ModelError(f"{self.name} returned {key!r}, which is none of {', '.join(_ARRAYS)}")
+        if hasattr(value, "detach"):
+            value = value.detach().cpu().numpy()
+        shape = (count, *_ARRAYS[key][2])
+        try:
+            value = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise ModelError(f"{self.name} returned {key} that is no array of numbers: {error}") from None
+        if value.shape != shape:
+            raise ModelError(f"{self.name} returned {key} of shape {value.shape}, expected {shape}")
+        return value
+
+
+def load(word):
+    """The model that `path.py:name` names; `path.py` alone has one that is named `model`."""
+    if np is None:
+        raise ModelError(f"{sys.executable} has no NumPy ({_without_numpy}); set TETLAP_PYTHON to a Python that has it")
+    path, colon, name = word.rpartition(":")
+    if not colon or "/" in name:
+        path, name = word, "model"
+    file = Path(path)
+    if not file.is_file():
+        raise ModelError("there is no such file")
+    sys.path[0] = str(file.resolve().parent)  # in the place of this file's folder
+    spec = importlib.util.spec_from_file_location(file.stem, file)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[file.stem] = module
+    spec.loader.exec_module(module)
+    if not hasattr(module, name):
+        known = ", ".join(key for key, value in vars(module).items() if callable(value) and not key.startswith("_"))
+        raise ModelError(f"has no '{name}'; it has {known or 'no callables'}")
+    return Model(getattr(module, name), name)
+
+
+class Channel:
+    """The other end of the program's socket and memory."""
+
+    def __init__(self, socket_descriptor, memory_descriptor):
+        self._socket = socket.socket(fileno=socket_descriptor)
+        self._descriptor, self._memory, self._capacity = memory_descriptor, None, 0
+
+    def receive(self):
+        """The next four words; None: the program has closed its end."""
+        words = bytearray()
+        while len(words) < _WORDS.size:
+            part = self._socket.recv(_WORDS.size - len(words))
+            if not part:
+                return None
+            words += part
+        return _WORDS.unpack(words)
+
+    def reply(self, failed, text, gives=0):
+        raw = text.encode()
+        self._socket.sendall(_WORDS.pack(failed, len(raw), gives, 0) + raw)
+
+    def array(self, place, shape, count, capacity):
+        if capacity != self._capacity:
+            self._memory, self._capacity = mmap.mmap(self._descriptor, capacity * _PAIR_BYTES), capacity
+        size = count * int(np.prod(shape, dtype=int))
+        return np.frombuffer(self._memory, np.float64, size, place * capacity).reshape((count, *shape))
+
+    def close(self):
+        self._socket.close()
+        os.close(self._descriptor)
+
+
+def evaluate(model, channel, count, capacity, wants):
+    names = [key for key, (bit, _, _) in _ARRAYS.items() if key == "volume" or bit & wants]
+    answer = model(channel.array(0, (2, 4, 3), count, capacity), names)
+    for key in names:
+        if key not in answer:
+            raise ModelError(f"{model.name} returned no {key} this time")
+        _, place, shape = _ARRAYS[key]
+        channel.array(place, shape, count, capacity)[...] = answer[key]
+
+
+def _tell(error):
+    """The error with its traceback, from where this file called the model."""
+    frames = error.__traceback__
+    while frames is not None and frames.tb_frame.f_code.co_filename in (__file__, "<frozen importlib._bootstrap>", importlib.util.__file__,
+                                                                         "<frozen importlib._bootstrap_external>"):
+        frames = frames.tb_next
+    return "".join(traceback.format_exception(type(error), error, frames)).rstrip()
+
+
+def attend(channel, find_model):
+    """Answers until the program closes its end; what goes wrong is told and ends it."""
+    model = None
+    while (request := channel.receive()) is not None:
+        what, count, capacity, wants = request
+        try:
+            if what == _HELLO:
+                if count != _VERSION:
+                    raise ModelError(f"this serve.py speaks version {_VERSION} of the protocol, the program {count}")
+                model = find_model()
+                channel.reply(0, model.name, model.gives)
+            else:
+                evaluate(model, channel, count, capacity, wants)
+                channel.reply(0, "")
+        except ModelError as error:
+            channel.reply(1, str(error))
+        except BaseException as error:  # whatever it was, the program has to know
+            channel.reply(1, _tell(error))
+            if not isinstance(error, Exception):
+                raise
+
+
+def main():
+    attend(Channel(3, 4), lambda: load(sys.argv[1]))
+
+
+if __name__ == "__main__":
+    main()

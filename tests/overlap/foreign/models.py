@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models of tests/overlap/test_foreign.c."""
+
+import os
+import time
+
+import numpy as np
+
+
+def box(pairs):
+    """The overlap of the two bounding boxes."""
+    low, high = pairs.min(axis=2).max(axis=1), pairs.max(axis=2).min(axis=1)
+    return {"volume": np.prod(np.clip(high - low, 0, None), axis=1), "centroid": (low + high) / 2}
+
+
+def alone(pairs):
+    return box(pairs)["volume"]
+
+
+def with_all(pairs):
+    n = len(pairs)
+    return {"volume": np.full(n, 0.5), "gradient": np.arange(24.0 * n).reshape(n, 2, 4, 3), "centroid": np.ones((n, 3)),
+            "logit": np.arange(n) - 1.5, "doubt": np.full(n, 0.25)}
+
+
+class Made:
+    def __call__(self, pairs):
+        return box(pairs)
+
+
+def raises(pairs):
+    if len(pairs) > 1:
+        raise ValueError("no more than one")
+    return box(pairs)
+
+
+def wrong_shape(pairs):
+    return {"volume": np.zeros((len(pairs), 1))}
+
+
+def wrong_key(pairs):
+    return {"volume": np.zeros(len(pairs)), "volumes": 1}
+
+
+def no_numbers(pairs):
+    return "many"
+
+
+def changes_its_mind(pairs):
+    answer = box(pairs)
+    if len(pairs) > 1:
+        del answer["centroid"]
+    return answer
+
+
+def dies(pairs):
+    if len(pairs) > 1:
+        os.kill(os.getpid(), 9)
+    return box(pairs)
+
+
+def leaves(pairs):
+    if len(pairs) > 1:
+        raise SystemExit(3)
+    return box(pairs)
+
+
+def hangs(pairs):
+    if len(pairs) > 1:
+        time.sleep(1000)
+    return box(pairs)
+
+
+def prints(pairs):
+    print("one", len(pairs))
+    return box(pairs)
+
+
+NUMBER = 3

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Models of users (overlap/foreign): libraries, Python files, commands. The oracles are `clip` and what the
+// models of tests/overlap/foreign say.
+#include "suite.h"
+
+#include <dirent.h>
+#include <unistd.h>
+
+#include "base/random.h"
+#include "overlap/model.h"
+#include "overlap/source.h"
+
+enum { PAIRS = 300 };
+
+static double pairs[PAIRS][24], volume[PAIRS], gradient[PAIRS][24], centroid[PAIRS][3];
+static unsigned flags[PAIRS];
+
+static void draw(void) {
+  Random random = random_seeded(11, 0);
+  for (int i = 0; i < PAIRS; i++)
+    for (int v = 0; v < 24; v++)
+      pairs[i][v] = random_uniform(&random) + (i % 3 == 2 && v >= 12 && v % 3 == 0);
+}
+
+static OverlapBatch batch_of(int count, bool with_gradient, bool with_centroid) {
+  return (OverlapBatch){.pair_count = count,
+                        .pairs = pairs[0],
+                        .volume = volume,
+                        .gradient = with_gradient ? gradient[0] : NULL,
+                        .centroid = with_centroid ? centroid[0] : NULL,
+                        .flags = flags};
+}
+
+static void open_model(OverlapModel *model, const char *word) {
+  ck_assert_ok(overlap_model_create(model, word));
+}
+
+static void expect_refused(const char *word, Status status, const char *says) {
+  OverlapModel model;
+  ck_assert_int_eq(overlap_model_create(&model, word), status);
+  ck_assert_msg(strstr(status_message(), says), "%s", status_message());
+}
+
+static void expect_failure(const char *word, Status status, const char *says) {
+  OverlapModel model;
+  OverlapBatch batch = batch_of(PAIRS, false, true);
+  open_model(&model, word);
+  ck_assert_int_eq(overlap_model_eval(&model, &batch), status);
+  ck_assert_msg(strstr(status_message(), says), "%s", status_message());
+  overlap_model_destroy(&model);
+}
+
+#define PYTHON(name) TETLAP_SOURCE_DIR "/tests/overlap/foreign/models.py:" name
+
+START_TEST(a_word_says_what_it_is) {
+  static const struct {
+    const char *word;
+    OverlapSource source;
+    const char *path;
+  } cases[] = {{"clip", OVERLAP_SOURCE_NAME, ""},
+               {"hybrid=a/b.safetensors", OVERLAP_SOURCE_NAME, "a/b.safetensors"},
+               {"hybrid=geo", OVERLAP_SOURCE_NAME, ""},
+               {"a.safetensors", OVERLAP_SOURCE_WEIGHTS, "a.safetensors"},
+               {"./a.so", OVERLAP_SOURCE_LIBRARY, "./a.so"},
+               {".so", OVERLAP_SOURCE_NAME, ""},
+               {"a/b.py", OVERLAP_SOURCE_PYTHON, "a/b.py"},
+               {"a/b.py:f", OVERLAP_SOURCE_PYTHON, "a/b.py"},
+               {"a:b/c.py", OVERLAP_SOURCE_PYTHON, "a:b/c.py"},
+               {"exec:./x.py", OVERLAP_SOURCE_COMMAND, ""},
+               {"channel:3,4", OVERLAP_SOURCE_CHANNEL, ""}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    const char *path;
+    char text[64];
+    size_t length = overlap_source_path(cases[i].word, &path);
+    ck_assert_int_eq(overlap_source_of(cases[i].word), cases[i].source);
+    ck_assert_uint_eq(length, strlen(cases[i].path));
+    ck_assert_int_eq(strncmp(path, cases[i].path, length), 0);
+    ck_assert(overlap_source_from(cases[i].word, "/f", text, sizeof text));
+    ck_assert(length > 0 ? strstr(text, "/f/") != NULL : strcmp(text, cases[i].word) == 0);
+  }
+  char text[64];
+  ck_assert(overlap_source_from("hybrid=a.safetensors", "/f", text, sizeof text));
+  ck_assert_str_eq(text, "hybrid=/f/a.safetensors");
+  ck_assert(overlap_source_from("/a.py:f", "/f", text, sizeof text));
+  ck_assert_str_eq(text, "/a.py:f");
+  ck_assert(!overlap_source_from("a.py:f", "/a/folder", text, 8));
+}
+END_TEST
+
+// The example of a library splits tetrahedra; clip cuts polytopes.
+START_TEST(a_library_answers_as_clip) {
+  OverlapModel clip, split;
+  double truth[PAIRS], middle[PAIRS][3];
+  open_model(&clip, "clip");
+  open_model(&split, TETLAP_MODEL_SPLIT);
+  ck_assert(overlap_model_has_own_centroid(&split) && !overlap_model_has_gradient(&split));
+  OverlapBatch batch = batch_of(PAIRS, false, true);
+  ck_assert_ok(overlap_model_eval(&clip, &batch));
+  memcpy(truth, volume, sizeof truth), memcpy(middle, centroid, sizeof middle);
+  ck_assert_ok(overlap_model_eval(&split, &batch));
+  int shared = 0;
+  for (int i = 0; i < PAIRS; i++) {
+    ck_assert_near(volume[i], truth[i], 1e-12);
+    shared += truth[i] > 1e-6;
+    for (int c = 0; c < 3 && truth[i] > 1e-6; c++) ck_assert_near(centroid[i][c], middle[i][c], 1e-7);
+  }
+  ck_assert_int_gt(shared, PAIRS / 10);
+  batch = batch_of(PAIRS, true, false);
+  ck_assert_int_eq(overlap_model_eval(&split, &batch), STATUS_INPUT);
+  ck_assert(strstr(status_message(), "gives no gradient"));
+  overlap_model_destroy(&clip), overlap_model_destroy(&split);
+}
+END_TEST
+
+START_TEST(libraries_that_are_wrong) {
+  static const struct {
+    const char *path, *says;
+    bool is_opened;
+  } cases[] = {{TETLAP_MODEL_1, "exports no function 'tetlap_model'", false},
+               {TETLAP_MODEL_2, "version 99", false},
+               {TETLAP_MODEL_3, "no `size", false},
+               {TETLAP_MODEL_4, "no `evaluate`", false},
+               {TETLAP_MODEL_5, "(3): weights of 1 GB are not there", false},
+               {TETLAP_MODEL_6, "failed with 4: the card fell out", true},
+               {TETLAP_MODEL_7, "its volume is not a finite number", true}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    if (cases[i].is_opened)
+      expect_failure(cases[i].path, STATUS_SOLVER, cases[i].says);
+    else
+      expect_refused(cases[i].path, STATUS_INPUT, cases[i].says);
+  expect_refused("none.so", STATUS_IO, "none.so: cannot be opened");
+  expect_refused(TETLAP_SOURCE_DIR "/tests/overlap/foreign/library.so", STATUS_IO, "cannot be opened");
+}
+END_TEST
+
+// Below 0 is no volume: nothing pushes. Above the smaller tetrahedron is no volume either, but a push.
+START_TEST(volumes_that_none_can_have_are_flagged) {
+  OverlapModel model;
+  OverlapBatch batch = batch_of(PAIRS, true, false);
+  open_model(&model, TETLAP_MODEL_8);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  int asked = 0;
+  for (int i = 0; i < PAIRS; i++) {
+    ck_assert(volume[i] == 0 && gradient[i][0] == 0);
+    ck_assert((flags[i] == OVERLAP_UNSOUND) != (flags[i] == OVERLAP_DISJOINT));
+    asked += flags[i] == OVERLAP_UNSOUND;
+  }
+  ck_assert_int_gt(asked, PAIRS / 10);
+  overlap_model_destroy(&model);
+  open_model(&model, TETLAP_MODEL_9);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  for (int i = 0; i < PAIRS; i++)
+    ck_assert(flags[i] == OVERLAP_UNSOUND ? volume[i] == 100 && gradient[i][23] == 1 : volume[i] == 0);
+  overlap_model_destroy(&model);
+}
+END_TEST
+
+START_TEST(flat_and_disjoint_pairs_are_not_asked_for_unless_ghosts_are_kept) {
+  OverlapOptions keep = overlap_options_default();
+  keep.ghosts = OVERLAP_GHOSTS_KEEP;
+  OverlapModel model;
+  OverlapBatch batch = batch_of(3, false, false);
+  for (int v = 12; v < 24; v++) pairs[0][v] += 10;
+  memcpy(pairs[1] + 12, pairs[1] + 15, 3 * sizeof(double)); // two vertices in one place
+  open_model(&model, TETLAP_MODEL_0);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  ck_assert(flags[0] == OVERLAP_DISJOINT && volume[0] == 0);
+  ck_assert(flags[1] == OVERLAP_FLAT && volume[1] == 0);
+  overlap_model_destroy(&model);
+  ck_assert_ok(overlap_model_create_with(&model, TETLAP_MODEL_0, NULL, &keep));
+  ck_assert(overlap_model_has_ghosts(&model));
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  ck_assert(!(flags[0] & OVERLAP_DISJOINT) && volume[0] == 1e-3);
+  ck_assert(flags[1] == OVERLAP_FLAT && volume[1] == 0);
+  overlap_model_destroy(&model);
+  keep.ghosts = OVERLAP_GHOSTS_FADE;
+  ck_assert_int_eq(overlap_model_create_with(&model, TETLAP_MODEL_0, NULL, &keep), STATUS_INPUT);
+}
+END_TEST
+
+static bool has_numpy(void) {
+  bool has = system(TETLAP_PYTHON " -c 'import numpy' 2>/dev/null") == 0;
+  if (!has) suite_skip("%s has no NumPy", TETLAP_PYTHON);
+  return has;
+}
+
+START_TEST(a_python_function_answers_with_all_that_it_has) {
+  OverlapModel model;
+  if (!has_numpy()) return;
+  open_model(&model, PYTHON("box"));
+  ck_assert(overlap_model_has_own_centroid(&model) && !overlap_model_has_gradient(&model));
+  OverlapBatch batch = batch_of(PAIRS, false, true);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  for (int i = 0; i < PAIRS; i++) {
+    double product = 1;
+    if (volume[i] == 0) continue;
+    for (int c = 0; c < 3; c++) {
+      double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+      for (int v = 0; v < 8; v++) {
+        low[v / 4] = fmin(low[v / 4], pairs[i][3 * v + c]);
+        high[v / 4] = fmax(high[v / 4], pairs[i][3 * v + c]);
+      }
+      double from = fmax(low[0], low[1]), to = fmin(high[0], high[1]);
+      product *= to - from;
+      ck_assert_double_eq(centroid[i][c], (from + to) / 2);
+    }
+    ck_assert_near(volume[i], product, 1e-15);
+  }
+  overlap_model_destroy(&model);
+  static double logits[PAIRS], bounds[PAIRS];
+  open_model(&model, PYTHON("with_all"));
+  batch = batch_of(2, true, true);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  ck_assert_ok(model.ops->eval_logits(model.self, PAIRS, pairs[0], logits));
+  ck_assert_ok(model.ops->eval_bounds(model.self, PAIRS, pairs[0], volume, bounds));
+  ck_assert(logits[0] == -1.5 && logits[PAIRS - 1] == PAIRS - 2.5 && bounds[7] == 0.25);
+  overlap_model_destroy(&model);
+  open_model(&model, PYTHON("Made")); // a class is called first
+  overlap_model_destroy(&model);
+}
+END_TEST
+
+// More pairs than the memory that is shared at first has room for.
+START_TEST(the_shared_memory_grows) {
+  enum { MANY = 5000 };
+  OverlapModel model;
+  if (!has_numpy()) return;
+  double(*x)[24] = calloc(MANY, sizeof *x), *v = calloc(MANY, sizeof *v);
+  ck_assert(x && v);
+  open_model(&model, PYTHON("box"));
+  for (int i = 0; i < MANY; i++) memcpy(x[i], pairs[i % PAIRS], sizeof *x);
+  for (int count = 1; count <= MANY; count = count * 9 + 1) {
+    OverlapBatch batch = {.pair_count = count, .pairs = x[0], .volume = v};
+    ck_assert_ok(overlap_model_eval(&model, &batch));
+    for (int i = PAIRS; i < count; i++) ck_assert_double_eq(v[i], v[i % PAIRS]);
+  }
+  overlap_model_destroy(&model);
+  free(x), free(v);
+}
+END_TEST
+
+START_TEST(python_that_is_wrong) {
+  if (!has_numpy()) return;
+  setenv("TETLAP_MODEL_SECONDS", "20", 1);
+  expect_refused(PYTHON("nothing"), STATUS_INPUT, "has no 'nothing'; it has box");
+  expect_refused(PYTHON("NUMBER"), STATUS_INPUT, "NUMBER is int, expected a callable");
+  expect_refused(PYTHON("wrong_shape"), STATUS_INPUT, "volume of shape (1, 1), expected (1,)");
+  expect_refused(PYTHON("wrong_key"), STATUS_INPUT, "'volumes', which is none of volume");
+  expect_refused(PYTHON("no_numbers"), STATUS_INPUT, "no array of numbers");
+  expect_refused(TETLAP_SOURCE_DIR "/tests/overlap/foreign/torn.py", STATUS_INPUT, "SyntaxError");
+  expect_refused("none.py:f", STATUS_INPUT, "there is no such file");
+  expect_failure(PYTHON("raises"), STATUS_SOLVER, "ValueError: no more than one");
+  expect_failure(PYTHON("changes_its_mind"), STATUS_SOLVER, "returned no centroid this time");
+  expect_failure(PYTHON("dies"), STATUS_SOLVER, "ended by signal 9");
+  expect_failure(PYTHON("leaves"), STATUS_SOLVER, "SystemExit");
+  OverlapModel model;
+  OverlapBatch batch = batch_of(PAIRS, false, true);
+  open_model(&model, PYTHON("alone"));
+  ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), "gives V alone"), "%s", status_message());
+  overlap_model_destroy(&model);
+}
+END_TEST
+
+// How many processes this one has started, and not yet ended.
+static int count_children(void) {
+  int count = 0;
+  DIR *processes = opendir("/proc");
+  ck_assert_ptr_nonnull(processes);
+  for (struct dirent *entry; (entry = readdir(processes));) {
+    char path[300];
+    int parent = 0;
+    snprintf(path, sizeof path, "/proc/%.64s/stat", entry->d_name);
+    FILE *stream = fopen(path, "r");
+    if (!stream) continue;
+    if (fscanf(stream, "%*d (%*[^)]) %*c %d", &parent) == 1) count += parent == getpid();
+    fclose(stream);
+  }
+  closedir(processes);
+  return count;
+}
+
+START_TEST(commands_that_are_wrong_leave_no_process) {
+  expect_refused("exec:no-such-command-anywhere", STATUS_INPUT, "the command was not found");
+  expect_refused("exec:false", STATUS_SOLVER, "ended with exit code 1");
+  setenv("TETLAP_MODEL_SECONDS", "0.3", 1);
+  expect_refused("exec:sleep 1000", STATUS_SOLVER, "has not answered within 0.3 s");
+  if (has_numpy()) {
+    setenv("TETLAP_MODEL_SECONDS", "20", 1);
+    OverlapModel model;
+    open_model(&model, PYTHON("hangs"));
+    ck_assert_int_eq(count_children(), 1);
+    overlap_model_destroy(&model);
+  }
+  setenv("TETLAP_MODEL_SECONDS", "soon", 1);
+  expect_refused("exec:true", STATUS_USAGE, "must be a number of seconds");
+  ck_assert_int_eq(count_children(), 0);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("models of users");
+  draw();
+  setenv("TETLAP_PYTHON", TETLAP_PYTHON, 1);
+  tcase_add_test(cases, a_word_says_what_it_is);
+  tcase_add_test(cases, a_library_answers_as_clip);
+  tcase_add_test(cases, libraries_that_are_wrong);
+  tcase_add_test(cases, volumes_that_none_can_have_are_flagged);
+  tcase_add_test(cases, flat_and_disjoint_pairs_are_not_asked_for_unless_ghosts_are_kept);
+  tcase_add_test(cases, a_python_function_answers_with_all_that_it_has);
+  tcase_add_test(cases, the_shared_memory_grows);
+  tcase_add_test(cases, python_that_is_wrong);
+  tcase_add_test(cases, commands_that_are_wrong_leave_no_process);
+  return suite_run("foreign", cases, 60);
+}
