@@ -85,7 +85,7 @@ void fem_ledger_accept(FemLedger *ledger) {
 
 // ---- Telling.
 
-// A share of the doubt itself is not reported.
+// A smaller share is not mentioned.
 static const double NOTHING = FEM_DOUBT * FEM_DOUBT;
 // With fewer elements across a patch its pressure has the mesh's shape, whatever the stiffness
 // (docs/contact.md).

@@ -19,7 +19,7 @@ typedef struct FemLedger {
   FemReadings *readings, *next_readings; //                         (probe_count)
 } FemLedger;
 
-// What it needs to know of a state: contact forces, the elastic energy of all bodies [J], what the probes
+// What is measured in a state: contact forces, the elastic energy of all bodies [J], what the probes
 // read (probe_count).
 typedef struct FemLedgerEntry {
   FemMomentumContact contact;
@@ -40,8 +40,8 @@ void fem_ledger_accept(FemLedger *ledger);
 
 // Into summary.json: `contacts`, a row for each two that touched, and `probes`.
 void fem_ledger_record(const FemLedger *ledger, Record *record);
-// Lines for people on the pair with that rank by force, 0 first: what presses, and how wrong it may be.
-// False: there is none.
+// A message on the pair of that rank by force, 0 first: what presses, and how large the error may be. False:
+// there is no such pair.
 bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size);
 
 // For a checkpoint: a new array, the caller's; and back. STATUS_INPUT: it does not fit.

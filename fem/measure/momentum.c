@@ -47,7 +47,7 @@ static void add_gravity(const FemModel *model, const FemModelBody *range, FemMom
   if (model->scene->has_gravity) add(body, vec3_scale(range->mass, vec3_at(model->scene->gravity)));
 }
 
-// How fast an obstacle moves where it presses [m/s]: it may bring a body to that.
+// The speed of an obstacle where it presses [m/s], which the body may reach.
 static double speed_of_obstacle(const FemMomentum *momentum, const FemState *state,
                                 const ContactInterface *interface) {
   FemSystem *system = momentum->system;
@@ -102,7 +102,7 @@ static int body_of(const FemModel *model, const FemModelDriver *driver) {
   return -1;
 }
 
-// What holds and drives: minus all other forces on those coordinates.
+// Reactions of fixed and driven coordinates: minus all other forces on them.
 static Status add_reactions(const FemMomentum *momentum, const FemState *state, FemMomentumBody *bodies) {
   FemSystem *system = momentum->system;
   const FemModel *model = system->model;
@@ -120,7 +120,7 @@ static Status add_reactions(const FemMomentum *momentum, const FemState *state, 
   return STATUS_OK;
 }
 
-// Momenta and forces; of what sleeps nothing.
+// Momenta and forces; zero for bodies that sleep.
 static Status measure(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact,
                       FemMomentumBody *bodies) {
   const FemModel *model = momentum->system->model;
@@ -186,14 +186,14 @@ static double weight_of(const FemMomentum *momentum, int body) {
                                    : 0;
 }
 
-// What another may stop or hand over.
+// What a collision may stop, or transfer to a body.
 typedef struct Motion {
   Vec3 common;     // to which all is relative [m/s]
   double momentum; // Σ |p| of all bodies [kg m/s]
   double speed;    // of the fastest [m/s]
 } Motion;
 
-// The velocity that nothing can notice, of the last accepted state.
+// The common velocity (fem/model/floating.h) of the last accepted state.
 static Vec3 common_of(const FemMomentum *momentum) {
   const FemModel *model = momentum->system->model;
   Vec3 p = {0, 0, 0};
@@ -217,9 +217,9 @@ static Motion motion_of(const FemMomentum *momentum) {
   return motion;
 }
 
-// S of a body at the end of a run that is `left` away, as far as can be known at a state: what was, what its
-// weight will be, and what a force that brakes it has yet to take. Or what may be handed over by what moves
-// now, an obstacle that presses it included, where that is more.
+// An estimate of S of a body at the end of the run, `left` [s] from now: S so far, the impulse of its weight
+// until then, and the momentum that a braking force has still to stop; or, if larger, the momentum that
+// moving bodies and a pressing obstacle may transfer to it.
 static double expected_of(const FemMomentum *momentum, const FemMomentumBody *body, int number, double left,
                           const Motion *motion) {
   const FemModel *model = momentum->system->model;
@@ -231,8 +231,8 @@ static double expected_of(const FemMomentum *momentum, const FemMomentumBody *bo
   return fmax(fmax(acting, moving), mass * fem_model_velocity_tolerance(model));
 }
 
-// J − Δp of a body, less what a method of order 1 takes back as the force falls again: where a force rises by
-// f in even steps h, forces joined by lines lack h f/2 of the motion.
+// J − Δp of a body, less what a method of order 1 recovers as the force falls: while a force rises by f in
+// even steps h, the trapezoidal rule over it misses h f/2 of the motion.
 static double lasting_of(const FemMomentum *momentum, const FemMomentumBody *body, int number, double step,
                          double expected) {
   const FemModel *model = momentum->system->model;

@@ -52,18 +52,17 @@ Status fem_momentum_begin(FemMomentum *momentum, const FemState *state, const Fe
 Status fem_momentum_end(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact);
 // … and does.
 void fem_momentum_accept(FemMomentum *momentum);
-// Whether the step that was evaluated last is too long for its forces: the gap of a body exceeds what is
-// allowed at the end of the run, at the time `end`. S of the whole run is estimated: S so far, the impulse of
-// the body's weight until then, and the present momentum, which something may stop or pass on.
+// Whether the step that was evaluated last leaves a body with a larger gap than is allowed, by an estimate of
+// S at the end of the run, the time `end`.
 bool fem_momentum_is_refused(const FemMomentum *momentum, double end);
-// The factor, at most 1, of the velocities' tolerance in the next step: imbalances of steps of which none is
-// too long add up. Bodies on which only gravity acts add nothing. It is a function of the accepted state, so
-// a resumed run has the same.
+// The factor, at most 1, of the velocities' tolerance in the next step: small imbalances of many steps add
+// up. Bodies on which only gravity acts do not count. It is a function of the accepted state, so a resumed
+// run has the same.
 double fem_momentum_strictness(const FemMomentum *momentum, double end);
 
 // J − Δp of a body up to a time in the step that was evaluated last [N s].
 void fem_momentum_missing(const FemMomentum *momentum, double time, int body, double missing[3]);
-// Its gap, and the largest of all bodies, `*body` (may be NULL) whose it is.
+// The gap of a body, and the largest of all bodies with the body's number (`body` may be NULL).
 double fem_momentum_gap(const FemMomentum *momentum, double time, int body);
 double fem_momentum_largest_gap(const FemMomentum *momentum, double time, int *body);
 

@@ -13,7 +13,7 @@
 
 // Written forces and motion of a body differ by no more than this share of all its impulses
 // (fem/measure/momentum.h).
-// Held by test_momentum.
+// Held by test_momentum, test_result.
 #define FEM_MOMENTUM 1e-3
 
 // Where nothing jumps, without contact, BDF 2 keeps a modified energy that differs from the audited total by
@@ -34,7 +34,7 @@
 #define FEM_TIME_RESOLUTION 1e-12
 
 // From this share on a doubt is reported: the estimated error of a contact, pairs of elements that a network
-// was asked beyond its training. Held by test_accuracy.
+// was asked beyond its training. Held by test_result, test_accuracy.
 #define FEM_DOUBT 0.01
 
 // ---- What a step may use up. It is taken back before it breaks a promise of the run.

@@ -9,7 +9,7 @@ static Status refuse_passage(const FemRunState *run) {
   return status_fail(STATUS_SOLVER, "%s (--strict)", text);
 }
 
-// Counts what struck in the accepted state; `*has_begun`: something that had not in the state before.
+// Counts the trouble of the accepted state; `*has_begun`: some of it was not there in the state before.
 static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_begun) {
   FemTrouble *trouble = &run->result->trouble;
   const double rise = fem_audit_rise(&run->result->energy_bounds, &run->audit);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How what a run took is spread over its ranks (base/ranks.h): least, mean and most of each.
+// Time, memory and work of a run over its ranks (base/ranks.h): least, mean and most of each.
 #ifndef TETLAP_FEM_RUN_SPREAD_H
 #define TETLAP_FEM_RUN_SPREAD_H
 

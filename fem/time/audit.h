@@ -4,12 +4,12 @@
 // is constant in exact mechanics and falls by the integrator's own damping; a rise is an error. Powers are
 // integrated by the trapezoidal rule over accepted steps; a dissipated power that falls to less than half in
 // a step by a mean that goes over to the logarithmic one.
-// In steps of order 1 the ends of a step may tell more than damping dissipates in it. Where a step seems to
-// gain energy, what it dissipates at least is found from its middle, and A takes that. So a rise of A is a
-// certain gain, and what the integrator lost is at most what A has fallen by.
+// In steps of order 1 the powers at the ends of a step may overestimate what damping dissipates in it. Where
+// a step seems to gain energy, a lower bound is computed from its middle, and A uses that. So a rise of A is
+// a certain gain, and what the integrator lost is at most what A has fallen by.
 //
-// The bounds are those of fem/model/limits.h. A step is taken back where the run's gain comes near its bound,
-// unless the step gains next to nothing. A run that gains more than its bound is trouble
+// The bounds are those of fem/model/limits.h. With contact a step is refused if it gains energy beyond
+// rounding once the run's gain is near its bound. A run that gains more than its bound is trouble
 // (fem/output/trouble.h).
 #ifndef TETLAP_FEM_TIME_AUDIT_H
 #define TETLAP_FEM_TIME_AUDIT_H
@@ -41,7 +41,7 @@ typedef struct FemAudit {
   double load_change;                    // of its last step of load [J/s²]
 } FemAudit;
 
-// `floor` [J]: what the scale is at least, so that a scene at rest is not judged by rounding.
+// `floor` [J]: what the scale is at least, so that rounding in a scene at rest is no gain.
 void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, double floor);
 
 // Before the audit of a static scene's next state. `begin` and `end` [J]: the work that the forces at the
@@ -73,8 +73,8 @@ bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, 
 // at least it is `uncertain` less. Negative: gained.
 double fem_audit_lost(const FemAudit *audit);
 
-// Coordinates that were driven have been set free: from now on their kinetic energy counts, and whoever drove
-// them has given it to them.
+// Coordinates that were driven have been set free: from now on their kinetic energy counts, and counts
+// as work of the drive.
 void fem_audit_release(FemAudit *audit, double kinetic_energy);
 
 #endif

@@ -9,7 +9,7 @@
 //   creeping: in two windows in a row a quarter of the tries was in vain, what is left of the run would take
 //             a hundred thousand more, the pace was below a tenth of that of the fastest window before, and
 //             the window came less far than from one frame to the next.
-// A healthy run may be slow, may lose many tries, or may slow down; none known does all of it for 4000 tries
+// A sound run may be slow, lose many tries, or slow down; none known does all of it for 4000 tries
 // (docs/stability.md).
 #ifndef TETLAP_FEM_TIME_STALL_H
 #define TETLAP_FEM_TIME_STALL_H

@@ -51,15 +51,14 @@ static bool is_early(const FemRunState *run) {
   return run->time >= (last > 0 ? EARLY_GROWTH * last : EARLY_SHARE * end);
 }
 
-// Where steps have become short something begins, and an integrator that began anew there would follow it at
-// order 1: a landing's impulse by a thousandth less well. A step that is no shorter than the mean of all is
-// waited for.
+// A checkpoint restarts the integrator at order 1, which follows an impact less well: a landing's impulse by
+// a thousandth. So it waits for a step that is no shorter than the mean of all.
 enum { PATIENCE = 2 };
 static bool is_calm(const FemRunState *run, const FemIntegratorStats *stats) {
   return stats->current_step * (double)stats->steps >= run->time;
 }
 
-// Equilibria are few and dear, and nothing is lost with an integrator's order.
+// Equilibria are few and expensive, and there is no order to lose.
 enum { STATIC_STEPS = 4 };
 
 bool fem_run_checkpoint_is_due(const FemRunState *run) {

@@ -37,6 +37,23 @@ START_TEST(a_run_that_would_take_a_million_steps_is_given_up_after_one_window) {
 }
 END_TEST
 
+// Just more, and just fewer, than a million tries for the whole run; or than a tenth of what the longest
+// steps could have made.
+START_TEST(at_the_edges_a_run_just_goes_on) {
+  static const double LESS = 1 - 1e-6, MORE = 1 + 1e-6;
+  const double window = FEM_STALL_WINDOW;
+  for (int is_more = 0; is_more < 2; is_more++) {
+    FemStallVerdict verdict = is_more ? FEM_STALL_GOES_ON : FEM_STALL_STANDS;
+    FemStall stall = fem_stall_begin(0, 1, 0.1);
+    ck_assert_int_eq(fem_stall_add(&stall, FEM_STALL_WINDOW, 0, (is_more ? MORE : LESS) * window / 1e6, 1),
+                     verdict);
+    stall = fem_stall_begin(0, 1, 0.1);
+    double reached = (is_more ? MORE : LESS) * 0.1 * window * 1e-7;
+    ck_assert_int_eq(fem_stall_add(&stall, FEM_STALL_WINDOW, 0, reached, 1e-7), verdict);
+  }
+}
+END_TEST
+
 START_TEST(a_run_that_makes_no_way_at_all_is_given_up) {
   FemStall stall = fem_stall_begin(0, 1, 0.1);
   FemStallVerdict verdict = FEM_STALL_GOES_ON;
@@ -120,6 +137,7 @@ int main(void) {
   TCase *cases = tcase_create("stall");
   tcase_add_test(cases, a_steady_run_goes_on_however_many_steps_it_takes_and_loses);
   tcase_add_test(cases, a_run_that_would_take_a_million_steps_is_given_up_after_one_window);
+  tcase_add_test(cases, at_the_edges_a_run_just_goes_on);
   tcase_add_test(cases, a_run_that_makes_no_way_at_all_is_given_up);
   tcase_add_test(cases, steps_as_long_as_allowed_are_no_stall);
   tcase_add_test(cases, the_end_is_no_stall);

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is reported at the end of a run, at the edges of its promises: kept just so, and just broken.
+#include "scene.h"
+
+#include <string.h>
+
+// The trouble of a run of a block in the air with these results.
+static const char *told(double momentum_gap, long long beyond) {
+  static char text[1024];
+  SceneRun run;
+  scene_open(&run, "free_fall", NULL);
+  FemRunResult result = {.momentum_gap = momentum_gap};
+  result.pairs.tried = 100, result.pairs.beyond = beyond;
+  fem_run_tell_trouble(&result, &run.model, text, sizeof text);
+  scene_close(&run);
+  return text;
+}
+
+START_TEST(a_gap_of_momentum_of_a_thousandth_is_kept_and_more_is_trouble) {
+  ck_assert_str_eq(told(1e-3, 0), "none");
+  ck_assert_ptr_nonnull(strstr(told(1e-3 * (1 + 1e-6), 0), "forces and motion differ"));
+  ck_assert_ptr_nonnull(strstr(told(NAN, 0), "forces and motion differ"));
+}
+END_TEST
+
+START_TEST(of_a_hundred_pairs_one_may_be_beyond_the_training) {
+  ck_assert_str_eq(told(0, 1), "none");
+  ck_assert_ptr_nonnull(strstr(told(0, 2), "pairs beyond the network's training"));
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("result");
+  tcase_add_test(cases, a_gap_of_momentum_of_a_thousandth_is_kept_and_more_is_trouble);
+  tcase_add_test(cases, of_a_hundred_pairs_one_may_be_beyond_the_training);
+  return suite_run("result", cases, 20);
+}
