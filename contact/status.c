@@ -8,7 +8,7 @@
 #include "overlap/separation.h"
 
 // Pairs that are evaluated at a time.
-enum { PORTION = 2048 };
+enum { PORTION_SIZE = 2048 };
 
 // As they were given.
 static int count_tets(const ContactLayout *layout) {
@@ -22,12 +22,12 @@ Status contact_status_create(ContactStatus *status, const ContactLayout *layout)
   status->exact = memory_zeroed(tets, sizeof *status->exact);
   status->error = memory_zeroed(tets, sizeof *status->error);
   status->wrong_pairs = memory_zeroed(tets, sizeof *status->wrong_pairs);
-  status->portion = memory_zeroed(PORTION, sizeof *status->portion);
-  status->coordinates = memory_zeroed(PORTION, OVERLAP_PAIR_SIZE * sizeof *status->coordinates);
-  status->asked = memory_zeroed(PORTION, OVERLAP_PAIR_SIZE * sizeof *status->asked);
-  status->volumes = memory_zeroed(PORTION, sizeof *status->volumes);
-  status->places = memory_zeroed(PORTION, sizeof *status->places);
-  for (int k = 0; k < 2; k++) status->says[k] = memory_zeroed(PORTION, 1);
+  status->portion = memory_zeroed(PORTION_SIZE, sizeof *status->portion);
+  status->coordinates = memory_zeroed(PORTION_SIZE, OVERLAP_PAIR_SIZE * sizeof *status->coordinates);
+  status->asked = memory_zeroed(PORTION_SIZE, OVERLAP_PAIR_SIZE * sizeof *status->asked);
+  status->volumes = memory_zeroed(PORTION_SIZE, sizeof *status->volumes);
+  status->places = memory_zeroed(PORTION_SIZE, sizeof *status->places);
+  for (int k = 0; k < 2; k++) status->says[k] = memory_zeroed(PORTION_SIZE, 1);
   status->boxes = memory_zeroed((size_t)layout->mesh.cell_count, sizeof *status->boxes);
   if (status->predicted && status->exact && status->error && status->wrong_pairs && status->portion &&
       status->coordinates && status->asked && status->volumes && status->places && status->says[0] &&
@@ -149,7 +149,7 @@ Status contact_status_run(ContactStatus *status, const ContactLayout *layout,
     status->portion[count] = *pair;
     contact_layout_gather_pair(layout, pair, positions,
                                status->coordinates + OVERLAP_PAIR_SIZE * (size_t)count);
-    if (++count < PORTION) continue;
+    if (++count < PORTION_SIZE) continue;
     TRY(ask_both(status, layout, model, reference, count));
     count = 0;
   }

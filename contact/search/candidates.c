@@ -12,7 +12,7 @@
 
 // Where the boxes of two bodies meet but the bodies may not, a margin of several steps of free motion is
 // tried, bounded so that the trial costs little more than a search.
-enum { STEPS_AHEAD = 4, WIDEST_TRIAL = 4 };
+enum { STEPS_AHEAD = 4, WIDEST_TRIAL = STEPS_AHEAD };
 
 // The margin of self-contact as a share of the usual one: second neighbours in a mesh are always near, so a
 // wide margin would list them all.

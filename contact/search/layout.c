@@ -50,7 +50,7 @@ static double mean_edge(const ContactSystemDef *def, const ContactBody *body) {
       for (int w = 0; w < v; w++)
         sum += vec3_length(vec3_sub(vec3_at(def->rest + 3 * (size_t)def->tets[i][v]),
                                     vec3_at(def->rest + 3 * (size_t)def->tets[i][w])));
-  return sum / (6.0 * (body->tet_end - body->tet_begin));
+  return sum / (6 * (body->tet_end - body->tet_begin));
 }
 
 static double default_margin(const ContactSystemDef *def) {
@@ -96,11 +96,11 @@ static void list_interfaces(ContactLayout *layout) {
   layout->interface_count = count;
 }
 
-static const double NUDGE = 1e-9; // of the margin
+static const double ROUNDING = 1e-9; // of the margin
 static const uint64_t NUDGE_SEED = 20240229;
 
 static void nudge_bodies(ContactLayout *layout) {
-  layout->nudge = NUDGE * layout->margin;
+  layout->nudge = ROUNDING * layout->margin;
   for (int b = 0; b < layout->def.body_count; b++) {
     Random random = random_seeded(NUDGE_SEED, (uint64_t)b);
     random_direction(&random, layout->nudges[b]);
@@ -127,10 +127,8 @@ static void warp_body(ContactLayout *layout, int b) {
                                   vec3_dot(vec3_at(rows[c]), vec3_sub(vec3_at(rest + 3 * v), centre));
 }
 
-static const double REST_DEPTH = 1e-9; // of the margin: rounding
-
 static Status prepare_self(ContactLayout *layout) {
-  TRY(contact_self_create(&layout->self, &layout->def, &layout->mesh, REST_DEPTH * layout->margin));
+  TRY(contact_self_create(&layout->self, &layout->def, &layout->mesh, ROUNDING * layout->margin));
   if (!layout->self.outer) return STATUS_OK;
   layout->shifts = memory_zeroed((size_t)layout->mesh.position_count, 3 * sizeof(double));
   if (!layout->shifts) return status_no_memory("the contact system's volumes");

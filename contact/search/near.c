@@ -100,11 +100,11 @@ static void blow_up_cells(ContactNear *near, const ContactLayout *layout,
 
 // Of the portion's pairs those that nothing separates, behind the list's last.
 static void add_portion(ContactNear *near, const ContactPair *pairs, int count) {
-  enum { PORTION = 64 };
-  double coordinates[24 * PORTION];
-  bool is_apart[PORTION];
-  for (int begin = 0; begin < count; begin += PORTION) {
-    int size = count - begin < PORTION ? count - begin : PORTION, asked = 0, from[PORTION];
+  enum { PORTION_SIZE = 64 };
+  double coordinates[24 * PORTION_SIZE];
+  bool is_apart[PORTION_SIZE];
+  for (int begin = 0; begin < count; begin += PORTION_SIZE) {
+    int size = count - begin < PORTION_SIZE ? count - begin : PORTION_SIZE, asked = 0, from[PORTION_SIZE];
     for (int k = 0; k < size; k++) {
       const int *cells = pairs[begin + k].cells;
       if (cells[1] >= 0 && contact_bounds_distance(near->boxes[cells[0]], near->boxes[cells[1]]) > 0)

@@ -65,7 +65,7 @@ void contact_surface_destroy(ContactSurface *surface) {
 
 // ---- The tree: faces halved at the middle of the longest side of their box, until few are left.
 
-enum { LEAF = 4, DEEPEST = 64 };
+enum { LEAF_SIZE = 4, STACK_SIZE = 64 };
 
 static void bound(const ContactSurface *surface, int begin, int end, double box[6]) {
   for (int c = 0; c < 3; c++) box[c] = INFINITY, box[c + 3] = -INFINITY;
@@ -119,7 +119,7 @@ static int add_node(ContactSurface *surface, int begin, int end) {
   bound(surface, begin, end, surface->boxes[node]);
   surface->ranges[node][0] = begin, surface->ranges[node][1] = end;
   surface->children[node][0] = surface->children[node][1] = -1;
-  if (end - begin <= LEAF) return node;
+  if (end - begin <= LEAF_SIZE) return node;
   int middle = begin + (end - begin) / 2;
   halve(surface, begin, end, middle, longest_side(surface->boxes[node]));
   surface->children[node][0] = add_node(surface, begin, middle);
@@ -177,7 +177,7 @@ static double square_to_face(const ContactSurface *surface, const ContactSurface
 }
 
 double contact_surface_distance(const ContactSurface *surface, Vec3 x) {
-  int stack[DEEPEST], count = 0;
+  int stack[STACK_SIZE], count = 0;
   double nearest = INFINITY;
   if (surface->count > 0) stack[count++] = 0;
   while (count > 0) {
