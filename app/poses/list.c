@@ -15,7 +15,7 @@
 #include "base/text.h"
 
 enum { SIZE = 12 };
-static const double ROUNDING = 1e-6; // of a rotation in a file
+static const double ROTATION_ERROR = 1e-6; // of a rotation in a file
 
 // The line's numbers, at most one more than asked; −1: something else is in it.
 static int read_numbers(const char *at, const char *end, double numbers[SIZE + 1]) {
@@ -39,7 +39,7 @@ static bool is_rotation(const double r[9]) {
     for (int j = 0; j < 3; j++) {
       double product = 0;
       for (int k = 0; k < 3; k++) product += r[3 * i + k] * r[3 * j + k];
-      if (!(fabs(product - (i == j)) <= ROUNDING)) return false;
+      if (!(fabs(product - (i == j)) <= ROTATION_ERROR)) return false;
     }
   double det = r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
                r[2] * (r[3] * r[7] - r[4] * r[6]);
@@ -56,7 +56,7 @@ static Status check(const double numbers[SIZE + 1], int count, const char *path,
       return status_fail(STATUS_INPUT, "%s, line %d: number %d must be finite", path, line, k + 1);
   if (!is_rotation(numbers))
     return status_fail(STATUS_INPUT, "%s, line %d: the first nine numbers are not a rotation (to %g)", path,
-                       line, ROUNDING);
+                       line, ROTATION_ERROR);
   return STATUS_OK;
 }
 

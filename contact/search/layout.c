@@ -96,11 +96,11 @@ static void list_interfaces(ContactLayout *layout) {
   layout->interface_count = count;
 }
 
-static const double ROUNDING = 1e-9; // of the margin
+static const double MARGIN_ROUNDING = 1e-9; // of the margin
 static const uint64_t NUDGE_SEED = 20240229;
 
 static void nudge_bodies(ContactLayout *layout) {
-  layout->nudge = ROUNDING * layout->margin;
+  layout->nudge = MARGIN_ROUNDING * layout->margin;
   for (int b = 0; b < layout->def.body_count; b++) {
     Random random = random_seeded(NUDGE_SEED, (uint64_t)b);
     random_direction(&random, layout->nudges[b]);
@@ -128,7 +128,7 @@ static void warp_body(ContactLayout *layout, int b) {
 }
 
 static Status prepare_self(ContactLayout *layout) {
-  TRY(contact_self_create(&layout->self, &layout->def, &layout->mesh, ROUNDING * layout->margin));
+  TRY(contact_self_create(&layout->self, &layout->def, &layout->mesh, MARGIN_ROUNDING * layout->margin));
   if (!layout->self.outer) return STATUS_OK;
   layout->shifts = memory_zeroed((size_t)layout->mesh.position_count, 3 * sizeof(double));
   if (!layout->shifts) return status_no_memory("the contact system's volumes");

@@ -238,18 +238,18 @@ double contact_shape_speed(const ContactShape *shape, double time) {
 }
 
 // Lengths and angles that err by no more are those that were meant.
-static const double ROUNDING = 1e-9;
+static const double UNIT_ERROR = 1e-9;
 
 static bool is_orthonormal(const double axes[3][3]) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j <= i; j++)
-      if (!(fabs(vec3_dot(vec3_at(axes[i]), vec3_at(axes[j])) - (i == j)) <= ROUNDING)) return false;
+      if (!(fabs(vec3_dot(vec3_at(axes[i]), vec3_at(axes[j])) - (i == j)) <= UNIT_ERROR)) return false;
   return vec3_dot(vec3_cross(vec3_at(axes[0]), vec3_at(axes[1])), vec3_at(axes[2])) > 0;
 }
 
 Status contact_shape_check(const ContactShape *shape) {
   double length = vec3_length(vec3_at(shape->normal));
-  if (shape->kind == CONTACT_SHAPE_HALFSPACE && !(fabs(length - 1) <= ROUNDING))
+  if (shape->kind == CONTACT_SHAPE_HALFSPACE && !(fabs(length - 1) <= UNIT_ERROR))
     return status_fail(STATUS_INPUT, "contact: the normal of half-space %s has length %g instead of 1",
                        shape->name, length);
   if (shape->kind == CONTACT_SHAPE_BALL && !(shape->radius > 0 && isfinite(shape->radius)))

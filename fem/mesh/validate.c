@@ -13,8 +13,8 @@
 #include "fem/mesh/middles.h"
 
 // 6 V of an element with longest edge L is taken for zero below FLATNESS · L³, or where the rounding of
-// coordinates of size M could have made it: below ROUNDING · M · L².
-static const double FLATNESS = 1e-12, ROUNDING = 8 * DBL_EPSILON;
+// coordinates of size M could have made it: below PLACE_ROUNDING · M · L².
+static const double FLATNESS = 1e-12, PLACE_ROUNDING = 8 * DBL_EPSILON;
 
 static long long tet_tag(const FemMeshSource *source, int tet) {
   return source->tet_tags ? source->tet_tags[tet] : tet;
@@ -89,7 +89,7 @@ static bool is_flat(const FemMeshSource *source, int tet, double det) {
     for (int m = 0; m < k; m++) longest = fmax(longest, vec3_length(vec3_sub(p, corner(source, tet, m))));
   }
   double square = longest * longest;
-  return !(fabs(det) > fmax(FLATNESS * longest, ROUNDING * size) * square);
+  return !(fabs(det) > fmax(FLATNESS * longest, PLACE_ROUNDING * size) * square);
 }
 
 static void swap(int *a, int *b) {

@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "fem/sparse/cg.h"
 
-enum { PARALLEL_SIZE = 4000, MAX_ITERATIONS = 2000 };
+enum { PARALLEL_SIZE = 4000, PCG_ITERATIONS = 2000 };
 
 typedef struct PcgSolver {
   int threads;
@@ -164,7 +164,7 @@ static Status solve(void *self, const double *b, double *x) {
                           .self = solver,
                           .name = "pcg",
                           .tolerance = solver->tolerance,
-                          .limit = solver->size < MAX_ITERATIONS / 2 ? 2 * solver->size : MAX_ITERATIONS};
+                          .limit = solver->size < PCG_ITERATIONS / 2 ? 2 * solver->size : PCG_ITERATIONS};
   FemCgEnd end;
   Status status = fem_cg_solve(&solver->cg, &problem, b, x, &solver->stats.iterations, &end);
   fem_solver_use_threads(before);

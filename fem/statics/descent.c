@@ -16,7 +16,7 @@ static const double WORK_LEFT = 0.8, WORK_FOUND = 0.3;
 static const double LONGEST_STRETCH = 0.5;
 // Where K is not positive definite, the first shift, as a share of (c/L)², and by what it rises and falls.
 static const double FIRST_SHIFT = 1e-3, SHIFT_RISE = 10, SHIFT_FALL = 0.1;
-enum { MAX_ITERATIONS = 80, MAX_REFUSALS = 30, MAX_SEARCH = 8, MAX_HALVINGS = 8 };
+enum { DESCENT_STEPS = 80, SHIFT_REFUSALS = 30, MAX_SEARCH = 8, MAX_HALVINGS = 8 };
 
 typedef struct Descent {
   FemEquilibrium *equilibrium;
@@ -71,7 +71,7 @@ static Status try_step(Descent *descent) {
 // The shift such that the matrix is positive definite; d, no longer than the longest way and stretch.
 static Status find_step(Descent *descent) {
   Status status = try_step(descent);
-  while (status == STATUS_RETRY && descent->refusals++ < MAX_REFUSALS) {
+  while (status == STATUS_RETRY && descent->refusals++ < SHIFT_REFUSALS) {
     descent->shift = fmax(SHIFT_RISE * descent->shift, FIRST_SHIFT * descent->first_shift);
     status = try_step(descent);
   }
@@ -138,14 +138,14 @@ static Status descend(Descent *descent, double tolerance, long long *iterations)
   for (int k = 0;; k++) {
     left = fem_equilibrium_largest(descent->force, descent->n);
     if (left <= (k < FEM_DESCENT_PATIENCE ? 1 : FEM_DESCENT_TOLERABLE) * tolerance) return STATUS_OK;
-    if (k == MAX_ITERATIONS) break;
+    if (k == DESCENT_STEPS) break;
     TRY(iterate(descent));
     ++*iterations;
   }
   return status_fail(
       STATUS_RETRY,
       "Newton's method left a force of %.3g times the tolerance after %d iterations with a line search",
-      left / tolerance, MAX_ITERATIONS);
+      left / tolerance, DESCENT_STEPS);
 }
 
 Status fem_descent_solve(FemEquilibrium *equilibrium, double time, double tolerance, double *u,

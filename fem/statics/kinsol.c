@@ -9,7 +9,7 @@
 #include "fem/time/newton/direct.h"
 #include "fem/time/sundials.h"
 
-enum { MAX_FULL_STEPS = 12, MAX_ITERATIONS = 40, MESSAGE_SIZE = 512 };
+enum { FULL_STEPS = 12, LINE_SEARCH_STEPS = 40, MESSAGE_SIZE = 512 };
 
 // One call: KINSOL, and what it is told.
 typedef struct Newton {
@@ -118,8 +118,8 @@ Status fem_kinsol_solve(FemEquilibrium *equilibrium, double time, double toleran
   Newton newton = {.equilibrium = equilibrium, .time = time, .n = equilibrium->system->numbering.count};
   double *start = memory_copy(u, (size_t)newton.n, sizeof *u);
   Status status = start ? create(&newton, tolerance, length) : status_no_memory("KINSOL");
-  if (!status) status = run(&newton, KIN_NONE, MAX_FULL_STEPS, start, u, iterations);
-  if (status == STATUS_RETRY) status = run(&newton, KIN_LINESEARCH, MAX_ITERATIONS, start, u, iterations);
+  if (!status) status = run(&newton, KIN_NONE, FULL_STEPS, start, u, iterations);
+  if (status == STATUS_RETRY) status = run(&newton, KIN_LINESEARCH, LINE_SEARCH_STEPS, start, u, iterations);
   memory_free(start);
   destroy(&newton);
   return status;

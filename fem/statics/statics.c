@@ -16,15 +16,15 @@
 static const double TOLERANCE = 1e-8, SMALLEST_SCALE = 1e-9;
 // And not less than this many times the forces that rounding of a coordinate x causes, ε x · edge · E / (1 −
 // 2ν): so a body without load is in equilibrium.
-static const double ROUNDING = 2;
+static const double FORCE_ROUNDING = 2;
 // Relaxation hands over to Newton once the force has fallen to this share.
 static const double HAND_OVER = 1e-3;
 // The shift falls by this factor while the force stays the same: a shift that only follows the force would
 // stay too large for elements that are heavy and soft.
-static const double SHIFT_FALL = 0.5;
+static const double RELAXATION_FALL = 0.5;
 // Where no equilibrium is found and an element has less than this of its volume, the law may be the reason.
 static const double SQUEEZED = 0.3, SQUEEZED_STVK = 0.8;
-enum { MAX_RELAXATIONS = 400, MAX_REFUSALS = 40, WORST_COUNT = 3 };
+enum { MAX_RELAXATIONS = 400, RELAXATION_REFUSALS = 40, WORST_COUNT = 3 };
 
 static Status check_scene(const FemSceneDef *scene) {
   for (int b = 0; b < scene->body_count; b++) {
@@ -52,7 +52,7 @@ static double smallest_scale(const FemModel *model) {
                                             3 * (body->vertex_end - body->vertex_begin));
     double modulus = body->material.young / (1 - 2 * body->material.poisson);
     softest = fmin(softest, body->material.young);
-    rounding = fmax(rounding, ROUNDING * DBL_EPSILON * modulus * model->edge * extent);
+    rounding = fmax(rounding, FORCE_ROUNDING * DBL_EPSILON * modulus * model->edge * extent);
   }
   return fmax(SMALLEST_SCALE * softest * model->edge * model->edge, rounding / TOLERANCE);
 }
@@ -127,7 +127,7 @@ static Status relax(FemStatics *statics, double time, double *u) {
   double first = fem_equilibrium_largest(statics->force, n), before = first;
   for (int k = 0; k < MAX_RELAXATIONS && before > HAND_OVER * first; k++) {
     Status status = relax_once(statics, time, shift, u);
-    if (status < 0 || (status && ++refusals > MAX_REFUSALS)) return status;
+    if (status < 0 || (status && ++refusals > RELAXATION_REFUSALS)) return status;
     if (status) {
       shift *= 10;
       TRY(evaluate(statics, time, u));
@@ -135,7 +135,7 @@ static Status relax(FemStatics *statics, double time, double *u) {
     }
     statics->relaxation_steps++;
     double now = fem_equilibrium_largest(statics->force, n);
-    shift *= SHIFT_FALL * fmin(fmax(now / before, 0.4), 4);
+    shift *= RELAXATION_FALL * fmin(fmax(now / before, 0.4), 4);
     before = now;
   }
   return STATUS_OK;
