@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "fem/run/run_stage.h"
+
 // The trouble of a run of a block in the air with these results.
 static const char *told(double momentum_gap, long long beyond) {
   static char text[1024];
@@ -29,9 +31,20 @@ START_TEST(of_a_hundred_pairs_one_may_be_beyond_the_training) {
 }
 END_TEST
 
+// Of the time in which a wave crosses an element.
+START_TEST(nothing_moves_in_a_four_hundredth_of_an_elements_crossing) {
+  SceneRun run;
+  scene_open(&run, "free_fall", NULL);
+  double crossing = run.model.edge / fem_model_fastest_wave(&run.model);
+  ck_assert_near(fem_run_stage_resolved(&run.model), crossing / 400, 1e-12 * crossing);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("result");
   tcase_add_test(cases, a_gap_of_momentum_of_a_thousandth_is_kept_and_more_is_trouble);
   tcase_add_test(cases, of_a_hundred_pairs_one_may_be_beyond_the_training);
+  tcase_add_test(cases, nothing_moves_in_a_four_hundredth_of_an_elements_crossing);
   return suite_run("result", cases, 20);
 }

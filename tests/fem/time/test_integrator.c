@@ -19,6 +19,21 @@ START_TEST(free_fall_is_exact_but_for_the_first_steps) {
 }
 END_TEST
 
+START_TEST(the_shortest_step_is_what_times_are_resolved_to_or_what_is_asked) {
+  for (int i = 0; i < 2; i++) {
+    Toy toy = {.count = 1, .mass = 2, .gravity = -9.81};
+    toy_open(&toy);
+    FemIntegratorDef def = def_of(1e-7, 2);
+    def.min_step = i == 0 ? 0 : 1e-6;
+    double u = 3, v = 4;
+    FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def, &u, &v);
+    ck_assert_near(fem_integrator_shortest_step(integrator), i == 0 ? 2e-12 : 1e-6, 1e-24);
+    fem_integrator_destroy(integrator);
+    toy_close(&toy);
+  }
+}
+END_TEST
+
 // The state changes by half of the tolerance in 1e-8 s, which is what IDA would begin with; what is left to
 // it is lengthened, what it would make longer is not.
 START_TEST(a_start_is_not_shorter_than_asked) {
@@ -277,6 +292,7 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("integrator");
   tcase_add_test(cases, free_fall_is_exact_but_for_the_first_steps);
+  tcase_add_test(cases, the_shortest_step_is_what_times_are_resolved_to_or_what_is_asked);
   tcase_add_test(cases, a_start_is_not_shorter_than_asked);
   tcase_add_test(cases, an_oscillator_converges_with_the_order_of_the_method);
   tcase_add_test(cases, an_oscillator_never_gains_energy);
