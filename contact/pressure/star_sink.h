@@ -16,7 +16,8 @@ typedef struct ContactStarSink {
   int *vertices; // as given                                (count ≤ given_vertex_count)
   int *place;    // 1 + place in the clique, 0: not in it   (given_vertex_count)
   double *outer; //                                         (count, 3)
-  double *dense; // of a pair of tetrahedra                 (3 count, 3 count), count ≤ 20
+  double *half;  // of two elements, by vertices and carriers  (3 vertices, 3 count)
+  double *dense; //                                            (3 count, 3 count)
 } ContactStarSink;
 
 Status contact_star_sink_create(ContactStarSink *sink, const ContactStars *stars);

@@ -28,6 +28,7 @@ static void orient_face(const ContactSkin *skin, const ContactSystemDef *def, Co
   Vec3 doubled = doubled_of(skin, face);
   Vec3 arm = vec3_sub(rest_of(skin, def->tets[face->tet][face->corner]), rest_of(skin, face->vertices[0]));
   double outward = -vec3_dot(doubled, arm);
+  face->area = vec3_length(doubled) / 2;
   face->height = fabs(outward) / vec3_length(doubled);
   if (outward > 0) return;
   int kept = face->vertices[1];

@@ -15,6 +15,7 @@ typedef struct ContactSkinFace {
   int vertices[3]; // counter-clockwise from outside
   int edges[3];    // edge k is between vertices k and k + 1
   int tet, corner; // whose face it is, and the vertex of it that lies opposite
+  double area;     // [m²]
   double height;   // of that tetrahedron over the face [m]
 } ContactSkinFace;
 

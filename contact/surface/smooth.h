@@ -8,6 +8,12 @@
 // An edge that is straight stays whole, so a body of flat faces stays as it is. A point keeps within a
 // quarter of the height of the tetrahedra at the surface; further in where a cell would be inside out.
 //
+// So carried, an even pressure would load vertices unevenly where the mesh is irregular or ends: the mean way
+// off the chords, μ_i = Σ_f ∫_f (x − chord) dA / Σ_f A_f over the faces f round vertex i, linear in the
+// vertices, is taken from the vertex and from its share of the points round it, and its value at rest,
+// carried by the tetrahedra at these faces, is added. Nothing moves at rest or under an affine motion, and
+// what an even pressure puts on a vertex is a third of the area of its faces.
+//
 // A tetrahedron with a divided edge is cut into cells: from a corner that is on none of them, where it has no
 // face on the curved surface; else from a point o inside, at λ_f = δ/height_f for the faces on the surface, ¼
 // for the others, δ as in contact/surface/mesh.h. Which triangles a face is cut into depends on the face
@@ -19,6 +25,7 @@
 #include "contact/surface/skin.h"
 
 enum {
+  CONTACT_SMOOTH_ROW_COUNT = 512, // vertices that carry one, at most
   CONTACT_SMOOTH_MOST_LEVEL = 2,
   CONTACT_SMOOTH_MOST_CELLS = 1 << (2 * CONTACT_SMOOTH_MOST_LEVEL + 2), // of four faces
   CONTACT_SMOOTH_INSIDE = -1,                                           // o
@@ -62,6 +69,18 @@ void contact_smooth_destroy(ContactSmooth *smooth);
 
 // False: it stays whole.
 bool contact_smooth_cut(const ContactSmooth *smooth, int tet, ContactSmoothCut *cut);
+
+// How far the points' way off the chords takes a vertex itself: a row of vertices and weights, whose sum is 0
+// at rest and under every affine motion. `row` has room for CONTACT_SMOOTH_ROW_COUNT. See above.
+typedef struct ContactSmoothRow {
+  int count;
+  int nodes[CONTACT_SMOOTH_ROW_COUNT];
+  double weights[CONTACT_SMOOTH_ROW_COUNT];
+} ContactSmoothRow;
+void contact_smooth_settle(const ContactSmooth *smooth, int vertex, double share, ContactSmoothRow *row);
+
+// Adds a weight of a vertex; to the first one's where there is no room.
+void contact_smooth_row_add(ContactSmoothRow *row, int vertex, double weight);
 
 // How many vertices carry a point, which, the corners first, and by which weights (CONTACT_FIT_MOST_COUNT).
 int contact_smooth_carry(const ContactSmooth *smooth, int point, const int **nodes, double *weights);

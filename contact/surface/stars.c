@@ -306,14 +306,25 @@ static Status add_element(Work *work, const ContactBody *body, int element) {
   return STATUS_OK;
 }
 
+// A vertex of a smooth surface, near which points are.
+static Status add_settled(Work *work, const ContactSmooth *smooth, int vertex) {
+  ContactSmoothRow row = {.count = 0};
+  contact_smooth_row_add(&row, vertex, 1);
+  contact_smooth_settle(smooth, vertex, 1, &row);
+  return add_vertex(work, row.count, row.nodes, row.weights, 1, &work->stars->place[vertex]);
+}
+
 // The points of a smooth surface; that of number p becomes vertex first + p.
 static Status add_points(Work *work, const ContactSmooth *smooth, int *first) {
   *first = work->vertex_count;
   for (int p = 0; p < smooth->point_count; p++) {
     double weights[CONTACT_FIT_MOST_COUNT];
     const int *nodes;
-    int number, count = contact_smooth_carry(smooth, p, &nodes, weights);
-    TRY(add_vertex(work, count, nodes, weights, smooth->owns[p], &number));
+    int number, count = contact_smooth_carry(smooth, p, &nodes, weights), own = smooth->owns[p];
+    ContactSmoothRow row = {.count = 0};
+    for (int k = 0; k < count; k++) contact_smooth_row_add(&row, nodes[k], weights[k]);
+    for (int k = 0; k < own; k++) contact_smooth_settle(smooth, nodes[k], smooth->priors[p][k], &row);
+    TRY(add_vertex(work, row.count, row.nodes, row.weights, own, &number));
   }
   return STATUS_OK;
 }
@@ -356,8 +367,13 @@ static Status add_body(Work *work, int b) {
   const ContactBody *given = &work->given->bodies[b];
   ContactBody *body = &work->stars->bodies[b];
   body->vertex_begin = work->vertex_count, body->tet_begin = work->tet_count;
-  for (int v = given->vertex_begin; v < given->vertex_end; v++)
-    TRY(add_vertex(work, 1, &v, &(double){1}, 1, &work->stars->place[v]));
+  const ContactSmooth *smooth = &work->smooths[b];
+  for (int v = given->vertex_begin; v < given->vertex_end; v++) {
+    if (smooth->curved_count > 0)
+      TRY(add_settled(work, smooth, v));
+    else
+      TRY(add_vertex(work, 1, &v, &(double){1}, 1, &work->stars->place[v]));
+  }
   if (given->quadratic_begin == given->quadratic_end) TRY(add_linear(work, b));
   for (int e = given->quadratic_begin; e < given->quadratic_end; e++) TRY(add_element(work, given, e));
   body->vertex_end = work->vertex_count, body->tet_end = work->tet_count;

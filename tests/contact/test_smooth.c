@@ -198,6 +198,52 @@ START_TEST(cells_fill_the_body_without_cracks) {
 }
 END_TEST
 
+static void add_thirds(const ContactSystemDef *def, const ContactStars *stars, double *loads) {
+  ContactSurface surface;
+  ck_assert_ok(contact_surface_find(&surface, def->tets, 0, def->tet_count));
+  for (int f = 0; f < surface.count; f++) {
+    const int *v = surface.faces[f].vertices;
+    Vec3 x[3];
+    bool is_outer = true;
+    for (int k = 0; k < 3; k++) x[k] = vec3_at(def->rest + 3 * v[k]), is_outer &= vec3_length(x[k]) > 0.99;
+    double third = vec3_length(vec3_cross(vec3_sub(x[1], x[0]), vec3_sub(x[2], x[0]))) / 6;
+    for (int k = 0; k < 3 && is_outer; k++) {
+      if (stars)
+        contact_stars_push(stars, v[k], (Vec3){third, 0, 0}, loads);
+      else
+        loads[3 * v[k]] += third;
+    }
+  }
+  contact_surface_destroy(&surface);
+}
+
+// As it does without points, whatever the mesh, also at the rim of a surface. What the offset at rest takes
+// to the next layer, its share of the height, is all that differs.
+START_TEST(an_even_pressure_loads_vertices_by_a_third_of_their_faces) {
+  FemMesh mesh;
+  ContactStars stars;
+  make_mesh(&mesh, DOME, 6);
+  ContactBody body = body_of(&mesh, _i);
+  ContactSystemDef def = def_of(&mesh, &body);
+  ck_assert_ok(contact_stars_create(&stars, &def));
+  size_t n = 3 * (size_t)mesh.vertex_count;
+  double *loads = calloc(n, sizeof *loads), *expected = calloc(n, sizeof *expected);
+  ck_assert(loads && expected);
+  add_thirds(&def, NULL, expected);
+  add_thirds(&stars.def, &stars, loads);
+  int count = 0;
+  for (int v = 0; v < mesh.vertex_count; v++) {
+    if (!(expected[3 * v] > 0)) continue;
+    ck_assert_near(loads[3 * v], expected[3 * v], 0.15 * expected[3 * v]);
+    count++;
+  }
+  ck_assert_int_eq(count, 49);
+  free(loads), free(expected);
+  contact_stars_destroy(&stars);
+  fem_mesh_destroy(&mesh);
+}
+END_TEST
+
 START_TEST(a_body_of_flat_faces_stays_as_it_is) {
   FemMesh mesh;
   ContactStars stars;
@@ -347,6 +393,7 @@ int main(void) {
   tcase_add_loop_test(tests, weights_are_exact_for_quadratics, 0, 6);
   tcase_add_test(tests, two_rows_tell_the_curvature_along_them);
   tcase_add_loop_test(tests, cells_fill_the_body_without_cracks, 0, 4);
+  tcase_add_loop_test(tests, an_even_pressure_loads_vertices_by_a_third_of_their_faces, 1, 3);
   tcase_add_test(tests, a_body_of_flat_faces_stays_as_it_is);
   tcase_add_loop_test(tests, forces_balance_and_are_minus_the_gradient_of_the_energy, 0, 8);
   tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 1, 3);
