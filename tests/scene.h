@@ -48,19 +48,20 @@ static inline void scene_close(SceneRun *run) {
   fem_scene_destroy(&run->scene);
 }
 
-// Position of a vertex at a frame; the last one is run->result.frame_count − 1.
+// Position of a vertex at a frame; the last one is run->result.trajectory.frame_count − 1.
 static inline const double *scene_position(const SceneRun *run, int frame, int vertex) {
-  return run->result.trajectory + 3 * ((size_t)frame * (size_t)run->result.vertex_count + (size_t)vertex);
+  return run->result.trajectory.positions +
+         3 * ((size_t)frame * (size_t)run->result.trajectory.vertex_count + (size_t)vertex);
 }
 
 // The force on the first side of an interface at a frame [N].
 static inline const double *scene_force(const SceneRun *run, int frame, int interface) {
-  return run->result.interface_forces +
-         3 * ((size_t)frame * (size_t)run->result.interface_count + (size_t)interface);
+  return run->result.trajectory.interface_forces +
+         3 * ((size_t)frame * (size_t)run->result.trajectory.interface_count + (size_t)interface);
 }
 
 static inline double scene_gain(const SceneRun *run) {
-  return run->result.audit.gain / run->result.audit.scale;
+  return run->result.energy.audit.gain / run->result.energy.audit.scale;
 }
 
 #endif

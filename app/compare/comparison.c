@@ -12,7 +12,8 @@
 #include "fem/effect/contact/contact.h"
 
 int app_comparison_common_frames(const FemRunResult *a, const FemRunResult *b) {
-  return a->frame_count < b->frame_count ? a->frame_count : b->frame_count;
+  return a->trajectory.frame_count < b->trajectory.frame_count ? a->trajectory.frame_count
+                                                               : b->trajectory.frame_count;
 }
 
 // Over the interfaces from `first` to before `last`.
@@ -21,9 +22,9 @@ static AppForceError force_error(const FemRunResult *result, const FemRunResult 
   double difference = 0, size = 0, largest_difference = 0, largest = 0;
   for (int f = 0; f < app_comparison_common_frames(result, reference); f++)
     for (int i = first; i < last; i++) {
-      size_t at = 3 * ((size_t)f * (size_t)reference->interface_count + (size_t)i);
-      Vec3 force = vec3_at(reference->interface_forces + at);
-      Vec3 change = vec3_sub(vec3_at(result->interface_forces + at), force);
+      size_t at = 3 * ((size_t)f * (size_t)reference->trajectory.interface_count + (size_t)i);
+      Vec3 force = vec3_at(reference->trajectory.interface_forces + at);
+      Vec3 change = vec3_sub(vec3_at(result->trajectory.interface_forces + at), force);
       difference += vec3_dot(change, change);
       size += vec3_dot(force, force);
       largest_difference = fmax(largest_difference, vec3_length(change));
@@ -34,7 +35,7 @@ static AppForceError force_error(const FemRunResult *result, const FemRunResult 
 }
 
 AppForceError app_comparison_force_error(const FemRunResult *result, const FemRunResult *reference) {
-  return force_error(result, reference, 0, reference->interface_count);
+  return force_error(result, reference, 0, reference->trajectory.interface_count);
 }
 
 AppForceError app_comparison_interface_error(const FemRunResult *result, const FemRunResult *reference,
@@ -44,10 +45,10 @@ AppForceError app_comparison_interface_error(const FemRunResult *result, const F
 
 double app_comparison_trajectory_error(const FemRunResult *result, const FemRunResult *reference) {
   int frames = app_comparison_common_frames(result, reference);
-  size_t count = (size_t)frames * (size_t)reference->vertex_count;
+  size_t count = (size_t)frames * (size_t)reference->trajectory.vertex_count;
   double sum = 0;
   for (size_t i = 0; i < 3 * count; i++) {
-    double change = result->trajectory[i] - reference->trajectory[i];
+    double change = result->trajectory.positions[i] - reference->trajectory.positions[i];
     sum += change * change;
   }
   return count > 0 ? sqrt(sum / (double)count) : NAN;
@@ -174,9 +175,9 @@ static Row row_of(const AppComparison *comparison, int m) {
   row.share = model->result.end_time / comparison->end;
   row.force = app_comparison_force_error(&model->result, &reference->result);
   row.trajectory = app_comparison_trajectory_error(&model->result, &reference->result) / comparison->length;
-  row.energy_gain = model->result.audit.gain / model->result.audit.scale;
-  row.wall_s = model->result.wall_s;
-  row.overlap_s = model->result.phases.overlap;
+  row.energy_gain = model->result.energy.audit.gain / model->result.energy.audit.scale;
+  row.wall_s = model->result.cost.wall_s;
+  row.overlap_s = model->result.cost.phases.overlap;
   return row;
 }
 
@@ -221,10 +222,10 @@ static void record_interfaces(const AppComparison *comparison, int m, Record *re
   const FemRunResult *result = &comparison->models[m].result,
                      *reference = &comparison->models[comparison->reference].result;
   RecordList *list = record_list(record, "interfaces");
-  for (int i = 0; i < reference->interface_count; i++) {
+  for (int i = 0; i < reference->trajectory.interface_count; i++) {
     AppForceError error = app_comparison_interface_error(result, reference, i);
     Record *one = record_append(list);
-    record_text(one, "name", reference->interface_names[i]);
+    record_text(one, "name", reference->trajectory.interface_names[i]);
     record_number(one, "force_error_l2", error.l2);
     record_number(one, "force_error_max", error.max);
   }

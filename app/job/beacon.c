@@ -20,7 +20,7 @@ static void record_trouble(const FemRunProgress *progress, Record *record) {
   char text[512];
   for (int k = 0; k < FEM_TROUBLE_KIND_COUNT; k++) {
     if (progress->trouble->of[k].events == 0) continue;
-    fem_trouble_tell(progress->trouble, progress->system->model, (FemTroubleKind)k, text, sizeof text);
+    fem_trouble_describe(progress->trouble, progress->system->model, (FemTroubleKind)k, text, sizeof text);
     record_append_text(list, text);
   }
 }
@@ -41,7 +41,7 @@ static Status write_progress(const AppBeacon *beacon, const FemRunProgress *prog
     record_number(record, "end", progress->end);
     record_integer(record, "steps", progress->step_count);
     record_number(record, "step_s", progress->step);
-    record_integer(record, "pairs", progress->active_pairs);
+    record_integer(record, "pairs", progress->measures->active_pairs);
     record_number(record, "wall_s", clock_wall_s() - beacon->began_s);
     record_number(record, "left_s", left_s(beacon, progress));
     record_trouble(progress, record);

@@ -73,22 +73,23 @@ static void print_files(const AppJob *job) {
 
 void app_closing_print(const AppJob *job, const FemRunResult *result) {
   char text[4096];
-  print_line("reached:", "t = %g s in %.2f s of computing", result->end_time, result->wall_s);
+  print_line("reached:", "t = %g s in %.2f s of computing", result->end_time, result->cost.wall_s);
   print_line("steps:", "%lld", result->integrator.steps);
-  print_line("", "factorisations of the matrix: %lld", result->solver.factorisations);
+  print_line("", "factorisations of the matrix: %lld", result->matrix.solver.factorisations);
   if (job->scene.contact.is_on)
-    print_line("overlaps:", "%d pairs of elements at once, at most", result->pairs_max);
-  if (result->has_contact && !result->asks_model)
+    print_line("overlaps:", "%d pairs of elements at once, at most", result->contact.pairs_max);
+  if (result->contact.is_on && !result->contact.asks_model)
     print_line("", "contact is with obstacles without elements only: its forces use no overlap model");
-  for (int i = 0; i < result->told_count; i++) print_block("contact:", result->told[i]);
-  print_network(&result->pairs);
+  for (int i = 0; i < result->account.contact_count; i++)
+    print_block("contact:", result->account.contacts[i]);
+  print_network(&result->contact.pairs);
   if (result->is_static)
-    print_work(&result->audit);
+    print_work(&result->energy.audit);
   else
-    print_energy(&result->audit, &result->energy_bounds);
-  fem_run_tell_statistics(result, text, sizeof text);
+    print_energy(&result->energy.audit, &result->energy.bounds);
+  fem_run_describe_statistics(result, text, sizeof text);
   print_block("statistics:", text);
   print_files(job);
-  fem_run_tell_trouble(result, &job->model, text, sizeof text);
+  fem_run_describe_trouble(result, &job->model, text, sizeof text);
   print_block("trouble:", text);
 }

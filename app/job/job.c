@@ -172,7 +172,7 @@ static Status print_progress(AppProgress *progress, const FemRunProgress *state,
   record_number(record, "end", state->end);
   record_integer(record, "steps", state->step_count);
   record_number(record, "step_s", state->step);
-  record_integer(record, "pairs", state->active_pairs);
+  record_integer(record, "pairs", state->measures->active_pairs);
   record_number(record, "left_s", left);
   Status status = record_print_line(record, stderr);
   record_destroy(record);
@@ -183,12 +183,12 @@ Status app_job_show_progress(void *self, const FemRunProgress *state) {
   AppProgress *progress = self;
   double share = state->time / state->end;
   log_debug("%st = %.9g s: step %lld of %.3g s, %d pairs overlap", progress->label, state->time,
-            state->step_count, state->step, state->active_pairs);
+            state->step_count, state->step, state->measures->active_pairs);
   double left = share > 0 ? (clock_wall_s() - progress->began_s) * (1 - share) / share : 0;
   if (progress->is_json) return print_progress(progress, state, left);
   log_progress("%s%3.0f %%  t %.4g of %.4g s  step %lld  h %.1e s  pairs %d  left %d:%02d", progress->label,
-               100 * share, state->time, state->end, state->step_count, state->step, state->active_pairs,
-               (int)(left / 60), (int)fmod(left, 60));
+               100 * share, state->time, state->end, state->step_count, state->step,
+               state->measures->active_pairs, (int)(left / 60), (int)fmod(left, 60));
   if (log_pace_is_due(&progress->pace, share))
     log_info("%s%.0f %%: t = %.4g of %.4g s, step %lld, about %.3g s left", progress->label,
              floor(100 * share), state->time, state->end, state->step_count, left);
@@ -232,7 +232,7 @@ Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status st
   if (!status && result->trouble.of[FEM_TROUBLE_PASSED].steps > 0) {
     char text[512] = "finished, but ";
     size_t used = strlen(text);
-    fem_trouble_tell(&result->trouble, &job->model, FEM_TROUBLE_PASSED, text + used, sizeof text - used);
+    fem_trouble_describe(&result->trouble, &job->model, FEM_TROUBLE_PASSED, text + used, sizeof text - used);
     record_text(summary, "message", text);
   }
   record_integer(summary, "bodies", job->scene.body_count);

@@ -25,7 +25,7 @@ static void judge_nothing(const AppStressRun *run, AppStressRow *row) {
 static void ask_no_passage(const AppStressRun *run, AppStressRow *row) {
   const FemModelBody *upper = &run->model.bodies[1];
   double volume = upper->mass / upper->material.density;
-  app_stress_ask_most(row, "share of the body inside", run->result.overlap_volume_max / volume, 0.02);
+  app_stress_ask_most(row, "share of the body inside", run->result.contact.overlap_volume_max / volume, 0.02);
 }
 
 // Driven by 20 mm, of which 2 mm are free. No force can exceed what crushes the base: E times its area.
@@ -34,7 +34,7 @@ static void judge_sharp(const AppStressRun *run, AppStressRow *row) {
   double width = app_stress_run_highest(run, 0, 1, 0) - app_stress_run_lowest(run, 0, 1, 0);
   double depth = app_stress_run_highest(run, 0, 1, 1) - app_stress_run_lowest(run, 0, 1, 1);
   double young = run->model.bodies[1].material.young;
-  app_stress_ask_most(row, "force over E A", run->result.contact_force_max / (young * width * depth), 1);
+  app_stress_ask_most(row, "force over E A", run->result.contact.force_max / (young * width * depth), 1);
   app_stress_ask_most(row, "asymmetry in x", app_stress_run_asymmetry(run, 1, 0, 0), 1e-3);
   app_stress_ask_most(row, "asymmetry in y", app_stress_run_asymmetry(run, 1, 1, 0), 1e-3);
 }
@@ -139,10 +139,11 @@ static void judge_mat(const AppStressRun *run, AppStressRow *row) {
         before[k][l] = linking, turns = fmax(turns, fabs(linking));
       }
   }
-  app_stress_ask_occurred(row, "deepest overlap of an element", run->result.deepest_overlap_max, 0.05);
+  app_stress_ask_occurred(row, "deepest overlap of an element", run->result.contact.deepest_overlap_max,
+                          0.05);
   app_stress_ask_occurred(row, "turns that lines along it wind around each other", turns, 1);
   app_stress_ask_most(row, "jump of their linking (a passage: 1)", jump, 0.5);
-  app_stress_ask_most(row, "covered share of an element", run->result.deepest_overlap_max, 0.9);
+  app_stress_ask_most(row, "covered share of an element", run->result.contact.deepest_overlap_max, 0.9);
 }
 
 static void judge_ball(const AppStressRun *run, AppStressRow *row) {
@@ -175,7 +176,7 @@ static void judge_drop(const AppStressRun *run, AppStressRow *row) {
 }
 
 static void judge_onset(const AppStressRun *run, AppStressRow *row) {
-  app_stress_ask_occurred(row, "pairs at once", run->result.pairs_max, 100);
+  app_stress_ask_occurred(row, "pairs at once", run->result.contact.pairs_max, 100);
   app_stress_ask_most(row, "restarts", (double)run->result.integrator.restarts, 60);
 }
 
@@ -185,13 +186,13 @@ static void judge_deep(const AppStressRun *run, AppStressRow *row) {
   const FemTrouble *trouble = &run->result.trouble;
   bool is_told = run->message[0] || trouble->of[FEM_TROUBLE_ENCLOSED].steps > 0 ||
                  trouble->of[FEM_TROUBLE_WRONG_WAY].steps > 0;
-  app_stress_ask_occurred(row, "deepest overlap of an element", run->result.deepest_overlap_max, 0.3);
+  app_stress_ask_occurred(row, "deepest overlap of an element", run->result.contact.deepest_overlap_max, 0.3);
   app_stress_ask_least(row, "apart, or told of", gap > 0 || is_told, 1);
   app_stress_ask_least(row, "gap at the end [m]", gap, 0);
 }
 
 static void judge_inside(const AppStressRun *run, AppStressRow *row) {
-  app_stress_ask_occurred(row, "enclosed pairs", (double)run->result.pairs.enclosed, 1);
+  app_stress_ask_occurred(row, "enclosed pairs", (double)run->result.contact.pairs.enclosed, 1);
   app_stress_ask_least(row, "steps told of", (double)run->result.trouble.of[FEM_TROUBLE_ENCLOSED].steps, 1);
 }
 

@@ -64,18 +64,18 @@ Status app_stress_run_scene(AppStressRun *run) {
 }
 
 int app_stress_run_frames(const AppStressRun *run) {
-  return run->result.frame_count;
+  return run->result.trajectory.frame_count;
 }
 
 static int frame_of(const AppStressRun *run, int frame) {
-  int found = frame < 0 ? run->result.frame_count + frame : frame;
-  assert(found >= 0 && found < run->result.frame_count);
+  int found = frame < 0 ? run->result.trajectory.frame_count + frame : frame;
+  assert(found >= 0 && found < run->result.trajectory.frame_count);
   return found;
 }
 
 const double *app_stress_run_position(const AppStressRun *run, int frame, int vertex) {
-  size_t at = (size_t)frame_of(run, frame) * (size_t)run->result.vertex_count + (size_t)vertex;
-  return run->result.trajectory + 3 * at;
+  size_t at = (size_t)frame_of(run, frame) * (size_t)run->result.trajectory.vertex_count + (size_t)vertex;
+  return run->result.trajectory.positions + 3 * at;
 }
 
 void app_stress_run_centre(const AppStressRun *run, int frame, int body, double centre[3]) {
@@ -103,19 +103,19 @@ double app_stress_run_highest(const AppStressRun *run, int frame, int body, int 
 
 bool app_stress_run_force(const AppStressRun *run, int frame, const char *name, double force[3]) {
   const FemRunResult *result = &run->result;
-  for (int i = 0; i < result->interface_count; i++) {
-    if (strcmp(result->interface_names[i], name) != 0) continue;
-    size_t at = (size_t)frame_of(run, frame) * (size_t)result->interface_count + (size_t)i;
-    memcpy(force, result->interface_forces + 3 * at, 3 * sizeof *force);
+  for (int i = 0; i < result->trajectory.interface_count; i++) {
+    if (strcmp(result->trajectory.interface_names[i], name) != 0) continue;
+    size_t at = (size_t)frame_of(run, frame) * (size_t)result->trajectory.interface_count + (size_t)i;
+    memcpy(force, result->trajectory.interface_forces + 3 * at, 3 * sizeof *force);
     return true;
   }
   return false;
 }
 
 bool app_stress_run_is_finite(const AppStressRun *run) {
-  size_t count = 3 * (size_t)run->result.vertex_count * (size_t)run->result.frame_count;
+  size_t count = 3 * (size_t)run->result.trajectory.vertex_count * (size_t)run->result.trajectory.frame_count;
   for (size_t i = 0; i < count; i++)
-    if (!isfinite(run->result.trajectory[i])) return false;
+    if (!isfinite(run->result.trajectory.positions[i])) return false;
   return count > 0;
 }
 

@@ -14,14 +14,14 @@ static const double LONGEST_S = 30;
 static void ask_common(const AppStressScene *scene, const AppStressRun *run, AppStressRow *row) {
   const FemRunResult *result = &run->result;
   if (scene->asked & APP_STRESS_TOUCHES)
-    app_stress_ask_occurred(row, "overlapping pairs", result->pairs_max, 1);
+    app_stress_ask_occurred(row, "overlapping pairs", result->contact.pairs_max, 1);
   if (scene->asked & APP_STRESS_ENDS) app_stress_ask_end(row, result->end_time, run->scene.end);
   if (scene->is_still)
     app_stress_ask_least(row, "evaluated without an error", run->status == STATUS_OK, 1);
   else
     app_stress_ask_least(row, "all positions are numbers", app_stress_run_is_finite(run), 1);
   if (scene->asked & APP_STRESS_ENERGY)
-    app_stress_ask_most(row, "energy gain", result->audit.gain / result->audit.scale, 1e-3);
+    app_stress_ask_most(row, "energy gain", result->energy.audit.gain / result->energy.audit.scale, 1e-3);
   if (scene->asked & APP_STRESS_UPRIGHT) app_stress_ask_least(row, "det F", result->min_det_F, 1e-12);
 }
 
@@ -39,7 +39,7 @@ static void tell_cut(const AppStressRun *run, AppStressRow *row) {
       "did not end within %.0f s of processor time: t = %.4g of %g s after %lld steps (smallest %.2g s), "
       "%lld pairs asked",
       run->limit_s, result->end_time, run->scene.end, result->integrator.steps, result->trouble.smallest_step,
-      result->pairs.tried);
+      result->contact.pairs.tried);
 }
 
 // A case with a model, in `run`.
@@ -50,11 +50,11 @@ static Status run_open(const AppStressScene *scene, const AppStressOptions *opti
   TRY(scene->run ? scene->run(run) : app_stress_run_scene(run));
   if (options->stop && *options->stop) return status_fail(STATUS_INTERRUPTED, "interrupted");
   row->cpu_s = run->cpu_s;
-  row->steps = run->result.integrator.steps, row->pairs = run->result.pairs.tried;
+  row->steps = run->result.integrator.steps, row->pairs = run->result.contact.pairs.tried;
   ask_common(scene, run, row);
   if (run->is_cut)
     tell_cut(run, row);
-  else if (scene->is_still || run->result.frame_count > 1) // judges look at the last two
+  else if (scene->is_still || run->result.trajectory.frame_count > 1) // judges look at the last two
     scene->judge(run, row);
   app_stress_judge(row);
   if (row->outcome == APP_STRESS_FAILED && run->message[0])
@@ -89,7 +89,7 @@ static long long pairs_of(const AppStressScene *scene, const AppStressOptions *o
   run.limit_s = LIMIT_S;
   run.asked_to_stop = options->stop;
   Status status = scene->run ? scene->run(&run) : app_stress_run_scene(&run);
-  long long pairs = status ? 0 : run.result.pairs.tried;
+  long long pairs = status ? 0 : run.result.contact.pairs.tried;
   app_stress_run_close(&run);
   return pairs;
 }

@@ -138,7 +138,7 @@ static Status press(Slabs *slabs, FemSystem *system) {
     slabs->depth = DEPTHS[d] * edge_of(run, 0);
     status = slide(slabs, velocities);
   }
-  run->result.pairs = contact_system_counters(slabs->contact)->pairs;
+  run->result.contact.pairs = contact_system_counters(slabs->contact)->pairs;
   memory_free(slabs->positions);
   memory_free(velocities);
   return status;

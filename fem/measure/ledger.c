@@ -153,7 +153,7 @@ static int find_rank(const FemAccuracy *accuracy, int rank) {
   return -1;
 }
 
-bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size) {
+bool fem_ledger_describe(const FemLedger *ledger, int rank, char *text, size_t size) {
   const FemModel *model = ledger->system->model;
   int i = contact_of(ledger) ? find_rank(&ledger->accuracy, rank) : -1;
   if (i < 0) return false;

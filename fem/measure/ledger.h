@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run keeps account of from one accepted state to the next: the balance of momentum (momentum.h),
+// What is accumulated over accepted states: the balance of momentum (momentum.h),
 // elements that passed through bodies (contact/passage.h), the error of contact (accuracy.h), the readings of
 // probes (reading.h). A step that is taken back leaves no trace.
 #ifndef TETLAP_FEM_MEASURE_LEDGER_H
@@ -42,7 +42,7 @@ void fem_ledger_accept(FemLedger *ledger);
 void fem_ledger_record(const FemLedger *ledger, Record *record);
 // A message on the pair of that rank by force, 0 first: what presses, and how large the error may be. False:
 // there is no such pair.
-bool fem_ledger_tell(const FemLedger *ledger, int rank, char *text, size_t size);
+bool fem_ledger_describe(const FemLedger *ledger, int rank, char *text, size_t size);
 
 // For a checkpoint: a new array, the caller's; and back. STATUS_INPUT: it does not fit.
 Status fem_ledger_save(const FemLedger *ledger, double **values, size_t *count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The first columns of history.csv: a table, a row a column, each with its title, the effect that it needs
+// The first columns of history.csv: a table with a row for each column, its title, the effect that it needs
 // and its value. Those of bodies and interfaces follow (fem/output/recorder.c).
 #ifndef TETLAP_FEM_OUTPUT_COLUMNS_H
 #define TETLAP_FEM_OUTPUT_COLUMNS_H
@@ -19,9 +19,8 @@ typedef struct FemMeasures {
   int active_pairs;
   double contact_force; // largest norm over interfaces [N]
   double peak_force;    // largest of that in the steps since the last row [N]
-  int momentum_body;
-  double
-      momentum_gap; // of that body where it is largest, until the end of this step (fem/measure/momentum.h)
+  double momentum_gap;  // the largest of a body, until the end of this step (fem/measure/momentum.h)
+  int momentum_body;    // that body
   FemTroubleState trouble;
 } FemMeasures;
 

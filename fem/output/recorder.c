@@ -225,12 +225,12 @@ Status fem_recorder_measure(FemRecorder *recorder, const FemState *state, FemMea
   measure_contact(recorder, measures);
   measure_steps(recorder, state->time, measures);
   ContactSystem *contact = contact_of(recorder->system);
-  fem_trouble_look(&recorder->watch, state->positions, contact ? contact_system_forces(contact) : NULL,
+  fem_trouble_find(&recorder->watch, state->positions, contact ? contact_system_forces(contact) : NULL,
                    recorder->det_F, recorder->overlap, &measures->trouble);
   return STATUS_OK;
 }
 
-// What the ledger is told of the state that was measured last.
+// The entry of the ledger for the state that was measured last.
 static Status describe(FemRecorder *recorder, const FemState *state, const FemMeasures *measures,
                        FemLedgerEntry *entry) {
   TRY(fem_probes_measure(&recorder->probes, state, &recorder->forces));
@@ -247,7 +247,7 @@ Status fem_recorder_begin_step(FemRecorder *recorder, const FemState *state, con
   return fem_ledger_begin(&recorder->ledger, state, &entry);
 }
 
-static void tell_passages(const FemRecorder *recorder, int count, const ContactPassageEntry *first,
+static void fill_passages(const FemRecorder *recorder, int count, const ContactPassageEntry *first,
                           FemTroubleState *state) {
   int interface_count;
   state->count[FEM_TROUBLE_PASSED] = count;
@@ -264,14 +264,14 @@ Status fem_recorder_end_step(FemRecorder *recorder, const FemState *state, FemMe
   TRY(describe(recorder, state, measures, &entry));
   TRY(fem_ledger_end(&recorder->ledger, state, &entry));
   measure_steps(recorder, state->time, measures);
-  tell_passages(recorder, passage->passed, &passage->first, &measures->trouble);
+  fill_passages(recorder, passage->passed, &passage->first, &measures->trouble);
   return STATUS_OK;
 }
 
 void fem_recorder_find_turned(const FemRecorder *recorder, FemTroubleState *state) {
   ContactPassageEntry first;
   int count = contact_passage_turned(&recorder->ledger.passage, &first);
-  tell_passages(recorder, count, &first, state);
+  fill_passages(recorder, count, &first, state);
 }
 
 void fem_recorder_accept_step(FemRecorder *recorder) {

@@ -139,7 +139,7 @@ static void look_at_forces(FemTroubleWatch *watch, const double *positions, cons
     }
 }
 
-void fem_trouble_look(FemTroubleWatch *watch, const double *positions, const double *force,
+void fem_trouble_find(FemTroubleWatch *watch, const double *positions, const double *force,
                       const double *det_F, const double *overlap, FemTroubleState *state) {
   *state = (FemTroubleState){.first = {-1, -1, -1, -1, -1}, .passed = {-1, -1}};
   look_at_elements(watch, det_F, overlap, state);
@@ -223,8 +223,8 @@ void fem_trouble_place(const FemTrouble *trouble, const FemModel *model, FemTrou
            kinds[kind].unit, first, body, trouble->of[kind].most, trouble->of[kind].steps);
 }
 
-void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
-                      size_t size) {
+void fem_trouble_describe(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
+                          size_t size) {
   char place[256];
   fem_trouble_place(trouble, model, kind, place, sizeof place);
   snprintf(text, size, "%s: %s (%s)", kinds[kind].what, place, kinds[kind].advice);

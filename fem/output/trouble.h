@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What strikes a run without ending it: elements turned inside out, elements wholly covered by another body,
-// contact forces that pull, energy out of nothing. Found in every accepted state, marked by element and
-// vertex for the frames, counted for history.csv, summary.json and the run's last line.
+// Faults in a run that do not end it: inverted elements, elements wholly covered by another body, contact
+// forces that pull, a gain of energy, bodies that passed through each other. Found in every accepted state,
+// marked by element and vertex in the frames, counted in history.csv, summary.json and the run's last line.
 #ifndef TETLAP_FEM_OUTPUT_TROUBLE_H
 #define TETLAP_FEM_OUTPUT_TROUBLE_H
 
@@ -43,8 +43,8 @@ typedef struct FemTroubleState {
 // A run.
 typedef struct FemTrouble {
   struct {
-    long long steps;   // accepted states in which it struck
-    long long events;  // of them, those that it had not struck in the state before
+    long long steps;   // accepted states that have it
+    long long events;  // of them, those whose predecessor does not have it
     int most;          // elements or vertices in one state
     double first_time; // [s]
     int first;         // the first element or vertex
@@ -57,13 +57,13 @@ typedef struct FemTrouble {
   double smallest_step; // [s]; INFINITY: none yet
 } FemTrouble;
 
-// Looks for trouble; of a model.
+// What finding trouble in a model needs.
 typedef struct FemTroubleWatch {
   const FemModel *model; // borrowed
   int (*triangles)[3];   // surface of all bodies, outwards     (triangle_count); none without contact
   int triangle_count;
   double *normals;  // scratch: of vertices, by area         (vertex_count, 3)
-  int *marks;       // of the state looked at last           (tet_count)
+  int *marks;       // of the last state                     (tet_count)
   int *is_wrongway; // likewise                              (vertex_count)
   // Of quadratic elements with the potential `field`: pressure leaves next to nothing there, and of either
   // sign.
@@ -74,13 +74,13 @@ typedef struct FemTroubleWatch {
 Status fem_trouble_watch_create(FemTroubleWatch *watch, const FemModel *model);
 void fem_trouble_watch_destroy(FemTroubleWatch *watch); // also of a zeroed one
 
-// A state: positions and contact forces (vertex_count, 3), det F and covered share of the rest volume
-// (tet_count); `force` NULL: no contact.
-void fem_trouble_look(FemTroubleWatch *watch, const double *positions, const double *force,
+// Finds the trouble of a state: positions and contact forces (vertex_count, 3), det F and covered share of
+// the rest volume (tet_count); `force` NULL: no contact.
+void fem_trouble_find(FemTroubleWatch *watch, const double *positions, const double *force,
                       const double *det_F, const double *overlap, FemTroubleState *state);
 
 FemTrouble fem_trouble_begin(const FemModel *model);
-// Adds an accepted state; whether trouble began in it that was not there in the state before.
+// Adds an accepted state. Returns whether it has a kind of trouble that the state before it has not.
 bool fem_trouble_add(FemTrouble *trouble, double time, const FemTroubleState *state);
 
 // What a kind of trouble is, and what to do against it.
@@ -90,8 +90,8 @@ const char *fem_trouble_advice(FemTroubleKind kind);
 void fem_trouble_place(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
                        size_t size);
 // All three on one line: "what: place (advice)".
-void fem_trouble_tell(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
-                      size_t size);
+void fem_trouble_describe(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
+                          size_t size);
 void fem_trouble_record(const FemTrouble *trouble, Record *record);
 
 #endif

@@ -222,7 +222,7 @@ static bool has_sleeper(const FemRest *rest, const bool *is_held) {
 
 // ---- Applying the decision.
 
-static Status tell_contact(const FemRest *rest, const FemState *state, double step, const bool *is_held) {
+static Status hold_contact(const FemRest *rest, const FemState *state, double step, const bool *is_held) {
   fem_system_forget(rest->system);
   return contact_system_hold(rest->contact, state->time, state->positions, state->velocities, step, is_held);
 }
@@ -254,11 +254,11 @@ static void adopt(FemRest *rest, double time) {
 static Status change(FemRest *rest, const FemState *state, double step) {
   bool concerns_contact = has_sleeper(rest, rest->is_held) || has_sleeper(rest, rest->next_held);
   if (concerns_contact) {
-    TRY(tell_contact(rest, state, step, NULL));
+    TRY(hold_contact(rest, state, step, NULL));
     decide(rest, state->time);
   }
   adopt(rest, state->time);
-  return has_sleeper(rest, rest->is_held) ? tell_contact(rest, state, step, rest->is_held) : STATUS_OK;
+  return has_sleeper(rest, rest->is_held) ? hold_contact(rest, state, step, rest->is_held) : STATUS_OK;
 }
 
 static void count_time(FemRest *rest, double time) {
@@ -273,7 +273,7 @@ static Status restore(FemRest *rest, const FemState *state, double step) {
   for (int p = rest->body_count; p < rest->party_count; p++)
     rest->is_held[p] = next_change(rest, p, state->time) > state->time;
   find_next_change(rest, state->time);
-  return has_sleeper(rest, rest->is_held) ? tell_contact(rest, state, step, rest->is_held) : STATUS_OK;
+  return has_sleeper(rest, rest->is_held) ? hold_contact(rest, state, step, rest->is_held) : STATUS_OK;
 }
 
 Status fem_rest_decide(FemRest *rest, double step) {

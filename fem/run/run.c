@@ -88,7 +88,7 @@ static Status release(FemRunState *run) {
   return numbering->count == count ? STATUS_OK : fem_system_renumber(&run->system);
 }
 
-static void tell_overlaps(const FemSystem *system) {
+static void warn_of_overlaps(const FemSystem *system) {
   char text[512];
   for (int i = 0; (i = fem_run_start_overlap(system, i, text, sizeof text)) >= 0; i++)
     log_warning("%s", text);
@@ -103,7 +103,7 @@ static Status begin_record(FemRunState *run) {
                   fem_model_strain_energy(run->model, FEM_ROUNDING));
   fem_run_frames_keep_extremes(run->result, &measures);
   fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
-  if (!run->options->from) tell_overlaps(&run->system);
+  if (!run->options->from) warn_of_overlaps(&run->system);
   // Files of an earlier run in this folder are about to be replaced: all of them go, the checkpoint too.
   if (!run->options->from) {
     TRY(fem_recorder_clear(&run->recorder));
@@ -177,13 +177,13 @@ static void end_part(FemRunState *run) {
   FemRunResult *result = run->result;
   fem_run_stage_end(run);
   if (run->system.model) fem_run_result_add_system(result, &run->system);
-  fem_run_result_add_rest(result, run->rest);
-  result->phases.output += run->recorder.seconds;
+  fem_rest_report(run->rest, result->counters);
+  result->cost.phases.output += run->recorder.seconds;
   run->recorder.seconds = 0;
   const double wall = clock_wall_s(), cpu = clock_cpu_s(), inside = ranks()->stats()->inside_s;
-  result->wall_s += wall - run->began_s;
-  result->cpu_s += cpu - run->cpu_began_s;
-  result->work_s += cpu - run->cpu_began_s - (inside - run->inside_began_s);
+  result->cost.wall_s += wall - run->began_s;
+  result->cost.cpu_s += cpu - run->cpu_began_s;
+  result->cost.work_s += cpu - run->cpu_began_s - (inside - run->inside_began_s);
   run->began_s = wall;
   run->cpu_began_s = cpu;
   run->inside_began_s = inside;
@@ -222,26 +222,28 @@ static Status march(FemRunState *run) {
 static Status keep_account(FemRunState *run) {
   FemRunResult *result = run->result;
   const FemLedger *ledger = &run->recorder.ledger;
-  result->account = record_new();
-  if (!result->account) return status_no_memory("the summary");
-  fem_ledger_record(ledger, result->account);
-  while (result->told_count < FEM_RUN_TOLD_COUNT &&
-         fem_ledger_tell(ledger, result->told_count, result->told[result->told_count], sizeof *result->told))
-    result->told_count++;
+  result->account.record = record_new();
+  if (!result->account.record) return status_no_memory("the summary");
+  fem_ledger_record(ledger, result->account.record);
+  while (result->account.contact_count < FEM_RUN_DESCRIBED_COUNT &&
+         fem_ledger_describe(ledger, result->account.contact_count,
+                             result->account.contacts[result->account.contact_count],
+                             sizeof *result->account.contacts))
+    result->account.contact_count++;
   return STATUS_OK;
 }
 
 static Status collect(FemRunState *run, Status status) {
   FemRunResult *result = run->result;
   end_part(run);
-  result->audit = run->audit;
+  result->energy.audit = run->audit;
   result->end_time = run->time;
-  result->peak_rss_bytes = memory_peak_bytes();
+  result->cost.peak_rss_bytes = memory_peak_bytes();
   result->state_unknowns = (result->is_static ? 1 : 2) * run->system.numbering.count;
-  result->phases.analysis = result->solver.analyse_s;
-  result->phases.factorisation = result->solver.factorise_s;
-  result->phases.solve = result->solver.solve_s;
-  result->phases.total = result->wall_s;
+  result->cost.phases.analysis = result->matrix.solver.analyse_s;
+  result->cost.phases.factorisation = result->matrix.solver.factorise_s;
+  result->cost.phases.solve = result->matrix.solver.solve_s;
+  result->cost.phases.total = result->cost.wall_s;
   if (!status) fem_run_spread_collect(run, result); // else others may be elsewhere
   if (!run->recorder.system) return STATUS_OK;
   if (run->system.model) TRY(keep_account(run)); // else a new part could not be begun
@@ -260,11 +262,11 @@ static Status begin_result(FemRunState *run) {
   result->trouble.sliver_count = now.sliver_count;
   result->trouble.worst_sliver = now.worst_sliver;
   result->trouble.worst_shape = now.worst_shape;
-  result->solver_name = fem_solver_name(fem_run_choice(run->model, NULL).kind);
+  result->matrix.solver_name = fem_solver_name(fem_run_choice(run->model, NULL).kind);
   result->is_static = run->model->scene->is_static;
   bool has_contact = run->model->scene->contact.is_on;
   double told = has_contact || result->is_static ? 0 : FEM_WITHOUT_CONTACT * run->model->scene->tolerance;
-  result->energy_bounds = fem_audit_bounds(has_contact, fem_model_strain_energy(run->model, told));
+  result->energy.bounds = fem_audit_bounds(has_contact, fem_model_strain_energy(run->model, told));
   return STATUS_OK;
 }
 

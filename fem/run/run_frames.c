@@ -12,40 +12,42 @@
 
 static void keep_frame(FemRunState *run, double time) {
   FemRunResult *result = run->result;
-  if (!result->trajectory) return;
-  int frame = result->frame_count++;
-  size_t values = 3 * (size_t)result->vertex_count;
-  result->frame_times[frame] = time;
-  memcpy(result->trajectory + (size_t)frame * values, run->trial.positions, values * sizeof(double));
+  if (!result->trajectory.positions) return;
+  int frame = result->trajectory.frame_count++;
+  size_t values = 3 * (size_t)result->trajectory.vertex_count;
+  result->trajectory.times[frame] = time;
+  memcpy(result->trajectory.positions + (size_t)frame * values, run->trial.positions,
+         values * sizeof(double));
   void *effect = fem_system_effect(&run->system, &fem_effect_contact);
   if (!effect) return;
   int count;
   contact_system_interfaces(fem_effect_contact_system(effect), &count);
   for (int i = 0; i < count; i++)
-    vec3_store(result->interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i),
+    vec3_store(result->trajectory.interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i),
                vec3_at(run->recorder.forces.interfaces[i]));
 }
 
 void fem_run_frames_keep_extremes(FemRunResult *result, const FemMeasures *measures) {
-  result->pairs_max = measures->active_pairs > result->pairs_max ? measures->active_pairs : result->pairs_max;
-  result->overlap_volume_max = fmax(result->overlap_volume_max, measures->overlap_volume);
-  result->contact_force_max = fmax(result->contact_force_max, measures->contact_force);
-  result->peak_since_row = fmax(result->peak_since_row, measures->contact_force);
-  result->deepest_overlap_max = fmax(result->deepest_overlap_max, measures->deepest_overlap);
+  result->contact.pairs_max =
+      measures->active_pairs > result->contact.pairs_max ? measures->active_pairs : result->contact.pairs_max;
+  result->contact.overlap_volume_max = fmax(result->contact.overlap_volume_max, measures->overlap_volume);
+  result->contact.force_max = fmax(result->contact.force_max, measures->contact_force);
+  result->contact.force_since_row = fmax(result->contact.force_since_row, measures->contact_force);
+  result->contact.deepest_overlap_max = fmax(result->contact.deepest_overlap_max, measures->deepest_overlap);
   result->min_det_F = fmin(result->min_det_F, measures->min_det_F);
-  result->momentum_gap = measures->momentum_gap;
-  result->momentum_body = measures->momentum_body;
+  result->momentum.gap = measures->momentum_gap;
+  result->momentum.body = measures->momentum_body;
 }
 
 static void keep_status(FemRunState *run) {
   FemRunResult *result = run->result;
-  result->has_status = run->recorder.has_status;
-  if (!result->has_status) return;
+  result->status.is_asked = run->recorder.has_status;
+  if (!result->status.is_asked) return;
   const ContactStatusCounts *pairs = &run->recorder.status->pairs;
-  result->status_pairs.asked += pairs->asked;
-  result->status_pairs.overlapping += pairs->overlapping;
-  result->status_pairs.false_positives += pairs->false_positives;
-  result->status_pairs.false_negatives += pairs->false_negatives;
+  result->status.pairs.asked += pairs->asked;
+  result->status.pairs.overlapping += pairs->overlapping;
+  result->status.pairs.false_positives += pairs->false_positives;
+  result->status.pairs.false_negatives += pairs->false_negatives;
 }
 
 static FemColumnSource source_of(const FemRunState *run, const FemState *state, const FemMeasures *measures,
@@ -63,12 +65,12 @@ Status fem_run_frames_write(FemRunState *run, double time, const FemMeasures *me
   FemAudit audit = run->audit;
   if (time > audit.time) audit = fem_audit_next_within(&audit, time, &measures->energy, run->least_power);
   FemMeasures shown = *measures;
-  shown.peak_force = run->result->peak_since_row;
-  run->result->peak_since_row = 0;
+  shown.peak_force = run->result->contact.force_since_row;
+  run->result->contact.force_since_row = 0;
   const FemState state = fem_state_beside(&run->trial, time);
   const FemColumnSource source = source_of(run, &state, &shown, &audit, &stats);
   TRY(fem_recorder_write(&run->recorder, &source));
-  run->result->last_contact_force = measures->contact_force;
+  run->result->contact.force_last = measures->contact_force;
   keep_status(run);
   keep_frame(run, time);
   run->next_frame++;
@@ -113,13 +115,14 @@ static Status keep_names(FemRunResult *result, void *effect) {
   enum { NAME_SIZE = 256 };
   int count;
   const ContactInterface *interfaces = contact_system_interfaces(fem_effect_contact_system(effect), &count);
-  result->interface_names = memory_zeroed((size_t)count, sizeof *result->interface_names);
-  if (!result->interface_names) return status_no_memory("the names of interfaces");
-  result->interface_count = count;
+  result->trajectory.interface_names =
+      memory_zeroed((size_t)count, sizeof *result->trajectory.interface_names);
+  if (!result->trajectory.interface_names) return status_no_memory("the names of interfaces");
+  result->trajectory.interface_count = count;
   for (int i = 0; i < count; i++) {
-    result->interface_names[i] = memory_zeroed(NAME_SIZE, 1);
-    if (!result->interface_names[i]) return status_no_memory("the names of interfaces");
-    snprintf(result->interface_names[i], NAME_SIZE, "%s, %s",
+    result->trajectory.interface_names[i] = memory_zeroed(NAME_SIZE, 1);
+    if (!result->trajectory.interface_names[i]) return status_no_memory("the names of interfaces");
+    snprintf(result->trajectory.interface_names[i], NAME_SIZE, "%s, %s",
              fem_effect_contact_name(effect, interfaces[i].a),
              fem_effect_contact_name(effect, interfaces[i].b));
   }
@@ -131,11 +134,13 @@ static Status keep_trajectory(FemRunState *run) {
   void *effect = fem_system_effect(&run->system, &fem_effect_contact);
   if (effect) TRY(keep_names(result, effect));
   size_t frames = (size_t)run->model->scene->frames + 1;
-  result->vertex_count = run->model->vertex_count;
-  result->frame_times = memory_zeroed(frames, sizeof(double));
-  result->trajectory = memory_zeroed(frames * 3 * (size_t)result->vertex_count, sizeof(double));
-  result->interface_forces = memory_zeroed(frames * 3 * (size_t)result->interface_count, sizeof(double));
-  bool ok = result->frame_times && result->trajectory && result->interface_forces;
+  result->trajectory.vertex_count = run->model->vertex_count;
+  result->trajectory.times = memory_zeroed(frames, sizeof(double));
+  result->trajectory.positions =
+      memory_zeroed(frames * 3 * (size_t)result->trajectory.vertex_count, sizeof(double));
+  result->trajectory.interface_forces =
+      memory_zeroed(frames * 3 * (size_t)result->trajectory.interface_count, sizeof(double));
+  bool ok = result->trajectory.times && result->trajectory.positions && result->trajectory.interface_forces;
   return ok ? STATUS_OK : status_no_memory("the kept trajectory");
 }
 

@@ -5,8 +5,8 @@
 
 #include "fem/run/run_state.h"
 
-// One step of load, halved where there is no equilibrium: taken, measured, shown, told. The run's `next_step`
-// is what to try next. STATUS_SOLVER: it has become too short; STATUS_INTERRUPTED.
+// One step of load, halved where there is no equilibrium: solved, measured, written, observed. The run's
+// `next_step` is what to try next. STATUS_SOLVER: it has become too short; STATUS_INTERRUPTED.
 Status fem_run_load_advance(FemRunState *run);
 
 #endif

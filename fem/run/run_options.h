@@ -13,13 +13,12 @@ typedef struct FemRunProgress {
   double time, end;  // [s]
   double step;       // last step size [s]
   long long step_count;
-  int active_pairs;
   const FemMeasures *measures; // of this state; borrowed
   const FemAudit *audit;       // borrowed
-  double energy_rise;          // how far the audited total stands above an earlier value, as a share …
-  double energy_bound;         // … of the scene's energy, and what it may
-  const FemTrouble *trouble;   // so far; borrowed
-  bool has_trouble_begun;      // in this step
+  double energy_rise;        // of the audited total above its lowest value, as a share of the scene's energy
+  double energy_bound;       // what that may be at most
+  const FemTrouble *trouble; // so far; borrowed
+  bool has_trouble_begun;    // in this step
 } FemRunProgress;
 
 typedef struct FemRunOptions {

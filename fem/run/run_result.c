@@ -47,45 +47,42 @@ static void add_pairs(ContactPairCounts *total, const ContactPairCounts *part) {
 
 static void add_contact(FemRunResult *result, const ContactSystem *system) {
   const ContactCounters *counters = contact_system_counters(system);
-  result->has_contact = true;
-  result->asks_model = contact_system_asks_model(system);
-  result->phases.broad_phase += counters->broad_s;
-  result->phases.overlap += counters->overlap_s;
-  result->phases.contact += counters->force_s + counters->update_s;
-  add_pairs(&result->pairs, &counters->pairs);
+  result->contact.is_on = true;
+  result->contact.asks_model = contact_system_asks_model(system);
+  result->cost.phases.broad_phase += counters->broad_s;
+  result->cost.phases.overlap += counters->overlap_s;
+  result->cost.phases.contact += counters->force_s + counters->update_s;
+  add_pairs(&result->contact.pairs, &counters->pairs);
 }
 
 void fem_run_result_add_system(FemRunResult *result, const FemSystem *system) {
   void *contact = fem_system_effect(system, &fem_effect_contact);
   if (contact) add_contact(result, fem_effect_contact_system(contact));
-  result->pattern_layouts += system->pattern_version;
+  result->matrix.layouts += system->pattern_version;
   result->effect_count = system->effect_count;
-  result->assemblies = 0;
+  result->matrix.assemblies = 0;
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffect *effect = &system->effects[i];
-    if (effect->self != contact) result->phases.forces += system->costs[i].force_s;
-    result->phases.assembly += system->costs[i].jacobian_s;
-    if (effect->self != contact) result->phases.contact += system->costs[i].prepare_s;
+    if (effect->self != contact) result->cost.phases.forces += system->costs[i].force_s;
+    result->cost.phases.assembly += system->costs[i].jacobian_s;
+    if (effect->self != contact) result->cost.phases.contact += system->costs[i].prepare_s;
     result->effects[i].name = effect->ops->name;
     add_cost(&result->effects[i].cost, &system->costs[i]);
-    if (result->effects[i].cost.jacobian_calls > result->assemblies)
-      result->assemblies = result->effects[i].cost.jacobian_calls;
+    if (result->effects[i].cost.jacobian_calls > result->matrix.assemblies)
+      result->matrix.assemblies = result->effects[i].cost.jacobian_calls;
     if (effect->ops->report) effect->ops->report(effect->self, &system->accepted, result->counters);
   }
 }
 
-void fem_run_result_add_rest(FemRunResult *result, const FemRest *rest) {
-  fem_rest_report(rest, result->counters);
-}
-
 void fem_run_result_destroy(FemRunResult *result) {
   if (result->counters) record_destroy(result->counters);
-  if (result->account) record_destroy(result->account);
-  for (int i = 0; i < result->interface_count; i++) memory_free(result->interface_names[i]);
-  memory_free(result->interface_names);
-  memory_free(result->frame_times);
-  memory_free(result->trajectory);
-  memory_free(result->interface_forces);
+  if (result->account.record) record_destroy(result->account.record);
+  for (int i = 0; i < result->trajectory.interface_count; i++)
+    memory_free(result->trajectory.interface_names[i]);
+  memory_free(result->trajectory.interface_names);
+  memory_free(result->trajectory.times);
+  memory_free(result->trajectory.positions);
+  memory_free(result->trajectory.interface_forces);
   *result = (FemRunResult){0};
 }
 
@@ -114,7 +111,7 @@ const char *fem_run_outcome(const FemRunResult *result, Status status) {
   return result->trouble.of[FEM_TROUBLE_PASSED].steps > 0 ? "passed through" : "finished";
 }
 
-void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size) {
+void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size) {
   const FemTrouble *trouble = &result->trouble;
   size_t used = 0;
   text[0] = 0;
@@ -131,39 +128,39 @@ void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, cha
              trouble->worst_sliver);
     append_trouble(text, size, &used, "slivers in the mesh", place, "mesh it anew");
   }
-  if (!(result->momentum_gap <= FEM_MOMENTUM)) {
+  if (!(result->momentum.gap <= FEM_MOMENTUM)) {
     snprintf(place, sizeof place, "of body '%s' by %.2g %% of all impulses",
-             model->bodies[result->momentum_body].name, 100 * result->momentum_gap);
+             model->bodies[result->momentum.body].name, 100 * result->momentum.gap);
     append_trouble(text, size, &used, "forces and motion differ", place,
                    "try a smaller time.tolerance or time.max_step");
   }
-  if ((double)result->pairs.beyond > FEM_DOUBT * (double)result->pairs.tried) {
-    snprintf(place, sizeof place, "%lld of %lld", result->pairs.beyond, result->pairs.tried);
+  if ((double)result->contact.pairs.beyond > FEM_DOUBT * (double)result->contact.pairs.tried) {
+    snprintf(place, sizeof place, "%lld of %lld", result->contact.pairs.beyond, result->contact.pairs.tried);
     append_trouble(text, size, &used, "pairs beyond the network's training", place,
                    "try contact.overlap: clip");
   }
   if (used == 0) append_line(text, size, &used, "none");
 }
 
-void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size) {
+void fem_run_describe_statistics(const FemRunResult *result, char *text, size_t size) {
   const struct {
     const char *what;
     long long count;
-  } rows[] = {{"steps taken back for their energy", result->energy_retries},
-              {"steps taken back for their momentum", result->momentum_retries},
-              {"steps taken back at a reversal of slip", result->slip_retries},
+  } rows[] = {{"steps taken back for their energy", result->retries.energy},
+              {"steps taken back for their momentum", result->retries.momentum},
+              {"steps taken back at a reversal of slip", result->retries.slip},
               {"steps without convergence", result->integrator.newton_failures},
-              {"failed factorisations", result->solver.failed_factorisations},
-              {"enclosed pairs", result->pairs.enclosed},
-              {"pairs answered by a more careful model", result->pairs.fallbacks},
-              {"pairs beyond the network's training", result->pairs.beyond},
-              {"pairs with a volume that no two such tetrahedra share", result->pairs.unsound}};
+              {"failed factorisations", result->matrix.solver.failed_factorisations},
+              {"enclosed pairs", result->contact.pairs.enclosed},
+              {"pairs answered by a more careful model", result->contact.pairs.fallbacks},
+              {"pairs beyond the network's training", result->contact.pairs.beyond},
+              {"pairs with a volume that no two such tetrahedra share", result->contact.pairs.unsound}};
   size_t used = 0;
   text[0] = 0;
   append_line(text, size, &used, "smallest det F %.3f (1: undeformed, 0: an element is flat)",
               result->min_det_F);
   if (!result->is_static)
-    append_line(text, size, &used, "forces and motion agree to %.1e of all impulses", result->momentum_gap);
+    append_line(text, size, &used, "forces and motion agree to %.1e of all impulses", result->momentum.gap);
   if (isfinite(result->trouble.smallest_step))
     append_line(text, size, &used, "shortest step %.1e s", result->trouble.smallest_step);
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
@@ -194,18 +191,18 @@ static void summarise_counters(const FemRunResult *result, Record *record) {
   record_integer(record, "residuals", stats->residuals);
   record_integer(record, "restarts", stats->restarts);
   record_integer(record, "state_unknowns", result->state_unknowns);
-  record_integer(record, "energy_retries", result->energy_retries);
-  record_integer(record, "momentum_retries", result->momentum_retries);
-  record_integer(record, "slip_retries", result->slip_retries);
-  record_integer(record, "pattern_layouts", result->pattern_layouts);
-  record_integer(record, "matrix_assemblies", result->assemblies);
-  record_integer(record, "analyses", result->solver.analyses);
-  record_integer(record, "factorisations", result->solver.factorisations);
-  record_integer(record, "failed_factorisations", result->solver.failed_factorisations);
-  record_integer(record, "hierarchies", result->solver.hierarchies);
-  record_integer(record, "linear_solves", result->solver.solves);
-  record_integer(record, "linear_iterations", result->solver.iterations);
-  record_whole(record, "factor_entries", result->solver.factor_entries);
+  record_integer(record, "energy_retries", result->retries.energy);
+  record_integer(record, "momentum_retries", result->retries.momentum);
+  record_integer(record, "slip_retries", result->retries.slip);
+  record_integer(record, "pattern_layouts", result->matrix.layouts);
+  record_integer(record, "matrix_assemblies", result->matrix.assemblies);
+  record_integer(record, "analyses", result->matrix.solver.analyses);
+  record_integer(record, "factorisations", result->matrix.solver.factorisations);
+  record_integer(record, "failed_factorisations", result->matrix.solver.failed_factorisations);
+  record_integer(record, "hierarchies", result->matrix.solver.hierarchies);
+  record_integer(record, "linear_solves", result->matrix.solver.solves);
+  record_integer(record, "linear_iterations", result->matrix.solver.iterations);
+  record_whole(record, "factor_entries", result->matrix.solver.factor_entries);
 }
 
 // A row for each effect that there was.
@@ -249,43 +246,43 @@ static void summarise_ranks(const FemRunSpread *spread, Record *record) {
 
 void fem_run_summarise(const FemRunResult *result, Record *summary) {
   record_number(summary, "end_time", result->end_time);
-  record_number(summary, "wall_s", result->wall_s);
-  record_number(summary, "cpu_s", result->cpu_s);
+  record_number(summary, "wall_s", result->cost.wall_s);
+  record_number(summary, "cpu_s", result->cost.cpu_s);
   record_integer(summary, "steps", result->integrator.steps);
-  record_text(summary, "solver", result->solver_name);
-  summarise_phases(&result->phases, record_child(summary, "phases"));
+  record_text(summary, "solver", result->matrix.solver_name);
+  summarise_phases(&result->cost.phases, record_child(summary, "phases"));
   summarise_effects(result, record_child(summary, "effects"));
-  record_integer(summary, "pairs_max", result->pairs_max);
-  if (result->has_contact) record_bool(summary, "uses_overlap_model", result->asks_model);
-  record_number(summary, "overlap_volume_max", result->overlap_volume_max);
-  record_number(summary, "deepest_overlap_max", result->deepest_overlap_max);
-  record_number(summary, "contact_force_max", result->contact_force_max);
-  record_number(summary, "contact_force_last", result->last_contact_force);
-  record_number(summary, "energy_gain_relative", result->audit.gain / result->audit.scale);
-  record_number(summary, "energy_scale", result->audit.scale);
-  record_number(summary, "energy_gain_allowed", result->energy_bounds.run);
-  record_number(summary, "energy_lost_J", fem_audit_lost(&result->audit));
-  record_number(summary, "energy_dissipated_J", result->audit.dissipated);
-  if (result->is_static) record_number(summary, "energy_open_J", result->audit.open);
+  record_integer(summary, "pairs_max", result->contact.pairs_max);
+  if (result->contact.is_on) record_bool(summary, "uses_overlap_model", result->contact.asks_model);
+  record_number(summary, "overlap_volume_max", result->contact.overlap_volume_max);
+  record_number(summary, "deepest_overlap_max", result->contact.deepest_overlap_max);
+  record_number(summary, "contact_force_max", result->contact.force_max);
+  record_number(summary, "contact_force_last", result->contact.force_last);
+  record_number(summary, "energy_gain_relative", result->energy.audit.gain / result->energy.audit.scale);
+  record_number(summary, "energy_scale", result->energy.audit.scale);
+  record_number(summary, "energy_gain_allowed", result->energy.bounds.run);
+  record_number(summary, "energy_lost_J", fem_audit_lost(&result->energy.audit));
+  record_number(summary, "energy_dissipated_J", result->energy.audit.dissipated);
+  if (result->is_static) record_number(summary, "energy_open_J", result->energy.audit.open);
   if (!result->is_static) {
-    record_number(summary, "energy_uncertain_J", result->audit.uncertain);
-    record_number(summary, "momentum_gap", result->momentum_gap);
+    record_number(summary, "energy_uncertain_J", result->energy.audit.uncertain);
+    record_number(summary, "momentum_gap", result->momentum.gap);
     record_number(summary, "momentum_gap_allowed", FEM_MOMENTUM);
   }
   record_number(summary, "min_det_F", result->min_det_F);
   fem_trouble_record(&result->trouble, record_child(summary, "trouble"));
   if (result->is_static) {
     Record *equilibrium = record_child(summary, "equilibrium");
-    record_number(equilibrium, "residual_N", result->residual);
-    record_number(equilibrium, "residual_allowed_N", result->residual_allowed);
-    record_integer(equilibrium, "relaxation_steps", result->relaxation_steps);
-    record_integer(equilibrium, "halvings", result->halvings);
-    record_integer(equilibrium, "loose", result->loose);
+    record_number(equilibrium, "residual_N", result->equilibrium.residual);
+    record_number(equilibrium, "residual_allowed_N", result->equilibrium.residual_allowed);
+    record_integer(equilibrium, "relaxation_steps", result->equilibrium.relaxation_steps);
+    record_integer(equilibrium, "halvings", result->equilibrium.halvings);
+    record_integer(equilibrium, "loose", result->equilibrium.loose);
   }
-  if (result->has_status) summarise_status(&result->status_pairs, record_child(summary, "status"));
-  record_integer(summary, "peak_rss_bytes", (long long)result->peak_rss_bytes);
+  if (result->status.is_asked) summarise_status(&result->status.pairs, record_child(summary, "status"));
+  record_integer(summary, "peak_rss_bytes", (long long)result->cost.peak_rss_bytes);
   if (result->spread.rank_count > 0) summarise_ranks(&result->spread, record_child(summary, "ranks"));
-  record_merge(summary, result->account);
+  record_merge(summary, result->account.record);
   Record *counters = record_child(summary, "counters");
   summarise_counters(result, counters);
   record_merge(counters, result->counters);

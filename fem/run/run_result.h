@@ -18,7 +18,7 @@ typedef struct FemRunPhases {
   double broad_phase, overlap, contact, forces, assembly, analysis, factorisation, solve, output, total;
 } FemRunPhases;
 
-enum { FEM_RUN_TOLD_COUNT = 3, FEM_RUN_SPREAD_COUNT = 18 };
+enum { FEM_RUN_DESCRIBED_COUNT = 3, FEM_RUN_SPREAD_COUNT = 18 };
 
 // Over the ranks that shared the run, of what the names say.
 typedef struct FemRunSpread {
@@ -26,63 +26,105 @@ typedef struct FemRunSpread {
   double least[FEM_RUN_SPREAD_COUNT], mean[FEM_RUN_SPREAD_COUNT], most[FEM_RUN_SPREAD_COUNT];
 } FemRunSpread;
 
-// Counts of a part of the run between two checkpoints are added to those before. Whoever adds a number adds
-// it to numbers[] in fem/run/checkpoint/numbers.c and to fem_run_result_add as well.
-typedef struct FemRunResult {
+typedef struct FemRunCost {
   double wall_s, cpu_s;
   double work_s; // processor time outside of MPI
-  FemRunPhases phases;
-  FemIntegratorStats integrator;
-  FemSolverStats solver;
-  const char *solver_name;
-  long long assemblies;       // of K, or K and D apart: how often the elements' matrices were added up
-  long long pattern_layouts;  // how often the matrix pattern was laid out
-  long long energy_retries;   // steps taken back because they gained energy
-  long long momentum_retries; // … because forces and motion differed
-  long long slip_retries;     // … because what slipped had turned within them
-  FemAudit audit;
-  FemAuditBounds energy_bounds;
-  FemTrouble trouble;
-  double end_time;                  // reached [s]
-  bool has_status;                  // the scene asked who overlaps
-  ContactStatusCounts status_pairs; // summed over the frames
-  ContactPairCounts pairs;          // handed to the overlap model over the whole run
-  bool has_contact, asks_model;     // of contact; whether any of it asks an overlap model
-  int state_unknowns;               // displacements, and in a motion as many velocities
-  bool is_static;
-  double residual, residual_allowed; // of the last equilibrium: largest force on an unknown [N]
-  long long relaxation_steps, halvings, loose;
-  int pairs_max;
-  double overlap_volume_max, contact_force_max, min_det_F, deepest_overlap_max;
-  double peak_since_row;     // largest interface force in the steps since the last row of the history [N]
-  double momentum_gap;       // over the run, of the body where it is largest (fem/measure/momentum.h)
-  int momentum_body;         // that body
-  double last_contact_force; // largest interface force at the last frame [N]
   size_t peak_rss_bytes;
+  FemRunPhases phases;
+} FemRunCost;
+
+typedef struct FemRunMatrix {
+  const char *solver_name;
+  FemSolverStats solver;
+  long long assemblies; // of K, or K and D apart: how often the elements' matrices were added up
+  long long layouts;    // how often the pattern was laid out
+} FemRunMatrix;
+
+// Steps that were taken back.
+typedef struct FemRunRetries {
+  long long energy;   // they gained energy
+  long long momentum; // forces and motion differed
+  long long slip;     // what slipped had turned within them
+} FemRunRetries;
+
+typedef struct FemRunEnergy {
+  FemAudit audit;
+  FemAuditBounds bounds;
+} FemRunEnergy;
+
+typedef struct FemRunMomentum {
+  double gap; // over the run, of the body where it is largest (fem/measure/momentum.h)
+  int body;   // that body
+} FemRunMomentum;
+
+// Of the last equilibrium of a static scene, and on the way there.
+typedef struct FemRunEquilibrium {
+  double residual, residual_allowed; // largest force on an unknown [N]
+  long long relaxation_steps, halvings, loose;
+} FemRunEquilibrium;
+
+typedef struct FemRunContact {
+  bool is_on, asks_model;  // whether any of it asks an overlap model
+  ContactPairCounts pairs; // handed to the overlap model
+  int pairs_max;
+  double overlap_volume_max, deepest_overlap_max;
+  double force_max;       // of an interface [N]
+  double force_last;      // the largest at the last frame [N]
+  double force_since_row; // the largest in the steps since the last row of the history [N]
+} FemRunContact;
+
+typedef struct FemRunStatus {
+  bool is_asked;             // by the scene: who overlaps
+  ContactStatusCounts pairs; // summed over the frames
+} FemRunStatus;
+
+typedef struct FemRunAccount {
+  Record *record; // contacts and probes as in summary.json, owned; NULL: the run has not begun
+  // The pairs of bodies that pressed hardest, described with the error of contact
+  char contacts[FEM_RUN_DESCRIBED_COUNT][512]; //                               (contact_count)
+  int contact_count;
+} FemRunAccount;
+
+// With keep_trajectory.
+typedef struct FemRunTrajectory {
+  int frame_count, vertex_count, interface_count;
+  char **interface_names;   // "a, b", owned                       (interface_count)
+  double *times;            //                                     (frame_count)
+  double *positions;        // [m]                                 (frame_count, vertex_count, 3)
+  double *interface_forces; // on the first side [N]               (frame_count, interface_count, 3)
+} FemRunTrajectory;
+
+// Counts of a part of the run between two checkpoints are added to those before. Whoever adds a number adds
+// it to numbers[] in fem/run/checkpoint/numbers.c as well.
+typedef struct FemRunResult {
+  double end_time; // reached [s]
+  bool is_static;
+  int state_unknowns; // displacements, and in a motion as many velocities
+  double min_det_F;
+  FemRunCost cost;
+  FemIntegratorStats integrator;
+  FemRunMatrix matrix;
+  FemRunRetries retries;
+  FemRunEnergy energy;
+  FemRunMomentum momentum;
+  FemRunEquilibrium equilibrium;
+  FemRunContact contact;
+  FemRunStatus status;
+  FemTrouble trouble;
   FemRunSpread spread; // since this process began
   Record *counters;    // owned
-  Record *account;     // contacts and probes as in summary.json, owned; NULL: the run has not begun
-  // On each of the two that pressed most, lines that say how wrong they may be             (told_count)
-  char told[FEM_RUN_TOLD_COUNT][512];
-  int told_count;
+  FemRunAccount account;
+  FemRunTrajectory trajectory;
   int effect_count; // those that the scene called for
   struct {
     const char *name; // borrowed
     FemEffectCost cost;
   } effects[FEM_MAX_EFFECTS]; //                                  (effect_count)
-  // With keep_trajectory:
-  int frame_count, vertex_count, interface_count;
-  char **interface_names;   // "a, b", owned                       (interface_count)
-  double *frame_times;      //                                     (frame_count)
-  double *trajectory;       // positions [m]                       (frame_count, vertex_count, 3)
-  double *interface_forces; // on the first side [N]               (frame_count, interface_count, 3)
 } FemRunResult;
 
 // Adds what a system and a solver have counted since they were made. `contact` of the phases is what effects
 // took to prepare, without the broad phase.
 void fem_run_result_add_system(FemRunResult *result, const FemSystem *system);
-// Of bodies at rest; NULL: none may be.
-void fem_run_result_add_rest(FemRunResult *result, const FemRest *rest);
 void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegratorStats *part);
 void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part);
 void fem_run_result_destroy(FemRunResult *result);
@@ -91,10 +133,10 @@ void fem_run_result_destroy(FemRunResult *result);
 // other.
 const char *fem_run_outcome(const FemRunResult *result, Status status);
 
-// What trouble struck, three lines each: what, where, what to do; or "none". `model`: the one that ran.
-void fem_run_tell_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);
-// What happened and needs no action, a line each: restarts, retries, extremes.
-void fem_run_tell_statistics(const FemRunResult *result, char *text, size_t size);
+// The trouble that occurred, three lines each: what, where, what to do; or "none". `model`: the one that ran.
+void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);
+// Extremes and counts that need no action, a line each.
+void fem_run_describe_statistics(const FemRunResult *result, char *text, size_t size);
 
 // As in summary.json: "elements", "cpu_s", …            (FEM_RUN_SPREAD_COUNT)
 extern const char *const fem_run_spread_names[];

@@ -43,14 +43,15 @@ void fem_run_stage_end(FemRunState *run) {
   const FemStatics *statics = &run->statics;
   result->integrator = fem_run_state_stats(run);
   if (run->integrator)
-    fem_run_result_add_solver(&result->solver, fem_integrator_solver_stats(run->integrator));
+    fem_run_result_add_solver(&result->matrix.solver, fem_integrator_solver_stats(run->integrator));
   if (statics->equilibrium.solver) {
-    fem_run_result_add_solver(&result->solver, statics->equilibrium.ops->stats(statics->equilibrium.solver));
-    result->residual = statics->residual;
-    result->residual_allowed = statics->tolerance * statics->force_scale;
-    result->relaxation_steps += statics->relaxation_steps;
-    result->halvings += statics->halvings;
-    result->loose += statics->loose;
+    fem_run_result_add_solver(&result->matrix.solver,
+                              statics->equilibrium.ops->stats(statics->equilibrium.solver));
+    result->equilibrium.residual = statics->residual;
+    result->equilibrium.residual_allowed = statics->tolerance * statics->force_scale;
+    result->equilibrium.relaxation_steps += statics->relaxation_steps;
+    result->equilibrium.halvings += statics->halvings;
+    result->equilibrium.loose += statics->loose;
   }
   fem_integrator_destroy(run->integrator);
   run->integrator = NULL;

@@ -70,7 +70,7 @@ static Status audit(FemRunState *run, Proposal *proposal) {
   double time = proposal->time;
   proposal->audit = fem_audit_next(&run->audit, time, energy);
   run->least_power = INFINITY;
-  bool is_doubtful = fem_audit_is_doubtful(&run->result->energy_bounds, &run->audit, &proposal->audit);
+  bool is_doubtful = fem_audit_is_doubtful(&run->result->energy.bounds, &run->audit, &proposal->audit);
   if (!is_doubtful || !(energy->dissipated_power > 0)) return STATUS_OK;
   TRY(find_least_power(run, time, &run->least_power));
   proposal->audit = fem_audit_next_within(&run->audit, time, energy, run->least_power);
@@ -100,7 +100,7 @@ static FemVerdict judge(const FemRunState *run, const Proposal *proposal) {
                           .resolved = fem_run_stage_resolved(run->model),
                           .is_evaluated = proposal->is_evaluated};
   if (!proposal->is_evaluated) return fem_verdict_of(&findings);
-  findings.gains_energy = fem_audit_is_refused(&run->result->energy_bounds, &run->audit, &proposal->audit);
+  findings.gains_energy = fem_audit_is_refused(&run->result->energy.bounds, &run->audit, &proposal->audit);
   findings.differs_from_motion =
       has_momentum_bound(run) &&
       fem_momentum_is_refused(&run->recorder.ledger.momentum, run->model->scene->end);
@@ -117,9 +117,9 @@ static Status show(FemRunState *run, Proposal *proposal) {
 }
 
 static void count_retry(FemRunResult *result, FemCause cause) {
-  result->energy_retries += cause == FEM_CAUSE_ENERGY;
-  result->momentum_retries += cause == FEM_CAUSE_MOMENTUM;
-  result->slip_retries += cause == FEM_CAUSE_REVERSAL;
+  result->retries.energy += cause == FEM_CAUSE_ENERGY;
+  result->retries.momentum += cause == FEM_CAUSE_MOMENTUM;
+  result->retries.slip += cause == FEM_CAUSE_REVERSAL;
 }
 
 // Back to the last accepted state with a smaller step.

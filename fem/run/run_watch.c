@@ -5,15 +5,15 @@
 
 static Status refuse_passage(const FemRunState *run) {
   char text[512];
-  fem_trouble_tell(&run->result->trouble, run->model, FEM_TROUBLE_PASSED, text, sizeof text);
+  fem_trouble_describe(&run->result->trouble, run->model, FEM_TROUBLE_PASSED, text, sizeof text);
   return status_fail(STATUS_SOLVER, "%s (--strict)", text);
 }
 
 // Counts the trouble of the accepted state; `*has_begun`: some of it was not there in the state before.
 static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_begun) {
   FemTrouble *trouble = &run->result->trouble;
-  const double rise = fem_audit_rise(&run->result->energy_bounds, &run->audit);
-  const double bound = run->result->energy_bounds.run;
+  const double rise = fem_audit_rise(&run->result->energy.bounds, &run->audit);
+  const double bound = run->result->energy.bounds.run;
   measures->trouble.count[FEM_TROUBLE_ENERGY] = !(rise <= bound);
   *has_begun = fem_trouble_add(trouble, run->time, &measures->trouble);
   if (run->options->is_strict && measures->trouble.count[FEM_TROUBLE_PASSED] > 0) return refuse_passage(run);
@@ -42,11 +42,10 @@ Status fem_run_watch(FemRunState *run, FemMeasures *measures) {
                              .end = run->model->scene->end,
                              .step = stats.last_step,
                              .step_count = stats.steps,
-                             .active_pairs = measures->active_pairs,
                              .measures = measures,
                              .audit = &run->audit,
-                             .energy_rise = fem_audit_rise(&run->result->energy_bounds, &run->audit),
-                             .energy_bound = run->result->energy_bounds.run,
+                             .energy_rise = fem_audit_rise(&run->result->energy.bounds, &run->audit),
+                             .energy_bound = run->result->energy.bounds.run,
                              .trouble = &run->result->trouble,
                              .has_trouble_begun = has_begun};
   return run->options->observe(run->options->observer, &progress);

@@ -16,14 +16,14 @@ static int own_vertices(const FemModel *model) {
 // In the order of fem_run_spread_names.
 static void measure(const FemRunState *run, double values[FEM_RUN_SPREAD_COUNT]) {
   const FemRunResult *result = run->result;
-  const FemRunPhases *phases = &result->phases;
+  const FemRunPhases *phases = &result->cost.phases;
   const RanksStats *stats = ranks()->stats();
   const double all[] = {own_vertices(run->model),
                         fem_model_division_elements(run->model),
                         run->system.matrix.entry_count,
-                        (double)result->peak_rss_bytes,
-                        result->cpu_s,
-                        result->work_s,
+                        (double)result->cost.peak_rss_bytes,
+                        result->cost.cpu_s,
+                        result->cost.work_s,
                         stats->waiting_s,
                         (double)(stats->sums + stats->pieces + stats->decisions),
                         (double)stats->bytes,

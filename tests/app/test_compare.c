@@ -21,11 +21,11 @@ static void keep(Kept *kept, int frame_count, const double *forces, const double
   *kept = (Kept){0};
   for (int f = 0; f < frame_count; f++)
     kept->forces[3 * f + 2] = forces[f], kept->trajectory[3 * f] = positions[f];
-  kept->result = (FemRunResult){.frame_count = frame_count,
-                                .vertex_count = 1,
-                                .interface_count = 1,
-                                .interface_forces = kept->forces,
-                                .trajectory = kept->trajectory};
+  kept->result.trajectory = (FemRunTrajectory){.frame_count = frame_count,
+                                               .vertex_count = 1,
+                                               .interface_count = 1,
+                                               .interface_forces = kept->forces,
+                                               .positions = kept->trajectory};
 }
 
 static const double FORCES[FRAMES] = {0, 0, 3, 4}, POSITIONS[FRAMES] = {0, 1, 2, 3};

@@ -10,8 +10,8 @@
 
 // The slope of the centre's velocity along x over the second half, by its positions: x = a t²/2 + v t + x0.
 static double acceleration_at_end(const SceneRun *run) {
-  int last = run->result.frame_count - 1, half = last / 2;
-  double x[3], dt = run->result.frame_times[last] - run->result.frame_times[last - half / 2];
+  int last = run->result.trajectory.frame_count - 1, half = last / 2;
+  double x[3], dt = run->result.trajectory.times[last] - run->result.trajectory.times[last - half / 2];
   for (int k = 0; k < 3; k++) {
     x[k] = 0;
     for (int a = 0; a < run->model.vertex_count; a++)
@@ -31,7 +31,7 @@ static double centre_x(const SceneRun *run, int frame) {
 START_TEST(a_block_on_a_slope_of_one_half_sticks_at_0_51) {
   SceneRun run;
   scene_run(&run, "incline", NULL);
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   double creep = centre_x(&run, last) - centre_x(&run, last / 2);
   ck_assert_double_lt(fabs(creep), 1e-6 * run.model.length);
   ck_assert_double_le(scene_gain(&run), 1e-3);
@@ -57,7 +57,7 @@ START_TEST(on_a_slope_of_15_degrees_the_forces_carry_the_weight) {
   snprintf(gravity, sizeof gravity, "effects.gravity=[%.17g, 0, %.17g]", g * sin(slope), -g * cos(slope));
   scene_run(&run, "incline", (const char *const[]){gravity, NULL});
   double weight = run.model.bodies[0].mass * g;
-  const double *force = scene_force(&run, run.result.frame_count - 1, 0);
+  const double *force = scene_force(&run, run.result.trajectory.frame_count - 1, 0);
   ck_assert_near(force[0], -weight * sin(slope), 5e-4 * weight);
   ck_assert_near(force[1], 0, 5e-4 * weight);
   ck_assert_near(force[2], weight * cos(slope), 5e-4 * weight);
@@ -118,13 +118,13 @@ END_TEST
 START_TEST(a_cube_slides_over_coplanar_tiles_without_a_kick) {
   SceneRun run;
   scene_run(&run, "tiles", NULL);
-  ck_assert_int_gt(run.result.pairs_max, 0);
+  ck_assert_int_gt(run.result.contact.pairs_max, 0);
   // Σ over the tiles of the force on the cube, and how far the cube came.
-  int last = run.result.frame_count - 1, cube = run.model.bodies[0].vertex_end;
+  int last = run.result.trajectory.frame_count - 1, cube = run.model.bodies[0].vertex_end;
   double weight = run.model.bodies[0].mass * 9.81, z[2] = {INFINITY, -INFINITY}, y[2] = {INFINITY, -INFINITY};
   for (int frame = last / 2; frame <= last; frame++) {
     Vec3 force = {0, 0, 0};
-    for (int i = 0; i < run.result.interface_count; i++)
+    for (int i = 0; i < run.result.trajectory.interface_count; i++)
       force = vec3_add(force, vec3_at(scene_force(&run, frame, i)));
     ck_assert_near(force.y, 0, 0.02 * weight);
     double centre[2] = {0, 0};

@@ -233,14 +233,14 @@ START_TEST(a_block_rests_between_balls) {
   SceneRun run;
   // A coarse tolerance damps the rocking that contact leaves it.
   scene_run(&run, "balls", (const char *const[]){"time.velocity_tolerance=3e-3", "time.end=1", NULL});
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   double weight = run.model.bodies[0].mass * 9.81;
   Vec3 sum = {0, 0, 0};
-  for (int i = 0; i < run.result.interface_count; i++) {
+  for (int i = 0; i < run.result.trajectory.interface_count; i++) {
     ck_assert_double_gt(scene_force(&run, last, i)[2], 0.1 * weight);
     sum = vec3_add(sum, vec3_at(scene_force(&run, last, i)));
   }
-  ck_assert_int_eq(run.result.interface_count, 3);
+  ck_assert_int_eq(run.result.trajectory.interface_count, 3);
   ck_assert_near(vec3_length(vec3_sub(sum, (Vec3){0, 0, weight})), 0, 2e-3 * weight);
   ck_assert_double_le(scene_gain(&run), 1e-3);
   scene_close(&run);
@@ -252,9 +252,9 @@ END_TEST
 START_TEST(a_block_rests_on_a_box_and_a_cylinder) {
   SceneRun run;
   scene_run(&run, "trestle", NULL);
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   double weight = run.model.bodies[0].mass * 9.81;
-  ck_assert_int_eq(run.result.interface_count, 2);
+  ck_assert_int_eq(run.result.trajectory.interface_count, 2);
   ck_assert_int_eq(run.model.free_count, 3 * (run.model.bodies[0].vertex_end));
   Vec3 sum = {0, 0, 0};
   for (int i = 0; i < 2; i++) {
@@ -271,17 +271,18 @@ END_TEST
 START_TEST(a_turning_box_throws_a_block) {
   SceneRun run;
   scene_run(&run, "paddle", NULL);
-  ck_assert_double_gt(run.result.contact_force_max, 1);
-  ck_assert_double_gt(run.result.audit.work, 0);
-  const double *x =
-      run.result.trajectory + (size_t)(run.result.frame_count - 1) * 3 * (size_t)run.result.vertex_count;
+  ck_assert_double_gt(run.result.contact.force_max, 1);
+  ck_assert_double_gt(run.result.energy.audit.work, 0);
+  const double *x = run.result.trajectory.positions + (size_t)(run.result.trajectory.frame_count - 1) * 3 *
+                                                          (size_t)run.result.trajectory.vertex_count;
   Vec3 mean = {0, 0, 0};
-  for (int v = 0; v < run.result.vertex_count; v++)
-    mean = vec3_add(mean, vec3_scale(1.0 / run.result.vertex_count, vec3_at(x + 3 * v)));
+  for (int v = 0; v < run.result.trajectory.vertex_count; v++)
+    mean = vec3_add(mean, vec3_scale(1.0 / run.result.trajectory.vertex_count, vec3_at(x + 3 * v)));
   ck_assert_double_gt(mean.y, 0.2); // it was thrown along y
   ck_assert_double_le(scene_gain(&run), 1e-3);
   // what was put in is there: as motion, or taken by the integrator's damping, never more
-  ck_assert_double_le(fabs(run.result.audit.total - run.result.audit.lowest), 1e-3 * run.result.audit.scale);
+  ck_assert_double_le(fabs(run.result.energy.audit.total - run.result.energy.audit.lowest),
+                      1e-3 * run.result.energy.audit.scale);
   scene_close(&run);
 }
 END_TEST
@@ -291,11 +292,11 @@ END_TEST
 START_TEST(a_driven_ball_presses_and_leaves) {
   SceneRun run;
   scene_run(&run, "indent", NULL);
-  int last = run.result.frame_count - 1, middle = last / 2;
+  int last = run.result.trajectory.frame_count - 1, middle = last / 2;
   ck_assert_double_lt(scene_force(&run, middle, 0)[2], -5);
   ck_assert_double_eq(scene_force(&run, last, 0)[2], 0);
-  ck_assert_double_gt(run.result.audit.work, 0);
-  ck_assert_double_le(run.result.audit.dissipated, run.result.audit.work * 1.02);
+  ck_assert_double_gt(run.result.energy.audit.work, 0);
+  ck_assert_double_le(run.result.energy.audit.dissipated, run.result.energy.audit.work * 1.02);
   ck_assert_double_le(scene_gain(&run), 1e-3);
   scene_close(&run);
 }

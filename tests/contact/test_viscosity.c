@@ -209,7 +209,7 @@ END_TEST
 // How high the centre comes after the first impact, over where it would rest on the ground [m].
 static double bounce_height(const SceneRun *run) {
   double highest = -INFINITY, lowest = INFINITY;
-  for (int frame = 0; frame < run->result.frame_count; frame++) {
+  for (int frame = 0; frame < run->result.trajectory.frame_count; frame++) {
     double height = 0;
     for (int v = 0; v < run->model.vertex_count; v++)
       height += run->model.mass[v] * scene_position(run, frame, v)[2] / run->model.bodies[0].mass;
@@ -226,12 +226,12 @@ START_TEST(the_more_viscous_the_lower_it_bounces_and_the_audit_knows_why) {
   for (int k = 0; k < 4; k++) {
     SceneRun run;
     scene_run(&run, "bounce", (const char *const[]){viscosities[k], NULL});
-    ck_assert_int_gt(run.result.pairs_max, 0);
+    ck_assert_int_gt(run.result.contact.pairs_max, 0);
     double weight = 9.81 * run.model.bodies[0].mass, height = bounce_height(&run);
-    double missing = weight * (0.1 - height), lost = run.result.audit.dissipated; // it falls by 0.1 m
+    double missing = weight * (0.1 - height), lost = run.result.energy.audit.dissipated; // it falls by 0.1 m
     ck_assert_double_lt(scene_gain(&run), 1e-3);
     // The balance closes up to what the integrator itself damps.
-    ck_assert_near(run.result.audit.total, weight * 0.15, 0.05 * weight * 0.1);
+    ck_assert_near(run.result.energy.audit.total, weight * 0.15, 0.05 * weight * 0.1);
     if (k == 0) {
       ck_assert_near(lost, 0, 0);
       missing_without = missing;

@@ -118,18 +118,18 @@ static void run_with(SceneRun *run, const OverlapOps *ops, int threads, const ch
 
 static void compare(const char *name, const SceneRun *a, const SceneRun *b) {
   const FemRunResult *r = &a->result, *s = &b->result;
-  size_t frames = (size_t)r->frame_count, values = 3 * frames * (size_t)r->vertex_count;
-  ck_assert_int_gt(r->pairs_max, 10);
+  size_t frames = (size_t)r->trajectory.frame_count, values = 3 * frames * (size_t)r->trajectory.vertex_count;
+  ck_assert_int_gt(r->contact.pairs_max, 10);
   ck_assert_int_ge(r->integrator.steps, 1);
-  ck_assert_int_eq(r->frame_count, s->frame_count);
-  check_same(name, "positions", r->trajectory, s->trajectory, values * sizeof(double));
-  check_same(name, "forces", r->interface_forces, s->interface_forces,
-             3 * frames * (size_t)r->interface_count * sizeof(double));
-  check_same(name, "energies", &r->audit, &s->audit, sizeof r->audit);
-  check_same(name, "counts of pairs", &r->pairs, &s->pairs, sizeof r->pairs);
+  ck_assert_int_eq(r->trajectory.frame_count, s->trajectory.frame_count);
+  check_same(name, "positions", r->trajectory.positions, s->trajectory.positions, values * sizeof(double));
+  check_same(name, "forces", r->trajectory.interface_forces, s->trajectory.interface_forces,
+             3 * frames * (size_t)r->trajectory.interface_count * sizeof(double));
+  check_same(name, "energies", &r->energy.audit, &s->energy.audit, sizeof r->energy.audit);
+  check_same(name, "counts of pairs", &r->contact.pairs, &s->contact.pairs, sizeof r->contact.pairs);
   ck_assert_int_eq(r->integrator.steps, s->integrator.steps);
   ck_assert_int_eq(r->integrator.residuals, s->integrator.residuals);
-  ck_assert_int_eq(r->solver.factorisations, s->solver.factorisations);
+  ck_assert_int_eq(r->matrix.solver.factorisations, s->matrix.solver.factorisations);
 }
 
 // _i: model. One thread, two, and one again.

@@ -241,10 +241,12 @@ static void check_message(const char *word) {
 // move.
 static void check_same_end(const Run *a, const Run *b) {
   const FemRunResult *r = &a->result, *s = &b->result;
-  ck_assert_int_eq(r->frame_count, s->frame_count);
-  size_t values = 3 * (size_t)r->vertex_count, last = (size_t)(r->frame_count - 1) * values;
-  for (size_t i = 0; i < values; i++) ck_assert_near(r->trajectory[last + i], s->trajectory[last + i], 2e-4);
-  ck_assert(isfinite(s->audit.total));
+  ck_assert_int_eq(r->trajectory.frame_count, s->trajectory.frame_count);
+  size_t values = 3 * (size_t)r->trajectory.vertex_count,
+         last = (size_t)(r->trajectory.frame_count - 1) * values;
+  for (size_t i = 0; i < values; i++)
+    ck_assert_near(r->trajectory.positions[last + i], s->trajectory.positions[last + i], 2e-4);
+  ck_assert(isfinite(s->energy.audit.total));
 }
 
 // Runs `text` with the fault at call 1, then at call 2 …, in `rounds` steps through all the calls that a
@@ -253,7 +255,7 @@ static void check_recovery(const char *text, Strike *strike, int rounds) {
   Run whole;
   run(&whole, text);
   ck_assert_msg(whole.status == STATUS_OK, "%s", status_message());
-  ck_assert(whole.result.pairs_max > 0 || !whole.scene.contact.is_on); // what falls does land
+  ck_assert(whole.result.contact.pairs_max > 0 || !whole.scene.contact.is_on); // what falls does land
   long calls = strike->calls;
   ck_assert_int_ge(calls, rounds);
   for (int k = 0; k < rounds; k++) {

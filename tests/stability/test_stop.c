@@ -115,7 +115,7 @@ START_TEST(a_checkpoint_has_nothing_of_what_came_after_it) {
   }
   const FemCheckpoint *early = &checkpoints[0], *late = &checkpoints[1];
   ck_assert_double_gt(early->driven_work, 0);
-  ck_assert_double_gt(early->so_far.work_s, 0);
+  ck_assert_double_gt(early->so_far.cost.work_s, 0);
   ck_assert_double_eq(late->time, early->time);
   ck_assert_double_eq(late->force_scale, early->force_scale);
   ck_assert_double_eq(late->driven_work, early->driven_work);
@@ -133,9 +133,9 @@ START_TEST(a_run_is_the_same_however_many_frames_it_writes) {
   for (int k = 0; k < 3; k++) {
     SceneRun run;
     scene_run(&run, "drop", (const char *const[]){frames[k], "time.end=0.3", NULL});
-    lost[k] = fem_audit_lost(&run.result.audit);
+    lost[k] = fem_audit_lost(&run.result.energy.audit);
     steps[k] = run.result.integrator.steps;
-    ck_assert_double_gt(run.result.contact_force_max, 0);
+    ck_assert_double_gt(run.result.contact.force_max, 0);
     scene_close(&run);
   }
   ck_assert_int_gt((int)steps[0], 100);
@@ -230,9 +230,9 @@ START_TEST(no_peak_of_a_force_is_missed) {
     double largest = 0;
     for (int i = 0; i < count; i++) largest = suite_larger(force[i], largest);
     ck_assert_double_gt(largest, 0);
-    ck_assert_near(largest, run.result.contact_force_max, 1e-12 * largest);
+    ck_assert_near(largest, run.result.contact.force_max, 1e-12 * largest);
     const FemRunResult *result = &run.result;
-    long long retries = result->energy_retries + result->momentum_retries + result->slip_retries;
+    long long retries = result->retries.energy + result->retries.momentum + result->retries.slip;
     if (k == 0) ck_assert_int_eq(count, (int)(result->integrator.steps - retries) + 1);
     if (k == 1) ck_assert_int_eq(count, 8);
     for (int i = 1; i < count; i++) ck_assert_double_ge(steps[i], steps[i - 1]);

@@ -49,10 +49,10 @@ START_TEST(energy_out_of_nothing_is_an_event) {
   scene_open(&run, "free_fall", (const char *const[]){"time.end=0.25", NULL});
   FemRunOptions options = {.observe = note, .observer = &seen};
   ck_assert_ok(fem_run(&run.model, &options, &run.result));
-  ck_assert_double_gt(scene_gain(&run), run.result.energy_bounds.run);
+  ck_assert_double_gt(scene_gain(&run), run.result.energy.bounds.run);
   ck_assert_int_eq(run.result.trouble.of[FEM_TROUBLE_ENERGY].events, 1);
   ck_assert_int_eq(seen, 1);
-  fem_run_tell_trouble(&run.result, &run.model, text, sizeof text);
+  fem_run_describe_trouble(&run.result, &run.model, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "energy out of nothing"));
   scene_close(&run);
 }

@@ -244,8 +244,8 @@ static double expect_time(const AppComparison *comparison, int first, int m) {
   const FemRunResult *pilot = &comparison->models[first].result;
   if (m == first || comparison->models[first].status) return 0;
   double cost = comparison->models[m].overlap.ops->seconds_per_pair;
-  double overlap = (double)pilot->pairs.tried * cost / cpu_thread_count();
-  return pilot->wall_s - pilot->phases.overlap + overlap;
+  double overlap = (double)pilot->contact.pairs.tried * cost / cpu_thread_count();
+  return pilot->cost.wall_s - pilot->cost.phases.overlap + overlap;
 }
 
 static void announce_time(const AppComparison *comparison, int m, double seconds) {

@@ -100,7 +100,7 @@ static void warn(Observer *observer, const FemRunProgress *progress) {
       log_warning("t = %.6g s: the energy has risen by %.2g of the scene's, the bound is %g", progress->time,
                   progress->energy_rise, progress->energy_bound);
     else if (observer->told.of[k].events == 0) {
-      fem_trouble_tell(trouble, progress->system->model, (FemTroubleKind)k, text, sizeof text);
+      fem_trouble_describe(trouble, progress->system->model, (FemTroubleKind)k, text, sizeof text);
       log_warning("%s", text);
     }
   }

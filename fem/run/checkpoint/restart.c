@@ -46,11 +46,8 @@ static void save_state(FemCheckpoint *checkpoint, const FemSystem *system, const
 static Status save_counts(FemCheckpoint *checkpoint, const FemRunResult *so_far) {
   record_destroy(checkpoint->so_far.counters);
   checkpoint->so_far = *so_far;
-  checkpoint->so_far.interface_names = NULL;
-  checkpoint->so_far.account = NULL;
-  checkpoint->so_far.frame_times = checkpoint->so_far.trajectory = NULL;
-  checkpoint->so_far.interface_forces = NULL;
-  checkpoint->so_far.interface_count = checkpoint->so_far.frame_count = 0;
+  checkpoint->so_far.account = (FemRunAccount){0};
+  checkpoint->so_far.trajectory = (FemRunTrajectory){0};
   checkpoint->so_far.counters = record_new();
   if (!checkpoint->so_far.counters) return status_no_memory("a checkpoint");
   record_merge(checkpoint->so_far.counters, so_far->counters);

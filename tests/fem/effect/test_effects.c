@@ -84,9 +84,9 @@ START_TEST(an_effect_that_is_absent_has_no_row_and_no_column) {
   ck_assert_ptr_null(strstr(text, "\"damping\": {"));
   ck_assert_ptr_null(strstr(text, "contact_pairs"));
   ck_assert_ptr_null(strstr(text, "friction"));
-  ck_assert_int_eq(run.result.interface_count, 0);
-  ck_assert_int_eq((int)run.result.pairs.tried, 0);
-  ck_assert_double_eq(run.result.phases.broad_phase, 0);
+  ck_assert_int_eq(run.result.trajectory.interface_count, 0);
+  ck_assert_int_eq((int)run.result.contact.pairs.tried, 0);
+  ck_assert_double_eq(run.result.cost.phases.broad_phase, 0);
   for (int i = 0; i < run.result.effect_count; i++) {
     ck_assert_int_gt((int)run.result.effects[i].cost.force_calls, 0);
     ck_assert_int_gt((int)run.result.effects[i].cost.bytes_max, 0);

@@ -22,7 +22,7 @@ static Told run_with(const char *path, const char *const *overrides, double stif
   ck_assert_ok(fem_model_create(&run.model, &run.scene));
   scene_run_from(&run, NULL);
   ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
-  const Record *contact = record_at(record_find(run.result.account, "contacts"), 0);
+  const Record *contact = record_at(record_find(run.result.account.record, "contacts"), 0);
   const Record *estimate = record_find(contact, "estimate");
   Told told = {.force = record_find_number(contact, "force_max_N"),
                .give = record_find_number(estimate, "give"),
@@ -31,7 +31,7 @@ static Told run_with(const char *path, const char *const *overrides, double stif
                .by_tolerance = record_find_number(estimate, "tolerance_over_depth"),
                .tolerance_for = record_find_number(estimate, "tolerance_for_1_percent"),
                .elements = record_find_number(estimate, "elements_across"),
-               .asks_for_mesh = strstr(run.result.told[0], "refine") != NULL};
+               .asks_for_mesh = strstr(run.result.account.contacts[0], "refine") != NULL};
   scene_close(&run);
   return told;
 }

@@ -195,9 +195,9 @@ END_TEST
 static void expect_balance(const char *scene, const char *const *overrides, bool has_contact) {
   SceneRun run;
   scene_run(&run, scene, overrides);
-  ck_assert_msg(run.result.momentum_gap <= 1e-3, "%s: %g", scene, run.result.momentum_gap);
-  ck_assert_double_gt(run.result.momentum_gap, 0);
-  ck_assert_int_eq(run.result.contact_force_max > 0, has_contact);
+  ck_assert_msg(run.result.momentum.gap <= 1e-3, "%s: %g", scene, run.result.momentum.gap);
+  ck_assert_double_gt(run.result.momentum.gap, 0);
+  ck_assert_int_eq(run.result.contact.force_max > 0, has_contact);
   scene_close(&run);
 }
 
@@ -215,9 +215,9 @@ START_TEST(a_stack_that_lands_is_balanced) {
   SceneRun run;
   scene_run(&run, "../../examples/15_sleepers",
             (const char *const[]){"time.end=0.065", "output.vtu=false", NULL});
-  ck_assert_int_gt(run.result.momentum_retries, 0);
-  ck_assert_msg(run.result.momentum_gap <= 5.5e-3, "%g", run.result.momentum_gap);
-  ck_assert_double_gt(run.result.contact_force_max, 0);
+  ck_assert_int_gt(run.result.retries.momentum, 0);
+  ck_assert_msg(run.result.momentum.gap <= 5.5e-3, "%g", run.result.momentum.gap);
+  ck_assert_double_gt(run.result.contact.force_max, 0);
   scene_close(&run);
 }
 END_TEST
@@ -251,9 +251,9 @@ END_TEST
 START_TEST(what_an_obstacle_begins_to_press_is_balanced_without_ado) {
   SceneRun run;
   scene_run(&run, "indent", NULL);
-  ck_assert_int_le(run.result.momentum_retries, 5);
-  ck_assert_msg(run.result.momentum_gap <= 1e-3, "%g", run.result.momentum_gap);
-  ck_assert_double_gt(run.result.contact_force_max, 0);
+  ck_assert_int_le(run.result.retries.momentum, 5);
+  ck_assert_msg(run.result.momentum.gap <= 1e-3, "%g", run.result.momentum.gap);
+  ck_assert_double_gt(run.result.contact.force_max, 0);
   scene_close(&run);
 }
 END_TEST

@@ -11,13 +11,13 @@ static void expect_passage(const char *const *overrides, bool has_passed) {
   char text[1024];
   scene_run(&run, "pierce", overrides);
   const FemTrouble *trouble = &run.result.trouble;
-  int last = run.result.frame_count - 1, stone = run.model.bodies[1].vertex_begin;
-  ck_assert_double_gt(run.result.contact_force_max, 0);
+  int last = run.result.trajectory.frame_count - 1, stone = run.model.bodies[1].vertex_begin;
+  ck_assert_double_gt(run.result.contact.force_max, 0);
   // What truly happened: the stone is on this side of the plate, or on the other.
   ck_assert(has_passed == (scene_position(&run, last, stone)[2] < scene_position(&run, last, 0)[2] - 0.02));
   ck_assert(has_passed == (trouble->of[FEM_TROUBLE_PASSED].steps > 0));
   ck_assert_str_eq(fem_run_outcome(&run.result, run.status), has_passed ? "passed through" : "finished");
-  fem_run_tell_trouble(&run.result, &run.model, text, sizeof text);
+  fem_run_describe_trouble(&run.result, &run.model, text, sizeof text);
   ck_assert(has_passed == (strstr(text, "passed through each other\n  'plate' and 'stone' at t = ") != NULL));
   scene_close(&run);
 }
@@ -69,14 +69,14 @@ END_TEST
 
 static void run_without_passage(SceneRun *run, const char *scene, const char *const *overrides) {
   scene_run(run, scene, overrides);
-  ck_assert_double_gt(run->result.contact_force_max, 0);
+  ck_assert_double_gt(run->result.contact.force_max, 0);
   ck_assert_int_eq((int)run->result.trouble.of[FEM_TROUBLE_PASSED].steps, 0);
   ck_assert_str_eq(fem_run_outcome(&run->result, run->status), "finished");
 }
 
 // From its first frame to its last.
 static double way_of(const SceneRun *run, int vertex, int axis) {
-  return scene_position(run, run->result.frame_count - 1, vertex)[axis] -
+  return scene_position(run, run->result.trajectory.frame_count - 1, vertex)[axis] -
          scene_position(run, 0, vertex)[axis];
 }
 
@@ -100,7 +100,8 @@ START_TEST(what_rolls_does_not_pass) {
   for (int v = 0; v < run.model.vertex_count; v++)
     if (scene_position(&run, 0, v)[2] > scene_position(&run, 0, top)[2]) top = v;
   double radius = scene_position(&run, 0, top)[2] / 2, lowest = INFINITY;
-  for (int f = 0; f < run.result.frame_count; f++) lowest = fmin(lowest, scene_position(&run, f, top)[2]);
+  for (int f = 0; f < run.result.trajectory.frame_count; f++)
+    lowest = fmin(lowest, scene_position(&run, f, top)[2]);
   ck_assert_double_lt(lowest, 0.5 * radius);
   scene_close(&run);
 }

@@ -8,7 +8,7 @@
 
 // Of the summary, the probe of that place.
 static double read_last(const SceneRun *run, int probe, const char *key) {
-  const Record *one = record_at(record_find(run->result.account, "probes"), probe);
+  const Record *one = record_at(record_find(run->result.account.record, "probes"), probe);
   ck_assert_ptr_nonnull(one);
   return record_find_number(record_find(one, "last"), key);
 }
@@ -17,8 +17,9 @@ static double read_last(const SceneRun *run, int probe, const char *key) {
 START_TEST(fixed_touching_and_loaded_faces_read_the_same_press) {
   SceneRun run;
   scene_run(&run, "patch",
-            (const char *const[]){"bodies.lower.probes=[{name: floor, group: z_min}, {name: seam, group: z_max}]",
-                                  "bodies.upper.probes=[{name: sole, group: z_min}, {name: top, group: z_max}]", NULL});
+            (const char *const[]){
+                "bodies.lower.probes=[{name: floor, group: z_min}, {name: seam, group: z_max}]",
+                "bodies.upper.probes=[{name: sole, group: z_min}, {name: top, group: z_max}]", NULL});
   const double signs[] = {1, -1, 1, -1};
   for (int p = 0; p < 4; p++) {
     // Where two touch, the share depth over element acts on the vertices behind the face.
@@ -51,10 +52,10 @@ START_TEST(the_summary_has_the_peak_and_when) {
   SceneRun run;
   scene_run(&run, "drop",
             (const char *const[]){"bodies.block.probes=[{name: sole, group: z_min}]", "time.end=0.15", NULL});
-  const Record *one = record_at(record_find(run.result.account, "probes"), 0);
+  const Record *one = record_at(record_find(run.result.account.record, "probes"), 0);
   // All the contact there is presses on this face, but for the share of depth over element.
-  ck_assert_near(record_find_number(one, "force_max_N"), run.result.contact_force_max,
-                 1e-2 * run.result.contact_force_max);
+  ck_assert_near(record_find_number(one, "force_max_N"), run.result.contact.force_max,
+                 1e-2 * run.result.contact.force_max);
   double time = record_find_number(one, "force_max_time");
   ck_assert(time > 0.1 && time < 0.15); // it falls 5 cm in 0.101 s
   scene_close(&run);
@@ -64,7 +65,8 @@ END_TEST
 START_TEST(a_probe_without_vertices_is_refused_with_its_place) {
   FemSceneDef scene;
   FemModel model;
-  const char *const overrides[] = {"bodies.block.probes=[{name: nowhere, box: {min: [5, 5, 5], max: [6, 6, 6]}}]"};
+  const char *const overrides[] = {
+      "bodies.block.probes=[{name: nowhere, box: {min: [5, 5, 5], max: [6, 6, 6]}}]"};
   ck_assert_ok(app_scene_read(TETLAP_SOURCE_DIR "/tests/scenes/drop.yaml", overrides, 1, &scene));
   ck_assert_int_eq(fem_model_create(&model, &scene), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "probe 'nowhere'"));

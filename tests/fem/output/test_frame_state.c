@@ -315,7 +315,8 @@ START_TEST(writing_frames_changes_no_bit_of_a_run) {
     FemRunOptions options = {.directory = k ? folder : NULL, .keep_trajectory = true};
     ck_assert_ok(fem_run(&run.model, &options, &run.result));
     values = 3 * (size_t)run.model.vertex_count;
-    end[k] = memory_copy(scene_position(&run, run.result.frame_count - 1, 0), values, sizeof(double));
+    end[k] =
+        memory_copy(scene_position(&run, run.result.trajectory.frame_count - 1, 0), values, sizeof(double));
     ck_assert_ptr_nonnull(end[k]);
     scene_close(&run);
     remove_folder();

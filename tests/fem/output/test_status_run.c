@@ -93,11 +93,11 @@ static void check_sums(const SceneRun *run) {
   read_column("status_overlapping", overlapping);
   read_column("status_false_positive", positives);
   read_column("status_false_negative", negatives);
-  ck_assert(run->result.has_status);
-  ck_assert(sum(pairs) == (double)run->result.status_pairs.asked);
-  ck_assert(sum(overlapping) == (double)run->result.status_pairs.overlapping);
-  ck_assert(sum(positives) == (double)run->result.status_pairs.false_positives);
-  ck_assert(sum(negatives) == (double)run->result.status_pairs.false_negatives);
+  ck_assert(run->result.status.is_asked);
+  ck_assert(sum(pairs) == (double)run->result.status.pairs.asked);
+  ck_assert(sum(overlapping) == (double)run->result.status.pairs.overlapping);
+  ck_assert(sum(positives) == (double)run->result.status.pairs.false_positives);
+  ck_assert(sum(negatives) == (double)run->result.status.pairs.false_negatives);
   ck_assert(overlapping[0] == 0 && overlapping[FRAMES - 1] > overlapping[1]);
 }
 
@@ -106,7 +106,7 @@ START_TEST(clipping_is_right_everywhere_and_overlap_is_where_volume_is_covered) 
   SceneRun run;
   run_into(&run, NULL);
   check_sums(&run);
-  ck_assert(run.result.status_pairs.false_positives == 0 && run.result.status_pairs.false_negatives == 0);
+  ck_assert(run.result.status.pairs.false_positives == 0 && run.result.status.pairs.false_negatives == 0);
   int seen = 0;
   for (int f = 0; f < FRAMES; f++) {
     FemVtuContent frame;
@@ -158,7 +158,7 @@ END_TEST
 START_TEST(a_run_that_was_not_asked_has_no_status) {
   SceneRun run;
   run_into(&run, (const char *const[]){"output.status=null", NULL});
-  ck_assert(!run.result.has_status);
+  ck_assert(!run.result.status.is_asked);
   FemVtuContent frame;
   read_frame(FRAMES - 1, &frame);
   for (int f = 0; f < frame.field_count; f++) ck_assert(strncmp(frame.fields[f].name, "status_", 7) != 0);

@@ -23,7 +23,7 @@ static void open_two(Looked *looked) {
 
 static FemTroubleState look(Looked *looked) {
   FemTroubleState state;
-  fem_trouble_look(&looked->watch, looked->run.model.rest, looked->force, looked->det_F, looked->overlap,
+  fem_trouble_find(&looked->watch, looked->run.model.rest, looked->force, looked->det_F, looked->overlap,
                    &state);
   return state;
 }
@@ -106,7 +106,7 @@ START_TEST(steps_and_events_are_counted_apart) {
   ck_assert_int_eq(trouble.of[FEM_TROUBLE_INVERTED].most, 3);
   ck_assert_int_eq(trouble.of[FEM_TROUBLE_INVERTED].first, 1);
   char text[256];
-  fem_trouble_tell(&trouble, &looked.run.model, FEM_TROUBLE_INVERTED, text, sizeof text);
+  fem_trouble_describe(&trouble, &looked.run.model, FEM_TROUBLE_INVERTED, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "t = 0.1 s"));
   ck_assert_ptr_nonnull(strstr(text, "body 'upper'"));
   close_two(&looked);
@@ -127,9 +127,9 @@ START_TEST(the_last_line_says_what_struck_or_that_nothing_did) {
   SceneRun run;
   char text[1024];
   scene_run(&run, "free_fall", NULL);
-  fem_run_tell_trouble(&run.result, &run.model, text, sizeof text);
+  fem_run_describe_trouble(&run.result, &run.model, text, sizeof text);
   ck_assert_str_eq(text, "none");
-  fem_run_tell_statistics(&run.result, text, sizeof text);
+  fem_run_describe_statistics(&run.result, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "\nshortest step "));
   ck_assert(run.result.trouble.smallest_step > 0 && run.result.trouble.smallest_step <= run.scene.end);
   scene_close(&run);
@@ -137,11 +137,11 @@ START_TEST(the_last_line_says_what_struck_or_that_nothing_did) {
   scene_run(&run, "single_tets",
             (const char *const[]){"bodies.upper.place={scale: 0.3, translate: [0, 0, 0.01]}", "time.end=0.01",
                                   "contact.overlap=clip", NULL});
-  fem_run_tell_trouble(&run.result, &run.model, text, sizeof text);
+  fem_run_describe_trouble(&run.result, &run.model, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "wholly inside another body"));
   ck_assert_ptr_nonnull(strstr(text, "\n  first at t = "));
   ck_assert_ptr_nonnull(strstr(text, "\n  what to do: try a larger contact.stiffness"));
-  fem_run_tell_statistics(&run.result, text, sizeof text);
+  fem_run_describe_statistics(&run.result, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "enclosed pairs"));
   ck_assert_int_gt((int)run.result.trouble.of[FEM_TROUBLE_ENCLOSED].steps, 0);
   ck_assert_int_eq(run.result.trouble.of[FEM_TROUBLE_ENCLOSED].first, 1);

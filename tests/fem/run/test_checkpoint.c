@@ -47,10 +47,10 @@ static FemCheckpoint example(void) {
   checkpoint.audit = (FemAudit){.time = 0.1, .damped = 1, .dissipated = 2, .driven_work = 3, .work = 4};
   checkpoint.audit.total = -0.0, checkpoint.audit.lowest = -7, checkpoint.audit.gain = 1e-300;
   checkpoint.audit.driven_power = 11, checkpoint.audit.first = 12;
-  checkpoint.so_far.min_det_F = INFINITY, checkpoint.so_far.work_s = 1.25;
+  checkpoint.so_far.min_det_F = INFINITY, checkpoint.so_far.cost.work_s = 1.25;
   checkpoint.so_far.integrator.steps = 1LL << 60;
-  checkpoint.so_far.pairs.beyond = 5;
-  checkpoint.so_far.pairs_max = 6;
+  checkpoint.so_far.contact.pairs.beyond = 5;
+  checkpoint.so_far.contact.pairs_max = 6;
   record_integer(checkpoint.so_far.counters, "friction_updates", 12);
   checkpoint.effect_count = 2;
   const double history[] = {0.3, -1e-17};
@@ -72,10 +72,10 @@ static void check_equal(const FemCheckpoint *a, const FemCheckpoint *b) {
   ck_assert_int_eq(a->next_frame, b->next_frame);
   ck_assert_mem_eq(&a->audit, &b->audit, sizeof a->audit);
   ck_assert_mem_eq(&a->so_far.integrator, &b->so_far.integrator, sizeof a->so_far.integrator);
-  ck_assert_mem_eq(&a->so_far.pairs, &b->so_far.pairs, sizeof a->so_far.pairs);
-  ck_assert_int_eq(a->so_far.pairs_max, b->so_far.pairs_max);
+  ck_assert_mem_eq(&a->so_far.contact.pairs, &b->so_far.contact.pairs, sizeof a->so_far.contact.pairs);
+  ck_assert_int_eq(a->so_far.contact.pairs_max, b->so_far.contact.pairs_max);
   ck_assert(a->so_far.min_det_F == b->so_far.min_det_F);
-  ck_assert_double_eq(a->so_far.work_s, b->so_far.work_s);
+  ck_assert_double_eq(a->so_far.cost.work_s, b->so_far.cost.work_s);
   RecordDifference difference;
   ck_assert(!record_differ(a->so_far.counters, b->so_far.counters, &difference));
   ck_assert_int_eq(a->effect_count, b->effect_count);
@@ -201,7 +201,7 @@ END_TEST
 START_TEST(a_right_head_does_not_make_a_checkpoint) {
   char file[560], digest[DIGEST_TEXT];
   static const char *const heads[] = {
-      "tetlap checkpoint 11\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
+      "tetlap checkpoint 12\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
       "tetlap checkpoint 2\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n"};
   static const char *const words[] = {"is damaged", "is of format 2, written by another program"};
   for (int k = 0; k < 2; k++) {
@@ -226,7 +226,7 @@ START_TEST(a_checkpoint_of_another_format_names_the_program_that_wrote_it) {
   char *number = strstr(text, "checkpoint ") + strlen("checkpoint ");
   memcpy(number, "10", 2);
   write_file(text, size);
-  expect(STATUS_INPUT, "is of format 10, written by tetlap 0.0.9; this program reads format 11");
+  expect(STATUS_INPUT, "is of format 10, written by tetlap 0.0.9; this program reads format 12");
   memory_free(text);
   fem_checkpoint_destroy(&written);
 }

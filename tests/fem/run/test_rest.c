@@ -174,7 +174,8 @@ static Vec3 middle(const SceneRun *run, int frame, int body) {
 // The frame before `time`.
 static int frame_at(const SceneRun *run, double time) {
   int frame = 0;
-  while (frame + 1 < run->result.frame_count && run->result.frame_times[frame + 1] < time) frame++;
+  while (frame + 1 < run->result.trajectory.frame_count && run->result.trajectory.times[frame + 1] < time)
+    frame++;
   return frame;
 }
 
@@ -197,22 +198,23 @@ START_TEST(a_stack_sleeps_until_it_is_hit_and_is_hit_as_it_is_without) {
   for (int body = 0; body < 2; body++)
     ck_assert_double_eq(vec3_length(vec3_sub(middle(&with, asleep, body), middle(&with, before, body))), 0);
   int ground = 0;
-  while (!strstr(with.result.interface_names[ground], "low, ground")) ground++;
+  while (!strstr(with.result.trajectory.interface_names[ground], "low, ground")) ground++;
   double force = scene_force(&with, asleep, ground)[2];
   // the bound on the acceleration, 0.16 m/s², is 1.6 % of the weight
   ck_assert_near(force, weight, 0.016 * weight);
   ck_assert_double_eq(scene_force(&with, before, ground)[2], force);
   // The blow is the same.
-  double peak = with.result.contact_force_max;
+  double peak = with.result.contact.force_max;
   ck_assert_double_gt(peak, 50 * weight);
-  ck_assert_near(peak, without.result.contact_force_max, 0.01 * peak);
+  ck_assert_near(peak, without.result.contact.force_max, 0.01 * peak);
   for (int body = 0; body < 3; body++) {
     double apart = vec3_length(vec3_sub(middle(&with, hit, body), middle(&without, hit, body)));
     ck_assert_double_le(apart, 5e-5); // of slabs 60 mm thick
   }
   ck_assert_double_le(scene_gain(&with), 1e-3);
   // What it saves.
-  ck_assert_double_lt((double)with.result.pairs.tried, 0.9 * (double)without.result.pairs.tried);
+  ck_assert_double_lt((double)with.result.contact.pairs.tried,
+                      0.9 * (double)without.result.contact.pairs.tried);
   scene_close(&with), scene_close(&without);
 }
 END_TEST
@@ -225,7 +227,7 @@ START_TEST(a_load_that_begins_awakes_what_it_acts_on) {
   ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
   ck_assert_int_ge((int)counted(&run, "bodies_put_to_rest"), 2);
   ck_assert_int_eq((int)counted(&run, "bodies_awakened"), 1); // the other sleeps on
-  int before = frame_at(&run, 0.6), after = run.result.frame_count - 1;
+  int before = frame_at(&run, 0.6), after = run.result.trajectory.frame_count - 1;
   ck_assert_double_eq(vec3_length(vec3_sub(middle(&run, before, 0), middle(&run, before - 1, 0))), 0);
   ck_assert_double_gt(middle(&run, after, 0).x - middle(&run, before, 0).x, 1e-3);
   ck_assert_double_eq(vec3_length(vec3_sub(middle(&run, after, 1), middle(&run, before, 1))), 0);
@@ -239,10 +241,10 @@ START_TEST(an_obstacle_that_comes_awakes_what_it_nears) {
   SceneRun run;
   scene_run(&run, "rest_obstacle", NULL);
   ck_assert_int_ge((int)counted(&run, "bodies_awakened"), 1);
-  int last = run.result.frame_count - 1, asleep = frame_at(&run, 0.5);
+  int last = run.result.trajectory.frame_count - 1, asleep = frame_at(&run, 0.5);
   ck_assert_double_eq(vec3_length(vec3_sub(middle(&run, asleep, 0), middle(&run, asleep - 1, 0))), 0);
   ck_assert_double_lt(middle(&run, last, 0).z, middle(&run, asleep, 0).z - 1e-4); // it is pressed down
-  ck_assert_double_gt(run.result.contact_force_max, 20);
+  ck_assert_double_gt(run.result.contact.force_max, 20);
   ck_assert_double_le(scene_gain(&run), 1e-3);
   scene_close(&run);
 }

@@ -11,9 +11,9 @@ static const char *told(double momentum_gap, long long beyond) {
   static char text[1024];
   SceneRun run;
   scene_open(&run, "free_fall", NULL);
-  FemRunResult result = {.momentum_gap = momentum_gap};
-  result.pairs.tried = 100, result.pairs.beyond = beyond;
-  fem_run_tell_trouble(&result, &run.model, text, sizeof text);
+  FemRunResult result = {.momentum.gap = momentum_gap};
+  result.contact.pairs.tried = 100, result.contact.pairs.beyond = beyond;
+  fem_run_describe_trouble(&result, &run.model, text, sizeof text);
   scene_close(&run);
   return text;
 }

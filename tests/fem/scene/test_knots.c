@@ -136,13 +136,14 @@ END_TEST
 
 // ---- Runs
 
-// Of the scene's energy. A push gives its impulse to a thousandth, so its energy to two; the audit's rule over
-// the few steps of a push errs by as much again.
+// Of the scene's energy. A push gives its impulse to a thousandth, so its energy to two; the audit's rule
+// over the few steps of a push errs by as much again.
 static const double MOST_GAIN = 5e-3;
 
 static double momentum_of(const SceneRun *run) {
-  int last = run->result.frame_count - 1; // of a body that does not vibrate
-  double span = run->result.frame_times[last] - run->result.frame_times[last - 1], mass = 0, sum = 0;
+  int last = run->result.trajectory.frame_count - 1; // of a body that does not vibrate
+  double span = run->result.trajectory.times[last] - run->result.trajectory.times[last - 1], mass = 0,
+         sum = 0;
   for (int v = 0; v < run->model.vertex_count; v++) {
     double way = scene_position(run, last, v)[0] - scene_position(run, last - 1, v)[0];
     sum += run->model.mass[v] * way / span, mass += run->model.mass[v];
@@ -222,7 +223,7 @@ static double pressed_by_tap(bool may_rest, const char *const *overrides) {
   ck_assert_ok(run.status);
   if (may_rest) ck_assert_double_ge(record_find_number(run.result.counters, "bodies_awakened"), 1);
   ck_assert_double_le(scene_gain(&run), 1e-3); // docs/stability.md
-  double most = run.result.contact_force_max;
+  double most = run.result.contact.force_max;
   scene_close(&run);
   return most;
 }
@@ -245,7 +246,8 @@ START_TEST(steps_of_load_end_at_the_peak_of_a_static_load) {
     scene_run(&run, "../../examples/25_plastic_bar",
               (const char *[]){frames[k], "time.max_step=null", "output.vtu=false", NULL});
     int tip = run.model.vertex_count - 1;
-    bend[k] = scene_position(&run, run.result.frame_count - 1, tip)[2] - run.model.rest[3 * tip + 2];
+    bend[k] =
+        scene_position(&run, run.result.trajectory.frame_count - 1, tip)[2] - run.model.rest[3 * tip + 2];
     scene_close(&run);
   }
   ck_assert_double_lt(bend[1], -1e-3);

@@ -176,10 +176,11 @@ START_TEST(a_constant_force_moves_a_body_and_its_work_becomes_kinetic_energy) {
   SceneRun run;
   run_box(&run, "    loads: [{all: true, body_force: [4000, 0, 0]}]\n",
           _i ? "output: {checkpoint: {frames: 1}}\n" : "");
-  ck_assert_near(mean_of(&run, run.result.frame_count - 1, 0), 0.5, 2e-4);
-  ck_assert_near(run.result.audit.work, 4 * mean_of(&run, run.result.frame_count - 1, 0), 1e-9);
+  ck_assert_near(mean_of(&run, run.result.trajectory.frame_count - 1, 0), 0.5, 2e-4);
+  ck_assert_near(run.result.energy.audit.work, 4 * mean_of(&run, run.result.trajectory.frame_count - 1, 0),
+                 1e-9);
   ck_assert(scene_gain(&run) <= 1e-4);
-  ck_assert_near(run.result.audit.total, 0, 2e-3 * run.result.audit.work);
+  ck_assert_near(run.result.energy.audit.total, 0, 2e-3 * run.result.energy.audit.work);
   scene_close(&run);
 }
 END_TEST
@@ -189,7 +190,7 @@ START_TEST(a_force_by_a_formula_gives_its_impulse) {
   SceneRun run;
   run_box(&run, "    loads: [{all: true, force: [0, 4, 0], factor: 1 - cos(2*pi*t)}]\n", "");
   double expected = 4 * (0.125 - 2 / (4 * M_PI * M_PI));
-  ck_assert_near(mean_of(&run, run.result.frame_count - 1, 1), expected, 2e-3 * expected);
+  ck_assert_near(mean_of(&run, run.result.trajectory.frame_count - 1, 1), expected, 2e-3 * expected);
   ck_assert(scene_gain(&run) <= 1e-3);
   scene_close(&run);
 }
@@ -200,7 +201,7 @@ START_TEST(vertices_driven_by_a_formula_are_where_it_says) {
   run_box(&run, "    driven: [{group: x_min, formula: {x: 0.01*sin(8*t), z: 0.02*t^2}}]\n",
           "output: {frames: 10}\n");
   for (int frame = 0; frame <= 10; frame++) {
-    double t = run.result.frame_times[frame];
+    double t = run.result.trajectory.times[frame];
     for (int a = 0; a < run.model.vertex_count; a++) {
       if (run.model.rest[3 * a] > 0) continue;
       const double *x = scene_position(&run, frame, a), *rest = run.model.rest + 3 * a;
@@ -209,7 +210,7 @@ START_TEST(vertices_driven_by_a_formula_are_where_it_says) {
       ck_assert_near(x[2] - rest[2], 0.02 * t * t, 1e-15);
     }
   }
-  ck_assert_double_le(scene_gain(&run), run.result.energy_bounds.run);
+  ck_assert_double_le(scene_gain(&run), run.result.energy.bounds.run);
   scene_close(&run);
 }
 END_TEST
@@ -225,8 +226,8 @@ START_TEST(released_vertices_fly_on) {
   int vertices = run.model.vertex_count;
   ck_assert_int_eq(run.model.free_count, 2 * vertices);
   for (int frame = 0; frame <= 8; frame++)
-    ck_assert_near(mean_of(&run, frame, 0), 2 * run.result.frame_times[frame], 1e-7);
-  ck_assert_near(run.result.audit.work, 2, 1e-6);
+    ck_assert_near(mean_of(&run, frame, 0), 2 * run.result.trajectory.times[frame], 1e-7);
+  ck_assert_near(run.result.energy.audit.work, 2, 1e-6);
   ck_assert(scene_gain(&run) <= 1e-6);
   scene_close(&run);
 }

@@ -15,7 +15,7 @@ static void run_text(SceneRun *run, const char *text) {
 static void run_well(SceneRun *run, const char *text) {
   run_text(run, text);
   ck_assert_msg(run->status == STATUS_OK, "%s", status_message());
-  ck_assert(run->result.residual <= run->result.residual_allowed);
+  ck_assert(run->result.equilibrium.residual <= run->result.equilibrium.residual_allowed);
 }
 
 static const char *const BEAM = "bodies:\n"
@@ -51,9 +51,9 @@ START_TEST(a_linear_body_is_in_equilibrium_after_one_solve) {
     for (int c = 0; c < 3; c++)
       ck_assert_near(scene_position(&run, 1, a)[c] - run.model.rest[3 * a + c], u[3 * a + c], 1e-9);
   ck_assert_int_le(run.result.integrator.newton_iterations, 2);
-  ck_assert_int_eq(run.result.relaxation_steps, 0);
+  ck_assert_int_eq(run.result.equilibrium.relaxation_steps, 0);
   // The load was there at once: its work is mean force times way, all of F u, of which half is stored.
-  ck_assert(run.result.audit.work > 0);
+  ck_assert(run.result.energy.audit.work > 0);
   free(u);
   scene_close(&run);
 }
@@ -70,7 +70,7 @@ START_TEST(a_body_that_nothing_loads_is_in_equilibrium) {
                  "    material: {young: 1e6, poisson: 0.3, density: 1000}\n"
                  "    fixed: [{group: x_min}]\n"
                  "output: {frames: 20}\n");
-  ck_assert_int_eq(run.result.halvings, 0);
+  ck_assert_int_eq(run.result.equilibrium.halvings, 0);
   for (int i = 0; i < 3 * run.model.vertex_count; i++)
     ck_assert_near(scene_position(&run, 20, i / 3)[i % 3], run.model.rest[i], 1e-12);
   scene_close(&run);
@@ -94,8 +94,8 @@ START_TEST(rubber_pulled_to_twice_its_length_pulls_back_as_theory_says) {
   // The driven side's work is the stored energy, to the trapezoidal rule over 20 steps: 1/1200 of it.
   double expected =
       1e-3 * (0.35 * (4 + 2.0 / 2 - 3) + 0.15 * (2 * 2 + 0.25 - 3)); // c₁ (I₁ − 3) + c₂ (I₂ − 3)
-  ck_assert_near(run.result.audit.work, expected, 3e-3 * expected);
-  ck_assert_near(run.result.audit.total, 0, 3e-3 * expected);
+  ck_assert_near(run.result.energy.audit.work, expected, 3e-3 * expected);
+  ck_assert_near(run.result.energy.audit.total, 0, 3e-3 * expected);
   const double *corner = scene_position(&run, 20, run.model.vertex_count - 1);
   ck_assert_near(corner[1], 0.1 / sqrt(2), 1e-4 * 0.1);
   scene_close(&run);
@@ -116,7 +116,7 @@ START_TEST(a_block_comes_to_rest_on_the_ground) {
                  "obstacles: [{name: ground, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}}]\n"
                  "contact: {}\n"
                  "output: {frames: 1}\n");
-  ck_assert_int_gt(run.result.pairs_max, 0);
+  ck_assert_int_gt(run.result.contact.pairs_max, 0);
   ck_assert_near(fabs(scene_force(&run, 1, 0)[2]), 9.81, 9.81e-6);
   scene_close(&run);
 }
@@ -210,9 +210,9 @@ START_TEST(the_work_of_an_obstacle_is_stored) {
            "0, -0.002]}}\n"
            "contact: {stiffness: 1e6}\n"
            "output: {frames: 10}\n");
-  double force = fabs(scene_force(&run, 10, 0)[2]), work = run.result.audit.work;
+  double force = fabs(scene_force(&run, 10, 0)[2]), work = run.result.energy.audit.work;
   ck_assert_near(work, 0.5 * force * 0.002, 0.05 * work);
-  ck_assert_near(run.result.audit.total, 0, 5e-3 * work);
+  ck_assert_near(run.result.energy.audit.total, 0, 5e-3 * work);
   scene_close(&run);
 }
 END_TEST
@@ -230,7 +230,7 @@ START_TEST(turning_gravity_up_is_work) {
                  "    material: {law: linear, young: 3e6, poisson: 0.3, density: 1000}\n"
                  "    fixed: [{group: x_min}]\n"
                  "output: {frames: 2}\n");
-  const FemAudit *audit = &run.result.audit;
+  const FemAudit *audit = &run.result.energy.audit;
   ck_assert_double_gt(audit->scale, 1e-4);
   ck_assert_near(audit->total, audit->first, 1e-6 * audit->scale);
   // It stores what gravity did, F u / 2, and has lost F u of its own: half of it was taken.
@@ -255,7 +255,7 @@ START_TEST(an_obstacle_that_stops_has_worked_until_then) {
       "0], [0.5, 0, 0, -0.002], [1, 0, 0, -0.002]]}}\n"
       "contact: {stiffness: 1e8}\n"
       "output: {frames: 10}\n");
-  const FemAudit *audit = &run.result.audit;
+  const FemAudit *audit = &run.result.energy.audit;
   double force = fabs(scene_force(&run, 10, 0)[2]);
   ck_assert_near(audit->work, 0.5 * force * 0.002, 0.05 * audit->work);
   ck_assert_near(audit->total, audit->first, 2e-2 * audit->work); // with the speed after, a fifth
@@ -273,8 +273,8 @@ START_TEST(a_beam_that_turns_far_takes_few_iterations) {
                  "    fixed: [{group: x_min}]\n"
                  "    loads: [{group: x_max, force: [0, 0, -120], factor: t}]\n"
                  "output: {frames: 10}\n");
-  ck_assert_int_eq(run.result.relaxation_steps, 0);
-  ck_assert_int_le(run.result.solver.factorisations, 60);
+  ck_assert_int_eq(run.result.equilibrium.relaxation_steps, 0);
+  ck_assert_int_le(run.result.matrix.solver.factorisations, 60);
   ck_assert(scene_position(&run, 10, run.model.vertex_count - 1)[2] < 0.03);
   scene_close(&run);
 }

@@ -306,7 +306,7 @@ START_TEST(a_pair_has_its_own_friction) {
   // The one without friction slides on the floor, not above it: it presses with its weight and drags with
   // nothing.
   int floor = 0;
-  while (!strstr(run.result.interface_names[floor], "two, floor")) floor++;
+  while (!strstr(run.result.trajectory.interface_names[floor], "two, floor")) floor++;
   double weight = 9.81 * run.model.bodies[1].mass;
   const double *force = scene_force(&run, 4, floor);
   ck_assert_near(fabs(force[2]), weight, 0.1 * weight); // it still bounces a little

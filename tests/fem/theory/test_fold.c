@@ -46,7 +46,7 @@ static double shared_volume(const SceneRun *run, int frame) {
 
 // The mean of what the floor carries over the last part of the run [N].
 static double mean_on_floor(const SceneRun *run, double share) {
-  int last = run->result.frame_count - 1, first = (int)((1 - share) * last);
+  int last = run->result.trajectory.frame_count - 1, first = (int)((1 - share) * last);
   double sum = 0;
   for (int frame = first; frame <= last; frame++) sum += scene_force(run, frame, 1)[2];
   return sum / (last - first + 1);
@@ -54,8 +54,8 @@ static double mean_on_floor(const SceneRun *run, double share) {
 
 // The fastest vertex over the same part [m/s].
 static double fastest(const SceneRun *run, double share) {
-  int last = run->result.frame_count - 1, first = (int)((1 - share) * last);
-  double span = run->result.frame_times[last] - run->result.frame_times[first], most = 0;
+  int last = run->result.trajectory.frame_count - 1, first = (int)((1 - share) * last);
+  double span = run->result.trajectory.times[last] - run->result.trajectory.times[first], most = 0;
   for (int v = 0; v < run->model.vertex_count; v++)
     most = suite_larger(most, vec3_length(vec3_sub(vec3_at(scene_position(run, last, v)),
                                                    vec3_at(scene_position(run, first, v)))));
@@ -66,10 +66,10 @@ START_TEST(a_folded_mat_carries_its_own_upper_half) {
   SceneRun with, without;
   scene_run(&with, "fold", NULL);
   scene_run(&without, "fold", (const char *const[]){"bodies.mat.self_contact=false", NULL});
-  int last = with.result.frame_count - 1;
-  ck_assert_int_eq(with.result.interface_count, 2);
-  ck_assert_int_eq(without.result.interface_count, 1);
-  ck_assert_str_eq(with.result.interface_names[0], "mat, mat");
+  int last = with.result.trajectory.frame_count - 1;
+  ck_assert_int_eq(with.result.trajectory.interface_count, 2);
+  ck_assert_int_eq(without.result.trajectory.interface_count, 1);
+  ck_assert_str_eq(with.result.trajectory.interface_names[0], "mat, mat");
   double weight = 9.81 * with.model.bodies[0].mass;
   // Forces balance: what the mat does to itself does not show at the floor. Its weight presses it in by 2e-5
   // m (196 Pa of 1e5 Pa, of elements of 1 cm), less than the default tolerance lets a step be off, with which
@@ -126,10 +126,10 @@ END_TEST
 START_TEST(a_mat_is_twisted_around_itself) {
   SceneRun run;
   scene_run(&run, "mat_twist", (const char *const[]){"bodies.mat.mesh.box.cells=[10,10,1]", NULL});
-  ck_assert_int_gt(run.result.pairs_max, 20);
+  ck_assert_int_gt(run.result.contact.pairs_max, 20);
   ck_assert_double_gt(run.result.min_det_F, 0);
   ck_assert_double_le(scene_gain(&run), 1e-3);
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   for (int i = 0; i < run.model.tet_count; i++) ck_assert(!is_inverted(&run, last, i));
   // The ends are turned by 0.4 π each second: at 2 s by 1.6 π against each other.
   double shared = shared_volume(&run, last);

@@ -30,7 +30,7 @@ static Seen run_and_look(SceneRun *run, const char *scene, const char *const *ov
 }
 
 static double share_lost(const SceneRun *run) {
-  return fem_audit_lost(&run->result.audit) / run->result.audit.scale;
+  return fem_audit_lost(&run->result.energy.audit) / run->result.energy.audit.scale;
 }
 
 // The energy that a contact may cost at the defaults.
@@ -99,7 +99,7 @@ START_TEST(no_step_is_taken_back_without_contact) {
     run_and_look(&run, "cantilever",
                  (const char *const[]){"bodies.beam.mesh.box.cells=[15, 3, 3]", "time.tolerance=1e-4",
                                        "time.end=0.5", damping[k], NULL});
-    ck_assert_int_eq(run.result.energy_retries, 0);
+    ck_assert_int_eq(run.result.retries.energy, 0);
     scene_close(&run);
   }
 }
@@ -121,7 +121,7 @@ START_TEST(gains_and_losses_fall_together) {
       ck_assert((seen.contact_count > 0) == (s != 1));
       lost[k] = fabs(share_lost(&run));
       gained[k] = scene_gain(&run);
-      allowed = run.result.energy_bounds.run;
+      allowed = run.result.energy.bounds.run;
       scene_close(&run);
     }
     ck_assert_msg(lost[1] <= lost[0] / 2.3, "%s: lost %.3g, then %.3g", scenes[s], lost[0], lost[1]);

@@ -47,7 +47,7 @@ static double press(double scale, const char *obstacle, double stiffness, double
   ck_assert_ok(fem_model_create(&run.model, &run.scene));
   scene_run_from(&run, NULL);
   ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
-  ck_assert_int_gt(run.result.pairs_max, 10);
+  ck_assert_int_gt(run.result.contact.pairs_max, 10);
   double share = 4 * fabs(scene_force(&run, 1, 0)[2]) / expected;
   scene_close(&run);
   remove(mesh);

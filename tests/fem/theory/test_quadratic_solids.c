@@ -253,7 +253,7 @@ START_TEST(a_press_of_blocks_carries_its_load) {
   SceneRun run;
   scene_run(&run, "patch", overrides);
   const double *force = scene_force(&run, 1, 0);
-  ck_assert_int_gt(run.result.pairs_max, 0);
+  ck_assert_int_gt(run.result.contact.pairs_max, 0);
   ck_assert_near(fabs(force[2]), 10, 1e-3); // 1000 Pa on 0.01 m²
   ck_assert_near(force[0], 0, 0.05);
   ck_assert_near(force[1], 0, 0.05);
@@ -283,7 +283,7 @@ START_TEST(a_collision_keeps_momentum_and_energy) {
     before[i % 3] += run.model.mass[i / 3] * run.model.initial_velocity[i];
   scene_run_from(&run, NULL);
   ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
-  ck_assert_int_gt(run.result.pairs_max, 0);
+  ck_assert_int_gt(run.result.contact.pairs_max, 0);
   ck_assert_near(before[0], 1, 1e-12);
   // The centre of mass goes on at the speed it had.
   double moved[3] = {0};

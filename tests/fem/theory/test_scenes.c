@@ -22,7 +22,7 @@ static double lowest(const SceneRun *run, int body, int frame) {
 START_TEST(free_fall_follows_the_parabola) {
   SceneRun run;
   scene_run(&run, "free_fall", NULL);
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   double t = run.scene.end;
   ck_assert_int_eq(last, 5);
   for (int a = 0; a < run.model.vertex_count; a++) {
@@ -32,7 +32,7 @@ START_TEST(free_fall_follows_the_parabola) {
     ck_assert_near(x[2] - X[2], 2 * t - 0.5 * 9.81 * t * t, 1e-3);
   }
   ck_assert_near(run.result.min_det_F, 1, 1e-6);
-  ck_assert_int_eq(run.result.pairs_max, 0);
+  ck_assert_int_eq(run.result.contact.pairs_max, 0);
   scene_close(&run);
 }
 END_TEST
@@ -41,8 +41,8 @@ START_TEST(a_resting_block_weighs_m_g) {
   SceneRun run;
   scene_run(&run, "rest", NULL);
   double weight = total_mass(&run) * 9.81;
-  const double *force = scene_force(&run, run.result.frame_count - 1, 0);
-  ck_assert_int_gt(run.result.pairs_max, 0);
+  const double *force = scene_force(&run, run.result.trajectory.frame_count - 1, 0);
+  ck_assert_int_gt(run.result.contact.pairs_max, 0);
   ck_assert_near(force[2], weight, 1e-3 * weight);
   ck_assert_near(force[0], 0, 1e-3 * weight);
   ck_assert_near(force[1], 0, 1e-3 * weight);
@@ -57,10 +57,10 @@ START_TEST(a_drop_gains_no_energy_at_any_stiffness) {
     snprintf(override, sizeof override, "contact.stiffness=%s", stiffness[k]);
     SceneRun run;
     scene_run(&run, "drop", (const char *const[]){override, NULL});
-    ck_assert_int_gt(run.result.pairs_max, 0);
+    ck_assert_int_gt(run.result.contact.pairs_max, 0);
     ck_assert_msg(scene_gain(&run) <= 1e-3, "κ = %s Pa: the energy rises by %.2g of the scene's",
                   stiffness[k], scene_gain(&run));
-    ck_assert_double_gt(lowest(&run, 0, run.result.frame_count - 1), -0.05);
+    ck_assert_double_gt(lowest(&run, 0, run.result.trajectory.frame_count - 1), -0.05);
     scene_close(&run);
   }
 }
@@ -69,7 +69,7 @@ END_TEST
 START_TEST(hundreds_of_pairs_may_begin_at_once) {
   SceneRun run;
   scene_run(&run, "onset", NULL);
-  ck_assert_int_gt(run.result.pairs_max, 100);
+  ck_assert_int_gt(run.result.contact.pairs_max, 100);
   ck_assert_msg(scene_gain(&run) <= 1e-3, "the energy rises by %.2g of the scene's", scene_gain(&run));
   ck_assert_int_lt((int)run.result.integrator.restarts, 60);
   scene_close(&run);
@@ -82,14 +82,14 @@ START_TEST(the_ground_carries_a_stack_of_five) {
   double weight = total_mass(&run) * 9.81;
   // The ground is the last side; its interface is with the lowest cube.
   int ground = -1;
-  for (int i = 0; i < run.result.interface_count; i++)
-    if (strcmp(run.result.interface_names[i], "cube1, ground") == 0) ground = i;
+  for (int i = 0; i < run.result.trajectory.interface_count; i++)
+    if (strcmp(run.result.trajectory.interface_names[i], "cube1, ground") == 0) ground = i;
   ck_assert_int_ge(ground, 0);
-  double force = scene_force(&run, run.result.frame_count - 1, ground)[2];
+  double force = scene_force(&run, run.result.trajectory.frame_count - 1, ground)[2];
   ck_assert_near(force, weight, 1e-3 * weight);
   for (int b = 1; b < 5; b++)
-    ck_assert_double_gt(lowest(&run, b, run.result.frame_count - 1),
-                        lowest(&run, b - 1, run.result.frame_count - 1));
+    ck_assert_double_gt(lowest(&run, b, run.result.trajectory.frame_count - 1),
+                        lowest(&run, b - 1, run.result.trajectory.frame_count - 1));
   ck_assert_double_gt(run.result.min_det_F, 0);
   scene_close(&run);
 }
@@ -98,12 +98,12 @@ END_TEST
 START_TEST(a_collision_keeps_momentum_and_angular_momentum) {
   SceneRun run;
   scene_run(&run, "collision", (const char *const[]){"time.tolerance=1e-5", NULL});
-  ck_assert_int_gt(run.result.pairs_max, 0);
+  ck_assert_int_gt(run.result.contact.pairs_max, 0);
   const FemModel *model = &run.model;
   double momentum[2][3] = {{0}}, size = 0;
   // Velocities of the last frames by differences of the centres: the bodies fly freely after the collision.
-  int last = run.result.frame_count - 1;
-  double dt = run.result.frame_times[last] - run.result.frame_times[last - 1];
+  int last = run.result.trajectory.frame_count - 1;
+  double dt = run.result.trajectory.times[last] - run.result.trajectory.times[last - 1];
   for (int a = 0; a < model->vertex_count; a++)
     for (int c = 0; c < 3; c++) {
       momentum[0][c] += model->mass[a] * model->initial_velocity[3 * a + c];
@@ -131,7 +131,7 @@ START_TEST(refined_cantilevers_approach_beam_theory) {
     int count = 0;
     for (int a = 0; a < run.model.vertex_count; a++) {
       if (run.model.rest[3 * a] < L - 1e-9) continue;
-      tip[k] += run.model.rest[3 * a + 2] - scene_position(&run, run.result.frame_count - 1, a)[2];
+      tip[k] += run.model.rest[3 * a + 2] - scene_position(&run, run.result.trajectory.frame_count - 1, a)[2];
       count++;
     }
     tip[k] /= count;
@@ -161,7 +161,7 @@ START_TEST(an_inverted_start_recovers) {
   ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
   ck_assert_double_lt(run.result.min_det_F, 0);
   // At the end every element is positive again and the block has its shape.
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   for (int e = 0; e < run.model.tet_count; e++) {
     double corners[12], F[9];
     for (int k = 0; k < 4; k++) memcpy(corners + 3 * k, scene_position(&run, last, run.model.tets[e][k]), 24);
@@ -202,7 +202,7 @@ START_TEST(single_tetrahedra_meet_and_stay_sound) {
   for (size_t m = 0; m < sizeof meetings / sizeof *meetings; m++) {
     SceneRun run;
     scene_run(&run, "single_tets", (const char *const[]){meetings[m].lower, meetings[m].upper, NULL});
-    ck_assert_msg(run.result.pairs_max > 0, "%s: no contact", meetings[m].name);
+    ck_assert_msg(run.result.contact.pairs_max > 0, "%s: no contact", meetings[m].name);
     ck_assert_msg(run.result.min_det_F > 0, "%s: det F = %g", meetings[m].name, run.result.min_det_F);
     ck_assert_msg(scene_gain(&run) <= 1e-3, "%s: the energy rises by %.2g", meetings[m].name,
                   scene_gain(&run));

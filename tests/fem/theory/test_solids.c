@@ -47,15 +47,15 @@ START_TEST(a_kelvin_voigt_solid_creeps) {
            0.1 * K);
   pull(&run, material, "traction: [100, 0, 0]", "{end: 0.2, tolerance: 1e-7}", _i ? "quadratic" : "linear");
   for (int frame = 1; frame <= 4; frame++) {
-    double t = run.result.frame_times[frame], expected = 1e-3 * (1 - exp(-t / 0.1));
+    double t = run.result.trajectory.times[frame], expected = 1e-3 * (1 - exp(-t / 0.1));
     ck_assert_near(strain(&run, frame, 0), expected, 5e-3 * expected);
     ck_assert_near(strain(&run, frame, 1), -0.3 * expected, 5e-3 * expected);
   }
   // The load's work is stored and dissipated.
-  double work = run.result.audit.work, volume = 1e-3;
+  double work = run.result.energy.audit.work, volume = 1e-3;
   ck_assert_near(work, volume * 100 * strain(&run, 4, 0), 1e-6 * work);
-  ck_assert_near(run.result.audit.total, 0, 5e-3 * work);
-  ck_assert(run.result.audit.dissipated > 0.3 * work);
+  ck_assert_near(run.result.energy.audit.total, 0, 5e-3 * work);
+  ck_assert(run.result.energy.audit.dissipated > 0.3 * work);
   scene_close(&run);
 }
 END_TEST
@@ -91,12 +91,12 @@ START_TEST(a_linear_scene_is_assembled_once) {
   bool is_damped = _i / 3;
   const FemRunResult *once = &linear.result, *often = &other.result;
   ck_assert_int_gt(once->integrator.setups, 2); // the step did change
-  ck_assert_int_eq(once->assemblies, is_damped ? 2 : 1);
-  ck_assert_int_le(once->solver.factorisations, once->integrator.setups);
-  ck_assert_int_ge(often->solver.factorisations, often->integrator.setups); // more: one at another c
-  ck_assert_int_eq(often->assemblies, (is_damped ? 2 : 1) * often->integrator.setups);
+  ck_assert_int_eq(once->matrix.assemblies, is_damped ? 2 : 1);
+  ck_assert_int_le(once->matrix.solver.factorisations, once->integrator.setups);
+  ck_assert_int_ge(often->matrix.solver.factorisations, often->integrator.setups); // more: one at another c
+  ck_assert_int_eq(often->matrix.assemblies, (is_damped ? 2 : 1) * often->integrator.setups);
   // It did swing, and as the other law does.
-  int last = linear.result.frame_count - 1, tip = linear.model.vertex_count - 1;
+  int last = linear.result.trajectory.frame_count - 1, tip = linear.model.vertex_count - 1;
   double rest = linear.model.rest[3 * tip + 2], way = scene_position(&linear, last, tip)[2] - rest;
   ck_assert(way < -1e-3);
   ck_assert_near(scene_position(&other, last, tip)[2] - rest, way, 0.02 * fabs(way));
@@ -119,8 +119,8 @@ START_TEST(a_linear_scene_with_one_step_size_is_factorised_once) {
   scene_run_from(&run, NULL);
   ck_assert_int_eq(run.status, STATUS_OK);
   ck_assert_int_eq(run.result.integrator.steps, 100);
-  ck_assert_int_eq(run.result.solver.factorisations, 1);
-  ck_assert_int_eq(run.result.solver.analyses, 1);
+  ck_assert_int_eq(run.result.matrix.solver.factorisations, 1);
+  ck_assert_int_eq(run.result.matrix.solver.analyses, 1);
   scene_close(&run);
 }
 END_TEST
@@ -149,10 +149,10 @@ START_TEST(a_j2_bar_yields_hardens_and_keeps_its_plastic_strain) {
   ck_assert_near(strain(&run, 4, 1), -0.5 * plastic, 0.02 * plastic);
   // σ_y α V is dissipated, ½ H α² V is stored: all of it the load's work, to the rule over steps of a
   // twentieth.
-  double volume = 1e-3, dissipated = run.result.audit.dissipated, work = run.result.audit.work;
+  double volume = 1e-3, dissipated = run.result.energy.audit.dissipated, work = run.result.energy.audit.work;
   ck_assert_near(dissipated, yield * alpha * volume, 1e-3 * yield * alpha * volume);
   ck_assert_near(work, dissipated + 0.5 * H * alpha * alpha * volume, 0.02 * work);
-  ck_assert_near(run.result.audit.total, 0, 0.02 * work);
+  ck_assert_near(run.result.energy.audit.total, 0, 0.02 * work);
   scene_close(&run);
 }
 END_TEST

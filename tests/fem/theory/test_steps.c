@@ -19,7 +19,7 @@ static void run_slabs(SceneRun *run, const char *potential) {
 
 static double kinetic_speed(const SceneRun *run, int frame) {
   double largest = 0;
-  double duration = run->result.frame_times[frame] - run->result.frame_times[frame - 1];
+  double duration = run->result.trajectory.times[frame] - run->result.trajectory.times[frame - 1];
   for (int v = 0; v < run->model.vertex_count; v++) {
     Vec3 moved = vec3_sub(vec3_at(scene_position(run, frame, v)), vec3_at(scene_position(run, frame - 1, v)));
     largest = suite_larger(vec3_length(moved) / duration, largest);
@@ -31,7 +31,7 @@ START_TEST(a_stack_falls_on_an_incline_and_comes_to_rest_without_short_or_failin
   SceneRun run;
   run_slabs(&run, "contact.potential=field");
   const FemIntegratorStats *stats = &run.result.integrator;
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   ck_assert_double_gt(kinetic_speed(&run, 4), 0.1);
   ck_assert_double_le(kinetic_speed(&run, last), 1e-4);
   ck_assert_int_le(stats->newton_failures, stats->steps / 10);
@@ -57,8 +57,8 @@ START_TEST(an_onset_restarts_nothing_and_gains_no_energy) {
   for (int k = 0; k < 2; k++) {
     SceneRun run;
     scene_run(&run, "collision", (const char *const[]){potentials[k], NULL});
-    ck_assert_double_gt(run.result.contact_force_max, 0);
-    ck_assert_int_eq(run.result.integrator.restarts, run.result.energy_retries + run.result.momentum_retries);
+    ck_assert_double_gt(run.result.contact.force_max, 0);
+    ck_assert_int_eq(run.result.integrator.restarts, run.result.retries.energy + run.result.retries.momentum);
     ck_assert_double_le(scene_gain(&run), 1e-3);
     scene_close(&run);
   }
@@ -163,15 +163,15 @@ static void compare_frames(const char *scene, const char *const *still, const ch
   SceneRun a, b;
   scene_run(&a, scene, still);
   scene_run(&b, scene, moving);
-  ck_assert_double_gt(a.result.contact_force_max, 0);
+  ck_assert_double_gt(a.result.contact.force_max, 0);
   ck_assert_int_le(llabs(a.result.integrator.steps - b.result.integrator.steps),
                    1 + a.result.integrator.steps / 20);
   ck_assert_near(scene_gain(&a), scene_gain(&b), 1e-4);
-  ck_assert_near(a.result.momentum_gap, b.result.momentum_gap, 3e-4);
-  int last = a.result.frame_count - 1;
+  ck_assert_near(a.result.momentum.gap, b.result.momentum.gap, 3e-4);
+  int last = a.result.trajectory.frame_count - 1;
   for (int v = 0; v < a.model.vertex_count; v++)
     for (int c = 0; c < 3; c++) {
-      double way = common[c] * a.result.frame_times[last];
+      double way = common[c] * a.result.trajectory.times[last];
       ck_assert_near(scene_position(&b, last, v)[c] - way, scene_position(&a, last, v)[c], distance);
     }
   scene_close(&a), scene_close(&b);
@@ -197,7 +197,7 @@ END_TEST
 START_TEST(no_phase_of_a_run_takes_less_than_no_time) {
   SceneRun run;
   scene_run(&run, "stack", (const char *const[]){"time.end=1e-5", NULL});
-  const FemRunPhases *phases = &run.result.phases;
+  const FemRunPhases *phases = &run.result.cost.phases;
   ck_assert_double_gt(phases->broad_phase, 0);
   ck_assert_double_gt(phases->contact, 0);
   ck_assert_double_ge(phases->total, phases->broad_phase + phases->overlap + phases->contact);

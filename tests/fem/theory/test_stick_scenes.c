@@ -25,7 +25,7 @@ static Vec3 centre(const SceneRun *run, int frame) {
 START_TEST(on_a_slope_of_one_half_a_block_sticks_at_0_51) {
   SceneRun run;
   run_incline(&run, "contact.friction=0.51", "time.tolerance=1e-4", "time.end=10");
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   double moved = vec3_length(vec3_sub(centre(&run, last), centre(&run, last / 2)));
   double weight = run.model.bodies[0].mass * 9.81;
   const double *force = scene_force(&run, last, 0);
@@ -38,9 +38,9 @@ END_TEST
 
 // Acceleration over the last half of the run, from three frames.
 static double acceleration(const SceneRun *run) {
-  int last = run->result.frame_count - 1, half = last / 2, middle = (half + last) / 2;
-  double h = run->result.frame_times[last] - run->result.frame_times[middle],
-         g = run->result.frame_times[middle] - run->result.frame_times[half];
+  int last = run->result.trajectory.frame_count - 1, half = last / 2, middle = (half + last) / 2;
+  double h = run->result.trajectory.times[last] - run->result.trajectory.times[middle],
+         g = run->result.trajectory.times[middle] - run->result.trajectory.times[half];
   double late = (centre(run, last).x - centre(run, middle).x) / h,
          early = (centre(run, middle).x - centre(run, half).x) / g;
   return 2 * (late - early) / (h + g);
@@ -54,7 +54,7 @@ START_TEST(on_a_slope_of_one_half_a_block_slides_at_0_49) {
   run_incline(&run, "contact.friction=0.49", tolerances[_i], "time.end=1");
   double theory = 9.81 * (1 - 0.49 * 2) / sqrt(5); // g (sin θ − μ cos θ)
   ck_assert_near(acceleration(&run), theory, bounds[_i] * theory);
-  ck_assert_double_gt(run.result.audit.dissipated, 0);
+  ck_assert_double_gt(run.result.energy.audit.dissipated, 0);
   ck_assert_double_le(scene_gain(&run), 1e-3);
   scene_close(&run);
 }
@@ -68,10 +68,10 @@ START_TEST(a_cube_held_between_plates_is_carried_by_what_is_written) {
   double weight = run.model.bodies[0].mass * 9.81;
   ck_assert_near(weight, 3.924, 1e-9);
   int held = 0;
-  for (int frame = 0; frame < run.result.frame_count; frame++) {
-    if (run.result.frame_times[frame] < 0.5) continue; // the table has gone at 0.45 s
+  for (int frame = 0; frame < run.result.trajectory.frame_count; frame++) {
+    if (run.result.trajectory.times[frame] < 0.5) continue; // the table has gone at 0.45 s
     Vec3 sum = {0, 0, 0};
-    for (int i = 0; i < run.result.interface_count; i++)
+    for (int i = 0; i < run.result.trajectory.interface_count; i++)
       sum = vec3_add(sum, vec3_at(scene_force(&run, frame, i)));
     ck_assert_near(sum.z, weight, 1e-3 * weight);
     ck_assert_near(sum.y, 0, 1e-3 * weight);
@@ -79,7 +79,7 @@ START_TEST(a_cube_held_between_plates_is_carried_by_what_is_written) {
     held++;
   }
   ck_assert_int_gt(held, 20);
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   ck_assert_near(vec3_length(vec3_sub(centre(&run, last), centre(&run, last - 20))), 0, 1e-7);
   scene_close(&run);
 }
@@ -90,7 +90,7 @@ END_TEST
 START_TEST(a_ball_that_slides_rolls_on_at_what_its_inertia_leaves) {
   SceneRun run;
   scene_run(&run, "bowl", NULL);
-  int last = run.result.frame_count - 1, from = last / 2;
+  int last = run.result.trajectory.frame_count - 1, from = last / 2;
   double inertia = 0, mass = run.model.bodies[0].mass, height = 0;
   Vec3 start = centre(&run, 0);
   for (int v = 0; v < run.model.vertex_count; v++) {
@@ -98,7 +98,7 @@ START_TEST(a_ball_that_slides_rolls_on_at_what_its_inertia_leaves) {
     inertia += run.model.mass[v] * (arm.x * arm.x + arm.z * arm.z);
   }
   for (int frame = from; frame <= last; frame++) height += centre(&run, frame).z / (last - from + 1);
-  double time = run.result.frame_times[last] - run.result.frame_times[from];
+  double time = run.result.trajectory.times[last] - run.result.trajectory.times[from];
   double speed = (centre(&run, last).x - centre(&run, from).x) / time;
   double theory = 1 / (1 + inertia / (mass * height * height));
   ck_assert_near(theory, 5.0 / 7, 0.05); // what the mesh is worth
@@ -112,16 +112,16 @@ END_TEST
 START_TEST(static_scenes_have_friction) {
   SceneRun run;
   scene_run(&run, "drag", NULL);
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   for (int frame = 5; frame <= last; frame++) {
     const double *force = scene_force(&run, frame, 0);
     ck_assert_double_gt(force[2], 30);
     ck_assert_near(-force[0] / force[2] / 0.4, 1, 3e-4);
     ck_assert_near(force[1], 0, 1e-3 * force[2]);
   }
-  double work = run.result.audit.work;
+  double work = run.result.energy.audit.work;
   ck_assert_double_gt(work, 0.2);
-  ck_assert_near(run.result.audit.dissipated, work, 2e-2 * work); // the rest is stored
+  ck_assert_near(run.result.energy.audit.dissipated, work, 2e-2 * work); // the rest is stored
   scene_close(&run);
 }
 END_TEST
@@ -149,12 +149,12 @@ START_TEST(what_slides_uphill_turns_where_it_stops) {
     scene_open_text(&run, text);
     scene_run_from(&run, NULL);
     ck_assert_msg(run.status == STATUS_OK, "%s", status_message());
-    end[k] = centre(&run, run.result.frame_count - 1);
+    end[k] = centre(&run, run.result.trajectory.frame_count - 1);
     // It went up, turned, slipped down past where it had been, and friction took energy all the while.
     double start = centre(&run, 0).x, high = centre(&run, 1).x;
     ck_assert_double_lt(high, start - 0.01);
     ck_assert_double_gt(end[k].x, high + 0.01);
-    ck_assert_double_gt(run.result.audit.dissipated, 0);
+    ck_assert_double_gt(run.result.energy.audit.dissipated, 0);
     length = run.model.length;
     scene_close(&run);
   }

@@ -9,7 +9,8 @@ static double force(const SceneRun *run, int frame, int interface, int axis) {
 
 static int frame_at(const SceneRun *run, double time) {
   int frame = 0;
-  while (frame + 1 < run->result.frame_count && run->result.frame_times[frame] < time - 1e-9) frame++;
+  while (frame + 1 < run->result.trajectory.frame_count && run->result.trajectory.times[frame] < time - 1e-9)
+    frame++;
   return frame;
 }
 
@@ -33,9 +34,9 @@ START_TEST(a_seal_is_pressed_into_its_groove) {
   SceneRun run;
   scene_run(&run, "../../examples/31_seal",
             (const char *const[]){"output.vtu=false", "output.frames=20", "solver.threads=1", NULL});
-  int end = run.result.frame_count - 1;
+  int end = run.result.trajectory.frame_count - 1;
   double floor = force(&run, end, 0, 2), left = force(&run, end, 1, 0), right = force(&run, end, 2, 0);
-  ck_assert_int_eq(run.result.interface_count, 4);
+  ck_assert_int_eq(run.result.trajectory.interface_count, 4);
   ck_assert_double_gt(floor, 50);
   ck_assert_double_gt(left, 10);
   ck_assert_near(left, -right, 0.02 * left);
@@ -56,9 +57,10 @@ START_TEST(a_strip_round_a_drum_is_held_by_the_exponential_of_its_angle) {
   SceneRun run;
   scene_run(&run, "../../examples/validation/capstan",
             (const char *const[]){"output.frames=10", "solver.threads=1", NULL});
-  double slack = 1000, all = force(&run, run.result.frame_count - 1, 0, 2), theory = exp(0.3 * acos(-1));
+  double slack = 1000, all = force(&run, run.result.trajectory.frame_count - 1, 0, 2),
+         theory = exp(0.3 * acos(-1));
   ck_assert_near((all - slack) / slack, theory, 0.02 * theory);
-  ck_assert_double_gt(run.result.audit.dissipated, 0);
+  ck_assert_double_gt(run.result.energy.audit.dissipated, 0);
   scene_close(&run);
 }
 END_TEST
@@ -69,9 +71,9 @@ START_TEST(a_ball_is_pressed_with_friction_in_as_many_iterations_as_a_smooth_for
   SceneRun run;
   scene_run(&run, "../../examples/26_hertz",
             (const char *const[]){"contact.friction=0.3", "output.vtu=false", "solver.threads=1", NULL});
-  int end = run.result.frame_count - 1;
+  int end = run.result.trajectory.frame_count - 1;
   ck_assert_int_le(run.result.integrator.newton_iterations, 44); // of a force with noise 63 and more
-  ck_assert_double_le(run.result.residual, run.result.residual_allowed);
+  ck_assert_double_le(run.result.equilibrium.residual, run.result.equilibrium.residual_allowed);
   // Friction keeps the ground from moving outwards: the ball presses with more, by some per cents at most
   // (Spence, J. Elasticity 5, 1975).
   ck_assert_double_gt(-force(&run, end, 0, 2), 49.02);

@@ -109,14 +109,14 @@ static Dragged drag(const char *size, const char *cells, const char *end, const 
   SceneRun run;
   scene_run(&run, "../../examples/validation/dragging",
             (const char *const[]){size, cells, end, frames, "solver.threads=1", NULL});
-  int last = run.result.frame_count - 1;
+  int last = run.result.trajectory.frame_count - 1;
   const double *force = scene_force(&run, last, 0);
-  Dragged dragged = {.total = run.result.audit.total,
-                     .work = run.result.audit.work,
+  Dragged dragged = {.total = run.result.energy.audit.total,
+                     .work = run.result.energy.audit.work,
                      .pull = hypot(force[0], force[1]),
                      .press = fabs(force[2]),
                      .vertices = (int)record_find_number(run.result.counters, "friction_vertices")};
-  ck_assert_double_le(run.result.audit.gain, 1e-3 * run.result.audit.scale);
+  ck_assert_double_le(run.result.energy.audit.gain, 1e-3 * run.result.energy.audit.scale);
   scene_close(&run);
   return dragged;
 }
