@@ -173,43 +173,32 @@ Record *app_sweep_table_record(const AppSweepGrid *grid) {
   return make_record(grid, grid->point_count, 0);
 }
 
-// A table whose columns are the axes and what comes out: its rows are cells, each a text or a number.
-typedef union Cell {
-  const char *text;
-  double number;
-} Cell;
+// A run, or what runs of the same values have in common.
+typedef struct Row {
+  const char *folder, *name, *outcome, *message, *values[APP_SWEEP_MAX_AXES];
+  char text[1024]; // that `name` points to
+  double repeat, spread, numbers[COLUMN_COUNT];
+} Row;
 
-typedef struct Cells {
-  AppTableColumn *columns; // (most), owned
-  Cell *cells;             // (row_count, most), owned
-  int most, column_count, row_count;
-} Cells;
+typedef struct Columns {
+  AppTableColumn columns[APP_SWEEP_MAX_AXES + COLUMN_COUNT + 6];
+  int count;
+} Columns;
 
-static void cells_destroy(Cells *cells) {
-  memory_free(cells->columns), memory_free(cells->cells);
+static void add_column(Columns *list, const char *key, AppTableKind kind, size_t offset, const char *head) {
+  list->columns[list->count++] = (AppTableColumn){.key = key, .kind = kind, .offset = offset, .head = head};
 }
 
-static Status cells_create(Cells *cells, const AppSweepGrid *grid, int row_count) {
-  int most = grid->base.axis_count + COLUMN_COUNT + 5;
-  *cells = (Cells){.columns = memory_zeroed((size_t)most, sizeof *cells->columns),
-                   .cells = memory_zeroed((size_t)row_count * (size_t)most, sizeof *cells->cells),
-                   .most = most,
-                   .row_count = row_count};
-  return cells->columns && cells->cells ? STATUS_OK : status_no_memory("the table of a sweep");
-}
-
-// The first cell of a new column; the next row's is `most` further.
-static Cell *add_column(Cells *cells, const char *key, AppTableKind kind, const char *head) {
-  int column = cells->column_count++;
-  cells->columns[column] =
-      (AppTableColumn){.key = key, .kind = kind, .offset = (size_t)column * sizeof(Cell), .head = head};
-  return cells->cells + column;
-}
-
-static Status print_cells(const Cells *cells, AppTableFormat format, FILE *stream) {
-  const AppTablePart part = {cells->columns, cells->column_count, cells->cells,
-                             (size_t)cells->most * sizeof(Cell)};
-  return app_table_print(&(AppTable){&part, 1, cells->row_count}, format, stream);
+// The numbers; on a terminal those with a head alone, and, of repeated runs, how far processor times are
+// apart.
+static void add_numbers(Columns *list, bool is_terminal, bool is_repeated) {
+  for (int c = 0; c < COLUMN_COUNT; c++) {
+    if (is_terminal && !columns[c].head) continue;
+    add_column(list, columns[c].name, APP_TABLE_NUMBER, offsetof(Row, numbers) + (size_t)c * sizeof(double),
+               columns[c].head);
+    if (is_terminal && is_repeated && strcmp(columns[c].name, "cpu_s") == 0)
+      add_column(list, "spread", APP_TABLE_NUMBER, offsetof(Row, spread), "spread");
+  }
 }
 
 // What a row is called: by its folder, or, where a folder's name cannot say it, by names of models.
@@ -224,43 +213,48 @@ static void name_row(const AppSweepGrid *grid, const AppSweepPoint *point, char 
   if (!has_names) snprintf(text, size, "%s", point->folder);
 }
 
-static void fill_csv(const AppSweepGrid *grid, Cells *cells) {
-  const AppSweepPoint *points = grid->points;
-  int n = cells->row_count, most = cells->most;
-  Cell *cell = add_column(cells, "folder", APP_TABLE_TEXT, NULL);
-  for (int p = 0; p < n; p++) cell[p * most].text = points[p].folder;
-  for (int a = 0; a < grid->base.axis_count; a++) {
-    cell = add_column(cells, grid->base.axes[a].key, APP_TABLE_TEXT, NULL);
-    for (int p = 0; p < n; p++) cell[p * most].text = value_text(grid, &points[p], a);
-  }
-  if (grid->base.repeat_count > 1) {
-    cell = add_column(cells, "repeat", APP_TABLE_NUMBER, NULL);
-    for (int p = 0; p < n; p++) cell[p * most].number = points[p].repeat + 1;
-  }
-  cell = add_column(cells, "outcome", APP_TABLE_TEXT, NULL);
-  for (int p = 0; p < n; p++) cell[p * most].text = outcome_of(&points[p]);
-  for (int c = 0; c < COLUMN_COUNT; c++) {
-    cell = add_column(cells, columns[c].name, APP_TABLE_NUMBER, NULL);
-    for (int p = 0; p < n; p++) cell[p * most].number = value_of(&points[p], &columns[c]);
-  }
-  cell = add_column(cells, "message", APP_TABLE_TEXT, NULL);
-  for (int p = 0; p < n; p++) cell[p * most].text = points[p].message;
+static void fill_row(const AppSweepGrid *grid, const AppSweepPoint *point, Row *row) {
+  *row = (Row){.folder = point->folder,
+               .outcome = outcome_of(point),
+               .message = point->message,
+               .repeat = point->repeat + 1,
+               .spread = NAN};
+  for (int a = 0; a < grid->base.axis_count; a++) row->values[a] = value_text(grid, point, a);
+  for (int c = 0; c < COLUMN_COUNT; c++) row->numbers[c] = value_of(point, &columns[c]);
+  name_row(grid, point, row->text, sizeof row->text);
+  row->name = row->text;
+}
+
+static Status print_rows(const Columns *list, const Row *rows, int count, AppTableFormat format,
+                         FILE *stream) {
+  const AppTablePart part = {list->columns, list->count, rows, sizeof *rows};
+  return app_table_print(&(AppTable){&part, 1, count}, format, stream);
+}
+
+static Status print_csv(const AppSweepGrid *grid, FILE *stream) {
+  Columns list = {.count = 0};
+  Row *rows = memory_zeroed((size_t)grid->point_count, sizeof *rows);
+  if (!rows) return status_no_memory("the table of a sweep");
+  for (int p = 0; p < grid->point_count; p++) fill_row(grid, &grid->points[p], &rows[p]);
+  add_column(&list, "folder", APP_TABLE_TEXT, offsetof(Row, folder), NULL);
+  for (int a = 0; a < grid->base.axis_count; a++)
+    add_column(&list, grid->base.axes[a].key, APP_TABLE_TEXT,
+               offsetof(Row, values) + (size_t)a * sizeof(const char *), NULL);
+  if (grid->base.repeat_count > 1) add_column(&list, "repeat", APP_TABLE_NUMBER, offsetof(Row, repeat), NULL);
+  add_column(&list, "outcome", APP_TABLE_TEXT, offsetof(Row, outcome), NULL);
+  add_numbers(&list, false, false);
+  add_column(&list, "message", APP_TABLE_TEXT, offsetof(Row, message), NULL);
+  Status status = print_rows(&list, rows, grid->point_count, APP_TABLE_CSV, stream);
+  memory_free(rows);
+  return status;
 }
 
 static Status write_csv(const AppSweepGrid *grid, const char *path) {
-  Cells cells;
   FileWriter writer;
-  Status status = cells_create(&cells, grid, grid->point_count);
-  if (!status) fill_csv(grid, &cells);
-  if (!status) status = file_begin(&writer, path);
-  if (!status) {
-    status = print_cells(&cells, APP_TABLE_CSV, writer.stream);
-    if (status)
-      file_abandon(&writer);
-    else
-      status = file_commit(&writer);
-  }
-  cells_destroy(&cells);
+  TRY(file_begin(&writer, path));
+  Status status = print_csv(grid, writer.stream);
+  if (!status) return file_commit(&writer);
+  file_abandon(&writer);
   return status;
 }
 
@@ -312,39 +306,24 @@ static double median_of(const AppSweepGrid *grid, int row, const struct Column *
   return median;
 }
 
-static void fill_table(const AppSweepGrid *grid, char (*names)[1024], Cells *cells) {
-  int n = cells->row_count, most = cells->most;
-  Cell *cell = add_column(cells, "run", APP_TABLE_TEXT, "run");
-  for (int p = 0; p < n; p++) {
-    name_row(grid, &grid->points[p], names[p], sizeof names[p]);
-    cell[p * most].text = names[p];
-  }
-  cell = add_column(cells, "outcome", APP_TABLE_TEXT, "outcome");
-  for (int p = 0; p < n; p++) cell[p * most].text = outcome_of(&grid->points[p]);
-  for (int c = 0; c < COLUMN_COUNT; c++) {
-    double spread;
-    if (!columns[c].head) continue;
-    cell = add_column(cells, columns[c].name, APP_TABLE_NUMBER, columns[c].head);
-    for (int p = 0; p < n; p++) cell[p * most].number = median_of(grid, p, &columns[c], &spread);
-    if (grid->base.repeat_count == 1 || strcmp(columns[c].name, "cpu_s") != 0) continue;
-    cell = add_column(cells, "cpu_s_spread", APP_TABLE_NUMBER, "spread");
-    for (int p = 0; p < n; p++) median_of(grid, p, &columns[c], &cell[p * most].number);
-  }
-  cell = add_column(cells, "message", APP_TABLE_TEXT, "");
-  for (int p = 0; p < n; p++) cell[p * most].text = grid->points[p].message;
-}
-
 Status app_sweep_table_print(const AppSweepGrid *grid, AppTableFormat format, FILE *stream) {
-  Cells cells;
-  int rows = grid->point_count / grid->base.repeat_count;
-  char(*names)[1024] = memory_zeroed((size_t)rows, sizeof *names);
-  Status status = cells_create(&cells, grid, rows);
-  if (!names) status = status_no_memory("the table of a sweep");
-  if (!status) {
-    fill_table(grid, names, &cells);
-    status = print_cells(&cells, format, stream);
+  Columns list = {.count = 0};
+  int count = grid->point_count / grid->base.repeat_count;
+  Row *rows = memory_zeroed((size_t)count, sizeof *rows);
+  if (!rows) return status_no_memory("the table of a sweep");
+  for (int r = 0; r < count; r++) {
+    fill_row(grid, &grid->points[r], &rows[r]);
+    for (int c = 0; c < COLUMN_COUNT; c++) {
+      double spread;
+      rows[r].numbers[c] = median_of(grid, r, &columns[c], &spread);
+      if (strcmp(columns[c].name, "cpu_s") == 0) rows[r].spread = spread;
+    }
   }
-  cells_destroy(&cells);
-  memory_free(names);
+  add_column(&list, "run", APP_TABLE_TEXT, offsetof(Row, name), "run");
+  add_column(&list, "outcome", APP_TABLE_TEXT, offsetof(Row, outcome), "outcome");
+  add_numbers(&list, true, grid->base.repeat_count > 1);
+  add_column(&list, "message", APP_TABLE_TEXT, offsetof(Row, message), "");
+  Status status = print_rows(&list, rows, count, format, stream);
+  memory_free(rows);
   return status;
 }
