@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "app/bench/command.h"
 #include "app/bench/overlap/pairs.h"
+#include "app/bench/report.h"
 #include "app/bench/timer.h"
 #include "base/clock.h"
 #include "base/log.h"
@@ -445,15 +445,15 @@ static const struct argp argp = {
     .args_doc = "DEVICE",
     .doc = "Measure how many pairs of tetrahedra a second a device answers: host, "
            "opencl, cuda or auto, with a number where there are several, as in opencl:1.",
-    .children = app_bench_command_children,
-    .help_filter = app_bench_command_help};
+    .children = app_bench_report_children,
+    .help_filter = app_bench_report_help};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
   for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++) options.wants_model[m] = true;
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = options.wants_residence[i] = true;
-  app_bench_command_read(&lab_device, argument_count, arguments, &options);
+  app_bench_report_read(&lab_device, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
@@ -463,4 +463,4 @@ const AppCommand lab_device = {.name = "device",
                                .run = run_command,
                                .has_threads = true,
                                .rows = &report,
-                               .describe_rows = app_bench_command_rows};
+                               .describe_rows = app_bench_report_describe};

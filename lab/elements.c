@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/bench/command.h"
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
 #include "app/cli/argument.h"
@@ -307,12 +306,12 @@ static Status run(const Options *options) {
 static const struct argp argp = {.options = option_table,
                                  .parser = parse,
                                  .doc = "Measure forces and matrices of elements in vector lanes.",
-                                 .children = app_bench_command_children,
-                                 .help_filter = app_bench_command_help};
+                                 .children = app_bench_report_children,
+                                 .help_filter = app_bench_report_help};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(5), .passes = 20};
-  app_bench_command_read(&lab_elements, argument_count, arguments, &options);
+  app_bench_report_read(&lab_elements, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
@@ -321,4 +320,4 @@ const AppCommand lab_elements = {.name = "elements",
                                  .argp = &argp,
                                  .run = run_command,
                                  .rows = &report,
-                                 .describe_rows = app_bench_command_rows};
+                                 .describe_rows = app_bench_report_describe};

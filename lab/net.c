@@ -5,7 +5,6 @@
 #include <omp.h>
 #include <string.h>
 
-#include "app/bench/command.h"
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
 #include "app/cli/argument.h"
@@ -509,8 +508,8 @@ static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .doc = "Measure networks without their geometry, by our kernels and by PyTorch where it is installed.",
-    .children = app_bench_command_children,
-    .help_filter = app_bench_command_help};
+    .children = app_bench_report_children,
+    .help_filter = app_bench_report_help};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(9),
@@ -521,7 +520,7 @@ static int run_command(int argument_count, char **arguments) {
                      .batches = {2048},
                      .batch_count = 1};
   options.common.takes_thread_list = true;
-  app_bench_command_read(&lab_net, argument_count, arguments, &options);
+  app_bench_report_read(&lab_net, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
@@ -531,4 +530,4 @@ const AppCommand lab_net = {.name = "net",
                             .run = run_command,
                             .has_threads = true,
                             .rows = &report,
-                            .describe_rows = app_bench_command_rows};
+                            .describe_rows = app_bench_report_describe};

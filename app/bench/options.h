@@ -17,7 +17,7 @@ typedef struct AppBenchOptions {
   int thread_list[APP_BENCH_MAX_LIST]; // (thread_list_count)
   int thread_list_count;
   AppTableFormat format;
-  const struct AppBenchReport *report; // of the bench (app/bench/command.h)
+  const struct AppBenchReport *report; // of the bench (app/bench/report.h)
 } AppBenchOptions;
 
 // One thread, `repeats` rounds, a table.

@@ -53,16 +53,27 @@ Status app_bench_report_print(const AppBenchReport *report, const AppBenchOption
   return fflush(stdout) == 0 ? STATUS_OK : status_fail(STATUS_IO, "standard output cannot be written");
 }
 
-char *app_bench_report_help(const AppBenchReport *report, int argp_key, const char *text) {
-  if (argp_key != ARGP_KEY_HELP_POST_DOC) return (char *)(uintptr_t)text; // argp's own way: it is not changed
+char *app_bench_report_describe(const void *rows) {
   char *help = NULL;
   size_t size;
   FILE *stream = open_memstream(&help, &size);
   if (!stream) return NULL;
   AppTablePart parts[PART_COUNT];
-  fill_parts(report, NULL, NULL, parts);
+  fill_parts(rows, NULL, NULL, parts);
   fputs("Columns of a row (JSON, CSV):\n", stream);
   app_table_describe(&(AppTable){parts, PART_COUNT, 0}, stream);
   fclose(stream);
   return help;
+}
+
+const struct argp_child app_bench_report_children[] = {{.argp = &app_bench_options_argp}, {0}};
+
+char *app_bench_report_help(int key, const char *text, void *options) {
+  if (key != ARGP_KEY_HELP_POST_DOC) return (char *)(uintptr_t)text; // argp's own way: it is not changed
+  return app_bench_report_describe(((const AppBenchOptions *)options)->report);
+}
+
+void app_bench_report_read(const AppCommand *command, int argument_count, char **arguments, void *options) {
+  ((AppBenchOptions *)options)->report = command->rows;
+  argp_parse(command->argp, argument_count, arguments, 0, NULL, options);
 }

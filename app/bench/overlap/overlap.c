@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench/overlap/overlap.h"
 
+#include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdbool.h>
 #include <string.h>
 
-#include "app/bench/command.h"
-#include "app/bench/contestant.h"
 #include "app/bench/overlap/errors.h"
 #include "app/bench/overlap/pairs.h"
 #include "app/bench/report.h"
+#include "app/bench/timer.h"
 #include "app/cli/argument.h"
 #include "app/cli/model_names.h"
 #include "app/evaluation/card.h"
 #include "app/evaluation/model.h"
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/text.h"
@@ -95,6 +96,54 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
+// A model that evaluates a batch of pairs repeatedly.
+typedef struct Contestant {
+  const OverlapModel *model; // borrowed
+  OverlapBatch batch;        // its arrays are the bench's; contestants may share what is written
+  int threads;
+  int calls;           // a round; 0: not known before the first turn, the warm-up
+  AppBenchTimer timer; // of a pair
+} Contestant;
+
+static const double ROUND_S = 0.05, CALL_S = 0.25; // what a round and a call shall take
+
+static int limited(double value, int largest) {
+  return value < 1 ? 1 : value < largest ? (int)value : largest;
+}
+
+// The largest batch, `wanted` at most, whose single call does not take long by the model's own guess;
+// Hessians cost four times as much.
+static int batch_of(const OverlapModel *model, bool has_hessian, int threads, int wanted) {
+  double per_pair = model->ops->seconds_per_pair * (has_hessian ? 4 : 1);
+  // a model that needs less than a microsecond is never cut: its guess is not that good
+  return per_pair < 1e-6 ? wanted : limited(CALL_S * threads / per_pair, wanted);
+}
+
+static Status find_calls(Contestant *contestant) {
+  double began = clock_wall_s();
+  TRY(overlap_model_eval(contestant->model, &contestant->batch)); // wakes threads, loads caches
+  double first = clock_wall_s();
+  if (first - began > ROUND_S) {
+    contestant->calls = 1;
+    return STATUS_OK;
+  }
+  TRY(overlap_model_eval(contestant->model, &contestant->batch));
+  contestant->calls = limited(ROUND_S / (clock_wall_s() - first + 1e-9), INT_MAX);
+  return STATUS_OK;
+}
+
+// Evaluates the batch as often as fills a round and times a pair. The first turn finds how often that is.
+static Status take_turn(void *self, int round) {
+  Contestant *contestant = self;
+  omp_set_num_threads(contestant->threads);
+  if (contestant->calls == 0) TRY(find_calls(contestant));
+  app_bench_timer_start(&contestant->timer);
+  for (int call = 0; call < contestant->calls; call++)
+    TRY(overlap_model_eval(contestant->model, &contestant->batch));
+  app_bench_timer_stop(&contestant->timer, round, (double)contestant->calls * contestant->batch.pair_count);
+  return STATUS_OK;
+}
+
 // What tells contestants apart.
 typedef struct Case {
   int model, set, quantity, batch, threads; // threads: their number
@@ -109,7 +158,7 @@ typedef struct Bench {
   double *pairs[APP_BENCH_SET_COUNT]; // (largest batch, 24), owned; NULL: not wanted
   AppBenchTruth truths[APP_BENCH_SET_COUNT];
   double *volume, *centroid, *gradient, *hessian;
-  AppBenchContestant *contestants;
+  Contestant *contestants;
   Case *cases; // of the contestants
   int count, capacity;
 } Bench;
@@ -138,15 +187,15 @@ static void add(Bench *bench, const Case *what) {
   int batch = bench->options->batches[what->batch];
   bool has_hessian = what->quantity == HESSIAN, has_gradient = has_hessian || what->quantity == GRADIENT;
   bench->cases[bench->count] = *what;
-  bench->contestants[bench->count++] = (AppBenchContestant){
-      .model = model,
-      .threads = what->threads,
-      .batch = {.pair_count = app_bench_contestant_batch(model, has_hessian, what->threads, batch),
-                .pairs = bench->pairs[what->set],
-                .volume = bench->volume,
-                .gradient = has_gradient ? bench->gradient : NULL,
-                .hessian = has_hessian ? bench->hessian : NULL,
-                .centroid = what->quantity == CENTROID ? bench->centroid : NULL}};
+  bench->contestants[bench->count++] =
+      (Contestant){.model = model,
+                   .threads = what->threads,
+                   .batch = {.pair_count = batch_of(model, has_hessian, what->threads, batch),
+                             .pairs = bench->pairs[what->set],
+                             .volume = bench->volume,
+                             .gradient = has_gradient ? bench->gradient : NULL,
+                             .hessian = has_hessian ? bench->hessian : NULL,
+                             .centroid = what->quantity == CENTROID ? bench->centroid : NULL}};
 }
 
 static bool gives(const OverlapModel *model, int quantity) {
@@ -280,7 +329,7 @@ static bool has_error(int quantity) {
 }
 
 static Status measure_errors(const Bench *bench, int c, AppBenchErrors *errors) {
-  const AppBenchContestant *contestant = &bench->contestants[c];
+  const Contestant *contestant = &bench->contestants[c];
   const Case *what = &bench->cases[c];
   const AppBenchTruth *truth = &bench->truths[what->set];
   int count = contestant->batch.pair_count < truth->count ? contestant->batch.pair_count : truth->count;
@@ -290,14 +339,14 @@ static Status measure_errors(const Bench *bench, int c, AppBenchErrors *errors) 
 }
 
 static Row row_of(const Bench *bench, int c) {
-  const AppBenchContestant *contestant = &bench->contestants[c];
+  const Contestant *contestant = &bench->contestants[c];
   const Case *what = &bench->cases[c];
   int rounds = bench->options->common.repeats;
   Case single = *what;
   single.threads = bench->options->common.thread_list[0];
   const int first = find_reference(bench, *what);
-  const AppBenchContestant *reference = &bench->contestants[first],
-                           *narrow = &bench->contestants[find(bench, single)];
+  const Contestant *reference = &bench->contestants[first],
+                   *narrow = &bench->contestants[find(bench, single)];
   AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
   AppBenchRatio ratio = app_bench_timer_ratio(&contestant->timer, &reference->timer, rounds);
   double cpu_ratio = app_bench_timer_cpu_ratio(&contestant->timer, &reference->timer, rounds).median;
@@ -374,7 +423,7 @@ static Status measure(Bench *bench) {
   TRY(make_inputs(bench));
   TRY(add_contestants(bench));
   TRY(app_bench_timer_take_turns(bench->contestants, sizeof *bench->contestants, bench->count,
-                                 common->repeats, app_bench_contestant_take_turn));
+                                 common->repeats, take_turn));
   return print(bench);
 }
 
@@ -391,8 +440,8 @@ static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .doc = "Measure how many pairs of tetrahedra a second the overlap models answer, and how accurately.",
-    .children = app_bench_command_children,
-    .help_filter = app_bench_command_help};
+    .children = app_bench_report_children,
+    .help_filter = app_bench_report_help};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
@@ -400,7 +449,7 @@ static int run_command(int argument_count, char **arguments) {
   options.model_count = list_models(options.models);
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
-  app_bench_command_read(&app_bench_overlap, argument_count, arguments, &options);
+  app_bench_report_read(&app_bench_overlap, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
@@ -410,4 +459,4 @@ const AppCommand app_bench_overlap = {.name = "overlap",
                                       .run = run_command,
                                       .has_threads = true,
                                       .rows = &report,
-                                      .describe_rows = app_bench_command_rows};
+                                      .describe_rows = app_bench_report_describe};

@@ -2,8 +2,11 @@
 #include "app/bench/unseen/mesh.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "base/files/file.h"
+#include "base/files/temporary.h"
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
@@ -223,11 +226,35 @@ static void lay_on_ground(const AppUnseenMesh *mesh) {
     mesh->x[3 * v + 2] -= lowest, mesh->rest[3 * v + 2] -= lowest;
 }
 
+// The ground face, drawn up by extrusion.
+static Status write_box(const char *path, const double size[3], double edge, double growth) {
+  FileWriter writer;
+  TRY(file_begin(&writer, path));
+  fprintf(writer.stream, "Mesh.Algorithm3D = 1;\n"); // Delaunay; others are not the same at every call
+  for (int p = 0; p < 4; p++)
+    fprintf(writer.stream, "Point(%d) = {%.17g, %.17g, 0, %.17g};\n", p + 1, (p % 3 ? 0.5 : -0.5) * size[0],
+            (p > 1 ? 0.5 : -0.5) * size[1], edge * (p % 3 ? growth : 1));
+  for (int p = 0; p < 4; p++) fprintf(writer.stream, "Line(%d) = {%d, %d};\n", p + 1, p + 1, (p + 1) % 4 + 1);
+  fprintf(writer.stream, "Curve Loop(1) = {1, 2, 3, 4};\nPlane Surface(1) = {1};\n");
+  fprintf(writer.stream, "body[] = Extrude {0, 0, %.17g} { Surface{1}; };\n", size[2]);
+  return file_commit(&writer);
+}
+
+// A box of that size, its middle over x = y = 0, from z = 0 up, filled by Delaunay tetrahedra with edges of
+// about `edge` at one end and `growth` times that at the other, along x.
+static Status make_box(FemMesh *mesh, const double size[3], double edge, double growth) {
+  char *path;
+  TRY(temporary_file("unseen", ".geo", &path));
+  Status status = write_box(path, size, edge, growth);
+  if (!status) status = fem_mesh_read(mesh, path, NULL, NULL);
+  temporary_remove(path);
+  return status;
+}
+
 static Status make(FemMesh *made, const AppUnseenBody *body, uint64_t seed) {
   double size[3];
   for (int c = 0; c < 3; c++) size[c] = body->cells[c] * body->cell[c];
-  return body->is_made ? app_unseen_made_create(made, size, body->cell[0] * (1 + 0.05 * (double)(seed % 5)),
-                                                body->growth)
+  return body->is_made ? make_box(made, size, body->cell[0] * (1 + 0.05 * (double)(seed % 5)), body->growth)
                        : STATUS_OK;
 }
 

@@ -7,8 +7,8 @@
 
 #include <stdint.h>
 
-#include "app/bench/unseen/made.h"
 #include "contact/def.h"
+#include "fem/mesh/mesh.h"
 
 // A body: a box of cells, or of that size filled by gmsh with edges as long as the cell's first.
 typedef struct AppUnseenBody {
@@ -40,7 +40,7 @@ typedef struct AppUnseenMesh {
   ContactBody bodies[2];
 } AppUnseenMesh;
 
-// Made bodies differ from seed to seed by the length of their edges. What they fail with: made.h.
+// Made bodies differ from seed to seed by the length of their edges. They fail as reading a .geo does.
 Status app_unseen_mesh_create(AppUnseenMesh *mesh, const AppUnseenCase *what, uint64_t seed);
 void app_unseen_mesh_destroy(AppUnseenMesh *mesh); // a zeroed one is accepted
 

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "app/bench/command.h"
+#include "app/bench/report.h"
 #include "app/bench/unseen/path.h"
 #include "app/cli/argument.h"
 #include "app/evaluation/model.h"
@@ -160,8 +160,8 @@ static const struct argp argp = {.options = option_table,
                                         "at each place volumes, centroids and forces are compared with those "
                                         "of clipping. Errors are the largest "
                                         "over the seeds.",
-                                 .children = app_bench_command_children,
-                                 .help_filter = app_bench_command_help};
+                                 .children = app_bench_report_children,
+                                 .help_filter = app_bench_report_help};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 1},
@@ -170,7 +170,7 @@ static int run_command(int argument_count, char **arguments) {
                      .seeds = 3,
                      .places = 96};
   for (int c = 0; c < app_unseen_case_count; c++) options.wants_case[c] = true;
-  app_bench_command_read(&app_bench_unseen, argument_count, arguments, &options);
+  app_bench_report_read(&app_bench_unseen, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
@@ -180,4 +180,4 @@ const AppCommand app_bench_unseen = {.name = "unseen",
                                      .run = run_command,
                                      .has_threads = true,
                                      .rows = &report,
-                                     .describe_rows = app_bench_command_rows};
+                                     .describe_rows = app_bench_report_describe};
