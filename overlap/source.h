@@ -4,10 +4,11 @@
 //   clip                  a model of the program's (overlap/model.h lists them)
 //   net.safetensors       weights of a network of ours
 //   mine.so               a library of the user's (include/tetlap/model.h)
-//   mine.py:volume        a function, or a torch.nn.Module, in a Python file; `mine.py`: the one named
-//   `model` exec:COMMAND          a program that speaks the protocol of overlap/foreign/process.h channel:3,4
-//   a function of the program that started this one (the same protocol) hybrid, hybrid=WORD   a network that
-//   is answered for by `clip` where it doubts
+//   mine.py:volume        a function, or a torch.nn.Module, in a Python file
+//   mine.py               the one that is named `model`
+//   exec:COMMAND          a program that speaks the protocol of overlap/foreign/process.h
+//   channel:3,4,volume    a function of the program that started this one (the same protocol)
+//   hybrid, hybrid=WORD   a network that is answered for by `clip` where it doubts
 #ifndef TETLAP_OVERLAP_SOURCE_H
 #define TETLAP_OVERLAP_SOURCE_H
 

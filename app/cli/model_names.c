@@ -81,6 +81,17 @@ static int program_of(const char *command, const char **name) {
   return (int)(command + length - *name);
 }
 
+// What a word is called that names no file of ours: the program that a command begins with, without its
+// folder; what a channel says last.
+static int call_source(const char *source, const char **name) {
+  if (overlap_source_of(source) == OVERLAP_SOURCE_CHANNEL) {
+    const char *comma = strrchr(source, ',');
+    *name = comma ? comma + 1 : source;
+    return (int)strlen(*name);
+  }
+  return program_of(strchr(source, ':') + 1, name);
+}
+
 // False: the name is too long, and cut.
 static bool write_name(Entry *entry) {
   const char *from = entry->source;
@@ -89,8 +100,8 @@ static bool write_name(Entry *entry) {
     from = entry->path + strlen(entry->path);
     for (int parts = 0; parts < entry->parts && from > entry->path; parts += *from == '/') from--;
     from += *from == '/';
-  } else if (overlap_source_of(from) == OVERLAP_SOURCE_COMMAND) {
-    length = program_of(strchr(from, ':') + 1, &from);
+  } else if (overlap_source_is_foreign(from)) {
+    length = call_source(from, &from);
   } else {
     from += prefix;
   }

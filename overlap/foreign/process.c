@@ -306,12 +306,16 @@ Status overlap_foreign_process_open_python(OverlapForeignPort *port, const char 
 
 Status overlap_foreign_process_attach(OverlapForeignPort *port, const char *word) {
   int ends[2], used = 0;
-  if (sscanf(word, "channel:%d,%d%n", &ends[0], &ends[1], &used) != 2 || word[used])
-    return status_fail(STATUS_INPUT, "%s: expected channel:SOCKET,MEMORY, two descriptors", word);
+  if (sscanf(word, "channel:%d,%d,%n", &ends[0], &ends[1], &used) != 2 || used == 0 || !word[used])
+    return status_fail(STATUS_INPUT, "%s: expected channel:SOCKET,MEMORY,NAME, two descriptors", word);
+  for (int e = 0; e < 2; e++)
+    if (fcntl(ends[e], F_SETFD, FD_CLOEXEC) < 0)
+      return status_fail(STATUS_INPUT,
+                         "%s: the program that has this function did not start this run: start it there",
+                         word + used);
   Process *process;
-  TRY(create(&process, "the model of the calling program"));
+  TRY(create(&process, word + used));
   process->socket = ends[0], process->memory = ends[1];
-  for (int e = 0; e < 2; e++) fcntl(ends[e], F_SETFD, FD_CLOEXEC);
   Status status = reserve(process, 1);
   if (!status) status = greet(process, port);
   if (status) close_process(process);

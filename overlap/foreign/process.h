@@ -26,14 +26,14 @@
 
 #include "overlap/foreign/port.h"
 
-// A command line for the shell. `name`: for messages.
+// A command line for the shell.
 Status overlap_foreign_process_open(OverlapForeignPort *port, const char *command);
 
 // `path:name` of a Python file; run by $TETLAP_PYTHON, `python3` by default, with python/tetlap/serve.py.
 Status overlap_foreign_process_open_python(OverlapForeignPort *port, const char *word);
 
-// `channel:SOCKET,MEMORY`: the other side, which has started this program, holds the other end. Both
-// descriptors become the port's.
+// `channel:SOCKET,MEMORY,NAME`: the other side, which has started this program, holds the other end. Both
+// descriptors become the port's. STATUS_INPUT: they are not there, as in a run that is resumed.
 Status overlap_foreign_process_attach(OverlapForeignPort *port, const char *word);
 
 #endif

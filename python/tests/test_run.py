@@ -33,6 +33,10 @@ DROP = {
     "output": {"frames": 5},
 }
 
+TWO = copy.deepcopy(DROP)
+TWO["bodies"].append(dict(DROP["bodies"][0], name="upper", place={"translate": [0.03, 0.02, 0.21]}))
+del TWO["contact"]["stiffness"]
+
 ENDLESS = copy.deepcopy(DROP)
 ENDLESS["time"] = {"end": 1e3, "max_step": 1e-3}
 ENDLESS["output"] = {"frames": 1_000_000}
@@ -49,6 +53,31 @@ class RunsOfTheProgram(unittest.TestCase):
         self.assertEqual(run.outcome, "finished")
         self.assertEqual(len(run.frames), 6)
         np.testing.assert_allclose(run.frames.times, np.linspace(0, 0.1, 6), rtol=1e-14)
+
+    def test_a_function_is_an_overlap_model(self):
+        def clip(pairs):
+            found = tetlap.overlap(pairs, centroid=True)
+            calls.append(len(pairs))
+            return {"volume": found.volume, "centroid": found.centroid}
+
+        calls = []
+        own = tetlap.run(TWO, self.directory)
+        ours = tetlap.run(TWO, self.directory.with_name("ours"), overlap=clip)
+        self.assertGreater(sum(calls), 1000)
+        self.assertEqual(json.loads(Path(ours.directory, "summary.json").read_text())["overlap"], "clip")
+        np.testing.assert_array_equal(ours.frames[-1].points, own.frames[-1].points)
+
+    def test_what_the_function_raises_is_the_cause(self):
+        def broken(pairs):
+            if len(pairs) > 1:
+                raise ValueError("no more than one")
+            return {"volume": np.zeros(1), "centroid": np.zeros((1, 3))}
+
+        with self.assertRaisesRegex(tetlap.RunError, "(?s)broken.*no more than one") as failed:
+            tetlap.run(TWO, self.directory, overlap=broken)
+        self.assertIsInstance(failed.exception.__cause__, ValueError)
+        with self.assertRaisesRegex(tetlap.RunError, "volume of shape"):
+            tetlap.run(TWO, self.directory, overlap=lambda pairs: pairs[0])
 
     def test_arrays_have_the_shapes_of_the_mesh(self):
         frame = tetlap.run(DROP, self.directory).frames[-1]

@@ -2,8 +2,10 @@
 """Runs of the program as a child process."""
 
 import logging
+import os
 import shutil
 import signal
+import socket
 import subprocess
 import tempfile
 import threading
@@ -12,7 +14,7 @@ import weakref
 from collections.abc import Mapping
 from pathlib import Path
 
-from . import _locate
+from . import _locate, serve
 from ._errors import RunError
 from ._results import Frames, Run
 from ._scene import override_texts, scene_text, with_absolute_paths
@@ -83,6 +85,38 @@ class _Words(threading.Thread):
         self._stream.close()
 
 
+class _Server(threading.Thread):
+    """Answers the program's requests for overlaps by a function of ours (overlap/foreign/process.h)."""
+
+    def __init__(self, function):
+        super().__init__(daemon=True)
+        name = getattr(function, "__name__", type(function).__name__)
+        self._function, self._name, self.error = function, "".join(c for c in name if c.isalnum() or c in "_-.") or "model", None
+        ours, theirs = socket.socketpair()
+        memory = os.memfd_create("tetlap-model")
+        self._channel = serve.Channel(ours.detach(), os.dup(memory))
+        self.descriptors = theirs.detach(), memory
+        self.start()
+
+    @property
+    def word(self):
+        return f"channel:{self.descriptors[0]},{self.descriptors[1]},{self._name}"
+
+    def run(self):
+        try:
+            serve.attend(self._channel, lambda: serve.Model(self._function, self._name), self._keep)
+        finally:
+            self._channel.close()
+
+    def _keep(self, error):
+        self.error = error
+
+    def hand_over(self):
+        """The program has its copies of the descriptors: ours are closed, so that its end is seen."""
+        for descriptor in self.descriptors:
+            os.close(descriptor)
+
+
 def _stop(process):
     """Ctrl-C for the run, which then writes its summary; a second one kills it."""
     if process.poll() is None:
@@ -128,19 +162,29 @@ def _command(scene, directory, overrides, overlap, threads, strict, capture):
     return words + ["--strict"] if strict else words
 
 
-def _execute(command, directory, on_frame):
+def _start(command, server):
+    try:
+        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                errors="replace", pass_fds=server.descriptors if server else ())
+    finally:
+        if server:
+            server.hand_over()
+
+
+def _execute(command, directory, on_frame, server):
     watch = _Watch(directory, on_frame) if on_frame else None
-    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                               text=True, errors="replace")
+    process = _start(command, server)
     words = _Words(process.stderr)
     try:
         is_stopped = _follow(process, watch)
     finally:
         words.join()
+        if server:
+            server.join()
     code = process.returncode
     if code != 0 and not (is_stopped and code == _INTERRUPTED):
         message = "\n".join(words.errors) or (f"killed by signal {-code}" if code < 0 else f"exit code {code}")
-        raise RunError(f"tetlap run failed: {message}", code, directory)
+        raise RunError(f"tetlap run failed: {message}", code, directory) from (server.error if server else None)
     if watch and watch.count == 0:
         warnings.warn("the run wrote no frames (output.vtu is false), so on_frame was not called", stacklevel=3)
 
@@ -153,7 +197,10 @@ def run(scene, directory=None, *, set=None, overlap=None, threads=None, strict=F
     directory: where the run writes. Default: out/NAME for a file, as the program does; for a dict a temporary
         folder that lives as long as the result.
     set: what to change in the scene, {"contact.stiffness": 1e6} or ["contact.stiffness=1e6"].
-    overlap, threads, strict, capture: as the program's options.
+    overlap: the overlap model: a name or file, as the program's option; or a function, or a torch.nn.Module, that takes
+        pairs (n, 2, 4, 3) and returns what docs/own_model.md says, {"volume": (n), "centroid": (n, 3), ...}. It is called
+        in a thread of this process. What it raises is the cause of the RunError.
+    threads, strict, capture: as the program's options.
     on_frame: called with every `Frame` soon after it was written. If it returns False, the run stops as by Ctrl-C,
         and what there is is returned; if it raises, the run stops and the exception goes on.
 
@@ -174,5 +221,7 @@ def run(scene, directory=None, *, set=None, overlap=None, threads=None, strict=F
         scene.write_text(text + "\n", encoding="utf-8")
     elif directory is None:
         directory = Path("out", Path(scene).stem)
-    _execute(_command(scene, directory, overrides, overlap, threads, strict, capture), directory, on_frame)
+    server = _Server(overlap) if callable(overlap) else None
+    word = server.word if server else overlap
+    _execute(_command(scene, directory, overrides, word, threads, strict, capture), directory, on_frame, server)
     return Run(directory, temporary)

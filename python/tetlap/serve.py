@@ -169,16 +169,17 @@ def evaluate(model, channel, count, capacity, wants):
 
 
 def _tell(error):
-    """The error with its traceback, from where this file called the model."""
+    """The error in one line, then its traceback from where this file called the model."""
     frames = error.__traceback__
     while frames is not None and frames.tb_frame.f_code.co_filename in (__file__, "<frozen importlib._bootstrap>", importlib.util.__file__,
                                                                          "<frozen importlib._bootstrap_external>"):
         frames = frames.tb_next
-    return "".join(traceback.format_exception(type(error), error, frames)).rstrip()
+    first = "".join(traceback.format_exception_only(type(error), error)).strip().splitlines()[-1]
+    return first + "\n" + "".join(traceback.format_exception(type(error), error, frames)).rstrip()
 
 
-def attend(channel, find_model):
-    """Answers until the program closes its end; what goes wrong is told and ends it."""
+def attend(channel, find_model, on_error=None):
+    """Answers until the program closes its end. What goes wrong is told to the program, which then ends, and to `on_error`."""
     model = None
     while (request := channel.receive()) is not None:
         what, count, capacity, wants = request
@@ -195,6 +196,8 @@ def attend(channel, find_model):
             channel.reply(1, str(error))
         except BaseException as error:  # whatever it was, the program has to know
             channel.reply(1, _tell(error))
+            if on_error:
+                on_error(error)
             if not isinstance(error, Exception):
                 raise
 

@@ -67,7 +67,7 @@ START_TEST(a_word_says_what_it_is) {
                {"a/b.py:f", OVERLAP_SOURCE_PYTHON, "a/b.py"},
                {"a:b/c.py", OVERLAP_SOURCE_PYTHON, "a:b/c.py"},
                {"exec:./x.py", OVERLAP_SOURCE_COMMAND, ""},
-               {"channel:3,4", OVERLAP_SOURCE_CHANNEL, ""}};
+               {"channel:3,4,f", OVERLAP_SOURCE_CHANNEL, ""}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     const char *path;
     char text[64];
