@@ -104,10 +104,12 @@ static double give_of(const Give *a, const Give *b) {
   return fmin(a->height, b->height) * (a->give + b->give);
 }
 
-// The pressure between two bodies that store the energy of an impact, evenly strained; E at most.
+// What the interface must hold in an impact: the pressure p between two bodies that store its energy, evenly
+// strained; beyond E, where they store no more, p²/E, so that their edges hold it.
 static double pressure_of(const Give *a, const Give *b, double blow) {
   double stored = a->volume * a->inverse + b->volume * b->inverse;
-  return fmin(sqrt(2 * blow / stored), 1 / fmax(a->inverse, b->inverse));
+  double pressure = sqrt(2 * blow / stored), compliance = fmax(a->inverse, b->inverse);
+  return pressure * fmax(1, pressure * compliance);
 }
 
 // Between two bodies: stiff enough for a press and for an impact [J]. `terms`: of p = terms · c d.

@@ -15,10 +15,14 @@
 //
 // An impact may compress bodies by as much as their height. Two bodies that store the energy W of the hardest
 // impact of the scene (blow.h) press each other with p = √(2 W / (V_A/E_A + V_B/E_B)), V their volumes.
-// Beyond p = E they would have no height left; there their own stiffness grows. Where it is more than the
-// value above, c is such that this p compresses the interface by 1 % of L:
+// Where it is more than the value above, c is such that this p compresses the interface by 1 % of L. Beyond
+// p = E the bodies would have no height left: they are crushed, and what holds them apart are their edges.
+// An edge of length L that is pressed by d into a half-space stores c L d³/3, into a body 0.57 c L d³. With
 //
-//   c = 50 min(p, E) / L, against a shape without elements 100 min(p, E) / L,     E of the softer one
+//   c = 50 q / L, against a shape without elements 100 q / L,     q = max(p, p²/E), E of the softer one
+//
+// the edge of a cube stores the whole of W, p² L³/(2 E) then (twice that of two equal cubes), within d = L/4
+// (L/3).
 //
 // The rule assumes contact over the whole width. Where the contact is far smaller than both bodies, of radius
 // a, they yield by about p a (1/E_A + 1/E_B) only, and the interface by L/a times 2 % of that. For such

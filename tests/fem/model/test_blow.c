@@ -68,8 +68,38 @@ START_TEST(a_blow_presses_the_interface_by_a_hundredth_of_the_height) {
   scene_open(&run, "cubes", NULL);
   expect_near(pressure / (2 * chosen(&run, 3, 9)), EDGE / 100);
   expect_near(pressure / (2 * chosen(&run, 4, 3)), EDGE / 100);
-  expect_near(chosen(&run, 9, GROUND), 100 * YOUNG / EDGE); // p is E at most
+  pressure = sqrt(2 * blow / (volume / YOUNG)); // beyond E: p²/E
+  ck_assert(pressure > YOUNG);
+  expect_near(chosen(&run, 9, GROUND), 100 * pressure * pressure / YOUNG / EDGE);
   scene_close(&run);
+}
+END_TEST
+
+// An edge as long as the body, which is the whole of it that touches, stores c L d³/3 against a half-space.
+START_TEST(beyond_that_an_edge_holds_the_blow_within_a_quarter_of_the_height) {
+  SceneRun run;
+  scene_open(&run, "cubes", (const char *const[]){"effects.gravity=[0, 0, -98.1]", NULL});
+  double blow = fem_blow_hardest(&run.model), stiffness = chosen(&run, 9, GROUND);
+  expect_near(blow, 100 * G);
+  double depth = cbrt(3 * blow / (stiffness * EDGE));
+  ck_assert_near(depth, 0.25 * EDGE, 0.01 * EDGE);
+  ck_assert_double_gt(chosen(&run, 3, 9), 50 * YOUNG / EDGE);
+  scene_close(&run);
+}
+END_TEST
+
+// From p = E on the second rule goes on where the first one ends.
+START_TEST(the_stiffness_has_no_jump_where_the_pressure_is_e) {
+  double around[2];
+  for (int k = 0; k < 2; k++) {
+    SceneRun run;
+    char gravity[64];
+    snprintf(gravity, sizeof gravity, "effects.gravity=[0, 0, %.9g]", -5 * (1 + (k ? 1e-6 : -1e-6)));
+    scene_open(&run, "cubes", (const char *const[]){gravity, NULL}); // W = 10 kg · 5 m/s² · 1 m = E V / 2
+    around[k] = chosen(&run, 9, GROUND);
+    scene_close(&run);
+  }
+  ck_assert_near(around[1], around[0], 4e-6 * around[0]);
 }
 END_TEST
 
@@ -88,6 +118,8 @@ int main(void) {
   tcase_add_test(cases, it_falls_no_farther_than_until_the_end);
   tcase_add_test(cases, without_gravity_and_speed_nothing_strikes);
   tcase_add_test(cases, a_blow_presses_the_interface_by_a_hundredth_of_the_height);
+  tcase_add_test(cases, beyond_that_an_edge_holds_the_blow_within_a_quarter_of_the_height);
+  tcase_add_test(cases, the_stiffness_has_no_jump_where_the_pressure_is_e);
   tcase_add_test(cases, where_blows_are_light_the_press_decides);
   return suite_run("blow", cases, 30);
 }
