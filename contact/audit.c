@@ -16,27 +16,27 @@ double contact_audit_error(ContactAuditTerm term) {
   return term.size == 0 ? INFINITY : term.difference / term.size;
 }
 
-// The length of the difference of two pairs' ∇V; NULL: zero.
-static double gradient_length(const double *gradient, const double *other) {
+// The length of the difference of two pairs' forces; NULL: zero.
+static double length_of(const double *force, const double *other) {
   double sum = 0;
   for (int c = 0; c < OVERLAP_PAIR_SIZE; c++) {
-    double d = (gradient ? gradient[c] : 0) - (other ? other[c] : 0);
+    double d = (force ? force[c] : 0) - (other ? other[c] : 0);
     sum += d * d;
   }
   return sqrt(sum);
 }
 
-// V and ∇V over the union of two sorted lists.
+// V and forces over the union of two sorted lists.
 static void compare_overlaps(const ContactEvaluation *a, const ContactEvaluation *b, ContactAudit *audit) {
   for (int i = 0, j = 0; i < a->pair_count || j < b->pair_count; audit->pair_count++) {
     int order = i == a->pair_count ? 1 : j == b->pair_count ? -1 : compare_pairs(&a->pairs[i], &b->pairs[j]);
-    const double *left = order <= 0 ? a->gradients + OVERLAP_PAIR_SIZE * (size_t)i : NULL,
-                 *right = order >= 0 ? b->gradients + OVERLAP_PAIR_SIZE * (size_t)j : NULL;
+    const double *left = order <= 0 ? a->pair_forces + OVERLAP_PAIR_SIZE * (size_t)i : NULL,
+                 *right = order >= 0 ? b->pair_forces + OVERLAP_PAIR_SIZE * (size_t)j : NULL;
     double left_volume = order <= 0 ? a->volumes[i++] : 0, right_volume = order >= 0 ? b->volumes[j++] : 0;
     audit->volume.difference += fabs(left_volume - right_volume);
     audit->volume.size += right_volume;
-    audit->gradient.difference += gradient_length(left, right);
-    audit->gradient.size += gradient_length(right, NULL);
+    audit->gradient.difference += length_of(left, right);
+    audit->gradient.size += length_of(right, NULL);
   }
 }
 

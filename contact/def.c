@@ -6,9 +6,9 @@
 static const struct {
   const char *name, *help;
 } POTENTIALS[CONTACT_POTENTIAL_COUNT] = {
-    [CONTACT_POTENTIAL_NODAL] =
-        {"nodal",
-         "covered over rest volume of each vertex, squared: uniform pressure, no false friction [Pa]"},
+    [CONTACT_POTENTIAL_NODAL] = {"nodal", "covered over rest volume of each vertex, squared: for models "
+                                          "whose V is usable and whose centroid is not; "
+                                          "no friction, no viscosity [Pa]"},
     [CONTACT_POTENTIAL_FIELD] =
         {"field", "depth in the other body, over rest volume: uniform pressure whatever the meshes, every "
                   "pair balances [Pa/m]"},

@@ -43,12 +43,9 @@ typedef struct ContactShape {
                double velocity[3]); // NULL: by `velocity`
 } ContactShape;
 
-// The potentials, by the name a scene uses. W_i: what the other body covers of element i [m³]; W_a, V_a the
-// shares of vertex a in that and in the rest volume (a quarter of each adjacent element). κ: stiffness.
-// Between two bodies each side's sum of `nodal` gets a leading ½; against an obstacle only the body's side
-// counts, without ½.
+// How overlaps become forces, by the name a scene uses. κ: stiffness.
 typedef enum ContactPotential {
-  CONTACT_POTENTIAL_NODAL, // U = Σ_a ½ κ W_a²/V_a, κ [Pa]: even pressure, no false friction
+  CONTACT_POTENTIAL_NODAL, // by volumes alone (contact/volume/volume.h), κ [Pa]: no friction, no viscosity
   CONTACT_POTENTIAL_FIELD, // U = κ ∫_A φ_B + κ ∫_B φ_A over rest volumes, φ the depth below the other's
                            // surface (contact/pressure/field.h), κ [Pa/m]; both terms also against a mesh
                            // obstacle
@@ -85,7 +82,7 @@ typedef struct ContactSystemDef {
   // κ of each body (row) with each party, bodies then shapes; NULL: `stiffness` for all. Read in creation.
   const double *pair_stiffness; // (body_count, body_count + shape_count)
   double margin;         // skin margin while bodies are near [m]; 0: half the shortest mean edge of a body
-  bool use_full_hessian; // include p ∇²V, of `clip` if the model has none; else Gauss–Newton
+  bool use_full_hessian; // of `field`: all of ∂²U/∂x²; else its part that is never negative
   const OverlapModel *model; // borrowed
 } ContactSystemDef;
 

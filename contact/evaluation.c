@@ -10,10 +10,10 @@
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "contact/pressure/imprint.h"
-#include "contact/pressure/potential.h"
 #include "contact/rest.h"
 #include "contact/search/bounds.h"
 #include "contact/shape/shape.h"
+#include "contact/volume/volume.h"
 #include "overlap/separation.h"
 
 // Fewer pairs take less time than to tell other ranks of them.
@@ -42,7 +42,8 @@ void contact_evaluation_destroy(ContactEvaluation *evaluation) {
   memory_free(evaluation->coordinates);
   memory_free(evaluation->volumes);
   memory_free(evaluation->gradients);
-  memory_free(evaluation->pressures);
+  memory_free(evaluation->pair_forces);
+  memory_free(evaluation->nodes);
   memory_free(evaluation->forces);
   memory_free(evaluation->covered);
   memory_free(evaluation->interfaces);
@@ -54,19 +55,34 @@ void contact_evaluation_destroy(ContactEvaluation *evaluation) {
   *evaluation = (ContactEvaluation){0};
 }
 
+// Whether forces follow from volumes alone (contact/volume/volume.h); else from the depth field.
+static bool presses_by_volume(const ContactLayout *layout) {
+  return layout->def.potential == CONTACT_POTENTIAL_NODAL;
+}
+
 static Status reserve(ContactEvaluation *evaluation, const ContactLayout *layout, int count) {
   size_t n = (size_t)count, size = sizeof(double);
   bool fits =
       memory_reserve((void **)&evaluation->coordinates, &evaluation->coordinate_capacity, 24 * n, size) &&
       memory_reserve((void **)&evaluation->volumes, &evaluation->volume_capacity, n, size) &&
-      memory_reserve((void **)&evaluation->gradients, &evaluation->gradient_capacity, 24 * n, size) &&
-      memory_reserve((void **)&evaluation->pressures, &evaluation->pressure_capacity, n, size) &&
+      memory_reserve((void **)&evaluation->pair_forces, &evaluation->force_capacity, 24 * n, size) &&
+      memory_reserve((void **)&evaluation->fields, &evaluation->field_capacity, n,
+                     sizeof(ContactFieldPair)) &&
       memory_reserve((void **)&evaluation->flags, &evaluation->flag_capacity, n, sizeof(unsigned));
-  if (layout->mesh.has_field)
-    fits = fits &&
-           memory_reserve((void **)&evaluation->centroids, &evaluation->centroid_capacity, 3 * n, size) &&
-           memory_reserve((void **)&evaluation->fields, &evaluation->field_capacity, n,
-                          sizeof(ContactFieldPair));
+  if (presses_by_volume(layout))
+    fits = fits && memory_reserve((void **)&evaluation->nodes, &evaluation->node_capacity, 8 * n, size);
+  return fits ? STATUS_OK : status_no_memory("overlapping pairs");
+}
+
+// Room for what the model is asked besides volumes.
+static Status reserve_answers(ContactEvaluation *evaluation, bool wants_gradient, bool wants_centroid) {
+  size_t n = (size_t)evaluation->pair_count, size = sizeof(double);
+  bool fits = true;
+  if (wants_gradient)
+    fits = memory_reserve((void **)&evaluation->gradients, &evaluation->gradient_capacity, 24 * n, size);
+  if (wants_centroid)
+    fits =
+        fits && memory_reserve((void **)&evaluation->centroids, &evaluation->centroid_capacity, 3 * n, size);
   return fits ? STATUS_OK : status_no_memory("overlapping pairs");
 }
 
@@ -138,23 +154,23 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
   return STATUS_OK;
 }
 
-// Moves pair `from` and its overlap to the earlier place `to`. Of two bodies the field's forces are found
-// later, from the centroid.
-static void move_overlap(ContactEvaluation *evaluation, bool has_field, int from, int to) {
+// Moves pair `from` and its overlap to the earlier place `to`. By the depth field the forces of shapes are
+// known already, those of two bodies are found later from the centroid.
+static void move_overlap(ContactEvaluation *evaluation, bool is_by_volume, int from, int to) {
   bool is_of_shape = evaluation->pairs[from].cells[1] < 0;
+  size_t source = (size_t)from, place = (size_t)to;
   if (from == to) return;
   evaluation->pairs[to] = evaluation->pairs[from];
-  memcpy(evaluation->coordinates + 24 * (size_t)to, evaluation->coordinates + 24 * (size_t)from,
-         24 * sizeof(double));
+  memcpy(evaluation->coordinates + 24 * place, evaluation->coordinates + 24 * source, 24 * sizeof(double));
   evaluation->volumes[to] = evaluation->volumes[from];
-  if (has_field && !is_of_shape) {
-    memcpy(evaluation->centroids + 3 * (size_t)to, evaluation->centroids + 3 * (size_t)from,
-           3 * sizeof(double));
-    return;
+  if (is_by_volume) {
+    memcpy(evaluation->gradients + 24 * place, evaluation->gradients + 24 * source, 24 * sizeof(double));
+  } else if (!is_of_shape) {
+    memcpy(evaluation->centroids + 3 * place, evaluation->centroids + 3 * source, 3 * sizeof(double));
+  } else {
+    memcpy(evaluation->pair_forces + 24 * place, evaluation->pair_forces + 24 * source, 24 * sizeof(double));
+    evaluation->fields[to] = evaluation->fields[from];
   }
-  memcpy(evaluation->gradients + 24 * (size_t)to, evaluation->gradients + 24 * (size_t)from,
-         24 * sizeof(double));
-  if (has_field) evaluation->fields[to] = evaluation->fields[from];
 }
 
 // Marks the listed pairs but those that a face separates for certain, `mesh_count` of them of two meshes.
@@ -258,13 +274,15 @@ static Status ask_model(const ContactEvaluation *evaluation, const ContactLayout
 static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout *layout,
                              const OverlapModel *model) {
   int count = evaluation->mesh_pair_count;
+  bool wants_centroid = !presses_by_volume(layout);
+  bool wants_gradient = !wants_centroid || !overlap_model_has_own_centroid(model);
+  TRY(reserve_answers(evaluation, wants_gradient, wants_centroid));
   if (count == 0) return STATUS_OK;
-  bool wants_gradient = !layout->mesh.has_field || !overlap_model_has_own_centroid(model);
   OverlapBatch batch = {.pair_count = count,
                         .pairs = evaluation->coordinates,
                         .volume = evaluation->volumes,
                         .gradient = wants_gradient ? evaluation->gradients : NULL,
-                        .centroid = layout->mesh.has_field ? evaluation->centroids : NULL,
+                        .centroid = wants_centroid ? evaluation->centroids : NULL,
                         .flags = evaluation->flags};
   if (count < FEW_TO_SHARE) {
     Status status = overlap_model_eval(model, &batch);
@@ -284,32 +302,33 @@ static void overlap_shapes(ContactEvaluation *evaluation, const ContactLayout *l
 #pragma omp parallel for schedule(static) if (evaluation->pair_count - evaluation->mesh_pair_count > 512)
   for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
     const ContactShape *shape = &layout->def.shapes[layout->interfaces[evaluation->pairs[k].interface].shape];
-    double *gradient = evaluation->gradients + 24 * (size_t)k;
     const double *tet = evaluation->coordinates + 24 * (size_t)k;
-    if (layout->mesh.has_field) {
-      ContactFieldPair *field = &evaluation->fields[k];
-      contact_field_press_shape(layout, &evaluation->pairs[k], time, tet, field, gradient);
-      evaluation->volumes[k] = field->volume;
+    if (presses_by_volume(layout)) {
+      double *gradient = evaluation->gradients + 24 * (size_t)k;
+      contact_shape_overlap(shape, time, tet, &evaluation->volumes[k], gradient, NULL);
+      memset(gradient + 12, 0, 12 * sizeof(double));
       continue;
     }
-    contact_shape_overlap(shape, time, tet, &evaluation->volumes[k], gradient, NULL);
-    memset(gradient + 12, 0, 12 * sizeof(double));
+    ContactFieldPair *field = &evaluation->fields[k];
+    contact_field_press_shape(layout, &evaluation->pairs[k], time, tet, field,
+                              evaluation->pair_forces + 24 * (size_t)k);
+    evaluation->volumes[k] = field->volume;
   }
 }
 
 // Drops the pairs without overlap, keeping the order.
-static void keep_overlapping(ContactEvaluation *evaluation, bool has_field) {
+static void keep_overlapping(ContactEvaluation *evaluation, bool is_by_volume) {
   int kept = 0, mesh_kept = 0;
   for (int k = 0; k < evaluation->pair_count; k++) {
     if (!(evaluation->volumes[k] > 0)) continue;
     mesh_kept += k < evaluation->mesh_pair_count;
-    move_overlap(evaluation, has_field, k, kept++);
+    move_overlap(evaluation, is_by_volume, k, kept++);
   }
   evaluation->pair_count = kept;
   evaluation->mesh_pair_count = mesh_kept;
 }
 
-// W_i = Σ_j V_ij, W_a = ¼ Σ_{i∋a} W_i.
+// W_i = Σ_j V_ij.
 static void cover(ContactEvaluation *evaluation) {
   ContactPatches *patches = &evaluation->patches;
   for (int k = 0; k < evaluation->pair_count; k++)
@@ -319,22 +338,21 @@ static void cover(ContactEvaluation *evaluation) {
     }
   for (int e = 0; e < patches->element_count; e++) {
     const ContactElement *element = &patches->elements[e];
-    for (int v = 0; v < 4; v++) patches->nodes[element->nodes[v]].covered += element->covered / 4;
     evaluation->covered[element->tet] += element->covered;
   }
 }
 
-// −p_ij ∇V_ij onto the nodes.
+// The pairs' forces onto the nodes.
 static void push_apart(ContactEvaluation *evaluation) {
   ContactPatches *patches = &evaluation->patches;
   for (int k = 0; k < evaluation->pair_count; k++)
     for (int side = 0; side < 2; side++) {
       int e = patches->pair_elements[k][side];
       if (e < 0) continue;
-      const double *gradient = evaluation->gradients + 24 * (size_t)k + 12 * side;
+      const double *own = evaluation->pair_forces + 24 * (size_t)k + 12 * side;
       for (int v = 0; v < 4; v++) {
         double *force = patches->nodes[patches->elements[e].nodes[v]].force;
-        for (int c = 0; c < 3; c++) force[c] -= evaluation->pressures[k] * gradient[3 * v + c];
+        for (int c = 0; c < 3; c++) force[c] += own[3 * v + c];
       }
     }
   for (int n = 0; n < patches->node_count; n++) {
@@ -346,8 +364,7 @@ static void push_apart(ContactEvaluation *evaluation) {
 // The force on cells[0] of each pair of a patch.
 static void sum_lower(const ContactEvaluation *evaluation, const ContactPatch *patch, double force[3]) {
   for (int k = patch->pair_begin; k < patch->pair_end; k++)
-    for (int v = 0; v < 12; v++)
-      force[v % 3] -= evaluation->pressures[k] * evaluation->gradients[24 * (size_t)k + (size_t)v];
+    for (int v = 0; v < 12; v++) force[v % 3] += evaluation->pair_forces[24 * (size_t)k + (size_t)v];
 }
 
 static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout) {
@@ -358,16 +375,12 @@ static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout
                                                             : (ContactInterface){.a = layout->interfaces[f].a,
                                                                                  .b = layout->interfaces[f].b,
                                                                                  .centre = {NAN, NAN, NAN}};
-  const ContactImprintSource source = {.patches = patches,
-                                       .fields = layout->mesh.has_field ? evaluation->fields : NULL,
-                                       .gradients = evaluation->gradients,
-                                       .positions = evaluation->positions};
   for (int p = 0; p < patches->patch_count; p++) {
     const ContactPatch *patch = &patches->patches[p];
     ContactInterface *interface = &evaluation->interfaces[patch->interface];
     interface->active_count = patch->pair_end - patch->pair_begin;
     for (int k = patch->pair_begin; k < patch->pair_end; k++) interface->volume += evaluation->volumes[k];
-    contact_imprint_find(&source, patch, interface);
+    contact_imprint_find(evaluation->fields, patch, interface);
     if (interface->a == interface->b) {
       sum_lower(evaluation, patch, interface->force);
       continue;
@@ -378,17 +391,16 @@ static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout
   }
 }
 
-// Energies, and the forces on the pairs' own vertices.
-static Status press_pairs(ContactEvaluation *evaluation, const ContactLayout *layout) {
+// By the depth field: energies, and the forces on the pairs' own vertices.
+static Status press_by_field(ContactEvaluation *evaluation, const ContactLayout *layout) {
   int bad = INT_MAX;
 #pragma omp parallel for schedule(static) reduction(min : bad) if (evaluation->pair_count > 256)
   for (int k = 0; k < evaluation->pair_count; k++) {
     size_t at = (size_t)k;
-    evaluation->pressures[k] = 1;
     if (k < evaluation->mesh_pair_count)
       contact_field_press(layout, &evaluation->pairs[k], evaluation->coordinates + 24 * at,
                           evaluation->volumes[k], evaluation->centroids + 3 * at, &evaluation->fields[k],
-                          evaluation->gradients + 24 * at);
+                          evaluation->pair_forces + 24 * at);
     const double *force = evaluation->fields[k].force;
     if (!isfinite(evaluation->fields[k].energy + force[0] + force[1] + force[2]) && k < bad) bad = k;
   }
@@ -403,16 +415,27 @@ static double sum_energies(const ContactEvaluation *evaluation, const ContactPat
   return energy;
 }
 
-static Status apply_potential(ContactEvaluation *evaluation, const ContactLayout *layout) {
+static void press_by_volume(ContactEvaluation *evaluation, const ContactLayout *layout) {
+  contact_volume_press(layout, &(ContactVolumePairs){.patches = &evaluation->patches,
+                                                     .coordinates = evaluation->coordinates,
+                                                     .volumes = evaluation->volumes,
+                                                     .gradients = evaluation->gradients,
+                                                     .nodes = evaluation->nodes,
+                                                     .fields = evaluation->fields,
+                                                     .forces = evaluation->pair_forces});
+}
+
+static Status press(ContactEvaluation *evaluation, const ContactLayout *layout) {
   ContactPatches *patches = &evaluation->patches;
   TRY(contact_patches_build(patches, layout, evaluation->pair_count, evaluation->pairs));
   cover(evaluation);
-  if (layout->mesh.has_field) TRY(press_pairs(evaluation, layout));
+  if (presses_by_volume(layout))
+    press_by_volume(evaluation, layout);
+  else
+    TRY(press_by_field(evaluation, layout));
   for (int p = 0; p < patches->patch_count; p++) {
     ContactPatch *patch = &patches->patches[p];
-    patch->energy = layout->mesh.has_field
-                        ? sum_energies(evaluation, patch)
-                        : contact_potential_apply(layout, patches, patch, evaluation->pressures);
+    patch->energy = sum_energies(evaluation, patch);
     evaluation->energy += patch->energy;
   }
   push_apart(evaluation);
@@ -429,10 +452,10 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   TRY(sift_by_faces(evaluation, layout, overlap_model_has_ghosts(model), positions));
   TRY(overlap_meshes(evaluation, layout, model));
   overlap_shapes(evaluation, layout, time);
-  keep_overlapping(evaluation, layout->mesh.has_field);
+  keep_overlapping(evaluation, presses_by_volume(layout));
   double overlapped = clock_wall_s();
   memcpy(evaluation->positions, positions, 3 * (size_t)layout->mesh.position_count * sizeof(double));
-  TRY(apply_potential(evaluation, layout));
+  TRY(press(evaluation, layout));
   evaluation->time = time;
   evaluation->is_valid = true;
   evaluation->overlap_s = overlapped - start;

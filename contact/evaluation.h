@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One evaluation of the contact potential: which candidates overlap, by how much, and what follows. The
+// One evaluation of contact: which candidates overlap, by how much, and what follows. The
 // result is a pure function of positions, time and overlap model, as long as the candidates cover the
 // positions; sums run in the order of the candidates, so it is the same for any number of threads.
 #ifndef TETLAP_CONTACT_EVALUATION_H
@@ -29,27 +29,26 @@ typedef struct ContactEvaluation {
   double energy;     // U [J]
   // Pairs with V > 0 in the candidates' order, so those with shapes last.
   int pair_count, mesh_pair_count;
-  ContactPair *pairs;  //                                       (pair_count)
-  double *coordinates; // as given to the model [m]             (mesh_pair_count, 2, 4, 3)
-  double *volumes;     // V_ij [m³]                             (pair_count)
-  // The force on the vertices of a pair's tetrahedra is −pressure · gradient: p_ij and ∇V_ij, shape's part
-  // zeros; with the potential `field` 1 and minus the force [N].
-  double *gradients;            // [m²]                                  (pair_count, 2, 4, 3)
-  double *pressures;            // [Pa]                                  (pair_count)
-  double *centroids;            // x̄ of mesh pairs [m]; `field` only     (mesh_pair_count, 3)
-  ContactFieldPair *fields;     // `field` only                          (pair_count)
-  ContactPatches patches;       // with W_i, W_a and forces per node
+  ContactPair *pairs;       //                                       (pair_count)
+  double *coordinates;      // as given to the model [m]             (mesh_pair_count, 2, 4, 3)
+  double *volumes;          // V_ij [m³]                             (pair_count)
+  ContactFieldPair *fields; //                                       (pair_count)
+  double *pair_forces; // on the vertices of the pairs' tetrahedra, a shape's zeros [N]  (pair_count, 2, 4, 3)
+  ContactPatches patches;       // with W_i and forces per node
   double *forces;               // −∂U/∂x [N]                            (vertex_count, 3)
   double *covered;              // Σ over interfaces of W_i [m³]            (tet_count)
   ContactInterface *interfaces; //                                       (interface_count)
   ContactPairCounts counts;     // of the pairs given to the model
   double overlap_s, force_s;    // wall time [s]
   // Scratch memory.
+  double *gradients;      // ∇V_ij where it is asked for [m²]          (pair_count, 2, 4, 3)
+  double *centroids;      // x̄ of mesh pairs where it is asked for [m] (mesh_pair_count, 3)
+  double *nodes;          // of the patches                            (node_count)
   unsigned char *is_kept; // of each candidate
   double (*boxes)[6];     // of the candidates' cells                 (cell_count)
   unsigned *flags;
   size_t kept_capacity, pair_capacity, coordinate_capacity, volume_capacity, gradient_capacity;
-  size_t pressure_capacity, flag_capacity, centroid_capacity, field_capacity;
+  size_t force_capacity, flag_capacity, centroid_capacity, field_capacity, node_capacity;
 } ContactEvaluation;
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout);

@@ -36,22 +36,15 @@ size_t contact_footprint_rest(const ContactRest *rest) {
 
 static size_t of_patches(const ContactPatches *patches) {
   return HELD(patches->patches, patches->elements, patches->nodes, patches->pair_elements,
-              patches->element_pairs.begin, patches->element_pairs.items, patches->node_elements.begin,
-              patches->node_elements.items, patches->element_of_tet, patches->node_of_vertex);
+              patches->element_of_tet, patches->node_of_vertex);
 }
 
 size_t contact_footprint_evaluation(const ContactEvaluation *evaluation) {
   return of_patches(&evaluation->patches) +
          HELD(evaluation->positions, evaluation->pairs, evaluation->coordinates, evaluation->volumes,
-              evaluation->gradients, evaluation->pressures, evaluation->forces, evaluation->covered,
-              evaluation->interfaces, evaluation->is_kept, evaluation->boxes, evaluation->flags,
-              evaluation->centroids, evaluation->fields);
-}
-
-size_t contact_footprint_stiffness(const ContactStiffness *stiffness) {
-  return of_patches(&stiffness->near) + contact_field_stiffness_bytes(&stiffness->field) +
-         HELD(stiffness->near_pairs, stiffness->nodes, stiffness->vertices, stiffness->gradient,
-              stiffness->place, stiffness->hessians, stiffness->volumes);
+              evaluation->gradients, evaluation->pair_forces, evaluation->nodes, evaluation->forces,
+              evaluation->covered, evaluation->interfaces, evaluation->is_kept, evaluation->boxes,
+              evaluation->flags, evaluation->centroids, evaluation->fields);
 }
 
 size_t contact_footprint_status(const ContactStatus *status) {

@@ -5,7 +5,7 @@
 #define TETLAP_CONTACT_FOOTPRINT_H
 
 #include "contact/evaluation.h"
-#include "contact/pressure/stiffness.h"
+#include "contact/stiffness.h"
 #include "contact/rest.h"
 #include "contact/search/near.h"
 #include "contact/status.h"
@@ -15,7 +15,6 @@ size_t contact_footprint_candidates(const ContactCandidates *candidates);
 size_t contact_footprint_near(const ContactNear *near);
 size_t contact_footprint_rest(const ContactRest *rest);
 size_t contact_footprint_evaluation(const ContactEvaluation *evaluation);
-size_t contact_footprint_stiffness(const ContactStiffness *stiffness);
 size_t contact_footprint_status(const ContactStatus *status);
 
 #endif

@@ -49,8 +49,8 @@ static double volume_of(const ContactLayout *layout, int cell) {
 }
 
 // What the element on side `side` of pair k meets in it.
-static void add_field(const ContactPassage *passage, const ContactLayout *layout,
-                      const ContactEvaluation *evaluation, int k, int side, ContactPassageMeeting *meeting) {
+static void add_pair(const ContactPassage *passage, const ContactLayout *layout,
+                     const ContactEvaluation *evaluation, int k, int side, ContactPassageMeeting *meeting) {
   const ContactFieldPair *field = &evaluation->fields[k];
   const ContactPair *pair = &evaluation->pairs[k];
   int own = pair->cells[side], other = pair->cells[1 - side];
@@ -60,39 +60,27 @@ static void add_field(const ContactPassage *passage, const ContactLayout *layout
   meeting->volume += field->volume;
   meeting->other += volume_of(layout, other);
   if (!(field->volume >= rounding() * lesser)) return;
-  double middle = other < 0 ? depth_of_shape(&layout->def.shapes[layout->interfaces[pair->interface].shape])
-                            : passage->middles[other];
   Vec3 slope = vec3_at(field->slopes[1 - side]);
   vec3_accumulate(meeting->slope, vec3_scale(field->weighed[side], slope));
   meeting->size += field->weighed[side] * vec3_length(slope);
+  if (!passage->middles) return;
+  double middle = other < 0 ? depth_of_shape(&layout->def.shapes[layout->interfaces[pair->interface].shape])
+                            : passage->middles[other];
   meeting->reach = fmax(meeting->reach, field->depths[1 - side] / middle);
-}
-
-static void add_gradient(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, int side,
-                         ContactPassageMeeting *meeting) {
-  const double *gradient = evaluation->gradients + 24 * (size_t)k + 12 * side;
-  for (int v = 0; v < 4; v++) vec3_accumulate(meeting->slope, vec3_at(gradient + 3 * v));
-  meeting->volume += evaluation->volumes[k];
-  meeting->other += volume_of(layout, evaluation->pairs[k].cells[1 - side]);
 }
 
 static void find_meetings(ContactPassage *passage, const ContactLayout *layout,
                           const ContactEvaluation *evaluation) {
   const ContactPatches *patches = &evaluation->patches;
-  bool has_field = layout->mesh.has_field;
   for (int e = 0; e < patches->element_count; e++) passage->meetings[e] = (ContactPassageMeeting){0};
   for (int k = 0; k < evaluation->pair_count; k++)
     for (int side = 0; side < 2; side++) {
       int e = patches->pair_elements[k][side];
       if (e < 0) continue;
-      if (has_field)
-        add_field(passage, layout, evaluation, k, side, &passage->meetings[e]);
-      else
-        add_gradient(layout, evaluation, k, side, &passage->meetings[e]);
+      add_pair(passage, layout, evaluation, k, side, &passage->meetings[e]);
     }
   for (int e = 0; e < patches->element_count; e++) {
     ContactPassageMeeting *meeting = &passage->meetings[e];
-    if (!has_field) meeting->size = vec3_length(vec3_at(meeting->slope));
     meeting->covered = meeting->volume / fmin(layout->tet_volumes[patches->elements[e].tet], meeting->other);
   }
 }
@@ -189,8 +177,7 @@ static Status find_middles(ContactPassage *passage, const ContactLayout *layout)
 }
 
 Status contact_passage_look(ContactPassage *passage, ContactSystem *system) {
-  const ContactEvaluation *evaluation;
-  TRY(contact_system_look(system, &evaluation));
+  const ContactEvaluation *evaluation = contact_system_evaluation(system);
   size_t elements = (size_t)evaluation->patches.element_count;
   passage->passed = 0;
   if (!memory_reserve((void **)&passage->meetings, &passage->meeting_capacity, elements,

@@ -7,13 +7,13 @@
 //   h_i = Σ_j w_ij g_j / Σ_j w_ij |g_j|,   g the slope of the depth in B, w the volume at rest of i in it
 //
 // (contact/pressure/field.h): inwards from the surface of B that is nearest to what of i is inside; |h| = 1
-// where it sees one side of B only, about 0 where it reaches as far into either half. Other potentials have
-// no depth: there h is the direction of Σ_j ∂V_ij/∂x_i. The element keeps the direction in which it came in.
-// The kept direction follows h from one accepted state to the next while |h| > 0.4 and h turns by less than
-// 104°: so it does where an element slides round a drum or over an edge, or turns together with B. Where h
-// points against the kept direction, the element has gone beyond the middle of B and is pushed out on the
-// other side: it is called turned. An element that leaves B while it is turned has passed through; one that
-// comes back is no longer turned.
+// where it sees one side of B only, about 0 where it reaches as far into either half. With the potential
+// `nodal` g is the direction of ∂V_ij/∂x, and w V_ij (contact/volume/volume.h). The element keeps the
+// direction in which it came in. The kept direction follows h from one accepted state to the next while |h| >
+// 0.4 and h turns by less than 104°: so it does where an element slides round a drum or over an edge, or
+// turns together with B. Where h points against the kept direction, the element has gone beyond the middle of
+// B and is pushed out on the other side: it is called turned. An element that leaves B while it is turned has
+// passed through; one that comes back is no longer turned.
 //
 // Whether an element is turned is judged by two shares, so the unit of length does not matter:
 //

@@ -10,7 +10,7 @@
 #include "contact/audit.h"
 #include "contact/footprint.h"
 #include "contact/pressure/star_sink.h"
-#include "contact/pressure/stiffness.h"
+#include "contact/stiffness.h"
 #include "contact/pressure/trace.h"
 #include "contact/rest.h"
 #include "contact/search/near.h"
@@ -333,7 +333,7 @@ Status contact_system_stiffness(ContactSystem *system, double time, const double
                                 const ContactStiffnessSink *sink) {
   TRY(evaluate(system, time, place(system, positions)));
   return contact_stiffness_add(&system->stiffness, &system->layout, &system->evaluation,
-                               system->layout.def.model, contact_system_sink(system, sink));
+                               contact_system_sink(system, sink));
 }
 
 // Hands on cliques by the vertices as they were given.
@@ -422,25 +422,18 @@ size_t contact_system_bytes(const ContactSystem *system) {
                memory_held(system->resting_traces) + memory_held(system->given_traces) +
                contact_stars_bytes(&system->stars) + contact_star_sink_bytes(&system->star_sink) +
                contact_footprint_layout(&system->layout) + contact_footprint_candidates(&system->candidates) +
-               contact_footprint_near(&system->near) + contact_footprint_stiffness(&system->stiffness) +
+               contact_footprint_near(&system->near) + contact_stiffness_bytes(&system->stiffness) +
                contact_footprint_status(&system->status) + contact_footprint_rest(&system->rest);
   for (int k = 0; k < 2; k++) sum += contact_footprint_evaluation(&system->audits[k]);
   return sum + contact_footprint_evaluation(&system->evaluation);
 }
 
-Status contact_system_look(ContactSystem *system, const ContactEvaluation **evaluation) {
-  *evaluation = &system->evaluation;
-  return contact_patches_index(&system->evaluation.patches);
+const ContactEvaluation *contact_system_evaluation(const ContactSystem *system) {
+  return &system->evaluation;
 }
 
 const ContactLayout *contact_system_layout(const ContactSystem *system) {
   return &system->layout;
-}
-
-Status contact_system_add_nodes(ContactSystem *system, const double *coefficients,
-                                const ContactStiffnessSink *sink) {
-  return contact_stiffness_add_nodes(&system->stiffness, &system->layout, &system->evaluation, coefficients,
-                                     contact_system_sink(system, sink));
 }
 
 static Status create_audits(ContactSystem *system) {

@@ -7,7 +7,8 @@
 //     candidates (broad.h, kept while motion < margin/2)
 //         │ gather (n, 2, 4, 3)
 //         ▼
-//     overlap model ──► V_ij, ∇V_ij ──► W_i = Σ_j V_ij, W_a = ¼ Σ_{i∋a} W_i ──► pressure p_ij ──► −Σ p_ij ∇V_ij
+//     overlap model ──► V_ij, x̄_ij ──► forces by the depth field (contact/pressure/field.h)
+//                   or  V_ij, ∇V_ij ──► forces by volumes alone (contact/volume/volume.h)
 // clang-format on
 //
 // W is kept per interface (unordered pair of bodies), so a third body does not change the pressure between
@@ -26,7 +27,7 @@
 #include "contact/audit.h"
 #include "contact/def.h"
 #include "contact/evaluation.h"
-#include "contact/pressure/stiffness.h"
+#include "contact/stiffness.h"
 #include "contact/status.h"
 #include "contact/surface/stars.h"
 
@@ -114,9 +115,9 @@ double contact_system_shape_power(const ContactSystem *system);
 const ContactCounters *contact_system_counters(const ContactSystem *system);
 // What it holds on the heap [bytes], the overlap model left out.
 size_t contact_system_bytes(const ContactSystem *system);
-// What laws that build on the potential read (contact/friction): the last evaluation, whose patches `look`
-// indexes, and the layout. Both are the system's; the evaluation is valid until the next one.
-Status contact_system_look(ContactSystem *system, const ContactEvaluation **evaluation);
+// What laws that build on the potential read (contact/friction): the last evaluation and the
+// layout. Both are the system's; the evaluation is valid until the next one.
+const ContactEvaluation *contact_system_evaluation(const ContactSystem *system);
 const ContactLayout *contact_system_layout(const ContactSystem *system);
 // The layout's vertices are those of the definition, except where elements are quadratic: there the contact
 // mesh has vertices of its own (contact/surface/stars.h). Laws convert positions by `place`, velocities by
@@ -127,9 +128,6 @@ const double *contact_system_spread(ContactSystem *system, const double *velocit
 const ContactStars *contact_system_stars(const ContactSystem *system);
 const ContactStiffnessSink *contact_system_sink(ContactSystem *system, const ContactStiffnessSink *sink);
 void contact_system_carriers(ContactSystem *system, int *count, const int **vertices);
-// Σ_a coefficient_a ∇W_a ∇W_aᵀ of the last evaluation to the sink; coefficients by its patches' nodes.
-Status contact_system_add_nodes(ContactSystem *system, const double *coefficients,
-                                const ContactStiffnessSink *sink);
 
 // Whether bodies can meet each other or themselves. Of shapes alone no overlap model is asked.
 bool contact_system_asks_model(const ContactSystem *system);

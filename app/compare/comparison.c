@@ -298,7 +298,7 @@ static const AppTableColumn line_columns[] = {
 };
 
 static Status print_audit(const AppComparison *comparison, FILE *stream) {
-  static const char *const quantities[APP_AUDIT_KIND_COUNT] = {"volumes V", "gradients ∇V", "nodal forces",
+  static const char *const quantities[APP_AUDIT_KIND_COUNT] = {"volumes V", "forces of pairs", "nodal forces",
                                                                "total forces"};
   char told[512];
   AuditLine lines[APP_MAX_MODELS * APP_AUDIT_KIND_COUNT];

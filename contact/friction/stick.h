@@ -35,7 +35,7 @@
 #include <stdbool.h>
 
 #include "contact/friction/stick_history.h"
-#include "contact/pressure/stiffness.h"
+#include "contact/stiffness.h"
 #include "contact/surface/stars.h"
 
 // A pair of the normal law, as friction needs it; ordered by interface.

@@ -89,9 +89,8 @@ static void hand_over(const ContactLayout *layout, const ContactEvaluation *eval
 
 Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, const ContactStickLast *last,
                                 double last_time, bool *is_resting) {
-  const ContactEvaluation *evaluation;
   const ContactLayout *layout = contact_system_layout(system);
-  TRY(contact_system_look(system, &evaluation));
+  const ContactEvaluation *evaluation = contact_system_evaluation(system);
   int count = evaluation->pair_count;
   TRY(contact_stick_reserve(stick, count));
   for (int i = 0; i < layout->interface_count; i++) is_resting[i] = contact_system_is_resting(system, i);
@@ -100,10 +99,9 @@ Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, cons
 }
 
 double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem *system) {
-  const ContactEvaluation *evaluation;
   const ContactLayout *layout = contact_system_layout(system);
   double power = 0;
-  if (contact_system_look(system, &evaluation)) return NAN;
+  const ContactEvaluation *evaluation = contact_system_evaluation(system);
   for (int k = 0; k < stick->pair_count; k++) {
     int shape = layout->interfaces[stick->pairs[k].interface].shape;
     if (shape < 0) continue;
@@ -148,9 +146,8 @@ static double power_of(const ContactStick *stick, const ContactLayout *layout,
 
 double contact_stick_pairs_turned_power(const ContactStick *stick, ContactSystem *system,
                                         const double *velocities) {
-  const ContactEvaluation *evaluation;
   const ContactLayout *layout = contact_system_layout(system);
-  if (contact_system_look(system, &evaluation)) return NAN;
+  const ContactEvaluation *evaluation = contact_system_evaluation(system);
   const double *v = contact_system_spread(system, velocities);
   double sum = 0, power = 0;
   for (int k = 0; k < stick->pair_count; k++) {

@@ -46,7 +46,7 @@ static void locate(const Side *side, Vec3 x, double lambda[4]) {
 
 void contact_field_press(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
                          double volume, const double centroid[3], ContactFieldPair *field,
-                         double gradient[24]) {
+                         double forces[24]) {
   Side sides[2];
   *field = (ContactFieldPair){.volume = volume, .centroid = {centroid[0], centroid[1], centroid[2]}};
   for (int t = 0; t < 2; t++) {
@@ -64,8 +64,8 @@ void contact_field_press(const ContactLayout *layout, const ContactPair *pair, c
                                                vec3_scale(field->weighed[1], sides[0].g)));
   vec3_store(field->force, force);
   for (int v = 0; v < 4; v++) {
-    vec3_store(gradient + 3 * v, vec3_scale(-field->weights[0][v], force));
-    vec3_store(gradient + 12 + 3 * v, vec3_scale(field->weights[1][v], force));
+    vec3_store(forces + 3 * v, vec3_scale(field->weights[0][v], force));
+    vec3_store(forces + 12 + 3 * v, vec3_scale(-field->weights[1][v], force));
   }
 }
 
@@ -246,23 +246,23 @@ void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, co
 // ---- Shapes.
 
 void contact_field_press_shape(const ContactLayout *layout, const ContactPair *pair, double time,
-                               const double tet[12], ContactFieldPair *field, double gradient[24]) {
+                               const double tet[12], ContactFieldPair *field, double forces[24]) {
   const ContactInterfaceDef *interface = &layout->interfaces[pair->interface];
   double rest = contact_layout_tet_volume(layout, pair->cells[0]);
   *field = (ContactFieldPair){0};
-  memset(gradient, 0, 24 * sizeof *gradient);
+  memset(forces, 0, 24 * sizeof *forces);
   contact_shape_press(&layout->def.shapes[interface->shape], time, tet, rest, &field->volume, &field->energy,
-                      gradient, NULL, true);
+                      forces, NULL, true);
   if (!(field->volume > 0)) return;
   field->energy *= interface->stiffness;
   Vec3 force = {0, 0, 0};
-  for (int k = 0; k < 12; k++) gradient[k] *= interface->stiffness;
-  for (int v = 0; v < 4; v++) force = vec3_sub(force, vec3_at(gradient + 3 * v));
+  for (int k = 0; k < 12; k++) forces[k] *= -interface->stiffness;
+  for (int v = 0; v < 4; v++) force = vec3_add(force, vec3_at(forces + 3 * v));
   double square = vec3_dot(force, force);
   vec3_store(field->force, force);
   for (int v = 0; v < 4; v++) {
     double *weight = &field->weights[0][v];
-    *weight = square > 0 ? -vec3_dot(vec3_at(gradient + 3 * v), force) / square : 0.25;
+    *weight = square > 0 ? vec3_dot(vec3_at(forces + 3 * v), force) / square : 0.25;
     vec3_accumulate(field->centroid, vec3_scale(*weight, vec3_at(tet + 3 * v)));
   }
   double present = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;

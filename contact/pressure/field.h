@@ -59,15 +59,14 @@ static inline double contact_field_area(const ContactFieldPair *field) {
   return field->energy > 0 ? 0.5 * field->volume * force / field->energy : 0;
 }
 
-// Of a pair of cells with these coordinates (2, 4, 3), V > 0 and x̄. `gradient` (2, 4, 3): minus the force on
-// the vertices of the two tetrahedra.
+// Of a pair of cells with these coordinates (2, 4, 3), V > 0 and x̄. `forces` (2, 4, 3): on the
+// vertices of the two tetrahedra [N].
 void contact_field_press(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                         double volume, const double centroid[3], ContactFieldPair *field,
-                         double gradient[24]);
+                         double volume, const double centroid[3], ContactFieldPair *field, double forces[24]);
 
 // Of a tetrahedron (4, 3) and the shape that it meets.
 void contact_field_press_shape(const ContactLayout *layout, const ContactPair *pair, double time,
-                               const double tet[12], ContactFieldPair *field, double gradient[24]);
+                               const double tet[12], ContactFieldPair *field, double forces[24]);
 
 // ∂²U/∂x² of a pair by the vertices of the two tetrahedra, (24, 24), symmetric; the coordinates are those of
 // the cells in general position (contact_layout_unsettle_pair). Not full: the main term on outer faces,

@@ -21,10 +21,6 @@ void contact_patches_destroy(ContactPatches *patches) {
   memory_free(patches->elements);
   memory_free(patches->nodes);
   memory_free(patches->pair_elements);
-  memory_free(patches->element_pairs.begin);
-  memory_free(patches->element_pairs.items);
-  memory_free(patches->node_elements.begin);
-  memory_free(patches->node_elements.items);
   memory_free(patches->element_of_tet);
   memory_free(patches->node_of_vertex);
   *patches = (ContactPatches){0};
@@ -91,41 +87,5 @@ Status contact_patches_build(ContactPatches *patches, const ContactLayout *layou
         patches->pair_elements[k][side] = element_at(patches, layout, pairs[k].cells[side], side);
     close_patch(patches, patch);
   }
-  return STATUS_OK;
-}
-
-static Status begin_rows(ContactRows *rows, int row_count, int most_items) {
-  bool fits =
-      memory_reserve((void **)&rows->begin, &rows->begin_capacity, (size_t)row_count + 2, sizeof(int)) &&
-      memory_reserve((void **)&rows->items, &rows->item_capacity, (size_t)most_items, sizeof(int));
-  if (!fits) return status_no_memory("contact patches");
-  for (int r = 0; r < row_count + 2; r++) rows->begin[r] = 0;
-  return STATUS_OK;
-}
-
-// Turns the lengths at begin[r + 2] into positions at begin[r + 1], which filling then moves to the rows'
-// ends: the next rows' begins.
-static void place_rows(ContactRows *rows, int row_count) {
-  for (int r = 2; r < row_count + 2; r++) rows->begin[r] += rows->begin[r - 1];
-}
-
-Status contact_patches_index(ContactPatches *patches) {
-  ContactRows *by_element = &patches->element_pairs, *by_node = &patches->node_elements;
-  TRY(begin_rows(by_element, patches->element_count, 2 * patches->pair_count));
-  TRY(begin_rows(by_node, patches->node_count, 4 * patches->element_count));
-  for (int k = 0; k < patches->pair_count; k++)
-    for (int side = 0; side < 2; side++)
-      if (patches->pair_elements[k][side] >= 0) by_element->begin[patches->pair_elements[k][side] + 2]++;
-  for (int e = 0; e < patches->element_count; e++)
-    for (int v = 0; v < 4; v++) by_node->begin[patches->elements[e].nodes[v] + 2]++;
-  place_rows(by_element, patches->element_count);
-  place_rows(by_node, patches->node_count);
-  for (int k = 0; k < patches->pair_count; k++)
-    for (int side = 0; side < 2; side++) {
-      int e = patches->pair_elements[k][side];
-      if (e >= 0) by_element->items[by_element->begin[e + 1]++] = k;
-    }
-  for (int e = 0; e < patches->element_count; e++)
-    for (int v = 0; v < 4; v++) by_node->items[by_node->begin[patches->elements[e].nodes[v] + 1]++] = e;
   return STATUS_OK;
 }

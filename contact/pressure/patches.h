@@ -21,7 +21,6 @@ typedef struct ContactElement {
 typedef struct ContactNode {
   int vertex;
   int side;
-  double covered;  // W_a [m³]; the user's
   double force[3]; // [N]; the user's
 } ContactNode;
 
@@ -34,22 +33,12 @@ typedef struct ContactPatch {
   double energy; // U of its pairs [J]; the user's
 } ContactPatch;
 
-// Rows of varying length, one after another.
-typedef struct ContactRows {
-  int *begin;
-  size_t begin_capacity;
-  int *items;
-  size_t item_capacity;
-} ContactRows;
-
 typedef struct ContactPatches {
   int patch_count, element_count, node_count, pair_count;
-  ContactPatch *patches;     //                                                (patch_count)
-  ContactElement *elements;  //                                                (element_count)
-  ContactNode *nodes;        //                                                (node_count)
-  int (*pair_elements)[2];   // elements of each pair, −1: the half-space      (pair_count)
-  ContactRows element_pairs; // pairs of each element
-  ContactRows node_elements; // elements of each node
+  ContactPatch *patches;    //                                                (patch_count)
+  ContactElement *elements; //                                                (element_count)
+  ContactNode *nodes;       //                                                (node_count)
+  int (*pair_elements)[2];  // elements of each pair, −1: the half-space      (pair_count)
   size_t patch_capacity, element_capacity, node_capacity, pair_capacity;
   int *element_of_tet; // scratch: −1 between calls                            (tet_count)
   int *node_of_vertex; // scratch: −1 between calls                            (vertex_count)
@@ -62,8 +51,5 @@ void contact_patches_destroy(ContactPatches *patches);
 // zeroed.
 Status contact_patches_build(ContactPatches *patches, const ContactLayout *layout, int pair_count,
                              const ContactPair *pairs);
-
-// Fills element_pairs and node_elements.
-Status contact_patches_index(ContactPatches *patches);
 
 #endif

@@ -4,7 +4,7 @@
 #ifndef TETLAP_CONTACT_STAR_SINK_H
 #define TETLAP_CONTACT_STAR_SINK_H
 
-#include "contact/pressure/stiffness.h"
+#include "contact/stiffness.h"
 #include "contact/surface/stars.h"
 
 typedef struct ContactStarSink {

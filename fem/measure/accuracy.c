@@ -160,9 +160,8 @@ static Status estimate(const ContactLayout *layout, const ContactEvaluation *eva
 
 Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, ContactSystem *contact,
                          const FemState *state, double elastic) {
-  const ContactEvaluation *evaluation;
   const ContactLayout *layout = contact_system_layout(contact);
-  TRY(contact_system_look(contact, &evaluation));
+  const ContactEvaluation *evaluation = contact_system_evaluation(contact);
   accuracy->found_count = 0;
   accuracy->has_energies = false;
   for (int p = 0; p < evaluation->patches.patch_count; p++) {

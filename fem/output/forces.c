@@ -99,8 +99,7 @@ Status fem_forces_take(FemForces *forces, const FemState *state) {
   take_interfaces(forces);
   if (forces->contact)
     memcpy(forces->contact, contact_system_forces(contact), values_of(forces) * sizeof *forces->contact);
-  if (viscosity)
-    TRY(fem_effect_viscosity_add(viscosity, state->velocities, forces->interfaces, forces->contact));
+  if (viscosity) fem_effect_viscosity_add(viscosity, state->velocities, forces->interfaces, forces->contact);
   if (forces->friction) take_friction(forces);
   return forces->pressure ? contact_system_trace(contact, forces->pressure, forces->depth) : STATUS_OK;
 }

@@ -204,9 +204,8 @@ START_TEST(every_pair_balances_with_every_model) {
   press_blocks(&scene, false);
   start(&scene, MODELS[_i], true);
   energy_at(&scene, scene.blocks.x);
-  const ContactEvaluation *evaluation;
   const ContactLayout *layout = contact_system_layout(scene.system);
-  ck_assert_ok(contact_system_look(scene.system, &evaluation));
+  const ContactEvaluation *evaluation = contact_system_evaluation(scene.system);
   ck_assert_int_gt(evaluation->pair_count, 50);
   double worst_force = 0, worst_torque = 0, largest = 0;
   for (int k = 0; k < evaluation->pair_count; k++) {
@@ -214,7 +213,8 @@ START_TEST(every_pair_balances_with_every_model) {
     double norms = 0;
     for (int v = 0; v < 8; v++) {
       int vertex = contact_layout_vertices(layout, evaluation->pairs[k].cells[v / 4])[v % 4];
-      Vec3 force = vec3_at(evaluation->gradients + 24 * k + 3 * v), x = vec3_at(scene.blocks.x + 3 * vertex);
+      Vec3 force = vec3_at(evaluation->pair_forces + 24 * k + 3 * v),
+           x = vec3_at(scene.blocks.x + 3 * vertex);
       sum = vec3_add(sum, force), torque = vec3_add(torque, vec3_cross(x, force));
       norms += vec3_length(force);
     }
@@ -512,8 +512,8 @@ START_TEST(viscosity_presses_by_depth_and_speed) {
   double *force = calloc(3 * (size_t)scene.blocks.vertex_count, sizeof *force);
   ck_assert(v && force);
   for (int a = upper->vertex_begin; a < upper->vertex_end; a++) v[3 * a + 2] = -speed;
-  ck_assert_ok(contact_viscosity_add_force(&law, v, force));
-  ck_assert_ok(contact_viscosity_power(&law, v, &power));
+  contact_viscosity_add_force(&law, v, force);
+  power = contact_viscosity_power(&law, v);
   for (int k = 3 * upper->vertex_begin; k < 3 * upper->vertex_end; k++) total[k % 3] += force[k];
   double expected =
       coefficient * depth * speed * area; // of one term; the lower block's slope is 1 all over it
@@ -521,7 +521,7 @@ START_TEST(viscosity_presses_by_depth_and_speed) {
   if (on_block)
     ck_assert(total[2] > 1.8 * expected && total[2] <= 2 * expected); // less at the upper one's rim
   ck_assert_near(power.dissipated, total[2] * speed, 1e-12 * power.dissipated);
-  free(v), free(force), contact_viscosity_destroy(&law), destroy(&scene);
+  free(v), free(force), destroy(&scene);
 }
 END_TEST
 

@@ -159,7 +159,7 @@ START_TEST(forces_within_a_body_are_minus_the_gradient_and_balance) {
 END_TEST
 
 START_TEST(stiffness_within_a_body_is_minus_the_derivative_of_the_forces) {
-  Fixture *f = rolled_strip((ContactPotential)_i);
+  Fixture *f = rolled_strip(CONTACT_POTENTIAL_FIELD);
   int n = 3 * f->blocks.vertex_count;
   double *above = random_motion(f, 0), *below = random_motion(f, 0), *x = random_motion(f, 0);
   for (uint64_t stream = 1; stream < 4; stream++) {
@@ -323,8 +323,7 @@ int main(void) {
                       CONTACT_POTENTIAL_COUNT);
   tcase_add_loop_test(tcase, forces_within_a_body_are_minus_the_gradient_and_balance, 0,
                       CONTACT_POTENTIAL_COUNT);
-  tcase_add_loop_test(tcase, stiffness_within_a_body_is_minus_the_derivative_of_the_forces, 0,
-                      CONTACT_POTENTIAL_COUNT);
+  tcase_add_test(tcase, stiffness_within_a_body_is_minus_the_derivative_of_the_forces);
   tcase_add_test(tcase, a_body_that_is_crumpled_without_folding_does_not_push_its_neighbours_apart);
   tcase_add_test(tcase, pairs_that_overlap_at_rest_are_left_out_and_counted);
   tcase_add_test(tcase, every_pair_that_overlaps_is_found);

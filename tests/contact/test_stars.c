@@ -212,16 +212,15 @@ START_TEST(pairs_and_nodes_balance_with_every_model) {
   Scene scene;
   press_boxes(&scene, MODELS[_i]);
   double *force = forces_at(&scene, scene.x), norms = 0, worst = 0, largest = 0;
-  const ContactEvaluation *evaluation;
   const ContactLayout *layout = contact_system_layout(scene.system);
-  ck_assert_ok(contact_system_look(scene.system, &evaluation));
+  const ContactEvaluation *evaluation = contact_system_evaluation(scene.system);
   ck_assert_int_gt(evaluation->pair_count, 50);
   for (int k = 0; k < evaluation->pair_count; k++) {
     Vec3 sum = {0, 0, 0}, torque = {0, 0, 0};
     double own = 0;
     for (int v = 0; v < 8; v++) {
       int vertex = contact_layout_vertices(layout, evaluation->pairs[k].cells[v / 4])[v % 4];
-      Vec3 f = vec3_at(evaluation->gradients + 24 * k + 3 * v),
+      Vec3 f = vec3_at(evaluation->pair_forces + 24 * k + 3 * v),
            x = vec3_at(evaluation->positions + 3 * vertex);
       sum = vec3_add(sum, f), torque = vec3_add(torque, vec3_cross(x, f)), own += vec3_length(f);
     }
@@ -254,17 +253,16 @@ START_TEST(viscosity_acts_on_the_nodes) {
   int n = 3 * scene.vertex_count;
   double *v = random_motion(&scene, 1), *force = calloc((size_t)n, sizeof *force);
   ck_assert_ptr_nonnull(force);
-  ck_assert_ok(contact_viscosity_add_force(&law, v, force));
-  ck_assert_ok(contact_viscosity_power(&law, v, &power));
+  contact_viscosity_add_force(&law, v, force);
+  power = contact_viscosity_power(&law, v);
   Product product = product_of(v, scene.vertex_count);
   ContactStiffnessSink sink = product_sink(&product);
-  ck_assert_ok(contact_viscosity_add_jacobian(&law, v, 0, 1, &sink));
+  contact_viscosity_add_damping(&law, v, 1, &sink);
   double size = sqrt(product_dot(force, force, n));
   ck_assert(power.dissipated > 0);
   ck_assert_near(product_dot(force, v, n), -power.dissipated, 1e-12 * power.dissipated);
   for (int i = 0; i < n; i++) ck_assert_near(force[i], -product.y[i], 1e-12 * size);
   free(v), free(force), free(product.y);
-  contact_viscosity_destroy(&law), destroy(&scene);
 }
 END_TEST
 

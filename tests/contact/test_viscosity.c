@@ -8,7 +8,7 @@
 #include "contact/friction/viscosity.h"
 #include "contact/search/layout.h"
 
-static const double ETA = 70; // [Pa s]
+static const double ETA = 70; // [Pa s/m²]
 
 typedef struct Fixture {
   Blocks blocks;
@@ -32,6 +32,7 @@ static void start(Fixture *f, bool has_ground) {
   f->still = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(f->still);
   ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
+  def.potential = CONTACT_POTENTIAL_FIELD;
   def.shapes = &f->ground;
   def.shape_count = has_ground;
   ck_assert_ok(contact_system_create(&f->system, &def));
@@ -64,7 +65,6 @@ static Fixture *block_on_rising_ground(void) {
 }
 
 static void destroy(Fixture *f) {
-  contact_viscosity_destroy(&f->law);
   contact_system_destroy(f->system);
   overlap_model_destroy(&f->model);
   blocks_destroy(&f->blocks);
@@ -82,52 +82,27 @@ static double *random_motion(const Fixture *f, uint64_t stream) {
 static double *force_at(Fixture *f, const double *velocities) {
   double *force = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(force);
-  ck_assert_ok(contact_viscosity_add_force(&f->law, velocities, force));
+  contact_viscosity_add_force(&f->law, velocities, force);
   return force;
 }
 
 static ContactViscosityPower power_at(Fixture *f, const double *velocities) {
-  ContactViscosityPower power;
-  ck_assert_ok(contact_viscosity_power(&f->law, velocities, &power));
-  return power;
+  return contact_viscosity_power(&f->law, velocities);
 }
 
-static double *multiply(Fixture *f, const double *velocities, double stiffness, double damping,
-                        const double *d) {
+static double *multiply(Fixture *f, const double *velocities, const double *d) {
   Product product = product_of(d, f->blocks.vertex_count);
   ContactStiffnessSink sink = product_sink(&product);
-  ck_assert_ok(contact_viscosity_add_jacobian(&f->law, velocities, stiffness, damping, &sink));
+  contact_viscosity_add_damping(&f->law, velocities, 1, &sink);
   return product.y;
 }
 
-// One cell is six tetrahedra that share its volume V = 1 and are cut at the same height alike in sum: the
-// shares w_a differ, so the force is Σ over vertices of η w_a ẇ_a V_a ∂ẇ_a/∂v, which the test sums up by
-// itself from the system's covered volumes at two depths.
+// A fifth of the block of volume 1 is below the ground, whose slope is 1 and which rises by 2 m/s: η V ḋ.
 START_TEST(the_force_is_that_of_the_formula) {
   Fixture *f = block_on_rising_ground();
-  int tets = f->blocks.tet_count, vertices = f->blocks.vertex_count;
-  double h = 1e-5, expected = 0, share[3][8] = {{0}};
-  ck_assert_int_eq(vertices, 8);
-  for (int side = 0; side < 3; side++) {
-    double energy, *x = blocks_copy(&f->blocks);
-    for (int v = 0; v < vertices; v++) x[3 * v + 2] -= h * (side - 1);
-    ck_assert_ok(contact_system_eval(f->system, 0, x, &energy, NULL));
-    for (int i = 0; i < tets; i++)
-      for (int v = 0; v < 4; v++)
-        share[side][f->blocks.tets[i][v]] += contact_system_covered(f->system)[i] / 4;
-    free(x);
-  }
-  const double *volumes = contact_system_layout(f->system)->vertex_volumes;
-  for (int v = 0; v < vertices; v++) {
-    double by_depth = (share[2][v] - share[0][v]) / (2 * h); // ∂W_a/∂depth
-    expected += ETA * (share[1][v] / volumes[v]) * (2 * by_depth / volumes[v]) * by_depth;
-  }
-  double energy;
-  ck_assert_ok(contact_system_eval(f->system, 0, f->blocks.x, &energy, NULL));
-  double *force = force_at(f, f->still), lift = 0;
-  for (int v = 0; v < vertices; v++) lift += force[3 * v + 2];
-  ck_assert_double_gt(expected, 1);
-  ck_assert_near(lift, expected, 1e-6 * expected);
+  double *force = force_at(f, f->still), lift = 0, expected = ETA * 0.2 * 2;
+  for (int v = 0; v < f->blocks.vertex_count; v++) lift += force[3 * v + 2];
+  ck_assert_near(lift, expected, 1e-9 * expected);
   ContactViscosityPower power = power_at(f, f->still);
   ck_assert_near(power.driven, 2 * lift, 1e-9 * lift);
   ck_assert_near(power.dissipated, 2 * lift, 1e-9 * lift); // the block stands still
@@ -183,7 +158,7 @@ START_TEST(the_damping_matrix_is_minus_the_derivative_by_velocities) {
     for (int v = 0; _i && v < f->blocks.bodies[0].vertex_end; v++)
       d[3 * v] = d[3 * v + 1] = d[3 * v + 2] = 0; // an obstacle has no unknowns
     for (int k = 0; k < n; k++) faster[k] += d[k];
-    double *other = force_at(f, faster), *product = multiply(f, velocities, 0, 1, d);
+    double *other = force_at(f, faster), *product = multiply(f, velocities, d);
     double size = sqrt(product_dot(product, product, n));
     ck_assert_double_gt(size, 0);
     int first = _i ? 3 * f->blocks.bodies[0].vertex_end : 0;
@@ -201,7 +176,6 @@ START_TEST(a_wrong_coefficient_is_refused) {
   ContactViscosity law;
   ck_assert_int_eq(contact_viscosity_create(&law, f->system, 0), STATUS_INPUT);
   ck_assert_int_eq(contact_viscosity_create(&law, f->system, NAN), STATUS_INPUT);
-  contact_viscosity_destroy(&law);
   destroy(f);
 }
 END_TEST
@@ -220,8 +194,8 @@ static double bounce_height(const SceneRun *run) {
 }
 
 START_TEST(the_more_viscous_the_lower_it_bounces_and_the_audit_knows_why) {
-  const char *const viscosities[] = {NULL, "contact.viscosity=300", "contact.viscosity=1000",
-                                     "contact.viscosity=4000"};
+  const char *const viscosities[] = {NULL, "contact.viscosity=1.2e5", "contact.viscosity=4e5",
+                                     "contact.viscosity=1.6e6"};
   double last = INFINITY, lost_last = -1, missing_without = 0;
   for (int k = 0; k < 4; k++) {
     SceneRun run;
@@ -241,7 +215,7 @@ START_TEST(the_more_viscous_the_lower_it_bounces_and_the_audit_knows_why) {
       ck_assert_double_gt(lost, lost_last);
       // What it lacks in height was dissipated; the rest trembles in the block, or did so without viscosity.
       ck_assert_double_le(lost, 1.02 * missing); // and 1 % for the height between two frames
-      ck_assert_double_ge(lost, missing - missing_without);
+      ck_assert_double_ge(lost, 0.95 * (missing - missing_without));
     }
     last = height, lost_last = lost;
     scene_close(&run);

@@ -73,12 +73,11 @@ static void move_to(Walk *walk, const double at[3]) {
 
 static Status evaluate(Walker *walker, const Walk *walk, const double along[3], double step) {
   const AppUnseenMesh *mesh = walk->mesh;
-  const ContactEvaluation *evaluation;
   double energy;
   memset(walker->force, 0, 3 * (size_t)mesh->vertex_count * sizeof(double));
   TRY(contact_system_update(walker->system, 0, walk->x, walk->velocity, 1, NULL));
   TRY(contact_system_eval(walker->system, 0, walk->x, &energy, walker->force));
-  TRY(contact_system_look(walker->system, &evaluation));
+  const ContactEvaluation *evaluation = contact_system_evaluation(walker->system);
   walker->normal_sum = 0;
   for (int i = 0; i < evaluation->mesh_pair_count; i++)
     walker->normal_sum += vec3_length(vec3_at(evaluation->fields[i].force));

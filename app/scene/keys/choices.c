@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-#include "contact/pressure/potential.h"
+#include "contact/def.h"
 #include "fem/material/material.h"
 #include "fem/sparse/solver.h"
 #include "overlap/model.h"

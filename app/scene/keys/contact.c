@@ -8,13 +8,18 @@
 
 static const char *finish_contact(void *self, const char **key) {
   FemContactDef *contact = self;
-  if (fem_scene_most_friction(contact) > 0 && contact->potential != CONTACT_POTENTIAL_FIELD) {
+  if (contact->potential == CONTACT_POTENTIAL_FIELD) return NULL;
+  if (fem_scene_most_friction(contact) > 0) {
     *key = "friction";
     return "friction builds on the potential field; remove 'potential' and 'stiffness', whose unit differs, "
-           "or the "
-           "friction";
+           "or the friction";
   }
-  if (contact->smooth > 0 && contact->potential != CONTACT_POTENTIAL_FIELD) {
+  if (contact->viscosity > 0) {
+    *key = "viscosity";
+    return "viscous contact builds on the potential field; remove 'potential' and 'stiffness', whose unit "
+           "differs, or the viscosity";
+  }
+  if (contact->smooth > 0) {
     *key = "smooth";
     return "only the potential field works on smooth surfaces; remove 'potential' and 'stiffness', whose "
            "unit "
@@ -119,10 +124,11 @@ static const SceneKey contact_keys[] = {
     {"pairs", SCENE_LIST, AT(FemContactDef, pairs), .section = &pair,
      .count_offset = offsetof(FemContactDef, pair_count),
      .help = "other values for two given bodies; of several entries for the same two the last one is used"},
-    {"viscosity", SCENE_NUMBER, AT(FemContactDef, viscosity), .unit = "Pa s", .range = "(0, inf)",
+    {"viscosity", SCENE_NUMBER, AT(FemContactDef, viscosity), .unit = "Pa s/m²", .range = "(0, inf)",
      .absent_help = "none",
-     .help = "η: dissipates energy in impacts. With `field` a pressure η d dd/dt in addition to κ d, d the "
-             "depth [Pa s/m²]; with `nodal` η w dw/dt in addition to κ w, w the covered share of a vertex"},
+     .help =
+         "η: dissipates energy in impacts by a pressure η d dd/dt in addition to κ d, d the depth; with the "
+         "potential `field`"},
     {"rest", SCENE_SECTION, .section = &rest, .absent_help = "no body sleeps",
      MARK(FemContactDef, rest_is_on, true),
      .help =

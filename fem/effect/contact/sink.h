@@ -3,7 +3,7 @@
 #ifndef TETLAP_FEM_EFFECT_CONTACT_SINK_H
 #define TETLAP_FEM_EFFECT_CONTACT_SINK_H
 
-#include "contact/pressure/stiffness.h"
+#include "contact/stiffness.h"
 #include "fem/sparse/matrix.h"
 
 typedef struct FemContactSink {

@@ -36,7 +36,6 @@ static Status connect(void *self, const FemSystem *system) {
 
 static void destroy(void *self) {
   Viscosity *viscosity = self;
-  contact_viscosity_destroy(&viscosity->law);
   memory_free(viscosity);
 }
 
@@ -49,31 +48,32 @@ static Status evaluate(const Viscosity *viscosity, const FemState *state) {
 static Status add_force(void *self, const FemState *state, double *force) {
   Viscosity *viscosity = self;
   TRY(evaluate(viscosity, state));
-  return contact_viscosity_add_force(&viscosity->law, state->velocities, force);
+  contact_viscosity_add_force(&viscosity->law, state->velocities, force);
+  return STATUS_OK;
 }
 
 static Status add_jacobian(void *self, const FemState *state, double stiffness_scale, double damping_scale,
                            FemMatrix *matrix) {
+  (void)stiffness_scale;
   Viscosity *viscosity = self;
   FemContactSink sink = {.matrix = matrix, .scale = 1};
   const ContactStiffnessSink to = fem_contact_sink_of(&sink);
   TRY(evaluate(viscosity, state));
-  return contact_viscosity_add_jacobian(&viscosity->law, state->velocities, stiffness_scale, damping_scale,
-                                        &to);
+  contact_viscosity_add_damping(&viscosity->law, state->velocities, damping_scale, &to);
+  return STATUS_OK;
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   Viscosity *viscosity = self;
-  ContactViscosityPower power;
   TRY(evaluate(viscosity, state));
-  TRY(contact_viscosity_power(&viscosity->law, state->velocities, &power));
+  ContactViscosityPower power = contact_viscosity_power(&viscosity->law, state->velocities);
   energy->dissipated_power += power.dissipated;
   energy->driven_power += power.driven;
   return STATUS_OK;
 }
 
 static size_t bytes(const void *self) {
-  return memory_held(self) + contact_viscosity_bytes(&((const Viscosity *)self)->law);
+  return memory_held(self);
 }
 
 const FemEffectOps fem_effect_viscosity = {
@@ -90,9 +90,9 @@ const FemEffectOps fem_effect_viscosity = {
     .destroy = destroy,
 };
 
-Status fem_effect_viscosity_add(void *effect, const double *velocities, double (*interfaces)[3],
-                                double *vertices) {
-  ContactViscosity *law = &((Viscosity *)effect)->law;
-  if (vertices) TRY(contact_viscosity_add_force(law, velocities, vertices));
-  return interfaces ? contact_viscosity_add_resultants(law, velocities, interfaces) : STATUS_OK;
+void fem_effect_viscosity_add(const void *effect, const double *velocities, double (*interfaces)[3],
+                              double *vertices) {
+  const ContactViscosity *law = &((const Viscosity *)effect)->law;
+  if (vertices) contact_viscosity_add_force(law, velocities, vertices);
+  if (interfaces) contact_viscosity_add_resultants(law, velocities, interfaces);
 }

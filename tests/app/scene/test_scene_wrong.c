@@ -110,6 +110,9 @@ static const Wrong wrong[] = {
      "s.yaml:3:21: contact.friction: expected a mapping {key: value} or a number (its 'coefficient'), found"},
     {TIME BODY "contact: {potential: nodal, friction: 1}\n",
      "s.yaml:3:39: contact: friction builds on the potential field; remove 'potential' and 'stiffness'"},
+    {TIME BODY "contact: {potential: nodal, viscosity: 1}\n",
+     "s.yaml:3:40: contact: viscous contact builds on the potential field; remove 'potential' and "
+     "'stiffness'"},
     {TIME BODY "contact: {potential: nodal, smooth: 1}\n",
      "s.yaml:3:37: contact: only the potential field works on smooth surfaces"},
     {TIME BODY "contact: {friction: {}}\n", "s.yaml:3:21: contact.friction needs 'coefficient'"},

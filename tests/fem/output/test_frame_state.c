@@ -275,8 +275,7 @@ START_TEST(forces_of_frames_are_mass_times_acceleration) {
   SceneRun run;
   open_folder();
   scene_open(&run, "bounce",
-             (const char *const[]){"output={frames: 400, vtu: false}",
-                                   "contact={potential: field, stiffness: 1e6}", NULL});
+             (const char *const[]){"output={frames: 400, vtu: false}", "contact={stiffness: 1e6}", NULL});
   FemRunOptions options = {.directory = folder};
   ck_assert_ok(fem_run(&run.model, &options, &run.result));
   ck_assert_int_lt(run.result.integrator.steps, 200);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/pressure/field_stiffness.h"
+#include "contact/stiffness.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -7,6 +7,9 @@
 
 #include "base/memory.h"
 #include "contact/pressure/field.h"
+#include "contact/search/bounds.h"
+#include "contact/shape/shape.h"
+#include "contact/volume/volume.h"
 
 enum { PORTION = 512 }; // pairs whose matrices are held at once
 
@@ -16,7 +19,7 @@ static int element_of(const ContactLayout *layout, int tet) {
   return layout->def.origin ? layout->def.origin[tet] : tet;
 }
 
-static int place_of(ContactFieldStiffness *stiffness, int vertex) {
+static int place_of(ContactStiffness *stiffness, int vertex) {
   int *place = &stiffness->place[vertex];
   if (*place == 0) {
     assert(stiffness->count < stiffness->most);
@@ -26,13 +29,13 @@ static int place_of(ContactFieldStiffness *stiffness, int vertex) {
   return *place - 1;
 }
 
-static void forget_vertices(ContactFieldStiffness *stiffness) {
+static void forget_vertices(ContactStiffness *stiffness) {
   for (int k = 0; k < stiffness->count; k++) stiffness->place[stiffness->vertices[k]] = 0;
   stiffness->count = 0;
 }
 
 // Those of all that the contact mesh has in place of one element, which stands together.
-static void list_element(ContactFieldStiffness *stiffness, const ContactLayout *layout, int tet) {
+static void list_element(ContactStiffness *stiffness, const ContactLayout *layout, int tet) {
   int element = element_of(layout, tet), begin = tet, end = tet + 1;
   while (begin > 0 && element_of(layout, begin - 1) == element) begin--;
   while (end < layout->def.tet_count && element_of(layout, end) == element) end++;
@@ -50,9 +53,8 @@ static int most_of(const ContactLayout *layout) {
   return 2 * (most + 3 < 4 * most ? 3 + most : 4 * most);
 }
 
-Status contact_field_stiffness_create(ContactFieldStiffness *stiffness, const ContactLayout *layout) {
-  *stiffness = (ContactFieldStiffness){0};
-  if (!layout->mesh.has_field) return STATUS_OK;
+Status contact_stiffness_create(ContactStiffness *stiffness, const ContactLayout *layout) {
+  *stiffness = (ContactStiffness){0};
   stiffness->most = most_of(layout);
   size_t width = 3 * (size_t)stiffness->most;
   stiffness->matrices = memory_zeroed((size_t)PORTION * 576, sizeof(double));
@@ -65,73 +67,58 @@ Status contact_field_stiffness_create(ContactFieldStiffness *stiffness, const Co
   return fits ? STATUS_OK : status_no_memory("contact stiffness");
 }
 
-void contact_field_stiffness_destroy(ContactFieldStiffness *stiffness) {
+void contact_stiffness_destroy(ContactStiffness *stiffness) {
+  memory_free(stiffness->near_pairs);
   memory_free(stiffness->order);
   memory_free(stiffness->matrices);
   memory_free(stiffness->vertices);
   memory_free(stiffness->place);
   memory_free(stiffness->sum);
   memory_free(stiffness->dense);
-  *stiffness = (ContactFieldStiffness){0};
+  *stiffness = (ContactStiffness){0};
 }
 
-size_t contact_field_stiffness_bytes(const ContactFieldStiffness *stiffness) {
-  const void *const arrays[] = {stiffness->order, stiffness->matrices, stiffness->vertices,
-                                stiffness->place, stiffness->sum,      stiffness->dense};
+size_t contact_stiffness_bytes(const ContactStiffness *stiffness) {
+  const void *const arrays[] = {stiffness->near_pairs, stiffness->order, stiffness->matrices,
+                                stiffness->vertices,   stiffness->place, stiffness->sum,
+                                stiffness->dense};
   return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
 }
 
 // ---- Which pairs are of the same two elements.
 
 static int compare(const void *left, const void *right) {
-  const ContactFieldKey *a = left, *b = right;
+  const ContactStiffnessKey *a = left, *b = right;
   if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
   for (int side = 0; side < 2; side++)
     if (a->elements[side] != b->elements[side]) return a->elements[side] < b->elements[side] ? -1 : 1;
   return (a->pair > b->pair) - (a->pair < b->pair);
 }
 
-static bool are_alike(const ContactFieldKey *a, const ContactFieldKey *b) {
+static bool are_alike(const ContactStiffnessKey *a, const ContactStiffnessKey *b) {
   return a->interface == b->interface && a->elements[0] == b->elements[0] && a->elements[1] == b->elements[1];
 }
 
-static Status order_pairs(ContactFieldStiffness *stiffness, const ContactLayout *layout, int count,
+static Status order_pairs(ContactStiffness *stiffness, const ContactLayout *layout, int count,
                           const ContactPair *pairs) {
   if (!memory_reserve((void **)&stiffness->order, &stiffness->order_capacity, (size_t)count,
                       sizeof *stiffness->order))
     return status_no_memory("contact stiffness");
   for (int k = 0; k < count; k++) {
     const int *cells = pairs[k].cells;
-    stiffness->order[k] = (ContactFieldKey){pairs[k].interface,
-                                            {contact_layout_origin(layout, cells[0]),
-                                             cells[1] < 0 ? -1 : contact_layout_origin(layout, cells[1])},
-                                            k};
+    stiffness->order[k] = (ContactStiffnessKey){pairs[k].interface,
+                                                {contact_layout_origin(layout, cells[0]),
+                                                 cells[1] < 0 ? -1 : contact_layout_origin(layout, cells[1])},
+                                                k};
   }
   if (count > 1) qsort(stiffness->order, (size_t)count, sizeof *stiffness->order, compare);
   return STATUS_OK;
 }
 
-Status contact_field_stiffness_couple(ContactFieldStiffness *stiffness, const ContactLayout *layout,
-                                      int count, const ContactPair *pairs, void *visitor,
-                                      Status (*visit)(void *visitor, int count, const int *vertices)) {
-  Status status = STATUS_OK;
-  TRY(order_pairs(stiffness, layout, count, pairs));
-  for (int k = 0; k < count && !status; k++) {
-    if (k > 0 && are_alike(&stiffness->order[k], &stiffness->order[k - 1])) continue;
-    const ContactPair *pair = &pairs[stiffness->order[k].pair];
-    for (int side = 0; side < 2; side++)
-      if (layout->interfaces[pair->interface].weight[side] > 0)
-        list_element(stiffness, layout, contact_mesh_tet(&layout->mesh, pair->cells[side]));
-    status = visit(visitor, stiffness->count, stiffness->vertices);
-    forget_vertices(stiffness);
-  }
-  return status;
-}
-
 // ---- The sum over the cells of two elements.
 
 // The part of a pair's matrix, of `width` rows, that belongs to sides which carry unknowns.
-static void add_pair(ContactFieldStiffness *stiffness, const ContactLayout *layout, const ContactPair *pair,
+static void add_pair(ContactStiffness *stiffness, const ContactLayout *layout, const ContactPair *pair,
                      const double *matrix) {
   const double *weight = layout->interfaces[pair->interface].weight;
   size_t stride = 3 * (size_t)stiffness->most;
@@ -150,13 +137,13 @@ static void add_pair(ContactFieldStiffness *stiffness, const ContactLayout *layo
     }
 }
 
-static void hand_on(ContactFieldStiffness *stiffness, void *self, ContactFieldTake take) {
+static void hand_on(ContactStiffness *stiffness, const ContactStiffnessSink *sink) {
   size_t width = 3 * (size_t)stiffness->count, stride = 3 * (size_t)stiffness->most;
   for (size_t r = 0; r < width; r++) {
     memcpy(stiffness->dense + r * width, stiffness->sum + r * stride, width * sizeof(double));
     memset(stiffness->sum + r * stride, 0, width * sizeof(double));
   }
-  if (width > 0) take(self, stiffness->count, stiffness->vertices, stiffness->dense);
+  if (width > 0) sink->add_dense(sink->self, stiffness->count, stiffness->vertices, stiffness->dense);
   forget_vertices(stiffness);
 }
 
@@ -166,6 +153,11 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
   bool is_full = layout->def.use_full_hessian;
   const ContactPair *pair = &evaluation->pairs[k];
   double coordinates[OVERLAP_PAIR_SIZE];
+  if (layout->def.potential == CONTACT_POTENTIAL_NODAL) {
+    contact_volume_bend(evaluation->fields[k].energy, evaluation->pair_forces + OVERLAP_PAIR_SIZE * (size_t)k,
+                        pair->cells[1] < 0 ? 4 : 8, matrix);
+    return;
+  }
   memcpy(coordinates, evaluation->coordinates + OVERLAP_PAIR_SIZE * (size_t)k, sizeof coordinates);
   if (pair->cells[1] < 0) {
     contact_field_bend_shape(layout, pair, evaluation->time, coordinates, is_full, matrix);
@@ -175,22 +167,70 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
   contact_field_bend(layout, pair, coordinates, is_full, matrix);
 }
 
-Status contact_field_stiffness_add(ContactFieldStiffness *stiffness, const ContactLayout *layout,
-                                   const ContactEvaluation *evaluation, void *self, ContactFieldTake take) {
+Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
+                             const ContactEvaluation *evaluation, const ContactStiffnessSink *sink) {
   int count = evaluation->pair_count;
   TRY(order_pairs(stiffness, layout, count, evaluation->pairs));
-  const ContactFieldKey *order = stiffness->order;
+  const ContactStiffnessKey *order = stiffness->order;
   for (int first = 0; first < count; first += PORTION) {
     int end = first + PORTION < count ? first + PORTION : count;
 #pragma omp parallel for schedule(static) if (end - first > 64)
     for (int k = first; k < end; k++)
       bend(layout, evaluation, order[k].pair, stiffness->matrices + 576 * (size_t)(k - first));
     for (int k = first; k < end; k++) {
-      if (k > 0 && !are_alike(&order[k], &order[k - 1])) hand_on(stiffness, self, take);
+      if (k > 0 && !are_alike(&order[k], &order[k - 1])) hand_on(stiffness, sink);
       add_pair(stiffness, layout, &evaluation->pairs[order[k].pair],
                stiffness->matrices + 576 * (size_t)(k - first));
     }
   }
-  hand_on(stiffness, self, take);
+  hand_on(stiffness, sink);
   return STATUS_OK;
+}
+
+// ---- What may couple.
+
+// Visits the vertices that any two elements with a pair among these couple.
+static Status visit_elements(ContactStiffness *stiffness, const ContactLayout *layout, int count,
+                             const ContactPair *pairs, void *visitor,
+                             Status (*visit)(void *visitor, int count, const int *vertices)) {
+  Status status = STATUS_OK;
+  TRY(order_pairs(stiffness, layout, count, pairs));
+  for (int k = 0; k < count && !status; k++) {
+    if (k > 0 && are_alike(&stiffness->order[k], &stiffness->order[k - 1])) continue;
+    const ContactPair *pair = &pairs[stiffness->order[k].pair];
+    for (int side = 0; side < 2; side++)
+      if (layout->interfaces[pair->interface].weight[side] > 0)
+        list_element(stiffness, layout, contact_mesh_tet(&layout->mesh, pair->cells[side]));
+    status = visit(visitor, stiffness->count, stiffness->vertices);
+    forget_vertices(stiffness);
+  }
+  return status;
+}
+
+static bool is_within(const ContactLayout *layout, const ContactPair *pair, double time,
+                      const double *positions, double reach) {
+  if (pair->cells[1] >= 0) {
+    double box_a[6], box_b[6];
+    contact_bounds_of_tet(layout->mesh.cells[pair->cells[0]], positions, box_a);
+    contact_bounds_of_tet(layout->mesh.cells[pair->cells[1]], positions, box_b);
+    return contact_bounds_distance(box_a, box_b) <= reach + 3 * layout->nudge;
+  }
+  double x[12];
+  contact_layout_gather_whole(layout, pair->cells[0], positions, x);
+  const ContactShape *shape = &layout->def.shapes[layout->interfaces[pair->interface].shape];
+  return contact_shape_separation(shape, time, x, reach) <= reach;
+}
+
+Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout *layout,
+                                const ContactCandidateList *candidates, double time, const double *positions,
+                                double reach, void *visitor,
+                                Status (*visit)(void *visitor, int count, const int *vertices)) {
+  if (!memory_reserve((void **)&stiffness->near_pairs, &stiffness->near_capacity, (size_t)candidates->count,
+                      sizeof(ContactPair)))
+    return status_no_memory("contact couplings");
+  int count = 0;
+  for (int k = 0; k < candidates->count; k++)
+    if (is_within(layout, &candidates->pairs[k], time, positions, reach))
+      stiffness->near_pairs[count++] = candidates->pairs[k];
+  return visit_elements(stiffness, layout, count, stiffness->near_pairs, visitor, visit);
 }
