@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "overlap/weights.h"
+
 static const char COMMAND[] = "exec:", CHANNEL[] = "channel:", HYBRID[] = "hybrid=";
 
 static bool ends_in(const char *word, size_t length, const char *ending) {
@@ -28,9 +30,9 @@ OverlapSource overlap_source_of(const char *word) {
   if (strncmp(word, COMMAND, sizeof COMMAND - 1) == 0) return OVERLAP_SOURCE_COMMAND;
   if (strncmp(word, CHANNEL, sizeof CHANNEL - 1) == 0) return OVERLAP_SOURCE_CHANNEL;
   size_t length = strlen(word);
-  if (ends_in(word, length, ".safetensors")) return OVERLAP_SOURCE_WEIGHTS;
   if (ends_in(word, length, ".so")) return OVERLAP_SOURCE_LIBRARY;
-  return python_path(word) > 0 ? OVERLAP_SOURCE_PYTHON : OVERLAP_SOURCE_NAME;
+  if (python_path(word) > 0) return OVERLAP_SOURCE_PYTHON;
+  return overlap_weights_is_path(word) ? OVERLAP_SOURCE_WEIGHTS : OVERLAP_SOURCE_NAME;
 }
 
 size_t overlap_source_path(const char *word, const char **path) {

@@ -85,7 +85,8 @@ static void list_sides(Contact *contact) {
 // The scene's word with its file as seen from here.
 static Status locate(const FemSceneDef *scene, char word[PATH_MAX]) {
   char *folder = file_directory_of(scene->path ? scene->path : ".");
-  bool fits = folder && overlap_source_from(scene->contact.overlap, folder, word, PATH_MAX);
+  if (!folder) return status_no_memory("a file name");
+  bool fits = overlap_source_from(scene->contact.overlap, folder, word, PATH_MAX);
   memory_free(folder);
   return fits ? STATUS_OK : status_fail(STATUS_INPUT, "contact.overlap: the path is too long");
 }
