@@ -243,11 +243,12 @@ END_TEST
 // Leaves the run at its beginning: the first checkpoint is that of the start.
 static void leave_stopped(const char *scene) {
   char line[2048];
-  snprintf(line, sizeof line,
-           "%s run %s -q -o %s/stopped --set output.checkpoint.seconds=0 --set output.checkpoint.frames=1 "
-           "2>%s/log & p=$!; while [ ! -e "
-           "%s/stopped/checkpoint.h5 ]; do sleep 0.01; done; kill -9 $p; wait $p 2>/dev/null; true",
-           TETLAP_PROGRAM, scene, folder, folder, folder);
+  snprintf(
+      line, sizeof line,
+      "%s run %s -q -o %s/stopped --set output.checkpoint.seconds=0 --set output.checkpoint.frames=1 "
+      "2>%s/log & p=$!; while [ ! -e "
+      "%s/stopped/checkpoint.h5 ] && kill -0 $p; do sleep 0.01; done; kill -9 $p; wait $p 2>/dev/null; true",
+      TETLAP_PROGRAM, scene, folder, folder, folder);
   ck_assert_int_eq(system(line), 0);
 }
 
@@ -255,7 +256,7 @@ static void copy_scene(char path[128]) {
   char command[512];
   snprintf(path, 128, "%s/scene.yaml", folder);
   snprintf(command, sizeof command,
-           "cp %s/tests/scenes/incline.yaml %s && sed -i 's/contact: {/contact: {overlap: geo, net: "
+           "cp %s/tests/scenes/incline.yaml %s && sed -i 's/contact: {/contact: {overlap: "
            "w.safetensors, /' %s && cp %s/net/weights/geo.safetensors %s/w.safetensors",
            TETLAP_SOURCE_DIR, path, path, TETLAP_SOURCE_DIR, folder);
   ck_assert_int_eq(system(command), 0);
@@ -294,7 +295,7 @@ START_TEST(weights_that_vanish_during_a_run_do_not_touch_it) {
   ck_assert_int_eq(wait_for(start(line)), 0);
   snprintf(line, sizeof line,
            "%s run %s -q -o %s/bare --set output.checkpoint.frames=1 2>%s/log & p=$!; while [ ! -e "
-           "%s/bare/frame_00001.vtu ]; do sleep 0.01; done; rm %s/w.safetensors; wait $p",
+           "%s/bare/frame_00001.vtu ] && kill -0 $p; do sleep 0.01; done; rm %s/w.safetensors; wait $p",
            TETLAP_PROGRAM, scene, folder, folder, folder, folder);
   ck_assert_int_eq(system(line), 0);
   snprintf(line, sizeof line, "cmp %s/whole/history.csv %s/bare/history.csv", folder, folder);
