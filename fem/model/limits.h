@@ -103,7 +103,7 @@
 // Held by test_tolerance, test_steps; 13_dead_bounce takes 869 steps instead of 336 with a third of it.
 #define FEM_OF_PRESENT_SPEED 5
 
-// ---- Rest (fem/run/rest.h).
+// ---- Rest (fem/run/rest/rest.h).
 
 // A body rests once it has been calm for so many times the time that a wave takes through the body of the
 // slowest: it rings with twice that period, and some periods without motion are no turning point.

@@ -19,7 +19,7 @@ double fem_model_velocity_tolerance(const FemModel *model);
 // (fem/time/error_weights.h); 0 where the scene says how far.
 double fem_model_speed_share(const FemModel *model);
 
-// What counts as rest (fem/run/rest.h) [m/s], [m/s²], [s]: the scene's, or chosen.
+// What counts as rest (fem/run/rest/rest.h) [m/s], [m/s²], [s]: the scene's, or chosen.
 double fem_model_rest_speed(const FemModel *model);
 double fem_model_rest_acceleration(const FemModel *model);
 double fem_model_rest_time(const FemModel *model);

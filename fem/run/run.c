@@ -17,7 +17,7 @@
 #include "fem/run/check/start.h"
 #include "fem/run/checkpoint/restart.h"
 #include "fem/run/checkpoint/run_checkpoint.h"
-#include "fem/run/hold.h"
+#include "fem/run/rest/hold.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_load.h"
 #include "fem/run/run_stage.h"

@@ -7,7 +7,6 @@
 #include "contact/evaluation.h"
 #include "contact/status.h"
 #include "fem/output/trouble.h"
-#include "fem/run/rest.h"
 #include "fem/time/audit.h"
 #include "fem/time/integrator.h"
 

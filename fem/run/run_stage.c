@@ -6,7 +6,7 @@
 #include "fem/model/limits.h"
 #include "fem/model/tolerance.h"
 #include "fem/run/check/choice.h"
-#include "fem/run/hold.h"
+#include "fem/run/rest/hold.h"
 #include "fem/run/run_frames.h"
 
 double fem_run_stage_resolved(const FemModel *model) {

@@ -7,7 +7,7 @@
 
 #include "fem/output/recorder.h"
 #include "fem/run/checkpoint/checkpoint.h"
-#include "fem/run/rest.h"
+#include "fem/run/rest/rest.h"
 #include "fem/run/run_options.h"
 #include "fem/run/run_result.h"
 #include "fem/statics/statics.h"

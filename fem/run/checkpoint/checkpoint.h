@@ -43,7 +43,7 @@ typedef struct FemCheckpoint {
   int effect_count;
   double *ledger; // what a run keeps account of (fem/measure/ledger.h), owned       (ledger_count)
   size_t ledger_count;
-  double *rest; // bodies at rest (fem/run/rest.h), owned                            (rest_count)
+  double *rest; // bodies at rest (fem/run/rest/rest.h), owned                            (rest_count)
   size_t rest_count;
 } FemCheckpoint;
 

@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
-#include "fem/run/rest.h"
+#include "fem/run/rest/rest.h"
 #include "fem/scene/drive.h"
 
 // ---- contact_system_hold

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbering the unknowns anew while a run goes on: vertices that are released, bodies that fall asleep
 // (rest.h). The state stays where it is.
-#ifndef TETLAP_FEM_RUN_HOLD_H
-#define TETLAP_FEM_RUN_HOLD_H
+#ifndef TETLAP_FEM_RUN_REST_HOLD_H
+#define TETLAP_FEM_RUN_REST_HOLD_H
 
 #include "fem/effect/system.h"
-#include "fem/run/rest.h"
+#include "fem/run/rest/rest.h"
 #include "fem/time/audit.h"
 
 // Takes the unknowns of bodies that sleep and gives them to those that awoke.

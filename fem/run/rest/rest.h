@@ -14,8 +14,8 @@
 // only the kinetic energy of what falls asleep is lost, at most ½ m speed², and none is ever gained.
 //
 // All is decided from accepted states, and goes through checkpoints.
-#ifndef TETLAP_FEM_RUN_REST_H
-#define TETLAP_FEM_RUN_REST_H
+#ifndef TETLAP_FEM_RUN_REST_REST_H
+#define TETLAP_FEM_RUN_REST_REST_H
 
 #include <stdbool.h>
 

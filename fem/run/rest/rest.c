@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/rest.h"
+#include "fem/run/rest/rest.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/hold.h"
+#include "fem/run/rest/hold.h"
 
 // Stops a body; returns the kinetic energy that its unknowns had.
 static double stop_body(const FemSystem *system, const FemModelBody *body, double *velocities) {
