@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "contact/surface/fit.h"
 #include "contact/surface/smooth.h"
+#include "contact/surface/smooth_row.h"
 #include "contact/surface/surface.h"
 
 enum { NODES = 10, EIGHTHS = 8, MOST_CELLS = 24 };
@@ -306,12 +307,25 @@ static Status add_element(Work *work, const ContactBody *body, int element) {
   return STATUS_OK;
 }
 
+// `near`: a vertex that the row is at.
+static Status add_row(Work *work, int near, const ContactSmoothRow *row, int own, int *number) {
+  if (!row->is_full) return add_vertex(work, row->count, row->nodes, row->weights, own, number);
+  int b = 0;
+  while (near >= work->given->bodies[b].vertex_end) b++;
+  return status_fail(
+      STATUS_INPUT,
+      "contact.smooth: body '%s': more than %d vertices lie round vertex %d, on faces that meet "
+      "there; mesh the body anew, or write smooth: 0",
+      work->given->bodies[b].name, CONTACT_SMOOTH_ROW_COUNT, near - work->given->bodies[b].vertex_begin);
+}
+
 // A vertex of a smooth surface, near which points are.
 static Status add_settled(Work *work, const ContactSmooth *smooth, int vertex) {
-  ContactSmoothRow row = {.count = 0};
+  ContactSmoothRow row;
+  row.count = 0, row.is_full = false;
   contact_smooth_row_add(&row, vertex, 1);
-  contact_smooth_settle(smooth, vertex, 1, &row);
-  return add_vertex(work, row.count, row.nodes, row.weights, 1, &work->stars->place[vertex]);
+  contact_smooth_row_settle(smooth, vertex, 1, &row);
+  return add_row(work, vertex, &row, 1, &work->stars->place[vertex]);
 }
 
 // The points of a smooth surface; that of number p becomes vertex first + p.
@@ -320,11 +334,12 @@ static Status add_points(Work *work, const ContactSmooth *smooth, int *first) {
   for (int p = 0; p < smooth->point_count; p++) {
     double weights[CONTACT_FIT_MOST_COUNT];
     const int *nodes;
-    int number, count = contact_smooth_carry(smooth, p, &nodes, weights), own = smooth->owns[p];
-    ContactSmoothRow row = {.count = 0};
+    int number, count = contact_smooth_points_carry(smooth, p, &nodes, weights), own = smooth->owns[p];
+    ContactSmoothRow row;
+    row.count = 0, row.is_full = false;
     for (int k = 0; k < count; k++) contact_smooth_row_add(&row, nodes[k], weights[k]);
-    for (int k = 0; k < own; k++) contact_smooth_settle(smooth, nodes[k], smooth->priors[p][k], &row);
-    TRY(add_vertex(work, row.count, row.nodes, row.weights, own, &number));
+    for (int k = 0; k < own; k++) contact_smooth_row_settle(smooth, nodes[k], smooth->priors[p][k], &row);
+    TRY(add_row(work, nodes[0], &row, own, &number));
   }
   return STATUS_OK;
 }
@@ -445,7 +460,7 @@ Status contact_stars_create(ContactStars *stars, const ContactSystemDef *def) {
   if (def->potential != CONTACT_POTENTIAL_FIELD) return STATUS_OK;
   Work work = {.given = def, .stars = stars};
   Status status = create(&work);
-  for (int b = 0; b < def->body_count && work.smooths; b++) contact_smooth_destroy(&work.smooths[b]);
+  for (int b = 0; b < def->body_count && work.smooths; b++) contact_smooth_points_destroy(&work.smooths[b]);
   memory_free(work.smooths);
   memory_free(work.outer);
   return status;

@@ -7,6 +7,7 @@
 #include "base/vec3.h"
 #include "contact/surface/fit.h"
 #include "contact/surface/smooth.h"
+#include "contact/surface/smooth_row.h"
 #include "contact/surface/stars.h"
 #include "contact/surface/surface.h"
 #include "contact/system.h"
@@ -69,7 +70,7 @@ static Vec3 point_of(const ContactSmooth *smooth, int p) {
   const int *nodes;
   double weights[CONTACT_FIT_MOST_COUNT];
   Vec3 sum = {0, 0, 0};
-  int count = contact_smooth_carry(smooth, p, &nodes, weights);
+  int count = contact_smooth_points_carry(smooth, p, &nodes, weights);
   for (int k = 0; k < count; k++)
     sum = vec3_add(sum, vec3_scale(weights[k], vec3_at(smooth->def->rest + 3 * nodes[k])));
   return sum;
@@ -98,7 +99,7 @@ START_TEST(points_lie_on_the_surface_that_the_vertices_are_on) {
     left += now * now, sagitta += before * before;
   }
   ck_assert(sqrt(left) <= 0.03 * sqrt(sagitta)); // what is left is of third order: 3 % at h/R = .1
-  contact_smooth_destroy(&smooth);
+  contact_smooth_points_destroy(&smooth);
   fem_mesh_destroy(&mesh);
 }
 END_TEST
@@ -387,6 +388,18 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
 }
 END_TEST
 
+START_TEST(a_row_says_that_it_has_no_room) {
+  ContactSmoothRow row;
+  row.count = 0, row.is_full = false;
+  for (int k = 0; k < CONTACT_SMOOTH_ROW_COUNT; k++) contact_smooth_row_add(&row, k, 1);
+  contact_smooth_row_add(&row, 0, 1);
+  ck_assert(!row.is_full && row.weights[0] == 2);
+  contact_smooth_row_add(&row, CONTACT_SMOOTH_ROW_COUNT, 1);
+  contact_smooth_row_add(&row, 0, 1);
+  ck_assert(row.is_full && row.count == CONTACT_SMOOTH_ROW_COUNT);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("smooth");
   tcase_add_loop_test(tests, points_lie_on_the_surface_that_the_vertices_are_on, 0, 4);
@@ -395,6 +408,7 @@ int main(void) {
   tcase_add_loop_test(tests, cells_fill_the_body_without_cracks, 0, 4);
   tcase_add_loop_test(tests, an_even_pressure_loads_vertices_by_a_third_of_their_faces, 1, 3);
   tcase_add_test(tests, a_body_of_flat_faces_stays_as_it_is);
+  tcase_add_test(tests, a_row_says_that_it_has_no_room);
   tcase_add_loop_test(tests, forces_balance_and_are_minus_the_gradient_of_the_energy, 0, 8);
   tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 1, 3);
   return suite_run("smooth", tests, 60);
