@@ -301,7 +301,7 @@ double fem_momentum_largest_gap(const FemMomentum *momentum, double time, int *b
   if (body) *body = 0;
   for (int b = 0; b < momentum->body_count; b++) {
     double gap = fem_momentum_gap(momentum, time, b);
-    if (!(gap > largest)) continue;
+    if (!(gap > largest) && !isnan(gap)) continue;
     largest = gap;
     if (body) *body = b;
   }

@@ -62,7 +62,8 @@ double fem_momentum_strictness(const FemMomentum *momentum, double end);
 
 // J − Δp of a body up to a time in the step that was evaluated last [N s].
 void fem_momentum_missing(const FemMomentum *momentum, double time, int body, double missing[3]);
-// The gap of a body, and the largest of all bodies with the body's number (`body` may be NULL).
+// The gap of a body, and the largest of all bodies with the body's number (`body` may be NULL); NaN is the
+// largest.
 double fem_momentum_gap(const FemMomentum *momentum, double time, int body);
 double fem_momentum_largest_gap(const FemMomentum *momentum, double time, int *body);
 

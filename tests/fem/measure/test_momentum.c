@@ -71,6 +71,18 @@ START_TEST(a_body_that_does_not_is_not) {
 }
 END_TEST
 
+START_TEST(a_gap_that_is_no_number_is_the_largest) {
+  Falling falling;
+  int body = -1;
+  open_falling(&falling);
+  step(&falling, 0.981);
+  falling.momentum.next[0].impulse[1] = NAN;
+  ck_assert(isnan(fem_momentum_largest_gap(&falling.momentum, 0.1, &body)));
+  ck_assert_int_eq(body, 0);
+  close_falling(&falling);
+}
+END_TEST
+
 START_TEST(a_step_that_is_taken_back_leaves_no_trace) {
   Falling falling;
   open_falling(&falling);
@@ -269,6 +281,7 @@ int main(void) {
   TCase *cases = tcase_create("momentum");
   tcase_add_test(cases, a_body_that_falls_as_gravity_wants_is_balanced);
   tcase_add_test(cases, a_body_that_does_not_is_not);
+  tcase_add_test(cases, a_gap_that_is_no_number_is_the_largest);
   tcase_add_test(cases, a_step_that_is_taken_back_leaves_no_trace);
   tcase_add_test(cases, contact_reactions_and_loads_are_balanced);
   tcase_add_test(cases, what_a_row_within_a_step_tells_lies_between_its_ends);
