@@ -70,7 +70,8 @@ static Status measure_area(const FemModel *model, const FemModelBody *body, doub
   return STATUS_OK;
 }
 
-Status fem_compliance_height(const FemModel *model, int body, double *height) {
+// L of a body [m].
+static Status measure_height(const FemModel *model, int body, double *height) {
   double volume, area, radius = least_radius(model, &model->bodies[body], &volume);
   TRY(measure_area(model, &model->bodies[body], &area));
   *height = fmin(sqrt(12) * radius, 6 * volume / area);
@@ -89,7 +90,7 @@ static Status measure_bodies(const FemModel *model, Give *gives) {
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     const double square = body->material.poisson * body->material.poisson;
-    TRY(fem_compliance_height(model, b, &gives[b].height));
+    TRY(measure_height(model, b, &gives[b].height));
     gives[b].inverse = 1 / body->material.young;
     gives[b].give = (1 - HELD * square * square) / body->material.young;
     gives[b].volume = body->mass / body->material.density;
@@ -120,12 +121,6 @@ static double stiffness_between(const Give *a, const Give *b, double blow, int t
   return fmax(1 / (terms * GIVE * sum), pressure_of(a, b, blow) / (terms * BLOW_DEPTH * height));
 }
 
-static int count_shapes(const FemSceneDef *scene) {
-  int count = 0;
-  for (int o = 0; o < scene->obstacle_count; o++) count += scene->obstacles[o].kind != FEM_OBSTACLE_MESH;
-  return count;
-}
-
 static Status choose_for_field(const FemModel *model, int party_count, double *stiffness) {
   Give *gives = memory_zeroed((size_t)party_count, sizeof *gives);
   Status status = gives ? measure_bodies(model, gives) : status_no_memory("contact stiffness");
@@ -138,7 +133,8 @@ static Status choose_for_field(const FemModel *model, int party_count, double *s
   return status;
 }
 
-int fem_compliance_party(const FemModel *model, const char *name) {
+// The number of that body or obstacle, as a party: −1, none has that name.
+static int party_of(const FemModel *model, const char *name) {
   int party = model->body_count;
   for (int b = 0; b < model->body_count; b++)
     if (strcmp(model->bodies[b].name, name) == 0) return b;
@@ -162,7 +158,7 @@ const char *fem_compliance_party_name(const FemModel *model, int party) {
 
 static Status check_pair(const FemModel *model, const FemContactPairDef *pair) {
   for (int k = 0; k < 2; k++)
-    if (fem_compliance_party(model, pair->names[k]) < 0)
+    if (party_of(model, pair->names[k]) < 0)
       return status_fail(STATUS_INPUT, "%s: contact.pairs: no body or obstacle has the name '%s'",
                          fem_scene_where(model->scene, &pair->place).text, pair->names[k]);
   return STATUS_OK;
@@ -174,7 +170,7 @@ static Status apply_pairs(const FemModel *model, int party_count, double *stiffn
     const FemContactPairDef *pair = &contact->pairs[i];
     TRY(check_pair(model, pair));
     if (!(pair->stiffness > 0)) continue;
-    int a = fem_compliance_party(model, pair->names[0]), b = fem_compliance_party(model, pair->names[1]);
+    int a = party_of(model, pair->names[0]), b = party_of(model, pair->names[1]);
     if (a < model->body_count) stiffness[a * party_count + b] = pair->stiffness;
     if (b < model->body_count) stiffness[b * party_count + a] = pair->stiffness;
   }
@@ -186,8 +182,7 @@ double fem_compliance_friction(const FemModel *model, int a, int b) {
   double friction = contact->friction;
   for (int i = 0; i < contact->pair_count; i++) {
     const FemContactPairDef *pair = &contact->pairs[i];
-    int first = fem_compliance_party(model, pair->names[0]),
-        second = fem_compliance_party(model, pair->names[1]);
+    int first = party_of(model, pair->names[0]), second = party_of(model, pair->names[1]);
     bool is_theirs = (first == a && second == b) || (first == b && second == a);
     if (is_theirs && pair->friction >= 0) friction = pair->friction;
   }
@@ -196,7 +191,7 @@ double fem_compliance_friction(const FemModel *model, int a, int b) {
 
 Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *party_count) {
   const FemContactDef *contact = &model->scene->contact;
-  int parties = *party_count = model->body_count + count_shapes(model->scene);
+  int parties = *party_count = model->body_count + fem_scene_shape_count(model->scene);
   size_t count = (size_t)model->body_count * (size_t)parties;
   double *table = *stiffness = memory_zeroed(count, sizeof *table);
   if (!table) return status_no_memory("contact stiffness");

@@ -32,16 +32,10 @@
 
 #include "fem/model/model.h"
 
-// L of a body [m].
-Status fem_compliance_height(const FemModel *model, int body, double *height);
-
 // κ of every body with every party, bodies then the obstacles without elements in the scene's order, into
 // (body_count, body_count + obstacle_count); entries of what cannot meet are positive too. An array of the
 // caller's (memory_free). `party_count`: the columns. STATUS_INPUT: `contact.pairs` names what is not there.
 Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *party_count);
-
-// The number of that body or obstacle, as a party: −1, none has that name.
-int fem_compliance_party(const FemModel *model, const char *name);
 
 // The name of that party; "?" if there is none. Borrowed.
 const char *fem_compliance_party_name(const FemModel *model, int party);

@@ -91,6 +91,12 @@ double fem_scene_frame_time(const FemSceneDef *scene, int frame) {
   return frame == scene->frames ? scene->end : scene->end * frame / scene->frames;
 }
 
+int fem_scene_shape_count(const FemSceneDef *scene) {
+  int count = 0;
+  for (int o = 0; o < scene->obstacle_count; o++) count += scene->obstacles[o].kind != FEM_OBSTACLE_MESH;
+  return count;
+}
+
 FemSceneWhere fem_scene_where(const FemSceneDef *scene, const FemScenePlace *place) {
   FemSceneWhere where = {"scene"};
   if (scene->path && place->line > 0)

@@ -223,6 +223,9 @@ void fem_scene_destroy(FemSceneDef *scene);
 // When frame 0 … frames is due [s].
 double fem_scene_frame_time(const FemSceneDef *scene, int frame);
 
+// Obstacles without elements.
+int fem_scene_shape_count(const FemSceneDef *scene);
+
 // The largest μ between any two; 0: nothing rubs.
 double fem_scene_most_friction(const FemContactDef *contact);
 // Whether a body rubs on itself, by the scene's μ or by its own of `contact.pairs`.

@@ -52,12 +52,6 @@ void fem_rest_destroy(FemRest *rest) {
   memory_free(rest);
 }
 
-static int count_shapes(const FemSceneDef *scene) {
-  int count = 0;
-  for (int o = 0; o < scene->obstacle_count; o++) count += scene->obstacles[o].kind != FEM_OBSTACLE_MESH;
-  return count;
-}
-
 Status fem_rest_create(FemRest **made, FemSystem *system) {
   FemRest *rest = memory_zeroed(1, sizeof *rest);
   if (!rest) return status_no_memory("bodies at rest");
@@ -66,7 +60,7 @@ Status fem_rest_create(FemRest **made, FemSystem *system) {
   rest->model = model;
   rest->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
   rest->body_count = model->scene->body_count;
-  rest->party_count = model->body_count + count_shapes(model->scene);
+  rest->party_count = model->body_count + fem_scene_shape_count(model->scene);
   size_t parties = (size_t)rest->party_count, values = 3 * (size_t)model->vertex_count;
   rest->is_held = memory_zeroed(parties, sizeof *rest->is_held);
   rest->next_held = memory_zeroed(parties, sizeof *rest->next_held);
