@@ -316,10 +316,7 @@ static Status close_run(FemRunState *run, Status status) {
 
 // Says when a run failed, unless whoever failed did. A retry that nobody took is the solver's failure.
 static Status say_when(const FemRunState *run, Status status) {
-  bool is_stopped = run->options->stop && *run->options->stop && status == STATUS_INTERRUPTED;
-  if (is_stopped)
-    return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; everything written so far is complete",
-                       run->time);
+  if (status == STATUS_INTERRUPTED) TRY(fem_run_watch_stop(run));
   if (status != STATUS_RETRY && status != STATUS_SOLVER) return status;
   bool is_told = strstr(status_message(), "t = ");
   if (is_told) return status_fail(STATUS_SOLVER, "%s", status_message());

@@ -60,7 +60,7 @@ static Status find_least_power(FemRunState *run, double time, double *power) {
   if (!status) status = fem_system_damping_power(&run->system, &run->trial, &at_end);
   if (!status) status = find_damping_at_middle(run, time, &at_middle);
   fem_system_scatter(&run->system, time, run->u_new, run->v_new, &run->trial);
-  *power = energy.dissipated_power - at_end + at_middle;
+  if (!status) *power = energy.dissipated_power - at_end + at_middle;
   return status;
 }
 
@@ -124,11 +124,11 @@ static void count_retry(FemRunResult *result, FemCause cause) {
 
 // Back to the last accepted state with a smaller step.
 static Status try_again(FemRunState *run, const FemVerdict *verdict) {
-  bool is_forces = verdict->cause == FEM_CAUSE_FORCES;
+  bool has_message = verdict->cause == FEM_CAUSE_FORCES;
   if (verdict->step == 0) return STATUS_RETRY; // the message says why
   log_debug("t = %.9g s: a step of %.3g s is taken back: %s", run->time,
             fem_integrator_stats(run->integrator).last_step,
-            is_forces ? status_message() : fem_verdict_words(verdict->cause));
+            has_message ? status_message() : fem_verdict_words(verdict->cause));
   count_retry(run->result, verdict->cause);
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, verdict->step);
 }

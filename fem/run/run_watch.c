@@ -25,7 +25,7 @@ static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_b
       run->time, rise, bound);
 }
 
-static Status check_stop(const FemRunState *run) {
+Status fem_run_watch_stop(const FemRunState *run) {
   if (!run->options->stop || !*run->options->stop) return STATUS_OK;
   return status_fail(STATUS_INTERRUPTED, "interrupted at t = %g s; everything written so far is complete",
                      run->time);
@@ -34,7 +34,7 @@ static Status check_stop(const FemRunState *run) {
 Status fem_run_watch(FemRunState *run, FemMeasures *measures) {
   bool has_begun;
   TRY(watch_trouble(run, measures, &has_begun));
-  TRY(ranks()->worst(check_stop(run)));
+  TRY(ranks()->worst(fem_run_watch_stop(run)));
   if (!run->options->observe) return STATUS_OK;
   FemIntegratorStats stats = fem_run_state_stats(run);
   FemRunProgress progress = {.system = &run->system,

@@ -9,6 +9,9 @@
 // STATUS_INTERRUPTED; the Status of the observer.
 Status fem_run_watch(FemRunState *run, FemMeasures *measures);
 
+// STATUS_INTERRUPTED once the caller has asked the run to stop; the message says when.
+Status fem_run_watch_stop(const FemRunState *run);
+
 // At the end: a body beyond the middle of another counts as having passed through it. STATUS_SOLVER as above.
 Status fem_run_watch_passages(FemRunState *run);
 

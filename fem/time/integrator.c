@@ -280,9 +280,8 @@ static double rate_of_change(FemIntegrator *integrator, bool *has_common) {
 }
 
 // The first step of a start that is left to IDA; 0: IDA's own will do, unless it would go by a velocity that
-// nothing can notice. Where something is driven from rest
-// with a jump of its speed, accelerations are large for a time in which nothing moves: they say nothing of
-// how long a step may be, and the error test does.
+// nothing can notice. Where something is driven from rest with a jump of its speed, accelerations are large
+// for a time in which nothing moves. They say nothing of how long a step may be; the error test does.
 static double start_step(FemIntegrator *integrator, double time) {
   bool has_common;
   const double longest = START_SHARE * (integrator->def.end - time),
@@ -415,7 +414,7 @@ static Status give_up(FemIntegrator *integrator, int flag) {
   return say_why(integrator, time, step, find_worst(integrator, flag), reason_of(flag));
 }
 
-// Tells the step and what failed on the way to it.
+// Counts the step, and the tries that failed before it.
 static Status check_stall(FemIntegrator *integrator) {
   FemIntegratorStats stats = fem_integrator_stats(integrator);
   long long failures = stats.error_test_failures + stats.newton_failures,

@@ -18,8 +18,8 @@ FemVerdict fem_verdict_of(const FemFindings *findings) {
              cause == FEM_CAUSE_FORCES ? findings->shortest : fmax(findings->shortest, findings->resolved),
          step = fmax(FEM_CUT * findings->length, least);
   if (cause == FEM_CAUSE_NONE || !(step < findings->length)) step = 0;
-  bool has_way = cause != FEM_CAUSE_FORCES;
-  return (FemVerdict){.stands = has_way && step == 0, .cause = cause, .step = step};
+  bool may_stand = cause != FEM_CAUSE_FORCES;
+  return (FemVerdict){.stands = may_stand && step == 0, .cause = cause, .step = step};
 }
 
 const char *fem_verdict_words(FemCause cause) {

@@ -4,7 +4,7 @@
 //
 // A step that does not stand is tried again from the last accepted state with FEM_CUT of its length. Steps in
 // which nothing moves are not tried: what they gain or miss is part of what is reported at the end. A step
-// whose forces cannot be evaluated has no other way; without a shorter one the run fails.
+// whose forces cannot be evaluated never stands: it is cut down to the shortest step, and then the run fails.
 #ifndef TETLAP_FEM_TIME_VERDICT_H
 #define TETLAP_FEM_TIME_VERDICT_H
 

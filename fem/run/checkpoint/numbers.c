@@ -133,6 +133,9 @@ static_assert(sizeof(ContactPairCounts) == 7 * sizeof(long long), "numbers[] lis
 static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long),
               "numbers[] lists the counts of the status");
 
+static_assert(sizeof(FemRunRetries) == 3 * sizeof(long long), "numbers[] lists every kind of retry");
+static_assert(sizeof(FemRunEquilibrium) == 5 * sizeof(double), "numbers[] lists the equilibrium's numbers");
+
 static_assert(FEM_TROUBLE_KIND_COUNT == 5, "numbers[] lists every kind of trouble");
 
 const FemCheckpointNumber *fem_checkpoint_numbers(int *count) {
