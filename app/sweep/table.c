@@ -306,13 +306,22 @@ static double median_of(const AppSweepGrid *grid, int row, const struct Column *
   return median;
 }
 
+// Of the runs of a combination the first that has not finished; where all have, the first.
+static const AppSweepPoint *worst_of(const AppSweepGrid *grid, int row) {
+  for (int p = row; p < grid->point_count; p += grid->point_count / grid->base.repeat_count)
+    if (grid->points[p].state != APP_SWEEP_FINISHED) return &grid->points[p];
+  return &grid->points[row];
+}
+
 Status app_sweep_table_print(const AppSweepGrid *grid, AppTableFormat format, FILE *stream) {
   Columns list = {.count = 0};
   int count = grid->point_count / grid->base.repeat_count;
   Row *rows = memory_zeroed((size_t)count, sizeof *rows);
   if (!rows) return status_no_memory("the table of a sweep");
   for (int r = 0; r < count; r++) {
+    const AppSweepPoint *worst = worst_of(grid, r);
     fill_row(grid, &grid->points[r], &rows[r]);
+    rows[r].outcome = outcome_of(worst), rows[r].message = worst->message;
     for (int c = 0; c < COLUMN_COUNT; c++) {
       double spread;
       rows[r].numbers[c] = median_of(grid, r, &columns[c], &spread);

@@ -62,6 +62,13 @@ static void remove_folder(void) {
   ck_assert_int_eq(system(command), 0);
 }
 
+// A shell command in the folder.
+static void change(const char *what) {
+  char command[640];
+  snprintf(command, sizeof command, "cd %s && %s", folder, what);
+  ck_assert_int_eq(system(command), 0);
+}
+
 // The exit code; what is said goes to the file `said` in the folder above.
 static int sweep_scene(const char *scene, const char *options) {
   char command[1024];
@@ -171,6 +178,22 @@ START_TEST(repeated_runs_are_rows_and_their_medians_a_table) {
 }
 END_TEST
 
+// A folder where the second run wants to write a file.
+START_TEST(a_repeated_run_that_fails_is_told_in_its_row) {
+  change("mkdir -p 'out/run,repeat=2/summary.json/taken'");
+  ck_assert_int_eq(sweep("-r 3 -J 1 -s time.end=0.002"), 70);
+  Record *table = read_table();
+  for (int k = 0; k < 3; k++) ck_assert_str_eq(outcome_of(table, k), k == 1 ? "failed" : "finished");
+  record_destroy(table);
+  char *said = read_text("said"), *row = strstr(said, "\nrun "), outcome[16];
+  ck_assert_msg(row && (row = strstr(row + 1, "\nrun ")) != NULL, "%s", said); // below the heads
+  ck_assert_int_eq(sscanf(row, " run %15s", outcome), 1);
+  ck_assert_str_eq(outcome, "failed");
+  ck_assert_msg(strstr(row, "summary.json") != NULL, "%s", said);
+  memory_free(said);
+}
+END_TEST
+
 START_TEST(what_is_finished_is_kept_and_what_has_changed_runs_again) {
   ck_assert_int_eq(sweep("-s time.end=0.01 -V contact.stiffness=1e5,1e6"), 0);
   ck_assert(says("0 finished, 0 to continue, 2 new"));
@@ -183,13 +206,6 @@ START_TEST(what_is_finished_is_kept_and_what_has_changed_runs_again) {
   record_destroy(table);
 }
 END_TEST
-
-// A shell command in the folder.
-static void change(const char *what) {
-  char command[640];
-  snprintf(command, sizeof command, "cd %s && %s", folder, what);
-  ck_assert_int_eq(system(command), 0);
-}
 
 // What the scene file only names: the mesh of a body, the weights of the overlap model. Times of files say
 // nothing; a mesh written anew with the same content is the same.
@@ -409,6 +425,7 @@ int main(void) {
   tcase_add_test(cases, an_axis_that_makes_no_sense_is_a_usage_error);
   tcase_add_test(cases, runs_are_rows_and_one_that_fails_is_a_row_too);
   tcase_add_test(cases, repeated_runs_are_rows_and_their_medians_a_table);
+  tcase_add_test(cases, a_repeated_run_that_fails_is_told_in_its_row);
   tcase_add_test(cases, what_is_finished_is_kept_and_what_has_changed_runs_again);
   tcase_add_test(cases, a_changed_mesh_or_changed_weights_run_again);
   tcase_add_test(cases, other_keys_have_other_folders);
