@@ -73,6 +73,7 @@ START_TEST(an_unknown_command_gets_the_nearest_name) {
   ck_assert_msg(strstr(output, "tetlap-lab elements") != NULL, "%s", output);
   ck_assert_int_eq(run_bench(LAB, "--help", output), 0);
   ck_assert_ptr_nonnull(strstr(output, "elements"));
+  ck_assert_ptr_null(strstr(output, "`tetlap ")); // another program's command
 }
 END_TEST
 

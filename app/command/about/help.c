@@ -34,7 +34,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_END:
     if (options->directory && !options->wants_page)
-      argp_error(state, "-o is for manual pages: tetlap help --man -o %s", options->directory);
+      argp_error(state, "-o is for manual pages: --man -o %s", options->directory);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -75,11 +75,10 @@ static int ask(const AppCommand *command, char called[APP_CLI_MAX_CALL]) {
   return app_cli_command_run(command, 2, asking);
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .args_doc = "[COMMAND…]",
-    .doc = "List the commands, or describe one of them, as in: tetlap help dataset info"};
+static const struct argp argp = {.options = option_table,
+                                 .parser = parse,
+                                 .args_doc = "[COMMAND…]",
+                                 .doc = "List the commands, or describe one of them."};
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
@@ -93,7 +92,5 @@ static int run_command(int argument_count, char **arguments) {
   return app_cli_command_end(status ? status : flush());
 }
 
-const AppCommand app_command_help = {.name = "help",
-                                     .help = "print this; `tetlap COMMAND --help` has the details",
-                                     .argp = &argp,
-                                     .run = run_command};
+const AppCommand app_command_help = {
+    .name = "help", .help = "print this; `help COMMAND` has the details", .argp = &argp, .run = run_command};
