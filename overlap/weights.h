@@ -8,7 +8,7 @@
 
 #include "base/status.h"
 
-// Whether a model's name is rather a path to a weights file: it ends in .safetensors.
+// Whether a model's name is rather a path to a weights file: it has a dot or a slash.
 bool overlap_weights_is_path(const char *name);
 
 // What a weights file's network is for, by its shape. STATUS_INPUT, STATUS_IO, STATUS_MEMORY: unreadable.

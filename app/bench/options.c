@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "app/cli/argument.h"
+#include "app/evaluation/model.h"
 #include "base/text.h"
 
 AppBenchOptions app_bench_options_default(int repeats) {
@@ -26,9 +27,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   AppBenchOptions *options = state->input;
   switch (key) {
   case 't':
-    options->thread_list_count = app_bench_options_counts(state, "threads", text, 1024, options->thread_list);
-    if (options->thread_list_count > 1 && !options->takes_thread_list)
+    if (strchr(text, ',') && !options->takes_thread_list)
       argp_error(state, "--threads is '%s'; this bench takes one number", text);
+    options->thread_list_count = app_bench_options_counts(state, "threads", text, 1024, options->thread_list);
     options->threads = options->thread_list[0];
     return 0;
   case 'r':
@@ -87,4 +88,9 @@ int app_bench_options_counts(struct argp_state *state, const char *option, char 
     counts[w] = (int)number;
   }
   return count;
+}
+
+Status app_bench_options_open(const char *source, OverlapModel *model) {
+  Status status = app_evaluation_model_open(model, source);
+  return status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "--model") : status;
 }

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 
 #include "app/table/table.h"
+#include "overlap/model.h"
 
 enum { APP_BENCH_MAX_REPEATS = 1000, APP_BENCH_MAX_LIST = 16 };
 
@@ -31,6 +32,9 @@ extern const struct argp app_bench_options_argp;
 // Marks each name of a comma-separated list in `wanted` (count), the others not.
 void app_bench_options_choose(struct argp_state *state, const char *option, char *text,
                               const char *const *names, int count, bool *wanted);
+// Opens a model that --model names. STATUS_USAGE: there is none of that name.
+Status app_bench_options_open(const char *source, OverlapModel *model);
+
 // Fills `counts` (APP_BENCH_MAX_LIST) with whole numbers from 1 from a comma-separated list; returns how
 // many. 1e6 is one.
 int app_bench_options_counts(struct argp_state *state, const char *option, char *text, int largest,

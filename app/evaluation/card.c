@@ -5,11 +5,15 @@
 #include <stdio.h>
 
 #include "net/files/weights.h"
+#include "overlap/source.h"
 #include "overlap/weights.h"
 
 Status app_evaluation_card_read(const OverlapModel *model, const char *name, AppModelCard *card) {
   char path[PATH_MAX];
   *card = (AppModelCard){.family = model->ops->name};
+  if (overlap_source_is_foreign(name)) return STATUS_OK;
+  const char *doubted = overlap_source_network(name);
+  if (doubted) name = doubted;
   bool is_path = overlap_weights_is_path(name);
   if (!is_path && model->ops->weights) name = model->ops->weights;
   if (is_path)

@@ -10,7 +10,8 @@ typedef struct AppModelCard {
   long long parameters; // of its network; 0: it has none
 } AppModelCard;
 
-// The card of a model that was made by that name or from that file. STATUS_INPUT: the file holds no network.
+// The card of a model that was made by that name (overlap/source.h). STATUS_INPUT: its weights file holds no
+// network.
 Status app_evaluation_card_read(const OverlapModel *model, const char *name, AppModelCard *card);
 
 #endif

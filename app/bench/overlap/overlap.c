@@ -14,11 +14,9 @@
 #include "app/cli/argument.h"
 #include "app/cli/model_names.h"
 #include "app/evaluation/card.h"
-#include "app/evaluation/model.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/text.h"
 
 typedef enum Quantity { VOLUME, CENTROID, GRADIENT, HESSIAN, QUANTITY_COUNT } Quantity;
 static const char *const quantities[QUANTITY_COUNT] = {"V", "V+centroid", "V+grad", "V+grad+hess"};
@@ -28,14 +26,15 @@ static const uint64_t SEED = 1;
 
 typedef struct Options {
   AppBenchOptions common;
-  const char *models[MAX_MODELS]; // names and weights files (model_count)
+  const char *models[MAX_MODELS]; // as overlap/source.h names them (model_count)
   int model_count;
+  bool are_chosen; // by --model
   bool wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
   int batches[APP_BENCH_MAX_LIST], batch_count;
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"model", 'm', "NAME,...", 0, "Overlap models or weights files to measure (default: all models)", 1},
+    {"model", 'm', "NAME,...", 0, "Overlap models, or files of yours, to measure (default: all models)", 1},
     {"set", 's', "NAME,...", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
     {"quantity", 'Q', "NAME,...", 0, "V, V+centroid, V+grad, V+grad+hess (default: all that a model has)", 1},
     {"batch", 'b', "N,...", 0, "Pairs a call (default: 4096); slow models get fewer", 1},
@@ -49,30 +48,6 @@ static int list_models(const char *names[MAX_MODELS]) {
   return count;
 }
 
-static bool is_source(const char *word, const char *const *names, int count) {
-  static const char HYBRID[] = "hybrid=";
-  char path[PATH_MAX];
-  if (app_model_names_locate(word, path)) return true;
-  if (strncmp(word, HYBRID, strlen(HYBRID)) == 0) word += strlen(HYBRID);
-  for (int m = 0; m < count; m++)
-    if (strcmp(names[m], word) == 0) return true;
-  return false;
-}
-
-// Names of models, weights files, and `hybrid=` with one of both.
-static void read_models(struct argp_state *state, char *text, Options *options) {
-  const char *names[MAX_MODELS];
-  char known[256] = "";
-  size_t used = 0;
-  int count = list_models(names);
-  for (int m = 0; m < count; m++) text_append(known, sizeof known, &used, "%s%s", m ? ", " : "", names[m]);
-  options->model_count = app_argument_list(state, "model", text, names[0], MAX_MODELS, options->models);
-  for (int m = 0; m < options->model_count; m++)
-    if (!is_source(options->models[m], names, count))
-      argp_error(state, "--model has '%s'; give some of: %s; or weights files (….safetensors)",
-                 options->models[m], known);
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   Options *options = state->input;
   switch (key) {
@@ -80,7 +55,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[0] = &options->common;
     return 0;
   case 'm':
-    read_models(state, text, options);
+    options->are_chosen = true;
+    options->model_count = app_argument_list(state, "model", text, "clip,geo", MAX_MODELS, options->models);
     return 0;
   case 's':
     app_bench_options_choose(state, "set", text, app_bench_sets, APP_BENCH_SET_COUNT, options->wants_set);
@@ -163,16 +139,15 @@ typedef struct Bench {
   int count, capacity;
 } Bench;
 
-// Models of the program whose weights are not there are left out, by name.
+// Where all models are measured, those whose weights are not there are left out, by name.
 static Status open_models(Bench *bench) {
   const Options *options = bench->options;
   bench->model_count = options->model_count;
   TRY(app_model_names_find(options->model_count, options->models, bench->names));
   for (int m = 0; m < options->model_count; m++) {
     const char *source = options->models[m];
-    char path[PATH_MAX];
-    Status status = app_evaluation_model_open(&bench->models[m], source);
-    if (status == STATUS_IO && !app_model_names_locate(source, path)) {
+    Status status = app_bench_options_open(source, &bench->models[m]);
+    if (status == STATUS_IO && !options->are_chosen) {
       log_warning("left out: %s", status_message());
       continue;
     }
@@ -199,7 +174,16 @@ static void add(Bench *bench, const Case *what) {
 }
 
 static bool gives(const OverlapModel *model, int quantity) {
-  return quantity != HESSIAN || overlap_model_has_hessian(model);
+  switch (quantity) {
+  case CENTROID:
+    return overlap_model_has_own_centroid(model) || overlap_model_has_gradient(model);
+  case GRADIENT:
+    return overlap_model_has_gradient(model);
+  case HESSIAN:
+    return overlap_model_has_hessian(model);
+  default:
+    return true;
+  }
 }
 
 static void add_models(Bench *bench, Case what) {

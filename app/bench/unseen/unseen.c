@@ -2,11 +2,12 @@
 #include "app/bench/unseen/unseen.h"
 
 #include <math.h>
+#include <omp.h>
 
 #include "app/bench/report.h"
+#include "app/bench/timer.h"
 #include "app/bench/unseen/path.h"
 #include "app/cli/argument.h"
-#include "app/evaluation/model.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -21,7 +22,8 @@ typedef struct Options {
 } Options;
 
 static const struct argp_option option_table[] = {
-    {"model", 'm', "NAME,...", 0, "Overlap models or weights files to measure (default: geo,geo-small)", 1},
+    {"model", 'm', "NAME,...", 0, "Overlap models, or files of yours, to measure (default: geo,geo-small)",
+     1},
     {"case", 'k', "NAME,...", 0,
      "Cases: jittered, aligned, five, graded, slivers, strained, fine, thin, edge, made, adapted "
      "(default: all)",
@@ -89,7 +91,7 @@ static const AppTableColumn columns[] = {
     {"path_work_clip", APP_TABLE_NUMBER, ERROR(path_work_clip), "by clip",
      "the same of clipping: what the steps of the path leave"},
     {"time_ratio", APP_TABLE_NUMBER, offsetof(Row, time_ratio), "× time",
-     "processor time of volumes and centroids over that of clipping"},
+     "processor time of volumes and centroids over that of clipping, median of the rounds"},
 };
 static const AppBenchReport report = {"unseen", columns, sizeof columns / sizeof *columns, sizeof(Row),
                                       false};
@@ -103,12 +105,13 @@ static void keep_worst(AppUnseenErrors *worst, const AppUnseenErrors *errors, bo
                       &worst->tangential, &worst->normal_sum, &worst->path_work,   &worst->path_work_clip};
   const double others[] = {sum.volume,     sum.moment,     sum.nodal_force, sum.total_force,
                            sum.tangential, sum.normal_sum, sum.path_work,   sum.path_work_clip};
-  for (int v = 0; v < 8; v++) *values[v] = fmax(*values[v], others[v]);
+  for (int v = 0; v < 8; v++) // NaN stays
+    if (isnan(others[v]) || others[v] > *values[v]) *values[v] = others[v];
 }
 
-static Status measure(const Options *options, const AppUnseenCase *what, const char *name,
-                      const OverlapModel *model, const OverlapModel *clip, Row *row) {
-  *row = (Row){.model = name, .what = what->name, .seeds = options->seeds};
+// All meshes of a case. Errors are the same in every round, times are not.
+static Status measure_round(const Options *options, const AppUnseenCase *what, const OverlapModel *model,
+                            const OverlapModel *clip, AppUnseenErrors *worst) {
   for (int s = 0; s < options->seeds; s++) {
     AppUnseenMesh mesh;
     AppUnseenErrors errors;
@@ -117,17 +120,29 @@ static Status measure(const Options *options, const AppUnseenCase *what, const c
     status = app_unseen_path_measure(what, &mesh, model, clip, options->places, &errors);
     app_unseen_mesh_destroy(&mesh);
     TRY(status);
-    keep_worst(&row->worst, &errors, s == 0);
+    keep_worst(worst, &errors, s == 0);
+  }
+  return STATUS_OK;
+}
+
+static Status measure(const Options *options, const AppUnseenCase *what, const char *name,
+                      const OverlapModel *model, const OverlapModel *clip, Row *row) {
+  AppBenchTimer own = {0}, of_clip = {0};
+  int rounds = options->common.repeats;
+  *row = (Row){.model = name, .what = what->name, .seeds = options->seeds};
+  for (int r = 0; r < rounds; r++) {
+    TRY(measure_round(options, what, model, clip, &row->worst));
+    own.cpu[r] = row->worst.seconds, of_clip.cpu[r] = row->worst.seconds_clip;
   }
   row->pairs = row->worst.pairs;
-  row->time_ratio = row->worst.seconds / row->worst.seconds_clip;
+  row->time_ratio = app_bench_timer_cpu_ratio(&of_clip, &own, rounds).median;
   return STATUS_OK;
 }
 
 static Status measure_model(const Options *options, const char *name, const OverlapModel *clip, Row *rows,
                             int *count) {
   OverlapModel model;
-  TRY(app_evaluation_model_open(&model, name));
+  TRY(app_bench_options_open(name, &model));
   Status status = STATUS_OK;
   for (int c = 0; c < app_unseen_case_count && !status; c++) {
     if (!options->wants_case[c]) continue;
@@ -143,6 +158,7 @@ static Status run(const Options *options) {
   static Row rows[MAX_MODELS * MAX_CASES];
   int count = 0;
   OverlapModel clip;
+  omp_set_num_threads(options->common.threads);
   TRY(overlap_model_create(&clip, "clip"));
   Status status = STATUS_OK;
   for (int m = 0; m < options->model_count && !status; m++)

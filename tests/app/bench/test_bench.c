@@ -179,6 +179,44 @@ START_TEST(weights_files_are_measured_under_names_of_their_own) {
 }
 END_TEST
 
+// A library that gives V and centroids, no gradients; a network with clipping where it doubts.
+START_TEST(models_of_users_are_measured_in_what_they_give) {
+  static char output[OUTPUT_SIZE];
+  const char words[] =
+      "overlap -s near -b 10 -r 1 -j -m " TETLAP_MODEL_SPLIT ",hybrid=net/weights/geo-small.safetensors";
+  int own = 0, hybrid = 0;
+  ck_assert_int_eq(run_bench(BENCH, words, output), 0);
+  for (char *row = strtok(output, "\n"); row; row = strtok(NULL, "\n")) {
+    bool is_hybrid = strstr(row, "\"model\":\"hybrid=") != NULL;
+    hybrid += is_hybrid, own += !is_hybrid;
+    ck_assert_msg(is_hybrid || !strstr(row, "V+grad"), "%s", row);
+    ck_assert_int_eq(strstr(row, "\"family\":\"geo\"") != NULL, is_hybrid);
+  }
+  ck_assert_int_eq(own, 2);
+  ck_assert_int_ge(hybrid, 3);
+}
+END_TEST
+
+// Without --model those that are there are measured.
+START_TEST(a_model_that_is_named_is_not_left_out) {
+  static char output[OUTPUT_SIZE];
+  const char without[] = "TETLAP_DATA=/nowhere " TETLAP_PROGRAM " bench";
+  ck_assert_int_eq(run_bench(without, "overlap -s near -Q V -b 10 -r 1 -j", output), 0);
+  ck_assert(strstr(output, "\"model\":\"clip\"") && !strstr(output, "\"model\":\"geo\""));
+  ck_assert_int_eq(run_bench(without, "overlap -m clip,geo -s near -Q V -b 10 -r 1 2>&1", output), 74);
+  ck_assert_msg(strstr(output, "the weights of 'geo'") != NULL, "%s", output);
+}
+END_TEST
+
+START_TEST(a_wrong_option_is_told_as_it_was_given) {
+  static char output[OUTPUT_SIZE];
+  ck_assert_int_eq(run_bench(BENCH, "unseen --threads 1,2 2>&1", output), 64);
+  ck_assert_msg(strstr(output, "--threads is '1,2'") != NULL, "%s", output);
+  ck_assert_int_eq(run_bench(BENCH, "unseen --model clop 2>&1", output), 64);
+  ck_assert_msg(strstr(output, "--model: there is no overlap model 'clop'") != NULL, "%s", output);
+}
+END_TEST
+
 START_TEST(wrong_arguments_are_usage_errors) {
   static char output[OUTPUT_SIZE];
   static const char *const wrong[] = {"",
@@ -218,6 +256,9 @@ int main(void) {
   tcase_add_loop_test(cases, rows_carry_the_promised_keys, 0, PROMISE_COUNT);
   tcase_add_test(cases, exact_has_no_error_clip_rounding_and_a_learned_model_its_own);
   tcase_add_test(cases, weights_files_are_measured_under_names_of_their_own);
+  tcase_add_test(cases, models_of_users_are_measured_in_what_they_give);
+  tcase_add_test(cases, a_model_that_is_named_is_not_left_out);
+  tcase_add_test(cases, a_wrong_option_is_told_as_it_was_given);
   tcase_add_test(cases, wrong_arguments_are_usage_errors);
   tcase_add_test(cases, an_unknown_bench_gets_the_nearest_name);
   return suite_run("bench", cases, 60);
