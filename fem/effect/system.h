@@ -40,8 +40,8 @@ void fem_system_destroy(FemSystem *system);
 
 // A state to try steps from the accepted one with, the caller's; it begins as a copy of that.
 Status fem_system_create_state(const FemSystem *system, FemState *state);
-// Fills it: unknowns (displacement u = x − X, velocity v; n each) as given, prescribed coordinates as they
-// are at that time, others stay as they are. v NULL: all is at rest, what is driven, too.
+// Fills it: unknowns as given (displacement u = x − X, velocity v; n each), prescribed coordinates as they
+// are at that time. Others stay as they are. v NULL: all is at rest, what is driven, too.
 void fem_system_scatter(const FemSystem *system, double time, const double *u, const double *v,
                         FemState *state);
 // The unknowns of a state, the inverse.

@@ -217,9 +217,9 @@ static Motion motion_of(const FemMomentum *momentum) {
   return motion;
 }
 
-// An estimate of S of a body at the end of the run, `left` [s] from now: S so far, the impulse of its weight
-// until then, and the momentum that a braking force has still to stop; or, if larger, the momentum that
-// moving bodies and a pressing obstacle may transfer to it.
+// An estimate of S of a body at the end of the run, `left` [s] from now, the larger of two: S so far, the
+// impulse of its weight until then, and the momentum that a braking force has still to stop; or the momentum
+// that moving bodies and a pressing obstacle may transfer to it.
 static double expected_of(const FemMomentum *momentum, const FemMomentumBody *body, int number, double left,
                           const Motion *motion) {
   const FemModel *model = momentum->system->model;
@@ -231,7 +231,7 @@ static double expected_of(const FemMomentum *momentum, const FemMomentumBody *bo
   return fmax(fmax(acting, moving), mass * fem_model_velocity_tolerance(model));
 }
 
-// J − Δp of a body, less what a method of order 1 recovers as the force falls: while a force rises by f in
+// J − Δp of a body, less what a method of order 1 recovers as the force falls. While a force rises by f in
 // even steps h, the trapezoidal rule over it misses h f/2 of the motion.
 static double lasting_of(const FemMomentum *momentum, const FemMomentumBody *body, int number, double step,
                          double expected) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The promises of a run, and the numbers that keep them. docs/limits.md is made from this page by
-// tools/limits; each entry ends with the tests or scenes that fail, or that change beyond their own
-// tolerance, where the number is another.
+// tools/limits. Each entry ends with what holds its number: tests that fail with another one, or scenes that
+// change by more than their own tolerance.
 #ifndef TETLAP_FEM_MODEL_LIMITS_H
 #define TETLAP_FEM_MODEL_LIMITS_H
 
@@ -16,10 +16,10 @@
 // Held by test_momentum, test_result.
 #define FEM_MOMENTUM 1e-3
 
-// Where nothing jumps, without contact, BDF 2 keeps a modified energy that differs from the audited total by
-// a term of second order in the step; so many times the promise of energy shows an error of the program or
-// of the scene. Likewise the energy of a strain of so many times time.tolerance counts as the scene's at
-// least.
+// Without contact nothing jumps, and BDF 2 keeps a modified energy. It differs from the audited total by a
+// term of second order in the step. Only a gain of so many times FEM_ENERGY shows an error of the program or
+// of the scene. The energy of a strain of so many times time.tolerance is the least that counts as the
+// scene's.
 // Held by test_audit, test_beam.
 #define FEM_WITHOUT_CONTACT 20
 
@@ -39,8 +39,8 @@
 
 // ---- What a step may use up. It is taken back before it breaks a promise of the run.
 
-// Share of a promise that is kept for steps that cannot be shortened, for what a single step may lose by
-// friction at a reversal, and for what Newton's method leaves.
+// Share of a promise that is kept for steps that cannot be shortened. As much is left to friction at a
+// reversal of slip, and to what Newton's method leaves of the balance of forces.
 // Held by test_audit, test_momentum, test_verdict, test_balance.
 #define FEM_RESERVE 0.2
 
@@ -94,8 +94,8 @@
 // Held by test_tolerance, test_beam, test_impact.
 #define FEM_FINE 0.03
 
-// So many times the speed that is expected in the scene counts instead of the waves' if it is less: in stiff
-// bodies that move slowly waves carry far less than a hundredth of √(E/ρ).
+// The speed of waves counts up to so many times the speed that is expected in the scene. In stiff bodies that
+// move slowly waves carry far less than a hundredth of √(E/ρ).
 // Held by test_tolerance, test_impact.
 #define FEM_OF_EXPECTED_SPEED 10
 
@@ -105,8 +105,8 @@
 
 // ---- Rest (fem/run/rest/rest.h).
 
-// A body rests once it has been calm for so many times the time that a wave takes through the body of the
-// slowest: it rings with twice that period, and some periods without motion are no turning point.
+// A body rests once it has been calm for so many times the longest time in which a wave crosses a body. A
+// body rings with twice that period, and some periods without motion are no turning point.
 // Held by test_tolerance, test_rest.
 #define FEM_REST_CROSSINGS 20
 
@@ -126,19 +126,20 @@
 // Held by 13_dead_bounce: 464 steps instead of 336 without it.
 #define FEM_LEAST_GROWTH 1.2
 
-// A step that does not stand is tried again with this share of its length; the time that sleeping bodies
-// pass, and a step of Newton's method where forces cannot be evaluated, likewise; a line search takes at
-// least half of it. Held by test_verdict, test_accuracy; wedge takes back 335 steps instead of 240 with 0.25.
+// A step that does not stand is tried again with this share of its length. So are a time that all bodies
+// sleep through, and a correction of Newton's method, where forces cannot be evaluated. A line search takes
+// at least half of this share.
+// Held by test_verdict, test_accuracy; wedge takes back 335 steps instead of 240 with 0.25.
 #define FEM_CUT 0.2
 
-// Of the time in which a wave √(E/ρ) crosses the smallest mean edge: what is tried again is not shorter,
-// since nothing moves in less; nor, times FEM_CUT, the first step of a start.
+// Of the time in which a wave √(E/ρ) crosses the smallest mean edge: nothing moves in less, so no shorter
+// step is tried again. The first step of a start is FEM_CUT of it at least.
 // Held by test_result.
 #define FEM_SHORTEST_RETRY 2.5e-3
 
 // ---- Newton's method.
 
-// Iterations before a step is given up, and cuts of one of its own steps.
+// Iterations before a step is given up, and cuts of one correction.
 // Held by no test: with a third of it 10_incline and 01_drop take other steps, not more.
 #define FEM_NEWTON_ITERATIONS 16
 

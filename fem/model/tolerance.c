@@ -39,7 +39,7 @@ double fem_model_velocity_tolerance(const FemModel *model) {
   if (scene->velocity_tolerance > 0) return scene->velocity_tolerance;
   double wave = fem_model_slowest_wave(model), motion = FEM_OF_EXPECTED_SPEED * expected_speed(model);
   if (is_free(scene)) return scene->tolerance * fmin(wave, motion);
-  // Where a body rubs on itself normals jump from step to step, and a fine tolerance follows every jump: a
+  // Where a body rubs on itself normals jump from step to step, and a fine tolerance follows every jump. A
   // fold of 180 tetrahedra stalls at 0.3 of the wave's speed and below.
   if (!fem_scene_has_self_friction(scene)) wave *= FEM_FINE;
   return scene->tolerance * fmin(wave, FEM_FINE * motion);

@@ -9,10 +9,12 @@
 // motion without contact.
 double fem_model_position_tolerance(const FemModel *model);
 
-// Error per step of a velocity [m/s]: the scene's, or its tolerance times 0.03 of the slowest body's wave
-// speed √(E/ρ), all of it where a body rubs on itself, or, where that is less, of ten times the fastest speed
-// at t = 0 (without what nothing notices of it, fem/model/floating.h) or √(g L), L the smallest body's
-// diagonal; without contact all of the lesser. The numbers are in fem/model/limits.h.
+// Error per step of a velocity [m/s]: the scene's, or its tolerance times the lesser of two shares, with the
+// numbers of fem/model/limits.h:
+//   0.03 of the slowest body's wave speed √(E/ρ); all of it without contact, or where a body rubs on itself;
+//   0.03 of ten times the expected speed; all of that without contact.
+// The expected speed is the fastest at t = 0 without what nothing notices of it (fem/model/floating.h), or
+// √(g L) where that is more, L the smallest body's diagonal.
 double fem_model_velocity_tolerance(const FemModel *model);
 
 // Share of the fastest body's present speed that a velocity may err by beside that, where there is contact

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run while it goes on, shared by the files that make it up: run.c runs, run_stage.c begins anew where what
-// is free changes, run_step.c steps, run_load.c does so in a static scene, run_frames.c measures and shows,
-// run_watch.c counts trouble and tells, run_checkpoint.c keeps what a resumed run needs. For those only.
+// A run while it goes on, shared by the files that make it up, and for those only:
+//   run.c         begins, marches and ends, and begins anew at checkpoints
+//   run_stage.c   begins anew where what is free changes
+//   run_step.c    a step of a motion
+//   run_load.c    a step of a static scene
+//   run_frames.c  measures states and writes frames
+//   run_watch.c   counts trouble and reports to the caller
+//   checkpoint/   keeps what a resumed run needs
 #ifndef TETLAP_FEM_RUN_RUN_STATE_H
 #define TETLAP_FEM_RUN_RUN_STATE_H
 

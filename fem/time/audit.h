@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The energy audit of a run. The audited total
 //     A = kinetic + elastic + gravity + contact + dissipated − work of driven vertices, obstacles and loads
-// is constant in exact mechanics and falls by the integrator's own damping; a rise is an error. Powers are
-// integrated by the trapezoidal rule over accepted steps; a dissipated power that falls to less than half in
-// a step by a mean that goes over to the logarithmic one.
+// is constant in exact mechanics. It falls by the integrator's own damping; a rise is an error. Powers are
+// integrated by the trapezoidal rule over accepted steps. Where a dissipated power falls to less than half in
+// a step, the mean of its ends goes over to the logarithmic one.
 // In steps of order 1 the powers at the ends of a step may overestimate what damping dissipates in it. Where
 // a step seems to gain energy, a lower bound is computed from its middle, and A uses that. So a rise of A is
 // a certain gain, and what the integrator lost is at most what A has fallen by.

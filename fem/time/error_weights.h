@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What each unknown may err by in a step: the tolerances of IDA's error test.
 //
-// Positions may err by a length. Velocities by a share of what moves: where bodies strike each other at a
-// speed v, their surfaces change theirs by v, and an error far below that costs steps and changes nothing. So
-// a velocity may err by `speed_share` of the present speed of the fastest body (root mean square over its
-// mass), which counts up to the body's own √(E/ρ), the speed of its waves, and at least by the `velocity`
-// tolerance. Speeds are relative to the common velocity (fem/model/floating.h). This is a
-// function of the state, so a resumed run has the same weights.
+// Positions may err by a length, velocities by a share of what moves. Where bodies strike each other at a
+// speed v, their surfaces change theirs by v; an error far below that costs steps and changes nothing. So a
+// velocity may err by `speed_share` of the present speed of the fastest body, and by `velocity` at least. A
+// body's speed is the root mean square over its mass, relative to the common velocity (fem/model/floating.h).
+// It counts up to the √(E/ρ), the speed of waves, of the body whose velocity may err. All this is a function
+// of the state, so a resumed run has the same weights.
 #ifndef TETLAP_FEM_TIME_ERROR_WEIGHTS_H
 #define TETLAP_FEM_TIME_ERROR_WEIGHTS_H
 

@@ -2,12 +2,13 @@
 // Whether a run makes progress. Under a force that jumps, or a matrix that is not the force's derivative, an
 // integrator with error control does not fail: it cuts its steps again and again and would go on for days.
 //
-// Tries are counted in windows of 2000, over all the integrators of a run: steps, those that the energy audit
-// takes back too, and tries that failed before they became a step. Those that led to no accepted step are
-// counted as vain. A run is given up
+// Tries are counted in windows of 2000, over all the integrators of a run: steps, also those that are taken
+// back, and tries that failed before they became a step. Those that led to no accepted step are counted as
+// vain. A run is given up
 //   standing: at the pace of one window the whole run would take a million tries;
-//   creeping: in two windows in a row a quarter of the tries was in vain, what is left of the run would take
-//             a hundred thousand more, the pace was below a tenth of that of the fastest window before, and
+//   creeping: in two windows in a row all of this holds: a quarter of the tries was in vain;
+//             what is left of the run would take a hundred thousand more;
+//             the pace was below a tenth of that of the fastest window before;
 //             the window came less far than from one frame to the next.
 // A sound run may be slow, lose many tries, or slow down; none known does all of it for 4000 tries
 // (docs/stability.md).

@@ -11,8 +11,7 @@
 Status fem_restart_begin(FemCheckpoint *checkpoint, const FemModel *model, const double *displacement);
 
 // Makes a checkpoint with the state, whose unknowns are u and v, the effects' histories and the counts so
-// far, which include those of the system; the rest is the caller's. After a failure there is nothing to
-// destroy.
+// far. These include the system's; all else is the caller's. After a failure there is nothing to destroy.
 Status fem_restart_collect(FemCheckpoint *checkpoint, const FemSystem *system, const FemState *state,
                            const double *u, const double *v, const FemRunResult *so_far);
 
