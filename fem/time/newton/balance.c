@@ -58,7 +58,8 @@ double fem_balance_excess(FemBalance *balance, FemSystem *system, const FemPart 
     double needed = fmax(FEM_BALANCE * weight, FEM_BALANCE_OF_INERTIA * balance->needed[b]);
     // Without either: rounding of the force by which an element is strained by time.tolerance.
     double least = FEM_ROUNDING * model->scene->tolerance * body->material.young * model->edge * model->edge;
-    worst = fmax(worst, balance->unbalanced[b] / fmax(needed, least));
+    double excess = balance->unbalanced[b] / fmax(needed, least);
+    if (!(excess <= worst)) worst = isnan(excess) ? INFINITY : excess;
   }
   return worst;
 }

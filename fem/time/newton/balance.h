@@ -17,8 +17,9 @@ typedef struct FemBalance {
 Status fem_balance_create(FemBalance *balance, int body_count);
 void fem_balance_destroy(FemBalance *balance);
 
-// The largest Σ |r| of a body over what is allowed [1]. `residual` is M v̇ − f of this rank's unknowns at the
-// state that the system's forces were evaluated at last [N]. By all ranks.
+// The largest Σ |r| of a body over what is allowed [1], infinite where a residual is no number. `residual` is
+// M v̇ − f of this rank's unknowns at the state that the system's forces were evaluated at last [N]. By all
+// ranks.
 double fem_balance_excess(FemBalance *balance, FemSystem *system, const FemPart *part,
                           const double *residual);
 

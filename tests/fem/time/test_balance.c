@@ -2,6 +2,7 @@
 // Newton's balance at its edges: what is allowed of a body's weight, of its inertia, and without either.
 #include "scene.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "fem/time/newton/balance.h"
@@ -72,10 +73,20 @@ START_TEST(without_weight_and_motion_rounding_of_what_the_tolerance_strains_is_a
 }
 END_TEST
 
+START_TEST(a_residual_that_is_no_number_does_not_balance) {
+  Balanced balanced;
+  open_balanced(&balanced, NULL);
+  balanced.residual[5] = NAN;
+  ck_assert(!(excess(&balanced) <= 1));
+  close_balanced(&balanced);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("balance");
   tcase_add_test(cases, forces_at_rest_balance_to_a_share_of_the_weight);
   tcase_add_test(cases, what_accelerates_balances_to_a_share_of_what_that_takes);
   tcase_add_test(cases, without_weight_and_motion_rounding_of_what_the_tolerance_strains_is_allowed);
+  tcase_add_test(cases, a_residual_that_is_no_number_does_not_balance);
   return suite_run("balance", cases, 20);
 }
