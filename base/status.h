@@ -13,7 +13,7 @@ typedef enum Status {
   STATUS_RETRY = 1,          // recoverable: the same again with a smaller step
   STATUS_USAGE = -64,        // the command line is wrong
   STATUS_INPUT = -65,        // a file that was read is wrong
-  STATUS_DEVICE = -69,       // an accelerator is not there, or failed
+  STATUS_DEVICE = -69,       // an accelerator or a model's process is not there, or failed
   STATUS_SOLVER = -70,       // the solver gave up
   STATUS_MEMORY = -71,       // no memory
   STATUS_IO = -74,           // a file could not be read or written

@@ -231,10 +231,12 @@ static Status blame_volume(const ContactLayout *layout, const ContactPair *pair,
   return blame(layout, pair, STATUS_SOLVER, why);
 }
 
-// Of a batch that failed, whose first pair is `first`, finds the pair for which the model fails again.
+// Of a batch that failed, whose first pair is `first`, finds the pair for which the model fails again. A
+// model that is no longer there, or was interrupted, is no pair's fault.
 static Status blame_failure(const ContactEvaluation *evaluation, const ContactLayout *layout,
                             const OverlapModel *model, const OverlapBatch *batch, int first, Status failure) {
   char why[1024];
+  if (failure == STATUS_DEVICE || failure == STATUS_INTERRUPTED) return status_prefix(failure, "contact");
   snprintf(why, sizeof why, "%s", status_message());
   for (int k = 0; k < batch->pair_count; k++) {
     OverlapBatch one = overlap_ops_part(batch, k, 1);

@@ -137,6 +137,7 @@ static void put_end(FILE *stream, const char *called) {
       {STATUS_OK, "done"},
       {STATUS_USAGE, "the command line is wrong"},
       {STATUS_INPUT, "a file that was read is wrong"},
+      {STATUS_DEVICE, "an accelerator or a model's process is not there, or failed"},
       {STATUS_SOLVER, "the solver gave up, or what was asked does not hold"},
       {STATUS_MEMORY, "no memory"},
       {STATUS_IO, "a file could not be read or written"},

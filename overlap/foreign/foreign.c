@@ -97,6 +97,17 @@ static bool are_finite(int count, const double *numbers) {
   return sum == 0;
 }
 
+// All that is wanted is NaN before the model is asked: what it leaves unwritten is no answer.
+static Status ask(const Foreign *foreign, const TetlapModelBatch *batch) {
+  const size_t bytes = batch->count * sizeof(double);
+  memset(batch->volume, 0xFF, bytes);
+  if (batch->gradient) memset(batch->gradient, 0xFF, 24 * bytes);
+  if (batch->centroid) memset(batch->centroid, 0xFF, 3 * bytes);
+  if (batch->logit) memset(batch->logit, 0xFF, bytes);
+  if (batch->doubt) memset(batch->doubt, 0xFF, bytes);
+  return foreign->port.ask(foreign->port.self, batch);
+}
+
 static Status fail_not_finite(const Foreign *foreign, int pair, const char *what) {
   return status_fail(STATUS_SOLVER, "overlap model '%s': pair %d: %s is not a finite number", foreign->name,
                      pair, what);
@@ -136,7 +147,7 @@ static Status eval(Foreign *foreign, const OverlapBatch *batch) {
                               .volume = asked->volume,
                               .gradient = batch->gradient ? asked->gradient : NULL,
                               .centroid = batch->centroid ? asked->centroid : NULL};
-  Status status = foreign->port.ask(foreign->port.self, &request);
+  Status status = ask(foreign, &request);
   for (int k = 0; k < asked->count && !status; k++) status = give(foreign, asked, batch, k);
   return status;
 }
@@ -154,27 +165,32 @@ static Status eval_pair(const void *self, const double pair[24], const OverlapAn
   return eval_batch(self, &one);
 }
 
+// All pairs as they stand; `needed` is the array that must be finite.
+static Status eval_all(Foreign *foreign, const TetlapModelBatch *request, const double *needed,
+                       const char *what) {
+  if (request->count == 0) return STATUS_OK;
+  pthread_mutex_lock(&foreign->lock);
+  Status status = ask(foreign, request);
+  pthread_mutex_unlock(&foreign->lock);
+  for (size_t i = 0; i < request->count && !status; i++)
+    if (!isfinite(needed[i])) status = fail_not_finite(foreign, (int)i, what);
+  return status;
+}
+
 static Status eval_logits(const void *self, int count, const double *pairs, double *logits) {
-  Foreign *foreign = (Foreign *)self;
-  double *volumes = memory_zeroed((size_t)count, sizeof *volumes);
+  double *volumes = memory_zeroed((size_t)count + 1, sizeof *volumes);
   if (!volumes) return status_no_memory("volumes of pairs");
   TetlapModelBatch request = {
       .size = sizeof request, .count = (size_t)count, .pairs = pairs, .volume = volumes, .logit = logits};
-  pthread_mutex_lock(&foreign->lock);
-  Status status = count > 0 ? foreign->port.ask(foreign->port.self, &request) : STATUS_OK;
-  pthread_mutex_unlock(&foreign->lock);
+  Status status = eval_all((Foreign *)self, &request, logits, "its logit");
   memory_free(volumes);
   return status;
 }
 
 static Status eval_bounds(const void *self, int count, const double *pairs, double *volumes, double *bounds) {
-  Foreign *foreign = (Foreign *)self;
   TetlapModelBatch request = {
       .size = sizeof request, .count = (size_t)count, .pairs = pairs, .volume = volumes, .doubt = bounds};
-  pthread_mutex_lock(&foreign->lock);
-  Status status = count > 0 ? foreign->port.ask(foreign->port.self, &request) : STATUS_OK;
-  pthread_mutex_unlock(&foreign->lock);
-  return status;
+  return eval_all((Foreign *)self, &request, bounds, "its doubt");
 }
 
 static const OverlapOps standard = {

@@ -10,8 +10,8 @@
 typedef struct OverlapForeignPort {
   void *self;     // owned
   uint32_t gives; // TETLAP_MODEL_…
-  // Fills what the batch wants. STATUS_SOLVER: the model failed, or is no longer there; the message has its
-  // own words. One call at a time.
+  // Fills what the batch wants. STATUS_SOLVER: the model failed; the message has its own words.
+  // STATUS_DEVICE: it is no longer there. STATUS_INTERRUPTED. One call at a time.
   Status (*ask)(void *self, const TetlapModelBatch *batch);
   void (*close)(void *self);
 } OverlapForeignPort;

@@ -66,11 +66,16 @@ static void stop(Process *process) {
   process->pid = 0;
 }
 
+static void disconnect(Process *process) {
+  if (process->socket >= 0) close(process->socket);
+  process->socket = -1;
+}
+
 static void close_process(void *self) {
   Process *process = self;
   int how;
   if (process->map) munmap(process->map, process->capacity * PAIR_BYTES);
-  if (process->socket >= 0) close(process->socket);
+  disconnect(process);
   if (process->memory >= 0) close(process->memory);
   if (!reap(process, SECONDS_TO_END, &how)) stop(process);
   memory_free(process->name);
@@ -81,29 +86,33 @@ static void close_process(void *self) {
 static Status fail_ended(Process *process) {
   int how = 0;
   const pid_t pid = process->pid;
-  if (pid == 0) return status_fail(STATUS_SOLVER, "%s: the process with the model has ended", process->name);
+  if (pid == 0) return status_fail(STATUS_DEVICE, "%s: the process with the model has ended", process->name);
   if (!reap(process, SECONDS_TO_END, &how)) {
     stop(process);
-    return status_fail(STATUS_SOLVER, "%s: the model's process closed its socket", process->name);
+    return status_fail(STATUS_DEVICE, "%s: the model's process closed its socket", process->name);
   }
   if (WIFSIGNALED(how))
-    return status_fail(STATUS_SOLVER, "%s: the model's process was ended by signal %d (%s)", process->name,
+    return status_fail(STATUS_DEVICE, "%s: the model's process was ended by signal %d (%s)", process->name,
                        WTERMSIG(how), strsignal(WTERMSIG(how)));
   if (WEXITSTATUS(how) == 127) return status_fail(STATUS_INPUT, "%s: %s", process->name, process->missing);
-  return status_fail(STATUS_SOLVER,
+  return status_fail(STATUS_DEVICE,
                      "%s: the model's process ended with exit code %d; what it said stands above",
                      process->name, WEXITSTATUS(how));
 }
 
+// A reply that comes after this would be taken for that of the next request: there is none.
 static Status fail_late(Process *process) {
+  const bool is_ours = process->pid > 0;
+  disconnect(process);
   stop(process);
-  return status_fail(STATUS_SOLVER,
-                     "%s: the model has not answered within %g s, so its process was ended. Where it needs "
-                     "longer, set TETLAP_MODEL_SECONDS",
-                     process->name, process->limit);
+  return status_fail(STATUS_DEVICE,
+                     "%s: the model has not answered within %g s%s. Where it needs longer, set "
+                     "TETLAP_MODEL_SECONDS",
+                     process->name, process->limit, is_ours ? ", so its process was ended" : "");
 }
 
 static Status fail_interrupted(Process *process) {
+  disconnect(process);
   stop(process);
   return status_fail(STATUS_INTERRUPTED, "%s: interrupted while it was computing", process->name);
 }
@@ -185,6 +194,11 @@ typedef struct Part {
 static const Part VOLUME = {192, 1}, GRADIENT = {200, 24}, CENTROID = {392, 3}, LOGIT = {416, 1},
                   DOUBT = {424, 1};
 
+// NaN, so that what the model leaves unwritten is no answer.
+static void unset(const Process *process, Part part, size_t count, const double *array) {
+  if (array) memset(process->map + part.place * process->capacity, 0xFF, count * part.width * sizeof *array);
+}
+
 static void take(const Process *process, Part part, size_t count, double *array) {
   if (array) memcpy(array, process->map + part.place * process->capacity, count * part.width * sizeof *array);
 }
@@ -195,6 +209,11 @@ static Status ask(void *self, const TetlapModelBatch *batch) {
   uint64_t reply[WORDS];
   TRY(reserve(process, batch->count));
   memcpy(process->map, batch->pairs, batch->count * 24 * sizeof *batch->pairs);
+  unset(process, VOLUME, batch->count, batch->volume);
+  unset(process, GRADIENT, batch->count, batch->gradient);
+  unset(process, CENTROID, batch->count, batch->centroid);
+  unset(process, LOGIT, batch->count, batch->logit);
+  unset(process, DOUBT, batch->count, batch->doubt);
   const uint64_t wants = (batch->gradient ? TETLAP_MODEL_GRADIENT : 0u) |
                          (batch->centroid ? TETLAP_MODEL_CENTROID : 0u) |
                          (batch->logit ? TETLAP_MODEL_LOGIT : 0u) | (batch->doubt ? TETLAP_MODEL_DOUBT : 0u);
@@ -223,12 +242,13 @@ static Status greet(Process *process, OverlapForeignPort *port) {
 static Status create(Process **created, const char *name) {
   Process *process = *created = memory_zeroed(1, sizeof *process);
   if (!process) return status_no_memory("a model's process");
+  char *end = "";
   const char *limit = getenv("TETLAP_MODEL_SECONDS");
   process->socket = process->memory = -1;
-  process->limit = limit ? strtod(limit, NULL) : 300;
+  process->limit = limit ? strtod(limit, &end) : 300;
   process->name = memory_copy(name, strlen(name) + 1, 1);
   Status status = process->name ? STATUS_OK : status_no_memory("a model's process");
-  if (!status && !(process->limit > 0))
+  if (!status && (*end || !(process->limit > 0)))
     status = status_fail(STATUS_USAGE, "TETLAP_MODEL_SECONDS is '%s'; it must be a number of seconds", limit);
   if (status) close_process(process);
   return status;
@@ -247,18 +267,19 @@ static void become(int socket, int memory, char *const arguments[], bool dies_wi
   if (dup2(nothing, 0) < 0 || dup2(2, 1) < 0 || dup2(socket, SOCKET_FOR_IT) < 0 ||
       dup2(memory, MEMORY_FOR_IT) < 0)
     _exit(126);
-  close(socket), close(memory);
+  close_range(MEMORY_FOR_IT + 1, ~0u, 0);
   execvp(arguments[0], arguments);
   _exit(127);
 }
 
 static Status start(Process *process, char *const arguments[]) {
   int ends[2];
-  process->memory = memfd_create("tetlap-model", MFD_CLOEXEC);
+  process->memory = memfd_create("tetlap-model", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   if (process->memory < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     return status_fail(STATUS_IO, "%s: no socket or memory to share with the model: %s", process->name,
                        strerror(errno));
   process->socket = ends[0];
+  fcntl(process->memory, F_ADD_SEALS, F_SEAL_SHRINK); // what is mapped here cannot be cut off there
   TRY(reserve(process, 1));
   fflush(NULL);
   // The kernel ties a process's end to the thread that started it; others than the first may end earlier.
@@ -300,7 +321,7 @@ Status overlap_foreign_process_open_python(OverlapForeignPort *port, const char 
     return status_fail(STATUS_INPUT, "%.200s: the path is too long", word);
   TRY(data_find("python/tetlap/serve.py", script, sizeof script));
   char *const arguments[] = {python, script, file, NULL};
-  return launch(port, word, "there is no `python3` to run it: set TETLAP_PYTHON to a Python with NumPy",
+  return launch(port, word, "there is no Python to run it: set TETLAP_PYTHON to one that has NumPy",
                 arguments);
 }
 

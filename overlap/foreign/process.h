@@ -18,7 +18,8 @@
 //
 //   pairs 0    volume 192 C    gradient 200 C    centroid 392 C    logit 416 C    doubt 424 C
 //
-// When the socket is closed the process ends. What it prints goes to the program's standard error.
+// The arrays that are wanted are NaN before a request. When the socket is closed the process ends. What it
+// prints goes to the program's standard error.
 //
 // A reply that takes longer than $TETLAP_MODEL_SECONDS, 300 by default, ends the process and the run.
 #ifndef TETLAP_OVERLAP_FOREIGN_PROCESS_H
@@ -26,7 +27,7 @@
 
 #include "overlap/foreign/port.h"
 
-// A command line for the shell.
+// What the shell's `exec` takes: one program with its arguments, and redirections.
 Status overlap_foreign_process_open(OverlapForeignPort *port, const char *command);
 
 // `path:name` of a Python file; run by $TETLAP_PYTHON, `python3` by default, with python/tetlap/serve.py.

@@ -8,14 +8,22 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
+import unittest.mock
 import warnings
 from pathlib import Path
 
 import numpy as np
 
 import tetlap
+from tetlap import serve
+
+try:
+    import torch
+except ImportError:
+    torch = None
 
 DROP = {
     "time": {"end": 0.1},
@@ -78,6 +86,42 @@ class RunsOfTheProgram(unittest.TestCase):
         self.assertIsInstance(failed.exception.__cause__, ValueError)
         with self.assertRaisesRegex(tetlap.RunError, "volume of shape"):
             tetlap.run(TWO, self.directory, overlap=lambda pairs: pairs[0])
+
+    def test_a_function_that_hangs_does_not_hold_the_caller(self):
+        def hang(pairs):
+            if len(pairs) > 1:
+                time.sleep(30)
+            return {"volume": np.zeros(1), "centroid": np.zeros((1, 3))}
+
+        with unittest.mock.patch.dict(os.environ, TETLAP_MODEL_SECONDS="0.3"):
+            began = time.monotonic()
+            with self.assertRaisesRegex(tetlap.RunError, r"hang: the model has not answered within 0\.3 s\. ") as failed:
+                tetlap.run(TWO, self.directory, overlap=hang)
+        self.assertEqual(failed.exception.code, 69)
+        self.assertLess(time.monotonic() - began, 25)
+
+    def test_a_run_is_stopped_while_a_function_computes(self):
+        def hang(pairs):
+            if len(pairs) > 1:
+                is_asked.set()
+                time.sleep(30)
+            return {"volume": np.zeros(1), "centroid": np.zeros((1, 3))}
+
+        is_asked = threading.Event()
+        run = tetlap.run(TWO, self.directory, overlap=hang, on_frame=lambda frame: not is_asked.wait(20))
+        self.assertTrue(is_asked.is_set())
+        self.assertEqual(run.outcome, "interrupted")
+
+    @unittest.skipUnless(torch, "needs PyTorch")
+    def test_a_module_answers_in_evaluation_mode(self):
+        layers = torch.nn.Sequential(torch.nn.Flatten(), torch.nn.Linear(24, 64), torch.nn.Dropout(0.5), torch.nn.Linear(64, 1),
+                                     torch.nn.Flatten(0))
+        model = serve.Model(layers, "layers")
+        pairs = np.random.default_rng(1).random((50, 2, 4, 3))
+        once, again = (model(pairs, ("gradient",)) for _ in range(2))
+        np.testing.assert_array_equal(once["volume"], again["volume"])
+        np.testing.assert_array_equal(once["gradient"], again["gradient"])
+        self.assertGreater(np.abs(once["gradient"]).min(), 0)
 
     def test_arrays_have_the_shapes_of_the_mesh(self):
         frame = tetlap.run(DROP, self.directory).frames[-1]
@@ -256,6 +300,17 @@ class WhatIsWrong(unittest.TestCase):
         history = tetlap.run(DROP, self.directory).directory / "history.csv"
         history.write_text(history.read_text() + "0.12,3")
         self.assertEqual(len(tetlap.read(self.directory).history), 6)
+
+    def test_a_function_leaves_no_file_open_where_there_is_no_program(self):
+        before = len(os.listdir("/proc/self/fd")), threading.active_count()
+        with unittest.mock.patch.dict(os.environ, TETLAP_PROGRAM=str(self.directory / "none")):
+            for _ in range(5):
+                with self.assertRaisesRegex(tetlap.Error, "which is no file"):
+                    tetlap.run(DROP, self.directory, overlap=print)
+        for thread in threading.enumerate():
+            if thread is not threading.current_thread():
+                thread.join(5)
+        self.assertEqual((len(os.listdir("/proc/self/fd")), threading.active_count()), before)
 
     def test_a_program_that_is_not_there_is_named(self):
         before = os.environ.get("TETLAP_PROGRAM")

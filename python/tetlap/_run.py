@@ -21,6 +21,7 @@ from ._scene import override_texts, scene_text, with_absolute_paths
 
 _log = logging.getLogger("tetlap")
 _POLL_S = 0.02
+_SERVER_S = 2  # for a function that still computes when the run has ended
 _INTERRUPTED = 130
 
 
@@ -112,9 +113,10 @@ class _Server(threading.Thread):
         self.error = error
 
     def hand_over(self):
-        """The program has its copies of the descriptors: ours are closed, so that its end is seen."""
+        """The program has its copies of the descriptors, or there is no program: ours are closed, so that its end is seen."""
         for descriptor in self.descriptors:
             os.close(descriptor)
+        self.descriptors = ()
 
 
 def _stop(process):
@@ -163,12 +165,11 @@ def _command(scene, directory, overrides, overlap, threads, strict, capture):
 
 
 def _start(command, server):
-    try:
-        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                                errors="replace", pass_fds=server.descriptors if server else ())
-    finally:
-        if server:
-            server.hand_over()
+    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                               errors="replace", pass_fds=server.descriptors if server else ())
+    if server:
+        server.hand_over()
+    return process
 
 
 def _execute(command, directory, on_frame, server):
@@ -180,7 +181,7 @@ def _execute(command, directory, on_frame, server):
     finally:
         words.join()
         if server:
-            server.join()
+            server.join(_SERVER_S)
     code = process.returncode
     if code != 0 and not (is_stopped and code == _INTERRUPTED):
         message = "\n".join(words.errors) or (f"killed by signal {-code}" if code < 0 else f"exit code {code}")
@@ -223,5 +224,9 @@ def run(scene, directory=None, *, set=None, overlap=None, threads=None, strict=F
         directory = Path("out", Path(scene).stem)
     server = _Server(overlap) if callable(overlap) else None
     word = server.word if server else overlap
-    _execute(_command(scene, directory, overrides, word, threads, strict, capture), directory, on_frame, server)
+    try:
+        _execute(_command(scene, directory, overrides, word, threads, strict, capture), directory, on_frame, server)
+    finally:
+        if server:
+            server.hand_over()
     return Run(directory, temporary)

@@ -13,9 +13,10 @@ A model is called with pairs, float64 (n, 2, 4, 3) [m], and returns V (n) [m³],
     doubt     (n)             how far V may be off [m³]
 
 It may be any callable, which gets a NumPy array, or a torch.nn.Module, which gets a tensor and whose gradient comes by autograd where it
-gives none. A class is called first, without arguments.
+gives none; a module is put into evaluation mode. A class is called first, without arguments.
 """
 
+import contextlib
 import importlib.util
 import mmap
 import os
@@ -56,7 +57,11 @@ class Model:
         torch = sys.modules.get("torch")
         self._module = function if torch is not None and isinstance(function, torch.nn.Module) else None
         self._function = function
+        if self._module is not None:
+            self._module.eval()  # else dropout and batch normalisation would make V random
         answer = self(np.array(_PROBE, dtype=np.float64), ("gradient",) if self._module is not None else ())
+        if "volume" not in answer:
+            raise ModelError(f"{name} returned no volume")
         self.gives = sum(_ARRAYS[key][0] for key in answer)
 
     def __call__(self, pairs, wants=()):
@@ -136,16 +141,17 @@ class Channel:
     def receive(self):
         """The next four words; None: the program has closed its end."""
         words = bytearray()
-        while len(words) < _WORDS.size:
-            part = self._socket.recv(_WORDS.size - len(words))
-            if not part:
-                return None
-            words += part
+        with contextlib.suppress(ConnectionError):
+            while len(words) < _WORDS.size and (part := self._socket.recv(_WORDS.size - len(words))):
+                words += part
+        if len(words) < _WORDS.size:
+            return None
         return _WORDS.unpack(words)
 
     def reply(self, failed, text, gives=0):
         raw = text.encode()
-        self._socket.sendall(_WORDS.pack(failed, len(raw), gives, 0) + raw)
+        with contextlib.suppress(ConnectionError):  # the program no longer waits: receive() says so
+            self._socket.sendall(_WORDS.pack(failed, len(raw), gives, 0) + raw)
 
     def array(self, place, shape, count, capacity):
         if capacity != self._capacity:
@@ -195,9 +201,9 @@ def attend(channel, find_model, on_error=None):
         except ModelError as error:
             channel.reply(1, str(error))
         except BaseException as error:  # whatever it was, the program has to know
-            channel.reply(1, _tell(error))
             if on_error:
                 on_error(error)
+            channel.reply(1, _tell(error))
             if not isinstance(error, Exception):
                 raise
 

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Models of users (overlap/foreign): libraries, Python files, commands. The oracles are `clip` and what the
 // models of tests/overlap/foreign say.
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE // memfd_create
+#endif
 #include "suite.h"
 
 #include <dirent.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <tetlap/model.h>
 #include <unistd.h>
 
 #include "base/random.h"
@@ -251,15 +257,71 @@ START_TEST(python_that_is_wrong) {
   expect_refused(TETLAP_SOURCE_DIR "/tests/overlap/foreign/torn.py", STATUS_INPUT, "SyntaxError");
   expect_refused("none.py:f", STATUS_INPUT, "there is no such file");
   expect_failure(PYTHON("raises"), STATUS_SOLVER, "ValueError: no more than one");
+  expect_refused(PYTHON("no_volume"), STATUS_INPUT, "no_volume returned no volume");
   expect_failure(PYTHON("changes_its_mind"), STATUS_SOLVER, "returned no centroid this time");
-  expect_failure(PYTHON("dies"), STATUS_SOLVER, "ended by signal 9");
+  expect_failure(PYTHON("dies"), STATUS_DEVICE, "ended by signal 9");
   expect_failure(PYTHON("leaves"), STATUS_SOLVER, "SystemExit");
+  expect_failure(PYTHON("shrinks"), STATUS_SOLVER, "Operation not permitted");
   OverlapModel model;
   OverlapBatch batch = batch_of(PAIRS, false, true);
   open_model(&model, PYTHON("alone"));
   ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_INPUT);
   ck_assert_msg(strstr(status_message(), "gives V alone"), "%s", status_message());
   overlap_model_destroy(&model);
+}
+END_TEST
+
+// The model of this is the test: it answers before it is asked.
+START_TEST(a_reply_that_comes_too_late_answers_no_other_request) {
+  static const uint64_t done[4] = {0};
+  OverlapModel model;
+  char word[64];
+  int ends[2], memory = memfd_create("memory", 0);
+  OverlapBatch batch = batch_of(PAIRS, false, false);
+  ck_assert(memory >= 0 && socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0);
+  snprintf(word, sizeof word, "channel:%d,%d,late", ends[0], memory);
+  setenv("TETLAP_MODEL_SECONDS", "0.2", 1);
+  ck_assert_int_eq(send(ends[1], done, sizeof done, 0), sizeof done);
+  open_model(&model, word);
+  ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_DEVICE);
+  ck_assert_msg(strstr(status_message(), "late: the model has not answered within 0.2 s. "), "%s",
+                status_message());
+  send(ends[1], done, sizeof done, MSG_NOSIGNAL);
+  ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_DEVICE);
+  overlap_model_destroy(&model);
+  close(ends[1]);
+}
+END_TEST
+
+// What it leaves unwritten is what the memory held before: no answer.
+START_TEST(a_model_that_writes_nothing_has_not_answered) {
+  static const uint64_t done[4] = {0, 0, TETLAP_MODEL_LOGIT, 0};
+  static double logits[PAIRS];
+  OverlapModel model;
+  char word[64];
+  int ends[2], memory = memfd_create("memory", 0);
+  OverlapBatch batch = batch_of(PAIRS, false, false);
+  ck_assert(memory >= 0 && socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0);
+  snprintf(word, sizeof word, "channel:%d,%d,silent", ends[0], memory);
+  for (int i = 0; i < 3; i++) ck_assert_int_eq(send(ends[1], done, sizeof done, 0), sizeof done);
+  open_model(&model, word);
+  ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_SOLVER);
+  ck_assert_msg(strstr(status_message(), "its volume is not a finite number"), "%s", status_message());
+  ck_assert_int_eq(model.ops->eval_logits(model.self, PAIRS, pairs[0], logits), STATUS_SOLVER);
+  ck_assert_msg(strstr(status_message(), "its logit"), "%s", status_message());
+  overlap_model_destroy(&model);
+  close(ends[1]);
+  expect_failure(TETLAP_MODEL_10, STATUS_SOLVER, "its volume is not a finite number");
+}
+END_TEST
+
+START_TEST(a_model_gets_no_file_of_the_program) {
+  OverlapModel model;
+  if (!has_numpy()) return;
+  ck_assert_int_eq(dup2(2, 77), 77);
+  open_model(&model, PYTHON("has_no_77")); // which fails where it has
+  overlap_model_destroy(&model);
+  close(77);
 }
 END_TEST
 
@@ -283,9 +345,9 @@ static int count_children(void) {
 
 START_TEST(commands_that_are_wrong_leave_no_process) {
   expect_refused("exec:no-such-command-anywhere", STATUS_INPUT, "the command was not found");
-  expect_refused("exec:false", STATUS_SOLVER, "ended with exit code 1");
+  expect_refused("exec:false", STATUS_DEVICE, "ended with exit code 1");
   setenv("TETLAP_MODEL_SECONDS", "0.3", 1);
-  expect_refused("exec:sleep 1000", STATUS_SOLVER, "has not answered within 0.3 s");
+  expect_refused("exec:sleep 1000", STATUS_DEVICE, "has not answered within 0.3 s");
   if (has_numpy()) {
     setenv("TETLAP_MODEL_SECONDS", "20", 1);
     OverlapModel model;
@@ -293,7 +355,7 @@ START_TEST(commands_that_are_wrong_leave_no_process) {
     ck_assert_int_eq(count_children(), 1);
     overlap_model_destroy(&model);
   }
-  setenv("TETLAP_MODEL_SECONDS", "soon", 1);
+  setenv("TETLAP_MODEL_SECONDS", "5 min", 1);
   expect_refused("exec:true", STATUS_USAGE, "must be a number of seconds");
   ck_assert_int_eq(count_children(), 0);
 }
@@ -311,6 +373,9 @@ int main(void) {
   tcase_add_test(cases, a_python_function_answers_with_all_that_it_has);
   tcase_add_test(cases, the_shared_memory_grows);
   tcase_add_test(cases, python_that_is_wrong);
+  tcase_add_test(cases, a_reply_that_comes_too_late_answers_no_other_request);
+  tcase_add_test(cases, a_model_that_writes_nothing_has_not_answered);
+  tcase_add_test(cases, a_model_gets_no_file_of_the_program);
   tcase_add_test(cases, commands_that_are_wrong_leave_no_process);
   return suite_run("foreign", cases, 60);
 }
