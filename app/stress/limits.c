@@ -29,9 +29,8 @@ static const char MEDIAL[] =
     "pressed in deeper than half of the finer slab's thickness, from where the other side is "
     "nearer";
 static const char NO_POTENTIAL[] =
-    "the force is made of a V with an error of 13 % and a centroid that follows from its grad V, which errs "
-    "by "
-    "tens of per cent: it is not the gradient of a potential, and energy comes from nowhere";
+    "the force is made of a V with an error of 13 % and a centroid that follows from its grad V, which "
+    "errs by tens of per cent: it is not the gradient of a potential, and energy comes from nowhere";
 static const char UNSYMMETRIC[] =
     "V of a network is not the same for mirror images, nor for another order of vertices: its forces err "
     "sideways, and what stands on a tip slides off";

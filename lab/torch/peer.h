@@ -41,7 +41,7 @@ typedef struct LabTorchTime {
   double check; // mean of the absolute results
 } LabTorchTime;
 
-// `what`: "V", "V+grad" or "train".
+// `what`: "V" or "V+grad".
 Status lab_torch_peer_time(LabTorchPeer *peer, const char *what, int batch, int calls, LabTorchTime *time);
 
 #endif

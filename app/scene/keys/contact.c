@@ -22,8 +22,7 @@ static const char *finish_contact(void *self, const char **key) {
   if (contact->smooth > 0) {
     *key = "smooth";
     return "only the potential field works on smooth surfaces; remove 'potential' and 'stiffness', whose "
-           "unit "
-           "differs, or 'smooth'";
+           "unit differs, or 'smooth'";
   }
   return NULL;
 }
