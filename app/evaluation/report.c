@@ -76,7 +76,7 @@ typedef struct Row {
   { #field, APP_TABLE_NUMBER, offsetof(Row, field), head, NULL }
 static const AppTableColumn kind_columns[] = {
     TEXT(name, "kind"),
-    NUMBER(count, "pairs"),
+    {"count", APP_TABLE_COUNT, offsetof(Row, count), "pairs", NULL},
     NUMBER(right, "status right %"),
     NUMBER(paper_right, "paper"),
     NUMBER(mae, "mean |dV|"),

@@ -16,37 +16,38 @@
 static const struct Column {
   const char *section, *key; // section NULL: at its top
   const char *name, *head;
+  AppTableKind kind;
 } columns[] = {
-    {NULL, "end_time", "end_time_s", NULL},
-    {NULL, "wall_s", "wall_s", "wall s"},
-    {NULL, "cpu_s", "cpu_s", "cpu s"},
-    {NULL, "unknowns", "unknowns", NULL},
-    {NULL, "steps", "steps", "steps"},
-    {"counters", "newton_iterations", "newton_iterations", "Newton"},
-    {"counters", "newton_failures", "newton_failures", NULL},
-    {"counters", "energy_retries", "energy_retries", NULL},
-    {"counters", "factorisations", "factorisations", NULL},
-    {"counters", "linear_solves", "linear_solves", NULL},
-    {"counters", "linear_iterations", "linear_iterations", NULL},
-    {"phases", "broad_phase", "broad_phase_s", NULL},
-    {"phases", "overlap", "overlap_s", NULL},
-    {"phases", "contact", "contact_s", NULL},
-    {"phases", "forces", "forces_s", NULL},
-    {"phases", "assembly", "assembly_s", NULL},
-    {"phases", "analysis", "analysis_s", NULL},
-    {"phases", "factorisation", "factorisation_s", NULL},
-    {"phases", "solve", "solve_s", NULL},
-    {"phases", "output", "output_s", NULL},
-    {"phases", "other", "other_s", NULL},
-    {NULL, "contact_force_max", "contact_force_max_N", "force N"},
-    {NULL, "contact_force_last", "contact_force_last_N", NULL},
-    {NULL, "pairs_max", "pairs_max", NULL},
-    {NULL, "overlap_volume_max", "overlap_volume_max_m3", NULL},
-    {NULL, "deepest_overlap_max", "deepest_overlap_max", "deepest"},
-    {NULL, "energy_gain_relative", "energy_gain_relative", "gain"},
-    {NULL, "energy_lost_J", "energy_lost_J", NULL},
-    {NULL, "min_det_F", "min_det_F", NULL},
-    {NULL, "peak_rss_bytes", "peak_rss_bytes", NULL},
+    {NULL, "end_time", "end_time_s", NULL, APP_TABLE_NUMBER},
+    {NULL, "wall_s", "wall_s", "wall s", APP_TABLE_NUMBER},
+    {NULL, "cpu_s", "cpu_s", "cpu s", APP_TABLE_NUMBER},
+    {NULL, "unknowns", "unknowns", NULL, APP_TABLE_COUNT},
+    {NULL, "steps", "steps", "steps", APP_TABLE_COUNT},
+    {"counters", "newton_iterations", "newton_iterations", "Newton", APP_TABLE_COUNT},
+    {"counters", "newton_failures", "newton_failures", NULL, APP_TABLE_COUNT},
+    {"counters", "energy_retries", "energy_retries", NULL, APP_TABLE_COUNT},
+    {"counters", "factorisations", "factorisations", NULL, APP_TABLE_COUNT},
+    {"counters", "linear_solves", "linear_solves", NULL, APP_TABLE_COUNT},
+    {"counters", "linear_iterations", "linear_iterations", NULL, APP_TABLE_COUNT},
+    {"phases", "broad_phase", "broad_phase_s", NULL, APP_TABLE_NUMBER},
+    {"phases", "overlap", "overlap_s", NULL, APP_TABLE_NUMBER},
+    {"phases", "contact", "contact_s", NULL, APP_TABLE_NUMBER},
+    {"phases", "forces", "forces_s", NULL, APP_TABLE_NUMBER},
+    {"phases", "assembly", "assembly_s", NULL, APP_TABLE_NUMBER},
+    {"phases", "analysis", "analysis_s", NULL, APP_TABLE_NUMBER},
+    {"phases", "factorisation", "factorisation_s", NULL, APP_TABLE_NUMBER},
+    {"phases", "solve", "solve_s", NULL, APP_TABLE_NUMBER},
+    {"phases", "output", "output_s", NULL, APP_TABLE_NUMBER},
+    {"phases", "other", "other_s", NULL, APP_TABLE_NUMBER},
+    {NULL, "contact_force_max", "contact_force_max_N", "force N", APP_TABLE_NUMBER},
+    {NULL, "contact_force_last", "contact_force_last_N", NULL, APP_TABLE_NUMBER},
+    {NULL, "pairs_max", "pairs_max", NULL, APP_TABLE_COUNT},
+    {NULL, "overlap_volume_max", "overlap_volume_max_m3", NULL, APP_TABLE_NUMBER},
+    {NULL, "deepest_overlap_max", "deepest_overlap_max", "deepest", APP_TABLE_NUMBER},
+    {NULL, "energy_gain_relative", "energy_gain_relative", "gain", APP_TABLE_NUMBER},
+    {NULL, "energy_lost_J", "energy_lost_J", NULL, APP_TABLE_NUMBER},
+    {NULL, "min_det_F", "min_det_F", NULL, APP_TABLE_NUMBER},
+    {NULL, "peak_rss_bytes", "peak_rss_bytes", NULL, APP_TABLE_COUNT},
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
@@ -194,7 +195,7 @@ static void add_column(Columns *list, const char *key, AppTableKind kind, size_t
 static void add_numbers(Columns *list, bool is_terminal, bool is_repeated) {
   for (int c = 0; c < COLUMN_COUNT; c++) {
     if (is_terminal && !columns[c].head) continue;
-    add_column(list, columns[c].name, APP_TABLE_NUMBER, offsetof(Row, numbers) + (size_t)c * sizeof(double),
+    add_column(list, columns[c].name, columns[c].kind, offsetof(Row, numbers) + (size_t)c * sizeof(double),
                columns[c].head);
     if (is_terminal && is_repeated && strcmp(columns[c].name, "cpu_s") == 0)
       add_column(list, "spread", APP_TABLE_NUMBER, offsetof(Row, spread), "spread");
@@ -240,7 +241,7 @@ static Status print_csv(const AppSweepGrid *grid, FILE *stream) {
   for (int a = 0; a < grid->base.axis_count; a++)
     add_column(&list, grid->base.axes[a].key, APP_TABLE_TEXT,
                offsetof(Row, values) + (size_t)a * sizeof(const char *), NULL);
-  if (grid->base.repeat_count > 1) add_column(&list, "repeat", APP_TABLE_NUMBER, offsetof(Row, repeat), NULL);
+  if (grid->base.repeat_count > 1) add_column(&list, "repeat", APP_TABLE_COUNT, offsetof(Row, repeat), NULL);
   add_column(&list, "outcome", APP_TABLE_TEXT, offsetof(Row, outcome), NULL);
   add_numbers(&list, false, false);
   add_column(&list, "message", APP_TABLE_TEXT, offsetof(Row, message), NULL);

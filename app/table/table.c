@@ -37,9 +37,12 @@ static void write_cell(const AppTableColumn *column, const void *row, int digits
     snprintf(cell, CELL_SIZE, "%lld", integer_at(column, row));
     return;
   case APP_TABLE_NUMBER:
-  case APP_TABLE_COUNT:
     cell[0] = 0;
     if (isfinite(number_at(column, row))) snprintf(cell, CELL_SIZE, "%.*g", digits, number_at(column, row));
+    return;
+  case APP_TABLE_COUNT:
+    cell[0] = 0;
+    if (isfinite(number_at(column, row))) snprintf(cell, CELL_SIZE, "%.0f", number_at(column, row));
     return;
   }
 }
