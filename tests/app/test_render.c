@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `tetlap render`: the picture that was asked for, and what is said where a program is missing.
-#include "suite.h"
+#include "folder.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -18,8 +18,6 @@
 #include "base/files/file.h"
 #include "base/memory.h"
 
-static char folder[] = "/tmp/tetlap_render_XXXXXX";
-
 static int run(const char *format, const char *options) {
   char words[512], command[1024];
   snprintf(words, sizeof words, format, folder);
@@ -28,17 +26,10 @@ static int run(const char *format, const char *options) {
 }
 
 static void make_run(void) {
-  strcpy(folder, "/tmp/tetlap_render_XXXXXX");
-  ck_assert_ptr_nonnull(mkdtemp(folder));
+  folder_make();
   ck_assert_int_eq(run("run " TETLAP_SOURCE_DIR "/examples/01_drop.yaml -q -o %s/run",
                        "-s time.end=0.02 -s output.frames=2"),
                    0);
-}
-
-static void remove_folder(void) {
-  char command[128];
-  snprintf(command, sizeof command, "rm -rf %s", folder);
-  ck_assert_int_eq(system(command), 0);
 }
 
 static bool says(const char *text) {
@@ -285,7 +276,7 @@ END_TEST
 
 int main(void) {
   TCase *cases = tcase_create("render");
-  tcase_add_checked_fixture(cases, make_run, remove_folder);
+  tcase_add_checked_fixture(cases, make_run, folder_remove);
   tcase_add_test(cases, what_cannot_be_drawn_is_a_usage_error);
   tcase_add_test(cases, a_missing_browser_is_named_with_its_package);
   tcase_add_test(cases, a_browser_that_does_not_answer_is_given_up);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // app/sweep: the values of an axis, and `tetlap sweep` as a whole.
-#include "suite.h"
+#include "folder.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -49,19 +49,6 @@ START_TEST(an_axis_that_makes_no_sense_is_a_usage_error) {
 }
 END_TEST
 
-static char folder[] = "/tmp/tetlap_sweep_XXXXXX";
-
-static void make_folder(void) {
-  strcpy(folder, "/tmp/tetlap_sweep_XXXXXX");
-  ck_assert_ptr_nonnull(mkdtemp(folder));
-}
-
-static void remove_folder(void) {
-  char command[128];
-  snprintf(command, sizeof command, "rm -rf %s", folder);
-  ck_assert_int_eq(system(command), 0);
-}
-
 // A shell command in the folder.
 static void change(const char *what) {
   char command[640];
@@ -82,14 +69,6 @@ static int sweep(const char *options) {
   return sweep_scene(TETLAP_SOURCE_DIR "/examples/01_drop.yaml", options);
 }
 
-static char *read_text(const char *name) {
-  char path[256], *text;
-  size_t size;
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  ck_assert_ok(file_read(path, &text, &size));
-  return text;
-}
-
 static Record *read_table(void) {
   char path[256];
   Record *table;
@@ -99,7 +78,7 @@ static Record *read_table(void) {
 }
 
 static bool says(const char *text) {
-  char *said = read_text("said");
+  char *said = folder_read("said");
   bool is_there = strstr(said, text) != NULL;
   memory_free(said);
   return is_there;
@@ -135,17 +114,17 @@ START_TEST(runs_are_rows_and_one_that_fails_is_a_row_too) {
   }
   record_destroy(table);
   // what is counted has no decimal point
-  char *json = read_text("out/sweep.json"), *steps = strstr(json, "\"steps\": ");
+  char *json = folder_read("out/sweep.json"), *steps = strstr(json, "\"steps\": ");
   ck_assert_ptr_nonnull(steps);
   steps += strlen("\"steps\": ");
   ck_assert_int_eq(steps[strspn(steps, "0123456789")], ',');
   memory_free(json);
 
-  char *csv = read_text("out/sweep.csv");
+  char *csv = folder_read("out/sweep.csv");
   ck_assert_int_eq(lines_of(csv), 5);
   ck_assert_ptr_nonnull(strstr(csv, "folder,bodies[0].material.poisson,contact.stiffness,outcome,"));
   memory_free(csv);
-  char *page = read_text("out/sweep.html");
+  char *page = folder_read("out/sweep.html");
   ck_assert_ptr_nonnull(strstr(page, "tetlap-sweep 1"));
   memory_free(page);
 }
@@ -166,7 +145,7 @@ START_TEST(repeated_runs_are_rows_and_their_medians_a_table) {
     ck_assert_double_gt(record_find_number(row, "factorisation_s"), 0);
   }
   record_destroy(table);
-  char *csv = read_text("out/sweep.csv"), *said = read_text("said");
+  char *csv = folder_read("out/sweep.csv"), *said = folder_read("said");
   ck_assert_ptr_nonnull(strstr(csv, "folder,contact.stiffness,repeat,outcome,"));
   ck_assert_int_eq(lines_of(csv), 7);
   ck_assert_msg(lines_of(said) == 4 && strstr(said, " spread |"), "%s", said); // heads, rule, two rows
@@ -185,7 +164,7 @@ START_TEST(a_repeated_run_that_fails_is_told_in_its_row) {
   Record *table = read_table();
   for (int k = 0; k < 3; k++) ck_assert_str_eq(outcome_of(table, k), k == 1 ? "failed" : "finished");
   record_destroy(table);
-  char *said = read_text("said"), *row = strstr(said, "\nrun "), outcome[16];
+  char *said = folder_read("said"), *row = strstr(said, "\nrun "), outcome[16];
   ck_assert_msg(row && (row = strstr(row + 1, "\nrun ")) != NULL, "%s", said); // below the heads
   ck_assert_int_eq(sscanf(row, " run %15s", outcome), 1);
   ck_assert_str_eq(outcome, "failed");
@@ -273,7 +252,7 @@ START_TEST(weights_files_have_the_names_of_models) {
     ck_assert_str_eq(record_find_text(record_find(record_at(runs, k), "set"), "contact.overlap"), names[k]);
   }
   record_destroy(table);
-  char *csv = read_text("out/sweep.csv");
+  char *csv = folder_read("out/sweep.csv");
   ck_assert_ptr_nonnull(strstr(csv, ",A/1,finished,"));
   memory_free(csv);
   ck_assert_int_eq(sweep_scene(path, "-V contact.overlap=A/1.safetensors,./A/1.safetensors"), 64);
@@ -385,7 +364,7 @@ static int wait_for(pid_t child) {
 static char *history_of(const char *out, const char *run) {
   char name[128];
   snprintf(name, sizeof name, "%s/%s/history.csv", out, run);
-  return read_text(name);
+  return folder_read(name);
 }
 
 // Stopped when both first runs are at work, and gone on with: the same histories, to the last bit.
@@ -420,7 +399,7 @@ END_TEST
 
 int main(void) {
   TCase *cases = tcase_create("sweep");
-  tcase_add_checked_fixture(cases, make_folder, remove_folder);
+  tcase_add_checked_fixture(cases, folder_make, folder_remove);
   tcase_add_test(cases, ranges_have_both_ends_and_lists_their_words);
   tcase_add_test(cases, an_axis_that_makes_no_sense_is_a_usage_error);
   tcase_add_test(cases, runs_are_rows_and_one_that_fails_is_a_row_too);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `tetlap view`: what its server answers, to whom, and what it never gives away; app/job/beacon.h.
-#include "suite.h"
+#include "folder.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -21,7 +21,6 @@
 #include "base/memory.h"
 
 static const char secret[] = "the-secret-of-another-folder";
-static char folder[] = "/tmp/tetlap_view_XXXXXX";
 static pid_t server;
 static int port;
 
@@ -36,17 +35,10 @@ static void write_text(const char *name, const char *text) {
 
 static void make_folder(void) {
   char path[128];
-  strcpy(folder, "/tmp/tetlap_view_XXXXXX");
-  ck_assert_ptr_nonnull(mkdtemp(folder));
+  folder_make();
   snprintf(path, sizeof path, "%s/run", folder);
   ck_assert_int_eq(mkdir(path, 0777), 0);
   write_text("secret.csv", secret);
-}
-
-static void remove_folder(void) {
-  char command[128];
-  snprintf(command, sizeof command, "rm -rf %s", folder);
-  ck_assert_int_eq(system(command), 0);
 }
 
 // `tetlap WORDS… FOLDER/run`, its standard output to `out`.
@@ -373,7 +365,7 @@ END_TEST
 
 int main(void) {
   TCase *cases = tcase_create("view");
-  tcase_add_checked_fixture(cases, make_folder, remove_folder);
+  tcase_add_checked_fixture(cases, make_folder, folder_remove);
   tcase_add_test(cases, it_answers_this_machine_under_its_own_name_only);
   tcase_add_test(cases, it_listens_on_the_loopback_address_only);
   tcase_add_test(cases, no_path_leads_to_a_file);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // tools/measure/frontier and precision: that they measure what they say and write what plot and report read.
-#include "suite.h"
+#include "folder.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,22 +8,8 @@
 #include <string.h>
 #include <sys/wait.h>
 
-#include "base/files/file.h"
 #include "base/files/record.h"
 #include "base/memory.h"
-
-static char folder[] = "/tmp/tetlap_measure_XXXXXX";
-
-static void make_folder(void) {
-  strcpy(folder, "/tmp/tetlap_measure_XXXXXX");
-  ck_assert_ptr_nonnull(mkdtemp(folder));
-}
-
-static void remove_folder(void) {
-  char command[128];
-  snprintf(command, sizeof command, "rm -rf %s", folder);
-  ck_assert_int_eq(system(command), 0);
-}
 
 // The exit code; what is printed goes to the file `said` in the folder. −1: Python is not installed.
 static int run_tool(const char *tool, const char *arguments) {
@@ -33,14 +19,6 @@ static int run_tool(const char *tool, const char *arguments) {
            "cd %s && " TETLAP_PYTHON " tools/measure/%s --program %s %s > %s/said 2>%s/errors",
            TETLAP_SOURCE_DIR, tool, TETLAP_PROGRAM, arguments, folder, folder);
   return WEXITSTATUS(system(command));
-}
-
-static char *read_text(const char *name) {
-  char path[256], *text;
-  size_t size;
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  ck_assert_ok(file_read(path, &text, &size));
-  return text;
 }
 
 static const Record *find(const Record *points, const char *model, const char *quantity) {
@@ -90,7 +68,7 @@ START_TEST(the_frontier_has_every_model_s_error_and_time) {
   ck_assert_double_eq(number_of(points, "exact", "V", "frontier"), 1);
   ck_assert_double_gt(number_of(points, "geo-small", "force", "overlap_share"), 0);
   record_destroy(pareto);
-  char *picture = read_text("out/pareto.svg");
+  char *picture = folder_read("out/pareto.svg");
   ck_assert_ptr_nonnull(strstr(picture, ">geo-small<"));
   ck_assert_ptr_nonnull(strstr(picture, ">exact (no error)<"));
   ck_assert_ptr_nonnull(strstr(picture, "</svg>"));
@@ -108,7 +86,7 @@ START_TEST(precision_measures_errors_of_whole_runs) {
     return;
   }
   ck_assert_int_eq(code, 0);
-  char *said = read_text("said");
+  char *said = folder_read("said");
   for (char *line = strtok(said, "\n"); line; line = strtok(NULL, "\n"))
     if (rows < 2 && sscanf(line, "| edge | clip | %*g | %lf | %lf |", &centres[rows], &forces[rows]) == 2)
       rows++;
@@ -121,7 +99,7 @@ END_TEST
 
 int main(void) {
   TCase *cases = tcase_create("measure");
-  tcase_add_checked_fixture(cases, make_folder, remove_folder);
+  tcase_add_checked_fixture(cases, folder_make, folder_remove);
   tcase_add_test(cases, the_frontier_has_every_model_s_error_and_time);
   tcase_add_test(cases, precision_measures_errors_of_whole_runs);
   return suite_run("measure", cases, 120);
