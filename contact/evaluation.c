@@ -55,11 +55,6 @@ void contact_evaluation_destroy(ContactEvaluation *evaluation) {
   *evaluation = (ContactEvaluation){0};
 }
 
-// Whether forces follow from volumes alone (contact/volume/volume.h); else from the depth field.
-static bool presses_by_volume(const ContactLayout *layout) {
-  return layout->def.potential == CONTACT_POTENTIAL_NODAL;
-}
-
 static Status reserve(ContactEvaluation *evaluation, const ContactLayout *layout, int count) {
   size_t n = (size_t)count, size = sizeof(double);
   bool fits =
@@ -69,7 +64,7 @@ static Status reserve(ContactEvaluation *evaluation, const ContactLayout *layout
       memory_reserve((void **)&evaluation->fields, &evaluation->field_capacity, n,
                      sizeof(ContactFieldPair)) &&
       memory_reserve((void **)&evaluation->flags, &evaluation->flag_capacity, n, sizeof(unsigned));
-  if (presses_by_volume(layout))
+  if (!contact_layout_has_field(layout))
     fits = fits && memory_reserve((void **)&evaluation->nodes, &evaluation->node_capacity, 8 * n, size);
   return fits ? STATUS_OK : status_no_memory("overlapping pairs");
 }
@@ -156,14 +151,14 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
 
 // Moves pair `from` and its overlap to the earlier place `to`. By the depth field the forces of shapes are
 // known already, those of two bodies are found later from the centroid.
-static void move_overlap(ContactEvaluation *evaluation, bool is_by_volume, int from, int to) {
+static void move_overlap(ContactEvaluation *evaluation, bool has_field, int from, int to) {
   bool is_of_shape = evaluation->pairs[from].cells[1] < 0;
   size_t source = (size_t)from, place = (size_t)to;
   if (from == to) return;
   evaluation->pairs[to] = evaluation->pairs[from];
   memcpy(evaluation->coordinates + 24 * place, evaluation->coordinates + 24 * source, 24 * sizeof(double));
   evaluation->volumes[to] = evaluation->volumes[from];
-  if (is_by_volume) {
+  if (!has_field) {
     memcpy(evaluation->gradients + 24 * place, evaluation->gradients + 24 * source, 24 * sizeof(double));
   } else if (!is_of_shape) {
     memcpy(evaluation->centroids + 3 * place, evaluation->centroids + 3 * source, 3 * sizeof(double));
@@ -276,7 +271,7 @@ static Status ask_model(const ContactEvaluation *evaluation, const ContactLayout
 static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout *layout,
                              const OverlapModel *model) {
   int count = evaluation->mesh_pair_count;
-  bool wants_centroid = !presses_by_volume(layout);
+  bool wants_centroid = contact_layout_has_field(layout);
   bool wants_gradient = !wants_centroid || !overlap_model_has_own_centroid(model);
   TRY(reserve_answers(evaluation, wants_gradient, wants_centroid));
   if (count == 0) return STATUS_OK;
@@ -305,7 +300,7 @@ static void overlap_shapes(ContactEvaluation *evaluation, const ContactLayout *l
   for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
     const ContactShape *shape = &layout->def.shapes[layout->interfaces[evaluation->pairs[k].interface].shape];
     const double *tet = evaluation->coordinates + 24 * (size_t)k;
-    if (presses_by_volume(layout)) {
+    if (!contact_layout_has_field(layout)) {
       double *gradient = evaluation->gradients + 24 * (size_t)k;
       contact_shape_overlap(shape, time, tet, &evaluation->volumes[k], gradient, NULL);
       memset(gradient + 12, 0, 12 * sizeof(double));
@@ -319,12 +314,12 @@ static void overlap_shapes(ContactEvaluation *evaluation, const ContactLayout *l
 }
 
 // Drops the pairs without overlap, keeping the order.
-static void keep_overlapping(ContactEvaluation *evaluation, bool is_by_volume) {
+static void keep_overlapping(ContactEvaluation *evaluation, bool has_field) {
   int kept = 0, mesh_kept = 0;
   for (int k = 0; k < evaluation->pair_count; k++) {
     if (!(evaluation->volumes[k] > 0)) continue;
     mesh_kept += k < evaluation->mesh_pair_count;
-    move_overlap(evaluation, is_by_volume, k, kept++);
+    move_overlap(evaluation, has_field, k, kept++);
   }
   evaluation->pair_count = kept;
   evaluation->mesh_pair_count = mesh_kept;
@@ -431,10 +426,10 @@ static Status press(ContactEvaluation *evaluation, const ContactLayout *layout) 
   ContactPatches *patches = &evaluation->patches;
   TRY(contact_patches_build(patches, layout, evaluation->pair_count, evaluation->pairs));
   cover(evaluation);
-  if (presses_by_volume(layout))
-    press_by_volume(evaluation, layout);
-  else
+  if (contact_layout_has_field(layout))
     TRY(press_by_field(evaluation, layout));
+  else
+    press_by_volume(evaluation, layout);
   for (int p = 0; p < patches->patch_count; p++) {
     ContactPatch *patch = &patches->patches[p];
     patch->energy = sum_energies(evaluation, patch);
@@ -454,7 +449,7 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   TRY(sift_by_faces(evaluation, layout, overlap_model_has_ghosts(model), positions));
   TRY(overlap_meshes(evaluation, layout, model));
   overlap_shapes(evaluation, layout, time);
-  keep_overlapping(evaluation, presses_by_volume(layout));
+  keep_overlapping(evaluation, contact_layout_has_field(layout));
   double overlapped = clock_wall_s();
   memcpy(evaluation->positions, positions, 3 * (size_t)layout->mesh.position_count * sizeof(double));
   TRY(press(evaluation, layout));

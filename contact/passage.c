@@ -149,7 +149,7 @@ static void leave(ContactPassage *passage, const ContactPassageEntry *entry) {
 static void match(ContactPassage *passage, const ContactSystem *system) {
   ContactPassageList *now = &passage->now, *next = &passage->next;
   int listed = next->count, i = 0;
-  bool has_field = contact_system_layout(system)->mesh.has_field;
+  bool has_field = contact_layout_has_field(contact_system_layout(system));
   for (int k = 0; k < listed; k++) {
     ContactPassageEntry *entry = &next->entries[k], meeting = *entry;
     for (; i < now->count && compare_entries(&now->entries[i], entry) < 0; i++) {
@@ -172,7 +172,7 @@ static void match(ContactPassage *passage, const ContactSystem *system) {
 }
 
 static Status find_middles(ContactPassage *passage, const ContactLayout *layout) {
-  if (passage->middles || !layout->mesh.has_field) return STATUS_OK;
+  if (passage->middles || !contact_layout_has_field(layout)) return STATUS_OK;
   return contact_middle_find(&layout->mesh, layout->def.tets, layout->rest, &passage->middles);
 }
 

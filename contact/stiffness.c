@@ -153,7 +153,7 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
   bool is_full = layout->def.use_full_hessian;
   const ContactPair *pair = &evaluation->pairs[k];
   double coordinates[OVERLAP_PAIR_SIZE];
-  if (layout->def.potential == CONTACT_POTENTIAL_NODAL) {
+  if (!contact_layout_has_field(layout)) {
     contact_volume_bend(evaluation->fields[k].energy, evaluation->pair_forces + OVERLAP_PAIR_SIZE * (size_t)k,
                         pair->cells[1] < 0 ? 4 : 8, matrix);
     return;

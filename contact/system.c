@@ -10,12 +10,12 @@
 #include "contact/audit.h"
 #include "contact/footprint.h"
 #include "contact/pressure/star_sink.h"
-#include "contact/stiffness.h"
 #include "contact/pressure/trace.h"
 #include "contact/rest.h"
 #include "contact/search/near.h"
 #include "contact/shape/shape.h"
 #include "contact/status.h"
+#include "contact/stiffness.h"
 #include "contact/surface/stars.h"
 
 struct ContactSystem {
@@ -248,7 +248,7 @@ static bool reserve_traces(ContactTrace **traces, int count) {
 // Of what is put to rest by an evaluation.
 static Status keep_traces(ContactSystem *system) {
   const ContactLayout *layout = &system->layout;
-  if (!layout->mesh.has_field) return STATUS_OK;
+  if (!contact_layout_has_field(layout)) return STATUS_OK;
   if (!reserve_traces(&system->resting_traces, layout->def.vertex_count))
     return status_no_memory("contact at rest");
   memset(system->resting_traces, 0, (size_t)layout->def.vertex_count * sizeof(ContactTrace));
@@ -261,7 +261,7 @@ Status contact_system_trace(ContactSystem *system, double *pressures, double *de
   size_t count = (size_t)layout->def.vertex_count, given = (size_t)system->stars.given_vertex_count;
   memset(pressures, 0, given * sizeof *pressures);
   memset(depths, 0, given * sizeof *depths);
-  if (!layout->mesh.has_field) return STATUS_OK;
+  if (!contact_layout_has_field(layout)) return STATUS_OK;
   if (!reserve_traces(&system->traces, layout->def.vertex_count) ||
       !reserve_traces(&system->given_traces, system->stars.given_vertex_count))
     return status_no_memory("pressures at the surface");

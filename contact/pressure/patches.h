@@ -24,7 +24,7 @@ typedef struct ContactNode {
   double force[3]; // [N]; the user's
 } ContactNode;
 
-// A interface that has pairs.
+// An interface that has pairs.
 typedef struct ContactPatch {
   int interface;
   int pair_begin, pair_end;

@@ -10,7 +10,7 @@
 #include "contact/search/layout.h"
 #include "contact/search/motion.h"
 
-// Valid while the two parties of a interface have come nearer by no more than its margin.
+// Valid while the two parties of an interface have come nearer by no more than its margin.
 typedef struct ContactCandidateList {
   int count;
   size_t capacity;
@@ -49,7 +49,7 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
                                  bool *has_changed);
 
 // Sets which interfaces are not searched from now on (interface_count); NULL: all are. Their pairs leave the
-// list; when a interface is searched again the list must be made anew.
+// list; when an interface is searched again the list must be made anew.
 void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLayout *layout,
                                   const bool *is_left_out);
 

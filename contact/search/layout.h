@@ -98,6 +98,12 @@ static inline void contact_layout_warp(const ContactLayout *layout, int cell, do
       coordinates[3 * v + c] += layout->shifts[3 * (size_t)layout->mesh.cells[cell][v] + (size_t)c];
 }
 
+// Whether forces follow from the depth field (contact/pressure/field.h), else from volumes alone
+// (contact/volume/volume.h).
+static inline bool contact_layout_has_field(const ContactLayout *layout) {
+  return layout->def.potential == CONTACT_POTENTIAL_FIELD;
+}
+
 // Puts a pair of cells into general position.
 static inline void contact_layout_unsettle_pair(const ContactLayout *layout, const ContactPair *pair,
                                                 double coordinates[24]) {
@@ -123,7 +129,7 @@ static inline void contact_layout_gather_pair(const ContactLayout *layout, const
   }
   contact_layout_gather(layout, pair->cells[0], positions, coordinates);
   contact_layout_gather(layout, pair->cells[1], positions, coordinates + 12);
-  if (!layout->mesh.has_field) contact_layout_unsettle_pair(layout, pair, coordinates);
+  if (!contact_layout_has_field(layout)) contact_layout_unsettle_pair(layout, pair, coordinates);
 }
 
 #endif

@@ -21,7 +21,7 @@ ContactMotion contact_motion_of_shape(double way);
 void contact_motion_measure(const ContactLayout *layout, double reference_time, const double *reference,
                             double time, const double *positions, ContactMotion *motions);
 
-// By how much the two of a interface may have come nearer: what is common to both does not count.
+// By how much the two of an interface may have come nearer: what is common to both does not count.
 double contact_motion_approach(const ContactMotion *motions, const ContactInterfaceDef *interface);
 
 #endif

@@ -188,7 +188,6 @@ static Status cut_cells(Work *work) {
 
 static Status make_field(Work *work) {
   const ContactSystemDef *def = work->def;
-  work->mesh->has_field = true;
   work->mesh->depths = memory_zeroed((size_t)def->vertex_count, sizeof(double));
   work->outer = memory_zeroed((size_t)def->tet_count, 1);
   if (!work->mesh->depths || !work->outer) return status_no_memory("the contact mesh");

@@ -29,7 +29,6 @@ typedef struct ContactVirtual {
 } ContactVirtual;
 
 typedef struct ContactMesh {
-  bool has_field;
   int cell_count;
   const int (*cells)[4]; // vertices, those of body b's from cell_begin[b] on             (cell_count)
   int *cell_begin;       //                                                              (body_count + 1)

@@ -114,7 +114,7 @@ static double lost_at_rim(const ContactLayout *layout, const ContactEvaluation *
 static Status find_rim(const ContactLayout *layout, const ContactEvaluation *evaluation,
                        const ContactPatch *patch, double *rim) {
   *rim = NAN;
-  if (!layout->mesh.has_field) return STATUS_OK;
+  if (!contact_layout_has_field(layout)) return STATUS_OK;
   Push *pushes = memory_zeroed((size_t)(patch->element_end - patch->element_begin), sizeof *pushes);
   if (!pushes) return status_no_memory("the accuracy of contact");
   *rim = fmax(0, lost_at_rim(layout, evaluation, patch, pushes));
