@@ -211,6 +211,8 @@ static void print_contact(const AppJob *job) {
          contact_def_potential_name(contact->potential), range[0], most,
          contact_def_potential_unit(contact->potential), contact->stiffness > 0 ? "" : " (chosen)",
          app_job_overlap(job));
+  if (contact->smooth > 0)
+    printf("              curved surfaces smoothed, their edges in %d parts\n", 1 << contact->smooth);
 }
 
 static void print_memory(double bytes) {

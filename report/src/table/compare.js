@@ -8,7 +8,7 @@ import { HUES } from "../view/colour.js";
 
 const AUDITS = [
   ["audit_volume_error", "Volumes V"],
-  ["audit_gradient_error", "Gradients ∇V"],
+  ["audit_gradient_error", "Forces of pairs"],
   ["audit_force_error", "Nodal forces"],
   ["audit_total_force_error", "Total forces"],
 ];
