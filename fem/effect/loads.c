@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loads from outside: forces, body forces, tractions, pressures, each a function of time. Their work goes
-// into the energy audit: step by step, mean force times way, which is exact for a constant dead load.
+// Loads from outside: forces, body forces, tractions, pressures, torques, each a function of time. Their work
+// goes into the energy audit: step by step, mean force times way, which is exact for a constant dead load; of
+// a torque by Simpson's rule, since its forces turn within the step.
+//
+// A torque adds nothing to the matrix: its derivative couples all vertices of the selection with each other,
+// and a moment of constant direction has no potential. Newton's method then takes more iterations, as many as
+// the turn within a step asks for.
 #include <math.h>
 #include <string.h>
 
@@ -13,6 +18,7 @@ typedef struct Loads {
   const FemModel *model; // borrowed
   int place;             // of its history: the work until the last accepted state [J]
   double *force, *last;  // scratch: now, and at that state [N]        (vertex_count, 3)
+  double *middle;        // scratch: positions within a step [m]; NULL: no torque (vertex_count, 3)
   double *acceleration;  // the largest at factor 1, at rest [m/s²]    (model->load_count)
 } Loads;
 
@@ -26,6 +32,7 @@ static void destroy(void *self) {
   Loads *loads = self;
   memory_free(loads->force);
   memory_free(loads->last);
+  memory_free(loads->middle);
   memory_free(loads->acceleration);
   memory_free(loads);
 }
@@ -49,7 +56,10 @@ static Status create(void **self, const FemModel *model) {
   loads->force = memory_zeroed(values, sizeof(double));
   loads->last = memory_zeroed(values, sizeof(double));
   loads->acceleration = memory_zeroed((size_t)model->load_count, sizeof(double));
-  if (!loads->force || !loads->last || !loads->acceleration) {
+  bool turns = false;
+  for (int i = 0; i < model->load_count; i++) turns = turns || model->loads[i].weight;
+  if (turns) loads->middle = memory_zeroed(values, sizeof(double));
+  if (!loads->force || !loads->last || !loads->acceleration || (turns && !loads->middle)) {
     destroy(loads);
     return status_no_memory("loads");
   }
@@ -79,6 +89,23 @@ static Status find_forces(Loads *loads, const FemState *state, double *force) {
   return add_force(loads, state, force);
 }
 
+// What Simpson's rule adds to that of the trapezium for the work of a torque over the step to a state.
+static Status add_turning(Loads *loads, const FemLoad *load, const FemState *state, double *work) {
+  const FemState *last = state->last;
+  double begin, middle, end;
+  int values = 3 * loads->model->vertex_count;
+  TRY(fem_load_factor(load->def, last->time, &begin));
+  TRY(fem_load_factor(load->def, 0.5 * (last->time + state->time), &middle));
+  TRY(fem_load_factor(load->def, state->time, &end));
+  for (int i = 0; i < values; i++) loads->middle[i] = 0.5 * (last->positions[i] + state->positions[i]);
+  memset(loads->force, 0, (size_t)values * sizeof *loads->force);
+  fem_load_add_force(load, -begin / 3, last->positions, loads->force);
+  fem_load_add_force(load, 2 * middle / 3, loads->middle, loads->force);
+  fem_load_add_force(load, -end / 3, state->positions, loads->force);
+  for (int i = 0; i < values; i++) *work += loads->force[i] * (state->positions[i] - last->positions[i]);
+  return STATUS_OK;
+}
+
 // Until a state, over the step to it: mean force times way.
 static Status find_work(Loads *loads, const FemState *state, double *work) {
   const FemState *last = state->last;
@@ -87,6 +114,8 @@ static Status find_work(Loads *loads, const FemState *state, double *work) {
   TRY(find_forces(loads, last, loads->last));
   for (int i = 0; i < 3 * loads->model->vertex_count; i++)
     *work += 0.5 * (loads->last[i] + loads->force[i]) * (state->positions[i] - last->positions[i]);
+  for (int i = 0; i < loads->model->load_count; i++)
+    if (loads->model->loads[i].weight) TRY(add_turning(loads, &loads->model->loads[i], state, work));
   return STATUS_OK;
 }
 
@@ -112,10 +141,6 @@ static double horizon(const void *self, const FemForesight *foresight, double ti
     farthest =
         fem_load_horizon(loads->model->loads[i].def, loads->acceleration[i], foresight, time, farthest);
   return farthest;
-}
-
-static bool follows(const FemLoad *load) {
-  return load->triangle_count + load->face_count > 0;
 }
 
 static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
@@ -146,7 +171,7 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
   const FemModel *model = ((const Loads *)self)->model;
   for (int i = 0; i < model->load_count && stiffness_scale != 0; i++) {
     const FemLoad *load = &model->loads[i];
-    if (!follows(load)) continue;
+    if (load->triangle_count + load->face_count == 0) continue;
     double factor, stiffness[81];
     TRY(fem_load_factor(load->def, state->time, &factor));
     for (int k = 0; k < load->triangle_count; k++) {
@@ -173,23 +198,22 @@ static void report(void *self, const FemState *state, Record *counters) {
   record_number(counters, "load_work_J", state->histories[((Loads *)self)->place].values[0]);
 }
 
-// A pressure that follows its surface has a stiffness.
 static bool is_linear(void *self) {
   const FemModel *model = ((const Loads *)self)->model;
   for (int i = 0; i < model->load_count; i++)
-    if (follows(&model->loads[i])) return false;
+    if (fem_load_follows(&model->loads[i])) return false;
   return true;
 }
 
 static size_t bytes(const void *self) {
   const Loads *loads = self;
   return memory_held(self) + memory_held(loads->force) + memory_held(loads->last) +
-         memory_held(loads->acceleration);
+         memory_held(loads->middle) + memory_held(loads->acceleration);
 }
 
 const FemEffectOps fem_effect_loads = {
     .name = "loads",
-    .help = "forces, body forces, tractions and pressures from outside, by functions of time",
+    .help = "forces, body forces, tractions, pressures and torques from outside, by functions of time",
     .couples_anew = true,
     .is_wanted = is_wanted,
     .create = create,

@@ -12,6 +12,7 @@
 #include "fem/mesh/faces.h"
 #include "fem/scene/select.h"
 #include "fem/scene/table.h"
+#include "fem/scene/torque.h"
 
 static Vec3 corner(const double *positions, int vertex) {
   return vec3_at(positions + 3 * (size_t)vertex);
@@ -134,7 +135,7 @@ static double six_volumes_of(const FemMesh *mesh, const int tet[4]) {
                    corner(mesh->rest, tet[3]));
 }
 
-static void share_body_force_by_nodes(Builder *builder) {
+static void share_over_quadratic(Builder *builder, Vec3 density) {
   const FemMesh *mesh = builder->mesh;
   for (int e = 0; e < mesh->quadratic_count; e++) {
     const int *nodes = mesh->quadratic[e];
@@ -144,21 +145,24 @@ static void share_body_force_by_nodes(Builder *builder) {
     fem_quadratic_create_curved(&element, x);
     for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
       if (builder->is_selected[nodes[k]])
-        vec3_accumulate(
-            builder->force + 3 * (size_t)nodes[k],
-            vec3_scale(element.volume * fem_quadratic_mass_share(k), vec3_at(builder->def->vector)));
+        vec3_accumulate(builder->force + 3 * (size_t)nodes[k],
+                        vec3_scale(element.volume * fem_quadratic_mass_share(k), density));
   }
 }
 
-static void share_body_force(Builder *builder) {
+// density × the volume around each selected vertex.
+static void share_over_volume(Builder *builder, Vec3 density) {
   const FemMesh *mesh = builder->mesh;
+  if (mesh->quadratic) {
+    share_over_quadratic(builder, density);
+    return;
+  }
   for (int e = 0; e < mesh->tet_count; e++) {
     const int *tet = mesh->tets[e];
     double six_volumes = six_volumes_of(mesh, tet);
     for (int k = 0; k < 4; k++)
       if (builder->is_selected[tet[k]])
-        vec3_accumulate(builder->force + 3 * (size_t)tet[k],
-                        vec3_scale(six_volumes / 24, vec3_at(builder->def->vector)));
+        vec3_accumulate(builder->force + 3 * (size_t)tet[k], vec3_scale(six_volumes / 24, density));
   }
 }
 
@@ -218,6 +222,25 @@ static Status keep_forces(FemLoad *load, const Builder *builder, int vertex_begi
   return STATUS_OK;
 }
 
+// Of a torque, from the volumes that stand in place of forces along x.
+static Status keep_weights(FemLoad *load, const Builder *builder) {
+  // Beyond it the arms are too short for a moment along the line to be shared.
+  static const double LEAST_BREADTH = 1e-9;
+  load->weight = memory_zeroed((size_t)load->vertex_count, sizeof *load->weight);
+  if (!load->weight) return status_no_memory("a load");
+  for (int i = 0; i < load->vertex_count; i++) load->weight[i] = load->force[3 * (size_t)i];
+  memory_free(load->force);
+  load->force = NULL;
+  if (fem_torque_breadth(load->vertex_count, builder->selected, load->weight, builder->mesh->rest) >
+      LEAST_BREADTH)
+    return STATUS_OK;
+  return status_fail(
+      STATUS_INPUT,
+      "the selection holds %d vertices on a line or at a point; a torque needs vertices around "
+      "its axis: select a face",
+      load->vertex_count);
+}
+
 static Status build(FemLoad *load, Builder *builder, int vertex_begin) {
   TRY(select_all(builder));
   switch (builder->def->kind) {
@@ -225,11 +248,12 @@ static Status build(FemLoad *load, Builder *builder, int vertex_begin) {
     share_force(builder);
     break;
   case FEM_LOAD_BODY_FORCE:
-    if (builder->mesh->quadratic)
-      share_body_force_by_nodes(builder);
-    else
-      share_body_force(builder);
+    share_over_volume(builder, vec3_at(builder->def->vector));
     break;
+  case FEM_LOAD_TORQUE:
+    share_over_volume(builder, (Vec3){1, 0, 0});
+    TRY(keep_forces(load, builder, vertex_begin));
+    return keep_weights(load, builder);
   case FEM_LOAD_PRESSURE:
     TRY(select_triangles(builder));
     if (!builder->def->is_dead) return keep_triangles(load, builder, vertex_begin);
@@ -255,6 +279,7 @@ Status fem_load_create(FemLoad *load, const FemLoadDef *def, const FemMesh *mesh
 void fem_load_destroy(FemLoad *load) {
   memory_free(load->vertices);
   memory_free(load->force);
+  memory_free(load->weight);
   memory_free(load->triangles);
   memory_free(load->faces);
   *load = (FemLoad){0};
@@ -308,7 +333,17 @@ double fem_load_horizon(const FemLoadDef *def, double acceleration, const FemFor
   return fem_signal_horizon(&signal, foresight, time, farthest);
 }
 
+bool fem_load_follows(const FemLoad *load) {
+  return load->triangle_count + load->face_count > 0 || load->weight;
+}
+
 void fem_load_add_force(const FemLoad *load, double factor, const double *positions, double *force) {
+  if (load->weight) {
+    double moment[3];
+    vec3_store(moment, vec3_scale(factor, vec3_at(load->def->vector)));
+    fem_torque_add_force(moment, load->vertex_count, load->vertices, load->weight, positions, force);
+    return;
+  }
   for (int i = 0; i < load->vertex_count; i++)
     vec3_accumulate(force + 3 * (size_t)load->vertices[i],
                     vec3_scale(factor, vec3_at(load->force + 3 * (size_t)i)));

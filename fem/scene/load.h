@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A load of the scene on a body's vertices. All kinds but a pressure that follows its surface are dead: fixed
-// nodal forces times the factor of time; those of a surface are the integrals of the shape functions, also on
-// the faces of quadratic tetrahedra, whose corners get nothing; a body force is distributed as the mass is.
-// The following pressure p on a triangle with the area vector A = ½ (b − a) × (c − a), outward, gives each
-// corner −p A/3; it is −p ∂V/∂x of the volume that the surface bounds.
+// A load of the scene on a body's vertices. All kinds but a pressure that follows its surface and a torque
+// (fem/scene/torque.h, weighted by the volume at rest around a vertex) are dead: fixed nodal forces times the
+// factor of time; those of a surface are the integrals of the shape functions, also on the faces of quadratic
+// tetrahedra, whose corners get nothing; a body force is distributed as the mass is. The following pressure p
+// on a triangle with the area vector A = ½ (b − a) × (c − a), outward, gives each corner −p A/3; it is −p
+// ∂V/∂x of the volume that the surface bounds.
 #ifndef TETLAP_FEM_SCENE_LOAD_H
 #define TETLAP_FEM_SCENE_LOAD_H
 
@@ -13,8 +14,9 @@
 
 typedef struct FemLoad {
   const FemLoadDef *def; // borrowed from the scene
-  int *vertices;         // of the model, that carry a dead load                      (vertex_count)
+  int *vertices;         // of the model, that carry a dead load or a torque          (vertex_count)
   double *force;         // on each at factor 1 [N]                                   (vertex_count, 3)
+  double *weight;        // in place of `force`, of a torque [m³]                     (vertex_count)
   int vertex_count;
   int (*triangles)[3]; // of the model, outward, that carry a following pressure      (triangle_count)
   int triangle_count;
@@ -23,7 +25,7 @@ typedef struct FemLoad {
 } FemLoad;
 
 // Finds vertices and triangles in `mesh`, whose first vertex has the number `vertex_begin` in the model.
-// STATUS_INPUT: a selection without a vertex, or for a surface load without a triangle.
+// STATUS_INPUT: a selection without a vertex, for a surface load without a triangle, for a torque on a line.
 Status fem_load_create(FemLoad *load, const FemLoadDef *def, const FemMesh *mesh, int vertex_begin);
 void fem_load_destroy(FemLoad *load); // also of a zeroed one
 
@@ -38,6 +40,9 @@ double fem_load_next_change(const FemLoadDef *def, double time);
 // factor 1 gives a vertex.
 double fem_load_horizon(const FemLoadDef *def, double acceleration, const FemForesight *foresight,
                         double time, double farthest);
+
+// Whether the forces depend on positions.
+bool fem_load_follows(const FemLoad *load);
 
 // Adds factor × load at these positions to `force` (vertex_count, 3) [N].
 void fem_load_add_force(const FemLoad *load, double factor, const double *positions, double *force);

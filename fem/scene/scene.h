@@ -59,6 +59,7 @@ typedef enum FemLoadKind {
   FEM_LOAD_BODY_FORCE, // by rest volume [N/m³]
   FEM_LOAD_TRACTION,   // by rest area of the surface triangles whose corners are all selected [N/m²]
   FEM_LOAD_PRESSURE,   // on the same triangles, against their outward normal [Pa]
+  FEM_LOAD_TORQUE,     // moment of the selected vertices, without a resultant [N m]
 } FemLoadKind;
 
 typedef struct FemLoadDef {

@@ -5,17 +5,22 @@
 #include "fem/scene/scene.h"
 
 static const SceneKey load_keys[] = {
-    {"force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "body_force traction pressure", .unit = "N",
-     MARK(FemLoadDef, kind, FEM_LOAD_FORCE), .help = "total, distributed evenly over the selected vertices"},
-    {"body_force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force traction pressure",
+    {"force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "body_force traction pressure torque",
+     .unit = "N", MARK(FemLoadDef, kind, FEM_LOAD_FORCE),
+     .help = "total, distributed evenly over the selected vertices"},
+    {"body_force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force traction pressure torque",
      .unit = "N/m³", MARK(FemLoadDef, kind, FEM_LOAD_BODY_FORCE),
      .help = "on the volume (at rest) around the selected vertices"},
-    {"traction", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force body_force pressure",
+    {"traction", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force body_force pressure torque",
      .unit = "N/m²", MARK(FemLoadDef, kind, FEM_LOAD_TRACTION),
      .help = "on the area (at rest) of the surface triangles whose three corners are selected"},
     {"pressure", SCENE_NUMBER, AT(FemLoadDef, pressure), .unit = "Pa",
      MARK(FemLoadDef, kind, FEM_LOAD_PRESSURE),
      .help = "on the same triangles, against their outward normal"},
+    {"torque", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force body_force traction pressure",
+     .unit = "N m", MARK(FemLoadDef, kind, FEM_LOAD_TORQUE),
+     .help = "moment about the centroid of the selected vertices, without a resultant; its direction stays, "
+             "and its forces turn with the vertices"},
     {"follows", SCENE_CHOICE, AT(FemLoadDef, is_dead), .fallback = "surface",
      .choices = &app_scene_choices_followings, .needs = "pressure", .help = "what a pressure acts on"},
     {"factor", SCENE_FORMULA, AT(FemLoadDef, factor), .absent_help = "1", .excludes = "table",
@@ -30,5 +35,5 @@ const SceneSection app_scene_keys_load = {.help = "an external load",
                                           .keys = load_keys,
                                           .more = &app_scene_keys_select,
                                           .one_of = "box halfspace group all",
-                                          .some_of = "force body_force traction pressure",
+                                          .some_of = "force body_force traction pressure torque",
                                           PLACE(FemLoadDef, select.place)};

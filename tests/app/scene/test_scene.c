@@ -98,7 +98,7 @@ static void check_constraints(const FemBodyDef *body) {
 
 static void check_loads(const FemBodyDef *body) {
   const FemLoadDef *loads = body->loads;
-  ck_assert_int_eq(body->load_count, 5);
+  ck_assert_int_eq(body->load_count, 6);
   ck_assert_int_eq(loads[0].kind, FEM_LOAD_PRESSURE);
   ck_assert_str_eq(loads[0].select.group, "top");
   ck_assert_double_eq(loads[0].pressure, 5e4);
@@ -113,6 +113,8 @@ static void check_loads(const FemBodyDef *body) {
   ck_vector(loads[3].vector, 0, 0, -3);
   ck_assert_int_eq(loads[4].kind, FEM_LOAD_FORCE);
   ck_assert_double_eq(expression_eval(loads[4].factor, 9).value, 0.5);
+  ck_assert_int_eq(loads[5].kind, FEM_LOAD_TORQUE);
+  ck_vector(loads[5].vector, 0, 7, 0);
 }
 
 static void check_upper(const FemBodyDef *body) {
@@ -227,7 +229,7 @@ START_TEST(a_scene_with_every_key_is_read) {
   ck_assert_ok(app_scene_read(full_yaml, NULL, 0, &scene));
   check_full(&scene);
   ck_assert_str_eq(scene.path, full_yaml);
-  ck_assert_int_eq(scene.bodies[1].place.line, 28);
+  ck_assert_int_eq(scene.bodies[1].place.line, 29);
   ck_assert_int_eq(scene.bodies[0].driven[1].select.place.line, 18);
   ck_assert_int_eq(scene.bodies[0].driven[1].select.place.column, 9);
   fem_scene_destroy(&scene);
