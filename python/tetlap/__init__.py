@@ -6,18 +6,20 @@
     tetlap.torch.overlap        the same as a differentiable function of PyTorch tensors
     Model, models               the overlap models there are
     run, read                   a scene run by the program; what it wrote, as arrays
+    load_pairs, evaluate        labelled pairs as arrays; how well a model, yours too, answers them
     poses                       overlap volume and wrench of many rigid poses of a body
 """
 
 from ._errors import Error, RunError
 from ._library import Model, models
+from ._pairs import evaluate, load_pairs
 from ._poses import Poses, poses
 from ._results import Frame, Frames, Run, read
 from ._run import run
 from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
 
-__all__ = ["Error", "Flag", "Frame", "Frames", "MeshPairs", "Model", "Overlap", "Poses", "Run", "RunError", "mesh_overlap", "mesh_pairs",
-           "models", "overlap", "poses", "read", "run"]
+__all__ = ["Error", "Flag", "Frame", "Frames", "MeshPairs", "Model", "Overlap", "Poses", "Run", "RunError", "evaluate", "load_pairs",
+           "mesh_overlap", "mesh_pairs", "models", "overlap", "poses", "read", "run"]
 
 
 def __getattr__(name):

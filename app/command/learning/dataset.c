@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/learning/dataset.h"
 
+#include "app/command/learning/dataset_export.h"
 #include "app/command/learning/dataset_import.h"
 #include "app/command/learning/dataset_info.h"
 #include "app/command/learning/dataset_merge.h"
 #include "app/command/learning/dataset_plot.h"
 
-static const AppCommand *const verbs[] = {&app_command_dataset_import, &app_command_dataset_info,
-                                          &app_command_dataset_merge, &app_command_dataset_plot, NULL};
+static const AppCommand *const verbs[] = {&app_command_dataset_export, &app_command_dataset_import,
+                                          &app_command_dataset_info,   &app_command_dataset_merge,
+                                          &app_command_dataset_plot,   NULL};
 
 const AppCommand app_command_dataset = {
     .name = "dataset",
-    .help = "import, describe, join or draw data sets of such pairs",
+    .help = "import, export, describe, join or draw data sets of such pairs",
     .children = verbs,
     .child_word = "verb",
     .child_of_files = "info",
