@@ -7,7 +7,7 @@
 //   mine.py:volume        a function, or a torch.nn.Module, in a Python file
 //   mine.py               the one that is named `model`
 //   exec:COMMAND          a program that speaks the protocol of overlap/foreign/process.h
-//   channel:3,4,volume    a function of the program that started this one (the same protocol)
+//   channel:3:4:volume    a function of the program that started this one (the same protocol)
 //   hybrid, hybrid=WORD   a network that is answered for by `clip` where it doubts
 #ifndef TETLAP_OVERLAP_SOURCE_H
 #define TETLAP_OVERLAP_SOURCE_H

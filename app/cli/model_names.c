@@ -85,8 +85,7 @@ static int program_of(const char *command, const char **name) {
 // folder; what a channel says last.
 static int call_source(const char *source, const char **name) {
   if (overlap_source_of(source) == OVERLAP_SOURCE_CHANNEL) {
-    const char *comma = strrchr(source, ',');
-    *name = comma ? comma + 1 : source;
+    *name = strrchr(source, ':') + 1;
     return (int)strlen(*name);
   }
   return program_of(strchr(source, ':') + 1, name);

@@ -9,7 +9,7 @@
 //   hybrid=out/my.safetensors hybrid=my
 //   out/a/mine.py:volume      mine:volume
 //   exec:out/mine --fast      mine
-//   channel:5,6,volume        volume
+//   channel:5:6:volume        volume
 //
 // A name is the path of the model's folder below that of a comparison, too.
 #ifndef TETLAP_APP_CLI_MODEL_NAMES_H

@@ -327,8 +327,8 @@ Status overlap_foreign_process_open_python(OverlapForeignPort *port, const char 
 
 Status overlap_foreign_process_attach(OverlapForeignPort *port, const char *word) {
   int ends[2], used = 0;
-  if (sscanf(word, "channel:%d,%d,%n", &ends[0], &ends[1], &used) != 2 || used == 0 || !word[used])
-    return status_fail(STATUS_INPUT, "%s: expected channel:SOCKET,MEMORY,NAME, two descriptors", word);
+  if (sscanf(word, "channel:%d:%d:%n", &ends[0], &ends[1], &used) != 2 || used == 0 || !word[used])
+    return status_fail(STATUS_INPUT, "%s: expected channel:SOCKET:MEMORY:NAME, two descriptors", word);
   for (int e = 0; e < 2; e++)
     if (fcntl(ends[e], F_SETFD, FD_CLOEXEC) < 0)
       return status_fail(STATUS_INPUT,
@@ -336,8 +336,11 @@ Status overlap_foreign_process_attach(OverlapForeignPort *port, const char *word
                          word + used);
   Process *process;
   TRY(create(&process, word + used));
-  process->socket = ends[0], process->memory = ends[1];
-  Status status = reserve(process, 1);
+  process->socket = fcntl(ends[0], F_DUPFD_CLOEXEC, 0);
+  process->memory = fcntl(ends[1], F_DUPFD_CLOEXEC, 0);
+  Status status = process->socket < 0 || process->memory < 0
+                      ? status_fail(STATUS_IO, "%s: no descriptor: %s", process->name, strerror(errno))
+                      : reserve(process, 1);
   if (!status) status = greet(process, port);
   if (status) close_process(process);
   return status;

@@ -33,8 +33,9 @@ Status overlap_foreign_process_open(OverlapForeignPort *port, const char *comman
 // `path:name` of a Python file; run by $TETLAP_PYTHON, `python3` by default, with python/tetlap/serve.py.
 Status overlap_foreign_process_open_python(OverlapForeignPort *port, const char *word);
 
-// `channel:SOCKET,MEMORY,NAME`: the other side, which has started this program, holds the other end. Both
-// descriptors become the port's. STATUS_INPUT: they are not there, as in a run that is resumed.
+// `channel:SOCKET:MEMORY:NAME`: the other side, which has started this program, holds the other end. The same
+// word may be opened more than once, in one thread: each asks what the model is, and the memory only grows.
+// STATUS_INPUT: the descriptors are not there, as in a run that is resumed.
 Status overlap_foreign_process_attach(OverlapForeignPort *port, const char *word);
 
 #endif

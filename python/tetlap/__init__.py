@@ -7,9 +7,11 @@
     Model, models               the overlap models there are
     run, read                   a scene run by the program; what it wrote, as arrays
     load_pairs, evaluate        labelled pairs as arrays; how well a model, yours too, answers them
+    compare                     one scene with several models, yours too
     poses                       overlap volume and wrench of many rigid poses of a body
 """
 
+from ._compare import Compared, compare
 from ._errors import Error, RunError
 from ._library import Model, models
 from ._pairs import evaluate, load_pairs
@@ -18,7 +20,7 @@ from ._results import Frame, Frames, Run, read
 from ._run import run
 from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
 
-__all__ = ["Error", "Flag", "Frame", "Frames", "MeshPairs", "Model", "Overlap", "Poses", "Run", "RunError", "evaluate", "load_pairs",
+__all__ = ["Compared", "Error", "Flag", "Frame", "Frames", "MeshPairs", "Model", "Overlap", "Poses", "Run", "RunError", "compare", "evaluate", "load_pairs",
            "mesh_overlap", "mesh_pairs", "models", "overlap", "poses", "read", "run"]
 
 

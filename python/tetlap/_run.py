@@ -89,9 +89,9 @@ class _Words(threading.Thread):
 class _Server(threading.Thread):
     """Answers the program's requests for overlaps by a function of ours (overlap/foreign/process.h)."""
 
-    def __init__(self, function):
+    def __init__(self, function, name=None):
         super().__init__(daemon=True)
-        name = getattr(function, "__name__", type(function).__name__)
+        name = name or getattr(function, "__name__", type(function).__name__)
         self._function, self._name, self.error = function, "".join(c for c in name if c.isalnum() or c in "_-.") or "model", None
         ours, theirs = socket.socketpair()
         memory = os.memfd_create("tetlap-model")
@@ -101,7 +101,7 @@ class _Server(threading.Thread):
 
     @property
     def word(self):
-        return f"channel:{self.descriptors[0]},{self.descriptors[1]},{self._name}"
+        return f"channel:{self.descriptors[0]}:{self.descriptors[1]}:{self._name}"
 
     def run(self):
         try:
@@ -190,6 +190,19 @@ def _execute(command, directory, on_frame, server):
         warnings.warn("the run wrote no frames (output.vtu is false), so on_frame was not called", stacklevel=3)
 
 
+def _place_scene(scene, directory):
+    """A scene's file, the folder to write into, and what keeps that folder if it is temporary."""
+    if not isinstance(scene, Mapping):
+        return scene, directory if directory is not None else Path("out", Path(scene).stem), None
+    text = scene_text(with_absolute_paths(scene))
+    keeper = _Folder() if directory is None else None
+    directory = directory if keeper is None else keeper.path
+    Path(directory).mkdir(parents=True, exist_ok=True)
+    file = Path(directory, "scene.yaml")
+    file.write_text(text + "\n", encoding="utf-8")
+    return file, directory, keeper
+
+
 def run(scene, directory=None, *, set=None, overlap=None, threads=None, strict=False, capture=None, on_frame=None):
     """Runs a scene with the program `tetlap`, in a process of its own; a `tetlap.Run` with what it wrote.
 
@@ -211,17 +224,7 @@ def run(scene, directory=None, *, set=None, overlap=None, threads=None, strict=F
     RunError: the program failed; it carries the program's message. Error: there is no program.
     """
     overrides = override_texts(set)
-    temporary = None
-    if isinstance(scene, Mapping):
-        text = scene_text(with_absolute_paths(scene))
-        if directory is None:
-            temporary = _Folder()
-            directory = temporary.path
-        Path(directory).mkdir(parents=True, exist_ok=True)
-        scene = Path(directory, "scene.yaml")
-        scene.write_text(text + "\n", encoding="utf-8")
-    elif directory is None:
-        directory = Path("out", Path(scene).stem)
+    scene, directory, temporary = _place_scene(scene, directory)
     server = _Server(overlap) if callable(overlap) else None
     word = server.word if server else overlap
     try:

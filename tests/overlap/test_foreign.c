@@ -74,7 +74,7 @@ START_TEST(a_word_says_what_it_is) {
                {"a/b.py:f", OVERLAP_SOURCE_PYTHON, "a/b.py"},
                {"a:b/c.py", OVERLAP_SOURCE_PYTHON, "a:b/c.py"},
                {"exec:./x.py", OVERLAP_SOURCE_COMMAND, ""},
-               {"channel:3,4,f", OVERLAP_SOURCE_CHANNEL, ""}};
+               {"channel:3:4:f", OVERLAP_SOURCE_CHANNEL, ""}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     const char *path;
     char text[64];
@@ -279,7 +279,7 @@ START_TEST(a_reply_that_comes_too_late_answers_no_other_request) {
   int ends[2], memory = memfd_create("memory", 0);
   OverlapBatch batch = batch_of(PAIRS, false, false);
   ck_assert(memory >= 0 && socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0);
-  snprintf(word, sizeof word, "channel:%d,%d,late", ends[0], memory);
+  snprintf(word, sizeof word, "channel:%d:%d:late", ends[0], memory);
   setenv("TETLAP_MODEL_SECONDS", "0.2", 1);
   ck_assert_int_eq(send(ends[1], done, sizeof done, 0), sizeof done);
   open_model(&model, word);
@@ -289,7 +289,7 @@ START_TEST(a_reply_that_comes_too_late_answers_no_other_request) {
   send(ends[1], done, sizeof done, MSG_NOSIGNAL);
   ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_DEVICE);
   overlap_model_destroy(&model);
-  close(ends[1]);
+  close(ends[0]), close(ends[1]), close(memory);
 }
 END_TEST
 
@@ -302,7 +302,7 @@ START_TEST(a_model_that_writes_nothing_has_not_answered) {
   int ends[2], memory = memfd_create("memory", 0);
   OverlapBatch batch = batch_of(PAIRS, false, false);
   ck_assert(memory >= 0 && socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0);
-  snprintf(word, sizeof word, "channel:%d,%d,silent", ends[0], memory);
+  snprintf(word, sizeof word, "channel:%d:%d:silent", ends[0], memory);
   for (int i = 0; i < 3; i++) ck_assert_int_eq(send(ends[1], done, sizeof done, 0), sizeof done);
   open_model(&model, word);
   ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_SOLVER);
@@ -310,7 +310,7 @@ START_TEST(a_model_that_writes_nothing_has_not_answered) {
   ck_assert_int_eq(model.ops->eval_logits(model.self, PAIRS, pairs[0], logits), STATUS_SOLVER);
   ck_assert_msg(strstr(status_message(), "its logit"), "%s", status_message());
   overlap_model_destroy(&model);
-  close(ends[1]);
+  close(ends[0]), close(ends[1]), close(memory);
   expect_failure(TETLAP_MODEL_10, STATUS_SOLVER, "its volume is not a finite number");
 }
 END_TEST
